@@ -1,0 +1,77 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "palpate/contact/frame.h"
+#include "palpate/contact/sample.h"
+#include "palpate/contact/spec.h"
+#include "palpate/dynamics/force_term.h"
+
+namespace palpate::contact {
+
+/// A surface whose vertices are nodes of the State: vertex i is node `node_of_vertex[i]` counted inside the block.
+struct NodeSurface {
+  int block_id = -1;
+  std::vector<int> node_of_vertex;
+  Faces faces;  ///< vertex indices, outward
+};
+
+/// Makes the samples of one pair from the current state: the slow query between which gaps are linear.
+class SampleSource {
+ public:
+  virtual ~SampleSource() = default;
+  virtual std::string_view name() const = 0;
+  /// Appends samples; candidates with a small positive gap included.
+  virtual void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) = 0;
+  /// Node pairs its samples may couple (faces of each surface; both surfaces for two soft bodies).
+  virtual void add_pattern(dynamics::PatternBuilder& pattern) const = 0;
+  virtual std::uint64_t pattern_version() const { return 0; }
+};
+
+/// Pressure p(gap, gap_rate) [Pa] and its derivatives; p >= 0 always (never adhesive), zero for gap >= 0.
+struct Pressure { double p, dp_dgap, dp_drate, energy_density; };
+Pressure pressure(const ContactSpec& law, double gap, double gap_rate);
+
+/// Derivatives of the contact seen from one frame, about its origin, angular first.
+struct FrameLinearisation {
+  Wrench wrench;             ///< on the frame
+  Mat6 K, B;                 ///< -dF/dx, -dF/dv of the frame, bodies held
+  MatX K_body, B_body;       ///< nodal_size x 6: -df_nodes/dx_frame, -df_nodes/dv_frame
+  MatX K_frame, B_frame;     ///< 6 x nodal_size: -dF_frame/dx_nodes, -dF_frame/dv_nodes
+  int active = 0;            ///< samples with pressure
+};
+
+/// All contacts of a scene as one force term (DESIGN 3.4).
+class ContactForce : public dynamics::ForceTerm {
+ public:
+  ContactForce();
+  ~ContactForce() override;
+  int add_frame(std::shared_ptr<MovingFrame> frame);                     ///< index for SurfacePoint::frame
+  int add_pair(std::unique_ptr<SampleSource> source, const ContactSpec& law);
+
+  std::string_view name() const override;
+  dynamics::TermTraits traits() const override;
+  void add_pattern(dynamics::PatternBuilder& pattern) const override;
+  std::uint64_t pattern_version() const override;
+  void add_force(const dynamics::StateView& state, VecX& f) override;
+  void add_tangent(const dynamics::StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) override;
+  void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) override;
+  double energy(const dynamics::StateView& state) override;
+  double dissipated_power(const dynamics::StateView& state) override;
+  bool refresh(const dynamics::StateView& state) override;
+  int event_count() const override;
+  void events(const dynamics::StateView& state, double* g) override;
+
+  const std::vector<ContactSample>& samples() const;
+  Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
+  void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out) const;
+  long queries() const;
+  double query_seconds() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate::contact

@@ -1,0 +1,27 @@
+#pragma once
+#include <array>
+
+#include "palpate/core/types.h"
+
+namespace palpate::contact {
+
+/// One side of a contact sample: a point of a soft body (weighted nodes) or of a rigid frame.
+struct SurfacePoint {
+  int frame = -1;                ///< index of a MovingFrame, or -1: weighted nodes
+  int count = 0;                 ///< nodes used, at most 4
+  std::array<int, 4> node{};     ///< counted over all node blocks (rows 3 node .. 3 node + 2 of u)
+  std::array<double, 4> weight{};///< sum to one; may be slightly negative at edges
+  Vec3 offset = Vec3::Zero();    ///< nodes: world offset added to the weighted position; frame: the point in the frame's axes [m]
+};
+
+/// Two surface points on one line along `normal`, and what they stand for.  The same record from an obstacle, the GPU, the CPU or the exact query.
+/// Between queries the gap is linear in the positions: gap = normal . (x_a - x_b); negative is penetration.  The force on a is p area normal, on b its opposite.
+struct ContactSample {
+  SurfacePoint a, b;
+  Vec3 normal = Vec3::UnitZ();  ///< unit, from b to a: pushes a away
+  double area = 0.0;            ///< projected on the contact plane [m^2]
+  double gap = 0.0;             ///< at the query [m]
+  int source = 0;               ///< index of the contact pair that made it
+};
+
+}  // namespace palpate::contact

@@ -1,0 +1,25 @@
+#pragma once
+#include <memory>
+
+#include "palpate/contact/contact_force.h"
+#include "palpate/mesh/mesh.h"
+
+namespace palpate::contact {
+
+/// Vertices of a soft surface against an exact shape in a frame.  One sample a vertex: gap = signed distance, normal = the shape's
+/// outward normal at the closest point, area = the vertex's area vector projected on that normal (one third of each adjacent triangle, deformed).
+/// @param candidate_gap  vertices nearer than this are kept as candidates [m]
+std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& point, const Vec3& normal, double candidate_gap);
+std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& centre, double radius, double candidate_gap);
+
+struct GpuOptions {
+  int pixels = 256;             ///< longer edge of the image
+  double candidate_gap = 0.0;   ///< [m]
+};
+
+/// Image space on the GPU (DESIGN 3.3): one region with its plane from libccd, both surfaces rasterised along its normal, one `pixel` sample
+/// for each pixel where both are covered; the gap in double on the two triangles that the image paired.
+/// The GL context is opened at the first query.  @throws Error when no EGL device can be opened, with the package that brings it.
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid, int frame, std::shared_ptr<MovingFrame> motion, const GpuOptions& options);
+
+}  // namespace palpate::contact

@@ -1,0 +1,33 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "palpate/core/types.h"
+
+namespace palpate {
+
+/// A rigid shape fixed in the world, with exact gaps.  The `[[obstacle]]` tables of a scene.
+struct ObstacleSpec {
+  std::string name;
+  std::string type;                       ///< "plane", "sphere"
+  Vec3 position_m = Vec3::Zero();         ///< a point of the plane; the sphere's centre
+  Vec3 normal = Vec3::UnitZ();            ///< plane: outward
+  double radius_m = 1.0;                  ///< sphere
+};
+
+/// One pair that may touch.  The `[[contact]]` tables of a scene.
+struct ContactSpec {
+  std::string first;                      ///< a body's name
+  std::string second;                     ///< an obstacle's name, or "tool"
+  std::string method = "analytic";        ///< "analytic" (obstacle or a sphere tool) or "gpu" (image space)
+  double stiffness_pa_m = 1e7;            ///< k: pressure per depth
+  double damping_pa_s_m = 0.0;            ///< d (kelvin_voigt) [Pa s/m]
+  double hunt_crossley_s_m = 0.0;         ///< c (hunt_crossley) [s/m]
+  std::string law = "kelvin_voigt";       ///< or "hunt_crossley"
+  double friction = 0.0;                  ///< mu, regularised Coulomb
+  double friction_regularisation_m_s = 1e-3;  ///< v_r
+  double candidate_gap_m = 0.0;           ///< samples with a smaller positive gap are kept too; 0: chosen from the mesh
+  int pixels = 256;                       ///< gpu: the image's edge
+};
+
+}  // namespace palpate

@@ -1,0 +1,24 @@
+#pragma once
+
+namespace palpate {
+
+double wall_seconds();        ///< monotonic wall clock [s]
+double cpu_seconds();         ///< CPU time of this process, all threads [s]
+double thread_cpu_seconds();  ///< CPU time of the calling thread [s]
+double peak_memory_mib();     ///< largest resident set so far [MiB]
+double resident_memory_mib(); ///< resident set now [MiB]
+
+/// Adds the wall time of its life to a sum [s].
+class ScopedTimer {
+ public:
+  explicit ScopedTimer(double& sum) : sum_(sum), start_(wall_seconds()) {}
+  ~ScopedTimer() { sum_ += wall_seconds() - start_; }
+  ScopedTimer(const ScopedTimer&) = delete;
+  ScopedTimer& operator=(const ScopedTimer&) = delete;
+
+ private:
+  double& sum_;
+  double start_;
+};
+
+}  // namespace palpate

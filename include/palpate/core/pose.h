@@ -1,0 +1,40 @@
+#pragma once
+#include "palpate/core/types.h"
+
+namespace palpate {
+
+/// Rigid transform X_AB: p_A = rotation * p_B + translation.  `rotation` is a unit quaternion.
+struct Pose {
+  Quat rotation = Quat::Identity();
+  Vec3 translation = Vec3::Zero();  ///< [m]
+
+  Vec3 operator*(const Vec3& p) const { return rotation * p + translation; }
+  Pose operator*(const Pose& other) const { return {rotation * other.rotation, rotation * other.translation + translation}; }
+  Pose inverse() const { return {rotation.conjugate(), -(rotation.conjugate() * translation)}; }
+};
+
+/// Velocity of a rigid frame in world axes: angular [rad/s], and linear velocity of its origin [m/s].
+struct Twist {
+  Vec3 angular = Vec3::Zero();
+  Vec3 linear = Vec3::Zero();
+  /// Velocity of the point at `arm` = p - origin, world axes.
+  Vec3 at(const Vec3& arm) const { return linear + angular.cross(arm); }
+};
+
+/// Moment about the frame's origin [N m] and force [N], world axes.
+struct Wrench {
+  Vec3 moment = Vec3::Zero();
+  Vec3 force = Vec3::Zero();
+  Wrench& operator+=(const Wrench& o) { moment += o.moment; force += o.force; return *this; }
+};
+
+/// Rotation vector of a unit quaternion, angle in [0, pi] [rad].  Accurate for small angles; both signs of q give the same result.
+Vec3 rotation_vector(const Quat& q);
+
+/// The unit quaternion of a rotation vector [rad].
+Quat quaternion_of(const Vec3& rotation_vector);
+
+/// The 6-vector (angular, linear) [rad, m] that carries `from` to `to`: rotation vector of to.rotation * from.rotation^-1 (world axes) and to.translation - from.translation.
+Vec6 pose_difference(const Pose& from, const Pose& to);
+
+}  // namespace palpate

@@ -1,0 +1,34 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "palpate/core/pose.h"
+#include "palpate/core/registry.h"
+#include "palpate/device/spec.h"
+
+namespace palpate::device {
+
+/// The handle as the hand moves it at one instant.
+struct HandleSample {
+  Pose pose;
+  Twist twist;
+  Twist acceleration;  ///< [rad/s^2, m/s^2]
+  bool valid = true;   ///< false: no pose arrived; forces must fall to zero
+};
+
+/// Something a hand holds.  `sample` is called once a tick with times that do not decrease; `feedback` gives the wrench that the hand feels.
+class Handle {
+ public:
+  virtual ~Handle() = default;
+  virtual HandleSample sample(double t) = 0;
+  virtual void feedback(double /*t*/, const Wrench& /*on_hand*/) {}
+};
+
+using MakeHandle = std::unique_ptr<Handle> (*)(const DeviceSpec&);
+const Registry<MakeHandle>& handle_registry();
+std::unique_ptr<Handle> make_handle(const DeviceSpec& spec);
+
+/// The path through keyframes: before the first and after the last it rests there.  Rotations interpolate on the rotation vector between neighbours.
+HandleSample sample_keyframes(const std::vector<KeyframeSpec>& keyframes, double t);
+
+}  // namespace palpate::device

@@ -1,0 +1,37 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "palpate/core/registry.h"
+#include "palpate/dynamics/matrix.h"
+
+namespace palpate::dynamics {
+
+enum class SolveStatus { kOk, kIndefinite, kSingular, kNotConverged };
+
+struct SolverCounters {
+  long symbolic = 0;        ///< symbolic analyses (once a pattern)
+  long factorisations = 0;  ///< numeric factorisations
+  long solves = 0;          ///< right-hand sides
+  long iterations = 0;      ///< of iterative methods
+  double symbolic_s = 0.0, factor_s = 0.0, solve_s = 0.0;  ///< wall time [s]
+};
+
+/// Solves A X = B for a bordered matrix.  Symbolic analysis once per pattern version; numeric work only when the values' version changed.
+class LinearSolver {
+ public:
+  virtual ~LinearSolver() = default;
+  virtual std::string name() const = 0;
+  virtual bool supports_unsymmetric() const = 0;
+  /// Prepares for A; cheap when neither its pattern nor its values changed.  kIndefinite: a Cholesky factor does not exist.
+  virtual SolveStatus factor(const BorderedMatrix& A) = 0;
+  /// X = A^-1 B for the matrix last factored; B and X are size x nrhs, may be the same object.
+  virtual SolveStatus solve(const MatX& B, MatX& X) = 0;
+  virtual SolveStatus solve(const VecX& b, VecX& x) = 0;
+  virtual const SolverCounters& counters() const = 0;
+};
+
+using MakeLinearSolver = std::unique_ptr<LinearSolver> (*)();
+using LinearSolverRegistry = Registry<MakeLinearSolver>;
+
+}  // namespace palpate::dynamics

@@ -1,0 +1,54 @@
+#pragma once
+#include "palpate/dynamics/layout.h"
+
+namespace palpate::dynamics {
+
+/// What a force term sees: time, coordinates and velocities, not owned.  Integrators hand out views of their own vectors, so nothing is copied.
+struct StateView {
+  const Layout* layout = nullptr;
+  double time = 0.0;  ///< [s]
+  Eigen::Map<const VecX> q{nullptr, 0};
+  Eigen::Map<const VecX> u{nullptr, 0};
+
+  Vec3 position(int node) const { return q.segment<3>(3 * node); }  ///< node counted over all node blocks
+  Vec3 velocity(int node) const { return u.segment<3>(3 * node); }
+};
+
+/// Owns q and u of all blocks.  Storage is reserved once, so that inserting and extracting blocks within the capacity allocates no vector storage.
+class State {
+ public:
+  explicit State(int q_capacity = 0, int u_capacity = 0, int block_capacity = 8);
+
+  /// Adds a block, nodes before bodies; returns its id.  @throws InternalError when sizes do not fit.
+  int insert(const BlockSpec& spec, const ConstSegment& q, const ConstSegment& u);
+  /// Takes a block out; its q and u are copied to the arguments (sized by the caller or resized).
+  BlockSpec extract(int id, VecX& q, VecX& u);
+
+  const Layout& layout() const { return layout_; }
+  double time() const { return time_; }
+  void set_time(double t) { time_ = t; }
+
+  Eigen::Map<VecX> q() { return {q_.data(), layout_.q_size}; }
+  Eigen::Map<VecX> u() { return {u_.data(), layout_.u_size}; }
+  Eigen::Map<const VecX> q() const { return {q_.data(), layout_.q_size}; }
+  Eigen::Map<const VecX> u() const { return {u_.data(), layout_.u_size}; }
+  Eigen::Map<VecX> q(const Block& b) { return {q_.data() + b.q_offset, b.q_size}; }
+  Eigen::Map<VecX> u(const Block& b) { return {u_.data() + b.u_offset, b.u_size}; }
+
+  StateView view() const { return view(time_, q_.data(), u_.data()); }
+  /// A view of somebody else's vectors in this layout (an integrator's trial state).
+  StateView view(double t, const double* q, const double* u) const;
+
+ private:
+  Layout layout_;
+  double time_ = 0.0;
+  std::vector<double> q_, u_;
+  int next_id_ = 0;
+};
+
+/// q_dot = N(q) u for all blocks; sizes layout.q_size and layout.u_size.
+void q_dot(const Layout& layout, const double* q, const double* u, double* q_dot);
+/// Normalises what has to be (quaternions).
+void project(const Layout& layout, double* q);
+
+}  // namespace palpate::dynamics

@@ -1,0 +1,77 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "palpate/dynamics/driven_motion.h"
+#include "palpate/dynamics/force_term.h"
+#include "palpate/dynamics/inertia_term.h"
+#include "palpate/dynamics/linear_solver.h"
+
+namespace palpate::dynamics {
+
+/// M u' = sum of the force terms, q' = N(q) u, with some directions driven.  Knows no element, no contact, no integrator.
+///
+/// Driven directions stay in q and u (no renumbering), but not among the unknowns: their rows and columns of every
+/// matrix made here are those of the identity, their right-hand sides are zero, and `impose` writes their known values.
+/// A direction with a master block is reduced by the congruence T = [I; G]: its force and tangent enter the master's rows.
+class System {
+ public:
+  void add(std::shared_ptr<ForceTerm> term);
+  void add(std::shared_ptr<InertiaTerm> inertia);
+  void add(std::shared_ptr<DrivenMotion> motion);
+  /// Needed where a mass matrix is not diagonal: M a = f is then solved by this.
+  void set_mass_solver(std::unique_ptr<LinearSolver> solver);
+  /// Call after the last add and whenever the layout changed: masks, maps, scratch memory.
+  void prepare(const StateView& state);
+
+  const std::vector<std::shared_ptr<ForceTerm>>& terms() const { return terms_; }
+  const std::vector<std::shared_ptr<InertiaTerm>>& inertias() const { return inertias_; }
+  /// One entry a u-direction: true where it is driven.
+  const std::vector<char>& driven_mask() const { return driven_mask_; }
+  bool any_driven() const { return !driven_dofs_.empty(); }
+  bool symmetric() const;  ///< all terms' tangents are
+
+  using TermFilter = std::function<bool(const TermTraits&)>;
+
+  /// Writes the driven q and u for time t into vectors of the layout's size.
+  void impose(const Layout& layout, double t, double* q, double* u) const;
+  /// Sum of forces on every direction, driven ones included [N].  `filter` picks terms (empty: all).
+  void force(const StateView& state, VecX& f, const TermFilter& filter = {});
+  /// u' : M^-1 f on free directions, the given acceleration on driven ones.
+  void acceleration(const StateView& state, VecX& a);
+  /// u' from a force already evaluated (f is changed: reduced onto the free directions).
+  void acceleration_of_force(const StateView& state, VecX& f, VecX& a);
+  /// A = m_scale M + d_scale D + k_scale K, driven rows and columns replaced by the identity (reduced onto masters where they have one).  Rebuilds the pattern when a term's version grew.
+  void step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter = {});
+  /// y = M x, all directions
+  void apply_mass(const StateView& state, const VecX& x, VecX& y) const;
+  /// Zeroes the driven entries of a residual, after adding their reduction to the masters' rows.
+  void reduce(const StateView& state, VecX& r) const;
+  /// Forces [N] that the drives exert on the driven directions: M a - f there, zero elsewhere.
+  void reactions(const StateView& state, VecX& r);
+
+  double kinetic_energy(const StateView& state) const;    ///< 1/2 u M u [J]
+  double potential_energy(const StateView& state);        ///< sum over terms [J]
+
+ private:
+  struct DrivenScratch;
+  void ensure_pattern(const StateView& state, BorderedMatrix& A);
+  void eliminate_driven(const StateView& state, BorderedMatrix& A) const;
+  void evaluate_driven(const StateView& state) const;
+
+  std::vector<std::shared_ptr<ForceTerm>> terms_;
+  std::vector<std::shared_ptr<InertiaTerm>> inertias_;
+  std::vector<std::shared_ptr<DrivenMotion>> motions_;
+  std::unique_ptr<LinearSolver> mass_solver_;
+  BorderedMatrix mass_;
+  bool mass_diagonal_ = true;
+  VecX inverse_mass_;
+  std::vector<char> driven_mask_;
+  std::vector<int> driven_dofs_;
+  std::uint64_t term_patterns_ = 0;  ///< hash of the terms' pattern versions that `pattern_` was built from
+  BlockSparse pattern_;
+  mutable VecX x_, v_, a_, scratch_;
+};
+
+}  // namespace palpate::dynamics

@@ -1,0 +1,69 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "palpate/dynamics/force_term.h"
+#include "palpate/dynamics/inertia_term.h"
+#include "palpate/fem/material.h"
+#include "palpate/mesh/mesh.h"
+
+namespace palpate::fem {
+
+enum class Tangent { kExact, kProjected, kWarped };
+
+struct SoftBodyOptions {
+  Tangent tangent = Tangent::kExact;
+  bool full_damping_tangent = false;  ///< keep the unsymmetric part of the damping's derivative by position
+};
+
+/// What one evaluation met, for reports: counts since the last reset.
+struct ElementCounts {
+  long inverted = 0;          ///< det F <= 0
+  long clamped = 0;           ///< exact tangent near its singular set (two signed singular values cancel)
+};
+
+/// Corotational tetrahedra as one force term over one node block (DESIGN 3.1): elastic force, objective stiffness damping, their tangents, energy.
+/// Mass-proportional damping acts here too (it needs the lumped masses): f = -alpha M v.
+class SoftBody : public dynamics::ForceTerm {
+ public:
+  /// @param rest  rest positions and tetrahedra, volumes positive  @param block_id  the node block in the State
+  SoftBody(std::string name, const TetMesh& rest, const Material& material, const SoftBodyOptions& options, int block_id);
+  ~SoftBody() override;
+
+  std::string_view name() const override;
+  dynamics::TermTraits traits() const override;
+  void add_pattern(dynamics::PatternBuilder& pattern) const override;
+  std::uint64_t pattern_version() const override;
+  void add_force(const dynamics::StateView& state, VecX& f) override;
+  void add_tangent(const dynamics::StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) override;
+  void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) override;
+  double energy(const dynamics::StateView& state) override;
+  double dissipated_power(const dynamics::StateView& state) override;
+
+  const ElementCounts& counts() const;
+  const Material& material() const;
+  void set_material(const Material& material);  ///< takes effect at the next evaluation
+  int node_count() const;
+  int element_count() const;
+  /// Von Mises norm of the element Cauchy stress, averaged to nodes by volume [Pa]; size node_count (pictures and records).
+  VecX nodal_stress(const dynamics::StateView& state) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Nodal masses [kg] of a mesh, one a node: rho V / 4 from each tetrahedron.
+VecX lumped_masses(const TetMesh& rest, double density);
+
+/// Lumped or consistent mass of one node block.
+std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, double density, int block_id);
+std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, double density, int block_id);
+
+/// Weight: f_i = m_i g (lumped; equal to the consistent load of a constant field).
+std::shared_ptr<dynamics::ForceTerm> make_gravity(const VecX& masses, const Vec3& gravity, int block_id);
+
+/// Dead load: a constant force on each node, 3 x node_count [N].
+std::shared_ptr<dynamics::ForceTerm> make_dead_load(std::string name, const Points& forces, int block_id);
+
+}  // namespace palpate::fem

@@ -1,0 +1,15 @@
+#pragma once
+#include "palpate/dynamics/stepper.h"
+
+namespace palpate::integrate {
+
+/// Every integrator of soft bodies, by the name used in scenes, on the command line and in reports.
+const dynamics::StepperRegistry& stepper_registry();
+/// Every linear solver by name.
+const dynamics::LinearSolverRegistry& linear_solver_registry();
+
+/// The integrator that the spec names, with the linear solver that it names.  @throws Error for unknown names and bad settings.
+std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec);
+std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name);
+
+}  // namespace palpate::integrate

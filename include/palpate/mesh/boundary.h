@@ -1,0 +1,19 @@
+#pragma once
+#include <vector>
+
+#include "palpate/mesh/mesh.h"
+
+namespace palpate::mesh {
+
+/// The boundary of a tetrahedral mesh: faces that belong to one tetrahedron, oriented outwards.
+struct Boundary {
+  std::vector<int> node_of_vertex;  ///< boundary vertex -> node
+  TriMesh surface;                  ///< at the rest positions
+  std::vector<int> tet_of_face;
+};
+Boundary boundary(const TetMesh& mesh);
+
+/// Volume enclosed by a closed surface [m^3] (divergence theorem).
+double enclosed_volume(const TriMesh& surface);
+
+}  // namespace palpate::mesh

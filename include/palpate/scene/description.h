@@ -1,0 +1,55 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/contact/spec.h"
+#include "palpate/device/spec.h"
+#include "palpate/dynamics/spec.h"
+#include "palpate/fem/spec.h"
+#include "palpate/store/spec.h"
+#include "palpate/tool/spec.h"
+
+namespace palpate::scene {
+
+/// One point of a work-precision ladder is an integrator with its tolerances or steps.
+struct LadderSpec {
+  std::string integrator;
+  std::vector<double> values;  ///< rtol of adaptive methods, step_s of fixed-step ones; descending
+};
+
+/// What `palpate compare` does with this scene.
+struct CompareSpec {
+  std::vector<LadderSpec> ladders;
+  std::vector<double> exchange_periods_s;  ///< for the chart of the exchange period's own error; empty: none
+  double reference_rtol = 1e-9;
+  double duration_s = 0.0;                 ///< 0: the scene's
+};
+
+/// How tool and bodies are coupled.
+struct CouplingSpec {
+  std::string scheme = "partitioned";
+  std::string linearisation = "condensed";  ///< or "frozen"
+  double exchange_period_s = 0.01;
+  double contact_refresh_s = 0.01;          ///< a whole fraction of the exchange period
+};
+
+/// A scene file as plain data: everything a run needs, nothing computed.  A part that is absent here is not built.
+struct Description {
+  std::string name;
+  std::string path;       ///< the file it came from; relative mesh paths start at its folder
+  std::string source;     ///< the file's text with overrides applied, kept with every result
+  double duration_s = 1.0;
+  Vec3 gravity_m_s2 = Vec3::Zero();
+  std::vector<SoftBodySpec> bodies;
+  std::vector<ObstacleSpec> obstacles;
+  std::vector<ContactSpec> contacts;
+  std::optional<ToolSpec> tool;
+  std::optional<DeviceSpec> device;
+  CouplingSpec coupling;
+  IntegratorSpec integrator;
+  std::optional<RecordSpec> record;
+  CompareSpec compare;
+};
+
+}  // namespace palpate::scene
