@@ -28,6 +28,8 @@ class BlockSparse {
   void set_zero();
   /// y += A x
   void multiply_add(const double* x, double* y) const;
+  /// y += A^T x
+  void multiply_transposed_add(const double* x, double* y) const;
 
   /// Grows whenever the pattern is rebuilt: symbolic analyses and scatter maps made for another version are stale.  Unique over all matrices of the process.
   std::uint64_t pattern_version() const { return pattern_version_; }

@@ -46,6 +46,9 @@ class State {
   int next_id_ = 0;
 };
 
+/// A view of vectors that stand in this layout's order.
+StateView make_view(const Layout& layout, double t, const double* q, const double* u);
+
 /// q_dot = N(q) u for all blocks; sizes layout.q_size and layout.u_size.
 void q_dot(const Layout& layout, const double* q, const double* u, double* q_dot);
 /// Normalises what has to be (quaternions).

@@ -29,6 +29,7 @@ class System {
   const std::vector<std::shared_ptr<InertiaTerm>>& inertias() const { return inertias_; }
   /// One entry a u-direction: true where it is driven.
   const std::vector<char>& driven_mask() const { return driven_mask_; }
+  const std::vector<int>& driven_dofs() const { return driven_dofs_; }
   bool any_driven() const { return !driven_dofs_.empty(); }
   bool symmetric() const;  ///< all terms' tangents are
 
@@ -55,23 +56,35 @@ class System {
   double potential_energy(const StateView& state);        ///< sum over terms [J]
 
  private:
-  struct DrivenScratch;
+  struct Driven {  ///< one motion with its place in the layout, its values at the last evaluation, and its G
+    std::shared_ptr<DrivenMotion> motion;
+    int master_offset = -1;  ///< of the master's u, -1 without one
+    int master_size = 0;
+    VecX x, v, a;
+    MatX G;
+  };
   void ensure_pattern(const StateView& state, BorderedMatrix& A);
-  void eliminate_driven(const StateView& state, BorderedMatrix& A) const;
   void evaluate_driven(const StateView& state) const;
+  void reduce_to_masters(const StateView& state, BorderedMatrix& A) const;
+  void eliminate_driven(BorderedMatrix& A) const;
+  void solve_mass(const StateView& state, VecX& r, VecX& a);
+  void assemble_mass(const StateView& state, BorderedMatrix& A);
 
   std::vector<std::shared_ptr<ForceTerm>> terms_;
   std::vector<std::shared_ptr<InertiaTerm>> inertias_;
-  std::vector<std::shared_ptr<DrivenMotion>> motions_;
+  mutable std::vector<Driven> driven_;
   std::unique_ptr<LinearSolver> mass_solver_;
   BorderedMatrix mass_;
-  bool mass_diagonal_ = true;
-  VecX inverse_mass_;
+  std::uint64_t mass_layout_ = 0;  ///< layout version that the pattern of `mass_` was built for
+  bool nodal_mass_diagonal_ = true;
+  bool any_master_ = false;
+  VecX inverse_nodal_mass_;
   std::vector<char> driven_mask_;
   std::vector<int> driven_dofs_;
-  std::uint64_t term_patterns_ = 0;  ///< hash of the terms' pattern versions that `pattern_` was built from
+  std::uint64_t pattern_key_ = 0;  ///< hash of the layout's and the terms' pattern versions that `pattern_` was built from
   BlockSparse pattern_;
-  mutable VecX x_, v_, a_, scratch_;
+  mutable VecX scratch_, known_;
+  VecX force_scratch_;
 };
 
 }  // namespace palpate::dynamics

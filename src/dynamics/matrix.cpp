@@ -1,0 +1,105 @@
+#include "palpate/dynamics/matrix.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "palpate/core/error.h"
+
+namespace palpate::dynamics {
+namespace {
+std::uint64_t fresh_version() {
+  static std::atomic<std::uint64_t> next{1};
+  return next++;
+}
+using Block3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+}  // namespace
+
+int BlockSparse::slot(int i, int j) const {
+  const auto first = columns_.begin() + row_start_[static_cast<std::size_t>(i)];
+  const auto last = columns_.begin() + row_start_[static_cast<std::size_t>(i) + 1];
+  const auto it = std::lower_bound(first, last, j);
+  return it != last && *it == j ? static_cast<int>(it - columns_.begin()) : -1;
+}
+
+void BlockSparse::set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
+
+void BlockSparse::multiply_add(const double* x, double* y) const {
+  for (int i = 0; i < block_rows(); ++i) {
+    Vec3 sum = Vec3::Zero();
+    for (int s = row_start_[static_cast<std::size_t>(i)]; s < row_start_[static_cast<std::size_t>(i) + 1]; ++s)
+      sum += Eigen::Map<const Block3>(block(s)) * Eigen::Map<const Vec3>(x + 3 * columns_[static_cast<std::size_t>(s)]);
+    Eigen::Map<Vec3>(y + 3 * i) += sum;
+  }
+}
+
+void BlockSparse::multiply_transposed_add(const double* x, double* y) const {
+  for (int i = 0; i < block_rows(); ++i)
+    for (int s = row_start_[static_cast<std::size_t>(i)]; s < row_start_[static_cast<std::size_t>(i) + 1]; ++s)
+      Eigen::Map<Vec3>(y + 3 * columns_[static_cast<std::size_t>(s)]) += Eigen::Map<const Block3>(block(s)).transpose() * Eigen::Map<const Vec3>(x + 3 * i);
+}
+
+void PatternBuilder::add_pair(int i, int j) {
+  PALPATE_CHECK(i >= 0 && j >= 0 && i < node_count_ && j < node_count_, "pair ({}, {}) of {} nodes", i, j, node_count_);
+  pairs_.emplace_back(i, j);
+  pairs_.emplace_back(j, i);
+}
+
+void PatternBuilder::add_clique(const int* nodes, int count) {
+  for (int a = 0; a < count; ++a)
+    for (int b = a + 1; b < count; ++b) add_pair(nodes[a], nodes[b]);
+}
+
+BlockSparse PatternBuilder::build() const {
+  std::vector<std::pair<int, int>> sorted = pairs_;
+  sorted.reserve(sorted.size() + static_cast<std::size_t>(node_count_));
+  for (int i = 0; i < node_count_; ++i) sorted.emplace_back(i, i);
+  std::sort(sorted.begin(), sorted.end());
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  BlockSparse out;
+  out.row_start_.assign(static_cast<std::size_t>(node_count_) + 1, 0);
+  out.columns_.reserve(sorted.size());
+  for (const auto& [i, j] : sorted) {
+    ++out.row_start_[static_cast<std::size_t>(i) + 1];
+    out.columns_.push_back(j);
+  }
+  for (std::size_t i = 1; i < out.row_start_.size(); ++i) out.row_start_[i] += out.row_start_[i - 1];
+  out.values_.assign(9 * sorted.size(), 0.0);
+  out.pattern_version_ = fresh_version();
+  return out;
+}
+
+void BorderedMatrix::set_zero() {
+  body.set_zero();
+  right.setZero();
+  bottom.setZero();
+  corner.setZero();
+}
+
+void BorderedMatrix::touch() { values_version = fresh_version(); }
+
+void BorderedMatrix::multiply(const VecX& x, VecX& y) const {
+  const Eigen::Index n = nodal_size(), m = border_size();
+  PALPATE_CHECK(x.size() == n + m, "x has {} entries, the matrix {}", x.size(), n + m);
+  y.setZero(n + m);
+  body.multiply_add(x.data(), y.data());
+  if (m == 0) return;
+  y.head(n).noalias() += right * x.tail(m);
+  y.tail(m).noalias() += bottom * x.head(n);
+  y.tail(m).noalias() += corner * x.tail(m);
+}
+
+MatX BorderedMatrix::to_dense() const {
+  const Eigen::Index n = nodal_size(), m = border_size();
+  MatX dense = MatX::Zero(n + m, n + m);
+  for (int i = 0; i < body.block_rows(); ++i)
+    for (int s = body.row_start()[static_cast<std::size_t>(i)]; s < body.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
+      dense.block<3, 3>(3 * i, 3 * body.columns()[static_cast<std::size_t>(s)]) = Eigen::Map<const Block3>(body.block(s));
+  if (m > 0) {
+    dense.topRightCorner(n, m) = right;
+    dense.bottomLeftCorner(m, n) = bottom;
+    dense.bottomRightCorner(m, m) = corner;
+  }
+  return dense;
+}
+
+}  // namespace palpate::dynamics

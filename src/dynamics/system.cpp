@@ -1,0 +1,288 @@
+#include "palpate/dynamics/system.h"
+
+#include <algorithm>
+
+#include "palpate/core/error.h"
+
+namespace palpate::dynamics {
+namespace {
+
+/// FNV-1a over version numbers: one number that changes when any of them does.
+struct VersionHash {
+  std::uint64_t value = 1469598103934665603ull;
+  void add(std::uint64_t v) { value = (value ^ v) * 1099511628211ull; }
+};
+
+void resize_border(BorderedMatrix& A, int nodal, int border) {
+  if (A.right.rows() == nodal && A.corner.rows() == border) return;
+  A.right.resize(nodal, border);
+  A.bottom.resize(border, nodal);
+  A.corner.resize(border, border);
+}
+
+}  // namespace
+
+void System::add(std::shared_ptr<ForceTerm> term) { terms_.push_back(std::move(term)); }
+void System::add(std::shared_ptr<InertiaTerm> inertia) { inertias_.push_back(std::move(inertia)); }
+void System::add(std::shared_ptr<DrivenMotion> motion) { driven_.push_back({std::move(motion), -1, 0, {}, {}, {}, {}}); }
+void System::set_mass_solver(std::unique_ptr<LinearSolver> solver) { mass_solver_ = std::move(solver); }
+
+bool System::symmetric() const {
+  return std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().symmetric_tangent; });
+}
+
+void System::prepare(const StateView& state) {
+  const Layout& layout = *state.layout;
+  driven_mask_.assign(static_cast<std::size_t>(layout.u_size), 0);
+  driven_dofs_.clear();
+  any_master_ = false;
+  for (Driven& d : driven_) {
+    for (int dof : d.motion->dofs()) {
+      PALPATE_CHECK(dof >= 0 && dof < layout.nodal_size, "driven direction {} of {}", dof, layout.nodal_size);
+      if (driven_mask_[static_cast<std::size_t>(dof)]) fail("node {} is held or driven twice along axis {}: attachments overlap", dof / 3, dof % 3);
+      driven_mask_[static_cast<std::size_t>(dof)] = 1;
+      driven_dofs_.push_back(dof);
+    }
+    d.master_offset = -1;
+    if (d.motion->master_block() < 0) continue;
+    const Block* master = layout.find(d.motion->master_block());
+    PALPATE_CHECK(master && master->kind != BlockKind::kNodes, "driven nodes follow block {}, which is no rigid block", d.motion->master_block());
+    d.master_offset = master->u_offset;
+    d.master_size = master->u_size;
+    any_master_ = true;
+  }
+  std::sort(driven_dofs_.begin(), driven_dofs_.end());
+
+  nodal_mass_diagonal_ = true;
+  for (const auto& inertia : inertias_) {
+    const Block* block = layout.find(inertia->block_id());
+    PALPATE_CHECK(block, "inertia of unknown block {}", inertia->block_id());
+    if (block->kind == BlockKind::kNodes && !inertia->diagonal()) nodal_mass_diagonal_ = false;
+  }
+  assemble_mass(state, mass_);
+  inverse_nodal_mass_.resize(layout.nodal_size);
+  if (nodal_mass_diagonal_) {
+    for (int i = 0; i < layout.nodal_size; ++i) {
+      const double m = mass_.body.block(mass_.body.slot(i / 3, i / 3))[4 * (i % 3)];
+      PALPATE_CHECK(m > 0.0, "node {} has mass {}", i / 3, m);
+      inverse_nodal_mass_[i] = 1.0 / m;
+    }
+  } else {
+    PALPATE_CHECK(mass_solver_, "a consistent mass needs a mass solver");
+    const SolveStatus status = mass_solver_->factor(mass_);
+    PALPATE_CHECK(status == SolveStatus::kOk, "the mass matrix has no factor (status {})", static_cast<int>(status));
+  }
+}
+
+void System::evaluate_driven(const StateView& state) const {
+  for (Driven& d : driven_) {
+    const auto n = static_cast<Eigen::Index>(d.motion->dofs().size());
+    d.x.resize(n);
+    d.v.resize(n);
+    d.a.resize(n);
+    d.motion->evaluate(state, d.x, d.v, d.a);
+    if (d.master_offset < 0) continue;
+    d.G.resize(n, d.master_size);
+    d.motion->jacobian(state, d.G);
+  }
+}
+
+void System::impose(const Layout& layout, double t, double* q, double* u) const {
+  if (driven_.empty()) return;
+  evaluate_driven(make_view(layout, t, q, u));
+  for (const Driven& d : driven_) {
+    const auto& dofs = d.motion->dofs();
+    for (std::size_t i = 0; i < dofs.size(); ++i) {  // node blocks come first with q' = u: one index serves both
+      q[dofs[i]] = d.x[static_cast<Eigen::Index>(i)];
+      u[dofs[i]] = d.v[static_cast<Eigen::Index>(i)];
+    }
+  }
+}
+
+void System::force(const StateView& state, VecX& f, const TermFilter& filter) {
+  f.setZero(state.layout->u_size);
+  for (const auto& term : terms_)
+    if (!filter || filter(term->traits())) term->add_force(state, f);
+}
+
+void System::acceleration(const StateView& state, VecX& a) {
+  force(state, force_scratch_);
+  acceleration_of_force(state, force_scratch_, a);
+}
+
+// With a = P a_free + a_known (given accelerations; G a_master + gamma under a master) and T = d a / d (a_free, a_master):
+//   T^T M T (a_free, a_master) = T^T (f - M a_known).
+void System::acceleration_of_force(const StateView& state, VecX& f, VecX& a) {
+  const Layout& layout = *state.layout;
+  if (driven_.empty()) return solve_mass(state, f, a);
+  evaluate_driven(state);
+  known_.setZero(layout.u_size);
+  for (const Driven& d : driven_)
+    for (std::size_t i = 0; i < d.motion->dofs().size(); ++i) known_[d.motion->dofs()[i]] = d.a[static_cast<Eigen::Index>(i)];
+  if (!nodal_mass_diagonal_ || any_master_) {
+    scratch_.setZero(layout.u_size);
+    apply_mass(state, known_, scratch_);
+    f -= scratch_;
+  }
+  reduce(state, f);
+  solve_mass(state, f, a);
+  for (const Driven& d : driven_) {
+    const auto& dofs = d.motion->dofs();
+    for (std::size_t i = 0; i < dofs.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      a[dofs[i]] = d.a[row];
+      if (d.master_offset >= 0) a[dofs[i]] += d.G.row(row).dot(a.segment(d.master_offset, d.master_size));
+    }
+  }
+}
+
+void System::assemble_mass(const StateView& state, BorderedMatrix& A) {
+  const Layout& layout = *state.layout;
+  if (mass_layout_ != layout.version) {
+    PatternBuilder builder(layout.node_count());
+    for (const auto& inertia : inertias_) inertia->add_pattern(builder);
+    A.body = builder.build();
+    mass_layout_ = layout.version;
+  }
+  resize_border(A, layout.nodal_size, layout.border_size());
+  A.set_zero();
+  for (const auto& inertia : inertias_) inertia->add_mass(state, 1.0, A);
+  if (any_master_) {
+    evaluate_driven(state);
+    reduce_to_masters(state, A);
+  }
+  if (!nodal_mass_diagonal_ || any_master_) eliminate_driven(A);
+  A.touch();
+}
+
+void System::solve_mass(const StateView& state, VecX& r, VecX& a) {
+  const Layout& layout = *state.layout;
+  const int n = layout.nodal_size, m = layout.border_size();
+  a.resize(layout.u_size);
+  if (m == 0 && nodal_mass_diagonal_) {
+    a = inverse_nodal_mass_.cwiseProduct(r);
+    return;
+  }
+  if (m > 0) assemble_mass(state, mass_);  // a rigid block's mass turns with it
+  if (nodal_mass_diagonal_) {
+    a.head(n) = inverse_nodal_mass_.cwiseProduct(r.head(n));
+    a.tail(m) = mass_.corner.ldlt().solve(r.tail(m));
+    return;
+  }
+  SolveStatus status = mass_solver_->factor(mass_);
+  if (status == SolveStatus::kOk) status = mass_solver_->solve(r, a);
+  PALPATE_CHECK(status == SolveStatus::kOk, "the mass matrix has no factor (status {})", static_cast<int>(status));
+}
+
+void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
+  const Layout& layout = *state.layout;
+  VersionHash key;
+  key.add(layout.version);
+  for (const auto& term : terms_) key.add(term->pattern_version());
+  if (key.value != pattern_key_ || pattern_.block_rows() != layout.node_count()) {
+    PatternBuilder builder(layout.node_count());
+    for (const auto& term : terms_) term->add_pattern(builder);
+    for (const auto& inertia : inertias_) inertia->add_pattern(builder);
+    pattern_ = builder.build();
+    pattern_key_ = key.value;
+  }
+  if (A.body.pattern_version() != pattern_.pattern_version()) A.body = pattern_;
+  resize_border(A, layout.nodal_size, layout.border_size());
+}
+
+void System::step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter) {
+  ensure_pattern(state, A);
+  A.set_zero();
+  A.symmetric = symmetric();
+  if (m_scale != 0.0)
+    for (const auto& inertia : inertias_) inertia->add_mass(state, m_scale, A);
+  if (d_scale != 0.0 || k_scale != 0.0)
+    for (const auto& term : terms_)
+      if (term->traits().has_tangent && (!filter || filter(term->traits()))) term->add_tangent(state, k_scale, d_scale, A);
+  if (any_master_) {
+    evaluate_driven(state);
+    reduce_to_masters(state, A);
+  }
+  eliminate_driven(A);
+  A.touch();
+}
+
+// T^T A T with T = [P Ghat; 0 I]: the driven columns, carried by their master, add to its columns, and likewise the rows.
+// The derivative of G itself (a geometric stiffness of the constraint force) is left out: the matrix stays an inexact Newton matrix there.
+void System::reduce_to_masters(const StateView& state, BorderedMatrix& A) const {
+  const Eigen::Index n = A.nodal_size(), m = A.border_size();
+  MatX G = MatX::Zero(n, m);
+  for (const Driven& d : driven_) {
+    if (d.master_offset < 0) continue;
+    const Eigen::Index column = d.master_offset - state.layout->nodal_size;
+    for (std::size_t i = 0; i < d.motion->dofs().size(); ++i)
+      G.block(d.motion->dofs()[i], column, 1, d.master_size) = d.G.row(static_cast<Eigen::Index>(i));
+  }
+  MatX BG = MatX::Zero(n, m), BtG = MatX::Zero(n, m);
+  for (Eigen::Index c = 0; c < m; ++c) A.body.multiply_add(G.col(c).data(), BG.col(c).data());
+  if (A.symmetric)
+    BtG = BG;
+  else
+    for (Eigen::Index c = 0; c < m; ++c) A.body.multiply_transposed_add(G.col(c).data(), BtG.col(c).data());
+  A.corner += G.transpose() * (BG + A.right) + A.bottom * G;
+  A.right += BG;
+  A.bottom += BtG.transpose();
+}
+
+void System::eliminate_driven(BorderedMatrix& A) const {
+  for (int dof : driven_dofs_) {
+    const int node = dof / 3, axis = dof % 3;
+    for (int s = A.body.row_start()[static_cast<std::size_t>(node)]; s < A.body.row_start()[static_cast<std::size_t>(node) + 1]; ++s) {
+      double* row = A.body.block(s) + 3 * axis;
+      row[0] = row[1] = row[2] = 0.0;
+      double* column = A.body.block(A.body.slot(A.body.columns()[static_cast<std::size_t>(s)], node)) + axis;
+      column[0] = column[3] = column[6] = 0.0;
+    }
+    A.body.block(A.body.slot(node, node))[4 * axis] = 1.0;
+    if (A.border_size() == 0) continue;
+    A.right.row(dof).setZero();
+    A.bottom.col(dof).setZero();
+  }
+}
+
+void System::apply_mass(const StateView& state, const VecX& x, VecX& y) const {
+  y.setZero(state.layout->u_size);
+  for (const auto& inertia : inertias_) inertia->apply(state, x, y);
+}
+
+void System::reduce(const StateView& state, VecX& r) const {
+  if (any_master_) {
+    evaluate_driven(state);
+    for (const Driven& d : driven_) {
+      if (d.master_offset < 0) continue;
+      for (std::size_t i = 0; i < d.motion->dofs().size(); ++i)
+        r.segment(d.master_offset, d.master_size) += d.G.row(static_cast<Eigen::Index>(i)).transpose() * r[d.motion->dofs()[i]];
+    }
+  }
+  for (int dof : driven_dofs_) r[dof] = 0.0;
+}
+
+void System::reactions(const StateView& state, VecX& r) {
+  VecX f, a, given;
+  force(state, f);
+  given = f;
+  acceleration_of_force(state, given, a);
+  apply_mass(state, a, r);
+  r -= f;
+  for (Eigen::Index i = 0; i < r.size(); ++i)
+    if (!driven_mask_[static_cast<std::size_t>(i)]) r[i] = 0.0;
+}
+
+double System::kinetic_energy(const StateView& state) const {
+  VecX momentum;
+  apply_mass(state, VecX(state.u), momentum);
+  return 0.5 * momentum.dot(state.u);
+}
+
+double System::potential_energy(const StateView& state) {
+  double sum = 0.0;
+  for (const auto& term : terms_) sum += term->energy(state);
+  return sum;
+}
+
+}  // namespace palpate::dynamics
