@@ -139,7 +139,7 @@ void System::acceleration_of_force(const StateView& state, VecX& f, VecX& a) {
 void System::assemble_mass(const StateView& state, BorderedMatrix& A) {
   const Layout& layout = *state.layout;
   if (mass_layout_ != layout.version) {
-    PatternBuilder builder(layout.node_count());
+    PatternBuilder builder(layout);
     for (const auto& inertia : inertias_) inertia->add_pattern(builder);
     A.body = builder.build();
     mass_layout_ = layout.version;
@@ -180,7 +180,7 @@ void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
   key.add(layout.version);
   for (const auto& term : terms_) key.add(term->pattern_version());
   if (key.value != pattern_key_ || pattern_.block_rows() != layout.node_count()) {
-    PatternBuilder builder(layout.node_count());
+    PatternBuilder builder(layout);
     for (const auto& term : terms_) term->add_pattern(builder);
     for (const auto& inertia : inertias_) inertia->add_pattern(builder);
     pattern_ = builder.build();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "palpate/core/types.h"
+#include "palpate/dynamics/layout.h"
 
 namespace palpate::dynamics {
 
@@ -46,12 +47,17 @@ class BlockSparse {
 class PatternBuilder {
  public:
   explicit PatternBuilder(int node_count) : node_count_(node_count) {}
+  /// Over all node blocks of a layout; a term finds its own block's place with first_node().
+  explicit PatternBuilder(const Layout& layout) : node_count_(layout.node_count()), layout_(&layout) {}
+  /// First node of a node block, counted over all node blocks; 0 where the builder was made without a layout.
+  int first_node(int block_id) const;
   void add_pair(int i, int j);                          ///< (i, j) and (j, i)
   void add_clique(const int* nodes, int count);         ///< every pair of them
   BlockSparse build() const;
 
  private:
   int node_count_;
+  const Layout* layout_ = nullptr;
   std::vector<std::pair<int, int>> pairs_;
 };
 
