@@ -1,10 +1,12 @@
 #include "palpate/core/polar.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -45,25 +47,66 @@ bool well_conditioned(const Mat3& F) {
   return F.squaredNorm() < kLargestNormSquared && F.determinant() > kSmallestDet;
 }
 
+/// One-sided Jacobi (Hestenes): turns pairs of columns of B = F V until all are orthogonal.  Works on F itself, never on F^T F,
+/// so that small singular values keep their digits.
+void orthogonalise_columns(Mat3& B, Mat3& V) {
+  constexpr int kMaxSweeps = 30;  // quadratic: 4 to 6 are usual
+  constexpr double kRelative = 4 * std::numeric_limits<double>::epsilon(), kAbsolute = 1e-80;
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+    bool turned = false;
+    for (const auto& [p, q] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
+      const double a = B.col(p).squaredNorm(), b = B.col(q).squaredNorm(), c = B.col(p).dot(B.col(q));
+      if (std::abs(c) <= kRelative * std::sqrt(a * b) + kAbsolute) continue;
+      const double z = (b - a) / (2 * c);
+      const double t = std::copysign(1.0, z) / (std::abs(z) + std::sqrt(1 + z * z));
+      const double cosine = 1 / std::sqrt(1 + t * t), sine = cosine * t;
+      for (Mat3* m : {&B, &V}) {
+        const Vec3 old = m->col(p);
+        m->col(p) = cosine * old - sine * m->col(q);
+        m->col(q) = sine * old + cosine * m->col(q);
+      }
+      turned = true;
+    }
+    if (!turned) return;
+  }
+}
+
+/// Longest column of B first; a swap negates one column, so that V stays proper.
+void sort_columns(Mat3& B, Mat3& V) {
+  for (const auto& [p, q] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{0, 1}}) {
+    if (B.col(p).squaredNorm() >= B.col(q).squaredNorm()) continue;
+    for (Mat3* m : {&B, &V}) {
+      const Vec3 old = m->col(p);
+      m->col(p) = m->col(q);
+      m->col(q) = -old;
+    }
+  }
+}
+
 }  // namespace
 
+// U is completed as (u0, u1, u0 x u1), hence proper, and the sign of the smallest singular value follows: sigma2 = u2 . (F v2).
 SignedSvd signed_svd(const Mat3& F) {
+  const double scale = F.cwiseAbs().maxCoeff();
   if (!F.allFinite()) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     return {Mat3::Constant(nan), Vec3::Constant(nan), Mat3::Constant(nan)};
   }
-  const Eigen::JacobiSVD<Mat3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  SignedSvd out{svd.matrixU(), svd.singularValues(), svd.matrixV()};
-  // Reflections go into the smallest singular value: the pair (u2, sigma2) or (v2, sigma2) changes sign together.
-  if (out.U.determinant() < 0) {
-    out.U.col(2) *= -1;
-    out.sigma[2] *= -1;
-  }
-  if (out.V.determinant() < 0) {
-    out.V.col(2) *= -1;
-    out.sigma[2] *= -1;
-  }
-  out.sigma[2] += 0.0;  // -0 becomes +0
+  if (scale < std::numeric_limits<double>::min()) return {Mat3::Identity(), Vec3::Zero(), Mat3::Identity()};
+
+  constexpr double kRankOne = 1e-30;  // far below rounding: the direction of such a column means nothing
+  Mat3 B = F / scale, V = Mat3::Identity();
+  orthogonalise_columns(B, V);
+  sort_columns(B, V);
+  const Vec3 u0 = B.col(0).normalized();
+  const Vec3 rest = B.col(1) - u0 * u0.dot(B.col(1));
+  const Vec3 u1 = rest.norm() > kRankOne ? rest.normalized() : u0.unitOrthogonal();
+  const Vec3 u2 = u0.cross(u1);
+  const double s0 = B.col(0).norm(), s1 = std::min(B.col(1).norm(), s0), s2 = std::clamp(u2.dot(B.col(2)), -s1, s1);
+  SignedSvd out;
+  out.U << u0, u1, u2;
+  out.sigma = scale * Vec3(s0, s1, s2);
+  out.V = V;
   return out;
 }
 
