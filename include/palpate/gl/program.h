@@ -1,0 +1,46 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "palpate/core/types.h"
+
+namespace palpate::gl {
+
+/// Text of a file under shaders/, embedded at build time: shader_source("contact/patch.vert").  Adding a shader is adding its file.
+/// @throws InternalError for an unknown name
+std::string_view shader_source(std::string_view name);
+std::vector<std::string> shader_names();
+
+/// A linked GLSL program.  Needs the context to be current, as everything here.
+class Program {
+ public:
+  /// Vertex and fragment shader by embedded name.
+  Program(std::string_view vertex, std::string_view fragment);
+  /// Compute shader by embedded name.
+  explicit Program(std::string_view compute);
+  ~Program();
+  Program(Program&& other) noexcept;
+  Program& operator=(Program&& other) noexcept;
+
+  void use() const;
+  unsigned id() const { return id_; }
+  /// Uniforms of the program, which need not be in use.  @throws InternalError for a name that the linked program does not have.
+  void set(const std::string& name, int value);
+  void set(const std::string& name, unsigned value);
+  void set(const std::string& name, float value);
+  void set(const std::string& name, const Eigen::Vector2f& value);
+  void set(const std::string& name, const Eigen::Vector3f& value);
+  void set(const std::string& name, const Eigen::Vector4f& value);
+  void set(const std::string& name, const Eigen::Matrix3f& value);
+  void set(const std::string& name, const Eigen::Matrix4f& value);
+
+ private:
+  int location(const std::string& name);
+  unsigned id_ = 0;
+  std::string name_;
+  std::unordered_map<std::string, int> locations_;
+};
+
+}  // namespace palpate::gl
