@@ -1,0 +1,70 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "palpate/contact/contact_force.h"
+#include "palpate/device/handle.h"
+#include "palpate/device/limiter.h"
+#include "palpate/dynamics/stepper.h"
+#include "palpate/dynamics/system.h"
+#include "palpate/fem/soft_body.h"
+#include "palpate/mesh/boundary.h"
+#include "palpate/mesh/source.h"
+#include "palpate/scene/description.h"
+
+namespace palpate::tool {
+class Tool;
+}
+
+namespace palpate::loop {
+
+/// One soft body as assembled.
+struct Body {
+  std::string name;
+  int block_id = -1;
+  TetMesh rest;               ///< rest positions in the body's own axes
+  Points placed;              ///< the same placed in the world: what the simulation starts from
+  mesh::Boundary boundary;    ///< surface; only where contact, loads, records or pictures need it
+  mesh::MeshReport report;
+  VecX masses;                ///< lumped, one a node [kg]
+  double stiffness_scale = 0; ///< E [Pa]
+  std::shared_ptr<fem::SoftBody> term;
+};
+
+/// Everything that one scene names, and nothing else.  What is absent is null or empty.
+/// The stepper refers to `state` and `system`: a World does not move.
+struct World {
+  World();
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  scene::Description description;
+  std::string folder;                                   ///< of the scene file
+  dynamics::State state;
+  dynamics::System system;
+  std::vector<Body> bodies;
+  std::shared_ptr<contact::ContactForce> contact;       ///< null without [[contact]]
+  std::unique_ptr<dynamics::Stepper> stepper;           ///< null without bodies
+  std::unique_ptr<tool::Tool> tool;                     ///< null without [tool]
+  std::unique_ptr<device::Handle> handle;
+  std::unique_ptr<device::WrenchLimiter> limiter;
+  std::shared_ptr<contact::TrajectoryFrame> tool_frame; ///< the tool's motion as contact sees it; null where no contact names the tool
+  int tool_frame_index = -1;
+  std::unique_ptr<dynamics::LinearSolver> condenser;    ///< factors the step matrix for the condensed linearisation; null where not used
+  dynamics::BorderedMatrix condensed_matrix;
+
+  const Body* find_body(const std::string& name) const;
+  Points positions(const Body& body) const;             ///< now, world [m]
+  double mechanical_energy();                           ///< kinetic and potential energy of the bodies [J]
+};
+
+/// Builds a World: the one place that names concrete parts.
+/// @throws Error for names that no registry knows, parts not compiled in, meshes refused
+std::unique_ptr<World> assemble(const scene::Description& description);
+
+/// The surface of the scene's tool in its own axes, for pictures and records: its mesh, or a sphere.
+TriMesh tool_surface(const ToolSpec& spec, const std::string& folder);
+
+}  // namespace palpate::loop

@@ -1,0 +1,144 @@
+#include <filesystem>
+
+#include "assemble_parts.h"
+#include "palpate/core/error.h"
+#include "palpate/fem/attachments.h"
+#include "palpate/fem/loads.h"
+#include "palpate/integrate/integrators.h"
+#include "palpate/store/mesh_file.h"
+
+namespace palpate::loop {
+namespace {
+
+fem::Material material_of(const SoftBodySpec& spec) {
+  return {spec.youngs_modulus_pa, spec.poissons_ratio, spec.density_kg_m3, spec.mass_damping_per_s, spec.stiffness_damping_s};
+}
+
+fem::SoftBodyOptions options_of(const SoftBodySpec& spec) {
+  fem::SoftBodyOptions options;
+  if (spec.tangent == "exact")
+    options.tangent = fem::Tangent::kExact;
+  else if (spec.tangent == "projected")
+    options.tangent = fem::Tangent::kProjected;
+  else if (spec.tangent == "warped")
+    options.tangent = fem::Tangent::kWarped;
+  else
+    fail("body \"{}\": unknown tangent \"{}\"{}", spec.name, spec.tangent, suggestion(spec.tangent, {"exact", "projected", "warped"}));
+  options.full_damping_tangent = spec.full_damping_tangent;
+  return options;
+}
+
+TetMesh load_mesh(const MeshSpec& spec, const std::string& folder, mesh::MeshReport* report) {
+  if (!spec.file.ends_with(".h5")) return mesh::tet_mesh(spec, folder, report);
+  return store::read_mesh((std::filesystem::path(folder) / spec.file).string());
+}
+
+/// Velocity of each node of a body that starts as a rigid one: v + w x (x - centre of mass).
+VecX initial_velocities(const SoftBodySpec& spec, const Points& placed, const VecX& masses) {
+  const Vec3 centre = placed * masses / masses.sum();
+  Points v(3, placed.cols());
+  for (Eigen::Index i = 0; i < placed.cols(); ++i) v.col(i) = spec.velocity_m_s + spec.angular_velocity_rad_s.cross(placed.col(i) - centre);
+  return Eigen::Map<const VecX>(v.data(), v.size());
+}
+
+/// Keyframes move the box about its own centre: x(t) = centre + position(t) + R(t) (x0 - centre).
+fem::Path box_path(const AttachmentSpec& spec) {
+  const Vec3 centre = 0.5 * (spec.box_min_m + spec.box_max_m);
+  return [keyframes = spec.keyframes, centre](double t) {
+    const device::HandleSample s = device::sample_keyframes(keyframes, t);
+    return fem::PathPoint{{s.pose.rotation, s.pose.translation + centre}, s.twist, s.acceleration};
+  };
+}
+
+void attach(World& world, const Body& body, const AttachmentSpec& spec) {
+  const std::vector<int> nodes = fem::nodes_in_box(body.placed, spec.box_min_m, spec.box_max_m);
+  if (nodes.empty())
+    fail("body \"{}\": attachment box [{}, {}, {}] to [{}, {}, {}] m holds no node; enlarge it or move it over the body", body.name, spec.box_min_m.x(),
+         spec.box_min_m.y(), spec.box_min_m.z(), spec.box_max_m.x(), spec.box_max_m.y(), spec.box_max_m.z());
+  const int first = world.state.layout().find(body.block_id)->u_offset;
+  const Vec3 centre = 0.5 * (spec.box_min_m + spec.box_max_m);
+  std::vector<int> dofs;
+  std::vector<double> x0;
+  std::vector<Vec3> local;
+  for (int node : nodes)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (spec.axes.find("xyz"[axis]) == std::string::npos) continue;
+      dofs.push_back(first + 3 * node + axis);
+      x0.push_back(body.placed(axis, node));
+      local.push_back(body.placed.col(node) - centre);
+    }
+  if (spec.keyframes.empty()) {
+    world.system.add(fem::make_fixed(dofs, Eigen::Map<const VecX>(x0.data(), static_cast<Eigen::Index>(x0.size()))));
+    return;
+  }
+  world.system.add(fem::make_driven(dofs, Eigen::Map<const Points>(local.front().data(), 3, static_cast<Eigen::Index>(local.size())), box_path(spec)));
+}
+
+Body place_body(World& world, const SoftBodySpec& spec) {
+  Body body;
+  body.name = spec.name;
+  fem::check(material_of(spec), fmt::format("body \"{}\"", spec.name).c_str());
+  body.rest = load_mesh(spec.mesh, world.folder, &body.report);
+  const Pose pose{quaternion_of(spec.rotation_vector_rad), spec.position_m};
+  body.placed.resize(3, body.rest.nodes.cols());
+  for (Eigen::Index i = 0; i < body.placed.cols(); ++i) body.placed.col(i) = pose * Vec3(body.rest.nodes.col(i));
+  body.masses = fem::lumped_masses(body.rest, spec.density_kg_m3);
+  body.boundary = mesh::boundary(body.rest);
+  body.stiffness_scale = spec.youngs_modulus_pa;
+  return body;
+}
+
+/// Errors are asked for in units of strain: lengths by the body's size, velocities by its bar wave speed sqrt(E/rho).
+dynamics::BlockSpec block_of(const SoftBodySpec& spec, const Body& body) {
+  dynamics::BlockSpec block;
+  block.name = spec.name;
+  block.q_size = block.u_size = static_cast<int>(3 * body.placed.cols());
+  block.q_scale = (body.placed.rowwise().maxCoeff() - body.placed.rowwise().minCoeff()).norm();
+  block.u_scale = std::sqrt(spec.youngs_modulus_pa / spec.density_kg_m3);
+  return block;
+}
+
+void add_forces(World& world, Body& body, const SoftBodySpec& spec) {
+  body.term = std::make_shared<fem::SoftBody>(spec.name, body.rest, material_of(spec), options_of(spec), body.block_id);
+  world.system.add(body.term);
+  const bool consistent = spec.mass == "consistent";
+  if (!consistent && spec.mass != "lumped") fail("body \"{}\": unknown mass \"{}\"{}", spec.name, spec.mass, suggestion(spec.mass, {"lumped", "consistent"}));
+  world.system.add(consistent ? fem::make_consistent_mass(body.rest, spec.density_kg_m3, body.block_id)
+                              : fem::make_lumped_mass(body.rest, spec.density_kg_m3, body.block_id));
+  if (consistent) world.system.set_mass_solver(integrate::make_linear_solver("cholmod"));
+  if (!world.description.gravity_m_s2.isZero()) world.system.add(fem::make_gravity(body.masses, world.description.gravity_m_s2, body.block_id));
+  for (const LoadSpec& load : spec.loads)
+    world.system.add(fem::make_dead_load("load on " + spec.name, fem::load_on_box(body.placed, body.boundary, load), body.block_id));
+}
+
+}  // namespace
+
+void assemble_bodies(World& world) {
+  std::vector<Body>& bodies = world.bodies;
+  for (const SoftBodySpec& spec : world.description.bodies) bodies.push_back(place_body(world, spec));
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const SoftBodySpec& spec = world.description.bodies[i];
+    const VecX q = Eigen::Map<const VecX>(bodies[i].placed.data(), bodies[i].placed.size());
+    bodies[i].block_id = world.state.insert(block_of(spec, bodies[i]), q, initial_velocities(spec, bodies[i].placed, bodies[i].masses));
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    add_forces(world, bodies[i], world.description.bodies[i]);
+    for (const AttachmentSpec& attachment : world.description.bodies[i].attachments) attach(world, bodies[i], attachment);
+  }
+}
+
+std::unique_ptr<World> assemble(const scene::Description& description) {
+  auto world = std::make_unique<World>();
+  world->description = description;
+  world->folder = std::filesystem::path(description.path).parent_path().string();
+  assemble_bodies(*world);
+  if (description.tool) assemble_tool(*world);
+  if (!description.contacts.empty()) assemble_contact(*world);
+  if (world->bodies.empty()) return world;
+  world->system.prepare(world->state.view());
+  world->system.impose(world->state.layout(), 0.0, world->state.q().data(), world->state.u().data());
+  world->stepper = integrate::make_stepper(world->system, world->state, description.integrator);
+  return world;
+}
+
+}  // namespace palpate::loop

@@ -1,0 +1,93 @@
+#include <algorithm>
+
+#include "assemble_parts.h"
+#include "palpate/contact/sources.h"
+#include "palpate/core/error.h"
+#include "palpate/integrate/integrators.h"
+
+namespace palpate::loop {
+namespace {
+
+double mean_edge(const TriMesh& surface) {
+  double sum = 0.0;
+  for (Eigen::Index f = 0; f < surface.faces.cols(); ++f)
+    for (int k = 0; k < 3; ++k) sum += (surface.vertices.col(surface.faces(k, f)) - surface.vertices.col(surface.faces((k + 1) % 3, f))).norm();
+  return sum / static_cast<double>(3 * surface.faces.cols());
+}
+
+struct Pair {
+  const ContactSpec& spec;
+  contact::NodeSurface surface;
+  double candidate_gap;
+};
+
+Pair pair_of(const World& world, const ContactSpec& spec) {
+  const Body* body = world.find_body(spec.first);
+  if (!body) fail("contact: no body called \"{}\"", spec.first);
+  const double gap = spec.candidate_gap_m > 0.0 ? spec.candidate_gap_m : mean_edge(body->boundary.surface);
+  return {spec, {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces}, gap};
+}
+
+[[maybe_unused]] std::unique_ptr<contact::SampleSource> gpu_source(Pair pair, TriMesh rigid, int frame, std::shared_ptr<contact::MovingFrame> motion) {
+#ifdef PALPATE_HAS_GL
+  return contact::make_gpu_source(std::move(pair.surface), std::move(rigid), frame, std::move(motion), {pair.spec.pixels, pair.candidate_gap});
+#else
+  static_cast<void>(pair), static_cast<void>(rigid), static_cast<void>(frame), static_cast<void>(motion);
+  fail("contact: method \"gpu\": this palpate was built without OpenGL; configure with -DPALPATE_WITH_GL=ON (packages libepoxy-dev, libegl-dev)");
+#endif
+}
+
+void check_method(const ContactSpec& spec) {
+  if (spec.method != "analytic" && spec.method != "gpu")
+    fail("contact {} - {}: unknown method \"{}\"{}", spec.first, spec.second, spec.method, suggestion(spec.method, {"analytic", "gpu"}));
+}
+
+std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
+  const ToolSpec& tool = *world.description.tool;
+  if (!world.tool_frame) {
+    world.tool_frame = std::make_shared<contact::TrajectoryFrame>();
+    world.tool_frame_index = world.contact->add_frame(world.tool_frame);
+  }
+  if (pair.spec.method == "gpu") return gpu_source(std::move(pair), tool_surface(tool, world.folder), world.tool_frame_index, world.tool_frame);
+  if (tool.shape != "sphere") fail("contact {} - tool: method \"analytic\" needs shape = \"sphere\", the tool's is \"{}\"; use method = \"gpu\"", pair.spec.first, tool.shape);
+  return contact::make_sphere_source(std::move(pair.surface), world.tool_frame_index, world.tool_frame, Vec3::Zero(), tool.radius_m, pair.candidate_gap);
+}
+
+std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair, const ObstacleSpec& obstacle) {
+  auto motion = contact::fixed_frame();
+  const int frame = world.contact->add_frame(motion);
+  if (obstacle.type == "plane") {
+    if (pair.spec.method == "gpu") fail("contact {} - {}: a plane has exact gaps and needs no image; use method = \"analytic\"", pair.spec.first, obstacle.name);
+    return contact::make_plane_source(std::move(pair.surface), frame, motion, obstacle.position_m, obstacle.normal, pair.candidate_gap);
+  }
+  if (obstacle.type != "sphere") fail("obstacle \"{}\": unknown type \"{}\"{}", obstacle.name, obstacle.type, suggestion(obstacle.type, {"plane", "sphere"}));
+  if (pair.spec.method == "analytic")
+    return contact::make_sphere_source(std::move(pair.surface), frame, motion, obstacle.position_m, obstacle.radius_m, pair.candidate_gap);
+  ToolSpec ball;
+  ball.radius_m = obstacle.radius_m;
+  TriMesh surface = tool_surface(ball, world.folder);
+  surface.vertices.colwise() += obstacle.position_m;
+  return gpu_source(std::move(pair), std::move(surface), frame, motion);
+}
+
+}  // namespace
+
+void assemble_contact(World& world) {
+  world.contact = std::make_shared<contact::ContactForce>();
+  for (const ContactSpec& spec : world.description.contacts) {
+    check_method(spec);
+    const auto& obstacles = world.description.obstacles;
+    const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(), [&](const ObstacleSpec& o) { return o.name == spec.second; });
+    if (spec.second == "tool" && world.description.tool)
+      world.contact->add_pair(tool_source(world, pair_of(world, spec)), spec);
+    else if (obstacle != obstacles.end())
+      world.contact->add_pair(obstacle_source(world, pair_of(world, spec), *obstacle), spec);
+    else
+      fail("contact {} - {}: the second partner must be an obstacle or \"tool\"; contact between soft bodies is not part of this version", spec.first, spec.second);
+  }
+  world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
+  if (world.tool_frame && world.description.coupling.linearisation == "condensed")
+    world.condenser = integrate::make_linear_solver(world.system.symmetric() ? "cholmod" : "klu");
+}
+
+}  // namespace palpate::loop

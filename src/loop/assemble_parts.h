@@ -1,0 +1,11 @@
+#pragma once
+#include "palpate/loop/world.h"
+
+/// The steps of assemble(), one file each.
+namespace palpate::loop {
+
+void assemble_bodies(World& world);
+void assemble_tool(World& world);     ///< only with [tool]
+void assemble_contact(World& world);  ///< only with [[contact]]
+
+}  // namespace palpate::loop

@@ -1,0 +1,152 @@
+#include "palpate/loop/run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "linearise.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+#ifdef PALPATE_HAS_TOOL
+#include "palpate/tool/tool.h"
+#endif
+
+namespace palpate::loop {
+namespace {
+
+int whole_number(double ratio) { return std::max(1, static_cast<int>(std::lround(ratio))); }
+
+/// One run: the State of the loop itself.
+class Loop {
+ public:
+  Loop(World& world, const RunOptions& options) : world_(world), options_(options) {}
+
+  RunResult run() {
+    const scene::Description& d = world_.description;
+    const double duration = options_.duration_s > 0.0 ? options_.duration_s : d.duration_s;
+    const double period = period_of(d);
+    const int periods = whole_number(std::ceil(duration / period - 1e-9));
+    const double wall = wall_seconds(), cpu = cpu_seconds();
+    start_tool();
+    notify_period(0.0);
+    for (int i = 0; i < periods && result_.status.ok(); ++i) {
+      if (options_.stop && options_.stop->load()) {
+        result_.stopped = true;
+        break;
+      }
+      const double t1 = i + 1 == periods ? duration : (i + 1) * period;
+      one_period(i * period, t1);
+      if (!result_.status.ok()) break;
+      ++result_.periods;
+      result_.time = t1;
+      notify_period(t1);
+      if (options_.progress) options_.progress(static_cast<double>(i + 1) / periods);
+    }
+    result_.wall_s = wall_seconds() - wall;
+    result_.cpu_s = cpu_seconds() - cpu;
+    finish();
+    return result_;
+  }
+
+ private:
+  void one_period(double t0, double t1) {
+    refresh_contact();
+    if (world_.tool) tick_tool(t0, t1);
+    if (result_.status.ok() && world_.stepper) advance_bodies(t0, t1);
+  }
+
+  /// The slow query; multistep integrators then forget their history.
+  void refresh_contact() {
+    if (!world_.contact || world_.bodies.empty()) return;
+    const ScopedTimer timer(result_.query_s);
+    if (world_.contact->refresh(world_.state.view())) world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
+  }
+
+  /// Bodies follow over the same period, with the tool's motion known: refreshes of the contact inside it are whole fractions.
+  void advance_bodies(double t0, double t1) {
+    const double refresh = world_.contact ? world_.description.coupling.contact_refresh_s : t1 - t0;
+    const int parts = whole_number((t1 - t0) / refresh);
+    for (int i = 0; i < parts; ++i) {
+      if (i > 0) refresh_contact();
+      const double t = i + 1 == parts ? t1 : t0 + (i + 1) * (t1 - t0) / parts;
+      result_.status = world_.stepper->advance_to(t);
+      if (!result_.status.ok()) return;
+    }
+  }
+
+#ifdef PALPATE_HAS_TOOL
+  void start_tool() {
+    if (!world_.tool) return;
+    handle_ = world_.handle->sample(0.0);
+    set_trajectory_start();
+  }
+
+  void set_trajectory_start() {
+    if (!world_.tool_frame) return;
+    world_.tool_frame->clear();
+    world_.tool_frame->append(world_.tool->time(), world_.tool->pose(), world_.tool->twist());
+  }
+
+  void tick_tool(double t0, double t1) {
+    {
+      const ScopedTimer timer(result_.linearise_s);
+      record_ = linearise_contact(world_, record_.version + 1, t1 - t0, result_.frozen_fallbacks);
+    }
+    set_trajectory_start();
+    const ScopedTimer timer(result_.tool_s);
+    const int ticks = whole_number((t1 - t0) / world_.description.tool->tick_s);
+    const double h = (t1 - t0) / ticks;
+    for (int i = 0; i < ticks && result_.status.ok(); ++i) tick(t0 + (i + 1) * h, h);
+  }
+
+  void tick(double t, double h) {
+    const device::HandleSample before = handle_;
+    handle_ = world_.handle->sample(t);
+    result_.status = world_.tool->advance(h, {before.pose, handle_.pose, before.twist, handle_.twist}, record_);
+    if (!result_.status.ok()) return;
+    TickRecord tick;
+    tick.time = t;
+    tick.handle = handle_.pose;
+    tick.tool = world_.tool->pose();
+    tick.tool_twist = world_.tool->twist();
+    const Vec6 contact = dynamics::contact_wrench(record_, tick.tool, tick.tool_twist);
+    tick.contact = {contact.head<3>(), contact.tail<3>()};
+    tick.wanted = world_.tool->wrench_on_hand(handle_.pose, handle_.twist);
+    tick.device = world_.limiter->limit(t, tick.wanted, handle_.valid);
+    world_.handle->feedback(t, tick.device);
+    if (world_.tool_frame) world_.tool_frame->append(t, tick.tool, tick.tool_twist);
+    ++result_.ticks;
+    for (Observer* observer : options_.observers) observer->tick(tick);
+  }
+#else
+  void start_tool() {}
+  void tick_tool(double, double) {}
+#endif
+
+  void notify_period(double t) {
+    for (Observer* observer : options_.observers) observer->period(world_, t);
+  }
+
+  void finish() {
+    if (world_.stepper) result_.counters = world_.stepper->counters();
+    if (world_.contact) result_.contact_queries = world_.contact->queries();
+    if (world_.limiter) result_.limited_ticks = world_.limiter->limited_ticks();
+  }
+
+  World& world_;
+  const RunOptions& options_;
+  RunResult result_;
+  device::HandleSample handle_;
+  dynamics::LinearisedContact record_;
+};
+
+}  // namespace
+
+double period_of(const scene::Description& d) {
+  if (d.tool) return d.coupling.exchange_period_s;
+  if (!d.contacts.empty()) return d.coupling.contact_refresh_s;
+  return d.record ? d.record->state_period_s : d.duration_s;
+}
+
+RunResult run(World& world, const RunOptions& options) { return Loop(world, options).run(); }
+
+}  // namespace palpate::loop
