@@ -15,14 +15,17 @@ namespace palpate::scene {
 /// One point of a work-precision ladder is an integrator with its tolerances or steps.
 struct LadderSpec {
   std::string integrator;
-  std::vector<double> values;  ///< rtol of adaptive methods, step_s of fixed-step ones; descending
+  std::string setting = "rtol";  ///< which setting `values` are: "rtol" of adaptive methods, "step_s" of fixed-step ones
+  std::vector<double> values;    ///< descending
 };
 
 /// What `palpate compare` does with this scene.
 struct CompareSpec {
   std::vector<LadderSpec> ladders;
   std::vector<double> exchange_periods_s;  ///< for the chart of the exchange period's own error; empty: none
-  double reference_rtol = 1e-9;
+  double reference_rtol = 1e-9;            ///< of the reference, made by cvode-bdf
+  std::string reference_check = "ark-erk-5";  ///< the integrator of another family that checks the reference
+  double reference_check_rtol = 1e-8;
   double duration_s = 0.0;                 ///< 0: the scene's
 };
 
