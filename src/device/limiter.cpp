@@ -1,0 +1,92 @@
+#include "palpate/device/limiter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "palpate/core/error.h"
+
+namespace palpate::device {
+namespace {
+
+constexpr double kSteepest = 1.5;  // of smoothstep, at its middle
+
+/// 0 at x <= 0, 1 at x >= 1, C1.
+double smoothstep(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x * x * (3.0 - 2.0 * x);
+}
+
+// With x = |v|/max, |v| becomes max x / (1 + x^6)^(1/6): smooth everywhere (even power), monotone, below max, and off by
+// 1 - (1 + 2^-6)^(-1/6) = 0.26 % at half the maximum (tanh itself would be off by 7.6 % there).
+Vec3 saturate(const Vec3& v, double max) {
+  const double norm = v.stableNorm();
+  const double x = norm / max;
+  const double x6 = x <= 1.0 ? std::pow(x, 6) : std::pow(x, -6);
+  const double scale = x <= 1.0 ? std::pow(1.0 + x6, -1.0 / 6.0) : std::pow(1.0 + x6, -1.0 / 6.0) / x;
+  return scale * v;
+}
+
+/// Back inside the ball where rounding left it: never above the maximum, not even in the last digit.
+Vec3 inside(const Vec3& v, double max) {
+  const double norm = v.norm();
+  return norm > max ? Vec3(v * (max / norm * (1.0 - 4.0 * std::numeric_limits<double>::epsilon()))) : v;
+}
+
+/// From `from` towards `to`, by at most `reach`.
+Vec3 towards(const Vec3& from, const Vec3& to, double reach) {
+  const Vec3 way = to - from;
+  const double length = way.norm();
+  return length > reach ? Vec3(from + (reach / length) * way) : to;
+}
+
+void check_slew(double slew, double max, const char* what) {
+  const double least = kSteepest * max / kFallTime;
+  if (!(slew >= least)) fail("device: {} = {} is too small to fall from {} to zero within 20 ms; use at least {}", what, slew, max, least);
+}
+
+}  // namespace
+
+WrenchLimiter::WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s, double max_force_slew_n_s, double max_torque_slew_n_m_s)
+    : max_force_(max_force_n), max_torque_(max_torque_n_m), ramp_(ramp_s), force_slew_(max_force_slew_n_s), torque_slew_(max_torque_slew_n_m_s) {
+  if (!(max_force_ > 0.0) || !std::isfinite(max_force_)) fail("device: max_force_n = {} must be positive", max_force_);
+  if (!(max_torque_ > 0.0) || !std::isfinite(max_torque_)) fail("device: max_torque_n_m = {} must be positive", max_torque_);
+  if (!(ramp_ >= 0.0) || !std::isfinite(ramp_)) fail("device: ramp_s = {} must not be negative", ramp_);
+  check_slew(force_slew_, max_force_, "max_force_slew_n_s");
+  check_slew(torque_slew_, max_torque_, "max_torque_slew_n_m_s");
+}
+
+Wrench WrenchLimiter::limit(double t, const Wrench& wanted, bool valid) {
+  const bool good_time = std::isfinite(t) && (!started_ || t > last_time_);
+  const bool good_wrench = wanted.force.allFinite() && wanted.moment.allFinite();
+  if (!good_time || (valid && !good_wrench)) ++rejected_;
+  if (!good_time) {
+    stalled_ += last_dt_;
+    return last_ = fall(last_time_ - last_valid_ + stalled_);
+  }
+  last_dt_ = started_ ? t - last_time_ : 0.0;
+  last_time_ = t;
+  stalled_ = 0.0;
+  started_ = true;
+  return last_ = valid && good_wrench ? follow(t, last_dt_, wanted) : fall(t - last_valid_);
+}
+
+Wrench WrenchLimiter::follow(double t, double dt, const Wrench& wanted) {
+  if (!live_ || t - last_valid_ >= kFallTime) start_ = t;
+  live_ = true;
+  last_valid_ = t;
+  if (wanted.force.stableNorm() > max_force_ || wanted.moment.stableNorm() > max_torque_) ++limited_;
+  const double ramp = ramp_ > 0.0 ? smoothstep((t - start_) / ramp_) : 1.0;
+  held_.force = inside(towards(last_.force, ramp * saturate(wanted.force, max_force_), force_slew_ * dt), max_force_);
+  held_.moment = inside(towards(last_.moment, ramp * saturate(wanted.moment, max_torque_), torque_slew_ * dt), max_torque_);
+  return held_;
+}
+
+Wrench WrenchLimiter::fall(double age) {
+  live_ = live_ && age < kFallTime;
+  if (!live_) return {};
+  const double left = 1.0 - smoothstep(age / kFallTime);
+  return {left * held_.moment, left * held_.force};
+}
+
+}  // namespace palpate::device
