@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""The tree keeps its arrows; and the check that says so is shown to fail on planted breaches."""
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+import arrows
+
+TREE = Path(__file__).resolve().parents[2]
+
+SOUND = {
+    "include/palpate/core/types.h": "#pragma once\n",
+    "include/palpate/fem/spec.h": "#pragma once\n",
+    "include/palpate/device/spec.h": '#pragma once\n#include "palpate/fem/spec.h"\n',
+    "include/palpate/fem/body.h": '#include "palpate/core/types.h"\n#include "palpate/fem/spec.h"\n',
+    "include/palpate/gl/context.h": "#include <epoxy/gl.h>\n",
+    "include/palpate/scene/description.h": '#include "palpate/fem/spec.h"\n',
+    "include/palpate/study/study.h": '#include "palpate/scene/description.h"\n',
+    "include/palpate/study/validation.h": '#include "palpate/fem/body.h"\n',
+    "src/fem/body.cpp": '#include "palpate/fem/body.h"\n#include "element.h"\n#include <vector>\n',
+    "src/fem/element.h": '#pragma once\n#include "../fem/shape.h"\n',
+    "src/fem/shape.h": "#pragma once\n",
+    "src/cli/main.cpp": "#include <CLI/CLI.hpp>\n",
+    "src/fem/CMakeLists.txt": "palpate_part(fem PUBLIC palpate::core)  # not palpate::tool\n",
+    "validation/case.cpp": '#include "palpate/fem/body.h"\n',
+    "tests/fem/body_test.cpp": '#include "fem/element.h"\n',
+}
+
+
+def breaches_of(extra):
+    with tempfile.TemporaryDirectory() as folder:
+        for path, text in {**SOUND, **extra}.items():
+            file = Path(folder) / path
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
+        return arrows.check(folder)
+
+
+class Tree(unittest.TestCase):
+    def test_arrows_of_the_tree(self):
+        breaches, remarks = arrows.check(TREE)
+        for remark in remarks:
+            print("remark:", remark)
+        self.assertEqual(breaches, [])
+
+    def test_table_covers_every_part_and_has_no_cycle(self):
+        parts = {path.name for path in (TREE / "include" / "palpate").iterdir() if path.is_dir()}
+        parts |= {path.name for path in (TREE / "src").iterdir() if path.is_dir()}
+        self.assertEqual(parts - set(arrows.ALLOWED), set())
+        table = {part: list(below) for part, below in arrows.ALLOWED.items() if part != "validation"}
+        self.assertIsNone(arrows.find_cycle(table))
+
+
+class Planted(unittest.TestCase):
+    def expect(self, extra, *words):
+        breaches, _ = breaches_of(extra)
+        self.assertEqual(len(breaches), 1, breaches)
+        for word in words:
+            self.assertIn(word, breaches[0])
+
+    def test_sound_tree_passes(self):
+        self.assertEqual(breaches_of({}), ([], []))
+
+    def test_arrow_upwards(self):
+        self.expect({"src/core/bad.cpp": '\n#include "palpate/fem/body.h"\n'}, "src/core/bad.cpp:2:", "core may not include fem")
+
+    def test_arrow_in_a_public_header_with_angle_brackets(self):
+        self.expect({"include/palpate/device/bad.h": "#include <palpate/fem/body.h>\n"}, "device may not include fem")
+
+    def test_arrow_through_a_relative_path(self):
+        self.expect({"src/core/bad.cpp": '#include "../../include/palpate/fem/body.h"\n'}, "core may not include fem")
+
+    def test_scene_knows_only_plain_data(self):
+        self.expect({"src/scene/load.cpp": '#include "palpate/fem/body.h"\n'}, "scene may not include fem")
+
+    def test_plain_data_is_made_of_plain_data_only(self):
+        self.expect({"include/palpate/mesh/spec.h": '#include "palpate/fem/body.h"\n'}, "mesh may not include fem")
+
+    def test_study_is_not_its_validation(self):
+        self.expect({"src/study/compare.cpp": '#include "palpate/fem/body.h"\n'}, "study may not include fem")
+
+    def test_validation_does_not_know_the_command_line(self):
+        self.expect({"include/palpate/cli/bad.h": "\n", "validation/bad.cpp": '#include "palpate/cli/bad.h"\n'},
+                    "validation may not include cli")
+
+    def test_private_header_of_another_part(self):
+        self.expect({"src/contact/a.h": "\n", "src/loop/bad.cpp": '#include "contact/a.h"\n'}, "contact/a.h is private to contact")
+
+    def test_public_header_includes_a_private_one(self):
+        self.expect({"include/palpate/fem/bad.h": '#include "fem/element.h"\n'}, "public header includes the private")
+
+    def test_unknown_part(self):
+        self.expect({"src/magic/wand.cpp": "\n"}, "not in the table")
+
+    def test_header_that_does_not_exist(self):
+        self.expect({"src/fem/bad.cpp": '#include "palpate/fem/gone.h"\n'}, "does not exist")
+
+    def test_cycle_of_files_in_one_part(self):
+        self.expect({"src/fem/shape.h": '#include "element.h"\n'}, "include cycle", "src/fem/element.h", "src/fem/shape.h")
+
+    def test_outside_libraries_stay_where_they_belong(self):
+        planted = {"cvode/cvode.h": "SUNDIALS", "nvector/nvector_serial.h": "SUNDIALS", "Simbody.h": "Simbody", "SimTKmath.h": "Simbody",
+                   "EGL/egl.h": "EGL", "epoxy/gl.h": "EGL", "ccd/ccd.h": "libccd", "suitesparse/cholmod.h": "SuiteSparse",
+                   "cholmod.h": "SuiteSparse", "CLI/CLI.hpp": "CLI11", "toml++/toml.h": "toml++", "hdf5.h": "HDF5"}
+        for header, library in planted.items():
+            for folder in ("src/fem", "tests/fem", "validation"):
+                with self.subTest(header=header, folder=folder):
+                    self.expect({f"{folder}/bad.cpp": f"# include <{header}>\n"}, library, f"{folder}/bad.cpp:1:")
+
+    def test_links(self):
+        self.expect({"src/core/CMakeLists.txt": "palpate_part(core\n  PUBLIC palpate::fem)\n"}, "src/core/CMakeLists.txt:2:",
+                    "core may not link palpate::fem")
+
+    def test_long_file_is_reported_not_refused(self):
+        breaches, remarks = breaches_of({"src/fem/long.cpp": "\n" * 401})
+        self.assertEqual(breaches, [])
+        self.assertEqual(len(remarks), 1)
+        self.assertIn("401 lines", remarks[0])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+"""Reads the #include lines of the tree and says which arrows are not allowed.
+
+    arrows.py [TREE]      prints each breach as FILE:LINE: what, and exits 1 when there is one
+
+ALLOWED is the table of the parts: what a part may include besides itself.  Everything here is data; the check is below it.
+"""
+import re
+import sys
+from pathlib import Path
+
+BELOW_LOOP = ["core", "mesh", "dynamics", "fem", "proxy", "gl", "contact", "tool", "device", "integrate", "store", "render", "scene"]
+
+ALLOWED = {
+    "core": [],
+    "mesh": ["core"],
+    "dynamics": ["core"],
+    "fem": ["core", "mesh", "dynamics"],
+    "proxy": ["core", "mesh"],
+    "gl": ["core"],
+    "contact": ["core", "mesh", "proxy", "dynamics", "gl"],
+    "tool": ["core", "dynamics"],
+    "device": ["core"],
+    "integrate": ["core", "dynamics"],
+    "store": ["core", "mesh"],  # mesh: the native mesh file
+    "render": ["core", "mesh", "gl"],
+    "model": ["core", "mesh", "proxy", "store"],
+    "scene": ["core"],  # and the spec.h of every part: see is_allowed
+    "loop": BELOW_LOOP,
+    "study": ["core", "scene", "loop", "store"],  # core and scene: what loop's own headers speak in
+    "report": ["core", "store"],
+    "cli": ["core", "scene", "store", "render", "loop", "study", "report"],
+    "validation": BELOW_LOOP + ["loop", "study", "report"],  # the cases in validation/, and study/validation*
+}
+
+# Headers of outside libraries, and the only folders that may include them.
+OUTSIDE = [
+    ("SUNDIALS", r"(sundials|cvode|cvodes|arkode|ida|idas|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol|sunmemory)/", ["src/integrate"]),
+    ("Simbody", r"(Simbody|SimTK\w*|simbody|simmath)(\.h$|/)", ["src/tool", "tests/isolation", "tests/package"]),
+    ("EGL and OpenGL", r"(EGL|GL|GLES\d?|KHR|epoxy)/", ["src/gl", "include/palpate/gl", "src/render", "tests/gl", "tests/render"]),
+    ("libccd", r"ccd/", ["src/proxy", "tests/proxy"]),
+    ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/integrate"]),
+    ("CLI11", r"CLI/", ["src/cli"]),
+    ("toml++", r"toml\+\+/", ["src/scene"]),
+    ("HDF5", r"(hdf5|H5\w+)\.h", ["src/store", "tests/store"]),
+]
+
+LONG_FILE = 400
+SUFFIXES = {".h", ".hpp", ".cpp", ".cc"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^">]+)[">]')
+
+
+def part_of(path):
+    """The part that a file belongs to: by its folder under src/ or include/palpate/."""
+    pieces = path.split("/")
+    if pieces[0] == "validation":
+        return "validation"
+    if pieces[0] == "src" and len(pieces) > 2:
+        part = pieces[1]
+    elif pieces[:2] == ["include", "palpate"] and len(pieces) > 3:
+        part = pieces[2]
+    else:
+        return None
+    return "validation" if part == "study" and pieces[-1].startswith("validation") else part
+
+
+def resolve(path, quoted, name, files):
+    """The file of the tree that an include means, or None where it is the system's."""
+    beside = (Path(path).parent / name).as_posix()
+    places = ["include/" + name, "src/" + name]
+    if quoted:
+        pieces = []
+        for piece in beside.split("/"):
+            if piece == "..":
+                pieces = pieces[:-1]
+            elif piece != ".":
+                pieces.append(piece)
+        places.insert(0, "/".join(pieces))
+    return next((place for place in places if place in files), None)
+
+
+def is_spec(path):
+    return path.endswith("/spec.h")
+
+
+def is_allowed(source, target):
+    own, other = part_of(source), part_of(target)
+    if own == other or {own, other} == {"study", "validation"}:
+        return True
+    if is_spec(target) and (is_spec(source) or own == "scene"):  # plain data may be made of plain data
+        return True
+    return other in ALLOWED[own]
+
+
+def includes(tree, path):
+    for number, line in enumerate((tree / path).read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+        match = INCLUDE.match(line)
+        if match:
+            yield number, match.group(1) == '"', match.group(2)
+
+
+def find_cycle(graph):
+    """One cycle of files as a list, or None: depth-first, without recursion."""
+    state = {}
+    for start in sorted(graph):
+        if start in state:
+            continue
+        stack = [(start, iter(graph[start]))]
+        state[start] = "open"
+        while stack:
+            node, rest = stack[-1]
+            step = next(rest, None)
+            if step is None:
+                state[node] = "done"
+                stack.pop()
+            elif state.get(step) == "open":
+                trail = [entry[0] for entry in stack]
+                return trail[trail.index(step):] + [step]
+            elif step not in state:
+                state[step] = "open"
+                stack.append((step, iter(graph.get(step, []))))
+    return None
+
+
+def source_files(tree, folders):
+    return sorted(path.relative_to(tree).as_posix() for folder in folders for path in (tree / folder).rglob("*")
+                  if path.suffix in SUFFIXES)
+
+
+def check(tree):
+    """(breaches, remarks): lists of strings."""
+    tree = Path(tree)
+    files = source_files(tree, ["include", "src", "validation"])
+    known = set(files)
+    breaches, remarks, graph = [], [], {path: [] for path in files}
+
+    for path in files:
+        own = part_of(path)
+        if own is not None and own not in ALLOWED:
+            breaches.append(f"{path}:1: part \"{own}\" is not in the table of parts")
+            continue
+        for number, quoted, name in includes(tree, path):
+            target = resolve(path, quoted, name, known)
+            if target is None:
+                if name.startswith("palpate/"):
+                    breaches.append(f"{path}:{number}: includes {name}, which does not exist")
+                continue
+            graph[path].append(target)
+            if part_of(target) is None or own is None:
+                continue
+            if not is_allowed(path, target):
+                breaches.append(f"{path}:{number}: {own} may not include {part_of(target)} ({name})")
+            elif own != part_of(target) and target.startswith("src/"):
+                breaches.append(f"{path}:{number}: {name} is private to {part_of(target)}")
+            elif path.startswith("include/") and not target.startswith("include/"):
+                breaches.append(f"{path}:{number}: a public header includes the private {name}")
+
+    for path in files + source_files(tree, ["tests"]):
+        for number, _, name in includes(tree, path):
+            for library, pattern, folders in OUTSIDE:
+                if re.match(pattern, name) and not any(path.startswith(folder + "/") for folder in folders):
+                    breaches.append(f"{path}:{number}: {library} ({name}) belongs in {', '.join(folders)} only")
+        lines = (tree / path).read_text(encoding="utf-8", errors="replace").count("\n")
+        if lines > LONG_FILE:
+            remarks.append(f"{path}: {lines} lines, more than {LONG_FILE}: wants a reason")
+
+    breaches += link_breaches(tree)
+    cycle = find_cycle(graph)
+    if cycle:
+        breaches.append("include cycle: " + " -> ".join(cycle))
+    if not files:
+        breaches.append(f"{tree}: no source files found")
+    return breaches, remarks
+
+
+def link_breaches(tree):
+    """The same table for what a part links: palpate::PART in src/PART/CMakeLists.txt."""
+    out = []
+    for listing in sorted((tree / "src").glob("*/CMakeLists.txt")):
+        own = listing.parent.name
+        for number, line in enumerate(listing.read_text(encoding="utf-8").splitlines(), 1):
+            for other in re.findall(r"palpate::(\w+)", line.split("#")[0]):
+                allowed = ALLOWED.get(own, []) + (["validation"] if own == "cli" else [])
+                if other != own and other in ALLOWED and other not in allowed:
+                    out.append(f"src/{own}/CMakeLists.txt:{number}: {own} may not link palpate::{other}")
+    return out
+
+
+def main(arguments):
+    tree = Path(arguments[0]) if arguments else Path(__file__).resolve().parents[2]
+    breaches, remarks = check(tree)
+    for line in remarks:
+        print("remark:", line)
+    for line in breaches:
+        print(line)
+    print(f"{len(breaches)} breaches")
+    return 1 if breaches else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
