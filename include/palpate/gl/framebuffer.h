@@ -39,7 +39,7 @@ class Framebuffer {
   /// Makes it the target of drawing, with the whole of it as viewport.
   void bind() const;
   void clear(int attachment, const float rgba[4]);
-  void clear(int attachment, const std::uint32_t value);
+  void clear(int attachment, std::uint32_t value);
   void clear_depth(float depth);
 
   int width() const { return width_; }

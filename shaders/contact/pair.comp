@@ -1,0 +1,26 @@
+#version 430 core
+// Pixels where both surfaces are seen, as a compact list (pixel, triangle of a, triangle of b).  The order is whatever
+// the atomic counter gives: the reader sorts.
+layout(local_size_x = 16, local_size_y = 16) in;
+layout(binding = 0) uniform usampler2D triangles_a;
+layout(binding = 1) uniform usampler2D triangles_b;
+layout(binding = 2) uniform sampler2D depth_a;
+layout(binding = 3) uniform sampler2D depth_b;
+uniform float largest_gap;  // pixels farther apart than this are left out [depth units]
+
+layout(std430, binding = 0) buffer Count { uint count; };
+layout(std430, binding = 1) writeonly buffer Pairs { uint pairs[]; };
+
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 size = textureSize(triangles_a, 0);
+  if (any(greaterThanEqual(at, size))) return;
+  uint a = texelFetch(triangles_a, at, 0).x;
+  uint b = texelFetch(triangles_b, at, 0).x;
+  if (a == 0u || b == 0u) return;
+  if (texelFetch(depth_a, at, 0).x - texelFetch(depth_b, at, 0).x > largest_gap) return;
+  uint k = 3u * atomicAdd(count, 1u);
+  pairs[k] = uint(at.y * size.x + at.x);
+  pairs[k + 1u] = a - 1u;
+  pairs[k + 2u] = b - 1u;
+}

@@ -1,0 +1,169 @@
+#include "palpate/gl/context.h"
+
+#include <dlfcn.h>
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+
+namespace palpate::gl {
+namespace {
+
+constexpr const char* kMesaPackages = "install libegl1, libegl-mesa0, libgl1 and libgl1-mesa-dri (Mesa's software rasteriser needs no GPU)";
+
+bool has_word(const char* list, std::string_view word) {
+  if (!list) return false;
+  std::string_view rest(list);
+  while (!rest.empty()) {
+    const auto end = std::min(rest.find(' '), rest.size());
+    if (rest.substr(0, end) == word) return true;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return false;
+}
+
+struct Candidate {
+  EGLDisplay display = EGL_NO_DISPLAY;
+  const char* platform = "";
+};
+
+/// Displays that need no window system, hardware first: devices that are not software, Mesa's surfaceless platform, the rest.
+/// (eglGetDisplay(EGL_DEFAULT_DISPLAY) fails without a window system.)
+std::vector<Candidate> candidates() {
+  const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+  std::vector<Candidate> hardware, software;
+  if (has_word(client, "EGL_EXT_platform_device") && (has_word(client, "EGL_EXT_device_enumeration") || has_word(client, "EGL_EXT_device_base"))) {
+    EGLDeviceEXT devices[16];
+    EGLint count = 0;
+    if (eglQueryDevicesEXT(16, devices, &count)) {
+      for (int i = 0; i < count; ++i) {
+        const bool is_software = has_word(eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS), "EGL_MESA_device_software");
+        (is_software ? software : hardware).push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr), "device"});
+      }
+    }
+  }
+  if (has_word(client, "EGL_MESA_platform_surfaceless"))
+    hardware.push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr), "surfaceless"});
+  hardware.insert(hardware.end(), software.begin(), software.end());
+  return hardware;
+}
+
+/// A core context of version 4.5, else of 4.3 (compute shaders and shader storage).  No surface: EGL_KHR_surfaceless_context.
+EGLContext create_context(EGLDisplay display) {
+  if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
+  const EGLint config_wanted[] = {EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+  EGLConfig config = nullptr;
+  EGLint count = 0;
+  if (!eglChooseConfig(display, config_wanted, &config, 1, &count) || count < 1) config = nullptr;  // EGL_KHR_no_config_context
+  for (const int minor : {5, 3}) {
+    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, minor, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    if (const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted)) return context;
+  }
+  return EGL_NO_CONTEXT;
+}
+
+bool is_software(std::string renderer) {
+  std::transform(renderer.begin(), renderer.end(), renderer.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const char* name : {"llvmpipe", "softpipe", "swrast", "software"})
+    if (renderer.find(name) != std::string::npos) return true;
+  return false;
+}
+
+std::string gl_string(GLenum name) {
+  const auto* text = reinterpret_cast<const char*>(glGetString(name));
+  return text ? text : "";
+}
+
+bool g_opened = false;
+
+}  // namespace
+
+struct Context::Handles {
+  EGLDisplay display = EGL_NO_DISPLAY;
+  EGLContext context = EGL_NO_CONTEXT;
+  std::thread::id owner;
+};
+
+// libepoxy opens its libraries itself, but aborts the process where they are missing; so they are tried first.
+void require_library(const std::string& file, const std::string& package) {
+  void* handle = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  if (!handle) fail("OpenGL without a display needs {}, which cannot be loaded ({}); install the package {}", file, dlerror(), package);
+  dlclose(handle);
+}
+
+Context& Context::shared() {
+  static Context context;
+  context.make_current();
+  return context;
+}
+
+bool Context::opened() { return g_opened; }
+
+Context::Context() : handles_(std::make_unique<Handles>()) {
+  require_library("libEGL.so.1", "libegl1");
+  require_library("libGL.so.1", "libgl1");
+  std::string tried;
+  for (const Candidate& candidate : candidates()) {
+    EGLint major = 0, minor = 0;
+    if (candidate.display == EGL_NO_DISPLAY || !eglInitialize(candidate.display, &major, &minor)) {
+      tried += std::string(tried.empty() ? "" : ", ") + candidate.platform + ": no display";
+      continue;
+    }
+    const EGLContext context = create_context(candidate.display);
+    if (context == EGL_NO_CONTEXT) {
+      tried += std::string(tried.empty() ? "" : ", ") + candidate.platform + ": no OpenGL 4.3";
+      continue;
+    }
+    handles_->display = candidate.display;
+    handles_->context = context;
+    info_.platform = candidate.platform;
+    break;
+  }
+  if (handles_->context == EGL_NO_CONTEXT) fail("no EGL device gives OpenGL 4.3 without a display (tried {}); {}", tried.empty() ? "none" : tried, kMesaPackages);
+  make_current();
+  info_.vendor = gl_string(GL_VENDOR);
+  info_.renderer = gl_string(GL_RENDERER);
+  info_.version = gl_string(GL_VERSION);
+  info_.software = is_software(info_.renderer);
+  g_opened = true;
+  counters::count("gl.context");
+}
+
+// A static object: it is constructed after EGL's libraries were loaded, so it is destroyed before their own exit handlers run.
+Context::~Context() {
+  g_opened = false;
+  if (handles_->context == EGL_NO_CONTEXT) return;
+  eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglDestroyContext(handles_->display, handles_->context);
+  eglTerminate(handles_->display);
+}
+
+void Context::make_current() {
+  const auto self = std::this_thread::get_id();
+  if (handles_->owner == self) return;
+  PALPATE_CHECK(handles_->owner == std::thread::id{}, "the GL context is current on another thread, which has to release it first");
+  PALPATE_CHECK(eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles_->context), "eglMakeCurrent failed, EGL error {:#x}",
+                static_cast<unsigned>(eglGetError()));
+  handles_->owner = self;
+}
+
+void Context::release() {
+  if (handles_->owner != std::this_thread::get_id()) return;
+  eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  handles_->owner = {};
+}
+
+void check_errors(const char* what) {
+  const GLenum error = glGetError();
+  PALPATE_CHECK(error == GL_NO_ERROR, "OpenGL error {:#x} in {}", error, what);
+}
+
+}  // namespace palpate::gl
