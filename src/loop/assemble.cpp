@@ -3,7 +3,7 @@
 #include "assemble_parts.h"
 #include "palpate/core/error.h"
 #include "palpate/fem/attachments.h"
-#include "palpate/fem/loads.h"
+#include "palpate/fem/load.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/store/mesh_file.h"
 
@@ -55,23 +55,22 @@ void attach(World& world, const Body& body, const AttachmentSpec& spec) {
   if (nodes.empty())
     fail("body \"{}\": attachment box [{}, {}, {}] to [{}, {}, {}] m holds no node; enlarge it or move it over the body", body.name, spec.box_min_m.x(),
          spec.box_min_m.y(), spec.box_min_m.z(), spec.box_max_m.x(), spec.box_max_m.y(), spec.box_max_m.z());
-  const int first = world.state.layout().find(body.block_id)->u_offset;
+  const int first = world.state.layout().find(body.block_id)->u_offset / 3;
+  const std::vector<int> dofs = fem::dofs_of_nodes(nodes, first, spec.axes);
+  const auto count = static_cast<Eigen::Index>(dofs.size());
   const Vec3 centre = 0.5 * (spec.box_min_m + spec.box_max_m);
-  std::vector<int> dofs;
-  std::vector<double> x0;
-  std::vector<Vec3> local;
-  for (int node : nodes)
-    for (int axis = 0; axis < 3; ++axis) {
-      if (spec.axes.find("xyz"[axis]) == std::string::npos) continue;
-      dofs.push_back(first + 3 * node + axis);
-      x0.push_back(body.placed(axis, node));
-      local.push_back(body.placed.col(node) - centre);
-    }
+  VecX x0(count);
+  Points local(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const int dof = dofs[static_cast<std::size_t>(i)] - 3 * first;
+    x0[i] = body.placed(dof % 3, dof / 3);
+    local.col(i) = body.placed.col(dof / 3) - centre;
+  }
   if (spec.keyframes.empty()) {
-    world.system.add(fem::make_fixed(dofs, Eigen::Map<const VecX>(x0.data(), static_cast<Eigen::Index>(x0.size()))));
+    world.system.add(fem::make_fixed(dofs, x0));
     return;
   }
-  world.system.add(fem::make_driven(dofs, Eigen::Map<const Points>(local.front().data(), 3, static_cast<Eigen::Index>(local.size())), box_path(spec)));
+  world.system.add(fem::make_driven(dofs, local, box_path(spec)));
 }
 
 Body place_body(World& world, const SoftBodySpec& spec) {
@@ -108,7 +107,7 @@ void add_forces(World& world, Body& body, const SoftBodySpec& spec) {
   if (consistent) world.system.set_mass_solver(integrate::make_linear_solver("cholmod"));
   if (!world.description.gravity_m_s2.isZero()) world.system.add(fem::make_gravity(body.masses, world.description.gravity_m_s2, body.block_id));
   for (const LoadSpec& load : spec.loads)
-    world.system.add(fem::make_dead_load("load on " + spec.name, fem::load_on_box(body.placed, body.boundary, load), body.block_id));
+    world.system.add(fem::make_dead_load("load on " + spec.name, fem::spread_over_boundary({body.placed, body.rest.tets}, load), body.block_id));
 }
 
 }  // namespace

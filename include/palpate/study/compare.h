@@ -1,0 +1,56 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "palpate/study/trajectory.h"
+
+namespace palpate::study {
+
+/// One point of the work-precision chart.
+struct ComparePoint {
+  std::string integrator;
+  std::string setting_name;        ///< "rtol" or "step_s"
+  double setting = 0.0;
+  TrajectoryError error;
+  std::vector<double> cpu_s;       ///< of each repeat
+  double cpu_median_s = 0.0, cpu_min_s = 0.0, cpu_max_s = 0.0;
+  loop::RunResult result;          ///< of the first repeat
+  bool below_reference = false;    ///< its position error is not above the reference's own: not to be trusted
+};
+
+/// The truth that the points are held against, and how far it can be trusted.
+struct Reference {
+  std::string description;         ///< what it was made by, and what checked it
+  TrajectoryError own_error;       ///< distance of two families at tight tolerance
+  double cpu_s = 0.0;
+};
+
+struct ExchangePoint {
+  double exchange_period_s = 0.0;
+  TrajectoryError error;
+  double cpu_s = 0.0;
+};
+
+struct Comparison {
+  std::string scene;
+  Reference reference;
+  std::vector<ComparePoint> points;
+  std::vector<ExchangePoint> exchange;   ///< error of the exchange period itself; empty where the scene asks for none
+  bool stopped = false;
+};
+
+struct CompareOptions {
+  int repeats = 3;
+  std::vector<std::string> integrators;                             ///< empty: all of the scene's ladders
+  std::function<void(double fraction, const std::string& what)> progress;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// Runs every ladder of the scene at its fixed exchange period against a tight reference; repeats are interleaved, so that a noisy machine hurts all alike.
+Comparison compare(const scene::Description& description, const CompareOptions& options);
+
+/// compare.csv, exchange.csv and reference.json in `folder`: what report reads its tables, fitted orders and plots from.
+void write(const Comparison& comparison, const std::string& folder);
+
+}  // namespace palpate::study
