@@ -14,6 +14,10 @@ namespace palpate::fem {
 /// Nodes of `placed` (initial world positions) inside the box, borders included.
 std::vector<int> nodes_in_box(const Points& placed, const Vec3& box_min, const Vec3& box_max);
 
+/// The u indices of the named axes ("x", "xz", "xyz") of nodes, ascending; `first_node`: of the body, counted over all node blocks.
+/// @throws Error for letters other than x, y, z, repeated ones, or none.
+std::vector<int> dofs_of_nodes(const std::vector<int>& nodes, int first_node, const std::string& axes);
+
 /// Holds directions of nodes where they are: x = x0, v = 0.  `dofs` are u indices, ascending; x0 [m] one each.
 std::shared_ptr<dynamics::DrivenMotion> make_fixed(std::vector<int> dofs, VecX x0);
 

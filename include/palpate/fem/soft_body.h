@@ -41,6 +41,7 @@ class SoftBody : public dynamics::ForceTerm {
   double dissipated_power(const dynamics::StateView& state) override;
 
   const ElementCounts& counts() const;
+  void reset_counts();
   const Material& material() const;
   void set_material(const Material& material);  ///< takes effect at the next evaluation
   int node_count() const;

@@ -1,0 +1,95 @@
+#include "palpate/fem/attachments.h"
+
+#include <algorithm>
+
+#include "box.h"
+#include "palpate/core/error.h"
+
+namespace palpate::fem {
+namespace {
+
+void check_dofs(const std::vector<int>& dofs, Eigen::Index values) {
+  PALPATE_CHECK(static_cast<Eigen::Index>(dofs.size()) == values, "{} directions and {} values", dofs.size(), values);
+  PALPATE_CHECK(dofs.empty() || dofs.front() >= 0, "direction {}", dofs.front());
+  PALPATE_CHECK(std::adjacent_find(dofs.begin(), dofs.end(), std::greater_equal<>()) == dofs.end(), "directions must ascend, each once");
+}
+
+class Fixed final : public dynamics::DrivenMotion {
+ public:
+  Fixed(std::vector<int> dofs, VecX x0) : dofs_(std::move(dofs)), x0_(std::move(x0)) {}
+  const std::vector<int>& dofs() const override { return dofs_; }
+  void evaluate(const dynamics::StateView&, VecX& x, VecX& v, VecX& a) const override {
+    x = x0_;
+    v.setZero(x0_.size());
+    a.setZero(x0_.size());
+  }
+
+ private:
+  std::vector<int> dofs_;
+  VecX x0_;
+};
+
+/// A point p of a moving frame, r = R p:  x = o + r,  v = o' + w x r,  a = o'' + w' x r + w x (w x r).
+class Driven final : public dynamics::DrivenMotion {
+ public:
+  Driven(std::vector<int> dofs, Points local, Path path) : dofs_(std::move(dofs)), local_(std::move(local)), path_(std::move(path)) {}
+  const std::vector<int>& dofs() const override { return dofs_; }
+  void evaluate(const dynamics::StateView& state, VecX& x, VecX& v, VecX& a) const override {
+    const PathPoint now = path_(state.time);
+    x.resize(local_.cols());
+    v.resize(local_.cols());
+    a.resize(local_.cols());
+    for (Eigen::Index i = 0; i < local_.cols(); ++i) {
+      const int axis = dofs_[static_cast<std::size_t>(i)] % 3;
+      const Vec3 r = now.pose.rotation * local_.col(i);
+      const Vec3& w = now.twist.angular;
+      x[i] = now.pose.translation[axis] + r[axis];
+      v[i] = now.twist.at(r)[axis];
+      a[i] = (now.acceleration.at(r) + w.cross(w.cross(r)))[axis];
+    }
+  }
+
+ private:
+  std::vector<int> dofs_;
+  Points local_;
+  Path path_;
+};
+
+}  // namespace
+
+std::vector<int> nodes_in_box(const Points& placed, const Vec3& box_min, const Vec3& box_max) {
+  check_box(box_min, box_max, "attachment");
+  std::vector<int> out;
+  for (int i = 0; i < placed.cols(); ++i)
+    if (in_box(placed.col(i), box_min, box_max)) out.push_back(i);
+  return out;
+}
+
+std::vector<int> dofs_of_nodes(const std::vector<int>& nodes, int first_node, const std::string& axes) {
+  bool held[3] = {false, false, false};
+  for (char c : axes) {
+    if (c < 'x' || c > 'z' || held[c - 'x']) fail("attachment: axes = \"{}\" must name each of x, y, z at most once, for example \"xz\"", axes);
+    held[c - 'x'] = true;
+  }
+  if (axes.empty()) fail("attachment: axes = \"\" holds nothing; name at least one of x, y, z");
+  std::vector<int> out;
+  for (int node : nodes)
+    for (int axis = 0; axis < 3; ++axis)
+      if (held[axis]) out.push_back(3 * (first_node + node) + axis);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::shared_ptr<dynamics::DrivenMotion> make_fixed(std::vector<int> dofs, VecX x0) {
+  check_dofs(dofs, x0.size());
+  PALPATE_CHECK(x0.allFinite(), "a fixed node's position is not finite");
+  return std::make_shared<Fixed>(std::move(dofs), std::move(x0));
+}
+
+std::shared_ptr<dynamics::DrivenMotion> make_driven(std::vector<int> dofs, Points local_points_per_dof, Path path) {
+  check_dofs(dofs, local_points_per_dof.cols());
+  PALPATE_CHECK(path, "driven nodes need a path");
+  return std::make_shared<Driven>(std::move(dofs), std::move(local_points_per_dof), std::move(path));
+}
+
+}  // namespace palpate::fem

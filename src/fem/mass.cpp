@@ -1,0 +1,91 @@
+#include "node_block.h"
+#include "palpate/fem/soft_body.h"
+#include "scatter_map.h"
+
+namespace palpate::fem {
+namespace {
+
+using dynamics::BorderedMatrix;
+using dynamics::StateView;
+
+void check_density(double density) {
+  Material m;
+  m.density = density;
+  check(m, "mass");
+}
+
+class LumpedMass final : public dynamics::InertiaTerm {
+ public:
+  LumpedMass(VecX masses, int block_id) : masses_(std::move(masses)), block_id_(block_id) {}
+  int block_id() const override { return block_id_; }
+  bool diagonal() const override { return true; }
+
+  void add_mass(const StateView& state, double scale, BorderedMatrix& A) const override {
+    const int first = place(state).first_node;
+    for (int i = 0; i < masses_.size(); ++i) A.body.add(A.body.slot(first + i, first + i), scale * masses_[i] * Mat3::Identity());
+  }
+  void apply(const StateView& state, const VecX& x, VecX& y) const override {
+    const int offset = place(state).u_offset;
+    for (int i = 0; i < masses_.size(); ++i) y.segment<3>(offset + 3 * i) += masses_[i] * x.segment<3>(offset + 3 * i);
+  }
+
+ private:
+  NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id_, static_cast<int>(masses_.size())); }
+  VecX masses_;
+  int block_id_;
+};
+
+/// Integral of rho N_a N_b over a tetrahedron = rho V / 20 (1 + delta_ab).
+class ConsistentMass final : public dynamics::InertiaTerm {
+ public:
+  ConsistentMass(const TetMesh& rest, double density, int block_id)
+      : elements_(make_rest_elements(rest, "mass")), density_(density), block_id_(block_id) {}
+  int block_id() const override { return block_id_; }
+  bool diagonal() const override { return false; }
+  void add_pattern(dynamics::PatternBuilder& pattern) const override {
+    add_element_pattern(elements_, pattern.first_node(block_id_), pattern);
+  }
+
+  void add_mass(const StateView& state, double scale, BorderedMatrix& A) const override {
+    scatter_.prepare(elements_, place(state).first_node, A.body);
+    for (std::size_t e = 0; e < elements_.volume.size(); ++e)
+      for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < 4; ++b) A.body.add(scatter_.slot(e, a, b), scale * entry(e, a == b) * Mat3::Identity());
+  }
+  void apply(const StateView& state, const VecX& x, VecX& y) const override {
+    const int offset = place(state).u_offset;
+    for (std::size_t e = 0; e < elements_.volume.size(); ++e) {
+      Vec3 sum = Vec3::Zero();
+      for (const auto& node : elements_.node) sum += x.segment<3>(offset + 3 * node[e]);
+      for (const auto& node : elements_.node)
+        y.segment<3>(offset + 3 * node[e]) += entry(e, false) * (sum + x.segment<3>(offset + 3 * node[e]));
+    }
+  }
+
+ private:
+  double entry(std::size_t e, bool diagonal) const { return density_ * elements_.volume[e] / 20.0 * (diagonal ? 2.0 : 1.0); }
+  NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id_, elements_.node_count()); }
+  RestElements elements_;
+  double density_;
+  int block_id_;
+  mutable ScatterMap scatter_;
+};
+
+}  // namespace
+
+VecX lumped_masses(const TetMesh& rest, double density) {
+  check_density(density);
+  const RestElements elements = make_rest_elements(rest, "mass");
+  return density * Eigen::Map<const VecX>(elements.nodal_volume.data(), elements.node_count());
+}
+
+std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, double density, int block_id) {
+  return std::make_shared<LumpedMass>(lumped_masses(rest, density), block_id);
+}
+
+std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, double density, int block_id) {
+  check_density(density);
+  return std::make_shared<ConsistentMass>(rest, density, block_id);
+}
+
+}  // namespace palpate::fem

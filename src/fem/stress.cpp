@@ -1,0 +1,39 @@
+#include "stress.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "palpate/core/polar.h"
+
+namespace palpate::fem {
+namespace {
+
+constexpr double kSmallestDet = 0.1;
+
+/// sqrt(3/2 dev : dev) of P F^T / J.  P F^T = R T S R^T with T = 2 mu (S - I) + lambda tr(S - I) I: the norm needs no rotation.
+double von_mises(const Mat3& F, const Lame& lame) {
+  const Mat3 S = polar_decomposition(F).S;
+  const Mat3 strain = S - Mat3::Identity();
+  const Mat3 cauchy = (2.0 * lame.mu * strain + lame.lambda * strain.trace() * Mat3::Identity()) * S / std::max(F.determinant(), kSmallestDet);
+  const Mat3 deviator = cauchy - cauchy.trace() / 3.0 * Mat3::Identity();
+  return std::sqrt(1.5 * deviator.squaredNorm());
+}
+
+}  // namespace
+
+VecX nodal_von_mises(const RestElements& elements, const double* x, const Lame& lame) {
+  VecX out = VecX::Zero(elements.node_count());
+  for (std::size_t e = 0; e < static_cast<std::size_t>(elements.count()); ++e) {
+    const double share = 0.25 * elements.volume[e] * von_mises(elements.edges(e, x) * elements.gradients(e), lame);
+    for (const auto& node : elements.node) out[node[e]] += share;
+  }
+  for (Eigen::Index i = 0; i < out.size(); ++i) {
+    const double volume = elements.nodal_volume[static_cast<std::size_t>(i)];
+    if (volume > 0.0) out[i] /= volume;
+  }
+  return out;
+}
+
+}  // namespace palpate::fem
