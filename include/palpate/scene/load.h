@@ -12,4 +12,7 @@ namespace palpate::scene {
 Description load(const std::string& path, const std::vector<std::string>& overrides = {});
 Description parse(const std::string& text, const std::string& path, const std::vector<std::string>& overrides = {});
 
+/// Every key that a scene may contain, dotted: "body.mesh.radius_m".
+std::vector<std::string> known_keys();
+
 }  // namespace palpate::scene

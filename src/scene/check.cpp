@@ -1,0 +1,131 @@
+#include "scene/check.h"
+
+#include <cmath>
+#include <set>
+
+#include "scene/reader.h"
+
+namespace palpate::scene {
+namespace {
+
+std::string at(const char* list, std::size_t i, const std::string& rest = "") {
+  return fmt::format("{}[{}]{}{}", list, i, rest.empty() || rest[0] == '[' ? "" : ".", rest);
+}
+
+/// Names become file names, column headers and keys of reports.
+void check_name(const Document& doc, const std::string& where, const std::string& name) {
+  for (const unsigned char c : name)
+    if (c < 0x20 || c == 0x7f || c == '/' || c == '\\' || c == '"')
+      refuse(place(doc, where), "", fmt::format("the name \"{}\" must not contain slashes, quotes or control characters", name));
+}
+
+void check_names(const Document& doc, const Description& d) {
+  check_name(doc, "scene.name", d.name);
+  std::set<std::string> seen;
+  const auto check_one = [&](const char* kind, std::size_t i, const std::string& name) {
+    const std::string key = at(kind, i, "name");
+    const std::string where = fmt::format("{} \"{}\"", kind, name);
+    check_name(doc, key, name);
+    if (name == "tool") refuse(place(doc, key), where, "name \"tool\" is kept for the tool; choose another");
+    if (!seen.insert(name).second) refuse(place(doc, key), where, fmt::format("name \"{}\" is taken; bodies and obstacles need names of their own", name));
+  };
+  for (std::size_t i = 0; i < d.bodies.size(); ++i) check_one("body", i, d.bodies[i].name);
+  for (std::size_t i = 0; i < d.obstacles.size(); ++i) check_one("obstacle", i, d.obstacles[i].name);
+}
+
+void check_keyframes(const Document& doc, const std::string& key, const std::string& where, const std::vector<KeyframeSpec>& frames) {
+  for (std::size_t i = 1; i < frames.size(); ++i)
+    if (frames[i].time_s <= frames[i - 1].time_s)
+      refuse(place(doc, fmt::format("{}[{}].time_s", key, i)), fmt::format("{}: keyframe[{}]", where, i),
+             fmt::format("time_s = {} must come after {}, the keyframe before; put keyframes in the order of time", frames[i].time_s, frames[i - 1].time_s));
+}
+
+template <class Boxed>
+void check_box(const Document& doc, const std::string& key, const std::string& where, const Boxed& spec) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (spec.box_min_m[axis] > spec.box_max_m[axis])
+      refuse(place(doc, key + ".box_max_m"), where,
+             fmt::format("box_max_m = {} must not be below box_min_m = {} along {}", spec.box_max_m[axis], spec.box_min_m[axis], "xyz"[axis]));
+}
+
+void check_bodies(const Document& doc, const Description& d) {
+  for (std::size_t i = 0; i < d.bodies.size(); ++i) {
+    const std::string where = fmt::format("body \"{}\"", d.bodies[i].name);
+    for (std::size_t j = 0; j < d.bodies[i].attachments.size(); ++j) {
+      const std::string key = at("body", i, at("attachment", j)), inner = fmt::format("{}: attachment[{}]", where, j);
+      check_box(doc, key, inner, d.bodies[i].attachments[j]);
+      check_keyframes(doc, key + ".keyframe", inner, d.bodies[i].attachments[j].keyframes);
+    }
+    for (std::size_t j = 0; j < d.bodies[i].loads.size(); ++j)
+      check_box(doc, at("body", i, at("load", j)), fmt::format("{}: load[{}]", where, j), d.bodies[i].loads[j]);
+  }
+}
+
+void check_tool(const Document& doc, const Description& d) {
+  if (d.tool && !d.device) refuse(place(doc, "tool"), "tool", "a tool needs a hand: add [device] with [[device.keyframe]]");
+  if (d.device && !d.tool) refuse(place(doc, "device"), "device", "a device needs something to move: add [tool], or remove [device]");
+  if (d.device && d.device->type == "script" && d.device->keyframes.empty())
+    refuse(place(doc, "device"), "device", "a scripted handle needs at least one [[device.keyframe]]");
+  if (d.device) check_keyframes(doc, "device.keyframe", "device", d.device->keyframes);
+  if (!d.tool) return;
+
+  const Vec3& inertia = d.tool->inertia_kg_m2;
+  if (d.tool->shape == "mesh" && inertia.isZero(0.0))
+    refuse(place(doc, "tool.inertia_kg_m2"), "tool", "inertia_kg_m2 is missing: shape = \"mesh\" has no inertia of its own");
+  const double largest = inertia.maxCoeff();
+  if (!inertia.isZero(0.0) && (inertia.minCoeff() <= 0.0 || 2.0 * largest > inertia.sum() * (1.0 + 1e-9)))
+    refuse(place(doc, "tool.inertia_kg_m2"), "tool",
+           fmt::format("inertia_kg_m2 = [{}, {}, {}] belongs to no rigid body: all must be positive and none larger than the other two together",
+                       inertia[0], inertia[1], inertia[2]));
+}
+
+/// Whether `whole` is a positive whole multiple of `part`, to rounding of decimal input.
+bool is_multiple(double whole, double part) {
+  const double ratio = whole / part, n = std::round(ratio);
+  return n >= 1.0 && std::abs(ratio - n) <= 1e-9 * n;
+}
+
+void check_period(const Document& doc, const std::string& key, const std::string& where, double period, double tick) {
+  if (is_multiple(period, tick)) return;
+  const double below = std::floor(period / tick), n = std::max(1.0, below);
+  refuse(place(doc, key), where, fmt::format("{} = {} must be a whole number of the tool's ticks of {} s; use {:.9g} or {:.9g}",
+                                             where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, tick, n * tick, (n + 1.0) * tick));
+}
+
+void check_exchange(const Document& doc, Description& d) {
+  CouplingSpec& c = d.coupling;
+  if (!given(doc, "exchange.contact_refresh_s")) c.contact_refresh_s = c.exchange_period_s;
+  if (d.tool) {
+    const bool own = given(doc, "exchange.exchange_period_s");
+    check_period(doc, own ? "exchange.exchange_period_s" : "tool.tick_s", "exchange", c.exchange_period_s, d.tool->tick_s);
+    for (std::size_t i = 0; i < d.compare.exchange_periods_s.size(); ++i)
+      check_period(doc, fmt::format("compare.exchange_periods_s[{}]", i), "compare", d.compare.exchange_periods_s[i], d.tool->tick_s);
+  } else if (!d.compare.exchange_periods_s.empty()) {
+    refuse(place(doc, "compare.exchange_periods_s"), "compare", "exchange_periods_s needs a tool: nothing is exchanged without one");
+  }
+  if (!is_multiple(c.exchange_period_s, c.contact_refresh_s))
+    refuse(place(doc, "exchange.contact_refresh_s"), "exchange",
+           fmt::format("contact_refresh_s = {} must be a whole fraction of exchange_period_s = {}; use {:.9g}", c.contact_refresh_s,
+                       c.exchange_period_s, c.exchange_period_s / std::max(1.0, std::ceil(c.exchange_period_s / c.contact_refresh_s - 1e-9))));
+}
+
+void check_compare(const Document& doc, const Description& d) {
+  for (std::size_t i = 0; i < d.compare.ladders.size(); ++i)
+    if (d.compare.ladders[i].values.empty())
+      refuse(place(doc, fmt::format("compare.ladder[{}]", i)), fmt::format("compare: ladder[{}]", i), "needs rungs: rtol = [...] or step_s = [...]");
+}
+
+}  // namespace
+
+void check(const Document& doc, Description& d) {
+  if (d.bodies.empty() && !d.tool) refuse(place(doc, "scene"), "", "there is nothing to simulate: add a [[body]], or a [tool] with a [device]");
+  check_names(doc, d);
+  check_meshes(doc, d);
+  check_bodies(doc, d);
+  check_tool(doc, d);
+  check_contacts(doc, d);
+  check_exchange(doc, d);
+  check_compare(doc, d);
+}
+
+}  // namespace palpate::scene

@@ -1,0 +1,14 @@
+#pragma once
+#include "palpate/scene/description.h"
+#include "scene/document.h"
+
+/// What one key alone cannot tell: names that refer to one another, keys that exclude or need one another, times that must divide.
+/// Each throws Error with the place of the key at fault.
+namespace palpate::scene {
+
+void check(const Document& document, Description& description);
+
+void check_meshes(const Document& document, const Description& description);
+void check_contacts(const Document& document, Description& description);  ///< also puts the soft body first in each pair
+
+}  // namespace palpate::scene

@@ -1,0 +1,92 @@
+#include <set>
+#include <utility>
+
+#include "scene/check.h"
+#include "scene/reader.h"
+
+namespace palpate::scene {
+namespace {
+
+/// What a contact may name.
+struct Sides {
+  Names bodies, obstacles;
+  bool tool = false;
+  bool is_body(const std::string& name) const { return contains(bodies, name); }
+  bool is_obstacle(const std::string& name) const { return contains(obstacles, name); }
+  bool known(const std::string& name) const { return is_body(name) || is_obstacle(name) || (tool && name == "tool"); }
+  Names all() const {
+    Names names = bodies;
+    names.insert(names.end(), obstacles.begin(), obstacles.end());
+    if (tool) names.push_back("tool");
+    return names;
+  }
+  static bool contains(const Names& names, const std::string& name) {
+    for (const auto& one : names)
+      if (one == name) return true;
+    return false;
+  }
+};
+
+void check_sides(const Document& doc, const std::string& key, const std::string& where, const Sides& sides, ContactSpec& c) {
+  int side = 0;
+  for (const std::string& name : {c.first, c.second}) {
+    const std::string at = place(doc, fmt::format("{}.between[{}]", key, side++));
+    if (sides.known(name)) continue;
+    if (name == "tool") refuse(at, where, "\"tool\" is named, but the scene has no [tool]");
+    refuse(at, where, fmt::format("nothing is called \"{}\"{}", name, suggestion(name, sides.all())));
+  }
+  const std::string at = place(doc, key + ".between");
+  if (c.first == c.second) refuse(at, where, "a thing does not touch itself here; name two");
+  if (!sides.is_body(c.first)) std::swap(c.first, c.second);
+  if (!sides.is_body(c.first)) refuse(at, where, "one of the two must be a soft body");
+  if (sides.is_body(c.second)) refuse(at, where, "contact between two soft bodies is not in this version; name a body and an obstacle, or a body and \"tool\"");
+}
+
+void check_method(const Document& doc, const std::string& key, const std::string& where, const Sides& sides, const Description& d, const ContactSpec& c) {
+  const bool obstacle = sides.is_obstacle(c.second);
+  if (c.method == "gpu" && obstacle)
+    refuse(place(doc, key + ".method"), where, "method = \"gpu\" is for the tool: an obstacle has exact gaps; use \"analytic\"");
+  if (c.method == "analytic" && !obstacle && d.tool->shape != "sphere")
+    refuse(place(doc, key + (given(doc, key + ".method") ? ".method" : "")), where,
+           "method = \"analytic\" needs a tool with shape = \"sphere\"; use method = \"gpu\" for a mesh");
+  if (c.method != "gpu" && given(doc, key + ".pixels"))
+    refuse(place(doc, key + ".pixels"), where, "pixels means nothing to method = \"analytic\"; remove it");
+  if (c.law == "kelvin_voigt" && given(doc, key + ".hunt_crossley_s_m"))
+    refuse(place(doc, key + ".hunt_crossley_s_m"), where, "hunt_crossley_s_m means nothing to law = \"kelvin_voigt\"; write law = \"hunt_crossley\"");
+  if (c.law == "hunt_crossley" && given(doc, key + ".damping_pa_s_m"))
+    refuse(place(doc, key + ".damping_pa_s_m"), where, "damping_pa_s_m means nothing to law = \"hunt_crossley\"; use hunt_crossley_s_m");
+}
+
+void check_obstacles(const Document& doc, Description& d) {
+  for (std::size_t i = 0; i < d.obstacles.size(); ++i) {
+    ObstacleSpec& o = d.obstacles[i];
+    const std::string key = fmt::format("obstacle[{}]", i), where = fmt::format("obstacle \"{}\"", o.name);
+    const bool plane = o.type == "plane";
+    const std::string idle = plane ? "radius_m" : "normal";
+    if (given(doc, key + "." + idle)) refuse(place(doc, key + "." + idle), where, fmt::format("{} means nothing to type = \"{}\"; remove it", idle, o.type));
+    if (!plane && !given(doc, key + ".radius_m")) refuse(place(doc, key), where, "radius_m is missing: type = \"sphere\" needs it");
+    if (plane && o.normal.norm() < 1e-12) refuse(place(doc, key + ".normal"), where, "normal = [0, 0, 0] has no direction; [0, 0, 1] is up");
+    if (plane) o.normal.normalize();
+  }
+}
+
+}  // namespace
+
+void check_contacts(const Document& doc, Description& d) {
+  check_obstacles(doc, d);
+  Sides sides;
+  for (const auto& body : d.bodies) sides.bodies.push_back(body.name);
+  for (const auto& obstacle : d.obstacles) sides.obstacles.push_back(obstacle.name);
+  sides.tool = d.tool.has_value();
+
+  std::set<std::pair<std::string, std::string>> seen;
+  for (std::size_t i = 0; i < d.contacts.size(); ++i) {
+    ContactSpec& c = d.contacts[i];
+    const std::string key = fmt::format("contact[{}]", i), where = fmt::format("contact between \"{}\" and \"{}\"", c.first, c.second);
+    check_sides(doc, key, where, sides, c);
+    check_method(doc, key, where, sides, d, c);
+    if (!seen.emplace(c.first, c.second).second) refuse(place(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
+  }
+}
+
+}  // namespace palpate::scene

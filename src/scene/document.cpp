@@ -1,0 +1,51 @@
+#include "scene/document.h"
+
+#include <sstream>
+
+#include "palpate/core/error.h"
+
+namespace palpate::scene {
+namespace {
+constexpr std::string_view kOverride = "--set ";
+
+/// The text that describes the scene as it runs: comments survive only where nothing was overridden.
+std::string effective_source(const toml::table& root, const std::string& text, const std::vector<std::string>& overrides) {
+  if (overrides.empty()) return text;
+  std::ostringstream out;
+  for (const std::string& one : overrides) out << "# " << kOverride << one << '\n';
+  out << toml::toml_formatter(root) << '\n';
+  return out.str();
+}
+}  // namespace
+
+Document parse_document(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+  Document document;
+  document.path = path.empty() ? "scene" : path;
+  try {
+    document.root = toml::parse(text, document.path);
+  } catch (const toml::parse_error& e) {
+    fail("{}: not valid TOML: {}", place(e.source()), e.description());
+  }
+  for (const std::string& one : overrides) apply_override(document.root, one);
+  document.source = effective_source(document.root, text, overrides);
+  return document;
+}
+
+std::string place(const toml::source_region& region) {
+  const std::string path = region.path ? *region.path : "scene";
+  if (path.starts_with(kOverride) || !region.begin) return path;
+  return fmt::format("{}:{}:{}", path, region.begin.line, region.begin.column);
+}
+
+std::string place(const Document& document, std::string at) {
+  for (;;) {
+    if (const auto found = toml::at_path(document.root, at)) return place(found.node()->source());
+    const std::size_t cut = at.find_last_of(".[");
+    if (cut == std::string::npos) return document.path;
+    at.resize(cut);
+  }
+}
+
+bool given(const Document& document, std::string_view at) { return static_cast<bool>(toml::at_path(document.root, at)); }
+
+}  // namespace palpate::scene

@@ -1,0 +1,13 @@
+#pragma once
+#include "palpate/scene/description.h"
+#include "scene/reader.h"
+
+/// Every key of a scene file, as data.  A field added to a spec gets one line here.
+namespace palpate::scene {
+
+const KeyTable<Description>& description_keys();  ///< the file itself
+const KeyTable<SoftBodySpec>& body_keys();        ///< [[body]]
+const KeyTable<MeshSpec>& mesh_keys();            ///< [body.mesh], [tool.mesh]
+const KeyTable<KeyframeSpec>& keyframe_keys();    ///< [[device.keyframe]], [[body.attachment.keyframe]]
+
+}  // namespace palpate::scene

@@ -1,0 +1,73 @@
+#include "scene/keys.h"
+
+namespace palpate::scene {
+namespace {
+
+const KeyTable<AttachmentSpec>& attachment_keys() {
+  static const KeyTable<AttachmentSpec> keys = {
+      required(vec3("box_min_m", &AttachmentSpec::box_min_m)),
+      required(vec3("box_max_m", &AttachmentSpec::box_max_m)),
+      text("axes", &AttachmentSpec::axes, {"x", "y", "z", "xy", "xz", "yz", "xyz"}),
+      tables("keyframe", &AttachmentSpec::keyframes, keyframe_keys()),
+  };
+  return keys;
+}
+
+const KeyTable<LoadSpec>& load_keys() {
+  static const KeyTable<LoadSpec> keys = {
+      required(vec3("box_min_m", &LoadSpec::box_min_m)),
+      required(vec3("box_max_m", &LoadSpec::box_max_m)),
+      required(vec3("force_n", &LoadSpec::force_n)),
+  };
+  return keys;
+}
+
+}  // namespace
+
+const KeyTable<MeshSpec>& mesh_keys() {
+  static const KeyTable<MeshSpec> keys = {
+      text("file", &MeshSpec::file),
+      text("generator", &MeshSpec::generator, {"box", "ball", "cylinder", "tet"}),
+      vec3("size_m", &MeshSpec::size_m, positive()),
+      number("radius_m", &MeshSpec::radius_m, positive()),
+      number("length_m", &MeshSpec::length_m, positive()),
+      number("element_size_m", &MeshSpec::element_size_m, positive()),
+      number("grading", &MeshSpec::grading, closed(0.05, 20.0, "1 is uniform, 2 makes elements in the middle twice as large as at the surface")),
+      number("scale", &MeshSpec::scale, positive("0.001 turns a file in millimetres into metres")),
+  };
+  return keys;
+}
+
+const KeyTable<KeyframeSpec>& keyframe_keys() {
+  static const KeyTable<KeyframeSpec> keys = {
+      required(number("time_s", &KeyframeSpec::time_s, at_least(0.0))),
+      vec3("position_m", &KeyframeSpec::position_m),
+      vec3("rotation_vector_rad", &KeyframeSpec::rotation_vector_rad),
+      text("interpolation", &KeyframeSpec::interpolation, {"minimum_jerk", "linear", "step"}),
+  };
+  return keys;
+}
+
+const KeyTable<SoftBodySpec>& body_keys() {
+  static const KeyTable<SoftBodySpec> keys = {
+      required(text("name", &SoftBodySpec::name)),
+      required(table("mesh", &SoftBodySpec::mesh, mesh_keys())),
+      vec3("position_m", &SoftBodySpec::position_m),
+      vec3("rotation_vector_rad", &SoftBodySpec::rotation_vector_rad),
+      vec3("velocity_m_s", &SoftBodySpec::velocity_m_s),
+      vec3("angular_velocity_rad_s", &SoftBodySpec::angular_velocity_rad_s),
+      required(number("youngs_modulus_pa", &SoftBodySpec::youngs_modulus_pa, positive("soft tissue has 1e3 to 1e5"))),
+      number("poissons_ratio", &SoftBodySpec::poissons_ratio, open(-1.0, 0.5, "use 0.49 for nearly incompressible tissue")),
+      number("density_kg_m3", &SoftBodySpec::density_kg_m3, positive("water and soft tissue have about 1000")),
+      number("mass_damping_per_s", &SoftBodySpec::mass_damping_per_s, at_least(0.0)),
+      number("stiffness_damping_s", &SoftBodySpec::stiffness_damping_s, at_least(0.0, "1e-3 damps lightly, 1e-2 strongly")),
+      text("mass", &SoftBodySpec::mass, {"lumped", "consistent"}),
+      text("tangent", &SoftBodySpec::tangent, {"exact", "projected", "warped"}),
+      boolean("full_damping_tangent", &SoftBodySpec::full_damping_tangent),
+      tables("attachment", &SoftBodySpec::attachments, attachment_keys()),
+      tables("load", &SoftBodySpec::loads, load_keys()),
+  };
+  return keys;
+}
+
+}  // namespace palpate::scene

@@ -1,0 +1,77 @@
+#include "palpate/scene/needs.h"
+
+#include <algorithm>
+
+#include "palpate/core/error.h"
+
+namespace palpate::scene {
+namespace {
+
+template <class List, class Predicate>
+int count_if(const List& list, Predicate predicate) {
+  return static_cast<int>(std::count_if(list.begin(), list.end(), predicate));
+}
+
+void add_body_needs(const Description& d, std::vector<Need>& out) {
+  int fixed = 0, driven = 0, loads = 0;
+  for (const auto& body : d.bodies) {
+    fixed += count_if(body.attachments, [](const auto& a) { return a.keyframes.empty(); });
+    driven += count_if(body.attachments, [](const auto& a) { return !a.keyframes.empty(); });
+    loads += static_cast<int>(body.loads.size());
+  }
+  const bool any = !d.bodies.empty();
+  const bool weight = any && !d.gravity_m_s2.isZero(0.0);
+  out.push_back({"fem", any, any ? fmt::format("{} soft {}", d.bodies.size(), d.bodies.size() == 1 ? "body" : "bodies") : "no [[body]]"});
+  out.push_back({"gravity", weight, weight ? "gravity_m_s2 is not zero" : "gravity_m_s2 is zero, or there is no body"});
+  out.push_back({"fixed nodes", fixed > 0, fixed > 0 ? fmt::format("{} [[body.attachment]] without keyframes", fixed) : "no [[body.attachment]] without keyframes"});
+  out.push_back({"driven nodes", driven > 0, driven > 0 ? fmt::format("{} [[body.attachment]] with keyframes", driven) : "no [[body.attachment.keyframe]]"});
+  out.push_back({"loads", loads > 0, loads > 0 ? fmt::format("{} [[body.load]]", loads) : "no [[body.load]]"});
+  // Every integrator of this version is implicit; an explicit one will leave these out.
+  const std::string implicit = fmt::format("integrator \"{}\" is implicit", d.integrator.name);
+  out.push_back({"tangent", any, any ? implicit : "no [[body]]"});
+  out.push_back({"factorisation", any, any ? fmt::format("{}; linear solver \"{}\"", implicit, d.integrator.linear_solver) : "no [[body]]"});
+}
+
+void add_contact_needs(const Description& d, std::vector<Need>& out) {
+  const bool any = !d.contacts.empty();
+  const int gpu = count_if(d.contacts, [](const auto& c) { return c.method == "gpu"; });
+  const int rubbing = count_if(d.contacts, [](const auto& c) { return c.friction > 0.0; });
+  const std::string no_gpu = any ? "every contact has an analytic gap" : "no [[contact]]";
+  out.push_back({"contact", any, any ? fmt::format("{} [[contact]]", d.contacts.size()) : "no [[contact]]"});
+  out.push_back({"friction", rubbing > 0, rubbing > 0 ? fmt::format("{} [[contact]] with friction > 0", rubbing) : "no contact with friction > 0"});
+  out.push_back({"proxy", gpu > 0, gpu > 0 ? fmt::format("{} contact with method \"gpu\" needs its region", gpu) : no_gpu});
+  out.push_back({"broad phase", gpu > 1, gpu > 1 ? fmt::format("{} pairs in image space", gpu) : "fewer than two pairs in image space"});
+  out.push_back({"gl", gpu > 0, gpu > 0 ? "method \"gpu\" rasterises" : no_gpu + "; pictures only on request"});
+}
+
+void add_haptic_needs(const Description& d, std::vector<Need>& out) {
+  const bool tool = d.tool.has_value();
+  out.push_back({"tool", tool, tool ? fmt::format("[tool], {} under a virtual coupling", d.tool->shape) : "no [tool]; no Simbody system is made"});
+  out.push_back({"device", d.device.has_value(), d.device ? fmt::format("[device], type \"{}\"", d.device->type) : "no [device]"});
+  const bool two_rates = tool && !d.bodies.empty();
+  out.push_back({"exchange", two_rates, two_rates ? fmt::format("tool ticks every {} s, exchange every {} s", d.tool->tick_s, d.coupling.exchange_period_s)
+                                                  : "one rate only"});
+  out.push_back({"exchange thread", false, "time is virtual: the two rates take turns in one thread"});
+}
+
+void add_output_needs(const Description& d, std::vector<Need>& out) {
+  const bool states = d.record && d.record->states, forces = d.record && d.record->forces && d.tool;
+  const std::string none = d.record ? "" : "no [record]";
+  out.push_back({"run file", states, states ? fmt::format("[record] states, every {} s", d.record->state_period_s) : none.empty() ? "[record] states = false" : none});
+  out.push_back({"force file", forces, forces ? "[record] forces, every tick" : !none.empty() ? none : d.tool ? "[record] forces = false" : "no [tool]"});
+  const std::size_t ladders = d.compare.ladders.size();
+  out.push_back({"compare", ladders > 0, ladders > 0 ? fmt::format("{} [[compare.ladder]], for `palpate compare` only", ladders) : "no [[compare.ladder]]"});
+}
+
+}  // namespace
+
+std::vector<Need> needs(const Description& description) {
+  std::vector<Need> out;
+  add_body_needs(description, out);
+  add_contact_needs(description, out);
+  add_haptic_needs(description, out);
+  add_output_needs(description, out);
+  return out;
+}
+
+}  // namespace palpate::scene

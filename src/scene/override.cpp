@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <charconv>
+
+#include "palpate/core/error.h"
+#include "scene/document.h"
+
+namespace palpate::scene {
+namespace {
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return "";
+  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
+}
+
+std::vector<std::string> split(const std::string& path) {
+  std::vector<std::string> parts(1);
+  for (const char c : path) {
+    if (c == '.') parts.emplace_back();
+    else parts.back() += c;
+  }
+  return parts;
+}
+
+bool is_bare_word(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+}
+
+/// The value after `=`.  A bare word is a string, because a shell has eaten the quotes: integrator.name=cvode-bdf.
+toml::table parse_value(const std::string& value, const std::string& from) {
+  try {
+    toml::table parsed = toml::parse("value = " + value, from);
+    if (parsed.size() == 1) return parsed;
+  } catch (const toml::parse_error&) {
+    if (is_bare_word(value)) return toml::parse("value = \"" + value + "\"", from);
+  }
+  fail("{}: `{}` is not one TOML value; write a number, true, false, a word, [1, 2, 3] or \"text\"", from, value);
+}
+
+std::size_t array_index(const toml::array& array, const std::string& part, const std::string& from) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+  if (error != std::errc{} || end != part.data() + part.size() || index >= array.size())
+    fail("{}: \"{}\" must be an index from 0 to {}", from, part, static_cast<long>(array.size()) - 1);
+  return index;
+}
+
+std::vector<std::string> keys_of(const toml::table& table) {
+  std::vector<std::string> keys;
+  for (const auto& [key, node] : table) keys.emplace_back(key.str());
+  return keys;
+}
+
+/// The node called `part` inside `node`; a missing table is made (the reader refuses it later if no such table exists).
+toml::node& descend(toml::node& node, const std::string& part, const std::string& next, const toml::source_region& region) {
+  const std::string& from = *region.path;
+  if (toml::array* array = node.as_array()) return *array->get(array_index(*array, part, from));
+  toml::table* table = node.as_table();
+  if (!table) fail("{}: \"{}\" stands inside a plain value", from, part);
+  if (!table->contains(part)) {
+    const bool index_follows = !next.empty() && std::all_of(next.begin(), next.end(), [](unsigned char c) { return std::isdigit(c); });
+    if (part.empty() || index_follows) fail("{}: the scene has no \"{}\"{}", from, part, suggestion(part, keys_of(*table)));
+    table->insert(toml::key(part, region), toml::table{});
+  }
+  return *table->get(part);
+}
+
+void assign(toml::node& node, const std::string& part, toml::node& value, const toml::source_region& region) {
+  value.visit([&](auto& typed) {  // moved, not copied: only a moved node keeps its place
+    if (toml::array* array = node.as_array()) {
+      const std::size_t index = array_index(*array, part, *region.path);
+      array->erase(array->cbegin() + static_cast<std::ptrdiff_t>(index));
+      array->insert(array->cbegin() + static_cast<std::ptrdiff_t>(index), std::move(typed));
+    } else if (toml::table* table = node.as_table(); table && !part.empty()) {
+      table->erase(part);
+      table->insert(toml::key(part, region), std::move(typed));
+    } else {
+      fail("{}: \"{}\" stands inside a plain value", *region.path, part);
+    }
+  });
+}
+
+}  // namespace
+
+void apply_override(toml::table& root, const std::string& text) {
+  const std::string from = "--set " + text;
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || trimmed(text.substr(0, equals)).empty() || trimmed(text.substr(equals + 1)).empty())
+    fail("{}: must be PATH=VALUE, as in body.0.youngs_modulus_pa=1e5", from);
+  const std::vector<std::string> parts = split(trimmed(text.substr(0, equals)));
+  toml::table parsed = parse_value(trimmed(text.substr(equals + 1)), from);
+  toml::node& value = *parsed.get("value");
+  const toml::source_region region = value.source();
+
+  toml::node* node = &root;
+  for (std::size_t i = 0; i + 1 < parts.size(); ++i) node = &descend(*node, parts[i], parts[i + 1], region);
+  assign(*node, parts.back(), value, region);
+}
+
+}  // namespace palpate::scene
