@@ -1,0 +1,54 @@
+#include "palpate/dynamics/matrix.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "palpate/core/error.h"
+
+using namespace palpate;
+using namespace palpate::dynamics;
+
+namespace {
+
+BlockSparse chain(int nodes) {
+  PatternBuilder builder(nodes);
+  for (int i = 0; i + 1 < nodes; ++i) builder.add_pair(i, i + 1);
+  return builder.build();
+}
+
+TEST(PatternBuilder, SortsDeduplicatesAndKeepsTheDiagonal) {
+  PatternBuilder builder(4);
+  const int clique[3] = {3, 0, 1};
+  builder.add_clique(clique, 3);
+  builder.add_pair(0, 1);
+  const BlockSparse m = builder.build();
+  EXPECT_EQ(m.row_start(), (std::vector<int>{0, 3, 6, 7, 10}));
+  EXPECT_EQ(m.columns(), (std::vector<int>{0, 1, 3, 0, 1, 3, 2, 0, 1, 3}));
+  EXPECT_EQ(m.slot(2, 2), 6);
+  EXPECT_EQ(m.slot(2, 3), -1);
+  EXPECT_THROW(builder.add_pair(0, 4), InternalError);
+}
+
+TEST(BlockSparse, EveryPatternHasAVersionOfItsOwn) { EXPECT_NE(chain(3).pattern_version(), chain(3).pattern_version()); }
+
+TEST(BorderedMatrix, ProductAgreesWithTheDenseMatrix) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  BorderedMatrix A;
+  A.body = chain(5);
+  for (double& v : A.body.values()) v = normal(random);
+  A.right = MatX::NullaryExpr(15, 6, [&] { return normal(random); });
+  A.bottom = MatX::NullaryExpr(6, 15, [&] { return normal(random); });
+  A.corner = MatX::NullaryExpr(6, 6, [&] { return normal(random); });
+  const VecX x = VecX::NullaryExpr(21, [&] { return normal(random); });
+  VecX y;
+  A.multiply(x, y);
+  EXPECT_LT((y - A.to_dense() * x).norm(), 1e-13);
+  VecX transposed = VecX::Zero(15);
+  A.body.multiply_transposed_add(x.data(), transposed.data());
+  EXPECT_LT((transposed - A.to_dense().topLeftCorner(15, 15).transpose() * x.head(15)).norm(), 1e-13);
+  EXPECT_THROW(A.multiply(x.head(20), y), InternalError);
+}
+
+}  // namespace
