@@ -1,0 +1,54 @@
+#include "palpate/loop/registries.h"
+
+#include "palpate/device/handle.h"
+#include "palpate/integrate/integrators.h"
+#ifdef PALPATE_HAS_TOOL
+#include "palpate/tool/tool.h"
+#endif
+
+namespace palpate::loop {
+namespace {
+
+template <class Make>
+std::vector<Choice> choices(const Registry<Make>& registry) {
+  std::vector<Choice> out;
+  for (const auto& entry : registry) out.push_back({entry.name, entry.summary, entry.order});
+  return out;
+}
+
+std::vector<Choice> tool_choices() {
+  std::vector<Choice> out;
+#ifdef PALPATE_HAS_TOOL
+  for (const tool::ToolIntegratorInfo& info : tool::tool_integrators()) out.push_back({info.name, info.summary, info.order});
+#endif
+  return out;
+}
+
+std::vector<Choice> part_choices() {
+#ifdef PALPATE_HAS_TOOL
+  const std::string tool = "compiled in";
+#else
+  const std::string tool = "not compiled in; configure with -DPALPATE_WITH_TOOL=ON (package libsimbody-dev)";
+#endif
+#ifdef PALPATE_HAS_GL
+  const std::string gl = "compiled in";
+#else
+  const std::string gl = "not compiled in; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev, libccd-dev)";
+#endif
+  return {{"bodies", "soft bodies of corotational tetrahedra: always there"},
+          {"contact", "penalty contact with analytic obstacles: always there"},
+          {"tool", "rigid tool under a virtual coupling (Simbody): " + tool},
+          {"gl", "contact in image space, and pictures (EGL, OpenGL): " + gl}};
+}
+
+}  // namespace
+
+std::vector<ChoiceList> registries() {
+  return {{"integrators", "of soft bodies: [integrator] name, --integrator", choices(integrate::stepper_registry())},
+          {"linear-solvers", "of implicit integrators: [integrator] linear_solver", choices(integrate::linear_solver_registry())},
+          {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_choices()},
+          {"devices", "what the hand holds: [device] type", choices(device::handle_registry())},
+          {"parts", "optional parts of this build", part_choices()}};
+}
+
+}  // namespace palpate::loop
