@@ -1,0 +1,27 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "palpate/loop/run.h"
+
+namespace palpate::loop {
+
+/// Keeps what the scene's [record] table asks for, in one folder: states.h5 (VTKHDF time series of all bodies and the tool), force.csv (a line a tick).
+/// Every period on disk is complete: an interrupted run leaves valid files.  A scene without [record] gets none of it.
+class Recorder : public Observer {
+ public:
+  /// Creates the folder and the files.  @throws Error when they cannot be written
+  Recorder(const World& world, const std::string& folder);
+  ~Recorder() override;
+  void period(World& world, double t) override;
+  void tick(const TickRecord& tick) override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// summary.json (versions, CPU, options, counts, timings) and scene.toml in `folder`.
+void write_summary(const World& world, const RunResult& result, double assemble_s, const std::string& folder);
+
+}  // namespace palpate::loop
