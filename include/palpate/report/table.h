@@ -1,0 +1,40 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate::report {
+
+/// Text cells under named columns: one CSV file, or one table of the page.  Every row has as many cells as there are headers.
+struct Table {
+  std::vector<std::string> headers;
+  std::vector<std::vector<std::string>> rows;
+
+  bool has(std::string_view header) const;
+  /// Index of a column; throws Error naming `source` and the nearest known column.
+  std::size_t column(std::string_view header) const;
+  /// A whole column as numbers; an empty or non-numeric cell is NaN.
+  std::vector<double> numbers(std::string_view header) const;
+
+  std::string source;  ///< where it came from, for messages
+};
+
+/// Reads a CSV file (RFC 4180: quoted cells, doubled quotes, LF or CRLF; lines that begin with # are comments).
+/// Throws Error with file and line for a row that is longer or shorter than the header, and for a quote that is never closed.
+Table read_csv(const std::filesystem::path& path);
+
+/// The number in a cell, locale-free; NaN when the cell is not exactly one number.
+double to_number(std::string_view cell);
+
+/// At most three significant digits, as short as they come: 0.0123, 12.3, 4.56e-07; "-" for NaN.
+std::string short_number(double value);
+
+/// Aligned text for the terminal: two blanks between columns, a rule under the headers, numbers to the right, words to the left.
+/// Width is counted in code points, so that Greek letters and dashes do not shift the columns.
+std::string format_table(const std::vector<std::string>& headers, const std::vector<std::vector<std::string>>& rows);
+
+/// True when every cell that is neither empty nor "-" is a number, and there is at least one: such a column is set to the right.
+bool is_numeric_column(const std::vector<std::vector<std::string>>& rows, std::size_t column);
+
+}  // namespace palpate::report

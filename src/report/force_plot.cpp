@@ -1,0 +1,44 @@
+#include "palpate/report/force_plot.h"
+
+#include <cmath>
+
+#include "palpate/core/error.h"
+
+namespace palpate::report {
+namespace {
+
+/// Three components named PREFIX_x_UNIT ... and their magnitude, over time_s.
+Plot vector_plot(const Table& table, const std::string& prefix, const std::string& unit, const std::string& y_label, double limit,
+                 const std::string& unit_text) {
+  const std::vector<double> time = table.numbers("time_s");
+  Plot plot;
+  plot.x_label = "time [s]";
+  plot.y_label = y_label;
+  std::vector<double> square(time.size(), 0.0);
+  for (const char* axis : {"x", "y", "z"}) {
+    const std::vector<double> component = table.numbers(fmt::format("{}_{}_{}", prefix, axis, unit));
+    for (std::size_t i = 0; i < square.size(); ++i) square[i] += component[i] * component[i];
+    plot.series.push_back({.name = axis, .x = time, .y = component});
+  }
+  for (double& s : square) s = std::sqrt(s);
+  plot.series.push_back({.name = "magnitude", .x = time, .y = std::move(square), .colour = "ink"});
+  if (limit > 0.0) plot.levels.push_back({limit, fmt::format("device limit {:g} {}", limit, unit_text)});
+  return plot;
+}
+
+/// force.csv of a run names the device's columns device_force_*; a plain force_* is read too.
+std::string prefix_of(const Table& table, const std::string& what, const std::string& unit) {
+  return table.has(fmt::format("device_{}_x_{}", what, unit)) ? "device_" + what : what;
+}
+
+}  // namespace
+
+Plot force_plot(const Table& force, double limit_n) {
+  return vector_plot(force, prefix_of(force, "force", "n"), "n", "force on the hand [N]", limit_n, "N");
+}
+
+Plot torque_plot(const Table& force, double limit_n_m) {
+  return vector_plot(force, prefix_of(force, "torque", "n_m"), "n_m", "torque on the hand [N m]", limit_n_m, "N m");
+}
+
+}  // namespace palpate::report

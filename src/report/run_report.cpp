@@ -1,0 +1,58 @@
+#include "palpate/report/run_report.h"
+
+#include <fstream>
+#include <iterator>
+
+#include "palpate/core/error.h"
+#include "sections.h"
+
+namespace palpate::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+ReferenceError read_reference(const fs::path& path) {
+  if (!fs::exists(path)) return {};
+  const Json json = read_json(path);
+  return {number_at(json, "position_error_rel_l2"), number_at(json, "force_error_rms_n"), number_at(json, "torque_error_rms_n_m"), text_at(json, "description")};
+}
+
+/// The scene as it was run: the file beside the results, else the text kept in summary.json.
+std::string scene_source(const fs::path& dir, const Json& summary) {
+  std::ifstream in(dir / "scene.toml", std::ios::binary);
+  if (in) return {std::istreambuf_iterator<char>(in), {}};
+  return text_at(summary, "scene_source");
+}
+
+bool holds_results(const fs::path& dir) {
+  for (const char* name : {"summary.json", "force.csv", "compare.csv", "exchange.csv", "validation.json"})
+    if (fs::exists(dir / name)) return true;
+  return false;
+}
+
+}  // namespace
+
+fs::path write_run_report(const fs::path& dir) {
+  if (!fs::is_directory(dir)) fail("{}: is not a directory; give the one that a run wrote", dir.string());
+  if (!holds_results(dir))
+    fail("{}: holds no results to report (none of summary.json, force.csv, compare.csv, exchange.csv, validation.json); give the directory that a run wrote", dir.string());
+  const auto has = [&](const char* name) { return fs::exists(dir / name); };
+  const Json summary = has("summary.json") ? read_json(dir / "summary.json") : Json::object();
+
+  const std::string scene = text_at(summary, "scene");
+  Page page(text_at(summary, "title", scene.empty() ? "palpate" : "palpate: " + scene));
+  add_pictures(page, summary, dir);
+  if (has("force.csv")) add_forces(page, summary, read_csv(dir / "force.csv"));
+  if (has("compare.csv")) add_comparison(page, read_csv(dir / "compare.csv"), read_reference(dir / "reference.json"));
+  if (has("exchange.csv")) add_exchange(page, read_csv(dir / "exchange.csv"));
+  if (has("validation.json")) add_validation(page, read_json(dir / "validation.json"));
+  add_run(page, summary);
+  add_parts(page, summary);
+  add_provenance(page, summary);
+  if (const std::string source = scene_source(dir, summary); !source.empty()) page.add_heading("The scene").add_code(source);
+  const fs::path path = dir / "report.html";
+  write(page, path);
+  return path;
+}
+
+}  // namespace palpate::report

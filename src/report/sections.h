@@ -1,0 +1,25 @@
+#pragma once
+#include <filesystem>
+
+#include "json.h"
+#include "palpate/report/page.h"
+#include "palpate/report/plot.h"
+#include "palpate/report/table.h"
+#include "palpate/report/work_precision.h"
+
+/// The sections of a run's report, each from its own file or object.  A section with nothing to say adds nothing.
+namespace palpate::report {
+
+/// The plot as a figure, or, when it cannot be drawn, a paragraph with the reason: a page without one figure is better than no page.
+void add_plot(Page& page, const Plot& plot, const std::string& caption);
+
+void add_run(Page& page, const Json& summary);
+void add_pictures(Page& page, const Json& summary, const std::filesystem::path& dir);
+void add_forces(Page& page, const Json& summary, const Table& force);
+void add_comparison(Page& page, const Table& compare, const ReferenceError& reference);
+void add_exchange(Page& page, const Table& exchange);
+void add_validation(Page& page, const Json& validation);
+void add_parts(Page& page, const Json& summary);
+void add_provenance(Page& page, const Json& summary);
+
+}  // namespace palpate::report

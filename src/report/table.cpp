@@ -1,0 +1,94 @@
+#include "palpate/report/table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "palpate/core/error.h"
+
+namespace palpate::report {
+
+bool Table::has(std::string_view header) const { return std::find(headers.begin(), headers.end(), header) != headers.end(); }
+
+std::size_t Table::column(std::string_view header) const {
+  const auto it = std::find(headers.begin(), headers.end(), header);
+  if (it == headers.end()) fail("{}: has no column \"{}\"{}", source.empty() ? "table" : source, header, suggestion(header, headers));
+  return static_cast<std::size_t>(it - headers.begin());
+}
+
+std::vector<double> Table::numbers(std::string_view header) const {
+  const std::size_t c = column(header);
+  std::vector<double> out;
+  out.reserve(rows.size());
+  for (const auto& row : rows) out.push_back(to_number(row[c]));
+  return out;
+}
+
+double to_number(std::string_view cell) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc{} || end != cell.data() + cell.size()) return std::numeric_limits<double>::quiet_NaN();
+  return value;
+}
+
+std::string short_number(double value) { return std::isnan(value) ? "-" : fmt::format("{:.3g}", value); }
+
+bool is_numeric_column(const std::vector<std::vector<std::string>>& rows, std::size_t column) {
+  bool any = false;
+  for (const auto& row : rows) {
+    const std::string& cell = row[column];
+    if (cell.empty() || cell == "-" || cell == "nan") continue;
+    if (std::isnan(to_number(cell))) return false;
+    any = true;
+  }
+  return any;
+}
+
+namespace {
+
+/// Code points of a UTF-8 text: every byte but continuation bytes (10xxxxxx).
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+void append_padded(std::string& line, const std::string& cell, std::size_t width, bool to_the_right) {
+  const std::string blanks(width - width_of(cell), ' ');
+  line += to_the_right ? blanks + cell : cell + blanks;
+}
+
+/// A line never ends in blanks: a terminal that is one column too narrow would otherwise show an empty line after each.
+std::string without_trailing_blanks(std::string line) {
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
+}  // namespace
+
+std::string format_table(const std::vector<std::string>& headers, const std::vector<std::vector<std::string>>& rows) {
+  const std::size_t columns = headers.size();
+  std::vector<std::size_t> widths(columns);
+  for (std::size_t c = 0; c < columns; ++c) widths[c] = width_of(headers[c]);
+  for (const auto& row : rows) {
+    PALPATE_CHECK(row.size() == columns, "a row of {} cells under {} headers", row.size(), columns);
+    for (std::size_t c = 0; c < columns; ++c) widths[c] = std::max(widths[c], width_of(row[c]));
+  }
+  std::vector<bool> right(columns);
+  for (std::size_t c = 0; c < columns; ++c) right[c] = is_numeric_column(rows, c);
+
+  const auto line_of = [&](const std::vector<std::string>& cells) {
+    std::string line;
+    for (std::size_t c = 0; c < columns; ++c) {
+      if (c > 0) line += "  ";
+      append_padded(line, cells[c], widths[c], right[c]);
+    }
+    return without_trailing_blanks(line);
+  };
+  std::string text = line_of(headers);
+  for (std::size_t c = 0; c < columns; ++c) text += (c > 0 ? "  " : "") + std::string(widths[c], '-');
+  text += "\n";
+  for (const auto& row : rows) text += line_of(row);
+  return text;
+}
+
+}  // namespace palpate::report

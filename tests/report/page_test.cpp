@@ -1,0 +1,80 @@
+#include "palpate/report/page.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "palpate/core/error.h"
+#include "well_formed.h"
+
+using namespace palpate;
+
+namespace {
+
+constexpr const char* kNasty = "<script>alert(\"x\")</script> & 'y'";
+constexpr const char* kNastyEscaped = "&lt;script&gt;alert(&quot;x&quot;)&lt;/script&gt; &amp; &#39;y&#39;";
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + what.size())) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST(Page, EscapesEverythingThatIsGiven) {
+  report::Page page(kNasty);
+  page.add_heading(kNasty).add_paragraph(kNasty).add_table({kNasty}, {{kNasty}}, kNasty).add_facts({{kNasty, kNasty}}).add_code(kNasty);
+  const std::string html = page.html();
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  EXPECT_EQ(count(html, kNastyEscaped), 10u);  // the title twice; heading, paragraph; header, cell, caption; name, value; code
+  EXPECT_EQ(well_formed_problem(html), "");
+}
+
+TEST(Page, ReplacesControlCharacters) { EXPECT_EQ(report::escape_html(std::string("a\x01") + "b\n"), "a\xEF\xBF\xBD" "b\n"); }
+
+TEST(Page, SetsColumnsOfNumbersToTheRight) {
+  report::Page page("t");
+  page.add_table({"name", "value"}, {{"a", "1.5"}, {"b", "-"}});
+  EXPECT_NE(page.html().find("<td>a</td><td class=\"n\">1.5</td>"), std::string::npos);
+}
+
+TEST(Page, MakesIdsUniqueAndTakesBlackFromThePage) {
+  const std::string svg = "<?xml version=\"1.0\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">"
+                          "<path id='p' fill=\"black\"/><use xlink:href='#p'/></svg>";
+  report::Page page("t");
+  page.add_svg(svg, "one").add_svg(svg, "two");
+  const std::string html = page.html();
+  EXPECT_EQ(count(html, "id='f1-p'"), 1u);
+  EXPECT_EQ(count(html, "href='#f2-p'"), 1u);
+  EXPECT_EQ(html.find("http"), std::string::npos);
+  EXPECT_EQ(count(html, "fill=\"currentColor\""), 2u);
+  EXPECT_EQ(well_formed_problem(html), "");
+  EXPECT_THROW(page.add_svg("no svg", ""), Error);
+}
+
+TEST(Page, EmbedsAPngAndRefusesWhatIsNone) {
+  const auto png = std::filesystem::path(testing::TempDir()) / "tiny.png";
+  std::ofstream(png, std::ios::binary) << "\x89PNG\r\n\x1a\n";
+  report::Page page("t");
+  page.add_png(png, "a picture");
+  // RFC 4648 of 89 50 4e 47 0d 0a 1a 0a
+  EXPECT_NE(page.html().find("src=\"data:image/png;base64,iVBORw0KGgo=\""), std::string::npos);
+  std::ofstream(png, std::ios::binary) << "GIF89a";
+  EXPECT_THROW(page.add_png(png, ""), Error);
+  EXPECT_THROW(page.add_png("/nowhere.png", ""), Error);
+}
+
+TEST(Page, IsWrittenWholeOrNotAtAll) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "page.html";
+  report::write(report::Page("t"), path);
+  EXPECT_TRUE(std::filesystem::exists(path));
+  EXPECT_FALSE(std::filesystem::exists(path.string() + ".part"));
+  try {
+    report::write(report::Page("t"), "/nowhere/page.html");
+    FAIL() << "a folder that is not there was written to";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("/nowhere/page.html: the report cannot be written"), std::string::npos);
+  }
+}

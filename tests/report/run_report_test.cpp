@@ -1,0 +1,108 @@
+#include "palpate/report/run_report.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "palpate/core/error.h"
+#include "palpate/report/work_precision.h"
+#include "well_formed.h"
+
+using namespace palpate;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path fresh_dir(const std::string& name) {
+  const fs::path dir = fs::path(testing::TempDir()) / name;
+  fs::remove_all(dir);
+  fs::create_directories(dir);
+  return dir;
+}
+
+void put(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+std::string read(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string joined(const std::vector<std::string>& cells) {
+  std::string line;
+  for (const auto& cell : cells) line += (line.empty() ? "" : ",") + cell;
+  return line + "\n";
+}
+
+/// Every file that a report is made from, small.
+fs::path full_dir() {
+  const fs::path dir = fresh_dir("full_report");
+  put(dir / "summary.json", R"({"scene": "press <ball>", "duration_s": 1.5, "in_use": ["fem"], "left_out": {"proxy": "one body"},
+      "device": {"max_force_n": 2.5}, "versions": {"palpate": "0.1.0"}, "commit": "abc"})");
+  put(dir / "scene.toml", "name = \"press <ball>\" # a & b\n");
+  put(dir / "force.csv", "time_s,device_force_x_n,device_force_y_n,device_force_z_n\n0,0,0,0\n0.001,0,0,1\n0.002,0,0,2\n");
+  std::string compare = joined(report::compare_columns());
+  for (const char* line : {"1e-3,1e-3,1", "1e-4,1e-4,2", "1e-5,1e-5,4"}) {
+    const std::string s = line;
+    const auto a = s.find(','), b = s.rfind(',');
+    compare += "press,cvode_<bdf>,rtol," + s.substr(0, a) + "," + s.substr(a + 1, b - a - 1) + ",,,,,,," + s.substr(b + 1) + ",1,4,10,2,3,10,5,9,ok,false\n";
+  }
+  put(dir / "compare.csv", compare);
+  put(dir / "reference.json", R"({"position_error_rel_l2": 1e-6, "force_error_rms_n": null, "torque_error_rms_n_m": null, "description": "cvode-bdf at 1e-9"})");
+  put(dir / "exchange.csv", joined(report::exchange_columns()) + "0.02,2e-2,,,1\n0.01,1e-2,,,2\n0.005,5e-3,,,4\n");
+  put(dir / "validation.json", R"({"cases": [{"name": "patch-test", "measurements": [
+      {"quantity": "stress [Pa]", "computed": 1, "exact": 1, "error": 0, "bar": 1e-6, "order": null, "passed": true},
+      {"quantity": "broken [m]", "computed": 2, "exact": 1, "error": 1, "bar": 1e-6, "order": null, "passed": false}]}]})");
+  put(dir / "picture-of-it.png", "\x89PNG\r\n\x1a\n");
+  return dir;
+}
+
+}  // namespace
+
+TEST(RunReport, HoldsEverySectionAndNothingFromOutside) {
+  const std::string html = read(report::write_run_report(full_dir()));
+  EXPECT_EQ(well_formed_problem(html), "");
+  for (const char* text : {"palpate: press &lt;ball&gt;", "Picture of it", "Force on the hand", "device limit 2.5 N", "Error against run time", "cvode_&lt;bdf&gt;",
+                           "Reference: cvode-bdf at 1e-9", "the reference's own error", "Cheapest for a wanted error", "Fitted order", "1.00 (3 points)",
+                           "Error of the exchange period", "fitted order 1.00", "patch-test", "FAIL", "1 of 2 measurements FAIL", "left out", "one body", "Provenance", "abc",
+                           "# a &amp; b"})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  for (const char* outside : {"http:", "https:", "src=\"/", "src=\"file", "@import", "url(", "<link", "<script"})
+    EXPECT_EQ(html.find(outside), std::string::npos) << outside;
+  EXPECT_EQ(html.find("Figure not drawn"), std::string::npos);
+}
+
+TEST(RunReport, LeavesOutSectionsWithoutAFile) {
+  const fs::path dir = fresh_dir("thin_report");
+  put(dir / "summary.json", R"({"scene": "one-tet"})");
+  const std::string html = read(report::write_run_report(dir));
+  EXPECT_NE(html.find("palpate: one-tet"), std::string::npos);
+  for (const char* text : {"Force on the hand", "Error against run time", "Validation", "Provenance"}) EXPECT_EQ(html.find(text), std::string::npos) << text;
+}
+
+TEST(RunReport, GivesTheReasonInPlaceOfAFigureThatCannotBeDrawn) {
+  const fs::path dir = fresh_dir("no_figure_report");
+  put(dir / "force.csv", "time_s,device_force_x_n,device_force_y_n,device_force_z_n\n");
+  EXPECT_NE(read(report::write_run_report(dir)).find("Figure not drawn"), std::string::npos);
+}
+
+TEST(RunReport, RefusesADirectoryWithoutResults) {
+  try {
+    report::write_run_report(fresh_dir("empty_report"));
+    FAIL() << "an empty directory was accepted";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("holds no results to report"), std::string::npos);
+  }
+  EXPECT_THROW(report::write_run_report("/nowhere"), Error);
+}
+
+TEST(RunReport, NamesAFileThatIsBroken) {
+  const fs::path dir = fresh_dir("broken_report");
+  put(dir / "summary.json", "{\"scene\": ");
+  try {
+    report::write_run_report(dir);
+    FAIL() << "broken JSON was accepted";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("summary.json: is not valid JSON"), std::string::npos);
+  }
+}

@@ -1,0 +1,88 @@
+#include "palpate/report/table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "palpate/core/error.h"
+
+using namespace palpate;
+
+namespace {
+
+std::filesystem::path file_with(const std::string& name, const std::string& text) {
+  const auto path = std::filesystem::path(testing::TempDir()) / name;
+  std::ofstream(path, std::ios::binary) << text;
+  return path;
+}
+
+std::string message_of(const std::filesystem::path& path) {
+  try {
+    report::read_csv(path);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST(FormatTable, SetsNumbersToTheRightAndWordsToTheLeft) {
+  const std::string text = report::format_table({"name", "error"}, {{"a", "1e-05"}, {"longer", "0.25"}, {"none", "-"}});
+  EXPECT_EQ(text,
+            "name    error\n"
+            "------  -----\n"
+            "a       1e-05\n"
+            "longer   0.25\n"
+            "none        -\n");
+}
+
+TEST(FormatTable, CountsCodePointsNotBytes) {
+  const std::string text = report::format_table({"ω [rad/s]", "b"}, {{"é", "x"}});
+  EXPECT_EQ(text, "ω [rad/s]  b\n---------  -\né          x\n");
+}
+
+TEST(FormatTable, LeavesNoBlanksAtTheEndOfALine) {
+  const std::string text = report::format_table({"a", "b"}, {{"x", "longer"}, {"y", "z"}});
+  EXPECT_EQ(text.find(" \n"), std::string::npos);
+}
+
+TEST(FormatTable, RefusesARaggedRow) { EXPECT_THROW(report::format_table({"a", "b"}, {{"only one"}}), InternalError); }
+
+TEST(ReadCsv, ReadsQuotesCommentsAndLineEnds) {
+  const auto path = file_with("good.csv", "# a comment\r\na,b\r\n1.5,\"x, \"\"y\"\"\"\r\n\n,\"two\nlines\"\n");
+  const report::Table table = report::read_csv(path);
+  EXPECT_EQ(table.headers, (std::vector<std::string>{"a", "b"}));
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[0][1], "x, \"y\"");
+  EXPECT_EQ(table.rows[1][1], "two\nlines");
+  const std::vector<double> a = table.numbers("a");
+  EXPECT_EQ(a[0], 1.5);
+  EXPECT_TRUE(std::isnan(a[1]));
+}
+
+TEST(ReadCsv, NamesFileAndLineOfWhatIsWrong) {
+  EXPECT_NE(message_of(file_with("short.csv", "a,b\n1,2\n3\n")).find("short.csv:3: 1 cells under 2 columns"), std::string::npos);
+  EXPECT_NE(message_of(file_with("open.csv", "a,b\n1,\"2\n")).find("open.csv:2: a quoted cell is never closed"), std::string::npos);
+  EXPECT_NE(message_of(file_with("empty.csv", "")).find("is empty"), std::string::npos);
+  EXPECT_NE(message_of("/nowhere/at/all.csv").find("cannot be opened"), std::string::npos);
+}
+
+TEST(Table, NamesTheNearestColumn) {
+  report::Table table;
+  table.headers = {"time_s", "force_x_n"};
+  table.source = "force.csv";
+  try {
+    table.column("time");
+    FAIL() << "an unknown column was accepted";
+  } catch (const Error& e) {
+    EXPECT_STREQ(e.what(), "force.csv: has no column \"time\" (did you mean \"time_s\"?)");
+  }
+}
+
+TEST(ToNumber, TakesExactlyOneNumber) {
+  EXPECT_EQ(report::to_number("-1.5e3"), -1500.0);
+  for (const char* bad : {"", "1,5", "1.5 m", " 1", "x"}) EXPECT_TRUE(std::isnan(report::to_number(bad))) << bad;
+}
