@@ -1,0 +1,60 @@
+#include <atomic>
+#include <cstdlib>
+
+#include "fem_fixture.h"
+
+// Counts every call of malloc in this program (operator new and Eigen end there).  Sanitizers bring their own malloc: then the test skips.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
+#define PALPATE_CAN_COUNT 0
+#else
+#define PALPATE_CAN_COUNT 1
+static std::atomic<long> malloc_calls{0};
+extern "C" void* __libc_malloc(std::size_t);
+extern "C" void* malloc(std::size_t size) {
+  malloc_calls.fetch_add(1, std::memory_order_relaxed);
+  return __libc_malloc(size);
+}
+#endif
+
+using namespace palpate;
+using namespace palpate::fem;
+using namespace palpate::fem::testing;
+
+TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
+#if PALPATE_CAN_COUNT
+  const TetMesh rest = jittered_cube(2, 0.1, 71);
+  Random random(72);
+  const VecX x = flat(rest.nodes) + 0.3 * random.vector(3 * rest.nodes.cols()), v = random.vector(x.size());  // inverted elements too
+  OneBody at(x, v);
+  Material material = soft_material();
+  material.stiffness_damping = 0.1;
+  material.mass_damping = 0.1;
+  const long before_all = malloc_calls;
+  const auto mass = make_consistent_mass(rest, material.density, at.id);
+  EXPECT_GT(malloc_calls, before_all);  // the counter counts
+  for (Tangent tangent : {Tangent::kExact, Tangent::kProjected, Tangent::kWarped}) {
+    SoftBody body("b", rest, material, {.tangent = tangent, .full_damping_tangent = true}, at.id);
+    dynamics::PatternBuilder builder(at.state.layout());
+    body.add_pattern(builder);
+    dynamics::BorderedMatrix A;
+    A.body = builder.build();
+    VecX f = VecX::Zero(x.size()), y = f;
+    const auto evaluate = [&] {
+      body.add_force(at.state.view(), f);
+      body.add_tangent(at.state.view(), 1, 1, A);
+      body.apply_tangent(at.state.view(), 1, 1, v, y);
+      body.energy(at.state.view());
+      body.dissipated_power(at.state.view());
+      mass->add_mass(at.state.view(), 1.0, A);
+      mass->apply(at.state.view(), v, y);
+    };
+    evaluate();
+    const long warm = malloc_calls;
+    evaluate();
+    EXPECT_EQ(malloc_calls - warm, 0);
+    EXPECT_GT(body.counts().inverted, 0);
+  }
+#else
+  GTEST_SKIP() << "a sanitizer owns malloc: nothing can be counted here";
+#endif
+}
