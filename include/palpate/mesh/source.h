@@ -10,7 +10,6 @@ namespace palpate::mesh {
 struct MeshReport {
   int nodes = 0, elements = 0;
   int flipped = 0;               ///< elements whose orientation was mended
-  int merged_faces = 0;
   double volume = 0.0;           ///< [m^3]
   double smallest_dihedral_deg = 180.0;
   double largest_edge = 0.0, smallest_edge = 0.0;  ///< [m]

@@ -1,0 +1,83 @@
+#include "palpate/mesh/boundary.h"
+
+#include <algorithm>
+#include <array>
+
+#include "palpate/mesh/quality.h"
+
+namespace palpate::mesh {
+namespace {
+
+/// One face of one tetrahedron; equal faces have equal `nodes`, which are sorted.
+struct Side {
+  std::array<int, 3> nodes;
+  int tet, face;
+};
+
+std::vector<Side> sides(const Tets& tets) {
+  std::vector<Side> out;
+  out.reserve(4 * static_cast<std::size_t>(tets.cols()));
+  for (int t = 0; t < static_cast<int>(tets.cols()); ++t)
+    for (int f = 0; f < 4; ++f) {
+      Side side{{tets(kTetFaces[f][0], t), tets(kTetFaces[f][1], t), tets(kTetFaces[f][2], t)}, t, f};
+      std::sort(side.nodes.begin(), side.nodes.end());
+      out.push_back(side);
+    }
+  return out;
+}
+
+/// The sides whose nodes no other side has, in the order of the tetrahedra.
+std::vector<Side> single_sides(std::vector<Side> all) {
+  std::sort(all.begin(), all.end(), [](const Side& a, const Side& b) { return a.nodes < b.nodes; });
+  std::vector<Side> out;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool like_last = i > 0 && all[i - 1].nodes == all[i].nodes;
+    const bool like_next = i + 1 < all.size() && all[i + 1].nodes == all[i].nodes;
+    if (!like_last && !like_next) out.push_back(all[i]);
+  }
+  std::sort(out.begin(), out.end(), [](const Side& a, const Side& b) { return std::pair(a.tet, a.face) < std::pair(b.tet, b.face); });
+  return out;
+}
+
+}  // namespace
+
+Boundary boundary(const TetMesh& mesh) {
+  const std::vector<Side> outer = single_sides(sides(mesh.tets));
+  Boundary out;
+  std::vector<int> vertex_of_node(static_cast<std::size_t>(mesh.nodes.cols()), -1);
+  for (const Side& side : outer)
+    for (const int node : side.nodes) vertex_of_node[static_cast<std::size_t>(node)] = 0;
+  for (std::size_t node = 0; node < vertex_of_node.size(); ++node)
+    if (vertex_of_node[node] == 0) {
+      vertex_of_node[node] = static_cast<int>(out.node_of_vertex.size());
+      out.node_of_vertex.push_back(static_cast<int>(node));
+    }
+  out.surface.vertices.resize(3, static_cast<Eigen::Index>(out.node_of_vertex.size()));
+  for (std::size_t v = 0; v < out.node_of_vertex.size(); ++v)
+    out.surface.vertices.col(static_cast<Eigen::Index>(v)) = mesh.nodes.col(out.node_of_vertex[v]);
+  out.surface.faces.resize(3, static_cast<Eigen::Index>(outer.size()));
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    out.tet_of_face.push_back(outer[i].tet);
+    for (int k = 0; k < 3; ++k) {
+      const int node = mesh.tets(kTetFaces[outer[i].face][k], outer[i].tet);
+      out.surface.faces(k, static_cast<Eigen::Index>(i)) = vertex_of_node[static_cast<std::size_t>(node)];
+    }
+  }
+  return out;
+}
+
+// Divergence theorem with the field x/3: V = sum over faces of (a - o) . ((b - o) x (c - o)) / 6 for any o; the middle of the vertices
+// keeps the terms small.
+double enclosed_volume(const TriMesh& surface) {
+  if (surface.vertices.cols() == 0) return 0.0;
+  const Vec3 o = surface.vertices.rowwise().mean();
+  double volume = 0;
+  for (Eigen::Index f = 0; f < surface.faces.cols(); ++f) {
+    const Vec3 a = surface.vertices.col(surface.faces(0, f)) - o, b = surface.vertices.col(surface.faces(1, f)) - o,
+               c = surface.vertices.col(surface.faces(2, f)) - o;
+    volume += a.dot(b.cross(c)) / 6.0;
+  }
+  return volume;
+}
+
+}  // namespace palpate::mesh

@@ -1,0 +1,34 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "palpate/core/types.h"
+#include "text_file.h"
+
+namespace palpate::mesh::gmsh {
+
+/// What the sections of a .msh file said, in the file's own numbering.
+struct Content {
+  std::vector<Vec3> nodes;
+  std::vector<long> node_tags;
+  std::vector<int> node_lines;
+  std::vector<std::array<long, 4>> tets;
+  std::vector<long> tet_tags;
+  std::vector<int> tet_lines;
+  long second_order_tets = 0;
+};
+
+constexpr long kTet4 = 4, kTet10 = 11;  // Gmsh's element types
+
+/// The three coordinates of node `tag`, which stands before them on the line (2.2) or on a line of its own (4.1).
+void add_node(TextFile& file, Content& content, long tag);
+/// The four nodes of tetrahedron `tag`, up to the end of the line.
+void add_tet(TextFile& file, Content& content, long tag);
+
+/// Each starts on the line after the section's name and ends before the line `$End...`.
+void nodes_22(TextFile& file, Content& content);
+void elements_22(TextFile& file, Content& content);
+void nodes_41(TextFile& file, Content& content);
+void elements_41(TextFile& file, Content& content);
+
+}  // namespace palpate::mesh::gmsh

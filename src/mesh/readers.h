@@ -1,0 +1,22 @@
+#pragma once
+#include <string>
+
+#include "palpate/mesh/checks.h"
+
+/// File formats.  Each reader gives indices within range and finite coordinates, or throws Error `FILE:LINE: ...`; it judges no geometry.
+namespace palpate::mesh {
+
+struct TetFile {
+  TetMesh mesh;
+  Provenance from;
+};
+TetFile read_gmsh(const std::string& path);    ///< .msh, ASCII, versions 2.0 to 2.2 and 4.1; tetrahedra only, other elements are passed over
+TetFile read_tetgen(const std::string& path);  ///< .node and .ele of the same stem; `path` names either
+
+struct SurfaceFile {
+  TriMesh mesh;
+  Provenance from;
+};
+SurfaceFile read_obj(const std::string& path);  ///< v and f; polygons are cut into fans
+
+}  // namespace palpate::mesh

@@ -1,0 +1,72 @@
+#include "palpate/mesh/source.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "palpate/mesh/checks.h"
+#include "palpate/mesh/generators.h"
+#include "readers.h"
+
+namespace palpate::mesh {
+namespace {
+
+/// Exactly one of file and generator is given.
+bool is_file(const MeshSpec& spec) {
+  if (!spec.file.empty() && !spec.generator.empty()) fail("mesh: file = \"{}\" and generator = \"{}\" exclude each other; give one", spec.file, spec.generator);
+  if (spec.file.empty() && spec.generator.empty()) fail("mesh: neither file nor generator is given; give one (generators: box, ball, cylinder, tet)");
+  if (!(spec.scale > 0 && std::isfinite(spec.scale))) fail("mesh: scale = {} must be positive; it multiplies the file's coordinates", spec.scale);
+  return !spec.file.empty();
+}
+
+std::string ending(const std::string& path) {
+  std::string out = std::filesystem::path(path).extension().string();
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+TetFile read_tets(const std::string& path) {
+  const std::string kind = ending(path);
+  if (kind == ".msh") return read_gmsh(path);
+  if (kind == ".node" || kind == ".ele") return read_tetgen(path);
+  if (kind == ".obj") fail("{}: an .obj holds a surface, a soft body needs tetrahedra (.msh, .node/.ele); mesh its inside first, for example with Gmsh", path);
+  fail("{}: unknown ending \"{}\" for tetrahedra; .msh (Gmsh), .node and .ele (TetGen) are read", path, kind);
+}
+
+SurfaceFile read_surface(const std::string& path) {
+  if (const std::string kind = ending(path); kind != ".obj") fail("{}: unknown ending \"{}\" for a surface; .obj is read", path, kind);
+  return read_obj(path);
+}
+
+std::string generator_name(const MeshSpec& spec) { return fmt::format("generator \"{}\"", spec.generator); }
+
+}  // namespace
+
+TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report) {
+  TetFile out;
+  if (is_file(spec)) {
+    out = read_tets((std::filesystem::path(folder) / spec.file).string());
+    out.mesh.nodes *= spec.scale;
+  } else {
+    out.mesh = find(tet_generators(), spec.generator, "mesh generator").make(spec);
+    out.from.source = generator_name(spec);
+  }
+  const MeshReport found = check_tets(out.mesh, out.from);
+  if (report) *report = found;
+  return std::move(out.mesh);
+}
+
+TriMesh surface(const MeshSpec& spec, const std::string& folder, MeshReport* report) {
+  SurfaceFile out;
+  if (is_file(spec)) {
+    out = read_surface((std::filesystem::path(folder) / spec.file).string());
+    out.mesh.vertices *= spec.scale;
+  } else {
+    out.mesh = find(surface_generators(), spec.generator, "surface generator").make(spec);
+    out.from = surface_provenance(generator_name(spec));
+  }
+  const MeshReport found = check_surface(out.mesh, out.from);
+  if (report) *report = found;
+  return std::move(out.mesh);
+}
+
+}  // namespace palpate::mesh

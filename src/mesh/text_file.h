@@ -1,0 +1,54 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "palpate/core/error.h"
+
+namespace palpate::mesh {
+
+/// A text file read line by line and word by word, whose every complaint carries FILE:LINE.  Holds the whole file in memory, so that a
+/// count in a header can be compared with what is really there before anything is allocated for it.
+class TextFile {
+ public:
+  /// Throws Error when the file cannot be read.  From `comment` on, a line is ignored ('\0': no comments).
+  explicit TextFile(const std::string& path, char comment = '\0');
+
+  bool next_line();              ///< goes to the next line that has a word; false at the end of the file
+  void require_line(std::string_view what);
+  std::string_view word();       ///< next word of this line, empty when there is none left
+  bool at_end_of_line();
+
+  double real(std::string_view what);        ///< a finite number
+  long integer(std::string_view what);
+  /// A count of entries that stand in the rest of this file, at least two bytes each: refused when they cannot.
+  int count(std::string_view what);
+  void require_end_of_line();
+
+  /// Until the next line, complaints say whom they are about: `FILE:LINE: node 12: ...`.
+  void about(std::string_view noun, long number) { noun_ = noun, number_ = number; }
+
+  const std::string& path() const { return path_; }
+  int line() const { return line_number_; }
+
+  template <class... Args>
+  [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
+    const std::string whom = noun_.empty() ? "" : fmt::format("{} {}: ", noun_, number_);
+    palpate::fail("{}:{}: {}{}", path_, line_number_, whom, fmt::format(format, std::forward<Args>(args)...));
+  }
+
+ private:
+  std::string_view required_word(std::string_view what);
+
+  std::string path_, text_;
+  char comment_;
+  std::size_t next_ = 0;      // where the next line starts in text_
+  std::string_view rest_;     // of the current line
+  int line_number_ = 0;
+  std::string_view noun_;     // literals only
+  long number_ = 0;
+};
+
+/// A word of a file as a message can show it: at most 40 characters, the unprintable ones as '?'.
+std::string printable(std::string_view word);
+
+}  // namespace palpate::mesh
