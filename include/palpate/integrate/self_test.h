@@ -1,0 +1,21 @@
+#pragma once
+#include <string>
+#include <vector>
+
+/// Proof that the SUNDIALS inside this library is the one it was built with, whatever else the process has loaded.
+namespace palpate::integrate::self_test {
+
+/// Each integrates y' = -y, y(0) = 1 to t with SUNDIALS' own vectors, dense matrices and Newton, at rtol 1e-8, atol 1e-10: y(t), to compare with exp(-t).
+/// NaN when a call fails (as it does where another library's symbols of the same names were bound).
+double cvode(double t);
+double arkode(double t);
+double ida(double t);
+
+struct Answer {
+  std::string library;
+  double y = 0.0;
+};
+/// The three of them.
+std::vector<Answer> all(double t);
+
+}  // namespace palpate::integrate::self_test

@@ -1,0 +1,20 @@
+#pragma once
+#include "palpate/dynamics/linear_solver.h"
+
+namespace palpate::integrate {
+
+using ConstColumns = Eigen::Map<const MatX, 0, Eigen::OuterStride<>>;
+
+/// A factor of the sparse body part alone: what a direct solver's library gives.  DirectSolver adds versions, border and counters.
+class BodyFactor {
+ public:
+  virtual ~BodyFactor() = default;
+  /// Symbolic analysis of A's pattern; forgets any numeric factor.
+  virtual void analyse(const dynamics::BlockSparse& A) = 0;
+  /// Numeric factor of A, whose pattern was analysed.
+  virtual dynamics::SolveStatus factor(const dynamics::BlockSparse& A) = 0;
+  /// X = A^-1 B; X has the size of B and is another object.
+  virtual void solve(const ConstColumns& B, MatX& X) = 0;
+};
+
+}  // namespace palpate::integrate

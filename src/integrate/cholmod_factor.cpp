@@ -1,0 +1,123 @@
+#include <cholmod.h>
+
+#include "integrate/direct_solver.h"
+#include "integrate/make.h"
+#include "palpate/core/error.h"
+
+namespace palpate::integrate {
+namespace {
+
+using dynamics::BlockSparse;
+using dynamics::SolveStatus;
+
+/// Supernodal L L^T, ordered by approximate minimum degree (Chen, Davis, Hager, Rajamanickam 2008).
+/// Column j of the lower triangle is row j of a symmetric matrix from the diagonal on: the blocks of BlockSparse are read in their own order.
+class CholmodFactor final : public BodyFactor {
+ public:
+  CholmodFactor() {
+    cholmod_start(&common_);
+    common_.print = 0;
+    common_.supernodal = CHOLMOD_SUPERNODAL;
+    common_.nmethods = 1;
+    common_.method[0].ordering = CHOLMOD_AMD;
+    common_.postorder = 1;
+    common_.quick_return_if_not_posdef = 1;
+  }
+  ~CholmodFactor() override {
+    cholmod_free_factor(&L_, &common_);
+    for (cholmod_dense** dense : {&X_, &Y_, &E_}) cholmod_free_dense(dense, &common_);
+    cholmod_finish(&common_);
+  }
+  CholmodFactor(const CholmodFactor&) = delete;
+  CholmodFactor& operator=(const CholmodFactor&) = delete;
+
+  void analyse(const BlockSparse& A) override {
+    build_map(A);
+    cholmod_free_factor(&L_, &common_);
+    cholmod_sparse lower = view();
+    L_ = cholmod_analyze(&lower, &common_);
+    require("cholmod_analyze");
+  }
+
+  SolveStatus factor(const BlockSparse& A) override {
+    const double* from = A.values().data();
+    for (std::size_t k = 0; k < source_.size(); ++k) values_[k] = from[source_[k]];
+    cholmod_sparse lower = view();
+    cholmod_factorize(&lower, L_, &common_);
+    require("cholmod_factorize");
+    return common_.status == CHOLMOD_OK && L_->minor == L_->n ? SolveStatus::kOk : SolveStatus::kIndefinite;
+  }
+
+  void solve(const ConstColumns& B, MatX& X) override {
+    cholmod_dense b{};
+    b.nrow = static_cast<std::size_t>(B.rows());
+    b.ncol = static_cast<std::size_t>(B.cols());
+    b.d = static_cast<std::size_t>(B.outerStride());
+    b.nzmax = b.d * b.ncol;
+    b.x = const_cast<double*>(B.data());  // read only
+    b.xtype = CHOLMOD_REAL;
+    b.dtype = CHOLMOD_DOUBLE;
+    cholmod_solve2(CHOLMOD_A, L_, &b, nullptr, &X_, nullptr, &Y_, &E_, &common_);
+    require("cholmod_solve2");
+    X = Eigen::Map<const MatX>(static_cast<const double*>(X_->x), B.rows(), B.cols());
+  }
+
+ private:
+  /// Lower triangle in compressed columns, and for each entry the value of the block matrix that it is.
+  void build_map(const BlockSparse& A) {
+    n_ = 3 * static_cast<std::size_t>(A.block_rows());
+    column_start_.assign(1, 0);
+    rows_.clear();
+    source_.clear();
+    for (int i = 0; i < A.block_rows(); ++i)
+      for (int r = 0; r < 3; ++r) {
+        for (int s = A.row_start()[static_cast<std::size_t>(i)]; s < A.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+          const int j = A.columns()[static_cast<std::size_t>(s)];
+          for (int c = j == i ? r : 0; j >= i && c < 3; ++c) {
+            rows_.push_back(3 * j + c);
+            source_.push_back(9 * s + 3 * r + c);
+          }
+        }
+        column_start_.push_back(static_cast<int>(rows_.size()));
+      }
+    values_.assign(rows_.size(), 0.0);
+  }
+
+  cholmod_sparse view() {
+    cholmod_sparse lower{};
+    lower.nrow = lower.ncol = n_;
+    lower.nzmax = rows_.size();
+    lower.p = column_start_.data();
+    lower.i = rows_.data();
+    lower.x = values_.data();
+    lower.stype = -1;
+    lower.itype = CHOLMOD_INT;
+    lower.xtype = CHOLMOD_REAL;
+    lower.dtype = CHOLMOD_DOUBLE;
+    lower.sorted = lower.packed = 1;
+    return lower;
+  }
+
+  /// Not positive definite is data; the rest is the machine's fault or ours.
+  void require(const char* call) const {
+    if (common_.status >= CHOLMOD_OK) return;
+    if (common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE)
+      fail("{}: no memory for the factor of {} unknowns; use a coarser mesh", call, n_);
+    PALPATE_CHECK(false, "{} returned status {}", call, common_.status);
+  }
+
+  cholmod_common common_{};
+  cholmod_factor* L_ = nullptr;
+  cholmod_dense *X_ = nullptr, *Y_ = nullptr, *E_ = nullptr;  // kept: a warm solve allocates nothing
+  std::size_t n_ = 0;
+  std::vector<int> column_start_, rows_, source_;
+  std::vector<double> values_;
+};
+
+}  // namespace
+
+std::unique_ptr<dynamics::LinearSolver> make_cholmod() {
+  return std::make_unique<DirectSolver>("cholmod", false, std::make_unique<CholmodFactor>());
+}
+
+}  // namespace palpate::integrate

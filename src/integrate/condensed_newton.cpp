@@ -1,0 +1,70 @@
+#include "integrate/condensed_newton.h"
+
+#include "palpate/core/clock.h"
+
+namespace palpate::integrate {
+
+using dynamics::Block;
+using dynamics::Layout;
+using dynamics::SolveStatus;
+
+void CondensedNewton::evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters) {
+  const ScopedTimer timer(counters.tangent_s);
+  ++counters.tangent_evaluations;
+  system_.step_matrix(state, 1.0, 0.0, 0.0, M_);
+  system_.step_matrix(state, 0.0, 1.0, 0.0, D_);
+  system_.step_matrix(state, 0.0, 0.0, 1.0, K_);
+  gamma_ = 0.0;
+}
+
+// All three carry the identity in driven rows, which then hold 1 + gamma + gamma^2: any positive number serves there.
+void CondensedNewton::combine(double gamma) {
+  if (A_.body.pattern_version() != M_.body.pattern_version() || A_.border_size() != M_.border_size()) A_ = M_;
+  const auto map = [](const dynamics::BorderedMatrix& B) {
+    return Eigen::Map<const Eigen::ArrayXd>(B.body.values().data(), static_cast<Eigen::Index>(B.body.values().size()));
+  };
+  Eigen::Map<Eigen::ArrayXd>(A_.body.values().data(), static_cast<Eigen::Index>(A_.body.values().size())) =
+      map(M_) + gamma * map(D_) + (gamma * gamma) * map(K_);
+  A_.right = M_.right + gamma * D_.right + (gamma * gamma) * K_.right;
+  A_.bottom = M_.bottom + gamma * D_.bottom + (gamma * gamma) * K_.bottom;
+  A_.corner = M_.corner + gamma * D_.corner + (gamma * gamma) * K_.corner;
+  A_.symmetric = M_.symmetric && D_.symmetric && K_.symmetric;
+  A_.touch();
+}
+
+SolveStatus CondensedNewton::factor(double gamma) {
+  if (gamma == gamma_) return SolveStatus::kOk;
+  combine(gamma);
+  const SolveStatus status = solver_.factor(A_);
+  gamma_ = status == SolveStatus::kOk ? gamma : 0.0;
+  return status;
+}
+
+SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du) {
+  theta_.resize(layout.u_size);
+  for (const Block& b : layout.blocks) {
+    const Eigen::Map<const VecX> rate(r1 + b.q_offset, b.q_size);
+    if (b.kinematics)
+      b.kinematics->u_of_q_dot(Eigen::Map<const VecX>(q + b.q_offset, b.q_size), rate, theta_.segment(b.u_offset, b.u_size));
+    else
+      theta_.segment(b.u_offset, b.u_size) = rate;
+  }
+  du_ = Eigen::Map<const VecX>(r2, layout.u_size);
+  for (int dof : system_.driven_dofs()) theta_[dof] = du_[dof] = 0.0;
+  M_.multiply(du_, rhs_);
+  K_.multiply(theta_, product_);
+  rhs_ -= gamma_ * product_;
+  if (const SolveStatus status = solver_.solve(rhs_, du_); status != SolveStatus::kOk) return status;
+
+  dynamics::q_dot(layout, q, du_.data(), dq);
+  Eigen::Map<VecX> dq_map(dq, layout.q_size);
+  dq_map = gamma_ * dq_map + Eigen::Map<const VecX>(r1, layout.q_size);
+  Eigen::Map<VecX>(du, layout.u_size) = du_;
+  for (int dof : system_.driven_dofs()) {
+    dq[dof] = r1[dof];
+    du[dof] = r2[dof];
+  }
+  return SolveStatus::kOk;
+}
+
+}  // namespace palpate::integrate

@@ -1,0 +1,16 @@
+#pragma once
+#include "palpate/dynamics/stepper.h"
+#include "palpate/dynamics/system.h"
+
+/// The makers that registry.cpp lists, one a file.
+namespace palpate::integrate {
+
+std::unique_ptr<dynamics::Stepper> make_cvode_bdf(dynamics::System&, dynamics::State&, const IntegratorSpec&,
+                                                  std::unique_ptr<dynamics::LinearSolver>);
+std::unique_ptr<dynamics::Stepper> make_linearly_implicit_euler(dynamics::System&, dynamics::State&, const IntegratorSpec&,
+                                                                std::unique_ptr<dynamics::LinearSolver>);
+
+std::unique_ptr<dynamics::LinearSolver> make_cholmod();
+std::unique_ptr<dynamics::LinearSolver> make_umfpack();
+
+}  // namespace palpate::integrate

@@ -1,0 +1,10 @@
+#pragma once
+#include "palpate/dynamics/spec.h"
+
+namespace palpate::integrate {
+
+/// @throws Error naming the key of the `[integrator]` table, its value and what to write instead.
+void check_adaptive(const IntegratorSpec& spec, int highest_order);
+void check_fixed_step(const IntegratorSpec& spec);
+
+}  // namespace palpate::integrate

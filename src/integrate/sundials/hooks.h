@@ -1,0 +1,20 @@
+#pragma once
+#include <sundials/sundials_linearsolver.h>
+
+namespace palpate::integrate {
+namespace sun __attribute__((visibility("hidden"))) {
+
+/// What stands behind a SUNLinearSolver of ours.  Return values are SUNDIALS': 0 well, > 0 try a smaller step, < 0 give up.
+class NewtonHook {
+ public:
+  virtual ~NewtonHook() = default;
+  virtual int setup() = 0;
+  virtual int solve(N_Vector x, N_Vector b) = 0;  ///< (I - gamma J) x = b
+};
+
+/// A direct linear solver and a matrix with nothing in it: SUNDIALS passes both around, the work is the hook's.
+SUNLinearSolver make_linear_solver(NewtonHook& hook, SUNContext context);
+SUNMatrix make_matrix(SUNContext context);
+
+}  // namespace sun
+}  // namespace palpate::integrate

@@ -1,0 +1,12 @@
+#pragma once
+#include <sundials/sundials_nvector.h>
+
+namespace palpate::integrate {
+namespace sun __attribute__((visibility("hidden"))) {
+
+/// Replaces the operations that dominate a large serial vector's cost; clones inherit them.
+/// (Debian's build takes 116 us for a weighted norm of 21,600 doubles; these vectorise.)
+void use_fast_operations(N_Vector v);
+
+}  // namespace sun
+}  // namespace palpate::integrate
