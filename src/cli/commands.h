@@ -1,0 +1,70 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+/// One function a command, one file a function.  Each returns the exit status; Error means that the input is at fault.
+namespace palpate::cli {
+
+/// Which scene, and what is changed in it.
+struct SceneArguments {
+  std::string scene;                  ///< path or name
+  std::vector<std::string> overrides; ///< "body.0.youngs_modulus_pa=1e5"
+  std::string integrator;             ///< instead of the scene's own; empty: the scene's
+};
+
+struct RunArguments {
+  SceneArguments scene;
+  std::string folder;       ///< empty: out/NAME
+  double duration_s = 0.0;  ///< 0: the scene's
+  bool picture = false, report = false;
+};
+int run(const RunArguments& arguments);
+
+struct CompareArguments {
+  SceneArguments scene;
+  std::string folder;
+  std::vector<std::string> integrators;  ///< empty: every ladder of the scene
+  int repeats = 3;
+  double duration_s = 0.0;
+};
+int compare(const CompareArguments& arguments);
+
+struct ValidateArguments {
+  std::vector<std::string> cases;  ///< empty: all
+  bool slow = false;               ///< the slow ones too, where no case is named
+  bool sabotage = false;           ///< break the physics of each case on purpose: every one must then fail
+  std::string folder;              ///< validation.json and report.html go here; empty: nowhere
+};
+int validate(const ValidateArguments& arguments);
+
+struct InspectArguments { SceneArguments scene; };
+int inspect(const InspectArguments& arguments);
+
+struct ListArguments { std::string what; };
+int list(const ListArguments& arguments);
+
+struct BenchArguments {
+  std::string what;               ///< "fem" or "leave-out"
+  std::vector<std::string> scenes;///< of leave-out; empty: falling-ball and cantilever
+  int steps = 20;                 ///< of fem
+  int cells = 36;                 ///< of fem, along the beam
+  double step_s = 0.01;           ///< of fem
+  std::string linear_solver = "cholmod";
+  int repeats = 5;                ///< of leave-out
+};
+int bench(const BenchArguments& arguments);
+
+struct DemoArguments { std::string folder = "out/demo"; };
+int demo(const DemoArguments& arguments);
+
+/// What the command line asks for.
+struct Invocation {
+  std::function<int()> action;  ///< empty: nothing to do but leave with `status`
+  int status = 0;
+  bool factorises = false;      ///< worth restarting with tuned linear algebra
+  bool quiet = false, verbose = false;
+};
+Invocation parse(int argc, char** argv);
+
+}  // namespace palpate::cli

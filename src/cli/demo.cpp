@@ -1,0 +1,23 @@
+#include <fmt/format.h>
+
+#include "commands.h"
+
+namespace palpate::cli {
+
+int demo(const DemoArguments& arguments) {
+  fmt::print("A tool under a hand's virtual spring presses a soft ball on a plane.\n\n");
+  RunArguments touch;
+  touch.scene.scene = "press-ball";
+  touch.folder = arguments.folder;
+  touch.picture = true;
+  if (const int status = run(touch); status != 0) return status;
+
+  fmt::print("\nThe same touch by each integrator: how far from the truth, at what price?\n\n");
+  CompareArguments price;
+  price.scene = touch.scene;
+  price.folder = arguments.folder;
+  price.repeats = 1;
+  return compare(price);
+}
+
+}  // namespace palpate::cli

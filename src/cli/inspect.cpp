@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+
+#include "commands.h"
+#include "palpate/core/clock.h"
+#include "palpate/loop/run.h"
+#include "palpate/report/table.h"
+#include "palpate/scene/needs.h"
+#include "scene_of.h"
+
+namespace palpate::cli {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+void print_needs(const scene::Description& description) {
+  Rows rows;
+  for (const scene::Need& need : scene::needs(description)) rows.push_back({need.part, need.used ? "in use" : "left out", need.why});
+  fmt::print("{}\n", report::format_table({"part", "", "why"}, rows));
+}
+
+void print_bodies(const loop::World& world) {
+  Rows rows;
+  for (const loop::Body& body : world.bodies)
+    rows.push_back({body.name, std::to_string(body.report.nodes), std::to_string(body.report.elements), std::to_string(body.boundary.surface.faces.cols()),
+                    fmt::format("{:.3g}", body.report.volume), fmt::format("{:.3g}", body.masses.sum()),
+                    fmt::format("{:.3g} to {:.3g}", body.report.smallest_edge, body.report.largest_edge),
+                    fmt::format("{:.1f}", body.report.smallest_dihedral_deg), std::to_string(body.report.flipped)});
+  if (!rows.empty())
+    fmt::print("{}\n", report::format_table({"body", "nodes", "tetrahedra", "surface faces", "volume [m^3]", "mass [kg]", "edges [m]", "least dihedral [deg]", "mended"}, rows));
+}
+
+void print_system(loop::World& world, double assemble_s, double memory_mib) {
+  Rows rows;
+  const auto add = [&](const std::string& name, const std::string& value) { rows.push_back({name, value}); };
+  if (world.stepper) {
+    dynamics::BorderedMatrix A;
+    world.system.step_matrix(world.state.view(), 1.0, 0.0, 0.0, A);
+    add("unknowns (velocities)", std::to_string(world.state.u().size() - static_cast<Eigen::Index>(world.system.driven_dofs().size())));
+    add("held or driven directions", std::to_string(world.system.driven_dofs().size()));
+    add("blocks of the step matrix (3 x 3)", std::to_string(A.body.slot_count()));
+    if (A.border_size() > 0) add("width of its border", std::to_string(A.border_size()));
+    add("integrator", world.stepper->name());
+  }
+  add("period of the loop [s]", fmt::format("{:g}", loop::period_of(world.description)));
+  add("simulated time [s]", fmt::format("{:g}", world.description.duration_s));
+  add("time to assemble [s]", fmt::format("{:.3f}", assemble_s));
+  add("memory of the assembled scene [MiB]", fmt::format("{:.1f}", memory_mib));
+  fmt::print("{}", report::format_table({"system", ""}, rows));
+}
+
+}  // namespace
+
+int inspect(const InspectArguments& arguments) {
+  const scene::Description description = scene_of(arguments.scene);
+  fmt::print("{}: {}\n\n", description.path, description.name);
+  print_needs(description);
+  const double memory = resident_memory_mib(), start = wall_seconds();
+  const std::unique_ptr<loop::World> world = loop::assemble(description);
+  const double seconds = wall_seconds() - start, used = resident_memory_mib() - memory;
+  print_bodies(*world);
+  print_system(*world, seconds, used);
+  return 0;
+}
+
+}  // namespace palpate::cli

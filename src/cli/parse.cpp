@@ -1,0 +1,196 @@
+// The command line, and the help that teaches it: the only file that knows CLI11.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "commands.h"
+#include "stop.h"
+#include "version.h"
+
+namespace palpate::cli {
+namespace {
+
+constexpr const char* kDescription =
+    "palpate renders touch: a hand moves a haptic handle, a virtual spring pulls a rigid tool after it, the tool presses into a soft body,\n"
+    "and the force goes back to the hand.  Every figure has a known error, and every error its price in run time.";
+
+constexpr const char* kExamples = R"(Examples:
+  palpate demo                                   the whole of it in a minute; open out/demo/report.html
+  palpate run press-ball                         a tool presses a soft ball; results in out/press-ball
+  palpate run my.toml --set body.0.youngs_modulus_pa=2e4 -o out/softer
+  palpate inspect press-ball                     what a scene uses, what it leaves out, how large it is
+  palpate compare cantilever                     error against run time, for every integrator of the scene's ladder
+  palpate validate                               every case with a known answer
+  palpate list integrators                       the names that scenes and --integrator know
+
+`palpate COMMAND --help` tells more about each.)";
+
+constexpr const char* kSceneHelp = "a scene file (.toml), or the name of one that comes with palpate (`palpate list scenes`)";
+
+void add_scene(CLI::App& command, SceneArguments& scene, bool integrator) {
+  command.add_option("SCENE", scene.scene, kSceneHelp)->required();
+  command.add_option("--set", scene.overrides, "change one value of the scene: KEY=VALUE, the key dotted, tables counted from 0, the value as in TOML")
+      ->type_name("KEY=VALUE")->allow_extra_args(false);
+  if (integrator) command.add_option("--integrator", scene.integrator, "instead of the scene's: see `palpate list integrators`")->type_name("NAME");
+}
+
+void add_run(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("run", "run a scene and keep what it records");
+  auto arguments = std::make_shared<RunArguments>();
+  add_scene(*command, arguments->scene, true);
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/SCENE")->type_name("DIR");
+  command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")->type_name("SECONDS")->check(CLI::PositiveNumber);
+  command->add_flag("--picture", arguments->picture, "also a picture of the last state (picture.png)");
+  command->add_flag("--report", arguments->report, "also a page to look at (report.html)");
+  command->footer(R"(Examples:
+  palpate run falling-ball
+  palpate run press-ball --integrator linearly-implicit-euler --set integrator.step_s=0.002
+  palpate run press-ball --set body.0.youngs_modulus_pa=2e4 --picture --report -o out/softer
+
+Writes into the output folder: run.vtkhdf (states as a time series: ParaView, h5py), force.csv (force and torque on the hand),
+summary.json (versions, options, counts, timings).  Ctrl-C ends the run; what was recorded by then is whole.)");
+  command->callback([arguments, &invocation] {
+    invocation.action = [arguments] { return run(*arguments); };
+    invocation.factorises = true;
+  });
+}
+
+void add_compare(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("compare", "error against run time of every integrator on a scene");
+  auto arguments = std::make_shared<CompareArguments>();
+  add_scene(*command, arguments->scene, false);
+  command->add_option("--integrator", arguments->integrators, "only these of the scene's [[compare.ladder]]; may be given more than once")
+      ->type_name("NAME")->allow_extra_args(false);
+  command->add_option("--repeats", arguments->repeats, "runs of each point, for the spread of its time")->check(CLI::Range(1, 1000))->capture_default_str();
+  command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")->type_name("SECONDS")->check(CLI::PositiveNumber);
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/compare-SCENE")->type_name("DIR");
+  command->footer(R"(Examples:
+  palpate compare cantilever
+  palpate compare press-ball --repeats 1 --integrator cvode-bdf -o out/quick
+
+Each point is one integrator at one tolerance or step, at the scene's fixed exchange period, against a tight reference whose own error is
+printed.  Writes compare.csv, exchange.csv, reference.json and report.html with the log-log plots.)");
+  command->callback([arguments, &invocation] {
+    invocation.action = [arguments] { return compare(*arguments); };
+    invocation.factorises = true;
+  });
+}
+
+void add_validate(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("validate", "run the cases with a known answer");
+  auto arguments = std::make_shared<ValidateArguments>();
+  command->add_option("CASE", arguments->cases, "only these; see `palpate list cases`");
+  command->add_flag("--slow", arguments->slow, "also the cases that take minutes");
+  command->add_flag("--sabotage", arguments->sabotage, "break the physics of each case on purpose: every one must then fail");
+  command->add_option("-o,--output", arguments->folder, "also write validation.json and report.html here")->type_name("DIR");
+  command->footer(R"(Examples:
+  palpate validate
+  palpate validate patch-test cantilever -o out/validation
+  palpate validate --sabotage                    shows that the cases can fail
+
+Exit status 0 when every measurement keeps its bar, else 1.)");
+  command->callback([arguments, &invocation] {
+    invocation.action = [arguments] { return validate(*arguments); };
+    invocation.factorises = true;
+  });
+}
+
+void add_inspect(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("inspect", "what a scene uses, what it leaves out, sizes and memory");
+  auto arguments = std::make_shared<InspectArguments>();
+  add_scene(*command, arguments->scene, true);
+  command->footer(R"(Examples:
+  palpate inspect press-ball
+  palpate inspect my.toml --set body.0.mesh.element_size_m=0.005      how large would it be?)");
+  command->callback([arguments, &invocation] { invocation.action = [arguments] { return inspect(*arguments); }; });
+}
+
+void add_list(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("list", "the names that scenes and options know");
+  auto arguments = std::make_shared<ListArguments>();
+  command->add_option("WHAT", arguments->what, "integrators, linear-solvers, tool-integrators, devices, cases, parts, scenes; all without it");
+  command->footer(R"(Examples:
+  palpate list
+  palpate list integrators)");
+  command->callback([arguments, &invocation] { invocation.action = [arguments] { return list(*arguments); }; });
+}
+
+void add_bench(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("bench", "how long things take on this machine");
+  auto arguments = std::make_shared<BenchArguments>();
+  command->add_option("WHAT", arguments->what, "fem: one implicit step of a soft beam, split into its stages; leave-out: what absent and present parts cost")
+      ->required();
+  command->add_option("SCENE", arguments->scenes, "of leave-out; default falling-ball and cantilever");
+  command->add_option("--cells", arguments->cells, "fem: cells along the beam")->check(CLI::Range(4, 1000))->capture_default_str();
+  command->add_option("--step-s", arguments->step_s, "fem: the step [s]")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--steps", arguments->steps, "fem: steps that are timed")->check(CLI::Range(3, 1000000))->capture_default_str();
+  command->add_option("--linear-solver", arguments->linear_solver, "fem: see `palpate list linear-solvers`")->type_name("NAME")->capture_default_str();
+  command->add_option("--repeats", arguments->repeats, "leave-out: runs of each variant")->check(CLI::Range(1, 1000))->capture_default_str();
+  command->footer(R"(Examples:
+  palpate bench fem                              3,700 nodes, 14,580 tetrahedra, steps of 10 ms
+  palpate bench fem --cells 16 --step-s 0.001
+  palpate bench leave-out falling-ball --repeats 9)");
+  command->callback([arguments, &invocation] {
+    invocation.action = [arguments] { return bench(*arguments); };
+    invocation.factorises = true;
+  });
+}
+
+void add_demo(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("demo", "a tool presses a soft ball: picture, force curve, error and its price");
+  auto arguments = std::make_shared<DemoArguments>();
+  command->add_option("-o,--output", arguments->folder, "folder for the results")->type_name("DIR")->capture_default_str();
+  command->footer("Example:\n  palpate demo                                   then open out/demo/report.html");
+  command->callback([arguments, &invocation] {
+    invocation.action = [arguments] { return demo(*arguments); };
+    invocation.factorises = true;
+  });
+}
+
+/// What is wrong with the line, and where help is: CLI11's own messages name the option.
+Invocation refuse(const CLI::App& app, const CLI::ParseError& error) {
+  std::string command = "palpate";
+  for (const CLI::App* used : app.get_subcommands()) command += " " + used->get_name();
+  fmt::print(stderr, "palpate: error: {}; see `{} --help`\n", error.what(), command);
+  Invocation out;
+  out.status = kExitError;
+  return out;
+}
+
+}  // namespace
+
+Invocation parse(int argc, char** argv) {
+  Invocation invocation;
+  CLI::App app(kDescription, "palpate");
+  app.set_version_flag("--version", version_text());
+  app.get_formatter()->column_width(34);
+  app.add_flag("-q,--quiet", invocation.quiet, "only errors");
+  app.add_flag("-v,--verbose", invocation.verbose, "details, too");
+  app.footer(kExamples);
+  app.require_subcommand(1);
+  app.fallthrough();
+  add_demo(app, invocation);
+  add_run(app, invocation);
+  add_compare(app, invocation);
+  add_validate(app, invocation);
+  add_inspect(app, invocation);
+  add_list(app, invocation);
+  add_bench(app, invocation);
+  if (argc == 1) {
+    fmt::print("{}", app.help());
+    invocation.status = 0;
+    return invocation;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    app.exit(asked);
+    return {};
+  } catch (const CLI::ParseError& error) {
+    return refuse(app, error);
+  }
+  return invocation;
+}
+
+}  // namespace palpate::cli

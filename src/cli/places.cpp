@@ -1,0 +1,54 @@
+#include "places.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "palpate/core/error.h"
+
+namespace palpate::cli {
+namespace fs = std::filesystem;
+namespace {
+
+fs::path scene_folder() { return fs::canonical("/proc/self/exe").parent_path().parent_path() / "share" / "palpate" / "scenes"; }
+
+}  // namespace
+
+std::vector<std::string> shipped_scenes() {
+  std::vector<std::string> out;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(scene_folder(), none))
+    if (entry.path().extension() == ".toml") out.push_back(entry.path().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string find_scene(const std::string& name_or_path) {
+  if (fs::is_regular_file(name_or_path)) return name_or_path;
+  std::vector<std::string> known;
+  for (const std::string& scene : shipped_scenes()) {
+    known.push_back(fs::path(scene).stem().string());
+    if (known.back() == name_or_path) return scene;
+  }
+  if (fs::is_directory(name_or_path)) fail("{}: is a folder; give a scene file (.toml) or the name of a scene: see `palpate list scenes`", name_or_path);
+  fail("{}: no such file, and no scene that comes with palpate has this name{}", name_or_path, suggestion(name_or_path, known));
+}
+
+std::string default_folder(const std::string& name) { return (fs::path("out") / name).string(); }
+
+std::string read_text(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  if (!in || !(text << in.rdbuf())) fail("{}: cannot be read", path);
+  return text.str();
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!fs::is_directory(folder))
+    fail("{}: this output folder cannot be made ({}); choose another with -o DIR", folder, error ? error.message() : "a file has this name");
+}
+
+}  // namespace palpate::cli

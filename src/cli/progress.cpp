@@ -1,0 +1,62 @@
+#include "progress.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "palpate/core/clock.h"
+
+namespace palpate::cli {
+namespace {
+
+constexpr double kQuietSeconds = 1.0, kBetweenSeconds = 0.1;
+constexpr int kBarWidth = 24;
+
+int terminal_width() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  const long s = std::lround(std::clamp(seconds, 0.0, 1e9));
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{} min {} s", s / 60, s % 60);
+  return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
+}
+
+Progress::Progress(std::string what) : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1), start_(wall_seconds()) {
+  if (const char* term = std::getenv("TERM"); term && std::string(term) == "dumb") terminal_ = false;
+}
+
+Progress::~Progress() { wipe(); }
+
+void Progress::operator()(double fraction, const std::string& text) {
+  const double now = wall_seconds();
+  if (!terminal_ || now - start_ < kQuietSeconds || now - last_ < kBetweenSeconds) return;
+  last_ = now;
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  const int filled = static_cast<int>(fraction * kBarWidth);
+  std::string line = fmt::format("[{}{}] {:3.0f} %", std::string(filled, '#'), std::string(kBarWidth - filled, '-'), 100.0 * fraction);
+  if (fraction > 0.02) line += fmt::format("  {} left", duration_text((now - start_) * (1.0 - fraction) / fraction));
+  line += "  " + (text.empty() ? what_ : text);
+  line.resize(std::min<std::size_t>(line.size(), static_cast<std::size_t>(terminal_width() - 1)));
+  fmt::print(stderr, "\r\033[K{}", line);
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void Progress::wipe() {
+  if (!shown_) return;
+  fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+  shown_ = false;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "commands.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+#include "palpate/loop/recorder.h"
+#include "palpate/report/run_report.h"
+#include "picture.h"
+#include "places.h"
+#include "progress.h"
+#include "scene_of.h"
+#include "stop.h"
+
+namespace palpate::cli {
+namespace {
+
+/// The largest force and torque that the hand felt, and when.
+class PeakWrench : public loop::Observer {
+ public:
+  void tick(const loop::TickRecord& tick) override {
+    if (tick.device.force.norm() > force_n) force_n = tick.device.force.norm(), force_s = tick.time;
+    if (tick.device.moment.norm() > torque_n_m) torque_n_m = tick.device.moment.norm(), torque_s = tick.time;
+  }
+  double force_n = 0.0, force_s = 0.0, torque_n_m = 0.0, torque_s = 0.0;
+};
+
+void print_outcome(const loop::World& world, const loop::RunResult& result, const PeakWrench& peak, double assemble_s) {
+  fmt::print("{}: {:g} s simulated in {:.2f} s, assembled in {:.2f} s\n", short_name(world.description), result.time, result.wall_s, assemble_s);
+  if (world.stepper) {
+    const dynamics::StepperCounters& c = result.counters;
+    fmt::print("{}: {} steps, {} force and {} tangent evaluations, {} factorisations, {} contact queries\n", world.stepper->name(), c.steps,
+               c.force_evaluations, c.tangent_evaluations, c.solver.factorisations, result.contact_queries);
+  }
+  if (result.ticks > 0)
+    fmt::print("on the hand: at most {:.4g} N (at {:g} s) and {:.4g} N m (at {:g} s) in {} ticks; {} held at the device's limit\n", peak.force_n, peak.force_s,
+               peak.torque_n_m, peak.torque_s, result.ticks, result.limited_ticks);
+}
+
+/// What stands in the folder now, for the person to open.
+void print_files(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.is_regular_file()) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  fmt::print("in {}: {}\n", folder, fmt::join(names, ", "));
+}
+
+loop::RunResult run_watched(loop::World& world, const RunArguments& arguments, std::vector<loop::Observer*> observers) {
+  Progress progress(fmt::format("running {}", short_name(world.description)));
+  loop::RunOptions options;
+  options.duration_s = arguments.duration_s;
+  options.observers = std::move(observers);
+  options.progress = [&progress](double fraction) { progress(fraction); };
+  options.stop = &stop_flag();
+  return loop::run(world, options);
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments) {
+  const scene::Description description = scene_of(arguments.scene);
+  const double start = wall_seconds();
+  const std::unique_ptr<loop::World> world = loop::assemble(description);
+  const double assemble_s = wall_seconds() - start;
+
+  // A scene that records nothing writes nothing, unless something was asked for here.
+  const bool keep = description.record || !arguments.folder.empty() || arguments.picture || arguments.report;
+  const std::string folder = arguments.folder.empty() ? default_folder(short_name(description)) : arguments.folder;
+  if (keep) make_folder(folder);
+
+  PeakWrench peak;
+  std::vector<loop::Observer*> observers = {&peak};
+  std::optional<loop::Recorder> recorder;
+  if (description.record) observers.push_back(&recorder.emplace(*world, folder));
+  const loop::RunResult result = run_watched(*world, arguments, observers);
+  recorder.reset();  // closes its files
+
+  print_outcome(*world, result, peak, assemble_s);
+  if (keep) {
+    loop::write_summary(*world, result, assemble_s, folder);
+    if (arguments.picture) take_picture(*world, (std::filesystem::path(folder) / "picture.png").string());
+    if (arguments.report) report::write_run_report(folder);
+    print_files(folder);
+  }
+  if (!result.status.ok())
+    fail("{} gave up at t = {:g} s: {}{}; a smaller tolerance or step often helps (--set integrator.rtol=..., integrator.step_s=...)", description.integrator.name,
+         result.status.t, result.status.message, keep ? " (what was recorded by then is whole)" : "");
+  if (result.stopped) {
+    fmt::print(stderr, "palpate: stopped at t = {:g} s{}\n", result.time, keep ? "; what was recorded by then is whole" : "");
+    return kExitStopped;
+  }
+  return 0;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,25 @@
+#include "stop.h"
+
+#include <csignal>
+
+namespace palpate::cli {
+namespace {
+
+std::atomic<bool> stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may touch only lock-free atomics");
+
+void on_signal(int) { stop = true; }
+
+}  // namespace
+
+const std::atomic<bool>& stop_flag() { return stop; }
+
+void catch_stop_signals() {
+  struct sigaction action = {};
+  action.sa_handler = on_signal;
+  action.sa_flags = SA_RESTART | SA_RESETHAND;  // the second signal finds the default action again
+  sigemptyset(&action.sa_mask);
+  for (int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+}
+
+}  // namespace palpate::cli

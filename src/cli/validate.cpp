@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+#include "palpate/report/run_report.h"
+#include "palpate/report/table.h"
+#include "palpate/study/validation.h"
+#include "places.h"
+#include "progress.h"
+#include "stop.h"
+
+namespace palpate::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using study::Measurement;
+using study::ValidationCase;
+
+std::vector<const ValidationCase*> chosen(const ValidateArguments& arguments) {
+  std::vector<std::string> known;
+  for (const ValidationCase& one : study::validation_cases()) known.push_back(one.name);
+  std::vector<const ValidationCase*> out;
+  for (const std::string& name : arguments.cases) {
+    const auto at = std::find(known.begin(), known.end(), name);
+    if (at == known.end()) fail("there is no case \"{}\"{}; see `palpate list cases`", name, suggestion(name, known));
+    out.push_back(&study::validation_cases()[static_cast<std::size_t>(at - known.begin())]);
+  }
+  if (arguments.cases.empty())
+    for (const ValidationCase& one : study::validation_cases())
+      if (!one.slow || arguments.slow) out.push_back(&one);
+  return out;
+}
+
+std::string order_text(const Measurement& m) {
+  if (std::isnan(m.order)) return "-";
+  if (std::isnan(m.order_low)) return fmt::format("{:.2f}", m.order);
+  return fmt::format("{:.2f} in [{:g}, {:g}]", m.order, m.order_low, m.order_high);
+}
+
+std::vector<std::string> row(const ValidationCase& one, const Measurement& m) {
+  return {one.name, m.quantity, fmt::format("{:.6g}", m.computed), fmt::format("{:.6g}", m.exact), fmt::format("{:.2e}", m.error),
+          fmt::format("{:.0e}", m.bar), order_text(m), m.passed() ? "pass" : "FAIL"};
+}
+
+/// NaN is no JSON: what does not apply is null.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_json(const ValidationCase& one, const std::vector<Measurement>& measurements, double seconds) {
+  Json list = Json::array();
+  for (const Measurement& m : measurements)
+    list.push_back({{"quantity", m.quantity}, {"computed", number(m.computed)}, {"exact", number(m.exact)}, {"error", number(m.error)},
+                    {"bar", number(m.bar)}, {"order", number(m.order)}, {"order_low", number(m.order_low)}, {"order_high", number(m.order_high)},
+                    {"note", m.note}, {"passed", m.passed()}});
+  return {{"name", one.name}, {"section", one.section}, {"summary", one.summary}, {"why", one.why}, {"wall_s", seconds}, {"measurements", list}};
+}
+
+bool all_pass(const std::vector<Measurement>& measurements) {
+  return !measurements.empty() && std::all_of(measurements.begin(), measurements.end(), [](const Measurement& m) { return m.passed(); });
+}
+
+struct Run {
+  std::vector<std::vector<std::string>> rows;
+  Json cases = Json::array();
+  int failed = 0;
+};
+
+void run_one(const ValidationCase& one, Run& out) {
+  const double start = wall_seconds();
+  const std::vector<Measurement> measurements = one.run("");
+  for (const Measurement& m : measurements) out.rows.push_back(row(one, m));
+  if (measurements.empty()) out.rows.push_back({one.name, "nothing was measured", "-", "-", "-", "-", "-", "FAIL"});
+  out.cases.push_back(to_json(one, measurements, wall_seconds() - start));
+  if (!all_pass(measurements)) ++out.failed;
+}
+
+/// A case that still passes with its physics broken is worthless.
+void run_sabotaged(const ValidationCase& one, Run& out) {
+  for (const std::string& sabotage : one.sabotages) {
+    const bool caught = !all_pass(one.run(sabotage));
+    out.rows.push_back({one.name, sabotage, caught ? "fails, as it must" : "STILL PASSES"});
+    if (!caught) ++out.failed;
+  }
+}
+
+void write_results(const Run& run, const std::string& folder) {
+  make_folder(folder);
+  const std::string path = (std::filesystem::path(folder) / "validation.json").string();
+  std::ofstream(path) << Json{{"cases", run.cases}}.dump(2) << "\n";
+  fmt::print("written: {}, {}\n", path, report::write_run_report(folder).string());
+}
+
+}  // namespace
+
+int validate(const ValidateArguments& arguments) {
+  const std::vector<const ValidationCase*> cases = chosen(arguments);
+  Run out;
+  std::size_t done = 0;
+  {
+    Progress progress("validating");
+    for (const ValidationCase* one : cases) {
+      if (stop_flag()) break;
+      progress(static_cast<double>(done) / static_cast<double>(cases.size()), one->name);
+      arguments.sabotage ? run_sabotaged(*one, out) : run_one(*one, out);
+      ++done;
+    }
+  }
+  using Headers = std::vector<std::string>;
+  fmt::print("{}", report::format_table(arguments.sabotage ? Headers{"case", "sabotage", "outcome"}
+                                                           : Headers{"case", "quantity", "computed", "exact", "error", "bar", "order", "verdict"}, out.rows));
+  fmt::print("{} of {} cases {}{}\n", done - static_cast<std::size_t>(out.failed), done, arguments.sabotage ? "fail when broken on purpose" : "keep their bars",
+             done < cases.size() ? fmt::format("; stopped before the other {}", cases.size() - done) : "");
+  if (!arguments.folder.empty() && !arguments.sabotage) write_results(out, arguments.folder);
+  return out.failed > 0 ? kExitError : 0;
+}
+
+}  // namespace palpate::cli
