@@ -1,0 +1,39 @@
+#pragma once
+#include <fstream>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace palpate::store {
+
+using CsvCell = std::variant<double, std::string>;
+
+/// Comma-separated values with one line of headers; headers carry units (`force_x_n`).  Numbers are written so that they read back exactly; NaN is `nan`.
+class CsvWriter {
+ public:
+  CsvWriter(const std::string& path, std::vector<std::string> headers);
+  void row(std::span<const double> values);
+  void row(const std::vector<CsvCell>& cells);
+  void flush();
+  void close();  ///< @throws Error when the disk refused anything
+  int rows() const { return rows_; }
+
+ private:
+  void end_row(std::size_t cells);
+  std::string path_;
+  std::size_t columns_ = 0;
+  int rows_ = 0;
+  std::string line_;
+  std::ofstream out_;
+};
+
+struct CsvTable {
+  std::vector<std::string> headers;
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> column(const std::string& header) const;   ///< @throws Error with the nearest header
+  std::vector<double> numbers(const std::string& header) const;       ///< @throws Error for a cell that is no number
+};
+CsvTable read_csv(const std::string& path);
+
+}  // namespace palpate::store

@@ -1,0 +1,73 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "palpate/core/types.h"
+
+/// A run on disk: one HDF5 file in VTKHDF form, version 2.0, UnstructuredGrid with a temporal Steps group.  ParaView (5.12 or newer) opens it
+/// as a time series; h5py reads it.  The topology stands once, the points and their data once a step.
+namespace palpate::store {
+
+/// One thing of a run: a soft body by its tetrahedra, or a tool by its triangles.
+struct RunPart {
+  std::string name;
+  Points reference;  ///< positions that displacements are measured from [m]: where it stood at the start
+  Tets tets;         ///< of a body; indices into its own points
+  Faces faces;       ///< of a tool
+};
+
+struct RunInfo {
+  std::string scene_name;
+  std::string scene_source;  ///< the effective TOML
+  std::string version;       ///< of palpate, with its commit
+  int expected_steps = 100;  ///< room made beforehand; more steps than this are welcome, and cost a reallocation
+};
+
+/// Writes a run.  A step is committed by one number, the attribute NSteps, after all else of it is in the file, and the room for the
+/// expected steps is made beforehand; so a process killed at any moment leaves a readable file with every committed step.
+class RunFile {
+ public:
+  /// @param parts  their points follow one another in this order  @throws Error when the file cannot be made
+  RunFile(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info);
+  ~RunFile();
+  RunFile(RunFile&&) noexcept;
+
+  /// Appends one instant.  @param points, velocity 3 x point_count [m], [m/s]  @param stress point_count, von Mises [Pa]; all finite
+  /// @throws Error when the disk refuses; the steps before stay readable
+  void append(double time_s, const Points& points, const Points& velocity, const VecX& stress);
+  int steps() const;
+  int point_count() const;
+  /// Gives room that was not needed back.  Called by the destructor too, which swallows errors.
+  void close();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Reads a run back, finished or not.
+class RunReader {
+ public:
+  explicit RunReader(const std::string& path);  ///< @throws Error when this is no run of ours
+  ~RunReader();
+  RunReader(RunReader&&) noexcept;
+
+  int steps() const;
+  int point_count() const;
+  const std::vector<double>& times_s() const;
+  const RunInfo& info() const;
+  const std::vector<RunPart>& parts() const;
+  int first_point(int part) const;  ///< where a part's points begin
+
+  Points points(int step) const;
+  Points displacement(int step) const;
+  Points velocity(int step) const;
+  VecX stress(int step) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate::store

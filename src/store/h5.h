@@ -1,0 +1,72 @@
+#pragma once
+#include <hdf5.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+/// The little of HDF5 that palpate uses, with owners that close and errors that say which file and what failed.
+namespace palpate::store::h5 {
+
+/// Owns one HDF5 identifier.
+class Id {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Id() = default;
+  Id(hid_t id, Close close) : id_(id), close_(close) {}
+  Id(Id&& other) noexcept : id_(std::exchange(other.id_, H5I_INVALID_HID)), close_(other.close_) {}
+  Id& operator=(Id&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  ~Id() { if (id_ >= 0) close_(id_); }
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_ = H5I_INVALID_HID;
+  Close close_ = nullptr;
+};
+
+/// HDF5 prints its errors on standard error by default; while one of these lives, it keeps quiet and we speak.
+class Quiet {
+ public:
+  Quiet();
+  ~Quiet();
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// throw Error `PATH: what: HDF5's own words`.
+[[noreturn]] void fail_at(const std::string& path, const std::string& what);
+/// Passes a good identifier or status through; else fail_at.
+hid_t check(hid_t id, const std::string& path, const std::string& what);
+
+Id create_file(const std::string& path);
+Id open_file(const std::string& path);  ///< for reading
+Id create_group(hid_t parent, const std::string& name, const std::string& path);
+
+/// A data set written once.  `type` is the type in memory and in the file.
+void write(hid_t parent, const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* data, const std::string& path);
+void write_text(hid_t parent, const std::string& name, const std::string& text, const std::string& path);
+void write_attribute(hid_t object, const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* data, const std::string& path);
+void write_attribute_text(hid_t object, const std::string& name, const std::string& text, const std::string& path);
+
+/// A data set opened for reading, checked: of this class of type and this many dimensions.
+struct Opened {
+  Id id;
+  std::vector<hsize_t> shape;
+};
+Opened open(hid_t parent, const std::string& name, H5T_class_t type_class, std::size_t rank, const std::string& path);
+void read(const Opened& data, const std::string& name, hid_t type, void* out, const std::string& path);
+/// Rows [first, first + count) of a data set.
+void read_rows(const Opened& data, const std::string& name, hid_t type, hsize_t first, hsize_t count, void* out, const std::string& path);
+std::string read_text(hid_t parent, const std::string& name, const std::string& path);
+std::string read_attribute_text(hid_t object, const std::string& name, const std::string& path);
+long long read_attribute_integer(hid_t object, const std::string& name, const std::string& path);
+
+}  // namespace palpate::store::h5
