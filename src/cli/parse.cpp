@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "commands.h"
+#include "palpate/store/provenance.h"
 #include "stop.h"
-#include "version.h"
 
 namespace palpate::cli {
 namespace {
@@ -163,7 +163,10 @@ Invocation refuse(const CLI::App& app, const CLI::ParseError& error) {
 Invocation parse(int argc, char** argv) {
   Invocation invocation;
   CLI::App app(kDescription, "palpate");
-  app.set_version_flag("--version", version_text());
+  app.set_version_flag("--version", [] {
+    const store::Provenance made_by = store::provenance();
+    return fmt::format("palpate {} (commit {}, {}, {})", made_by.version, made_by.commit, made_by.compiler, made_by.build_type);
+  });
   app.get_formatter()->column_width(34);
   app.add_flag("-q,--quiet", invocation.quiet, "only errors");
   app.add_flag("-v,--verbose", invocation.verbose, "details, too");
