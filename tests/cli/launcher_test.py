@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+"""The launcher ./palpate, with dpkg, apt, cmake, ninja and ctest replaced by small fakes that write down how they were called."""
+import os
+import shutil
+import stat
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+TREE = Path(__file__).resolve().parents[2]
+
+FAKES = {
+    # Says that every package is installed but those named in the file `missing`.
+    "dpkg-query": 'printf "%s\\n" "dpkg-query $*" >>"$CALLS"; shift 2; for p; do grep -qx "$p" "$FAKE/missing" || echo "$p installed"; done',
+    "apt-get": 'echo "apt-get $*" >>"$CALLS"; case "$*" in *--simulate*) [ ! -e "$FAKE/no-lists" ];; *update*) rm -f "$FAKE/no-lists";; '
+               '*"install --yes"*) [ -e "$FAKE/apt-fails" ] && { echo "E: broken" >&2; exit 100; }; : >"$FAKE/missing";; esac',
+    "sudo": 'echo "sudo $*" >>"$CALLS"; while [ "$1" = -n ]; do shift; done; exec "$@"',
+    "cmake": 'echo "cmake $*" >>"$CALLS"; mkdir -p build/release/bin; touch build/release/build.ninja',
+    "ninja": 'echo "ninja $*" >>"$CALLS"; [ ! -e "$FAKE/build-fails" ] || { echo "[1/2] Building"; echo "a.cpp:1: error: no"; exit 1; }; '
+             'echo "[1/1 1s] Linking"; printf \'#!/bin/sh\\nfor a; do echo "[$a]"; done\\nexit 7\\n\' >"$2/bin/palpate"; chmod +x "$2/bin/palpate"',
+    "ctest": 'echo "ctest $*" >>"$CALLS"',
+    "id": 'echo 1000',
+}
+
+
+class Launcher(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.tree = self.folder / "a tree"  # with a blank, as people have them
+        self.tree.mkdir()
+        for name in ("palpate", ".packages", "CMakePresets.json"):
+            shutil.copy(TREE / name, self.tree)
+        self.fake = self.folder / "fake"
+        self.fake.mkdir()
+        (self.fake / "missing").write_text("")
+        for name, script in FAKES.items():
+            self.write_fake(name, script)
+        self.calls_file = self.folder / "calls"
+
+    def write_fake(self, name, script):
+        path = self.fake / name
+        path.write_text("#!/bin/sh\n" + script + "\n")
+        path.chmod(path.stat().st_mode | stat.S_IXUSR)
+
+    def launch(self, *arguments, path=None):
+        self.calls_file.write_text("")
+        environment = dict(os.environ, PATH=path or f"{self.fake}:/usr/bin:/bin", CALLS=str(self.calls_file), FAKE=str(self.fake))
+        done = subprocess.run([str(self.tree / "palpate"), *arguments], capture_output=True, text=True, env=environment, stdin=subprocess.DEVNULL,
+                              cwd=self.folder, timeout=60)
+        self.calls = self.calls_file.read_text().splitlines()
+        return done
+
+    def called(self, program):
+        return [call for call in self.calls if call.split()[0] == program]
+
+    def test_builds_then_runs_with_the_same_arguments_and_status(self):
+        done = self.launch("run", "a b", "--set", "x=1")
+        self.assertEqual((done.returncode, done.stdout), (7, "[run]\n[a b]\n[--set]\n[x=1]\n"), done.stderr)
+        self.assertEqual(self.called("cmake"), ["cmake --preset release"])
+        self.assertTrue(self.called("ninja")[0].endswith(" palpate"), self.calls)
+        self.assertFalse(self.called("apt-get"))
+
+    def test_second_call_asks_neither_dpkg_nor_cmake(self):
+        self.launch("list")
+        self.launch("list")
+        self.assertEqual([call.split()[0] for call in self.calls], ["ninja"])
+
+    def test_changed_list_is_checked_again(self):
+        self.launch("list")
+        with (self.tree / ".packages").open("a") as file:
+            file.write("zzz-new\n")
+        self.launch("list")
+        self.assertEqual(len(self.called("dpkg-query")), 1)
+        self.assertIn("zzz-new", self.called("dpkg-query")[0])
+
+    def test_help_goes_to_the_program(self):
+        self.assertEqual(self.launch("--help").stdout, "[--help]\n")
+
+    def test_no_install_refuses_and_names_the_command(self):
+        (self.fake / "missing").write_text("libccd-dev\nninja-build\n")
+        done = self.launch("--no-install", "demo")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("apt-get install --yes --no-install-recommends ninja-build libccd-dev\n", done.stderr)
+        self.assertIn("  libccd-dev\n", done.stderr)
+        self.assertFalse(self.called("apt-get") + self.called("ninja") + self.called("sudo"))
+
+    def test_installs_what_is_missing_and_fetches_lists_only_when_needed(self):
+        (self.fake / "missing").write_text("libccd-dev\n")
+        done = self.launch("list")
+        self.assertEqual(done.returncode, 7, done.stderr)
+        self.assertIn("libccd-dev", done.stderr)
+        self.assertFalse([call for call in self.called("apt-get") if "update" in call])
+        self.assertTrue(any("install --yes --no-install-recommends libccd-dev" in call for call in self.called("apt-get")), self.calls)
+
+        (self.fake / "missing").write_text("libccd-dev\n")
+        (self.fake / "no-lists").write_text("")
+        (self.tree / "build/packages.stamp").unlink()
+        self.launch("list")
+        self.assertEqual(len([call for call in self.called("apt-get") if "update" in call]), 1, self.calls)
+
+    def test_failing_installation_shows_why(self):
+        (self.fake / "missing").write_text("libccd-dev\n")
+        (self.fake / "apt-fails").write_text("")
+        done = self.launch("list")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("E: broken", done.stderr)
+        self.assertIn("apt-get could not install them", done.stderr)
+
+    def test_other_system_is_told_what_is_needed(self):
+        bare = self.folder / "bare"
+        bare.mkdir()
+        for name in ("bash", "env", "readlink", "cat", "mkdir", "cp", "nproc", "flock", "rm", "sh", "tail", "grep", "touch", "chmod", "printf"):
+            found = shutil.which(name, path="/usr/bin:/bin")
+            if found:
+                (bare / name).symlink_to(found)
+        for name in ("cmake", "ninja"):
+            (bare / name).symlink_to(self.fake / name)
+        done = self.launch("list", path=str(bare))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no Debian system", done.stderr)
+        self.assertIn("libsimbody-dev", done.stderr)
+        done = self.launch("--assume-packages", "list", path=str(bare))
+        self.assertEqual((done.returncode, done.stdout), (7, "[list]\n"), done.stderr)
+
+    def test_failing_build_shows_the_error_and_the_log(self):
+        (self.fake / "build-fails").write_text("")
+        done = self.launch("list")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("a.cpp:1: error: no", done.stderr)
+        self.assertIn("build/release/build.log", done.stderr)
+        self.assertEqual(done.stdout, "")
+
+    def test_test_builds_all_and_leaves_slow_ones_out(self):
+        self.launch("test", "-R", "fem")
+        self.assertTrue(self.called("ninja")[0].endswith(" all"), self.calls)
+        self.assertIn("-R fem -LE slow", self.called("ctest")[0])
+        self.assertIn("--output-on-failure", self.called("ctest")[0])
+        self.launch("test", "--slow")
+        self.assertNotIn("slow", self.called("ctest")[0])
+
+
+if __name__ == "__main__":
+    if shutil.which("bash") is None:
+        sys.exit("bash is missing")
+    unittest.main()
