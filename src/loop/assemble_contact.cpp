@@ -87,7 +87,7 @@ void assemble_contact(World& world) {
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
   if (world.tool_frame && world.description.coupling.linearisation == "condensed")
-    world.condenser = integrate::make_linear_solver(world.system.symmetric() ? "cholmod" : "klu");
+    world.condenser = integrate::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
 }
 
 }  // namespace palpate::loop

@@ -6,7 +6,7 @@
 
 namespace palpate::loop {
 
-/// Keeps what the scene's [record] table asks for, in one folder: states.h5 (VTKHDF time series of all bodies and the tool), force.csv (a line a tick).
+/// Keeps what the scene's [record] table asks for, in one folder: run.vtkhdf (VTKHDF time series of all bodies and the tool), force.csv (a line a tick).
 /// Every period on disk is complete: an interrupted run leaves valid files.  A scene without [record] gets none of it.
 class Recorder : public Observer {
  public:
@@ -20,8 +20,5 @@ class Recorder : public Observer {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// summary.json (versions, CPU, options, counts, timings) and scene.toml in `folder`.
-void write_summary(const World& world, const RunResult& result, double assemble_s, const std::string& folder);
 
 }  // namespace palpate::loop

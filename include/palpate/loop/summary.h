@@ -1,0 +1,10 @@
+#pragma once
+#include "palpate/loop/run.h"
+#include "palpate/store/summary.h"
+
+namespace palpate::loop {
+
+/// What a run was and what it cost: options, sizes, counts, timings, constructions.  The caller adds the command line and writes it.
+store::Summary summarise(const World& world, const RunResult& result, double assemble_s);
+
+}  // namespace palpate::loop

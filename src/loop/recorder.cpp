@@ -1,0 +1,109 @@
+#include "palpate/loop/recorder.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "palpate/core/error.h"
+#include "palpate/store/force_file.h"
+#include "palpate/store/provenance.h"
+#include "palpate/store/run_file.h"
+
+namespace palpate::loop {
+namespace {
+
+constexpr const char* kRunFile = "run.vtkhdf";
+constexpr const char* kForceFile = "force.csv";
+
+/// How many periods of the loop pass between two recorded states.
+int periods_between(const scene::Description& d) {
+  return std::max(1, static_cast<int>(std::lround(d.record->state_period_s / period_of(d))));
+}
+
+}  // namespace
+
+struct Recorder::Impl {
+  std::unique_ptr<store::RunFile> states;
+  std::unique_ptr<store::ForceFile> forces;
+  TriMesh tool;       ///< in its own axes; empty without a tool
+  int every = 1;      ///< periods
+  long seen = 0;      ///< periods
+  Pose tool_pose;
+  Twist tool_twist;
+  Points points, velocity;
+  VecX stress;
+
+  void open_states(const World& world, const std::string& path) {
+    std::vector<store::RunPart> parts;
+    Eigen::Index count = 0;
+    for (const Body& body : world.bodies) {
+      parts.push_back({body.name, body.placed, body.rest.tets, {}});
+      count += body.placed.cols();
+    }
+    const scene::Description& d = world.description;
+    if (d.tool) {
+      tool = tool_surface(*d.tool, world.folder);
+      tool_pose = {quaternion_of(d.tool->rotation_vector_rad), d.tool->position_m};
+      parts.push_back({"tool", placed_tool(), {}, tool.faces});
+      count += tool.vertices.cols();
+    }
+    const int steps = static_cast<int>(d.duration_s / (every * period_of(d))) + 2;
+    states = std::make_unique<store::RunFile>(path, parts, store::RunInfo{d.name, d.source, store::provenance().version, steps});
+    points.resize(3, count);
+    velocity.resize(3, count);
+    stress.setZero(count);
+  }
+
+  Points placed_tool() const {
+    Points out = tool_pose.rotation.toRotationMatrix() * tool.vertices;
+    out.colwise() += tool_pose.translation;
+    return out;
+  }
+
+  void append(World& world, double t) {
+    const dynamics::StateView view = world.state.view();
+    Eigen::Index first = 0;
+    for (const Body& body : world.bodies) {
+      const dynamics::Block& block = *view.layout->find(body.block_id);
+      const Eigen::Index n = body.placed.cols();
+      points.middleCols(first, n) = Eigen::Map<const Points>(view.q.data() + block.q_offset, 3, n);
+      velocity.middleCols(first, n) = Eigen::Map<const Points>(view.u.data() + block.u_offset, 3, n);
+      stress.segment(first, n) = body.term->nodal_stress(view);
+      first += n;
+    }
+    if (tool.vertices.cols() > 0) {
+      points.rightCols(tool.vertices.cols()) = placed_tool();
+      for (Eigen::Index i = first; i < points.cols(); ++i) velocity.col(i) = tool_twist.at(points.col(i) - tool_pose.translation);
+    }
+    states->append(t, points, velocity, stress);
+  }
+};
+
+Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::make_unique<Impl>()) {
+  const scene::Description& d = world.description;
+  if (!d.record) return;
+  impl_->every = periods_between(d);
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
+  const std::filesystem::path base(folder);
+  if (d.record->states && !world.bodies.empty()) impl_->open_states(world, (base / kRunFile).string());
+  if (d.record->forces && d.tool) impl_->forces = std::make_unique<store::ForceFile>((base / kForceFile).string());
+}
+
+Recorder::~Recorder() = default;
+
+void Recorder::period(World& world, double t) {
+  if (impl_->states && impl_->seen % impl_->every == 0) impl_->append(world, t);
+  if (impl_->forces) impl_->forces->flush();
+  ++impl_->seen;
+}
+
+void Recorder::tick(const TickRecord& tick) {
+  impl_->tool_pose = tick.tool;
+  impl_->tool_twist = tick.tool_twist;
+  if (!impl_->forces) return;
+  const bool limited = (tick.device.force - tick.wanted.force).norm() > 1e-12 || (tick.device.moment - tick.wanted.moment).norm() > 1e-12;
+  impl_->forces->append({tick.time, tick.handle, tick.tool, tick.device, limited});
+}
+
+}  // namespace palpate::loop

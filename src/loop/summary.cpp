@@ -1,0 +1,90 @@
+#include "palpate/loop/summary.h"
+
+#include "palpate/core/clock.h"
+#include "palpate/core/counters.h"
+
+namespace palpate::loop {
+namespace {
+
+void add_counts(store::SummarySection& s, const RunResult& r) {
+  const dynamics::StepperCounters& c = r.counters;
+  const auto add = [&](const char* name, long value) { s.values.emplace_back(name, static_cast<long long>(value)); };
+  add("periods", r.periods);
+  add("ticks", r.ticks);
+  add("limited_ticks", r.limited_ticks);
+  add("steps", c.steps);
+  add("rejected_steps", c.rejected);
+  add("newton_iterations", c.newton_iterations);
+  add("newton_failures", c.newton_failures);
+  add("error_test_failures", c.error_test_failures);
+  add("force_evaluations", c.force_evaluations);
+  add("tangent_evaluations", c.tangent_evaluations);
+  add("symbolic_analyses", c.solver.symbolic);
+  add("factorisations", c.solver.factorisations);
+  add("linear_solves", c.solver.solves);
+  add("indefinite_matrices", c.indefinite);
+  add("reinitialisations", c.reinits);
+  add("contact_queries", r.contact_queries);
+  add("frozen_fallbacks", r.frozen_fallbacks);
+}
+
+void add_timings(store::SummarySection& s, const RunResult& r, double assemble_s) {
+  const auto add = [&](const char* name, double value) { s.values.emplace_back(name, value); };
+  add("assemble_s", assemble_s);
+  add("loop_wall_s", r.wall_s);
+  add("loop_cpu_s", r.cpu_s);
+  add("force_s", r.counters.force_s);
+  add("tangent_s", r.counters.tangent_s);
+  add("symbolic_s", r.counters.solver.symbolic_s);
+  add("factor_s", r.counters.solver.factor_s);
+  add("solve_s", r.counters.solver.solve_s);
+  add("contact_query_s", r.query_s);
+  add("linearise_s", r.linearise_s);
+  add("tool_ticks_s", r.tool_s);
+  add("simulated_s", r.time);
+}
+
+void add_sizes(store::SummarySection& s, const World& world) {
+  long long nodes = 0, tets = 0;
+  for (const Body& body : world.bodies) {
+    nodes += body.rest.nodes.cols();
+    tets += body.rest.tets.cols();
+  }
+  s.values.emplace_back("bodies", static_cast<long long>(world.bodies.size()));
+  s.values.emplace_back("nodes", nodes);
+  s.values.emplace_back("tetrahedra", tets);
+  s.values.emplace_back("peak_memory_mib", peak_memory_mib());
+}
+
+void add_options(store::SummarySection& s, const scene::Description& d) {
+  s.values.emplace_back("integrator", d.integrator.name);
+  s.values.emplace_back("rtol", d.integrator.rtol);
+  s.values.emplace_back("step_s", d.integrator.step_s);
+  s.values.emplace_back("linear_solver", d.integrator.linear_solver);
+  if (!d.tool) return;
+  s.values.emplace_back("exchange_period_s", d.coupling.exchange_period_s);
+  s.values.emplace_back("contact_refresh_s", d.coupling.contact_refresh_s);
+  s.values.emplace_back("linearisation", d.coupling.linearisation);
+  s.values.emplace_back("tool_integrator", d.tool->integrator);
+  s.values.emplace_back("max_force_n", d.device->max_force_n);
+  s.values.emplace_back("max_torque_n_m", d.device->max_torque_n_m);
+}
+
+}  // namespace
+
+store::Summary summarise(const World& world, const RunResult& result, double assemble_s) {
+  store::Summary summary;
+  summary.scene = world.description.name;
+  summary.scene_source = world.description.source;
+  summary.outcome = !result.status.ok() ? "failed" : result.stopped ? "interrupted" : "finished";
+  summary.message = result.status.message;
+  summary.provenance = store::provenance();
+  add_options(summary.section("options"), world.description);
+  add_sizes(summary.section("sizes"), world);
+  add_counts(summary.section("counts"), result);
+  add_timings(summary.section("timings"), result, assemble_s);
+  for (const auto& [name, value] : counters::snapshot()) summary.section("constructions").values.emplace_back(name, static_cast<long long>(value));
+  return summary;
+}
+
+}  // namespace palpate::loop
