@@ -30,6 +30,10 @@ class SampleSource {
 };
 
 /// Pressure p(gap, gap_rate) [Pa] and its derivatives; p >= 0 always (never adhesive), zero for gap >= 0.
+/// With the depth delta = -gap > 0 and its rate delta' = -gap_rate:
+///   kelvin_voigt   p = max(0, k delta + d delta')
+///   hunt_crossley  p = max(0, k delta (1 + 3/2 c delta'))      (Hunt and Crossley 1975)
+/// `energy_density` is that of the spring, k delta^2 / 2 [J/m^2].
 struct Pressure { double p, dp_dgap, dp_drate, energy_density; };
 Pressure pressure(const ContactSpec& law, double gap, double gap_rate);
 
@@ -66,6 +70,8 @@ class ContactForce : public dynamics::ForceTerm {
   const std::vector<ContactSample>& samples() const;
   Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
   void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out) const;
+  /// Euclidean norm of the change of the force on nodes and frames that the last refresh made, at its state [N]: the price of a slow query.
+  double refresh_force_jump() const;
   long queries() const;
   double query_seconds() const;
 

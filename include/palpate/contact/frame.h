@@ -13,6 +13,8 @@ class MovingFrame {
   virtual ~MovingFrame() = default;
   virtual Pose pose(const dynamics::StateView& state) const = 0;
   virtual Twist twist(const dynamics::StateView& state) const = 0;
+  /// True when it is a block of the State: the contact's tangent then has rows for it.
+  virtual bool in_state() const { return false; }
   /// Where its six velocities stand in u, -1 when it is given from outside.
   virtual int u_offset(const dynamics::StateView&) const { return -1; }
 };
@@ -23,7 +25,10 @@ std::shared_ptr<MovingFrame> fixed_frame(const Pose& pose = {});
 /// The free rigid body with that block id (q = qw qx qy qz px py pz, u = angular, linear).
 std::shared_ptr<MovingFrame> block_frame(int block_id);
 
-/// A frame whose motion over one exchange period is known: cubic Hermite through the poses of the ticks.
+/// A frame whose motion over one exchange period is known: cubic Hermite through the poses of the ticks, of the origin's
+/// position and of the rotation vector from each tick's orientation.  Poses and twists at the ticks are met exactly; between
+/// them the pose is of order 4 in the tick and the twist of order 3.  Before the first knot and behind the last the motion goes
+/// on with that knot's twist (an integrator may look a little ahead).  Each tick turns by less than half a turn.
 class TrajectoryFrame : public MovingFrame {
  public:
   void clear();

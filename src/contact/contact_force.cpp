@@ -1,0 +1,176 @@
+#include "palpate/contact/contact_force.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "contact/contact_force_impl.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+
+namespace palpate::contact {
+
+void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
+  frame_states.resize(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    FrameState& out = frame_states[i];
+    out.pose = frames[i]->pose(state);
+    out.R = out.pose.rotation.toRotationMatrix();
+    out.twist = frames[i]->twist(state);
+    out.u_offset = frames[i]->u_offset(state);
+  }
+}
+
+void ContactForce::Impl::query(const dynamics::StateView& state) {
+  const ScopedTimer timer(query_seconds);
+  next_samples.clear();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i].begin = next_samples.size();
+    pairs[i].source->query(state, next_samples);
+    pairs[i].end = next_samples.size();
+    for (std::size_t s = pairs[i].begin; s < pairs[i].end; ++s) next_samples[s].source = static_cast<int>(i);
+  }
+  ++queries;
+  counters::count("contact.query");
+  std::swap(samples, next_samples);
+}
+
+void ContactForce::Impl::check_samples(const dynamics::StateView& state) const {
+  const int frame_count = static_cast<int>(frames.size()), node_count = state.layout->node_count();
+  for (const ContactSample& s : samples) {
+    for (const SurfacePoint* p : {&s.a, &s.b}) {
+      PALPATE_CHECK(p->frame < frame_count && (p->frame >= 0 || (p->count > 0 && p->count <= 4)), "contact sample: frame {} of {}, {} nodes", p->frame,
+                    frame_count, p->count);
+      for (int i = 0; p->frame < 0 && i < p->count; ++i)
+        PALPATE_CHECK(p->node[static_cast<std::size_t>(i)] < node_count, "contact sample: node {} of {}", p->node[static_cast<std::size_t>(i)], node_count);
+    }
+    PALPATE_CHECK(s.area >= 0.0 && s.normal.allFinite(), "contact sample: area {}", s.area);
+  }
+}
+
+void ContactForce::Impl::add_force(const dynamics::StateView& state, VecX& f) {
+  const auto row = [&](const SurfacePoint& p) { return p.frame >= 0 ? frame_states[static_cast<std::size_t>(p.frame)].u_offset : -1; };
+  for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+    const Vec3 force = sample_force(s, motion, law);
+    add_point_force(s.a, motion.a.arm, force, row(s.a), f);
+    add_point_force(s.b, motion.b.arm, -force, row(s.b), f);
+  });
+}
+
+void ContactForce::Impl::all_forces(const dynamics::StateView& state, VecX& f) {
+  const int nodal = state.layout->nodal_size;
+  f.setZero(nodal + 6 * static_cast<Eigen::Index>(frames.size()));
+  for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+    const Vec3 force = sample_force(s, motion, law);
+    add_point_force(s.a, motion.a.arm, force, nodal + 6 * s.a.frame, f);
+    add_point_force(s.b, motion.b.arm, -force, nodal + 6 * s.b.frame, f);
+  });
+}
+
+ContactForce::ContactForce() : impl_(std::make_unique<Impl>()) { counters::count("contact.force"); }
+ContactForce::~ContactForce() = default;
+
+int ContactForce::add_frame(std::shared_ptr<MovingFrame> frame) {
+  PALPATE_CHECK(frame, "a contact frame is missing");
+  impl_->frames.push_back(std::move(frame));
+  return static_cast<int>(impl_->frames.size()) - 1;
+}
+
+int ContactForce::add_pair(std::unique_ptr<SampleSource> source, const ContactSpec& law) {
+  PALPATE_CHECK(source, "contact \"{}\" with \"{}\" has no source", law.first, law.second);
+  const std::size_t n = impl_->samples.size();
+  impl_->pairs.push_back({std::move(source), pressure_law(law), n, n});
+  return static_cast<int>(impl_->pairs.size()) - 1;
+}
+
+std::string_view ContactForce::name() const { return "contact"; }
+
+// Friction has no potential; the rows of a frame in the State see rotations, which do not commute (see tangent.cpp).
+dynamics::TermTraits ContactForce::traits() const {
+  dynamics::TermTraits traits;
+  const auto& pairs = impl_->pairs;
+  const bool friction = std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return p.law.friction > 0.0; });
+  const bool damping = std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return p.law.d > 0.0; });
+  const bool frames = std::any_of(impl_->frames.begin(), impl_->frames.end(), [](const auto& f) { return f->in_state(); });
+  traits.symmetric_tangent = !friction && !frames;
+  traits.conservative = !friction && !damping;
+  return traits;
+}
+
+void ContactForce::add_pattern(dynamics::PatternBuilder& pattern) const {
+  for (const auto& pair : impl_->pairs) pair.source->add_pattern(pattern);
+}
+
+std::uint64_t ContactForce::pattern_version() const {
+  std::uint64_t sum = impl_->pairs.size();  // each grows only, so does the sum
+  for (const auto& pair : impl_->pairs) sum += pair.source->pattern_version();
+  return sum;
+}
+
+void ContactForce::add_force(const dynamics::StateView& state, VecX& f) { impl_->add_force(state, f); }
+
+void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) {
+  Impl& m = *impl_;
+  m.for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+    const SampleForce force = sample_force_and_tangent(s, motion, law);
+    add_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force), Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale,
+                       d_scale, state.layout->nodal_size, A);
+  });
+}
+
+void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) {
+  Impl& m = *impl_;
+  m.for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+    const SampleForce force = sample_force_and_tangent(s, motion, law);
+    apply_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force), Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale,
+                         d_scale, x, y);
+  });
+}
+
+double ContactForce::energy(const dynamics::StateView& state) {
+  double sum = 0.0;
+  impl_->for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+    sum += s.area * pressure(law, motion.gap, motion.rate).energy_density;
+  });
+  return sum;
+}
+
+double ContactForce::dissipated_power(const dynamics::StateView& state) {
+  double sum = 0.0;
+  impl_->for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+    sum += sample_dissipation(s, motion, law);
+  });
+  return sum;
+}
+
+bool ContactForce::refresh(const dynamics::StateView& state) {
+  Impl& m = *impl_;
+  m.all_forces(state, m.force_before);
+  m.query(state);
+  m.check_samples(state);
+  m.all_forces(state, m.force_after);
+  m.refresh_force_jump = (m.force_after - m.force_before).norm();
+  return m.refresh_force_jump > 0.0;
+}
+
+int ContactForce::event_count() const { return static_cast<int>(impl_->pairs.size()); }
+
+// One root function a pair: its smallest gap, which changes sign when the first sample touches or the last one leaves.
+// A pair without candidates is apart by more than its candidate gap: any positive constant says so.
+void ContactForce::events(const dynamics::StateView& state, double* g) {
+  Impl& m = *impl_;
+  m.place_frames(state);
+  for (std::size_t i = 0; i < m.pairs.size(); ++i) {
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t s = m.pairs[i].begin; s < m.pairs[i].end; ++s)
+      least = std::min(least, sample_motion(m.samples[s], state, m.frame_states).gap);
+    g[i] = m.pairs[i].begin == m.pairs[i].end ? 1.0 : least;
+  }
+}
+
+const std::vector<ContactSample>& ContactForce::samples() const { return impl_->samples; }
+long ContactForce::queries() const { return impl_->queries; }
+double ContactForce::query_seconds() const { return impl_->query_seconds; }
+double ContactForce::refresh_force_jump() const { return impl_->refresh_force_jump; }
+
+}  // namespace palpate::contact

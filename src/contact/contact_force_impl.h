@@ -1,0 +1,43 @@
+#pragma once
+#include "contact/sample_math.h"
+#include "contact/tangent.h"
+#include "palpate/contact/contact_force.h"
+
+namespace palpate::contact {
+
+struct ContactForce::Impl {
+  struct Pair {
+    std::unique_ptr<SampleSource> source;
+    PressureLaw law;
+    std::size_t begin = 0, end = 0;  ///< its samples
+  };
+
+  std::vector<std::shared_ptr<MovingFrame>> frames;
+  std::vector<Pair> pairs;
+  std::vector<ContactSample> samples, next_samples;
+  std::vector<FrameState> frame_states;  ///< at the state of the evaluation under way
+  VecX force_before, force_after;        ///< scratch of refresh
+  long queries = 0;
+  double query_seconds = 0.0;
+  double refresh_force_jump = 0.0;
+
+  void place_frames(const dynamics::StateView& state);
+  void query(const dynamics::StateView& state);
+  void check_samples(const dynamics::StateView& state) const;
+  void add_force(const dynamics::StateView& state, VecX& f);
+  /// Forces on the nodes and on every frame (six rows each, given ones too): what a refresh must not change unseen.
+  void all_forces(const dynamics::StateView& state, VecX& f);
+
+  /// visit(sample, motion, law) for each sample in penetration, in order.
+  template <class Visit>
+  void for_each_active(const dynamics::StateView& state, Visit visit) {
+    place_frames(state);
+    for (const Pair& pair : pairs)
+      for (std::size_t i = pair.begin; i < pair.end; ++i) {
+        const SampleMotion motion = sample_motion(samples[i], state, frame_states);
+        if (motion.gap < 0.0) visit(samples[i], motion, pair.law);
+      }
+  }
+};
+
+}  // namespace palpate::contact

@@ -1,0 +1,100 @@
+#include "palpate/contact/frame.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "contact/rotation_path.h"
+#include "palpate/core/error.h"
+
+namespace palpate::contact {
+namespace {
+
+class FixedFrame final : public MovingFrame {
+ public:
+  explicit FixedFrame(const Pose& pose) : pose_(pose) {}
+  Pose pose(const dynamics::StateView&) const override { return pose_; }
+  Twist twist(const dynamics::StateView&) const override { return {}; }
+
+ private:
+  Pose pose_;
+};
+
+class BlockFrame final : public MovingFrame {
+ public:
+  explicit BlockFrame(int block_id) : block_id_(block_id) {}
+  // An integrator's trial quaternion is not quite a unit one; the rotation is that of its direction.
+  Pose pose(const dynamics::StateView& state) const override {
+    const double* q = state.q.data() + block(state).q_offset;
+    return {Quat(q[0], q[1], q[2], q[3]).normalized(), Vec3(q[4], q[5], q[6])};
+  }
+  Twist twist(const dynamics::StateView& state) const override {
+    const double* u = state.u.data() + block(state).u_offset;
+    return {Vec3(u[0], u[1], u[2]), Vec3(u[3], u[4], u[5])};
+  }
+  bool in_state() const override { return true; }
+  int u_offset(const dynamics::StateView& state) const override { return block(state).u_offset; }
+
+ private:
+  const dynamics::Block& block(const dynamics::StateView& state) const {
+    const dynamics::Block* b = state.layout->find(block_id_);
+    PALPATE_CHECK(b && b->q_size == 7 && b->u_size == 6, "block {} is no free rigid body of this State", block_id_);
+    return *b;
+  }
+  int block_id_;
+};
+
+/// The motion that goes on with one knot's twist.
+Pose continued(const Pose& pose, const Twist& twist, double dt) {
+  return {(quaternion_of(dt * twist.angular) * pose.rotation).normalized(), pose.translation + dt * twist.linear};
+}
+
+struct Sampled {
+  Pose pose;
+  Twist twist;
+};
+
+/// Between two knots, h apart, at s in [0, 1]: position p and rotation vector phi (world axes, from the first orientation) are cubics.
+///   R(t) = exp(phi(t)) R0,   w = J(phi) phi'    so    phi(0) = 0, phi'(0) = w0, phi(1) = log(R1 R0^-1), phi'(1) = J(phi1)^-1 w1.
+Sampled between(const Pose& pose0, const Twist& twist0, const Pose& pose1, const Twist& twist1, double h, double s) {
+  const Vec3 phi1 = rotation_vector(pose1.rotation * pose0.rotation.conjugate());
+  const Cubic p = hermite(s, pose0.translation, h * twist0.linear, pose1.translation, h * twist1.linear);
+  const Cubic phi = hermite(s, Vec3::Zero(), h * twist0.angular, phi1, h * (left_jacobian_inverse(phi1) * twist1.angular));
+  Sampled out;
+  out.pose = {(quaternion_of(phi.value) * pose0.rotation).normalized(), p.value};
+  out.twist = {left_jacobian(phi.value) * phi.slope / h, p.slope / h};
+  return out;
+}
+
+/// The knot at or before t (the first one where there is none).
+template <class Knots>
+std::size_t knot_before(const Knots& knots, double t) {
+  PALPATE_CHECK(!knots.empty(), "a trajectory frame without a knot was asked for its pose at t = {}", t);
+  const auto after = std::upper_bound(knots.begin(), knots.end(), t, [](double value, const auto& k) { return value < k.t; });
+  return after == knots.begin() ? 0 : static_cast<std::size_t>(after - knots.begin()) - 1;
+}
+
+template <class Knots>
+Sampled sample(const Knots& knots, double t) {
+  const std::size_t i = knot_before(knots, t);
+  const auto& a = knots[i];
+  if (t <= a.t || i + 1 == knots.size()) return {continued(a.pose, a.twist, t - a.t), a.twist};
+  const auto& b = knots[i + 1];
+  return between(a.pose, a.twist, b.pose, b.twist, b.t - a.t, (t - a.t) / (b.t - a.t));
+}
+
+}  // namespace
+
+std::shared_ptr<MovingFrame> fixed_frame(const Pose& pose) { return std::make_shared<FixedFrame>(pose); }
+std::shared_ptr<MovingFrame> block_frame(int block_id) { return std::make_shared<BlockFrame>(block_id); }
+
+void TrajectoryFrame::clear() { knots_.clear(); }
+
+void TrajectoryFrame::append(double t, const Pose& pose, const Twist& twist) {
+  PALPATE_CHECK(knots_.empty() || t > knots_.back().t, "knot at t = {} after the one at {}", t, knots_.back().t);
+  knots_.push_back({t, pose, twist});
+}
+
+Pose TrajectoryFrame::pose(const dynamics::StateView& state) const { return sample(knots_, state.time).pose; }
+Twist TrajectoryFrame::twist(const dynamics::StateView& state) const { return sample(knots_, state.time).twist; }
+
+}  // namespace palpate::contact

@@ -1,0 +1,20 @@
+#pragma once
+#include "palpate/contact/contact_force.h"
+
+namespace palpate::contact {
+
+/// A ContactSpec's law, its name resolved once.
+struct PressureLaw {
+  enum class Kind { kKelvinVoigt, kHuntCrossley } kind = Kind::kKelvinVoigt;
+  double k = 0.0;  ///< [Pa/m]
+  double d = 0.0;  ///< [Pa s/m], or c of hunt_crossley [s/m]
+  double friction = 0.0;
+  double regularisation = 1e-3;  ///< v_r [m/s]
+};
+
+/// @throws Error for a value that no contact can have, naming the pair and the key.
+PressureLaw pressure_law(const ContactSpec& spec);
+
+Pressure pressure(const PressureLaw& law, double gap, double gap_rate);
+
+}  // namespace palpate::contact

@@ -1,0 +1,76 @@
+#include "contact/sample_math.h"
+
+#include <algorithm>
+
+namespace palpate::contact {
+namespace {
+
+Vec3 tangential(const ContactSample& sample, const SampleMotion& motion) { return motion.a.v - motion.b.v - motion.rate * sample.normal; }
+
+}  // namespace
+
+PointMotion point_motion(const SurfacePoint& point, const dynamics::StateView& state, const std::vector<FrameState>& frames) {
+  if (point.frame >= 0) {
+    const FrameState& frame = frames[static_cast<std::size_t>(point.frame)];
+    const Vec3 arm = frame.R * point.offset;
+    return {frame.pose.translation + arm, frame.twist.at(arm), arm};
+  }
+  PointMotion motion{point.offset, Vec3::Zero(), Vec3::Zero()};
+  for (int i = 0; i < point.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    motion.x += point.weight[k] * state.position(point.node[k]);
+    motion.v += point.weight[k] * state.velocity(point.node[k]);
+  }
+  return motion;
+}
+
+SampleMotion sample_motion(const ContactSample& sample, const dynamics::StateView& state, const std::vector<FrameState>& frames) {
+  SampleMotion motion{point_motion(sample.a, state, frames), point_motion(sample.b, state, frames), 0.0, 0.0};
+  motion.gap = sample.normal.dot(motion.a.x - motion.b.x);
+  motion.rate = sample.normal.dot(motion.a.v - motion.b.v);
+  return motion;
+}
+
+// Normal and regularised Coulomb part, with the tangential velocity v_t = (I - n n^T)(v_a - v_b):
+//   F = A p (n - mu s),   s = v_t / max(|v_t|, v_r)
+// Below v_r the sliding direction is replaced by a viscous law; above it the friction is mu p A exactly.
+Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
+  const double p = pressure(law, motion.gap, motion.rate).p;
+  if (law.friction == 0.0 || p == 0.0) return sample.area * p * sample.normal;
+  const Vec3 v_t = tangential(sample, motion);
+  return sample.area * p * (sample.normal - law.friction / std::max(v_t.norm(), law.regularisation) * v_t);
+}
+
+// With m = n - mu s, n and A frozen, p = p(gap, rate), gap = n . x_rel, rate = n . v_rel:
+//   dF/dx_rel = A p_gap m n^T
+//   dF/dv_rel = A (p_rate m n^T - mu p ds/dv_t P),   P = I - n n^T
+//   ds/dv_t   = I / v_r                        for |v_t| <= v_r
+//             = (I - t t^T) / |v_t|, t = s     beyond
+SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
+  const Pressure p = pressure(law, motion.gap, motion.rate);
+  const Vec3& n = sample.normal;
+  if (law.friction == 0.0) {
+    const Mat3 nn = sample.area * n * n.transpose();
+    return {sample.area * p.p * n, -p.dp_dgap * nn, -p.dp_drate * nn};
+  }
+  const Vec3 v_t = tangential(sample, motion);
+  const double speed = v_t.norm(), scale = std::max(speed, law.regularisation);
+  const Vec3 s = v_t / scale, m = n - law.friction * s;
+  const Mat3 P = Mat3::Identity() - n * n.transpose();
+  const Mat3 ds = speed <= law.regularisation ? Mat3(P / scale) : Mat3((P - s * s.transpose()) / scale);
+  const Mat3 mn = sample.area * m * n.transpose();
+  return {sample.area * p.p * m, -p.dp_dgap * mn, -p.dp_drate * mn + sample.area * law.friction * p.p * ds};
+}
+
+// The spring stores A k delta^2 / 2; the contact gives the power -A p delta' to the two surfaces.  What is missing:
+//   -(A k delta delta' - A p delta') = A (p - k delta) delta'  =  A d delta'^2  or  A 3/2 k c delta delta'^2,
+// and where the pressure was cut to zero, -A k delta delta' with delta' < 0: all >= 0.  Friction takes A mu p |v_t|^2 / max(|v_t|, v_r).
+double sample_dissipation(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
+  if (motion.gap >= 0.0) return 0.0;
+  const double p = pressure(law, motion.gap, motion.rate).p;
+  const double normal_part = (p + law.k * motion.gap) * -motion.rate;
+  const Vec3 v_t = tangential(sample, motion);
+  return sample.area * (normal_part + law.friction * p * v_t.squaredNorm() / std::max(v_t.norm(), law.regularisation));
+}
+
+}  // namespace palpate::contact

@@ -1,0 +1,44 @@
+#pragma once
+#include <vector>
+
+#include "contact/pressure.h"
+#include "palpate/contact/frame.h"
+#include "palpate/contact/sample.h"
+
+namespace palpate::contact {
+
+/// A frame at the state of one evaluation.
+struct FrameState {
+  Pose pose;
+  Mat3 R = Mat3::Identity();
+  Twist twist;
+  int u_offset = -1;
+};
+
+/// Where one side's point is and how it moves.
+struct PointMotion {
+  Vec3 x, v;  ///< position [m], velocity [m/s]
+  Vec3 arm;   ///< frames: from the frame's origin [m], world axes
+};
+
+/// Both points of a sample, their gap and its rate.
+struct SampleMotion {
+  PointMotion a, b;
+  double gap, rate;
+};
+
+/// The force on point a, and its derivatives by x_a - x_b and v_a - v_b.
+struct SampleForce {
+  Vec3 force;  ///< [N]
+  Mat3 K, D;   ///< -dF/dx_rel [N/m], -dF/dv_rel [N s/m]
+};
+
+PointMotion point_motion(const SurfacePoint& point, const dynamics::StateView& state, const std::vector<FrameState>& frames);
+SampleMotion sample_motion(const ContactSample& sample, const dynamics::StateView& state, const std::vector<FrameState>& frames);
+
+Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
+SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
+/// Power that damping and friction take out [W], >= 0.
+double sample_dissipation(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
+
+}  // namespace palpate::contact

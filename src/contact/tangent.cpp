@@ -1,0 +1,118 @@
+#include "contact/tangent.h"
+
+#include "palpate/core/error.h"
+
+namespace palpate::contact {
+
+// The tangent of one sample.  With x_rel = x_a - x_b, the sample's force F on a and its derivatives K = -dF/dx_rel, D = -dF/dv_rel,
+// and each side's map B (w_i I or Z), the generalised force on side p is  s_p B_p^T F.  Its derivatives, negated:
+//
+//   by side q's position   s_p s_q B_p^T (K B_q + D V_q)      V_q: a frame's twist, held, moves the turned arm otherwise
+//   by side q's velocity   s_p s_q B_p^T  D B_q
+//   geometric (p = q)      a frame's moment s_p (r x F) changes with its own arm, dr = dtheta x r:
+//                          d(r x F) = (dtheta x r) x F = F x (r x dtheta) = [F]x [r]x dtheta = G dtheta,  so K_theta,theta += -s_p G
+//
+// Node-node blocks stay symmetric without friction (K = A k n n^T).  Frame blocks do not: G is symmetric only up to the moment
+// that it is the derivative of (rotations do not commute), and D V has no transpose partner.
+Side::Side(const SurfacePoint& surface_point, const PointMotion& motion, const std::vector<FrameState>& frames, double side_sign,
+           const Vec3& force_on_a)
+    : point(surface_point), frame(nullptr), sign(side_sign), arm(motion.arm) {
+  if (point.frame < 0) return;
+  frame = &frames[static_cast<std::size_t>(point.frame)];
+  const Mat3 r = cross_matrix(arm);
+  Z << -r, Mat3::Identity();
+  V.noalias() = -cross_matrix(frame->twist.angular) * r;
+  G.noalias() = cross_matrix(force_on_a) * r;
+}
+
+namespace {
+
+/// Rows 3 node of the body part: one 3x3 block, weighted.
+void add_node_node(const Side& p, const Side& q, const Mat3& block, dynamics::BorderedMatrix& A) {
+  for (int i = 0; i < p.point.count; ++i)
+    for (int j = 0; j < q.point.count; ++j) {
+      const auto ki = static_cast<std::size_t>(i), kj = static_cast<std::size_t>(j);
+      const int slot = A.body.slot(p.point.node[ki], q.point.node[kj]);
+      PALPATE_CHECK(slot >= 0, "contact couples nodes {} and {}, which its source did not announce in add_pattern", p.point.node[ki], q.point.node[kj]);
+      A.body.add(slot, p.point.weight[ki] * q.point.weight[kj] * block);
+    }
+}
+
+/// s_p s_q B_p^T (k (K B_q + D V_q) + d D B_q) for one pair of sides.
+void add_pair_block(const Side& p, const Side& q, const SampleForce& s, double k_scale, double d_scale, int nodal_size, dynamics::BorderedMatrix& A) {
+  const double sign = p.sign * q.sign;
+  const Mat3 C = sign * (k_scale * s.K + d_scale * s.D);
+  if (q.is_nodes()) {
+    if (p.is_nodes()) return add_node_node(p, q, C, A);
+    if (p.frame->u_offset < 0) return;
+    const Mat63 rows = p.Z.transpose() * C;
+    for (int j = 0; j < q.point.count; ++j) {
+      const auto kj = static_cast<std::size_t>(j);
+      A.bottom.block<6, 3>(p.frame->u_offset - nodal_size, 3 * q.point.node[kj]) += q.point.weight[kj] * rows;
+    }
+    return;
+  }
+  if (q.frame->u_offset < 0) return;
+  const int column = q.frame->u_offset - nodal_size;
+  Mat36 CB = C * q.Z;
+  CB.leftCols<3>().noalias() += sign * k_scale * s.D * q.V;
+  if (p.is_nodes()) {
+    for (int i = 0; i < p.point.count; ++i) {
+      const auto ki = static_cast<std::size_t>(i);
+      A.right.block<3, 6>(3 * p.point.node[ki], column) += p.point.weight[ki] * CB;
+    }
+  } else if (p.frame->u_offset >= 0) {
+    A.corner.block<6, 6>(p.frame->u_offset - nodal_size, column) += p.Z.transpose() * CB;
+  }
+}
+
+void add_geometric(const Side& p, double k_scale, int nodal_size, dynamics::BorderedMatrix& A) {
+  if (p.is_nodes() || p.frame->u_offset < 0) return;
+  const int at = p.frame->u_offset - nodal_size;
+  A.corner.block<3, 3>(at, at) -= k_scale * p.sign * p.G;
+}
+
+}  // namespace
+
+void add_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale, int nodal_size,
+                        dynamics::BorderedMatrix& A) {
+  for (const Side* p : {&a, &b}) {
+    for (const Side* q : {&a, &b}) add_pair_block(*p, *q, s, k_scale, d_scale, nodal_size, A);
+    add_geometric(*p, k_scale, nodal_size, A);
+  }
+}
+
+void apply_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale, const VecX& x, VecX& y) {
+  Vec3 dx = Vec3::Zero(), dv = Vec3::Zero();  // of x_rel by u-directions, and of v_rel by the turning arms
+  for (const Side* q : {&a, &b}) {
+    if (q->is_nodes()) {
+      for (int j = 0; j < q->point.count; ++j) {
+        const auto kj = static_cast<std::size_t>(j);
+        dx += q->sign * q->point.weight[kj] * x.segment<3>(3 * q->point.node[kj]);
+      }
+    } else if (q->frame->u_offset >= 0) {
+      dx += q->sign * (q->Z * x.segment<6>(q->frame->u_offset));
+      dv += q->sign * (q->V * x.segment<3>(q->frame->u_offset));
+    }
+  }
+  const Vec3 g = k_scale * (s.K * dx + s.D * dv) + d_scale * (s.D * dx);
+  for (const Side* p : {&a, &b}) {
+    add_point_force(p->point, p->arm, p->sign * g, p->is_nodes() ? -1 : p->frame->u_offset, y);
+    if (!p->is_nodes() && p->frame->u_offset >= 0)
+      y.segment<3>(p->frame->u_offset) -= k_scale * p->sign * (p->G * x.segment<3>(p->frame->u_offset));
+  }
+}
+
+void add_point_force(const SurfacePoint& point, const Vec3& arm, const Vec3& force, int frame_row, VecX& f) {
+  if (point.frame < 0) {
+    for (int i = 0; i < point.count; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      f.segment<3>(3 * point.node[k]) += point.weight[k] * force;
+    }
+  } else if (frame_row >= 0) {
+    f.segment<3>(frame_row) += arm.cross(force);
+    f.segment<3>(frame_row + 3) += force;
+  }
+}
+
+}  // namespace palpate::contact

@@ -1,0 +1,205 @@
+#include "fixture.h"
+
+#include "palpate/core/counters.h"
+
+using namespace contact_tests;
+
+namespace {
+
+ContactSpec spec(double friction = 0.0) {
+  ContactSpec s;
+  s.stiffness_pa_m = 1e5;
+  s.damping_pa_s_m = 10.0;
+  s.friction = friction;
+  return s;
+}
+
+/// Sum of forces and of moments about the world's origin on everything, frames given from outside included, over the sum of magnitudes.
+struct Balance {
+  double force, moment;
+};
+Balance balance(contact::ContactForce& term, const World& world, const std::vector<Pose>& frame_poses) {
+  const auto view = world.state.view();
+  const VecX f = force(term, world.state);
+  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+  double size = 0.0, reach = 0.0;
+  for (int i = 0; i < world.state.layout().node_count(); ++i) {
+    const Vec3 fi = f.segment<3>(3 * i);
+    sum += fi;
+    moment += view.position(i).cross(fi);
+    size += fi.norm();
+    reach = std::max(reach, view.position(i).norm());
+  }
+  for (std::size_t k = 0; k < frame_poses.size(); ++k) {
+    const Wrench w = term.frame_wrench(view, static_cast<int>(k));
+    sum += w.force;
+    moment += w.moment + frame_poses[k].translation.cross(w.force);
+    size += w.force.norm();
+  }
+  return {sum.norm() / size, moment.norm() / (size * reach)};
+}
+
+}  // namespace
+
+TEST(ContactForce, BalanceOfForceAndMomentForRandomPoses) {
+  int checked = 0;
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    std::mt19937 random(100 + seed);
+    World world(8, true, seed);
+    contact::ContactForce term;
+    const Pose given{rotation(random), vector(random)};
+    const auto body = contact::block_frame(world.body_id);
+    const std::vector<Pose> poses{given, body->pose(world.state.view())};
+    term.add_frame(contact::fixed_frame(given));
+    term.add_frame(body);
+    std::vector<contact::ContactSample> samples;
+    const double w = uniform(random), v = uniform(random);
+    const auto a = node_point({0, 1, 2}, {w, v, 1 - w - v}), b = node_point({3, 4, 5, 6}, {0.1, 0.2, 0.3, 0.4});
+    samples.push_back(on_frame(a, 0, poses[0], vector(random), 0.01, 0.3, world.state));
+    samples.push_back(on_frame(b, 1, poses[1], vector(random), 0.02, 0.2, world.state));
+    // Node against node, without any offset: b's first node is put on the line through a.
+    auto s = on_nodes(node_point({7}, {1.0}), node_point({0}, {1.0}), vector(random), 0.01, 0.1, world.state);
+    world.state.q().segment<3>(0) += s.b.offset;
+    s.b.offset.setZero();
+    samples.push_back(s);
+    samples[0] = on_frame(a, 0, poses[0], vector(random), 0.01, 0.3, world.state);  // node 0 moved
+    term.add_pair(std::make_unique<ListSource>(samples), spec());
+    term.refresh(world.state.view());
+    const Balance result = balance(term, world, poses);
+    EXPECT_LT(result.force, 1e-12);
+    EXPECT_LT(result.moment, 1e-12);
+    ++checked;
+  }
+  EXPECT_EQ(checked, 50);
+}
+
+// Friction acts at the two surface points, a depth apart: its moments differ by at most depth x friction.
+TEST(ContactForce, FrictionBalancesUpToItsDepth) {
+  World world(3, false, 5);
+  contact::ContactForce term;
+  term.add_frame(contact::fixed_frame());
+  const double depth = 0.01, mu = 0.5;
+  const auto s = on_frame(node_point({0, 1, 2}, {0.3, 0.3, 0.4}), 0, Pose{}, {0, 0, 1}, depth, 0.3, world.state);
+  term.add_pair(std::make_unique<ListSource>(std::vector{s}), spec(mu));
+  term.refresh(world.state.view());
+  const auto view = world.state.view();
+  const VecX f = force(term, world.state);
+  const Wrench w = term.frame_wrench(view, 0);
+  Vec3 sum = w.force, moment = w.moment;
+  for (int i = 0; i < 3; ++i) {
+    sum += f.segment<3>(3 * i);
+    moment += view.position(i).cross(Vec3(f.segment<3>(3 * i)));
+  }
+  const double normal = std::abs(w.force.z()), tangential = w.force.head<2>().norm();
+  EXPECT_NEAR(tangential, mu * normal, 1e-12 * normal);  // sliding at about 1 m/s, far above v_r
+  EXPECT_LT(sum.norm(), 1e-13 * normal);
+  EXPECT_NEAR(moment.norm(), depth * tangential, 1e-12 * normal);
+}
+
+// Below the regularisation speed the law is viscous: f = mu N v / v_r.
+TEST(ContactForce, FrictionCreepsBelowTheRegularisationSpeed) {
+  World world(1, false, 6);
+  world.state.u() << 2e-4, 0.0, 0.0;
+  contact::ContactForce term;
+  term.add_frame(contact::fixed_frame());
+  const auto s = on_frame(node_point({0}, {1.0}), 0, Pose{}, {0, 0, 1}, 0.01, 0.3, world.state);
+  ContactSpec law = spec(0.5);
+  law.friction_regularisation_m_s = 1e-3;
+  term.add_pair(std::make_unique<ListSource>(std::vector{s}), law);
+  term.refresh(world.state.view());
+  const VecX f = force(term, world.state);
+  const double normal = 1e5 * 0.01 * 0.3;
+  EXPECT_NEAR(f[2], normal, 1e-9);
+  EXPECT_NEAR(f[0], -0.5 * normal * 0.2, 1e-9);
+  EXPECT_NEAR(term.dissipated_power(world.state.view()), 0.5 * normal * 0.2 * 2e-4, 1e-12);
+}
+
+TEST(ContactForce, RefreshReportsWhetherTheForceChanged) {
+  World world(3, false, 7);
+  contact::ContactForce term;
+  term.add_frame(contact::fixed_frame());
+  const auto point = node_point({0}, {1.0});
+  const auto pressed = on_frame(point, 0, Pose{}, {0, 0, 1}, 0.01, 0.3, world.state);
+  const auto apart = on_frame(point, 0, Pose{}, {0, 0, 1}, -0.01, 0.3, world.state);
+  contact::ContactForce near;
+  near.add_frame(contact::fixed_frame());
+  near.add_pair(std::make_unique<ListSource>(std::vector{apart}), spec());
+  EXPECT_FALSE(near.refresh(world.state.view()));  // candidates only: no force before or after
+  ContactSpec undamped = spec();
+  undamped.damping_pa_s_m = 0.0;
+  term.add_pair(std::make_unique<ListSource>(std::vector{pressed}), undamped);
+  EXPECT_TRUE(term.refresh(world.state.view()));
+  // 1e5 Pa/m x 0.01 m x 0.3 m^2 on the node and again on the frame, whose moment about the world's origin is |r x F|
+  const double F = 300.0, moment = world.state.view().position(0).head<2>().norm() * F;
+  EXPECT_NEAR(term.refresh_force_jump(), std::sqrt(2 * F * F + moment * moment), 1e-9);
+  EXPECT_FALSE(term.refresh(world.state.view()));
+  EXPECT_EQ(term.refresh_force_jump(), 0.0);
+  EXPECT_EQ(term.queries(), 2);
+  EXPECT_GE(term.query_seconds(), 0.0);
+}
+
+TEST(ContactForce, EventIsTheSmallestGapOfEachPair) {
+  World world(3, false, 8);
+  contact::ContactForce term;
+  term.add_frame(contact::fixed_frame());
+  const auto sample = [&](int node, double depth) { return on_frame(node_point({node}, {1.0}), 0, Pose{}, {0, 0, 1}, depth, 0.1, world.state); };
+  term.add_pair(std::make_unique<ListSource>(std::vector{sample(0, -0.3), sample(1, -0.1)}), spec());
+  term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{}), spec());
+  term.refresh(world.state.view());
+  ASSERT_EQ(term.event_count(), 2);
+  double g[2];
+  term.events(world.state.view(), g);
+  EXPECT_NEAR(g[0], 0.1, 1e-15);
+  EXPECT_GT(g[1], 0.0);
+  world.state.q()[5] -= 0.25;  // node 1 down
+  term.events(world.state.view(), g);
+  EXPECT_NEAR(g[0], -0.15, 1e-15);
+}
+
+TEST(ContactForce, FrameGivenByTimeMovesTheGapAndItsRate) {
+  World world(1, false, 9);
+  world.state.u().setZero();
+  auto frame = std::make_shared<contact::TrajectoryFrame>();
+  frame->append(0.0, {}, {Vec3::Zero(), Vec3(0, 0, 0.5)});
+  contact::ContactForce term;
+  term.add_frame(frame);
+  const auto s = on_frame(node_point({0}, {1.0}), 0, Pose{}, {0, 0, 1}, 0.0, 1.0, world.state);
+  term.add_pair(std::make_unique<ListSource>(std::vector{s}), spec());
+  term.refresh(world.state.view());
+  world.state.set_time(0.02);  // the frame has risen by 10 mm, and rises at 0.5 m/s
+  EXPECT_NEAR(force(term, world.state)[2], 1e5 * 0.01 + 10.0 * 0.5, 1e-9);
+}
+
+TEST(ContactForce, OwnMistakesAreCaught) {
+  World world(2, false, 10);
+  const auto refused = [&](contact::ContactSample s, const std::string& expected) {
+    contact::ContactForce term;
+    term.add_frame(contact::fixed_frame());
+    term.add_pair(std::make_unique<ListSource>(std::vector{s}), spec());
+    try {
+      term.refresh(world.state.view());
+      ADD_FAILURE() << expected;
+    } catch (const InternalError& e) {
+      EXPECT_NE(std::string(e.what()).find(expected), std::string::npos) << e.what();
+    }
+  };
+  const auto good = on_frame(node_point({0}, {1.0}), 0, Pose{}, {0, 0, 1}, 0.1, 1.0, world.state);
+  auto s = good;
+  s.b.frame = 3;
+  refused(s, "frame 3 of 1");
+  s = good;
+  s.a.node[0] = 9;
+  refused(s, "node 9 of 2");
+  s = good;
+  s.area = -1.0;
+  refused(s, "area -1");
+  contact::ContactForce term;
+  EXPECT_THROW(term.add_frame(nullptr), InternalError);
+  EXPECT_THROW(term.add_pair(nullptr, ContactSpec{}), InternalError);
+}
+
+TEST(ContactForce, IsCounted) {
+  const long before = counters::counter("contact.force").load();
+  contact::ContactForce term;
+  EXPECT_EQ(counters::counter("contact.force").load(), before + 1);
+}

@@ -1,0 +1,193 @@
+#include "fixture.h"
+
+using namespace contact_tests;
+
+namespace {
+
+struct Law {
+  const char* name;
+  double friction, regularisation;
+};
+
+/// Deep enough contacts of every kind: nodes on a given frame, nodes on a body of the State, nodes on nodes, body on a given frame.
+/// Depths of 0.4 at speeds of order 1 keep every sample pressed along a Taylor test.
+struct Scene {
+  World world{6, true, 11};
+  std::shared_ptr<contact::TrajectoryFrame> given = std::make_shared<contact::TrajectoryFrame>();
+  Pose given_pose{quaternion_of(Vec3(0.3, -0.5, 0.2)), Vec3(0.1, 0.2, -0.4)};
+  Twist given_twist{Vec3(0.4, 0.2, -0.7), Vec3(-0.3, 0.5, 0.1)};
+  contact::ContactForce term;
+
+  explicit Scene(const Law& law, bool with_given = true) {
+    given->append(0.0, given_pose, given_twist);
+    const auto body = contact::block_frame(world.body_id);
+    const int given_index = term.add_frame(given), body_index = term.add_frame(body);
+    const auto view = world.state.view();
+    const Pose body_pose = body->pose(view);
+    std::vector<contact::ContactSample> samples;
+    const auto tri = node_point({0, 1, 2}, {0.2, 0.9, -0.1}), single = node_point({4}, {1.0});
+    if (with_given) samples.push_back(on_frame(tri, given_index, given_pose, {0.1, -0.2, 1}, 0.4, 0.7, world.state));
+    samples.push_back(on_frame(single, body_index, body_pose, {1, 0.5, -0.3}, 0.5, 0.6, world.state));
+    samples.push_back(on_nodes(tri, node_point({3, 4, 5}, {0.3, 0.3, 0.4}), {-0.3, 1, 0.2}, 0.45, 0.5, world.state));
+    if (with_given) {  // a: the body, b: the given frame
+      contact::ContactSample s;
+      s.a.frame = body_index;
+      s.a.offset = Vec3(0.2, -0.1, 0.3);
+      s.b.frame = given_index;
+      s.normal = Vec3(0.2, 0.1, -1).normalized();
+      s.b.offset = given_pose.inverse() * Vec3(body_pose * s.a.offset + 0.4 * s.normal);
+      s.area = 0.8;
+      samples.push_back(s);
+    }
+    ContactSpec spec;
+    spec.law = law.name;
+    spec.stiffness_pa_m = 20.0;
+    spec.damping_pa_s_m = 0.3;
+    spec.hunt_crossley_s_m = 0.05;
+    spec.friction = law.friction;
+    spec.friction_regularisation_m_s = law.regularisation;
+    term.add_pair(std::make_unique<ListSource>(samples), spec);
+    term.refresh(world.state.view());
+  }
+};
+
+const Law kLaws[] = {{"kelvin_voigt", 0.0, 1.0}, {"hunt_crossley", 0.0, 1.0}, {"kelvin_voigt", 0.4, 1e-3}, {"hunt_crossley", 0.4, 100.0}};
+
+VecX direction(int size, unsigned seed) {
+  std::mt19937 random(seed);
+  VecX d(size);
+  for (auto& x : d) x = uniform(random);
+  return d;
+}
+
+}  // namespace
+
+TEST(ContactTangent, PositionDerivative) {
+  for (const Law& law : kLaws) {
+    Scene scene(law);
+    const VecX d = direction(scene.world.state.layout().u_size, 3);
+    const MatX K = step_matrix(scene.term, scene.world.state, 1.0, 0.0).to_dense();
+    expect_derivative([&](double h) { return force(scene.term, scene.world.moved(d, h)); }, -(K * d), 0.02, law.name);
+  }
+}
+
+TEST(ContactTangent, VelocityDerivative) {
+  for (const Law& law : kLaws) {
+    Scene scene(law);
+    const VecX d = direction(scene.world.state.layout().u_size, 4);
+    const MatX D = step_matrix(scene.term, scene.world.state, 0.0, 1.0).to_dense();
+    expect_derivative([&](double h) { return force(scene.term, scene.world.pushed(d, h)); }, -(D * d), 0.05, law.name);
+  }
+}
+
+TEST(ContactTangent, ApplyEqualsAssembled) {
+  for (const Law& law : kLaws) {
+    Scene scene(law);
+    const VecX x = direction(scene.world.state.layout().u_size, 5);
+    const auto A = step_matrix(scene.term, scene.world.state, 0.7, 0.3);
+    VecX y = VecX::Zero(x.size());
+    scene.term.apply_tangent(scene.world.state.view(), 0.7, 0.3, x, y);
+    EXPECT_LT((y - A.to_dense() * x).norm(), 1e-13 * y.norm()) << law.name;
+  }
+}
+
+// Without friction the blocks between nodes are symmetric, and positive semi-definite where the spring acts.
+TEST(ContactTangent, NodePartIsSymmetricWithoutFriction) {
+  Scene scene(kLaws[0]);
+  const MatX A = step_matrix(scene.term, scene.world.state, 1.0, 0.5).to_dense().topLeftCorner(18, 18);
+  EXPECT_GT(A.norm(), 1.0);
+  EXPECT_LT((A - A.transpose()).norm(), 1e-14 * A.norm());
+}
+
+TEST(ContactTangent, TraitsSayWhatItIs) {
+  EXPECT_FALSE(Scene(kLaws[0]).term.traits().symmetric_tangent);  // a body of the State is a frame
+  contact::ContactForce term;
+  term.add_frame(contact::fixed_frame());
+  ContactSpec spec;
+  term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{}), spec);
+  EXPECT_TRUE(term.traits().symmetric_tangent);
+  EXPECT_TRUE(term.traits().conservative);
+  spec.friction = 0.2;
+  term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{}), spec);
+  EXPECT_FALSE(term.traits().symmetric_tangent);
+  EXPECT_FALSE(term.traits().conservative);
+}
+
+// The linearisation seen from a given frame: by its pose, by its twist, by nodes' positions and velocities.
+TEST(FrameLinearisation, TaylorByPoseTwistAndNodes) {
+  for (const Law& law : kLaws) {
+    Scene scene(law);
+    const auto view = scene.world.state.view();
+    contact::FrameLinearisation lin;
+    scene.term.linearise(view, 0, lin);
+    EXPECT_EQ(lin.active, 2);
+    const Wrench direct = scene.term.frame_wrench(view, 0);
+    EXPECT_LT((direct.force - lin.wrench.force).norm() + (direct.moment - lin.wrench.moment).norm(), 1e-14);
+    const int nodal = scene.world.state.layout().nodal_size;
+    const auto wrench_and_nodes = [&](const dynamics::State& state) {
+      VecX out(6 + nodal);
+      const Wrench w = scene.term.frame_wrench(state.view(), 0);
+      out << w.moment, w.force, force(scene.term, state).head(nodal);
+      return out;
+    };
+    const VecX d = direction(6, 6);
+    VecX by_pose(6 + nodal), by_twist(6 + nodal);
+    by_pose << -(lin.K * d), -(lin.K_body * d);
+    by_twist << -(lin.B * d), -(lin.B_body * d);
+    const auto place = [&](const Pose& pose, const Twist& twist) {
+      scene.given->clear();
+      scene.given->append(0.0, pose, twist);
+    };
+    expect_derivative(
+        [&](double h) {
+          place({quaternion_of(h * d.head<3>()) * scene.given_pose.rotation, scene.given_pose.translation + h * d.tail<3>()}, scene.given_twist);
+          return wrench_and_nodes(scene.world.state);
+        },
+        by_pose, 0.02, law.name);
+    expect_derivative(
+        [&](double h) {
+          place(scene.given_pose, {scene.given_twist.angular + h * d.head<3>(), scene.given_twist.linear + h * d.tail<3>()});
+          return wrench_and_nodes(scene.world.state);
+        },
+        by_twist, 0.05, law.name);
+    place(scene.given_pose, scene.given_twist);
+    VecX nodes = VecX::Zero(scene.world.state.layout().u_size);
+    nodes.head(nodal) = direction(nodal, 7);
+    const auto wrench = [&](const dynamics::State& state) { return VecX(wrench_and_nodes(state).head(6)); };
+    expect_derivative([&](double h) { return wrench(scene.world.moved(nodes, h)); }, -(lin.K_frame * nodes.head(nodal)), 0.02, law.name);
+    expect_derivative([&](double h) { return wrench(scene.world.pushed(nodes, h)); }, -(lin.B_frame * nodes.head(nodal)), 0.05, law.name);
+  }
+}
+
+// Force is minus the gradient of the energy, in nodes and in the body's pose (undamped, against frames that stand still).
+TEST(ContactEnergy, ForceIsItsGradient) {
+  Scene scene(kLaws[0]);
+  scene.world.state.u().setZero();
+  scene.given->clear();
+  scene.given->append(0.0, scene.given_pose, {});
+  const VecX d = direction(scene.world.state.layout().u_size, 8);
+  VecX slope(1);
+  slope << -force(scene.term, scene.world.state).dot(d);
+  expect_derivative(
+      [&](double h) {
+        const dynamics::State moved = scene.world.moved(d, h);
+        VecX e(1);
+        e << scene.term.energy(moved.view());
+        return e;
+      },
+      slope, 0.02, "energy");
+}
+
+// Power balance at any state: d(energy)/dt = -(power given to nodes and bodies) - dissipated power, with all frames at rest or in the State.
+TEST(ContactEnergy, DissipationClosesThePowerBalance) {
+  for (const Law& law : kLaws) {
+    Scene scene(law, false);
+    const VecX u = scene.world.state.u();
+    const double given_power = force(scene.term, scene.world.state).dot(u), dissipated = scene.term.dissipated_power(scene.world.state.view());
+    const double h = 1e-6;
+    const double rate =
+        (scene.term.energy(scene.world.moved(u, h).view()) - scene.term.energy(scene.world.moved(u, -h).view())) / (2 * h);
+    EXPECT_NEAR(rate, -given_power - dissipated, 1e-7 * (std::abs(given_power) + dissipated)) << law.name;
+    EXPECT_GT(dissipated, 0.0);
+  }
+}
