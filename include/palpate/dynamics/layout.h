@@ -34,7 +34,7 @@ struct BlockSpec {
   int u_size = 0;
   double q_scale = 1.0;  ///< size of a q that matters (a body's displacement, [m]): the unit of its absolute tolerance
   double u_scale = 1.0;  ///< size of a u that matters [m/s]
-  std::shared_ptr<const BlockKinematics> kinematics;  ///< null: q' = u
+  std::shared_ptr<const BlockKinematics> kinematics{};  ///< null: q' = u
 };
 
 /// One block's place in q and u.
