@@ -1,0 +1,126 @@
+#include "palpate/proxy/region.h"
+
+#include <ccd/ccd.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+#include "proxy/hull.h"
+
+namespace palpate::proxy {
+namespace {
+
+void ccd_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
+  const Vec3 p = static_cast<const Hull*>(object)->support(Vec3(ccdVec3X(direction), ccdVec3Y(direction), ccdVec3Z(direction)));
+  ccdVec3Set(out, p.x(), p.y(), p.z());
+}
+
+void ccd_centre(const void* object, ccd_vec3_t* out) {
+  const Vec3& c = static_cast<const Hull*>(object)->centre;
+  ccdVec3Set(out, c.x(), c.y(), c.z());
+}
+
+/// What libccd says, turned to our normal (from b to a: its direction moves b away).
+struct Answer {
+  Vec3 normal;
+  double depth;
+};
+
+using Penetration = int (*)(const void*, const void*, const ccd_t*, ccd_real_t*, ccd_vec3_t*, ccd_vec3_t*);
+
+std::optional<Answer> ask(Penetration algorithm, const Hull& a, const Hull& b) {
+  ccd_t ccd;
+  CCD_INIT(&ccd);
+  ccd.support1 = ccd.support2 = ccd_support;
+  ccd.center1 = ccd.center2 = ccd_centre;
+  ccd.max_iterations = 200;
+  ccd.epa_tolerance = ccd.mpr_tolerance = 1e-6;  // of unit-sized shapes
+  ccd_real_t depth = 0;
+  ccd_vec3_t direction, position;
+  if (algorithm(&a, &b, &ccd, &depth, &direction, &position) != 0) return std::nullopt;
+  return Answer{-Vec3(ccdVec3X(&direction), ccdVec3Y(&direction), ccdVec3Z(&direction)), depth};
+}
+
+/// The candidate with the least depth so far.
+struct Best {
+  double depth = std::numeric_limits<double>::infinity();
+  Vec3 normal = Vec3::Zero();
+  RegionMethod method = RegionMethod::kCentroids;
+
+  void offer(const Hull& a, const Hull& b, const Vec3& direction, RegionMethod by) {
+    const double length = direction.norm();
+    if (!(length > 1e-12) || !std::isfinite(length)) return;
+    const Vec3 n = direction / length;
+    const double along = depth_along(a, b, n).depth;
+    if (along < depth) *this = {along, n, by};
+  }
+};
+
+/// Asks one algorithm; true when its answer stands up to the two support calls.
+bool offer_answer(Penetration algorithm, RegionMethod by, const Hull& a, const Hull& b, Best& best, RegionCounts& counts) {
+  constexpr double kMismatch = 1e-3;  // of unit-sized shapes
+  const auto answer = ask(algorithm, a, b);
+  if (!answer) return false;
+  const double length = answer->normal.norm();
+  if (!std::isfinite(length) || !std::isfinite(answer->depth) || length < 0.5) {
+    ++counts.not_finite;
+    return false;
+  }
+  best.offer(a, b, answer->normal, by);
+  if (std::abs(depth_along(a, b, answer->normal / length).depth - answer->depth) <= kMismatch) return true;
+  ++counts.mismatch;
+  return false;
+}
+
+void check_points(const Points& points, const char* which) {
+  PALPATE_CHECK(points.cols() > 0, "contact region: {} has no points", which);
+  PALPATE_CHECK(points.allFinite(), "contact region: a point of {} is not finite", which);
+}
+
+}  // namespace
+
+RegionFinder::RegionFinder() { counters::count("proxy.region_finder"); }
+
+Region RegionFinder::find(const Points& a, const Points& b, double margin) {
+  check_points(a, "the first body");
+  check_points(b, "the second body");
+  ++counts_.queries;
+  const Vec3 low = a.rowwise().minCoeff().cwiseMin(b.rowwise().minCoeff()), high = a.rowwise().maxCoeff().cwiseMax(b.rowwise().maxCoeff());
+  const Vec3 origin = 0.5 * (low + high);
+  const double size = (high - low).maxCoeff(), scale = size > 0.0 ? 1.0 / size : 1.0;
+  a_.noalias() = scale * (a.colwise() - origin);
+  b_.noalias() = scale * (b.colwise() - origin);
+  const Hull hull_a(a_), hull_b(b_);
+
+  Best best;
+  ++counts_.mpr;
+  if (!offer_answer(ccdMPRPenetration, RegionMethod::kMpr, hull_a, hull_b, best, counts_)) {
+    ++counts_.epa;
+    offer_answer(ccdGJKPenetration, RegionMethod::kEpa, hull_a, hull_b, best, counts_);
+  }
+  best.offer(hull_a, hull_b, hull_a.centre - hull_b.centre, RegionMethod::kCentroids);
+  if (has_last_) best.offer(hull_a, hull_b, last_normal_, RegionMethod::kLastNormal);
+  if (best.depth <= 0.0 || best.method == RegionMethod::kCentroids || best.method == RegionMethod::kLastNormal)
+    best.offer(hull_a, hull_b, nearest_difference(hull_a, hull_b), RegionMethod::kDistance);
+  if (best.normal.isZero()) best = {0.0, Vec3::UnitZ(), RegionMethod::kCentroids};  // two coincident points: any direction
+
+  counts_.last_normal += best.method == RegionMethod::kLastNormal;
+  counts_.distance += best.method == RegionMethod::kDistance;
+  counts_.centroids += best.method == RegionMethod::kCentroids;
+  const DepthAlong along = depth_along(hull_a, hull_b, best.normal);
+  Region region;
+  region.normal = best.normal;
+  region.method = best.method;
+  region.depth = along.depth / scale;
+  region.origin = origin + 0.5 / scale * (along.lowest_a + along.highest_b);
+  region.found = region.depth >= -margin;
+  ++(region.depth > 0.0 ? counts_.overlapping : counts_.apart);
+  has_last_ = true;
+  last_normal_ = region.normal;
+  return region;
+}
+
+}  // namespace palpate::proxy

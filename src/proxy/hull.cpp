@@ -1,0 +1,75 @@
+#include "proxy/hull.h"
+
+#include <Eigen/Cholesky>
+
+#include <limits>
+
+namespace palpate::proxy {
+namespace {
+
+/// At most four points, one a column, and the point of their hull nearest to the origin.
+struct Simplex {
+  Eigen::Matrix<double, 3, 4> points;
+  int count = 0;
+};
+
+/// The point nearest to the origin of the hull of the subset `mask`: p0 + E l with l = -(E^T E)^-1 E^T p0, E = [p1 - p0, ...].
+/// False when it lies outside the subset's hull (a smaller subset then has it) or the subset is degenerate.
+bool nearest_in_subset(const Simplex& s, int mask, Vec3& nearest) {
+  int index[4] = {}, count = 0;
+  for (int i = 0; i < s.count; ++i)
+    if (mask & (1 << i)) index[count++] = i;
+  nearest = s.points.col(index[0]);
+  if (count == 1) return true;
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3> E(3, count - 1);
+  for (int i = 1; i < count; ++i) E.col(i - 1) = s.points.col(index[i]) - nearest;
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3> gram = E.transpose() * E;
+  const Eigen::LDLT<std::decay_t<decltype(gram)>> factor(gram);
+  if (factor.info() != Eigen::Success || !(factor.rcond() > 1e-14)) return false;
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1> l = -factor.solve(E.transpose() * nearest);
+  if (l.minCoeff() < 0.0 || l.sum() > 1.0) return false;
+  nearest += E * l;
+  return true;
+}
+
+/// Nearest point of the simplex's hull, over all its subsets; the points that do not carry it are dropped.
+Vec3 reduce(Simplex& s) {
+  double least = std::numeric_limits<double>::infinity();
+  Vec3 best = Vec3::Zero();
+  int best_mask = 1;
+  for (int mask = 1; mask < (1 << s.count); ++mask) {
+    Vec3 p;
+    if (!nearest_in_subset(s, mask, p) || !(p.squaredNorm() < least)) continue;
+    least = p.squaredNorm();
+    best = p;
+    best_mask = mask;
+  }
+  int kept = 0;
+  for (int i = 0; i < s.count; ++i)
+    if (best_mask & (1 << i)) s.points.col(kept++) = s.points.col(i);
+  s.count = kept;
+  return best;
+}
+
+}  // namespace
+
+// v is a point of the convex set C = a - b, s = argmin over C of v.s; v.v - v.s bounds how much nearer the origin another point can be.
+// s joins the simplex that carries v, and the next v is the nearest point of that.
+Vec3 nearest_difference(const Hull& a, const Hull& b) {
+  constexpr int kMaxSteps = 100;
+  constexpr double kRelativeGap = 1e-9;
+  Simplex simplex;
+  Vec3 v = a.centre - b.centre;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const Vec3 s = a.support(-v) - b.support(v);
+    if (simplex.count > 0 && v.dot(v - s) <= kRelativeGap * v.squaredNorm()) break;
+    if (simplex.count == 4) break;  // four points carry v: the origin is inside
+    simplex.points.col(simplex.count++) = s;
+    const double before = v.squaredNorm();
+    v = reduce(simplex);
+    if (i > 0 && !(v.squaredNorm() < before)) break;  // rounding: no nearer any more
+  }
+  return v;
+}
+
+}  // namespace palpate::proxy
