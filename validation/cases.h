@@ -7,4 +7,11 @@ namespace palpate::validation {
 using study::Measurement;
 using study::ValidationCase;
 
+ValidationCase patch_test();
+ValidationCase rigid_motion();
+ValidationCase gradient_and_tangent();
+ValidationCase uniaxial_and_shear();
+ValidationCase hanging_bar();
+ValidationCase cantilever();
+
 }  // namespace palpate::validation

@@ -4,6 +4,8 @@ namespace palpate::study {
 
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> cases = {
+      validation::patch_test(), validation::rigid_motion(), validation::gradient_and_tangent(), validation::uniaxial_and_shear(), validation::hanging_bar(),
+      validation::cantilever(),
   };
   return cases;
 }

@@ -15,7 +15,7 @@ struct Measurement {
   double order = std::numeric_limits<double>::quiet_NaN();      ///< fitted over >= 3 refinements
   double order_low = std::numeric_limits<double>::quiet_NaN();  ///< band of the fitted order
   double order_high = std::numeric_limits<double>::quiet_NaN();
-  std::string note;
+  std::string note{};
   bool passed() const;                 ///< error <= bar (a NaN error fails) and, where a band is given, order inside it
 };
 
