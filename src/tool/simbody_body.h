@@ -1,0 +1,43 @@
+#pragma once
+#include "simbody_headers.h"
+
+#include "handle_path.h"
+#include "parameters.h"
+
+namespace palpate::tool {
+
+/// The tool's Simbody System: one MobilizedBody::Free under one force element that reads the tick's input from the State.
+/// Its coordinates are ours: q = (qw qx qy qz px py pz), u = (angular, linear) in world axes, origin at the centre of mass.
+class SimbodyBody {
+ public:
+  explicit SimbodyBody(const RigidParameters& parameters);
+  SimbodyBody(const SimbodyBody&) = delete;
+  SimbodyBody& operator=(const SimbodyBody&) = delete;
+
+  const RigidParameters& parameters() const { return parameters_; }
+  const SimTK::MultibodySystem& system() const { return system_; }
+  /// A State of the topology, for an integrator to start from.
+  const SimTK::State& default_state() const { return state_; }
+
+  void write(SimTK::State& state, double t, const RigidMotion& motion) const;
+  RigidMotion read(const SimTK::State& state) const;
+  void set_input(SimTK::State& state, const TickInput& input) const;
+
+  /// u' at a time and motion under an input, by Simbody's forward dynamics (coupling, contact, gravity, gyroscopic terms).
+  Vec6 acceleration(double t, const RigidMotion& motion, const TickInput& input);
+  /// diag(R I R^T, m), world axes, angular first.
+  Mat6 mass_matrix(const Pose& pose) const;
+
+ private:
+  class TickForce;
+
+  RigidParameters parameters_;
+  SimTK::MultibodySystem system_;
+  SimTK::SimbodyMatterSubsystem matter_;
+  SimTK::GeneralForceSubsystem forces_;
+  SimTK::MobilizedBody::Free body_;
+  TickForce* force_ = nullptr;  ///< owned by forces_
+  SimTK::State state_;          ///< scratch of acceleration()
+};
+
+}  // namespace palpate::tool

@@ -1,0 +1,24 @@
+#include "tick_scheme.h"
+
+namespace palpate::tool {
+
+const Registry<MakeTickScheme>& tick_scheme_registry() {
+  static const Registry<MakeTickScheme> registry = {
+      {"linearly-implicit-euler", "one 6x6 solve a tick, stable for any coupling; the default", 1, make_linearly_implicit_euler},
+      {"semi-implicit-euler", "new velocity from old forces; needs k < 4 m/tick^2 - 2 b/tick", 1, make_semi_implicit_euler},
+      {"simbody-rkmerson", "Simbody's Runge-Kutta-Merson under error control (1e-10)", 4, make_runge_kutta_merson},
+      {"simbody-cpodes", "Simbody's CPodes (BDF, variable order) under error control (1e-10)", 0, make_cpodes},
+  };
+  return registry;
+}
+
+const std::vector<ToolIntegratorInfo>& tool_integrators() {
+  static const std::vector<ToolIntegratorInfo> infos = [] {
+    std::vector<ToolIntegratorInfo> out;
+    for (const auto& entry : tick_scheme_registry()) out.push_back({entry.name, entry.summary, entry.order});
+    return out;
+  }();
+  return infos;
+}
+
+}  // namespace palpate::tool

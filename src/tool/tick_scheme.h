@@ -1,0 +1,29 @@
+#pragma once
+#include <memory>
+
+#include "handle_path.h"
+#include "palpate/core/registry.h"
+
+namespace palpate::tool {
+
+class SimbodyBody;
+
+/// One way to carry the tool over a tick.
+class TickScheme {
+ public:
+  virtual ~TickScheme() = default;
+  /// From `motion` at input.t0 to input.t0 + input.h.  On failure `motion` may hold anything: the caller keeps the last good one.
+  virtual dynamics::StepResult advance(const TickInput& input, RigidMotion& motion) = 0;
+  /// The motion was changed from outside, or the last advance was rejected: forget history.
+  virtual void reset() {}
+};
+
+using MakeTickScheme = std::unique_ptr<TickScheme> (*)(SimbodyBody&);
+const Registry<MakeTickScheme>& tick_scheme_registry();
+
+std::unique_ptr<TickScheme> make_semi_implicit_euler(SimbodyBody& body);
+std::unique_ptr<TickScheme> make_linearly_implicit_euler(SimbodyBody& body);
+std::unique_ptr<TickScheme> make_runge_kutta_merson(SimbodyBody& body);
+std::unique_ptr<TickScheme> make_cpodes(SimbodyBody& body);
+
+}  // namespace palpate::tool

@@ -1,0 +1,97 @@
+#include "palpate/tool/tool.h"
+
+#include <cmath>
+
+#include "palpate/core/error.h"
+#include "simbody_body.h"
+#include "tick_scheme.h"
+
+namespace palpate::tool {
+
+struct Tool::Impl {
+  Impl(const ToolSpec& spec, const Vec3& gravity)
+      : body(rigid_parameters(spec, gravity)), scheme(find(tick_scheme_registry(), spec.integrator, "tool integrator").make(body)) {
+    motion.pose = {quaternion_of(spec.rotation_vector_rad), spec.position_m};
+    input.gains = coupling_gains(spec);
+  }
+
+  SimbodyBody body;
+  std::unique_ptr<TickScheme> scheme;
+  double time = 0.0;
+  RigidMotion motion;
+  TickInput input;
+};
+
+namespace {
+
+const ToolSpec& checked(const ToolSpec& spec) {
+  find(tick_scheme_registry(), spec.integrator, "tool integrator");  // before anything costly is built
+  return spec;
+}
+
+}  // namespace
+
+Tool::Tool(const ToolSpec& spec, const Vec3& gravity) : impl_(std::make_unique<Impl>(checked(spec), gravity)) {}
+Tool::~Tool() = default;
+Tool::Tool(Tool&&) noexcept = default;
+
+double Tool::time() const { return impl_->time; }
+Pose Tool::pose() const { return impl_->motion.pose; }
+Twist Tool::twist() const { return impl_->motion.twist; }
+
+void Tool::set_state(double t, const Pose& pose, const Twist& twist) {
+  const RigidMotion motion{pose, twist};
+  PALPATE_CHECK(std::isfinite(t) && is_finite(motion), "tool state at t = {} is not finite", t);
+  PALPATE_CHECK(pose.rotation.norm() > 0.0, "tool rotation is the zero quaternion at t = {}", t);
+  impl_->time = t;
+  impl_->motion = motion;
+  impl_->motion.pose.rotation.normalize();
+  impl_->scheme->reset();
+}
+
+dynamics::StepResult Tool::advance(double h, const HandleMotion& handle, const dynamics::LinearisedContact& contact) {
+  PALPATE_CHECK(h > 0.0 && std::isfinite(h), "tick of {} s", h);
+  Impl& me = *impl_;
+  me.input.t0 = me.time;
+  me.input.h = h;
+  me.input.handle = handle;
+  me.input.contact = contact;
+  const auto not_finite = [&](const char* what) {
+    me.scheme->reset();
+    return dynamics::StepResult{dynamics::StepStatus::kNotFinite, me.time, h, 0, 0, 0.0,
+                                fmt::format("tool at t = {:.9g} s: {} not finite; the tool stays where it was", me.time, what)};
+  };
+  if (!is_finite(me.input)) return not_finite("handle or contact record is");
+  RigidMotion next = me.motion;
+  dynamics::StepResult result = me.scheme->advance(me.input, next);
+  if (!result.ok()) return result;
+  if (!is_finite(next)) return not_finite("its new state is");
+  me.motion = next;
+  me.time += h;
+  return result;
+}
+
+Wrench Tool::coupling_wrench(const Pose& handle, const Twist& handle_twist) const {
+  return wrench_of(tool::coupling_wrench(impl_->input.gains, impl_->motion, {handle, handle_twist}));
+}
+
+// Equal and opposite, each about its own origin.  With this pair the coupling takes in b |v_h - v_t|^2 + b_r |omega_h - omega_t|^2 and stores the
+// rest: it is passive at its two ends.  (Moving the force to the other origin instead would add the moment of the damping force, of either sign.)
+Wrench Tool::wrench_on_hand(const Pose& handle, const Twist& handle_twist) const {
+  const Wrench on_tool = coupling_wrench(handle, handle_twist);
+  return {-on_tool.moment, -on_tool.force};
+}
+
+void Tool::coupling_tangent(const Pose& handle, const Twist&, Mat6& K, Mat6& B) const {
+  K = coupling_stiffness(impl_->input.gains, impl_->motion.pose, handle);
+  B = coupling_damping(impl_->input.gains);
+}
+
+Mat6 Tool::mass_matrix() const { return impl_->body.mass_matrix(impl_->motion.pose); }
+
+double Tool::kinetic_energy() const {
+  const Vec6 u = stacked(impl_->motion.twist);
+  return 0.5 * u.dot(mass_matrix() * u);
+}
+
+}  // namespace palpate::tool

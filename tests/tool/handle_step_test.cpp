@@ -1,0 +1,129 @@
+#include <gtest/gtest.h>
+
+#include "tool_fixtures.h"
+
+using namespace palpate;
+using namespace palpate::tool;
+using namespace palpate::tool::testing;
+
+namespace {
+
+const std::vector<std::string> kFixed = {"linearly-implicit-euler", "semi-implicit-euler"};
+const std::vector<std::string> kErrorControlled = {"simbody-rkmerson", "simbody-cpodes"};
+constexpr double kShift = 0.01, kTurn = 2.5;  // [m], [rad]
+
+/// The handle has jumped by (kShift along `axis`, kTurn about it) and rests: the tool's distance from it after each tick, (turn, shift).
+struct Trace { std::vector<double> turn, shift; };
+Trace step_response(const ToolSpec& spec, int axis, double h, int ticks) {
+  const Vec3 e = Vec3::Unit(axis);
+  Tool tool(spec, Vec3::Zero());
+  const HandleMotion handle = held({quaternion_of(kTurn * e), kShift * e});
+  Trace out;
+  for (int i = 0; i < ticks; ++i) {
+    const auto result = tool.advance(h, handle, {});
+    EXPECT_TRUE(result.ok()) << result.message;
+    const Vec6 d = pose_difference(handle.pose1, tool.pose());
+    out.turn.push_back(d.head<3>().dot(e));
+    out.shift.push_back(d.tail<3>().dot(e));
+  }
+  return out;
+}
+
+Oscillator shifting(const ToolSpec& s) { return {s.mass_kg, s.coupling_damping_n_s_m, s.coupling_stiffness_n_m}; }
+Oscillator turning(const ToolSpec& s, int axis) {
+  return {s.inertia_kg_m2[axis], s.coupling_rotational_damping_n_m_s_rad, s.coupling_rotational_stiffness_n_m_rad};
+}
+
+}  // namespace
+
+TEST(HandleStep, error_controlled_schemes_follow_the_damped_oscillator) {
+  for (const auto& name : kErrorControlled) {
+    const ToolSpec spec = spec_for(name);
+    const Trace trace = step_response(spec, 1, 1e-3, 100);
+    double worst = 0.0;
+    for (int i = 0; i < 100; ++i) {
+      const double t = 1e-3 * (i + 1);
+      worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).displacement(-kShift, t)) / kShift);
+      worst = std::max(worst, std::abs(trace.turn[i] - turning(spec, 1).displacement(-kTurn, t)) / kTurn);
+    }
+    EXPECT_LT(worst, 1e-6) << name;
+    RecordProperty(name, std::to_string(worst));
+  }
+}
+
+TEST(HandleStep, fixed_ticks_follow_their_own_discrete_closed_form) {
+  for (const auto& name : kFixed)
+    for (int axis = 0; axis < 3; ++axis) {
+      const ToolSpec spec = spec_for(name);
+      const Trace trace = step_response(spec, axis, 1e-3, 200);
+      double worst = 0.0;
+      for (int i = 0; i < 200; ++i) {
+        worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).discrete(name, -kShift, 1e-3, i + 1)) / kShift);
+        worst = std::max(worst, std::abs(trace.turn[i] - turning(spec, axis).discrete(name, -kTurn, 1e-3, i + 1)) / kTurn);
+      }
+      EXPECT_LT(worst, 1e-10) << name << " axis " << axis;
+    }
+}
+
+TEST(HandleStep, fixed_ticks_are_of_first_order) {
+  int listed = 0;
+  for (const auto& info : tool_integrators()) {
+    if (std::find(kFixed.begin(), kFixed.end(), info.name) == kFixed.end()) continue;
+    ++listed;
+    std::vector<double> ticks, shift, turn;
+    const ToolSpec spec = spec_for(info.name);
+    for (double h : {5e-4, 2.5e-4, 1.25e-4, 6.25e-5}) {
+      const int n = static_cast<int>(std::lround(0.02 / h));
+      const Trace trace = step_response(spec, 2, h, n);
+      ticks.push_back(h);
+      shift.push_back(std::abs(trace.shift.back() - shifting(spec).displacement(-kShift, 0.02)));
+      turn.push_back(std::abs(trace.turn.back() - turning(spec, 2).displacement(-kTurn, 0.02)));
+    }
+    EXPECT_NEAR(slope(ticks, shift), info.order, 0.15) << info.name;
+    EXPECT_NEAR(slope(ticks, turn), info.order, 0.15) << info.name;
+  }
+  EXPECT_EQ(listed, 2);
+}
+
+// Steady state of k (z_h - z) + K (0 - z) = 0 is z = k z_h/(k + K), and the force on the hand k K/(k + K) |z_h|.
+TEST(HandleStep, held_below_a_wall) {
+  for (const auto& info : tool_integrators()) {
+    ToolSpec spec = spec_for(info.name);
+    spec.coupling_damping_n_s_m = 20.0;  // e^{-b t/2m} = 1e-11 at the end
+    const double k = spec.coupling_stiffness_n_m, K = 1700.0, depth = 0.004;
+    Tool tool(spec, Vec3::Zero());
+    const Pose below{Quat::Identity(), Vec3(0, 0, -depth)};
+    for (int i = 0; i < 250; ++i) ASSERT_TRUE(tool.advance(1e-3, held(below), wall(K)).ok());
+    const Wrench hand = tool.wrench_on_hand(below, {});
+    const double exact = k * K / (k + K) * depth;
+    EXPECT_LT(std::abs(hand.force.z() - exact) / exact, 1e-6) << info.name;
+    EXPECT_LT(std::hypot(hand.force.x(), hand.force.y()) + hand.moment.norm(), 1e-12) << info.name;
+  }
+}
+
+// A handle that moves: every scheme sees the same Hermite path, and the fixed ticks converge to the error-controlled ones at first order.
+TEST(HandleStep, a_moving_handle_in_all_schemes) {
+  const auto path = [](double t) {
+    const Vec3 turn_axis = Vec3(1, 2, -1).normalized();
+    const double a = 0.8 * std::sin(9 * t), a_dot = 7.2 * std::cos(9 * t);
+    return std::pair<Pose, Twist>{{quaternion_of(a * turn_axis), Vec3(0.02 * std::sin(11 * t), 0, 0.01 * t)},
+                                  {a_dot * turn_axis, Vec3(0.22 * std::cos(11 * t), 0, 0.01)}};
+  };
+  const auto end = [&](const std::string& name, double h) {
+    Tool tool(spec_for(name), Vec3::Zero());
+    for (int i = 0; i < std::lround(0.1 / h); ++i) {
+      const auto [p0, v0] = path(i * h);
+      const auto [p1, v1] = path((i + 1) * h);
+      EXPECT_TRUE(tool.advance(h, {p0, p1, v0, v1}, wall(200.0)).ok());
+    }
+    return tool.pose();
+  };
+  const Pose reference = end("simbody-rkmerson", 5e-4);
+  EXPECT_LT(pose_difference(reference, end("simbody-rkmerson", 1e-3)).norm(), 1e-7);  // the path's own error, O(h^4)
+  EXPECT_LT(pose_difference(reference, end("simbody-cpodes", 1e-3)).norm(), 1e-6);
+  for (const auto& name : kFixed) {
+    std::vector<double> h = {1e-3, 5e-4, 2.5e-4}, e;
+    for (double tick : h) e.push_back(pose_difference(reference, end(name, tick)).norm());
+    EXPECT_NEAR(slope(h, e), 1.0, 0.15) << name;
+  }
+}
