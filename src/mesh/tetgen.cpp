@@ -50,7 +50,7 @@ void read_elements(TextFile& file, TetFile& out, long first) {
     for (int k = 0; k < 4; ++k) {
       const long node = file.integer("node number");
       if (node < first || node >= first + points)
-        file.fail("node {} is outside {} to {}, the points of the .node file", number, node, first, first + points - 1);
+        file.fail("node {} is outside {} to {}, the points of the .node file", node, first, first + points - 1);
       out.mesh.tets(k, t) = static_cast<int>(node - first);
     }
     out.from.element_number.push_back(number);

@@ -1,0 +1,181 @@
+#include <array>
+
+#include "helpers.h"
+#include "palpate/mesh/boundary.h"
+
+using namespace palpate;
+using namespace palpate::mesh;
+
+namespace {
+
+// Two tetrahedra on the faces of the triangle (1,0,0), (0,1,0), (0,0,1): the unit corner, 1/6, and its mirror point (1,1,1), 1/3.
+constexpr const char* kGmsh22 = R"($Comments
+ any text, $Nodes too
+$EndComments
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+1
+3 1 "flesh"
+$EndPhysicalNames
+$Nodes
+5
+10 0 0 0
+7 1 0 0
+300 0 1 0
+2000000000 0 0 1
+5 1. 1.0e0 +1
+$EndNodes
+$Elements
+4
+1 15 2 0 1 10
+2 2 2 0 1 10 7 300
+3 4 2 0 1 10 7 300 2000000000
+9 4 0 7 300 2000000000 5
+$EndElements
+)";
+
+constexpr const char* kGmsh41 = R"($MeshFormat
+4.1 0 8
+$EndMeshFormat
+$Entities
+0 0 0 1
+1 0 0 0 1 1 1 0 0
+$EndEntities
+$Nodes
+3 5 5 2000000000
+2 1 1 2
+10
+7
+0 0 0 0.5 0.5
+1 0 0 0.25 0.5
+3 1 0 0
+3 2 0 3
+300
+2000000000
+5
+0 1 0
+0 0 1
+1 1 1
+$EndNodes
+$Elements
+3 3 1 9
+2 1 2 1
+1 10 7 300
+3 1 4 1
+3 10 7 300 2000000000
+3 2 4 1
+9 7 300 2000000000 5
+$EndElements
+$NodeData
+1
+"left out"
+$EndNodeData
+)";
+
+MeshReport read_text(const std::string& name, std::string_view text) {
+  const TempFolder folder;
+  folder.write(name, text);
+  return read_any(folder.path(), name);
+}
+
+void expect_two_tets(const MeshReport& r) {
+  EXPECT_EQ(r.nodes, 5);
+  EXPECT_EQ(r.elements, 2);
+  EXPECT_NEAR(r.volume, 0.5, 1e-15);
+}
+
+}  // namespace
+
+TEST(Readers, Gmsh22TakesTetrahedraAmongOthersWithSparseTags) { expect_two_tets(read_text("two.msh", kGmsh22)); }
+
+TEST(Readers, Gmsh41TakesSeveralBlocksAndParametricNodes) { expect_two_tets(read_text("two.msh", kGmsh41)); }
+
+TEST(Readers, GmshEndingsOfOtherSystemsAreRead) {
+  std::string text = kGmsh41;
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.replace(at, 1, "\r\n");
+  expect_two_tets(read_text("TWO.MSH", "\xEF\xBB\xBF" + text));
+}
+
+TEST(Readers, Gmsh22ParametricNodesAreRead) {
+  expect_two_tets(read_text("two.msh", R"($MeshFormat
+2.1 0 8
+$EndMeshFormat
+$ParametricNodes
+5
+1 0 0 0 2 1 0.5 0.5
+2 1 0 0 2 1 0.5 0.5
+3 0 1 0 2 1 0.5 0.5
+4 0 0 1 3 1
+5 1 1 1 1 1 0.3
+$EndParametricNodes
+$Elements
+2
+1 4 2 0 1 1 2 3 4
+2 4 2 0 1 2 3 4 5
+$EndElements
+)"));
+}
+
+TEST(Readers, NodesKeepTheirPlaceAndElementsTheirNodes) {
+  const TempFolder folder;
+  folder.write("two.msh", kGmsh22);
+  const TetMesh mesh = tet_mesh(file_spec("two.msh"), folder.path());
+  EXPECT_EQ(mesh.nodes.col(4), Vec3(1, 1, 1));
+  EXPECT_EQ(mesh.tets.col(0), Eigen::Vector4i(0, 1, 2, 3));
+  EXPECT_EQ(mesh.tets.col(1), Eigen::Vector4i(1, 2, 3, 4));
+}
+
+TEST(Readers, ScaleMultipliesCoordinates) {
+  const TempFolder folder;
+  folder.write("two.msh", kGmsh22);
+  MeshSpec spec = file_spec("two.msh");
+  spec.scale = 1e-3;
+  MeshReport r;
+  tet_mesh(spec, folder.path(), &r);
+  EXPECT_NEAR(r.volume, 0.5e-9, 1e-24);
+  spec.scale = 0;
+  expect_contains(error_of([&] { tet_mesh(spec, folder.path()); }), "scale = 0 must be positive");
+}
+
+TEST(Readers, TetGenCountsFromZeroOrOneWithCommentsAttributesAndMarkers) {
+  const TempFolder folder;
+  folder.write("one.node", "# made by hand\n5 3 1 1\n\n1 0 0 0 0.5 1\n2 1 0 0 0.5 1 # corner\n3 0 1 0 0.5 1\n4 0 0 1 0.5 0\n5 1 1 1 0.5 0\n");
+  folder.write("one.ele", "2 4 1\n1 1 2 3 4 7\n2 2 3 4 5 7\n# end\n");
+  expect_two_tets(read_any(folder.path(), "one.node"));
+  expect_two_tets(read_any(folder.path(), "one.ele"));
+  folder.write("zero.node", "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n");
+  folder.write("zero.ele", "2 4 0\n0 0 1 2 3\n1 1 2 3 4\n");
+  expect_two_tets(read_any(folder.path(), "zero.ele"));
+}
+
+TEST(Readers, ObjTakesPolygonsNormalsTexturesAndNegativeIndices) {
+  const std::string vertices = "mtllib a.mtl\no cube\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+                               "vt 0 0\nvn 0 0 1\ng side\nusemtl red\ns off\n";
+  for (const char* faces : {"f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n",
+                            "f 4/1 3/1 2/1 1/1\nf 5/1/1 6/1/1 7/1/1 8/1/1\nf 1//1 2//1 6//1 5//1 # quad\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n",
+                            "f -5 -6 -7 -8\nf -4 -3 -2 -1\nf -8 -7 -3 -4\nf -7 -6 -2 -3\nf -6 -5 -1 -2\nf -5 -8 -4 -1\n"}) {
+    const MeshReport r = read_text("cube.obj", vertices + faces);
+    EXPECT_EQ(r.nodes, 8);
+    EXPECT_EQ(r.elements, 12);
+    EXPECT_EQ(r.flipped, 0);
+    EXPECT_NEAR(r.volume, 1.0, 1e-15);
+  }
+}
+
+TEST(Readers, AbsolutePathsIgnoreTheFolder) {
+  const TempFolder folder;
+  folder.write("two.msh", kGmsh22);
+  expect_two_tets(read_any("/nowhere", folder.path() + "/two.msh"));
+}
+
+TEST(Readers, WrongKindsOfFileAreRefusedWithAWayOut) {
+  const TempFolder folder;
+  expect_contains(error_of([&] { tet_mesh(file_spec("no.msh"), folder.path()); }), "no.msh: no such file; check the path");
+  expect_contains(error_of([&] { tet_mesh(file_spec("cow.obj"), folder.path()); }), "an .obj holds a surface");
+  expect_contains(error_of([&] { tet_mesh(file_spec("cow.stl"), folder.path()); }), "unknown ending \".stl\"");
+  expect_contains(error_of([&] { surface(file_spec("ball.msh"), folder.path()); }), "unknown ending \".msh\" for a surface");
+  std::filesystem::create_directories(folder.path() + "/folder.msh");
+  expect_contains(error_of([&] { tet_mesh(file_spec("folder.msh"), folder.path()); }), "no such file");
+}
