@@ -13,5 +13,9 @@ ValidationCase gradient_and_tangent();
 ValidationCase uniaxial_and_shear();
 ValidationCase hanging_bar();
 ValidationCase cantilever();
+ValidationCase handle_step();
+ValidationCase handle_below_wall();
+ValidationCase coupling_limit();
+ValidationCase device_limits();
 
 }  // namespace palpate::validation
