@@ -63,18 +63,26 @@ void add_points_table(Page& page, const Table& compare) {
                  rows, "“Below reference”: the error is smaller than the reference's own, so it says no more than that.", marks);
 }
 
-void add_counts_table(Page& page, const Table& compare) {
+/// One line a point, under the columns of compare.csv that are named.
+void add_columns_table(Page& page, const Table& compare, const std::vector<std::pair<std::string, std::string>>& columns, const std::string& caption) {
+  std::vector<std::string> headers = {"integrator", "setting"};
+  for (const auto& [column, header] : columns) headers.push_back(header);
   std::vector<std::vector<std::string>> rows;
   for (std::size_t r = 0; r < compare.rows.size(); ++r) {
-    std::vector<std::string> row = {compare.rows[r][compare.column("integrator")], point_text(compare, r)};
-    for (const char* column : {"steps", "force_evaluations", "tangent_evaluations", "factorisations", "linear_solves", "contact_queries",
-                               "position_error_max_m", "force_error_max_n", "torque_error_max_n_m"})
-      row.push_back(cell_text(compare, r, column));
-    rows.push_back(std::move(row));
+    rows.push_back({compare.rows[r][compare.column("integrator")], point_text(compare, r)});
+    for (const auto& [column, header] : columns) rows.back().push_back(cell_text(compare, r, column));
   }
-  page.add_table({"integrator", "setting", "steps", "force evaluations", "tangent evaluations", "factorisations", "linear solves", "contact queries",
-                  "position error, max [m]", "force error, max [N]", "torque error, max [N m]"},
-                 rows, "Counts that no noise of the machine touches, and the largest errors.");
+  page.add_table(headers, rows, caption);
+}
+
+void add_counts_and_maxima(Page& page, const Table& compare) {
+  add_columns_table(page, compare,
+                    {{"steps", "steps"}, {"force_evaluations", "force evaluations"}, {"tangent_evaluations", "tangent evaluations"},
+                     {"factorisations", "factorisations"}, {"linear_solves", "linear solves"}, {"contact_queries", "contact queries"}},
+                    "Counts, which no noise of the machine touches.");
+  add_columns_table(page, compare,
+                    {{"position_error_max_m", "position error [m]"}, {"force_error_max_n", "force error [N]"}, {"torque_error_max_n_m", "torque error [N m]"}},
+                    "The largest errors over all nodes and times.");
 }
 
 std::string order_text(const FittedOrder& fitted) {
@@ -121,7 +129,7 @@ void add_comparison(Page& page, const Table& compare, const ReferenceError& refe
   if (!quantities.empty()) add_orders_table(page, compare, quantities);
   page.add_heading("All points", 3);
   add_points_table(page, compare);
-  add_counts_table(page, compare);
+  add_counts_and_maxima(page, compare);
 }
 
 void add_exchange(Page& page, const Table& exchange) {

@@ -1,0 +1,3 @@
+#version 430 core
+// Depth only.
+void main() {}

@@ -1,0 +1,83 @@
+#include "overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "palpate/core/error.h"
+#include "ticks.h"
+
+namespace palpate::render {
+namespace {
+
+constexpr Rgb kInk = {0.13f, 0.16f, 0.19f}, kQuiet = {0.38f, 0.42f, 0.46f};
+constexpr double kDesignHeight = 900.0;  // lengths below are pixels of a picture this high
+
+/// "displacement [mm]"
+std::string label_of(const ColourScale& scale, const ScaledUnit& unit) {
+  return unit.name.empty() ? scale.label : fmt::format("{} [{}]", scale.label, unit.name);
+}
+
+void draw_names(Canvas& canvas, const Scene& scene, double grid_spacing, double u, double height) {
+  double x = 36 * u;
+  const double baseline = height - 34 * u, size = 17 * u;
+  for (const Surface& surface : scene.surfaces) {
+    if (surface.name.empty() || surface.values.size() > 0) continue;
+    canvas.set_colour(surface.colour, surface.opacity);
+    canvas.fill_rectangle(x, baseline - 13 * u, 15 * u, 15 * u);
+    canvas.set_colour(kInk);
+    canvas.text(surface.name, x + 23 * u, baseline, size);
+    x += 23 * u + canvas.text_width(surface.name, size) + 28 * u;
+  }
+  if (grid_spacing > 0.0) {
+    const ScaledUnit unit = scaled_unit("m", grid_spacing);
+    canvas.set_colour(kQuiet);
+    canvas.text(fmt::format("grid {:g} {}", grid_spacing * unit.factor, unit.name), x, baseline, size);
+  }
+}
+
+}  // namespace
+
+Margins margins_of(const Scene& scene, const Options& options, bool with_scale) {
+  Margins margins;
+  if (!options.annotated) return margins;
+  if (!scene.title.empty()) margins.top = 0.125;
+  margins.bottom = 0.10;
+  if (with_scale) margins.right = std::min(0.35, 190.0 * options.height / kDesignHeight / options.width);
+  return margins;
+}
+
+void draw_scale(Canvas& canvas, const ColourScale& scale, double x, double y, double width, double height, double text_size) {
+  const ScaledUnit unit = scaled_unit(scale.unit, std::max(std::abs(scale.low), std::abs(scale.high)));
+  const int rows = std::max(2, static_cast<int>(height));
+  for (int i = 0; i < rows; ++i) {
+    canvas.set_colour(viridis(1.0 - (i + 0.5) / rows));
+    canvas.fill_rectangle(x, y + i * height / rows, width, height / rows + (i + 1 < rows ? 0.6 : 0.0));
+  }
+  for (const Tick& tick : ticks(scale.low, scale.high, unit)) {
+    const double at = y + height * (1.0 - (tick.value - scale.low) / (scale.high - scale.low));
+    canvas.set_colour(kInk);
+    canvas.fill_rectangle(x + width, at - 0.5, 0.35 * text_size, 1.0);
+    canvas.text(tick.text, x + width + 0.6 * text_size, at + 0.36 * text_size, text_size);
+  }
+}
+
+Picture annotated(const Picture& picture, const Scene& scene, const ColourScale& scale, bool with_scale, double grid_spacing) {
+  Canvas canvas(picture);
+  const double u = picture.height / kDesignHeight, width = picture.width, height = picture.height;
+  canvas.set_colour(kInk);
+  canvas.text(scene.title, 36 * u, 58 * u, 29 * u, 0.0, true);
+  canvas.set_colour(kQuiet);
+  canvas.text(scene.subtitle, 36 * u, (scene.title.empty() ? 52 : 88) * u, 18 * u);
+  if (with_scale) {
+    const double bar_height = 0.46 * height, bar_x = width - 108 * u, bar_y = 0.5 * (height - bar_height);
+    canvas.set_colour(kInk);
+    const ScaledUnit unit = scaled_unit(scale.unit, std::max(std::abs(scale.low), std::abs(scale.high)));
+    canvas.text(label_of(scale, unit), width - 32 * u, bar_y - 20 * u, 18 * u, 1.0);
+    draw_scale(canvas, scale, bar_x, bar_y, 20 * u, bar_height, 17 * u);
+  }
+  draw_names(canvas, scene, grid_spacing, u, height);
+  return canvas.result();
+}
+
+}  // namespace palpate::render

@@ -1,0 +1,216 @@
+#include "shade.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "average.h"
+#include "corners.h"
+#include "palpate/gl/buffer.h"
+#include "palpate/gl/context.h"
+#include "palpate/gl/framebuffer.h"
+#include "palpate/gl/program.h"
+
+namespace palpate::render {
+namespace {
+
+constexpr int kShadowSize = 2048;
+
+/// A surface on the GPU.
+struct Drawable {
+  Drawable(const std::vector<Corner>& corners, const Surface* of) : surface(of), count(static_cast<int>(corners.size())) {
+    buffer.upload(corners);
+    array.attribute(0, buffer, 3, sizeof(Corner), offsetof(Corner, position));
+    array.attribute(1, buffer, 3, sizeof(Corner), offsetof(Corner, normal));
+    array.attribute(2, buffer, 1, sizeof(Corner), offsetof(Corner, value));
+  }
+  void draw() const {
+    array.bind();
+    glDrawArrays(GL_TRIANGLES, 0, count);
+  }
+  gl::Buffer buffer;
+  gl::VertexArray array;
+  const Surface* surface;
+  int count;
+};
+
+Drawable ground_square(const Ground& ground, const Staging& staging) {
+  const float reach = 12.0f * static_cast<float>(staging.radius), z = static_cast<float>(ground.z - staging.centre.z());
+  std::vector<Corner> corners;
+  for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, -1}, {1, 1}, {-1, 1}})
+    corners.push_back({{reach * static_cast<float>(x), reach * static_cast<float>(y), z}, {0, 0, 1}, -10.0f});
+  return {corners, nullptr};
+}
+
+/// Directions towards the two lights, fixed to the camera: the key from above and from the left, the fill low and from the right.
+struct Lights {
+  Vec3 key, fill;
+};
+Lights lights_of(const Camera& camera) {
+  const Vec3 forward = (camera.target - camera.eye).normalized();
+  Vec3 right = forward.cross(Vec3::UnitZ());
+  right = right.norm() > 1e-6 ? Vec3(right.normalized()) : Vec3::UnitX();
+  const Vec3 back = Vec3::UnitZ().cross(right).normalized() * -1.0;
+  return {(1.0 * Vec3::UnitZ() - 0.55 * right + 0.45 * back).normalized(), (0.25 * Vec3::UnitZ() + 0.9 * right + 0.5 * back).normalized()};
+}
+
+/// The scene's ball as the key light sees it.
+Eigen::Matrix4d light_projection(const Vec3& key, double radius) {
+  Camera light;
+  light.eye = 3.0 * radius * key;
+  light.target = Vec3::Zero();
+  light.perspective = false;
+  light.half_height = 1.05 * radius;
+  light.near = 1.5 * radius;
+  light.far = 6.0 * radius;
+  return view_projection(light, 1.0);
+}
+
+gl::Texture colour_table() {
+  std::array<std::uint8_t, 4 * 256> bytes{};
+  for (int i = 0; i < 256; ++i) {
+    const Picture pixel(1, 1, viridis(i / 255.0));
+    std::copy(pixel.rgba.begin(), pixel.rgba.end(), bytes.begin() + 4 * i);
+  }
+  gl::Texture table(256, 1, gl::Format::kRgba8);
+  table.upload(bytes.data());
+  table.set_linear(true);
+  return table;
+}
+
+Eigen::Vector3f vector_of(Rgb c) { return {c.r, c.g, c.b}; }
+
+/// The drawing of one picture; owns what it needs on the GPU.
+class Shader {
+ public:
+  Shader(const Scene& scene, const Staging& staging, const Options& options);
+  Picture run();
+
+ private:
+  void draw_shadows();
+  void set_common(gl::Program& program);
+  void draw_ground();
+  void draw_surface(const Drawable& drawable);
+  void draw_transparent(const Drawable& drawable);
+
+  const Scene& scene_;
+  const Staging& staging_;
+  const Options& options_;
+  Camera camera_;  // relative to the scene's centre
+  Lights lights_;
+  Eigen::Matrix4f view_, light_;
+  gl::Program surface_{"render/surface.vert", "render/surface.frag"}, ground_{"render/surface.vert", "render/ground.frag"},
+      shadow_{"render/shadow.vert", "render/shadow.frag"};
+  gl::Texture table_ = colour_table();
+  gl::Framebuffer shadow_map_{kShadowSize, kShadowSize, {}, true};
+  std::vector<Drawable> drawables_;
+};
+
+Shader::Shader(const Scene& scene, const Staging& staging, const Options& options)
+    : scene_(scene), staging_(staging), options_(options), camera_(staging.camera), lights_(lights_of(staging.camera)) {
+  camera_.eye -= staging.centre;
+  camera_.target -= staging.centre;
+  view_ = view_projection(camera_, static_cast<double>(options.width) / options.height).cast<float>();
+  light_ = light_projection(lights_.key, staging.radius).cast<float>();
+  for (const Surface& surface : scene.surfaces)
+    if (surface.faces.cols() > 0) drawables_.emplace_back(corners(surface, staging.scale, staging.centre), &surface);
+}
+
+void Shader::draw_shadows() {
+  shadow_map_.bind();
+  shadow_map_.clear_depth(1.0f);
+  shadow_.use();
+  shadow_.set("light_projection", light_);
+  if (options_.lit)
+    for (const Drawable& d : drawables_) d.draw();
+}
+
+void Shader::set_common(gl::Program& program) {
+  program.use();
+  program.set("view_projection", view_);
+  program.set("light_projection", light_);
+  program.set("lit", options_.lit ? 1 : 0);
+  program.set("shadow_map", 1);
+  shadow_map_.depth().bind_unit(1);
+}
+
+void Shader::draw_ground() {
+  if (!scene_.ground || camera_.eye.z() + staging_.centre.z() <= scene_.ground->z) return;
+  set_common(ground_);
+  ground_.set("background", vector_of(options_.background));
+  ground_.set("grid_origin", Eigen::Vector2f((-staging_.centre.head<2>()).cast<float>()));
+  ground_.set("spacing", static_cast<float>(staging_.grid_spacing));
+  ground_.set("fade_radius", 5.0f * static_cast<float>(staging_.radius));
+  ground_.set("shadow_radius", 0.045f);
+  // A little behind where it is, so that what just touches it stays in sight.
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.0f, 4.0f);
+  ground_square(*scene_.ground, staging_).draw();
+  glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void Shader::draw_surface(const Drawable& drawable) {
+  set_common(surface_);
+  surface_.set("plain_colour", vector_of(drawable.surface->colour));
+  surface_.set("opacity", static_cast<float>(drawable.surface->opacity));
+  surface_.set("parallel", camera_.perspective ? 0 : 1);
+  surface_.set("eye", Eigen::Vector3f((camera_.perspective ? camera_.eye : Vec3(camera_.eye - camera_.target)).cast<float>()));
+  surface_.set("key_light", Eigen::Vector3f(lights_.key.cast<float>()));
+  surface_.set("fill_light", Eigen::Vector3f(lights_.fill.cast<float>()));
+  surface_.set("shadow_radius", 0.008f);
+  surface_.set("colour_map", 0);
+  table_.bind_unit(0);
+  drawable.draw();
+}
+
+/// Depth first, then colour where depth is equal: only the layer nearest to the eye is blended, in whatever order triangles come.
+void Shader::draw_transparent(const Drawable& drawable) {
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  draw_surface(drawable);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthFunc(GL_LEQUAL);
+  draw_surface(drawable);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_BLEND);
+}
+
+/// Whoever drew before in this context may have left anything.
+void set_state() {
+  for (const GLenum off : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL}) glDisable(off);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDepthMask(GL_TRUE);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
+Picture Shader::run() {
+  set_state();
+  draw_shadows();
+  gl::Framebuffer target(options_.width * options_.supersampling, options_.height * options_.supersampling, {gl::Format::kRgba8}, true);
+  const float background[4] = {options_.background.r, options_.background.g, options_.background.b, 1.0f};
+  target.bind();
+  target.clear(0, background);
+  target.clear_depth(1.0f);
+  for (const Drawable& d : drawables_)
+    if (d.surface->opacity >= 1.0) draw_surface(d);
+  draw_ground();
+  for (const Drawable& d : drawables_)
+    if (d.surface->opacity < 1.0) draw_transparent(d);
+  glDisable(GL_DEPTH_TEST);
+  gl::check_errors("render::draw");
+  return average(target.read_rgba8(0), options_.width, options_.height, options_.supersampling);
+}
+
+}  // namespace
+
+Picture shade(const Scene& scene, const Staging& staging, const Options& options) {
+  gl::Context::shared();
+  return Shader(scene, staging, options).run();
+}
+
+}  // namespace palpate::render

@@ -1,0 +1,52 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "palpate/core/error.h"
+#include "palpate/render/scene.h"
+#include "render/shapes.h"
+
+using namespace palpate;
+
+namespace {
+
+/// The message for a good scene that `spoil` made bad.
+std::string message_of(const std::function<void(render::Scene&, render::Options&)>& spoil) {
+  render::Scene scene;
+  scene.surfaces.push_back(cube_surface());
+  scene.surfaces[0].name = "cube";
+  render::Options options;
+  spoil(scene, options);
+  try {
+    render::draw(scene, options);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+void expect(const std::string& part, const std::function<void(render::Scene&, render::Options&)>& spoil) {
+  const std::string message = message_of(spoil);
+  EXPECT_NE(message.find(part), std::string::npos) << message;
+}
+
+}  // namespace
+
+TEST(DrawErrors, NameTheSurfaceAndTheValue) {
+  expect("surface \"cube\": a face names point 8 of 8", [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = 8; });
+  expect("surface \"cube\": a face names point -1 of 8", [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = -1; });
+  expect("surface \"cube\": a position is not finite", [](auto& scene, auto&) { scene.surfaces[0].points(1, 2) = std::nan(""); });
+  expect("surface \"cube\": 3 values for 8 points", [](auto& scene, auto&) { scene.surfaces[0].values = VecX::Zero(3); });
+  expect("nothing to show", [](auto& scene, auto&) { scene.surfaces.clear(); });
+  expect("8 x 900 pixels", [](auto&, auto& options) { options.width = 8; });
+  expect("supersampling = 0", [](auto&, auto& options) { options.supersampling = 0; });
+}
+
+TEST(SavePng, NamesThePathThatCannotBeWritten) {
+  try {
+    render::save_png(render::Picture(16, 16, {}), "/nowhere/picture.png");
+    FAIL() << "a folder that is not there was written to";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("/nowhere/picture.png: the picture cannot be written"), std::string::npos);
+  }
+}
