@@ -4,6 +4,7 @@
 #include <nvector/nvector_serial.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "integrate/condensed_newton.h"
 #include "integrate/error_weights.h"
@@ -24,6 +25,10 @@ using sun::check;
 
 constexpr int kHighestOrder = 5;
 constexpr int kRecoverable = 1;
+
+/// A step that collapses to this ends the call with an error: before a force that is not finite from some time on,
+/// steps would shrink towards that time without end.  Far below any physical time scale, above the rounding of t.
+double smallest_step(double t, double t_end) { return std::max(1e-12 * (t_end - t), 1e-15 * std::max(std::abs(t), std::abs(t_end))); }
 
 StepStatus status_of(int flag) {
   switch (flag) {
@@ -65,6 +70,7 @@ class CvodeBdf final : public Stepper, private sun::NewtonHook {
     }
     start();
     check(CVodeSetStopTime(cvode_, t_end), "CVodeSetStopTime", state_.time(), 0.0);
+    check(CVodeSetMinStep(cvode_, smallest_step(state_.time(), t_end)), "CVodeSetMinStep", state_.time(), 0.0);
     message_.clear();
     double t = state_.time();
     int flag = CV_SUCCESS;

@@ -12,7 +12,7 @@
 namespace palpate::integrate::self_test {
 namespace {
 
-constexpr double kRtol = 1e-8, kAtol = 1e-10;
+constexpr double kRtol = 1e-10, kAtol = 1e-12;
 constexpr double kFailed = std::numeric_limits<double>::quiet_NaN();
 
 /// One equation's worth of SUNDIALS objects.

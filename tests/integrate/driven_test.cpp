@@ -1,0 +1,134 @@
+#include <gtest/gtest.h>
+
+#include <complex>
+
+#include "integrate/fakes.h"
+
+namespace palpate {
+namespace {
+
+using namespace fakes;
+
+/// Node 0 is moved along x by A sin(W t); node 1 follows through a spring k, a damper c and the off-diagonal mass of a linear bar element.
+/// Free row: m11 a1 + m10 a0 = -k (d1 - d0) - c (v1 - v0).  With d0 = Im(A e^{iWt}), d1 = Im(X e^{iWt}):
+///     X (k + i W c - W^2 m11) = A (k + i W c + W^2 m10).
+struct DrivenBar {
+  static constexpr double kA = 0.1, kW = 5.0, kK = 100.0, kC = 3.0, kM11 = 2.0, kM10 = 1.0;
+  State state;
+  System system;
+  std::shared_ptr<LinearTerm> term;
+  std::complex<double> X;
+  long asked = 0;
+
+  DrivenBar() {
+    const std::complex<double> i(0.0, 1.0);
+    X = kA * (kK + i * kW * kC + kW * kW * kM10) / (kK + i * kW * kC - kW * kW * kM11);
+    MatX K = kK * MatX::Identity(6, 6), D = MatX::Zero(6, 6), M = kM11 * MatX::Identity(6, 6);
+    for (const auto& [a, b, sign] : {std::tuple{0, 3, -1.0}, {3, 0, -1.0}}) {
+      K(a, b) = sign * kK;
+      D(a, b) = sign * kC;
+      M(a, b) = kM10;
+    }
+    D(0, 0) = D(3, 3) = kC;
+    BlockSpec spec{.name = "bar", .q_size = 6, .u_size = 6, .q_scale = kA, .u_scale = kA * kW};
+    VecX q0 = VecX::Zero(6);
+    q0[3] = 1.0;
+    const int id = state.insert(spec, q0, VecX::Zero(6));
+    state.q()[3] += X.imag();
+    state.u()[3] = kW * X.real();
+    term = std::make_shared<LinearTerm>(K, D, q0);
+    system.add(std::static_pointer_cast<ForceTerm>(term));
+    system.add(std::make_shared<NodalMass>(id, M));
+    system.add(std::make_shared<Scripted>(std::vector<int>{0}, [this](double t, VecX& x, VecX& v, VecX& a) {
+      ++asked;
+      x[0] = kA * std::sin(kW * t);
+      v[0] = kA * kW * std::cos(kW * t);
+      a[0] = -kA * kW * kW * std::sin(kW * t);
+    }));
+    system.set_mass_solver(integrate::make_linear_solver("cholmod"));
+    system.prepare(state.view());
+    system.impose(state.layout(), 0.0, state.q().data(), state.u().data());
+  }
+  double response(double t) const { return 1.0 + (X * std::polar(1.0, kW * t)).imag(); }
+};
+
+class Driven : public testing::TestWithParam<std::string> {
+ protected:
+  int order() const { return find(integrate::stepper_registry(), GetParam(), "integrator").order; }
+};
+INSTANTIATE_TEST_SUITE_P(Registry, Driven, testing::ValuesIn(names(integrate::stepper_registry())), registry_test_name);
+
+TEST_P(Driven, NodesFollowExactlyAndTheRestRespondsAtTheOrder) {
+  std::vector<double> values, errors;
+  const Ladder l = ladder(order());
+  for (const double value : l.values) {
+    DrivenBar bar;
+    IntegratorSpec s;
+    s.name = GetParam();
+    set_accuracy(s, order(), value);
+    const auto stepper = integrate::make_stepper(bar.system, bar.state, s);
+    double error = 0.0;
+    for (const double t : {0.1, 0.37, 0.8}) {
+      const StepResult result = stepper->advance_to(t);
+      ASSERT_TRUE(result.ok()) << result.message;
+      EXPECT_EQ(bar.state.q()[0], DrivenBar::kA * std::sin(DrivenBar::kW * t)) << "to the last bit";
+      EXPECT_EQ(bar.state.u()[0], DrivenBar::kA * DrivenBar::kW * std::cos(DrivenBar::kW * t));
+      EXPECT_LT(std::abs(bar.state.q()[4]) + std::abs(bar.state.q()[1]), 1e-15);
+      error = std::max(error, std::abs(bar.state.q()[3] - bar.response(t)));
+      VecX q, u;
+      const double inside = t - 0.3 * result.h;
+      ASSERT_TRUE(stepper->dense_output(inside, q, u));
+      EXPECT_EQ(q[0], DrivenBar::kA * std::sin(DrivenBar::kW * inside)) << "between steps as well";
+    }
+    values.push_back(value);
+    errors.push_back(error);
+  }
+  EXPECT_GT(slope(values, errors), l.low);
+  EXPECT_LT(slope(values, errors), l.high);
+  EXPECT_LT(errors.back(), 1e-3 * DrivenBar::kA);
+}
+
+// The whole bar moves with its drive at a constant velocity: no force, any step.
+TEST_P(Driven, RigidMotionWithTheDriveFeelsNoForce) {
+  const MatX K = (MatX(6, 6) << MatX::Identity(3, 3), -MatX::Identity(3, 3), -MatX::Identity(3, 3), MatX::Identity(3, 3)).finished();
+  VecX q0(6);
+  q0 << 0, 0, 0, 1, 0, 0;
+  State state;
+  System system;
+  const int id = state.insert(BlockSpec{.name = "bar", .q_size = 6, .u_size = 6}, q0, VecX::Constant(6, 2.0));
+  system.add(std::make_shared<LinearTerm>(1e6 * K, 1e3 * K, q0));
+  system.add(std::make_shared<NodalMass>(id, MatX::Identity(6, 6)));
+  system.add(std::make_shared<Scripted>(std::vector<int>{0, 1, 2}, [](double t, VecX& x, VecX& v, VecX& a) {
+    x.setConstant(2.0 * t);
+    v.setConstant(2.0);
+    a.setZero();
+  }));
+  system.prepare(state.view());
+  IntegratorSpec s{.name = GetParam(), .rtol = 1e-3, .step_s = 0.1};
+  const auto stepper = integrate::make_stepper(system, state, s);
+  ASSERT_TRUE(stepper->advance_to(1.0).ok());
+  EXPECT_LT((state.q() - q0 - VecX::Constant(6, 2.0)).norm(), 1e-9);
+  EXPECT_LT((state.u() - VecX::Constant(6, 2.0)).norm(), 1e-9);
+}
+
+TEST_P(Driven, AllNodesDriven) {
+  State state;
+  System system;
+  const int id = state.insert(BlockSpec{.name = "one", .q_size = 3, .u_size = 3}, VecX::Zero(3), VecX::Zero(3));
+  system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
+  system.add(std::make_shared<Scripted>(std::vector<int>{0, 1, 2}, [](double t, VecX& x, VecX& v, VecX& a) {
+    x.setConstant(t * t);
+    v.setConstant(2.0 * t);
+    a.setConstant(2.0);
+  }));
+  system.prepare(state.view());
+  IntegratorSpec s;
+  s.name = GetParam();
+  s.step_s = 0.03;
+  const auto stepper = integrate::make_stepper(system, state, s);
+  ASSERT_TRUE(stepper->advance_to(0.5).ok());
+  EXPECT_EQ(state.q()[2], 0.25);
+}
+
+}  // namespace
+}  // namespace palpate

@@ -1,0 +1,319 @@
+#include <gtest/gtest.h>
+
+#include "integrate/fakes.h"
+#include "palpate/core/counters.h"
+
+namespace palpate {
+namespace {
+
+using namespace fakes;
+
+/// What every integrator of the registry must do.  A new entry is tested by being listed.
+class Steppers : public testing::TestWithParam<std::string> {
+ protected:
+  IntegratorSpec spec() const {
+    IntegratorSpec s;
+    s.name = GetParam();
+    s.rtol = 1e-6;
+    s.step_s = 1e-3;
+    return s;
+  }
+  int order() const { return find(integrate::stepper_registry(), GetParam(), "integrator").order; }
+};
+
+std::vector<std::string> stepper_names() { return names(integrate::stepper_registry()); }
+INSTANTIATE_TEST_SUITE_P(Registry, Steppers, testing::ValuesIn(stepper_names()), registry_test_name);
+
+TEST_P(Steppers, LandExactly) {
+  Chain chain;
+  chain.start_in_mode(0.1);
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec());
+  EXPECT_EQ(stepper->name(), GetParam());
+  for (const double t : {0.1, 0.25, 1.0 / 3.0, 0.3334, 0.5}) {
+    const StepResult result = stepper->advance_to(t);
+    ASSERT_TRUE(result.ok()) << result.message;
+    EXPECT_EQ(chain.state.time(), t);
+    EXPECT_EQ(result.t, t);
+    EXPECT_GT(result.h, 0.0);
+    EXPECT_GE(result.order, 1);
+  }
+  EXPECT_THROW(stepper->advance_to(0.5), InternalError) << "no way back";
+}
+
+TEST_P(Steppers, ConvergeToTheModeAtTheirOrder) {
+  std::vector<double> values, errors;
+  const Ladder l = ladder(order());
+  for (const double value : l.values) {
+    Chain chain;
+    chain.start_in_mode(0.1);
+    IntegratorSpec s = spec();
+    set_accuracy(s, order(), value);
+    const VecX q = run(chain.system, chain.state, s, 0.5);
+    const VecX exact = chain.term->q0 + 0.1 * std::cos(0.5 * chain.omega()) * chain.mode();
+    values.push_back(value);
+    errors.push_back((q - exact).norm());
+  }
+  EXPECT_GT(slope(values, errors), l.low);
+  EXPECT_LT(slope(values, errors), l.high);
+  EXPECT_LT(errors.back(), 1e-4 * 0.1 * 2);
+}
+
+TEST_P(Steppers, LoseEnergyToDamping) {
+  Chain chain(0.02);
+  chain.start_in_mode(0.1);
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec());
+  double before = chain.system.potential_energy(chain.state.view());
+  for (int i = 1; i <= 20; ++i) {
+    ASSERT_TRUE(stepper->advance_to(0.1 * i).ok());
+    const double now = chain.system.potential_energy(chain.state.view()) + chain.system.kinetic_energy(chain.state.view());
+    EXPECT_LT(now, before);
+    before = now;
+  }
+}
+
+TEST_P(Steppers, StayAtRest) {
+  Chain chain;
+  const VecX rest = chain.state.q();
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec());
+  ASSERT_TRUE(stepper->advance_to(10.0).ok());
+  EXPECT_EQ((chain.state.q() - rest).cwiseAbs().maxCoeff(), 0.0);
+}
+
+TEST_P(Steppers, InterpolateWithinTheLastStep) {
+  Chain chain;
+  chain.start_in_mode(0.1);
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec());
+  VecX q, u;
+  EXPECT_FALSE(stepper->dense_output(0.0, q, u)) << "no step yet";
+  const StepResult result = stepper->advance_to(0.4);
+  ASSERT_TRUE(result.ok());
+  ASSERT_TRUE(stepper->dense_output(0.4, q, u));
+  EXPECT_LT((q - chain.state.q()).norm() + (u - chain.state.u()).norm(), 1e-14);
+  const double t = 0.4 - 0.5 * result.h;
+  ASSERT_TRUE(stepper->dense_output(t, q, u));
+  EXPECT_LT((q - chain.term->q0 - 0.1 * std::cos(t * chain.omega()) * chain.mode()).norm(), 1e-3 * 0.1);
+  EXPECT_FALSE(stepper->dense_output(0.4 - 2.0 * result.h, q, u));
+  EXPECT_FALSE(stepper->dense_output(0.5, q, u));
+  stepper->reinit(ReinitReason::kStateChanged);
+  EXPECT_FALSE(stepper->dense_output(0.4, q, u)) << "history is forgotten";
+}
+
+TEST_P(Steppers, StartAnewAfterReinit) {
+  Chain chain, fresh;
+  chain.start_in_mode(0.1);
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec());
+  ASSERT_TRUE(stepper->advance_to(0.3).ok());
+  chain.state.q().setConstant(0.5);
+  chain.state.u().setZero();
+  stepper->reinit(ReinitReason::kStateChanged);
+  ASSERT_TRUE(stepper->advance_to(0.6).ok());
+  fresh.state.q().setConstant(0.5);
+  fresh.state.set_time(0.3);
+  EXPECT_LT((run(fresh.system, fresh.state, spec(), 0.6) - chain.state.q()).norm(), 1e-12);
+  EXPECT_EQ(stepper->counters().reinits, 1);
+}
+
+TEST_P(Steppers, FollowALayoutThatGrows) {
+  Chain chain;
+  chain.start_in_mode(0.1);
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec());
+  ASSERT_TRUE(stepper->advance_to(0.25).ok());
+  BlockSpec more{.name = "more", .q_size = 3, .u_size = 3};
+  const int id = chain.state.insert(more, VecX::Zero(3), VecX::Ones(3));  // flies freely
+  struct PointMass final : InertiaTerm {
+    int id;
+    explicit PointMass(int i) : id(i) {}
+    int block_id() const override { return id; }
+    bool diagonal() const override { return true; }
+    void add_mass(const StateView& s, double scale, BorderedMatrix& A) const override {
+      const int node = s.layout->find(id)->u_offset / 3;
+      A.body.add(A.body.slot(node, node), scale * 2.0 * Mat3::Identity());
+    }
+    void apply(const StateView& s, const VecX& x, VecX& y) const override {
+      y.segment<3>(s.layout->find(id)->u_offset) += 2.0 * x.segment<3>(s.layout->find(id)->u_offset);
+    }
+  };
+  chain.system.add(std::make_shared<PointMass>(id));
+  chain.system.prepare(chain.state.view());
+  stepper->reinit(ReinitReason::kLayoutChanged);
+  ASSERT_TRUE(stepper->advance_to(0.5).ok());
+  EXPECT_LT((chain.state.q(*chain.state.layout().find(id)) - VecX::Constant(3, 0.25)).norm(), 1e-9);
+  const VecX exact = chain.term->q0 + 0.1 * std::cos(0.5 * chain.omega()) * chain.mode();
+  EXPECT_LT((chain.state.q().head(12) - exact).norm(), 1e-2 * 0.1);
+}
+
+TEST_P(Steppers, EndCleanlyAtNotANumber) {
+  Chain chain;
+  chain.start_in_mode(0.1);
+  chain.term->nan_from = 0.2;
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec());
+  const StepResult result = stepper->advance_to(0.5);
+  EXPECT_EQ(result.status, StepStatus::kNotFinite) << to_string(result.status);
+  EXPECT_NE(result.message.find(GetParam()), std::string::npos) << result.message;
+  EXPECT_LT(chain.state.time(), 0.2);
+  EXPECT_EQ(result.t, chain.state.time());
+  EXPECT_TRUE(chain.state.q().allFinite() && chain.state.u().allFinite()) << "the last good step";
+  chain.term->nan_from = 1e9;  // mended
+  stepper->reinit(ReinitReason::kParametersChanged);
+  ASSERT_TRUE(stepper->advance_to(0.5).ok());
+  const VecX exact = chain.term->q0 + 0.1 * std::cos(0.5 * chain.omega()) * chain.mode();
+  EXPECT_LT((chain.state.q() - exact).norm(), 1e-2 * 0.1);
+}
+
+TEST_P(Steppers, EndCleanlyAtNotANumberFromTheStart) {
+  Chain chain;
+  chain.term->nan_from = 0.0;
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec());
+  EXPECT_EQ(stepper->advance_to(0.5).status, StepStatus::kNotFinite);
+  EXPECT_EQ(chain.state.time(), 0.0);
+}
+
+TEST_P(Steppers, StopAtTheStepLimit) {
+  Chain chain;
+  chain.start_in_mode(0.1);
+  IntegratorSpec s = spec();
+  s.max_steps = 5;
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, s);
+  const StepResult result = stepper->advance_to(1.0);
+  EXPECT_EQ(result.status, StepStatus::kTooManySteps);
+  EXPECT_NE(result.message.find("5 steps before t_end = 1"), std::string::npos) << result.message;
+  EXPECT_EQ(stepper->counters().steps, 5);
+  EXPECT_GT(chain.state.time(), 0.0);
+}
+
+TEST_P(Steppers, TakeAnUnsymmetricTangentByLu) {
+  Chain chain;
+  chain.start_in_mode(0.1);
+  chain.term->K(0, 3) += 20.0;  // circulatory
+  chain.term->symmetric = false;
+  auto& counter = counters::counter("integrate.unsymmetric");
+  const long before = counter;
+  const VecX q = run(chain.system, chain.state, spec(), 0.3);
+  EXPECT_GT(counter, before);
+  Chain same;
+  same.start_in_mode(0.1);
+  same.term->K(0, 3) += 20.0;
+  same.term->symmetric = false;
+  IntegratorSpec s = spec();
+  s.linear_solver = "umfpack";
+  EXPECT_LT((run(same.system, same.state, s, 0.3) - q).norm(), 1e-13);
+}
+
+TEST_P(Steppers, PassEmptyTime) {
+  State state;
+  System system;
+  system.prepare(state.view());
+  const auto stepper = integrate::make_stepper(system, state, spec());
+  EXPECT_TRUE(stepper->advance_to(1.0).ok());
+  EXPECT_EQ(state.time(), 1.0);
+}
+
+TEST_P(Steppers, CountTheirWork) {
+  Chain chain;
+  chain.start_in_mode(0.1);
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec());
+  ASSERT_TRUE(stepper->advance_to(0.2).ok());
+  ASSERT_TRUE(stepper->advance_to(0.4).ok());
+  const StepperCounters& c = stepper->counters();
+  EXPECT_GT(c.steps, 2);
+  EXPECT_EQ(c.force_evaluations, chain.term->forces);
+  EXPECT_GT(c.tangent_evaluations, 0);
+  EXPECT_GE(chain.term->tangents, c.tangent_evaluations);
+  EXPECT_GE(c.solver.solves, c.steps);
+  EXPECT_EQ(c.solver.symbolic, 1) << "one pattern, one analysis";
+  EXPECT_EQ(c.solver.factorisations, c.tangent_evaluations);
+  EXPECT_EQ(c.indefinite, 0);
+}
+
+/// A LinearSolver of somebody else's fits: dense, and counting.
+struct DenseSolver final : LinearSolver {
+  Eigen::PartialPivLU<MatX> lu;
+  SolverCounters count;
+  std::string name() const override { return "dense"; }
+  bool supports_unsymmetric() const override { return true; }
+  SolveStatus factor(const BorderedMatrix& A) override {
+    lu.compute(A.to_dense());
+    ++count.factorisations;
+    return SolveStatus::kOk;
+  }
+  SolveStatus solve(const MatX& B, MatX& X) override { return X = lu.solve(B), SolveStatus::kOk; }
+  SolveStatus solve(const VecX& b, VecX& x) override { return x = lu.solve(b), ++count.solves, SolveStatus::kOk; }
+  const SolverCounters& counters() const override { return count; }
+};
+
+TEST_P(Steppers, TakeAForeignLinearSolver) {
+  Chain chain, same;
+  chain.start_in_mode(0.1);
+  same.start_in_mode(0.1);
+  const auto& entry = find(integrate::stepper_registry(), GetParam(), "integrator");
+  const auto stepper = entry.make(chain.system, chain.state, spec(), std::make_unique<DenseSolver>());
+  ASSERT_TRUE(stepper->advance_to(0.3).ok());
+  EXPECT_LT((chain.state.q() - run(same.system, same.state, spec(), 0.3)).norm(), 1e-12);
+  EXPECT_GT(stepper->counters().solver.solves, 0);
+}
+
+template <class Change>
+void expect_refused(const IntegratorSpec& good, Change change, const std::string& message) {
+  Chain chain;
+  IntegratorSpec s = good;
+  change(s);
+  try {
+    integrate::make_stepper(chain.system, chain.state, s);
+    FAIL() << message;
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
+  }
+}
+
+TEST_P(Steppers, RefuseBadSettings) {
+  using S = IntegratorSpec;
+  expect_refused(spec(), [](S& s) { s.max_steps = 0; }, "max_steps = 0 must be at least 1");
+  expect_refused(spec(), [](S& s) { s.linear_solver = "pardiso"; }, "unknown linear solver \"pardiso\"");
+  if (order() > 0) {
+    expect_refused(spec(), [](S& s) { s.step_s = 0.0; }, "step_s = 0 must be positive");
+    expect_refused(spec(), [](S& s) { s.step_s = -1e-3; }, "step_s = -0.001 must be positive");
+    expect_refused(spec(), [](S& s) { s.step_s = std::nan(""); }, "step_s = nan must be positive");
+  } else {
+    expect_refused(spec(), [](S& s) { s.rtol = 0.0; }, "rtol = 0 must be positive");
+    expect_refused(spec(), [](S& s) { s.rtol = std::nan(""); }, "rtol = nan must be positive");
+    expect_refused(spec(), [](S& s) { s.rtol = 0.5; }, "rtol = 0.5 must be at most 0.1");
+    expect_refused(spec(), [](S& s) { s.atol_q = 0.0; }, "atol_q = 0 must be positive");
+    expect_refused(spec(), [](S& s) { s.atol_u = -1.0; }, "atol_u = -1 must be positive");
+    expect_refused(spec(), [](S& s) { s.max_order = 6; }, "max_order = 6 must lie in [0, 5]");
+  }
+}
+
+TEST(StepperRegistry, NamesTheNearest) {
+  expect_refused({}, [](IntegratorSpec& s) { s.name = "cvode-bdg"; }, "unknown integrator \"cvode-bdg\" (did you mean \"cvode-bdf\"?)");
+}
+
+TEST(LinearlyImplicitEuler, FallsBackToLuOnAnIndefiniteMatrix) {
+  Chain chain(0.0, -100.0);  // buckles: 1 + h^2 K has negative eigenvalues at h = 1
+  IntegratorSpec s{.name = "linearly-implicit-euler", .step_s = 1.0};
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, s);
+  ASSERT_TRUE(stepper->advance_to(2.0).ok());
+  EXPECT_EQ(stepper->counters().indefinite, 2);
+}
+
+TEST(CvodeBdf, CapsItsOrder) {
+  for (const int cap : {1, 2, 3}) {
+    Chain chain;
+    chain.start_in_mode(0.1);
+    IntegratorSpec s{.name = "cvode-bdf", .rtol = 1e-6, .max_order = cap};
+    const auto stepper = integrate::make_stepper(chain.system, chain.state, s);
+    int highest = 0;
+    for (int i = 1; i <= 20; ++i) highest = std::max(highest, stepper->advance_to(0.05 * i).order);
+    EXPECT_EQ(highest, cap);
+  }
+}
+
+TEST(CvodeBdf, FactorsSeldom) {
+  Chain chain;
+  chain.start_in_mode(0.1);
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, {.name = "cvode-bdf", .rtol = 1e-6});
+  ASSERT_TRUE(stepper->advance_to(5.0).ok());
+  EXPECT_LT(4 * stepper->counters().solver.factorisations, stepper->counters().steps);
+}
+
+}  // namespace
+}  // namespace palpate
