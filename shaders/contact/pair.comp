@@ -6,6 +6,7 @@ layout(binding = 0) uniform usampler2D triangles_a;
 layout(binding = 1) uniform usampler2D triangles_b;
 layout(binding = 2) uniform sampler2D depth_a;
 layout(binding = 3) uniform sampler2D depth_b;
+uniform int width, height;   // the part of the images that is in use
 uniform float largest_gap;  // pixels farther apart than this are left out [depth units]
 
 layout(std430, binding = 0) buffer Count { uint count; };
@@ -13,14 +14,13 @@ layout(std430, binding = 1) writeonly buffer Pairs { uint pairs[]; };
 
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-  ivec2 size = textureSize(triangles_a, 0);
-  if (any(greaterThanEqual(at, size))) return;
+  if (at.x >= width || at.y >= height) return;
   uint a = texelFetch(triangles_a, at, 0).x;
   uint b = texelFetch(triangles_b, at, 0).x;
   if (a == 0u || b == 0u) return;
   if (texelFetch(depth_a, at, 0).x - texelFetch(depth_b, at, 0).x > largest_gap) return;
   uint k = 3u * atomicAdd(count, 1u);
-  pairs[k] = uint(at.y * size.x + at.x);
+  pairs[k] = uint(at.y * width + at.x);
   pairs[k + 1u] = a - 1u;
   pairs[k + 2u] = b - 1u;
 }

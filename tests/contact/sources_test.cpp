@@ -1,58 +1,8 @@
-#include "fixture.h"
+#include "surfaces.h"
 
 using namespace contact_tests;
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-/// A latitude-longitude sphere, outward, poles on z.
-TriMesh sphere(const Vec3& centre, double radius, int rings) {
-  const int around = 2 * rings;
-  TriMesh mesh;
-  mesh.vertices.resize(3, (rings - 1) * around + 2);
-  for (int i = 1; i < rings; ++i)
-    for (int j = 0; j < around; ++j) {
-      const double theta = kPi * i / rings, phi = 2 * kPi * j / around;
-      mesh.vertices.col((i - 1) * around + j) = centre + radius * Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
-    }
-  const int north = (rings - 1) * around, south = north + 1;
-  mesh.vertices.col(north) = centre + Vec3(0, 0, radius);
-  mesh.vertices.col(south) = centre - Vec3(0, 0, radius);
-  std::vector<Eigen::Vector3i> faces;
-  const auto at = [&](int i, int j) { return (i - 1) * around + j % around; };
-  for (int j = 0; j < around; ++j) {
-    faces.emplace_back(north, at(1, j), at(1, j + 1));
-    faces.emplace_back(south, at(rings - 1, j + 1), at(rings - 1, j));
-    for (int i = 1; i + 1 < rings; ++i) {
-      faces.emplace_back(at(i, j), at(i + 1, j), at(i + 1, j + 1));
-      faces.emplace_back(at(i, j), at(i + 1, j + 1), at(i, j + 1));
-    }
-  }
-  mesh.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
-  for (std::size_t f = 0; f < faces.size(); ++f) mesh.faces.col(static_cast<Eigen::Index>(f)) = faces[f];
-  return mesh;
-}
-
-/// A State whose nodes are a surface's vertices, behind another block of two nodes.
-struct SurfaceWorld {
-  dynamics::State state;
-  contact::NodeSurface surface;
-
-  explicit SurfaceWorld(const TriMesh& mesh) {
-    dynamics::BlockSpec other;
-    other.name = "other";
-    other.q_size = other.u_size = 6;
-    state.insert(other, VecX::Constant(6, 100.0), VecX::Zero(6));
-    dynamics::BlockSpec nodes;
-    nodes.name = "surface";
-    nodes.q_size = nodes.u_size = static_cast<int>(3 * mesh.vertices.cols());
-    surface.block_id = state.insert(nodes, Eigen::Map<const VecX>(mesh.vertices.data(), mesh.vertices.size()), VecX::Zero(nodes.u_size));
-    surface.node_of_vertex.resize(static_cast<std::size_t>(mesh.vertices.cols()));
-    for (std::size_t i = 0; i < surface.node_of_vertex.size(); ++i) surface.node_of_vertex[i] = static_cast<int>(i);
-    surface.faces = mesh.faces;
-  }
-};
 
 Vec3 position_of(const contact::SurfacePoint& p, const dynamics::State& state, const Pose& frame) {
   return p.frame >= 0 ? frame * p.offset : position(p, state);

@@ -1,0 +1,87 @@
+#include "contact/contact_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate::contact {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Bounds of the faces that are left.
+struct Box {
+  Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
+};
+
+Box face_box(const Patch& patch, int face) {
+  const auto corner = [&](int k) { return patch.uvw.col((*patch.faces)(k, face)); };
+  return {corner(0).cwiseMin(corner(1)).cwiseMin(corner(2)), corner(0).cwiseMax(corner(1)).cwiseMax(corner(2))};
+}
+
+/// Keeps the faces of `patch.visible` that reach into `window`; returns their bounds.
+Box cut(Patch& patch, const Box& window) {
+  Box bounds;
+  std::size_t kept = 0;
+  for (const int face : patch.visible) {
+    const Box box = face_box(patch, face);
+    if ((box.low.array() > window.high.array()).any() || (box.high.array() < window.low.array()).any()) continue;
+    bounds.low = bounds.low.cwiseMin(box.low);
+    bounds.high = bounds.high.cwiseMax(box.high);
+    patch.visible[kept++] = face;
+  }
+  patch.visible.resize(kept);
+  return bounds;
+}
+
+void see_all(Patch& patch) {
+  patch.visible.resize(static_cast<std::size_t>(patch.faces->cols()));
+  for (std::size_t f = 0; f < patch.visible.size(); ++f) patch.visible[f] = static_cast<int>(f);
+}
+
+}  // namespace
+
+ContactAxes::ContactAxes(const Vec3& region_origin, const Vec3& normal) : origin(region_origin) {
+  to_world.col(2) = normal;
+  to_world.col(0) = normal.unitOrthogonal();
+  to_world.col(1) = normal.cross(to_world.col(0));
+}
+
+ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels) {
+  constexpr int kCuts = 3;
+  see_all(a);
+  see_all(b);
+  Box window{Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)};
+  Box box_a = cut(a, window), box_b = cut(b, window);
+  for (int i = 0; i < kCuts; ++i) {
+    window.low = box_a.low.cwiseMax(box_b.low);
+    window.high = box_a.high.cwiseMin(box_b.high);
+    Box window_a = window, window_b = window;
+    window_a.low.z() = -kInfinity;
+    window_a.high.z() = box_b.high.z() + candidate_gap;
+    window_b.low.z() = box_a.low.z() - candidate_gap;
+    window_b.high.z() = kInfinity;
+    box_a = cut(a, window_a);
+    box_b = cut(b, window_b);
+    if (a.visible.empty() || b.visible.empty()) return {};
+  }
+  window.low = box_a.low.cwiseMax(box_b.low);
+  window.high = box_a.high.cwiseMin(box_b.high);
+  const double extent_u = window.high.x() - window.low.x(), extent_v = window.high.y() - window.low.y();
+  const double longer = std::max(extent_u, extent_v);
+  ContactCamera camera;
+  if (!(longer > 0.0) || !std::isfinite(longer)) return camera;
+  camera.pixel = longer / pixels;
+  camera.u0 = window.low.x();
+  camera.v0 = window.low.y();
+  camera.width = std::clamp(static_cast<int>(std::ceil(extent_u / camera.pixel)), 1, pixels);
+  camera.height = std::clamp(static_cast<int>(std::ceil(extent_v / camera.pixel)), 1, pixels);
+  camera.near = box_a.low.z() - candidate_gap;
+  camera.far = box_b.high.z() + candidate_gap;
+  const double room = 1e-3 * (camera.far - camera.near);  // nothing at the very ends of the depth range
+  camera.near -= room;
+  camera.far += room;
+  return camera;
+}
+
+}  // namespace palpate::contact

@@ -1,0 +1,46 @@
+#pragma once
+#include <vector>
+
+#include "palpate/core/types.h"
+
+namespace palpate::contact {
+
+/// Axes of a contact region: (u, v, w) about its origin, w along the normal from b to a.
+struct ContactAxes {
+  Mat3 to_world = Mat3::Identity();  ///< columns u, v, n
+  Vec3 origin = Vec3::Zero();
+
+  ContactAxes() = default;
+  ContactAxes(const Vec3& region_origin, const Vec3& normal);
+  void to_axes(const Points& world, Points& out) const { out.noalias() = to_world.transpose() * (world.colwise() - origin); }
+  Vec3 world(const Vec3& uvw) const { return origin + to_world * uvw; }
+  Vec3 normal() const { return to_world.col(2); }
+};
+
+/// The orthographic camera of a region and what it sees: a rectangle of the plane, cut into square pixels, and a slab along the normal.
+struct ContactCamera {
+  double u0 = 0, v0 = 0;     ///< lower left corner [m]
+  double pixel = 0;          ///< edge of a pixel [m]
+  int width = 0, height = 0; ///< [pixels]
+  double near = 0, far = 0;  ///< along w [m]
+
+  bool sees_something() const { return width > 0 && far > near; }
+  double u(int column) const { return u0 + (column + 0.5) * pixel; }
+  double v(int row) const { return v0 + (row + 0.5) * pixel; }
+};
+
+/// One surface in contact axes, and which of its faces the camera may see.
+struct Patch {
+  Points uvw;                 ///< vertices
+  const Faces* faces = nullptr;
+  std::vector<int> visible;   ///< faces
+};
+
+/// Fits the camera to the overlap of a (above) and b (below), and fills both patches' `visible`.
+///
+/// At a pixel the pair is a's lowest point against b's highest; it counts when that gap is under `candidate_gap`.  So a's faces wholly
+/// above max(w of b) + candidate_gap, and b's wholly below min(w of a) - candidate_gap, are of no interest; nor is anything outside the
+/// rectangle that both patches cover.  Leaving faces out shrinks the slab and that the rectangle, so the cut is repeated.
+ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels);
+
+}  // namespace palpate::contact
