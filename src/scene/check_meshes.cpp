@@ -17,7 +17,7 @@ const std::vector<SourceKeys>& source_keys() {
       {"box", {"size_m", "element_size_m"}, {"grading"}},
       {"ball", {"radius_m", "element_size_m"}, {"grading"}},
       {"cylinder", {"radius_m", "length_m", "element_size_m"}, {"grading"}},
-      {"tet", {}, {"size_m"}},
+      {"tet", {"size_m"}, {}},
       {"file", {}, {"scale"}},
   };
   return table;

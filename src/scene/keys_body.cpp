@@ -32,7 +32,7 @@ const KeyTable<MeshSpec>& mesh_keys() {
       number("radius_m", &MeshSpec::radius_m, positive()),
       number("length_m", &MeshSpec::length_m, positive()),
       number("element_size_m", &MeshSpec::element_size_m, positive()),
-      number("grading", &MeshSpec::grading, closed(0.05, 20.0, "1 is uniform, 2 makes elements in the middle twice as large as at the surface")),
+      number("grading", &MeshSpec::grading, closed(0.5, 32.0, "1 is uniform, 2 makes elements in the middle twice as large as at the surface")),
       number("scale", &MeshSpec::scale, positive("0.001 turns a file in millimetres into metres")),
   };
   return keys;

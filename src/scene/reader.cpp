@@ -1,22 +1,27 @@
 #include "scene/reader.h"
 
 #include <cmath>
-#include <sstream>
 
 namespace palpate::scene {
 namespace {
 
-/// A node as messages show it: its value where it is short, else what it is.
+/// A node as messages show it, near to how a person wrote it.
 std::string shown(const toml::node& node) {
-  if (node.is_table()) return "a table";
-  std::ostringstream out;
-  out << toml::toml_formatter(node);
-  const std::string text = out.str();
-  return text.size() <= 60 && text.find('\n') == std::string::npos ? text : fmt::format("a longer {}", node.is_array() ? "array" : "text");
+  if (const auto* text = node.as_string()) return text->get().size() <= 60 ? '"' + text->get() + '"' : "a longer string";
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  const toml::array* array = node.as_array();
+  if (!array) return node.is_table() ? "a table" : "a date or time";
+  if (array->size() > 6) return fmt::format("a list of {}", array->size());
+  std::string text;
+  for (const toml::node& one : *array) text += (text.empty() ? "" : ", ") + (one.is_array() ? std::string("[...]") : shown(one));
+  return "[" + text + "]";
 }
 
-[[noreturn]] void refuse_value(const Value& v, const std::string& must) {
-  refuse(place(v.node.source()), v.where, fmt::format("{} = {} {}", v.key, shown(v.node), must));
+/// `part` is the value itself, or the element of it that is at fault: the message shows the whole value, at the part's place.
+[[noreturn]] void refuse_value(const Value& v, const std::string& must, const toml::node* part = nullptr) {
+  refuse(place((part ? *part : v.node).source()), v.where, fmt::format("{} = {} {}", v.key, shown(v.node), must));
 }
 
 std::string bounds(const Range& r) {
@@ -31,10 +36,10 @@ bool inside(double x, const Range& r) { return (r.low_open ? x > r.low : x >= r.
 
 /// One finite number within a range.  Whole numbers are numbers too; NaN and infinity, which TOML can spell, are not.
 double number_in(const Value& v, const toml::node& node, const Range& range) {
-  if (!node.is_number()) refuse_value(v, "must be a number");
+  if (!node.is_number()) refuse_value(v, "must be a number", &node);
   const double x = *node.value<double>();
-  if (!std::isfinite(x)) refuse_value(v, "must be a finite number");
-  if (!inside(x, range)) refuse_value(v, bounds(range) + (range.remedy.empty() ? "" : "; " + range.remedy));
+  if (!std::isfinite(x)) refuse_value(v, "must be a finite number", &node);
+  if (!inside(x, range)) refuse_value(v, bounds(range) + (range.remedy.empty() ? "" : "; " + range.remedy), &node);
   return x;
 }
 

@@ -1,0 +1,70 @@
+// Each broken scene is refused at its place, with the value and what to do.
+#include <gtest/gtest.h>
+
+#include "palpate/core/error.h"
+#include "palpate/scene/load.h"
+#include "scene/scene_texts.h"
+
+namespace {
+
+struct Broken {
+  const char* file;
+  const char* place;  ///< LINE:COLUMN
+  const char* message;
+};
+
+const Broken kCases[] = {
+    {"attachment-box", "10:13", "body \"ball\": attachment[0]: box_max_m = -1 must not be below box_min_m = 0 along y"},
+    {"contact-with-itself", "9:11", "contact between \"ball\" and \"ball\": a thing does not touch itself here; name two"},
+    {"contact-with-nothing", "12:20", "contact between \"ball\" and \"flor\": nothing is called \"flor\" (did you mean \"floor\"?)"},
+    {"contact-without-tool", "9:12", "contact between \"tool\" and \"ball\": \"tool\" is named, but the scene has no [tool]"},
+    {"device-without-tool", "8:1", "device: a device needs something to move: add [tool], or remove [device]"},
+    {"exchange-period", "9:21", "exchange: exchange_period_s = 0.0105 must be a whole number of the tool's ticks of 0.001 s; use 0.01 or 0.011"},
+    {"idle-key", "11:10", "body \"ball\": mesh: size_m means nothing to generator = \"ball\"; remove it"},
+    {"inertia", "5:17", "tool: inertia_kg_m2 = [1e-06, 1e-06, 3e-06] belongs to no rigid body: all must be positive and none larger than the other two together"},
+    {"keyframe-order", "9:10", "device: keyframe[1]: time_s = 0.25 must come after 0.5, the keyframe before; put keyframes in the order of time"},
+    {"ladder-order", "11:8", "compare: ladder[0]: rtol must fall from the coarsest to the finest, but 0.01 comes after 0.001"},
+    {"missing-stiffness", "5:1", "body \"ball\": youngs_modulus_pa is missing and has no default"},
+    {"misspelt-key", "6:1", "body \"ball\": unknown key \"young_modulus_pa\" (did you mean \"youngs_modulus_pa\"?)"},
+    {"nan", "4:27", "scene: gravity_m_s2 = [0, 0, nan] must be a finite number"},
+    {"nothing", "1:1", "there is nothing to simulate: add a [[body]], or a [tool] with a [device]"},
+    {"poissons-ratio", "7:18", "body \"ball\": poissons_ratio = 0.5 must lie in (-1, 0.5); use 0.49 for nearly incompressible tissue"},
+    {"refresh", "10:21", "exchange: contact_refresh_s = 0.003 must be a whole fraction of exchange_period_s = 0.01; use 0.0025"},
+    {"short-vector", "4:16", "scene: gravity_m_s2 = [0, -9.81] must be three numbers, [x, y, z]"},
+    {"single-brackets", "4:1", "body must be a list of tables: write [[body]] with double brackets"},
+    {"syntax", "3:14", "not valid TOML: "},
+    {"tool-without-device", "4:1", "tool: a tool needs a hand: add [device] with [[device.keyframe]]"},
+    {"two-of-a-name", "10:8", "obstacle \"ball\": name \"ball\" is taken; bodies and obstacles need names of their own"},
+    {"unknown-choice", "7:11", "body \"ball\": tangent = \"exakt\" is not known (did you mean \"exact\"?)"},
+    {"unknown-table", "4:2", "unknown key \"integrater\" (did you mean \"integrator\"?)"},
+    {"wrong-type", "3:14", "scene: duration_s = \"one second\" must be a number"},
+};
+
+std::string message_of(const std::string& path) {
+  try {
+    palpate::scene::load(path);
+  } catch (const palpate::Error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+TEST(BrokenScene, IsRefusedAtItsPlace) {
+  for (const Broken& one : kCases) {
+    const std::string path = scene_texts::kBroken + "/" + one.file + ".toml";
+    const std::string expected = path + ":" + one.place + ": " + one.message, message = message_of(path);
+    if (std::string(one.file) == "syntax") EXPECT_TRUE(message.starts_with(expected)) << message;
+    else EXPECT_EQ(message, expected);
+  }
+}
+
+TEST(BrokenScene, EveryFileIsListed) {
+  EXPECT_EQ(scene_texts::in_folder(scene_texts::kBroken).size(), std::size(kCases));
+}
+
+TEST(BrokenScene, AFileThatIsNotThereIsNamed) {
+  EXPECT_EQ(message_of("/no/such/scene.toml"), "/no/such/scene.toml: no such scene file; `palpate list scenes` shows those that come with palpate");
+  EXPECT_EQ(message_of("/tmp"), "/tmp: is a folder; name a scene file (.toml) in it");
+}
+
+}  // namespace

@@ -1,0 +1,116 @@
+#include "palpate/scene/load.h"
+
+#include <gtest/gtest.h>
+
+#include "palpate/core/error.h"
+#include "scene/scene_texts.h"
+
+using palpate::Vec3;
+using palpate::scene::Description;
+using palpate::scene::parse;
+
+namespace {
+
+TEST(Load, EverySceneThatComesWithPalpate) {
+  const auto paths = scene_texts::in_folder(scene_texts::kScenes);
+  EXPECT_GE(paths.size(), 5u);
+  for (const std::string& path : paths) {
+    const Description d = palpate::scene::load(path);
+    EXPECT_EQ(d.path, path);
+    EXPECT_EQ(d.name, std::filesystem::path(path).stem()) << path;
+    EXPECT_EQ(d.source, scene_texts::read(path)) << "with its comments";
+  }
+}
+
+TEST(Load, PressBallAsWritten) {
+  const Description d = palpate::scene::load(scene_texts::kScenes + "/press-ball.toml");
+  ASSERT_EQ(d.bodies.size(), 1u);
+  const palpate::SoftBodySpec& ball = d.bodies[0];
+  EXPECT_EQ(ball.youngs_modulus_pa, 1e4);
+  EXPECT_EQ(ball.mesh.generator, "ball");
+  EXPECT_EQ(ball.mesh.radius_m, 0.03);
+  ASSERT_EQ(ball.attachments.size(), 1u);
+  EXPECT_EQ(ball.attachments[0].axes, "xy");
+  ASSERT_EQ(d.contacts.size(), 2u);
+  EXPECT_EQ(d.contacts[1].second, "tool");
+  ASSERT_TRUE(d.tool && d.device && d.record);
+  EXPECT_EQ(d.tool->coupling_stiffness_n_m, 300.0);
+  EXPECT_EQ(d.tool->coupling_rotational_damping_n_m_s_rad, 1e-3);
+  ASSERT_EQ(d.device->keyframes.size(), 4u);
+  EXPECT_EQ(d.device->keyframes[1].position_m, Vec3(0, 0, 0.062));
+  EXPECT_EQ(d.device->keyframes[1].interpolation, "minimum_jerk");
+  ASSERT_EQ(d.compare.ladders.size(), 2u);
+  EXPECT_EQ(d.compare.ladders[0].setting, "rtol");
+  EXPECT_EQ(d.compare.ladders[1].setting, "step_s");
+  EXPECT_EQ(d.compare.ladders[1].values.back(), 0.000625);
+}
+
+TEST(Load, DefaultsAndNormalOrder) {
+  const Description d = parse(scene_texts::kWhole, "whole.toml");
+  EXPECT_EQ(d.contacts[0].first, "ball") << "the soft body comes first, whatever the file says";
+  EXPECT_EQ(d.contacts[0].second, "floor");
+  EXPECT_EQ(d.gravity_m_s2, Vec3(0, 0, -9.81)) << "whole numbers are numbers";
+  EXPECT_TRUE(d.record->states) << "an empty table is a table";
+  const Description e = parse(scene_texts::kWhole, "whole.toml", {"exchange.exchange_period_s=0.02"});
+  EXPECT_EQ(e.coupling.contact_refresh_s, 0.02) << "follows the exchange period where it is not given";
+  const Description f = parse(scene_texts::kWhole, "whole.toml", {"obstacle.0.normal=[0, 3, 4]"});
+  EXPECT_LE((f.obstacles[0].normal - Vec3(0, 0.6, 0.8)).norm(), 1e-15);
+}
+
+TEST(Load, AbsentTablesStayAbsent) {
+  const Description d = palpate::scene::load(scene_texts::kScenes + "/falling-ball.toml");
+  EXPECT_FALSE(d.tool);
+  EXPECT_FALSE(d.device);
+  EXPECT_TRUE(d.compare.ladders.empty());
+}
+
+/// What two keys of one table ask of each other; the places are covered by broken_test.
+TEST(Load, KeysThatExcludeOrNeedEachOther) {
+  const auto refusal = [](const std::vector<std::string>& overrides) -> std::string {
+    try {
+      parse(scene_texts::kWhole, "whole.toml", overrides);
+    } catch (const palpate::Error& e) {
+      return e.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal({}), "accepted");
+  const std::pair<std::vector<std::string>, const char*> cases[] = {
+      {{"body.0.mesh.file=\"a.msh\""}, "file and generator exclude each other"},
+      {{"body.0.mesh={radius_m = 1.0}"}, "needs file = \"PATH\" or generator = \"ball\""},
+      {{"body.0.mesh.generator=box"}, "size_m is missing: generator = \"box\" needs it"},
+      {{"body.0.mesh.scale=2.0"}, "scale means nothing to generator = \"ball\""},
+      {{"obstacle.0.radius_m=1.0"}, "radius_m means nothing to type = \"plane\""},
+      {{"obstacle.0.type=sphere"}, "radius_m is missing: type = \"sphere\" needs it"},
+      {{"obstacle.0.normal=[0,0,0]"}, "has no direction"},
+      {{"obstacle.0.name=tool"}, "name \"tool\" is kept for the tool"},
+      {{"body.0.name=\"a/b\""}, "must not contain slashes"},
+      {{"contact.0.method=gpu"}, "an obstacle has exact gaps"},
+      {{"contact.1.pixels=128"}, "pixels means nothing to method = \"analytic\""},
+      {{"contact.0.hunt_crossley_s_m=1.0"}, "write law = \"hunt_crossley\""},
+      {{"contact.0.law=hunt_crossley", "contact.0.damping_pa_s_m=1.0"}, "use hunt_crossley_s_m"},
+      {{"contact.1.between=[\"floor\", \"ball\"]"}, "this pair stands here twice"},
+      {{"contact.1.between=[\"floor\", \"tool\"]"}, "one of the two must be a soft body"},
+      {{"contact.1.between=[\"ball\"]"}, "between must name two things, [\"ball\", \"floor\"], not 1"},
+      {{"tool.shape=mesh"}, "needs a [tool.mesh]"},
+      {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\""}, "inertia_kg_m2 is missing"},
+      {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\"", "tool.inertia_kg_m2=[1,1,1]"}, "needs a tool with shape = \"sphere\""},
+      {{"device.keyframe=[]"}, "write [[keyframe]] with double brackets"},
+      {{"compare.exchange_periods_s=[0.01, 0.0015]"}, "exchange_periods_s = 0.0015 must be a whole number of the tool's ticks"},
+      {{"compare.ladder=[{integrator = \"x\"}]"}, "needs rungs"},
+      {{"compare.ladder=[{integrator = \"x\", rtol = [1e-3], step_s = [1e-3]}]"}, "rtol and step_s exclude each other"},
+      {{"tool.tick_s=0.003"}, "exchange_period_s = 0.01 must be a whole number of the tool's ticks of 0.003 s; use 0.009 or 0.012"},
+      {{"exchange.scheme=monolithic"}, "exchange: scheme = \"monolithic\" is not known (known: partitioned)"},
+      {{"integrator.max_order=2.5"}, "must be a whole number"},
+      {{"tool.gravity=1"}, "must be true or false"},
+      {{"contact.0.stiffness_pa_m=-1"}, "must be positive"},
+      {{"contact.0.friction=inf"}, "must be a finite number"},
+      {{"record=true"}, "record must be one table: write [record]"},
+  };
+  for (const auto& [overrides, expected] : cases) {
+    const std::string message = refusal(overrides);
+    EXPECT_NE(message.find(expected), std::string::npos) << overrides.front() << "\n  " << message;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,43 @@
+#include "palpate/scene/needs.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "palpate/scene/load.h"
+#include "scene/scene_texts.h"
+
+namespace {
+
+std::map<std::string, bool> used(const std::string& scene, const std::vector<std::string>& overrides = {}) {
+  std::map<std::string, bool> out;
+  for (const auto& need : palpate::scene::needs(palpate::scene::load(scene_texts::kScenes + "/" + scene + ".toml", overrides))) {
+    EXPECT_FALSE(need.why.empty()) << need.part;
+    EXPECT_TRUE(out.emplace(need.part, need.used).second) << need.part << " is listed twice";
+  }
+  return out;
+}
+
+TEST(Needs, ASceneWithoutToolLeavesOutAllThatIsHaptic) {
+  auto ball = used("falling-ball");
+  EXPECT_TRUE(ball.at("fem") && ball.at("contact") && ball.at("tangent") && ball.at("factorisation") && ball.at("run file"));
+  for (const char* part : {"tool", "device", "exchange", "exchange thread", "gl", "proxy", "broad phase", "force file", "friction", "fixed nodes", "compare"})
+    EXPECT_FALSE(ball.at(part)) << part;
+  auto bar = used("cantilever");
+  EXPECT_TRUE(bar.at("fixed nodes"));
+  EXPECT_FALSE(bar.at("contact"));
+}
+
+TEST(Needs, PressBall) {
+  auto press = used("press-ball");
+  for (const char* part : {"fem", "contact", "tool", "device", "exchange", "fixed nodes", "run file", "force file", "compare"}) EXPECT_TRUE(press.at(part)) << part;
+  EXPECT_FALSE(press.at("gl"));
+  EXPECT_FALSE(press.at("gravity"));
+  auto image = used("press-ball", {"contact.1.method=gpu"});
+  EXPECT_TRUE(image.at("gl") && image.at("proxy"));
+  EXPECT_FALSE(image.at("broad phase"));
+  auto quiet = used("press-ball", {"record.states=false", "record.forces=false"});
+  EXPECT_FALSE(quiet.at("run file") || quiet.at("force file"));
+}
+
+}  // namespace
