@@ -21,11 +21,12 @@ struct RunInfo {
   std::string scene_name;
   std::string scene_source;  ///< the effective TOML
   std::string version;       ///< of palpate, with its commit
-  int expected_steps = 100;  ///< room made beforehand; more steps than this are welcome, and cost a reallocation
+  int expected_steps = 100;  ///< room made beforehand: count them from duration and period.  More are welcome, but a kill in the very moment
+                             ///< when the file grows (at each doubling) can damage it
 };
 
 /// Writes a run.  A step is committed by one number, the attribute NSteps, after all else of it is in the file, and the room for the
-/// expected steps is made beforehand; so a process killed at any moment leaves a readable file with every committed step.
+/// expected steps is made beforehand; so a process killed while it writes them leaves a readable file with every committed step.
 class RunFile {
  public:
   /// @param parts  their points follow one another in this order  @throws Error when the file cannot be made

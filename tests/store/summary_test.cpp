@@ -1,0 +1,73 @@
+#include "palpate/store/summary.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "palpate/core/error.h"
+#include "palpate/store/atomic_file.h"
+#include "store/sample_run.h"
+
+using namespace palpate;
+
+namespace {
+
+store::Summary sample() {
+  store::Summary s;
+  s.command = "palpate run scenes/press-ball.toml";
+  s.scene = "press-ball";
+  s.scene_source = "[scene]\nname = \"press-ball\"\n";
+  s.overrides = {"integrator.rtol=1e-4"};
+  s.provenance = store::provenance();
+  s.section("counts").values = {{"force_evaluations", 1234LL}, {"contact_queries", 40LL}};
+  s.section("errors").values = {{"position_relative", 1.5e-3}, {"reference_error", std::nan("")}, {"marked", true}};
+  s.section("timings").values = {{"cpu_s", std::vector<double>{0.1, 0.2}}};
+  return s;
+}
+
+TEST(Summary, IsValidJsonWithUnitsAndOrder) {
+  const auto json = nlohmann::ordered_json::parse(store::to_json(sample()));
+  EXPECT_EQ(json["figures"]["counts"]["force_evaluations"], 1234);
+  EXPECT_TRUE(json["figures"]["errors"]["reference_error"].is_null()) << "JSON has no NaN";
+  EXPECT_EQ(json["figures"].begin().key(), "counts") << "in the order in which they were given";
+  EXPECT_EQ(json["outcome"], "finished");
+  EXPECT_TRUE(json["provenance"]["libraries"].contains("HDF5"));
+}
+
+TEST(Summary, RoundTrip) {
+  const sample_run::Folder folder;
+  store::Summary s = sample();
+  s.outcome = "interrupted";
+  s.message = "at t = 0.1 s, by Ctrl-C";
+  store::write_summary(folder / "summary.json", s);
+  const store::Summary again = store::read_summary(folder / "summary.json");
+  EXPECT_EQ(store::to_json(again), store::to_json(s));
+  EXPECT_EQ(std::get<long long>(again.sections[0].values[0].second), 1234);
+  EXPECT_TRUE(std::isnan(std::get<double>(again.sections[1].values[1].second)));
+}
+
+TEST(Summary, ABadByteDoesNotLoseTheFile) {
+  store::Summary s = sample();
+  s.command = "palpate run caf\xe9.toml";  // Latin-1: no UTF-8
+  EXPECT_TRUE(nlohmann::json::accept(store::to_json(s)));
+}
+
+TEST(Summary, RefusesWhatIsNoSummary) {
+  const sample_run::Folder folder;
+  for (const char* text : {"", "{", "[]", "{\"command\": 3}", "{}"}) {
+    store::write_atomically(folder / "s.json", text);
+    EXPECT_THROW(store::read_summary(folder / "s.json"), Error) << text;
+  }
+}
+
+TEST(Provenance, SaysWhatMadeIt) {
+  const store::Provenance p = store::provenance();
+  EXPECT_FALSE(p.version.empty());
+  EXPECT_FALSE(p.commit.empty());
+  EXPECT_GE(p.cores, 1);
+  EXPECT_EQ(p.started_utc.size(), std::string("2007-03-22T10:00:00Z").size());
+  for (const auto& [name, version] : p.libraries) EXPECT_FALSE(version.empty()) << name;
+}
+
+}  // namespace
