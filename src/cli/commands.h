@@ -18,6 +18,7 @@ struct RunArguments {
   std::string folder;       ///< empty: out/NAME
   double duration_s = 0.0;  ///< 0: the scene's
   bool picture = false, report = false;
+  std::string shade = "displacement";  ///< of the picture; or "stress"
 };
 int run(const RunArguments& arguments);
 

@@ -41,7 +41,8 @@ void add_run(CLI::App& app, Invocation& invocation) {
   add_scene(*command, arguments->scene, true);
   command->add_option("-o,--output", arguments->folder, "folder for the results; default out/SCENE")->type_name("DIR");
   command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")->type_name("SECONDS")->check(CLI::PositiveNumber);
-  command->add_flag("--picture", arguments->picture, "also a picture of the last state (picture.png)");
+  command->add_flag("--picture", arguments->picture, "also a picture of the moment of the largest force, or of the end without a tool (picture.png)");
+  command->add_option("--shade", arguments->shade, "what colours the picture: displacement or stress")->type_name("NAME")->capture_default_str();
   command->add_flag("--report", arguments->report, "also a page to look at (report.html)");
   command->footer(R"(Examples:
   palpate run falling-ball

@@ -1,9 +1,70 @@
 #include "picture.h"
 
 #include "palpate/core/error.h"
+#ifdef PALPATE_HAS_RENDER
+#include "palpate/render/scene.h"
+#endif
 
 namespace palpate::cli {
+namespace {
 
-void take_picture(const loop::World&, const std::string&) { fail("this build has no pictures; configure with -DPALPATE_WITH_GL=ON"); }
+VecX shading(loop::World& world, const loop::Body& body, const Points& now, const std::string& shade) {
+  if (shade == "stress") return body.term->nodal_stress(world.state.view());
+  return (now - body.placed).colwise().norm().transpose();
+}
+
+}  // namespace
+
+void check_picture(const std::string& shade) {
+#ifndef PALPATE_HAS_RENDER
+  fail("--picture: this build draws no pictures; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev)");
+#endif
+  const std::vector<std::string> known = {"displacement", "stress"};
+  if (shade != known[0] && shade != known[1]) fail("--shade: unknown \"{}\"{}", shade, suggestion(shade, known));
+}
+
+void Snapshot::tick(const loop::TickRecord& tick) {
+  newest_force_n_ = std::max(newest_force_n_, tick.device.force.norm());
+  newest_tool_ = tick.tool;
+}
+
+void Snapshot::period(loop::World& world, double t) {
+  const double felt = newest_force_n_;
+  newest_force_n_ = 0.0;
+  if (world.tool && felt <= force_n_) return;
+  force_n_ = felt;
+  time_ = t;
+  tool_ = newest_tool_;
+  bodies_.clear();
+  for (const loop::Body& body : world.bodies) {
+    const Points now = world.positions(body);
+    const VecX values = shading(world, body, now, shade_);
+    bodies_.push_back({now(Eigen::all, body.boundary.node_of_vertex), values(body.boundary.node_of_vertex)});
+  }
+}
+
+#ifdef PALPATE_HAS_RENDER
+void Snapshot::save(const loop::World& world, const std::string& path) const {
+  render::Scene scene;
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
+    scene.surfaces.push_back({world.bodies[i].name, bodies_[i].points, world.bodies[i].boundary.surface.faces, bodies_[i].values});
+  if (world.description.tool) {
+    TriMesh tool = loop::tool_surface(*world.description.tool, world.folder);
+    for (Eigen::Index i = 0; i < tool.vertices.cols(); ++i) tool.vertices.col(i) = tool_ * Vec3(tool.vertices.col(i));
+    render::Surface surface{"tool", tool.vertices, tool.faces};
+    surface.opacity = 0.55;  // the dent lies under it
+    scene.surfaces.push_back(surface);
+  }
+  for (const ObstacleSpec& obstacle : world.description.obstacles)
+    if (obstacle.type == "plane" && obstacle.normal.normalized().z() > 0.999) scene.ground = render::Ground{obstacle.position_m.z()};
+  scene.scale.label = shade_ == "stress" ? "von Mises stress" : "displacement";
+  scene.scale.unit = shade_ == "stress" ? "Pa" : "m";
+  scene.title = fmt::format("{}, t = {:g} s", world.description.name, time_);
+  if (world.tool) scene.subtitle = fmt::format("the hand feels {:.3g} N", force_n_);
+  render::save_png(render::draw(scene), path);
+}
+#else
+void Snapshot::save(const loop::World&, const std::string&) const {}
+#endif
 
 }  // namespace palpate::cli

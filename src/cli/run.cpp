@@ -7,7 +7,10 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/recorder.h"
+#include "palpate/loop/summary.h"
+#include "palpate/loop/summary.h"
 #include "palpate/report/run_report.h"
+#include "palpate/store/atomic_file.h"
 #include "picture.h"
 #include "places.h"
 #include "progress.h"
@@ -39,6 +42,32 @@ void print_outcome(const loop::World& world, const loop::RunResult& result, cons
                peak.torque_n_m, peak.torque_s, result.ticks, result.limited_ticks);
 }
 
+/// A word of the command line, quoted where a shell would split or expand it.
+std::string quoted(const std::string& word) {
+  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+@%") == std::string::npos && !word.empty()) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+/// The command line that does this again.
+std::string command_of(const RunArguments& a) {
+  std::string out = "palpate run " + quoted(a.scene.scene);
+  for (const std::string& change : a.scene.overrides) out += " --set " + quoted(change);
+  if (!a.scene.integrator.empty()) out += " --integrator " + quoted(a.scene.integrator);
+  if (a.duration_s > 0.0) out += fmt::format(" --duration-s {}", a.duration_s);
+  if (a.picture) out += a.shade == "displacement" ? " --picture" : " --picture --shade " + a.shade;
+  if (a.report) out += " --report";
+  return a.folder.empty() ? out : out + " -o " + quoted(a.folder);
+}
+
+void keep_summary(const loop::World& world, const loop::RunResult& result, double assemble_s, const RunArguments& arguments, const std::string& folder) {
+  store::Summary summary = loop::summarise(world, result, assemble_s);
+  summary.command = command_of(arguments);
+  summary.overrides = arguments.scene.overrides;
+  store::write_summary((std::filesystem::path(folder) / "summary.json").string(), summary);
+}
+
 /// What stands in the folder now, for the person to open.
 void print_files(const std::string& folder) {
   std::vector<std::string> names;
@@ -62,6 +91,7 @@ loop::RunResult run_watched(loop::World& world, const RunArguments& arguments, s
 
 int run(const RunArguments& arguments) {
   const scene::Description description = scene_of(arguments.scene);
+  if (arguments.picture) check_picture(arguments.shade);
   const double start = wall_seconds();
   const std::unique_ptr<loop::World> world = loop::assemble(description);
   const double assemble_s = wall_seconds() - start;
@@ -73,6 +103,8 @@ int run(const RunArguments& arguments) {
 
   PeakWrench peak;
   std::vector<loop::Observer*> observers = {&peak};
+  Snapshot snapshot(arguments.shade);
+  if (arguments.picture) observers.push_back(&snapshot);
   std::optional<loop::Recorder> recorder;
   if (description.record) observers.push_back(&recorder.emplace(*world, folder));
   const loop::RunResult result = run_watched(*world, arguments, observers);
@@ -80,8 +112,9 @@ int run(const RunArguments& arguments) {
 
   print_outcome(*world, result, peak, assemble_s);
   if (keep) {
-    loop::write_summary(*world, result, assemble_s, folder);
-    if (arguments.picture) take_picture(*world, (std::filesystem::path(folder) / "picture.png").string());
+    store::write_summary((std::filesystem::path(folder) / "summary.json").string(), loop::summarise(*world, result, assemble_s));
+    store::write_atomically((std::filesystem::path(folder) / "scene.toml").string(), description.source);
+    if (arguments.picture) snapshot.save(*world, (std::filesystem::path(folder) / "picture.png").string());
     if (arguments.report) report::write_run_report(folder);
     print_files(folder);
   }
