@@ -26,19 +26,14 @@ Plot vector_plot(const Table& table, const std::string& prefix, const std::strin
   return plot;
 }
 
-/// force.csv of a run names the device's columns device_force_*; a plain force_* is read too.
-std::string prefix_of(const Table& table, const std::string& what, const std::string& unit) {
-  return table.has(fmt::format("device_{}_x_{}", what, unit)) ? "device_" + what : what;
-}
-
 }  // namespace
 
 Plot force_plot(const Table& force, double limit_n) {
-  return vector_plot(force, prefix_of(force, "force", "n"), "n", "force on the hand [N]", limit_n, "N");
+  return vector_plot(force, "force", "n", "force on the hand [N]", limit_n, "N");
 }
 
 Plot torque_plot(const Table& force, double limit_n_m) {
-  return vector_plot(force, prefix_of(force, "torque", "n_m"), "n_m", "torque on the hand [N m]", limit_n_m, "N m");
+  return vector_plot(force, "torque", "n_m", "torque on the hand [N m]", limit_n_m, "N m");
 }
 
 }  // namespace palpate::report

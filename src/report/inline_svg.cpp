@@ -37,6 +37,7 @@ std::string inline_svg(const std::string& document, const std::string& id_prefix
     replace_all(svg, fmt::format("{}=\"black\"", attribute), fmt::format("{}=\"currentColor\"", attribute));
     replace_all(svg, fmt::format("{}='black'", attribute), fmt::format("{}='currentColor'", attribute));
   }
+  for (const char* black : {"rgb(  0,   0,   0)", "rgb(0,0,0)"}) replace_all(svg, black, "currentColor");  // as gnuplot writes a colour that was asked for
   // color="currentColor" inherits, which is what is meant.
   replace_all(svg, "<svg", "<svg class=\"plot\" role=\"img\"");
   return svg;

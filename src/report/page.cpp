@@ -7,6 +7,7 @@
 #include "inline_svg.h"
 #include "palpate/core/error.h"
 #include "palpate/report/table.h"
+#include "palpate/store/atomic_file.h"
 #include "style.h"
 
 namespace palpate::report {
@@ -43,6 +44,15 @@ const char* class_of(RowMark mark) {
 
 std::string figure(const std::string& content, const std::string& caption) {
   return "<figure>\n" + content + (caption.empty() ? "" : "\n<figcaption>" + escape_html(caption) + "</figcaption>") + "\n</figure>\n";
+}
+
+/// Beside other tables, short values stand to the right, so that numbers line up.
+std::string facts_table(const Page::Facts& facts, bool short_to_the_right) {
+  std::string table = "<table class=\"facts\"><tbody>\n";
+  for (const auto& [name, value] : facts)
+    table += fmt::format("<tr><th>{}</th><td{}>{}</td></tr>\n", escape_html(name),
+                         value.size() > kLongCell ? " class=\"w\"" : short_to_the_right ? " class=\"n\"" : "", escape_html(value));
+  return table + "</tbody></table>\n";
 }
 
 }  // namespace
@@ -97,11 +107,15 @@ Page& Page::add_table(const std::vector<std::string>& headers, const std::vector
   return *this;
 }
 
-Page& Page::add_facts(const std::vector<std::pair<std::string, std::string>>& facts) {
-  if (facts.empty()) return *this;
-  body_ += "<div class=\"scroll\"><table class=\"facts\"><tbody>\n";
-  for (const auto& [name, value] : facts) body_ += "<tr><th>" + escape_html(name) + "</th><td>" + escape_html(value) + "</td></tr>\n";
-  body_ += "</tbody></table></div>\n";
+Page& Page::add_facts(const Facts& facts) {
+  if (!facts.empty()) body_ += "<div class=\"scroll\">" + facts_table(facts, false) + "</div>\n";
+  return *this;
+}
+
+Page& Page::add_fact_groups(const std::vector<std::pair<std::string, Facts>>& groups) {
+  body_ += "<div class=\"groups\">\n";
+  for (const auto& [name, facts] : groups) body_ += "<section>\n<h3>" + escape_html(name) + "</h3>\n" + facts_table(facts, true) + "</section>\n";
+  body_ += "</div>\n";
   return *this;
 }
 
@@ -115,7 +129,7 @@ Page& Page::add_png(const fs::path& png, const std::string& caption) {
   if (!in) fail("{}: cannot be opened for reading; check the path and its permissions", png.string());
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) fail("{}: is not a PNG file; only PNG pictures can be embedded", png.string());
-  body_ += figure("<img alt=\"" + escape_html(caption) + "\" src=\"data:image/png;base64," + base64(bytes) + "\"/>", caption);
+  body_ += figure("<img alt=\"" + escape_html(caption.empty() ? png.stem().string() : caption) + "\" src=\"data:image/png;base64," + base64(bytes) + "\"/>", caption);
   return *this;
 }
 
@@ -131,15 +145,6 @@ std::string Page::html() const {
          "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n" + body_ + "</body>\n</html>\n";
 }
 
-void write(const Page& page, const fs::path& path) {
-  const fs::path temporary = path.string() + ".part";
-  std::ofstream out(temporary, std::ios::binary);
-  out << page.html();
-  out.close();
-  if (!out) fail("{}: the report cannot be written; check that the folder exists, may be written, and has room", path.string());
-  std::error_code error;
-  fs::rename(temporary, path, error);
-  if (error) fail("{}: the report cannot be put in place: {}", path.string(), error.message());
-}
+void write(const Page& page, const fs::path& path) { store::write_atomically(path.string(), page.html()); }
 
 }  // namespace palpate::report

@@ -1,9 +1,7 @@
 #include "palpate/report/run_report.h"
 
-#include <fstream>
-#include <iterator>
-
 #include "palpate/core/error.h"
+#include "palpate/store/atomic_file.h"
 #include "sections.h"
 
 namespace palpate::report {
@@ -17,11 +15,10 @@ ReferenceError read_reference(const fs::path& path) {
   return {number_at(json, "position_error_rel_l2"), number_at(json, "force_error_rms_n"), number_at(json, "torque_error_rms_n_m"), text_at(json, "description")};
 }
 
-/// The scene as it was run: the file beside the results, else the text kept in summary.json.
+/// The scene as it was run: kept in summary.json, else the file beside the results.
 std::string scene_source(const fs::path& dir, const Json& summary) {
-  std::ifstream in(dir / "scene.toml", std::ios::binary);
-  if (in) return {std::istreambuf_iterator<char>(in), {}};
-  return text_at(summary, "scene_source");
+  if (std::string source = text_at(summary, "scene_source"); !source.empty()) return source;
+  return fs::exists(dir / "scene.toml") ? store::read_file((dir / "scene.toml").string()) : "";
 }
 
 bool holds_results(const fs::path& dir) {
@@ -40,13 +37,14 @@ fs::path write_run_report(const fs::path& dir) {
   const Json summary = has("summary.json") ? read_json(dir / "summary.json") : Json::object();
 
   const std::string scene = text_at(summary, "scene");
-  Page page(text_at(summary, "title", scene.empty() ? "palpate" : "palpate: " + scene));
+  Page page(scene.empty() ? "palpate" : "palpate: " + scene);
+  add_head(page, summary);
   add_pictures(page, summary, dir);
   if (has("force.csv")) add_forces(page, summary, read_csv(dir / "force.csv"));
   if (has("compare.csv")) add_comparison(page, read_csv(dir / "compare.csv"), read_reference(dir / "reference.json"));
   if (has("exchange.csv")) add_exchange(page, read_csv(dir / "exchange.csv"));
   if (has("validation.json")) add_validation(page, read_json(dir / "validation.json"));
-  add_run(page, summary);
+  add_figures(page, summary);
   add_parts(page, summary);
   add_provenance(page, summary);
   if (const std::string source = scene_source(dir, summary); !source.empty()) page.add_heading("The scene").add_code(source);

@@ -12,25 +12,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Keys of summary.json that have a section of their own; everything else stands under "The run".
-const std::set<std::string> kProvenance = {"version", "versions", "commit", "cpu", "cores", "compiler", "build", "options", "host", "os", "gl", "date", "command", "command_line", "environment"};
-const std::set<std::string> kElsewhere = {"in_use", "left_out", "scene_source", "pictures", "title", "files"};
+/// Groups of figures that stand under headings of their own.
+const std::set<std::string> kElsewhere = {"in_use", "left_out", "pictures"};
 
-/// Facts of an object's own entries, then each object inside it under a heading of its own.
-void add_object(Page& page, const Json& object, const std::set<std::string>& only, const std::set<std::string>& without) {
-  if (!object.is_object()) return;
-  Json own = Json::object();
-  for (const auto& [key, value] : object.items())
-    if ((only.empty() || only.contains(key)) && !without.contains(key)) own[key] = value;
-  page.add_facts(facts_of(own));
-  for (const auto& [key, value] : own.items()) {
-    const auto facts = facts_of(value);
-    if (!facts.empty()) page.add_heading(key_text(key), 3).add_facts(facts);
-  }
+/// A group of figures that summary.json holds, else an empty object.
+Json figures_of(const Json& summary, const char* group) {
+  if (!summary.is_object() || !summary.contains("figures") || !summary["figures"].is_object() || !summary["figures"].contains(group)) return Json::object();
+  return summary["figures"][group];
 }
 
-bool has_any(const Json& object, const std::set<std::string>& keys) {
-  return object.is_object() && std::any_of(keys.begin(), keys.end(), [&](const std::string& key) { return object.contains(key); });
+/// An object's own facts first, then each object inside it as a group.
+void add_object(Page& page, const Json& object, const std::set<std::string>& without) {
+  page.add_facts(facts_of(object));
+  std::vector<std::pair<std::string, Page::Facts>> groups;
+  if (object.is_object())
+    for (const auto& [key, value] : object.items())
+      if (auto facts = facts_of(value); !without.contains(key) && !facts.empty()) groups.emplace_back(key_text(key), std::move(facts));
+  if (!groups.empty()) page.add_fact_groups(groups);
 }
 
 std::string sentence_case(std::string text) {
@@ -54,13 +52,21 @@ void add_plot(Page& page, const Plot& plot, const std::string& caption) {
   }
 }
 
-void add_run(Page& page, const Json& summary) {
-  std::set<std::string> without = kProvenance;
-  without.insert(kElsewhere.begin(), kElsewhere.end());
-  if (summary.is_object() && !summary.empty()) {
-    page.add_heading("The run");
-    add_object(page, summary, {}, without);
-  }
+void add_head(Page& page, const Json& summary) {
+  Page::Facts facts;
+  for (const char* key : {"command", "scene", "outcome", "message", "overrides"})
+    if (summary.is_object() && summary.contains(key))
+      if (std::string text = value_text(summary[key]); !text.empty()) facts.emplace_back(key_text(key), std::move(text));
+  const Json options = figures_of(summary, "options"), sizes = figures_of(summary, "sizes"), timings = figures_of(summary, "timings");
+  for (const auto& [object, key] : {std::pair{&options, "integrator"}, {&sizes, "nodes"}, {&sizes, "tetrahedra"}, {&timings, "simulated_s"}, {&timings, "loop_cpu_s"}})
+    if (object->contains(key)) facts.emplace_back(key_text(key), value_text((*object)[key]));
+  page.add_facts(facts);
+}
+
+void add_figures(Page& page, const Json& summary) {
+  if (!summary.is_object() || !summary.contains("figures")) return;
+  page.add_heading("Figures of the run");
+  add_object(page, summary["figures"], kElsewhere);
 }
 
 void add_pictures(Page& page, const Json& summary, const fs::path& dir) {
@@ -68,15 +74,17 @@ void add_pictures(Page& page, const Json& summary, const fs::path& dir) {
   for (const auto& entry : fs::directory_iterator(dir))
     if (entry.path().extension() == ".png") pngs.push_back(entry.path());
   std::sort(pngs.begin(), pngs.end());
-  const Json captions = summary.is_object() && summary.contains("pictures") ? summary["pictures"] : Json::object();
-  for (const fs::path& png : pngs)
-    page.add_png(png, text_at(captions, png.filename().c_str(), sentence_case(png.stem().string())));
+  const Json captions = figures_of(summary, "pictures");
+  for (const fs::path& png : pngs) {
+    const std::string stem = png.stem().string();  // "picture" alone says nothing; the picture has its own title
+    page.add_png(png, text_at(captions, png.filename().c_str(), stem == "picture" ? "" : sentence_case(stem)));
+  }
 }
 
 void add_forces(Page& page, const Json& summary, const Table& force) {
-  const Json device = summary.is_object() && summary.contains("device") ? summary["device"] : Json::object();
+  const Json options = figures_of(summary, "options");
   page.add_heading("Force on the hand");
-  const double max_force = number_at(device, "max_force_n"), max_torque = number_at(device, "max_torque_n_m");
+  const double max_force = number_at(options, "max_force_n"), max_torque = number_at(options, "max_torque_n_m");
   add_plot(page, force_plot(force, max_force), "Force that the device sends to the hand, in world components and as a magnitude" + limit_text(max_force, "N"));
   const bool has_torque = std::any_of(force.headers.begin(), force.headers.end(), [](const std::string& h) { return h.ends_with("_n_m"); });
   if (has_torque) add_plot(page, torque_plot(force, max_torque), "Torque, likewise" + limit_text(max_torque, "N m"));
@@ -109,23 +117,24 @@ void add_validation(Page& page, const Json& validation) {
 }
 
 void add_parts(Page& page, const Json& summary) {
-  if (!has_any(summary, {"in_use", "left_out"})) return;
-  page.add_heading("Parts");
-  std::vector<std::pair<std::string, std::string>> facts;
-  for (const auto& [key, label] : {std::pair{"in_use", "in use"}, std::pair{"left_out", "left out"}}) {
-    if (!summary.contains(key)) continue;
-    std::string text = value_text(summary[key]);
-    if (summary[key].is_object())
-      for (const auto& [part, reason] : summary[key].items()) text += (text.empty() ? "" : "; ") + part + ": " + value_text(reason);
-    facts.emplace_back(label, text.empty() ? "none" : text);
+  std::vector<std::vector<std::string>> rows;
+  std::vector<RowMark> marks;
+  const Json in_use = figures_of(summary, "in_use"), left_out = figures_of(summary, "left_out");
+  for (const auto& [part, why] : in_use.items()) {
+    rows.push_back({part, "in use", value_text(why)});
+    marks.push_back(RowMark::kNone);
   }
-  page.add_facts(facts);
+  for (const auto& [part, why] : left_out.items()) {
+    rows.push_back({part, "left out", value_text(why)});
+    marks.push_back(RowMark::kFaint);
+  }
+  if (!rows.empty()) page.add_heading("Parts in use, parts left out").add_table({"part", "", "why"}, rows, "", marks);
 }
 
 void add_provenance(Page& page, const Json& summary) {
-  if (!has_any(summary, kProvenance)) return;
+  if (!summary.is_object() || !summary.contains("provenance")) return;
   page.add_heading("Provenance");
-  add_object(page, summary, kProvenance, {});
+  add_object(page, summary["provenance"], {});
 }
 
 }  // namespace palpate::report

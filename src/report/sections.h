@@ -13,7 +13,8 @@ namespace palpate::report {
 /// The plot as a figure, or, when it cannot be drawn, a paragraph with the reason: a page without one figure is better than no page.
 void add_plot(Page& page, const Plot& plot, const std::string& caption);
 
-void add_run(Page& page, const Json& summary);
+void add_head(Page& page, const Json& summary);     ///< what was run, in a few lines
+void add_figures(Page& page, const Json& summary);  ///< all that was counted and timed
 void add_pictures(Page& page, const Json& summary, const std::filesystem::path& dir);
 void add_forces(Page& page, const Json& summary, const Table& force);
 void add_comparison(Page& page, const Table& compare, const ReferenceError& reference);

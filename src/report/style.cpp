@@ -31,11 +31,12 @@ th:first-child, td:first-child { padding-left: .4rem; }
 th.n { padding-left: .6rem; }
 .n { text-align: right; }
 td { white-space: nowrap; }
-td.w, .facts td { white-space: normal; min-width: 16rem; overflow-wrap: anywhere; }
+td.w { white-space: normal; min-width: 16rem; overflow-wrap: anywhere; }
 tr.good td:last-child { color: var(--good); }
 tr.bad td { background: var(--bad-tint); }
 tr.bad td:last-child { color: var(--bad); font-weight: 700; }
 tr.faint td { color: var(--quiet); }
+.groups { display: flex; flex-wrap: wrap; gap: 0 3rem; align-items: flex-start; }
 table.facts th { font-weight: 400; padding-right: 2rem; white-space: nowrap; vertical-align: baseline; }
 pre { background: var(--tint); border: 1px solid var(--line); border-radius: 4px; padding: .9rem 1.1rem; overflow-x: auto; font: .8125rem/1.5 ui-monospace, "DejaVu Sans Mono", monospace; }
 .plot .gridline { stroke: var(--line); }

@@ -10,6 +10,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/report/force_plot.h"
+#include "palpate/report/page.h"
 #include "report/thin.h"
 #include "well_formed.h"
 
@@ -65,6 +66,13 @@ TEST(Plot, RunsNoCommandHiddenInAName) {
   plot.title = plot.x_label = plot.series[0].name = plot.series[0].labels[0] = plot.levels[0].label = command;
   report::plot_svg(plot);
   EXPECT_FALSE(std::filesystem::exists(trace));
+}
+
+TEST(Plot, LeavesNoBlackInAPage) {
+  // A curve in ink must follow the page's text into dark mode.
+  const std::string html = report::Page("t").add_svg(report::plot_svg(small_plot()), "").html();
+  const std::string svg = html.substr(html.find("<svg"));
+  for (const char* black : {"black", "rgb(  0,   0,   0)", "rgb(0,0,0)"}) EXPECT_EQ(svg.find(black), std::string::npos) << black;
 }
 
 TEST(Plot, IsTheSameTwice) { EXPECT_EQ(report::plot_svg(small_plot()), report::plot_svg(small_plot())); }
@@ -129,7 +137,7 @@ TEST(Thin, LeavesShortAndUnsortedCurvesAlone) {
 
 TEST(ForcePlot, HasComponentsMagnitudeAndLimit) {
   report::Table table;
-  table.headers = {"time_s", "device_force_x_n", "device_force_y_n", "device_force_z_n"};
+  table.headers = {"time_s", "force_x_n", "force_y_n", "force_z_n"};
   table.rows = {{"0", "3", "0", "4"}, {"1", "0", "-2", "0"}};
   const report::Plot plot = report::force_plot(table, 6.0);
   ASSERT_EQ(plot.series.size(), 4u);

@@ -37,10 +37,12 @@ std::string joined(const std::vector<std::string>& cells) {
 /// Every file that a report is made from, small.
 fs::path full_dir() {
   const fs::path dir = fresh_dir("full_report");
-  put(dir / "summary.json", R"({"scene": "press <ball>", "duration_s": 1.5, "in_use": ["fem"], "left_out": {"proxy": "one body"},
-      "device": {"max_force_n": 2.5}, "versions": {"palpate": "0.1.0"}, "commit": "abc"})");
+  put(dir / "summary.json", R"({"command": "palpate run press-ball", "scene": "press <ball>", "outcome": "finished", "message": "", "overrides": ["a=1"],
+      "figures": {"options": {"integrator": "cvode-bdf", "max_force_n": 2.5}, "counts": {"steps": 812}, "in_use": {"fem": "a soft body"},
+      "left_out": {"proxy": "one body"}, "pictures": {"picture-of-it.png": "The ball & its dent"}},
+      "provenance": {"version": "0.1.0", "commit": "abc", "libraries": {"Eigen": "3.4.0"}}})");
   put(dir / "scene.toml", "name = \"press <ball>\" # a & b\n");
-  put(dir / "force.csv", "time_s,device_force_x_n,device_force_y_n,device_force_z_n\n0,0,0,0\n0.001,0,0,1\n0.002,0,0,2\n");
+  put(dir / "force.csv", "time_s,force_x_n,force_y_n,force_z_n\n0,0,0,0\n0.001,0,0,1\n0.002,0,0,2\n");
   std::string compare = joined(report::compare_columns());
   for (const char* line : {"1e-3,1e-3,1", "1e-4,1e-4,2", "1e-5,1e-5,4"}) {
     const std::string s = line;
@@ -62,7 +64,7 @@ fs::path full_dir() {
 TEST(RunReport, HoldsEverySectionAndNothingFromOutside) {
   const std::string html = read(report::write_run_report(full_dir()));
   EXPECT_EQ(well_formed_problem(html), "");
-  for (const char* text : {"palpate: press &lt;ball&gt;", "Picture of it", "Force on the hand", "device limit 2.5 N", "Error against run time", "cvode_&lt;bdf&gt;",
+  for (const char* text : {"palpate: press &lt;ball&gt;", "The ball &amp; its dent", "palpate run press-ball", "<td class=\"n\">812</td>", "a soft body", "3.4.0", "Force on the hand", "device limit 2.5 N", "Error against run time", "cvode_&lt;bdf&gt;",
                            "Reference: cvode-bdf at 1e-9", "the reference's own error", "Cheapest for a wanted error", "Fitted order", "1.00 (3 points)",
                            "Error of the exchange period", "fitted order 1.00", "patch-test", "FAIL", "1 of 2 measurements FAIL", "left out", "one body", "Provenance", "abc",
                            "# a &amp; b"})
@@ -82,7 +84,7 @@ TEST(RunReport, LeavesOutSectionsWithoutAFile) {
 
 TEST(RunReport, GivesTheReasonInPlaceOfAFigureThatCannotBeDrawn) {
   const fs::path dir = fresh_dir("no_figure_report");
-  put(dir / "force.csv", "time_s,device_force_x_n,device_force_y_n,device_force_z_n\n");
+  put(dir / "force.csv", "time_s,force_x_n,force_y_n,force_z_n\n");
   EXPECT_NE(read(report::write_run_report(dir)).find("Figure not drawn"), std::string::npos);
 }
 

@@ -18,8 +18,11 @@ class Page {
   /// Columns of numbers are set to the right.  `marks` colours rows; it is empty or has one mark a row.
   Page& add_table(const std::vector<std::string>& headers, const std::vector<std::vector<std::string>>& rows,
                   const std::string& caption = "", const std::vector<RowMark>& marks = {});
+  using Facts = std::vector<std::pair<std::string, std::string>>;
   /// Name and value pairs, two columns without a header.
-  Page& add_facts(const std::vector<std::pair<std::string, std::string>>& facts);
+  Page& add_facts(const Facts& facts);
+  /// Several such tables under small headings, side by side where there is room.
+  Page& add_fact_groups(const std::vector<std::pair<std::string, Facts>>& groups);
   /// An SVG document, inlined; its black follows the page's text colour (dark mode), its ids are made unique.
   Page& add_svg(const std::string& svg, const std::string& caption);
   /// A PNG file, embedded.  Throws Error when it cannot be read or is not a PNG.
@@ -34,7 +37,7 @@ class Page {
   int figures_ = 0;
 };
 
-/// Writes the page whole or not at all (a temporary file beside it, then a rename).
+/// Writes the page whole or not at all.
 void write(const Page& page, const std::filesystem::path& path);
 
 /// & < > " ' as entities; control characters that HTML forbids become U+FFFD.

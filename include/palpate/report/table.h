@@ -8,20 +8,19 @@ namespace palpate::report {
 
 /// Text cells under named columns: one CSV file, or one table of the page.  Every row has as many cells as there are headers.
 struct Table {
-  std::vector<std::string> headers;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> headers = {};
+  std::vector<std::vector<std::string>> rows = {};
+  std::string source = {};  ///< where it came from, for messages
 
   bool has(std::string_view header) const;
   /// Index of a column; throws Error naming `source` and the nearest known column.
   std::size_t column(std::string_view header) const;
   /// A whole column as numbers; an empty or non-numeric cell is NaN.
   std::vector<double> numbers(std::string_view header) const;
-
-  std::string source;  ///< where it came from, for messages
 };
 
-/// Reads a CSV file (RFC 4180: quoted cells, doubled quotes, LF or CRLF; lines that begin with # are comments).
-/// Throws Error with file and line for a row that is longer or shorter than the header, and for a quote that is never closed.
+/// Reads a CSV file that store wrote, or one like it.  Throws Error with file and row for a row that is longer or shorter than the header,
+/// and for a quote that is never closed.
 Table read_csv(const std::filesystem::path& path);
 
 /// The number in a cell, locale-free; NaN when the cell is not exactly one number.
