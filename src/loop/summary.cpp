@@ -2,6 +2,7 @@
 
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
+#include "palpate/scene/needs.h"
 
 namespace palpate::loop {
 namespace {
@@ -83,6 +84,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   add_sizes(summary.section("sizes"), world);
   add_counts(summary.section("counts"), result);
   add_timings(summary.section("timings"), result, assemble_s);
+  for (const scene::Need& need : scene::needs(world.description)) summary.section(need.used ? "in_use" : "left_out").values.emplace_back(need.part, need.why);
   for (const auto& [name, value] : counters::snapshot()) summary.section("constructions").values.emplace_back(name, static_cast<long long>(value));
   return summary;
 }
