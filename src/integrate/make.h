@@ -7,6 +7,8 @@ namespace palpate::integrate {
 
 std::unique_ptr<dynamics::Stepper> make_cvode_bdf(dynamics::System&, dynamics::State&, const IntegratorSpec&,
                                                   std::unique_ptr<dynamics::LinearSolver>);
+std::unique_ptr<dynamics::Stepper> make_ark_erk(dynamics::System&, dynamics::State&, const IntegratorSpec&,
+                                                std::unique_ptr<dynamics::LinearSolver>);
 std::unique_ptr<dynamics::Stepper> make_linearly_implicit_euler(dynamics::System&, dynamics::State&, const IntegratorSpec&,
                                                                 std::unique_ptr<dynamics::LinearSolver>);
 

@@ -6,6 +6,7 @@ namespace palpate::integrate {
 const dynamics::StepperRegistry& stepper_registry() {
   static const dynamics::StepperRegistry registry = {
       {"cvode-bdf", "SUNDIALS CVODE: backward differences, order 1 to 5, error control (rtol, atol_q, atol_u, max_order)", 0, make_cvode_bdf},
+      {"ark-erk-5", "SUNDIALS ARKODE: explicit Runge-Kutta 5(4), error control (rtol, atol_q, atol_u); no linear solver; checks references", 0, make_ark_erk},
       {"linearly-implicit-euler", "one linear solve a step, fixed step (step_s); the interactive method of Galoppo et al. 2007", 1,
        make_linearly_implicit_euler},
   };

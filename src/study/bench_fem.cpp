@@ -1,3 +1,4 @@
+#include <array>
 #include <algorithm>
 
 #include "palpate/core/clock.h"
