@@ -13,6 +13,8 @@ ValidationCase gradient_and_tangent();
 ValidationCase uniaxial_and_shear();
 ValidationCase hanging_bar();
 ValidationCase cantilever();
+ValidationCase free_vibration();
+ValidationCase spinning_body();
 ValidationCase handle_step();
 ValidationCase handle_below_wall();
 ValidationCase coupling_limit();

@@ -6,6 +6,7 @@ const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> cases = {
       validation::patch_test(), validation::rigid_motion(), validation::gradient_and_tangent(), validation::uniaxial_and_shear(), validation::hanging_bar(),
       validation::cantilever(),
+      validation::free_vibration(), validation::spinning_body(),
 #ifdef PALPATE_HAS_tool
       validation::handle_step(), validation::handle_below_wall(), validation::coupling_limit(),
 #endif

@@ -101,12 +101,13 @@ class LinearlyImplicitEuler final : public Stepper {
     product_.setZero(rhs_.size());
     for (const auto& term : system_.terms())
       if (term->traits().has_tangent) term->apply_tangent(at, 1.0, 0.0, shift_, product_);
-    if (system_.any_driven()) {
+    const bool drives_speed_up = (change_.array() != 0.0).any();  // fixed nodes do not
+    if (drives_speed_up) {
       for (const auto& term : system_.terms())
         if (term->traits().has_tangent) term->apply_tangent(at, 0.0, 1.0, change_, product_);
     }
     rhs_ = h * (rhs_ - product_);
-    if (system_.any_driven()) {
+    if (drives_speed_up) {
       system_.apply_mass(at, change_, product_);
       rhs_ -= product_;
     }

@@ -24,6 +24,9 @@ using namespace dynamics;
 using sun::check;
 
 constexpr int kHighestOrder = 5;
+/// A force that jumps (a damper at first touch) makes the step shrink by ten a failure, down to where the jump is below the tolerance;
+/// CVODE's own limit of 7 gives up at rtol 1e-8.  smallest_step bounds it in any case.
+constexpr int kErrorTestFailures = 30;
 constexpr int kRecoverable = 1;
 
 /// A step that collapses to this ends the call with an error: before a force that is not finite from some time on,
@@ -136,6 +139,7 @@ class CvodeBdf final : public Stepper, private sun::NewtonHook {
     check(CVodeSetUserData(cvode_, this), "CVodeSetUserData", t, 0.0);
     check(CVodeWFtolerances(cvode_, weights), "CVodeWFtolerances", t, 0.0);
     if (spec_.max_order > 0) check(CVodeSetMaxOrd(cvode_, spec_.max_order), "CVodeSetMaxOrd", t, 0.0);
+    check(CVodeSetMaxErrTestFails(cvode_, kErrorTestFailures), "CVodeSetMaxErrTestFails", t, 0.0);
     linear_solver_ = sun::make_linear_solver(*this, context_);
     matrix_ = sun::make_matrix(context_);
     check(CVodeSetLinearSolver(cvode_, linear_solver_, matrix_), "CVodeSetLinearSolver", t, 0.0);

@@ -1,0 +1,181 @@
+#include <Eigen/QR>
+#include <cmath>
+#include <random>
+
+#include "cases.h"
+#include "palpate/dynamics/system.h"
+#include "palpate/fem/soft_body.h"
+#include "palpate/integrate/integrators.h"
+#include "palpate/mesh/generators.h"
+
+// Relative equilibrium of a free body that spins with w: v = w x x and, at every node, f(x) = m w x (w x x).  The solution of
+//     r(x) = f(x) - M W x = 0,  W x = w x (w x x),  by Newton with the exact tangent K + M W (derivative of -r),
+// turns rigidly for ever.  E' = sym(F^T F') = 0 in it, so an objective stiffness damping takes nothing, and angular momentum
+// H = sum m x x v and energy T + U stay what they are.  The motion along w and the turn about w are free: the least-norm step leaves them.
+// For any state at all, internal forces have no resultant and no moment (P F^T symmetric), and damping no power under v = w x x.
+
+namespace palpate::validation {
+namespace {
+
+/// Stiffness damping that is not objective: f = -beta K0 v with the rest tangent.  It brakes the spin.
+class RayleighDamping final : public dynamics::ForceTerm {
+ public:
+  RayleighDamping(std::shared_ptr<fem::SoftBody> body, VecX rest, double beta) : body_(std::move(body)), rest_(std::move(rest)), beta_(beta) {}
+  std::string_view name() const override { return "rayleigh"; }
+  dynamics::TermTraits traits() const override { return {}; }
+  void add_force(const dynamics::StateView& s, VecX& f) override { apply_tangent(s, 0.0, -1.0, VecX(s.u), f); }
+  void add_tangent(const dynamics::StateView& s, double, double d, dynamics::BorderedMatrix& A) override {
+    body_->add_tangent(at_rest(s), d * beta_, 0.0, A);
+  }
+  void apply_tangent(const dynamics::StateView& s, double, double d, const VecX& x, VecX& y) override {
+    body_->apply_tangent(at_rest(s), d * beta_, 0.0, x, y);
+  }
+
+ private:
+  dynamics::StateView at_rest(const dynamics::StateView& s) const { return dynamics::make_view(*s.layout, s.time, rest_.data(), s.u.data()); }
+  std::shared_ptr<fem::SoftBody> body_;
+  VecX rest_;
+  double beta_;
+};
+
+constexpr double kBeta = 1e-3;  // stiffness damping [s]
+const Vec3 kSpin(0.0, 0.0, 40.0);
+
+/// A flat free block, one node block of a State.
+struct Spinner {
+  TetMesh rest = mesh::perturbed(mesh::box(Vec3(0.10, 0.08, 0.04), {3, 2, 2}), 0.15, 5);
+  VecX mass;  ///< one a direction
+  dynamics::State state;
+  dynamics::System system;
+  std::shared_ptr<fem::SoftBody> body;
+
+  explicit Spinner(const std::string& sabotage) {
+    fem::Material m;
+    m.youngs_modulus = 5e4;
+    m.poissons_ratio = 0.4;
+    m.stiffness_damping = kBeta;
+    if (sabotage == "mass-damping") m.mass_damping = 0.1;
+    const VecX masses = fem::lumped_masses(rest, m.density);
+    rest.nodes.colwise() -= Vec3(rest.nodes * masses / masses.sum());
+    mass = masses.transpose().replicate(3, 1).reshaped();
+    dynamics::BlockSpec spec;
+    spec.name = "spinner";
+    spec.q_size = spec.u_size = static_cast<int>(mass.size());
+    spec.q_scale = 0.1;
+    spec.u_scale = 0.1 * kSpin.norm();
+    const int id = state.insert(spec, rest.nodes.reshaped(), VecX::Zero(mass.size()));
+    body = std::make_shared<fem::SoftBody>("spinner", rest, m, fem::SoftBodyOptions{}, id);
+    system.add(std::static_pointer_cast<dynamics::ForceTerm>(body));
+    if (sabotage == "rayleigh-damping") system.add(std::make_shared<RayleighDamping>(body, rest.nodes.reshaped(), kBeta));
+    system.add(fem::make_lumped_mass(rest, m.density, id));
+    system.prepare(state.view());
+  }
+
+  static VecX spin(const Vec3& w, const VecX& x) { return (cross_matrix(w) * x.reshaped(3, x.size() / 3)).reshaped(); }
+
+  /// Newton from the rest shape; false when it does not get to rounding.
+  bool find_equilibrium() {
+    VecX x = state.q();
+    const VecX still = VecX::Zero(x.size());
+    const Mat3 W = cross_matrix(kSpin) * cross_matrix(kSpin);
+    dynamics::BorderedMatrix K;
+    double residual = 1.0;
+    for (int i = 0; i < 30 && residual > 1e-14; ++i) {
+      const auto at = state.view(0.0, x.data(), still.data());
+      VecX f = VecX::Zero(x.size());
+      body->add_force(at, f);
+      const VecX centrifugal = mass.cwiseProduct(VecX((W * x.reshaped(3, x.size() / 3)).reshaped()));
+      const VecX r = f - centrifugal;
+      system.step_matrix(at, 0.0, 0.0, 1.0, K);
+      MatX J = K.to_dense();
+      for (int n = 0; n < x.size() / 3; ++n) J.block<3, 3>(3 * n, 3 * n) += mass[3 * n] * W;
+      Eigen::CompleteOrthogonalDecomposition<MatX> solver;
+      solver.setThreshold(1e-10);
+      solver.compute(J);
+      x += solver.solve(r);
+      residual = r.norm() / centrifugal.norm();
+    }
+    state.q() = x;
+    return residual < 1e-12;
+  }
+
+  Vec3 angular_momentum() {
+    Vec3 H = Vec3::Zero();
+    for (int i = 0; i < mass.size() / 3; ++i) H += mass[3 * i] * state.q().segment<3>(3 * i).cross(state.u().segment<3>(3 * i));
+    return H;
+  }
+  double energy() { return system.kinetic_energy(state.view()) + system.potential_energy(state.view()); }
+};
+
+/// Largest drift of angular momentum and energy over `turns` turns, looked at 8 times a turn.
+void add_drift(const std::string& sabotage, std::vector<Measurement>& out) {
+  Spinner s(sabotage);
+  const bool found = sabotage == "rest-shape" || s.find_equilibrium();
+  s.state.u() = Spinner::spin(kSpin, s.state.q());
+  const Vec3 H0 = s.angular_momentum();
+  const double E0 = s.energy();
+  IntegratorSpec spec;
+  spec.rtol = 1e-12;
+  const auto stepper = integrate::make_stepper(s.system, s.state, spec);
+  double momentum = found ? 0.0 : std::nan(""), energy = momentum;
+  constexpr int kTurns = 2, kLooks = 8;
+  for (int i = 1; i <= kTurns * kLooks; ++i) {
+    const auto result = stepper->advance_to(i * 2.0 * M_PI / (kLooks * kSpin.norm()));
+    if (!result.ok()) energy = momentum = std::nan("");
+    momentum = std::max(momentum, (s.angular_momentum() - H0).norm() / H0.norm());
+    energy = std::max(energy, std::abs(s.energy() - E0) / E0);
+  }
+  out.push_back({.quantity = "drift of angular momentum, 2 turns", .computed = momentum, .error = momentum, .bar = 1e-9, .note = "cvode-bdf, rtol 1e-12"});
+  out.push_back({.quantity = "drift of energy, 2 turns", .computed = energy, .error = energy, .bar = 1e-9, .note = "stiffness damping on"});
+}
+
+/// Over random states: moment of all internal forces, and power of damping under a rigid spin, against what the same speeds cost in shear.
+void add_instantaneous(const std::string& sabotage, std::vector<Measurement>& out) {
+  Spinner s(sabotage);
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto random = [&](Eigen::Index n) { return VecX(VecX::NullaryExpr(n, [&] { return uniform(engine); })); };
+  double moment = 0.0, power = 0.0;
+  for (int k = 0; k < 20; ++k) {
+    const VecX x = s.rest.nodes.reshaped() + 0.004 * random(s.mass.size()), v = random(s.mass.size());
+    const auto forces = [&](const VecX& velocity) {
+      VecX f;
+      s.system.force(s.state.view(0.0, x.data(), velocity.data()), f);
+      return f;
+    };
+    const VecX f = forces(v), still = forces(VecX::Zero(x.size()));
+    Vec3 sum = Vec3::Zero();
+    double size = 0.0;
+    for (int i = 0; i < x.size() / 3; ++i) {
+      sum += x.segment<3>(3 * i).cross(f.segment<3>(3 * i));
+      size += x.segment<3>(3 * i).norm() * f.segment<3>(3 * i).norm();
+    }
+    moment = std::max(moment, sum.norm() / size);
+    const VecX spin = Spinner::spin(50.0 * random(3), x);
+    const double speed_ratio = spin.norm() / v.norm();
+    const double reference = std::abs(v.dot(f - still)) * speed_ratio * speed_ratio;
+    power = std::max(power, std::abs(spin.dot(forces(spin) - still)) / reference);
+  }
+  out.push_back({.quantity = "moment of internal forces / sum |x||f|, 20 random states", .computed = moment, .error = moment, .bar = 1e-12});
+  out.push_back({.quantity = "damping power under v = w x x / that of the same speeds at random", .computed = power, .error = power, .bar = 1e-12});
+}
+
+std::vector<Measurement> run(const std::string& sabotage) {
+  std::vector<Measurement> out;
+  add_drift(sabotage, out);
+  add_instantaneous(sabotage, out);
+  return out;
+}
+
+}  // namespace
+
+ValidationCase spinning_body() {
+  return {.name = "spinning-body",
+          .section = "D",
+          .summary = "free soft body spinning in relative equilibrium, stiffness damping on: angular momentum and energy kept",
+          .why = "damping that is not objective brakes every turning body; relative equilibrium by Newton (Simo, Posbergh, Marsden 1990)",
+          .run = run,
+          .sabotages = {"mass-damping", "rayleigh-damping", "rest-shape"}};
+}
+
+}  // namespace palpate::validation
