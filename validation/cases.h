@@ -7,6 +7,11 @@ namespace palpate::validation {
 using study::Measurement;
 using study::ValidationCase;
 
+ValidationCase overlap_volume();
+ValidationCase sphere_on_plane();
+ValidationCase punch_bounce();
+ValidationCase punch_bounce_damped();
+ValidationCase punch_bounce_hunt_crossley();
 ValidationCase patch_test();
 ValidationCase rigid_motion();
 ValidationCase gradient_and_tangent();

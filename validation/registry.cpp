@@ -4,6 +4,10 @@ namespace palpate::study {
 
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> cases = {
+#ifdef PALPATE_HAS_gl
+      validation::overlap_volume(),
+#endif
+      validation::sphere_on_plane(), validation::punch_bounce(), validation::punch_bounce_damped(), validation::punch_bounce_hunt_crossley(),
       validation::patch_test(), validation::rigid_motion(), validation::gradient_and_tangent(), validation::uniaxial_and_shear(), validation::hanging_bar(),
       validation::cantilever(),
       validation::free_vibration(), validation::spinning_body(),

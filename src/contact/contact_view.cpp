@@ -47,7 +47,7 @@ ContactAxes::ContactAxes(const Vec3& region_origin, const Vec3& normal) : origin
   to_world.col(1) = normal.cross(to_world.col(0));
 }
 
-ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels) {
+ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels, const Eigen::Vector2d& shift) {
   constexpr int kCuts = 3;
   see_all(a);
   see_all(b);
@@ -71,11 +71,11 @@ ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels) {
   const double longer = std::max(extent_u, extent_v);
   ContactCamera camera;
   if (!(longer > 0.0) || !std::isfinite(longer)) return camera;
-  camera.pixel = longer / pixels;
-  camera.u0 = window.low.x();
-  camera.v0 = window.low.y();
-  camera.width = std::clamp(static_cast<int>(std::ceil(extent_u / camera.pixel)), 1, pixels);
-  camera.height = std::clamp(static_cast<int>(std::ceil(extent_v / camera.pixel)), 1, pixels);
+  camera.pixel = longer / (pixels - 1);
+  camera.u0 = window.low.x() - shift.x() * camera.pixel;
+  camera.v0 = window.low.y() - shift.y() * camera.pixel;
+  camera.width = std::clamp(static_cast<int>(std::ceil(extent_u / camera.pixel)) + 1, 1, pixels);
+  camera.height = std::clamp(static_cast<int>(std::ceil(extent_v / camera.pixel)) + 1, 1, pixels);
   camera.near = box_a.low.z() - candidate_gap;
   camera.far = box_b.high.z() + candidate_gap;
   const double room = 1e-3 * (camera.far - camera.near);  // nothing at the very ends of the depth range

@@ -41,6 +41,8 @@ struct Patch {
 /// At a pixel the pair is a's lowest point against b's highest; it counts when that gap is under `candidate_gap`.  So a's faces wholly
 /// above max(w of b) + candidate_gap, and b's wholly below min(w of a) - candidate_gap, are of no interest; nor is anything outside the
 /// rectangle that both patches cover.  Leaving faces out shrinks the slab and that the rectangle, so the cut is repeated.
-ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels);
+///
+/// The pixels span one more than the rectangle, so that the grid may be shifted by a part of a pixel (`shift`, in [0, 1)) and still cover it.
+ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels, const Eigen::Vector2d& shift);
 
 }  // namespace palpate::contact

@@ -58,7 +58,7 @@ class GpuSource final : public SampleSource {
     axes.to_axes(rigid_world_, b_.uvw);
     a_.faces = &surface_.faces();
     b_.faces = &rigid_.faces;
-    const ContactCamera camera = fit_camera(a_, b_, options_.candidate_gap, options_.pixels);
+    const ContactCamera camera = fit_camera(a_, b_, options_.candidate_gap, options_.pixels, {options_.shift_u, options_.shift_v});
     if (!camera.sees_something()) return;
     if (!image_) image_.emplace(options_.pixels);
     image_->find_pairs(a_, b_, camera, options_.candidate_gap, pairs_);
@@ -105,6 +105,8 @@ std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid
                                               const GpuOptions& options) {
   if (options.pixels < 2 || options.pixels > 8192) fail("gpu contact: pixels = {} must lie between 2 and 8192", options.pixels);
   if (!(options.candidate_gap >= 0.0)) fail("gpu contact: candidate gap = {} must not be negative", options.candidate_gap);
+  for (const double shift : {options.shift_u, options.shift_v})
+    if (!(shift >= 0.0 && shift < 1.0)) fail("gpu contact: grid shift = {} must lie in [0, 1)", shift);
   if (surface.faces.cols() == 0 || rigid.faces.cols() == 0) fail("gpu contact needs two surfaces with faces, got {} and {}", surface.faces.cols(), rigid.faces.cols());
   for (Eigen::Index f = 0; f < rigid.faces.cols(); ++f)
     PALPATE_CHECK(rigid.faces.col(f).minCoeff() >= 0 && rigid.faces.col(f).maxCoeff() < rigid.vertices.cols(), "rigid surface: face {} names a vertex that is not there", f);

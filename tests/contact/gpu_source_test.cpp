@@ -7,6 +7,13 @@ using namespace contact_tests;
 
 namespace {
 
+contact::GpuOptions options(int pixels, double candidate_gap) {
+  contact::GpuOptions out;
+  out.pixels = pixels;
+  out.candidate_gap = candidate_gap;
+  return out;
+}
+
 /// A soft unit sphere above a rigid one of radius 0.8, in a turned and moved frame; the line of centres is oblique.
 struct Pair {
   Vec3 axis = Vec3(0.3, -0.5, 0.8).normalized();
@@ -17,7 +24,7 @@ struct Pair {
   SurfaceWorld soft{sphere(rigid_centre + (1.8 - depth) * axis, 1.0, 50)};
 
   std::vector<contact::ContactSample> samples(int pixels, double candidate_gap) {
-    auto source = contact::make_gpu_source(soft.surface, rigid, 0, contact::fixed_frame(pose), {pixels, candidate_gap});
+    auto source = contact::make_gpu_source(soft.surface, rigid, 0, contact::fixed_frame(pose), options(pixels, candidate_gap));
     std::vector<contact::ContactSample> out;
     source->query(soft.state.view(), out);
     return out;
@@ -107,7 +114,7 @@ TEST(GpuSource, ForceAndMomentBalance) {
   term.add_frame(frame);
   ContactSpec law;
   law.stiffness_pa_m = 1e6;
-  term.add_pair(contact::make_gpu_source(pair.soft.surface, pair.rigid, 0, frame, {128, 0.02}), law);
+  term.add_pair(contact::make_gpu_source(pair.soft.surface, pair.rigid, 0, frame, options(128, 0.02)), law);
   EXPECT_TRUE(term.refresh(pair.soft.state.view()));
   const VecX f = force(term, pair.soft.state);
   const Wrench w = term.frame_wrench(pair.soft.state.view(), 0);
@@ -125,18 +132,21 @@ TEST(GpuSource, ForceAndMomentBalance) {
 
 TEST(GpuSource, RefusesBadOptions) {
   Pair pair;
-  const auto message = [&](TriMesh rigid, contact::GpuOptions options) {
+  const auto message = [&](TriMesh rigid, contact::GpuOptions with) {
     try {
-      contact::make_gpu_source(pair.soft.surface, std::move(rigid), 0, contact::fixed_frame(), options);
+      contact::make_gpu_source(pair.soft.surface, std::move(rigid), 0, contact::fixed_frame(), with);
     } catch (const std::exception& e) {
       return std::string(e.what());
     }
     return std::string();
   };
-  EXPECT_NE(message(pair.rigid, {0, 0.1}).find("pixels = 0 must lie between 2 and 8192"), std::string::npos);
-  EXPECT_NE(message(pair.rigid, {64, -0.1}).find("candidate gap = -0.1"), std::string::npos);
-  EXPECT_NE(message(TriMesh{}, {64, 0.1}).find("two surfaces with faces"), std::string::npos);
+  EXPECT_NE(message(pair.rigid, options(0, 0.1)).find("pixels = 0 must lie between 2 and 8192"), std::string::npos);
+  EXPECT_NE(message(pair.rigid, options(64, -0.1)).find("candidate gap = -0.1"), std::string::npos);
+  EXPECT_NE(message(TriMesh{}, options(64, 0.1)).find("two surfaces with faces"), std::string::npos);
+  contact::GpuOptions shifted = options(64, 0.1);
+  shifted.shift_v = 1.0;
+  EXPECT_NE(message(pair.rigid, shifted).find("grid shift = 1 must lie in [0, 1)"), std::string::npos);
   TriMesh bad = pair.rigid;
   bad.faces(2, 5) = 100000;
-  EXPECT_NE(message(bad, {64, 0.1}).find("face 5 names a vertex"), std::string::npos);
+  EXPECT_NE(message(bad, options(64, 0.1)).find("face 5 names a vertex"), std::string::npos);
 }

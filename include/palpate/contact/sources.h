@@ -8,13 +8,16 @@ namespace palpate::contact {
 
 /// Vertices of a soft surface against an exact shape in a frame.  One sample a vertex: gap = signed distance, normal = the shape's
 /// outward normal at the closest point, area = the vertex's area vector projected on that normal (one third of each adjacent triangle, deformed).
-/// @param candidate_gap  vertices nearer than this are kept as candidates [m]
+/// Vertices turned away from the shape (where pressure would pull) make no sample.
+/// @param candidate_gap  vertices nearer than this are kept as candidates [m]; 0: the surface's mean edge at the first query
 std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& point, const Vec3& normal, double candidate_gap);
 std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& centre, double radius, double candidate_gap);
 
 struct GpuOptions {
   int pixels = 256;             ///< longer edge of the image
-  double candidate_gap = 0.0;   ///< [m]
+  double candidate_gap = 0.0;   ///< [m]; 0: a quarter of the soft surface's mean edge
+  double shift_u = 0.0;         ///< the pixel grid moved by this part of a pixel, in [0, 1): for studies of the pixels' error
+  double shift_v = 0.0;
 };
 
 /// Image space on the GPU (DESIGN 3.3): one region with its plane from libccd, both surfaces rasterised along its normal, one `pixel` sample

@@ -1,0 +1,135 @@
+#include <cmath>
+
+#include "b_bodies.h"
+#include "cases.h"
+#include "palpate/mesh/generators.h"
+
+// A rigid sphere of radius R held with its lowest point delta0 below a plane.  Pressure is k times the depth along the plane's normal,
+// over the area projected on the plane, so the force is k times the volume below the plane: a spherical cap,
+//   F = k pi delta0^2 (3 R - delta0)/3.
+// `vertex` sampling: each vertex carries a third of the projected areas around it, so the sum is the integral of the depth interpolated
+// over the facets, cut to zero at the vertices instead of along the waterline.  Both that and the inscribed facets cost h^2.
+// The facets' own volume is exact: each triangle is clipped at the plane, and the depth, linear on it, is integrated over what is left.
+
+namespace palpate::validation {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kRadius = 0.02, kDepth = 0.004, kStiffness = 5e7;
+
+/// A position off every symmetry of the mesh, lowest point of the true sphere at -kDepth.
+TriMesh placed_sphere(int subdivisions, int orientation) {
+  TriMesh mesh = mesh::sphere(kRadius, subdivisions);
+  const Quat turn = Quat(Eigen::AngleAxisd(0.37 + 1.1 * orientation, Vec3(1, 2 - orientation, 3).normalized()));
+  mesh.vertices = (turn.toRotationMatrix() * mesh.vertices).colwise() + Vec3(0.011, -0.007, kRadius - kDepth);
+  return mesh;
+}
+
+/// Volume between the facets that face down and the plane z = 0 [m^3].
+double volume_below(const TriMesh& mesh) {
+  double sum = 0.0;
+  for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
+    std::vector<Vec3> corners;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 p = mesh.vertices.col(mesh.faces(k, f)), q = mesh.vertices.col(mesh.faces((k + 1) % 3, f));
+      if (p.z() <= 0.0) corners.push_back(p);
+      if ((p.z() < 0.0) != (q.z() < 0.0)) corners.push_back(p + p.z() / (p.z() - q.z()) * (q - p));
+    }
+    for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
+      const double projected = -0.5 * (corners[k] - corners[0]).cross(corners[k + 1] - corners[0]).z();
+      sum -= projected * (corners[0].z() + corners[k].z() + corners[k + 1].z()) / 3.0;
+    }
+  }
+  return sum;
+}
+
+/// Force of the samples of one source on the body, along z [N].
+double held_force(SurfaceBody& body, std::unique_ptr<contact::SampleSource> source, const std::shared_ptr<contact::MovingFrame>& frame,
+                  const std::string& sabotage) {
+  contact::ContactForce term;
+  term.add_frame(frame);
+  ContactSpec law;
+  law.stiffness_pa_m = sabotage == "half-stiffness" ? 0.5 * kStiffness : kStiffness;
+  term.add_pair(std::move(source), law);
+  term.refresh(body.state.view());
+  return -term.frame_wrench(body.state.view(), 0).force.z();
+}
+
+double vertex_force(const TriMesh& mesh, const std::string& sabotage) {
+  SurfaceBody body(mesh);
+  const auto frame = contact::fixed_frame();
+  // "surface-area": the area on the sphere instead of its projection, what an elastic foundation normal to the skin would use
+  if (sabotage == "surface-area") {
+    double sum = 0.0;
+    std::vector<contact::ContactSample> samples;
+    contact::make_plane_source(body.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 1e-6)->query(body.state.view(), samples);
+    for (const auto& s : samples) {
+      const double cosine = (kRadius - kDepth - body.state.view().position(s.a.node[0]).z()) / kRadius;
+      sum += kStiffness * std::max(0.0, -s.gap) * s.area / cosine;
+    }
+    return sum;
+  }
+  return held_force(body, contact::make_plane_source(body.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 1e-6), frame, sabotage);
+}
+
+#ifdef PALPATE_HAS_gl
+double pixel_force(const TriMesh& mesh, const std::string& sabotage) {
+  SurfaceBody body(mesh);
+  const auto frame = contact::fixed_frame();
+  TriMesh slab = mesh::box_surface(Vec3(6 * kRadius, 6 * kRadius, kRadius), {6, 6, 1});
+  slab.vertices.row(2).array() -= 0.5 * kRadius;  // its upper face is the plane
+  contact::GpuOptions options;
+  options.pixels = 256;
+  options.candidate_gap = 1e-6;
+  return held_force(body, contact::make_gpu_source(body.surface, slab, 0, frame, options), frame, sabotage);
+}
+#endif
+
+Measurement against(const std::string& quantity, double computed, double exact, double bar) {
+  Measurement m;
+  m.quantity = quantity;
+  m.computed = computed;
+  m.exact = exact;
+  m.error = std::abs(computed - exact) / std::abs(exact);
+  m.bar = bar;
+  return m;
+}
+
+std::vector<Measurement> run(const std::string& sabotage) {
+  constexpr int kOrientations = 6;
+  const double cap = kPi * kDepth * kDepth * (3 * kRadius - kDepth) / 3.0;
+  const std::vector<int> ladder = {16, 24, 32, 48, 64};
+  std::vector<double> h, error;
+  double finest = 0.0;
+  for (const int n : ladder) {
+    double mean = 0.0;
+    for (int i = 0; i < kOrientations; ++i) mean += vertex_force(placed_sphere(n, i), sabotage) / kOrientations;
+    h.push_back(1.0 / n);
+    error.push_back(std::abs(mean / (kStiffness * cap) - 1.0));
+    finest = mean;
+  }
+  const TriMesh mesh = placed_sphere(ladder.back(), 0);
+  const double facets = kStiffness * volume_below(mesh);
+  std::vector<Measurement> out;
+  out.push_back(against("force on the facets, vertex samples [N]", vertex_force(mesh, sabotage), facets, 1e-3));
+#ifdef PALPATE_HAS_gl
+  out.push_back(against("force on the facets, pixel samples [N]", pixel_force(mesh, sabotage), facets, 1e-3));
+#endif
+  Measurement sphere = against("force on the true sphere, vertex samples, mean of 6 orientations [N]", finest, kStiffness * cap, 1e-3);
+  sphere.order = study::fitted_order(h, error);
+  sphere.order_low = 1.9;
+  sphere.order_high = 2.1;
+  sphere.note = "order in facet size over 16 to 64 subdivisions of the icosahedron";
+  out.push_back(sphere);
+  return out;
+}
+
+}  // namespace
+
+ValidationCase sphere_on_plane() {
+  return {"sphere-on-plane", "B", "Force of a rigid sphere held in a fixed plane against k times the cap's volume",
+          "Penalty force per area is stiffness times overlap volume: independent of the mesh up to its own facets (volume of a spherical cap).", false, run,
+          {"half-stiffness", "surface-area"}};
+}
+
+}  // namespace palpate::validation
