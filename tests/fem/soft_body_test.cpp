@@ -78,6 +78,21 @@ TEST(SoftBody, NewMaterialTakesEffectAtTheNextEvaluation) {
   EXPECT_EQ(body.name(), "b");
 }
 
+TEST(SoftBody, CountsInvertedElementsOnly) {
+  const TetMesh rest = one_tet();
+  SoftBody body("b", rest, soft_material(), {}, 0);
+  VecX f = VecX::Zero(12);
+  const auto inverted = [&](const Vec3& stretches) {
+    body.reset_counts();
+    const OneBody at(flat(stretches.asDiagonal() * rest.nodes), VecX::Zero(12));
+    body.add_force(at.state.view(), f);
+    return body.counts().inverted;
+  };
+  EXPECT_EQ(inverted({1.0, 1.0, 0.1}), 0);
+  EXPECT_EQ(inverted({1.0, 1.0, 0.0}), 1);
+  EXPECT_EQ(inverted({1.0, 1.0, -0.1}), 1);
+}
+
 TEST(SoftBody, RefusesBadMeshesWithElementAndValue) {
   TetMesh inverted = one_tet();
   std::swap(inverted.tets(0, 0), inverted.tets(1, 0));
