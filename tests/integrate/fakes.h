@@ -132,6 +132,16 @@ inline VecX run(System& system, State& state, const IntegratorSpec& spec, double
   return state.q();
 }
 
+/// No tangent is ever asked of an explicit integrator's system.
+inline bool is_explicit(const std::string& name) {
+  Chain chain;
+  IntegratorSpec spec;
+  spec.name = name;
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec);
+  stepper->advance_to(0.01);
+  return stepper->counters().tangent_evaluations == 0;
+}
+
 /// The setting that a ladder refines: the step of a method of known order, else the tolerance.
 inline void set_accuracy(IntegratorSpec& spec, int order, double value) { (order > 0 ? spec.step_s : spec.rtol) = value; }
 

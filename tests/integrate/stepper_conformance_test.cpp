@@ -182,6 +182,7 @@ TEST_P(Steppers, StopAtTheStepLimit) {
 }
 
 TEST_P(Steppers, TakeAnUnsymmetricTangentByLu) {
+  if (is_explicit(GetParam())) GTEST_SKIP() << "explicit";
   Chain chain;
   chain.start_in_mode(0.1);
   chain.term->K(0, 3) += 20.0;  // circulatory
@@ -217,12 +218,17 @@ TEST_P(Steppers, CountTheirWork) {
   const StepperCounters& c = stepper->counters();
   EXPECT_GT(c.steps, 2);
   EXPECT_EQ(c.force_evaluations, chain.term->forces);
+  EXPECT_EQ(c.indefinite, 0);
+  if (is_explicit(GetParam())) {  // leaves out what it does not need
+    EXPECT_EQ(chain.term->tangents, 0);
+    EXPECT_EQ(c.solver.symbolic + c.solver.factorisations + c.solver.solves, 0);
+    return;
+  }
   EXPECT_GT(c.tangent_evaluations, 0);
   EXPECT_GE(chain.term->tangents, c.tangent_evaluations);
   EXPECT_GE(c.solver.solves, c.steps);
   EXPECT_EQ(c.solver.symbolic, 1) << "one pattern, one analysis";
   EXPECT_EQ(c.solver.factorisations, c.tangent_evaluations);
-  EXPECT_EQ(c.indefinite, 0);
 }
 
 /// A LinearSolver of somebody else's fits: dense, and counting.
@@ -249,7 +255,7 @@ TEST_P(Steppers, TakeAForeignLinearSolver) {
   const auto stepper = entry.make(chain.system, chain.state, spec(), std::make_unique<DenseSolver>());
   ASSERT_TRUE(stepper->advance_to(0.3).ok());
   EXPECT_LT((chain.state.q() - run(same.system, same.state, spec(), 0.3)).norm(), 1e-12);
-  EXPECT_GT(stepper->counters().solver.solves, 0);
+  EXPECT_EQ(stepper->counters().solver.solves == 0, is_explicit(GetParam()));
 }
 
 template <class Change>

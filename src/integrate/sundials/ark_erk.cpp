@@ -72,7 +72,11 @@ class ArkErk final : public Stepper {
     message_.clear();
     double t = state_.time();
     int flag = ARK_SUCCESS;
-    for (int n = 0; n < spec_.max_steps && flag >= 0 && flag != ARK_TSTOP_RETURN; ++n) flag = ERKStepEvolve(ark_, t_end, y_, &t, ARK_ONE_STEP);
+    for (int n = 0; n < spec_.max_steps && flag >= 0 && flag != ARK_TSTOP_RETURN; ++n) {
+      double reached = t;
+      flag = ERKStepEvolve(ark_, t_end, y_, &reached, ARK_ONE_STEP);
+      if (flag >= 0) t = reached;  // a failure gives the last good y with the time of the stage that failed
+    }
     const bool landed = flag == ARK_TSTOP_RETURN;
     first_order_.store(landed ? t_end : t, NV_DATA_S(y_));
     collect_counters();
