@@ -1,10 +1,9 @@
 #include "contact/gpu_image.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 
 #include "palpate/core/error.h"
+#include "palpate/gl/commands.h"
 #include "palpate/gl/context.h"
 
 namespace palpate::contact {
@@ -13,19 +12,6 @@ namespace {
 int opened(int pixels) {
   gl::Context::shared();  // before any member is made
   return pixels;
-}
-
-/// Pictures are drawn through the same context: nothing of their state may be left on.
-void set_state(const ContactCamera& camera, bool keep_least) {
-  for (const GLenum feature : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL, GL_DEPTH_CLAMP, GL_MULTISAMPLE})
-    glDisable(feature);
-  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  glDepthMask(GL_TRUE);
-  glDepthRangef(0.0f, 1.0f);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(keep_least ? GL_LESS : GL_GREATER);
-  glViewport(0, 0, camera.width, camera.height);
 }
 
 }  // namespace
@@ -58,12 +44,11 @@ void GpuImage::draw(Surface& surface, const Patch& patch, const ContactCamera& c
   draw_.set("scale", Vec3(sx, sy, sz).cast<float>().eval());
   draw_.set("shift", Vec3(-1.0 - sx * camera.u0, -1.0 - sy * camera.v0, -1.0 - sz * camera.near).cast<float>().eval());
   surface.target.bind();
-  set_state(camera, keep_least);
+  gl::set_plain_state(camera.width, camera.height, keep_least ? gl::Keep::kLeastDepth : gl::Keep::kGreatestDepth);
   surface.target.clear(0, std::uint32_t{0});
   surface.target.clear_depth(keep_least ? 1.0f : 0.0f);
   draw_.use();
-  surface.layout.bind();
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(surface.indices.size()), GL_UNSIGNED_INT, nullptr);
+  gl::draw_triangles(surface.layout, surface.indices.size());
 }
 
 void GpuImage::append_pairs(const ContactCamera& camera, double candidate_gap) {
@@ -80,10 +65,7 @@ void GpuImage::append_pairs(const ContactCamera& camera, double candidate_gap) {
   pair_.set("width", camera.width);
   pair_.set("height", camera.height);
   pair_.set("largest_gap", static_cast<float>(candidate_gap / (camera.far - camera.near) + kDepthRounding));
-  pair_.use();
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);  // the textures are read now, not drawn to
-  glDispatchCompute(static_cast<GLuint>((camera.width + kGroup - 1) / kGroup), static_cast<GLuint>((camera.height + kGroup - 1) / kGroup), 1);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  gl::dispatch(pair_, (camera.width + kGroup - 1) / kGroup, (camera.height + kGroup - 1) / kGroup);
 }
 
 void GpuImage::find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera, double candidate_gap, std::vector<PixelPair>& pairs) {
