@@ -61,11 +61,11 @@ int demo(const DemoArguments& arguments);
 
 /// What the command line asks for.
 struct Invocation {
-  std::function<int()> action;  ///< empty: nothing to do but leave with `status`
-  int status = 0;
+  std::function<int()> action;  ///< empty: help was asked for and given
   bool factorises = false;      ///< worth restarting with tuned linear algebra
   bool quiet = false, verbose = false;
 };
+/// @throws Error for a line that makes no sense
 Invocation parse(int argc, char** argv);
 
 }  // namespace palpate::cli

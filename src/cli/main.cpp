@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
   Invocation invocation;
   const int parsed = guarded([&] {
     invocation = parse(argc, argv);
-    return invocation.status;
+    return 0;
   });
   if (!invocation.action) return parsed;
   if (invocation.factorises) restart_tuned(argv);

@@ -2,11 +2,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "commands.h"
+#include "palpate/core/error.h"
 #include "palpate/store/provenance.h"
-#include "stop.h"
 
 namespace palpate::cli {
 namespace {
@@ -150,13 +151,17 @@ void add_demo(CLI::App& app, Invocation& invocation) {
 }
 
 /// What is wrong with the line, and where help is: CLI11's own messages name the option.
-Invocation refuse(const CLI::App& app, const CLI::ParseError& error) {
-  std::string command = "palpate";
+void refuse(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  std::string command = "palpate", message = error.what();
   for (const CLI::App* used : app.get_subcommands()) command += " " + used->get_name();
-  fmt::print(stderr, "palpate: error: {}; see `{} --help`\n", error.what(), command);
-  Invocation out;
-  out.status = kExitError;
-  return out;
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  const auto first = std::find_if(words.begin(), words.end(), [](const std::string& word) { return !word.starts_with("-"); });
+  if (app.get_subcommands().empty() && first != words.end()) {
+    std::vector<std::string> known;
+    for (const CLI::App* one : app.get_subcommands({})) known.push_back(one->get_name());
+    message = fmt::format("there is no command \"{}\"{}", *first, suggestion(*first, known));
+  }
+  fail("{}; see `{} --help`", message, command);
 }
 
 }  // namespace
@@ -183,8 +188,7 @@ Invocation parse(int argc, char** argv) {
   add_bench(app, invocation);
   if (argc == 1) {
     fmt::print("{}", app.help());
-    invocation.status = 0;
-    return invocation;
+    return {};
   }
   try {
     app.parse(argc, argv);
@@ -192,7 +196,7 @@ Invocation parse(int argc, char** argv) {
     app.exit(asked);
     return {};
   } catch (const CLI::ParseError& error) {
-    return refuse(app, error);
+    refuse(app, error, argc, argv);
   }
   return invocation;
 }

@@ -66,6 +66,7 @@ void keep_summary(const loop::World& world, const loop::RunResult& result, doubl
   summary.command = command_of(arguments);
   summary.overrides = arguments.scene.overrides;
   store::write_summary((std::filesystem::path(folder) / "summary.json").string(), summary);
+  store::write_atomically((std::filesystem::path(folder) / "scene.toml").string(), world.description.source);
 }
 
 /// What stands in the folder now, for the person to open.
@@ -112,8 +113,7 @@ int run(const RunArguments& arguments) {
 
   print_outcome(*world, result, peak, assemble_s);
   if (keep) {
-    store::write_summary((std::filesystem::path(folder) / "summary.json").string(), loop::summarise(*world, result, assemble_s));
-    store::write_atomically((std::filesystem::path(folder) / "scene.toml").string(), description.source);
+    keep_summary(*world, result, assemble_s, arguments, folder);
     if (arguments.picture) snapshot.save(*world, (std::filesystem::path(folder) / "picture.png").string());
     if (arguments.report) report::write_run_report(folder);
     print_files(folder);

@@ -1,0 +1,258 @@
+#!/usr/bin/env python3
+"""The program as a person meets it: help, messages, exit statuses, files, Ctrl-C.
+
+    cli_test.py PROGRAM
+"""
+import json
+import os
+import pty
+import re
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import xml.dom.minidom
+from pathlib import Path
+
+try:
+    import h5py
+except ImportError:  # package python3-h5py
+    sys.exit("python3-h5py is missing")
+
+PROGRAM = Path(sys.argv[1]).resolve()
+COMMANDS = ["demo", "run", "compare", "validate", "inspect", "list", "bench"]
+LONG = ["run", "one-tet", "--duration-s", "1e6"]  # ends only when it is told to
+
+
+class Cli(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="palpate-cli-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def call(self, *arguments, **environment):
+        done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, cwd=self.folder, timeout=300,
+                              env=dict(os.environ, **environment), stdin=subprocess.DEVNULL)
+        self.assertNotIn("\033", done.stdout + done.stderr)  # no terminal, no control codes
+        return done
+
+    def good(self, *arguments, **environment):
+        done = self.call(*arguments, **environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def refused(self, *arguments):
+        done = self.call(*arguments)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertTrue(done.stderr.startswith("palpate: error: "), done.stderr)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        return done.stderr
+
+
+class Help(Cli):
+    def test_help_teaches_by_example(self):
+        for command in [[]] + [[name] for name in COMMANDS]:
+            with self.subTest(command=command):
+                text = self.good(*command, "--help")
+                self.assertRegex(text, r"Examples?:\n  palpate ")
+        for name in COMMANDS:
+            self.assertIn(f"  {name} ", self.good("--help"))
+
+    def test_no_argument_is_a_question_for_help(self):
+        self.assertEqual(self.good(), self.good("--help"))
+
+    def test_every_example_of_the_help_is_understood(self):
+        seen = 0
+        for command in [[]] + [[name] for name in COMMANDS]:
+            for line in re.findall(r"^  palpate (.+?)(?:   .*)?$", self.good(*command, "--help"), re.M):
+                # An option that does not exist is refused before --help is heeded; the command itself is not run.
+                known = self.good(line.split()[0], "--help")
+                for option in re.findall(r"(?<= )--?[a-z][a-z-]*", line):
+                    self.assertRegex(known, rf"(^|[ ,]){option}\b", line)
+                seen += 1
+        self.assertGreater(seen, 15)
+
+    def test_version_names_the_build(self):
+        self.assertRegex(self.good("--version"), r"^palpate \d+\.\d+\.\d+ \(commit ")
+
+
+class Refusals(Cli):
+    def test_command_lines(self):
+        self.assertIn('did you mean "run"?', self.refused("runn", "one-tet"))
+        self.assertIn("palpate run --help", self.refused("run"))
+        self.assertIn("--frob", self.refused("run", "one-tet", "--frob"))
+        self.assertIn("--duration-s", self.refused("run", "one-tet", "--duration-s", "-1"))
+        self.assertIn("--repeats", self.refused("compare", "cantilever", "--repeats", "0"))
+
+    def test_names(self):
+        self.assertIn('did you mean "press-ball"?', self.refused("run", "pres-ball"))
+        self.assertIn('"cvode-bdf"?', self.refused("run", "one-tet", "--integrator", "cvode-bfd"))
+        self.assertIn('did you mean "patch-test"?', self.refused("validate", "patch-tset"))
+        self.assertIn("scenes", self.refused("list", "nothing"))
+        self.assertIn("leave-out", self.refused("bench", "nothing"))
+        self.assertIn("cvode-bdf", self.refused("compare", "cantilever", "--integrator", "no-such"))
+        self.assertIn("stress", self.refused("run", "one-tet", "--picture", "--shade", "mood"))
+
+    def test_scenes(self):
+        self.assertIn("youngs_modulus_pa", self.refused("run", "one-tet", "--set", "body.0.youngs_modulus=1"))
+        (self.folder / "bad.toml").write_text("[scene]\nname = 'x'\nduration_s = 'long'\n")
+        self.assertRegex(self.refused("run", "bad.toml"), r"bad\.toml:3:\d+: ")
+        (self.folder / "noise.toml").write_bytes(bytes(range(256)) * 4)
+        self.refused("inspect", "noise.toml")
+        self.assertIn("is a folder", self.refused("run", "."))
+
+    def test_folders(self):
+        (self.folder / "file").write_text("")
+        self.assertIn("-o DIR", self.refused("run", "one-tet", "-o", "file"))
+        self.assertIn("compare.ladder", self.refused("compare", "one-tet"))
+
+    def test_integrator_that_gives_up_is_an_error_and_keeps_what_was_recorded(self):
+        text = self.refused("run", "one-tet", "--set", "integrator.max_steps=5", "-o", "kept")
+        self.assertIn("gave up at t = ", text)
+        self.assertEqual(json.loads((self.folder / "kept/summary.json").read_text())["outcome"], "failed")
+        with h5py.File(self.folder / "kept/run.vtkhdf") as file:
+            self.assertGreaterEqual(file["VTKHDF/Steps"].attrs["NSteps"], 1)
+
+
+class Results(Cli):
+    def test_run_writes_what_the_scene_records(self):
+        text = self.good("run", "one-tet", "-o", "here", "--duration-s", "0.1", "--set", "body.0.youngs_modulus_pa=2e5", "--report")
+        self.assertIn("0.1 s simulated", text)
+        names = {path.name for path in (self.folder / "here").iterdir()}
+        self.assertEqual(names, {"run.vtkhdf", "summary.json", "scene.toml", "report.html"})
+        summary = json.loads((self.folder / "here/summary.json").read_text())
+        self.assertEqual(summary["outcome"], "finished")
+        self.assertEqual(summary["command"], "palpate run one-tet --set body.0.youngs_modulus_pa=2e5 --duration-s 0.1 --report -o here")
+        self.assertEqual(summary["overrides"], ["body.0.youngs_modulus_pa=2e5"])
+        with h5py.File(self.folder / "here/run.vtkhdf") as file:
+            steps = file["VTKHDF/Steps"]
+            self.assertEqual(steps.attrs["NSteps"], 11)
+            for step in range(11):
+                self.assertAlmostEqual(steps["Values"][step], 0.01 * step, delta=1e-12)
+        xml.dom.minidom.parse(str(self.folder / "here/report.html"))
+
+    def test_default_folder(self):
+        self.good("run", "one-tet", "--duration-s", "0.02")
+        self.assertTrue((self.folder / "out/one-tet/summary.json").is_file())
+
+    def test_nothing_recorded_no_file(self):
+        scene = Path(self.shipped("one-tet")).read_text()
+        (self.folder / "bare.toml").write_text(scene[:scene.index("[record]")])
+        self.good("run", "bare.toml", "--duration-s", "0.02")
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["bare.toml"])
+
+    def shipped(self, name):
+        return PROGRAM.parent.parent / "share/palpate/scenes" / f"{name}.toml"
+
+    def test_integrator_option_is_the_one_that_runs(self):
+        text = self.good("run", "one-tet", "--duration-s", "0.1", "--integrator", "linearly-implicit-euler", "--set", "integrator.step_s=0.01")
+        self.assertIn("linearly-implicit-euler: 10 steps", text)
+
+    def test_compare_prints_orders_and_writes_the_table(self):
+        text = self.good("compare", "cantilever", "--duration-s", "0.05", "--repeats", "1", "-o", "cmp",
+                         "--set", "body.0.mesh.element_size_m=0.05")
+        self.assertIn("fitted order", text)
+        self.assertIn("its own error", text)
+        names = {path.name for path in (self.folder / "cmp").iterdir()}
+        self.assertLessEqual({"compare.csv", "reference.json", "report.html"}, names)
+
+    def test_lists(self):
+        everything = self.good("list")
+        for what, member in {"integrators": "cvode-bdf", "linear-solvers": "cholmod", "tool-integrators": "simbody-cpodes", "devices": "script",
+                             "cases": "patch-test", "parts": "contact", "scenes": "press-ball"}.items():
+            with self.subTest(what=what):
+                one = self.good("list", what)
+                self.assertRegex(one, rf"(?m)^{member} ")
+                self.assertIn(one, everything)
+
+    def test_inspect_says_what_is_left_out(self):
+        text = self.good("inspect", "falling-ball")
+        self.assertRegex(text, r"(?m)^tool +left out")
+        self.assertRegex(text, r"(?m)^gl +left out")
+        self.assertRegex(text, r"(?m)^unknowns \(velocities\) +\d+")
+        self.assertRegex(self.good("inspect", "press-ball"), r"(?m)^tool +in use")
+
+    def test_validate(self):
+        text = self.good("validate", "rigid-motion", "-o", "val")
+        self.assertRegex(text, r"(?m)^rigid-motion .* pass$")
+        cases = json.loads((self.folder / "val/validation.json").read_text())["cases"]
+        self.assertEqual([case["name"] for case in cases], ["rigid-motion"])
+        self.assertTrue(all(m["passed"] for m in cases[0]["measurements"]))
+        self.assertIn("fails, as it must", self.good("validate", "rigid-motion", "--sabotage"))
+
+
+class LeftOut(Cli):
+    """What a scene does not name is not there: by the loader's own account, and by the counters."""
+
+    def loaded(self, *arguments):
+        done = self.call(*arguments, LD_DEBUG="files")
+        self.assertEqual(done.returncode, 0)
+        return set(re.findall(r"calling init: \S*/(lib[^/\s]+)", done.stderr))
+
+    def test_scenes_without_contact_images_load_no_graphics(self):
+        for scene in ("falling-ball", "cantilever"):
+            with self.subTest(scene=scene):
+                names = self.loaded("run", scene, "--duration-s", "0.01", "-o", scene)
+                self.assertTrue(any(name.startswith("libpalpate_core") for name in names), "LD_DEBUG did not work")
+                self.assertFalse([name for name in names if re.match(r"lib(EGL|GL|GLX|GLdispatch|OpenGL|gallium|LLVM)[._-]", name)])
+                made = json.loads((self.folder / scene / "summary.json").read_text())["figures"]["constructions"]
+                self.assertFalse([name for name in made if name.startswith(("gl.", "tool.", "render.", "proxy."))], made)
+
+    def test_the_same_look_finds_graphics_where_a_picture_is_asked_for(self):
+        names = self.loaded("run", "one-tet", "--duration-s", "0.01", "--picture", "-o", "pic")
+        self.assertTrue([name for name in names if name.startswith("libEGL")], names)
+        self.assertTrue((self.folder / "pic/picture.png").read_bytes().startswith(b"\x89PNG"))
+
+
+class Interrupt(Cli):
+    def wait_for(self, condition, process):
+        end = time.monotonic() + 120
+        while not condition():
+            self.assertIsNone(process.poll(), "it ended by itself")
+            self.assertLess(time.monotonic(), end, "nothing happened")
+            time.sleep(0.05)
+
+    def test_what_was_recorded_is_a_valid_file(self):
+        for stop in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(signal=stop):
+                process = subprocess.Popen([str(PROGRAM), *LONG, "-o", f"cut-{stop}"], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                                           stderr=subprocess.PIPE)
+                path = self.folder / f"cut-{stop}/run.vtkhdf"
+                self.wait_for(lambda: path.exists() and path.stat().st_size > 20000, process)
+                process.send_signal(stop)
+                out, err = process.communicate(timeout=120)
+                self.assertEqual(process.returncode, 130, err)
+                self.assertIn("stopped at t = ", err)
+                self.assertNotIn("\r", err)  # no terminal, no progress bar
+                with h5py.File(path) as file:
+                    count = file["VTKHDF/Steps"].attrs["NSteps"]
+                    self.assertGreater(count, 1)
+                    self.assertGreaterEqual(len(file["VTKHDF/Points"]), 4 * count)
+                    times = file["VTKHDF/Steps/Values"][:count]
+                    self.assertTrue(all(b > a for a, b in zip(times, times[1:])))
+                self.assertEqual(json.loads((path.parent / "summary.json").read_text())["outcome"], "interrupted")
+
+    def test_progress_bar_on_a_terminal_with_time_left(self):
+        terminal, end = pty.openpty()
+        process = subprocess.Popen([str(PROGRAM), "run", "one-tet", "--duration-s", "2000", "-o", "tty"], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=end, env=dict(os.environ, TERM="xterm"))
+        os.close(end)
+        seen = b""
+        try:
+            deadline = time.monotonic() + 120
+            while b" left" not in seen and time.monotonic() < deadline:
+                if select.select([terminal], [], [], 1.0)[0]:
+                    seen += os.read(terminal, 65536)
+        finally:
+            process.send_signal(signal.SIGINT)
+            process.wait(timeout=120)
+            os.close(terminal)
+        self.assertRegex(seen.decode(), r"\[#*-*\] +\d+ % +.* left  running one-tet")
+        self.assertEqual(process.returncode, 130)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
