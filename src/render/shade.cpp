@@ -8,6 +8,7 @@
 
 #include "average.h"
 #include "corners.h"
+#include "lights.h"
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/context.h"
 #include "palpate/gl/framebuffer.h"
@@ -42,30 +43,6 @@ Drawable ground_square(const Ground& ground, const Staging& staging) {
   for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, -1}, {1, 1}, {-1, 1}})
     corners.push_back({{reach * static_cast<float>(x), reach * static_cast<float>(y), z}, {0, 0, 1}, -10.0f});
   return {corners, nullptr};
-}
-
-/// Directions towards the two lights, fixed to the camera: the key from above and from the left, the fill low and from the right.
-struct Lights {
-  Vec3 key, fill;
-};
-Lights lights_of(const Camera& camera) {
-  const Vec3 forward = (camera.target - camera.eye).normalized();
-  Vec3 right = forward.cross(Vec3::UnitZ());
-  right = right.norm() > 1e-6 ? Vec3(right.normalized()) : Vec3::UnitX();
-  const Vec3 back = Vec3::UnitZ().cross(right).normalized() * -1.0;
-  return {(1.0 * Vec3::UnitZ() - 0.55 * right + 0.45 * back).normalized(), (0.25 * Vec3::UnitZ() + 0.9 * right + 0.5 * back).normalized()};
-}
-
-/// The scene's ball as the key light sees it.
-Eigen::Matrix4d light_projection(const Vec3& key, double radius) {
-  Camera light;
-  light.eye = 3.0 * radius * key;
-  light.target = Vec3::Zero();
-  light.perspective = false;
-  light.half_height = 1.05 * radius;
-  light.near = 1.5 * radius;
-  light.far = 6.0 * radius;
-  return view_projection(light, 1.0);
 }
 
 gl::Texture colour_table() {
