@@ -29,8 +29,9 @@ TEST(Load, PressBallAsWritten) {
   EXPECT_EQ(ball.youngs_modulus_pa, 1e4);
   EXPECT_EQ(ball.mesh.generator, "ball");
   EXPECT_EQ(ball.mesh.radius_m, 0.03);
-  ASSERT_EQ(ball.attachments.size(), 1u);
-  EXPECT_EQ(ball.attachments[0].axes, "xy");
+  ASSERT_EQ(ball.attachments.size(), 2u);
+  EXPECT_EQ(ball.attachments[0].axes, "xyz");
+  EXPECT_EQ(ball.attachments[1].axes, "xy");
   ASSERT_EQ(d.contacts.size(), 2u);
   EXPECT_EQ(d.contacts[1].second, "tool");
   ASSERT_TRUE(d.tool && d.device && d.record);
