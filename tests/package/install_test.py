@@ -4,6 +4,7 @@
     install_test.py BUILD [CXX]
 """
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -61,6 +62,21 @@ class Package(unittest.TestCase):
                     status, text = call(build / program, order, timeout=120)
                     self.assertEqual(status, 0, text)
                     self.assertEqual(text.count(": right"), 9, text)
+
+    def test_program_of_the_readme(self):
+        readme = (SOURCE / "README.md").read_text()
+        source = self.folder / "mine"
+        source.mkdir()
+        blocks = {language: text for language, text in re.findall(r"^```(cmake|cpp|toml)\n(.*?)^```$", readme, re.M | re.S)}
+        for language, name in {"cmake": "CMakeLists.txt", "cpp": "main.cpp", "toml": "my.toml"}.items():
+            (source / name).write_text(blocks[language])
+        status, text = self.configure(source, self.folder / "mine-build")
+        self.assertEqual(status, 0, text)
+        status, text = call("cmake", "--build", self.folder / "mine-build")
+        self.assertEqual(status, 0, text)
+        status, text = call(self.folder / "mine-build" / "mine", cwd=source, timeout=300)
+        self.assertEqual(status, 0, text)
+        self.assertRegex(text, r"^0\.2 s in \d+ steps: ok")
 
     def test_unknown_component_is_refused_by_name(self):
         source = self.folder / "wrong"
