@@ -64,6 +64,15 @@ void print_exchange(const study::Comparison& comparison) {
   fmt::print("{}\n", report::format_table({"exchange period [ms]", "position error", "force error [N]", "torque error [N m]", "CPU [s]"}, rows));
 }
 
+void print_methods(const study::Comparison& comparison) {
+  if (comparison.methods.empty()) return;
+  Rows rows;
+  for (const study::MethodPoint& p : comparison.methods)
+    rows.push_back({p.method, fmt::format("{:.2e}", p.difference.position_rel_l2), fmt::format("{:.2e}", p.difference.force_rms_n), fmt::format("{:.4f}", p.peak_force_n),
+                    std::to_string(p.most_samples), fmt::format("{:.3f}", p.query_s), fmt::format("{:.3f}", p.cpu_s)});
+  fmt::print("{}\n", report::format_table({"contact found by", "position difference", "force difference [N]", "peak force [N]", "samples", "queries [s]", "CPU [s]"}, rows));
+}
+
 study::Comparison compare_watched(const scene::Description& description, const CompareArguments& arguments) {
   Progress progress("reference run");
   study::CompareOptions options;
@@ -91,6 +100,7 @@ int compare(const CompareArguments& arguments) {
   print_points(comparison, description.tool.has_value());
   print_fits(report::read_csv(std::filesystem::path(folder) / "compare.csv"));
   print_exchange(comparison);
+  print_methods(comparison);
   fmt::print("written: {}\n", report::write_run_report(folder).string());
   if (!comparison.stopped) return 0;
   fmt::print(stderr, "palpate: stopped; the points that were finished are in {}\n", folder);

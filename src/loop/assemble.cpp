@@ -5,6 +5,7 @@
 #include "palpate/fem/attachments.h"
 #include "palpate/fem/load.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/mesh/checks.h"
 #include "palpate/store/mesh_file.h"
 
 namespace palpate::loop {
@@ -30,7 +31,13 @@ fem::SoftBodyOptions options_of(const SoftBodySpec& spec) {
 
 TetMesh load_mesh(const MeshSpec& spec, const std::string& folder, mesh::MeshReport* report) {
   if (!spec.file.ends_with(".h5")) return mesh::tet_mesh(spec, folder, report);
-  return store::read_mesh((std::filesystem::path(folder) / spec.file).string());
+  const std::string path = (std::filesystem::path(folder) / spec.file).string();
+  TetMesh out = store::read_mesh(path);
+  out.nodes *= spec.scale;
+  mesh::Provenance from;
+  from.source = path;
+  *report = mesh::check_tets(out, from);
+  return out;
 }
 
 /// Velocity of each node of a body that starts as a rigid one: v + w x (x - centre of mass).

@@ -144,4 +144,19 @@ void add_exchange(Page& page, const Table& exchange) {
   page.add_table({"exchange period [s]", "position error, rel. L2", "force error, RMS [N]", "torque error, RMS [N m]", "CPU [s]"}, rows);
 }
 
+void add_methods(Page& page, const Table& methods) {
+  page.add_heading("Ways to find the contact");
+  page.add_paragraph("The same touch at the same integrator settings, its contact found in different ways; each against the first. The difference holds what each makes of the "
+                     "tool (an exact shape or facets) and of the overlap (one sample a vertex, or one a pixel).");
+  const std::vector<std::string> columns = {"method", "position_difference_rel_l2", "position_difference_max_m", "force_difference_rms_n", "force_difference_max_n",
+                                            "peak_force_n", "most_samples", "query_s", "cpu_s"};
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t r = 0; r < methods.rows.size(); ++r) {
+    rows.emplace_back();
+    for (const std::string& column : columns) rows.back().push_back(cell_text(methods, r, column));
+  }
+  page.add_table({"method", "position difference, rel. L2", "largest [m]", "force difference, RMS [N]", "largest [N]", "peak force [N]", "samples at most",
+                  "queries [s]", "CPU [s]"}, rows);
+}
+
 }  // namespace palpate::report

@@ -43,6 +43,7 @@ fs::path write_run_report(const fs::path& dir) {
   if (has("force.csv")) add_forces(page, summary, read_csv(dir / "force.csv"));
   if (has("compare.csv")) add_comparison(page, read_csv(dir / "compare.csv"), read_reference(dir / "reference.json"));
   if (has("exchange.csv")) add_exchange(page, read_csv(dir / "exchange.csv"));
+  if (has("methods.csv")) add_methods(page, read_csv(dir / "methods.csv"));
   if (has("validation.json")) add_validation(page, read_json(dir / "validation.json"));
   add_figures(page, summary);
   add_parts(page, summary);

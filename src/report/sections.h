@@ -19,6 +19,7 @@ void add_pictures(Page& page, const Json& summary, const std::filesystem::path& 
 void add_forces(Page& page, const Json& summary, const Table& force);
 void add_comparison(Page& page, const Table& compare, const ReferenceError& reference);
 void add_exchange(Page& page, const Table& exchange);
+void add_methods(Page& page, const Table& methods);
 void add_validation(Page& page, const Json& validation);
 void add_parts(Page& page, const Json& summary);
 void add_provenance(Page& page, const Json& summary);

@@ -1,5 +1,7 @@
 #include "scene/keys.h"
 
+#include <algorithm>
+
 namespace palpate::scene {
 namespace {
 
@@ -129,6 +131,14 @@ const KeyTable<LadderSpec>& ladder_keys() {
   return keys;
 }
 
+void read_methods(const Value& value, CompareSpec& spec) {
+  const std::vector<std::string> known = {"analytic", "gpu"};
+  spec.contact_methods = read_texts(value);
+  for (const std::string& method : spec.contact_methods)
+    if (std::find(known.begin(), known.end(), method) == known.end())
+      refuse(place(value.node.source()), value.where, fmt::format("contact_methods holds the unknown method \"{}\"{}", method, suggestion(method, known)));
+}
+
 const KeyTable<CompareSpec>& compare_keys() {
   static const KeyTable<CompareSpec> keys = {
       tables("ladder", &CompareSpec::ladders, ladder_keys()),
@@ -136,6 +146,7 @@ const KeyTable<CompareSpec>& compare_keys() {
       number("reference_rtol", &CompareSpec::reference_rtol, closed(1e-13, 1e-2, "it must be tighter than every rung; 1e-9 is a good start")),
       text("reference_check", &CompareSpec::reference_check),
       number("reference_check_rtol", &CompareSpec::reference_check_rtol, closed(1e-13, 1e-2)),
+      Key<CompareSpec>{"contact_methods", read_methods},
       number("duration_s", &CompareSpec::duration_s, at_least(0.0, "0 is the scene's own")),
   };
   return keys;

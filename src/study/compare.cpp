@@ -85,7 +85,7 @@ void summarise_times(ComparePoint& point) {
 
 scene::Description with_exchange_period(scene::Description d, double period) {
   d.coupling.exchange_period_s = d.coupling.contact_refresh_s = period;
-  return with_setting(std::move(d), "cvode-bdf", "rtol", 1e-7);
+  return with_setting(std::move(d), "cvode-bdf", "rtol", 1e-5);
 }
 
 /// The exchange period's own error: the same tight integrator at each period, against the smallest possible one, a period of a single tick.
@@ -120,6 +120,7 @@ Comparison compare(const scene::Description& d, const CompareOptions& options) {
     }
   for (ComparePoint& point : out.points) summarise_times(point);
   if (!progress.stopped()) compare_exchange(d, out, progress, options);
+  if (!progress.stopped()) out.methods = compare_contact_methods(d, options.stop);
   out.stopped = progress.stopped();
   return out;
 }

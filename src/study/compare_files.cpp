@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "palpate/core/error.h"
 #include "palpate/store/atomic_file.h"
@@ -18,6 +19,10 @@ const std::vector<std::string> kPointColumns = {
     "tangent_evaluations", "factorisations", "linear_solves", "contact_queries", "steps", "status", "below_reference"};
 
 const std::vector<std::string> kExchangeColumns = {"exchange_period_s", "position_error_rel_l2", "force_error_rms_n", "torque_error_rms_n_m", "cpu_s"};
+
+const std::vector<std::string> kMethodColumns = {"method",          "position_difference_rel_l2", "position_difference_max_m", "force_difference_rms_n",
+                                                 "force_difference_max_n", "peak_force_n",           "most_samples",              "query_s",
+                                                 "cpu_s"};
 
 std::vector<CsvCell> row_of(const std::string& scene, const ComparePoint& p) {
   const auto count = [](long n) { return CsvCell(static_cast<double>(n)); };
@@ -47,11 +52,20 @@ void write(const Comparison& comparison, const std::string& folder) {
       exchange.row(std::vector<CsvCell>{p.exchange_period_s, p.error.position_rel_l2, p.error.force_rms_n, p.error.torque_rms_n_m, p.cpu_s});
     exchange.close();
   }
+  if (!comparison.methods.empty()) {
+    store::CsvWriter methods((base / "methods.csv").string(), kMethodColumns);
+    for (const MethodPoint& p : comparison.methods)
+      methods.row(std::vector<CsvCell>{p.method, p.difference.position_rel_l2, p.difference.position_max_m, p.difference.force_rms_n, p.difference.force_max_n,
+                                       p.peak_force_n, static_cast<double>(p.most_samples), p.query_s, p.cpu_s});
+    methods.close();
+  }
   const TrajectoryError& own = comparison.reference.own_error;
-  store::write_atomically((base / "reference.json").string(),
-                          fmt::format("{{\"position_error_rel_l2\": {:.17g}, \"force_error_rms_n\": {:.17g}, \"torque_error_rms_n_m\": {:.17g}, "
-                                      "\"cpu_s\": {:.6g}, \"description\": \"{}\"}}\n",
-                                      own.position_rel_l2, own.force_rms_n, own.torque_rms_n_m, comparison.reference.cpu_s, comparison.reference.description));
+  const nlohmann::json reference = {{"position_error_rel_l2", own.position_rel_l2},
+                                    {"force_error_rms_n", own.force_rms_n},
+                                    {"torque_error_rms_n_m", own.torque_rms_n_m},
+                                    {"cpu_s", comparison.reference.cpu_s},
+                                    {"description", comparison.reference.description}};
+  store::write_atomically((base / "reference.json").string(), reference.dump(2) + "\n");
 }
 
 }  // namespace palpate::study

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ostream>
 #include <set>
 
 #include "palpate/study/validation.h"
@@ -22,6 +23,14 @@ std::string text(const Measurement& m) {
   return m.quantity + ": computed " + std::to_string(m.computed) + ", exact " + std::to_string(m.exact) + ", error " + std::to_string(m.error) + ", bar " +
          std::to_string(m.bar) + ", order " + std::to_string(m.order) + " in [" + std::to_string(m.order_low) + ", " + std::to_string(m.order_high) + "] " + m.note;
 }
+
+}  // namespace
+
+namespace palpate::study {
+void PrintTo(const ValidationCase& c, std::ostream* out) { *out << c.section << " " << c.name; }
+}  // namespace palpate::study
+
+namespace {
 
 class Case : public testing::TestWithParam<ValidationCase> {};
 

@@ -26,6 +26,7 @@ struct CompareSpec {
   double reference_rtol = 1e-9;            ///< of the reference, made by cvode-bdf
   std::string reference_check = "ark-erk-5";  ///< the integrator of another family that checks the reference
   double reference_check_rtol = 1e-8;
+  std::vector<std::string> contact_methods;   ///< ways to find the tool's contact, compared with the first; empty: none
   double duration_s = 0.0;                 ///< 0: the scene's
 };
 

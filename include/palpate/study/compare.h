@@ -32,11 +32,21 @@ struct ExchangePoint {
   double cpu_s = 0.0;
 };
 
+/// One way of finding the tool's contact, against the first of the scene's list: how far the choice of method moves the result.
+struct MethodPoint {
+  std::string method;
+  TrajectoryError difference;      ///< zero for the first
+  double peak_force_n = 0.0;       ///< on the hand
+  long most_samples = 0;           ///< contact samples at one time
+  double query_s = 0.0, cpu_s = 0.0;
+};
+
 struct Comparison {
   std::string scene;
   Reference reference;
   std::vector<ComparePoint> points;
   std::vector<ExchangePoint> exchange;   ///< error of the exchange period itself; empty where the scene asks for none
+  std::vector<MethodPoint> methods;      ///< empty where the scene names none
   bool stopped = false;
 };
 
@@ -50,7 +60,10 @@ struct CompareOptions {
 /// Runs every ladder of the scene at its fixed exchange period against a tight reference; repeats are interleaved, so that a noisy machine hurts all alike.
 Comparison compare(const scene::Description& description, const CompareOptions& options);
 
-/// compare.csv, exchange.csv and reference.json in `folder`: what report reads its tables, fitted orders and plots from.
+/// The scene with the tool's contact found by each method of `compare.contact_methods`, at the scene's own integrator settings.
+std::vector<MethodPoint> compare_contact_methods(const scene::Description& description, const std::atomic<bool>* stop = nullptr);
+
+/// compare.csv, exchange.csv, methods.csv and reference.json in `folder`: what report reads its tables, fitted orders and plots from.
 void write(const Comparison& comparison, const std::string& folder);
 
 }  // namespace palpate::study
