@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include "loop/small_scenes.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+#include "palpate/loop/run.h"
+
+using namespace palpate;
+using namespace palpate::small_scenes;
+
+namespace {
+
+/// The message with which a description is refused.
+std::string refusal(const scene::Description& d) {
+  try {
+    loop::assemble(d);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "not refused";
+}
+
+void expect_refused(const scene::Description& d, const std::vector<std::string>& parts) {
+  const std::string message = refusal(d);
+  for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\n lacks: " << part;
+}
+
+TEST(Assemble, NamesThatNoRegistryKnowsAreRefusedWithTheNearest) {
+  scene::Description d = held_block();
+  d.integrator.name = "cvode-bfd";
+  expect_refused(d, {"integrator", "cvode-bfd", "cvode-bdf"});
+  d = held_block();
+  d.integrator.linear_solver = "cholmud";
+  expect_refused(d, {"cholmud", "cholmod"});
+  d = held_block();
+  d.bodies[0].tangent = "exakt";
+  expect_refused(d, {"block", "exakt", "exact"});
+  d = held_block();
+  d.bodies[0].mass = "lump";
+  expect_refused(d, {"block", "lump", "lumped"});
+}
+
+TEST(Assemble, AttachmentsThatHoldNothingOrOverlapAreRefused) {
+  scene::Description d = held_block();
+  d.bodies[0].attachments[0].box_min_m = d.bodies[0].attachments[0].box_max_m = Vec3(5, 5, 5);
+  expect_refused(d, {"block", "holds no node", "5"});
+  d = held_block();
+  d.bodies[0].attachments.push_back(d.bodies[0].attachments[0]);
+  expect_refused(d, {"twice", "overlap"});
+}
+
+#ifdef PALPATE_HAS_TOOL
+TEST(Assemble, ContactsThatCannotBeMadeAreRefusedWithARemedy) {
+  scene::Description d = pressed_block(0.0);
+  d.contacts[0].first = "blok";
+  expect_refused(d, {"blok"});
+  d = pressed_block(0.0);
+  d.contacts[0].method = "exact";
+  expect_refused(d, {"exact", "analytic"});
+  d = pressed_block(0.0);
+  d.tool->shape = "mesh";
+  d.tool->mesh.generator = "ball";
+  d.tool->mesh.radius_m = 0.01;
+  d.tool->inertia_kg_m2 = Vec3::Constant(1e-5);
+  expect_refused(d, {"shape", "gpu"});
+  d = pressed_block(0.0);
+  d.contacts[0].second = "block";
+  expect_refused(d, {"soft bodies"});
+}
+#endif
+
+TEST(Assemble, WhatASceneDoesNotNameIsNotMade) {
+  counters::reset();
+  scene::Description d = held_block();
+  const auto world = loop::assemble(d);
+  EXPECT_TRUE(loop::run(*world, {}).status.ok());
+  EXPECT_EQ(world->contact, nullptr);
+  EXPECT_EQ(world->tool, nullptr);
+  EXPECT_EQ(world->tool_frame, nullptr);
+  EXPECT_EQ(world->condenser, nullptr);
+  for (const char* part : {"contact.force", "tool.simbody_system", "gl.context", "store.run_file", "render.picture", "integrate.cvode-bdf"})
+    EXPECT_EQ(counters::counter(part), 0) << part;
+  EXPECT_EQ(counters::counter("integrate.linearly-implicit-euler"), 1) << "the counters count";
+}
+
+#ifdef PALPATE_HAS_TOOL
+TEST(Assemble, WhatASceneNamesIsMadeOnce) {
+  counters::reset();
+  const auto world = loop::assemble(pressed_block(0.001));
+  EXPECT_TRUE(loop::run(*world, {}).status.ok());
+  EXPECT_EQ(counters::counter("contact.force"), 1);
+  EXPECT_EQ(counters::counter("tool.simbody_system"), 1);
+  EXPECT_EQ(counters::counter("gl.context"), 0) << "an exact sphere needs no image";
+}
+#endif
+
+}  // namespace
