@@ -8,9 +8,9 @@ namespace palpate::cli {
 
 /// Which scene, and what is changed in it.
 struct SceneArguments {
-  std::string scene;                  ///< path or name
-  std::vector<std::string> overrides; ///< "body.0.youngs_modulus_pa=1e5"
-  std::string integrator;             ///< instead of the scene's own; empty: the scene's
+  std::string scene;                   ///< path or name
+  std::vector<std::string> overrides;  ///< "body.0.youngs_modulus_pa=1e5"
+  std::string integrator;              ///< instead of the scene's own; empty: the scene's
 };
 
 struct RunArguments {
@@ -39,24 +39,30 @@ struct ValidateArguments {
 };
 int validate(const ValidateArguments& arguments);
 
-struct InspectArguments { SceneArguments scene; };
+struct InspectArguments {
+  SceneArguments scene;
+};
 int inspect(const InspectArguments& arguments);
 
-struct ListArguments { std::string what; };
+struct ListArguments {
+  std::string what;
+};
 int list(const ListArguments& arguments);
 
 struct BenchArguments {
-  std::string what;               ///< "fem" or "leave-out"
-  std::vector<std::string> scenes;///< of leave-out; empty: falling-ball and cantilever
-  int steps = 20;                 ///< of fem
-  int cells = 36;                 ///< of fem, along the beam
-  double step_s = 0.01;           ///< of fem
+  std::string what;                 ///< "fem" or "leave-out"
+  std::vector<std::string> scenes;  ///< of leave-out; empty: falling-ball and cantilever
+  int steps = 20;                   ///< of fem
+  int cells = 36;                   ///< of fem, along the beam
+  double step_s = 0.01;             ///< of fem
   std::string linear_solver = "cholmod";
-  int repeats = 5;                ///< of leave-out
+  int repeats = 5;  ///< of leave-out
 };
 int bench(const BenchArguments& arguments);
 
-struct DemoArguments { std::string folder = "out/demo"; };
+struct DemoArguments {
+  std::string folder = "out/demo";
+};
 int demo(const DemoArguments& arguments);
 
 /// What the command line asks for.

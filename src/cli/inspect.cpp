@@ -14,19 +14,23 @@ using Rows = std::vector<std::vector<std::string>>;
 
 void print_needs(const scene::Description& description) {
   Rows rows;
-  for (const scene::Need& need : scene::needs(description)) rows.push_back({need.part, need.used ? "in use" : "left out", need.why});
+  for (const scene::Need& need : scene::needs(description))
+    rows.push_back({need.part, need.used ? "in use" : "left out", need.why});
   fmt::print("{}\n", report::format_table({"part", "", "why"}, rows));
 }
 
 void print_bodies(const loop::World& world) {
   Rows rows;
   for (const loop::Body& body : world.bodies)
-    rows.push_back({body.name, std::to_string(body.report.nodes), std::to_string(body.report.elements), std::to_string(body.boundary.surface.faces.cols()),
-                    fmt::format("{:.3g}", body.report.volume), fmt::format("{:.3g}", body.masses.sum()),
+    rows.push_back({body.name, std::to_string(body.report.nodes), std::to_string(body.report.elements),
+                    std::to_string(body.boundary.surface.faces.cols()), fmt::format("{:.3g}", body.report.volume),
+                    fmt::format("{:.3g}", body.masses.sum()),
                     fmt::format("{:.3g} to {:.3g}", body.report.smallest_edge, body.report.largest_edge),
                     fmt::format("{:.1f}", body.report.smallest_dihedral_deg), std::to_string(body.report.flipped)});
   if (!rows.empty())
-    fmt::print("{}\n", report::format_table({"body", "nodes", "tetrahedra", "surface faces", "volume [m^3]", "mass [kg]", "edges [m]", "least dihedral [deg]", "mended"}, rows));
+    fmt::print("{}\n", report::format_table({"body", "nodes", "tetrahedra", "surface faces", "volume [m^3]", "mass [kg]",
+                                             "edges [m]", "least dihedral [deg]", "mended"},
+                                            rows));
 }
 
 void print_system(loop::World& world, double assemble_s, double memory_mib) {
@@ -35,7 +39,8 @@ void print_system(loop::World& world, double assemble_s, double memory_mib) {
   if (world.stepper) {
     dynamics::BorderedMatrix A;
     world.system.step_matrix(world.state.view(), 1.0, 0.0, 0.0, A);
-    add("unknowns (velocities)", std::to_string(world.state.u().size() - static_cast<Eigen::Index>(world.system.driven_dofs().size())));
+    add("unknowns (velocities)",
+        std::to_string(world.state.u().size() - static_cast<Eigen::Index>(world.system.driven_dofs().size())));
     add("held or driven directions", std::to_string(world.system.driven_dofs().size()));
     add("blocks of the step matrix (3 x 3)", std::to_string(A.body.slot_count()));
     if (A.border_size() > 0) add("width of its border", std::to_string(A.border_size()));

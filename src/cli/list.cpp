@@ -30,7 +30,8 @@ std::string first_comment(const std::string& path) {
 
 loop::ChoiceList scene_choices() {
   loop::ChoiceList out{"scenes", "that come with palpate: palpate run NAME", {}};
-  for (const std::string& path : shipped_scenes()) out.choices.push_back({std::filesystem::path(path).stem().string(), first_comment(path)});
+  for (const std::string& path : shipped_scenes())
+    out.choices.push_back({std::filesystem::path(path).stem().string(), first_comment(path)});
   return out;
 }
 
@@ -43,7 +44,8 @@ void print(const loop::ChoiceList& list) {
   }
   fmt::print("{} ({})\n", list.what, list.summary);
   if (rows.empty()) rows.push_back({"-", "none in this build"});
-  const std::vector<std::string> headers = orders ? std::vector<std::string>{"name", "order", "what it is"} : std::vector<std::string>{"name", "what it is"};
+  const std::vector<std::string> headers =
+      orders ? std::vector<std::string>{"name", "order", "what it is"} : std::vector<std::string>{"name", "what it is"};
   fmt::print("{}\n", report::format_table(headers, rows));
 }
 

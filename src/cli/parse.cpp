@@ -31,9 +31,14 @@ constexpr const char* kSceneHelp = "a scene file (.toml), or the name of one tha
 
 void add_scene(CLI::App& command, SceneArguments& scene, bool integrator) {
   command.add_option("SCENE", scene.scene, kSceneHelp)->required();
-  command.add_option("--set", scene.overrides, "change one value of the scene: KEY=VALUE, the key dotted, tables counted from 0, the value as in TOML")
-      ->type_name("KEY=VALUE")->allow_extra_args(false);
-  if (integrator) command.add_option("--integrator", scene.integrator, "instead of the scene's: see `palpate list integrators`")->type_name("NAME");
+  command
+      .add_option("--set", scene.overrides,
+                  "change one value of the scene: KEY=VALUE, the key dotted, tables counted from 0, the value as in TOML")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  if (integrator)
+    command.add_option("--integrator", scene.integrator, "instead of the scene's: see `palpate list integrators`")
+        ->type_name("NAME");
 }
 
 void add_run(CLI::App& app, Invocation& invocation) {
@@ -41,9 +46,14 @@ void add_run(CLI::App& app, Invocation& invocation) {
   auto arguments = std::make_shared<RunArguments>();
   add_scene(*command, arguments->scene, true);
   command->add_option("-o,--output", arguments->folder, "folder for the results; default out/SCENE")->type_name("DIR");
-  command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")->type_name("SECONDS")->check(CLI::PositiveNumber);
-  command->add_flag("--picture", arguments->picture, "also a picture of the moment of the largest force, or of the end without a tool (picture.png)");
-  command->add_option("--shade", arguments->shade, "what colours the picture: displacement or stress")->type_name("NAME")->capture_default_str();
+  command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--picture", arguments->picture,
+                    "also a picture of the moment of the largest force, or of the end without a tool (picture.png)");
+  command->add_option("--shade", arguments->shade, "what colours the picture: displacement or stress")
+      ->type_name("NAME")
+      ->capture_default_str();
   command->add_flag("--report", arguments->report, "also a page to look at (report.html)");
   command->footer(R"(Examples:
   palpate run falling-ball
@@ -62,10 +72,17 @@ void add_compare(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("compare", "error against run time of every integrator on a scene");
   auto arguments = std::make_shared<CompareArguments>();
   add_scene(*command, arguments->scene, false);
-  command->add_option("--integrator", arguments->integrators, "only these of the scene's [[compare.ladder]]; may be given more than once")
-      ->type_name("NAME")->allow_extra_args(false);
-  command->add_option("--repeats", arguments->repeats, "runs of each point, for the spread of its time")->check(CLI::Range(1, 1000))->capture_default_str();
-  command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")->type_name("SECONDS")->check(CLI::PositiveNumber);
+  command
+      ->add_option("--integrator", arguments->integrators,
+                   "only these of the scene's [[compare.ladder]]; may be given more than once")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command->add_option("--repeats", arguments->repeats, "runs of each point, for the spread of its time")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
   command->add_option("-o,--output", arguments->folder, "folder for the results; default out/compare-SCENE")->type_name("DIR");
   command->footer(R"(Examples:
   palpate compare cantilever
@@ -111,7 +128,8 @@ void add_inspect(CLI::App& app, Invocation& invocation) {
 void add_list(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("list", "the names that scenes and options know");
   auto arguments = std::make_shared<ListArguments>();
-  command->add_option("WHAT", arguments->what, "integrators, linear-solvers, tool-integrators, devices, cases, parts, scenes; all without it");
+  command->add_option("WHAT", arguments->what,
+                      "integrators, linear-solvers, tool-integrators, devices, cases, parts, scenes; all without it");
   command->footer(R"(Examples:
   palpate list
   palpate list integrators)");
@@ -121,14 +139,24 @@ void add_list(CLI::App& app, Invocation& invocation) {
 void add_bench(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("bench", "how long things take on this machine");
   auto arguments = std::make_shared<BenchArguments>();
-  command->add_option("WHAT", arguments->what, "fem: one implicit step of a soft beam, split into its stages; leave-out: what absent and present parts cost")
+  command
+      ->add_option("WHAT", arguments->what,
+                   "fem: one implicit step of a soft beam, split into its stages; leave-out: what absent and present parts cost")
       ->required();
   command->add_option("SCENE", arguments->scenes, "of leave-out; default falling-ball and cantilever");
-  command->add_option("--cells", arguments->cells, "fem: cells along the beam")->check(CLI::Range(4, 1000))->capture_default_str();
+  command->add_option("--cells", arguments->cells, "fem: cells along the beam")
+      ->check(CLI::Range(4, 1000))
+      ->capture_default_str();
   command->add_option("--step-s", arguments->step_s, "fem: the step [s]")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_option("--steps", arguments->steps, "fem: steps that are timed")->check(CLI::Range(3, 1000000))->capture_default_str();
-  command->add_option("--linear-solver", arguments->linear_solver, "fem: see `palpate list linear-solvers`")->type_name("NAME")->capture_default_str();
-  command->add_option("--repeats", arguments->repeats, "leave-out: runs of each variant")->check(CLI::Range(1, 1000))->capture_default_str();
+  command->add_option("--steps", arguments->steps, "fem: steps that are timed")
+      ->check(CLI::Range(3, 1000000))
+      ->capture_default_str();
+  command->add_option("--linear-solver", arguments->linear_solver, "fem: see `palpate list linear-solvers`")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->add_option("--repeats", arguments->repeats, "leave-out: runs of each variant")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   command->footer(R"(Examples:
   palpate bench fem                              3,700 nodes, 14,580 tetrahedra, steps of 10 ms
   palpate bench fem --cells 16 --step-s 0.001
@@ -195,9 +223,7 @@ Invocation parse(int argc, char** argv) {
   } catch (const CLI::Success& asked) {  // --help, --version
     app.exit(asked);
     return {};
-  } catch (const CLI::ParseError& error) {
-    refuse(app, error, argc, argv);
-  }
+  } catch (const CLI::ParseError& error) { refuse(app, error, argc, argv); }
   return invocation;
 }
 

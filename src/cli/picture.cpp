@@ -47,7 +47,8 @@ void Snapshot::period(loop::World& world, double t) {
 void Snapshot::save(const loop::World& world, const std::string& path) const {
   render::Scene scene;
   for (std::size_t i = 0; i < bodies_.size(); ++i)
-    scene.surfaces.push_back({world.bodies[i].name, bodies_[i].points, world.bodies[i].boundary.surface.faces, bodies_[i].values});
+    scene.surfaces.push_back(
+        {world.bodies[i].name, bodies_[i].points, world.bodies[i].boundary.surface.faces, bodies_[i].values});
   if (world.description.tool) {
     TriMesh tool = loop::tool_surface(*world.description.tool, world.folder);
     for (Eigen::Index i = 0; i < tool.vertices.cols(); ++i) tool.vertices.col(i) = tool_ * Vec3(tool.vertices.col(i));
@@ -56,7 +57,8 @@ void Snapshot::save(const loop::World& world, const std::string& path) const {
     scene.surfaces.push_back(surface);
   }
   for (const ObstacleSpec& obstacle : world.description.obstacles)
-    if (obstacle.type == "plane" && obstacle.normal.normalized().z() > 0.999) scene.ground = render::Ground{obstacle.position_m.z()};
+    if (obstacle.type == "plane" && obstacle.normal.normalized().z() > 0.999)
+      scene.ground = render::Ground{obstacle.position_m.z()};
   scene.scale.label = shade_ == "stress" ? "von Mises stress" : "displacement";
   scene.scale.unit = shade_ == "stress" ? "Pa" : "m";
   scene.title = fmt::format("{}, t = {:g} s", world.description.name, time_);

@@ -20,7 +20,10 @@ class Snapshot : public loop::Observer {
   void save(const loop::World& world, const std::string& path) const;
 
  private:
-  struct BodyNow { Points points; VecX values; };
+  struct BodyNow {
+    Points points;
+    VecX values;
+  };
   std::string shade_;
   std::vector<BodyNow> bodies_;
   Pose tool_, newest_tool_;

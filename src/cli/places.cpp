@@ -31,7 +31,8 @@ std::string find_scene(const std::string& name_or_path) {
     known.push_back(fs::path(scene).stem().string());
     if (known.back() == name_or_path) return scene;
   }
-  if (fs::is_directory(name_or_path)) fail("{}: is a folder; give a scene file (.toml) or the name of a scene: see `palpate list scenes`", name_or_path);
+  if (fs::is_directory(name_or_path))
+    fail("{}: is a folder; give a scene file (.toml) or the name of a scene: see `palpate list scenes`", name_or_path);
   fail("{}: no such file, and no scene that comes with palpate has this name{}", name_or_path, suggestion(name_or_path, known));
 }
 
@@ -48,7 +49,8 @@ void make_folder(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (!fs::is_directory(folder))
-    fail("{}: this output folder cannot be made ({}); choose another with -o DIR", folder, error ? error.message() : "a file has this name");
+    fail("{}: this output folder cannot be made ({}); choose another with -o DIR", folder,
+         error ? error.message() : "a file has this name");
 }
 
 }  // namespace palpate::cli

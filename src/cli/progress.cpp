@@ -43,7 +43,8 @@ void Progress::operator()(double fraction, const std::string& text) {
   last_ = now;
   fraction = std::clamp(fraction, 0.0, 1.0);
   const int filled = static_cast<int>(fraction * kBarWidth);
-  std::string line = fmt::format("[{}{}] {:3.0f} %", std::string(filled, '#'), std::string(kBarWidth - filled, '-'), 100.0 * fraction);
+  std::string line =
+      fmt::format("[{}{}] {:3.0f} %", std::string(filled, '#'), std::string(kBarWidth - filled, '-'), 100.0 * fraction);
   if (fraction > 0.02) line += fmt::format("  {} left", duration_text((now - start_) * (1.0 - fraction) / fraction));
   line += "  " + (text.empty() ? what_ : text);
   line.resize(std::min<std::size_t>(line.size(), static_cast<std::size_t>(terminal_width() - 1)));

@@ -8,7 +8,6 @@
 #include "palpate/core/error.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/summary.h"
-#include "palpate/loop/summary.h"
 #include "palpate/report/run_report.h"
 #include "palpate/store/atomic_file.h"
 #include "picture.h"
@@ -31,20 +30,25 @@ class PeakWrench : public loop::Observer {
 };
 
 void print_outcome(const loop::World& world, const loop::RunResult& result, const PeakWrench& peak, double assemble_s) {
-  fmt::print("{}: {:g} s simulated in {:.2f} s, assembled in {:.2f} s\n", short_name(world.description), result.time, result.wall_s, assemble_s);
+  fmt::print("{}: {:g} s simulated in {:.2f} s, assembled in {:.2f} s\n", short_name(world.description), result.time,
+             result.wall_s, assemble_s);
   if (world.stepper) {
     const dynamics::StepperCounters& c = result.counters;
-    fmt::print("{}: {} steps, {} force and {} tangent evaluations, {} factorisations, {} contact queries\n", world.stepper->name(), c.steps,
-               c.force_evaluations, c.tangent_evaluations, c.solver.factorisations, result.contact_queries);
+    fmt::print("{}: {} steps, {} force and {} tangent evaluations, {} factorisations, {} contact queries\n",
+               world.stepper->name(), c.steps, c.force_evaluations, c.tangent_evaluations, c.solver.factorisations,
+               result.contact_queries);
   }
   if (result.ticks > 0)
-    fmt::print("on the hand: at most {:.4g} N (at {:g} s) and {:.4g} N m (at {:g} s) in {} ticks; {} held at the device's limit\n", peak.force_n, peak.force_s,
-               peak.torque_n_m, peak.torque_s, result.ticks, result.limited_ticks);
+    fmt::print(
+        "on the hand: at most {:.4g} N (at {:g} s) and {:.4g} N m (at {:g} s) in {} ticks; {} held at the device's limit\n",
+        peak.force_n, peak.force_s, peak.torque_n_m, peak.torque_s, result.ticks, result.limited_ticks);
 }
 
 /// A word of the command line, quoted where a shell would split or expand it.
 std::string quoted(const std::string& word) {
-  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+@%") == std::string::npos && !word.empty()) return word;
+  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+@%") == std::string::npos &&
+      !word.empty())
+    return word;
   std::string out = "'";
   for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
@@ -61,7 +65,8 @@ std::string command_of(const RunArguments& a) {
   return a.folder.empty() ? out : out + " -o " + quoted(a.folder);
 }
 
-void keep_summary(const loop::World& world, const loop::RunResult& result, double assemble_s, const RunArguments& arguments, const std::string& folder) {
+void keep_summary(const loop::World& world, const loop::RunResult& result, double assemble_s, const RunArguments& arguments,
+                  const std::string& folder) {
   store::Summary summary = loop::summarise(world, result, assemble_s);
   summary.command = command_of(arguments);
   summary.overrides = arguments.scene.overrides;
@@ -119,8 +124,9 @@ int run(const RunArguments& arguments) {
     print_files(folder);
   }
   if (!result.status.ok())
-    fail("{} gave up at t = {:g} s: {}{}; a smaller tolerance or step often helps (--set integrator.rtol=..., integrator.step_s=...)", description.integrator.name,
-         result.status.t, result.status.message, keep ? " (what was recorded by then is whole)" : "");
+    fail(
+        "{} gave up at t = {:g} s: {}{}; a smaller tolerance or step often helps (--set integrator.rtol=..., integrator.step_s=...)",
+        description.integrator.name, result.status.t, result.status.message, keep ? " (what was recorded by then is whole)" : "");
   if (result.stopped) {
     fmt::print(stderr, "palpate: stopped at t = {:g} s{}\n", result.time, keep ? "; what was recorded by then is whole" : "");
     return kExitStopped;

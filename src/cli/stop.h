@@ -7,7 +7,7 @@ namespace palpate::cli {
 const std::atomic<bool>& stop_flag();
 void catch_stop_signals();
 
-inline constexpr int kExitError = 1;          ///< the input is at fault, the integrator gave up, or a case with a known answer failed
+inline constexpr int kExitError = 1;  ///< the input is at fault, the integrator gave up, or a case with a known answer failed
 inline constexpr int kExitInternalError = 2;  ///< a mistake of ours
 inline constexpr int kExitStopped = 130;      ///< Ctrl-C, as shells report it
 

@@ -44,8 +44,14 @@ std::string order_text(const Measurement& m) {
 }
 
 std::vector<std::string> row(const ValidationCase& one, const Measurement& m) {
-  return {one.name, m.quantity, fmt::format("{:.6g}", m.computed), fmt::format("{:.6g}", m.exact), fmt::format("{:.2e}", m.error),
-          fmt::format("{:.0e}", m.bar), order_text(m), m.passed() ? "pass" : "FAIL"};
+  return {one.name,
+          m.quantity,
+          fmt::format("{:.6g}", m.computed),
+          fmt::format("{:.6g}", m.exact),
+          fmt::format("{:.2e}", m.error),
+          fmt::format("{:.0e}", m.bar),
+          order_text(m),
+          m.passed() ? "pass" : "FAIL"};
 }
 
 /// NaN is no JSON: what does not apply is null.
@@ -54,14 +60,23 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 Json to_json(const ValidationCase& one, const std::vector<Measurement>& measurements, double seconds) {
   Json list = Json::array();
   for (const Measurement& m : measurements)
-    list.push_back({{"quantity", m.quantity}, {"computed", number(m.computed)}, {"exact", number(m.exact)}, {"error", number(m.error)},
-                    {"bar", number(m.bar)}, {"order", number(m.order)}, {"order_low", number(m.order_low)}, {"order_high", number(m.order_high)},
-                    {"note", m.note}, {"passed", m.passed()}});
-  return {{"name", one.name}, {"section", one.section}, {"summary", one.summary}, {"why", one.why}, {"wall_s", seconds}, {"measurements", list}};
+    list.push_back({{"quantity", m.quantity},
+                    {"computed", number(m.computed)},
+                    {"exact", number(m.exact)},
+                    {"error", number(m.error)},
+                    {"bar", number(m.bar)},
+                    {"order", number(m.order)},
+                    {"order_low", number(m.order_low)},
+                    {"order_high", number(m.order_high)},
+                    {"note", m.note},
+                    {"passed", m.passed()}});
+  return {{"name", one.name}, {"section", one.section}, {"summary", one.summary},
+          {"why", one.why},   {"wall_s", seconds},      {"measurements", list}};
 }
 
 bool all_pass(const std::vector<Measurement>& measurements) {
-  return !measurements.empty() && std::all_of(measurements.begin(), measurements.end(), [](const Measurement& m) { return m.passed(); });
+  return !measurements.empty() &&
+         std::all_of(measurements.begin(), measurements.end(), [](const Measurement& m) { return m.passed(); });
 }
 
 struct Run {
@@ -111,9 +126,12 @@ int validate(const ValidateArguments& arguments) {
     }
   }
   using Headers = std::vector<std::string>;
-  fmt::print("{}", report::format_table(arguments.sabotage ? Headers{"case", "sabotage", "outcome"}
-                                                           : Headers{"case", "quantity", "computed", "exact", "error", "bar", "order", "verdict"}, out.rows));
-  fmt::print("{} of {} cases {}{}\n", done - static_cast<std::size_t>(out.failed), done, arguments.sabotage ? "fail when broken on purpose" : "keep their bars",
+  fmt::print("{}", report::format_table(
+                       arguments.sabotage ? Headers{"case", "sabotage", "outcome"}
+                                          : Headers{"case", "quantity", "computed", "exact", "error", "bar", "order", "verdict"},
+                       out.rows));
+  fmt::print("{} of {} cases {}{}\n", done - static_cast<std::size_t>(out.failed), done,
+             arguments.sabotage ? "fail when broken on purpose" : "keep their bars",
              done < cases.size() ? fmt::format("; stopped before the other {}", cases.size() - done) : "");
   if (!arguments.folder.empty() && !arguments.sabotage) write_results(out, arguments.folder);
   return out.failed > 0 ? kExitError : 0;
