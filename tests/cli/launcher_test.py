@@ -21,7 +21,6 @@ FAKES = {
     "ninja": 'echo "ninja $*" >>"$CALLS"; [ ! -e "$FAKE/build-fails" ] || { echo "[1/2] Building"; echo "a.cpp:1: error: no"; exit 1; }; '
              'echo "[1/1 1s] Linking"; printf \'#!/bin/sh\\nfor a; do echo "[$a]"; done\\nexit 7\\n\' >"$2/bin/palpate"; chmod +x "$2/bin/palpate"',
     "ctest": 'echo "ctest $*" >>"$CALLS"',
-    "id": 'echo 1000',
 }
 
 
@@ -45,11 +44,14 @@ class Launcher(unittest.TestCase):
         path.write_text("#!/bin/sh\n" + script + "\n")
         path.chmod(path.stat().st_mode | stat.S_IXUSR)
 
-    def launch(self, *arguments, path=None):
+    def launch(self, *arguments, path=None, as_root=True):
         self.calls_file.write_text("")
         environment = dict(os.environ, PATH=path or f"{self.fake}:/usr/bin:/bin", CALLS=str(self.calls_file), FAKE=str(self.fake))
+        nobody = {} if as_root or os.geteuid() != 0 else {"user": 65534}
+        if nobody:
+            subprocess.run(["chmod", "-R", "a+rwX", str(self.folder)], check=True)
         done = subprocess.run([str(self.tree / "palpate"), *arguments], capture_output=True, text=True, env=environment, stdin=subprocess.DEVNULL,
-                              cwd=self.folder, timeout=60)
+                              cwd=self.folder, timeout=60, **nobody)
         self.calls = self.calls_file.read_text().splitlines()
         return done
 
@@ -100,6 +102,24 @@ class Launcher(unittest.TestCase):
         (self.tree / "build/packages.stamp").unlink()
         self.launch("list")
         self.assertEqual(len([call for call in self.called("apt-get") if "update" in call]), 1, self.calls)
+
+    def test_other_users_go_through_sudo_and_are_told(self):
+        (self.fake / "missing").write_text("libccd-dev\n")
+        done = self.launch("list", as_root=False)
+        self.assertEqual(done.returncode, 7, done.stderr)
+        self.assertIn("sudo apt-get install --yes --no-install-recommends libccd-dev\n", done.stderr)
+        self.assertTrue(all(call.startswith("sudo -n env DEBIAN_FRONTEND=noninteractive apt-get ") for call in self.called("sudo")), self.calls)
+        self.assertEqual(len(self.called("sudo")), len(self.called("apt-get")))
+
+    def test_without_sudo_the_command_for_root_is_given(self):
+        (self.fake / "missing").write_text("libccd-dev\n")
+        (self.fake / "sudo").unlink()
+        if shutil.which("sudo", path="/usr/bin:/bin"):
+            self.skipTest("this system has sudo beside the fake one")
+        done = self.launch("list", as_root=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("as root, run:\n  apt-get update && apt-get install --yes --no-install-recommends libccd-dev\n", done.stderr)
+        self.assertFalse(self.called("apt-get"))
 
     def test_failing_installation_shows_why(self):
         (self.fake / "missing").write_text("libccd-dev\n")
