@@ -53,7 +53,8 @@ void Snapshot::save(const loop::World& world, const std::string& path) const {
     TriMesh tool = loop::tool_surface(*world.description.tool, world.folder);
     for (Eigen::Index i = 0; i < tool.vertices.cols(); ++i) tool.vertices.col(i) = tool_ * Vec3(tool.vertices.col(i));
     render::Surface surface{"tool", tool.vertices, tool.faces};
-    surface.opacity = 0.55;  // the dent lies under it
+    surface.colour = {0.80f, 0.42f, 0.20f};
+    surface.opacity = 0.45;  // the dent lies under it
     scene.surfaces.push_back(surface);
   }
   for (const ObstacleSpec& obstacle : world.description.obstacles)

@@ -15,6 +15,9 @@ struct Quantity {
   double reference;
 };
 
+/// Errors that are nowhere larger than this are rounding, and get no plot: a scene without torque has no error of it.
+constexpr double kRounding = 1e-15;
+
 std::vector<Quantity> quantities_of(const Table& table, const ReferenceError& reference) {
   const std::vector<Quantity> all = {{"position_error_rel_l2", "position error, relative L2 [-]", reference.position_error_rel_l2},
                                      {"force_error_rms_n", "force error, RMS [N]", reference.force_error_rms_n},
@@ -23,7 +26,7 @@ std::vector<Quantity> quantities_of(const Table& table, const ReferenceError& re
   for (const Quantity& q : all) {
     if (!table.has(q.column)) continue;
     const std::vector<double> values = table.numbers(q.column);
-    if (std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v) && v > 0.0; })) present.push_back(q);
+    if (std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v) && v > kRounding; })) present.push_back(q);
   }
   return present;
 }
@@ -124,6 +127,9 @@ void add_comparison(Page& page, const Table& compare, const ReferenceError& refe
     add_plot(page, work_precision_plot(compare, q.column, q.label, q.reference),
              capitalised(q.label) + " against CPU time; down and to the left is better. Each point carries its relative tolerance or its step; rings lie below the reference's own error" +
                  (std::isfinite(q.reference) ? fmt::format(" of {}.", short_number(q.reference)) : "."));
+  if (const std::vector<double> torque = compare.has("torque_error_max_n_m") ? compare.numbers("torque_error_max_n_m") : std::vector<double>{};
+      !torque.empty() && *std::max_element(torque.begin(), torque.end()) <= kRounding)
+    page.add_paragraph("No torque: its largest error is rounding, for this scene makes none.");
   if (quantities.empty()) page.add_paragraph("No point of the comparison has a measured error.");
   add_cheapest_table(page, compare);
   if (!quantities.empty()) add_orders_table(page, compare, quantities);
