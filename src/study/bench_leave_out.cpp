@@ -90,6 +90,31 @@ scene::Description with_tool_out_of_reach(scene::Description d) {
   return d;
 }
 
+[[maybe_unused]] scene::Description with_image_contact_out_of_reach(const scene::Description& d) {
+  scene::Description out = with_tool_out_of_reach(d);
+  ContactSpec contact;
+  contact.first = d.bodies.front().name;
+  contact.second = "tool";
+  contact.method = "gpu";
+  out.contacts.push_back(contact);
+  return out;
+}
+
+scene::Description with_plane_out_of_reach(scene::Description d) {
+  const double period = loop::period_of(d);
+  ObstacleSpec plane;
+  plane.name = "far below";
+  plane.type = "plane";
+  plane.position_m = Vec3(0, 0, -100);
+  d.obstacles.push_back(plane);
+  ContactSpec contact;
+  contact.first = d.bodies.front().name;
+  contact.second = plane.name;
+  d.contacts.push_back(contact);
+  d.coupling.contact_refresh_s = period;
+  return d;
+}
+
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
@@ -109,8 +134,12 @@ std::vector<Variant> variants_of(const scene::Description& d) {
   out.push_back({"bare loop over the same parts", [quiet] { return bare_loop(quiet); }});
   out.push_back({"palpate, as the scene names it", [quiet] { return palpate_loop(quiet, false); }});
   out.push_back({"... and recording", [recorded] { return palpate_loop(recorded, true); }});
+  out.push_back({"... and a plane out of reach", [quiet] { return palpate_loop(with_plane_out_of_reach(quiet), false); }});
 #ifdef PALPATE_HAS_TOOL
   out.push_back({"... and a tool out of reach", [quiet] { return palpate_loop(with_tool_out_of_reach(quiet), false); }});
+#ifdef PALPATE_HAS_GL
+  out.push_back({"... with contact in image space", [quiet] { return palpate_loop(with_image_contact_out_of_reach(quiet), false); }});
+#endif
 #endif
   return out;
 }

@@ -31,7 +31,7 @@ struct LeaveOutRow {
 };
 
 /// The price of what a scene leaves out and of what it could add: the bare loop over the scene's own parts, palpate's loop,
-/// and that with recording, with a tool out of reach, and with an open GL context, where built in.
+/// and that with recording, with a plane, with a tool, and with a tool whose contact is found in image space, each out of reach, where built in.
 std::vector<LeaveOutRow> bench_leave_out(const scene::Description& description, int repeats);
 
 }  // namespace palpate::study
