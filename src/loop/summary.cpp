@@ -2,6 +2,10 @@
 
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
+#include "palpate/integrate/integrators.h"
+#ifdef PALPATE_HAS_TOOL
+#include "palpate/tool/tool.h"
+#endif
 #include "palpate/scene/needs.h"
 
 namespace palpate::loop {
@@ -71,6 +75,16 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
   s.values.emplace_back("max_torque_n_m", d.device->max_torque_n_m);
 }
 
+/// What store knows, and the libraries that only the parts know.
+store::Provenance full_provenance() {
+  store::Provenance p = store::provenance();
+  for (const auto& library : integrate::library_versions()) p.libraries.push_back(library);
+#ifdef PALPATE_HAS_TOOL
+  p.libraries.emplace_back("Simbody", tool::simbody_version());
+#endif
+  return p;
+}
+
 }  // namespace
 
 store::Summary summarise(const World& world, const RunResult& result, double assemble_s) {
@@ -79,7 +93,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   summary.scene_source = world.description.source;
   summary.outcome = !result.status.ok() ? "failed" : result.stopped ? "interrupted" : "finished";
   summary.message = result.status.message;
-  summary.provenance = store::provenance();
+  summary.provenance = full_provenance();
   add_options(summary.section("options"), world.description);
   add_sizes(summary.section("sizes"), world);
   add_counts(summary.section("counts"), result);

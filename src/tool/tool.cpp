@@ -94,4 +94,6 @@ double Tool::kinetic_energy() const {
   return 0.5 * u.dot(mass_matrix() * u);
 }
 
+std::string simbody_version() { return PALPATE_SIMBODY_VERSION; }
+
 }  // namespace palpate::tool

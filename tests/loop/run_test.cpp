@@ -4,6 +4,7 @@
 
 #include "loop/small_scenes.h"
 #include "palpate/core/error.h"
+#include "palpate/loop/summary.h"
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
 #endif
@@ -65,6 +66,23 @@ TEST(Run, AnIntegratorThatGivesUpEndsTheRunAsData) {
   EXPECT_FALSE(result.status.ok());
   EXPECT_NE(result.status.message.find("cvode-bdf"), std::string::npos) << result.status.message;
   EXPECT_EQ(log.periods.size(), 1u) << "only the start";
+}
+
+TEST(Summary, NamesTheLibrariesThatMadeTheResult) {
+  const auto world = loop::assemble(held_block());
+  const loop::RunResult result = loop::run(*world, {});
+  const store::Summary summary = loop::summarise(*world, result, 0.0);
+  EXPECT_EQ(summary.outcome, "finished");
+  const auto version = [&](const std::string& name) {
+    for (const auto& [library, text] : summary.provenance.libraries)
+      if (library == name) return text;
+    return std::string();
+  };
+  EXPECT_TRUE(version("SUNDIALS").starts_with("6.")) << version("SUNDIALS");
+  EXPECT_FALSE(version("CHOLMOD").empty());
+#ifdef PALPATE_HAS_TOOL
+  EXPECT_TRUE(version("Simbody").starts_with("3.")) << version("Simbody");
+#endif
 }
 
 #ifdef PALPATE_HAS_TOOL

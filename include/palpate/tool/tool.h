@@ -50,4 +50,7 @@ class Tool {
 struct ToolIntegratorInfo { std::string name, summary; int order; };
 const std::vector<ToolIntegratorInfo>& tool_integrators();
 
+/// Version of the Simbody that this was built with.
+std::string simbody_version();
+
 }  // namespace palpate::tool
