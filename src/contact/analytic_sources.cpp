@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "contact/surface_state.h"
@@ -18,10 +19,11 @@ struct Nearest {
 template <class Shape>
 class AnalyticSource final : public SampleSource {
  public:
-  AnalyticSource(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, Shape shape, double candidate_gap)
-      : surface_(std::move(surface)), frame_(frame), motion_(std::move(motion)), shape_(shape), candidate_gap_(candidate_gap) {
+  AnalyticSource(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, Shape shape, double candidate_gap, double look_ahead)
+      : surface_(std::move(surface)), frame_(frame), motion_(std::move(motion)), shape_(shape), candidate_gap_(candidate_gap), look_ahead_(look_ahead) {
     PALPATE_CHECK(motion_, "a {} source needs a frame", Shape::kName);
     PALPATE_CHECK(candidate_gap >= 0.0, "candidate gap {} must not be negative", candidate_gap);
+    PALPATE_CHECK(look_ahead >= 0.0, "look-ahead {} must not be negative", look_ahead);
     counters::count(std::string("contact.") + Shape::kName + "_source");
   }
 
@@ -33,7 +35,7 @@ class AnalyticSource final : public SampleSource {
     if (candidate_gap_ == 0.0) candidate_gap_ = surface_.mean_edge();
     const Pose pose = motion_->pose(state), inverse = pose.inverse();
     shape_.place(pose);
-    if (!find_candidates()) return;
+    if (!find_candidates(state, pose)) return;
     surface_.area_vectors(wanted_, areas_);
     for (int v = 0; v < surface_.vertex_count(); ++v) {
       if (!wanted_[static_cast<std::size_t>(v)]) continue;
@@ -52,11 +54,16 @@ class AnalyticSource final : public SampleSource {
   }
 
  private:
-  bool find_candidates() {
+  /// Near, or near at the next query: gap + look_ahead gap' < candidate_gap, with the frame's own motion in gap'.
+  bool find_candidates(const dynamics::StateView& state, const Pose& pose) {
     bool any = false;
+    const Twist twist = motion_->twist(state);
     wanted_.assign(static_cast<std::size_t>(surface_.vertex_count()), 0);
     for (int v = 0; v < surface_.vertex_count(); ++v) {
-      if (shape_.at(surface_.positions().col(v)).gap < candidate_gap_) {
+      const Vec3 x = surface_.positions().col(v);
+      const Nearest nearest = shape_.at(x);
+      const double rate = nearest.normal.dot(state.velocity(surface_.node(v)) - twist.at(x - nearest.gap * nearest.normal - pose.translation));
+      if (nearest.gap + look_ahead_ * std::min(rate, 0.0) < candidate_gap_) {
         wanted_[static_cast<std::size_t>(v)] = 1;
         any = true;
       }
@@ -68,7 +75,7 @@ class AnalyticSource final : public SampleSource {
   int frame_;
   std::shared_ptr<MovingFrame> motion_;
   Shape shape_;
-  double candidate_gap_;
+  double candidate_gap_, look_ahead_;
   std::vector<char> wanted_;
   Points areas_;
 };
@@ -109,15 +116,17 @@ class Sphere {
 }  // namespace
 
 std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& point,
-                                                const Vec3& normal, double candidate_gap) {
+                                                const Vec3& normal, double candidate_gap, double look_ahead) {
   if (!(normal.norm() > 0.0) || !normal.allFinite()) fail("plane: normal = ({}, {}, {}) has no direction", normal.x(), normal.y(), normal.z());
-  return std::make_unique<AnalyticSource<Plane>>(std::move(surface), frame, std::move(motion), Plane(point, normal), candidate_gap);
+  return std::make_unique<AnalyticSource<Plane>>(std::move(surface), frame, std::move(motion), Plane(point, normal), candidate_gap,
+                                                 look_ahead);
 }
 
 std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& centre,
-                                                 double radius, double candidate_gap) {
+                                                 double radius, double candidate_gap, double look_ahead) {
   if (!(radius > 0.0) || !std::isfinite(radius)) fail("sphere: radius = {} must be positive", radius);
-  return std::make_unique<AnalyticSource<Sphere>>(std::move(surface), frame, std::move(motion), Sphere(centre, radius), candidate_gap);
+  return std::make_unique<AnalyticSource<Sphere>>(std::move(surface), frame, std::move(motion), Sphere(centre, radius), candidate_gap,
+                                                  look_ahead);
 }
 
 }  // namespace palpate::contact

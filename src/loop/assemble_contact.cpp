@@ -51,7 +51,7 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
   if (pair.spec.method == "gpu") return gpu_source(std::move(pair), tool_surface(tool, world.folder), world.tool_frame_index, world.tool_frame);
   if (tool.shape != "sphere") fail("contact {} - tool: method \"analytic\" needs shape = \"sphere\", the tool's is \"{}\"; use method = \"gpu\"", pair.spec.first, tool.shape);
   return contact::make_sphere_source(std::move(pair.surface), world.tool_frame_index, world.tool_frame, Vec3::Zero(), tool.radius_m, pair.candidate_gap,
-                                     0.0);
+                                     world.description.coupling.contact_refresh_s);
 }
 
 std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair, const ObstacleSpec& obstacle) {
@@ -60,12 +60,12 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair, 
   if (obstacle.type == "plane") {
     if (pair.spec.method == "gpu") fail("contact {} - {}: a plane has exact gaps and needs no image; use method = \"analytic\"", pair.spec.first, obstacle.name);
     return contact::make_plane_source(std::move(pair.surface), frame, motion, obstacle.position_m, obstacle.normal, pair.candidate_gap,
-                                      0.0);
+                                      world.description.coupling.contact_refresh_s);
   }
   if (obstacle.type != "sphere") fail("obstacle \"{}\": unknown type \"{}\"{}", obstacle.name, obstacle.type, suggestion(obstacle.type, {"plane", "sphere"}));
   if (pair.spec.method == "analytic")
     return contact::make_sphere_source(std::move(pair.surface), frame, motion, obstacle.position_m, obstacle.radius_m, pair.candidate_gap,
-                                       0.0);
+                                       world.description.coupling.contact_refresh_s);
   ToolSpec ball;
   ball.radius_m = obstacle.radius_m;
   TriMesh surface = tool_surface(ball, world.folder);

@@ -10,8 +10,12 @@ namespace palpate::contact {
 /// outward normal at the closest point, area = the vertex's area vector projected on that normal (one third of each adjacent triangle, deformed).
 /// Vertices turned away from the shape (where pressure would pull) make no sample.
 /// @param candidate_gap  vertices nearer than this are kept as candidates [m]; 0: the surface's mean edge at the first query
-std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& point, const Vec3& normal, double candidate_gap);
-std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& centre, double radius, double candidate_gap);
+/// @param look_ahead     [s] to the next query: vertices that come nearer than candidate_gap in this time, at their present speed, are kept as well.
+///                       Without it a fast body passes through unseen and is thrown back with energy from nowhere.
+std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& point, const Vec3& normal, double candidate_gap,
+                                                double look_ahead = 0.0);
+std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& centre, double radius, double candidate_gap,
+                                                 double look_ahead = 0.0);
 
 struct GpuOptions {
   int pixels = 256;             ///< longer edge of the image
