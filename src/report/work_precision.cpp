@@ -15,10 +15,16 @@ struct Point {
   bool below_reference = false, ok = true;
 };
 
+/// Each error has its own reference: a position below it says nothing about the force.
+std::string below_column(const Table& compare, const std::string& error_column) {
+  const std::string own = error_column.substr(0, error_column.find('_')) + "_below_reference";
+  return compare.has(own) ? own : "below_reference";
+}
+
 std::vector<Point> points_of(const Table& compare, const std::string& error_column) {
   const std::vector<double> setting = compare.numbers("setting"), error = compare.numbers(error_column), cpu = compare.numbers("cpu_s_median");
   const std::size_t integrator = compare.column("integrator"), name = compare.column("setting_name"), status = compare.column("status"),
-                    below = compare.column("below_reference");
+                    below = compare.column(below_column(compare, error_column));
   std::vector<Point> points;
   for (std::size_t i = 0; i < compare.rows.size(); ++i) {
     const auto& row = compare.rows[i];
@@ -63,7 +69,8 @@ const std::vector<std::string>& compare_columns() {
   static const std::vector<std::string> columns = {
       "scene", "integrator", "setting_name", "setting", "position_error_rel_l2", "position_error_max_m", "force_error_rms_n", "force_error_max_n",
       "torque_error_rms_n_m", "torque_error_max_n_m", "energy_error_j", "cpu_s_median", "cpu_s_min", "cpu_s_max", "force_evaluations",
-      "tangent_evaluations", "factorisations", "linear_solves", "contact_queries", "steps", "status", "below_reference"};
+      "tangent_evaluations", "factorisations", "linear_solves", "contact_queries", "steps", "status", "below_reference",
+      "force_below_reference", "torque_below_reference"};
   return columns;
 }
 

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "palpate/core/error.h"
+#include "palpate/core/log.h"
 
 namespace palpate::study {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 scene::Description with_setting(scene::Description d, const std::string& integrator, const std::string& setting, double value) {
   d.integrator.name = integrator;
@@ -69,9 +67,11 @@ void run_point(const scene::Description& d, ComparePoint& point, const Trajector
   point.cpu_s.push_back(run.result.cpu_s);
   if (point.cpu_s.size() > 1) return;
   point.result = run.result;
-  point.error = distance(run.trajectory, truth);
-  if (!run.result.status.ok()) point.error.position_rel_l2 = kNaN;
-  point.below_reference = point.error.position_rel_l2 <= reference.own_error.position_rel_l2;
+  point.error = run.result.status.ok() ? distance(run.trajectory, truth) : no_distance();
+  const TrajectoryError& own = reference.own_error;  // NaN is never below
+  point.below_reference = point.error.position_rel_l2 <= own.position_rel_l2;
+  point.force_below_reference = point.error.force_rms_n <= own.force_rms_n;
+  point.torque_below_reference = point.error.torque_rms_n_m <= own.torque_rms_n_m;
 }
 
 void summarise_times(ComparePoint& point) {
@@ -92,13 +92,17 @@ scene::Description with_exchange_period(scene::Description d, double period) {
 void compare_exchange(const scene::Description& d, Comparison& out, Progress& progress, const CompareOptions& options) {
   if (d.compare.exchange_periods_s.empty() || !d.tool) return;
   const Run truth = run_once(with_exchange_period(d, d.tool->tick_s), d.compare.duration_s, options.stop);
+  if (truth.result.stopped) return;
+  const bool comparable = truth.result.status.ok();
+  if (!comparable) log::warn("the exchange period has no truth to be held against: the run with a period of one tick failed: {}", truth.result.status.message);
   progress.done("exchange period of one tick");
   for (double period : d.compare.exchange_periods_s) {
     if (progress.stopped()) return;
     const Run run = run_once(with_exchange_period(d, period), d.compare.duration_s, options.stop);
     progress.done(fmt::format("exchange period {:g} s", period));
-    if (!run.result.status.ok() || run.result.stopped) continue;
-    out.exchange.push_back({period, distance(run.trajectory, truth.trajectory), run.result.cpu_s});
+    if (run.result.stopped) return;
+    const bool ok = comparable && run.result.status.ok();
+    out.exchange.push_back({period, ok ? distance(run.trajectory, truth.trajectory) : no_distance(), run.result.cpu_s});
   }
 }
 

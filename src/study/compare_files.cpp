@@ -16,7 +16,8 @@ using store::CsvCell;
 const std::vector<std::string> kPointColumns = {
     "scene", "integrator", "setting_name", "setting", "position_error_rel_l2", "position_error_max_m", "force_error_rms_n", "force_error_max_n",
     "torque_error_rms_n_m", "torque_error_max_n_m", "energy_error_j", "cpu_s_median", "cpu_s_min", "cpu_s_max", "force_evaluations",
-    "tangent_evaluations", "factorisations", "linear_solves", "contact_queries", "steps", "status", "below_reference"};
+    "tangent_evaluations", "factorisations", "linear_solves", "contact_queries", "steps", "status", "below_reference",
+    "force_below_reference", "torque_below_reference"};
 
 const std::vector<std::string> kExchangeColumns = {"exchange_period_s", "position_error_rel_l2", "force_error_rms_n", "torque_error_rms_n_m", "cpu_s"};
 
@@ -26,13 +27,14 @@ const std::vector<std::string> kMethodColumns = {"method",          "position_di
 
 std::vector<CsvCell> row_of(const std::string& scene, const ComparePoint& p) {
   const auto count = [](long n) { return CsvCell(static_cast<double>(n)); };
+  const auto yes_no = [](bool yes) { return std::string(yes ? "yes" : "no"); };
   const TrajectoryError& e = p.error;
   const dynamics::StepperCounters& c = p.result.counters;
   const std::string status = p.result.status.ok() ? "ok" : fmt::format("{}: {}", dynamics::to_string(p.result.status.status), p.result.status.message);
   return {scene, p.integrator, p.setting_name, p.setting, e.position_rel_l2, e.position_max_m, e.force_rms_n, e.force_max_n, e.torque_rms_n_m,
           e.torque_max_n_m, e.energy_j, p.cpu_median_s, p.cpu_min_s, p.cpu_max_s, count(c.force_evaluations), count(c.tangent_evaluations),
           count(c.solver.factorisations), count(c.solver.solves), count(p.result.contact_queries), count(c.steps), status,
-          std::string(p.below_reference ? "yes" : "no")};
+          yes_no(p.below_reference), yes_no(p.force_below_reference), yes_no(p.torque_below_reference)};
 }
 
 }  // namespace

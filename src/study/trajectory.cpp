@@ -1,6 +1,7 @@
 #include "palpate/study/trajectory.h"
 
 #include <cmath>
+#include <limits>
 
 #include "palpate/core/error.h"
 
@@ -11,6 +12,9 @@ VecX nodal_positions(const loop::World& world) { return world.state.q().head(wor
 
 /// Times are multiples of the two runs' periods; equal to well within the shorter one's rounding.
 bool same_time(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(1.0, std::abs(a)); }
+
+/// The larger one; NaN stays, where std::max would drop it.
+double worse(double a, double b) { return b > a || std::isnan(b) ? b : a; }
 
 /// Calls visit(i, j) for every pair of equal times of two ascending lists; returns how many there were.
 template <class Visit>
@@ -61,10 +65,9 @@ TrajectoryError distance(const Trajectory& computed, const Trajectory& reference
     if (x.size() > 0) {
       difference += reference.node_weights.dot((x - y).cwiseAbs2());
       size += reference.node_weights.dot((y - reference.start).cwiseAbs2());
-      const double worst = Eigen::Map<const Points>(VecX(x - y).data(), 3, x.size() / 3).colwise().norm().maxCoeff();
-      error.position_max_m = std::max(error.position_max_m, worst);
+      for (Eigen::Index n = 0; n < x.size(); n += 3) error.position_max_m = worse(error.position_max_m, (x.segment<3>(n) - y.segment<3>(n)).norm());
     }
-    error.energy_j = std::max(error.energy_j, std::abs(computed.energies[i] - reference.energies[j]));
+    error.energy_j = worse(error.energy_j, std::abs(computed.energies[i] - reference.energies[j]));
   });
   PALPATE_CHECK(common > 0, "two trajectories without a common time");
   error.position_rel_l2 = size > 0.0 ? std::sqrt(difference / size) : std::sqrt(difference);
@@ -74,14 +77,19 @@ TrajectoryError distance(const Trajectory& computed, const Trajectory& reference
     const double torque = (computed.device[i].moment - reference.device[j].moment).norm();
     force2 += force * force;
     torque2 += torque * torque;
-    error.force_max_n = std::max(error.force_max_n, force);
-    error.torque_max_n_m = std::max(error.torque_max_n_m, torque);
+    error.force_max_n = worse(error.force_max_n, force);
+    error.torque_max_n_m = worse(error.torque_max_n_m, torque);
   });
   if (ticks > 0) {
     error.force_rms_n = std::sqrt(force2 / ticks);
     error.torque_rms_n_m = std::sqrt(torque2 / ticks);
   }
   return error;
+}
+
+TrajectoryError no_distance() {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  return {none, none, none, none, none, none, none};
 }
 
 Run run_once(const scene::Description& description, double duration_s, const std::atomic<bool>* stop) {

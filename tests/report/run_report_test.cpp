@@ -47,7 +47,7 @@ fs::path full_dir() {
   for (const char* line : {"1e-3,1e-3,1", "1e-4,1e-4,2", "1e-5,1e-5,4"}) {
     const std::string s = line;
     const auto a = s.find(','), b = s.rfind(',');
-    compare += "press,cvode_<bdf>,rtol," + s.substr(0, a) + "," + s.substr(a + 1, b - a - 1) + ",,,,,,," + s.substr(b + 1) + ",1,4,10,2,3,10,5,9,ok,false\n";
+    compare += "press,cvode_<bdf>,rtol," + s.substr(0, a) + "," + s.substr(a + 1, b - a - 1) + ",,,,,,," + s.substr(b + 1) + ",1,4,10,2,3,10,5,9,ok,false,false,false\n";
   }
   put(dir / "compare.csv", compare);
   put(dir / "reference.json", R"({"position_error_rel_l2": 1e-6, "force_error_rms_n": null, "torque_error_rms_n_m": null, "description": "cvode-bdf at 1e-9"})");

@@ -36,6 +36,18 @@ report::Table compare_table() {
 
 }  // namespace
 
+// Positions below their reference say nothing about the force, and the other way round.
+TEST(WorkPrecision, AForceIsHeldAgainstItsOwnReference) {
+  report::Table table = compare_table();
+  for (auto& row : table.rows) {
+    row[table.column("force_error_rms_n")] = row[table.column("position_error_rel_l2")];
+    row[table.column("force_below_reference")] = row[table.column("setting")] == "0.0125" ? "yes" : "no";
+  }
+  const auto orders = report::fitted_orders(table, "force_error_rms_n");
+  EXPECT_EQ(orders[0].points, 3);  // of fast: 0.1, 0.05, 0.025
+  EXPECT_EQ(orders[1].points, 4);  // of good: those and 0.001, whose position alone is below
+}
+
 TEST(FittedOrders, AreTheSlopesOfPowerLaws) {
   const auto orders = report::fitted_orders(compare_table(), "position_error_rel_l2");
   ASSERT_EQ(orders.size(), 2u);

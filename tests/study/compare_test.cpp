@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "loop/small_scenes.h"
@@ -88,6 +89,38 @@ TEST(Compare, ARunThatFailsIsARowWithItsReason) {
   EXPECT_FALSE(std::filesystem::exists(folder / "exchange.csv")) << "no tool, no exchange";
   std::filesystem::remove_all(folder);
 }
+
+// A run that gives up after a hundredth of the time is close to the truth for that long: no error is told for it.
+TEST(Compare, ARunThatFailsHasNoErrorThatCouldCountAsGood) {
+  scene::Description d = swinging_block();
+  d.integrator.max_steps = 2000;  // in each period of 10 ms: enough for the references, not for the step below
+  d.compare.ladders = {{"linearly-implicit-euler", "step_s", {1e-6}}};
+  study::CompareOptions options;
+  options.repeats = 1;
+  const study::Comparison c = study::compare(d, options);
+  ASSERT_FALSE(c.points[0].result.status.ok());
+  const study::TrajectoryError& e = c.points[0].error;
+  for (const double value : {e.position_rel_l2, e.position_max_m, e.force_rms_n, e.torque_rms_n_m, e.energy_j}) EXPECT_TRUE(std::isnan(value));
+  EXPECT_FALSE(c.points[0].below_reference || c.points[0].force_below_reference || c.points[0].torque_below_reference);
+}
+
+#ifdef PALPATE_HAS_TOOL
+// Its truth (rtol 1e-5 at the smallest period) has not enough steps, the rest has: the point stays, as one without an error.
+TEST(Compare, AnExchangePeriodWithoutATruthHasNoError) {
+  scene::Description d = small_scenes::pressed_block(0.001);
+  d.duration_s = d.compare.duration_s = 0.02;
+  d.integrator.max_steps = 12;
+  d.compare.reference_rtol = d.compare.reference_check_rtol = 0.1;
+  d.compare.reference_check = "cvode-bdf";
+  d.compare.ladders = {{"linearly-implicit-euler", "step_s", {1e-3}}};
+  d.compare.exchange_periods_s = {0.01};
+  study::CompareOptions options;
+  options.repeats = 1;
+  const study::Comparison c = study::compare(d, options);
+  ASSERT_EQ(c.exchange.size(), 1u);
+  EXPECT_TRUE(std::isnan(c.exchange[0].error.force_rms_n) && std::isnan(c.exchange[0].error.position_rel_l2));
+}
+#endif
 
 TEST(BenchFem, StagesAddUpToTheStep) {
   const study::FemBench b = study::bench_fem(8, 0.01, 4, "cholmod");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "palpate/core/error.h"
 
 using namespace palpate;
@@ -46,6 +48,15 @@ TEST(Distance, IsMassWeightedRelativeToTheDisplacementAtTheCommonTimes) {
   EXPECT_NEAR(e.force_max_n, 0.5, 1e-15);
   EXPECT_NEAR(e.torque_rms_n_m, 0.1, 1e-15);
   EXPECT_NEAR(e.energy_j, 0.1, 1e-15);
+}
+
+// std::max(0, NaN) is 0: a run of NaN must not look exact.
+TEST(Distance, OfNaNIsNaN) {
+  Trajectory broken = line({1, 2, 3});
+  broken.positions[1][4] = broken.energies[1] = broken.device[1].force[0] = broken.device[1].moment[0] = std::nan("");
+  const TrajectoryError e = distance(broken, line({1, 2, 3}));
+  for (const double value : {e.position_rel_l2, e.position_max_m, e.force_rms_n, e.force_max_n, e.torque_rms_n_m, e.torque_max_n_m, e.energy_j})
+    EXPECT_TRUE(std::isnan(value));
 }
 
 TEST(Distance, RefusesTrajectoriesWithoutACommonTime) { EXPECT_THROW(distance(line({1}), line({2})), InternalError); }

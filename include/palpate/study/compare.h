@@ -12,11 +12,12 @@ struct ComparePoint {
   std::string integrator;
   std::string setting_name;        ///< "rtol" or "step_s"
   double setting = 0.0;
-  TrajectoryError error;
+  TrajectoryError error;           ///< NaN throughout when the run failed
   std::vector<double> cpu_s;       ///< of each repeat
   double cpu_median_s = 0.0, cpu_min_s = 0.0, cpu_max_s = 0.0;
   loop::RunResult result;          ///< of the first repeat
   bool below_reference = false;    ///< its position error is not above the reference's own: not to be trusted
+  bool force_below_reference = false, torque_below_reference = false;  ///< the same of the RMS on the hand
 };
 
 /// The truth that the points are held against, and how far it can be trusted.
@@ -28,7 +29,7 @@ struct Reference {
 
 struct ExchangePoint {
   double exchange_period_s = 0.0;
-  TrajectoryError error;
+  TrajectoryError error;           ///< NaN throughout when the run, or the one it is held against, failed
   double cpu_s = 0.0;
 };
 

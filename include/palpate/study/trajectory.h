@@ -36,6 +36,8 @@ struct TrajectoryError {
   double energy_j = 0.0;          ///< largest difference of mechanical energy
 };
 TrajectoryError distance(const Trajectory& computed, const Trajectory& reference);
+/// That of a run that did not reach its end, where the common times would show only its good part: NaN throughout.
+TrajectoryError no_distance();
 
 /// Assembles and runs one description; times the loop without assembly.
 struct Run {
