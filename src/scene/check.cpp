@@ -86,6 +86,10 @@ bool is_multiple(double whole, double part) {
 }
 
 void check_period(const Document& doc, const std::string& key, const std::string& where, double period, double tick) {
+  const double most = 1e6;
+  if (period / tick > most)
+    refuse(place(doc, "tool.tick_s"), where, fmt::format("tick_s = {} of the tool makes {:.3g} ticks of one exchange period of {} s, at most {:g} are possible; a haptic device asks for 0.001",
+                                                         tick, period / tick, period, most));
   if (is_multiple(period, tick)) return;
   const double below = std::floor(period / tick), n = std::max(1.0, below);
   refuse(place(doc, key), where, fmt::format("{} = {} must be a whole number of the tool's ticks of {} s; use {:.9g} or {:.9g}",

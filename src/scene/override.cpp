@@ -22,11 +22,12 @@ std::vector<std::string> split(const std::string& path) {
   return parts;
 }
 
+/// A name or a path: nothing in it has a meaning to TOML outside quotes.
 bool is_bare_word(const std::string& text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) || std::string_view("_-./~").find(static_cast<char>(c)) != std::string_view::npos; });
 }
 
-/// The value after `=`.  A bare word is a string, because a shell has eaten the quotes: integrator.name=cvode-bdf.
+/// The value after `=`.  A bare word or path is a string, because a shell has eaten the quotes: integrator.name=cvode-bdf.
 toml::table parse_value(const std::string& value, const std::string& from) {
   try {
     toml::table parsed = toml::parse("value = " + value, from);

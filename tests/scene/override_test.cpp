@@ -33,6 +33,8 @@ TEST(Override, ReplacesAddsAndReachesIntoLists) {
 TEST(Override, TakesBareWordsAsText) {
   EXPECT_EQ(with({"integrator.name=linearly-implicit-euler"}).integrator.name, "linearly-implicit-euler");
   EXPECT_EQ(with({"integrator.name=\"cvode-bdf\""}).integrator.name, "cvode-bdf");
+  EXPECT_EQ(with({"scene.name=a.b-c_d"}).name, "a.b-c_d");
+  EXPECT_NE(refusal("scene.name=/home/you/liver.msh").find("must not contain slashes"), std::string::npos) << "read as a path, refused as a name";
 }
 
 TEST(Override, IsNamedInErrors) {
@@ -47,6 +49,9 @@ TEST(Override, IsNamedInErrors) {
 }
 
 TEST(Override, ThatCannotBeAppliedSaysWhy) {
+  EXPECT_EQ(refusal("tool.tick_s=1e-12"),
+            "--set tool.tick_s=1e-12: exchange: tick_s = 1e-12 of the tool makes 1e+10 ticks of one exchange period of 0.01 s, at most 1e+06 are possible; "
+            "a haptic device asks for 0.001");
   EXPECT_EQ(refusal("body.0.youngs_modulus_pa"), "--set body.0.youngs_modulus_pa: must be PATH=VALUE, as in body.0.youngs_modulus_pa=1e5");
   EXPECT_EQ(refusal("=3"), "--set =3: must be PATH=VALUE, as in body.0.youngs_modulus_pa=1e5");
   EXPECT_EQ(refusal("body.1.youngs_modulus_pa=1e5"), "--set body.1.youngs_modulus_pa=1e5: \"1\" must be an index from 0 to 0");
