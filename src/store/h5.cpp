@@ -7,6 +7,10 @@
 namespace palpate::store::h5 {
 namespace {
 
+/// After a write that failed (a full disk), HDF5's own clean-up at exit crashes; every handle here has an owner that closes it, so it is not needed.
+/// Must come before any other call of HDF5.
+[[maybe_unused]] const herr_t kNoCleanUpAtExit = H5dont_atexit();
+
 herr_t take_description(unsigned n, const H5E_error2_t* error, void* out) {
   if (n == 0 && error->desc) *static_cast<std::string*>(out) = error->desc;
   return 0;
@@ -17,6 +21,11 @@ std::string reason() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_description, &text);
   H5Eclear2(H5E_DEFAULT);
+  const std::string quote = "error message = '";  // in a description of several lines, with addresses
+  if (const std::size_t at = text.find(quote); at != std::string::npos) {
+    text.erase(0, at + quote.size());
+    text.resize(std::min(text.size(), text.find('\'')));
+  }
   return text.empty() ? "" : ": " + text;
 }
 
