@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "commands.h"
@@ -29,6 +30,15 @@ constexpr const char* kExamples = R"(Examples:
 
 constexpr const char* kSceneHelp = "a scene file (.toml), or the name of one that comes with palpate (`palpate list scenes`)";
 
+/// CLI::PositiveNumber lets NaN pass, and its message spells out the largest double.
+const CLI::Validator duration(
+    [](const std::string& text) {
+      double seconds = 0.0;
+      const bool usable = CLI::detail::lexical_cast(text, seconds) && seconds > 0.0 && std::isfinite(seconds);
+      return usable ? std::string{} : fmt::format("{} must be a positive, finite number of seconds", text);
+    },
+    "");
+
 void add_scene(CLI::App& command, SceneArguments& scene, bool integrator) {
   command.add_option("SCENE", scene.scene, kSceneHelp)->required();
   command
@@ -48,7 +58,7 @@ void add_run(CLI::App& app, Invocation& invocation) {
   command->add_option("-o,--output", arguments->folder, "folder for the results; default out/SCENE")->type_name("DIR");
   command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(duration);
   command->add_flag("--picture", arguments->picture,
                     "also a picture of the moment of the largest force, or of the end without a tool (picture.png)");
   command->add_option("--shade", arguments->shade, "what colours the picture: displacement or stress")
@@ -82,7 +92,7 @@ void add_compare(CLI::App& app, Invocation& invocation) {
       ->capture_default_str();
   command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(duration);
   command->add_option("-o,--output", arguments->folder, "folder for the results; default out/compare-SCENE")->type_name("DIR");
   command->footer(R"(Examples:
   palpate compare cantilever

@@ -24,6 +24,8 @@ class Loop {
     const scene::Description& d = world_.description;
     const double duration = options_.duration_s > 0.0 ? options_.duration_s : d.duration_s;
     const double period = period_of(d);
+    if (!(duration / period < 1e9))
+      fail("duration_s = {} makes {:.3g} exchange periods of {} s, more than can be counted; choose a shorter duration", duration, duration / period, period);
     const int periods = whole_number(std::ceil(duration / period - 1e-9));
     const double wall = wall_seconds(), cpu = cpu_seconds();
     start_tool();

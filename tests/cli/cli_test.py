@@ -7,6 +7,7 @@ import json
 import os
 import pty
 import re
+import resource
 import select
 import shutil
 import signal
@@ -85,7 +86,19 @@ class Refusals(Cli):
         self.assertIn("palpate run --help", self.refused("run"))
         self.assertIn("--frob", self.refused("run", "one-tet", "--frob"))
         self.assertIn("--duration-s", self.refused("run", "one-tet", "--duration-s", "-1"))
+        for value in "nan", "inf", "0":
+            self.assertIn("positive, finite", self.refused("run", "one-tet", "--duration-s", value))
+        self.assertIn("choose a shorter duration", self.refused("run", "one-tet", "--duration-s", "1e300"))
         self.assertIn("--repeats", self.refused("compare", "cantilever", "--repeats", "0"))
+
+    def test_full_disk(self):
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writes then fail, as on a full disk
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+        done = subprocess.run([PROGRAM, "run", "press-ball", "--duration-s", "0.02", "-o", self.folder / "full"], preexec_fn=limit, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("palpate: error: ", done.stderr)
+        self.assertIn("File too large", done.stderr)
 
     def test_names(self):
         self.assertIn('did you mean "press-ball"?', self.refused("run", "pres-ball"))
