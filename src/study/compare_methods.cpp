@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "palpate/core/error.h"
+#include "palpate/core/log.h"
 #include "palpate/study/compare.h"
 
 namespace palpate::study {
@@ -19,28 +20,43 @@ class SampleCount : public loop::Observer {
   long most = 0;
 };
 
+/// One run with one method; false where it was stopped.  @throws Error where the method cannot be had or the run gives up
+bool run_method(const scene::Description& d, const std::string& method, const std::atomic<bool>* stop, Trajectory& trajectory, MethodPoint& point) {
+  const auto world = loop::assemble(with_method(d, method));
+  if (!world->tool_frame) fail("there is no [[contact]] with \"tool\"");
+  TrajectoryRecorder recorder;
+  SampleCount samples;
+  loop::RunOptions options;
+  options.duration_s = d.compare.duration_s;
+  options.observers = {&recorder, &samples};
+  options.stop = stop;
+  const loop::RunResult result = loop::run(*world, options);
+  if (result.stopped) return false;
+  if (!result.status.ok()) fail("{}", result.status.message);
+  trajectory = recorder.trajectory();
+  point.method = method;
+  point.most_samples = samples.most;
+  point.query_s = result.query_s;
+  point.cpu_s = result.cpu_s;
+  for (const Wrench& w : trajectory.device) point.peak_force_n = std::max(point.peak_force_n, w.force.norm());
+  return true;
+}
+
 }  // namespace
 
 std::vector<MethodPoint> compare_contact_methods(const scene::Description& d, const std::atomic<bool>* stop) {
   std::vector<MethodPoint> out;
   Trajectory first;
-  for (const std::string& method : d.compare.contact_methods) {
-    const auto world = loop::assemble(with_method(d, method));
-    if (!world->tool_frame) fail("scene \"{}\": [compare] contact_methods needs a [[contact]] with \"tool\"", d.name);
-    TrajectoryRecorder recorder;
-    SampleCount samples;
-    loop::RunOptions options;
-    options.duration_s = d.compare.duration_s;
-    options.observers = {&recorder, &samples};
-    options.stop = stop;
-    const loop::RunResult result = loop::run(*world, options);
-    if (result.stopped) break;
-    if (!result.status.ok()) fail("scene \"{}\" with contact method \"{}\": {}", d.name, method, result.status.message);
-    if (out.empty()) first = recorder.trajectory();
-    MethodPoint point{method, distance(recorder.trajectory(), first), 0.0, samples.most, result.query_s, result.cpu_s};
-    for (const Wrench& w : recorder.trajectory().device) point.peak_force_n = std::max(point.peak_force_n, w.force.norm());
-    out.push_back(point);
-  }
+  for (const std::string& method : d.compare.contact_methods) try {
+      Trajectory trajectory;
+      MethodPoint point;
+      if (!run_method(d, method, stop, trajectory, point)) break;
+      if (out.empty()) first = trajectory;
+      point.difference = distance(trajectory, first);
+      out.push_back(point);
+    } catch (const Error& e) {  // what was compared before this stands
+      log::warn("{}: contact method \"{}\" is left out of the comparison: {}", d.name, method, e.what());
+    }
   return out;
 }
 
