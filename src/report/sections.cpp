@@ -86,7 +86,13 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
   page.add_heading("Force on the hand");
   const double max_force = number_at(options, "max_force_n"), max_torque = number_at(options, "max_torque_n_m");
   add_plot(page, force_plot(force, max_force), "Force that the device sends to the hand, in world components and as a magnitude" + limit_text(max_force, "N"));
-  const bool has_torque = std::any_of(force.headers.begin(), force.headers.end(), [](const std::string& h) { return h.ends_with("_n_m"); });
+  constexpr double kRounding = 1e-15;  // [N m]
+  const bool has_torque = std::any_of(force.headers.begin(), force.headers.end(), [&](const std::string& h) {
+    if (!h.ends_with("_n_m")) return false;
+    const std::vector<double> values = force.numbers(h);
+    return std::any_of(values.begin(), values.end(), [](double v) { return !(std::abs(v) <= kRounding); });
+  });
+  if (!has_torque) page.add_paragraph("No torque: nothing in this scene turns the tool.");
   if (has_torque) add_plot(page, torque_plot(force, max_torque), "Torque, likewise" + limit_text(max_torque, "N m"));
 }
 

@@ -38,7 +38,7 @@ TEST(Load, PressBallAsWritten) {
   EXPECT_EQ(d.tool->coupling_stiffness_n_m, 300.0);
   EXPECT_EQ(d.tool->coupling_rotational_damping_n_m_s_rad, 1e-3);
   ASSERT_EQ(d.device->keyframes.size(), 4u);
-  EXPECT_EQ(d.device->keyframes[1].position_m, Vec3(0, 0, 0.062));
+  EXPECT_EQ(d.device->keyframes[1].position_m, Vec3(0, 0, 0.072));
   EXPECT_EQ(d.device->keyframes[1].interpolation, "minimum_jerk");
   ASSERT_EQ(d.compare.ladders.size(), 2u);
   EXPECT_EQ(d.compare.ladders[0].setting, "rtol");
