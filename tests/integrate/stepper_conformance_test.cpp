@@ -182,7 +182,7 @@ TEST_P(Steppers, StopAtTheStepLimit) {
 }
 
 TEST_P(Steppers, TakeAnUnsymmetricTangentByLu) {
-  if (is_explicit(GetParam())) GTEST_SKIP() << "explicit";
+  if (is_explicit(GetParam())) GTEST_SKIP() << GetParam() << " is explicit: it has no tangent to factor";
   Chain chain;
   chain.start_in_mode(0.1);
   chain.term->K(0, 3) += 20.0;  // circulatory
