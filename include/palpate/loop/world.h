@@ -25,7 +25,7 @@ struct Body {
   int block_id = -1;
   TetMesh rest;               ///< rest positions in the body's own axes
   Points placed;              ///< the same placed in the world: what the simulation starts from
-  mesh::Boundary boundary;    ///< surface; made for every body, well under a millisecond
+  mesh::Boundary boundary;    ///< surface; made for every body
   mesh::MeshReport report;
   VecX masses;                ///< lumped, one a node [kg]
   double stiffness_scale = 0; ///< E [Pa]
