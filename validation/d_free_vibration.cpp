@@ -178,8 +178,8 @@ std::vector<Measurement> run(const std::string& sabotage) {
   for (const auto& entry : integrate::stepper_registry()) {
     IntegratorSpec spec;
     spec.name = entry.name;
-    if (entry.order > 0) {
-      out.push_back(order_of_steps(bar, spec, entry.order, sabotage));
+    if (entry.traits.control != dynamics::StepControl::kAdaptive) {
+      out.push_back(order_of_steps(bar, spec, entry.traits.order, sabotage));
       continue;
     }
     for (const bool damped : {false, true}) out.push_back(slope_of_tolerances(bar, spec, damped, sabotage));

@@ -94,6 +94,7 @@ dynamics::TermTraits ContactForce::traits() const {
   const bool frames = std::any_of(impl_->frames.begin(), impl_->frames.end(), [](const auto& f) { return f->in_state(); });
   traits.symmetric_tangent = !friction && !frames;
   traits.conservative = !friction && !damping;
+  traits.contact = true;
   return traits;
 }
 

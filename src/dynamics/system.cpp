@@ -31,6 +31,29 @@ bool System::symmetric() const {
   return std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().symmetric_tangent; });
 }
 
+void System::set_definite(bool definite) {
+  for (const auto& term : terms_) term->set_definite(definite);
+}
+
+int System::event_count() const {
+  int count = 0;
+  for (const auto& term : terms_) count += term->event_count();
+  return count;
+}
+
+void System::events(const StateView& state, double* g) const {
+  for (const auto& term : terms_) {
+    term->events(state, g);
+    g += term->event_count();
+  }
+}
+
+std::pair<Finding, std::string> System::inspect(const StateView& state) const {
+  for (const auto& term : terms_)
+    if (const Finding found = term->inspect(state); found.element >= 0) return {found, std::string(term->name())};
+  return {};
+}
+
 void System::prepare(const StateView& state) {
   const Layout& layout = *state.layout;
   driven_mask_.assign(static_cast<std::size_t>(layout.u_size), 0);
@@ -260,6 +283,22 @@ void System::reduce(const StateView& state, VecX& r) const {
     }
   }
   for (int dof : driven_dofs_) r[dof] = 0.0;
+}
+
+void System::residual(const StateView& state, const VecX& acceleration, VecX& r) {
+  known_ = acceleration;
+  evaluate_driven(state);
+  for (const Driven& d : driven_)
+    for (std::size_t i = 0; i < d.motion->dofs().size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      double& a = known_[d.motion->dofs()[i]];
+      a = d.a[row];
+      if (d.master_offset >= 0) a += d.G.row(row).dot(acceleration.segment(d.master_offset, d.master_size));
+    }
+  apply_mass(state, known_, r);
+  force(state, force_scratch_);
+  r -= force_scratch_;
+  reduce(state, r);
 }
 
 void System::reactions(const StateView& state, VecX& r) {

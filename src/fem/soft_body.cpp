@@ -25,9 +25,11 @@ struct SoftBody::Impl {
   Lame elastic, damping;  ///< damping: beta (mu, lambda) [Pa s]
   ElementCounts counts;
   ScatterMap scatter;
+  bool definite = false;  ///< the projected tangent in place of the named one
 
+  Tangent tangent() const { return definite ? Tangent::kProjected : options.tangent; }
   bool damped() const { return damping.mu > 0.0; }
-  bool damped_by_position() const { return damped() && options.full_damping_tangent; }
+  bool damped_by_position() const { return damped() && options.full_damping_tangent && !definite; }
   std::size_t count() const { return elements.volume.size(); }
   NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, elements.node_count()); }
   double mass(std::size_t node) const { return material.density * elements.nodal_volume[node]; }
@@ -81,6 +83,19 @@ dynamics::TermTraits SoftBody::traits() const {
   return {.stiff = true, .fast = false, .symmetric_tangent = !impl_->damped_by_position(), .has_tangent = true, .conservative = true};
 }
 
+void SoftBody::set_definite(bool definite) { impl_->definite = definite; }
+
+dynamics::Finding SoftBody::inspect(const StateView& state) const {
+  const Impl& m = *impl_;
+  const NodeBlock at = m.place(state);
+  dynamics::Finding worst;
+  for (std::size_t e = 0; e < m.count(); ++e) {
+    const double volume_ratio = (m.elements.edges(e, at.x) * m.elements.gradients(e)).determinant();
+    if (volume_ratio <= worst.measure) worst = {static_cast<int>(e), volume_ratio};
+  }
+  return worst;
+}
+
 void SoftBody::add_pattern(dynamics::PatternBuilder& pattern) const {
   add_element_pattern(impl_->elements, pattern.first_node(impl_->block_id), pattern);
 }
@@ -113,7 +128,7 @@ void SoftBody::add_tangent(const StateView& state, double k_scale, double d_scal
     blocks.fill(Mat3::Zero());
     if (k_scale != 0.0) {
       bool clamped = false;
-      const Mat3 C = rotation_coupling(m.options.tangent, d.F, d.R, m.elastic, clamped);
+      const Mat3 C = rotation_coupling(m.tangent(), d.F, d.R, m.elastic, clamped);
       if (clamped) ++m.counts.clamped;
       add_elastic_blocks(d.gradients, d.R, C, m.elastic, k_scale * V, blocks);
       if (m.damped_by_position())
@@ -138,7 +153,7 @@ void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_sc
     Mat3 dP = Mat3::Zero();
     if (k_scale != 0.0) {
       bool clamped = false;
-      const Mat3 C = rotation_coupling(m.options.tangent, d.F, d.R, m.elastic, clamped);
+      const Mat3 C = rotation_coupling(m.tangent(), d.F, d.R, m.elastic, clamped);
       dP += k_scale * elastic_stress_change(dF, d.R, C, m.elastic);
       if (m.damped_by_position()) {
         const Mat3 F_dot = m.elements.edges(e, at.v) * d.gradients;

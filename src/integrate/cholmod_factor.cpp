@@ -116,7 +116,7 @@ class CholmodFactor final : public BodyFactor {
 
 }  // namespace
 
-std::unique_ptr<dynamics::LinearSolver> make_cholmod() {
+std::unique_ptr<dynamics::LinearSolver> make_cholmod(const IntegratorSpec&) {
   return std::make_unique<DirectSolver>("cholmod", false, std::make_unique<CholmodFactor>());
 }
 

@@ -12,7 +12,7 @@ std::unique_ptr<dynamics::Stepper> make_ark_erk(dynamics::System&, dynamics::Sta
 std::unique_ptr<dynamics::Stepper> make_linearly_implicit_euler(dynamics::System&, dynamics::State&, const IntegratorSpec&,
                                                                 std::unique_ptr<dynamics::LinearSolver>);
 
-std::unique_ptr<dynamics::LinearSolver> make_cholmod();
-std::unique_ptr<dynamics::LinearSolver> make_umfpack();
+std::unique_ptr<dynamics::LinearSolver> make_cholmod(const IntegratorSpec&);
+std::unique_ptr<dynamics::LinearSolver> make_umfpack(const IntegratorSpec&);
 
 }  // namespace palpate::integrate

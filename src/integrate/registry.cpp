@@ -3,12 +3,17 @@
 
 namespace palpate::integrate {
 
+using dynamics::Stability;
+using dynamics::StepControl;
+
 const dynamics::StepperRegistry& stepper_registry() {
   static const dynamics::StepperRegistry registry = {
-      {"cvode-bdf", "SUNDIALS CVODE: backward differences, order 1 to 5, error control (rtol, atol_q, atol_u, max_order)", 0, make_cvode_bdf},
-      {"ark-erk-5", "SUNDIALS ARKODE: explicit Runge-Kutta 5(4), error control (rtol, atol_q, atol_u); no linear solver; checks references", 0, make_ark_erk},
-      {"linearly-implicit-euler", "one linear solve a step, fixed step (step_s); the interactive method of Galoppo et al. 2007", 1,
-       make_linearly_implicit_euler},
+      {"cvode-bdf", "backward differences of SUNDIALS CVODE, order 1 to 5 (max_order)",
+       {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"}, make_cvode_bdf},
+      {"ark-erk-5", "Cash-Karp 5(4) of SUNDIALS ARKODE; no linear solver; checks references",
+       {"explicit Runge-Kutta", 5, 0, StepControl::kAdaptive, Stability::kExplicit, false, false, "force"}, make_ark_erk},
+      {"linearly-implicit-euler", "one linear solve a step; the interactive method of Galoppo et al. 2007",
+       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent"}, make_linearly_implicit_euler},
   };
   return registry;
 }
@@ -23,11 +28,13 @@ const dynamics::LinearSolverRegistry& linear_solver_registry() {
 
 std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec) {
   const auto& entry = find(stepper_registry(), spec.name, "integrator");
-  return entry.make(system, state, spec, make_linear_solver(spec.linear_solver));
+  find(linear_solver_registry(), spec.linear_solver, "linear solver");  // a wrong name is refused even where it would not be used
+  auto solver = entry.traits.implicit ? make_linear_solver(spec.linear_solver, spec) : nullptr;
+  return entry.make(system, state, spec, std::move(solver));
 }
 
-std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name) {
-  return find(linear_solver_registry(), name, "linear solver").make();
+std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name, const IntegratorSpec& spec) {
+  return find(linear_solver_registry(), name, "linear solver").make(spec);
 }
 
 }  // namespace palpate::integrate

@@ -12,7 +12,7 @@ using dynamics::SolveStatus;
 StepSolver::StepSolver(std::unique_ptr<dynamics::LinearSolver> chosen) : chosen_(std::move(chosen)), active_(chosen_.get()) {}
 
 SolveStatus StepSolver::factor_by_lu(const BorderedMatrix& A) {
-  if (!lu_) lu_ = make_umfpack();
+  if (!lu_) lu_ = make_umfpack({});
   active_ = lu_.get();
   return lu_->factor(A);
 }

@@ -83,7 +83,7 @@ class UmfpackFactor final : public BodyFactor {
 
 }  // namespace
 
-std::unique_ptr<dynamics::LinearSolver> make_umfpack() {
+std::unique_ptr<dynamics::LinearSolver> make_umfpack(const IntegratorSpec&) {
   return std::make_unique<DirectSolver>("umfpack", true, std::make_unique<UmfpackFactor>());
 }
 

@@ -1,5 +1,7 @@
 #include "palpate/loop/registries.h"
 
+#include <fmt/format.h>
+
 #include "palpate/device/handle.h"
 #include "palpate/integrate/integrators.h"
 #ifdef PALPATE_HAS_TOOL
@@ -13,6 +15,18 @@ template <class Make>
 std::vector<Choice> choices(const Registry<Make>& registry) {
   std::vector<Choice> out;
   for (const auto& entry : registry) out.push_back({entry.name, entry.summary, entry.order});
+  return out;
+}
+
+/// What theory says stands behind the summary: family, stability, what steers the step.
+std::vector<Choice> stepper_choices() {
+  using dynamics::StepControl;
+  std::vector<Choice> out;
+  for (const auto& entry : integrate::stepper_registry()) {
+    const dynamics::StepperTraits& t = entry.traits;
+    const char* control = t.control == StepControl::kAdaptive ? "rtol" : t.control == StepControl::kFixed ? "step_s" : "rtol, or step_s";
+    out.push_back({entry.name, fmt::format("{} [{}; {}; {}]", entry.summary, t.family, dynamics::to_string(t.stability), control), t.order});
+  }
   return out;
 }
 
@@ -44,7 +58,7 @@ std::vector<Choice> part_choices() {
 }  // namespace
 
 std::vector<ChoiceList> registries() {
-  return {{"integrators", "of soft bodies: [integrator] name, --integrator", choices(integrate::stepper_registry())},
+  return {{"integrators", "of soft bodies: [integrator] name, --integrator", stepper_choices()},
           {"linear-solvers", "of implicit integrators: [integrator] linear_solver", choices(integrate::linear_solver_registry())},
           {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_choices()},
           {"devices", "what the hand holds: [device] type", choices(device::handle_registry())},

@@ -95,6 +95,14 @@ const KeyTable<IntegratorSpec>& integrator_keys() {
       number("atol_q", &IntegratorSpec::atol_q, positive()),
       number("atol_u", &IntegratorSpec::atol_u, positive()),
       number("step_s", &IntegratorSpec::step_s, positive()),
+      boolean("fixed_step", &IntegratorSpec::fixed_step),
+      integer("factor_kept_steps", &IntegratorSpec::factor_kept_steps, at_least(1)),
+      number("newton_rtol", &IntegratorSpec::newton_rtol, {.low = 0.0, .high = 1.0, .low_open = true, .remedy = "1e-8 is usual"}),
+      number("spectral_radius", &IntegratorSpec::spectral_radius, closed(0.0, 1.0, "0 damps what the step cannot resolve at once, 1 not at all")),
+      text("events", &IntegratorSpec::events, {"error-control", "root-finding"}),
+      text("explicit_side", &IntegratorSpec::explicit_side, {"loads", "contact"}),
+      text("indefinite", &IntegratorSpec::indefinite, {"project", "lu"}),
+      number("linear_rtol", &IntegratorSpec::linear_rtol, {.low = 0.0, .high = 1.0, .low_open = true, .remedy = "1e-8 is usual"}),
       integer("max_order", &IntegratorSpec::max_order, closed(0, 12, "0 leaves the order to the method")),
       integer("max_steps", &IntegratorSpec::max_steps, at_least(1)),
       text("linear_solver", &IntegratorSpec::linear_solver),
@@ -127,7 +135,8 @@ Key<LadderSpec> rungs(const char* name) {
 }
 
 const KeyTable<LadderSpec>& ladder_keys() {
-  static const KeyTable<LadderSpec> keys = {required(text("integrator", &LadderSpec::integrator)), rungs("rtol"), rungs("step_s")};
+  static const KeyTable<LadderSpec> keys = {required(text("integrator", &LadderSpec::integrator)), text("label", &LadderSpec::label),
+                                              texts("set", &LadderSpec::set), rungs("rtol"), rungs("step_s")};
   return keys;
 }
 

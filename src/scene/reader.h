@@ -126,6 +126,11 @@ Key<Spec> numbers(const char* name, std::vector<double> Spec::*member, Range eac
   return {name, [=](const Value& v, Spec& spec) { spec.*member = read_numbers(v, each); }};
 }
 
+template <class Spec>
+Key<Spec> texts(const char* name, std::vector<std::string> Spec::*member) {
+  return {name, [=](const Value& v, Spec& spec) { spec.*member = read_texts(v); }};
+}
+
 /// [name] whose keys go into a spec of its own.
 template <class Spec, class Sub>
 Key<Spec> table(const char* name, Sub Spec::*member, const KeyTable<Sub>& keys) {

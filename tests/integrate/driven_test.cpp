@@ -54,7 +54,7 @@ struct DrivenBar {
 
 class Driven : public testing::TestWithParam<std::string> {
  protected:
-  int order() const { return find(integrate::stepper_registry(), GetParam(), "integrator").order; }
+  int order() const { return ladder_order(GetParam()); }
 };
 INSTANTIATE_TEST_SUITE_P(Registry, Driven, testing::ValuesIn(names(integrate::stepper_registry())), registry_test_name);
 

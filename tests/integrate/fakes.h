@@ -151,6 +151,12 @@ inline double slope(const std::vector<double>& x, const std::vector<double>& y) 
   return ((lx - lx.mean()) * (ly - ly.mean())).sum() / (lx - lx.mean()).square().sum();
 }
 
+/// The order that a ladder of steps shows; 0 of a method that tolerances steer.
+inline int ladder_order(const std::string& name) {
+  const dynamics::StepperTraits& traits = find(integrate::stepper_registry(), name, "integrator").traits;
+  return traits.control == dynamics::StepControl::kAdaptive ? 0 : traits.order;
+}
+
 /// Settings of a ladder over which the error must fall with the theoretical slope.  Of a fixed step: the order.  Of a tolerance on the
 /// error of a step of order k: k/(k+1) to 1, and the order varies from 2 to 5 along the ladder.
 struct Ladder {

@@ -18,7 +18,7 @@ class Steppers : public testing::TestWithParam<std::string> {
     s.step_s = 1e-3;
     return s;
   }
-  int order() const { return find(integrate::stepper_registry(), GetParam(), "integrator").order; }
+  int order() const { return ladder_order(GetParam()); }
 };
 
 std::vector<std::string> stepper_names() { return names(integrate::stepper_registry()); }

@@ -19,16 +19,17 @@ struct RegistryEntry {
 template <class Make>
 using Registry = std::vector<RegistryEntry<Make>>;
 
-template <class Make>
-std::vector<std::string> names(const Registry<Make>& registry) {
+/// A registry is a vector of entries that have a `name`: RegistryEntry, or one with more to tell.
+template <class Entry>
+std::vector<std::string> names(const std::vector<Entry>& registry) {
   std::vector<std::string> out;
   for (const auto& entry : registry) out.push_back(entry.name);
   return out;
 }
 
 /// The entry called `name`; throws Error naming `what` and the nearest known name.
-template <class Make>
-const RegistryEntry<Make>& find(const Registry<Make>& registry, std::string_view name, std::string_view what) {
+template <class Entry>
+const Entry& find(const std::vector<Entry>& registry, std::string_view name, std::string_view what) {
   for (const auto& entry : registry)
     if (entry.name == name) return entry;
   fail("unknown {} \"{}\"{}", what, name, suggestion(name, names(registry)));

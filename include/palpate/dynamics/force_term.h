@@ -14,6 +14,13 @@ struct TermTraits {
   bool symmetric_tangent = true;  ///< false: the step matrix needs an unsymmetric solver
   bool has_tangent = true;        ///< false: explicit only (gravity and other dead loads have a zero tangent and say true)
   bool conservative = false;      ///< energy() is its potential
+  bool contact = false;           ///< kinked where it opens and closes; an ImEx split may put it on the explicit side
+};
+
+/// What a term has to say about a state that a step failed at: an element turned inside out.
+struct Finding {
+  int element = -1;      ///< in the term's own numbering; -1: nothing found
+  double measure = 0.0;  ///< det F of an element
 };
 
 /// One sum in M u' = sum of f.  Force, tangent and energy of a soft body, of contact, of gravity.
@@ -44,6 +51,11 @@ class ForceTerm {
   virtual bool refresh(const StateView&) { return false; }
 
   /// Root functions for event location: g changes sign at an event (a gap closing).
+  /// Asks for a positive semi-definite tangent from now on (true), or for the one that was chosen by name (false).  A term that has only one ignores it.
+  virtual void set_definite(bool) {}
+  /// The worst of what can go wrong in this term at a state; for traces, not for the step.
+  virtual Finding inspect(const StateView&) const { return {}; }
+
   virtual int event_count() const { return 0; }
   virtual void events(const StateView&, double* /*g*/) {}
 };

@@ -4,6 +4,7 @@
 
 #include "palpate/core/registry.h"
 #include "palpate/dynamics/matrix.h"
+#include "palpate/dynamics/spec.h"
 
 namespace palpate::dynamics {
 
@@ -31,7 +32,7 @@ class LinearSolver {
   virtual const SolverCounters& counters() const = 0;
 };
 
-using MakeLinearSolver = std::unique_ptr<LinearSolver> (*)();
+using MakeLinearSolver = std::unique_ptr<LinearSolver> (*)(const IntegratorSpec&);
 using LinearSolverRegistry = Registry<MakeLinearSolver>;
 
 }  // namespace palpate::dynamics

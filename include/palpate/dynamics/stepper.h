@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -11,7 +12,7 @@ namespace palpate::dynamics {
 
 class System;
 
-enum class StepStatus { kOk, kNewtonFailed, kErrorTestFailed, kSolverFailed, kNotFinite, kTooManySteps, kBadSettings };
+enum class StepStatus { kOk, kNewtonFailed, kErrorTestFailed, kSolverFailed, kNotFinite, kTooManySteps, kBadSettings, kInterrupted };
 const char* to_string(StepStatus status);
 
 /// Numerical outcomes are data: the loop decides what to do with them.
@@ -38,6 +39,28 @@ struct StepperCounters {
   SolverCounters solver;
 };
 
+/// One attempted step, accepted or not: what `--trace` keeps.
+struct StepAttempt {
+  enum class Outcome { kAccepted, kErrorTest, kNewton, kNotFinite, kEvent };  ///< kEvent: cut short at a root, then restarted
+  double t = 0.0;               ///< start of the step [s]
+  double h = 0.0;               ///< its length [s]
+  int order = 0;
+  double error = 0.0;           ///< estimate in the method's weighted norm, 1 is the tolerance; NaN where the method has none
+  int newton_iterations = 0;
+  Outcome outcome = Outcome::kAccepted;
+  int worst_dof = -1;           ///< entry of u (a node's axis, a rigid body's direction) with the largest share of the error; -1: unknown
+  int inverted_element = -1;    ///< the most inverted element at the attempted state, over the terms in their order; -1: none
+  std::string inverted_in;      ///< the term that it belongs to
+};
+const char* to_string(StepAttempt::Outcome outcome);
+
+/// Sees every attempted step.
+class StepTrace {
+ public:
+  virtual ~StepTrace() = default;
+  virtual void attempt(const StepAttempt& attempt) = 0;
+};
+
 /// Advances a System's State in time.
 class Stepper {
  public:
@@ -50,9 +73,50 @@ class Stepper {
   /// The right-hand side or the State was changed from outside: forget history.
   virtual void reinit(ReinitReason reason) = 0;
   virtual const StepperCounters& counters() const = 0;
+
+  /// Tells a trace of every attempted step from now on; null for none.  What a step costs without a trace does not change.
+  void set_trace(StepTrace* trace) { trace_ = trace; }
+  /// Where a flag is given and becomes true, advance_to ends after the current step with kInterrupted and the last good state.
+  void set_interrupt(const std::atomic<bool>* flag) { interrupt_ = flag; }
+
+ protected:
+  StepTrace* trace() const { return trace_; }
+  bool interrupted() const { return interrupt_ && interrupt_->load(std::memory_order_relaxed); }
+
+ private:
+  StepTrace* trace_ = nullptr;
+  const std::atomic<bool>* interrupt_ = nullptr;
+};
+
+/// What theory says of a method: read by the conformance suite, the stability matrix, reports and `palpate list`.
+enum class StepControl { kAdaptive, kFixed, kEither };  ///< rtol; step_s; either, by fixed_step
+enum class Stability {
+  kExplicit,   ///< stable up to a step that the largest frequency bounds
+  kStatic,     ///< no dynamics: equilibria
+  kAlpha,      ///< A(alpha)-stable: a sector of the left half plane (BDF 3 to 5)
+  kA,          ///< A-stable: every stable linear problem decays, at any step
+  kL,          ///< A-stable, and stiff modes vanish at once
+};
+const char* to_string(Stability stability);
+
+struct StepperTraits {
+  std::string family;          ///< "BDF", "DIRK", "explicit Runge-Kutta": references are checked across families
+  int order = 1;               ///< of a smooth, non-stiff problem; of a variable-order method the highest
+  int stiff_order = 1;         ///< of a stiff, strongly damped mode that the step does not resolve (order reduction); 0: unstable there
+  StepControl control = StepControl::kFixed;
+  Stability stability = Stability::kExplicit;
+  bool implicit = false;       ///< asks for tangents and a linear solver
+  bool multistep = false;      ///< forgets its history at every re-initialisation
+  std::string needs;           ///< of the system, in words: "force", "force, tangent", "tool or contact as the fast part"
 };
 
 using MakeStepper = std::unique_ptr<Stepper> (*)(System&, State&, const IntegratorSpec&, std::unique_ptr<LinearSolver>);
-using StepperRegistry = Registry<MakeStepper>;
+struct StepperEntry {
+  std::string name;
+  std::string summary;
+  StepperTraits traits;
+  MakeStepper make;            ///< of an explicit method the linear solver is null
+};
+using StepperRegistry = std::vector<StepperEntry>;
 
 }  // namespace palpate::dynamics

@@ -32,6 +32,13 @@ class System {
   const std::vector<int>& driven_dofs() const { return driven_dofs_; }
   bool any_driven() const { return !driven_dofs_.empty(); }
   bool symmetric() const;  ///< all terms' tangents are
+  /// ForceTerm::set_definite of every term.
+  void set_definite(bool definite);
+  /// Root functions of all terms, one after the other (event location).
+  int event_count() const;
+  void events(const StateView& state, double* g) const;
+  /// The first term's finding that names an element, with the term's name; element -1 where none does.
+  std::pair<Finding, std::string> inspect(const StateView& state) const;
 
   using TermFilter = std::function<bool(const TermTraits&)>;
 
@@ -49,6 +56,8 @@ class System {
   void apply_mass(const StateView& state, const VecX& x, VecX& y) const;
   /// Zeroes the driven entries of a residual, after adding their reduction to the masters' rows.
   void reduce(const StateView& state, VecX& r) const;
+  /// r = M u' - f on free directions for a given u' (driven entries of which are replaced by what drives them), 0 on driven ones.
+  void residual(const StateView& state, const VecX& acceleration, VecX& r);
   /// Forces [N] that the drives exert on the driven directions: M a - f there, zero elsewhere.
   void reactions(const StateView& state, VecX& r);
 

@@ -31,6 +31,10 @@ class SoftBody : public dynamics::ForceTerm {
   ~SoftBody() override;
 
   std::string_view name() const override;
+  /// The projected tangent (symmetric, positive semi-definite) in place of the one that the options name.
+  void set_definite(bool definite) override;
+  /// The element with the smallest det F <= 0.
+  dynamics::Finding inspect(const dynamics::StateView& state) const override;
   dynamics::TermTraits traits() const override;
   void add_pattern(dynamics::PatternBuilder& pattern) const override;
   std::uint64_t pattern_version() const override;

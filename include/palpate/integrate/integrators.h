@@ -14,7 +14,7 @@ const dynamics::LinearSolverRegistry& linear_solver_registry();
 
 /// The integrator that the spec names, with the linear solver that it names.  @throws Error for unknown names and bad settings.
 std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec);
-std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name);
+std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name, const IntegratorSpec& spec = {});
 
 /// The libraries locked in here, name and version, for a result's provenance.
 std::vector<std::pair<std::string, std::string>> library_versions();

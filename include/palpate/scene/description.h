@@ -17,6 +17,8 @@ struct LadderSpec {
   std::string integrator;
   std::string setting = "rtol";  ///< which setting `values` are: "rtol" of adaptive methods, "step_s" of fixed-step ones
   std::vector<double> values;    ///< descending
+  std::string label{};            ///< what reports call it; empty: the integrator's name
+  std::vector<std::string> set{}; ///< what else is changed in the scene for it: KEY=VALUE, as for `--set`
 };
 
 /// What `palpate compare` does with this scene.
