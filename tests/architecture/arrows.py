@@ -40,6 +40,7 @@ OUTSIDE = [
     ("EGL and OpenGL", r"(EGL|GL|GLES\d?|KHR|epoxy)/", ["src/gl", "include/palpate/gl", "src/render", "tests/gl", "tests/render"]),
     ("libccd", r"ccd/", ["src/proxy", "tests/proxy"]),
     ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/integrate"]),
+    ("Spectra", r"Spectra/", ["src/integrate"]),
     ("CLI11", r"CLI/", ["src/cli"]),
     ("toml++", r"toml\+\+/", ["src/scene"]),
     ("HDF5", r"(hdf5|H5\w+)\.h", ["src/store", "tests/store"]),
