@@ -83,29 +83,6 @@ void summarise_times(ComparePoint& point) {
   point.cpu_median_s = sorted[sorted.size() / 2];
 }
 
-scene::Description with_exchange_period(scene::Description d, double period) {
-  d.coupling.exchange_period_s = d.coupling.contact_refresh_s = period;
-  return with_setting(std::move(d), "cvode-bdf", "rtol", 1e-5);
-}
-
-/// The exchange period's own error: the same tight integrator at each period, against the smallest possible one, a period of a single tick.
-void compare_exchange(const scene::Description& d, Comparison& out, Progress& progress, const CompareOptions& options) {
-  if (d.compare.exchange_periods_s.empty() || !d.tool) return;
-  const Run truth = run_once(with_exchange_period(d, d.tool->tick_s), d.compare.duration_s, options.stop);
-  if (truth.result.stopped) return;
-  const bool comparable = truth.result.status.ok();
-  if (!comparable) log::warn("the exchange period has no truth to be held against: the run with a period of one tick failed: {}", truth.result.status.message);
-  progress.done("exchange period of one tick");
-  for (double period : d.compare.exchange_periods_s) {
-    if (progress.stopped()) return;
-    const Run run = run_once(with_exchange_period(d, period), d.compare.duration_s, options.stop);
-    progress.done(fmt::format("exchange period {:g} s", period));
-    if (run.result.stopped) return;
-    const bool ok = comparable && run.result.status.ok();
-    out.exchange.push_back({period, ok ? distance(run.trajectory, truth.trajectory) : no_distance(), run.result.cpu_s});
-  }
-}
-
 }  // namespace
 
 Comparison compare(const scene::Description& d, const CompareOptions& options) {
@@ -113,8 +90,7 @@ Comparison compare(const scene::Description& d, const CompareOptions& options) {
   out.scene = d.name;
   out.points = ladder_points(d, options);
   if (out.points.empty()) fail("scene \"{}\": nothing to compare; add [[compare.ladder]] tables with an integrator and its rtol or step_s values", d.name);
-  const int exchange_runs = d.tool ? static_cast<int>(d.compare.exchange_periods_s.size()) + 1 : 0;
-  Progress progress(options, 2 + options.repeats * static_cast<int>(out.points.size()) + exchange_runs);
+  Progress progress(options, 2 + options.repeats * static_cast<int>(out.points.size()) + exchange_runs(d));
   const Trajectory truth = make_reference(d, out.reference, progress, options.stop);
   for (int repeat = 0; repeat < options.repeats; ++repeat)
     for (ComparePoint& point : out.points) {
@@ -123,7 +99,7 @@ Comparison compare(const scene::Description& d, const CompareOptions& options) {
       progress.done(fmt::format("{} {} = {:g}", point.integrator, point.setting_name, point.setting));
     }
   for (ComparePoint& point : out.points) summarise_times(point);
-  if (!progress.stopped()) compare_exchange(d, out, progress, options);
+  if (!progress.stopped()) out.exchange = compare_exchange(d, {[&](const std::string& what) { progress.done(what); }, options.stop});
   if (!progress.stopped()) out.methods = compare_contact_methods(d, options.stop);
   out.stopped = progress.stopped();
   return out;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/study/exchange.h"
 #include "palpate/study/trajectory.h"
 
 namespace palpate::study {
@@ -24,12 +25,6 @@ struct ComparePoint {
 struct Reference {
   std::string description;         ///< what it was made by, and what checked it
   TrajectoryError own_error;       ///< distance of two families at tight tolerance
-  double cpu_s = 0.0;
-};
-
-struct ExchangePoint {
-  double exchange_period_s = 0.0;
-  TrajectoryError error;           ///< NaN throughout when the run, or the one it is held against, failed
   double cpu_s = 0.0;
 };
 

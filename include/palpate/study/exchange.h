@@ -1,0 +1,31 @@
+#pragma once
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "palpate/study/trajectory.h"
+
+namespace palpate::study {
+
+/// One exchange period of a scene with a tool, against the truth.
+struct ExchangePoint {
+  double exchange_period_s = 0.0;
+  TrajectoryError error;           ///< NaN throughout when the run, or the one it is held against, failed
+  double cpu_s = 0.0;
+};
+
+/// What to do while an exchange study goes on.
+struct ExchangeOptions {
+  std::function<void(const std::string& what)> done;  ///< after each run
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// Runs that compare_exchange makes of a scene: 0 without a tool or without `compare.exchange_periods_s`.
+int exchange_runs(const scene::Description& description);
+
+/// The exchange period's own error: the same tight integrator at each of `compare.exchange_periods_s` against a truth.
+/// Empty where the scene asks for none; stops early on request.
+std::vector<ExchangePoint> compare_exchange(const scene::Description& description, const ExchangeOptions& options);
+
+}  // namespace palpate::study
