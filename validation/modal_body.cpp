@@ -1,0 +1,58 @@
+#include "modal_body.h"
+
+#include <algorithm>
+
+#include "palpate/core/error.h"
+#include "palpate/dynamics/system.h"
+#include "palpate/fem/attachments.h"
+#include "palpate/integrate/integrators.h"
+
+namespace palpate::validation {
+
+void ModalBody::hold(const std::string& axes, const std::function<bool(const Vec3&)>& where) {
+  for (int i = 0; i < rest.nodes.cols(); ++i)
+    if (where(rest.nodes.col(i)))
+      for (const char axis : axes) held.push_back(3 * i + (axis - 'x'));
+}
+
+integrate::Modes ModalBody::lowest(int count) const {
+  dynamics::State state;
+  dynamics::System system;
+  dynamics::BlockSpec spec;
+  spec.name = "body";
+  spec.q_size = spec.u_size = static_cast<int>(rest.nodes.size());
+  const VecX q0 = rest.nodes.reshaped();
+  const int id = state.insert(spec, q0, VecX::Zero(q0.size()));
+  system.add(std::make_shared<fem::SoftBody>("body", rest, material, fem::SoftBodyOptions{}, id));
+  system.add(consistent_mass ? fem::make_consistent_mass(rest, material.density, id) : fem::make_lumped_mass(rest, material.density, id));
+  if (consistent_mass) system.set_mass_solver(integrate::make_linear_solver("cholmod"));
+  std::vector<int> dofs = held;
+  std::sort(dofs.begin(), dofs.end());
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+  if (!dofs.empty()) system.add(fem::make_fixed(dofs, q0(dofs)));
+  system.prepare(state.view());
+  integrate::Modes modes = integrate::find_modes(system, state.view(), {count});
+  if (!modes.converged) fail("the modes of {} nodes did not converge", rest.nodes.cols());
+  return modes;
+}
+
+double ModalBody::overlap(const VecX& f, const VecX& g) const {
+  const VecX mass = fem::lumped_masses(rest, material.density).transpose().replicate(3, 1).reshaped();
+  const double fg = f.dot(mass.cwiseProduct(g));
+  return fg * fg / (f.dot(mass.cwiseProduct(f)) * g.dot(mass.cwiseProduct(g)));
+}
+
+VecX ModalBody::field(const std::function<Vec3(const Vec3&)>& displacement) const {
+  VecX out(rest.nodes.size());
+  for (int i = 0; i < rest.nodes.cols(); ++i) out.segment<3>(3 * i) = displacement(rest.nodes.col(i));
+  return out;
+}
+
+Match best_match(const ModalBody& body, const integrate::Modes& modes, const VecX& shape) {
+  Match best;
+  for (int j = 0; j < modes.count(); ++j)
+    if (const double overlap = body.overlap(modes.shapes.col(j), shape); overlap > best.overlap) best = {j, overlap, modes.omega(j)};
+  return best;
+}
+
+}  // namespace palpate::validation

@@ -1,0 +1,32 @@
+#pragma once
+#include <functional>
+
+#include "palpate/fem/soft_body.h"
+#include "palpate/integrate/modes.h"
+
+namespace palpate::validation {
+
+/// One soft body at rest and its modes: what the cases of section D on frequencies share.
+struct ModalBody {
+  TetMesh rest;
+  fem::Material material;
+  bool consistent_mass = false;
+  std::vector<int> held;  ///< directions of u, any order
+
+  /// Holds the axes ("x", "yz") of every node for which `where` holds.
+  void hold(const std::string& axes, const std::function<bool(const Vec3&)>& where);
+  /// The lowest modes.  @throws Error where they do not converge
+  integrate::Modes lowest(int count) const;
+  /// Mass-weighted overlap (f M g)^2 / ((f M f)(g M g)) of two fields, lumped; held directions count as they stand.
+  double overlap(const VecX& f, const VecX& g) const;
+  VecX field(const std::function<Vec3(const Vec3&)>& displacement) const;  ///< its values at the nodes
+};
+
+/// The mode with the largest overlap with a shape.
+struct Match {
+  int mode = -1;
+  double overlap = 0.0, omega = 0.0;  ///< [rad/s]
+};
+Match best_match(const ModalBody& body, const integrate::Modes& modes, const VecX& shape);
+
+}  // namespace palpate::validation
