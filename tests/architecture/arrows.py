@@ -43,6 +43,7 @@ OUTSIDE = [
     ("Spectra", r"Spectra/", ["src/integrate"]),
     ("CLI11", r"CLI/", ["src/cli"]),
     ("toml++", r"toml\+\+/", ["src/scene"]),
+    ("SQLite", r"sqlite3\.h", ["src/store"]),
     ("HDF5", r"(hdf5|H5\w+)\.h", ["src/store", "tests/store"]),
 ]
 
