@@ -23,11 +23,15 @@ struct RunArguments {
 int run(const RunArguments& arguments);
 
 struct CompareArguments {
-  SceneArguments scene;
+  std::vector<std::string> scenes;
+  std::vector<std::string> overrides;    ///< of every scene
   std::string folder;
-  std::vector<std::string> integrators;  ///< empty: every ladder of the scene
-  int repeats = 3;
+  std::vector<std::string> integrators;  ///< names, or labels of ladders; empty: every one
+  bool all = false;                      ///< every one beside those named
+  int repeats = 3, jobs = 0;             ///< no jobs: as many as there are cores
+  double limit_s = 10.0, reference_limit_s = 120.0;
   double duration_s = 0.0;
+  bool fresh = false;                    ///< forget what an earlier study left in the folder
 };
 int compare(const CompareArguments& arguments);
 

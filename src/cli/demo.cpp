@@ -14,8 +14,9 @@ int demo(const DemoArguments& arguments) {
 
   fmt::print("\nThe same touch by each integrator: how far from the truth, at what price?\n\n");
   CompareArguments price;
-  price.scene = touch.scene;
+  price.scenes = {touch.scene.scene};
   price.folder = arguments.folder;
+  price.integrators = {"cvode-bdf", "linearly-implicit-euler"};
   price.repeats = 1;
   return compare(price);
 }

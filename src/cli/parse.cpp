@@ -22,7 +22,7 @@ constexpr const char* kExamples = R"(Examples:
   palpate run press-ball                         a tool presses a soft ball; results in out/press-ball
   palpate run my.toml --set body.0.youngs_modulus_pa=2e4 -o out/softer
   palpate inspect press-ball                     what a scene uses, what it leaves out, how large it is
-  palpate compare cantilever                     error against run time, for every integrator of the scene's ladder
+  palpate compare cantilever                     error against run time, for every integrator
   palpate validate                               every case with a known answer
   palpate list integrators                       the names that scenes and --integrator know
 
@@ -79,27 +79,40 @@ summary.json (versions, options, counts, timings).  Ctrl-C ends the run; what wa
 }
 
 void add_compare(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("compare", "error against run time of every integrator on a scene");
+  CLI::App* command = app.add_subcommand("compare", "error against run time of every integrator on one scene or several");
   auto arguments = std::make_shared<CompareArguments>();
-  add_scene(*command, arguments->scene, false);
+  command->add_option("SCENE", arguments->scenes, "one or several: a scene file (.toml), or the name of one that comes with palpate")->required();
+  command->add_option("--set", arguments->overrides, "change one value of every scene: KEY=VALUE, as for `palpate run`")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
   command
       ->add_option("--integrator", arguments->integrators,
-                   "only these of the scene's [[compare.ladder]]; may be given more than once")
+                   "only this one: a name of `palpate list integrators`, or the label of a [[compare.ladder]]; may be given more than once")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  command->add_option("--repeats", arguments->repeats, "runs of each point, for the spread of its time")
+  command->add_flag("--all", arguments->all, "every integrator that moves in time, beside those named: the default where none is named");
+  command->add_option("--repeats", arguments->repeats, "runs of each point at most, for the spread of its time")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")
+  command->add_option("--limit-s", arguments->limit_s, "CPU time of a point [s]")->type_name("SECONDS")->check(duration)->capture_default_str();
+  command->add_option("--reference-limit-s", arguments->reference_limit_s, "CPU time of a reference, and of its check [s]")
+      ->type_name("SECONDS")
+      ->check(duration)
+      ->capture_default_str();
+  command->add_option("--jobs", arguments->jobs, "runs side by side; default: the number of cores")->check(CLI::Range(1, 1024));
+  command->add_flag("--fresh", arguments->fresh, "start anew instead of going on from what stands in the folder");
+  command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scenes' [s]")
       ->type_name("SECONDS")
       ->check(duration);
   command->add_option("-o,--output", arguments->folder, "folder for the results; default out/compare-SCENE")->type_name("DIR");
   command->footer(R"(Examples:
   palpate compare cantilever
-  palpate compare press-ball --repeats 1 --integrator cvode-bdf -o out/quick
+  palpate compare cantilever press-ball --limit-s 5 -o out/both
+  palpate compare press-ball --repeats 1 --integrator cvode-bdf --integrator linearly-implicit-euler
 
-Each point is one integrator at one tolerance or step, at the scene's fixed exchange period, against a tight reference whose own error is
-printed.  Writes compare.csv, exchange.csv, reference.json and report.html with the log-log plots.)");
+Each point is one integrator at one tolerance or step, at the scene's fixed exchange period, in a process of its own, against a tight reference
+whose own error is printed.  The ladders are the scene's [[compare.ladder]], and a default one for every other integrator.  Ctrl-C or a crash loses
+nothing: the same line goes on where it stopped.  Writes compare.csv, reference.json, study.sqlite (one row a run) and report.html.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return compare(*arguments); };
     invocation.factorises = true;

@@ -30,14 +30,6 @@ std::vector<Choice> stepper_choices() {
   return out;
 }
 
-std::vector<Choice> tool_choices() {
-  std::vector<Choice> out;
-#ifdef PALPATE_HAS_TOOL
-  for (const tool::ToolIntegratorInfo& info : tool::tool_integrators()) out.push_back({info.name, info.summary, info.order});
-#endif
-  return out;
-}
-
 std::vector<Choice> part_choices() {
 #ifdef PALPATE_HAS_TOOL
   const std::string tool = "compiled in";
@@ -57,10 +49,20 @@ std::vector<Choice> part_choices() {
 
 }  // namespace
 
+const dynamics::StepperRegistry& steppers() { return integrate::stepper_registry(); }
+
+std::vector<Choice> tool_steppers() {
+  std::vector<Choice> out;
+#ifdef PALPATE_HAS_TOOL
+  for (const tool::ToolIntegratorInfo& info : tool::tool_integrators()) out.push_back({info.name, info.summary, info.order});
+#endif
+  return out;
+}
+
 std::vector<ChoiceList> registries() {
   return {{"integrators", "of soft bodies: [integrator] name, --integrator", stepper_choices()},
           {"linear-solvers", "of implicit integrators: [integrator] linear_solver", choices(integrate::linear_solver_registry())},
-          {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_choices()},
+          {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_steppers()},
           {"devices", "what the hand holds: [device] type", choices(device::handle_registry())},
           {"parts", "optional parts of this build", part_choices()}};
 }

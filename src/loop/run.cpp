@@ -28,6 +28,7 @@ class Loop {
       fail("duration_s = {} makes {:.3g} exchange periods of {} s, more than can be counted; choose a shorter duration", duration, duration / period, period);
     const int periods = whole_number(std::ceil(duration / period - 1e-9));
     const double wall = wall_seconds(), cpu = cpu_seconds();
+    if (world_.stepper) world_.stepper->set_interrupt(options_.stop);
     start_tool();
     notify_period(0.0);
     for (int i = 0; i < periods && result_.status.ok(); ++i) {
@@ -37,7 +38,11 @@ class Loop {
       }
       const double t1 = i + 1 == periods ? duration : (i + 1) * period;
       one_period(i * period, t1);
-      if (!result_.status.ok()) break;
+      if (result_.status.status == dynamics::StepStatus::kInterrupted) {  // within the period: nothing of it is kept
+        result_.status = {};
+        result_.stopped = true;
+      }
+      if (!result_.status.ok() || result_.stopped) break;
       ++result_.periods;
       result_.time = t1;
       notify_period(t1);
@@ -129,6 +134,7 @@ class Loop {
   }
 
   void finish() {
+    if (world_.stepper) world_.stepper->set_interrupt(nullptr);
     if (world_.stepper) result_.counters = world_.stepper->counters();
     if (world_.contact) result_.contact_queries = world_.contact->queries();
     if (world_.limiter) result_.limited_ticks = world_.limiter->limited_ticks();

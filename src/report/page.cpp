@@ -138,6 +138,26 @@ Page& Page::add_code(const std::string& text) {
   return *this;
 }
 
+Page& Page::begin_multiples() {
+  body_ += "<div class=\"multiples\">\n";
+  return *this;
+}
+
+Page& Page::end_multiples() {
+  body_ += "</div>\n";
+  return *this;
+}
+
+Page& Page::begin_details(const std::string& summary) {
+  body_ += "<details>\n<summary>" + escape_html(summary) + "</summary>\n";
+  return *this;
+}
+
+Page& Page::end_details() {
+  body_ += "</details>\n";
+  return *this;
+}
+
 std::string Page::html() const {
   const std::string title = escape_html(title_);
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"

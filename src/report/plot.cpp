@@ -69,14 +69,14 @@ std::string data_block(std::size_t index, const Series& series) {
 std::string plot_items(std::size_t index, const Series& series, const std::string& colour) {
   const std::string data = fmt::format("$d{}", index);
   const std::string title = series.name.empty() ? "notitle" : fmt::format("title {} noenhanced", quoted(series.name));
-  const double width = series.colour == "ink" ? 2.4 : 1.7;
+  const double width = series.width > 0.0 ? series.width : series.colour == "ink" ? 2.4 : 1.7;
   std::string style = fmt::format("lines lw {}", width);
   if (series.mark == Mark::kDashed) style = "lines dt (6,5) lw 1.4";
   if (series.mark == Mark::kPoints) style = "points pt 7 ps 0.7";
-  if (series.mark == Mark::kLinePoints) style = "linespoints pt 7 ps 0.7 lw 1.7";
+  if (series.mark == Mark::kLinePoints) style = fmt::format("linespoints pt 7 ps {} lw {}", width < 1.7 ? 0.45 : 0.7, width);
   std::string items = fmt::format("{} using 1:2 with {} lc rgb '{}' {}", data, style, colour, title);
   if (std::find(series.hollow.begin(), series.hollow.end(), true) != series.hollow.end())
-    items += fmt::format(", {} using 1:($4 > 0 ? $2 : NaN) with points pt 7 ps 0.4 lc rgb 'white' notitle", data);
+    items += fmt::format(", {} using 1:($4 > 0 ? $2 : NaN) with points pt 7 ps {} lc rgb 'white' notitle", data, width < 1.7 ? 0.25 : 0.4);
   if (!series.labels.empty())
     items += fmt::format(", {} using 1:2:3 with labels left offset 0.8,0.5 font ',11' textcolor rgb '{}' noenhanced notitle", data, colour);
   return items;

@@ -9,10 +9,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ReferenceError read_reference(const fs::path& path) {
-  if (!fs::exists(path)) return {};
-  const Json json = read_json(path);
-  return {number_at(json, "position_error_rel_l2"), number_at(json, "force_error_rms_n"), number_at(json, "torque_error_rms_n_m"), text_at(json, "description")};
+/// By scene.
+std::map<std::string, ReferenceError> read_references(const Json& json) {
+  std::map<std::string, ReferenceError> out;
+  if (!json.contains("scenes")) return out;
+  for (const Json& one : json["scenes"]) {
+    ReferenceError& r = out[text_at(one, "scene")];
+    r = {number_at(one, "position_error_rel_l2"), number_at(one, "force_error_rms_n"), number_at(one, "torque_error_rms_n_m"), text_at(one, "description"),
+         text_at(one, "trouble")};
+    if (one.contains("notes"))
+      for (const Json& note : one["notes"]) r.notes.push_back(note.get<std::string>());
+  }
+  return out;
+}
+
+void add_comparison_of(Page& page, const fs::path& dir) {
+  const Json reference = fs::exists(dir / "reference.json") ? read_json(dir / "reference.json") : Json::object();
+  add_comparison(page, read_csv(dir / "compare.csv"), read_references(reference), text_at(reference, "rules"));
 }
 
 /// The scene as it was run: kept in summary.json, else the file beside the results.
@@ -22,7 +35,7 @@ std::string scene_source(const fs::path& dir, const Json& summary) {
 }
 
 bool holds_results(const fs::path& dir) {
-  for (const char* name : {"summary.json", "force.csv", "compare.csv", "exchange.csv", "validation.json"})
+  for (const char* name : {"summary.json", "force.csv", "compare.csv", "restarts.csv", "exchange.csv", "validation.json"})
     if (fs::exists(dir / name)) return true;
   return false;
 }
@@ -41,7 +54,8 @@ fs::path write_run_report(const fs::path& dir) {
   add_head(page, summary);
   add_pictures(page, summary, dir);
   if (has("force.csv")) add_forces(page, summary, read_csv(dir / "force.csv"));
-  if (has("compare.csv")) add_comparison(page, read_csv(dir / "compare.csv"), read_reference(dir / "reference.json"));
+  if (has("compare.csv")) add_comparison_of(page, dir);
+  if (has("restarts.csv")) add_restarts(page, read_csv(dir / "restarts.csv"));
   if (has("exchange.csv")) add_exchange(page, read_csv(dir / "exchange.csv"));
   if (has("methods.csv")) add_methods(page, read_csv(dir / "methods.csv"));
   if (has("validation.json")) add_validation(page, read_json(dir / "validation.json"));

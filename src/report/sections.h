@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <map>
 
 #include "json.h"
 #include "palpate/report/page.h"
@@ -17,7 +18,9 @@ void add_head(Page& page, const Json& summary);     ///< what was run, in a few 
 void add_figures(Page& page, const Json& summary);  ///< all that was counted and timed
 void add_pictures(Page& page, const Json& summary, const std::filesystem::path& dir);
 void add_forces(Page& page, const Json& summary, const Table& force);
-void add_comparison(Page& page, const Table& compare, const ReferenceError& reference);
+/// @param references  by scene  @param rules  how runs were repeated and limited
+void add_comparison(Page& page, const Table& compare, const std::map<std::string, ReferenceError>& references, const std::string& rules);
+void add_restarts(Page& page, const Table& restarts);
 void add_exchange(Page& page, const Table& exchange);
 void add_methods(Page& page, const Table& methods);
 void add_validation(Page& page, const Json& validation);

@@ -37,6 +37,10 @@ tr.bad td { background: var(--bad-tint); }
 tr.bad td:last-child { color: var(--bad); font-weight: 700; }
 tr.faint td { color: var(--quiet); }
 .groups { display: flex; flex-wrap: wrap; gap: 0 3rem; align-items: flex-start; }
+.multiples { display: grid; grid-template-columns: repeat(auto-fit, minmax(26rem, 1fr)); gap: 0 1.5rem; }
+.multiples figure { margin: .5rem 0; }
+details { margin: 1rem 0; }
+summary { cursor: pointer; color: var(--accent); }
 table.facts th { font-weight: 400; padding-right: 2rem; white-space: nowrap; vertical-align: baseline; }
 pre { background: var(--tint); border: 1px solid var(--line); border-radius: 4px; padding: .9rem 1.1rem; overflow-x: auto; font: .8125rem/1.5 ui-monospace, "DejaVu Sans Mono", monospace; }
 .plot .gridline { stroke: var(--line); }

@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "log_line.h"
 #include "palpate/core/error.h"
 
 namespace palpate::report {
 namespace {
-
-/// A ladder point, as the fits and the plots use it.
-struct Point {
-  std::string integrator, setting_name;
-  double setting = 0.0, error = 0.0, cpu_s = 0.0;
-  bool below_reference = false, ok = true;
-};
 
 /// Each error has its own reference: a position below it says nothing about the force.
 std::string below_column(const Table& compare, const std::string& error_column) {
@@ -21,32 +15,10 @@ std::string below_column(const Table& compare, const std::string& error_column) 
   return compare.has(own) ? own : "below_reference";
 }
 
-std::vector<Point> points_of(const Table& compare, const std::string& error_column) {
-  const std::vector<double> setting = compare.numbers("setting"), error = compare.numbers(error_column), cpu = compare.numbers("cpu_s_median");
-  const std::size_t integrator = compare.column("integrator"), name = compare.column("setting_name"), status = compare.column("status"),
-                    below = compare.column(below_column(compare, error_column));
-  std::vector<Point> points;
-  for (std::size_t i = 0; i < compare.rows.size(); ++i) {
-    const auto& row = compare.rows[i];
-    points.push_back({row[integrator], row[name], setting[i], error[i], cpu[i], row[below] == "true" || row[below] == "1" || row[below] == "yes",
-                      row[status] == "ok"});
-  }
-  return points;
-}
+bool is_yes(const std::string& cell) { return cell == "yes" || cell == "true" || cell == "1"; }
 
-/// Integrators in the order of their first line.
-std::vector<std::string> integrators_of(const std::vector<Point>& points) {
-  std::vector<std::string> names;
-  for (const Point& p : points)
-    if (std::find(names.begin(), names.end(), p.integrator) == names.end()) names.push_back(p.integrator);
-  return names;
-}
+}  // namespace
 
-/// Slope and intercept of the line through (log x, log y) by least squares.
-struct LogLine {
-  double slope = std::numeric_limits<double>::quiet_NaN(), intercept = 0.0;
-  int points = 0;
-};
 LogLine fit_log_line(const std::vector<double>& x, const std::vector<double>& y) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -63,24 +35,13 @@ LogLine fit_log_line(const std::vector<double>& x, const std::vector<double>& y)
   return line;
 }
 
-}  // namespace
-
-const std::vector<std::string>& compare_columns() {
-  static const std::vector<std::string> columns = {
-      "scene", "integrator", "setting_name", "setting", "position_error_rel_l2", "position_error_max_m", "force_error_rms_n", "force_error_max_n",
-      "torque_error_rms_n_m", "torque_error_max_n_m", "energy_error_j", "cpu_s_median", "cpu_s_min", "cpu_s_max", "force_evaluations",
-      "tangent_evaluations", "factorisations", "linear_solves", "contact_queries", "steps", "status", "below_reference",
-      "force_below_reference", "torque_below_reference"};
-  return columns;
-}
-
 const std::vector<std::string>& exchange_columns() {
   static const std::vector<std::string> columns = {"exchange_period_s", "position_error_rel_l2", "force_error_rms_n", "torque_error_rms_n_m", "cpu_s"};
   return columns;
 }
 
 std::string setting_text(const std::string& setting_name, double setting) {
-  if (setting_name == "step_s") return setting < 1e-3 ? fmt::format("{:.3g} us", setting * 1e6) : fmt::format("{:.3g} ms", setting * 1e3);
+  if (setting_name == "step_s" || setting_name == "tick_s") return setting < 1e-3 ? fmt::format("{:.3g} us", setting * 1e6) : fmt::format("{:.3g} ms", setting * 1e3);
   // 1e-04 as people write it: 1e-4.
   std::string text = fmt::format("{:.0e}", setting);
   if (to_number(text) != setting) text = fmt::format("{:.3g}", setting);
@@ -88,80 +49,117 @@ std::string setting_text(const std::string& setting_name, double setting) {
   return setting_name == "rtol" ? text : setting_name + " " + text;
 }
 
-std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& error_column) {
-  const std::vector<Point> points = points_of(compare, error_column);
-  std::vector<FittedOrder> orders;
-  for (const std::string& name : integrators_of(points)) {
-    FittedOrder fitted;
-    fitted.integrator = name;
-    std::vector<double> setting, error;
-    for (const Point& p : points) {
-      if (p.integrator != name) continue;
-      fitted.setting_name = p.setting_name;
-      if (!p.ok || p.below_reference) continue;
-      setting.push_back(p.setting);
-      error.push_back(p.error);
-    }
-    const LogLine line = fit_log_line(setting, error);
-    fitted.order = line.slope;
-    fitted.points = line.points;
-    orders.push_back(fitted);
-  }
-  return orders;
+Table rows_where(const Table& table, const std::string& column, const std::string& value) {
+  if (!table.has(column)) return table;
+  Table out{table.headers, {}, table.source};
+  const std::size_t c = table.column(column);
+  std::copy_if(table.rows.begin(), table.rows.end(), std::back_inserter(out.rows), [&](const auto& row) { return row[c] == value; });
+  return out;
 }
 
-std::vector<Cheapest> cheapest(const Table& compare, const std::string& error_column, const std::vector<double>& targets) {
-  std::vector<Cheapest> out;
-  for (const double target : targets) {
-    Cheapest best;
-    best.target = target;
-    for (const Point& p : points_of(compare, error_column)) {
-      if (!p.ok || !(p.error <= target) || !(p.cpu_s >= 0.0) || (best.found && p.cpu_s >= best.cpu_s)) continue;
-      best = {target, true, p.integrator, p.setting_name, p.setting, p.error, p.cpu_s};
+std::vector<std::string> distinct(const Table& table, const std::string& column) {
+  std::vector<std::string> out;
+  const std::size_t c = table.column(column);
+  for (const auto& row : table.rows)
+    if (std::find(out.begin(), out.end(), row[c]) == out.end()) out.push_back(row[c]);
+  return out;
+}
+
+std::vector<Ladder> ladders(const Table& compare, const std::string& error_column, const std::string& cost_column) {
+  const std::vector<double> setting = compare.numbers("setting"), error = compare.numbers(error_column), cost = compare.numbers(cost_column),
+                            order = compare.numbers("order");
+  const auto text = [&](std::size_t row, const char* column) { return compare.rows[row][compare.column(column)]; };
+  const std::size_t below = compare.column(below_column(compare, error_column));
+  std::vector<Ladder> out;
+  for (std::size_t i = 0; i < compare.rows.size(); ++i) {
+    const std::string label = text(i, "label");
+    auto ladder = std::find_if(out.begin(), out.end(), [&](const Ladder& l) { return l.label == label; });
+    if (ladder == out.end()) {
+      out.push_back({label, text(i, "integrator"), text(i, "family"), text(i, "stability"), text(i, "setting_name"), 0, {}});
+      ladder = out.end() - 1;
+      ladder->order = std::isfinite(order[i]) ? static_cast<int>(order[i]) : 0;
     }
-    out.push_back(best);
+    if (text(i, "status") == "ok" && std::isfinite(error[i])) {
+      ladder->points.push_back({setting[i], error[i], cost[i], is_yes(compare.rows[i][below])});
+    } else if (text(i, "status") != "ok") {
+      ladder->failures.emplace_back(text(i, "status"), text(i, "reason"));
+      ladder->failed_settings.push_back(setting[i]);
+    }
   }
   return out;
 }
 
-Plot work_precision_plot(const Table& compare, const std::string& error_column, const std::string& error_label, double reference_error) {
-  const std::vector<Point> points = points_of(compare, error_column);
-  Plot plot;
-  plot.x_label = "CPU time [s]";
-  plot.y_label = error_label;
-  plot.log_x = plot.log_y = true;
-  plot.floor_y = reference_error;
-  plot.floor_label = "the reference's own error";
-  for (const std::string& name : integrators_of(points)) {
-    Series series{.name = name, .x = {}, .y = {}, .mark = Mark::kLinePoints};
-    for (const Point& p : points) {
-      if (p.integrator != name || !p.ok) continue;
-      series.x.push_back(p.cpu_s);
-      series.y.push_back(p.error);
-      series.labels.push_back(setting_text(p.setting_name, p.setting));
-      series.hollow.push_back(p.below_reference);
+std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& error_column) {
+  std::vector<FittedOrder> orders;
+  for (const Ladder& ladder : ladders(compare, error_column, "setting")) {
+    std::vector<double> setting, error;
+    for (const LadderPoint& p : ladder.points) {
+      if (p.below_reference || p.error >= 1.0) continue;  // an error as large as the motion has no slope
+      setting.push_back(p.setting);
+      error.push_back(p.error);
     }
-    plot.series.push_back(std::move(series));
+    const LogLine line = fit_log_line(setting, error);
+    orders.push_back({ladder.label, ladder.integrator, ladder.setting_name, line.slope, line.points});
   }
-  return plot;
+  return orders;
 }
 
-Plot exchange_plot(const Table& exchange, const std::string& error_column, const std::string& error_label) {
-  const std::vector<double> period = exchange.numbers("exchange_period_s"), error = exchange.numbers(error_column);
-  Plot plot;
-  plot.x_label = "exchange period [s]";
-  plot.y_label = error_label;
-  plot.log_x = plot.log_y = true;
-  plot.height = 340;
-  plot.series.push_back({.name = "measured", .x = period, .y = error, .mark = Mark::kLinePoints});
-  const LogLine line = fit_log_line(period, error);
-  if (std::isfinite(line.slope)) {
-    const auto [least, greatest] = std::minmax_element(period.begin(), period.end());
-    Series fit{.name = fmt::format("fitted order {:.2f}", line.slope), .x = {*least, *greatest}, .y = {}, .mark = Mark::kDashed, .colour = "ink"};
-    for (const double x : fit.x) fit.y.push_back(std::exp(line.intercept + line.slope * std::log(x)));
-    plot.series.push_back(std::move(fit));
+Cost cost_at(const Ladder& ladder, double target, double reference_error) {
+  const auto known = [&](const LadderPoint& p) { return std::isfinite(reference_error) ? std::max(p.error, reference_error) : p.error; };
+  Cost best;
+  const auto offer = [&](double value, bool at_most) {
+    if (value >= 0.0 && !(value >= best.value)) best = {value, at_most};
+  };
+  for (std::size_t i = 0; i < ladder.points.size(); ++i) {
+    const LadderPoint& fine = ladder.points[i];
+    if (!(known(fine) <= target)) continue;
+    if (i == 0) {
+      offer(fine.cost, known(fine) < target);
+      continue;
+    }
+    const LadderPoint& coarse = ladder.points[i - 1];
+    if (!(known(coarse) > target)) {
+      offer(fine.cost, true);  // an odd ladder, where a finer rung is cheaper
+      continue;
+    }
+    const double share = std::log(known(coarse) / target) / std::log(known(coarse) / known(fine));
+    const bool positive = coarse.cost > 0.0 && fine.cost > 0.0;
+    offer(positive ? std::exp((1.0 - share) * std::log(coarse.cost) + share * std::log(fine.cost)) : fine.cost, false);
   }
-  return plot;
+  return best;
+}
+
+std::string cost_text(const Cost& cost) { return (cost.at_most ? "<= " : "") + short_number(cost.value); }
+
+std::vector<Winner> winners(const Table& compare, const std::string& error_column, const std::string& cost_column, const std::vector<double>& targets,
+                            double reference_error) {
+  const std::vector<Ladder> all = ladders(compare, error_column, cost_column);
+  std::vector<Winner> out;
+  for (const double target : targets) {
+    Winner win;
+    win.target = target;
+    double second = kUnknown, baseline = kUnknown;
+    for (const Ladder& ladder : all) {
+      const Cost cost = cost_at(ladder, target, reference_error);
+      if (std::isnan(cost.value)) continue;
+      if (ladder.integrator == kBaseline && !(cost.value >= baseline)) baseline = cost.value;
+      if (!win.found || cost.value < win.cost.value) {
+        if (win.found) second = win.cost.value, win.runner_up = win.label;
+        win.found = true;
+        win.label = ladder.label;
+        win.cost = cost;
+      } else if (!(cost.value >= second)) {
+        second = cost.value;
+        win.runner_up = ladder.label;
+      }
+    }
+    if (win.found && win.cost.value > 0.0) {
+      win.runner_up_ratio = second / win.cost.value;
+      win.baseline_ratio = baseline / win.cost.value;
+    }
+    out.push_back(win);
+  }
+  return out;
 }
 
 }  // namespace palpate::report

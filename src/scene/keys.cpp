@@ -152,6 +152,8 @@ const KeyTable<CompareSpec>& compare_keys() {
   static const KeyTable<CompareSpec> keys = {
       tables("ladder", &CompareSpec::ladders, ladder_keys()),
       numbers("exchange_periods_s", &CompareSpec::exchange_periods_s, positive()),
+      numbers("refresh_periods_s", &CompareSpec::refresh_periods_s, positive()),
+      text("reference", &CompareSpec::reference),
       number("reference_rtol", &CompareSpec::reference_rtol, closed(1e-13, 1e-2, "it must be tighter than every rung; 1e-9 is a good start")),
       text("reference_check", &CompareSpec::reference_check),
       number("reference_check_rtol", &CompareSpec::reference_check_rtol, closed(1e-13, 1e-2)),

@@ -10,6 +10,12 @@ namespace {
 
 VecX nodal_positions(const loop::World& world) { return world.state.q().head(world.state.layout().nodal_size); }
 
+/// Nodes of all bodies; of a scene without any, the tool's origin.
+VecX positions_of(const loop::World& world, const Vec3& tool_origin) {
+  if (world.bodies.empty() && world.description.tool) return tool_origin;
+  return nodal_positions(world);
+}
+
 /// Times are multiples of the two runs' periods; equal to well within the shorter one's rounding.
 bool same_time(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(1.0, std::abs(a)); }
 
@@ -38,21 +44,23 @@ int for_common_times(const std::vector<double>& a, const std::vector<double>& b,
 
 void TrajectoryRecorder::period(loop::World& world, double t) {
   if (trajectory_.period_times.empty()) {
-    trajectory_.start = nodal_positions(world);
-    trajectory_.node_weights.resize(world.state.layout().nodal_size);
+    if (world.description.tool) tool_origin_ = world.description.tool->position_m;
+    trajectory_.start = positions_of(world, tool_origin_);
+    trajectory_.node_weights.setOnes(trajectory_.start.size());
     for (const loop::Body& body : world.bodies) {
       const int first = world.state.layout().find(body.block_id)->u_offset;
       for (Eigen::Index i = 0; i < body.masses.size(); ++i) trajectory_.node_weights.segment<3>(first + 3 * i).setConstant(body.masses[i]);
     }
   }
   trajectory_.period_times.push_back(t);
-  trajectory_.positions.push_back(nodal_positions(world));
+  trajectory_.positions.push_back(positions_of(world, tool_origin_));
   trajectory_.energies.push_back(world.bodies.empty() ? 0.0 : world.mechanical_energy());
 }
 
 void TrajectoryRecorder::tick(const loop::TickRecord& tick) {
   trajectory_.tick_times.push_back(tick.time);
   trajectory_.device.push_back(tick.device);
+  tool_origin_ = tick.tool.translation;
 }
 
 TrajectoryError distance(const Trajectory& computed, const Trajectory& reference) {

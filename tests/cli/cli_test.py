@@ -3,6 +3,7 @@
 
     cli_test.py PROGRAM
 """
+import contextlib
 import json
 import os
 import pty
@@ -11,6 +12,7 @@ import resource
 import select
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -120,7 +122,6 @@ class Refusals(Cli):
     def test_folders(self):
         (self.folder / "file").write_text("")
         self.assertIn("-o DIR", self.refused("run", "one-tet", "-o", "file"))
-        self.assertIn("compare.ladder", self.refused("compare", "one-tet"))
 
     def test_integrator_that_gives_up_is_an_error_and_keeps_what_was_recorded(self):
         text = self.refused("run", "one-tet", "--set", "integrator.max_steps=5", "-o", "kept")
@@ -164,13 +165,49 @@ class Results(Cli):
         text = self.good("run", "one-tet", "--duration-s", "0.1", "--integrator", "linearly-implicit-euler", "--set", "integrator.step_s=0.01")
         self.assertIn("linearly-implicit-euler: 10 steps", text)
 
+    QUICK = ["--duration-s", "0.05", "--repeats", "1", "--set", "body.0.mesh.element_size_m=0.05"]
+
     def test_compare_prints_orders_and_writes_the_table(self):
-        text = self.good("compare", "cantilever", "--duration-s", "0.05", "--repeats", "1", "-o", "cmp",
-                         "--set", "body.0.mesh.element_size_m=0.05")
-        self.assertIn("fitted order", text)
-        self.assertIn("its own error", text)
+        text = self.good("compare", "cantilever", *self.QUICK, "-o", "cmp", "--integrator", "cvode-bdf", "--integrator", "linearly-implicit-euler")
+        for words in ("fitted order", "its own error", "is the cheapest", "interleaved"):
+            self.assertIn(words, text)
         names = {path.name for path in (self.folder / "cmp").iterdir()}
-        self.assertLessEqual({"compare.csv", "reference.json", "report.html"}, names)
+        self.assertEqual({"compare.csv", "reference.json", "report.html", "study.sqlite"}, names)
+
+    def test_compare_takes_several_scenes_and_any_integrator(self):
+        arguments = ["compare", "cantilever", "one-tet", *self.QUICK[:-2], "--integrator", "ark-erk-5", "-o", "two", "--limit-s", "0.5"]
+        self.good(*arguments)
+        table = (self.folder / "two/compare.csv").read_text().splitlines()
+        self.assertEqual({line.split(",")[0] for line in table[1:]}, {"cantilever", "one-tet"})
+        self.assertEqual(len(table), 1 + 2 * 7)
+        page = (self.folder / "two/report.html").read_text()
+        xml.dom.minidom.parseString(page)
+        self.assertIn("Scene: one-tet", page)
+        again = self.good(*arguments)
+        self.assertIn("were done before", again)
+        self.assertEqual((self.folder / "two/compare.csv").read_text().splitlines(), table)
+        self.assertNotIn("were done before", self.good(*arguments, "--fresh"))
+
+    def test_compare_goes_on_after_a_kill(self):
+        arguments = [str(PROGRAM), "compare", "cantilever", *self.QUICK, "-o", "cut", "--integrator", "linearly-implicit-euler", "--integrator", "cvode-bdf", "--jobs", "1"]
+        process = subprocess.Popen(arguments, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        database = self.folder / "cut/study.sqlite"
+        end = time.monotonic() + 120
+        while self.rows(database) < 3 and process.poll() is None and time.monotonic() < end:
+            time.sleep(0.01)
+        process.kill()
+        process.wait()
+        before = self.rows(database)
+        self.assertGreaterEqual(before, 3)
+        self.good(*arguments[1:])
+        self.assertEqual(self.rows(database), 11)
+
+    def rows(self, database):
+        try:
+            with contextlib.closing(sqlite3.connect(f"file:{database}?mode=ro", uri=True)) as db:
+                return db.execute("select count(*) from run").fetchone()[0]
+        except sqlite3.Error:
+            return 0
 
     def test_lists(self):
         everything = self.good("list")

@@ -7,6 +7,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/report/work_precision.h"
+#include "palpate/store/study_columns.h"
 #include "well_formed.h"
 
 using namespace palpate;
@@ -43,14 +44,17 @@ fs::path full_dir() {
       "provenance": {"version": "0.1.0", "commit": "abc", "libraries": {"Eigen": "3.4.0"}}})");
   put(dir / "scene.toml", "name = \"press <ball>\" # a & b\n");
   put(dir / "force.csv", "time_s,force_x_n,force_y_n,force_z_n\n0,0,0,0\n0.001,0,0,1\n0.002,0,0,2\n");
-  std::string compare = joined(report::compare_columns());
+  std::string compare = joined(store::compare_columns());
   for (const char* line : {"1e-3,1e-3,1", "1e-4,1e-4,2", "1e-5,1e-5,4"}) {
-    const std::string s = line;
-    const auto a = s.find(','), b = s.rfind(',');
-    compare += "press,cvode_<bdf>,rtol," + s.substr(0, a) + "," + s.substr(a + 1, b - a - 1) + ",,,,,,," + s.substr(b + 1) + ",1,4,10,2,3,10,5,9,ok,false,false,false\n";
+    const std::string text = line;
+    const auto first = text.find(','), last = text.rfind(',');
+    compare += "press,cvode_<bdf>,cvode-bdf,BDF,5,A(alpha),yes,rtol," + text.substr(0, first) + "," + text.substr(first + 1, last - first - 1) + ",,,,,,," + text.substr(last + 1) +
+               ",1,4,1,10,2,3,10,12,9,8,1,0,ok,,no,no,no\n";
   }
   put(dir / "compare.csv", compare);
-  put(dir / "reference.json", R"({"position_error_rel_l2": 1e-6, "force_error_rms_n": null, "torque_error_rms_n_m": null, "description": "cvode-bdf at 1e-9"})");
+  put(dir / "reference.json", R"({"rules": "one run a point", "scenes": [{"scene": "press", "position_error_rel_l2": 1e-6, "force_error_rms_n": null, "torque_error_rms_n_m": null,
+      "description": "cvode-bdf at 1e-9", "trouble": "", "notes": []}]})");
+  put(dir / "restarts.csv", joined(store::restart_columns()) + "press,cvode_<bdf>,cvode-bdf,yes,0.01,0.5,3,100,120,20,0.1,ok,\npress,cvode_<bdf>,cvode-bdf,yes,0.001,0.5,30,400,500,60,0.3,ok,\n");
   put(dir / "exchange.csv", joined(report::exchange_columns()) + "0.02,2e-2,,,1\n0.01,1e-2,,,2\n0.005,5e-3,,,4\n");
   put(dir / "validation.json", R"({"cases": [{"name": "patch-test", "measurements": [
       {"quantity": "stress [Pa]", "computed": 1, "exact": 1, "error": 0, "bar": 1e-6, "order": null, "passed": true},
@@ -65,7 +69,7 @@ TEST(RunReport, HoldsEverySectionAndNothingFromOutside) {
   const std::string html = read(report::write_run_report(full_dir()));
   EXPECT_EQ(well_formed_problem(html), "");
   for (const char* text : {"palpate: press &lt;ball&gt;", "The ball &amp; its dent", "palpate run press-ball", "<td class=\"n\">812</td>", "a soft body", "3.4.0", "Force on the hand", "device limit 2.5 N", "Error against run time", "cvode_&lt;bdf&gt;",
-                           "Reference: cvode-bdf at 1e-9", "the reference's own error", "Cheapest for a wanted error", "Fitted order", "1.00 (3 points)",
+                           "Reference: cvode-bdf at 1e-9", "one run a point", "the reference's own error", "Cheapest for a wanted error", "Cost of a wanted error", "What a restart costs", "(multistep)", "Fitted order", "1.00 (3 points)",
                            "Error of the exchange period", "fitted order 1.00", "patch-test", "FAIL", "1 of 2 measurements FAIL", "left out", "one body", "Provenance", "abc",
                            "# a &amp; b"})
     EXPECT_NE(html.find(text), std::string::npos) << text;

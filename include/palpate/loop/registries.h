@@ -2,6 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "palpate/dynamics/stepper.h"
+
 namespace palpate::loop {
 
 /// One name that a scene or an option knows.
@@ -17,5 +19,10 @@ struct ChoiceList {
   std::vector<Choice> choices;
 };
 std::vector<ChoiceList> registries();
+
+/// The integrators of soft bodies with what theory knows of each: what comparisons and stability studies run over.
+const dynamics::StepperRegistry& steppers();
+/// Those of the tool's own ticks; empty where tools were not compiled in.
+std::vector<Choice> tool_steppers();
 
 }  // namespace palpate::loop

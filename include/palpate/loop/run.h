@@ -30,7 +30,7 @@ struct RunOptions {
   double duration_s = 0.0;                          ///< 0: the scene's
   std::vector<Observer*> observers;
   std::function<void(double fraction)> progress;    ///< called after every period
-  const std::atomic<bool>* stop = nullptr;          ///< set from outside: the run ends after the current period
+  const std::atomic<bool>* stop = nullptr;          ///< set from outside: the run ends after the current step
 };
 
 struct RunResult {

@@ -29,6 +29,13 @@ class Page {
   Page& add_png(const std::filesystem::path& png, const std::string& caption);
   Page& add_code(const std::string& text);
 
+  /// Figures that are added between these two stand side by side where there is room.
+  Page& begin_multiples();
+  Page& end_multiples();
+  /// What is added between these two is folded away under a line of text until the reader opens it.
+  Page& begin_details(const std::string& summary);
+  Page& end_details();
+
   std::string html() const;
 
  private:

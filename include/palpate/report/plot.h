@@ -15,6 +15,7 @@ struct Series {
   std::vector<std::string> labels = {};  ///< text beside each point; empty: none
   std::vector<bool> hollow = {};         ///< points drawn as rings (below the reference's own error); empty: none
   std::string colour = {};               ///< "#rrggbb", or "ink" for the text's colour; empty: the next of the palette
+  double width = 0.0;                    ///< of the line; 0: the mark's own
 };
 
 /// A horizontal line with its name: a force limit, a bar.

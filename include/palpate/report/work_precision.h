@@ -6,43 +6,95 @@
 #include "palpate/report/plot.h"
 #include "palpate/report/table.h"
 
-/// What a work-precision comparison says, read from compare.csv (columns: compare_columns()).
+/// What a work-precision comparison says, read from compare.csv (columns: store::compare_columns()).  All functions take the lines of one scene.
 namespace palpate::report {
 
-/// Columns of compare.csv and exchange.csv, in order.
-const std::vector<std::string>& compare_columns();
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// The errors that every comparison is asked for.
+inline const std::vector<double> kTargets = {1e-2, 1e-3, 1e-4, 1e-6};
+/// What is slower than this is told how much: the interactive method of the field.
+inline const std::string kBaseline = "linearly-implicit-euler";
+
+/// Columns of exchange.csv, in order (a `scene` may stand before them).
 const std::vector<std::string>& exchange_columns();
 
 /// The reference's own error (reference.json): two families' difference.  NaN where not measured.
 struct ReferenceError {
-  double position_error_rel_l2 = std::numeric_limits<double>::quiet_NaN();
-  double force_error_rms_n = std::numeric_limits<double>::quiet_NaN();
-  double torque_error_rms_n_m = std::numeric_limits<double>::quiet_NaN();
+  double position_error_rel_l2 = kUnknown;
+  double force_error_rms_n = kUnknown;
+  double torque_error_rms_n_m = kUnknown;
   std::string description;
+  std::string trouble = {};              ///< what is missing of it, and why
+  std::vector<std::string> notes = {};   ///< charts that could not be made
 };
 
-/// Least-squares slope of log(error) against log(setting) of one integrator.
+/// The lines whose cell in `column` is `value`; all of them where there is no such column.
+Table rows_where(const Table& table, const std::string& column, const std::string& value);
+/// What stands in a column, each once, in the order of the lines.
+std::vector<std::string> distinct(const Table& table, const std::string& column);
+
+/// One ladder: its usable points, from the coarsest rung to the finest.
+struct LadderPoint {
+  double setting = kUnknown, error = kUnknown, cost = kUnknown;
+  bool below_reference = false;
+};
+struct Ladder {
+  std::string label, integrator, family, stability, setting_name;
+  int order = 0;                                                 ///< in theory
+  std::vector<LadderPoint> points;                               ///< those with status ok and a finite error
+  std::vector<std::pair<std::string, std::string>> failures = {};  ///< status and reason of the others
+  std::vector<double> failed_settings = {};
+};
+std::vector<Ladder> ladders(const Table& compare, const std::string& error_column, const std::string& cost_column);
+
+/// Least-squares slope of log(error) against log(setting) of one ladder.
 struct FittedOrder {
-  std::string integrator, setting_name;
-  double order = std::numeric_limits<double>::quiet_NaN();  ///< NaN with fewer than two usable points
-  int points = 0;                                           ///< that were used: status ok, finite, not below the reference
+  std::string label, integrator, setting_name;
+  double order = kUnknown;  ///< NaN with fewer than two usable points
+  int points = 0;           ///< that were used: status ok, finite, not below the reference
 };
 std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& error_column);
 
-/// The cheapest point of all whose error is at most `target`.
-struct Cheapest {
+/// What an error costs on one ladder.  Between two neighbouring rungs that have it between them, log(cost) is taken as linear in log(error); the cheapest
+/// such pair counts.  Nothing is extrapolated: where even the coarsest usable rung is better, its own cost is what is known (`at_most`).
+/// An error below the reference's own counts as that.
+struct Cost {
+  double value = kUnknown;  ///< NaN: not reached
+  bool at_most = false;
+};
+Cost cost_at(const Ladder& ladder, double target, double reference_error);
+std::string cost_text(const Cost& cost);  ///< "0.12", "<= 0.12", "-"
+
+/// Who reaches an error at the least cost.
+struct Winner {
   double target = 0.0;
   bool found = false;
-  std::string integrator, setting_name;
-  double setting = 0.0, error = 0.0, cpu_s = 0.0;
+  std::string label, runner_up;
+  Cost cost;
+  double runner_up_ratio = kUnknown;  ///< its cost over the winner's
+  double baseline_ratio = kUnknown;   ///< the same of kBaseline; NaN where it does not get there
 };
-std::vector<Cheapest> cheapest(const Table& compare, const std::string& error_column, const std::vector<double>& targets);
+std::vector<Winner> winners(const Table& compare, const std::string& error_column, const std::string& cost_column, const std::vector<double>& targets,
+                            double reference_error = kUnknown);
 
-/// Error against CPU seconds, log-log, one line per integrator, each point labelled with its tolerance or step.
-Plot work_precision_plot(const Table& compare, const std::string& error_column, const std::string& error_label, double reference_error);
+/// What the numbers say, in sentences: who wins where, who failed and why, which explicit methods stand at their stability limit, and whether the
+/// reference bears it.
+std::string in_words(const Table& compare, double reference_error);
+
+/// Error against a cost, log-log: one line a ladder, coloured by family; the best envelope is drawn over them.
+Plot work_precision_plot(const Table& compare, const std::string& error_column, const std::string& error_label, double reference_error,
+                         const std::string& cost_column = "cpu_s_median", const std::string& cost_label = "CPU time [s]");
+
+/// The same, one small plot a family: its ladders in colour with their names, all others faint behind.
+std::vector<Plot> family_plots(const Table& compare, const std::string& error_column, const std::string& error_label, double reference_error,
+                               const std::string& cost_column = "cpu_s_median", const std::string& cost_label = "CPU time [s]");
 
 /// Error against the exchange period, log-log, with the fitted slope drawn beside it.
 Plot exchange_plot(const Table& exchange, const std::string& error_column, const std::string& error_label);
+
+/// Of restarts.csv: `count_column` per simulated second against the restarts per simulated second; multistep methods in colour, one-step ones grey.
+Plot restart_plot(const Table& restarts, const std::string& count_column, const std::string& count_label);
 
 /// "rtol 1e-04", "step 2 ms": a ladder point's setting for people.
 std::string setting_text(const std::string& setting_name, double setting);

@@ -25,10 +25,12 @@ struct LadderSpec {
 struct CompareSpec {
   std::vector<LadderSpec> ladders;
   std::vector<double> exchange_periods_s;  ///< for the chart of the exchange period's own error; empty: none
-  double reference_rtol = 1e-9;            ///< of the reference, made by cvode-bdf
+  std::string reference = "cvode-bdf";     ///< the integrator that makes the reference
+  double reference_rtol = 1e-9;            ///< of the reference
   std::string reference_check = "ark-erk-5";  ///< the integrator of another family that checks the reference
   double reference_check_rtol = 1e-8;
   std::vector<std::string> contact_methods;   ///< ways to find the tool's contact, compared with the first; empty: none
+  std::vector<double> refresh_periods_s;   ///< contact refreshes at which the price of re-initialisation is counted; empty: none
   double duration_s = 0.0;                 ///< 0: the scene's
 };
 

@@ -8,15 +8,33 @@
 
 namespace palpate::study {
 
-/// One point of the work-precision chart.
+/// What became of a point.
+enum class PointStatus {
+  kOk,
+  kFailed,      ///< the integrator gave up
+  kOutOfTime,
+  kCrashed,     ///< its process ended by a signal
+  kRefused,     ///< the integrator cannot run this scene with these settings
+  kNotTried,    ///< a coarser rung ran out of time
+  kMissing,     ///< the study was stopped before it
+};
+const char* to_string(PointStatus status);
+
+/// One point of the work-precision chart: one integrator at one tolerance or step.
 struct ComparePoint {
-  std::string integrator;
-  std::string setting_name;        ///< "rtol" or "step_s"
+  std::string label;               ///< what reports call its ladder; unique in a scene
+  std::string integrator, family, stability;
+  int order = 0;                   ///< in theory
+  bool multistep = false;
+  std::string setting_name;        ///< "rtol", "step_s" or "tick_s"
   double setting = 0.0;
-  TrajectoryError error;           ///< NaN throughout when the run failed
+  scene::Description description;  ///< the scene with everything set for this point
+  PointStatus status = PointStatus::kMissing;
+  std::string reason;              ///< where the status is not kOk
+  TrajectoryError error;           ///< NaN throughout where the status is not kOk, or where there is no reference
+  loop::RunResult result;          ///< of the first repeat; counts are the same in all
   std::vector<double> cpu_s;       ///< of each repeat
   double cpu_median_s = 0.0, cpu_min_s = 0.0, cpu_max_s = 0.0;
-  loop::RunResult result;          ///< of the first repeat
   bool below_reference = false;    ///< its position error is not above the reference's own: not to be trusted
   bool force_below_reference = false, torque_below_reference = false;  ///< the same of the RMS on the hand
 };
@@ -24,7 +42,9 @@ struct ComparePoint {
 /// The truth that the points are held against, and how far it can be trusted.
 struct Reference {
   std::string description;         ///< what it was made by, and what checked it
-  TrajectoryError own_error;       ///< distance of two families at tight tolerance
+  std::string trouble;             ///< what is missing of the two, and why; empty: nothing
+  bool available = false;          ///< without one no point has an error
+  TrajectoryError own_error = no_distance();  ///< distance of two families at tight tolerance; NaN where there was no check
   double cpu_s = 0.0;
 };
 
@@ -37,29 +57,47 @@ struct MethodPoint {
   double query_s = 0.0, cpu_s = 0.0;
 };
 
-struct Comparison {
-  std::string scene;
+/// All about one scene.
+struct SceneComparison {
+  std::string scene, path;
+  bool tool = false;
   Reference reference;
   std::vector<ComparePoint> points;
+  std::vector<ComparePoint> restarts;    ///< setting "contact_refresh_s": what re-initialisation costs; empty where the scene asks for none
   std::vector<ExchangePoint> exchange;   ///< error of the exchange period itself; empty where the scene asks for none
   std::vector<MethodPoint> methods;      ///< empty where the scene names none
+  std::vector<std::string> notes;        ///< charts that could not be made, and why
+};
+
+struct Comparison {
+  std::vector<SceneComparison> scenes;
+  std::string rules;               ///< how runs were repeated and limited, in words
+  long reused = 0;                 ///< runs that an earlier, unfinished study had done
   bool stopped = false;
 };
 
 struct CompareOptions {
-  int repeats = 3;
-  std::vector<std::string> integrators;                             ///< empty: all of the scene's ladders
+  int repeats = 3;                 ///< at most; a point is repeated only while its runs together took less than a fifth of the limit
+  double limit_s = 10.0;           ///< CPU seconds a point
+  double reference_limit_s = 120.0;  ///< CPU seconds of a reference, of its check, and of each further chart
+  int jobs = 0;                    ///< runs side by side; 0: the number of cores
+  std::vector<std::string> integrators;  ///< names or labels; empty: the scene's ladders and all else that is not static
+  bool all = false;                ///< every integrator that is not static, beside those named
+  std::string database;            ///< file to keep results in and to go on from; empty: none
   std::function<void(double fraction, const std::string& what)> progress;
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// Runs every ladder of the scene at its fixed exchange period against a tight reference; repeats are interleaved, so that a noisy machine hurts all alike.
-Comparison compare(const scene::Description& description, const CompareOptions& options);
+/// Runs every ladder of every scene at the scene's fixed exchange period against the scene's tight reference, each run in a process of its own;
+/// repeats are interleaved over all points, so that a noisy machine hurts all alike.  Call it without other threads.
+/// @param scenes  from scene::load or scene::parse: their text is what results are kept under
+/// @throws Error for ladders that make no sense
+Comparison compare(const std::vector<scene::Description>& scenes, const CompareOptions& options);
 
 /// The scene with the tool's contact found by each method of `compare.contact_methods`, at the scene's own integrator settings.
 std::vector<MethodPoint> compare_contact_methods(const scene::Description& description, const std::atomic<bool>* stop = nullptr);
 
-/// compare.csv, exchange.csv, methods.csv and reference.json in `folder`: what report reads its tables, fitted orders and plots from.
+/// compare.csv, restarts.csv, exchange.csv, methods.csv and reference.json in `folder`: what report reads its tables, fitted orders and plots from.
 void write(const Comparison& comparison, const std::string& folder);
 
 }  // namespace palpate::study

@@ -8,7 +8,7 @@ namespace palpate::study {
 /// What a run is compared by: node positions after every period, and the device wrench at every tick.
 struct Trajectory {
   std::vector<double> period_times;   ///< [s]
-  std::vector<VecX> positions;        ///< all node blocks, one vector a period [m]
+  std::vector<VecX> positions;        ///< all node blocks (without a body: the tool's origin), one vector a period [m]
   std::vector<double> energies;       ///< of the bodies [J]
   std::vector<double> tick_times;     ///< [s]
   std::vector<Wrench> device;         ///< on the hand
@@ -25,6 +25,7 @@ class TrajectoryRecorder : public loop::Observer {
 
  private:
   Trajectory trajectory_;
+  Vec3 tool_origin_ = Vec3::Zero();
 };
 
 /// Distance of a trajectory from a reference at their common times.

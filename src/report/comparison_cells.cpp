@@ -1,0 +1,36 @@
+#include "comparison_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "palpate/core/error.h"
+
+namespace palpate::report {
+
+std::vector<Quantity> quantities_of(const Table& table, const ReferenceError& reference) {
+  const std::vector<Quantity> all = {{"position_error_rel_l2", "position error, relative L2 [-]", reference.position_error_rel_l2},
+                                     {"force_error_rms_n", "force error, RMS [N]", reference.force_error_rms_n},
+                                     {"torque_error_rms_n_m", "torque error, RMS [N m]", reference.torque_error_rms_n_m}};
+  std::vector<Quantity> present;
+  for (const Quantity& q : all) {
+    if (!table.has(q.column)) continue;
+    const std::vector<double> values = table.numbers(q.column);
+    if (std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v) && v > kRounding; })) present.push_back(q);
+  }
+  return present;
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string cell_text(const Table& table, std::size_t row, const std::string& column) {
+  if (!table.has(column)) return "-";
+  const std::string& cell = table.rows[row][table.column(column)];
+  const double value = to_number(cell);
+  if (std::isnan(value) && !cell.empty() && cell != "nan") return cell;
+  return std::isnan(value) ? "-" : value == std::floor(value) && std::abs(value) < 1e15 ? fmt::format("{:.0f}", value) : short_number(value);
+}
+
+}  // namespace palpate::report

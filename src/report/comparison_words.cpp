@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "palpate/core/error.h"
+#include "palpate/report/work_precision.h"
+
+namespace palpate::report {
+namespace {
+
+constexpr const char* kError = "position_error_rel_l2";
+/// Best points must stand this far above the reference's own error to be told apart by it.
+constexpr double kMargin = 10.0;
+
+std::string list_of(const std::vector<std::string>& names) {
+  if (names.size() < 2) return names.empty() ? "" : names[0];
+  return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
+}
+
+std::string times(double ratio) { return ratio < 9.95 ? fmt::format("{:.2g} times", ratio) : fmt::format("{:.0f} times", ratio); }
+
+std::string winners_in_words(const Table& compare, double reference_error) {
+  std::string out, unreached;
+  for (const Winner& win : winners(compare, kError, "cpu_s_median", kTargets, reference_error)) {
+    if (!win.found) {
+      unreached += (unreached.empty() ? "" : ", ") + fmt::format("{:g}", win.target);
+      continue;
+    }
+    out += fmt::format("For an error of {:g}, {} is the cheapest ({}{} s)", win.target, win.label, win.cost.at_most ? "at most " : "", short_number(win.cost.value));
+    if (!win.runner_up.empty()) out += fmt::format("; the next, {}, takes {} as long", win.runner_up, times(win.runner_up_ratio));
+    if (win.label != kBaseline && win.runner_up != kBaseline && std::isfinite(win.baseline_ratio)) out += fmt::format(", {} {}", kBaseline, times(win.baseline_ratio));
+    out += ". ";
+  }
+  if (!unreached.empty()) out += fmt::format("No point reaches {}. ", unreached);
+  return out;
+}
+
+std::string baseline_in_words(const std::vector<Ladder>& all) {
+  for (const Ladder& ladder : all) {
+    if (ladder.integrator != kBaseline || ladder.points.empty()) continue;
+    const auto best = std::min_element(ladder.points.begin(), ladder.points.end(), [](const LadderPoint& a, const LadderPoint& b) { return a.error < b.error; });
+    return fmt::format("The best of {} is {} in {} s. ", ladder.label, short_number(best->error), short_number(best->cost));
+  }
+  return "";
+}
+
+std::string families_in_words(const std::vector<Ladder>& all, double target) {
+  std::vector<std::string> families;
+  for (const Ladder& ladder : all)
+    if (std::any_of(ladder.points.begin(), ladder.points.end(), [&](const LadderPoint& p) { return p.error <= target; }) &&
+        std::find(families.begin(), families.end(), ladder.family) == families.end())
+      families.push_back(ladder.family);
+  if (families.empty()) return "";
+  return fmt::format("{:g} is reached by {} {}: {}. ", target, families.size(), families.size() == 1 ? "family" : "families", list_of(families));
+}
+
+/// A reason without the figures of its own point: what many ladders may share.
+std::string kind_of(const std::pair<std::string, std::string>& failure) {
+  if (failure.first == "out of time" || failure.first == "not tried") return "out of time";
+  if (failure.second.empty()) return failure.first;
+  return failure.second.substr(0, std::min(failure.second.find_first_of("\n("), std::size_t{90}));
+}
+
+std::string failures_in_words(const std::vector<Ladder>& all) {
+  std::map<std::string, std::vector<std::string>> nothing, some;
+  for (const Ladder& ladder : all) {
+    if (ladder.failures.empty()) continue;
+    auto& group = ladder.points.empty() ? nothing : some;
+    group[kind_of(ladder.failures[0])].push_back(ladder.label);
+  }
+  std::string out;
+  for (const auto& [why, labels] : nothing) out += fmt::format("No point of {}: {}. ", list_of(labels), why);
+  for (const auto& [why, labels] : some) out += fmt::format("Some rungs of {} failed: {}. ", list_of(labels), why);
+  return out;
+}
+
+/// An explicit method is held by stability, not accuracy, where a tolerance ten times tighter hardly costs more force evaluations, and where a longer
+/// fixed step fails or blows up.
+std::string explicit_in_words(const Table& compare) {
+  std::vector<std::string> by_tolerance, by_step;
+  for (const Ladder& ladder : ladders(compare, kError, "force_evaluations")) {
+    if (ladder.stability.find("explicit") == std::string::npos) continue;
+    double longest = kUnknown;
+    bool unstable = ladder.setting_name != "rtol" && !ladder.failures.empty(), flat = false;
+    for (std::size_t i = 0; i < ladder.points.size(); ++i) {
+      const LadderPoint& p = ladder.points[i];
+      if (ladder.setting_name == "rtol") flat |= i > 0 && p.setting <= 0.11 * ladder.points[i - 1].setting && p.cost < 1.25 * ladder.points[i - 1].cost;
+      else if (p.error > 1.0) unstable = true;
+      else if (!(p.setting <= longest)) longest = p.setting;
+    }
+    if (flat) by_tolerance.push_back(ladder.label);
+    if (unstable && std::isfinite(longest)) by_step.push_back(fmt::format("{} (usable from {} on)", ladder.label, setting_text(ladder.setting_name, longest)));
+  }
+  std::string out;
+  if (!by_tolerance.empty()) out += fmt::format("Explicit and held by its stability limit, so that a looser tolerance saves nothing: {}. ", list_of(by_tolerance));
+  if (!by_step.empty()) out += fmt::format("Explicit and unstable at longer steps: {}. ", list_of(by_step));
+  return out;
+}
+
+std::string reference_in_words(const std::vector<Ladder>& all, double reference_error) {
+  double best = kUnknown;
+  bool any_below = false;
+  for (const Ladder& ladder : all)
+    for (const LadderPoint& p : ladder.points) {
+      any_below |= p.below_reference;
+      if (!p.below_reference && !(p.error >= best)) best = p.error;
+    }
+  if (std::isnan(best)) return "No point has an error that could be told from the reference's.";
+  if (std::isnan(reference_error)) return "The reference's own error is not known: read small errors with care.";
+  if (best >= kMargin * reference_error && !any_below)
+    return fmt::format("The reference's own error, {}, is {} below the best point, {}: it bears every figure here.", short_number(reference_error), times(best / reference_error),
+                       short_number(best));
+  return fmt::format("The reference's own error is {}: errors below {} are not told apart by it (the best point above it shows {}).", short_number(reference_error),
+                     short_number(kMargin * reference_error), short_number(best));
+}
+
+}  // namespace
+
+std::string in_words(const Table& compare, double reference_error) {
+  const std::vector<Ladder> all = ladders(compare, kError, "cpu_s_median");
+  return winners_in_words(compare, reference_error) + baseline_in_words(all) + families_in_words(all, kTargets.back()) + explicit_in_words(compare) +
+         failures_in_words(all) + reference_in_words(all, reference_error);
+}
+
+}  // namespace palpate::report

@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "log_line.h"
+#include "palpate/core/error.h"
+#include "palpate/report/work_precision.h"
+
+namespace palpate::report {
+namespace {
+
+/// An error far above the motion itself says only that it is wrong; drawing it would squash the rest.
+constexpr double kLargestDrawn = 3.0;
+/// Up to this many ladders each point carries its setting.
+constexpr std::size_t kFewLadders = 3;
+/// A family of more ladders than this is drawn order by order.
+constexpr std::size_t kManyInFamily = 6;
+constexpr const char* kFaintColour = "#c3c9d0";
+
+/// Twelve hues of middle lightness for families, in the order of their first line.
+constexpr std::array<const char*, 12> kFamilyColours = {"#2b7bba", "#d9720a", "#2a9461", "#b0529e", "#d1495b", "#0f9aa8",
+                                                        "#8a6d3b", "#6a5acd", "#8fae1b", "#c2185b", "#4c6a7d", "#e0a100"};
+
+std::map<std::string, std::string> family_colours(const std::vector<Ladder>& all) {
+  std::map<std::string, std::string> out;
+  for (const Ladder& ladder : all)
+    if (!out.contains(ladder.family)) out.emplace(ladder.family, kFamilyColours[out.size() % kFamilyColours.size()]);
+  return out;
+}
+
+Series line_of(const Ladder& ladder, bool labelled) {
+  Series series{.name = ladder.label, .x = {}, .y = {}, .mark = Mark::kLinePoints};
+  for (const LadderPoint& p : ladder.points) {
+    if (!(p.error <= kLargestDrawn)) continue;
+    series.x.push_back(p.cost);
+    series.y.push_back(p.error);
+    if (labelled) series.labels.push_back(setting_text(ladder.setting_name, p.setting));
+    series.hollow.push_back(p.below_reference);
+  }
+  return series;
+}
+
+/// The points that no other point beats in both cost and error, from cheap to accurate; each ladder is named where it takes over.
+Series best_envelope(const std::vector<Ladder>& all) {
+  struct Entry {
+    double cost, error;
+    const Ladder* ladder;
+  };
+  std::vector<Entry> entries;
+  for (const Ladder& ladder : all)
+    for (const LadderPoint& p : ladder.points)
+      if (p.cost > 0.0 && p.error > 0.0 && p.error <= kLargestDrawn && !p.below_reference) entries.push_back({p.cost, p.error, &ladder});
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.cost != b.cost ? a.cost < b.cost : a.error < b.error; });
+  Series out{.name = "best of all", .x = {}, .y = {}, .mark = Mark::kLine, .colour = "ink"};
+  double least = std::numeric_limits<double>::infinity();
+  const Ladder* last = nullptr;
+  for (const Entry& e : entries) {
+    if (!(e.error < least)) continue;
+    least = e.error;
+    out.x.push_back(e.cost);
+    out.y.push_back(e.error);
+    out.labels.push_back(e.ladder == last ? "" : e.ladder->label);
+    last = e.ladder;
+  }
+  return out;
+}
+
+Plot frame_of(const std::string& error_label, double reference_error, const std::string& cost_label) {
+  Plot plot;
+  plot.x_label = cost_label;
+  plot.y_label = error_label;
+  plot.log_x = plot.log_y = true;
+  plot.floor_y = reference_error;
+  plot.floor_label = "the reference's own error";
+  return plot;
+}
+
+}  // namespace
+
+Plot work_precision_plot(const Table& compare, const std::string& error_column, const std::string& error_label, double reference_error,
+                         const std::string& cost_column, const std::string& cost_label) {
+  const std::vector<Ladder> all = ladders(compare, error_column, cost_column);
+  Plot plot = frame_of(error_label, reference_error, cost_label);
+  if (all.size() <= kFewLadders) {
+    for (const Ladder& ladder : all) plot.series.push_back(line_of(ladder, true));
+    return plot;
+  }
+  plot.height = 520;
+  const auto colours = family_colours(all);
+  std::map<std::string, bool> named;
+  for (const Ladder& ladder : all) {
+    Series series = line_of(ladder, false);
+    const bool drawn = std::any_of(series.x.begin(), series.x.end(), [](double x) { return x > 0.0; });
+    series.name = !drawn || named[ladder.family] ? "" : ladder.family;
+    named[ladder.family] |= drawn;
+    series.colour = colours.at(ladder.family);
+    series.width = 1.0;
+    plot.series.push_back(std::move(series));
+  }
+  plot.series.push_back(best_envelope(all));
+  return plot;
+}
+
+std::vector<Plot> family_plots(const Table& compare, const std::string& error_column, const std::string& error_label, double reference_error,
+                               const std::string& cost_column, const std::string& cost_label) {
+  const std::vector<Ladder> all = ladders(compare, error_column, cost_column);
+  std::map<std::string, std::size_t> sizes;
+  for (const Ladder& ladder : all) ++sizes[ladder.family];
+  const auto panel_of = [&](const Ladder& ladder) {
+    return sizes[ladder.family] > kManyInFamily && ladder.order > 0 ? fmt::format("{}, order {}", ladder.family, ladder.order) : ladder.family;
+  };
+  std::vector<std::string> panels;
+  for (const Ladder& ladder : all)
+    if (!ladder.points.empty() && std::find(panels.begin(), panels.end(), panel_of(ladder)) == panels.end()) panels.push_back(panel_of(ladder));
+  std::vector<Plot> out;
+  for (const std::string& panel : panels) {
+    Plot plot = frame_of(error_label, reference_error, cost_label);
+    plot.title = panel;
+    plot.floor_label = "";
+    plot.width = 520, plot.height = 400;
+    for (const Ladder& ladder : all) {
+      if (panel_of(ladder) == panel) continue;
+      Series series = line_of(ladder, false);
+      series.name = "";
+      series.mark = Mark::kLine;
+      series.hollow.clear();
+      series.colour = kFaintColour;
+      series.width = 0.7;
+      plot.series.push_back(std::move(series));
+    }
+    std::size_t next = 0;
+    for (const Ladder& ladder : all) {
+      if (panel_of(ladder) != panel) continue;
+      Series series = line_of(ladder, false);
+      series.colour = kFamilyColours[next++ % kFamilyColours.size()];
+      plot.series.push_back(std::move(series));
+    }
+    out.push_back(std::move(plot));
+  }
+  return out;
+}
+
+Plot exchange_plot(const Table& exchange, const std::string& error_column, const std::string& error_label) {
+  const std::vector<double> period = exchange.numbers("exchange_period_s"), error = exchange.numbers(error_column);
+  Plot plot;
+  plot.x_label = "exchange period [s]";
+  plot.y_label = error_label;
+  plot.log_x = plot.log_y = true;
+  plot.height = 340;
+  plot.series.push_back({.name = "measured", .x = period, .y = error, .mark = Mark::kLinePoints});
+  const LogLine line = fit_log_line(period, error);
+  if (std::isfinite(line.slope)) {
+    const auto [least, greatest] = std::minmax_element(period.begin(), period.end());
+    Series fit{.name = fmt::format("fitted order {:.2f}", line.slope), .x = {*least, *greatest}, .y = {}, .mark = Mark::kDashed, .colour = "ink"};
+    for (const double x : fit.x) fit.y.push_back(std::exp(line.intercept + line.slope * std::log(x)));
+    plot.series.push_back(std::move(fit));
+  }
+  return plot;
+}
+
+Plot restart_plot(const Table& restarts, const std::string& count_column, const std::string& count_label) {
+  const std::vector<double> refresh = restarts.numbers("contact_refresh_s"), count = restarts.numbers(count_column), simulated = restarts.numbers("simulated_s");
+  const std::size_t label = restarts.column("label"), multistep = restarts.column("multistep"), status = restarts.column("status");
+  Plot plot;
+  plot.x_label = "contact refreshes per simulated second";
+  plot.y_label = count_label;
+  plot.log_x = plot.log_y = true;
+  plot.height = 400;
+  std::size_t next = 0;
+  for (const std::string& name : distinct(restarts, "label")) {
+    Series series{.name = name, .x = {}, .y = {}, .mark = Mark::kLinePoints};
+    bool many = false;
+    for (std::size_t i = 0; i < restarts.rows.size(); ++i) {
+      if (restarts.rows[i][label] != name || restarts.rows[i][status] != "ok") continue;
+      many = restarts.rows[i][multistep] == "yes";
+      series.x.push_back(1.0 / refresh[i]);
+      series.y.push_back(count[i] / simulated[i]);
+    }
+    series.name += many ? " (multistep)" : " (one-step)";
+    if (!many) series.mark = Mark::kDashed;
+    series.colour = kFamilyColours[next++ % kFamilyColours.size()];
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+}  // namespace palpate::report

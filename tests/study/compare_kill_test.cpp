@@ -1,0 +1,106 @@
+// A study that is killed again and again, and started again, ends with the table of one that was left alone.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <random>
+
+#include "compare_scenes.h"
+#include "palpate/core/clock.h"
+#include "palpate/store/study_db.h"
+#include "palpate/study/compare.h"
+#include "study/compare_codec.h"
+
+using namespace palpate;
+namespace fs = std::filesystem;
+
+namespace {
+
+study::CompareOptions options_of(const fs::path& database) {
+  study::CompareOptions options;
+  options.repeats = 2;
+  options.jobs = 2;
+  options.integrators = {"linearly-implicit-euler", "cvode-bdf"};
+  options.database = database.string();
+  return options;
+}
+
+std::vector<scene::Description> scenes() {
+  const std::string ladders = R"([[compare.ladder]]
+integrator = "linearly-implicit-euler"
+step_s = [2e-4, 1e-4, 5e-5, 2.5e-5]
+[[compare.ladder]]
+integrator = "cvode-bdf"
+rtol = [1e-2, 1e-4, 1e-6, 1e-8]
+)";
+  return {compare_scenes::block(ladders, "one"), compare_scenes::block(ladders, "two", 3e4)};
+}
+
+/// A process that makes the study, killed after `seconds`; true where it had ended by then.
+bool study_killed_after(const fs::path& database, double seconds) {
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      study::compare(scenes(), options_of(database));
+    } catch (...) { _exit(1); }
+    _exit(0);
+  }
+  usleep(static_cast<useconds_t>(1e6 * seconds));
+  kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+TEST(CompareKill, TenKillsGiveTheTableOfAnUndisturbedRun) {
+  const fs::path folder = fs::temp_directory_path() / ("palpate-compare-kill-" + std::to_string(getpid()));
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  const double start = wall_seconds();
+  const study::Comparison whole = study::compare(scenes(), options_of(folder / "whole.sqlite"));
+  const double duration = wall_seconds() - start;
+
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> moment(0.02, 0.35);
+  int kills = 0, grew = 0;
+  long kept = 0;
+  for (int i = 0; i < 10; ++i) {
+    kills += !study_killed_after(folder / "killed.sqlite", duration * moment(random));
+    if (!fs::exists(folder / "killed.sqlite")) continue;  // killed before it was made
+    const store::StudyDb database((folder / "killed.sqlite").string(), study::run_columns());
+    EXPECT_GE(database.run_count(), kept) << "kill " << i;
+    grew += database.run_count() > kept;
+    kept = database.run_count();
+  }
+  EXPECT_GE(kills, 5) << "most of them met it at work";
+  EXPECT_GE(grew, 2) << "they met it at different places";
+  const study::Comparison last = study::compare(scenes(), options_of(folder / "killed.sqlite"));
+  EXPECT_GE(last.reused, kept) << "what was finished is not run again";
+
+  ASSERT_EQ(last.scenes.size(), whole.scenes.size());
+  for (std::size_t s = 0; s < whole.scenes.size(); ++s) {
+    const study::SceneComparison& a = whole.scenes[s];
+    const study::SceneComparison& b = last.scenes[s];
+    EXPECT_EQ(a.reference.own_error.position_rel_l2, b.reference.own_error.position_rel_l2);
+    EXPECT_EQ(a.reference.description, b.reference.description);
+    ASSERT_EQ(a.points.size(), b.points.size());
+    for (std::size_t p = 0; p < a.points.size(); ++p) {
+      const study::ComparePoint& x = a.points[p];
+      const study::ComparePoint& y = b.points[p];
+      EXPECT_EQ(x.label, y.label);
+      EXPECT_EQ(x.setting, y.setting);
+      EXPECT_EQ(x.status, y.status);
+      EXPECT_EQ(x.error.position_rel_l2, y.error.position_rel_l2);  // bit for bit
+      EXPECT_EQ(x.error.energy_j, y.error.energy_j);
+      EXPECT_EQ(x.result.counters.steps, y.result.counters.steps);
+      EXPECT_EQ(x.result.counters.force_evaluations, y.result.counters.force_evaluations);
+      EXPECT_EQ(x.result.counters.solver.factorisations, y.result.counters.solver.factorisations);
+      EXPECT_EQ(x.below_reference, y.below_reference);
+    }
+  }
+  fs::remove_all(folder);
+}
+
+}  // namespace

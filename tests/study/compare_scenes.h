@@ -1,0 +1,67 @@
+#pragma once
+#include <string>
+
+#include "palpate/scene/load.h"
+
+namespace palpate::compare_scenes {
+
+/// A soft block of a few tetrahedra under its weight: smooth, no contact, so that orders are those of theory.  @param more  TOML after it
+inline std::string block_text(const std::string& more, const std::string& name = "block", double youngs_modulus_pa = 1e4) {
+  return "[scene]\nname = \"" + name + R"("
+duration_s = 0.05
+gravity_m_s2 = [3.0, 0.0, -9.81]
+[[body]]
+name = "block"
+position_m = [0.0, 0.0, 0.01]
+youngs_modulus_pa = )" + std::to_string(youngs_modulus_pa) + R"(
+stiffness_damping_s = 2e-3
+[body.mesh]
+generator = "box"
+size_m = [0.04, 0.04, 0.02]
+element_size_m = 0.01
+[[body.attachment]]
+box_min_m = [-1.0, -1.0, -1e-6]
+box_max_m = [1.0, 1.0, 1e-6]
+[record]
+state_period_s = 0.01
+)" + more;
+}
+
+inline scene::Description block(const std::string& more, const std::string& name = "block", double youngs_modulus_pa = 1e4) {
+  return scene::parse(block_text(more, name, youngs_modulus_pa), name + ".toml");
+}
+
+inline const std::string kLadders = R"([[compare.ladder]]
+integrator = "linearly-implicit-euler"
+step_s = [4e-4, 2e-4, 1e-4]
+[[compare.ladder]]
+integrator = "cvode-bdf"
+rtol = [1e-2, 1e-4, 1e-6]
+)";
+
+/// A tool on its spring, pulled aside and let go by the hand; no body.
+inline scene::Description tool_only() {
+  return scene::parse(R"([scene]
+name = "tool alone"
+duration_s = 0.1
+[tool]
+radius_m = 0.01
+mass_kg = 0.05
+position_m = [0.0, 0.0, 0.05]
+[tool.coupling]
+stiffness_n_m = 300.0
+damping_n_s_m = 1.0
+[device]
+type = "script"
+[[device.keyframe]]
+time_s = 0.0
+position_m = [0.0, 0.0, 0.05]
+[[device.keyframe]]
+time_s = 0.05
+position_m = [0.01, 0.0, 0.04]
+[exchange]
+exchange_period_s = 0.01
+)", "tool.toml");
+}
+
+}  // namespace palpate::compare_scenes
