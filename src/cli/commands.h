@@ -17,7 +17,7 @@ struct RunArguments {
   SceneArguments scene;
   std::string folder;       ///< empty: out/NAME
   double duration_s = 0.0;  ///< 0: the scene's
-  bool picture = false, report = false;
+  bool picture = false, report = false, trace = false;
   std::string shade = "displacement";  ///< of the picture; or "stress"
 };
 int run(const RunArguments& arguments);

@@ -65,10 +65,12 @@ void add_run(CLI::App& app, Invocation& invocation) {
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--report", arguments->report, "also a page to look at (report.html)");
+  command->add_flag("--trace", arguments->trace, "also every attempted step, and why it was rejected (trace.csv; a plot in the report)");
   command->footer(R"(Examples:
   palpate run falling-ball
   palpate run press-ball --integrator linearly-implicit-euler --set integrator.step_s=0.002
   palpate run press-ball --set body.0.youngs_modulus_pa=2e4 --picture --report -o out/softer
+  palpate run falling-ball --trace --report      which steps were rejected, why, and where
 
 Writes into the output folder: run.vtkhdf (states as a time series: ParaView, h5py), force.csv (force and torque on the hand),
 summary.json (versions, options, counts, timings).  Ctrl-C ends the run; what was recorded by then is whole.)");

@@ -8,6 +8,7 @@
 #include "palpate/core/error.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/summary.h"
+#include "palpate/loop/trace.h"
 #include "palpate/report/run_report.h"
 #include "palpate/store/atomic_file.h"
 #include "picture.h"
@@ -62,6 +63,7 @@ std::string command_of(const RunArguments& a) {
   if (a.duration_s > 0.0) out += fmt::format(" --duration-s {}", a.duration_s);
   if (a.picture) out += a.shade == "displacement" ? " --picture" : " --picture --shade " + a.shade;
   if (a.report) out += " --report";
+  if (a.trace) out += " --trace";
   return a.folder.empty() ? out : out + " -o " + quoted(a.folder);
 }
 
@@ -103,7 +105,7 @@ int run(const RunArguments& arguments) {
   const double assemble_s = wall_seconds() - start;
 
   // A scene that records nothing writes nothing, unless something was asked for here.
-  const bool keep = description.record || !arguments.folder.empty() || arguments.picture || arguments.report;
+  const bool keep = description.record || !arguments.folder.empty() || arguments.picture || arguments.report || arguments.trace;
   const std::string folder = arguments.folder.empty() ? default_folder(short_name(description)) : arguments.folder;
   if (keep) make_folder(folder);
 
@@ -113,8 +115,14 @@ int run(const RunArguments& arguments) {
   if (arguments.picture) observers.push_back(&snapshot);
   std::optional<loop::Recorder> recorder;
   if (description.record) observers.push_back(&recorder.emplace(*world, folder));
+  std::optional<loop::TraceRecorder> trace;
+  if (arguments.trace) trace.emplace(*world, (std::filesystem::path(folder) / "trace.csv").string());
   const loop::RunResult result = run_watched(*world, arguments, observers);
   recorder.reset();  // closes its files
+  if (trace) {
+    trace->close();
+    fmt::print("trace: {} attempted steps, {} rejected\n", trace->attempts(), trace->rejected());
+  }
 
   print_outcome(*world, result, peak, assemble_s);
   if (keep) {

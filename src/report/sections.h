@@ -20,6 +20,7 @@ void add_pictures(Page& page, const Json& summary, const std::filesystem::path& 
 void add_forces(Page& page, const Json& summary, const Table& force);
 /// @param references  by scene  @param rules  how runs were repeated and limited
 void add_comparison(Page& page, const Table& compare, const std::map<std::string, ReferenceError>& references, const std::string& rules);
+void add_trace(Page& page, const Table& trace);
 void add_restarts(Page& page, const Table& restarts);
 void add_exchange(Page& page, const Table& exchange);
 void add_methods(Page& page, const Table& methods);

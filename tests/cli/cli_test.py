@@ -148,6 +148,14 @@ class Results(Cli):
                 self.assertAlmostEqual(steps["Values"][step], 0.01 * step, delta=1e-12)
         xml.dom.minidom.parse(str(self.folder / "here/report.html"))
 
+    def test_trace_is_a_table_and_a_plot(self):
+        text = self.good("run", "one-tet", "-o", "traced", "--duration-s", "0.1", "--trace", "--report")
+        self.assertRegex(text, r"trace: \d+ attempted steps, \d+ rejected")
+        lines = (self.folder / "traced/trace.csv").read_text().splitlines()
+        self.assertTrue(lines[0].startswith("time_s,step_s,order,error,newton_iterations,outcome,worst_body,"))
+        self.assertEqual(len(lines) - 1, int(re.search(r"trace: (\d+)", text).group(1)))
+        self.assertIn("why they were rejected", (self.folder / "traced/report.html").read_text())
+
     def test_default_folder(self):
         self.good("run", "one-tet", "--duration-s", "0.02")
         self.assertTrue((self.folder / "out/one-tet/summary.json").is_file())
@@ -293,6 +301,17 @@ class Interrupt(Cli):
                     times = file["VTKHDF/Steps/Values"][:count]
                     self.assertTrue(all(b > a for a, b in zip(times, times[1:])))
                 self.assertEqual(json.loads((path.parent / "summary.json").read_text())["outcome"], "interrupted")
+
+    def test_compare_ends_and_says_how_to_go_on(self):
+        process = subprocess.Popen([str(PROGRAM), "compare", "cantilever", "--integrator", "ark-erk-5", "--integrator", "linearly-implicit-euler", "--limit-s", "300", "-o", "cut"],
+                                   cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.wait_for(lambda: (self.folder / "cut/study.sqlite").exists(), process)
+        start = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 130, err)
+        self.assertLess(time.monotonic() - start, 60)  # its points would take minutes
+        self.assertIn("goes on from cut", err)
 
     def test_progress_bar_on_a_terminal_with_time_left(self):
         terminal, end = pty.openpty()

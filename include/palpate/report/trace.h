@@ -1,0 +1,10 @@
+#pragma once
+#include "palpate/report/plot.h"
+#include "palpate/report/table.h"
+
+namespace palpate::report {
+
+/// Of trace.csv: step size over time, logarithmic; rejected attempts as points, coloured by their reason.
+Plot step_plot(const Table& trace);
+
+}  // namespace palpate::report

@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "palpate/core/error.h"
+#include "palpate/report/trace.h"
+#include "sections.h"
+
+namespace palpate::report {
+namespace {
+
+constexpr const char* kAccepted = "accepted";
+
+/// Directions named most often, with how often: the table's lines.
+std::vector<std::vector<std::string>> most_frequent(const std::map<std::string, long>& counts, std::size_t most) {
+  std::vector<std::pair<std::string, long>> sorted(counts.begin(), counts.end());
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < std::min(most, sorted.size()); ++i) rows.push_back({sorted[i].first, std::to_string(sorted[i].second)});
+  return rows;
+}
+
+std::string worst_of(const Table& trace, std::size_t row) {
+  const auto cell = [&](const char* column) { return trace.rows[row][trace.column(column)]; };
+  if (cell("worst_body").empty()) return "";
+  return fmt::format("{}{}, {}", cell("worst_body"), cell("worst_node").empty() ? "" : ", node " + cell("worst_node"), cell("worst_axis"));
+}
+
+}  // namespace
+
+Plot step_plot(const Table& trace) {
+  const std::vector<double> time = trace.numbers("time_s"), step = trace.numbers("step_s");
+  const std::size_t outcome = trace.column("outcome");
+  Plot plot;
+  plot.x_label = "time [s]";
+  plot.y_label = "step [s]";
+  plot.log_y = true;
+  const auto series_of = [&](const std::string& which, Mark mark) {
+    Series series{.name = which, .x = {}, .y = {}, .mark = mark};
+    for (std::size_t i = 0; i < trace.rows.size(); ++i) {
+      if (trace.rows[i][outcome] != which) continue;
+      series.x.push_back(time[i]);
+      series.y.push_back(step[i]);
+    }
+    return series;
+  };
+  plot.series.push_back(series_of(kAccepted, Mark::kLine));
+  plot.series[0].colour = "#7a7f8a";
+  const std::map<std::string, std::string> colours = {{"error test", "#d1495b"}, {"Newton", "#b0529e"}, {"not finite", "#d9720a"}, {"event", "#2b7bba"}};
+  for (const std::string& which : distinct(trace, "outcome")) {
+    if (which == kAccepted) continue;
+    plot.series.push_back(series_of(which, Mark::kPoints));
+    if (const auto colour = colours.find(which); colour != colours.end()) plot.series.back().colour = colour->second;
+  }
+  return plot;
+}
+
+void add_trace(Page& page, const Table& trace) {
+  page.add_heading("Steps, and why they were rejected");
+  const std::size_t outcome = trace.column("outcome"), inverted = trace.column("inverted_body");
+  std::map<std::string, long> outcomes, worst_rejected, worst_accepted, inverted_in;
+  for (std::size_t i = 0; i < trace.rows.size(); ++i) {
+    const std::string& what = trace.rows[i][outcome];
+    ++outcomes[what];
+    if (const std::string where = worst_of(trace, i); !where.empty()) ++(what == kAccepted ? worst_accepted : worst_rejected)[where];
+    if (const std::string& body = trace.rows[i][inverted]; !body.empty()) ++inverted_in[body];
+  }
+  add_plot(page, step_plot(trace), "Step over time: the line is what was accepted, a point is an attempt that was not, coloured by the reason (an event cuts a step short at a root).");
+  page.add_table({"outcome", "attempts"}, most_frequent(outcomes, outcomes.size()));
+  if (!worst_rejected.empty()) page.add_table({"where the error was largest when a step was rejected", "times"}, most_frequent(worst_rejected, 10));
+  if (!worst_accepted.empty()) page.add_table({"where the error was largest in accepted steps", "times"}, most_frequent(worst_accepted, 10));
+  if (!inverted_in.empty()) page.add_table({"attempts with an inverted element, in", "times"}, most_frequent(inverted_in, 10));
+}
+
+}  // namespace palpate::report
