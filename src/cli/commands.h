@@ -43,6 +43,14 @@ struct ValidateArguments {
 };
 int validate(const ValidateArguments& arguments);
 
+struct ModesArguments {
+  SceneArguments scene;
+  std::string folder;  ///< empty: out/modes-NAME
+  int count = 12;
+  bool picture = false;
+};
+int modes(const ModesArguments& arguments);
+
 struct InspectArguments {
   SceneArguments scene;
 };

@@ -140,6 +140,26 @@ Exit status 0 when every measurement keeps its bar, else 1.)");
   });
 }
 
+void add_modes(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("modes", "frequencies and shapes of a scene's free vibrations");
+  auto arguments = std::make_shared<ModesArguments>();
+  add_scene(*command, arguments->scene, false);
+  command->add_option("--count", arguments->count, "how many, from the lowest")->check(CLI::Range(1, 1000))->capture_default_str();
+  command->add_flag("--picture", arguments->picture, "also a picture of the first six that are no rigid motions (modes.png)");
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/modes-SCENE")->type_name("DIR");
+  command->footer(R"(Examples:
+  palpate modes cantilever
+  palpate modes cantilever --count 20 --picture -o out/modes
+  palpate modes press-ball --set body.0.youngs_modulus_pa=2e4
+
+Solves K phi = w^2 M phi at the scene's start, damping left out; a free body begins with six rigid motions, 0 Hz.  Writes modes.csv, and
+modes.vtkhdf: ParaView opens it as a time series in which time is the mode's number, step by step the displaced shapes.)");
+  command->callback([arguments, &invocation] {
+    invocation.action = [arguments] { return modes(*arguments); };
+    invocation.factorises = true;
+  });
+}
+
 void add_inspect(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("inspect", "what a scene uses, what it leaves out, sizes and memory");
   auto arguments = std::make_shared<InspectArguments>();
@@ -236,6 +256,7 @@ Invocation parse(int argc, char** argv) {
   add_run(app, invocation);
   add_compare(app, invocation);
   add_validate(app, invocation);
+  add_modes(app, invocation);
   add_inspect(app, invocation);
   add_list(app, invocation);
   add_bench(app, invocation);

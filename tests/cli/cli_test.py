@@ -27,7 +27,7 @@ except ImportError:  # package python3-h5py
     sys.exit("python3-h5py is missing")
 
 PROGRAM = Path(sys.argv[1]).resolve()
-COMMANDS = ["demo", "run", "compare", "validate", "inspect", "list", "bench"]
+COMMANDS = ["demo", "run", "compare", "modes", "validate", "inspect", "list", "bench"]
 LONG = ["run", "one-tet", "--duration-s", "1e6"]  # ends only when it is told to
 
 
@@ -155,6 +155,27 @@ class Results(Cli):
         self.assertTrue(lines[0].startswith("time_s,step_s,order,error,newton_iterations,outcome,worst_body,"))
         self.assertEqual(len(lines) - 1, int(re.search(r"trace: (\d+)", text).group(1)))
         self.assertIn("why they were rejected", (self.folder / "traced/report.html").read_text())
+
+    def test_modes_are_a_table_and_a_time_series(self):
+        text = self.good("modes", "cantilever", "--count", "4", "-o", "here")
+        lines = (self.folder / "here/modes.csv").read_text().splitlines()
+        self.assertEqual(lines[0], "mode,frequency_hz,omega_rad_s,omega_squared_1_s2,residual")
+        frequencies = [float(line.split(",")[1]) for line in lines[1:]]
+        self.assertEqual(len(frequencies), 4)
+        self.assertEqual(frequencies, sorted(frequencies))
+        self.assertIn(f"{frequencies[0]:.6g}", text)
+        with h5py.File(self.folder / "here/modes.vtkhdf") as file:
+            steps = file["VTKHDF/Steps"]
+            self.assertEqual(steps.attrs["NSteps"], 4)
+            self.assertEqual(list(steps["Values"]), [1, 2, 3, 4])
+            largest = (file["VTKHDF/PointData/displacement"][:] ** 2).sum(axis=1).max() ** 0.5
+            size = max(file["VTKHDF/Points"][:].max(axis=0) - file["VTKHDF/Points"][:].min(axis=0))
+            self.assertTrue(0.05 * size < largest < 0.15 * size)
+
+    def test_modes_with_a_tool_and_of_a_free_body(self):
+        self.good("modes", "press-ball", "--count", "3")
+        self.assertEqual(self.good("modes", "falling-ball", "--count", "8", "-o", "ball").count("rigid"), 6)
+        self.assertIn("--count", self.refused("modes", "one-tet", "--count", "0"))
 
     def test_default_folder(self):
         self.good("run", "one-tet", "--duration-s", "0.02")

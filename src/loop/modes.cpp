@@ -1,0 +1,86 @@
+#include "palpate/loop/modes.h"
+
+#include "palpate/core/error.h"
+#include "palpate/store/provenance.h"
+#include "palpate/store/run_file.h"
+#ifdef PALPATE_HAS_TOOL
+#include "palpate/tool/tool.h"
+#endif
+
+namespace palpate::loop {
+namespace {
+
+/// Longest edge of the box around all bodies [m].
+double size_of(const World& world) {
+  Eigen::AlignedBox3d box;
+  for (const Body& body : world.bodies)
+    for (const auto& x : body.placed.colwise()) box.extend(Vec3(x));
+  return box.sizes().maxCoeff();
+}
+
+/// What a shape is multiplied by to be seen.
+double scale_of(const World& world, const VecX& shape) {
+  double largest = 0.0;
+  for (const Body& body : world.bodies) {
+    const dynamics::Block& block = *world.state.layout().find(body.block_id);
+    const Eigen::Map<const Points> nodes(shape.data() + block.u_offset, 3, body.placed.cols());
+    largest = std::max(largest, nodes.colwise().norm().maxCoeff());
+  }
+  return largest > 0.0 ? kModeAmplitude * size_of(world) / largest : 0.0;  // a mode of the tool alone moves no body
+}
+
+}  // namespace
+
+integrate::Modes find_modes(World& world, int count) {
+  if (world.bodies.empty()) fail("{}: modes are of soft bodies, and the scene has no [[body]]", world.description.path);
+#ifdef PALPATE_HAS_TOOL
+  if (world.tool_frame) {  // contact with the tool: as it stands at the start
+    world.tool_frame->clear();
+    world.tool_frame->append(world.tool->time(), world.tool->pose(), world.tool->twist());
+  }
+#endif
+  if (world.contact) world.contact->refresh(world.state.view());
+  return integrate::find_modes(world.system, world.state.view(), {count});
+}
+
+Points displaced(const World& world, const Body& body, const integrate::Modes& modes, int mode) {
+  const VecX shape = modes.shapes.col(mode);
+  const dynamics::Block& block = *world.state.layout().find(body.block_id);
+  return world.positions(body) + scale_of(world, shape) * Eigen::Map<const Points>(shape.data() + block.u_offset, 3, body.placed.cols());
+}
+
+void write_modes(World& world, const integrate::Modes& modes, const std::string& path) {
+  std::vector<store::RunPart> parts;
+  Eigen::Index count = 0;
+  for (const Body& body : world.bodies) {
+    parts.push_back({body.name, world.positions(body), body.rest.tets, {}});
+    count += body.placed.cols();
+  }
+  const scene::Description& d = world.description;
+  store::RunFile file(path, parts, store::RunInfo{d.name, d.source, store::provenance().version, modes.count()});
+  Points points(3, count), velocity(3, count);
+  VecX stress(count), q = world.state.q();
+  const VecX still = VecX::Zero(world.state.u().size());
+  for (int mode = 0; mode < modes.count(); ++mode) {
+    q = world.state.q();
+    for (const Body& body : world.bodies) {
+      const dynamics::Block& block = *world.state.layout().find(body.block_id);
+      Eigen::Map<Points>(q.data() + block.q_offset, 3, body.placed.cols()) = displaced(world, body, modes, mode);
+    }
+    const dynamics::StateView view = world.state.view(world.state.time(), q.data(), still.data());
+    Eigen::Index first = 0;
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+      const Body& body = world.bodies[i];
+      const Eigen::Index n = body.placed.cols();
+      const dynamics::Block& block = *world.state.layout().find(body.block_id);
+      points.middleCols(first, n) = Eigen::Map<const Points>(q.data() + block.q_offset, 3, n);
+      velocity.middleCols(first, n) = modes.omega(mode) * (points.middleCols(first, n) - parts[i].reference);
+      stress.segment(first, n) = body.term->nodal_stress(view);
+      first += n;
+    }
+    file.append(mode + 1.0, points, velocity, stress);
+  }
+  file.close();
+}
+
+}  // namespace palpate::loop
