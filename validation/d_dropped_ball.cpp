@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <cmath>
+
+#include "b_bodies.h"
+#include "cases.h"
+#include "palpate/core/error.h"
+#include "palpate/dynamics/system.h"
+#include "palpate/fem/soft_body.h"
+#include "palpate/integrate/integrators.h"
+#include "palpate/mesh/boundary.h"
+#include "palpate/mesh/generators.h"
+
+// A ball falls on a fixed plane and bounces.  The plane's normal does not turn, so each sample's force k A max(0, -gap) n is the gradient
+// of k A gap^2/2, A its projected area: undamped, kinetic energy + weight + contact is constant, damped it falls.  It must never rise.
+//   rigid   a point mass that carries the vertices of a sphere as arms (a sphere on a plane has no reason to turn): areas are constant, and what
+//           energy is gained is the integrator's.  Looked at every millisecond, where the contact is queried anew, as in a scene.
+//   soft    a ball of tetrahedra: the projected areas of its vertices change with its shape, and are held between two queries.  The energy
+//           gained at each query is the price of the slow query: reported, with no bar.
+// Gains are relative to the energy of the fall, m g h.
+
+namespace palpate::validation {
+namespace {
+
+constexpr double kRadius = 0.02, kDrop = 0.01, kGravity = 9.81, kMass = 0.03;
+constexpr double kStiffness = 5e8;  // [Pa/m]: depth about 1 mm, 12 ms of contact
+constexpr double kRefresh = 1e-3, kEnd = 0.4;  // [s]: four bounces
+
+/// The vertices of a sphere carried by one node, over the plane z = 0 of frame 0.
+class BallSource final : public contact::SampleSource {
+ public:
+  BallSource(int node, const std::string& sabotage) : node_(node), sphere_(mesh::sphere(kRadius, 12)), sabotage_(sabotage) {
+    areas_.setZero(sphere_.vertices.cols());
+    for (const auto& face : sphere_.faces.colwise()) {
+      const Vec3 a = sphere_.vertices.col(face[0]), b = sphere_.vertices.col(face[1]), c = sphere_.vertices.col(face[2]);
+      for (int corner : face) areas_[corner] -= (b - a).cross(c - a).z() / 6.0;
+    }
+  }
+  std::string_view name() const override { return "ball"; }
+  void add_pattern(dynamics::PatternBuilder&) const override {}
+  void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& samples) override {
+    const Vec3 x = state.position(node_);
+    const double look_ahead = sabotage_ == "no-look-ahead" ? 0.0 : 2.0 * kRefresh * std::max(0.0, -state.velocity(node_).z());
+    for (Eigen::Index i = 0; i < areas_.size(); ++i) {
+      const Vec3 arm = sphere_.vertices.col(i);
+      const double gap = x.z() + arm.z();
+      if (areas_[i] <= 0.0 || gap > look_ahead) continue;
+      contact::ContactSample sample;
+      sample.a.count = 1;
+      sample.a.node[0] = node_;
+      sample.a.weight[0] = 1.0;
+      sample.a.offset = arm;
+      sample.b.frame = 0;
+      sample.b.offset = Vec3(x.x() + arm.x(), x.y() + arm.y(), 0.0);
+      sample.area = areas_[i];
+      sample.gap = gap;
+      samples.push_back(sample);
+    }
+  }
+
+ private:
+  int node_;
+  TriMesh sphere_;
+  VecX areas_;
+  std::string sabotage_;
+};
+
+/// A State, a System and the contact with the plane; `make` fills the rest.
+struct Fall {
+  dynamics::State state;
+  dynamics::System system;
+  std::shared_ptr<contact::ContactForce> contact = std::make_shared<contact::ContactForce>();
+  ContactSpec law;
+
+  explicit Fall(double damping) {
+    law.stiffness_pa_m = kStiffness;
+    law.damping_pa_s_m = damping;
+    contact->add_frame(contact::fixed_frame());
+  }
+
+  struct Outcome {
+    double gain = 0.0;     ///< largest rise of the energy over its start, over m g h
+    double deepest = 0.0;  ///< lowest position of node 0 [m], to show that it bounced
+    long queries = 0;
+  };
+  Outcome run(const IntegratorSpec& spec, double fall_energy) {
+    contact->refresh(state.view());
+    system.prepare(state.view());
+    const auto stepper = integrate::make_stepper(system, state, spec);
+    const auto energy = [&] { return system.kinetic_energy(state.view()) + system.potential_energy(state.view()); };
+    const double start = energy();
+    Outcome out;
+    out.deepest = state.q()[2];
+    for (int i = 1; i * kRefresh <= kEnd; ++i) {
+      const auto result = stepper->advance_to(i * kRefresh);
+      if (!result.ok()) {
+        out.gain = std::nan("");
+        return out;
+      }
+      out.gain = std::max(out.gain, (energy() - start) / fall_energy);
+      out.deepest = std::min(out.deepest, state.q()[2]);
+      if (contact->refresh(state.view())) stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
+      out.gain = std::max(out.gain, (energy() - start) / fall_energy);
+    }
+    out.queries = contact->queries();
+    return out;
+  }
+};
+
+Fall::Outcome drop_rigid(const IntegratorSpec& spec, double damping, const std::string& sabotage) {
+  Fall fall(damping);
+  dynamics::BlockSpec node;
+  node.name = "ball";
+  node.q_size = node.u_size = 3;
+  node.q_scale = 1e-3;
+  node.u_scale = std::sqrt(2.0 * kGravity * kDrop);
+  const int id = fall.state.insert(node, Vec3(0.0, 0.0, kRadius + kDrop), Vec3::Zero());
+  fall.contact->add_pair(std::make_unique<BallSource>(0, sabotage), fall.law);
+  fall.system.add(std::static_pointer_cast<dynamics::ForceTerm>(fall.contact));
+  fall.system.add(fem::make_gravity(VecX::Constant(1, kMass), Vec3(0, 0, -kGravity), id));
+  fall.system.add(std::make_shared<PointMass>(id, kMass));
+  return fall.run(spec, kMass * kGravity * kDrop);
+}
+
+Fall::Outcome drop_soft(const IntegratorSpec& spec, double& mass) {
+  Fall fall(0.0);
+  TetMesh rest = mesh::ball(kRadius, 0.01);
+  fem::Material m;
+  m.youngs_modulus = 1e5;
+  m.poissons_ratio = 0.4;
+  const VecX masses = fem::lumped_masses(rest, m.density);
+  mass = masses.sum();
+  VecX q0 = rest.nodes.reshaped();
+  for (Eigen::Index i = 2; i < q0.size(); i += 3) q0[i] += kRadius + kDrop;
+  dynamics::BlockSpec nodes;
+  nodes.name = "ball";
+  nodes.q_size = nodes.u_size = static_cast<int>(q0.size());
+  nodes.q_scale = 1e-3;
+  nodes.u_scale = std::sqrt(2.0 * kGravity * kDrop);
+  const int id = fall.state.insert(nodes, q0, VecX::Zero(q0.size()));
+  const mesh::Boundary boundary = mesh::boundary(rest);
+  fall.contact->add_pair(contact::make_plane_source({id, boundary.node_of_vertex, boundary.surface.faces}, 0, contact::fixed_frame(), Vec3::Zero(),
+                                                    Vec3::UnitZ(), 1e-3, 2.0 * kRefresh), fall.law);
+  fall.system.add(std::make_shared<fem::SoftBody>("ball", rest, m, fem::SoftBodyOptions{}, id));
+  fall.system.add(std::static_pointer_cast<dynamics::ForceTerm>(fall.contact));
+  fall.system.add(fem::make_gravity(masses, Vec3(0, 0, -kGravity), id));
+  fall.system.add(fem::make_lumped_mass(rest, m.density, id));
+  return fall.run(spec, mass * kGravity * kDrop);
+}
+
+std::vector<Measurement> run(const std::string& sabotage) {
+  using dynamics::StepControl;
+  std::vector<Measurement> out;
+  IntegratorSpec spec;
+  for (const auto& entry : integrate::stepper_registry()) {
+    if (entry.traits.control == StepControl::kFixed || entry.traits.stability == dynamics::Stability::kStatic) continue;
+    spec.name = entry.name;
+    spec.rtol = sabotage == "loose-tolerance" ? 1e-2 : 1e-9;
+    for (const double damping : {0.0, 2e6}) {
+      const Fall::Outcome fall = drop_rigid(spec, damping, sabotage);
+      const bool bounced = fall.deepest < kRadius - 1e-4;
+      out.push_back({.quantity = fmt::format("rigid ball, {}, {}: energy gained / m g h", damping > 0.0 ? "damped" : "undamped", entry.name),
+                     .computed = fall.gain, .error = bounced ? fall.gain : std::nan(""), .bar = 1e-6,
+                     .note = fmt::format("rtol 1e-9, {:.2g} mm deep, {} queries", 1e3 * (kRadius - fall.deepest), fall.queries)});
+    }
+  }
+  if (!sabotage.empty()) return out;
+  spec.name = "cvode-bdf";
+  spec.rtol = 1e-6;
+  double mass = 0.0;
+  const Fall::Outcome soft = drop_soft(spec, mass);
+  out.push_back({.quantity = "soft ball, undamped, cvode-bdf: energy gained / m g h", .computed = soft.gain, .error = soft.gain,
+                 .bar = std::numeric_limits<double>::infinity(),
+                 .note = "reported, not barred: projected areas are held between two queries, 1 ms apart; rtol 1e-6"});
+  return out;
+}
+
+}  // namespace
+
+ValidationCase dropped_ball() {
+  return {.name = "dropped-ball",
+          .section = "D",
+          .summary = "a rigid ball bounces on a plane: energy gained, every integrator with error control; a soft ball beside it",
+          .why = "energy from nowhere at contact is what makes a haptic device kick; conservation of energy",
+          .run = run,
+          .sabotages = {"no-look-ahead", "loose-tolerance"}};
+}
+
+}  // namespace palpate::validation

@@ -1,0 +1,89 @@
+#include <cmath>
+
+#include "cases.h"
+#include "palpate/integrate/integrators.h"
+#include "vibrating_bar.h"
+
+// Error control of every method that has it: over two periods of the lowest mode (the motion and its exact answer: vibrating_bar.h) the error
+// falls with the tolerance, slope 0.8 to 1.2.  Why 1: an embedded pair of orders p and p - 1 estimates the error of a step as C h^p and
+// holds it at rtol, so h ~ rtol^{1/p}; the solution carried on has order p, so its error over a given time is ~ h^p ~ rtol.
+// Backward differences and Adams hold C h^{k+1} of order k: error ~ rtol^{k/(k+1)}, and k rises along the ladder.
+// Two motions in the three lowest modes: undamped; and with damping ratio 0.03 of the lowest, where beta K damps the upper modes heavily.
+// Explicit methods are held by stability, not by their error, once w_max h is at its limit: they are judged undamped, below that.
+// A third motion is reported and has no bar: undamped, all modes at equal amplitude, some of which no tolerance of the ladder resolves.
+
+namespace palpate::validation {
+namespace {
+
+constexpr double kDampingRatio = 0.03;  // of the lowest mode, where there is damping
+
+struct Decades {
+  int loosest, tightest;  ///< rtol = 10^-k
+};
+
+/// Where error control is what sets the step.
+Decades decades(const dynamics::StepperTraits& traits, bool damped) {
+  if (traits.multistep && traits.stability == dynamics::Stability::kAlpha) return {2, damped ? 8 : 6};
+  if (traits.order <= 2) return {2, 5};
+  if (traits.order == 3) return {2, 6};
+  return {3, 8};
+}
+
+Measurement slope(const VibratingBar& bar, const dynamics::StepperEntry& entry, bool damped, const std::string& sabotage) {
+  const VibrationTrial trial{.T = 2.0 * bar.period(), .looks = 8, .beta = damped ? 2.0 * kDampingRatio / bar.omega[0] : 0.0};
+  const Decades range = decades(entry.traits, damped);
+  IntegratorSpec spec;
+  spec.name = entry.name;
+  std::vector<double> tolerances, errors;
+  for (int k = range.loosest; k <= range.tightest; ++k) {
+    spec.rtol = std::pow(10.0, -k);
+    tolerances.push_back(spec.rtol);
+    if (sabotage == "tolerance-ignored") spec.rtol = std::pow(10.0, -range.loosest);
+    errors.push_back(vibration_error(bar, spec, trial, sabotage));
+  }
+  return {.quantity = fmt::format("{}, {}: error at rtol 1e-{}", entry.name, damped ? "damped" : "undamped", range.tightest), .computed = errors.back(),
+          .error = errors.back(), .bar = std::pow(10.0, 2 - range.tightest), .order = study::fitted_order(tolerances, errors), .order_low = 0.8, .order_high = 1.2,
+          .note = fmt::format("slope of the error against rtol, 1e-{} to 1e-{}", range.loosest, range.tightest)};
+}
+
+Measurement full_spectrum(const VibratingBar& bar, const dynamics::StepperEntry& entry) {
+  IntegratorSpec spec;
+  spec.name = entry.name;
+  std::vector<double> tolerances, errors;
+  for (int k = 2; k <= 5; ++k) {
+    spec.rtol = std::pow(10.0, -k);
+    tolerances.push_back(spec.rtol);
+    errors.push_back(vibration_error(bar, spec, {.T = 2.0 * bar.period(), .looks = 8}, ""));
+  }
+  return {.quantity = entry.name + ", undamped full spectrum: error at rtol 1e-5", .computed = errors.back(), .error = errors.back(),
+          .bar = std::numeric_limits<double>::infinity(), .order = study::fitted_order(tolerances, errors),
+          .note = "reported, not barred: slope of the error against rtol, 1e-2 to 1e-5"};
+}
+
+std::vector<Measurement> run(const std::string& sabotage) {
+  using dynamics::Stability;
+  using dynamics::StepControl;
+  const VibratingBar bar, full(true);
+  std::vector<Measurement> out;
+  for (const auto& entry : integrate::stepper_registry()) {
+    if (entry.traits.stability == Stability::kStatic || entry.traits.control == StepControl::kFixed) continue;
+    if (entry.traits.stability != Stability::kExplicit) out.push_back(slope(bar, entry, true, sabotage));
+    out.push_back(slope(bar, entry, false, sabotage));
+    if (sabotage.empty()) out.push_back(full_spectrum(full, entry));
+  }
+  return out;
+}
+
+}  // namespace
+
+ValidationCase vibration_tolerance() {
+  return {.name = "vibration-tolerance",
+          .section = "D",
+          .summary = "free vibration of a clamped bar under error control: slope of the error against the tolerance, every adaptive integrator",
+          .why = "a tolerance is worth what it promises only where the error follows it; exact in time, so no reference run",
+          .slow = true,
+          .run = run,
+          .sabotages = {"half-stiffness", "one-percent", "tolerance-ignored"}};
+}
+
+}  // namespace palpate::validation
