@@ -5,12 +5,23 @@
 namespace palpate::integrate {
 
 using dynamics::Block;
+using dynamics::BorderedMatrix;
 using dynamics::Layout;
 using dynamics::SolveStatus;
 
 void CondensedNewton::evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters) {
-  const ScopedTimer timer(counters.tangent_s);
-  ++counters.tangent_evaluations;
+  counters_ = &counters;
+  layout_ = state.layout;
+  time_ = state.time;
+  q_ = state.q;
+  u_ = state.u;
+  evaluate_matrices();
+}
+
+void CondensedNewton::evaluate_matrices() {
+  const ScopedTimer timer(counters_->tangent_s);
+  ++counters_->tangent_evaluations;
+  const dynamics::StateView state = dynamics::make_view(*layout_, time_, q_.data(), u_.data());
   system_.step_matrix(state, 1.0, 0.0, 0.0, M_);
   system_.step_matrix(state, 0.0, 1.0, 0.0, D_);
   system_.step_matrix(state, 0.0, 0.0, 1.0, K_);
@@ -20,7 +31,7 @@ void CondensedNewton::evaluate(const dynamics::StateView& state, dynamics::Stepp
 // All three carry the identity in driven rows, which then hold 1 + gamma + gamma^2: any positive number serves there.
 void CondensedNewton::combine(double gamma) {
   if (A_.body.pattern_version() != M_.body.pattern_version() || A_.border_size() != M_.border_size()) A_ = M_;
-  const auto map = [](const dynamics::BorderedMatrix& B) {
+  const auto map = [](const BorderedMatrix& B) {
     return Eigen::Map<const Eigen::ArrayXd>(B.body.values().data(), static_cast<Eigen::Index>(B.body.values().size()));
   };
   Eigen::Map<Eigen::ArrayXd>(A_.body.values().data(), static_cast<Eigen::Index>(A_.body.values().size())) =
@@ -35,12 +46,16 @@ void CondensedNewton::combine(double gamma) {
 SolveStatus CondensedNewton::factor(double gamma) {
   if (gamma == gamma_) return SolveStatus::kOk;
   combine(gamma);
-  const SolveStatus status = solver_.factor(A_);
+  const SolveStatus status = solver_.factor(A_, system_, [&] {
+    evaluate_matrices();
+    combine(gamma);
+  });
   gamma_ = status == SolveStatus::kOk ? gamma : 0.0;
   return status;
 }
 
-SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du) {
+/// theta = N+ r1, zero along driven directions
+void CondensedNewton::left_inverse(const Layout& layout, const double* q, const double* r1) {
   theta_.resize(layout.u_size);
   for (const Block& b : layout.blocks) {
     const Eigen::Map<const VecX> rate(r1 + b.q_offset, b.q_size);
@@ -49,8 +64,13 @@ SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const 
     else
       theta_.segment(b.u_offset, b.u_size) = rate;
   }
+  for (int dof : system_.driven_dofs()) theta_[dof] = 0.0;
+}
+
+SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du) {
+  left_inverse(layout, q, r1);
   du_ = Eigen::Map<const VecX>(r2, layout.u_size);
-  for (int dof : system_.driven_dofs()) theta_[dof] = du_[dof] = 0.0;
+  for (int dof : system_.driven_dofs()) du_[dof] = 0.0;
   M_.multiply(du_, rhs_);
   K_.multiply(theta_, product_);
   rhs_ -= gamma_ * product_;
@@ -63,6 +83,24 @@ SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const 
   for (int dof : system_.driven_dofs()) {
     dq[dof] = r1[dof];
     du[dof] = r2[dof];
+  }
+  return SolveStatus::kOk;
+}
+
+SolveStatus CondensedNewton::solve_residual_form(const Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du) {
+  left_inverse(layout, q, r1);
+  K_.multiply(theta_, product_);
+  rhs_ = gamma_ * (Eigen::Map<const VecX>(r2, layout.u_size) - gamma_ * product_);
+  for (int dof : system_.driven_dofs()) rhs_[dof] = 0.0;
+  if (const SolveStatus status = solver_.solve(rhs_, du_); status != SolveStatus::kOk) return status;
+
+  dynamics::q_dot(layout, q, du_.data(), dq);
+  Eigen::Map<VecX> dq_map(dq, layout.q_size);
+  dq_map = gamma_ * (dq_map + Eigen::Map<const VecX>(r1, layout.q_size));
+  Eigen::Map<VecX>(du, layout.u_size) = du_;
+  for (int dof : system_.driven_dofs()) {
+    dq[dof] = gamma_ * r1[dof];
+    du[dof] = gamma_ * r2[dof];
   }
   return SolveStatus::kOk;
 }

@@ -1,7 +1,5 @@
 #pragma once
 #include "integrate/step_solver.h"
-#include "palpate/dynamics/stepper.h"
-#include "palpate/dynamics/system.h"
 
 namespace palpate::integrate {
 
@@ -12,23 +10,40 @@ namespace palpate::integrate {
 /// With the left inverse N+ of N, theta = N+ r1 + gamma du, and so
 ///     (M + gamma D + gamma^2 K) du = M r2 - gamma K N+ r1,     dq = r1 + gamma N du.
 /// On node blocks N is the identity.  Rows of driven directions give dq = r1, du = r2.
+///
+/// The residual form F(y, y') = [q' - N u; M u' - f] with J = dF/dy + (1/gamma) dF/dy' has the rows
+///     dq / gamma - N du = r1,     K theta + (D + M / gamma) du = r2      [r2 in N, N m]
+/// and therefore the same matrix, with no mass in the right-hand side:
+///     (M + gamma D + gamma^2 K) du = gamma r2 - gamma^2 K N+ r1,     dq = gamma (r1 + N du).
+/// Rows of driven directions (q' - v(t), u' - a(t)) give dq = gamma r1, du = gamma r2.
+///
+/// An indefinite matrix is met as StepSolver says; "project" evaluates M, D and K again with definite tangents, and those serve until the next evaluate().
 class CondensedNewton {
  public:
-  CondensedNewton(dynamics::System& system, std::unique_ptr<dynamics::LinearSolver> solver) : system_(system), solver_(std::move(solver)) {}
+  CondensedNewton(dynamics::System& system, std::unique_ptr<dynamics::LinearSolver> solver, const IntegratorSpec& spec)
+      : system_(system), solver_(std::move(solver), spec) {}
 
-  /// M, D and K at this state; no factor yet.
+  /// M, D and K at this state; no factor yet.  The counters are kept in mind for evaluations that factor() asks for: they outlive it.
   void evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters);
   /// Factor of M + gamma D + gamma^2 K with the matrices last evaluated; nothing is done where gamma and they are unchanged.
   dynamics::SolveStatus factor(double gamma);
-  /// Solves for (dq, du).  N is taken at q.  The outputs may not alias the residuals.
+  /// Solves for (dq, du), first-order form.  N is taken at q.  The outputs may not alias the residuals.
   dynamics::SolveStatus solve(const dynamics::Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du);
+  /// The same of the residual form.
+  dynamics::SolveStatus solve_residual_form(const dynamics::Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du);
   double gamma() const { return gamma_; }  ///< of the last factor; 0 when there is none
   const StepSolver& solver() const { return solver_; }
 
  private:
+  void evaluate_matrices();
   void combine(double gamma);
+  void left_inverse(const dynamics::Layout& layout, const double* q, const double* r1);
   dynamics::System& system_;
   StepSolver solver_;
+  dynamics::StepperCounters* counters_ = nullptr;
+  const dynamics::Layout* layout_ = nullptr;  ///< of the last evaluation, with its time, q and u
+  double time_ = 0.0;
+  VecX q_, u_;
   dynamics::BorderedMatrix M_, D_, K_, A_;
   double gamma_ = 0.0;
   VecX theta_, rhs_, product_, du_;

@@ -18,12 +18,13 @@ using namespace dynamics;
 /// Driven directions go to x(t1), v(t1) exactly.  Their displacement dx and velocity change dv enter the free rows as what they are,
 ///     (M + h D + h^2 K) du = h (f - K s - D dv) - M dv,   s = h u0 on free directions, dx on driven ones;  dv = 0 on free ones,
 /// so a body that moves rigidly with its drive feels no force.  Order 1; L-stable on linear problems with M, D, K positive.
-/// A value that is not finite ends the step as data; an indefinite matrix is factored by LU and counted.
+/// A value that is not finite ends the step as data; an indefinite matrix is met as StepSolver says: the right-hand side keeps the
+/// true K, so that a projected matrix changes du by h^2 (K_p - K) du, which is O(h^3).
 /// Dense output is linear within the last step, which has the method's order.
 class LinearlyImplicitEuler final : public Stepper {
  public:
   LinearlyImplicitEuler(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
-      : system_(system), state_(state), spec_(spec), solver_(std::move(solver)) {
+      : system_(system), state_(state), spec_(spec), solver_(std::move(solver), spec) {
     check_fixed_step(spec_);
     counters::count("integrate.linearly-implicit-euler");
   }
@@ -62,8 +63,7 @@ class LinearlyImplicitEuler final : public Stepper {
   }
 
   const StepperCounters& counters() const override {
-    counters_.solver = solver_.counters();
-    counters_.indefinite = solver_.indefinite();
+    solver_.report(counters_);
     return counters_;
   }
 
@@ -121,12 +121,13 @@ class LinearlyImplicitEuler final : public Stepper {
     predict_drives(t1, h);
     const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
     if (!right_hand_side(at, h)) return failure(StepStatus::kNotFinite, "the force is not finite", h);
-    {
+    const auto assemble = [&] {
       const ScopedTimer timer(counters_.tangent_s);
       ++counters_.tangent_evaluations;
       system_.step_matrix(at, 1.0, h, h * h, A_);
-    }
-    if (solver_.factor(A_) != SolveStatus::kOk || solver_.solve(rhs_, du_) != SolveStatus::kOk)
+    };
+    assemble();
+    if (solver_.factor(A_, system_, assemble) != SolveStatus::kOk || solver_.solve(rhs_, du_) != SolveStatus::kOk)
       return failure(StepStatus::kSolverFailed, "the step matrix is singular or not finite", h);
     if (!du_.allFinite()) return failure(StepStatus::kNotFinite, "the velocity is not finite", h);
     accept(h, t1);

@@ -1,4 +1,5 @@
 #include "integrate/make.h"
+#include "integrate/step_solver.h"
 #include "palpate/integrate/integrators.h"
 
 namespace palpate::integrate {
@@ -35,6 +36,10 @@ std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynami
 
 std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name, const IntegratorSpec& spec) {
   return find(linear_solver_registry(), name, "linear solver").make(spec);
+}
+
+std::unique_ptr<dynamics::LinearSolver> make_robust_linear_solver(const std::string& name, const IntegratorSpec& spec) {
+  return std::make_unique<StepSolver>(make_linear_solver(name, spec), spec);
 }
 
 }  // namespace palpate::integrate

@@ -1,5 +1,7 @@
 #include "integrate/step_solver.h"
 
+#include <type_traits>
+
 #include "integrate/make.h"
 #include "palpate/core/counters.h"
 
@@ -9,7 +11,8 @@ using dynamics::BorderedMatrix;
 using dynamics::SolverCounters;
 using dynamics::SolveStatus;
 
-StepSolver::StepSolver(std::unique_ptr<dynamics::LinearSolver> chosen) : chosen_(std::move(chosen)), active_(chosen_.get()) {}
+StepSolver::StepSolver(std::unique_ptr<dynamics::LinearSolver> chosen, const IntegratorSpec& spec)
+    : chosen_(std::move(chosen)), active_(chosen_.get()), project_(spec.indefinite == "project") {}
 
 SolveStatus StepSolver::factor_by_lu(const BorderedMatrix& A) {
   if (!lu_) lu_ = make_umfpack({});
@@ -17,7 +20,8 @@ SolveStatus StepSolver::factor_by_lu(const BorderedMatrix& A) {
   return lu_->factor(A);
 }
 
-SolveStatus StepSolver::factor(const BorderedMatrix& A) {
+SolveStatus StepSolver::factor_chosen(const BorderedMatrix& A) {
+  matrix_ = &A;
   if (!A.symmetric && !chosen_->supports_unsymmetric()) {
     counters::count("integrate.unsymmetric");
     return factor_by_lu(A);
@@ -25,23 +29,54 @@ SolveStatus StepSolver::factor(const BorderedMatrix& A) {
   active_ = chosen_.get();
   const long before = chosen_->counters().factorisations;
   const SolveStatus status = chosen_->factor(A);
-  if (status != SolveStatus::kIndefinite) return status;
-  indefinite_ += chosen_->counters().factorisations - before;
-  return factor_by_lu(A);
+  if (status == SolveStatus::kIndefinite) indefinite_ += chosen_->counters().factorisations - before;
+  return status;
 }
 
-SolverCounters StepSolver::counters() const {
-  SolverCounters sum = chosen_->counters();
-  if (!lu_) return sum;
+SolveStatus StepSolver::factor(const BorderedMatrix& A) {
+  const SolveStatus status = factor_chosen(A);
+  return status == SolveStatus::kIndefinite ? factor_by_lu(A) : status;
+}
+
+template <class Columns>
+SolveStatus StepSolver::solve_any(const Columns& b, Columns& x) {
+  Columns* kept = nullptr;
+  if (&b == &x && active_ != lu_.get()) {
+    if constexpr (std::is_same_v<Columns, VecX>)
+      kept = &kept_column_;
+    else
+      kept = &kept_columns_;
+    *kept = b;
+  }
+  const SolveStatus status = active_->solve(b, x);
+  if (active_ == lu_.get() || (status != SolveStatus::kIndefinite && status != SolveStatus::kNotConverged)) return status;
+  ++(status == SolveStatus::kIndefinite ? indefinite_ : unconverged_);
+  if (const SolveStatus lu = factor_by_lu(*matrix_); lu != SolveStatus::kOk) return lu;
+  return active_->solve(kept ? *kept : b, x);
+}
+
+template SolveStatus StepSolver::solve_any(const VecX&, VecX&);
+template SolveStatus StepSolver::solve_any(const MatX&, MatX&);
+
+const SolverCounters& StepSolver::counters() const {
+  sum_ = chosen_->counters();
+  if (!lu_) return sum_;
   const SolverCounters& lu = lu_->counters();
-  sum.symbolic += lu.symbolic;
-  sum.factorisations += lu.factorisations;
-  sum.solves += lu.solves;
-  sum.iterations += lu.iterations;
-  sum.symbolic_s += lu.symbolic_s;
-  sum.factor_s += lu.factor_s;
-  sum.solve_s += lu.solve_s;
-  return sum;
+  sum_.symbolic += lu.symbolic;
+  sum_.factorisations += lu.factorisations;
+  sum_.solves += lu.solves;
+  sum_.iterations += lu.iterations;
+  sum_.symbolic_s += lu.symbolic_s;
+  sum_.factor_s += lu.factor_s;
+  sum_.solve_s += lu.solve_s;
+  return sum_;
+}
+
+void StepSolver::report(dynamics::StepperCounters& counters) const {
+  counters.solver = this->counters();
+  counters.indefinite = indefinite_;
+  counters.projected = projected_;
+  counters.unconverged = unconverged_;
 }
 
 }  // namespace palpate::integrate

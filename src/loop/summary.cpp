@@ -27,7 +27,10 @@ void add_counts(store::SummarySection& s, const RunResult& r) {
   add("symbolic_analyses", c.solver.symbolic);
   add("factorisations", c.solver.factorisations);
   add("linear_solves", c.solver.solves);
+  add("linear_iterations", c.solver.iterations);
   add("indefinite_matrices", c.indefinite);
+  add("projected_matrices", c.projected);
+  add("unconverged_linear_solves", c.unconverged);
   add("reinitialisations", c.reinits);
   add("contact_queries", r.contact_queries);
   add("frozen_fallbacks", r.frozen_fallbacks);

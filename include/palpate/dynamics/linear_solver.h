@@ -25,6 +25,7 @@ class LinearSolver {
   virtual std::string name() const = 0;
   virtual bool supports_unsymmetric() const = 0;
   /// Prepares for A; cheap when neither its pattern nor its values changed.  kIndefinite: a Cholesky factor does not exist.
+  /// A stays where it is, unchanged, until the last solve with it: an iterative method reads it there.
   virtual SolveStatus factor(const BorderedMatrix& A) = 0;
   /// X = A^-1 B for the matrix last factored; B and X are size x nrhs, may be the same object.
   virtual SolveStatus solve(const MatX& B, MatX& X) = 0;

@@ -34,7 +34,9 @@ struct StepperCounters {
   long error_test_failures = 0, newton_failures = 0, newton_iterations = 0;
   long force_evaluations = 0, tangent_evaluations = 0;
   long reinits = 0;
-  long indefinite = 0;  ///< factorisations that met an indefinite matrix and fell back
+  long indefinite = 0;   ///< matrices that had no Cholesky factor: answered by definite tangents (projected) or, the rest, by LU
+  long projected = 0;    ///< of those, answered by definite tangents
+  long unconverged = 0;  ///< solves that an iterative linear solver gave up and LU answered
   double force_s = 0.0, tangent_s = 0.0;  ///< wall time [s]
   SolverCounters solver;
 };

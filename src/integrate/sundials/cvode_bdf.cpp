@@ -55,7 +55,7 @@ StepStatus status_of(int flag) {
 class CvodeBdf final : public Stepper, private sun::NewtonHook {
  public:
   CvodeBdf(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
-      : system_(system), state_(state), spec_(spec), first_order_(system, state), newton_(system, std::move(solver)) {
+      : system_(system), state_(state), spec_(spec), first_order_(system, state), newton_(system, std::move(solver), spec) {
     check_adaptive(spec_, kHighestOrder);
     counters::count("integrate.cvode-bdf");
   }
@@ -104,8 +104,7 @@ class CvodeBdf final : public Stepper, private sun::NewtonHook {
   }
 
   const StepperCounters& counters() const override {
-    counters_.solver = newton_.solver().counters();
-    counters_.indefinite = newton_.solver().indefinite();
+    newton_.solver().report(counters_);
     return counters_;
   }
 

@@ -1,4 +1,4 @@
-#include "integrate/direct_solver.h"
+#include "integrate/linear/direct_solver.h"
 
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"

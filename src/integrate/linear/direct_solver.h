@@ -2,7 +2,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "integrate/body_factor.h"
+#include "integrate/linear/body_factor.h"
 
 namespace palpate::integrate {
 

@@ -1,6 +1,6 @@
 #include <cholmod.h>
 
-#include "integrate/direct_solver.h"
+#include "integrate/linear/direct_solver.h"
 #include "integrate/make.h"
 #include "palpate/core/error.h"
 
