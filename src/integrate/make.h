@@ -14,5 +14,7 @@ std::unique_ptr<dynamics::Stepper> make_linearly_implicit_euler(dynamics::System
 
 std::unique_ptr<dynamics::LinearSolver> make_cholmod(const IntegratorSpec&);
 std::unique_ptr<dynamics::LinearSolver> make_umfpack(const IntegratorSpec&);
+std::unique_ptr<dynamics::LinearSolver> make_klu(const IntegratorSpec&);
+std::unique_ptr<dynamics::LinearSolver> make_pcg(const IntegratorSpec&);
 
 }  // namespace palpate::integrate

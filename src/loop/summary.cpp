@@ -98,6 +98,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   summary.message = result.status.message;
   summary.provenance = full_provenance();
   add_options(summary.section("options"), world.description);
+  if (const std::string& ordering = result.counters.solver.ordering; !ordering.empty()) summary.section("options").values.emplace_back("ordering", ordering);
   add_sizes(summary.section("sizes"), world);
   add_counts(summary.section("counts"), result);
   add_timings(summary.section("timings"), result, assemble_s);

@@ -183,7 +183,7 @@ TEST(EulerStrut, IsStableBelowTheCriticalLoadAndNotWellAbove) {
 TEST(EulerStrut, StepMatrixTurnsIndefiniteAtTheGrowthRate) {
   const double sigma = std::sqrt(-Strut(4.0).smallest_eigenvalue());
   for (const auto& [h_sigma, expected] : {std::pair{0.98, 0L}, std::pair{1.02, 1L}})
-    for (const char* solver : {"cholmod"}) {
+    for (const char* solver : {"cholmod", "pcg"}) {
       for (const char* policy : {"project", "lu"}) {
         Strut strut(4.0);
         const VecX q0 = strut.state.q();
@@ -226,7 +226,7 @@ struct Mirrored {
 };
 
 TEST(InvertedElements, GiveAFiniteStepByEitherPolicy) {
-  for (const char* solver : {"cholmod"})
+  for (const char* solver : {"cholmod", "pcg"})
     for (const char* policy : {"project", "lu"}) {
       Mirrored cube;
       ASSERT_GE(cube.system.inspect(cube.state.view()).first.element, 0) << "the mesh is inside out";

@@ -16,6 +16,7 @@ struct SolverCounters {
   long solves = 0;          ///< right-hand sides
   long iterations = 0;      ///< of iterative methods
   double symbolic_s = 0.0, factor_s = 0.0, solve_s = 0.0;  ///< wall time [s]
+  std::string ordering;     ///< fill-reducing ordering of the last analysis, where the solver chooses: "AMD", "METIS"
 };
 
 /// Solves A X = B for a bordered matrix.  Symbolic analysis once per pattern version; numeric work only when the values' version changed.

@@ -26,6 +26,7 @@ SolveStatus DirectSolver::factor(const BorderedMatrix& A) {
     const ScopedTimer timer(counters_.symbolic_s);
     body_->analyse(A.body);
     ++counters_.symbolic;
+    counters_.ordering = body_->ordering();
   }
   pattern_version_ = A.body.pattern_version();
   values_version_ = A.values_version;

@@ -10,7 +10,8 @@ namespace palpate::integrate {
 ///     [A R] [x]   [b]      W = A^-1 R,  S = C - B W  (once a factor)
 ///     [B C] [y] = [c]      z = A^-1 b,  y = S^-1 (c - B z),  x = z - W y  (once a right-hand side)
 /// so the fill of the sparse factor does not depend on how many nodes the tool touches.
-/// A matrix is refused as kSingular when a value is not finite or, unsymmetric, its factor meets a zero pivot.
+/// A matrix is refused as kSingular when a value is not finite or, by LU, a pivot is zero to rounding; also when its body alone is singular,
+/// even where the border would make the whole regular.
 class DirectSolver final : public dynamics::LinearSolver {
  public:
   DirectSolver(std::string name, bool unsymmetric, std::unique_ptr<BodyFactor> body);
