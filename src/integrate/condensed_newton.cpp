@@ -9,8 +9,9 @@ using dynamics::BorderedMatrix;
 using dynamics::Layout;
 using dynamics::SolveStatus;
 
-void CondensedNewton::evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters) {
+void CondensedNewton::evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters, const dynamics::System::TermFilter& filter) {
   counters_ = &counters;
+  filter_ = filter;
   layout_ = state.layout;
   time_ = state.time;
   q_ = state.q;
@@ -23,8 +24,8 @@ void CondensedNewton::evaluate_matrices() {
   ++counters_->tangent_evaluations;
   const dynamics::StateView state = dynamics::make_view(*layout_, time_, q_.data(), u_.data());
   system_.step_matrix(state, 1.0, 0.0, 0.0, M_);
-  system_.step_matrix(state, 0.0, 1.0, 0.0, D_);
-  system_.step_matrix(state, 0.0, 0.0, 1.0, K_);
+  system_.step_matrix(state, 0.0, 1.0, 0.0, D_, filter_);
+  system_.step_matrix(state, 0.0, 0.0, 1.0, K_, filter_);
   gamma_ = 0.0;
 }
 
@@ -54,21 +55,23 @@ SolveStatus CondensedNewton::factor(double gamma) {
   return status;
 }
 
-/// theta = N+ r1, zero along driven directions
-void CondensedNewton::left_inverse(const Layout& layout, const double* q, const double* r1) {
+/// theta = N+ r1; zero along driven directions, and with nodes_only on blocks with kinematics.
+void CondensedNewton::left_inverse(const Layout& layout, const double* q, const double* r1, bool nodes_only) {
   theta_.resize(layout.u_size);
   for (const Block& b : layout.blocks) {
-    const Eigen::Map<const VecX> rate(r1 + b.q_offset, b.q_size);
-    if (b.kinematics)
-      b.kinematics->u_of_q_dot(Eigen::Map<const VecX>(q + b.q_offset, b.q_size), rate, theta_.segment(b.u_offset, b.u_size));
+    const Eigen::Map<const VecX> r(r1 + b.q_offset, b.q_size);
+    if (!b.kinematics)
+      theta_.segment(b.u_offset, b.u_size) = r;
+    else if (nodes_only)
+      theta_.segment(b.u_offset, b.u_size).setZero();
     else
-      theta_.segment(b.u_offset, b.u_size) = rate;
+      b.kinematics->u_of_q_dot(Eigen::Map<const VecX>(q + b.q_offset, b.q_size), r, theta_.segment(b.u_offset, b.u_size));
   }
   for (int dof : system_.driven_dofs()) theta_[dof] = 0.0;
 }
 
-SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du) {
-  left_inverse(layout, q, r1);
+SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du, bool nodes_only) {
+  left_inverse(layout, q, r1, nodes_only);
   du_ = Eigen::Map<const VecX>(r2, layout.u_size);
   for (int dof : system_.driven_dofs()) du_[dof] = 0.0;
   M_.multiply(du_, rhs_);
@@ -78,6 +81,9 @@ SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const 
 
   dynamics::q_dot(layout, q, du_.data(), dq);
   Eigen::Map<VecX> dq_map(dq, layout.q_size);
+  if (nodes_only)
+    for (const Block& b : layout.blocks)
+      if (b.kinematics) dq_map.segment(b.q_offset, b.q_size).setZero();
   dq_map = gamma_ * dq_map + Eigen::Map<const VecX>(r1, layout.q_size);
   Eigen::Map<VecX>(du, layout.u_size) = du_;
   for (int dof : system_.driven_dofs()) {
@@ -88,7 +94,7 @@ SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const 
 }
 
 SolveStatus CondensedNewton::solve_residual_form(const Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du) {
-  left_inverse(layout, q, r1);
+  left_inverse(layout, q, r1, false);
   K_.multiply(theta_, product_);
   rhs_ = gamma_ * (Eigen::Map<const VecX>(r2, layout.u_size) - gamma_ * product_);
   for (int dof : system_.driven_dofs()) rhs_[dof] = 0.0;

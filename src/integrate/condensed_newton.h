@@ -23,12 +23,15 @@ class CondensedNewton {
   CondensedNewton(dynamics::System& system, std::unique_ptr<dynamics::LinearSolver> solver, const IntegratorSpec& spec)
       : system_(system), solver_(std::move(solver), spec) {}
 
-  /// M, D and K at this state; no factor yet.  The counters are kept in mind for evaluations that factor() asks for: they outlive it.
-  void evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters);
+  /// M, and D and K of the terms that `filter` picks (empty: all), at this state; no factor yet.
+  /// The counters are kept in mind for evaluations that factor() asks for: they outlive it.
+  void evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters, const dynamics::System::TermFilter& filter = {});
   /// Factor of M + gamma D + gamma^2 K with the matrices last evaluated; nothing is done where gamma and they are unchanged.
   dynamics::SolveStatus factor(double gamma);
   /// Solves for (dq, du), first-order form.  N is taken at q.  The outputs may not alias the residuals.
-  dynamics::SolveStatus solve(const dynamics::Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du);
+  /// @param nodes_only  q' = N u of blocks with kinematics is not part of the system that is solved: dq = r1 there
+  dynamics::SolveStatus solve(const dynamics::Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du,
+                              bool nodes_only = false);
   /// The same of the residual form.
   dynamics::SolveStatus solve_residual_form(const dynamics::Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du);
   double gamma() const { return gamma_; }  ///< of the last factor; 0 when there is none
@@ -37,13 +40,14 @@ class CondensedNewton {
  private:
   void evaluate_matrices();
   void combine(double gamma);
-  void left_inverse(const dynamics::Layout& layout, const double* q, const double* r1);
+  void left_inverse(const dynamics::Layout& layout, const double* q, const double* r1, bool nodes_only);
   dynamics::System& system_;
   StepSolver solver_;
   dynamics::StepperCounters* counters_ = nullptr;
   const dynamics::Layout* layout_ = nullptr;  ///< of the last evaluation, with its time, q and u
   double time_ = 0.0;
   VecX q_, u_;
+  dynamics::System::TermFilter filter_;
   dynamics::BorderedMatrix M_, D_, K_, A_;
   double gamma_ = 0.0;
   VecX theta_, rhs_, product_, du_;

@@ -2,13 +2,14 @@
 #include "palpate/dynamics/stepper.h"
 #include "palpate/dynamics/system.h"
 
-/// The makers that registry.cpp lists, one a file.
+/// The makers that registry.cpp lists.
 namespace palpate::integrate {
 
-std::unique_ptr<dynamics::Stepper> make_cvode_bdf(dynamics::System&, dynamics::State&, const IntegratorSpec&,
-                                                  std::unique_ptr<dynamics::LinearSolver>);
-std::unique_ptr<dynamics::Stepper> make_ark_erk(dynamics::System&, dynamics::State&, const IntegratorSpec&,
-                                                std::unique_ptr<dynamics::LinearSolver>);
+std::unique_ptr<dynamics::Stepper> make_cvode(dynamics::System&, dynamics::State&, const IntegratorSpec&, std::unique_ptr<dynamics::LinearSolver>);
+std::unique_ptr<dynamics::Stepper> make_ark(dynamics::System&, dynamics::State&, const IntegratorSpec&, std::unique_ptr<dynamics::LinearSolver>);
+std::unique_ptr<dynamics::Stepper> make_mri(dynamics::System&, dynamics::State&, const IntegratorSpec&, std::unique_ptr<dynamics::LinearSolver>);
+std::unique_ptr<dynamics::Stepper> make_ida(dynamics::System&, dynamics::State&, const IntegratorSpec&, std::unique_ptr<dynamics::LinearSolver>);
+std::unique_ptr<dynamics::Stepper> make_kinsol_static(dynamics::System&, dynamics::State&, const IntegratorSpec&, std::unique_ptr<dynamics::LinearSolver>);
 std::unique_ptr<dynamics::Stepper> make_linearly_implicit_euler(dynamics::System&, dynamics::State&, const IntegratorSpec&,
                                                                 std::unique_ptr<dynamics::LinearSolver>);
 

@@ -1,5 +1,6 @@
 #include "integrate/make.h"
 #include "integrate/step_solver.h"
+#include "integrate/sundials/ark_methods.h"
 #include "palpate/integrate/integrators.h"
 
 namespace palpate::integrate {
@@ -7,15 +8,39 @@ namespace palpate::integrate {
 using dynamics::Stability;
 using dynamics::StepControl;
 
-const dynamics::StepperRegistry& stepper_registry() {
-  static const dynamics::StepperRegistry registry = {
+namespace {
+
+/// In the order in which they are listed and compared: by SUNDIALS, then by hand.
+dynamics::StepperRegistry make_registry() {
+  dynamics::StepperRegistry all = {
       {"cvode-bdf", "backward differences of SUNDIALS CVODE, order 1 to 5 (max_order)",
-       {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"}, make_cvode_bdf},
-      {"ark-erk-5", "Cash-Karp 5(4) of SUNDIALS ARKODE; no linear solver; checks references",
-       {"explicit Runge-Kutta", 5, 0, StepControl::kAdaptive, Stability::kExplicit, false, false, "force"}, make_ark_erk},
+       {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"}, make_cvode},
+      {"cvode-adams", "Adams-Moulton of SUNDIALS CVODE, order 1 to 12 (max_order), fixed-point iteration",
+       {"Adams", 12, 0, StepControl::kAdaptive, Stability::kExplicit, false, true, "force"}, make_cvode},
+      {"ida", "backward differences of SUNDIALS IDA on the residual M u' - f, order 1 to 5 (max_order)",
+       {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"}, make_ida},
+  };
+  for (const ArkMethod& m : ark_methods()) all.push_back({m.name, m.summary, m.traits, make_ark});
+  const auto multi_rate = [](int order, int stiff_order) {
+    return dynamics::StepperTraits{"multi-rate", order, stiff_order, StepControl::kFixed, Stability::kA, true, false, "force, tangent; contact and tool as the fast side"};
+  };
+  all.push_back({"ark-mri-2", "multi-rate IRK21a of Sandu 2019: bodies by an implicit slow step, contact and tool fast", multi_rate(2, 2), make_mri});
+  all.push_back({"ark-mri-3", "multi-rate ESDIRK34a of Sandu 2019", multi_rate(3, 2), make_mri});
+  all.push_back({"ark-mri-4", "multi-rate ESDIRK46a of Sandu 2019", multi_rate(4, 2), make_mri});
+  all.push_back({"kinsol-static", "quasi-static equilibrium of SUNDIALS KINSOL: no inertia, no velocity",
+                 {"statics", 1, 1, StepControl::kFixed, Stability::kStatic, true, false, "force, tangent"}, make_kinsol_static});
+  const dynamics::StepperRegistry by_hand = {
       {"linearly-implicit-euler", "one linear solve a step; the interactive method of Galoppo et al. 2007",
        {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent"}, make_linearly_implicit_euler},
   };
+  all.insert(all.end(), by_hand.begin(), by_hand.end());
+  return all;
+}
+
+}  // namespace
+
+const dynamics::StepperRegistry& stepper_registry() {
+  static const dynamics::StepperRegistry registry = make_registry();
   return registry;
 }
 

@@ -26,11 +26,14 @@ void check_adaptive(const IntegratorSpec& spec, int highest_order) {
   if (spec.max_order < 0 || spec.max_order > highest_order)
     fail("integrator \"{}\": max_order = {} must lie in [0, {}]; 0 leaves it to the method", spec.name, spec.max_order, highest_order);
   check_max_steps(spec);
+  if (spec.fixed_step) fail("integrator \"{}\": fixed_step = true, but this method chooses its steps by error control; leave it out, or take a method that can do both (palpate list integrators)", spec.name);
 }
 
 void check_fixed_step(const IntegratorSpec& spec) {
   check_positive(spec, "step_s", spec.step_s, "1e-3 is usual");
   check_max_steps(spec);
 }
+
+void check_static(const IntegratorSpec& spec) { check_positive(spec, "newton_rtol", spec.newton_rtol, "1e-8 is usual"); }
 
 }  // namespace palpate::integrate

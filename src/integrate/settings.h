@@ -6,5 +6,6 @@ namespace palpate::integrate {
 /// @throws Error naming the key of the `[integrator]` table, its value and what to write instead.
 void check_adaptive(const IntegratorSpec& spec, int highest_order);
 void check_fixed_step(const IntegratorSpec& spec);
+void check_static(const IntegratorSpec& spec);
 
 }  // namespace palpate::integrate

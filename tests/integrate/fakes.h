@@ -132,15 +132,33 @@ inline VecX run(System& system, State& state, const IntegratorSpec& spec, double
   return state.q();
 }
 
-/// No tangent is ever asked of an explicit integrator's system.
-inline bool is_explicit(const std::string& name) {
-  Chain chain;
-  IntegratorSpec spec;
-  spec.name = name;
-  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec);
-  stepper->advance_to(0.01);
-  return stepper->counters().tangent_evaluations == 0;
+/// What a conformance suite runs over: every integrator of the registry, and those that can do both once more with a fixed step ("ark-erk-3, fixed step").
+inline constexpr const char* kFixedStep = ", fixed step";
+inline std::vector<std::string> stepper_modes(bool dynamic_only = true) {
+  std::vector<std::string> out;
+  for (const auto& entry : integrate::stepper_registry()) {
+    if (dynamic_only && entry.traits.stability == Stability::kStatic) continue;
+    out.push_back(entry.name);
+    if (entry.traits.control == StepControl::kEither) out.push_back(entry.name + kFixedStep);
+  }
+  return out;
 }
+inline IntegratorSpec mode_spec(const std::string& mode) {
+  IntegratorSpec spec;
+  spec.fixed_step = mode.ends_with(kFixedStep);
+  spec.name = spec.fixed_step ? mode.substr(0, mode.size() - std::string(kFixedStep).size()) : mode;
+  spec.newton_rtol = 1e-11;  // below the error of the finest step of order 5
+  if (spec.name.starts_with("ark-mri")) spec.rtol = 1e-8;  // of the fast side
+  return spec;
+}
+inline const StepperTraits& mode_traits(const std::string& mode) {
+  return find(integrate::stepper_registry(), mode_spec(mode).name, "integrator").traits;
+}
+inline bool is_explicit(const std::string& mode) { return !mode_traits(mode).implicit; }
+/// True when a step decides the accuracy, not a tolerance.
+inline bool steps_are_fixed(const std::string& mode) { return mode_traits(mode).control == StepControl::kFixed || mode_spec(mode).fixed_step; }
+/// The order that a ladder of steps shows; 0 of a method that tolerances steer.
+inline int ladder_order(const std::string& mode) { return steps_are_fixed(mode) ? mode_traits(mode).order : 0; }
 
 /// The setting that a ladder refines: the step of a method of known order, else the tolerance.
 inline void set_accuracy(IntegratorSpec& spec, int order, double value) { (order > 0 ? spec.step_s : spec.rtol) = value; }
@@ -151,20 +169,24 @@ inline double slope(const std::vector<double>& x, const std::vector<double>& y) 
   return ((lx - lx.mean()) * (ly - ly.mean())).sum() / (lx - lx.mean()).square().sum();
 }
 
-/// The order that a ladder of steps shows; 0 of a method that tolerances steer.
-inline int ladder_order(const std::string& name) {
-  const dynamics::StepperTraits& traits = find(integrate::stepper_registry(), name, "integrator").traits;
-  return traits.control == dynamics::StepControl::kAdaptive ? 0 : traits.order;
-}
-
-/// Settings of a ladder over which the error must fall with the theoretical slope.  Of a fixed step: the order.  Of a tolerance on the
-/// error of a step of order k: k/(k+1) to 1, and the order varies from 2 to 5 along the ladder.
+/// Settings of a ladder over which the error must fall with the theoretical slope, and the band of that slope.
+/// Fixed steps: the order; w h small enough for the next term of the error to stay below a tenth, large enough for a high order to stay above rounding.
+/// A tolerance: of variable order k/(k+1) to 1, with k from 2 to 5 along the ladder; of one order 1.  A low order is spared the tightest rungs.
 struct Ladder {
   std::vector<double> values;
   double low, high;
 };
-inline Ladder ladder(int order) {
-  if (order > 0) return {{4e-4, 2e-4, 1e-4, 5e-5}, order - 0.1, order + 0.1};
+/// @param T  time between two outputs: a whole number of steps, for a shortened last one would blur the slope
+inline Ladder ladder(const std::string& mode, double omega, double T) {
+  const int order = mode_traits(mode).order;
+  if (steps_are_fixed(mode)) {
+    const double coarsest = (order == 1 ? 1e-3 : order == 2 ? 0.02 : order == 3 ? 0.04 : order == 4 ? 0.06 : 0.035) / omega;
+    const double ratio = order <= 3 ? 2.0 : order == 4 ? 1.5 : 1.25;
+    Ladder l{{}, order - 0.1, order + 0.1};
+    for (double h = coarsest; l.values.size() < 4; h /= ratio) l.values.push_back(T / std::ceil(T / h));
+    return l;
+  }
+  if (order <= 2) return {{1e-3, 1e-4, 1e-5, 1e-6}, 0.8, 1.2};
   return {{1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9}, 0.6, 1.2};
 }
 

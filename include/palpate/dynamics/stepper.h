@@ -34,6 +34,7 @@ struct StepperCounters {
   long error_test_failures = 0, newton_failures = 0, newton_iterations = 0;
   long force_evaluations = 0, tangent_evaluations = 0;
   long reinits = 0;
+  long events = 0;       ///< roots that a step was cut short at
   long indefinite = 0;   ///< matrices that had no Cholesky factor: answered by definite tangents (projected) or, the rest, by LU
   long projected = 0;    ///< of those, answered by definite tangents
   long unconverged = 0;  ///< solves that an iterative linear solver gave up and LU answered

@@ -33,6 +33,7 @@ SUNMatrix make_matrix(SUNContext context) {
   SUNMatrix matrix = SUNMatNewEmpty(context);
   check(matrix, "SUNMatNewEmpty");
   matrix->ops->getid = [](SUNMatrix) { return SUNMATRIX_CUSTOM; };
+  matrix->ops->zero = [](SUNMatrix) { return SUNMAT_SUCCESS; };  // IDA clears what it hands out
   matrix->ops->destroy = free_matrix;
   return matrix;
 }

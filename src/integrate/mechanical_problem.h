@@ -1,0 +1,59 @@
+#pragma once
+#include "integrate/condensed_newton.h"
+#include "integrate/ode_problem.h"
+
+namespace palpate::integrate {
+
+/// A System as y' = f(t, y), y = [q; u], f = [N(q) u; M^-1 (sum of forces)].
+/// Driven directions keep their places in y with y' = 0 and are never read: before every evaluation the System writes
+/// their exact values into a copy.  So a drive costs no accuracy and no step, and its jumps stay outside the history.
+///
+/// Splits, by what the force terms say of themselves (TermTraits):
+///     implicit   stiff terms and q' = N u         explicit   the others; with explicit_side = "contact" contact as well
+///     slow       node blocks' q' = u, and terms   fast       contact, terms that say so (a virtual coupling), rigid blocks' q' = N u
+/// Accelerations of driven directions belong to the implicit and to the slow side.
+class MechanicalProblem final : public OdeProblem {
+ public:
+  /// @param solver  null for an explicit method: nothing is factored
+  MechanicalProblem(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec, std::unique_ptr<dynamics::LinearSolver> solver);
+
+  int size() const override { return layout().q_size + layout().u_size; }
+  std::uint64_t version() const override { return layout().version; }
+  double time() const override { return state_.time(); }
+  void set_time(double t) override { state_.set_time(t); }
+  void load(double* y) const override;
+  void store(double t, const double* y) override;
+  void finish(double t, const double* y, VecX& q, VecX& u) const override;
+  bool has_manifold() const override;
+  void project(double* y) const override { dynamics::project(layout(), y); }
+  void weights(const double* y, double* w) const override;
+  bool derivative(double t, const double* y, double* y_dot, Side side) override;
+  void evaluate_tangent(double t, const double* y, Side side) override;
+  dynamics::SolveStatus factor(double gamma) override { return newton_->factor(gamma); }
+  double gamma() const override { return newton_->gamma(); }
+  dynamics::SolveStatus solve(const double* y, const double* r, double* d) override;
+  bool residual(double t, const double* y, const double* y_dot, double* r) override;
+  dynamics::SolveStatus solve_residual(const double* y, const double* r, double* d) override;
+  int event_count() const override { return system_.event_count(); }
+  void events(double t, const double* y, double* g) override;
+  int dof_of(int i) const override;
+  std::pair<dynamics::Finding, std::string> inspect(double t, const double* y) override;
+  dynamics::StepperCounters& counters() override { return counters_; }
+  void collect_solver_counters() override;
+
+ private:
+  const dynamics::Layout& layout() const { return state_.layout(); }
+  dynamics::StateView view(double t, const double* y);
+  dynamics::System::TermFilter filter(Side side) const;
+  void rates(Side side, const dynamics::StateView& at, double* q_dot) const;
+
+  dynamics::System& system_;
+  dynamics::State& state_;
+  IntegratorSpec spec_;
+  std::unique_ptr<CondensedNewton> newton_;
+  Side tangent_side_ = Side::kAll;
+  dynamics::StepperCounters counters_;
+  VecX imposed_, force_, acceleration_, driven_part_;
+};
+
+}  // namespace palpate::integrate

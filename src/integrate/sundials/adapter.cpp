@@ -1,0 +1,346 @@
+#include "integrate/sundials/adapter.h"
+
+#include <nvector/nvector_serial.h>
+#include <sunnonlinsol/sunnonlinsol_newton.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "integrate/sundials/check.h"
+#include "integrate/sundials/vector_ops.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+
+namespace palpate::integrate::sun {
+namespace {
+
+using dynamics::SolveStatus;
+using dynamics::StepAttempt;
+using dynamics::StepResult;
+using dynamics::StepStatus;
+
+// The same numbers in CVODE, ARKODE and IDA.
+constexpr int kReachedStop = 1, kReachedRoot = 2;
+
+/// A step that collapses to this ends the call with an error: before a force that is not finite from some time on,
+/// steps would shrink towards that time without end.  Far below any physical time scale, above the rounding of t.
+double smallest_step(double t, double t_end) { return std::max(1e-12 * (t_end - t), 1e-15 * std::max(std::abs(t), std::abs(t_end))); }
+
+int index_of_largest(N_Vector v, N_Vector w) {
+  const auto n = static_cast<Eigen::Index>(NV_LENGTH_S(v));
+  Eigen::Index at = -1;
+  const double largest = (Eigen::Map<const Eigen::ArrayXd>(NV_DATA_S(v), n) * Eigen::Map<const Eigen::ArrayXd>(NV_DATA_S(w), n)).abs().maxCoeff(&at);
+  return largest > 0.0 ? static_cast<int>(at) : -1;
+}
+
+}  // namespace
+
+Adapter::Adapter(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : problem_(std::move(problem)), spec_(spec) {
+  counters::count("integrate." + spec_.name);
+}
+Adapter::~Adapter() { release(); }
+
+// --- memory -----------------------------------------------------------------------------------------------------------
+
+void Adapter::allocate() {
+  check(SUNContext_Create(nullptr, &context_), "SUNContext_Create", problem_->time(), 0.0);
+  y_ = N_VNew_Serial(problem_->size(), context_);
+  check(y_, "N_VNew_Serial");
+  use_fast_operations(y_);
+  scratch_ = N_VClone(y_);
+  weights_ = N_VClone(y_);
+}
+
+void Adapter::release() {
+  for (N_Vector* v : {&y_, &scratch_, &weights_}) {
+    if (*v) N_VDestroy(*v);
+    *v = nullptr;
+  }
+  if (newton_) SUNNonlinSolFree(newton_);
+  newton_ = nullptr;
+  if (context_) SUNContext_Free(&context_);
+  context_ = nullptr;
+}
+
+void Adapter::start() {
+  if (running_) return;
+  const bool fits = made_ && version_ == problem_->version();
+  if (!fits) {
+    destroy();
+    release();
+    allocate();
+  }
+  problem_->load(NV_DATA_S(y_));
+  if (fits)
+    restart(keep_step_);
+  else
+    create();
+  made_ = true;
+  version_ = problem_->version();
+  const int roots_now = spec_.events == "root-finding" ? problem_->event_count() : 0;
+  if (!fits || roots_now != root_count_) find_roots(roots_now);
+  root_count_ = roots_now;
+  counted_ = counts();
+  running_ = true;
+  keep_step_ = false;
+}
+
+// --- stepping ---------------------------------------------------------------------------------------------------------
+
+StepResult Adapter::advance_to(double t_end) {
+  PALPATE_CHECK(t_end > problem_->time(), "t_end = {} is not after t = {}", t_end, problem_->time());
+  if (problem_->size() == 0) {  // no body: time passes
+    problem_->set_time(t_end);
+    StepResult result;
+    result.t = t_end;
+    return result;
+  }
+  start();
+  aim(t_end, smallest_step(problem_->time(), t_end));
+  message_.clear();
+  double t = problem_->time();
+  int flag = 0;
+  int n = 0;
+  for (; n < spec_.max_steps && flag >= 0 && flag != kReachedStop && !interrupted(); ++n) {
+    const double before = t;
+    newton_before_ = counts().newton_iterations;
+    if (trace()) {
+      attempt_start_ = attempt_reach_ = t;
+      attempt_counts_ = counts();
+      attempt_open_ = false;
+    }
+    double reached = t;
+    flag = one_step(t_end, reached);
+    if (flag >= 0) t = reached;  // after a failure the time may be that of a stage
+    if (trace() && flag >= 0) accept_attempt(before, t, flag == kReachedRoot);
+    if (trace() && flag < 0 && attempt_open_) close_attempt(attempt_finite_ ? StepAttempt::Outcome::kNewton : StepAttempt::Outcome::kNotFinite);
+    if (flag != kReachedRoot || t >= t_end) {
+      if (flag == kReachedRoot) flag = kReachedStop;
+      continue;
+    }
+    collect();
+    problem_->store(t, NV_DATA_S(y_));
+    ++problem_->counters().events;
+    running_ = false;
+    keep_step_ = true;
+    start();
+    aim(t_end, smallest_step(t, t_end));
+  }
+  const bool landed = flag == kReachedStop;
+  problem_->store(landed ? t_end : t, NV_DATA_S(y_));
+  collect();
+  if (landed) return result(StepStatus::kOk);
+  running_ = false;  // the next call starts from the State
+  if (flag >= 0 && n < spec_.max_steps) {
+    StepResult stopped = result(StepStatus::kInterrupted);
+    stopped.message = fmt::format("{}: interrupted at t = {}, h = {}", name(), t, stopped.h);
+    return stopped;
+  }
+  return failure(flag, t, t_end);
+}
+
+StepResult Adapter::failure(int flag, double t, double t_end) {
+  StepResult failed = result(flag >= 0 ? StepStatus::kTooManySteps : status_of(flag));
+  if (!finite_ && failed.status == StepStatus::kNewtonFailed) failed.status = StepStatus::kNotFinite;  // why the iteration could not converge
+  if (flag >= 0) message_ = fmt::format("{} steps before t_end = {}", spec_.max_steps, t_end);
+  failed.message = fmt::format("{}: {} at t = {}, h = {}: {}", name(), flag >= 0 ? "TOO_MUCH_WORK" : flag_name(flag), t, failed.h, message_);
+  return failed;
+}
+
+StepResult Adapter::result(StepStatus status) const {
+  StepResult r;
+  r.status = status;
+  r.t = problem_->time();
+  r.h = last_step();
+  r.order = last_order();
+  r.iterations = static_cast<int>(counts().newton_iterations - newton_before_);
+  r.residual = last_correction_;
+  return r;
+}
+
+bool Adapter::dense_output(double t, VecX& q, VecX& u) const {
+  if (!running_ || counted_.steps == 0 || t > problem_->time() || !interpolate(t, scratch_)) return false;
+  problem_->finish(t, NV_DATA_S(scratch_), q, u);
+  return true;
+}
+
+void Adapter::reinit(dynamics::ReinitReason reason) {
+  ++problem_->counters().reinits;
+  keep_step_ = (running_ || keep_step_) && reason == dynamics::ReinitReason::kContactRefreshed;
+  running_ = false;
+}
+
+const dynamics::StepperCounters& Adapter::counters() const {
+  problem_->collect_solver_counters();
+  return problem_->counters();
+}
+
+/// The library counts from its last start, we from ours.
+void Adapter::collect() {
+  const Counts now = counts();
+  dynamics::StepperCounters& c = problem_->counters();
+  c.steps += now.steps - counted_.steps;
+  c.error_test_failures += now.error_test_failures - counted_.error_test_failures;
+  c.rejected += now.error_test_failures + now.solve_failures - counted_.error_test_failures - counted_.solve_failures;
+  c.newton_iterations += now.newton_iterations - counted_.newton_iterations;
+  c.newton_failures += now.newton_failures - counted_.newton_failures;
+  counted_ = now;
+}
+
+void Adapter::fill_weights(N_Vector y, N_Vector w) const {
+  problem_->weights(NV_DATA_S(y), NV_DATA_S(w));
+  if (weight_scale_ != 1.0) N_VScale(weight_scale_, w, w);
+}
+
+// --- Newton -----------------------------------------------------------------------------------------------------------
+
+// The tangent is taken afresh at every factorisation: it costs a fifteenth of one, and spares a failed Newton solve.
+// Where the library would accept an old tangent and gamma is unchanged, the old factor is kept.
+bool Adapter::prepare_matrix(double t, N_Vector y, bool reuse, double gamma, OdeProblem::Side side) {
+  wanted_gamma_ = gamma;
+  const bool fresh = !(reuse && gamma == problem_->gamma());
+  if (fresh) problem_->evaluate_tangent(t, NV_DATA_S(y), side);
+  return fresh;
+}
+
+int Adapter::setup() {
+  rate_ = 1.0;
+  return problem_->factor(wanted_gamma_) == SolveStatus::kOk ? 0 : kRecoverable;
+}
+
+// Newton's test of convergence.  With corrections d_0, d_1, .. that contract by rho, what is left after d_m is about rho d_m.  SUNDIALS learns rho
+// as max(0.3 rho, d_m / d_(m-1)) and remembers it until the next factorisation.  On an (almost) linear force the first solves after a fresh factor
+// converge at once, rho falls to nothing, and when gamma then changes by up to 20 or 30 % with the factor kept, a first correction that is wrong by
+// that much is taken for exact: global errors of 1e-3 at rtol 1e-7.  So rho is bounded from below by what the old gamma alone makes of it:
+// on a mode lambda, (1 - g' lambda)^-1 stands for (1 - g lambda)^-1, whose relative error is at most |g / g' - 1| on either end of the spectrum;
+// and by a constant, for a tangent that has aged.
+int Adapter::test_convergence(int iteration, double correction, double tolerance) {
+  constexpr double kOldTangent = 0.05, kForget = 0.3, kDiverging = 2.0;
+  const double stale = std::abs(current_gamma() / problem_->gamma() - 1.0);
+  if (iteration > 0) {
+    if (correction > kDiverging * previous_correction_) return SUN_NLS_CONV_RECVR;
+    rate_ = std::max(kForget * rate_, correction / previous_correction_);
+  }
+  previous_correction_ = correction;
+  const double rate = std::min(1.0, std::max({rate_, stale, kOldTangent}));
+  if (!std::isfinite(correction)) return SUN_NLS_CONV_RECVR;
+  return correction == 0.0 || rate * correction <= tolerance ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
+}
+
+SUNNonlinearSolver Adapter::make_newton() {
+  newton_ = SUNNonlinSol_Newton(y_, context_);
+  check(newton_, "SUNNonlinSol_Newton");
+  return newton_;
+}
+
+void Adapter::use_own_test() {
+  const auto test = [](SUNNonlinearSolver solver, N_Vector, N_Vector correction, realtype tolerance, N_Vector w, void* data) {
+    int iteration = 0;
+    SUNNonlinSolGetCurIter(solver, &iteration);
+    return static_cast<Adapter*>(data)->test_convergence(iteration, N_VWrmsNorm(correction, w), tolerance);
+  };
+  check(SUNNonlinSolSetConvTestFn(newton_, test, this), "SUNNonlinSolSetConvTestFn", problem_->time(), 0.0);
+}
+
+SolveStatus Adapter::solve_newton(const double* y, const double* r, double* d) { return problem_->solve(y, r, d); }
+
+int Adapter::solve(N_Vector x, N_Vector b) {
+  const SolveStatus status = solve_newton(NV_DATA_S(newton_state()), NV_DATA_S(b), NV_DATA_S(x));
+  if (status != SolveStatus::kOk) return kRecoverable;
+  fill_weights(newton_state(), weights_);
+  last_correction_ = N_VWrmsNorm(x, weights_);
+  if (trace()) attempt_worst_ = index_of_largest(x, weights_);
+  return std::isfinite(last_correction_) ? 0 : kRecoverable;
+}
+
+// --- trace ------------------------------------------------------------------------------------------------------------
+
+// Inside one call of the library several attempts may fail.  Between two of them its counters of failures grow, which shows at the
+// next evaluation; how far an attempt reached is the latest time that it evaluated at.
+void Adapter::see_evaluation(double t, N_Vector y, bool finite) {
+  finite_ = finite;
+  if (!trace()) return;
+  const Counts now = counts();
+  if (attempt_open_ && now.error_test_failures > attempt_counts_.error_test_failures)
+    close_attempt(StepAttempt::Outcome::kErrorTest);
+  else if (attempt_open_ && now.solve_failures > attempt_counts_.solve_failures)
+    close_attempt(attempt_finite_ ? StepAttempt::Outcome::kNewton : StepAttempt::Outcome::kNotFinite);
+  attempt_open_ = true;
+  attempt_finite_ = finite;
+  attempt_reach_ = std::max(attempt_reach_, t);
+  attempt_y_ = Eigen::Map<const VecX>(NV_DATA_S(y), NV_LENGTH_S(y));
+}
+
+void Adapter::close_attempt(StepAttempt::Outcome outcome) {
+  const Counts now = counts();
+  StepAttempt a;
+  a.t = attempt_start_;
+  a.h = attempt_reach_ - attempt_start_;
+  a.order = last_order();
+  a.error = std::numeric_limits<double>::quiet_NaN();
+  a.newton_iterations = static_cast<int>(now.newton_iterations - attempt_counts_.newton_iterations);
+  a.outcome = outcome;
+  a.worst_dof = attempt_worst_ >= 0 ? problem_->dof_of(attempt_worst_) : -1;
+  if (attempt_y_.allFinite()) {
+    const auto [finding, term] = problem_->inspect(attempt_reach_, attempt_y_.data());
+    a.inverted_element = finding.element;
+    a.inverted_in = term;
+  }
+  trace()->attempt(a);
+  attempt_counts_ = now;
+  attempt_reach_ = attempt_start_;
+  attempt_worst_ = -1;
+  attempt_open_ = false;
+}
+
+void Adapter::accept_attempt(double t0, double t1, bool event) {
+  const Counts now = counts();
+  // A failure that no later evaluation has shown (a library may go on with a smaller order on old values).
+  StepAttempt a;
+  a.t = t0;
+  a.h = t1 - t0;
+  a.order = last_order();
+  a.error = std::numeric_limits<double>::quiet_NaN();
+  a.newton_iterations = static_cast<int>(now.newton_iterations - attempt_counts_.newton_iterations);
+  a.outcome = event ? StepAttempt::Outcome::kEvent : StepAttempt::Outcome::kAccepted;
+  if (local_errors(scratch_)) {
+    fill_weights(y_, weights_);
+    a.error = N_VWrmsNorm(scratch_, weights_);
+    const int worst = index_of_largest(scratch_, weights_);
+    a.worst_dof = worst >= 0 ? problem_->dof_of(worst) : -1;
+  }
+  const auto [finding, term] = problem_->inspect(t1, NV_DATA_S(y_));
+  a.inverted_element = finding.element;
+  a.inverted_in = term;
+  trace()->attempt(a);
+  attempt_open_ = false;
+  attempt_worst_ = -1;
+}
+
+// --- callbacks --------------------------------------------------------------------------------------------------------
+
+namespace {
+Adapter& self(void* data) { return *static_cast<Adapter*>(data); }
+}  // namespace
+
+void Adapter::on_error(int, const char*, const char* function, char* text, void* data) {
+  self(data).message_ = fmt::format("{}: {}", function, text);
+}
+
+int Adapter::weights(N_Vector y, N_Vector w, void* data) {
+  self(data).fill_weights(y, w);
+  return 0;
+}
+
+int Adapter::project_step(realtype, N_Vector y, void* data) {
+  self(data).problem_->project(NV_DATA_S(y));
+  return 0;
+}
+
+int Adapter::roots(realtype t, N_Vector y, realtype* g, void* data) {
+  self(data).problem_->events(t, NV_DATA_S(y), g);
+  return 0;
+}
+
+}  // namespace palpate::integrate::sun

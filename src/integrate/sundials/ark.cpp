@@ -1,0 +1,205 @@
+#include <arkode/arkode_arkstep.h>
+#include <nvector/nvector_serial.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/make.h"
+#include "integrate/mechanical_problem.h"
+#include "integrate/settings.h"
+#include "integrate/sundials/adapter.h"
+#include "integrate/sundials/ark_flags.h"
+#include "integrate/sundials/ark_methods.h"
+#include "integrate/sundials/check.h"
+#include "integrate/sundials/make_adapter.h"
+
+namespace palpate::integrate {
+namespace sun {
+namespace {
+
+using dynamics::StepControl;
+using dynamics::StepStatus;
+using Side = OdeProblem::Side;
+
+/// ARKODE's own 3 fail about once a step on soft bodies.
+constexpr int kNewtonIterations = 8;
+constexpr int kInterpolantDegree = 3;  ///< cubic Hermite: no evaluation of its own
+/// Newton ends at this share of the tolerance, not at ARKODE's tenth: what it leaves has one sign from step to step while an old factor
+/// is kept, and a method of order 2 takes thousands of steps.
+constexpr double kNewtonCoefficient = 0.01;
+
+/// Runge-Kutta methods of SUNDIALS ARKODE (Reynolds et al. 2023): explicit, diagonally implicit, or additive (what is stiff implicit, the rest explicit),
+/// by the tables of ark_methods.cpp; step by error control, or step_s with fixed_step.
+/// One-step: a change from outside restarts it without loss, with the step that it had.
+class Ark final : public Adapter {
+ public:
+  Ark(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec)
+      : Adapter(std::move(problem), spec), method_(ark_method(spec.name)), implicit_side_(method_.explicit_table >= 0 ? Side::kImplicit : Side::kAll) {
+    if (spec.fixed_step)
+      check_fixed_step(spec);
+    else
+      check_adaptive(spec, method_.traits.order);
+    use_tolerance(tolerance_of(spec, method_));
+  }
+  ~Ark() override { Ark::destroy(); }
+
+ private:
+  /// The error estimate of a pair p (p^) is O(h^(m+1)), m = min(p, p^), so a step that meets a tolerance T has h ~ T^(1/(m+1)), and the solution an
+  /// error ~ h^p = T^(p/(m+1)).  For the usual p^ = p - 1 that is T.  For the others the tolerance is taken to the power (m+1)/p, so that with every
+  /// method a tenth of rtol buys a tenth of the error.
+  /// With a fixed step what the weights serve is Newton alone, and newton_rtol takes the place of rtol.
+  static double tolerance_of(const IntegratorSpec& spec, const ArkMethod& m) {
+    return spec.fixed_step ? spec.newton_rtol : std::pow(spec.rtol, (std::min(m.traits.order, m.embedded_order) + 1.0) / m.traits.order);
+  }
+
+  bool has_implicit() const { return method_.implicit_table >= 0; }
+  bool has_explicit() const { return method_.explicit_table >= 0; }
+  ARKRhsFn explicit_function() const { return !has_explicit() ? nullptr : has_implicit() ? explicit_side : whole; }
+  ARKRhsFn implicit_function() const { return !has_implicit() ? nullptr : has_explicit() ? implicit_side : whole; }
+
+  void create() override {
+    const double t = problem().time();
+    memory_ = ARKStepCreate(explicit_function(), implicit_function(), t, y(), context());
+    check(memory_, "ARKStepCreate");
+    check(ARKStepSetErrHandlerFn(memory_, on_error, this), "ARKStepSetErrHandlerFn", t, 0.0);  // first: nothing is ever printed
+    check(ARKStepSetUserData(memory_, static_cast<Adapter*>(this)), "ARKStepSetUserData", t, 0.0);
+    check(ARKStepWFtolerances(memory_, weights), "ARKStepWFtolerances", t, 0.0);
+    check(ARKStepSetTableNum(memory_, static_cast<ARKODE_DIRKTableID>(method_.implicit_table), static_cast<ARKODE_ERKTableID>(method_.explicit_table)),
+          "ARKStepSetTableNum", t, 0.0);
+    check(ARKStepSetInterpolantDegree(memory_, kInterpolantDegree), "ARKStepSetInterpolantDegree", t, 0.0);
+    check(ARKStepSetMaxErrTestFails(memory_, kErrorTestFailures), "ARKStepSetMaxErrTestFails", t, 0.0);
+    if (problem().has_manifold()) check(ARKStepSetPostprocessStepFn(memory_, project_step), "ARKStepSetPostprocessStepFn", t, 0.0);
+    if (has_implicit()) use_newton(t);
+  }
+
+  void use_newton(double t) {
+    check(ARKStepSetNonlinearSolver(memory_, make_newton()), "ARKStepSetNonlinearSolver", t, 0.0);
+    use_own_test();
+    linear_solver_ = make_linear_solver(*this, context());
+    matrix_ = make_matrix(context());
+    check(ARKStepSetLinearSolver(memory_, linear_solver_, matrix_), "ARKStepSetLinearSolver", t, 0.0);
+    check(ARKStepSetLinSysFn(memory_, linear_system), "ARKStepSetLinSysFn", t, 0.0);
+    check(ARKStepSetMaxNonlinIters(memory_, kNewtonIterations), "ARKStepSetMaxNonlinIters", t, 0.0);
+    check(ARKStepSetNonlinConvCoef(memory_, kNewtonCoefficient), "ARKStepSetNonlinConvCoef", t, 0.0);
+    check(ARKStepSetDeduceImplicitRhs(memory_, SUNTRUE), "ARKStepSetDeduceImplicitRhs", t, 0.0);  // f of a stage from its equation: spares evaluations
+  }
+
+  void destroy() override {
+    if (memory_) ARKStepFree(&memory_);
+    if (linear_solver_) SUNLinSolFree(linear_solver_);
+    if (matrix_) SUNMatDestroy(matrix_);
+    linear_solver_ = nullptr;
+    matrix_ = nullptr;
+  }
+
+  void restart(bool keep_step) override {
+    const double t = problem().time();
+    if (!keep_step) return check(ARKStepReInit(memory_, explicit_function(), implicit_function(), t, y()), "ARKStepReInit", t, 0.0);
+    check(ARKStepReset(memory_, t, y()), "ARKStepReset", t, 0.0);
+  }
+  void find_roots(int count) override {
+    check(ARKStepRootInit(memory_, count, roots), "ARKStepRootInit", problem().time(), 0.0);
+    ARKStepSetNoInactiveRootWarn(memory_);
+  }
+  void aim(double t_end, double smallest_step) override {
+    check(ARKStepSetStopTime(memory_, t_end), "ARKStepSetStopTime", problem().time(), 0.0);
+    if (!spec().fixed_step) check(ARKStepSetMinStep(memory_, smallest_step), "ARKStepSetMinStep", problem().time(), 0.0);
+    now_ = problem().time();
+  }
+
+  int one_step(double t_end, double& t) override {
+    const bool halfway = spec().fixed_step ? set_fixed_step(t_end) : aim_halfway(t_end);
+    const int flag = ARKStepEvolve(memory_, t_end, y(), &t, ARK_ONE_STEP);
+    if (flag >= 0) now_ = t;
+    return halfway && flag == ARK_TSTOP_RETURN ? ARK_SUCCESS : flag;
+  }
+
+  /// A step shorter than rounding of the others is none: the last one takes it in.
+  bool set_fixed_step(double t_end) {
+    const double left = t_end - now_;
+    check(ARKStepSetFixedStep(memory_, left <= spec().step_s * (1.0 + 1e-9) ? left : spec().step_s), "ARKStepSetFixedStep", now_, 0.0);
+    return false;
+  }
+
+  /// Where one step and a part of one are left, two equal ones are made.  A tiny last step would spoil the next: f of its last stage is
+  /// deduced from (z - known) / (h a_ii), with an error of rounding / h, and multiplied by the whole h of the step that follows.
+  bool aim_halfway(double t_end) {
+    double next = 0.0;
+    check(ARKStepGetCurrentStep(memory_, &next), "ARKStepGetCurrentStep", now_, 0.0);
+    const double left = t_end - now_;
+    const bool halfway = next > 0.0 && next < left && left < 2.0 * next;
+    check(ARKStepSetStopTime(memory_, halfway ? now_ + 0.5 * left : t_end), "ARKStepSetStopTime", now_, next);
+    return halfway;
+  }
+
+  StepStatus status_of(int flag) const override { return ark_status(flag); }
+  std::string flag_name(int flag) const override { return ark_flag_name(flag); }
+  bool interpolate(double t, N_Vector out) const override { return ARKStepGetDky(memory_, t, 0, out) == ARK_SUCCESS; }
+
+  Counts counts() const override {
+    Counts c;
+    check(ARKStepGetNumSteps(memory_, &c.steps), "ARKStepGetNumSteps", 0.0, 0.0);
+    check(ARKStepGetNumErrTestFails(memory_, &c.error_test_failures), "ARKStepGetNumErrTestFails", 0.0, 0.0);
+    check(ARKStepGetNonlinSolvStats(memory_, &c.newton_iterations, &c.newton_failures), "ARKStepGetNonlinSolvStats", 0.0, 0.0);
+    check(ARKStepGetNumStepSolveFails(memory_, &c.solve_failures), "ARKStepGetNumStepSolveFails", 0.0, 0.0);
+    return c;
+  }
+  double last_step() const override {
+    double h = 0.0;
+    check(ARKStepGetLastStep(memory_, &h), "ARKStepGetLastStep", 0.0, 0.0);
+    return h;
+  }
+  int last_order() const override { return method_.traits.order; }
+  bool local_errors(N_Vector estimate) const override { return !spec().fixed_step && ARKStepGetEstLocalErrors(memory_, estimate) == ARK_SUCCESS; }
+  N_Vector newton_state() const override {
+    N_Vector state = nullptr;
+    check(ARKStepGetCurrentState(memory_, &state), "ARKStepGetCurrentState", 0.0, 0.0);
+    return state;
+  }
+
+  double current_gamma() const override {
+    double gamma = 0.0;
+    check(ARKStepGetCurrentGamma(memory_, &gamma), "ARKStepGetCurrentGamma", 0.0, 0.0);
+    return gamma;
+  }
+
+  static Ark& self(void* data) { return static_cast<Ark&>(*static_cast<Adapter*>(data)); }
+  template <Side side>
+  static int evaluate(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+    Ark& me = self(data);
+    const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), side);
+    me.see_evaluation(t, y, finite);
+    return finite ? 0 : kRecoverable;
+  }
+  static int whole(realtype t, N_Vector y, N_Vector y_dot, void* data) { return evaluate<Side::kAll>(t, y, y_dot, data); }
+  static int implicit_side(realtype t, N_Vector y, N_Vector y_dot, void* data) { return evaluate<Side::kImplicit>(t, y, y_dot, data); }
+  static int explicit_side(realtype t, N_Vector y, N_Vector y_dot, void* data) { return evaluate<Side::kExplicit>(t, y, y_dot, data); }
+  static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, booleantype reuse, booleantype* fresh, realtype gamma, void* data,
+                           N_Vector, N_Vector, N_Vector) {
+    Ark& me = self(data);
+    *fresh = me.prepare_matrix(t, y, reuse, gamma, me.implicit_side_);
+    return 0;
+  }
+
+  const ArkMethod& method_;
+  Side implicit_side_;
+  double now_ = 0.0;
+  void* memory_ = nullptr;
+  SUNLinearSolver linear_solver_ = nullptr;
+  SUNMatrix matrix_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<dynamics::Stepper> make_ark(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) {
+  return std::make_unique<Ark>(std::move(problem), spec);
+}
+
+}  // namespace sun
+
+std::unique_ptr<dynamics::Stepper> make_ark(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+                                            std::unique_ptr<dynamics::LinearSolver> solver) {
+  return sun::make_ark(std::make_unique<MechanicalProblem>(system, state, spec, std::move(solver)), spec);
+}
+
+}  // namespace palpate::integrate

@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+
+#include "palpate/dynamics/stepper.h"
+
+namespace palpate::integrate {
+namespace sun __attribute__((visibility("hidden"))) {
+
+/// Return values of ARKStep and MRIStep, which are the same numbers.
+dynamics::StepStatus ark_status(int flag);
+std::string ark_flag_name(int flag);
+
+}  // namespace sun
+}  // namespace palpate::integrate

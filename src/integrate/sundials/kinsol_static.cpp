@@ -1,0 +1,356 @@
+#include <kinsol/kinsol.h>
+#include <kinsol/kinsol_ls.h>
+#include <nvector/nvector_serial.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "integrate/make.h"
+#include "integrate/settings.h"
+#include "integrate/step_solver.h"
+#include "integrate/sundials/check.h"
+#include "integrate/sundials/hooks.h"
+#include "integrate/sundials/vector_ops.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+
+namespace palpate::integrate {
+namespace sun {
+namespace {
+
+using namespace dynamics;
+
+constexpr int kRecoverable = 1;
+constexpr long kNewtonIterations = 25;
+constexpr double kShortestRung = 1.0 / 64.0;
+constexpr int kProximalSteps = 200;
+
+/// Quasi-static equilibrium, f(q, 0, t) = 0, by Newton's method of SUNDIALS KINSOL with the exact tangent at every iteration.
+/// The State at t_end is the equilibrium that belongs to t_end, reached from the one before; velocities are zero.
+///
+/// Load ladder.  From q0 at t0, which need not be in equilibrium, to t1, the unbalanced force is let go by rungs s in (0, 1],
+///     G(q, s) = f(q, 0, t0 + s (t1 - t0)) - (1 - s) f(q0, 0, t0) = 0,
+/// where s = 0 is solved by q0: loads, drives and what was left over of earlier outputs all grow with s.  A rung that Newton does not climb is halved.
+///
+/// Proximal steps.  Where even a 64th is too much (a strut that buckles, a body that lies on nothing but its contact) the rung is climbed by
+///     G(q, s) - sigma M (q - q_k) = 0,      sigma falling by ten after a success, rising by ten after a failure:
+/// steps of backward Euler without inertia, which go downhill in energy, have a definite matrix for sigma large enough, and end at a stable equilibrium.
+/// (KINSOL's own line search stalls here: the norm of the force is no merit function when an element turns.)
+class KinsolStatic final : public Stepper, private NewtonHook {
+ public:
+  KinsolStatic(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
+      : system_(system), state_(state), spec_(spec), solver_(std::move(solver), spec) {
+    check_static(spec);
+    counters::count("integrate.kinsol-static");
+  }
+  ~KinsolStatic() override { release(); }
+
+  std::string name() const override { return "kinsol-static"; }
+
+  StepResult advance_to(double t_end) override {
+    PALPATE_CHECK(t_end > state_.time(), "t_end = {} is not after t = {}", t_end, state_.time());
+    const int n = state_.layout().u_size;
+    if (n == 0) {
+      state_.set_time(t_end);
+      return succeeded(0.0, 0);
+    }
+    allocate();
+    t0_ = state_.time();
+    t1_ = t_end;
+    q_start_ = state_.q();
+    u_start_ = state_.u();
+    state_.u().setZero();
+    if (!force(t0_, state_.q(), unbalanced_)) return failure(StepStatus::kNotFinite, "the force is not finite");
+    force_scale_ = std::max(scale_of_forces(t0_), scale_of_forces(t1_));
+    const StepResult result = climb();
+    if (!result.ok()) {
+      state_.q() = q_start_;
+      state_.u() = u_start_;
+    }
+    return result;
+  }
+
+  bool dense_output(double t, VecX& q, VecX& u) const override {
+    if (q_start_.size() != state_.layout().q_size || t < t0_ || t > state_.time() || !(state_.time() > t0_)) return false;
+    const double s = (t - t0_) / (state_.time() - t0_);
+    q = (1.0 - s) * q_start_ + s * state_.q();
+    u = VecX::Zero(state_.layout().u_size);
+    project(state_.layout(), q.data());
+    system_.impose(state_.layout(), t, q.data(), u.data());
+    return true;
+  }
+  void reinit(ReinitReason) override { ++counters_.reinits; }
+  const StepperCounters& counters() const override {
+    solver_.report(counters_);
+    return counters_;
+  }
+
+ private:
+  // --- the ladder -------------------------------------------------------------------------------------------------
+  StepResult climb() {
+    double s = 0.0, rung = 1.0;
+    int flag = KIN_SUCCESS;
+    long iterations = 0;
+    base_q_ = state_.q();
+    while (s < 1.0) {
+      if (interrupted()) return failure(StepStatus::kInterrupted, "interrupted");
+      s_ = std::min(1.0, s + rung);
+      sigma_ = 0.0;
+      flag = solve(iterations);
+      if (flag < 0 && rung > kShortestRung) {
+        ++counters_.rejected;
+        rung *= 0.5;
+        continue;
+      }
+      if (flag < 0 && !go_downhill(flag, iterations)) return failure(status_of(flag), describe(flag));
+      accept_rung();
+      s = s_;
+      rung = std::min(2.0 * rung, 1.0);
+    }
+    state_.set_time(t1_);
+    system_.impose(state_.layout(), t1_, state_.q().data(), state_.u().data());
+    state_.u().setZero();
+    return succeeded(t1_ - t0_, static_cast<int>(iterations));
+  }
+
+  /// Proximal steps to the rung s_.  @param flag KINSOL's last
+  bool go_downhill(int& flag, long& iterations) {
+    sigma_ = stiffness_over_mass();
+    const double largest = 1e6 * sigma_;
+    for (int k = 0; k < kProximalSteps && !interrupted(); ++k) {
+      flag = solve(iterations);
+      if (flag < 0) {
+        ++counters_.rejected;
+        sigma_ *= 10.0;
+        if (!(sigma_ <= largest)) return false;
+        continue;
+      }
+      accept_rung();
+      VecX left;
+      if (!residual(NV_DATA_S(zero_displacement()), 0.0, left)) return false;
+      if (left.cwiseAbs().maxCoeff() <= tolerance()) return true;
+      sigma_ *= 0.1;
+    }
+    flag = KIN_MAXITER_REACHED;
+    return false;
+  }
+
+  void accept_rung() {
+    place(NV_DATA_S(x_), rung_time(), base_q_);
+    project(state_.layout(), base_q_.data());
+    state_.q() = base_q_;
+    ++counters_.steps;
+  }
+
+  double rung_time() const { return t0_ + s_ * (t1_ - t0_); }
+  double tolerance() const { return spec_.newton_rtol * force_scale_; }
+
+  /// One Newton solve for the displacement x_ from base_q_.
+  int solve(long& iterations) {
+    N_VConst(0.0, x_);
+    message_.clear();
+    finite_ = true;
+    check(KINSetFuncNormTol(kinsol_, tolerance()), "KINSetFuncNormTol", state_.time(), 0.0);
+    const int flag = KINSol(kinsol_, x_, KIN_NONE, ones_, ones_);
+    long now = 0;
+    check(KINGetNumNonlinSolvIters(kinsol_, &now), "KINGetNumNonlinSolvIters", state_.time(), 0.0);
+    iterations += now;
+    counters_.newton_iterations += now;
+    if (flag < 0) ++counters_.newton_failures;
+    return flag == KIN_STEP_LT_STPTOL ? KIN_MAXITER_REACHED : flag;
+  }
+
+  // --- the equations ----------------------------------------------------------------------------------------------
+  /// q = base_q_ moved by the displacement x along u-directions; drives where they are at time t.
+  void place(const double* x, double t, VecX& q) {
+    q_dot(state_.layout(), base_q_.data(), x, rate_.data());
+    q = base_q_ + rate_;
+    system_.impose(state_.layout(), t, q.data(), velocity_.data());
+    velocity_.setZero();
+  }
+
+  bool force(double t, const VecX& q, VecX& f) {
+    const ScopedTimer timer(counters_.force_s);
+    ++counters_.force_evaluations;
+    const StateView at = state_.view(t, q.data(), velocity_.data());
+    system_.force(at, f);
+    system_.reduce(at, f);
+    return f.allFinite();
+  }
+
+  bool residual(const double* x, double sigma, VecX& g) {
+    place(x, rung_time(), q_);
+    if (!force(rung_time(), q_, g)) return false;
+    g -= (1.0 - s_) * unbalanced_;
+    for (int dof : system_.driven_dofs()) g[dof] = 0.0;
+    if (sigma > 0.0) {
+      const StateView at = state_.view(rung_time(), q_.data(), velocity_.data());
+      system_.apply_mass(at, Eigen::Map<const VecX>(x, g.size()), inertia_);
+      system_.reduce(at, inertia_);
+      g -= sigma * inertia_;
+    }
+    return g.allFinite();
+  }
+
+  /// The largest force that any one term puts on a free direction: what "balanced" is measured by.
+  double scale_of_forces(double t) {
+    VecX f, q = state_.q();
+    system_.impose(state_.layout(), t, q.data(), velocity_.data());
+    velocity_.setZero();
+    const StateView at = state_.view(t, q.data(), velocity_.data());
+    double largest = 1e-12;
+    for (const auto& term : system_.terms()) {
+      f.setZero(state_.layout().u_size);
+      term->add_force(at, f);
+      system_.reduce(at, f);
+      if (f.allFinite()) largest = std::max(largest, f.cwiseAbs().maxCoeff());
+    }
+    return largest;
+  }
+
+  double stiffness_over_mass() {
+    const StateView at = state_.view(rung_time(), base_q_.data(), velocity_.data());
+    system_.step_matrix(at, 0.0, 0.0, 1.0, A_);
+    double stiffness = 0.0;
+    for (int i = 0; i < A_.body.block_rows(); ++i) stiffness = std::max(stiffness, std::abs(A_.body.block(A_.body.slot(i, i))[0]));
+    if (A_.border_size() > 0) stiffness = std::max(stiffness, A_.corner.cwiseAbs().maxCoeff());
+    system_.step_matrix(at, 1.0, 0.0, 0.0, A_);
+    double mass = 0.0;
+    for (int i = 0; i < A_.body.block_rows(); ++i) mass = std::max(mass, A_.body.block(A_.body.slot(i, i))[0]);
+    if (A_.border_size() > 0) mass = std::max(mass, A_.corner.cwiseAbs().maxCoeff());
+    return std::max(stiffness, 1.0) / std::max(mass, 1e-30);
+  }
+
+  static KinsolStatic& self(void* data) { return *static_cast<KinsolStatic*>(data); }
+  static int equations(N_Vector x, N_Vector g, void* data) {
+    KinsolStatic& me = self(data);
+    me.finite_ = me.residual(NV_DATA_S(x), me.sigma_, me.g_);
+    if (!me.finite_) return kRecoverable;
+    Eigen::Map<VecX>(NV_DATA_S(g), me.g_.size()) = -me.g_;  // its derivative is then K
+    return 0;
+  }
+  static int jacobian(N_Vector x, N_Vector, SUNMatrix, void* data, N_Vector, N_Vector) {
+    KinsolStatic& me = self(data);
+    const ScopedTimer timer(me.counters_.tangent_s);
+    ++me.counters_.tangent_evaluations;
+    me.place(NV_DATA_S(x), me.rung_time(), me.q_);
+    me.assemble();
+    return 0;
+  }
+  void assemble() { system_.step_matrix(state_.view(rung_time(), q_.data(), velocity_.data()), sigma_, 0.0, 1.0, A_); }
+  int setup() override { return solver_.factor(A_, system_, [this] { assemble(); }) == SolveStatus::kOk ? 0 : kRecoverable; }
+  int solve(N_Vector x, N_Vector b) override {
+    rhs_ = Eigen::Map<const VecX>(NV_DATA_S(b), NV_LENGTH_S(b));
+    for (int dof : system_.driven_dofs()) rhs_[dof] = 0.0;
+    if (solver_.solve(rhs_, step_) != SolveStatus::kOk || !step_.allFinite()) return kRecoverable;
+    Eigen::Map<VecX>(NV_DATA_S(x), step_.size()) = step_;
+    return 0;
+  }
+
+  // --- KINSOL -----------------------------------------------------------------------------------------------------
+  N_Vector zero_displacement() {
+    N_VConst(0.0, x_);
+    return x_;
+  }
+
+  void allocate() {
+    velocity_.setZero(state_.layout().u_size);
+    rate_.resize(state_.layout().q_size);
+    if (kinsol_ && layout_version_ == state_.layout().version) return;
+    release();
+    const double t = state_.time();
+    check(SUNContext_Create(nullptr, &context_), "SUNContext_Create", t, 0.0);
+    x_ = N_VNew_Serial(state_.layout().u_size, context_);
+    check(x_, "N_VNew_Serial");
+    use_fast_operations(x_);
+    ones_ = N_VClone(x_);
+    N_VConst(1.0, ones_);
+    kinsol_ = KINCreate(context_);
+    check(kinsol_, "KINCreate");
+    check(KINSetErrHandlerFn(kinsol_, on_error, this), "KINSetErrHandlerFn", t, 0.0);  // first: nothing is ever printed
+    check(KINInit(kinsol_, equations, x_), "KINInit", t, 0.0);
+    check(KINSetUserData(kinsol_, this), "KINSetUserData", t, 0.0);
+    linear_solver_ = make_linear_solver(*this, context_);
+    matrix_ = make_matrix(context_);
+    check(KINSetLinearSolver(kinsol_, linear_solver_, matrix_), "KINSetLinearSolver", t, 0.0);
+    check(KINSetJacFn(kinsol_, jacobian), "KINSetJacFn", t, 0.0);
+    check(KINSetMaxSetupCalls(kinsol_, 1), "KINSetMaxSetupCalls", t, 0.0);  // a tangent an iteration: with an old one Newton leaves soft bodies
+    check(KINSetNumMaxIters(kinsol_, kNewtonIterations), "KINSetNumMaxIters", t, 0.0);
+    check(KINSetMaxNewtonStep(kinsol_, 1e30), "KINSetMaxNewtonStep", t, 0.0);  // the ladder keeps steps short
+    check(KINSetScaledStepTol(kinsol_, 1e-30), "KINSetScaledStepTol", t, 0.0);  // the force decides
+    layout_version_ = state_.layout().version;
+  }
+
+  void release() {
+    if (kinsol_) KINFree(&kinsol_);
+    if (linear_solver_) SUNLinSolFree(linear_solver_);
+    if (matrix_) SUNMatDestroy(matrix_);
+    for (N_Vector* v : {&x_, &ones_}) {
+      if (*v) N_VDestroy(*v);
+      *v = nullptr;
+    }
+    if (context_) SUNContext_Free(&context_);
+    linear_solver_ = nullptr;
+    matrix_ = nullptr;
+    context_ = nullptr;
+  }
+
+  static void on_error(int, const char*, const char* function, char* text, void* data) { self(data).message_ = fmt::format("{}: {}", function, text); }
+
+  // --- what is told -----------------------------------------------------------------------------------------------
+  StepStatus status_of(int flag) const {
+    if (!finite_) return StepStatus::kNotFinite;
+    return flag == KIN_LSETUP_FAIL || flag == KIN_LSOLVE_FAIL || flag == KIN_LINSOLV_NO_RECOVERY ? StepStatus::kSolverFailed : StepStatus::kNewtonFailed;
+  }
+  std::string describe(int flag) const {
+    char* owned = KINGetReturnFlagName(flag);
+    const std::string flag_name = owned ? owned : "UNKNOWN";
+    std::free(owned);
+    return fmt::format("{} at load {:.3g} of 1: no equilibrium found ({}); is the body held, and the load bearable?", flag_name, s_, message_);
+  }
+  StepResult failure(StepStatus status, const std::string& what) const {
+    StepResult r;
+    r.status = status;
+    r.t = t0_;
+    r.h = t1_ - t0_;
+    r.order = 1;
+    r.message = fmt::format("kinsol-static: {} (t = {}, h = {})", what, t0_, r.h);
+    return r;
+  }
+  StepResult succeeded(double h, int iterations) const {
+    StepResult r;
+    r.t = state_.time();
+    r.h = h;
+    r.order = 1;
+    r.iterations = iterations;
+    return r;
+  }
+
+  System& system_;
+  State& state_;
+  IntegratorSpec spec_;
+  StepSolver solver_;
+  mutable StepperCounters counters_;
+  BorderedMatrix A_;
+  VecX q_start_, u_start_, base_q_, q_, rate_, velocity_, unbalanced_, g_, inertia_, rhs_, step_;
+  double t0_ = 0.0, t1_ = 0.0, s_ = 1.0, sigma_ = 0.0, force_scale_ = 1.0;
+  bool finite_ = true;
+  std::string message_;
+  std::uint64_t layout_version_ = 0;
+  SUNContext context_ = nullptr;
+  N_Vector x_ = nullptr, ones_ = nullptr;
+  SUNLinearSolver linear_solver_ = nullptr;
+  SUNMatrix matrix_ = nullptr;
+  void* kinsol_ = nullptr;
+};
+
+}  // namespace
+}  // namespace sun
+
+std::unique_ptr<dynamics::Stepper> make_kinsol_static(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+                                                      std::unique_ptr<dynamics::LinearSolver> solver) {
+  return std::make_unique<sun::KinsolStatic>(system, state, spec, std::move(solver));
+}
+
+}  // namespace palpate::integrate

@@ -1,0 +1,200 @@
+#include <arkode/arkode_arkstep.h>
+#include <arkode/arkode_mristep.h>
+#include <nvector/nvector_serial.h>
+
+#include <algorithm>
+
+#include "integrate/make.h"
+#include "integrate/mechanical_problem.h"
+#include "integrate/settings.h"
+#include "integrate/sundials/adapter.h"
+#include "integrate/sundials/ark_flags.h"
+#include "integrate/sundials/check.h"
+#include "integrate/sundials/make_adapter.h"
+#include "palpate/core/error.h"
+
+namespace palpate::integrate {
+namespace sun {
+namespace {
+
+using dynamics::StepStatus;
+using Side = OdeProblem::Side;
+
+struct MriMethod {
+  const char* name;
+  ARKODE_MRITableID table;
+  int order;
+};
+constexpr MriMethod kMethods[] = {
+    {"ark-mri-2", ARKODE_MRI_GARK_IRK21a, 2}, {"ark-mri-3", ARKODE_MRI_GARK_ESDIRK34a, 3}, {"ark-mri-4", ARKODE_MRI_GARK_ESDIRK46a, 4}};
+
+const MriMethod& method_of(const std::string& name) {
+  const auto* m = std::find_if(std::begin(kMethods), std::end(kMethods), [&](const MriMethod& x) { return name == x.name; });
+  PALPATE_CHECK(m != std::end(kMethods), "\"{}\" is no multi-rate method", name);
+  return *m;
+}
+
+constexpr int kNewtonIterations = 8;
+constexpr double kNewtonCoefficient = 0.01;
+/// The fast side is integrated to a thousandth of rtol, so that the slow step decides the order.
+constexpr double kFastShare = 1e-3;
+constexpr long kFastSteps = 1000000;
+
+/// Multi-rate infinitesimal methods of Sandu (2019) by SUNDIALS ARKODE's MRIStep: y' = f_S + f_F, the bodies slow and implicit, tool and contact fast.
+/// Between two slow stages, c_i and c_(i+1), the fast side is integrated with the slow one as a polynomial forcing,
+///     v' = f_F(t, v) + sum_j gamma_ij(t) f_S(z_j),     z_(i+1) = v(t_n + c_(i+1) H),
+/// or, where c_i = c_(i+1), an implicit stage z_(i+1) = z_i + H sum_j gbar_ij f_S(z_j) is solved by Newton with the slow tangent alone.
+/// The slow step is fixed (step_s); the fast side takes the explicit steps of Bogacki and Shampine under error control: cheap, because no element is
+/// evaluated in them, and bounded by the contact's and the coupling's own rates.  Where a scene has neither, f_F = 0 and the method is an implicit
+/// Runge-Kutta one with needless bookkeeping.
+class Mri final : public Adapter {
+ public:
+  Mri(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : Adapter(std::move(problem), spec), method_(method_of(spec.name)) {
+    check_fixed_step(spec);
+    use_tolerance(spec.newton_rtol);
+  }
+  ~Mri() override { Mri::destroy(); }
+
+ private:
+  void create() override {
+    const double t = problem().time();
+    create_fast(t);
+    slow_ = MRIStepCreate(nullptr, slow_side, t, y(), inner_, context());
+    check(slow_, "MRIStepCreate");
+    check(MRIStepSetErrHandlerFn(slow_, on_error, this), "MRIStepSetErrHandlerFn", t, 0.0);  // first: nothing is ever printed
+    check(MRIStepSetUserData(slow_, static_cast<Adapter*>(this)), "MRIStepSetUserData", t, 0.0);
+    check(MRIStepWFtolerances(slow_, weights), "MRIStepWFtolerances", t, 0.0);
+    MRIStepCoupling coupling = MRIStepCoupling_LoadTable(method_.table);
+    check(coupling, "MRIStepCoupling_LoadTable");
+    check(MRIStepSetCoupling(slow_, coupling), "MRIStepSetCoupling", t, 0.0);
+    MRIStepCoupling_Free(coupling);
+    check(MRIStepSetFixedStep(slow_, spec().step_s), "MRIStepSetFixedStep", t, 0.0);
+    check(MRIStepSetNonlinearSolver(slow_, make_newton()), "MRIStepSetNonlinearSolver", t, 0.0);
+    use_own_test();
+    linear_solver_ = make_linear_solver(*this, context());
+    matrix_ = make_matrix(context());
+    check(MRIStepSetLinearSolver(slow_, linear_solver_, matrix_), "MRIStepSetLinearSolver", t, 0.0);
+    check(MRIStepSetLinSysFn(slow_, linear_system), "MRIStepSetLinSysFn", t, 0.0);
+    check(MRIStepSetMaxNonlinIters(slow_, kNewtonIterations), "MRIStepSetMaxNonlinIters", t, 0.0);
+    check(MRIStepSetNonlinConvCoef(slow_, kNewtonCoefficient), "MRIStepSetNonlinConvCoef", t, 0.0);
+    if (problem().has_manifold()) check(MRIStepSetPostprocessStepFn(slow_, project_step), "MRIStepSetPostprocessStepFn", t, 0.0);
+  }
+
+  void create_fast(double t) {
+    fast_ = ARKStepCreate(fast_side, nullptr, t, y(), context());
+    check(fast_, "ARKStepCreate");
+    check(ARKStepSetErrHandlerFn(fast_, on_error, this), "ARKStepSetErrHandlerFn", t, 0.0);
+    check(ARKStepSetUserData(fast_, static_cast<Adapter*>(this)), "ARKStepSetUserData", t, 0.0);
+    check(ARKStepWFtolerances(fast_, fast_weights), "ARKStepWFtolerances", t, 0.0);
+    check(ARKStepSetTableNum(fast_, ARKODE_DIRK_NONE, ARKODE_BOGACKI_SHAMPINE_4_2_3), "ARKStepSetTableNum", t, 0.0);
+    check(ARKStepSetMaxNumSteps(fast_, kFastSteps), "ARKStepSetMaxNumSteps", t, 0.0);
+    check(ARKStepSetMaxErrTestFails(fast_, kErrorTestFailures), "ARKStepSetMaxErrTestFails", t, 0.0);
+    check(ARKStepCreateMRIStepInnerStepper(fast_, &inner_), "ARKStepCreateMRIStepInnerStepper", t, 0.0);
+  }
+
+  void destroy() override {
+    if (slow_) MRIStepFree(&slow_);
+    if (inner_) MRIStepInnerStepper_Free(&inner_);
+    if (fast_) ARKStepFree(&fast_);
+    if (linear_solver_) SUNLinSolFree(linear_solver_);
+    if (matrix_) SUNMatDestroy(matrix_);
+    inner_ = nullptr;
+    linear_solver_ = nullptr;
+    matrix_ = nullptr;
+  }
+
+  void restart(bool keep_step) override {
+    const double t = problem().time();
+    if (keep_step) return check(MRIStepReset(slow_, t, y()), "MRIStepReset", t, 0.0);
+    check(ARKStepReInit(fast_, fast_side, nullptr, t, y()), "ARKStepReInit", t, 0.0);
+    check(MRIStepReInit(slow_, nullptr, slow_side, t, y()), "MRIStepReInit", t, 0.0);
+  }
+  void find_roots(int count) override {
+    check(MRIStepRootInit(slow_, count, roots), "MRIStepRootInit", problem().time(), 0.0);
+    MRIStepSetNoInactiveRootWarn(slow_);
+  }
+  void aim(double t_end, double) override {
+    check(MRIStepSetStopTime(slow_, t_end), "MRIStepSetStopTime", problem().time(), 0.0);
+    now_ = problem().time();
+  }
+  int one_step(double t_end, double& t) override {
+    const double left = t_end - now_;  // a step shorter than rounding of the others is none: the last one takes it in
+    check(MRIStepSetFixedStep(slow_, left <= spec().step_s * (1.0 + 1e-9) ? left : spec().step_s), "MRIStepSetFixedStep", now_, 0.0);
+    const int flag = MRIStepEvolve(slow_, t_end, y(), &t, ARK_ONE_STEP);
+    if (flag >= 0) now_ = t;
+    return flag;
+  }
+
+  StepStatus status_of(int flag) const override { return flag == ARK_INNERSTEP_FAIL ? StepStatus::kErrorTestFailed : ark_status(flag); }
+  std::string flag_name(int flag) const override { return ark_flag_name(flag); }
+  bool interpolate(double t, N_Vector out) const override { return MRIStepGetDky(slow_, t, 0, out) == ARK_SUCCESS; }
+
+  Counts counts() const override {
+    Counts c;
+    check(MRIStepGetNumSteps(slow_, &c.steps), "MRIStepGetNumSteps", 0.0, 0.0);
+    check(MRIStepGetNonlinSolvStats(slow_, &c.newton_iterations, &c.newton_failures), "MRIStepGetNonlinSolvStats", 0.0, 0.0);
+    return c;
+  }
+  double last_step() const override {
+    double h = 0.0;
+    check(MRIStepGetLastStep(slow_, &h), "MRIStepGetLastStep", 0.0, 0.0);
+    return h;
+  }
+  int last_order() const override { return method_.order; }
+  N_Vector newton_state() const override {
+    N_Vector state = nullptr;
+    check(MRIStepGetCurrentState(slow_, &state), "MRIStepGetCurrentState", 0.0, 0.0);
+    return state;
+  }
+  double current_gamma() const override {
+    double gamma = 0.0;
+    check(MRIStepGetCurrentGamma(slow_, &gamma), "MRIStepGetCurrentGamma", 0.0, 0.0);
+    return gamma;
+  }
+
+  static Mri& self(void* data) { return static_cast<Mri&>(*static_cast<Adapter*>(data)); }
+  static int slow_side(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+    Mri& me = self(data);
+    const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), Side::kSlow);
+    me.see_evaluation(t, y, finite);
+    return finite ? 0 : kRecoverable;
+  }
+  static int fast_side(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+    Mri& me = self(data);
+    const bool finite = me.problem().derivative(t, NV_DATA_S(y), NV_DATA_S(y_dot), Side::kFast);
+    me.see_evaluation(t, y, finite);
+    return finite ? 0 : kRecoverable;
+  }
+  static int fast_weights(N_Vector y, N_Vector w, void* data) {
+    self(data).problem().weights(NV_DATA_S(y), NV_DATA_S(w));
+    N_VScale(1.0 / kFastShare, w, w);
+    return 0;
+  }
+  static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, booleantype reuse, booleantype* fresh, realtype gamma, void* data,
+                           N_Vector, N_Vector, N_Vector) {
+    *fresh = self(data).prepare_matrix(t, y, reuse, gamma, Side::kSlow);
+    return 0;
+  }
+
+  const MriMethod& method_;
+  double now_ = 0.0;
+  void *slow_ = nullptr, *fast_ = nullptr;
+  MRIStepInnerStepper inner_ = nullptr;
+  SUNLinearSolver linear_solver_ = nullptr;
+  SUNMatrix matrix_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<dynamics::Stepper> make_mri(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) {
+  return std::make_unique<Mri>(std::move(problem), spec);
+}
+
+}  // namespace sun
+
+std::unique_ptr<dynamics::Stepper> make_mri(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+                                            std::unique_ptr<dynamics::LinearSolver> solver) {
+  return sun::make_mri(std::make_unique<MechanicalProblem>(system, state, spec, std::move(solver)), spec);
+}
+
+}  // namespace palpate::integrate
