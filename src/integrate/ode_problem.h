@@ -60,4 +60,7 @@ class OdeProblem {
   virtual void collect_solver_counters() {}
 };
 
+/// An adapter of SUNDIALS over any problem; spec.name as in the registry.  @throws Error for a method that is none of SUNDIALS'
+std::unique_ptr<dynamics::Stepper> make_ode_stepper(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);
+
 }  // namespace palpate::integrate

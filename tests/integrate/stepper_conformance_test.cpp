@@ -39,9 +39,10 @@ TEST_P(Steppers, LandExactly) {
 }
 
 TEST_P(Steppers, ConvergeToTheModeAtTheirOrder) {
+  if (!steps_are_fixed(GetParam())) GTEST_SKIP() << GetParam() << " chooses its steps: see FollowTheirToleranceOverTwoPeriods";
   std::vector<double> values, errors;
   const Ladder l = ladder(GetParam(), Chain().omega(), 0.5);
-  const double amplitude = steps_are_fixed(GetParam()) ? 10.0 : 0.1;  // far above the rest positions' rounding
+  const double amplitude = 10.0;  // far above the rest positions' rounding
   for (const double value : l.values) {
     Chain chain;
     chain.start_in_mode(amplitude);

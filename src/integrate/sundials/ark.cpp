@@ -24,6 +24,7 @@ using Side = OdeProblem::Side;
 /// ARKODE's own 3 fail about once a step on soft bodies.
 constexpr int kNewtonIterations = 8;
 constexpr int kInterpolantDegree = 3;  ///< cubic Hermite: no evaluation of its own
+constexpr int kRootDegree = 5;         ///< a root's state is where the next step starts from: worth two evaluations
 /// Newton ends at this share of the tolerance, not at ARKODE's tenth: what it leaves has one sign from step to step while an old factor
 /// is kept, and a method of order 2 takes thousands of steps.
 constexpr double kNewtonCoefficient = 0.01;
@@ -66,7 +67,7 @@ class Ark final : public Adapter {
     check(ARKStepWFtolerances(memory_, weights), "ARKStepWFtolerances", t, 0.0);
     check(ARKStepSetTableNum(memory_, static_cast<ARKODE_DIRKTableID>(method_.implicit_table), static_cast<ARKODE_ERKTableID>(method_.explicit_table)),
           "ARKStepSetTableNum", t, 0.0);
-    check(ARKStepSetInterpolantDegree(memory_, kInterpolantDegree), "ARKStepSetInterpolantDegree", t, 0.0);
+    check(ARKStepSetInterpolantDegree(memory_, spec().events == "root-finding" ? kRootDegree : kInterpolantDegree), "ARKStepSetInterpolantDegree", t, 0.0);
     check(ARKStepSetMaxErrTestFails(memory_, kErrorTestFailures), "ARKStepSetMaxErrTestFails", t, 0.0);
     if (problem().has_manifold()) check(ARKStepSetPostprocessStepFn(memory_, project_step), "ARKStepSetPostprocessStepFn", t, 0.0);
     if (has_implicit()) use_newton(t);

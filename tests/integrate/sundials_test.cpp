@@ -1,0 +1,241 @@
+#include <gtest/gtest.h>
+
+#include "integrate/fakes.h"
+
+namespace palpate {
+namespace {
+
+using namespace fakes;
+
+/// A unit mass under g over a one-sided spring k that begins at x = 0: a kink, with its root function.
+/// From height H at rest: free fall for sqrt(2 H / g), then x(t) = -(v/w) sin(w t) + (g/w^2)(cos(w t) - 1) until x = 0 again, with the speed it came with.
+struct OneSidedSpring final : ForceTerm {
+  double k, g;
+  OneSidedSpring(double stiffness, double gravity) : k(stiffness), g(gravity) {}
+  std::string_view name() const override { return "one-sided spring"; }
+  TermTraits traits() const override { return {.conservative = true, .contact = true}; }
+  void add_force(const StateView& s, VecX& f) override { f[0] += -g - k * std::min(0.0, s.q[0]); }
+  void add_tangent(const StateView& s, double ks, double, BorderedMatrix& A) override {
+    Mat3 K = Mat3::Zero();
+    K(0, 0) = s.q[0] < 0.0 ? ks * k : 0.0;
+    A.body.add(A.body.slot(0, 0), K);
+  }
+  void apply_tangent(const StateView& s, double ks, double, const VecX& x, VecX& y) override { y[0] += s.q[0] < 0.0 ? ks * k * x[0] : 0.0; }
+  int event_count() const override { return 1; }
+  void events(const StateView& s, double* out) override { out[0] = s.q[0]; }
+};
+
+struct Bouncer {
+  static constexpr double kStiffness = 1e4, kGravity = 10.0, kHeight = 0.05;
+  State state;
+  System system;
+  Bouncer() {
+    VecX q = VecX::Zero(3);
+    q[0] = kHeight;
+    const int id = state.insert(BlockSpec{.name = "ball", .q_size = 3, .u_size = 3, .q_scale = kHeight}, q, VecX::Zero(3));
+    system.add(std::make_shared<OneSidedSpring>(kStiffness, kGravity));
+    system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
+    system.prepare(state.view());
+  }
+  /// Time between two tops: the motion is periodic.
+  static double period() {
+    const double w = std::sqrt(kStiffness), v = std::sqrt(2.0 * kGravity * kHeight);
+    const double contact = 2.0 * (M_PI - std::atan2(v * w, kGravity)) / w;  // from x = 0 down and up again
+    return 2.0 * std::sqrt(2.0 * kHeight / kGravity) + contact;
+  }
+};
+
+std::vector<std::string> with_roots() {
+  std::vector<std::string> out;
+  for (const auto& e : integrate::stepper_registry())
+    if (e.traits.control != StepControl::kFixed) out.push_back(e.name);
+  return out;
+}
+class Events : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Registry, Events, testing::ValuesIn(with_roots()), registry_test_name);
+
+TEST_P(Events, RootFindingMeetsEveryTouchAndEveryLeave) {
+  Bouncer ball;
+  IntegratorSpec s{.name = GetParam(), .rtol = 1e-7, .events = "root-finding"};
+  s.max_steps = 1000000;
+  const auto stepper = integrate::make_stepper(ball.system, ball.state, s);
+  const StepResult result = stepper->advance_to(3.0 * Bouncer::period());
+  ASSERT_TRUE(result.ok()) << result.message;
+  EXPECT_EQ(stepper->counters().events, 6) << "three bounces, down and up";
+  EXPECT_NEAR(ball.state.q()[0], Bouncer::kHeight, 1e-4 * Bouncer::kHeight);
+}
+
+TEST_P(Events, ErrorControlGetsThereAsWell) {
+  Bouncer ball;
+  IntegratorSpec s{.name = GetParam(), .rtol = 1e-7};
+  s.max_steps = 1000000;
+  const auto stepper = integrate::make_stepper(ball.system, ball.state, s);
+  const StepResult result = stepper->advance_to(3.0 * Bouncer::period());
+  ASSERT_TRUE(result.ok()) << result.message;
+  EXPECT_EQ(stepper->counters().events, 0);
+  EXPECT_NEAR(ball.state.q()[0], Bouncer::kHeight, 1e-3 * Bouncer::kHeight);
+}
+
+struct Kept final : StepTrace {
+  std::vector<StepAttempt> all;
+  void attempt(const StepAttempt& a) override { all.push_back(a); }
+  long count(StepAttempt::Outcome o) const {
+    return std::count_if(all.begin(), all.end(), [o](const StepAttempt& a) { return a.outcome == o; });
+  }
+};
+
+class Traces : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Registry, Traces, testing::ValuesIn(with_roots()), registry_test_name);
+
+TEST_P(Traces, TellEveryAttemptAndWhyItFailed) {
+  Bouncer ball;
+  IntegratorSpec s{.name = GetParam(), .rtol = 1e-5};
+  const auto stepper = integrate::make_stepper(ball.system, ball.state, s);
+  Kept kept;
+  stepper->set_trace(&kept);
+  const double T = 2.0 * Bouncer::period();
+  ASSERT_TRUE(stepper->advance_to(T).ok());
+  const StepperCounters& c = stepper->counters();
+  using O = StepAttempt::Outcome;
+  EXPECT_EQ(kept.count(O::kAccepted), c.steps);
+  EXPECT_EQ(kept.count(O::kErrorTest), c.error_test_failures);
+  EXPECT_EQ(kept.count(O::kErrorTest) + kept.count(O::kNewton), c.rejected);
+  EXPECT_GT(c.error_test_failures, 0) << "a kink fails an error test";
+  double sum = 0.0;
+  int estimated = 0;
+  for (const StepAttempt& a : kept.all) {
+    EXPECT_GT(a.h, 0.0);
+    if (a.outcome != O::kAccepted) continue;
+    sum += a.h;
+    if (std::isnan(a.error)) continue;
+    ++estimated;
+    if (a.error == 0.0) continue;  // free fall is a parabola
+    EXPECT_EQ(a.worst_dof, 0) << "the only one that moves";
+  }
+  EXPECT_NEAR(sum, T, 1e-9 * T);
+  EXPECT_GT(estimated, c.steps / 2);
+}
+
+TEST_P(Traces, CostNothingWhereNobodyLooks) {
+  Bouncer looked_at, alone;
+  const IntegratorSpec s{.name = GetParam(), .rtol = 1e-5};
+  const auto a = integrate::make_stepper(looked_at.system, looked_at.state, s), b = integrate::make_stepper(alone.system, alone.state, s);
+  Kept kept;
+  a->set_trace(&kept);
+  ASSERT_TRUE(a->advance_to(0.3).ok());
+  ASSERT_TRUE(b->advance_to(0.3).ok());
+  EXPECT_EQ(looked_at.state.q()[0], alone.state.q()[0]) << "bit for bit";
+  EXPECT_EQ(a->counters().force_evaluations, b->counters().force_evaluations);
+}
+
+TEST(Interrupt, EndsAtTheLastGoodStep) {
+  for (const std::string& mode : stepper_modes()) {
+    Chain chain;
+    chain.start_in_mode(0.1);
+    const auto stepper = integrate::make_stepper(chain.system, chain.state, mode_spec(mode));
+    std::atomic<bool> stop{true};
+    stepper->set_interrupt(&stop);
+    const StepResult r = stepper->advance_to(1.0);
+    EXPECT_EQ(r.status, StepStatus::kInterrupted) << mode;
+    EXPECT_LT(chain.state.time(), 1.0) << mode;
+    stop = false;
+    EXPECT_TRUE(stepper->advance_to(1.0).ok()) << mode;
+  }
+}
+
+// --- statics ----------------------------------------------------------------------------------------------------------
+
+const IntegratorSpec kStatic{.name = "kinsol-static"};
+
+/// A constant force on every node.
+struct Push final : ForceTerm {
+  VecX f0;
+  explicit Push(VecX f) : f0(std::move(f)) {}
+  std::string_view name() const override { return "push"; }
+  TermTraits traits() const override { return {.stiff = false, .conservative = true}; }
+  void add_force(const StateView&, VecX& f) override { f.head(f0.size()) += f0; }
+  void add_tangent(const StateView&, double, double, BorderedMatrix&) override {}
+  void apply_tangent(const StateView&, double, double, const VecX&, VecX&) override {}
+};
+
+TEST(KinsolStatic, FindsTheEquilibriumOfALinearSystem) {
+  Chain chain;
+  chain.start_in_mode(0.3);
+  chain.state.u().setConstant(5.0);
+  const VecX load = VecX::LinSpaced(12, 1.0, 2.0);
+  chain.system.add(std::make_shared<Push>(load));
+  chain.system.prepare(chain.state.view());
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, kStatic);
+  const StepResult r = stepper->advance_to(1.0);
+  ASSERT_TRUE(r.ok()) << r.message;
+  const VecX exact = chain.term->q0 + VecX(chain.term->K.ldlt().solve(load));
+  EXPECT_LT((chain.state.q() - exact).norm(), 1e-8);
+  EXPECT_EQ(chain.state.u().norm(), 0.0);
+  EXPECT_LE(stepper->counters().newton_iterations, 2);
+}
+
+/// Snap-through: a mass on two springs that meet at a shallow angle, V = k (sqrt(1 + x^2) - L)^2 with L > 1, pressed beyond its limit load.
+struct SnapThrough final : ForceTerm {
+  double k = 100.0, L = 1.1, load;
+  explicit SnapThrough(double p) : load(p) {}
+  std::string_view name() const override { return "snap-through"; }
+  TermTraits traits() const override { return {.conservative = true}; }
+  double force(double x) const { return -2.0 * k * (std::hypot(1.0, x) - L) * x / std::hypot(1.0, x) - load; }
+  double stiffness(double x) const {
+    const double r = std::hypot(1.0, x);
+    return 2.0 * k * (1.0 - L / (r * r * r));
+  }
+  void add_force(const StateView& s, VecX& f) override {
+    f[0] += force(s.q[0]);
+    f[1] -= k * s.q[1];
+    f[2] -= k * s.q[2];
+  }
+  void add_tangent(const StateView& s, double ks, double, BorderedMatrix& A) override {
+    A.body.add(A.body.slot(0, 0), ks * Vec3(stiffness(s.q[0]), k, k).asDiagonal().toDenseMatrix());
+  }
+  void apply_tangent(const StateView& s, double ks, double, const VecX& x, VecX& y) override {
+    y.head<3>() += ks * Vec3(stiffness(s.q[0]), k, k).cwiseProduct(x.head<3>());
+  }
+};
+
+TEST(KinsolStatic, SnapsThroughALimitLoad) {
+  State state;
+  System system;
+  VecX q = VecX::Zero(3);
+  q[0] = std::sqrt(1.1 * 1.1 - 1.0);  // unloaded, up
+  const int id = state.insert(BlockSpec{.name = "arch", .q_size = 3, .u_size = 3}, q, VecX::Zero(3));
+  const auto arch = std::make_shared<SnapThrough>(8.0);  // the limit load is 4.9
+  system.add(std::static_pointer_cast<ForceTerm>(arch));
+  system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
+  system.prepare(state.view());
+  const auto stepper = integrate::make_stepper(system, state, kStatic);
+  const StepResult r = stepper->advance_to(1.0);
+  ASSERT_TRUE(r.ok()) << r.message;
+  EXPECT_LT(state.q()[0], -0.45) << "on the other side";
+  EXPECT_NEAR(arch->force(state.q()[0]), 0.0, 1e-6);
+  EXPECT_GT(arch->stiffness(state.q()[0]), 0.0) << "stable";
+}
+
+TEST(KinsolStatic, SaysThatAFreeBodyHasNoEquilibrium) {
+  State state;
+  System system;
+  const int id = state.insert(BlockSpec{.name = "free", .q_size = 3, .u_size = 3}, VecX::Zero(3), VecX::Zero(3));
+  system.add(std::make_shared<Push>(VecX::Ones(3)));
+  system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
+  system.prepare(state.view());
+  const auto stepper = integrate::make_stepper(system, state, kStatic);
+  const StepResult r = stepper->advance_to(1.0);
+  EXPECT_FALSE(r.ok());
+  EXPECT_NE(r.message.find("is the body held"), std::string::npos) << r.message;
+  EXPECT_EQ(state.q().norm(), 0.0) << "the last good state";
+}
+
+TEST(KinsolStatic, RefusesBadSettings) {
+  Chain chain;
+  IntegratorSpec s = kStatic;
+  s.newton_rtol = 0.0;
+  EXPECT_THROW(integrate::make_stepper(chain.system, chain.state, s), Error);
+}
+
+}  // namespace
+}  // namespace palpate
