@@ -180,8 +180,8 @@ struct Ladder {
 inline Ladder ladder(const std::string& mode, double omega, double T) {
   const int order = mode_traits(mode).order;
   if (steps_are_fixed(mode)) {
-    const double coarsest = (order == 1 ? 1e-3 : order == 2 ? 0.02 : order == 3 ? 0.02 : order == 4 ? 0.06 : 0.045) / omega;
-    const double ratio = order <= 2 ? 2.0 : order == 3 ? 1.7 : order == 4 ? 1.5 : 1.25;
+    const double coarsest = (order == 1 ? 1e-3 : order == 2 ? 0.02 : order == 3 ? 0.008 : order == 4 ? 0.06 : 0.045) / omega;
+    const double ratio = order <= 2 ? 2.0 : order == 3 ? 1.4 : order == 4 ? 1.5 : 1.25;
     Ladder l{{}, order - 0.1, order + 0.1};
     for (double h = coarsest; l.values.size() < 4; h /= ratio) l.values.push_back(T / std::ceil(T / h));
     return l;
