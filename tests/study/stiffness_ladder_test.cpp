@@ -46,7 +46,7 @@ study::Run run(double youngs_modulus, const IntegratorSpec& spec) {
 
 class StiffnessLadder : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Pascal, StiffnessLadder, testing::Values(1e4, 1e5, 1e6, 1e7, 1e8, 1e9),
-                         [](const auto& info) { return fmt::format("1e{}", static_cast<int>(std::lround(std::log10(info.param)))); });
+                         [](const auto& given) { return fmt::format("1e{}", static_cast<int>(std::lround(std::log10(given.param)))); });
 
 // Every implicit method of SUNDIALS with error control, at one tolerance for all of E: 1e-6, and 1e-5 for those of order 2.
 TEST_P(StiffnessLadder, EveryImplicitMethodOfSundialsReaches1eMinus5) {
