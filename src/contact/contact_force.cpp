@@ -1,7 +1,6 @@
 #include "palpate/contact/contact_force.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "contact/contact_force_impl.h"
 #include "palpate/core/clock.h"
@@ -154,19 +153,30 @@ bool ContactForce::refresh(const dynamics::StateView& state) {
   return m.refresh_force_jump > 0.0;
 }
 
-int ContactForce::event_count() const { return static_cast<int>(impl_->pairs.size()); }
+int ContactForce::event_count() const {
+  int count = 0;
+  for (const auto& pair : impl_->pairs)
+    if (pair.law.onset == 0.0) count += static_cast<int>(pair.end - pair.begin);
+  return count;
+}
 
-// One root function a pair: its smallest gap, which changes sign when the first sample touches or the last one leaves.
-// A pair without candidates is apart by more than its candidate gap: any positive constant says so.
+// A candidate that is far apart is among them: it may close before the next query.  A sample whose gap is far away costs a root finder an evaluation, no more.
 void ContactForce::events(const dynamics::StateView& state, double* g) {
   Impl& m = *impl_;
   m.place_frames(state);
-  for (std::size_t i = 0; i < m.pairs.size(); ++i) {
-    double least = std::numeric_limits<double>::max();
-    for (std::size_t s = m.pairs[i].begin; s < m.pairs[i].end; ++s)
-      least = std::min(least, sample_motion(m.samples[s], state, m.frame_states).gap);
-    g[i] = m.pairs[i].begin == m.pairs[i].end ? 1.0 : least;
+  for (const Impl::Pair& pair : m.pairs) {
+    if (pair.law.onset > 0.0) continue;
+    for (std::size_t s = pair.begin; s < pair.end; ++s) {
+      const SampleMotion motion = sample_motion(m.samples[s], state, m.frame_states);
+      *g++ = pressing(pair.law, motion.gap, motion.rate);
+    }
   }
+}
+
+std::vector<long> ContactForce::tunnelled() const {
+  std::vector<long> out;
+  for (const auto& pair : impl_->pairs) out.push_back(pair.source->tunnelled());
+  return out;
 }
 
 const std::vector<ContactSample>& ContactForce::samples() const { return impl_->samples; }

@@ -8,6 +8,7 @@ void reset(FrameLinearisation& out, Eigen::Index nodal) {
   out.wrench = {};
   out.K.setZero();
   out.B.setZero();
+  out.geometric.setZero();
   for (MatX* m : {&out.K_body, &out.B_body}) m->setZero(nodal, 6);
   for (MatX* m : {&out.K_frame, &out.B_frame}) m->setZero(6, nodal);
   out.active = 0;
@@ -35,6 +36,7 @@ void add_frame_block(const Side& frame, const SampleForce& s, FrameLinearisation
   columns.leftCols<3>().noalias() += s.D * frame.V;
   out.K.noalias() += frame.Z.transpose() * columns;
   out.K.topLeftCorner<3, 3>() -= frame.sign * frame.G;
+  out.geometric += frame.sign * frame.G;
   out.B.noalias() += frame.Z.transpose() * (s.D * frame.Z);
 }
 

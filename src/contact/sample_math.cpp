@@ -62,13 +62,13 @@ SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMo
   return {sample.area * p.p * m, -p.dp_dgap * mn, -p.dp_drate * mn + sample.area * law.friction * p.p * ds};
 }
 
-// The spring stores A k delta^2 / 2; the contact gives the power -A p delta' to the two surfaces.  What is missing:
-//   -(A k delta delta' - A p delta') = A (p - k delta) delta'  =  A d delta'^2  or  A 3/2 k c delta delta'^2,
-// and where the pressure was cut to zero, -A k delta delta' with delta' < 0: all >= 0.  Friction takes A mu p |v_t|^2 / max(|v_t|, v_r).
+// The spring stores A k S, S' = s; the contact gives the power -A p delta' to the two surfaces.  What is missing:
+//   -(A k s delta' - A p delta') = A (p - k s) delta'  =  A d s' delta'^2  or  A 3/2 k c s delta'^2,
+// and where the pressure was cut to zero, -A k s delta' with delta' < 0: all >= 0.  Friction takes A mu p |v_t|^2 / max(|v_t|, v_r).
 double sample_dissipation(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
   if (motion.gap >= 0.0) return 0.0;
   const double p = pressure(law, motion.gap, motion.rate).p;
-  const double normal_part = (p + law.k * motion.gap) * -motion.rate;
+  const double normal_part = (p - law.k * onset(law.onset, -motion.gap).value) * -motion.rate;
   const Vec3 v_t = tangential(sample, motion);
   return sample.area * (normal_part + law.friction * p * v_t.squaredNorm() / std::max(v_t.norm(), law.regularisation));
 }

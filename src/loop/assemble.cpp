@@ -140,7 +140,7 @@ std::unique_ptr<World> assemble(const scene::Description& description) {
   assemble_bodies(*world);
   if (description.tool) assemble_tool(*world);
   if (!description.contacts.empty()) assemble_contact(*world);
-  if (world->bodies.empty()) return world;
+  if (world->state.layout().blocks.empty()) return world;  // a tool of its own rate, alone
   world->system.prepare(world->state.view());
   world->system.impose(world->state.layout(), 0.0, world->state.q().data(), world->state.u().data());
   world->stepper = integrate::make_stepper(world->system, world->state, description.integrator);

@@ -2,6 +2,7 @@
 
 #include "assemble_parts.h"
 #include "palpate/contact/sources.h"
+#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 
@@ -42,15 +43,23 @@ void check_method(const ContactSpec& spec) {
     fail("contact {} - {}: unknown method \"{}\"{}", spec.first, spec.second, spec.method, suggestion(spec.method, {"analytic", "gpu"}));
 }
 
+/// The tool's frame in contact: its block of the State, or its motion over one exchange period.
+std::shared_ptr<contact::MovingFrame> tool_motion(World& world) {
+  if (world.tool_motion) return world.tool_motion;
+  if (world.monolithic())
+    world.tool_motion = contact::block_frame(world.tool_block_id);
+  else
+    world.tool_motion = world.tool_frame = std::make_shared<contact::TrajectoryFrame>();
+  world.tool_frame_index = world.contact->add_frame(world.tool_motion);
+  return world.tool_motion;
+}
+
 std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
   const ToolSpec& tool = *world.description.tool;
-  if (!world.tool_frame) {
-    world.tool_frame = std::make_shared<contact::TrajectoryFrame>();
-    world.tool_frame_index = world.contact->add_frame(world.tool_frame);
-  }
-  if (pair.spec.method == "gpu") return gpu_source(std::move(pair), tool_surface(tool, world.folder), world.tool_frame_index, world.tool_frame);
+  const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world);
+  if (pair.spec.method == "gpu") return gpu_source(std::move(pair), tool_surface(tool, world.folder), world.tool_frame_index, motion);
   if (tool.shape != "sphere") fail("contact {} - tool: method \"analytic\" needs shape = \"sphere\", the tool's is \"{}\"; use method = \"gpu\"", pair.spec.first, tool.shape);
-  return contact::make_sphere_source(std::move(pair.surface), world.tool_frame_index, world.tool_frame, Vec3::Zero(), tool.radius_m, pair.candidate_gap,
+  return contact::make_sphere_source(std::move(pair.surface), world.tool_frame_index, motion, Vec3::Zero(), tool.radius_m, pair.candidate_gap,
                                      world.description.coupling.contact_refresh_s);
 }
 
@@ -62,10 +71,17 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair, 
     return contact::make_plane_source(std::move(pair.surface), frame, motion, obstacle.position_m, obstacle.normal, pair.candidate_gap,
                                       world.description.coupling.contact_refresh_s);
   }
-  if (obstacle.type != "sphere") fail("obstacle \"{}\": unknown type \"{}\"{}", obstacle.name, obstacle.type, suggestion(obstacle.type, {"plane", "sphere"}));
+  const double ahead = world.description.coupling.contact_refresh_s;
+  const Pose place{quaternion_of(obstacle.rotation_vector_rad), obstacle.position_m};
+  if (obstacle.type != "sphere" && obstacle.type != "box" && obstacle.type != "cylinder")
+    fail("obstacle \"{}\": unknown type \"{}\"{}", obstacle.name, obstacle.type, suggestion(obstacle.type, {"plane", "sphere", "box", "cylinder"}));
+  if (obstacle.type != "sphere" && pair.spec.method == "gpu")
+    fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"analytic\"", pair.spec.first, obstacle.name, obstacle.type);
+  if (obstacle.type == "box") return contact::make_box_source(std::move(pair.surface), frame, motion, place, obstacle.size_m, pair.candidate_gap, ahead);
+  if (obstacle.type == "cylinder")
+    return contact::make_cylinder_source(std::move(pair.surface), frame, motion, place, obstacle.radius_m, obstacle.length_m, pair.candidate_gap, ahead);
   if (pair.spec.method == "analytic")
-    return contact::make_sphere_source(std::move(pair.surface), frame, motion, obstacle.position_m, obstacle.radius_m, pair.candidate_gap,
-                                       world.description.coupling.contact_refresh_s);
+    return contact::make_sphere_source(std::move(pair.surface), frame, motion, obstacle.position_m, obstacle.radius_m, pair.candidate_gap, ahead);
   ToolSpec ball;
   ball.radius_m = obstacle.radius_m;
   TriMesh surface = tool_surface(ball, world.folder);
@@ -89,8 +105,9 @@ void assemble_contact(World& world) {
       fail("contact {} - {}: the second partner must be an obstacle or \"tool\"; contact between soft bodies is not part of this version", spec.first, spec.second);
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
-  if (world.tool_frame && world.description.coupling.linearisation == "condensed")
-    world.condenser = integrate::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
+  if (!world.tool_frame || world.description.coupling.linearisation != "condensed") return;
+  counters::count("loop.condenser");
+  world.condenser = integrate::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
 }
 
 }  // namespace palpate::loop

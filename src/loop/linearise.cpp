@@ -1,7 +1,9 @@
 #include "linearise.h"
 
 #include "palpate/contact/contact_force.h"
+#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/integrate/integrators.h"
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
 #endif
@@ -13,31 +15,117 @@ namespace {
 
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-// Condensation.  Over one period H the bodies answer the tool as one linearly implicit step does:
-//   A du_n = -H (K_nt dx + B_nt dv),   A = M + H D + H^2 K (contact included),   dx_n = H du_n
-//   dF     = -K_tt dx - B_tt dv - (H K_tn + B_tn) du_n
-// so that  J = dF/dx = -K_tt + H (H K_tn + B_tn) A^-1 K_nt  and  B = dF/dv = -B_tt + H (H K_tn + B_tn) A^-1 B_nt:
-// the Schur complement of the step matrix onto the tool.  H -> 0 gives `frozen`, H -> infinity the quasi-static answer K_tt - K_tn K^-1 K_nt.
-bool condense(World& world, double H, const contact::FrameLinearisation& c, Mat6& J, Mat6& B) {
+// What the bodies make of the contact over a time H, by one linearly implicit Euler step of theirs from (x0, u0), while the tool is displaced by dx and
+// its twist changed by dv.  n all nodes, f free, t tool; c = -df/d(tool), -dF/d(node) as ContactForce::linearise gives them, M, D, K with contact in them.
+// Driven nodes go to x(t0 + H), v(t0 + H): s and w are the displacements and velocity changes that are known beforehand,
+//     s = H u0 on free directions, x(t0 + H) - x0 on driven ones;      w = 0 on free directions, v(t0 + H) - u0 on driven ones.
+// With u1 = u0 + w + du, du = 0 on driven directions, nodes end at x0 + s + H du, and the force there is, to first order,
+//     f1 = f_n - K_nn (s + H du) - D_nn (w + du) - K_nt dx - B_nt dv.
+// M (u1 - u0) = H f1 on free directions is
+//     A du = H (f_n - K_nn s - D_nn w) - M w - H (K_nt dx + B_nt dv),      A = M + H D + H^2 K,
+// and the tool feels, linearised about the same state,
+//     F = F_t - K_tt dx - B_tt dv - K_tn (s + H du) - B_tn (w + du)
+//       = [F_t - K_tn s - B_tn w - C g] + J dx + B dv,      C = H K_tn + B_tn,  A g = H (f_n - K_nn s - D_nn w) - M w,
+//     J = -K_tt + H C A^-1 K_nt,  B = -B_tt + H C A^-1 B_nt:      the Schur complement of the step matrix onto the tool.
+// One part of K_tt is no stiffness of the contact but of its force: the arms that turn under it.  It is taken of the forces after the step, at x0 + s + H g,
+// u0 + w + g; to first order that is the same.  But where the forces are out of balance it is not: a depth that came about unseen may press with 1e4 N now
+// and with 0.1 N after the step, and a tool that turned under the first would spin up without end.
+// H -> 0 gives `frozen`, H -> infinity the quasi-static answer K_tt - K_tn K^-1 K_nt.  (Forces that depend on time alone are taken at t0.)
+struct Answer {
+  Vec6 wrench;  ///< [F_t - K_tn s - B_tn w - C g]
+  Mat6 J, B;
+};
+
+/// s and w of the derivation.
+void known_motion(World& world, double H, VecX& s, VecX& w) {
+  const auto q0 = world.state.q(), u0 = world.state.u();
+  VecX q = q0 + H * u0, u = u0;
+  s = H * u0;
+  w = VecX::Zero(u0.size());
+  world.system.impose(world.state.layout(), world.state.time() + H, q.data(), u.data());
+  for (int dof : world.system.driven_dofs()) {
+    s[dof] = q[dof] - q0[dof];
+    w[dof] = u[dof] - u0[dof];
+  }
+}
+
+VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w) {
   const dynamics::StateView view = world.state.view();
-  world.system.step_matrix(view, 1.0, H, H * H, world.condensed_matrix);
-  if (world.condenser->factor(world.condensed_matrix) != dynamics::SolveStatus::kOk) return false;
+  VecX f, inertia, stiff = VecX::Zero(s.size());
+  world.system.force(view, f);
+  for (const auto& term : world.system.terms()) {
+    if (!term->traits().has_tangent) continue;
+    term->apply_tangent(view, 1.0, 0.0, s, stiff);
+    term->apply_tangent(view, 0.0, 1.0, w, stiff);
+  }
+  world.system.apply_mass(view, w, inertia);
+  return H * (f - stiff) - inertia;
+}
+
+/// A factor of the step matrix: by LU where it is indefinite (an inverted element, a compressed strut), null where it has none at all.
+dynamics::LinearSolver* factored(World& world) {
+  const dynamics::SolveStatus status = world.condenser->factor(world.condensed_matrix);
+  if (status == dynamics::SolveStatus::kOk) return world.condenser.get();
+  if (status != dynamics::SolveStatus::kIndefinite) return nullptr;
+  counters::count("loop.condensed_by_lu");
+  if (!world.condenser_lu) world.condenser_lu = integrate::make_linear_solver("umfpack");
+  return world.condenser_lu->factor(world.condensed_matrix) == dynamics::SolveStatus::kOk ? world.condenser_lu.get() : nullptr;
+}
+
+/// False where the step matrix has no factor.
+bool answer_after(World& world, double H, const contact::FrameLinearisation& c, Answer& out) {
+  world.system.step_matrix(world.state.view(), 1.0, H, H * H, world.condensed_matrix);
+  dynamics::LinearSolver* solver = factored(world);
+  if (!solver) return false;
+  VecX s, w;
+  known_motion(world, H, s, w);
   const Eigen::Index n = c.K_body.rows();
-  MatX rhs = MatX::Zero(world.state.layout().u_size, 12);
-  rhs.topLeftCorner(n, 6) = c.K_body;
-  rhs.topRightCorner(n, 6) = c.B_body;
+  MatX rhs(world.state.layout().u_size, 13);
+  rhs.leftCols(6) = c.K_body;
+  rhs.middleCols(6, 6) = c.B_body;
+  rhs.col(12) = right_hand_side(world, H, s, w);
   for (int dof : world.system.driven_dofs()) rhs.row(dof).setZero();
-  MatX answer(rhs.rows(), rhs.cols());
-  if (world.condenser->solve(rhs, answer) != dynamics::SolveStatus::kOk || !answer.allFinite()) return false;
-  const MatX row = H * (H * c.K_frame + c.B_frame);
-  J = -c.K + row * answer.topLeftCorner(n, 6);
-  B = -c.B + row * answer.topRightCorner(n, 6);
+  MatX solved(rhs.rows(), rhs.cols());
+  if (solver->solve(rhs, solved) != dynamics::SolveStatus::kOk || !solved.allFinite()) return false;
+  const MatX C = H * c.K_frame + c.B_frame;
+  out.J = -c.K + H * C * solved.topLeftCorner(n, 6);
+  out.B = -c.B + H * C * solved.block(0, 6, n, 6);
+  const VecX g = solved.col(12);
+  out.wrench << c.wrench.moment, c.wrench.force;
+  out.wrench -= c.K_frame * s + c.B_frame * w + C * g;
+
+  const VecX q = world.state.q() + s + H * g, u = world.state.u() + w + g;
+  contact::FrameLinearisation after;
+  world.contact->linearise(world.state.view(world.state.time(), q.data(), u.data()), world.tool_frame_index, after);
+  out.J.topLeftCorner<3, 3>() += after.geometric - c.geometric;
+  return true;
+}
+
+// The bodies' own motion over the period, as the line through what one implicit step makes of the wrench after one tick and after the period.
+// A stiff contact that the last period has left out of balance is relaxed within the first tick, as it is in the bodies' own implicit step, where a line
+// that began at the present wrench would press with it for half the period.  Where nothing is stiff, it begins there to O(tick^2).
+bool condense(World& world, double period, const contact::FrameLinearisation& c, dynamics::LinearisedContact& record) {
+  const double tick = world.description.tool->tick_s;
+  Answer last, first;
+  if (!answer_after(world, period, c, last)) return false;
+  Vec6 F0 = last.wrench, F1 = Vec6::Zero();
+  if (tick < period * (1.0 - 1e-9)) {
+    if (!answer_after(world, tick, c, first)) return false;
+    F1 = (last.wrench - first.wrench) / (period - tick);
+    F0 = first.wrench - tick * F1;
+  }
+  Eigen::Map<Vec6>(record.F0.data()) = F0;
+  Eigen::Map<Vec6>(record.F1.data()) = F1;
+  Eigen::Map<RowMajor6>(record.J.data()) = last.J;
+  Eigen::Map<RowMajor6>(record.B.data()) = last.B;
+  record.source = dynamics::LinearisedContact::Source::kCondensed;
   return true;
 }
 
 }  // namespace
 
 dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t version, double period_s, long& frozen_fallbacks) {
+  counters::count("loop.exchange_record");
   dynamics::LinearisedContact record;
   record.version = version;
   record.time = world.state.time();
@@ -50,16 +138,10 @@ dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t versio
   record.x0 = {x0.rotation.w(), x0.rotation.x(), x0.rotation.y(), x0.rotation.z(), x0.translation.x(), x0.translation.y(), x0.translation.z()};
   Eigen::Map<Vec6>(record.v0.data()) << v0.angular, v0.linear;
   Eigen::Map<Vec6>(record.F0.data()) << c.wrench.moment, c.wrench.force;
-  Mat6 J = -c.K, B = -c.B;
+  Eigen::Map<RowMajor6>(record.J.data()) = -c.K;
+  Eigen::Map<RowMajor6>(record.B.data()) = -c.B;
   record.source = dynamics::LinearisedContact::Source::kFrozen;
-  if (world.condenser && c.active > 0) {
-    if (condense(world, period_s, c, J, B))
-      record.source = dynamics::LinearisedContact::Source::kCondensed;
-    else
-      ++frozen_fallbacks;
-  }
-  Eigen::Map<RowMajor6>(record.J.data()) = J;
-  Eigen::Map<RowMajor6>(record.B.data()) = B;
+  if (world.condenser && c.active > 0 && !condense(world, period_s, c, record)) ++frozen_fallbacks;
   return record;
 }
 #else

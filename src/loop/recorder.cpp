@@ -93,14 +93,16 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
 Recorder::~Recorder() = default;
 
 void Recorder::period(World& world, double t) {
+  if (world.description.tool) {
+    impl_->tool_pose = world.tool_pose();
+    impl_->tool_twist = world.tool_twist();
+  }
   if (impl_->states && impl_->seen % impl_->every == 0) impl_->append(world, t);
   if (impl_->forces) impl_->forces->flush();
   ++impl_->seen;
 }
 
 void Recorder::tick(const TickRecord& tick) {
-  impl_->tool_pose = tick.tool;
-  impl_->tool_twist = tick.tool_twist;
   if (!impl_->forces) return;
   const bool limited = (tick.device.force - tick.wanted.force).norm() > 1e-12 || (tick.device.moment - tick.wanted.moment).norm() > 1e-12;
   impl_->forces->append({tick.time, tick.handle, tick.tool, tick.device, limited});

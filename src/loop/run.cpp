@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "linearise.h"
+#include "monolithic_ticks.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #ifdef PALPATE_HAS_TOOL
+#include "palpate/tool/rigid_block.h"
 #include "palpate/tool/tool.h"
 #endif
 
@@ -58,7 +61,7 @@ class Loop {
   void one_period(double t0, double t1) {
     refresh_contact();
     if (world_.tool) tick_tool(t0, t1);
-    if (result_.status.ok() && world_.stepper) advance_bodies(t0, t1);
+    if (result_.status.ok() && world_.stepper) advance_state(t0, t1);
   }
 
   /// The slow query; multistep integrators then forget their history.
@@ -68,23 +71,26 @@ class Loop {
     if (world_.contact->refresh(world_.state.view())) world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
   }
 
-  /// Bodies follow over the same period, with the tool's motion known: refreshes of the contact inside it are whole fractions.
-  void advance_bodies(double t0, double t1) {
+  /// Bodies follow over the same period, with the tool's motion known or, monolithic, beside them: refreshes of the contact inside it are whole fractions.
+  void advance_state(double t0, double t1) {
     const double refresh = world_.contact ? world_.description.coupling.contact_refresh_s : t1 - t0;
     const int parts = whole_number((t1 - t0) / refresh);
     for (int i = 0; i < parts; ++i) {
       if (i > 0) refresh_contact();
       const double t = i + 1 == parts ? t1 : t0 + (i + 1) * (t1 - t0) / parts;
-      result_.status = world_.stepper->advance_to(t);
+      result_.status = ticks_ ? ticks_->advance_to(t) : world_.stepper->advance_to(t);
       if (!result_.status.ok()) return;
     }
   }
 
 #ifdef PALPATE_HAS_TOOL
   void start_tool() {
-    if (!world_.tool) return;
-    handle_ = world_.handle->sample(0.0);
-    set_trajectory_start();
+    if (!world_.description.tool) return;
+    world_.handle_now = world_.handle->sample(0.0);
+    if (world_.monolithic())
+      ticks_.emplace(world_, [this](const TickRecord& tick) { feel(tick); });
+    else
+      set_trajectory_start();
   }
 
   void set_trajectory_start() {
@@ -106,21 +112,26 @@ class Loop {
   }
 
   void tick(double t, double h) {
-    const device::HandleSample before = handle_;
-    handle_ = world_.handle->sample(t);
-    result_.status = world_.tool->advance(h, {before.pose, handle_.pose, before.twist, handle_.twist}, record_);
+    const device::HandleSample before = world_.handle_now, now = world_.handle->sample(t);
+    result_.status = world_.tool->advance(h, {before.pose, now.pose, before.twist, now.twist}, record_);
     if (!result_.status.ok()) return;
     TickRecord tick;
     tick.time = t;
-    tick.handle = handle_.pose;
     tick.tool = world_.tool->pose();
     tick.tool_twist = world_.tool->twist();
-    const Vec6 contact = dynamics::contact_wrench(record_, tick.tool, tick.tool_twist);
+    const Vec6 contact = dynamics::contact_wrench(record_, t, tick.tool, tick.tool_twist);
     tick.contact = {contact.head<3>(), contact.tail<3>()};
-    tick.wanted = world_.tool->wrench_on_hand(handle_.pose, handle_.twist);
-    tick.device = world_.limiter->limit(t, tick.wanted, handle_.valid);
-    world_.handle->feedback(t, tick.device);
     if (world_.tool_frame) world_.tool_frame->append(t, tick.tool, tick.tool_twist);
+    feel(tick);
+  }
+
+  /// What the hand feels of a tool at a tick.
+  void feel(TickRecord tick) {
+    const device::HandleSample& handle = world_.handle_now = world_.handle->sample(tick.time);
+    tick.handle = handle.pose;
+    tick.wanted = tool::coupling_on_hand(*world_.description.tool, {tick.tool, tick.tool_twist}, {handle.pose, handle.twist});
+    tick.device = world_.limiter->limit(tick.time, tick.wanted, handle.valid);
+    world_.handle->feedback(tick.time, tick.device);
     ++result_.ticks;
     for (Observer* observer : options_.observers) observer->tick(tick);
   }
@@ -136,21 +147,24 @@ class Loop {
   void finish() {
     if (world_.stepper) world_.stepper->set_interrupt(nullptr);
     if (world_.stepper) result_.counters = world_.stepper->counters();
-    if (world_.contact) result_.contact_queries = world_.contact->queries();
+    if (world_.contact) {
+      result_.contact_queries = world_.contact->queries();
+      result_.tunnelled = world_.contact->tunnelled();
+    }
     if (world_.limiter) result_.limited_ticks = world_.limiter->limited_ticks();
   }
 
   World& world_;
   const RunOptions& options_;
   RunResult result_;
-  device::HandleSample handle_;
   dynamics::LinearisedContact record_;
+  std::optional<MonolithicTicks> ticks_;  ///< where tool and bodies are one system
 };
 
 }  // namespace
 
 double period_of(const scene::Description& d) {
-  if (d.tool) return d.coupling.exchange_period_s;
+  if (d.tool && d.coupling.scheme != "monolithic") return d.coupling.exchange_period_s;
   if (!d.contacts.empty()) return d.coupling.contact_refresh_s;
   return d.record ? d.record->state_period_s : d.duration_s;
 }

@@ -70,10 +70,14 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
   s.values.emplace_back("step_s", d.integrator.step_s);
   s.values.emplace_back("linear_solver", d.integrator.linear_solver);
   if (!d.tool) return;
-  s.values.emplace_back("exchange_period_s", d.coupling.exchange_period_s);
+  const bool monolithic = d.coupling.scheme == "monolithic";
+  s.values.emplace_back("exchange_scheme", d.coupling.scheme);
   s.values.emplace_back("contact_refresh_s", d.coupling.contact_refresh_s);
-  s.values.emplace_back("linearisation", d.coupling.linearisation);
-  s.values.emplace_back("tool_integrator", d.tool->integrator);
+  if (!monolithic) {
+    s.values.emplace_back("exchange_period_s", d.coupling.exchange_period_s);
+    s.values.emplace_back("linearisation", d.coupling.linearisation);
+  }
+  s.values.emplace_back("tool_integrator", monolithic ? d.integrator.name : d.tool->integrator);
   s.values.emplace_back("max_force_n", d.device->max_force_n);
   s.values.emplace_back("max_torque_n_m", d.device->max_torque_n_m);
 }
@@ -102,6 +106,10 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   add_sizes(summary.section("sizes"), world);
   add_counts(summary.section("counts"), result);
   add_timings(summary.section("timings"), result, assemble_s);
+  for (std::size_t i = 0; i < result.tunnelled.size(); ++i) {  // vertices that went through unseen, for each [[contact]]
+    const ContactSpec& contact = world.description.contacts[i];
+    summary.section("tunnelled").values.emplace_back(contact.first + " - " + contact.second, static_cast<long long>(result.tunnelled[i]));
+  }
   for (const scene::Need& need : scene::needs(world.description)) summary.section(need.used ? "in_use" : "left_out").values.emplace_back(need.part, need.why);
   for (const auto& [name, value] : counters::snapshot()) summary.section("constructions").values.emplace_back(name, static_cast<long long>(value));
   return summary;

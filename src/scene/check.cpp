@@ -96,17 +96,37 @@ void check_period(const Document& doc, const std::string& key, const std::string
                                              where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, tick, n * tick, (n + 1.0) * tick));
 }
 
+/// A period that the run ends before: nothing would be exchanged in it.
+void check_length(const Document& doc, const std::string& key, const std::string& where, double period, double duration) {
+  if (period <= duration * (1.0 + 1e-9)) return;
+  refuse(place(doc, key), where, fmt::format("{} = {} is longer than the whole run of {} s; use at most {}, a tenth of it or less is usual",
+                                             where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, duration, duration));
+}
+
+void check_periods(const Document& doc, const Description& d) {
+  const CouplingSpec& c = d.coupling;
+  const bool own = given(doc, "exchange.exchange_period_s");
+  const double compared = d.compare.duration_s > 0.0 ? d.compare.duration_s : d.duration_s;
+  if (c.scheme != "monolithic") {
+    check_period(doc, own ? "exchange.exchange_period_s" : "tool.tick_s", "exchange", c.exchange_period_s, d.tool->tick_s);
+    check_length(doc, own ? "exchange.exchange_period_s" : "scene.duration_s", "exchange", c.exchange_period_s, d.duration_s);
+  }
+  for (std::size_t i = 0; i < d.compare.exchange_periods_s.size(); ++i) {
+    const std::string key = fmt::format("compare.exchange_periods_s[{}]", i);
+    check_length(doc, key, "compare", d.compare.exchange_periods_s[i], compared);
+  }
+}
+
 void check_exchange(const Document& doc, Description& d) {
   CouplingSpec& c = d.coupling;
   if (!given(doc, "exchange.contact_refresh_s")) c.contact_refresh_s = c.exchange_period_s;
-  if (d.tool) {
-    const bool own = given(doc, "exchange.exchange_period_s");
-    check_period(doc, own ? "exchange.exchange_period_s" : "tool.tick_s", "exchange", c.exchange_period_s, d.tool->tick_s);
-    for (std::size_t i = 0; i < d.compare.exchange_periods_s.size(); ++i)
-      check_period(doc, fmt::format("compare.exchange_periods_s[{}]", i), "compare", d.compare.exchange_periods_s[i], d.tool->tick_s);
-  } else if (!d.compare.exchange_periods_s.empty()) {
+  if (d.tool)
+    check_periods(doc, d);
+  else if (c.scheme == "monolithic")
+    refuse(place(doc, "exchange.scheme"), "exchange", "scheme = \"monolithic\" needs a tool: there is nothing to couple without one");
+  else if (!d.compare.exchange_periods_s.empty())
     refuse(place(doc, "compare.exchange_periods_s"), "compare", "exchange_periods_s needs a tool: nothing is exchanged without one");
-  }
+  if (c.scheme == "monolithic") return;  // contact is refreshed at a period of its own
   if (!is_multiple(c.exchange_period_s, c.contact_refresh_s))
     refuse(place(doc, "exchange.contact_refresh_s"), "exchange",
            fmt::format("contact_refresh_s = {} must be a whole fraction of exchange_period_s = {}; use {:.9g}", c.contact_refresh_s,

@@ -1,4 +1,5 @@
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "scene/check.h"
@@ -57,14 +58,24 @@ void check_method(const Document& doc, const std::string& key, const std::string
     refuse(place(doc, key + ".damping_pa_s_m"), where, "damping_pa_s_m means nothing to law = \"hunt_crossley\"; use hunt_crossley_s_m");
 }
 
+/// Keys of an obstacle, the types that know them, and whether those must have them.
+struct ShapeKey { const char* word; std::string_view types; bool needed; };
+constexpr ShapeKey kShapeKeys[] = {{"normal", "plane", false},
+                                   {"radius_m", "sphere cylinder", true},
+                                   {"length_m", "cylinder", true},
+                                   {"size_m", "box", true},
+                                   {"rotation_vector_rad", "box cylinder", false}};
+
 void check_obstacles(const Document& doc, Description& d) {
   for (std::size_t i = 0; i < d.obstacles.size(); ++i) {
     ObstacleSpec& o = d.obstacles[i];
     const std::string key = fmt::format("obstacle[{}]", i), where = fmt::format("obstacle \"{}\"", o.name);
     const bool plane = o.type == "plane";
-    const std::string idle = plane ? "radius_m" : "normal";
-    if (given(doc, key + "." + idle)) refuse(place(doc, key + "." + idle), where, fmt::format("{} means nothing to type = \"{}\"; remove it", idle, o.type));
-    if (!plane && !given(doc, key + ".radius_m")) refuse(place(doc, key), where, "radius_m is missing: type = \"sphere\" needs it");
+    for (const auto& [word, types, needed] : kShapeKeys) {
+      const bool has = given(doc, key + "." + word), fits = types.find(o.type) != std::string_view::npos;
+      if (has && !fits) refuse(place(doc, key + "." + word), where, fmt::format("{} means nothing to type = \"{}\"; remove it", word, o.type));
+      if (!has && fits && needed) refuse(place(doc, key), where, fmt::format("{} is missing: type = \"{}\" needs it", word, o.type));
+    }
     if (plane && o.normal.norm() < 1e-12) refuse(place(doc, key + ".normal"), where, "normal = [0, 0, 0] has no direction; [0, 0, 1] is up");
     if (plane) o.normal.normalize();
   }

@@ -8,10 +8,13 @@ namespace {
 const KeyTable<ObstacleSpec>& obstacle_keys() {
   static const KeyTable<ObstacleSpec> keys = {
       required(text("name", &ObstacleSpec::name)),
-      required(text("type", &ObstacleSpec::type, {"plane", "sphere"})),
+      required(text("type", &ObstacleSpec::type, {"plane", "sphere", "box", "cylinder"})),
       vec3("position_m", &ObstacleSpec::position_m),
       vec3("normal", &ObstacleSpec::normal),
+      vec3("rotation_vector_rad", &ObstacleSpec::rotation_vector_rad),
+      vec3("size_m", &ObstacleSpec::size_m, positive()),
       number("radius_m", &ObstacleSpec::radius_m, positive()),
+      number("length_m", &ObstacleSpec::length_m, positive()),
   };
   return keys;
 }
@@ -32,6 +35,7 @@ const KeyTable<ContactSpec>& contact_keys() {
       number("damping_pa_s_m", &ContactSpec::damping_pa_s_m, at_least(0.0)),
       number("hunt_crossley_s_m", &ContactSpec::hunt_crossley_s_m, at_least(0.0)),
       text("law", &ContactSpec::law, {"kelvin_voigt", "hunt_crossley"}),
+      number("onset_width_m", &ContactSpec::onset_width_m, at_least(0.0, "0 lets the pressure set in at once; a tenth of the depth is a smooth onset")),
       number("friction", &ContactSpec::friction, at_least(0.0)),
       number("friction_regularisation_m_s", &ContactSpec::friction_regularisation_m_s, positive()),
       number("candidate_gap_m", &ContactSpec::candidate_gap_m, at_least(0.0, "0 lets the mesh choose")),
@@ -80,7 +84,7 @@ const KeyTable<DeviceSpec>& device_keys() {
 
 const KeyTable<CouplingSpec>& exchange_keys() {
   static const KeyTable<CouplingSpec> keys = {
-      text("scheme", &CouplingSpec::scheme, {"partitioned"}),
+      text("scheme", &CouplingSpec::scheme, {"partitioned", "monolithic"}),
       text("linearisation", &CouplingSpec::linearisation, {"condensed", "frozen"}),
       number("exchange_period_s", &CouplingSpec::exchange_period_s, positive("5 to 20 ms is usual")),
       number("contact_refresh_s", &CouplingSpec::contact_refresh_s, positive()),

@@ -46,12 +46,17 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
 
 void add_haptic_needs(const Description& d, std::vector<Need>& out) {
   const bool tool = d.tool.has_value();
-  out.push_back({"tool", tool, tool ? fmt::format("[tool], {} under a virtual coupling", d.tool->shape) : "no [tool]; no Simbody system is made"});
+  out.push_back({"tool", tool, tool ? fmt::format("[tool], {} under a virtual coupling, {}", d.tool->shape, d.coupling.scheme) : "no [tool]; no Simbody system is made"});
   out.push_back({"device", d.device.has_value(), d.device ? fmt::format("[device], type \"{}\"", d.device->type) : "no [device]"});
-  const bool two_rates = tool && !d.bodies.empty();
+  const bool monolithic = tool && d.coupling.scheme == "monolithic", two_rates = tool && !monolithic && !d.bodies.empty();
+  const std::string one_system = "scheme \"monolithic\": tool and bodies are one system of one integrator";
   out.push_back({"exchange", two_rates, two_rates ? fmt::format("tool ticks every {} s, exchange every {} s", d.tool->tick_s, d.coupling.exchange_period_s)
-                                                  : "one rate only"});
-  out.push_back({"exchange thread", false, "time is virtual: the two rates take turns in one thread"});
+                                        : monolithic ? one_system : "one rate only"});
+  const bool touched = count_if(d.contacts, [](const auto& c) { return c.second == "tool"; }) > 0;
+  const bool condensed = two_rates && touched && d.coupling.linearisation == "condensed";
+  out.push_back({"condenser", condensed, condensed ? "linearisation \"condensed\": the bodies' step matrix is factored once an exchange"
+                                         : monolithic ? one_system : !touched ? "no contact with a tool" : "linearisation \"frozen\""});
+  out.push_back({"exchange thread", false, "time is virtual: everything takes turns in one thread"});
 }
 
 void add_output_needs(const Description& d, std::vector<Need>& out) {

@@ -1,15 +1,34 @@
 #include "palpate/study/exchange.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 
 namespace palpate::study {
 namespace {
 
-scene::Description with_exchange_period(scene::Description d, double period) {
-  d.coupling.exchange_period_s = d.coupling.contact_refresh_s = period;
+constexpr double kRtol = 1e-6;
+constexpr int kTicks = 10;  ///< in an exchange period
+
+/// The longest time that every period is a multiple of: a whole fraction of the shortest.
+double common_refresh(const std::vector<double>& periods) {
+  const double shortest = *std::min_element(periods.begin(), periods.end());
+  for (int parts = 1; parts <= 1000; ++parts) {
+    const double refresh = shortest / parts;
+    if (std::all_of(periods.begin(), periods.end(), [&](double p) { return std::abs(p / refresh - std::round(p / refresh)) < 1e-6; })) return refresh;
+  }
+  fail("compare: exchange_periods_s have no common divisor to refresh the contact at; use multiples of the shortest, {} s", shortest);
+}
+
+scene::Description with_scheme(scene::Description d, const std::string& scheme, double period, double refresh) {
+  d.coupling.scheme = scheme;
+  d.coupling.exchange_period_s = period;
+  d.coupling.contact_refresh_s = refresh;
+  d.tool->tick_s = period / kTicks;
   d.integrator.name = "cvode-bdf";
-  d.integrator.rtol = 1e-5;
+  d.integrator.rtol = kRtol;
   return d;
 }
 
@@ -25,14 +44,17 @@ std::vector<ExchangePoint> compare_exchange(const scene::Description& d, const E
   const auto done = [&](const std::string& what) {
     if (options.done) options.done(what);
   };
-  const Run truth = run_once(with_exchange_period(d, d.tool->tick_s), d.compare.duration_s, options.stop);
+  const std::vector<double>& periods = d.compare.exchange_periods_s;
+  const double refresh = common_refresh(periods), shortest = *std::min_element(periods.begin(), periods.end());
+  const scene::Description& whole = options.truth ? *options.truth : d;
+  const Run truth = run_once(with_scheme(whole, "monolithic", shortest, refresh), d.compare.duration_s, options.stop);
   if (truth.result.stopped) return out;
   const bool comparable = truth.result.status.ok();
-  if (!comparable) log::warn("the exchange period has no truth to be held against: the run with a period of one tick failed: {}", truth.result.status.message);
-  done("exchange period of one tick");
-  for (double period : d.compare.exchange_periods_s) {
+  if (!comparable) log::warn("the exchange period has no truth to be held against: the monolithic run failed: {}", truth.result.status.message);
+  done("monolithic");
+  for (double period : periods) {
     if (options.stop && options.stop->load()) return out;
-    const Run run = run_once(with_exchange_period(d, period), d.compare.duration_s, options.stop);
+    const Run run = run_once(with_scheme(d, "partitioned", period, refresh), d.compare.duration_s, options.stop);
     done(fmt::format("exchange period {:g} s", period));
     if (run.result.stopped) return out;
     const bool ok = comparable && run.result.status.ok();

@@ -55,7 +55,7 @@ class LinearlyImplicitEuler : public TickScheme {
     const TickInput held = with_handle_held(input, input.handle.pose1, input.handle.twist1);
     const Vec6 u0 = stacked(motion.twist);
     const Mat6 M = body_.mass_matrix(motion.pose);
-    const Vec6 f0 = M * body_.acceleration(input.t0, motion, held);
+    const Vec6 f0 = M * body_.acceleration(input.t0 + h, motion, held);  // the record's own time, too, is the tick's end
 
     const Mat6 K = coupling_stiffness(input.gains, motion.pose, input.handle.pose1) + contact_stiffness(input.contact, motion.pose);
     Mat6 B = coupling_damping(input.gains) + contact_damping(input.contact);

@@ -38,7 +38,7 @@ RigidMotion handle_at(const TickInput& input, double t) {
 }
 
 Vec6 applied_wrench(const TickInput& input, double t, const RigidMotion& tool) {
-  return coupling_wrench(input.gains, tool, handle_at(input, t)) + dynamics::contact_wrench(input.contact, tool.pose, tool.twist);
+  return coupling_wrench(input.gains, tool, handle_at(input, t)) + dynamics::contact_wrench(input.contact, t, tool.pose, tool.twist);
 }
 
 TickInput with_handle_held(const TickInput& input, const Pose& pose, const Twist& twist) {
@@ -55,7 +55,7 @@ bool is_finite(const TickInput& input) {
   const HandleMotion& m = input.handle;
   const dynamics::LinearisedContact& c = input.contact;
   const bool handle = is_finite(RigidMotion{m.pose0, m.twist0}) && is_finite(RigidMotion{m.pose1, m.twist1});
-  return handle && all_finite(c.x0) && all_finite(c.v0) && all_finite(c.F0) && all_finite(c.J) && all_finite(c.B);
+  return handle && all_finite(c.x0) && all_finite(c.v0) && all_finite(c.F0) && all_finite(c.F1) && all_finite(c.J) && all_finite(c.B);
 }
 
 }  // namespace palpate::tool

@@ -1,31 +1,14 @@
 #include "palpate/tool/rigid_block.h"
 
-#include "coupling.h"
 #include "palpate/core/error.h"
 #include "parameters.h"
+#include "rigid_force.h"
 
 namespace palpate::tool {
 namespace {
 
 using dynamics::BorderedMatrix;
 using dynamics::StateView;
-
-const dynamics::Block& block_of(const StateView& state, int id) {
-  const dynamics::Block* block = state.layout->find(id);
-  PALPATE_CHECK(block && block->q_size == 7 && block->u_size == 6, "block {} is no free rigid body", id);
-  return *block;
-}
-
-/// A trial state's quaternion is not unit to rounding: the rotation is that of its direction.
-RigidMotion motion_of(const StateView& state, const dynamics::Block& block) {
-  const auto q = state.q.segment<7>(block.q_offset);
-  return {{Quat(q[0], q[1], q[2], q[3]).normalized(), q.tail<3>()}, twist_of(state.u.segment<6>(block.u_offset))};
-}
-
-Mat3 world_inertia(const Pose& pose, const Vec3& inertia) {
-  const Mat3 R = pose.rotation.toRotationMatrix();
-  return R * inertia.asDiagonal() * R.transpose();
-}
 
 class RigidInertia : public dynamics::InertiaTerm {
  public:
@@ -35,13 +18,13 @@ class RigidInertia : public dynamics::InertiaTerm {
   int block_id() const override { return block_id_; }
   bool diagonal() const override { return false; }
   void add_mass(const StateView& state, double scale, BorderedMatrix& A) const override {
-    const auto& block = block_of(state, block_id_);
+    const auto& block = rigid_block_of(state, block_id_);
     const int at = block.u_offset - state.layout->nodal_size;
     A.corner.block<3, 3>(at, at) += scale * world_inertia(motion_of(state, block).pose, inertia_);
     A.corner.diagonal().segment<3>(at + 3).array() += scale * mass_;
   }
   void apply(const StateView& state, const VecX& x, VecX& y) const override {
-    const auto& block = block_of(state, block_id_);
+    const auto& block = rigid_block_of(state, block_id_);
     y.segment<3>(block.u_offset) += world_inertia(motion_of(state, block).pose, inertia_) * x.segment<3>(block.u_offset);
     y.segment<3>(block.u_offset + 3) += mass_ * x.segment<3>(block.u_offset + 3);
   }
@@ -52,36 +35,6 @@ class RigidInertia : public dynamics::InertiaTerm {
   Vec3 inertia_;
 };
 
-/// A force on one rigid block alone: its six rows, K and D its own 6x6.
-class RigidForce : public dynamics::ForceTerm {
- public:
-  explicit RigidForce(int block_id) : block_id_(block_id) {}
-  virtual Vec6 force(double t, const RigidMotion& motion) const = 0;
-  virtual Mat6 tangent(double t, const RigidMotion& motion, double k_scale, double d_scale) const = 0;
-
-  void add_force(const StateView& state, VecX& f) override {
-    const auto& block = block_of(state, block_id_);
-    f.segment<6>(block.u_offset) += force(state.time, motion_of(state, block));
-  }
-  void add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) override {
-    const auto& block = block_of(state, block_id_);
-    const int at = block.u_offset - state.layout->nodal_size;
-    A.corner.block<6, 6>(at, at) += tangent(state.time, motion_of(state, block), k_scale, d_scale);
-  }
-  void apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) override {
-    const auto& block = block_of(state, block_id_);
-    y.segment<6>(block.u_offset) += tangent(state.time, motion_of(state, block), k_scale, d_scale) * x.segment<6>(block.u_offset);
-  }
-
- protected:
-  RigidMotion motion(const StateView& state) const { return motion_of(state, block_of(state, block_id_)); }
-
- private:
-  int block_id_;
-};
-
-// f = -w x I w with I = R I0 R^T.  By velocity: D = -df/dw = [w] I - [I w].  A turn e of the body takes I to I + [e] I - I [e], so
-// d(I w) = e x I w - I (e x w) = (I [w] - [I w]) e, and K = -df/de = [w] (I [w] - [I w]).
 class Gyroscopic : public RigidForce {
  public:
   Gyroscopic(int block_id, const Vec3& inertia, bool tangent) : RigidForce(block_id), inertia_(inertia), tangent_(tangent) {
@@ -95,11 +48,7 @@ class Gyroscopic : public RigidForce {
     return f;
   }
   Mat6 tangent(double, const RigidMotion& m, double k_scale, double d_scale) const override {
-    Mat6 A = Mat6::Zero();
-    if (!tangent_) return A;
-    const Mat3 I = world_inertia(m.pose, inertia_), w = cross_matrix(m.twist.angular), L = cross_matrix(I * m.twist.angular);
-    A.topLeftCorner<3, 3>() = d_scale * (w * I - L) + k_scale * w * (I * w - L);
-    return A;
+    return tangent_ ? gyroscopic_tangent(m, inertia_, k_scale, d_scale) : Mat6(Mat6::Zero());
   }
 
  private:
@@ -167,6 +116,10 @@ std::shared_ptr<dynamics::ForceTerm> make_gyroscopic(int block_id, const Vec3& i
 }
 std::shared_ptr<dynamics::ForceTerm> make_rigid_weight(int block_id, double mass, const Vec3& gravity) {
   return std::make_shared<Weight>(block_id, mass, gravity);
+}
+Wrench coupling_on_hand(const ToolSpec& spec, const HandleState& tool, const HandleState& handle) {
+  const Wrench on_tool = wrench_of(coupling_wrench(coupling_gains(spec), {tool.pose, tool.twist}, {handle.pose, handle.twist}));
+  return {-on_tool.moment, -on_tool.force};
 }
 std::shared_ptr<dynamics::ForceTerm> make_coupling_term(int block_id, const ToolSpec& spec, HandlePath handle, bool symmetric) {
   return std::make_shared<CouplingTerm>(block_id, coupling_gains(spec), std::move(handle), symmetric);

@@ -83,6 +83,36 @@ Vec6 SimbodyBody::acceleration(double t, const RigidMotion& motion, const TickIn
   return out;
 }
 
+Mat6 SimbodyBody::calc_mass(const RigidMotion& motion) {
+  write(state_, 0.0, motion);
+  system_.realize(state_, SimTK::Stage::Position);
+  matter_.calcM(state_, mass_);
+  Mat6 M;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) M(i, j) = mass_(i, j);
+  return M;
+}
+
+// Inverse dynamics gives the residual r = M u' + C(q, u) - f_applied; at u' = 0 the right-hand side of M u' = f is -r.
+Vec6 SimbodyBody::calc_force(double t, const RigidMotion& motion) {
+  write(state_, t, motion);
+  force_->set(state_, {});
+  system_.realize(state_, SimTK::Stage::Dynamics);
+  zero_.resize(6);
+  zero_.setToZero();
+  matter_.calcResidualForceIgnoringConstraints(state_, zero_, system_.getRigidBodyForces(state_, SimTK::Stage::Dynamics), zero_, residual_);
+  Vec6 f;
+  for (int i = 0; i < 6; ++i) f[i] = -residual_[i];
+  return f;
+}
+
+double SimbodyBody::calc_potential_energy(const RigidMotion& motion) {
+  write(state_, 0.0, motion);
+  force_->set(state_, {});
+  system_.realize(state_, SimTK::Stage::Dynamics);
+  return system_.calcPotentialEnergy(state_);
+}
+
 Mat6 SimbodyBody::mass_matrix(const Pose& pose) const {
   const Mat3 R = pose.rotation.toRotationMatrix();
   Mat6 M = Mat6::Zero();

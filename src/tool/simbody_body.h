@@ -25,6 +25,11 @@ class SimbodyBody {
 
   /// u' at a time and motion under an input, by Simbody's forward dynamics (coupling, contact, gravity, gyroscopic terms).
   Vec6 acceleration(double t, const RigidMotion& motion, const TickInput& input);
+  /// M of M u' = f at a pose, by Simbody's calcM.
+  Mat6 calc_mass(const RigidMotion& motion);
+  /// f without coupling and contact: gyroscopic forces and weight, minus what Simbody's inverse dynamics asks for u' = 0.
+  Vec6 calc_force(double t, const RigidMotion& motion);
+  double calc_potential_energy(const RigidMotion& motion);  ///< of the weight [J]
   /// diag(R I R^T, m), world axes, angular first.
   Mat6 mass_matrix(const Pose& pose) const;
 
@@ -37,7 +42,9 @@ class SimbodyBody {
   SimTK::GeneralForceSubsystem forces_;
   SimTK::MobilizedBody::Free body_;
   TickForce* force_ = nullptr;  ///< owned by forces_
-  SimTK::State state_;          ///< scratch of acceleration()
+  SimTK::State state_;          ///< scratch
+  SimTK::Matrix mass_;          ///< scratch
+  SimTK::Vector zero_, residual_;  ///< scratch
 };
 
 }  // namespace palpate::tool

@@ -94,6 +94,11 @@ double Tool::kinetic_energy() const {
   return 0.5 * u.dot(mass_matrix() * u);
 }
 
+double Tool::potential_energy(const Pose& handle) const {
+  const RigidParameters& p = impl_->body.parameters();
+  return coupling_energy(impl_->input.gains, impl_->motion.pose, handle) - p.mass * p.gravity.dot(impl_->motion.pose.translation);
+}
+
 std::string simbody_version() { return PALPATE_SIMBODY_VERSION; }
 
 }  // namespace palpate::tool

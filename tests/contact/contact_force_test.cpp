@@ -138,22 +138,76 @@ TEST(ContactForce, RefreshReportsWhetherTheForceChanged) {
   EXPECT_GE(term.query_seconds(), 0.0);
 }
 
-TEST(ContactForce, EventIsTheSmallestGapOfEachPair) {
-  World world(3, false, 8);
+// One root function a sample: its sign tells whether it presses, for any gap and rate, also where a damper is cut off while the gap is still closed.
+TEST(ContactForce, EventsChangeSignExactlyWhereASampleOpensOrCloses) {
+  int pressing = 0, parting = 0, apart = 0;
+  for (const char* law : {"kelvin_voigt", "hunt_crossley"})
+    for (const double damping : {0.0, 5e3}) {
+      ContactSpec contact_spec = spec();
+      contact_spec.law = law;
+      contact_spec.damping_pa_s_m = contact_spec.law == "kelvin_voigt" ? damping : 0.0;
+      contact_spec.hunt_crossley_s_m = contact_spec.law == "hunt_crossley" ? damping / 1e3 : 0.0;
+      World world(2, false, 8);
+      contact::ContactForce term;
+      term.add_frame(contact::fixed_frame());
+      const auto sample = [&](int node) { return on_frame(node_point({node}, {1.0}), 0, Pose{}, {0, 0, 1}, -0.1, 0.1, world.state); };
+      term.add_pair(std::make_unique<ListSource>(std::vector{sample(0), sample(1)}), contact_spec);
+      term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{}), contact_spec);
+      term.refresh(world.state.view());
+      ASSERT_EQ(term.event_count(), 2) << "one a sample, none for a pair without";
+      const double z0 = world.state.q()[2], z1 = world.state.q()[5];
+      double g[2];
+      for (int i = -10; i <= 10; ++i)
+        for (int j = -10; j <= 10; ++j) {
+          const double gap = 0.011 * i + 1e-4, rate = 0.2 * j + 0.01;
+          world.state.q()[2] = z0 - 0.1 + gap;
+          world.state.q()[5] = z1 - 0.1 - gap;  // the other sample stands the other way
+          world.state.u()[2] = world.state.u()[5] = rate;
+          term.events(world.state.view(), g);
+          for (int k = 0; k < 2; ++k) {
+            const double own = k == 0 ? gap : -gap, p = contact::pressure(contact_spec, own, rate).p;
+            EXPECT_EQ(g[k] < 0.0, p > 0.0) << law << " gap " << own << " rate " << rate;
+            (p > 0.0 ? pressing : own < 0.0 ? parting : apart) += 1;
+          }
+        }
+    }
+  EXPECT_GT(pressing, 300);
+  EXPECT_GT(parting, 50) << "cut off with the gap closed";
+  EXPECT_GT(apart, 300);
+}
+
+TEST(ContactForce, EventsAreContinuousAndStandForTheSamplesBetweenTwoQueries) {
+  ContactSpec contact_spec = spec();
+  World world(1, false, 8);
   contact::ContactForce term;
   term.add_frame(contact::fixed_frame());
-  const auto sample = [&](int node, double depth) { return on_frame(node_point({node}, {1.0}), 0, Pose{}, {0, 0, 1}, depth, 0.1, world.state); };
-  term.add_pair(std::make_unique<ListSource>(std::vector{sample(0, -0.3), sample(1, -0.1)}), spec());
-  term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{}), spec());
+  term.add_pair(std::make_unique<ListSource>(std::vector{on_frame(node_point({0}, {1.0}), 0, Pose{}, {0, 0, 1}, -0.1, 0.1, world.state)}), contact_spec);
+  EXPECT_EQ(term.event_count(), 0) << "before the first query";
   term.refresh(world.state.view());
-  ASSERT_EQ(term.event_count(), 2);
-  double g[2];
-  term.events(world.state.view(), g);
-  EXPECT_NEAR(g[0], 0.1, 1e-15);
-  EXPECT_GT(g[1], 0.0);
-  world.state.q()[5] -= 0.25;  // node 1 down
-  term.events(world.state.view(), g);
-  EXPECT_NEAR(g[0], -0.15, 1e-15);
+  EXPECT_EQ(term.event_count(), 1);
+  const double z0 = world.state.q()[2];
+  double before = 0.0;
+  for (int i = 0; i <= 2000; ++i) {
+    world.state.q()[2] = z0 - 1e-4 * i;  // from 0.1 above to 0.1 below
+    world.state.u()[2] = std::sin(0.01 * i);
+    double g;
+    term.events(world.state.view(), &g);
+    if (i == 0) before = g;
+    EXPECT_LT(std::abs(g - before), 1e-3 + 0.01 * contact_spec.damping_pa_s_m / contact_spec.stiffness_pa_m);
+    before = g;
+  }
+  EXPECT_EQ(term.event_count(), 1) << "constant between two queries";
+}
+
+TEST(ContactForce, AnOnsetLeavesNothingToFind) {
+  ContactSpec smooth = spec();
+  smooth.onset_width_m = 1e-3;
+  World world(1, false, 8);
+  contact::ContactForce term;
+  term.add_frame(contact::fixed_frame());
+  term.add_pair(std::make_unique<ListSource>(std::vector{on_frame(node_point({0}, {1.0}), 0, Pose{}, {0, 0, 1}, -0.1, 0.1, world.state)}), smooth);
+  term.refresh(world.state.view());
+  EXPECT_EQ(term.event_count(), 0);
 }
 
 TEST(ContactForce, FrameGivenByTimeMovesTheGapAndItsRate) {

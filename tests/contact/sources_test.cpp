@@ -91,6 +91,159 @@ TEST(SphereSource, VertexAtTheCentreStaysFinite) {
   EXPECT_NEAR(samples[0].gap, -0.5, 1e-15);
 }
 
+namespace {
+
+/// Distance to a solid by brute force: the least over a fine grid of its surface, with the sign of `inside`.
+template <class Surface>
+double sampled_distance(const Vec3& x, bool inside, const Surface& surface) {
+  double least = 1e30;
+  surface([&](const Vec3& p) { least = std::min(least, (x - p).norm()); });
+  return inside ? -least : least;
+}
+
+/// Random points as a soft surface: one triangle each would be needed for areas, so the samples are asked for by their gap alone.
+TriMesh scattered(int count, double reach, const Vec3& toward) {
+  std::mt19937 random(5);
+  TriMesh mesh;
+  mesh.vertices.resize(3, 3 * count);
+  mesh.faces.resize(3, count);
+  for (int i = 0; i < count; ++i) {
+    const Vec3 x = reach * vector(random), side = toward.unitOrthogonal(), other = toward.cross(side);
+    mesh.vertices.col(3 * i) = x;
+    mesh.vertices.col(3 * i + 1) = x + 1e-3 * side;
+    mesh.vertices.col(3 * i + 2) = x + 1e-3 * other;
+    mesh.faces.col(i) << 3 * i, 3 * i + 1, 3 * i + 2;
+  }
+  return mesh;
+}
+
+/// Every sample: a's gap is the distance to the solid, b lies on its surface, the normal is the gap's gradient.
+template <class Surface, class Inside>
+int check_solid(contact::SampleSource& source, const SurfaceWorld& world, const Pose& frame, const Pose& place, Surface surface, Inside inside, double grid) {
+  std::vector<contact::ContactSample> samples;
+  source.query(world.state.view(), samples);
+  for (const auto& s : samples) {
+    const Vec3 xa = position_of(s.a, world.state, frame), xb = position_of(s.b, world.state, frame), local = (frame * place).inverse() * xa;
+    EXPECT_NEAR(s.gap, sampled_distance(local, inside(local), surface), grid) << local.transpose();
+    EXPECT_NEAR(s.gap, s.normal.dot(xa - xb), 1e-12);
+    EXPECT_NEAR(s.normal.norm(), 1.0, 1e-12);
+    EXPECT_LT((xa - xb).cross(s.normal).norm(), 1e-12);
+    EXPECT_LT(std::abs(sampled_distance((frame * place).inverse() * xb, false, surface)), grid) << "b is on the surface";
+  }
+  return static_cast<int>(samples.size());
+}
+
+}  // namespace
+
+TEST(BoxSource, GapsAreDistances) {
+  const Pose frame{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)}, place{quaternion_of(Vec3(-0.2, 0.7, 0.1)), Vec3(0.1, 0.2, -0.1)};
+  const Vec3 half(0.3, 0.5, 0.2);
+  const auto surface = [&](auto visit) {
+    constexpr int n = 40;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side : {-1, 1})
+        for (int i = 0; i <= n; ++i)
+          for (int j = 0; j <= n; ++j) {
+            Vec3 p;
+            p[axis] = side * half[axis];
+            p[(axis + 1) % 3] = half[(axis + 1) % 3] * (2.0 * i / n - 1.0);
+            p[(axis + 2) % 3] = half[(axis + 2) % 3] * (2.0 * j / n - 1.0);
+            visit(p);
+          }
+  };
+  int seen = 0;
+  for (const Vec3& toward : {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitX()), Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitZ())}) {
+    SurfaceWorld world(scattered(60, 0.9, toward));
+    auto source = contact::make_box_source(world.surface, 0, contact::fixed_frame(frame), place, 2.0 * half, 2.0);
+    seen += check_solid(*source, world, frame, place, surface, [&](const Vec3& x) { return (x.cwiseAbs().array() <= half.array()).all(); }, 0.02);
+  }
+  EXPECT_GT(seen, 200);
+}
+
+TEST(CylinderSource, GapsAreDistances) {
+  const Pose frame{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)}, place{quaternion_of(Vec3(-0.2, 0.7, 0.1)), Vec3(0.1, 0.2, -0.1)};
+  const double radius = 0.3, half = 0.4;
+  const auto surface = [&](auto visit) {
+    constexpr int n = 120;
+    for (int i = 0; i < n; ++i) {
+      const double phi = 2 * kPi * i / n, c = std::cos(phi), s = std::sin(phi);
+      for (int j = 0; j <= 40; ++j) {
+        visit(Vec3(radius * c, radius * s, half * (j / 20.0 - 1.0)));
+        for (int side : {-1, 1}) visit(Vec3(radius * c * j / 40.0, radius * s * j / 40.0, side * half));
+      }
+    }
+  };
+  int seen = 0;
+  for (const Vec3& toward : {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitX()), Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitZ())}) {
+    SurfaceWorld world(scattered(60, 0.9, toward));
+    auto source = contact::make_cylinder_source(world.surface, 0, contact::fixed_frame(frame), place, radius, 2 * half, 2.0);
+    seen += check_solid(*source, world, frame, place, surface, [&](const Vec3& x) { return std::hypot(x.x(), x.y()) <= radius && std::abs(x.z()) <= half; }, 0.02);
+  }
+  EXPECT_GT(seen, 200);
+}
+
+namespace {
+
+/// Vertices that are counted when a small triangle's three vertices go from one place to another between two queries.
+long counted(contact::SampleSource& source, SurfaceWorld& world, const Vec3& from, const Vec3& to) {
+  const auto at = [&](const Vec3& x) {
+    std::vector<contact::ContactSample> samples;
+    for (int i = 0; i < 3; ++i) world.state.q().segment<3>(6 + 3 * i) = x + 1e-4 * Vec3::Unit(i);
+    source.query(world.state.view(), samples);
+  };
+  at(from);
+  const long before = source.tunnelled();
+  at(to);
+  return source.tunnelled() - before;
+}
+
+}  // namespace
+
+TEST(Tunnelling, WhatGoesThroughUnseenIsCountedAndNothingElse) {
+  TriMesh one;
+  one.vertices = Points::Zero(3, 3);
+  one.faces.resize(3, 1);
+  one.faces << 0, 1, 2;
+  const auto frame = contact::fixed_frame();
+  struct Shape {
+    std::unique_ptr<contact::SampleSource> source;
+    Vec3 above, inside, below, beside;
+  };
+  SurfaceWorld world(one);
+  std::vector<Shape> shapes;
+  shapes.push_back({contact::make_box_source(world.surface, 0, frame, {}, Vec3(2, 2, 0.02), 0.01), {0.1, 0.2, 0.5}, {0.1, 0.2, 0}, {0.3, 0.1, -0.4}, {3, 0, -0.5}});
+  shapes.push_back({contact::make_sphere_source(world.surface, 0, frame, Vec3::Zero(), 0.1, 0.01), {0.02, 0, 0.5}, {0, 0.02, 0}, {0, 0.03, -0.4}, {1.5, 0, -0.5}});
+  shapes.push_back({contact::make_cylinder_source(world.surface, 0, frame, {quaternion_of(Vec3(kPi / 2, 0, 0)), Vec3::Zero()}, 0.05, 2.0, 0.01),
+                    {0.01, 0.2, 0.5}, {0, 0.2, 0.01}, {-0.01, 0.3, -0.4}, {1.5, 0, -0.5}});
+  for (Shape& s : shapes) {
+    EXPECT_EQ(counted(*s.source, world, s.above, s.below), 3) << s.source->name();
+    EXPECT_EQ(counted(*s.source, world, s.below, s.above), 3) << s.source->name() << ", back again";
+    EXPECT_EQ(counted(*s.source, world, s.above, s.inside), 0) << s.source->name() << ": seen, it is inside";
+    EXPECT_EQ(counted(*s.source, world, s.inside, s.below), 0) << s.source->name() << ": it was seen inside";
+    EXPECT_EQ(counted(*s.source, world, s.above, s.beside), 0) << s.source->name() << ": it passes by";
+    EXPECT_EQ(counted(*s.source, world, s.above, s.above), 0) << s.source->name() << ": it stands still";
+  }
+  auto plane = contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 0.01);
+  EXPECT_EQ(counted(*plane, world, {0, 0, 1}, {0, 0, -1}), 0) << "behind a plane is inside";
+}
+
+// The obstacle, too, may be what moves.
+TEST(Tunnelling, IsSeenFromTheFrameThatMoves) {
+  TriMesh one;
+  one.vertices = Points::Zero(3, 3);
+  one.faces.resize(3, 1);
+  one.faces << 0, 1, 2;
+  SurfaceWorld world(one);
+  auto frame = std::make_shared<contact::TrajectoryFrame>();
+  frame->append(0.0, {Quat::Identity(), Vec3(0, 0, -1)}, {Vec3::Zero(), Vec3(0, 0, 2)});
+  auto source = contact::make_box_source(world.surface, 0, frame, {}, Vec3(1, 1, 0.01), 0.01);
+  std::vector<contact::ContactSample> samples;
+  source->query(world.state.view(), samples);
+  world.state.set_time(1.0);
+  source->query(world.state.view(), samples);
+  EXPECT_EQ(source->tunnelled(), 3);
+}
+
 TEST(Sources, BadInputIsRefused) {
   SurfaceWorld world(sphere(Vec3::Zero(), 1.0, 4));
   const auto frame = contact::fixed_frame();
@@ -104,6 +257,8 @@ TEST(Sources, BadInputIsRefused) {
   };
   EXPECT_NE(message([&] { contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::Zero(), 0.1); }).find("has no direction"), std::string::npos);
   EXPECT_NE(message([&] { contact::make_sphere_source(world.surface, 0, frame, Vec3::Zero(), -1.0, 0.1); }).find("radius = -1 must be positive"), std::string::npos);
+  EXPECT_NE(message([&] { contact::make_box_source(world.surface, 0, frame, {}, Vec3(1, 0, 1), 0.1); }).find("must be positive"), std::string::npos);
+  EXPECT_NE(message([&] { contact::make_cylinder_source(world.surface, 0, frame, {}, 1.0, -2.0, 0.1); }).find("length = -2 must be positive"), std::string::npos);
   EXPECT_NE(message([&] { contact::make_plane_source(world.surface, 0, nullptr, Vec3::Zero(), Vec3::UnitZ(), 0.1); }).find("needs a frame"), std::string::npos);
   EXPECT_NE(message([&] { contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), -0.1); }).find("must not be negative"), std::string::npos);
   contact::NodeSurface bad = world.surface;

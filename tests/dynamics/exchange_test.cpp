@@ -56,7 +56,7 @@ TEST(Exchange, FitsAnyPlainRecord) {  // a second client of the interface: a bar
 
 TEST(LinearisedContact, IsLinearInPoseAndTwistAboutItsRecord) {
   LinearisedContact r = marked(1);
-  EXPECT_EQ(contact_wrench(r, {}, {}).norm(), 0.0) << "a record made from nothing pushes nothing";
+  EXPECT_EQ(contact_wrench(r, 0.0, {}, {}).norm(), 0.0) << "a record made from nothing pushes nothing";
   r.source = LinearisedContact::Source::kFrozen;
   r.F0 = {0, 0, 0, 0, 0, 2};
   r.J.fill(0);
@@ -68,7 +68,7 @@ TEST(LinearisedContact, IsLinearInPoseAndTwistAboutItsRecord) {
   Twist twist;
   twist.linear = Vec3(0, 0, 0.5);
   r.v0 = {0, 0, 0, 0, 0, 0.25};
-  const Vec6 w = contact_wrench(r, pose, twist);
+  const Vec6 w = contact_wrench(r, 3.25, pose, twist);
   EXPECT_NEAR(w[5], 2 - 1 - 1, 1e-12);
   EXPECT_NEAR(w[0], -0.6, 1e-12);
 }

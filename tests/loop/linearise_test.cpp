@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include "loop/small_scenes.h"
+#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 #ifdef PALPATE_HAS_TOOL
@@ -75,15 +78,162 @@ TEST(Linearise, AShortPeriodLeavesTheBodiesNoTimeToAnswer) {
   EXPECT_LT((frozen - condensed).norm(), 1e-6 * frozen.norm());
 }
 
-TEST(Linearise, RecordRepeatsTheContactAtItsOwnPose) {
+TEST(Linearise, FrozenRecordRepeatsTheContactAtItsOwnPose) {
   long fallbacks = 0;
-  const auto world = touching("condensed");
+  const auto world = touching("frozen");
   const dynamics::LinearisedContact record = loop::linearise_contact(*world, 7, 0.01, fallbacks);
   EXPECT_EQ(record.version, 7u);
-  const Vec6 w = dynamics::contact_wrench(record, world->tool->pose(), world->tool->twist());
+  const Vec6 w = dynamics::contact_wrench(record, record.time, world->tool->pose(), world->tool->twist());
   const Wrench exact = world->contact->frame_wrench(world->state.view(), world->tool_frame_index);
   EXPECT_LT((w.tail<3>() - exact.force).norm(), 1e-14 * exact.force.norm());
   EXPECT_GT(exact.force.z(), 0.0) << "the block pushes the tool up";
+}
+
+/// The pressed block in balance with the tool, on a floor that moves, and then struck: every part of the derivation is at work, and the changes
+/// over one period are small enough for no sample to open or close.
+struct Struck {
+  std::unique_ptr<loop::World> world;
+  VecX q, u;
+  double t0 = 0.0;
+  Pose x0;
+
+  Struck() {
+    scene::Description d = pressed_block(0.002);
+    d.contacts[0].damping_pa_s_m = 2e4;
+    KeyframeSpec start, end;
+    end.time_s = 3.0;
+    end.position_m = Vec3(2e-4, -1e-4, 3e-4);
+    end.interpolation = "linear";
+    d.bodies[0].attachments[0].keyframes = {start, end};
+    world = loop::assemble(d);
+    loop::RunOptions options;
+    options.duration_s = 1.5;
+    EXPECT_TRUE(loop::run(*world, options).status.ok());
+    x0 = world->tool->pose();
+    t0 = world->state.time();
+    hold(x0, {}, t0);
+    world->contact->refresh(world->state.view());
+    u = world->state.u();
+    for (Eigen::Index i = 0; i < u.size(); ++i) u[i] += 1e-5 * std::sin(1.0 + 7.0 * static_cast<double>(i));
+    q = world->state.q();
+    world->system.impose(world->state.layout(), t0, q.data(), u.data());
+    back();
+  }
+  void hold(const Pose& pose, const Twist& twist, double t) {
+    world->tool_frame->clear();
+    world->tool_frame->append(t, pose, twist);
+  }
+  void back() {
+    hold(x0, {}, t0);
+    world->tool->set_state(t0, x0, {});
+    world->state.set_time(t0);
+    world->state.q() = q;
+    world->state.u() = u;
+    world->stepper->reinit(dynamics::ReinitReason::kStateChanged);
+  }
+  Vec6 wrench() const {
+    const Wrench w = world->contact->frame_wrench(world->state.view(), world->tool_frame_index);
+    Vec6 out;
+    out << w.moment, w.force;
+    return out;
+  }
+  /// After one linearly implicit step of H, at whose end the tool is displaced by dx and moves with dv.
+  Vec6 after_step(double H, const Vec6& dx, const Vec6& dv) {
+    back();
+    const Pose moved{quaternion_of(dx.head<3>()) * x0.rotation, x0.translation + dx.tail<3>()};
+    hold(moved, {dv.head<3>(), dv.tail<3>()}, t0 + H);
+    world->stepper->advance_to(t0 + H);
+    return wrench();
+  }
+};
+
+// The bodies' own motion, which the record lacked: velocities, forces out of balance, driven nodes and damping, after a tick and after the period.
+TEST(Linearise, CondensedRecordIsTheWrenchAfterOneImplicitStepOfMovingBodies) {
+  Struck s;
+  const double H = 0.01, tick = s.world->description.tool->tick_s;
+  long fallbacks = 0;
+  const dynamics::LinearisedContact record = loop::linearise_contact(*s.world, 1, H, fallbacks);
+  ASSERT_EQ(record.source, dynamics::LinearisedContact::Source::kCondensed);
+  const Vec6 now = s.wrench();
+  for (const double h : {tick, H}) {
+    const Vec6 expected = s.after_step(h, Vec6::Zero(), Vec6::Zero());
+    const Vec6 got = dynamics::contact_wrench(record, s.t0 + h, s.x0, {});
+    const double change = (expected - now).norm();
+    ASSERT_GT(change, 1e-6 * now.norm()) << "the bodies move";
+    EXPECT_LT((got - expected).norm(), 1e-6 * change) << "after " << h << " s";
+  }
+}
+
+// The same with the tool moved: one step of the coupled system, linear in where the tool ends.
+TEST(Linearise, CondensedRecordFollowsTheToolsDisplacementAndTwist) {
+  Struck s;
+  const double H = 0.01, e = 1e-8;
+  long fallbacks = 0;
+  const dynamics::LinearisedContact record = loop::linearise_contact(*s.world, 1, H, fallbacks);
+  int checked = 0;
+  for (int k = 0; k < 12; ++k, ++checked) {
+    const double scale = k % 6 < 3 ? 1.0 / 0.015 : 1.0;  // radians for metres at the tool's surface
+    Vec6 dx = Vec6::Zero(), dv = Vec6::Zero();
+    (k < 6 ? dx : dv)[k % 6] = (k < 6 ? 1.0 : 10.0) * scale * e;
+    const Vec6 change = s.after_step(H, dx, dv) - s.after_step(H, -dx, -dv);
+    const Pose ahead{quaternion_of(dx.head<3>()) * s.x0.rotation, s.x0.translation + dx.tail<3>()};
+    const Pose behind{quaternion_of(-dx.head<3>()) * s.x0.rotation, s.x0.translation - dx.tail<3>()};
+    const Vec6 linear = dynamics::contact_wrench(record, s.t0 + H, ahead, {dv.head<3>(), dv.tail<3>()}) -
+                        dynamics::contact_wrench(record, s.t0 + H, behind, {-dv.head<3>(), -dv.tail<3>()});
+    EXPECT_LT((change - linear).norm(), 2e-3 * change.norm()) << "direction " << k;  // the floor moves the contact by 5e-4 of its depth meanwhile: a product of both changes
+  }
+  EXPECT_EQ(checked, 12);
+}
+
+TEST(Linearise, AnIndefiniteStepMatrixIsFactoredByLu) {
+  scene::Description d = pressed_block(kDepth);
+  auto world = loop::assemble(d);
+  world->tool_frame->append(0.0, world->tool->pose(), {});
+  Eigen::Map<Points> x(world->state.q().data(), 3, world->state.q().size() / 3);
+  x.row(2) *= 0.2;  // squashed flat: compressed struts
+  x.row(2).array() += 0.8 * 0.02 - 1e-4;
+  world->contact->refresh(world->state.view());
+  dynamics::BorderedMatrix A;
+  world->system.step_matrix(world->state.view(), 1.0, 1.0, 1.0, A);
+  ASSERT_LT(A.to_dense().selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0) << "it is indefinite";
+  counters::reset();
+  long fallbacks = 0;
+  const dynamics::LinearisedContact record = loop::linearise_contact(*world, 1, 1.0, fallbacks);
+  EXPECT_EQ(record.source, dynamics::LinearisedContact::Source::kCondensed);
+  EXPECT_EQ(fallbacks, 0);
+  EXPECT_GE(counters::counter("loop.condensed_by_lu"), 1);
+}
+
+// The tool was thrown away by 29 m: where contact is so stiff that a period without it leaves 1e4 N, the record must say that the bodies give way.
+TEST(Linearise, AStiffContactDoesNotThrowTheToolAway) {
+  class Bounds : public loop::Observer {
+   public:
+    void period(loop::World& world, double) override {
+      const double in_contact = world.contact->energy(world.state.view());  // of a depth that came about between two samples: not in motion
+      energy = std::max(energy, world.mechanical_energy() - in_contact);
+    }
+    void tick(const loop::TickRecord& tick) override { away = std::max(away, (tick.tool.translation - tick.handle.translation).norm()); }
+    double energy = 0.0, away = 0.0;
+  };
+  for (const double stiffness : {1e8, 1e9, 1e10, 1e11, 1e12}) {
+    scene::Description d = pressed_block(-0.001);  // 1 mm above
+    KeyframeSpec down = d.device->keyframes.front(), up = down;
+    down.time_s = 0.1;
+    down.position_m.z() -= 0.005;
+    up.time_s = 0.25;
+    d.device->keyframes.push_back(down);
+    d.device->keyframes.push_back(up);
+    d.contacts[0].stiffness_pa_m = stiffness;
+    d.duration_s = 0.3;
+    const auto world = loop::assemble(d);
+    Bounds bounds;
+    loop::RunOptions options;
+    options.observers = {&bounds};
+    const loop::RunResult result = loop::run(*world, options);
+    EXPECT_TRUE(result.status.ok()) << result.status.message;
+    EXPECT_LT(bounds.away, 0.01) << "at " << stiffness << " Pa/m";
+    EXPECT_LT(bounds.energy, 0.5 * d.tool->coupling_stiffness_n_m * 0.01 * 0.01) << "at " << stiffness << " Pa/m";  // the hand never did more work
+  }
 }
 
 }  // namespace

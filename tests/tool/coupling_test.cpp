@@ -81,11 +81,11 @@ TEST(Coupling, contact_tangent_by_taylor) {
     record.x0 = {r.w(), r.x(), r.y(), r.z(), 0.1, 0.2, 0.3};
     const Pose tool = random_pose();
     const Vec6 v = random_vec6(), d = random_vec6(), dv = random_vec6();
-    const Vec6 F0 = dynamics::contact_wrench(record, tool, twist_of(v));
+    const Vec6 F0 = dynamics::contact_wrench(record, record.time, tool, twist_of(v));
     std::vector<double> hs, e;
     for (double h = 0.02; h > 5e-4; h /= 2) {
       hs.push_back(h);
-      const Vec6 F = dynamics::contact_wrench(record, moved(tool, h * d), twist_of(v + h * dv));
+      const Vec6 F = dynamics::contact_wrench(record, record.time, moved(tool, h * d), twist_of(v + h * dv));
       e.push_back((F - F0 + h * (contact_stiffness(record, tool) * d + contact_damping(record) * dv)).norm());
     }
     EXPECT_NEAR(slope(hs, e), 2.0, 0.1) << run;

@@ -16,6 +16,12 @@ std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame, 
                                                 double look_ahead = 0.0);
 std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& centre, double radius, double candidate_gap,
                                                  double look_ahead = 0.0);
+/// A box with the given edges, and a cylinder along its own z between flat ends; both centred in `place`, a pose in the frame.
+/// Outside, the nearest point of the surface and the way from it (at edges and corners a direction between the faces'); inside, the nearest face.
+std::unique_ptr<SampleSource> make_box_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Pose& place, const Vec3& size, double candidate_gap,
+                                              double look_ahead = 0.0);
+std::unique_ptr<SampleSource> make_cylinder_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Pose& place, double radius, double length,
+                                                   double candidate_gap, double look_ahead = 0.0);
 
 struct GpuOptions {
   int pixels = 256;             ///< longer edge of the image

@@ -9,7 +9,8 @@
 
 namespace palpate::dynamics {
 
-/// Contact seen from the tool, linear about one pose: F = F0 + J dx + B (v - v0), dx = pose_difference(x0, x).
+/// Contact seen from the tool, linear in time and about one pose: F = F0 + (t - time) F1 + J dx + B (v - v0), dx = pose_difference(x0, x).
+/// F1 is what the bodies' own motion makes of the wrench while the tool stands.
 /// Wrenches and 6-vectors: (moment about the tool's origin, force) and (angular, linear), world axes.
 struct LinearisedContact {
   std::uint64_t version = 0;  ///< grows with each record; 0: none yet
@@ -17,6 +18,7 @@ struct LinearisedContact {
   std::array<double, 7> x0{1, 0, 0, 0, 0, 0, 0};  ///< pose: qw qx qy qz px py pz
   std::array<double, 6> v0{};
   std::array<double, 6> F0{};
+  std::array<double, 6> F1{};  ///< [N m/s, N/s]
   std::array<double, 36> J{};  ///< dF/dx, row-major [N/m, N m/rad, mixed]; negative definite for a stable contact
   std::array<double, 36> B{};  ///< dF/dv, row-major
   enum class Source : int { kNone, kFrozen, kCondensed } source = Source::kNone;
@@ -24,8 +26,8 @@ struct LinearisedContact {
 };
 static_assert(std::is_trivially_copyable_v<LinearisedContact>);
 
-/// The wrench of a record at a pose and twist (order: moment, force).
-Vec6 contact_wrench(const LinearisedContact& record, const Pose& pose, const Twist& twist);
+/// The wrench of a record at a time, pose and twist (order: moment, force).
+Vec6 contact_wrench(const LinearisedContact& record, double t, const Pose& pose, const Twist& twist);
 
 /// One writer, one reader, two threads: the reader always sees a whole record, never a torn one, and never waits
 /// (a triple buffer: the writer fills its own slot and swaps it with the middle one).

@@ -64,6 +64,16 @@ class StepTrace {
   virtual void attempt(const StepAttempt& attempt) = 0;
 };
 
+class Stepper;
+
+/// Told of every accepted step while its interpolant stands: dense_output then answers for times in [t0, t1], and the State is at t1.
+/// What a loop needs that wants the solution at more times than it lands on.
+class StepFollower {
+ public:
+  virtual ~StepFollower() = default;
+  virtual void stepped(const Stepper& stepper, double t0, double t1) = 0;
+};
+
 /// Advances a System's State in time.
 class Stepper {
  public:
@@ -79,6 +89,8 @@ class Stepper {
 
   /// Tells a trace of every attempted step from now on; null for none.  What a step costs without a trace does not change.
   void set_trace(StepTrace* trace) { trace_ = trace; }
+  /// Tells a follower of every accepted step from now on; null for none.  False where the method does not: what is wanted must then be landed on.
+  virtual bool follow(StepFollower*) { return false; }
   /// Where a flag is given and becomes true, advance_to ends after the current step with kInterrupted and the last good state.
   void set_interrupt(const std::atomic<bool>* flag) { interrupt_ = flag; }
 

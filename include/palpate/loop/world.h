@@ -47,17 +47,24 @@ struct World {
   std::vector<Body> bodies;
   std::shared_ptr<contact::ContactForce> contact;       ///< null without [[contact]]
   std::unique_ptr<dynamics::Stepper> stepper;           ///< null without bodies
-  std::unique_ptr<tool::Tool> tool;                     ///< null without [tool]
+  std::unique_ptr<tool::Tool> tool;                     ///< the tool with ticks of its own; null without [tool], and where the scheme is monolithic
+  int tool_block_id = -1;                               ///< monolithic: the tool's block of the State; else -1
   std::unique_ptr<device::Handle> handle;
+  device::HandleSample handle_now;                      ///< at the last tick
   std::unique_ptr<device::WrenchLimiter> limiter;
-  std::shared_ptr<contact::TrajectoryFrame> tool_frame; ///< the tool's motion as contact sees it; null where no contact names the tool
-  int tool_frame_index = -1;
+  std::shared_ptr<contact::MovingFrame> tool_motion;    ///< the tool's frame in contact; null where no contact names the tool
+  std::shared_ptr<contact::TrajectoryFrame> tool_frame; ///< the same where the scheme is partitioned: what the ticks write; else null
+  int tool_frame_index = -1;                            ///< of the tool in `contact`, -1 where no contact names it
   std::unique_ptr<dynamics::LinearSolver> condenser;    ///< factors the step matrix for the condensed linearisation; null where not used
+  std::unique_ptr<dynamics::LinearSolver> condenser_lu; ///< made at the first step matrix without a Cholesky factor
   dynamics::BorderedMatrix condensed_matrix;
 
   const Body* find_body(const std::string& name) const;
   Points positions(const Body& body) const;             ///< now, world [m]
-  double mechanical_energy();                           ///< kinetic and potential energy of the bodies [J]
+  bool monolithic() const { return tool_block_id >= 0; }
+  Pose tool_pose() const;                               ///< @pre there is a tool
+  Twist tool_twist() const;
+  double mechanical_energy();                           ///< kinetic and potential energy of bodies, contact, tool and coupling [J]
 };
 
 /// Builds a World: the one place that names concrete parts.

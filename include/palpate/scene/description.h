@@ -36,7 +36,7 @@ struct CompareSpec {
 
 /// How tool and bodies are coupled.
 struct CouplingSpec {
-  std::string scheme = "partitioned";
+  std::string scheme = "partitioned";       ///< or "monolithic": tool and bodies in one state of one integrator, nothing exchanged
   std::string linearisation = "condensed";  ///< or "frozen"
   double exchange_period_s = 0.01;
   double contact_refresh_s = 0.01;          ///< a whole fraction of the exchange period

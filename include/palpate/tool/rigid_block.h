@@ -7,7 +7,7 @@
 #include "palpate/dynamics/inertia_term.h"
 #include "palpate/tool/spec.h"
 
-/// A free rigid body as a block of the State: what couples a tool monolithically to soft bodies, with any integrator of theirs.  No Simbody here.
+/// A free rigid body as a block of the State: what couples a tool monolithically to soft bodies, with any integrator of theirs.  No Simbody here: see simbody_block.h for the same from Simbody.
 /// q = (qw qx qy qz px py pz), u = (angular, linear) in world axes; the origin is the centre of mass, the body axes are principal.
 namespace palpate::tool {
 
@@ -26,6 +26,9 @@ std::shared_ptr<dynamics::ForceTerm> make_rigid_weight(int block_id, double mass
 /// A handle as a function of time alone.
 struct HandleState { Pose pose; Twist twist; };
 using HandlePath = std::function<HandleState(double t)>;
+
+/// What the hand feels of the virtual coupling, before any limit: force opposite to that on the tool, moment about the handle's origin.
+Wrench coupling_on_hand(const ToolSpec& spec, const HandleState& tool, const HandleState& handle);
 
 /// The virtual coupling of `spec` to a handle.  `symmetric` keeps the symmetric part of the rotational stiffness (an inexact Newton matrix,
 /// exact where tool and handle have the same orientation) for solvers that need it; else the tangent is exact and unsymmetric.

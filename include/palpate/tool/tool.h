@@ -40,6 +40,7 @@ class Tool {
   void coupling_tangent(const Pose& handle, const Twist& handle_twist, Mat6& K, Mat6& B) const;
   Mat6 mass_matrix() const;  ///< at the current pose, world axes, about the origin
   double kinetic_energy() const;
+  double potential_energy(const Pose& handle) const;  ///< of the coupling to a handle, and of the weight [J]
 
  private:
   struct Impl;

@@ -1,0 +1,61 @@
+#include "monolithic_ticks.h"
+
+#include "palpate/core/error.h"
+
+namespace palpate::loop {
+namespace {
+
+/// Ticks and output times are multiples of different decimal numbers: what is nearer than this part of a tick is the same time.
+constexpr double kSame = 1e-6;
+
+TickRecord tick_of(const World& world, double t, const dynamics::StateView& state) {
+  const dynamics::Block& block = *state.layout->find(world.tool_block_id);
+  const auto q = state.q.segment<7>(block.q_offset);
+  const auto u = state.u.segment<6>(block.u_offset);
+  TickRecord tick;
+  tick.time = t;
+  tick.tool = {Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
+  tick.tool_twist = {u.head<3>(), u.tail<3>()};
+  if (world.tool_frame_index >= 0) tick.contact = world.contact->frame_wrench(state, world.tool_frame_index);
+  return tick;
+}
+
+}  // namespace
+
+MonolithicTicks::MonolithicTicks(World& world, Emit emit) : world_(world), emit_(std::move(emit)), tick_s_(world.description.tool->tick_s) {
+  PALPATE_CHECK(world.monolithic() && world.stepper, "ticks of a tool that is no block of the State");
+  follows_ = world.stepper->follow(this);
+}
+
+MonolithicTicks::~MonolithicTicks() {
+  if (follows_) world_.stepper->follow(nullptr);
+}
+
+bool MonolithicTicks::due(double t) const { return next() <= t + kSame * tick_s_; }
+
+dynamics::StepResult MonolithicTicks::advance_to(double t1) {
+  if (follows_) return world_.stepper->advance_to(t1);
+  dynamics::StepResult result;
+  while (result.ok() && due(t1)) {
+    const double t = std::min(next(), t1);
+    if (t > world_.state.time()) result = world_.stepper->advance_to(t);
+    if (result.ok()) emit_at(next(), world_.state.view());
+  }
+  if (result.ok() && t1 > world_.state.time()) result = world_.stepper->advance_to(t1);
+  return result;
+}
+
+void MonolithicTicks::stepped(const dynamics::Stepper& stepper, double t0, double t1) {
+  while (due(t1)) {
+    const double t = std::clamp(next(), t0, t1);
+    PALPATE_CHECK(stepper.dense_output(t, q_, u_), "{} has no value at t = {} within its step from {} to {}", stepper.name(), t, t0, t1);
+    emit_at(next(), dynamics::make_view(world_.state.layout(), t, q_.data(), u_.data()));
+  }
+}
+
+void MonolithicTicks::emit_at(double t, const dynamics::StateView& state) {
+  ++count_;
+  emit_(tick_of(world_, t, state));
+}
+
+}  // namespace palpate::loop

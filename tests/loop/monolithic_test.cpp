@@ -1,0 +1,191 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "loop/small_scenes.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+#include "palpate/integrate/integrators.h"
+#include "palpate/loop/run.h"
+#include "palpate/loop/summary.h"
+#ifdef PALPATE_HAS_TOOL
+
+using namespace palpate;
+using namespace palpate::small_scenes;
+
+namespace {
+
+/// The handle goes from first touch to `depth` below it and rests there; tool and block are one system.
+scene::Description monolithic_press(double depth) {
+  scene::Description d = pressed_block(0.0);
+  d.coupling.scheme = "monolithic";
+  KeyframeSpec end = d.device->keyframes.front();
+  end.time_s = 0.03;
+  end.position_m.z() -= depth;
+  d.device->keyframes.push_back(end);
+  d.integrator.name = "cvode-bdf";
+  d.integrator.rtol = 1e-5;
+  return d;
+}
+
+class Log : public loop::Observer {
+ public:
+  void period(loop::World& world, double t) override {
+    periods.push_back(t);
+    energies.push_back(world.mechanical_energy());
+  }
+  void tick(const loop::TickRecord& tick) override { ticks.push_back(tick); }
+  std::vector<double> periods, energies;
+  std::vector<loop::TickRecord> ticks;
+};
+
+struct Outcome {
+  loop::RunResult result;
+  Log log;
+  VecX q;
+};
+
+Outcome run(const scene::Description& d, double duration = 0.0) {
+  Outcome out;
+  const auto world = loop::assemble(d);
+  loop::RunOptions options;
+  options.observers = {&out.log};
+  options.duration_s = duration;
+  out.result = loop::run(*world, options);
+  out.q = world->state.q();
+  return out;
+}
+
+TEST(Monolithic, NothingIsExchangedAndNothingCondensed) {
+  counters::reset();
+  const Outcome out = run(monolithic_press(0.002));
+  ASSERT_TRUE(out.result.status.ok()) << out.result.status.message;
+  EXPECT_EQ(counters::counter("loop.exchange_record"), 0);
+  EXPECT_EQ(counters::counter("loop.condenser"), 0);
+  EXPECT_EQ(counters::counter("tool.simbody_system"), 1) << "its right-hand side is Simbody's";
+  EXPECT_EQ(out.result.tool_s, 0.0);
+  counters::reset();
+  scene::Description partitioned = monolithic_press(0.002);
+  partitioned.coupling.scheme = "partitioned";
+  ASSERT_TRUE(run(partitioned).result.status.ok());
+  EXPECT_EQ(counters::counter("loop.exchange_record"), 4) << "the counters count";
+  EXPECT_EQ(counters::counter("loop.condenser"), 1);
+}
+
+TEST(Monolithic, SummaryNamesTheSchemeAndNoExchange) {
+  const scene::Description d = monolithic_press(0.002);
+  const auto world = loop::assemble(d);
+  const loop::RunResult result = loop::run(*world, {});
+  store::Summary summary = loop::summarise(*world, result, 0.0);
+  std::string options;
+  for (const auto& [name, value] : summary.section("options").values) options += name + " ";
+  EXPECT_NE(options.find("exchange_scheme"), std::string::npos);
+  EXPECT_EQ(options.find("exchange_period_s"), std::string::npos) << "there is none";
+  bool left_out = false;
+  for (const auto& [name, why] : summary.section("left_out").values) left_out |= name == "exchange";
+  EXPECT_TRUE(left_out);
+}
+
+TEST(Monolithic, TicksComeInTheirOrderAndNumberWhateverTheRefresh) {
+  for (const double refresh : {0.01, 0.0025, 0.04}) {  // 0.0025: a refresh between two ticks
+    scene::Description d = monolithic_press(0.002);
+    d.coupling.contact_refresh_s = refresh;
+    const Outcome out = run(d);
+    ASSERT_TRUE(out.result.status.ok()) << out.result.status.message;
+    EXPECT_EQ(out.result.ticks, 40);
+    ASSERT_EQ(out.log.ticks.size(), 40u);
+    for (std::size_t i = 0; i < out.log.ticks.size(); ++i) EXPECT_NEAR(out.log.ticks[i].time, 1e-3 * static_cast<double>(i + 1), 1e-12);
+    EXPECT_EQ(out.result.periods, std::lround(0.04 / refresh));
+  }
+}
+
+// At rest k (x_h - x_t) + F = 0, as in the partitioned scheme: the two differ on the way, not in the end.
+TEST(Monolithic, RestsWhereThePartitionedSchemeRests) {
+  scene::Description d = monolithic_press(0.003);
+  const Outcome whole = run(d, 1.5);
+  d.coupling.scheme = "partitioned";
+  const Outcome parts = run(d, 1.5);
+  ASSERT_TRUE(whole.result.status.ok() && parts.result.status.ok());
+  const loop::TickRecord &a = whole.log.ticks.back(), &b = parts.log.ticks.back();
+  ASSERT_GT(a.contact.force.z(), 0.05);
+  const Vec3 spring = d.tool->coupling_stiffness_n_m * (a.handle.translation - a.tool.translation);
+  EXPECT_LT((spring + a.contact.force).norm(), 1e-5 * a.contact.force.norm());
+  EXPECT_LT((a.tool.translation - b.tool.translation).norm(), 1e-3 * 0.003);
+  EXPECT_LT((a.device.force - b.device.force).norm(), 1e-3 * b.device.force.norm());
+}
+
+// Nothing damps, the handle rests, the contact is queried once: kinetic, elastic, contact and coupling energy together are kept,
+// and far more than the tolerance passes between tool and block.
+TEST(Monolithic, ToolAndBodiesKeepTheirEnergyTogether) {
+  scene::Description d = pressed_block(0.003);
+  d.coupling.scheme = "monolithic";
+  d.coupling.contact_refresh_s = 0.002;
+  d.record.emplace();
+  d.bodies[0].stiffness_damping_s = 0.0;
+  d.tool->coupling_damping_n_s_m = d.tool->coupling_rotational_damping_n_m_s_rad = 0.0;
+  d.integrator.name = "cvode-bdf";
+  d.integrator.rtol = 1e-8;
+  d.duration_s = 0.002;  // to the next query
+  const auto world = loop::assemble(d);
+  world->contact->refresh(world->state.view());
+  const double before = world->mechanical_energy(), elastic_before = world->bodies[0].term->energy(world->state.view());
+  const auto status = world->stepper->advance_to(0.02);
+  ASSERT_TRUE(status.ok()) << status.message;
+  const double elastic = world->bodies[0].term->energy(world->state.view());
+  EXPECT_GT(std::abs(elastic - elastic_before), 1e-2 * before) << "energy went into the block";
+  EXPECT_NEAR(world->mechanical_energy() / before, 1.0, 1e-5);
+}
+
+// One tool, two ways to it that share no integrator: CVODE on the block of the State, and Simbody's Merson on a System of its own.
+TEST(Monolithic, AToolAloneMovesAsInASystemOfItsOwn) {
+  scene::Description d = monolithic_press(0.02);
+  d.bodies.clear();
+  d.contacts.clear();
+  d.tool->gravity = true;
+  d.gravity_m_s2 = Vec3(0, 0, -9.81);
+  d.device->keyframes.back().rotation_vector_rad = Vec3(0.3, 0.5, -0.2);
+  d.integrator.rtol = 1e-9;
+  const Outcome whole = run(d);
+  d.coupling.scheme = "partitioned";
+  d.tool->integrator = "simbody-rkmerson";
+  const Outcome parts = run(d);
+  ASSERT_TRUE(whole.result.status.ok()) << whole.result.status.message;
+  ASSERT_EQ(whole.log.ticks.size(), parts.log.ticks.size());
+  for (std::size_t i = 0; i < whole.log.ticks.size(); ++i)
+    EXPECT_LT(pose_difference(whole.log.ticks[i].tool, parts.log.ticks[i].tool).norm(), 1e-6) << "tick " << i;
+}
+
+// Every integrator that steps bodies also steps a tool beside them: their block's unit quaternion, the border of the Newton matrix.
+TEST(Monolithic, EveryIntegratorOfTheRegistryFollowsTheTightOne) {
+  scene::Description d = monolithic_press(0.002);
+  d.integrator.rtol = 1e-7;
+  const Outcome truth = run(d);
+  ASSERT_TRUE(truth.result.status.ok()) << truth.result.status.message;
+  ASSERT_GT(truth.log.ticks.back().contact.force.z(), 0.01) << "they touch";
+  const double moved = (truth.log.ticks.back().tool.translation - d.tool->position_m).norm();
+  int ran = 0;
+  for (const auto& entry : integrate::stepper_registry()) {
+    if (entry.traits.stability == dynamics::Stability::kStatic) {
+      std::printf("          %s left out: it has no dynamics\n", entry.name.c_str());
+      continue;
+    }
+    const bool is_explicit = entry.traits.stability == dynamics::Stability::kExplicit;
+    d.integrator.name = entry.name;
+    d.integrator.rtol = 1e-4;
+    d.integrator.step_s = is_explicit ? 2e-5 : 2e-4;  // explicit: below its stability limit
+    const Outcome out = run(d);
+    EXPECT_TRUE(out.result.status.ok()) << entry.name << ": " << out.result.status.message;
+    if (!out.result.status.ok()) continue;
+    ASSERT_EQ(out.log.ticks.size(), truth.log.ticks.size()) << entry.name;
+    double worst = 0.0;
+    for (std::size_t i = 0; i < truth.log.ticks.size(); ++i)
+      worst = std::max(worst, (out.log.ticks[i].tool.translation - truth.log.ticks[i].tool.translation).norm());
+    EXPECT_LT(worst, 2e-2 * moved) << entry.name;
+    EXPECT_NEAR(out.q.tail<7>().head<4>().norm(), 1.0, 1e-12) << entry.name;
+    ++ran;
+  }
+  EXPECT_GE(ran, 3);
+}
+
+}  // namespace
+#endif
