@@ -4,6 +4,7 @@
 
 #include "loop/small_scenes.h"
 #include "palpate/loop/run.h"
+#include "palpate/loop/summary.h"
 
 using namespace palpate;
 
@@ -53,4 +54,30 @@ TEST(Impact, AFastBlockIsCaughtByThePlaneAndGainsNoEnergy) {
     EXPECT_LT(energies.worst_gain(), 1e-3) << "at " << speed << " m/s";
     EXPECT_LT(energies.values.back(), 0.9 * energies.values.front()) << "it was damped while it was squashed, at " << speed << " m/s";
   }
+}
+
+// 20 m/s through a plate of 1 mm, between queries 10 ms apart, by a contact far too soft to stop it.  A stiff one is not passed, and says so.
+TEST(Impact, AFastBlockThatGoesThroughAThinPlateIsCounted) {
+  const auto through_plate = [](double speed, double stiffness) {
+    scene::Description d = thrown_block(speed, 0.005);
+    d.obstacles[0].type = "box";
+    d.obstacles[0].size_m = Vec3(0.2, 0.2, 0.001);
+    d.contacts[0].stiffness_pa_m = stiffness;
+    d.duration_s = 0.03;
+    return d;
+  };
+  const auto fast = loop::assemble(through_plate(20.0, 1e3));
+  const loop::RunResult result = loop::run(*fast, {});
+  ASSERT_TRUE(result.status.ok()) << result.status.message;
+  ASSERT_EQ(result.tunnelled.size(), 1u);
+  EXPECT_EQ(result.tunnelled[0], fast->bodies[0].boundary.surface.vertices.cols()) << "every vertex of its surface";
+  EXPECT_LT(fast->positions(fast->bodies[0]).row(2).maxCoeff(), -0.001) << "it is through";
+  store::Summary summary = loop::summarise(*fast, result, 0.0);
+  ASSERT_EQ(summary.section("tunnelled").values.size(), 1u);
+  EXPECT_EQ(summary.section("tunnelled").values[0].first, "block - floor");
+  EXPECT_EQ(std::get<long long>(summary.section("tunnelled").values[0].second), result.tunnelled[0]);
+  const auto caught = loop::assemble(through_plate(0.5, 1e7));
+  const loop::RunResult stopped = loop::run(*caught, {});
+  ASSERT_TRUE(stopped.status.ok()) << stopped.status.message;
+  EXPECT_EQ(stopped.tunnelled, std::vector<long>{0});
 }

@@ -180,7 +180,7 @@ TEST(Linearise, CondensedRecordFollowsTheToolsDisplacementAndTwist) {
     const Pose behind{quaternion_of(-dx.head<3>()) * s.x0.rotation, s.x0.translation - dx.tail<3>()};
     const Vec6 linear = dynamics::contact_wrench(record, s.t0 + H, ahead, {dv.head<3>(), dv.tail<3>()}) -
                         dynamics::contact_wrench(record, s.t0 + H, behind, {-dv.head<3>(), -dv.tail<3>()});
-    EXPECT_LT((change - linear).norm(), 2e-3 * change.norm()) << "direction " << k;  // the floor moves the contact by 5e-4 of its depth meanwhile: a product of both changes
+    EXPECT_LT((change - linear).norm(), 2e-3 * change.norm() + 1e-16) << "direction " << k;  // the floor moves the contact by 5e-4 of its depth meanwhile: a product of both changes
   }
   EXPECT_EQ(checked, 12);
 }
@@ -208,9 +208,14 @@ TEST(Linearise, AnIndefiniteStepMatrixIsFactoredByLu) {
 TEST(Linearise, AStiffContactDoesNotThrowTheToolAway) {
   class Bounds : public loop::Observer {
    public:
+    // Left out: the contact's energy, of a depth that came about between two samples, and the spin of a tool that a record's frozen arms turn under its force
+    // (1.3 J at 1e10 Pa/m; a frictionless sphere would not turn at all).
     void period(loop::World& world, double) override {
-      const double in_contact = world.contact->energy(world.state.view());  // of a depth that came about between two samples: not in motion
-      energy = std::max(energy, world.mechanical_energy() - in_contact);
+      const ToolSpec& spec = *world.description.tool;
+      const double spin = 0.5 * 0.4 * spec.mass_kg * spec.radius_m * spec.radius_m * world.tool_twist().angular.squaredNorm();
+      const Vec3 turned = rotation_vector(world.tool_pose().rotation);
+      const double wound = 0.5 * spec.coupling_rotational_stiffness_n_m_rad * turned.squaredNorm();
+      energy = std::max(energy, world.mechanical_energy() - world.contact->energy(world.state.view()) - spin - wound);
     }
     void tick(const loop::TickRecord& tick) override { away = std::max(away, (tick.tool.translation - tick.handle.translation).norm()); }
     double energy = 0.0, away = 0.0;
