@@ -8,8 +8,6 @@ namespace {
 
 /// Local error that Simbody keeps (RMS over the 13 coordinates and velocities, in SI units).
 constexpr double kAccuracy = 1e-10;
-/// The same of a first-order method, whose steps go as its square root: a hundred a tick for a tool that turns fast, where 1e-10 would take ten thousand.
-constexpr double kFirstOrderAccuracy = 1e-6;
 /// Internal steps a tick before giving up.
 constexpr int kMaxSteps = 100000;
 
@@ -17,9 +15,8 @@ constexpr int kMaxSteps = 100000;
 /// reinitialisation; after one, stepTo may return at once without a step, hence the loop.
 class ErrorControlled : public TickScheme {
  public:
-  ErrorControlled(SimbodyBody& body, std::unique_ptr<SimTK::Integrator> integrator, double accuracy = kAccuracy)
-      : body_(body), integrator_(std::move(integrator)) {
-    integrator_->setAccuracy(accuracy);
+  ErrorControlled(SimbodyBody& body, std::unique_ptr<SimTK::Integrator> integrator) : body_(body), integrator_(std::move(integrator)) {
+    integrator_->setAccuracy(kAccuracy);
     integrator_->setInternalStepLimit(kMaxSteps);
   }
 
@@ -74,10 +71,6 @@ class ErrorControlled : public TickScheme {
 
 std::unique_ptr<TickScheme> make_runge_kutta_merson(SimbodyBody& body) {
   return std::make_unique<ErrorControlled>(body, std::make_unique<SimTK::RungeKuttaMersonIntegrator>(body.system()));
-}
-// u1 = u0 + h u'(q0, u0), q1 = q0 + h N(q0) u1, twice with h and once with 2 h: y2 - yb is the error of y2 = O(h^2), which is kept (no extrapolation).
-std::unique_ptr<TickScheme> make_semi_explicit_euler2(SimbodyBody& body) {
-  return std::make_unique<ErrorControlled>(body, std::make_unique<SimTK::SemiExplicitEuler2Integrator>(body.system()), kFirstOrderAccuracy);
 }
 std::unique_ptr<TickScheme> make_cpodes(SimbodyBody& body) {
   return std::make_unique<ErrorControlled>(body, std::make_unique<SimTK::CPodesIntegrator>(body.system()));
