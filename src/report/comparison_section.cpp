@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
-#include "palpate/core/error.h"
 #include "comparison_cells.h"
+#include "palpate/core/error.h"
 #include "sections.h"
 
 namespace palpate::report {
@@ -147,7 +148,8 @@ void add_scene_comparison(Page& page, const Table& compare, const ReferenceError
   if (!reference.description.empty()) page.add_paragraph("Reference: " + reference.description + (std::isfinite(reference.position_error_rel_l2)
                                                              ? fmt::format("; the two differ by {}, which is taken as its own error.", short_number(reference.position_error_rel_l2)) : "."));
   if (!reference.trouble.empty()) page.add_paragraph("Mind: " + reference.trouble + ".");
-  page.add_paragraph(in_words(compare, reference.position_error_rel_l2));
+  std::istringstream words(in_words(compare, reference.position_error_rel_l2));
+  for (std::string paragraph; std::getline(words, paragraph);) page.add_paragraph(paragraph);
   const std::vector<Quantity> quantities = quantities_of(compare, reference);
   for (const Quantity& q : quantities) add_work_precision(page, compare, q);
   if (const std::vector<double> torque = compare.has("torque_error_max_n_m") ? compare.numbers("torque_error_max_n_m") : std::vector<double>{};

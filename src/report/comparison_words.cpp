@@ -17,13 +17,14 @@ std::string list_of(const std::vector<std::string>& names) {
   return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
 }
 
-std::string times(double ratio) { return ratio < 9.95 ? fmt::format("{:.2g} times", ratio) : fmt::format("{:.0f} times", ratio); }
+std::string times(double ratio) { return ratio < 1.995 ? fmt::format("{:.2f} times", ratio) : ratio < 9.95 ? fmt::format("{:.2g} times", ratio) : fmt::format("{:.0f} times", ratio); }
 
 std::string winners_in_words(const Table& compare, double reference_error) {
-  std::string out, unreached;
+  std::string out;
+  std::vector<std::string> unreached;
   for (const Winner& win : winners(compare, kError, "cpu_s_median", kTargets, reference_error)) {
     if (!win.found) {
-      unreached += (unreached.empty() ? "" : ", ") + fmt::format("{:g}", win.target);
+      unreached.push_back(fmt::format("{:g}", win.target));
       continue;
     }
     out += fmt::format("For an error of {:g}, {} is the cheapest ({}{} s)", win.target, win.label, win.cost.at_most ? "at most " : "", short_number(win.cost.value));
@@ -31,7 +32,7 @@ std::string winners_in_words(const Table& compare, double reference_error) {
     if (win.label != kBaseline && win.runner_up != kBaseline && std::isfinite(win.baseline_ratio)) out += fmt::format(", {} {}", kBaseline, times(win.baseline_ratio));
     out += ". ";
   }
-  if (!unreached.empty()) out += fmt::format("No point reaches {}. ", unreached);
+  if (!unreached.empty()) out += fmt::format("No point reaches {}. ", list_of(unreached));
   return out;
 }
 
@@ -58,7 +59,8 @@ std::string families_in_words(const std::vector<Ladder>& all, double target) {
 std::string kind_of(const std::pair<std::string, std::string>& failure) {
   if (failure.first == "out of time" || failure.first == "not tried") return "out of time";
   if (failure.second.empty()) return failure.first;
-  return failure.second.substr(0, std::min(failure.second.find_first_of("\n("), std::size_t{90}));
+  const std::string start = failure.second.substr(0, std::min(failure.second.find_first_of("\n("), std::size_t{90}));
+  return start.substr(0, start.find_last_not_of(" ,;:") + 1);
 }
 
 std::string failures_in_words(const std::vector<Ladder>& all) {
@@ -118,8 +120,13 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
 
 std::string in_words(const Table& compare, double reference_error) {
   const std::vector<Ladder> all = ladders(compare, kError, "cpu_s_median");
-  return winners_in_words(compare, reference_error) + baseline_in_words(all) + families_in_words(all, kTargets.back()) + explicit_in_words(compare) +
-         failures_in_words(all) + reference_in_words(all, reference_error);
+  std::string out;
+  for (std::string paragraph : {winners_in_words(compare, reference_error) + baseline_in_words(all) + families_in_words(all, kTargets.back()),
+                                explicit_in_words(compare) + failures_in_words(all), reference_in_words(all, reference_error)}) {
+    paragraph.erase(paragraph.find_last_not_of(' ') + 1);
+    if (!paragraph.empty()) out += (out.empty() ? "" : "\n") + paragraph;
+  }
+  return out;
 }
 
 }  // namespace palpate::report

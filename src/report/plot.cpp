@@ -78,7 +78,8 @@ std::string plot_items(std::size_t index, const Series& series, const std::strin
   if (std::find(series.hollow.begin(), series.hollow.end(), true) != series.hollow.end())
     items += fmt::format(", {} using 1:($4 > 0 ? $2 : NaN) with points pt 7 ps {} lc rgb 'white' notitle", data, width < 1.7 ? 0.25 : 0.4);
   if (!series.labels.empty())
-    items += fmt::format(", {} using 1:2:3 with labels left offset 0.8,0.5 font ',11' textcolor rgb '{}' noenhanced notitle", data, colour);
+    items += fmt::format(", {} using 1:2:3 with labels {} font ',11' textcolor rgb '{}' noenhanced notitle", data,
+                         series.labels_below ? "right offset -0.8,-0.5" : "left offset 0.8,0.5", colour);
   return items;
 }
 
@@ -86,9 +87,10 @@ std::string plot_items(std::size_t index, const Series& series, const std::strin
 Axis x_axis(const Plot& plot, const std::vector<Series>& series) {
   std::vector<double> values;
   for (const Series& s : series) values.insert(values.end(), s.x.begin(), s.x.end());
-  const bool labelled = std::any_of(series.begin(), series.end(), [](const Series& s) { return !s.labels.empty(); });
+  const bool labelled = std::any_of(series.begin(), series.end(), [](const Series& s) { return !s.labels.empty() && !s.labels_below; });
+  const bool below = std::any_of(series.begin(), series.end(), [](const Series& s) { return s.labels_below; });
   if (!plot.log_x) return make_axis(values, false, 0.0, labelled ? 0.1 : 0.0);
-  return make_axis(values, true, 0.06, labelled ? 0.16 : 0.06);
+  return make_axis(values, true, below ? 0.3 : 0.06, labelled ? 0.16 : 0.06);
 }
 
 /// What stands far from the data would squash them: a level is drawn up to three times the largest value, a floor down to a thirtieth

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "log_line.h"
 #include "palpate/core/error.h"
@@ -41,7 +42,7 @@ Series line_of(const Ladder& ladder, bool labelled) {
   return series;
 }
 
-/// The points that no other point beats in both cost and error, from cheap to accurate; each ladder is named where it takes over.
+/// The points that no other point beats in both cost and error, from cheap to accurate; each ladder is named where it first takes over.
 Series best_envelope(const std::vector<Ladder>& all) {
   struct Entry {
     double cost, error;
@@ -52,16 +53,15 @@ Series best_envelope(const std::vector<Ladder>& all) {
     for (const LadderPoint& p : ladder.points)
       if (p.cost > 0.0 && p.error > 0.0 && p.error <= kLargestDrawn && !p.below_reference) entries.push_back({p.cost, p.error, &ladder});
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.cost != b.cost ? a.cost < b.cost : a.error < b.error; });
-  Series out{.name = "best of all", .x = {}, .y = {}, .mark = Mark::kLine, .colour = "ink"};
+  Series out{.name = "best of all", .x = {}, .y = {}, .mark = Mark::kLine, .labels_below = true, .colour = "ink"};
   double least = std::numeric_limits<double>::infinity();
-  const Ladder* last = nullptr;
+  std::set<const Ladder*> named;
   for (const Entry& e : entries) {
     if (!(e.error < least)) continue;
     least = e.error;
     out.x.push_back(e.cost);
     out.y.push_back(e.error);
-    out.labels.push_back(e.ladder == last ? "" : e.ladder->label);
-    last = e.ladder;
+    out.labels.push_back(named.insert(e.ladder).second ? e.ladder->label : "");
   }
   return out;
 }

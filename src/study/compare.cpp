@@ -12,6 +12,7 @@
 #include "compare_codec.h"
 #include "compare_key.h"
 #include "compare_plan.h"
+#include "compare_run.h"
 #include "palpate/core/error.h"
 #include "process_pool.h"
 
@@ -34,8 +35,7 @@ struct SceneWork {
   scene::Description description;
   PlannedReference planned;
   std::string truth_key, check_key;
-  std::optional<Run> truth, check;         ///< only of runs that reached the end
-  std::string truth_trouble, check_trouble;
+  ReferenceRun truth, check;
   const Trajectory* reference = nullptr;   ///< what points are held against
   ReferenceUsed reference_used = ReferenceUsed::kNone;
   bool reference_settled = false;
@@ -240,25 +240,7 @@ class Study {
       case Task::Kind::kPoint:
       case Task::Kind::kRestart: break;
     }
-    const Run run = run_once(point_of(task).description, duration, &late);
-    PointRun out;
-    out.result = run.result;
-    if (run.result.stopped) {
-      out.status = PointStatus::kOutOfTime;
-      out.reason = fmt::format("out of time: {:g} s (at t = {:.4g} s)", options_.limit_s, run.result.time);
-    } else if (!run.result.status.ok()) {
-      out.status = run.result.status.status == dynamics::StepStatus::kBadSettings ? PointStatus::kRefused : PointStatus::kFailed;
-      out.reason = fmt::format("{}: {}", dynamics::to_string(run.result.status.status), run.result.status.message);
-    } else {
-      out.status = PointStatus::kOk;
-      if (task.kind == Task::Kind::kPoint && scene.reference) out.error = distance(run.trajectory, *scene.reference);
-      if (scene.reference && !std::isfinite(out.error.position_rel_l2) && task.kind == Task::Kind::kPoint) {
-        out.status = PointStatus::kFailed;
-        out.reason = "not finite: the run reached its end without a usable state";
-        out.error = no_distance();
-      }
-    }
-    return bytes_of(out);
+    return bytes_of(run_point(point_of(task).description, options_.limit_s, task.kind == Task::Kind::kPoint ? scene.reference : nullptr, &late));
   }
 
   static PointStatus status_of(Outcome::End end) {
@@ -338,11 +320,9 @@ class Study {
     SceneComparison& out = out_.scenes[task.scene];
     const bool ok = kept.status == "ok";
     if (task.kind == Task::Kind::kTruth) {
-      if (ok) work.truth = run_of(kept.bytes);
-      else work.truth_trouble = kept.reason;
+      work.truth = reference_run_of(kept);
     } else if (task.kind == Task::Kind::kCheck) {
-      if (ok) work.check = run_of(kept.bytes);
-      else work.check_trouble = kept.reason;
+      work.check = reference_run_of(kept);
     } else if (!ok) {
       out.notes.push_back(fmt::format("no chart of {}: {}", task.kind == Task::Kind::kExchange ? "the exchange period" : "the contact methods", kept.reason));
     } else if (task.kind == Task::Kind::kExchange) {
@@ -350,6 +330,11 @@ class Study {
     } else {
       out.methods = methods_of(kept.bytes);
     }
+  }
+
+  static ReferenceRun reference_run_of(const store::StudyArtefact& kept) {
+    if (kept.status != "ok") return {std::nullopt, kept.reason};
+    return {run_of(kept.bytes), ""};
   }
 
   void report(const Task& task) {
@@ -369,27 +354,10 @@ class Study {
       SceneWork& work = work_[s];
       if (work.reference_settled || !reference_tasks_done(s)) continue;
       work.reference_settled = true;
-      Reference& out = out_.scenes[s].reference;
-      out.available = work.truth || work.check;
-      if (work.truth && work.check) {
-        out.description = fmt::format("{}, checked against {}", work.planned.made_by, work.planned.checked_by);
-        out.own_error = distance(work.check->trajectory, work.truth->trajectory);
-      } else if (work.truth) {
-        out.description = work.planned.made_by + ", not checked";
-        out.trouble = fmt::format("the check by {} failed ({}): the reference's own error is not known", work.planned.checked_by, work.check_trouble);
-      } else if (work.check) {
-        out.description = work.planned.checked_by + ", not checked";
-        out.trouble = fmt::format("the reference by {} failed ({}): what was to check it took its place, and its own error is not known", work.planned.made_by, work.truth_trouble);
-      } else {
-        out.description = "none";
-        out.trouble = fmt::format("there is no reference: {} failed ({}), and so did {} ({}); the points have costs, but no errors", work.planned.made_by,
-                                  work.truth_trouble, work.planned.checked_by, work.check_trouble);
-      }
-      if (!out.available) continue;
-      const Run& truth = work.truth ? *work.truth : *work.check;
-      out.cpu_s = truth.result.cpu_s;
-      work.reference = &truth.trajectory;
-      work.reference_used = work.truth ? ReferenceUsed::kTruth : ReferenceUsed::kCheck;
+      out_.scenes[s].reference = settle(work.planned, work.truth, work.check);
+      if (!out_.scenes[s].reference.available) continue;
+      work.reference_used = work.truth.run ? ReferenceUsed::kTruth : ReferenceUsed::kCheck;
+      work.reference = work.truth.run ? &work.truth.run->trajectory : &work.check.run->trajectory;
     }
   }
   bool reference_tasks_done(std::size_t s) const {

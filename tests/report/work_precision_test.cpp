@@ -124,8 +124,8 @@ TEST(Winners, TellHowMuchSlowerTheInteractiveMethodIs) {
 TEST(InWords, SaysWhatTheNumbersSay) {
   report::Table table = compare_table();
   std::string words = report::in_words(table, 1e-6);
-  for (const char* part : {"For an error of 0.01, good is the cheapest (42.4 s); the next, fast, takes 1.2 times as long", "For an error of 0.001, good is the cheapest (134 s).",
-                           "No point reaches 0.0001, 1e-06", "Some rungs of fast failed: diverged."})
+  for (const char* part : {"For an error of 0.01, good is the cheapest (42.4 s); the next, fast, takes 1.18 times as long", "For an error of 0.001, good is the cheapest (134 s).",
+                           "No point reaches 0.0001 and 1e-06", "Some rungs of fast failed: diverged."})
     EXPECT_NE(words.find(part), std::string::npos) << part << " in: " << words;
   EXPECT_NE(words.find("are not told apart"), std::string::npos) << "one point lies below the reference";
   table.rows.pop_back();
@@ -190,7 +190,7 @@ TEST(WorkPrecisionPlot, OfManyIsColouredByFamilyAndShowsTheEnvelope) {
   EXPECT_EQ(best.colour, "ink");
   // In the order of cost: fast at 10 and 20 s, good at 30 s (0.02 < 0.025), fast at 40 s (0.0125 < 0.02), good at 60, 120 and 240 s.
   EXPECT_EQ(best.x, (std::vector<double>{10, 20, 30, 40, 60, 120, 240}));
-  EXPECT_EQ(best.labels, (std::vector<std::string>{"fast", "", "good", "fast", "good", "", ""}));
+  EXPECT_EQ(best.labels, (std::vector<std::string>{"fast", "", "good", "", "", "", ""}));
   const auto panels = report::family_plots(many, "position_error_rel_l2", "error", 1e-4);
   ASSERT_EQ(panels.size(), 2u);
   EXPECT_EQ(panels[0].title, "fast family");

@@ -43,7 +43,7 @@ rtol = [1e-2, 1e-4, 1e-6]
 inline scene::Description tool_only() {
   return scene::parse(R"([scene]
 name = "tool alone"
-duration_s = 0.1
+duration_s = 0.04
 [tool]
 radius_m = 0.01
 mass_kg = 0.05
@@ -57,7 +57,7 @@ type = "script"
 time_s = 0.0
 position_m = [0.0, 0.0, 0.05]
 [[device.keyframe]]
-time_s = 0.05
+time_s = 0.03
 position_m = [0.01, 0.0, 0.04]
 [exchange]
 exchange_period_s = 0.01

@@ -79,7 +79,7 @@ std::vector<Winner> winners(const Table& compare, const std::string& error_colum
                             double reference_error = kUnknown);
 
 /// What the numbers say, in sentences: who wins where, who failed and why, which explicit methods stand at their stability limit, and whether the
-/// reference bears it.
+/// reference bears it.  Paragraphs are separate lines.
 std::string in_words(const Table& compare, double reference_error);
 
 /// Error against a cost, log-log: one line a ladder, coloured by family; the best envelope is drawn over them.
