@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 #include <sys/time.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -99,7 +100,17 @@ void ProcessPool::start(Work work, double limit_s, Done done) {
   }
   close(ends[1]);
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  children_.push_back({pid, ends[0], limit_s, wall_seconds() + 3.0 * limit_s + 5.0, {}, false, std::move(done)});
+  children_.push_back({pid, ends[0], limit_s, 0.0, wall_seconds(), {}, false, std::move(done)});
+}
+
+bool ProcessPool::is_asleep(Child& child) {
+  clockid_t clock{};
+  timespec used{};
+  if (clock_getcpuclockid(child.pid, &clock) != 0 || clock_gettime(clock, &used) != 0) return false;  // it has ended
+  const double cpu_s = static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
+  if (cpu_s > child.cpu_s) child.moved = wall_seconds();
+  child.cpu_s = cpu_s;
+  return wall_seconds() - child.moved > 3.0 * child.limit_s + 5.0;
 }
 
 void ProcessPool::finish(std::list<Child>::iterator at) {
@@ -140,7 +151,7 @@ void ProcessPool::wait(double most_s) {
       if (n == 0) {
         finish(current);
         any = true;
-      } else if (!current->killed && wall_seconds() > current->deadline) {
+      } else if (!current->killed && is_asleep(*current)) {
         kill(current->pid, SIGKILL);
         current->killed = true;
       }

@@ -29,8 +29,8 @@ class ProcessPool {
 
   bool has_room() const { return static_cast<int>(children_.size()) < jobs_; }
   bool idle() const { return children_.empty(); }
-  /// @param limit_s  CPU seconds until `out_of_time`.  Work that does not heed it is killed 2 s later, and in any case after three times that
-  ///                 and 5 s by the wall clock.  @param done  is called by wait(), in the parent
+  /// @param limit_s  CPU seconds until `out_of_time`.  Work that does not heed it is killed 2 s later; work that sleeps, when it has used
+  ///                 no CPU time for three times the limit and 5 s (a busy machine alone ends nothing).  @param done  is called by wait(), in the parent
   void start(Work work, double limit_s, Done done);
   /// Returns after at least one piece has ended, or after `most_s`.
   void wait(double most_s);
@@ -39,11 +39,12 @@ class ProcessPool {
   struct Child {
     pid_t pid;
     int pipe;
-    double limit_s, deadline;
+    double limit_s, cpu_s, moved;  ///< CPU time when last looked at; when that last grew, by the wall clock
     std::string bytes;
     bool killed;
     Done done;
   };
+  static bool is_asleep(Child& child);
   void finish(std::list<Child>::iterator child);
   int jobs_;
   std::list<Child> children_;

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "compare_scenes.h"
-#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
 #include "palpate/store/study_db.h"
 #include "palpate/study/compare.h"
 #include "study/compare_codec.h"
@@ -38,8 +38,15 @@ rtol = [1e-2, 1e-4, 1e-6, 1e-8]
   return {compare_scenes::block(ladders, "one"), compare_scenes::block(ladders, "two", 3e4)};
 }
 
-/// A process that makes the study, killed after `seconds`; true where it had ended by then.
-bool study_killed_after(const fs::path& database, double seconds) {
+long rows_in(const fs::path& database) {
+  if (!fs::exists(database)) return 0;
+  try {
+    return store::StudyDb(database.string(), study::run_columns()).run_count();
+  } catch (const Error&) { return 0; }  // it is being made in this moment
+}
+
+/// A process that makes the study, killed when it has finished some more runs and a while later; true where it was still at work.
+bool study_killed_after(const fs::path& database, long rows, int more_us) {
   const pid_t child = fork();
   if (child == 0) {
     try {
@@ -47,34 +54,32 @@ bool study_killed_after(const fs::path& database, double seconds) {
     } catch (...) { _exit(1); }
     _exit(0);
   }
-  usleep(static_cast<useconds_t>(1e6 * seconds));
-  kill(child, SIGKILL);
   int status = 0;
-  waitpid(child, &status, 0);
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  while (rows_in(database) < rows && waitpid(child, &status, WNOHANG) == 0) usleep(2000);
+  usleep(static_cast<useconds_t>(more_us));
+  kill(child, SIGKILL);
+  return waitpid(child, &status, 0) == child && WIFSIGNALED(status);
 }
 
 TEST(CompareKill, TenKillsGiveTheTableOfAnUndisturbedRun) {
   const fs::path folder = fs::temp_directory_path() / ("palpate-compare-kill-" + std::to_string(getpid()));
   fs::remove_all(folder);
   fs::create_directories(folder);
-  const double start = wall_seconds();
   const study::Comparison whole = study::compare(scenes(), options_of(folder / "whole.sqlite"));
-  const double duration = wall_seconds() - start;
 
   std::mt19937 random(11);
-  std::uniform_real_distribution<double> moment(0.02, 0.35);
   int kills = 0, grew = 0;
   long kept = 0;
   for (int i = 0; i < 10; ++i) {
-    kills += !study_killed_after(folder / "killed.sqlite", duration * moment(random));
+    const long rows = kept + static_cast<long>(random() % 3);
+    kills += study_killed_after(folder / "killed.sqlite", rows, static_cast<int>(random() % 10000));
     if (!fs::exists(folder / "killed.sqlite")) continue;  // killed before it was made
     const store::StudyDb database((folder / "killed.sqlite").string(), study::run_columns());
     EXPECT_GE(database.run_count(), kept) << "kill " << i;
     grew += database.run_count() > kept;
     kept = database.run_count();
   }
-  EXPECT_GE(kills, 5) << "most of them met it at work";
+  EXPECT_GE(kills, 8) << "they met it at work";
   EXPECT_GE(grew, 2) << "they met it at different places";
   const study::Comparison last = study::compare(scenes(), options_of(folder / "killed.sqlite"));
   EXPECT_GE(last.reused, kept) << "what was finished is not run again";
