@@ -33,7 +33,7 @@ void add_restarts(Page& page, const Table& restarts) {
 
 void add_exchange(Page& page, const Table& exchange) {
   page.add_heading("Error of the exchange period");
-  page.add_paragraph("How often tool and bodies exchange forces belongs to the scene, not to the integrator. This is what the choice costs by itself: the same tight integrator at every period, against the shortest.");
+  page.add_paragraph("How often tool and bodies exchange forces belongs to the scene, not to the integrator. This is what the choice costs by itself: the distance of the partitioned scheme at each period from tool and bodies stepped as one system, both by the same tight integrator.");
   const std::vector<std::string> scenes = exchange.has("scene") ? distinct(exchange, "scene") : std::vector<std::string>{""};
   for (const std::string& scene : scenes) {
     const Table own = rows_where(exchange, "scene", scene);
