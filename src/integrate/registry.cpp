@@ -32,6 +32,20 @@ dynamics::StepperRegistry make_registry() {
   const dynamics::StepperRegistry by_hand = {
       {"linearly-implicit-euler", "one linear solve a step; the interactive method of Galoppo et al. 2007",
        {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent"}, make_linearly_implicit_euler},
+      {"backward-euler", "backward Euler, Newton to its end; full, or a factor kept over factor_kept_steps",
+       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent"}, make_backward_euler},
+      {"implicit-midpoint", "implicit midpoint rule, Newton to its end; keeps quadratic invariants; no numerical damping",
+       {"Gauss", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent"}, make_implicit_midpoint},
+      {"bdf2", "backward differences of order 2 with variable steps; starts by an L-stable SDIRK step of order 2",
+       {"BDF", 2, 2, StepControl::kFixed, Stability::kL, true, true, "force, tangent"}, make_bdf2},
+      {"newmark", "Newmark 1959, average acceleration (beta = 1/4, gamma = 1/2); no numerical damping",
+       {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent"}, make_newmark},
+      {"generalized-alpha", "Chung and Hulbert 1993; damps high frequencies by spectral_radius a step",
+       {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent"}, make_generalized_alpha},
+      {"symplectic-euler", "velocity first, then position; one force a step, stable below 2/w_max",
+       {"explicit Euler", 1, 0, StepControl::kFixed, Stability::kExplicit, false, false, "force"}, make_symplectic_euler},
+      {"rk4", "the classical Runge-Kutta method of order 4; four forces a step, stable below 2.8/w_max",
+       {"explicit Runge-Kutta", 4, 0, StepControl::kFixed, Stability::kExplicit, false, false, "force"}, make_rk4},
   };
   all.insert(all.end(), by_hand.begin(), by_hand.end());
   return all;

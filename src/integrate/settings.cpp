@@ -36,4 +36,18 @@ void check_fixed_step(const IntegratorSpec& spec) {
 
 void check_static(const IntegratorSpec& spec) { check_positive(spec, "newton_rtol", spec.newton_rtol, "1e-8 is usual"); }
 
+void check_newton(const IntegratorSpec& spec) {
+  if (!(spec.newton_rtol >= 1e-14 && spec.newton_rtol <= 0.1))
+    fail("integrator \"{}\": newton_rtol = {} must lie in [1e-14, 0.1]; 1e-8 is usual", spec.name, spec.newton_rtol);
+  check_positive(spec, "atol_q", spec.atol_q, "0.01 is usual");
+  check_positive(spec, "atol_u", spec.atol_u, "0.1 is usual");
+  if (spec.factor_kept_steps < 1)
+    fail("integrator \"{}\": factor_kept_steps = {} must be at least 1; 1 is full Newton", spec.name, spec.factor_kept_steps);
+}
+
+void check_spectral_radius(const IntegratorSpec& spec) {
+  if (!(spec.spectral_radius >= 0.0 && spec.spectral_radius <= 1.0))
+    fail("integrator \"{}\": spectral_radius = {} must lie in [0, 1]; 1 damps nothing, 0 the most", spec.name, spec.spectral_radius);
+}
+
 }  // namespace palpate::integrate

@@ -69,6 +69,12 @@ class Indefinite : public testing::TestWithParam<std::string> {
     const StepResult result = stepper->advance_to(1000.0);
     EXPECT_TRUE(result.ok()) << result.message;
     EXPECT_EQ(problem.state.q().norm(), 0.0);
+    if (stepper->counters().tangent_evaluations == 0) {  // saw that no force was left, and asked for no matrix: one step from beside the equilibrium
+      problem.state.q().setConstant(1e-3);
+      stepper->reinit(ReinitReason::kStateChanged);
+      const StepResult beside = stepper->advance_to(1001.0);
+      EXPECT_TRUE(beside.ok()) << beside.message;
+    }
     EXPECT_FALSE(problem.term->definite) << "definite tangents are for one evaluation";
     return stepper->counters();
   }
@@ -80,7 +86,7 @@ TEST_P(Indefinite, AsksForDefiniteTangents) {
   const StepperCounters c = counts(problem, "project");
   EXPECT_GT(c.indefinite, 0);
   EXPECT_EQ(c.projected, c.indefinite);
-  EXPECT_EQ(problem.term->definite_tangents, c.projected);
+  EXPECT_GE(problem.term->definite_tangents, c.projected);
   EXPECT_GE(c.tangent_evaluations, 2 * c.projected) << "the true one, and the definite one";
 }
 
@@ -89,7 +95,7 @@ TEST_P(Indefinite, FallsBackToLuWhereNoTangentIsDefinite) {
   const StepperCounters c = counts(problem, "project");
   EXPECT_GT(c.indefinite, 0);
   EXPECT_EQ(c.projected, 0);
-  EXPECT_EQ(problem.term->definite_tangents, c.indefinite) << "asked for each time";
+  EXPECT_GE(problem.term->definite_tangents, c.indefinite) << "asked for each time";
 }
 
 TEST_P(Indefinite, TakesLuAtOnceWhereAsked) {

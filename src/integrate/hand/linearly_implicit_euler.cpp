@@ -1,0 +1,98 @@
+#include "integrate/hand/fixed_step.h"
+#include "integrate/make.h"
+#include "integrate/step_solver.h"
+#include "palpate/core/clock.h"
+
+namespace palpate::integrate {
+namespace {
+
+using namespace dynamics;
+
+/// Baraff and Witkin (1998), the step of Galoppo et al. (2007).  M (u1 - u0) = h f(q1, u1), q1 = q0 + h N u1, with the
+/// force made linear about (q0, u0) at the time t1 = t0 + h of the implicit rule, f1 = f - K h u1 - D (u1 - u0):
+///     free directions:  (M + h D + h^2 K) du = h (f - h K u0)
+/// Driven directions go to x(t1), v(t1) exactly.  Their displacement dx and velocity change dv enter the free rows as what they are,
+///     (M + h D + h^2 K) du = h (f - K s - D dv) - M dv,   s = h u0 on free directions, dx on driven ones;  dv = 0 on free ones,
+/// so a body that moves rigidly with its drive feels no force.  Order 1; L-stable on linear problems with M, D, K positive.
+/// A value that is not finite ends the step as data; an indefinite matrix is met as StepSolver says: the right-hand side keeps the
+/// true K, so that a projected matrix changes du by h^2 (K_p - K) du, which is O(h^3).
+/// Dense output is linear within the last step, which has the method's order.
+class LinearlyImplicitEuler final : public FixedStep {
+ public:
+  LinearlyImplicitEuler(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
+      : FixedStep("linearly-implicit-euler", 1, Between::kLinear, system, state, spec), solver_(std::move(solver), spec) {}
+
+ private:
+  /// s, dv of the derivation above.  A direction carried by a master moves with the master's explicit prediction.
+  void predict_drives(double t1, double h) {
+    shift_ = h * state_.u();
+    change_.setZero(layout().u_size);
+    if (!system_.any_driven()) return;
+    q_dot(layout(), state_.q().data(), state_.u().data(), q1_.data());
+    q1_ = state_.q() + h * q1_;
+    u1_ = state_.u();
+    system_.impose(layout(), t1, q1_.data(), u1_.data());
+    for (int dof : system_.driven_dofs()) {
+      shift_[dof] = q1_[dof] - state_.q()[dof];
+      change_[dof] = u1_[dof] - state_.u()[dof];
+    }
+  }
+
+  bool right_hand_side(const StateView& at, double h) {
+    const ScopedTimer timer(counters_.force_s);
+    ++counters_.force_evaluations;
+    system_.force(at, rhs_);
+    product_.setZero(rhs_.size());
+    for (const auto& term : system_.terms())
+      if (term->traits().has_tangent) term->apply_tangent(at, 1.0, 0.0, shift_, product_);
+    const bool drives_speed_up = (change_.array() != 0.0).any();  // fixed nodes do not
+    if (drives_speed_up) {
+      for (const auto& term : system_.terms())
+        if (term->traits().has_tangent) term->apply_tangent(at, 0.0, 1.0, change_, product_);
+    }
+    rhs_ = h * (rhs_ - product_);
+    if (drives_speed_up) {
+      system_.apply_mass(at, change_, product_);
+      rhs_ -= product_;
+    }
+    system_.reduce(at, rhs_);
+    return rhs_.allFinite();
+  }
+
+  Attempt attempt(double h, double t1) override {
+    predict_drives(t1, h);
+    const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
+    if (!right_hand_side(at, h)) return {.status = StepStatus::kNotFinite, .what = "the force is not finite"};
+    const auto assemble = [&] {
+      const ScopedTimer timer(counters_.tangent_s);
+      ++counters_.tangent_evaluations;
+      system_.step_matrix(at, 1.0, h, h * h, A_);
+    };
+    assemble();
+    if (solver_.factor(A_, system_, assemble) != SolveStatus::kOk || solver_.solve(rhs_, du_) != SolveStatus::kOk)
+      return {.status = StepStatus::kSolverFailed, .what = "the step matrix is singular or not finite"};
+    if (!du_.allFinite()) return {.status = StepStatus::kNotFinite, .what = "the velocity is not finite"};
+    u1_ = state_.u() + du_;
+    q_dot(layout(), state_.q().data(), u1_.data(), q1_.data());
+    q1_ = state_.q() + h * q1_;
+    project(layout(), q1_.data());
+    system_.impose(layout(), t1, q1_.data(), u1_.data());
+    return {.iterations = 1};
+  }
+  void forget(ReinitReason) override {}  // one-step, a fresh matrix each time
+  void collect(StepperCounters& counters) const override {
+    solver_.report(counters);
+  }
+
+  StepSolver solver_;
+  BorderedMatrix A_;
+  VecX shift_, change_, rhs_, product_, du_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_linearly_implicit_euler(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver) {
+  return std::make_unique<LinearlyImplicitEuler>(system, state, spec, std::move(solver));
+}
+
+}  // namespace palpate::integrate
