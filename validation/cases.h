@@ -24,6 +24,7 @@ ValidationCase spinning_body();
 ValidationCase axial_vibration();
 ValidationCase lame_mode();
 ValidationCase bending_vibration();
+ValidationCase explicit_limit();
 ValidationCase dropped_ball();
 ValidationCase handle_step();
 ValidationCase handle_below_wall();

@@ -11,7 +11,7 @@ const std::vector<ValidationCase>& validation_cases() {
       validation::patch_test(), validation::rigid_motion(), validation::gradient_and_tangent(), validation::uniaxial_and_shear(), validation::hanging_bar(),
       validation::cantilever(),
       validation::free_vibration(), validation::vibration_tolerance(), validation::axial_vibration(), validation::lame_mode(), validation::bending_vibration(),
-      validation::spinning_body(), validation::dropped_ball(),
+      validation::spinning_body(), validation::explicit_limit(), validation::dropped_ball(),
 #ifdef PALPATE_HAS_tool
       validation::handle_step(), validation::handle_below_wall(), validation::coupling_limit(),
 #endif
