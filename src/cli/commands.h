@@ -51,6 +51,16 @@ struct ModesArguments {
 };
 int modes(const ModesArguments& arguments);
 
+struct StabilityArguments {
+  std::vector<std::string> rows, integrators;  ///< empty: all
+  bool slow = false;       ///< the rows that take minutes, too
+  bool cells = false;      ///< print every cell, not only the unexpected ones
+  int seeds = 10, jobs = 1;
+  double limit_s = 20.0;   ///< CPU time of a cell
+  std::string folder;      ///< empty: out/stability
+};
+int stability(const StabilityArguments& arguments);
+
 struct InspectArguments {
   SceneArguments scene;
 };

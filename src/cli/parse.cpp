@@ -160,6 +160,29 @@ modes.vtkhdf: ParaView opens it as a time series in which time is the mode's num
   });
 }
 
+void add_stability(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("stability", "stiff and extreme cases against every integrator, each held against theory");
+  auto arguments = std::make_shared<StabilityArguments>();
+  command->add_option("--row", arguments->rows, "only this row; may be given more than once")->type_name("NAME")->allow_extra_args(false);
+  command->add_option("--integrator", arguments->integrators, "only this one; may be given more than once")->type_name("NAME")->allow_extra_args(false);
+  command->add_flag("--slow", arguments->slow, "also the rows that take minutes");
+  command->add_flag("--cells", arguments->cells, "print every cell with its figure, not only the unexpected ones");
+  command->add_option("--seeds", arguments->seeds, "random starts of the squashed and scattered bodies")->check(CLI::Range(1, 100000))->capture_default_str();
+  command->add_option("--jobs", arguments->jobs, "processes")->check(CLI::Range(1, 256))->capture_default_str();
+  command->add_option("--limit-s", arguments->limit_s, "CPU time of a cell [s]")->type_name("SECONDS")->check(duration)->capture_default_str();
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/stability")->type_name("DIR");
+  command->footer(R"(Examples:
+  palpate stability --jobs 2
+  palpate stability --row youngs-modulus --integrator cvode-bdf --cells
+  palpate stability --slow --seeds 100 -o out/stability
+
+Writes stability.csv, stability.json and report.html with the heat map.  Exit status 0 when every cell is as theory expects, else 1.)");
+  command->callback([arguments, &invocation] {
+    invocation.action = [arguments] { return stability(*arguments); };
+    invocation.factorises = true;
+  });
+}
+
 void add_inspect(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("inspect", "what a scene uses, what it leaves out, sizes and memory");
   auto arguments = std::make_shared<InspectArguments>();
@@ -257,6 +280,7 @@ Invocation parse(int argc, char** argv) {
   add_compare(app, invocation);
   add_validate(app, invocation);
   add_modes(app, invocation);
+  add_stability(app, invocation);
   add_inspect(app, invocation);
   add_list(app, invocation);
   add_bench(app, invocation);

@@ -133,6 +133,11 @@ Page& Page::add_png(const fs::path& png, const std::string& caption) {
   return *this;
 }
 
+Page& Page::add_fragment(const std::string& html) {
+  body_ += html;
+  return *this;
+}
+
 Page& Page::add_code(const std::string& text) {
   body_ += "<pre><code>" + escape_html(text) + "</code></pre>\n";
   return *this;

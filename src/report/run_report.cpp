@@ -35,7 +35,7 @@ std::string scene_source(const fs::path& dir, const Json& summary) {
 }
 
 bool holds_results(const fs::path& dir) {
-  for (const char* name : {"summary.json", "force.csv", "trace.csv", "compare.csv", "restarts.csv", "exchange.csv", "validation.json"})
+  for (const char* name : {"summary.json", "force.csv", "trace.csv", "compare.csv", "restarts.csv", "exchange.csv", "validation.json", "stability.json"})
     if (fs::exists(dir / name)) return true;
   return false;
 }
@@ -45,7 +45,7 @@ bool holds_results(const fs::path& dir) {
 fs::path write_run_report(const fs::path& dir) {
   if (!fs::is_directory(dir)) fail("{}: is not a directory; give the one that a run wrote", dir.string());
   if (!holds_results(dir))
-    fail("{}: holds no results to report (none of summary.json, force.csv, compare.csv, exchange.csv, validation.json); give the directory that a run wrote", dir.string());
+    fail("{}: holds no results to report (none of summary.json, force.csv, compare.csv, exchange.csv, validation.json, stability.json); give the directory that a run wrote", dir.string());
   const auto has = [&](const char* name) { return fs::exists(dir / name); };
   const Json summary = has("summary.json") ? read_json(dir / "summary.json") : Json::object();
 
@@ -60,6 +60,7 @@ fs::path write_run_report(const fs::path& dir) {
   if (has("exchange.csv")) add_exchange(page, read_csv(dir / "exchange.csv"));
   if (has("methods.csv")) add_methods(page, read_csv(dir / "methods.csv"));
   if (has("validation.json")) add_validation(page, read_json(dir / "validation.json"));
+  if (has("stability.json")) add_stability(page, read_json(dir / "stability.json"));
   add_figures(page, summary);
   add_parts(page, summary);
   add_provenance(page, summary);

@@ -25,6 +25,7 @@ void add_restarts(Page& page, const Table& restarts);
 void add_exchange(Page& page, const Table& exchange);
 void add_methods(Page& page, const Table& methods);
 void add_validation(Page& page, const Json& validation);
+void add_stability(Page& page, const Json& stability);
 void add_parts(Page& page, const Json& summary);
 void add_provenance(Page& page, const Json& summary);
 

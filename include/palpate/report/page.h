@@ -27,6 +27,8 @@ class Page {
   Page& add_svg(const std::string& svg, const std::string& caption);
   /// A PNG file, embedded.  Throws Error when it cannot be read or is not a PNG.
   Page& add_png(const std::filesystem::path& png, const std::string& caption);
+  /// Ready HTML, well-formed and escaped by who made it.
+  Page& add_fragment(const std::string& html);
   Page& add_code(const std::string& text);
 
   /// Figures that are added between these two stand side by side where there is room.

@@ -1,0 +1,99 @@
+#include "palpate/study/stability.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "commands.h"
+#include "palpate/report/run_report.h"
+#include "palpate/report/table.h"
+#include "places.h"
+#include "progress.h"
+#include "stop.h"
+
+namespace palpate::cli {
+namespace {
+
+using study::StabilityCell;
+using study::Verdict;
+
+/// One letter a cell: the matrix fits a terminal.
+char letter(const StabilityCell& cell) { return "ASBEGNFT"[static_cast<std::size_t>(cell.verdict)]; }
+
+/// A row of letters a case, one column an integrator; a cell that is not what theory expects is marked.
+void print_matrix(const study::StabilityMatrix& matrix) {
+  std::vector<std::string> integrators;
+  std::vector<std::pair<std::string, std::map<std::string, std::string>>> rows;
+  for (const StabilityCell& cell : matrix.cells) {
+    if (std::find(integrators.begin(), integrators.end(), cell.integrator) == integrators.end()) integrators.push_back(cell.integrator);
+    const std::string name = fmt::format("{}: {}", cell.row, cell.sub_case);
+    if (rows.empty() || rows.back().first != name) rows.push_back({name, {}});
+    rows.back().second[cell.integrator] = fmt::format("{}{}", letter(cell), cell.as_expected() ? ' ' : '!');
+  }
+  for (std::size_t i = 0; i < integrators.size(); ++i) fmt::print("{:>3}  {}\n", i + 1, integrators[i]);
+  std::size_t width = 0;
+  for (const auto& row : rows) width = std::max(width, row.first.size());
+  fmt::print("\n{:{}}", "", width);
+  for (std::size_t i = 0; i < integrators.size(); ++i) fmt::print(" {:>2}", i + 1);
+  fmt::print("\n");
+  for (const auto& [name, cells] : rows) {
+    std::string line = fmt::format("{:{}}", name, width);
+    for (const std::string& integrator : integrators) line += "  " + (cells.contains(integrator) ? cells.at(integrator) : ". ");
+    fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
+  }
+  fmt::print("\nA accurate  S stable  B bounded  E ended with a clear error  G grew  N not finite  F failed in silence  T too slow  ! unexpected  . no such cell\n");
+}
+
+void print_cells(const study::StabilityMatrix& matrix, bool only_unexpected) {
+  std::vector<std::vector<std::string>> rows;
+  for (const StabilityCell& c : matrix.cells)
+    if (!only_unexpected || !c.as_expected())
+      rows.push_back({c.row, c.sub_case, c.integrator, study::to_string(c.verdict), c.expected.text(), c.figure, fmt::format("{:.2f}", c.cpu_s), c.reason});
+  if (!rows.empty())
+    fmt::print("\n{}", report::format_table({"row", "case", "integrator", "verdict", "expected", "figure", "CPU [s]", "reason"}, rows));
+}
+
+std::string command_of(const StabilityArguments& arguments) {
+  std::string command = "palpate stability";
+  for (const std::string& row : arguments.rows) command += " --row " + row;
+  for (const std::string& integrator : arguments.integrators) command += " --integrator " + integrator;
+  if (arguments.slow) command += " --slow";
+  return command + fmt::format(" --seeds {} --jobs {} --limit-s {:g}", arguments.seeds, arguments.jobs, arguments.limit_s);
+}
+
+study::StabilityMatrix watched(const StabilityArguments& arguments) {
+  Progress progress("stability");
+  study::StabilityOptions options;
+  options.rows = arguments.rows;
+  options.integrators = arguments.integrators;
+  options.slow = arguments.slow;
+  options.seeds = arguments.seeds;
+  options.jobs = arguments.jobs;
+  options.limit_s = arguments.limit_s;
+  options.progress = [&progress](double fraction, const std::string& what) { progress(fraction, what); };
+  options.stop = &stop_flag();
+  return study::stability(options);
+}
+
+}  // namespace
+
+int stability(const StabilityArguments& arguments) {
+  const std::string folder = arguments.folder.empty() ? default_folder("stability") : arguments.folder;
+  make_folder(folder);
+  const study::StabilityMatrix matrix = watched(arguments);
+  study::write(matrix, folder, command_of(arguments));
+  print_matrix(matrix);
+  print_cells(matrix, !arguments.cells);
+  const long unexpected = matrix.unexpected();
+  fmt::print("\n{} of {} cells as theory expects, in {:.0f} s\n", static_cast<long>(matrix.cells.size()) - unexpected, matrix.cells.size(), matrix.wall_s);
+  fmt::print("written: {}\n", report::write_run_report(folder).string());
+  if (matrix.stopped) {
+    fmt::print(stderr, "palpate: stopped; the cells that were finished are in {}\n", folder);
+    return kExitStopped;
+  }
+  return unexpected > 0 ? kExitError : 0;
+}
+
+}  // namespace palpate::cli
