@@ -36,7 +36,7 @@ ALLOWED = {
 
 # Headers of outside libraries, and the only folders that may include them.
 OUTSIDE = [
-    ("SUNDIALS", r"(sundials|cvode|cvodes|arkode|ida|idas|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol|sunmemory)/", ["src/integrate"]),
+    ("SUNDIALS", r"(sundials|cvode|cvodes|arkode|ida|idas|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol|sunmemory)/", ["src/integrate", "tests/integrate"]),
     ("Simbody", r"(Simbody|SimTK\w*|simbody|simmath)(\.h$|/)", ["src/tool", "tests/isolation"]),
     ("EGL and OpenGL", r"(EGL|GL|GLES\d?|KHR|epoxy)/", ["src/gl", "include/palpate/gl", "src/render", "tests/gl", "tests/render"]),
     ("libccd", r"ccd/", ["src/proxy", "tests/proxy"]),

@@ -99,6 +99,7 @@ void FixedStep::accept(double h, double t1) {
   ++counters_.steps;
   ++taken_;
   accepted(h);
+  if (follower_) follower_->stepped(*this, t0_, t1_);
 }
 
 void FixedStep::tell(const Attempt& attempt, double h, double t1) const {

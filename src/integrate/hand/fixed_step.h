@@ -25,6 +25,10 @@ class FixedStep : public dynamics::Stepper {
   dynamics::StepResult advance_to(double t_end) final;
   bool dense_output(double t, VecX& q, VecX& u) const final;
   void reinit(dynamics::ReinitReason reason) final;
+  bool follow(dynamics::StepFollower* follower) final {
+    follower_ = follower;
+    return true;
+  }
   const dynamics::StepperCounters& counters() const final;
 
  protected:
@@ -72,6 +76,7 @@ class FixedStep : public dynamics::Stepper {
   Between between_;
   int taken_ = 0;                ///< steps since the last output
   VecX q0_, u0_;                 ///< start of the last step
+  dynamics::StepFollower* follower_ = nullptr;
   double t0_ = 0.0, t1_ = 0.0;   ///< the last step; equal: none to interpolate in
   mutable VecX rate_, rate1_;
 };

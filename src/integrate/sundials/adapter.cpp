@@ -115,6 +115,11 @@ StepResult Adapter::advance_to(double t_end) {
     if (flag >= 0) t = reached;  // after a failure the time may be that of a stage
     if (trace() && flag >= 0) accept_attempt(before, t, flag == kReachedRoot);
     if (trace() && flag < 0 && attempt_open_) close_attempt(attempt_finite_ ? StepAttempt::Outcome::kNewton : StepAttempt::Outcome::kNotFinite);
+    if (follower_ && flag >= 0 && t > before) {
+      problem_->store(flag == kReachedStop ? t_end : t, NV_DATA_S(y_));
+      collect();
+      follower_->stepped(*this, before, problem_->time());
+    }
     if (flag != kReachedRoot || t >= t_end) {
       if (flag == kReachedRoot) flag = kReachedStop;
       continue;

@@ -29,6 +29,10 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   dynamics::StepResult advance_to(double t_end) final;
   bool dense_output(double t, VecX& q, VecX& u) const final;
   void reinit(dynamics::ReinitReason reason) final;
+  bool follow(dynamics::StepFollower* follower) final {
+    follower_ = follower;
+    return true;
+  }
   const dynamics::StepperCounters& counters() const final;
 
  protected:
@@ -101,6 +105,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   Counts counted_;       ///< at the last look
   long newton_before_ = 0;
   double last_correction_ = 0.0;  ///< weighted norm of the last Newton correction
+  dynamics::StepFollower* follower_ = nullptr;
   bool made_ = false, running_ = false, keep_step_ = false;
   bool finite_ = true;  ///< the last evaluation was
   std::uint64_t version_ = 0;
