@@ -11,7 +11,9 @@
 // third, the error of one step relative to the mode is C (w H)^{p+1}, of the run C (w H)^p w T:
 //     order 1:      w^2 H T/2 <= 0.2      (the amplitude's damping e^{-w^2 H T/2})
 //     order 2:      w H <= 0.3 and w^3 H^2 T/12 <= 0.1      (the phase)
-//     order p >= 3: w H <= 0.15, where w^{p+1} H^p T/12 <= 0.1 holds by itself; the tables with large next terms want it half of that of order 2.
+//     order p >= 3: w H <= 0.1, where w^{p+1} H^p T/12 <= 0.1 holds by itself.
+// Tables with a small leading or a large next term show their order later: the coarsest step is a quarter of that bound for order 2 (sdirk212),
+// and w H = 0.05 for order 3 (esdirk325).
 // An explicit method is besides kept inside its stability limit for the highest mode: w_max H <= 0.5 of order 1 to 3, since that of order 2
 // has none on the imaginary axis but grows by (w_max H)^4/8 a step, which must not lift rounding to where it is seen; 1.5 of higher order,
 // whose error would else begin at rounding.
@@ -23,7 +25,8 @@ namespace {
 
 double coarsest_step(const dynamics::StepperTraits& traits, const VibratingBar& bar, double T) {
   const double w = bar.omega[VibratingBar::kModes - 1];
-  const double accurate = traits.order == 1 ? 0.4 / (w * w * T) : traits.order == 2 ? std::min(0.3 / w, std::sqrt(1.2 / (w * w * w * T))) : 0.15 / w;
+  const double accurate = traits.order == 1 ? 0.4 / (w * w * T) : traits.order == 2 ? 0.25 * std::min(0.3 / w, std::sqrt(1.2 / (w * w * w * T)))
+                          : traits.order == 3 ? 0.05 / w : 0.1 / w;
   return traits.stability == dynamics::Stability::kExplicit ? std::min(accurate, (traits.order <= 3 ? 0.5 : 1.5) / bar.highest_omega) : accurate;
 }
 
