@@ -181,7 +181,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase dropped_ball() {
   return {.name = "dropped-ball",
           .section = "D",
-          .summary = "a rigid ball bounces on a plane: energy gained, every integrator with error control; a soft ball beside it",
+          .summary = "a rigid ball bounces on a plane: energy gained, integrators of order 3 and more with error control, additive pairs left out; a soft ball beside it",
           .why = "energy from nowhere at contact is what makes a haptic device kick; conservation of energy",
           .run = run,
           .sabotages = {"no-look-ahead", "loose-tolerance"}};

@@ -50,12 +50,12 @@ class ForceTerm {
   /// The slow part (a contact query).  Called by the loop at `contact_refresh_s`, never by an integrator; returns true when the force changed by it (multistep methods then restart).
   virtual bool refresh(const StateView&) { return false; }
 
-  /// Root functions for event location: g changes sign at an event (a gap closing).
   /// Asks for a positive semi-definite tangent from now on (true), or for the one that was chosen by name (false).  A term that has only one ignores it.
   virtual void set_definite(bool) {}
   /// The worst of what can go wrong in this term at a state; for traces, not for the step.
   virtual Finding inspect(const StateView&) const { return {}; }
 
+  /// Root functions for event location: g changes sign at an event (a gap closing).
   virtual int event_count() const { return 0; }
   virtual void events(const StateView&, double* /*g*/) {}
 };

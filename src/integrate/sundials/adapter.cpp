@@ -301,7 +301,6 @@ void Adapter::close_attempt(StepAttempt::Outcome outcome) {
 
 void Adapter::accept_attempt(double t0, double t1, bool event) {
   const Counts now = counts();
-  // A failure that no later evaluation has shown (a library may go on with a smaller order on old values).
   StepAttempt a;
   a.t = t0;
   a.h = t1 - t0;
