@@ -25,6 +25,13 @@ std::string label_of(const scene::LadderSpec& ladder) { return ladder.label.empt
 
 bool contains(const std::vector<std::string>& list, const std::string& name) { return std::find(list.begin(), list.end(), name) != list.end(); }
 
+/// Whether the user's list asks for a ladder: by its label, or by its integrator where no ladder has that name for a label.
+bool is_named(const std::vector<std::string>& wanted, const scene::LadderSpec& ladder, const std::vector<scene::LadderSpec>& all) {
+  if (contains(wanted, label_of(ladder))) return true;
+  const auto has_that_label = [&](const scene::LadderSpec& other) { return label_of(other) == ladder.integrator; };
+  return contains(wanted, ladder.integrator) && std::none_of(all.begin(), all.end(), has_that_label);
+}
+
 /// rtol 1e-2 ... 1e-8 under error control; else halvings of the loop's period, or of 10 ms: an explicit method may need very short steps.
 scene::LadderSpec default_ladder(const scene::Description& d, const StepperEntry& entry) {
   scene::LadderSpec ladder;
@@ -67,7 +74,7 @@ std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const Com
   if (!tool_only)
     for (const scene::LadderSpec& ladder : d.compare.ladders) {
       check_ladder(d, ladder);
-      const bool named = contains(wanted, ladder.integrator) || contains(wanted, label_of(ladder));
+      const bool named = is_named(wanted, ladder, d.compare.ladders);
       if (named) met.insert({ladder.integrator, label_of(ladder)});
       if (!everything && !named) continue;
       if (!labels.insert(label_of(ladder)).second)
