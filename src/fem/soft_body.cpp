@@ -37,8 +37,8 @@ struct SoftBody::Impl {
   void set(const Material& m) {
     check(m, fmt::format("body \"{}\"", name).c_str());
     material = m;
-    elastic = {m.mu(), m.lambda()};
-    damping = {m.stiffness_damping * m.mu(), m.stiffness_damping * m.lambda()};
+    elastic = {m.mu(), options.volumetric_share * m.lambda()};
+    damping = {m.stiffness_damping * elastic.mu, m.stiffness_damping * elastic.lambda};
   }
 };
 

@@ -63,6 +63,16 @@ TEST(SoftBody, EnergyOfAUniformStretch) {
   EXPECT_NEAR(body.energy(at.state.view()), expected, 1e-14);
 }
 
+TEST(SoftBody, VolumetricShareIsOfLambdaAlone) {
+  // With half the share, the energy of a uniform stretch has half its lambda part: mu sum (s_i - 1)^2 + lambda/4 (sum (s_i - 1))^2.
+  const TetMesh rest = jittered_cube(1, 0.0, 36);
+  const Material m = soft_material();
+  const OneBody at(flat(Vec3(1.3, 0.9, 1.1).asDiagonal() * rest.nodes), VecX::Zero(3 * rest.nodes.cols()));
+  SoftBody body("b", rest, m, {.volumetric_share = 0.5}, at.id);
+  EXPECT_NEAR(body.energy(at.state.view()), m.mu() * (0.09 + 0.01 + 0.01) + 0.25 * m.lambda() * 0.3 * 0.3, 1e-14);
+  EXPECT_EQ(body.material().lambda(), m.lambda());
+}
+
 TEST(SoftBody, NewMaterialTakesEffectAtTheNextEvaluation) {
   const TetMesh rest = one_tet();
   const OneBody at(flat(1.1 * rest.nodes), VecX::Zero(12));

@@ -14,6 +14,7 @@ enum class Tangent { kExact, kProjected, kWarped };
 struct SoftBodyOptions {
   Tangent tangent = Tangent::kExact;
   bool full_damping_tangent = false;  ///< keep the unsymmetric part of the damping's derivative by position
+  double volumetric_share = 1.0;      ///< of lambda (and of lambda_d), acting element by element; the rest belongs to another term
 };
 
 /// What one evaluation met, for reports: counts since the last reset.
