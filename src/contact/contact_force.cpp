@@ -9,6 +9,16 @@
 
 namespace palpate::contact {
 
+namespace {
+
+/// Whether two samples stand for the same two points, wherever these are now: the points of a frame slide.
+bool is_same_pair(const ContactSample& s, const ContactSample& t) {
+  const auto is_same = [](const SurfacePoint& p, const SurfacePoint& q) { return p.frame == q.frame && p.count == q.count && (p.frame >= 0 || p.node == q.node); };
+  return s.source == t.source && is_same(s.a, t.a) && is_same(s.b, t.b);
+}
+
+}  // namespace
+
 void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
   frame_states.resize(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -32,6 +42,7 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
   ++queries;
   counters::count("contact.query");
   std::swap(samples, next_samples);
+  if (!std::equal(samples.begin(), samples.end(), next_samples.begin(), next_samples.end(), is_same_pair)) ++events_version;
 }
 
 void ContactForce::Impl::check_samples(const dynamics::StateView& state) const {
@@ -159,6 +170,8 @@ int ContactForce::event_count() const {
     if (pair.law.onset == 0.0) count += static_cast<int>(pair.end - pair.begin);
   return count;
 }
+
+std::uint64_t ContactForce::events_version() const { return impl_->events_version; }
 
 // A candidate that is far apart is among them: it may close before the next query.  A sample whose gap is far away costs a root finder an evaluation, no more.
 void ContactForce::events(const dynamics::StateView& state, double* g) {

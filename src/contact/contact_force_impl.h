@@ -18,6 +18,7 @@ struct ContactForce::Impl {
   std::vector<FrameState> frame_states;  ///< at the state of the evaluation under way
   VecX force_before, force_after;        ///< scratch of refresh
   long queries = 0;
+  std::uint64_t events_version = 1;      ///< grows when a query finds other samples than the one before
   double query_seconds = 0.0;
   double refresh_force_jump = 0.0;
 

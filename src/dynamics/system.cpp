@@ -41,6 +41,12 @@ int System::event_count() const {
   return count;
 }
 
+std::uint64_t System::events_version() const {
+  std::uint64_t sum = terms_.size();  // each grows only, so does the sum
+  for (const auto& term : terms_) sum += term->events_version();
+  return sum;
+}
+
 void System::events(const StateView& state, double* g) const {
   for (const auto& term : terms_) {
     term->events(state, g);

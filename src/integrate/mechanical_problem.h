@@ -35,6 +35,7 @@ class MechanicalProblem final : public OdeProblem {
   bool residual(double t, const double* y, const double* y_dot, double* r) override;
   dynamics::SolveStatus solve_residual(const double* y, const double* r, double* d) override;
   int event_count() const override { return system_.event_count(); }
+  std::uint64_t events_version() const override { return system_.events_version(); }
   void events(double t, const double* y, double* g) override;
   int dof_of(int i) const override;
   std::pair<dynamics::Finding, std::string> inspect(double t, const double* y) override;

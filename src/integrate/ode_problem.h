@@ -49,6 +49,7 @@ class OdeProblem {
 
   /// Functions that change sign where f has a kink.
   virtual int event_count() const { return 0; }
+  virtual std::uint64_t events_version() const { return 0; }  ///< grows when they are other functions than before
   virtual void events(double /*t*/, const double* /*y*/, double* /*g*/) {}
 
   /// For traces: the entry of u that entry i of y belongs to (-1: none), and what is inside out at y.

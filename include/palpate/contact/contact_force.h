@@ -73,6 +73,7 @@ class ContactForce : public dynamics::ForceTerm {
   /// exactly where it opens or closes.  With the damper cut off in parting that is not where the gap closes: see events in contact_force.cpp.
   /// Their number is constant between two refreshes, and a refresh may change it, also one that changes no force and returns false.
   int event_count() const override;
+  std::uint64_t events_version() const override;
   void events(const dynamics::StateView& state, double* g) override;
 
   const std::vector<ContactSample>& samples() const;

@@ -57,6 +57,8 @@ class ForceTerm {
 
   /// Root functions for event location: g changes sign at an event (a gap closing).
   virtual int event_count() const { return 0; }
+  /// Grows whenever event_count() or what one of the functions stands for changed: a root finder then compares no old value with a new one.
+  virtual std::uint64_t events_version() const { return 0; }
   virtual void events(const StateView&, double* /*g*/) {}
 };
 

@@ -36,6 +36,7 @@ class System {
   void set_definite(bool definite);
   /// Root functions of all terms, one after the other (event location).
   int event_count() const;
+  std::uint64_t events_version() const;
   void events(const StateView& state, double* g) const;
   /// The first term's finding that names an element, with the term's name; element -1 where none does.
   std::pair<Finding, std::string> inspect(const StateView& state) const;

@@ -64,6 +64,10 @@ void Adapter::release() {
 }
 
 void Adapter::start() {
+  if (running_ && finds_roots() && roots_version_ != problem_->events_version()) {  // between two calls: y_ is the present
+    running_ = false;
+    keep_step_ = true;
+  }
   if (running_) return;
   const bool fits = made_ && version_ == problem_->version();
   if (!fits) {
@@ -78,9 +82,10 @@ void Adapter::start() {
     create();
   made_ = true;
   version_ = problem_->version();
-  const int roots_now = spec_.events == "root-finding" ? problem_->event_count() : 0;
+  const int roots_now = finds_roots() ? problem_->event_count() : 0;
   if (!fits || roots_now != root_count_) find_roots(roots_now);
   root_count_ = roots_now;
+  roots_version_ = problem_->events_version();
   counted_ = counts();
   running_ = true;
   keep_step_ = false;

@@ -101,6 +101,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   SUNNonlinearSolver newton_ = nullptr;
   double rate_ = 1.0, previous_correction_ = 0.0;  ///< contraction of Newton's iteration
   void fill_weights(N_Vector y, N_Vector w) const;
+  bool finds_roots() const { return spec_.events == "root-finding"; }
   double weight_scale_ = 1.0;
   Counts counted_;       ///< at the last look
   long newton_before_ = 0;
@@ -110,6 +111,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   bool finite_ = true;  ///< the last evaluation was
   std::uint64_t version_ = 0;
   int root_count_ = 0;
+  std::uint64_t roots_version_ = 0;  ///< of the event functions that the library has values of
   double wanted_gamma_ = 0.0;
   std::string message_;
 
