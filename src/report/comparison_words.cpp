@@ -55,11 +55,11 @@ std::string families_in_words(const std::vector<Ladder>& all, double target) {
   return fmt::format("{:g} is reached by {} {}: {}. ", target, families.size(), families.size() == 1 ? "family" : "families", list_of(families));
 }
 
-/// A reason without the figures of its own point: what many ladders may share.
+/// What kind of failure it was, "Newton did not converge" of "Newton did not converge: ark-mri-2: ...": what many ladders may share.
 std::string kind_of(const std::pair<std::string, std::string>& failure) {
   if (failure.first == "out of time" || failure.first == "not tried") return "out of time";
   if (failure.second.empty()) return failure.first;
-  const std::string start = failure.second.substr(0, std::min(failure.second.find_first_of("\n("), std::size_t{90}));
+  const std::string start = failure.second.substr(0, std::min(failure.second.find_first_of("\n(:"), std::size_t{90}));
   return start.substr(0, start.find_last_not_of(" ,;:") + 1);
 }
 
