@@ -36,6 +36,7 @@ bool operator==(const Index& a, const Index& b) {
 #include <simbody/internal/SimbodyMatterSubsystem.h>
 #include <simmath/CPodesIntegrator.h>
 #include <simmath/RungeKuttaMersonIntegrator.h>
+#include <simmath/SemiExplicitEuler2Integrator.h>
 
 #pragma pop_macro("NDEBUG")
 #include <cassert>

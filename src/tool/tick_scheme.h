@@ -24,6 +24,7 @@ const Registry<MakeTickScheme>& tick_scheme_registry();
 std::unique_ptr<TickScheme> make_semi_implicit_euler(SimbodyBody& body);
 std::unique_ptr<TickScheme> make_linearly_implicit_euler(SimbodyBody& body);
 std::unique_ptr<TickScheme> make_runge_kutta_merson(SimbodyBody& body);
+std::unique_ptr<TickScheme> make_semi_explicit_euler2(SimbodyBody& body);
 std::unique_ptr<TickScheme> make_cpodes(SimbodyBody& body);
 
 }  // namespace palpate::tool
