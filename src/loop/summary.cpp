@@ -32,6 +32,7 @@ void add_counts(store::SummarySection& s, const RunResult& r) {
   add("projected_matrices", c.projected);
   add("unconverged_linear_solves", c.unconverged);
   add("reinitialisations", c.reinits);
+  add("events", c.events);
   add("contact_queries", r.contact_queries);
   add("frozen_fallbacks", r.frozen_fallbacks);
 }

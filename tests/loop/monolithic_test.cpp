@@ -100,6 +100,25 @@ TEST(Monolithic, TicksComeInTheirOrderAndNumberWhateverTheRefresh) {
   }
 }
 
+// Each sample that closes or opens under the tool is a root that a step is cut short at.
+TEST(Monolithic, SummaryCountsTheRootsThatStepsWereCutShortAt) {
+  const auto counted = [](const char* events) {
+    scene::Description d = monolithic_press(0.002);
+    d.integrator.events = events;
+    const auto world = loop::assemble(d);
+    const loop::RunResult result = loop::run(*world, {});
+    EXPECT_TRUE(result.status.ok()) << result.status.message;
+    store::Summary summary = loop::summarise(*world, result, 0.0);
+    for (const auto& [name, value] : summary.section("counts").values)
+      if (name == "events") return std::pair{std::get<long long>(value), result.counters.events};
+    return std::pair{-1LL, -1L};
+  };
+  const auto [named, events] = counted("root-finding");
+  EXPECT_GT(events, 0);
+  EXPECT_EQ(named, events);
+  EXPECT_EQ(counted("error-control").first, 0);
+}
+
 // At rest k (x_h - x_t) + F = 0, as in the partitioned scheme: the two differ on the way, not in the end.
 TEST(Monolithic, RestsWhereThePartitionedSchemeRests) {
   scene::Description d = monolithic_press(0.003);
