@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "integrate/fakes.h"
+#include "palpate/integrate/self_test.h"
 
 namespace palpate {
 namespace {
@@ -126,6 +127,24 @@ TEST_P(Traces, CostNothingWhereNobodyLooks) {
   ASSERT_TRUE(b->advance_to(0.3).ok());
   EXPECT_EQ(looked_at.state.q()[0], alone.state.q()[0]) << "bit for bit";
   EXPECT_EQ(a->counters().force_evaluations, b->counters().force_evaluations);
+}
+
+// The same number means another thing in each library, and another again where a linear solver is set up (the libraries' own headers).
+TEST(FlagNames, AreThoseOfTheLibraryThatWasCalled) {
+  using integrate::self_test::flag_name;
+  EXPECT_EQ(flag_name("CVode", -4), "CV_CONV_FAILURE");
+  EXPECT_EQ(flag_name("CVodeSetMaxOrd", -22), "CV_ILL_INPUT");
+  EXPECT_EQ(flag_name("CVodeSetLinearSolver", -3), "CVLS_ILL_INPUT");
+  EXPECT_EQ(flag_name("CVodeSetNonlinearSolver", -3), "CV_ERR_FAILURE");
+  EXPECT_EQ(flag_name("ARKStepEvolve", -3), "ARK_ERR_FAILURE");
+  EXPECT_EQ(flag_name("ARKStepSetLinSysFn", -3), "ARKLS_ILL_INPUT");
+  EXPECT_EQ(flag_name("MRIStepSetCoupling", -22), "ARK_ILL_INPUT");
+  EXPECT_EQ(flag_name("IDASolve", -4), "IDA_CONV_FAIL");
+  EXPECT_EQ(flag_name("IDASetJacFn", -3), "IDALS_ILL_INPUT");
+  EXPECT_EQ(flag_name("KINSol", -4), "KIN_MEM_FAIL");
+  EXPECT_EQ(flag_name("KINSetJacFn", -3), "KINLS_ILL_INPUT");
+  EXPECT_EQ(flag_name("SUNContext_Create", -4), "flag -4") << "SUNDIALS' own objects name none";
+  EXPECT_EQ(flag_name("CVode", -12345), "flag -12345");
 }
 
 TEST(Interrupt, EndsAtTheLastGoodStep) {

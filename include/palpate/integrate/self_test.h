@@ -18,4 +18,7 @@ struct Answer {
 /// The three of them.
 std::vector<Answer> all(double t);
 
+/// What an error message calls the value that a call of SUNDIALS returned: "CV_CONV_FAILURE" for ("CVode", -4).
+std::string flag_name(const std::string& call, long flag);
+
 }  // namespace palpate::integrate::self_test

@@ -134,7 +134,7 @@ class Ark final : public Adapter {
   }
 
   StepStatus status_of(int flag) const override { return ark_status(flag); }
-  std::string flag_name(int flag) const override { return ark_flag_name(flag); }
+  std::string flag_name(int flag) const override { return sun::flag_name("ARKStep", flag); }
   bool interpolate(double t, N_Vector out) const override { return ARKStepGetDky(memory_, t, 0, out) == ARK_SUCCESS; }
 
   Counts counts() const override {

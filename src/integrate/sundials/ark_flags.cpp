@@ -2,8 +2,6 @@
 
 #include <arkode/arkode_arkstep.h>
 
-#include <cstdlib>
-
 namespace palpate::integrate::sun {
 
 using dynamics::StepStatus;
@@ -21,13 +19,6 @@ StepStatus ark_status(int flag) {
     case ARK_UNREC_RHSFUNC_ERR: return StepStatus::kNotFinite;
     default: return StepStatus::kSolverFailed;
   }
-}
-
-std::string ark_flag_name(int flag) {
-  char* owned = ARKStepGetReturnFlagName(flag);
-  std::string name = owned ? owned : "UNKNOWN";
-  std::free(owned);
-  return name;
 }
 
 }  // namespace palpate::integrate::sun

@@ -1,6 +1,4 @@
 #pragma once
-#include <string>
-
 #include "palpate/dynamics/stepper.h"
 
 namespace palpate::integrate {
@@ -8,7 +6,6 @@ namespace sun __attribute__((visibility("hidden"))) {
 
 /// Return values of ARKStep and MRIStep, which are the same numbers.
 dynamics::StepStatus ark_status(int flag);
-std::string ark_flag_name(int flag);
 
 }  // namespace sun
 }  // namespace palpate::integrate

@@ -1,22 +1,48 @@
 #include "integrate/sundials/check.h"
 
+#include <arkode/arkode_arkstep.h>
+#include <arkode/arkode_mristep.h>
 #include <cvode/cvode.h>
+#include <cvode/cvode_ls.h>
+#include <ida/ida.h>
+#include <ida/ida_ls.h>
+#include <kinsol/kinsol.h>
+#include <kinsol/kinsol_ls.h>
 
 #include <cstdlib>
 
 #include "palpate/core/error.h"
 
 namespace palpate::integrate::sun {
+namespace {
 
-std::string cvode_flag_name(long flag) {
-  char* owned = CVodeGetReturnFlagName(flag);
-  std::string name = owned ? owned : "UNKNOWN";
-  std::free(owned);
-  return name == "NONE" ? fmt::format("flag {}", flag) : name;
+using Namer = char* (*)(long);
+/// `name` of a library's own return values, `linear_name` of its linear solver interface's.
+struct Library { std::string_view prefix; Namer name, linear_name; };
+constexpr Library kLibraries[] = {{"CVode", CVodeGetReturnFlagName, CVodeGetLinReturnFlagName},
+                                  {"ARKStep", ARKStepGetReturnFlagName, ARKStepGetLinReturnFlagName},
+                                  {"MRIStep", MRIStepGetReturnFlagName, MRIStepGetLinReturnFlagName},
+                                  {"IDA", IDAGetReturnFlagName, IDAGetLinReturnFlagName},
+                                  {"KIN", KINGetReturnFlagName, KINGetLinReturnFlagName}};
+
+/// CVodeSetLinearSolver, IDASetJacFn and their like; not CVodeSetNonlinearSolver.
+bool is_of_linear_solver(std::string_view call) { return call.find("Lin") != call.npos || call.find("Jac") != call.npos; }
+
+}  // namespace
+
+std::string flag_name(std::string_view call, long flag) {
+  for (const Library& library : kLibraries) {
+    if (!call.starts_with(library.prefix)) continue;
+    char* owned = (is_of_linear_solver(call) ? library.linear_name : library.name)(flag);
+    const std::string name = owned ? owned : "NONE";
+    std::free(owned);
+    if (name != "NONE") return name;
+  }
+  return fmt::format("flag {}", flag);
 }
 
 void check(long flag, const char* call, double t, double h) {
-  PALPATE_CHECK(flag >= 0, "{} returned {} ({}) at t = {}, h = {}", call, cvode_flag_name(flag), flag, t, h);
+  PALPATE_CHECK(flag >= 0, "{} returned {} ({}) at t = {}, h = {}", call, flag_name(call, flag), flag, t, h);
 }
 
 void check(const void* object, const char* call) { PALPATE_CHECK(object, "{} returned nothing", call); }

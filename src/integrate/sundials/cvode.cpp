@@ -104,7 +104,7 @@ class Cvode final : public Adapter {
       default: return StepStatus::kSolverFailed;
     }
   }
-  std::string flag_name(int flag) const override { return cvode_flag_name(flag); }
+  std::string flag_name(int flag) const override { return sun::flag_name("CVode", flag); }
   bool interpolate(double t, N_Vector out) const override { return CVodeGetDky(memory_, t, 0, out) == CV_SUCCESS; }
 
   Counts counts() const override {

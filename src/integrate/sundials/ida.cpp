@@ -2,8 +2,6 @@
 #include <ida/ida_ls.h>
 #include <nvector/nvector_serial.h>
 
-#include <cstdlib>
-
 #include "integrate/make.h"
 #include "integrate/mechanical_problem.h"
 #include "integrate/settings.h"
@@ -92,12 +90,7 @@ class Ida final : public Adapter {
       default: return StepStatus::kSolverFailed;
     }
   }
-  std::string flag_name(int flag) const override {
-    char* owned = IDAGetReturnFlagName(flag);
-    std::string name = owned ? owned : "UNKNOWN";
-    std::free(owned);
-    return name;
-  }
+  std::string flag_name(int flag) const override { return sun::flag_name("IDA", flag); }
   bool interpolate(double t, N_Vector out) const override { return IDAGetDky(memory_, t, 0, out) == IDA_SUCCESS; }
 
   Counts counts() const override {

@@ -3,7 +3,6 @@
 #include <nvector/nvector_serial.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "integrate/make.h"
 #include "integrate/settings.h"
@@ -304,10 +303,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     return flag == KIN_LSETUP_FAIL || flag == KIN_LSOLVE_FAIL || flag == KIN_LINSOLV_NO_RECOVERY ? StepStatus::kSolverFailed : StepStatus::kNewtonFailed;
   }
   std::string describe(int flag) const {
-    char* owned = KINGetReturnFlagName(flag);
-    const std::string flag_name = owned ? owned : "UNKNOWN";
-    std::free(owned);
-    return fmt::format("{} at load {:.3g} of 1: no equilibrium found ({}); is the body held, and the load bearable?", flag_name, s_, message_);
+    return fmt::format("{} at load {:.3g} of 1: no equilibrium found ({}); is the body held, and the load bearable?", flag_name("KINSol", flag), s_, message_);
   }
   StepResult failure(StepStatus status, const std::string& what) const {
     StepResult r;

@@ -126,7 +126,7 @@ class Mri final : public Adapter {
   }
 
   StepStatus status_of(int flag) const override { return flag == ARK_INNERSTEP_FAIL ? StepStatus::kErrorTestFailed : ark_status(flag); }
-  std::string flag_name(int flag) const override { return ark_flag_name(flag); }
+  std::string flag_name(int flag) const override { return sun::flag_name("MRIStep", flag); }
   bool interpolate(double t, N_Vector out) const override { return MRIStepGetDky(slow_, t, 0, out) == ARK_SUCCESS; }
 
   Counts counts() const override {

@@ -9,6 +9,8 @@
 
 #include <limits>
 
+#include "integrate/sundials/check.h"
+
 namespace palpate::integrate::self_test {
 namespace {
 
@@ -93,6 +95,8 @@ double ida(double t) {
   N_VDestroy(y_dot);
   return ok ? s.value() : kFailed;
 }
+
+std::string flag_name(const std::string& call, long flag) { return sun::flag_name(call, flag); }
 
 std::vector<Answer> all(double t) { return {{"CVODE", cvode(t)}, {"ARKODE", arkode(t)}, {"IDA", ida(t)}}; }
 
