@@ -8,7 +8,9 @@
 #include <complex>
 #include <set>
 
+#include "integrate/fakes.h"
 #include "integrate/sundials/ark_methods.h"
+#include "palpate/core/error.h"
 
 /// What ark_methods.cpp claims of each table, found from the tables of the installed version themselves.
 namespace palpate {
@@ -46,7 +48,15 @@ struct Table {
     return true;
   }
   double at_infinity() const { return amplification({-1e8, 0.0}); }
-  bool stiffly_accurate() const { return (A.row(A.rows() - 1).transpose() - b).norm() < 1e-12; }
+  /// Of what a stiff mode leaves: b A^-1 c^j = 1 for all j > 0 (a first explicit stage, where c = 0, left out).  So it is where b is the last row of A and its
+  /// c is 1; and in SDIRK-2-1, c = (1, 0), b A^-1 = (1, 1/2).
+  bool stiffly_accurate() const {
+    const Eigen::Index e = A(0, 0) == 0.0 ? 1 : 0, n = A.rows() - e;
+    const VecX row = MatX(A.bottomRightCorner(n, n)).transpose().partialPivLu().solve(b.tail(n));
+    for (int j = 1; j <= 6; ++j)
+      if (std::abs(row.dot(VecX(c.tail(n).array().pow(j))) - 1.0) > 1e-10) return false;
+    return true;
+  }
   int stage_order() const {
     int q = 0;
     while (q < 5 && (A * VecX(c.array().pow(q)) - VecX(c.array().pow(q + 1) / (q + 1))).norm() < 1e-10) ++q;
@@ -95,6 +105,113 @@ TEST(ArkMethods, NoStableTableOfTheInstalledVersionIsMissing) {
     EXPECT_EQ(listed.count(id), 1u) << "table " << id;
   }
   EXPECT_EQ(stable, 23);
+}
+
+// --- Order on a stiff mode ---------------------------------------------------------------------------------------------------------------
+//
+// Prothero and Robinson's problem in mechanical form: a stiff spring and damper that follow a smooth motion g(t),
+//     q' = u,   u' = -w^2 (q - g) - 2 w (u - g') + g'',       y = (q, u),  y' = L (y - G) + G',   G = (g, g'),
+// both eigenvalues of L are -w, and h w >> 1.  From G(0) the exact solution is G.  Put G into the stages (c^j by entries, A, b, c the table):
+//     D = sum_j h^(j+1) d_j G^(j+1) / j!,  d_j = c^(j+1) / (j+1) - A c^j  of the stages,     and  e_j = 1 / (j+1) - b.c^j  of the step.
+// d_j = 0 below the stage order.  The errors E of the stages and e of the step then obey E = e_n + h A L E - D, e_(n+1) = e_n + h b L E - (e_j terms), so that
+//     e_(n+1) = R(h L) e_n + sum_j h^(j+1) / j! [ (b A^-1 d_j - e_j) + (h L)^-1 b A^-2 d_j + O((h w)^-2) ] G^(j+1),     L^-1 = [-2/w, -1/w^2; 1, 0].
+// (A first explicit stage has d = 0: it is left out of A, b and d.)  R(h L) = R(-inf) + O((h L)^-1), |R(-inf)| < 1: errors are forgotten, not summed.
+//   stiffly accurate  b A^-1 d_j = e_j for all j.  What is left is (h L)^-1: position 2/w h^j, velocity h^j, j the first with b A^-2 d_j != 0: in general the
+//                     stage order, in both.  In the velocity no 1/w makes it small: a stiff spring's velocity is the derivative of a constraint.
+//   else              position h^(j+1), j the first with b A^-1 d_j != e_j; the velocity loses one order to (h L)^-1 of that, or to b A^-2 d_j != 0.
+// Were the stiffness all in the damper, q would be slow, and what is of order h^j here would hide behind the classical error of q: hence w^2 and 2 w.
+
+struct StiffOrders { int position = 0, velocity = 0; };
+
+StiffOrders stiff_orders(const Table& t) {
+  const Eigen::Index s = t.A.rows(), explicit_first = t.A(0, 0) == 0.0 ? 1 : 0, n = s - explicit_first;
+  const MatX inverse = MatX(t.A.bottomRightCorner(n, n)).inverse();
+  const VecX b = t.b.tail(n);
+  StiffOrders out;
+  for (int j = 1; j <= 5 && out.position * out.velocity == 0; ++j) {
+    const VecX d = (VecX(t.c.array().pow(j + 1) / (j + 1)) - t.A * VecX(t.c.array().pow(j))).tail(n);
+    const double e = 1.0 / (j + 1) - t.b.dot(VecX(t.c.array().pow(j)));
+    const bool direct = std::abs(b.dot(inverse * d) - e) > 1e-8, next = std::abs(b.dot(inverse * (inverse * d))) > 1e-8;
+    if (out.velocity == 0 && (direct || next)) out.velocity = j;
+    if (out.position == 0 && t.stiffly_accurate() && next) out.position = j;
+    if (out.position == 0 && !t.stiffly_accurate() && direct) out.position = j + 1;
+  }
+  return out;
+}
+
+constexpr double kStiff = 1e5;  // w [1/s]: h w from 1000 to 8000
+
+/// The stiff half: implicit wherever a method has an implicit side.
+struct Follow final : dynamics::ForceTerm {
+  std::string_view name() const override { return "follow"; }
+  dynamics::TermTraits traits() const override { return {}; }
+  void add_force(const dynamics::StateView& s, VecX& f) override {
+    f.array() += -kStiff * kStiff * (s.q.array() - std::sin(s.time)) - 2.0 * kStiff * (s.u.array() - std::cos(s.time));
+  }
+  void add_tangent(const dynamics::StateView&, double k, double d, dynamics::BorderedMatrix& A) override {
+    A.body.add(0, (k * kStiff * kStiff + d * 2.0 * kStiff) * Mat3::Identity());
+  }
+  void apply_tangent(const dynamics::StateView&, double k, double d, const VecX& x, VecX& y) override {
+    y += (k * kStiff * kStiff + d * 2.0 * kStiff) * x;
+  }
+};
+
+/// g'': on the explicit side of an additive pair, whose defects there enter by (h w)^-1 less, and change no order.
+struct Push final : dynamics::ForceTerm {
+  std::string_view name() const override { return "push"; }
+  dynamics::TermTraits traits() const override { return {.stiff = false}; }
+  void add_force(const dynamics::StateView& s, VecX& f) override { f.array() -= std::sin(s.time); }
+  void add_tangent(const dynamics::StateView&, double, double, dynamics::BorderedMatrix&) override {}
+  void apply_tangent(const dynamics::StateView&, double, double, const VecX&, VecX&) override {}
+};
+
+struct StiffErrors { double position = 0.0, velocity = 0.0; };
+
+/// Largest errors from 0.8 to 1.6 s, where what the first steps made is forgotten.
+StiffErrors stiff_errors(const std::string& name, double h) {
+  dynamics::State state;
+  dynamics::System system;
+  const int id = state.insert(dynamics::BlockSpec{.name = "one", .q_size = 3, .u_size = 3}, VecX::Zero(3), VecX::Ones(3));
+  system.add(std::make_shared<Follow>());
+  system.add(std::make_shared<Push>());
+  system.add(std::make_shared<fakes::NodalMass>(id, MatX::Identity(3, 3)));
+  system.prepare(state.view());
+  IntegratorSpec spec;
+  spec.name = name;
+  spec.fixed_step = true;
+  spec.step_s = h;
+  spec.newton_rtol = 1e-10;  // the problem is linear: the second correction is rounding
+  const auto stepper = integrate::make_stepper(system, state, spec);
+  StiffErrors worst;
+  for (int n = 1; n <= 10; ++n) {
+    const auto result = stepper->advance_to(0.16 * n);
+    if (!result.ok()) fail("{}", result.message);
+    if (n < 5) continue;
+    worst.position = std::max(worst.position, std::abs(state.q()[0] - std::sin(0.16 * n)));
+    worst.velocity = std::max(worst.velocity, std::abs(state.u()[0] - std::cos(0.16 * n)));
+  }
+  return worst;
+}
+
+TEST(ArkMethods, HaveTheirStiffOrder) {
+  int checked = 0;
+  for (const auto& m : methods()) {
+    if (m.implicit_table < 0) continue;
+    const StiffOrders expected = stiff_orders(Table(ARKodeButcherTable_LoadDIRK(static_cast<ARKODE_DIRKTableID>(m.implicit_table))));
+    EXPECT_GE(expected.position, m.traits.stiff_order) << m.name;
+    std::vector<double> steps = {0.08, 0.04, 0.02, 0.01}, position, velocity;
+    for (const double h : steps) {
+      const StiffErrors e = stiff_errors(m.name, h);
+      position.push_back(e.position);
+      velocity.push_back(e.velocity);
+    }
+    const double p = fakes::slope(steps, position), v = fakes::slope(steps, velocity);
+    RecordProperty(m.name, fmt::format("position {:.2f} of {}, velocity {:.2f} of {}", p, expected.position, v, expected.velocity));
+    EXPECT_NEAR(p, expected.position, 0.15) << m.name << ", finest " << position.back();
+    EXPECT_NEAR(v, expected.velocity, 0.15) << m.name << ", finest " << velocity.back();
+    ++checked;
+  }
+  EXPECT_EQ(checked, 28);
 }
 
 }  // namespace
