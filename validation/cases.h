@@ -29,6 +29,7 @@ ValidationCase dropped_ball();
 ValidationCase handle_step();
 ValidationCase handle_below_wall();
 ValidationCase coupling_limit();
+ValidationCase partitioned_monolithic();
 ValidationCase device_limits();
 
 }  // namespace palpate::validation

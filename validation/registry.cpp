@@ -13,7 +13,7 @@ const std::vector<ValidationCase>& validation_cases() {
       validation::free_vibration(), validation::vibration_tolerance(), validation::axial_vibration(), validation::lame_mode(), validation::bending_vibration(),
       validation::spinning_body(), validation::explicit_limit(), validation::dropped_ball(),
 #ifdef PALPATE_HAS_tool
-      validation::handle_step(), validation::handle_below_wall(), validation::coupling_limit(),
+      validation::handle_step(), validation::handle_below_wall(), validation::coupling_limit(), validation::partitioned_monolithic(),
 #endif
       validation::device_limits(),
   };

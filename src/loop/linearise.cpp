@@ -101,7 +101,11 @@ bool answer_after(World& world, double H, const contact::FrameLinearisation& c, 
   return true;
 }
 
-// The bodies' own motion over the period, as the line through what one implicit step makes of the wrench after one tick and after the period.
+// What the tool feels over the period while it goes on with the velocity v0 that it has, as the line through what one implicit step makes of that wrench
+// after one tick and after the period; J and B of the period for what it does otherwise.  After a time s the one is w(s) + s J(s) v0 (s = tick or period),
+//     line(s) = W0 + s S,      F = line + J (dx - s v0) + B (v - v0) = W0 + s (S - J v0) + J dx + B (v - v0).
+// A contact whose nodes move within a tick answers it more stiffly than it answers the period, and the tool's own way is where that shows: with J of the
+// period for all of dx, the error stood still between periods of 5 and 2.5 ms.
 // A stiff contact that the last period has left out of balance is relaxed within the first tick, as it is in the bodies' own implicit step, where a line
 // that began at the present wrench would press with it for half the period.  Where nothing is stiff, it begins there to O(tick^2).
 bool condense(World& world, double period, const contact::FrameLinearisation& c, dynamics::LinearisedContact& record) {
@@ -111,8 +115,13 @@ bool condense(World& world, double period, const contact::FrameLinearisation& c,
   Vec6 F0 = last.wrench, F1 = Vec6::Zero();
   if (tick < period * (1.0 - 1e-9)) {
     if (!answer_after(world, tick, c, first)) return false;
-    F1 = (last.wrench - first.wrench) / (period - tick);
-    F0 = first.wrench - tick * F1;
+    const Twist twist = world.tool->twist();
+    Vec6 v0;
+    v0 << twist.angular, twist.linear;
+    const Vec6 after_tick = first.wrench + tick * (first.J * v0), after_period = last.wrench + period * (last.J * v0);
+    const Vec6 slope = (after_period - after_tick) / (period - tick);
+    F0 = after_tick - tick * slope;
+    F1 = slope - last.J * v0;
   }
   Eigen::Map<Vec6>(record.F0.data()) = F0;
   Eigen::Map<Vec6>(record.F1.data()) = F1;
