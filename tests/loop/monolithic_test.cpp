@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <set>
 
 #include "loop/small_scenes.h"
 #include "palpate/core/counters.h"
@@ -175,34 +174,49 @@ TEST(Monolithic, AToolAloneMovesAsInASystemOfItsOwn) {
     EXPECT_LT(pose_difference(whole.log.ticks[i].tool, parts.log.ticks[i].tool).norm(), 1e-6) << "tick " << i;
 }
 
-// An integrator that steps bodies also steps a tool beside them: its block's unit quaternion, the border of the Newton matrix.  One of each kind.
-TEST(Monolithic, IntegratorsOfEachKindFollowTheTightOne) {
-  const std::set<std::string> kinds = {"cvode-bdf", "ark-erk-5", "linearly-implicit-euler"};
+// An integrator that steps bodies also steps a tool beside them: its block's unit quaternion, the border of the Newton matrix.  All of the registry,
+// against cvode-bdf at rtol 1e-8, over the first 20 ms of a press: the tool touches at once and is 0.6 mm deep at the end.
+class MonolithicRegistry : public testing::TestWithParam<std::string> {};
+
+std::vector<std::string> moving_integrators() {
+  std::vector<std::string> out;
+  for (const auto& entry : integrate::stepper_registry())
+    if (entry.traits.stability != dynamics::Stability::kStatic) out.push_back(entry.name);
+  return out;
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& info) {
+  std::string out = info.param;
+  std::replace(out.begin(), out.end(), '-', '_');
+  return out;
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, MonolithicRegistry, testing::ValuesIn(moving_integrators()), test_name);
+
+TEST_P(MonolithicRegistry, StepsToolAndBodiesAsOneSystem) {
+  constexpr double kDuration = 0.02;
   scene::Description d = monolithic_press(0.002);
-  d.integrator.rtol = 1e-7;
-  const Outcome truth = run(d);
+  d.integrator.rtol = 1e-8;
+  static const Outcome truth = run(d, kDuration);
   ASSERT_TRUE(truth.result.status.ok()) << truth.result.status.message;
   ASSERT_GT(truth.log.ticks.back().contact.force.z(), 0.01) << "they touch";
   const double moved = (truth.log.ticks.back().tool.translation - d.tool->position_m).norm();
-  int ran = 0;
-  for (const auto& entry : integrate::stepper_registry()) {
-    if (!kinds.contains(entry.name)) continue;
-    const bool is_explicit = entry.traits.stability == dynamics::Stability::kExplicit;
-    d.integrator.name = entry.name;
-    d.integrator.rtol = 1e-4;
-    d.integrator.step_s = is_explicit ? 2e-5 : 2e-4;  // explicit: below its stability limit
-    const Outcome out = run(d);
-    EXPECT_TRUE(out.result.status.ok()) << entry.name << ": " << out.result.status.message;
-    if (!out.result.status.ok()) continue;
-    ASSERT_EQ(out.log.ticks.size(), truth.log.ticks.size()) << entry.name;
-    double worst = 0.0;
-    for (std::size_t i = 0; i < truth.log.ticks.size(); ++i)
-      worst = std::max(worst, (out.log.ticks[i].tool.translation - truth.log.ticks[i].tool.translation).norm());
-    EXPECT_LT(worst, 2e-2 * moved) << entry.name;
-    EXPECT_NEAR(out.q.tail<7>().head<4>().norm(), 1.0, 1e-12) << entry.name;
-    ++ran;
-  }
-  EXPECT_EQ(ran, 3);
+
+  const dynamics::StepperTraits traits = find(integrate::stepper_registry(), GetParam(), "integrator").traits;
+  const bool fixed = traits.control == dynamics::StepControl::kFixed;
+  d.integrator.name = GetParam();
+  d.integrator.rtol = 1e-5;  // of the tool's radius, 15 mm: 2e-4 of the way that it goes
+  d.integrator.step_s = traits.stability == dynamics::Stability::kExplicit ? 2e-5 : 2e-4;  // explicit: below its stability limit
+  const Outcome out = run(d, kDuration);
+  ASSERT_TRUE(out.result.status.ok()) << out.result.status.message;
+  ASSERT_EQ(out.log.ticks.size(), truth.log.ticks.size());
+  double worst = 0.0;
+  for (std::size_t i = 0; i < truth.log.ticks.size(); ++i)
+    worst = std::max(worst, (out.log.ticks[i].tool.translation - truth.log.ticks[i].tool.translation).norm());
+  RecordProperty("error", std::to_string(worst / moved));
+  // Of order 1: h times a rate, sqrt(k/m) = 77/s of the coupling, some times over.  Of a higher one, or under error control: the kink at the touch is left.
+  EXPECT_LT(worst, (fixed && traits.order == 1 ? 2e-2 : 1e-3) * moved);
+  EXPECT_NEAR(out.q.tail<7>().head<4>().norm(), 1.0, 1e-12);
 }
 
 }  // namespace
