@@ -14,6 +14,7 @@ namespace {
 struct Nearest {
   double gap;
   Vec3 normal;
+  double radius = 0.0;  ///< of a sphere or cylinder there [m]: its centre lies that far within; 0 of faces and edges, which turn with the shape
 };
 
 /// Vertices of a surface against an exact shape.  `Shape` gives `Nearest at(x)` for the frame's pose of this query.
@@ -48,7 +49,8 @@ class AnalyticSource final : public SampleSource {
       if (area <= 0.0) continue;  // turned away: pressure there would pull
       ContactSample sample;
       sample.a = vertex_point(surface_.node(v));
-      sample.b = frame_point(frame_, inverse, x - nearest.gap * nearest.normal);
+      sample.b = frame_point(frame_, inverse, x - (nearest.gap + nearest.radius) * nearest.normal);
+      sample.b.slide = nearest.radius * nearest.normal;
       sample.normal = nearest.normal;
       sample.area = area;
       sample.gap = nearest.gap;
@@ -128,7 +130,7 @@ class Sphere {
   Nearest at(const Vec3& x) const {
     const Vec3 from_centre = x - world_centre_;
     const double distance = from_centre.norm();
-    return {distance - radius_, distance > 0.0 ? Vec3(from_centre / distance) : Vec3(Vec3::UnitZ())};
+    return {distance - radius_, distance > 0.0 ? Vec3(from_centre / distance) : Vec3(Vec3::UnitZ()), radius_};
   }
   // The point of the segment nearest to the centre.
   bool is_crossed(const Vec3& a, const Vec3& b) const {
@@ -207,8 +209,9 @@ class Cylinder {
     const double r = std::hypot(x.x(), x.y()), side = r - radius_, end = std::abs(x.z()) - half_;
     const Vec3 radial = r > 0.0 ? Vec3(x.x() / r, x.y() / r, 0.0) : Vec3(Vec3::UnitX()), axial = std::copysign(1.0, x.z()) * Vec3::UnitZ();
     const double out_side = std::max(side, 0.0), out_end = std::max(end, 0.0), distance = std::hypot(out_side, out_end);
+    if (out_end == 0.0 && (side > 0.0 || side > end)) return {side, world_.rotation * radial, radius_};
     if (distance > 0.0) return {distance, world_.rotation * Vec3((out_side * radial + out_end * axial) / distance)};
-    return side > end ? Nearest{side, world_.rotation * radial} : Nearest{end, world_.rotation * axial};
+    return {end, world_.rotation * axial};
   }
   // |a + s d|^2 = r^2 in x and y: A s^2 + 2 B s + C = 0.
   bool is_crossed(const Vec3& a_frame, const Vec3& b_frame) const {

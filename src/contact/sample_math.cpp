@@ -12,10 +12,10 @@ Vec3 tangential(const ContactSample& sample, const SampleMotion& motion) { retur
 PointMotion point_motion(const SurfacePoint& point, const dynamics::StateView& state, const std::vector<FrameState>& frames) {
   if (point.frame >= 0) {
     const FrameState& frame = frames[static_cast<std::size_t>(point.frame)];
-    const Vec3 arm = frame.R * point.offset;
-    return {frame.pose.translation + arm, frame.twist.at(arm), arm};
+    const Vec3 turning = frame.R * point.offset, arm = turning + point.slide;
+    return {frame.pose.translation + arm, frame.twist.at(arm), arm, turning};
   }
-  PointMotion motion{point.offset, Vec3::Zero(), Vec3::Zero()};
+  PointMotion motion{point.offset, Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   for (int i = 0; i < point.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     motion.x += point.weight[k] * state.position(point.node[k]);

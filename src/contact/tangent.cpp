@@ -9,8 +9,11 @@ namespace palpate::contact {
 //
 //   by side q's position   s_p s_q B_p^T (K B_q + D V_q)      V_q: a frame's twist, held, moves the turned arm otherwise
 //   by side q's velocity   s_p s_q B_p^T  D B_q
-//   geometric (p = q)      a frame's moment s_p (r x F) changes with its own arm, dr = dtheta x r:
-//                          d(r x F) = (dtheta x r) x F = F x (r x dtheta) = [F]x [r]x dtheta = G dtheta,  so K_theta,theta += -s_p G
+//   geometric (p = q)      a frame's moment s_p (r x F) changes with its own arm, dr = dtheta x R o:
+//                          d(r x F) = (dtheta x R o) x F = F x (R o x dtheta) = [F]x [R o]x dtheta = G dtheta,  so K_theta,theta += -s_p G
+//
+// The slide s does not turn, so positions move with R o and velocities, w x r, with r = R o + s; but s is parallel to n, and K acts on n . dx alone:
+// K (dtheta x s) = 0, and Z serves for both.
 //
 // Node-node blocks stay symmetric without friction (K = A k n n^T).  Frame blocks do not: G is symmetric only up to the moment
 // that it is the derivative of (rotations do not commute), and D V has no transpose partner.
@@ -19,10 +22,10 @@ Side::Side(const SurfacePoint& surface_point, const PointMotion& motion, const s
     : point(surface_point), frame(nullptr), sign(side_sign), arm(motion.arm) {
   if (point.frame < 0) return;
   frame = &frames[static_cast<std::size_t>(point.frame)];
-  const Mat3 r = cross_matrix(arm);
-  Z << -r, Mat3::Identity();
-  V.noalias() = -cross_matrix(frame->twist.angular) * r;
-  G.noalias() = cross_matrix(force_on_a) * r;
+  const Mat3 turning = cross_matrix(motion.turning);
+  Z << -cross_matrix(arm), Mat3::Identity();
+  V.noalias() = -cross_matrix(frame->twist.angular) * turning;
+  G.noalias() = cross_matrix(force_on_a) * turning;
 }
 
 namespace {

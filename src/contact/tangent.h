@@ -9,7 +9,7 @@ using Mat63 = Eigen::Matrix<double, 6, 3>;
 
 /// One side of a sample as a map from u-directions to its point, and back from forces.
 ///
-/// The point moves as  dx = sum_i w_i dx_i  (nodes)  or  dx = Z dxi, Z = [-[r]x, I]  (a frame; dxi = (dtheta, dp), arm r = R o).
+/// The point moves as  dx = sum_i w_i dx_i  (nodes)  or  dx = Z dxi, Z = [-[r]x, I]  (a frame; dxi = (dtheta, dp), arm r = R o + s; see tangent.cpp for the slide s).
 /// Forces go back by the transpose: w_i F on node i, (r x F, F) on the frame.  `sign` is +1 for a, -1 for b: x_rel = sum of sign * x.
 struct Side {
   const SurfacePoint& point;
@@ -17,8 +17,8 @@ struct Side {
   double sign;
   Vec3 arm; ///< frames: r
   Mat36 Z;  ///< frames only
-  Mat3 V;   ///< frames only: the point's velocity v = v0 + w x r changes by w x (dtheta x r) = V dtheta, V = -[w]x [r]x, when the frame turns with its twist held
-  Mat3 G;   ///< frames only: [F]x [r]x, F the force on a: see `geometric` in tangent.cpp
+  Mat3 V;   ///< frames only: the point's velocity v = v0 + w x r changes by w x (dtheta x R o) = V dtheta, V = -[w]x [R o]x, when the frame turns with its twist held
+  Mat3 G;   ///< frames only: [F]x [R o]x, F the force on a: see `geometric` in tangent.cpp
 
   Side(const SurfacePoint& surface_point, const PointMotion& motion, const std::vector<FrameState>& frames, double side_sign, const Vec3& force_on_a);
   bool is_nodes() const { return frame == nullptr; }

@@ -5,7 +5,7 @@ using namespace contact_tests;
 namespace {
 
 Vec3 position_of(const contact::SurfacePoint& p, const dynamics::State& state, const Pose& frame) {
-  return p.frame >= 0 ? frame * p.offset : position(p, state);
+  return p.frame >= 0 ? Vec3(frame * p.offset + p.slide) : position(p, state);
 }
 
 }  // namespace
@@ -180,6 +180,44 @@ TEST(CylinderSource, GapsAreDistances) {
     seen += check_solid(*source, world, frame, place, surface, [&](const Vec3& x) { return std::hypot(x.x(), x.y()) <= radius && std::abs(x.z()) <= half; }, 0.02);
   }
   EXPECT_GT(seen, 200);
+}
+
+// A round surface that turns about its own centre or axis stays where it is: neither force nor gap may change between two queries, and no moment may come of it.
+TEST(RoundSources, TurningAboutTheCentreChangesNothing) {
+  const Pose start{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)};
+  const Vec3 axis = start.rotation * Vec3::UnitZ();
+  const auto above = scattered(60, 0.3, Vec3::UnitX());
+  int pressed = 0;
+  for (const bool round : {true, false}) {
+    SurfaceWorld world(above);
+    auto motion = std::make_shared<contact::TrajectoryFrame>();
+    motion->append(0.0, start, {});
+    contact::ContactForce term;
+    const int frame = term.add_frame(motion);
+    ContactSpec law;
+    law.stiffness_pa_m = 1e9;
+    term.add_pair(round ? contact::make_sphere_source(world.surface, frame, motion, Vec3::Zero(), 0.7, 0.1)
+                        : contact::make_cylinder_source(world.surface, frame, motion, {}, 0.7, 9.0, 0.1), law);
+    term.refresh(world.state.view());
+    const Wrench before = term.frame_wrench(world.state.view(), frame);
+    const double energy = term.energy(world.state.view()), size = 0.7 * before.force.norm();
+    ASSERT_GT(before.force.norm(), 1.0);
+    for (const double angle : {1e-3, 0.7, 3.0}) {
+      const Vec3 about = round ? Vec3(Vec3(1, -2, 0.5).normalized()) : axis;
+      motion->clear();
+      motion->append(0.0, {quaternion_of(angle * about) * start.rotation, start.translation}, {});
+      const Wrench after = term.frame_wrench(world.state.view(), frame);
+      contact::FrameLinearisation seen;
+      term.linearise(world.state.view(), frame, seen);
+      EXPECT_LT((after.force - before.force).norm(), 1e-12 * before.force.norm()) << angle;
+      EXPECT_NEAR(term.energy(world.state.view()), energy, 1e-12 * energy) << angle;
+      EXPECT_LT(std::abs(about.dot(after.moment)), 1e-12 * size) << angle;
+      EXPECT_LT((seen.K.leftCols<3>() * about).norm(), 1e-12 * seen.K.rightCols<3>().norm()) << "nor may a linearisation say that it would";
+      EXPECT_LT((seen.geometric * about).norm(), 1e-12 * size) << angle;
+      ++pressed;
+    }
+  }
+  EXPECT_EQ(pressed, 6);
 }
 
 namespace {

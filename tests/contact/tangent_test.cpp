@@ -12,6 +12,13 @@ struct Law {
 /// Deep enough contacts of every kind: nodes on a given frame, nodes on a body of the State, nodes on nodes, body on a given frame.
 /// Depths of 0.4 at speeds of order 1 keep every sample pressed along a Taylor test.
 struct Scene {
+  /// The same point on a round surface, its centre 0.6 within: half of its arm does not turn with the frame.
+  static contact::ContactSample rounded(contact::ContactSample s, const Pose& frame) {
+    s.b.slide = 0.6 * s.normal;
+    s.b.offset -= frame.rotation.conjugate() * s.b.slide;
+    return s;
+  }
+
   World world{6, true, 11};
   std::shared_ptr<contact::TrajectoryFrame> given = std::make_shared<contact::TrajectoryFrame>();
   Pose given_pose{quaternion_of(Vec3(0.3, -0.5, 0.2)), Vec3(0.1, 0.2, -0.4)};
@@ -28,6 +35,8 @@ struct Scene {
     const auto tri = node_point({0, 1, 2}, {0.2, 0.9, -0.1}), single = node_point({4}, {1.0});
     if (with_given) samples.push_back(on_frame(tri, given_index, given_pose, {0.1, -0.2, 1}, 0.4, 0.7, world.state));
     samples.push_back(on_frame(single, body_index, body_pose, {1, 0.5, -0.3}, 0.5, 0.6, world.state));
+    samples.push_back(rounded(on_frame(single, body_index, body_pose, {0.4, 0.5, -0.8}, 0.5, 0.6, world.state), body_pose));
+    if (with_given) samples.push_back(rounded(on_frame(single, given_index, given_pose, {0.3, -0.6, 0.8}, 0.4, 0.7, world.state), given_pose));
     samples.push_back(on_nodes(tri, node_point({3, 4, 5}, {0.3, 0.3, 0.4}), {-0.3, 1, 0.2}, 0.45, 0.5, world.state));
     if (with_given) {  // a: the body, b: the given frame
       contact::ContactSample s;
@@ -120,7 +129,7 @@ TEST(FrameLinearisation, TaylorByPoseTwistAndNodes) {
     const auto view = scene.world.state.view();
     contact::FrameLinearisation lin;
     scene.term.linearise(view, 0, lin);
-    EXPECT_EQ(lin.active, 2);
+    EXPECT_EQ(lin.active, 3);
     const Wrench direct = scene.term.frame_wrench(view, 0);
     EXPECT_LT((direct.force - lin.wrench.force).norm() + (direct.moment - lin.wrench.moment).norm(), 1e-14);
     const int nodal = scene.world.state.layout().nodal_size;

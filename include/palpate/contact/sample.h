@@ -11,7 +11,10 @@ struct SurfacePoint {
   int count = 0;                 ///< nodes used, at most 4
   std::array<int, 4> node{};     ///< counted over all node blocks (rows 3 node .. 3 node + 2 of u)
   std::array<double, 4> weight{};///< sum to one; may be slightly negative at edges
-  Vec3 offset = Vec3::Zero();    ///< nodes: world offset added to the weighted position; frame: the point in the frame's axes [m]
+  Vec3 offset = Vec3::Zero();    ///< nodes: world offset added to the weighted position; frame: a point in the frame's axes [m]
+  /// Frames: from there to the surface point, along the sample's normal, in the world's axes: it does not turn with the frame [m].  On a round surface
+  /// `offset` is the centre of curvature: the surface that turns about it stays where it was, and so do the point, its gap and its force.
+  Vec3 slide = Vec3::Zero();
 };
 
 /// Two surface points on one line along `normal`, and what they stand for.  The same record from an obstacle, the GPU, the CPU or the exact query.
