@@ -110,6 +110,18 @@ TEST_P(BrokenStepper, MakesTheCellFail) {
   EXPECT_GT(matrix.unexpected(), 0);
 }
 
+TEST(Stability, WhatGoesThroughAThinPlateIsCounted) {
+  StabilityOptions options;
+  options.rows = {"impact"};
+  options.integrators = {"backward-euler"};
+  const StabilityMatrix matrix = stability(options);
+  EXPECT_EQ(unexpected_of(matrix), "");
+  EXPECT_NE(cell_of(matrix, "0.1 m/s on a thin plate").figure.find(", 0 vertices"), std::string::npos);
+  const std::string figure = cell_of(matrix, "100 m/s on a thin plate").figure;
+  EXPECT_EQ(figure.find(", 0 vertices"), std::string::npos) << figure;
+  EXPECT_NE(figure.find("vertices through the plate"), std::string::npos) << figure;
+}
+
 TEST(Stability, ACrashIsACell) {
   StabilityOptions options;
   options.registry = &spoilt::registry(Spoil::kCrashes);

@@ -1,5 +1,7 @@
 #include "column.h"
 
+#include <algorithm>
+
 #include "palpate/integrate/integrators.h"
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
@@ -16,6 +18,7 @@ std::vector<Column> stepper_columns(const dynamics::StepperRegistry& registry) {
     columns.push_back({entry.name, entry.name, &entry, control == StepControl::kFixed});
     if (control == StepControl::kEither) columns.push_back({entry.name + ", fixed step", entry.name, &entry, true});
   }
+  std::stable_partition(columns.begin(), columns.end(), [](const Column& column) { return !column.fixed; });  // side by side they show what error control is worth
   return columns;
 }
 

@@ -1,0 +1,17 @@
+#pragma once
+#include "scene_run.h"
+
+namespace palpate::study {
+
+/// A body thrown at something, and nothing else: the contact rows.  Theory in throw.cpp.
+inline constexpr double kThrowPeriod = 2e-3, kThrowDuration = 0.1, kThrowRtol = 1e-4;  ///< [s], [s]
+
+/// `d`'s body at `speed` [m/s] downwards from 1 mm above z = 0, against `obstacle`.
+scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle, double speed, double stiffness_pa_m);
+
+Verdicts expect_thrown(const Lab& lab);
+
+/// What the energy may gain under a column.
+GainBars throw_bars(const Column& column, const scene::Description& d);
+
+}  // namespace palpate::study
