@@ -18,9 +18,11 @@
 // Error control follows the exact flow within its tolerance, through the corners of the rotation field as well (R jumps where two signed singular values
 // cancel, the energy does not): rise <= (steps) x rtol, taken as 100 rtol -> accurate.  A flow has no say in which of the two ends a start
 // finds, so of a random start the count is the problem's, not the method's.
-// Fixed steps of H = 5 ms (y = w H up to 2): no theorem for a potential that is not convex -> anything clear.  What one linearised step from rest may do bounds the
-//   rise: u1 = H A^-1 f with A >= M, and f.M^-1 f <= 2 w^2 E0 of an energy that is quadratic for a given rotation, so the kinetic energy is at most y^2 E0; the elastic one
-//   (its shear part, of which the polar rotation takes the least) at most that of the old rotation, E0 - H f.u1 + H^2 u1.K u1/2 <= E0 + y^2 (y^2 E0).  Rise <= y^2 (1 + y^2) E0.
+// Fixed steps of H = 5 ms (y = w H up to 2): no theorem for a potential that is not convex -> anything clear.  What one linearised step from a state of
+//   energy E0 = T0 + V0 may do is known: (M + ...) u1 = M u0 + H f with a positive semi-definite remainder, and f.M^-1 f <= 2 w^2 V0 of an energy that is
+//   quadratic for a given rotation, so
+//       sqrt T1 <= sqrt T0 + y sqrt V0,    sqrt V1 <= sqrt V0 + y sqrt T1    (V1 with the old rotation; the new one takes the least of the shear part).
+//   The matrix [1 y; y 1+y^2] of this majorant has the norm g = 1 + y^2/2 + y sqrt(1 + y^2/4): rise <= (g^2 - 1) E0.
 // Statics looks for a stationary point, a saddle is one -> anything clear.
 
 namespace palpate::study {
@@ -71,8 +73,9 @@ struct Body {
 
 double bound_of_a_step() {
   Body body(mesh::box(Vec3::Constant(kSize), {1, 1, 1}).nodes);
-  const double y2 = std::pow(largest_frequency(body.system, body.state.view()) * kH, 2);
-  return y2 * (1.0 + y2);
+  const double y = largest_frequency(body.system, body.state.view()) * kH;
+  const double g = 1.0 + 0.5 * y * y + y * std::sqrt(1.0 + 0.25 * y * y);
+  return g * g - 1.0;
 }
 
 /// What became of all the starts of a cell.
