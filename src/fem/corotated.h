@@ -1,6 +1,8 @@
 #pragma once
+#include <array>
+
+#include "palpate/core/types.h"
 #include "palpate/fem/soft_body.h"
-#include "scatter_map.h"
 
 namespace palpate::fem {
 
@@ -8,6 +10,10 @@ namespace palpate::fem {
 struct Lame {
   double mu = 0.0, lambda = 0.0;
 };
+
+/// The nine 3x3 blocks of an element matrix that belong to nodes 1, 2, 3 (index 3 (a-1) + (b-1)).  Those of node 0 follow:
+/// a translation of the whole element changes nothing, so that the blocks of each row and of each column sum to zero.
+using ElementBlocks = std::array<Mat3, 9>;
 
 // The corotated energy of one element, F = R S with R a proper rotation (DESIGN 3.1):
 //

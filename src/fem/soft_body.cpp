@@ -4,11 +4,10 @@
 
 #include <Eigen/LU>
 
-#include "corotated.h"
+#include "element_evaluation.h"
 #include "node_block.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/core/polar.h"
 #include "stress.h"
 
 namespace palpate::fem {
@@ -20,54 +19,52 @@ struct SoftBody::Impl {
   std::string name;
   SoftBodyOptions options;
   int block_id;
-  RestElements elements;
+  ElementEvaluation elements;
   Material material;
-  Lame elastic, damping;  ///< damping: beta (mu, lambda) [Pa s]
   ElementCounts counts;
-  ScatterMap scatter;
   bool definite = false;  ///< the projected tangent in place of the named one
 
-  Tangent tangent() const { return definite ? Tangent::kProjected : options.tangent; }
-  bool damped() const { return damping.mu > 0.0; }
-  bool damped_by_position() const { return damped() && options.full_damping_tangent && !definite; }
-  std::size_t count() const { return elements.volume.size(); }
-  NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, elements.node_count()); }
-  double mass(std::size_t node) const { return material.density * elements.nodal_volume[node]; }
+  Impl(std::string body, const TetMesh& rest, const SoftBodyOptions& opts, int block)
+      : name(std::move(body)), options(opts), block_id(block),
+        elements(rest, make_rest_elements(rest, fmt::format("body \"{}\"", name)), opts.full_damping_tangent) {}
+
+  int node_count() const { return elements.chunks().node_count(); }
+  NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, node_count()); }
+  double mass(int node) const { return material.density * elements.chunks().nodal_volume[static_cast<std::size_t>(node)]; }
+  bool damped() const { return material.stiffness_damping > 0.0; }
+
+  ElementModel model(double k_scale, double d_scale) const {
+    ElementModel m;
+    m.mu = material.mu();
+    m.lambda = options.volumetric_share * material.lambda();
+    m.damping_mu = material.stiffness_damping * m.mu;
+    m.damping_lambda = material.stiffness_damping * m.lambda;
+    m.projected = definite || options.tangent == Tangent::kProjected;
+    m.warped = !m.projected && options.tangent == Tangent::kWarped;
+    m.by_position = damped() && options.full_damping_tangent && !definite && k_scale != 0.0;
+    m.k_scale = k_scale;
+    m.d_scale = d_scale;
+    return m;
+  }
+  /// Whether a tangent of these scales needs the elements at all.
+  bool acts(double k_scale, double d_scale) const { return k_scale != 0.0 || (d_scale != 0.0 && damped()); }
 
   void set(const Material& m) {
     check(m, fmt::format("body \"{}\"", name).c_str());
     material = m;
-    elastic = {m.mu(), options.volumetric_share * m.lambda()};
-    damping = {m.stiffness_damping * elastic.mu, m.stiffness_damping * elastic.lambda};
   }
 };
 
-namespace {
-
-/// What every element evaluation begins with.
-struct Deformation {
-  Mat3 gradients, F, R;
-  Deformation(const RestElements& elements, std::size_t e, const double* x)
-      : gradients(elements.gradients(e)), F(elements.edges(e, x) * gradients), R(polar_decomposition(F).R) {}
-};
-
-/// Nodal forces -V P g_a; that of node 0 is minus the sum of the others, so that momentum is kept to rounding.
-void scatter_force(const RestElements& elements, std::size_t e, const Mat3& gradients, const Mat3& P, double scale, double* f) {
-  const Mat3 H = (scale * elements.volume[e]) * P * gradients.transpose();
-  for (std::size_t a = 1; a < 4; ++a) Eigen::Map<Vec3>(f + 3 * elements.node[a][e]) += H.col(static_cast<int>(a) - 1);
-  Eigen::Map<Vec3>(f + 3 * elements.node[0][e]) -= H.rowwise().sum();
-}
-
-}  // namespace
-
 SoftBody::SoftBody(std::string name, const TetMesh& rest, const Material& material, const SoftBodyOptions& options, int block_id)
-    : impl_(std::make_unique<Impl>()) {
+    : impl_(std::make_unique<Impl>(std::move(name), rest, options, block_id)) {
   counters::count("fem.soft_body");
-  impl_->name = std::move(name);
-  impl_->options = options;
-  impl_->block_id = block_id;
-  impl_->elements = make_rest_elements(rest, fmt::format("body \"{}\"", impl_->name));
   impl_->set(material);
+  if (!options.instructions.empty()) {
+    const LaneKernels* kernels = find_kernels(options.instructions.c_str());
+    if (kernels == nullptr)
+      fail("body \"{}\": this build or this processor has no instructions \"{}\"; baseline, avx2 and avx512 exist", impl_->name, options.instructions);
+    impl_->elements.use(*kernels);
+  }
 }
 SoftBody::~SoftBody() = default;
 
@@ -76,28 +73,36 @@ const ElementCounts& SoftBody::counts() const { return impl_->counts; }
 void SoftBody::reset_counts() { impl_->counts = {}; }
 const Material& SoftBody::material() const { return impl_->material; }
 void SoftBody::set_material(const Material& material) { impl_->set(material); }
-int SoftBody::node_count() const { return impl_->elements.node_count(); }
-int SoftBody::element_count() const { return impl_->elements.count(); }
+int SoftBody::node_count() const { return impl_->node_count(); }
+int SoftBody::element_count() const { return impl_->elements.chunks().element_count(); }
+std::string_view SoftBody::instructions() const { return impl_->elements.kernels().name; }
+MemoryUse SoftBody::memory() const {
+  return {impl_->elements.chunks().bytes(), impl_->elements.map_bytes(), impl_->elements.scratch_bytes()};
+}
 
 dynamics::TermTraits SoftBody::traits() const {
-  return {.stiff = true, .fast = false, .symmetric_tangent = !impl_->damped_by_position(), .has_tangent = true, .conservative = true};
+  return {.stiff = true, .fast = false, .symmetric_tangent = !impl_->model(1.0, 1.0).by_position, .has_tangent = true, .conservative = true};
 }
 
 void SoftBody::set_definite(bool definite) { impl_->definite = definite; }
 
 dynamics::Finding SoftBody::inspect(const StateView& state) const {
-  const Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = impl_->place(state);
   dynamics::Finding worst;
-  for (std::size_t e = 0; e < m.count(); ++e) {
-    const double volume_ratio = (m.elements.edges(e, at.x) * m.elements.gradients(e)).determinant();
-    if (volume_ratio <= worst.measure) worst = {static_cast<int>(e), volume_ratio};
-  }
+  impl_->elements.chunks().for_each([&](const ElementChunks::Element& e) {
+    const double volume_ratio = (e.edges(at.x) * e.gradients).determinant();
+    if (volume_ratio < worst.measure || (volume_ratio == worst.measure && e.number > worst.element)) worst = {e.number, volume_ratio};
+  });
   return worst;
 }
 
 void SoftBody::add_pattern(dynamics::PatternBuilder& pattern) const {
-  add_element_pattern(impl_->elements, pattern.first_node(impl_->block_id), pattern);
+  const int first_node = pattern.first_node(impl_->block_id);
+  impl_->elements.chunks().for_each([&](const ElementChunks::Element& e) {
+    int nodes[4];
+    for (int a = 0; a < 4; ++a) nodes[a] = first_node + e.node[a];
+    pattern.add_clique(nodes, 4);
+  });
 }
 std::uint64_t SoftBody::pattern_version() const { return 1; }  // rest connectivity never changes
 
@@ -105,41 +110,25 @@ void SoftBody::add_force(const StateView& state, VecX& f) {
   Impl& m = *impl_;
   const NodeBlock at = m.place(state);
   double* force = f.data() + at.u_offset;
-  for (std::size_t e = 0; e < m.count(); ++e) {
-    const Deformation d(m.elements, e, at.x);
-    if (d.F.determinant() <= 0.0) ++m.counts.inverted;
-    Mat3 P = elastic_stress(d.F, d.R, m.elastic);
-    if (m.damped()) P += d.F * damping_stress(strain_rate(d.F, m.elements.edges(e, at.v) * d.gradients), m.damping);
-    scatter_force(m.elements, e, d.gradients, P, -1.0, force);
-  }
+  const LaneCounts met = m.elements.add_force(m.model(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr}, force);
+  m.counts.inverted += met.inverted;
+  m.counts.by_scalar += met.by_scalar;
   if (m.material.mass_damping > 0.0)
-    for (int i = 0; i < node_count(); ++i)
-      Eigen::Map<Vec3>(force + 3 * i) -= m.material.mass_damping * m.mass(static_cast<std::size_t>(i)) * Eigen::Map<const Vec3>(at.v + 3 * i);
+    for (int i = 0; i < node_count(); ++i) Eigen::Map<Vec3>(force + 3 * i) -= m.material.mass_damping * m.mass(i) * Eigen::Map<const Vec3>(at.v + 3 * i);
 }
 
 void SoftBody::add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) {
   Impl& m = *impl_;
   const NodeBlock at = m.place(state);
-  m.scatter.prepare(m.elements, at.first_node, A.body);
-  ElementBlocks blocks;
-  for (std::size_t e = 0; e < m.count(); ++e) {
-    const Deformation d(m.elements, e, at.x);
-    const double V = m.elements.volume[e];
-    blocks.fill(Mat3::Zero());
-    if (k_scale != 0.0) {
-      bool clamped = false;
-      const Mat3 C = rotation_coupling(m.tangent(), d.F, d.R, m.elastic, clamped);
-      if (clamped) ++m.counts.clamped;
-      add_elastic_blocks(d.gradients, d.R, C, m.elastic, k_scale * V, blocks);
-      if (m.damped_by_position())
-        add_damping_position_blocks(d.gradients, d.F, m.elements.edges(e, at.v) * d.gradients, m.damping, k_scale * V, blocks);
-    }
-    if (d_scale != 0.0 && m.damped()) add_damping_blocks(d.gradients, d.F, m.damping, d_scale * V, blocks);
-    m.scatter.add(e, blocks, A.body);
+  if (m.acts(k_scale, d_scale)) {
+    const ElementModel model = m.model(k_scale, d_scale);
+    const LaneCounts met = m.elements.add_tangent(model, {at.x, model.by_position ? at.v : nullptr}, at.first_node, A.body);
+    m.counts.clamped += met.clamped;
+    m.counts.by_scalar += met.by_scalar;
   }
   if (d_scale == 0.0 || m.material.mass_damping == 0.0) return;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(node_count()); ++i)
-    A.body.add(m.scatter.diagonal(i), d_scale * m.material.mass_damping * m.mass(i) * Mat3::Identity());
+  m.elements.prepare(at.first_node, A.body);
+  for (int i = 0; i < node_count(); ++i) A.body.add(m.elements.diagonal(i), d_scale * m.material.mass_damping * m.mass(i) * Mat3::Identity());
 }
 
 void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) {
@@ -147,56 +136,28 @@ void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_sc
   const NodeBlock at = m.place(state);
   const double* direction = x.data() + at.u_offset;
   double* out = y.data() + at.u_offset;
-  for (std::size_t e = 0; e < m.count(); ++e) {
-    const Deformation d(m.elements, e, at.x);
-    const Mat3 dF = m.elements.edges(e, direction) * d.gradients;
-    Mat3 dP = Mat3::Zero();
-    if (k_scale != 0.0) {
-      bool clamped = false;
-      const Mat3 C = rotation_coupling(m.tangent(), d.F, d.R, m.elastic, clamped);
-      dP += k_scale * elastic_stress_change(dF, d.R, C, m.elastic);
-      if (m.damped_by_position()) {
-        const Mat3 F_dot = m.elements.edges(e, at.v) * d.gradients;
-        const Mat3 sigma = damping_stress(strain_rate(d.F, F_dot), m.damping);
-        dP += k_scale * (dF * sigma + d.F * damping_stress(strain_rate(dF, F_dot), m.damping));
-      }
-    }
-    if (d_scale != 0.0 && m.damped()) dP += d_scale * d.F * damping_stress(strain_rate(d.F, dF), m.damping);
-    scatter_force(m.elements, e, d.gradients, dP, 1.0, out);
+  if (m.acts(k_scale, d_scale)) {
+    const ElementModel model = m.model(k_scale, d_scale);
+    m.counts.by_scalar += m.elements.apply_tangent(model, {at.x, model.by_position ? at.v : nullptr, direction}, out).by_scalar;
   }
   if (d_scale == 0.0 || m.material.mass_damping == 0.0) return;
   for (int i = 0; i < node_count(); ++i)
-    Eigen::Map<Vec3>(out + 3 * i) += d_scale * m.material.mass_damping * m.mass(static_cast<std::size_t>(i)) * Eigen::Map<const Vec3>(direction + 3 * i);
+    Eigen::Map<Vec3>(out + 3 * i) += d_scale * m.material.mass_damping * m.mass(i) * Eigen::Map<const Vec3>(direction + 3 * i);
 }
 
-double SoftBody::energy(const StateView& state) {
-  const Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
-  double sum = 0.0;
-  for (std::size_t e = 0; e < m.count(); ++e) {
-    const Deformation d(m.elements, e, at.x);
-    sum += m.elements.volume[e] * elastic_energy_density(d.F, d.R, m.elastic);
-  }
-  return sum;
-}
+double SoftBody::energy(const StateView& state) { return impl_->elements.energy(impl_->model(0.0, 0.0), {impl_->place(state).x}); }
 
 double SoftBody::dissipated_power(const StateView& state) {
-  const Impl& m = *impl_;
+  Impl& m = *impl_;
   const NodeBlock at = m.place(state);
-  double sum = 0.0;
-  if (m.damped())
-    for (std::size_t e = 0; e < m.count(); ++e) {
-      const Mat3 gradients = m.elements.gradients(e);
-      const Mat3 rate = strain_rate(m.elements.edges(e, at.x) * gradients, m.elements.edges(e, at.v) * gradients);
-      sum += m.elements.volume[e] * rate.cwiseProduct(damping_stress(rate, m.damping)).sum();
-    }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(node_count()); ++i)
-    sum += m.material.mass_damping * m.mass(i) * Eigen::Map<const Vec3>(at.v + 3 * i).squaredNorm();
+  double sum = m.damped() ? m.elements.dissipated_power(m.model(0.0, 0.0), {at.x, at.v}) : 0.0;
+  for (int i = 0; i < node_count(); ++i) sum += m.material.mass_damping * m.mass(i) * Eigen::Map<const Vec3>(at.v + 3 * i).squaredNorm();
   return sum;
 }
 
 VecX SoftBody::nodal_stress(const StateView& state) const {
-  return nodal_von_mises(impl_->elements, impl_->place(state).x, impl_->elastic);
+  const ElementModel model = impl_->model(0.0, 0.0);
+  return nodal_von_mises(impl_->elements.chunks(), impl_->place(state).x, {model.mu, model.lambda});
 }
 
 }  // namespace palpate::fem

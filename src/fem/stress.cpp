@@ -23,12 +23,12 @@ double von_mises(const Mat3& F, const Lame& lame) {
 
 }  // namespace
 
-VecX nodal_von_mises(const RestElements& elements, const double* x, const Lame& lame) {
+VecX nodal_von_mises(const ElementChunks& elements, const double* x, const Lame& lame) {
   VecX out = VecX::Zero(elements.node_count());
-  for (std::size_t e = 0; e < static_cast<std::size_t>(elements.count()); ++e) {
-    const double share = 0.25 * elements.volume[e] * von_mises(elements.edges(e, x) * elements.gradients(e), lame);
-    for (const auto& node : elements.node) out[node[e]] += share;
-  }
+  elements.for_each([&](const ElementChunks::Element& e) {
+    const double share = 0.25 * e.volume * von_mises(e.edges(x) * e.gradients, lame);
+    for (int node : e.node) out[node] += share;
+  });
   for (Eigen::Index i = 0; i < out.size(); ++i) {
     const double volume = elements.nodal_volume[static_cast<std::size_t>(i)];
     if (volume > 0.0) out[i] /= volume;

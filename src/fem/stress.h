@@ -1,10 +1,11 @@
 #pragma once
 #include "corotated.h"
+#include "element_chunks.h"
 
 namespace palpate::fem {
 
 /// Von Mises norm of the Cauchy stress P F^T / det F of each element, averaged to the nodes by volume [Pa].
 /// det F is taken as at least kSmallestDet: a picture of a flat or inverted element shows a large stress, not an infinite one.
-VecX nodal_von_mises(const RestElements& elements, const double* x, const Lame& lame);
+VecX nodal_von_mises(const ElementChunks& elements, const double* x, const Lame& lame);
 
 }  // namespace palpate::fem

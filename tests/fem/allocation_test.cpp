@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "fem_fixture.h"
+#include "palpate/core/workers.h"
 
 // Counts every call of malloc in this program (operator new and Eigen end there).  Sanitizers bring their own malloc: then the test skips.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
@@ -22,9 +23,10 @@ using namespace palpate::fem::testing;
 
 TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
 #if PALPATE_CAN_COUNT
-  const TetMesh rest = jittered_cube(2, 0.1, 71);
+  workers::set_count(2);
+  const TetMesh rest = jittered_cube(8, 0.1, 71);
   Random random(72);
-  const VecX x = flat(rest.nodes) + 0.3 * random.vector(3 * rest.nodes.cols()), v = random.vector(x.size());  // inverted elements too
+  const VecX x = flat(rest.nodes) + 0.07 * random.vector(3 * rest.nodes.cols()), v = random.vector(x.size());  // inverted elements too
   OneBody at(x, v);
   Material material = soft_material();
   material.stiffness_damping = 0.1;
@@ -54,6 +56,7 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
     EXPECT_EQ(malloc_calls - warm, 0);
     EXPECT_GT(body.counts().inverted, 0);
   }
+  workers::set_count(1);
 #else
   GTEST_SKIP() << "a sanitizer owns malloc: nothing can be counted here";
 #endif

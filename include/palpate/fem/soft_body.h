@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <memory>
 #include <string>
 
@@ -15,16 +16,27 @@ struct SoftBodyOptions {
   Tangent tangent = Tangent::kExact;
   bool full_damping_tangent = false;  ///< keep the unsymmetric part of the damping's derivative by position
   double volumetric_share = 1.0;      ///< of lambda (and of lambda_d), acting element by element; the rest belongs to another term
+  /// "baseline", "avx2" or "avx512"; empty: the widest that the processor has, or what the environment variable PALPATE_INSTRUCTIONS names.
+  std::string instructions = {};
 };
 
 /// What one evaluation met, for reports: counts since the last reset.
 struct ElementCounts {
   long inverted = 0;          ///< det F <= 0
   long clamped = 0;           ///< exact tangent near its singular set (two signed singular values cancel)
+  long by_scalar = 0;         ///< lanes that were finished one by one: close to the singular set, or in need of eigenvalues (projected tangent)
+};
+
+/// What a body holds, in bytes.
+struct MemoryUse {
+  std::size_t elements = 0;   ///< rest shapes, topology, chunks
+  std::size_t maps = 0;       ///< into the pattern of the matrix
+  std::size_t scratch = 0;    ///< of all threads, and sums that chunks share
 };
 
 /// Corotational tetrahedra as one force term over one node block (DESIGN 3.1): elastic force, objective stiffness damping, their tangents, energy.
 /// Mass-proportional damping acts here too (it needs the lumped masses): f = -alpha M v.
+/// Elements are worked through in the lanes of vectors and on core's workers (core/workers.h); results do not depend on the number of threads.
 class SoftBody : public dynamics::ForceTerm {
  public:
   /// @param rest  rest positions and tetrahedra, volumes positive  @param block_id  the node block in the State
@@ -51,6 +63,9 @@ class SoftBody : public dynamics::ForceTerm {
   void set_material(const Material& material);  ///< takes effect at the next evaluation
   int node_count() const;
   int element_count() const;
+  /// Name of the instruction set in use.
+  std::string_view instructions() const;
+  MemoryUse memory() const;
   /// Von Mises norm of the element Cauchy stress, averaged to nodes by volume [Pa]; size node_count (pictures and records).
   VecX nodal_stress(const dynamics::StateView& state) const;
 

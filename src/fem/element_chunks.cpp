@@ -1,0 +1,235 @@
+#include "element_chunks.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numeric>
+
+#include "palpate/core/error.h"
+
+namespace palpate::fem {
+namespace {
+
+/// Elements in a chunk, at most.  The blocks of a chunk then fit a second-level cache, and a mesh of some ten thousand elements gives each of a few
+/// threads several chunks; smaller ones would share more of their edges.
+constexpr int kChunkElements = 2048;
+constexpr std::size_t kLanes = ElementGroup::kLanes;
+
+using Corners = std::array<int, 4>;
+constexpr int kEdgeCorners[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+std::uint64_t key_of(int i, int j) { return (static_cast<std::uint64_t>(i) << 32) | static_cast<std::uint32_t>(j); }
+
+/// Cuts [begin, end) of `order` into `chunks` compact parts of nearly equal size: recursively, across the longest side of the box around the centroids.
+void bisect(const Points& centroids, std::vector<int>& order, int begin, int end, int chunks, std::vector<int>& starts) {
+  if (chunks <= 1) {
+    std::sort(order.begin() + begin, order.begin() + end);  // the order of the mesh is mostly a good one
+    starts.push_back(end);
+    return;
+  }
+  Vec3 low = Vec3::Constant(1e300), high = -low;
+  for (int k = begin; k < end; ++k) {
+    low = low.cwiseMin(centroids.col(order[static_cast<std::size_t>(k)]));
+    high = high.cwiseMax(centroids.col(order[static_cast<std::size_t>(k)]));
+  }
+  Eigen::Index axis = 0;
+  (high - low).maxCoeff(&axis);
+  const int left = chunks / 2;
+  const auto share = static_cast<std::int64_t>(end - begin) * left / chunks;
+  const int middle = std::min(end, begin + static_cast<int>((share + 7) / 8 * 8));
+  std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, [&](int a, int b) {
+    const double pa = centroids(axis, a), pb = centroids(axis, b);
+    return pa < pb || (pa == pb && a < b);
+  });
+  bisect(centroids, order, begin, middle, left, starts);
+  bisect(centroids, order, middle, end, chunks - left, starts);
+}
+
+/// What is used in a chunk (nodes, or pairs of nodes), with own ones first, and the sums over chunks of what is shared.
+struct Uses {
+  std::vector<std::vector<std::uint64_t>> by_chunk;  ///< ascending, then rearranged: own ascending, shared ascending
+  std::vector<int> own;
+  std::vector<int> first_shared;
+  std::vector<std::uint64_t> shared;
+  std::vector<int> start{0}, entries;
+
+  explicit Uses(std::vector<std::vector<std::uint64_t>> used) : by_chunk(std::move(used)) {
+    std::vector<std::uint64_t> all;
+    for (auto& keys : by_chunk) {
+      std::sort(keys.begin(), keys.end());
+      keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+      all.insert(all.end(), keys.begin(), keys.end());
+    }
+    std::sort(all.begin(), all.end());
+    for (std::size_t k = 0; k + 1 < all.size(); ++k)
+      if (all[k] == all[k + 1] && (shared.empty() || shared.back() != all[k])) shared.push_back(all[k]);
+    std::vector<std::vector<int>> contributions(shared.size());
+    int place = 0;
+    for (auto& keys : by_chunk) {
+      const auto middle = std::stable_partition(keys.begin(), keys.end(), [&](std::uint64_t key) { return !std::binary_search(shared.begin(), shared.end(), key); });
+      own.push_back(static_cast<int>(middle - keys.begin()));
+      first_shared.push_back(place);
+      for (auto it = middle; it != keys.end(); ++it)
+        contributions[static_cast<std::size_t>(std::lower_bound(shared.begin(), shared.end(), *it) - shared.begin())].push_back(place++);
+    }
+    for (const auto& places : contributions) {
+      entries.insert(entries.end(), places.begin(), places.end());
+      start.push_back(static_cast<int>(entries.size()));
+    }
+  }
+  /// Number of a key within a chunk.
+  int find(std::size_t chunk, std::uint64_t key) const {
+    const auto& keys = by_chunk[chunk];
+    const auto middle = keys.begin() + own[chunk];
+    auto it = std::lower_bound(keys.begin(), middle, key);
+    if (it == middle || *it != key) it = std::lower_bound(middle, keys.end(), key);
+    PALPATE_CHECK(it != keys.end() && *it == key, "key {} is not in chunk {}", key, chunk);
+    return static_cast<int>(it - keys.begin());
+  }
+};
+
+/// Corners of an element, ascending by node.
+Corners sorted_corners(const RestElements& elements, std::size_t e) {
+  Corners corners{0, 1, 2, 3};
+  std::sort(corners.begin(), corners.end(), [&](int a, int b) { return elements.node[static_cast<std::size_t>(a)][e] < elements.node[static_cast<std::size_t>(b)][e]; });
+  return corners;
+}
+
+/// A lane that only fills up: a unit tetrahedron at rest on four nodes behind those of the chunk, of no volume, so that it adds zeros there.
+void fill_up(ElementGroup& group, std::size_t lane, int chunk_nodes, int chunk_edges) {
+  for (int k = 0; k < 9; ++k) group.inverse_edges[k][lane] = k % 4 == 0 ? 1.0 : 0.0;
+  group.volume[lane] = 0.0;
+  for (int a = 0; a < 4; ++a) group.node[a][lane] = static_cast<std::uint16_t>(chunk_nodes + a);
+  for (auto& edge : group.edge) edge[lane] = static_cast<std::uint16_t>(chunk_edges);
+  group.element[lane] = -1;
+}
+
+}  // namespace
+
+ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements) : nodal_volume(elements.nodal_volume), element_count_(elements.count()) {
+  Points centroids(3, element_count_);
+  for (int e = 0; e < element_count_; ++e) {
+    centroids.col(e).setZero();
+    for (int a = 0; a < 4; ++a) centroids.col(e) += 0.25 * rest.nodes.col(rest.tets(a, e));
+  }
+  std::vector<int> order(static_cast<std::size_t>(element_count_)), starts{0};
+  std::iota(order.begin(), order.end(), 0);
+  const int chunk_count = std::max(1, (element_count_ + kChunkElements - 1) / kChunkElements);
+  bisect(centroids, order, 0, element_count_, chunk_count, starts);
+
+  const auto node = [&](int corner, int e) { return elements.node[static_cast<std::size_t>(corner)][static_cast<std::size_t>(e)]; };
+  std::vector<std::vector<std::uint64_t>> node_keys(static_cast<std::size_t>(chunk_count)), edge_keys(static_cast<std::size_t>(chunk_count));
+  for (std::size_t c = 0; c < node_keys.size(); ++c)
+    for (int k = starts[c]; k < starts[c + 1]; ++k) {
+      const int e = order[static_cast<std::size_t>(k)];
+      const Corners corners = sorted_corners(elements, static_cast<std::size_t>(e));
+      for (int corner : corners) node_keys[c].push_back(static_cast<std::uint64_t>(node(corner, e)));
+      for (const auto& [a, b] : kEdgeCorners)
+        edge_keys[c].push_back(key_of(node(corners[static_cast<std::size_t>(a)], e), node(corners[static_cast<std::size_t>(b)], e)));
+    }
+  const Uses node_uses(std::move(node_keys)), edge_uses(std::move(edge_keys));
+
+  row_start.push_back(0);
+  for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
+    Chunk chunk;
+    chunk.first_group = static_cast<int>(groups.size());
+    chunk.groups = (starts[c + 1] - starts[c] + 7) / 8;
+    chunk.first_node = static_cast<int>(nodes.size());
+    chunk.nodes = static_cast<int>(node_uses.by_chunk[c].size());
+    chunk.own_nodes = node_uses.own[c];
+    chunk.first_shared_node = node_uses.first_shared[c];
+    chunk.first_edge = static_cast<int>(ends.size() / 2);
+    chunk.edges = static_cast<int>(edge_uses.by_chunk[c].size());
+    chunk.own_edges = edge_uses.own[c];
+    chunk.first_shared_edge = edge_uses.first_shared[c];
+    for (std::uint64_t key : node_uses.by_chunk[c]) nodes.push_back(static_cast<int>(key));
+    for (std::uint64_t key : edge_uses.by_chunk[c])
+      for (std::uint64_t end : {key >> 32, key & 0xffffffffu}) ends.push_back(static_cast<std::uint16_t>(node_uses.find(c, end)));
+    make_rows(chunk);
+    groups.resize(groups.size() + static_cast<std::size_t>(chunk.groups));
+    for (int k = starts[c]; k < starts[c] + 8 * chunk.groups; ++k) {
+      const auto offset = static_cast<std::size_t>(k - starts[c]);
+      ElementGroup& group = groups[static_cast<std::size_t>(chunk.first_group) + offset / kLanes];
+      const std::size_t lane = offset % kLanes;
+      if (k >= starts[c + 1]) {
+        fill_up(group, lane, chunk.nodes, chunk.edges);
+        continue;
+      }
+      const int e = order[static_cast<std::size_t>(k)];
+      const Corners corners = sorted_corners(elements, static_cast<std::size_t>(e));
+      const Mat3 rows = elements.gradients(static_cast<std::size_t>(e));
+      for (std::size_t a = 0; a < 4; ++a)
+        group.node[a][lane] = static_cast<std::uint16_t>(node_uses.find(c, static_cast<std::uint64_t>(node(corners[a], e))));
+      for (int r = 0; r < 3; ++r) {
+        const int corner = corners[static_cast<std::size_t>(r) + 1];
+        const Vec3 g = corner == 0 ? Vec3(-rows.colwise().sum().transpose()) : Vec3(rows.row(corner - 1).transpose());
+        for (int axis = 0; axis < 3; ++axis) group.inverse_edges[3 * r + axis][lane] = g[axis];
+      }
+      for (std::size_t k6 = 0; k6 < 6; ++k6)
+        group.edge[k6][lane] = static_cast<std::uint16_t>(edge_uses.find(
+            c, key_of(node(corners[static_cast<std::size_t>(kEdgeCorners[k6][0])], e), node(corners[static_cast<std::size_t>(kEdgeCorners[k6][1])], e))));
+      group.volume[lane] = elements.volume[static_cast<std::size_t>(e)];
+      group.element[lane] = e;
+    }
+    most_nodes = std::max(most_nodes, chunk.nodes);
+    most_edges = std::max(most_edges, chunk.edges);
+    chunks.push_back(chunk);
+  }
+  PALPATE_CHECK(most_nodes + 4 < 65536 && most_edges + 1 < 65536, "a chunk has {} nodes and {} edges", most_nodes, most_edges);
+  for (std::uint64_t key : node_uses.shared) shared_nodes.first.push_back(static_cast<int>(key));
+  for (std::uint64_t key : edge_uses.shared) {
+    shared_edges.first.push_back(static_cast<int>(key >> 32));
+    shared_edges.second.push_back(static_cast<int>(key & 0xffffffffu));
+  }
+  shared_nodes.start = node_uses.start;
+  shared_nodes.entries = node_uses.entries;
+  shared_edges.start = edge_uses.start;
+  shared_edges.entries = edge_uses.entries;
+}
+
+/// The edges at each node of a chunk: its own, by the node at the other end, that is in the order of the matrix's columns; then the shared ones.
+void ElementChunks::make_rows(const Chunk& chunk) {
+  struct Entry {
+    bool shared;
+    int other;
+    std::uint32_t edge;
+  };
+  std::vector<std::vector<Entry>> rows(static_cast<std::size_t>(chunk.nodes));
+  for (int k = 0; k < chunk.edges; ++k) {
+    const auto at = 2 * static_cast<std::size_t>(chunk.first_edge + k);
+    const auto global = [&](std::uint16_t end) { return nodes[static_cast<std::size_t>(chunk.first_node + end)]; };
+    const auto edge = 2 * static_cast<std::uint32_t>(k);
+    rows[ends[at]].push_back({k >= chunk.own_edges, global(ends[at + 1]), edge});
+    rows[ends[at + 1]].push_back({k >= chunk.own_edges, global(ends[at]), edge + 1});
+  }
+  for (auto& row : rows) {
+    std::sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) { return a.shared != b.shared ? b.shared : a.other < b.other; });
+    row_own.push_back(static_cast<std::int32_t>(std::count_if(row.begin(), row.end(), [](const Entry& e) { return !e.shared; })));
+    for (const Entry& e : row) row_edges.push_back(e.edge);
+    row_start.push_back(static_cast<std::int32_t>(row_edges.size()));
+  }
+}
+
+Mat3 ElementChunks::Element::edges(const double* field) const {
+  const Eigen::Map<const Vec3> origin(field + 3 * node[0]);
+  Mat3 m;
+  for (int a = 1; a < 4; ++a) m.col(a - 1) = Eigen::Map<const Vec3>(field + 3 * node[a]) - origin;
+  return m;
+}
+
+ElementChunks::Element ElementChunks::element(const Chunk& chunk, const ElementGroup& group, int lane) const {
+  Element out;
+  out.number = group.element[lane];
+  for (int a = 0; a < 4; ++a) out.node[a] = nodes[static_cast<std::size_t>(chunk.first_node + group.node[a][lane])];
+  for (int k = 0; k < 9; ++k) out.gradients(k / 3, k % 3) = group.inverse_edges[k][lane];
+  out.volume = group.volume[lane];
+  return out;
+}
+
+std::size_t ElementChunks::bytes() const {
+  const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  const auto sums = [&](const SharedSums& s) { return of(s.first) + of(s.second) + of(s.start) + of(s.entries); };
+  return of(groups) + of(chunks) + of(nodes) + of(ends) + of(row_start) + of(row_own) + of(row_edges) + of(nodal_volume) + sums(shared_nodes) + sums(shared_edges);
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,73 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "lane_kernels.h"
+#include "palpate/mesh/mesh.h"
+#include "rest_elements.h"
+
+namespace palpate::fem {
+
+/// Sums over chunks: entry k gathers the contributions entries[start[k]] to entries[start[k + 1]], places in a buffer, in the order of the chunks.
+struct SharedSums {
+  std::vector<int> first, second;  ///< the node of the body; for edges the two nodes, ascending
+  std::vector<int> start{0}, entries;
+  int count() const { return static_cast<int>(first.size()); }
+  int contributions() const { return static_cast<int>(entries.size()); }
+};
+
+/// The tetrahedra of a body in compact chunks, eight side by side.
+///
+/// A chunk sums forces and matrix blocks over its own elements in memory of its own, that fits the cache; nodes and edges that no other chunk has
+/// ("own") go from there straight into the result, the others are summed over the chunks afterwards, in their order.  Chunks depend on the mesh
+/// alone, so that the sums are the same to the last bit whoever computes which chunk.
+class ElementChunks {
+ public:
+  struct Chunk {
+    int first_group = 0, groups = 0;
+    int first_node = 0, nodes = 0, own_nodes = 0;  ///< in node(); own ones first
+    int first_edge = 0, edges = 0, own_edges = 0;  ///< in ends(); own ones first
+    int first_shared_node = 0, first_shared_edge = 0;  ///< place of the others in the buffers of shared contributions
+  };
+
+  ElementChunks(const TetMesh& rest, const RestElements& elements);
+
+  int element_count() const { return element_count_; }
+  int node_count() const { return static_cast<int>(nodal_volume.size()); }
+
+  std::vector<ElementGroup> groups;
+  std::vector<Chunk> chunks;
+  std::vector<int> nodes;                 ///< node of the body of each node of each chunk
+  std::vector<std::uint16_t> ends;        ///< two nodes of the chunk for each edge of each chunk
+  std::vector<std::int32_t> row_start;    ///< the edges at node n of nodes(): row_edges[row_start[n]] to [row_start[n + 1]]
+  std::vector<std::int32_t> row_own;      ///< how many of them are the chunk's own; these come first
+  std::vector<std::uint32_t> row_edges;   ///< 2 edge, plus one where the node is its second
+  SharedSums shared_nodes, shared_edges;
+  std::vector<double> nodal_volume;       ///< a quarter of each adjacent tetrahedron [m^3]
+  int most_nodes = 0, most_edges = 0;     ///< in a chunk
+
+  /// One element: its number in the mesh, its nodes in the body, ascending, the gradients g_1 to g_3 as rows, its volume.
+  struct Element {
+    int number;
+    int node[4];
+    Mat3 gradients;
+    double volume;
+    /// [x1-x0, x2-x0, x3-x0] of a nodal field of the body
+    Mat3 edges(const double* field) const;
+  };
+  template <class F>
+  void for_each(F&& f) const {
+    for (const Chunk& chunk : chunks)
+      for (int g = chunk.first_group; g < chunk.first_group + chunk.groups; ++g)
+        for (int lane = 0; lane < ElementGroup::kLanes; ++lane)
+          if (groups[static_cast<std::size_t>(g)].element[lane] >= 0) f(element(chunk, groups[static_cast<std::size_t>(g)], lane));
+  }
+  std::size_t bytes() const;
+
+ private:
+  void make_rows(const Chunk& chunk);
+  Element element(const Chunk& chunk, const ElementGroup& group, int lane) const;
+  int element_count_ = 0;
+};
+
+}  // namespace palpate::fem

@@ -1,0 +1,276 @@
+#include "element_evaluation.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "corotated.h"
+#include "palpate/core/error.h"
+#include "palpate/core/polar.h"
+#include "palpate/core/workers.h"
+
+namespace palpate::fem {
+namespace {
+
+using Chunk = ElementChunks::Chunk;
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+constexpr int kSumsInTask = 512;
+
+void rotation_by_scalar(const double* F, double* R) {
+  Eigen::Map<RowMajor> out(R);
+  out = polar_decomposition(Eigen::Map<const RowMajor>(F)).R;
+}
+
+bool coupling_by_scalar(const ElementModel& model, const double* F, const double* R, double* C) {
+  bool clamped = false;
+  const Tangent tangent = model.warped ? Tangent::kWarped : model.projected ? Tangent::kProjected : Tangent::kExact;
+  Eigen::Map<RowMajor> out(C);
+  out = rotation_coupling(tangent, Eigen::Map<const RowMajor>(F), Eigen::Map<const RowMajor>(R), {model.mu, model.lambda}, clamped);
+  return clamped;
+}
+
+constexpr ScalarPath kScalarPath{rotation_by_scalar, coupling_by_scalar};
+
+template <class T>
+std::size_t bytes_of(const std::vector<T>& v) {
+  return v.capacity() * sizeof(T);
+}
+double* numbers(auto& lines) { return lines.empty() ? nullptr : lines.front().value; }
+
+/// Runs f(k) for k in [0, count), in tasks of kSumsInTask.
+template <class F>
+void for_each_sum(int count, F&& f) {
+  workers::for_each((count + kSumsInTask - 1) / kSumsInTask, [&](int task, int) {
+    for (int k = task * kSumsInTask; k < std::min(count, (task + 1) * kSumsInTask); ++k) f(k);
+  });
+}
+
+/// Nine doubles summed over the contributions to shared edge k.
+void sum_blocks(const SharedSums& sums, int k, const std::vector<double>& contributions, double* sum) {
+  std::fill_n(sum, 9, 0.0);
+  for (int p = sums.start[static_cast<std::size_t>(k)]; p < sums.start[static_cast<std::size_t>(k) + 1]; ++p) {
+    const double* block = contributions.data() + 9 * static_cast<std::size_t>(sums.entries[static_cast<std::size_t>(p)]);
+    for (int c = 0; c < 9; ++c) sum[c] += block[c];
+  }
+}
+
+void set_zero(const ChunkBlocks& blocks, int count) {
+  std::fill_n(blocks.first, 8 * count, 0.0);
+  std::fill_n(blocks.last, count, 0.0);
+}
+
+void keep_blocks(const ChunkBlocks& blocks, int begin, int end, double* to) {
+  for (int k = begin; k < end; ++k, to += 9) {
+    std::copy_n(blocks.first + 8 * k, 8, to);
+    to[8] = blocks.last[k];
+  }
+}
+
+}  // namespace
+
+ElementEvaluation::ElementEvaluation(const TetMesh& rest, const RestElements& elements, bool with_lower)
+    : chunks_(rest, elements), kernels_(&best_kernels()), with_lower_(with_lower) {
+  const auto node_places = static_cast<std::size_t>(chunks_.shared_nodes.contributions());
+  const auto edge_places = static_cast<std::size_t>(chunks_.shared_edges.contributions());
+  shared_nodes_.resize((node_places + 1) / 2);
+  shared_upper_.resize(9 * edge_places);
+  if (with_lower_) shared_lower_.resize(9 * edge_places);
+  shared_diagonal_.resize(9 * node_places);
+  chunk_sums_.resize(chunks_.chunks.size());
+  fit_scratch();
+}
+
+void ElementEvaluation::fit_scratch() {
+  const auto threads = static_cast<std::size_t>(workers::count());
+  if (scratch_.size() >= threads) return;
+  const auto nodes = static_cast<std::size_t>(chunks_.most_nodes) + 4, edges = static_cast<std::size_t>(chunks_.most_edges) + 1;
+  const std::size_t first = scratch_.size();
+  scratch_.resize(threads);
+  for (std::size_t s = first; s < threads; ++s) {
+    Scratch& scratch = scratch_[s];
+    for (auto* field : {&scratch.x, &scratch.v, &scratch.w, &scratch.sum}) field->resize((nodes + 1) / 2);
+    scratch.upper.resize(edges);
+    scratch.upper_last.resize(edges);
+    if (with_lower_) {
+      scratch.lower.resize(edges);
+      scratch.lower_last.resize(edges);
+    }
+    scratch.diagonal.resize(nodes);
+    scratch.diagonal_last.resize(nodes);
+  }
+}
+
+LaneCounts ElementEvaluation::collect_counts() {
+  LaneCounts sum;
+  for (Scratch& scratch : scratch_) {
+    sum.inverted += scratch.counts.inverted;
+    sum.clamped += scratch.counts.clamped;
+    sum.by_scalar += scratch.counts.by_scalar;
+    scratch.counts = {};
+  }
+  return sum;
+}
+
+/// Behind the nodes of the chunk stand the corners of the unit tetrahedron that fills up groups.
+ChunkFields ElementEvaluation::load(const Chunk& chunk, const BodyFields& at, Scratch& scratch) const {
+  const int* nodes = chunks_.nodes.data() + chunk.first_node;
+  const auto copy = [&](const double* from, std::vector<Line>& lines, double unit) {
+    double* to = numbers(lines);
+    for (int n = 0; n < chunk.nodes; ++n) {
+      const double* p = from + 3 * static_cast<std::size_t>(nodes[n]);
+      to[4 * n] = p[0];
+      to[4 * n + 1] = p[1];
+      to[4 * n + 2] = p[2];
+      to[4 * n + 3] = 0.0;
+    }
+    std::fill_n(to + 4 * chunk.nodes, 16, 0.0);
+    for (int axis = 0; axis < 3; ++axis) to[4 * (chunk.nodes + 1 + axis) + axis] = unit;
+    return static_cast<const double*>(to);
+  };
+  ChunkFields out;
+  out.x = copy(at.x, scratch.x, 1.0);
+  if (at.v) out.v = copy(at.v, scratch.v, 0.0);
+  if (at.w) out.w = copy(at.w, scratch.w, 0.0);
+  return out;
+}
+
+LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModel& model, const BodyFields& at, double* out) {
+  fit_scratch();
+  workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
+    const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
+    Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
+    const ChunkFields fields = load(chunk, at, scratch);
+    double* sum = numbers(scratch.sum);
+    std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
+    kernel(chunks_.groups.data() + chunk.first_group, chunk.groups, model, kScalarPath, fields, sum, scratch.counts);
+    const int* nodes = chunks_.nodes.data() + chunk.first_node;
+    for (int n = 0; n < chunk.own_nodes; ++n)
+      for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)] += sum[4 * n + axis];
+    std::copy_n(sum + 4 * chunk.own_nodes, 4 * (chunk.nodes - chunk.own_nodes), numbers(shared_nodes_) + 4 * static_cast<std::size_t>(chunk.first_shared_node));
+  });
+  const SharedSums& shared = chunks_.shared_nodes;
+  for_each_sum(shared.count(), [&](int k) {
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (int p = shared.start[static_cast<std::size_t>(k)]; p < shared.start[static_cast<std::size_t>(k) + 1]; ++p) {
+      const double* part = numbers(shared_nodes_) + 4 * static_cast<std::size_t>(shared.entries[static_cast<std::size_t>(p)]);
+      for (int axis = 0; axis < 3; ++axis) sum[axis] += part[axis];
+    }
+    for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(shared.first[static_cast<std::size_t>(k)]) + static_cast<std::size_t>(axis)] += sum[axis];
+  });
+  return collect_counts();
+}
+
+LaneCounts ElementEvaluation::add_force(const ElementModel& model, const BodyFields& at, double* f) { return add_nodal(kernels_->force, model, at, f); }
+LaneCounts ElementEvaluation::apply_tangent(const ElementModel& model, const BodyFields& at, double* y) { return add_nodal(kernels_->apply, model, at, y); }
+
+LaneCounts ElementEvaluation::add_tangent(const ElementModel& model, const BodyFields& at, int first_node, dynamics::BlockSparse& A) {
+  fit_scratch();
+  prepare(first_node, A);
+  const bool symmetric = !model.by_position;
+  PALPATE_CHECK(symmetric || with_lower_, "no room was set aside for an unsymmetric tangent");
+  workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
+    const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
+    Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
+    const ChunkBlocks upper{numbers(scratch.upper), scratch.upper_last.data()}, lower{numbers(scratch.lower), scratch.lower_last.data()};
+    const ChunkBlocks diagonal{numbers(scratch.diagonal), scratch.diagonal_last.data()};
+    set_zero(upper, chunk.edges + 1);
+    if (!symmetric) set_zero(lower, chunk.edges + 1);
+    kernels_->tangent(chunks_.groups.data() + chunk.first_group, chunk.groups, model, kScalarPath, load(chunk, at, scratch), upper, lower, scratch.counts);
+    const BlockTargets targets{chunk.nodes, chunk.own_nodes, chunks_.row_start.data() + chunk.first_node, chunks_.row_own.data() + chunk.first_node,
+                               chunks_.row_edges.data(), slots_.data(), chunk_diagonal_.data() + chunk.first_node};
+    kernels_->flush(targets, upper, lower, symmetric, diagonal, A.values().data());
+    const auto edge_place = 9 * static_cast<std::size_t>(chunk.first_shared_edge);
+    keep_blocks(upper, chunk.own_edges, chunk.edges, shared_upper_.data() + edge_place);
+    if (!symmetric) keep_blocks(lower, chunk.own_edges, chunk.edges, shared_lower_.data() + edge_place);
+    keep_blocks(diagonal, chunk.own_nodes, chunk.nodes, shared_diagonal_.data() + 9 * static_cast<std::size_t>(chunk.first_shared_node));
+  });
+  add_shared_blocks(symmetric, A);
+  return collect_counts();
+}
+
+void ElementEvaluation::add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const {
+  for_each_sum(chunks_.shared_edges.count(), [&](int k) {
+    double sum[9];
+    sum_blocks(chunks_.shared_edges, k, shared_upper_, sum);
+    double *above = A.block(shared_slots_[2 * static_cast<std::size_t>(k)]), *below = A.block(shared_slots_[2 * static_cast<std::size_t>(k) + 1]);
+    for (int c = 0; c < 9; ++c) above[c] += sum[c];
+    if (symmetric) {
+      for (int c = 0; c < 9; ++c) below[c] += sum[c % 3 * 3 + c / 3];
+    } else {
+      sum_blocks(chunks_.shared_edges, k, shared_lower_, sum);
+      for (int c = 0; c < 9; ++c) below[c] += sum[c];
+    }
+  });
+  for_each_sum(chunks_.shared_nodes.count(), [&](int k) {
+    double sum[9];
+    sum_blocks(chunks_.shared_nodes, k, shared_diagonal_, sum);
+    double* block = A.block(diagonal_[static_cast<std::size_t>(chunks_.shared_nodes.first[static_cast<std::size_t>(k)])]);
+    for (int c = 0; c < 9; ++c) block[c] += sum[c];
+  });
+}
+
+double ElementEvaluation::energy(const ElementModel& model, const BodyFields& at) {
+  fit_scratch();
+  workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
+    const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
+    Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
+    Line sums{};
+    kernels_->energy(chunks_.groups.data() + chunk.first_group, chunk.groups, model, kScalarPath, load(chunk, at, scratch), sums.value, scratch.counts);
+    chunk_sums_[static_cast<std::size_t>(c)] = std::accumulate(sums.value, sums.value + 8, 0.0);
+  });
+  collect_counts();
+  return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
+}
+
+double ElementEvaluation::dissipated_power(const ElementModel& model, const BodyFields& at) {
+  fit_scratch();
+  workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
+    const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
+    Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
+    Line sums{};
+    kernels_->power(chunks_.groups.data() + chunk.first_group, chunk.groups, model, load(chunk, at, scratch), sums.value);
+    chunk_sums_[static_cast<std::size_t>(c)] = std::accumulate(sums.value, sums.value + 8, 0.0);
+  });
+  return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
+}
+
+void ElementEvaluation::prepare(int first_node, const dynamics::BlockSparse& A) {
+  if (A.pattern_version() == pattern_version_ && first_node == first_node_) return;
+  const auto slot = [&](int i, int j) {
+    const int found = A.slot(first_node + i, first_node + j);
+    PALPATE_CHECK(found >= 0, "nodes {} and {} are not in the pattern", first_node + i, first_node + j);
+    return static_cast<std::int32_t>(found);
+  };
+  slots_.resize(chunks_.row_edges.size());
+  chunk_diagonal_.resize(chunks_.nodes.size());
+  shared_slots_.resize(2 * chunks_.shared_edges.first.size());
+  diagonal_.resize(static_cast<std::size_t>(chunks_.node_count()));
+  for (std::size_t i = 0; i < diagonal_.size(); ++i) diagonal_[i] = slot(static_cast<int>(i), static_cast<int>(i));
+  for (std::size_t n = 0; n < chunks_.nodes.size(); ++n) chunk_diagonal_[n] = diagonal_[static_cast<std::size_t>(chunks_.nodes[n])];
+  for (const Chunk& chunk : chunks_.chunks)
+    for (int n = chunk.first_node; n < chunk.first_node + chunk.nodes; ++n)
+      for (int p = chunks_.row_start[static_cast<std::size_t>(n)]; p < chunks_.row_start[static_cast<std::size_t>(n) + 1]; ++p) {
+        const std::uint32_t entry = chunks_.row_edges[static_cast<std::size_t>(p)];
+        const std::size_t other = 2 * (static_cast<std::size_t>(chunk.first_edge) + entry / 2) + (1 - entry % 2);
+        slots_[static_cast<std::size_t>(p)] = slot(chunks_.nodes[static_cast<std::size_t>(n)], chunks_.nodes[static_cast<std::size_t>(chunk.first_node + chunks_.ends[other])]);
+      }
+  for (std::size_t k = 0; k < chunks_.shared_edges.first.size(); ++k) {
+    shared_slots_[2 * k] = slot(chunks_.shared_edges.first[k], chunks_.shared_edges.second[k]);
+    shared_slots_[2 * k + 1] = slot(chunks_.shared_edges.second[k], chunks_.shared_edges.first[k]);
+  }
+  pattern_version_ = A.pattern_version();
+  first_node_ = first_node;
+}
+
+std::size_t ElementEvaluation::map_bytes() const {
+  return bytes_of(slots_) + bytes_of(chunk_diagonal_) + bytes_of(shared_slots_) + bytes_of(diagonal_);
+}
+
+std::size_t ElementEvaluation::scratch_bytes() const {
+  std::size_t sum = bytes_of(shared_nodes_) + bytes_of(shared_upper_) + bytes_of(shared_lower_) + bytes_of(shared_diagonal_) + bytes_of(chunk_sums_);
+  for (const Scratch& s : scratch_)
+    sum += bytes_of(s.x) + bytes_of(s.v) + bytes_of(s.w) + bytes_of(s.sum) + bytes_of(s.upper) + bytes_of(s.lower) + bytes_of(s.diagonal) +
+           bytes_of(s.upper_last) + bytes_of(s.lower_last) + bytes_of(s.diagonal_last);
+  return sum;
+}
+
+}  // namespace palpate::fem

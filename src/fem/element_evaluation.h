@@ -1,0 +1,76 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "element_chunks.h"
+#include "palpate/dynamics/matrix.h"
+
+namespace palpate::fem {
+
+/// Nodal vectors of a body, three doubles a node.
+struct BodyFields {
+  const double* x = nullptr;  ///< positions [m]
+  const double* v = nullptr;  ///< velocities [m/s]
+  const double* w = nullptr;  ///< a direction
+};
+
+/// Sums over the elements of one body: the kernels run over the chunks, on as many threads as core's workers have, and what chunks share is summed
+/// in their order.  Results do not depend on the number of threads.  Memory is set aside at construction, and when workers or pattern change.
+class ElementEvaluation {
+ public:
+  /// @param with_lower  room for unsymmetric tangents
+  ElementEvaluation(const TetMesh& rest, const RestElements& elements, bool with_lower);
+
+  const ElementChunks& chunks() const { return chunks_; }
+  const LaneKernels& kernels() const { return *kernels_; }
+  void use(const LaneKernels& kernels) { kernels_ = &kernels; }
+
+  LaneCounts add_force(const ElementModel& model, const BodyFields& at, double* f);
+  LaneCounts apply_tangent(const ElementModel& model, const BodyFields& at, double* y);
+  LaneCounts add_tangent(const ElementModel& model, const BodyFields& at, int first_node, dynamics::BlockSparse& A);
+  double energy(const ElementModel& model, const BodyFields& at);
+  double dissipated_power(const ElementModel& model, const BodyFields& at);
+
+  /// Slot of the diagonal block of a node of the body; after add_tangent or prepare.
+  int diagonal(int node) const { return diagonal_[static_cast<std::size_t>(node)]; }
+  /// Makes the maps into A's pattern, unless they are the ones at hand.
+  void prepare(int first_node, const dynamics::BlockSparse& A);
+  std::size_t map_bytes() const;
+  std::size_t scratch_bytes() const;
+
+ private:
+  struct alignas(64) Line { double value[8]; };
+
+  /// Memory of one thread.
+  struct Scratch {
+    std::vector<Line> x, v, w, sum;             ///< nodal, four doubles a node
+    std::vector<Line> upper, lower, diagonal;   ///< rows of eight
+    std::vector<double> upper_last, lower_last, diagonal_last;
+    LaneCounts counts;
+  };
+  using NodalKernel = decltype(LaneKernels::force);
+
+  void fit_scratch();
+  LaneCounts collect_counts();
+  ChunkFields load(const ElementChunks::Chunk& chunk, const BodyFields& at, Scratch& scratch) const;
+  LaneCounts add_nodal(NodalKernel kernel, const ElementModel& model, const BodyFields& at, double* out);
+  void add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const;
+
+  ElementChunks chunks_;
+  const LaneKernels* kernels_;
+  bool with_lower_;
+  std::vector<Scratch> scratch_;                       ///< one a thread
+  std::vector<Line> shared_nodes_;                     ///< half a line a contribution
+  std::vector<double> shared_upper_, shared_lower_;    ///< nine doubles a contribution
+  std::vector<double> shared_diagonal_;
+  std::vector<double> chunk_sums_;
+  // the maps
+  std::uint64_t pattern_version_ = 0;
+  int first_node_ = -1;
+  std::vector<std::int32_t> slots_;                    ///< of each entry of ElementChunks::row_edges
+  std::vector<std::int32_t> chunk_diagonal_;           ///< of each node of each chunk
+  std::vector<std::int32_t> shared_slots_;             ///< (i, j) and (j, i) of each shared edge
+  std::vector<std::int32_t> diagonal_;                 ///< of each node of the body
+};
+
+}  // namespace palpate::fem

@@ -1,0 +1,200 @@
+#pragma once
+// Force, energy and the product with the tangent, eight elements at a time.  The formulas are those of corotated.h.
+
+/// The lanes of one group from `part` on.
+struct Lanes {
+  const ElementGroup& group;
+  int first;
+  Pack inverse_edges(int r, int c) const { return load(group.inverse_edges[3 * r + c] + first); }
+  Pack volume() const { return load(group.volume + first); }
+  const std::uint16_t* node(int corner) const { return group.node[corner] + first; }
+  const std::uint16_t* edge(int e) const { return group.edge[e] + first; }
+};
+
+/// Rows g_1, g_2, g_3.
+PALPATE_INLINE Matrix gradients(const Lanes& at) {
+  Matrix G;
+  for (int r = 0; r < 3; ++r) G.row[r] = {at.inverse_edges(r, 0), at.inverse_edges(r, 1), at.inverse_edges(r, 2)};
+  return G;
+}
+
+/// Ds Dm^-1 of a nodal field: its gradient by the rest position.
+PALPATE_INLINE Matrix gradient_of(const Lanes& at, const Matrix& G, const double* field) {
+  const Vector origin = gather(field, at.node(0));
+  const Vector a = gather(field, at.node(1)) - origin, b = gather(field, at.node(2)) - origin, c = gather(field, at.node(3)) - origin;
+  return {{a.x * G.row[0] + b.x * G.row[1] + c.x * G.row[2], a.y * G.row[0] + b.y * G.row[1] + c.y * G.row[2],
+           a.z * G.row[0] + b.z * G.row[1] + c.z * G.row[2]}};
+}
+
+/// f_a += scale P g_a; that of corner 0 is minus the sum of the others.
+PALPATE_INLINE void add_forces(const Lanes& at, const Matrix& G, const Matrix& P, Pack scale, double* f) {
+  const Matrix Q = scale * P;
+  const Vector a = apply(Q, G.row[0]), b = apply(Q, G.row[1]), c = apply(Q, G.row[2]);
+  scatter_add(f, at.node(0), -(a + b + c));
+  scatter_add(f, at.node(1), a);
+  scatter_add(f, at.node(2), b);
+  scatter_add(f, at.node(3), c);
+}
+
+/// sym(A^T B)
+PALPATE_INLINE Symmetric symmetric_product(const Matrix& A, const Matrix& B) {
+  const auto columns = [](const Matrix& M) {
+    return Matrix{{{M.row[0].x, M.row[1].x, M.row[2].x}, {M.row[0].y, M.row[1].y, M.row[2].y}, {M.row[0].z, M.row[1].z, M.row[2].z}}};
+  };
+  const Matrix a = columns(A), b = columns(B);
+  return {dot(a.row[0], b.row[0]), dot(a.row[1], b.row[1]), dot(a.row[2], b.row[2]), 0.5 * (dot(a.row[1], b.row[2]) + dot(a.row[2], b.row[1])),
+          0.5 * (dot(a.row[0], b.row[2]) + dot(a.row[2], b.row[0])), 0.5 * (dot(a.row[0], b.row[1]) + dot(a.row[1], b.row[0]))};
+}
+
+/// 2 mu_d E' + lambda_d tr(E') I
+PALPATE_INLINE Symmetric damping_stress(const Symmetric& rate, const ElementModel& model) {
+  const double mu2 = 2.0 * model.damping_mu;
+  const Pack trace = model.damping_lambda * (rate.xx + rate.yy + rate.zz);
+  return {mu2 * rate.xx + trace, mu2 * rate.yy + trace, mu2 * rate.zz + trace, mu2 * rate.yz, mu2 * rate.xz, mu2 * rate.xy};
+}
+
+PALPATE_INLINE long count_of(Mask m) {
+  long sum = 0;
+  for (int l = 0; l < kWidth; ++l) sum -= static_cast<long>(m[l]);
+  return sum;
+}
+
+template <bool kDamped>
+static void forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
+                   LaneCounts& counts) {
+  const double mu2 = 2.0 * model.mu;
+  for (int g = 0; g < count; ++g)
+    for (int part = 0; part < 8; part += kWidth) {
+      const Lanes at{groups[g], part};
+      const Matrix G = gradients(at), F = gradient_of(at, G, fields.x);
+      Matrix R;
+      Pack det;
+      rotation(F, scalar, R, det, counts);
+      const Mask inverted = det <= 0.0;
+      if (any(inverted)) counts.inverted += count_of(inverted);
+      const Pack trace = double_dot(R, F) - 3.0;
+      Matrix P = (Pack{} + mu2) * F + (model.lambda * trace - mu2) * R;
+      if constexpr (kDamped) P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
+      add_forces(at, G, P, -at.volume(), f);
+    }
+}
+
+static void force(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
+                  LaneCounts& counts) {
+  if (model.damping_mu > 0.0)
+    forces<true>(groups, count, model, scalar, fields, f, counts);
+  else
+    forces<false>(groups, count, model, scalar, fields, f, counts);
+}
+
+static void energy(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double sums[8],
+                   LaneCounts& counts) {
+  for (int g = 0; g < count; ++g)
+    for (int part = 0; part < 8; part += kWidth) {
+      const Lanes at{groups[g], part};
+      const Matrix F = gradient_of(at, gradients(at), fields.x);
+      Matrix R;
+      Pack det;
+      rotation(F, scalar, R, det, counts);
+      const Matrix strain = F - R;
+      const Pack trace = double_dot(R, F) - 3.0;
+      const Pack density = model.mu * double_dot(strain, strain) + (0.5 * model.lambda) * trace * trace;
+      *reinterpret_cast<PackInMemory*>(sums + part) += at.volume() * density;
+    }
+}
+
+static void power(const ElementGroup* groups, int count, const ElementModel& model, const ChunkFields& fields, double sums[8]) {
+  for (int g = 0; g < count; ++g)
+    for (int part = 0; part < 8; part += kWidth) {
+      const Lanes at{groups[g], part};
+      const Matrix G = gradients(at);
+      const Symmetric rate = symmetric_product(gradient_of(at, G, fields.x), gradient_of(at, G, fields.v));
+      *reinterpret_cast<PackInMemory*>(sums + part) += at.volume() * double_dot(full(rate), full(damping_stress(rate, model)));
+    }
+}
+
+// The coupling matrix C of corotated.h.  A = tr(B) I - B is inverted by its cofactors where det A > kSmallestSum (tr A / 2)^2, as there.
+
+/// @return lanes where C, times one [Pa], is right
+PALPATE_INLINE Mask find_coupling(const ElementModel& model, const Matrix& F, const Matrix& R, Symmetric& C) {
+  constexpr double kSmallestSum = 1e-4;  // corotated.h
+  const Pack xx = dot(F.row[0], R.row[0]), yy = dot(F.row[1], R.row[1]), zz = dot(F.row[2], R.row[2]);
+  const Symmetric A{yy + zz, xx + zz, xx + yy, -0.5 * (dot(F.row[1], R.row[2]) + dot(F.row[2], R.row[1])),
+                    -0.5 * (dot(F.row[0], R.row[2]) + dot(F.row[2], R.row[0])), -0.5 * (dot(F.row[0], R.row[1]) + dot(F.row[1], R.row[0]))};
+  const Pack trace = xx + yy + zz, c = 2.0 * model.mu - model.lambda * (trace - 3.0);
+  const Symmetric cof{A.yy * A.zz - A.yz * A.yz, A.xx * A.zz - A.xz * A.xz, A.xx * A.yy - A.xy * A.xy,
+                      A.xy * A.xz - A.xx * A.yz, A.xy * A.yz - A.yy * A.xz, A.xz * A.yz - A.zz * A.xy};
+  const Pack det = A.xx * cof.xx + A.xy * cof.xy + A.xz * cof.xz;
+  const Pack s = c / det;
+  C = {s * cof.xx, s * cof.yy, s * cof.zz, s * cof.yz, s * cof.xz, s * cof.xy};
+  Mask right = det > kSmallestSum * trace * trace;
+  if (model.projected) {  // mu A - c I positive definite (Sylvester): the bound mu does not act
+    const Pack a = model.mu * A.xx - c, b = model.mu * A.yy - c, d = model.mu * A.zz - c;
+    const Pack yz = model.mu * A.yz, xz = model.mu * A.xz, xy = model.mu * A.xy;
+    const Pack minor = a * b - xy * xy;
+    right &= (a > 0.0) & (minor > 0.0) & (d * minor - a * yz * yz - b * xz * xz + 2.0 * xy * yz * xz > 0.0);
+  }
+  return right;
+}
+
+[[gnu::noinline, gnu::cold]] static void couple_by_scalar(const ElementModel& model, const Matrix* F, const Matrix* R, Matrix* C, const Mask* right,
+                                                          const ScalarPath& scalar, LaneCounts& counts) {
+  for (int l = 0; l < kWidth; ++l) {
+    if ((*right)[l] != 0) continue;
+    double one_F[9], one_R[9], one_C[9];
+    take_lane(*F, l, one_F);
+    take_lane(*R, l, one_R);
+    if (scalar.coupling(model, one_F, one_R, one_C)) ++counts.clamped;
+    put_lane(one_C, l, *C);
+    ++counts.by_scalar;
+  }
+}
+
+PALPATE_INLINE Symmetric coupling(const ElementModel& model, const Matrix& F, const Matrix& R, const ScalarPath& scalar, LaneCounts& counts) {
+  if (model.warped) {
+    const Pack zero{}, mu = zero + model.mu;
+    return {mu, mu, mu, zero, zero, zero};
+  }
+  Symmetric C;
+  const Mask right = find_coupling(model, F, R, C);
+  if (any(~right)) [[unlikely]] {
+    Matrix copy_F = F, copy_R = R, copy_C = full(C);
+    Mask copy_right = right;
+    couple_by_scalar(model, &copy_F, &copy_R, &copy_C, &copy_right, scalar, counts);
+    C = {copy_C.row[0].x, copy_C.row[1].y, copy_C.row[2].z, copy_C.row[1].z, copy_C.row[0].z, copy_C.row[0].y};
+  }
+  return C;
+}
+
+static void apply_tangent(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* y,
+                          LaneCounts& counts) {
+  const bool damped = model.damping_mu > 0.0;
+  for (int g = 0; g < count; ++g)
+    for (int part = 0; part < 8; part += kWidth) {
+      const Lanes at{groups[g], part};
+      const Matrix G = gradients(at), F = gradient_of(at, G, fields.x), dF = gradient_of(at, G, fields.w);
+      Matrix dP{};
+      if (model.k_scale != 0.0) {
+        Matrix R;
+        Pack det;
+        rotation(F, scalar, R, det, counts);
+        const Symmetric C = coupling(model, F, R, scalar, counts);
+        const Matrix M = times_transposed(dF, R);
+        const Vector turn = apply(full(C), {M.row[2].y - M.row[1].z, M.row[0].z - M.row[2].x, M.row[1].x - M.row[0].y});
+        const Pack stretch = model.lambda * (M.row[0].x + M.row[1].y + M.row[2].z);
+        // lambda tr(M) R - [turn]x R, row by row
+        dP.row[0] = stretch * R.row[0] + turn.z * R.row[1] - turn.y * R.row[2];
+        dP.row[1] = stretch * R.row[1] - turn.z * R.row[0] + turn.x * R.row[2];
+        dP.row[2] = stretch * R.row[2] + turn.y * R.row[0] - turn.x * R.row[1];
+        const Pack mu2 = Pack{} + 2.0 * model.mu;
+        dP = dP + mu2 * dF;
+        if (model.by_position) {
+          const Matrix F_dot = gradient_of(at, G, fields.v);
+          dP = dP + dF * full(damping_stress(symmetric_product(F, F_dot), model)) + F * full(damping_stress(symmetric_product(dF, F_dot), model));
+        }
+        dP = (Pack{} + model.k_scale) * dP;
+      }
+      if (damped && model.d_scale != 0.0) dP = dP + (Pack{} + model.d_scale) * (F * full(damping_stress(symmetric_product(F, dF), model)));
+      add_forces(at, G, dP, at.volume(), y);
+    }
+}

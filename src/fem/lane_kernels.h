@@ -1,0 +1,86 @@
+#pragma once
+#include <cstdint>
+
+/// The element kernels as plain functions on plain data.  One source (lane_kernels.inl) is compiled for several instruction sets, so this
+/// header may hold no inline function and no template: the linker would keep one copy of it, made for whichever set it met first.
+namespace palpate::fem {
+
+/// Eight tetrahedra side by side, one lane each.  Nodes and edges are numbered within a chunk of elements (element_chunks.h).
+/// The corners of an element ascend by node number, so that block K_ab, a < b, of its matrix belongs above the diagonal of the whole.
+struct alignas(64) ElementGroup {
+  static constexpr int kLanes = 8, kCorners = 4, kEdges = 6;
+  double inverse_edges[9][8];    ///< entry (r, c) of Dm^-1 at [3 r + c] [1/m]; row r is the gradient of corner r + 1
+  double volume[8];              ///< [m^3]; 0 in lanes that only fill up the group
+  std::uint16_t node[4][8];
+  std::uint16_t edge[6][8];      ///< corners (0,1) (0,2) (0,3) (1,2) (1,3) (2,3)
+  std::int32_t element[8];       ///< number in the mesh; -1 in lanes that only fill up
+};
+
+/// Nodal vectors of one chunk, four doubles a node (x, y, z, unused), 32-byte aligned.
+struct ChunkFields {
+  const double* x = nullptr;  ///< positions [m]
+  const double* v = nullptr;  ///< velocities [m/s]
+  const double* w = nullptr;  ///< a direction
+};
+
+/// 3x3 blocks of one chunk, one an edge: entries 0 to 7, row by row, in `first`, the last one in `last`; `first` is 64-byte aligned.
+struct ChunkBlocks {
+  double* first = nullptr;
+  double* last = nullptr;
+};
+
+/// What the kernels need to know beside the elements.
+struct ElementModel {
+  double mu = 0.0, lambda = 0.0;                   ///< elastic [Pa]
+  double damping_mu = 0.0, damping_lambda = 0.0;   ///< [Pa s]; 0: none
+  bool warped = false, projected = false;          ///< neither: exact
+  bool by_position = false;                        ///< the damping's derivative by position too, which is unsymmetric
+  double k_scale = 0.0, d_scale = 0.0;             ///< of stiffness and damping in a tangent
+};
+
+/// Counts of lanes.
+struct LaneCounts {
+  long inverted = 0;   ///< det F <= 0
+  long clamped = 0;    ///< coupling matrices that were bounded (corotated.h)
+  long by_scalar = 0;  ///< lanes finished one by one, by the functions below
+};
+
+/// For lanes near the singular set; matrices row by row.
+struct ScalarPath {
+  void (*rotation)(const double* F, double* R);
+  /// C of the tangent, times one [Pa]; true where clamped.
+  bool (*coupling)(const ElementModel& model, const double* F, const double* R, double* C);
+};
+
+/// Where the blocks of one chunk go in a matrix: row by row, one row a node, since the matrix is far larger than the blocks and is best met in order.
+struct BlockTargets {
+  int nodes = 0, own_nodes = 0;             ///< of the chunk; the own ones come first
+  const std::int32_t* row_start = nullptr;  ///< of each node in `entries` and `slots`
+  const std::int32_t* row_own = nullptr;    ///< how many entries of a row the chunk puts into the matrix; the others only count for the diagonal
+  const std::uint32_t* entries = nullptr;   ///< 2 edge, plus one where the node is the edge's second
+  const std::int32_t* slots = nullptr;      ///< of each entry in the matrix
+  const std::int32_t* diagonal = nullptr;   ///< slot of each node's diagonal block
+};
+
+struct LaneKernels {
+  const char* name;
+  /// f += nodal forces of the groups, four doubles a node.
+  void (*force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, LaneCounts&);
+  /// y += tangent times w.
+  void (*apply)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* y, LaneCounts&);
+  /// Blocks above the diagonal into `upper`; with by_position those below it into `lower`.
+  void (*tangent)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, const ChunkBlocks& upper,
+                  const ChunkBlocks& lower, LaneCounts&);
+  /// Puts the chunk's own blocks into the matrix (nine doubles a slot) and leaves the diagonal blocks of nodes that are not its own in `diagonal`.
+  void (*flush)(const BlockTargets&, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal, double* values);
+  /// Elastic energies [J], and powers of the damping [W], summed by lane.
+  void (*energy)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double sums[8], LaneCounts&);
+  void (*power)(const ElementGroup* groups, int count, const ElementModel&, const ChunkFields&, double sums[8]);
+};
+
+/// @param name  "baseline", "avx2" or "avx512"; nullptr where the build or the processor lacks it
+const LaneKernels* find_kernels(const char* name);
+/// The widest that this processor has; the environment variable PALPATE_INSTRUCTIONS may name another.  @throws Error when that is not to be had.
+const LaneKernels& best_kernels();
+
+}  // namespace palpate::fem
