@@ -3,6 +3,7 @@
 
 #include "fem_fixture.h"
 #include "palpate/core/workers.h"
+#include "palpate/fem/nodal_dilatation.h"
 
 // Counts every call of malloc in this program (operator new and Eigen end there).  Sanitizers bring their own malloc: then the test skips.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
@@ -36,17 +37,20 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
   EXPECT_GT(malloc_calls, before_all);  // the counter counts
   for (Tangent tangent : {Tangent::kExact, Tangent::kProjected, Tangent::kWarped}) {
     SoftBody body("b", rest, material, {.tangent = tangent, .full_damping_tangent = true}, at.id);
+    NodalDilatation dilatation("b", rest, material, {.tangent = tangent, .full_damping_tangent = true, .volumetric_share = 0.5}, at.id);
     dynamics::PatternBuilder builder(at.state.layout());
-    body.add_pattern(builder);
+    dilatation.add_pattern(builder);  // the element's pairs are among them
     dynamics::BorderedMatrix A;
     A.body = builder.build();
     VecX f = VecX::Zero(x.size()), y = f;
     const auto evaluate = [&] {
-      body.add_force(at.state.view(), f);
-      body.add_tangent(at.state.view(), 1, 1, A);
-      body.apply_tangent(at.state.view(), 1, 1, v, y);
-      body.energy(at.state.view());
-      body.dissipated_power(at.state.view());
+      for (dynamics::ForceTerm* term : std::initializer_list<dynamics::ForceTerm*>{&body, &dilatation}) {
+        term->add_force(at.state.view(), f);
+        term->add_tangent(at.state.view(), 1, 1, A);
+        term->apply_tangent(at.state.view(), 1, 1, v, y);
+        term->energy(at.state.view());
+        term->dissipated_power(at.state.view());
+      }
       mass->add_mass(at.state.view(), 1.0, A);
       mass->apply(at.state.view(), v, y);
     };

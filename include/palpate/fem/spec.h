@@ -38,6 +38,7 @@ struct SoftBodySpec {
   double stiffness_damping_s = 0.0;        ///< beta: (mu_d, lambda_d) = beta (mu, lambda)
   std::string mass = "lumped";             ///< or "consistent"
   std::string tangent = "exact";           ///< "exact", "projected", "warped"
+  std::string volumetric = "element";      ///< resistance to change of volume: "element", or "nodal" averages (no locking for nu -> 0.5)
   bool full_damping_tangent = false;       ///< keep the unsymmetric part of the damping's derivative by position
   std::vector<AttachmentSpec> attachments;
   std::vector<LoadSpec> loads;

@@ -1,0 +1,47 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "palpate/fem/soft_body.h"
+
+namespace palpate::fem {
+
+/// Share of lambda that a body with nodal dilatation keeps element by element: that of lambda_e = min(lambda, mu), Poisson's ratio 1/4.
+/// It costs nothing in accuracy (an element of nu = 1/4 does not lock) and resists a change of volume that the nodes' averages miss.
+/// 1 where lambda <= mu: there is nothing left for NodalDilatation then.
+double kept_volumetric_share(const Material& material);
+
+/// The rest of lambda by nodal averages of the dilatation (Bonet and Burton 1998; the kept share after Puso and Solberg 2006): the remedy against
+/// volumetric locking for nu -> 0.5.  Elastic energy, objective damping lambda_d and their tangents.  Couples nodes that share a neighbour:
+/// about four times the blocks of the element's pattern, and a factor that costs accordingly.
+///
+/// Goes with a SoftBody of the same mesh, material, options and block: together they are the body.
+/// Limits: displacements converge for nu -> 0.5, pressures of single nodes may alternate around the true one (equal orders of displacement and
+/// pressure): average them before reading.  Boundary nodes average over the inside alone.
+class NodalDilatation : public dynamics::ForceTerm {
+ public:
+  /// @param options  of the SoftBody: 1 - volumetric_share of lambda acts here; both tangent settings act as there
+  NodalDilatation(std::string name, const TetMesh& rest, const Material& material, const SoftBodyOptions& options, int block_id);
+  ~NodalDilatation() override;
+
+  std::string_view name() const override;
+  void set_definite(bool definite) override;
+  dynamics::TermTraits traits() const override;
+  void add_pattern(dynamics::PatternBuilder& pattern) const override;
+  void add_force(const dynamics::StateView& state, VecX& f) override;
+  void add_tangent(const dynamics::StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) override;
+  void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) override;
+  double energy(const dynamics::StateView& state) override;
+  double dissipated_power(const dynamics::StateView& state) override;
+
+  /// theta_n of each node.
+  VecX dilatations(const dynamics::StateView& state);
+  /// Von Mises norm of the whole body's Cauchy stress (SoftBody::nodal_stress with the pressure that acts here) [Pa].
+  VecX nodal_stress(const dynamics::StateView& state);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate::fem

@@ -1,0 +1,300 @@
+#include "palpate/fem/nodal_dilatation.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "corotated.h"
+#include "node_block.h"
+#include "node_rings.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/polar.h"
+#include "stress.h"
+
+// A linear tetrahedron has one constraint of volume as lambda -> inf; a mesh has five to six times as many tetrahedra as nodes, more constraints than
+// the three directions a node has: it locks.  Averages at the nodes are one constraint a node.  With theta_e = tr(R^T F) - 3 (corotated.h),
+//
+//   theta_n = (1/V_n) sum_{e at n} (V_e/4) theta_e,   V_n = sum_{e at n} V_e/4,      E = (kappa/2) sum_n V_n theta_n^2,
+//
+// kappa = (1 - share) lambda.  As d theta_e = R : dF (corotated.h: dR drops out),
+//
+//   dE = kappa sum_n theta_n sum_{e at n} (V_e/4) R : dF = sum_e V_e P_e : dF,   P_e = kappa theta*_e R,   theta*_e = mean of theta_n over the four nodes:
+//
+// the element's own force with the average of averages in place of theta_e.  Uniform strain has theta* = theta: the patch test holds; P_e F^T is
+// symmetric: no moment; a tetrahedron alone has theta* = theta_e: it is the element.
+//
+// Tangent.  V_n d theta_n = sum_j b_nj . dx_j over the ring of n, b_nj = sum_{e at n and j} (V_e/4) R g_j; so that
+//
+//   K_ij = sum_n (kappa/V_n) b_ni b_nj^T + sum_{e at i and j} V_e [h_i]x C [h_j]x,   C = -kappa theta*_e G,   h = R g, G = d axl / dR of corotated.h.
+//
+// The first sum is positive semi-definite, of rank one a node.  The second, kappa theta* dR, adds to SoftBody's -c dR and is exact with it; its twists have the
+// eigenvalues 2 kappa theta*/(s_i + s_j): projected takes C only where theta* > 0; warped leaves it out, as there C = mu I is that of theta = 0.
+//
+// Damping (corotated.h) alike, with tau_e = tr E' = F : F' in place of theta_e:
+//
+//   P_d = kappa_d tau*_e F,   D_ij = sum_n (kappa_d/V_n) d_ni d_nj^T,   d_nj = sum (V_e/4) F g_j,   power = kappa_d sum_n V_n tau_n^2 >= 0,
+//   by position (unsymmetric):  K_ij = sum_e V_e kappa_d tau*_e (g_i . g_j) I + sum_n (kappa_d/V_n) d_ni l_nj^T,   l_nj = sum (V_e/4) F' g_j.
+
+namespace palpate::fem {
+
+using dynamics::BorderedMatrix;
+using dynamics::StateView;
+
+namespace {
+
+/// The four gradients as columns.
+using Gradients = Eigen::Matrix<double, 3, 4>;
+
+double double_dot(const Mat3& A, const Mat3& B) { return A.cwiseProduct(B).sum(); }
+
+}  // namespace
+
+double kept_volumetric_share(const Material& material) {
+  const double lambda = material.lambda();
+  return lambda > material.mu() ? material.mu() / lambda : 1.0;
+}
+
+struct NodalDilatation::Impl {
+  std::string name;
+  SoftBodyOptions options;
+  int block_id;
+  RestElements elements;
+  NodeRings rings;
+  Lame kept;                      ///< of the SoftBody [Pa]
+  double kappa = 0.0;             ///< (1 - share) lambda [Pa]
+  double kappa_d = 0.0;           ///< (1 - share) lambda_d [Pa s]
+  bool definite = false;
+  std::vector<Mat3> F, R;         ///< of each element at the state last deformed to
+  VecX element, node, rate;       ///< element values and nodal averages; averages of the rate
+  std::vector<Vec3> turned, deformed, moving;  ///< ring rows b, d, l of the tangents
+
+  Impl(std::string n, const TetMesh& rest, const Material& m, const SoftBodyOptions& o, int id)
+      : name(std::move(n)), options(o), block_id(id), elements(make_rest_elements(rest, fmt::format("body \"{}\"", name))), rings(elements) {
+    check(m, fmt::format("body \"{}\"", name).c_str());
+    kept = {m.mu(), o.volumetric_share * m.lambda()};
+    kappa = m.lambda() - kept.lambda;
+    kappa_d = m.stiffness_damping * kappa;
+    F.resize(count());
+    R.resize(count());
+    element = rate = VecX::Zero(elements.count());
+    node = VecX::Zero(elements.node_count());
+    turned.resize(static_cast<std::size_t>(rings.entry_count()));
+    deformed = moving = turned;
+  }
+
+  std::size_t count() const { return elements.volume.size(); }
+  NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, elements.node_count()); }
+  bool damped() const { return kappa_d != 0.0; }
+  bool damped_by_position() const { return damped() && options.full_damping_tangent && !definite; }
+  Tangent tangent() const { return definite ? Tangent::kProjected : options.tangent; }
+
+  Gradients gradients(std::size_t e) const {
+    Gradients g;
+    g.rightCols<3>() = elements.gradients(e).transpose();
+    g.col(0) = -g.rightCols<3>().rowwise().sum();
+    return g;
+  }
+  Mat3 gradient_of(std::size_t e, const double* field) const { return elements.edges(e, field) * elements.gradients(e); }
+
+  void deform(const double* x, bool rotations = true) {
+    for (std::size_t e = 0; e < count(); ++e) {
+      F[e] = gradient_of(e, x);
+      if (rotations) R[e] = polar_decomposition(F[e]).R;
+    }
+  }
+
+  /// node = averages of the element values w(e).
+  template <class Value>
+  void to_nodes(const Value& value) {
+    node.setZero();
+    for (std::size_t e = 0; e < count(); ++e) {
+      const double share = 0.25 * elements.volume[e] * value(e);
+      for (const auto& corner : elements.node) node[corner[e]] += share;
+    }
+    for (Eigen::Index n = 0; n < node.size(); ++n)
+      if (const double volume = elements.nodal_volume[static_cast<std::size_t>(n)]; volume > 0.0) node[n] /= volume;
+  }
+  /// Value* of each element: mean of its nodes' averages.
+  template <class Value>
+  void average(const Value& value, VecX& out) {
+    to_nodes(value);
+    for (std::size_t e = 0; e < count(); ++e) {
+      double sum = 0.0;
+      for (const auto& corner : elements.node) sum += node[corner[e]];
+      out[static_cast<Eigen::Index>(e)] = 0.25 * sum;
+    }
+  }
+  /// sum_n V_n node_n^2
+  double weighted_square() const {
+    double sum = 0.0;
+    for (Eigen::Index n = 0; n < node.size(); ++n) sum += elements.nodal_volume[static_cast<std::size_t>(n)] * node[n] * node[n];
+    return sum;
+  }
+  double dilatation(std::size_t e) const { return double_dot(R[e], F[e]) - 3.0; }
+  double strain_rate_trace(std::size_t e, const double* v) const { return double_dot(F[e], gradient_of(e, v)); }
+  double star(const VecX& values, std::size_t e) const { return values[static_cast<Eigen::Index>(e)]; }
+
+  /// out += scale V P g_a; that of node 0 is minus the sum of the others, so that momentum is kept to rounding.
+  void scatter(std::size_t e, const Mat3& P, double scale, double* out) const {
+    const Mat3 H = (scale * elements.volume[e]) * P * elements.gradients(e).transpose();
+    for (std::size_t a = 1; a < 4; ++a) Eigen::Map<Vec3>(out + 3 * elements.node[a][e]) += H.col(static_cast<int>(a) - 1);
+    Eigen::Map<Vec3>(out + 3 * elements.node[0][e]) -= H.rowwise().sum();
+  }
+
+  /// C of the second sum; zero where the tangent leaves it out.
+  Mat3 coupling(std::size_t e) const {
+    const double c = -kappa * star(element, e);
+    if (tangent() == Tangent::kWarped || (tangent() == Tangent::kProjected && c > 0.0)) return Mat3::Zero();
+    bool clamped = false;  // counted by the SoftBody
+    return rotation_coupling(Tangent::kExact, F[e], R[e], {0.5 * c, 0.0}, clamped);
+  }
+
+  /// rows[ring entry (n, j)] = sum of (V_e/4) M_e g_j.
+  template <class Matrix>
+  void fill_rows(const Matrix& matrix, std::vector<Vec3>& rows) const {
+    std::fill(rows.begin(), rows.end(), Vec3::Zero());
+    for (std::size_t e = 0; e < count(); ++e) {
+      const Gradients h = (0.25 * elements.volume[e]) * matrix(e) * gradients(e);
+      for (int n = 0; n < 4; ++n)
+        for (int j = 0; j < 4; ++j) rows[static_cast<std::size_t>(rings.entry(e, n, j))] += h.col(j);
+    }
+  }
+
+  /// A += sum_n (scale/V_n) left_ni right_nj^T.
+  void add_products(double scale, const std::vector<Vec3>& left, const std::vector<Vec3>& right, dynamics::BlockSparse& A) const {
+    for (int n = 0; n < rings.node_count(); ++n) {
+      const double volume = elements.nodal_volume[static_cast<std::size_t>(n)];
+      if (!(volume > 0.0)) continue;
+      const auto first = static_cast<std::size_t>(rings.begin(n));
+      for (int i = 0; i < rings.size(n); ++i) {
+        const Vec3 row = scale / volume * left[first + static_cast<std::size_t>(i)];
+        for (int j = 0; j < rings.size(n); ++j) A.add(rings.slot(n, i, j), row * right[first + static_cast<std::size_t>(j)].transpose());
+      }
+    }
+  }
+
+  /// A += the blocks of one element, block(a, b).
+  template <class Block>
+  void add_element(std::size_t e, const Block& block, dynamics::BlockSparse& A) const {
+    for (int a = 0; a < 4; ++a) {
+      const int n = elements.node[static_cast<std::size_t>(a)][e], first = rings.begin(n);
+      for (int b = 0; b < 4; ++b) A.add(rings.slot(n, rings.entry(e, a, a) - first, rings.entry(e, a, b) - first), block(a, b));
+    }
+  }
+};
+
+NodalDilatation::NodalDilatation(std::string name, const TetMesh& rest, const Material& material, const SoftBodyOptions& options, int block_id)
+    : impl_(std::make_unique<Impl>(std::move(name), rest, material, options, block_id)) {
+  counters::count("fem.nodal_dilatation");
+}
+NodalDilatation::~NodalDilatation() = default;
+
+std::string_view NodalDilatation::name() const { return impl_->name; }
+void NodalDilatation::set_definite(bool definite) { impl_->definite = definite; }
+
+dynamics::TermTraits NodalDilatation::traits() const {
+  return {.stiff = true, .fast = false, .symmetric_tangent = !impl_->damped_by_position(), .has_tangent = true, .conservative = true};
+}
+
+void NodalDilatation::add_pattern(dynamics::PatternBuilder& pattern) const { impl_->rings.add_pattern(pattern.first_node(impl_->block_id), pattern); }
+
+void NodalDilatation::add_force(const StateView& state, VecX& f) {
+  Impl& m = *impl_;
+  const NodeBlock at = m.place(state);
+  double* force = f.data() + at.u_offset;
+  m.deform(at.x);
+  m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
+  if (m.damped()) m.average([&](std::size_t e) { return m.strain_rate_trace(e, at.v); }, m.rate);
+  for (std::size_t e = 0; e < m.count(); ++e) {
+    Mat3 P = m.kappa * m.star(m.element, e) * m.R[e];
+    if (m.damped()) P += m.kappa_d * m.star(m.rate, e) * m.F[e];
+    m.scatter(e, P, -1.0, force);
+  }
+}
+
+void NodalDilatation::add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) {
+  Impl& m = *impl_;
+  const NodeBlock at = m.place(state);
+  m.rings.prepare(at.first_node, A.body);
+  m.deform(at.x);
+  if (m.damped()) m.fill_rows([&](std::size_t e) { return m.F[e]; }, m.deformed);
+  if (d_scale != 0.0 && m.damped()) m.add_products(d_scale * m.kappa_d, m.deformed, m.deformed, A.body);
+  if (k_scale == 0.0) return;
+  m.fill_rows([&](std::size_t e) { return m.R[e]; }, m.turned);
+  m.add_products(k_scale * m.kappa, m.turned, m.turned, A.body);
+  m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
+  for (std::size_t e = 0; e < m.count(); ++e) {
+    const Gradients h = m.R[e] * m.gradients(e);
+    const Mat3 C = k_scale * m.elements.volume[e] * m.coupling(e);
+    m.add_element(e, [&](int a, int b) -> Mat3 { return cross_matrix(h.col(a)) * C * cross_matrix(h.col(b)); }, A.body);
+  }
+  if (!m.damped_by_position()) return;
+  m.average([&](std::size_t e) { return m.strain_rate_trace(e, at.v); }, m.rate);
+  for (std::size_t e = 0; e < m.count(); ++e) {
+    const Gradients g = m.gradients(e);
+    const double scale = k_scale * m.kappa_d * m.elements.volume[e] * m.star(m.rate, e);
+    m.add_element(e, [&](int a, int b) -> Mat3 { return scale * g.col(a).dot(g.col(b)) * Mat3::Identity(); }, A.body);
+  }
+  m.fill_rows([&](std::size_t e) { return m.gradient_of(e, at.v); }, m.moving);
+  m.add_products(k_scale * m.kappa_d, m.deformed, m.moving, A.body);
+}
+
+void NodalDilatation::apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) {
+  Impl& m = *impl_;
+  const NodeBlock at = m.place(state);
+  const double* direction = x.data() + at.u_offset;
+  double* out = y.data() + at.u_offset;
+  m.deform(at.x);
+  const auto spread = [&](const VecX& values, double scale, const std::vector<Mat3>& along) {
+    for (std::size_t e = 0; e < m.count(); ++e) m.scatter(e, m.star(values, e) * along[e], scale, out);
+  };
+  if (d_scale != 0.0 && m.damped()) {
+    m.average([&](std::size_t e) { return m.strain_rate_trace(e, direction); }, m.rate);
+    spread(m.rate, d_scale * m.kappa_d, m.F);
+  }
+  if (k_scale == 0.0) return;
+  m.average([&](std::size_t e) { return double_dot(m.R[e], m.gradient_of(e, direction)); }, m.element);
+  spread(m.element, k_scale * m.kappa, m.R);
+  m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
+  for (std::size_t e = 0; e < m.count(); ++e)
+    m.scatter(e, elastic_stress_change(m.gradient_of(e, direction), m.R[e], m.coupling(e), Lame{}), k_scale, out);
+  if (!m.damped_by_position()) return;
+  m.average([&](std::size_t e) { return double_dot(m.gradient_of(e, direction), m.gradient_of(e, at.v)); }, m.rate);
+  spread(m.rate, k_scale * m.kappa_d, m.F);
+  m.average([&](std::size_t e) { return m.strain_rate_trace(e, at.v); }, m.rate);
+  for (std::size_t e = 0; e < m.count(); ++e) m.scatter(e, m.star(m.rate, e) * m.gradient_of(e, direction), k_scale * m.kappa_d, out);
+}
+
+double NodalDilatation::energy(const StateView& state) {
+  Impl& m = *impl_;
+  m.deform(m.place(state).x);
+  m.to_nodes([&](std::size_t e) { return m.dilatation(e); });
+  return 0.5 * m.kappa * m.weighted_square();
+}
+
+double NodalDilatation::dissipated_power(const StateView& state) {
+  Impl& m = *impl_;
+  if (!m.damped()) return 0.0;
+  const NodeBlock at = m.place(state);
+  m.deform(at.x, false);
+  m.to_nodes([&](std::size_t e) { return m.strain_rate_trace(e, at.v); });
+  return m.kappa_d * m.weighted_square();
+}
+
+VecX NodalDilatation::dilatations(const StateView& state) {
+  Impl& m = *impl_;
+  m.deform(m.place(state).x);
+  m.to_nodes([&](std::size_t e) { return m.dilatation(e); });
+  return m.node;
+}
+
+VecX NodalDilatation::nodal_stress(const StateView& state) {
+  Impl& m = *impl_;
+  m.deform(m.place(state).x);
+  m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
+  m.to_nodes([&](std::size_t e) { return von_mises(m.F[e], m.kept, m.kappa * m.star(m.element, e)); });
+  return m.node;
+}
+
+}  // namespace palpate::fem
