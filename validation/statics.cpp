@@ -4,13 +4,12 @@
 #include <limits>
 
 #include <Eigen/LU>
-#include <Eigen/SparseCholesky>
 
 #include "palpate/mesh/boundary.h"
 
 namespace palpate::validation {
 
-StaticBody::StaticBody(const TetMesh& rest, const fem::Material& material)
+StaticBody::StaticBody(const TetMesh& rest, const fem::Material& material, const fem::SoftBodyOptions& options)
     : rest_(rest), state_(static_cast<int>(rest.nodes.size()), static_cast<int>(rest.nodes.size())) {
   x_ = rest.nodes.reshaped();
   v_ = VecX::Zero(x_.size());
@@ -20,11 +19,9 @@ StaticBody::StaticBody(const TetMesh& rest, const fem::Material& material)
   spec.name = "body";
   spec.q_size = spec.u_size = static_cast<int>(x_.size());
   block_ = state_.insert(spec, x_, v_);
-  body_ = std::make_shared<fem::SoftBody>("body", rest, material, fem::SoftBodyOptions{}, block_);
+  body_ = std::make_shared<fem::SoftBody>("body", rest, material, options, block_);
   terms_ = {body_};
-  dynamics::PatternBuilder builder(state_.layout());
-  body_->add_pattern(builder);
-  K_.body = builder.build();
+  if (options.volumetric_share < 1.0) terms_.push_back(std::make_shared<fem::NodalDilatation>("body", rest, material, options, block_));
 }
 
 void StaticBody::add(const std::function<std::shared_ptr<dynamics::ForceTerm>(int)>& make) { terms_.push_back(make(block_)); }
@@ -44,6 +41,13 @@ void StaticBody::internal_force(VecX& f) {
 }
 
 bool StaticBody::newton_step(const VecX& residual) {
+  const bool same_pattern = terms_in_pattern_ == terms_.size();
+  if (!same_pattern) {
+    dynamics::PatternBuilder builder(state_.layout());
+    for (const auto& term : terms_) term->add_pattern(builder);
+    K_.body = builder.build();
+    terms_in_pattern_ = terms_.size();
+  }
   K_.set_zero();
   for (const auto& term : terms_) term->add_tangent(view(), 1.0, 0.0, K_);
   std::vector<int> number(held_.size(), -1);
@@ -67,18 +71,21 @@ bool StaticBody::newton_step(const VecX& residual) {
   for (std::size_t i = 0; i < held_.size(); ++i)
     if (number[i] >= 0) b[number[i]] = residual[static_cast<Eigen::Index>(i)];
 
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(A);
-  if (factor.info() != Eigen::Success) return false;
-  const VecX dx = factor.solve(b);
+  if (!same_pattern || held_in_factor_ != held_) {
+    factor_.analyzePattern(A);
+    held_in_factor_ = held_;
+  }
+  factor_.factorize(A);
+  if (factor_.info() != Eigen::Success) return false;
+  const VecX dx = factor_.solve(b);
   if (!dx.allFinite()) return false;
   for (std::size_t i = 0; i < held_.size(); ++i)
     if (number[i] >= 0) x_[static_cast<Eigen::Index>(i)] += dx[number[i]];
   return true;
 }
 
-bool StaticBody::solve() {
+bool StaticBody::solve(double good_enough) {
   constexpr int kMaxIterations = 50;
-  constexpr double kGoodEnough = 1e-11;  // of the forces that act; iterations go on while they still help
   double best = std::numeric_limits<double>::infinity();
   VecX f;
   for (int i = 0; i < kMaxIterations; ++i) {
@@ -89,7 +96,7 @@ bool StaticBody::solve() {
       if (held_[k]) residual[static_cast<Eigen::Index>(k)] = 0.0;
     const double relative = scale > 0.0 ? residual.norm() / scale : 0.0;
     if (!std::isfinite(relative)) return false;
-    if (relative == 0.0 || (relative < kGoodEnough && relative > 0.3 * best)) return true;
+    if (relative == 0.0 || (relative < good_enough && relative > 0.3 * best)) return true;
     best = std::min(best, relative);
     if (!newton_step(residual)) return false;
   }
@@ -103,7 +110,17 @@ bool StaticBody::solve_linear() {
   return newton_step(residual);
 }
 
-double StaticBody::elastic_energy() { return body_->energy(view()); }
+double StaticBody::elastic_energy() {
+  double sum = 0.0;
+  for (const auto& term : terms_) sum += term->energy(view());
+  return sum;
+}
+
+Points StaticBody::internal_forces() {
+  VecX f;
+  internal_force(f);
+  return f.reshaped(3, rest_.nodes.cols());
+}
 
 // Balance div P = -b, so the integral of P is that of traction X^T and body force X^T: nodal forces times rest positions.
 // In equilibrium those are minus the internal ones.
