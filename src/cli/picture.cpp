@@ -9,7 +9,7 @@ namespace palpate::cli {
 namespace {
 
 VecX shading(loop::World& world, const loop::Body& body, const Points& now, const std::string& shade) {
-  if (shade == "stress") return body.term->nodal_stress(world.state.view());
+  if (shade == "stress") return body.nodal_stress(world.state.view());
   return (now - body.placed).colwise().norm().transpose();
 }
 

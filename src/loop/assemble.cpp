@@ -26,6 +26,10 @@ fem::SoftBodyOptions options_of(const SoftBodySpec& spec) {
   else
     fail("body \"{}\": unknown tangent \"{}\"{}", spec.name, spec.tangent, suggestion(spec.tangent, {"exact", "projected", "warped"}));
   options.full_damping_tangent = spec.full_damping_tangent;
+  if (spec.volumetric == "nodal")
+    options.volumetric_share = fem::kept_volumetric_share(material_of(spec));
+  else if (spec.volumetric != "element")
+    fail("body \"{}\": unknown volumetric \"{}\"{}", spec.name, spec.volumetric, suggestion(spec.volumetric, {"element", "nodal"}));
   return options;
 }
 
@@ -105,8 +109,13 @@ dynamics::BlockSpec block_of(const SoftBodySpec& spec, const Body& body) {
 }
 
 void add_forces(World& world, Body& body, const SoftBodySpec& spec) {
-  body.term = std::make_shared<fem::SoftBody>(spec.name, body.rest, material_of(spec), options_of(spec), body.block_id);
+  const fem::SoftBodyOptions options = options_of(spec);
+  body.term = std::make_shared<fem::SoftBody>(spec.name, body.rest, material_of(spec), options, body.block_id);
   world.system.add(body.term);
+  if (options.volumetric_share < 1.0) {
+    body.dilatation = std::make_shared<fem::NodalDilatation>("volume of " + spec.name, body.rest, material_of(spec), options, body.block_id);
+    world.system.add(body.dilatation);
+  }
   const bool consistent = spec.mass == "consistent";
   if (!consistent && spec.mass != "lumped") fail("body \"{}\": unknown mass \"{}\"{}", spec.name, spec.mass, suggestion(spec.mass, {"lumped", "consistent"}));
   world.system.add(consistent ? fem::make_consistent_mass(body.rest, spec.density_kg_m3, body.block_id)

@@ -75,7 +75,7 @@ void write_modes(World& world, const integrate::Modes& modes, const std::string&
       const dynamics::Block& block = *world.state.layout().find(body.block_id);
       points.middleCols(first, n) = Eigen::Map<const Points>(q.data() + block.q_offset, 3, n);
       velocity.middleCols(first, n) = modes.omega(mode) * (points.middleCols(first, n) - parts[i].reference);
-      stress.segment(first, n) = body.term->nodal_stress(view);
+      stress.segment(first, n) = body.nodal_stress(view);
       first += n;
     }
     file.append(mode + 1.0, points, velocity, stress);

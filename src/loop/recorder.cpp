@@ -67,7 +67,7 @@ struct Recorder::Impl {
       const Eigen::Index n = body.placed.cols();
       points.middleCols(first, n) = Eigen::Map<const Points>(view.q.data() + block.q_offset, 3, n);
       velocity.middleCols(first, n) = Eigen::Map<const Points>(view.u.data() + block.u_offset, 3, n);
-      stress.segment(first, n) = body.term->nodal_stress(view);
+      stress.segment(first, n) = body.nodal_stress(view);
       first += n;
     }
     if (tool.vertices.cols() > 0) {

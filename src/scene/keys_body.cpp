@@ -63,6 +63,7 @@ const KeyTable<SoftBodySpec>& body_keys() {
       number("stiffness_damping_s", &SoftBodySpec::stiffness_damping_s, at_least(0.0, "1e-3 damps lightly, 1e-2 strongly")),
       text("mass", &SoftBodySpec::mass, {"lumped", "consistent"}),
       text("tangent", &SoftBodySpec::tangent, {"exact", "projected", "warped"}),
+      text("volumetric", &SoftBodySpec::volumetric, {"element", "nodal"}),
       boolean("full_damping_tangent", &SoftBodySpec::full_damping_tangent),
       tables("attachment", &SoftBodySpec::attachments, attachment_keys()),
       tables("load", &SoftBodySpec::loads, load_keys()),

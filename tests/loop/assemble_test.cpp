@@ -38,6 +38,9 @@ TEST(Assemble, NamesThatNoRegistryKnowsAreRefusedWithTheNearest) {
   d = held_block();
   d.bodies[0].mass = "lump";
   expect_refused(d, {"block", "lump", "lumped"});
+  d = held_block();
+  d.bodies[0].volumetric = "nodall";
+  expect_refused(d, {"block", "nodall", "nodal"});
 }
 
 TEST(Assemble, AttachmentsThatHoldNothingOrOverlapAreRefused) {

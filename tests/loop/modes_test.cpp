@@ -42,6 +42,28 @@ TEST(ModesOfAScene, OfAFreeBlockBeginWithSixRigidMotionsWhereverItStandsAndLies)
   }
 }
 
+TEST(ModesOfAScene, NodalDilatationUnlocksThemAndAddsNoneOfZeroEnergy) {
+  scene::Description d = held_block();
+  d.bodies[0].attachments.clear();
+  d.bodies[0].poissons_ratio = 0.4999;
+  const auto locked = loop::assemble(d);
+  d.bodies[0].volumetric = "nodal";
+  const auto nodal = loop::assemble(d);
+  d.bodies[0].poissons_ratio = 0.499;
+  const auto softer = loop::assemble(d);
+  const integrate::Modes one = loop::find_modes(*locked, 14), other = loop::find_modes(*nodal, 14), less = loop::find_modes(*softer, 14);
+  EXPECT_TRUE(other.converged);
+  EXPECT_FALSE(locked->bodies[0].dilatation);
+  ASSERT_TRUE(nodal->bodies[0].dilatation);
+  for (int j = 0; j < 14; ++j) {
+    EXPECT_EQ(other.omega_squared[j] == 0.0, j < 6) << j << ": six rigid motions, and no other mode without energy";
+    EXPECT_LE(other.omega_squared[j], one.omega_squared[j] * (1.0 + 1e-9)) << j << ": averages never exceed what they average (Jensen), so no frequency rises (Weyl)";
+    if (j >= 6) {
+      EXPECT_GT(other.omega(j), 0.9 * less.omega(j)) << j;
+    }
+  }
+}
+
 #ifdef PALPATE_HAS_TOOL
 TEST(ModesOfAScene, AToolThatPressesStiffensThem) {
   const auto free = loop::assemble(held_block()), pressed = loop::assemble(pressed_block(0.002)), above = loop::assemble(pressed_block(-0.01));

@@ -8,6 +8,7 @@
 #include "palpate/device/limiter.h"
 #include "palpate/dynamics/stepper.h"
 #include "palpate/dynamics/system.h"
+#include "palpate/fem/nodal_dilatation.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/source.h"
@@ -30,6 +31,9 @@ struct Body {
   VecX masses;                ///< lumped, one a node [kg]
   double stiffness_scale = 0; ///< E [Pa]
   std::shared_ptr<fem::SoftBody> term;
+  std::shared_ptr<fem::NodalDilatation> dilatation;  ///< null where the body's volume is the elements' alone
+
+  VecX nodal_stress(const dynamics::StateView& state) const { return dilatation ? dilatation->nodal_stress(state) : term->nodal_stress(state); }
 };
 
 /// Everything that one scene names, and nothing else.  What is absent is null or empty.
