@@ -45,6 +45,28 @@ TEST(Run, BodyAtRestStaysAtRestToRounding) {
   EXPECT_LT(world->mechanical_energy(), 1e-20);
 }
 
+TEST(Run, NodalDilatationStepsUnderErrorControlAndWithOneLinearSolveAStep) {
+  // Nearly incompressible, let go under six times its weight: two integrators of different families must tell the same story.
+  scene::Description d = held_block();
+  d.gravity_m_s2 = Vec3(0, 20, -60);
+  d.bodies[0].poissons_ratio = 0.4999;
+  d.bodies[0].volumetric = "nodal";
+  const VecX start = loop::assemble(d)->state.q();
+  const auto end = [&](const std::string& integrator, double setting) {
+    d.integrator.name = integrator;
+    (integrator == "cvode-bdf" ? d.integrator.rtol : d.integrator.step_s) = setting;
+    Log log;
+    EXPECT_TRUE(run_with(d, log).status.ok()) << integrator;
+    return VecX(log.positions - start);
+  };
+  const VecX reference = end("cvode-bdf", 1e-6);
+  EXPECT_GT(reference.lpNorm<Eigen::Infinity>(), 1e-3);
+  EXPECT_LT((end("cvode-bdf", 1e-4) - reference).norm(), 1e-2 * reference.norm());
+  const double coarse = (end("linearly-implicit-euler", 2e-3) - reference).norm(), fine = (end("linearly-implicit-euler", 1e-3) - reference).norm();
+  EXPECT_LT(fine, 0.1 * reference.norm());
+  EXPECT_NEAR(std::log2(coarse / fine), 1.0, 0.3) << "order 1";
+}
+
 TEST(Run, StopEndsAfterTheCurrentPeriod) {
   std::atomic<bool> stop{true};
   const auto world = loop::assemble(held_block());
