@@ -23,7 +23,6 @@ double von_mises(const Mat3& F, const Lame& lame, double tension) {
   return std::sqrt(1.5 * deviator.squaredNorm());
 }
 
-
 VecX nodal_von_mises(const ElementChunks& elements, const double* x, const Lame& lame) {
   VecX out = VecX::Zero(elements.node_count());
   elements.for_each([&](const ElementChunks::Element& e) {
