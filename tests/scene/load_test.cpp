@@ -40,10 +40,11 @@ TEST(Load, PressBallAsWritten) {
   ASSERT_EQ(d.device->keyframes.size(), 4u);
   EXPECT_EQ(d.device->keyframes[1].position_m, Vec3(0, 0, 0.072));
   EXPECT_EQ(d.device->keyframes[1].interpolation, "minimum_jerk");
-  ASSERT_EQ(d.compare.ladders.size(), 2u);
+  ASSERT_EQ(d.compare.ladders.size(), 6u);
   EXPECT_EQ(d.compare.ladders[0].setting, "rtol");
   EXPECT_EQ(d.compare.ladders[1].setting, "step_s");
   EXPECT_EQ(d.compare.ladders[1].values.back(), 0.000625);
+  EXPECT_EQ(d.compare.ladders[2].label, "cvode-bdf, root finding");
 }
 
 TEST(Load, DefaultsAndNormalOrder) {
