@@ -24,7 +24,7 @@ void resize_border(BorderedMatrix& A, int nodal, int border) {
 
 void System::add(std::shared_ptr<ForceTerm> term) { terms_.push_back(std::move(term)); }
 void System::add(std::shared_ptr<InertiaTerm> inertia) { inertias_.push_back(std::move(inertia)); }
-void System::add(std::shared_ptr<DrivenMotion> motion) { driven_.push_back({std::move(motion), -1, 0, {}, {}, {}, {}}); }
+void System::add(std::shared_ptr<DrivenMotion> motion) { driven_.push_back({std::move(motion), -1, 0, {}, {}, {}, {}, {}, {}}); }
 void System::set_mass_solver(std::unique_ptr<LinearSolver> solver) { mass_solver_ = std::move(solver); }
 
 bool System::symmetric() const {
@@ -229,6 +229,15 @@ void System::step_matrix(const StateView& state, double m_scale, double d_scale,
     for (const auto& term : terms_)
       if (term->traits().has_tangent && (!filter || filter(term->traits()))) term->add_tangent(state, k_scale, d_scale, A);
   if (any_master_) {
+    if (k_scale != 0.0) {
+      evaluate_carried_stiffness(state, filter);
+      for (const Driven& d : driven_) {
+        if (d.master_offset < 0) continue;
+        const int at = d.master_offset - state.layout->nodal_size;
+        auto corner = A.corner.block(at, at, d.master_size, d.master_size);
+        corner += A.symmetric ? MatX(0.5 * k_scale * (d.K + d.K.transpose())) : MatX(k_scale * d.K);
+      }
+    }
     evaluate_driven(state);
     reduce_to_masters(state, A);
   }
@@ -236,26 +245,53 @@ void System::step_matrix(const StateView& state, double m_scale, double d_scale,
   A.touch();
 }
 
-// T^T A T with T = [P Ghat; 0 I]: the driven columns, carried by their master, add to its columns, and likewise the rows.
-// The derivative of G itself (a geometric stiffness of the constraint force) is left out: the matrix stays an inexact Newton matrix there.
-void System::reduce_to_masters(const StateView& state, BorderedMatrix& A) const {
-  const Eigen::Index n = A.nodal_size(), m = A.border_size();
-  MatX G = MatX::Zero(n, m);
-  for (const Driven& d : driven_) {
+// What carried nodes press on their master with, c = f - M u', turns with it.  It is taken with u' of the present state: a body that falls freely presses
+// with nothing, and of a light master the forces and moments c are in balance, which makes K symmetric.
+void System::evaluate_carried_stiffness(const StateView& state, const TermFilter& filter) {
+  force(state, held_scratch_, filter);
+  force_scratch_ = held_scratch_;
+  acceleration_of_force(state, force_scratch_, acceleration_scratch_);
+  apply_mass(state, acceleration_scratch_, scratch_);
+  held_scratch_ -= scratch_;
+  for (Driven& d : driven_) {
     if (d.master_offset < 0) continue;
-    const Eigen::Index column = d.master_offset - state.layout->nodal_size;
-    for (std::size_t i = 0; i < d.motion->dofs().size(); ++i)
-      G.block(d.motion->dofs()[i], column, 1, d.master_size) = d.G.row(static_cast<Eigen::Index>(i));
+    const auto& dofs = d.motion->dofs();
+    d.c.resize(static_cast<Eigen::Index>(dofs.size()));
+    for (std::size_t i = 0; i < dofs.size(); ++i) d.c[static_cast<Eigen::Index>(i)] = held_scratch_[dofs[i]];
+    d.K.setZero(d.master_size, d.master_size);
+    d.motion->add_geometric_stiffness(state, d.c, d.K);
   }
-  MatX BG = MatX::Zero(n, m), BtG = MatX::Zero(n, m);
-  for (Eigen::Index c = 0; c < m; ++c) A.body.multiply_add(G.col(c).data(), BG.col(c).data());
-  if (A.symmetric)
-    BtG = BG;
-  else
-    for (Eigen::Index c = 0; c < m; ++c) A.body.multiply_transposed_add(G.col(c).data(), BtG.col(c).data());
-  A.corner += G.transpose() * (BG + A.right) + A.bottom * G;
-  A.right += BG;
-  A.bottom += BtG.transpose();
+}
+
+void System::apply_carried_stiffness(const StateView& state, const VecX& x, VecX& y, const TermFilter& filter) {
+  if (!any_master_) return;
+  evaluate_carried_stiffness(state, filter);
+  for (const Driven& d : driven_)
+    if (d.master_offset >= 0) y.segment(d.master_offset, d.master_size) += d.K * x.segment(d.master_offset, d.master_size);
+}
+
+// T^T A T with T = [P Ghat; 0 I]: the driven columns, carried by their master, add to its columns, and likewise the rows.
+//     right' = right + B G,   corner' = corner + G^T right' + bottom G,   bottom' = bottom + (B^T G)^T,
+// over the rows of the carried directions alone.  B has a symmetric pattern: column j of nodes is read along row j.
+void System::reduce_to_masters(const StateView& state, BorderedMatrix& A) const {
+  using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const auto each_carried = [&](auto&& visit) {  // (direction, first border column of its master, row of G)
+    for (const Driven& d : driven_)
+      for (std::size_t i = 0; d.master_offset >= 0 && i < d.motion->dofs().size(); ++i)
+        visit(d.motion->dofs()[i], d.master_offset - state.layout->nodal_size, d.G.row(static_cast<Eigen::Index>(i)));
+  };
+  each_carried([&](int dof, int at, const auto& g) { A.corner.middleCols(at, g.size()) += A.bottom.col(dof) * g; });
+  each_carried([&](int dof, int at, const auto& g) {
+    const int node = dof / 3, axis = dof % 3;
+    for (int s = A.body.row_start()[static_cast<std::size_t>(node)]; s < A.body.row_start()[static_cast<std::size_t>(node) + 1]; ++s) {
+      const int other = A.body.columns()[static_cast<std::size_t>(s)];
+      const Vec3 row = Eigen::Map<const RowMajor3>(A.body.block(s)).row(axis);
+      const Vec3 column = A.symmetric ? row : Vec3(Eigen::Map<const RowMajor3>(A.body.block(A.body.slot(other, node))).col(axis));
+      A.right.block(3 * other, at, 3, g.size()) += column * g;
+      A.bottom.block(at, 3 * other, g.size(), 3) += g.transpose() * row.transpose();
+    }
+  });
+  each_carried([&](int dof, int at, const auto& g) { A.corner.middleRows(at, g.size()) += g.transpose() * A.right.row(dof); });
 }
 
 void System::eliminate_driven(BorderedMatrix& A) const {
@@ -289,6 +325,15 @@ void System::reduce(const StateView& state, VecX& r) const {
     }
   }
   for (int dof : driven_dofs_) r[dof] = 0.0;
+}
+
+void System::expand(const StateView& state, VecX& x) const {
+  for (int dof : driven_dofs_) x[dof] = 0.0;
+  if (!any_master_) return;
+  evaluate_driven(state);
+  for (const Driven& d : driven_)
+    for (std::size_t i = 0; d.master_offset >= 0 && i < d.motion->dofs().size(); ++i)
+      x[d.motion->dofs()[i]] = d.G.row(static_cast<Eigen::Index>(i)).dot(x.segment(d.master_offset, d.master_size));
 }
 
 void System::residual(const StateView& state, const VecX& acceleration, VecX& r) {

@@ -1,6 +1,7 @@
 #pragma once
 #include "palpate/core/pose.h"
 #include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/rigid_body.h"
 #include "palpate/tool/spec.h"
 
 namespace palpate::tool {
@@ -12,11 +13,7 @@ struct CouplingGains {
 };
 CouplingGains coupling_gains(const ToolSpec& spec);
 
-/// A pose and its twist.
-struct RigidMotion {
-  Pose pose;
-  Twist twist;
-};
+using dynamics::RigidMotion;
 
 Vec6 stacked(const Twist& twist);
 Twist twist_of(const Vec6& v);

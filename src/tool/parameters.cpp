@@ -17,18 +17,6 @@ void check_finite(const Vec3& value, const char* key) {
 
 }  // namespace
 
-// I1 = int (y^2 + z^2) dm and so on: no principal moment can exceed the sum of the other two.
-void check_inertia(double mass, const Vec3& inertia, const char* where) {
-  if (!(mass > 0.0) || !std::isfinite(mass)) fail("{}: mass_kg = {} must be positive", where, mass);
-  const double largest = inertia.maxCoeff();
-  if (!inertia.allFinite() || !(inertia.minCoeff() > 0.0))
-    fail("{}: inertia_kg_m2 = [{}, {}, {}] must have three positive entries (or three zeros, for a solid sphere's)", where, inertia.x(), inertia.y(),
-         inertia.z());
-  if (largest > (inertia.sum() - largest) * (1.0 + 1e-9))
-    fail("{}: inertia_kg_m2 = [{}, {}, {}] belongs to no body: each must be at most the sum of the other two", where, inertia.x(), inertia.y(),
-         inertia.z());
-}
-
 RigidParameters rigid_parameters(const ToolSpec& spec, const Vec3& gravity) {
   RigidParameters p{spec.mass_kg, spec.inertia_kg_m2, spec.gravity ? gravity : Vec3(Vec3::Zero())};
   if (p.inertia.isZero(0.0)) {

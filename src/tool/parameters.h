@@ -1,4 +1,5 @@
 #pragma once
+#include "palpate/dynamics/rigid_body.h"
 #include "palpate/tool/spec.h"
 
 namespace palpate::tool {
@@ -14,7 +15,6 @@ struct RigidParameters {
 /// @throws Error naming the key, its value and what it must be
 RigidParameters rigid_parameters(const ToolSpec& spec, const Vec3& gravity);
 
-/// @throws Error for principal moments that are no body's, or a mass that is not positive
-void check_inertia(double mass, const Vec3& inertia, const char* where);
+using dynamics::check_inertia;
 
 }  // namespace palpate::tool

@@ -2,12 +2,15 @@
 
 #include <cmath>
 
-#include "rigid_force.h"
 #include "simbody_body.h"
 
 namespace palpate::tool {
 namespace {
 
+using dynamics::gyroscopic_tangent;
+using dynamics::motion_of;
+using dynamics::rigid_block_of;
+using dynamics::RigidForce;
 using dynamics::StateView;
 
 /// M(q), rows and columns in the order of u: the mobilizer's (angular, linear) in world axes are the block's own.

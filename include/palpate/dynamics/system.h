@@ -14,7 +14,8 @@ namespace palpate::dynamics {
 ///
 /// Driven directions stay in q and u (no renumbering), but not among the unknowns: their rows and columns of every
 /// matrix made here are those of the identity, their right-hand sides are zero, and `impose` writes their known values.
-/// A direction with a master block is reduced by the congruence T = [I; G]: its force and tangent enter the master's rows.
+/// A direction with a master block is reduced by the congruence T = [I; G]: its force and tangent enter the master's rows, and with the
+/// tangent comes what the turning of G makes of the force held: K of the master gets -d(G^T c)/dq, c = f - M u' what the nodes press on it with.
 class System {
  public:
   void add(std::shared_ptr<ForceTerm> term);
@@ -57,9 +58,13 @@ class System {
   void apply_mass(const StateView& state, const VecX& x, VecX& y) const;
   /// Zeroes the driven entries of a residual, after adding their reduction to the masters' rows.
   void reduce(const StateView& state, VecX& r) const;
+  /// The other way: the driven entries of a velocity change follow those of their masters (G x_master), or are zero.
+  void expand(const StateView& state, VecX& x) const;
+  /// y += K x on masters' rows, K what the turning of G adds to the tangent (step_matrix has it in); nothing without masters.
+  void apply_carried_stiffness(const StateView& state, const VecX& x, VecX& y, const TermFilter& filter = {});
   /// r = M u' - f on free directions for a given u' (driven entries of which are replaced by what drives them), 0 on driven ones.
   void residual(const StateView& state, const VecX& acceleration, VecX& r);
-  /// Forces [N] that the drives exert on the driven directions: M a - f there, zero elsewhere.
+  /// Forces [N] that the drives exert on the driven directions: M a - f there, zero elsewhere.  Of carried nodes, what their master exerts on them.
   void reactions(const StateView& state, VecX& r);
 
   double kinetic_energy(const StateView& state) const;    ///< 1/2 u M u [J]
@@ -70,12 +75,13 @@ class System {
     std::shared_ptr<DrivenMotion> motion;
     int master_offset = -1;  ///< of the master's u, -1 without one
     int master_size = 0;
-    VecX x, v, a;
-    MatX G;
+    VecX x, v, a, c;  ///< c: what the carried directions press on their master with [N]
+    MatX G, K;        ///< K: its turning stiffness under c, at the last evaluate_carried_stiffness
   };
   void ensure_pattern(const StateView& state, BorderedMatrix& A);
   void evaluate_driven(const StateView& state) const;
   void reduce_to_masters(const StateView& state, BorderedMatrix& A) const;
+  void evaluate_carried_stiffness(const StateView& state, const TermFilter& filter);
   void eliminate_driven(BorderedMatrix& A) const;
   void solve_mass(const StateView& state, VecX& r, VecX& a);
   void assemble_mass(const StateView& state, BorderedMatrix& A);
@@ -94,7 +100,7 @@ class System {
   std::uint64_t pattern_key_ = 0;  ///< hash of the layout's and the terms' pattern versions that `pattern_` was built from
   BlockSparse pattern_;
   mutable VecX scratch_, known_;
-  VecX force_scratch_;
+  VecX force_scratch_, held_scratch_, acceleration_scratch_;
 };
 
 }  // namespace palpate::dynamics

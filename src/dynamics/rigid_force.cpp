@@ -1,20 +1,17 @@
-#include "rigid_force.h"
-
 #include "palpate/core/error.h"
+#include "palpate/dynamics/rigid_body.h"
 
-namespace palpate::tool {
+namespace palpate::dynamics {
 
-using dynamics::StateView;
-
-const dynamics::Block& rigid_block_of(const StateView& state, int block_id) {
-  const dynamics::Block* block = state.layout->find(block_id);
+const Block& rigid_block_of(const StateView& state, int block_id) {
+  const Block* block = state.layout->find(block_id);
   PALPATE_CHECK(block && block->q_size == 7 && block->u_size == 6, "block {} is no free rigid body", block_id);
   return *block;
 }
 
-RigidMotion motion_of(const StateView& state, const dynamics::Block& block) {
+RigidMotion motion_of(const StateView& state, const Block& block) {
   const auto q = state.q.segment<7>(block.q_offset);
-  return {{Quat(q[0], q[1], q[2], q[3]).normalized(), q.tail<3>()}, twist_of(state.u.segment<6>(block.u_offset))};
+  return {{Quat(q[0], q[1], q[2], q[3]).normalized(), q.tail<3>()}, {state.u.segment<3>(block.u_offset), state.u.segment<3>(block.u_offset + 3)}};
 }
 
 Mat3 world_inertia(const Pose& pose, const Vec3& inertia) {
@@ -36,7 +33,7 @@ void RigidForce::add_force(const StateView& state, VecX& f) {
   f.segment<6>(block.u_offset) += force(state.time, motion_of(state, block));
 }
 
-void RigidForce::add_tangent(const StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) {
+void RigidForce::add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) {
   const auto& block = rigid_block_of(state, block_id_);
   const int at = block.u_offset - state.layout->nodal_size;
   A.corner.block<6, 6>(at, at) += tangent(state.time, motion_of(state, block), k_scale, d_scale);
@@ -49,4 +46,4 @@ void RigidForce::apply_tangent(const StateView& state, double k_scale, double d_
 
 RigidMotion RigidForce::motion(const StateView& state) const { return motion_of(state, rigid_block_of(state, block_id_)); }
 
-}  // namespace palpate::tool
+}  // namespace palpate::dynamics
