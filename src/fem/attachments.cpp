@@ -4,6 +4,7 @@
 
 #include "box.h"
 #include "palpate/core/error.h"
+#include "palpate/dynamics/rigid_body.h"
 
 namespace palpate::fem {
 namespace {
@@ -55,6 +56,57 @@ class Driven final : public dynamics::DrivenMotion {
   Path path_;
 };
 
+/// See make_carried.  Its geometric stiffness: under a turn e of the body, dr = e x r, and with the force f held the moment r x f changes by
+///     (e x r) x f = [f][r] e = (r f^T - (r . f) I) e,      K = -d(r x f)/de = (r . f) I - r f^T     (rotation against rotation alone).
+/// Summed over nodes, K - K^T is the cross matrix of the sum of r x f: it is symmetric where the moments are in balance.
+class Carried final : public dynamics::DrivenMotion {
+ public:
+  Carried(std::vector<int> dofs, Points local, int master) : dofs_(std::move(dofs)), local_(std::move(local)), master_(master) {}
+  const std::vector<int>& dofs() const override { return dofs_; }
+  int master_block() const override { return master_; }
+  void evaluate(const dynamics::StateView& state, VecX& x, VecX& v, VecX& a) const override {
+    const dynamics::RigidMotion body = motion(state);
+    const Mat3 R = body.pose.rotation.toRotationMatrix();
+    const Vec3& w = body.twist.angular;
+    x.resize(local_.cols());
+    v.resize(local_.cols());
+    a.resize(local_.cols());
+    for (Eigen::Index i = 0; i < local_.cols(); ++i) {
+      const int k = axis(i);
+      const Vec3 r = R * local_.col(i), spin = w.cross(r);
+      x[i] = body.pose.translation[k] + r[k];
+      v[i] = body.twist.linear[k] + spin[k];
+      a[i] = w.cross(spin)[k];
+    }
+  }
+  void jacobian(const dynamics::StateView& state, MatX& G) const override {
+    const Mat3 R = motion(state).pose.rotation.toRotationMatrix();
+    G.resize(local_.cols(), 6);
+    for (Eigen::Index i = 0; i < local_.cols(); ++i) {
+      const Vec3 e = Vec3::Unit(axis(i));
+      G.row(i) << Vec3(R * local_.col(i)).cross(e).transpose(), e.transpose();
+    }
+  }
+  void add_geometric_stiffness(const dynamics::StateView& state, const VecX& f, MatX& K) const override {
+    const Mat3 R = motion(state).pose.rotation.toRotationMatrix();
+    for (Eigen::Index i = 0; i < local_.cols(); ++i) {
+      const Vec3 r = R * local_.col(i);
+      const int k = axis(i);
+      K.diagonal().head<3>().array() += r[k] * f[i];
+      K.col(k).head<3>() -= f[i] * r;
+    }
+  }
+
+ private:
+  int axis(Eigen::Index i) const { return dofs_[static_cast<std::size_t>(i)] % 3; }
+  dynamics::RigidMotion motion(const dynamics::StateView& state) const {
+    return dynamics::motion_of(state, dynamics::rigid_block_of(state, master_));
+  }
+  std::vector<int> dofs_;
+  Points local_;
+  int master_;
+};
+
 }  // namespace
 
 std::vector<int> nodes_in_box(const Points& placed, const Vec3& box_min, const Vec3& box_max) {
@@ -62,6 +114,14 @@ std::vector<int> nodes_in_box(const Points& placed, const Vec3& box_min, const V
   std::vector<int> out;
   for (int i = 0; i < placed.cols(); ++i)
     if (in_box(placed.col(i), box_min, box_max)) out.push_back(i);
+  return out;
+}
+
+std::vector<int> nodes_in_sphere(const Points& placed, const Vec3& centre, double radius) {
+  if (!(radius > 0.0)) fail("attachment: radius_m = {} must be positive", radius);
+  std::vector<int> out;
+  for (int i = 0; i < placed.cols(); ++i)
+    if ((placed.col(i) - centre).norm() <= radius * (1.0 + 1e-12)) out.push_back(i);
   return out;
 }
 
@@ -90,6 +150,13 @@ std::shared_ptr<dynamics::DrivenMotion> make_driven(std::vector<int> dofs, Point
   check_dofs(dofs, local_points_per_dof.cols());
   PALPATE_CHECK(path, "driven nodes need a path");
   return std::make_shared<Driven>(std::move(dofs), std::move(local_points_per_dof), std::move(path));
+}
+
+std::shared_ptr<dynamics::DrivenMotion> make_carried(std::vector<int> dofs, Points local_points_per_dof, int master_block_id) {
+  check_dofs(dofs, local_points_per_dof.cols());
+  PALPATE_CHECK(master_block_id >= 0, "carried nodes need a rigid block, not {}", master_block_id);
+  PALPATE_CHECK(local_points_per_dof.allFinite(), "a carried node's position is not finite");
+  return std::make_shared<Carried>(std::move(dofs), std::move(local_points_per_dof), master_block_id);
 }
 
 }  // namespace palpate::fem

@@ -28,4 +28,14 @@ using Path = std::function<PathPoint(double t)>;
 /// Moves nodes rigidly with a path: x = path(t).pose * p, with p fixed in the path's frame, all three axes or the listed dofs of them.
 std::shared_ptr<dynamics::DrivenMotion> make_driven(std::vector<int> dofs, Points local_points_per_dof, Path path);
 
+/// Nodes of `placed` inside the sphere, its surface included.  @throws Error for a radius that is not positive
+std::vector<int> nodes_in_sphere(const Points& placed, const Vec3& centre, double radius);
+
+/// Nodes that sit rigidly on a free rigid body (block kRigidBody of the State, dynamics/rigid_body.h), all three axes or the listed dofs of them.
+/// With the body's pose (p, R), velocity v_c of its origin, angular velocity w and l fixed in it, r = R l, world axes throughout:
+///     x = p + r,   v = v_c + w x r,   a = v_c' + w' x r + w x (w x r).
+/// With u = (w, v_c):  v = G u with G = [-[r]x, I], so that the row of axis k is ((r x e_k)^T, e_k^T), and gamma = w x (w x r).
+/// A force f on the node is the wrench (r x f, f) on the body: G^T f.
+std::shared_ptr<dynamics::DrivenMotion> make_carried(std::vector<int> dofs, Points local_points_per_dof, int master_block_id);
+
 }  // namespace palpate::fem

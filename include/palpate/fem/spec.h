@@ -8,12 +8,35 @@
 
 namespace palpate {
 
-/// Nodes inside a box (rest positions, world frame, borders included) that are held or driven.
+/// Nodes inside a box or a sphere (where they stand at the start, world frame, borders included), or inside the bone that they are tied to: held, driven or carried.
 struct AttachmentSpec {
+  std::string region = "box";              ///< which keys say where: "box", "sphere", or "shape" of what `to` names, where neither is given
   Vec3 box_min_m = Vec3::Zero();
   Vec3 box_max_m = Vec3::Zero();
+  Vec3 centre_m = Vec3::Zero();
+  double radius_m = 0.0;
+  std::string to;                          ///< a bone, or "tool": its nodes go with it; empty: with the world, or along the keyframes
   std::string axes = "xyz";                ///< which directions are held
-  std::vector<KeyframeSpec> keyframes;     ///< empty: fixed; else the box moves rigidly along them (position and rotation about its own centre)
+  std::vector<KeyframeSpec> keyframes;     ///< empty: fixed; else the region moves rigidly along them (position and rotation about its own centre)
+};
+
+/// The `[[bone]]` tables of a scene: a rigid body inside soft ones, which carries nodes of theirs.  Free unless it is fixed or has keyframes.
+struct BoneSpec {
+  std::string name;
+  std::string shape;                       ///< "sphere", "box", "cylinder" or "capsule" (both along z), around its origin; empty: mass and inertia are given
+  double radius_m = 0.0;
+  double length_m = 0.0;                   ///< of a cylinder, and of a capsule between the middles of its caps
+  Vec3 size_m = Vec3::Zero();              ///< of a box
+  double mass_kg = 0.0;                    ///< or density_kg_m3 of the shape
+  double density_kg_m3 = 0.0;
+  Vec3 inertia_kg_m2 = Vec3::Zero();       ///< principal, about the centre of mass; zero: the shape's, filled evenly
+  Vec3 position_m = Vec3::Zero();          ///< of its centre of mass, at the start
+  Vec3 rotation_vector_rad = Vec3::Zero();
+  Vec3 velocity_m_s = Vec3::Zero();
+  Vec3 angular_velocity_rad_s = Vec3::Zero();
+  bool gravity = true;                     ///< false: the bone itself has no weight
+  bool fixed = false;                      ///< stays where it is placed
+  std::vector<KeyframeSpec> keyframes;     ///< moves from where it is placed: by these positions, and by these turns about its own origin
 };
 
 /// A load spread over nodes in a box by their share of the boundary area: total force [N].

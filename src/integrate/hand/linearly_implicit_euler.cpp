@@ -56,6 +56,11 @@ class LinearlyImplicitEuler final : public FixedStep {
       rhs_ -= product_;
     }
     system_.reduce(at, rhs_);
+    if (system_.any_driven()) {  // carried nodes: the turning of G under the force held
+      product_.setZero();
+      system_.apply_carried_stiffness(at, shift_, product_);
+      rhs_ -= h * product_;
+    }
     return rhs_.allFinite();
   }
 

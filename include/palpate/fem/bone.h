@@ -1,0 +1,26 @@
+#pragma once
+#include "palpate/fem/spec.h"
+#include "palpate/mesh/mesh.h"
+
+/// What the shape of a bone says: its mass and inertia, what is inside, what it looks like.  In the bone's own axes, origin at the centre of mass.
+namespace palpate::fem {
+
+struct BoneInertia {
+  double mass = 0.0;               ///< [kg]
+  Vec3 principal = Vec3::Zero();   ///< about the centre of mass [kg m^2]
+};
+
+/// Mass and inertia of a free bone: what the spec gives, the rest from its shape, filled evenly.
+/// @throws Error where the shape has no volume or the moments are no body's
+BoneInertia bone_inertia(const BoneSpec& spec);
+
+/// Volume of the shape [m^3]; zero without one.
+double bone_volume(const BoneSpec& spec);
+
+/// Whether a point is inside the shape, its surface included (to 1e-9 of the distance); false without a shape.
+bool inside_bone(const BoneSpec& spec, const Vec3& p);
+
+/// The shape's surface, for pictures and records; empty without one.
+TriMesh bone_surface(const BoneSpec& spec);
+
+}  // namespace palpate::fem

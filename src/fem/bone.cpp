@@ -1,0 +1,119 @@
+#include "palpate/fem/bone.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "palpate/core/error.h"
+#include "palpate/dynamics/rigid_body.h"
+#include "palpate/mesh/generators.h"
+
+namespace palpate::fem {
+namespace {
+
+using std::numbers::pi;
+
+constexpr int kMeridians = 24, kCapRings = 6;
+
+/// Surface of revolution about z of a profile (radius, z) from one pole to the other; only the first and last have radius 0.
+TriMesh revolved(const std::vector<Eigen::Vector2d>& profile) {
+  const int rings = static_cast<int>(profile.size()) - 2, n = kMeridians;
+  TriMesh out;
+  out.vertices.resize(3, n * rings + 2);
+  out.faces.resize(3, 2 * n * rings);
+  const auto vertex = [n](int ring, int i) { return 1 + ring * n + i % n; };
+  out.vertices.col(0) = Vec3(0.0, 0.0, profile.front().y());
+  for (int r = 0; r < rings; ++r)
+    for (int i = 0; i < n; ++i) {
+      const Eigen::Vector2d& p = profile[static_cast<std::size_t>(r) + 1];
+      out.vertices.col(vertex(r, i)) = Vec3(p.x() * std::cos(2.0 * pi * i / n), p.x() * std::sin(2.0 * pi * i / n), p.y());
+    }
+  const int last = n * rings + 1;
+  out.vertices.col(last) = Vec3(0.0, 0.0, profile.back().y());
+  int f = 0;
+  for (int i = 0; i < n; ++i) {  // the profile goes upwards: seen from outside, rings turn counter-clockwise
+    out.faces.col(f++) << 0, vertex(0, i + 1), vertex(0, i);
+    for (int r = 0; r + 1 < rings; ++r) {
+      out.faces.col(f++) << vertex(r, i), vertex(r, i + 1), vertex(r + 1, i + 1);
+      out.faces.col(f++) << vertex(r, i), vertex(r + 1, i + 1), vertex(r + 1, i);
+    }
+    out.faces.col(f++) << vertex(rings - 1, i), vertex(rings - 1, i + 1), last;
+  }
+  return out;
+}
+
+TriMesh capsule_surface(double radius, double length) {
+  std::vector<Eigen::Vector2d> profile;
+  for (const double cap : {-1.0, 1.0})
+    for (int i = 0; i <= kCapRings; ++i) {
+      const double latitude = 0.5 * pi * (cap < 0.0 ? i - kCapRings : i) / kCapRings;
+      const bool pole = i == (cap < 0.0 ? 0 : kCapRings);
+      profile.emplace_back(pole ? 0.0 : radius * std::cos(latitude), 0.5 * cap * length + radius * std::sin(latitude));
+    }
+  return revolved(profile);
+}
+
+/// Moments of the shape filled evenly with mass 1, a body of length L along z where it has one.
+///   sphere     2/5 r^2
+///   box        (b^2 + c^2)/12
+///   cylinder   axis r^2/2, across (3 r^2 + L^2)/12
+///   capsule    a cylinder and two half spheres, in the ratio of their volumes.  The middle of mass of a half sphere is 3/8 r from its flat face and its
+///              moment across about it (2/5 - 9/64) r^2; carried to the capsule's middle, over L/2 + 3/8 r, both make 2/5 r^2 + L^2/4 + 3/8 L r a unit of mass.
+Vec3 unit_moments(const BoneSpec& spec) {
+  const double r = spec.radius_m, L = spec.length_m, r2 = r * r;
+  if (spec.shape == "sphere") return Vec3::Constant(0.4 * r2);
+  if (spec.shape == "box") {
+    const Vec3 s = spec.size_m.cwiseAbs2();
+    return (s.sum() - s.array()) / 12.0;
+  }
+  const double across = (3.0 * r2 + L * L) / 12.0, along = r2 / 2.0;
+  if (spec.shape == "cylinder") return {across, across, along};
+  const double rod = L / (L + 4.0 / 3.0 * r), caps = 1.0 - rod, both = rod * across + caps * (0.4 * r2 + L * L / 4.0 + 0.375 * L * r);
+  return {both, both, rod * along + caps * 0.4 * r2};
+}
+
+bool known(const std::string& shape) { return shape == "sphere" || shape == "box" || shape == "cylinder" || shape == "capsule"; }
+
+void check_shape(const BoneSpec& spec) {
+  if (spec.shape.empty() || known(spec.shape)) return;
+  fail("bone \"{}\": unknown shape \"{}\"{}", spec.name, spec.shape, suggestion(spec.shape, {"sphere", "box", "cylinder", "capsule"}));
+}
+
+}  // namespace
+
+double bone_volume(const BoneSpec& spec) {
+  check_shape(spec);
+  const double r = spec.radius_m, ball = 4.0 / 3.0 * pi * r * r * r, rod = pi * r * r * spec.length_m;
+  if (spec.shape == "sphere") return ball;
+  if (spec.shape == "box") return spec.size_m.prod();
+  if (spec.shape == "cylinder") return rod;
+  return spec.shape == "capsule" ? rod + ball : 0.0;
+}
+
+BoneInertia bone_inertia(const BoneSpec& spec) {
+  const double volume = bone_volume(spec);
+  if (!spec.shape.empty() && !(volume > 0.0)) fail("bone \"{}\": shape = \"{}\" has a volume of {} m^3; its sizes must be positive", spec.name, spec.shape, volume);
+  BoneInertia out{spec.mass_kg > 0.0 ? spec.mass_kg : spec.density_kg_m3 * volume, spec.inertia_kg_m2};
+  if (out.principal.isZero(0.0) && !spec.shape.empty()) out.principal = out.mass * unit_moments(spec);
+  dynamics::check_inertia(out.mass, out.principal, fmt::format("bone \"{}\"", spec.name).c_str());
+  return out;
+}
+
+bool inside_bone(const BoneSpec& spec, const Vec3& p) {
+  check_shape(spec);
+  const double some = 1.0 + 1e-9, r = spec.radius_m * some, half = 0.5 * spec.length_m;
+  if (spec.shape == "sphere") return p.norm() <= r;
+  if (spec.shape == "box") return (p.cwiseAbs().array() <= 0.5 * some * spec.size_m.array()).all();
+  if (spec.shape == "cylinder") return p.head<2>().norm() <= r && std::abs(p.z()) <= half * some;
+  return spec.shape == "capsule" && (p - Vec3(0.0, 0.0, std::clamp(p.z(), -half, half))).norm() <= r;
+}
+
+TriMesh bone_surface(const BoneSpec& spec) {
+  check_shape(spec);
+  if (spec.shape == "sphere") return mesh::sphere(spec.radius_m, 8);
+  if (spec.shape == "box") return mesh::box_surface(spec.size_m, {1, 1, 1});
+  if (spec.shape == "cylinder") return mesh::cylinder_surface(spec.radius_m, spec.length_m, 0.3 * spec.radius_m);
+  return spec.shape == "capsule" ? capsule_surface(spec.radius_m, spec.length_m) : TriMesh{};
+}
+
+}  // namespace palpate::fem
