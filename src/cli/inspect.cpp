@@ -33,6 +33,17 @@ void print_bodies(const loop::World& world) {
                                             rows));
 }
 
+void print_bones(const loop::World& world) {
+  Rows rows;
+  for (const loop::Bone& bone : world.bones) {
+    const Pose pose = world.bone_pose(bone);
+    const Vec3 turn = rotation_vector(pose.rotation);
+    rows.push_back({bone.name, bone.path ? "a function of time" : "free", bone.path ? "-" : fmt::format("{:.3g}", bone.mass), std::to_string(bone.dofs.size() / 3),
+                    fmt::format("{:.3g} {:.3g} {:.3g}", pose.translation.x(), pose.translation.y(), pose.translation.z()), fmt::format("{:.3g} {:.3g} {:.3g}", turn.x(), turn.y(), turn.z())});
+  }
+  if (!rows.empty()) fmt::print("{}\n", report::format_table({"bone", "", "mass [kg]", "nodes", "position [m]", "rotation vector [rad]"}, rows));
+}
+
 void print_system(loop::World& world, double assemble_s, double memory_mib) {
   Rows rows;
   const auto add = [&](const std::string& name, const std::string& value) { rows.push_back({name, value}); };
@@ -63,6 +74,7 @@ int inspect(const InspectArguments& arguments) {
   const std::unique_ptr<loop::World> world = loop::assemble(description);
   const double seconds = wall_seconds() - start, used = resident_memory_mib() - memory;
   print_bodies(*world);
+  print_bones(*world);
   print_system(*world, seconds, used);
   return 0;
 }

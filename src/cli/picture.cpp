@@ -35,6 +35,8 @@ void Snapshot::period(loop::World& world, double t) {
   force_n_ = felt;
   time_ = t;
   tool_ = newest_tool_;
+  bones_.clear();
+  for (const loop::Bone& bone : world.bones) bones_.push_back(world.bone_pose(bone));
   bodies_.clear();
   for (const loop::Body& body : world.bodies) {
     const Points now = world.positions(body);
@@ -49,6 +51,17 @@ void Snapshot::save(const loop::World& world, const std::string& path) const {
   for (std::size_t i = 0; i < bodies_.size(); ++i)
     scene.surfaces.push_back(
         {world.bodies[i].name, bodies_[i].points, world.bodies[i].boundary.surface.faces, bodies_[i].values});
+  if (!bones_.empty())
+    for (render::Surface& flesh : scene.surfaces) flesh.opacity = 0.55;
+  for (std::size_t i = 0; i < bones_.size(); ++i) {
+    const TriMesh& shape = world.bones[i].surface;
+    if (shape.vertices.cols() == 0) continue;
+    Points now = bones_[i].rotation.toRotationMatrix() * shape.vertices;
+    now.colwise() += bones_[i].translation;
+    render::Surface surface{world.bones[i].name, now, shape.faces};
+    surface.colour = {0.93f, 0.90f, 0.80f};
+    scene.surfaces.push_back(surface);
+  }
   if (world.description.tool) {
     TriMesh tool = loop::tool_surface(*world.description.tool, world.folder);
     for (Eigen::Index i = 0; i < tool.vertices.cols(); ++i) tool.vertices.col(i) = tool_ * Vec3(tool.vertices.col(i));

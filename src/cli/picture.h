@@ -16,7 +16,7 @@ class Snapshot : public loop::Observer {
   explicit Snapshot(std::string shade) : shade_(std::move(shade)) {}
   void period(loop::World& world, double t) override;
   void tick(const loop::TickRecord& tick) override;
-  /// Surfaces shaded by displacement [m] or von Mises stress [Pa], the tool, a floor where the scene has one.
+  /// Surfaces shaded by displacement [m] or von Mises stress [Pa], the tool, bones seen through the flesh, a floor where the scene has one.
   void save(const loop::World& world, const std::string& path) const;
 
  private:
@@ -26,6 +26,7 @@ class Snapshot : public loop::Observer {
   };
   std::string shade_;
   std::vector<BodyNow> bodies_;
+  std::vector<Pose> bones_;
   Pose tool_, newest_tool_;
   double time_ = 0.0, force_n_ = -1.0, newest_force_n_ = 0.0;
 };

@@ -2,7 +2,6 @@
 
 #include "assemble_parts.h"
 #include "palpate/core/error.h"
-#include "palpate/fem/attachments.h"
 #include "palpate/fem/load.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/mesh/checks.h"
@@ -50,38 +49,6 @@ VecX initial_velocities(const SoftBodySpec& spec, const Points& placed, const Ve
   Points v(3, placed.cols());
   for (Eigen::Index i = 0; i < placed.cols(); ++i) v.col(i) = spec.velocity_m_s + spec.angular_velocity_rad_s.cross(placed.col(i) - centre);
   return Eigen::Map<const VecX>(v.data(), v.size());
-}
-
-/// Keyframes move the box about its own centre: x(t) = centre + position(t) + R(t) (x0 - centre).
-fem::Path box_path(const AttachmentSpec& spec) {
-  const Vec3 centre = 0.5 * (spec.box_min_m + spec.box_max_m);
-  return [keyframes = spec.keyframes, centre](double t) {
-    const device::HandleSample s = device::sample_keyframes(keyframes, t);
-    return fem::PathPoint{{s.pose.rotation, s.pose.translation + centre}, s.twist, s.acceleration};
-  };
-}
-
-void attach(World& world, const Body& body, const AttachmentSpec& spec) {
-  const std::vector<int> nodes = fem::nodes_in_box(body.placed, spec.box_min_m, spec.box_max_m);
-  if (nodes.empty())
-    fail("body \"{}\": attachment box [{}, {}, {}] to [{}, {}, {}] m holds no node; enlarge it or move it over the body", body.name, spec.box_min_m.x(),
-         spec.box_min_m.y(), spec.box_min_m.z(), spec.box_max_m.x(), spec.box_max_m.y(), spec.box_max_m.z());
-  const int first = world.state.layout().find(body.block_id)->u_offset / 3;
-  const std::vector<int> dofs = fem::dofs_of_nodes(nodes, first, spec.axes);
-  const auto count = static_cast<Eigen::Index>(dofs.size());
-  const Vec3 centre = 0.5 * (spec.box_min_m + spec.box_max_m);
-  VecX x0(count);
-  Points local(3, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const int dof = dofs[static_cast<std::size_t>(i)] - 3 * first;
-    x0[i] = body.placed(dof % 3, dof / 3);
-    local.col(i) = body.placed.col(dof / 3) - centre;
-  }
-  if (spec.keyframes.empty()) {
-    world.system.add(fem::make_fixed(dofs, x0));
-    return;
-  }
-  world.system.add(fem::make_driven(dofs, local, box_path(spec)));
 }
 
 Body place_body(World& world, const SoftBodySpec& spec) {
@@ -136,10 +103,7 @@ void assemble_bodies(World& world) {
     const VecX q = Eigen::Map<const VecX>(bodies[i].placed.data(), bodies[i].placed.size());
     bodies[i].block_id = world.state.insert(block_of(spec, bodies[i]), q, initial_velocities(spec, bodies[i].placed, bodies[i].masses));
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    add_forces(world, bodies[i], world.description.bodies[i]);
-    for (const AttachmentSpec& attachment : world.description.bodies[i].attachments) attach(world, bodies[i], attachment);
-  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) add_forces(world, bodies[i], world.description.bodies[i]);
 }
 
 std::unique_ptr<World> assemble(const scene::Description& description) {
@@ -147,7 +111,9 @@ std::unique_ptr<World> assemble(const scene::Description& description) {
   world->description = description;
   world->folder = std::filesystem::path(description.path).parent_path().string();
   assemble_bodies(*world);
+  if (!description.bones.empty()) assemble_bones(*world);
   if (description.tool) assemble_tool(*world);
+  assemble_attachments(*world);
   if (!description.contacts.empty()) assemble_contact(*world);
   if (world->state.layout().blocks.empty()) return world;  // a tool of its own rate, alone
   world->system.prepare(world->state.view());

@@ -5,7 +5,9 @@
 namespace palpate::loop {
 
 void assemble_bodies(World& world);
-void assemble_tool(World& world);     ///< only with [tool]
-void assemble_contact(World& world);  ///< only with [[contact]]
+void assemble_bones(World& world);        ///< only with [[bone]]
+void assemble_tool(World& world);         ///< only with [tool]
+void assemble_attachments(World& world);  ///< after all that nodes may be attached to
+void assemble_contact(World& world);      ///< only with [[contact]]
 
 }  // namespace palpate::loop

@@ -17,7 +17,7 @@ using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 // What the bodies make of the contact over a time H, by one linearly implicit Euler step of theirs from (x0, u0), while the tool is displaced by dx and
 // its twist changed by dv.  n all nodes, f free, t tool; c = -df/d(tool), -dF/d(node) as ContactForce::linearise gives them, M, D, K with contact in them.
-// Driven nodes go to x(t0 + H), v(t0 + H): s and w are the displacements and velocity changes that are known beforehand,
+// Driven nodes go to x(t0 + H), v(t0 + H), carried ones with their bone (rows and columns reduced onto it by System): s and w are the displacements and velocity changes that are known beforehand,
 //     s = H u0 on free directions, x(t0 + H) - x0 on driven ones;      w = 0 on free directions, v(t0 + H) - u0 on driven ones.
 // With u1 = u0 + w + du, du = 0 on driven directions, nodes end at x0 + s + H du, and the force there is, to first order,
 //     f1 = f_n - K_nn (s + H du) - D_nn (w + du) - K_nt dx - B_nt dv.
@@ -36,10 +36,19 @@ struct Answer {
   Mat6 J, B;
 };
 
+/// q0 moved by a displacement along u-directions.
+VecX moved(const World& world, const VecX& displacement) {
+  VecX rate(world.state.q().size());
+  dynamics::q_dot(world.state.layout(), world.state.q().data(), displacement.data(), rate.data());
+  VecX q = world.state.q() + rate;
+  dynamics::project(world.state.layout(), q.data());
+  return q;
+}
+
 /// s and w of the derivation.
 void known_motion(World& world, double H, VecX& s, VecX& w) {
-  const auto q0 = world.state.q(), u0 = world.state.u();
-  VecX q = q0 + H * u0, u = u0;
+  const VecX q0 = world.state.q(), u0 = world.state.u();
+  VecX q = moved(world, H * u0), u = u0;
   s = H * u0;
   w = VecX::Zero(u0.size());
   world.system.impose(world.state.layout(), world.state.time() + H, q.data(), u.data());
@@ -59,7 +68,11 @@ VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w) {
     term->apply_tangent(view, 0.0, 1.0, w, stiff);
   }
   world.system.apply_mass(view, w, inertia);
-  return H * (f - stiff) - inertia;
+  VecX r = H * (f - stiff) - inertia;
+  world.system.reduce(view, r);
+  stiff.setZero();
+  world.system.apply_carried_stiffness(view, s, stiff);
+  return r - H * stiff;
 }
 
 /// A factor of the step matrix: by LU where it is indefinite (an inverted element, a compressed strut), null where it has none at all.
@@ -80,21 +93,32 @@ bool answer_after(World& world, double H, const contact::FrameLinearisation& c, 
   VecX s, w;
   known_motion(world, H, s, w);
   const Eigen::Index n = c.K_body.rows();
-  MatX rhs(world.state.layout().u_size, 13);
-  rhs.leftCols(6) = c.K_body;
-  rhs.middleCols(6, 6) = c.B_body;
+  MatX rhs = MatX::Zero(world.state.layout().u_size, 13);
+  rhs.topLeftCorner(n, 6) = c.K_body;
+  rhs.block(0, 6, n, 6) = c.B_body;
   rhs.col(12) = right_hand_side(world, H, s, w);
-  for (int dof : world.system.driven_dofs()) rhs.row(dof).setZero();
+  VecX column;
+  for (Eigen::Index i = 0; i < 12; ++i) {
+    column = rhs.col(i);
+    world.system.reduce(world.state.view(), column);
+    rhs.col(i) = column;
+  }
   MatX solved(rhs.rows(), rhs.cols());
   if (solver->solve(rhs, solved) != dynamics::SolveStatus::kOk || !solved.allFinite()) return false;
+  for (Eigen::Index i = 0; i < solved.cols(); ++i) {
+    column = solved.col(i);
+    world.system.expand(world.state.view(), column);
+    solved.col(i) = column;
+  }
   const MatX C = H * c.K_frame + c.B_frame;
   out.J = -c.K + H * C * solved.topLeftCorner(n, 6);
   out.B = -c.B + H * C * solved.block(0, 6, n, 6);
   const VecX g = solved.col(12);
   out.wrench << c.wrench.moment, c.wrench.force;
-  out.wrench -= c.K_frame * s + c.B_frame * w + C * g;
+  out.wrench -= c.K_frame * s.head(n) + c.B_frame * w.head(n) + C * g.head(n);
 
-  const VecX q = world.state.q() + s + H * g, u = world.state.u() + w + g;
+  VecX q = moved(world, s + H * g), u = world.state.u() + w + g;
+  world.system.impose(world.state.layout(), world.state.time() + H, q.data(), u.data());
   contact::FrameLinearisation after;
   world.contact->linearise(world.state.view(world.state.time(), q.data(), u.data()), world.tool_frame_index, after);
   out.J.topLeftCorner<3, 3>() += after.geometric - c.geometric;

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
+#include "palpate/store/bone_file.h"
 #include "palpate/store/force_file.h"
 #include "palpate/store/provenance.h"
 #include "palpate/store/run_file.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr const char* kRunFile = "run.vtkhdf";
 constexpr const char* kForceFile = "force.csv";
+constexpr const char* kBoneFile = "bones.csv";
 
 /// How many periods of the loop pass between two recorded states.
 int periods_between(const scene::Description& d) {
@@ -24,6 +26,7 @@ int periods_between(const scene::Description& d) {
 struct Recorder::Impl {
   std::unique_ptr<store::RunFile> states;
   std::unique_ptr<store::ForceFile> forces;
+  std::unique_ptr<store::BoneFile> bones;
   TriMesh tool;       ///< in its own axes; empty without a tool
   int every = 1;      ///< periods
   long seen = 0;      ///< periods
@@ -40,10 +43,15 @@ struct Recorder::Impl {
       count += body.placed.cols();
     }
     const scene::Description& d = world.description;
+    for (const Bone& bone : world.bones) {
+      if (bone.surface.vertices.cols() == 0) continue;
+      parts.push_back({bone.name, placed(bone.surface, world.bone_pose(bone)), {}, bone.surface.faces});
+      count += bone.surface.vertices.cols();
+    }
     if (d.tool) {
       tool = tool_surface(*d.tool, world.folder);
       tool_pose = {quaternion_of(d.tool->rotation_vector_rad), d.tool->position_m};
-      parts.push_back({"tool", placed_tool(), {}, tool.faces});
+      parts.push_back({"tool", placed(tool, tool_pose), {}, tool.faces});
       count += tool.vertices.cols();
     }
     const int steps = static_cast<int>(d.duration_s / (every * period_of(d))) + 2;
@@ -53,10 +61,18 @@ struct Recorder::Impl {
     stress.setZero(count);
   }
 
-  Points placed_tool() const {
-    Points out = tool_pose.rotation.toRotationMatrix() * tool.vertices;
-    out.colwise() += tool_pose.translation;
+  static Points placed(const TriMesh& surface, const Pose& pose) {
+    Points out = pose.rotation.toRotationMatrix() * surface.vertices;
+    out.colwise() += pose.translation;
     return out;
+  }
+
+  /// A rigid surface at its pose, from point `first` on; returns where the next part begins.
+  Eigen::Index place(const TriMesh& surface, const Pose& pose, const Twist& twist, Eigen::Index first) {
+    const Eigen::Index n = surface.vertices.cols();
+    points.middleCols(first, n) = placed(surface, pose);
+    for (Eigen::Index i = first; i < first + n; ++i) velocity.col(i) = twist.at(points.col(i) - pose.translation);
+    return first + n;
   }
 
   void append(World& world, double t) {
@@ -70,11 +86,16 @@ struct Recorder::Impl {
       stress.segment(first, n) = body.nodal_stress(view);
       first += n;
     }
-    if (tool.vertices.cols() > 0) {
-      points.rightCols(tool.vertices.cols()) = placed_tool();
-      for (Eigen::Index i = first; i < points.cols(); ++i) velocity.col(i) = tool_twist.at(points.col(i) - tool_pose.translation);
-    }
+    for (const Bone& bone : world.bones) first = place(bone.surface, world.bone_pose(bone), world.bone_twist(bone), first);
+    if (tool.vertices.cols() > 0) place(tool, tool_pose, tool_twist, first);
     states->append(t, points, velocity, stress);
+  }
+
+  void append_bones(World& world, double t) {
+    const std::vector<Wrench> wrenches = world.wrenches_on_bones();
+    for (std::size_t i = 0; i < wrenches.size(); ++i)
+      bones->append({t, static_cast<int>(i), world.bone_pose(world.bones[i]), world.bone_twist(world.bones[i]), wrenches[i]});
+    bones->flush();
   }
 };
 
@@ -87,6 +108,7 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
   if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
   const std::filesystem::path base(folder);
   if (d.record->states && !world.bodies.empty()) impl_->open_states(world, (base / kRunFile).string());
+  if (d.record->states && !world.bones.empty()) impl_->bones = std::make_unique<store::BoneFile>((base / kBoneFile).string());
   if (d.record->forces && d.tool) impl_->forces = std::make_unique<store::ForceFile>((base / kForceFile).string());
 }
 
@@ -98,6 +120,7 @@ void Recorder::period(World& world, double t) {
     impl_->tool_twist = world.tool_twist();
   }
   if (impl_->states && impl_->seen % impl_->every == 0) impl_->append(world, t);
+  if (impl_->bones && impl_->seen % impl_->every == 0) impl_->append_bones(world, t);
   if (impl_->forces) impl_->forces->flush();
   ++impl_->seen;
 }

@@ -1,5 +1,7 @@
 #include "palpate/loop/world.h"
 
+#include "palpate/dynamics/rigid_body.h"
+
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
 #else
@@ -22,6 +24,31 @@ const Body* World::find_body(const std::string& name) const {
 Points World::positions(const Body& body) const {
   const dynamics::Block* block = state.layout().find(body.block_id);
   return Eigen::Map<const Points>(state.q().data() + block->q_offset, 3, block->q_size / 3);
+}
+
+Pose World::bone_pose(const Bone& bone) const {
+  if (bone.path) return bone.path(state.time()).pose;
+  return dynamics::motion_of(state.view(), dynamics::rigid_block_of(state.view(), bone.block_id)).pose;
+}
+
+Twist World::bone_twist(const Bone& bone) const {
+  if (bone.path) return bone.path(state.time()).twist;
+  return dynamics::motion_of(state.view(), dynamics::rigid_block_of(state.view(), bone.block_id)).twist;
+}
+
+std::vector<Wrench> World::wrenches_on_bones() {
+  std::vector<Wrench> out(bones.size());
+  if (bones.empty()) return out;
+  VecX held;
+  system.reactions(state.view(), held);
+  for (std::size_t i = 0; i < bones.size(); ++i) {
+    const Vec3 origin = bone_pose(bones[i]).translation;
+    for (const int dof : bones[i].dofs) {
+      const Vec3 force = -held[dof] * Vec3::Unit(dof % 3);
+      out[i] += {(state.view().position(dof / 3) - origin).cross(force), force};
+    }
+  }
+  return out;
 }
 
 // Of a monolithic tool, mass, weight and coupling are terms of the System.

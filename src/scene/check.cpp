@@ -27,38 +27,19 @@ void check_names(const Document& doc, const Description& d) {
     const std::string where = fmt::format("{} \"{}\"", kind, name);
     check_name(doc, key, name);
     if (name == "tool") refuse(place(doc, key), where, "name \"tool\" is kept for the tool; choose another");
-    if (!seen.insert(name).second) refuse(place(doc, key), where, fmt::format("name \"{}\" is taken; bodies and obstacles need names of their own", name));
+    if (!seen.insert(name).second) refuse(place(doc, key), where, fmt::format("name \"{}\" is taken; bodies, bones and obstacles need names of their own", name));
   };
   for (std::size_t i = 0; i < d.bodies.size(); ++i) check_one("body", i, d.bodies[i].name);
+  for (std::size_t i = 0; i < d.bones.size(); ++i) check_one("bone", i, d.bones[i].name);
   for (std::size_t i = 0; i < d.obstacles.size(); ++i) check_one("obstacle", i, d.obstacles[i].name);
 }
 
-void check_keyframes(const Document& doc, const std::string& key, const std::string& where, const std::vector<KeyframeSpec>& frames) {
-  for (std::size_t i = 1; i < frames.size(); ++i)
-    if (frames[i].time_s <= frames[i - 1].time_s)
-      refuse(place(doc, fmt::format("{}[{}].time_s", key, i)), fmt::format("{}: keyframe[{}]", where, i),
-             fmt::format("time_s = {} must come after {}, the keyframe before; put keyframes in the order of time", frames[i].time_s, frames[i - 1].time_s));
-}
-
-template <class Boxed>
-void check_box(const Document& doc, const std::string& key, const std::string& where, const Boxed& spec) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (spec.box_min_m[axis] > spec.box_max_m[axis])
-      refuse(place(doc, key + ".box_max_m"), where,
-             fmt::format("box_max_m = {} must not be below box_min_m = {} along {}", spec.box_max_m[axis], spec.box_min_m[axis], "xyz"[axis]));
-}
-
-void check_bodies(const Document& doc, const Description& d) {
-  for (std::size_t i = 0; i < d.bodies.size(); ++i) {
-    const std::string where = fmt::format("body \"{}\"", d.bodies[i].name);
-    for (std::size_t j = 0; j < d.bodies[i].attachments.size(); ++j) {
-      const std::string key = at("body", i, at("attachment", j)), inner = fmt::format("{}: attachment[{}]", where, j);
-      check_box(doc, key, inner, d.bodies[i].attachments[j]);
-      check_keyframes(doc, key + ".keyframe", inner, d.bodies[i].attachments[j].keyframes);
+void check_loads(const Document& doc, const Description& d) {
+  for (std::size_t i = 0; i < d.bodies.size(); ++i)
+    for (std::size_t j = 0; j < d.bodies[i].loads.size(); ++j) {
+      const LoadSpec& load = d.bodies[i].loads[j];
+      check_box(doc, at("body", i, at("load", j)), fmt::format("body \"{}\": load[{}]", d.bodies[i].name, j), load.box_min_m, load.box_max_m);
     }
-    for (std::size_t j = 0; j < d.bodies[i].loads.size(); ++j)
-      check_box(doc, at("body", i, at("load", j)), fmt::format("{}: load[{}]", where, j), d.bodies[i].loads[j]);
-  }
 }
 
 void check_tool(const Document& doc, const Description& d) {
@@ -141,11 +122,26 @@ void check_compare(const Document& doc, const Description& d) {
 
 }  // namespace
 
+void check_keyframes(const Document& doc, const std::string& key, const std::string& where, const std::vector<KeyframeSpec>& frames) {
+  for (std::size_t i = 1; i < frames.size(); ++i)
+    if (frames[i].time_s <= frames[i - 1].time_s)
+      refuse(place(doc, fmt::format("{}[{}].time_s", key, i)), fmt::format("{}: keyframe[{}]", where, i),
+             fmt::format("time_s = {} must come after {}, the keyframe before; put keyframes in the order of time", frames[i].time_s, frames[i - 1].time_s));
+}
+
+void check_box(const Document& doc, const std::string& key, const std::string& where, const Vec3& low, const Vec3& high) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (low[axis] > high[axis])
+      refuse(place(doc, key + ".box_max_m"), where, fmt::format("box_max_m = {} must not be below box_min_m = {} along {}", high[axis], low[axis], "xyz"[axis]));
+}
+
 void check(const Document& doc, Description& d) {
   if (d.bodies.empty() && !d.tool) refuse(place(doc, "scene"), "", "there is nothing to simulate: add a [[body]], or a [tool] with a [device]");
   check_names(doc, d);
   check_meshes(doc, d);
-  check_bodies(doc, d);
+  check_loads(doc, d);
+  check_bones(doc, d);
+  check_attachments(doc, d);
   check_tool(doc, d);
   check_contacts(doc, d);
   check_exchange(doc, d);

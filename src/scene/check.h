@@ -8,6 +8,10 @@ namespace palpate::scene {
 
 void check(const Document& document, Description& description);
 
+void check_keyframes(const Document& document, const std::string& key, const std::string& where, const std::vector<KeyframeSpec>& frames);
+void check_box(const Document& document, const std::string& key, const std::string& where, const Vec3& low, const Vec3& high);
+void check_bones(const Document& document, const Description& description);
+void check_attachments(const Document& document, Description& description);  ///< also says by which keys each chooses its nodes
 void check_meshes(const Document& document, const Description& description);
 void check_contacts(const Document& document, Description& description);  ///< also puts the soft body first in each pair
 

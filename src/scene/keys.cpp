@@ -182,6 +182,7 @@ const KeyTable<Description>& description_keys() {
   static const KeyTable<Description> keys = {
       required(group("scene", scene_keys())),
       tables("body", &Description::bodies, body_keys()),
+      tables("bone", &Description::bones, bone_keys()),
       tables("obstacle", &Description::obstacles, obstacle_keys()),
       tables("contact", &Description::contacts, contact_keys()),
       table("tool", &Description::tool, tool_keys()),

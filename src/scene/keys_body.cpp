@@ -5,8 +5,11 @@ namespace {
 
 const KeyTable<AttachmentSpec>& attachment_keys() {
   static const KeyTable<AttachmentSpec> keys = {
-      required(vec3("box_min_m", &AttachmentSpec::box_min_m)),
-      required(vec3("box_max_m", &AttachmentSpec::box_max_m)),
+      vec3("box_min_m", &AttachmentSpec::box_min_m),
+      vec3("box_max_m", &AttachmentSpec::box_max_m),
+      vec3("centre_m", &AttachmentSpec::centre_m),
+      number("radius_m", &AttachmentSpec::radius_m, positive()),
+      text("to", &AttachmentSpec::to),
       text("axes", &AttachmentSpec::axes, {"x", "y", "z", "xy", "xz", "yz", "xyz"}),
       tables("keyframe", &AttachmentSpec::keyframes, keyframe_keys()),
   };

@@ -13,11 +13,12 @@ int count_if(const List& list, Predicate predicate) {
 }
 
 void add_body_needs(const Description& d, std::vector<Need>& out) {
-  int fixed = 0, driven = 0, loads = 0;
+  int fixed = 0, driven = 0, carried = 0, loads = 0;
   const int nodal = count_if(d.bodies, [](const auto& b) { return b.volumetric == "nodal"; });
   for (const auto& body : d.bodies) {
-    fixed += count_if(body.attachments, [](const auto& a) { return a.keyframes.empty(); });
+    fixed += count_if(body.attachments, [](const auto& a) { return a.to.empty() && a.keyframes.empty(); });
     driven += count_if(body.attachments, [](const auto& a) { return !a.keyframes.empty(); });
+    carried += count_if(body.attachments, [](const auto& a) { return !a.to.empty(); });
     loads += static_cast<int>(body.loads.size());
   }
   const bool any = !d.bodies.empty();
@@ -27,6 +28,9 @@ void add_body_needs(const Description& d, std::vector<Need>& out) {
   out.push_back({"gravity", weight, weight ? "gravity_m_s2 is not zero" : "gravity_m_s2 is zero, or there is no body"});
   out.push_back({"fixed nodes", fixed > 0, fixed > 0 ? fmt::format("{} [[body.attachment]] without keyframes", fixed) : "no [[body.attachment]] without keyframes"});
   out.push_back({"driven nodes", driven > 0, driven > 0 ? fmt::format("{} [[body.attachment]] with keyframes", driven) : "no [[body.attachment.keyframe]]"});
+  const int told = count_if(d.bones, [](const auto& b) { return b.fixed || !b.keyframes.empty(); }), free = static_cast<int>(d.bones.size()) - told;
+  out.push_back({"carried nodes", carried > 0, carried > 0 ? fmt::format("{} [[body.attachment]] to a bone or the tool", carried) : "no [[body.attachment]] with to"});
+  out.push_back({"rigid bones", free > 0, free > 0 ? fmt::format("{} free [[bone]]: rigid blocks beside the nodes", free) : told > 0 ? "every [[bone]] is fixed or has keyframes: a function of time" : "no [[bone]]"});
   out.push_back({"loads", loads > 0, loads > 0 ? fmt::format("{} [[body.load]]", loads) : "no [[body.load]]"});
   // Every integrator of this version is implicit; an explicit one will leave these out.
   const std::string implicit = fmt::format("integrator \"{}\" is implicit", d.integrator.name);
@@ -65,6 +69,8 @@ void add_output_needs(const Description& d, std::vector<Need>& out) {
   const bool states = d.record && d.record->states, forces = d.record && d.record->forces && d.tool;
   const std::string none = d.record ? "" : "no [record]";
   out.push_back({"run file", states, states ? fmt::format("[record] states, every {} s", d.record->state_period_s) : none.empty() ? "[record] states = false" : none});
+  const bool bones = states && !d.bones.empty();
+  out.push_back({"bone file", bones, bones ? fmt::format("[record] states, {} [[bone]]", d.bones.size()) : !none.empty() ? none : d.bones.empty() ? "no [[bone]]" : "[record] states = false"});
   out.push_back({"force file", forces, forces ? "[record] forces, every tick" : !none.empty() ? none : d.tool ? "[record] forces = false" : "no [tool]"});
   const std::size_t ladders = d.compare.ladders.size();
   out.push_back({"compare", ladders > 0, ladders > 0 ? fmt::format("{} [[compare.ladder]], for `palpate compare` only", ladders) : "no [[compare.ladder]]"});

@@ -47,6 +47,44 @@ TEST(Load, PressBallAsWritten) {
   EXPECT_EQ(d.compare.ladders[2].label, "cvode-bdf, root finding");
 }
 
+TEST(Load, BonesAndWhatIsTiedToThem) {
+  const std::string text = std::string(scene_texts::kWhole) + R"(
+[[bone]]
+name = "femur"
+shape = "capsule"
+radius_m = 0.005
+length_m = 0.03
+density_kg_m3 = 1800
+[[bone]]
+name = "tibia"
+fixed = true
+[[body]]
+name = "leg"
+youngs_modulus_pa = 1e4
+mesh = { generator = "ball", radius_m = 0.03, element_size_m = 0.01 }
+[[body.attachment]]
+to = "femur"
+[[body.attachment]]
+to = "tibia"
+centre_m = [0, 0, 0.03]
+radius_m = 0.01
+)";
+  const Description d = parse(text, "bones.toml");
+  ASSERT_EQ(d.bones.size(), 2u);
+  EXPECT_EQ(d.bones[0].density_kg_m3, 1800.0);
+  EXPECT_TRUE(d.bones[0].gravity);
+  EXPECT_TRUE(d.bones[1].fixed);
+  EXPECT_EQ(d.bodies[0].attachments[0].region, "box");
+  EXPECT_EQ(d.bodies[1].attachments[0].region, "shape") << "the bone's own, where nothing else is given";
+  EXPECT_EQ(d.bodies[1].attachments[1].region, "sphere");
+  EXPECT_EQ(d.bodies[1].attachments[1].to, "tibia");
+  EXPECT_THROW(parse(text, "bones.toml", {"body.1.attachment.1.axes=\"xy\""}), palpate::Error);
+  EXPECT_THROW(parse(text, "bones.toml", {"bone.0.mass_kg=1"}), palpate::Error) << "mass and density";
+  const Description mono = parse(text, "bones.toml", {"exchange.scheme=\"monolithic\"", "body.1.attachment.0.to=\"tool\"", "body.1.attachment.0.radius_m=0.01",
+                                                      "body.1.attachment.0.centre_m=[0,0,0]", "body.0.attachment.0.to=\"femur\""});
+  EXPECT_EQ(mono.bodies[1].attachments[0].to, "tool");
+}
+
 TEST(Load, DefaultsAndNormalOrder) {
   const Description d = parse(scene_texts::kWhole, "whole.toml");
   EXPECT_EQ(d.contacts[0].first, "ball") << "the soft body comes first, whatever the file says";

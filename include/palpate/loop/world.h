@@ -8,6 +8,7 @@
 #include "palpate/device/limiter.h"
 #include "palpate/dynamics/stepper.h"
 #include "palpate/dynamics/system.h"
+#include "palpate/fem/attachments.h"
 #include "palpate/fem/nodal_dilatation.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/boundary.h"
@@ -36,6 +37,16 @@ struct Body {
   VecX nodal_stress(const dynamics::StateView& state) const { return dilatation ? dilatation->nodal_stress(state) : term->nodal_stress(state); }
 };
 
+/// One bone as assembled: a rigid block of the State, or a function of time.
+struct Bone {
+  std::string name;
+  int block_id = -1;          ///< of a free one; else -1
+  fem::Path path;             ///< of one that is fixed or has keyframes; else empty
+  double mass = 0.0;          ///< of a free one [kg]
+  std::vector<int> dofs;      ///< u-directions of the nodes that it carries, ascending
+  TriMesh surface;            ///< in its own axes; empty without a shape
+};
+
 /// Everything that one scene names, and nothing else.  What is absent is null or empty.
 /// The stepper refers to `state` and `system`: a World does not move.
 struct World {
@@ -49,6 +60,7 @@ struct World {
   dynamics::State state;
   dynamics::System system;
   std::vector<Body> bodies;
+  std::vector<Bone> bones;
   std::shared_ptr<contact::ContactForce> contact;       ///< null without [[contact]]
   std::unique_ptr<dynamics::Stepper> stepper;           ///< null without bodies
   std::unique_ptr<tool::Tool> tool;                     ///< the tool with ticks of its own; null without [tool], and where the scheme is monolithic
@@ -65,6 +77,10 @@ struct World {
 
   const Body* find_body(const std::string& name) const;
   Points positions(const Body& body) const;             ///< now, world [m]
+  Pose bone_pose(const Bone& bone) const;
+  Twist bone_twist(const Bone& bone) const;
+  /// What the flesh exerts on each bone, moment about its origin: minus what holds the nodes that it carries.
+  std::vector<Wrench> wrenches_on_bones();
   bool monolithic() const { return tool_block_id >= 0; }
   Pose tool_pose() const;                               ///< @pre there is a tool
   Twist tool_twist() const;

@@ -50,6 +50,7 @@ struct Description {
   double duration_s = 1.0;
   Vec3 gravity_m_s2 = Vec3::Zero();
   std::vector<SoftBodySpec> bodies;
+  std::vector<BoneSpec> bones;
   std::vector<ObstacleSpec> obstacles;
   std::vector<ContactSpec> contacts;
   std::optional<ToolSpec> tool;
