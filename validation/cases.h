@@ -26,6 +26,7 @@ ValidationCase free_vibration();
 ValidationCase vibration_tolerance();
 ValidationCase spinning_body();
 ValidationCase axial_vibration();
+ValidationCase bar_on_bone();
 ValidationCase lame_mode();
 ValidationCase bending_vibration();
 ValidationCase explicit_limit();

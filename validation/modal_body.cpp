@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "palpate/core/error.h"
+#include "palpate/dynamics/rigid_body.h"
 #include "palpate/dynamics/system.h"
 #include "palpate/fem/attachments.h"
 #include "palpate/integrate/integrators.h"
@@ -14,6 +15,20 @@ void ModalBody::hold(const std::string& axes, const std::function<bool(const Vec
     if (where(rest.nodes.col(i)))
       for (const char axis : axes) held.push_back(3 * i + (axis - 'x'));
 }
+
+namespace {
+
+void add_bone(const ModalBody& body, dynamics::State& state, dynamics::System& system) {
+  const Vec3 at = body.bone_centre;
+  const VecX q = (VecX(7) << 1.0, 0.0, 0.0, 0.0, at).finished();
+  const int bone = state.insert(dynamics::rigid_block("bone", 1.0, 1.0), q, VecX::Zero(6));
+  system.add(dynamics::make_rigid_inertia(bone, body.bone_mass, body.bone_inertia));
+  Points local(3, 3 * static_cast<Eigen::Index>(body.carried.size()));
+  for (Eigen::Index i = 0; i < local.cols(); ++i) local.col(i) = body.rest.nodes.col(body.carried[static_cast<std::size_t>(i / 3)]) - at;
+  system.add(fem::make_carried(fem::dofs_of_nodes(body.carried, 0, "xyz"), local, bone));
+}
+
+}  // namespace
 
 integrate::Modes ModalBody::lowest(int count) const {
   dynamics::State state;
@@ -30,6 +45,7 @@ integrate::Modes ModalBody::lowest(int count) const {
   std::sort(dofs.begin(), dofs.end());
   dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
   if (!dofs.empty()) system.add(fem::make_fixed(dofs, q0(dofs)));
+  if (!carried.empty()) add_bone(*this, state, system);
   system.prepare(state.view());
   integrate::Modes modes = integrate::find_modes(system, state.view(), {count});
   if (!modes.converged) fail("the modes of {} nodes did not converge", rest.nodes.cols());
@@ -51,7 +67,7 @@ VecX ModalBody::field(const std::function<Vec3(const Vec3&)>& displacement) cons
 Match best_match(const ModalBody& body, const integrate::Modes& modes, const VecX& shape) {
   Match best;
   for (int j = 0; j < modes.count(); ++j)
-    if (const double overlap = body.overlap(modes.shapes.col(j), shape); overlap > best.overlap) best = {j, overlap, modes.omega(j)};
+    if (const double overlap = body.overlap(modes.shapes.col(j).head(shape.size()), shape); overlap > best.overlap) best = {j, overlap, modes.omega(j)};
   return best;
 }
 
