@@ -222,6 +222,7 @@ void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
 void System::step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter) {
   ensure_pattern(state, A);
   A.set_zero();
+  A.positions = state.q.head(state.layout->nodal_size);  // node blocks come first, with q' = u
   A.symmetric = symmetric();
   if (m_scale != 0.0)
     for (const auto& inertia : inertias_) inertia->add_mass(state, m_scale, A);

@@ -110,6 +110,7 @@ const KeyTable<IntegratorSpec>& integrator_keys() {
       integer("max_order", &IntegratorSpec::max_order, closed(0, 12, "0 leaves the order to the method")),
       integer("max_steps", &IntegratorSpec::max_steps, at_least(1)),
       text("linear_solver", &IntegratorSpec::linear_solver),
+      integer("threads", &IntegratorSpec::threads, closed(1, 64, "of linear solvers that can share their work; results do not depend on it")),
   };
   return keys;
 }

@@ -15,6 +15,7 @@ struct SolverCounters {
   long factorisations = 0;  ///< numeric factorisations
   long solves = 0;          ///< right-hand sides
   long iterations = 0;      ///< of iterative methods
+  long refreshes = 0;       ///< coarse spaces made anew, where a method has one that it keeps
   double symbolic_s = 0.0, factor_s = 0.0, solve_s = 0.0;  ///< wall time [s]
   std::string ordering;     ///< fill-reducing ordering of the last analysis, where the solver chooses: "AMD", "METIS"
 };

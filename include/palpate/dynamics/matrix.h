@@ -69,6 +69,7 @@ struct BorderedMatrix {
   MatX right;    ///< nodal_size x border
   MatX bottom;   ///< border x nodal_size
   MatX corner;   ///< border x border
+  VecX positions;  ///< of the nodes [m], three numbers each, for preconditioners that know rigid motions; empty: not known
   bool symmetric = true;
   std::uint64_t values_version = 0;  ///< grows with every change of values; equal versions and patterns mean an equal matrix
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "integrate/make.h"
+#include "integrate/settings.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -278,8 +279,7 @@ class Pcg final : public dynamics::LinearSolver {
 }  // namespace
 
 std::unique_ptr<dynamics::LinearSolver> make_pcg(const IntegratorSpec& spec) {
-  if (!(spec.linear_rtol >= 1e-15 && spec.linear_rtol <= 0.1))
-    fail("linear solver \"pcg\": linear_rtol = {} must lie in [1e-15, 0.1]; 1e-8 is usual", spec.linear_rtol);
+  check_linear_rtol("pcg", spec);
   return std::make_unique<Pcg>(spec.linear_rtol);
 }
 

@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "integrate/linear/auto_choice.h"
+#include "integrate/make.h"
+#include "integrate/settings.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+#include "palpate/integrate/integrators.h"
+
+namespace palpate::integrate {
+namespace {
+
+using dynamics::BorderedMatrix;
+using dynamics::SolveStatus;
+
+/// One measurement: which solver did a step soonest, its factor or preconditioner included.
+struct Measured {
+  double nodes, stiffness, rtol;
+  const char* fastest;
+};
+constexpr Measured kMeasured[] = {
+#include "integrate/linear/auto_table.inc"
+};
+
+/// A choice is kept until the matrix has become so many times stiffer or softer: each solver would start without a past.
+constexpr double kKept = 4.0;
+
+}  // namespace
+
+// What decides how many iterations a step takes is how far stiffness outweighs mass in A = M + h^2 K.  A rigid translation takes no strain, so block row i of A
+// sums to that of M, and
+//     s = sum_i tr(A_ii) / sum_i tr(sum_j A_ij) = 1 + h^2 tr K / tr M,
+// the squared number of grid lengths, times a constant, that a sound wave passes in a step: a pure number that holds step, stiffness, density and mesh size together.
+// Rows of held nodes, and of their neighbours, which miss the held ones' columns, are left out.
+double stiffness_number(const dynamics::BlockSparse& A) {
+  double own = 0.0, all = 0.0;
+  for (int i = 0; i < A.block_rows(); ++i) {
+    double row = 0.0, diagonal = 0.0;
+    bool beside_held = false;
+    for (int s = A.row_start()[static_cast<std::size_t>(i)]; s < A.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+      const double* block = A.block(s);
+      const double trace = block[0] + block[4] + block[8];
+      row += trace;
+      if (A.columns()[static_cast<std::size_t>(s)] == i)
+        diagonal = trace;
+      else
+        beside_held = beside_held || std::all_of(block, block + 9, [](double value) { return value == 0.0; });
+    }
+    if (beside_held || !(row > 0.0)) continue;
+    own += diagonal;
+    all += row;
+  }
+  return all > 0.0 ? own / all : 1.0;
+}
+
+const char* measured_choice(double nodes, double stiffness, double rtol) {
+  const Measured* nearest = nullptr;
+  double least = HUGE_VAL;
+  const auto apart = [](double a, double b) { return std::log(a / b) * std::log(a / b); };
+  for (const Measured& m : kMeasured) {
+    const double distance = apart(m.nodes, std::max(1.0, nodes)) + apart(m.stiffness, stiffness) + apart(m.rtol, rtol);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = &m;
+  }
+  return nearest->fastest;
+}
+
+namespace {
+
+/// The solver that was the fastest in what the table holds nearest to this matrix: nodes, stiffness number and linear_rtol, in logarithms.
+class AutoSolver final : public dynamics::LinearSolver {
+ public:
+  explicit AutoSolver(const IntegratorSpec& spec) : spec_(spec) { counters::count("integrate.solver.auto"); }
+  std::string name() const override { return "auto"; }
+  bool supports_unsymmetric() const override { return false; }
+
+  SolveStatus factor(const BorderedMatrix& A) override {
+    PALPATE_CHECK(A.symmetric, "solver auto was given an unsymmetric matrix");
+    const bool same = active_ && A.values_version != 0 && A.values_version == values_version_;
+    if (!same) choose(A);
+    values_version_ = A.values_version;
+    return active_->factor(A);
+  }
+  SolveStatus solve(const MatX& B, MatX& X) override { return chosen().solve(B, X); }
+  SolveStatus solve(const VecX& b, VecX& x) override { return chosen().solve(b, x); }
+
+  const dynamics::SolverCounters& counters() const override {
+    sum_ = {};
+    for (const auto& solver : made_) {
+      if (!solver) continue;
+      const dynamics::SolverCounters& c = solver->counters();
+      sum_.symbolic += c.symbolic;
+      sum_.factorisations += c.factorisations;
+      sum_.solves += c.solves;
+      sum_.iterations += c.iterations;
+      sum_.refreshes += c.refreshes;
+      sum_.symbolic_s += c.symbolic_s;
+      sum_.factor_s += c.factor_s;
+      sum_.solve_s += c.solve_s;
+    }
+    if (active_) sum_.ordering = active_->counters().ordering;
+    return sum_;
+  }
+
+ private:
+  dynamics::LinearSolver& chosen() {
+    PALPATE_CHECK(active_, "solver auto: solve without a factor");
+    return *active_;
+  }
+
+  void choose(const BorderedMatrix& A) {
+    const double stiffness = stiffness_number(A.body);
+    const bool as_before = active_ && A.body.block_rows() == nodes_ && stiffness < kKept * stiffness_ && kKept * stiffness > stiffness_;
+    if (as_before || (active_ && !std::isfinite(stiffness))) return;
+    nodes_ = A.body.block_rows();
+    stiffness_ = std::isfinite(stiffness) ? stiffness : 1.0;
+    const std::string name = measured_choice(nodes_, stiffness_, spec_.linear_rtol);
+    constexpr std::array kNames{"cholmod", "pcg-single", "pcg-two-level"};
+    for (std::size_t k = 0; k < kNames.size(); ++k) {
+      if (name != kNames[k]) continue;
+      if (!made_[k]) made_[k] = make_linear_solver(name, spec_);
+      active_ = made_[k].get();
+    }
+    PALPATE_CHECK(active_, "auto_table.inc names {}", name);
+  }
+
+  IntegratorSpec spec_;
+  std::array<std::unique_ptr<dynamics::LinearSolver>, 3> made_;
+  dynamics::LinearSolver* active_ = nullptr;
+  std::uint64_t values_version_ = 0;
+  int nodes_ = -1;
+  double stiffness_ = 1.0;
+  mutable dynamics::SolverCounters sum_;
+};
+
+}  // namespace
+
+std::unique_ptr<dynamics::LinearSolver> make_auto(const IntegratorSpec& spec) {
+  check_linear_rtol("auto", spec);
+  return std::make_unique<AutoSolver>(spec);
+}
+
+}  // namespace palpate::integrate

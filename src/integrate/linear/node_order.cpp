@@ -1,0 +1,75 @@
+#include "integrate/linear/node_order.h"
+
+#include <algorithm>
+
+namespace palpate::integrate {
+namespace {
+
+class Bisection {
+ public:
+  Bisection(const dynamics::BlockSparse& A, NodeOrder& order) : A_(A), order_(order), part_(order.node.size(), 0) {}
+
+  /// Cuts nodes [first, last) of the order into `clusters` and appends their starts.
+  void cut(int first, int last, int clusters) {
+    if (clusters == 1) {
+      order_.start.push_back(last);
+      return;
+    }
+    breadth_first(first, last, order_.node[static_cast<std::size_t>(first)]);
+    breadth_first(first, last, order_.node[static_cast<std::size_t>(last) - 1]);  // the last reached lies at an end
+    const int left = clusters / 2, middle = first + static_cast<int>(static_cast<long>(last - first) * left / clusters);
+    ++parts_;
+    for (int k = first; k < middle; ++k) part_[node(k)] = parts_;
+    ++parts_;
+    for (int k = middle; k < last; ++k) part_[node(k)] = parts_;
+    cut(first, middle, left);
+    cut(middle, last, clusters - left);
+  }
+
+ private:
+  std::size_t node(int k) const { return static_cast<std::size_t>(order_.node[static_cast<std::size_t>(k)]); }
+
+  /// Puts [first, last) in the order in which a search from `root` inside this part reaches them; what hangs apart follows from its own first node.
+  void breadth_first(int first, int last, int root) {
+    queue_.assign(1, root);
+    const int part = part_[static_cast<std::size_t>(root)], seen = -1 - part;
+    part_[static_cast<std::size_t>(root)] = seen;
+    int next = first;
+    for (std::size_t head = 0;; ++head) {
+      if (head == queue_.size()) {
+        while (next < last && part_[node(next)] == seen) ++next;
+        if (next == last) break;
+        queue_.push_back(order_.node[static_cast<std::size_t>(next)]);
+        part_[static_cast<std::size_t>(queue_.back())] = seen;
+      }
+      const auto i = static_cast<std::size_t>(queue_[head]);
+      for (int s = A_.row_start()[i]; s < A_.row_start()[i + 1]; ++s) {
+        const int j = A_.columns()[static_cast<std::size_t>(s)];
+        if (part_[static_cast<std::size_t>(j)] != part) continue;
+        part_[static_cast<std::size_t>(j)] = seen;
+        queue_.push_back(j);
+      }
+    }
+    for (const int i : queue_) part_[static_cast<std::size_t>(i)] = part;
+    std::copy(queue_.begin(), queue_.end(), order_.node.begin() + first);
+  }
+
+  const dynamics::BlockSparse& A_;
+  NodeOrder& order_;
+  std::vector<int> part_, queue_;
+  int parts_ = 0;
+};
+
+}  // namespace
+
+NodeOrder cluster_nodes(const dynamics::BlockSparse& A, int clusters) {
+  const int n = A.block_rows();
+  NodeOrder order;
+  order.node.resize(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) order.node[static_cast<std::size_t>(i)] = i;
+  order.start.push_back(0);
+  if (n > 0) Bisection(A, order).cut(0, n, std::clamp(clusters, 1, n));
+  return order;
+}
+
+}  // namespace palpate::integrate

@@ -1,0 +1,390 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "integrate/linear/auto_choice.h"
+#include "integrate/linear/energy_bound.h"
+#include "integrate/linear/node_kernels.h"
+#include "integrate/linear/node_order.h"
+#include "palpate/core/team.h"
+#include "palpate/dynamics/system.h"
+#include "palpate/fem/attachments.h"
+#include "palpate/fem/soft_body.h"
+#include "palpate/integrate/integrators.h"
+#include "palpate/mesh/generators.h"
+
+namespace palpate {
+namespace {
+
+using namespace dynamics;
+
+/// Step matrices M + h^2 K of a beam, held at one end, bent by angles that large rotation needs.
+struct BentBeam {
+  State state;
+  System system;
+  VecX rest, masses;
+  explicit BentBeam(int cells_along, double youngs_modulus) {
+    const TetMesh mesh = mesh::box(Vec3(1.0, 0.25, 0.25), {cells_along, cells_along / 4, cells_along / 4});
+    const auto n = static_cast<int>(mesh.nodes.cols());
+    rest = mesh.nodes.reshaped();
+    const int id = state.insert(BlockSpec{.name = "beam", .q_size = 3 * n, .u_size = 3 * n}, rest, VecX::Zero(3 * n));
+    const fem::Material material{.youngs_modulus = youngs_modulus, .poissons_ratio = 0.4, .density = 1000.0};
+    system.add(std::static_pointer_cast<ForceTerm>(
+        std::make_shared<fem::SoftBody>("beam", mesh, material, fem::SoftBodyOptions{.tangent = fem::Tangent::kWarped}, id)));
+    masses = fem::lumped_masses(mesh, material.density);
+    system.add(fem::make_gravity(masses, Vec3(0, 0, -9.81), id));
+    system.add(fem::make_lumped_mass(mesh, material.density, id));
+    const std::vector<int> held = fem::dofs_of_nodes(fem::nodes_in_box(mesh.nodes, Vec3(-0.5 - 1e-9, -1, -1), Vec3(-0.5 + 1e-9, 1, 1)), 0, "xyz");
+    VecX x0(static_cast<Eigen::Index>(held.size()));
+    for (std::size_t i = 0; i < held.size(); ++i) x0[static_cast<Eigen::Index>(i)] = rest[held[i]];
+    system.add(fem::make_fixed(held, x0));
+    system.prepare(state.view());
+  }
+  /// Bends the middle line to a circle whose angle at the end is `angle`, writes the step matrix there, and a right-hand side: weight and a wave.
+  void at(double angle, double h, BorderedMatrix& A, VecX& b) {
+    VecX q = rest;
+    for (Eigen::Index i = 0; i < q.size(); i += 3) {
+      const double s = rest[i] + 0.5, z = rest[i + 2], turn = angle * s, radius = angle != 0.0 ? 1.0 / angle : 0.0;
+      if (angle == 0.0) continue;
+      q[i] = (radius + z) * std::sin(turn) - 0.5;
+      q[i + 2] = (radius + z) * std::cos(turn) - radius;
+    }
+    state.q() = q;
+    system.step_matrix(state.view(), 1.0, h, h * h, A);
+    system.force(state.view(), b);
+    for (Eigen::Index i = 0; i < b.size(); ++i) b[i] = h * b[i] + masses[i / 3] * std::sin(7.0 * rest[i - i % 3] + angle);
+    system.reduce(state.view(), b);
+  }
+};
+
+double energy_norm(const BorderedMatrix& A, const VecX& x) {
+  VecX Ax;
+  A.multiply(x, Ax);
+  return std::sqrt(x.dot(Ax));
+}
+
+class NodeSolvers : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Registry, NodeSolvers, testing::Values("pcg-single", "pcg-two-level"), [](const auto& p) {
+  std::string name = p.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+// What linear_rtol says: the error of the solution in the energy norm, against a direct solve, over a motion, with what the last steps left to start from.
+TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSays) {
+  int checked = 0;
+  for (const double E : {1e5, 1e6})
+    for (const double h : {1e-3, 1e-2})
+      for (const double rtol : {1e-3, 1e-6, 1e-9}) {
+        BentBeam beam(16, E);
+        const auto solver = integrate::make_linear_solver(GetParam(), {.step_s = h, .linear_rtol = rtol});
+        const auto direct = integrate::make_linear_solver("cholmod");
+        BorderedMatrix A;
+        VecX b, x, exact;
+        for (int k = 0; k < 8; ++k) {
+          beam.at(0.2 * k, h, A, b);
+          ASSERT_EQ(direct->factor(A), SolveStatus::kOk);
+          ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
+          ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
+          ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+          EXPECT_LE(energy_norm(A, x - exact), rtol * energy_norm(A, exact)) << "E " << E << ", h " << h << ", rtol " << rtol << ", step " << k;
+          ++checked;
+        }
+        EXPECT_EQ(solver->counters().symbolic, 1);
+      }
+  EXPECT_EQ(checked, 96);
+}
+
+TEST_P(NodeSolvers, ThreadsDoNotChangeABit) {
+  std::vector<VecX> answers;
+  for (const int threads : {1, 2, 3}) {
+    BentBeam beam(16, 1e5);
+    const auto solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-6, .threads = threads});
+    BorderedMatrix A;
+    VecX b, x, all(0);
+    for (int k = 0; k < 4; ++k) {
+      beam.at(0.3 * k, 1e-2, A, b);
+      ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
+      ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+      all.conservativeResize(all.size() + x.size());
+      all.tail(x.size()) = x;
+    }
+    answers.push_back(all);
+  }
+  EXPECT_EQ(answers[0], answers[1]);
+  EXPECT_EQ(answers[0], answers[2]);
+}
+
+// The same matrix again is solved by what is remembered; a second right-hand side of one factor starts from products with that factor's matrix.
+TEST_P(NodeSolvers, StartFromTheLastSolutions) {
+  BentBeam beam(16, 1e5);
+  const auto solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});
+  BorderedMatrix A;
+  VecX b, c, x, exact;
+  beam.at(0.5, 1e-2, A, b);
+  ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
+  ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+  const long cold = solver->counters().iterations;
+  EXPECT_GT(cold, 5);
+  ASSERT_EQ(solver->solve(VecX(-3.0 * b), x), SolveStatus::kOk);
+  EXPECT_LE(solver->counters().iterations - cold, cold / 4);
+  c = VecX::LinSpaced(b.size(), -1.0, 2.0);
+  ASSERT_EQ(solver->solve(c, x), SolveStatus::kOk);
+  const auto direct = integrate::make_linear_solver("cholmod");
+  ASSERT_EQ(direct->factor(A), SolveStatus::kOk);
+  ASSERT_EQ(direct->solve(c, exact), SolveStatus::kOk);
+  EXPECT_LE(energy_norm(A, x - exact), 1e-4 * energy_norm(A, exact));
+  ASSERT_EQ(solver->solve(VecX(VecX::Zero(b.size())), x), SolveStatus::kOk);
+  EXPECT_EQ(x, VecX(VecX::Zero(b.size())));
+}
+
+// Units: the same problem in other units of force is solved to the same bits but for a power of two, far outside of what single precision can hold.
+TEST_P(NodeSolvers, TakeAnyUnits) {
+  BentBeam beam(8, 1e5);
+  BorderedMatrix A;
+  VecX b, x, scaled;
+  beam.at(0.5, 1e-2, A, b);
+  const auto solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-6});
+  ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
+  ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+  for (const double unit : {std::ldexp(1.0, 200), std::ldexp(1.0, -200)}) {
+    BorderedMatrix B = A;
+    for (double& value : B.body.values()) value *= unit;
+    B.touch();
+    const auto other = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-6});
+    ASSERT_EQ(other->factor(B), SolveStatus::kOk);
+    ASSERT_EQ(other->solve(b, scaled), SolveStatus::kOk);
+    EXPECT_EQ(VecX(unit * scaled), x);
+  }
+}
+
+TEST_P(NodeSolvers, FindNegativeCurvatureWhileTheySolve) {
+  PatternBuilder pattern(50);
+  for (int i = 0; i + 1 < 50; ++i) pattern.add_pair(i, i + 1);
+  BorderedMatrix A;
+  A.body = pattern.build();
+  for (int i = 0; i < 50; ++i) A.body.add(A.body.slot(i, i), (i == 0 || i == 49 ? 0.99 : 1.99) * Mat3::Identity());
+  for (int i = 0; i + 1 < 50; ++i) {
+    A.body.add(A.body.slot(i, i + 1), -Mat3::Identity());
+    A.body.add(A.body.slot(i + 1, i), -Mat3::Identity());
+  }
+  A.touch();
+  const auto solver = integrate::make_linear_solver(GetParam());
+  const SolveStatus factored = solver->factor(A);
+  VecX x = VecX::Ones(150);
+  if (factored == SolveStatus::kOk) {
+    EXPECT_EQ(solver->solve(VecX(x), x), SolveStatus::kIndefinite);
+  }
+  const auto robust = integrate::make_robust_linear_solver(GetParam());
+  ASSERT_EQ(robust->factor(A), SolveStatus::kOk);
+  const VecX b = VecX::Ones(150);
+  ASSERT_EQ(robust->solve(b, x), SolveStatus::kOk);
+  VecX Ax;
+  A.multiply(x, Ax);
+  EXPECT_LT((Ax - b).norm(), 1e-9 * b.norm());
+}
+
+TEST_P(NodeSolvers, RefuseSettingsOutOfRange) {
+  for (const double bad : {0.0, -1e-8, 0.5, std::nan("")}) EXPECT_THROW(integrate::make_linear_solver(GetParam(), {.linear_rtol = bad}), Error) << bad;
+  for (const int bad : {0, -1, 65}) EXPECT_THROW(integrate::make_linear_solver(GetParam(), {.threads = bad}), Error) << bad;
+}
+
+// Twice the stiffness number is 1.4 times the iterations of block Jacobi; rigid clusters take the long waves, so that the count hardly grows.
+TEST(TwoLevel, StiffnessHardlyShowsInTheCount) {
+  std::vector<long> two_level, single;
+  for (const double E : {1e5, 1e7}) {
+    BentBeam beam(24, E);
+    BorderedMatrix A;
+    VecX b, x;
+    beam.at(0.7, 1e-2, A, b);
+    for (const char* name : {"pcg-single", "pcg-two-level"}) {
+      const auto solver = integrate::make_linear_solver(name, {.linear_rtol = 1e-6});
+      ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
+      ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+      (std::string(name) == "pcg-single" ? single : two_level).push_back(solver->counters().iterations);
+    }
+  }
+  EXPECT_GT(single[1], 3 * single[0]) << "a hundred times the stiffness";
+  EXPECT_LT(two_level[1], 2 * two_level[0]);
+}
+
+TEST(TwoLevel, KeepsItsClustersWhileTheyServe) {
+  BentBeam beam(16, 1e6);
+  const auto solver = integrate::make_linear_solver("pcg-two-level", {.linear_rtol = 1e-3});
+  BorderedMatrix A;
+  VecX b, x;
+  for (int k = 0; k < 20; ++k) {
+    beam.at(0.001 * k, 1e-2, A, b);
+    ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
+    ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+  }
+  EXPECT_EQ(solver->counters().refreshes, 1);
+}
+
+// Rows of M + h^2 K sum to those of M: the number is what the definition says, from masses and diagonal.
+TEST(Auto, ReadsTheStiffnessNumberFromTheMatrix) {
+  for (const double h : {1e-4, 1e-2}) {
+    BentBeam beam(16, 1e5);
+    BorderedMatrix A;
+    VecX b;
+    beam.at(0.6, h, A, b);
+    double own = 0.0, mass = 0.0;
+    for (int i = 0; i < A.body.block_rows(); ++i) {
+      if (beam.rest[3 * i] < -0.5 + 0.1) continue;  // held, or beside what is held
+      const double* block = A.body.block(A.body.slot(i, i));
+      own += block[0] + block[4] + block[8];
+      mass += 3.0 * beam.masses[i];
+    }
+    EXPECT_NEAR(integrate::stiffness_number(A.body), own / mass, 0.1 * own / mass);
+  }
+}
+
+TEST(Auto, AnswersWhateverTheTableChooses) {
+  int checked = 0;
+  for (const auto& [cells, E] : {std::pair{8, 1e5}, {8, 1e9}, {24, 1e5}, {24, 1e8}}) {
+    BentBeam beam(cells, E);
+    const auto solver = integrate::make_linear_solver("auto", {.linear_rtol = 1e-6}), direct = integrate::make_linear_solver("cholmod");
+    BorderedMatrix A;
+    VecX b, x, exact;
+    beam.at(0.4, 1e-2, A, b);
+    ASSERT_EQ(direct->factor(A), SolveStatus::kOk);
+    ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
+    ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
+    ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+    EXPECT_LE(energy_norm(A, x - exact), 1e-6 * energy_norm(A, exact)) << cells << " cells, E " << E;
+    ++checked;
+  }
+  EXPECT_EQ(checked, 4);
+}
+
+// --- parts -----------------------------------------------------------------------------------------------------------
+
+TEST(NodeOrder, CutsAGraphIntoEqualPartsThatHangTogether) {
+  BentBeam beam(16, 1e5);
+  BorderedMatrix A;
+  VecX b;
+  beam.at(0.0, 1e-2, A, b);
+  const int n = A.body.block_rows();
+  for (const int clusters : {1, 2, 7, 20}) {
+    const integrate::NodeOrder order = integrate::cluster_nodes(A.body, clusters);
+    ASSERT_EQ(order.clusters(), clusters);
+    std::vector<int> seen(static_cast<std::size_t>(n), 0);
+    for (const int i : order.node) ++seen[static_cast<std::size_t>(i)];
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), n);
+    for (int c = 0; c < clusters; ++c) EXPECT_NEAR(order.start[static_cast<std::size_t>(c) + 1] - order.start[static_cast<std::size_t>(c)], n / clusters, 5);
+  }
+  EXPECT_EQ(integrate::cluster_nodes(A.body, 10 * n).clusters(), n) << "no more clusters than nodes";
+}
+
+// The Gauss-Radau bound against the error itself, along the iteration, for a spectrum given.
+TEST(EnergyBound, LiesAboveTheErrorAndCloseToIt) {
+  const int n = 60;
+  VecX lambda(n);
+  for (int i = 0; i < n; ++i) lambda[i] = std::pow(10.0, -2.0 + 2.0 * i / (n - 1));  // 0.01 to 1
+  const VecX exact = VecX::LinSpaced(n, 1.0, 2.0), b = lambda.cwiseProduct(exact);
+  integrate::EnergyBound bound;
+  int above = 0, checked = 0;
+  double worst = 0.0;
+  for (int solve = 0; solve < 3; ++solve) {  // the first teaches it the spectrum
+    bound.begin(0.0);
+    VecX x = VecX::Zero(n), r = b, p = r;
+    double rho = r.squaredNorm();
+    for (int k = 0; k < 40; ++k) {
+      const VecX Ap = lambda.cwiseProduct(p);
+      const double alpha = rho / p.dot(Ap);
+      x += alpha * p;
+      r -= alpha * Ap;
+      const double next = r.squaredNorm();
+      bound.step(alpha, rho, next);
+      p = r + (next / rho) * p;
+      rho = next;
+      const double error = (exact - x).dot(lambda.cwiseProduct(exact - x));
+      if (solve == 0 || error < 1e-20) continue;
+      ++checked;
+      above += bound.error(rho) >= error * (1.0 - 1e-6);
+      worst = std::max(worst, bound.error(rho) / error);
+    }
+    bound.end();
+  }
+  EXPECT_GT(checked, 40);
+  EXPECT_EQ(above, checked);
+  EXPECT_LT(worst, 100.0) << "of the squares: a factor of ten";
+}
+
+TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
+  BentBeam beam(8, 1e5);
+  BorderedMatrix A;
+  VecX b;
+  beam.at(0.9, 1e-2, A, b);
+  const auto n = static_cast<std::size_t>(A.body.block_rows());
+  std::vector<int> source(static_cast<std::size_t>(A.body.slot_count())), diagonal(n);
+  for (std::size_t s = 0; s < source.size(); ++s) source[s] = static_cast<int>(s);
+  for (std::size_t i = 0; i < n; ++i) diagonal[i] = A.body.slot(static_cast<int>(i), static_cast<int>(i));
+  std::vector<double> v(4 * n + integrate::kVectorTail), Av(v);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t a = 0; a < 3; ++a) v[4 * i + a] = b[static_cast<Eigen::Index>(3 * i + a)];
+  VecX exact;
+  A.multiply(b, exact);
+  for (int limit = 0; limit <= 2; ++limit) {
+    const integrate::NodeKernels& k = integrate::node_kernels(limit);
+    std::vector<float> values(9 * source.size() + integrate::kBlockTail), p(4 * n + integrate::kVectorTail), q(p), inverse(12 * n + integrate::kVectorTail);
+    const double* V[3] = {v.data(), nullptr, nullptr};
+    double* AV[3] = {Av.data(), nullptr, nullptr};
+    const integrate::DoubleBlocks D{A.body.row_start().data(), A.body.columns().data(), source.data(), A.body.values().data(), A.body.slot_count() - 1};
+    ASSERT_TRUE(k.convert(D, 1.0, values.data(), 1, V, AV, 0, static_cast<int>(n)));
+    for (std::size_t i = 0; i < v.size(); ++i) p[i] = static_cast<float>(v[i]);
+    const double pq = k.product({A.body.row_start().data(), A.body.columns().data(), values.data()}, p.data(), q.data(), 0, static_cast<int>(n));
+    ASSERT_TRUE(k.invert_diagonal(A.body.values().data(), diagonal.data(), 1.0, inverse.data(), 0, static_cast<int>(n)));
+    double in_double = 0.0, in_single = 0.0, identity = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double want = exact[static_cast<Eigen::Index>(3 * i + a)];
+        in_double = std::max(in_double, std::abs(Av[4 * i + a] - want));
+        in_single = std::max(in_single, std::abs(q[4 * i + a] - want));
+      }
+      const Mat3 own = Eigen::Map<const Mat3>(A.body.block(diagonal[i]));
+      Mat3 J;
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) J(r, c) = inverse[12 * i + static_cast<std::size_t>(4 * c + r)];
+      identity = std::max(identity, (own * J - Mat3::Identity()).norm());
+    }
+    EXPECT_LT(in_double, 1e-13 * exact.cwiseAbs().maxCoeff()) << k.name;
+    EXPECT_LT(in_single, 1e-5 * exact.cwiseAbs().maxCoeff()) << k.name;
+    EXPECT_NEAR(pq, b.dot(exact), 1e-5 * std::abs(b.dot(exact))) << k.name;
+    EXPECT_LT(identity, 1e-5) << k.name;
+
+    const int size = 21, stride = 32;
+    MatX S = MatX::Random(size, size);
+    S = S * S.transpose() + MatX::Identity(size, size);
+    std::vector<float> E(size * stride, 0.0f), w(stride, 0.0f), y(stride, 0.0f);
+    for (int i = 0; i < size; ++i) {
+      y[static_cast<std::size_t>(i)] = static_cast<float>(S.row(i).sum());
+      for (int j = 0; j < size; ++j) E[static_cast<std::size_t>(i * stride + j)] = static_cast<float>(S(i, j));
+    }
+    ASSERT_TRUE(k.invert(E.data(), size, stride));
+    k.dense(E.data(), stride, y.data(), w.data(), 0, size);
+    for (int i = 0; i < size; ++i) EXPECT_NEAR(w[static_cast<std::size_t>(i)], 1.0, 1e-3) << k.name;
+  }
+}
+
+TEST(Team, WorksTogetherAgainAndAgain) {
+  for (const int size : {1, 2, 4}) {
+    Team team(size);
+    std::vector<long> slots(static_cast<std::size_t>(size), 0), sums(static_cast<std::size_t>(size), 0);
+    for (long round = 1; round <= 200; ++round)
+      team.run([&](int k) {
+        slots[static_cast<std::size_t>(k)] = round * (k + 1);
+        team.barrier();
+        for (const long slot : slots) sums[static_cast<std::size_t>(k)] += slot;  // sees what all wrote
+        team.barrier();
+      });
+    for (const long sum : sums) EXPECT_EQ(sum, 200 * 201 / 2 * size * (size + 1) / 2);
+  }
+  EXPECT_THROW(Team(0), InternalError);
+}
+
+}  // namespace
+}  // namespace palpate
