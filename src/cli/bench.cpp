@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "bench_fem.h"
 #include "commands.h"
 #include "palpate/core/error.h"
 #include "palpate/report/table.h"
@@ -14,9 +15,9 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 void bench_fem(const BenchArguments& arguments) {
-  const study::FemBench b = study::bench_fem(arguments.cells, arguments.step_s, arguments.steps, arguments.linear_solver);
+  const study::FemBench b = study::bench_fem(arguments.cells, arguments.step_s, arguments.steps, arguments.linear_solvers.front());
   fmt::print("one step of {} of {:g} ms: {} nodes, {} tetrahedra, {}; median of {} steps\n\n", b.integrator, 1e3 * b.step_s,
-             b.nodes, b.tetrahedra, arguments.linear_solver, b.steps);
+             b.nodes, b.tetrahedra, arguments.linear_solvers.front(), b.steps);
   Rows rows;
   const auto add = [&](const std::string& stage, double ms) {
     rows.push_back({stage, fmt::format("{:.2f}", ms), fmt::format("{:.0f}", 100.0 * ms / b.step_ms)});
@@ -45,8 +46,8 @@ void bench_leave_out(const std::string& scene, int repeats) {
 
 int bench(const BenchArguments& arguments) {
   if (arguments.what == "fem") {
-    bench_fem(arguments);
-    return 0;
+    arguments.cells > 0 ? bench_fem(arguments) : bench_fem_sizes(arguments);
+    return stop_flag() ? kExitStopped : 0;
   }
   if (arguments.what != "leave-out")
     fail("there is no benchmark \"{}\"{}", arguments.what, suggestion(arguments.what, {"fem", "leave-out"}));

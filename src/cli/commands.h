@@ -75,9 +75,15 @@ struct BenchArguments {
   std::string what;                 ///< "fem" or "leave-out"
   std::vector<std::string> scenes;  ///< of leave-out; empty: falling-ball and cantilever
   int steps = 20;                   ///< of fem
-  int cells = 36;                   ///< of fem, along the beam
-  double step_s = 0.01;             ///< of fem
-  std::string linear_solver = "cholmod";
+  int cells = 0;                    ///< of fem, along one beam by way of a scene; 0: the sizes below
+  double step_s = 0.01;             ///< of fem with cells
+  std::vector<std::string> linear_solvers = {"auto"};
+  std::vector<std::string> sizes;           ///< of fem; empty: S and M
+  std::vector<int> threads;                 ///< of fem; empty: 1 and 2
+  std::vector<double> linear_rtols;         ///< of fem; empty: 1e-6 and 1e-3
+  std::vector<double> youngs_moduli_pa;     ///< of fem; empty: 1e5 and 1e6
+  std::string folder;                       ///< of fem: where JSON and plot go; empty: nowhere
+  std::string calibrate;                    ///< of fem: file for the measured table of linear_solver = "auto"
   int repeats = 5;  ///< of leave-out
 };
 int bench(const BenchArguments& arguments);

@@ -209,24 +209,30 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   auto arguments = std::make_shared<BenchArguments>();
   command
       ->add_option("WHAT", arguments->what,
-                   "fem: one implicit step of a soft beam, split into its stages; leave-out: what absent and present parts cost")
+                   "fem: one implicit step of a soft beam at several sizes, split into its stages; leave-out: what absent and present parts cost")
       ->required();
   command->add_option("SCENE", arguments->scenes, "of leave-out; default falling-ball and cantilever");
-  command->add_option("--cells", arguments->cells, "fem: cells along the beam")
-      ->check(CLI::Range(4, 1000))
-      ->capture_default_str();
-  command->add_option("--step-s", arguments->step_s, "fem: the step [s]")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--size", arguments->sizes, "fem: XS, S, M, L, XL (1,425 to 100,000 nodes); default S and M")->delimiter(',');
+  command->add_option("--threads", arguments->threads, "fem: numbers of threads; default 1,2")->delimiter(',')->check(CLI::Range(1, 64));
+  command->add_option("--linear-rtol", arguments->linear_rtols, "fem: tolerances; default 1e-6,1e-3")->delimiter(',')->check(CLI::PositiveNumber);
+  command->add_option("--youngs-modulus-pa", arguments->youngs_moduli_pa, "fem: default 1e5,1e6")->delimiter(',')->check(CLI::PositiveNumber);
   command->add_option("--steps", arguments->steps, "fem: steps that are timed")
       ->check(CLI::Range(3, 1000000))
       ->capture_default_str();
-  command->add_option("--linear-solver", arguments->linear_solver, "fem: see `palpate list linear-solvers`")
+  command->add_option("--linear-solver", arguments->linear_solvers, "fem: see `palpate list linear-solvers`")
       ->type_name("NAME")
+      ->delimiter(',')
       ->capture_default_str();
+  command->add_option("-o,--output", arguments->folder, "fem: folder for bench-fem.json and bench-fem.svg")->type_name("DIR");
+  command->add_option("--calibrate", arguments->calibrate, "fem: measure which solver is the fastest where, and write the table of \"auto\"")->type_name("FILE");
+  command->add_option("--cells", arguments->cells, "fem: one beam of so many cells along, by way of a scene")->check(CLI::Range(4, 1000));
+  command->add_option("--step-s", arguments->step_s, "fem with --cells: the step [s]")->check(CLI::PositiveNumber)->capture_default_str();
   command->add_option("--repeats", arguments->repeats, "leave-out: runs of each variant")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->footer(R"(Examples:
-  palpate bench fem                              3,700 nodes, 14,580 tetrahedra, steps of 10 ms
+  palpate bench fem                              3,700 and 11,172 nodes, steps of 10 and 1 ms
+  palpate bench fem --size S,M,L --threads 1 -o out/bench
   palpate bench fem --cells 16 --step-s 0.001
   palpate bench leave-out falling-ball --repeats 9)");
   command->callback([arguments, &invocation] {

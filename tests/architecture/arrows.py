@@ -28,9 +28,10 @@ ALLOWED = {
     "scene": ["core"],  # and the spec.h of every part: see is_allowed
     "loop": BELOW_LOOP,
     "study": ["core", "scene", "loop", "store"],  # core and scene: what loop's own headers speak in
+    "fem_bench": ["core", "mesh", "dynamics", "fem", "integrate"],  # src/study/fem_bench: a beam made of the parts themselves, without a scene
     "stability": BELOW_LOOP + ["loop", "study"],  # src/study/stability: builds its cases from the parts themselves, as validation does
     "report": ["core", "store"],
-    "cli": ["core", "scene", "store", "render", "loop", "study", "report", "stability", "validation"],
+    "cli": ["core", "scene", "store", "render", "loop", "study", "report", "stability", "fem_bench", "validation"],
     "validation": BELOW_LOOP + ["loop", "study", "report"],  # the cases in validation/, and study/validation*
 }
 
@@ -68,6 +69,8 @@ def part_of(path):
         return "validation"
     if part == "study" and "stability" in (pieces[-2], pieces[-1].split(".")[0]):
         return "stability"
+    if part == "study" and "fem_bench" in (pieces[-2], pieces[-1].split(".")[0]):
+        return "fem_bench"
     return part
 
 

@@ -1,0 +1,84 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace palpate::study {
+
+/// The beam of the soft-body benchmarks: 1.0 x 0.25 x 0.25 m, five tetrahedra a cell, one end held, nu = 0.4, density 1000 kg/m^3, lumped mass, warped tangent.
+struct BeamSize {
+  std::string name;
+  int along, across;  ///< cells
+};
+/// S 3,700 nodes, 14,580 tetrahedra; M 11,172, 47,320; L 32,400, 144,400; XL 98,304, 450,241 or so.
+const std::vector<BeamSize>& beam_sizes();
+
+struct FemBenchOptions {
+  std::vector<std::string> sizes = {"S", "M"};
+  std::vector<double> youngs_moduli_pa = {1e5, 1e6};
+  std::vector<double> steps_s = {1e-2, 1e-3};
+  std::vector<double> linear_rtols = {1e-6, 1e-3};
+  std::vector<int> threads = {1, 2};
+  std::vector<std::string> linear_solvers = {"auto"};
+  int steps = 20;          ///< timed, of each kind
+  int checks = 3;          ///< of them, whose solution is compared with a direct one (or, above 12,000 nodes, with one of linear_rtol 1e-10)
+};
+
+/// What this machine can do, measured in the same run, for one number of threads.
+struct MachineLimits {
+  int threads = 1;
+  double small_copy_gb_s = 0.0, large_copy_gb_s = 0.0;  ///< of arrays of 8 MB and of 67 MB, read and write counted [GB/s]
+  double gflop_s = 0.0;                                 ///< multiply-adds in registers, single precision, two operations each
+};
+
+/// One kind of step: medians over a motion with large rotation [ms].
+struct FemBenchRow {
+  std::string size, linear_solver;
+  int nodes = 0, tetrahedra = 0, blocks = 0, threads = 1, steps = 0;
+  double youngs_modulus_pa = 0.0, step_s = 0.0, linear_rtol = 0.0;
+  double force_ms = 0.0;    ///< forces and the product K u
+  double matrix_ms = 0.0;   ///< tangent, mass and held directions
+  double factor_ms = 0.0;   ///< factor or preconditioner, and the copy of the matrix
+  double solve_ms = 0.0;
+  double step_ms = 0.0;     ///< the whole step
+  double step_least_ms = 0.0, solve_least_ms = 0.0;  ///< of the timed steps, the shortest: what a machine that others use too would take alone
+  double step_cpu_ms = 0.0;  ///< median CPU time of the stepping thread; with several threads it holds what that thread spun while it waited
+  double solver_cpu_ms = 0.0;  ///< of that, factor and solve
+  double iterations = 0.0;  ///< a step, mean
+  double stiffness = 0.0;   ///< 1 + h^2 tr K / tr M
+  double error = 0.0;       ///< largest of the checks: |du - du_direct| / |du_direct| in the energy norm
+  double mass_error = 0.0;  ///< the same in the norm of mass
+  double rotation_rad = 0.0;    ///< of the beam's end at the last step
+  double solve_limit_ms = 0.0;  ///< the solve's necessary reading of the matrix at this machine's copy bandwidth
+  double scaled_ms = 0.0;       ///< step_ms x this machine's bandwidth / that of the machine that the figures of peers are from
+  double peak_mib = 0.0;        ///< of the process so far
+};
+
+struct FemBenchReport {
+  std::vector<MachineLimits> limits;
+  std::vector<FemBenchRow> rows;
+};
+
+FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)() = nullptr);
+MachineLimits measure_limits(int threads);
+
+/// ln(step) over ln(nodes), by least squares, of rows that differ in size alone; NaN for fewer than two.
+double scaling_exponent(const std::vector<const FemBenchRow*>& rows, double FemBenchRow::*stage);
+
+/// What others took on the same beam (median ms of a step of 10 ms and of 1 ms; E = 1e5; quoted, of the machine below).
+struct PeerFigure {
+  std::string program, size;
+  double ten_ms, one_ms;  ///< NaN: not measured
+  std::string tolerance;
+};
+const std::vector<PeerFigure>& peer_figures();
+/// Copy bandwidth of the machine that the peers were measured on, 67 MB arrays [GB/s].
+double reference_bandwidth_gb_s(int threads);
+
+std::string to_json(const FemBenchReport& report);
+
+/// Rows of src/integrate/linear/auto_table.inc: for sizes, stiffnesses and tolerances the solver that took the least CPU time for
+/// factor and solve of a step, one thread, here and now; each row is handed over as soon as it is measured.
+void calibrate_auto(const std::function<void(const std::string&)>& row_measured, bool (*stop)() = nullptr);
+
+}  // namespace palpate::study

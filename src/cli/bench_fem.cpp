@@ -1,0 +1,132 @@
+#include "bench_fem.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "palpate/core/error.h"
+#include "palpate/report/plot.h"
+#include "palpate/report/table.h"
+#include "palpate/store/atomic_file.h"
+#include "palpate/study/fem_bench.h"
+#include "stop.h"
+
+namespace palpate::cli {
+namespace {
+
+using study::FemBenchReport;
+using study::FemBenchRow;
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string ms(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-"; }
+
+void print_limits(const FemBenchReport& report) {
+  Rows rows;
+  for (const study::MachineLimits& l : report.limits)
+    rows.push_back({fmt::format("{}", l.threads), fmt::format("{:.1f}", l.small_copy_gb_s), fmt::format("{:.1f}", l.large_copy_gb_s),
+                    fmt::format("{:.1f}", study::reference_bandwidth_gb_s(l.threads)), fmt::format("{:.0f}", l.gflop_s)});
+  fmt::print("what this machine can do, measured now\n{}\n",
+             report::format_table({"threads", "copy 8 MB [GB/s]", "copy 67 MB [GB/s]", "the reference machine's [GB/s]", "float multiply-adds [GFLOP/s]"}, rows));
+}
+
+void print_steps(const FemBenchReport& report) {
+  Rows rows;
+  for (const FemBenchRow& r : report.rows)
+    rows.push_back({r.size, fmt::format("{}", r.nodes), fmt::format("{:g}", r.youngs_modulus_pa), fmt::format("{:g}", 1e3 * r.step_s), fmt::format("{:g}", r.linear_rtol),
+                    r.linear_solver, fmt::format("{}", r.threads), ms(r.force_ms), ms(r.matrix_ms), ms(r.factor_ms), ms(r.solve_ms), ms(r.step_ms), ms(r.step_least_ms), ms(r.step_cpu_ms), ms(r.solver_cpu_ms), ms(r.scaled_ms),
+                    fmt::format("{:.1f}", r.iterations), r.solve_ms > 0.0 ? fmt::format("{:.0f}", 100.0 * r.solve_limit_ms / r.solve_ms) : "-",
+                    r.error > 0.0 ? fmt::format("{:.1e}", r.error) : "-", r.mass_error > 0.0 ? fmt::format("{:.1e}", r.mass_error) : "-", fmt::format("{:.1f}", r.rotation_rad),
+                    fmt::format("{:.0f}", r.peak_mib)});
+  fmt::print("one linearly implicit step, median over a motion with large rotation\n"
+             "  scaled: step x measured copy bandwidth / that of the reference machine; of limit: the matrix's bytes x iterations at copy bandwidth, over the solve;\n"
+             "  error: of the velocity change against a direct solution, largest of the checks, in the norms of energy and of mass\n\n{}\n",
+             report::format_table({"size", "nodes", "E [Pa]", "h [ms]", "rtol", "solver", "thr", "force", "matrix", "factor", "solve", "step [ms]", "least", "CPU", "its solver", "scaled", "iter", "% of limit",
+                                   "error", "mass", "turn [rad]", "MiB"}, rows));
+}
+
+/// Rows that differ in size alone, together.
+std::map<std::string, std::vector<const FemBenchRow*>> by_kind(const FemBenchReport& report) {
+  std::map<std::string, std::vector<const FemBenchRow*>> kinds;
+  for (const FemBenchRow& r : report.rows)
+    kinds[fmt::format("E {:g} Pa, {:g} ms, {:g}, {}, {} thread{}", r.youngs_modulus_pa, 1e3 * r.step_s, r.linear_rtol, r.linear_solver, r.threads, r.threads > 1 ? "s" : "")].push_back(&r);
+  return kinds;
+}
+
+void print_exponents(const FemBenchReport& report) {
+  Rows rows;
+  for (const auto& [kind, members] : by_kind(report)) {
+    if (members.size() < 2) continue;
+    std::vector<std::string> row{kind};
+    for (const auto stage : {&FemBenchRow::force_ms, &FemBenchRow::matrix_ms, &FemBenchRow::factor_ms, &FemBenchRow::solve_ms, &FemBenchRow::step_ms})
+      row.push_back(fmt::format("{:.2f}", study::scaling_exponent(members, stage)));
+    rows.push_back(row);
+  }
+  if (!rows.empty()) fmt::print("growth with the number of nodes n: exponent e of ms ~ n^e\n{}\n", report::format_table({"kind", "force", "matrix", "factor", "solve", "step"}, rows));
+}
+
+void print_peers(const FemBenchReport& report) {
+  std::set<std::string> sizes;
+  for (const FemBenchRow& r : report.rows) sizes.insert(r.size);
+  Rows rows;
+  for (const study::PeerFigure& p : study::peer_figures())
+    if (sizes.contains(p.size)) rows.push_back({p.program, p.size, ms(p.ten_ms), ms(p.one_ms), p.tolerance});
+  if (!rows.empty())
+    fmt::print("others on this beam at E = 1e5, one thread, quoted (measured once on the reference machine, not here): compare with \"scaled\"\n{}\n",
+               report::format_table({"program", "size", "10 ms step [ms]", "1 ms step [ms]", "tolerance"}, rows));
+}
+
+void write_files(const FemBenchReport& report, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  store::write_atomically(folder / "bench-fem.json", study::to_json(report));
+  report::Plot plot;
+  plot.title = "One linearly implicit step";
+  plot.x_label = "nodes";
+  plot.y_label = "ms";
+  plot.log_x = plot.log_y = true;
+  for (const auto& [kind, members] : by_kind(report)) {
+    report::Series series;
+    series.name = kind;
+    series.mark = report::Mark::kLinePoints;
+    for (const FemBenchRow* r : members) {
+      series.x.push_back(r->nodes);
+      series.y.push_back(r->step_ms);
+    }
+    plot.series.push_back(series);
+  }
+  store::write_atomically(folder / "bench-fem.svg", report::plot_svg(plot));
+  fmt::print("written: {} and {}\n", (folder / "bench-fem.json").string(), (folder / "bench-fem.svg").string());
+}
+
+}  // namespace
+
+void bench_fem_sizes(const BenchArguments& arguments) {
+  if (!arguments.calibrate.empty()) {
+    std::string table;
+    study::calibrate_auto(
+        [&](const std::string& row) {
+          table += row;
+          fmt::print("{}", row);
+        },
+        [] { return static_cast<bool>(stop_flag()); });
+    store::write_atomically(arguments.calibrate, table);
+    return;
+  }
+  study::FemBenchOptions options;
+  if (!arguments.sizes.empty()) options.sizes = arguments.sizes;
+  if (!arguments.threads.empty()) options.threads = arguments.threads;
+  if (!arguments.linear_rtols.empty()) options.linear_rtols = arguments.linear_rtols;
+  if (!arguments.youngs_moduli_pa.empty()) options.youngs_moduli_pa = arguments.youngs_moduli_pa;
+  options.linear_solvers = arguments.linear_solvers;
+  options.steps = arguments.steps;
+  const FemBenchReport report = study::run_fem_bench(options, [] { return static_cast<bool>(stop_flag()); });
+  print_limits(report);
+  print_steps(report);
+  print_exponents(report);
+  print_peers(report);
+  if (!arguments.folder.empty() && !report.rows.empty()) write_files(report, arguments.folder);
+}
+
+}  // namespace palpate::cli

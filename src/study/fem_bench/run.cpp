@@ -1,0 +1,276 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+#include "palpate/integrate/integrators.h"
+#include "palpate/study/fem_bench.h"
+#include "study/fem_bench/beam.h"
+
+namespace palpate::study {
+namespace {
+
+using namespace dynamics;
+
+constexpr int kDirectNodes = 12000;  ///< above: the direct factor costs seconds and gigabytes
+constexpr double kTight = 1e-10;
+constexpr double kWarmTo = 0.2, kWarmStep = 1e-2;  ///< the motion before the timed steps: large rotation is there
+
+/// The solver that is timed, and now and then a direct one behind it that tells the error of its answer.
+class CheckedSolver final : public LinearSolver {
+ public:
+  CheckedSolver(std::unique_ptr<LinearSolver> solver, const VecX& masses, const IntegratorSpec& spec) : solver_(std::move(solver)), masses_(masses), spec_(spec) {}
+  std::string name() const override { return solver_->name(); }
+  bool supports_unsymmetric() const override { return solver_->supports_unsymmetric(); }
+  SolveStatus factor(const BorderedMatrix& A) override {
+    matrix_ = &A;
+    const double start = thread_cpu_seconds();
+    const SolveStatus status = solver_->factor(A);
+    cpu_s += thread_cpu_seconds() - start;
+    return status;
+  }
+  SolveStatus solve(const MatX& B, MatX& X) override { return solver_->solve(B, X); }
+  SolveStatus solve(const VecX& b, VecX& x) override {
+    VecX rhs;
+    if (check_next) rhs = b;
+    const double begin = thread_cpu_seconds();
+    const SolveStatus status = solver_->solve(b, x);
+    cpu_s += thread_cpu_seconds() - begin;
+    if (!check_next) return status;
+    const double start = wall_seconds(), start_cpu = thread_cpu_seconds();
+    if (status == SolveStatus::kOk) check(rhs, x);
+    checking_s += wall_seconds() - start;
+    checking_cpu_s += thread_cpu_seconds() - start_cpu;
+    return status;
+  }
+  const SolverCounters& counters() const override { return solver_->counters(); }
+
+  bool check_next = false;
+  double cpu_s = 0.0, checking_s = 0.0, checking_cpu_s = 0.0, error = 0.0, mass_error = 0.0;
+  int checks = 0;
+  const BorderedMatrix* matrix() const { return matrix_; }
+
+ private:
+  void check(const VecX& b, const VecX& x) {
+    if (!direct_) {
+      IntegratorSpec tight = spec_;
+      tight.linear_rtol = kTight;
+      direct_ = integrate::make_linear_solver(matrix_->body.block_rows() <= kDirectNodes ? "cholmod" : "pcg", tight);
+    }
+    VecX exact, product;
+    if (direct_->factor(*matrix_) != SolveStatus::kOk || direct_->solve(b, exact) != SolveStatus::kOk) fail("bench fem: the step has no direct solution to compare with");
+    const VecX wrong = x - exact;
+    const auto energy = [&](const VecX& v) {
+      matrix_->multiply(v, product);
+      return std::sqrt(v.dot(product));
+    };
+    const auto mass = [&](const VecX& v) {
+      double sum = 0.0;
+      for (Eigen::Index i = 0; i < v.size(); ++i) sum += masses_[i / 3] * v[i] * v[i];
+      return std::sqrt(sum);
+    };
+    error = std::max(error, energy(wrong) / energy(exact));
+    mass_error = std::max(mass_error, mass(wrong) / mass(exact));
+    ++checks;
+  }
+
+  std::unique_ptr<LinearSolver> solver_, direct_;
+  const VecX& masses_;
+  IntegratorSpec spec_;
+  const BorderedMatrix* matrix_ = nullptr;
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// 1 + h^2 tr K / tr M, from the rows of the step matrix (a row sums to its mass).
+double stiffness_of(const BlockSparse& A, const VecX& masses) {
+  double own = 0.0, mass = 0.0;
+  for (int i = 0; i < A.block_rows(); ++i) {
+    const double* block = A.block(A.slot(i, i));
+    if (block[1] == 0.0 && block[0] == 1.0) continue;  // held
+    own += block[0] + block[4] + block[8];
+    mass += 3.0 * masses[i];
+  }
+  return own / mass;
+}
+
+struct Times {
+  std::array<double, 4> at{};
+  explicit Times(const StepperCounters& c) : at{c.force_s, c.tangent_s, c.solver.factor_s + c.solver.symbolic_s, c.solver.solve_s} {}
+};
+
+/// The beam where the timed steps begin; the same for every kind of step of one beam.
+struct Warm {
+  VecX q, u;
+};
+
+FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double youngs_modulus, const FemBenchOptions& options, Warm& start_from) {
+  Beam beam(size.along, size.across, youngs_modulus);
+  if (start_from.q.size() == beam.rest.size()) {
+    beam.state.q() = start_from.q;
+    beam.state.u() = start_from.u;
+    beam.state.set_time(kWarmTo);
+  } else {
+    IntegratorSpec warm{.name = "linearly-implicit-euler", .step_s = kWarmStep, .linear_solver = "pcg-two-level", .linear_rtol = 1e-4};
+    const auto stepper = integrate::make_stepper(beam.system, beam.state, warm);
+    if (const StepResult r = stepper->advance_to(kWarmTo); !r.ok()) fail("bench fem: {}", r.message);
+    start_from = {beam.state.q(), beam.state.u()};
+  }
+  auto checked = std::make_unique<CheckedSolver>(integrate::make_linear_solver(spec.linear_solver, spec), beam.masses, spec);
+  CheckedSolver& solver = *checked;
+  const auto stepper = find(integrate::stepper_registry(), spec.name, "integrator").make(beam.system, beam.state, spec, std::move(checked));
+  constexpr int kUntimed = 4;  // symbolic analysis, and the solutions that a start is made of
+  std::array<std::vector<double>, 7> ms;
+  long iterations = 0;
+  for (int k = 0; k < kUntimed + options.steps; ++k) {
+    solver.check_next = options.checks > 0 && k >= kUntimed && (k - kUntimed) % std::max(1, options.steps / options.checks) == 0 && solver.checks < options.checks;
+    const double checking = solver.checking_s, checking_cpu = solver.checking_cpu_s, solver_cpu = solver.cpu_s;
+    const Times before(stepper->counters());
+    const long iterations_before = stepper->counters().solver.iterations;
+    const double start = wall_seconds(), start_cpu = thread_cpu_seconds();
+    if (const StepResult r = stepper->advance_to(beam.state.time() + spec.step_s); !r.ok()) fail("bench fem: {}", r.message);
+    const double wall = wall_seconds() - start - (solver.checking_s - checking);
+    const double cpu = thread_cpu_seconds() - start_cpu - (solver.checking_cpu_s - checking_cpu);
+    if (k < kUntimed) continue;
+    const Times after(stepper->counters());
+    for (std::size_t i = 0; i < 4; ++i) ms[i].push_back(1e3 * (after.at[i] - before.at[i]));
+    ms[4].push_back(1e3 * wall);
+    ms[5].push_back(1e3 * cpu);
+    ms[6].push_back(1e3 * (solver.cpu_s - solver_cpu));
+    iterations += stepper->counters().solver.iterations - iterations_before;
+  }
+  FemBenchRow row;
+  row.size = size.name;
+  row.linear_solver = spec.linear_solver;
+  row.nodes = static_cast<int>(beam.rest.size() / 3);
+  row.tetrahedra = beam.tetrahedra;
+  row.blocks = solver.matrix()->body.slot_count();
+  row.threads = spec.threads;
+  row.steps = options.steps;
+  row.youngs_modulus_pa = youngs_modulus;
+  row.step_s = spec.step_s;
+  row.linear_rtol = spec.linear_rtol;
+  row.force_ms = median(ms[0]);
+  row.matrix_ms = median(ms[1]);
+  row.factor_ms = median(ms[2]);
+  row.solve_ms = median(ms[3]);
+  row.step_ms = median(ms[4]);
+  row.step_cpu_ms = median(ms[5]);
+  row.solver_cpu_ms = median(ms[6]);
+  row.step_least_ms = *std::min_element(ms[4].begin(), ms[4].end());
+  row.solve_least_ms = *std::min_element(ms[3].begin(), ms[3].end());
+  row.iterations = static_cast<double>(iterations) / options.steps;
+  row.stiffness = stiffness_of(solver.matrix()->body, beam.masses);
+  row.error = solver.error;
+  row.mass_error = solver.mass_error;
+  row.rotation_rad = beam.end_rotation();
+  row.peak_mib = peak_memory_mib();
+  return row;
+}
+
+const BeamSize& size_named(const std::string& name) {
+  for (const BeamSize& size : beam_sizes())
+    if (size.name == name) return size;
+  fail("bench fem: there is no size \"{}\"; XS, S, M, L and XL are", name);
+}
+
+}  // namespace
+
+FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
+  if (options.steps < 3) fail("bench fem: {} steps; at least 3", options.steps);
+  FemBenchReport report;
+  for (const int threads : options.threads) report.limits.push_back(measure_limits(threads));
+  for (const std::string& size : options.sizes)
+    for (const double E : options.youngs_moduli_pa) {
+      Warm warm;
+      for (const double h : options.steps_s)
+        for (const double rtol : options.linear_rtols)
+          for (const std::string& solver : options.linear_solvers)
+            for (std::size_t t = 0; t < options.threads.size(); ++t) {
+              if (stop && stop()) return report;
+              const IntegratorSpec spec{.name = "linearly-implicit-euler", .step_s = h, .linear_solver = solver, .linear_rtol = rtol, .threads = options.threads[t]};
+              FemBenchRow row = time_steps(size_named(size), spec, E, options, warm);
+              const MachineLimits& limits = report.limits[t];
+              row.scaled_ms = row.step_ms * limits.large_copy_gb_s / reference_bandwidth_gb_s(limits.threads);
+              // An iteration reads every block once, nine floats.  What fits into the caches is read faster than memory.
+              const double bytes = 36.0 * row.blocks * row.iterations;
+              row.solve_limit_ms = 1e-6 * bytes / (36.0 * row.blocks > 3.2e7 ? limits.large_copy_gb_s : limits.small_copy_gb_s);
+              report.rows.push_back(row);
+            }
+    }
+  return report;
+}
+
+double scaling_exponent(const std::vector<const FemBenchRow*>& rows, double FemBenchRow::*stage) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const FemBenchRow* row : rows) {
+    if (!(row->*stage > 0.0)) continue;
+    const double a = std::log(row->nodes), b = std::log(row->*stage);
+    n += 1;
+    x += a;
+    y += b;
+    xx += a * a;
+    xy += a * b;
+  }
+  const double spread = n * xx - x * x;
+  return n >= 2 && spread > 1e-12 ? (n * xy - x * y) / spread : std::numeric_limits<double>::quiet_NaN();
+}
+
+void calibrate_auto(const std::function<void(const std::string&)>& row_measured, bool (*stop)()) {
+  const std::vector<BeamSize> sizes = {{"", 8, 2}, {"", 16, 4}, {"S", 36, 9}, {"M", 56, 13}};
+  FemBenchOptions options;
+  options.checks = 0;
+  for (const BeamSize& size : sizes)
+    for (const auto& [E, h] : {std::pair{1e5, 1e-3}, {1e5, 3e-3}, {1e5, 1e-2}, {1e6, 1e-2}, {1e7, 1e-2}, {1e8, 1e-2}}) {
+      Warm warm;
+      double direct = 0.0;  // knows no tolerance
+      for (const double rtol : {1e-3, 1e-6, 1e-9}) {
+        std::string fastest, times;
+        double least = std::numeric_limits<double>::infinity();
+        FemBenchRow row;
+        for (const char* solver : {"pcg-single", "pcg-two-level", "cholmod"}) {
+          if (stop && stop()) return;
+          const bool known = std::string(solver) == "cholmod" && direct > 0.0;
+          options.steps = std::string(solver) == "cholmod" ? 3 : 7;  // a direct solve takes as long every time
+          if (!known) row = time_steps(size, {.name = "linearly-implicit-euler", .step_s = h, .linear_solver = solver, .linear_rtol = rtol}, E, options, warm);
+          const double ms = known ? direct : row.solver_cpu_ms;
+          if (std::string(solver) == "cholmod") direct = ms;
+          times += fmt::format(" {} {:.3g}", solver, ms);
+          if (ms >= least) continue;
+          least = ms;
+          fastest = solver;
+        }
+        row_measured(fmt::format("{{{}, {:.3g}, {:g}, \"{}\"}},  // ms:{}\n", row.nodes, row.stiffness, rtol, fastest, times));
+      }
+    }
+}
+
+std::string to_json(const FemBenchReport& report) {
+  std::string out = "{\n  \"limits\": [";
+  for (std::size_t i = 0; i < report.limits.size(); ++i) {
+    const MachineLimits& l = report.limits[i];
+    out += fmt::format("{}\n    {{\"threads\": {}, \"copy_8mb_gb_s\": {:.4g}, \"copy_67mb_gb_s\": {:.4g}, \"gflop_s\": {:.4g}, \"reference_copy_67mb_gb_s\": {}}}",
+                       i ? "," : "", l.threads, l.small_copy_gb_s, l.large_copy_gb_s, l.gflop_s, reference_bandwidth_gb_s(l.threads));
+  }
+  out += "\n  ],\n  \"rows\": [";
+  for (std::size_t i = 0; i < report.rows.size(); ++i) {
+    const FemBenchRow& r = report.rows[i];
+    out += fmt::format(
+        "{}\n    {{\"size\": \"{}\", \"nodes\": {}, \"tetrahedra\": {}, \"youngs_modulus_pa\": {:g}, \"step_s\": {:g}, \"linear_rtol\": {:g}, \"linear_solver\": \"{}\", "
+        "\"threads\": {}, \"force_ms\": {:.4g}, \"matrix_ms\": {:.4g}, \"factor_ms\": {:.4g}, \"solve_ms\": {:.4g}, \"step_ms\": {:.4g}, \"scaled_step_ms\": {:.4g}, \"least_step_ms\": {:.4g}, \"least_solve_ms\": {:.4g}, \"step_cpu_ms\": {:.4g}, \"solver_cpu_ms\": {:.4g}, "
+        "\"iterations\": {:.4g}, \"stiffness_number\": {:.4g}, \"energy_error\": {:.3g}, \"mass_error\": {:.3g}, \"end_rotation_rad\": {:.3g}, \"solve_limit_ms\": {:.4g}, "
+        "\"peak_mib\": {:.4g}}}",
+        i ? "," : "", r.size, r.nodes, r.tetrahedra, r.youngs_modulus_pa, r.step_s, r.linear_rtol, r.linear_solver, r.threads, r.force_ms, r.matrix_ms, r.factor_ms,
+        r.solve_ms, r.step_ms, r.scaled_ms, r.step_least_ms, r.solve_least_ms, r.step_cpu_ms, r.solver_cpu_ms, r.iterations, r.stiffness, r.error, r.mass_error, r.rotation_rad, r.solve_limit_ms, r.peak_mib);
+  }
+  return out + "\n  ]\n}\n";
+}
+
+}  // namespace palpate::study
