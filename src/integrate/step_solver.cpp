@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include "integrate/linear/add_counters.h"
 #include "integrate/make.h"
 #include "palpate/core/counters.h"
 
@@ -61,14 +62,7 @@ template SolveStatus StepSolver::solve_any(const MatX&, MatX&);
 const SolverCounters& StepSolver::counters() const {
   sum_ = chosen_->counters();
   if (!lu_) return sum_;
-  const SolverCounters& lu = lu_->counters();
-  sum_.symbolic += lu.symbolic;
-  sum_.factorisations += lu.factorisations;
-  sum_.solves += lu.solves;
-  sum_.iterations += lu.iterations;
-  sum_.symbolic_s += lu.symbolic_s;
-  sum_.factor_s += lu.factor_s;
-  sum_.solve_s += lu.solve_s;
+  add_counters(lu_->counters(), sum_);
   return sum_;
 }
 

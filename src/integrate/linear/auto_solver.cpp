@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "integrate/linear/add_counters.h"
 #include "integrate/linear/auto_choice.h"
 #include "integrate/make.h"
 #include "integrate/settings.h"
@@ -91,15 +92,7 @@ class AutoSolver final : public dynamics::LinearSolver {
     sum_ = {};
     for (const auto& solver : made_) {
       if (!solver) continue;
-      const dynamics::SolverCounters& c = solver->counters();
-      sum_.symbolic += c.symbolic;
-      sum_.factorisations += c.factorisations;
-      sum_.solves += c.solves;
-      sum_.iterations += c.iterations;
-      sum_.refreshes += c.refreshes;
-      sum_.symbolic_s += c.symbolic_s;
-      sum_.factor_s += c.factor_s;
-      sum_.solve_s += c.solve_s;
+      add_counters(solver->counters(), sum_);
     }
     if (active_) sum_.ordering = active_->counters().ordering;
     return sum_;

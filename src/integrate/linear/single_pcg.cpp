@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrate/linear/add_counters.h"
 #include "integrate/linear/energy_bound.h"
 #include "integrate/linear/node_kernels.h"
 #include "integrate/linear/node_order.h"
@@ -67,14 +68,7 @@ class SinglePcg final : public dynamics::LinearSolver {
   const dynamics::SolverCounters& counters() const override {
     if (!bordered_) return counters_;
     sum_ = counters_;
-    const dynamics::SolverCounters& other = bordered_->counters();
-    sum_.symbolic += other.symbolic;
-    sum_.factorisations += other.factorisations;
-    sum_.solves += other.solves;
-    sum_.iterations += other.iterations;
-    sum_.symbolic_s += other.symbolic_s;
-    sum_.factor_s += other.factor_s;
-    sum_.solve_s += other.solve_s;
+    add_counters(bordered_->counters(), sum_);
     return sum_;
   }
 
