@@ -8,6 +8,7 @@
 #include <complex>
 #include <set>
 
+#include "integrate/dense_ode.h"
 #include "integrate/fakes.h"
 #include "integrate/sundials/ark_methods.h"
 #include "palpate/core/error.h"
@@ -212,6 +213,48 @@ TEST(ArkMethods, HaveTheirStiffOrder) {
     ++checked;
   }
   EXPECT_EQ(checked, 28);
+}
+
+/// R = 1 + (l_I b_I + l_E b_E)^T Z with the stages Z = (I - l_I A_I - l_E A_E)^-1 1: one step of y' = l_I y + l_E y, h = 1.
+double one_step(const integrate::ArkMethod& m, double l_implicit, double l_explicit) {
+  MatX A;
+  VecX b;
+  const auto add = [&](const Table& t, double l) {
+    if (A.size() == 0) A = MatX::Zero(t.A.rows(), t.A.rows()), b = VecX::Zero(t.A.rows());
+    A += l * t.A;
+    b += l * t.b;
+  };
+  if (m.implicit_table >= 0) add(Table(ARKodeButcherTable_LoadDIRK(static_cast<ARKODE_DIRKTableID>(m.implicit_table))), l_implicit);
+  if (m.explicit_table >= 0) add(Table(ARKodeButcherTable_LoadERK(static_cast<ARKODE_ERKTableID>(m.explicit_table))), l_explicit);
+  const auto s = A.rows();
+  return 1.0 + b.dot(VecX((MatX::Identity(s, s) - A).partialPivLu().solve(VecX::Ones(s))));
+}
+
+/// n equal steps of a linear equation are the n-th power of one: not so where a step begins with another f than that of its start.  Both sides act.
+TEST(ArkMethods, EachStepBeginsWhereTheLastOneEnded) {
+  constexpr double kImplicit = -0.9, kExplicit = 0.4, kStep = 0.5;
+  constexpr int kSteps = 4;
+  int checked = 0;
+  for (const auto& m : methods()) {
+    const bool one_side = m.implicit_table < 0 || m.explicit_table < 0;
+    const fakes::Equation e{[&](const VecX& y, VecX& f) { f = (one_side ? kImplicit + kExplicit : kImplicit) * y; },
+                            [&](const VecX&, MatX& J) { J(0, 0) = one_side ? kImplicit + kExplicit : kImplicit; }, VecX::Ones(1), VecX::Ones(1),
+                            [&](const VecX& y, VecX& g) { g = (one_side ? 0.0 : kExplicit) * y; }};
+    const double l_implicit = kStep * (one_side ? kImplicit + kExplicit : kImplicit), l_explicit = kStep * (one_side ? kImplicit + kExplicit : kExplicit);
+    IntegratorSpec spec;
+    spec.name = m.name;
+    spec.fixed_step = true;
+    spec.step_s = kStep;
+    spec.newton_rtol = 1e-12;
+    VecX y;
+    double t = 0.0;
+    const auto stepper = integrate::make_ode_stepper(std::make_unique<fakes::DenseOde>(e, spec.rtol, y, t), spec);
+    const auto result = stepper->advance_to(kSteps * kStep);
+    ASSERT_TRUE(result.ok()) << m.name << ": " << result.message;
+    EXPECT_NEAR(y[0] / std::pow(one_step(m, l_implicit, l_explicit), kSteps), 1.0, 1e-11) << m.name;
+    ++checked;
+  }
+  EXPECT_EQ(checked, static_cast<int>(methods().size()));
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ const std::vector<ArkMethod>& ark_methods() {
       {"ark-imex-4", "ARK4(3)6L[2]SA, Kennedy and Carpenter 2003", 3, ARKODE_ARK436L2SA_DIRK_6_3_4, ARKODE_ARK436L2SA_ERK_6_3_4, additive(4)},
       {"ark-imex-4b", "ARK4(3)7L[2]SA1, Kennedy and Carpenter 2019", 3, ARKODE_ARK437L2SA_DIRK_7_3_4, ARKODE_ARK437L2SA_ERK_7_3_4, additive(4)},
       {"ark-imex-5", "ARK5(4)8L[2]SA, Kennedy and Carpenter 2003", 4, ARKODE_ARK548L2SA_DIRK_8_4_5, ARKODE_ARK548L2SA_ERK_8_4_5, additive(5)},
-      {"ark-imex-5b", "ARK5(4)8L[2]SA2, Kennedy and Carpenter 2019", 4, ARKODE_ARK548L2SAb_DIRK_8_4_5, ARKODE_ARK548L2SAb_ERK_8_4_5, additive(5)},
+      {"ark-imex-5b", "ARK5(4)8L[2]SA2, Kennedy and Carpenter 2019; its error estimate misses kinks: with contact, events = \"root-finding\"", 4, ARKODE_ARK548L2SAb_DIRK_8_4_5, ARKODE_ARK548L2SAb_ERK_8_4_5, additive(5)},
   };
   return methods;
 }
