@@ -41,6 +41,7 @@ OUTSIDE = [
     ("Simbody", r"(Simbody|SimTK\w*|simbody|simmath)(\.h$|/)", ["src/tool", "tests/isolation"]),
     ("EGL and OpenGL", r"(EGL|GL|GLES\d?|KHR|epoxy)/", ["src/gl", "include/palpate/gl", "src/render", "tests/gl", "tests/render"]),
     ("libccd", r"ccd/", ["src/proxy", "tests/proxy"]),
+    ("Qhull", r"libqhull", ["src/proxy"]),
     ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/integrate"]),
     ("Spectra", r"Spectra/", ["src/integrate"]),
     ("CLI11", r"CLI/", ["src/cli"]),

@@ -13,6 +13,38 @@ namespace palpate::mesh {
 struct Embedding {
   std::vector<int> tet;                   ///< tetrahedron of each point
   Eigen::Matrix<double, 4, Eigen::Dynamic> weights;  ///< 4 x number of points
+
+  int size() const { return static_cast<int>(tet.size()); }
 };
+
+/// Where sum |w| is more, `embed` refuses: the point would move by that many times what a node moves.
+inline constexpr double kLargestWeightSum = 10.0;
+
+/// How the points of an embedding lie.
+struct EmbeddingReport {
+  int outside = 0;                  ///< points that no tetrahedron holds
+  double largest_distance = 0.0;    ///< of a point from its tetrahedron [m]
+  int farthest = -1;                ///< that point; -1: none is outside
+  double largest_weight_sum = 1.0;  ///< largest sum |w|; 1 where every point is held
+  int most_extrapolated = -1;       ///< that point
+};
+
+/// Ties each point to the tetrahedron that holds it, else to the nearest one.  Where several are as near (a shared face, edge or node), to the one with
+/// the least sum |w|, and of equals (to 1e-9) to the first: the answer depends on nothing but the arguments.
+/// @pre tetrahedra of positive volume (check_tets).
+/// @throws Error for a point that is not finite, or whose weights are absurd (kLargestWeightSum), with its index, place and distance
+Embedding embed(const TetMesh& mesh, const Points& points, EmbeddingReport* report = nullptr);
+
+/// The points at the positions `nodes` of the mesh's nodes [m].  Allocates only when `points` has another size.
+void evaluate(const Embedding& embedding, const Tets& tets, const Points& nodes, Points& points);
+
+/// The transposed map, f_node += w f_point [N]: the virtual work, the resultant and (since sum w x_node is the point) the moment about any origin stay.
+void add_to_nodes(const Embedding& embedding, const Tets& tets, const Points& point_forces, Points& node_forces);
+
+/// One third of the area vectors of the adjacent faces [m^2], outward; their sum over a closed surface is zero.
+void vertex_area_vectors(const Faces& faces, const Points& vertices, Points& area_vectors);
+
+/// Unit normals (of the area vectors; zero where those cancel) and areas of the vertices: one third of the adjacent faces' areas, so they sum to the surface's [m^2].
+void vertex_normals_and_areas(const Faces& faces, const Points& vertices, Points& normals, VecX& areas);
 
 }  // namespace palpate::mesh
