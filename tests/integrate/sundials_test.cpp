@@ -162,6 +162,43 @@ TEST(Interrupt, EndsAtTheLastGoodStep) {
   }
 }
 
+// --- many fast steps in a slow one -------------------------------------------------------------------------------------
+
+/// A fast damper of 1e6/s: the explicit fast side needs some 4e4 steps for 0.1 s.  Raises a flag at a given evaluation.
+struct FastDamper final : ForceTerm {
+  long evaluations = 0, raise_at = -1;
+  std::atomic<bool> raised{false};
+  std::string_view name() const override { return "fast damper"; }
+  TermTraits traits() const override { return {.stiff = false, .fast = true}; }
+  void add_force(const StateView& s, VecX& f) override {
+    f -= 1e6 * s.u;
+    if (++evaluations == raise_at) raised = true;
+  }
+  void add_tangent(const StateView&, double, double, dynamics::BorderedMatrix&) override {}
+  void apply_tangent(const StateView&, double, double, const VecX&, VecX&) override {}
+};
+
+TEST(MultiRate, FastStepsAreLimitedAndInterrupted) {
+  for (const bool interrupt : {false, true}) {
+    Chain chain;
+    chain.state.u().setOnes();
+    const auto fast = std::make_shared<FastDamper>();
+    chain.system.add(fast);
+    chain.system.prepare(chain.state.view());
+    IntegratorSpec spec{.name = "ark-mri-2", .step_s = 0.1, .max_steps = 2000};
+    const auto stepper = integrate::make_stepper(chain.system, chain.state, spec);
+    if (interrupt) {
+      fast->raise_at = 500;
+      stepper->set_interrupt(&fast->raised);
+    }
+    const StepResult r = stepper->advance_to(0.1);
+    EXPECT_EQ(r.status, interrupt ? StepStatus::kInterrupted : StepStatus::kErrorTestFailed) << r.message;
+    EXPECT_EQ(chain.state.time(), 0.0);
+    EXPECT_LT(fast->evaluations, interrupt ? 510 : 5 * 2000);  // rejected ones count
+    EXPECT_GT(fast->evaluations, interrupt ? 499 : 2000);
+  }
+}
+
 // --- statics ----------------------------------------------------------------------------------------------------------
 
 const IntegratorSpec kStatic{.name = "kinsol-static"};

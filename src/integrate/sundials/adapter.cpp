@@ -142,7 +142,7 @@ StepResult Adapter::advance_to(double t_end) {
   collect();
   if (landed) return result(StepStatus::kOk);
   running_ = false;  // the next call starts from the State
-  if (flag >= 0 && n < spec_.max_steps) {
+  if (interrupted() && n < spec_.max_steps) {  // between two steps, or within one that noticed
     StepResult stopped = result(StepStatus::kInterrupted);
     stopped.message = fmt::format("{}: interrupted at t = {}, h = {}", name(), t, stopped.h);
     return stopped;

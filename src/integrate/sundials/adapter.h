@@ -11,6 +11,7 @@ namespace palpate::integrate {
 namespace sun __attribute__((visibility("hidden"))) {
 
 constexpr int kRecoverable = 1;
+constexpr int kUnrecoverable = -1;
 /// A force that jumps (a damper at first touch) makes the step shrink by ten a failure, down to where the jump is below the tolerance;
 /// the libraries' own limit of 7 gives up at rtol 1e-8.  A smallest step bounds it in any case.
 constexpr int kErrorTestFailures = 30;

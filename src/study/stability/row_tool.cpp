@@ -123,7 +123,9 @@ Row density_ratio_row() {
           {{"tool 1e6 times as dense, partitioned", expect, [with_heavy](const Lab& lab) { return run(lab, with_heavy); }},
            {"tool 1e-6 times as dense, partitioned", expect, [with_light](const Lab& lab) { return run(lab, with_light); }},
            {"tool 1e6 times as dense, monolithic", [=](const Lab& lab) { return expect_monolithic(lab, heavy, 2.0 * heavy * rate); },
-            [one = as_one(with_heavy)](const Lab& lab) { return run(lab, one); }}}};
+            [one = as_one(with_heavy)](const Lab& lab) { return run(lab, one); }},
+           {"tool 1e-6 times as dense, monolithic", [=](const Lab& lab) { return expect_monolithic(lab, light, kLightDamping); },
+            [one = as_one(with_light)](const Lab& lab) { return run(lab, one); }}}};
 }
 
 Row swallowed_tool_row() {
