@@ -2,7 +2,7 @@
 
 #include <unordered_map>
 
-#include "readers.h"
+#include "palpate/mesh/readers.h"
 
 namespace palpate::mesh {
 namespace gmsh {

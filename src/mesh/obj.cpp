@@ -2,7 +2,7 @@
 #include <limits>
 #include <vector>
 
-#include "readers.h"
+#include "palpate/mesh/readers.h"
 #include "text_file.h"
 
 // Wavefront OBJ:  v x y z [w | r g b]   and   f v v v ..., each v one of  7  7/1  7//3  7/1/3, counted from 1, or from the end if negative.

@@ -5,7 +5,7 @@
 
 #include "palpate/mesh/checks.h"
 #include "palpate/mesh/generators.h"
-#include "readers.h"
+#include "palpate/mesh/readers.h"
 
 namespace palpate::mesh {
 namespace {

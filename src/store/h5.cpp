@@ -50,6 +50,13 @@ Id access_without_need_of_locks() {
   return access;
 }
 
+/// Without the time of day, so that equal content gives equal bytes.
+Id created_without_time(hid_t kind) {
+  Id creation{H5Pcreate(kind), H5Pclose};
+  H5Pset_obj_track_times(creation, false);
+  return creation;
+}
+
 std::string text_of(hid_t type, const std::vector<char>& raw) {
   const bool fixed = H5Tis_variable_str(type) == 0;
   std::string text(raw.data(), raw.size());
@@ -83,13 +90,31 @@ Id open_file(const std::string& path) {
   return {check(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), path, "is not an HDF5 file that can be read"), H5Fclose};
 }
 
+Id create_in_memory(const std::string& path) {
+  const Id access = access_without_need_of_locks();
+  constexpr std::size_t kGrowth = 1 << 20;
+  H5Pset_fapl_core(access, kGrowth, false);
+  return {check(H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), path, "cannot be made in memory"), H5Fclose};
+}
+
+std::string image(hid_t file, const std::string& path) {
+  check(H5Fflush(file, H5F_SCOPE_LOCAL), path, "cannot be flushed");
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  check(size, path, "has no size");
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  check(H5Fget_file_image(file, bytes.data(), bytes.size()), path, "cannot be copied");
+  return bytes;
+}
+
 Id create_group(hid_t parent, const std::string& name, const std::string& path) {
-  return {check(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), path, "cannot make group " + name), H5Gclose};
+  const Id timeless = created_without_time(H5P_GROUP_CREATE);
+  return {check(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, timeless, H5P_DEFAULT), path, "cannot make group " + name), H5Gclose};
 }
 
 void write(hid_t parent, const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* data, const std::string& path) {
   const Id space = space_of(shape);
-  const Id set{check(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), path, "cannot make " + name), H5Dclose};
+  const Id timeless = created_without_time(H5P_DATASET_CREATE);
+  const Id set{check(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, timeless, H5P_DEFAULT), path, "cannot make " + name), H5Dclose};
   if (H5Sget_simple_extent_npoints(space) > 0) check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path, "cannot write " + name);
 }
 

@@ -48,9 +48,12 @@ hid_t check(hid_t id, const std::string& path, const std::string& what);
 
 Id create_file(const std::string& path);
 Id open_file(const std::string& path);  ///< for reading
+/// A file that lives in memory; `path` is what messages call it.  Its bytes, once all is written, are image().
+Id create_in_memory(const std::string& path);
+std::string image(hid_t file, const std::string& path);
 Id create_group(hid_t parent, const std::string& name, const std::string& path);
 
-/// A data set written once.  `type` is the type in memory and in the file.
+/// A data set written once, without the time of day.  `type` is the type in memory and in the file.
 void write(hid_t parent, const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* data, const std::string& path);
 void write_text(hid_t parent, const std::string& name, const std::string& text, const std::string& path);
 void write_attribute(hid_t object, const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* data, const std::string& path);

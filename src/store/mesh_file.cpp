@@ -4,10 +4,10 @@
 
 #include "palpate/core/error.h"
 #include "store/h5.h"
+#include "store/model_format.h"
 
 namespace palpate::store {
 namespace {
-constexpr const char* kFormat = "palpate tetrahedra 1";
 
 /// The shape of a data set as rows x width, or a refusal.
 Eigen::Index rows_of(const h5::Opened& set, const char* name, hsize_t width, const std::string& path) {
@@ -21,7 +21,7 @@ Eigen::Index rows_of(const h5::Opened& set, const char* name, hsize_t width, con
 void write_mesh(const std::string& path, const TetMesh& mesh) {
   const h5::Quiet quiet;
   const h5::Id file = h5::create_file(path);
-  h5::write_attribute_text(file, "format", kFormat, path);
+  h5::write_attribute_text(file, "format", kMeshFormat, path);
   h5::write(file, "nodes", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(mesh.nodes.cols()), 3}, mesh.nodes.data(), path);
   h5::write(file, "tets", H5T_NATIVE_INT, {static_cast<hsize_t>(mesh.tets.cols()), 4}, mesh.tets.data(), path);
   h5::check(H5Fflush(file, H5F_SCOPE_LOCAL), path, "cannot be flushed; is the disk full?");
@@ -31,8 +31,8 @@ TetMesh read_mesh(const std::string& path) {
   const h5::Quiet quiet;
   const h5::Id file = h5::open_file(path);
   if (H5Aexists(file, "format") > 0)  // a file made by other means may lack it; one that says something else is something else
-    if (const std::string format = h5::read_attribute_text(file, "format", path); format != kFormat)
-      fail("{}: format is \"{}\", must be \"{}\"", path, format, kFormat);
+    if (const std::string format = h5::read_attribute_text(file, "format", path); format != kMeshFormat && format != kModelFormat)
+      fail("{}: format is \"{}\", must be \"{}\" or \"{}\"", path, format, kMeshFormat, kModelFormat);
 
   TetMesh mesh;
   const h5::Opened nodes = h5::open(file, "nodes", H5T_FLOAT, 2, path), tets = h5::open(file, "tets", H5T_INTEGER, 2, path);

@@ -1,0 +1,10 @@
+#pragma once
+#include <functional>
+#include <string>
+
+namespace palpate::model {
+
+/// Told how far the step at hand is, in [0, 1]; may be empty.
+using Progress = std::function<void(double fraction)>;
+
+}  // namespace palpate::model
