@@ -67,6 +67,31 @@ struct Table {
 
 const std::vector<integrate::ArkMethod>& methods() { return integrate::ark_methods(); }
 
+/// d^T A^(p-1) 1 = 1/p! for the embedded weights d of a pair p (p - 1): of the conditions of order p the tall tree's, the only one on a linear motion.
+double tall_tree_defect(ARKodeButcherTable t) {
+  const Table table(ARKodeButcherTable_Copy(t));
+  VecX stages = VecX::Ones(t->stages);
+  double factorial = 1.0;
+  for (int k = 1; k < t->q; ++k) {
+    stages = table.A * stages;
+    factorial *= k;
+  }
+  const double defect = std::abs(Eigen::Map<const VecX>(t->d, t->stages).dot(stages) * factorial * t->q - 1.0);
+  ARKodeButcherTable_Free(t);
+  return defect;
+}
+
+TEST(ArkMethods, ThreePairsAreSharperOnLinearMotion) {
+  int sharper = 0;
+  for (const auto& m : methods()) {
+    if (m.implicit_table < 0 || m.embedded_order >= m.traits.order) continue;
+    const double defect = tall_tree_defect(ARKodeButcherTable_LoadDIRK(static_cast<ARKODE_DIRKTableID>(m.implicit_table)));
+    EXPECT_EQ(m.sharper_on_linear_motion, defect < 1e-3) << m.name << ": " << defect;
+    sharper += defect < 1e-3;
+  }
+  EXPECT_EQ(sharper, 3);
+}
+
 TEST(ArkMethods, ImplicitTablesAreAsStableAsTheySay) {
   int checked = 0;
   for (const auto& m : methods()) {

@@ -162,6 +162,16 @@ TEST(Interrupt, EndsAtTheLastGoodStep) {
   }
 }
 
+TEST(FixedStep, ABlowUpIsCalledByItsName) {
+  Chain chain(0.0, 1e4);  // highest frequency about 200/s
+  chain.state.u().setOnes();
+  const IntegratorSpec spec{.name = "ark-erk-4", .step_s = 1.0, .fixed_step = true};
+  const auto stepper = integrate::make_stepper(chain.system, chain.state, spec);
+  const StepResult r = stepper->advance_to(100.0);
+  ASSERT_FALSE(r.ok());
+  EXPECT_NE(r.message.find("an explicit step_s must stay below its stability limit"), std::string::npos) << r.message;
+}
+
 // --- many fast steps in a slow one -------------------------------------------------------------------------------------
 
 /// A fast damper of 1e6/s: the explicit fast side needs some 4e4 steps for 0.1 s.  Raises a flag at a given evaluation.

@@ -154,7 +154,7 @@ StepResult Adapter::failure(int flag, double t, double t_end) {
   StepResult failed = result(flag >= 0 ? StepStatus::kTooManySteps : status_of(flag));
   if (!finite_ && failed.status == StepStatus::kNewtonFailed) failed.status = StepStatus::kNotFinite;  // why the iteration could not converge
   if (flag >= 0) message_ = fmt::format("{} steps before t_end = {}", spec_.max_steps, t_end);
-  failed.message = fmt::format("{}: {} at t = {}, h = {}: {}", name(), flag >= 0 ? "TOO_MUCH_WORK" : flag_name(flag), t, failed.h, message_);
+  failed.message = fmt::format("{}: {} at t = {}, h = {:.9g}: {}", name(), flag >= 0 ? "TOO_MUCH_WORK" : flag_name(flag), t, failed.h, message_ + remedy(flag));
   return failed;
 }
 

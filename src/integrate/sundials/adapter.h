@@ -51,6 +51,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   virtual int one_step(double t_end, double& t) = 0;  ///< the library's flag; y() becomes the solution at t
   virtual dynamics::StepStatus status_of(int flag) const = 0;
   virtual std::string flag_name(int flag) const = 0;
+  virtual std::string remedy(int /*flag*/) const { return {}; }  ///< what to do, where the library's words mislead
   virtual bool interpolate(double t, N_Vector out) const = 0;
   virtual Counts counts() const = 0;
   virtual double last_step() const = 0;

@@ -62,7 +62,7 @@ const std::vector<ArkMethod>& ark_methods() {
       {"ark-dirk-ark436", "ESDIRK half of ARK4(3)6L[2]SA, Kennedy and Carpenter 2003, 4(3)", 3, ARKODE_ARK436L2SA_DIRK_6_3_4, -1, implicit(4, 2, kL)},
       {"ark-dirk-ark437", "ESDIRK half of ARK4(3)7L[2]SA1, Kennedy and Carpenter 2019, 4(3)", 3, ARKODE_ARK437L2SA_DIRK_7_3_4, -1, implicit(4, 2, kL)},
       {"ark-dirk-kvaerno745", "ESDIRK of Kvaerno 2004, 5(4)", 4, ARKODE_KVAERNO_7_4_5, -1, implicit(5, 2, kL)},
-      {"ark-dirk-ark548", "ESDIRK half of ARK5(4)8L[2]SA, Kennedy and Carpenter 2003, 5(4)", 4, ARKODE_ARK548L2SA_DIRK_8_4_5, -1, implicit(5, 2, kL)},
+      {"ark-dirk-ark548", "ESDIRK half of ARK5(4)8L[2]SA, Kennedy and Carpenter 2003, 5(4)", 4, ARKODE_ARK548L2SA_DIRK_8_4_5, -1, implicit(5, 2, kL), true},
       {"ark-dirk-ark548b", "ESDIRK half of ARK5(4)8L[2]SA2, Kennedy and Carpenter 2019, 5(4)", 4, ARKODE_ARK548L2SAb_DIRK_8_4_5, -1, implicit(5, 2, kL)},
 
       {"ark-dirk-esdirk324", "ESDIRK3(2)4L[2]SA, Kennedy and Carpenter 2016", 2, ARKODE_ESDIRK324L2SA_4_2_3, -1, implicit(3, 2, kL)},
@@ -71,7 +71,7 @@ const std::vector<ArkMethod>& ark_methods() {
       {"ark-dirk-esdirk436", "ESDIRK4(3)6L[2]SA, Kennedy and Carpenter 2016", 3, ARKODE_ESDIRK436L2SA_6_3_4, -1, implicit(4, 2, kL)},
       {"ark-dirk-esdirk43i6", "ESDIRK4(3I)6L[2]SA, Kennedy and Carpenter 2016", 3, ARKODE_ESDIRK43I6L2SA_6_3_4, -1, implicit(4, 2, kL)},
       {"ark-dirk-qesdirk436", "QESDIRK4(3)6L[2]SA, Kennedy and Carpenter 2016", 3, ARKODE_QESDIRK436L2SA_6_3_4, -1, implicit(4, 2, kL)},
-      {"ark-dirk-esdirk437", "ESDIRK4(3)7L[2]SA, Kennedy and Carpenter 2019", 3, ARKODE_ESDIRK437L2SA_7_3_4, -1, implicit(4, 2, kL)},
+      {"ark-dirk-esdirk437", "ESDIRK4(3)7L[2]SA, Kennedy and Carpenter 2019", 3, ARKODE_ESDIRK437L2SA_7_3_4, -1, implicit(4, 2, kL), true},
       {"ark-dirk-esdirk547", "ESDIRK5(4)7L[2]SA, Kennedy and Carpenter 2016", 4, ARKODE_ESDIRK547L2SA_7_4_5, -1, implicit(5, 2, kL)},
       {"ark-dirk-esdirk547b", "ESDIRK5(4)7L[2]SA2, Kennedy and Carpenter 2019", 4, ARKODE_ESDIRK547L2SA2_7_4_5, -1, implicit(5, 2, kL)},
 
@@ -79,7 +79,7 @@ const std::vector<ArkMethod>& ark_methods() {
        ARKODE_ARK324L2SA_ERK_4_2_3, additive(3)},
       {"ark-imex-4", "ARK4(3)6L[2]SA, Kennedy and Carpenter 2003", 3, ARKODE_ARK436L2SA_DIRK_6_3_4, ARKODE_ARK436L2SA_ERK_6_3_4, additive(4)},
       {"ark-imex-4b", "ARK4(3)7L[2]SA1, Kennedy and Carpenter 2019", 3, ARKODE_ARK437L2SA_DIRK_7_3_4, ARKODE_ARK437L2SA_ERK_7_3_4, additive(4)},
-      {"ark-imex-5", "ARK5(4)8L[2]SA, Kennedy and Carpenter 2003", 4, ARKODE_ARK548L2SA_DIRK_8_4_5, ARKODE_ARK548L2SA_ERK_8_4_5, additive(5)},
+      {"ark-imex-5", "ARK5(4)8L[2]SA, Kennedy and Carpenter 2003", 4, ARKODE_ARK548L2SA_DIRK_8_4_5, ARKODE_ARK548L2SA_ERK_8_4_5, additive(5), true},
       {"ark-imex-5b", "ARK5(4)8L[2]SA2, Kennedy and Carpenter 2019; its error estimate misses kinks: with contact, events = \"root-finding\"", 4, ARKODE_ARK548L2SAb_DIRK_8_4_5, ARKODE_ARK548L2SAb_ERK_8_4_5, additive(5)},
   };
   return methods;

@@ -12,6 +12,9 @@ struct ArkMethod {
   int embedded_order = 1;  ///< of the second solution, whose difference is the error estimate
   int implicit_table = -1, explicit_table = -1;
   dynamics::StepperTraits traits;
+  /// On a linear motion the estimate is of a higher order than the embedded one promises: the tall tree's condition, the only one of its order that
+  /// counts there, is met as well.
+  bool sharper_on_linear_motion = false;
 };
 
 /// One line a method, in the order of the registry.
