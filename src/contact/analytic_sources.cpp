@@ -31,7 +31,8 @@ class AnalyticSource final : public SampleSource {
 
   std::string_view name() const override { return Shape::kName; }
   long tunnelled() const override { return tunnelled_; }
-  void add_pattern(dynamics::PatternBuilder&) const override {}  // one node a sample: diagonal blocks only
+  void add_pattern(dynamics::PatternBuilder& pattern) const override { surface_.add_vertex_pattern(pattern); }
+  std::uint64_t pattern_version() const override { return surface_.vertex_pattern_version(); }
 
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
     surface_.update(state);
@@ -48,7 +49,7 @@ class AnalyticSource final : public SampleSource {
       const double area = -nearest.normal.dot(areas_.col(v));
       if (area <= 0.0) continue;  // turned away: pressure there would pull
       ContactSample sample;
-      sample.a = vertex_point(surface_.node(v));
+      sample.a = surface_.vertex_point(v);
       sample.b = frame_point(frame_, inverse, x - (nearest.gap + nearest.radius) * nearest.normal);
       sample.b.slide = nearest.radius * nearest.normal;
       sample.normal = nearest.normal;
@@ -67,7 +68,7 @@ class AnalyticSource final : public SampleSource {
     for (int v = 0; v < surface_.vertex_count(); ++v) {
       const Vec3 x = surface_.positions().col(v);
       const Nearest nearest = shape_.at(x);
-      const double rate = nearest.normal.dot(state.velocity(surface_.node(v)) - twist.at(x - nearest.gap * nearest.normal - pose.translation));
+      const double rate = nearest.normal.dot(surface_.velocity(v, state) - twist.at(x - nearest.gap * nearest.normal - pose.translation));
       if (nearest.gap + look_ahead_ * std::min(rate, 0.0) < candidate_gap_) {
         wanted_[static_cast<std::size_t>(v)] = 1;
         any = true;

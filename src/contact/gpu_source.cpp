@@ -75,11 +75,7 @@ class GpuSource final : public SampleSource {
     const double w_a = height(a_, face_a, weights_a), w_b = height(b_, face_b, weights_b);
     if (w_a - w_b >= options_.candidate_gap) return;
     ContactSample sample;
-    sample.a.count = 3;
-    for (int k = 0; k < 3; ++k) {
-      sample.a.node[static_cast<std::size_t>(k)] = surface_.node(surface_.faces()(k, face_a));
-      sample.a.weight[static_cast<std::size_t>(k)] = weights_a[k];
-    }
+    sample.a = surface_.face_point(face_a, weights_a);
     sample.b = frame_point(frame_, inverse, axes.world(Vec3(u, v, w_b)));
     sample.normal = axes.normal();
     sample.area = camera.pixel * camera.pixel;

@@ -1,14 +1,26 @@
 #include "contact/surface_state.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "palpate/core/error.h"
 
 namespace palpate::contact {
 
-SurfaceState::SurfaceState(NodeSurface surface) : surface_(std::move(surface)), positions_(3, vertex_count()) {
+SurfaceState::SurfaceState(NodeSurface surface) : surface_(std::move(surface)) {
+  positions_.resize(3, is_skin() ? surface_.embedding.size() : static_cast<int>(surface_.node_of_vertex.size()));
   for (int f = 0; f < face_count(); ++f)
     for (int k = 0; k < 3; ++k)
       PALPATE_CHECK(surface_.faces(k, f) >= 0 && surface_.faces(k, f) < vertex_count(), "contact surface: face {} names vertex {} of {}", f,
                     surface_.faces(k, f), vertex_count());
+  if (!is_skin()) return;
+  PALPATE_CHECK(surface_.embedding.weights.cols() == vertex_count(), "contact skin: {} weights for {} vertices", surface_.embedding.weights.cols(), vertex_count());
+  carriers_ = surface_.embedding.tet;
+  std::sort(carriers_.begin(), carriers_.end());
+  carriers_.erase(std::unique(carriers_.begin(), carriers_.end()), carriers_.end());
+  if (carriers_.empty()) return;
+  PALPATE_CHECK(carriers_.front() >= 0 && carriers_.back() < surface_.tets.cols(), "contact skin: a vertex hangs on tetrahedron {} of {}",
+                carriers_.front() < 0 ? carriers_.front() : carriers_.back(), surface_.tets.cols());
 }
 
 void SurfaceState::update(const dynamics::StateView& state) {
@@ -18,8 +30,73 @@ void SurfaceState::update(const dynamics::StateView& state) {
     node_offset_ = offset;
     ++pattern_version_;
   }
-  for (int v = 0; v < vertex_count(); ++v) positions_.col(v) = state.position(node(v));
+  if (is_skin()) {
+    nodes_ = Eigen::Map<const Points>(state.q.data() + block->q_offset, 3, block->q_size / 3);
+    mesh::evaluate(surface_.embedding, surface_.tets, nodes_, positions_);
+  } else {
+    for (int v = 0; v < vertex_count(); ++v) positions_.col(v) = state.position(node(v));
+  }
   PALPATE_CHECK(positions_.allFinite(), "contact query at t = {}: a surface position is not finite", state.time);
+}
+
+Vec3 SurfaceState::velocity(int vertex, const dynamics::StateView& state) const {
+  if (!is_skin()) return state.velocity(node(vertex));
+  Vec3 v = Vec3::Zero();
+  for (int k = 0; k < 4; ++k) v += surface_.embedding.weights(k, vertex) * state.velocity(node_of_tet(tet_of(vertex), k));
+  return v;
+}
+
+SurfacePoint SurfaceState::vertex_point(int vertex) const {
+  SurfacePoint point;
+  point.count = is_skin() ? 4 : 1;
+  for (int k = 0; k < point.count; ++k) {
+    point.node[static_cast<std::size_t>(k)] = is_skin() ? node_of_tet(tet_of(vertex), k) : node(vertex);
+    point.weight[static_cast<std::size_t>(k)] = is_skin() ? surface_.embedding.weights(k, vertex) : 1.0;
+  }
+  return point;
+}
+
+// Of a skin, the corners of a face may hang on three tetrahedra, twelve nodes in all; a contact point has four.  It is tied to the tetrahedron of the corner
+// nearest to it, by its barycentric coordinates there as it stands now: so it lies where it is seen, and a force at it keeps its moment.  Between two
+// queries it moves with that one tetrahedron, and leaves the face by a part of the difference of the tetrahedra's strains.
+SurfacePoint SurfaceState::face_point(int face, const Vec3& weights) const {
+  const auto corner = surface_.faces.col(face);
+  if (!is_skin()) {
+    SurfacePoint point;
+    point.count = 3;
+    for (int k = 0; k < 3; ++k) {
+      point.node[static_cast<std::size_t>(k)] = node(corner[k]);
+      point.weight[static_cast<std::size_t>(k)] = weights[k];
+    }
+    return point;
+  }
+  Eigen::Index nearest = 0;
+  weights.maxCoeff(&nearest);
+  const Vec3 x = weights[0] * positions_.col(corner[0]) + weights[1] * positions_.col(corner[1]) + weights[2] * positions_.col(corner[2]);
+  return point_of_tet(tet_of(corner[nearest]), x, surface_.embedding.weights.col(corner[nearest]));
+}
+
+/// By its barycentric coordinates; on a tetrahedron too flat to have them, by the corner's own weights and an offset that does not turn.
+SurfacePoint SurfaceState::point_of_tet(int tet, const Vec3& x, const Eigen::Vector4d& of_corner) const {
+  constexpr double kFlat = 1e-6;  // volume over the cube of the longest edge
+  const auto at = [&](int k) -> Vec3 { return nodes_.col(surface_.tets(k, tet)); };
+  Mat3 edges;
+  for (int k = 0; k < 3; ++k) edges.col(k) = at(k + 1) - at(0);
+  const double size = edges.colwise().norm().maxCoeff();
+  Eigen::Vector4d w = of_corner;
+  if (std::abs(edges.determinant()) > kFlat * size * size * size) {
+    w.tail<3>() = edges.inverse() * (x - at(0));
+    w[0] = 1.0 - w.tail<3>().sum();
+  }
+  SurfacePoint point;
+  point.count = 4;
+  point.offset = x;
+  for (int k = 0; k < 4; ++k) {
+    point.node[static_cast<std::size_t>(k)] = node_of_tet(tet, k);
+    point.weight[static_cast<std::size_t>(k)] = w[k];
+    point.offset -= w[k] * at(k);  // rounding, but of a flat one
+  }
+  return point;
 }
 
 // Area vector of a face: (x1 - x0) x (x2 - x0) / 2, outward.
@@ -41,19 +118,19 @@ double SurfaceState::mean_edge() const {
   return face_count() > 0 ? sum / (3.0 * face_count()) : 0.0;
 }
 
+void SurfaceState::add_vertex_pattern(dynamics::PatternBuilder& pattern) const {
+  for (const int tet : carriers_) {
+    const int nodes[4] = {node_of_tet(tet, 0), node_of_tet(tet, 1), node_of_tet(tet, 2), node_of_tet(tet, 3)};
+    pattern.add_clique(nodes, 4);
+  }
+}
+
 void SurfaceState::add_face_pattern(dynamics::PatternBuilder& pattern) const {
+  if (is_skin()) return add_vertex_pattern(pattern);
   for (int f = 0; f < face_count(); ++f) {
     const int nodes[3] = {node(surface_.faces(0, f)), node(surface_.faces(1, f)), node(surface_.faces(2, f))};
     pattern.add_clique(nodes, 3);
   }
-}
-
-SurfacePoint vertex_point(int node) {
-  SurfacePoint point;
-  point.count = 1;
-  point.node[0] = node;
-  point.weight[0] = 1.0;
-  return point;
 }
 
 SurfacePoint frame_point(int frame, const Pose& inverse_pose, const Vec3& world) {

@@ -130,6 +130,41 @@ TEST(GpuSource, ForceAndMomentBalance) {
   EXPECT_GT(*std::max_element(A.body.values().begin(), A.body.values().end()), 1.0);
 }
 
+// A skin pressed by a ball: each sample lies where the image saw it, so that the contact is that of nodes in the skin's places, and force and moment balance.
+TEST(GpuSource, ASkinIsSeenWhereItIs) {
+  SkinWorld skin;
+  SurfaceWorld nodes({skin.vertices, skin.skin.faces});
+  const TriMesh rigid = sphere(Vec3(0, 0, skin.vertices.row(2).maxCoeff() + 0.4), 0.5, 30);
+  const auto query = [&](const contact::NodeSurface& surface, const dynamics::State& state) {
+    std::vector<contact::ContactSample> out;
+    contact::make_gpu_source(surface, rigid, 0, contact::fixed_frame(), options(64, 0.02))->query(state.view(), out);
+    return out;
+  };
+  const auto of_skin = query(skin.surface, skin.state), of_nodes = query(nodes.surface, nodes.state);
+  ASSERT_EQ(of_skin.size(), of_nodes.size());
+  EXPECT_GT(of_skin.size(), 100u);
+  for (std::size_t i = 0; i < of_skin.size(); ++i) {
+    EXPECT_NEAR(of_skin[i].gap, of_nodes[i].gap, 1e-13);
+    const Vec3 a = point_on_nodes(of_skin[i].a, skin.state.view());
+    EXPECT_LT((a - point_on_nodes(of_nodes[i].a, nodes.state.view())).norm(), 1e-13);
+    EXPECT_LT(of_skin[i].a.offset.norm(), 1e-13) << "a point that its nodes do not carry has a moment of its own";
+    EXPECT_NEAR(of_skin[i].gap, of_skin[i].normal.dot(a - of_skin[i].b.offset), 1e-13);
+  }
+}
+
+// Where the tetrahedron is squashed flat its barycentric coordinates say nothing: the corner's weights and an offset place the sample.
+TEST(GpuSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
+  SkinWorld skin;
+  for (Eigen::Index i = 8; i < skin.state.q().size(); i += 3) skin.state.q()[i] = 0.0;  // all nodes in the plane z = 0
+  std::vector<contact::ContactSample> samples;
+  contact::make_gpu_source(skin.surface, sphere(Vec3(0, 0, 0.45), 0.5, 30), 0, contact::fixed_frame(), options(64, 0.02))->query(skin.state.view(), samples);
+  EXPECT_GT(samples.size(), 50u);
+  for (const auto& s : samples) {
+    EXPECT_TRUE(std::isfinite(s.gap));
+    EXPECT_NEAR(s.gap, s.normal.dot(point_on_nodes(s.a, skin.state.view()) - s.b.offset), 1e-12);
+  }
+}
+
 TEST(GpuSource, RefusesBadOptions) {
   Pair pair;
   const auto message = [&](TriMesh rigid, contact::GpuOptions with) {

@@ -282,6 +282,50 @@ TEST(Tunnelling, IsSeenFromTheFrameThatMoves) {
   EXPECT_EQ(source->tunnelled(), 3);
 }
 
+// A skin's vertices make the samples that nodes in their places would make.
+TEST(Skins, VerticesActAsNodesInTheirPlaces) {
+  SkinWorld skin;
+  SurfaceWorld nodes({skin.vertices, skin.skin.faces});
+  std::vector<contact::ContactSample> of_skin, of_nodes;
+  const Vec3 point(0, 0, -0.6), normal(0.1, 0.2, 1.0);
+  contact::make_plane_source(skin.surface, 0, contact::fixed_frame(), point, normal, 0.05)->query(skin.state.view(), of_skin);
+  contact::make_plane_source(nodes.surface, 0, contact::fixed_frame(), point, normal, 0.05)->query(nodes.state.view(), of_nodes);
+  ASSERT_EQ(of_skin.size(), of_nodes.size());
+  EXPECT_GT(of_skin.size(), 50u);
+  int extrapolated = 0;
+  for (std::size_t i = 0; i < of_skin.size(); ++i) {
+    EXPECT_NEAR(of_skin[i].gap, of_nodes[i].gap, 1e-14);
+    EXPECT_NEAR(of_skin[i].area, of_nodes[i].area, 1e-14);
+    EXPECT_LT((point_on_nodes(of_skin[i].a, skin.state.view()) - point_on_nodes(of_nodes[i].a, nodes.state.view())).norm(), 1e-14);
+    extrapolated += *std::min_element(of_skin[i].a.weight.begin(), of_skin[i].a.weight.end()) < -1e-9;
+  }
+  EXPECT_GT(extrapolated, 5) << "the skin stands out between the ball's flat faces";
+}
+
+// Ahead of a fast body samples are kept by the skin's own velocity: all nodes come down, at 2 m/s and 0.1 s ahead 0.2 m.
+TEST(Skins, VelocityIsThatOfTheSkin) {
+  SkinWorld skin;
+  for (Eigen::Index i = 6; i < skin.state.u().size(); ++i) skin.state.u()[i] = i % 3 == 2 ? -2.0 : 0.0;
+  const double lowest = skin.vertices.row(2).minCoeff();
+  auto source = contact::make_plane_source(skin.surface, 0, contact::fixed_frame(), Vec3(0, 0, lowest - 0.3), Vec3::UnitZ(), 0.15, 0.1);
+  std::vector<contact::ContactSample> samples;
+  source->query(skin.state.view(), samples);
+  int expected = 0;
+  for (const auto& x : skin.vertices.colwise()) expected += x.z() - (lowest - 0.3) < 0.35 - 1e-12;
+  EXPECT_EQ(static_cast<int>(samples.size()), expected);
+  EXPECT_GT(expected, 3);
+}
+
+TEST(Skins, BadEmbeddingsAreRefused) {
+  SkinWorld skin;
+  contact::NodeSurface bad = skin.surface;
+  bad.embedding.tet[5] = static_cast<int>(skin.ball.tets.cols());
+  EXPECT_THROW(contact::make_plane_source(bad, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.1), InternalError);
+  bad = skin.surface;
+  bad.embedding.weights.conservativeResize(4, 3);
+  EXPECT_THROW(contact::make_plane_source(bad, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.1), InternalError);
+}
+
 TEST(Sources, BadInputIsRefused) {
   SurfaceWorld world(sphere(Vec3::Zero(), 1.0, 4));
   const auto frame = contact::fixed_frame();

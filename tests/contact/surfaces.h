@@ -1,5 +1,6 @@
 #pragma once
 #include "fixture.h"
+#include "palpate/mesh/generators.h"
 
 namespace contact_tests {
 
@@ -52,5 +53,40 @@ struct SurfaceWorld {
     surface.faces = mesh.faces;
   }
 };
+
+/// A coarse ball of tetrahedra, bent and stretched, that carries a fine sphere as its skin (some of it outside, between the flat faces); behind another block.
+struct SkinWorld {
+  TetMesh ball = mesh::ball(1.0, 0.45);
+  TriMesh skin = mesh::sphere(1.0, 12);
+  dynamics::State state;
+  contact::NodeSurface surface;
+  Points vertices;  ///< of the skin, deformed
+
+  SkinWorld() {
+    dynamics::BlockSpec other;
+    other.name = "other";
+    other.q_size = other.u_size = 6;
+    state.insert(other, VecX::Constant(6, 100.0), VecX::Zero(6));
+    Points bent = ball.nodes;
+    for (auto x : bent.colwise()) x = Vec3(1.2 * x.x() + 0.2 * x.z() * x.z(), 0.9 * x.y() + 0.1 * x.x() * x.z(), x.z() + 0.15 * x.x() * x.x());
+    dynamics::BlockSpec nodes;
+    nodes.name = "ball";
+    nodes.q_size = nodes.u_size = static_cast<int>(bent.size());
+    VecX speeds(bent.size());
+    for (Eigen::Index i = 0; i < speeds.size(); ++i) speeds[i] = std::sin(1.0 + i);
+    surface.block_id = state.insert(nodes, Eigen::Map<const VecX>(bent.data(), bent.size()), speeds);
+    surface.faces = skin.faces;
+    surface.embedding = mesh::embed(ball, skin.vertices);
+    surface.tets = ball.tets;
+    mesh::evaluate(surface.embedding, ball.tets, bent, vertices);
+  }
+};
+
+/// Where a point on weighted nodes is.
+inline Vec3 point_on_nodes(const contact::SurfacePoint& p, const dynamics::StateView& state) {
+  Vec3 x = p.offset;
+  for (int k = 0; k < p.count; ++k) x += p.weight[static_cast<std::size_t>(k)] * state.position(p.node[static_cast<std::size_t>(k)]);
+  return x;
+}
 
 }  // namespace contact_tests

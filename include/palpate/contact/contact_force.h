@@ -7,14 +7,18 @@
 #include "palpate/contact/sample.h"
 #include "palpate/contact/spec.h"
 #include "palpate/dynamics/force_term.h"
+#include "palpate/mesh/embedding.h"
 
 namespace palpate::contact {
 
-/// A surface whose vertices are nodes of the State: vertex i is node `node_of_vertex[i]` counted inside the block.
+/// A surface that nodes of the State carry.  Its vertices are nodes themselves: vertex i is node `node_of_vertex[i]` counted inside the block;
+/// or points of a skin: vertex i hangs on the tetrahedron `tets.col(embedding.tet[i])` by four weights (DESIGN 3.2).
 struct NodeSurface {
   int block_id = -1;
-  std::vector<int> node_of_vertex;
-  Faces faces;  ///< vertex indices, outward
+  std::vector<int> node_of_vertex;  ///< empty of a skin
+  Faces faces;                      ///< vertex indices, outward
+  mesh::Embedding embedding{};      ///< of a skin
+  Tets tets{};                      ///< of a skin: the body's tetrahedra, nodes counted inside the block
 };
 
 /// Makes the samples of one pair from the current state: the slow query between which gaps are linear.
