@@ -55,8 +55,8 @@ void draw_modes(const loop::World& world, const integrate::Modes& modes, const s
     for (const loop::Body& body : world.bodies) {
       const Points now = displaced(world, body, modes, pictured[i]), rest = world.positions(body);
       const VecX moved = (now - rest).colwise().norm().transpose() / (loop::kModeAmplitude * box.sizes().maxCoeff());
-      render::Surface surface{body.name, now(Eigen::all, body.boundary.node_of_vertex), body.boundary.surface.faces,
-                              moved(body.boundary.node_of_vertex)};
+      render::Surface surface{body.name, body.surface_points(now), body.surface_faces(),
+                              body.surface_values(moved)};
       surface.points.colwise() += place;
       scene.surfaces.push_back(surface);
     }

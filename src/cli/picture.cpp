@@ -41,7 +41,7 @@ void Snapshot::period(loop::World& world, double t) {
   for (const loop::Body& body : world.bodies) {
     const Points now = world.positions(body);
     const VecX values = shading(world, body, now, shade_);
-    bodies_.push_back({now(Eigen::all, body.boundary.node_of_vertex), values(body.boundary.node_of_vertex)});
+    bodies_.push_back({body.surface_points(now), body.surface_values(values)});
   }
 }
 
@@ -50,7 +50,7 @@ void Snapshot::save(const loop::World& world, const std::string& path) const {
   render::Scene scene;
   for (std::size_t i = 0; i < bodies_.size(); ++i)
     scene.surfaces.push_back(
-        {world.bodies[i].name, bodies_[i].points, world.bodies[i].boundary.surface.faces, bodies_[i].values});
+        {world.bodies[i].name, bodies_[i].points, world.bodies[i].surface_faces(), bodies_[i].values});
   if (!bones_.empty())
     for (render::Surface& flesh : scene.surfaces) flesh.opacity = 0.55;
   for (std::size_t i = 0; i < bones_.size(); ++i) {

@@ -1,11 +1,13 @@
 #include <filesystem>
 
 #include "assemble_parts.h"
+#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/fem/load.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/mesh/checks.h"
 #include "palpate/store/mesh_file.h"
+#include "palpate/store/model_file.h"
 
 namespace palpate::loop {
 namespace {
@@ -32,15 +34,33 @@ fem::SoftBodyOptions options_of(const SoftBodySpec& spec) {
   return options;
 }
 
-TetMesh load_mesh(const MeshSpec& spec, const std::string& folder, mesh::MeshReport* report) {
-  if (!spec.file.ends_with(".h5")) return mesh::tet_mesh(spec, folder, report);
-  const std::string path = (std::filesystem::path(folder) / spec.file).string();
-  TetMesh out = store::read_mesh(path);
-  out.nodes *= spec.scale;
+/// The tetrahedra of a native mesh file or of a model, checked.
+TetMesh check_file(TetMesh tets, const std::string& path, double scale, mesh::MeshReport* report) {
+  tets.nodes *= scale;
   mesh::Provenance from;
   from.source = path;
-  *report = mesh::check_tets(out, from);
-  return out;
+  *report = mesh::check_tets(tets, from);
+  return tets;
+}
+
+/// A body's tetrahedra, and its skin where the scene names it: nothing else of a model file is read.
+void load_mesh(const SoftBodySpec& spec, const std::string& folder, Body& body) {
+  const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
+  if (spec.skin) {
+    LayeredModel model = store::read_model(path).model;
+    if (model.skin.faces.cols() == 0) fail("body \"{}\": skin = true, but {} has no skin; `palpate model` writes files that have one", spec.name, path);
+    for (const MaterialRegion& region : model.regions)
+      if (region.youngs_modulus_factor != 1.0 || region.density_factor != 1.0)
+        fail("body \"{}\": {} has a region \"{}\" of another material; this version gives a body one material", spec.name, path, region.name);
+    counters::count("loop.skin");
+    model.skin.vertices *= spec.mesh.scale;
+    body.rest = check_file(std::move(model.tets), path, spec.mesh.scale, &body.report);
+    body.skin = Skin{std::move(model.skin), std::move(model.embedding)};
+  } else if (spec.mesh.file.ends_with(".h5")) {
+    body.rest = check_file(store::read_mesh(path), path, spec.mesh.scale, &body.report);
+  } else {
+    body.rest = mesh::tet_mesh(spec.mesh, folder, &body.report);
+  }
 }
 
 /// Velocity of each node of a body that starts as a rigid one: v + w x (x - centre of mass).
@@ -55,7 +75,7 @@ Body place_body(World& world, const SoftBodySpec& spec) {
   Body body;
   body.name = spec.name;
   fem::check(material_of(spec), fmt::format("body \"{}\"", spec.name).c_str());
-  body.rest = load_mesh(spec.mesh, world.folder, &body.report);
+  load_mesh(spec, world.folder, body);
   const Pose pose{quaternion_of(spec.rotation_vector_rad), spec.position_m};
   body.placed.resize(3, body.rest.nodes.cols());
   for (Eigen::Index i = 0; i < body.placed.cols(); ++i) body.placed.col(i) = pose * Vec3(body.rest.nodes.col(i));

@@ -25,7 +25,8 @@ struct Pair {
 Pair pair_of(const World& world, const ContactSpec& spec) {
   const Body* body = world.find_body(spec.first);
   if (!body) fail("contact: no body called \"{}\"", spec.first);
-  const double gap = spec.candidate_gap_m > 0.0 ? spec.candidate_gap_m : mean_edge(body->boundary.surface);
+  const double gap = spec.candidate_gap_m > 0.0 ? spec.candidate_gap_m : mean_edge(body->skin ? body->skin->rest : body->boundary.surface);
+  if (body->skin) return {spec, {body->block_id, {}, body->skin->rest.faces, body->skin->embedding, body->rest.tets}, gap};
   return {spec, {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces}, gap};
 }
 

@@ -15,6 +15,21 @@ namespace palpate::loop {
 World::World() = default;
 World::~World() = default;
 
+Points Body::surface_points(const Points& nodes) const {
+  if (!skin) return nodes(Eigen::all, boundary.node_of_vertex);
+  Points out;
+  mesh::evaluate(skin->embedding, rest.tets, nodes, out);
+  return out;
+}
+
+VecX Body::surface_values(const VecX& at_nodes) const {
+  if (!skin) return at_nodes(boundary.node_of_vertex);
+  VecX out(skin->embedding.size());
+  for (Eigen::Index v = 0; v < out.size(); ++v)
+    out[v] = skin->embedding.weights.col(v).dot(at_nodes(rest.tets.col(skin->embedding.tet[static_cast<std::size_t>(v)])));
+  return out;
+}
+
 const Body* World::find_body(const std::string& name) const {
   for (const Body& b : bodies)
     if (b.name == name) return &b;

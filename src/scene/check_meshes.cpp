@@ -46,6 +46,10 @@ void check_mesh(const Document& doc, const std::string& key, const std::string& 
 void check_meshes(const Document& doc, const Description& d) {
   for (std::size_t i = 0; i < d.bodies.size(); ++i)
     check_mesh(doc, fmt::format("body[{}].mesh", i), fmt::format("body \"{}\": mesh", d.bodies[i].name), d.bodies[i].mesh);
+  for (std::size_t i = 0; i < d.bodies.size(); ++i)
+    if (d.bodies[i].skin && !d.bodies[i].mesh.file.ends_with(".h5"))
+      refuse(place(doc, fmt::format("body[{}].skin", i)), fmt::format("body \"{}\"", d.bodies[i].name),
+             "skin = true needs mesh = { file = \"MODEL.h5\" }, a model file; `palpate model SURFACE -o MODEL.h5` makes one");
   if (!d.tool) return;
   if (given(doc, "tool.mesh")) check_mesh(doc, "tool.mesh", "tool: mesh", d.tool->mesh);
   else if (d.tool->shape == "mesh") refuse(place(doc, "tool.shape"), "tool", "shape = \"mesh\" needs a [tool.mesh]");

@@ -25,6 +25,8 @@ void add_body_needs(const Description& d, std::vector<Need>& out) {
   const bool weight = any && !d.gravity_m_s2.isZero(0.0);
   out.push_back({"fem", any, any ? fmt::format("{} soft {}", d.bodies.size(), d.bodies.size() == 1 ? "body" : "bodies") : "no [[body]]"});
   out.push_back({"nodal dilatation", nodal > 0, nodal > 0 ? fmt::format("{} [[body]] with volumetric = \"nodal\"", nodal) : "no [[body]] with volumetric = \"nodal\""});
+  const int skins = count_if(d.bodies, [](const auto& b) { return b.skin; });
+  out.push_back({"skin", skins > 0, skins > 0 ? fmt::format("{} [[body]] with skin = true", skins) : "no [[body]] with skin = true"});
   out.push_back({"gravity", weight, weight ? "gravity_m_s2 is not zero" : "gravity_m_s2 is zero, or there is no body"});
   out.push_back({"fixed nodes", fixed > 0, fixed > 0 ? fmt::format("{} [[body.attachment]] without keyframes", fixed) : "no [[body.attachment]] without keyframes"});
   out.push_back({"driven nodes", driven > 0, driven > 0 ? fmt::format("{} [[body.attachment]] with keyframes", driven) : "no [[body.attachment.keyframe]]"});

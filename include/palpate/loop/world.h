@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "palpate/fem/nodal_dilatation.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/boundary.h"
+#include "palpate/mesh/embedding.h"
 #include "palpate/mesh/source.h"
 #include "palpate/scene/description.h"
 
@@ -21,6 +23,12 @@ class Tool;
 
 namespace palpate::loop {
 
+/// A detailed surface that hangs on a body's tetrahedra.
+struct Skin {
+  TriMesh rest;               ///< in the body's own axes
+  mesh::Embedding embedding;
+};
+
 /// One soft body as assembled.
 struct Body {
   std::string name;
@@ -28,12 +36,18 @@ struct Body {
   TetMesh rest;               ///< rest positions in the body's own axes
   Points placed;              ///< the same placed in the world: what the simulation starts from
   mesh::Boundary boundary;    ///< surface; made for every body
+  std::optional<Skin> skin;   ///< where the scene asks for it
   mesh::MeshReport report;
   VecX masses;                ///< lumped, one a node [kg]
   double stiffness_scale = 0; ///< E [Pa]
   std::shared_ptr<fem::SoftBody> term;
   std::shared_ptr<fem::NodalDilatation> dilatation;  ///< null where the body's volume is the elements' alone
 
+  /// The surface that is touched and drawn: the skin's, else the boundary's.
+  const Faces& surface_faces() const { return skin ? skin->rest.faces : boundary.surface.faces; }
+  /// Its vertices, and a value at each, from positions [m] and values of the nodes.
+  Points surface_points(const Points& nodes) const;
+  VecX surface_values(const VecX& at_nodes) const;
   VecX nodal_stress(const dynamics::StateView& state) const { return dilatation ? dilatation->nodal_stress(state) : term->nodal_stress(state); }
 };
 
