@@ -81,7 +81,7 @@ TEST(Assemble, WhatASceneDoesNotNameIsNotMade) {
   EXPECT_EQ(world->tool, nullptr);
   EXPECT_EQ(world->tool_frame, nullptr);
   EXPECT_EQ(world->condenser, nullptr);
-  for (const char* part : {"contact.force", "tool.simbody_system", "gl.context", "store.run_file", "render.picture", "integrate.cvode-bdf"})
+  for (const char* part : {"contact.force", "loop.skin", "proxy.region_finder", "tool.simbody_system", "gl.context", "store.run_file", "render.picture", "integrate.cvode-bdf"})
     EXPECT_EQ(counters::counter(part), 0) << part;
   EXPECT_EQ(counters::counter("integrate.linearly-implicit-euler"), 1) << "the counters count";
 }

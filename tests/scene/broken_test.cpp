@@ -41,6 +41,7 @@ const Broken kCases[] = {
     {"refresh", "10:21", "exchange: contact_refresh_s = 0.003 must be a whole fraction of exchange_period_s = 0.01; use 0.0025"},
     {"short-vector", "4:16", "scene: gravity_m_s2 = [0, -9.81] must be three numbers, [x, y, z]"},
     {"single-brackets", "4:1", "body must be a list of tables: write [[body]] with double brackets"},
+    {"skin-of-generator", "8:8", "body \"ball\": skin = true needs mesh = { file = \"MODEL.h5\" }, a model file; `palpate model SURFACE -o MODEL.h5` makes one"},
     {"syntax", "3:14", "not valid TOML: "},
     {"tool-without-device", "4:1", "tool: a tool needs a hand: add [device] with [[device.keyframe]]"},
     {"two-of-a-name", "10:8", "obstacle \"ball\": name \"ball\" is taken; bodies, bones and obstacles need names of their own"},
