@@ -26,7 +26,8 @@ constexpr int kNewtonIterations = 8;
 constexpr int kInterpolantDegree = 3;  ///< cubic Hermite: no evaluation of its own
 constexpr int kRootDegree = 5;         ///< a root's state is where the next step starts from: worth two evaluations
 /// Newton ends at this share of the tolerance, not at ARKODE's tenth: what it leaves has one sign from step to step while an old factor
-/// is kept, and a method of order 2 takes thousands of steps.
+/// is kept, and a method of order 2 takes thousands of steps.  Where the pair's tolerance T is above rtol (tolerance_of), the share is of rtol: the solution
+/// carried on is better than T says, and must not be spoilt by its stages.
 constexpr double kNewtonCoefficient = 0.01;
 
 /// Runge-Kutta methods of SUNDIALS ARKODE (Reynolds et al. 2023): explicit, diagonally implicit, or additive (what is stiff implicit, the rest explicit),
@@ -84,7 +85,8 @@ class Ark final : public Adapter {
     check(ARKStepSetLinearSolver(memory_, linear_solver_, matrix_), "ARKStepSetLinearSolver", t, 0.0);
     check(ARKStepSetLinSysFn(memory_, linear_system), "ARKStepSetLinSysFn", t, 0.0);
     check(ARKStepSetMaxNonlinIters(memory_, kNewtonIterations), "ARKStepSetMaxNonlinIters", t, 0.0);
-    check(ARKStepSetNonlinConvCoef(memory_, kNewtonCoefficient), "ARKStepSetNonlinConvCoef", t, 0.0);
+    const double aim = spec().fixed_step ? spec().newton_rtol : spec().rtol;
+    check(ARKStepSetNonlinConvCoef(memory_, kNewtonCoefficient * std::min(1.0, aim / tolerance_of(spec(), method_))), "ARKStepSetNonlinConvCoef", t, 0.0);
     check(ARKStepSetDeduceImplicitRhs(memory_, SUNTRUE), "ARKStepSetDeduceImplicitRhs", t, 0.0);  // f of a stage from its equation: spares evaluations
   }
 
