@@ -3,8 +3,8 @@
 
 namespace palpate::proxy {
 
-/// Where a region's normal came from.
-enum class RegionMethod { kMpr, kEpa, kLastNormal, kDistance, kCentroids };
+/// Where a region's normal came from: libccd's two algorithms, the last query, the distance algorithm, the line of centroids, or (Pruner) the skin's area vectors.
+enum class RegionMethod { kMpr, kEpa, kLastNormal, kDistance, kCentroids, kAreas };
 
 /// A contact region of two convex hulls A and B: the plane D that the image of the contact is taken along.
 struct Region {
@@ -40,6 +40,11 @@ class RegionFinder {
   Region find(const Points& a, const Points& b, double margin);
   const RegionCounts& counts() const { return counts_; }
   void forget() { has_last_ = false; }  ///< the last normal
+  /// Puts a normal in the last one's place: one finder serves many pairs that keep theirs.
+  void remember(const Vec3& normal) {
+    has_last_ = true;
+    last_normal_ = normal;
+  }
 
  private:
   RegionCounts counts_;

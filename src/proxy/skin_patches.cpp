@@ -1,0 +1,139 @@
+#include "proxy/skin_patches.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace palpate::proxy {
+namespace {
+
+Vec3 face_middle(const TriMesh& skin, int f) {
+  return (skin.vertices.col(skin.faces(0, f)) + skin.vertices.col(skin.faces(1, f)) + skin.vertices.col(skin.faces(2, f))) / 3.0;
+}
+
+/// The axis along which points reach farthest.
+template <class Item, class Place>
+int longest_axis(std::span<const Item> items, Place place) {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Item& item : items) {
+    low = low.cwiseMin(place(item));
+    high = high.cwiseMax(place(item));
+  }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  return axis;
+}
+
+template <class Place>
+std::size_t halve(std::span<int> items, Place place) {
+  const int axis = longest_axis(std::span<const int>(items), place);
+  const auto half = static_cast<std::ptrdiff_t>(items.size() / 2);
+  std::nth_element(items.begin(), items.begin() + half, items.end(), [&](int f, int g) { return std::pair(place(f)[axis], f) < std::pair(place(g)[axis], g); });
+  return static_cast<std::size_t>(half);
+}
+
+SkinPatch patch_of(const TriMesh& skin, std::span<const int> faces, int proxy, int first) {
+  SkinPatch out;
+  out.proxy = proxy;
+  out.first_face = first;
+  out.face_count = static_cast<int>(faces.size());
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const int f : faces) {
+    const Vec3 a = skin.vertices.col(skin.faces(0, f)), b = skin.vertices.col(skin.faces(1, f)), c = skin.vertices.col(skin.faces(2, f));
+    low = low.cwiseMin(a).cwiseMin(b).cwiseMin(c);
+    high = high.cwiseMax(a).cwiseMax(b).cwiseMax(c);
+    out.area += 0.5 * (b - a).cross(c - a);
+  }
+  out.centre = 0.5 * (low + high);
+  for (const int f : faces)
+    for (int k = 0; k < 3; ++k) out.radius = std::max(out.radius, (skin.vertices.col(skin.faces(k, f)) - out.centre).norm());
+  return out;
+}
+
+void add_halved(std::vector<ProxyBranch>& tree, std::span<int> proxies, const Points& middle, int parent) {
+  const auto branch = tree.size();
+  tree.push_back({parent, 0, proxies.size() == 1 ? proxies[0] : -1, Vec3::Zero(), Vec3::Zero()});
+  if (proxies.size() > 1) {
+    const std::size_t half = halve(proxies, [&](int p) -> Vec3 { return middle.col(p); });
+    add_halved(tree, proxies.first(half), middle, static_cast<int>(branch));
+    add_halved(tree, proxies.subspan(half), middle, static_cast<int>(branch));
+  }
+  tree[branch].after = static_cast<int>(tree.size());
+}
+
+/// The bone's own proxies and, below them, the bones that hang on it; nothing for a bone without any.
+void add_bone(std::vector<ProxyBranch>& tree, const Skeleton& skeleton, std::vector<std::vector<int>>& of_bone, const Points& middle, int bone, int parent) {
+  const auto branch = tree.size();
+  tree.push_back({parent, 0, -1, Vec3::Zero(), Vec3::Zero()});
+  if (auto& own = of_bone[static_cast<std::size_t>(bone)]; !own.empty()) add_halved(tree, own, middle, static_cast<int>(branch));
+  for (std::size_t child = 0; child < skeleton.bones.size(); ++child)
+    if (skeleton.bones[child].parent == bone) add_bone(tree, skeleton, of_bone, middle, static_cast<int>(child), static_cast<int>(branch));
+  if (tree.size() == branch + 1) return tree.pop_back();
+  tree[branch].after = static_cast<int>(tree.size());
+}
+
+}  // namespace
+
+SkinPatches skin_patches(const TriMesh& skin, const std::vector<int>& owner_of_face, int proxies, int patch_faces) {
+  SkinPatches out;
+  out.faces.resize(owner_of_face.size());
+  std::iota(out.faces.begin(), out.faces.end(), 0);
+  std::stable_sort(out.faces.begin(), out.faces.end(),
+                   [&](int f, int g) { return owner_of_face[static_cast<std::size_t>(f)] < owner_of_face[static_cast<std::size_t>(g)]; });
+  std::size_t first = 0;
+  for (int p = 0; p < proxies; ++p) {
+    out.first_of_proxy.push_back(static_cast<int>(out.patches.size()));
+    std::size_t end = first;
+    while (end < out.faces.size() && owner_of_face[static_cast<std::size_t>(out.faces[end])] == p) ++end;
+    std::vector<std::pair<std::size_t, std::size_t>> open;
+    if (end > first) open.emplace_back(first, end - first);
+    while (!open.empty()) {
+      const auto [begin, count] = open.back();
+      open.pop_back();
+      const std::span<int> faces(out.faces.data() + begin, count);
+      if (static_cast<int>(count) <= patch_faces) {
+        out.patches.push_back(patch_of(skin, faces, p, static_cast<int>(begin)));
+        continue;
+      }
+      const std::size_t half = halve(faces, [&](int f) { return face_middle(skin, f); });
+      open.emplace_back(begin + half, count - half);
+      open.emplace_back(begin, half);
+    }
+    first = end;
+  }
+  out.first_of_proxy.push_back(static_cast<int>(out.patches.size()));
+  return out;
+}
+
+std::vector<ProxyBranch> proxy_tree(const Skeleton& skeleton, const std::vector<ProxyHull>& proxies, const Points& middle) {
+  std::vector<ProxyBranch> tree;
+  std::vector<std::vector<int>> of_bone(skeleton.bones.size());
+  std::vector<int> free;
+  for (int p = 0; p < static_cast<int>(proxies.size()); ++p)
+    (proxies[static_cast<std::size_t>(p)].bone >= 0 ? of_bone[static_cast<std::size_t>(proxies[static_cast<std::size_t>(p)].bone)] : free).push_back(p);
+  if (free.size() == proxies.size()) {
+    add_halved(tree, free, middle, -1);
+    return tree;
+  }
+  tree.emplace_back();
+  if (!free.empty()) add_halved(tree, free, middle, 0);
+  for (std::size_t b = 0; b < skeleton.bones.size(); ++b)
+    if (skeleton.bones[b].parent < 0) add_bone(tree, skeleton, of_bone, middle, static_cast<int>(b), 0);
+  tree[0].after = static_cast<int>(tree.size());
+  return tree;
+}
+
+void refit(std::vector<ProxyBranch>& tree, const std::vector<ProxyState>& states) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (ProxyBranch& branch : tree) {
+    branch.low = branch.proxy < 0 ? Vec3(Vec3::Constant(infinity)) : states[static_cast<std::size_t>(branch.proxy)].low;
+    branch.high = branch.proxy < 0 ? Vec3(Vec3::Constant(-infinity)) : states[static_cast<std::size_t>(branch.proxy)].high;
+  }
+  for (std::size_t i = tree.size(); i-- > 1;) {  // preorder: children stand after their parent
+    ProxyBranch& parent = tree[static_cast<std::size_t>(tree[i].parent)];
+    parent.low = parent.low.cwiseMin(tree[i].low);
+    parent.high = parent.high.cwiseMax(tree[i].high);
+  }
+}
+
+}  // namespace palpate::proxy
