@@ -14,6 +14,7 @@ BELOW_LOOP = ["core", "mesh", "dynamics", "fem", "proxy", "gl", "contact", "tool
 ALLOWED = {
     "core": [],
     "mesh": ["core"],
+    "shapes": ["core", "mesh"],
     "dynamics": ["core"],
     "fem": ["core", "mesh", "dynamics"],
     "proxy": ["core", "mesh"],
@@ -24,14 +25,14 @@ ALLOWED = {
     "integrate": ["core", "dynamics"],
     "store": ["core", "mesh"],  # mesh: the native mesh file
     "render": ["core", "mesh", "gl"],
-    "model": ["core", "mesh", "proxy", "store"],
+    "model": ["core", "mesh", "shapes", "proxy", "store"],
     "scene": ["core"],  # and the spec.h of every part: see is_allowed
     "loop": BELOW_LOOP,
     "study": ["core", "scene", "loop", "store"],  # core and scene: what loop's own headers speak in
     "fem_bench": ["core", "mesh", "dynamics", "fem", "integrate"],  # src/study/fem_bench: a beam made of the parts themselves, without a scene
     "stability": BELOW_LOOP + ["loop", "study"],  # src/study/stability: builds its cases from the parts themselves, as validation does
     "report": ["core", "store"],
-    "cli": ["core", "scene", "store", "render", "loop", "study", "report", "stability", "fem_bench", "validation"],
+    "cli": ["core", "shapes", "scene", "store", "render", "loop", "study", "report", "stability", "fem_bench", "validation"],
     "validation": BELOW_LOOP + ["loop", "study", "report"],  # the cases in validation/, and study/validation*
 }
 

@@ -1,0 +1,56 @@
+#pragma once
+#include <vector>
+
+#include "palpate/core/types.h"
+
+namespace palpate::shapes {
+
+/// A closed triangle surface that can change: half-edge h runs from vertex origin[h] to origin[next(h)] in face h/3, and twin[h] runs back.
+/// A surface with rims is closed by a ghost vertex a rim, joined to all of it, so that no operation needs to know about rims.
+/// Edges and vertices come and go; what is gone keeps its number and is skipped (origin -1, out -1).
+class CornerTable {
+ public:
+  CornerTable() = default;
+  explicit CornerTable(const Faces& faces, int vertices);  ///< @pre each edge in one face or two, oriented consistently
+
+  static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  static int previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
+  int from(int h) const { return origin[h]; }
+  int to(int h) const { return origin[next(h)]; }
+  int opposite(int h) const { return origin[previous(h)]; }
+  bool is_ghost(int v) const { return v >= first_ghost && v < last_ghost; }
+  bool gone(int h) const { return origin[h] < 0; }
+  bool touches_ghost(int h) const { return is_ghost(from(h)) || is_ghost(to(h)); }
+  /// The edge has a ghost on one side: it lies on a rim.
+  bool on_rim(int h) const { return is_ghost(opposite(h)) || is_ghost(opposite(twin[h])); }
+
+  /// Calls visit(h) for every half-edge out of v, in turn.
+  template <class Visit>
+  void around(int v, Visit&& visit) const {
+    const int start = out[v];
+    int h = start;
+    do {
+      visit(h);
+      h = twin[previous(h)];
+    } while (h != start);
+  }
+  int valence(int v) const;
+
+  int add_vertex();           ///< its number; belongs to no face yet
+  void flip(int h);           ///< turns the edge inside its two faces
+  void split(int h, int m);   ///< puts vertex m on the edge
+  /// Moves everything at from(h) over to to(h).
+  void collapse(int h);
+  bool can_flip(int h) const;      ///< the new edge is not there yet
+  bool can_collapse(int h) const;  ///< the ends share the two opposite vertices and no other (link condition), which keep three neighbours
+
+  std::vector<int> origin, twin;  ///< three a face
+  std::vector<int> out;           ///< a half-edge out of each vertex
+  int first_ghost = 0, last_ghost = 0;
+
+ private:
+  void face(int f, int a, int b, int c);
+  void join(int h, int t);
+};
+
+}  // namespace palpate::shapes
