@@ -1,7 +1,9 @@
 #include "corner_table.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 
 #include "palpate/core/error.h"
 
@@ -16,20 +18,23 @@ CornerTable::CornerTable(const Faces& faces, int vertices) {
   origin.assign(faces.data(), faces.data() + faces.size());
   twin.assign(origin.size(), -1);
   out.assign(static_cast<std::size_t>(vertices), -1);
-  std::unordered_map<std::uint64_t, int> half;
-  half.reserve(origin.size());
+  std::vector<std::pair<std::uint64_t, int>> halves;  // sorted by edge, whichever way it runs
+  halves.reserve(origin.size());
   for (int h = 0; h < static_cast<int>(origin.size()); ++h) {
     out[origin[h]] = h;
-    PALPATE_CHECK(half.emplace(edge(from(h), to(h)), h).second, "edge {} {} twice", from(h), to(h));
+    halves.emplace_back(edge(std::min(from(h), to(h)), std::max(from(h), to(h))), h);
+  }
+  std::sort(halves.begin(), halves.end());
+  for (std::size_t i = 0; i + 1 < halves.size(); ++i) {
+    if (halves[i].first != halves[i + 1].first) continue;
+    const int h = halves[i].second, t = halves[i + 1].second;
+    PALPATE_CHECK(twin[h] < 0 && from(h) == to(t), "edge {} {} is in more than two faces, or twice the same way round", from(h), to(h));
+    join(h, t);
   }
   std::unordered_map<int, int> rim;  // from a vertex along the rim, against the faces
   std::vector<int> rim_starts;
   for (int h = 0; h < static_cast<int>(origin.size()); ++h) {
-    const auto other = half.find(edge(to(h), from(h)));
-    if (other != half.end()) {
-      twin[h] = other->second;
-      continue;
-    }
+    if (twin[h] >= 0) continue;
     PALPATE_CHECK(rim.emplace(to(h), h).second, "two rims meet at vertex {}", to(h));
     rim_starts.push_back(h);
   }

@@ -22,6 +22,13 @@ double both(const Vec3& p, double k, Part&& part) {
   return join(part(p), part(mirrored(p)), k);
 }
 
+/// A lower bound of the distance outside a ball: what is far away is not looked at closely.
+template <class Part>
+double when_near(const Vec3& p, const Vec3& centre, double radius, Part&& part) {
+  const double away = (p - centre).norm() - radius;
+  return away > 0.08 ? away : part();
+}
+
 double torso(const Vec3& p, bool fine) {
   double d = ellipsoid(p, {0, 0.010, 0.945}, {0.152, 0.100, 0.115});                                                        // pelvis
   d = join(d, ellipsoid(p, {0, 0.006, 1.085}, {0.131, 0.090, 0.150}), 0.06);                                                // waist
@@ -55,7 +62,7 @@ double leg(const Vec3& p, bool fine) {
     d = join(d, ellipsoid(p, {0.140, -0.030, 0.590}, {0.022, 0.024, 0.060}), 0.02);
     d = join(d, limb(p, {0.112, -0.046, 0.43}, {0.124, -0.012, 0.13}, 0.012, 0.010), 0.025);  // shin
   }
-  return join(d, foot(p, fine), 0.02);
+  return join(d, when_near(p, {0.14, -0.05, 0.06}, 0.20, [&] { return foot(p, fine); }), 0.02);
 }
 
 double arm(const Vec3& p, bool fine) {
@@ -67,7 +74,7 @@ double arm(const Vec3& p, bool fine) {
   d = join(d, limb(p, kElbow, kWrist, 0.036, 0.0245, 0.006, 0.25), 0.02);
   d = join(d, ellipsoid(p, kElbow + 0.26 * (kWrist - kElbow) + Vec3(0.010, -0.008, 0.0), {0.034, 0.036, 0.075}, turned(10, -25, 0)), 0.025);
   if (fine) d = join(d, ball(p, kElbow + Vec3(0.004, 0.030, 0.004), 0.012), 0.02);
-  return join(d, hand(p, fine), 0.015);
+  return join(d, when_near(p, kKnuckles, 0.14, [&] { return hand(p, fine); }), 0.015);
 }
 
 double head_and_neck(const Vec3& p, bool fine) {
@@ -77,13 +84,6 @@ double head_and_neck(const Vec3& p, bool fine) {
     d = join(d, ellipsoid(p, {0, -0.034, 1.492}, {0.008, 0.009, 0.015}), 0.012);
   }
   return join(d, kHeadScale * head_mm((p - kHeadOrigin) / kHeadScale, {fine, false, 0.0}), 0.014);
-}
-
-/// A lower bound of the distance outside a ball: what is far away is not looked at closely.
-template <class Part>
-double when_near(const Vec3& p, const Vec3& centre, double radius, Part&& part) {
-  const double away = (p - centre).norm() - radius;
-  return away > 0.08 ? away : part();
 }
 
 double size_of(const Vec3& place) {

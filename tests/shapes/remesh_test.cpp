@@ -165,6 +165,19 @@ TEST(CornerTable, OperationsKeepTheSurfaceClosed) {
   EXPECT_EQ(closed(), 8);
 }
 
+// Two faces that run along an edge the same way, and an edge in three faces.
+TEST(CornerTable, RefusesSurfacesThatAreNone) {
+  Faces same(3, 2), three(3, 3);
+  same << 0, 0,
+          1, 1,
+          2, 3;
+  three << 0, 1, 0,
+           1, 0, 1,
+           2, 3, 4;
+  EXPECT_THROW(shapes::CornerTable(same, 4), InternalError);
+  EXPECT_THROW(shapes::CornerTable(three, 5), InternalError);
+}
+
 // A tetrahedron has nothing to spare: its collapse would fold it flat, its flip would double an edge.
 TEST(CornerTable, RefusesWhatWouldBreakTheSurface) {
   Faces faces(3, 4);
