@@ -1,0 +1,24 @@
+#include "palpate/core/huge_pages.h"
+
+#include <cstdint>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace palpate {
+
+void prefer_huge_pages([[maybe_unused]] const void* memory, [[maybe_unused]] std::size_t bytes) {
+#if defined(__linux__) && defined(MADV_HUGEPAGE)
+  constexpr std::uintptr_t kPage = 2u << 20;
+  const auto first = (reinterpret_cast<std::uintptr_t>(memory) + kPage - 1) / kPage * kPage;
+  const auto last = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / kPage * kPage;
+  if (first >= last) return;
+  void* begin = reinterpret_cast<void*>(first);
+  ::madvise(begin, last - first, MADV_HUGEPAGE);  // for pages that are not there yet
+  constexpr int kCollapse = 25;  // MADV_COLLAPSE of Linux 6.1, which C libraries name later; older kernels refuse
+  ::madvise(begin, last - first, kCollapse);  // for those that are
+#endif
+}
+
+}  // namespace palpate
