@@ -65,8 +65,10 @@ BlockSparse PatternBuilder::build() const {
   BlockSparse out;
   out.row_start_.assign(static_cast<std::size_t>(node_count_) + 1, 0);
   out.columns_.reserve(sorted.size());
+  out.diagonal_.resize(static_cast<std::size_t>(node_count_));
   for (const auto& [i, j] : sorted) {
     ++out.row_start_[static_cast<std::size_t>(i) + 1];
+    if (i == j) out.diagonal_[static_cast<std::size_t>(i)] = static_cast<int>(out.columns_.size());
     out.columns_.push_back(j);
   }
   for (std::size_t i = 1; i < out.row_start_.size(); ++i) out.row_start_[i] += out.row_start_[i - 1];

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "palpate/core/error.h"
+#include "palpate/core/huge_pages.h"
 
 namespace palpate::dynamics {
 namespace {
@@ -81,6 +82,12 @@ void System::prepare(const StateView& state) {
     any_master_ = true;
   }
   std::sort(driven_dofs_.begin(), driven_dofs_.end());
+  driven_nodes_.clear();
+  driven_pattern_ = 0;
+  for (int dof : driven_dofs_) {
+    if (driven_nodes_.empty() || driven_nodes_.back().node != dof / 3) driven_nodes_.push_back({dof / 3, {}});
+    driven_nodes_.back().axes[static_cast<std::size_t>(dof % 3)] = true;
+  }
 
   nodal_mass_diagonal_ = true;
   for (const auto& inertia : inertias_) {
@@ -92,7 +99,7 @@ void System::prepare(const StateView& state) {
   inverse_nodal_mass_.resize(layout.nodal_size);
   if (nodal_mass_diagonal_) {
     for (int i = 0; i < layout.nodal_size; ++i) {
-      const double m = mass_.body.block(mass_.body.slot(i / 3, i / 3))[4 * (i % 3)];
+      const double m = mass_.body.block(mass_.body.diagonal(i / 3))[4 * (i % 3)];
       PALPATE_CHECK(m > 0.0, "node {} has mass {}", i / 3, m);
       inverse_nodal_mass_[i] = 1.0 / m;
     }
@@ -215,7 +222,10 @@ void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
     pattern_ = builder.build();
     pattern_key_ = key.value;
   }
-  if (A.body.pattern_version() != pattern_.pattern_version()) A.body = pattern_;
+  if (A.body.pattern_version() != pattern_.pattern_version()) {
+    A.body = pattern_;
+    prefer_huge_pages(A.body.values());
+  }
   resize_border(A, layout.nodal_size, layout.border_size());
 }
 
@@ -295,17 +305,31 @@ void System::reduce_to_masters(const StateView& state, BorderedMatrix& A) const 
   each_carried([&](int dof, int at, const auto& g) { A.corner.middleRows(at, g.size()) += g.transpose() * A.right.row(dof); });
 }
 
+void System::find_driven_slots(const BlockSparse& A) const {
+  driven_mirrors_.clear();
+  for (const DrivenNode& d : driven_nodes_)
+    for (int s = A.row_start()[static_cast<std::size_t>(d.node)]; s < A.row_start()[static_cast<std::size_t>(d.node) + 1]; ++s)
+      driven_mirrors_.push_back(A.slot(A.columns()[static_cast<std::size_t>(s)], d.node));
+  driven_pattern_ = A.pattern_version();
+}
+
 void System::eliminate_driven(BorderedMatrix& A) const {
-  for (int dof : driven_dofs_) {
-    const int node = dof / 3, axis = dof % 3;
-    for (int s = A.body.row_start()[static_cast<std::size_t>(node)]; s < A.body.row_start()[static_cast<std::size_t>(node) + 1]; ++s) {
-      double* row = A.body.block(s) + 3 * axis;
-      row[0] = row[1] = row[2] = 0.0;
-      double* column = A.body.block(A.body.slot(A.body.columns()[static_cast<std::size_t>(s)], node)) + axis;
-      column[0] = column[3] = column[6] = 0.0;
+  if (driven_pattern_ != A.body.pattern_version()) find_driven_slots(A.body);
+  std::size_t mirror = 0;
+  for (const DrivenNode& d : driven_nodes_) {
+    for (int s = A.body.row_start()[static_cast<std::size_t>(d.node)]; s < A.body.row_start()[static_cast<std::size_t>(d.node) + 1]; ++s, ++mirror) {
+      double *block = A.body.block(s), *mirrored = A.body.block(driven_mirrors_[mirror]);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!d.axes[static_cast<std::size_t>(axis)]) continue;
+        for (int c = 0; c < 3; ++c) block[3 * axis + c] = mirrored[3 * c + axis] = 0.0;
+      }
     }
-    A.body.block(A.body.slot(node, node))[4 * axis] = 1.0;
-    if (A.border_size() == 0) continue;
+    double* own = A.body.block(A.body.diagonal(d.node));
+    for (int axis = 0; axis < 3; ++axis)
+      if (d.axes[static_cast<std::size_t>(axis)]) own[4 * axis] = 1.0;
+  }
+  if (A.border_size() == 0) return;
+  for (int dof : driven_dofs_) {
     A.right.row(dof).setZero();
     A.bottom.col(dof).setZero();
   }

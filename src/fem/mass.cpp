@@ -22,7 +22,10 @@ class LumpedMass final : public dynamics::InertiaTerm {
 
   void add_mass(const StateView& state, double scale, BorderedMatrix& A) const override {
     const int first = place(state).first_node;
-    for (int i = 0; i < masses_.size(); ++i) A.body.add(A.body.slot(first + i, first + i), scale * masses_[i] * Mat3::Identity());
+    for (int i = 0; i < masses_.size(); ++i) {
+      double* block = A.body.block(A.body.diagonal(first + i));
+      for (int axis = 0; axis < 3; ++axis) block[4 * axis] += scale * masses_[i];
+    }
   }
   void apply(const StateView& state, const VecX& x, VecX& y) const override {
     const int offset = place(state).u_offset;

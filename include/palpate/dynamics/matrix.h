@@ -21,6 +21,8 @@ class BlockSparse {
 
   /// Index of block (i, j) in columns(), -1 when it is not in the pattern.  O(log row length).
   int slot(int i, int j) const;
+  /// Slot of block (i, i), O(1).
+  int diagonal(int i) const { return diagonal_[static_cast<std::size_t>(i)]; }
   double* block(int slot) { return values_.data() + 9 * static_cast<std::size_t>(slot); }
   const double* block(int slot) const { return values_.data() + 9 * static_cast<std::size_t>(slot); }
   void add(int slot, const Mat3& m) {
@@ -39,6 +41,7 @@ class BlockSparse {
   friend class PatternBuilder;
   std::vector<int> row_start_{0};
   std::vector<int> columns_;
+  std::vector<int> diagonal_;
   std::vector<double> values_;
   std::uint64_t pattern_version_ = 0;
 };

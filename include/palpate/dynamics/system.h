@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -82,6 +83,7 @@ class System {
   void evaluate_driven(const StateView& state) const;
   void reduce_to_masters(const StateView& state, BorderedMatrix& A) const;
   void evaluate_carried_stiffness(const StateView& state, const TermFilter& filter);
+  void find_driven_slots(const BlockSparse& A) const;
   void eliminate_driven(BorderedMatrix& A) const;
   void solve_mass(const StateView& state, VecX& r, VecX& a);
   void assemble_mass(const StateView& state, BorderedMatrix& A);
@@ -97,6 +99,13 @@ class System {
   VecX inverse_nodal_mass_;
   std::vector<char> driven_mask_;
   std::vector<int> driven_dofs_;
+  struct DrivenNode {
+    int node;
+    std::array<bool, 3> axes;
+  };
+  std::vector<DrivenNode> driven_nodes_;
+  mutable std::uint64_t driven_pattern_ = 0;  ///< version that `driven_mirrors_` was found for
+  mutable std::vector<int> driven_mirrors_;   ///< slot of (j, i) for each block (i, j) in the rows of the driven nodes, one after the other
   std::uint64_t pattern_key_ = 0;  ///< hash of the layout's and the terms' pattern versions that `pattern_` was built from
   BlockSparse pattern_;
   mutable VecX scratch_, known_;

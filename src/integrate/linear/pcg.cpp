@@ -91,7 +91,7 @@ class Pcg final : public dynamics::LinearSolver {
     const ScopedTimer timer(counters_.symbolic_s);
     ++counters_.symbolic;
     diagonal_.resize(static_cast<std::size_t>(A.body.block_rows()));
-    for (int i = 0; i < A.body.block_rows(); ++i) diagonal_[static_cast<std::size_t>(i)] = A.body.slot(i, i);
+    for (int i = 0; i < A.body.block_rows(); ++i) diagonal_[static_cast<std::size_t>(i)] = A.body.diagonal(i);
     inverse_.resize(diagonal_.size());
   }
 

@@ -212,11 +212,11 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     const StateView at = state_.view(rung_time(), base_q_.data(), velocity_.data());
     system_.step_matrix(at, 0.0, 0.0, 1.0, A_);
     double stiffness = 0.0;
-    for (int i = 0; i < A_.body.block_rows(); ++i) stiffness = std::max(stiffness, std::abs(A_.body.block(A_.body.slot(i, i))[0]));
+    for (int i = 0; i < A_.body.block_rows(); ++i) stiffness = std::max(stiffness, std::abs(A_.body.block(A_.body.diagonal(i))[0]));
     if (A_.border_size() > 0) stiffness = std::max(stiffness, A_.corner.cwiseAbs().maxCoeff());
     system_.step_matrix(at, 1.0, 0.0, 0.0, A_);
     double mass = 0.0;
-    for (int i = 0; i < A_.body.block_rows(); ++i) mass = std::max(mass, A_.body.block(A_.body.slot(i, i))[0]);
+    for (int i = 0; i < A_.body.block_rows(); ++i) mass = std::max(mass, A_.body.block(A_.body.diagonal(i))[0]);
     if (A_.border_size() > 0) mass = std::max(mass, A_.corner.cwiseAbs().maxCoeff());
     return std::max(stiffness, 1.0) / std::max(mass, 1e-30);
   }
