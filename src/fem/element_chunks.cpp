@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "palpate/core/error.h"
+#include "palpate/core/huge_pages.h"
 
 namespace palpate::fem {
 namespace {
@@ -185,6 +186,10 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements) 
   shared_nodes.entries = node_uses.entries;
   shared_edges.start = edge_uses.start;
   shared_edges.entries = edge_uses.entries;
+  const auto fit = [](auto&... grown) { (grown.shrink_to_fit(), ...); };
+  fit(groups, chunks, nodes, ends, row_start, row_own, row_edges, shared_nodes.first, shared_edges.first, shared_edges.second);
+  prefer_huge_pages(groups);
+  prefer_huge_pages(row_edges);
 }
 
 /// The edges at each node of a chunk: its own, by the node at the other end, that is in the order of the matrix's columns; then the shared ones.

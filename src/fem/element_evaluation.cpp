@@ -5,6 +5,7 @@
 
 #include "corotated.h"
 #include "palpate/core/error.h"
+#include "palpate/core/huge_pages.h"
 #include "palpate/core/polar.h"
 #include "palpate/core/workers.h"
 
@@ -14,6 +15,7 @@ namespace {
 using Chunk = ElementChunks::Chunk;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 constexpr int kSumsInTask = 512;
+constexpr int kSumsAhead = 6, kNodesAhead = 24;  // how long before they are used memory is asked for
 
 void rotation_by_scalar(const double* F, double* R) {
   Eigen::Map<RowMajor> out(R);
@@ -75,6 +77,7 @@ ElementEvaluation::ElementEvaluation(const TetMesh& rest, const RestElements& el
   shared_upper_.resize(9 * edge_places);
   if (with_lower_) shared_lower_.resize(9 * edge_places);
   shared_diagonal_.resize(9 * node_places);
+  for (const auto* shared : {&shared_upper_, &shared_lower_, &shared_diagonal_}) prefer_huge_pages(*shared);
   chunk_sums_.resize(chunks_.chunks.size());
   fit_scratch();
 }
@@ -116,6 +119,7 @@ ChunkFields ElementEvaluation::load(const Chunk& chunk, const BodyFields& at, Sc
   const auto copy = [&](const double* from, std::vector<Line>& lines, double unit) {
     double* to = numbers(lines);
     for (int n = 0; n < chunk.nodes; ++n) {
+      if (n + kNodesAhead < chunk.nodes) __builtin_prefetch(from + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
       const double* p = from + 3 * static_cast<std::size_t>(nodes[n]);
       to[4 * n] = p[0];
       to[4 * n + 1] = p[1];
@@ -143,8 +147,10 @@ LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModel& 
     std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
     kernel(chunks_.groups.data() + chunk.first_group, chunk.groups, model, kScalarPath, fields, sum, scratch.counts);
     const int* nodes = chunks_.nodes.data() + chunk.first_node;
-    for (int n = 0; n < chunk.own_nodes; ++n)
+    for (int n = 0; n < chunk.own_nodes; ++n) {
+      if (n + kNodesAhead < chunk.own_nodes) __builtin_prefetch(out + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
       for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)] += sum[4 * n + axis];
+    }
     std::copy_n(sum + 4 * chunk.own_nodes, 4 * (chunk.nodes - chunk.own_nodes), numbers(shared_nodes_) + 4 * static_cast<std::size_t>(chunk.first_shared_node));
   });
   const SharedSums& shared = chunks_.shared_nodes;
@@ -188,7 +194,9 @@ LaneCounts ElementEvaluation::add_tangent(const ElementModel& model, const BodyF
 }
 
 void ElementEvaluation::add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const {
-  for_each_sum(chunks_.shared_edges.count(), [&](int k) {
+  const int edges = chunks_.shared_edges.count();
+  for_each_sum(edges, [&](int k) {
+    if (k + kSumsAhead < edges) fetch_sum(k + kSumsAhead, A);
     double sum[9];
     sum_blocks(chunks_.shared_edges, k, shared_upper_, sum);
     double *above = A.block(shared_slots_[2 * static_cast<std::size_t>(k)]), *below = A.block(shared_slots_[2 * static_cast<std::size_t>(k) + 1]);
@@ -206,6 +214,20 @@ void ElementEvaluation::add_shared_blocks(bool symmetric, dynamics::BlockSparse&
     double* block = A.block(diagonal_[static_cast<std::size_t>(chunks_.shared_nodes.first[static_cast<std::size_t>(k)])]);
     for (int c = 0; c < 9; ++c) block[c] += sum[c];
   });
+}
+
+/// What the sum over shared edge k reads and writes lies scattered: asked for some sums before, it is there in time.
+void ElementEvaluation::fetch_sum(int k, const dynamics::BlockSparse& A) const {
+  const auto edge = static_cast<std::size_t>(k);
+  for (int p = chunks_.shared_edges.start[edge]; p < chunks_.shared_edges.start[edge + 1]; ++p) {
+    const double* block = shared_upper_.data() + 9 * static_cast<std::size_t>(chunks_.shared_edges.entries[static_cast<std::size_t>(p)]);
+    __builtin_prefetch(block);
+    __builtin_prefetch(block + 8);
+  }
+  for (const std::int32_t slot : {shared_slots_[2 * edge], shared_slots_[2 * edge + 1]}) {
+    __builtin_prefetch(A.block(slot));
+    __builtin_prefetch(A.block(slot) + 8);
+  }
 }
 
 double ElementEvaluation::energy(const ElementModel& model, const BodyFields& at) {
@@ -257,6 +279,7 @@ void ElementEvaluation::prepare(int first_node, const dynamics::BlockSparse& A) 
     shared_slots_[2 * k] = slot(chunks_.shared_edges.first[k], chunks_.shared_edges.second[k]);
     shared_slots_[2 * k + 1] = slot(chunks_.shared_edges.second[k], chunks_.shared_edges.first[k]);
   }
+  prefer_huge_pages(slots_);
   pattern_version_ = A.pattern_version();
   first_node_ = first_node;
 }

@@ -55,6 +55,7 @@ class ElementEvaluation {
   ChunkFields load(const ElementChunks::Chunk& chunk, const BodyFields& at, Scratch& scratch) const;
   LaneCounts add_nodal(NodalKernel kernel, const ElementModel& model, const BodyFields& at, double* out);
   void add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const;
+  void fetch_sum(int k, const dynamics::BlockSparse& A) const;
 
   ElementChunks chunks_;
   const LaneKernels* kernels_;

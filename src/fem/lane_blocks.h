@@ -91,7 +91,8 @@ PALPATE_INLINE void edge_block(const Lanes& at, const BlockParts& e, int number,
 template <Blocks kBlocks, bool kDamped, bool kByPosition>
 static void blocks_of(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields,
                       const ChunkBlocks& upper, const ChunkBlocks& lower, LaneCounts& counts) {
-  for (int g = 0; g < count; ++g)
+  for (int g = 0; g < count; ++g) {
+    fetch_ahead(groups, g, count);
     for (int part = 0; part < 8; part += kWidth) {
       const Lanes at{groups[g], part};
       const Matrix G = gradients(at), F = gradient_of(at, G, fields.x);
@@ -141,6 +142,7 @@ static void blocks_of(const ElementGroup* groups, int count, const ElementModel&
       edge_block<kBlocks, kDamped, kByPosition>(at, e, 4, 1, 3, upper, lower);
       edge_block<kBlocks, kDamped, kByPosition>(at, e, 5, 2, 3, upper, lower);
     }
+  }
 }
 
 static void tangent(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields,
@@ -219,9 +221,18 @@ struct BlockSum {
 };
 #endif
 
+/// The rows of the matrix that follow: six rows, some eighty blocks, take longer to add up than a line takes to come from memory.
+constexpr int kRowsAhead = 6;
+PALPATE_INLINE void fetch_row(const BlockTargets& targets, int n, const double* values) {
+  if (n >= targets.nodes) return;
+  const int begin = targets.row_start[n];
+  for (int p = begin; p < begin + targets.row_own[n]; ++p) fetch(values + 9 * static_cast<std::int64_t>(targets.slots[p]), 64);
+}
+
 template <bool kSymmetric>
 static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, const ChunkBlocks& lower, const ChunkBlocks& diagonal, double* values) {
   for (int n = 0; n < targets.nodes; ++n) {
+    fetch_row(targets, n + kRowsAhead, values);
     BlockSum sum;
     const int begin = targets.row_start[n], own = begin + targets.row_own[n], end = targets.row_start[n + 1];
     for (int p = begin; p < end; ++p) {
