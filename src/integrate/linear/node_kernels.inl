@@ -30,6 +30,14 @@ PALPATE_INLINE Four cross(Four a, Four b) {
   return __builtin_shuffle(a * __builtin_shuffle(b, yzx) - __builtin_shuffle(a, yzx) * b, yzx);
 }
 
+// A processor's own guess of what is read next ends at every page of 4 KiB: here blocks are asked for some rows before.
+constexpr int kBytesAhead = 2048, kBlocksAhead = 24;
+PALPATE_INLINE void fetch_row(const SingleBlocks& A, int i) {
+  const char* p = reinterpret_cast<const char*>(A.values + 9 * static_cast<std::int64_t>(A.row_start[i])) + kBytesAhead;
+  const int bytes = 36 * (A.row_start[i + 1] - A.row_start[i]);
+  for (int at = 0; at < bytes; at += 64) __builtin_prefetch(p + at);
+}
+
 #if PALPATE_LANES == 16
 
 // One vector holds a block: lane 3 c + r is B(r, c), and what follows in memory (the next block) meets the zero in p's fourth entry.
@@ -73,6 +81,7 @@ PALPATE_INLINE Four row_product(const SingleBlocks& A, const float* p, int i) {
 double product(const SingleBlocks& A, const float* p, float* q, int first, int last) {
   Four pq{};
   for (int i = first; i < last; ++i) {
+    fetch_row(A, i);
     const Four row = row_product(A, p, i);
     store(q + 4 * i, row);
     pq += load(p + 4 * i) * row;
@@ -182,10 +191,16 @@ template <int N>
 [[gnu::always_inline]] static inline bool convert_columns(const DoubleBlocks& A, double scale, float* out, const double* const* V, double* const* AV, int first, int last) {
   Eight probe{};  // 0 x is no number where x is infinite or none
   float probe_last = 0.0f;
+  const int end_of_all = A.row_start[last];
   for (int i = first; i < last; ++i) {
     FourDouble total[3 * N + 1] = {};
     for (int s = A.row_start[i]; s < A.row_start[i + 1]; ++s) {
       const double* block = A.values + 9 * static_cast<std::int64_t>(A.source[s]);
+      if (s + kBlocksAhead < end_of_all) {
+        const double* later = A.values + 9 * static_cast<std::int64_t>(A.source[s + kBlocksAhead]);
+        __builtin_prefetch(later);
+        __builtin_prefetch(later + 8);
+      }
       double copy[10];
       if (A.source[s] == A.last_slot) {  // the last row of a block is read with the number behind it
         for (int k = 0; k < 9; ++k) copy[k] = block[k];

@@ -11,6 +11,7 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/core/huge_pages.h"
 #include "palpate/core/team.h"
 
 namespace palpate::integrate {
@@ -138,6 +139,9 @@ class SinglePcg final : public dynamics::LinearSolver {
       row_start_.push_back(static_cast<int>(column_.size()));
     }
     values_.assign(9 * column_.size() + kBlockTail, 0.0f);
+    prefer_huge_pages(values_);
+    prefer_huge_pages(column_);
+    prefer_huge_pages(source_);
     inverse_.assign(kInverseStride * n + kVectorTail, 0.0f);
     for (Singles* v : {&d_, &r_, &z_, &p_, &q_}) v->assign(4 * n + kVectorTail, 0.0f);
     for (Doubles* v : {&b_, &x_, &Ax_}) v->assign(4 * n + kVectorTail, 0.0);
