@@ -27,9 +27,14 @@ void print_limits(const FemBenchReport& report) {
   Rows rows;
   for (const study::MachineLimits& l : report.limits)
     rows.push_back({fmt::format("{}", l.threads), fmt::format("{:.1f}", l.small_copy_gb_s), fmt::format("{:.1f}", l.large_copy_gb_s),
-                    fmt::format("{:.1f}", study::reference_bandwidth_gb_s(l.threads)), fmt::format("{:.0f}", l.gflop_s)});
+                    fmt::format("{:.1f}", study::reference_bandwidth_gb_s(l.threads)), fmt::format("{:.0f}", l.gflop_s), fmt::format("{:.0f}", l.double_gflop_s)});
   fmt::print("what this machine can do, measured now\n{}\n",
-             report::format_table({"threads", "copy 8 MB [GB/s]", "copy 67 MB [GB/s]", "the reference machine's [GB/s]", "float multiply-adds [GFLOP/s]"}, rows));
+             report::format_table({"threads", "copy 8 MB [GB/s]", "copy 67 MB [GB/s]", "the reference machine's [GB/s]", "float multiply-adds [GFLOP/s]", "double [GFLOP/s]"}, rows));
+  Rows sizes;
+  for (const study::MachineLimits& l : report.limits)
+    for (const study::Bandwidth& b : l.bandwidths)
+      sizes.push_back({fmt::format("{}", l.threads), fmt::format("{:.3g}", b.bytes / 1048576.0), fmt::format("{:.1f}", b.read_gb_s), fmt::format("{:.1f}", b.write_gb_s)});
+  fmt::print("passes over one working set, again and again\n{}\n", report::format_table({"threads", "MiB", "read [GB/s]", "write [GB/s]"}, sizes));
 }
 
 void print_steps(const FemBenchReport& report) {
@@ -37,14 +42,36 @@ void print_steps(const FemBenchReport& report) {
   for (const FemBenchRow& r : report.rows)
     rows.push_back({r.size, fmt::format("{}", r.nodes), fmt::format("{:g}", r.youngs_modulus_pa), fmt::format("{:g}", 1e3 * r.step_s), fmt::format("{:g}", r.linear_rtol),
                     r.linear_solver, fmt::format("{}", r.threads), ms(r.force_ms), ms(r.matrix_ms), ms(r.factor_ms), ms(r.solve_ms), ms(r.step_ms), ms(r.step_least_ms), ms(r.step_cpu_ms), ms(r.solver_cpu_ms), ms(r.scaled_ms),
-                    fmt::format("{:.1f}", r.iterations), r.solve_ms > 0.0 ? fmt::format("{:.0f}", 100.0 * r.solve_limit_ms / r.solve_ms) : "-",
-                    r.error > 0.0 ? fmt::format("{:.1e}", r.error) : "-", r.mass_error > 0.0 ? fmt::format("{:.1e}", r.mass_error) : "-", fmt::format("{:.1f}", r.rotation_rad),
-                    fmt::format("{:.0f}", r.peak_mib)});
+                    fmt::format("{:.1f}", r.iterations), r.error > 0.0 ? fmt::format("{:.1e}", r.error) : "-", r.mass_error > 0.0 ? fmt::format("{:.1e}", r.mass_error) : "-", fmt::format("{:.1f}", r.rotation_rad)});
   fmt::print("one linearly implicit step, median over a motion with large rotation\n"
-             "  scaled: step x measured copy bandwidth / that of the reference machine; of limit: the matrix's bytes x iterations at copy bandwidth, over the solve;\n"
+             "  scaled: step x measured copy bandwidth / that of the reference machine;\n"
              "  error: of the velocity change against a direct solution, largest of the checks, in the norms of energy and of mass\n\n{}\n",
-             report::format_table({"size", "nodes", "E [Pa]", "h [ms]", "rtol", "solver", "thr", "force", "matrix", "factor", "solve", "step [ms]", "least", "CPU", "its solver", "scaled", "iter", "% of limit",
-                                   "error", "mass", "turn [rad]", "MiB"}, rows));
+             report::format_table({"size", "nodes", "E [Pa]", "h [ms]", "rtol", "solver", "thr", "force", "matrix", "factor", "solve", "step [ms]", "least", "CPU", "its solver", "scaled", "iter",
+                                   "error", "mass", "turn [rad]"}, rows));
+}
+
+std::string share(double limit, double time) { return time > 0.0 ? fmt::format("{:.0f}", 100.0 * limit / time) : "-"; }
+
+void print_shares(const FemBenchReport& report) {
+  Rows rows;
+  for (const FemBenchRow& r : report.rows)
+    rows.push_back({r.size, fmt::format("{:g}", r.youngs_modulus_pa), fmt::format("{:g}", 1e3 * r.step_s), fmt::format("{:g}", r.linear_rtol), r.linear_solver, fmt::format("{}", r.threads),
+                    share(r.force_limit_ms, r.force_ms), share(r.matrix_limit_ms, r.matrix_ms), share(r.factor_limit_ms, r.factor_ms), share(r.solve_limit_ms, r.solve_ms),
+                    share(r.step_limit_ms, r.step_ms), ms(r.step_limit_ms)});
+  fmt::print("share of the limit [%]: what a stage must read and write once, at the bandwidth of the step's (the solve's) working set, or its operations, whichever takes longer\n{}\n",
+             report::format_table({"size", "E [Pa]", "h [ms]", "rtol", "solver", "thr", "force", "matrix", "factor", "solve", "step", "limit [ms]"}, rows));
+}
+
+void print_memory(const FemBenchReport& report) {
+  Rows rows;
+  std::set<std::string> sizes;
+  for (const FemBenchRow& r : report.rows) {
+    if (!sizes.insert(r.size + r.linear_solver).second) continue;
+    const auto each = [&](double bytes) { return std::isfinite(bytes) ? fmt::format("{:.0f}", bytes / r.tetrahedra) : "-"; };
+    rows.push_back({r.size, r.linear_solver, fmt::format("{}", r.tetrahedra), each(r.needed_bytes), each(r.body_bytes), each(r.peak_bytes), fmt::format("{:.1f}", r.peak_bytes / 1048576.0)});
+  }
+  fmt::print("memory [bytes a tetrahedron]: the sum of what must be stored; of that and beside it, what the soft body holds; peak of the process above what it held before\n{}\n",
+             report::format_table({"size", "solver", "tetrahedra", "must be stored", "soft body", "peak", "peak [MiB]"}, rows));
 }
 
 /// Rows that differ in size alone, together.
@@ -56,15 +83,23 @@ std::map<std::string, std::vector<const FemBenchRow*>> by_kind(const FemBenchRep
 }
 
 void print_exponents(const FemBenchReport& report) {
+  struct Stage {
+    double FemBenchRow::*time;
+    double FemBenchRow::*limit;
+  };
+  constexpr Stage kStages[] = {{&FemBenchRow::force_ms, &FemBenchRow::force_limit_ms},    {&FemBenchRow::matrix_ms, &FemBenchRow::matrix_limit_ms},
+                               {&FemBenchRow::factor_ms, &FemBenchRow::factor_limit_ms}, {&FemBenchRow::solve_ms, &FemBenchRow::solve_limit_ms},
+                               {&FemBenchRow::step_ms, &FemBenchRow::step_limit_ms}};
   Rows rows;
   for (const auto& [kind, members] : by_kind(report)) {
     if (members.size() < 2) continue;
     std::vector<std::string> row{kind};
-    for (const auto stage : {&FemBenchRow::force_ms, &FemBenchRow::matrix_ms, &FemBenchRow::factor_ms, &FemBenchRow::solve_ms, &FemBenchRow::step_ms})
-      row.push_back(fmt::format("{:.2f}", study::scaling_exponent(members, stage)));
+    for (const Stage& stage : kStages) row.push_back(fmt::format("{:.2f} ({:.2f})", study::scaling_exponent(members, stage.time), study::scaling_exponent(members, stage.limit)));
     rows.push_back(row);
   }
-  if (!rows.empty()) fmt::print("growth with the number of nodes n: exponent e of ms ~ n^e\n{}\n", report::format_table({"kind", "force", "matrix", "factor", "solve", "step"}, rows));
+  if (!rows.empty())
+    fmt::print("growth with the number of nodes n: exponent e of ms ~ n^e, and in brackets that of the limit\n{}\n",
+               report::format_table({"kind", "force", "matrix", "factor", "solve", "step"}, rows));
 }
 
 void print_peers(const FemBenchReport& report) {
@@ -76,6 +111,41 @@ void print_peers(const FemBenchReport& report) {
   if (!rows.empty())
     fmt::print("others on this beam at E = 1e5, one thread, quoted (measured once on the reference machine, not here): compare with \"scaled\"\n{}\n",
                report::format_table({"program", "size", "10 ms step [ms]", "1 ms step [ms]", "tolerance"}, rows));
+}
+
+void write_accuracy(const std::vector<study::AccuracyPoint>& points, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  report::Plot plot;
+  plot.title = "Fall of the beam: error against run time";
+  plot.x_label = "run time of 10 ms of motion, one thread [ms]";
+  plot.y_label = "error of the end";
+  plot.log_x = plot.log_y = true;
+  std::map<std::string, report::Series> kinds;
+  for (const study::AccuracyPoint& p : points) {
+    report::Series& series = kinds[p.step_s > 0.0 && !p.quoted ? fmt::format("{}, {:g} ms", p.program, 1e3 * p.step_s) : p.program + (p.quoted ? " (quoted)" : "")];
+    series.mark = report::Mark::kLinePoints;
+    series.x.push_back(p.ms_of_ten_ms);
+    series.y.push_back(p.error);
+  }
+  for (auto& [name, series] : kinds) {
+    series.name = name;
+    plot.series.push_back(series);
+  }
+  store::write_atomically(folder / "bench-fem-accuracy.json", study::to_json(points));
+  store::write_atomically(folder / "bench-fem-accuracy.svg", report::plot_svg(plot));
+  fmt::print("written: {} and {}\n", (folder / "bench-fem-accuracy.json").string(), (folder / "bench-fem-accuracy.svg").string());
+}
+
+void bench_accuracy(const BenchArguments& arguments) {
+  const std::string size = arguments.sizes.empty() ? "S" : arguments.sizes.front();
+  const std::vector<study::AccuracyPoint> points = study::run_accuracy(size, [] { return static_cast<bool>(stop_flag()); });
+  Rows rows;
+  for (const study::AccuracyPoint& p : points)
+    rows.push_back({p.program, p.step_s > 0.0 ? fmt::format("{:g}", 1e3 * p.step_s) : "-", p.tolerance > 0.0 ? fmt::format("{:g}", p.tolerance) : "-", fmt::format("{:.3g}", p.ms_of_ten_ms),
+                    fmt::format("{:.2e}", p.error), p.quoted ? "quoted" : ""});
+  fmt::print("{}, E = 1e5 Pa: fall from rest for 0.2 s; error of the end against the exact motion of the same mesh and material, over the way fallen (norm of mass)\n{}\n", size,
+             report::format_table({"program", "h [ms]", "tolerance", "ms of 10 ms", "error", ""}, rows));
+  if (!arguments.folder.empty()) write_accuracy(points, arguments.folder);
 }
 
 void write_files(const FemBenchReport& report, const std::filesystem::path& folder) {
@@ -114,6 +184,7 @@ void bench_fem_sizes(const BenchArguments& arguments) {
     store::write_atomically(arguments.calibrate, table);
     return;
   }
+  if (arguments.accuracy) return bench_accuracy(arguments);
   study::FemBenchOptions options;
   if (!arguments.sizes.empty()) options.sizes = arguments.sizes;
   if (!arguments.threads.empty()) options.threads = arguments.threads;
@@ -124,7 +195,9 @@ void bench_fem_sizes(const BenchArguments& arguments) {
   const FemBenchReport report = study::run_fem_bench(options, [] { return static_cast<bool>(stop_flag()); });
   print_limits(report);
   print_steps(report);
+  print_shares(report);
   print_exponents(report);
+  print_memory(report);
   print_peers(report);
   if (!arguments.folder.empty() && !report.rows.empty()) write_files(report, arguments.folder);
 }

@@ -223,6 +223,7 @@ void add_bench(CLI::App& app, Invocation& invocation) {
       ->type_name("NAME")
       ->delimiter(',')
       ->capture_default_str();
+  command->add_flag("--accuracy", arguments->accuracy, "fem: error against run time of one motion instead of the stages of a step");
   command->add_option("-o,--output", arguments->folder, "fem: folder for bench-fem.json and bench-fem.svg")->type_name("DIR");
   command->add_option("--calibrate", arguments->calibrate, "fem: measure which solver is the fastest where, and write the table of \"auto\"")->type_name("FILE");
   command->add_option("--cells", arguments->cells, "fem: one beam of so many cells along, by way of a scene")->check(CLI::Range(4, 1000));
@@ -233,6 +234,7 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   command->footer(R"(Examples:
   palpate bench fem                              3,700 and 11,172 nodes, steps of 10 and 1 ms
   palpate bench fem --size S,M,L --threads 1 -o out/bench
+  palpate bench fem --accuracy -o out/bench
   palpate bench fem --cells 16 --step-s 0.001
   palpate bench leave-out falling-ball --repeats 9)");
   command->callback([arguments, &invocation] {

@@ -10,8 +10,10 @@ struct BeamSize {
   std::string name;
   int along, across;  ///< cells
 };
-/// S 3,700 nodes, 14,580 tetrahedra; M 11,172, 47,320; L 32,400, 144,400; XL 98,304, 450,241 or so.
+/// S 3,700 nodes, 14,580 tetrahedra; M 11,172, 47,320; L 32,400, 144,400; XL 99,238, 458,640.
 const std::vector<BeamSize>& beam_sizes();
+/// @throws Error where there is none of that name
+const BeamSize& size_named(const std::string& name);
 
 struct FemBenchOptions {
   std::vector<std::string> sizes = {"S", "M"};
@@ -24,11 +26,27 @@ struct FemBenchOptions {
   int checks = 3;          ///< of them, whose solution is compared with a direct one (or, above 12,000 nodes, with one of linear_rtol 1e-10)
 };
 
+/// What passes over a working set of this size reach, again and again: caches hold the small ones.
+struct Bandwidth {
+  double bytes = 0.0, read_gb_s = 0.0, write_gb_s = 0.0;
+};
+
 /// What this machine can do, measured in the same run, for one number of threads.
 struct MachineLimits {
   int threads = 1;
   double small_copy_gb_s = 0.0, large_copy_gb_s = 0.0;  ///< of arrays of 8 MB and of 67 MB, read and write counted [GB/s]
-  double gflop_s = 0.0;                                 ///< multiply-adds in registers, single precision, two operations each
+  double gflop_s = 0.0, double_gflop_s = 0.0;           ///< multiply-adds in registers, single and double precision, two operations each
+  std::vector<Bandwidth> bandwidths;                    ///< ascending working sets
+  double read_gb_s(double working_set) const;           ///< between them
+  double write_gb_s(double working_set) const;
+};
+
+/// The least that a stage of one step can do: what it must read and write once, and its operations.
+struct StageWork {
+  double read_bytes = 0.0, written_bytes = 0.0;
+  double single_flops = 0.0, double_flops = 0.0;
+  /// max(time of the bytes at the bandwidth of this working set, time of the operations) [ms]
+  double limit_ms(const MachineLimits& limits, double working_set) const;
 };
 
 /// One kind of step: medians over a motion with large rotation [ms].
@@ -49,9 +67,12 @@ struct FemBenchRow {
   double error = 0.0;       ///< largest of the checks: |du - du_direct| / |du_direct| in the energy norm
   double mass_error = 0.0;  ///< the same in the norm of mass
   double rotation_rad = 0.0;    ///< of the beam's end at the last step
-  double solve_limit_ms = 0.0;  ///< the solve's necessary reading of the matrix at this machine's copy bandwidth
+  double force_limit_ms = 0.0, matrix_limit_ms = 0.0, factor_limit_ms = 0.0, solve_limit_ms = 0.0;  ///< what memory and arithmetic, measured in the same run, allow
+  double step_limit_ms = 0.0;   ///< their sum
   double scaled_ms = 0.0;       ///< step_ms x this machine's bandwidth / that of the machine that the figures of peers are from
-  double peak_mib = 0.0;        ///< of the process so far
+  double needed_bytes = 0.0;    ///< the sum of what must be stored
+  double body_bytes = 0.0;      ///< what the soft body holds of that: elements, maps, scratch
+  double peak_bytes = 0.0;      ///< of the process above what it held before the beam was made, without what checks take; NaN: not known
 };
 
 struct FemBenchReport {
@@ -74,6 +95,20 @@ struct PeerFigure {
 const std::vector<PeerFigure>& peer_figures();
 /// Copy bandwidth of the machine that the peers were measured on, 67 MB arrays [GB/s].
 double reference_bandwidth_gb_s(int threads);
+
+/// One way to compute a motion: what 10 ms of it cost, and how far its end is from the exact end of the same mesh and material.
+struct AccuracyPoint {
+  std::string program;
+  double step_s = 0.0, tolerance = 0.0;  ///< 0: the program has none
+  double ms_of_ten_ms = 0.0;             ///< run time of 10 ms of the motion, one thread [ms]
+  double error = 0.0;                    ///< |q - exact|_M / |exact - rest|_M
+  bool quoted = false;                   ///< not measured in this run
+};
+/// The fall of the beam, E = 1e5, from rest for 0.2 s: measured here for steps and tolerances, and what is known of others.
+std::vector<AccuracyPoint> run_accuracy(const std::string& size, bool (*stop)() = nullptr);
+/// What others reach in that motion, measured once against the same exact end; run times of this or of the reference machine, as `program` says.
+std::vector<AccuracyPoint> peer_accuracy(const std::string& size);
+std::string to_json(const std::vector<AccuracyPoint>& points);
 
 std::string to_json(const FemBenchReport& report);
 

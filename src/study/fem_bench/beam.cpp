@@ -30,8 +30,8 @@ Beam::Beam(int along, int across, double youngs_modulus_pa) {
   masses = fem::lumped_masses(mesh, kDensity);
   const int id = state.insert({.name = "beam", .q_size = static_cast<int>(rest.size()), .u_size = static_cast<int>(rest.size())}, rest, VecX::Zero(rest.size()));
   const fem::Material material{.youngs_modulus = youngs_modulus_pa, .poissons_ratio = 0.4, .density = kDensity};
-  system.add(std::static_pointer_cast<dynamics::ForceTerm>(
-      std::make_shared<fem::SoftBody>("beam", mesh, material, fem::SoftBodyOptions{.tangent = fem::Tangent::kWarped}, id)));
+  body_ = std::make_shared<fem::SoftBody>("beam", mesh, material, fem::SoftBodyOptions{.tangent = fem::Tangent::kWarped}, id);
+  system.add(std::static_pointer_cast<dynamics::ForceTerm>(body_));
   system.add(fem::make_gravity(masses, Vec3(0, 0, -9.81), id));
   system.add(fem::make_lumped_mass(mesh, kDensity, id));
   const std::vector<int> held = fem::dofs_of_nodes(fem::nodes_in_box(mesh.nodes, Vec3(-0.5 - 1e-9, -1, -1), Vec3(-0.5 + 1e-9, 1, 1)), 0, "xyz");
@@ -48,6 +48,11 @@ Beam::Beam(int along, int across, double youngs_modulus_pa) {
   else
     system.add(fem::make_driven(held, local, turning));
   system.prepare(state.view());
+}
+
+double Beam::body_bytes() const {
+  const fem::MemoryUse use = body_->memory();
+  return static_cast<double>(use.elements + use.maps + use.scratch);
 }
 
 double Beam::end_rotation() const {

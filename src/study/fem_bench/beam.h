@@ -1,5 +1,6 @@
 #pragma once
 #include "palpate/dynamics/system.h"
+#include "palpate/fem/soft_body.h"
 #include "palpate/study/fem_bench.h"
 
 namespace palpate::study {
@@ -14,6 +15,10 @@ struct Beam {
   Beam(int along, int across, double youngs_modulus_pa);
   /// Angle between the line through the free end's axis now and at rest.
   double end_rotation() const;
+  double body_bytes() const;
+
+ private:
+  std::shared_ptr<fem::SoftBody> body_;
 };
 
 }  // namespace palpate::study

@@ -6,9 +6,12 @@
 
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
+#include "palpate/core/workers.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/study/fem_bench.h"
 #include "study/fem_bench/beam.h"
+#include "study/fem_bench/peak_memory.h"
+#include "study/fem_bench/stage_work.h"
 
 namespace palpate::study {
 namespace {
@@ -93,7 +96,7 @@ double median(std::vector<double> values) {
 double stiffness_of(const BlockSparse& A, const VecX& masses) {
   double own = 0.0, mass = 0.0;
   for (int i = 0; i < A.block_rows(); ++i) {
-    const double* block = A.block(A.slot(i, i));
+    const double* block = A.block(A.diagonal(i));
     if (block[1] == 0.0 && block[0] == 1.0) continue;  // held
     own += block[0] + block[4] + block[8];
     mass += 3.0 * masses[i];
@@ -112,6 +115,7 @@ struct Warm {
 };
 
 FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double youngs_modulus, const FemBenchOptions& options, Warm& start_from) {
+  const PeakMemory memory;
   Beam beam(size.along, size.across, youngs_modulus);
   if (start_from.q.size() == beam.rest.size()) {
     beam.state.q() = start_from.q;
@@ -129,7 +133,9 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
   constexpr int kUntimed = 4;  // symbolic analysis, and the solutions that a start is made of
   std::array<std::vector<double>, 7> ms;
   long iterations = 0;
+  double peak = 0.0;
   for (int k = 0; k < kUntimed + options.steps; ++k) {
+    if (k == kUntimed) peak = memory.bytes();  // before the first check, which holds a factor
     solver.check_next = options.checks > 0 && k >= kUntimed && (k - kUntimed) % std::max(1, options.steps / options.checks) == 0 && solver.checks < options.checks;
     const double checking = solver.checking_s, checking_cpu = solver.checking_cpu_s, solver_cpu = solver.cpu_s;
     const Times before(stepper->counters());
@@ -171,22 +177,40 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
   row.error = solver.error;
   row.mass_error = solver.mass_error;
   row.rotation_rad = beam.end_rotation();
-  row.peak_mib = peak_memory_mib();
+  row.peak_bytes = peak;
+  row.body_bytes = beam.body_bytes();
   return row;
 }
 
-const BeamSize& size_named(const std::string& name) {
-  for (const BeamSize& size : beam_sizes())
-    if (size.name == name) return size;
-  fail("bench fem: there is no size \"{}\"; XS, S, M, L and XL are", name);
+void set_limits(FemBenchRow& row, const MachineLimits& limits) {
+  const StepCounts counts{static_cast<double>(row.nodes), static_cast<double>(row.tetrahedra), static_cast<double>(row.blocks), row.iterations};
+  const StepWork work = work_of(counts);
+  row.scaled_ms = row.step_ms * limits.large_copy_gb_s / reference_bandwidth_gb_s(limits.threads);
+  row.force_limit_ms = work.force.limit_ms(limits, work.working_set);
+  row.matrix_limit_ms = work.matrix.limit_ms(limits, work.working_set);
+  row.factor_limit_ms = work.factor.limit_ms(limits, work.working_set);
+  row.solve_limit_ms = work.solve.limit_ms(limits, work.solve_working_set);
+  row.step_limit_ms = row.force_limit_ms + row.matrix_limit_ms + row.factor_limit_ms + row.solve_limit_ms;
+  row.needed_bytes = bytes_to_store(counts);
 }
+
+/// As many workers for the element kernels as threads for the linear solver, while it lives.
+class WorkerCount {
+ public:
+  explicit WorkerCount(int count) : before_(workers::count()) { workers::set_count(count); }
+  ~WorkerCount() { workers::set_count(before_); }
+  WorkerCount(const WorkerCount&) = delete;
+  WorkerCount& operator=(const WorkerCount&) = delete;
+
+ private:
+  int before_;
+};
 
 }  // namespace
 
 FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
   if (options.steps < 3) fail("bench fem: {} steps; at least 3", options.steps);
   FemBenchReport report;
-  for (const int threads : options.threads) report.limits.push_back(measure_limits(threads));
   for (const std::string& size : options.sizes)
     for (const double E : options.youngs_moduli_pa) {
       Warm warm;
@@ -194,17 +218,16 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
         for (const double rtol : options.linear_rtols)
           for (const std::string& solver : options.linear_solvers)
             for (std::size_t t = 0; t < options.threads.size(); ++t) {
-              if (stop && stop()) return report;
+              if (stop && stop()) break;
+              const WorkerCount workers_too(options.threads[t]);
               const IntegratorSpec spec{.name = "linearly-implicit-euler", .step_s = h, .linear_solver = solver, .linear_rtol = rtol, .threads = options.threads[t]};
-              FemBenchRow row = time_steps(size_named(size), spec, E, options, warm);
-              const MachineLimits& limits = report.limits[t];
-              row.scaled_ms = row.step_ms * limits.large_copy_gb_s / reference_bandwidth_gb_s(limits.threads);
-              // An iteration reads every block once, nine floats.  What fits into the caches is read faster than memory.
-              const double bytes = 36.0 * row.blocks * row.iterations;
-              row.solve_limit_ms = 1e-6 * bytes / (36.0 * row.blocks > 3.2e7 ? limits.large_copy_gb_s : limits.small_copy_gb_s);
-              report.rows.push_back(row);
+              report.rows.push_back(time_steps(size_named(size), spec, E, options, warm));
             }
     }
+  for (const int threads : options.threads) report.limits.push_back(measure_limits(threads));  // now, so that its memory is not in the peaks
+  for (FemBenchRow& row : report.rows)
+    for (const MachineLimits& limits : report.limits)
+      if (limits.threads == row.threads) set_limits(row, limits);
   return report;
 }
 
@@ -250,27 +273,6 @@ void calibrate_auto(const std::function<void(const std::string&)>& row_measured,
         row_measured(fmt::format("{{{}, {:.3g}, {:g}, \"{}\"}},  // ms:{}\n", row.nodes, row.stiffness, rtol, fastest, times));
       }
     }
-}
-
-std::string to_json(const FemBenchReport& report) {
-  std::string out = "{\n  \"limits\": [";
-  for (std::size_t i = 0; i < report.limits.size(); ++i) {
-    const MachineLimits& l = report.limits[i];
-    out += fmt::format("{}\n    {{\"threads\": {}, \"copy_8mb_gb_s\": {:.4g}, \"copy_67mb_gb_s\": {:.4g}, \"gflop_s\": {:.4g}, \"reference_copy_67mb_gb_s\": {}}}",
-                       i ? "," : "", l.threads, l.small_copy_gb_s, l.large_copy_gb_s, l.gflop_s, reference_bandwidth_gb_s(l.threads));
-  }
-  out += "\n  ],\n  \"rows\": [";
-  for (std::size_t i = 0; i < report.rows.size(); ++i) {
-    const FemBenchRow& r = report.rows[i];
-    out += fmt::format(
-        "{}\n    {{\"size\": \"{}\", \"nodes\": {}, \"tetrahedra\": {}, \"youngs_modulus_pa\": {:g}, \"step_s\": {:g}, \"linear_rtol\": {:g}, \"linear_solver\": \"{}\", "
-        "\"threads\": {}, \"force_ms\": {:.4g}, \"matrix_ms\": {:.4g}, \"factor_ms\": {:.4g}, \"solve_ms\": {:.4g}, \"step_ms\": {:.4g}, \"scaled_step_ms\": {:.4g}, \"least_step_ms\": {:.4g}, \"least_solve_ms\": {:.4g}, \"step_cpu_ms\": {:.4g}, \"solver_cpu_ms\": {:.4g}, "
-        "\"iterations\": {:.4g}, \"stiffness_number\": {:.4g}, \"energy_error\": {:.3g}, \"mass_error\": {:.3g}, \"end_rotation_rad\": {:.3g}, \"solve_limit_ms\": {:.4g}, "
-        "\"peak_mib\": {:.4g}}}",
-        i ? "," : "", r.size, r.nodes, r.tetrahedra, r.youngs_modulus_pa, r.step_s, r.linear_rtol, r.linear_solver, r.threads, r.force_ms, r.matrix_ms, r.factor_ms,
-        r.solve_ms, r.step_ms, r.scaled_ms, r.step_least_ms, r.solve_least_ms, r.step_cpu_ms, r.solver_cpu_ms, r.iterations, r.stiffness, r.error, r.mass_error, r.rotation_rad, r.solve_limit_ms, r.peak_mib);
-  }
-  return out + "\n  ]\n}\n";
 }
 
 }  // namespace palpate::study

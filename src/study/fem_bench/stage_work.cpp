@@ -1,0 +1,56 @@
+#include "study/fem_bench/stage_work.h"
+
+#include <algorithm>
+
+namespace palpate::study {
+namespace {
+
+// Bytes.  An element: nine numbers of its rest shape and its volume, four node numbers of two bytes; for the matrix six edge numbers more.  A block:
+// nine doubles; in the copy nine floats and a column; what leads from one to the other eight bytes.  A vector: three doubles a node, in the solver four.
+constexpr double kElement = 88.0, kEdges = 12.0, kBlock = 72.0, kMap = 8.0, kCopy = 36.0, kColumn = 4.0;
+constexpr double kVector = 24.0, kSolverVector = 32.0, kSingleVector = 16.0, kInverse = 48.0;
+constexpr double kStarts = 3.0;  ///< earlier solutions that the solver starts from
+
+// Operations of an element, counted in the formulas of lane_element.h, lane_rotation.h and lane_blocks.h; a division counts as one, Newton takes four steps.
+constexpr double kGradient = 54.0, kRotation = 334.0, kForceTail = 123.0, kProductTail = 214.0, kBlocks = 402.0;
+// Of a block: scaling and three products in double; in an iteration one product.  Of a node in an iteration: update, preconditioner, direction.
+constexpr double kFactorOfBlock = 9.0 + kStarts * 18.0, kProductOfBlock = 18.0, kIterationOfNode = 50.0;
+
+}  // namespace
+
+double StageWork::limit_ms(const MachineLimits& limits, double working_set) const {
+  const double bytes_ms = 1e-6 * (read_bytes / limits.read_gb_s(working_set) + written_bytes / limits.write_gb_s(working_set));
+  const double flops_ms = 1e-6 * (single_flops / limits.gflop_s + double_flops / limits.double_gflop_s);
+  return std::max(bytes_ms, flops_ms);
+}
+
+StepWork work_of(const StepCounts& c) {
+  StepWork w;
+  // Forces, and the product of the tangent with the velocity: once x, once x and u are read, and both times a result is added to.
+  w.force = {.read_bytes = 2.0 * kElement * c.tetrahedra + 5.0 * kVector * c.nodes,
+             .written_bytes = 2.0 * kVector * c.nodes,
+             .double_flops = (3.0 * kGradient + 2.0 * kRotation + kForceTail + kProductTail) * c.tetrahedra};
+  w.matrix = {.read_bytes = (kElement + kEdges) * c.tetrahedra + kVector * c.nodes + kMap * c.blocks,
+              .written_bytes = kBlock * c.blocks,
+              .double_flops = (kGradient + kRotation + kBlocks) * c.tetrahedra};
+  w.factor = {.read_bytes = (kBlock + kMap) * c.blocks + kStarts * kSolverVector * c.nodes,
+              .written_bytes = kCopy * c.blocks + (kStarts * kSolverVector + kInverse) * c.nodes,
+              .double_flops = kFactorOfBlock * c.blocks};
+  // An iteration: direction (z, p to p), product (p to q), update (p, q, d, r and the inverse to d, r, z).
+  w.solve = {.read_bytes = c.iterations * ((kCopy + kColumn) * c.blocks + (7.0 * kSingleVector + kInverse) * c.nodes),
+             .written_bytes = c.iterations * 5.0 * kSingleVector * c.nodes,
+             .single_flops = c.iterations * (kProductOfBlock * c.blocks + kIterationOfNode * c.nodes)};
+  w.solve_working_set = (kCopy + kColumn) * c.blocks + (5.0 * kSingleVector + kInverse) * c.nodes;
+  w.working_set = bytes_to_store(c);
+  return w;
+}
+
+double bytes_to_store(const StepCounts& c) {
+  const double elements = (kElement + kEdges) * c.tetrahedra;
+  const double matrix = (kBlock + kColumn + kMap + kCopy + kColumn + kMap) * c.blocks;
+  // q, u, two of each attempt, force, product, right-hand side, change; in the solver three starts with their products, b, x, A x, and five single ones
+  const double vectors = (10.0 * kVector + (2.0 * kStarts + 3.0) * kSolverVector + 5.0 * kSingleVector + kInverse) * c.nodes;
+  return elements + matrix + vectors;
+}
+
+}  // namespace palpate::study

@@ -1,0 +1,23 @@
+#pragma once
+#include "palpate/study/fem_bench.h"
+
+namespace palpate::study {
+
+/// What one step handles.
+struct StepCounts {
+  double nodes = 0.0, tetrahedra = 0.0, blocks = 0.0;
+  double iterations = 0.0;  ///< of the linear solver
+};
+
+/// The least that each stage of a linearly implicit step (warped tangent, no damping, solved by conjugate gradients in single precision) must do.
+struct StepWork {
+  StageWork force, matrix, factor, solve;
+  double working_set = 0.0;        ///< bytes that a step comes by again one step later
+  double solve_working_set = 0.0;  ///< and an iteration one iteration later
+};
+StepWork work_of(const StepCounts& counts);
+
+/// What must be stored for such steps [bytes]: elements, pattern, matrix and its copy in single precision, vectors.
+double bytes_to_store(const StepCounts& counts);
+
+}  // namespace palpate::study

@@ -1,0 +1,69 @@
+#include "palpate/study/fem_bench.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "study/fem_bench/peak_memory.h"
+#include "study/fem_bench/stage_work.h"
+
+namespace palpate::study {
+namespace {
+
+MachineLimits machine() {
+  MachineLimits m;
+  m.gflop_s = 200.0;
+  m.double_gflop_s = 100.0;
+  m.bandwidths = {{1e6, 80.0, 40.0}, {1e8, 20.0, 10.0}};
+  return m;
+}
+
+TEST(FemBench, BandwidthBetweenWorkingSetsIsLinearInTheirLogarithm) {
+  EXPECT_DOUBLE_EQ(machine().read_gb_s(1e5), 80.0);
+  EXPECT_NEAR(machine().read_gb_s(1e7), 50.0, 1e-12);
+  EXPECT_NEAR(machine().write_gb_s(1e7), 25.0, 1e-12);
+  EXPECT_DOUBLE_EQ(machine().write_gb_s(1e9), 10.0);
+}
+
+TEST(FemBench, LimitIsTheLongerOfBytesAndOperations) {
+  const StageWork bytes{.read_bytes = 8e7, .written_bytes = 4e7, .double_flops = 1.0};
+  EXPECT_NEAR(bytes.limit_ms(machine(), 1e6), 1.0 + 1.0, 1e-12);
+  const StageWork operations{.read_bytes = 1.0, .single_flops = 2e8, .double_flops = 3e8};
+  EXPECT_NEAR(operations.limit_ms(machine(), 1e6), 1.0 + 3.0, 1e-12);
+}
+
+TEST(FemBench, WorkGrowsWithTheMeshAndTheSolveWithItsIterations) {
+  const StepCounts one{.nodes = 1e3, .tetrahedra = 4e3, .blocks = 1.3e4, .iterations = 10.0};
+  const StepCounts ten{.nodes = 1e4, .tetrahedra = 4e4, .blocks = 1.3e5, .iterations = 20.0};
+  const StepWork a = work_of(one), b = work_of(ten);
+  EXPECT_NEAR(b.force.read_bytes / a.force.read_bytes, 10.0, 1e-12);
+  EXPECT_NEAR(b.matrix.written_bytes / a.matrix.written_bytes, 10.0, 1e-12);
+  EXPECT_NEAR(b.solve.read_bytes / a.solve.read_bytes, 20.0, 1e-12);
+  EXPECT_NEAR(bytes_to_store(ten) / bytes_to_store(one), 10.0, 1e-12);
+}
+
+TEST(FemBench, ExponentOfAPowerLaw) {
+  std::vector<FemBenchRow> rows(3);
+  std::vector<const FemBenchRow*> members;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    rows[k].nodes = static_cast<int>(1000 * std::pow(4, k));
+    rows[k].solve_ms = 3e-4 * std::pow(rows[k].nodes, 1.25);
+    members.push_back(&rows[k]);
+  }
+  EXPECT_NEAR(scaling_exponent(members, &FemBenchRow::solve_ms), 1.25, 1e-9);
+}
+
+TEST(FemBench, PeakMemorySeesWhatWasGivenBack) {
+  const PeakMemory memory;
+  if (!std::isfinite(memory.bytes())) GTEST_SKIP() << "this system does not tell";
+  {
+    std::vector<double> v(std::size_t{4} << 20, 1.0);  // 32 MiB
+    EXPECT_EQ(v.back(), 1.0);
+  }
+  EXPECT_GT(memory.bytes(), 31.0 * 1048576.0);
+  EXPECT_LT(memory.bytes(), 40.0 * 1048576.0);
+}
+
+}  // namespace
+}  // namespace palpate::study
