@@ -8,10 +8,7 @@ namespace {
 constexpr int kSteps = 12;
 
 /// Least of u . (x - y) over both hulls.
-double least_along(const ProxySet& a, int p, const ProxySet& b, int q, const Vec3& u, Vec3& difference) {
-  difference = a.support(p, -u) - b.support(q, u);
-  return u.dot(difference);
-}
+double least_along(const ProxySet& a, int p, const ProxySet& b, int q, const Vec3& u) { return -a.most_along(p, -u) - b.most_along(q, u); }
 
 /// The shortest vector from v toward s.
 Vec3 shorten(const Vec3& v, const Vec3& s) {
@@ -23,31 +20,17 @@ Vec3 shorten(const Vec3& v, const Vec3& s) {
 }  // namespace
 
 bool apart(const ProxySet& a, int p, const ProxySet& b, int q, double margin, Vec3& direction, bool& by_memory) {
-  Vec3 s;
-  by_memory = !direction.isZero() && least_along(a, p, b, q, direction, s) > margin;  // kept as a unit vector
+  by_memory = !direction.isZero() && least_along(a, p, b, q, direction) > margin;  // kept as a unit vector
   if (by_memory) return true;
   Vec3 v = a.centre(p) - b.centre(q);
   for (int i = 0; i < kSteps; ++i) {
     const double length = v.norm();
     if (!(length > margin)) return false;
-    if (least_along(a, p, b, q, v, s) > margin * length) {
+    if (least_along(a, p, b, q, v) > margin * length) {
       direction = v / length;
       return true;
     }
-    v = shorten(v, s);
-  }
-  return false;
-}
-
-bool apart(const Ball& ball, const ProxySet& set, int q, double margin) {
-  const double reach = ball.radius + margin;
-  Vec3 v = ball.centre - set.centre(q);
-  for (int i = 0; i < kSteps; ++i) {
-    const double length = v.norm();
-    if (!(length > reach)) return false;
-    const Vec3 s = ball.centre - set.support(q, v);
-    if (v.dot(s) > reach * length) return true;
-    v = shorten(v, s);
+    v = shorten(v, a.support(p, -v) - b.support(q, v));
   }
   return false;
 }

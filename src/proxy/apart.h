@@ -12,7 +12,4 @@ namespace palpate::proxy {
 /// Hull p of a against hull q of b.  @param direction  in: the one to try first, zero for none; out: the one that proved it
 bool apart(const ProxySet& a, int p, const ProxySet& b, int q, double margin, Vec3& direction, bool& by_memory);
 
-/// A ball against hull q, `margin` without the ball's radius.
-bool apart(const Ball& ball, const ProxySet& set, int q, double margin);
-
 }  // namespace palpate::proxy

@@ -63,6 +63,7 @@ std::vector<std::vector<int>> owned_nodes(const LayeredModel& model, const std::
 HullQuality quality(const ConvexHull& hull, const Points& corners, const Points& vertices, const Points& normals, const VecX& areas, const std::vector<int>& members) {
   HullQuality out;
   out.volume = hull.volume;
+  const Hull whole(corners);
   double area = 0.0;
   for (const int v : members) {
     const Vec3 x = vertices.col(v), m = normals.col(v);
@@ -75,7 +76,7 @@ HullQuality quality(const ConvexHull& hull, const Points& corners, const Points&
     area += areas[v];
     if (hull.beyond(x) > 0.0) {
       const Points point = x;
-      out.outside = std::max(out.outside, nearest_difference(Hull(point), Hull(corners)).norm());
+      out.outside = std::max(out.outside, nearest_difference(Hull(point), whole).norm());
     }
   }
   if (area > 0.0) out.mean_gap /= area;

@@ -53,13 +53,28 @@ Vec3 reduce(Simplex& s) {
 
 }  // namespace
 
+void Hull::assign(const Points& points, const Vec3& origin, double scale) {
+  const auto count = static_cast<std::size_t>(padded(static_cast<int>(points.cols())));
+  for (auto* column : {&x_, &y_, &z_}) column->resize(count);
+  centre_.setZero();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_point = static_cast<Eigen::Index>(i) < points.cols();
+    const Vec3 p = scale * (points.col(is_point ? static_cast<Eigen::Index>(i) : 0) - origin);
+    x_[i] = p.x();
+    y_[i] = p.y();
+    z_[i] = p.z();
+    if (is_point) centre_ += p;
+  }
+  centre_ /= static_cast<double>(points.cols());
+}
+
 // v is a point of the convex set C = a - b, s = argmin over C of v.s; v.v - v.s bounds how much nearer the origin another point can be.
 // s joins the simplex that carries v, and the next v is the nearest point of that.
 Vec3 nearest_difference(const Hull& a, const Hull& b) {
   constexpr int kMaxSteps = 100;
   constexpr double kRelativeGap = 1e-9;
   Simplex simplex;
-  Vec3 v = a.centre - b.centre;
+  Vec3 v = a.centre() - b.centre();
   for (int i = 0; i < kMaxSteps; ++i) {
     const Vec3 s = a.support(-v) - b.support(v);
     if (simplex.count > 0 && v.dot(v - s) <= kRelativeGap * v.squaredNorm()) break;

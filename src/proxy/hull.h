@@ -1,27 +1,28 @@
 #pragma once
+#include <vector>
+
 #include "palpate/core/types.h"
+#include "proxy/lanes.h"
 
 namespace palpate::proxy {
 
-/// A point set as the convex hull that it spans.
-struct Hull {
-  const Points& points;
-  Vec3 centre;
-
-  explicit Hull(const Points& p) : points(p), centre(p.rowwise().mean()) {}
+/// A point set as the convex hull that it spans, its coordinates side by side.
+class Hull {
+ public:
+  Hull() = default;
+  explicit Hull(const Points& points) { assign(points, Vec3::Zero(), 1.0); }
+  /// The points scale (p - origin).  Allocates only when there are more than ever before.
+  void assign(const Points& points, const Vec3& origin, double scale);
+  const Vec3& centre() const { return centre_; }
   /// Its point farthest along a direction; the first of equals.
   Vec3 support(const Vec3& direction) const {
-    Eigen::Index best = 0;
-    double most = direction.dot(points.col(0));
-    for (Eigen::Index i = 1; i < points.cols(); ++i) {
-      const double along = direction.dot(points.col(i));
-      if (along > most) {
-        most = along;
-        best = i;
-      }
-    }
-    return points.col(best);
+    const auto i = static_cast<std::size_t>(farthest({x_.data(), y_.data(), z_.data()}, static_cast<int>(x_.size()), direction.data()));
+    return {x_[i], y_[i], z_[i]};
   }
+
+ private:
+  std::vector<double> x_, y_, z_;
+  Vec3 centre_ = Vec3::Zero();
 };
 
 /// Depth along a unit direction n from b to a: how far a must move along n to be clear of b; negative when it is.

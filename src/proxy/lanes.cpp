@@ -21,6 +21,32 @@ typedef long long Mask __attribute__((vector_size(8 * kLanes)));
 #define PALPATE_LOAD(pointer) (*reinterpret_cast<const PackInMemory*>(pointer))
 #define PALPATE_STORE(pointer, value) (*reinterpret_cast<PackInMemory*>(pointer) = (value))
 
+[[gnu::always_inline]] inline int farthest_inline(Columns p, int count, const double d[3]) {
+  Pack most = Pack{} - std::numeric_limits<double>::infinity();
+  Mask where = {}, here = {};
+  for (int lane = 0; lane < kLanes; ++lane) here[lane] = lane;
+  for (int i = 0; i < count; i += kLanes, here += kLanes) {
+    const Pack along = d[0] * PALPATE_LOAD(p.x + i) + d[1] * PALPATE_LOAD(p.y + i) + d[2] * PALPATE_LOAD(p.z + i);
+    const Mask more = along > most;
+    most = more ? along : most;
+    where = more ? here : where;
+  }
+  int best = 0;
+  for (int lane = 1; lane < kLanes; ++lane)
+    if (most[lane] > most[best] || (most[lane] == most[best] && where[lane] < where[best])) best = lane;
+  return static_cast<int>(where[best]);
+}
+
+[[gnu::always_inline]] inline double most_along_inline(Columns p, int count, const double d[3]) {
+  Pack most = Pack{} - std::numeric_limits<double>::infinity();
+  for (int i = 0; i < count; i += kLanes) {
+    const Pack along = d[0] * PALPATE_LOAD(p.x + i) + d[1] * PALPATE_LOAD(p.y + i) + d[2] * PALPATE_LOAD(p.z + i);
+    most = along > most ? along : most;
+  }
+  const auto greater = [](double a, double b) { return a > b ? a : b; };
+  return greater(greater(greater(most[0], most[1]), greater(most[2], most[3])), greater(greater(most[4], most[5]), greater(most[6], most[7])));
+}
+
 }  // namespace
 
 PALPATE_CLONES void moments(Columns p, Columns q, int count, double sums[12]) {
@@ -87,20 +113,27 @@ PALPATE_CLONES void move(Columns rest, int count, const double a[9], const doubl
   }
 }
 
-PALPATE_CLONES int farthest(Columns p, int count, const double d[3]) {
-  Pack most = Pack{} - std::numeric_limits<double>::infinity();
-  Mask where = {}, here = {};
-  for (int lane = 0; lane < kLanes; ++lane) here[lane] = lane;
-  for (int i = 0; i < count; i += kLanes, here += kLanes) {
-    const Pack along = d[0] * PALPATE_LOAD(p.x + i) + d[1] * PALPATE_LOAD(p.y + i) + d[2] * PALPATE_LOAD(p.z + i);
-    const Mask more = along > most;
-    most = more ? along : most;
-    where = more ? here : where;
+PALPATE_CLONES int farthest(Columns p, int count, const double d[3]) { return farthest_inline(p, count, d); }
+
+PALPATE_CLONES double most_along(Columns p, int count, const double d[3]) { return most_along_inline(p, count, d); }
+
+PALPATE_CLONES bool ball_apart(Columns p, int count, const double c[3], double reach, int steps, double w[3]) {
+  double v[3] = {c[0] - w[0], c[1] - w[1], c[2] - w[2]};
+  for (int i = 0; i < steps; ++i) {
+    const double length2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    if (!(length2 > reach * reach)) return false;
+    const double along = v[0] * c[0] + v[1] * c[1] + v[2] * c[2] - most_along_inline(p, count, v);
+    if (along > 0.0 && along * along > reach * reach * length2) return true;
+    const int at = farthest_inline(p, count, v);
+    const double e[3] = {p.x[at] - w[0], p.y[at] - w[1], p.z[at] - w[2]};  // from the witness to that corner, as far as |v| falls
+    const double edge2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
+    const double t = edge2 > 0.0 ? std::clamp((v[0] * e[0] + v[1] * e[1] + v[2] * e[2]) / edge2, 0.0, 1.0) : 0.0;
+    for (int k = 0; k < 3; ++k) {
+      w[k] += t * e[k];
+      v[k] = c[k] - w[k];
+    }
   }
-  int best = 0;
-  for (int lane = 1; lane < kLanes; ++lane)
-    if (most[lane] > most[best] || (most[lane] == most[best] && where[lane] < where[best])) best = lane;
-  return static_cast<int>(where[best]);
+  return false;
 }
 
 }  // namespace palpate::proxy

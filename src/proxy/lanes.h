@@ -25,5 +25,10 @@ void move(Columns rest, int count, const double linear[9], const double offset[3
 
 /// The entry farthest along a direction; the first of equals.
 int farthest(Columns p, int count, const double direction[3]);
+/// How far that is: direction . p.
+double most_along(Columns p, int count, const double direction[3]);
+
+/// Whether the hull of the points is proven farther than `reach` from a centre: see apart.h.  @param witness  a point of the hull, in and out
+bool ball_apart(Columns p, int count, const double centre[3], double reach, int steps, double witness[3]);
 
 }  // namespace palpate::proxy

@@ -19,7 +19,7 @@ void ccd_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* ou
 }
 
 void ccd_centre(const void* object, ccd_vec3_t* out) {
-  const Vec3& c = static_cast<const Hull*>(object)->centre;
+  const Vec3& c = static_cast<const Hull*>(object)->centre();
   ccdVec3Set(out, c.x(), c.y(), c.z());
 }
 
@@ -82,7 +82,13 @@ void check_points(const Points& points, const char* which) {
 
 }  // namespace
 
-RegionFinder::RegionFinder() { counters::count("proxy.region_finder"); }
+struct RegionFinder::Scaled {
+  Hull a, b;
+};
+
+RegionFinder::RegionFinder() : scaled_(std::make_unique<Scaled>()) { counters::count("proxy.region_finder"); }
+RegionFinder::~RegionFinder() = default;
+RegionFinder::RegionFinder(RegionFinder&&) noexcept = default;
 
 Region RegionFinder::find(const Points& a, const Points& b, double margin) {
   check_points(a, "the first body");
@@ -91,9 +97,9 @@ Region RegionFinder::find(const Points& a, const Points& b, double margin) {
   const Vec3 low = a.rowwise().minCoeff().cwiseMin(b.rowwise().minCoeff()), high = a.rowwise().maxCoeff().cwiseMax(b.rowwise().maxCoeff());
   const Vec3 origin = 0.5 * (low + high);
   const double size = (high - low).maxCoeff(), scale = size > 0.0 ? 1.0 / size : 1.0;
-  a_.noalias() = scale * (a.colwise() - origin);
-  b_.noalias() = scale * (b.colwise() - origin);
-  const Hull hull_a(a_), hull_b(b_);
+  Hull &hull_a = scaled_->a, &hull_b = scaled_->b;
+  hull_a.assign(a, origin, scale);
+  hull_b.assign(b, origin, scale);
 
   Best best;
   ++counts_.mpr;
@@ -101,7 +107,7 @@ Region RegionFinder::find(const Points& a, const Points& b, double margin) {
     ++counts_.epa;
     offer_answer(ccdGJKPenetration, RegionMethod::kEpa, hull_a, hull_b, best, counts_);
   }
-  best.offer(hull_a, hull_b, hull_a.centre - hull_b.centre, RegionMethod::kCentroids);
+  best.offer(hull_a, hull_b, hull_a.centre() - hull_b.centre(), RegionMethod::kCentroids);
   if (has_last_) best.offer(hull_a, hull_b, last_normal_, RegionMethod::kLastNormal);
   if (best.depth <= 0.0 || best.method == RegionMethod::kCentroids || best.method == RegionMethod::kLastNormal)
     best.offer(hull_a, hull_b, nearest_difference(hull_a, hull_b), RegionMethod::kDistance);

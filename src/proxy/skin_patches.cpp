@@ -32,22 +32,45 @@ std::size_t halve(std::span<int> items, Place place) {
   return static_cast<std::size_t>(half);
 }
 
-SkinPatch patch_of(const TriMesh& skin, std::span<const int> faces, int proxy, int first) {
-  SkinPatch out;
-  out.proxy = proxy;
-  out.first_face = first;
-  out.face_count = static_cast<int>(faces.size());
+/// The ball around the box of some faces.
+PatchBranch ball_of(const TriMesh& skin, std::span<const int> faces) {
+  PatchBranch out;
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (const int f : faces) {
-    const Vec3 a = skin.vertices.col(skin.faces(0, f)), b = skin.vertices.col(skin.faces(1, f)), c = skin.vertices.col(skin.faces(2, f));
-    low = low.cwiseMin(a).cwiseMin(b).cwiseMin(c);
-    high = high.cwiseMax(a).cwiseMax(b).cwiseMax(c);
-    out.area += 0.5 * (b - a).cross(c - a);
-  }
+  for (const int f : faces)
+    for (int k = 0; k < 3; ++k) {
+      low = low.cwiseMin(skin.vertices.col(skin.faces(k, f)));
+      high = high.cwiseMax(skin.vertices.col(skin.faces(k, f)));
+    }
   out.centre = 0.5 * (low + high);
   for (const int f : faces)
     for (int k = 0; k < 3; ++k) out.radius = std::max(out.radius, (skin.vertices.col(skin.faces(k, f)) - out.centre).norm());
   return out;
+}
+
+/// The faces [first, first + count) of out.faces as one patch, or as two halves that are cut on.
+void add_faces(const TriMesh& skin, int proxy, std::size_t first, std::size_t count, int patch_faces, SkinPatches& out) {
+  const std::span<int> faces(out.faces.data() + first, count);
+  const auto branch = out.tree.size();
+  out.tree.push_back(ball_of(skin, faces));
+  if (static_cast<int>(count) <= patch_faces) {
+    SkinPatch patch;
+    patch.proxy = proxy;
+    patch.first_face = static_cast<int>(first);
+    patch.face_count = static_cast<int>(count);
+    patch.centre = out.tree[branch].centre;
+    patch.radius = out.tree[branch].radius;
+    for (const int f : faces) {
+      const Vec3 a = skin.vertices.col(skin.faces(0, f)), b = skin.vertices.col(skin.faces(1, f)), c = skin.vertices.col(skin.faces(2, f));
+      patch.area += 0.5 * (b - a).cross(c - a);
+    }
+    out.tree[branch].patch = static_cast<int>(out.patches.size());
+    out.patches.push_back(patch);
+  } else {
+    const std::size_t half = halve(faces, [&](int f) { return face_middle(skin, f); });
+    add_faces(skin, proxy, first, half, patch_faces, out);
+    add_faces(skin, proxy, first + half, count - half, patch_faces, out);
+  }
+  out.tree[branch].after = static_cast<int>(out.tree.size()) - out.first_branch.back();
 }
 
 void add_halved(std::vector<ProxyBranch>& tree, std::span<int> proxies, const Points& middle, int parent) {
@@ -85,23 +108,12 @@ SkinPatches skin_patches(const TriMesh& skin, const std::vector<int>& owner_of_f
     out.first_of_proxy.push_back(static_cast<int>(out.patches.size()));
     std::size_t end = first;
     while (end < out.faces.size() && owner_of_face[static_cast<std::size_t>(out.faces[end])] == p) ++end;
-    std::vector<std::pair<std::size_t, std::size_t>> open;
-    if (end > first) open.emplace_back(first, end - first);
-    while (!open.empty()) {
-      const auto [begin, count] = open.back();
-      open.pop_back();
-      const std::span<int> faces(out.faces.data() + begin, count);
-      if (static_cast<int>(count) <= patch_faces) {
-        out.patches.push_back(patch_of(skin, faces, p, static_cast<int>(begin)));
-        continue;
-      }
-      const std::size_t half = halve(faces, [&](int f) { return face_middle(skin, f); });
-      open.emplace_back(begin + half, count - half);
-      open.emplace_back(begin, half);
-    }
+    out.first_branch.push_back(static_cast<int>(out.tree.size()));
+    if (end > first) add_faces(skin, p, first, end - first, patch_faces, out);
     first = end;
   }
   out.first_of_proxy.push_back(static_cast<int>(out.patches.size()));
+  out.first_branch.push_back(static_cast<int>(out.tree.size()));
   return out;
 }
 

@@ -9,6 +9,8 @@ namespace palpate::proxy {
 struct SkinPatches {
   std::vector<SkinPatch> patches;     ///< proxy by proxy
   std::vector<int> first_of_proxy;    ///< and one more at the end
+  std::vector<PatchBranch> tree;      ///< proxy by proxy; `after` counts within the proxy
+  std::vector<int> first_branch;      ///< and one more at the end
   std::vector<int> faces;             ///< every face once, patch by patch
 };
 SkinPatches skin_patches(const TriMesh& skin, const std::vector<int>& owner_of_face, int proxies, int patch_faces);

@@ -24,7 +24,8 @@ struct ProxyState {
   Mat3 linear = Mat3::Identity();
   Vec3 offset = Vec3::Zero();
   double stretch = 1.0;                                ///< spectral norm of `linear`
-  double inflation = 0.0;                              ///< [m]
+  double residual = 0.0;                               ///< how far skin may be from where that map takes it [m]
+  double inflation = 0.0;                              ///< that, and what lies outside the hull at rest [m]
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();        ///< box around the inflated hull [m]
 };
 
@@ -37,6 +38,13 @@ struct SkinPatch {
   Vec3 centre = Vec3::Zero();          ///< [m]
   double radius = 0.0;                 ///< [m]
   Vec3 area = Vec3::Zero();            ///< sum of the faces' area vectors, outward [m^2]
+};
+/// A branch of the tree over a proxy's patches, in preorder within the proxy: its first child follows it, `after` is the next that is none of its own.
+struct PatchBranch {
+  int after = 0;
+  int patch = -1;  ///< of a leaf, among all patches
+  Vec3 centre = Vec3::Zero();
+  double radius = 0.0;
 };
 struct Ball {
   Vec3 centre;
@@ -74,11 +82,17 @@ class ProxySet {
   int corner_count(int proxy) const;
   /// The corner farthest along a direction, without inflation.
   Vec3 support(int proxy, const Vec3& direction) const;
+  double most_along(int proxy, const Vec3& direction) const;  ///< direction . support
+  /// A proof that the hull, without inflation, is farther than `margin` from a ball, found in at most so many steps; false: it may be near.
+  /// @param witness  in and out: a point of the hull to start from, and the nearest found; for balls side by side one or two steps are enough
+  bool apart(int proxy, const Ball& ball, double margin, int steps, Vec3& witness) const;
   const Vec3& centre(int proxy) const;                 ///< mean of the corners
   bool neighbours(int p, int q) const;                 ///< they share a vertex of the skin, or are the same
   std::span<const SkinPatch> patches(int proxy) const;
   std::span<const SkinPatch> patches() const;          ///< all, proxy by proxy
-  Ball ball(const SkinPatch& patch) const;             ///< around its faces now
+  std::span<const PatchBranch> patch_tree(int proxy) const;
+  Ball ball(int proxy, const PatchBranch& branch) const;  ///< around its faces now, by the proxy's bound
+  Ball ball(const SkinPatch& patch) const;             ///< around its faces now, by the bound of its own nodes
   Vec3 area(const SkinPatch& patch) const;             ///< its area vector, moved with its proxy [m^2]
   std::span<const int> faces(const SkinPatch& patch) const;
   std::span<const ProxyBranch> tree() const;           ///< by bone where the model has a skeleton, else by place

@@ -1,4 +1,6 @@
 #pragma once
+#include <memory>
+
 #include "palpate/core/types.h"
 
 namespace palpate::proxy {
@@ -34,6 +36,8 @@ struct RegionCounts {
 class RegionFinder {
  public:
   RegionFinder();
+  ~RegionFinder();
+  RegionFinder(RegionFinder&&) noexcept;
   /// @param a, b    3 x n, at least one finite point each [m]
   /// @param margin  hulls apart by more than this are not a region [m]
   /// @throws InternalError for empty or non-finite points
@@ -50,7 +54,8 @@ class RegionFinder {
   RegionCounts counts_;
   bool has_last_ = false;
   Vec3 last_normal_ = Vec3::Zero();
-  Points a_, b_;  // scaled
+  struct Scaled;
+  std::unique_ptr<Scaled> scaled_;  // the two hulls
 };
 
 }  // namespace palpate::proxy

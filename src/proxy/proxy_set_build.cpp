@@ -1,0 +1,153 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+#include "proxy/hull.h"
+#include "proxy/owners.h"
+#include "proxy/proxy_set_impl.h"
+
+namespace palpate::proxy {
+namespace {
+
+std::vector<int> sorted_unique(std::vector<int> list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
+}  // namespace
+
+Cloud ProxySet::Impl::add_cloud(const TetMesh& tets, const std::vector<int>& nodes) {
+  constexpr double kFlat = 1e-8;
+  Cloud cloud;
+  cloud.first = static_cast<int>(node.size());
+  cloud.count = static_cast<int>(nodes.size());
+  cloud.lanes = padded(cloud.count);
+  const Points rest = tets.nodes(Eigen::all, nodes);
+  cloud.middle = rest.rowwise().mean();
+  const Points arm = rest.colwise() - cloud.middle;
+  cloud.spread = arm * arm.transpose();
+  Mat3 M = cloud.spread;
+  if (Eigen::SelfAdjointEigenSolver<Mat3>(M, Eigen::EigenvaluesOnly).eigenvalues()[0] <= kFlat * M.trace()) M += kFlat * M.trace() * Mat3::Identity();
+  for (int i = 0; i < cloud.lanes; ++i) node.push_back(nodes[static_cast<std::size_t>(i < cloud.count ? i : 0)]);
+  rest_nodes.append(arm);
+  coefficients.append_padded_with_zero(M.inverse() * arm);
+  largest_cloud = std::max(largest_cloud, cloud.lanes);
+  return cloud;
+}
+
+/// For each patch the slots of the nodes that its vertices hang on.
+void ProxySet::Impl::add_patch_nodes(const LayeredModel& model) {
+  std::vector<int> slot_of_node(static_cast<std::size_t>(node_count), -1);
+  int proxy = -1;
+  for (SkinPatch& patch : skin.patches) {
+    if (patch.proxy != proxy) {
+      proxy = patch.proxy;
+      const Cloud& cloud = own[static_cast<std::size_t>(proxy)];
+      for (int i = 0; i < cloud.count; ++i) slot_of_node[static_cast<std::size_t>(node[static_cast<std::size_t>(cloud.first + i)])] = cloud.first + i;
+    }
+    std::vector<int> slots;
+    for (int f = patch.first_face; f < patch.first_face + patch.face_count; ++f)
+      for (int k = 0; k < 3; ++k) {
+        const int v = model.skin.faces(k, skin.faces[static_cast<std::size_t>(f)]);
+        patch.weight_sum = std::max(patch.weight_sum, model.embedding.weights.col(v).cwiseAbs().sum());
+        for (int n = 0; n < 4; ++n) slots.push_back(slot_of_node[static_cast<std::size_t>(model.tets.tets(n, model.embedding.tet[static_cast<std::size_t>(v)]))]);
+      }
+    slots = sorted_unique(std::move(slots));
+    patch.first_slot = static_cast<int>(patch_slots.size());
+    patch.slot_count = static_cast<int>(slots.size());
+    patch_slots.insert(patch_slots.end(), slots.begin(), slots.end());
+  }
+}
+
+ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : impl_(std::make_unique<Impl>()) {
+  Impl& s = *impl_;
+  counters::count("proxy.proxy_set");
+  if (model.proxies.empty()) fail("body \"{}\": it has no proxies", model.name);
+  if (options.patch_faces < 0) fail("body \"{}\": patches of {} faces; one at least, or 0 for a 3600th of the skin", model.name, options.patch_faces);
+  s.options = options;
+  if (options.patch_faces == 0) s.options.patch_faces = std::clamp(static_cast<int>(model.skin.faces.cols() / 3600), 4, 64);
+  s.soft = model.tets.tets.cols() > 0;
+  s.node_count = model.tets.nodes.cols();
+  s.count = static_cast<int>(model.proxies.size());
+  const Eigen::Index vertices = model.skin.vertices.cols();
+  if (s.soft && model.embedding.size() != vertices) fail("body \"{}\": {} of its {} skin vertices are embedded", model.name, model.embedding.size(), vertices);
+  const std::vector<int> owner_of_face = owner_of_faces(model.skin.faces, vertices, model.proxies);
+  s.skin = skin_patches(model.skin, owner_of_face, s.count, s.options.patch_faces);
+
+  std::vector<std::vector<int>> nodes_of(model.proxies.size());
+  std::vector<std::vector<int>> owned(model.proxies.size());
+  std::vector<Cloud> of_bone(model.skeleton.bones.size());
+  if (s.soft) {
+    const auto owner = owner_of_tets(model.tets.tets, s.node_count, model.embedding, owner_of_vertices(vertices, model.proxies));
+    for (std::size_t t = 0; t < owner.size(); ++t)
+      for (int k = 0; k < 4; ++k) owned[static_cast<std::size_t>(owner[t])].push_back(model.tets.tets(k, static_cast<Eigen::Index>(t)));
+    for (std::size_t b = 0; b < of_bone.size() && options.follow == Follow::kRigid && !model.bone_of_node.empty(); ++b) {
+      std::vector<int> carried;
+      for (std::size_t n = 0; n < model.bone_of_node.size(); ++n)
+        if (model.bone_of_node[n] == static_cast<int>(b)) carried.push_back(static_cast<int>(n));
+      if (carried.size() >= 4) of_bone[b] = s.add_cloud(model.tets, carried);
+    }
+  }
+  s.states.resize(model.proxies.size());
+  Points middle(3, s.count);
+  for (int p = 0; p < s.count; ++p) {
+    const auto at = static_cast<std::size_t>(p);
+    const ProxyHull& hull = model.proxies[at];
+    if (hull.corners.cols() == 0 || !hull.corners.allFinite()) fail("body \"{}\": proxy {} has no corners, or one that is not finite", model.name, p);
+    s.bone.push_back(hull.bone);
+    s.first_corner.push_back(s.rest_corners.size());
+    s.corner_count.push_back(static_cast<int>(hull.corners.cols()));
+    s.rest_corners.append(hull.corners);
+    middle.col(p) = hull.corners.rowwise().mean();
+    s.rest_centre.push_back(middle.col(p));
+    owned[at] = sorted_unique(std::move(owned[at]));
+    double outside = 0.0, sum = 1.0;
+    const Hull whole(hull.corners);
+    Hull one;
+    const auto reach_for = [&](const Vec3& x) {
+      one.assign(x, Vec3::Zero(), 1.0);
+      outside = std::max(outside, nearest_difference(one, whole).norm());
+    };
+    for (const int v : hull.members) {
+      reach_for(model.skin.vertices.col(v));
+      if (!s.soft) continue;
+      sum = std::max(sum, model.embedding.weights.col(v).cwiseAbs().sum());
+      for (int k = 0; k < 4; ++k) nodes_of[at].push_back(model.tets.tets(k, model.embedding.tet[static_cast<std::size_t>(v)]));
+    }
+    for (const int n : owned[at]) reach_for(model.tets.nodes.col(n));
+    const double size = (hull.corners.rowwise().maxCoeff() - hull.corners.rowwise().minCoeff()).norm();
+    s.outside.push_back(outside + 1e-9 * size);  // the distance algorithm's own accuracy
+    s.weight_sum.push_back(sum);
+    if (!s.soft) continue;
+    nodes_of[at].insert(nodes_of[at].end(), owned[at].begin(), owned[at].end());
+    s.own.push_back(s.add_cloud(model.tets, sorted_unique(std::move(nodes_of[at]))));
+    const bool by_bone = hull.bone >= 0 && hull.bone < static_cast<int>(of_bone.size()) && of_bone[static_cast<std::size_t>(hull.bone)].count > 0;
+    s.guide.push_back(by_bone ? of_bone[static_cast<std::size_t>(hull.bone)] : s.own.back());
+  }
+  s.corners = s.rest_corners;
+  s.centre = s.rest_centre;
+  for (auto* column : {&s.gathered.x, &s.gathered.y, &s.gathered.z}) column->resize(static_cast<std::size_t>(s.largest_cloud));
+  s.squares.resize(s.node.size());
+  if (s.soft) s.add_patch_nodes(model);
+
+  s.adjacent.assign(static_cast<std::size_t>(s.count) * static_cast<std::size_t>(s.count), 0);
+  std::vector<std::vector<int>> at_vertex(static_cast<std::size_t>(vertices));
+  for (int p = 0; p < s.count; ++p) {
+    s.adjacent[static_cast<std::size_t>(p * s.count + p)] = 1;
+    for (const int v : model.proxies[static_cast<std::size_t>(p)].members) at_vertex[static_cast<std::size_t>(v)].push_back(p);
+  }
+  for (const auto& list : at_vertex)
+    for (const int p : list)
+      for (const int q : list) s.adjacent[static_cast<std::size_t>(p * s.count + q)] = 1;
+  s.tree = proxy_tree(model.skeleton, model.proxies, middle);
+  if (s.soft)
+    update(model.tets.nodes);
+  else
+    update(Pose{});
+}
+
+}  // namespace palpate::proxy
