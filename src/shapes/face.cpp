@@ -32,10 +32,10 @@ double with_eye(double head, const Vec3& p, bool fine) {
     eyeball -= 0.5 * (1.0 - ramp(std::hypot(u - 1.6, w - 2.0), 0.6, 1.4));  // the glint, as sculptors leave it
   }
   // Lids: a ball around the eyeball, open down to it between the two edges; a fold above the upper one.
-  const double opening = std::max({0.9 * (w - upper_lid(u)), 0.9 * (lower_lid(u) - w), -eyeball, p.y() + 78.0}) + 1.7 * ramp(std::abs(u), 10.5, 14.0);
+  const double opening = std::max({0.9 * (w - upper_lid(u)), 0.9 * (lower_lid(u) - w), -eyeball, p.y() + 78.0}) + 2.0 * ramp(std::abs(u), 9.5, 14.0);
   head = join(head, carve(ball(p, kEye, 14.9), opening, 1.0), 9.0);
-  const double fold = std::hypot(w - 5.2 - upper_lid(u), away - 15.6) - 0.9 + 4.0 * (ramp(std::abs(u), 10.0, 15.0) + ramp(p.y(), -86.0, -80.0));
-  head = carve(head, fold, 1.5);
+  const double fold = std::hypot(w - 5.2 - upper_lid(u), away - 15.8) - 1.0 + 4.0 * (ramp(std::abs(u), 10.0, 15.0) + ramp(p.y(), -86.0, -80.0));
+  head = carve(head, fold, 3.0);
   return join(head, eyeball, 0.6);
 }
 
@@ -91,15 +91,15 @@ double with_ear(double head, const Vec3& p, bool fine) {
   // The rim (helix) runs from the lobe up the back and over the top into the hollow; the ridge inside it (antihelix) keeps to the back.
   const double turn = theta < -100.0 ? theta + 360.0 : theta;
   const double rim_here = ramp(turn, -75.0, -35.0) * (1.0 - ramp(turn, 175.0, 205.0));
-  const double rim = std::hypot((rho - 1.0) * 15.0, q.z() - 3.2) - (0.6 + 2.9 * rim_here);
-  ear = join(ear, rim, 2.0);
+  const double rim = std::hypot((rho - 1.0) * 15.0, q.z() - 3.2) - (5.0 * rim_here - 1.5);
+  ear = join(ear, rim, 2.5);
   const double hollow = ellipsoid(egg, {-3.5, -7, 5.5}, {8.0, 12.5, 8.0});
-  ear = carve(ear, hollow, 2.0);
+  ear = carve(ear, hollow, 3.5);
   const double ridge_here = ramp(turn, -80.0, -45.0) * (1.0 - ramp(turn, 60.0, 95.0));
-  const double ridge = std::hypot((rho - 0.60) * 16.0, q.z() - 2.6) - 2.6 * ridge_here;
-  ear = join(ear, ridge, 2.0);
+  const double ridge = std::hypot((rho - 0.60) * 16.0, q.z() - 2.6) - (4.1 * ridge_here - 1.5);
+  ear = join(ear, ridge, 2.5);
   ear = join(ear, ellipsoid(q, {-4, -29, 0.5}, {8.0, 8.5, 4.0}), 3.0);                              // lobe
-  ear = join(ear, ellipsoid(q, {-12.5, -9, 3.0}, {3.4, 6.0, 4.5}, turned(0, 0, 10)), 2.5);          // tragus
+  ear = join(ear, ellipsoid(q, {-12.5, -9, 3.0}, {3.6, 6.0, 4.5}, turned(0, 0, 10)), 4.5);          // tragus
   return join(head, ear, 3.0);
 }
 

@@ -40,6 +40,29 @@ void add_cone(std::vector<Loop>& chain, double r0, double z0, double r1, double 
 constexpr double kChamfer = 0.0005, kBoreChamfer = 0.0008;                                           // [m]
 constexpr double kRecess = 0.0015, kRim = 0.037, kWebOuter = 0.0355, kWebInner = 0.0215, kHub = 0.020;  // of the web between rim and hub [m]
 
+/// The outline moved inwards by a chamfer, point by point.  At a tip's corner that meets both sides' offsets, the point also slides along each side; its neighbours share
+/// the slide, less and less over half the tip, so that none passes another.
+std::vector<Point2> chamfered(const GearProfile& profile, double chamfer) {
+  const int n = static_cast<int>(profile.points.size());
+  const auto at = [&](int i) { return static_cast<std::size_t>((i % n + n) % n); };
+  std::vector<Point2> out;
+  for (std::size_t i = 0; i < profile.points.size(); ++i) out.push_back(profile.points[i] - chamfer * profile.normals[i]);
+  const double reach = 0.45 * (profile.points[at(profile.corners[1])] - profile.points[at(profile.corners[2])]).norm();  // across a tip, from corner to corner
+  for (const int corner : profile.corners)
+    for (const int side : {-1, 1}) {
+      const Point2 first = (profile.points[at(corner + side)] - profile.points[at(corner)]).normalized();
+      const double slide = -chamfer * profile.normals[at(corner)].dot(first);
+      double along = 0.0;
+      for (int i = corner + side;; i += side) {
+        const Point2 step = profile.points[at(i)] - profile.points[at(i - side)];
+        along += step.norm();
+        if (along >= reach) break;
+        out[at(i)] += slide * (1.0 - along / reach) * step.normalized();
+      }
+    }
+  return out;
+}
+
 Plan plan_of(const GearSize& size, double spacing, bool fine) {
   const GearProfile profile = gear_profile(size, spacing);
   const double h = 0.5 * size.width;
@@ -51,9 +74,7 @@ Plan plan_of(const GearSize& size, double spacing, bool fine) {
     return plan;
   }
   plan.top.push_back({profile.points, h - kChamfer});
-  Loop inner{profile.points, h};
-  for (std::size_t i = 0; i < inner.points.size(); ++i) inner.points[i] -= kChamfer * profile.normals[i];
-  plan.top.push_back(inner);
+  plan.top.push_back({chamfered(profile, kChamfer), h});
   const int at_rim = pieces(2.0 * std::numbers::pi * kRim, spacing), at_hub = pieces(2.0 * std::numbers::pi * kHub, spacing), at_bore = pieces(2.0 * std::numbers::pi * size.bore, spacing);
   plan.top.push_back({ring(kRim, at_rim), h});
   add_cone(plan.top, kRim, h, kWebOuter, h - kRecess, at_rim, spacing);

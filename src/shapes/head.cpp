@@ -1,5 +1,8 @@
 #include "head.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "contour.h"
 #include "face.h"
 #include "solids.h"
@@ -83,7 +86,7 @@ Shape make_head(const Resolution& resolution) {
   const double edge_mm = std::sqrt(2.0 / std::sqrt(3.0) * 0.30 / resolution.skin_vertices) / kScale;
   plan.inside = body({true, true, 3.0 * edge_mm});
   plan.size = [](const Vec3& x) { return head_size_mm(x / kScale); };
-  plan.lattice = 0.0018;
+  plan.lattice = std::min(0.0018, 0.65 * kScale * edge_mm);  // a finer mesh finds narrower gaps
   plan.lipschitz = 2.0;
   shape.skin = contour(plan, resolution.skin_vertices);
   return shape;

@@ -1,5 +1,8 @@
 #include "human.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "contour.h"
 #include "figure.h"
 #include "hand.h"
@@ -122,7 +125,7 @@ Shape make_human(const Resolution& resolution) {
   shape.base = contour(plan, resolution.base_vertices);
   plan.inside = [](const Vec3& p) { return human(p, true); };
   plan.size = size_of;
-  plan.lattice = 0.0046;
+  plan.lattice = 0.0046 * std::min(1.0, std::sqrt(60000.0 / resolution.skin_vertices));  // a finer mesh finds narrower gaps
   plan.lipschitz = 2.0;
   shape.skin = contour(plan, resolution.skin_vertices);
   return shape;

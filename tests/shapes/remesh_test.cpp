@@ -61,6 +61,27 @@ TEST(March, SymmetricBodyIsCutInItsPlane) {
   EXPECT_GT(rim, 20);
 }
 
+// The detector that the other tests rely on: two balls apart do not cut each other, two that overlap do, all along the circle where they meet.
+TEST(SelfIntersections, AreFoundWhereTheyAre) {
+  const TriMesh ball = shapes::contour(ball_plan(0.5, false), 700);
+  for (const double distance : {1.1, 0.7}) {
+    TriMesh two;
+    two.vertices.resize(3, 2 * ball.vertices.cols());
+    two.vertices << ball.vertices, ball.vertices.colwise() + Vec3(distance, 0, 0);
+    two.faces.resize(3, 2 * ball.faces.cols());
+    two.faces << ball.faces, ball.faces.array() + static_cast<int>(ball.vertices.cols());
+    long looked_at = 0;
+    const int found = self_intersections(two, &looked_at);
+    EXPECT_GT(looked_at, 1000);
+    if (distance > 1.0) {
+      EXPECT_EQ(found, 0);
+      continue;
+    }
+    const double circle = 2.0 * std::numbers::pi * std::sqrt(0.25 - 0.35 * 0.35), edge = (vertex(ball, 0, 0) - vertex(ball, 0, 1)).norm();
+    EXPECT_GT(found, circle / edge);
+  }
+}
+
 // Volume of a sphere's inscribed triangles: V (1 - c h^2); the count is met, the triangles are good, every vertex lies on the sphere.
 TEST(Contour, BallHasItsVolumeCountAndShape) {
   for (const bool symmetric : {false, true}) {

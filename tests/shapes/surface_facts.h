@@ -42,10 +42,12 @@ inline int pieces(const TriMesh& m) {
   return n;
 }
 
-/// The segment pq crosses the triangle abc, at a point inside both (five signs of volumes).
+/// The segment pq crosses the triangle abc, at a point inside both (five signs of volumes).  An end within 1e-9 of the triangle's size of its plane does not
+/// count: there, on a gear's flat faces, signs are rounding.
 inline bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
-  if (normal.dot(p - a) * normal.dot(q - a) > 0.0) return false;
+  const double before = normal.dot(p - a), after = normal.dot(q - a), rounding = 1e-9 * normal.norm() * (b - a).norm();
+  if (before * after > 0.0 || std::min(std::abs(before), std::abs(after)) < rounding) return false;
   const Vec3 d = q - p;
   const double u = d.dot((a - p).cross(b - p)), v = d.dot((b - p).cross(c - p)), w = d.dot((c - p).cross(a - p));
   return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
