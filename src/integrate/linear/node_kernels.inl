@@ -30,33 +30,33 @@ PALPATE_INLINE Four cross(Four a, Four b) {
   return __builtin_shuffle(a * __builtin_shuffle(b, yzx) - __builtin_shuffle(a, yzx) * b, yzx);
 }
 
-// A processor's own guess of what is read next ends at every page of 4 KiB: here blocks are asked for some rows before.
-constexpr int kBytesAhead = 2048, kBlocksAhead = 24;
-PALPATE_INLINE void fetch_row(const SingleBlocks& A, int i) {
-  const char* p = reinterpret_cast<const char*>(A.values + 9 * static_cast<std::int64_t>(A.row_start[i])) + kBytesAhead;
-  const int bytes = 36 * (A.row_start[i + 1] - A.row_start[i]);
-  for (int at = 0; at < bytes; at += 64) __builtin_prefetch(p + at);
-}
+// A processor's own guess of what is read next ends at every page of 4 KiB: the blocks of a product are asked for two kilobytes before, those of the original,
+// which stand in another order, some rows before.
+constexpr int kFloatsAhead = 512, kBlocksAhead = 24;
 
 #if PALPATE_LANES == 16
 
 // One vector holds a block: lane 3 c + r is B(r, c), and what follows in memory (the next block) meets the zero in p's fourth entry.
 typedef int WideIndex __attribute__((vector_size(64)));
 
+/// x x x y y y z z z 0 ... of a node: sixteen bytes are read, which never lie on two lines.  (GCC 12 takes the way through memory for the same in vector types.)
+PALPATE_INLINE Wide spread(const float* p) {
+  Wide all;
+  __asm__("vbroadcastf32x4 %1, %0" : "=v"(all) : "m"(*reinterpret_cast<const FourAnywhere*>(p)));
+  return __builtin_shuffle(all, WideIndex{0, 0, 0, 1, 5, 5, 6, 6, 10, 11, 11, 11, 15, 15, 15, 15});
+}
+PALPATE_INLINE Wide block_at(const SingleBlocks& A, int s) { return *reinterpret_cast<const WideAnywhere*>(A.values + 9 * static_cast<std::int64_t>(s)); }
+
 PALPATE_INLINE Four row_product(const SingleBlocks& A, const float* p, int i) {
-  const WideIndex spread{0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3};
   Wide even{}, odd{};
   int s = A.row_start[i];
   const int end = A.row_start[i + 1];
   for (; s + 1 < end; s += 2) {
-    const Wide x = *reinterpret_cast<const WideAnywhere*>(p + 4 * A.column[s]), y = *reinterpret_cast<const WideAnywhere*>(p + 4 * A.column[s + 1]);
-    even += *reinterpret_cast<const WideAnywhere*>(A.values + 9 * static_cast<std::int64_t>(s)) * __builtin_shuffle(x, spread);
-    odd += *reinterpret_cast<const WideAnywhere*>(A.values + 9 * static_cast<std::int64_t>(s) + 9) * __builtin_shuffle(y, spread);
+    __builtin_prefetch(A.values + 9 * static_cast<std::int64_t>(s) + kFloatsAhead);
+    even += block_at(A, s) * spread(p + 4 * A.column[s]);
+    odd += block_at(A, s + 1) * spread(p + 4 * A.column[s + 1]);
   }
-  if (s < end) {
-    const Wide x = *reinterpret_cast<const WideAnywhere*>(p + 4 * A.column[s]);
-    even += *reinterpret_cast<const WideAnywhere*>(A.values + 9 * static_cast<std::int64_t>(s)) * __builtin_shuffle(x, spread);
-  }
+  if (s < end) even += block_at(A, s) * spread(p + 4 * A.column[s]);
   even += odd;
   const WideIndex second{3, 4, 5, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9}, third{6, 7, 8, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9};
   const Wide all = even + __builtin_shuffle(even, second) + __builtin_shuffle(even, third);
@@ -69,6 +69,7 @@ PALPATE_INLINE Four row_product(const SingleBlocks& A, const float* p, int i) {
   Four first{}, second{}, third{};
   for (int s = A.row_start[i]; s < A.row_start[i + 1]; ++s) {
     const float *block = A.values + 9 * static_cast<std::int64_t>(s), *x = p + 4 * A.column[s];
+    __builtin_prefetch(block + kFloatsAhead);
     first += load(block) * splat(x[0]);
     second += load(block + 3) * splat(x[1]);
     third += load(block + 6) * splat(x[2]);
@@ -81,7 +82,6 @@ PALPATE_INLINE Four row_product(const SingleBlocks& A, const float* p, int i) {
 double product(const SingleBlocks& A, const float* p, float* q, int first, int last) {
   Four pq{};
   for (int i = first; i < last; ++i) {
-    fetch_row(A, i);
     const Four row = row_product(A, p, i);
     store(q + 4 * i, row);
     pq += load(p + 4 * i) * row;
