@@ -98,7 +98,7 @@ double with_ear(double head, const Vec3& p, bool fine) {
   const double ridge_here = ramp(turn, -80.0, -45.0) * (1.0 - ramp(turn, 60.0, 95.0));
   const double ridge = std::hypot((rho - 0.60) * 16.0, q.z() - 2.6) - (4.1 * ridge_here - 1.5);
   ear = join(ear, ridge, 2.5);
-  ear = join(ear, ellipsoid(q, {-4, -29, 0.5}, {8.0, 8.5, 4.0}), 3.0);                              // lobe
+  ear = join(ear, ellipsoid(q, {-3, -27, 0.5}, {9.0, 11.0, 4.4}), 6.0);                              // lobe
   ear = join(ear, ellipsoid(q, {-12.5, -9, 3.0}, {3.6, 6.0, 4.5}, turned(0, 0, 10)), 4.5);          // tragus
   return join(head, ear, 3.0);
 }
