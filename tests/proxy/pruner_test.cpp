@@ -249,6 +249,32 @@ TEST(Pruner, WallsThatFaceDifferentWaysAreDifferentRegions) {
   EXPECT_FALSE(handed(regions).a_twice);
 }
 
+// One ball slides around the other, a hundredth of a radian a step, over the borders of many proxies: the normal follows the line of centres, and the jumps that
+// patches make as they come and go stay small.  What turns is what was recorded: the largest `turned` of a region is `largest_turn`.
+TEST(Pruner, SlidingOverProxiesTurnsTheNormalSmoothly) {
+  const LayeredModel ball = cut(bumpy_ball(1.0, 0.25, 24, 0.0), 60);
+  Placed a(ball), b(ball);
+  Pruner pruner(a.set, b.set);
+  double largest = 0.0, off = 0.0;
+  std::set<int> proxies;
+  for (int i = 0; i < 60; ++i) {
+    const double angle = 0.01 * i;
+    const Vec3 axis(std::cos(angle), std::sin(angle), 0.0);
+    b.place({Quat::Identity(), -1.95 * axis}, 0.0, 0);
+    const auto regions = pruner.query(0.0);
+    ASSERT_EQ(regions.size(), 1u) << i;
+    largest = std::max(largest, regions[0].turned);
+    off = std::max(off, std::acos(std::min(1.0, regions[0].region.normal.dot(axis))));
+    for (const auto& pair : regions[0].pairs) proxies.insert(pair.first);
+  }
+  EXPECT_GT(proxies.size(), 4u);
+  EXPECT_EQ(largest, pruner.counts().largest_turn);
+  EXPECT_LT(off, 0.05);
+  EXPECT_LT(largest, 0.05);  // 0.01 is the motion's own
+  RecordProperty("largest_turn_mrad", static_cast<int>(1e3 * largest));
+  RecordProperty("off_mrad", static_cast<int>(1e3 * off));
+}
+
 // A ball swallowed by a bigger one still meets the skin that is above it: what it was pushed through.
 TEST(Pruner, SwallowedSkinLooksThroughItself) {
   const LayeredModel big = cut(bumpy_ball(1.0, 0.25, 16, 0.0), 30), small = cut(bumpy_ball(0.15, 0.08, 6, 0.0), 6);
