@@ -67,9 +67,9 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : 
   Impl& s = *impl_;
   counters::count("proxy.proxy_set");
   if (model.proxies.empty()) fail("body \"{}\": it has no proxies", model.name);
-  if (options.patch_faces < 0) fail("body \"{}\": patches of {} faces; one at least, or 0 for a 3600th of the skin", model.name, options.patch_faces);
+  if (options.patch_faces < 0) fail("body \"{}\": patches of {} faces; one at least, or 0 for a 2000th of the skin", model.name, options.patch_faces);
   s.options = options;
-  if (options.patch_faces == 0) s.options.patch_faces = std::clamp(static_cast<int>(model.skin.faces.cols() / 3600), 4, 64);
+  if (options.patch_faces == 0) s.options.patch_faces = std::clamp(static_cast<int>(model.skin.faces.cols() / 2000), 4, 64);
   s.soft = model.tets.tets.cols() > 0;
   s.node_count = model.tets.nodes.cols();
   s.count = static_cast<int>(model.proxies.size());

@@ -16,7 +16,7 @@ enum class Follow {
 
 struct ProxySetOptions {
   Follow follow = Follow::kAffine;
-  int patch_faces = 0;  ///< faces in a patch of skin, at most: the grain of what pruning hands on; 0: a 3600th of the skin, 4 to 64
+  int patch_faces = 0;  ///< faces in a patch of skin, at most: the grain of what pruning hands on; 0: a 2000th of the skin, 4 to 64
 };
 
 /// Where a proxy is: its hull at rest moved by X -> linear X + offset, and grown by `inflation`, holds all that it stands for.
