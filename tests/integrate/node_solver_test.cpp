@@ -226,15 +226,15 @@ TEST(TwoLevel, KeepsItsClustersWhileTheyServe) {
 
 // Rows of M + h^2 K sum to those of M: the number is what the definition says, from masses and diagonal.
 TEST(Auto, ReadsTheStiffnessNumberFromTheMatrix) {
-  for (const double h : {1e-4, 1e-2}) {
-    BentBeam beam(16, 1e5);
+  for (const auto& [cells, h] : {std::pair{16, 1e-4}, {16, 1e-2}, {36, 1e-3}}) {  // the last has rows that are not looked at
+    BentBeam beam(cells, 1e5);
     BorderedMatrix A;
     VecX b;
     beam.at(0.6, h, A, b);
     double own = 0.0, mass = 0.0;
     for (int i = 0; i < A.body.block_rows(); ++i) {
       if (beam.rest[3 * i] < -0.5 + 0.1) continue;  // held, or beside what is held
-      const double* block = A.body.block(A.body.slot(i, i));
+      const double* block = A.body.block(A.body.diagonal(i));
       own += block[0] + block[4] + block[8];
       mass += 3.0 * beam.masses[i];
     }
