@@ -51,6 +51,9 @@ struct ModesArguments {
 };
 int modes(const ModesArguments& arguments);
 
+/// Becomes the program palpate-model, which takes these words.  @throws Error where this build has none; returns never else
+int model(const std::vector<std::string>& arguments);
+
 struct StabilityArguments {
   std::vector<std::string> rows, integrators;  ///< empty: all
   bool slow = false;       ///< the rows that take minutes, too

@@ -22,6 +22,7 @@ constexpr const char* kExamples = R"(Examples:
   palpate run press-ball                         a tool presses a soft ball; results in out/press-ball
   palpate run my.toml --set body.0.youngs_modulus_pa=2e4 -o out/softer
   palpate inspect press-ball                     what a scene uses, what it leaves out, how large it is
+  palpate model liver.obj -o liver.h5            a layered model of a closed surface
   palpate compare cantilever                     error against run time, for every integrator
   palpate validate                               every case with a known answer
   palpate list integrators                       the names that scenes and --integrator know
@@ -254,6 +255,13 @@ void add_demo(CLI::App& app, Invocation& invocation) {
   });
 }
 
+/// Its own program parses what follows: here stands only what `palpate --help` says of it.
+void add_model(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("model", "a layered model of a closed surface: tetrahedra, skin, proxies");
+  command->prefix_command();
+  command->callback([command, &invocation] { invocation.action = [words = command->remaining()] { return model(words); }; });
+}
+
 /// What is wrong with the line, and where help is: CLI11's own messages name the option.
 void refuse(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   std::string command = "palpate", message = error.what();
@@ -288,6 +296,7 @@ Invocation parse(int argc, char** argv) {
   add_compare(app, invocation);
   add_validate(app, invocation);
   add_modes(app, invocation);
+  add_model(app, invocation);
   add_stability(app, invocation);
   add_inspect(app, invocation);
   add_list(app, invocation);
@@ -295,6 +304,10 @@ Invocation parse(int argc, char** argv) {
   if (argc == 1) {
     fmt::print("{}", app.help());
     return {};
+  }
+  if (std::string(argv[1]) == "model") {  // every word after it, --help too, is the other program's
+    invocation.action = [words = std::vector<std::string>(argv + 2, argv + argc)] { return model(words); };
+    return invocation;
   }
   try {
     app.parse(argc, argv);

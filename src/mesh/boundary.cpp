@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 #include "palpate/mesh/quality.h"
 
@@ -78,6 +80,17 @@ double enclosed_volume(const TriMesh& surface) {
     volume += a.dot(b.cross(c)) / 6.0;
   }
   return volume;
+}
+
+// Sum of the solid angles of the faces seen from p, over 4 pi (Van Oosterom and Strackee 1983).
+double winding_number(const TriMesh& surface, const std::vector<int>& faces, const Vec3& p) {
+  double sum = 0;
+  for (const int f : faces) {
+    const Vec3 a = surface.vertices.col(surface.faces(0, f)) - p, b = surface.vertices.col(surface.faces(1, f)) - p, c = surface.vertices.col(surface.faces(2, f)) - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    sum += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return sum / (4 * std::numbers::pi);
 }
 
 }  // namespace palpate::mesh

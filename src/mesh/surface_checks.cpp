@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "common_checks.h"
@@ -92,17 +91,6 @@ std::vector<int> walk(Faces& faces, const Neighbours& across, const Provenance& 
   for (int f = 0; f < static_cast<int>(across.size()); ++f)
     if (turned[static_cast<std::size_t>(f)]) flip(faces, f);
   return shell;
-}
-
-/// How often a shell winds around p: sum of the solid angles of its faces / 4 pi (Van Oosterom and Strackee 1983); +-1 inside, 0 outside.
-double winding_number(const TriMesh& mesh, const std::vector<int>& faces, const Vec3& p) {
-  double sum = 0;
-  for (const int f : faces) {
-    const Vec3 a = mesh.vertices.col(mesh.faces(0, f)) - p, b = mesh.vertices.col(mesh.faces(1, f)) - p, c = mesh.vertices.col(mesh.faces(2, f)) - p;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    sum += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return sum / (4 * std::numbers::pi);
 }
 
 /// Signed volume of a shell (as enclosed_volume), and the size of what rounding makes of a flat one.

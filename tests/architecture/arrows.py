@@ -26,6 +26,7 @@ ALLOWED = {
     "store": ["core", "mesh"],  # mesh: the native mesh file
     "render": ["core", "mesh", "gl"],
     "model": ["core", "mesh", "shapes", "proxy", "store"],
+    "model_program": ["core", "mesh", "proxy", "store", "render", "report", "model", "shapes", "cli"],  # src/cli/model_program: the program behind `palpate model`
     "scene": ["core"],  # and the spec.h of every part: see is_allowed
     "loop": BELOW_LOOP,
     "study": ["core", "scene", "loop", "store"],  # core and scene: what loop's own headers speak in
@@ -48,6 +49,9 @@ OUTSIDE = [
     ("CLI11", r"CLI/", ["src/cli"]),
     ("toml++", r"toml\+\+/", ["src/scene"]),
     ("SQLite", r"sqlite3\.h", ["src/store"]),
+    ("CGAL", r"CGAL/", ["src/model"]),
+    ("Gmsh", r"gmshc\.h", ["src/model", "tests/model"]),
+    ("pugixml", r"pugixml\.hpp", ["src/model"]),
     ("HDF5", r"(hdf5|H5\w+)\.h", ["src/store", "tests/store"]),
 ]
 
@@ -73,6 +77,8 @@ def part_of(path):
         return "stability"
     if part == "study" and "fem_bench" in (pieces[-2], pieces[-1].split(".")[0]):
         return "fem_bench"
+    if part == "cli" and pieces[2] == "model_program":
+        return "model_program"
     return part
 
 

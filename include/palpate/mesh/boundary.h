@@ -16,4 +16,7 @@ Boundary boundary(const TetMesh& mesh);
 /// Volume enclosed by a closed surface [m^3] (divergence theorem).
 double enclosed_volume(const TriMesh& surface);
 
+/// How often the closed shell made of these faces winds around p: +-1 inside, 0 outside.
+double winding_number(const TriMesh& surface, const std::vector<int>& faces, const Vec3& p);
+
 }  // namespace palpate::mesh

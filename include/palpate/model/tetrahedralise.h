@@ -12,7 +12,9 @@ using Polyline = std::vector<Vec3>;
 
 struct TetrahedraOptions {
   int tetrahedra = 10000;        ///< wanted number, met within 3 %
+  int nodes = 0;                 ///< and this many nodes, within 3 %, by finer or coarser boundary faces; 0: as they come, faces as large as cells
   double element_size_m = 0.0;   ///< instead of a number: the wanted mean edge length, met within 3 %; 0: the number counts
+  bool at_least = false;         ///< where creases need more than the wanted number, more are taken instead of refusing
   std::optional<double> crease_deg = {};  ///< edges of the surface that turn by more than this are kept sharp
   std::vector<Polyline> creases = {};     ///< and these lines, which lie on the surface, closed where first and last point agree
 };

@@ -1,0 +1,71 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/mesh/skeleton.h"
+#include "palpate/model/foreign_files.h"
+#include "palpate/model/quality_gate.h"
+#include "palpate/model/repair.h"
+#include "palpate/model/tetrahedralise.h"
+#include "palpate/store/model_file.h"
+
+namespace palpate::model {
+
+/// What is to become a model.
+struct Input {
+  std::string name;            ///< of the model
+  std::string source;          ///< file without its folder, or the name of a shape: stands in the record
+  std::string source_hash;
+  std::string format;
+  mesh::Provenance from;
+  TriMesh surface;             ///< is mended, then filled; empty where there are tetrahedra
+  TetMesh tets;                ///< taken as they are, unless remesh
+  bool sound = false;          ///< the surface is known to bound a body: it is not mended
+  TriMesh skin;                ///< the surface that is seen; empty: the mended one
+  std::vector<Polyline> creases;
+  Skeleton skeleton;
+};
+Input input_of_file(const std::string& path);
+
+enum class Creases { kAuto, kNone, kAngle };
+
+struct Options {
+  double scale = 1.0;                     ///< on every coordinate, first
+  RepairOptions repair;
+  TetrahedraOptions tetrahedra;
+  Creases creases = Creases::kAuto;
+  double crease_deg = 0.0;                ///< of kAngle
+  bool remesh = false;                    ///< tetrahedra of a file: keep their boundary only, and fill it anew
+  int proxies = 60;                       ///< convex hulls wanted; 0: none
+  double bone_margin_m = 0.0;             ///< nodes nearer to a bone than this belong to it
+  std::optional<double> smallest_dihedral_deg = {};  ///< of the gate; nothing: 8, or 4 where creases are kept
+};
+
+struct Step {
+  std::string name;
+  double seconds = 0.0;
+};
+
+/// Hears how the work goes on, and sees what each step made.
+class Watcher {
+ public:
+  virtual ~Watcher() = default;
+  virtual void begin(const std::string& /*step*/) {}
+  virtual void progress(double /*fraction*/) {}  ///< of the step
+  virtual void end(const Step& /*step*/) {}
+};
+
+struct Made {
+  store::ModelFile file;
+  TetQuality quality;
+  bool creased = false;
+  std::vector<Step> steps;
+};
+
+/// A layered model of a surface, step by step: mend, fill with tetrahedra, check, embed the skin, bind the skeleton, cut into convex proxies.
+/// The same input and options give the same model, to the last bit.
+/// @throws Error where a step cannot do its work, or the tetrahedra do not pass the gate
+Made make_model(Input input, const Options& options, Watcher& watcher);
+
+}  // namespace palpate::model

@@ -1,0 +1,102 @@
+#include "options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "palpate/core/error.h"
+#include "palpate/store/provenance.h"
+#include "sources.h"
+
+namespace palpate::cli {
+namespace {
+
+constexpr const char* kDescription =
+    "palpate model: a layered model of a closed surface, for a scene's mesh = {file = \"MODEL.h5\"}.  The surface is mended, filled with tetrahedra, tied to them as the skin,\n"
+    "and cut into convex proxies; each step's quality is measured, and a bad mesh is refused.  The same input gives the same file, byte for byte.";
+
+constexpr const char* kExamples = R"(Examples:
+  palpate model liver.obj -o liver.h5                         about 10,000 tetrahedra
+  palpate model scan.stl --scale 0.001 -o scan.h5             a file in millimetres
+  palpate model part.ply --tetrahedra 30000 --creases 40      edges that turn by more than 40 degrees stay sharp
+  palpate model liver.msh --remesh --element-size-m 0.01      the boundary of tetrahedra, filled anew
+  palpate model liver.obj --picture liver.png                 surface, tetrahedra cut open, skin and proxies
+
+The outcome is printed: counts, smallest dihedral angle (at least 8 degrees, 4 where creases are kept), volume error (at most 1 %), worst aspect ratio,
+seconds a step, peak memory.  Exit status 0, or 1 where the surface or the mesh was refused; the message says where and why.)";
+
+const CLI::Validator positive(
+    [](const std::string& text) {
+      double value = 0.0;
+      const bool usable = CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value);
+      return usable ? std::string{} : fmt::format("{} must be a positive, finite number", text);
+    },
+    "");
+
+void set_creases(const std::string& text, model::Options& options) {
+  if (text == "auto") return;
+  options.creases = text == "none" ? model::Creases::kNone : model::Creases::kAngle;
+  if (text != "none" && !CLI::detail::lexical_cast(text, options.crease_deg)) fail("--creases {}: must be auto, none, or an angle in degrees; see `palpate model --help`", text);
+}
+
+std::string source_help() {
+  const std::string shapes = shape_names();
+  return fmt::format("a file ({}){}", model::known_endings(), shapes.empty() ? "" : ", or a shape of the paper: " + shapes);
+}
+
+/// The options that shape the model, in one order and one spelling.
+std::string canonical(const CLI::App& app) {
+  std::string out;
+  for (const char* name : {"--tetrahedra", "--element-size-m", "--scale", "--creases", "--proxies", "--bone-margin-m", "--remesh", "--largest-shell", "--no-wrap"})
+    if (const CLI::Option* option = app.get_option(name); option->count() > 0) {
+      out += fmt::format("{}{}", out.empty() ? "" : " ", name);
+      if (option->get_items_expected() > 0) out += " " + option->results().back();
+    }
+  return out;
+}
+
+}  // namespace
+
+ModelArguments parse_model(int argc, char** argv) {
+  ModelArguments out;
+  std::string creases = "auto";
+  CLI::App app(kDescription, "palpate model");
+  app.get_formatter()->column_width(34);
+  app.footer(kExamples);
+  app.set_version_flag("--version", [] { return fmt::format("palpate model {}", store::provenance().version); });
+  model::Options& options = out.options;
+  app.add_option("SURFACE", out.source, source_help())->required();
+  app.add_option("-o,--output", out.output, "the model file; default NAME.h5 here")->type_name("FILE.h5");
+  CLI::Option* count = app.add_option("--tetrahedra", options.tetrahedra.tetrahedra, "wanted number, met within 3 %")->type_name("N")->capture_default_str();
+  app.add_option("--element-size-m", options.tetrahedra.element_size_m, "instead: wanted mean edge length [m], met within 3 %")->type_name("M")->check(positive)->excludes(count);
+  app.add_option("--scale", options.scale, "multiplies every coordinate: 0.001 for a file in millimetres")->type_name("S")->check(positive)->capture_default_str();
+  app.add_option("--creases", creases, "edges to keep sharp: auto, none, or those that turn by more than this angle [degrees]")->type_name("WHICH")->capture_default_str();
+  app.add_option("--proxies", options.proxies, "convex hulls wanted; 0: none")->type_name("N")->check(CLI::Range(0, 10000))->capture_default_str();
+  app.add_option("--bone-margin-m", options.bone_margin_m, "nodes nearer to a bone than this belong to it, beside those inside [m]")->type_name("M")->check(CLI::NonNegativeNumber);
+  app.add_flag("--remesh", options.remesh, "tetrahedra of a file: fill their boundary anew instead of taking them");
+  app.add_flag("--largest-shell", options.repair.largest_shell, "several bodies in one file: keep the largest");
+  app.add_flag_callback("--no-wrap", [&options] { options.repair.wrap = false; }, "refuse what cannot be mended locally, instead of wrapping it");
+  app.add_option("--picture", out.picture, "draw the steps: surface, tetrahedra cut open, skin, proxies")->type_name("FILE.png");
+  app.add_flag("-q,--quiet", out.quiet, "only errors");
+  app.add_flag("-v,--verbose", out.verbose, "details, too");
+  if (argc == 1) {
+    fmt::print("{}", app.help());
+    return out;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    app.exit(asked);
+    return out;
+  } catch (const CLI::ParseError& error) { fail("{}; see `palpate model --help`", error.what()); }
+  set_creases(creases, options);
+  out.counted = count->count() > 0;
+  if (out.counted || options.tetrahedra.element_size_m > 0) options.remesh = true;
+  options.tetrahedra.at_least = !out.counted;
+  out.as_given = canonical(app);
+  out.given = true;
+  return out;
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,23 @@
+#pragma once
+#include <string>
+
+#include "palpate/model/make_model.h"
+
+namespace palpate::cli {
+
+/// What `palpate model` was asked for.
+struct ModelArguments {
+  bool given = false;       ///< false: help was asked for and given
+  std::string source;       ///< a file, or the name of a shape
+  std::string output;       ///< empty: NAME.h5
+  std::string picture;      ///< PNG file; empty: none
+  bool quiet = false, verbose = false;
+  bool counted = false;     ///< --tetrahedra was given
+  model::Options options;
+  std::string as_given;     ///< the options that shape the model, for its record
+};
+
+/// @throws Error for a line that makes no sense
+ModelArguments parse_model(int argc, char** argv);
+
+}  // namespace palpate::cli

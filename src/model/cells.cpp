@@ -1,0 +1,65 @@
+#include "cells.h"
+
+#include <algorithm>
+#include <array>
+
+#include "palpate/core/error.h"
+
+namespace palpate::model {
+namespace {
+
+/// Elements with corners in the numbering of the points that they use, which go to `points`.
+template <std::size_t N>
+Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> compact(const std::vector<std::array<int, N>>& elements, const Cells& cells, const std::string& path, Points& points,
+                                                                mesh::Provenance& from) {
+  std::vector<int> place(cells.points.size(), -1);
+  for (std::size_t e = 0; e < elements.size(); ++e)
+    for (const int corner : elements[e]) {
+      if (corner < 0 || static_cast<std::size_t>(corner) >= cells.points.size()) fail("{}: element {} counted from 0 names point {}, the file has {}", path, e, corner, cells.points.size());
+      place[static_cast<std::size_t>(corner)] = 0;
+    }
+  int used = 0;
+  points.resize(3, std::count(place.begin(), place.end(), 0));
+  for (std::size_t i = 0; i < place.size(); ++i)
+    if (place[i] == 0) {
+      points.col(used) = cells.points[i];
+      from.node_number.push_back(cells.point_numbers.empty() ? static_cast<long>(i) : cells.point_numbers[i]);
+      place[i] = used++;
+    }
+  Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> out(static_cast<int>(N), static_cast<Eigen::Index>(elements.size()));
+  for (std::size_t e = 0; e < elements.size(); ++e)
+    for (std::size_t k = 0; k < N; ++k) out(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(e)) = place[static_cast<std::size_t>(elements[e][k])];
+  return out;
+}
+
+}  // namespace
+
+void Cells::polygon(const std::vector<int>& corners) {
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) triangle(corners[0], corners[i], corners[i + 1]);
+}
+
+void Cells::unread(std::string_view what) {
+  for (auto& [name, count] : unread_)
+    if (name == what) {
+      ++count;
+      return;
+    }
+  unread_.emplace_back(what, 1);
+}
+
+SourceFile Cells::finish(std::string format) const {
+  if (!unread_.empty()) fail("{}: holds {} {}, which are not read; linear tetrahedra or a surface of linear triangles are", path_, unread_[0].second, unread_[0].first);
+  if (tets_.empty() && triangles_.empty()) fail("{}: holds neither tetrahedra nor triangles ({} points)", path_, points.size());
+  SourceFile out;
+  out.format = std::move(format);
+  if (!tets_.empty()) {
+    out.from.source = path_;
+    out.tets.tets = compact(tets_, *this, path_, out.tets.nodes, out.from);
+  } else {
+    out.from = mesh::surface_provenance(path_);
+    out.surface.faces = compact(triangles_, *this, path_, out.surface.vertices, out.from);
+  }
+  return out;
+}
+
+}  // namespace palpate::model

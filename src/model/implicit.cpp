@@ -1,0 +1,49 @@
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Labeled_mesh_domain_3.h>
+#include <CGAL/Mesh_domain_with_polyline_features_3.h>
+
+#include "mesher.h"
+#include "palpate/core/error.h"
+#include "palpate/model/tetrahedralise.h"
+#include "polylines.h"
+
+namespace palpate::model {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Domain = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Labeled_mesh_domain_3<Kernel>>;
+
+/// Volume of the inside by counting the points of a lattice, good enough to start the search [m^3].
+double lattice_volume(const std::function<double(const Vec3&)>& f, const Vec3& centre, double radius) {
+  constexpr int kCells = 48;
+  const double width = 2 * radius / kCells;
+  int inside = 0;
+  for (int i = 0; i < kCells; ++i)
+    for (int j = 0; j < kCells; ++j)
+      for (int k = 0; k < kCells; ++k) inside += f(centre + width * (Vec3(i, j, k).array() + 0.5 - kCells / 2.0).matrix()) < 0;
+  return inside * width * width * width;
+}
+
+}  // namespace
+
+Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec3& centre, double radius, const TetrahedraOptions& options, const Progress& progress) {
+  if (!(radius > 0 && std::isfinite(radius))) fail("the ball around an implicit surface has radius {} m, must be positive", radius);
+  if (!(f(centre) < 0)) fail("the implicit function is {} at the centre ({}, {}, {}) m, must be negative inside", f(centre), centre.x(), centre.y(), centre.z());
+  const auto value = [&f](const Kernel::Point_3& p) { return f(Vec3(p.x(), p.y(), p.z())); };
+  constexpr double kRelativeError = 1e-7;  // of a point on the surface, by bisection, in radii
+  try {
+    CGAL::Random random(0);
+    Domain domain = Domain::create_implicit_mesh_domain(value, Kernel::Sphere_3(Kernel::Point_3(centre.x(), centre.y(), centre.z()), radius * radius),
+                                                        CGAL::parameters::relative_error_bound = kRelativeError, CGAL::parameters::p_rng = &random);
+    std::vector<std::vector<Kernel::Point_3>> lines;
+    for (const Polyline& line : cut_at_corners(options.creases)) {
+      lines.emplace_back();
+      for (const Vec3& p : line) lines.back().emplace_back(p.x(), p.y(), p.z());
+    }
+    if (!lines.empty()) domain.add_features(lines.begin(), lines.end());
+    Mesher<Domain> mesher(domain, !lines.empty(), {});
+    return search_cells(mesher, lattice_volume(f, centre, radius), false, options, progress);
+  } catch (const CGAL::Failure_exception& e) { fail("the inside of the implicit surface cannot be filled with tetrahedra: CGAL says {} ({})", e.message(), e.expression()); }
+}
+
+}  // namespace palpate::model

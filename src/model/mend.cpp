@@ -1,0 +1,160 @@
+#include "mend.h"
+
+#include <CGAL/Polygon_mesh_processing/border.h>
+#include <CGAL/Polygon_mesh_processing/measure.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/repair_degeneracies.h>
+#include <CGAL/Polygon_mesh_processing/repair_self_intersections.h>
+#include <CGAL/Polygon_mesh_processing/stitch_borders.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "cgal_surface.h"
+#include "crossings.h"
+#include "shells.h"
+
+namespace palpate::model {
+namespace {
+namespace PMP = CGAL::Polygon_mesh_processing;
+
+int close_holes(CgalSurface& mesh, const Soup& soup, double largest_share, int& faces_added) {
+  std::vector<CgalSurface::Halfedge_index> borders;
+  PMP::extract_boundary_cycles(mesh, std::back_inserter(borders));
+  const double whole = PMP::area(mesh);
+  for (const auto border : borders) {
+    int edges = 0;
+    double across = 0;
+    const auto start = mesh.point(mesh.target(border));
+    for (const auto h : mesh.halfedges_around_face(border)) {
+      ++edges;
+      across = std::max(across, std::sqrt(CGAL::squared_distance(start, mesh.point(mesh.target(h)))));
+    }
+    const auto vertex = mesh.target(border);
+    const auto refuse = [&](const std::string& why) {
+      const int source = mesh.property_map<CgalSurface::Vertex_index, int>("v:source").first[vertex];
+      fail("{} at ({:.6g}, {:.6g}, {:.6g}) m: the surface is open there: a hole of {} edges, {:.3g} m across, {}; a body's surface is closed", source >= 0 ? soup.from->node(source) : soup.from->source,
+           start.x(), start.y(), start.z(), edges, across, why);
+    };
+    std::vector<CgalSurface::Face_index> patch;
+    std::vector<CgalSurface::Vertex_index> fresh;
+    const bool faired = std::get<0>(PMP::triangulate_refine_and_fair_hole(mesh, border, std::back_inserter(patch), std::back_inserter(fresh)));
+    if (patch.empty()) refuse("which no triangles close");
+    if (const double share = PMP::area(patch, mesh) / whole; !(share <= largest_share))
+      refuse(fmt::format("whose closing would add {:.0f} % to its area, more than {:.0f} %", 100 * share, 100 * largest_share));
+    static_cast<void>(faired);  // a patch that could not be smoothed is flat: closed all the same
+    faces_added += static_cast<int>(patch.size());
+  }
+  return static_cast<int>(borders.size());
+}
+
+/// The faces that are too flat for any use, after CGAL collapsed what it could.
+void collapse_degenerate(CgalSurface& mesh, const mesh::Provenance& from) {
+  PMP::remove_degenerate_edges(mesh);
+  PMP::remove_degenerate_faces(mesh);
+  const Soup now = soup_of(mesh, from);
+  bool needles = false;
+  const auto flat = [&](const std::array<int, 3>& f) {
+    const auto at = [&](std::size_t k) -> const Vec3& { return now.vertices[static_cast<std::size_t>(f[k])]; };
+    const double longest = std::max({(at(1) - at(0)).squaredNorm(), (at(2) - at(1)).squaredNorm(), (at(0) - at(2)).squaredNorm()});
+    return !((at(1) - at(0)).cross(at(2) - at(0)).norm() > 1e-7 * longest);
+  };
+  for (const auto& f : now.faces) needles |= flat(f);
+  if (!needles) return;
+  const double whole = now.diagonal();
+  PMP::experimental::remove_almost_degenerate_faces(mesh, std::cos(179.99 * CGAL_PI / 180), 1e5, 1e-4 * whole);
+}
+
+/// One shell at a time: faces of different shells that cross are no fault of a shell's.
+CgalSurface shell_mesh(const Soup& soup, const std::vector<int>& faces) {
+  Soup one = soup;
+  one.faces.clear();
+  one.face_source.clear();
+  for (const int f : faces) {
+    one.faces.push_back(soup.faces[static_cast<std::size_t>(f)]);
+    one.face_source.push_back(soup.face_source[static_cast<std::size_t>(f)]);
+  }
+  drop_unused(one);
+  return cgal_of(one);
+}
+
+void append(Soup& all, const Soup& one) {
+  const int first = static_cast<int>(all.vertices.size());
+  all.vertices.insert(all.vertices.end(), one.vertices.begin(), one.vertices.end());
+  all.vertex_source.insert(all.vertex_source.end(), one.vertex_source.begin(), one.vertex_source.end());
+  for (const auto& f : one.faces) all.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
+  all.face_source.insert(all.face_source.end(), one.face_source.begin(), one.face_source.end());
+}
+
+int turn(Soup& soup) {
+  std::vector<Kernel::Point_3> points;
+  std::map<std::array<double, 3>, int> source;  // CGAL doubles the vertices where it parts the surface: the new ones stand where old ones do
+  for (std::size_t v = 0; v < soup.vertices.size(); ++v) {
+    points.emplace_back(soup.vertices[v].x(), soup.vertices[v].y(), soup.vertices[v].z());
+    source.emplace(std::array{soup.vertices[v].x(), soup.vertices[v].y(), soup.vertices[v].z()}, soup.vertex_source[v]);
+  }
+  std::vector<std::vector<std::size_t>> faces;
+  for (const auto& f : soup.faces) faces.push_back({static_cast<std::size_t>(f[0]), static_cast<std::size_t>(f[1]), static_cast<std::size_t>(f[2])});
+  PMP::orient_polygon_soup(points, faces);
+  const auto position = [&](std::size_t v) { return Vec3(points[v].x(), points[v].y(), points[v].z()); };
+  for (std::size_t v = soup.vertices.size(); v < points.size(); ++v) {
+    soup.vertices.push_back(position(v));
+    soup.vertex_source.push_back(source.at({points[v].x(), points[v].y(), points[v].z()}));
+  }
+  // A face that was turned has its corners in the other order, whatever vertices they were given: their places tell.
+  std::vector<char> turned;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto before = [&](int k) -> const Vec3& { return soup.vertices[static_cast<std::size_t>(soup.faces[f][static_cast<std::size_t>(k)])]; };
+    const Vec3 old_normal = (before(1) - before(0)).cross(before(2) - before(0));
+    soup.faces[f] = {static_cast<int>(faces[f][0]), static_cast<int>(faces[f][1]), static_cast<int>(faces[f][2])};
+    turned.push_back(old_normal.dot((before(1) - before(0)).cross(before(2) - before(0))) < 0);
+  }
+  int count = 0;
+  for (const std::vector<int>& shell : shells_of(soup.surface())) {
+    const auto of_shell = std::count_if(shell.begin(), shell.end(), [&](int f) { return turned[static_cast<std::size_t>(f)] != 0; });
+    const bool most = 2 * of_shell > static_cast<long>(shell.size());
+    for (const int f : shell)
+      if (most) std::swap(soup.faces[static_cast<std::size_t>(f)][1], soup.faces[static_cast<std::size_t>(f)][2]);
+    count += static_cast<int>(most ? static_cast<long>(shell.size()) - of_shell : of_shell);
+  }
+  return count;
+}
+
+Mended mend_unguarded(const Soup& soup, double largest_hole) {
+  Mended out;
+  out.soup.from = soup.from;
+  CgalSurface mesh = cgal_of(soup);
+  PMP::stitch_borders(mesh);
+  out.holes = close_holes(mesh, soup, largest_hole, out.hole_faces);
+  const auto before = static_cast<long>(mesh.number_of_faces());
+  collapse_degenerate(mesh, *soup.from);
+  const Soup closed = soup_of(mesh, *soup.from);
+  out.removed = static_cast<int>(before - static_cast<long>(closed.faces.size()));
+  for (const std::vector<int>& shell : shells_of(closed.surface())) {
+    CgalSurface one = shell_mesh(closed, shell);
+    Soup sound = soup_of(one, *soup.from);
+    if (const auto crossing = static_cast<int>(crossing_faces(sound).size()); crossing > 0) {
+      out.crossings += crossing;
+      CgalSurface repaired = one;
+      const bool gone = PMP::experimental::remove_self_intersections(repaired, CGAL::parameters::preserve_genus(false));
+      const Soup after = soup_of(repaired, *soup.from);
+      if (gone && !after.faces.empty()) sound = after;
+    }
+    append(out.soup, sound);
+  }
+  return out;
+}
+
+}  // namespace
+
+int turn_to_agree(Soup& soup) {
+  return guarded(soup, [&] { return turn(soup); });
+}
+
+Mended mend(const Soup& soup, double largest_hole) {
+  return guarded(soup, [&] { return mend_unguarded(soup, largest_hole); });
+}
+
+}  // namespace palpate::model

@@ -1,0 +1,201 @@
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <pugixml.hpp>
+
+#include "cells.h"
+#include "palpate/core/error.h"
+#include "palpate/store/atomic_file.h"
+
+// VTK's XML files (VTK User's Guide 11, "VTK file formats"): arrays as text, as base64 in place, or appended (base64 or raw) at an offset; bytes are
+//   [size][data]                                                        as they are, or
+//   [blocks][size of a block][size of the last, 0: whole][sizes when compressed ...][compressed blocks ...]
+// with all sizes of type header_type.  In base64 the sizes may be encoded apart from the data, each ending with its own padding: decoding goes on after padding.
+namespace palpate::model {
+namespace {
+
+struct Document {
+  std::string path;
+  pugi::xml_document xml;
+  std::string appended;        ///< what stands after the underscore
+  bool appended_raw = false, compressed = false, wide_header = false, swap = false;
+};
+
+/// Bytes of base64 text from `begin` on, until `wanted` are there or the text ends.
+std::string decode_base64(std::string_view text) {
+  const auto value = [](char c) -> int {
+    if (c >= 'A' && c <= 'Z') return c - 'A';
+    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+    if (c >= '0' && c <= '9') return c - '0' + 52;
+    return c == '+' ? 62 : c == '/' ? 63 : c == '=' ? -1 : -2;
+  };
+  std::string out;
+  std::uint32_t bits = 0;
+  int held = 0, padding = 0;
+  for (const char c : text) {
+    const int v = value(c);
+    if (v == -2) {
+      if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
+      break;  // the end of appended data
+    }
+    bits = (bits << 6) | static_cast<std::uint32_t>(v < 0 ? 0 : v);
+    padding += v < 0;
+    if (++held < 4) continue;
+    for (int byte = 0; byte < 3 - padding; ++byte) out += static_cast<char>((bits >> (16 - 8 * byte)) & 0xff);
+    bits = 0;
+    held = padding = 0;
+  }
+  return out;
+}
+
+template <class T>
+T value_at(const Document& document, const std::string& bytes, std::size_t at, const std::string& what) {
+  if (at + sizeof(T) > bytes.size()) fail("{}: {} ends before its time", document.path, what);
+  std::array<char, sizeof(T)> raw;
+  std::memcpy(raw.data(), bytes.data() + at, sizeof(T));
+  if (document.swap) std::reverse(raw.begin(), raw.end());
+  return std::bit_cast<T>(raw);
+}
+
+std::uint64_t header_at(const Document& document, const std::string& bytes, std::size_t number, const std::string& what) {
+  return document.wide_header ? value_at<std::uint64_t>(document, bytes, 8 * number, what) : value_at<std::uint32_t>(document, bytes, 4 * number, what);
+}
+
+/// The array's own bytes, without sizes, uncompressed.
+std::string payload(const Document& document, const std::string& bytes, const std::string& what) {
+  const std::size_t word = document.wide_header ? 8 : 4;
+  if (!document.compressed) {
+    const std::uint64_t size = header_at(document, bytes, 0, what);
+    if (size > bytes.size() - word) fail("{}: {} ends before its time: {} of {} bytes", document.path, what, bytes.size() - word, size);
+    return bytes.substr(word, size);
+  }
+  const std::uint64_t blocks = header_at(document, bytes, 0, what), whole = header_at(document, bytes, 1, what), last = header_at(document, bytes, 2, what);
+  if (blocks > bytes.size() || whole > (std::uint64_t{1} << 32)) fail("{}: {} has a damaged header", document.path, what);
+  std::string out;
+  std::size_t at = (3 + blocks) * word;
+  for (std::uint64_t b = 0; b < blocks; ++b) {
+    const std::uint64_t packed = header_at(document, bytes, 3 + b, what);
+    if (at > bytes.size() || packed > bytes.size() - at) fail("{}: {} ends before its time", document.path, what);
+    uLongf size = b + 1 == blocks && last != 0 ? last : whole;
+    std::string block(size, '\0');
+    if (::uncompress(reinterpret_cast<Bytef*>(block.data()), &size, reinterpret_cast<const Bytef*>(bytes.data() + at), packed) != Z_OK) fail("{}: {} cannot be uncompressed", document.path, what);
+    out.append(block, 0, size);
+    at += packed;
+  }
+  return out;
+}
+
+template <class T, class Out>
+void convert(const Document& document, const std::string& bytes, const std::string& what, std::vector<Out>& out) {
+  for (std::size_t at = 0; at + sizeof(T) <= bytes.size(); at += sizeof(T)) out.push_back(static_cast<Out>(value_at<T>(document, bytes, at, what)));
+}
+
+template <class Out>
+std::vector<Out> from_text(const Document& document, std::string_view text, const std::string& what) {
+  std::vector<Out> out;
+  const char* at = text.data();
+  const char* const end = text.data() + text.size();
+  for (;;) {
+    while (at != end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t')) ++at;
+    if (at == end) return out;
+    Out value{};
+    const auto [next, code] = std::from_chars(at, end, value);
+    if (code != std::errc()) fail("{}: {}: \"{}\" is no number", document.path, what, std::string_view(at, std::min<std::size_t>(20, static_cast<std::size_t>(end - at))));
+    out.push_back(value);
+    at = next;
+  }
+}
+
+template <class Out>
+std::vector<Out> numbers(const Document& document, const pugi::xml_node& array, const std::string& what) {
+  if (!array) fail("{}: has no {}", document.path, what);
+  const std::string format = array.attribute("format").as_string("ascii"), type = array.attribute("type").as_string();
+  if (format == "ascii") return from_text<Out>(document, array.child_value(), what);
+  std::string bytes;
+  if (format == "binary") {
+    bytes = decode_base64(array.child_value());
+  } else if (format == "appended") {
+    const std::size_t offset = array.attribute("offset").as_ullong();
+    if (offset >= document.appended.size()) fail("{}: {} starts at {} of {} appended bytes", document.path, what, offset, document.appended.size());
+    bytes = document.appended_raw ? document.appended.substr(offset) : decode_base64(std::string_view(document.appended).substr(offset));
+  } else {
+    fail("{}: {} has the unknown format \"{}\"", document.path, what, format);
+  }
+  bytes = payload(document, bytes, what);
+  std::vector<Out> out;
+  if (type == "Float64") convert<double>(document, bytes, what, out);
+  else if (type == "Float32") convert<float>(document, bytes, what, out);
+  else if (type == "Int64") convert<std::int64_t>(document, bytes, what, out);
+  else if (type == "UInt64") convert<std::uint64_t>(document, bytes, what, out);
+  else if (type == "Int32") convert<std::int32_t>(document, bytes, what, out);
+  else if (type == "UInt32") convert<std::uint32_t>(document, bytes, what, out);
+  else if (type == "UInt8") convert<std::uint8_t>(document, bytes, what, out);
+  else if (type == "Int8") convert<std::int8_t>(document, bytes, what, out);
+  else fail("{}: {} has the unknown type \"{}\"", document.path, what, type);
+  return out;
+}
+
+/// Appended raw bytes are no XML: they are taken out before the rest is parsed.
+void load(Document& document) {
+  std::string text = store::read_file(document.path);
+  if (const std::size_t tag = text.find("<AppendedData"); tag != std::string::npos) {
+    const std::size_t close = text.find('>', tag), start = text.find('_', close);
+    if (close == std::string::npos || start == std::string::npos) fail("{}: its appended data do not start with an underscore", document.path);
+    document.appended_raw = text.substr(tag, close - tag).find("raw") != std::string::npos;
+    document.appended = text.substr(start + 1);
+    text = text.substr(0, tag) + "</VTKFile>";
+  }
+  if (const pugi::xml_parse_result parsed = document.xml.load_buffer(text.data(), text.size()); !parsed)
+    fail("{}: is no XML at byte {}: {}", document.path, parsed.offset, parsed.description());
+  const pugi::xml_node root = document.xml.child("VTKFile");
+  if (std::string(root.attribute("type").as_string()) != "UnstructuredGrid") fail("{}: is no VTK file of an unstructured grid, but of \"{}\"", document.path, root.attribute("type").as_string());
+  const std::string compressor = root.attribute("compressor").as_string();
+  if (!compressor.empty() && compressor != "vtkZLibDataCompressor") fail("{}: is compressed by {}, vtkZLibDataCompressor is read", document.path, compressor);
+  document.compressed = !compressor.empty();
+  document.wide_header = std::string(root.attribute("header_type").as_string("UInt32")) == "UInt64";
+  document.swap = (std::string(root.attribute("byte_order").as_string("LittleEndian")) == "BigEndian") != (std::endian::native == std::endian::big);
+}
+
+void take_cell(Cells& cells, int type, const std::vector<int>& corners) {
+  constexpr int kTriangle = 5, kPolygon = 7, kQuadrangle = 9, kTetrahedron = 10, kLastLine = 4;
+  if (type == kTetrahedron && corners.size() == 4) cells.tetrahedron(corners[0], corners[1], corners[2], corners[3]);
+  else if (type == kTriangle || type == kPolygon || type == kQuadrangle) cells.polygon(corners);
+  else if (type > kLastLine) cells.unread(fmt::format("cells of VTK's type {}", type));
+}
+
+}  // namespace
+
+SourceFile read_vtu(const std::string& path) {
+  Document document;
+  document.path = path;
+  load(document);
+  Cells cells(path);
+  for (const pugi::xml_node& piece : document.xml.child("VTKFile").child("UnstructuredGrid").children("Piece")) {
+    const int first = static_cast<int>(cells.points.size());
+    const auto coordinates = numbers<double>(document, piece.child("Points").child("DataArray"), "points");
+    for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3) cells.points.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
+    const auto array = [&](const char* name) { return numbers<long long>(document, piece.child("Cells").find_child_by_attribute("DataArray", "Name", name), fmt::format("array \"{}\"", name)); };
+    const std::vector<long long> connectivity = array("connectivity"), offsets = array("offsets"), types = array("types");
+    if (offsets.size() != types.size()) fail("{}: has {} offsets and {} types of cells", path, offsets.size(), types.size());
+    long long begin = 0;
+    for (std::size_t c = 0; c < offsets.size(); ++c) {
+      if (offsets[c] < begin || offsets[c] > static_cast<long long>(connectivity.size())) fail("{}: cell {} ends at {} of {} entries", path, c, offsets[c], connectivity.size());
+      std::vector<int> corners;
+      for (long long i = begin; i < offsets[c]; ++i) {
+        const long long corner = connectivity[static_cast<std::size_t>(i)];
+        if (corner < 0 || corner >= static_cast<long long>(coordinates.size() / 3)) fail("{}: cell {} names point {}, the piece has {}", path, c, corner, coordinates.size() / 3);
+        corners.push_back(first + static_cast<int>(corner));
+      }
+      take_cell(cells, static_cast<int>(types[c]), corners);
+      begin = offsets[c];
+    }
+  }
+  return cells.finish("VTK XML");
+}
+
+}  // namespace palpate::model
