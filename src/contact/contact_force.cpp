@@ -192,6 +192,12 @@ std::vector<long> ContactForce::tunnelled() const {
   return out;
 }
 
+std::vector<const proxy::PruneCounts*> ContactForce::pruning() const {
+  std::vector<const proxy::PruneCounts*> out;
+  for (const auto& pair : impl_->pairs) out.push_back(pair.source->pruning());
+  return out;
+}
+
 const std::vector<ContactSample>& ContactForce::samples() const { return impl_->samples; }
 long ContactForce::queries() const { return impl_->queries; }
 double ContactForce::query_seconds() const { return impl_->query_seconds; }

@@ -13,6 +13,7 @@ struct ContactAxes {
   ContactAxes() = default;
   ContactAxes(const Vec3& region_origin, const Vec3& normal);
   void to_axes(const Points& world, Points& out) const { out.noalias() = to_world.transpose() * (world.colwise() - origin); }
+  Vec3 in_axes(const Vec3& world) const { return to_world.transpose() * (world - origin); }
   Vec3 world(const Vec3& uvw) const { return origin + to_world * uvw; }
   Vec3 normal() const { return to_world.col(2); }
 };

@@ -3,8 +3,13 @@
 
 namespace palpate::contact {
 
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, TriMesh, int, std::shared_ptr<MovingFrame>, const GpuOptions&) {
-  fail("contact method = \"gpu\" is not built in; configure with -DPALPATE_WITH_GL=ON (packages libepoxy-dev, libegl-dev, libccd-dev)");
-}
+namespace {
+
+[[noreturn]] void absent() { fail("contact method = \"gpu\" is not built in; configure with -DPALPATE_WITH_GL=ON (packages libepoxy-dev, libegl-dev)"); }
+
+}  // namespace
+
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, TriMesh, int, std::shared_ptr<MovingFrame>, const GpuOptions&) { absent(); }
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, std::shared_ptr<proxy::ProxySet>, TriMesh, int, std::shared_ptr<MovingFrame>, const GpuOptions&) { absent(); }
 
 }  // namespace palpate::contact

@@ -18,6 +18,7 @@ class SurfaceState {
   int face_count() const { return static_cast<int>(surface_.faces.cols()); }
   const Faces& faces() const { return surface_.faces; }
   const Points& positions() const { return positions_; }
+  const Points& nodes() const { return nodes_; }  ///< of the block, of a skin only
   Vec3 velocity(int vertex, const dynamics::StateView& state) const;
   /// One vertex as a contact point; its nodes are counted over all node blocks.
   SurfacePoint vertex_point(int vertex) const;
@@ -46,7 +47,7 @@ class SurfaceState {
   int node_offset_ = 0;
   std::uint64_t pattern_version_ = 0;
   Points positions_;
-  Points nodes_;               ///< of the block, of a skin only
+  Points nodes_;
 };
 
 /// A point of a frame, given in the world.

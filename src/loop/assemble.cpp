@@ -54,8 +54,15 @@ void load_mesh(const SoftBodySpec& spec, const std::string& folder, Body& body) 
         fail("body \"{}\": {} has a region \"{}\" of another material; this version gives a body one material", spec.name, path, region.name);
     counters::count("loop.skin");
     model.skin.vertices *= spec.mesh.scale;
-    body.rest = check_file(std::move(model.tets), path, spec.mesh.scale, &body.report);
-    body.skin = Skin{std::move(model.skin), std::move(model.embedding)};
+    model.tets = body.rest = check_file(std::move(model.tets), path, spec.mesh.scale, &body.report);
+    std::shared_ptr<proxy::ProxySet> proxies;
+    if (spec.proxies) {
+      if (model.proxies.empty()) fail("body \"{}\": proxies = true, but {} has none; `palpate model` writes files that have them", spec.name, path);
+      for (ProxyHull& hull : model.proxies) hull.corners *= spec.mesh.scale;
+      counters::count("loop.proxies");
+      proxies = std::make_shared<proxy::ProxySet>(model);
+    }
+    body.skin = Skin{std::move(model.skin), std::move(model.embedding), std::move(proxies)};
   } else if (spec.mesh.file.ends_with(".h5")) {
     body.rest = check_file(store::read_mesh(path), path, spec.mesh.scale, &body.report);
   } else {

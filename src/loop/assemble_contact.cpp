@@ -20,18 +20,21 @@ struct Pair {
   const ContactSpec& spec;
   contact::NodeSurface surface;
   double candidate_gap;
+  std::shared_ptr<proxy::ProxySet> proxies{};
 };
 
 Pair pair_of(const World& world, const ContactSpec& spec) {
   const Body* body = world.find_body(spec.first);
   if (!body) fail("contact: no body called \"{}\"", spec.first);
   const double gap = spec.candidate_gap_m > 0.0 ? spec.candidate_gap_m : mean_edge(body->skin ? body->skin->rest : body->boundary.surface);
-  if (body->skin) return {spec, {body->block_id, {}, body->skin->rest.faces, body->skin->embedding, body->rest.tets}, gap};
+  if (body->skin) return {spec, {body->block_id, {}, body->skin->rest.faces, body->skin->embedding, body->rest.tets}, gap, body->skin->proxies};
   return {spec, {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces}, gap};
 }
 
 [[maybe_unused]] std::unique_ptr<contact::SampleSource> gpu_source(Pair pair, TriMesh rigid, int frame, std::shared_ptr<contact::MovingFrame> motion) {
 #ifdef PALPATE_HAS_GL
+  if (pair.proxies)
+    return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies), std::move(rigid), frame, std::move(motion), {pair.spec.pixels, pair.candidate_gap});
   return contact::make_gpu_source(std::move(pair.surface), std::move(rigid), frame, std::move(motion), {pair.spec.pixels, pair.candidate_gap});
 #else
   static_cast<void>(pair), static_cast<void>(rigid), static_cast<void>(frame), static_cast<void>(motion);

@@ -93,6 +93,28 @@ store::Provenance full_provenance() {
   return p;
 }
 
+/// What the proxies of a contact left out before the image, over all its queries.
+void add_pruning(store::Summary& summary, const World& world) {
+  if (!world.contact) return;
+  const auto counts = world.contact->pruning();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (!counts[i]) continue;
+    const proxy::PruneCounts& c = *counts[i];
+    const ContactSpec& contact = world.description.contacts[i];
+    store::SummarySection& s = summary.section("pruning");
+    const auto add = [&](const char* what, auto value) { s.values.emplace_back(fmt::format("{} - {}: {}", contact.first, contact.second, what), value); };
+    add("queries", static_cast<long long>(c.queries));
+    add("pairs of proxies", static_cast<long long>(c.pairs));
+    add("left by boxes", static_cast<long long>(c.after_boxes));
+    add("left by hulls", static_cast<long long>(c.after_hulls));
+    add("regions", static_cast<long long>(c.regions));
+    add("skin triangles handed on", static_cast<long long>(c.faces_a));
+    const Body* body = world.find_body(contact.first);
+    if (body && c.queries > 0) add("share of the skin handed on, mean", static_cast<double>(c.faces_a) / (static_cast<double>(c.queries) * static_cast<double>(body->surface_faces().cols())));
+    add("largest turn of a normal [rad]", c.largest_turn);
+  }
+}
+
 }  // namespace
 
 store::Summary summarise(const World& world, const RunResult& result, double assemble_s) {
@@ -111,6 +133,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
     const ContactSpec& contact = world.description.contacts[i];
     summary.section("tunnelled").values.emplace_back(contact.first + " - " + contact.second, static_cast<long long>(result.tunnelled[i]));
   }
+  add_pruning(summary, world);
   for (const scene::Need& need : scene::needs(world.description)) summary.section(need.used ? "in_use" : "left_out").values.emplace_back(need.part, need.why);
   for (const auto& [name, value] : counters::snapshot()) summary.section("constructions").values.emplace_back(name, static_cast<long long>(value));
   return summary;

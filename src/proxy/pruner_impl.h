@@ -1,5 +1,6 @@
 #pragma once
 #include <utility>
+#include <span>
 #include <vector>
 
 #include "palpate/proxy/pruner.h"
@@ -100,6 +101,7 @@ struct Pruner::Impl {
   double gather(const Side& side, const std::vector<int>& proxies, Points& corners) const;
   void turn_to(Region& region, const Vec3& n, RegionMethod method) const;
   bool find_plane(int number, ContactRegion& region);
+  void keep_unmet(const Side& from, std::span<const int> from_patches, const Side& to, std::span<const int> to_patches, std::size_t kept, const ContactRegion& region, double sign);
   template <class Take>
   void look_through(Side& from, const std::vector<int>& from_patches, Side& to, const ContactRegion& region, double sign, Take take);
   void fill(ContactRegion& region);

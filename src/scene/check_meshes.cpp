@@ -50,6 +50,13 @@ void check_meshes(const Document& doc, const Description& d) {
     if (d.bodies[i].skin && !d.bodies[i].mesh.file.ends_with(".h5"))
       refuse(place(doc, fmt::format("body[{}].skin", i)), fmt::format("body \"{}\"", d.bodies[i].name),
              "skin = true needs mesh = { file = \"MODEL.h5\" }, a model file; `palpate model SURFACE -o MODEL.h5` makes one");
+  for (std::size_t i = 0; i < d.bodies.size(); ++i) {
+    if (!d.bodies[i].proxies) continue;
+    const std::string where = fmt::format("body \"{}\"", d.bodies[i].name), at = place(doc, fmt::format("body[{}].proxies", i));
+    if (!d.bodies[i].skin) refuse(at, where, "proxies = true needs skin = true: a proxy stands for a part of the skin");
+    if (std::none_of(d.contacts.begin(), d.contacts.end(), [&](const ContactSpec& c) { return c.first == d.bodies[i].name && c.method == "gpu"; }))
+      refuse(at, where, "proxies = true, but no [[contact]] of this body has method = \"gpu\", which alone uses them");
+  }
   if (!d.tool) return;
   if (given(doc, "tool.mesh")) check_mesh(doc, "tool.mesh", "tool: mesh", d.tool->mesh);
   else if (d.tool->shape == "mesh") refuse(place(doc, "tool.shape"), "tool", "shape = \"mesh\" needs a [tool.mesh]");

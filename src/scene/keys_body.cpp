@@ -56,6 +56,7 @@ const KeyTable<SoftBodySpec>& body_keys() {
       required(text("name", &SoftBodySpec::name)),
       required(table("mesh", &SoftBodySpec::mesh, mesh_keys())),
       boolean("skin", &SoftBodySpec::skin),
+      boolean("proxies", &SoftBodySpec::proxies),
       vec3("position_m", &SoftBodySpec::position_m),
       vec3("rotation_vector_rad", &SoftBodySpec::rotation_vector_rad),
       vec3("velocity_m_s", &SoftBodySpec::velocity_m_s),

@@ -27,6 +27,8 @@ void add_body_needs(const Description& d, std::vector<Need>& out) {
   out.push_back({"nodal dilatation", nodal > 0, nodal > 0 ? fmt::format("{} [[body]] with volumetric = \"nodal\"", nodal) : "no [[body]] with volumetric = \"nodal\""});
   const int skins = count_if(d.bodies, [](const auto& b) { return b.skin; });
   out.push_back({"skin", skins > 0, skins > 0 ? fmt::format("{} [[body]] with skin = true", skins) : "no [[body]] with skin = true"});
+  const int proxies = count_if(d.bodies, [](const auto& b) { return b.proxies; });
+  out.push_back({"proxies", proxies > 0, proxies > 0 ? fmt::format("{} [[body]] with proxies = true: contact in regions", proxies) : "no [[body]] with proxies = true"});
   out.push_back({"gravity", weight, weight ? "gravity_m_s2 is not zero" : "gravity_m_s2 is zero, or there is no body"});
   out.push_back({"fixed nodes", fixed > 0, fixed > 0 ? fmt::format("{} [[body.attachment]] without keyframes", fixed) : "no [[body.attachment]] without keyframes"});
   out.push_back({"driven nodes", driven > 0, driven > 0 ? fmt::format("{} [[body.attachment]] with keyframes", driven) : "no [[body.attachment.keyframe]]"});
@@ -47,7 +49,7 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
   const std::string no_gpu = any ? "every contact has an analytic gap" : "no [[contact]]";
   out.push_back({"contact", any, any ? fmt::format("{} [[contact]]", d.contacts.size()) : "no [[contact]]"});
   out.push_back({"friction", rubbing > 0, rubbing > 0 ? fmt::format("{} [[contact]] with friction > 0", rubbing) : "no contact with friction > 0"});
-  out.push_back({"proxy", gpu > 0, gpu > 0 ? fmt::format("{} contact with method \"gpu\" needs its region", gpu) : no_gpu});
+  out.push_back({"contact plane", gpu > 0, gpu > 0 ? fmt::format("{} contact with method \"gpu\" needs its plane", gpu) : no_gpu});
   out.push_back({"broad phase", gpu > 1, gpu > 1 ? fmt::format("{} pairs in image space", gpu) : "fewer than two pairs in image space"});
   out.push_back({"gl", gpu > 0, gpu > 0 ? "method \"gpu\" rasterises" : no_gpu + "; pictures only on request"});
 }

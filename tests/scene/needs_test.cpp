@@ -21,7 +21,7 @@ std::map<std::string, bool> used(const std::string& scene, const std::vector<std
 TEST(Needs, ASceneWithoutToolLeavesOutAllThatIsHaptic) {
   auto ball = used("falling-ball");
   EXPECT_TRUE(ball.at("fem") && ball.at("contact") && ball.at("tangent") && ball.at("factorisation") && ball.at("run file"));
-  for (const char* part : {"tool", "device", "exchange", "exchange thread", "gl", "proxy", "broad phase", "force file", "friction", "fixed nodes", "compare", "skin"})
+  for (const char* part : {"tool", "device", "exchange", "exchange thread", "gl", "contact plane", "broad phase", "force file", "friction", "fixed nodes", "compare", "skin", "proxies"})
     EXPECT_FALSE(ball.at(part)) << part;
   auto bar = used("cantilever");
   EXPECT_TRUE(bar.at("fixed nodes"));
@@ -34,7 +34,7 @@ TEST(Needs, PressBall) {
   EXPECT_FALSE(press.at("gl"));
   EXPECT_FALSE(press.at("gravity"));
   auto image = used("press-ball", {"contact.1.method=gpu"});
-  EXPECT_TRUE(image.at("gl") && image.at("proxy"));
+  EXPECT_TRUE(image.at("gl") && image.at("contact plane"));
   EXPECT_FALSE(image.at("broad phase"));
   auto quiet = used("press-ball", {"record.states=false", "record.forces=false"});
   EXPECT_FALSE(quiet.at("run file") || quiet.at("force file"));

@@ -8,6 +8,7 @@
 #include "palpate/contact/spec.h"
 #include "palpate/dynamics/force_term.h"
 #include "palpate/mesh/embedding.h"
+#include "palpate/proxy/pruner.h"
 
 namespace palpate::contact {
 
@@ -33,6 +34,8 @@ class SampleSource {
   virtual std::uint64_t pattern_version() const { return 0; }
   /// Vertices that went through the shape between two queries, outside it at both: nothing has pushed them back.
   virtual long tunnelled() const { return 0; }
+  /// What was left out before the image, of a source that has proxies; else null.
+  virtual const proxy::PruneCounts* pruning() const { return nullptr; }
 };
 
 /// Pressure p(gap, gap_rate) [Pa] and its derivatives; p >= 0 always (never adhesive), zero for gap >= 0.
@@ -87,6 +90,8 @@ class ContactForce : public dynamics::ForceTerm {
   double refresh_force_jump() const;
   /// Vertices of each pair, in their order, that went through unseen so far (SampleSource::tunnelled).
   std::vector<long> tunnelled() const;
+  /// Of each pair, in their order; null of one without proxies.
+  std::vector<const proxy::PruneCounts*> pruning() const;
   long queries() const;
   double query_seconds() const;
 

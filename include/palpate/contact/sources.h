@@ -3,6 +3,7 @@
 
 #include "palpate/contact/contact_force.h"
 #include "palpate/mesh/mesh.h"
+#include "palpate/proxy/proxy_set.h"
 
 namespace palpate::contact {
 
@@ -34,5 +35,11 @@ struct GpuOptions {
 /// for each pixel where both are covered; the gap in double on the two triangles that the image paired.
 /// The GL context is opened at the first query.  @throws Error when no EGL device can be opened, with the package that brings it.
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid, int frame, std::shared_ptr<MovingFrame> motion, const GpuOptions& options);
+
+/// The same with the soft side's proxies (DESIGN 3.2, 3.3): only skin that may be near is looked at, in regions that have each its own plane and image, so
+/// that bodies which are no height field as a whole are seen from all sides that they are touched on.  Each face of the skin is in one region at most.
+/// @param proxies  of `surface`, a skin: the set's faces are the surface's; it may serve several sources
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, TriMesh rigid, int frame, std::shared_ptr<MovingFrame> motion,
+                                              const GpuOptions& options);
 
 }  // namespace palpate::contact

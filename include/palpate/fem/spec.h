@@ -51,6 +51,7 @@ struct SoftBodySpec {
   std::string name;
   MeshSpec mesh;
   bool skin = false;                       ///< contact and pictures on the skin of mesh.file, a model file; else on the tetrahedra's own boundary
+  bool proxies = false;                    ///< contact in image space looks only where the skin's convex proxies come near, in regions of their own plane
   Vec3 position_m = Vec3::Zero();          ///< placed here at the start
   Vec3 rotation_vector_rad = Vec3::Zero();
   Vec3 velocity_m_s = Vec3::Zero();

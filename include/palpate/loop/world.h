@@ -15,6 +15,7 @@
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/embedding.h"
 #include "palpate/mesh/source.h"
+#include "palpate/proxy/proxy_set.h"
 #include "palpate/scene/description.h"
 
 namespace palpate::tool {
@@ -27,6 +28,7 @@ namespace palpate::loop {
 struct Skin {
   TriMesh rest;               ///< in the body's own axes
   mesh::Embedding embedding;
+  std::shared_ptr<proxy::ProxySet> proxies;  ///< null where the scene does not ask for them
 };
 
 /// One soft body as assembled.
