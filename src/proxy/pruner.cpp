@@ -5,8 +5,9 @@
 //
 // What faces it.  Seen along the normal a point of a inside b is paired with the point of b's skin above it.  If that is inside a, it stays by the rule above.
 // If not, a has been swallowed there: the way up leaves a before it leaves b, through skin of a that faces up inside b.  Under each kept patch of a that
-// faces up, b's patches that face up, and are above, are taken in too (`look_through`), and the mirror image for b.  Not where skin of b that was kept faces up
-// below it: there the line has come into b already, and a is not swallowed but held from both sides (`keep_unmet`); the other side is another region's.
+// faces up, b's patches that face up, and are above, are taken in too (`look_through`), and the mirror image for b.  Only where the
+// kept skin of the side that is looked for faces no one way: where it does, the line comes in through it, nobody is swallowed, and what lies beyond is the far
+// side of a body that holds the other from two sides; the line would be paired with its end there.
 //
 // Nothing is counted twice.  Every face of a belongs to one patch, that to one proxy i, and all that is kept of i goes into one region: the faces of a are
 // divided among the regions.  The force is an integral over a's skin (each point against what b shows it along its region's normal), so each point of a

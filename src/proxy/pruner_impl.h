@@ -1,6 +1,5 @@
 #pragma once
 #include <utility>
-#include <span>
 #include <vector>
 
 #include "palpate/proxy/pruner.h"
@@ -20,6 +19,8 @@ struct Facing {
     area += other.area;
     size += other.size;
   }
+  /// It faces one way, as skin in contact does; not skin of a swallowed body, which is kept all around, nor none.
+  bool directed() const { return area.norm() > 0.5 * size; }
 };
 
 /// D; zero where one of them has no skin.
@@ -83,6 +84,7 @@ struct Pruner::Impl {
   std::vector<ContactRegion> regions;  // the first `used` are the last query's
   std::size_t used = 0;
   long serial = 0;
+  bool faces_a = false, faces_b = false;  // of the region at hand: Facing::directed
 
   Impl(const ProxySet& set_a, const ProxySet& set_b, const PruneOptions& given)
       : options(given), a(set_a), b(set_b), separating(static_cast<std::size_t>(set_a.size()) * static_cast<std::size_t>(set_b.size()), Vec3::Zero()),
@@ -101,7 +103,6 @@ struct Pruner::Impl {
   double gather(const Side& side, const std::vector<int>& proxies, Points& corners) const;
   void turn_to(Region& region, const Vec3& n, RegionMethod method) const;
   bool find_plane(int number, ContactRegion& region);
-  void keep_unmet(const Side& from, std::span<const int> from_patches, const Side& to, std::span<const int> to_patches, std::size_t kept, const ContactRegion& region, double sign);
   template <class Take>
   void look_through(Side& from, const std::vector<int>& from_patches, Side& to, const ContactRegion& region, double sign, Take take);
   void fill(ContactRegion& region);

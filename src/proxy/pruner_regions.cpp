@@ -91,6 +91,8 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   const double inflation_a = gather(a, proxies_a, corners_a), inflation_b = gather(b, proxies_b, corners_b);
   const double inexact = inflation_a + inflation_b;
   region.facing = facing(facing_a, facing_b);
+  faces_a = facing_a.directed();
+  faces_b = facing_b.directed();
   const bool clear = region.facing.norm() >= kClear;
   if (clear) turn_to(region.region, region.facing.normalized(), RegionMethod::kAreas);
   if (!clear || region.region.depth > inexact) {  // else the hulls know nothing that is sharper
@@ -113,38 +115,10 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   return true;
 }
 
-constexpr double kFacesUp = 0.1;  // sine of the angle above the plane from which skin faces up
-
-/// Fills `open` with the patches of `from` that face up and have no kept patch of `to`, facing up, below them.  With one the line up has come in through that: the
-/// contact is there, and `from` is not swallowed but held from both sides.  What lies above would then be paired with the wrong end of the line.
-void Pruner::Impl::keep_unmet(const Side& from, std::span<const int> from_patches, const Side& to, std::span<const int> to_patches, std::size_t kept, const ContactRegion& region,
-                              double sign) {
-  const Mat3 to_axes = region.axes.transpose();
-  const Vec3 up = sign * region.region.normal, origin = region.region.origin;
-  const auto place = [&](const Side& side, int s) { return Vec3(to_axes * (side.balls[static_cast<std::size_t>(s)].centre - origin)); };
-  const auto faces_up = [&](const Side& side, int s) {
-    const Vec3& area = side.areas[static_cast<std::size_t>(s)];
-    return area.dot(up) > kFacesUp * area.norm();
-  };
-  open.clear();
-  for (const int s : from_patches) {
-    if (!faces_up(from, s)) continue;
-    const Vec3 at = place(from, s);
-    bool met = false;
-    for (std::size_t i = 0; i < kept && !met; ++i) {
-      const int m = to_patches[i];
-      if (!faces_up(to, m)) continue;
-      const Vec3 other = place(to, m);
-      const double reach = from.balls[static_cast<std::size_t>(s)].radius + to.balls[static_cast<std::size_t>(m)].radius;
-      met = (other - at).head<2>().squaredNorm() <= reach * reach && sign * other.z() < sign * at.z() + reach;
-    }
-    if (!met) open.push_back(s);
-  }
-}
-
 /// Patches of `to` that `from` sees through itself: see above.  sign: +1 from a up to b, along the normal; -1 from b down to a.  take(patch) says whether it is new.
 template <class Take>
 void Pruner::Impl::look_through(Side& from, const std::vector<int>& from_patches, Side& to, const ContactRegion& region, double sign, Take take) {
+  constexpr double kFacesUp = 0.1;
   const Mat3 to_axes = region.axes.transpose();
   const Vec3 up = sign * region.region.normal, origin = region.region.origin;
   Eigen::Vector2d low = Eigen::Vector2d::Constant(kInfinity), high = -low;
@@ -187,16 +161,18 @@ void Pruner::Impl::fill(ContactRegion& region) {
         in_region_b[static_cast<std::size_t>(s)] = serial;
         patches_b.push_back(s);
       }
-  const std::size_t kept_a = patches_a.size(), kept_b = patches_b.size();
-  keep_unmet(a, patches_a, b, patches_b, kept_b, region, 1.0);
-  look_through(a, open, b, region, 1.0, [&](int s) {
-    if (std::exchange(in_region_b[static_cast<std::size_t>(s)], serial) != serial) patches_b.push_back(s);
-  });
-  keep_unmet(b, std::span(patches_b).first(kept_b), a, patches_a, kept_a, region, -1.0);
-  look_through(b, open, a, region, -1.0, [&](int s) {
-    const auto at = static_cast<std::size_t>(s);
-    if (a.kept_at[at] != counts.queries && std::exchange(claimed_a[at], counts.queries) != counts.queries) patches_a.push_back(s);
-  });
+  const std::size_t kept_b = patches_b.size();
+  if (!faces_b)
+    look_through(a, patches_a, b, region, 1.0, [&](int s) {
+      if (std::exchange(in_region_b[static_cast<std::size_t>(s)], serial) != serial) patches_b.push_back(s);
+    });
+  if (!faces_a) {
+    open.assign(patches_b.begin(), patches_b.begin() + static_cast<std::ptrdiff_t>(kept_b));
+    look_through(b, open, a, region, -1.0, [&](int s) {
+      const auto at = static_cast<std::size_t>(s);
+      if (a.kept_at[at] != counts.queries && std::exchange(claimed_a[at], counts.queries) != counts.queries) patches_a.push_back(s);
+    });
+  }
 
   const auto extent = [&](const Side& side, const std::vector<int>& patches, std::vector<int>& faces, Vec3& low, Vec3& high) {
     low.setConstant(kInfinity);

@@ -282,7 +282,7 @@ TEST(PrunedGpuSource, FindsContactOnBothSides) {
   const double d = 1.3, volume = M_PI * 0.01 * (d * d + 2.0 * d * 1.4 - 3.0 * 0.36) / (12.0 * d);
   EXPECT_NEAR(left.x() / -volume, 1.0, 0.05);
   EXPECT_NEAR(right.x() / volume, 1.0, 0.05);
-  EXPECT_LT((left + right).norm(), 0.01 * volume);
+  EXPECT_LT((left + right).norm(), 0.01 * volume) << left.transpose() << " and " << right.transpose() << " of " << volume;
   EXPECT_GE(source->pruning()->regions, 2);
 }
 
