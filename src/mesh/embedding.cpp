@@ -23,6 +23,11 @@ int least_extrapolating(const TetMesh& mesh, const std::vector<int>& tets, const
   return best;
 }
 
+/// Above this sum |w| the nearest tetrahedron is a poor one to continue (a flat one, seen along its thin direction), and others nearly as near are asked as well.
+constexpr double kPoor = 3.0;
+constexpr double kNearly = 0.25;  ///< of the distance
+constexpr double kBetter = 0.9;   ///< of the sum: what it takes to prefer one that is farther
+
 }  // namespace
 
 Embedding embed(const TetMesh& mesh, const Points& points, EmbeddingReport* report) {
@@ -41,6 +46,12 @@ Embedding embed(const TetMesh& mesh, const Points& points, EmbeddingReport* repo
     const double distance = tree.nearest(p, kTie * size, guess, tets);
     Eigen::Vector4d weights = Eigen::Vector4d::Zero();
     guess = least_extrapolating(mesh, tets, p, weights);
+    if (weights.cwiseAbs().sum() > kPoor) {
+      tree.nearest(p, kNearly * distance, guess, tets);
+      Eigen::Vector4d other = Eigen::Vector4d::Zero();
+      const int nearly = least_extrapolating(mesh, tets, p, other);
+      if (other.cwiseAbs().sum() < kBetter * weights.cwiseAbs().sum()) guess = nearly, weights = other;
+    }
     out.tet[static_cast<std::size_t>(i)] = guess;
     out.weights.col(i) = weights;
     const double sum = weights.cwiseAbs().sum();

@@ -30,7 +30,8 @@ struct EmbeddingReport {
 };
 
 /// Ties each point to the tetrahedron that holds it, else to the nearest one.  Where several are as near (a shared face, edge or node), to the one with
-/// the least sum |w|, and of equals (to 1e-9) to the first: the answer depends on nothing but the arguments.
+/// the least sum |w|, and of equals (to 1e-9) to the first: the answer depends on nothing but the arguments.  Where that sum is above 3, to the best of those
+/// that are at most a quarter farther, if it is a tenth better.
 /// @pre tetrahedra of positive volume (check_tets).
 /// @throws Error for a point that is not finite, or whose weights are absurd (kLargestWeightSum), with its index, place and distance
 Embedding embed(const TetMesh& mesh, const Points& points, EmbeddingReport* report = nullptr);
