@@ -38,6 +38,7 @@ constexpr int kNewtonIterations = 8;
 constexpr double kNewtonCoefficient = 0.01;
 /// The fast side is integrated to a thousandth of rtol, so that the slow step decides the order.
 constexpr double kFastShare = 1e-3;
+constexpr int kLeastFastSteps = 1000;  ///< a small max_steps is meant for the slow ones
 
 /// Multi-rate infinitesimal methods of Sandu (2019) by SUNDIALS ARKODE's MRIStep: y' = f_S + f_F, the bodies slow and implicit, tool and contact fast.
 /// Between two slow stages, c_i and c_(i+1), the fast side is integrated with the slow one as a polynomial forcing,
@@ -86,7 +87,7 @@ class Mri final : public Adapter {
     check(ARKStepSetUserData(fast_, static_cast<Adapter*>(this)), "ARKStepSetUserData", t, 0.0);
     check(ARKStepWFtolerances(fast_, fast_weights), "ARKStepWFtolerances", t, 0.0);
     check(ARKStepSetTableNum(fast_, ARKODE_DIRK_NONE, ARKODE_BOGACKI_SHAMPINE_4_2_3), "ARKStepSetTableNum", t, 0.0);
-    check(ARKStepSetMaxNumSteps(fast_, spec().max_steps), "ARKStepSetMaxNumSteps", t, 0.0);  // between two slow stages
+    check(ARKStepSetMaxNumSteps(fast_, std::max(kLeastFastSteps, spec().max_steps)), "ARKStepSetMaxNumSteps", t, 0.0);  // between two slow stages
     check(ARKStepSetMaxErrTestFails(fast_, kErrorTestFailures), "ARKStepSetMaxErrTestFails", t, 0.0);
     check(ARKStepCreateMRIStepInnerStepper(fast_, &inner_), "ARKStepCreateMRIStepInnerStepper", t, 0.0);
   }
