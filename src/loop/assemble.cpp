@@ -43,7 +43,8 @@ TetMesh check_file(TetMesh tets, const std::string& path, double scale, mesh::Me
   return tets;
 }
 
-/// A body's tetrahedra, and its skin where the scene names it: nothing else of a model file is read.
+/// A body's tetrahedra, and the skin and proxies that the scene names.  Of a model file the tetrahedra alone are read where it names neither; else the file is
+/// read and checked as a whole, and what is not named is let go.
 void load_mesh(const SoftBodySpec& spec, const std::string& folder, Body& body) {
   const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
   if (spec.skin) {
@@ -54,10 +55,11 @@ void load_mesh(const SoftBodySpec& spec, const std::string& folder, Body& body) 
         fail("body \"{}\": {} has a region \"{}\" of another material; this version gives a body one material", spec.name, path, region.name);
     counters::count("loop.skin");
     model.skin.vertices *= spec.mesh.scale;
-    model.tets = body.rest = check_file(std::move(model.tets), path, spec.mesh.scale, &body.report);
+    body.rest = check_file(std::move(model.tets), path, spec.mesh.scale, &body.report);
     std::shared_ptr<proxy::ProxySet> proxies;
     if (spec.proxies) {
       if (model.proxies.empty()) fail("body \"{}\": proxies = true, but {} has none; `palpate model` writes files that have them", spec.name, path);
+      model.tets = body.rest;  // as checked and scaled
       for (ProxyHull& hull : model.proxies) hull.corners *= spec.mesh.scale;
       counters::count("loop.proxies");
       proxies = std::make_shared<proxy::ProxySet>(model);
