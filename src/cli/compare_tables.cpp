@@ -16,7 +16,7 @@ constexpr std::size_t kPointsOnScreen = 80;
 constexpr std::size_t kReasonLength = 90;
 
 std::string outcome_text(const study::ComparePoint& p) {
-  if (p.status == study::PointStatus::kOk) return p.below_reference ? "below the reference" : "";
+  if (p.status == study::PointStatus::kOk) return p.unresolved ? "not told from the reference" : "";
   const std::string line = p.reason.substr(0, p.reason.find('\n'));
   return line.size() <= kReasonLength ? line : line.substr(0, line.find_last_of(' ', kReasonLength)) + " ...";
 }

@@ -18,7 +18,7 @@ std::string point_text(const Table& compare, std::size_t row) {
 void add_points_table(Page& page, const Table& compare) {
   std::vector<std::vector<std::string>> rows;
   std::vector<RowMark> marks;
-  const std::size_t label = compare.column("label"), status = compare.column("status"), reason = compare.column("reason"), below = compare.column("below_reference");
+  const std::size_t label = compare.column("label"), status = compare.column("status"), reason = compare.column("reason"), below = compare.column("unresolved");
   for (std::size_t r = 0; r < compare.rows.size(); ++r) {
     const auto& row = compare.rows[r];
     const bool ok = row[status] == "ok", under = is_yes(row[below]);
@@ -75,7 +75,7 @@ void add_orders_table(Page& page, const Table& compare, const std::vector<Quanti
     for (std::size_t i = 0; i < orders.size(); ++i) rows[i].push_back(order_text(orders[i]));
   }
   page.add_heading("Fitted order", 3);
-  page.add_table(headers, rows, "Least-squares slope of log error against log step (or tolerance: 1 means that the error follows the tolerance). Points below the reference are left out.");
+  page.add_table(headers, rows, "Least-squares slope of log error against log step (or tolerance: 1 means that the error follows the tolerance). Points within 10 times of the reference's own error are left out.");
 }
 
 /// Who wins at each wanted error, by a cost.
@@ -127,7 +127,7 @@ void add_work_precision(Page& page, const Table& compare, const Quantity& q) {
            capitalised(q.label) + " against CPU time; down and to the left is better. " +
                (many ? "One line a ladder, coloured by family; the dark line joins the points that none beats, named where another integrator takes over. "
                      : "Each point carries its relative tolerance or its step. ") +
-               "Rings lie below the reference's own error" + (std::isfinite(q.reference) ? fmt::format(" of {}.", short_number(q.reference)) : ".") +
+               "Rings lie within 10 times of the reference's own error" + (std::isfinite(q.reference) ? fmt::format(" of {}.", short_number(q.reference)) : ".") +
                " Errors above 3 are left out.");
   if (many && q.column == kPosition) {
     page.begin_multiples();

@@ -101,19 +101,23 @@ std::string explicit_in_words(const Table& compare) {
 
 std::string reference_in_words(const std::vector<Ladder>& all, double reference_error) {
   double best = kUnknown;
-  bool any_below = false;
+  int unresolved = 0;
   for (const Ladder& ladder : all)
     for (const LadderPoint& p : ladder.points) {
-      any_below |= p.below_reference;
-      if (!p.below_reference && !(p.error >= best)) best = p.error;
+      unresolved += p.unresolved;
+      if (!p.unresolved && !(p.error >= best)) best = p.error;
     }
   if (std::isnan(best)) return "No point has an error that could be told from the reference's.";
   if (std::isnan(reference_error)) return "The reference's own error is not known: read small errors with care.";
-  if (best >= kMargin * reference_error && !any_below)
-    return fmt::format("The reference's own error, {}, is {} below the best point, {}: it bears every figure here.", short_number(reference_error), times(best / reference_error),
-                       short_number(best));
-  return fmt::format("The reference's own error is {}: errors below {} are not told apart by it (the best point above it shows {}).", short_number(reference_error),
-                     short_number(kMargin * reference_error), short_number(best));
+  if (best < kMargin * reference_error)
+    return fmt::format("The reference's own error is {}: errors below {} are not told apart by it (the best point shows {}).", short_number(reference_error),
+                       short_number(kMargin * reference_error), short_number(best));
+  std::string out = fmt::format("The reference's own error, {}, is {} below the best point that it can judge, {}: it bears every figure here{}.", short_number(reference_error),
+                                times(best / reference_error), short_number(best), unresolved ? " but the marked ones" : "");
+  if (unresolved)
+    out += fmt::format(" {} {} within {:g} times of it, are marked, and count nowhere: errors below {} are not told apart.", unresolved, unresolved == 1 ? "point lies" : "points lie",
+                       kMargin, short_number(kMargin * reference_error));
+  return out;
 }
 
 }  // namespace

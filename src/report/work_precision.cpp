@@ -11,8 +11,8 @@ namespace {
 
 /// Each error has its own reference: a position below it says nothing about the force.
 std::string below_column(const Table& compare, const std::string& error_column) {
-  const std::string own = error_column.substr(0, error_column.find('_')) + "_below_reference";
-  return compare.has(own) ? own : "below_reference";
+  const std::string own = error_column.substr(0, error_column.find('_')) + "_unresolved";
+  return compare.has(own) ? own : "unresolved";
 }
 
 bool is_yes(const std::string& cell) { return cell == "yes" || cell == "true" || cell == "1"; }
@@ -94,7 +94,7 @@ std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& 
   for (const Ladder& ladder : ladders(compare, error_column, "setting")) {
     std::vector<double> setting, error;
     for (const LadderPoint& p : ladder.points) {
-      if (p.below_reference || p.error >= 1.0) continue;  // an error as large as the motion has no slope
+      if (p.unresolved || p.error >= 1.0) continue;  // an error as large as the motion has no slope
       setting.push_back(p.setting);
       error.push_back(p.error);
     }

@@ -37,7 +37,7 @@ Series line_of(const Ladder& ladder, bool labelled) {
     series.x.push_back(p.cost);
     series.y.push_back(p.error);
     if (labelled) series.labels.push_back(setting_text(ladder.setting_name, p.setting));
-    series.hollow.push_back(p.below_reference);
+    series.hollow.push_back(p.unresolved);
   }
   return series;
 }
@@ -51,7 +51,7 @@ Series best_envelope(const std::vector<Ladder>& all) {
   std::vector<Entry> entries;
   for (const Ladder& ladder : all)
     for (const LadderPoint& p : ladder.points)
-      if (p.cost > 0.0 && p.error > 0.0 && p.error <= kLargestDrawn && !p.below_reference) entries.push_back({p.cost, p.error, &ladder});
+      if (p.cost > 0.0 && p.error > 0.0 && p.error <= kLargestDrawn && !p.unresolved) entries.push_back({p.cost, p.error, &ladder});
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.cost != b.cost ? a.cost < b.cost : a.error < b.error; });
   Series out{.name = "best of all", .x = {}, .y = {}, .mark = Mark::kLine, .labels_below = true, .colour = "ink"};
   double least = std::numeric_limits<double>::infinity();

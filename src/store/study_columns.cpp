@@ -7,7 +7,7 @@ const std::vector<std::string>& compare_columns() {
       "scene", "label", "integrator", "family", "order", "stability", "multistep", "setting_name", "setting", "position_error_rel_l2", "position_error_max_m",
       "force_error_rms_n", "force_error_max_n", "torque_error_rms_n_m", "torque_error_max_n_m", "energy_error_j", "cpu_s_median", "cpu_s_min", "cpu_s_max",
       "repeats", "force_evaluations", "tangent_evaluations", "factorisations", "linear_solves", "newton_iterations", "contact_queries", "steps", "rejected_steps",
-      "reinitialisations", "status", "reason", "below_reference", "force_below_reference", "torque_below_reference"};
+      "reinitialisations", "status", "reason", "unresolved", "force_unresolved", "torque_unresolved"};
   return columns;
 }
 

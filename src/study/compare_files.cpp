@@ -36,8 +36,8 @@ Row row_of(const std::string& scene, const ComparePoint& p) {
           e.position_rel_l2, e.position_max_m, e.force_rms_n, e.force_max_n, e.torque_rms_n_m, e.torque_max_n_m, e.energy_j,
           time(p.cpu_median_s), time(p.cpu_min_s), time(p.cpu_max_s), number(static_cast<long>(p.cpu_s.size())), number(c.force_evaluations),
           number(c.tangent_evaluations), number(c.solver.factorisations), number(c.solver.solves), number(c.newton_iterations), number(r.contact_queries),
-          number(c.steps), number(c.rejected), number(c.reinits), std::string(to_string(p.status)), p.reason, yes_no(p.below_reference),
-          yes_no(p.force_below_reference), yes_no(p.torque_below_reference)};
+          number(c.steps), number(c.rejected), number(c.reinits), std::string(to_string(p.status)), p.reason, yes_no(p.unresolved),
+          yes_no(p.force_unresolved), yes_no(p.torque_unresolved)};
 }
 
 Row restart_row(const std::string& scene, const ComparePoint& p) {

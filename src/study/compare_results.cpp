@@ -13,9 +13,10 @@ ReferenceRun reference_run_of(const store::StudyArtefact& kept) {
 }
 
 void summarise(ComparePoint& point, const TrajectoryError& own) {
-  point.below_reference = point.error.position_rel_l2 <= own.position_rel_l2;  // NaN is never below
-  point.force_below_reference = point.error.force_rms_n <= own.force_rms_n;
-  point.torque_below_reference = point.error.torque_rms_n_m <= own.torque_rms_n_m;
+  // NaN is never unresolved.
+  point.unresolved = point.error.position_rel_l2 < kResolution * own.position_rel_l2;
+  point.force_unresolved = point.error.force_rms_n < kResolution * own.force_rms_n;
+  point.torque_unresolved = point.error.torque_rms_n_m < kResolution * own.torque_rms_n_m;
   if (point.cpu_s.empty()) return;
   std::vector<double> sorted = point.cpu_s;
   std::sort(sorted.begin(), sorted.end());

@@ -102,7 +102,7 @@ TEST(CompareKill, TenKillsGiveTheTableOfAnUndisturbedRun) {
       EXPECT_EQ(x.result.counters.steps, y.result.counters.steps);
       EXPECT_EQ(x.result.counters.force_evaluations, y.result.counters.force_evaluations);
       EXPECT_EQ(x.result.counters.solver.factorisations, y.result.counters.solver.factorisations);
-      EXPECT_EQ(x.below_reference, y.below_reference);
+      EXPECT_EQ(x.unresolved, y.unresolved);
     }
   }
   fs::remove_all(folder);

@@ -154,7 +154,7 @@ TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
   EXPECT_NE(c.points[1].reason.find("steps before t_end"), std::string::npos) << c.points[1].reason;
   const study::TrajectoryError& e = c.points[1].error;
   for (const double value : {e.position_rel_l2, e.position_max_m, e.force_rms_n, e.torque_rms_n_m, e.energy_j}) EXPECT_TRUE(std::isnan(value));
-  EXPECT_FALSE(c.points[1].below_reference || c.points[1].force_below_reference || c.points[1].torque_below_reference);
+  EXPECT_FALSE(c.points[1].unresolved || c.points[1].force_unresolved || c.points[1].torque_unresolved);
 
   const std::filesystem::path folder = fresh_folder("compare-write");
   study::write(all, folder.string());
@@ -205,7 +205,7 @@ TEST(Compare, WithoutACheckTheReferencesOwnErrorIsNotKnown) {
   ASSERT_EQ(c.points.size(), 1u);
   EXPECT_EQ(c.points[0].status, PointStatus::kOk) << c.points[0].reason;
   EXPECT_TRUE(c.points[0].error.position_rel_l2 > 0.0);
-  EXPECT_FALSE(c.points[0].below_reference);
+  EXPECT_FALSE(c.points[0].unresolved);
 }
 
 TEST(Compare, WithoutAReferencePointsHaveCostsAndNoErrors) {

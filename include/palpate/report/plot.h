@@ -14,7 +14,7 @@ struct Series {
   Mark mark = Mark::kLine;
   std::vector<std::string> labels = {};  ///< text beside each point; empty: none
   bool labels_below = false;             ///< labels stand to the left of and below their points, not to the right and above
-  std::vector<bool> hollow = {};         ///< points drawn as rings (below the reference's own error); empty: none
+  std::vector<bool> hollow = {};         ///< points drawn as rings (too near the reference's own error); empty: none
   std::string colour = {};               ///< "#rrggbb", or "ink" for the text's colour; empty: the next of the palette
   double width = 0.0;                    ///< of the line; 0: the mark's own
 };

@@ -37,7 +37,7 @@ std::vector<std::string> distinct(const Table& table, const std::string& column)
 /// One ladder: its usable points, from the coarsest rung to the finest.
 struct LadderPoint {
   double setting = kUnknown, error = kUnknown, cost = kUnknown;
-  bool below_reference = false;
+  bool unresolved = false;
 };
 struct Ladder {
   std::string label, integrator, family, stability, setting_name;
@@ -52,7 +52,7 @@ std::vector<Ladder> ladders(const Table& compare, const std::string& error_colum
 struct FittedOrder {
   std::string label, integrator, setting_name;
   double order = kUnknown;  ///< NaN with fewer than two usable points
-  int points = 0;           ///< that were used: status ok, finite, not below the reference
+  int points = 0;           ///< that were used: status ok, finite, not unresolved
 };
 std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& error_column);
 

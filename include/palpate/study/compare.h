@@ -35,9 +35,12 @@ struct ComparePoint {
   loop::RunResult result;          ///< of the first repeat; counts are the same in all
   std::vector<double> cpu_s;       ///< of each repeat
   double cpu_median_s = 0.0, cpu_min_s = 0.0, cpu_max_s = 0.0;
-  bool below_reference = false;    ///< its position error is not above the reference's own: not to be trusted
-  bool force_below_reference = false, torque_below_reference = false;  ///< the same of the RMS on the hand
+  bool unresolved = false;         ///< its position error is less than kResolution times the reference's own: not to be trusted
+  bool force_unresolved = false, torque_unresolved = false;  ///< the same of the RMS on the hand
 };
+
+/// Of an error this many times the reference's own, the reference leaves a tenth in doubt; nearer ones are marked, and stand in no fit and no verdict.
+constexpr double kResolution = 10.0;
 
 /// The truth that the points are held against, and how far it can be trusted.
 struct Reference {

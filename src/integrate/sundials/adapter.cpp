@@ -25,7 +25,7 @@ constexpr int kReachedStop = 1, kReachedRoot = 2;
 
 /// A step that collapses to this ends the call with an error: before a force that is not finite from some time on,
 /// steps would shrink towards that time without end.  Far below any physical time scale, above the rounding of t.
-double smallest_step(double t, double t_end) { return std::max(1e-12 * (t_end - t), 1e-15 * std::max(std::abs(t), std::abs(t_end))); }
+double smallest_step(double t, double t_end) { return std::max(1e-14 * (t_end - t), 1e-15 * std::max(std::abs(t), std::abs(t_end))); }
 
 int index_of_largest(N_Vector v, N_Vector w) {
   const auto n = static_cast<Eigen::Index>(NV_LENGTH_S(v));

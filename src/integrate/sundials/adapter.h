@@ -3,6 +3,9 @@
 #include <sundials/sundials_nonlinearsolver.h>
 #include <sundials/sundials_nvector.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "integrate/ode_problem.h"
 #include "integrate/sundials/hooks.h"
 #include "palpate/dynamics/spec.h"
@@ -67,6 +70,13 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   N_Vector y() const { return y_; }
   /// Takes `rtol` in the place of the spec's.
   void use_tolerance(double rtol) { weight_scale_ = spec_.rtol / rtol; }
+  /// For backward differences up to order k.  Their error test holds C h^(k+1) at a tolerance T, so h ~ T^(1/(k+1)), and the error over a given time
+  /// ~ h^k = T^(k/(k+1)): T is rtol^((k+1)/k), so that a tenth of rtol buys a tenth of the error; but not below kTightest, where rounding shows.
+  void use_tolerance_of_bdf(int highest_order) {
+    const double k = spec_.max_order > 0 ? spec_.max_order : highest_order;
+    constexpr double kTightest = 1e-12;
+    use_tolerance(std::max(std::pow(spec_.rtol, (k + 1.0) / k), std::min(spec_.rtol, kTightest)));
+  }
   /// To be called at every evaluation of the right-hand side: tells attempted steps apart while they are traced.
   void see_evaluation(double t, N_Vector y, bool finite);
 

@@ -29,6 +29,7 @@ class Cvode final : public Adapter {
  public:
   Cvode(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec, int method) : Adapter(std::move(problem), spec), method_(method) {
     check_adaptive(spec, method == CV_BDF ? kHighestBdf : kHighestAdams);
+    if (method == CV_BDF) use_tolerance_of_bdf(kHighestBdf);  // the order of Adams-Moulton rises with the tolerance up to 12: its error falls as rtol by itself
   }
   ~Cvode() override { Cvode::destroy(); }
 

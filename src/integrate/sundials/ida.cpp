@@ -25,7 +25,10 @@ constexpr int kHighestOrder = 5;
 /// Newton's matrix dF/dy + c_j dF/dy' is the condensed one with gamma = 1/c_j.
 class Ida final : public Adapter {
  public:
-  Ida(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : Adapter(std::move(problem), spec) { check_adaptive(spec, kHighestOrder); }
+  Ida(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : Adapter(std::move(problem), spec) {
+    check_adaptive(spec, kHighestOrder);
+    use_tolerance_of_bdf(kHighestOrder);
+  }
   ~Ida() override { Ida::destroy(); }
 
  private:
