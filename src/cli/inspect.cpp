@@ -38,7 +38,7 @@ void print_bones(const loop::World& world) {
   for (const loop::Bone& bone : world.bones) {
     const Pose pose = world.bone_pose(bone);
     const Vec3 turn = rotation_vector(pose.rotation);
-    rows.push_back({bone.name, bone.path ? "a function of time" : "free", bone.path ? "-" : fmt::format("{:.3g}", bone.mass), std::to_string(bone.dofs.size() / 3),
+    rows.push_back({bone.name, bone.path ? "a function of time" : bone.tree ? "on a joint" : "free", bone.path ? "-" : fmt::format("{:.3g}", bone.mass), std::to_string(bone.dofs.size() / 3),
                     fmt::format("{:.3g} {:.3g} {:.3g}", pose.translation.x(), pose.translation.y(), pose.translation.z()), fmt::format("{:.3g} {:.3g} {:.3g}", turn.x(), turn.y(), turn.z())});
   }
   if (!rows.empty()) fmt::print("{}\n", report::format_table({"bone", "", "mass [kg]", "nodes", "position [m]", "rotation vector [rad]"}, rows));

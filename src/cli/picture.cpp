@@ -58,7 +58,11 @@ void Snapshot::save(const loop::World& world, const std::string& path) const {
     if (shape.vertices.cols() == 0) continue;
     Points now = bones_[i].rotation.toRotationMatrix() * shape.vertices;
     now.colwise() += bones_[i].translation;
-    render::Surface surface{world.bones[i].name, now, shape.faces};
+    // A skeleton has one entry in the legend.
+    const int body = world.bones[i].body;
+    const bool first = i == 0 || world.bones[i - 1].body != body;
+    const std::string name = body < 0 ? world.bones[i].name : first ? "bones of " + world.bodies[static_cast<std::size_t>(body)].name : "";
+    render::Surface surface{name, now, shape.faces};
     surface.colour = {0.93f, 0.90f, 0.80f};
     scene.surfaces.push_back(surface);
   }

@@ -43,12 +43,29 @@ TetMesh check_file(TetMesh tets, const std::string& path, double scale, mesh::Me
   return tets;
 }
 
+/// The bones, in the body's own axes as yet.
+void take_skeleton(const SoftBodySpec& spec, const std::string& path, const LayeredModel& model, Body& body) {
+  if (model.skeleton.bones.empty()) fail("body \"{}\": [body.skeleton], but {} has no bones; `palpate model human` writes a file that has", spec.name, path);
+  counters::count("loop.skeleton");
+  body.skeleton = model.skeleton;
+  body.bone_of_node = model.bone_of_node;
+  for (palpate::Bone& bone : body.skeleton.bones) {
+    bone.head *= spec.mesh.scale, bone.tail *= spec.mesh.scale;
+    bone.head_radius *= spec.mesh.scale, bone.tail_radius *= spec.mesh.scale;
+  }
+}
+
 /// A body's tetrahedra, and the skin and proxies that the scene names.  Of a model file the tetrahedra alone are read where it names neither; else the file is
 /// read and checked as a whole, and what is not named is let go.
 void load_mesh(const SoftBodySpec& spec, const std::string& folder, Body& body) {
   const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
-  if (spec.skin) {
+  if (spec.skin || spec.skeleton) {
     LayeredModel model = store::read_model(path).model;
+    if (spec.skeleton) take_skeleton(spec, path, model, body);
+    if (!spec.skin) {
+      body.rest = check_file(std::move(model.tets), path, spec.mesh.scale, &body.report);
+      return;
+    }
     if (model.skin.faces.cols() == 0) fail("body \"{}\": skin = true, but {} has no skin; `palpate model` writes files that have one", spec.name, path);
     for (const MaterialRegion& region : model.regions)
       if (region.youngs_modulus_factor != 1.0 || region.density_factor != 1.0)
@@ -88,6 +105,7 @@ Body place_body(World& world, const SoftBodySpec& spec) {
   const Pose pose{quaternion_of(spec.rotation_vector_rad), spec.position_m};
   body.placed.resize(3, body.rest.nodes.cols());
   for (Eigen::Index i = 0; i < body.placed.cols(); ++i) body.placed.col(i) = pose * Vec3(body.rest.nodes.col(i));
+  for (palpate::Bone& bone : body.skeleton.bones) bone.head = pose * bone.head, bone.tail = pose * bone.tail;
   body.masses = fem::lumped_masses(body.rest, spec.density_kg_m3);
   body.boundary = mesh::boundary(body.rest);
   body.stiffness_scale = spec.youngs_modulus_pa;
@@ -141,6 +159,7 @@ std::unique_ptr<World> assemble(const scene::Description& description) {
   world->folder = std::filesystem::path(description.path).parent_path().string();
   assemble_bodies(*world);
   if (!description.bones.empty()) assemble_bones(*world);
+  assemble_skeletons(*world);
   if (description.tool) assemble_tool(*world);
   assemble_attachments(*world);
   if (!description.contacts.empty()) assemble_contact(*world);

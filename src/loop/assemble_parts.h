@@ -6,6 +6,7 @@ namespace palpate::loop {
 
 void assemble_bodies(World& world);
 void assemble_bones(World& world);        ///< only with [[bone]]
+void assemble_skeletons(World& world);    ///< bones of model files, where a [body.skeleton] asks for them
 void assemble_tool(World& world);         ///< only with [tool]
 void assemble_attachments(World& world);  ///< after all that nodes may be attached to
 void assemble_contact(World& world);      ///< only with [[contact]]

@@ -3,9 +3,11 @@
 #include "palpate/dynamics/rigid_body.h"
 
 #ifdef PALPATE_HAS_TOOL
+#include "palpate/tool/bone_tree.h"
 #include "palpate/tool/tool.h"
 #else
 namespace palpate::tool {
+class BoneTree {};
 class Tool {};
 }  // namespace palpate::tool
 #endif
@@ -41,15 +43,27 @@ Points World::positions(const Body& body) const {
   return Eigen::Map<const Points>(state.q().data() + block->q_offset, 3, block->q_size / 3);
 }
 
-Pose World::bone_pose(const Bone& bone) const {
-  if (bone.path) return bone.path(state.time()).pose;
-  return dynamics::motion_of(state.view(), dynamics::rigid_block_of(state.view(), bone.block_id)).pose;
+namespace {
+
+dynamics::RigidMotion motion_of(const World& world, const Bone& bone) {
+  if (bone.path) {
+    const fem::PathPoint at = bone.path(world.state.time());
+    return {at.pose, at.twist};
+  }
+  const dynamics::StateView view = world.state.view();
+#ifdef PALPATE_HAS_TOOL
+  if (bone.tree) {
+    const dynamics::Block& block = *view.layout->find(bone.block_id);
+    return bone.tree->motion(view.q.segment(block.q_offset, block.q_size), view.u.segment(block.u_offset, block.u_size), bone.tree_bone);
+  }
+#endif
+  return dynamics::motion_of(view, dynamics::rigid_block_of(view, bone.block_id));
 }
 
-Twist World::bone_twist(const Bone& bone) const {
-  if (bone.path) return bone.path(state.time()).twist;
-  return dynamics::motion_of(state.view(), dynamics::rigid_block_of(state.view(), bone.block_id)).twist;
-}
+}  // namespace
+
+Pose World::bone_pose(const Bone& bone) const { return motion_of(*this, bone).pose; }
+Twist World::bone_twist(const Bone& bone) const { return motion_of(*this, bone).twist; }
 
 std::vector<Wrench> World::wrenches_on_bones() {
   std::vector<Wrench> out(bones.size());

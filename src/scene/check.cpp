@@ -139,6 +139,7 @@ void check(const Document& doc, Description& d) {
   if (d.bodies.empty() && !d.tool) refuse(place(doc, "scene"), "", "there is nothing to simulate: add a [[body]], or a [tool] with a [device]");
   check_names(doc, d);
   check_meshes(doc, d);
+  check_skeletons(doc, d);
   check_loads(doc, d);
   check_bones(doc, d);
   check_attachments(doc, d);

@@ -25,6 +25,30 @@ const KeyTable<LoadSpec>& load_keys() {
   return keys;
 }
 
+const KeyTable<JointSpec>& joint_keys() {
+  static const KeyTable<JointSpec> keys = {
+      required(text("bone", &JointSpec::bone)),
+      text("type", &JointSpec::type, {"weld", "hinge", "ball", "free"}),
+      vec3("axis", &JointSpec::axis),
+      number("stiffness_n_m_rad", &JointSpec::stiffness_n_m_rad, at_least(0.0)),
+      number("damping_n_m_s_rad", &JointSpec::damping_n_m_s_rad, at_least(0.0)),
+      tables("keyframe", &JointSpec::keyframes, keyframe_keys()),
+  };
+  return keys;
+}
+
+const KeyTable<SkeletonSpec>& skeleton_keys() {
+  static const KeyTable<SkeletonSpec> keys = {
+      text("root", &SkeletonSpec::root, {"weld", "ball", "free"}),
+      text("joints", &SkeletonSpec::others, {"weld", "ball"}),
+      number("density_kg_m3", &SkeletonSpec::density_kg_m3, positive("bone has about 1800, 800 more than the flesh that its nodes weigh")),
+      number("stiffness_n_m_rad", &SkeletonSpec::stiffness_n_m_rad, at_least(0.0)),
+      number("damping_n_m_s_rad", &SkeletonSpec::damping_n_m_s_rad, at_least(0.0)),
+      tables("joint", &SkeletonSpec::joints, joint_keys()),
+  };
+  return keys;
+}
+
 }  // namespace
 
 const KeyTable<MeshSpec>& mesh_keys() {
@@ -70,6 +94,7 @@ const KeyTable<SoftBodySpec>& body_keys() {
       text("tangent", &SoftBodySpec::tangent, {"exact", "projected", "warped"}),
       text("volumetric", &SoftBodySpec::volumetric, {"element", "nodal"}),
       boolean("full_damping_tangent", &SoftBodySpec::full_damping_tangent),
+      table("skeleton", &SoftBodySpec::skeleton, skeleton_keys()),
       tables("attachment", &SoftBodySpec::attachments, attachment_keys()),
       tables("load", &SoftBodySpec::loads, load_keys()),
   };

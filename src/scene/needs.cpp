@@ -35,6 +35,8 @@ void add_body_needs(const Description& d, std::vector<Need>& out) {
   const int told = count_if(d.bones, [](const auto& b) { return b.fixed || !b.keyframes.empty(); }), free = static_cast<int>(d.bones.size()) - told;
   out.push_back({"carried nodes", carried > 0, carried > 0 ? fmt::format("{} [[body.attachment]] to a bone or the tool", carried) : "no [[body.attachment]] with to"});
   out.push_back({"rigid bones", free > 0, free > 0 ? fmt::format("{} free [[bone]]: rigid blocks beside the nodes", free) : told > 0 ? "every [[bone]] is fixed or has keyframes: a function of time" : "no [[bone]]"});
+  const int skeletons = count_if(d.bodies, [](const auto& b) { return b.skeleton.has_value(); });
+  out.push_back({"skeleton", skeletons > 0, skeletons > 0 ? fmt::format("{} [body.skeleton]: bones of the model file; those on joints by Simbody", skeletons) : "no [body.skeleton]"});
   out.push_back({"loads", loads > 0, loads > 0 ? fmt::format("{} [[body.load]]", loads) : "no [[body.load]]"});
   // Every integrator of this version is implicit; an explicit one will leave these out.
   const std::string implicit = fmt::format("integrator \"{}\" is implicit", d.integrator.name);
@@ -56,7 +58,7 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
 
 void add_haptic_needs(const Description& d, std::vector<Need>& out) {
   const bool tool = d.tool.has_value();
-  out.push_back({"tool", tool, tool ? fmt::format("[tool], {} under a virtual coupling, {}", d.tool->shape, d.coupling.scheme) : "no [tool]; no Simbody system is made"});
+  out.push_back({"tool", tool, tool ? fmt::format("[tool], {} under a virtual coupling, {}", d.tool->shape, d.coupling.scheme) : "no [tool]"});
   out.push_back({"device", d.device.has_value(), d.device ? fmt::format("[device], type \"{}\"", d.device->type) : "no [device]"});
   const bool monolithic = tool && d.coupling.scheme == "monolithic", two_rates = tool && !monolithic && !d.bodies.empty();
   const std::string one_system = "scheme \"monolithic\": tool and bodies are one system of one integrator";
@@ -73,8 +75,9 @@ void add_output_needs(const Description& d, std::vector<Need>& out) {
   const bool states = d.record && d.record->states, forces = d.record && d.record->forces && d.tool;
   const std::string none = d.record ? "" : "no [record]";
   out.push_back({"run file", states, states ? fmt::format("[record] states, every {} s", d.record->state_period_s) : none.empty() ? "[record] states = false" : none});
-  const bool bones = states && !d.bones.empty();
-  out.push_back({"bone file", bones, bones ? fmt::format("[record] states, {} [[bone]]", d.bones.size()) : !none.empty() ? none : d.bones.empty() ? "no [[bone]]" : "[record] states = false"});
+  const bool any_bones = !d.bones.empty() || count_if(d.bodies, [](const auto& b) { return b.skeleton.has_value(); }) > 0;
+  const bool bones = states && any_bones;
+  out.push_back({"bone file", bones, bones ? fmt::format("[record] states, {} [[bone]] and the skeletons' own", d.bones.size()) : !none.empty() ? none : !any_bones ? "no [[bone]]" : "[record] states = false"});
   out.push_back({"force file", forces, forces ? "[record] forces, every tick" : !none.empty() ? none : d.tool ? "[record] forces = false" : "no [tool]"});
   const std::size_t ladders = d.compare.ladders.size();
   out.push_back({"compare", ladders > 0, ladders > 0 ? fmt::format("{} [[compare.ladder]], for `palpate compare` only", ladders) : "no [[compare.ladder]]"});

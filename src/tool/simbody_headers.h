@@ -30,8 +30,11 @@ bool operator==(const Index& a, const Index& b) {
 #include <simbody/internal/Force_BuiltIns.h>
 #include <simbody/internal/Force_Custom.h>
 #include <simbody/internal/GeneralForceSubsystem.h>
+#include <simbody/internal/MobilizedBody_Ball.h>
 #include <simbody/internal/MobilizedBody_Free.h>
 #include <simbody/internal/MobilizedBody_Ground.h>
+#include <simbody/internal/MobilizedBody_Pin.h>
+#include <simbody/internal/MobilizedBody_Weld.h>
 #include <simbody/internal/MultibodySystem.h>
 #include <simbody/internal/SimbodyMatterSubsystem.h>
 #include <simmath/CPodesIntegrator.h>

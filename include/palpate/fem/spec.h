@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,26 @@ struct BoneSpec {
   std::vector<KeyframeSpec> keyframes;     ///< moves from where it is placed: by these positions, and by these turns about its own origin
 };
 
+/// One joint of a skeleton that differs from the rest, or moves by a script.
+struct JointSpec {
+  std::string bone;                        ///< which hangs on its parent by it
+  std::string type;                        ///< "weld", "hinge", "ball", of a root also "free"; empty: the skeleton's
+  Vec3 axis = Vec3::Zero();                ///< of a hinge, in the body's own axes
+  double stiffness_n_m_rad = -1.0;         ///< negative: the skeleton's
+  double damping_n_m_s_rad = -1.0;         ///< negative: the skeleton's
+  std::vector<KeyframeSpec> keyframes;     ///< turns about the joint, and shifts, against its parent, in the body's own axes; then it has no type
+};
+
+/// The `[body.skeleton]` table: the bones of a model file, on joints, carry the nodes that the file binds to them.
+struct SkeletonSpec {
+  std::string root = "weld";               ///< how bones without a parent hang on the world: "weld", "ball" or "free"
+  std::string others = "weld";             ///< how the others hang on their parents: "weld" or "ball"
+  double density_kg_m3 = 0.0;              ///< of bones that move freely, on top of the flesh that their nodes weigh
+  double stiffness_n_m_rad = 0.0;          ///< of hinges and balls, towards the start
+  double damping_n_m_s_rad = 0.0;
+  std::vector<JointSpec> joints;
+};
+
 /// A load spread over nodes in a box by their share of the boundary area: total force [N].
 struct LoadSpec {
   Vec3 box_min_m = Vec3::Zero();
@@ -65,6 +86,7 @@ struct SoftBodySpec {
   std::string tangent = "exact";           ///< "exact", "projected", "warped"
   std::string volumetric = "element";      ///< resistance to change of volume: "element", or "nodal" averages (no locking for nu -> 0.5)
   bool full_damping_tangent = false;       ///< keep the unsymmetric part of the damping's derivative by position
+  std::optional<SkeletonSpec> skeleton;    ///< its bones stand in mesh.file, a model file
   std::vector<AttachmentSpec> attachments;
   std::vector<LoadSpec> loads;
 };

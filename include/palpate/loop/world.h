@@ -14,11 +14,13 @@
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/embedding.h"
+#include "palpate/mesh/skeleton.h"
 #include "palpate/mesh/source.h"
 #include "palpate/proxy/proxy_set.h"
 #include "palpate/scene/description.h"
 
 namespace palpate::tool {
+class BoneTree;
 class Tool;
 }
 
@@ -39,6 +41,8 @@ struct Body {
   Points placed;              ///< the same placed in the world: what the simulation starts from
   mesh::Boundary boundary;    ///< surface; made for every body
   std::optional<Skin> skin;   ///< where the scene asks for it
+  Skeleton skeleton;          ///< of the model file, placed in the world as at the start, where the scene asks for it; else empty
+  std::vector<int> bone_of_node;  ///< which of them carries the node, -1: none
   mesh::MeshReport report;
   VecX masses;                ///< lumped, one a node [kg]
   double stiffness_scale = 0; ///< E [Pa]
@@ -53,10 +57,13 @@ struct Body {
   VecX nodal_stress(const dynamics::StateView& state) const { return dilatation ? dilatation->nodal_stress(state) : term->nodal_stress(state); }
 };
 
-/// One bone as assembled: a rigid block of the State, or a function of time.
+/// One bone as assembled: a rigid block of the State, a part of a tree on joints, or a function of time.
 struct Bone {
   std::string name;
-  int block_id = -1;          ///< of a free one; else -1
+  int block_id = -1;          ///< of a free one, or of the tree; else -1
+  std::shared_ptr<const tool::BoneTree> tree;  ///< of one on joints; else null
+  int tree_bone = -1;         ///< which of its bones
+  int body = -1;              ///< whose model file it stands in; -1: a [[bone]] of the scene
   fem::Path path;             ///< of one that is fixed or has keyframes; else empty
   double mass = 0.0;          ///< of a free one [kg]
   std::vector<int> dofs;      ///< u-directions of the nodes that it carries, ascending

@@ -1,0 +1,38 @@
+#pragma once
+#include "simbody_headers.h"
+
+#include "palpate/tool/bone_tree.h"
+
+namespace palpate::tool {
+
+struct BoneTree::Impl {
+  Impl(std::vector<TreeBone> bones, const Vec3& gravity);
+  void go_to(const VecX& q, const VecX& u);  ///< realises positions and velocities, unless it is there
+  void need_jacobian();
+  void need_bias();
+  Vec3 turn(const VecX& q, std::size_t bone) const;
+
+  std::vector<TreeBone> bones;
+  Vec3 gravity;
+  SimTK::MultibodySystem system;
+  SimTK::SimbodyMatterSubsystem matter;
+  SimTK::GeneralForceSubsystem forces;
+  std::vector<SimTK::MobilizedBody> bodies;
+  SimTK::State state;
+  int q_size = 0, u_size = 0;
+  std::vector<int> first_q, first_u;  ///< of each bone
+  std::vector<int> bone_of_u;
+
+  VecX at_q, at_u;  ///< where `state` is
+  std::vector<Pose> poses;
+  std::vector<Twist> twists;
+  bool has_jacobian = false, has_bias = false, has_mass = false;
+  MatX J;           ///< six rows a bone
+  MatX M;
+  SimTK::Matrix_<SimTK::SpatialVec> columns;
+  SimTK::Vector_<SimTK::SpatialVec> biases;
+  SimTK::Matrix simbody_mass;
+  SimTK::Vector zero, residual;
+};
+
+}  // namespace palpate::tool
