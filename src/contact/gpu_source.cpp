@@ -258,7 +258,7 @@ class PrunedGpuSource final : public SampleSource {
     hull.members.resize(static_cast<std::size_t>(rigid.vertices.cols()));
     std::iota(hull.members.begin(), hull.members.end(), 0);
     model.proxies.push_back(std::move(hull));
-    return proxy::ProxySet(model);
+    return proxy::ProxySet(model, {.patch_faces = 16});  // few faces in all: a finer grain costs more than it spares
   }
 
   SurfaceState surface_;

@@ -25,11 +25,9 @@ bool apart(const ProxySet& a, int p, const ProxySet& b, int q, double margin, Ve
   Vec3 v = a.centre(p) - b.centre(q);
   for (int i = 0; i < kSteps; ++i) {
     const double length = v.norm();
-    if (!(length > margin)) return false;
-    if (least_along(a, p, b, q, v) > margin * length) {
-      direction = v / length;
-      return true;
-    }
+    if (!(length > margin)) break;
+    direction = v / length;
+    if (least_along(a, p, b, q, direction) > margin) return true;
     v = shorten(v, a.support(p, -v) - b.support(q, v));
   }
   return false;

@@ -9,7 +9,7 @@ namespace palpate::proxy {
 /// The search (Frank and Wolfe 1956, Gilbert 1966): v, a difference of points of the two hulls, is both the direction to try and, at last, the shortest; from it
 /// toward the farthest difference s along -v as far as |v| falls.  It stops when |v| is within the margin: then they do touch.
 
-/// Hull p of a against hull q of b.  @param direction  in: the one to try first, zero for none; out: the one that proved it
+/// Hull p of a against hull q of b.  @param direction  unit; in: the one to try first, zero for none; out: the one that proved it, or that the search ended with
 bool apart(const ProxySet& a, int p, const ProxySet& b, int q, double margin, Vec3& direction, bool& by_memory);
 
 }  // namespace palpate::proxy

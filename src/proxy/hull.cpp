@@ -1,6 +1,6 @@
 #include "proxy/hull.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include <limits>
 
@@ -13,23 +13,33 @@ struct Simplex {
   int count = 0;
 };
 
-/// The point nearest to the origin of the hull of the subset `mask`: p0 + E l with l = -(E^T E)^-1 E^T p0, E = [p1 - p0, ...].
-/// False when it lies outside the subset's hull (a smaller subset then has it) or the subset is degenerate.
+/// The point nearest to the origin of the hull of N + 1 points: p0 + E l with l = -(E^T E)^-1 E^T p0, E = [p1 - p0, ...].
+/// False when it lies outside (fewer of the points then have it) or they are degenerate: det(E^T E) over the product of its diagonal is 1 for edges at right
+/// angles (Hadamard), the square of the angle's sine for two.
+template <int N>
+bool nearest_of(const Simplex& s, const int* index, Vec3& nearest) {
+  constexpr double kFlat = 1e-14;
+  Eigen::Matrix<double, 3, N> E;
+  for (int i = 0; i < N; ++i) E.col(i) = s.points.col(index[i + 1]) - s.points.col(index[0]);
+  const Eigen::Matrix<double, N, N> gram = E.transpose() * E;
+  const double determinant = gram.determinant();
+  if (!(determinant > kFlat * gram.diagonal().prod())) return false;
+  const Eigen::Matrix<double, N, 1> l = -(gram.inverse() * (E.transpose() * s.points.col(index[0])));
+  if (!(l.minCoeff() >= 0.0 && l.sum() <= 1.0)) return false;
+  nearest = s.points.col(index[0]) + E * l;
+  return true;
+}
+
 bool nearest_in_subset(const Simplex& s, int mask, Vec3& nearest) {
   int index[4] = {}, count = 0;
   for (int i = 0; i < s.count; ++i)
     if (mask & (1 << i)) index[count++] = i;
-  nearest = s.points.col(index[0]);
-  if (count == 1) return true;
-  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3> E(3, count - 1);
-  for (int i = 1; i < count; ++i) E.col(i - 1) = s.points.col(index[i]) - nearest;
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3> gram = E.transpose() * E;
-  const Eigen::LDLT<std::decay_t<decltype(gram)>> factor(gram);
-  if (factor.info() != Eigen::Success || !(factor.rcond() > 1e-14)) return false;
-  const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 3, 1> l = -factor.solve(E.transpose() * nearest);
-  if (l.minCoeff() < 0.0 || l.sum() > 1.0) return false;
-  nearest += E * l;
-  return true;
+  switch (count) {
+    case 1: nearest = s.points.col(index[0]); return true;
+    case 2: return nearest_of<1>(s, index, nearest);
+    case 3: return nearest_of<2>(s, index, nearest);
+    default: return nearest_of<3>(s, index, nearest);
+  }
 }
 
 /// Nearest point of the simplex's hull, over all its subsets; the points that do not carry it are dropped.
@@ -53,7 +63,7 @@ Vec3 reduce(Simplex& s) {
 
 }  // namespace
 
-void Hull::assign(const Points& points, const Vec3& origin, double scale) {
+void Hull::assign(const Eigen::Ref<const Points>& points, const Vec3& origin, double scale) {
   const auto count = static_cast<std::size_t>(padded(static_cast<int>(points.cols())));
   for (auto* column : {&x_, &y_, &z_}) column->resize(count);
   centre_.setZero();

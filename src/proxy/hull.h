@@ -12,7 +12,7 @@ class Hull {
   Hull() = default;
   explicit Hull(const Points& points) { assign(points, Vec3::Zero(), 1.0); }
   /// The points scale (p - origin).  Allocates only when there are more than ever before.
-  void assign(const Points& points, const Vec3& origin, double scale);
+  void assign(const Eigen::Ref<const Points>& points, const Vec3& origin, double scale);
   const Vec3& centre() const { return centre_; }
   /// Its point farthest along a direction; the first of equals.
   Vec3 support(const Vec3& direction) const {

@@ -117,23 +117,107 @@ PALPATE_CLONES int farthest(Columns p, int count, const double d[3]) { return fa
 
 PALPATE_CLONES double most_along(Columns p, int count, const double d[3]) { return most_along_inline(p, count, d); }
 
-PALPATE_CLONES bool ball_apart(Columns p, int count, const double c[3], double reach, int steps, double w[3]) {
-  double v[3] = {c[0] - w[0], c[1] - w[1], c[2] - w[2]};
-  for (int i = 0; i < steps; ++i) {
-    const double length2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    if (!(length2 > reach * reach)) return false;
-    const double along = v[0] * c[0] + v[1] * c[1] + v[2] * c[2] - most_along_inline(p, count, v);
-    if (along > 0.0 && along * along > reach * reach * length2) return true;
-    const int at = farthest_inline(p, count, v);
-    const double e[3] = {p.x[at] - w[0], p.y[at] - w[1], p.z[at] - w[2]};  // from the witness to that corner, as far as |v| falls
-    const double edge2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
-    const double t = edge2 > 0.0 ? std::clamp((v[0] * e[0] + v[1] * e[1] + v[2] * e[2]) / edge2, 0.0, 1.0) : 0.0;
-    for (int k = 0; k < 3; ++k) {
-      w[k] += t * e[k];
-      v[k] = c[k] - w[k];
-    }
+// Loads as wide as the lanes, then two shuffles a coordinate.
+PALPATE_CLONES double take(const double* points, int stride, int count, Columns then, const double a[9], const double o[3], MutableColumns out) {
+  static_assert(kLanes == 8);
+  Pack most = {}, total = {};
+  const auto measure = [&](int i, const Pack& px, const Pack& py, const Pack& pz) __attribute__((always_inline)) {
+    const Pack x = PALPATE_LOAD(then.x + i), y = PALPATE_LOAD(then.y + i), z = PALPATE_LOAD(then.z + i);
+    PALPATE_STORE(out.x + i, px);
+    PALPATE_STORE(out.y + i, py);
+    PALPATE_STORE(out.z + i, pz);
+    const Pack dx = px - (o[0] + a[0] * x + a[1] * y + a[2] * z);
+    const Pack dy = py - (o[1] + a[3] * x + a[4] * y + a[5] * z);
+    const Pack dz = pz - (o[2] + a[6] * x + a[7] * y + a[8] * z);
+    const Pack square = dx * dx + dy * dy + dz * dz;
+    most = most < square ? square : most;
+    total += square;
+  };
+  int i = 0;
+  for (; stride == 3 && i + kLanes <= count; i += kLanes) {
+    const double* p = points + 3 * static_cast<long>(i);
+    const Pack p0 = PALPATE_LOAD(p), p1 = PALPATE_LOAD(p + 8), p2 = PALPATE_LOAD(p + 16);
+    const Pack x = __builtin_shufflevector(p0, p1, 0, 3, 6, 9, 12, 15, 0, 0), y = __builtin_shufflevector(p0, p1, 1, 4, 7, 10, 13, 0, 0, 0),
+               z = __builtin_shufflevector(p0, p1, 2, 5, 8, 11, 14, 0, 0, 0);
+    measure(i, __builtin_shufflevector(x, p2, 0, 1, 2, 3, 4, 5, 10, 13), __builtin_shufflevector(y, p2, 0, 1, 2, 3, 4, 8, 11, 14),
+            __builtin_shufflevector(z, p2, 0, 1, 2, 3, 4, 9, 12, 15));
   }
-  return false;
+  for (; i < count; i += kLanes) {
+    Pack x, y, z;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const double* p = points + static_cast<long>(stride) * (i + lane < count ? i + lane : 0);
+      x[lane] = p[0];
+      y[lane] = p[1];
+      z[lane] = p[2];
+    }
+    measure(i, x, y, z);
+  }
+  double largest = 0.0, sum = 0.0;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    largest = std::max(largest, most[lane]);
+    sum += total[lane];
+  }
+  return std::isfinite(sum) ? largest : std::numeric_limits<double>::quiet_NaN();
+}
+
+PALPATE_CLONES void gather(Columns p, const int* index, int count, const double origin[3], MutableColumns out) {
+  const double ox = origin[0], oy = origin[1], oz = origin[2];
+  const double *px = p.x, *py = p.y, *pz = p.z;
+  double *__restrict x = out.x, *__restrict y = out.y, *__restrict z = out.z;
+  for (int i = 0; i < count; ++i) {
+    x[i] = px[index[i]] - ox;
+    y[i] = py[index[i]] - oy;
+    z[i] = pz[index[i]] - oz;
+  }
+}
+
+PALPATE_CLONES void balls_beyond(const double d[3], double limit, Columns c, const double* radii, int count, unsigned char* near) {
+  for (int i = 0; i < count; i += kLanes) {
+    const Mask beyond = d[0] * PALPATE_LOAD(c.x + i) + d[1] * PALPATE_LOAD(c.y + i) + d[2] * PALPATE_LOAD(c.z + i) - PALPATE_LOAD(radii + i) > limit;
+    for (int lane = 0; lane < kLanes; ++lane) near[i + lane] = near[i + lane] && !beyond[lane];
+  }
+}
+
+// Lane by lane: v from a point w of the hull to the ball's centre, and the corner s farthest along v.  v.c - v.s > reach |v| proves the ball apart; |v| <= reach that
+// it is near; else w goes toward s as far as |v| falls.
+PALPATE_CLONES void balls_near(const HullColumns& hull, Columns c, const double* radii, int count, int steps, unsigned char* near) {
+  const Pack zero = {}, one = zero + 1.0;
+  Pack wx = zero + hull.inside[0], wy = zero + hull.inside[1], wz = zero + hull.inside[2];  // handed on: neighbours in the list are neighbours in space
+  const auto any = [](const Mask& mask) __attribute__((always_inline)) {
+    long long all = 0;
+    for (int lane = 0; lane < kLanes; ++lane) all |= mask[lane];
+    return all != 0;
+  };
+  for (int i = 0; i < count; i += kLanes) {
+    const Pack cx = PALPATE_LOAD(c.x + i), cy = PALPATE_LOAD(c.y + i), cz = PALPATE_LOAD(c.z + i), r = PALPATE_LOAD(radii + i), reach = r + hull.margin;
+    Mask apart = (hull.low[0] - cx > r) | (hull.low[1] - cy > r) | (hull.low[2] - cz > r) | (cx - hull.high[0] > r) | (cy - hull.high[1] > r) | (cz - hull.high[2] > r);
+    Mask open = ~apart;
+    for (int step = 0; step < steps && any(open); ++step) {
+      const Pack vx = cx - wx, vy = cy - wy, vz = cz - wz, length2 = vx * vx + vy * vy + vz * vz;
+      open &= length2 > reach * reach;
+      Pack most = zero - std::numeric_limits<double>::infinity(), sx = zero, sy = zero, sz = zero;
+      for (int k = 0; k < hull.count; ++k) {
+        const double px = hull.corners.x[k], py = hull.corners.y[k], pz = hull.corners.z[k];
+        const Pack along = vx * px + vy * py + vz * pz;
+        const Mask more = along > most;
+        most = more ? along : most;
+        sx = more ? zero + px : sx;
+        sy = more ? zero + py : sy;
+        sz = more ? zero + pz : sz;
+      }
+      const Pack clear = vx * cx + vy * cy + vz * cz - most;
+      const Mask proven = open & (clear > zero) & (clear * clear > reach * reach * length2);
+      apart |= proven;
+      open &= ~proven;
+      const Pack ex = sx - wx, ey = sy - wy, ez = sz - wz, edge2 = ex * ex + ey * ey + ez * ez;
+      Pack t = (vx * ex + vy * ey + vz * ez) / (edge2 > zero ? edge2 : one);
+      t = t > zero ? (t < one ? t : one) : zero;
+      wx += t * ex;
+      wy += t * ey;
+      wz += t * ez;
+    }
+    for (int lane = 0; lane < kLanes; ++lane) near[i + lane] = !apart[lane];
+  }
 }
 
 }  // namespace palpate::proxy

@@ -15,7 +15,12 @@
 //
 // where stretch, shear and flattening cost nothing and only what is curved within a proxy counts; or the mean rotation, F = polar factor of the sum in brackets,
 // where strain counts with the proxy's size.  With q_k = M^-1 (X_k - mean X), which sum to zero, F = sum x_k q_k^T from any origin: one pass over the nodes.
-// The same with the nodes and weights of a few faces alone bounds a patch: its ball moves to F c + t and grows to |F|_2 r + s D of the patch.
+//
+// Which are found.  That costs a pass over the nodes of each proxy, and most proxies are nowhere near anything: their boxes say so.  A box that holds all points y
+// of a proxy is kept from time to time, with the positions of all nodes then.  Later x = G x_k,then + h + d_k for each node, G and h any one map for the whole
+// body (body_motion.h), and by the first line again each point of the proxy is at G y + h to within s max |d_k|: it lies in the box around the moved box,
+// of centre G c + h and half edges |G| e, grown by that.  The maximum is one pass over the nodes.  Nothing else depends on what was kept: a proxy whose box may
+// meet something is fitted to the nodes as they are.  Where the boxes have grown by a fifth all are fitted and kept anew.
 #include "palpate/proxy/proxy_set.h"
 
 #include <Eigen/LU>
@@ -47,20 +52,20 @@ double spectral_norm(const Mat3& F) {
 ProxySet::~ProxySet() = default;
 ProxySet::ProxySet(ProxySet&&) noexcept = default;
 
-void ProxySet::Impl::gather(const Eigen::Ref<const Points>& nodes, const Cloud& cloud, const Vec3& origin) {
-  for (int i = 0; i < cloud.lanes; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const double* p = nodes.data() + nodes.outerStride() * node[static_cast<std::size_t>(cloud.first) + at];
-    gathered.x[at] = p[0] - origin[0];
-    gathered.y[at] = p[1] - origin[1];
-    gathered.z[at] = p[2] - origin[2];
-  }
+Vec3 ProxySet::Impl::first_node(const Cloud& cloud) const {
+  const Columns now = motion.nodes();
+  const int n = node[static_cast<std::size_t>(cloud.first)];
+  return {now.x[n], now.y[n], now.z[n]};
+}
+
+void ProxySet::Impl::gather(const Cloud& cloud, const Vec3& origin) {
+  proxy::gather(motion.nodes(), node.data() + cloud.first, cloud.lanes, origin.data(), gathered.write(0));
 }
 
 /// The map of least squares or the mean rotation, from the cloud's nodes as gathered about its first: the entries that fill up the lanes are zero then.
-void ProxySet::Impl::fit(const Eigen::Ref<const Points>& nodes, const Cloud& cloud, ProxyState& state) {
-  const Vec3 origin = nodes.col(node[static_cast<std::size_t>(cloud.first)]);
-  gather(nodes, cloud, origin);
+void ProxySet::Impl::fit(const Cloud& cloud, ProxyState& state) {
+  const Vec3 origin = first_node(cloud);
+  gather(cloud, origin);
   double sums[12];
   moments(gathered.read(0), coefficients.read(cloud.first), cloud.lanes, sums);
   const Mat3 F = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(sums + 3);
@@ -84,100 +89,100 @@ void ProxySet::Impl::place(int proxy, double residual, double reach) {
   centre[at] = state.linear * rest_centre[at] + state.offset;
 }
 
+void ProxySet::Impl::refit(int p) {
+  const auto at = static_cast<std::size_t>(p);
+  const Cloud& cloud = own[at];
+  ProxyState& state = states[at];
+  fit(guide[at], state);
+  const Vec3 origin = first_node(cloud);
+  if (guide[at].first != cloud.first) gather(cloud, origin);
+  const Vec3 relative = state.offset + state.linear * cloud.middle - origin;
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = state.linear;
+  const double most = residuals(gathered.read(0), rest_nodes.read(cloud.first), cloud.lanes, rows.data(), relative.data(), squares.data() + cloud.first);
+  place(p, std::sqrt(most), origin.cwiseAbs().maxCoeff());
+  fitted_at[at] = moment;
+}
+
+/// Boxes from those kept; returns the sum of their edges' halves.
+double ProxySet::Impl::loosen() {
+  constexpr double kRounding = 1e-13;
+  const Mat3 G = motion.linear(), magnitude = G.cwiseAbs();
+  double size = 0.0;
+  for (std::size_t p = 0; p < boxes.size(); ++p) {
+    const Vec3 middle = G * (0.5 * (kept_boxes[p].low + kept_boxes[p].high)) + motion.offset();
+    Vec3 half = magnitude * (0.5 * (kept_boxes[p].high - kept_boxes[p].low));
+    half.array() += weight_sum[p] * motion.residual() + kRounding * middle.cwiseAbs().maxCoeff();
+    boxes[p] = {middle - half, middle + half};
+    size += half.sum();
+  }
+  return size;
+}
+
 void ProxySet::update(const Eigen::Ref<const Points>& nodes) {
+  constexpr double kLoose = 1.2;
   Impl& s = *impl_;
   PALPATE_CHECK(s.soft && nodes.cols() == s.node_count, "{} node positions for proxies of a body of {}", nodes.cols(), s.node_count);
-  for (int p = 0; p < s.count; ++p) {
-    const auto at = static_cast<std::size_t>(p);
-    const Cloud& cloud = s.own[at];
-    ProxyState& state = s.states[at];
-    s.fit(nodes, s.guide[at], state);
-    const Vec3 origin = nodes.col(s.node[static_cast<std::size_t>(cloud.first)]);
-    if (s.guide[at].first != cloud.first) s.gather(nodes, cloud, origin);
-    const Vec3 relative = state.offset + state.linear * cloud.middle - origin;
-    const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = state.linear;
-    const double most = residuals(s.gathered.read(0), s.rest_nodes.read(cloud.first), cloud.lanes, rows.data(), relative.data(),
-                                  s.squares.data() + cloud.first);
-    s.place(p, std::sqrt(most), origin.cwiseAbs().maxCoeff());
-    PALPATE_CHECK(std::isfinite(state.inflation) && state.low.allFinite() && state.high.allFinite(), "proxy {}: a position of its nodes is not finite", p);
+  ++s.moment;
+  s.motion.update(nodes);
+  PALPATE_CHECK(std::isfinite(s.motion.residual()), "proxies: the position of a node is not finite");
+  if (!(s.loosen() <= kLoose * s.kept_size)) {
+    s.motion.keep();
+    s.kept_size = 0.0;
+    for (int p = 0; p < s.count; ++p) {
+      const ProxyState& state = s.ready(p);
+      PALPATE_CHECK(std::isfinite(state.inflation) && state.low.allFinite() && state.high.allFinite(), "proxy {}: a position of its nodes is not finite", p);
+      s.kept_boxes[static_cast<std::size_t>(p)] = {state.low, state.high};
+      s.kept_size += 0.5 * (state.high - state.low).sum();
+    }
+    s.boxes = s.kept_boxes;
   }
-  refit(s.tree, s.states);
+  proxy::refit(s.tree, s.boxes);
 }
 
 void ProxySet::update(const Pose& pose) {
   Impl& s = *impl_;
   PALPATE_CHECK(!s.soft, "a soft body's proxies follow its nodes, not a pose");
+  ++s.moment;
   for (int p = 0; p < s.count; ++p) {
-    s.states[static_cast<std::size_t>(p)].linear = pose.rotation.toRotationMatrix();
-    s.states[static_cast<std::size_t>(p)].offset = pose.translation;
+    const auto at = static_cast<std::size_t>(p);
+    s.states[at].linear = pose.rotation.toRotationMatrix();
+    s.states[at].offset = pose.translation;
     s.place(p, 0.0, pose.translation.cwiseAbs().maxCoeff());
+    s.fitted_at[at] = s.moment;
+    s.boxes[at] = {s.states[at].low, s.states[at].high};
   }
-  refit(s.tree, s.states);
+  proxy::refit(s.tree, s.boxes);
 }
 
 int ProxySet::size() const { return impl_->count; }
 int ProxySet::face_count() const { return static_cast<int>(impl_->skin.faces.size()); }
-const ProxyState& ProxySet::state(int proxy) const { return impl_->states[static_cast<std::size_t>(proxy)]; }
+const ProxyState& ProxySet::state(int proxy) const { return impl_->ready(proxy); }
 int ProxySet::bone(int proxy) const { return impl_->bone[static_cast<std::size_t>(proxy)]; }
 int ProxySet::corner_count(int proxy) const { return impl_->corner_count[static_cast<std::size_t>(proxy)]; }
-const Vec3& ProxySet::centre(int proxy) const { return impl_->centre[static_cast<std::size_t>(proxy)]; }
+const Vec3& ProxySet::centre(int proxy) const {
+  impl_->ready(proxy);
+  return impl_->centre[static_cast<std::size_t>(proxy)];
+}
 std::span<const ProxyBranch> ProxySet::tree() const { return impl_->tree; }
-std::span<const SkinPatch> ProxySet::patches() const { return impl_->skin.patches; }
 
 bool ProxySet::neighbours(int p, int q) const { return impl_->adjacent[static_cast<std::size_t>(p * impl_->count + q)] != 0; }
 
 void ProxySet::copy_corners(int proxy, Eigen::Ref<Points> out) const {
+  impl_->ready(proxy);
   const Columns from = impl_->corners.read(impl_->first_corner[static_cast<std::size_t>(proxy)]);
   for (int i = 0; i < corner_count(proxy); ++i) out.col(i) = Vec3(from.x[i], from.y[i], from.z[i]);
 }
 
 Vec3 ProxySet::support(int proxy, const Vec3& direction) const {
+  impl_->ready(proxy);
   const Columns from = impl_->corners.read(impl_->first_corner[static_cast<std::size_t>(proxy)]);
   const int i = farthest(from, padded(corner_count(proxy)), direction.data());
   return {from.x[i], from.y[i], from.z[i]};
 }
 
-std::span<const PatchBranch> ProxySet::patch_tree(int proxy) const {
-  const int first = impl_->skin.first_branch[static_cast<std::size_t>(proxy)], end = impl_->skin.first_branch[static_cast<std::size_t>(proxy) + 1];
-  return {impl_->skin.tree.data() + first, static_cast<std::size_t>(end - first)};
-}
-
-Ball ProxySet::ball(int proxy, const PatchBranch& branch) const {
-  const ProxyState& moved = state(proxy);
-  return {moved.linear * branch.centre + moved.offset, moved.stretch * branch.radius + moved.residual};
-}
-
 double ProxySet::most_along(int proxy, const Vec3& direction) const {
+  impl_->ready(proxy);
   return proxy::most_along(impl_->corners.read(impl_->first_corner[static_cast<std::size_t>(proxy)]), padded(corner_count(proxy)), direction.data());
-}
-
-bool ProxySet::apart(int proxy, const Ball& ball, double margin, int steps, Vec3& witness) const {
-  return ball_apart(impl_->corners.read(impl_->first_corner[static_cast<std::size_t>(proxy)]), padded(corner_count(proxy)), ball.centre.data(), ball.radius + margin, steps,
-                    witness.data());
-}
-
-std::span<const SkinPatch> ProxySet::patches(int proxy) const {
-  const int first = impl_->skin.first_of_proxy[static_cast<std::size_t>(proxy)], end = impl_->skin.first_of_proxy[static_cast<std::size_t>(proxy) + 1];
-  return {impl_->skin.patches.data() + first, static_cast<std::size_t>(end - first)};
-}
-
-Ball ProxySet::ball(const SkinPatch& patch) const {
-  const ProxyState& moved = state(patch.proxy);
-  double most = 0.0;
-  for (int i = patch.first_slot; i < patch.first_slot + patch.slot_count; ++i)
-    most = std::max(most, impl_->squares[static_cast<std::size_t>(impl_->patch_slots[static_cast<std::size_t>(i)])]);
-  const Vec3 centre = moved.linear * patch.centre + moved.offset;
-  return {centre, moved.stretch * patch.radius + patch.weight_sum * std::sqrt(most) + 1e-13 * centre.cwiseAbs().maxCoeff()};
-}
-
-// Area vectors turn with the cofactors: n da = cof(F) N dA (Nanson).
-Vec3 ProxySet::area(const SkinPatch& patch) const {
-  const Mat3& F = state(patch.proxy).linear;
-  return patch.area.x() * F.col(1).cross(F.col(2)) + patch.area.y() * F.col(2).cross(F.col(0)) + patch.area.z() * F.col(0).cross(F.col(1));
-}
-
-std::span<const int> ProxySet::faces(const SkinPatch& patch) const {
-  return {impl_->skin.faces.data() + patch.first_face, static_cast<std::size_t>(patch.face_count)};
 }
 
 }  // namespace palpate::proxy

@@ -63,6 +63,34 @@ void ProxySet::Impl::add_patch_nodes(const LayeredModel& model) {
   }
 }
 
+/// The patches' balls as columns.
+void ProxySet::Impl::add_balls() {
+  ball_of_patch.resize(skin.patches.size());
+  std::size_t most = 0;
+  for (int p = 0; p < count; ++p) {
+    const int first = skin.first_of_proxy[static_cast<std::size_t>(p)], patches = skin.first_of_proxy[static_cast<std::size_t>(p) + 1] - first;
+    first_ball.push_back(rest_balls.size());
+    Points centres(3, patches);
+    for (int i = 0; i < patches; ++i) {
+      const SkinPatch& patch = skin.patches[static_cast<std::size_t>(first + i)];
+      centres.col(i) = patch.centre;
+      ball_of_patch[static_cast<std::size_t>(first + i)] = first_ball.back() + i;
+      rest_radius.push_back(patch.radius);
+    }
+    rest_balls.append(centres);
+    rest_radius.resize(static_cast<std::size_t>(rest_balls.size()));
+    most = std::max(most, static_cast<std::size_t>(padded(patches)));
+  }
+  balls = rest_balls;
+  radius = rest_radius;
+  balls_at.assign(static_cast<std::size_t>(count), -1);
+  measured_at.assign(skin.patches.size(), -1);
+  near.resize(most);
+  near_balls.resize(static_cast<int>(most));
+  near_radius.resize(most);
+  near_patch.resize(most);
+}
+
 ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : impl_(std::make_unique<Impl>()) {
   Impl& s = *impl_;
   counters::count("proxy.proxy_set");
@@ -130,9 +158,14 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : 
   }
   s.corners = s.rest_corners;
   s.centre = s.rest_centre;
-  for (auto* column : {&s.gathered.x, &s.gathered.y, &s.gathered.z}) column->resize(static_cast<std::size_t>(s.largest_cloud));
+  s.gathered.resize(s.largest_cloud);
   s.squares.resize(s.node.size());
   if (s.soft) s.add_patch_nodes(model);
+  s.add_balls();
+  s.fitted_at.assign(static_cast<std::size_t>(s.count), -1);
+  s.boxes.resize(static_cast<std::size_t>(s.count));
+  s.kept_boxes = s.boxes;
+  if (s.soft) s.motion.resize(static_cast<int>(s.node_count));
 
   s.adjacent.assign(static_cast<std::size_t>(s.count) * static_cast<std::size_t>(s.count), 0);
   std::vector<std::vector<int>> at_vertex(static_cast<std::size_t>(vertices));

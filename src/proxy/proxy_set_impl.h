@@ -2,32 +2,11 @@
 #include <vector>
 
 #include "palpate/proxy/proxy_set.h"
-#include "proxy/lanes.h"
+#include "proxy/body_motion.h"
 #include "proxy/skin_patches.h"
 
-/// What proxy_set_build.cpp (once) and proxy_set.cpp (every update) work on; the derivation stands in proxy_set.cpp.
+/// What proxy_set_build.cpp (once), proxy_set.cpp (every update) and proxy_patches.cpp (what is asked of patches) work on; the derivation stands in proxy_set.cpp.
 namespace palpate::proxy {
-
-/// Points coordinate by coordinate, set after set, each filled up to whole lanes with its first.
-struct Table {
-  std::vector<double> x, y, z;
-
-  void append(const Points& points) {
-    for (int i = 0; i < padded(static_cast<int>(points.cols())); ++i) {
-      const Vec3 p = points.col(i < points.cols() ? i : 0);
-      x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z());
-    }
-  }
-  void append_padded_with_zero(const Points& points) {
-    for (int i = 0; i < padded(static_cast<int>(points.cols())); ++i) {
-      const Vec3 p = i < points.cols() ? Vec3(points.col(i)) : Vec3(Vec3::Zero());
-      x.push_back(p.x()), y.push_back(p.y()), z.push_back(p.z());
-    }
-  }
-  Columns read(int first) const { return {x.data() + first, y.data() + first, z.data() + first}; }
-  MutableColumns write(int first) { return {x.data() + first, y.data() + first, z.data() + first}; }
-  int size() const { return static_cast<int>(x.size()); }
-};
 
 /// Nodes whose motion is fitted or bounded.
 struct Cloud {
@@ -55,12 +34,39 @@ struct ProxySet::Impl {
   std::vector<char> adjacent;                // count x count
   SkinPatches skin;
   std::vector<int> patch_slots;              // slots of each patch's nodes
+  Table rest_balls, balls;                   // centres of the patches, proxy by proxy in whole lanes
+  std::vector<double> rest_radius, radius;
+  std::vector<int> first_ball;               // of each proxy
+  std::vector<int> ball_of_patch;
+  std::vector<long> balls_at, measured_at;   // by proxy, by patch: the update that they were last found for
+  std::vector<unsigned char> near;           // scratch of patches_near
+  Table near_balls;
+  std::vector<double> near_radius;
+  std::vector<int> near_patch;
   std::vector<ProxyBranch> tree;
+
+  long moment = 0;                           // counts updates
+  std::vector<long> fitted_at;               // by proxy
+  BodyMotion motion;
+  std::vector<Box> boxes, kept_boxes;        // by proxy: loose, now; and close, when `motion` was kept
+  double kept_size = 0.0;                    // sum of their edges' halves; 0: never kept
 
   Cloud add_cloud(const TetMesh& tets, const std::vector<int>& nodes);
   void add_patch_nodes(const LayeredModel& model);
-  void fit(const Eigen::Ref<const Points>& nodes, const Cloud& cloud, ProxyState& state);
-  void gather(const Eigen::Ref<const Points>& nodes, const Cloud& cloud, const Vec3& origin);
+  void add_balls();
+  Vec3 first_node(const Cloud& cloud) const;
+  void fit(const Cloud& cloud, ProxyState& state);
+  void gather(const Cloud& cloud, const Vec3& origin);
+  void refit(int proxy);
+  double loosen();
+  /// Where the proxy is, found now if nobody asked yet.
+  ProxyState& ready(int proxy) {
+    const auto at = static_cast<std::size_t>(proxy);
+    if (fitted_at[at] != moment) refit(proxy);
+    return states[at];
+  }
+  void ready_balls(int proxy);
+  void measure(int patch);
   void place(int proxy, double residual, double reach);
 };
 

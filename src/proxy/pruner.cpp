@@ -60,11 +60,11 @@ void Pruner::Impl::visit(int x, int y) {
 
 void Pruner::Impl::test_pair(int p, int q) {
   if (!allowed(p, q)) return;
+  const ProxyState &hull_a = a.set.state(p), &hull_b = b.set.state(q);
+  if (boxes_apart(hull_a.low, hull_a.high, hull_b.low, hull_b.high, gap)) return;
   ++counts.after_boxes;
   bool by_memory = false;
-  const double margin = a.set.state(p).inflation + b.set.state(q).inflation + gap;
-  Vec3& direction = separating[static_cast<std::size_t>(p) * static_cast<std::size_t>(b.set.size()) + static_cast<std::size_t>(q)];
-  if (apart(a.set, p, b.set, q, margin, direction, by_memory)) {
+  if (apart(a.set, p, b.set, q, hull_a.inflation + hull_b.inflation + gap, separating_of(p, q), by_memory)) {
     ++(by_memory ? counts.apart_by_memory : counts.apart_by_search);
     return;
   }
@@ -72,31 +72,15 @@ void Pruner::Impl::test_pair(int p, int q) {
   pairs.push_back({p, q});
 }
 
-/// The patches of `own` that may reach the inflated hull `against`, by their tree.
-void Pruner::Impl::keep_patches(Side& side, int own, const Side& other, int against) {
-  constexpr int kBranchSteps = 3, kPatchSteps = 8;
-  const ProxyState& hull = other.set.state(against);
-  Vec3 witness = other.set.centre(against);
-  const auto misses = [&](const Ball& ball, int steps) {
-    const double reach = ball.radius + gap;
-    ++counts.patches_tested;
-    if (((hull.low - ball.centre).array() > reach).any() || ((ball.centre - hull.high).array() > reach).any()) return true;
-    return other.set.apart(against, ball, hull.inflation + gap, steps, witness);
-  };
-  const auto tree = side.set.patch_tree(own);
+/// The patches of `own` that may reach the inflated hull `against`.
+void Pruner::Impl::keep_patches(Side& side, int own, const Side& other, int against, const Vec3& toward) {
   Facing& facing = side.facing_of(own, counts.queries);
-  for (int i = 0; i < static_cast<int>(tree.size());) {
-    const PatchBranch& branch = tree[static_cast<std::size_t>(i)];
-    if (branch.patch < 0) {
-      i = misses(side.set.ball(own, branch), kBranchSteps) ? branch.after : i + 1;
-      continue;
-    }
-    ++i;
-    const auto at = static_cast<std::size_t>(branch.patch);
-    if (side.kept_at[at] == counts.queries) continue;
+  counts.patches_tested += static_cast<long>(side.set.patches(own).size());
+  side.set.patches_near(own, other.set, against, gap, toward, side.kept, near);
+  for (const int patch : near) {
+    const auto at = static_cast<std::size_t>(patch);
     side.measure(at, counts.queries);
-    if (misses(side.balls[at], kPatchSteps)) continue;
-    side.kept_at[at] = counts.queries;
+    side.kept[at] = 1;
     ++counts.patches_kept;
     facing.add(side.areas[at]);
   }
@@ -105,8 +89,9 @@ void Pruner::Impl::keep_patches(Side& side, int own, const Side& other, int agai
 /// Pairs with skin to show, and what they make of each proxy of a.
 void Pruner::Impl::collect() {
   for (const Pair& pair : pairs) {
-    keep_patches(a, pair.a, b, pair.b);
-    keep_patches(b, pair.b, a, pair.a);
+    const Vec3& direction = separating_of(pair.a, pair.b);
+    keep_patches(a, pair.a, b, pair.b, direction);
+    keep_patches(b, pair.b, a, pair.a, -direction);
   }
   std::erase_if(pairs, [&](const Pair& pair) { return a.facing_of(pair.a, counts.queries).size == 0.0 && b.facing_of(pair.b, counts.queries).size == 0.0; });
   std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
@@ -134,6 +119,7 @@ std::span<const ContactRegion> Pruner::query(double gap) {
   ++s.counts.queries;
   s.used = 0;
   s.pairs.clear();
+  for (Side* side : {&s.a, &s.b}) std::fill(side->kept.begin(), side->kept.end(), static_cast<unsigned char>(0));
   s.visit(0, 0);
   s.collect();
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -32,20 +33,22 @@ inline constexpr double kClear = 1.0;  ///< |D| of skins that face each other is
 /// One body of the query: its patches as far as they were looked at.
 struct Side {
   const ProxySet& set;
+  std::span<const SkinPatch> patches;
   std::vector<Ball> balls;
   std::vector<Vec3> areas;
-  std::vector<long> measured_at, kept_at;  // by patch
+  std::vector<long> measured_at;           // by patch
+  std::vector<unsigned char> kept;         // by patch, in this query
   std::vector<Facing> facing;              // by proxy, of what is kept of it
   std::vector<long> facing_at;
 
   explicit Side(const ProxySet& s)
-      : set(s), balls(s.patches().size()), areas(balls.size()), measured_at(balls.size(), -1), kept_at(balls.size(), -1), facing(static_cast<std::size_t>(s.size())),
+      : set(s), patches(s.patches()), balls(patches.size()), areas(balls.size()), measured_at(balls.size(), -1), kept(balls.size(), 0), facing(static_cast<std::size_t>(s.size())),
         facing_at(facing.size(), -1) {}
-  int first(int proxy) const { return static_cast<int>(set.patches(proxy).data() - set.patches().data()); }
+  int first(int proxy) const { return static_cast<int>(set.patches(proxy).data() - patches.data()); }
   void measure(std::size_t patch, long query) {
     if (std::exchange(measured_at[patch], query) == query) return;
-    balls[patch] = set.ball(set.patches()[patch]);
-    areas[patch] = set.area(set.patches()[patch]);
+    balls[patch] = set.ball(patches[patch]);
+    areas[patch] = set.area(patches[patch]);
   }
   Facing& facing_of(int proxy, long query) {
     const auto at = static_cast<std::size_t>(proxy);
@@ -72,15 +75,16 @@ struct Pruner::Impl {
   RegionFinder finder;
   Side a, b;
   double gap = 0.0;
-  std::vector<Vec3> separating;      // by pair, zero for none
+  std::vector<Vec3> separating;      // by pair: the last direction that its proxies were found apart along, or that the search ended with; zero for none
   std::vector<Vec3> last_normal;     // by proxy of a
   std::vector<long> last_query;
   std::vector<Pair> pairs;
   std::vector<Active> active;
-  std::vector<int> open;
+  std::vector<int> open, near;
   std::vector<long> claimed_a, in_region_b;  // by patch: the query that looked through to it; the region (counted over all queries) that has it
   std::vector<int> order, proxies_a, proxies_b, patches_a, patches_b;
-  Points corners_a, corners_b;
+  Points corners_a, corners_b;         // room for all of a body; of the region at hand the first `count`
+  Eigen::Index count_a = 0, count_b = 0;
   std::vector<ContactRegion> regions;  // the first `used` are the last query's
   std::size_t used = 0;
   long serial = 0;
@@ -89,18 +93,24 @@ struct Pruner::Impl {
   Impl(const ProxySet& set_a, const ProxySet& set_b, const PruneOptions& given)
       : options(given), a(set_a), b(set_b), separating(static_cast<std::size_t>(set_a.size()) * static_cast<std::size_t>(set_b.size()), Vec3::Zero()),
         last_normal(static_cast<std::size_t>(set_a.size()), Vec3::Zero()), last_query(static_cast<std::size_t>(set_a.size()), -2),
-        claimed_a(set_a.patches().size(), -1), in_region_b(set_b.patches().size(), -1) {}
+        claimed_a(set_a.patches().size(), -1), in_region_b(set_b.patches().size(), -1), corners_a(room(set_a)), corners_b(room(set_b)) {}
+  static Points room(const ProxySet& set) {
+    Eigen::Index count = 0;
+    for (int p = 0; p < set.size(); ++p) count += set.corner_count(p);
+    return Points::Zero(3, count);
+  }
 
   bool allowed(int p, int q) const {
     return !options.between_bones || (p < q && a.set.bone(p) != b.set.bone(q) && !a.set.neighbours(p, q));
   }
   void visit(int x, int y);
   void test_pair(int p, int q);
-  void keep_patches(Side& side, int own, const Side& other, int against);
+  void keep_patches(Side& side, int own, const Side& other, int against, const Vec3& toward);
+  Vec3& separating_of(int p, int q) { return separating[static_cast<std::size_t>(p) * static_cast<std::size_t>(b.set.size()) + static_cast<std::size_t>(q)]; }
   void collect();
   bool linked(int p, int p2) const;
   void grow(std::size_t seed, int region);
-  double gather(const Side& side, const std::vector<int>& proxies, Points& corners) const;
+  double gather(const Side& side, const std::vector<int>& proxies, Points& corners, Eigen::Index& count) const;
   void turn_to(Region& region, const Vec3& n, RegionMethod method) const;
   bool find_plane(int number, ContactRegion& region);
   template <class Take>

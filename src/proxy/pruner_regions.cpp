@@ -42,13 +42,10 @@ void Pruner::Impl::grow(std::size_t seed, int region) {
   }
 }
 
-/// All corners of some proxies; returns the largest inflation among them.
-double Pruner::Impl::gather(const Side& side, const std::vector<int>& proxies, Points& corners) const {
-  Eigen::Index count = 0;
-  for (const int p : proxies) count += side.set.corner_count(p);
-  corners.resize(3, count);
+/// All corners of some proxies, in the first columns; returns the largest inflation among them.
+double Pruner::Impl::gather(const Side& side, const std::vector<int>& proxies, Points& corners, Eigen::Index& at) const {
   double inflation = 0.0;
-  Eigen::Index at = 0;
+  at = 0;
   for (const int p : proxies) {
     side.set.copy_corners(p, corners.middleCols(at, side.set.corner_count(p)));
     at += side.set.corner_count(p);
@@ -60,7 +57,7 @@ double Pruner::Impl::gather(const Side& side, const std::vector<int>& proxies, P
 /// The plane along another normal.
 void Pruner::Impl::turn_to(Region& region, const Vec3& n, RegionMethod method) const {
   Eigen::Index lowest = 0, highest = 0;
-  region.depth = -(n.transpose() * corners_a).minCoeff(&lowest) + (n.transpose() * corners_b).maxCoeff(&highest);
+  region.depth = -n.transpose().lazyProduct(corners_a.leftCols(count_a)).minCoeff(&lowest) + n.transpose().lazyProduct(corners_b.leftCols(count_b)).maxCoeff(&highest);
   region.origin = 0.5 * (corners_a.col(lowest) + corners_b.col(highest));
   region.normal = n;
   region.method = method;
@@ -88,7 +85,7 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   }
   std::sort(proxies_b.begin(), proxies_b.end());
   proxies_b.erase(std::unique(proxies_b.begin(), proxies_b.end()), proxies_b.end());
-  const double inflation_a = gather(a, proxies_a, corners_a), inflation_b = gather(b, proxies_b, corners_b);
+  const double inflation_a = gather(a, proxies_a, corners_a, count_a), inflation_b = gather(b, proxies_b, corners_b, count_b);
   const double inexact = inflation_a + inflation_b;
   region.facing = facing(facing_a, facing_b);
   faces_a = facing_a.directed();
@@ -96,7 +93,7 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   const bool clear = region.facing.norm() >= kClear;
   if (clear) turn_to(region.region, region.facing.normalized(), RegionMethod::kAreas);
   if (!clear || region.region.depth > inexact) {  // else the hulls know nothing that is sharper
-    const Region by_hulls = finder.find(corners_a, corners_b, inexact + gap);
+    const Region by_hulls = finder.find(corners_a.leftCols(count_a), corners_b.leftCols(count_b), inexact + gap);
     if (!by_hulls.found) return false;
     const Vec3& last = last_normal[static_cast<std::size_t>(proxies_a.front())];
     if (clear ? by_hulls.depth < region.region.depth - inexact && by_hulls.normal.dot(region.region.normal) > kSameSide : last.isZero())
@@ -154,10 +151,10 @@ void Pruner::Impl::fill(ContactRegion& region) {
   ++serial;
   for (const int p : proxies_a)
     for (int s = a.first(p); s < a.first(p) + static_cast<int>(a.set.patches(p).size()); ++s)
-      if (a.kept_at[static_cast<std::size_t>(s)] == counts.queries) patches_a.push_back(s);
+      if (a.kept[static_cast<std::size_t>(s)]) patches_a.push_back(s);
   for (const int q : proxies_b)
     for (int s = b.first(q); s < b.first(q) + static_cast<int>(b.set.patches(q).size()); ++s)
-      if (b.kept_at[static_cast<std::size_t>(s)] == counts.queries) {
+      if (b.kept[static_cast<std::size_t>(s)]) {
         in_region_b[static_cast<std::size_t>(s)] = serial;
         patches_b.push_back(s);
       }
@@ -170,7 +167,7 @@ void Pruner::Impl::fill(ContactRegion& region) {
     open.assign(patches_b.begin(), patches_b.begin() + static_cast<std::ptrdiff_t>(kept_b));
     look_through(b, open, a, region, -1.0, [&](int s) {
       const auto at = static_cast<std::size_t>(s);
-      if (a.kept_at[at] != counts.queries && std::exchange(claimed_a[at], counts.queries) != counts.queries) patches_a.push_back(s);
+      if (!a.kept[at] && std::exchange(claimed_a[at], counts.queries) != counts.queries) patches_a.push_back(s);
     });
   }
 
@@ -183,7 +180,7 @@ void Pruner::Impl::fill(ContactRegion& region) {
       const Vec3 place = region.axes.transpose() * (side.balls[at].centre - region.region.origin);
       low = low.cwiseMin((place.array() - side.balls[at].radius).matrix());
       high = high.cwiseMax((place.array() + side.balls[at].radius).matrix());
-      const auto list = side.set.faces(side.set.patches()[at]);
+      const auto list = side.set.faces(side.patches[at]);
       faces.insert(faces.end(), list.begin(), list.end());
     }
   };

@@ -75,7 +75,7 @@ bool offer_answer(Penetration algorithm, RegionMethod by, const Hull& a, const H
   return false;
 }
 
-void check_points(const Points& points, const char* which) {
+void check_points(const Eigen::Ref<const Points>& points, const char* which) {
   PALPATE_CHECK(points.cols() > 0, "contact region: {} has no points", which);
   PALPATE_CHECK(points.allFinite(), "contact region: a point of {} is not finite", which);
 }
@@ -90,7 +90,7 @@ RegionFinder::RegionFinder() : scaled_(std::make_unique<Scaled>()) { counters::c
 RegionFinder::~RegionFinder() = default;
 RegionFinder::RegionFinder(RegionFinder&&) noexcept = default;
 
-Region RegionFinder::find(const Points& a, const Points& b, double margin) {
+Region RegionFinder::find(const Eigen::Ref<const Points>& a, const Eigen::Ref<const Points>& b, double margin) {
   check_points(a, "the first body");
   check_points(b, "the second body");
   ++counts_.queries;

@@ -33,8 +33,8 @@ std::size_t halve(std::span<int> items, Place place) {
 }
 
 /// The ball around the box of some faces.
-PatchBranch ball_of(const TriMesh& skin, std::span<const int> faces) {
-  PatchBranch out;
+Ball ball_of(const TriMesh& skin, std::span<const int> faces) {
+  Ball out{Vec3::Zero(), 0.0};
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const int f : faces)
     for (int k = 0; k < 3; ++k) {
@@ -50,27 +50,24 @@ PatchBranch ball_of(const TriMesh& skin, std::span<const int> faces) {
 /// The faces [first, first + count) of out.faces as one patch, or as two halves that are cut on.
 void add_faces(const TriMesh& skin, int proxy, std::size_t first, std::size_t count, int patch_faces, SkinPatches& out) {
   const std::span<int> faces(out.faces.data() + first, count);
-  const auto branch = out.tree.size();
-  out.tree.push_back(ball_of(skin, faces));
   if (static_cast<int>(count) <= patch_faces) {
+    const Ball ball = ball_of(skin, faces);
     SkinPatch patch;
     patch.proxy = proxy;
     patch.first_face = static_cast<int>(first);
     patch.face_count = static_cast<int>(count);
-    patch.centre = out.tree[branch].centre;
-    patch.radius = out.tree[branch].radius;
+    patch.centre = ball.centre;
+    patch.radius = ball.radius;
     for (const int f : faces) {
       const Vec3 a = skin.vertices.col(skin.faces(0, f)), b = skin.vertices.col(skin.faces(1, f)), c = skin.vertices.col(skin.faces(2, f));
       patch.area += 0.5 * (b - a).cross(c - a);
     }
-    out.tree[branch].patch = static_cast<int>(out.patches.size());
     out.patches.push_back(patch);
   } else {
     const std::size_t half = halve(faces, [&](int f) { return face_middle(skin, f); });
     add_faces(skin, proxy, first, half, patch_faces, out);
     add_faces(skin, proxy, first + half, count - half, patch_faces, out);
   }
-  out.tree[branch].after = static_cast<int>(out.tree.size()) - out.first_branch.back();
 }
 
 void add_halved(std::vector<ProxyBranch>& tree, std::span<int> proxies, const Points& middle, int parent) {
@@ -108,12 +105,10 @@ SkinPatches skin_patches(const TriMesh& skin, const std::vector<int>& owner_of_f
     out.first_of_proxy.push_back(static_cast<int>(out.patches.size()));
     std::size_t end = first;
     while (end < out.faces.size() && owner_of_face[static_cast<std::size_t>(out.faces[end])] == p) ++end;
-    out.first_branch.push_back(static_cast<int>(out.tree.size()));
     if (end > first) add_faces(skin, p, first, end - first, patch_faces, out);
     first = end;
   }
   out.first_of_proxy.push_back(static_cast<int>(out.patches.size()));
-  out.first_branch.push_back(static_cast<int>(out.tree.size()));
   return out;
 }
 
@@ -135,11 +130,11 @@ std::vector<ProxyBranch> proxy_tree(const Skeleton& skeleton, const std::vector<
   return tree;
 }
 
-void refit(std::vector<ProxyBranch>& tree, const std::vector<ProxyState>& states) {
+void refit(std::vector<ProxyBranch>& tree, const std::vector<Box>& boxes) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (ProxyBranch& branch : tree) {
-    branch.low = branch.proxy < 0 ? Vec3(Vec3::Constant(infinity)) : states[static_cast<std::size_t>(branch.proxy)].low;
-    branch.high = branch.proxy < 0 ? Vec3(Vec3::Constant(-infinity)) : states[static_cast<std::size_t>(branch.proxy)].high;
+    branch.low = branch.proxy < 0 ? Vec3(Vec3::Constant(infinity)) : boxes[static_cast<std::size_t>(branch.proxy)].low;
+    branch.high = branch.proxy < 0 ? Vec3(Vec3::Constant(-infinity)) : boxes[static_cast<std::size_t>(branch.proxy)].high;
   }
   for (std::size_t i = tree.size(); i-- > 1;) {  // preorder: children stand after their parent
     ProxyBranch& parent = tree[static_cast<std::size_t>(tree[i].parent)];

@@ -9,8 +9,6 @@ namespace palpate::proxy {
 struct SkinPatches {
   std::vector<SkinPatch> patches;     ///< proxy by proxy
   std::vector<int> first_of_proxy;    ///< and one more at the end
-  std::vector<PatchBranch> tree;      ///< proxy by proxy; `after` counts within the proxy
-  std::vector<int> first_branch;      ///< and one more at the end
   std::vector<int> faces;             ///< every face once, patch by patch
 };
 SkinPatches skin_patches(const TriMesh& skin, const std::vector<int>& owner_of_face, int proxies, int patch_faces);
@@ -19,7 +17,10 @@ SkinPatches skin_patches(const TriMesh& skin, const std::vector<int>& owner_of_f
 /// by place.  `middle`: the rest place of each.
 std::vector<ProxyBranch> proxy_tree(const Skeleton& skeleton, const std::vector<ProxyHull>& proxies, const Points& middle);
 
-/// Boxes from the leaves' up.
-void refit(std::vector<ProxyBranch>& tree, const std::vector<ProxyState>& states);
+struct Box {
+  Vec3 low, high;
+};
+/// Boxes of the proxies, and from the leaves' up.
+void refit(std::vector<ProxyBranch>& tree, const std::vector<Box>& boxes);
 
 }  // namespace palpate::proxy

@@ -39,19 +39,13 @@ struct SkinPatch {
   double radius = 0.0;                 ///< [m]
   Vec3 area = Vec3::Zero();            ///< sum of the faces' area vectors, outward [m^2]
 };
-/// A branch of the tree over a proxy's patches, in preorder within the proxy: its first child follows it, `after` is the next that is none of its own.
-struct PatchBranch {
-  int after = 0;
-  int patch = -1;  ///< of a leaf, among all patches
-  Vec3 centre = Vec3::Zero();
-  double radius = 0.0;
-};
 struct Ball {
   Vec3 centre;
   double radius;
 };
 
-/// A branch of the tree over a body's proxies, in preorder: its first child follows it, `after` is the next that is none of its own.
+/// A branch of the tree over a body's proxies, in preorder: its first child follows it, `after` is the next that is none of its own.  Its box holds all skin and
+/// tetrahedra of its proxies, not closely (proxy_set.cpp).
 struct ProxyBranch {
   int parent = -1, after = 0;
   int proxy = -1;  ///< of a leaf
@@ -61,8 +55,8 @@ struct ProxyBranch {
 /// The convex proxies of one body at its present positions (DESIGN 3.2).  The derivation of the bounds stands in proxy_set.cpp.
 ///
 /// After update every vertex of the skin lies in the inflated hull of each proxy that it is a member of, whatever the nodes did, and so do its faces (hulls are
-/// convex) and the tetrahedra that the proxy owns: together the inflated hulls cover the body.  An update visits nodes and corners, never the skin, and
-/// allocates nothing.
+/// convex) and the tetrahedra that the proxy owns: together the inflated hulls cover the body.  An update visits the nodes once and the proxies' boxes; where a
+/// proxy is, is found when it is first asked for.  The skin is never visited, and nothing is allocated.  Not for two threads at once, questions included.
 class ProxySet {
  public:
   /// A soft body (tets and embedding), or a rigid one (neither).
@@ -83,16 +77,15 @@ class ProxySet {
   /// The corner farthest along a direction, without inflation.
   Vec3 support(int proxy, const Vec3& direction) const;
   double most_along(int proxy, const Vec3& direction) const;  ///< direction . support
-  /// A proof that the hull, without inflation, is farther than `margin` from a ball, found in at most so many steps; false: it may be near.
-  /// @param witness  in and out: a point of the hull to start from, and the nearest found; for balls side by side one or two steps are enough
-  bool apart(int proxy, const Ball& ball, double margin, int steps, Vec3& witness) const;
   const Vec3& centre(int proxy) const;                 ///< mean of the corners
   bool neighbours(int p, int q) const;                 ///< they share a vertex of the skin, or are the same
   std::span<const SkinPatch> patches(int proxy) const;
   std::span<const SkinPatch> patches() const;          ///< all, proxy by proxy
-  std::span<const PatchBranch> patch_tree(int proxy) const;
-  Ball ball(int proxy, const PatchBranch& branch) const;  ///< around its faces now, by the proxy's bound
-  Ball ball(const SkinPatch& patch) const;             ///< around its faces now, by the bound of its own nodes
+  Ball ball(const SkinPatch& patch) const;             ///< around its faces now, by the bound of its own nodes where that is much less than the proxy's
+  /// The patches of a proxy, among all patches and ascending, that may be nearer than `gap` to an inflated hull of a set; those left out are farther, proven.
+  /// @param toward  unit, from that hull to this proxy: a direction to try first, zero for none
+  /// @param known   by patch, all patches: not 0 for those that nobody asks for
+  void patches_near(int proxy, const ProxySet& other, int hull, double gap, const Vec3& toward, std::span<const unsigned char> known, std::vector<int>& out) const;
   Vec3 area(const SkinPatch& patch) const;             ///< its area vector, moved with its proxy [m^2]
   std::span<const int> faces(const SkinPatch& patch) const;
   std::span<const ProxyBranch> tree() const;           ///< by bone where the model has a skeleton, else by place

@@ -34,7 +34,7 @@ struct PruneCounts {
   long apart_by_memory = 0;   ///< of those, proven apart by the direction that did it last time
   long apart_by_search = 0;   ///< proven apart by a new direction
   long after_hulls = 0;       ///< pairs of proxies that were not proven apart
-  long patches_tested = 0, patches_kept = 0;  ///< balls of patches, and of branches over them, against hulls
+  long patches_tested = 0, patches_kept = 0;  ///< balls of patches against hulls
   long regions = 0;
   long regions_apart = 0;     ///< proven apart as a whole, and left out
   long normals_by_areas = 0, normals_kept = 0, normals_by_hulls = 0;  ///< regions by where their normal came from: the skins, the last query, libccd

@@ -41,7 +41,7 @@ class RegionFinder {
   /// @param a, b    3 x n, at least one finite point each [m]
   /// @param margin  hulls apart by more than this are not a region [m]
   /// @throws InternalError for empty or non-finite points
-  Region find(const Points& a, const Points& b, double margin);
+  Region find(const Eigen::Ref<const Points>& a, const Eigen::Ref<const Points>& b, double margin);
   const RegionCounts& counts() const { return counts_; }
   void forget() { has_last_ = false; }  ///< the last normal
   /// Puts a normal in the last one's place: one finder serves many pairs that keep theirs.

@@ -1,0 +1,183 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "palpate/core/error.h"
+#include "palpate/core/pose.h"
+#include "palpate/mesh/generators.h"
+#include "palpate/proxy/decompose.h"
+#include "palpate/proxy/pruner.h"
+#include "palpate/store/model_file.h"
+
+/// The paper's models touched as in its figures: two pumpkins in contact, the head by a sphere at the bridge of the nose, the human at the leg.
+/// A touch goes in and out once in `kPhases` queries, and dents what it touches.
+namespace touch {
+
+using namespace palpate;
+
+inline constexpr int kPhases = 8;
+inline double pressed(int phase) { return 0.5 - 0.5 * std::cos(2 * M_PI * phase / kPhases); }  ///< 0 to 1 and back
+
+struct Case {
+  LayeredModel a, b;
+  Vec3 place = Vec3::Zero();     ///< where they touch
+  Vec3 inward = Vec3::Zero();    ///< unit, into a
+  double size = 0.0;             ///< of the dent [m]
+  double least = 0.0, most = 0.0;  ///< depth that they overlap by, at the phases' ends [m]
+  double gap = 0.0;              ///< mean edge of a's skin, as a scene asks for [m]
+
+  bool b_is_soft() const { return b.tets.tets.cols() > 0; }
+
+  /// Nodes of a: pushed in along `inward` by a Gaussian dent, half as deep as b goes.
+  Points nodes_a(int phase) const { return dented(a.tets.nodes, inward, phase); }
+  /// Nodes of a soft b, moved as far as the phase says and dented the other way.
+  Points nodes_b(int phase) const {
+    const Points dent = dented(b.tets.nodes, -inward, phase);
+    return dent.colwise() + depth(phase) * inward;
+  }
+  Pose pose_b(int phase) const { return {Quat::Identity(), depth(phase) * inward}; }
+
+  double depth(int phase) const { return least + (most - least) * pressed(phase); }
+
+ private:
+  Points dented(Points nodes, const Vec3& along, int phase) const {
+    for (Eigen::Index n = 0; n < nodes.cols(); ++n)
+      nodes.col(n) += 0.25 * depth(phase) * std::exp(-(nodes.col(n) - place).squaredNorm() / (2 * size * size)) * along;
+    return nodes;
+  }
+};
+
+inline double mean_edge(const TriMesh& skin) {
+  double sum = 0.0;
+  for (Eigen::Index f = 0; f < skin.faces.cols(); ++f)
+    for (int k = 0; k < 3; ++k) sum += (skin.vertices.col(skin.faces(k, f)) - skin.vertices.col(skin.faces((k + 1) % 3, f))).norm();
+  return sum / static_cast<double>(3 * skin.faces.cols());
+}
+
+/// A rigid ball that touches a's skin from in front (along y) where a line through (x, z) meets it first; depth 0.
+inline void add_ball(Case& out, double radius, double x, double z) {
+  const double gap = mean_edge(out.a.skin);
+  Eigen::Index nearest = -1;
+  for (Eigen::Index v = 0; v < out.a.skin.vertices.cols(); ++v) {
+    const Vec3 p = out.a.skin.vertices.col(v);
+    if (std::hypot(p.x() - x, p.z() - z) < 2 * gap && (nearest < 0 || p.y() < out.a.skin.vertices(1, nearest))) nearest = v;
+  }
+  PALPATE_CHECK(nearest >= 0, "no skin at x = {}, z = {}", x, z);
+  out.place = out.a.skin.vertices.col(nearest);
+  out.inward = Vec3::UnitY();
+  out.b.name = "ball";
+  out.b.skin = mesh::sphere(radius, 12);
+  out.b.skin.vertices.colwise() += out.place - radius * out.inward;
+  out.b.proxies = proxy::decompose(out.b, {.count = 1});
+  out.size = radius;
+  out.gap = gap;
+}
+
+inline Case head(const std::string& folder) {
+  Case out;
+  out.a = store::read_model(folder + "/head.h5").model;
+  add_ball(out, 0.012, 0.0, 0.0);
+  out.least = 0.001;
+  out.most = 0.006;
+  return out;
+}
+
+/// At the middle of the left shank.
+inline Case human(const std::string& folder) {
+  Case out;
+  out.a = store::read_model(folder + "/human.h5").model;
+  const auto& bones = out.a.skeleton.bones;
+  const auto shank = std::find_if(bones.begin(), bones.end(), [](const Bone& bone) { return bone.name.find("shank") != std::string::npos; });
+  PALPATE_CHECK(shank != bones.end(), "the human has no shank");
+  const Vec3 middle = 0.5 * (shank->head + shank->tail);
+  add_ball(out, 0.03, middle.x(), middle.z());
+  out.least = 0.002;
+  out.most = 0.012;
+  return out;
+}
+
+/// Side by side: the second is the first turned by half a turn about z, so that their farthest points along x meet.
+inline Case pumpkins(const std::string& folder) {
+  Case out;
+  out.a = store::read_model(folder + "/pumpkin.h5").model;
+  Eigen::Index farthest = 0;
+  out.a.skin.vertices.row(0).maxCoeff(&farthest);
+  out.place = out.a.skin.vertices.col(farthest);
+  out.inward = -Vec3::UnitX();
+  out.b = out.a;
+  const Vec3 shift(2 * out.place.x(), 2 * out.place.y(), 0.0);
+  const auto turn = [&](Points& points) {
+    points.topRows<2>() *= -1.0;
+    points.colwise() += shift;
+  };
+  turn(out.b.tets.nodes);
+  turn(out.b.skin.vertices);
+  for (ProxyHull& hull : out.b.proxies) turn(hull.corners);
+  out.size = 0.04;
+  out.least = 0.001;
+  out.most = 0.008;
+  out.gap = mean_edge(out.a.skin);
+  return out;
+}
+
+/// Both sides of a case as the pruner wants them.
+struct Bodies {
+  const Case& touch;
+  proxy::ProxySet a, b;
+  std::vector<Points> nodes_a, nodes_b;
+
+  explicit Bodies(const Case& c) : touch(c), a(c.a), b(c.b, {.patch_faces = c.b_is_soft() ? 0 : 16}) {  // a tool's grain, as in contact/gpu_source.cpp
+    for (int i = 0; i < kPhases; ++i) {
+      nodes_a.push_back(c.nodes_a(i));
+      if (c.b_is_soft()) nodes_b.push_back(c.nodes_b(i));
+    }
+  }
+  void update(int phase) {
+    a.update(nodes_a[static_cast<std::size_t>(phase)]);
+    if (touch.b_is_soft())
+      b.update(nodes_b[static_cast<std::size_t>(phase)]);
+    else
+      b.update(touch.pose_b(phase));
+  }
+};
+
+/// Skin of both at a phase.
+struct Skins {
+  Points a, b;
+  Skins(const Case& c, int phase) {
+    mesh::evaluate(c.a.embedding, c.a.tets.tets, c.nodes_a(phase), a);
+    if (c.b_is_soft())
+      mesh::evaluate(c.b.embedding, c.b.tets.tets, c.nodes_b(phase), b);
+    else
+      b = c.b.skin.vertices.colwise() + c.pose_b(phase).translation;
+  }
+};
+
+/// Winding number of a closed surface around a point: the solid angles of its faces (van Oosterom and Strackee 1983) over 4 pi.
+inline double winding(const Faces& faces, const Points& skin, const Vec3& p) {
+  double angle = 0.0;
+  for (Eigen::Index f = 0; f < faces.cols(); ++f) {
+    const Vec3 a = skin.col(faces(0, f)) - p, b = skin.col(faces(1, f)) - p, c = skin.col(faces(2, f)) - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return angle / (4 * M_PI);
+}
+
+/// Faces of `one` with a vertex inside the other closed skin, by brute force over all of the other's faces: the true contact patch.
+inline std::set<int> true_patch(const Faces& faces, const Points& one, const Faces& other_faces, const Points& other) {
+  const Vec3 low = other.rowwise().minCoeff(), high = other.rowwise().maxCoeff();
+  std::vector<char> inside(static_cast<std::size_t>(one.cols()));
+  for (Eigen::Index v = 0; v < one.cols(); ++v)
+    inside[static_cast<std::size_t>(v)] =
+        (one.col(v).array() > low.array()).all() && (one.col(v).array() < high.array()).all() && winding(other_faces, other, one.col(v)) > 0.5;
+  std::set<int> out;
+  for (Eigen::Index f = 0; f < faces.cols(); ++f)
+    for (int k = 0; k < 3; ++k)
+      if (inside[static_cast<std::size_t>(faces(k, f))]) out.insert(static_cast<int>(f));
+  return out;
+}
+
+}  // namespace touch
