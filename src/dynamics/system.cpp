@@ -1,6 +1,7 @@
 #include "palpate/dynamics/system.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "palpate/core/error.h"
 #include "palpate/core/huge_pages.h"
@@ -96,13 +97,16 @@ void System::prepare(const StateView& state) {
     if (block->kind == BlockKind::kNodes && !inertia->diagonal()) nodal_mass_diagonal_ = false;
   }
   assemble_mass(state, mass_);
+  nodal_mass_.resize(layout.nodal_size);
   inverse_nodal_mass_.resize(layout.nodal_size);
   if (nodal_mass_diagonal_) {
     for (int i = 0; i < layout.nodal_size; ++i) {
       const double m = mass_.body.block(mass_.body.diagonal(i / 3))[4 * (i % 3)];
       PALPATE_CHECK(m > 0.0, "node {} has mass {}", i / 3, m);
+      nodal_mass_[i] = m;
       inverse_nodal_mass_[i] = 1.0 / m;
     }
+    if (layout.nodal_size > 0) mass_scale_ = std::ldexp(1.0, -std::ilogb(nodal_mass_.mean()));
   } else {
     PALPATE_CHECK(mass_solver_, "a consistent mass needs a mass solver");
     const SolveStatus status = mass_solver_->factor(mass_);
@@ -210,7 +214,7 @@ void System::solve_mass(const StateView& state, VecX& r, VecX& a) {
   PALPATE_CHECK(status == SolveStatus::kOk, "the mass matrix has no factor (status {})", static_cast<int>(status));
 }
 
-void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
+void System::update_pattern(const StateView& state) {
   const Layout& layout = *state.layout;
   VersionHash key;
   key.add(layout.version);
@@ -221,12 +225,46 @@ void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
     for (const auto& inertia : inertias_) inertia->add_pattern(builder);
     pattern_ = builder.build();
     pattern_key_ = key.value;
+    share_no_pair_ = tangents_share_no_pair(layout);
   }
+}
+
+bool System::tangents_share_no_pair(const Layout& layout) const {
+  int pairs = 0;
+  for (const auto& term : terms_) {
+    if (!term->traits().balanced) return false;
+    PatternBuilder builder(layout);
+    term->add_pattern(builder);
+    pairs += builder.build().slot_count() - layout.node_count();
+  }
+  return pairs == pattern_.slot_count() - layout.node_count();  // fewer in all: some are shared; more: a mass has some
+}
+
+void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
+  update_pattern(state);
+  const Layout& layout = *state.layout;
   if (A.body.pattern_version() != pattern_.pattern_version()) {
     A.body = pattern_;
     prefer_huge_pages(A.body.values());
   }
   resize_border(A, layout.nodal_size, layout.border_size());
+}
+
+bool System::balanced(const StateView& state) {
+  const Layout& layout = *state.layout;
+  if (!nodal_mass_diagonal_ || layout.border_size() > 0 || layout.nodal_size == 0 || nodal_mass_.size() != layout.nodal_size) return false;
+  if (!std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().balanced; })) return false;
+  update_pattern(state);
+  return share_no_pair_;
+}
+
+void System::balanced_step(const StateView& state, const VecX& shift, double m_scale, double d_scale, double k_scale, VecX& f, BalancedMatrix& A) {
+  f.setZero(state.layout->u_size);
+  A.scale = mass_scale_;
+  A.diagonal = m_scale * nodal_mass_;
+  A.positions = state.q.data();  // node blocks come first, with q' = u
+  A.held = &driven_nodes_;
+  for (const auto& term : terms_) term->add_step(state, shift, k_scale, d_scale, f, A);
 }
 
 void System::step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter) {
@@ -307,7 +345,7 @@ void System::reduce_to_masters(const StateView& state, BorderedMatrix& A) const 
 
 void System::find_driven_slots(const BlockSparse& A) const {
   driven_mirrors_.clear();
-  for (const DrivenNode& d : driven_nodes_)
+  for (const HeldNode& d : driven_nodes_)
     for (int s = A.row_start()[static_cast<std::size_t>(d.node)]; s < A.row_start()[static_cast<std::size_t>(d.node) + 1]; ++s)
       driven_mirrors_.push_back(A.slot(A.columns()[static_cast<std::size_t>(s)], d.node));
   driven_pattern_ = A.pattern_version();
@@ -316,7 +354,7 @@ void System::find_driven_slots(const BlockSparse& A) const {
 void System::eliminate_driven(BorderedMatrix& A) const {
   if (driven_pattern_ != A.body.pattern_version()) find_driven_slots(A.body);
   std::size_t mirror = 0;
-  for (const DrivenNode& d : driven_nodes_) {
+  for (const HeldNode& d : driven_nodes_) {
     for (int s = A.body.row_start()[static_cast<std::size_t>(d.node)]; s < A.body.row_start()[static_cast<std::size_t>(d.node) + 1]; ++s, ++mirror) {
       double *block = A.body.block(s), *mirrored = A.body.block(driven_mirrors_[mirror]);
       for (int axis = 0; axis < 3; ++axis) {

@@ -55,6 +55,22 @@ void sum_blocks(const SharedSums& sums, int k, const std::vector<double>& contri
   }
 }
 
+std::int32_t slot_of(const dynamics::BlockSparse& A, int i, int j) {
+  const int found = A.slot(i, j);
+  PALPATE_CHECK(found >= 0, "nodes {} and {} are not in the pattern", i, j);
+  return static_cast<std::int32_t>(found);
+}
+
+/// at(i, j) and at(j, i) of each edge that chunks share.
+template <class At>
+void find_both_sides(const SharedSums& edges, At&& at, std::vector<std::int32_t>& sides) {
+  sides.resize(2 * edges.first.size());
+  for (std::size_t k = 0; k < edges.first.size(); ++k) {
+    sides[2 * k] = at(edges.first[k], edges.second[k]);
+    sides[2 * k + 1] = at(edges.second[k], edges.first[k]);
+  }
+}
+
 void set_zero(const ChunkBlocks& blocks, int count) {
   std::fill_n(blocks.first, 8 * count, 0.0);
   std::fill_n(blocks.last, count, 0.0);
@@ -146,23 +162,32 @@ LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModel& 
     double* sum = numbers(scratch.sum);
     std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
     kernel(chunks_.groups.data() + chunk.first_group, chunk.groups, model, kScalarPath, fields, sum, scratch.counts);
-    const int* nodes = chunks_.nodes.data() + chunk.first_node;
-    for (int n = 0; n < chunk.own_nodes; ++n) {
-      if (n + kNodesAhead < chunk.own_nodes) __builtin_prefetch(out + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
-      for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)] += sum[4 * n + axis];
-    }
-    std::copy_n(sum + 4 * chunk.own_nodes, 4 * (chunk.nodes - chunk.own_nodes), numbers(shared_nodes_) + 4 * static_cast<std::size_t>(chunk.first_shared_node));
+    flush_nodal(chunk, sum, out);
   });
+  add_shared_nodes(out);
+  return collect_counts();
+}
+
+/// A chunk's own sums go into `out`, the others aside.
+void ElementEvaluation::flush_nodal(const Chunk& chunk, const double* sum, double* out) {
+  const int* nodes = chunks_.nodes.data() + chunk.first_node;
+  for (int n = 0; n < chunk.own_nodes; ++n) {
+    if (n + kNodesAhead < chunk.own_nodes) __builtin_prefetch(out + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
+    for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)] += sum[4 * n + axis];
+  }
+  std::copy_n(sum + 4 * chunk.own_nodes, 4 * (chunk.nodes - chunk.own_nodes), numbers(shared_nodes_) + 4 * static_cast<std::size_t>(chunk.first_shared_node));
+}
+
+void ElementEvaluation::add_shared_nodes(double* out) const {
   const SharedSums& shared = chunks_.shared_nodes;
   for_each_sum(shared.count(), [&](int k) {
     double sum[3] = {0.0, 0.0, 0.0};
     for (int p = shared.start[static_cast<std::size_t>(k)]; p < shared.start[static_cast<std::size_t>(k) + 1]; ++p) {
-      const double* part = numbers(shared_nodes_) + 4 * static_cast<std::size_t>(shared.entries[static_cast<std::size_t>(p)]);
+      const double* part = shared_nodes_.front().value + 4 * static_cast<std::size_t>(shared.entries[static_cast<std::size_t>(p)]);
       for (int axis = 0; axis < 3; ++axis) sum[axis] += part[axis];
     }
     for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(shared.first[static_cast<std::size_t>(k)]) + static_cast<std::size_t>(axis)] += sum[axis];
   });
-  return collect_counts();
 }
 
 LaneCounts ElementEvaluation::add_force(const ElementModel& model, const BodyFields& at, double* f) { return add_nodal(kernels_->force, model, at, f); }
@@ -196,7 +221,7 @@ LaneCounts ElementEvaluation::add_tangent(const ElementModel& model, const BodyF
 void ElementEvaluation::add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const {
   const int edges = chunks_.shared_edges.count();
   for_each_sum(edges, [&](int k) {
-    if (k + kSumsAhead < edges) fetch_sum(k + kSumsAhead, A);
+    if (k + kSumsAhead < edges) fetch_sum(k + kSumsAhead, shared_slots_.data(), A.values().data());
     double sum[9];
     sum_blocks(chunks_.shared_edges, k, shared_upper_, sum);
     double *above = A.block(shared_slots_[2 * static_cast<std::size_t>(k)]), *below = A.block(shared_slots_[2 * static_cast<std::size_t>(k) + 1]);
@@ -217,17 +242,54 @@ void ElementEvaluation::add_shared_blocks(bool symmetric, dynamics::BlockSparse&
 }
 
 /// What the sum over shared edge k reads and writes lies scattered: asked for some sums before, it is there in time.
-void ElementEvaluation::fetch_sum(int k, const dynamics::BlockSparse& A) const {
+template <class Real>
+void ElementEvaluation::fetch_sum(int k, const std::int32_t* places, const Real* values) const {
   const auto edge = static_cast<std::size_t>(k);
   for (int p = chunks_.shared_edges.start[edge]; p < chunks_.shared_edges.start[edge + 1]; ++p) {
     const double* block = shared_upper_.data() + 9 * static_cast<std::size_t>(chunks_.shared_edges.entries[static_cast<std::size_t>(p)]);
     __builtin_prefetch(block);
     __builtin_prefetch(block + 8);
   }
-  for (const std::int32_t slot : {shared_slots_[2 * edge], shared_slots_[2 * edge + 1]}) {
-    __builtin_prefetch(A.block(slot));
-    __builtin_prefetch(A.block(slot) + 8);
+  for (const std::int32_t place : {places[2 * edge], places[2 * edge + 1]}) {
+    __builtin_prefetch(values + 9 * static_cast<std::size_t>(place));
+    __builtin_prefetch(values + 9 * static_cast<std::size_t>(place) + 8);
   }
+}
+
+LaneCounts ElementEvaluation::add_step(const ElementModel& model, const BodyFields& at, int first_node, double* f, dynamics::BalancedMatrix& A) {
+  fit_scratch();
+  prepare_places(first_node, A);
+  PALPATE_CHECK(!model.by_position, "an unsymmetric tangent in a balanced matrix");
+  workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
+    const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
+    Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
+    const ChunkBlocks upper{numbers(scratch.upper), scratch.upper_last.data()};
+    double* sum = numbers(scratch.sum);
+    std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
+    set_zero(upper, chunk.edges + 1);
+    kernels_->step(chunks_.groups.data() + chunk.first_group, chunk.groups, model, kScalarPath, load(chunk, at, scratch), sum, upper, scratch.counts);
+    flush_nodal(chunk, sum, f);
+    kernels_->store(places_.data() + 2 * static_cast<std::size_t>(chunk.first_edge), chunk.own_edges, upper, A.values.data());
+    keep_blocks(upper, chunk.own_edges, chunk.edges, shared_upper_.data() + 9 * static_cast<std::size_t>(chunk.first_shared_edge));
+  });
+  add_shared_nodes(f);
+  store_shared_blocks(A);
+  return collect_counts();
+}
+
+void ElementEvaluation::store_shared_blocks(dynamics::BalancedMatrix& A) const {
+  const int edges = chunks_.shared_edges.count();
+  for_each_sum(edges, [&](int k) {
+    if (k + kSumsAhead < edges) fetch_sum(k + kSumsAhead, shared_places_.data(), A.values.data());
+    double sum[9];
+    sum_blocks(chunks_.shared_edges, k, shared_upper_, sum);
+    float* above = A.values.data() + 9 * static_cast<std::size_t>(shared_places_[2 * static_cast<std::size_t>(k)]);
+    float* below = A.values.data() + 9 * static_cast<std::size_t>(shared_places_[2 * static_cast<std::size_t>(k) + 1]);
+    for (int c = 0; c < 9; ++c) {
+      above[c] = static_cast<float>(sum[c % 3 * 3 + c / 3]);
+      below[c] = static_cast<float>(sum[c]);
+    }
+  });
 }
 
 double ElementEvaluation::energy(const ElementModel& model, const BodyFields& at) {
@@ -257,14 +319,9 @@ double ElementEvaluation::dissipated_power(const ElementModel& model, const Body
 
 void ElementEvaluation::prepare(int first_node, const dynamics::BlockSparse& A) {
   if (A.pattern_version() == pattern_version_ && first_node == first_node_) return;
-  const auto slot = [&](int i, int j) {
-    const int found = A.slot(first_node + i, first_node + j);
-    PALPATE_CHECK(found >= 0, "nodes {} and {} are not in the pattern", first_node + i, first_node + j);
-    return static_cast<std::int32_t>(found);
-  };
+  const auto slot = [&](int i, int j) { return slot_of(A, first_node + i, first_node + j); };
   slots_.resize(chunks_.row_edges.size());
   chunk_diagonal_.resize(chunks_.nodes.size());
-  shared_slots_.resize(2 * chunks_.shared_edges.first.size());
   diagonal_.resize(static_cast<std::size_t>(chunks_.node_count()));
   for (std::size_t i = 0; i < diagonal_.size(); ++i) diagonal_[i] = slot(static_cast<int>(i), static_cast<int>(i));
   for (std::size_t n = 0; n < chunks_.nodes.size(); ++n) chunk_diagonal_[n] = diagonal_[static_cast<std::size_t>(chunks_.nodes[n])];
@@ -275,17 +332,31 @@ void ElementEvaluation::prepare(int first_node, const dynamics::BlockSparse& A) 
         const std::size_t other = 2 * (static_cast<std::size_t>(chunk.first_edge) + entry / 2) + (1 - entry % 2);
         slots_[static_cast<std::size_t>(p)] = slot(chunks_.nodes[static_cast<std::size_t>(n)], chunks_.nodes[static_cast<std::size_t>(chunk.first_node + chunks_.ends[other])]);
       }
-  for (std::size_t k = 0; k < chunks_.shared_edges.first.size(); ++k) {
-    shared_slots_[2 * k] = slot(chunks_.shared_edges.first[k], chunks_.shared_edges.second[k]);
-    shared_slots_[2 * k + 1] = slot(chunks_.shared_edges.second[k], chunks_.shared_edges.first[k]);
-  }
+  find_both_sides(chunks_.shared_edges, slot, shared_slots_);
   prefer_huge_pages(slots_);
   pattern_version_ = A.pattern_version();
   first_node_ = first_node;
 }
 
+void ElementEvaluation::prepare_places(int first_node, const dynamics::BalancedMatrix& A) {
+  if (A.places_version == places_version_ && first_node == places_first_node_) return;
+  const auto place = [&](int i, int j) { return A.place[static_cast<std::size_t>(slot_of(*A.pattern, first_node + i, first_node + j))]; };
+  places_.clear();
+  places_.reserve(chunks_.ends.size());
+  for (const Chunk& chunk : chunks_.chunks)
+    for (std::size_t at = 2 * static_cast<std::size_t>(chunk.first_edge); at < 2 * static_cast<std::size_t>(chunk.first_edge + chunk.edges); at += 2) {
+      const int i = chunks_.nodes[static_cast<std::size_t>(chunk.first_node + chunks_.ends[at])], j = chunks_.nodes[static_cast<std::size_t>(chunk.first_node + chunks_.ends[at + 1])];
+      places_.push_back(place(i, j));
+      places_.push_back(place(j, i));
+    }
+  find_both_sides(chunks_.shared_edges, place, shared_places_);
+  prefer_huge_pages(places_);
+  places_version_ = A.places_version;
+  places_first_node_ = first_node;
+}
+
 std::size_t ElementEvaluation::map_bytes() const {
-  return bytes_of(slots_) + bytes_of(chunk_diagonal_) + bytes_of(shared_slots_) + bytes_of(diagonal_);
+  return bytes_of(slots_) + bytes_of(chunk_diagonal_) + bytes_of(shared_slots_) + bytes_of(diagonal_) + bytes_of(places_) + bytes_of(shared_places_);
 }
 
 std::size_t ElementEvaluation::scratch_bytes() const {

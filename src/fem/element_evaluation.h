@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "element_chunks.h"
-#include "palpate/dynamics/matrix.h"
+#include "palpate/dynamics/balanced_matrix.h"
 
 namespace palpate::fem {
 
@@ -28,6 +28,8 @@ class ElementEvaluation {
   LaneCounts add_force(const ElementModel& model, const BodyFields& at, double* f);
   LaneCounts apply_tangent(const ElementModel& model, const BodyFields& at, double* y);
   LaneCounts add_tangent(const ElementModel& model, const BodyFields& at, int first_node, dynamics::BlockSparse& A);
+  /// f += forces - stiffness times w, and the off-diagonal blocks of k_scale K + d_scale D, times A.scale, stored in A.
+  LaneCounts add_step(const ElementModel& model, const BodyFields& at, int first_node, double* f, dynamics::BalancedMatrix& A);
   double energy(const ElementModel& model, const BodyFields& at);
   double dissipated_power(const ElementModel& model, const BodyFields& at);
 
@@ -53,9 +55,14 @@ class ElementEvaluation {
   void fit_scratch();
   LaneCounts collect_counts();
   ChunkFields load(const ElementChunks::Chunk& chunk, const BodyFields& at, Scratch& scratch) const;
+  void flush_nodal(const ElementChunks::Chunk& chunk, const double* sum, double* out);
+  void add_shared_nodes(double* out) const;
+  void prepare_places(int first_node, const dynamics::BalancedMatrix& A);
+  void store_shared_blocks(dynamics::BalancedMatrix& A) const;
   LaneCounts add_nodal(NodalKernel kernel, const ElementModel& model, const BodyFields& at, double* out);
   void add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const;
-  void fetch_sum(int k, const dynamics::BlockSparse& A) const;
+  template <class Real>
+  void fetch_sum(int k, const std::int32_t* places, const Real* values) const;
 
   ElementChunks chunks_;
   const LaneKernels* kernels_;
@@ -69,6 +76,9 @@ class ElementEvaluation {
   std::uint64_t pattern_version_ = 0;
   int first_node_ = -1;
   std::vector<std::int32_t> slots_;                    ///< of each entry of ElementChunks::row_edges
+  std::vector<std::int32_t> places_, shared_places_;   ///< in a BalancedMatrix: (i, j) and (j, i) of each edge of each chunk, and of each shared edge
+  std::uint64_t places_version_ = 0;
+  int places_first_node_ = -1;
   std::vector<std::int32_t> chunk_diagonal_;           ///< of each node of each chunk
   std::vector<std::int32_t> shared_slots_;             ///< (i, j) and (j, i) of each shared edge
   std::vector<std::int32_t> diagonal_;                 ///< of each node of the body

@@ -1,6 +1,6 @@
 #pragma once
 // The element matrices in lanes.  Only the six blocks K_ab, a < b, of the edges are made: a translation of the element changes nothing, so that
-// the blocks of each row sum to zero and a diagonal block is minus the sum of the others of its row, taken once for the whole chunk (flush).
+// the blocks of each row sum to zero and a diagonal block is minus the sum of the others of its row, taken once for the whole chunk (lane_flush.h) or by who reads the matrix.
 
 /// What the blocks of an element are made of; h_0 = -(h_1 + h_2 + h_3), and g, k, l likewise.
 struct BlockParts {
@@ -88,6 +88,55 @@ PALPATE_INLINE void edge_block(const Lanes& at, const BlockParts& e, int number,
   scatter_block(upper, at.edge(number), block);
 }
 
+/// h, and [h_a]x C of a coupled block.
+template <Blocks kBlocks>
+PALPATE_INLINE void set_elastic(BlockParts& e, const ElementModel& model, const Matrix& R, const Symmetric& C, const Matrix& G, Pack volume) {
+  const Pack k = model.k_scale * volume;
+  e.mu2 = (2.0 * model.mu) * k;
+  e.lambda = model.lambda * k;
+  spread(R, G, e.h);
+  if constexpr (kBlocks != Blocks::kCoupled) return;
+  const Matrix kC = k * full(C);
+  for (int a = 0; a < 3; ++a) {
+    const Vector& h = e.h[a];
+    e.hC[a] = {{h.y * kC.row[2] - h.z * kC.row[1], h.z * kC.row[0] - h.x * kC.row[2], h.x * kC.row[1] - h.y * kC.row[0]}};
+  }
+}
+
+/// g and k.
+PALPATE_INLINE void set_gradients(BlockParts& e, const Matrix& F, const Matrix& G) {
+  for (int a = 0; a < 3; ++a) e.g[a + 1] = G.row[a];
+  e.g[0] = -(e.g[1] + e.g[2] + e.g[3]);
+  spread(F, G, e.k);
+}
+
+PALPATE_INLINE void set_damping(BlockParts& e, const ElementModel& model, const Matrix& F, Pack volume) {
+  const Pack d = model.d_scale * volume;
+  e.damping_mu = model.damping_mu * d;
+  e.damping_lambda = model.damping_lambda * d;
+  const Symmetric FFt = gram_of_rows(F);
+  e.B2 = {e.damping_mu * FFt.xx, e.damping_mu * FFt.yy, e.damping_mu * FFt.zz, e.damping_mu * FFt.yz, e.damping_mu * FFt.xz, e.damping_mu * FFt.xy};
+}
+
+PALPATE_INLINE void set_position(BlockParts& e, const ElementModel& model, const Matrix& F, const Matrix& F_dot, const Matrix& G, Pack volume) {
+  spread(F_dot, G, e.l);
+  spread(full(damping_stress(symmetric_product(F, F_dot), model)), G, e.Sigma_g);
+  e.FFdot = times_transposed(F, F_dot);
+  e.position = model.k_scale * volume;
+  e.position_mu = model.damping_mu * e.position;
+  e.position_lambda = model.damping_lambda * e.position;
+}
+
+template <Blocks kBlocks, bool kDamped, bool kByPosition>
+PALPATE_INLINE void edge_blocks(const Lanes& at, const BlockParts& e, const ChunkBlocks& upper, const ChunkBlocks& lower) {
+  edge_block<kBlocks, kDamped, kByPosition>(at, e, 0, 0, 1, upper, lower);
+  edge_block<kBlocks, kDamped, kByPosition>(at, e, 1, 0, 2, upper, lower);
+  edge_block<kBlocks, kDamped, kByPosition>(at, e, 2, 0, 3, upper, lower);
+  edge_block<kBlocks, kDamped, kByPosition>(at, e, 3, 1, 2, upper, lower);
+  edge_block<kBlocks, kDamped, kByPosition>(at, e, 4, 1, 3, upper, lower);
+  edge_block<kBlocks, kDamped, kByPosition>(at, e, 5, 2, 3, upper, lower);
+}
+
 template <Blocks kBlocks, bool kDamped, bool kByPosition>
 static void blocks_of(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields,
                       const ChunkBlocks& upper, const ChunkBlocks& lower, LaneCounts& counts) {
@@ -102,45 +151,14 @@ static void blocks_of(const ElementGroup* groups, int count, const ElementModel&
         Matrix R;
         Pack det;
         rotation(F, scalar, R, det, counts);
-        const Pack k = model.k_scale * volume;
-        e.mu2 = (2.0 * model.mu) * k;
-        e.lambda = model.lambda * k;
-        spread(R, G, e.h);
-        if constexpr (kBlocks == Blocks::kCoupled) {
-          const Matrix C = k * full(coupling(model, F, R, scalar, counts));
-          for (int a = 0; a < 3; ++a) {
-            const Vector& h = e.h[a];
-            e.hC[a] = {{h.y * C.row[2] - h.z * C.row[1], h.z * C.row[0] - h.x * C.row[2], h.x * C.row[1] - h.y * C.row[0]}};
-          }
-        }
+        Symmetric C{};
+        if constexpr (kBlocks == Blocks::kCoupled) C = coupling(model, F, R, scalar, counts);
+        set_elastic<kBlocks>(e, model, R, C, G, volume);
       }
-      if constexpr (kDamped || kByPosition) {
-        for (int a = 0; a < 3; ++a) e.g[a + 1] = G.row[a];
-        e.g[0] = -(e.g[1] + e.g[2] + e.g[3]);
-        spread(F, G, e.k);
-      }
-      if constexpr (kDamped) {
-        const Pack d = model.d_scale * volume;
-        e.damping_mu = model.damping_mu * d;
-        e.damping_lambda = model.damping_lambda * d;
-        const Symmetric FFt = gram_of_rows(F);
-        e.B2 = {e.damping_mu * FFt.xx, e.damping_mu * FFt.yy, e.damping_mu * FFt.zz, e.damping_mu * FFt.yz, e.damping_mu * FFt.xz, e.damping_mu * FFt.xy};
-      }
-      if constexpr (kByPosition) {
-        const Matrix F_dot = gradient_of(at, G, fields.v);
-        spread(F_dot, G, e.l);
-        spread(full(damping_stress(symmetric_product(F, F_dot), model)), G, e.Sigma_g);
-        e.FFdot = times_transposed(F, F_dot);
-        e.position = model.k_scale * volume;
-        e.position_mu = model.damping_mu * e.position;
-        e.position_lambda = model.damping_lambda * e.position;
-      }
-      edge_block<kBlocks, kDamped, kByPosition>(at, e, 0, 0, 1, upper, lower);
-      edge_block<kBlocks, kDamped, kByPosition>(at, e, 1, 0, 2, upper, lower);
-      edge_block<kBlocks, kDamped, kByPosition>(at, e, 2, 0, 3, upper, lower);
-      edge_block<kBlocks, kDamped, kByPosition>(at, e, 3, 1, 2, upper, lower);
-      edge_block<kBlocks, kDamped, kByPosition>(at, e, 4, 1, 3, upper, lower);
-      edge_block<kBlocks, kDamped, kByPosition>(at, e, 5, 2, 3, upper, lower);
+      if constexpr (kDamped || kByPosition) set_gradients(e, F, G);
+      if constexpr (kDamped) set_damping(e, model, F, volume);
+      if constexpr (kByPosition) set_position(e, model, F, gradient_of(at, G, fields.v), G, volume);
+      edge_blocks<kBlocks, kDamped, kByPosition>(at, e, upper, lower);
     }
   }
 }
@@ -157,103 +175,4 @@ static void tangent(const ElementGroup* groups, int count, const ElementModel& m
   }
   if (by_position) return run(damped ? blocks_of<Blocks::kCoupled, true, true> : blocks_of<Blocks::kCoupled, false, true>);
   return run(damped ? blocks_of<Blocks::kCoupled, true, false> : blocks_of<Blocks::kCoupled, false, false>);
-}
-
-// Blocks as rows of eight doubles and one.  Widths below eight go entry by entry: their time is in the memory as well.
-
-#if PALPATE_WIDTH == 8
-struct BlockSum {
-  typedef double Row __attribute__((vector_size(64)));
-  typedef double RowInMemory __attribute__((vector_size(64), may_alias, aligned(8)));
-  typedef long long Places __attribute__((vector_size(64)));
-  Row first{};
-  double last = 0.0;
-  /// Takes the block away from the sum, and adds it to the matrix.
-  PALPATE_INLINE_MEMBER void move(const double* block_first, double block_last, bool transposed, double* to) {
-    constexpr Places kPlaces[2] = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 3, 6, 1, 4, 7, 2, 5}};
-    const Row block = __builtin_shuffle(Row(*reinterpret_cast<const RowInMemory*>(block_first)), kPlaces[transposed]);
-    first -= block;
-    last -= block_last;
-    if (to == nullptr) return;
-    *reinterpret_cast<RowInMemory*>(to) += block;
-    to[8] += block_last;
-  }
-  PALPATE_INLINE_MEMBER void symmetrise() {
-    const Row mirrored = __builtin_shuffle(first, Places{0, 3, 6, 1, 4, 7, 2, 5});
-    first = 0.5 * (first + mirrored);
-  }
-  PALPATE_INLINE_MEMBER void store(double* to_first, double* to_last) const {
-    *reinterpret_cast<RowInMemory*>(to_first) = first;
-    *to_last = last;
-  }
-  PALPATE_INLINE_MEMBER void add_to(double* to) const {
-    *reinterpret_cast<RowInMemory*>(to) += first;
-    to[8] += last;
-  }
-};
-#else
-struct BlockSum {
-  double first[8] = {};
-  double last = 0.0;
-  PALPATE_INLINE_MEMBER void move(const double* block_first, double block_last, bool transposed, double* to) {
-    constexpr int kPlaces[2][8] = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 3, 6, 1, 4, 7, 2, 5}};
-    double block[8];
-    for (int c = 0; c < 8; ++c) block[c] = block_first[kPlaces[transposed][c]];
-    for (int c = 0; c < 8; ++c) first[c] -= block[c];
-    last -= block_last;
-    if (to == nullptr) return;
-    for (int c = 0; c < 8; ++c) to[c] += block[c];
-    to[8] += block_last;
-  }
-  PALPATE_INLINE_MEMBER void symmetrise() {
-    first[1] = first[3] = 0.5 * (first[1] + first[3]);
-    first[2] = first[6] = 0.5 * (first[2] + first[6]);
-    first[5] = first[7] = 0.5 * (first[5] + first[7]);
-  }
-  PALPATE_INLINE_MEMBER void store(double* to_first, double* to_last) const {
-    for (int c = 0; c < 8; ++c) to_first[c] = first[c];
-    *to_last = last;
-  }
-  PALPATE_INLINE_MEMBER void add_to(double* to) const {
-    for (int c = 0; c < 8; ++c) to[c] += first[c];
-    to[8] += last;
-  }
-};
-#endif
-
-/// The rows of the matrix that follow: six rows, some eighty blocks, take longer to add up than a line takes to come from memory.
-constexpr int kRowsAhead = 6;
-PALPATE_INLINE void fetch_row(const BlockTargets& targets, int n, const double* values) {
-  if (n >= targets.nodes) return;
-  const int begin = targets.row_start[n];
-  for (int p = begin; p < begin + targets.row_own[n]; ++p) fetch(values + 9 * static_cast<std::int64_t>(targets.slots[p]), 64);
-}
-
-template <bool kSymmetric>
-static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, const ChunkBlocks& lower, const ChunkBlocks& diagonal, double* values) {
-  for (int n = 0; n < targets.nodes; ++n) {
-    fetch_row(targets, n + kRowsAhead, values);
-    BlockSum sum;
-    const int begin = targets.row_start[n], own = begin + targets.row_own[n], end = targets.row_start[n + 1];
-    for (int p = begin; p < end; ++p) {
-      const std::uint32_t edge = targets.entries[p] / 2;
-      const bool second = targets.entries[p] % 2 != 0;
-      const ChunkBlocks& blocks = !kSymmetric && second ? lower : upper;
-      double* to = p < own ? values + 9 * static_cast<std::int64_t>(targets.slots[p]) : nullptr;
-      sum.move(blocks.first + 8 * edge, blocks.last[edge], kSymmetric && second, to);
-    }
-    if (kSymmetric) sum.symmetrise();  // to the last bit: the two sides of an edge's block were summed in different orders
-    if (n < targets.own_nodes)
-      sum.add_to(values + 9 * static_cast<std::int64_t>(targets.diagonal[n]));
-    else
-      sum.store(diagonal.first + 8 * n, diagonal.last + n);
-  }
-}
-
-static void flush(const BlockTargets& targets, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal,
-                  double* values) {
-  if (symmetric)
-    flush_rows<true>(targets, upper, lower, diagonal, values);
-  else
-    flush_rows<false>(targets, upper, lower, diagonal, values);
 }

@@ -65,10 +65,15 @@ PALPATE_INLINE long count_of(Mask m) {
   return sum;
 }
 
+/// 2 mu (F - R) + lambda (tr(R^T F) - 3) R
+PALPATE_INLINE Matrix elastic_stress(const ElementModel& model, const Matrix& F, const Matrix& R) {
+  const double mu2 = 2.0 * model.mu;
+  return (Pack{} + mu2) * F + (model.lambda * (double_dot(R, F) - 3.0) - mu2) * R;
+}
+
 template <bool kDamped>
 static void forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                    LaneCounts& counts) {
-  const double mu2 = 2.0 * model.mu;
   for (int g = 0; g < count; ++g) {
     fetch_ahead(groups, g, count);
     for (int part = 0; part < 8; part += kWidth) {
@@ -79,8 +84,7 @@ static void forces(const ElementGroup* groups, int count, const ElementModel& mo
       rotation(F, scalar, R, det, counts);
       const Mask inverted = det <= 0.0;
       if (any(inverted)) counts.inverted += count_of(inverted);
-      const Pack trace = double_dot(R, F) - 3.0;
-      Matrix P = (Pack{} + mu2) * F + (model.lambda * trace - mu2) * R;
+      Matrix P = elastic_stress(model, F, R);
       if constexpr (kDamped) P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
       add_forces(at, G, P, -at.volume(), f);
     }
@@ -178,6 +182,16 @@ PALPATE_INLINE Symmetric coupling(const ElementModel& model, const Matrix& F, co
   return C;
 }
 
+/// dP of the elastic stress for dF, row by row: 2 mu dF + lambda tr(M) R - [turn]x R with M = dF R^T, turn = C axial(M).
+PALPATE_INLINE Matrix elastic_change(const ElementModel& model, const Matrix& R, const Symmetric& C, const Matrix& dF) {
+  const Matrix M = times_transposed(dF, R);
+  const Vector turn = apply(full(C), {M.row[2].y - M.row[1].z, M.row[0].z - M.row[2].x, M.row[1].x - M.row[0].y});
+  const Pack stretch = model.lambda * (M.row[0].x + M.row[1].y + M.row[2].z), mu2 = Pack{} + 2.0 * model.mu;
+  return {{mu2 * dF.row[0] + (stretch * R.row[0] + turn.z * R.row[1] - turn.y * R.row[2]),
+           mu2 * dF.row[1] + (stretch * R.row[1] - turn.z * R.row[0] + turn.x * R.row[2]),
+           mu2 * dF.row[2] + (stretch * R.row[2] + turn.y * R.row[0] - turn.x * R.row[1])}};
+}
+
 static void apply_tangent(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* y,
                           LaneCounts& counts) {
   const bool damped = model.damping_mu > 0.0;
@@ -191,16 +205,7 @@ static void apply_tangent(const ElementGroup* groups, int count, const ElementMo
         Matrix R;
         Pack det;
         rotation(F, scalar, R, det, counts);
-        const Symmetric C = coupling(model, F, R, scalar, counts);
-        const Matrix M = times_transposed(dF, R);
-        const Vector turn = apply(full(C), {M.row[2].y - M.row[1].z, M.row[0].z - M.row[2].x, M.row[1].x - M.row[0].y});
-        const Pack stretch = model.lambda * (M.row[0].x + M.row[1].y + M.row[2].z);
-        // lambda tr(M) R - [turn]x R, row by row
-        dP.row[0] = stretch * R.row[0] + turn.z * R.row[1] - turn.y * R.row[2];
-        dP.row[1] = stretch * R.row[1] - turn.z * R.row[0] + turn.x * R.row[2];
-        dP.row[2] = stretch * R.row[2] + turn.y * R.row[0] - turn.x * R.row[1];
-        const Pack mu2 = Pack{} + 2.0 * model.mu;
-        dP = dP + mu2 * dF;
+        dP = elastic_change(model, R, coupling(model, F, R, scalar, counts), dF);
         if (model.by_position) {
           const Matrix F_dot = gradient_of(at, G, fields.v);
           dP = dP + dF * full(damping_stress(symmetric_product(F, F_dot), model)) + F * full(damping_stress(symmetric_product(dF, F_dot), model));

@@ -13,9 +13,13 @@ namespace {
 
 #include "fem/lane_blocks.h"
 
+#include "fem/lane_flush.h"
+
+#include "fem/lane_step.h"
+
 }  // namespace
 
 extern const LaneKernels kernels;
-const LaneKernels kernels{PALPATE_NAME, force, apply_tangent, tangent, flush, energy, power};
+const LaneKernels kernels{PALPATE_NAME, force, apply_tangent, tangent, flush, step, store, energy, power};
 
 }  // namespace palpate::fem::PALPATE_KERNELS

@@ -8,7 +8,8 @@
 //   p(l) = (l^2 - |F|^2)^2 - 8 l det F - 4 |cof F|^2,       p'(l) = 8 z,   z = (s0 + s1)(s1 + s2)(s2 + s0) = k l - det F,   k = (l^2 - |F|^2)/2.
 //
 // All roots are real and l is the greatest, so Newton's method descends to it from any bound above, without a branch; such a bound is
-// l^2 <= 3 |F|^2 (Cauchy and Schwarz), hence l <= (3 + |F|^2)/2, which is exact at S = I.  With l at hand (Markley 1993, "Attitude determination
+// l^2 <= 3 |F|^2 (Cauchy and Schwarz), hence l <= (3 + |F|^2)/2, which is exact at S = I.  A step of length d leaves an error of
+// d^2 p''/(2 p') with p'' = 12 l^2 - 4 |F|^2, so that it need not be seen to be small itself.  With l at hand (Markley 1993, "Attitude determination
 // using vector observations: a fast optimal matrix algorithm", eq. 17):
 //
 //   R = ( (k + |F|^2) F + l cof F - F F^T F ) / z.
@@ -19,6 +20,9 @@
 // What rounding does to R is of order |F|^3 / z times the unit roundoff, about s0/(s1 + s2), as it must be: lanes where z < |F|^3 / 100 (flat to
 // a line, or s1 + s2 near 0 where R jumps) and lanes that are not finite are left to the scalar path.
 
+/// Half of the relative error that Newton may leave in l; in the stretches it is up to |F|^3 / z, a hundred, times as large.
+constexpr double kLeft = 2e-10;
+
 /// @return lanes where R is right
 PALPATE_INLINE Mask find_rotation(const Matrix& F, Matrix& R, Pack& det) {
   const Matrix cof{{cross(F.row[1], F.row[2]), cross(F.row[2], F.row[0]), cross(F.row[0], F.row[1])}};
@@ -28,9 +32,10 @@ PALPATE_INLINE Mask find_rotation(const Matrix& F, Matrix& R, Pack& det) {
   Mask open;
   for (int i = 0; i < 24; ++i) {
     const Pack w = l * l - f;
-    const Pack step = (w * w - l * d - q) / (4.0 * (l * w) - d);
+    const Pack slope = 4.0 * (l * w) - d;  // p' = 8 z
+    const Pack step = (w * w - l * d - q) / slope;
     l -= step;
-    open = step > 1e-6 * l;
+    open = step * step * (3.0 * (l * l) - f) > kLeft * (l * slope);
     if (!any(open)) break;
   }
   const Pack k = 0.5 * (l * l - f), z = k * l - det;

@@ -17,7 +17,7 @@ class DeadLoad final : public dynamics::ForceTerm {
   DeadLoad(std::string name, VecX forces, int block_id) : name_(std::move(name)), forces_(std::move(forces)), block_id_(block_id) {}
   std::string_view name() const override { return name_; }
   dynamics::TermTraits traits() const override {
-    return {.stiff = false, .fast = false, .symmetric_tangent = true, .has_tangent = true, .conservative = true};
+    return {.stiff = false, .fast = false, .symmetric_tangent = true, .has_tangent = true, .conservative = true, .balanced = true};
   }
   void add_force(const StateView& state, VecX& f) override { f.segment(place(state).u_offset, forces_.size()) += forces_; }
   void add_tangent(const StateView&, double, double, dynamics::BorderedMatrix&) override {}

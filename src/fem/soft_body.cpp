@@ -49,6 +49,10 @@ struct SoftBody::Impl {
   /// Whether a tangent of these scales needs the elements at all.
   bool acts(double k_scale, double d_scale) const { return k_scale != 0.0 || (d_scale != 0.0 && damped()); }
 
+  void add_drag(const NodeBlock& at, double* force) const {
+    for (int i = 0; i < node_count(); ++i) Eigen::Map<Vec3>(force + 3 * i) -= material.mass_damping * mass(i) * Eigen::Map<const Vec3>(at.v + 3 * i);
+  }
+
   void set(const Material& m) {
     check(m, fmt::format("body \"{}\"", name).c_str());
     material = m;
@@ -81,7 +85,8 @@ MemoryUse SoftBody::memory() const {
 }
 
 dynamics::TermTraits SoftBody::traits() const {
-  return {.stiff = true, .fast = false, .symmetric_tangent = !impl_->model(1.0, 1.0).by_position, .has_tangent = true, .conservative = true};
+  const bool symmetric = !impl_->model(1.0, 1.0).by_position;
+  return {.stiff = true, .fast = false, .symmetric_tangent = symmetric, .has_tangent = true, .conservative = true, .balanced = symmetric};
 }
 
 void SoftBody::set_definite(bool definite) { impl_->definite = definite; }
@@ -113,8 +118,7 @@ void SoftBody::add_force(const StateView& state, VecX& f) {
   const LaneCounts met = m.elements.add_force(m.model(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr}, force);
   m.counts.inverted += met.inverted;
   m.counts.by_scalar += met.by_scalar;
-  if (m.material.mass_damping > 0.0)
-    for (int i = 0; i < node_count(); ++i) Eigen::Map<Vec3>(force + 3 * i) -= m.material.mass_damping * m.mass(i) * Eigen::Map<const Vec3>(at.v + 3 * i);
+  if (m.material.mass_damping > 0.0) m.add_drag(at, force);
 }
 
 void SoftBody::add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) {
@@ -143,6 +147,20 @@ void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_sc
   if (d_scale == 0.0 || m.material.mass_damping == 0.0) return;
   for (int i = 0; i < node_count(); ++i)
     Eigen::Map<Vec3>(out + 3 * i) += d_scale * m.material.mass_damping * m.mass(i) * Eigen::Map<const Vec3>(direction + 3 * i);
+}
+
+void SoftBody::add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f, dynamics::BalancedMatrix& A) {
+  Impl& m = *impl_;
+  const NodeBlock at = m.place(state);
+  double* force = f.data() + at.u_offset;
+  const LaneCounts met = m.elements.add_step(m.model(A.scale * k_scale, A.scale * d_scale), {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset},
+                                             at.first_node, force, A);
+  m.counts.inverted += met.inverted;
+  m.counts.clamped += met.clamped;
+  m.counts.by_scalar += met.by_scalar;
+  if (m.material.mass_damping == 0.0) return;
+  m.add_drag(at, force);
+  for (int i = 0; i < node_count(); ++i) A.diagonal.segment<3>(at.u_offset + 3 * i).array() += d_scale * m.material.mass_damping * m.mass(i);
 }
 
 double SoftBody::energy(const StateView& state) { return impl_->elements.energy(impl_->model(0.0, 0.0), {impl_->place(state).x}); }

@@ -34,6 +34,12 @@ SolveStatus StepSolver::factor_chosen(const BorderedMatrix& A) {
   return status;
 }
 
+SolveStatus StepSolver::factor_balanced() {
+  matrix_ = nullptr;
+  active_ = chosen_.get();
+  return chosen_->factor_balanced();
+}
+
 SolveStatus StepSolver::factor(const BorderedMatrix& A) {
   const SolveStatus status = factor_chosen(A);
   return status == SolveStatus::kIndefinite ? factor_by_lu(A) : status;
@@ -50,7 +56,7 @@ SolveStatus StepSolver::solve_any(const Columns& b, Columns& x) {
     *kept = b;
   }
   const SolveStatus status = active_->solve(b, x);
-  if (active_ == lu_.get() || (status != SolveStatus::kIndefinite && status != SolveStatus::kNotConverged)) return status;
+  if (active_ == lu_.get() || !matrix_ || (status != SolveStatus::kIndefinite && status != SolveStatus::kNotConverged)) return status;
   ++(status == SolveStatus::kIndefinite ? indefinite_ : unconverged_);
   if (const SolveStatus lu = factor_by_lu(*matrix_); lu != SolveStatus::kOk) return lu;
   return active_->solve(kept ? *kept : b, x);

@@ -34,6 +34,9 @@ class StepSolver final : public dynamics::LinearSolver {
   dynamics::SolveStatus factor(const dynamics::BorderedMatrix& A) override;
   dynamics::SolveStatus solve(const MatX& B, MatX& X) override { return solve_any(B, X); }
   dynamics::SolveStatus solve(const VecX& b, VecX& x) override { return solve_any(b, x); }
+  /// Of the chosen solver alone: what it cannot do with a balanced matrix, it says, and wants the whole one, with which the policy above begins.
+  dynamics::BalancedMatrix* balanced(const dynamics::BlockSparse& pattern) override { return chosen_->balanced(pattern); }
+  dynamics::SolveStatus factor_balanced() override;
   /// Sum over both solvers.
   const dynamics::SolverCounters& counters() const override;
 
@@ -68,7 +71,7 @@ class StepSolver final : public dynamics::LinearSolver {
 
   std::unique_ptr<dynamics::LinearSolver> chosen_, lu_;
   dynamics::LinearSolver* active_;
-  const dynamics::BorderedMatrix* matrix_ = nullptr;  ///< last factored
+  const dynamics::BorderedMatrix* matrix_ = nullptr;  ///< last factored; null: a balanced one
   bool project_;
   long indefinite_ = 0, projected_ = 0, unconverged_ = 0;
   MatX kept_columns_;  ///< right-hand sides of a solve in place, in case it has to be done again

@@ -30,6 +30,13 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
     dynamics::BorderedMatrix A;
     A.body = builder.build();
     VecX f = VecX::Zero(x.size()), y = f;
+    SoftBody symmetric("b", rest, material, {.tangent = tangent}, at.id);
+    dynamics::BalancedMatrix balanced;
+    balanced.pattern = &A.body;
+    for (int s = 0; s < A.body.slot_count(); ++s) balanced.place.push_back(s);
+    balanced.values.resize(9 * balanced.place.size());
+    balanced.diagonal = f;
+    balanced.places_version = 1;
     const auto evaluate = [&] {
       for (dynamics::ForceTerm* term : std::initializer_list<dynamics::ForceTerm*>{&body, &dilatation}) {
         term->add_force(at.state.view(), f);
@@ -38,6 +45,7 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
         term->energy(at.state.view());
         term->dissipated_power(at.state.view());
       }
+      symmetric.add_step(at.state.view(), v, 1, 1, f, balanced);
       mass->add_mass(at.state.view(), 1.0, A);
       mass->apply(at.state.view(), v, y);
     };

@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "integrate/linear/auto_choice.h"
 #include "integrate/linear/energy_bound.h"
 #include "integrate/linear/node_kernels.h"
 #include "integrate/linear/node_order.h"
+#include "malloc_count.h"
 #include "palpate/core/team.h"
 #include "palpate/dynamics/system.h"
 #include "palpate/fem/attachments.h"
@@ -26,8 +28,10 @@ struct BentBeam {
   State state;
   System system;
   VecX rest, masses;
-  explicit BentBeam(int cells_along, double youngs_modulus) {
-    const TetMesh mesh = mesh::box(Vec3(1.0, 0.25, 0.25), {cells_along, cells_along / 4, cells_along / 4});
+  explicit BentBeam(int cells_along, double youngs_modulus, int cells_across = 0) {
+    const int across = cells_across > 0 ? cells_across : cells_along / 4;
+    const double width = static_cast<double>(across) / cells_along;
+    const TetMesh mesh = mesh::box(Vec3(1.0, width, width), {cells_along, across, across});
     const auto n = static_cast<int>(mesh.nodes.cols());
     rest = mesh.nodes.reshaped();
     const int id = state.insert(BlockSpec{.name = "beam", .q_size = 3 * n, .u_size = 3 * n}, rest, VecX::Zero(3 * n));
@@ -45,6 +49,25 @@ struct BentBeam {
   }
   /// Bends the middle line to a circle whose angle at the end is `angle`, writes the step matrix there, and a right-hand side: weight and a wave.
   void at(double angle, double h, BorderedMatrix& A, VecX& b) {
+    bend(angle);
+    system.step_matrix(state.view(), 1.0, h, h * h, A);
+    system.force(state.view(), b);
+    load(angle, h, b);
+  }
+  /// The same of a balanced matrix.
+  void at(double angle, double h, BalancedMatrix& A, VecX& b) {
+    bend(angle);
+    ASSERT_TRUE(system.balanced(state.view()));
+    system.balanced_step(state.view(), VecX::Zero(rest.size()), 1.0, h, h * h, b, A);
+    load(angle, h, b);
+  }
+  const BlockSparse& pattern() {
+    EXPECT_TRUE(system.balanced(state.view()));
+    return system.pattern();
+  }
+
+ private:
+  void bend(double angle) {
     VecX q = rest;
     for (Eigen::Index i = 0; i < q.size(); i += 3) {
       const double s = rest[i] + 0.5, z = rest[i + 2], turn = angle * s, radius = angle != 0.0 ? 1.0 / angle : 0.0;
@@ -53,8 +76,8 @@ struct BentBeam {
       q[i + 2] = (radius + z) * std::cos(turn) - radius;
     }
     state.q() = q;
-    system.step_matrix(state.view(), 1.0, h, h * h, A);
-    system.force(state.view(), b);
+  }
+  void load(double angle, double h, VecX& b) {
     for (Eigen::Index i = 0; i < b.size(); ++i) b[i] = h * b[i] + masses[i / 3] * std::sin(7.0 * rest[i - i % 3] + angle);
     system.reduce(state.view(), b);
   }
@@ -98,6 +121,84 @@ TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSays) {
   EXPECT_EQ(checked, 96);
 }
 
+// A balanced matrix, off-diagonal blocks in single precision, is held to the same promise: against a direct solve of the whole matrix in double.  Across from four elements to
+// one, where rounding of the blocks tells most; from matrices that are nearly mass to those that are nearly stiffness.  Where it is too coarse for the tolerance, the solver says so.
+TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSaysOfABalancedMatrix) {
+  int checked = 0, refused = 0;
+  for (const int across : {4, 1})
+    for (const double E : {1e4, 1e5, 1e6})
+      for (const double rtol : {1e-3, 1e-6, 1e-7}) {
+        BentBeam beam(across == 1 ? 64 : 16, E, across);
+        const double h = 1e-2;
+        const auto solver = integrate::make_linear_solver(GetParam(), {.step_s = h, .linear_rtol = rtol});
+        const auto direct = integrate::make_linear_solver("cholmod");
+        BorderedMatrix whole;
+        VecX b, x, exact;
+        for (int k = 0; k < 6; ++k) {
+          beam.at(0.2 * k, h, whole, b);
+          ASSERT_EQ(direct->factor(whole), SolveStatus::kOk);
+          ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
+          BalancedMatrix* A = solver->balanced(beam.pattern());
+          if (!A) {
+            EXPECT_GT(k, 0) << "it has to see one to know";
+            continue;
+          }
+          beam.at(0.2 * k, h, *A, b);
+          if (solver->factor_balanced() != SolveStatus::kOk) {
+            ++refused;
+            continue;
+          }
+          ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk) << across << " across, E " << E << ", rtol " << rtol << ", step " << k << ", iterations " << solver->counters().iterations;
+          EXPECT_LE(energy_norm(whole, x - exact), rtol * energy_norm(whole, exact)) << across << " across, E " << E << ", rtol " << rtol << ", step " << k;
+          ++checked;
+        }
+        EXPECT_EQ(solver->counters().symbolic, 1);
+      }
+  EXPECT_GE(checked, 60);
+  EXPECT_GE(refused, 1);
+}
+
+// Whole and balanced matrices of one pattern in turn: one analysis, and what is remembered serves both.
+TEST_P(NodeSolvers, TakeWholeAndBalancedMatricesInTurn) {
+  BentBeam beam(16, 1e5);
+  const auto solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});
+  BorderedMatrix whole;
+  VecX b, x, y;
+  beam.at(0.5, 1e-2, whole, b);
+  ASSERT_EQ(solver->factor(whole), SolveStatus::kOk);
+  ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+  const long cold = solver->counters().iterations;
+  BalancedMatrix* A = solver->balanced(beam.pattern());
+  ASSERT_NE(A, nullptr);
+  beam.at(0.5, 1e-2, *A, b);
+  ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+  ASSERT_EQ(solver->solve(b, y), SolveStatus::kOk);
+  EXPECT_LE(solver->counters().iterations - cold, cold / 4);
+  EXPECT_LE(energy_norm(whole, x - y), 2e-4 * energy_norm(whole, x));
+  ASSERT_EQ(solver->solve(VecX(2.0 * b), y), SolveStatus::kOk) << "a second right-hand side";
+  EXPECT_LE(energy_norm(whole, 2.0 * x - y), 4e-4 * energy_norm(whole, x));
+  ASSERT_EQ(solver->factor(whole), SolveStatus::kOk);
+  ASSERT_EQ(solver->solve(b, y), SolveStatus::kOk);
+  EXPECT_LE(energy_norm(whole, x - y), 2e-4 * energy_norm(whole, x));
+  EXPECT_EQ(solver->counters().symbolic, 1);
+}
+
+TEST_P(NodeSolvers, SayWhatTheyCannotDoWithABalancedMatrix) {
+  BentBeam beam(8, 1e5);
+  const auto solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});
+  BalancedMatrix* A = solver->balanced(beam.pattern());
+  ASSERT_NE(A, nullptr);
+  VecX b;
+  beam.at(0.5, 1e-2, *A, b);
+  A->values[9 * static_cast<std::size_t>(A->place[1]) + 4] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(solver->factor_balanced(), SolveStatus::kSingular);
+  beam.at(0.5, 1e-2, *A, b);
+  A->diagonal *= -1e6;
+  EXPECT_EQ(solver->factor_balanced(), SolveStatus::kIndefinite);
+  beam.at(0.5, 1e-2, *A, b);
+  EXPECT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+}
+
 TEST_P(NodeSolvers, ThreadsDoNotChangeABit) {
   std::vector<VecX> answers;
   for (const int threads : {1, 2, 3}) {
@@ -109,8 +210,14 @@ TEST_P(NodeSolvers, ThreadsDoNotChangeABit) {
       beam.at(0.3 * k, 1e-2, A, b);
       ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
       ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
-      all.conservativeResize(all.size() + x.size());
+      all.conservativeResize(all.size() + 2 * x.size());
       all.tail(x.size()) = x;
+      BalancedMatrix* balanced = solver->balanced(beam.pattern());
+      ASSERT_NE(balanced, nullptr);
+      beam.at(0.3 * k, 1e-2, *balanced, b);
+      ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+      ASSERT_EQ(solver->solve(VecX(b.reverse().cwiseProduct((b.array() != 0.0).cast<double>().matrix())), x), SolveStatus::kOk);
+      all.segment(all.size() - 2 * x.size(), x.size()) = x;
     }
     answers.push_back(all);
   }
@@ -260,6 +367,69 @@ TEST(Auto, AnswersWhateverTheTableChooses) {
   EXPECT_EQ(checked, 4);
 }
 
+// A matrix far from the last one sends the choice back to a whole one.
+TEST(Auto, KeepsItsChoiceForBalancedMatricesWhileItServes) {
+  BentBeam beam(24, 1e5);
+  const auto solver = integrate::make_linear_solver("auto", {.linear_rtol = 1e-3});
+  EXPECT_EQ(solver->balanced(beam.pattern()), nullptr) << "nothing was chosen yet";
+  BorderedMatrix whole;
+  VecX b, x, exact;
+  beam.at(0.4, 1e-2, whole, b);
+  ASSERT_EQ(solver->factor(whole), SolveStatus::kOk);
+  BalancedMatrix* A = solver->balanced(beam.pattern());
+  ASSERT_NE(A, nullptr);
+  beam.at(0.4, 1e-2, *A, b);
+  ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+  ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+  const auto direct = integrate::make_linear_solver("cholmod");
+  ASSERT_EQ(direct->factor(whole), SolveStatus::kOk);
+  ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
+  EXPECT_LE(energy_norm(whole, x - exact), 1e-3 * energy_norm(whole, exact));
+  A = solver->balanced(beam.pattern());
+  beam.at(0.4, 1e-1, *A, b);
+  EXPECT_NE(solver->factor_balanced(), SolveStatus::kOk);
+}
+
+// --- the step --------------------------------------------------------------------------------------------------------
+
+// Steps in one pass are the steps of the general way, to the solver's tolerance; and no whole matrix was made on the way.
+TEST(LinearlyImplicitEuler, StepsTheSameInOnePass) {
+  for (const std::string name : {"pcg-single", "pcg-two-level"}) {
+    BentBeam fast(16, 1e5), direct(16, 1e5);
+    const auto one_pass = integrate::make_stepper(fast.system, fast.state, {.name = "linearly-implicit-euler", .step_s = 2e-3, .linear_solver = name, .linear_rtol = 1e-6});
+    const auto general = integrate::make_stepper(direct.system, direct.state, {.name = "linearly-implicit-euler", .step_s = 2e-3, .linear_solver = "cholmod"});
+    for (int k = 1; k <= 20; ++k) {
+      ASSERT_TRUE(one_pass->advance_to(2e-3 * k).ok());
+      ASSERT_TRUE(general->advance_to(2e-3 * k).ok());
+    }
+    const VecX moved = direct.state.q() - direct.rest;
+    EXPECT_GT(moved.norm(), 1e-3);
+    EXPECT_LT((fast.state.q() - direct.state.q()).norm(), 1e-5 * moved.norm()) << name;
+    const StepperCounters& c = one_pass->counters();
+    EXPECT_EQ(c.tangent_evaluations, 20);
+    EXPECT_EQ(c.force_evaluations, 20);
+    EXPECT_EQ(c.solver.factorisations, 20);
+    EXPECT_EQ(c.solver.solves, 20);
+    EXPECT_EQ(c.solver.symbolic, 1);
+    EXPECT_EQ(c.unconverged, 0);
+  }
+}
+
+TEST(LinearlyImplicitEuler, AllocatesNothingOnceWarm) {
+#if PALPATE_CAN_COUNT
+  for (const std::string name : {"pcg-single", "pcg-two-level", "auto"}) {
+    BentBeam beam(16, 1e5);
+    const auto stepper = integrate::make_stepper(beam.system, beam.state, {.name = "linearly-implicit-euler", .step_s = 1e-3, .linear_solver = name, .linear_rtol = 1e-4});
+    for (int k = 1; k <= 8; ++k) ASSERT_TRUE(stepper->advance_to(1e-3 * k).ok());
+    const long warm = malloc_calls;
+    for (int k = 9; k <= 16; ++k) ASSERT_TRUE(stepper->advance_to(1e-3 * k).ok());
+    EXPECT_EQ(malloc_calls - warm, 0) << name;
+  }
+#else
+  GTEST_SKIP() << "a sanitizer owns malloc: nothing can be counted here";
+#endif
+}
+
 // --- parts -----------------------------------------------------------------------------------------------------------
 
 TEST(NodeOrder, CutsAGraphIntoEqualPartsThatHangTogether) {
@@ -322,7 +492,13 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   const auto n = static_cast<std::size_t>(A.body.block_rows());
   std::vector<int> source(static_cast<std::size_t>(A.body.slot_count())), diagonal(n);
   for (std::size_t s = 0; s < source.size(); ++s) source[s] = static_cast<int>(s);
-  for (std::size_t i = 0; i < n; ++i) diagonal[i] = A.body.slot(static_cast<int>(i), static_cast<int>(i));
+  for (std::size_t i = 0; i < n; ++i) {
+    diagonal[i] = A.body.diagonal(static_cast<int>(i));
+    const auto row = source.begin() + A.body.row_start()[i];
+    std::rotate(row, source.begin() + diagonal[i], source.begin() + diagonal[i] + 1);  // the row's own block first
+  }
+  std::vector<int> column;
+  for (const int slot : source) column.push_back(A.body.columns()[static_cast<std::size_t>(slot)]);
   std::vector<double> v(4 * n + integrate::kVectorTail), Av(v);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t a = 0; a < 3; ++a) v[4 * i + a] = b[static_cast<Eigen::Index>(3 * i + a)];
@@ -333,10 +509,10 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     std::vector<float> values(9 * source.size() + integrate::kBlockTail), p(4 * n + integrate::kVectorTail), q(p), inverse(12 * n + integrate::kVectorTail);
     const double* V[3] = {v.data(), nullptr, nullptr};
     double* AV[3] = {Av.data(), nullptr, nullptr};
-    const integrate::DoubleBlocks D{A.body.row_start().data(), A.body.columns().data(), source.data(), A.body.values().data(), A.body.slot_count() - 1};
+    const integrate::DoubleBlocks D{A.body.row_start().data(), column.data(), source.data(), A.body.values().data(), A.body.slot_count() - 1};
     ASSERT_TRUE(k.convert(D, 1.0, values.data(), 1, V, AV, 0, static_cast<int>(n)));
     for (std::size_t i = 0; i < v.size(); ++i) p[i] = static_cast<float>(v[i]);
-    const double pq = k.product({A.body.row_start().data(), A.body.columns().data(), values.data()}, p.data(), q.data(), 0, static_cast<int>(n));
+    const double pq = k.product({A.body.row_start().data(), column.data(), values.data()}, p.data(), q.data(), 0, static_cast<int>(n));
     ASSERT_TRUE(k.invert_diagonal(A.body.values().data(), diagonal.data(), 1.0, inverse.data(), 0, static_cast<int>(n)));
     double in_double = 0.0, in_single = 0.0, identity = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -355,6 +531,29 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     EXPECT_LT(in_single, 1e-5 * exact.cwiseAbs().maxCoeff()) << k.name;
     EXPECT_NEAR(pq, b.dot(exact), 1e-5 * std::abs(b.dot(exact))) << k.name;
     EXPECT_LT(identity, 1e-5) << k.name;
+
+    std::vector<double> mass(4 * n), own(9 * n + 3);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t a = 0; a < 3; ++a) {  // what is missing in a row's sum
+        double sum = 0.0;
+        for (int s = A.body.row_start()[i]; s < A.body.row_start()[i + 1]; ++s)
+          sum += A.body.columns()[static_cast<std::size_t>(s)] == static_cast<int>(i) ? A.body.block(s)[4 * a] : static_cast<float>(A.body.block(s)[4 * a]);
+        mass[4 * i + a] = sum;
+      }
+    const integrate::BalancedBlocks B{A.body.row_start().data(), column.data(), values.data(), mass.data(), own.data(), 1.0};
+    for (const bool again : {false, true}) {
+      std::fill(Av.begin(), Av.end(), 0.0);
+      if (again)
+        k.multiply_balanced(B, 1, V, AV, 0, static_cast<int>(n));
+      else
+        ASSERT_TRUE(k.balance(B, 1, V, AV, 0, static_cast<int>(n)));
+      double off = 0.0;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (beam.rest[static_cast<Eigen::Index>(3 * i)] < -0.5 + 0.2) continue;  // rows that lack the held columns are not balanced
+        for (std::size_t a = 0; a < 3; ++a) off = std::max(off, std::abs(Av[4 * i + a] - exact[static_cast<Eigen::Index>(3 * i + a)]));
+      }
+      EXPECT_LT(off, 1e-6 * exact.cwiseAbs().maxCoeff()) << k.name;
+    }
 
     const int size = 21, stride = 32;
     MatX S = MatX::Random(size, size);

@@ -43,6 +43,19 @@ TEST(FemBench, WorkGrowsWithTheMeshAndTheSolveWithItsIterations) {
   EXPECT_NEAR(bytes_to_store(ten) / bytes_to_store(one), 10.0, 1e-12);
 }
 
+// One pass over the elements: their deformation and rotation once, and no matrix in double.
+TEST(FemBench, OnePassHasLessToDo) {
+  StepCounts counts{.nodes = 1e3, .tetrahedra = 4e3, .blocks = 1.3e4, .iterations = 10.0};
+  const StepWork passes = work_of(counts);
+  counts.one_pass = true;
+  const StepWork one = work_of(counts);
+  EXPECT_LT(one.force.double_flops + one.matrix.double_flops, passes.force.double_flops + passes.matrix.double_flops);
+  EXPECT_GT(one.matrix.double_flops, passes.matrix.double_flops);
+  EXPECT_EQ(one.matrix.written_bytes, 36.0 * counts.blocks + 24.0 * counts.nodes);
+  EXPECT_EQ(one.solve.read_bytes, passes.solve.read_bytes);
+  EXPECT_LT(one.working_set, 0.7 * passes.working_set);
+}
+
 TEST(FemBench, ExponentOfAPowerLaw) {
   std::vector<FemBenchRow> rows(3);
   std::vector<const FemBenchRow*> members;

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "palpate/dynamics/matrix.h"
+#include "palpate/dynamics/balanced_matrix.h"
 #include "palpate/dynamics/state.h"
 
 namespace palpate::dynamics {
@@ -15,6 +15,7 @@ struct TermTraits {
   bool has_tangent = true;        ///< false: explicit only (gravity and other dead loads have a zero tangent and say true)
   bool conservative = false;      ///< energy() is its potential
   bool contact = false;           ///< kinked where it opens and closes; an ImEx split may put it on the explicit side
+  bool balanced = false;          ///< its tangent is that of a BalancedMatrix, written by add_step(); or zero
 };
 
 /// What a term has to say about a state that a step failed at: an element turned inside out.
@@ -42,6 +43,9 @@ class ForceTerm {
   virtual void add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) = 0;
   /// y += (k_scale K + d_scale D) x without assembling; x and y of u_size.
   virtual void apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) = 0;
+  /// f += force - K shift and A += k_scale K + d_scale D: a linearly implicit step's share in one pass over what force and tangent have in common.  Off-diagonal
+  /// blocks are stored, not added: System sees to it that no two terms write the same.  Of balanced terms alone; this default is for a zero tangent.
+  virtual void add_step(const StateView& state, const VecX& /*shift*/, double /*k_scale*/, double /*d_scale*/, VecX& f, BalancedMatrix& /*A*/) { add_force(state, f); }
   /// Potential energy [J]; zero where there is none.
   virtual double energy(const StateView&) { return 0.0; }
   /// Power taken out by damping and friction, >= 0 [W]; zero where there is none.

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "palpate/core/registry.h"
-#include "palpate/dynamics/matrix.h"
+#include "palpate/dynamics/balanced_matrix.h"
 #include "palpate/dynamics/spec.h"
 
 namespace palpate::dynamics {
@@ -33,6 +33,12 @@ class LinearSolver {
   virtual SolveStatus solve(const MatX& B, MatX& X) = 0;
   virtual SolveStatus solve(const VecX& b, VecX& x) = 0;
   virtual const SolverCounters& counters() const = 0;
+
+  /// Room for a matrix of this pattern in the solver's own order and precision, to be written and then prepared by factor_balanced(); null where it takes none.
+  /// The pattern stays where it is until the next call.
+  virtual BalancedMatrix* balanced(const BlockSparse& /*pattern*/) { return nullptr; }
+  /// factor() of what was written there.  Anything but kOk: it wants the whole matrix in double.  Right-hand sides are zero along held directions.
+  virtual SolveStatus factor_balanced() { return SolveStatus::kSingular; }
 };
 
 using MakeLinearSolver = std::unique_ptr<LinearSolver> (*)(const IntegratorSpec&);

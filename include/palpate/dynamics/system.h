@@ -55,6 +55,12 @@ class System {
   void acceleration_of_force(const StateView& state, VecX& f, VecX& a);
   /// A = m_scale M + d_scale D + k_scale K, driven rows and columns replaced by the identity (reduced onto masters where they have one).  Rebuilds the pattern when a term's version grew.
   void step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter = {});
+  /// Whether balanced_step() serves: all tangents are balanced and share no pair of nodes, the mass is lumped, no block is rigid.
+  bool balanced(const StateView& state);
+  /// Of all force terms and masses, at the last balanced() or step_matrix().
+  const BlockSparse& pattern() const { return pattern_; }
+  /// f = sum of force - K shift, and A = m_scale M + d_scale D + k_scale K with the driven directions held, in one pass.
+  void balanced_step(const StateView& state, const VecX& shift, double m_scale, double d_scale, double k_scale, VecX& f, BalancedMatrix& A);
   /// y = M x, all directions
   void apply_mass(const StateView& state, const VecX& x, VecX& y) const;
   /// Zeroes the driven entries of a residual, after adding their reduction to the masters' rows.
@@ -79,6 +85,8 @@ class System {
     VecX x, v, a, c;  ///< c: what the carried directions press on their master with [N]
     MatX G, K;        ///< K: its turning stiffness under c, at the last evaluate_carried_stiffness
   };
+  void update_pattern(const StateView& state);
+  bool tangents_share_no_pair(const Layout& layout) const;
   void ensure_pattern(const StateView& state, BorderedMatrix& A);
   void evaluate_driven(const StateView& state) const;
   void reduce_to_masters(const StateView& state, BorderedMatrix& A) const;
@@ -96,18 +104,16 @@ class System {
   std::uint64_t mass_layout_ = 0;  ///< layout version that the pattern of `mass_` was built for
   bool nodal_mass_diagonal_ = true;
   bool any_master_ = false;
-  VecX inverse_nodal_mass_;
+  VecX nodal_mass_, inverse_nodal_mass_;
+  double mass_scale_ = 1.0;  ///< a power of two near 1 over the mean nodal mass
   std::vector<char> driven_mask_;
   std::vector<int> driven_dofs_;
-  struct DrivenNode {
-    int node;
-    std::array<bool, 3> axes;
-  };
-  std::vector<DrivenNode> driven_nodes_;
+  std::vector<HeldNode> driven_nodes_;
   mutable std::uint64_t driven_pattern_ = 0;  ///< version that `driven_mirrors_` was found for
   mutable std::vector<int> driven_mirrors_;   ///< slot of (j, i) for each block (i, j) in the rows of the driven nodes, one after the other
   std::uint64_t pattern_key_ = 0;  ///< hash of the layout's and the terms' pattern versions that `pattern_` was built from
   BlockSparse pattern_;
+  bool share_no_pair_ = false;     ///< balanced tangents of `pattern_`
   mutable VecX scratch_, known_;
   VecX force_scratch_, held_scratch_, acceleration_scratch_;
 };

@@ -54,7 +54,8 @@ struct FemBenchRow {
   std::string size, linear_solver;
   int nodes = 0, tetrahedra = 0, blocks = 0, threads = 1, steps = 0;
   double youngs_modulus_pa = 0.0, step_s = 0.0, linear_rtol = 0.0;
-  double force_ms = 0.0;    ///< forces and the product K u
+  bool one_pass = false;    ///< forces, the product K u and the tangent come in one pass over the elements, timed as matrix_ms
+  double force_ms = 0.0;    ///< forces and the product K u; in one pass, what else the right-hand side needs
   double matrix_ms = 0.0;   ///< tangent, mass and held directions
   double factor_ms = 0.0;   ///< factor or preconditioner, and the copy of the matrix
   double solve_ms = 0.0;

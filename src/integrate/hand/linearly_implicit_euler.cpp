@@ -45,28 +45,54 @@ class LinearlyImplicitEuler final : public FixedStep {
     product_.setZero(rhs_.size());
     for (const auto& term : system_.terms())
       if (term->traits().has_tangent) term->apply_tangent(at, 1.0, 0.0, shift_, product_);
+    rhs_ -= product_;
+    return complete(at, h);
+  }
+
+  /// From f - K s to the whole right-hand side; false where it is not finite.
+  bool complete(const StateView& at, double h) {
     const bool drives_speed_up = (change_.array() != 0.0).any();  // fixed nodes do not
     if (drives_speed_up) {
+      product_.setZero(rhs_.size());
       for (const auto& term : system_.terms())
         if (term->traits().has_tangent) term->apply_tangent(at, 0.0, 1.0, change_, product_);
+      rhs_ -= product_;
     }
-    rhs_ = h * (rhs_ - product_);
+    rhs_ *= h;
     if (drives_speed_up) {
       system_.apply_mass(at, change_, product_);
       rhs_ -= product_;
     }
     system_.reduce(at, rhs_);
     if (system_.any_driven()) {  // carried nodes: the turning of G under the force held
-      product_.setZero();
+      product_.setZero(rhs_.size());
       system_.apply_carried_stiffness(at, shift_, product_);
       rhs_ -= h * product_;
     }
     return rhs_.allFinite();
   }
 
-  Attempt attempt(double h, double t1) override {
-    predict_drives(t1, h);
-    const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
+  /// Force, product and matrix in one pass over the bodies, and its solution; false where terms or solver do not take part in that, or the solver fails: the general
+  /// way then tells why, or does better.
+  bool solve_balanced(const StateView& at, double h) {
+    if (!system_.balanced(at)) return false;
+    BalancedMatrix* A = solver_.balanced(system_.pattern());
+    if (!A) return false;
+    {
+      const ScopedTimer timer(counters_.tangent_s);
+      ++counters_.force_evaluations;
+      ++counters_.tangent_evaluations;
+      system_.balanced_step(at, shift_, 1.0, h, h * h, rhs_, *A);
+    }
+    {
+      const ScopedTimer timer(counters_.force_s);
+      if (!complete(at, h)) return false;
+    }
+    return solver_.factor_balanced() == SolveStatus::kOk && solver_.solve(rhs_, du_) == SolveStatus::kOk;
+  }
+
+  /// The general way; not kOk: what went wrong.
+  Attempt solve(const StateView& at, double h) {
     if (!right_hand_side(at, h)) return {.status = StepStatus::kNotFinite, .what = "the force is not finite"};
     const auto assemble = [&] {
       const ScopedTimer timer(counters_.tangent_s);
@@ -76,6 +102,14 @@ class LinearlyImplicitEuler final : public FixedStep {
     assemble();
     if (solver_.factor(A_, system_, assemble) != SolveStatus::kOk || solver_.solve(rhs_, du_) != SolveStatus::kOk)
       return {.status = StepStatus::kSolverFailed, .what = "the step matrix is singular or not finite"};
+    return {};
+  }
+
+  Attempt attempt(double h, double t1) override {
+    predict_drives(t1, h);
+    const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
+    if (!solve_balanced(at, h))
+      if (const Attempt solved = solve(at, h); solved.status != StepStatus::kOk) return solved;
     if (!du_.allFinite()) return {.status = StepStatus::kNotFinite, .what = "the velocity is not finite"};
     u1_ = state_.u() + du_;
     q_dot(layout(), state_.q().data(), u1_.data(), q1_.data());

@@ -27,7 +27,7 @@ constexpr Measured kMeasured[] = {
 
 /// A choice is kept until the matrix has become so many times stiffer or softer: each solver would start without a past.
 constexpr double kKept = 4.0;
-constexpr int kSampledRows = 512;
+constexpr int kSampledRows = 512, kSampledRowsOfBalanced = 128;
 
 }  // namespace
 
@@ -72,6 +72,21 @@ const char* measured_choice(double nodes, double stiffness, double rtol) {
   return nearest->fastest;
 }
 
+/// The same of a balanced matrix, which has its row sums at hand.
+static double stiffness_number(const dynamics::BalancedMatrix& A) {
+  double stiffness = 0.0, mass = 0.0;
+  const int rows = A.pattern->block_rows(), stride = (rows / kSampledRowsOfBalanced) | 1;
+  for (int i = 0; i < rows; i += stride) {
+    mass += A.diagonal.segment<3>(3 * i).sum();
+    for (int s = A.pattern->row_start()[static_cast<std::size_t>(i)]; s < A.pattern->row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+      if (A.pattern->columns()[static_cast<std::size_t>(s)] == i) continue;
+      const float* block = A.values.data() + 9 * static_cast<std::size_t>(A.place[static_cast<std::size_t>(s)]);
+      stiffness -= block[0] + block[4] + block[8];
+    }
+  }
+  return 1.0 + stiffness / (A.scale * mass);
+}
+
 namespace {
 
 /// The solver that was the fastest in what the table holds nearest to this matrix: nodes, stiffness number and linear_rtol, in logarithms.
@@ -87,6 +102,17 @@ class AutoSolver final : public dynamics::LinearSolver {
     if (!same) choose(A);
     values_version_ = A.values_version;
     return active_->factor(A);
+  }
+  /// Of the solver chosen last; the first matrix is a whole one.
+  dynamics::BalancedMatrix* balanced(const dynamics::BlockSparse& pattern) override {
+    room_ = active_ && pattern.block_rows() == nodes_ ? active_->balanced(pattern) : nullptr;
+    return room_;
+  }
+  SolveStatus factor_balanced() override {
+    const double stiffness = stiffness_number(*room_);
+    if (!near(stiffness)) return SolveStatus::kSingular;  // a whole matrix, to choose anew by
+    values_version_ = 0;
+    return active_->factor_balanced();
   }
   SolveStatus solve(const MatX& B, MatX& X) override { return chosen().solve(B, X); }
   SolveStatus solve(const VecX& b, VecX& x) override { return chosen().solve(b, x); }
@@ -107,9 +133,11 @@ class AutoSolver final : public dynamics::LinearSolver {
     return *active_;
   }
 
+  bool near(double stiffness) const { return stiffness < kKept * stiffness_ && kKept * stiffness > stiffness_; }
+
   void choose(const BorderedMatrix& A) {
     const double stiffness = stiffness_number(A.body);
-    const bool as_before = active_ && A.body.block_rows() == nodes_ && stiffness < kKept * stiffness_ && kKept * stiffness > stiffness_;
+    const bool as_before = active_ && A.body.block_rows() == nodes_ && near(stiffness);
     if (as_before || (active_ && !std::isfinite(stiffness))) return;
     nodes_ = A.body.block_rows();
     stiffness_ = std::isfinite(stiffness) ? stiffness : 1.0;
@@ -126,6 +154,7 @@ class AutoSolver final : public dynamics::LinearSolver {
   IntegratorSpec spec_;
   std::array<std::unique_ptr<dynamics::LinearSolver>, 3> made_;
   dynamics::LinearSolver* active_ = nullptr;
+  dynamics::BalancedMatrix* room_ = nullptr;  ///< of active_
   std::uint64_t values_version_ = 0;
   int nodes_ = -1;
   double stiffness_ = 1.0;

@@ -7,7 +7,7 @@ namespace palpate::integrate {
 /// them (the product runs at the speed of memory); kBlockTail more floats, finite, are readable behind the last.
 struct SingleBlocks {
   const int* row_start;   ///< n + 1
-  const int* column;      ///< ascending in a row
+  const int* column;      ///< the row's own first, the others ascending
   const float* values;
 };
 constexpr int kBlockTail = 16, kVectorTail = 16;
@@ -17,6 +17,8 @@ constexpr int kInverseStride = 12;
 
 /// At most so many vectors go through one reading of the matrix in double precision.
 constexpr int kMostColumns = 3;
+/// Numbers that `gram` gives.
+constexpr int kMostSums = kMostColumns * (kMostColumns + 1) / 2 + kMostColumns;
 
 /// The original matrix and the way to it from the order of SingleBlocks.
 struct DoubleBlocks {
@@ -25,6 +27,16 @@ struct DoubleBlocks {
   const int* source;      ///< slot of each block in `values`
   const double* values;   ///< row-major, nine a block
   int last_slot;          ///< nothing is read behind it
+};
+
+/// A BalancedMatrix in the order of SingleBlocks; everything times its scale.
+struct BalancedBlocks {
+  const int* row_start;
+  const int* column;
+  float* values;
+  const double* mass;    ///< m, four numbers a node
+  double* own;           ///< the diagonal blocks in double, column-major, nine a node; three more numbers, finite, are readable behind the last
+  double unit;           ///< 1 / scale
 };
 
 /// The inner loops over nodes [first, last), one set of them for each instruction set: one source (node_kernels.inl), compiled for each and chosen when
@@ -48,7 +60,19 @@ struct NodeKernels {
   /// The blocks of rows [first, last), times `scale`, into `out` (null: not); and, for `count` columns, AV = A V in double; false where a
   /// value of the copy is not finite
   bool (*convert)(const DoubleBlocks& A, double scale, float* out, int count, const double* const* V, double* const* AV, int first, int last);
-  /// Inverses of the diagonal blocks times 1/scale; false where one is not positive definite
+  /// Rows [first, last): own = m - sum of the others, and symmetric in `values`; and, for `count` columns, AV = A V in double.  False where a number is not finite
+  bool (*balance)(const BalancedBlocks& A, int count, const double* const* V, double* const* AV, int first, int last);
+  /// AV = A V of a matrix that is balanced
+  void (*multiply_balanced)(const BalancedBlocks& A, int count, const double* const* V, double* const* AV, int first, int last);
+  /// Sums over nodes [first, last): V_j . AV_i for j = 0, 1, ... and i = 0 ... j, then V_j . b, one after the other into `out`
+  void (*gram)(int count, const double* const* V, const double* const* AV, const double* b, int first, int last, double* out);
+  /// x = sum of y_k V_k, Ax likewise; returns |b - Ax|^2
+  double (*combine)(int count, const double* y, const double* const* V, const double* const* AV, const double* b, double* x, double* Ax, int first, int last);
+  /// r = by (b - Ax)
+  void (*residual)(double by, const double* b, const double* Ax, float* r, int first, int last);
+  /// x += by d
+  void (*correct)(double by, const float* d, double* x, int first, int last);
+  /// Inverses of the diagonal blocks (of nodes at slot[node], or at [node] where it is null) times 1/scale; false where one is not positive definite
   bool (*invert_diagonal)(const double* values, const int* slot, double scale, float* inverse, int first, int last);
 };
 

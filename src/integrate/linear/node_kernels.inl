@@ -239,6 +239,145 @@ bool convert(const DoubleBlocks& A, double scale, float* out, int count, const d
   }
 }
 
+// By reference: a vector wider than the baseline's registers is no return value.
+PALPATE_INLINE void take_column(const float* column, FourDouble& out) { out = __builtin_convertvector(load(column), FourDouble); }
+PALPATE_INLINE void take_column(const double* column, FourDouble& out) { out = *reinterpret_cast<const FourDoubleAnywhere*>(column); }
+
+template <int N, bool kBalance>
+[[gnu::always_inline]] static inline bool balanced_columns(const BalancedBlocks& A, const double* const* V, double* const* AV, int first, int last) {
+  FourDouble probe{};
+  for (int i = first; i < last; ++i) {
+    FourDouble sum[3] = {}, total[N + 1] = {};
+    for (int s = A.row_start[i] + 1; s < A.row_start[i + 1]; ++s) {
+      const float* block = A.values + 9 * static_cast<std::int64_t>(s);
+      __builtin_prefetch(block + kFloatsAhead);
+      FourDouble x, y, z;
+      take_column(block, x);
+      take_column(block + 3, y);
+      take_column(block + 6, z);
+      if constexpr (kBalance) {
+        sum[0] += x;
+        sum[1] += y;
+        sum[2] += z;
+      }
+      for (int n = 0; n < N; ++n) {
+        const double* v = V[n] + 4 * static_cast<std::int64_t>(A.column[s]);
+        total[n] += x * v[0] + y * v[1] + z * v[2];
+      }
+    }
+    double* own = A.own + 9 * static_cast<std::int64_t>(i);
+    if constexpr (kBalance) {
+      const double* m = A.mass + 4 * static_cast<std::int64_t>(i);
+      float* single = A.values + 9 * static_cast<std::int64_t>(A.row_start[i]);
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) own[3 * c + r] = (r == c ? m[c] : 0.0) - sum[c][r];
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r) single[3 * c + r] = static_cast<float>(0.5 * (own[3 * c + r] + own[3 * r + c]));
+      for (int c = 0; c < 3; ++c) probe += sum[c] * 0.0;  // 0 x is no number where x is infinite or none
+    }
+    FourDouble x, y, z;
+    take_column(own, x);
+    take_column(own + 3, y);
+    take_column(own + 6, z);
+    for (int n = 0; n < N; ++n) {
+      const double* v = V[n] + 4 * static_cast<std::int64_t>(i);
+      total[n] = (total[n] + x * v[0] + y * v[1] + z * v[2]) * A.unit;
+      double* to = AV[n] + 4 * static_cast<std::int64_t>(i);
+      for (int r = 0; r < 3; ++r) to[r] = total[n][r];
+      to[3] = 0.0;
+    }
+  }
+  return sum3(probe) == 0.0;
+}
+
+template <bool kBalance>
+static bool balanced_rows(const BalancedBlocks& A, int count, const double* const* V, double* const* AV, int first, int last) {
+  switch (count) {
+    case 0: return balanced_columns<0, kBalance>(A, V, AV, first, last);
+    case 1: return balanced_columns<1, kBalance>(A, V, AV, first, last);
+    case 2: return balanced_columns<2, kBalance>(A, V, AV, first, last);
+    default: return balanced_columns<3, kBalance>(A, V, AV, first, last);
+  }
+}
+bool balance(const BalancedBlocks& A, int count, const double* const* V, double* const* AV, int first, int last) {
+  return balanced_rows<true>(A, count, V, AV, first, last);
+}
+void multiply_balanced(const BalancedBlocks& A, int count, const double* const* V, double* const* AV, int first, int last) {
+  balanced_rows<false>(A, count, V, AV, first, last);
+}
+
+PALPATE_INLINE void take(const double* p, FourDouble& out) { out = *reinterpret_cast<const FourDoubleAnywhere*>(p); }
+PALPATE_INLINE void put(double* p, const FourDouble& v) { *reinterpret_cast<FourDoubleAnywhere*>(p) = v; }
+
+template <int N>
+[[gnu::always_inline]] static inline void gram_of(const double* const* V, const double* const* AV, const double* b, int first, int last, double* out) {
+  FourDouble sum[kMostSums] = {};
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
+    FourDouble v[N], Av[N], right;
+    for (int n = 0; n < N; ++n) {
+      take(V[n] + k, v[n]);
+      take(AV[n] + k, Av[n]);
+    }
+    take(b + k, right);
+    int at = 0;
+    for (int j = 0; j < N; ++j)
+      for (int i = 0; i <= j; ++i) sum[at++] += v[j] * Av[i];
+    for (int j = 0; j < N; ++j) sum[at++] += v[j] * right;
+  }
+  for (int at = 0; at < N * (N + 1) / 2 + N; ++at) out[at] = sum3(sum[at]);
+}
+void gram(int count, const double* const* V, const double* const* AV, const double* b, int first, int last, double* out) {
+  if (count == 1) return gram_of<1>(V, AV, b, first, last, out);
+  if (count == 2) return gram_of<2>(V, AV, b, first, last, out);
+  gram_of<3>(V, AV, b, first, last, out);
+}
+
+template <int N>
+[[gnu::always_inline]] static inline double combine_of(const double* y, const double* const* V, const double* const* AV, const double* b, double* x, double* Ax, int first,
+                                                       int last) {
+  FourDouble square{};
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
+    FourDouble point{}, image{}, right, v;
+    for (int n = 0; n < N; ++n) {
+      take(V[n] + k, v);
+      point += y[n] * v;
+      take(AV[n] + k, v);
+      image += y[n] * v;
+    }
+    put(x + k, point);
+    put(Ax + k, image);
+    take(b + k, right);
+    right -= image;
+    square += right * right;
+  }
+  return sum3(square);
+}
+double combine(int count, const double* y, const double* const* V, const double* const* AV, const double* b, double* x, double* Ax, int first, int last) {
+  switch (count) {
+    case 0: return combine_of<0>(y, V, AV, b, x, Ax, first, last);
+    case 1: return combine_of<1>(y, V, AV, b, x, Ax, first, last);
+    case 2: return combine_of<2>(y, V, AV, b, x, Ax, first, last);
+    default: return combine_of<3>(y, V, AV, b, x, Ax, first, last);
+  }
+}
+
+void residual(double by, const double* b, const double* Ax, float* r, int first, int last) {
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
+    FourDouble right, image;
+    take(b + k, right);
+    take(Ax + k, image);
+    store(r + k, __builtin_convertvector(by * (right - image), Four));
+  }
+}
+
+void correct(double by, const float* d, double* x, int first, int last) {
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
+    FourDouble point, change = __builtin_convertvector(load(d + k), FourDouble);
+    take(x + k, point);
+    put(x + k, point + by * change);
+  }
+}
+
 // By cofactors, eight nodes in lanes.  Positive definite exactly when the leading minors are (Sylvester).
 bool invert_diagonal(const double* values, const int* slot, double scale, float* inverse, int first, int last) {
   bool definite = true;
@@ -247,7 +386,8 @@ bool invert_diagonal(const double* values, const int* slot, double scale, float*
     double xx[8], xy[8], xz[8], yy[8], yz[8], zz[8], out[6][8];
     int good[8];
     for (int l = 0; l < 8; ++l) {
-      const double* b = values + 9 * static_cast<std::int64_t>(slot[from + (l < count ? l : 0)]);
+      const int node = from + (l < count ? l : 0);
+      const double* b = values + 9 * static_cast<std::int64_t>(slot ? slot[node] : node);
       xx[l] = b[0];
       xy[l] = b[1];
       xz[l] = b[2];
@@ -288,4 +428,5 @@ bool invert_diagonal(const double* values, const int* slot, double scale, float*
 }  // namespace palpate::integrate
 
 #define PALPATE_KERNELS_OF(set)                                                                                                              \
-  {#set, set::product, set::update, set::jacobi, set::gather_rigid, set::direction, set::dense, set::invert, set::convert, set::invert_diagonal}
+  {#set, set::product, set::update, set::jacobi, set::gather_rigid, set::direction, set::dense, set::invert, set::convert, set::balance, set::multiply_balanced, set::gram, set::combine, set::residual, \
+   set::correct, set::invert_diagonal}

@@ -18,11 +18,10 @@ void RigidClusters::prepare(const NodeOrder& order) {
 }
 
 /// In units of the cluster's mean radius, so that E's rows of forces and of moments are of one size.
-void RigidClusters::place_arms(const NodeOrder& order, const VecX& positions) {
-  const bool known = positions.size() == 3 * static_cast<Eigen::Index>(order.node.size());
+void RigidClusters::place_arms(const NodeOrder& order, const double* positions) {
   for (int c = 0; c < order.clusters(); ++c) {
     const auto first = static_cast<std::size_t>(order.start[static_cast<std::size_t>(c)]), last = static_cast<std::size_t>(order.start[static_cast<std::size_t>(c) + 1]);
-    const auto position = [&](std::size_t k) -> Vec3 { return known ? Vec3(positions.segment<3>(3 * static_cast<Eigen::Index>(order.node[k]))) : Vec3::Zero(); };
+    const auto position = [&](std::size_t k) -> Vec3 { return positions ? Vec3(Eigen::Map<const Vec3>(positions + 3 * static_cast<std::size_t>(order.node[k]))) : Vec3::Zero(); };
     Vec3 centre = Vec3::Zero();
     for (std::size_t k = first; k < last; ++k) centre += position(k) / static_cast<double>(last - first);
     double square = 0.0;
@@ -85,7 +84,7 @@ void RigidClusters::assemble(const SingleBlocks& A, const NodeOrder& order) {
     for (std::size_t c = r / 6 * 6 + 6; c < static_cast<std::size_t>(size_); ++c) E_[c * static_cast<std::size_t>(stride_) + r] = E_[r * static_cast<std::size_t>(stride_) + c];
 }
 
-bool RigidClusters::refresh(const SingleBlocks& A, const NodeOrder& order, const VecX& positions, const NodeKernels& kernels) {
+bool RigidClusters::refresh(const SingleBlocks& A, const NodeOrder& order, const double* positions, const NodeKernels& kernels) {
   place_arms(order, positions);
   leave_out_held(A);
   assemble(A, order);

@@ -19,8 +19,8 @@ class RigidClusters {
  public:
   /// New clusters; forgets E.
   void prepare(const NodeOrder& order);
-  /// E of this matrix (in the order's numbering) with arms at these positions (original numbering; empty: none).  False: E is not positive definite.
-  bool refresh(const SingleBlocks& A, const NodeOrder& order, const VecX& positions, const NodeKernels& kernels);
+  /// E of this matrix (in the order's numbering) with arms at these positions (original numbering; null: none).  False: E is not positive definite.
+  bool refresh(const SingleBlocks& A, const NodeOrder& order, const double* positions, const NodeKernels& kernels);
   bool ready() const { return ready_; }
   void forget() { ready_ = false; }
 
@@ -30,7 +30,7 @@ class RigidClusters {
   const float* arm() const { return arm_.data(); }
 
  private:
-  void place_arms(const NodeOrder& order, const VecX& positions);
+  void place_arms(const NodeOrder& order, const double* positions);
   void leave_out_held(const SingleBlocks& A);
   void assemble(const SingleBlocks& A, const NodeOrder& order);
 

@@ -8,12 +8,14 @@ namespace {
 // Bytes.  An element: nine numbers of its rest shape and its volume, four node numbers of two bytes; for the matrix six edge numbers more.  A block:
 // nine doubles; in the copy nine floats and a column; what leads from one to the other eight bytes.  A vector: three doubles a node, in the solver four.
 constexpr double kElement = 88.0, kEdges = 12.0, kBlock = 72.0, kMap = 8.0, kCopy = 36.0, kColumn = 4.0;
+// In one pass: the place of a block in the copy; a diagonal block is kept in double as well.
+constexpr double kPlace = 4.0, kOwn = 72.0;
 constexpr double kVector = 24.0, kSolverVector = 32.0, kSingleVector = 16.0, kInverse = 48.0;
 constexpr double kStarts = 3.0;  ///< earlier solutions that the solver starts from
 
 // Operations of an element, counted in the formulas of lane_element.h, lane_rotation.h and lane_blocks.h; a division counts as one, Newton takes four steps.
 constexpr double kGradient = 54.0, kRotation = 334.0, kForceTail = 123.0, kProductTail = 214.0, kBlocks = 402.0;
-// Of a block: scaling and three products in double; in an iteration one product.  Of a node in an iteration: update, preconditioner, direction.
+// Of a block: scaling, or its part of the row's sum, and three products in double; in an iteration one product.  Of a node in an iteration: update, preconditioner, direction.
 constexpr double kFactorOfBlock = 9.0 + kStarts * 18.0, kProductOfBlock = 18.0, kIterationOfNode = 50.0;
 
 }  // namespace
@@ -36,6 +38,15 @@ StepWork work_of(const StepCounts& c) {
   w.factor = {.read_bytes = (kBlock + kMap) * c.blocks + kStarts * kSolverVector * c.nodes,
               .written_bytes = kCopy * c.blocks + (kStarts * kSolverVector + kInverse) * c.nodes,
               .double_flops = kFactorOfBlock * c.blocks};
+  if (c.one_pass) {  // x, u, the shift and f once, singles out; the right-hand side is a few vectors; the preconditioner reads what was written
+    w.matrix = {.read_bytes = (kElement + kEdges) * c.tetrahedra + 4.0 * kVector * c.nodes + kPlace * c.blocks,
+                .written_bytes = kVector * c.nodes + kCopy * c.blocks,
+                .double_flops = (2.0 * kGradient + kRotation + kForceTail + kProductTail + kBlocks) * c.tetrahedra};
+    w.force = {.read_bytes = kVector * c.nodes, .written_bytes = kVector * c.nodes};
+    w.factor = {.read_bytes = (kCopy + kColumn) * c.blocks + (kStarts * kSolverVector + kVector) * c.nodes,
+                .written_bytes = (kStarts * kSolverVector + kInverse + kOwn) * c.nodes,
+                .double_flops = kFactorOfBlock * c.blocks};
+  }
   // An iteration: direction (z, p to p), product (p to q), update (p, q, d, r and the inverse to d, r, z).
   w.solve = {.read_bytes = c.iterations * ((kCopy + kColumn) * c.blocks + (7.0 * kSingleVector + kInverse) * c.nodes),
              .written_bytes = c.iterations * 5.0 * kSingleVector * c.nodes,
@@ -47,7 +58,7 @@ StepWork work_of(const StepCounts& c) {
 
 double bytes_to_store(const StepCounts& c) {
   const double elements = (kElement + kEdges) * c.tetrahedra;
-  const double matrix = (kBlock + kColumn + kMap + kCopy + kColumn + kMap) * c.blocks;
+  const double matrix = c.one_pass ? (kColumn + kCopy + kColumn + kPlace) * c.blocks + kOwn * c.nodes : (kBlock + kColumn + kMap + kCopy + kColumn + kMap) * c.blocks;
   // q, u, two of each attempt, force, product, right-hand side, change; in the solver three starts with their products, b, x, A x, and five single ones
   const double vectors = (10.0 * kVector + (2.0 * kStarts + 3.0) * kSolverVector + 5.0 * kSingleVector + kInverse) * c.nodes;
   return elements + matrix + vectors;

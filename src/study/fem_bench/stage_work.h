@@ -7,6 +7,7 @@ namespace palpate::study {
 struct StepCounts {
   double nodes = 0.0, tetrahedra = 0.0, blocks = 0.0;
   double iterations = 0.0;  ///< of the linear solver
+  bool one_pass = false;    ///< over the elements, with the blocks off the diagonal in single precision alone
 };
 
 /// The least that each stage of a linearly implicit step (warped tangent, no damping, solved by conjugate gradients in single precision) must do.

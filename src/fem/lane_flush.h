@@ -1,0 +1,134 @@
+#pragma once
+// From the blocks of a chunk to the matrix.
+
+// Blocks as rows of eight doubles and one.  Widths below eight go entry by entry: their time is in the memory as well.
+
+#if PALPATE_WIDTH == 8
+struct BlockSum {
+  typedef double Row __attribute__((vector_size(64)));
+  typedef double RowInMemory __attribute__((vector_size(64), may_alias, aligned(8)));
+  typedef long long Places __attribute__((vector_size(64)));
+  Row first{};
+  double last = 0.0;
+  /// Takes the block away from the sum, and adds it to the matrix.
+  PALPATE_INLINE_MEMBER void move(const double* block_first, double block_last, bool transposed, double* to) {
+    constexpr Places kPlaces[2] = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 3, 6, 1, 4, 7, 2, 5}};
+    const Row block = __builtin_shuffle(Row(*reinterpret_cast<const RowInMemory*>(block_first)), kPlaces[transposed]);
+    first -= block;
+    last -= block_last;
+    if (to == nullptr) return;
+    *reinterpret_cast<RowInMemory*>(to) += block;
+    to[8] += block_last;
+  }
+  PALPATE_INLINE_MEMBER void symmetrise() {
+    const Row mirrored = __builtin_shuffle(first, Places{0, 3, 6, 1, 4, 7, 2, 5});
+    first = 0.5 * (first + mirrored);
+  }
+  PALPATE_INLINE_MEMBER void store(double* to_first, double* to_last) const {
+    *reinterpret_cast<RowInMemory*>(to_first) = first;
+    *to_last = last;
+  }
+  PALPATE_INLINE_MEMBER void add_to(double* to) const {
+    *reinterpret_cast<RowInMemory*>(to) += first;
+    to[8] += last;
+  }
+};
+#else
+struct BlockSum {
+  double first[8] = {};
+  double last = 0.0;
+  PALPATE_INLINE_MEMBER void move(const double* block_first, double block_last, bool transposed, double* to) {
+    constexpr int kPlaces[2][8] = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 3, 6, 1, 4, 7, 2, 5}};
+    double block[8];
+    for (int c = 0; c < 8; ++c) block[c] = block_first[kPlaces[transposed][c]];
+    for (int c = 0; c < 8; ++c) first[c] -= block[c];
+    last -= block_last;
+    if (to == nullptr) return;
+    for (int c = 0; c < 8; ++c) to[c] += block[c];
+    to[8] += block_last;
+  }
+  PALPATE_INLINE_MEMBER void symmetrise() {
+    first[1] = first[3] = 0.5 * (first[1] + first[3]);
+    first[2] = first[6] = 0.5 * (first[2] + first[6]);
+    first[5] = first[7] = 0.5 * (first[5] + first[7]);
+  }
+  PALPATE_INLINE_MEMBER void store(double* to_first, double* to_last) const {
+    for (int c = 0; c < 8; ++c) to_first[c] = first[c];
+    *to_last = last;
+  }
+  PALPATE_INLINE_MEMBER void add_to(double* to) const {
+    for (int c = 0; c < 8; ++c) to[c] += first[c];
+    to[8] += last;
+  }
+};
+#endif
+
+/// The rows of the matrix that follow: six rows, some eighty blocks, take longer to add up than a line takes to come from memory.
+constexpr int kRowsAhead = 6;
+PALPATE_INLINE void fetch_row(const BlockTargets& targets, int n, const double* values) {
+  if (n >= targets.nodes) return;
+  const int begin = targets.row_start[n];
+  for (int p = begin; p < begin + targets.row_own[n]; ++p) fetch(values + 9 * static_cast<std::int64_t>(targets.slots[p]), 64);
+}
+
+template <bool kSymmetric>
+static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, const ChunkBlocks& lower, const ChunkBlocks& diagonal, double* values) {
+  for (int n = 0; n < targets.nodes; ++n) {
+    fetch_row(targets, n + kRowsAhead, values);
+    BlockSum sum;
+    const int begin = targets.row_start[n], own = begin + targets.row_own[n], end = targets.row_start[n + 1];
+    for (int p = begin; p < end; ++p) {
+      const std::uint32_t edge = targets.entries[p] / 2;
+      const bool second = targets.entries[p] % 2 != 0;
+      const ChunkBlocks& blocks = !kSymmetric && second ? lower : upper;
+      double* to = p < own ? values + 9 * static_cast<std::int64_t>(targets.slots[p]) : nullptr;
+      sum.move(blocks.first + 8 * edge, blocks.last[edge], kSymmetric && second, to);
+    }
+    if (kSymmetric) sum.symmetrise();  // to the last bit: the two sides of an edge's block were summed in different orders
+    if (n < targets.own_nodes)
+      sum.add_to(values + 9 * static_cast<std::int64_t>(targets.diagonal[n]));
+    else
+      sum.store(diagonal.first + 8 * n, diagonal.last + n);
+  }
+}
+
+static void flush(const BlockTargets& targets, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal,
+                  double* values) {
+  if (symmetric)
+    flush_rows<true>(targets, upper, lower, diagonal, values);
+  else
+    flush_rows<false>(targets, upper, lower, diagonal, values);
+}
+
+// A matrix in single precision takes each block as it is, column by column: the blocks above the diagonal turned, their mirror images as they stand.
+
+#if PALPATE_WIDTH == 8
+PALPATE_INLINE void store_single(const double* first, double last, float* above, float* below) {
+  typedef double Row __attribute__((vector_size(64), may_alias));
+  typedef float Singles __attribute__((vector_size(32)));
+  typedef float SinglesInMemory __attribute__((vector_size(32), may_alias, aligned(4)));
+  const Singles rows = __builtin_convertvector(*reinterpret_cast<const Row*>(first), Singles);
+  *reinterpret_cast<SinglesInMemory*>(above) = __builtin_shufflevector(rows, rows, 0, 3, 6, 1, 4, 7, 2, 5);
+  *reinterpret_cast<SinglesInMemory*>(below) = rows;
+  above[8] = below[8] = static_cast<float>(last);
+}
+#else
+PALPATE_INLINE void store_single(const double* first, double last, float* above, float* below) {
+  constexpr int kTurned[8] = {0, 3, 6, 1, 4, 7, 2, 5};
+  for (int c = 0; c < 8; ++c) {
+    above[c] = static_cast<float>(first[kTurned[c]]);
+    below[c] = static_cast<float>(first[c]);
+  }
+  above[8] = below[8] = static_cast<float>(last);
+}
+#endif
+
+constexpr int kEdgesAhead = 16;
+static void store(const std::int32_t* places, int count, const ChunkBlocks& upper, float* values) {
+  const auto at = [&](std::int32_t place) { return values + 9 * static_cast<std::int64_t>(place); };
+  for (int k = 0; k < count; ++k) {
+    if (k + kEdgesAhead < count)
+      for (const std::int32_t* later = places + 2 * (k + kEdgesAhead); later < places + 2 * (k + kEdgesAhead) + 2; ++later) __builtin_prefetch(at(*later), 1);
+    store_single(upper.first + 8 * k, upper.last[k], at(places[2 * k]), at(places[2 * k + 1]));
+  }
+}

@@ -1,0 +1,17 @@
+#include "integrate/linear/cluster_team.h"
+
+namespace palpate::integrate {
+
+void ClusterTeam::share(const NodeOrder& order, const std::vector<int>& row_start) {
+  order_ = &order;
+  const int threads = size();
+  mine_.assign(static_cast<std::size_t>(threads) + 1, 0);
+  int cluster = 0;
+  for (int t = 1; t <= threads; ++t) {
+    const long goal = static_cast<long>(row_start.back()) * t / threads;
+    while (cluster < order.clusters() && row_start[static_cast<std::size_t>(order.start[static_cast<std::size_t>(cluster) + 1])] <= goal) ++cluster;
+    mine_[static_cast<std::size_t>(t)] = t == threads ? order.clusters() : cluster;
+  }
+}
+
+}  // namespace palpate::integrate

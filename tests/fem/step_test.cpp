@@ -1,0 +1,126 @@
+#include "fem_fixture.h"
+#include "palpate/core/workers.h"
+
+using namespace palpate;
+using namespace palpate::fem;
+using namespace palpate::fem::testing;
+
+namespace {
+
+constexpr double kK = 0.37, kD = 0.6, kScale = 8.0;
+
+/// Room for a balanced matrix in an order of its own: blocks backwards.
+struct Room {
+  dynamics::BlockSparse pattern;
+  dynamics::BalancedMatrix A;
+  explicit Room(const SoftBody& body, const dynamics::State& state) {
+    dynamics::PatternBuilder builder(state.layout());
+    body.add_pattern(builder);
+    pattern = builder.build();
+    A.pattern = &pattern;
+    for (int s = 0; s < pattern.slot_count(); ++s) A.place.push_back(pattern.slot_count() - 1 - s);
+    A.values.assign(9 * static_cast<std::size_t>(pattern.slot_count()), 77.0f);
+    A.scale = kScale;
+    A.diagonal = VecX::Ones(state.layout().u_size);
+    A.places_version = 1;
+  }
+  Mat3 block(int slot) const { return (Eigen::Map<const Eigen::Matrix3f>(A.values.data() + 9 * A.place[static_cast<std::size_t>(slot)])).cast<double>() / kScale; }
+};
+
+struct Case {
+  TetMesh rest = jittered_cube(10, 0.15, 31);  // three chunks
+  VecX x, v, w;
+  explicit Case(double shake) {
+    Random random(32);
+    x = flat(random.rotation() * rest.nodes) + shake * random.vector(3 * rest.nodes.cols());
+    v = random.vector(x.size());
+    w = random.vector(x.size());
+  }
+};
+
+Material material_with(double stiffness_damping, double mass_damping) {
+  Material m = soft_material();
+  m.stiffness_damping = stiffness_damping;
+  m.mass_damping = mass_damping;
+  return m;
+}
+
+std::vector<std::string> instruction_sets() {
+  std::vector<std::string> out;
+  for (const char* name : {"baseline", "avx2", "avx512"})
+    if (message_of([&] { SoftBody("b", one_tet(), soft_material(), {.instructions = name}, 0); }).empty()) out.emplace_back(name);
+  return out;
+}
+
+}  // namespace
+
+// One pass gives what three give: force less stiffness times the shift, and the blocks off the diagonal to single precision, every one of them.
+TEST(Step, IsForceProductAndTangentInOne) {
+  int compared = 0;
+  for (const std::string& set : instruction_sets())
+    for (const Tangent tangent : {Tangent::kExact, Tangent::kProjected, Tangent::kWarped})
+      for (const double shake : {0.01, 0.12})  // the second turns elements inside out
+        for (const Material& material : {material_with(0.0, 0.0), material_with(0.4, 0.3)}) {
+          const Case c(shake);
+          OneBody at(c.x, c.v);
+          SoftBody body("b", c.rest, material, {.tangent = tangent, .instructions = set}, at.id);
+          ASSERT_TRUE(body.traits().balanced);
+          Room room(body, at.state);
+          VecX f = VecX::Zero(c.x.size()), product = f, want = f;
+          body.add_step(at.state.view(), c.w, kK, kD, f, room.A);
+          const ElementCounts counts = body.counts();
+          EXPECT_EQ(counts.inverted > 0, shake > 0.1);
+          body.reset_counts();
+          dynamics::BorderedMatrix whole;
+          whole.body = room.pattern;
+          body.add_tangent(at.state.view(), kK, kD, whole);
+          EXPECT_EQ(body.counts().clamped, counts.clamped);
+          body.add_force(at.state.view(), want);
+          EXPECT_EQ(body.counts().inverted, counts.inverted);
+          body.apply_tangent(at.state.view(), 1.0, 0.0, c.w, product);
+          want -= product;
+          EXPECT_LT((f - want).norm(), 1e-12 * want.norm()) << set;
+
+          double largest = 0.0;
+          for (const double value : whole.body.values()) largest = std::max(largest, std::abs(value));
+          const VecX masses = lumped_masses(c.rest, material.density);
+          for (int i = 0; i < room.pattern.block_rows(); ++i) {
+            for (int s = room.pattern.row_start()[static_cast<std::size_t>(i)]; s < room.pattern.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+              if (room.pattern.columns()[static_cast<std::size_t>(s)] == i) continue;
+              const Mat3 exact = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(whole.body.block(s));
+              ASSERT_LT((room.block(s) - exact).norm(), 1e-7 * exact.norm() + 1e-12 * largest) << set << ", block " << s;
+              ++compared;
+            }
+            for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(room.A.diagonal[3 * i + axis], 1.0 + kD * material.mass_damping * masses[i], 1e-14);
+          }
+        }
+  EXPECT_GT(compared, 100000);
+}
+
+TEST(Step, ThreadsDoNotChangeABit) {
+  const Case c(0.08);
+  std::vector<VecX> forces;
+  std::vector<std::vector<float>> values;
+  for (const int threads : {1, 2, 3}) {
+    workers::set_count(threads);
+    OneBody at(c.x, c.v);
+    SoftBody body("b", c.rest, material_with(0.4, 0.3), {}, at.id);
+    Room room(body, at.state);
+    VecX f = VecX::Zero(c.x.size());
+    body.add_step(at.state.view(), c.w, kK, kD, f, room.A);
+    forces.push_back(f);
+    values.push_back(room.A.values);
+  }
+  workers::set_count(1);
+  EXPECT_EQ(forces[0], forces[1]);
+  EXPECT_EQ(forces[0], forces[2]);
+  EXPECT_EQ(values[0], values[1]);
+  EXPECT_EQ(values[0], values[2]);
+}
+
+TEST(Step, AnUnsymmetricTangentIsNotBalanced) {
+  const Case c(0.01);
+  OneBody at(c.x, c.v);
+  const SoftBody body("b", c.rest, material_with(0.4, 0.0), {.full_damping_tangent = true}, at.id);
+  EXPECT_FALSE(body.traits().balanced);
+}
