@@ -19,7 +19,7 @@ struct Pointers {
 }  // namespace
 
 void KrylovStart::prepare(const NodeOrder& order) {
-  for (int k = 0; k < kMostColumns; ++k)
+  for (int k = 0; k < most_; ++k)
     for (Doubles* v : {&V_[k], &AV_[k]}) v->assign(4 * order.node.size() + kVectorTail, 0.0);
   partial_.assign(static_cast<std::size_t>(order.clusters()), {});
   count_ = 0;
@@ -85,9 +85,9 @@ KrylovStart::Start KrylovStart::combine(bool warm, const Doubles& b, Doubles& x,
 }
 
 void KrylovStart::keep(Doubles& x) {
-  x.swap(V_[kMostColumns - 1]);
-  for (int k = kMostColumns - 1; k > 0; --k) V_[k].swap(V_[k - 1]);
-  count_ = std::min(count_ + 1, kMostColumns);
+  x.swap(V_[most_ - 1]);
+  for (int k = most_ - 1; k > 0; --k) V_[k].swap(V_[k - 1]);
+  count_ = std::min(count_ + 1, most_);
   known_ = false;
 }
 

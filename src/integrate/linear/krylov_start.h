@@ -7,10 +7,12 @@ namespace palpate::integrate {
 
 /// Where an iteration starts: the best combination of the last solutions in the energy norm (Fischer 1998),
 ///     x = V y,   V^T A V y = V^T b.
+/// The more of them, the more of a smooth motion they foresee; each costs its share of that reading.
 /// V is known before the matrix is: A V is formed while the matrix is copied, in the same reading.
 class KrylovStart {
  public:
-  KrylovStart(const NodeKernels& kernels, ClusterTeam& team) : kernels_(kernels), team_(team) {}
+  /// @param most  solutions that are kept, up to kMostColumns
+  KrylovStart(const NodeKernels& kernels, ClusterTeam& team, int most) : kernels_(kernels), team_(team), most_(most) {}
 
   /// Forgets; vectors over the nodes of this order.
   void prepare(const NodeOrder& order);
@@ -35,6 +37,7 @@ class KrylovStart {
 
   const NodeKernels& kernels_;
   ClusterTeam& team_;
+  int most_;
   Doubles V_[kMostColumns], AV_[kMostColumns];  ///< the newest first
   int count_ = 0;
   bool known_ = false;  ///< AV_ is of the present matrix and the present V_

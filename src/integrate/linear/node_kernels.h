@@ -16,7 +16,7 @@ constexpr int kBlockTail = 16, kVectorTail = 16;
 constexpr int kInverseStride = 12;
 
 /// At most so many vectors go through one reading of the matrix in double precision.
-constexpr int kMostColumns = 3;
+constexpr int kMostColumns = 5;
 /// Numbers that `gram` gives.
 constexpr int kMostSums = kMostColumns * (kMostColumns + 1) / 2 + kMostColumns;
 

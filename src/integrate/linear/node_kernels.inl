@@ -186,7 +186,24 @@ bool invert(float* E, int size, int stride) {
 
 PALPATE_INLINE double sum3(const FourDouble& v) { return (v[0] + v[1]) + v[2]; }
 
-/// N columns at once, so that their sums stay in registers.
+/// work(Count<n>) for n columns: their sums stay in registers.
+template <int N>
+struct Count {
+  static constexpr int value = N;
+};
+template <class Work>
+[[gnu::always_inline]] static inline auto by_count(int count, Work&& work) {
+  static_assert(kMostColumns == 5);
+  switch (count) {
+    case 0: return work(Count<0>{});
+    case 1: return work(Count<1>{});
+    case 2: return work(Count<2>{});
+    case 3: return work(Count<3>{});
+    case 4: return work(Count<4>{});
+    default: return work(Count<5>{});
+  }
+}
+
 template <int N>
 [[gnu::always_inline]] static inline bool convert_columns(const DoubleBlocks& A, double scale, float* out, const double* const* V, double* const* AV, int first, int last) {
   Eight probe{};  // 0 x is no number where x is infinite or none
@@ -231,12 +248,7 @@ template <int N>
 }
 
 bool convert(const DoubleBlocks& A, double scale, float* out, int count, const double* const* V, double* const* AV, int first, int last) {
-  switch (count) {
-    case 0: return convert_columns<0>(A, scale, out, V, AV, first, last);
-    case 1: return convert_columns<1>(A, scale, out, V, AV, first, last);
-    case 2: return convert_columns<2>(A, scale, out, V, AV, first, last);
-    default: return convert_columns<3>(A, scale, out, V, AV, first, last);
-  }
+  return by_count(count, [&](auto n) __attribute__((always_inline)) { return convert_columns<decltype(n)::value>(A, scale, out, V, AV, first, last); });
 }
 
 // By reference: a vector wider than the baseline's registers is no return value.
@@ -292,12 +304,7 @@ template <int N, bool kBalance>
 
 template <bool kBalance>
 static bool balanced_rows(const BalancedBlocks& A, int count, const double* const* V, double* const* AV, int first, int last) {
-  switch (count) {
-    case 0: return balanced_columns<0, kBalance>(A, V, AV, first, last);
-    case 1: return balanced_columns<1, kBalance>(A, V, AV, first, last);
-    case 2: return balanced_columns<2, kBalance>(A, V, AV, first, last);
-    default: return balanced_columns<3, kBalance>(A, V, AV, first, last);
-  }
+  return by_count(count, [&](auto n) __attribute__((always_inline)) { return balanced_columns<decltype(n)::value, kBalance>(A, V, AV, first, last); });
 }
 bool balance(const BalancedBlocks& A, int count, const double* const* V, double* const* AV, int first, int last) {
   return balanced_rows<true>(A, count, V, AV, first, last);
@@ -313,7 +320,7 @@ template <int N>
 [[gnu::always_inline]] static inline void gram_of(const double* const* V, const double* const* AV, const double* b, int first, int last, double* out) {
   FourDouble sum[kMostSums] = {};
   for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
-    FourDouble v[N], Av[N], right;
+    FourDouble v[N + 1], Av[N + 1], right;
     for (int n = 0; n < N; ++n) {
       take(V[n] + k, v[n]);
       take(AV[n] + k, Av[n]);
@@ -327,9 +334,7 @@ template <int N>
   for (int at = 0; at < N * (N + 1) / 2 + N; ++at) out[at] = sum3(sum[at]);
 }
 void gram(int count, const double* const* V, const double* const* AV, const double* b, int first, int last, double* out) {
-  if (count == 1) return gram_of<1>(V, AV, b, first, last, out);
-  if (count == 2) return gram_of<2>(V, AV, b, first, last, out);
-  gram_of<3>(V, AV, b, first, last, out);
+  by_count(count, [&](auto n) __attribute__((always_inline)) { gram_of<decltype(n)::value>(V, AV, b, first, last, out); });
 }
 
 template <int N>
@@ -353,12 +358,7 @@ template <int N>
   return sum3(square);
 }
 double combine(int count, const double* y, const double* const* V, const double* const* AV, const double* b, double* x, double* Ax, int first, int last) {
-  switch (count) {
-    case 0: return combine_of<0>(y, V, AV, b, x, Ax, first, last);
-    case 1: return combine_of<1>(y, V, AV, b, x, Ax, first, last);
-    case 2: return combine_of<2>(y, V, AV, b, x, Ax, first, last);
-    default: return combine_of<3>(y, V, AV, b, x, Ax, first, last);
-  }
+  return by_count(count, [&](auto n) __attribute__((always_inline)) { return combine_of<decltype(n)::value>(y, V, AV, b, x, Ax, first, last); });
 }
 
 void residual(double by, const double* b, const double* Ax, float* r, int first, int last) {

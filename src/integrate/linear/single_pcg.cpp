@@ -30,6 +30,9 @@ constexpr int kResidualReplacements = 40;
 constexpr int kNodesOfCluster = 100, kMostClusters = 96;
 /// Of a number in single precision, relative; and how many tolerances the bound below may come to for a body one element thick.
 constexpr double kSingleRounding = 0x1p-24, kRoundingShare = 4.0;
+/// Solutions to start from: many for tight tolerances, few for others, where one more saves less in iterations than it costs.
+constexpr double kManyStarts = 1e-4;
+constexpr int kFewColumns = 3;
 /// Of a cluster that is a chunk of work and no more.
 constexpr int kNodesOfChunk = 200;
 
@@ -63,7 +66,7 @@ class SinglePcg final : public dynamics::LinearSolver {
  public:
   SinglePcg(std::string name, bool two_level, const IntegratorSpec& spec)
       : name_(std::move(name)), two_level_(two_level), rtol_(std::max(spec.linear_rtol, kTightest)), spec_(spec), kernels_(node_kernels()), team_(spec.threads),
-        copy_(kernels_, team_), start_(kernels_, team_), iteration_(kernels_, team_, copy_, clusters_) {
+        copy_(kernels_, team_), start_(kernels_, team_, rtol_ < kManyStarts ? kMostColumns : kFewColumns), iteration_(kernels_, team_, copy_, clusters_) {
     counters::count("integrate.solver." + name_);
   }
 

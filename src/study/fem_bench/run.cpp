@@ -197,7 +197,7 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
 }
 
 void set_limits(FemBenchRow& row, const MachineLimits& limits) {
-  const StepCounts counts{static_cast<double>(row.nodes), static_cast<double>(row.tetrahedra), static_cast<double>(row.blocks), row.iterations, row.one_pass};
+  const StepCounts counts{static_cast<double>(row.nodes), static_cast<double>(row.tetrahedra), static_cast<double>(row.blocks), row.iterations, row.linear_rtol < 1e-4 ? 5.0 : 3.0, row.one_pass};
   const StepWork work = work_of(counts);
   row.scaled_ms = row.step_ms * limits.large_copy_gb_s / reference_bandwidth_gb_s(limits.threads);
   row.force_limit_ms = work.force.limit_ms(limits, work.working_set);

@@ -11,12 +11,11 @@ constexpr double kElement = 88.0, kEdges = 12.0, kBlock = 72.0, kMap = 8.0, kCop
 // In one pass: the place of a block in the copy; a diagonal block is kept in double as well.
 constexpr double kPlace = 4.0, kOwn = 72.0;
 constexpr double kVector = 24.0, kSolverVector = 32.0, kSingleVector = 16.0, kInverse = 48.0;
-constexpr double kStarts = 3.0;  ///< earlier solutions that the solver starts from
 
 // Operations of an element, counted in the formulas of lane_element.h, lane_rotation.h and lane_blocks.h; a division counts as one, Newton takes four steps.
 constexpr double kGradient = 54.0, kRotation = 334.0, kForceTail = 123.0, kProductTail = 214.0, kBlocks = 402.0;
-// Of a block: scaling, or its part of the row's sum, and three products in double; in an iteration one product.  Of a node in an iteration: update, preconditioner, direction.
-constexpr double kFactorOfBlock = 9.0 + kStarts * 18.0, kProductOfBlock = 18.0, kIterationOfNode = 50.0;
+// Of a block: scaling, or its part of the row's sum, and a product in double for each start; in an iteration one product.  Of a node in an iteration: update, preconditioner, direction.
+constexpr double kFactorOfBlock = 9.0, kStartOfBlock = 18.0, kProductOfBlock = 18.0, kIterationOfNode = 50.0;
 
 }  // namespace
 
@@ -35,17 +34,17 @@ StepWork work_of(const StepCounts& c) {
   w.matrix = {.read_bytes = (kElement + kEdges) * c.tetrahedra + kVector * c.nodes + kMap * c.blocks,
               .written_bytes = kBlock * c.blocks,
               .double_flops = (kGradient + kRotation + kBlocks) * c.tetrahedra};
-  w.factor = {.read_bytes = (kBlock + kMap) * c.blocks + kStarts * kSolverVector * c.nodes,
-              .written_bytes = kCopy * c.blocks + (kStarts * kSolverVector + kInverse) * c.nodes,
-              .double_flops = kFactorOfBlock * c.blocks};
+  w.factor = {.read_bytes = (kBlock + kMap) * c.blocks + c.starts * kSolverVector * c.nodes,
+              .written_bytes = kCopy * c.blocks + (c.starts * kSolverVector + kInverse) * c.nodes,
+              .double_flops = (kFactorOfBlock + c.starts * kStartOfBlock) * c.blocks};
   if (c.one_pass) {  // x, u, the shift and f once, singles out; the right-hand side is a few vectors; the preconditioner reads what was written
     w.matrix = {.read_bytes = (kElement + kEdges) * c.tetrahedra + 4.0 * kVector * c.nodes + kPlace * c.blocks,
                 .written_bytes = kVector * c.nodes + kCopy * c.blocks,
                 .double_flops = (2.0 * kGradient + kRotation + kForceTail + kProductTail + kBlocks) * c.tetrahedra};
     w.force = {.read_bytes = kVector * c.nodes, .written_bytes = kVector * c.nodes};
-    w.factor = {.read_bytes = (kCopy + kColumn) * c.blocks + (kStarts * kSolverVector + kVector) * c.nodes,
-                .written_bytes = (kStarts * kSolverVector + kInverse + kOwn) * c.nodes,
-                .double_flops = kFactorOfBlock * c.blocks};
+    w.factor = {.read_bytes = (kCopy + kColumn) * c.blocks + (c.starts * kSolverVector + kVector) * c.nodes,
+                .written_bytes = (c.starts * kSolverVector + kInverse + kOwn) * c.nodes,
+                .double_flops = (kFactorOfBlock + c.starts * kStartOfBlock) * c.blocks};
   }
   // An iteration: direction (z, p to p), product (p to q), update (p, q, d, r and the inverse to d, r, z).
   w.solve = {.read_bytes = c.iterations * ((kCopy + kColumn) * c.blocks + (7.0 * kSingleVector + kInverse) * c.nodes),
@@ -60,7 +59,7 @@ double bytes_to_store(const StepCounts& c) {
   const double elements = (kElement + kEdges) * c.tetrahedra;
   const double matrix = c.one_pass ? (kColumn + kCopy + kColumn + kPlace) * c.blocks + kOwn * c.nodes : (kBlock + kColumn + kMap + kCopy + kColumn + kMap) * c.blocks;
   // q, u, two of each attempt, force, product, right-hand side, change; in the solver three starts with their products, b, x, A x, and five single ones
-  const double vectors = (10.0 * kVector + (2.0 * kStarts + 3.0) * kSolverVector + 5.0 * kSingleVector + kInverse) * c.nodes;
+  const double vectors = (10.0 * kVector + (2.0 * c.starts + 3.0) * kSolverVector + 5.0 * kSingleVector + kInverse) * c.nodes;
   return elements + matrix + vectors;
 }
 

@@ -7,6 +7,7 @@ namespace palpate::study {
 struct StepCounts {
   double nodes = 0.0, tetrahedra = 0.0, blocks = 0.0;
   double iterations = 0.0;  ///< of the linear solver
+  double starts = 3.0;      ///< earlier solutions that it starts from
   bool one_pass = false;    ///< over the elements, with the blocks off the diagonal in single precision alone
 };
 
