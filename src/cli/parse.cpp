@@ -170,7 +170,7 @@ void add_stability(CLI::App& app, Invocation& invocation) {
   command->add_flag("--cells", arguments->cells, "print every cell with its figure, not only the unexpected ones");
   command->add_option("--seeds", arguments->seeds, "random starts of the squashed and scattered bodies")->check(CLI::Range(1, 100000))->capture_default_str();
   command->add_option("--jobs", arguments->jobs, "processes")->check(CLI::Range(1, 256))->capture_default_str();
-  command->add_option("--limit-s", arguments->limit_s, "CPU time of a cell [s]")->type_name("SECONDS")->check(duration)->capture_default_str();
+  command->add_option("--limit-s", arguments->limit_s, "CPU time of a cell; in rows that take minutes ten times that [s]")->type_name("SECONDS")->check(duration)->capture_default_str();
   command->add_option("-o,--output", arguments->folder, "folder for the results; default out/stability")->type_name("DIR");
   command->footer(R"(Examples:
   palpate stability --jobs 2

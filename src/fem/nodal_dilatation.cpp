@@ -71,10 +71,7 @@ struct NodalDilatation::Impl {
 
   Impl(std::string n, const TetMesh& rest, const Material& m, const SoftBodyOptions& o, int id)
       : name(std::move(n)), options(o), block_id(id), elements(make_rest_elements(rest, fmt::format("body \"{}\"", name))), rings(elements) {
-    check(m, fmt::format("body \"{}\"", name).c_str());
-    kept = {m.mu(), o.volumetric_share * m.lambda()};
-    kappa = m.lambda() - kept.lambda;
-    kappa_d = m.stiffness_damping * kappa;
+    set(m);
     F.resize(count());
     R.resize(count());
     element = rate = VecX::Zero(elements.count());
@@ -83,6 +80,12 @@ struct NodalDilatation::Impl {
     deformed = moving = turned;
   }
 
+  void set(const Material& m) {
+    check(m, fmt::format("body \"{}\"", name).c_str());
+    kept = {m.mu(), options.volumetric_share * m.lambda()};
+    kappa = m.lambda() - kept.lambda;
+    kappa_d = m.stiffness_damping * kappa;
+  }
   std::size_t count() const { return elements.volume.size(); }
   NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, elements.node_count()); }
   bool damped() const { return kappa_d != 0.0; }
@@ -188,6 +191,7 @@ NodalDilatation::NodalDilatation(std::string name, const TetMesh& rest, const Ma
     : impl_(std::make_unique<Impl>(std::move(name), rest, material, options, block_id)) {
   counters::count("fem.nodal_dilatation");
 }
+void NodalDilatation::set_material(const Material& material) { impl_->set(material); }
 NodalDilatation::~NodalDilatation() = default;
 
 std::string_view NodalDilatation::name() const { return impl_->name; }

@@ -78,9 +78,36 @@ class Loop {
     for (int i = 0; i < parts; ++i) {
       if (i > 0) refresh_contact();
       const double t = i + 1 == parts ? t1 : t0 + (i + 1) * (t1 - t0) / parts;
-      result_.status = ticks_ ? ticks_->advance_to(t) : world_.stepper->advance_to(t);
+      advance_over_changes(t);
       if (!result_.status.ok()) return;
     }
+  }
+
+  /// To t, stopping where a body's material changes.
+  void advance_over_changes(double t) {
+    for (;;) {
+      const double stop = next_change();
+      const bool on_the_way = stop < t * (1.0 - 1e-12);
+      result_.status = ticks_ ? ticks_->advance_to(on_the_way ? stop : t) : world_.stepper->advance_to(on_the_way ? stop : t);
+      if (!result_.status.ok()) return;
+      if (stop <= t * (1.0 + 1e-12)) change_materials(stop);
+      if (!on_the_way) return;
+    }
+  }
+
+  double next_change() const {
+    double next = HUGE_VAL;
+    for (const SoftBodySpec& spec : world_.description.bodies)
+      for (const MaterialChangeSpec& change : spec.changes)
+        if (change.time_s > changed_) next = std::min(next, change.time_s);
+    return next;
+  }
+
+  void change_materials(double time) {
+    changed_ = time;
+    for (std::size_t i = 0; i < world_.bodies.size(); ++i)
+      for (const MaterialChangeSpec& change : world_.description.bodies[i].changes)
+        if (change.time_s == time) world_.set_youngs_modulus(world_.bodies[i], change.youngs_modulus_pa);
   }
 
 #ifdef PALPATE_HAS_TOOL
@@ -158,6 +185,7 @@ class Loop {
   const RunOptions& options_;
   RunResult result_;
   dynamics::LinearisedContact record_;
+  double changed_ = 0.0;                  ///< time of the last change of a material
   std::optional<MonolithicTicks> ticks_;  ///< where tool and bodies are one system
 };
 

@@ -38,6 +38,15 @@ const Body* World::find_body(const std::string& name) const {
   return nullptr;
 }
 
+void World::set_youngs_modulus(Body& body, double youngs_modulus_pa) {
+  fem::Material material = body.term->material();
+  material.youngs_modulus = youngs_modulus_pa;
+  body.term->set_material(material);
+  if (body.dilatation) body.dilatation->set_material(material);
+  body.stiffness_scale = youngs_modulus_pa;
+  if (stepper) stepper->reinit(dynamics::ReinitReason::kParametersChanged);
+}
+
 Points World::positions(const Body& body) const {
   const dynamics::Block* block = state.layout().find(body.block_id);
   return Eigen::Map<const Points>(state.q().data() + block->q_offset, 3, block->q_size / 3);

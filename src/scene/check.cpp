@@ -77,6 +77,23 @@ void check_period(const Document& doc, const std::string& key, const std::string
                                              where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, tick, n * tick, (n + 1.0) * tick));
 }
 
+/// Between exchanges the tool feels a record of the body as it was: a body with a tool changes where one begins.
+void check_changes(const Document& doc, const Description& d) {
+  for (std::size_t i = 0; i < d.bodies.size(); ++i) {
+    const std::string where = fmt::format("body \"{}\": change", d.bodies[i].name);
+    for (std::size_t j = 0; j < d.bodies[i].changes.size(); ++j) {
+      const double time = d.bodies[i].changes[j].time_s, period = d.coupling.scheme == "monolithic" ? d.coupling.contact_refresh_s : d.coupling.exchange_period_s;
+      const std::string key = at("body", i, at("change", j, "time_s"));
+      if (j > 0 && time <= d.bodies[i].changes[j - 1].time_s)
+        refuse(place(doc, key), where, fmt::format("time_s = {} must be greater than the one before ({})", time, d.bodies[i].changes[j - 1].time_s));
+      if (time >= d.duration_s) refuse(place(doc, key), where, fmt::format("time_s = {} is not before the end of the run, {} s", time, d.duration_s));
+      if (d.tool && !is_multiple(time, period))
+        refuse(place(doc, key), where, fmt::format("time_s = {} must be a whole number of {} of {} s: between them the tool feels the body as it was", time,
+                                                   d.coupling.scheme == "monolithic" ? "contact refreshes" : "exchange periods", period));
+    }
+  }
+}
+
 /// A period that the run ends before: nothing would be exchanged in it.
 void check_length(const Document& doc, const std::string& key, const std::string& where, double period, double duration) {
   if (period <= duration * (1.0 + 1e-9)) return;
@@ -146,6 +163,7 @@ void check(const Document& doc, Description& d) {
   check_tool(doc, d);
   check_contacts(doc, d);
   check_exchange(doc, d);
+  check_changes(doc, d);
   check_compare(doc, d);
 }
 

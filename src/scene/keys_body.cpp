@@ -25,6 +25,14 @@ const KeyTable<LoadSpec>& load_keys() {
   return keys;
 }
 
+const KeyTable<MaterialChangeSpec>& change_keys() {
+  static const KeyTable<MaterialChangeSpec> keys = {
+      required(number("time_s", &MaterialChangeSpec::time_s, positive())),
+      required(number("youngs_modulus_pa", &MaterialChangeSpec::youngs_modulus_pa, positive())),
+  };
+  return keys;
+}
+
 const KeyTable<JointSpec>& joint_keys() {
   static const KeyTable<JointSpec> keys = {
       required(text("bone", &JointSpec::bone)),
@@ -97,6 +105,7 @@ const KeyTable<SoftBodySpec>& body_keys() {
       table("skeleton", &SoftBodySpec::skeleton, skeleton_keys()),
       tables("attachment", &SoftBodySpec::attachments, attachment_keys()),
       tables("load", &SoftBodySpec::loads, load_keys()),
+      tables("change", &SoftBodySpec::changes, change_keys()),
   };
   return keys;
 }

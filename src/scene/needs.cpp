@@ -37,6 +37,9 @@ void add_body_needs(const Description& d, std::vector<Need>& out) {
   out.push_back({"rigid bones", free > 0, free > 0 ? fmt::format("{} free [[bone]]: rigid blocks beside the nodes", free) : told > 0 ? "every [[bone]] is fixed or has keyframes: a function of time" : "no [[bone]]"});
   const int skeletons = count_if(d.bodies, [](const auto& b) { return b.skeleton.has_value(); });
   out.push_back({"skeleton", skeletons > 0, skeletons > 0 ? fmt::format("{} [body.skeleton]: bones of the model file; those on joints by Simbody", skeletons) : "no [body.skeleton]"});
+  int changes = 0;
+  for (const auto& body : d.bodies) changes += static_cast<int>(body.changes.size());
+  out.push_back({"material changes", changes > 0, changes > 0 ? fmt::format("{} [[body.change]]", changes) : "no [[body.change]]"});
   out.push_back({"loads", loads > 0, loads > 0 ? fmt::format("{} [[body.load]]", loads) : "no [[body.load]]"});
   // Every integrator of this version is implicit; an explicit one will leave these out.
   const std::string implicit = fmt::format("integrator \"{}\" is implicit", d.integrator.name);

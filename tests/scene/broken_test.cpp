@@ -23,6 +23,7 @@ const Broken kCases[] = {
     {"bone-fixed-mass", "14:11", "bone \"femur\": mass_kg means nothing to a fixed bone; remove it"},
     {"bone-inertia", "13:17", "bone \"femur\": inertia_kg_m2 = [1e-06, 1e-06, 3e-06] belongs to no rigid body: none may be larger than the other two together"},
     {"bone-shape", "10:1", "bone \"femur\": length_m is missing: shape = \"capsule\" needs it"},
+    {"change-order", "12:10", "body \"ball\": change: time_s = 0.4 must be greater than the one before (0.5)"},
     {"bone-without-mass", "10:1", "bone \"femur\": mass_kg (or density_kg_m3 of its shape) is missing; a bone that shall not move needs fixed = true or a [[bone.keyframe]]"},
     {"skeleton-hinge", "8:1", "body \"limb\": joint of \"hand\": axis is missing: a hinge turns about one, in the body's own axes, for example [1.0, 0.0, 0.0]"},
     {"skeleton-scripted-type", "10:8", "body \"limb\": joint of \"hand\": type means nothing to a joint with keyframes; remove it"},

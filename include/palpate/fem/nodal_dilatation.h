@@ -35,6 +35,7 @@ class NodalDilatation : public dynamics::ForceTerm {
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;
 
+  void set_material(const Material& material);  ///< takes effect at the next evaluation
   /// theta_n of each node.
   VecX dilatations(const dynamics::StateView& state);
   /// Von Mises norm of the whole body's Cauchy stress (SoftBody::nodal_stress with the pressure that acts here) [Pa].

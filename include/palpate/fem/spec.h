@@ -60,6 +60,12 @@ struct SkeletonSpec {
   std::vector<JointSpec> joints;
 };
 
+/// A body becomes stiffer or softer at a time.
+struct MaterialChangeSpec {
+  double time_s = 0.0;
+  double youngs_modulus_pa = 0.0;
+};
+
 /// A load spread over nodes in a box by their share of the boundary area: total force [N].
 struct LoadSpec {
   Vec3 box_min_m = Vec3::Zero();
@@ -89,6 +95,7 @@ struct SoftBodySpec {
   std::optional<SkeletonSpec> skeleton;    ///< its bones stand in mesh.file, a model file
   std::vector<AttachmentSpec> attachments;
   std::vector<LoadSpec> loads;
+  std::vector<MaterialChangeSpec> changes;  ///< times ascending; each acts from the step that begins then
 };
 
 }  // namespace palpate

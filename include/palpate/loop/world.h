@@ -99,6 +99,8 @@ struct World {
   dynamics::BorderedMatrix condensed_matrix;
 
   const Body* find_body(const std::string& name) const;
+  /// Makes a body stiffer or softer from the next step on; its damping goes along (mu_d = beta mu).  @throws Error for a modulus that is not positive
+  void set_youngs_modulus(Body& body, double youngs_modulus_pa);
   Points positions(const Body& body) const;             ///< now, world [m]
   Pose bone_pose(const Bone& bone) const;
   Twist bone_twist(const Bone& bone) const;

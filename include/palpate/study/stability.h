@@ -62,13 +62,15 @@ struct StabilityRow {
 /// Rows in the order of the matrix.
 std::vector<StabilityRow> stability_rows();
 
+constexpr double kLongerInSlowRows = 10.0;
+
 struct StabilityOptions {
   std::vector<std::string> rows;           ///< empty: all that are not slow
   std::vector<std::string> integrators;    ///< by the registry's name; empty: all
   bool slow = false;                       ///< the slow rows too
   int seeds = 10;                          ///< random starts of a cell that has them
   int jobs = 1;                            ///< processes
-  double limit_s = 20.0;                   ///< CPU time of a cell
+  double limit_s = 20.0;                   ///< CPU time of a cell; of a slow row's, kLongerInSlowRows times that
   const dynamics::StepperRegistry* registry = nullptr;  ///< null: integrate::stepper_registry()
   std::function<void(double fraction, const std::string& what)> progress;
   const std::atomic<bool>* stop = nullptr; ///< set from outside: no new cell begins

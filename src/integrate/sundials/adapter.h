@@ -104,6 +104,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   void accept_attempt(double t0, double t1, bool event);
   dynamics::StepResult result(dynamics::StepStatus status) const;
   dynamics::StepResult failure(int flag, double t, double t_end);
+  bool refresh_tangent(N_Vector residual);
   int test_convergence(int iteration, double correction, double tolerance);
 
   std::unique_ptr<OdeProblem> problem_;
@@ -111,7 +112,9 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   SUNContext context_ = nullptr;
   N_Vector y_ = nullptr, scratch_ = nullptr, weights_ = nullptr;
   SUNNonlinearSolver newton_ = nullptr;
-  double rate_ = 1.0, previous_correction_ = 0.0;  ///< contraction of Newton's iteration
+  double rate_ = 1.0, previous_correction_ = 0.0, previous_residual_ = 0.0;  ///< contraction of Newton's iteration
+  double tangent_time_ = 0.0;    ///< of the matrix last asked for
+  OdeProblem::Side tangent_side_ = OdeProblem::Side::kAll;
   void fill_weights(N_Vector y, N_Vector w) const;
   bool finds_roots() const { return spec_.events == "root-finding"; }
   double weight_scale_ = 1.0;

@@ -23,6 +23,7 @@ using Side = OdeProblem::Side;
 
 /// ARKODE's own 3 fail about once a step on soft bodies.
 constexpr int kNewtonIterations = 8;
+constexpr int kFixedStepIterations = 40;  ///< no shorter step helps where these do not end: contact may open and close many nodes on the way
 constexpr int kInterpolantDegree = 3;  ///< cubic Hermite: no evaluation of its own
 constexpr int kRootDegree = 5;         ///< a root's state is where the next step starts from: worth two evaluations
 /// Newton ends at this share of the tolerance, not at ARKODE's tenth: what it leaves has one sign from step to step while an old factor
@@ -84,7 +85,7 @@ class Ark final : public Adapter {
     matrix_ = make_matrix(context());
     check(ARKStepSetLinearSolver(memory_, linear_solver_, matrix_), "ARKStepSetLinearSolver", t, 0.0);
     check(ARKStepSetLinSysFn(memory_, linear_system), "ARKStepSetLinSysFn", t, 0.0);
-    check(ARKStepSetMaxNonlinIters(memory_, kNewtonIterations), "ARKStepSetMaxNonlinIters", t, 0.0);
+    check(ARKStepSetMaxNonlinIters(memory_, spec().fixed_step ? kFixedStepIterations : kNewtonIterations), "ARKStepSetMaxNonlinIters", t, 0.0);
     const double aim = spec().fixed_step ? spec().newton_rtol : spec().rtol;
     check(ARKStepSetNonlinConvCoef(memory_, kNewtonCoefficient * std::min(1.0, aim / tolerance_of(spec(), method_))), "ARKStepSetNonlinConvCoef", t, 0.0);
     check(ARKStepSetDeduceImplicitRhs(memory_, SUNTRUE), "ARKStepSetDeduceImplicitRhs", t, 0.0);  // f of a stage from its equation: spares evaluations

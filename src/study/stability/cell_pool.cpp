@@ -31,8 +31,9 @@ std::vector<StabilityCell> run_cells(const std::vector<Task>& tasks, const Stabi
   const auto stopped = [&] { return options.stop && options.stop->load(); };
   const auto start = [&](std::size_t index) {
     const Task& task = tasks[index];
-    pool.start([&task, &options](const std::atomic<bool>& expired) { return cell_to_json(run_cell(task, options.seeds, options.limit_s, expired)).dump(); },
-               options.limit_s, [&, index](const ProcessPool::Outcome& outcome) {
+    const double limit_s = (task.row->slow ? kLongerInSlowRows : 1.0) * options.limit_s;
+    pool.start([&task, &options, limit_s](const std::atomic<bool>& expired) { return cell_to_json(run_cell(task, options.seeds, limit_s, expired)).dump(); },
+               limit_s, [&, index](const ProcessPool::Outcome& outcome) {
                  cells[index] = cell_of(tasks[index], outcome);
                  ++done;
                  if (options.progress)

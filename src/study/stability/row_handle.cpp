@@ -95,6 +95,7 @@ StabilityCell million(const Lab& lab, double force) {
   tool::Tool tool(spec, Vec3::Zero());
   dynamics::LinearisedContact pull;
   pull.version = 1;
+  pull.source = dynamics::LinearisedContact::Source::kFrozen;
   pull.F0[3] = force;
   const Vec3 rest(force / spec.coupling_stiffness_n_m, 0, 0);
   StabilityCell cell;
