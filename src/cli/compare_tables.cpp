@@ -65,7 +65,8 @@ void print_prices(const report::Table& table, double reference_error) {
     for (const report::FittedOrder& fit : fits)
       if (fit.label == ladder.label && fit.points > 1) order = fmt::format("{:.2f} in {}", fit.order, fit.setting_name);
     double best = report::kUnknown;
-    for (const report::LadderPoint& point : ladder.points) best = std::fmin(best, point.error);
+    for (const report::LadderPoint& point : ladder.points)
+      if (!point.unresolved) best = std::fmin(best, point.error);
     rows.push_back({ladder.label, order, std::to_string(ladder.points.size()), report::short_number(best)});
     for (const double target : report::kTargets) rows.back().push_back(report::cost_text(report::cost_at(ladder, target, reference_error)));
   }
