@@ -23,12 +23,29 @@ struct Pair {
   std::shared_ptr<proxy::ProxySet> proxies{};
 };
 
-Pair pair_of(const World& world, const ContactSpec& spec) {
-  const Body* body = world.find_body(spec.first);
-  if (!body) fail("contact: no body called \"{}\"", spec.first);
+Pair pair_of(const World& world, const ContactSpec& spec, const std::string& name) {
+  const Body* body = world.find_body(name);
+  if (!body) fail("contact: no body called \"{}\"", name);
   const double gap = spec.candidate_gap_m > 0.0 ? spec.candidate_gap_m : mean_edge(body->skin ? body->skin->rest : body->boundary.surface);
   if (body->skin) return {spec, {body->block_id, {}, body->skin->rest.faces, body->skin->embedding, body->rest.tets}, gap, body->skin->proxies};
   return {spec, {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces}, gap};
+}
+
+[[maybe_unused]] [[noreturn]] void refuse_gpu() {
+  fail("contact: method \"gpu\": this palpate was built without OpenGL; configure with -DPALPATE_WITH_GL=ON (packages libepoxy-dev, libegl-dev)");
+}
+
+/// Two soft bodies.
+std::unique_ptr<contact::SampleSource> gpu_source(Pair a, Pair b) {
+  if (a.spec.method != "gpu") fail("contact {} - {}: two soft bodies meet in image space; use method = \"gpu\"", a.spec.first, a.spec.second);
+  if (!a.proxies != !b.proxies) fail("contact {} - {}: proxies on one side alone; both need them, or neither", a.spec.first, a.spec.second);
+#ifdef PALPATE_HAS_GL
+  const contact::GpuOptions options{a.spec.pixels, a.candidate_gap};
+  if (a.proxies) return contact::make_gpu_source(std::move(a.surface), std::move(a.proxies), std::move(b.surface), std::move(b.proxies), options);
+  return contact::make_gpu_source(std::move(a.surface), std::move(b.surface), options);
+#else
+  refuse_gpu();
+#endif
 }
 
 [[maybe_unused]] std::unique_ptr<contact::SampleSource> gpu_source(Pair pair, TriMesh rigid, int frame, std::shared_ptr<contact::MovingFrame> motion) {
@@ -38,7 +55,7 @@ Pair pair_of(const World& world, const ContactSpec& spec) {
   return contact::make_gpu_source(std::move(pair.surface), std::move(rigid), frame, std::move(motion), {pair.spec.pixels, pair.candidate_gap});
 #else
   static_cast<void>(pair), static_cast<void>(rigid), static_cast<void>(frame), static_cast<void>(motion);
-  fail("contact: method \"gpu\": this palpate was built without OpenGL; configure with -DPALPATE_WITH_GL=ON (packages libepoxy-dev, libegl-dev)");
+  refuse_gpu();
 #endif
 }
 
@@ -102,11 +119,13 @@ void assemble_contact(World& world) {
     const auto& obstacles = world.description.obstacles;
     const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(), [&](const ObstacleSpec& o) { return o.name == spec.second; });
     if (spec.second == "tool" && world.description.tool)
-      world.contact->add_pair(tool_source(world, pair_of(world, spec)), spec);
+      world.contact->add_pair(tool_source(world, pair_of(world, spec, spec.first)), spec);
     else if (obstacle != obstacles.end())
-      world.contact->add_pair(obstacle_source(world, pair_of(world, spec), *obstacle), spec);
+      world.contact->add_pair(obstacle_source(world, pair_of(world, spec, spec.first), *obstacle), spec);
+    else if (spec.second != spec.first && world.find_body(spec.second))
+      world.contact->add_pair(gpu_source(pair_of(world, spec, spec.first), pair_of(world, spec, spec.second)), spec);
     else
-      fail("contact {} - {}: the second partner must be an obstacle or \"tool\"; contact between soft bodies is not part of this version", spec.first, spec.second);
+      fail("contact {} - {}: the second partner must be another body, an obstacle or \"tool\"", spec.first, spec.second);
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
   if (!world.tool_frame || world.description.coupling.linearisation != "condensed") return;

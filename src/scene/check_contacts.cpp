@@ -40,14 +40,23 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
   if (c.first == c.second) refuse(at, where, "a thing does not touch itself here; name two");
   if (!sides.is_body(c.first)) std::swap(c.first, c.second);
   if (!sides.is_body(c.first)) refuse(at, where, "one of the two must be a soft body");
-  if (sides.is_body(c.second)) refuse(at, where, "contact between two soft bodies is not in this version; name a body and an obstacle, or a body and \"tool\"");
 }
 
 void check_method(const Document& doc, const std::string& key, const std::string& where, const Sides& sides, const Description& d, const ContactSpec& c) {
   const bool obstacle = sides.is_obstacle(c.second);
   if (c.method == "gpu" && obstacle)
     refuse(place(doc, key + ".method"), where, "method = \"gpu\" is for the tool: an obstacle has exact gaps; use \"analytic\"");
-  if (c.method == "analytic" && !obstacle && d.tool->shape != "sphere")
+  if (sides.is_body(c.second)) {
+    if (c.method != "gpu")
+      refuse(place(doc, key + (given(doc, key + ".method") ? ".method" : "")), where, "two soft bodies meet in image space: write method = \"gpu\"");
+    const auto proxies = [&](const std::string& name) {
+      for (const auto& body : d.bodies)
+        if (body.name == name) return body.proxies;
+      return false;
+    };
+    if (proxies(c.first) != proxies(c.second))
+      refuse(place(doc, key + ".between"), where, fmt::format("proxies = true stands in \"{}\" alone; both need it, or neither", proxies(c.first) ? c.first : c.second));
+  } else if (c.method == "analytic" && !obstacle && d.tool->shape != "sphere")
     refuse(place(doc, key + (given(doc, key + ".method") ? ".method" : "")), where,
            "method = \"analytic\" needs a tool with shape = \"sphere\"; use method = \"gpu\" for a mesh");
   if (c.method != "gpu" && given(doc, key + ".pixels"))
@@ -96,7 +105,7 @@ void check_contacts(const Document& doc, Description& d) {
     const std::string key = fmt::format("contact[{}]", i), where = fmt::format("contact between \"{}\" and \"{}\"", c.first, c.second);
     check_sides(doc, key, where, sides, c);
     check_method(doc, key, where, sides, d, c);
-    if (!seen.emplace(c.first, c.second).second) refuse(place(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
+    if (!seen.emplace(c.first, c.second).second || (sides.is_body(c.second) && seen.contains({c.second, c.first}))) refuse(place(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
   }
 }
 

@@ -104,6 +104,24 @@ TEST(Load, AbsentTablesStayAbsent) {
   EXPECT_TRUE(d.compare.ladders.empty());
 }
 
+TEST(Load, TwoSoftBodiesMeetInImageSpace) {
+  const auto refusal = [](const std::string& more, const std::string& contact) -> std::string {
+    try {
+      parse("[scene]\nname = \"pair\"\nduration_s = 1.0\n[[body]]\nname = \"a\"\nmesh = { generator = \"ball\", radius_m = 0.1, element_size_m = 0.05 }\nyoungs_modulus_pa = 1e4\n[[body]]\nname = \"b\"\nyoungs_modulus_pa = 1e4\n" + more +
+                "[[contact]]\nbetween = [\"a\", \"b\"]\n" + contact,
+            "pair.toml", {});
+    } catch (const palpate::Error& e) {
+      return e.what();
+    }
+    return "accepted";
+  };
+  const std::string ball = "mesh = { generator = \"ball\", radius_m = 0.1, element_size_m = 0.05 }\n", model = "mesh = { file = \"b.h5\" }\nskin = true\nproxies = true\n";
+  EXPECT_EQ(refusal(ball, "method = \"gpu\"\n"), "accepted");
+  EXPECT_NE(refusal(ball, "").find("two soft bodies meet in image space: write method = \"gpu\""), std::string::npos);
+  EXPECT_NE(refusal(ball, "method = \"gpu\"\n[[contact]]\nbetween = [\"b\", \"a\"]\nmethod = \"gpu\"\n").find("this pair stands here twice"), std::string::npos);
+  EXPECT_NE(refusal(model, "method = \"gpu\"\n").find("proxies = true stands in \"b\" alone; both need it, or neither"), std::string::npos);
+}
+
 /// What two keys of one table ask of each other; the places are covered by broken_test.
 TEST(Load, KeysThatExcludeOrNeedEachOther) {
   const auto refusal = [](const std::vector<std::string>& overrides) -> std::string {

@@ -29,7 +29,7 @@ class SampleSource {
   virtual std::string_view name() const = 0;
   /// Appends samples; candidates with a small positive gap included.
   virtual void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) = 0;
-  /// Node pairs its samples may couple (faces of each surface; both surfaces for two soft bodies).
+  /// Node pairs its samples may couple (faces of each surface; of two soft bodies also across).
   virtual void add_pattern(dynamics::PatternBuilder& pattern) const = 0;
   virtual std::uint64_t pattern_version() const { return 0; }
   /// Vertices that went through the shape between two queries, outside it at both: nothing has pushed them back.

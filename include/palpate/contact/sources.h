@@ -42,4 +42,10 @@ std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, TriMesh rigid, int frame, std::shared_ptr<MovingFrame> motion,
                                               const GpuOptions& options);
 
+/// Two soft bodies: both points of a sample hang on nodes, so its force reaches both bodies, equal and opposite, and its tangent couples them.  The pattern has
+/// blocks between the two bodies' nodes where samples were found, and grows with the contact (pattern_version).
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, NodeSurface b, const GpuOptions& options);
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, std::shared_ptr<proxy::ProxySet> proxies_a, NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
+                                              const GpuOptions& options);
+
 }  // namespace palpate::contact

@@ -1,0 +1,41 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "contact/coupled_nodes.h"
+#include "contact/facing.h"
+#include "palpate/contact/sources.h"
+
+namespace palpate::contact {
+
+/// What the sources in image space share: two sides, an image, and what their samples couple.  Side a is soft; the normal points from b to a.
+class ImageSource : public SampleSource {
+ public:
+  ImageSource(std::unique_ptr<ImageSide> a, std::unique_ptr<ImageSide> b, const GpuOptions& options);
+  std::string_view name() const override { return "gpu"; }
+  void add_pattern(dynamics::PatternBuilder& pattern) const override;
+  std::uint64_t pattern_version() const override;
+  void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) final;
+
+ protected:
+  virtual void look(std::vector<ContactSample>& samples) = 0;  ///< at the sides as they are
+  GpuImage& image();  ///< opened when something is to be seen
+
+  std::unique_ptr<ImageSide> a_, b_;
+  GpuOptions options_;
+  std::vector<PixelPair> pairs_;
+
+ private:
+  std::optional<GpuImage> image_;
+  CoupledNodes coupled_;             // of two soft sides
+  std::uint64_t counted_ = 0;        // the sides' own versions that `coupled_` was made for
+};
+
+std::unique_ptr<SampleSource> make_whole_source(std::unique_ptr<ImageSide> a, std::unique_ptr<ImageSide> b, const GpuOptions& options);
+std::unique_ptr<SampleSource> make_pruned_source(std::unique_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::unique_ptr<ImageSide> b,
+                                                 std::shared_ptr<proxy::ProxySet> proxies_b, const GpuOptions& options);
+/// A rigid surface as one proxy.
+std::shared_ptr<proxy::ProxySet> in_one_hull(const TriMesh& rigid);
+
+}  // namespace palpate::contact

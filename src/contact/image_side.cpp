@@ -1,0 +1,59 @@
+#include "contact/image_side.h"
+
+#include "palpate/core/error.h"
+
+namespace palpate::contact {
+namespace {
+
+class SoftSide final : public ImageSide {
+ public:
+  explicit SoftSide(NodeSurface surface) : state_(std::move(surface)) {}
+  void update(const dynamics::StateView& state) override { state_.update(state); }
+  const Faces& faces() const override { return state_.faces(); }
+  const Points& positions() override { return state_.positions(); }
+  Vec3 vertex(int vertex) const override { return state_.positions().col(vertex); }
+  void place(proxy::ProxySet& proxies) const override { proxies.update(state_.nodes()); }
+  SurfacePoint point(int face, const Vec3& weights, const Vec3&) const override { return state_.face_point(face, weights); }
+  const SurfaceState* soft() const override { return &state_; }
+
+ private:
+  SurfaceState state_;
+};
+
+class RigidSide final : public ImageSide {
+ public:
+  RigidSide(TriMesh surface, int frame, std::shared_ptr<MovingFrame> motion) : surface_(std::move(surface)), frame_(frame), motion_(std::move(motion)) {
+    PALPATE_CHECK(motion_, "a gpu source needs a frame");
+  }
+  void update(const dynamics::StateView& state) override {
+    pose_ = motion_->pose(state);
+    inverse_ = pose_.inverse();
+    turn_ = pose_.rotation.toRotationMatrix();
+  }
+  const Faces& faces() const override { return surface_.faces; }
+  const Points& positions() override {
+    world_.noalias() = turn_ * surface_.vertices;
+    world_.colwise() += pose_.translation;
+    return world_;
+  }
+  Vec3 vertex(int vertex) const override { return turn_ * surface_.vertices.col(vertex) + pose_.translation; }
+  void place(proxy::ProxySet& proxies) const override { proxies.update(pose_); }
+  SurfacePoint point(int, const Vec3&, const Vec3& world) const override { return frame_point(frame_, inverse_, world); }
+
+ private:
+  TriMesh surface_;
+  int frame_;
+  std::shared_ptr<MovingFrame> motion_;
+  Pose pose_, inverse_;
+  Mat3 turn_ = Mat3::Identity();
+  Points world_;
+};
+
+}  // namespace
+
+std::unique_ptr<ImageSide> soft_side(NodeSurface surface) { return std::make_unique<SoftSide>(std::move(surface)); }
+std::unique_ptr<ImageSide> rigid_side(TriMesh surface, int frame, std::shared_ptr<MovingFrame> motion) {
+  return std::make_unique<RigidSide>(std::move(surface), frame, std::move(motion));
+}
+
+}  // namespace palpate::contact

@@ -1,0 +1,28 @@
+#pragma once
+#include <memory>
+
+#include "contact/surface_state.h"
+#include "palpate/contact/frame.h"
+#include "palpate/proxy/proxy_set.h"
+
+namespace palpate::contact {
+
+/// One of the two surfaces of an image: a soft body's, or a rigid one in a frame.
+class ImageSide {
+ public:
+  virtual ~ImageSide() = default;
+  virtual void update(const dynamics::StateView& state) = 0;
+  virtual const Faces& faces() const = 0;
+  virtual const Points& positions() = 0;                        ///< of all vertices [m], world
+  virtual Vec3 vertex(int vertex) const = 0;                    ///< of one
+  virtual void place(proxy::ProxySet& proxies) const = 0;       ///< proxies of this surface, as it stands now
+  /// A point of a face as a side of a sample, by its corners' weights and where that is.
+  virtual SurfacePoint point(int face, const Vec3& weights, const Vec3& world) const = 0;
+  /// What couples nodes of this side alone; null of a rigid one.
+  virtual const SurfaceState* soft() const { return nullptr; }
+};
+
+std::unique_ptr<ImageSide> soft_side(NodeSurface surface);
+std::unique_ptr<ImageSide> rigid_side(TriMesh surface, int frame, std::shared_ptr<MovingFrame> motion);
+
+}  // namespace palpate::contact

@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "contact/gpu_source.h"
+#include "palpate/proxy/pruner.h"
+
+namespace palpate::contact {
+namespace {
+
+/// The image of gpu_source.cpp, once for each region that the proxies leave.
+class PrunedSource final : public ImageSource {
+ public:
+  PrunedSource(std::unique_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::unique_ptr<ImageSide> b, std::shared_ptr<proxy::ProxySet> proxies_b,
+               const GpuOptions& options)
+      : ImageSource(std::move(a), std::move(b), options), proxies_a_(std::move(proxies_a)), proxies_b_(std::move(proxies_b)), pruner_(*proxies_a_, *proxies_b_) {}
+
+  const proxy::PruneCounts* pruning() const override { return &pruner_.counts(); }
+
+ protected:
+  void look(std::vector<ContactSample>& samples) override {
+    a_->place(*proxies_a_);
+    b_->place(*proxies_b_);
+    for (const proxy::ContactRegion& region : pruner_.query(options_.candidate_gap)) {
+      ContactAxes axes(region.region.origin, region.region.normal);
+      ContactCamera camera = look_along(region, axes);
+      for (int turn = 0; turn < kTurns && turn_to_overlap(axes); ++turn) camera = look_along(region, axes);
+      for (const FacingFaces& at : facings_)
+        samples.push_back(sample_of(at.facing, *a_, piece_a_.face_of[static_cast<std::size_t>(at.face_a)], *b_, piece_b_.face_of[static_cast<std::size_t>(at.face_b)], camera, axes));
+    }
+  }
+
+ private:
+  /// The faces of a region with vertices of their own.
+  struct Piece {
+    Faces faces;
+    std::vector<int> face_of;  ///< in the whole surface
+    Patch patch;
+    std::vector<int> local;    ///< of the surface's vertices, -1: not taken
+    std::vector<int> taken;
+
+    /// Those whose normal has the sign `side` along the plane's: what is turned away lies behind skin of its own body, which may be in another region.
+    template <class Place>
+    void take(const Faces& all, const std::vector<int>& wanted, double side, const Place& place) {
+      for (const int vertex : taken) local[static_cast<std::size_t>(vertex)] = -1;
+      taken.clear();
+      if (local.empty()) local.assign(static_cast<std::size_t>(all.maxCoeff()) + 1, -1);
+      for (const int face : wanted)
+        for (const int vertex : all.col(face))
+          if (int& at = local[static_cast<std::size_t>(vertex)]; at < 0) {
+            at = static_cast<int>(taken.size());
+            taken.push_back(vertex);
+          }
+      patch.uvw.resize(3, static_cast<Eigen::Index>(taken.size()));
+      for (std::size_t i = 0; i < taken.size(); ++i) patch.uvw.col(static_cast<Eigen::Index>(i)) = place(taken[i]);
+      face_of.clear();
+      faces.resize(3, static_cast<Eigen::Index>(wanted.size()));
+      for (const int face : wanted) {
+        Eigen::Vector3i corner;
+        for (int k = 0; k < 3; ++k) corner[k] = local[static_cast<std::size_t>(all(k, face))];
+        const auto at = [&](int k) { return patch.uvw.col(corner[k]).head<2>(); };
+        const Eigen::Vector2d e = at(1) - at(0), f = at(2) - at(0);
+        if (side * (e.x() * f.y() - e.y() * f.x()) <= 0.0) continue;
+        faces.col(static_cast<Eigen::Index>(face_of.size())) = corner;
+        face_of.push_back(face);
+      }
+      faces.conservativeResize(3, static_cast<Eigen::Index>(face_of.size()));
+      patch.faces = &faces;
+    }
+  };
+
+  struct FacingFaces {
+    Facing facing;
+    int face_a, face_b;  ///< of the pieces
+  };
+
+  /// Fills `facings_` with what the region shows along these axes.
+  ContactCamera look_along(const proxy::ContactRegion& region, const ContactAxes& axes) {
+    facings_.clear();
+    piece_a_.take(a_->faces(), region.faces_a, -1.0, [&](int vertex) { return axes.in_axes(a_->vertex(vertex)); });
+    piece_b_.take(b_->faces(), region.faces_b, 1.0, [&](int vertex) { return axes.in_axes(b_->vertex(vertex)); });
+    if (piece_a_.faces.cols() == 0 || piece_b_.faces.cols() == 0) return {};
+    Patch &a = piece_a_.patch, &b = piece_b_.patch;
+    const ContactCamera camera = fit_camera(a, b, options_.candidate_gap, options_.pixels, {options_.shift_u, options_.shift_v});
+    if (!camera.sees_something()) return camera;
+    image().find_pairs(a, b, camera, options_.candidate_gap, pairs_);
+    for (const PixelPair& pair : pairs_) {
+      const int face_a = a.visible[pair.a], face_b = b.visible[pair.b];
+      const std::optional<Facing> facing = facing_at(pair, camera, a, face_a, b, face_b);
+      if (facing && facing->gap() < options_.candidate_gap) facings_.push_back({*facing, face_a, face_b});
+    }
+    return camera;
+  }
+
+  // The region's normal came from patches, which reach beyond the overlap, more or less as the body is cut.  The overlap itself has one: its boundary is closed, so the
+  // area vectors of a's skin in b and of b's in a are opposite, and their common direction pushes the bodies apart.  Seen along n, a pixel of area dA shows (s, 1) dA of
+  // each, s the slope of -a's or of b's skin: n turns by the mean slope of both, and stays where that is zero.  It depends on the pose alone.
+  static constexpr int kTurns = 3;
+  bool turn_to_overlap(ContactAxes& axes) const {
+    constexpr double kAligned = 1e-3, kSteepest = 10.0;  // [rad]; a wall's slope is no direction
+    const auto slope = [&](const Piece& piece, int face) -> Eigen::Vector2d {
+      const auto at = [&](int k) { return piece.patch.uvw.col(piece.faces(k, face)); };
+      const Vec3 area = Vec3(at(1) - at(0)).cross(Vec3(at(2) - at(0)));
+      const Eigen::Vector2d s = area.head<2>() / area.z();
+      return s * std::min(1.0, kSteepest / std::max(s.norm(), 1e-300));
+    };
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    long pressed = 0;
+    for (const FacingFaces& at : facings_)
+      if (at.facing.gap() < 0.0) {
+        sum += 0.5 * (slope(piece_a_, at.face_a) + slope(piece_b_, at.face_b));
+        ++pressed;
+      }
+    if (pressed == 0) return false;
+    const Eigen::Vector2d mean = sum / static_cast<double>(pressed);
+    if (!(mean.norm() > kAligned)) return false;
+    axes = ContactAxes(axes.origin, (axes.to_world * Vec3(mean.x(), mean.y(), 1.0)).normalized());
+    return true;
+  }
+
+  std::shared_ptr<proxy::ProxySet> proxies_a_, proxies_b_;
+  proxy::Pruner pruner_;
+  Piece piece_a_, piece_b_;
+  std::vector<FacingFaces> facings_;
+};
+
+}  // namespace
+
+std::unique_ptr<SampleSource> make_pruned_source(std::unique_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::unique_ptr<ImageSide> b,
+                                                 std::shared_ptr<proxy::ProxySet> proxies_b, const GpuOptions& options) {
+  return std::make_unique<PrunedSource>(std::move(a), std::move(proxies_a), std::move(b), std::move(proxies_b), options);
+}
+
+/// A rigid surface as one proxy: the hull of its farthest points in 32 directions (on a Fibonacci spiral), which the set grows until it holds them all.
+std::shared_ptr<proxy::ProxySet> in_one_hull(const TriMesh& rigid) {
+  LayeredModel model;
+  model.name = "rigid surface";
+  model.skin = rigid;
+  ProxyHull hull;
+  std::vector<int> corners;
+  constexpr int kDirections = 32;
+  for (int i = 0; i < kDirections; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / kDirections, turn = i * M_PI * (3.0 - std::sqrt(5.0)), r = std::sqrt(1.0 - z * z);
+    Eigen::Index farthest = 0;
+    (Vec3(r * std::cos(turn), r * std::sin(turn), z).transpose() * rigid.vertices).maxCoeff(&farthest);
+    corners.push_back(static_cast<int>(farthest));
+  }
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  hull.corners = rigid.vertices(Eigen::all, corners);
+  hull.members.resize(static_cast<std::size_t>(rigid.vertices.cols()));
+  std::iota(hull.members.begin(), hull.members.end(), 0);
+  model.proxies.push_back(std::move(hull));
+  return std::make_shared<proxy::ProxySet>(model, proxy::ProxySetOptions{.patch_faces = 16});  // few faces in all: a finer grain costs more than it spares
+}
+
+}  // namespace palpate::contact

@@ -1,0 +1,176 @@
+// Two soft skins in image space: what one body feels the other gives, and the tangent couples them.
+#include "grid_proxies.h"
+#include "surfaces.h"
+
+using namespace contact_tests;
+
+namespace {
+
+/// A ball of tetrahedra, and above it the same, turned, larger and pressed into it; both under fine skins, with velocities.
+struct TwoBalls {
+  struct Body {
+    LayeredModel model;
+    contact::NodeSurface surface;
+    std::shared_ptr<proxy::ProxySet> proxies;
+  };
+  dynamics::State state;
+  Body a, b;
+
+  TwoBalls() : a(body(Pose{}, 1.0)), b(body({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2)) {}
+
+  Body body(const Pose& pose, double scale) {
+    Body out;
+    out.model.tets = mesh::ball(1.0, 0.45);
+    out.model.skin = mesh::sphere(1.0, 12);
+    for (Points* points : {&out.model.tets.nodes, &out.model.skin.vertices})
+      for (auto x : points->colwise()) x = pose * Vec3(scale * x);
+    out.surface.faces = out.model.skin.faces;
+    out.surface.embedding = mesh::embed(out.model.tets, out.model.skin.vertices);
+    out.surface.tets = out.model.tets.tets;
+    out.proxies = proxies_of(out.model.tets, out.model.skin, out.surface.embedding, 3);
+    dynamics::BlockSpec nodes;
+    nodes.name = "ball";
+    nodes.q_size = nodes.u_size = static_cast<int>(out.model.tets.nodes.size());
+    VecX speeds(nodes.u_size);
+    for (Eigen::Index i = 0; i < speeds.size(); ++i) speeds[i] = 0.1 * std::sin(1.0 + i + scale);
+    out.surface.block_id = state.insert(nodes, Eigen::Map<const VecX>(out.model.tets.nodes.data(), nodes.q_size), speeds);
+    return out;
+  }
+
+  contact::GpuOptions options() const {
+    contact::GpuOptions out;
+    out.pixels = 96;
+    out.candidate_gap = 0.02;
+    return out;
+  }
+  std::unique_ptr<contact::SampleSource> source(bool pruned) const {
+    return pruned ? contact::make_gpu_source(a.surface, a.proxies, b.surface, b.proxies, options()) : contact::make_gpu_source(a.surface, b.surface, options());
+  }
+  int nodes_of_a() const { return static_cast<int>(a.model.tets.nodes.cols()); }
+};
+
+ContactSpec law() {
+  ContactSpec out;
+  out.stiffness_pa_m = 1e6;
+  return out;
+}
+
+}  // namespace
+
+// Third law: resultant and moment of both bodies' forces vanish to rounding, each alone does not; the force pushes a up, off b.
+TEST(SoftPair, ActionIsReaction) {
+  TwoBalls balls;
+  Vec3 whole = Vec3::Zero();
+  for (const bool pruned : {false, true}) {
+    SCOPED_TRACE(pruned);
+    contact::ContactForce term;
+    ContactSpec with_all = law();
+    with_all.damping_pa_s_m = 1e5;
+    with_all.friction = 0.4;
+    term.add_pair(balls.source(pruned), with_all);
+    EXPECT_TRUE(term.refresh(balls.state.view()));
+    const VecX f = force(term, balls.state);
+    Vec3 on_a = Vec3::Zero(), sum = Vec3::Zero(), moment = Vec3::Zero();
+    for (int i = 0; i < balls.state.layout().node_count(); ++i) {
+      const Vec3 one = f.segment<3>(3 * i);
+      sum += one;
+      moment += balls.state.view().position(i).cross(one);
+      if (i < balls.nodes_of_a()) on_a += one;
+    }
+    EXPECT_GT(on_a.z(), 100.0);
+    EXPECT_LT(sum.norm(), 1e-12 * on_a.norm());
+    int sliding = 0;
+    double arm = 0.0;  // friction acts along both points, which lie up to the depth apart along the normal: its moment is friction x depth
+    for (const auto& s : term.samples()) {
+      EXPECT_GE(s.b.count, 4);
+      arm = std::max(arm, -s.gap);
+      ++sliding;
+    }
+    EXPECT_GT(sliding, 500);
+    EXPECT_LT(moment.norm(), with_all.friction * arm * on_a.norm() + 1e-11 * on_a.norm());
+    if (pruned)
+      EXPECT_LT((on_a - whole).norm(), 0.1 * whole.norm());  // planes of their own: 96 pixels, coarse skins
+    else
+      whole = on_a;
+    contact::ContactForce smooth;
+    smooth.add_pair(balls.source(pruned), law());
+    smooth.refresh(balls.state.view());
+    const VecX g = force(smooth, balls.state);
+    moment.setZero();
+    for (int i = 0; i < balls.state.layout().node_count(); ++i) moment += balls.state.view().position(i).cross(Vec3(g.segment<3>(3 * i)));
+    EXPECT_LT(moment.norm(), 1e-11 * on_a.norm()) << "both points of a sample lie on one line along the normal";
+  }
+}
+
+// With the smooth onset the force is C1, so that the Taylor residual falls with slope 2; the assembled tangent is the applied one, and symmetric.
+TEST(SoftPair, TheTangentCouplesBothBodies) {
+  TwoBalls balls;
+  ContactSpec smooth = law();
+  smooth.onset_width_m = 0.5;
+  smooth.hunt_crossley_s_m = 0.2;
+  smooth.law = "hunt_crossley";
+  contact::ContactForce term;
+  term.add_pair(balls.source(true), smooth);
+  term.refresh(balls.state.view());
+  const int size = balls.state.layout().u_size;
+  std::mt19937 random(8);
+  VecX direction(size);
+  for (auto& x : direction) x = uniform(random);
+  const auto moved = [&](double h) {
+    dynamics::State out = balls.state;
+    out.q() += h * direction;
+    return force(term, out);
+  };
+  const auto pushed = [&](double h) {
+    dynamics::State out = balls.state;
+    out.u() += h * direction;
+    return force(term, out);
+  };
+  VecX K = VecX::Zero(size), D = VecX::Zero(size);
+  term.apply_tangent(balls.state.view(), 1.0, 0.0, direction, K);
+  term.apply_tangent(balls.state.view(), 0.0, 1.0, direction, D);
+  expect_derivative(moved, -K, 1e-3, "by position");
+  expect_derivative(pushed, -D, 1e-3, "by velocity");
+
+  const dynamics::BorderedMatrix A = step_matrix(term, balls.state, 1.0, 0.7);
+  VecX assembled;
+  A.multiply(direction, assembled);
+  EXPECT_LT((assembled - K - 0.7 * D).norm(), 1e-12 * assembled.norm());
+  const MatX dense = A.to_dense();
+  EXPECT_LT((dense - dense.transpose()).norm(), 1e-12 * dense.norm());
+  const int n = 3 * balls.nodes_of_a();
+  EXPECT_GT(dense.topRightCorner(n, size - n).norm(), 0.1 * dense.topLeftCorner(n, n).norm());
+  // Both bodies moved as one feel nothing new.
+  VecX shifted = VecX::Zero(size), together(size);
+  for (int i = 0; i < size; ++i) together[i] = i % 3 == 1 ? 1.0 : 0.3;
+  term.apply_tangent(balls.state.view(), 1.0, 0.0, together, shifted);
+  EXPECT_LT(shifted.norm(), 1e-11 * K.norm());
+}
+
+// The pattern holds what the contact has met: it rests while nothing new is met, and grows when the contact slides.
+TEST(SoftPair, ThePatternGrowsWithTheContact) {
+  TwoBalls balls;
+  contact::ContactForce term;
+  term.add_pair(balls.source(true), law());
+  const auto before = term.pattern_version();
+  term.refresh(balls.state.view());
+  const auto touched = term.pattern_version();
+  EXPECT_GT(touched, before);
+  term.refresh(balls.state.view());
+  EXPECT_EQ(term.pattern_version(), touched);
+  int changes = 0;
+  for (int i = 0; i < 8; ++i) {
+    for (int n = 0; n < balls.nodes_of_a(); ++n) balls.state.q()[3 * n] += 0.1;  // a rolls off
+    const auto last = term.pattern_version();
+    term.refresh(balls.state.view());
+    changes += term.pattern_version() != last;
+    step_matrix(term, balls.state, 1.0, 0.0);  // aborts for a block that was not announced
+  }
+  EXPECT_GT(changes, 2);
+}
+
+TEST(SoftPair, RefusesOneBodyTwice) {
+  TwoBalls balls;
+  EXPECT_THROW(contact::make_gpu_source(balls.a.surface, balls.a.surface, balls.options()), InternalError);
+  EXPECT_THROW(contact::make_gpu_source(balls.a.surface, balls.a.proxies, balls.b.surface, nullptr, balls.options()), InternalError);
+}

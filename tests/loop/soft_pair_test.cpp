@@ -1,0 +1,106 @@
+#include <gtest/gtest.h>
+
+#include "loop/small_scenes.h"
+#include "palpate/core/error.h"
+#include "palpate/loop/run.h"
+#include "palpate/loop/world.h"
+
+/// Two soft blocks in contact, from the scene's description to the end of a run.
+namespace {
+
+using namespace palpate;
+
+constexpr double kWidth = 0.04, kLength = 0.02, kYoung = 1e4, kStiffness = 1e6;
+
+scene::Description two_blocks(double gap) {
+  scene::Description d = small_scenes::held_block();
+  d.bodies[0].poissons_ratio = 0.0;
+  d.bodies.push_back(d.bodies[0]);
+  d.bodies[1].name = "upper";
+  d.bodies[1].position_m.z() = 1.5 * kLength + gap;
+  d.bodies[1].attachments[0].box_min_m.z() = 2 * kLength + gap - 1e-6;
+  d.bodies[1].attachments[0].box_max_m.z() = 2 * kLength + gap + 1e-6;
+  ContactSpec contact;
+  contact.first = "block";
+  contact.second = "upper";
+  contact.method = "gpu";
+  contact.stiffness_pa_m = kStiffness;
+  d.contacts.push_back(contact);
+  d.gravity_m_s2 = Vec3::Zero();
+  d.coupling.exchange_period_s = d.coupling.contact_refresh_s = 0.01;
+  return d;
+}
+
+Vec3 force_on_first(const loop::World& world) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& s : world.contact->samples()) {
+    Vec3 apart = Vec3::Zero();
+    for (int i = 0; i < s.a.count; ++i) apart += s.a.weight[static_cast<std::size_t>(i)] * world.state.view().position(s.a.node[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < s.b.count; ++i) apart -= s.b.weight[static_cast<std::size_t>(i)] * world.state.view().position(s.b.node[static_cast<std::size_t>(i)]);
+    sum += kStiffness * std::max(0.0, -s.normal.dot(apart)) * s.area * s.normal;
+  }
+  return sum;
+}
+
+#ifdef PALPATE_HAS_GL
+// Outer faces held, pressed into each other by d: two bars of stiffness E A / L and the contact k A in a row (nu = 0: no lateral strain, so that the uniform stress of
+// a bar solves the block),
+//   F = d / (2 L / (E A) + 1 / (k A)),
+// which is one block of length 2 L compressed by what the contact leaves of d.
+TEST(SoftPair, PressedTogetherTheyAreOneBlock) {
+  constexpr double d = 1e-3, area = kWidth * kWidth, exact = d / (2 * kLength / (kYoung * area) + 1 / (kStiffness * area));
+  scene::Description description = two_blocks(-d);
+  description.duration_s = 0.8;
+  const auto world = loop::assemble(description);
+  ASSERT_TRUE(loop::run(*world, {}).status.ok());
+  const Vec3 force = force_on_first(*world);
+  EXPECT_NEAR(-force.z() / exact, 1.0, 0.005);
+  EXPECT_LT(force.head<2>().norm(), 1e-6 * exact);
+  // Symmetric about the middle plane: each face gives way by F L / (E A).
+  const double lower = world->positions(world->bodies[0]).row(2).maxCoeff(), upper = world->positions(world->bodies[1]).row(2).minCoeff();
+  EXPECT_NEAR(kLength - lower, exact * kLength / (kYoung * area), 0.01 * d);
+  EXPECT_NEAR(upper - (kLength - d), exact * kLength / (kYoung * area), 0.01 * d);
+  EXPECT_NEAR(lower - upper, exact / (kStiffness * area), 0.01 * d);
+}
+
+// Free blocks, one thrown at the other: momentum stays, and what one had the other has more of.
+TEST(SoftPair, ACollisionKeepsMomentum) {
+  scene::Description d = two_blocks(0.5e-3);
+  for (auto& body : d.bodies) body.attachments.clear();
+  d.bodies[1].velocity_m_s = Vec3(0, 0, -0.3);
+  d.duration_s = 0.05;
+  d.coupling.exchange_period_s = d.coupling.contact_refresh_s = 0.001;
+  d.integrator.step_s = 0.001;
+  const auto world = loop::assemble(d);
+  const auto momentum = [&](std::size_t body) {
+    Vec3 sum = Vec3::Zero();
+    const auto& block = *world->state.layout().find(world->bodies[body].block_id);
+    for (Eigen::Index i = 0; i < world->bodies[body].masses.size(); ++i) sum += world->bodies[body].masses[i] * world->state.u().segment<3>(block.u_offset + 3 * i);
+    return sum;
+  };
+  const Vec3 before = momentum(0) + momentum(1);
+  ASSERT_LT(before.z(), -0.005);
+  ASSERT_TRUE(loop::run(*world, {}).status.ok());
+  EXPECT_LT((momentum(0) + momentum(1) - before).norm(), 1e-9 * before.norm());
+  EXPECT_LT(momentum(0).z(), 0.4 * before.z());
+}
+#endif
+
+TEST(SoftPair, RefusesWhatItCannotDo) {
+  const auto refusal = [](const scene::Description& d) {
+    try {
+      loop::assemble(d);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  scene::Description d = two_blocks(0.0);
+  d.contacts[0].method = "analytic";
+  EXPECT_NE(refusal(d).find("two soft bodies meet in image space"), std::string::npos);
+  d = two_blocks(0.0);
+  d.contacts[0].second = "block";
+  EXPECT_NE(refusal(d).find("another body, an obstacle or \"tool\""), std::string::npos);
+}
+
+}  // namespace
