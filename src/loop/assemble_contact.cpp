@@ -125,7 +125,7 @@ void assemble_contact(World& world) {
     else if (spec.second != spec.first && world.find_body(spec.second))
       world.contact->add_pair(gpu_source(pair_of(world, spec, spec.first), pair_of(world, spec, spec.second)), spec);
     else
-      fail("contact {} - {}: the second partner must be another body, an obstacle or \"tool\"", spec.first, spec.second);
+      fail("contact {} - {}: the second partner must be another of the soft bodies, an obstacle or \"tool\"", spec.first, spec.second);
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
   if (!world.tool_frame || world.description.coupling.linearisation != "condensed") return;

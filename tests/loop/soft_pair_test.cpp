@@ -100,7 +100,7 @@ TEST(SoftPair, RefusesWhatItCannotDo) {
   EXPECT_NE(refusal(d).find("two soft bodies meet in image space"), std::string::npos);
   d = two_blocks(0.0);
   d.contacts[0].second = "block";
-  EXPECT_NE(refusal(d).find("another body, an obstacle or \"tool\""), std::string::npos);
+  EXPECT_NE(refusal(d).find("another of the soft bodies, an obstacle or \"tool\""), std::string::npos);
 }
 
 }  // namespace
