@@ -23,7 +23,6 @@
 //   quadratic for a given rotation, so
 //       sqrt T1 <= sqrt T0 + y sqrt V0,    sqrt V1 <= sqrt V0 + y sqrt T1    (V1 with the old rotation; the new one takes the least of the shear part).
 //   The matrix [1 y; y 1+y^2] of this majorant has the norm g = 1 + y^2/2 + y sqrt(1 + y^2/4): rise <= (g^2 - 1) E0.
-//   ARKODE's tables have it not: their stages are weighed by coefficients of either sign and above 1, and each is solved to its end -> or grew, with words.
 // Statics looks for a stationary point, a saddle is one -> anything clear.
 
 namespace palpate::study {
@@ -142,7 +141,6 @@ StabilityCell verdict_on(const Lab& lab, const Tally& tally) {
 
 Verdicts expect(const Lab& lab) {
   if (!lab.column.fixed && !is_static(lab.column)) return {Verdict::kAccurate};
-  if (lab.column.fixed && lab.column.name.starts_with("ark-")) return {Verdict::kAccurate, Verdict::kStable, Verdict::kBounded, Verdict::kError, Verdict::kGrew};
   return {Verdict::kAccurate, Verdict::kStable, Verdict::kBounded, Verdict::kError};
 }
 
