@@ -21,8 +21,8 @@ constexpr int kMaxSteps = 100000;
 constexpr double kFirstOrderAccuracy = 1e-6;
 constexpr int kFirstOrderMaxSteps = 20000;
 
-/// One of Simbody's own integrators, landing on the end of each tick.  The input changes between ticks, so each begins with a
-/// reinitialisation; after one, stepTo may return at once without a step, hence the loop.
+/// One of Simbody's own integrators, landing on the end of each tick.  Where the input changes between ticks the later begins with a
+/// reinitialisation (a multistep method then begins at order 1); after one, stepTo may return at once without a step, hence the loop.
 class ErrorControlled : public TickScheme {
  public:
   ErrorControlled(SimbodyBody& body, std::unique_ptr<SimTK::Integrator> integrator, double accuracy = kAccuracy, int max_steps = kMaxSteps)
@@ -55,6 +55,8 @@ class ErrorControlled : public TickScheme {
 
  private:
   void start(const TickInput& input, const RigidMotion& motion) {
+    if (!fresh_ && same_wrench(input, input_)) return;
+    input_ = input;
     if (!fresh_) {
       body_.set_input(integrator_->updAdvancedState(), input);
       integrator_->reinitialize(SimTK::Stage::Dynamics, false);
@@ -78,6 +80,7 @@ class ErrorControlled : public TickScheme {
   SimbodyBody& body_;
   std::unique_ptr<SimTK::Integrator> integrator_;
   int max_steps_;
+  TickInput input_;  ///< that the state has
   bool fresh_ = true;
 };
 

@@ -44,22 +44,21 @@ scene::Description on_an_incline(const std::string& integrator) {
   return d;
 }
 
-/// Cash's two tables have c = -0.7: that stage stands before the step, where the damper of the contact jumps, and its equation need have no solution.
+/// Cash's two tables have c = -0.7: that stage stands before the step, where the damper of the contact jumps, and its equation need have no solution.  They are given
+/// a contact without the jump.
 bool has_a_stage_behind_its_start(const std::string& name) { return name.starts_with("ark-dirk-cash"); }
 
 }  // namespace
 
 // It settles and creeps, v = v_r tan(a)/mu = 0.02 m/s, whatever the table.
-TEST(FixedStepContact, EveryImplicitTableOfArkodeFindsItButThoseThatLookBack) {
+TEST(FixedStepContact, EveryImplicitTableOfArkodeFindsIt) {
   int tried = 0;
   for (const auto& entry : integrate::stepper_registry()) {
     if (!entry.name.starts_with("ark-dirk-") && !entry.name.starts_with("ark-imex-")) continue;
-    const auto world = loop::assemble(on_an_incline(entry.name));
+    scene::Description d = on_an_incline(entry.name);
+    if (has_a_stage_behind_its_start(entry.name)) d.contacts[0].onset_width_m = 2e-5;
+    const auto world = loop::assemble(d);
     const loop::RunResult result = loop::run(*world, {});
-    if (has_a_stage_behind_its_start(entry.name)) {
-      EXPECT_TRUE(result.status.ok() || result.status.message.find("ARK_CONV_FAILURE") != std::string::npos) << "said, not hidden: " << result.status.message;
-      continue;
-    }
     ASSERT_TRUE(result.status.ok()) << entry.name << ": " << result.status.message;
     const Points v = Eigen::Map<const Points>(world->state.u().data(), 3, world->state.u().size() / 3);
     EXPECT_NEAR(v.row(0).mean(), 0.02, 2e-4) << entry.name;
@@ -67,5 +66,5 @@ TEST(FixedStepContact, EveryImplicitTableOfArkodeFindsItButThoseThatLookBack) {
     EXPECT_LT(result.counters.tangent_evaluations, 3 * result.counters.steps) << entry.name << ": one tangent does but where contact closes";
     ++tried;
   }
-  EXPECT_EQ(tried, 26);
+  EXPECT_EQ(tried, 28);
 }

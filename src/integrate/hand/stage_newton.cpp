@@ -15,15 +15,7 @@ using dynamics::StepStatus;
 namespace {
 
 constexpr int kIterations = 20, kDefiniteIterations = 60;
-constexpr double kSlow = 0.5;             // contraction above which an old matrix is renewed
-constexpr double kSmallestDamping = 1.0 / 64.0;
 constexpr double kOtherCoefficients = 0.1;
-constexpr double kRounding = 1e-14;
-
-/// Bound of what is left after a correction of this size at this contraction (geometric series), at least the correction itself.
-double left_over(double correction, double contraction) {
-  return correction * std::max(1.0, contraction < 0.95 ? contraction / (1.0 - contraction) : 20.0);
-}
 
 }  // namespace
 
@@ -97,7 +89,6 @@ bool StageNewton::usable() const {
          near(stage_->weight * stage_->c_theta, k_scale_);
 }
 
-/// The matrix of the iterate last evaluated, factored.
 SolveStatus StageNewton::refresh() {
   m_scale_ = stage_->c_a;
   d_scale_ = stage_->weight * stage_->c_u;
@@ -111,7 +102,6 @@ SolveStatus StageNewton::refresh() {
   const SolveStatus status = solver_.factor(A_, system_, assemble);
   have_factor_ = status == SolveStatus::kOk;
   age_ = 0;
-  contraction_ = 0.0;
   return status;
 }
 
@@ -125,7 +115,6 @@ double StageNewton::norm(const VecX& d) {
   return std::sqrt((q_part + u_part) / static_cast<double>(weights_.size()));
 }
 
-/// d = -A^-1 r with its norm; false where it is none.
 bool StageNewton::correct(VecX& d, double& size) {
   if (solver_.solve(residual_, d) != SolveStatus::kOk || !d.allFinite()) return false;
   d = -d;
@@ -133,66 +122,13 @@ bool StageNewton::correct(VecX& d, double& size) {
   return std::isfinite(size);
 }
 
-/// A correction that is rounding of the unknown itself cannot be made smaller.
-bool StageNewton::converged(double correction, double contraction) {
-  return left_over(correction, contraction) <= 1.0 || correction <= kRounding * norm(*a_);
-}
-
-NewtonResult StageNewton::finish(int iterations, double correction) {
-  if (!place(*a_)) return {StepStatus::kNotFinite, iterations, correction, "the position or the velocity is not finite"};
+NewtonResult StageNewton::iterate(int limit, bool full) {
+  NewtonResult result = newton_.solve(*this, *a_, limit, full ? DampedNewton::Way::kFresh : DampedNewton::Way::kKeptMatrix, usable());
+  if (result.status != StepStatus::kOk) return result;
+  if (!place(*a_)) return {StepStatus::kNotFinite, result.iterations, result.correction, "the position or the velocity is not finite"};
   dynamics::project(*from_->layout, q1_->data());
   system_.impose(*from_->layout, stage_->t1, q1_->data(), u1_->data());
-  return {StepStatus::kOk, iterations, correction, ""};
-}
-
-NewtonResult StageNewton::iterate(int limit, bool full) {
-  const auto failed = [](StepStatus status, int iterations, double correction, const char* what) { return NewtonResult{status, iterations, correction, what}; };
-  VecX& a = *a_;
-  if (!evaluate(a)) return failed(StepStatus::kNotFinite, 0, 0.0, "the force is not finite");
-  if ((residual_.array() == 0.0).all()) return finish(0, 0.0);
-  bool fresh = full || !usable();
-  double size = 0.0;
-  if ((fresh && refresh() != SolveStatus::kOk) || !correct(d_, size))
-    return failed(StepStatus::kSolverFailed, 0, 0.0, "the step matrix is singular or not finite");
-  for (int k = 1; k <= limit; ++k) {
-    if (converged(size, contraction_)) {
-      a += d_;
-      return finish(k, size);
-    }
-    double lambda = 1.0, next = 0.0, kappa = 0.0;
-    bool taken = false;
-    for (; !taken && lambda >= kSmallestDamping; lambda /= 2.0) {
-      trial_ = a + lambda * d_;
-      if (evaluate(trial_)) {
-        if (!correct(e_, next)) return failed(StepStatus::kSolverFailed, k, size, "the step matrix is singular or not finite");
-        kappa = next / size;
-        taken = next <= 1.0 || next <= kRounding * norm(trial_) || kappa <= 1.0 - lambda / 4.0;
-      }
-      if (!taken && !fresh) break;
-    }
-    if (!taken && fresh) return failed(StepStatus::kNewtonFailed, k, size, "Newton finds no descent");
-    if (taken) {
-      a = trial_;
-      contraction_ = kappa;
-      if (converged(next, kappa)) {
-        a += e_;
-        return finish(k, next);
-      }
-    } else if (!evaluate(a)) {  // the old matrix led astray: back
-      return failed(StepStatus::kNotFinite, k, size, "the force is not finite");
-    }
-    if (full || !taken || kappa > kSlow) {
-      fresh = true;
-      const double kept = taken ? kappa : 0.0;
-      if (refresh() != SolveStatus::kOk || !correct(d_, size)) return failed(StepStatus::kSolverFailed, k, next, "the step matrix is singular or not finite");
-      contraction_ = kept;  // what a fresh matrix does is seen after its first correction
-    } else {
-      fresh = false;
-      d_.swap(e_);
-      size = next;
-    }
-  }
-  return failed(StepStatus::kNewtonFailed, limit, size, "Newton did not converge");
+  return result;
 }
 
 }  // namespace palpate::integrate

@@ -1,4 +1,5 @@
 #pragma once
+#include "integrate/newton.h"
 #include "integrate/step_solver.h"
 #include "palpate/dynamics/stepper.h"
 #include "palpate/dynamics/system.h"
@@ -18,27 +19,15 @@ struct Stage {
   VecX u, theta, a_c;                          ///< the known parts; an empty a_c is zero
 };
 
-struct NewtonResult {
-  dynamics::StepStatus status = dynamics::StepStatus::kOk;
-  int iterations = 0;
-  double correction = 0.0;  ///< the last, in units of the tolerance
-  const char* what = "";
-};
-
-/// Newton's method for a Stage, after Deuflhard (2004, section 2.1 and 3.3): affine invariant, so neither units nor the stiffness enter.
-/// With the factored matrix A of the iterate a_k, d = -A^-1 r(a_k) is the correction and, after it, the simplified correction
-/// e = -A^-1 r(a_k + d), which costs a force and a solve and no factor, tells both how well it went and what is left:
-///     contraction kappa = |e|/|d|;   converged where |e| max(1, kappa/(1 - kappa)) <= 1, and e is then added too.
+/// Newton's method (integrate/newton.h) for a Stage.
 /// |.| is the weighted norm of error_weights with newton_rtol for rtol, of the increments (c_theta N a, c_u a) of q and u: 1 is the tolerance
 /// (or rounding of a, 1e-14 |a|, where that is more).
-/// kappa > 1 - lambda/4 refuses the correction lambda d: with a fresh matrix lambda is halved (down to 1/64), with an old one the
-/// matrix is made afresh.  A linear stage takes one matrix, two solves and two forces.
 ///   full Newton (factor_kept_steps = 1): a fresh matrix at every iterate.
 ///   kept factor (n > 1): the factor serves the iterates of n steps, and is renewed early where kappa > 1/2 or the coefficients
 ///   of the matrix changed by more than a tenth.  The stage's equation is the same: the answers agree within the tolerance.
 /// Where this fails (no convergence in 20 iterations, no descent, a trial that is not finite) it is tried once more from the start configuration
 /// (theta = 0: no element is worse there than it was), fresh and with a definite tangent (System::set_definite), in 60 iterations.
-class StageNewton {
+class StageNewton : private NewtonEquation {
  public:
   StageNewton(dynamics::System& system, const IntegratorSpec& spec, std::unique_ptr<dynamics::LinearSolver> solver);
 
@@ -52,16 +41,16 @@ class StageNewton {
   const StepSolver& solver() const { return solver_; }
 
  private:
-  NewtonResult iterate(int limit, bool fresh);
+  NewtonResult iterate(int limit, bool full);
   bool place(const VecX& a);
-  bool evaluate(const VecX& a);
+  bool evaluate(const VecX& a) override;
+  bool solved() const override { return (residual_.array() == 0.0).all(); }
   dynamics::StateView at() const;
   bool usable() const;
-  dynamics::SolveStatus refresh();
+  dynamics::SolveStatus refresh() override;
   double norm(const VecX& d);
-  bool correct(VecX& d, double& size);
-  bool converged(double correction, double contraction);
-  NewtonResult finish(int iterations, double correction);
+  bool correct(VecX& d, double& size) override;
+  double rounding(const VecX& a) override { return 1e-14 * norm(a); }
 
   dynamics::System& system_;
   IntegratorSpec tolerance_;  ///< with newton_rtol for rtol
@@ -71,14 +60,14 @@ class StageNewton {
   bool have_factor_ = false;
   int age_ = 0;                                 ///< steps that the factor has served
   double m_scale_ = 0, d_scale_ = 0, k_scale_ = 0;  ///< of the factored matrix
-  double contraction_ = 0.0;                    ///< last seen with this factor
+  DampedNewton newton_;
 
   // of the solve under way
   const Stage* stage_ = nullptr;
   const dynamics::StateView* from_ = nullptr;
   dynamics::StepperCounters* counters_ = nullptr;
   VecX *a_ = nullptr, *q1_ = nullptr, *u1_ = nullptr;
-  VecX weights_, theta_, q_s_, u_s_, a_s_, residual_, d_, e_, trial_, guess_, dq_, scratch_;
+  VecX weights_, theta_, q_s_, u_s_, a_s_, residual_, dq_, scratch_;
 };
 
 }  // namespace palpate::integrate

@@ -60,6 +60,7 @@ void Adapter::release() {
   }
   if (newton_) SUNNonlinSolFree(newton_);
   newton_ = nullptr;
+  fixed_step_newton_.release();
   if (context_) SUNContext_Free(&context_);
   context_ = nullptr;
 }
@@ -204,14 +205,15 @@ void Adapter::fill_weights(N_Vector y, N_Vector w) const {
   if (weight_scale_ != 1.0) N_VScale(weight_scale_, w, w);
 }
 
+void Adapter::keep_state() { kept_ = Eigen::Map<const VecX>(NV_DATA_S(y_), NV_LENGTH_S(y_)); }
+void Adapter::restore_state() { Eigen::Map<VecX>(NV_DATA_S(y_), NV_LENGTH_S(y_)) = kept_; }
+
 // --- Newton -----------------------------------------------------------------------------------------------------------
 
 // The tangent is taken afresh at every factorisation: it costs a fifteenth of one, and spares a failed Newton solve.
 // Where the library would accept an old tangent and gamma is unchanged, the old factor is kept.
 bool Adapter::prepare_matrix(double t, N_Vector y, bool reuse, double gamma, OdeProblem::Side side) {
   wanted_gamma_ = gamma;
-  tangent_time_ = t;
-  tangent_side_ = side;
   const bool fresh = !(reuse && gamma == problem_->gamma());
   if (fresh) problem_->evaluate_tangent(t, NV_DATA_S(y), side);
   return fresh;
@@ -232,7 +234,7 @@ int Adapter::test_convergence(int iteration, double correction, double tolerance
   constexpr double kOldTangent = 0.05, kForget = 0.3, kDiverging = 2.0;
   const double stale = std::abs(current_gamma() / problem_->gamma() - 1.0);
   if (iteration > 0) {
-    if (correction > kDiverging * previous_correction_ && !spec_.fixed_step) return SUN_NLS_CONV_RECVR;
+    if (correction > kDiverging * previous_correction_) return SUN_NLS_CONV_RECVR;
     rate_ = std::max(kForget * rate_, correction / previous_correction_);
   }
   previous_correction_ = correction;
@@ -247,6 +249,8 @@ SUNNonlinearSolver Adapter::make_newton() {
   return newton_;
 }
 
+SUNNonlinearSolver Adapter::make_fixed_step_newton() { return newton_ = fixed_step_newton_.make(context_); }
+
 void Adapter::use_own_test() {
   const auto test = [](SUNNonlinearSolver solver, N_Vector, N_Vector correction, realtype tolerance, N_Vector w, void* data) {
     int iteration = 0;
@@ -258,23 +262,7 @@ void Adapter::use_own_test() {
 
 SolveStatus Adapter::solve_newton(const double* y, const double* r, double* d) { return problem_->solve(y, r, d); }
 
-// The libraries keep one tangent for all iterations of a solve, and where those fail, shorten the step.  A fixed step has no such way out, and where contact closes
-// within it the tangent of the start knows nothing of it: its corrections grow by (w H)^2.  So with a fixed step, an iteration whose residual has not fallen to a
-// tenth of the one before takes the tangent where it stands: Newton's own method, quadratic where the force is smooth, and over kinks as the hand-written ones.
-bool Adapter::refresh_tangent(N_Vector b) {
-  constexpr double kFalls = 0.1;
-  int iteration = 0;
-  SUNNonlinSolGetCurIter(newton_, &iteration);
-  fill_weights(newton_state(), weights_);
-  const double residual = N_VWrmsNorm(b, weights_), before = std::exchange(previous_residual_, residual);
-  if (iteration == 0 || residual <= kFalls * before) return true;
-  problem_->evaluate_tangent(tangent_time_, NV_DATA_S(newton_state()), tangent_side_);
-  rate_ = 1.0;
-  return problem_->factor(current_gamma()) == SolveStatus::kOk;
-}
-
 int Adapter::solve(N_Vector x, N_Vector b) {
-  if (spec_.fixed_step && newton_ && !refresh_tangent(b)) return kRecoverable;
   const SolveStatus status = solve_newton(NV_DATA_S(newton_state()), NV_DATA_S(b), NV_DATA_S(x));
   if (status != SolveStatus::kOk) return kRecoverable;
   fill_weights(newton_state(), weights_);

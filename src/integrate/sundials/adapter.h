@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "integrate/ode_problem.h"
+#include "integrate/sundials/fixed_step_newton.h"
 #include "integrate/sundials/hooks.h"
 #include "palpate/dynamics/spec.h"
 
@@ -77,14 +78,20 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
     constexpr double kTightest = 1e-12;
     use_tolerance(std::max(std::pow(spec_.rtol, (k + 1.0) / k), std::min(spec_.rtol, kTightest)));
   }
+  void keep_state();  ///< y(), at the start of a step that may be tried again
+  void restore_state();
   /// To be called at every evaluation of the right-hand side: tells attempted steps apart while they are traced.
   void see_evaluation(double t, N_Vector y, bool finite);
 
   int setup() override;
   int solve(N_Vector x, N_Vector b) override;
+  N_Vector iterate() const override { return newton_state(); }
+  void set_definite(bool on) override { problem_->set_definite(on); }
   virtual dynamics::SolveStatus solve_newton(const double* y, const double* r, double* d);
   /// Newton's iteration with our own test of convergence; made with the memory, freed by the base.
   SUNNonlinearSolver make_newton();
+  SUNNonlinearSolver make_fixed_step_newton();  ///< in its place where steps cannot be shortened
+  void allow_leaps(bool on) { fixed_step_newton_.allow_leaps(on); }
   void use_own_test();  ///< after it was handed to the library, which sets its own
 
   /// Re-evaluates the tangent unless the factor can be kept; to be called by the library's matrix callback.
@@ -104,7 +111,6 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   void accept_attempt(double t0, double t1, bool event);
   dynamics::StepResult result(dynamics::StepStatus status) const;
   dynamics::StepResult failure(int flag, double t, double t_end);
-  bool refresh_tangent(N_Vector residual);
   int test_convergence(int iteration, double correction, double tolerance);
 
   std::unique_ptr<OdeProblem> problem_;
@@ -112,9 +118,8 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   SUNContext context_ = nullptr;
   N_Vector y_ = nullptr, scratch_ = nullptr, weights_ = nullptr;
   SUNNonlinearSolver newton_ = nullptr;
-  double rate_ = 1.0, previous_correction_ = 0.0, previous_residual_ = 0.0;  ///< contraction of Newton's iteration
-  double tangent_time_ = 0.0;    ///< of the matrix last asked for
-  OdeProblem::Side tangent_side_ = OdeProblem::Side::kAll;
+  FixedStepNewton fixed_step_newton_{*this};
+  double rate_ = 1.0, previous_correction_ = 0.0;  ///< contraction of Newton's iteration
   void fill_weights(N_Vector y, N_Vector w) const;
   bool finds_roots() const { return spec_.events == "root-finding"; }
   double weight_scale_ = 1.0;
@@ -136,6 +141,8 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   int attempt_worst_ = -1;
   bool attempt_finite_ = true, attempt_open_ = false;
   VecX attempt_y_;
+
+  VecX kept_;
 };
 
 }  // namespace sun

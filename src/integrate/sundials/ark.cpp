@@ -12,6 +12,7 @@
 #include "integrate/sundials/ark_methods.h"
 #include "integrate/sundials/check.h"
 #include "integrate/sundials/make_adapter.h"
+#include "integrate/sundials/step_in_parts.h"
 
 namespace palpate::integrate {
 namespace sun {
@@ -23,7 +24,6 @@ using Side = OdeProblem::Side;
 
 /// ARKODE's own 3 fail about once a step on soft bodies.
 constexpr int kNewtonIterations = 8;
-constexpr int kFixedStepIterations = 40;  ///< no shorter step helps where these do not end: contact may open and close many nodes on the way
 constexpr int kInterpolantDegree = 3;  ///< cubic Hermite: no evaluation of its own
 constexpr int kRootDegree = 5;         ///< a root's state is where the next step starts from: worth two evaluations
 /// Newton ends at this share of the tolerance, not at ARKODE's tenth: what it leaves has one sign from step to step while an old factor
@@ -79,13 +79,13 @@ class Ark final : public Adapter {
   }
 
   void use_newton(double t) {
-    check(ARKStepSetNonlinearSolver(memory_, make_newton()), "ARKStepSetNonlinearSolver", t, 0.0);
-    use_own_test();
+    check(ARKStepSetNonlinearSolver(memory_, spec().fixed_step ? make_fixed_step_newton() : make_newton()), "ARKStepSetNonlinearSolver", t, 0.0);
+    if (!spec().fixed_step) use_own_test();
     linear_solver_ = make_linear_solver(*this, context());
     matrix_ = make_matrix(context());
     check(ARKStepSetLinearSolver(memory_, linear_solver_, matrix_), "ARKStepSetLinearSolver", t, 0.0);
     check(ARKStepSetLinSysFn(memory_, linear_system), "ARKStepSetLinSysFn", t, 0.0);
-    check(ARKStepSetMaxNonlinIters(memory_, spec().fixed_step ? kFixedStepIterations : kNewtonIterations), "ARKStepSetMaxNonlinIters", t, 0.0);
+    check(ARKStepSetMaxNonlinIters(memory_, kNewtonIterations), "ARKStepSetMaxNonlinIters", t, 0.0);
     const double aim = spec().fixed_step ? spec().newton_rtol : spec().rtol;
     check(ARKStepSetNonlinConvCoef(memory_, kNewtonCoefficient * std::min(1.0, aim / tolerance_of(spec(), method_))), "ARKStepSetNonlinConvCoef", t, 0.0);
     check(ARKStepSetDeduceImplicitRhs(memory_, SUNTRUE), "ARKStepSetDeduceImplicitRhs", t, 0.0);  // f of a stage from its equation: spares evaluations
@@ -112,20 +112,29 @@ class Ark final : public Adapter {
     check(ARKStepSetStopTime(memory_, t_end), "ARKStepSetStopTime", problem().time(), 0.0);
     if (!spec().fixed_step) check(ARKStepSetMinStep(memory_, smallest_step), "ARKStepSetMinStep", problem().time(), 0.0);
     now_ = problem().time();
+    parts_.begin();
   }
 
   int one_step(double t_end, double& t) override {
-    const bool halfway = spec().fixed_step ? set_fixed_step(t_end) : aim_halfway(t_end);
+    if (spec().fixed_step) return one_fixed_step(t_end, t);
+    const bool halfway = aim_halfway(t_end);
     const int flag = ARKStepEvolve(memory_, t_end, y(), &t, ARK_ONE_STEP);
     if (flag >= 0) now_ = t;
     return halfway && flag == ARK_TSTOP_RETURN ? ARK_SUCCESS : flag;
   }
 
-  /// A step shorter than rounding of the others is none: the last one takes it in.
-  bool set_fixed_step(double t_end) {
-    const double left = t_end - now_;
-    check(ARKStepSetFixedStep(memory_, left <= spec().step_s * (1.0 + 1e-9) ? left : spec().step_s), "ARKStepSetFixedStep", now_, 0.0);
-    return false;
+  int one_fixed_step(double t_end, double& t) {
+    keep_state();
+    for (;;) {
+      check(ARKStepSetFixedStep(memory_, parts_.next(now_, t_end)), "ARKStepSetFixedStep", now_, 0.0);
+      allow_leaps(parts_.halved());
+      const int flag = ARKStepEvolve(memory_, t_end, y(), &t, ARK_ONE_STEP);
+      if (flag >= 0) now_ = t;
+      if (flag != ARK_CONV_FAILURE || !parts_.shorten(now_)) return flag;
+      restore_state();
+      check(ARKStepReset(memory_, now_, y()), "ARKStepReset", now_, 0.0);
+      check(ARKStepSetStopTime(memory_, t_end), "ARKStepSetStopTime", now_, 0.0);
+    }
   }
 
   /// Where one step and a part of one are left, two equal ones are made.  A tiny last step would spoil the next: f of its last stage is
@@ -143,6 +152,7 @@ class Ark final : public Adapter {
   std::string flag_name(int flag) const override { return sun::flag_name("ARKStep", flag); }
   /// With a fixed step no accuracy was asked for: what is out of proportion to the weights is the solution.
   std::string remedy(int flag) const override {
+    if (flag == ARK_CONV_FAILURE && spec().fixed_step) return fmt::format("  Not even at h/{}: a smaller step_s, or error control", 1 << StepInParts::kHalvings);
     if (flag != ARK_TOO_MUCH_ACC || !spec().fixed_step) return {};
     return has_implicit() ? "  The solution has grown out of bounds at this fixed step: a smaller step_s, or error control"
                           : "  The solution has grown out of bounds: an explicit step_s must stay below its stability limit";
@@ -197,6 +207,7 @@ class Ark final : public Adapter {
   const ArkMethod& method_;
   Side implicit_side_;
   double now_ = 0.0;
+  StepInParts parts_{spec().step_s};
   void* memory_ = nullptr;
   SUNLinearSolver linear_solver_ = nullptr;
   SUNMatrix matrix_ = nullptr;

@@ -10,6 +10,8 @@ class NewtonHook {
   virtual ~NewtonHook() = default;
   virtual int setup() = 0;
   virtual int solve(N_Vector x, N_Vector b) = 0;  ///< (I - gamma J) x = b
+  virtual N_Vector iterate() const { return nullptr; }  ///< y where the nonlinear residual was last evaluated; null: unknown
+  virtual void set_definite(bool) {}              ///< from the next setup on: positive semi-definite tangents
 };
 
 /// A direct linear solver and a matrix with nothing in it: SUNDIALS passes both around, the work is the hook's.

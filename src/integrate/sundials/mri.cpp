@@ -11,6 +11,8 @@
 #include "integrate/sundials/ark_flags.h"
 #include "integrate/sundials/check.h"
 #include "integrate/sundials/make_adapter.h"
+#include "integrate/sundials/multirate.h"
+#include "integrate/sundials/step_in_parts.h"
 #include "palpate/core/error.h"
 
 namespace palpate::integrate {
@@ -20,21 +22,6 @@ namespace {
 using dynamics::StepStatus;
 using Side = OdeProblem::Side;
 
-struct MriMethod {
-  const char* name;
-  ARKODE_MRITableID table;
-  int order;
-};
-constexpr MriMethod kMethods[] = {
-    {"ark-mri-2", ARKODE_MRI_GARK_IRK21a, 2}, {"ark-mri-3", ARKODE_MRI_GARK_ESDIRK34a, 3}, {"ark-mri-4", ARKODE_MRI_GARK_ESDIRK46a, 4}};
-
-const MriMethod& method_of(const std::string& name) {
-  const auto* m = std::find_if(std::begin(kMethods), std::end(kMethods), [&](const MriMethod& x) { return name == x.name; });
-  PALPATE_CHECK(m != std::end(kMethods), "\"{}\" is no multi-rate method", name);
-  return *m;
-}
-
-constexpr int kNewtonIterations = 8;
 constexpr double kNewtonCoefficient = 0.01;
 /// The fast side is integrated to a thousandth of rtol, so that the slow step decides the order.
 constexpr double kFastShare = 1e-3;
@@ -49,7 +36,7 @@ constexpr int kLeastFastSteps = 1000;  ///< a small max_steps is meant for the s
 /// Runge-Kutta one with needless bookkeeping.
 class Mri final : public Adapter {
  public:
-  Mri(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : Adapter(std::move(problem), spec), method_(method_of(spec.name)) {
+  Mri(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : Adapter(std::move(problem), spec), method_(multirate_method(spec.name)) {
     check_fixed_step(spec);
     use_tolerance(spec.newton_rtol);
   }
@@ -69,13 +56,11 @@ class Mri final : public Adapter {
     check(MRIStepSetCoupling(slow_, coupling), "MRIStepSetCoupling", t, 0.0);
     MRIStepCoupling_Free(coupling);
     check(MRIStepSetFixedStep(slow_, spec().step_s), "MRIStepSetFixedStep", t, 0.0);
-    check(MRIStepSetNonlinearSolver(slow_, make_newton()), "MRIStepSetNonlinearSolver", t, 0.0);
-    use_own_test();
+    check(MRIStepSetNonlinearSolver(slow_, make_fixed_step_newton()), "MRIStepSetNonlinearSolver", t, 0.0);
     linear_solver_ = make_linear_solver(*this, context());
     matrix_ = make_matrix(context());
     check(MRIStepSetLinearSolver(slow_, linear_solver_, matrix_), "MRIStepSetLinearSolver", t, 0.0);
     check(MRIStepSetLinSysFn(slow_, linear_system), "MRIStepSetLinSysFn", t, 0.0);
-    check(MRIStepSetMaxNonlinIters(slow_, kNewtonIterations), "MRIStepSetMaxNonlinIters", t, 0.0);
     check(MRIStepSetNonlinConvCoef(slow_, kNewtonCoefficient), "MRIStepSetNonlinConvCoef", t, 0.0);
     if (problem().has_manifold()) check(MRIStepSetPostprocessStepFn(slow_, project_step), "MRIStepSetPostprocessStepFn", t, 0.0);
   }
@@ -116,17 +101,28 @@ class Mri final : public Adapter {
   void aim(double t_end, double) override {
     check(MRIStepSetStopTime(slow_, t_end), "MRIStepSetStopTime", problem().time(), 0.0);
     now_ = problem().time();
+    parts_.begin();
   }
   int one_step(double t_end, double& t) override {
-    const double left = t_end - now_;  // a step shorter than rounding of the others is none: the last one takes it in
-    check(MRIStepSetFixedStep(slow_, left <= spec().step_s * (1.0 + 1e-9) ? left : spec().step_s), "MRIStepSetFixedStep", now_, 0.0);
-    const int flag = MRIStepEvolve(slow_, t_end, y(), &t, ARK_ONE_STEP);
-    if (flag >= 0) now_ = t;
-    return flag;
+    keep_state();
+    for (;;) {
+      check(MRIStepSetFixedStep(slow_, parts_.next(now_, t_end)), "MRIStepSetFixedStep", now_, 0.0);
+      allow_leaps(parts_.halved());
+      const int flag = MRIStepEvolve(slow_, t_end, y(), &t, ARK_ONE_STEP);
+      if (flag >= 0) now_ = t;
+      if (flag != ARK_CONV_FAILURE || !parts_.shorten(now_)) return flag;
+      ++problem().counters().rejected;
+      restore_state();
+      check(MRIStepReset(slow_, now_, y()), "MRIStepReset", now_, 0.0);
+      check(MRIStepSetStopTime(slow_, t_end), "MRIStepSetStopTime", now_, 0.0);
+    }
   }
 
   StepStatus status_of(int flag) const override { return flag == ARK_INNERSTEP_FAIL ? StepStatus::kErrorTestFailed : ark_status(flag); }
   std::string flag_name(int flag) const override { return sun::flag_name("MRIStep", flag); }
+  std::string remedy(int flag) const override {
+    return flag == ARK_CONV_FAILURE ? fmt::format("  Not even at h/{}: a smaller step_s", 1 << StepInParts::kHalvings) : std::string();
+  }
   bool interpolate(double t, N_Vector out) const override { return MRIStepGetDky(slow_, t, 0, out) == ARK_SUCCESS; }
 
   Counts counts() const override {
@@ -177,8 +173,9 @@ class Mri final : public Adapter {
     return 0;
   }
 
-  const MriMethod& method_;
+  const MultirateMethod& method_;
   double now_ = 0.0;
+  StepInParts parts_{spec().step_s};
   void *slow_ = nullptr, *fast_ = nullptr;
   MRIStepInnerStepper inner_ = nullptr;
   SUNLinearSolver linear_solver_ = nullptr;

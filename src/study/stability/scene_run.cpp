@@ -37,11 +37,26 @@ class Watch : public loop::Observer {
 
 }  // namespace
 
-SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in, const Look& look) {
+Settled settle(const scene::Description& description, double duration_s) {
+  scene::Description d = description;
+  d.duration_s = duration_s;
+  d.integrator = {};
+  d.integrator.name = "linearly-implicit-euler";
+  const auto world = loop::assemble(d);
+  const loop::RunResult run = loop::run(*world, {});
+  PALPATE_CHECK(run.status.ok(), "the scene did not settle: {}", run.status.message);
+  return {world->state.q(), world->state.u()};
+}
+
+SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in, const Look& look, const Settled* start) {
   scene::Description d = description;
   d.integrator = {};
   d.integrator.name = "linearly-implicit-euler";  // assembled with, and replaced: a column need not be in the registry
   const auto world = loop::assemble(d);
+  if (start) {
+    world->state.q() = start->q;
+    world->state.u() = start->u;
+  }
   if (lab.column.entry && world->stepper) {
     world->description.integrator = spec_of(lab.column, rtol, loop::period_of(d));
     world->stepper = make_stepper(lab.column, world->system, world->state, world->description.integrator);

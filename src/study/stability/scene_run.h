@@ -19,6 +19,8 @@ struct SceneCourse {
   double gain() const { return (highest - available) / available; }
 };
 
+struct Settled { VecX q, u; };
+
 /// Sees the world after every period.
 using Look = std::function<void(loop::World&, double t)>;
 
@@ -26,7 +28,11 @@ using Look = std::function<void(loop::World&, double t)>;
 /// passed `grown` times what was available is followed beyond its end, until it fails or has gone on a hundred times as long: what has begun to
 /// overflow must say so.
 /// @param put_in  work done from outside [J]
-SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in, const Look& look = {});
+/// @param start  where it starts from, at time 0; null: as described
+SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in, const Look& look = {}, const Settled* start = nullptr);
+
+/// Places and speeds of a scene after `duration_s` of linearly implicit Euler.
+Settled settle(const scene::Description& description, double duration_s);
 
 /// Largest energy gains that count as stable and as bounded.
 struct GainBars { double stable, bounded; };

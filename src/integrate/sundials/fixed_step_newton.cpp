@@ -1,0 +1,158 @@
+#include "integrate/sundials/fixed_step_newton.h"
+
+#include <nvector/nvector_serial.h>
+
+#include <cmath>
+
+#include "integrate/sundials/check.h"
+
+namespace palpate::integrate::sun {
+
+using dynamics::SolveStatus;
+using dynamics::StepStatus;
+
+namespace {
+
+constexpr int kIterations = 20, kDefiniteIterations = 60;
+constexpr double kRounding = 1e-14;
+
+Eigen::Map<VecX> entries(N_Vector v) { return {NV_DATA_S(v), NV_LENGTH_S(v)}; }
+
+}  // namespace
+
+/// SUNNonlinearSolver's table of functions.
+struct Operations {
+  static FixedStepNewton& of(SUNNonlinearSolver solver) { return *static_cast<FixedStepNewton*>(solver->content); }
+  static SUNNonlinearSolver_Type type(SUNNonlinearSolver) { return SUNNONLINEARSOLVER_ROOTFIND; }
+  static int ready(SUNNonlinearSolver) { return SUN_NLS_SUCCESS; }
+  static int solve(SUNNonlinearSolver s, N_Vector, N_Vector correction, N_Vector weights, realtype tolerance, booleantype set_up, void* memory) {
+    return of(s).solve(correction, weights, tolerance, set_up, memory);
+  }
+  static int set_system(SUNNonlinearSolver s, SUNNonlinSolSysFn f) {
+    of(s).system_ = f;
+    return SUN_NLS_SUCCESS;
+  }
+  static int set_set_up(SUNNonlinearSolver s, SUNNonlinSolLSetupFn f) {
+    of(s).set_up_ = f;
+    return SUN_NLS_SUCCESS;
+  }
+  static int set_solve(SUNNonlinearSolver s, SUNNonlinSolLSolveFn f) {
+    of(s).solve_ = f;
+    return SUN_NLS_SUCCESS;
+  }
+  static int no_test(SUNNonlinearSolver, SUNNonlinSolConvTestFn, void*) { return SUN_NLS_SUCCESS; }  // the test is Deuflhard's
+  static int no_limit(SUNNonlinearSolver, int) { return SUN_NLS_SUCCESS; }
+  static int all_iterations(SUNNonlinearSolver s, long* n) {
+    *n = of(s).iterations_;
+    return SUN_NLS_SUCCESS;
+  }
+  static int iteration(SUNNonlinearSolver s, int* n) {
+    *n = of(s).last_iterations_;
+    return SUN_NLS_SUCCESS;
+  }
+  static int failures(SUNNonlinearSolver s, long* n) {
+    *n = of(s).failures_;
+    return SUN_NLS_SUCCESS;
+  }
+  static int free(SUNNonlinearSolver s) {
+    s->content = nullptr;  // not ours to free
+    SUNNonlinSolFreeEmpty(s);
+    return SUN_NLS_SUCCESS;
+  }
+};
+
+SUNNonlinearSolver FixedStepNewton::make(SUNContext context) {
+  SUNNonlinearSolver solver = SUNNonlinSolNewEmpty(context);
+  check(solver, "SUNNonlinSolNewEmpty");
+  solver->content = this;
+  solver->ops->gettype = Operations::type;
+  solver->ops->initialize = Operations::ready;
+  solver->ops->solve = Operations::solve;
+  solver->ops->free = Operations::free;
+  solver->ops->setsysfn = Operations::set_system;
+  solver->ops->setlsetupfn = Operations::set_set_up;
+  solver->ops->setlsolvefn = Operations::set_solve;
+  solver->ops->setctestfn = Operations::no_test;
+  solver->ops->setmaxiters = Operations::no_limit;
+  solver->ops->getnumiters = Operations::all_iterations;
+  solver->ops->getcuriter = Operations::iteration;
+  solver->ops->getnumconvfails = Operations::failures;
+  usable_ = false;
+  return solver;
+}
+
+FixedStepNewton::~FixedStepNewton() { release(); }
+
+void FixedStepNewton::release() {
+  for (N_Vector* v : {&x_, &residual_, &step_}) {
+    if (*v) N_VDestroy(*v);
+    *v = nullptr;
+  }
+}
+
+int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double tolerance, bool set_up, void* memory) {
+  for (N_Vector* v : {&x_, &residual_, &step_})
+    if (!*v) *v = N_VClone(correction);
+  weights_ = weights;
+  tolerance_ = tolerance;
+  memory_ = memory;
+  flag_ = 0;
+  if (set_up) usable_ = false;
+  const VecX first = entries(correction);
+  VecX x = first;
+  NewtonResult result = newton_.solve(*this, x, kIterations, DampedNewton::Way::kKeptMatrix, usable_);
+  last_iterations_ = result.iterations;
+  if (result.status != StepStatus::kOk && flag_ >= 0) {
+    x = first;
+    hook_.set_definite(true);
+    result = newton_.solve(*this, x, kDefiniteIterations, DampedNewton::Way::kFresh, false);
+    hook_.set_definite(false);
+    usable_ = false;  // the next solve wants the true tangent
+    last_iterations_ += result.iterations;
+  }
+  if (result.status != StepStatus::kOk && flag_ >= 0 && leaps_) {
+    x = first;
+    result = newton_.solve(*this, x, kDefiniteIterations, DampedNewton::Way::kLeaps, false);
+    last_iterations_ += result.iterations;
+  }
+  iterations_ += last_iterations_;
+  entries(correction) = x;
+  if (result.status == StepStatus::kOk) return SUN_NLS_SUCCESS;
+  ++failures_;
+  return flag_ < 0 ? flag_ : SUN_NLS_CONV_RECVR;
+}
+
+bool FixedStepNewton::evaluate(const VecX& x) {
+  entries(x_) = x;
+  const int flag = system_(x_, residual_, memory_);
+  flag_ = std::min(flag_, flag);
+  return flag == 0 && entries(residual_).allFinite();
+}
+
+bool FixedStepNewton::solved() const { return (entries(residual_).array() == 0.0).all(); }
+
+/// Of the stage: what is solved for is a correction to a prediction of it.
+double FixedStepNewton::rounding(const VecX&) {
+  const N_Vector stage = hook_.iterate();
+  return stage ? kRounding * N_VWrmsNorm(stage, weights_) / tolerance_ : 0.0;
+}
+
+SolveStatus FixedStepNewton::refresh() {
+  booleantype current = SUNFALSE;
+  const int flag = set_up_(SUNTRUE, &current, memory_);  // at the state that the library evaluated last
+  flag_ = std::min(flag_, flag);
+  usable_ = flag == 0;
+  return usable_ ? SolveStatus::kOk : SolveStatus::kSingular;
+}
+
+bool FixedStepNewton::correct(VecX& d, double& size) {
+  N_VScale(-1.0, residual_, step_);
+  const int flag = solve_(step_, memory_);
+  flag_ = std::min(flag_, flag);
+  if (flag != 0) return false;
+  d = entries(step_);
+  size = N_VWrmsNorm(step_, weights_) / tolerance_;
+  return std::isfinite(size);
+}
+
+}  // namespace palpate::integrate::sun
