@@ -34,6 +34,8 @@ constexpr int kLeastFastSteps = 1000;  ///< a small max_steps is meant for the s
 /// The slow step is fixed (step_s); the fast side takes the explicit steps of Bogacki and Shampine under error control: cheap, because no element is
 /// evaluated in them, and bounded by the contact's and the coupling's own rates.  Where a scene has neither, f_F = 0 and the method is an implicit
 /// Runge-Kutta one with needless bookkeeping.
+/// Stable for each side alone.  Where both are stiff in each other (a hard contact on hard flesh, at a step of several of either's periods) the two together need not be:
+/// multirate_amplification (multirate.h) tells.
 class Mri final : public Adapter {
  public:
   Mri(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : Adapter(std::move(problem), spec), method_(multirate_method(spec.name)) {
