@@ -18,30 +18,7 @@ namespace {
 
 constexpr double kHeight = 0.1, kLength = 1.0, kLoad = 1e-3, kYoung = 1e6;
 
-/// Consistent nodal loads of the traction on the end face; the midpoint rule of edges is exact for quadratics, so the resultant is P/4.
-void load_end(StaticBody& body, const TetMesh& rest, std::vector<double>& carried) {
-  const double area = kHeight * kHeight;
-  const auto traction = [&](double y) { return 1.5 * kLoad / area * (1.0 - std::pow(2.0 * y / kHeight, 2)); };
-  for (const auto& tet : rest.tets.colwise())
-    for (int skip = 0; skip < 4; ++skip) {
-      int face[3], k = 0;
-      for (int a = 0; a < 4; ++a)
-        if (a != skip) face[k++] = tet[a];
-      bool end = true;
-      for (int node : face) end = end && rest.nodes(0, node) > kLength - 1e-9;
-      if (!end) continue;
-      const Vec3 a = rest.nodes.col(face[0]), b = rest.nodes.col(face[1]), c = rest.nodes.col(face[2]);
-      const double third = (b - a).cross(c - a).norm() / 6.0;
-      for (int e = 0; e < 3; ++e) {
-        const int i = face[e], j = face[(e + 1) % 3];
-        const double half = 0.5 * third * traction(0.5 * (rest.nodes(1, i) + rest.nodes(1, j)));
-        for (int node : {i, j}) {
-          body.load(node, Vec3(0, half, 0));
-          carried[static_cast<std::size_t>(node)] += half;
-        }
-      }
-    }
-}
+double traction(double y) { return 1.5 * kLoad / (kHeight * kHeight) * (1.0 - std::pow(2.0 * y / kHeight, 2)); }
 
 /// Deflection [m] conjugate to the load, with `across` elements over the whole height.
 double deflection(int across, const std::string& sabotage) {
@@ -62,11 +39,11 @@ double deflection(int across, const std::string& sabotage) {
     }
     if (X.z() < 1e-9) body.hold(i, 2, X.z());
   }
-  std::vector<double> carried(static_cast<std::size_t>(rest.nodes.cols()), 0.0);
-  load_end(body, rest, carried);
+  const VecX carried = end_loads(rest, kLength, traction);
+  for (int i = 0; i < rest.nodes.cols(); ++i) body.load(i, Vec3(0, carried[i], 0));
   if (!body.solve_linear()) return std::nan("");
   double work = 0.0;
-  for (int i = 0; i < rest.nodes.cols(); ++i) work += carried[static_cast<std::size_t>(i)] * body.displacement(i).y();
+  for (int i = 0; i < rest.nodes.cols(); ++i) work += carried[i] * body.displacement(i).y();
   return work / (0.25 * kLoad);
 }
 

@@ -72,27 +72,6 @@ TetMesh irregular(const std::array<int, 3>& cells) {
   return mesh;
 }
 
-/// Consistent loads of the traction on x = L; the midpoint rule of edges.
-void load_end(StaticBody& body, const Exact& exact) {
-  const TetMesh& rest = body.rest();
-  for (const auto& tet : rest.tets.colwise())
-    for (int skip = 0; skip < 4; ++skip) {
-      int face[3], k = 0;
-      for (int a = 0; a < 4; ++a)
-        if (a != skip) face[k++] = tet[a];
-      bool end = true;
-      for (int node : face) end = end && rest.nodes(0, node) > kLength - 1e-9;
-      if (!end) continue;
-      const Vec3 a = rest.nodes.col(face[0]), b = rest.nodes.col(face[1]), c = rest.nodes.col(face[2]);
-      const double third = (b - a).cross(c - a).norm() / 6.0;
-      for (int e = 0; e < 3; ++e) {
-        const int i = face[e], j = face[(e + 1) % 3];
-        const double half = 0.5 * third * exact.traction(0.5 * (rest.nodes(1, i) + rest.nodes(1, j)));
-        for (int node : {i, j}) body.load(node, Vec3(0, half, 0));
-      }
-    }
-}
-
 struct Found {
   double tip;    ///< deflection of the middle of the end over the exact one
   double error;  ///< RMS of the nodes' errors over RMS of their displacements
@@ -122,7 +101,8 @@ Found bend(double nu, int cells, bool nodal, const std::string& sabotage) {
     if (X.y() < 1e-9) body.hold(i, 0, X.x());
     if (X.z() < 1e-9 || X.z() > kWidth - 1e-9) body.hold(i, 2, X.z());
   }
-  load_end(body, exact);
+  const VecX loads = end_loads(body.rest(), kLength, [&](double y) { return exact.traction(y); });
+  for (int i = 0; i < loads.size(); ++i) body.load(i, Vec3(0, loads[i], 0));
   if (!body.solve_linear()) return {std::nan(""), std::nan("")};
   double sum = 0.0, of = 0.0;
   Found out{};

@@ -140,6 +140,28 @@ double volume(const TetMesh& mesh) {
   return sum;
 }
 
+VecX end_loads(const TetMesh& mesh, double length, const std::function<double(double y)>& traction) {
+  VecX loads = VecX::Zero(mesh.nodes.cols());
+  for (const auto& tet : mesh.tets.colwise())
+    for (int skip = 0; skip < 4; ++skip) {
+      int face[3], k = 0;
+      for (int a = 0; a < 4; ++a)
+        if (a != skip) face[k++] = tet[a];
+      bool end = true;
+      for (int node : face) end = end && mesh.nodes(0, node) > length - 1e-9;
+      if (!end) continue;
+      const Vec3 a = mesh.nodes.col(face[0]), b = mesh.nodes.col(face[1]), c = mesh.nodes.col(face[2]);
+      const double third = (b - a).cross(c - a).norm() / 6.0;
+      for (int e = 0; e < 3; ++e) {
+        const int i = face[e], j = face[(e + 1) % 3];
+        const double half = 0.5 * third * traction(0.5 * (mesh.nodes(1, i) + mesh.nodes(1, j)));
+        loads[i] += half;
+        loads[j] += half;
+      }
+    }
+  return loads;
+}
+
 std::vector<char> boundary_nodes(const TetMesh& mesh) {
   std::vector<char> on(static_cast<std::size_t>(mesh.nodes.cols()), 0);
   for (int node : mesh::boundary(mesh).node_of_vertex) on[static_cast<std::size_t>(node)] = 1;

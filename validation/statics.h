@@ -64,6 +64,9 @@ class StaticBody {
 
 double volume(const TetMesh& mesh);
 
+/// Consistent nodal loads [N] of a traction(y) [Pa] on the face x = `length`, in the direction of y (or any one); the midpoint rule of edges, exact for a quadratic traction's resultant.
+VecX end_loads(const TetMesh& mesh, double length, const std::function<double(double y)>& traction);
+
 /// True where the node lies on the boundary of the mesh.
 std::vector<char> boundary_nodes(const TetMesh& mesh);
 

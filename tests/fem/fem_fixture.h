@@ -111,6 +111,16 @@ inline void expect_slope_two(const std::function<VecX(double)>& y, const VecX& d
   EXPECT_GE(counted, 5);
 }
 
+/// Forces f on nodes at x have neither a resultant nor a moment.
+inline void expect_balanced(const Points& f, const Points& x) {
+  Vec3 moment = Vec3::Zero();
+  for (Eigen::Index i = 0; i < x.cols(); ++i) moment += x.col(i).cross(f.col(i));
+  const double scale = f.colwise().norm().sum();
+  EXPECT_GT(scale, 1.0);
+  EXPECT_LT(f.rowwise().sum().norm(), 1e-14 * scale);
+  EXPECT_LT(moment.norm(), 1e-12 * scale);
+}
+
 /// Message of the Error or InternalError that f throws; empty when it throws none.
 inline std::string message_of(const std::function<void()>& f) {
   try {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "loop/scene_checks.h"
 #include "loop/small_scenes.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -7,18 +8,9 @@
 
 using namespace palpate;
 using namespace palpate::small_scenes;
+using namespace palpate::scene_checks;
 
 namespace {
-
-/// The message with which a description is refused.
-std::string refusal(const scene::Description& d) {
-  try {
-    loop::assemble(d);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "not refused";
-}
 
 void expect_refused(const scene::Description& d, const std::vector<std::string>& parts) {
   const std::string message = refusal(d);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "loop/scene_checks.h"
 #include "loop/small_scenes.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -13,6 +14,7 @@
 
 using namespace palpate;
 using namespace palpate::small_scenes;
+using namespace palpate::scene_checks;
 
 namespace {
 
@@ -45,28 +47,6 @@ scene::Description limb() {
   d.integrator.name = "linearly-implicit-euler";
   d.integrator.step_s = 0.01;
   return d;
-}
-
-/// (angular about the origin, linear) of all nodes and bones with a spherical moment of inertia left out: a bone this light has none to speak of.
-Vec6 momentum(const loop::World& world) {
-  Vec6 out = Vec6::Zero();
-  const auto add = [&](double m, const Vec3& x, const Vec3& v) {
-    out.head<3>() += m * x.cross(v);
-    out.tail<3>() += m * v;
-  };
-  for (const loop::Body& body : world.bodies)
-    for (int i = 0; i < body.masses.size(); ++i) add(body.masses[i], world.state.view().position(i), world.state.view().velocity(i));
-  for (const loop::Bone& bone : world.bones) add(bone.mass, world.bone_pose(bone).translation, world.bone_twist(bone).linear);
-  return out;
-}
-
-std::string refusal(const scene::Description& d) {
-  try {
-    loop::assemble(d);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "not refused";
 }
 
 }  // namespace

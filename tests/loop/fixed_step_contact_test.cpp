@@ -1,6 +1,7 @@
 // A contact that closes within a fixed step: Newton's iteration has no shorter step to fall back on.
 #include <gtest/gtest.h>
 
+#include "loop/small_scenes.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/world.h"
@@ -25,18 +26,13 @@ scene::Description on_an_incline(const std::string& integrator) {
   cube.youngs_modulus_pa = 1e5;
   cube.stiffness_damping_s = 1e-3;
   d.bodies.push_back(cube);
-  ObstacleSpec floor;
-  floor.name = "floor";
-  floor.type = "plane";
-  d.obstacles.push_back(floor);
   ContactSpec contact;
   contact.first = "cube";
-  contact.second = "floor";
   contact.stiffness_pa_m = 1e7;
   contact.damping_pa_s_m = 1e5;
   contact.friction = 0.5;
   contact.friction_regularisation_m_s = 0.05;
-  d.contacts.push_back(contact);
+  small_scenes::add_floor(d, contact);
   d.coupling.contact_refresh_s = 0.01;
   d.integrator.name = integrator;
   d.integrator.fixed_step = true;

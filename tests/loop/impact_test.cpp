@@ -16,15 +16,10 @@ scene::Description thrown_block(double speed, double height) {
   d.bodies[0].attachments.clear();
   d.bodies[0].position_m = Vec3(0, 0, 0.01 + height);
   d.bodies[0].velocity_m_s = Vec3(0, 0, -speed);
-  ObstacleSpec floor;
-  floor.name = "floor";
-  floor.type = "plane";
-  d.obstacles.push_back(floor);
   ContactSpec contact;
   contact.first = "block";
-  contact.second = "floor";
   contact.stiffness_pa_m = 1e7;
-  d.contacts.push_back(contact);
+  small_scenes::add_floor(d, contact);
   d.coupling.contact_refresh_s = 0.01;
   d.integrator.name = "cvode-bdf";
   d.integrator.rtol = 1e-4;

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "loop/bone_paths.h"
+#include "loop/scene_checks.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
@@ -18,6 +19,7 @@
 #include "palpate/store/model_file.h"
 
 using namespace palpate;
+using namespace palpate::scene_checks;
 
 namespace {
 
@@ -96,33 +98,6 @@ JointSpec scripted(const std::string& bone, const Vec3& turn, const Vec3& shift 
   joint.keyframes[1].rotation_vector_rad = turn;
   joint.keyframes[1].position_m = shift;
   return joint;
-}
-
-/// (angular about the origin, linear) of nodes and bones.
-Vec6 momentum(const loop::World& world, const VecX& inertia_of_bones) {
-  Vec6 out = Vec6::Zero();
-  const auto add = [&](double m, const Vec3& x, const Vec3& v) {
-    out.head<3>() += m * x.cross(v);
-    out.tail<3>() += m * v;
-  };
-  for (const loop::Body& body : world.bodies)
-    for (int i = 0; i < body.masses.size(); ++i) add(body.masses[i], world.state.view().position(i), world.state.view().velocity(i));
-  for (std::size_t b = 0; b < world.bones.size(); ++b) {
-    const Pose pose = world.bone_pose(world.bones[b]);
-    const Twist twist = world.bone_twist(world.bones[b]);
-    add(world.bones[b].mass, pose.translation, twist.linear);
-    out.head<3>() += dynamics::world_inertia(pose, inertia_of_bones.segment<3>(3 * static_cast<Eigen::Index>(b))) * twist.angular;
-  }
-  return out;
-}
-
-std::string refusal(const scene::Description& d) {
-  try {
-    loop::assemble(d);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "not refused";
 }
 
 }  // namespace

@@ -26,6 +26,16 @@ inline scene::Description held_block() {
   return d;
 }
 
+/// The plane z = 0, and contact of a body with it.
+inline void add_floor(scene::Description& d, const ContactSpec& law) {
+  ObstacleSpec floor;
+  floor.name = "floor";
+  floor.type = "plane";
+  d.obstacles.push_back(floor);
+  d.contacts.push_back(law);
+  d.contacts.back().second = floor.name;
+}
+
 /// The same under a round tool whose handle stands `depth` below first touch.
 inline scene::Description pressed_block(double depth) {
   scene::Description d = held_block();
