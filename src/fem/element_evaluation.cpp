@@ -221,7 +221,7 @@ LaneCounts ElementEvaluation::add_tangent(const ElementModel& model, const BodyF
 void ElementEvaluation::add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const {
   const int edges = chunks_.shared_edges.count();
   for_each_sum(edges, [&](int k) {
-    if (k + kSumsAhead < edges) fetch_sum(k + kSumsAhead, shared_slots_.data(), A.values().data());
+    if (k + kSumsAhead < edges) fetch_sum<2>(k + kSumsAhead, shared_slots_.data(), A.values().data());
     double sum[9];
     sum_blocks(chunks_.shared_edges, k, shared_upper_, sum);
     double *above = A.block(shared_slots_[2 * static_cast<std::size_t>(k)]), *below = A.block(shared_slots_[2 * static_cast<std::size_t>(k) + 1]);
@@ -242,7 +242,7 @@ void ElementEvaluation::add_shared_blocks(bool symmetric, dynamics::BlockSparse&
 }
 
 /// What the sum over shared edge k reads and writes lies scattered: asked for some sums before, it is there in time.
-template <class Real>
+template <int kPlaces, class Real>
 void ElementEvaluation::fetch_sum(int k, const std::int32_t* places, const Real* values) const {
   const auto edge = static_cast<std::size_t>(k);
   for (int p = chunks_.shared_edges.start[edge]; p < chunks_.shared_edges.start[edge + 1]; ++p) {
@@ -250,9 +250,10 @@ void ElementEvaluation::fetch_sum(int k, const std::int32_t* places, const Real*
     __builtin_prefetch(block);
     __builtin_prefetch(block + 8);
   }
-  for (const std::int32_t place : {places[2 * edge], places[2 * edge + 1]}) {
-    __builtin_prefetch(values + 9 * static_cast<std::size_t>(place));
-    __builtin_prefetch(values + 9 * static_cast<std::size_t>(place) + 8);
+  for (std::size_t at = kPlaces * edge; at < kPlaces * (edge + 1); ++at) {
+    const Real* place = values + 9 * static_cast<std::size_t>(places[at]);
+    __builtin_prefetch(place);
+    __builtin_prefetch(place + 8);
   }
 }
 
@@ -269,7 +270,7 @@ LaneCounts ElementEvaluation::add_step(const ElementModel& model, const BodyFiel
     set_zero(upper, chunk.edges + 1);
     kernels_->step(chunks_.groups.data() + chunk.first_group, chunk.groups, model, kScalarPath, load(chunk, at, scratch), sum, upper, scratch.counts);
     flush_nodal(chunk, sum, f);
-    kernels_->store(places_.data() + 2 * static_cast<std::size_t>(chunk.first_edge), chunk.own_edges, upper, A.values.data());
+    kernels_->store(store_edges_.data() + chunk.first_edge, places_.data() + chunk.first_edge, chunk.own_edges, upper, A.values.data());
     keep_blocks(upper, chunk.own_edges, chunk.edges, shared_upper_.data() + 9 * static_cast<std::size_t>(chunk.first_shared_edge));
   });
   add_shared_nodes(f);
@@ -280,15 +281,11 @@ LaneCounts ElementEvaluation::add_step(const ElementModel& model, const BodyFiel
 void ElementEvaluation::store_shared_blocks(dynamics::BalancedMatrix& A) const {
   const int edges = chunks_.shared_edges.count();
   for_each_sum(edges, [&](int k) {
-    if (k + kSumsAhead < edges) fetch_sum(k + kSumsAhead, shared_places_.data(), A.values.data());
+    if (k + kSumsAhead < edges) fetch_sum<1>(k + kSumsAhead, shared_places_.data(), A.values.data());
     double sum[9];
     sum_blocks(chunks_.shared_edges, k, shared_upper_, sum);
-    float* above = A.values.data() + 9 * static_cast<std::size_t>(shared_places_[2 * static_cast<std::size_t>(k)]);
-    float* below = A.values.data() + 9 * static_cast<std::size_t>(shared_places_[2 * static_cast<std::size_t>(k) + 1]);
-    for (int c = 0; c < 9; ++c) {
-      above[c] = static_cast<float>(sum[c % 3 * 3 + c / 3]);
-      below[c] = static_cast<float>(sum[c]);
-    }
+    float* to = A.values.data() + 9 * static_cast<std::size_t>(shared_places_[static_cast<std::size_t>(k)]);
+    for (int c = 0; c < 9; ++c) to[c] = static_cast<float>(sum[c]);
   });
 }
 
@@ -338,25 +335,34 @@ void ElementEvaluation::prepare(int first_node, const dynamics::BlockSparse& A) 
   first_node_ = first_node;
 }
 
+/// Ascending in the matrix, so that its memory is written in order.
 void ElementEvaluation::prepare_places(int first_node, const dynamics::BalancedMatrix& A) {
   if (A.places_version == places_version_ && first_node == places_first_node_) return;
   const auto place = [&](int i, int j) { return A.place[static_cast<std::size_t>(slot_of(*A.pattern, first_node + i, first_node + j))]; };
-  places_.clear();
-  places_.reserve(chunks_.ends.size());
-  for (const Chunk& chunk : chunks_.chunks)
-    for (std::size_t at = 2 * static_cast<std::size_t>(chunk.first_edge); at < 2 * static_cast<std::size_t>(chunk.first_edge + chunk.edges); at += 2) {
-      const int i = chunks_.nodes[static_cast<std::size_t>(chunk.first_node + chunks_.ends[at])], j = chunks_.nodes[static_cast<std::size_t>(chunk.first_node + chunks_.ends[at + 1])];
-      places_.push_back(place(i, j));
-      places_.push_back(place(j, i));
+  places_.assign(chunks_.ends.size() / 2, -1);
+  store_edges_.assign(places_.size(), 0);
+  std::vector<std::pair<std::int32_t, std::uint16_t>> own;
+  for (const Chunk& chunk : chunks_.chunks) {
+    own.clear();
+    for (int k = 0; k < chunk.own_edges; ++k) {
+      const std::uint16_t* ends = chunks_.ends.data() + 2 * static_cast<std::size_t>(chunk.first_edge + k);
+      own.emplace_back(place(chunks_.nodes[static_cast<std::size_t>(chunk.first_node + ends[0])], chunks_.nodes[static_cast<std::size_t>(chunk.first_node + ends[1])]), k);
     }
-  find_both_sides(chunks_.shared_edges, place, shared_places_);
+    std::sort(own.begin(), own.end());
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      places_[static_cast<std::size_t>(chunk.first_edge) + k] = own[k].first;
+      store_edges_[static_cast<std::size_t>(chunk.first_edge) + k] = own[k].second;
+    }
+  }
+  shared_places_.resize(static_cast<std::size_t>(chunks_.shared_edges.count()));
+  for (std::size_t k = 0; k < shared_places_.size(); ++k) shared_places_[k] = place(chunks_.shared_edges.first[k], chunks_.shared_edges.second[k]);
   prefer_huge_pages(places_);
   places_version_ = A.places_version;
   places_first_node_ = first_node;
 }
 
 std::size_t ElementEvaluation::map_bytes() const {
-  return bytes_of(slots_) + bytes_of(chunk_diagonal_) + bytes_of(shared_slots_) + bytes_of(diagonal_) + bytes_of(places_) + bytes_of(shared_places_);
+  return bytes_of(slots_) + bytes_of(chunk_diagonal_) + bytes_of(shared_slots_) + bytes_of(diagonal_) + bytes_of(places_) + bytes_of(store_edges_) + bytes_of(shared_places_);
 }
 
 std::size_t ElementEvaluation::scratch_bytes() const {

@@ -61,7 +61,7 @@ class ElementEvaluation {
   void store_shared_blocks(dynamics::BalancedMatrix& A) const;
   LaneCounts add_nodal(NodalKernel kernel, const ElementModel& model, const BodyFields& at, double* out);
   void add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const;
-  template <class Real>
+  template <int kPlaces, class Real>
   void fetch_sum(int k, const std::int32_t* places, const Real* values) const;
 
   ElementChunks chunks_;
@@ -76,7 +76,8 @@ class ElementEvaluation {
   std::uint64_t pattern_version_ = 0;
   int first_node_ = -1;
   std::vector<std::int32_t> slots_;                    ///< of each entry of ElementChunks::row_edges
-  std::vector<std::int32_t> places_, shared_places_;   ///< in a BalancedMatrix: (i, j) and (j, i) of each edge of each chunk, and of each shared edge
+  std::vector<std::int32_t> places_, shared_places_;   ///< in a BalancedMatrix: of each chunk's own edges, ascending; of each shared edge
+  std::vector<std::uint16_t> store_edges_;             ///< the edge of each of places_
   std::uint64_t places_version_ = 0;
   int places_first_node_ = -1;
   std::vector<std::int32_t> chunk_diagonal_;           ///< of each node of each chunk

@@ -100,35 +100,23 @@ static void flush(const BlockTargets& targets, const ChunkBlocks& upper, const C
     flush_rows<false>(targets, upper, lower, diagonal, values);
 }
 
-// A matrix in single precision takes each block as it is, column by column: the blocks above the diagonal turned, their mirror images as they stand.
+// A matrix in single precision takes each block as it is.
 
 #if PALPATE_WIDTH == 8
-PALPATE_INLINE void store_single(const double* first, double last, float* above, float* below) {
+PALPATE_INLINE void store_single(const double* first, double last, float* to) {
   typedef double Row __attribute__((vector_size(64), may_alias));
   typedef float Singles __attribute__((vector_size(32)));
   typedef float SinglesInMemory __attribute__((vector_size(32), may_alias, aligned(4)));
-  const Singles rows = __builtin_convertvector(*reinterpret_cast<const Row*>(first), Singles);
-  *reinterpret_cast<SinglesInMemory*>(above) = __builtin_shufflevector(rows, rows, 0, 3, 6, 1, 4, 7, 2, 5);
-  *reinterpret_cast<SinglesInMemory*>(below) = rows;
-  above[8] = below[8] = static_cast<float>(last);
+  *reinterpret_cast<SinglesInMemory*>(to) = __builtin_convertvector(*reinterpret_cast<const Row*>(first), Singles);
+  to[8] = static_cast<float>(last);
 }
 #else
-PALPATE_INLINE void store_single(const double* first, double last, float* above, float* below) {
-  constexpr int kTurned[8] = {0, 3, 6, 1, 4, 7, 2, 5};
-  for (int c = 0; c < 8; ++c) {
-    above[c] = static_cast<float>(first[kTurned[c]]);
-    below[c] = static_cast<float>(first[c]);
-  }
-  above[8] = below[8] = static_cast<float>(last);
+PALPATE_INLINE void store_single(const double* first, double last, float* to) {
+  for (int c = 0; c < 8; ++c) to[c] = static_cast<float>(first[c]);
+  to[8] = static_cast<float>(last);
 }
 #endif
 
-constexpr int kEdgesAhead = 16;
-static void store(const std::int32_t* places, int count, const ChunkBlocks& upper, float* values) {
-  const auto at = [&](std::int32_t place) { return values + 9 * static_cast<std::int64_t>(place); };
-  for (int k = 0; k < count; ++k) {
-    if (k + kEdgesAhead < count)
-      for (const std::int32_t* later = places + 2 * (k + kEdgesAhead); later < places + 2 * (k + kEdgesAhead) + 2; ++later) __builtin_prefetch(at(*later), 1);
-    store_single(upper.first + 8 * k, upper.last[k], at(places[2 * k]), at(places[2 * k + 1]));
-  }
+static void store(const std::uint16_t* edges, const std::int32_t* places, int count, const ChunkBlocks& upper, float* values) {
+  for (int k = 0; k < count; ++k) store_single(upper.first + 8 * edges[k], upper.last[edges[k]], values + 9 * static_cast<std::int64_t>(places[k]));
 }

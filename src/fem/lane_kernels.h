@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 /// The element kernels as plain functions on plain data.  One source (lane_kernels.inl) is compiled for several instruction sets, so this
@@ -75,9 +76,8 @@ struct LaneKernels {
   void (*flush)(const BlockTargets&, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal, double* values);
   /// Of one linearly implicit step, all at once: f += nodal forces - stiffness times w, and the blocks of a symmetric tangent above the diagonal.
   void (*step)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, const ChunkBlocks& upper, LaneCounts&);
-  /// Stores the first `count` blocks of a chunk in a matrix in single precision, at values[9 place ...], each column by column, whatever stood there.
-  /// @param places  two an edge: of its block and of the mirror image below the diagonal
-  void (*store)(const std::int32_t* places, int count, const ChunkBlocks& upper, float* values);
+  /// Stores the blocks of `count` edges of a chunk in a matrix in single precision, row by row at values[9 places[k]], whatever stood there.
+  void (*store)(const std::uint16_t* edges, const std::int32_t* places, int count, const ChunkBlocks& upper, float* values);
   /// Elastic energies [J], and powers of the damping [W], summed by lane.
   void (*energy)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double sums[8], LaneCounts&);
   void (*power)(const ElementGroup* groups, int count, const ElementModel&, const ChunkFields&, double sums[8]);

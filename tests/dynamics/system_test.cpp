@@ -22,9 +22,8 @@ class ChainSprings final : public ForceTerm {
     apply_tangent(s, 1.0, 0.0, shift, product);
     f -= product;
     for (int i = 0; i + 1 < nodes_; ++i)
-      for (const int slot : {A.pattern->slot(i, i + 1), A.pattern->slot(i + 1, i)})
-        Eigen::Map<Eigen::Matrix3f>(A.values.data() + 9 * A.place[static_cast<std::size_t>(slot)]) =
-            static_cast<float>(-A.scale * k_scale * k_) * Eigen::Matrix3f::Identity();
+      Eigen::Map<Eigen::Matrix3f>(A.values.data() + 9 * A.place[static_cast<std::size_t>(A.pattern->slot(i, i + 1))]) =
+          static_cast<float>(-A.scale * k_scale * k_) * Eigen::Matrix3f::Identity();
   }
   void add_pattern(PatternBuilder& pattern) const override {
     for (int i = 0; i + 1 < nodes_; ++i) pattern.add_pair(i, i + 1);
@@ -342,12 +341,18 @@ TEST(System, FiltersTermsByWhatTheyAre) {
 
 namespace {
 
-/// Room for a balanced matrix, in the pattern's own order.
+/// Room for a balanced matrix, in the order of the pattern's upper triangle.
 BalancedMatrix room_for(const BlockSparse& pattern) {
   BalancedMatrix A;
   A.pattern = &pattern;
-  for (int s = 0; s < pattern.slot_count(); ++s) A.place.push_back(s);
-  A.values.assign(9 * static_cast<std::size_t>(pattern.slot_count()), 0.0f);
+  A.place.assign(static_cast<std::size_t>(pattern.slot_count()), -1);
+  int pairs = 0;
+  for (int i = 0; i < pattern.block_rows(); ++i)
+    for (int s = pattern.row_start()[static_cast<std::size_t>(i)]; s < pattern.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+      const int j = pattern.columns()[static_cast<std::size_t>(s)];
+      if (j > i) A.place[static_cast<std::size_t>(s)] = A.place[static_cast<std::size_t>(pattern.slot(j, i))] = pairs++;
+    }
+  A.values.assign(9 * static_cast<std::size_t>(pairs), 0.0f);
   A.places_version = 1;
   return A;
 }
@@ -383,7 +388,7 @@ TEST(System, ABalancedStepIsTheStep) {
     for (int s = c.system.pattern().row_start()[static_cast<std::size_t>(i)]; s < c.system.pattern().row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
       const int j = c.system.pattern().columns()[static_cast<std::size_t>(s)];
       if (j == i) continue;
-      const Mat3 block = Eigen::Map<const Eigen::Matrix3f>(A.values.data() + 9 * s).cast<double>() / A.scale;
+      const Mat3 block = Eigen::Map<const Eigen::Matrix3f>(A.values.data() + 9 * A.place[static_cast<std::size_t>(s)]).cast<double>() / A.scale;
       own -= block;
       if (i == 0 || j == 0) continue;
       EXPECT_LT((block - dense.block<3, 3>(3 * i, 3 * j)).norm(), 1e-7);

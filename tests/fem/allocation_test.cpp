@@ -33,7 +33,7 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
     SoftBody symmetric("b", rest, material, {.tangent = tangent}, at.id);
     dynamics::BalancedMatrix balanced;
     balanced.pattern = &A.body;
-    for (int s = 0; s < A.body.slot_count(); ++s) balanced.place.push_back(s);
+    for (int s = 0; s < A.body.slot_count(); ++s) balanced.place.push_back(s);  // more room than it needs
     balanced.values.resize(9 * balanced.place.size());
     balanced.diagonal = f;
     balanced.places_version = 1;

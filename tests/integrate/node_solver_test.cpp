@@ -10,6 +10,7 @@
 #include "integrate/linear/energy_bound.h"
 #include "integrate/linear/node_kernels.h"
 #include "integrate/linear/node_order.h"
+#include "integrate/linear/row_packing.h"
 #include "malloc_count.h"
 #include "palpate/core/team.h"
 #include "palpate/dynamics/system.h"
@@ -445,8 +446,58 @@ TEST(NodeOrder, CutsAGraphIntoEqualPartsThatHangTogether) {
     for (const int i : order.node) ++seen[static_cast<std::size_t>(i)];
     EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), n);
     for (int c = 0; c < clusters; ++c) EXPECT_NEAR(order.start[static_cast<std::size_t>(c) + 1] - order.start[static_cast<std::size_t>(c)], n / clusters, 5);
+    EXPECT_EQ(order.parts(), 1);
+    const integrate::NodeOrder parted = integrate::cluster_nodes(A.body, clusters, 4);
+    EXPECT_EQ(parted.clusters(), clusters);
+    EXPECT_EQ(parted.parts(), std::min(clusters, 4));
+    EXPECT_EQ(parted.first_node(static_cast<std::size_t>(parted.parts())), n);
+    for (std::size_t p = 0; p < static_cast<std::size_t>(parted.parts()); ++p) EXPECT_NEAR(parted.first_node(p + 1) - parted.first_node(p), n / parted.parts(), 2);
   }
   EXPECT_EQ(integrate::cluster_nodes(A.body, 10 * n).clusters(), n) << "no more clusters than nodes";
+}
+
+// Every block has a place of its own, or shares its mirror image's where both nodes are of one part; little is filled up.
+TEST(RowPacking, TakesEveryBlockOnce) {
+  BentBeam beam(24, 1e5);
+  const BlockSparse& pattern = beam.pattern();
+  const std::size_t n = static_cast<std::size_t>(pattern.block_rows());
+  for (const int parts : {1, 2, 5}) {
+    const integrate::NodeOrder order = integrate::cluster_nodes(pattern, parts, parts);
+    std::vector<int> place(n), row_start(1, 0), column, part(n);
+    for (std::size_t k = 0; k < n; ++k) place[static_cast<std::size_t>(order.node[k])] = static_cast<int>(k);
+    for (std::size_t p = 0; p < static_cast<std::size_t>(parts); ++p) std::fill(part.begin() + order.first_node(p), part.begin() + order.first_node(p + 1), static_cast<int>(p));
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto i = static_cast<std::size_t>(order.node[k]);
+      column.push_back(static_cast<int>(k));
+      const std::size_t first = column.size();
+      for (int s = pattern.row_start()[i]; s < pattern.row_start()[i + 1]; ++s)
+        if (pattern.columns()[static_cast<std::size_t>(s)] != static_cast<int>(i)) column.push_back(place[static_cast<std::size_t>(pattern.columns()[static_cast<std::size_t>(s)])]);
+      std::sort(column.begin() + static_cast<std::ptrdiff_t>(first), column.end());
+      row_start.push_back(static_cast<int>(column.size()));
+    }
+    integrate::RowPacking packing;
+    packing.analyse(order, row_start, column);
+    std::vector<int> taken(packing.places(), 0);
+    std::size_t blocks = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      for (auto s = static_cast<std::size_t>(row_start[i]); s < static_cast<std::size_t>(row_start[i + 1]); ++s) {
+        const auto j = static_cast<std::size_t>(column[s]);
+        const integrate::PackedRows rows = packing.rows(static_cast<std::size_t>(part[packing.turned(s) ? j : i]), nullptr);
+        EXPECT_EQ(rows.column[packing.place(s)], static_cast<int>(4 * (packing.turned(s) ? i : j)));
+        if (packing.turned(s)) {
+          EXPECT_EQ(part[i], part[j]);
+          continue;
+        }
+        ++taken[packing.place(s)];
+        ++blocks;
+      }
+    EXPECT_EQ(*std::max_element(taken.begin(), taken.end()), 1);
+    EXPECT_EQ(static_cast<std::size_t>(std::count(taken.begin(), taken.end(), 1)), blocks);
+    if (parts == 1) {
+      EXPECT_EQ(blocks, (column.size() - n) / 2 + n) << "every pair shares";
+    }
+    EXPECT_LT(static_cast<double>(packing.places()), 1.25 * static_cast<double>(blocks));
+  }
 }
 
 // The Gauss-Radau bound against the error itself, along the iteration, for a spectrum given.
@@ -499,6 +550,11 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   }
   std::vector<int> column;
   for (const int slot : source) column.push_back(A.body.columns()[static_cast<std::size_t>(slot)]);
+  std::vector<int> row_start(A.body.row_start().begin(), A.body.row_start().end());
+  integrate::NodeOrder order = integrate::cluster_nodes(A.body, 3, 3);
+  for (std::size_t i = 0; i < n; ++i) order.node[i] = static_cast<int>(i);  // parts of nodes as they come: many blocks between parts
+  integrate::RowPacking packing;
+  packing.analyse(order, row_start, column);
   std::vector<double> v(4 * n + integrate::kVectorTail), Av(v);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t a = 0; a < 3; ++a) v[4 * i + a] = b[static_cast<Eigen::Index>(3 * i + a)];
@@ -506,54 +562,104 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   A.multiply(b, exact);
   for (int limit = 0; limit <= 2; ++limit) {
     const integrate::NodeKernels& k = integrate::node_kernels(limit);
-    std::vector<float> values(9 * source.size() + integrate::kBlockTail), p(4 * n + integrate::kVectorTail), q(p), inverse(12 * n + integrate::kVectorTail);
-    const double* V[3] = {v.data(), nullptr, nullptr};
-    double* AV[3] = {Av.data(), nullptr, nullptr};
-    const integrate::DoubleBlocks D{A.body.row_start().data(), column.data(), source.data(), A.body.values().data(), A.body.slot_count() - 1};
-    ASSERT_TRUE(k.convert(D, 1.0, values.data(), 1, V, AV, 0, static_cast<int>(n)));
+    std::vector<float> values(9 * (source.size() + 1) + integrate::kBlockTail), p(4 * n + integrate::kVectorTail), q(p), inverse(12 * n + integrate::kVectorTail);
+    const integrate::DoubleBlocks D{row_start.data(), column.data(), source.data(), A.body.values().data(), A.body.slot_count() - 1};
+    ASSERT_TRUE(k.convert(D, 1.0, values.data(), 0, static_cast<int>(n)));
+    k.multiply_double(D, v.data(), Av.data(), 0, static_cast<int>(n));
     for (std::size_t i = 0; i < v.size(); ++i) p[i] = static_cast<float>(v[i]);
-    const double pq = k.product({A.body.row_start().data(), column.data(), values.data()}, p.data(), q.data(), 0, static_cast<int>(n));
+    std::vector<int> offset(packing.places(), 9 * static_cast<int>(source.size()));
+    std::vector<std::uint16_t> turned(packing.places() / integrate::kLanesOfGroup, 0);
+    for (std::size_t s = 0; s < source.size(); ++s)
+      if (!packing.turned(s)) offset[packing.place(s)] = 9 * static_cast<int>(s);
+    double pq = 0.0;
+    for (std::size_t part = 0; part < 3; ++part) k.pack(packing.rows(part, nullptr), {values.data(), offset.data(), nullptr});
+    for (std::size_t part = 0; part < 3; ++part) pq += k.product(packing.rows(part, nullptr), p.data(), q.data());
     ASSERT_TRUE(k.invert_diagonal(A.body.values().data(), diagonal.data(), 1.0, inverse.data(), 0, static_cast<int>(n)));
-    double in_double = 0.0, in_single = 0.0, identity = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
+    const auto lacks_held_columns = [&](std::size_t i) { return beam.rest[static_cast<Eigen::Index>(3 * i)] < -0.5 + 0.2; };
+    const auto off_identity = [&](bool balanced) {
+      double most = 0.0;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (balanced && lacks_held_columns(i)) continue;
+        const Mat3 own = Eigen::Map<const Mat3>(A.body.block(diagonal[i]));
+        Mat3 J;
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r) J(r, c) = inverse[12 * i + static_cast<std::size_t>(4 * c + r)];
+        most = std::max(most, (own * J - Mat3::Identity()).norm());
+      }
+      return most;
+    };
+    double in_double = 0.0, in_single = 0.0;
+    for (std::size_t i = 0; i < n; ++i)
       for (std::size_t a = 0; a < 3; ++a) {
         const double want = exact[static_cast<Eigen::Index>(3 * i + a)];
         in_double = std::max(in_double, std::abs(Av[4 * i + a] - want));
         in_single = std::max(in_single, std::abs(q[4 * i + a] - want));
       }
-      const Mat3 own = Eigen::Map<const Mat3>(A.body.block(diagonal[i]));
-      Mat3 J;
-      for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r) J(r, c) = inverse[12 * i + static_cast<std::size_t>(4 * c + r)];
-      identity = std::max(identity, (own * J - Mat3::Identity()).norm());
-    }
     EXPECT_LT(in_double, 1e-13 * exact.cwiseAbs().maxCoeff()) << k.name;
     EXPECT_LT(in_single, 1e-5 * exact.cwiseAbs().maxCoeff()) << k.name;
     EXPECT_NEAR(pq, b.dot(exact), 1e-5 * std::abs(b.dot(exact))) << k.name;
-    EXPECT_LT(identity, 1e-5) << k.name;
+    EXPECT_LT(off_identity(false), 1e-5) << k.name;
 
-    std::vector<double> mass(4 * n), own(9 * n + 3);
+    // Balanced: what is missing in a row's sum is its mass.  Blocks come turned and unturned.
+    std::vector<double> mass(4 * n + integrate::kVectorTail);
+    std::vector<float> mass_single(mass.size());
     for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t a = 0; a < 3; ++a) {  // what is missing in a row's sum
+      for (std::size_t a = 0; a < 3; ++a) {
         double sum = 0.0;
         for (int s = A.body.row_start()[i]; s < A.body.row_start()[i + 1]; ++s)
           sum += A.body.columns()[static_cast<std::size_t>(s)] == static_cast<int>(i) ? A.body.block(s)[4 * a] : static_cast<float>(A.body.block(s)[4 * a]);
         mass[4 * i + a] = sum;
+        mass_single[4 * i + a] = static_cast<float>(sum);
       }
-    const integrate::BalancedBlocks B{A.body.row_start().data(), column.data(), values.data(), mass.data(), own.data(), 1.0};
-    for (const bool again : {false, true}) {
-      std::fill(Av.begin(), Av.end(), 0.0);
-      if (again)
-        k.multiply_balanced(B, 1, V, AV, 0, static_cast<int>(n));
-      else
-        ASSERT_TRUE(k.balance(B, 1, V, AV, 0, static_cast<int>(n)));
-      double off = 0.0;
-      for (std::size_t i = 0; i < n; ++i) {
-        if (beam.rest[static_cast<Eigen::Index>(3 * i)] < -0.5 + 0.2) continue;  // rows that lack the held columns are not balanced
-        for (std::size_t a = 0; a < 3; ++a) off = std::max(off, std::abs(Av[4 * i + a] - exact[static_cast<Eigen::Index>(3 * i + a)]));
-      }
-      EXPECT_LT(off, 1e-6 * exact.cwiseAbs().maxCoeff()) << k.name;
+    for (std::size_t s = 0; s < source.size(); ++s) {
+      const std::size_t at = packing.place(s);
+      if (packing.turned(s) || at % 3 != 0 || column[s] == static_cast<int>(std::upper_bound(row_start.begin(), row_start.end(), static_cast<int>(s)) - row_start.begin()) - 1) continue;
+      Eigen::Map<Eigen::Matrix3f>(values.data() + 9 * s).transposeInPlace();
+      turned[at / integrate::kLanesOfGroup] = static_cast<std::uint16_t>(turned[at / integrate::kLanesOfGroup] | 1u << at % integrate::kLanesOfGroup);
     }
+    std::vector<float> sums(8 * n + integrate::kVectorTail), Vs[5], AVs[5];
+    const float* V[5] = {};
+    float* AV[5] = {};
+    for (int c = 0; c < 5; ++c) {
+      Vs[c] = p;
+      AVs[c].resize(p.size());
+      for (float& value : Vs[c]) value *= static_cast<float>(c + 1);
+      V[c] = Vs[c].data();
+      AV[c] = AVs[c].data();
+    }
+    std::fill(inverse.begin(), inverse.end(), 0.0f);
+    std::fill(Av.begin(), Av.end(), 0.0);
+    double trace = 0.0, all_traces = 0.0;
+    for (std::size_t part = 0; part < 3; ++part) {
+      const integrate::PackedRows rows = packing.rows(part, mass_single.data());
+      ASSERT_EQ(k.balance(rows, {values.data(), offset.data(), turned.data()}, sums.data(), inverse.data(), &trace, static_cast<int>(part) + 3, V, AV), integrate::Balanced::kOk);
+      all_traces += trace;
+    }
+    pq = 0.0;
+    for (std::size_t part = 0; part < 3; ++part) {
+      const integrate::PackedRows rows = packing.rows(part, mass_single.data());
+      k.multiply_balanced(rows, mass.data(), 1.0, v.data(), Av.data());
+      pq += k.product(rows, p.data(), q.data());
+    }
+    double off = 0.0, off_single = 0.0, off_columns = 0.0, traces = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      traces += Eigen::Map<const Mat3>(A.body.block(diagonal[i])).trace();
+      if (lacks_held_columns(i)) continue;  // such rows are not balanced
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double want = exact[static_cast<Eigen::Index>(3 * i + a)];
+        off = std::max(off, std::abs(Av[4 * i + a] - want));
+        off_single = std::max(off_single, std::abs(q[4 * i + a] - want));
+        for (std::size_t c = 0; c < 3; ++c) off_columns = std::max(off_columns, std::abs(AVs[c][4 * i + a] / static_cast<double>(c + 1) - want));
+      }
+    }
+    EXPECT_LT(off, 1e-6 * exact.cwiseAbs().maxCoeff()) << k.name;
+    EXPECT_LT(off_single, 1e-5 * exact.cwiseAbs().maxCoeff()) << k.name;
+    EXPECT_LT(off_columns, 1e-5 * exact.cwiseAbs().maxCoeff()) << k.name;
+    EXPECT_NEAR(all_traces, traces, 1e-5 * traces) << k.name;
+    EXPECT_LT(off_identity(true), 1e-5) << k.name;
+    k.multiply(packing.rows(2, mass_single.data()), 5, V, AV);
+    EXPECT_EQ(AVs[4][4 * (n - 1)], AVs[4][4 * (n - 1)]) << "a number";
+    EXPECT_NEAR(AVs[4][4 * (n - 1)], 5.0 * q[4 * (n - 1)], 1e-4 * exact.cwiseAbs().maxCoeff()) << k.name;
 
     const int size = 21, stride = 32;
     MatX S = MatX::Random(size, size);

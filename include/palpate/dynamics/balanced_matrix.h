@@ -20,8 +20,8 @@ struct HeldNode {
 /// difference of two nodes' motions, never on a translation, however much stiffer than heavy a node is.
 struct BalancedMatrix {
   const BlockSparse* pattern = nullptr;  ///< of whose values nothing is read
-  std::vector<int> place;                ///< of each slot of the pattern: its block is values[9 place ...]
-  std::vector<float> values;             ///< off-diagonal blocks times `scale`, each column by column; every one is written anew for each matrix
+  std::vector<int> place;                ///< of slots (i, j) and (j, i) of the pattern alike: their block is at values[9 place]; -1 for i = j
+  std::vector<float> values;             ///< blocks A_ij, i < j, times `scale`, each row by row; every one is written anew for each matrix
   double scale = 1.0;                    ///< a power of two, so that nothing is lost by it
   VecX diagonal;                         ///< m, of u-directions
   const double* positions = nullptr;     ///< of the nodes [m], as in BorderedMatrix; valid until factor_balanced() returns

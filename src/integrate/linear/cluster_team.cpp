@@ -6,11 +6,11 @@ void ClusterTeam::share(const NodeOrder& order, const std::vector<int>& row_star
   order_ = &order;
   const int threads = size();
   mine_.assign(static_cast<std::size_t>(threads) + 1, 0);
-  int cluster = 0;
+  int part = 0;
   for (int t = 1; t <= threads; ++t) {
     const long goal = static_cast<long>(row_start.back()) * t / threads;
-    while (cluster < order.clusters() && row_start[static_cast<std::size_t>(order.start[static_cast<std::size_t>(cluster) + 1])] <= goal) ++cluster;
-    mine_[static_cast<std::size_t>(t)] = t == threads ? order.clusters() : cluster;
+    while (part < order.parts() && row_start[static_cast<std::size_t>(order.first_node(static_cast<std::size_t>(part) + 1))] <= goal) ++part;
+    mine_[static_cast<std::size_t>(t)] = t == threads ? order.parts() : part;
   }
 }
 

@@ -6,25 +6,31 @@
 
 namespace palpate::integrate {
 
-/// Threads that work on the clusters of an order, each on its own ones.  Sums go over clusters, in their order: results do not depend on the number of threads.
+/// Threads that work on the parts of an order, each on its own ones.  Sums go over parts or clusters, in their order: results do not depend on the number of threads.
 class ClusterTeam {
  public:
   explicit ClusterTeam(int threads) : team_(threads) {}
   int size() const { return team_.size(); }
 
-  /// Shares the clusters out by numbers of blocks, as nearly equal as clusters allow.
+  /// Shares the parts out by numbers of blocks, as nearly equal as parts allow.
   void share(const NodeOrder& order, const std::vector<int>& row_start);
   /// work(thread) on each thread.
   template <class Work>
   void run(Work&& work) { team_.run(work); }
   void barrier() { team_.barrier(); }
-  /// Inside run: work(cluster, first node, last node) over the clusters of a thread.
+  /// Inside run: work(part, first node, last node) over the parts of a thread.
   template <class Work>
   void over(int thread, Work&& work) const {
-    for (int c = mine_[static_cast<std::size_t>(thread)]; c < mine_[static_cast<std::size_t>(thread) + 1]; ++c)
-      work(static_cast<std::size_t>(c), order_->start[static_cast<std::size_t>(c)], order_->start[static_cast<std::size_t>(c) + 1]);
+    for (auto p = static_cast<std::size_t>(mine_[static_cast<std::size_t>(thread)]); p < static_cast<std::size_t>(mine_[static_cast<std::size_t>(thread) + 1]); ++p)
+      work(p, order_->first_node(p), order_->first_node(p + 1));
   }
-  /// All clusters, on all threads.
+  /// Inside run: work(cluster, first node, last node) over the clusters of these parts.
+  template <class Work>
+  void over_clusters(int thread, Work&& work) const {
+    const auto cluster = [&](int t) { return static_cast<std::size_t>(order_->part[static_cast<std::size_t>(mine_[static_cast<std::size_t>(t)])]); };
+    for (std::size_t c = cluster(thread); c < cluster(thread + 1); ++c) work(c, order_->start[c], order_->start[c + 1]);
+  }
+  /// All parts, on all threads.
   template <class Work>
   void for_each(Work&& work) {
     team_.run([&](int thread) { over(thread, work); });
@@ -33,7 +39,7 @@ class ClusterTeam {
  private:
   Team team_;
   const NodeOrder* order_ = nullptr;
-  std::vector<int> mine_;  ///< first cluster of each thread
+  std::vector<int> mine_;  ///< first part of each thread
 };
 
 }  // namespace palpate::integrate

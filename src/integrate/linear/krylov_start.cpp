@@ -7,8 +7,8 @@ namespace palpate::integrate {
 namespace {
 
 struct Pointers {
-  const double *V[kMostColumns] = {}, *AV[kMostColumns] = {};
-  Pointers(int count, const Doubles* solutions, const Doubles* products) {
+  const float *V[kMostColumns] = {}, *AV[kMostColumns] = {};
+  Pointers(int count, const Singles* solutions, const Singles* products) {
     for (int k = 0; k < count; ++k) {
       V[k] = solutions[k].data();
       AV[k] = products[k].data();
@@ -20,8 +20,8 @@ struct Pointers {
 
 void KrylovStart::prepare(const NodeOrder& order) {
   for (int k = 0; k < most_; ++k)
-    for (Doubles* v : {&V_[k], &AV_[k]}) v->assign(4 * order.node.size() + kVectorTail, 0.0);
-  partial_.assign(static_cast<std::size_t>(order.clusters()), {});
+    for (Singles* v : {&V_[k], &AV_[k]}) v->assign(4 * order.node.size() + kVectorTail, 0.0f);
+  partial_.assign(static_cast<std::size_t>(order.parts()), {});
   count_ = 0;
   known_ = false;
 }
@@ -70,25 +70,44 @@ double KrylovStart::solve(double* y) const {
   return energy;
 }
 
-KrylovStart::Start KrylovStart::combine(bool warm, const Doubles& b, Doubles& x, Doubles& Ax) {
+KrylovStart::Start KrylovStart::combine(bool warm, double scale, const Doubles& b, Doubles& x, Doubles& Ax) {
   const int count = warm ? count_ : 0;
-  double y[kMostColumns] = {}, energy = 0.0;
+  double y[kMostColumns] = {}, energy = 0.0;  // V y solves (scale A) V y = b
   if (count > 0) {
     gather_sums(b);
     energy = solve(y);
   }
   const Pointers at(count, V_, AV_);
-  team_.for_each([&](std::size_t c, int first, int last) { partial_[c][0] = kernels_.combine(count, y, at.V, at.AV, b.data(), x.data(), Ax.data(), first, last); });
+  team_.for_each(
+      [&](std::size_t c, int first, int last) { partial_[c][0] = kernels_.combine(count, y, scale, at.V, at.AV, b.data(), x.data(), Ax.data(), first, last); });
   double square = 0.0;
   for (const auto& part : partial_) square += part[0];
-  return {energy, std::sqrt(square)};
+  return {scale * energy, std::sqrt(square)};
 }
 
-void KrylovStart::keep(Doubles& x) {
-  x.swap(V_[most_ - 1]);
-  for (int k = most_ - 1; k > 0; --k) V_[k].swap(V_[k - 1]);
+void KrylovStart::keep(const Doubles& x) {
+  team_.for_each([&](std::size_t p, int first, int last) {
+    double largest = 0.0;
+    for (std::size_t k = 4 * static_cast<std::size_t>(first); k < 4 * static_cast<std::size_t>(last); ++k) largest = std::max(largest, std::abs(x[k]));
+    partial_[p][0] = largest;
+  });
+  double largest = 0.0;
+  for (const auto& part : partial_) largest = std::max(largest, part[0]);
+  if (!(largest > 0.0)) return;
+  const double unit = std::ldexp(1.0, std::ilogb(largest)), by = 1.0 / unit, change = unit_ / unit;
+  unit_ = unit;
   count_ = std::min(count_ + 1, most_);
   known_ = false;
+  team_.for_each([&](std::size_t, int first, int last) {
+    for (std::size_t k = 4 * static_cast<std::size_t>(first); k < 4 * static_cast<std::size_t>(last); ++k) {
+      double difference = by * x[k];
+      for (int n = 0; n < count_; ++n) {
+        const double before = change * static_cast<double>(V_[n][k]);
+        V_[n][k] = static_cast<float>(difference);
+        difference -= before;
+      }
+    }
+  });
 }
 
 }  // namespace palpate::integrate

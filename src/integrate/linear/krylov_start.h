@@ -8,7 +8,10 @@ namespace palpate::integrate {
 /// Where an iteration starts: the best combination of the last solutions in the energy norm (Fischer 1998),
 ///     x = V y,   V^T A V y = V^T b.
 /// The more of them, the more of a smooth motion they foresee; each costs its share of that reading.
-/// V is known before the matrix is: A V is formed while the matrix is copied, in the same reading.
+/// V is known before the matrix is: A V is formed while the matrix is packed and still at hand.
+/// V is kept and A V formed in single precision.  V spans the last solutions by the newest one and its backward differences: what a smooth motion goes on with is their plain sum,
+/// where of the solutions themselves it is a difference of large multiples, and with it of their roundings.  A V comes from differences between neighbours, and is off by
+/// some roundings in the energy norm.  x is its combination of V to the last digit, a start like any other; the residual is as wrong as A V (kTrustsSingleStart, single_pcg.cpp).
 class KrylovStart {
  public:
   /// @param most  solutions that are kept, up to kMostColumns
@@ -17,8 +20,8 @@ class KrylovStart {
   /// Forgets; vectors over the nodes of this order.
   void prepare(const NodeOrder& order);
   int count() const { return count_; }
-  const Doubles* solutions() const { return V_; }
-  Doubles* products() { return AV_; }
+  Singles* solutions() { return V_; }
+  Singles* products() { return AV_; }  ///< with scale A
   void products_are_known(bool known) { known_ = known; }
   bool products_known() const { return known_; }
 
@@ -27,9 +30,9 @@ class KrylovStart {
     double residual;  ///< |b - A x|
   };
   /// x = V y and Ax = A V y, both written whole; `warm` false: zero.  A solution that lies in the span of newer ones gives nothing new and is left out.
-  Start combine(bool warm, const Doubles& b, Doubles& x, Doubles& Ax);
-  /// Takes a solution in place of the oldest; x is anything afterwards.
-  void keep(Doubles& x);
+  Start combine(bool warm, double scale, const Doubles& b, Doubles& x, Doubles& Ax);
+  /// Takes a solution; the oldest is forgotten.
+  void keep(const Doubles& x);
 
  private:
   void gather_sums(const Doubles& b);
@@ -38,10 +41,11 @@ class KrylovStart {
   const NodeKernels& kernels_;
   ClusterTeam& team_;
   int most_;
-  Doubles V_[kMostColumns], AV_[kMostColumns];  ///< the newest first
+  Singles V_[kMostColumns], AV_[kMostColumns];  ///< the newest solution, and its backward differences
+  double unit_ = 1.0;  ///< of V_: a power of two
   int count_ = 0;
   bool known_ = false;  ///< AV_ is of the present matrix and the present V_
-  std::vector<std::array<double, kMostSums>> partial_;  ///< one a cluster
+  std::vector<std::array<double, kMostSums>> partial_;  ///< one a part
   double own_[kMostColumns][kMostColumns] = {}, right_[kMostColumns] = {};  ///< V^T A V, V^T b
 };
 

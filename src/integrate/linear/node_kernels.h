@@ -3,24 +3,38 @@
 
 namespace palpate::integrate {
 
-/// A symmetric matrix of 3x3 blocks in single precision, nodes in an order of its own.  Blocks are column-major, nine floats each and nothing between
-/// them (the product runs at the speed of memory); kBlockTail more floats, finite, are readable behind the last.
-struct SingleBlocks {
-  const int* row_start;   ///< n + 1
-  const int* column;      ///< the row's own first, the others ascending
+/// The rows of a symmetric matrix of 3x3 blocks in single precision that belong to one part of the nodes, sixteen rows side by side, one a lane: in each step of a group every
+/// row meets one of its blocks.  Numbers of one kind (entry r, c of the block) of all lanes follow each other, so that a product multiplies without a shuffle but those that bring
+/// the entries of vectors together.  The first step is the row's own block; then come blocks A_ij to nodes of the same part, which stand for A_ji as well; then, from
+/// single_start on, those to other parts.  Rows that are shorter than the longest of their group meet themselves with a zero block, and so does the group's
+/// first row in lanes without a row.
+constexpr int kLanesOfGroup = 16, kNumbersOfStep = 9 * kLanesOfGroup;
+struct PackedRows {
+  int first_group, last_group, first_node, last_node;
+  const int* step_start;    ///< first step of each group; one more entry
+  const int* single_start;  ///< first step of each group to other parts
+  const int* row;           ///< 4 node, kLanesOfGroup a group
+  const int* column;        ///< 4 node, kLanesOfGroup a step
+  float* values;            ///< entry (r, c) of the blocks of step s at [kNumbersOfStep s + kLanesOfGroup (3 c + r)], 64-byte aligned
+  const float* mass;        ///< of a balanced matrix m, four numbers a node: row i is m_i p_i + sum_j A_ij (p_j - p_i), of which own blocks are no part; null: a whole matrix
+};
+/// Where the blocks are from: nine floats, column by column, at values[offset]; kBlockTail more floats are readable behind the last.
+struct BlockSource {
   const float* values;
+  const int* offset;            ///< kLanesOfGroup a step; of lanes without a block that of zeros
+  const std::uint16_t* turned;  ///< a bit for each lane of a step: the block is the transposed one; null: none is
 };
 constexpr int kBlockTail = 16, kVectorTail = 16;
-/// Vectors over the nodes hold four numbers a node, the last of them zero, and kVectorTail readable ones behind the last node.
+/// Vectors over the nodes hold four numbers a node, the last of them zero, and kVectorTail zeros behind the last node.
 /// A node's inverse diagonal block is column-major with the columns' fourth entry zero.
 constexpr int kInverseStride = 12;
 
-/// At most so many vectors go through one reading of the matrix in double precision.
+/// At most so many vectors go through one reading of the matrix.
 constexpr int kMostColumns = 5;
 /// Numbers that `gram` gives.
 constexpr int kMostSums = kMostColumns * (kMostColumns + 1) / 2 + kMostColumns;
 
-/// The original matrix and the way to it from the order of SingleBlocks.
+/// The original matrix and the way to it from the order of the nodes here.
 struct DoubleBlocks {
   const int* row_start;
   const int* column;
@@ -29,22 +43,23 @@ struct DoubleBlocks {
   int last_slot;          ///< nothing is read behind it
 };
 
-/// A BalancedMatrix in the order of SingleBlocks; everything times its scale.
-struct BalancedBlocks {
-  const int* row_start;
-  const int* column;
-  float* values;
-  const double* mass;    ///< m, four numbers a node
-  double* own;           ///< the diagonal blocks in double, column-major, nine a node; three more numbers, finite, are readable behind the last
-  double unit;           ///< 1 / scale
-};
+enum class Balanced { kOk, kNotFinite, kNotDefinite };
 
 /// The inner loops over nodes [first, last), one set of them for each instruction set: one source (node_kernels.inl), compiled for each and chosen when
 /// the program runs.  Sums go over a chunk in a fixed order.  The sets differ in their order of summation and in contraction, that is, in rounding.
 struct NodeKernels {
   const char* name;
-  /// q = A p; returns p . q
-  double (*product)(const SingleBlocks& A, const float* p, float* q, int first, int last);
+  /// q = A p on these rows; returns p . q
+  double (*product)(const PackedRows& A, const float* p, float* q);
+  /// Brings blocks into their lanes
+  void (*pack)(const PackedRows& A, const BlockSource& from);
+  /// The same of a balanced matrix, of which the diagonal blocks m - sum_j A_ij and their inverses are made.  And AV = A V for `count` columns.
+  /// sums: room for eight numbers a node.  trace: of all the diagonal blocks
+  Balanced (*balance)(const PackedRows& A, const BlockSource& from, float* sums, float* inverse, double* trace, int count, const float* const* V, float* const* AV);
+  /// AV = A V on these rows for `count` columns
+  void (*multiply)(const PackedRows& A, int count, const float* const* V, float* const* AV);
+  /// Av = A v times `unit` of a balanced matrix on these rows, in double; mass: four numbers a node
+  void (*multiply_balanced)(const PackedRows& A, const double* mass, double unit, const double* v, double* Av);
   /// d += a p, r -= a q, z = J r; returns r . z
   double (*update)(float a, const float* p, const float* q, const float* inverse, float* d, float* r, float* z, int first, int last);
   /// z = J r; returns r . z
@@ -57,22 +72,19 @@ struct NodeKernels {
   void (*dense)(const float* E, int stride, const float* y, float* w, int first, int last);
   /// E = E^-1 in place, symmetric, rows of `stride`; false at a pivot that is not positive
   bool (*invert)(float* E, int size, int stride);
-  /// The blocks of rows [first, last), times `scale`, into `out` (null: not); and, for `count` columns, AV = A V in double; false where a
-  /// value of the copy is not finite
-  bool (*convert)(const DoubleBlocks& A, double scale, float* out, int count, const double* const* V, double* const* AV, int first, int last);
-  /// Rows [first, last): own = m - sum of the others, and symmetric in `values`; and, for `count` columns, AV = A V in double.  False where a number is not finite
-  bool (*balance)(const BalancedBlocks& A, int count, const double* const* V, double* const* AV, int first, int last);
-  /// AV = A V of a matrix that is balanced
-  void (*multiply_balanced)(const BalancedBlocks& A, int count, const double* const* V, double* const* AV, int first, int last);
+  /// The blocks of rows [first, last), times `scale`, into `out`; false where a value of the copy is not finite
+  bool (*convert)(const DoubleBlocks& A, double scale, float* out, int first, int last);
+  /// Rows [first, last) of Av = A v in double
+  void (*multiply_double)(const DoubleBlocks& A, const double* v, double* Av, int first, int last);
   /// Sums over nodes [first, last): V_j . AV_i for j = 0, 1, ... and i = 0 ... j, then V_j . b, one after the other into `out`
-  void (*gram)(int count, const double* const* V, const double* const* AV, const double* b, int first, int last, double* out);
-  /// x = sum of y_k V_k, Ax likewise; returns |b - Ax|^2
-  double (*combine)(int count, const double* y, const double* const* V, const double* const* AV, const double* b, double* x, double* Ax, int first, int last);
+  void (*gram)(int count, const float* const* V, const float* const* AV, const double* b, int first, int last, double* out);
+  /// x = scale times the sum of y_k V_k, Ax the sum of y_k AV_k; returns |b - Ax|^2
+  double (*combine)(int count, const double* y, double scale, const float* const* V, const float* const* AV, const double* b, double* x, double* Ax, int first, int last);
   /// r = by (b - Ax)
   void (*residual)(double by, const double* b, const double* Ax, float* r, int first, int last);
   /// x += by d
   void (*correct)(double by, const float* d, double* x, int first, int last);
-  /// Inverses of the diagonal blocks (of nodes at slot[node], or at [node] where it is null) times 1/scale; false where one is not positive definite
+  /// Inverses of the diagonal blocks at slot[node] times 1/scale; false where one is not positive definite
   bool (*invert_diagonal)(const double* values, const int* slot, double scale, float* inverse, int first, int last);
 };
 

@@ -62,13 +62,24 @@ class Bisection {
 
 }  // namespace
 
-NodeOrder cluster_nodes(const dynamics::BlockSparse& A, int clusters) {
+NodeOrder cluster_nodes(const dynamics::BlockSparse& A, int clusters, int parts) {
   const int n = A.block_rows();
   NodeOrder order;
   order.node.resize(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) order.node[static_cast<std::size_t>(i)] = i;
-  order.start.push_back(0);
-  if (n > 0) Bisection(A, order).cut(0, n, std::clamp(clusters, 1, n));
+  order.start = order.part = {0};
+  if (n == 0) return order;
+  clusters = std::clamp(clusters, 1, n);
+  parts = std::clamp(parts, 1, clusters);
+  Bisection bisection(A, order);
+  bisection.cut(0, n, parts);
+  std::vector<int> ends(1, 0);
+  ends.swap(order.start);
+  for (int p = 0; p < parts; ++p) {
+    const auto share = [&](int k) { return static_cast<int>(static_cast<long>(clusters) * k / parts); };
+    bisection.cut(ends[static_cast<std::size_t>(p)], ends[static_cast<std::size_t>(p) + 1], share(p + 1) - share(p));
+    order.part.push_back(order.clusters());
+  }
   return order;
 }
 

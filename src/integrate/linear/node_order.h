@@ -5,15 +5,19 @@
 
 namespace palpate::integrate {
 
-/// Nodes in clusters of nearly equal size that hang together in the matrix's graph.
+/// Nodes in clusters of nearly equal size that hang together in the matrix's graph, and these in parts, whose clusters lie side by side: what one thread works on at a time.
 struct NodeOrder {
   std::vector<int> node;   ///< the nodes, cluster after cluster
   std::vector<int> start;  ///< where each cluster begins in `node`; clusters + 1 entries
+  std::vector<int> part;   ///< the first cluster of each part; parts + 1 entries
   int clusters() const { return static_cast<int>(start.size()) - 1; }
+  int parts() const { return static_cast<int>(part.size()) - 1; }
+  /// First node of a part; of the part behind the last, the number of nodes.
+  int first_node(std::size_t p) const { return start[static_cast<std::size_t>(part[p])]; }
 };
 
 /// Recursive bisection by breadth-first levels (George 1973): from a node far from all others, the half that is reached first is cut off.  The cut is
-/// about as small as a level of the graph.  O(nodes log clusters); needs no positions.
-NodeOrder cluster_nodes(const dynamics::BlockSparse& A, int clusters);
+/// about as small as a level of the graph.  O(nodes log clusters); needs no positions.  First into parts, then each part into its share of the clusters.
+NodeOrder cluster_nodes(const dynamics::BlockSparse& A, int clusters, int parts = 1);
 
 }  // namespace palpate::integrate

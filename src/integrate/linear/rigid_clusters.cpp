@@ -36,19 +36,20 @@ void RigidClusters::place_arms(const NodeOrder& order, const double* positions) 
 }
 
 /// A held direction's row is that of the identity: a node that hangs on nothing along some axis moves with no cluster.
-void RigidClusters::leave_out_held(const SingleBlocks& A) {
+void RigidClusters::leave_out_held(const SingleMatrix& A) {
+  const auto leave_out = [&](std::size_t node) { std::fill_n(arm_.begin() + 4 * static_cast<std::ptrdiff_t>(node), 4, 0.0f); };
+  for (const std::size_t entry : A.held()) leave_out(entry / 4);
   for (std::size_t i = 0; i < cluster_.size(); ++i) {
     std::array<float, 3> coupling{};
-    for (int s = A.row_start[i]; s < A.row_start[i + 1]; ++s) {
-      if (A.column[s] == static_cast<int>(i)) continue;
-      for (std::size_t k = 0; k < 9; ++k) coupling[k % 3] += std::abs(A.values[9 * static_cast<std::size_t>(s) + k]);
-    }
-    if (*std::min_element(coupling.begin(), coupling.end()) == 0.0f) std::fill_n(arm_.begin() + 4 * static_cast<std::ptrdiff_t>(i), 4, 0.0f);
+    for (int s = A.row_start()[i] + 1; s < A.row_start()[i + 1]; ++s)
+      for (int k = 0; k < 9; ++k) coupling[static_cast<std::size_t>(k % 3)] += std::abs(A.packing().entry(static_cast<std::size_t>(s), k % 3, k / 3));
+    if (*std::min_element(coupling.begin(), coupling.end()) == 0.0f) leave_out(i);
   }
 }
 
 /// E_IJ = sum over i in I, j in J of T_i^T A_ij T_j with T_i = [I, -[arm_i]x]: for each row first G = sum_j A_ij T_j, then T_i^T G.
-void RigidClusters::assemble(const SingleBlocks& A, const NodeOrder& order) {
+void RigidClusters::assemble(const SingleMatrix& A) {
+  const std::vector<int>&row_start = A.row_start(), &column = A.column();
   using Single3 = Eigen::Matrix3f;
   const auto skew = [&](std::size_t i) {
     const float *a = arm_.data() + 4 * i;
@@ -57,17 +58,18 @@ void RigidClusters::assemble(const SingleBlocks& A, const NodeOrder& order) {
     return m;
   };
   std::fill(E_.begin(), E_.end(), 0.0f);
-  for (std::size_t i = 0; i < order.node.size(); ++i) {
+  for (std::size_t i = 0; i < cluster_.size(); ++i) {
     if (arm_[4 * i + 3] == 0.0f) continue;
     const int I = cluster_[i];
     const Single3 turn = skew(i);
-    for (int s = A.row_start[i]; s < A.row_start[i + 1];) {
-      const int J = cluster_[static_cast<std::size_t>(A.column[s])];
+    for (int s = row_start[i]; s < row_start[i + 1];) {
+      const int J = cluster_[static_cast<std::size_t>(column[static_cast<std::size_t>(s)])];
       Single3 force = Single3::Zero(), moment = Single3::Zero();
-      for (; s < A.row_start[i + 1] && cluster_[static_cast<std::size_t>(A.column[s])] == J; ++s) {
-        const auto j = static_cast<std::size_t>(A.column[s]);
+      for (; s < row_start[i + 1] && cluster_[static_cast<std::size_t>(column[static_cast<std::size_t>(s)])] == J; ++s) {
+        const auto j = static_cast<std::size_t>(column[static_cast<std::size_t>(s)]);
         if (arm_[4 * j + 3] == 0.0f) continue;
-        const Eigen::Map<const Single3> block(A.values + 9 * static_cast<std::size_t>(s));
+        Single3 block;
+        for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = A.packing().entry(static_cast<std::size_t>(s), k % 3, k / 3);
         force += block;
         moment.noalias() -= block * skew(j);
       }
@@ -84,10 +86,10 @@ void RigidClusters::assemble(const SingleBlocks& A, const NodeOrder& order) {
     for (std::size_t c = r / 6 * 6 + 6; c < static_cast<std::size_t>(size_); ++c) E_[c * static_cast<std::size_t>(stride_) + r] = E_[r * static_cast<std::size_t>(stride_) + c];
 }
 
-bool RigidClusters::refresh(const SingleBlocks& A, const NodeOrder& order, const double* positions, const NodeKernels& kernels) {
-  place_arms(order, positions);
+bool RigidClusters::refresh(const SingleMatrix& A, const double* positions, const NodeKernels& kernels) {
+  place_arms(A.order(), positions);
   leave_out_held(A);
-  assemble(A, order);
+  assemble(A);
   // A direction that no node moves in (a cluster held whole, a turn without arms) stands alone; a tiny share of the diagonal covers rounding in the
   // turn of a cluster whose nodes lie on a line.
   for (std::size_t k = 0; k < static_cast<std::size_t>(size_); ++k) {

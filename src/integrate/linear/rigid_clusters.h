@@ -1,8 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "integrate/linear/node_kernels.h"
-#include "integrate/linear/node_order.h"
+#include "integrate/linear/single_matrix.h"
 #include "palpate/dynamics/matrix.h"
 
 namespace palpate::integrate {
@@ -19,8 +18,8 @@ class RigidClusters {
  public:
   /// New clusters; forgets E.
   void prepare(const NodeOrder& order);
-  /// E of this matrix (in the order's numbering) with arms at these positions (original numbering; null: none).  False: E is not positive definite.
-  bool refresh(const SingleBlocks& A, const NodeOrder& order, const double* positions, const NodeKernels& kernels);
+  /// E of this matrix with arms at these positions (original numbering; null: none).  False: E is not positive definite.
+  bool refresh(const SingleMatrix& A, const double* positions, const NodeKernels& kernels);
   bool ready() const { return ready_; }
   void forget() { ready_ = false; }
 
@@ -31,8 +30,8 @@ class RigidClusters {
 
  private:
   void place_arms(const NodeOrder& order, const double* positions);
-  void leave_out_held(const SingleBlocks& A);
-  void assemble(const SingleBlocks& A, const NodeOrder& order);
+  void leave_out_held(const SingleMatrix& A);
+  void assemble(const SingleMatrix& A);
 
   bool ready_ = false;
   int size_ = 0, stride_ = 0;

@@ -19,7 +19,7 @@ void SingleIteration::prepare() {
   for (Singles* v : {&d_, &r_, &z_, &p_, &q_}) v->assign(4 * static_cast<std::size_t>(matrix_.nodes()) + kVectorTail, 0.0f);
   bounds_.assign(static_cast<std::size_t>(team_.size()), {});
   partial_.assign(static_cast<std::size_t>(matrix_.order().clusters()), 0.0);
-  partial_rz_ = partial_;
+  partial_pq_.assign(static_cast<std::size_t>(matrix_.order().parts()), 0.0);
   y_.assign(static_cast<std::size_t>(clusters_.stride()), 0.0f);
   w_ = y_;
 }
@@ -41,7 +41,7 @@ void SingleIteration::forget_direction() {
 
 double SingleIteration::precondition() {
   team_.run([&](int t) {
-    team_.over(t, [&](std::size_t c, int first, int last) {
+    team_.over_clusters(t, [&](std::size_t c, int first, int last) {
       if (coarse_on()) kernels_.gather_rigid(r_.data(), clusters_.arm(), y_.data() + 6 * c, first, last);
       partial_[c] = kernels_.jacobi(matrix_.inverse(), r_.data(), z_.data(), first, last);
     });
@@ -89,31 +89,30 @@ double SingleIteration::orthogonal_to_last() {
 }
 
 SolveStatus SingleIteration::reduce(double& rho_in_out, double beta, double spent, double unit, double rtol, int left, int& steps) {
-  const SingleBlocks A = matrix_.blocks();
   SolveStatus status = SolveStatus::kOk;
   const double rho_start = rho_in_out;
   team_.run([&](int t) {
     EnergyBound& bound = bounds_[static_cast<std::size_t>(t)];
     double rho = rho_start, b = beta;
     for (int k = 1;; ++k) {
-      team_.over(t, [&](std::size_t c, int first, int last) {
+      team_.over_clusters(t, [&](std::size_t c, int first, int last) {
         kernels_.direction(static_cast<float>(b), z_.data(), clusters_.arm(), motion(c), p_.data(), first, last);
       });
       team_.barrier();
-      team_.over(t, [&](std::size_t c, int first, int last) { partial_[c] = kernels_.product(A, p_.data(), q_.data(), first, last); });
+      team_.over(t, [&](std::size_t part, int, int) { partial_pq_[part] = matrix_.product(part, p_.data(), q_.data()); });
       team_.barrier();
-      const double pq = sum_of(partial_);
+      const double pq = sum_of(partial_pq_);
       const bool bad = !(pq > 0.0) || !std::isfinite(pq);
       if (!bad) {
         const auto alpha = static_cast<float>(rho / pq);
-        team_.over(t, [&](std::size_t c, int first, int last) {
-          partial_rz_[c] = kernels_.update(alpha, p_.data(), q_.data(), matrix_.inverse(), d_.data(), r_.data(), z_.data(), first, last);
+        team_.over_clusters(t, [&](std::size_t c, int first, int last) {
+          partial_[c] = kernels_.update(alpha, p_.data(), q_.data(), matrix_.inverse(), d_.data(), r_.data(), z_.data(), first, last);
           if (coarse_on()) kernels_.gather_rigid(r_.data(), clusters_.arm(), y_.data() + 6 * c, first, last);
         });
         team_.barrier();
         coarse(t);
         if (coarse_on()) team_.barrier();
-        const double next = sum_of(partial_rz_) + coarse_share();
+        const double next = sum_of(partial_) + coarse_share();
         bound.step(rho / pq, rho * unit, next * unit);
         b = next / rho;
         rho = next;

@@ -54,7 +54,7 @@ class SingleIteration {
   Singles y_, w_;  ///< of the clusters: force and moment, and their motion
   double pq_ = 0.0, floor_ = 0.0;
   std::vector<EnergyBound> bounds_;  ///< one a thread, all alike: each decides for itself, with nothing to wait for
-  std::vector<double> partial_, partial_rz_;
+  std::vector<double> partial_, partial_pq_;  ///< of clusters, of parts
 };
 
 }  // namespace palpate::integrate

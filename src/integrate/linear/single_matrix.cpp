@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
+
+#include <Eigen/LU>
 
 #include "palpate/core/error.h"
 #include "palpate/core/huge_pages.h"
@@ -13,20 +16,22 @@ using dynamics::SolveStatus;
 
 namespace {
 
-/// Rows of one length after each other: the end of a row is then foreseen, where a wrong guess costs as much as some blocks.
-void sort_rows(const dynamics::BlockSparse& pattern, NodeOrder& order) {
-  const auto length = [&](int i) { return pattern.row_start()[static_cast<std::size_t>(i) + 1] - pattern.row_start()[static_cast<std::size_t>(i)]; };
-  for (int c = 0; c < order.clusters(); ++c)
-    std::stable_sort(order.node.begin() + order.start[static_cast<std::size_t>(c)], order.node.begin() + order.start[static_cast<std::size_t>(c) + 1],
-                     [&](int a, int b) { return length(a) < length(b); });
-}
+struct Columns {
+  const float* V[kMostColumns] = {};
+  float* AV[kMostColumns] = {};
+  Columns(int count, const Singles* from, Singles* to) {
+    for (int k = 0; k < count; ++k) {
+      V[k] = from[k].data();
+      AV[k] = to[k].data();
+    }
+  }
+};
 
 }  // namespace
 
-void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters) {
+void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters, int part_count) {
   pattern_version_ = pattern.pattern_version();
-  order_ = cluster_nodes(pattern, clusters);
-  sort_rows(pattern, order_);
+  order_ = cluster_nodes(pattern, clusters, part_count);
   const std::size_t n = order_.node.size();
   place_of_node_.resize(n);
   for (std::size_t k = 0; k < n; ++k) place_of_node_[static_cast<std::size_t>(order_.node[k])] = static_cast<int>(k);
@@ -50,19 +55,31 @@ void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters) {
     }
     row_start_.push_back(static_cast<int>(column_.size()));
   }
+  packing_.analyse(order_, row_start_, column_);
   written_ = {};
-  written_.values.assign(9 * column_.size() + kBlockTail, 0.0f);
-  prefer_huge_pages(written_.values);
-  prefer_huge_pages(column_);
+  for (auto* v : {&copy_, &mass_single_}) v->clear();
   prefer_huge_pages(source_);
   inverse_.assign(kInverseStride * n + kVectorTail, 0.0f);
-  good_.assign(static_cast<std::size_t>(order_.clusters()), 0);
-  own_.clear();
+  const auto parts = static_cast<std::size_t>(order_.parts());
+  good_.assign(parts, 0);
+  balanced_.assign(parts, Balanced::kOk);
+  trace_.assign(parts, 0.0);
+  mass_trace_ = trace_;
+  held_.clear();
   team_.share(order_, row_start_);
 }
 
-SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, const Doubles* from, Doubles* to) {
+SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Singles* from, Singles* to) {
   original_ = &A;
+  held_.clear();
+  if (copy_.empty()) {
+    copy_.assign(9 * static_cast<std::size_t>(block_count() + 1) + kBlockTail, 0.0f);  // and a block of zeros
+    copy_offset_.assign(packing_.places(), 9 * block_count());
+    for (std::size_t s = 0; s < column_.size(); ++s)
+      if (!packing_.turned(s)) copy_offset_[packing_.place(s)] = 9 * static_cast<int>(s);
+    prefer_huge_pages(copy_);
+    prefer_huge_pages(copy_offset_);
+  }
   const double* values = A.body.values().data();
   // A power of two near 1/(mean of the diagonal): single precision overflows where double does not.
   double mean = 0.0;
@@ -70,92 +87,142 @@ SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, con
   if (!std::isfinite(mean)) return SolveStatus::kSingular;
   if (!(mean > 0.0)) return SolveStatus::kIndefinite;
   written_.scale = std::ldexp(1.0, -std::ilogb(mean));
-  if (!good_of(count, from, to, written_.values.data(), false)) return SolveStatus::kSingular;
-  return invert(values, diagonal_slot_.data(), written_.scale) ? SolveStatus::kOk : SolveStatus::kIndefinite;
+  const DoubleBlocks whole{row_start_.data(), column_.data(), source_.data(), values, block_count() - 1};
+  team_.for_each([&](std::size_t c, int first, int last) { good_[c] = kernels_.convert(whole, written_.scale, copy_.data(), first, last); });
+  if (std::find(good_.begin(), good_.end(), char{0}) != good_.end()) return SolveStatus::kSingular;
+  team_.for_each([&](std::size_t c, int first, int last) {
+    kernels_.pack(rows(c), {copy_.data(), copy_offset_.data(), nullptr});
+    good_[c] = kernels_.invert_diagonal(values, diagonal_slot_.data(), written_.scale, inverse_.data(), first, last);
+    multiply(c, count, from, to);
+  });
+  return std::find(good_.begin(), good_.end(), char{0}) == good_.end() ? SolveStatus::kOk : SolveStatus::kIndefinite;
 }
 
+/// Each pair of nodes has one block there, in the order in which packing meets them.
 dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& pattern) {
   static std::atomic<std::uint64_t> version{0};
   written_.pattern = &pattern;
-  if (!own_.empty()) return written_;
-  own_.assign(9 * order_.node.size() + 3, 0.0);
-  mass_.assign(4 * order_.node.size(), 0.0);
-  written_.place.resize(column_.size());
-  for (std::size_t s = 0; s < column_.size(); ++s) written_.place[static_cast<std::size_t>(source_[s])] = static_cast<int>(s);
-  written_.places_version = ++version;
-  mirror_.resize(column_.size());
+  if (!mass_single_.empty()) return written_;
+  const std::size_t n = order_.node.size();
+  mass_.assign(4 * n + kVectorTail, 0.0);
+  mass_single_.assign(4 * n + kVectorTail, 0.0f);
+  sums_.assign(8 * n + kVectorTail, 0.0f);
+  const int pairs = (block_count() - nodes()) / 2;
+  written_.values.assign(9 * static_cast<std::size_t>(pairs + 1) + kBlockTail, 0.0f);  // and a block of zeros
+  written_.place.assign(column_.size(), -1);
+  written_offset_.assign(packing_.places(), 9 * pairs);
+  turned_.assign(packing_.places() / kLanesOfGroup, 0);
+  std::vector<int> row_of_place(packing_.places(), -1), block_of_place(packing_.places(), -1);
   for (int i = 0; i < nodes(); ++i)
-    for (int s = row_start_[static_cast<std::size_t>(i)]; s < row_start_[static_cast<std::size_t>(i) + 1]; ++s) {
-      const auto j = static_cast<std::size_t>(column_[static_cast<std::size_t>(s)]);
-      const auto first = column_.begin() + row_start_[j];
-      const auto found = *first == i ? first : std::lower_bound(first + 1, column_.begin() + row_start_[j + 1], i);
-      mirror_[static_cast<std::size_t>(s)] = static_cast<int>(found - column_.begin());
+    for (int s = row_start_[static_cast<std::size_t>(i)] + 1; s < row_start_[static_cast<std::size_t>(i) + 1]; ++s) {
+      if (packing_.turned(static_cast<std::size_t>(s))) continue;
+      row_of_place[packing_.place(static_cast<std::size_t>(s))] = i;
+      block_of_place[packing_.place(static_cast<std::size_t>(s))] = s;
     }
+  int next = 0;
+  for (std::size_t at = 0; at < row_of_place.size(); ++at) {
+    if (row_of_place[at] < 0) continue;
+    const auto s = static_cast<std::size_t>(block_of_place[at]);
+    const int i = order_.node[static_cast<std::size_t>(row_of_place[at])], j = order_.node[static_cast<std::size_t>(column_[s])];
+    int& number = written_.place[static_cast<std::size_t>(source_[s])];
+    if (number < 0) written_.place[static_cast<std::size_t>(pattern.slot(j, i))] = number = next++;
+    written_offset_[at] = 9 * number;
+    if (i < j) turned_[at / kLanesOfGroup] = static_cast<std::uint16_t>(turned_[at / kLanesOfGroup] | (1u << at % kLanesOfGroup));  // row by row is the transposed one, column by column
+  }
+  written_.places_version = ++version;
+  prefer_huge_pages(written_.values);
+  prefer_huge_pages(written_offset_);
   return written_;
 }
 
-SolveStatus SingleMatrix::take_balanced(int count, const Doubles* from, Doubles* to) {
+SolveStatus SingleMatrix::take_balanced(int count, Singles* from, Singles* to) {
   original_ = nullptr;
   const std::size_t n = order_.node.size();
   PALPATE_CHECK(written_.diagonal.size() == static_cast<Eigen::Index>(3 * n), "a balanced matrix of {} nodes with {} masses", n, written_.diagonal.size());
-  double mass = 0.0, own = 0.0;
-  for (std::size_t k = 0; k < n; ++k)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      mass += mass_[4 * k + axis] = written_.scale * written_.diagonal[static_cast<Eigen::Index>(3 * static_cast<std::size_t>(order_.node[k]) + axis)];
-  if (!good_of(count, from, to, nullptr, true)) return SolveStatus::kSingular;
-  for (std::size_t k = 0; k < n; ++k) own += own_[9 * k] + own_[9 * k + 4] + own_[9 * k + 8];
-  stiffness_ = own / mass;
-  hold(count, from, to);
-  return invert(own_.data(), nullptr, 1.0) ? SolveStatus::kOk : SolveStatus::kIndefinite;
+  find_held();
+  for (int k = 0; k < count; ++k)
+    for (const std::size_t entry : held_) from[k][entry] = 0.0f;
+  team_.for_each([&](std::size_t c, int first, int last) {
+    double sum = 0.0;
+    for (auto k = static_cast<std::size_t>(first); k < static_cast<std::size_t>(last); ++k)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double m = written_.scale * written_.diagonal[static_cast<Eigen::Index>(3 * static_cast<std::size_t>(order_.node[k]) + axis)];
+        sum += mass_[4 * k + axis] = m;
+        mass_single_[4 * k + axis] = static_cast<float>(m);
+      }
+    mass_trace_[c] = sum;
+    const Columns columns(count, from, to);
+    balanced_[c] = kernels_.balance(rows(c), {written_.values.data(), written_offset_.data(), turned_.data()}, sums_.data(), inverse_.data(), &trace_[c], count, columns.V, columns.AV);
+    for (int k = 0; k < count; ++k) zero_held(c, columns.AV[k]);
+    hold(c);
+  });
+  const auto any = [&](Balanced what) { return std::find(balanced_.begin(), balanced_.end(), what) != balanced_.end(); };
+  if (any(Balanced::kNotFinite)) return SolveStatus::kSingular;
+  stiffness_ = std::accumulate(trace_.begin(), trace_.end(), 0.0) / std::accumulate(mass_trace_.begin(), mass_trace_.end(), 0.0);
+  return any(Balanced::kNotDefinite) ? SolveStatus::kIndefinite : SolveStatus::kOk;
 }
 
-BalancedBlocks SingleMatrix::balanced_blocks() {
-  return {row_start_.data(), column_.data(), written_.values.data(), mass_.data(), own_.data(), 1.0 / written_.scale};
+void SingleMatrix::multiply(std::size_t part, int count, const Singles* from, Singles* to) {
+  const Columns columns(count, from, to);
+  kernels_.multiply(rows(part), count, columns.V, columns.AV);
+  for (int k = 0; k < count; ++k) zero_held(part, columns.AV[k]);
 }
 
-/// Products; and the copy of the original, or the diagonal of a balanced matrix.  False where a number is not finite.
-bool SingleMatrix::good_of(int count, const Doubles* from, Doubles* to, float* copy, bool balance) {
-  const double* V[kMostColumns] = {};
-  double* AV[kMostColumns] = {};
-  for (int k = 0; k < count; ++k) {
-    V[k] = from[k].data();
-    AV[k] = to[k].data();
-  }
+void SingleMatrix::multiply(int count, const Singles* from, Singles* to) {
+  team_.for_each([&](std::size_t c, int, int) { multiply(c, count, from, to); });
+}
+
+void SingleMatrix::multiply(const Doubles& x, Doubles& Ax) {
   if (original_) {
     const DoubleBlocks A{row_start_.data(), column_.data(), source_.data(), original_->body.values().data(), block_count() - 1};
-    team_.for_each([&](std::size_t c, int first, int last) { good_[c] = kernels_.convert(A, written_.scale, copy, count, V, AV, first, last); });
-  } else if (balance) {
-    team_.for_each([&](std::size_t c, int first, int last) { good_[c] = kernels_.balance(balanced_blocks(), count, V, AV, first, last); });
-  } else {
-    team_.for_each([&](std::size_t, int first, int last) { kernels_.multiply_balanced(balanced_blocks(), count, V, AV, first, last); });
-    return true;
+    return team_.for_each([&](std::size_t, int first, int last) { kernels_.multiply_double(A, x.data(), Ax.data(), first, last); });
   }
-  return std::find(good_.begin(), good_.end(), char{0}) == good_.end();
+  team_.for_each([&](std::size_t c, int, int) {
+    kernels_.multiply_balanced(rows(c), mass_.data(), 1.0 / written_.scale, x.data(), Ax.data());
+    zero_held(c, Ax.data());
+  });
 }
 
-bool SingleMatrix::invert(const double* values, const int* slot, double scale) {
-  team_.for_each([&](std::size_t c, int first, int last) { good_[c] = kernels_.invert_diagonal(values, slot, scale, inverse_.data(), first, last); });
-  return std::find(good_.begin(), good_.end(), char{0}) == good_.end();
+double SingleMatrix::product(std::size_t part, const float* p, float* q) const {
+  const double pq = kernels_.product(rows(part), p, q);
+  zero_held(part, q);
+  return pq;
 }
 
-/// Rows and columns of held directions become the identity's.  What they carried is in the diagonal blocks of their neighbours already, as it must be; the products
-/// are those of vectors that are zero along held directions.
-void SingleMatrix::hold(int count, const Doubles* from, Doubles* to) {
-  if (!written_.held) return;
-  for (const dynamics::HeldNode& held : *written_.held) {
-    const auto node = static_cast<std::size_t>(place_of_node_[static_cast<std::size_t>(held.node)]);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!held.axes[axis]) continue;
-      for (int s = row_start_[node]; s < row_start_[node + 1]; ++s) {
-        float *block = written_.values.data() + 9 * static_cast<std::size_t>(s), *mirrored = written_.values.data() + 9 * static_cast<std::size_t>(mirror_[static_cast<std::size_t>(s)]);
-        for (std::size_t c = 0; c < 3; ++c) block[3 * c + axis] = mirrored[3 * axis + c] = 0.0f;
-      }
-      double* own = own_.data() + 9 * node;
-      for (std::size_t c = 0; c < 3; ++c) own[3 * c + axis] = own[3 * axis + c] = 0.0;
-      own[4 * axis] = written_.scale;
-      written_.values[9 * static_cast<std::size_t>(row_start_[node]) + 4 * axis] = static_cast<float>(written_.scale);
-      for (int k = 0; k < count; ++k) to[k][4 * node + axis] = from[k][4 * node + axis];
+// Rows and columns of held directions are the identity's: there, vectors are zero and stay so, and products are made zero.  What columns carry is in the diagonal blocks of
+// the neighbours already, as it must be.
+
+void SingleMatrix::find_held() {
+  held_.clear();
+  if (written_.held)
+    for (const dynamics::HeldNode& held : *written_.held)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (held.axes[axis]) held_.push_back(4 * static_cast<std::size_t>(place_of_node_[static_cast<std::size_t>(held.node)]) + axis);
+  std::sort(held_.begin(), held_.end());
+  held_start_.resize(order_.part.size());
+  for (std::size_t p = 0; p < held_start_.size(); ++p)
+    held_start_[p] = static_cast<std::size_t>(std::lower_bound(held_.begin(), held_.end(), 4 * static_cast<std::size_t>(order_.first_node(p))) - held_.begin());
+}
+
+template <class Real>
+void SingleMatrix::zero_held(std::size_t part, Real* v) const {
+  if (held_.empty()) return;
+  for (std::size_t h = held_start_[part]; h < held_start_[part + 1]; ++h) v[held_[h]] = Real{0};
+}
+
+/// Own blocks of held nodes and their inverses.
+void SingleMatrix::hold(std::size_t part) {
+  for (std::size_t h = held_start_[part]; h < held_start_[part + 1];) {
+    const std::size_t node = held_[h] / 4, own = static_cast<std::size_t>(row_start_[node]);
+    for (; h < held_start_[part + 1] && held_[h] / 4 == node; ++h) {
+      const int axis = static_cast<int>(held_[h] % 4);
+      for (int k = 0; k < 3; ++k) packing_.entry(own, k, axis) = packing_.entry(own, axis, k) = 0.0f;
+      packing_.entry(own, axis, axis) = 1.0f;
     }
+    Eigen::Matrix3f block;
+    for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = packing_.entry(own, k % 3, k / 3);
+    const Eigen::Matrix3f inverse = block.inverse();
+    for (int k = 0; k < 9; ++k) inverse_[kInverseStride * node + static_cast<std::size_t>(k / 3 * 4 + k % 3)] = inverse(k % 3, k / 3);
   }
 }
 

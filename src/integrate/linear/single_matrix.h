@@ -3,6 +3,7 @@
 
 #include "integrate/linear/cluster_team.h"
 #include "integrate/linear/node_kernels.h"
+#include "integrate/linear/row_packing.h"
 #include "palpate/dynamics/linear_solver.h"
 
 namespace palpate::integrate {
@@ -18,32 +19,42 @@ class SingleMatrix {
   SingleMatrix(const NodeKernels& kernels, ClusterTeam& team) : kernels_(kernels), team_(team) {}
 
   /// Order, rows and memory for a pattern.
-  void analyse(const dynamics::BlockSparse& pattern, int clusters);
+  void analyse(const dynamics::BlockSparse& pattern, int clusters, int parts);
   bool analysed(const dynamics::BlockSparse& pattern) const { return pattern_version_ != 0 && pattern_version_ == pattern.pattern_version(); }
 
-  /// The copy, and in the same reading to[k] = A from[k] for `count` columns.
-  dynamics::SolveStatus take(const dynamics::BorderedMatrix& A, int count, const Doubles* from, Doubles* to);
+  /// The copy, and to[k] = scale A from[k] for `count` columns, in single precision.
+  dynamics::SolveStatus take(const dynamics::BorderedMatrix& A, int count, Singles* from, Singles* to);
   /// Room for a balanced matrix of the pattern.  Its memory is set aside at the first call.
   dynamics::BalancedMatrix& room(const dynamics::BlockSparse& pattern);
-  /// The matrix that was written there.
-  dynamics::SolveStatus take_balanced(int count, const Doubles* from, Doubles* to);
-  /// to[k] = A from[k], in double.
-  void multiply(int count, const Doubles* from, Doubles* to) { good_of(count, from, to, nullptr, false); }
+  /// The same of the matrix that was written there.  Held entries of `from` become zero.
+  dynamics::SolveStatus take_balanced(int count, Singles* from, Singles* to);
+  /// to[k] = scale A from[k], in single precision.
+  void multiply(int count, const Singles* from, Singles* to);
+  /// Ax = A x, in double.
+  void multiply(const Doubles& x, Doubles& Ax);
 
   const NodeOrder& order() const { return order_; }
   int nodes() const { return static_cast<int>(order_.node.size()); }
-  SingleBlocks blocks() const { return {row_start_.data(), column_.data(), written_.values.data()}; }
+  /// q = A p on the rows of a part, in single precision; returns p . q.
+  double product(std::size_t part, const float* p, float* q) const;
+  const RowPacking& packing() const { return packing_; }
+  const std::vector<int>& row_start() const { return row_start_; }
+  const std::vector<int>& column() const { return column_; }
   int block_count() const { return static_cast<int>(column_.size()); }
   const float* inverse() const { return inverse_.data(); }
   double scale() const { return written_.scale; }  ///< a power of two: the copy is scale A
   /// 1 + h^2 tr K / tr M of a balanced matrix: mean stiffness of a node, over its mass.
   double stiffness() const { return stiffness_; }
+  /// Entries of vectors, four a node, of which a balanced matrix says that each stands alone; none of a whole one.
+  const std::vector<std::size_t>& held() const { return held_; }
 
  private:
-  bool good_of(int count, const Doubles* from, Doubles* to, float* copy, bool balance);
-  bool invert(const double* values, const int* slot, double scale);
-  void hold(int count, const Doubles* from, Doubles* to);
-  BalancedBlocks balanced_blocks();
+  PackedRows rows(std::size_t part) const { return packing_.rows(part, original_ ? nullptr : mass_single_.data()); }
+  void multiply(std::size_t part, int count, const Singles* from, Singles* to);
+  template <class Real>
+  void zero_held(std::size_t part, Real* v) const;
+  void find_held();
+  void hold(std::size_t part);
 
   const NodeKernels& kernels_;
   ClusterTeam& team_;
@@ -51,13 +62,20 @@ class SingleMatrix {
   NodeOrder order_;
   std::vector<int> place_of_node_, row_start_, column_;
   std::vector<int> source_, diagonal_slot_;  ///< slots of the original
+  mutable RowPacking packing_;
   const dynamics::BorderedMatrix* original_ = nullptr;  ///< null: balanced
-  dynamics::BalancedMatrix written_;         ///< its values are the copy of either kind
-  std::vector<int> mirror_;                  ///< place of (j, i) for each (i, j)
-  Doubles mass_, own_;
-  Singles inverse_;
+  Singles copy_;                             ///< of a whole matrix, on the way to its packing
+  std::vector<int> copy_offset_;
+  dynamics::BalancedMatrix written_;
+  std::vector<int> written_offset_;
+  std::vector<std::uint16_t> turned_;
+  std::vector<std::size_t> held_, held_start_;  ///< by part
+  Doubles mass_;
+  Singles mass_single_, sums_, inverse_;
   double stiffness_ = 1.0;
   std::vector<char> good_;
+  std::vector<Balanced> balanced_;
+  std::vector<double> trace_, mass_trace_;
 };
 
 }  // namespace palpate::integrate

@@ -23,6 +23,8 @@ constexpr int kIterationLimit = 1000;
 constexpr double kReductionInSingle = 1e-4;
 /// A solve that asks for no more than this reduction needs no look at the residual in double at its end.
 constexpr double kReductionUnchecked = 1e-3;
+/// Products of the start are in single precision: what rounding leaves of them, some 1e-7 of the solution in the energy norm, is far below such a tolerance.
+constexpr double kTrustsSingleStart = 1e-5;
 /// Tighter than rounding of the residual in double is not asked for.
 constexpr double kTightest = 1e-13;
 constexpr int kResidualReplacements = 40;
@@ -33,8 +35,10 @@ constexpr double kSingleRounding = 0x1p-24, kRoundingShare = 4.0;
 /// Solutions to start from: many for tight tolerances, few for others, where one more saves less in iterations than it costs.
 constexpr double kManyStarts = 1e-4;
 constexpr int kFewColumns = 3;
-/// Of a cluster that is a chunk of work and no more.
-constexpr int kNodesOfChunk = 200;
+/// Nodes of a part, at most: its share of vectors and of the matrix fits a second-level cache, and few pairs of nodes are cut.  Parts come in fours, for threads to share; very
+/// small matrices have one.
+constexpr int kNodesOfPart = 1536, kNodesOfOnePart = 512;
+int parts_of(int nodes) { return nodes <= kNodesOfOnePart ? 1 : 4 * ((nodes + 4 * kNodesOfPart - 1) / (4 * kNodesOfPart)); }
 
 /// Conjugate gradients in single precision on a copy of the matrix (36 bytes a block where double takes 72: an iteration is one reading of it), right in double:
 ///     r = b - A x            double, by the original matrix
@@ -144,8 +148,9 @@ class SinglePcg final : public dynamics::LinearSolver {
     if (copy_.analysed(pattern)) return;
     const ScopedTimer timer(counters_.symbolic_s);
     ++counters_.symbolic;
-    const int n = pattern.block_rows(), per_cluster = two_level_ ? kNodesOfCluster : kNodesOfChunk, clusters = (n + per_cluster - 1) / per_cluster;
-    copy_.analyse(pattern, two_level_ ? std::min(clusters, kMostClusters) : clusters);
+    const int n = pattern.block_rows(), clusters = std::min((n + kNodesOfCluster - 1) / kNodesOfCluster, kMostClusters);
+    const int parts = two_level_ ? std::min(parts_of(n), clusters) : parts_of(n);
+    copy_.analyse(pattern, two_level_ ? clusters : parts, parts);
     if (two_level_) clusters_.prepare(copy_.order());
     iteration_.prepare();
     start_.prepare(copy_.order());
@@ -168,7 +173,7 @@ class SinglePcg final : public dynamics::LinearSolver {
   }
 
   void refresh_clusters(const double* positions) {
-    clusters_.refresh(copy_.blocks(), copy_.order(), positions, kernels_);
+    clusters_.refresh(copy_, positions, kernels_);
     ++counters_.refreshes;
     lost_ = 0.0;
     fewest_ = HUGE_VAL;
@@ -195,9 +200,14 @@ class SinglePcg final : public dynamics::LinearSolver {
       std::fill_n(x, 3 * node.size(), 0.0);
       return SolveStatus::kOk;
     }
+    for (const std::size_t entry : copy_.held()) b_[entry] = 0.0;
     if (const SolveStatus status = iterate(remember); status != SolveStatus::kOk) return status;
     for (std::size_t k = 0; k < node.size(); ++k)
       for (std::size_t axis = 0; axis < 3; ++axis) x[3 * static_cast<std::size_t>(node[k]) + axis] = x_[4 * k + axis];
+    for (const std::size_t entry : copy_.held()) {  // rows of the identity
+      const std::size_t to = 3 * static_cast<std::size_t>(node[entry / 4]) + entry % 4;
+      x[to] = b[to];
+    }
     if (remember) start_.keep(x_);
     return SolveStatus::kOk;
   }
@@ -207,7 +217,7 @@ class SinglePcg final : public dynamics::LinearSolver {
       copy_.multiply(start_.count(), start_.solutions(), start_.products());
       start_.products_are_known(true);
     }
-    const KrylovStart::Start start = start_.combine(warm, b_, x_, Ax_);
+    const KrylovStart::Start start = start_.combine(warm, copy_.scale(), b_, x_, Ax_);
     size_ = start.residual;
     if (!std::isfinite(size_)) return SolveStatus::kNotConverged;
     if (size_ == 0.0) return SolveStatus::kOk;
@@ -261,8 +271,8 @@ class SinglePcg final : public dynamics::LinearSolver {
       const bool done = iteration_.reached(rho * unit(), rtol_);
       const double size_before = size_;
       add_correction();
-      if (done && replacement == 0 && rho * unit() >= unchecked) return SolveStatus::kOk;
-      copy_.multiply(1, &x_, &Ax_);
+      if (done && replacement == 0 && rho * unit() >= unchecked && rtol_ >= kTrustsSingleStart) return SolveStatus::kOk;
+      copy_.multiply(x_, Ax_);
       ++counters_.iterations;
       size_ = norm_of_residual();
       if (size_ == 0.0) return SolveStatus::kOk;

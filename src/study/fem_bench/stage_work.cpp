@@ -8,8 +8,8 @@ namespace {
 // Bytes.  An element: nine numbers of its rest shape and its volume, four node numbers of two bytes; for the matrix six edge numbers more.  A block:
 // nine doubles; in the copy nine floats and a column; what leads from one to the other eight bytes.  A vector: three doubles a node, in the solver four.
 constexpr double kElement = 88.0, kEdges = 12.0, kBlock = 72.0, kMap = 8.0, kCopy = 36.0, kColumn = 4.0;
-// In one pass: the place of a block in the copy; a diagonal block is kept in double as well.
-constexpr double kPlace = 4.0, kOwn = 72.0;
+// In one pass: the place of a block above the diagonal in the copy, of which there is no other; masses are beside it.
+constexpr double kPlace = 6.0;
 constexpr double kVector = 24.0, kSolverVector = 32.0, kSingleVector = 16.0, kInverse = 48.0;
 
 // Operations of an element, counted in the formulas of lane_element.h, lane_rotation.h and lane_blocks.h; a division counts as one, Newton takes four steps.
@@ -27,6 +27,7 @@ double StageWork::limit_ms(const MachineLimits& limits, double working_set) cons
 
 StepWork work_of(const StepCounts& c) {
   StepWork w;
+  const double pairs = 0.5 * (c.blocks - c.nodes), triangle = c.one_pass ? pairs : pairs + c.nodes;
   // Forces, and the product of the tangent with the velocity: once x, once x and u are read, and both times a result is added to.
   w.force = {.read_bytes = 2.0 * kElement * c.tetrahedra + 5.0 * kVector * c.nodes,
              .written_bytes = 2.0 * kVector * c.nodes,
@@ -34,33 +35,36 @@ StepWork work_of(const StepCounts& c) {
   w.matrix = {.read_bytes = (kElement + kEdges) * c.tetrahedra + kVector * c.nodes + kMap * c.blocks,
               .written_bytes = kBlock * c.blocks,
               .double_flops = (kGradient + kRotation + kBlocks) * c.tetrahedra};
-  w.factor = {.read_bytes = (kBlock + kMap) * c.blocks + c.starts * kSolverVector * c.nodes,
-              .written_bytes = kCopy * c.blocks + (c.starts * kSolverVector + kInverse) * c.nodes,
-              .double_flops = (kFactorOfBlock + c.starts * kStartOfBlock) * c.blocks};
+  w.factor = {.read_bytes = (kBlock + kMap) * c.blocks + c.starts * kSingleVector * c.nodes,
+              .written_bytes = kCopy * (c.blocks + triangle) + (c.starts * kSingleVector + kInverse) * c.nodes,
+              .single_flops = c.starts * kStartOfBlock * c.blocks,
+              .double_flops = kFactorOfBlock * c.blocks};
   if (c.one_pass) {  // x, u, the shift and f once, singles out; the right-hand side is a few vectors; the preconditioner reads what was written
-    w.matrix = {.read_bytes = (kElement + kEdges) * c.tetrahedra + 4.0 * kVector * c.nodes + kPlace * c.blocks,
-                .written_bytes = kVector * c.nodes + kCopy * c.blocks,
+    w.matrix = {.read_bytes = (kElement + kEdges) * c.tetrahedra + 4.0 * kVector * c.nodes + kPlace * pairs,
+                .written_bytes = kVector * c.nodes + kCopy * pairs,
                 .double_flops = (2.0 * kGradient + kRotation + kForceTail + kProductTail + kBlocks) * c.tetrahedra};
     w.force = {.read_bytes = kVector * c.nodes, .written_bytes = kVector * c.nodes};
-    w.factor = {.read_bytes = (kCopy + kColumn) * c.blocks + (c.starts * kSolverVector + kVector) * c.nodes,
-                .written_bytes = (c.starts * kSolverVector + kInverse + kOwn) * c.nodes,
-                .double_flops = (kFactorOfBlock + c.starts * kStartOfBlock) * c.blocks};
+    w.factor = {.read_bytes = (kCopy + kMap) * pairs + (c.starts * kSingleVector + kVector) * c.nodes,
+                .written_bytes = kCopy * triangle + (c.starts * kSingleVector + kInverse + kSolverVector + kSingleVector) * c.nodes,
+                .single_flops = (kFactorOfBlock + c.starts * kStartOfBlock) * c.blocks};
   }
-  // An iteration: direction (z, p to p), product (p to q), update (p, q, d, r and the inverse to d, r, z).
-  w.solve = {.read_bytes = c.iterations * ((kCopy + kColumn) * c.blocks + (7.0 * kSingleVector + kInverse) * c.nodes),
+  // An iteration: direction (z, p to p), product (p to q, and the masses), update (p, q, d, r and the inverse to d, r, z).
+  const double vectors = c.one_pass ? 8.0 : 7.0;
+  w.solve = {.read_bytes = c.iterations * ((kCopy + kColumn) * triangle + (vectors * kSingleVector + kInverse) * c.nodes),
              .written_bytes = c.iterations * 5.0 * kSingleVector * c.nodes,
              .single_flops = c.iterations * (kProductOfBlock * c.blocks + kIterationOfNode * c.nodes)};
-  w.solve_working_set = (kCopy + kColumn) * c.blocks + (5.0 * kSingleVector + kInverse) * c.nodes;
+  w.solve_working_set = (kCopy + kColumn) * triangle + (5.0 * kSingleVector + kInverse) * c.nodes;
   w.working_set = bytes_to_store(c);
   return w;
 }
 
 double bytes_to_store(const StepCounts& c) {
-  const double elements = (kElement + kEdges) * c.tetrahedra;
-  const double matrix = c.one_pass ? (kColumn + kCopy + kColumn + kPlace) * c.blocks + kOwn * c.nodes : (kBlock + kColumn + kMap + kCopy + kColumn + kMap) * c.blocks;
-  // q, u, two of each attempt, force, product, right-hand side, change; in the solver three starts with their products, b, x, A x, and five single ones
-  const double vectors = (10.0 * kVector + (2.0 * c.starts + 3.0) * kSolverVector + 5.0 * kSingleVector + kInverse) * c.nodes;
-  return elements + matrix + vectors;
+  const double pairs = 0.5 * (c.blocks - c.nodes), elements = (kElement + kEdges) * c.tetrahedra;
+  const double packing = (kCopy + kColumn + kColumn) * (c.one_pass ? pairs : pairs + c.nodes);  // and where it is filled from
+  const double matrix = c.one_pass ? kColumn * c.blocks + (kCopy + kPlace) * pairs : (kBlock + kColumn + kMap + kCopy) * c.blocks;
+  // q, u, two of each attempt, force, product, right-hand side, change; in the solver b, x, A x, starts with their products, and five single ones
+  const double vectors = (10.0 * kVector + 3.0 * kSolverVector + (2.0 * c.starts + 5.0) * kSingleVector + kInverse) * c.nodes;
+  return elements + packing + matrix + vectors;
 }
 
 }  // namespace palpate::study
