@@ -1,8 +1,8 @@
 #include <cmath>
 #include <limits>
 
+#include "multirate_theory.h"
 #include "palpate/core/clock.h"
-#include "palpate/integrate/multirate.h"
 #include "scene_run.h"
 
 // A million haptic ticks are 1000 s, a hundred thousand exchange periods of 10 ms, each with its own query of the contact.
@@ -18,8 +18,7 @@
 //   speed (c the wave speed).  Friction is the product of pressure and speed, so that shifts the mean creep v by (d/p)(e/v) of itself at most, p = rho g L/k = 5e-5 m
 //   the depth of rest: rtol is 1e-5, which makes that 5e-5                                                                             -> accurate
 //   Explicit methods at fixed steps: the floor, k = 1e7 Pa/m under a quarter of the face, and an eighth of the mass make w H = 6, beyond their imaginary limits (2 to 4) -> error
-//   Multi-rate: A-stable for each side alone, with no theorem for two that are stiff in each other, as here.  So the step's matrix about the steady creep is made from the
-//   coupling tables (integrate::multirate_amplification); where its spectral radius makes 1e3 of rounding in the run                   -> grew, error
+//   Multi-rate: where the spectral radius of its step about the steady creep (multirate_theory.cpp) makes 1e3 of rounding in the run  -> grew, error
 // (statics has no creep: nothing holds the cube along the plane; it must say so, or stay).
 // Memory must not grow: less than 2 MiB from the hundredth period to the last.
 
@@ -81,43 +80,18 @@ Verdicts expect(const Lab& lab) {
   return {Verdict::kAccurate};
 }
 
-/// M^-1 (d_scale D + k_scale K) of the terms of one side, at the world's state.
-MatX over_mass(loop::World& world, double d_scale, double k_scale, const dynamics::System::TermFilter& side) {
-  dynamics::BorderedMatrix A, M;
-  world.system.step_matrix(world.state.view(), 0.0, d_scale, k_scale, A, side);
-  const MatX dense = A.to_dense();
-  world.system.step_matrix(world.state.view(), 1.0, 0.0, 0.0, M, side);
-  return M.to_dense().lu().solve(dense);
-}
-
-/// One side of y' = A y, y = [q; u] about the state.
-MatX linearised(loop::World& world, bool fast) {
-  const auto side = [fast](const dynamics::TermTraits& t) { return (t.fast || t.contact) == fast; };
-  const MatX K = over_mass(world, 0.0, 1.0, side), D = over_mass(world, 1.0, 0.0, side);
-  const Eigen::Index n = K.rows();
-  MatX A = MatX::Zero(2 * n, 2 * n);
-  if (!fast) A.topRightCorner(n, n).setIdentity();
-  A.bottomLeftCorner(n, n) = -K;
-  A.bottomRightCorner(n, n) = -D;
-  return A;
-}
-
 /// Of one step of a multi-rate method, about the settled creep.
 double amplification_on_slope(const Column& column) {
   scene::Description d = on_a_floor(kSlope);
   d.integrator.name = "linearly-implicit-euler";
   const auto world = loop::assemble(d);
   const Settled settled = settle(d, kSettling);
-  world->state.q() = settled.q;
-  world->state.u() = settled.u;
-  world->contact->refresh(world->state.view());
-  return integrate::multirate_amplification(column.name, linearised(*world, false), linearised(*world, true), kPeriod);
+  return multirate_amplification_at(column, *world, settled.q, settled.u, kPeriod);
 }
 
 Verdicts expect_on_slope(const Lab& lab) {
   if (is_explicit(lab.column) && lab.column.fixed) return {Verdict::kError};
-  const bool multi_rate = lab.column.entry->traits.family == "multi-rate";
-  if (multi_rate && kDuration / kPeriod * std::log(amplification_on_slope(lab.column)) > std::log(kGrown)) return {Verdict::kGrew, Verdict::kError};
+  if (is_multirate(lab.column) && kDuration / kPeriod * std::log(amplification_on_slope(lab.column)) > std::log(kGrown)) return {Verdict::kGrew, Verdict::kError};
   return expect(lab);
 }
 

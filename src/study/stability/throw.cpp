@@ -4,6 +4,7 @@
 
 #include "frequency.h"
 #include "linear.h"
+#include "multirate_theory.h"
 
 // Thrown at an obstacle.  No gravity: what is available is the energy of the throw, E0 = 1/2 m v^2; the mechanical energy counts body and contact spring.
 //   In continuous time it never rises: damping takes, the gap of a face with a fixed normal is conservative, and a vertex that is seen nearer to another face, or
@@ -16,7 +17,9 @@
 //     or damped away, as the method does it.  Twice that and E0 once more (a second touch, a bending body) is the bound; more has no such reason.  Methods that
 //     solve for the contact at the step's end do not need it.                                                                -> stable, bounded; error
 //   - A multi-rate step has the same reason on its other side: within it the contact throws nodes about while the elastic force is a given polynomial of time.  Nodes
-//     that go their way for v H unanswered load the springs between them by up to (w H)^2 E0, w the body's largest frequency.  Twice that as well.
+//     that go their way for v H unanswered load the springs between them by up to (w H)^2 E0, w the body's largest frequency.  Twice that as well; but where the
+//     step's matrix with all of the lower side in contact has a spectral radius r above 1 (multirate_theory.cpp) each of the n steps of a touch multiplies what is there:
+//     where r^(2 n) > 2, n the steps of the row, that is no bound                                                          -> stable, bounded, grew; error
 //   - Explicit fixed steps: a node on the contact alone is an oscillator of w_c^2 = k A_n/m_n, y = w_c H; one step of s stages takes position times w_c and speed to at
 //     most P = 1 + y + ... + y^s/s! times themselves (the majorant of its polynomial), their energy to P^2.  A touch is at most half a swing long, pi/y steps and one
 //     that it begins in: P^(2n), n = 1 + ceil(pi/y), is the bound where it is more than the one above: an explicit method may throw the body back so fast, and the body is
@@ -46,11 +49,22 @@ double explicit_gain(const Column& column, double rate) {
   return std::pow(P, 2.0 * (1.0 + std::ceil(M_PI / y))) - 1.0;
 }
 
+/// Factor that the energy may grow by with a multi-rate method while the whole lower side is in contact.
+double growth_in_contact(const Column& column, scene::Description d) {
+  constexpr double kDepth = 1e-6;
+  d.integrator.name = "linearly-implicit-euler";
+  const auto world = loop::assemble(d);
+  VecX q = world->state.q();
+  for (Eigen::Index i = 2; i < q.size(); i += 3) q[i] -= kThrowHeight + kDepth;
+  const double r = multirate_amplification_at(column, *world, q, world->state.u(), kThrowPeriod);
+  return std::pow(r, 2.0 * kThrowDuration / kThrowPeriod);
+}
+
 }  // namespace
 
 scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle, double speed, double stiffness_pa_m) {
   d.duration_s = kThrowDuration;
-  d.bodies[0].position_m.z() += 1e-3;
+  d.bodies[0].position_m.z() += kThrowHeight;
   d.bodies[0].velocity_m_s = Vec3(0, 0, -speed);
   d.obstacles.push_back(obstacle);
   ContactSpec contact;
@@ -62,7 +76,8 @@ scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle,
   return d;
 }
 
-Verdicts expect_thrown(const Lab& lab) {
+Verdicts expect_thrown(const Lab& lab, const scene::Description& d) {
+  if (is_multirate(lab.column) && growth_in_contact(lab.column, d) > 2.0) return {Verdict::kStable, Verdict::kBounded, Verdict::kGrew, Verdict::kError};
   if (!lab.column.fixed && !is_static(lab.column)) return {Verdict::kStable, Verdict::kError};
   return {Verdict::kStable, Verdict::kBounded, Verdict::kError};
 }
@@ -72,7 +87,7 @@ GainBars throw_bars(const Column& column, const scene::Description& d) {
   const double stiffness = d.contacts[0].stiffness_pa_m;
   const double mass = spec.density_kg_m3 * spec.mesh.size_m.prod(), area = spec.mesh.size_m.x() * spec.mesh.size_m.y();
   double bounded = 1.0 + 2.0 * stiffness * area * kThrowPeriod * kThrowPeriod / mass;
-  const bool multi_rate = column.entry->traits.family == "multi-rate";
+  const bool multi_rate = is_multirate(column);
   if (column.fixed && (multi_rate || is_explicit(column))) {
     scene::Description alone = d;
     alone.integrator.name = "linearly-implicit-euler";
