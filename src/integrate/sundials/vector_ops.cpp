@@ -43,4 +43,10 @@ void use_fast_operations(N_Vector v) {
   v->ops->nvlinearcombination = linear_combination;
 }
 
+int index_of_largest(N_Vector v, N_Vector w) {
+  Eigen::Index at = -1;
+  const double largest = (array(v) * array(w)).abs().maxCoeff(&at);
+  return largest > 0.0 ? static_cast<int>(at) : -1;
+}
+
 }  // namespace palpate::integrate::sun

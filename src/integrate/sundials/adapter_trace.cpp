@@ -1,0 +1,76 @@
+#include <nvector/nvector_serial.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "integrate/sundials/adapter.h"
+#include "integrate/sundials/vector_ops.h"
+
+// What an Adapter tells of its steps, accepted and not.
+
+namespace palpate::integrate::sun {
+
+using dynamics::StepAttempt;
+
+// Inside one call of the library several attempts may fail.  Between two of them its counters of failures grow, which shows at the
+// next evaluation; how far an attempt reached is the latest time that it evaluated at.
+void Adapter::see_evaluation(double t, N_Vector y, bool finite) {
+  finite_ = finite;
+  if (!trace()) return;
+  const Counts now = counts();
+  if (attempt_open_ && now.error_test_failures > attempt_counts_.error_test_failures)
+    close_attempt(StepAttempt::Outcome::kErrorTest);
+  else if (attempt_open_ && now.solve_failures > attempt_counts_.solve_failures)
+    close_attempt(attempt_finite_ ? StepAttempt::Outcome::kNewton : StepAttempt::Outcome::kNotFinite);
+  attempt_open_ = true;
+  attempt_finite_ = finite;
+  attempt_reach_ = std::max(attempt_reach_, t);
+  attempt_y_ = Eigen::Map<const VecX>(NV_DATA_S(y), NV_LENGTH_S(y));
+}
+
+void Adapter::close_attempt(StepAttempt::Outcome outcome) {
+  const Counts now = counts();
+  StepAttempt a;
+  a.t = attempt_start_;
+  a.h = attempt_reach_ - attempt_start_;
+  a.order = last_order();
+  a.error = std::numeric_limits<double>::quiet_NaN();
+  a.newton_iterations = static_cast<int>(now.newton_iterations - attempt_counts_.newton_iterations);
+  a.outcome = outcome;
+  a.worst_dof = attempt_worst_ >= 0 ? problem_->dof_of(attempt_worst_) : -1;
+  if (attempt_y_.allFinite()) {
+    const auto [finding, term] = problem_->inspect(attempt_reach_, attempt_y_.data());
+    a.inverted_element = finding.element;
+    a.inverted_in = term;
+  }
+  trace()->attempt(a);
+  attempt_counts_ = now;
+  attempt_reach_ = attempt_start_;
+  attempt_worst_ = -1;
+  attempt_open_ = false;
+}
+
+void Adapter::accept_attempt(double t0, double t1, bool event) {
+  const Counts now = counts();
+  StepAttempt a;
+  a.t = t0;
+  a.h = t1 - t0;
+  a.order = last_order();
+  a.error = std::numeric_limits<double>::quiet_NaN();
+  a.newton_iterations = static_cast<int>(now.newton_iterations - attempt_counts_.newton_iterations);
+  a.outcome = event ? StepAttempt::Outcome::kEvent : StepAttempt::Outcome::kAccepted;
+  if (local_errors(scratch_)) {
+    fill_weights(y_, weights_);
+    a.error = N_VWrmsNorm(scratch_, weights_);
+    const int worst = index_of_largest(scratch_, weights_);
+    a.worst_dof = worst >= 0 ? problem_->dof_of(worst) : -1;
+  }
+  const auto [finding, term] = problem_->inspect(t1, NV_DATA_S(y_));
+  a.inverted_element = finding.element;
+  a.inverted_in = term;
+  trace()->attempt(a);
+  attempt_open_ = false;
+  attempt_worst_ = -1;
+}
+
+}  // namespace palpate::integrate::sun
