@@ -11,9 +11,13 @@
 namespace palpate::fem {
 namespace {
 
-/// Elements in a chunk, at most.  The blocks of a chunk then fit a second-level cache, and a mesh of some ten thousand elements gives each of a few
-/// threads several chunks; smaller ones would share more of their edges.
-constexpr int kChunkElements = 2048;
+/// Elements in a chunk, at most and at least.  The blocks of a chunk then fit a second-level cache; smaller ones share more of their edges, but a mesh of some ten thousand elements
+/// shall give each of a few threads several.
+constexpr int kMostElements = 4096, kLeastElements = 1024, kChunksToShare = 8;
+int chunks_of(int elements) {
+  const auto parts = [&](int size) { return (elements + size - 1) / size; };
+  return std::max({1, parts(kMostElements), std::min(kChunksToShare, parts(kLeastElements))});
+}
 constexpr std::size_t kLanes = ElementGroup::kLanes;
 
 using Corners = std::array<int, 4>;
@@ -115,7 +119,7 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements) 
   }
   std::vector<int> order(static_cast<std::size_t>(element_count_)), starts{0};
   std::iota(order.begin(), order.end(), 0);
-  const int chunk_count = std::max(1, (element_count_ + kChunkElements - 1) / kChunkElements);
+  const int chunk_count = chunks_of(element_count_);
   bisect(centroids, order, 0, element_count_, chunk_count, starts);
 
   const auto node = [&](int corner, int e) { return elements.node[static_cast<std::size_t>(corner)][static_cast<std::size_t>(e)]; };

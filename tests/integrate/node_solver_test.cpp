@@ -200,6 +200,30 @@ TEST_P(NodeSolvers, SayWhatTheyCannotDoWithABalancedMatrix) {
   EXPECT_EQ(solver->factor_balanced(), SolveStatus::kOk);
 }
 
+// Rows of held directions are the identity's: what the right-hand side has there is the answer, and the rest does not feel it; in place, too.
+TEST_P(NodeSolvers, HeldRowsStandAlone) {
+  BentBeam beam(8, 1e5);
+  const auto solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-6});
+  BalancedMatrix* A = solver->balanced(beam.pattern());
+  ASSERT_NE(A, nullptr);
+  VecX b, x;
+  beam.at(0.5, 1e-2, *A, b);
+  ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+  ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+  ASSERT_FALSE(A->held->empty());
+  VecX y = b;
+  for (const HeldNode& held : *A->held)
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_EQ(x[3 * held.node + axis], 0.0);
+      y[3 * held.node + axis] = 1.0 + axis;
+    }
+  ASSERT_EQ(solver->solve(y, y), SolveStatus::kOk);
+  for (const HeldNode& held : *A->held)
+    for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(y[3 * held.node + axis], 1.0 + axis);
+  for (const HeldNode& held : *A->held) y.segment<3>(3 * held.node).setZero();
+  EXPECT_LT((x - y).norm(), 1e-5 * x.norm());
+}
+
 TEST_P(NodeSolvers, ThreadsDoNotChangeABit) {
   std::vector<VecX> answers;
   for (const int threads : {1, 2, 3}) {
@@ -567,7 +591,7 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     ASSERT_TRUE(k.convert(D, 1.0, values.data(), 0, static_cast<int>(n)));
     k.multiply_double(D, v.data(), Av.data(), 0, static_cast<int>(n));
     for (std::size_t i = 0; i < v.size(); ++i) p[i] = static_cast<float>(v[i]);
-    std::vector<int> offset(packing.places(), 9 * static_cast<int>(source.size()));
+    std::vector<int> offset(packing.places() + integrate::kLanesOfGroup * integrate::kStepsAhead, 9 * static_cast<int>(source.size()));
     std::vector<std::uint16_t> turned(packing.places() / integrate::kLanesOfGroup, 0);
     for (std::size_t s = 0; s < source.size(); ++s)
       if (!packing.turned(s)) offset[packing.place(s)] = 9 * static_cast<int>(s);

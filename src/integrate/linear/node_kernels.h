@@ -21,10 +21,10 @@ struct PackedRows {
 /// Where the blocks are from: nine floats, column by column, at values[offset]; kBlockTail more floats are readable behind the last.
 struct BlockSource {
   const float* values;
-  const int* offset;            ///< kLanesOfGroup a step; of lanes without a block that of zeros
+  const int* offset;            ///< kLanesOfGroup a step; of lanes without a block that of zeros; as many as in kStepsAhead steps are readable behind the last
   const std::uint16_t* turned;  ///< a bit for each lane of a step: the block is the transposed one; null: none is
 };
-constexpr int kBlockTail = 16, kVectorTail = 16;
+constexpr int kBlockTail = 16, kVectorTail = 16, kStepsAhead = 4;
 /// Vectors over the nodes hold four numbers a node, the last of them zero, and kVectorTail zeros behind the last node.
 /// A node's inverse diagonal block is column-major with the columns' fourth entry zero.
 constexpr int kInverseStride = 12;

@@ -220,6 +220,11 @@ void multiply(const PackedRows& A, int count, const float* const* V, float* cons
   by_count(count, [&](auto n) __attribute__((always_inline)) { multiply_columns<decltype(n)::value>(A, V, AV); });
 }
 
+/// Asks for the blocks of a later step.
+PALPATE_INLINE void fetch_blocks(const BlockSource& from, std::int64_t step) {
+  const int* later = from.offset + kLanesOfGroup * (step + kStepsAhead);
+  for (int l = 0; l < kLanesOfGroup; ++l) __builtin_prefetch(from.values + later[l]);
+}
 /// The blocks of one part of a step, entry (r, c) at [3 c + r].
 PALPATE_INLINE void take_blocks(const BlockSource& from, std::int64_t step, int part, Wide* block) {
   const int* offset = from.offset + kLanesOfGroup * step + kLanes * part;
@@ -249,6 +254,7 @@ void pack(const PackedRows& A, const BlockSource& from) {
   for (std::int64_t s = A.step_start[A.first_group]; s < A.step_start[A.last_group]; ++s)
     for (int part = 0; part < kParts; ++part) {
       Wide block[9];
+      if (part == 0) fetch_blocks(from, s);
       take_blocks(from, s, part, block);
       put_blocks(A, s, part, block);
     }
@@ -295,6 +301,7 @@ PALPATE_INLINE Balanced balance_columns(const PackedRows& A, const BlockSource& 
       Symmetric row{};
       for (std::int64_t s = A.step_start[g] + 1; s < A.step_start[g + 1]; ++s) {
         Wide block[9];
+        if (part == 0) fetch_blocks(from, s);
         take_blocks(from, s, part, block);
         put_blocks(A, s, part, block);
         const Symmetric middle = symmetric_part(block);

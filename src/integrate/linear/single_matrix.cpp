@@ -74,7 +74,7 @@ SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Sin
   held_.clear();
   if (copy_.empty()) {
     copy_.assign(9 * static_cast<std::size_t>(block_count() + 1) + kBlockTail, 0.0f);  // and a block of zeros
-    copy_offset_.assign(packing_.places(), 9 * block_count());
+    copy_offset_.assign(packing_.places() + kLanesOfGroup * kStepsAhead, 9 * block_count());
     for (std::size_t s = 0; s < column_.size(); ++s)
       if (!packing_.turned(s)) copy_offset_[packing_.place(s)] = 9 * static_cast<int>(s);
     prefer_huge_pages(copy_);
@@ -110,7 +110,7 @@ dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& patter
   const int pairs = (block_count() - nodes()) / 2;
   written_.values.assign(9 * static_cast<std::size_t>(pairs + 1) + kBlockTail, 0.0f);  // and a block of zeros
   written_.place.assign(column_.size(), -1);
-  written_offset_.assign(packing_.places(), 9 * pairs);
+  written_offset_.assign(packing_.places() + kLanesOfGroup * kStepsAhead, 9 * pairs);
   turned_.assign(packing_.places() / kLanesOfGroup, 0);
   std::vector<int> row_of_place(packing_.places(), -1), block_of_place(packing_.places(), -1);
   for (int i = 0; i < nodes(); ++i)
@@ -144,12 +144,14 @@ SolveStatus SingleMatrix::take_balanced(int count, Singles* from, Singles* to) {
     for (const std::size_t entry : held_) from[k][entry] = 0.0f;
   team_.for_each([&](std::size_t c, int first, int last) {
     double sum = 0.0;
-    for (auto k = static_cast<std::size_t>(first); k < static_cast<std::size_t>(last); ++k)
+    for (auto k = static_cast<std::size_t>(first); k < static_cast<std::size_t>(last); ++k) {
+      const double* diagonal = written_.diagonal.data() + 3 * static_cast<std::size_t>(order_.node[k]);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double m = written_.scale * written_.diagonal[static_cast<Eigen::Index>(3 * static_cast<std::size_t>(order_.node[k]) + axis)];
+        const double m = written_.scale * diagonal[axis];
         sum += mass_[4 * k + axis] = m;
         mass_single_[4 * k + axis] = static_cast<float>(m);
       }
+    }
     mass_trace_[c] = sum;
     const Columns columns(count, from, to);
     balanced_[c] = kernels_.balance(rows(c), {written_.values.data(), written_offset_.data(), turned_.data()}, sums_.data(), inverse_.data(), &trace_[c], count, columns.V, columns.AV);

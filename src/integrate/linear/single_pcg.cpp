@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "integrate/linear/add_counters.h"
 #include "integrate/linear/krylov_start.h"
@@ -154,6 +155,7 @@ class SinglePcg final : public dynamics::LinearSolver {
     if (two_level_) clusters_.prepare(copy_.order());
     iteration_.prepare();
     start_.prepare(copy_.order());
+    largest_.assign(static_cast<std::size_t>(copy_.order().parts()), 0.0);
     for (Doubles* v : {&b_, &x_, &Ax_}) v->assign(4 * static_cast<std::size_t>(n) + kVectorTail, 0.0);
     too_coarse_ = false;
   }
@@ -188,25 +190,36 @@ class SinglePcg final : public dynamics::LinearSolver {
 
   SolveStatus solve_column(const double* b, double* x, bool remember) {
     ++counters_.solves;
-    const std::vector<int>& node = copy_.order().node;
-    bool zero = true;
-    for (std::size_t k = 0; k < node.size(); ++k)
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double value = b[3 * static_cast<std::size_t>(node[k]) + axis];
-        zero = zero && value == 0.0;
-        b_[4 * k + axis] = value;
+    const int* node = copy_.order().node.data();
+    team_.for_each([&](std::size_t part, int first, int last) {
+      double largest = 0.0;
+      for (int k = first; k < last; ++k) {
+        const double* from = b + 3 * static_cast<std::ptrdiff_t>(node[k]);
+        double* to = b_.data() + 4 * static_cast<std::ptrdiff_t>(k);
+        for (int axis = 0; axis < 3; ++axis) {
+          to[axis] = from[axis];
+          largest = std::max(largest, std::abs(from[axis]));  // of what is no number nothing is said here
+        }
       }
-    if (zero) {
-      std::fill_n(x, 3 * node.size(), 0.0);
+      largest_[part] = largest;
+    });
+    if (*std::max_element(largest_.begin(), largest_.end()) == 0.0 && std::all_of(b_.begin(), b_.end(), [](double value) { return value == 0.0; })) {
+      std::fill_n(x, 3 * nodes(), 0.0);
       return SolveStatus::kOk;
     }
-    for (const std::size_t entry : copy_.held()) b_[entry] = 0.0;
+    held_.clear();
+    for (const std::size_t entry : copy_.held()) held_.push_back(std::exchange(b_[entry], 0.0));
     if (const SolveStatus status = iterate(remember); status != SolveStatus::kOk) return status;
-    for (std::size_t k = 0; k < node.size(); ++k)
-      for (std::size_t axis = 0; axis < 3; ++axis) x[3 * static_cast<std::size_t>(node[k]) + axis] = x_[4 * k + axis];
-    for (const std::size_t entry : copy_.held()) {  // rows of the identity
-      const std::size_t to = 3 * static_cast<std::size_t>(node[entry / 4]) + entry % 4;
-      x[to] = b[to];
+    team_.for_each([&](std::size_t, int first, int last) {
+      for (int k = first; k < last; ++k) {
+        const double* from = x_.data() + 4 * static_cast<std::ptrdiff_t>(k);
+        double* to = x + 3 * static_cast<std::ptrdiff_t>(node[k]);
+        for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
+      }
+    });
+    for (std::size_t h = 0; h < held_.size(); ++h) {  // rows of the identity
+      const std::size_t entry = copy_.held()[h];
+      x[3 * static_cast<std::size_t>(node[entry / 4]) + entry % 4] = held_[h];
     }
     if (remember) start_.keep(x_);
     return SolveStatus::kOk;
@@ -321,6 +334,7 @@ class SinglePcg final : public dynamics::LinearSolver {
   KrylovStart start_;
   SingleIteration iteration_;
   Doubles b_, x_, Ax_;
+  std::vector<double> largest_, held_;  ///< of b: of each part; where it stands alone
   double size_ = 0.0;
 };
 
