@@ -76,14 +76,6 @@ scene::Description limb(const ModelOnDisk& file) {
   return d;
 }
 
-scene::Description jointed(const ModelOnDisk& file, const std::string& root = "weld") {
-  scene::Description d = limb(file);
-  d.bodies[0].skeleton->root = root;
-  d.bodies[0].skeleton->others = "ball";
-  d.bodies[0].skeleton->density_kg_m3 = 800.0;
-  return d;
-}
-
 JointSpec joint_of(const std::string& bone, const std::string& type = "") {
   JointSpec joint;
   joint.bone = bone;
@@ -177,6 +169,17 @@ TEST(Skeleton, AScriptTakesTheFleshAlong) {
 }
 
 #ifdef PALPATE_HAS_TOOL
+namespace {
+
+scene::Description jointed(const ModelOnDisk& file, const std::string& root = "weld") {
+  scene::Description d = limb(file);
+  d.bodies[0].skeleton->root = root;
+  d.bodies[0].skeleton->others = "ball";
+  d.bodies[0].skeleton->density_kg_m3 = 800.0;
+  return d;
+}
+
+}  // namespace
 
 TEST(Skeleton, BonesOnJointsAreOneBlockAndCarryTheirNodes) {
   const ModelOnDisk file;

@@ -31,6 +31,7 @@ scene::Description two_blocks(double gap) {
   return d;
 }
 
+#ifdef PALPATE_HAS_GL
 Vec3 force_on_first(const loop::World& world) {
   Vec3 sum = Vec3::Zero();
   for (const auto& s : world.contact->samples()) {
@@ -42,7 +43,6 @@ Vec3 force_on_first(const loop::World& world) {
   return sum;
 }
 
-#ifdef PALPATE_HAS_GL
 // Outer faces held, pressed into each other by d: two bars of stiffness E A / L and the contact k A in a row (nu = 0: no lateral strain, so that the uniform stress of
 // a bar solves the block),
 //   F = d / (2 L / (E A) + 1 / (k A)),
