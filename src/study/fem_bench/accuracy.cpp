@@ -13,15 +13,35 @@ namespace {
 
 /// The fall of the softest beam from rest, up to here: its end has turned by half a radian, and no element has been turned inside out.
 constexpr double kFallFor = 0.2, kYoungsModulus = 1e5;
+constexpr double kFirstStep = 1e-3, kShake = 1e-2;
 constexpr int kRepeats = 3;
 
-VecX fall(const BeamSize& size, const IntegratorSpec& spec, double& seconds) {
+struct Fall {
+  VecX end;
+  double setup_s, seconds;
+};
+
+/// A first step from another state is not timed with the rest: it finds patterns, maps and orderings, which those who are compared with have at hand as well.  It shakes the
+/// nodes against each other, so that what a solver remembers of it is no help.
+Fall fall(const BeamSize& size, const IntegratorSpec& spec) {
   Beam beam(size.along, size.across, kYoungsModulus);
+  const VecX rest = beam.state.q();
+  for (Eigen::Index i = 0; i < rest.size(); ++i) beam.state.u()[i] = kShake * std::sin(1.7 * static_cast<double>(i));
   const auto stepper = integrate::make_stepper(beam.system, beam.state, spec);
-  const double start = wall_seconds();
-  if (const dynamics::StepResult r = stepper->advance_to(kFallFor); !r.ok()) fail("bench fem: {}: {}", spec.name, r.message);
-  seconds = wall_seconds() - start;
-  return beam.state.q();
+  const auto advance = [&](double t) {
+    const double start = wall_seconds();
+    if (const dynamics::StepResult r = stepper->advance_to(t); !r.ok()) fail("bench fem: {}: {}", spec.name, r.message);
+    return wall_seconds() - start;
+  };
+  Fall out;
+  out.setup_s = advance(std::min(spec.step_s, kFirstStep));
+  beam.state.q() = rest;
+  beam.state.u().setZero();
+  beam.state.set_time(0.0);
+  stepper->reinit(dynamics::ReinitReason::kStateChanged);
+  out.seconds = advance(kFallFor);
+  out.end = beam.state.q();
+  return out;
 }
 
 /// |v|_M
@@ -36,8 +56,7 @@ double mass_norm(const VecX& v, const VecX& masses) {
 std::vector<AccuracyPoint> run_accuracy(const std::string& size_name, bool (*stop)()) {
   const BeamSize& size = size_named(size_name);
   Beam beam(size.along, size.across, kYoungsModulus);
-  double seconds = 0.0;
-  const VecX exact = fall(size, {.name = "cvode-bdf", .rtol = 1e-8, .linear_solver = "auto", .linear_rtol = 1e-6}, seconds);
+  const VecX exact = fall(size, {.name = "cvode-bdf", .rtol = 1e-8, .linear_solver = "auto", .linear_rtol = 1e-6}).end;
   const double way = mass_norm(exact - beam.rest, beam.masses);
   std::vector<AccuracyPoint> points;
   const auto measure = [&](const IntegratorSpec& spec) {
@@ -50,8 +69,10 @@ std::vector<AccuracyPoint> run_accuracy(const std::string& size_name, bool (*sto
     double best = std::numeric_limits<double>::infinity();
     try {
       for (int r = 0; r < kRepeats; ++r) {
-        p.error = mass_norm(fall(size, spec, seconds) - exact, beam.masses) / way;
-        best = std::min(best, seconds);
+        const Fall one = fall(size, spec);
+        p.error = mass_norm(one.end - exact, beam.masses) / way;
+        p.setup_ms = r == 0 ? 1e3 * one.setup_s : std::min(p.setup_ms, 1e3 * one.setup_s);
+        best = std::min(best, one.seconds);
       }
     } catch (const Error&) {
       return;  // a step too long for its method: no point

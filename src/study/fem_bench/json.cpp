@@ -35,8 +35,8 @@ std::string to_json(const std::vector<AccuracyPoint>& points) {
   std::string out = "{\n  \"points\": [";
   for (std::size_t i = 0; i < points.size(); ++i) {
     const AccuracyPoint& p = points[i];
-    out += fmt::format("{}\n    {{\"program\": \"{}\", \"step_s\": {:g}, \"tolerance\": {:g}, \"ms_of_ten_ms\": {:.4g}, \"error\": {:.4g}, \"quoted\": {}}}", i ? "," : "", p.program, p.step_s,
-                       p.tolerance, p.ms_of_ten_ms, p.error, p.quoted);
+    out += fmt::format("{}\n    {{\"program\": \"{}\", \"step_s\": {:g}, \"tolerance\": {:g}, \"ms_of_ten_ms\": {:.4g}, \"error\": {:.4g}, \"setup_ms\": {:.4g}, \"quoted\": {}}}", i ? "," : "", p.program, p.step_s,
+                       p.tolerance, p.ms_of_ten_ms, p.error, p.setup_ms, p.quoted);
   }
   return out + "\n  ]\n}\n";
 }
