@@ -137,8 +137,9 @@ PALPATE_INLINE void edge_blocks(const Lanes& at, const BlockParts& e, const Chun
   edge_block<kBlocks, kDamped, kByPosition>(at, e, 5, 2, 3, upper, lower);
 }
 
-template <Blocks kBlocks, bool kDamped, bool kByPosition>
-static void blocks_of(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields,
+/// Deformation gradient and rotation of an element serve all that is asked for: the blocks, and in a linearly implicit step (kStep) the forces less the stiffness times w.
+template <Blocks kBlocks, bool kDamped, bool kByPosition, bool kStep>
+static void blocks_of(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                       const ChunkBlocks& upper, const ChunkBlocks& lower, LaneCounts& counts) {
   for (int g = 0; g < count; ++g) {
     fetch_ahead(groups, g, count);
@@ -152,7 +153,14 @@ static void blocks_of(const ElementGroup* groups, int count, const ElementModel&
         Pack det;
         rotation(F, scalar, R, det, counts);
         Symmetric C{};
-        if constexpr (kBlocks == Blocks::kCoupled) C = coupling(model, F, R, scalar, counts);
+        if constexpr (kBlocks == Blocks::kCoupled || kStep) C = coupling(model, F, R, scalar, counts);
+        if constexpr (kStep) {
+          const Mask inverted = det <= 0.0;
+          if (any(inverted)) counts.inverted += count_of(inverted);
+          Matrix P = elastic_stress(model, F, R) + elastic_change(model, R, C, gradient_of(at, G, fields.w));
+          if constexpr (kDamped) P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
+          add_forces(at, G, P, -volume, f);
+        }
         set_elastic<kBlocks>(e, model, R, C, G, volume);
       }
       if constexpr (kDamped || kByPosition) set_gradients(e, F, G);
@@ -167,12 +175,20 @@ static void tangent(const ElementGroup* groups, int count, const ElementModel& m
                     const ChunkBlocks& upper, const ChunkBlocks& lower, LaneCounts& counts) {
   const bool damped = model.damping_mu > 0.0 && model.d_scale != 0.0, elastic = model.k_scale != 0.0;
   const bool by_position = elastic && model.by_position;
-  const auto run = [&](auto* f) { f(groups, count, model, scalar, fields, upper, lower, counts); };
-  if (!elastic) return run(blocks_of<Blocks::kDampingOnly, true, false>);
+  const auto run = [&](auto* blocks) { blocks(groups, count, model, scalar, fields, nullptr, upper, lower, counts); };
+  if (!elastic) return run(blocks_of<Blocks::kDampingOnly, true, false, false>);
   if (model.warped) {
-    if (by_position) return run(damped ? blocks_of<Blocks::kWarped, true, true> : blocks_of<Blocks::kWarped, false, true>);
-    return run(damped ? blocks_of<Blocks::kWarped, true, false> : blocks_of<Blocks::kWarped, false, false>);
+    if (by_position) return run(damped ? blocks_of<Blocks::kWarped, true, true, false> : blocks_of<Blocks::kWarped, false, true, false>);
+    return run(damped ? blocks_of<Blocks::kWarped, true, false, false> : blocks_of<Blocks::kWarped, false, false, false>);
   }
-  if (by_position) return run(damped ? blocks_of<Blocks::kCoupled, true, true> : blocks_of<Blocks::kCoupled, false, true>);
-  return run(damped ? blocks_of<Blocks::kCoupled, true, false> : blocks_of<Blocks::kCoupled, false, false>);
+  if (by_position) return run(damped ? blocks_of<Blocks::kCoupled, true, true, false> : blocks_of<Blocks::kCoupled, false, true, false>);
+  return run(damped ? blocks_of<Blocks::kCoupled, true, false, false> : blocks_of<Blocks::kCoupled, false, false, false>);
+}
+
+static void step(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
+                 const ChunkBlocks& upper, LaneCounts& counts) {
+  const bool damped = model.damping_mu > 0.0;
+  const auto run = [&](auto* blocks) { blocks(groups, count, model, scalar, fields, f, upper, {}, counts); };
+  if (model.warped) return run(damped ? blocks_of<Blocks::kWarped, true, false, true> : blocks_of<Blocks::kWarped, false, false, true>);
+  run(damped ? blocks_of<Blocks::kCoupled, true, false, true> : blocks_of<Blocks::kCoupled, false, false, true>);
 }

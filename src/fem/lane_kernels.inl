@@ -15,8 +15,6 @@ namespace {
 
 #include "fem/lane_flush.h"
 
-#include "fem/lane_step.h"
-
 }  // namespace
 
 extern const LaneKernels kernels;
