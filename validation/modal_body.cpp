@@ -38,8 +38,8 @@ integrate::Modes ModalBody::lowest(int count) const {
   spec.q_size = spec.u_size = static_cast<int>(rest.nodes.size());
   const VecX q0 = rest.nodes.reshaped();
   const int id = state.insert(spec, q0, VecX::Zero(q0.size()));
-  system.add(std::make_shared<fem::SoftBody>("body", rest, material, fem::SoftBodyOptions{}, id));
-  system.add(consistent_mass ? fem::make_consistent_mass(rest, material.density, id) : fem::make_lumped_mass(rest, material.density, id));
+  system.add(std::make_shared<fem::SoftBody>("body", rest, materials(), fem::SoftBodyOptions{}, id));
+  system.add(consistent_mass ? fem::make_consistent_mass(rest, materials(), id) : fem::make_lumped_mass(rest, materials(), id));
   if (consistent_mass) system.set_mass_solver(integrate::make_linear_solver("cholmod"));
   std::vector<int> dofs = held;
   std::sort(dofs.begin(), dofs.end());
@@ -53,7 +53,7 @@ integrate::Modes ModalBody::lowest(int count) const {
 }
 
 double ModalBody::overlap(const VecX& f, const VecX& g) const {
-  const VecX mass = fem::lumped_masses(rest, material.density).transpose().replicate(3, 1).reshaped();
+  const VecX mass = fem::lumped_masses(rest, materials()).transpose().replicate(3, 1).reshaped();
   const double fg = f.dot(mass.cwiseProduct(g));
   return fg * fg / (f.dot(mass.cwiseProduct(f)) * g.dot(mass.cwiseProduct(g)));
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 
 #include "palpate/fem/soft_body.h"
 #include "palpate/integrate/modes.h"
@@ -10,6 +11,7 @@ namespace palpate::validation {
 struct ModalBody {
   TetMesh rest;
   fem::Material material;
+  std::optional<fem::Materials> layers;  ///< in its place
   bool consistent_mass = false;
   std::vector<int> held;  ///< directions of u, any order
   std::vector<int> carried;  ///< nodes that sit on a free rigid bone, ascending; empty: there is none
@@ -22,6 +24,7 @@ struct ModalBody {
   integrate::Modes lowest(int count) const;
   /// Mass-weighted overlap (f M g)^2 / ((f M f)(g M g)) of two fields, lumped; held directions count as they stand, a bone does not.
   double overlap(const VecX& f, const VecX& g) const;
+  fem::Materials materials() const { return layers ? *layers : fem::Materials(material); }
   VecX field(const std::function<Vec3(const Vec3&)>& displacement) const;  ///< its values at the nodes
 };
 

@@ -9,7 +9,7 @@
 
 namespace palpate::validation {
 
-StaticBody::StaticBody(const TetMesh& rest, const fem::Material& material, const fem::SoftBodyOptions& options)
+StaticBody::StaticBody(const TetMesh& rest, const fem::Materials& materials, const fem::SoftBodyOptions& options)
     : rest_(rest), state_(static_cast<int>(rest.nodes.size()), static_cast<int>(rest.nodes.size())) {
   x_ = rest.nodes.reshaped();
   v_ = VecX::Zero(x_.size());
@@ -19,9 +19,9 @@ StaticBody::StaticBody(const TetMesh& rest, const fem::Material& material, const
   spec.name = "body";
   spec.q_size = spec.u_size = static_cast<int>(x_.size());
   block_ = state_.insert(spec, x_, v_);
-  body_ = std::make_shared<fem::SoftBody>("body", rest, material, options, block_);
+  body_ = std::make_shared<fem::SoftBody>("body", rest, materials, options, block_);
   terms_ = {body_};
-  if (options.volumetric_share < 1.0) terms_.push_back(std::make_shared<fem::NodalDilatation>("body", rest, material, options, block_));
+  if (options.volumetric_share < 1.0) terms_.push_back(std::make_shared<fem::NodalDilatation>("body", rest, materials, options, block_));
 }
 
 void StaticBody::add(const std::function<std::shared_ptr<dynamics::ForceTerm>(int)>& make) { terms_.push_back(make(block_)); }

@@ -15,7 +15,7 @@ namespace palpate::validation {
 class StaticBody {
  public:
   /// A volumetric share below 1 brings the rest of lambda by fem::NodalDilatation.
-  StaticBody(const TetMesh& rest, const fem::Material& material, const fem::SoftBodyOptions& options = {});
+  StaticBody(const TetMesh& rest, const fem::Materials& materials, const fem::SoftBodyOptions& options = {});
 
   const TetMesh& rest() const { return rest_; }
   fem::SoftBody& body() { return *body_; }

@@ -28,7 +28,6 @@ std::uint64_t key_of(int i, int j) { return (static_cast<std::uint64_t>(i) << 32
 /// Cuts [begin, end) of `order` into `chunks` compact parts of nearly equal size: recursively, across the longest side of the box around the centroids.
 void bisect(const Points& centroids, std::vector<int>& order, int begin, int end, int chunks, std::vector<int>& starts) {
   if (chunks <= 1) {
-    std::sort(order.begin() + begin, order.begin() + end);  // the order of the mesh is mostly a good one
     starts.push_back(end);
     return;
   }
@@ -111,7 +110,7 @@ void fill_up(ElementGroup& group, std::size_t lane, int chunk_nodes, int chunk_e
 
 }  // namespace
 
-ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements) : nodal_volume(elements.nodal_volume), element_count_(elements.count()) {
+ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, const std::vector<int>& material_of_element) : nodal_volume(elements.nodal_volume), element_count_(elements.count()) {
   Points centroids(3, element_count_);
   for (int e = 0; e < element_count_; ++e) {
     centroids.col(e).setZero();
@@ -121,6 +120,9 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements) 
   std::iota(order.begin(), order.end(), 0);
   const int chunk_count = chunks_of(element_count_);
   bisect(centroids, order, 0, element_count_, chunk_count, starts);
+  const auto material = [&](int e) { return material_of_element.empty() ? 0 : material_of_element[static_cast<std::size_t>(e)]; };
+  for (std::size_t c = 0; c + 1 < starts.size(); ++c)  // within a material, the order of the mesh is mostly a good one
+    std::sort(order.begin() + starts[c], order.begin() + starts[c + 1], [&](int a, int b) { return material(a) != material(b) ? material(a) < material(b) : a < b; });
 
   const auto node = [&](int corner, int e) { return elements.node[static_cast<std::size_t>(corner)][static_cast<std::size_t>(e)]; };
   std::vector<std::vector<std::uint64_t>> node_keys(static_cast<std::size_t>(chunk_count)), edge_keys(static_cast<std::size_t>(chunk_count));
@@ -134,11 +136,11 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements) 
     }
   const Uses node_uses(std::move(node_keys)), edge_uses(std::move(edge_keys));
 
+  groups.reserve(static_cast<std::size_t>((element_count_ + 7) / 8 + chunk_count));
   row_start.push_back(0);
   for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
     Chunk chunk;
-    chunk.first_group = static_cast<int>(groups.size());
-    chunk.groups = (starts[c + 1] - starts[c] + 7) / 8;
+    chunk.first_run = static_cast<int>(runs.size());
     chunk.first_node = static_cast<int>(nodes.size());
     chunk.nodes = static_cast<int>(node_uses.by_chunk[c].size());
     chunk.own_nodes = node_uses.own[c];
@@ -151,16 +153,20 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements) 
     for (std::uint64_t key : edge_uses.by_chunk[c])
       for (std::uint64_t end : {key >> 32, key & 0xffffffffu}) ends.push_back(static_cast<std::uint16_t>(node_uses.find(c, end)));
     make_rows(chunk);
-    groups.resize(groups.size() + static_cast<std::size_t>(chunk.groups));
-    for (int k = starts[c]; k < starts[c] + 8 * chunk.groups; ++k) {
-      const auto offset = static_cast<std::size_t>(k - starts[c]);
-      ElementGroup& group = groups[static_cast<std::size_t>(chunk.first_group) + offset / kLanes];
-      const std::size_t lane = offset % kLanes;
-      if (k >= starts[c + 1]) {
-        fill_up(group, lane, chunk.nodes, chunk.edges);
-        continue;
-      }
+    std::size_t lane = 0;
+    for (int k = starts[c]; k < starts[c + 1]; ++k, lane = (lane + 1) % kLanes) {
       const int e = order[static_cast<std::size_t>(k)];
+      const bool first_of_run = k == starts[c] || material(e) != runs.back().material;
+      if (first_of_run) {
+        runs.push_back({static_cast<int>(groups.size()), 0, material(e)});
+        lane = 0;
+      }
+      if (lane == 0) {
+        ++runs.back().groups;
+        groups.emplace_back();
+        for (std::size_t l = 0; l < kLanes; ++l) fill_up(groups.back(), l, chunk.nodes, chunk.edges);  // those that no element takes stay so
+      }
+      ElementGroup& group = groups.back();
       const Corners corners = sorted_corners(elements, static_cast<std::size_t>(e));
       const Mat3 rows = elements.gradients(static_cast<std::size_t>(e));
       for (std::size_t a = 0; a < 4; ++a)
@@ -176,6 +182,7 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements) 
       group.volume[lane] = elements.volume[static_cast<std::size_t>(e)];
       group.element[lane] = e;
     }
+    chunk.runs = static_cast<int>(runs.size()) - chunk.first_run;
     most_nodes = std::max(most_nodes, chunk.nodes);
     most_edges = std::max(most_edges, chunk.edges);
     chunks.push_back(chunk);
@@ -191,7 +198,7 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements) 
   shared_edges.start = edge_uses.start;
   shared_edges.entries = edge_uses.entries;
   const auto fit = [](auto&... grown) { (grown.shrink_to_fit(), ...); };
-  fit(groups, chunks, nodes, ends, row_start, row_own, row_edges, shared_nodes.first, shared_edges.first, shared_edges.second);
+  fit(groups, runs, chunks, nodes, ends, row_start, row_own, row_edges, shared_nodes.first, shared_edges.first, shared_edges.second);
   prefer_huge_pages(groups);
   prefer_huge_pages(row_edges);
 }
@@ -226,8 +233,9 @@ Mat3 ElementChunks::Element::edges(const double* field) const {
   return m;
 }
 
-ElementChunks::Element ElementChunks::element(const Chunk& chunk, const ElementGroup& group, int lane) const {
+ElementChunks::Element ElementChunks::element(const Chunk& chunk, const Run& run, const ElementGroup& group, int lane) const {
   Element out;
+  out.material = run.material;
   out.number = group.element[lane];
   for (int a = 0; a < 4; ++a) out.node[a] = nodes[static_cast<std::size_t>(chunk.first_node + group.node[a][lane])];
   for (int k = 0; k < 9; ++k) out.gradients(k / 3, k % 3) = group.inverse_edges[k][lane];
@@ -238,7 +246,7 @@ ElementChunks::Element ElementChunks::element(const Chunk& chunk, const ElementG
 std::size_t ElementChunks::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   const auto sums = [&](const SharedSums& s) { return of(s.first) + of(s.second) + of(s.start) + of(s.entries); };
-  return of(groups) + of(chunks) + of(nodes) + of(ends) + of(row_start) + of(row_own) + of(row_edges) + of(nodal_volume) + sums(shared_nodes) + sums(shared_edges);
+  return of(groups) + of(runs) + of(chunks) + of(nodes) + of(ends) + of(row_start) + of(row_own) + of(row_edges) + of(nodal_volume) + sums(shared_nodes) + sums(shared_edges);
 }
 
 }  // namespace palpate::fem

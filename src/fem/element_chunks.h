@@ -21,22 +21,34 @@ struct SharedSums {
 /// A chunk sums forces and matrix blocks over its own elements in memory of its own, that fits the cache; nodes and edges that no other chunk has
 /// ("own") go from there straight into the result, the others are summed over the chunks afterwards, in their order.  Chunks depend on the mesh
 /// alone, so that the sums are the same to the last bit whoever computes which chunk.
+///
+/// A body of several materials has its elements ordered by material within each chunk, and each material begins a group of its own: the kernels run over
+/// the groups of one material at a time and read nothing more for it than a body of one material, which has one such run a chunk.  What the others pay is
+/// the lanes left over: at most seven a material and chunk.
 class ElementChunks {
  public:
   struct Chunk {
-    int first_group = 0, groups = 0;
+    int first_run = 0, runs = 0;                   ///< in runs()
     int first_node = 0, nodes = 0, own_nodes = 0;  ///< in node(); own ones first
     int first_edge = 0, edges = 0, own_edges = 0;  ///< in ends(); own ones first
     int first_shared_node = 0, first_shared_edge = 0;  ///< place of the others in the buffers of shared contributions
   };
 
-  ElementChunks(const TetMesh& rest, const RestElements& elements);
+  /// Groups of one material, within one chunk.
+  struct Run {
+    int first_group = 0, groups = 0;
+    int material = 0;
+  };
+
+  /// @param material_of_element  numbers; empty: all have the same
+  ElementChunks(const TetMesh& rest, const RestElements& elements, const std::vector<int>& material_of_element = {});
 
   int element_count() const { return element_count_; }
   int node_count() const { return static_cast<int>(nodal_volume.size()); }
 
   std::vector<ElementGroup> groups;
   std::vector<Chunk> chunks;
+  std::vector<Run> runs;                  ///< of each chunk, by material
   std::vector<int> nodes;                 ///< node of the body of each node of each chunk
   std::vector<std::uint16_t> ends;        ///< two nodes of the chunk for each edge of each chunk
   std::vector<std::int32_t> row_start;    ///< the edges at node n of nodes(): row_edges[row_start[n]] to [row_start[n + 1]]
@@ -46,9 +58,10 @@ class ElementChunks {
   std::vector<double> nodal_volume;       ///< a quarter of each adjacent tetrahedron [m^3]
   int most_nodes = 0, most_edges = 0;     ///< in a chunk
 
-  /// One element: its number in the mesh, its nodes in the body, ascending, the gradients g_1 to g_3 as rows, its volume.
+  /// One element: its number in the mesh, that of its material, its nodes in the body, ascending, the gradients g_1 to g_3 as rows, its volume.
   struct Element {
     int number;
+    int material;
     int node[4];
     Mat3 gradients;
     double volume;
@@ -58,15 +71,21 @@ class ElementChunks {
   template <class F>
   void for_each(F&& f) const {
     for (const Chunk& chunk : chunks)
-      for (int g = chunk.first_group; g < chunk.first_group + chunk.groups; ++g)
-        for (int lane = 0; lane < ElementGroup::kLanes; ++lane)
-          if (groups[static_cast<std::size_t>(g)].element[lane] >= 0) f(element(chunk, groups[static_cast<std::size_t>(g)], lane));
+      for_each_run(chunk, [&](const Run& run) {
+        for (int g = run.first_group; g < run.first_group + run.groups; ++g)
+          for (int lane = 0; lane < ElementGroup::kLanes; ++lane)
+            if (groups[static_cast<std::size_t>(g)].element[lane] >= 0) f(element(chunk, run, groups[static_cast<std::size_t>(g)], lane));
+      });
+  }
+  template <class F>
+  void for_each_run(const Chunk& chunk, F&& f) const {
+    for (int r = chunk.first_run; r < chunk.first_run + chunk.runs; ++r) f(runs[static_cast<std::size_t>(r)]);
   }
   std::size_t bytes() const;
 
  private:
   void make_rows(const Chunk& chunk);
-  Element element(const Chunk& chunk, const ElementGroup& group, int lane) const;
+  Element element(const Chunk& chunk, const Run& run, const ElementGroup& group, int lane) const;
   int element_count_ = 0;
 };
 

@@ -85,8 +85,8 @@ void keep_blocks(const ChunkBlocks& blocks, int begin, int end, double* to) {
 
 }  // namespace
 
-ElementEvaluation::ElementEvaluation(const TetMesh& rest, const RestElements& elements, bool with_lower)
-    : chunks_(rest, elements), kernels_(&best_kernels()), with_lower_(with_lower) {
+ElementEvaluation::ElementEvaluation(const TetMesh& rest, const RestElements& elements, const std::vector<int>& material_of_element, bool with_lower)
+    : chunks_(rest, elements, material_of_element), kernels_(&best_kernels()), with_lower_(with_lower) {
   const auto node_places = static_cast<std::size_t>(chunks_.shared_nodes.contributions());
   const auto edge_places = static_cast<std::size_t>(chunks_.shared_edges.contributions());
   shared_nodes_.resize((node_places + 1) / 2);
@@ -129,6 +129,12 @@ LaneCounts ElementEvaluation::collect_counts() {
   return sum;
 }
 
+/// Runs f(groups, count, model) for each material of a chunk.
+template <class F>
+void ElementEvaluation::for_each_run(const Chunk& chunk, const ElementModels& models, F&& f) const {
+  chunks_.for_each_run(chunk, [&](const ElementChunks::Run& run) { f(chunks_.groups.data() + run.first_group, run.groups, models[static_cast<std::size_t>(run.material)]); });
+}
+
 /// Behind the nodes of the chunk stand the corners of the unit tetrahedron that fills up groups.
 ChunkFields ElementEvaluation::load(const Chunk& chunk, const BodyFields& at, Scratch& scratch) const {
   const int* nodes = chunks_.nodes.data() + chunk.first_node;
@@ -153,7 +159,7 @@ ChunkFields ElementEvaluation::load(const Chunk& chunk, const BodyFields& at, Sc
   return out;
 }
 
-LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModel& model, const BodyFields& at, double* out) {
+LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModels& models, const BodyFields& at, double* out) {
   fit_scratch();
   workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
@@ -161,7 +167,7 @@ LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModel& 
     const ChunkFields fields = load(chunk, at, scratch);
     double* sum = numbers(scratch.sum);
     std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
-    kernel(chunks_.groups.data() + chunk.first_group, chunk.groups, model, kScalarPath, fields, sum, scratch.counts);
+    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernel(groups, count, model, kScalarPath, fields, sum, scratch.counts); });
     flush_nodal(chunk, sum, out);
   });
   add_shared_nodes(out);
@@ -190,13 +196,13 @@ void ElementEvaluation::add_shared_nodes(double* out) const {
   });
 }
 
-LaneCounts ElementEvaluation::add_force(const ElementModel& model, const BodyFields& at, double* f) { return add_nodal(kernels_->force, model, at, f); }
-LaneCounts ElementEvaluation::apply_tangent(const ElementModel& model, const BodyFields& at, double* y) { return add_nodal(kernels_->apply, model, at, y); }
+LaneCounts ElementEvaluation::add_force(const ElementModels& models, const BodyFields& at, double* f) { return add_nodal(kernels_->force, models, at, f); }
+LaneCounts ElementEvaluation::apply_tangent(const ElementModels& models, const BodyFields& at, double* y) { return add_nodal(kernels_->apply, models, at, y); }
 
-LaneCounts ElementEvaluation::add_tangent(const ElementModel& model, const BodyFields& at, int first_node, dynamics::BlockSparse& A) {
+LaneCounts ElementEvaluation::add_tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A) {
   fit_scratch();
   prepare(first_node, A);
-  const bool symmetric = !model.by_position;
+  const bool symmetric = !models.front().by_position;
   PALPATE_CHECK(symmetric || with_lower_, "no room was set aside for an unsymmetric tangent");
   workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
@@ -205,7 +211,8 @@ LaneCounts ElementEvaluation::add_tangent(const ElementModel& model, const BodyF
     const ChunkBlocks diagonal{numbers(scratch.diagonal), scratch.diagonal_last.data()};
     set_zero(upper, chunk.edges + 1);
     if (!symmetric) set_zero(lower, chunk.edges + 1);
-    kernels_->tangent(chunks_.groups.data() + chunk.first_group, chunk.groups, model, kScalarPath, load(chunk, at, scratch), upper, lower, scratch.counts);
+    const ChunkFields fields = load(chunk, at, scratch);
+    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->tangent(groups, count, model, kScalarPath, fields, upper, lower, scratch.counts); });
     const BlockTargets targets{chunk.nodes, chunk.own_nodes, chunks_.row_start.data() + chunk.first_node, chunks_.row_own.data() + chunk.first_node,
                                chunks_.row_edges.data(), slots_.data(), chunk_diagonal_.data() + chunk.first_node};
     kernels_->flush(targets, upper, lower, symmetric, diagonal, A.values().data());
@@ -257,10 +264,10 @@ void ElementEvaluation::fetch_sum(int k, const std::int32_t* places, const Real*
   }
 }
 
-LaneCounts ElementEvaluation::add_step(const ElementModel& model, const BodyFields& at, int first_node, double* f, dynamics::BalancedMatrix& A) {
+LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFields& at, int first_node, double* f, dynamics::BalancedMatrix& A) {
   fit_scratch();
   prepare_places(first_node, A);
-  PALPATE_CHECK(!model.by_position, "an unsymmetric tangent in a balanced matrix");
+  PALPATE_CHECK(!models.front().by_position, "an unsymmetric tangent in a balanced matrix");
   workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
@@ -268,7 +275,8 @@ LaneCounts ElementEvaluation::add_step(const ElementModel& model, const BodyFiel
     double* sum = numbers(scratch.sum);
     std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
     set_zero(upper, chunk.edges + 1);
-    kernels_->step(chunks_.groups.data() + chunk.first_group, chunk.groups, model, kScalarPath, load(chunk, at, scratch), sum, upper, scratch.counts);
+    const ChunkFields fields = load(chunk, at, scratch);
+    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->step(groups, count, model, kScalarPath, fields, sum, upper, scratch.counts); });
     flush_nodal(chunk, sum, f);
     kernels_->store(store_edges_.data() + chunk.first_edge, places_.data() + chunk.first_edge, chunk.own_edges, upper, A.values.data());
     keep_blocks(upper, chunk.own_edges, chunk.edges, shared_upper_.data() + 9 * static_cast<std::size_t>(chunk.first_shared_edge));
@@ -289,26 +297,28 @@ void ElementEvaluation::store_shared_blocks(dynamics::BalancedMatrix& A) const {
   });
 }
 
-double ElementEvaluation::energy(const ElementModel& model, const BodyFields& at) {
+double ElementEvaluation::energy(const ElementModels& models, const BodyFields& at) {
   fit_scratch();
   workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
     Line sums{};
-    kernels_->energy(chunks_.groups.data() + chunk.first_group, chunk.groups, model, kScalarPath, load(chunk, at, scratch), sums.value, scratch.counts);
+    const ChunkFields fields = load(chunk, at, scratch);
+    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->energy(groups, count, model, kScalarPath, fields, sums.value, scratch.counts); });
     chunk_sums_[static_cast<std::size_t>(c)] = std::accumulate(sums.value, sums.value + 8, 0.0);
   });
   collect_counts();
   return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
 }
 
-double ElementEvaluation::dissipated_power(const ElementModel& model, const BodyFields& at) {
+double ElementEvaluation::dissipated_power(const ElementModels& models, const BodyFields& at) {
   fit_scratch();
   workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
     Line sums{};
-    kernels_->power(chunks_.groups.data() + chunk.first_group, chunk.groups, model, load(chunk, at, scratch), sums.value);
+    const ChunkFields fields = load(chunk, at, scratch);
+    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->power(groups, count, model, fields, sums.value); });
     chunk_sums_[static_cast<std::size_t>(c)] = std::accumulate(sums.value, sums.value + 8, 0.0);
   });
   return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);

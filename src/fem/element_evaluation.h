@@ -14,24 +14,27 @@ struct BodyFields {
   const double* w = nullptr;  ///< a direction
 };
 
+/// One a material of the body; their flags and scales agree.
+using ElementModels = std::vector<ElementModel>;
+
 /// Sums over the elements of one body: the kernels run over the chunks, on as many threads as core's workers have, and what chunks share is summed
 /// in their order.  Results do not depend on the number of threads.  Memory is set aside at construction, and when workers or pattern change.
 class ElementEvaluation {
  public:
-  /// @param with_lower  room for unsymmetric tangents
-  ElementEvaluation(const TetMesh& rest, const RestElements& elements, bool with_lower);
+  /// @param material_of_element  numbers in the ElementModels; empty: all 0  @param with_lower  room for unsymmetric tangents
+  ElementEvaluation(const TetMesh& rest, const RestElements& elements, const std::vector<int>& material_of_element, bool with_lower);
 
   const ElementChunks& chunks() const { return chunks_; }
   const LaneKernels& kernels() const { return *kernels_; }
   void use(const LaneKernels& kernels) { kernels_ = &kernels; }
 
-  LaneCounts add_force(const ElementModel& model, const BodyFields& at, double* f);
-  LaneCounts apply_tangent(const ElementModel& model, const BodyFields& at, double* y);
-  LaneCounts add_tangent(const ElementModel& model, const BodyFields& at, int first_node, dynamics::BlockSparse& A);
+  LaneCounts add_force(const ElementModels& models, const BodyFields& at, double* f);
+  LaneCounts apply_tangent(const ElementModels& models, const BodyFields& at, double* y);
+  LaneCounts add_tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A);
   /// f += forces - stiffness times w, and the off-diagonal blocks of k_scale K + d_scale D, times A.scale, stored in A.
-  LaneCounts add_step(const ElementModel& model, const BodyFields& at, int first_node, double* f, dynamics::BalancedMatrix& A);
-  double energy(const ElementModel& model, const BodyFields& at);
-  double dissipated_power(const ElementModel& model, const BodyFields& at);
+  LaneCounts add_step(const ElementModels& models, const BodyFields& at, int first_node, double* f, dynamics::BalancedMatrix& A);
+  double energy(const ElementModels& models, const BodyFields& at);
+  double dissipated_power(const ElementModels& models, const BodyFields& at);
 
   /// Slot of the diagonal block of a node of the body; after add_tangent or prepare.
   int diagonal(int node) const { return diagonal_[static_cast<std::size_t>(node)]; }
@@ -50,6 +53,8 @@ class ElementEvaluation {
     std::vector<double> upper_last, lower_last, diagonal_last;
     LaneCounts counts;
   };
+  template <class F>
+  void for_each_run(const ElementChunks::Chunk& chunk, const ElementModels& models, F&& f) const;
   using NodalKernel = decltype(LaneKernels::force);
 
   void fit_scratch();
@@ -59,7 +64,7 @@ class ElementEvaluation {
   void add_shared_nodes(double* out) const;
   void prepare_places(int first_node, const dynamics::BalancedMatrix& A);
   void store_shared_blocks(dynamics::BalancedMatrix& A) const;
-  LaneCounts add_nodal(NodalKernel kernel, const ElementModel& model, const BodyFields& at, double* out);
+  LaneCounts add_nodal(NodalKernel kernel, const ElementModels& models, const BodyFields& at, double* out);
   void add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const;
   template <int kPlaces, class Real>
   void fetch_sum(int k, const std::int32_t* places, const Real* values) const;

@@ -8,10 +8,18 @@ namespace {
 using dynamics::BorderedMatrix;
 using dynamics::StateView;
 
-void check_density(double density) {
+Materials of_density(double density) {
   Material m;
   m.density = density;
-  check(m, "mass");
+  return m;
+}
+
+/// rho V of each element [kg].
+std::vector<double> element_masses(const RestElements& elements, const Materials& materials) {
+  check(materials, elements.count(), "mass");
+  std::vector<double> out(elements.volume);
+  for (std::size_t e = 0; e < out.size(); ++e) out[e] *= materials.of(e).density;
+  return out;
 }
 
 class LumpedMass final : public dynamics::InertiaTerm {
@@ -41,8 +49,8 @@ class LumpedMass final : public dynamics::InertiaTerm {
 /// Integral of rho N_a N_b over a tetrahedron = rho V / 20 (1 + delta_ab).
 class ConsistentMass final : public dynamics::InertiaTerm {
  public:
-  ConsistentMass(const TetMesh& rest, double density, int block_id)
-      : elements_(make_rest_elements(rest, "mass")), density_(density), block_id_(block_id) {}
+  ConsistentMass(const TetMesh& rest, const Materials& materials, int block_id)
+      : elements_(make_rest_elements(rest, "mass")), masses_(element_masses(elements_, materials)), block_id_(block_id) {}
   int block_id() const override { return block_id_; }
   bool diagonal() const override { return false; }
   void add_pattern(dynamics::PatternBuilder& pattern) const override {
@@ -51,13 +59,13 @@ class ConsistentMass final : public dynamics::InertiaTerm {
 
   void add_mass(const StateView& state, double scale, BorderedMatrix& A) const override {
     scatter_.prepare(elements_, place(state).first_node, A.body);
-    for (std::size_t e = 0; e < elements_.volume.size(); ++e)
+    for (std::size_t e = 0; e < masses_.size(); ++e)
       for (int a = 0; a < 4; ++a)
         for (int b = 0; b < 4; ++b) A.body.add(scatter_.slot(e, a, b), scale * entry(e, a == b) * Mat3::Identity());
   }
   void apply(const StateView& state, const VecX& x, VecX& y) const override {
     const int offset = place(state).u_offset;
-    for (std::size_t e = 0; e < elements_.volume.size(); ++e) {
+    for (std::size_t e = 0; e < masses_.size(); ++e) {
       Vec3 sum = Vec3::Zero();
       for (const auto& node : elements_.node) sum += x.segment<3>(offset + 3 * node[e]);
       for (const auto& node : elements_.node)
@@ -66,29 +74,40 @@ class ConsistentMass final : public dynamics::InertiaTerm {
   }
 
  private:
-  double entry(std::size_t e, bool diagonal) const { return density_ * elements_.volume[e] / 20.0 * (diagonal ? 2.0 : 1.0); }
+  double entry(std::size_t e, bool diagonal) const { return masses_[e] / 20.0 * (diagonal ? 2.0 : 1.0); }
   NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id_, elements_.node_count()); }
   RestElements elements_;
-  double density_;
+  std::vector<double> masses_;  ///< of the elements [kg]
   int block_id_;
   mutable ScatterMap scatter_;
 };
 
 }  // namespace
 
-VecX lumped_masses(const TetMesh& rest, double density) {
-  check_density(density);
+VecX lumped_masses(const TetMesh& rest, const Materials& materials) {
+  check(materials, static_cast<int>(rest.tets.cols()), "mass");
   const RestElements elements = make_rest_elements(rest, "mass");
-  return density * Eigen::Map<const VecX>(elements.nodal_volume.data(), elements.node_count());
+  if (materials.of_element.empty()) return materials.list[0].density * Eigen::Map<const VecX>(elements.nodal_volume.data(), elements.node_count());
+  VecX out = VecX::Zero(elements.node_count());
+  const std::vector<double> masses = element_masses(elements, materials);
+  for (std::size_t e = 0; e < masses.size(); ++e)
+    for (const auto& node : elements.node) out[node[e]] += 0.25 * masses[e];
+  return out;
 }
+VecX lumped_masses(const TetMesh& rest, double density) { return lumped_masses(rest, of_density(density)); }
 
+std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, const Materials& materials, int block_id) {
+  return std::make_shared<LumpedMass>(lumped_masses(rest, materials), block_id);
+}
 std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, double density, int block_id) {
-  return std::make_shared<LumpedMass>(lumped_masses(rest, density), block_id);
+  return make_lumped_mass(rest, of_density(density), block_id);
 }
 
+std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, const Materials& materials, int block_id) {
+  return std::make_shared<ConsistentMass>(rest, materials, block_id);
+}
 std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, double density, int block_id) {
-  check_density(density);
-  return std::make_shared<ConsistentMass>(rest, density, block_id);
+  return make_consistent_mass(rest, of_density(density), block_id);
 }
 
 }  // namespace palpate::fem

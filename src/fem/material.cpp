@@ -20,4 +20,13 @@ void check(const Material& m, const char* where) {
     fail("{}: stiffness_damping_s = {} must not be negative; use 0 for none", where, m.stiffness_damping);
 }
 
+void check(const Materials& materials, int elements, const char* where) {
+  for (const Material& material : materials.list) check(material, where);
+  PALPATE_CHECK(!materials.list.empty(), "{}: no material", where);
+  if (materials.of_element.empty()) return;
+  PALPATE_CHECK(static_cast<int>(materials.of_element.size()) == elements, "{}: {} numbers of materials for {} elements", where, materials.of_element.size(), elements);
+  for (const int number : materials.of_element)
+    PALPATE_CHECK(number >= 0 && number < static_cast<int>(materials.list.size()), "{}: material {} of {}", where, number, materials.list.size());
+}
+
 }  // namespace palpate::fem

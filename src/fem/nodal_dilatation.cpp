@@ -1,6 +1,7 @@
 #include "palpate/fem/nodal_dilatation.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <Eigen/LU>
@@ -9,6 +10,7 @@
 #include "node_block.h"
 #include "node_rings.h"
 #include "palpate/core/counters.h"
+#include "palpate/core/error.h"
 #include "palpate/core/polar.h"
 #include "stress.h"
 
@@ -23,6 +25,11 @@
 //
 // the element's own force with the average of averages in place of theta_e.  Uniform strain has theta* = theta: the patch test holds; P_e F^T is
 // symmetric: no moment; a tetrahedron alone has theta* = theta_e: it is the element.
+//
+// Of several materials the averages are taken within each: theta jumps where lambda does (the pressure across the border is what agrees), and an average
+// over both sides would hold the soft side to what the stiff one does.  So n runs over sites, the pairs of a node and a material at it, V_n and kappa_n are
+// the site's own, and theta*_e is the mean over the four sites that e has corners at.  All of the above holds as it stands: each element's corners still
+// have weights that sum to one over its own material.
 //
 // Tangent.  V_n d theta_n = sum_j b_nj . dx_j over the ring of n, b_nj = sum_{e at n and j} (V_e/4) R g_j; so that
 //
@@ -48,6 +55,35 @@ using Gradients = Eigen::Matrix<double, 3, 4>;
 
 double double_dot(const Mat3& A, const Mat3& B) { return A.cwiseProduct(B).sum(); }
 
+/// Where averages are taken: at each node, once for each material at it.  Of one material, the nodes themselves: nothing is kept then.
+struct Sites {
+  std::array<std::vector<int>, 4> corner;  ///< site of each corner of each element
+  std::vector<double> volume;              ///< [m^3]
+  std::vector<int> node, material;
+
+  Sites(const RestElements& elements, const Materials& materials) {
+    if (materials.of_element.empty()) return;
+    std::map<std::pair<int, int>, int> number;  // ordered by node: sites of one node stand together
+    for (std::size_t e = 0; e < elements.volume.size(); ++e)
+      for (const auto& nodes : elements.node) number[{nodes[e], materials.number(e)}] = 0;
+    for (auto& [key, site] : number) {
+      site = static_cast<int>(node.size());
+      node.push_back(key.first);
+      material.push_back(key.second);
+    }
+    volume.assign(node.size(), 0.0);
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t e = 0; e < elements.volume.size(); ++e) {
+        corner[a].push_back(number[{elements.node[a][e], materials.number(e)}]);
+        volume[static_cast<std::size_t>(corner[a].back())] += 0.25 * elements.volume[e];
+      }
+  }
+  const std::array<std::vector<int>, 4>& of_corner(const RestElements& elements) const { return node.empty() ? elements.node : corner; }
+  double volume_of(const RestElements& elements, int site) const { return (node.empty() ? elements.nodal_volume : volume)[static_cast<std::size_t>(site)]; }
+  int count(const RestElements& elements) const { return node.empty() ? elements.node_count() : static_cast<int>(node.size()); }
+  int node_of(int site) const { return node.empty() ? site : node[static_cast<std::size_t>(site)]; }
+};
+
 }  // namespace
 
 double kept_volumetric_share(const Material& material) {
@@ -60,35 +96,53 @@ struct NodalDilatation::Impl {
   SoftBodyOptions options;
   int block_id;
   RestElements elements;
+  std::vector<int> material_of_element;                ///< empty: one material
+  Sites sites;
   NodeRings rings;
-  Lame kept;                      ///< of the SoftBody [Pa]
-  double kappa = 0.0;             ///< (1 - share) lambda [Pa]
-  double kappa_d = 0.0;           ///< (1 - share) lambda_d [Pa s]
+  struct Constants {
+    Lame kept;                    ///< of the SoftBody [Pa]
+    double kappa = 0.0;           ///< (1 - share) lambda [Pa]
+    double kappa_d = 0.0;         ///< (1 - share) lambda_d [Pa s]
+  };
+  std::vector<Constants> constants;  ///< of the materials
   bool definite = false;
   std::vector<Mat3> F, R;         ///< of each element at the state last deformed to
-  VecX element, node, rate;       ///< element values and nodal averages; averages of the rate
+  VecX element, site, rate;       ///< element values and averages at the sites; averages of the rate
   std::vector<Vec3> turned, deformed, moving;  ///< ring rows b, d, l of the tangents
 
-  Impl(std::string n, const TetMesh& rest, const Material& m, const SoftBodyOptions& o, int id)
-      : name(std::move(n)), options(o), block_id(id), elements(make_rest_elements(rest, fmt::format("body \"{}\"", name))), rings(elements) {
-    set(m);
+  Impl(std::string n, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& o, int id)
+      : name(std::move(n)), options(o), block_id(id), elements(make_rest_elements(rest, fmt::format("body \"{}\"", name))),
+        material_of_element(materials.of_element), sites(elements, materials), rings(elements, sites.of_corner(elements), sites.count(elements)) {
+    check(materials, elements.count(), fmt::format("body \"{}\"", name).c_str());
+    PALPATE_CHECK(options.volumetric_shares.empty() || options.volumetric_shares.size() == materials.list.size(), "{} shares of {} materials", options.volumetric_shares.size(),
+                  materials.list.size());
+    set(materials.list);
     F.resize(count());
     R.resize(count());
     element = rate = VecX::Zero(elements.count());
-    node = VecX::Zero(elements.node_count());
+    site = VecX::Zero(rings.site_count());
     turned.resize(static_cast<std::size_t>(rings.entry_count()));
     deformed = moving = turned;
   }
 
-  void set(const Material& m) {
-    check(m, fmt::format("body \"{}\"", name).c_str());
-    kept = {m.mu(), options.volumetric_share * m.lambda()};
-    kappa = m.lambda() - kept.lambda;
-    kappa_d = m.stiffness_damping * kappa;
+  void set(const std::vector<Material>& list) {
+    constants.resize(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      Constants& c = constants[i];
+      c.kept = {list[i].mu(), options.share_of(i) * list[i].lambda()};
+      c.kappa = list[i].lambda() - c.kept.lambda;
+      c.kappa_d = list[i].stiffness_damping * c.kappa;
+    }
   }
   std::size_t count() const { return elements.volume.size(); }
+  const Constants& of_element(std::size_t e) const { return constants[material_of_element.empty() ? 0 : static_cast<std::size_t>(material_of_element[e])]; }
+  const Constants& of_site(int s) const { return constants[sites.material.empty() ? 0 : static_cast<std::size_t>(sites.material[static_cast<std::size_t>(s)])]; }
+  const std::array<std::vector<int>, 4>& corners() const { return sites.of_corner(elements); }
+  double site_volume(int s) const { return sites.volume_of(elements, s); }
   NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, elements.node_count()); }
-  bool damped() const { return kappa_d != 0.0; }
+  bool damped() const {
+    return std::any_of(constants.begin(), constants.end(), [](const Constants& c) { return c.kappa_d != 0.0; });
+  }
   bool damped_by_position() const { return damped() && options.full_damping_tangent && !definite; }
   Tangent tangent() const { return definite ? Tangent::kProjected : options.tangent; }
 
@@ -107,32 +161,39 @@ struct NodalDilatation::Impl {
     }
   }
 
-  /// node = averages of the element values w(e).
+  /// site = averages of the element values w(e).
   template <class Value>
-  void to_nodes(const Value& value) {
-    node.setZero();
+  void to_sites(const Value& value) {
+    site.setZero();
     for (std::size_t e = 0; e < count(); ++e) {
       const double share = 0.25 * elements.volume[e] * value(e);
-      for (const auto& corner : elements.node) node[corner[e]] += share;
+      for (const auto& corner : corners()) site[corner[e]] += share;
     }
-    for (Eigen::Index n = 0; n < node.size(); ++n)
-      if (const double volume = elements.nodal_volume[static_cast<std::size_t>(n)]; volume > 0.0) node[n] /= volume;
+    for (int s = 0; s < rings.site_count(); ++s)
+      if (const double volume = site_volume(s); volume > 0.0) site[s] /= volume;
   }
-  /// Value* of each element: mean of its nodes' averages.
+  /// Value* of each element: mean of its sites' averages.
   template <class Value>
   void average(const Value& value, VecX& out) {
-    to_nodes(value);
+    to_sites(value);
     for (std::size_t e = 0; e < count(); ++e) {
       double sum = 0.0;
-      for (const auto& corner : elements.node) sum += node[corner[e]];
+      for (const auto& corner : corners()) sum += site[corner[e]];
       out[static_cast<Eigen::Index>(e)] = 0.25 * sum;
     }
   }
-  /// sum_n V_n node_n^2
-  double weighted_square() const {
+  /// sum_s kappa_s V_s site_s^2, or with kappa_d.
+  double weighted_square(double Constants::*kappa) const {
     double sum = 0.0;
-    for (Eigen::Index n = 0; n < node.size(); ++n) sum += elements.nodal_volume[static_cast<std::size_t>(n)] * node[n] * node[n];
+    for (int s = 0; s < rings.site_count(); ++s) sum += of_site(s).*kappa * site_volume(s) * site[s] * site[s];
     return sum;
+  }
+  /// Averages at the nodes of what stands at the sites, by volume.
+  VecX at_nodes() const {
+    if (sites.node.empty()) return site;
+    VecX out = VecX::Zero(elements.node_count());
+    for (int s = 0; s < rings.site_count(); ++s) out[sites.node_of(s)] += site_volume(s) / elements.nodal_volume[static_cast<std::size_t>(sites.node_of(s))] * site[s];
+    return out;
   }
   double dilatation(std::size_t e) const { return double_dot(R[e], F[e]) - 3.0; }
   double strain_rate_trace(std::size_t e, const double* v) const { return double_dot(F[e], gradient_of(e, v)); }
@@ -147,7 +208,7 @@ struct NodalDilatation::Impl {
 
   /// C of the second sum; zero where the tangent leaves it out.
   Mat3 coupling(std::size_t e) const {
-    const double c = -kappa * star(element, e);
+    const double c = -of_element(e).kappa * star(element, e);
     if (tangent() == Tangent::kWarped || (tangent() == Tangent::kProjected && c > 0.0)) return Mat3::Zero();
     bool clamped = false;  // counted by the SoftBody
     return rotation_coupling(Tangent::kExact, F[e], R[e], {0.5 * c, 0.0}, clamped);
@@ -164,14 +225,14 @@ struct NodalDilatation::Impl {
     }
   }
 
-  /// A += sum_n (scale/V_n) left_ni right_nj^T.
-  void add_products(double scale, const std::vector<Vec3>& left, const std::vector<Vec3>& right, dynamics::BlockSparse& A) const {
-    for (int n = 0; n < rings.node_count(); ++n) {
-      const double volume = elements.nodal_volume[static_cast<std::size_t>(n)];
-      if (!(volume > 0.0)) continue;
+  /// A += sum_n (scale kappa_n/V_n) left_ni right_nj^T.
+  void add_products(double scale, double Constants::*kappa, const std::vector<Vec3>& left, const std::vector<Vec3>& right, dynamics::BlockSparse& A) const {
+    for (int n = 0; n < rings.site_count(); ++n) {
+      const double volume = site_volume(n), factor = scale * of_site(n).*kappa;
+      if (!(volume > 0.0) || factor == 0.0) continue;
       const auto first = static_cast<std::size_t>(rings.begin(n));
       for (int i = 0; i < rings.size(n); ++i) {
-        const Vec3 row = scale / volume * left[first + static_cast<std::size_t>(i)];
+        const Vec3 row = factor / volume * left[first + static_cast<std::size_t>(i)];
         for (int j = 0; j < rings.size(n); ++j) A.add(rings.slot(n, i, j), row * right[first + static_cast<std::size_t>(j)].transpose());
       }
     }
@@ -181,17 +242,21 @@ struct NodalDilatation::Impl {
   template <class Block>
   void add_element(std::size_t e, const Block& block, dynamics::BlockSparse& A) const {
     for (int a = 0; a < 4; ++a) {
-      const int n = elements.node[static_cast<std::size_t>(a)][e], first = rings.begin(n);
+      const int n = corners()[static_cast<std::size_t>(a)][e], first = rings.begin(n);
       for (int b = 0; b < 4; ++b) A.add(rings.slot(n, rings.entry(e, a, a) - first, rings.entry(e, a, b) - first), block(a, b));
     }
   }
 };
 
-NodalDilatation::NodalDilatation(std::string name, const TetMesh& rest, const Material& material, const SoftBodyOptions& options, int block_id)
-    : impl_(std::make_unique<Impl>(std::move(name), rest, material, options, block_id)) {
+NodalDilatation::NodalDilatation(std::string name, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& options, int block_id)
+    : impl_(std::make_unique<Impl>(std::move(name), rest, materials, options, block_id)) {
   counters::count("fem.nodal_dilatation");
 }
-void NodalDilatation::set_material(const Material& material) { impl_->set(material); }
+void NodalDilatation::set_materials(const std::vector<Material>& materials) {
+  PALPATE_CHECK(materials.size() == impl_->constants.size(), "{} materials in the place of {}", materials.size(), impl_->constants.size());
+  for (const Material& material : materials) check(material, fmt::format("body \"{}\"", impl_->name).c_str());
+  impl_->set(materials);
+}
 NodalDilatation::~NodalDilatation() = default;
 
 std::string_view NodalDilatation::name() const { return impl_->name; }
@@ -209,10 +274,11 @@ void NodalDilatation::add_force(const StateView& state, VecX& f) {
   double* force = f.data() + at.u_offset;
   m.deform(at.x);
   m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
-  if (m.damped()) m.average([&](std::size_t e) { return m.strain_rate_trace(e, at.v); }, m.rate);
+  const bool damped = m.damped();
+  if (damped) m.average([&](std::size_t e) { return m.strain_rate_trace(e, at.v); }, m.rate);
   for (std::size_t e = 0; e < m.count(); ++e) {
-    Mat3 P = m.kappa * m.star(m.element, e) * m.R[e];
-    if (m.damped()) P += m.kappa_d * m.star(m.rate, e) * m.F[e];
+    Mat3 P = m.of_element(e).kappa * m.star(m.element, e) * m.R[e];
+    if (damped) P += m.of_element(e).kappa_d * m.star(m.rate, e) * m.F[e];
     m.scatter(e, P, -1.0, force);
   }
 }
@@ -223,10 +289,10 @@ void NodalDilatation::add_tangent(const StateView& state, double k_scale, double
   m.rings.prepare(at.first_node, A.body);
   m.deform(at.x);
   if (m.damped()) m.fill_rows([&](std::size_t e) { return m.F[e]; }, m.deformed);
-  if (d_scale != 0.0 && m.damped()) m.add_products(d_scale * m.kappa_d, m.deformed, m.deformed, A.body);
+  if (d_scale != 0.0 && m.damped()) m.add_products(d_scale, &Impl::Constants::kappa_d, m.deformed, m.deformed, A.body);
   if (k_scale == 0.0) return;
   m.fill_rows([&](std::size_t e) { return m.R[e]; }, m.turned);
-  m.add_products(k_scale * m.kappa, m.turned, m.turned, A.body);
+  m.add_products(k_scale, &Impl::Constants::kappa, m.turned, m.turned, A.body);
   m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
   for (std::size_t e = 0; e < m.count(); ++e) {
     const Gradients h = m.R[e] * m.gradients(e);
@@ -237,11 +303,11 @@ void NodalDilatation::add_tangent(const StateView& state, double k_scale, double
   m.average([&](std::size_t e) { return m.strain_rate_trace(e, at.v); }, m.rate);
   for (std::size_t e = 0; e < m.count(); ++e) {
     const Gradients g = m.gradients(e);
-    const double scale = k_scale * m.kappa_d * m.elements.volume[e] * m.star(m.rate, e);
+    const double scale = k_scale * m.of_element(e).kappa_d * m.elements.volume[e] * m.star(m.rate, e);
     m.add_element(e, [&](int a, int b) -> Mat3 { return scale * g.col(a).dot(g.col(b)) * Mat3::Identity(); }, A.body);
   }
   m.fill_rows([&](std::size_t e) { return m.gradient_of(e, at.v); }, m.moving);
-  m.add_products(k_scale * m.kappa_d, m.deformed, m.moving, A.body);
+  m.add_products(k_scale, &Impl::Constants::kappa_d, m.deformed, m.moving, A.body);
 }
 
 void NodalDilatation::apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) {
@@ -250,31 +316,31 @@ void NodalDilatation::apply_tangent(const StateView& state, double k_scale, doub
   const double* direction = x.data() + at.u_offset;
   double* out = y.data() + at.u_offset;
   m.deform(at.x);
-  const auto spread = [&](const VecX& values, double scale, const std::vector<Mat3>& along) {
-    for (std::size_t e = 0; e < m.count(); ++e) m.scatter(e, m.star(values, e) * along[e], scale, out);
+  const auto spread = [&](const VecX& values, double scale, double Impl::Constants::*kappa, const std::vector<Mat3>& along) {
+    for (std::size_t e = 0; e < m.count(); ++e) m.scatter(e, m.star(values, e) * along[e], scale * m.of_element(e).*kappa, out);
   };
   if (d_scale != 0.0 && m.damped()) {
     m.average([&](std::size_t e) { return m.strain_rate_trace(e, direction); }, m.rate);
-    spread(m.rate, d_scale * m.kappa_d, m.F);
+    spread(m.rate, d_scale, &Impl::Constants::kappa_d, m.F);
   }
   if (k_scale == 0.0) return;
   m.average([&](std::size_t e) { return double_dot(m.R[e], m.gradient_of(e, direction)); }, m.element);
-  spread(m.element, k_scale * m.kappa, m.R);
+  spread(m.element, k_scale, &Impl::Constants::kappa, m.R);
   m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
   for (std::size_t e = 0; e < m.count(); ++e)
     m.scatter(e, elastic_stress_change(m.gradient_of(e, direction), m.R[e], m.coupling(e), Lame{}), k_scale, out);
   if (!m.damped_by_position()) return;
   m.average([&](std::size_t e) { return double_dot(m.gradient_of(e, direction), m.gradient_of(e, at.v)); }, m.rate);
-  spread(m.rate, k_scale * m.kappa_d, m.F);
+  spread(m.rate, k_scale, &Impl::Constants::kappa_d, m.F);
   m.average([&](std::size_t e) { return m.strain_rate_trace(e, at.v); }, m.rate);
-  for (std::size_t e = 0; e < m.count(); ++e) m.scatter(e, m.star(m.rate, e) * m.gradient_of(e, direction), k_scale * m.kappa_d, out);
+  for (std::size_t e = 0; e < m.count(); ++e) m.scatter(e, m.star(m.rate, e) * m.gradient_of(e, direction), k_scale * m.of_element(e).kappa_d, out);
 }
 
 double NodalDilatation::energy(const StateView& state) {
   Impl& m = *impl_;
   m.deform(m.place(state).x);
-  m.to_nodes([&](std::size_t e) { return m.dilatation(e); });
-  return 0.5 * m.kappa * m.weighted_square();
+  m.to_sites([&](std::size_t e) { return m.dilatation(e); });
+  return 0.5 * m.weighted_square(&Impl::Constants::kappa);
 }
 
 double NodalDilatation::dissipated_power(const StateView& state) {
@@ -282,23 +348,23 @@ double NodalDilatation::dissipated_power(const StateView& state) {
   if (!m.damped()) return 0.0;
   const NodeBlock at = m.place(state);
   m.deform(at.x, false);
-  m.to_nodes([&](std::size_t e) { return m.strain_rate_trace(e, at.v); });
-  return m.kappa_d * m.weighted_square();
+  m.to_sites([&](std::size_t e) { return m.strain_rate_trace(e, at.v); });
+  return m.weighted_square(&Impl::Constants::kappa_d);
 }
 
 VecX NodalDilatation::dilatations(const StateView& state) {
   Impl& m = *impl_;
   m.deform(m.place(state).x);
-  m.to_nodes([&](std::size_t e) { return m.dilatation(e); });
-  return m.node;
+  m.to_sites([&](std::size_t e) { return m.dilatation(e); });
+  return m.at_nodes();
 }
 
 VecX NodalDilatation::nodal_stress(const StateView& state) {
   Impl& m = *impl_;
   m.deform(m.place(state).x);
   m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
-  m.to_nodes([&](std::size_t e) { return von_mises(m.F[e], m.kept, m.kappa * m.star(m.element, e)); });
-  return m.node;
+  m.to_sites([&](std::size_t e) { return von_mises(m.F[e], m.of_element(e).kept, m.of_element(e).kappa * m.star(m.element, e)); });
+  return m.at_nodes();
 }
 
 }  // namespace palpate::fem

@@ -1,5 +1,6 @@
 #include "palpate/fem/soft_body.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <Eigen/LU>
@@ -20,49 +21,71 @@ struct SoftBody::Impl {
   SoftBodyOptions options;
   int block_id;
   ElementEvaluation elements;
-  Material material;
+  std::vector<Material> materials;
+  ElementModels models;   ///< of the materials, for the evaluation at hand
+  VecX drag;              ///< mass-proportional damping of each node [kg/s]; empty: none
   ElementCounts counts;
   bool definite = false;  ///< the projected tangent in place of the named one
 
-  Impl(std::string body, const TetMesh& rest, const SoftBodyOptions& opts, int block)
+  Impl(std::string body, const TetMesh& rest, const Materials& from, const SoftBodyOptions& opts, int block)
       : name(std::move(body)), options(opts), block_id(block),
-        elements(rest, make_rest_elements(rest, fmt::format("body \"{}\"", name)), opts.full_damping_tangent) {}
+        elements(rest, make_rest_elements(rest, fmt::format("body \"{}\"", name)), from.of_element, opts.full_damping_tangent) {
+    check(from, elements.chunks().element_count(), fmt::format("body \"{}\"", name).c_str());
+    PALPATE_CHECK(options.volumetric_shares.empty() || options.volumetric_shares.size() == from.list.size(), "{} shares of {} materials", options.volumetric_shares.size(), from.list.size());
+    set(from.list);
+  }
 
   int node_count() const { return elements.chunks().node_count(); }
   NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, node_count()); }
-  double mass(int node) const { return material.density * elements.chunks().nodal_volume[static_cast<std::size_t>(node)]; }
-  bool damped() const { return material.stiffness_damping > 0.0; }
+  /// Whether any material has stiffness damping.
+  bool damped() const {
+    return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.stiffness_damping > 0.0; });
+  }
+  bool by_position() const { return damped() && options.full_damping_tangent && !definite; }
 
-  ElementModel model(double k_scale, double d_scale) const {
-    ElementModel m;
-    m.mu = material.mu();
-    m.lambda = options.volumetric_share * material.lambda();
-    m.damping_mu = material.stiffness_damping * m.mu;
-    m.damping_lambda = material.stiffness_damping * m.lambda;
-    m.projected = definite || options.tangent == Tangent::kProjected;
-    m.warped = !m.projected && options.tangent == Tangent::kWarped;
-    m.by_position = damped() && options.full_damping_tangent && !definite && k_scale != 0.0;
-    m.k_scale = k_scale;
-    m.d_scale = d_scale;
-    return m;
+  const ElementModels& models_of(double k_scale, double d_scale) {
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      ElementModel& m = models[i];
+      m.mu = materials[i].mu();
+      m.lambda = options.share_of(i) * materials[i].lambda();
+      m.damping_mu = materials[i].stiffness_damping * m.mu;
+      m.damping_lambda = materials[i].stiffness_damping * m.lambda;
+      m.projected = definite || options.tangent == Tangent::kProjected;
+      m.warped = !m.projected && options.tangent == Tangent::kWarped;
+      m.by_position = by_position() && k_scale != 0.0;
+      m.k_scale = k_scale;
+      m.d_scale = d_scale;
+    }
+    return models;
   }
   /// Whether a tangent of these scales needs the elements at all.
   bool acts(double k_scale, double d_scale) const { return k_scale != 0.0 || (d_scale != 0.0 && damped()); }
 
+  bool dragged() const { return drag.size() > 0; }
   void add_drag(const NodeBlock& at, double* force) const {
-    for (int i = 0; i < node_count(); ++i) Eigen::Map<Vec3>(force + 3 * i) -= material.mass_damping * mass(i) * Eigen::Map<const Vec3>(at.v + 3 * i);
+    for (int i = 0; i < node_count(); ++i) Eigen::Map<Vec3>(force + 3 * i) -= drag[i] * Eigen::Map<const Vec3>(at.v + 3 * i);
   }
 
-  void set(const Material& m) {
-    check(m, fmt::format("body \"{}\"", name).c_str());
-    material = m;
+  void set(const std::vector<Material>& list) {
+    materials = list;
+    models.resize(list.size());
+    drag.resize(0);
+    if (std::none_of(list.begin(), list.end(), [](const Material& m) { return m.mass_damping > 0.0; })) return;
+    drag = VecX::Zero(node_count());
+    if (list.size() == 1) {
+      for (int i = 0; i < node_count(); ++i) drag[i] = list[0].mass_damping * (list[0].density * elements.chunks().nodal_volume[static_cast<std::size_t>(i)]);
+      return;
+    }
+    elements.chunks().for_each([&](const ElementChunks::Element& e) {
+      const Material& m = list[static_cast<std::size_t>(e.material)];
+      for (int node : e.node) drag[node] += m.mass_damping * m.density * 0.25 * e.volume;
+    });
   }
 };
 
-SoftBody::SoftBody(std::string name, const TetMesh& rest, const Material& material, const SoftBodyOptions& options, int block_id)
-    : impl_(std::make_unique<Impl>(std::move(name), rest, options, block_id)) {
+SoftBody::SoftBody(std::string name, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& options, int block_id)
+    : impl_(std::make_unique<Impl>(std::move(name), rest, materials, options, block_id)) {
   counters::count("fem.soft_body");
-  impl_->set(material);
   if (!options.instructions.empty()) {
     const LaneKernels* kernels = find_kernels(options.instructions.c_str());
     if (kernels == nullptr)
@@ -75,8 +98,12 @@ SoftBody::~SoftBody() = default;
 std::string_view SoftBody::name() const { return impl_->name; }
 const ElementCounts& SoftBody::counts() const { return impl_->counts; }
 void SoftBody::reset_counts() { impl_->counts = {}; }
-const Material& SoftBody::material() const { return impl_->material; }
-void SoftBody::set_material(const Material& material) { impl_->set(material); }
+const std::vector<Material>& SoftBody::materials() const { return impl_->materials; }
+void SoftBody::set_materials(const std::vector<Material>& materials) {
+  PALPATE_CHECK(materials.size() == impl_->materials.size(), "{} materials in the place of {}", materials.size(), impl_->materials.size());
+  for (const Material& material : materials) check(material, fmt::format("body \"{}\"", impl_->name).c_str());
+  impl_->set(materials);
+}
 int SoftBody::node_count() const { return impl_->node_count(); }
 int SoftBody::element_count() const { return impl_->elements.chunks().element_count(); }
 std::string_view SoftBody::instructions() const { return impl_->elements.kernels().name; }
@@ -85,7 +112,7 @@ MemoryUse SoftBody::memory() const {
 }
 
 dynamics::TermTraits SoftBody::traits() const {
-  const bool symmetric = !impl_->model(1.0, 1.0).by_position;
+  const bool symmetric = !impl_->by_position();
   return {.stiff = true, .fast = false, .symmetric_tangent = symmetric, .has_tangent = true, .conservative = true, .balanced = symmetric};
 }
 
@@ -115,24 +142,23 @@ void SoftBody::add_force(const StateView& state, VecX& f) {
   Impl& m = *impl_;
   const NodeBlock at = m.place(state);
   double* force = f.data() + at.u_offset;
-  const LaneCounts met = m.elements.add_force(m.model(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr}, force);
+  const LaneCounts met = m.elements.add_force(m.models_of(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr}, force);
   m.counts.inverted += met.inverted;
   m.counts.by_scalar += met.by_scalar;
-  if (m.material.mass_damping > 0.0) m.add_drag(at, force);
+  if (m.dragged()) m.add_drag(at, force);
 }
 
 void SoftBody::add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) {
   Impl& m = *impl_;
   const NodeBlock at = m.place(state);
   if (m.acts(k_scale, d_scale)) {
-    const ElementModel model = m.model(k_scale, d_scale);
-    const LaneCounts met = m.elements.add_tangent(model, {at.x, model.by_position ? at.v : nullptr}, at.first_node, A.body);
+    const LaneCounts met = m.elements.add_tangent(m.models_of(k_scale, d_scale), {at.x, m.by_position() && k_scale != 0.0 ? at.v : nullptr}, at.first_node, A.body);
     m.counts.clamped += met.clamped;
     m.counts.by_scalar += met.by_scalar;
   }
-  if (d_scale == 0.0 || m.material.mass_damping == 0.0) return;
+  if (d_scale == 0.0 || !m.dragged()) return;
   m.elements.prepare(at.first_node, A.body);
-  for (int i = 0; i < node_count(); ++i) A.body.add(m.elements.diagonal(i), d_scale * m.material.mass_damping * m.mass(i) * Mat3::Identity());
+  for (int i = 0; i < node_count(); ++i) A.body.add(m.elements.diagonal(i), d_scale * m.drag[i] * Mat3::Identity());
 }
 
 void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) {
@@ -141,41 +167,39 @@ void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_sc
   const double* direction = x.data() + at.u_offset;
   double* out = y.data() + at.u_offset;
   if (m.acts(k_scale, d_scale)) {
-    const ElementModel model = m.model(k_scale, d_scale);
-    m.counts.by_scalar += m.elements.apply_tangent(model, {at.x, model.by_position ? at.v : nullptr, direction}, out).by_scalar;
+    m.counts.by_scalar += m.elements.apply_tangent(m.models_of(k_scale, d_scale), {at.x, m.by_position() && k_scale != 0.0 ? at.v : nullptr, direction}, out).by_scalar;
   }
-  if (d_scale == 0.0 || m.material.mass_damping == 0.0) return;
+  if (d_scale == 0.0 || !m.dragged()) return;
   for (int i = 0; i < node_count(); ++i)
-    Eigen::Map<Vec3>(out + 3 * i) += d_scale * m.material.mass_damping * m.mass(i) * Eigen::Map<const Vec3>(direction + 3 * i);
+    Eigen::Map<Vec3>(out + 3 * i) += d_scale * m.drag[i] * Eigen::Map<const Vec3>(direction + 3 * i);
 }
 
 void SoftBody::add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f, dynamics::BalancedMatrix& A) {
   Impl& m = *impl_;
   const NodeBlock at = m.place(state);
   double* force = f.data() + at.u_offset;
-  const LaneCounts met = m.elements.add_step(m.model(A.scale * k_scale, A.scale * d_scale), {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset},
+  const LaneCounts met = m.elements.add_step(m.models_of(A.scale * k_scale, A.scale * d_scale), {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset},
                                              at.first_node, force, A);
   m.counts.inverted += met.inverted;
   m.counts.clamped += met.clamped;
   m.counts.by_scalar += met.by_scalar;
-  if (m.material.mass_damping == 0.0) return;
+  if (!m.dragged()) return;
   m.add_drag(at, force);
-  for (int i = 0; i < node_count(); ++i) A.diagonal.segment<3>(at.u_offset + 3 * i).array() += d_scale * m.material.mass_damping * m.mass(i);
+  for (int i = 0; i < node_count(); ++i) A.diagonal.segment<3>(at.u_offset + 3 * i).array() += d_scale * m.drag[i];
 }
 
-double SoftBody::energy(const StateView& state) { return impl_->elements.energy(impl_->model(0.0, 0.0), {impl_->place(state).x}); }
+double SoftBody::energy(const StateView& state) { return impl_->elements.energy(impl_->models_of(0.0, 0.0), {impl_->place(state).x}); }
 
 double SoftBody::dissipated_power(const StateView& state) {
   Impl& m = *impl_;
   const NodeBlock at = m.place(state);
-  double sum = m.damped() ? m.elements.dissipated_power(m.model(0.0, 0.0), {at.x, at.v}) : 0.0;
-  for (int i = 0; i < node_count(); ++i) sum += m.material.mass_damping * m.mass(i) * Eigen::Map<const Vec3>(at.v + 3 * i).squaredNorm();
+  double sum = m.damped() ? m.elements.dissipated_power(m.models_of(0.0, 0.0), {at.x, at.v}) : 0.0;
+  for (int i = 0; m.dragged() && i < node_count(); ++i) sum += m.drag[i] * Eigen::Map<const Vec3>(at.v + 3 * i).squaredNorm();
   return sum;
 }
 
 VecX SoftBody::nodal_stress(const StateView& state) const {
-  const ElementModel model = impl_->model(0.0, 0.0);
-  return nodal_von_mises(impl_->elements.chunks(), impl_->place(state).x, {model.mu, model.lambda});
+  return nodal_von_mises(impl_->elements.chunks(), impl_->place(state).x, impl_->models_of(0.0, 0.0));
 }
 
 }  // namespace palpate::fem

@@ -23,10 +23,11 @@ double von_mises(const Mat3& F, const Lame& lame, double tension) {
   return std::sqrt(1.5 * deviator.squaredNorm());
 }
 
-VecX nodal_von_mises(const ElementChunks& elements, const double* x, const Lame& lame) {
+VecX nodal_von_mises(const ElementChunks& elements, const double* x, const std::vector<ElementModel>& models) {
   VecX out = VecX::Zero(elements.node_count());
   elements.for_each([&](const ElementChunks::Element& e) {
-    const double share = 0.25 * e.volume * von_mises(e.edges(x) * e.gradients, lame);
+    const ElementModel& model = models[static_cast<std::size_t>(e.material)];
+    const double share = 0.25 * e.volume * von_mises(e.edges(x) * e.gradients, {model.mu, model.lambda});
     for (int node : e.node) out[node] += share;
   });
   for (Eigen::Index i = 0; i < out.size(); ++i) {

@@ -39,10 +39,10 @@ const Body* World::find_body(const std::string& name) const {
 }
 
 void World::set_youngs_modulus(Body& body, double youngs_modulus_pa) {
-  fem::Material material = body.term->material();
-  material.youngs_modulus = youngs_modulus_pa;
-  body.term->set_material(material);
-  if (body.dilatation) body.dilatation->set_material(material);
+  std::vector<fem::Material> materials = body.term->materials();
+  materials[0].youngs_modulus = youngs_modulus_pa;
+  body.term->set_materials(materials);
+  if (body.dilatation) body.dilatation->set_materials(materials);
   body.stiffness_scale = youngs_modulus_pa;
   if (stepper) stepper->reinit(dynamics::ReinitReason::kParametersChanged);
 }

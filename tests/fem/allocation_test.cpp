@@ -19,18 +19,20 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
   Material material = soft_material();
   material.stiffness_damping = 0.1;
   material.mass_damping = 0.1;
+  Materials materials({material, soft_material()}, std::vector<int>(static_cast<std::size_t>(rest.tets.cols()), 0));
+  for (std::size_t e = 0; e < materials.of_element.size(); e += 3) materials.of_element[e] = 1;
   const long before_all = malloc_calls;
-  const auto mass = make_consistent_mass(rest, material.density, at.id);
+  const auto mass = make_consistent_mass(rest, materials, at.id);
   EXPECT_GT(malloc_calls, before_all);  // the counter counts
   for (Tangent tangent : {Tangent::kExact, Tangent::kProjected, Tangent::kWarped}) {
-    SoftBody body("b", rest, material, {.tangent = tangent, .full_damping_tangent = true}, at.id);
-    NodalDilatation dilatation("b", rest, material, {.tangent = tangent, .full_damping_tangent = true, .volumetric_share = 0.5}, at.id);
+    SoftBody body("b", rest, materials, {.tangent = tangent, .full_damping_tangent = true}, at.id);
+    NodalDilatation dilatation("b", rest, materials, {.tangent = tangent, .full_damping_tangent = true, .volumetric_share = 0.5}, at.id);
     dynamics::PatternBuilder builder(at.state.layout());
     dilatation.add_pattern(builder);  // the element's pairs are among them
     dynamics::BorderedMatrix A;
     A.body = builder.build();
     VecX f = VecX::Zero(x.size()), y = f;
-    SoftBody symmetric("b", rest, material, {.tangent = tangent}, at.id);
+    SoftBody symmetric("b", rest, materials, {.tangent = tangent}, at.id);
     dynamics::BalancedMatrix balanced;
     balanced.pattern = &A.body;
     for (int s = 0; s < A.body.slot_count(); ++s) balanced.place.push_back(s);  // more room than it needs

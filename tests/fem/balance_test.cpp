@@ -125,7 +125,7 @@ TEST(Balance, RenumberingNodesAndElementsPermutesTheResult) {
     const int even[4] = {from[1], from[2], from[0], from[3]};  // an even permutation keeps the volume's sign
     for (int a = 0; a < 4; ++a) renumbered.tets(a, e) = place[static_cast<std::size_t>(even[a])];
   }
-  SoftBody body("b", renumbered, s.body.material(), {}, 0);
+  SoftBody body("b", renumbered, s.body.materials()[0], {}, 0);
   OneBody at(x, v);
   VecX f = VecX::Zero(x.size());
   body.add_force(at.state.view(), f);

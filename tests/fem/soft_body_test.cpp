@@ -70,7 +70,7 @@ TEST(SoftBody, VolumetricShareIsOfLambdaAlone) {
   const OneBody at(flat(Vec3(1.3, 0.9, 1.1).asDiagonal() * rest.nodes), VecX::Zero(3 * rest.nodes.cols()));
   SoftBody body("b", rest, m, {.volumetric_share = 0.5}, at.id);
   EXPECT_NEAR(body.energy(at.state.view()), m.mu() * (0.09 + 0.01 + 0.01) + 0.25 * m.lambda() * 0.3 * 0.3, 1e-14);
-  EXPECT_EQ(body.material().lambda(), m.lambda());
+  EXPECT_EQ(body.materials()[0].lambda(), m.lambda());
 }
 
 TEST(SoftBody, NewMaterialTakesEffectAtTheNextEvaluation) {
@@ -80,9 +80,9 @@ TEST(SoftBody, NewMaterialTakesEffectAtTheNextEvaluation) {
   const double before = body.energy(at.state.view());
   Material twice = soft_material();
   twice.youngs_modulus *= 2.0;
-  body.set_material(twice);
+  body.set_materials({twice});
   EXPECT_DOUBLE_EQ(body.energy(at.state.view()), 2.0 * before);
-  EXPECT_EQ(body.material().youngs_modulus, twice.youngs_modulus);
+  EXPECT_EQ(body.materials()[0].youngs_modulus, twice.youngs_modulus);
   EXPECT_EQ(body.node_count(), 4);
   EXPECT_EQ(body.element_count(), 1);
   EXPECT_EQ(body.name(), "b");
@@ -125,7 +125,7 @@ TEST(SoftBody, RefusesABadMaterialNamingTheBody) {
   m.poissons_ratio = 0.5;
   expect_contains(message_of([&] { SoftBody("liver", one_tet(), m, {}, 0); }), "body \"liver\": poissons_ratio = 0.5 must lie in (-1, 0.5)");
   SoftBody body("liver", one_tet(), soft_material(), {}, 0);
-  expect_contains(message_of([&] { body.set_material(m); }), "body \"liver\": poissons_ratio = 0.5");
+  expect_contains(message_of([&] { body.set_materials({m}); }), "body \"liver\": poissons_ratio = 0.5");
 }
 
 TEST(SoftBody, RefusesAStateWithoutItsBlock) {

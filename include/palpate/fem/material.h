@@ -1,4 +1,6 @@
 #pragma once
+#include <utility>
+#include <vector>
 
 namespace palpate::fem {
 
@@ -14,7 +16,20 @@ struct Material {
   double lambda() const { return youngs_modulus * poissons_ratio / ((1.0 + poissons_ratio) * (1.0 - 2.0 * poissons_ratio)); }
 };
 
+/// The materials of a body: one, or a list and the number in it of each tetrahedron.
+struct Materials {
+  std::vector<Material> list;    ///< at least one
+  std::vector<int> of_element;   ///< in the order of the mesh; empty: all are list[0]
+
+  Materials(const Material& all) : list{all} {}
+  Materials(std::vector<Material> materials, std::vector<int> numbers) : list(std::move(materials)), of_element(std::move(numbers)) {}
+  int number(std::size_t element) const { return of_element.empty() ? 0 : of_element[element]; }
+  const Material& of(std::size_t element) const { return list[static_cast<std::size_t>(number(element))]; }
+};
+
 /// @throws Error naming the value out of range; `where` begins the message.
 void check(const Material& material, const char* where);
+/// The same for each of a list, and for numbers that fit it and a mesh of so many elements.
+void check(const Materials& materials, int elements, const char* where);
 
 }  // namespace palpate::fem

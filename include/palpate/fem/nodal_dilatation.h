@@ -16,13 +16,15 @@ double kept_volumetric_share(const Material& material);
 /// volumetric locking for nu -> 0.5.  Elastic energy, objective damping lambda_d and their tangents.  Couples nodes that share a neighbour:
 /// about four times the blocks of the element's pattern, and a factor that costs accordingly.
 ///
-/// Goes with a SoftBody of the same mesh, material, options and block: together they are the body.
+/// Of several materials the averages are taken within each, so that a soft one is not held by a stiff one beside it.
+///
+/// Goes with a SoftBody of the same mesh, materials, options and block: together they are the body.
 /// Limits: displacements converge for nu -> 0.5, pressures of single nodes may alternate around the true one (equal orders of displacement and
 /// pressure): average them before reading.  Boundary nodes average over the inside alone.
 class NodalDilatation : public dynamics::ForceTerm {
  public:
-  /// @param options  of the SoftBody: 1 - volumetric_share of lambda acts here; both tangent settings act as there
-  NodalDilatation(std::string name, const TetMesh& rest, const Material& material, const SoftBodyOptions& options, int block_id);
+  /// @param options  of the SoftBody: 1 - share_of(material) of lambda acts here; both tangent settings act as there
+  NodalDilatation(std::string name, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& options, int block_id);
   ~NodalDilatation() override;
 
   std::string_view name() const override;
@@ -35,8 +37,8 @@ class NodalDilatation : public dynamics::ForceTerm {
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;
 
-  void set_material(const Material& material);  ///< takes effect at the next evaluation
-  /// theta_n of each node.
+  void set_materials(const std::vector<Material>& materials);  ///< as SoftBody::set_materials
+  /// theta_n of each node; where materials meet, the average over them by volume.
   VecX dilatations(const dynamics::StateView& state);
   /// Von Mises norm of the whole body's Cauchy stress (SoftBody::nodal_stress with the pressure that acts here) [Pa].
   VecX nodal_stress(const dynamics::StateView& state);

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "palpate/dynamics/force_term.h"
 #include "palpate/dynamics/inertia_term.h"
@@ -18,6 +19,9 @@ struct SoftBodyOptions {
   double volumetric_share = 1.0;      ///< of lambda (and of lambda_d), acting element by element; the rest belongs to another term
   /// "baseline", "avx2" or "avx512"; empty: the widest that the processor has, or what the environment variable PALPATE_INSTRUCTIONS names.
   std::string instructions = {};
+  std::vector<double> volumetric_shares = {};  ///< of each material, where they differ; empty: volumetric_share of all
+
+  double share_of(std::size_t material) const { return volumetric_shares.empty() ? volumetric_share : volumetric_shares[material]; }
 };
 
 /// What one evaluation met, for reports: counts since the last reset.
@@ -35,12 +39,13 @@ struct MemoryUse {
 };
 
 /// Corotational tetrahedra as one force term over one node block (DESIGN 3.1): elastic force, objective stiffness damping, their tangents, energy.
-/// Mass-proportional damping acts here too (it needs the lumped masses): f = -alpha M v.
+/// Mass-proportional damping acts here too (it needs the lumped masses): f = -alpha M v; of several materials f_i = -c_i v_i, c_i = sum (alpha rho V / 4) over the elements at node i.
+/// Materials belong to elements: where two meet, they share nodes and displacements, and the traction is continuous as far as the mesh resolves it.
 /// Elements are worked through in the lanes of vectors and on core's workers (core/workers.h); results do not depend on the number of threads.
 class SoftBody : public dynamics::ForceTerm {
  public:
   /// @param rest  rest positions and tetrahedra, volumes positive  @param block_id  the node block in the State
-  SoftBody(std::string name, const TetMesh& rest, const Material& material, const SoftBodyOptions& options, int block_id);
+  SoftBody(std::string name, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& options, int block_id);
   ~SoftBody() override;
 
   std::string_view name() const override;
@@ -60,8 +65,9 @@ class SoftBody : public dynamics::ForceTerm {
 
   const ElementCounts& counts() const;
   void reset_counts();
-  const Material& material() const;
-  void set_material(const Material& material);  ///< takes effect at the next evaluation
+  const std::vector<Material>& materials() const;  ///< the list that it was made with
+  /// Others in their places, as many; they take effect at the next evaluation.  Which element has which stays.
+  void set_materials(const std::vector<Material>& materials);
   int node_count() const;
   int element_count() const;
   /// Name of the instruction set in use.
@@ -77,10 +83,13 @@ class SoftBody : public dynamics::ForceTerm {
 
 /// Nodal masses [kg] of a mesh, one a node: rho V / 4 from each tetrahedron.
 VecX lumped_masses(const TetMesh& rest, double density);
+VecX lumped_masses(const TetMesh& rest, const Materials& materials);
 
-/// Lumped or consistent mass of one node block.
+/// Lumped or consistent mass of one node block; of the materials only the densities count.
 std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, double density, int block_id);
+std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, const Materials& materials, int block_id);
 std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, double density, int block_id);
+std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, const Materials& materials, int block_id);
 
 /// Weight: f_i = m_i g (lumped; equal to the consistent load of a constant field).
 std::shared_ptr<dynamics::ForceTerm> make_gravity(const VecX& masses, const Vec3& gravity, int block_id);
