@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "palpate/core/clock.h"
 #include "palpate/loop/run.h"
+#include "palpate/mesh/quality.h"
 #include "palpate/report/table.h"
 #include "palpate/scene/needs.h"
 #include "scene_of.h"
@@ -31,6 +32,35 @@ void print_bodies(const loop::World& world) {
     fmt::print("{}\n", report::format_table({"body", "nodes", "tetrahedra", "surface faces", "volume [m^3]", "mass [kg]",
                                              "edges [m]", "least dihedral [deg]", "mended"},
                                             rows));
+}
+
+/// Each body's own material and those of its regions: where the scene names none, one line a body that its file divides.
+void print_regions(const loop::World& world) {
+  Rows rows;
+  for (const loop::Body& body : world.bodies) {
+    if (body.regions.empty()) continue;
+    const std::vector<fem::Material>& materials = body.term->materials();
+    const Eigen::Index all = body.rest.tets.cols();
+    std::vector<char> taken(static_cast<std::size_t>(all), 0);
+    const auto add = [&](const std::string& name, const std::vector<int>& tets, int material) {
+      const fem::Material& m = materials[static_cast<std::size_t>(material)];
+      double volume = 0.0;
+      for (const int tet : tets) volume += mesh::tet_volume(body.rest, tet);
+      rows.push_back({body.name, name, std::to_string(tets.size()), fmt::format("{:.3g}", volume), fmt::format("{:.3g}", m.density * volume), material > 0 ? "its own" : "the body's",
+                      fmt::format("{:.4g}", m.youngs_modulus), fmt::format("{:g}", m.poissons_ratio), fmt::format("{:g}", m.density), fmt::format("{:g}", m.mass_damping),
+                      fmt::format("{:g}", m.stiffness_damping)});
+    };
+    for (const loop::Region& region : body.regions) {
+      add(region.name, region.tets, region.material);
+      for (const int tet : region.tets) taken[static_cast<std::size_t>(tet)] = 1;
+    }
+    std::vector<int> rest;
+    for (Eigen::Index t = 0; t < all; ++t)
+      if (!taken[static_cast<std::size_t>(t)]) rest.push_back(static_cast<int>(t));
+    if (!rest.empty()) add("(the rest)", rest, 0);
+  }
+  if (!rows.empty())
+    fmt::print("{}\n", report::format_table({"body", "region", "tetrahedra", "volume [m^3]", "mass [kg]", "material", "E [Pa]", "nu", "rho [kg/m^3]", "alpha [1/s]", "beta [s]"}, rows));
 }
 
 void print_bones(const loop::World& world) {
@@ -74,6 +104,7 @@ int inspect(const InspectArguments& arguments) {
   const std::unique_ptr<loop::World> world = loop::assemble(description);
   const double seconds = wall_seconds() - start, used = resident_memory_mib() - memory;
   print_bodies(*world);
+  print_regions(*world);
   print_bones(*world);
   print_system(*world, seconds, used);
   return 0;

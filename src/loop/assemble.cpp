@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 
 #include "assemble_parts.h"
@@ -12,11 +13,7 @@
 namespace palpate::loop {
 namespace {
 
-fem::Material material_of(const SoftBodySpec& spec) {
-  return {spec.youngs_modulus_pa, spec.poissons_ratio, spec.density_kg_m3, spec.mass_damping_per_s, spec.stiffness_damping_s};
-}
-
-fem::SoftBodyOptions options_of(const SoftBodySpec& spec) {
+fem::SoftBodyOptions options_of(const SoftBodySpec& spec, const fem::Materials& materials) {
   fem::SoftBodyOptions options;
   if (spec.tangent == "exact")
     options.tangent = fem::Tangent::kExact;
@@ -27,9 +24,10 @@ fem::SoftBodyOptions options_of(const SoftBodySpec& spec) {
   else
     fail("body \"{}\": unknown tangent \"{}\"{}", spec.name, spec.tangent, suggestion(spec.tangent, {"exact", "projected", "warped"}));
   options.full_damping_tangent = spec.full_damping_tangent;
-  if (spec.volumetric == "nodal")
-    options.volumetric_share = fem::kept_volumetric_share(material_of(spec));
-  else if (spec.volumetric != "element")
+  if (spec.volumetric == "nodal") {
+    for (const fem::Material& material : materials.list) options.volumetric_shares.push_back(fem::kept_volumetric_share(material));
+    options.volumetric_share = *std::min_element(options.volumetric_shares.begin(), options.volumetric_shares.end());
+  } else if (spec.volumetric != "element")
     fail("body \"{}\": unknown volumetric \"{}\"{}", spec.name, spec.volumetric, suggestion(spec.volumetric, {"element", "nodal"}));
   return options;
 }
@@ -55,21 +53,18 @@ void take_skeleton(const SoftBodySpec& spec, const std::string& path, const Laye
   }
 }
 
-/// A body's tetrahedra, and the skin and proxies that the scene names.  Of a model file the tetrahedra alone are read where it names neither; else the file is
+/// A body's tetrahedra, and the skin and proxies that the scene names.  Returns the regions of its file.  Of a model file the tetrahedra alone are read where it names neither; else the file is
 /// read and checked as a whole, and what is not named is let go.
-void load_mesh(const SoftBodySpec& spec, const std::string& folder, Body& body) {
+std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::string& folder, Body& body) {
   const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
   if (spec.skin || spec.skeleton) {
     LayeredModel model = store::read_model(path).model;
     if (spec.skeleton) take_skeleton(spec, path, model, body);
     if (!spec.skin) {
       body.rest = check_file(std::move(model.tets), path, spec.mesh.scale, &body.report);
-      return;
+      return std::move(model.regions);
     }
     if (model.skin.faces.cols() == 0) fail("body \"{}\": skin = true, but {} has no skin; `palpate model` writes files that have one", spec.name, path);
-    for (const MaterialRegion& region : model.regions)
-      if (region.youngs_modulus_factor != 1.0 || region.density_factor != 1.0)
-        fail("body \"{}\": {} has a region \"{}\" of another material; this version gives a body one material", spec.name, path, region.name);
     counters::count("loop.skin");
     model.skin.vertices *= spec.mesh.scale;
     body.rest = check_file(std::move(model.tets), path, spec.mesh.scale, &body.report);
@@ -82,11 +77,16 @@ void load_mesh(const SoftBodySpec& spec, const std::string& folder, Body& body) 
       proxies = std::make_shared<proxy::ProxySet>(model);
     }
     body.skin = Skin{std::move(model.skin), std::move(model.embedding), std::move(proxies)};
-  } else if (spec.mesh.file.ends_with(".h5")) {
-    body.rest = check_file(store::read_mesh(path), path, spec.mesh.scale, &body.report);
-  } else {
-    body.rest = mesh::tet_mesh(spec.mesh, folder, &body.report);
+    return std::move(model.regions);
   }
+  std::vector<MaterialRegion> regions;
+  if (spec.mesh.file.ends_with(".h5")) {
+    body.rest = check_file(store::read_mesh(path), path, spec.mesh.scale, &body.report);
+    regions = store::read_regions(path, static_cast<int>(body.rest.tets.cols()));
+  } else {
+    body.rest = mesh::tet_mesh(spec.mesh, folder, &body.report, &regions);
+  }
+  return regions;
 }
 
 /// Velocity of each node of a body that starts as a rigid one: v + w x (x - centre of mass).
@@ -97,22 +97,21 @@ VecX initial_velocities(const SoftBodySpec& spec, const Points& placed, const Ve
   return Eigen::Map<const VecX>(v.data(), v.size());
 }
 
-Body place_body(World& world, const SoftBodySpec& spec) {
+Body place_body(World& world, const SoftBodySpec& spec, fem::Materials& materials) {
   Body body;
   body.name = spec.name;
-  fem::check(material_of(spec), fmt::format("body \"{}\"", spec.name).c_str());
-  load_mesh(spec, world.folder, body);
+  std::vector<MaterialRegion> regions = load_mesh(spec, world.folder, body);
   const Pose pose{quaternion_of(spec.rotation_vector_rad), spec.position_m};
   body.placed.resize(3, body.rest.nodes.cols());
   for (Eigen::Index i = 0; i < body.placed.cols(); ++i) body.placed.col(i) = pose * Vec3(body.rest.nodes.col(i));
   for (palpate::Bone& bone : body.skeleton.bones) bone.head = pose * bone.head, bone.tail = pose * bone.tail;
-  body.masses = fem::lumped_masses(body.rest, spec.density_kg_m3);
+  materials = assemble_materials(spec, std::move(regions), body);
+  body.masses = fem::lumped_masses(body.rest, materials);
   body.boundary = mesh::boundary(body.rest);
-  body.stiffness_scale = spec.youngs_modulus_pa;
   return body;
 }
 
-/// Errors are asked for in units of strain: lengths by the body's size, velocities by its bar wave speed sqrt(E/rho).
+/// Errors are asked for in units of strain: lengths by the body's size, velocities by its bar wave speed sqrt(E/rho), that of its own material.
 dynamics::BlockSpec block_of(const SoftBodySpec& spec, const Body& body) {
   dynamics::BlockSpec block;
   block.name = spec.name;
@@ -122,18 +121,18 @@ dynamics::BlockSpec block_of(const SoftBodySpec& spec, const Body& body) {
   return block;
 }
 
-void add_forces(World& world, Body& body, const SoftBodySpec& spec) {
-  const fem::SoftBodyOptions options = options_of(spec);
-  body.term = std::make_shared<fem::SoftBody>(spec.name, body.rest, material_of(spec), options, body.block_id);
+void add_forces(World& world, Body& body, const SoftBodySpec& spec, const fem::Materials& materials) {
+  const fem::SoftBodyOptions options = options_of(spec, materials);
+  body.term = std::make_shared<fem::SoftBody>(spec.name, body.rest, materials, options, body.block_id);
   world.system.add(body.term);
   if (options.volumetric_share < 1.0) {
-    body.dilatation = std::make_shared<fem::NodalDilatation>("volume of " + spec.name, body.rest, material_of(spec), options, body.block_id);
+    body.dilatation = std::make_shared<fem::NodalDilatation>("volume of " + spec.name, body.rest, materials, options, body.block_id);
     world.system.add(body.dilatation);
   }
   const bool consistent = spec.mass == "consistent";
   if (!consistent && spec.mass != "lumped") fail("body \"{}\": unknown mass \"{}\"{}", spec.name, spec.mass, suggestion(spec.mass, {"lumped", "consistent"}));
-  world.system.add(consistent ? fem::make_consistent_mass(body.rest, spec.density_kg_m3, body.block_id)
-                              : fem::make_lumped_mass(body.rest, spec.density_kg_m3, body.block_id));
+  world.system.add(consistent ? fem::make_consistent_mass(body.rest, materials, body.block_id)
+                              : fem::make_lumped_mass(body.rest, materials, body.block_id));
   if (consistent) world.system.set_mass_solver(integrate::make_linear_solver("cholmod"));
   if (!world.description.gravity_m_s2.isZero()) world.system.add(fem::make_gravity(body.masses, world.description.gravity_m_s2, body.block_id));
   for (const LoadSpec& load : spec.loads)
@@ -144,13 +143,17 @@ void add_forces(World& world, Body& body, const SoftBodySpec& spec) {
 
 void assemble_bodies(World& world) {
   std::vector<Body>& bodies = world.bodies;
-  for (const SoftBodySpec& spec : world.description.bodies) bodies.push_back(place_body(world, spec));
+  std::vector<fem::Materials> materials;
+  for (const SoftBodySpec& spec : world.description.bodies) {
+    materials.emplace_back(fem::Material{});
+    bodies.push_back(place_body(world, spec, materials.back()));
+  }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const SoftBodySpec& spec = world.description.bodies[i];
     const VecX q = Eigen::Map<const VecX>(bodies[i].placed.data(), bodies[i].placed.size());
     bodies[i].block_id = world.state.insert(block_of(spec, bodies[i]), q, initial_velocities(spec, bodies[i].placed, bodies[i].masses));
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) add_forces(world, bodies[i], world.description.bodies[i]);
+  for (std::size_t i = 0; i < bodies.size(); ++i) add_forces(world, bodies[i], world.description.bodies[i], materials[i]);
 }
 
 std::unique_ptr<World> assemble(const scene::Description& description) {

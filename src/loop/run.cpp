@@ -107,7 +107,7 @@ class Loop {
     changed_ = time;
     for (std::size_t i = 0; i < world_.bodies.size(); ++i)
       for (const MaterialChangeSpec& change : world_.description.bodies[i].changes)
-        if (change.time_s == time) world_.set_youngs_modulus(world_.bodies[i], change.youngs_modulus_pa);
+        if (change.time_s == time) world_.set_youngs_modulus(world_.bodies[i], change.youngs_modulus_pa, change.region);
   }
 
 #ifdef PALPATE_HAS_TOOL

@@ -1,5 +1,8 @@
 #include "palpate/loop/world.h"
 
+#include <algorithm>
+
+#include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
 
 #ifdef PALPATE_HAS_TOOL
@@ -38,12 +41,27 @@ const Body* World::find_body(const std::string& name) const {
   return nullptr;
 }
 
-void World::set_youngs_modulus(Body& body, double youngs_modulus_pa) {
+void World::set_youngs_modulus(Body& body, double youngs_modulus_pa, const std::string& region) {
   std::vector<fem::Material> materials = body.term->materials();
-  materials[0].youngs_modulus = youngs_modulus_pa;
+  const auto set = [&](int material, double value) { materials[static_cast<std::size_t>(material)].youngs_modulus = value; };
+  if (region.empty()) {
+    set(0, youngs_modulus_pa);
+    for (const Region& r : body.regions)
+      if (r.material > 0 && !r.own_stiffness) set(r.material, r.stiffness_factor * youngs_modulus_pa);
+  } else {
+    const auto found = std::find_if(body.regions.begin(), body.regions.end(), [&](const Region& r) { return r.name == region && r.material > 0; });
+    if (found == body.regions.end()) {
+      std::vector<std::string> names;
+      for (const Region& r : body.regions)
+        if (r.material > 0) names.push_back(r.name);
+      fail("body \"{}\": no region \"{}\" has a material of its own{}", body.name, region, suggestion(region, names));
+    }
+    set(found->material, youngs_modulus_pa);
+  }
   body.term->set_materials(materials);
   if (body.dilatation) body.dilatation->set_materials(materials);
-  body.stiffness_scale = youngs_modulus_pa;
+  for (Region& r : body.regions)
+    if (!region.empty() && r.name == region) r.own_stiffness = true;
   if (stepper) stepper->reinit(dynamics::ReinitReason::kParametersChanged);
 }
 

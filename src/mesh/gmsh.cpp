@@ -1,5 +1,6 @@
 #include "gmsh.h"
 
+#include <cstdlib>
 #include <unordered_map>
 
 #include "palpate/mesh/readers.h"
@@ -15,7 +16,7 @@ void add_node(TextFile& file, Content& content, long tag) {
   content.node_lines.push_back(file.line());
 }
 
-void add_tet(TextFile& file, Content& content, long tag) {
+void add_tet(TextFile& file, Content& content, long tag, long physical, long entity) {
   file.about("element", tag);
   std::array<long, 4> nodes{};
   for (long& node : nodes) node = file.integer("node number");
@@ -23,6 +24,20 @@ void add_tet(TextFile& file, Content& content, long tag) {
   content.tets.push_back(nodes);
   content.tet_tags.push_back(tag);
   content.tet_lines.push_back(file.line());
+  content.tet_physical.push_back(static_cast<double>(std::abs(physical)));  // negative where the volume is turned round
+  content.tet_entity.push_back(static_cast<double>(entity));
+}
+
+void physical_names(TextFile& file, Content& content) {
+  file.require_line("the number of physical names");
+  const int n = file.count("number of physical names");
+  for (int i = 0; i < n; ++i) {
+    file.require_line("a physical name");
+    const long dimension = file.integer("dimension"), tag = file.integer("physical tag");
+    const std::string_view quoted = file.rest();
+    if (quoted.size() < 2 || quoted.front() != '"' || quoted.back() != '"') file.fail("a name in double quotes is expected, here stands {}", printable(quoted));
+    if (dimension == 3) content.volume_names[static_cast<double>(tag)] = std::string(quoted.substr(1, quoted.size() - 2));
+  }
 }
 
 namespace {
@@ -64,6 +79,11 @@ Content read(TextFile& file) {
     const std::string_view name = file.word();
     if (!name.starts_with('$')) file.fail("a section ($...) is expected, here stands \"{}\"; a count before it may be too small", printable(name));
     const std::string end = fmt::format("$End{}", name.substr(1));
+    if (name == "$PhysicalNames" || (name == "$Entities" && !is_2)) {
+      name == "$Entities" ? entities_41(file, content) : physical_names(file, content);
+      skip_section(file, end);
+      continue;
+    }
     const bool nodes = name == "$Nodes" || name == "$ParametricNodes", elements = name == "$Elements";
     if (!nodes && !elements) {
       skip_section(file, end);
@@ -75,6 +95,13 @@ Content read(TextFile& file) {
     if (const auto word = file.word(); word != end) file.fail("{} is expected, here stands \"{}\"; the count of its entries is wrong", end, printable(word));
   }
   return content;
+}
+
+/// Physical volumes; where there are none, the volumes of the model.
+std::vector<MaterialRegion> regions(const Content& content) {
+  for (const double physical : content.tet_physical)
+    if (physical != 0) return regions_of_labels(content.tet_physical, content.volume_names, 0);
+  return regions_of_labels(content.tet_entity);
 }
 
 /// Tags may be sparse and in any order: they become places in the list of nodes.
@@ -111,6 +138,7 @@ TetFile read_gmsh(const std::string& path) {
     }
   out.from = {.source = path, .node_source = "", .node_number = std::move(content.node_tags), .element_number = std::move(content.tet_tags),
               .node_line = std::move(content.node_lines), .element_line = std::move(content.tet_lines)};
+  out.regions = gmsh::regions(content);
   return out;
 }
 

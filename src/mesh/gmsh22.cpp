@@ -2,7 +2,7 @@
 
 // Gmsh 2.x, ASCII (reference manual, "MSH file format version 2"):
 //   $Nodes: number-of-nodes, then  tag x y z  a line ($ParametricNodes: more entries follow on the line)
-//   $Elements: number-of-elements, then  tag type number-of-tags tag... node...  a line
+//   $Elements: number-of-elements, then  tag type number-of-tags tag... node...  a line; the first two tags are the physical group (0: none) and the entity of the model
 namespace palpate::mesh::gmsh {
 
 void nodes_22(TextFile& file, Content& content) {
@@ -24,8 +24,12 @@ void elements_22(TextFile& file, Content& content) {
     if (type == kTet10) ++content.second_order_tets;
     if (type != kTet4) continue;
     const long labels = file.integer("number of tags");
-    for (long k = 0; k < labels; ++k) file.integer("tag");  // ends at the end of the line, however large the number
-    add_tet(file, content, tag);
+    long first[2] = {0, 0};
+    for (long k = 0; k < labels; ++k) {  // ends at the end of the line, however large the number
+      const long label = file.integer("tag");
+      if (k < 2) first[k] = label;
+    }
+    add_tet(file, content, tag, first[0], first[1]);
   }
 }
 

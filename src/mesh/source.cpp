@@ -41,7 +41,7 @@ std::string generator_name(const MeshSpec& spec) { return fmt::format("generator
 
 }  // namespace
 
-TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report) {
+TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report, std::vector<MaterialRegion>* regions) {
   TetFile out;
   if (is_file(spec)) {
     out = read_tets((std::filesystem::path(folder) / spec.file).string());
@@ -52,6 +52,7 @@ TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* re
   }
   const MeshReport found = check_tets(out.mesh, out.from);
   if (report) *report = found;
+  if (regions) *regions = std::move(out.regions);
   return std::move(out.mesh);
 }
 

@@ -41,6 +41,8 @@ void read_elements(TextFile& file, TetFile& out, long first) {
   const long corners = file.integer("nodes per tetrahedron");
   if (corners != 4) file.fail("{} nodes per tetrahedron; palpate takes linear ones, with 4 (run tetgen without -o2)", corners);
   const long points = static_cast<long>(out.mesh.nodes.cols());
+  const long attributes = file.at_end_of_line() ? 0 : file.integer("number of attributes");
+  std::vector<double> labels;
   out.mesh.tets.resize(4, n);
   for (int t = 0; t < n; ++t) {
     file.require_line("a tetrahedron");
@@ -53,10 +55,12 @@ void read_elements(TextFile& file, TetFile& out, long first) {
         file.fail("node {} is outside {} to {}, the points of the .node file", node, first, first + points - 1);
       out.mesh.tets(k, t) = static_cast<int>(node - first);
     }
+    if (attributes > 0) labels.push_back(file.real("attribute"));
     out.from.element_number.push_back(number);
     out.from.element_line.push_back(file.line());
   }
   if (file.next_line()) file.fail("more lines follow the {} tetrahedra that the header announces; one of them is wrong", n);
+  out.regions = regions_of_labels(labels);
 }
 
 }  // namespace

@@ -64,6 +64,13 @@ std::string_view TextFile::word() {
   return out;
 }
 
+std::string_view TextFile::rest() {
+  std::string_view out = rest_;
+  rest_ = {};
+  out.remove_prefix(std::min(out.find_first_not_of(kBlank), out.size()));
+  return out.substr(0, out.find_last_not_of(kBlank) + 1);
+}
+
 std::string_view TextFile::required_word(std::string_view what) {
   const std::string_view w = word();
   if (w.empty()) fail("{} is missing; the line has too few entries", what);

@@ -16,6 +16,7 @@ class TextFile {
   bool next_line();              ///< goes to the next line that has a word; false at the end of the file
   void require_line(std::string_view what);
   std::string_view word();       ///< next word of this line, empty when there is none left
+  std::string_view rest();       ///< what is left of this line, without blanks around it
   bool at_end_of_line();
 
   double real(std::string_view what);        ///< a finite number

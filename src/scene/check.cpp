@@ -84,8 +84,11 @@ void check_changes(const Document& doc, const Description& d) {
     for (std::size_t j = 0; j < d.bodies[i].changes.size(); ++j) {
       const double time = d.bodies[i].changes[j].time_s, period = d.coupling.scheme == "monolithic" ? d.coupling.contact_refresh_s : d.coupling.exchange_period_s;
       const std::string key = at("body", i, at("change", j, "time_s"));
-      if (j > 0 && time <= d.bodies[i].changes[j - 1].time_s)
+      if (j > 0 && time < d.bodies[i].changes[j - 1].time_s)
         refuse(place(doc, key), where, fmt::format("time_s = {} must be greater than the one before ({})", time, d.bodies[i].changes[j - 1].time_s));
+      for (std::size_t k = 0; k < j; ++k)
+        if (d.bodies[i].changes[k].time_s == time && d.bodies[i].changes[k].region == d.bodies[i].changes[j].region)
+          refuse(place(doc, key), where, fmt::format("time_s = {} must be greater than the one before ({}): both change the same", time, time));
       if (time >= d.duration_s) refuse(place(doc, key), where, fmt::format("time_s = {} is not before the end of the run, {} s", time, d.duration_s));
       if (d.tool && !is_multiple(time, period))
         refuse(place(doc, key), where, fmt::format("time_s = {} must be a whole number of {} of {} s: between them the tool feels the body as it was", time,
@@ -156,6 +159,7 @@ void check(const Document& doc, Description& d) {
   if (d.bodies.empty() && !d.tool) refuse(place(doc, "scene"), "", "there is nothing to simulate: add a [[body]], or a [tool] with a [device]");
   check_names(doc, d);
   check_meshes(doc, d);
+  check_regions(doc, d);
   check_skeletons(doc, d);
   check_loads(doc, d);
   check_bones(doc, d);

@@ -12,6 +12,7 @@ void check_keyframes(const Document& document, const std::string& key, const std
 void check_box(const Document& document, const std::string& key, const std::string& where, const Vec3& low, const Vec3& high);
 void check_bones(const Document& document, const Description& description);
 void check_attachments(const Document& document, Description& description);  ///< also says by which keys each chooses its nodes
+void check_regions(const Document& document, Description& description);      ///< also says by which keys each chooses its elements
 void check_skeletons(const Document& document, const Description& description);
 void check_meshes(const Document& document, const Description& description);
 void check_contacts(const Document& document, Description& description);  ///< also puts the soft body first in each pair

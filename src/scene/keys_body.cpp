@@ -25,10 +25,32 @@ const KeyTable<LoadSpec>& load_keys() {
   return keys;
 }
 
+const char* const kYoungs = "soft tissue has 1e3 to 1e5";
+const char* const kPoisson = "use 0.49 for nearly incompressible tissue";
+const char* const kDensity = "water and soft tissue have about 1000";
+const char* const kDamping = "1e-3 damps lightly, 1e-2 strongly";
+
+const KeyTable<RegionSpec>& region_keys() {
+  static const KeyTable<RegionSpec> keys = {
+      required(text("name", &RegionSpec::name)),
+      vec3("box_min_m", &RegionSpec::box_min_m),
+      vec3("box_max_m", &RegionSpec::box_max_m),
+      vec3("centre_m", &RegionSpec::centre_m),
+      number("radius_m", &RegionSpec::radius_m, positive()),
+      number("youngs_modulus_pa", &RegionSpec::youngs_modulus_pa, positive(kYoungs)),
+      number("poissons_ratio", &RegionSpec::poissons_ratio, open(-1.0, 0.5, kPoisson)),
+      number("density_kg_m3", &RegionSpec::density_kg_m3, positive(kDensity)),
+      number("mass_damping_per_s", &RegionSpec::mass_damping_per_s, at_least(0.0)),
+      number("stiffness_damping_s", &RegionSpec::stiffness_damping_s, at_least(0.0, kDamping)),
+  };
+  return keys;
+}
+
 const KeyTable<MaterialChangeSpec>& change_keys() {
   static const KeyTable<MaterialChangeSpec> keys = {
       required(number("time_s", &MaterialChangeSpec::time_s, positive())),
       required(number("youngs_modulus_pa", &MaterialChangeSpec::youngs_modulus_pa, positive())),
+      text("region", &MaterialChangeSpec::region),
   };
   return keys;
 }
@@ -93,15 +115,16 @@ const KeyTable<SoftBodySpec>& body_keys() {
       vec3("rotation_vector_rad", &SoftBodySpec::rotation_vector_rad),
       vec3("velocity_m_s", &SoftBodySpec::velocity_m_s),
       vec3("angular_velocity_rad_s", &SoftBodySpec::angular_velocity_rad_s),
-      required(number("youngs_modulus_pa", &SoftBodySpec::youngs_modulus_pa, positive("soft tissue has 1e3 to 1e5"))),
-      number("poissons_ratio", &SoftBodySpec::poissons_ratio, open(-1.0, 0.5, "use 0.49 for nearly incompressible tissue")),
-      number("density_kg_m3", &SoftBodySpec::density_kg_m3, positive("water and soft tissue have about 1000")),
+      required(number("youngs_modulus_pa", &SoftBodySpec::youngs_modulus_pa, positive(kYoungs))),
+      number("poissons_ratio", &SoftBodySpec::poissons_ratio, open(-1.0, 0.5, kPoisson)),
+      number("density_kg_m3", &SoftBodySpec::density_kg_m3, positive(kDensity)),
       number("mass_damping_per_s", &SoftBodySpec::mass_damping_per_s, at_least(0.0)),
-      number("stiffness_damping_s", &SoftBodySpec::stiffness_damping_s, at_least(0.0, "1e-3 damps lightly, 1e-2 strongly")),
+      number("stiffness_damping_s", &SoftBodySpec::stiffness_damping_s, at_least(0.0, kDamping)),
       text("mass", &SoftBodySpec::mass, {"lumped", "consistent"}),
       text("tangent", &SoftBodySpec::tangent, {"exact", "projected", "warped"}),
       text("volumetric", &SoftBodySpec::volumetric, {"element", "nodal"}),
       boolean("full_damping_tangent", &SoftBodySpec::full_damping_tangent),
+      tables("region", &SoftBodySpec::regions, region_keys()),
       table("skeleton", &SoftBodySpec::skeleton, skeleton_keys()),
       tables("attachment", &SoftBodySpec::attachments, attachment_keys()),
       tables("load", &SoftBodySpec::loads, load_keys()),

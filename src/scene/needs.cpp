@@ -37,6 +37,9 @@ void add_body_needs(const Description& d, std::vector<Need>& out) {
   out.push_back({"rigid bones", free > 0, free > 0 ? fmt::format("{} free [[bone]]: rigid blocks beside the nodes", free) : told > 0 ? "every [[bone]] is fixed or has keyframes: a function of time" : "no [[bone]]"});
   const int skeletons = count_if(d.bodies, [](const auto& b) { return b.skeleton.has_value(); });
   out.push_back({"skeleton", skeletons > 0, skeletons > 0 ? fmt::format("{} [body.skeleton]: bones of the model file; those on joints by Simbody", skeletons) : "no [body.skeleton]"});
+  int regions = 0;
+  for (const auto& body : d.bodies) regions += static_cast<int>(body.regions.size());
+  out.push_back({"materials by region", regions > 0, regions > 0 ? fmt::format("{} [[body.region]]", regions) : "no [[body.region]]: each body is of one material"});
   int changes = 0;
   for (const auto& body : d.bodies) changes += static_cast<int>(body.changes.size());
   out.push_back({"material changes", changes > 0, changes > 0 ? fmt::format("{} [[body.change]]", changes) : "no [[body.change]]"});

@@ -106,6 +106,10 @@ Key<Spec> number(const char* name, double Spec::*member, Range range = any()) {
   return {name, [=](const Value& v, Spec& spec) { spec.*member = read_number(v, range); }};
 }
 template <class Spec>
+Key<Spec> number(const char* name, std::optional<double> Spec::*member, Range range = any()) {
+  return {name, [=](const Value& v, Spec& spec) { spec.*member = read_number(v, range); }};
+}
+template <class Spec>
 Key<Spec> integer(const char* name, int Spec::*member, Range range = any()) {
   return {name, [=](const Value& v, Spec& spec) { spec.*member = read_integer(v, range); }};
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "palpate/core/error.h"
 #include "palpate/store/mesh_file.h"
@@ -140,19 +141,27 @@ void read_proxies(hid_t file, const std::string& path, LayeredModel& model) {
   }
 }
 
-void read_regions(hid_t file, const std::string& path, LayeredModel& model) {
+std::vector<MaterialRegion> regions_in(hid_t file, const std::string& path, Eigen::Index count_of_tets) {
   const Group group(file, "regions", path);
-  if (!group) return;
+  if (!group) return {};
   const std::vector<std::string> names = group.lines("names");
   const auto count = static_cast<Eigen::Index>(names.size());
   const std::vector<int> tets = group.column<int>("tets");
   const std::vector<int> offsets = group.offsets("offsets", count, static_cast<Eigen::Index>(tets.size()));
   const std::vector<double> stiffness = group.column<double>("youngs_modulus_factor", count), density = group.column<double>("density_factor", count);
-  for (const int tet : tets) group.within("tets", tet, 0, model.tets.tets.cols());
-  for (std::size_t r = 0; r < names.size(); ++r) {
-    if (!(stiffness[r] > 0 && density[r] > 0)) fail("{}: region \"{}\" has factors {} and {}, must be positive", path, names[r], stiffness[r], density[r]);
-    model.regions.push_back({names[r], {tets.begin() + offsets[r], tets.begin() + offsets[r + 1]}, stiffness[r], density[r]});
+  std::vector<char> taken(static_cast<std::size_t>(count_of_tets), 0);
+  for (const int tet : tets) {
+    group.within("tets", tet, 0, count_of_tets);
+    if (std::exchange(taken[static_cast<std::size_t>(tet)], 1)) fail("{}: tetrahedron {} stands in it twice; it belongs to one region", group.full("tets"), tet);
   }
+  std::vector<MaterialRegion> out;
+  for (std::size_t r = 0; r < names.size(); ++r) {
+    if (std::count(names.begin(), names.end(), names[r]) > 1) fail("{}: \"{}\" names two regions", group.full("names"), names[r]);
+    if (!(stiffness[r] > 0 && density[r] > 0)) fail("{}: region \"{}\" has factors {} and {}, must be positive", path, names[r], stiffness[r], density[r]);
+    out.push_back({names[r], {tets.begin() + offsets[r], tets.begin() + offsets[r + 1]}, stiffness[r], density[r]});
+    if (!std::is_sorted(out.back().tets.begin(), out.back().tets.end())) fail("{}: those of region \"{}\" must rise", group.full("tets"), names[r]);
+  }
+  return out;
 }
 
 ModelRecord read_record(hid_t file, const std::string& path) {
@@ -177,9 +186,15 @@ ModelFile read_model(const std::string& path) {
   read_skin(file, path, out.model);
   read_skeleton(file, path, out.model);
   read_proxies(file, path, out.model);
-  read_regions(file, path, out.model);
+  out.model.regions = regions_in(file, path, out.model.tets.tets.cols());
   out.record = read_record(file, path);
   return out;
+}
+
+std::vector<MaterialRegion> read_regions(const std::string& path, int tets) {
+  if (!is_model(path)) return {};
+  const h5::Quiet quiet;
+  return regions_in(h5::open_file(path), path, tets);
 }
 
 }  // namespace palpate::store

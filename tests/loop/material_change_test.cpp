@@ -54,11 +54,11 @@ TEST(MaterialChange, OfASceneActsInTheRunWhateverTheIntegrator) {
   for (const char* name : {"ark-erk-5", "cvode-bdf", "ida", "ark-dirk-kvaerno745", "cvode-adams"}) {
     scene::Description d = sagging(name);
     d.duration_s = 0.05;
-    d.bodies[0].changes = {{0.013, kAfter}, {0.031, 0.5 * kAfter}};
+    d.bodies[0].changes = {{0.013, kAfter, {}}, {0.031, 0.5 * kAfter, {}}};
     const auto world = loop::assemble(d);
     const loop::RunResult result = loop::run(*world, {});
     ASSERT_TRUE(result.status.ok()) << name << ": " << result.status.message;
-    EXPECT_DOUBLE_EQ(world->bodies[0].term->material().youngs_modulus, 0.5 * kAfter);
+    EXPECT_DOUBLE_EQ(world->bodies[0].term->materials()[0].youngs_modulus, 0.5 * kAfter);
     const VecX end = world->state.q();
     if (reference.size() == 0) {
       reference = end;
@@ -87,7 +87,7 @@ TEST(MaterialChange, TakesTheNodalDilatationAlong) {
 TEST(MaterialChange, RefusesWhatIsNoModulus) {
   const auto world = loop::assemble(sagging("linearly-implicit-euler"));
   EXPECT_THROW(world->set_youngs_modulus(world->bodies[0], -1.0), Error);
-  EXPECT_DOUBLE_EQ(world->bodies[0].term->material().youngs_modulus, kBefore);
+  EXPECT_DOUBLE_EQ(world->bodies[0].term->materials()[0].youngs_modulus, kBefore);
 }
 
 // The hand feels it: under a tool that holds its place, the force follows the modulus.
@@ -95,7 +95,7 @@ TEST(MaterialChange, RefusesWhatIsNoModulus) {
 TEST(MaterialChange, IsFeltByTheHand) {
   scene::Description d = pressed_block(0.003);
   d.duration_s = 0.6;
-  d.bodies[0].changes = {{0.3, 4.0 * d.bodies[0].youngs_modulus_pa}};
+  d.bodies[0].changes = {{0.3, 4.0 * d.bodies[0].youngs_modulus_pa, {}}};
   struct Feel : loop::Observer {
     double before = 0.0, after = 0.0;
     void period(loop::World&, double) override {}

@@ -150,6 +150,60 @@ TEST(Readers, TetGenCountsFromZeroOrOneWithCommentsAttributesAndMarkers) {
   expect_two_tets(read_any(folder.path(), "zero.ele"));
 }
 
+namespace {
+
+/// "NAME: ELEMENTS; " for each region.
+std::string regions_of(const std::string& name, std::string_view text, const std::string& other = "", std::string_view other_text = "") {
+  const TempFolder folder;
+  folder.write(name, text);
+  if (!other.empty()) folder.write(other, other_text);
+  std::vector<MaterialRegion> regions;
+  tet_mesh(file_spec(name), folder.path(), nullptr, &regions);
+  std::string out;
+  for (const MaterialRegion& region : regions) out += fmt::format("{}: {}; ", region.name, fmt::join(region.tets, " "));
+  return out;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+}  // namespace
+
+TEST(Readers, PhysicalVolumesAreRegions) {
+  const std::string first = "\n3 4 2 0 1 10 7 300 2000000000", second = "\n9 4 0 7";
+  EXPECT_EQ(regions_of("a.msh", kGmsh22), "region-0: 1; region-1: 0; ") << "no physical group: the volumes of the model, none is 0";
+  const std::string flesh = replaced(kGmsh22, first, "\n3 4 2 1 5 10 7 300 2000000000");
+  EXPECT_EQ(regions_of("a.msh", flesh), "flesh: 0; ");
+  EXPECT_EQ(regions_of("a.msh", replaced(flesh, second, "\n9 4 3 -12 5 0 7")), "flesh: 0; region-12: 1; ");
+  EXPECT_EQ(regions_of("a.msh", replaced(flesh, second, "\n9 4 2 1 7 7")), "flesh: 0 1; ") << "one named region of all is one";
+  EXPECT_EQ(regions_of("a.msh", replaced(replaced(flesh, second, "\n9 4 2 1 7 7"), "3 1 \"flesh\"", "2 1 \"flesh\"")), "") << "that is the name of a surface";
+
+  EXPECT_EQ(regions_of("b.msh", kGmsh41), "region-1: 0; region-2: 1; ") << "volumes of the model";
+  const std::string physical = replaced(kGmsh41, "0 0 0 1\n1 0 0 0 1 1 1 0 0\n", "1 0 0 2\n1 0 0 0 0\n1 0 0 0 1 1 1 2 7 8 0\n2 0 0 0 1 1 1 0 0\n");
+  EXPECT_EQ(regions_of("b.msh", physical), "region-7: 0; ") << "the first of two; the other volume has none";
+  EXPECT_EQ(regions_of("b.msh", replaced(physical, "$Entities", "$PhysicalNames\n2\n2 7 \"a side\"\n3 7 \"bone of the leg\"\n$EndPhysicalNames\n$Entities")), "bone of the leg: 0; ");
+  EXPECT_NE(error_of([&] { regions_of("b.msh", replaced(physical, "$Entities", "$PhysicalNames\n1\n3 7 bone\n$EndPhysicalNames\n$Entities")); })
+                .find("b.msh:6: a name in double quotes is expected, here stands bone"), std::string::npos);
+}
+
+TEST(Readers, TetGensAttributesAreRegions) {
+  const std::string nodes = "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n";
+  EXPECT_EQ(regions_of("a.ele", "2 4 1\n1 1 2 3 4 7\n2 2 3 4 5 -1.5\n", "a.node", nodes), "region--1.5: 1; region-7: 0; ");
+  EXPECT_EQ(regions_of("a.ele", "2 4 1\n1 1 2 3 4 7\n2 2 3 4 5 7\n", "a.node", nodes), "") << "all alike: it says nothing";
+  EXPECT_EQ(regions_of("a.ele", "2 4 0\n1 1 2 3 4\n2 2 3 4 5\n", "a.node", nodes), "");
+  EXPECT_EQ(regions_of("a.ele", "2 4\n1 1 2 3 4\n2 2 3 4 5\n", "a.node", nodes), "");
+}
+
+TEST(Readers, ARegionHasEachElementOnce) {
+  const std::vector<MaterialRegion> regions = {{"a", {0, 2}}, {"b", {3}}};
+  EXPECT_EQ(region_of_element(regions, 5), (std::vector<int>{0, -1, 0, 1, -1}));
+  EXPECT_THROW(region_of_element({{"a", {0, 2}}, {"b", {2}}}, 5), std::exception);
+  EXPECT_THROW(region_of_element(regions, 3), std::exception);
+}
+
 TEST(Readers, ObjTakesPolygonsNormalsTexturesAndNegativeIndices) {
   const std::string vertices = "mtllib a.mtl\no cube\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
                                "vt 0 0\nvn 0 0 1\ng side\nusemtl red\ns off\n";

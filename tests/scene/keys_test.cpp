@@ -13,7 +13,7 @@ namespace {
 
 /// Fields whose keys go by another name, and the two that a file cannot set.
 const std::map<std::string, std::string> kOtherNames = {
-    {"bodies", "body"}, {"others", "joints"}, {"changes", "change"}, {"bones", "bone"}, {"region", ""}, {"obstacles", "obstacle"}, {"contacts", "contact"}, {"coupling", "exchange"}, {"keyframes", "keyframe"},
+    {"bodies", "body"}, {"others", "joints"}, {"changes", "change"}, {"bones", "bone"}, {"region", ""}, {"regions", "region"}, {"obstacles", "obstacle"}, {"contacts", "contact"}, {"coupling", "exchange"}, {"keyframes", "keyframe"},
     {"attachments", "attachment"}, {"loads", "load"}, {"ladders", "ladder"}, {"first", "between"}, {"second", "between"},
     {"values", "rtol"}, {"setting", "step_s"}, {"path", ""}, {"source", ""},
     {"coupling_stiffness_n_m", "stiffness_n_m"}, {"coupling_damping_n_s_m", "damping_n_s_m"},

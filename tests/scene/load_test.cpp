@@ -104,6 +104,18 @@ TEST(Load, AbsentTablesStayAbsent) {
   EXPECT_TRUE(d.compare.ladders.empty());
 }
 
+TEST(Load, RegionsSayWhatDiffersFromTheBody) {
+  const Description d = parse(scene_texts::kWhole, "whole.toml",
+                              {"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, density_kg_m3 = 2e3}, {name = \"half\", box_min_m = [0, 0, 0], box_max_m = [1, 1, 1]}]",
+                               "body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5}, {time_s = 0.1, youngs_modulus_pa = 2e5, region = \"half\"}]"});
+  ASSERT_EQ(d.bodies[0].regions.size(), 2u);
+  EXPECT_EQ(d.bodies[0].regions[0].region, "sphere");
+  EXPECT_EQ(d.bodies[0].regions[1].region, "box");
+  EXPECT_EQ(d.bodies[0].regions[0].density_kg_m3, 2e3);
+  EXPECT_FALSE(d.bodies[0].regions[0].youngs_modulus_pa);
+  EXPECT_EQ(d.bodies[0].changes[1].region, "half") << "a region that changes may start as the body is";
+}
+
 TEST(Load, TwoSoftBodiesMeetInImageSpace) {
   const auto refusal = [](const std::string& more, const std::string& contact) -> std::string {
     try {
@@ -166,6 +178,19 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
       {{"tool.gravity=1"}, "must be true or false"},
       {{"contact.0.stiffness_pa_m=-1"}, "must be positive"},
       {{"contact.0.friction=inf"}, "must be a finite number"},
+      {{"body.0.region=[{name = \"core\", youngs_modulus_pa = 1e5}]"}, "region \"core\": box_min_m is missing: generator = \"ball\" makes no regions; say which elements"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01}]"}, "says nothing of its material: give youngs_modulus_pa"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], youngs_modulus_pa = 1e5}]"}, "region \"core\": radius_m is missing"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, box_min_m = [0, 0, 0], youngs_modulus_pa = 1e5}]"}, "a box and a sphere exclude each other"},
+      {{"body.0.region=[{name = \"core\", box_min_m = [0, 0, 0], box_max_m = [1, -1, 1], youngs_modulus_pa = 1e5}]"}, "box_max_m = -1 must not be below box_min_m = 0 along y"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus_pa = 1e5}, {name = \"core\", centre_m = [0, 0, 0], radius_m = 0.02, density_kg_m3 = 2e3}]"},
+       "region \"core\": this is its second table"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, poissons_ratio = 0.5}]"}, "poissons_ratio = 0.5 must lie in (-1, 0.5)"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus = 1e5}]"}, "unknown key \"youngs_modulus\" (did you mean \"youngs_modulus_pa\"?)"},
+      {{"body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5, region = \"core\"}]"}, "change: region = \"core\", but the body has no [[body.region]]"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, density_kg_m3 = 2e3}]", "body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5, region = \"cor\"}]"},
+       "no [[body.region]] is called \"cor\" (did you mean \"core\"?)"},
+      {{"body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5}, {time_s = 0.1, youngs_modulus_pa = 2e5}]"}, "time_s = 0.1 must be greater than the one before (0.1): both change the same"},
       {{"record=true"}, "record must be one table: write [record]"},
   };
   for (const auto& [overrides, expected] : cases) {

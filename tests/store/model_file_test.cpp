@@ -68,6 +68,33 @@ TEST(ModelFile, RoundTripOfEverything) {
   EXPECT_EQ(got.record.figures, wanted.record.figures);
 }
 
+TEST(ModelFile, RegionsAreReadAlone) {
+  const sample_run::Folder folder;
+  store::ModelFile wanted = small_model();
+  store::write_model(folder / "m.h5", wanted);
+  const std::vector<MaterialRegion> got = store::read_regions(folder / "m.h5", 2);
+  ASSERT_EQ(got.size(), 2u);
+  EXPECT_EQ(got[0].name, "soft");
+  EXPECT_EQ(got[1].density_factor, 1.1);
+  store::write_mesh(folder / "mesh.h5", wanted.model.tets);
+  EXPECT_TRUE(store::read_regions(folder / "mesh.h5", 2).empty());
+  const auto refusal = [&](std::vector<MaterialRegion> regions) -> std::string {
+    wanted.model.regions = std::move(regions);
+    store::write_model(folder / "bad.h5", wanted);
+    try {
+      store::read_regions(folder / "bad.h5", 2);
+      return "accepted";
+    } catch (const Error& e) {
+      return e.what();
+    }
+  };
+  EXPECT_NE(refusal({{"a", {0, 1}}, {"b", {1}}}).find("tetrahedron 1 stands in it twice; it belongs to one region"), std::string::npos);
+  EXPECT_NE(refusal({{"a", {0}}, {"a", {1}}}).find("\"a\" names two regions"), std::string::npos);
+  EXPECT_NE(refusal({{"a", {1, 0}}}).find("those of region \"a\" must rise"), std::string::npos);
+  EXPECT_NE(refusal({{"a", {0, 2}}}).find("names 2, must lie in [0, 2)"), std::string::npos);
+  EXPECT_NE(refusal({{"a", {0}, -1.0}}).find("has factors -1 and 1, must be positive"), std::string::npos);
+}
+
 TEST(ModelFile, TetrahedraAreReadByTheMeshReader) {
   const sample_run::Folder folder;
   const store::ModelFile wanted = small_model();

@@ -60,10 +60,27 @@ struct SkeletonSpec {
   std::vector<JointSpec> joints;
 };
 
-/// A body becomes stiffer or softer at a time.
+/// Elements of a body with a material of their own: those of a region of the mesh file, by its name, or those whose middle lies in a box or a sphere (where they
+/// stand at the start, world frame, borders included).  What is not given is the body's.
+struct RegionSpec {
+  std::string name;
+  std::string region = "file";             ///< which keys say where: "box", "sphere", or "file" where neither is given
+  Vec3 box_min_m = Vec3::Zero();
+  Vec3 box_max_m = Vec3::Zero();
+  Vec3 centre_m = Vec3::Zero();
+  double radius_m = 0.0;
+  std::optional<double> youngs_modulus_pa;
+  std::optional<double> poissons_ratio;
+  std::optional<double> density_kg_m3;
+  std::optional<double> mass_damping_per_s;
+  std::optional<double> stiffness_damping_s;
+};
+
+/// A body, or one of its regions, becomes stiffer or softer at a time.
 struct MaterialChangeSpec {
   double time_s = 0.0;
   double youngs_modulus_pa = 0.0;
+  std::string region;                      ///< empty: the body, with those of its regions that have no Young's modulus of their own
 };
 
 /// A load spread over nodes in a box by their share of the boundary area: total force [N].
@@ -92,10 +109,11 @@ struct SoftBodySpec {
   std::string tangent = "exact";           ///< "exact", "projected", "warped"
   std::string volumetric = "element";      ///< resistance to change of volume: "element", or "nodal" averages (no locking for nu -> 0.5)
   bool full_damping_tangent = false;       ///< keep the unsymmetric part of the damping's derivative by position
+  std::vector<RegionSpec> regions;         ///< an element in several is of the last
   std::optional<SkeletonSpec> skeleton;    ///< its bones stand in mesh.file, a model file
   std::vector<AttachmentSpec> attachments;
   std::vector<LoadSpec> loads;
-  std::vector<MaterialChangeSpec> changes;  ///< times ascending; each acts from the step that begins then
+  std::vector<MaterialChangeSpec> changes;  ///< times ascend, or stay for another region; each acts from the step that begins then
 };
 
 }  // namespace palpate

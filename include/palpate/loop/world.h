@@ -33,6 +33,15 @@ struct Skin {
   std::shared_ptr<proxy::ProxySet> proxies;  ///< null where the scene does not ask for them
 };
 
+/// Elements of a body that the mesh file or the scene gives a name.
+struct Region {
+  std::string name;
+  std::vector<int> tets;         ///< ascending; no element in two regions
+  int material = 0;              ///< in the list of the body's term; 0: the body's own, as the scene says nothing of the region
+  double stiffness_factor = 1.0; ///< of its Young's modulus over the body's, where it has none of its own
+  bool own_stiffness = false;
+};
+
 /// One soft body as assembled.
 struct Body {
   std::string name;
@@ -44,8 +53,9 @@ struct Body {
   Skeleton skeleton;          ///< of the model file, placed in the world as at the start, where the scene asks for it; else empty
   std::vector<int> bone_of_node;  ///< which of them carries the node, -1: none
   mesh::MeshReport report;
+  std::vector<Region> regions;
+  std::vector<int> material_of_element;  ///< in the list of `term`; empty: all are of the body's own material
   VecX masses;                ///< lumped, one a node [kg]
-  double stiffness_scale = 0; ///< E [Pa]
   std::shared_ptr<fem::SoftBody> term;
   std::shared_ptr<fem::NodalDilatation> dilatation;  ///< null where the body's volume is the elements' alone
 
@@ -99,8 +109,9 @@ struct World {
   dynamics::BorderedMatrix condensed_matrix;
 
   const Body* find_body(const std::string& name) const;
-  /// Makes a body stiffer or softer from the next step on; its damping goes along (mu_d = beta mu).  @throws Error for a modulus that is not positive
-  void set_youngs_modulus(Body& body, double youngs_modulus_pa);
+  /// Makes a body stiffer or softer from the next step on; its damping goes along (mu_d = beta mu), and so do regions without a Young's modulus of their own.
+  /// @param region  that region alone, which the scene gives a material  @throws Error for a modulus that is not positive, for a region that is not there
+  void set_youngs_modulus(Body& body, double youngs_modulus_pa, const std::string& region = {});
   Points positions(const Body& body) const;             ///< now, world [m]
   Pose bone_pose(const Bone& bone) const;
   Twist bone_twist(const Bone& bone) const;

@@ -4,6 +4,7 @@
 
 #include "palpate/mesh/embedding.h"
 #include "palpate/mesh/mesh.h"
+#include "palpate/mesh/regions.h"
 #include "palpate/mesh/skeleton.h"
 
 namespace palpate {
@@ -13,14 +14,6 @@ struct ProxyHull {
   Points corners;             ///< 3 x at most 32, in convex position, at rest [m]
   std::vector<int> members;   ///< skin vertices, ascending
   int bone = -1;              ///< the bone that it goes with; -1: the mean motion of its nodes
-};
-
-/// Elements of one material: a factor on what the scene gives the body.
-struct MaterialRegion {
-  std::string name;
-  std::vector<int> tets;          ///< ascending
-  double youngs_modulus_factor = 1.0;
-  double density_factor = 1.0;
 };
 
 /// The three levels of a soft object, as one asset file holds them.  What is empty is not there.

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "palpate/mesh/mesh.h"
+#include "palpate/mesh/regions.h"
 #include "palpate/mesh/spec.h"
 
 namespace palpate::mesh {
@@ -18,7 +19,8 @@ struct MeshReport {
 /// Reads or generates the tetrahedra of a spec, checked: volumes positive (orientation mended and reported), no degenerate, duplicate,
 /// unreferenced or non-finite entries (refused, with file, element and value).
 /// `folder`: where a relative file starts.  Formats by ending: .msh (Gmsh 2.2, 4.1 ASCII), .node/.ele (TetGen); .h5 is read by store/mesh_file.h.
-TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr);
+/// @param regions  of the file, if wanted; a generator has none
+TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr, std::vector<MaterialRegion>* regions = nullptr);
 
 /// The same for a surface: .obj, or a generator ("ball", "box", "cylinder"), closed and oriented outwards.
 TriMesh surface(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr);

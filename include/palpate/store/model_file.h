@@ -13,7 +13,7 @@
 ///   embedding/ tet, weights (4 a vertex)                             of the skin's vertices in the tetrahedra
 ///   proxies/   corners, corner_offsets, members, member_offsets, bone    hull p: corners[corner_offsets[p] ... corner_offsets[p + 1])
 ///   skeleton/  names (one a line), parent, head, tail, head_radius, tail_radius, bone_of_node
-///   regions/   names (one a line), tets, offsets, youngs_modulus_factor, density_factor
+///   regions/   names (one a line), tets, offsets, youngs_modulus_factor, density_factor      region r: tets[offsets[r] ... offsets[r + 1]), ascending, none in two
 ///   made/      source, source_hash, options, version, notes (one a line), figure_names (one a line), figures
 /// A group that is not there is an empty part of the model.
 namespace palpate::store {
@@ -39,6 +39,10 @@ void write_model(const std::string& path, const ModelFile& file);
 /// @throws Error with the file, the data set, and what was expected, also where the parts do not fit each other: an embedding of another skin,
 /// a proxy that names a vertex that is not there, a skin vertex in no proxy, a bone before its parent.
 ModelFile read_model(const std::string& path);
+
+/// The regions of a model file alone; none where the file is a plain mesh file.  @param tets  how many tetrahedra it has
+/// @throws Error as read_model
+std::vector<MaterialRegion> read_regions(const std::string& path, int tets);
 
 /// True where the file says that it is a model (its tetrahedra alone are read by read_mesh()).
 bool is_model(const std::string& path);

@@ -1,0 +1,120 @@
+#include <algorithm>
+
+#include "assemble_parts.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+#include "palpate/core/log.h"
+
+namespace palpate::loop {
+namespace {
+
+/// The body's own.
+fem::Material material_of(const SoftBodySpec& spec) {
+  return {spec.youngs_modulus_pa, spec.poissons_ratio, spec.density_kg_m3, spec.mass_damping_per_s, spec.stiffness_damping_s};
+}
+
+std::vector<std::string> names_of(const std::vector<Region>& regions) {
+  std::vector<std::string> out;
+  for (const Region& region : regions) out.push_back(region.name);
+  return out;
+}
+
+/// Elements whose middle lies in the box or the sphere.
+std::vector<int> elements_in(const RegionSpec& spec, const Points& placed, const Tets& tets) {
+  std::vector<int> out;
+  for (Eigen::Index t = 0; t < tets.cols(); ++t) {
+    const Vec3 middle = placed(Eigen::all, tets.col(t)).rowwise().mean();
+    const bool inside = spec.region == "box" ? (middle.array() >= spec.box_min_m.array()).all() && (middle.array() <= spec.box_max_m.array()).all()
+                                             : (middle - spec.centre_m).norm() <= spec.radius_m;
+    if (inside) out.push_back(static_cast<int>(t));
+  }
+  return out;
+}
+
+/// The region that a table of the scene speaks of: one of the file, or a new one.
+Region& region_for(const SoftBodySpec& spec, const RegionSpec& wanted, std::vector<Region>& regions, const Body& body) {
+  const auto found = std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return r.name == wanted.name; });
+  if (wanted.region == "file") {
+    if (found != regions.end()) return *found;
+    if (regions.empty())
+      fail("body \"{}\": [[body.region]] \"{}\", but {} has no regions; `palpate model` makes some (--region), or say which elements by box_min_m and box_max_m, or by centre_m and radius_m",
+           spec.name, wanted.name, spec.mesh.file);
+    fail("body \"{}\": {} has no region \"{}\"{}", spec.name, spec.mesh.file, wanted.name, suggestion(wanted.name, names_of(regions)));
+  }
+  if (found != regions.end())
+    fail("body \"{}\": region \"{}\" is one of {} too; give the {} another name", spec.name, wanted.name, spec.mesh.file, wanted.region);
+  regions.push_back({wanted.name, elements_in(wanted, body.placed, body.rest.tets)});
+  return regions.back();
+}
+
+/// What the scene says, and for the rest the body's, times the factors of a model file.
+fem::Material material_of(const RegionSpec& wanted, const fem::Material& base) {
+  fem::Material out = base;
+  if (wanted.youngs_modulus_pa) out.youngs_modulus = *wanted.youngs_modulus_pa;
+  if (wanted.poissons_ratio) out.poissons_ratio = *wanted.poissons_ratio;
+  if (wanted.density_kg_m3) out.density = *wanted.density_kg_m3;
+  if (wanted.mass_damping_per_s) out.mass_damping = *wanted.mass_damping_per_s;
+  if (wanted.stiffness_damping_s) out.stiffness_damping = *wanted.stiffness_damping_s;
+  return out;
+}
+
+/// Leaves each element to the last of its regions by material, then to the one of the file.
+void settle(Body& body) {
+  std::vector<int> owner(static_cast<std::size_t>(body.rest.tets.cols()), -1);
+  std::vector<std::size_t> order(body.regions.size());
+  for (std::size_t r = 0; r < order.size(); ++r) order[r] = r;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return body.regions[a].material < body.regions[b].material; });
+  for (const std::size_t r : order)
+    for (const int tet : body.regions[r].tets) owner[static_cast<std::size_t>(tet)] = static_cast<int>(r);
+  for (std::size_t r = 0; r < body.regions.size(); ++r)
+    std::erase_if(body.regions[r].tets, [&](int tet) { return owner[static_cast<std::size_t>(tet)] != static_cast<int>(r); });
+}
+
+}  // namespace
+
+fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<MaterialRegion> in_file, Body& body) {
+  fem::Materials out(material_of(spec));
+  const std::string where = fmt::format("body \"{}\"", spec.name);
+  fem::check(out.list[0], where.c_str());
+  std::vector<fem::Material> bases;  // of the regions of the file
+  std::vector<std::string> unnamed;
+  for (MaterialRegion& region : in_file) {
+    const bool named = std::any_of(spec.regions.begin(), spec.regions.end(), [&](const RegionSpec& r) { return r.name == region.name; });
+    body.regions.push_back({region.name, std::move(region.tets), 0, region.youngs_modulus_factor});
+    fem::Material& base = bases.emplace_back(out.list[0]);
+    base.youngs_modulus *= region.youngs_modulus_factor;
+    base.density *= region.density_factor;
+    if (named) continue;
+    if (region.youngs_modulus_factor != 1.0 || region.density_factor != 1.0) {
+      body.regions.back().material = static_cast<int>(out.list.size());
+      out.list.push_back(base);
+    } else if (static_cast<Eigen::Index>(body.regions.back().tets.size()) < body.rest.tets.cols()) {
+      unnamed.push_back(region.name);
+    }
+  }
+  for (const RegionSpec& wanted : spec.regions) {
+    Region& region = region_for(spec, wanted, body.regions, body);
+    const auto number = static_cast<std::size_t>(&region - body.regions.data());
+    region.material = static_cast<int>(out.list.size());
+    region.own_stiffness = wanted.youngs_modulus_pa.has_value();
+    out.list.push_back(material_of(wanted, number < bases.size() ? bases[number] : out.list[0]));
+    fem::check(out.list.back(), fmt::format("{}: region \"{}\"", where, region.name).c_str());
+  }
+  if (!unnamed.empty())
+    log::info("body \"{}\": of the body's own material, as the scene does not name {}: {} of {}", spec.name, unnamed.size() == 1 ? "it" : "them", fmt::join(unnamed, ", "), spec.mesh.file);
+  if (body.regions.empty()) return out;
+  settle(body);
+  std::erase_if(body.regions, [](const Region& r) { return r.tets.empty() && r.material == 0; });
+  for (const Region& region : body.regions)
+    if (region.tets.empty())
+      fail("{}: region \"{}\" holds no tetrahedron; a box or a sphere takes those whose middle it holds, and the last region that holds one has it", where, region.name);
+  if (out.list.size() == 1) return out;
+  counters::count("loop.regions");
+  body.material_of_element.assign(static_cast<std::size_t>(body.rest.tets.cols()), 0);
+  for (const Region& region : body.regions)
+    for (const int tet : region.tets) body.material_of_element[static_cast<std::size_t>(tet)] = region.material;
+  out.of_element = body.material_of_element;
+  return out;
+}
+
+}  // namespace palpate::loop

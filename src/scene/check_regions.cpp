@@ -1,0 +1,51 @@
+#include <algorithm>
+
+#include "scene/check.h"
+#include "scene/reader.h"
+
+namespace palpate::scene {
+namespace {
+
+/// "box", "sphere" or "file".
+std::string chosen_by(const Document& doc, const std::string& key, const std::string& where, const SoftBodySpec& body) {
+  const auto has = [&](const char* word) { return given(doc, key + "." + word); };
+  const bool box = has("box_min_m") || has("box_max_m"), sphere = has("centre_m") || has("radius_m");
+  if (box && sphere) refuse(place(doc, key + ".radius_m"), where, "a box and a sphere exclude each other; remove box_min_m and box_max_m, or centre_m and radius_m");
+  for (const char* word : {"box_min_m", "box_max_m"})
+    if (box && !has(word)) refuse(place(doc, key), where, fmt::format("{} is missing", word));
+  for (const char* word : {"centre_m", "radius_m"})
+    if (sphere && !has(word)) refuse(place(doc, key), where, fmt::format("{} is missing", word));
+  if (!box && !sphere && body.mesh.file.empty())
+    refuse(place(doc, key), where, fmt::format("box_min_m is missing: generator = \"{}\" makes no regions; say which elements, by box_min_m and box_max_m, or by centre_m and radius_m", body.mesh.generator));
+  return box ? "box" : sphere ? "sphere" : "file";
+}
+
+}  // namespace
+
+// Names of regions stand in the mesh file: whether it has them is checked when it is read.
+void check_regions(const Document& doc, Description& d) {
+  for (std::size_t i = 0; i < d.bodies.size(); ++i) {
+    SoftBodySpec& body = d.bodies[i];
+    Names names;
+    for (std::size_t j = 0; j < body.regions.size(); ++j) {
+      RegionSpec& region = body.regions[j];
+      const std::string key = fmt::format("body[{}].region[{}]", i, j), where = fmt::format("body \"{}\": region \"{}\"", body.name, region.name);
+      region.region = chosen_by(doc, key, where, body);
+      check_box(doc, key, where, region.box_min_m, region.box_max_m);
+      if (std::find(names.begin(), names.end(), region.name) != names.end()) refuse(place(doc, key + ".name"), where, "this is its second table; one says all");
+      names.push_back(region.name);
+      if (!region.youngs_modulus_pa && !region.poissons_ratio && !region.density_kg_m3 && !region.mass_damping_per_s && !region.stiffness_damping_s &&
+          std::none_of(body.changes.begin(), body.changes.end(), [&](const MaterialChangeSpec& c) { return c.region == region.name; }))
+        refuse(place(doc, key), where, "says nothing of its material: give youngs_modulus_pa, poissons_ratio, density_kg_m3, mass_damping_per_s or stiffness_damping_s, or remove it");
+    }
+    for (std::size_t j = 0; j < body.changes.size(); ++j) {
+      const std::string& region = body.changes[j].region;
+      if (region.empty() || std::find(names.begin(), names.end(), region) != names.end()) continue;
+      const std::string key = fmt::format("body[{}].change[{}].region", i, j), where = fmt::format("body \"{}\": change", body.name);
+      if (names.empty()) refuse(place(doc, key), where, fmt::format("region = \"{}\", but the body has no [[body.region]]", region));
+      refuse(place(doc, key), where, fmt::format("no [[body.region]] is called \"{}\"{}", region, suggestion(region, names)));
+    }
+  }
+}
+
+}  // namespace palpate::scene
