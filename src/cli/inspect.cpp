@@ -3,7 +3,6 @@
 #include "commands.h"
 #include "palpate/core/clock.h"
 #include "palpate/loop/run.h"
-#include "palpate/mesh/quality.h"
 #include "palpate/report/table.h"
 #include "palpate/scene/needs.h"
 #include "scene_of.h"
@@ -34,30 +33,25 @@ void print_bodies(const loop::World& world) {
                                             rows));
 }
 
-/// Each body's own material and those of its regions: where the scene names none, one line a body that its file divides.
+/// The regions of each body with their materials, and what is in none.
 void print_regions(const loop::World& world) {
   Rows rows;
   for (const loop::Body& body : world.bodies) {
     if (body.regions.empty()) continue;
-    const std::vector<fem::Material>& materials = body.term->materials();
-    const Eigen::Index all = body.rest.tets.cols();
-    std::vector<char> taken(static_cast<std::size_t>(all), 0);
-    const auto add = [&](const std::string& name, const std::vector<int>& tets, int material) {
-      const fem::Material& m = materials[static_cast<std::size_t>(material)];
-      double volume = 0.0;
-      for (const int tet : tets) volume += mesh::tet_volume(body.rest, tet);
-      rows.push_back({body.name, name, std::to_string(tets.size()), fmt::format("{:.3g}", volume), fmt::format("{:.3g}", m.density * volume), material > 0 ? "its own" : "the body's",
+    const auto add = [&](const std::string& name, int tetrahedra, double volume, int material) {
+      const fem::Material& m = body.term->materials()[static_cast<std::size_t>(material)];
+      rows.push_back({body.name, name, std::to_string(tetrahedra), fmt::format("{:.3g}", volume), fmt::format("{:.3g}", m.density * volume), material > 0 ? "its own" : "the body's",
                       fmt::format("{:.4g}", m.youngs_modulus), fmt::format("{:g}", m.poissons_ratio), fmt::format("{:g}", m.density), fmt::format("{:g}", m.mass_damping),
                       fmt::format("{:g}", m.stiffness_damping)});
     };
+    int left = body.report.elements;
+    double volume = body.report.volume;
     for (const loop::Region& region : body.regions) {
-      add(region.name, region.tets, region.material);
-      for (const int tet : region.tets) taken[static_cast<std::size_t>(tet)] = 1;
+      add(region.name, static_cast<int>(region.tets.size()), region.volume, region.material);
+      left -= static_cast<int>(region.tets.size());
+      volume -= region.volume;
     }
-    std::vector<int> rest;
-    for (Eigen::Index t = 0; t < all; ++t)
-      if (!taken[static_cast<std::size_t>(t)]) rest.push_back(static_cast<int>(t));
-    if (!rest.empty()) add("(the rest)", rest, 0);
+    if (left > 0) add("(the rest)", left, volume, 0);
   }
   if (!rows.empty())
     fmt::print("{}\n", report::format_table({"body", "region", "tetrahedra", "volume [m^3]", "mass [kg]", "material", "E [Pa]", "nu", "rho [kg/m^3]", "alpha [1/s]", "beta [s]"}, rows));

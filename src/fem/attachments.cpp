@@ -4,7 +4,7 @@
 
 #include "box.h"
 #include "palpate/core/error.h"
-#include "palpate/dynamics/rigid_body.h"
+#include "palpate/dynamics/carried_motion.h"
 
 namespace palpate::fem {
 namespace {
@@ -30,24 +30,14 @@ class Fixed final : public dynamics::DrivenMotion {
   VecX x0_;
 };
 
-/// A point p of a moving frame, r = R p:  x = o + r,  v = o' + w x r,  a = o'' + w' x r + w x (w x r).
+/// Points of a frame that moves along a path.
 class Driven final : public dynamics::DrivenMotion {
  public:
   Driven(std::vector<int> dofs, Points local, Path path) : dofs_(std::move(dofs)), local_(std::move(local)), path_(std::move(path)) {}
   const std::vector<int>& dofs() const override { return dofs_; }
   void evaluate(const dynamics::StateView& state, VecX& x, VecX& v, VecX& a) const override {
     const PathPoint now = path_(state.time);
-    x.resize(local_.cols());
-    v.resize(local_.cols());
-    a.resize(local_.cols());
-    for (Eigen::Index i = 0; i < local_.cols(); ++i) {
-      const int axis = dofs_[static_cast<std::size_t>(i)] % 3;
-      const Vec3 r = now.pose.rotation * local_.col(i);
-      const Vec3& w = now.twist.angular;
-      x[i] = now.pose.translation[axis] + r[axis];
-      v[i] = now.twist.at(r)[axis];
-      a[i] = (now.acceleration.at(r) + w.cross(w.cross(r)))[axis];
-    }
+    dynamics::carry({now.pose, now.twist}, now.acceleration, dofs_, local_, x, v, a);
   }
 
  private:
@@ -65,19 +55,7 @@ class Carried final : public dynamics::DrivenMotion {
   const std::vector<int>& dofs() const override { return dofs_; }
   int master_block() const override { return master_; }
   void evaluate(const dynamics::StateView& state, VecX& x, VecX& v, VecX& a) const override {
-    const dynamics::RigidMotion body = motion(state);
-    const Mat3 R = body.pose.rotation.toRotationMatrix();
-    const Vec3& w = body.twist.angular;
-    x.resize(local_.cols());
-    v.resize(local_.cols());
-    a.resize(local_.cols());
-    for (Eigen::Index i = 0; i < local_.cols(); ++i) {
-      const int k = axis(i);
-      const Vec3 r = R * local_.col(i), spin = w.cross(r);
-      x[i] = body.pose.translation[k] + r[k];
-      v[i] = body.twist.linear[k] + spin[k];
-      a[i] = w.cross(spin)[k];
-    }
+    dynamics::carry(motion(state), {}, dofs_, local_, x, v, a);
   }
   void jacobian(const dynamics::StateView& state, MatX& G) const override {
     const Mat3 R = motion(state).pose.rotation.toRotationMatrix();

@@ -4,6 +4,7 @@
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/mesh/quality.h"
 
 namespace palpate::loop {
 namespace {
@@ -80,7 +81,7 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
   std::vector<std::string> unnamed;
   for (MaterialRegion& region : in_file) {
     const bool named = std::any_of(spec.regions.begin(), spec.regions.end(), [&](const RegionSpec& r) { return r.name == region.name; });
-    body.regions.push_back({region.name, std::move(region.tets), 0, region.youngs_modulus_factor});
+    body.regions.push_back({region.name, std::move(region.tets), 0, 0.0, region.youngs_modulus_factor});
     fem::Material& base = bases.emplace_back(out.list[0]);
     base.youngs_modulus *= region.youngs_modulus_factor;
     base.density *= region.density_factor;
@@ -105,6 +106,8 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
   if (body.regions.empty()) return out;
   settle(body);
   std::erase_if(body.regions, [](const Region& r) { return r.tets.empty() && r.material == 0; });
+  for (Region& region : body.regions)
+    for (const int tet : region.tets) region.volume += mesh::tet_volume(body.rest, tet);
   for (const Region& region : body.regions)
     if (region.tets.empty())
       fail("{}: region \"{}\" holds no tetrahedron; a box or a sphere takes those whose middle it holds, and the last region that holds one has it", where, region.name);

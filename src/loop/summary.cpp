@@ -108,9 +108,12 @@ void add_pruning(store::Summary& summary, const World& world) {
     add("left by boxes", static_cast<long long>(c.after_boxes));
     add("left by hulls", static_cast<long long>(c.after_hulls));
     add("regions", static_cast<long long>(c.regions));
-    add("skin triangles handed on", static_cast<long long>(c.faces_a));
-    const Body* body = world.find_body(contact.first);
-    if (body && c.queries > 0) add("share of the skin handed on, mean", static_cast<double>(c.faces_a) / (static_cast<double>(c.queries) * static_cast<double>(body->surface_faces().cols())));
+    for (const auto& [name, faces] : {std::pair(contact.first, c.faces_a), std::pair(contact.second, c.faces_b)}) {
+      add(fmt::format("skin triangles of {} handed on", name).c_str(), static_cast<long long>(faces));
+      const Body* body = world.find_body(name);  // else a tool
+      if (body && c.queries > 0)
+        add(fmt::format("share of the skin of {} handed on, mean", name).c_str(), static_cast<double>(faces) / (static_cast<double>(c.queries) * static_cast<double>(body->surface_faces().cols())));
+    }
     add("largest turn of a normal [rad]", c.largest_turn);
   }
 }

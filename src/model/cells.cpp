@@ -55,6 +55,8 @@ SourceFile Cells::finish(std::string format) const {
   if (!tets_.empty()) {
     out.from.source = path_;
     out.tets.tets = compact(tets_, *this, path_, out.tets.nodes, out.from);
+    PALPATE_CHECK(labels.empty() || labels.size() == tets_.size(), "{}: {} numbers of regions for {} tetrahedra", path_, labels.size(), tets_.size());
+    out.regions = mesh::regions_of_labels(labels, label_names, no_label);
   } else {
     out.from = mesh::surface_provenance(path_);
     out.surface.faces = compact(triangles_, *this, path_, out.surface.vertices, out.from);

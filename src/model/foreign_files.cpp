@@ -10,6 +10,7 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/readers.h"
 #include "palpate/store/mesh_file.h"
+#include "palpate/store/model_file.h"
 
 namespace palpate::model {
 namespace {
@@ -24,6 +25,7 @@ constexpr Ending kEndings[] = {{".obj", "Wavefront OBJ"}, {".msh", "Gmsh"},   {"
 SourceFile of_tets(mesh::TetFile file, std::string format) {
   SourceFile out;
   out.tets = std::move(file.mesh);
+  out.regions = std::move(file.regions);
   out.from = std::move(file.from);
   out.format = std::move(format);
   return out;
@@ -44,6 +46,11 @@ SourceFile read_msh(const std::string& path) {
 
 }  // namespace
 
+const std::vector<std::string>& known_region_arrays() {
+  static const std::vector<std::string> names = {"gmsh:physical", "medit:ref", "CellEntityIds", "MaterialIds", "MaterialId", "Material", "RegionIds", "RegionId", "Region", "PhysicalIds", "attribute"};
+  return names;
+}
+
 std::string known_endings() {
   std::string out;
   for (const Ending& known : kEndings) out += fmt::format("{}{}", out.empty() ? "" : " ", known.ending);
@@ -58,6 +65,7 @@ SourceFile read_source(const std::string& path) {
   if (known == std::end(kEndings)) fail("{}: unknown ending \"{}\"; these are read: {}", path, ending, known_endings());
   if (ending == ".msh") return read_msh(path);
   if (ending == ".vtu") return read_vtu(path);
+  if (ending == ".meshb") return read_meshb(path);
   if (ending == ".ply" || ending == ".off" || ending == ".stl") return read_by_cgal(path, known->format);
   if (ending == ".node" || ending == ".ele") return of_tets(mesh::read_tetgen(path), known->format);
   SourceFile out;
@@ -65,12 +73,17 @@ SourceFile read_source(const std::string& path) {
   out.from.source = path;
   if (ending == ".h5") {
     out.tets = store::read_mesh(path);
+    out.regions = store::read_regions(path, static_cast<int>(out.tets.tets.cols()));
   } else if (ending == ".obj") {
     mesh::SurfaceFile file = mesh::read_obj(path);
     out.surface = std::move(file.mesh);
     out.from = std::move(file.from);
   } else {
-    return read_by_gmsh(path, known->format);
+    out = read_by_gmsh(path, known->format);
+    if (ending != ".vtk" || out.tets.tets.cols() == 0) return out;
+    const std::vector<double> labels = labels_of_vtk(path);
+    if (!labels.empty() && static_cast<Eigen::Index>(labels.size()) != out.tets.tets.cols()) fail("{}: has {} tetrahedra, and {} numbers of regions", path, out.tets.tets.cols(), labels.size());
+    out.regions = mesh::regions_of_labels(labels);
   }
   return out;
 }

@@ -2,6 +2,7 @@
 #include <gmshc.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <numeric>
 
@@ -69,6 +70,43 @@ struct Kind {
 constexpr Kind kKinds[] = {{2, 3, "triangles"}, {3, 4, "quadrangles"}, {4, 4, "tetrahedra"}, {5, 8, "hexahedra"}, {6, 6, "prisms"}, {7, 5, "pyramids"}, {9, 6, "triangles of second order"},
                            {11, 10, "tetrahedra of second order"}};
 
+/// The number and the name of the region of each volume: its first physical group, 0 for none; where no volume has a group, the volumes themselves.
+std::map<int, double> regions_of_volumes(const Gmsh& gmsh, Cells& cells) {
+  int error = 0;
+  Array<int> entities(gmsh);
+  gmsh.function<decltype(gmshModelGetEntities)>("gmshModelGetEntities")(&entities.data, &entities.size, 3, &error);
+  std::map<int, double> out;
+  bool any = false;
+  for (std::size_t i = 1; i < entities.size; i += 2) {  // pairs of dimension and tag
+    Array<int> groups(gmsh);
+    gmsh.function<decltype(gmshModelGetPhysicalGroupsForEntity)>("gmshModelGetPhysicalGroupsForEntity")(3, entities.data[i], &groups.data, &groups.size, &error);
+    const int group = error || groups.size == 0 ? 0 : std::abs(groups.data[0]);
+    out[entities.data[i]] = group;
+    any = any || group != 0;
+    if (group == 0) continue;
+    char* name = nullptr;
+    gmsh.function<decltype(gmshModelGetPhysicalName)>("gmshModelGetPhysicalName")(3, group, &name, &error);
+    if (name && *name) cells.label_names[group] = name;
+    if (name) gmsh.free(name);
+  }
+  if (any) cells.no_label = 0.0;
+  else
+    for (auto& [volume, label] : out) label = volume;
+  return out;
+}
+
+/// Of each tetrahedron by its tag.
+std::map<std::size_t, double> labels_of_tetrahedra(const Gmsh& gmsh, Cells& cells) {
+  std::map<std::size_t, double> out;
+  for (const auto& [volume, label] : regions_of_volumes(gmsh, cells)) {
+    int error = 0;
+    Array<std::size_t> elements(gmsh), nodes(gmsh);
+    gmsh.function<decltype(gmshModelMeshGetElementsByType)>("gmshModelMeshGetElementsByType")(4, &elements.data, &elements.size, &nodes.data, &nodes.size, volume, 0, 1, &error);
+    for (std::size_t e = 0; !error && e < elements.size; ++e) out[elements.data[e]] = label;
+  }
+  return out;
+}
+
 }  // namespace
 
 SourceFile read_by_gmsh(const std::string& path, const std::string& format) {
@@ -93,6 +131,7 @@ SourceFile read_by_gmsh(const std::string& path, const std::string& format) {
       cells.point_numbers.push_back(static_cast<long>(tags.data[i]));
     }
   }
+  const std::map<std::size_t, double> labels = labels_of_tetrahedra(gmsh, cells);
   for (const Kind& kind : kKinds) {
     Array<std::size_t> elements(gmsh), nodes(gmsh);
     gmsh.function<decltype(gmshModelMeshGetElementsByType)>("gmshModelMeshGetElementsByType")(kind.type, &elements.data, &elements.size, &nodes.data, &nodes.size, -1, 0, 1, &error);
@@ -107,9 +146,11 @@ SourceFile read_by_gmsh(const std::string& path, const std::string& format) {
       }
       if (kind.type == 2 || kind.type == 3)
         cells.polygon(corners);
-      else if (kind.type == 4)
+      else if (kind.type == 4) {
         cells.tetrahedron(corners[0], corners[1], corners[2], corners[3]);
-      else
+        const auto label = labels.find(elements.data[e]);
+        cells.labels.push_back(label == labels.end() ? 0.0 : label->second);
+      } else
         cells.unread(kind.name);
     }
   }

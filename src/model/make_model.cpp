@@ -7,6 +7,7 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/embedding.h"
+#include "palpate/mesh/quality.h"
 #include "palpate/model/bind.h"
 #include "palpate/model/creases.h"
 #include "palpate/proxy/decompose.h"
@@ -67,6 +68,23 @@ std::optional<double> crease_angle_of(const TriMesh& surface, const Input& input
   return crease_angle(surface);
 }
 
+/// Regions of the file and those asked for, with what they hold.
+void find_regions(Input& input, const Options& options, const TetMesh* old, Made& made) {
+  LayeredModel& model = made.file.model;
+  std::vector<MaterialRegion> regions = old ? carried_over(*old, input.regions, model.tets) : std::move(input.regions);
+  if (old && !regions.empty()) made.file.record.notes.push_back("the regions of the file are carried over to the new tetrahedra by their middles");
+  std::vector<RegionSource> sources = options.regions;
+  for (RegionSource& source : sources) source.surface.vertices *= options.scale;
+  std::vector<double> surface_volumes;
+  model.regions = add_regions(model.tets, model.skeleton, std::move(regions), sources, surface_volumes);
+  for (const MaterialRegion& region : model.regions) {
+    RegionFigures& out = made.regions.emplace_back(RegionFigures{region.name, static_cast<int>(region.tets.size())});
+    for (const int tet : region.tets) out.volume += mesh::tet_volume(model.tets, tet);
+    for (std::size_t s = 0; s < sources.size(); ++s)
+      if (sources[s].name == region.name) out.surface_volume = surface_volumes[s];
+  }
+}
+
 std::vector<std::pair<std::string, double>> figures(const LayeredModel& model, const TetQuality& q, const mesh::EmbeddingReport& embedding, const proxy::DecomposeReport& hulls) {
   std::vector<std::pair<std::string, double>> out = {{"nodes", q.nodes},
                                                      {"tetrahedra", q.tetrahedra},
@@ -107,6 +125,7 @@ Input input_of_file(const std::string& path) {
   out.from = std::move(file.from);
   out.surface = std::move(file.surface);
   out.tets = std::move(file.tets);
+  out.regions = std::move(file.regions);
   return out;
 }
 
@@ -125,6 +144,7 @@ Made make_model(Input input, const Options& options, Watcher& watcher) {
   const bool given = input.tets.tets.cols() > 0;
   step(given ? "check the tetrahedra" : "mend the surface", watcher, made, [&] { surface = given ? take_tets(input, record.notes) : mended(input, options, record.notes, progress); });
 
+  const TetMesh old = given && options.remesh && !input.regions.empty() ? input.tets : TetMesh{};
   if (given && !options.remesh) {
     model.tets = std::move(input.tets);
   } else {
@@ -147,12 +167,14 @@ Made make_model(Input input, const Options& options, Watcher& watcher) {
     mesh::check_tets(model.tets, own);
   });
 
+  model.skeleton = std::move(input.skeleton);
+  if (!input.regions.empty() || !options.regions.empty())
+    step("name regions", watcher, made, [&] { find_regions(input, options, old.tets.cols() > 0 ? &old : nullptr, made); });
   mesh::EmbeddingReport embedding;
   step("embed the skin", watcher, made, [&] {
     model.skin = input.skin.vertices.cols() > 0 ? std::move(input.skin) : std::move(surface);
     model.embedding = mesh::embed(model.tets, model.skin.vertices, &embedding);
   });
-  model.skeleton = std::move(input.skeleton);
   if (!model.skeleton.bones.empty())
     step("bind the skeleton", watcher, made, [&] { model.bone_of_node = bind_nodes(model.tets.nodes, model.skeleton, options.bone_margin_m); });
   proxy::DecomposeReport hulls;
@@ -163,6 +185,7 @@ Made make_model(Input input, const Options& options, Watcher& watcher) {
       model.proxies = proxy::decompose(model, wanted, &hulls);
     });
   record.figures = figures(model, made.quality, embedding, hulls);
+  for (const RegionFigures& region : made.regions) record.figures.emplace_back(fmt::format("volume_of_region_{}_m3", region.name), region.volume);
   return made;
 }
 

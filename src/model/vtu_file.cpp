@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
@@ -161,6 +162,23 @@ void load(Document& document) {
   document.swap = (std::string(root.attribute("byte_order").as_string("LittleEndian")) == "BigEndian") != (std::endian::native == std::endian::big);
 }
 
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// Numbers of the regions of a piece's cells; empty: it has no array that is known for that.
+std::vector<double> labels_of(const Document& document, const pugi::xml_node& piece, std::size_t cells) {
+  for (const std::string& known : known_region_arrays())
+    for (const pugi::xml_node& array : piece.child("CellData").children("DataArray")) {
+      if (lower(array.attribute("Name").as_string()) != lower(known)) continue;
+      std::vector<double> out = numbers<double>(document, array, fmt::format("array \"{}\"", array.attribute("Name").as_string()));
+      if (out.size() != cells) fail("{}: array \"{}\" has {} numbers for {} cells", document.path, array.attribute("Name").as_string(), out.size(), cells);
+      return out;
+    }
+  return {};
+}
+
 void take_cell(Cells& cells, int type, const std::vector<int>& corners) {
   constexpr int kTriangle = 5, kPolygon = 7, kQuadrangle = 9, kTetrahedron = 10, kLastLine = 4;
   if (type == kTetrahedron && corners.size() == 4) cells.tetrahedron(corners[0], corners[1], corners[2], corners[3]);
@@ -182,6 +200,8 @@ SourceFile read_vtu(const std::string& path) {
     const auto array = [&](const char* name) { return numbers<long long>(document, piece.child("Cells").find_child_by_attribute("DataArray", "Name", name), fmt::format("array \"{}\"", name)); };
     const std::vector<long long> connectivity = array("connectivity"), offsets = array("offsets"), types = array("types");
     if (offsets.size() != types.size()) fail("{}: has {} offsets and {} types of cells", path, offsets.size(), types.size());
+    const std::vector<double> labels = labels_of(document, piece, offsets.size());
+    if (!labels.empty()) cells.labels.resize(cells.tetrahedra(), 0.0);
     long long begin = 0;
     for (std::size_t c = 0; c < offsets.size(); ++c) {
       if (offsets[c] < begin || offsets[c] > static_cast<long long>(connectivity.size())) fail("{}: cell {} ends at {} of {} entries", path, c, offsets[c], connectivity.size());
@@ -191,7 +211,9 @@ SourceFile read_vtu(const std::string& path) {
         if (corner < 0 || corner >= static_cast<long long>(coordinates.size() / 3)) fail("{}: cell {} names point {}, the piece has {}", path, c, corner, coordinates.size() / 3);
         corners.push_back(first + static_cast<int>(corner));
       }
+      const std::size_t before = cells.tetrahedra();
       take_cell(cells, static_cast<int>(types[c]), corners);
+      if ((!labels.empty() || !cells.labels.empty()) && cells.tetrahedra() > before) cells.labels.push_back(labels.empty() ? 0.0 : labels[c]);
       begin = offsets[c];
     }
   }

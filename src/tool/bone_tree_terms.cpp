@@ -1,4 +1,5 @@
 #include "palpate/core/error.h"
+#include "palpate/dynamics/carried_motion.h"
 #include "palpate/tool/bone_tree.h"
 
 namespace palpate::tool {
@@ -80,20 +81,8 @@ class TreeCarried final : public dynamics::DrivenMotion {
 
   void evaluate(const StateView& state, VecX& x, VecX& v, VecX& a) const override {
     const Coordinates at(state, block_of(state, block_id_, *tree_));
-    const dynamics::RigidMotion bone = tree_->motion(at.q, at.u, bone_);
     const Vec6 bias = tree_->bias(at.q, at.u, bone_);
-    const Mat3 R = bone.pose.rotation.toRotationMatrix();
-    const Vec3& w = bone.twist.angular;
-    x.resize(local_.cols());
-    v.resize(local_.cols());
-    a.resize(local_.cols());
-    for (Eigen::Index i = 0; i < local_.cols(); ++i) {
-      const int k = axis(i);
-      const Vec3 r = R * local_.col(i), spin = w.cross(r);
-      x[i] = bone.pose.translation[k] + r[k];
-      v[i] = bone.twist.linear[k] + spin[k];
-      a[i] = bias[3 + k] + bias.head<3>().cross(r)[k] + w.cross(spin)[k];
-    }
+    dynamics::carry(tree_->motion(at.q, at.u, bone_), {bias.head<3>(), bias.tail<3>()}, dofs_, local_, x, v, a);
   }
   void jacobian(const StateView& state, MatX& G) const override {
     const Coordinates at(state, block_of(state, block_id_, *tree_));

@@ -75,6 +75,7 @@ TEST_F(Regions, WeighWhatTheirDensitySays) {
     double volume = 0.0;
     for (const int tet : body.regions[0].tets) volume += mesh::tet_volume(body.rest, tet);
     EXPECT_NEAR(volume, half, 1e-15);
+    EXPECT_NEAR(body.regions[0].volume, half, 1e-15);
     EXPECT_EQ(body.term->materials()[1].youngs_modulus, 1e4) << "what is not given is the body's";
     // Kinetic energy of a translation: the inertia term has the same mass.
     world->state.u().setZero();

@@ -136,10 +136,15 @@ void expect_refused(const scene::Description& d, const std::vector<std::string>&
 TEST(Skin, WhatAModelDoesNotHaveIsRefused) {
   const ModelOnDisk bare(block_model(false), "bare.h5");
   expect_refused(block_from(bare.path, true), {"block", "skin = true", "bare.h5", "palpate model"});
+}
+
+TEST(Skin, RegionsOfItsModelAct) {
   LayeredModel stiff = block_model(true);
   stiff.regions.push_back({"core", {0, 1}, 10.0, 1.0});
   const ModelOnDisk file(stiff, "stiff.h5");
-  expect_refused(block_from(file.path, true), {"core", "one material"});
+  const auto world = loop::assemble(block_from(file.path, true));
+  ASSERT_EQ(world->bodies[0].term->materials().size(), 2u);
+  EXPECT_DOUBLE_EQ(world->bodies[0].term->materials()[1].youngs_modulus, 10.0 * world->bodies[0].term->materials()[0].youngs_modulus);
 }
 
 }  // namespace

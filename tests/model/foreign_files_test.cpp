@@ -6,6 +6,8 @@ extern "C" {
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -123,6 +125,67 @@ TEST_F(ForeignFiles, TetrahedraByGmsh) {
   EXPECT_EQ(read, 8);
 }
 
+/// "NAME: COUNT; " for each region.
+std::string regions_of(const model::SourceFile& file) {
+  std::string out;
+  for (const MaterialRegion& region : file.regions) out += fmt::format("{}: {}; ", region.name, region.tets.size());
+  return out;
+}
+
+/// A box of 80 tetrahedra in two volumes of 40, in the order of the file first those of volume 2.
+std::string msh_of_two(const std::string& names, const std::array<int, 2>& physical) {
+  const TetMesh b = mesh::box(Vec3(2, 1, 1), {4, 2, 2});
+  std::string msh = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{}$Nodes\n{}\n", names, b.nodes.cols());
+  for (Eigen::Index i = 0; i < b.nodes.cols(); ++i) msh += fmt::format("{} {:.17g} {:.17g} {:.17g}\n", i + 1, b.nodes(0, i), b.nodes(1, i), b.nodes(2, i));
+  msh += fmt::format("$EndNodes\n$Elements\n{}\n", b.tets.cols());
+  for (Eigen::Index t = 0; t < b.tets.cols(); ++t) {
+    const int volume = b.nodes(0, b.tets.col(t)).mean() < 0 ? 2 : 5;
+    msh += fmt::format("{} 4 2 {} {} {} {} {} {}\n", t + 1, physical[volume == 5], volume, b.tets(0, t) + 1, b.tets(1, t) + 1, b.tets(2, t) + 1, b.tets(3, t) + 1);
+  }
+  return msh + "$EndElements\n";
+}
+
+TEST_F(ForeignFiles, RegionsOfEveryFormatOfGmsh) {
+  const std::string names = "$PhysicalNames\n2\n3 7 \"hard bone\"\n3 9 \"flesh\"\n$EndPhysicalNames\n";
+  put("named.msh", msh_of_two(names, {7, 9}));
+  put("plain.msh", msh_of_two("", {0, 0}));
+  put("half.msh", msh_of_two(names, {0, 9}));
+  int error = 0, read = 0;
+  const auto expect = [&](const std::string& from, const std::string& name, double version, double binary, const std::string& wanted) {
+    gmshInitialize(0, nullptr, 0, &error);
+    gmshOptionSetNumber("General.Terminal", 0, &error);
+    gmshOptionSetNumber("Mesh.SaveAll", from == "plain.msh", &error);  // else version 2.2 forgets the groups
+    gmshOpen(at(from).c_str(), &error);
+    gmshOptionSetNumber("Mesh.MshFileVersion", version, &error);
+    gmshOptionSetNumber("Mesh.Binary", binary, &error);
+    gmshWrite(at(name).c_str(), &error);
+    EXPECT_EQ(error, 0) << name;
+    gmshFinalize(&error);
+    const model::SourceFile got = model::read_source(at(name));
+    ASSERT_EQ(regions_of(got), wanted) << name << " of " << from;
+    for (const int tet : got.regions[0].tets) EXPECT_LT(got.tets.nodes(0, got.tets.tets.col(tet)).mean(), 0.0) << name;
+    ++read;
+  };
+  for (const double binary : {0.0, 1.0})
+    for (const double version : {2.2, 4.1}) {
+      expect("named.msh", "a.msh", version, binary, "hard bone: 40; flesh: 40; ");
+      expect("plain.msh", "b.msh", version, binary, "region-2: 40; region-5: 40; ");
+    }
+  expect("plain.msh", "a.mesh", 4.1, 0, "region-2: 40; region-5: 40; ");
+  EXPECT_EQ(read, 9);
+  for (const double binary : {0.0, 1.0}) {
+    gmshInitialize(0, nullptr, 0, &error);
+    gmshOptionSetNumber("General.Terminal", 0, &error);
+    gmshOpen(at("half.msh").c_str(), &error);
+    gmshOptionSetNumber("Mesh.SaveAll", 1, &error);
+    gmshOptionSetNumber("Mesh.MshFileVersion", 4.1, &error);
+    gmshOptionSetNumber("Mesh.Binary", binary, &error);
+    gmshWrite(at("c.msh").c_str(), &error);
+    gmshFinalize(&error);
+    EXPECT_EQ(regions_of(model::read_source(at("c.msh"))), "flesh: 40; ");
+  }
+}
+
 std::string base64(const std::string& bytes) {
   const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;
@@ -205,6 +268,130 @@ TEST_F(ForeignFiles, VtuInEveryEncoding) {
   };
   const std::string text = vtu_text(b, appended);
   expect("appended.vtu", text + "<AppendedData encoding=\"raw\">\n   _" + all + "\n</AppendedData>" + end);
+}
+
+TEST_F(ForeignFiles, ArraysOfVtuCellsAreRegions) {
+  const auto text = [](const std::string& name, const std::string& values) {
+    return "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"5\" NumberOfCells=\"3\"><CellData><DataArray type=\"Float64\" "
+           "Name=\"stress\" format=\"ascii\">1 2 3</DataArray><DataArray type=\"Int32\" Name=\"" + name + "\" format=\"ascii\">" + values +
+           "</DataArray></CellData><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points><Cells><DataArray type=\"Int64\" "
+           "Name=\"connectivity\" format=\"ascii\">0 1 2 3 0 1 2 1 2 4 3</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4 7 11</DataArray><DataArray type=\"UInt8\" "
+           "Name=\"types\" format=\"ascii\">10 5 10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
+  };
+  for (const std::string& name : model::known_region_arrays()) EXPECT_EQ(regions_of(model::read_source(put("a.vtu", text(name, "4 8 3")))), "region-3: 1; region-4: 1; ") << name;
+  EXPECT_EQ(regions_of(model::read_source(put("a.vtu", text("materialIDs", "4 8 3")))), "region-3: 1; region-4: 1; ");
+  EXPECT_EQ(regions_of(model::read_source(put("a.vtu", text("temperature", "4 8 3")))), "");
+  EXPECT_EQ(regions_of(model::read_source(put("a.vtu", text("Material", "4 8 4")))), "") << "all alike";
+  const std::string path = put("a.vtu", text("Material", "4 8"));
+  EXPECT_NE(refusal([&] { model::read_source(path); }).find("array \"Material\" has 2 numbers for 3 cells"), std::string::npos);
+}
+
+/// Two tetrahedra on one face in Medit's binary form, by hand.
+std::string meshb(int version, bool swapped, int last_corner = 5) {
+  std::string out;
+  const auto add = [&](auto value) {
+    std::string raw(reinterpret_cast<const char*>(&value), sizeof(value));
+    if (swapped) std::reverse(raw.begin(), raw.end());
+    out += raw;
+  };
+  const auto integer = [&](int value) { version < 4 ? add(static_cast<std::int32_t>(value)) : add(static_cast<std::int64_t>(value)); };
+  const auto block = [&](int keyword, const auto& content) {
+    add(static_cast<std::int32_t>(keyword));
+    const std::size_t place = out.size(), width = version < 3 ? 4 : 8;
+    out.append(width, '\0');
+    content();
+    const std::string after = out.substr(place + width);
+    out.resize(place);
+    const auto next = static_cast<std::int64_t>(place + width + after.size());
+    version < 3 ? add(static_cast<std::int32_t>(next)) : add(next);
+    out += after;
+  };
+  add(std::int32_t{1});
+  add(static_cast<std::int32_t>(version));
+  block(3, [&] { add(std::int32_t{3}); });
+  block(77, [&] { add(std::int32_t{123456}); });  // a keyword that nobody knows
+  block(4, [&] {
+    integer(5);
+    for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 1)}) {
+      for (const double c : {p.x(), p.y(), p.z()}) version == 1 ? add(static_cast<float>(c)) : add(c);
+      integer(0);
+    }
+  });
+  block(6, [&] {
+    integer(1);
+    for (const int i : {1, 2, 3, 9}) integer(i);
+  });
+  block(8, [&] {
+    integer(2);
+    for (const int i : {1, 2, 3, 4, 7, 2, 3, 4, last_corner, 3}) integer(i);
+  });
+  add(std::int32_t{54});
+  version < 3 ? add(std::int32_t{0}) : add(std::int64_t{0});
+  return out;
+}
+
+TEST_F(ForeignFiles, MeditsBinaryForm) {
+  for (const int version : {1, 2, 3, 4})
+    for (const bool swapped : {false, true}) {
+      model::SourceFile got = model::read_source(put("a.meshb", meshb(version, swapped)));
+      ASSERT_EQ(got.tets.tets.cols(), 2) << version;
+      EXPECT_EQ(got.tets.nodes.col(4), Vec3(1, 1, 1));
+      EXPECT_EQ(got.tets.tets.col(1), Eigen::Vector4i(1, 2, 3, 4));
+      EXPECT_EQ(regions_of(got), "region-3: 1; region-7: 1; ");
+      EXPECT_NEAR(mesh::check_tets(got.tets, got.from).volume, 0.5, 1e-15);
+    }
+  const auto message = [&](const std::string& text) {
+    const std::string path = put("b.meshb", text);
+    return refusal([&] { model::read_source(path); });
+  };
+  const std::string good = meshb(2, false);
+  EXPECT_NE(message("no mesh at all").find("does not start with the number 1"), std::string::npos);
+  EXPECT_NE(message(good.substr(0, good.size() - 40)).find("ends before its time"), std::string::npos);
+  EXPECT_NE(message(meshb(2, false, 6)).find("names point 5, the file has 5"), std::string::npos) << message(meshb(2, false, 6));
+  EXPECT_NE(message(meshb(2, false, 0)).find("names point -1"), std::string::npos);
+  EXPECT_NE(message(std::string("\1\0\0\0\11\0\0\0", 8)).find("has version 9"), std::string::npos);
+}
+
+/// TetGen's two files through the program's reader, attributes kept, from 0 or from 1.
+TEST_F(ForeignFiles, TetGensTwoFiles) {
+  for (const int first : {0, 1}) {
+    const TetMesh b = mesh::box(Vec3(2, 1, 1), {4, 2, 2});
+    std::string nodes = fmt::format("{} 3 0 0\n", b.nodes.cols()), elements = fmt::format("{} 4 1\n", b.tets.cols());
+    for (Eigen::Index i = 0; i < b.nodes.cols(); ++i) nodes += fmt::format("{} {:.17g} {:.17g} {:.17g}\n", i + first, b.nodes(0, i), b.nodes(1, i), b.nodes(2, i));
+    for (Eigen::Index t = 0; t < b.tets.cols(); ++t)
+      elements += fmt::format("{} {} {} {} {} {}\n", t + first, b.tets(0, t) + first, b.tets(1, t) + first, b.tets(2, t) + first, b.tets(3, t) + first, b.nodes(0, b.tets.col(t)).mean() < 0 ? 2 : 5);
+    put("a.node", nodes);
+    const model::SourceFile got = model::read_source(put("a.ele", elements + "# end\n"));
+    EXPECT_EQ(got.tets.tets, b.tets);
+    EXPECT_EQ(got.tets.nodes, b.nodes);
+    EXPECT_EQ(regions_of(got), "region-2: 40; region-5: 40; ");
+  }
+}
+
+TEST_F(ForeignFiles, FieldsOfLegacyVtkCellsAreRegions) {
+  const std::string head = "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\nCELLS 3 14\n4 0 1 2 3\n3 0 1 2\n4 1 2 4 3\nCELL_TYPES 3\n10 5 10\n";
+  EXPECT_EQ(regions_of(model::read_source(put("a.vtk", head + "POINT_DATA 5\nSCALARS Material int 1\nLOOKUP_TABLE default\n1 2 3 4 5\nCELL_DATA 3\nVECTORS flow float\n1 1 1 2 2 2 3 3 3\nFIELD all 2\nt 1 3 double\n1 2 3\n"
+                                                                 "Material 1 3 int\n4 8 3\n"))),
+            "region-3: 1; region-4: 1; ");
+  // Gmsh's own files, as later versions of it end them.
+  const std::string plain = put("plain.msh", msh_of_two("", {0, 0}));
+  for (const bool binary : {false, true}) {
+    int error = 0;
+    gmshInitialize(0, nullptr, 0, &error);
+    gmshOptionSetNumber("General.Terminal", 0, &error);
+    gmshOptionSetNumber("Mesh.SaveAll", 1, &error);
+    gmshOptionSetNumber("Mesh.Binary", binary, &error);
+    gmshOpen(plain.c_str(), &error);
+    gmshWrite(at("d.vtk").c_str(), &error);
+    gmshFinalize(&error);
+    EXPECT_EQ(regions_of(model::read_source(at("d.vtk"))), "");
+    std::string values;
+    for (int t = 0; t < 80; ++t) values += binary ? std::string{'\0', '\0', '\0', t < 40 ? '\2' : '\5'} : t < 40 ? "2\n" : "5\n";
+    std::ofstream(at("d.vtk"), std::ios::binary | std::ios::app) << "\nCELL_DATA 80\nSCALARS CellEntityIds int 1\nLOOKUP_TABLE default\n" << values;
+    EXPECT_EQ(regions_of(model::read_source(at("d.vtk"))), "region-2: 40; region-5: 40; ") << binary;
+  }
+  EXPECT_EQ(regions_of(model::read_source(put("b.vtk", head + "CELL_DATA 3\nSCALARS heat int\nLOOKUP_TABLE default\n4 8 3\n"))), "");
+  EXPECT_EQ(regions_of(model::read_source(put("c.vtk", head))), "");
 }
 
 TEST_F(ForeignFiles, BrokenFilesAreRefusedWithTheirName) {

@@ -85,6 +85,49 @@ step_s = 0.001
             self.assertIn(expected, done.stderr)
             self.assertFalse((self.path / "out.h5").exists())
 
+    def test_regions_from_the_surface_to_the_scene(self):
+        source = octahedron(self.path)
+        core = octahedron(self.path, "core.obj")
+        core.write_text("".join(f"v {' '.join(str(0.5 * float(x)) for x in line.split()[1:])}\n" if line.startswith("v") else line + "\n" for line in core.read_text().splitlines()))
+        options = ["--tetrahedra", "3000", "--proxies", "0", "--region", f"core={core}"]
+        done = run("model", source, "-o", self.path / "a.h5", *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        row = next(line for line in done.stdout.splitlines() if line.startswith("core"))
+        volume, wanted = (float(word) for word in row.split()[2:4])
+        self.assertAlmostEqual(wanted, 4 / 3 / 8, places=6)  # an octahedron of unit radius has 4/3
+        self.assertLess(abs(volume / wanted - 1), 0.1)
+        self.assertEqual(run("model", source, "-o", self.path / "b.h5", *options, "-q").returncode, 0)
+        self.assertEqual((self.path / "a.h5").read_bytes(), (self.path / "b.h5").read_bytes())
+        scene = """
+[scene]
+name = "body"
+duration_s = 0.002
+[[body]]
+name = "body"
+youngs_modulus_pa = 1e5
+density_kg_m3 = 1000.0
+mesh = {{ file = "a.h5" }}
+{}
+[integrator]
+name = "linearly-implicit-euler"
+step_s = 0.001
+"""
+        (self.path / "named.toml").write_text(scene.format('[[body.region]]\nname = "core"\nyoungs_modulus_pa = 1e7\ndensity_kg_m3 = 3000.0'))
+        (self.path / "silent.toml").write_text(scene.format(""))
+        named = run("inspect", self.path / "named.toml")
+        self.assertEqual(named.returncode, 0, named.stderr)
+        row = next(line for line in named.stdout.splitlines() if " core " in line)
+        self.assertIn("its own", row)
+        self.assertIn("1e+07", row)
+        silent = run("inspect", self.path / "silent.toml")
+        self.assertIn("the body's", next(line for line in silent.stdout.splitlines() if " core " in line))
+        self.assertIn("does not name it: core of a.h5", silent.stderr + silent.stdout)
+        for words, expected in [((source, "--region", "core"), "--region core: must be NAME=FILE"), ((source, "--region", "core=none.obj"), "none.obj: no such file"),
+                                ((source, "--region", "bone=skeleton"), "the model has no bones")]:
+            done = run("model", *words, "-o", self.path / "out.h5", "--tetrahedra", "600")
+            self.assertEqual(done.returncode, 1, done.stdout)
+            self.assertIn(expected, done.stderr)
+
     def test_help(self):
         self.assertIn("--tetrahedra", run("model", "--help").stdout)
         self.assertIn("model", run("--help").stdout)

@@ -46,6 +46,17 @@ TEST(Tetrahedralise, MeetsTheElementSize) {
   EXPECT_NEAR(q.mean_edge, 0.25, 0.03 * 0.25);
 }
 
+TEST(Tetrahedralise, ProgressNeverRunsBack) {
+  for (const int wanted : {400, 800}) {
+    std::vector<double> told;
+    model::tetrahedralise(ball(), number(wanted), [&](double fraction) { told.push_back(fraction); });
+    ASSERT_GT(told.size(), 3u);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_GE(told.front(), 0.0);
+    EXPECT_EQ(told.back(), 1.0);
+  }
+}
+
 TEST(Tetrahedralise, SameSurfaceSameBits) {
   const model::Tetrahedra one = model::tetrahedralise(ball(), number(800)), two = model::tetrahedralise(ball(), number(800));
   EXPECT_EQ(one.mesh.nodes, two.mesh.nodes);

@@ -38,6 +38,7 @@ struct Region {
   std::string name;
   std::vector<int> tets;         ///< ascending; no element in two regions
   int material = 0;              ///< in the list of the body's term; 0: the body's own, as the scene says nothing of the region
+  double volume = 0.0;           ///< [m^3]
   double stiffness_factor = 1.0; ///< of its Young's modulus over the body's, where it has none of its own
   bool own_stiffness = false;
 };

@@ -6,6 +6,7 @@
 #include "palpate/mesh/skeleton.h"
 #include "palpate/model/foreign_files.h"
 #include "palpate/model/quality_gate.h"
+#include "palpate/model/regions.h"
 #include "palpate/model/repair.h"
 #include "palpate/model/tetrahedralise.h"
 #include "palpate/store/model_file.h"
@@ -21,6 +22,7 @@ struct Input {
   mesh::Provenance from;
   TriMesh surface;             ///< is mended, then filled; empty where there are tetrahedra
   TetMesh tets;                ///< taken as they are, unless remesh
+  std::vector<MaterialRegion> regions;  ///< of the tetrahedra
   bool sound = false;          ///< the surface is known to bound a body: it is not mended
   TriMesh skin;                ///< the surface that is seen; empty: the mended one
   std::vector<Polyline> creases;
@@ -37,6 +39,7 @@ struct Options {
   Creases creases = Creases::kAuto;
   double crease_deg = 0.0;                ///< of kAngle
   bool remesh = false;                    ///< tetrahedra of a file: keep their boundary only, and fill it anew
+  std::vector<RegionSource> regions;      ///< beside those of a file of tetrahedra
   int proxies = 60;                       ///< convex hulls wanted; 0: none
   double bone_margin_m = 0.0;             ///< nodes nearer to a bone than this belong to it
   std::optional<double> smallest_dihedral_deg = {};  ///< of the gate; nothing: 8, or 4 where creases are kept
@@ -59,11 +62,12 @@ class Watcher {
 struct Made {
   store::ModelFile file;
   TetQuality quality;
+  std::vector<RegionFigures> regions;
   bool creased = false;
   std::vector<Step> steps;
 };
 
-/// A layered model of a surface, step by step: mend, fill with tetrahedra, check, embed the skin, bind the skeleton, cut into convex proxies.
+/// A layered model of a surface, step by step: mend, fill with tetrahedra, check, name regions, embed the skin, bind the skeleton, cut into convex proxies.
 /// The same input and options give the same model, to the last bit.
 /// @throws Error where a step cannot do its work, or the tetrahedra do not pass the gate
 Made make_model(Input input, const Options& options, Watcher& watcher);

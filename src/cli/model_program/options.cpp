@@ -4,8 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <filesystem>
 
 #include "palpate/core/error.h"
+#include "palpate/mesh/boundary.h"
 #include "palpate/store/provenance.h"
 #include "sources.h"
 
@@ -22,6 +24,10 @@ constexpr const char* kExamples = R"(Examples:
   palpate model part.ply --tetrahedra 30000 --creases 40      edges that turn by more than 40 degrees stay sharp
   palpate model liver.msh --remesh --element-size-m 0.01      the boundary of tetrahedra, filled anew
   palpate model liver.obj --picture liver.png                 surface, tetrahedra cut open, skin and proxies
+  palpate model leg.obj --region bone=femur.obj -o leg.h5     tetrahedra inside of femur.obj become the region "bone"
+  palpate model human --region bone=skeleton -o human.h5      those inside of the bones
+
+A scene gives a region its own material: [[body.region]] with name = "bone" and youngs_modulus_pa, ...  Regions of a file of tetrahedra are kept.
 
 The outcome is printed: counts, smallest dihedral angle (at least 8 degrees, 4 where creases are kept), volume error (at most 1 %), worst aspect ratio,
 seconds a step, peak memory.  Exit status 0, or 1 where the surface or the mesh was refused; the message says where and why.)";
@@ -45,11 +51,37 @@ std::string source_help() {
   return fmt::format("a file ({}){}", model::known_endings(), shapes.empty() ? "" : ", or a shape of the paper: " + shapes);
 }
 
+/// NAME=FILE without the folder of the file: no machine stands in a record.
+std::string without_folder(const std::string& region) {
+  const std::size_t at = region.find('=') + 1;
+  return region.substr(0, at) + std::filesystem::path(region.substr(at)).filename().string();
+}
+
+/// NAME=FILE or NAME=skeleton.
+model::RegionSource region_of(const std::string& text) {
+  const std::size_t at = text.find('=');
+  if (at == std::string::npos || at == 0 || at + 1 == text.size()) fail("--region {}: must be NAME=FILE, a closed surface around the region, or NAME=skeleton, for the bones", text);
+  model::RegionSource out;
+  out.name = text.substr(0, at);
+  if (const std::string what = text.substr(at + 1); what == "skeleton") {
+    out.skeleton = true;
+  } else {
+    model::Input file = model::input_of_file(what);
+    out.surface = file.tets.tets.cols() > 0 ? mesh::boundary(file.tets).surface : std::move(file.surface);
+    out.from = std::move(file.from);
+  }
+  return out;
+}
+
 /// The options that shape the model, in one order and one spelling.
 std::string canonical(const CLI::App& app) {
   std::string out;
-  for (const char* name : {"--tetrahedra", "--element-size-m", "--scale", "--creases", "--proxies", "--bone-margin-m", "--remesh", "--largest-shell", "--no-wrap"})
+  for (const char* name : {"--tetrahedra", "--element-size-m", "--scale", "--creases", "--proxies", "--bone-margin-m", "--region", "--remesh", "--largest-shell", "--no-wrap"})
     if (const CLI::Option* option = app.get_option(name); option->count() > 0) {
+      if (std::string_view(name) == "--region") {
+        for (const std::string& given : option->results()) out += fmt::format("{}--region {}", out.empty() ? "" : " ", without_folder(given));
+        continue;
+      }
       out += fmt::format("{}{}", out.empty() ? "" : " ", name);
       if (option->get_items_expected() > 0) out += " " + option->results().back();
     }
@@ -61,6 +93,7 @@ std::string canonical(const CLI::App& app) {
 ModelArguments parse_model(int argc, char** argv) {
   ModelArguments out;
   std::string creases = "auto";
+  std::vector<std::string> regions;
   CLI::App app(kDescription, "palpate model");
   app.get_formatter()->column_width(34);
   app.footer(kExamples);
@@ -74,6 +107,8 @@ ModelArguments parse_model(int argc, char** argv) {
   app.add_option("--creases", creases, "edges to keep sharp: auto, none, or those that turn by more than this angle [degrees]")->type_name("WHICH")->capture_default_str();
   app.add_option("--proxies", options.proxies, "convex hulls wanted; 0: none")->type_name("N")->check(CLI::Range(0, 10000))->capture_default_str();
   app.add_option("--bone-margin-m", options.bone_margin_m, "nodes nearer to a bone than this belong to it, beside those inside [m]")->type_name("M")->check(CLI::NonNegativeNumber);
+  app.add_option("--region", regions, "tetrahedra with their middle inside the closed surface FILE become the region NAME; skeleton in its place: inside the bones.  May stand several times; the last counts")
+      ->type_name("NAME=FILE")->allow_extra_args(false);
   app.add_flag("--remesh", options.remesh, "tetrahedra of a file: fill their boundary anew instead of taking them");
   app.add_flag("--largest-shell", options.repair.largest_shell, "several bodies in one file: keep the largest");
   app.add_flag_callback("--no-wrap", [&options] { options.repair.wrap = false; }, "refuse what cannot be mended locally, instead of wrapping it");
@@ -91,6 +126,7 @@ ModelArguments parse_model(int argc, char** argv) {
     return out;
   } catch (const CLI::ParseError& error) { fail("{}; see `palpate model --help`", error.what()); }
   set_creases(creases, options);
+  for (const std::string& region : regions) options.regions.push_back(region_of(region));
   out.counted = count->count() > 0;
   if (out.counted || options.tetrahedra.element_size_m > 0) options.remesh = true;
   options.tetrahedra.at_least = !out.counted;

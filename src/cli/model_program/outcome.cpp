@@ -42,6 +42,12 @@ void print_outcome(const model::Made& made, const std::string& path) {
   fmt::print("{}: {}\n", made.file.model.name, record.source);
   for (const std::string& note : record.notes) fmt::print("  {}\n", note);
   fmt::print("\n{}\n", report::format_table({"outcome", ""}, figures(made)));
+  if (!made.regions.empty()) {
+    Rows regions;
+    for (const model::RegionFigures& r : made.regions)
+      regions.push_back({r.name, fmt::format("{}", r.tetrahedra), fmt::format("{:.6g}", r.volume), r.surface_volume > 0 ? fmt::format("{:.6g}", r.surface_volume) : "-"});
+    fmt::print("{}\n", report::format_table({"region", "tetrahedra", "volume [m^3]", "of its surface"}, regions));
+  }
   Rows rows;
   double sum = 0;
   for (const model::Step& step : made.steps) {

@@ -20,8 +20,10 @@ namespace {
 
 constexpr int kWidth = 900, kHeight = 720;
 
-/// The half of the tetrahedra behind the upright plane through the middle of the box that faces the eye; each face of the cut alone, so that it can be shaded by its element.
-render::Surface cut_open(const TetMesh& tets) {
+/// The half of the tetrahedra behind the upright plane through the middle of the box that faces the eye: those that `keep` holds for; each face alone, so that it can
+/// be shaded by its element.
+template <class Keep>
+render::Surface cut_open(const TetMesh& tets, const Keep& keep) {
   const Vec3 middle = (tets.nodes.rowwise().minCoeff() + tets.nodes.rowwise().maxCoeff()) / 2;
   const double azimuth = render::View{}.azimuth_deg * std::numbers::pi / 180;
   const Vec3 to_eye(std::cos(azimuth), std::sin(azimuth), 0.0);
@@ -30,7 +32,7 @@ render::Surface cut_open(const TetMesh& tets) {
   for (Eigen::Index t = 0; t < tets.tets.cols(); ++t) {
     Vec3 at = Vec3::Zero();
     for (int k = 0; k < 4; ++k) at += tets.nodes.col(tets.tets(k, t)) / 4;
-    if (to_eye.dot(at - middle) <= 0) half.tets.col(kept++) = tets.tets.col(t);
+    if (keep(t) && to_eye.dot(at - middle) <= 0) half.tets.col(kept++) = tets.tets.col(t);
   }
   half.tets.conservativeResize(4, kept);
   const mesh::Boundary boundary = mesh::boundary(half);
@@ -79,6 +81,25 @@ render::Rgb hue(std::size_t i) {
   return {channel(0), channel(1.0 / 3), channel(2.0 / 3)};
 }
 
+/// A surface for each region, and one for what is in none.
+void add_regions(const LayeredModel& model, render::Scene& scene) {
+  const std::vector<int> owner = mesh::region_of_element(model.regions, static_cast<int>(model.tets.tets.cols()));
+  for (int r = -1; r < static_cast<int>(model.regions.size()); ++r) {
+    render::Surface surface = cut_open(model.tets, [&](Eigen::Index t) { return owner[static_cast<std::size_t>(t)] == r; });
+    if (surface.faces.cols() == 0) continue;
+    surface.values.resize(0);
+    surface.crease_deg = 1.0;
+    if (r >= 0) surface.colour = hue(static_cast<std::size_t>(r));
+    scene.surfaces.push_back(std::move(surface));
+  }
+}
+
+std::string region_names(const LayeredModel& model) {
+  std::string out;
+  for (const MaterialRegion& region : model.regions) out += (out.empty() ? "; regions: " : ", ") + region.name;
+  return out;
+}
+
 void add_bones(const Skeleton& skeleton, render::Scene& scene) {
   const TriMesh ball = mesh::sphere(1.0, 4);
   for (const Bone& bone : skeleton.bones)
@@ -113,10 +134,14 @@ void draw_model(const LayeredModel& model, const std::string& path) {
   skin.surfaces.push_back({"", model.skin.vertices, model.skin.faces});
   panels.push_back(panel(skin, model.name + ": the skin", fmt::format("{} vertices", model.skin.vertices.cols())));
 
-  cut.surfaces.push_back(cut_open(model.tets));
-  cut.scale.label = "smallest dihedral angle";
-  cut.scale.unit = "deg";
-  panels.push_back(panel(cut, "the tetrahedra, cut open", fmt::format("{} of {} nodes", model.tets.tets.cols(), model.tets.nodes.cols())));
+  if (model.regions.empty()) {
+    cut.surfaces.push_back(cut_open(model.tets, [](Eigen::Index) { return true; }));
+    cut.scale.label = "smallest dihedral angle";
+    cut.scale.unit = "deg";
+  } else {
+    add_regions(model, cut);
+  }
+  panels.push_back(panel(cut, "the tetrahedra, cut open", fmt::format("{} of {} nodes{}", model.tets.tets.cols(), model.tets.nodes.cols(), region_names(model))));
 
   const TriMesh boundary = mesh::boundary(model.tets).surface;
   over.surfaces.push_back({"tetrahedra", boundary.vertices, boundary.faces});
