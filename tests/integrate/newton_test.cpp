@@ -120,7 +120,24 @@ TEST(FixedStepNewton, AStepThatHasNoSolutionIsTakenInParts) {
     EXPECT_NEAR(y[0], 1.0 / 0.35, 0.1) << name;
     EXPECT_GT(stepper->counters().steps, 1) << name;
     EXPECT_GT(stepper->counters().rejected, 0) << name;
+    EXPECT_GT(stepper->counters().newton_failures, 0) << name;
+    EXPECT_LE(stepper->counters().newton_failures, stepper->counters().rejected) << name;
   }
+}
+
+TEST(FixedStepNewton, CountsEachSolveOnce) {
+  fakes::Equation decay;
+  decay.f = [](const VecX& y, VecX& f) { f = -y; };
+  decay.jacobian = [](const VecX& y, MatX& J) { J = -MatX::Identity(y.size(), y.size()); };
+  decay.y0 = decay.scale = VecX::Ones(2);
+  VecX y;
+  double t = 0.0;
+  IntegratorSpec spec{.name = "ark-dirk-sdirk212", .step_s = 0.1, .fixed_step = true};
+  const auto stepper = integrate::make_ode_stepper(std::make_unique<fakes::DenseOde>(decay, 1e-8, y, t), spec);
+  ASSERT_TRUE(stepper->advance_to(1.0).ok());
+  EXPECT_EQ(stepper->counters().steps, 10);
+  EXPECT_EQ(stepper->counters().newton_iterations, 2 * 10) << "two linear stages a step";
+  EXPECT_EQ(stepper->counters().newton_failures, 0);
 }
 
 TEST(FixedStepNewton, WhereNoPartHelpsItIsSaid) {

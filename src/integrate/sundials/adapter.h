@@ -107,6 +107,7 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   void allocate();
   void release();
   void collect();
+  dynamics::StepAttempt attempt(double t0, double t1, dynamics::StepAttempt::Outcome outcome) const;
   void close_attempt(dynamics::StepAttempt::Outcome outcome);
   void accept_attempt(double t0, double t1, bool event);
   dynamics::StepResult result(dynamics::StepStatus status) const;

@@ -28,15 +28,19 @@ void Adapter::see_evaluation(double t, N_Vector y, bool finite) {
   attempt_y_ = Eigen::Map<const VecX>(NV_DATA_S(y), NV_LENGTH_S(y));
 }
 
-void Adapter::close_attempt(StepAttempt::Outcome outcome) {
-  const Counts now = counts();
+StepAttempt Adapter::attempt(double t0, double t1, StepAttempt::Outcome outcome) const {
   StepAttempt a;
-  a.t = attempt_start_;
-  a.h = attempt_reach_ - attempt_start_;
+  a.t = t0;
+  a.h = t1 - t0;
   a.order = last_order();
   a.error = std::numeric_limits<double>::quiet_NaN();
-  a.newton_iterations = static_cast<int>(now.newton_iterations - attempt_counts_.newton_iterations);
+  a.newton_iterations = static_cast<int>(counts().newton_iterations - attempt_counts_.newton_iterations);
   a.outcome = outcome;
+  return a;
+}
+
+void Adapter::close_attempt(StepAttempt::Outcome outcome) {
+  StepAttempt a = attempt(attempt_start_, attempt_reach_, outcome);
   a.worst_dof = attempt_worst_ >= 0 ? problem_->dof_of(attempt_worst_) : -1;
   if (attempt_y_.allFinite()) {
     const auto [finding, term] = problem_->inspect(attempt_reach_, attempt_y_.data());
@@ -44,21 +48,14 @@ void Adapter::close_attempt(StepAttempt::Outcome outcome) {
     a.inverted_in = term;
   }
   trace()->attempt(a);
-  attempt_counts_ = now;
+  attempt_counts_ = counts();
   attempt_reach_ = attempt_start_;
   attempt_worst_ = -1;
   attempt_open_ = false;
 }
 
 void Adapter::accept_attempt(double t0, double t1, bool event) {
-  const Counts now = counts();
-  StepAttempt a;
-  a.t = t0;
-  a.h = t1 - t0;
-  a.order = last_order();
-  a.error = std::numeric_limits<double>::quiet_NaN();
-  a.newton_iterations = static_cast<int>(now.newton_iterations - attempt_counts_.newton_iterations);
-  a.outcome = event ? StepAttempt::Outcome::kEvent : StepAttempt::Outcome::kAccepted;
+  StepAttempt a = attempt(t0, t1, event ? StepAttempt::Outcome::kEvent : StepAttempt::Outcome::kAccepted);
   if (local_errors(scratch_)) {
     fill_weights(y_, weights_);
     a.error = N_VWrmsNorm(scratch_, weights_);

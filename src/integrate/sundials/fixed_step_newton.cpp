@@ -42,16 +42,14 @@ struct Operations {
   }
   static int no_test(SUNNonlinearSolver, SUNNonlinSolConvTestFn, void*) { return SUN_NLS_SUCCESS; }  // the test is Deuflhard's
   static int no_limit(SUNNonlinearSolver, int) { return SUN_NLS_SUCCESS; }
-  static int all_iterations(SUNNonlinearSolver s, long* n) {
+  // Of the last solve: the library adds them up.
+  template <class Count>
+  static int iterations(SUNNonlinearSolver s, Count* n) {
     *n = of(s).iterations_;
     return SUN_NLS_SUCCESS;
   }
-  static int iteration(SUNNonlinearSolver s, int* n) {
-    *n = of(s).last_iterations_;
-    return SUN_NLS_SUCCESS;
-  }
   static int failures(SUNNonlinearSolver s, long* n) {
-    *n = of(s).failures_;
+    *n = of(s).failed_;
     return SUN_NLS_SUCCESS;
   }
   static int free(SUNNonlinearSolver s) {
@@ -74,8 +72,8 @@ SUNNonlinearSolver FixedStepNewton::make(SUNContext context) {
   solver->ops->setlsolvefn = Operations::set_solve;
   solver->ops->setctestfn = Operations::no_test;
   solver->ops->setmaxiters = Operations::no_limit;
-  solver->ops->getnumiters = Operations::all_iterations;
-  solver->ops->getcuriter = Operations::iteration;
+  solver->ops->getnumiters = Operations::iterations<long>;
+  solver->ops->getcuriter = Operations::iterations<int>;
   solver->ops->getnumconvfails = Operations::failures;
   usable_ = false;
   return solver;
@@ -101,24 +99,23 @@ int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double toleran
   const VecX first = entries(correction);
   VecX x = first;
   NewtonResult result = newton_.solve(*this, x, kIterations, DampedNewton::Way::kKeptMatrix, usable_);
-  last_iterations_ = result.iterations;
+  iterations_ = result.iterations;
   if (result.status != StepStatus::kOk && flag_ >= 0) {
     x = first;
     hook_.set_definite(true);
     result = newton_.solve(*this, x, kDefiniteIterations, DampedNewton::Way::kFresh, false);
     hook_.set_definite(false);
     usable_ = false;  // the next solve wants the true tangent
-    last_iterations_ += result.iterations;
+    iterations_ += result.iterations;
   }
   if (result.status != StepStatus::kOk && flag_ >= 0 && leaps_) {
     x = first;
     result = newton_.solve(*this, x, kDefiniteIterations, DampedNewton::Way::kLeaps, false);
-    last_iterations_ += result.iterations;
+    iterations_ += result.iterations;
   }
-  iterations_ += last_iterations_;
   entries(correction) = x;
-  if (result.status == StepStatus::kOk) return SUN_NLS_SUCCESS;
-  ++failures_;
+  failed_ = result.status != StepStatus::kOk;
+  if (!failed_) return SUN_NLS_SUCCESS;
   return flag_ < 0 ? flag_ : SUN_NLS_CONV_RECVR;
 }
 

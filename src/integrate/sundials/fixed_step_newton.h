@@ -38,10 +38,11 @@ class FixedStepNewton : private NewtonEquation {
   SUNNonlinSolLSetupFn set_up_ = nullptr;
   SUNNonlinSolLSolveFn solve_ = nullptr;
   bool usable_ = false, leaps_ = false;
-  long iterations_ = 0, failures_ = 0;
-  int last_iterations_ = 0, flag_ = 0;  ///< of the library's functions; < 0: given up
 
-  // of the solve under way
+  // of the last solve, or the one under way
+  int iterations_ = 0;
+  bool failed_ = false;
+  int flag_ = 0;  ///< of the library's functions; < 0: given up
   N_Vector x_ = nullptr, residual_ = nullptr, step_ = nullptr, weights_ = nullptr;
   double tolerance_ = 1.0;
   void* memory_ = nullptr;
