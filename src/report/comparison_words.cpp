@@ -115,8 +115,8 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
   std::string out = fmt::format("The reference's own error, {}, is {} below the best point that it can judge, {}: it bears every figure here{}.", short_number(reference_error),
                                 times(best / reference_error), short_number(best), unresolved ? " but the marked ones" : "");
   if (unresolved)
-    out += fmt::format(" {} {} within {:g} times of it, are marked, and count nowhere: errors below {} are not told apart.", unresolved, unresolved == 1 ? "point lies" : "points lie",
-                       kMargin, short_number(kMargin * reference_error));
+    out += fmt::format(" {} within {:g} times of it, {}: errors below {} are not told apart.", unresolved == 1 ? "1 point lies" : fmt::format("{} points lie", unresolved), kMargin,
+                       unresolved == 1 ? "is marked, and counts nowhere" : "are marked, and count nowhere", short_number(kMargin * reference_error));
   return out;
 }
 
