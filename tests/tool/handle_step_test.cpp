@@ -159,3 +159,33 @@ TEST(HandleStep, a_moving_handle_in_all_schemes) {
     EXPECT_NEAR(slope(h, e), 1.0, 0.15) << name;
   }
 }
+
+// While the handle stands still and the record stays, Simbody's integrators go on without a restart; what changes between two ticks must be seen all the same.
+TEST(HandleStep, WhatChangesAfterRestIsSeen) {
+  constexpr double kForce = 0.3;
+  for (const std::string name : {"simbody-rkmerson", "simbody-cpodes"}) {
+    const ToolSpec spec = spec_for(name);
+    const double there = kForce / spec.coupling_stiffness_n_m;
+    Tool tool(spec, Vec3::Zero());
+    dynamics::LinearisedContact record;
+    const auto rest = [&](const Vec3& handle) {
+      for (int i = 0; i < 1500; ++i) ASSERT_TRUE(tool.advance(1e-3, held({Quat::Identity(), handle}), record).ok());
+    };
+    rest(Vec3::Zero());
+    record.version = 1;
+    record.source = dynamics::LinearisedContact::Source::kFrozen;
+    record.F0[3] = kForce;
+    rest(Vec3::Zero());
+    EXPECT_NEAR(tool.pose().translation.x(), there, 1e-6 * there) << name << ": a record";
+    rest(Vec3(0, kShift, 0));
+    EXPECT_NEAR(tool.pose().translation.y(), kShift, 1e-6 * kShift) << name << ": another place of the handle";
+    EXPECT_NEAR(tool.pose().translation.x(), there, 1e-6 * there) << name;
+    HandleMotion slide;  // from rest at kShift to rest at 0 within a tick: its ends are where it stood, the twists are not zero
+    slide.pose0 = slide.pose1 = Pose{Quat::Identity(), Vec3(0, kShift, 0)};
+    slide.twist0.linear = Vec3(0, 5.0, 0);
+    const double before = tool.pose().translation.y();
+    ASSERT_TRUE(tool.advance(1e-3, slide, record).ok());
+    EXPECT_GT(std::abs(tool.pose().translation.y() - before), 1e-8) << name << ": a handle that moves within a tick";
+  }
+}
+
