@@ -17,4 +17,7 @@ void check_skeletons(const Document& document, const Description& description);
 void check_meshes(const Document& document, const Description& description);
 void check_contacts(const Document& document, Description& description);  ///< also puts the soft body first in each pair
 
+/// What picks nodes or elements of a body: "box", "sphere", or "" where neither is given.  @throws Error where both are, or one by halves
+std::string box_or_sphere(const Document& doc, const std::string& key, const std::string& where);
+
 }  // namespace palpate::scene

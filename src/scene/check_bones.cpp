@@ -64,15 +64,7 @@ void check_target(const Document& doc, const std::string& key, const std::string
 
 /// "box", "sphere" or "shape".
 std::string region_of(const Document& doc, const std::string& key, const std::string& where, const Description& d, const AttachmentSpec& a) {
-  const auto has = [&](const char* word) { return given(doc, key + "." + word); };
-  const bool box = has("box_min_m") || has("box_max_m"), sphere = has("centre_m") || has("radius_m");
-  if (box && sphere) refuse(place(doc, key + ".radius_m"), where, "a box and a sphere exclude each other; remove box_min_m and box_max_m, or centre_m and radius_m");
-  for (const char* word : {"box_min_m", "box_max_m"})
-    if (box && !has(word)) refuse(place(doc, key), where, fmt::format("{} is missing", word));
-  for (const char* word : {"centre_m", "radius_m"})
-    if (sphere && !has(word)) refuse(place(doc, key), where, fmt::format("{} is missing", word));
-  if (box) return "box";
-  if (sphere) return "sphere";
+  if (std::string shape = box_or_sphere(doc, key, where); !shape.empty()) return shape;
   if (a.to.empty()) refuse(place(doc, key), where, "box_min_m is missing: say which nodes, by box_min_m and box_max_m, or by centre_m and radius_m");
   const auto bone = std::find_if(d.bones.begin(), d.bones.end(), [&](const BoneSpec& b) { return b.name == a.to; });
   if (bone != d.bones.end() ? bone->shape.empty() : d.tool->shape != "sphere")

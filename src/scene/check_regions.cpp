@@ -8,16 +8,10 @@ namespace {
 
 /// "box", "sphere" or "file".
 std::string chosen_by(const Document& doc, const std::string& key, const std::string& where, const SoftBodySpec& body) {
-  const auto has = [&](const char* word) { return given(doc, key + "." + word); };
-  const bool box = has("box_min_m") || has("box_max_m"), sphere = has("centre_m") || has("radius_m");
-  if (box && sphere) refuse(place(doc, key + ".radius_m"), where, "a box and a sphere exclude each other; remove box_min_m and box_max_m, or centre_m and radius_m");
-  for (const char* word : {"box_min_m", "box_max_m"})
-    if (box && !has(word)) refuse(place(doc, key), where, fmt::format("{} is missing", word));
-  for (const char* word : {"centre_m", "radius_m"})
-    if (sphere && !has(word)) refuse(place(doc, key), where, fmt::format("{} is missing", word));
-  if (!box && !sphere && body.mesh.file.empty())
+  const std::string shape = box_or_sphere(doc, key, where);
+  if (shape.empty() && body.mesh.file.empty())
     refuse(place(doc, key), where, fmt::format("box_min_m is missing: generator = \"{}\" makes no regions; say which elements, by box_min_m and box_max_m, or by centre_m and radius_m", body.mesh.generator));
-  return box ? "box" : sphere ? "sphere" : "file";
+  return shape.empty() ? "file" : shape;
 }
 
 }  // namespace
