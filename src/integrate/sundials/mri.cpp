@@ -112,8 +112,9 @@ class Mri final : public Adapter {
       allow_leaps(parts_.halved());
       const int flag = MRIStepEvolve(slow_, t_end, y(), &t, ARK_ONE_STEP);
       if (flag >= 0) now_ = t;
-      if (flag != ARK_CONV_FAILURE || !parts_.shorten(now_)) return flag;
-      ++problem().counters().rejected;
+      if (flag != ARK_CONV_FAILURE) return flag;
+      ++failures_;
+      if (!parts_.shorten(now_)) return flag;
       restore_state();
       check(MRIStepReset(slow_, now_, y()), "MRIStepReset", now_, 0.0);
       check(MRIStepSetStopTime(slow_, t_end), "MRIStepSetStopTime", now_, 0.0);
@@ -131,6 +132,7 @@ class Mri final : public Adapter {
     Counts c;
     check(MRIStepGetNumSteps(slow_, &c.steps), "MRIStepGetNumSteps", 0.0, 0.0);
     check(MRIStepGetNonlinSolvStats(slow_, &c.newton_iterations, &c.newton_failures), "MRIStepGetNonlinSolvStats", 0.0, 0.0);
+    c.solve_failures = failures_;
     return c;
   }
   double last_step() const override {
@@ -178,6 +180,7 @@ class Mri final : public Adapter {
   const MultirateMethod& method_;
   double now_ = 0.0;
   StepInParts parts_{spec().step_s};
+  long failures_ = 0;  ///< of a stage's solve: the library counts none
   void *slow_ = nullptr, *fast_ = nullptr;
   MRIStepInnerStepper inner_ = nullptr;
   SUNLinearSolver linear_solver_ = nullptr;
