@@ -586,7 +586,7 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   A.multiply(b, exact);
   for (int limit = 0; limit <= 2; ++limit) {
     const integrate::NodeKernels& k = integrate::node_kernels(limit);
-    std::vector<float> values(9 * (source.size() + 1) + integrate::kBlockTail), p(4 * n + integrate::kVectorTail), q(p), inverse(12 * n + integrate::kVectorTail);
+    std::vector<float> values(9 * (source.size() + 1) + integrate::kBlockTail), p(4 * n + integrate::kVectorTail), q(p), inverse(static_cast<std::size_t>(integrate::inverse_place(static_cast<int>(n) + 3)));
     const integrate::DoubleBlocks D{row_start.data(), column.data(), source.data(), A.body.values().data(), A.body.slot_count() - 1};
     ASSERT_TRUE(k.convert(D, 1.0, values.data(), 0, static_cast<int>(n)));
     k.multiply_double(D, v.data(), Av.data(), 0, static_cast<int>(n));
@@ -607,7 +607,7 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
         const Mat3 own = Eigen::Map<const Mat3>(A.body.block(diagonal[i]));
         Mat3 J;
         for (int c = 0; c < 3; ++c)
-          for (int r = 0; r < 3; ++r) J(r, c) = inverse[12 * i + static_cast<std::size_t>(4 * c + r)];
+          for (int r = 0; r < 3; ++r) J(r, c) = inverse[static_cast<std::size_t>(integrate::inverse_place(static_cast<int>(i)) + (r == c ? r : integrate::kToOffDiagonal + 3 - r - c))];
         most = std::max(most, (own * J - Mat3::Identity()).norm());
       }
       return most;

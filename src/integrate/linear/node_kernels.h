@@ -26,8 +26,9 @@ struct BlockSource {
 };
 constexpr int kBlockTail = 16, kVectorTail = 16, kStepsAhead = 4;
 /// Vectors over the nodes hold four numbers a node, the last of them zero, and kVectorTail zeros behind the last node.
-/// A node's inverse diagonal block is column-major with the columns' fourth entry zero.
-constexpr int kInverseStride = 12;
+/// Inverses of diagonal blocks, four nodes together: xx yy zz 0 of each, then yz xz xy 0 of each.
+constexpr int kInversesOfFour = 32, kToOffDiagonal = 16;
+constexpr std::int64_t inverse_place(int node) { return kInversesOfFour * static_cast<std::int64_t>(node / 4) + 4 * (node % 4); }
 
 /// At most so many vectors go through one reading of the matrix.
 constexpr int kMostColumns = 5;
@@ -60,14 +61,14 @@ struct NodeKernels {
   void (*multiply)(const PackedRows& A, int count, const float* const* V, float* const* AV);
   /// Av = A v times `unit` of a balanced matrix on these rows, in double; mass: four numbers a node
   void (*multiply_balanced)(const PackedRows& A, const double* mass, double unit, const double* v, double* Av);
-  /// d += a p, r -= a q, z = J r; returns r . z
-  double (*update)(float a, const float* p, const float* q, const float* inverse, float* d, float* r, float* z, int first, int last);
+  /// r -= a q, z = J r; returns r . z
+  double (*update)(float a, const float* q, const float* inverse, float* r, float* z, int first, int last);
   /// z = J r; returns r . z
   double (*jacobi)(const float* inverse, const float* r, float* z, int first, int last);
   /// y[0..5] = sum of (r, arm x r): force and moment of a cluster.  The fourth entry of an arm is 1, or 0 with a zero arm: a node that does not take part
   void (*gather_rigid)(const float* r, const float* arm, float* y, int first, int last);
-  /// p = z + (w + turn x arm) + b p with w = motion[0..2], turn = motion[3..5]; motion null: p = z + b p
-  void (*direction)(float b, const float* z, const float* arm, const float* motion, float* p, int first, int last);
+  /// d += a p, then p = z + (w + turn x arm) + b p with w = motion[0..2], turn = motion[3..5]; motion null: p = z + b p
+  void (*direction)(float a, float b, const float* z, const float* arm, const float* motion, float* d, float* p, int first, int last);
   /// Rows [first, last) of w = E y; rows and y padded by zeros to `stride`, a multiple of 16
   void (*dense)(const float* E, int stride, const float* y, float* w, int first, int last);
   /// E = E^-1 in place, symmetric, rows of `stride`; false at a pivot that is not positive

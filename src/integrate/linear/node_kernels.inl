@@ -8,6 +8,7 @@ namespace {
 namespace PALPATE_SET {
 
 #define PALPATE_INLINE [[gnu::always_inline]] static inline
+#define PALPATE_INLINE_MEMBER [[gnu::always_inline]] inline
 
 typedef float Four __attribute__((vector_size(16)));
 typedef float FourAnywhere __attribute__((vector_size(16), aligned(4), may_alias));
@@ -26,10 +27,6 @@ PALPATE_INLINE void store(float* p, Four v) { *reinterpret_cast<FourAnywhere*>(p
 PALPATE_INLINE Four splat(float s) { return Four{s, s, s, s}; }
 PALPATE_INLINE Four without_last(Four v) { return __builtin_shuffle(v, Four{}, FourIndex{0, 1, 2, 4}); }
 PALPATE_INLINE double sum(Four v) { return (static_cast<double>(v[0]) + v[1]) + (static_cast<double>(v[2]) + v[3]); }
-PALPATE_INLINE Four cross(Four a, Four b) {
-  const FourIndex yzx{1, 2, 0, 3};
-  return __builtin_shuffle(a * __builtin_shuffle(b, yzx) - __builtin_shuffle(a, yzx) * b, yzx);
-}
 
 // A processor's own guess of what is read next ends at every page of 4 KiB: the blocks of a product are asked for so many numbers before, those of the original,
 // which stand in another order, some rows before.
@@ -42,8 +39,10 @@ constexpr int kLanes = PALPATE_LANES, kParts = kLanesOfGroup / kLanes;
 
 #if PALPATE_LANES == 16
 #define PALPATE_IN_QUARTERS(a, b, c, d) a, b, c, d, a + 4, b + 4, c + 4, d + 4, a + 8, b + 8, c + 8, d + 8, a + 12, b + 12, c + 12, d + 12
+#define PALPATE_REPEATED(a, b, c, d) a, b, c, d, a, b, c, d, a, b, c, d, a, b, c, d
 #elif PALPATE_LANES == 8
 #define PALPATE_IN_QUARTERS(a, b, c, d) a, b, c, d, a + 4, b + 4, c + 4, d + 4
+#define PALPATE_REPEATED(a, b, c, d) a, b, c, d, a, b, c, d
 #else
 #define PALPATE_IN_QUARTERS(a, b, c, d) a, b, c, d
 #endif
@@ -275,12 +274,11 @@ PALPATE_INLINE WideIndex invert_own(const Symmetric& own, float* inverse, const 
   const Wide a = yy * zz - yz * yz, b = xz * yz - xy * zz, c = xy * yz - xz * yy;
   const Wide minor = xx * yy - xy * xy, det = xx * a + xy * b + xz * c, scale = by / det;
   const Wide d = (xx * zz - xz * xz) * scale, e = (xy * xz - xx * yz) * scale;
-  const auto put = [&](int column, const Lanes3& three) __attribute__((always_inline)) {
-    each_lane(three, [&](int lane, const Four& numbers) __attribute__((always_inline)) { store(inverse + 3 * row[lane] + 4 * column, numbers); });
+  const auto put = [&](int to, const Lanes3& three) __attribute__((always_inline)) {
+    each_lane(three, [&](int lane, const Four& numbers) __attribute__((always_inline)) { store(inverse + inverse_place(row[lane] / 4) + to, numbers); });
   };
-  put(0, {a * scale, b * scale, c * scale});
-  put(1, {b * scale, d, e});
-  put(2, {c * scale, e, minor * scale});
+  put(0, {a * scale, d, minor * scale});
+  put(kToOffDiagonal, {e, c * scale, b * scale});
   return (trace > 0.0f) & (xx > 0.0f) & (minor > 0.0f) & (det > 0.0f);
 }
 
@@ -344,56 +342,131 @@ Balanced balance(const PackedRows& A, const BlockSource& from, float* sums, floa
   return by_count(count, [&](auto n) __attribute__((always_inline)) { return balance_columns<decltype(n)::value>(A, from, sums, inverse, trace, V, AV); });
 }
 
-PALPATE_INLINE Four times_inverse(const float* inverse, int i, Four r) {
-  const float* J = inverse + kInverseStride * static_cast<std::int64_t>(i);
-  return load(J) * splat(r[0]) + load(J + 4) * splat(r[1]) + load(J + 8) * splat(r[2]);
+// Vectors over the nodes, as many nodes as fit a vector at a time; those before and behind, one at a time.
+
+template <int kWidth>
+struct NodesAtATime;
+template <>
+struct NodesAtATime<4> {
+  using Numbers = Four;
+  static constexpr int kNodes = 1;
+  PALPATE_INLINE_MEMBER static Four take(const float* p) { return load(p); }
+  PALPATE_INLINE_MEMBER static void put(float* p, const Four& v) { store(p, v); }
+  PALPATE_INLINE_MEMBER static Four spread(const Four& v) { return v; }
+  PALPATE_INLINE_MEMBER static Four yzx(const Four& v) { return __builtin_shufflevector(v, v, 1, 2, 0, 3); }
+  PALPATE_INLINE_MEMBER static Four zxy(const Four& v) { return __builtin_shufflevector(v, v, 2, 0, 1, 3); }
+  PALPATE_INLINE_MEMBER static Four fourth(const Four& v) { return __builtin_shufflevector(v, v, 3, 3, 3, 3); }
+};
+#if PALPATE_LANES > 4
+template <>
+struct NodesAtATime<PALPATE_LANES> {
+  using Numbers = Wide;
+  static constexpr int kNodes = PALPATE_LANES / 4;
+  PALPATE_INLINE_MEMBER static Wide take(const float* p) { return *reinterpret_cast<const WideAnywhere*>(p); }
+  PALPATE_INLINE_MEMBER static void put(float* p, const Wide& v) { *reinterpret_cast<WideAnywhere*>(p) = v; }
+  PALPATE_INLINE_MEMBER static Wide spread(const Four& v) { return __builtin_shufflevector(v, v, PALPATE_REPEATED(0, 1, 2, 3)); }
+  PALPATE_INLINE_MEMBER static Wide yzx(const Wide& v) { return __builtin_shufflevector(v, v, PALPATE_IN_QUARTERS(1, 2, 0, 3)); }
+  PALPATE_INLINE_MEMBER static Wide zxy(const Wide& v) { return __builtin_shufflevector(v, v, PALPATE_IN_QUARTERS(2, 0, 1, 3)); }
+  PALPATE_INLINE_MEMBER static Wide fourth(const Wide& v) { return __builtin_shufflevector(v, v, PALPATE_IN_QUARTERS(3, 3, 3, 3)); }
+};
+#endif
+/// work(NodesAtATime, first of these nodes); several begin at a multiple of their number.
+template <class Work>
+PALPATE_INLINE void over_nodes(int first, int last, Work&& work) {
+  using One = NodesAtATime<4>;
+  using Several = NodesAtATime<PALPATE_LANES>;
+  int i = first;
+  for (; i < last && i % Several::kNodes != 0; ++i) work(One{}, i);
+  for (; i + Several::kNodes <= last; i += Several::kNodes) work(Several{}, i);
+  for (; i < last; ++i) work(One{}, i);
+}
+/// A sum over nodes: four numbers, of one node or of several at a time.
+struct SumOverNodes {
+  Four one{};
+  Wide several{};
+  PALPATE_INLINE_MEMBER void add(NodesAtATime<4>, const Four& v) { one += v; }
+#if PALPATE_LANES > 4
+  PALPATE_INLINE_MEMBER void add(NodesAtATime<PALPATE_LANES>, const Wide& v) { several += v; }
+#endif
+  PALPATE_INLINE_MEMBER Four four() const {
+    Four total = one;
+    for (int l = 0; l < kLanes; l += 4) total += Four{several[l], several[l + 1], several[l + 2], several[l + 3]};
+    return total;
+  }
+  PALPATE_INLINE_MEMBER double all() const {
+    double total = sum(one);
+    for (int l = 0; l < kLanes; l += 4) total += sum(Four{several[l], several[l + 1], several[l + 2], several[l + 3]});
+    return total;
+  }
+};
+
+template <class N>
+PALPATE_INLINE typename N::Numbers cross(N, const typename N::Numbers& a, const typename N::Numbers& b) {
+  return N::yzx(a * N::yzx(b) - N::yzx(a) * b);
+}
+/// Row by row: xx x + xy y + xz z is of D r, then of (xy yz xz) (y z x), then of (xz xy yz) (z x y).
+template <class N>
+PALPATE_INLINE typename N::Numbers times_inverse(N, const float* inverse, int i, const typename N::Numbers& r) {
+  const float* J = inverse + inverse_place(i);
+  const auto off = N::take(J + kToOffDiagonal);
+  return N::take(J) * r + N::zxy(off) * N::yzx(r) + N::yzx(off) * N::zxy(r);
 }
 
-double update(float a, const float* p, const float* q, const float* inverse, float* d, float* r, float* z, int first, int last) {
-  Four rz{};
-  for (int i = first; i < last; ++i) {
-    store(d + 4 * i, load(d + 4 * i) + splat(a) * load(p + 4 * i));
-    const Four residual = load(r + 4 * i) - splat(a) * load(q + 4 * i), image = times_inverse(inverse, i, residual);
-    store(r + 4 * i, residual);
-    store(z + 4 * i, image);
-    rz += residual * image;
-  }
-  return sum(rz);
+double update(float a, const float* q, const float* inverse, float* r, float* z, int first, int last) {
+  SumOverNodes rz;
+  over_nodes(first, last, [&](auto n, int i) __attribute__((always_inline)) {
+    using N = decltype(n);
+    const auto residual = N::take(r + 4 * i) - a * N::take(q + 4 * i), image = times_inverse(n, inverse, i, residual);
+    N::put(r + 4 * i, residual);
+    N::put(z + 4 * i, image);
+    rz.add(n, residual * image);
+  });
+  return rz.all();
 }
 
 double jacobi(const float* inverse, const float* r, float* z, int first, int last) {
-  Four rz{};
-  for (int i = first; i < last; ++i) {
-    const Four residual = load(r + 4 * i), image = times_inverse(inverse, i, residual);
-    store(z + 4 * i, image);
-    rz += residual * image;
-  }
-  return sum(rz);
+  SumOverNodes rz;
+  over_nodes(first, last, [&](auto n, int i) __attribute__((always_inline)) {
+    using N = decltype(n);
+    const auto residual = N::take(r + 4 * i), image = times_inverse(n, inverse, i, residual);
+    N::put(z + 4 * i, image);
+    rz.add(n, residual * image);
+  });
+  return rz.all();
 }
 
 void gather_rigid(const float* r, const float* arm, float* y, int first, int last) {
-  Four force{}, moment{};
-  for (int i = first; i < last; ++i) {
-    const Four a = load(arm + 4 * i), residual = splat(a[3]) * load(r + 4 * i);
-    force += residual;
-    moment += cross(a, residual);
-  }
+  SumOverNodes force, moment;
+  over_nodes(first, last, [&](auto n, int i) __attribute__((always_inline)) {
+    using N = decltype(n);
+    const auto at = N::take(arm + 4 * i), residual = N::fourth(at) * N::take(r + 4 * i);
+    force.add(n, residual);
+    moment.add(n, cross(n, at, residual));
+  });
+  const Four f = force.four(), m = moment.four();
   for (int axis = 0; axis < 3; ++axis) {
-    y[axis] = force[axis];
-    y[3 + axis] = moment[axis];
+    y[axis] = f[axis];
+    y[3 + axis] = m[axis];
   }
 }
 
-void direction(float b, const float* z, const float* arm, const float* motion, float* p, int first, int last) {
+void direction(float a, float b, const float* z, const float* arm, const float* motion, float* d, float* p, int first, int last) {
   if (!motion) {
-    for (int i = first; i < last; ++i) store(p + 4 * i, load(z + 4 * i) + splat(b) * load(p + 4 * i));
+    over_nodes(first, last, [&](auto n, int i) __attribute__((always_inline)) {
+      using N = decltype(n);
+      const auto before = N::take(p + 4 * i);
+      N::put(d + 4 * i, N::take(d + 4 * i) + a * before);
+      N::put(p + 4 * i, N::take(z + 4 * i) + b * before);
+    });
     return;
   }
   const Four shift{motion[0], motion[1], motion[2], 0.0f}, turn{motion[3], motion[4], motion[5], 0.0f};
-  for (int i = first; i < last; ++i) {
-    const Four a = load(arm + 4 * i);
-    store(p + 4 * i, load(z + 4 * i) + splat(a[3]) * shift + cross(turn, a) + splat(b) * load(p + 4 * i));
-  }
+  over_nodes(first, last, [&](auto n, int i) __attribute__((always_inline)) {
+    using N = decltype(n);
+    const auto before = N::take(p + 4 * i), at = N::take(arm + 4 * i);
+    N::put(d + 4 * i, N::take(d + 4 * i) + a * before);
+    N::put(p + 4 * i, N::take(z + 4 * i) + N::fourth(at) * N::spread(shift) + cross(n, N::spread(turn), at) + b * before);
+  });
 }
 
 void dense(const float* E, int stride, const float* y, float* w, int first, int last) {
@@ -685,20 +758,19 @@ bool invert_diagonal(const double* values, const int* slot, double scale, float*
     }
     for (int l = 0; l < count; ++l) {
       definite = definite && good[l] != 0;
-      float* J = inverse + kInverseStride * static_cast<std::int64_t>(from + l);
-      J[0] = static_cast<float>(out[0][l]);
-      J[1] = J[4] = static_cast<float>(out[1][l]);
-      J[2] = J[8] = static_cast<float>(out[2][l]);
-      J[5] = static_cast<float>(out[3][l]);
-      J[6] = J[9] = static_cast<float>(out[4][l]);
-      J[10] = static_cast<float>(out[5][l]);
-      J[3] = J[7] = J[11] = 0.0f;
+      float* J = inverse + inverse_place(from + l);
+      for (int axis = 0; axis < 3; ++axis) {
+        J[axis] = static_cast<float>(out[axis == 0 ? 0 : axis == 1 ? 3 : 5][l]);
+        J[kToOffDiagonal + axis] = static_cast<float>(out[axis == 0 ? 4 : axis == 1 ? 2 : 1][l]);
+      }
+      J[3] = J[kToOffDiagonal + 3] = 0.0f;
     }
   }
   return definite;
 }
 
 #undef PALPATE_INLINE
+#undef PALPATE_INLINE_MEMBER
 
 }  // namespace PALPATE_SET
 }  // namespace

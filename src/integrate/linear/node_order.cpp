@@ -9,21 +9,21 @@ class Bisection {
  public:
   Bisection(const dynamics::BlockSparse& A, NodeOrder& order) : A_(A), order_(order), part_(order.node.size(), 0) {}
 
-  /// Cuts nodes [first, last) of the order into `clusters` and appends their starts.
-  void cut(int first, int last, int clusters) {
-    if (clusters == 1) {
-      order_.start.push_back(last);
+  /// Cuts nodes [first, last) of the order into `count` and appends their ends.
+  void cut(int first, int last, int count, std::vector<int>& ends) {
+    if (count == 1) {
+      ends.push_back(last);
       return;
     }
     breadth_first(first, last, order_.node[static_cast<std::size_t>(first)]);
     breadth_first(first, last, order_.node[static_cast<std::size_t>(last) - 1]);  // the last reached lies at an end
-    const int left = clusters / 2, middle = first + static_cast<int>(static_cast<long>(last - first) * left / clusters);
+    const int left = count / 2, middle = first + static_cast<int>(static_cast<long>(last - first) * left / count);
     ++parts_;
     for (int k = first; k < middle; ++k) part_[node(k)] = parts_;
     ++parts_;
     for (int k = middle; k < last; ++k) part_[node(k)] = parts_;
-    cut(first, middle, left);
-    cut(middle, last, clusters - left);
+    cut(first, middle, left, ends);
+    cut(middle, last, count - left, ends);
   }
 
  private:
@@ -62,24 +62,28 @@ class Bisection {
 
 }  // namespace
 
-NodeOrder cluster_nodes(const dynamics::BlockSparse& A, int clusters, int parts) {
+NodeOrder cluster_nodes(const dynamics::BlockSparse& A, int clusters, int parts, int pieces) {
   const int n = A.block_rows();
   NodeOrder order;
   order.node.resize(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) order.node[static_cast<std::size_t>(i)] = i;
-  order.start = order.part = {0};
+  order.start = order.part = order.piece_start = order.piece = {0};
   if (n == 0) return order;
   clusters = std::clamp(clusters, 1, n);
   parts = std::clamp(parts, 1, clusters);
+  pieces = std::clamp(pieces, clusters, n);
   Bisection bisection(A, order);
-  bisection.cut(0, n, parts);
-  std::vector<int> ends(1, 0);
-  ends.swap(order.start);
-  for (int p = 0; p < parts; ++p) {
-    const auto share = [&](int k) { return static_cast<int>(static_cast<long>(clusters) * k / parts); };
-    bisection.cut(ends[static_cast<std::size_t>(p)], ends[static_cast<std::size_t>(p) + 1], share(p + 1) - share(p));
-    order.part.push_back(order.clusters());
-  }
+  std::vector<int> part_start(1, 0);
+  bisection.cut(0, n, parts, part_start);
+  const auto cut_each = [&](const std::vector<int>& of, int count, std::vector<int>& start, std::vector<int>& first) {
+    const auto share = [&](std::size_t k) { return static_cast<int>(static_cast<std::size_t>(count) * k / (of.size() - 1)); };
+    for (std::size_t p = 0; p + 1 < of.size(); ++p) {
+      bisection.cut(of[p], of[p + 1], std::min(share(p + 1) - share(p), of[p + 1] - of[p]), start);
+      first.push_back(static_cast<int>(start.size()) - 1);
+    }
+  };
+  cut_each(part_start, clusters, order.start, order.part);
+  cut_each(order.start, pieces, order.piece_start, order.piece);
   return order;
 }
 

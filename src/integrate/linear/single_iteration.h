@@ -42,16 +42,18 @@ class SingleIteration {
  private:
   bool reached(const EnergyBound& bound, double rho, double rtol) const { return bound.error(rho) <= rtol * rtol * bound.solution() && rho <= floor_; }
   bool coarse_on() const { return clusters_.ready(); }
+  double gather(std::size_t cluster);
   void coarse(int thread);
   double coarse_share() const;
-  const float* motion(std::size_t cluster) const { return coarse_on() ? w_.data() + 6 * cluster : nullptr; }
+  void direction(std::size_t cluster, float a, float b, float* d, float* p, int first, int last) const;
 
   const NodeKernels& kernels_;
   ClusterTeam& team_;
   const SingleMatrix& matrix_;
   const RigidClusters& clusters_;
   Singles d_, r_, z_, p_, q_;
-  Singles y_, w_;  ///< of the clusters: force and moment, and their motion
+  Singles y_, w_;    ///< of the clusters: force and moment, and their motion
+  Singles pieces_;   ///< motion of their pieces
   double pq_ = 0.0, floor_ = 0.0;
   std::vector<EnergyBound> bounds_;  ///< one a thread, all alike: each decides for itself, with nothing to wait for
   std::vector<double> partial_, partial_pq_;  ///< of clusters, of parts

@@ -29,9 +29,9 @@ struct Columns {
 
 }  // namespace
 
-void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters, int part_count) {
+void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters, int part_count, int pieces) {
   pattern_version_ = pattern.pattern_version();
-  order_ = cluster_nodes(pattern, clusters, part_count);
+  order_ = cluster_nodes(pattern, clusters, part_count, pieces);
   const std::size_t n = order_.node.size();
   place_of_node_.resize(n);
   for (std::size_t k = 0; k < n; ++k) place_of_node_[static_cast<std::size_t>(order_.node[k])] = static_cast<int>(k);
@@ -59,7 +59,7 @@ void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters, i
   written_ = {};
   for (auto* v : {&copy_, &mass_single_}) v->clear();
   prefer_huge_pages(source_);
-  inverse_.assign(kInverseStride * n + kVectorTail, 0.0f);
+  inverse_.assign(static_cast<std::size_t>(inverse_place(static_cast<int>(n) + 3)) + kVectorTail, 0.0f);
   const auto parts = static_cast<std::size_t>(order_.parts());
   good_.assign(parts, 0);
   balanced_.assign(parts, Balanced::kOk);
@@ -224,7 +224,11 @@ void SingleMatrix::hold(std::size_t part) {
     Eigen::Matrix3f block;
     for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = packing_.entry(own, k % 3, k / 3);
     const Eigen::Matrix3f inverse = block.inverse();
-    for (int k = 0; k < 9; ++k) inverse_[kInverseStride * node + static_cast<std::size_t>(k / 3 * 4 + k % 3)] = inverse(k % 3, k / 3);
+    float* J = inverse_.data() + inverse_place(static_cast<int>(node));
+    for (int axis = 0; axis < 3; ++axis) {
+      J[axis] = inverse(axis, axis);
+      J[kToOffDiagonal + axis] = inverse((axis + 1) % 3, (axis + 2) % 3);
+    }
   }
 }
 

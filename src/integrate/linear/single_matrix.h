@@ -19,7 +19,7 @@ class SingleMatrix {
   SingleMatrix(const NodeKernels& kernels, ClusterTeam& team) : kernels_(kernels), team_(team) {}
 
   /// Order, rows and memory for a pattern.
-  void analyse(const dynamics::BlockSparse& pattern, int clusters, int parts);
+  void analyse(const dynamics::BlockSparse& pattern, int clusters, int parts, int pieces);
   bool analysed(const dynamics::BlockSparse& pattern) const { return pattern_version_ != 0 && pattern_version_ == pattern.pattern_version(); }
 
   /// The copy, and to[k] = scale A from[k] for `count` columns, in single precision.

@@ -30,7 +30,9 @@ constexpr double kTrustsSingleStart = 1e-5;
 constexpr double kTightest = 1e-13;
 constexpr int kResidualReplacements = 40;
 /// Nodes of a cluster, and most clusters: E^-1 is dense, (6 clusters)^2 numbers read in each iteration and (6 clusters)^3 operations a refresh.
-constexpr int kNodesOfCluster = 100, kMostClusters = 96;
+constexpr int kNodesOfCluster = 150, kMostClusters = 48;
+/// Nodes of its pieces.  The count of iterations hardly changes from 16 to 64, and with pieces it is with 48 clusters what it is with 96 (beams of 32,400 and 99,238 nodes).
+constexpr int kNodesOfPiece = 32;
 /// Of a number in single precision, relative; and how many tolerances the bound below may come to for a body one element thick.
 constexpr double kSingleRounding = 0x1p-24, kRoundingShare = 4.0;
 /// Solutions to start from: many for tight tolerances, few for others, where one more saves less in iterations than it costs.
@@ -151,7 +153,7 @@ class SinglePcg final : public dynamics::LinearSolver {
     ++counters_.symbolic;
     const int n = pattern.block_rows(), clusters = std::min((n + kNodesOfCluster - 1) / kNodesOfCluster, kMostClusters);
     const int parts = two_level_ ? std::min(parts_of(n), clusters) : parts_of(n);
-    copy_.analyse(pattern, two_level_ ? clusters : parts, parts);
+    copy_.analyse(pattern, two_level_ ? clusters : parts, parts, two_level_ ? n / kNodesOfPiece : 0);
     if (two_level_) clusters_.prepare(copy_.order());
     iteration_.prepare();
     start_.prepare(copy_.order());
@@ -167,11 +169,11 @@ class SinglePcg final : public dynamics::LinearSolver {
     return status_;
   }
 
-  /// Operations of a new E over those of an iteration.
+  /// Operations of a new E and D over those of an iteration.
   double price_of_clusters() const {
     if (!clusters_.ready()) return 0.0;
     const double size = clusters_.size(), blocks = copy_.block_count();
-    return (size * size * size + 40.0 * blocks) / (9.0 * blocks + 40.0 * nodes() + size * size);
+    return (size * size * size + 60.0 * blocks) / (9.0 * blocks + 50.0 * nodes() + size * size);
   }
 
   void refresh_clusters(const double* positions) {
