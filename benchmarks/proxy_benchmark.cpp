@@ -1,12 +1,14 @@
 // Two bumpy balls of 44,000 skin vertices on 10,000 tetrahedra and 60 proxies each, pressed together, and one touched by a small rigid ball.
-// The reference is what proxies spare: placing every vertex of the two skins once (SkinPlacedWhole).
+// The reference is what proxies spare: placing every vertex of the two skins once (SkinPlacedWhole).  A ring that the ball presses from inside its hole, as one hull and as parts.
 #include <benchmark/benchmark.h>
 
 #include <numeric>
 
 #include "palpate/proxy/decompose.h"
+#include "palpate/proxy/decompose_solid.h"
 #include "palpate/proxy/pruner.h"
 #include "proxy/shapes.h"
+#include "proxy/tools.h"
 
 using namespace palpate;
 
@@ -123,6 +125,40 @@ void HeadAndRigidBall(benchmark::State& state) {
   report(state, pruner.counts(), a, b);
 }
 
+constexpr double kTube = 0.3, kHole = 1.3;
+const TriMesh& ring() {
+  static const TriMesh surface = tools::torus(kHole + kTube, kTube, 120, 60);
+  return surface;
+}
+
+/// What a rigid tool costs when a scene is assembled: its hulls, and with them their set.
+void DecomposeRing(benchmark::State& state) {
+  proxy::DecomposeReport report;
+  std::size_t hulls = 0;
+  for (auto _ : state) hulls = proxy::decompose_solid(ring(), {.count = static_cast<int>(state.range(0))}).size();
+  proxy::decompose_solid(ring(), {.count = static_cast<int>(state.range(0))}, &report);
+  state.counters["faces"] = static_cast<double>(ring().faces.cols());
+  state.counters["hulls"] = static_cast<double>(hulls);
+  state.counters["volume_ratio"] = report.hull_volume / report.skin_volume;
+}
+void RingSet(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(proxy::rigid_proxies(ring()));
+}
+
+void HeadInRing(benchmark::State& state) {
+  proxy::ProxySet a(head()), b = proxy::rigid_proxies(ring(), {.count = static_cast<int>(state.range(0)), .tolerance = state.range(0) > 24 ? 0.0 : 0.02});
+  proxy::Pruner pruner(a, b);
+  const auto nodes = phases(0.0);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    a.update(nodes[++i % nodes.size()]);
+    b.update(Pose{Quat::Identity(), Vec3(1.0 - kHole - 0.02 - 0.002 * static_cast<double>(i % 8), 0.0, 0.0)});
+    benchmark::DoNotOptimize(pruner.query(0.005));
+  }
+  report(state, pruner.counts(), a, b);
+  state.counters["hulls"] = b.size();
+}
+
 BENCHMARK(Embed)->Unit(benchmark::kMillisecond);
 BENCHMARK(Decompose)->Arg(16)->Arg(60)->Unit(benchmark::kMillisecond);
 BENCHMARK(SkinPlacedWhole)->Unit(benchmark::kMicrosecond);
@@ -130,5 +166,8 @@ BENCHMARK(UpdateProxies)->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 BENCHMARK(TwoHeads)->Unit(benchmark::kMicrosecond);
 BENCHMARK(TwoHeadsQueryAlone)->Unit(benchmark::kMicrosecond);
 BENCHMARK(HeadAndRigidBall)->Unit(benchmark::kMicrosecond);
+BENCHMARK(DecomposeRing)->Arg(1)->Arg(8)->Arg(24)->Arg(64)->Unit(benchmark::kMillisecond);
+BENCHMARK(RingSet)->Unit(benchmark::kMillisecond);
+BENCHMARK(HeadInRing)->Arg(1)->Arg(8)->Arg(24)->Arg(64)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

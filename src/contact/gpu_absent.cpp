@@ -10,7 +10,9 @@ namespace {
 }  // namespace
 
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, TriMesh, int, std::shared_ptr<MovingFrame>, const GpuOptions&) { absent(); }
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, std::shared_ptr<proxy::ProxySet>, TriMesh, int, std::shared_ptr<MovingFrame>, const GpuOptions&) { absent(); }
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, std::shared_ptr<proxy::ProxySet>, TriMesh, std::shared_ptr<proxy::ProxySet>, int, std::shared_ptr<MovingFrame>, const GpuOptions&) {
+  absent();
+}
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, NodeSurface, const GpuOptions&) { absent(); }
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, std::shared_ptr<proxy::ProxySet>, NodeSurface, std::shared_ptr<proxy::ProxySet>, const GpuOptions&) { absent(); }
 

@@ -85,9 +85,14 @@ void check_arguments(const NodeSurface& surface, const TriMesh& rigid, const Gpu
     PALPATE_CHECK(rigid.faces.col(f).minCoeff() >= 0 && rigid.faces.col(f).maxCoeff() < rigid.vertices.cols(), "rigid surface: face {} names a vertex that is not there", f);
 }
 
+void check_proxies(const Faces& faces, const std::shared_ptr<proxy::ProxySet>& proxies) {
+  PALPATE_CHECK(proxies, "a pruned gpu source needs proxies on both sides");
+  PALPATE_CHECK(proxies->face_count() == faces.cols(), "proxies of {} faces for a surface of {}", proxies->face_count(), faces.cols());
+}
+
 void check_proxies(const NodeSurface& surface, const std::shared_ptr<proxy::ProxySet>& proxies) {
-  PALPATE_CHECK(proxies && surface.node_of_vertex.empty(), "a pruned gpu source needs a skin and its proxies");
-  PALPATE_CHECK(proxies->face_count() == surface.faces.cols(), "proxies of {} faces for a surface of {}", proxies->face_count(), surface.faces.cols());
+  PALPATE_CHECK(surface.node_of_vertex.empty(), "a pruned gpu source needs a skin");
+  check_proxies(surface.faces, proxies);
 }
 
 }  // namespace
@@ -98,12 +103,12 @@ std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid
   return std::make_unique<WholeSource>(soft_side(std::move(surface)), rigid_side(std::move(rigid), frame, std::move(motion)), options);
 }
 
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, TriMesh rigid, int frame, std::shared_ptr<MovingFrame> motion,
-                                              const GpuOptions& options) {
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, TriMesh rigid, std::shared_ptr<proxy::ProxySet> proxies_rigid,
+                                              int frame, std::shared_ptr<MovingFrame> motion, const GpuOptions& options) {
   check_arguments(surface, rigid, options);
   check_proxies(surface, proxies);
-  auto hull = in_one_hull(rigid);
-  return make_pruned_source(soft_side(std::move(surface)), std::move(proxies), rigid_side(std::move(rigid), frame, std::move(motion)), std::move(hull), options);
+  check_proxies(rigid.faces, proxies_rigid);
+  return make_pruned_source(soft_side(std::move(surface)), std::move(proxies), rigid_side(std::move(rigid), frame, std::move(motion)), std::move(proxies_rigid), options);
 }
 
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, NodeSurface b, const GpuOptions& options) {

@@ -35,7 +35,5 @@ class ImageSource : public SampleSource {
 std::unique_ptr<SampleSource> make_whole_source(std::unique_ptr<ImageSide> a, std::unique_ptr<ImageSide> b, const GpuOptions& options);
 std::unique_ptr<SampleSource> make_pruned_source(std::unique_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::unique_ptr<ImageSide> b,
                                                  std::shared_ptr<proxy::ProxySet> proxies_b, const GpuOptions& options);
-/// A rigid surface as one proxy.
-std::shared_ptr<proxy::ProxySet> in_one_hull(const TriMesh& rigid);
 
 }  // namespace palpate::contact

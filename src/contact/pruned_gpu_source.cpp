@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
 #include "contact/gpu_source.h"
 #include "palpate/proxy/pruner.h"
@@ -129,29 +127,6 @@ class PrunedSource final : public ImageSource {
 std::unique_ptr<SampleSource> make_pruned_source(std::unique_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::unique_ptr<ImageSide> b,
                                                  std::shared_ptr<proxy::ProxySet> proxies_b, const GpuOptions& options) {
   return std::make_unique<PrunedSource>(std::move(a), std::move(proxies_a), std::move(b), std::move(proxies_b), options);
-}
-
-/// A rigid surface as one proxy: the hull of its farthest points in 32 directions (on a Fibonacci spiral), which the set grows until it holds them all.
-std::shared_ptr<proxy::ProxySet> in_one_hull(const TriMesh& rigid) {
-  LayeredModel model;
-  model.name = "rigid surface";
-  model.skin = rigid;
-  ProxyHull hull;
-  std::vector<int> corners;
-  constexpr int kDirections = 32;
-  for (int i = 0; i < kDirections; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / kDirections, turn = i * M_PI * (3.0 - std::sqrt(5.0)), r = std::sqrt(1.0 - z * z);
-    Eigen::Index farthest = 0;
-    (Vec3(r * std::cos(turn), r * std::sin(turn), z).transpose() * rigid.vertices).maxCoeff(&farthest);
-    corners.push_back(static_cast<int>(farthest));
-  }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  hull.corners = rigid.vertices(Eigen::all, corners);
-  hull.members.resize(static_cast<std::size_t>(rigid.vertices.cols()));
-  std::iota(hull.members.begin(), hull.members.end(), 0);
-  model.proxies.push_back(std::move(hull));
-  return std::make_shared<proxy::ProxySet>(model, proxy::ProxySetOptions{.patch_faces = 16});  // few faces in all: a finer grain costs more than it spares
 }
 
 }  // namespace palpate::contact

@@ -5,6 +5,7 @@
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/proxy/decompose_solid.h"
 
 namespace palpate::loop {
 namespace {
@@ -48,13 +49,17 @@ std::unique_ptr<contact::SampleSource> gpu_source(Pair a, Pair b) {
 #endif
 }
 
-[[maybe_unused]] std::unique_ptr<contact::SampleSource> gpu_source(Pair pair, TriMesh rigid, int frame, std::shared_ptr<contact::MovingFrame> motion) {
+/// A rigid surface in a frame.
+/// @param rigid_proxies  of it: made where the body has proxies and nobody made them yet
+[[maybe_unused]] std::unique_ptr<contact::SampleSource> gpu_source(Pair pair, TriMesh rigid, std::shared_ptr<proxy::ProxySet>& rigid_proxies, int frame,
+                                                                   std::shared_ptr<contact::MovingFrame> motion) {
 #ifdef PALPATE_HAS_GL
-  if (pair.proxies)
-    return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies), std::move(rigid), frame, std::move(motion), {pair.spec.pixels, pair.candidate_gap});
-  return contact::make_gpu_source(std::move(pair.surface), std::move(rigid), frame, std::move(motion), {pair.spec.pixels, pair.candidate_gap});
+  const contact::GpuOptions options{pair.spec.pixels, pair.candidate_gap};
+  if (!pair.proxies) return contact::make_gpu_source(std::move(pair.surface), std::move(rigid), frame, std::move(motion), options);
+  if (!rigid_proxies) rigid_proxies = std::make_shared<proxy::ProxySet>(proxy::rigid_proxies(rigid));
+  return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies), std::move(rigid), rigid_proxies, frame, std::move(motion), options);
 #else
-  static_cast<void>(pair), static_cast<void>(rigid), static_cast<void>(frame), static_cast<void>(motion);
+  static_cast<void>(pair), static_cast<void>(rigid), static_cast<void>(rigid_proxies), static_cast<void>(frame), static_cast<void>(motion);
   refuse_gpu();
 #endif
 }
@@ -78,7 +83,7 @@ std::shared_ptr<contact::MovingFrame> tool_motion(World& world) {
 std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
   const ToolSpec& tool = *world.description.tool;
   const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world);
-  if (pair.spec.method == "gpu") return gpu_source(std::move(pair), tool_surface(tool, world.folder), world.tool_frame_index, motion);
+  if (pair.spec.method == "gpu") return gpu_source(std::move(pair), tool_surface(tool, world.folder), world.tool_proxies, world.tool_frame_index, motion);
   if (tool.shape != "sphere") fail("contact {} - tool: method \"analytic\" needs shape = \"sphere\", the tool's is \"{}\"; use method = \"gpu\"", pair.spec.first, tool.shape);
   return contact::make_sphere_source(std::move(pair.surface), world.tool_frame_index, motion, Vec3::Zero(), tool.radius_m, pair.candidate_gap,
                                      world.description.coupling.contact_refresh_s);
@@ -107,7 +112,8 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair, 
   ball.radius_m = obstacle.radius_m;
   TriMesh surface = tool_surface(ball, world.folder);
   surface.vertices.colwise() += obstacle.position_m;
-  return gpu_source(std::move(pair), std::move(surface), frame, motion);
+  std::shared_ptr<proxy::ProxySet> proxies;
+  return gpu_source(std::move(pair), std::move(surface), proxies, frame, motion);
 }
 
 }  // namespace

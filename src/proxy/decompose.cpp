@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "palpate/core/error.h"
-#include "palpate/mesh/boundary.h"
 #include "proxy/convex_hull.h"
-#include "proxy/hull.h"
+#include "proxy/hull_quality.h"
 #include "proxy/owners.h"
 #include "proxy/skin_clusters.h"
 
@@ -59,30 +56,6 @@ std::vector<std::vector<int>> owned_nodes(const LayeredModel& model, const std::
   return nodes;
 }
 
-/// From a vertex along its normal the hull's surface is met at the nearest of the planes ahead, (offset - n . x) / (n . m); outside the hull at once.
-HullQuality quality(const ConvexHull& hull, const Points& corners, const Points& vertices, const Points& normals, const VecX& areas, const std::vector<int>& members) {
-  HullQuality out;
-  out.volume = hull.volume;
-  const Hull whole(corners);
-  double area = 0.0;
-  for (const int v : members) {
-    const Vec3 x = vertices.col(v), m = normals.col(v);
-    double gap = std::numeric_limits<double>::infinity();
-    for (Eigen::Index f = 0; f < hull.normals.cols(); ++f)
-      if (const double ahead = hull.normals.col(f).dot(m); ahead > 1e-12) gap = std::min(gap, (hull.offsets[f] - hull.normals.col(f).dot(x)) / ahead);
-    gap = std::isfinite(gap) ? std::max(gap, 0.0) : 0.0;
-    out.largest_gap = std::max(out.largest_gap, gap);
-    out.mean_gap += areas[v] * gap;
-    area += areas[v];
-    if (hull.beyond(x) > 0.0) {
-      const Points point = x;
-      out.outside = std::max(out.outside, nearest_difference(Hull(point), whole).norm());
-    }
-  }
-  if (area > 0.0) out.mean_gap /= area;
-  return out;
-}
-
 }  // namespace
 
 std::vector<ProxyHull> decompose(const LayeredModel& model, const DecomposeOptions& options, DecomposeReport* report) {
@@ -97,24 +70,13 @@ std::vector<ProxyHull> decompose(const LayeredModel& model, const DecomposeOptio
   take_faces(model.skin, cluster, proxies);
 
   const auto nodes = owned_nodes(model, proxies);
-  Points normals;
-  VecX areas;
-  mesh::vertex_normals_and_areas(model.skin.faces, skin, normals, areas);
-  DecomposeReport found;
-  found.skin_size = size;
-  found.skin_volume = mesh::enclosed_volume(model.skin);
   for (std::size_t p = 0; p < proxies.size(); ++p) {
     Points points(3, static_cast<Eigen::Index>(proxies[p].members.size() + nodes[p].size()));
     points.leftCols(static_cast<Eigen::Index>(proxies[p].members.size())) = skin(Eigen::all, proxies[p].members);
     points.rightCols(static_cast<Eigen::Index>(nodes[p].size())) = model.tets.nodes(Eigen::all, nodes[p]);
     proxies[p].corners = points(Eigen::all, greedy_corners(points, options.max_corners, options.tolerance * size));
-    if (!report) continue;
-    found.hulls.push_back(quality(convex_hull(proxies[p].corners), proxies[p].corners, skin, normals, areas, proxies[p].members));
-    found.hull_volume += found.hulls.back().volume;
-    found.largest_outside = std::max(found.largest_outside, found.hulls.back().outside);
-    found.largest_gap = std::max(found.largest_gap, found.hulls.back().largest_gap);
   }
-  if (report) *report = std::move(found);
+  if (report) *report = decompose_report(model.skin, proxies);
   return proxies;
 }
 

@@ -133,7 +133,7 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : 
     middle.col(p) = hull.corners.rowwise().mean();
     s.rest_centre.push_back(middle.col(p));
     owned[at] = sorted_unique(std::move(owned[at]));
-    double outside = 0.0, sum = 1.0;
+    double outside = hull.outside, sum = 1.0;
     const Hull whole(hull.corners);
     Hull one;
     const auto reach_for = [&](const Vec3& x) {

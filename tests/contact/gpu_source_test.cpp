@@ -168,22 +168,6 @@ TEST(GpuSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
 
 // --- proxies ------------------------------------------------------------------------------------------------------------
 
-struct Total {
-  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();  ///< of unit stiffness per area, on a
-  int pressed = 0;
-};
-Total total(const std::vector<contact::ContactSample>& samples, const dynamics::StateView& state) {
-  Total out;
-  for (const auto& s : samples) {
-    if (s.gap >= 0.0) continue;
-    const Vec3 force = -s.gap * s.area * s.normal;
-    out.force += force;
-    out.moment += point_on_nodes(s.a, state).cross(force);
-    ++out.pressed;
-  }
-  return out;
-}
-
 // The same pose cut into 1, 8 and 64 cells: force and moment within 1 % (DESIGN 3.3: a surface point contributes once), and the force as large as the uncut
 // surface's, whose plane is the hulls' and tilted by some degrees.
 TEST(PrunedGpuSource, ForceDoesNotDependOnTheCut) {
@@ -196,7 +180,8 @@ TEST(PrunedGpuSource, ForceDoesNotDependOnTheCut) {
   Total uncut;
   for (const int cells : {1, 2, 4}) {
     samples.clear();
-    const auto source = contact::make_gpu_source(skin.surface, proxies_of(skin.ball, skin.skin, skin.surface.embedding, cells), rigid, 0, contact::fixed_frame(), options(256, 0.02));
+    const auto source =
+        contact::make_gpu_source(skin.surface, proxies_of(skin.ball, skin.skin, skin.surface.embedding, cells), rigid, proxies_of(rigid), 0, contact::fixed_frame(), options(256, 0.02));
     source->query(skin.state.view(), samples);
     const Total cut = total(samples, skin.state.view());
     if (cells == 1) uncut = cut;
@@ -235,7 +220,8 @@ TEST(PrunedGpuSource, FindsContactOnBothSides) {
   surface.embedding = mesh::embed(tets, skin.vertices);
   surface.tets = tets.tets;
   std::vector<contact::ContactSample> samples;
-  const auto source = contact::make_gpu_source(surface, proxies_of(tets, skin, surface.embedding, 4), mesh::sphere(0.4, 20), 0, contact::fixed_frame(), options(128, 0.02));
+  const TriMesh rigid = mesh::sphere(0.4, 20);
+  const auto source = contact::make_gpu_source(surface, proxies_of(tets, skin, surface.embedding, 4), rigid, proxies_of(rigid), 0, contact::fixed_frame(), options(128, 0.02));
   source->query(state.view(), samples);
   Vec3 left = Vec3::Zero(), right = Vec3::Zero();
   for (const auto& s : samples) {
@@ -256,10 +242,13 @@ TEST(PrunedGpuSource, RefusesWhatDoesNotBelongTogether) {
   SurfaceWorld nodes({skin.vertices, skin.skin.faces});
   const auto proxies = proxies_of(skin.ball, skin.skin, skin.surface.embedding, 1);
   const TriMesh rigid = sphere(Vec3::Zero(), 0.5, 8);
-  EXPECT_THROW(contact::make_gpu_source(nodes.surface, proxies, rigid, 0, contact::fixed_frame(), options(64, 0.02)), InternalError) << "nodes have no embedding to follow";
+  const auto of_rigid = proxies_of(rigid);
+  EXPECT_THROW(contact::make_gpu_source(nodes.surface, proxies, rigid, of_rigid, 0, contact::fixed_frame(), options(64, 0.02)), InternalError) << "nodes have no embedding to follow";
+  EXPECT_THROW(contact::make_gpu_source(skin.surface, proxies, rigid, nullptr, 0, contact::fixed_frame(), options(64, 0.02)), InternalError);
+  EXPECT_THROW(contact::make_gpu_source(skin.surface, proxies, sphere(Vec3::Zero(), 0.5, 9), of_rigid, 0, contact::fixed_frame(), options(64, 0.02)), InternalError);
   contact::NodeSurface fewer = skin.surface;
   fewer.faces.conservativeResize(3, fewer.faces.cols() - 1);
-  EXPECT_THROW(contact::make_gpu_source(fewer, proxies, rigid, 0, contact::fixed_frame(), options(64, 0.02)), InternalError);
+  EXPECT_THROW(contact::make_gpu_source(fewer, proxies, rigid, of_rigid, 0, contact::fixed_frame(), options(64, 0.02)), InternalError);
 }
 
 TEST(GpuSource, RefusesBadOptions) {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "palpate/mesh/layered_model.h"
-#include "palpate/proxy/proxy_set.h"
+#include "palpate/proxy/decompose_solid.h"
 
 namespace contact_tests {
 
@@ -43,6 +43,11 @@ inline std::shared_ptr<proxy::ProxySet> proxies_of(const TetMesh& tets, const Tr
   model.embedding = embedding;
   model.proxies = grid_proxies(skin, cells);
   return std::make_shared<proxy::ProxySet>(model);
+}
+
+/// Of a rigid surface.
+inline std::shared_ptr<proxy::ProxySet> proxies_of(const TriMesh& rigid, const proxy::SolidOptions& options = {}) {
+  return std::make_shared<proxy::ProxySet>(proxy::rigid_proxies(rigid, options));
 }
 
 }  // namespace contact_tests

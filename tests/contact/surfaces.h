@@ -89,4 +89,21 @@ inline Vec3 point_on_nodes(const contact::SurfacePoint& p, const dynamics::State
   return x;
 }
 
+/// Force and moment about the origin of unit stiffness per area, on side a.
+struct Total {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+  int pressed = 0;
+};
+inline Total total(const std::vector<contact::ContactSample>& samples, const dynamics::StateView& state) {
+  Total out;
+  for (const auto& s : samples) {
+    if (s.gap >= 0.0) continue;
+    const Vec3 force = -s.gap * s.area * s.normal;
+    out.force += force;
+    out.moment += point_on_nodes(s.a, state).cross(force);
+    ++out.pressed;
+  }
+  return out;
+}
+
 }  // namespace contact_tests

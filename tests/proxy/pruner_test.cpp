@@ -8,79 +8,15 @@
 
 #include "palpate/core/error.h"
 #include "palpate/proxy/decompose.h"
+#include "pruning.h"
 #include "shapes.h"
 
 using namespace palpate;
 using proxy::Pruner;
 using proxy::ProxySet;
+using namespace pruning;
 
 namespace {
-
-/// A body at some positions of its nodes, with its skin there.
-struct Placed {
-  const LayeredModel& model;
-  ProxySet set;
-  Points nodes, skin;
-
-  explicit Placed(const LayeredModel& m) : model(m), set(m) { place(Pose{}, 0.0, 0); }
-  /// Rigidly, after waves through it of that amplitude.
-  void place(const Pose& pose, double wave, unsigned seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> in(-2.0, 2.0);
-    const Mat3 K = Mat3::NullaryExpr([&] { return in(random); }), P = Mat3::NullaryExpr([&] { return in(random); });
-    nodes = model.tets.nodes;
-    for (Eigen::Index n = 0; n < nodes.cols(); ++n) {
-      const Vec3 x = nodes.col(n);
-      nodes.col(n) = pose * Vec3(x + wave * (K * x + P.col(0)).array().sin().matrix());
-    }
-    set.update(nodes);
-    mesh::evaluate(model.embedding, model.tets.tets, nodes, skin);
-  }
-};
-
-/// Winding number of a closed surface around a point: the solid angles of its faces (van Oosterom and Strackee 1983) over 4 pi.
-double winding(const Faces& faces, const Points& skin, const Vec3& p) {
-  double angle = 0.0;
-  for (Eigen::Index f = 0; f < faces.cols(); ++f) {
-    const Vec3 a = skin.col(faces(0, f)) - p, b = skin.col(faces(1, f)) - p, c = skin.col(faces(2, f)) - p;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return angle / (4 * M_PI);
-}
-
-/// Vertices of `one` truly inside `other`, by brute force over all faces.
-std::vector<char> inside(const Placed& one, const Placed& other) {
-  const Vec3 low = other.skin.rowwise().minCoeff(), high = other.skin.rowwise().maxCoeff();
-  std::vector<char> out(static_cast<std::size_t>(one.skin.cols()));
-  for (Eigen::Index v = 0; v < one.skin.cols(); ++v) {
-    const Vec3 p = one.skin.col(v);
-    out[static_cast<std::size_t>(v)] = (p.array() > low.array()).all() && (p.array() < high.array()).all() && winding(other.model.skin.faces, other.skin, p) > 0.5;
-  }
-  return out;
-}
-
-/// Faces with a vertex inside.
-std::set<int> touching_faces(const LayeredModel& model, const std::vector<char>& is_inside) {
-  std::set<int> out;
-  for (Eigen::Index f = 0; f < model.skin.faces.cols(); ++f)
-    for (int k = 0; k < 3; ++k)
-      if (is_inside[static_cast<std::size_t>(model.skin.faces(k, f))]) out.insert(static_cast<int>(f));
-  return out;
-}
-
-struct Handed {
-  std::set<int> a, b;
-  bool a_twice = false;
-};
-Handed handed(std::span<const proxy::ContactRegion> regions) {
-  Handed out;
-  for (const auto& region : regions) {
-    for (const int f : region.faces_a) out.a_twice |= !out.a.insert(f).second;
-    out.b.insert(region.faces_b.begin(), region.faces_b.end());
-  }
-  return out;
-}
 
 LayeredModel cut(LayeredModel model, int count) {
   model.proxies = proxy::decompose(model, {.count = count});
@@ -110,10 +46,10 @@ TEST(Pruner, NothingTrulyOverlappingIsMissed) {
     regions_seen += static_cast<int>(regions.size());
     const Handed found = handed(regions);
     EXPECT_FALSE(found.a_twice) << i;
-    const auto a_in_b = inside(a, b), b_in_a = inside(b, a);
-    const auto faces_a = touching_faces(ball, a_in_b), faces_b = touching_faces(small, b_in_a);
-    EXPECT_TRUE(std::includes(found.a.begin(), found.a.end(), faces_a.begin(), faces_a.end())) << i;
-    EXPECT_TRUE(std::includes(found.b.begin(), found.b.end(), faces_b.begin(), faces_b.end())) << i;
+    const auto b_in_a = inside(b.skin, ball.skin.faces, a.skin);
+    const auto faces_a = true_patch(ball.skin.faces, a.skin, small.skin.faces, b.skin), faces_b = faces_at(small.skin.faces, b_in_a);
+    EXPECT_TRUE(holds(found.a, faces_a)) << i;
+    EXPECT_TRUE(holds(found.b, faces_b)) << i;
     for (const auto& region : regions) {
       EXPECT_NEAR(region.region.normal.norm(), 1.0, 1e-12);
       EXPECT_NEAR((region.axes.transpose() * region.axes - Mat3::Identity()).norm(), 0.0, 1e-12);
@@ -164,10 +100,10 @@ TEST(Pruner, TheCutDoesNotChangeWhatTouches) {
     EXPECT_GT(regions[0].region.normal.dot(axis), std::cos(0.04)) << count;  // libccd on the hulls alone is off by 0.27, 0.03 and 0.02 here
     const Handed found = handed(regions);
     EXPECT_FALSE(found.a_twice);
-    const auto faces_a = touching_faces(model, inside(a, b)), faces_b = touching_faces(model, inside(b, a));
+    const auto faces_a = true_patch(model.skin.faces, a.skin, model.skin.faces, b.skin), faces_b = true_patch(model.skin.faces, b.skin, model.skin.faces, a.skin);
     EXPECT_GT(faces_a.size(), 20u);
-    EXPECT_TRUE(std::includes(found.a.begin(), found.a.end(), faces_a.begin(), faces_a.end()));
-    EXPECT_TRUE(std::includes(found.b.begin(), found.b.end(), faces_b.begin(), faces_b.end()));
+    EXPECT_TRUE(holds(found.a, faces_a));
+    EXPECT_TRUE(holds(found.b, faces_b));
     const std::string name = std::to_string(count) + "_proxies_";
     RecordProperty(name + "normal_off_mrad", static_cast<int>(1e3 * std::acos(std::min(1.0, regions[0].region.normal.dot(axis)))));
     RecordProperty(name + "faces_per_true_percent", static_cast<int>(100 * found.a.size() / faces_a.size()));
@@ -184,7 +120,8 @@ TEST(Pruner, HandsOnLittleMoreThanThePatch) {
     b.place({Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX())), distance * Vec3(1, 0.3, 0.2).normalized()}, 0.03, 1);
     const Handed found = handed(pruner.query(0.0));
     const double all = static_cast<double>(pumpkin.skin.faces.cols());
-    const double truth_a = touching_faces(pumpkin, inside(a, b)).size() / all, truth_b = touching_faces(pumpkin, inside(b, a)).size() / all;
+    const double truth_a = true_patch(pumpkin.skin.faces, a.skin, pumpkin.skin.faces, b.skin).size() / all;
+    const double truth_b = true_patch(pumpkin.skin.faces, b.skin, pumpkin.skin.faces, a.skin).size() / all;
     EXPECT_LE(found.a.size() / all, 2 * truth_a + 0.03) << distance;
     EXPECT_LE(found.b.size() / all, 2 * truth_b + 0.03) << distance;
     checked += truth_a > 0.0;

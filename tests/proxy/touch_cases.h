@@ -1,21 +1,22 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <vector>
 
 #include "palpate/core/error.h"
 #include "palpate/core/pose.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/proxy/decompose.h"
+#include "palpate/proxy/decompose_solid.h"
 #include "palpate/proxy/pruner.h"
 #include "palpate/store/model_file.h"
+#include "proxy/pruning.h"
 
 /// The paper's models touched as in its figures: two pumpkins in contact, the head by a sphere at the bridge of the nose, the human at the leg.
 /// A touch goes in and out once in `kPhases` queries, and dents what it touches.
 namespace touch {
 
 using namespace palpate;
+using pruning::true_patch;
 
 inline constexpr int kPhases = 8;
 inline double pressed(int phase) { return 0.5 - 0.5 * std::cos(2 * M_PI * phase / kPhases); }  ///< 0 to 1 and back
@@ -70,7 +71,7 @@ inline void add_ball(Case& out, double radius, double x, double z) {
   out.b.name = "ball";
   out.b.skin = mesh::sphere(radius, 12);
   out.b.skin.vertices.colwise() += out.place - radius * out.inward;
-  out.b.proxies = proxy::decompose(out.b, {.count = 1});
+  out.b.proxies = proxy::decompose_solid(out.b.skin);
   out.size = radius;
   out.gap = gap;
 }
@@ -128,7 +129,7 @@ struct Bodies {
   proxy::ProxySet a, b;
   std::vector<Points> nodes_a, nodes_b;
 
-  explicit Bodies(const Case& c) : touch(c), a(c.a), b(c.b, {.patch_faces = c.b_is_soft() ? 0 : 16}) {  // a tool's grain, as in contact/gpu_source.cpp
+  explicit Bodies(const Case& c) : touch(c), a(c.a), b(c.b, {.patch_faces = c.b_is_soft() ? 0 : 16}) {  // a tool's grain, as of rigid_proxies
     for (int i = 0; i < kPhases; ++i) {
       nodes_a.push_back(c.nodes_a(i));
       if (c.b_is_soft()) nodes_b.push_back(c.nodes_b(i));
@@ -154,30 +155,5 @@ struct Skins {
       b = c.b.skin.vertices.colwise() + c.pose_b(phase).translation;
   }
 };
-
-/// Winding number of a closed surface around a point: the solid angles of its faces (van Oosterom and Strackee 1983) over 4 pi.
-inline double winding(const Faces& faces, const Points& skin, const Vec3& p) {
-  double angle = 0.0;
-  for (Eigen::Index f = 0; f < faces.cols(); ++f) {
-    const Vec3 a = skin.col(faces(0, f)) - p, b = skin.col(faces(1, f)) - p, c = skin.col(faces(2, f)) - p;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return angle / (4 * M_PI);
-}
-
-/// Faces of `one` with a vertex inside the other closed skin, by brute force over all of the other's faces: the true contact patch.
-inline std::set<int> true_patch(const Faces& faces, const Points& one, const Faces& other_faces, const Points& other) {
-  const Vec3 low = other.rowwise().minCoeff(), high = other.rowwise().maxCoeff();
-  std::vector<char> inside(static_cast<std::size_t>(one.cols()));
-  for (Eigen::Index v = 0; v < one.cols(); ++v)
-    inside[static_cast<std::size_t>(v)] =
-        (one.col(v).array() > low.array()).all() && (one.col(v).array() < high.array()).all() && winding(other_faces, other, one.col(v)) > 0.5;
-  std::set<int> out;
-  for (Eigen::Index f = 0; f < faces.cols(); ++f)
-    for (int k = 0; k < 3; ++k)
-      if (inside[static_cast<std::size_t>(faces(k, f))]) out.insert(static_cast<int>(f));
-  return out;
-}
 
 }  // namespace touch

@@ -36,11 +36,12 @@ struct GpuOptions {
 /// The GL context is opened at the first query.  @throws Error when no EGL device can be opened, with the package that brings it.
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid, int frame, std::shared_ptr<MovingFrame> motion, const GpuOptions& options);
 
-/// The same with the soft side's proxies (DESIGN 3.2, 3.3): only skin that may be near is looked at, in regions that have each its own plane and image, so
+/// The same with proxies of both sides (DESIGN 3.2, 3.3): only skin that may be near is looked at, in regions that have each its own plane and image, so
 /// that bodies which are no height field as a whole are seen from all sides that they are touched on.  Each face of the skin is in one region at most.
 /// @param proxies  of `surface`, a skin: the set's faces are the surface's; it may serve several sources
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, TriMesh rigid, int frame, std::shared_ptr<MovingFrame> motion,
-                                              const GpuOptions& options);
+/// @param proxies_rigid  of `rigid`, in its frame, as proxy::rigid_proxies makes them; it may serve several sources
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, TriMesh rigid, std::shared_ptr<proxy::ProxySet> proxies_rigid,
+                                              int frame, std::shared_ptr<MovingFrame> motion, const GpuOptions& options);
 
 /// Two soft bodies: both points of a sample hang on nodes, so its force reaches both bodies, equal and opposite, and its tangent couples them.  The pattern has
 /// blocks between the two bodies' nodes where samples were found, and grows with the contact (pattern_version).

@@ -104,6 +104,7 @@ struct World {
   std::unique_ptr<device::WrenchLimiter> limiter;
   std::shared_ptr<contact::MovingFrame> tool_motion;    ///< the tool's frame in contact; null where no contact names the tool
   std::shared_ptr<contact::TrajectoryFrame> tool_frame; ///< the same where the scheme is partitioned: what the ticks write; else null
+  std::shared_ptr<proxy::ProxySet> tool_proxies;        ///< null where the tool meets no body with proxies
   int tool_frame_index = -1;                            ///< of the tool in `contact`, -1 where no contact names it
   std::unique_ptr<dynamics::LinearSolver> condenser;    ///< factors the step matrix for the condensed linearisation; null where not used
   std::unique_ptr<dynamics::LinearSolver> condenser_lu; ///< made at the first step matrix without a Cholesky factor

@@ -14,6 +14,7 @@ struct ProxyHull {
   Points corners;             ///< 3 x at most 32, in convex position, at rest [m]
   std::vector<int> members;   ///< skin vertices, ascending
   int bone = -1;              ///< the bone that it goes with; -1: the mean motion of its nodes
+  double outside = 0.0;       ///< how far beyond the hull lies what it stands for besides its members, the inside of a rigid solid [m]
 };
 
 /// The three levels of a soft object, as one asset file holds them.  What is empty is not there.
