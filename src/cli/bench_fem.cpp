@@ -91,15 +91,19 @@ void print_exponents(const FemBenchReport& report) {
                                {&FemBenchRow::factor_ms, &FemBenchRow::factor_limit_ms}, {&FemBenchRow::solve_ms, &FemBenchRow::solve_limit_ms},
                                {&FemBenchRow::step_ms, &FemBenchRow::step_limit_ms}};
   Rows rows;
+  double tetrahedra = 0.0, blocks = 0.0;
   for (const auto& [kind, members] : by_kind(report)) {
     if (members.size() < 2) continue;
+    tetrahedra = study::scaling_exponent(members, [](const FemBenchRow& r) { return r.tetrahedra; });
+    blocks = study::scaling_exponent(members, [](const FemBenchRow& r) { return r.blocks; });
     std::vector<std::string> row{kind};
     for (const Stage& stage : kStages) row.push_back(fmt::format("{:.2f} ({:.2f})", study::scaling_exponent(members, stage.time), study::scaling_exponent(members, stage.limit)));
     rows.push_back(row);
   }
-  if (!rows.empty())
-    fmt::print("growth with the number of nodes n: exponent e of ms ~ n^e, and in brackets that of the limit\n{}\n",
-               report::format_table({"kind", "force", "matrix", "factor", "solve", "step"}, rows));
+  if (rows.empty()) return;
+  fmt::print("growth with the number of nodes n: exponent e of ms ~ n^e, and in brackets that of the limit\n{}\n"
+             "  with less surface there is more to a node: tetrahedra grow with {:.3f}, blocks of the matrix with {:.3f}\n\n",
+             report::format_table({"kind", "force", "matrix", "factor", "solve", "step"}, rows), tetrahedra, blocks);
 }
 
 void print_peers(const FemBenchReport& report) {

@@ -1,6 +1,7 @@
 #include "element_evaluation.h"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
 
 #include "corotated.h"
@@ -78,7 +79,7 @@ void set_zero(const ChunkBlocks& blocks, int count) {
 
 void keep_blocks(const ChunkBlocks& blocks, int begin, int end, double* to) {
   for (int k = begin; k < end; ++k, to += 9) {
-    std::copy_n(blocks.first + 8 * k, 8, to);
+    std::memcpy(to, blocks.first + 8 * k, 8 * sizeof(double));  // they never overlap: no call for sixty-four bytes
     to[8] = blocks.last[k];
   }
 }

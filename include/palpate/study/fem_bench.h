@@ -84,8 +84,8 @@ struct FemBenchReport {
 FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)() = nullptr);
 MachineLimits measure_limits(int threads);
 
-/// ln(step) over ln(nodes), by least squares, of rows that differ in size alone; NaN for fewer than two.
-double scaling_exponent(const std::vector<const FemBenchRow*>& rows, double FemBenchRow::*stage);
+/// ln(a figure of a row) over ln(nodes), by least squares, of rows that differ in size alone; NaN for fewer than two.
+double scaling_exponent(const std::vector<const FemBenchRow*>& rows, const std::function<double(const FemBenchRow&)>& figure);
 
 /// What others took on the same beam (median ms of a step of 10 ms and of 1 ms; E = 1e5; quoted, of the machine below).
 struct PeerFigure {

@@ -245,11 +245,11 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
   return report;
 }
 
-double scaling_exponent(const std::vector<const FemBenchRow*>& rows, double FemBenchRow::*stage) {
+double scaling_exponent(const std::vector<const FemBenchRow*>& rows, const std::function<double(const FemBenchRow&)>& figure) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const FemBenchRow* row : rows) {
-    if (!(row->*stage > 0.0)) continue;
-    const double a = std::log(row->nodes), b = std::log(row->*stage);
+    if (!(figure(*row) > 0.0)) continue;
+    const double a = std::log(row->nodes), b = std::log(figure(*row));
     n += 1;
     x += a;
     y += b;
