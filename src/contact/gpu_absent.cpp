@@ -15,5 +15,6 @@ std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, std::shared_ptr<proxy
 }
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, NodeSurface, const GpuOptions&) { absent(); }
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, std::shared_ptr<proxy::ProxySet>, NodeSurface, std::shared_ptr<proxy::ProxySet>, const GpuOptions&) { absent(); }
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, std::shared_ptr<proxy::ProxySet>, const Points&, const GpuOptions&) { absent(); }
 
 }  // namespace palpate::contact

@@ -6,7 +6,7 @@
 
 namespace palpate::contact {
 
-ImageSource::ImageSource(std::unique_ptr<ImageSide> a, std::unique_ptr<ImageSide> b, const GpuOptions& options) : a_(std::move(a)), b_(std::move(b)), options_(options) {
+ImageSource::ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b, const GpuOptions& options) : a_(std::move(a)), b_(std::move(b)), options_(options) {
   counters::count("contact.gpu_source");
 }
 
@@ -16,23 +16,22 @@ GpuImage& ImageSource::image() {
 }
 
 void ImageSource::add_pattern(dynamics::PatternBuilder& pattern) const {
-  for (const ImageSide* side : {a_.get(), b_.get()})
-    if (side->soft()) side->soft()->add_face_pattern(pattern);
+  a_->soft()->add_face_pattern(pattern);
+  if (b_->soft() && !of_one_body()) b_->soft()->add_face_pattern(pattern);
   coupled_.add_pattern(pattern);
 }
 
-std::uint64_t ImageSource::pattern_version() const {
-  return a_->soft()->pattern_version() + (b_->soft() ? b_->soft()->pattern_version() : 0) + coupled_.version();  // each grows only
-}
+std::uint64_t ImageSource::sides_version() const { return a_->soft()->pattern_version() + (b_->soft() ? b_->soft()->pattern_version() : 0); }
+std::uint64_t ImageSource::pattern_version() const { return sides_version() + coupled_.version(); }  // each grows only
 
 void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSample>& samples) {
   a_->update(state);
-  b_->update(state);
+  if (!of_one_body()) b_->update(state);
   if (options_.candidate_gap == 0.0) options_.candidate_gap = 0.25 * a_->soft()->mean_edge();
   const std::size_t first = samples.size();
   look(samples);
   if (!b_->soft()) return;
-  if (const std::uint64_t now = a_->soft()->pattern_version() + b_->soft()->pattern_version(); now != counted_) {
+  if (const std::uint64_t now = sides_version(); now != counted_) {
     coupled_.forget();
     counted_ = now;
   }
@@ -124,6 +123,12 @@ std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, std::shared_ptr<pro
   check_proxies(a, proxies_a);
   check_proxies(b, proxies_b);
   return make_pruned_source(soft_side(std::move(a)), std::move(proxies_a), soft_side(std::move(b)), std::move(proxies_b), options);
+}
+
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, const Points& rest_nodes, const GpuOptions& options) {
+  check_arguments(surface, surface.faces.cols(), options);
+  check_proxies(surface, proxies);
+  return make_pruned_source(soft_side(std::move(surface)), std::move(proxies), rest_nodes, options);
 }
 
 }  // namespace palpate::contact

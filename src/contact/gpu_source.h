@@ -9,10 +9,10 @@
 
 namespace palpate::contact {
 
-/// What the sources in image space share: two sides, an image, and what their samples couple.  Side a is soft; the normal points from b to a.
+/// What the sources in image space share: two sides, which may be the same, an image, and what their samples couple.  Side a is soft; the normal points from b to a.
 class ImageSource : public SampleSource {
  public:
-  ImageSource(std::unique_ptr<ImageSide> a, std::unique_ptr<ImageSide> b, const GpuOptions& options);
+  ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b, const GpuOptions& options);
   std::string_view name() const override { return "gpu"; }
   void add_pattern(dynamics::PatternBuilder& pattern) const override;
   std::uint64_t pattern_version() const override;
@@ -21,19 +21,22 @@ class ImageSource : public SampleSource {
  protected:
   virtual void look(std::vector<ContactSample>& samples) = 0;  ///< at the sides as they are
   GpuImage& image();  ///< opened when something is to be seen
+  bool of_one_body() const { return a_ == b_; }
 
-  std::unique_ptr<ImageSide> a_, b_;
+  std::shared_ptr<ImageSide> a_, b_;
   GpuOptions options_;
   std::vector<PixelPair> pairs_;
 
  private:
   std::optional<GpuImage> image_;
   CoupledNodes coupled_;             // of two soft sides
-  std::uint64_t counted_ = 0;        // the sides' own versions that `coupled_` was made for
+  std::uint64_t sides_version() const;  // grows with what either side couples by itself
+  std::uint64_t counted_ = 0;        // the one that `coupled_` was made for
 };
 
-std::unique_ptr<SampleSource> make_whole_source(std::unique_ptr<ImageSide> a, std::unique_ptr<ImageSide> b, const GpuOptions& options);
-std::unique_ptr<SampleSource> make_pruned_source(std::unique_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::unique_ptr<ImageSide> b,
+std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::shared_ptr<ImageSide> b,
                                                  std::shared_ptr<proxy::ProxySet> proxies_b, const GpuOptions& options);
+/// One side against itself, its bones' regions against each other.
+std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> side, std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes, const GpuOptions& options);
 
 }  // namespace palpate::contact

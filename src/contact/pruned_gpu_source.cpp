@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "contact/gpu_source.h"
+#include "contact/own_flesh.h"
 #include "palpate/proxy/pruner.h"
 
 namespace palpate::contact {
@@ -9,16 +10,24 @@ namespace {
 /// The image of gpu_source.cpp, once for each region that the proxies leave.
 class PrunedSource final : public ImageSource {
  public:
-  PrunedSource(std::unique_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::unique_ptr<ImageSide> b, std::shared_ptr<proxy::ProxySet> proxies_b,
+  PrunedSource(std::shared_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::shared_ptr<ImageSide> b, std::shared_ptr<proxy::ProxySet> proxies_b,
                const GpuOptions& options)
-      : ImageSource(std::move(a), std::move(b), options), proxies_a_(std::move(proxies_a)), proxies_b_(std::move(proxies_b)), pruner_(*proxies_a_, *proxies_b_) {}
+      : ImageSource(std::move(a), std::move(b), options), proxies_a_(std::move(proxies_a)), proxies_b_(std::move(proxies_b)),
+        pruner_(*proxies_a_, *proxies_b_, {.between_bones = of_one_body()}) {}
+  /// One body's bones.
+  PrunedSource(std::shared_ptr<ImageSide> side, std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes, const GpuOptions& options) : PrunedSource(side, proxies, side, proxies, options) {
+    flesh_.emplace(*a_->soft(), std::move(rest_nodes));
+    proxy_of_face_.resize(static_cast<std::size_t>(proxies_a_->face_count()));
+    for (const proxy::SkinPatch& patch : proxies_a_->patches())
+      for (const int face : proxies_a_->faces(patch)) proxy_of_face_[static_cast<std::size_t>(face)] = patch.proxy;
+  }
 
   const proxy::PruneCounts* pruning() const override { return &pruner_.counts(); }
 
  protected:
   void look(std::vector<ContactSample>& samples) override {
     a_->place(*proxies_a_);
-    b_->place(*proxies_b_);
+    if (!of_one_body()) b_->place(*proxies_b_);
     for (const proxy::ContactRegion& region : pruner_.query(options_.candidate_gap)) {
       ContactAxes axes(region.region.origin, region.region.normal);
       ContactCamera camera = look_along(region, axes);
@@ -85,9 +94,16 @@ class PrunedSource final : public ImageSource {
     for (const PixelPair& pair : pairs_) {
       const int face_a = a.visible[pair.a], face_b = b.visible[pair.b];
       const std::optional<Facing> facing = facing_at(pair, camera, a, face_a, b, face_b);
-      if (facing && facing->gap() < options_.candidate_gap) facings_.push_back({*facing, face_a, face_b});
+      if (facing && facing->gap() < options_.candidate_gap && (!flesh_ || may_touch(*facing, face_a, face_b, axes))) facings_.push_back({*facing, face_a, face_b});
     }
     return camera;
+  }
+
+  /// Of one body: a pair of proxies, each of which is looked at once, and no back of its own flesh.
+  bool may_touch(const Facing& at, int face_a, int face_b, const ContactAxes& axes) const {
+    const int a = piece_a_.face_of[static_cast<std::size_t>(face_a)], b = piece_b_.face_of[static_cast<std::size_t>(face_b)];
+    if (!pruner_.is_pair(proxy_of_face_[static_cast<std::size_t>(a)], proxy_of_face_[static_cast<std::size_t>(b)])) return false;
+    return at.gap() >= 0.0 || flesh_->in_contact(flesh_->point(a, at.weights_a, axes.world(Vec3(at.u, at.v, at.w_a))), flesh_->point(b, at.weights_b, axes.world(Vec3(at.u, at.v, at.w_b))));
   }
 
   // The region's normal came from patches, which reach beyond the overlap, more or less as the body is cut.  The overlap itself has one: its boundary is closed, so the
@@ -119,14 +135,20 @@ class PrunedSource final : public ImageSource {
   std::shared_ptr<proxy::ProxySet> proxies_a_, proxies_b_;
   proxy::Pruner pruner_;
   Piece piece_a_, piece_b_;
+  std::optional<OwnFlesh> flesh_;   ///< of one body
+  std::vector<int> proxy_of_face_;
   std::vector<FacingFaces> facings_;
 };
 
 }  // namespace
 
-std::unique_ptr<SampleSource> make_pruned_source(std::unique_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::unique_ptr<ImageSide> b,
+std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::shared_ptr<ImageSide> b,
                                                  std::shared_ptr<proxy::ProxySet> proxies_b, const GpuOptions& options) {
   return std::make_unique<PrunedSource>(std::move(a), std::move(proxies_a), std::move(b), std::move(proxies_b), options);
+}
+
+std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> side, std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes, const GpuOptions& options) {
+  return std::make_unique<PrunedSource>(std::move(side), std::move(proxies), std::move(rest_nodes), options);
 }
 
 }  // namespace palpate::contact

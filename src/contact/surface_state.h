@@ -17,6 +17,7 @@ class SurfaceState {
   int vertex_count() const { return static_cast<int>(positions_.cols()); }
   int face_count() const { return static_cast<int>(surface_.faces.cols()); }
   const Faces& faces() const { return surface_.faces; }
+  const NodeSurface& surface() const { return surface_; }
   const Points& positions() const { return positions_; }
   const Points& nodes() const { return nodes_; }  ///< of the block, of a skin only
   Vec3 velocity(int vertex, const dynamics::StateView& state) const;

@@ -49,6 +49,26 @@ std::unique_ptr<contact::SampleSource> gpu_source(Pair a, Pair b) {
 #endif
 }
 
+/// One soft body, its bones' regions against each other.
+std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair) {
+  const std::string who = fmt::format("contact {} - {}", pair.spec.first, pair.spec.second);
+  if (pair.spec.method != "gpu") fail("{}: a body meets itself in image space; use method = \"gpu\"", who);
+  if (!pair.proxies) fail("{}: which of a body's skin may touch itself is known by its proxies; give the body skin = true and proxies = true", who);
+  const proxy::ProxySet& set = *pair.proxies;
+  bool two_bones = false;
+  for (int p = 1; p < set.size(); ++p) two_bones = two_bones || set.bone(p) != set.bone(0);
+  if (!two_bones)
+    fail("{}: the skin of one bone against that of another may touch, but the body's model has {}; `palpate model human` writes one with 19 bones", who,
+         set.bone(0) < 0 ? "none: its proxies go with no bone" : "one bone alone");
+#ifdef PALPATE_HAS_GL
+  const contact::GpuOptions options{pair.spec.pixels, pair.candidate_gap};
+  return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies), world.find_body(pair.spec.first)->rest.nodes, options);
+#else
+  static_cast<void>(world);
+  refuse_gpu();
+#endif
+}
+
 /// A rigid surface in a frame.
 /// @param rigid_proxies  of it: made where the body has proxies and nobody made them yet
 [[maybe_unused]] std::unique_ptr<contact::SampleSource> gpu_source(Pair pair, TriMesh rigid, std::shared_ptr<proxy::ProxySet>& rigid_proxies, int frame,
@@ -128,10 +148,12 @@ void assemble_contact(World& world) {
       world.contact->add_pair(tool_source(world, pair_of(world, spec, spec.first)), spec);
     else if (obstacle != obstacles.end())
       world.contact->add_pair(obstacle_source(world, pair_of(world, spec, spec.first), *obstacle), spec);
-    else if (spec.second != spec.first && world.find_body(spec.second))
+    else if (spec.second == spec.first && world.find_body(spec.first))
+      world.contact->add_pair(own_source(world, pair_of(world, spec, spec.first)), spec);
+    else if (world.find_body(spec.second))
       world.contact->add_pair(gpu_source(pair_of(world, spec, spec.first), pair_of(world, spec, spec.second)), spec);
     else
-      fail("contact {} - {}: the second partner must be another of the soft bodies, an obstacle or \"tool\"", spec.first, spec.second);
+      fail("contact {} - {}: the second partner must be one of the soft bodies, an obstacle or \"tool\"", spec.first, spec.second);
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
   if (!world.tool_frame || world.description.coupling.linearisation != "condensed") return;

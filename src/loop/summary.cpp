@@ -108,7 +108,10 @@ void add_pruning(store::Summary& summary, const World& world) {
     add("left by boxes", static_cast<long long>(c.after_boxes));
     add("left by hulls", static_cast<long long>(c.after_hulls));
     add("regions", static_cast<long long>(c.regions));
-    for (const auto& [name, faces] : {std::pair(contact.first, c.faces_a), std::pair(contact.second, c.faces_b)}) {
+    const bool own = contact.first == contact.second;  // one skin, of which each region has two sides
+    const std::vector<std::pair<std::string, long>> sides = own ? std::vector{std::pair(contact.first, c.faces_a + c.faces_b)}
+                                                                : std::vector{std::pair(contact.first, c.faces_a), std::pair(contact.second, c.faces_b)};
+    for (const auto& [name, faces] : sides) {
       add(fmt::format("skin triangles of {} handed on", name).c_str(), static_cast<long long>(faces));
       const Body* body = world.find_body(name);  // else a tool
       if (body && c.queries > 0)

@@ -126,6 +126,7 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : 
     const auto at = static_cast<std::size_t>(p);
     const ProxyHull& hull = model.proxies[at];
     if (hull.corners.cols() == 0 || !hull.corners.allFinite()) fail("body \"{}\": proxy {} has no corners, or one that is not finite", model.name, p);
+    if (hull.bone >= static_cast<int>(model.skeleton.bones.size())) fail("body \"{}\": proxy {} goes with bone {} of {}", model.name, p, hull.bone, model.skeleton.bones.size());
     s.bone.push_back(hull.bone);
     s.first_corner.push_back(s.rest_corners.size());
     s.corner_count.push_back(static_cast<int>(hull.corners.cols()));

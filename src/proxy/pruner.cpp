@@ -25,6 +25,16 @@
 // the other's, or all around it: swallowed) the normal stays what it was at the last query, the side that the bodies came from; and where they never met before, it
 // is libccd's for the hull of all the region's proxies together, in which the walls between a body's own proxies are no surfaces.  A
 // region whose hulls are proven apart along its normal ends.
+//
+// Between the bones of one body.  Both sides are the same skin: a proxy may be on side a against one bone and on side b against another, so each pair of proxies is
+// allowed once, that of the lower bone as a's; is_pair() tells whoever pairs triangles in a region's image which of them these are, since a region holds all proxies
+// of its pairs.  Proxies that are grown together are no pair: their hulls meet wherever the body is, and what lies between them is its own flesh.  Skin of two others may
+// still have nothing but flesh between (hulls of a hollow shape reach across it): that is for the triangles to decide (own_flesh.h).
+//
+// Limbs meet side by side and at narrow places, where skin that faces elsewhere is within the gap too, and D is short of 2 without anybody being swallowed; its direction is
+// still that of the contact, since what faces elsewhere cancels.  The hulls know less: those of a region's proxies lie around joints, and the hull of all of them fills the space that
+// the contact is in.  So between bones a D of an eighth of its length is a direction, and where two bodies would turn to their hulls or to the past, it is taken.  Where D is
+// clear, two parts of a body meet as two bodies do.
 #include "palpate/proxy/pruner.h"
 
 #include <algorithm>
@@ -106,6 +116,11 @@ Pruner::Pruner(const ProxySet& a, const ProxySet& b, const PruneOptions& options
   counters::count("proxy.pruner");
   if (!(options.merge_angle_rad >= 0.0 && options.merge_angle_rad <= 3.2)) fail("contact regions: merge angle = {} rad must lie between 0 and pi", options.merge_angle_rad);
   PALPATE_CHECK(!options.between_bones || &a == &b, "contact between the bones of one body has that body on both sides");
+  if (options.between_bones) {
+    impl_->may_touch.reserve(impl_->separating.size());
+    for (int p = 0; p < a.size(); ++p)
+      for (int q = 0; q < a.size(); ++q) impl_->may_touch.push_back(a.bone(p) < a.bone(q) && !a.grown_together(p, q));
+  }
   for (int p = 0; p < a.size(); ++p)
     for (int q = 0; q < b.size(); ++q) impl_->counts.pairs += impl_->allowed(p, q);
 }
@@ -148,6 +163,7 @@ std::span<const ContactRegion> Pruner::query(double gap) {
   return {s.regions.data(), s.used};
 }
 
+bool Pruner::is_pair(int p, int q) const { return impl_->allowed(p, q); }
 const PruneCounts& Pruner::counts() const { return impl_->counts; }
 const RegionCounts& Pruner::region_counts() const { return impl_->finder.counts(); }
 

@@ -29,6 +29,7 @@ inline Vec3 facing(const Facing& a, const Facing& b) {
   return a.size > 0.0 && b.size > 0.0 ? Vec3(b.area / b.size - a.area / a.size) : Vec3(Vec3::Zero());
 }
 inline constexpr double kClear = 1.0;  ///< |D| of skins that face each other is 2, of swallowed skin 0; above this it is a direction
+inline constexpr double kClearOwn = 0.25;  ///< the same between the bones of one body: see pruner.cpp
 
 /// One body of the query: its patches as far as they were looked at.
 struct Side {
@@ -75,6 +76,7 @@ struct Pruner::Impl {
   RegionFinder finder;
   Side a, b;
   double gap = 0.0;
+  std::vector<char> may_touch;       // by pair, of one body's bones; else empty
   std::vector<Vec3> separating;      // by pair: the last direction that its proxies were found apart along, or that the search ended with; zero for none
   std::vector<Vec3> last_normal;     // by proxy of a
   std::vector<long> last_query;
@@ -100,9 +102,8 @@ struct Pruner::Impl {
     return Points::Zero(3, count);
   }
 
-  bool allowed(int p, int q) const {
-    return !options.between_bones || (p < q && a.set.bone(p) != b.set.bone(q) && !a.set.neighbours(p, q));
-  }
+  bool allowed(int p, int q) const { return !options.between_bones || may_touch[static_cast<std::size_t>(p) * static_cast<std::size_t>(b.set.size()) + static_cast<std::size_t>(q)] != 0; }
+  double clear() const { return options.between_bones ? kClearOwn : kClear; }
   void visit(int x, int y);
   void test_pair(int p, int q);
   void keep_patches(Side& side, int own, const Side& other, int against, const Vec3& toward);

@@ -27,7 +27,7 @@ void Pruner::Impl::grow(std::size_t seed, int region) {
   const Vec3 direction = active[seed].direction();
   const auto agrees = [&](const Active& other) {
     const Vec3 d = other.direction();
-    return d.norm() < kClear || direction.norm() < kClear || d.dot(direction) >= std::cos(options.merge_angle_rad) * d.norm() * direction.norm();
+    return d.norm() < clear() || direction.norm() < clear() || d.dot(direction) >= std::cos(options.merge_angle_rad) * d.norm() * direction.norm();
   };
   active[seed].region = region;
   open.assign(1, static_cast<int>(seed));
@@ -90,15 +90,15 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   region.facing = facing(facing_a, facing_b);
   faces_a = facing_a.directed();
   faces_b = facing_b.directed();
-  const bool clear = region.facing.norm() >= kClear;
-  if (clear) turn_to(region.region, region.facing.normalized(), RegionMethod::kAreas);
-  if (!clear || region.region.depth > inexact) {  // else the hulls know nothing that is sharper
+  const bool is_clear = region.facing.norm() >= clear();
+  if (is_clear) turn_to(region.region, region.facing.normalized(), RegionMethod::kAreas);
+  if (!is_clear || (region.region.depth > inexact && region.facing.norm() >= kClear)) {  // else the hulls know nothing that is sharper
     const Region by_hulls = finder.find(corners_a.leftCols(count_a), corners_b.leftCols(count_b), inexact + gap);
     if (!by_hulls.found) return false;
     const Vec3& last = last_normal[static_cast<std::size_t>(proxies_a.front())];
-    if (clear ? by_hulls.depth < region.region.depth - inexact && by_hulls.normal.dot(region.region.normal) > kSameSide : last.isZero())
+    if (is_clear ? by_hulls.depth < region.region.depth - inexact && by_hulls.normal.dot(region.region.normal) > kSameSide : last.isZero())
       region.region = by_hulls;
-    else if (!clear)
+    else if (!is_clear)
       turn_to(region.region, last, RegionMethod::kLastNormal);
   }
   if (region.region.depth < -inexact - gap) return false;
@@ -133,7 +133,12 @@ void Pruner::Impl::look_through(Side& from, const std::vector<int>& from_patches
     const Vec3 place = to_axes * (centre - origin);
     return sign * place.z() + radius < lowest || ((place.head<2>() - high).array() > radius).any() || ((low - place.head<2>()).array() > radius).any();
   };
+  const auto faces_one = [&](int q) {  // a proxy of one body is shown to those alone that it makes a pair with
+    return !options.between_bones || (sign > 0.0 ? std::any_of(proxies_a.begin(), proxies_a.end(), [&](int p) { return allowed(p, q); })
+                                                 : std::any_of(proxies_b.begin(), proxies_b.end(), [&](int p) { return allowed(q, p); }));
+  };
   for (int q = 0; q < to.set.size(); ++q) {
+    if (!faces_one(q)) continue;
     const ProxyState& hull = to.set.state(q);
     if (misses(0.5 * (hull.low + hull.high), 0.5 * (hull.high - hull.low).norm())) continue;
     for (int s = to.first(q); s < to.first(q) + static_cast<int>(to.set.patches(q).size()); ++s) {

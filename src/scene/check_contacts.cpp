@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -37,16 +38,27 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
     refuse(at, where, fmt::format("nothing is called \"{}\"{}", name, suggestion(name, sides.all())));
   }
   const std::string at = place(doc, key + ".between");
-  if (c.first == c.second) refuse(at, where, "a thing does not touch itself here; name two");
+  if (c.first == c.second && !sides.is_body(c.first)) refuse(at, where, "only a soft body may touch itself; name two");
   if (!sides.is_body(c.first)) std::swap(c.first, c.second);
   if (!sides.is_body(c.first)) refuse(at, where, "one of the two must be a soft body");
+}
+
+/// One body twice: the regions of its bones.
+void check_own_contact(const Document& doc, const std::string& key, const std::string& where, const Description& d, const ContactSpec& c) {
+  const auto body = std::find_if(d.bodies.begin(), d.bodies.end(), [&](const auto& b) { return b.name == c.first; });
+  if (!body->proxies)
+    refuse(place(doc, key + ".between"), where,
+           "a body touches itself with the skin of one bone against that of another, by its proxies: give it skin = true and proxies = true, or name two things");
+  if (c.method != "gpu") refuse(place(doc, key + (given(doc, key + ".method") ? ".method" : "")), where, "a body meets itself in image space: write method = \"gpu\"");
 }
 
 void check_method(const Document& doc, const std::string& key, const std::string& where, const Sides& sides, const Description& d, const ContactSpec& c) {
   const bool obstacle = sides.is_obstacle(c.second);
   if (c.method == "gpu" && obstacle)
     refuse(place(doc, key + ".method"), where, "method = \"gpu\" is for the tool: an obstacle has exact gaps; use \"analytic\"");
-  if (sides.is_body(c.second)) {
+  if (c.first == c.second)
+    check_own_contact(doc, key, where, d, c);
+  else if (sides.is_body(c.second)) {
     if (c.method != "gpu")
       refuse(place(doc, key + (given(doc, key + ".method") ? ".method" : "")), where, "two soft bodies meet in image space: write method = \"gpu\"");
     const auto proxies = [&](const std::string& name) {
@@ -105,7 +117,9 @@ void check_contacts(const Document& doc, Description& d) {
     const std::string key = fmt::format("contact[{}]", i), where = fmt::format("contact between \"{}\" and \"{}\"", c.first, c.second);
     check_sides(doc, key, where, sides, c);
     check_method(doc, key, where, sides, d, c);
-    if (!seen.emplace(c.first, c.second).second || (sides.is_body(c.second) && seen.contains({c.second, c.first}))) refuse(place(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
+    const bool twice = seen.contains({c.first, c.second}) || (sides.is_body(c.second) && seen.contains({c.second, c.first}));
+    seen.emplace(c.first, c.second);
+    if (twice) refuse(place(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
   }
 }
 

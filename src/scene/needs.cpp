@@ -54,9 +54,11 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
   const bool any = !d.contacts.empty();
   const int gpu = count_if(d.contacts, [](const auto& c) { return c.method == "gpu"; });
   const int rubbing = count_if(d.contacts, [](const auto& c) { return c.friction > 0.0; });
+  const int own = count_if(d.contacts, [](const auto& c) { return c.first == c.second; });
   const std::string no_gpu = any ? "every contact has an analytic gap" : "no [[contact]]";
   out.push_back({"contact", any, any ? fmt::format("{} [[contact]]", d.contacts.size()) : "no [[contact]]"});
   out.push_back({"friction", rubbing > 0, rubbing > 0 ? fmt::format("{} [[contact]] with friction > 0", rubbing) : "no contact with friction > 0"});
+  out.push_back({"contact between bones", own > 0, own > 0 ? fmt::format("{} [[contact]] of a body with itself", own) : any ? "every [[contact]] names two" : "no [[contact]]"});
   out.push_back({"contact plane", gpu > 0, gpu > 0 ? fmt::format("{} contact with method \"gpu\" needs its plane", gpu) : no_gpu});
   out.push_back({"broad phase", gpu > 1, gpu > 1 ? fmt::format("{} pairs in image space", gpu) : "fewer than two pairs in image space"});
   out.push_back({"gl", gpu > 0, gpu > 0 ? "method \"gpu\" rasterises" : no_gpu + "; pictures only on request"});

@@ -29,7 +29,7 @@ const Broken kCases[] = {
     {"skeleton-scripted-type", "10:8", "body \"limb\": joint of \"hand\": type means nothing to a joint with keyframes; remove it"},
     {"skeleton-twice", "11:8", "body \"limb\": joint of \"hand\": a bone hangs on its parent by one joint; this is its second table"},
     {"skeleton-without-model", "8:1", "body \"limb\": skeleton: needs mesh = { file = \"MODEL.h5\" }, a model file with bones; `palpate model human -o human.h5` makes one"},
-    {"contact-with-itself", "9:11", "contact between \"ball\" and \"ball\": a thing does not touch itself here; name two"},
+    {"contact-with-itself", "9:11", "contact between \"ball\" and \"ball\": a body touches itself with the skin of one bone against that of another, by its proxies: give it skin = true and proxies = true, or name two things"},
     {"contact-with-nothing", "12:20", "contact between \"ball\" and \"flor\": nothing is called \"flor\" (did you mean \"floor\"?)"},
     {"contact-without-tool", "9:12", "contact between \"tool\" and \"ball\": \"tool\" is named, but the scene has no [tool]"},
     {"device-without-tool", "8:1", "device: a device needs something to move: add [tool], or remove [device]"},

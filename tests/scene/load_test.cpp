@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
+#include "palpate/scene/needs.h"
 #include "scene/scene_texts.h"
 
 using palpate::Vec3;
@@ -132,6 +133,26 @@ TEST(Load, TwoSoftBodiesMeetInImageSpace) {
   EXPECT_NE(refusal(ball, "").find("two soft bodies meet in image space: write method = \"gpu\""), std::string::npos);
   EXPECT_NE(refusal(ball, "method = \"gpu\"\n[[contact]]\nbetween = [\"b\", \"a\"]\nmethod = \"gpu\"\n").find("this pair stands here twice"), std::string::npos);
   EXPECT_NE(refusal(model, "method = \"gpu\"\n").find("proxies = true stands in \"b\" alone; both need it, or neither"), std::string::npos);
+}
+
+TEST(Load, ABodyMeetsItselfByItsBones) {
+  const auto refusal = [](const std::string& keys, const std::string& contact) -> std::string {
+    try {
+      const Description d = parse("[scene]\nname = \"fist\"\nduration_s = 1.0\n[[obstacle]]\nname = \"floor\"\ntype = \"plane\"\n[[body]]\nname = \"hand\"\nyoungs_modulus_pa = 1e4\nmesh = { file = \"hand.h5\" }\n" + keys + "[[contact]]\n" + contact, "fist.toml", {});
+      bool needed = false;
+      for (const auto& need : palpate::scene::needs(d)) needed |= need.part == "contact between bones" && need.used;
+      EXPECT_TRUE(needed);
+    } catch (const palpate::Error& e) {
+      return e.what();
+    }
+    return "accepted";
+  };
+  const std::string proxies = "skin = true\nproxies = true\n", itself = "between = [\"hand\", \"hand\"]\n", gpu = "method = \"gpu\"\n";
+  EXPECT_EQ(refusal(proxies, itself + gpu), "accepted");
+  EXPECT_NE(refusal(proxies, itself).find("no [[contact]] of this body has method = \"gpu\", which alone uses them"), std::string::npos);
+  EXPECT_NE(refusal("skin = true\n", itself + gpu).find("give it skin = true and proxies = true, or name two things"), std::string::npos);
+  EXPECT_NE(refusal(proxies, itself + gpu + "[[contact]]\n" + itself + gpu).find("this pair stands here twice"), std::string::npos);
+  EXPECT_NE(refusal("", "between = [\"floor\", \"floor\"]\n").find("only a soft body may touch itself; name two"), std::string::npos);
 }
 
 /// What two keys of one table ask of each other; the places are covered by broken_test.

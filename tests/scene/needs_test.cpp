@@ -21,7 +21,7 @@ std::map<std::string, bool> used(const std::string& scene, const std::vector<std
 TEST(Needs, ASceneWithoutToolLeavesOutAllThatIsHaptic) {
   auto ball = used("falling-ball");
   EXPECT_TRUE(ball.at("fem") && ball.at("contact") && ball.at("tangent") && ball.at("factorisation") && ball.at("run file"));
-  for (const char* part : {"tool", "device", "exchange", "exchange thread", "gl", "contact plane", "broad phase", "force file", "friction", "fixed nodes", "compare", "skin", "proxies"})
+  for (const char* part : {"tool", "device", "exchange", "exchange thread", "gl", "contact plane", "broad phase", "force file", "friction", "fixed nodes", "compare", "skin", "proxies", "contact between bones"})
     EXPECT_FALSE(ball.at(part)) << part;
   auto bar = used("cantilever");
   EXPECT_TRUE(bar.at("fixed nodes"));

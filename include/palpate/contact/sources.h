@@ -49,4 +49,10 @@ std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, NodeSurface b, cons
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, std::shared_ptr<proxy::ProxySet> proxies_a, NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
                                               const GpuOptions& options);
 
+/// One soft body against itself: the skin of each bone's proxies against that of every other bone's, but for proxies that are grown together (they share skin or
+/// nodes), so that a limb's flesh may slide into itself where it is creased, next to the joint.  What overlaps because the body is thick there is no contact, at rest
+/// nothing is.  Parts that are both thinner than they overlap are not seen.
+/// @param rest_nodes  of the surface's tetrahedra [m], in any axes
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, const Points& rest_nodes, const GpuOptions& options);
+
 }  // namespace palpate::contact

@@ -21,7 +21,7 @@ struct ObstacleSpec {
 /// One pair that may touch.  The `[[contact]]` tables of a scene.
 struct ContactSpec {
   std::string first;                      ///< a body's name
-  std::string second;                     ///< an obstacle's name, "tool", or another body's (method "gpu")
+  std::string second;                     ///< an obstacle's name, "tool", another body's (method "gpu"), or the same again: its bones' regions against each other (proxies)
   std::string method = "analytic";        ///< "analytic" (obstacle or a sphere tool) or "gpu" (image space: a tool of any shape, another soft body)
   double stiffness_pa_m = 1e7;            ///< k: pressure per depth
   double damping_pa_s_m = 0.0;            ///< d (kelvin_voigt) [Pa s/m]

@@ -79,6 +79,7 @@ class ProxySet {
   double most_along(int proxy, const Vec3& direction) const;  ///< direction . support
   const Vec3& centre(int proxy) const;                 ///< mean of the corners
   bool neighbours(int p, int q) const;                 ///< they share a vertex of the skin, or are the same
+  bool grown_together(int p, int q) const;             ///< they are neighbours, or share a node: of the tetrahedra that they own or that their skin hangs on
   std::span<const SkinPatch> patches(int proxy) const;
   std::span<const SkinPatch> patches() const;          ///< all, proxy by proxy
   Ball ball(const SkinPatch& patch) const;             ///< around its faces now, by the bound of its own nodes where that is much less than the proxy's

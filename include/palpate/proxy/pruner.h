@@ -11,7 +11,7 @@ namespace palpate::proxy {
 
 struct PruneOptions {
   double merge_angle_rad = 1.05;  ///< neighbouring contacts whose skins face each other along directions nearer than this share a plane
-  bool between_bones = false;    ///< both sets are one body's: only pairs of different bones that are no neighbours on the skin, each once
+  bool between_bones = false;    ///< both sets are one body's: only pairs of different bones that are not grown together, each once, that of the lower bone as a's
 };
 
 /// One contact region of two bodies: the plane that its image is taken along, and the skin that may take part.
@@ -56,6 +56,8 @@ class Pruner {
 
   /// The regions at the present state of both sets.  @param gap  distance between skins that still counts [m], not negative
   std::span<const ContactRegion> query(double gap);
+  /// Whether proxy p of a is looked at with q of b.
+  bool is_pair(int p, int q) const;
   const PruneCounts& counts() const;
   const RegionCounts& region_counts() const;
 

@@ -1,0 +1,279 @@
+// A body against itself in scenes: two blocks of one body meet as two bodies do; arms on scripted bones close by any integrator and linear solver.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "contact/bent_bar.h"
+#include "contact/together.h"
+#include "loop/scene_checks.h"
+#include "loop/small_scenes.h"
+#include "palpate/core/counters.h"
+#include "palpate/integrate/integrators.h"
+#include "palpate/loop/run.h"
+#include "palpate/loop/summary.h"
+#include "palpate/loop/world.h"
+#include "palpate/store/model_file.h"
+
+using namespace palpate;
+using scene_checks::refusal;
+
+namespace {
+
+/// A model file that is there as long as the test runs.
+struct ModelOnDisk {
+  std::string path;
+  ModelOnDisk(const LayeredModel& model, const std::string& name)
+      : path((std::filesystem::temp_directory_path() / ("palpate_own_contact_test_" + std::to_string(getpid()) + "_" + name)).string()) {
+    store::write_model(path, {model, {}});
+  }
+  ~ModelOnDisk() { std::filesystem::remove(path); }
+};
+
+constexpr double kFall = 0.02876;  // height of the upper block's middle [m]: its lowest corner 0.2 mm above the lower block
+
+/// A block where it stands, under a finer skin.
+LayeredModel block(const Pose& pose, const Vec3& size) {
+  LayeredModel model;
+  model.name = "block";
+  model.tets = mesh::box(size, {4, 4, 2});
+  model.skin = mesh::box_surface(size, {20, 20, 10});
+  for (Points* points : {&model.tets.nodes, &model.skin.vertices})
+    for (auto x : points->colwise()) x = pose * Vec3(x);
+  model.embedding = mesh::embed(model.tets, model.skin.vertices);
+  model.proxies = proxy::decompose(model, {.count = 8});
+  return model;
+}
+
+/// A block on the ground, and a smaller one, a little tilted, that falls on it from a fifth of a millimetre.
+struct Blocks {
+  LayeredModel lower = block({Quat::Identity(), Vec3(0, 0, 0.01)}, Vec3(0.06, 0.06, 0.02)), upper = block({quaternion_of(Vec3(0.05, 0.03, 0.5)), Vec3(0.003, -0.002, kFall)}, Vec3(0.03, 0.03, 0.015));
+  ModelOnDisk first{lower, "lower.h5"}, second{upper, "upper.h5"}, both{contact_tests::together(lower, upper), "both.h5"};
+
+  static SoftBodySpec body(const std::string& name, const ModelOnDisk& file) {
+    SoftBodySpec out;
+    out.name = name;
+    out.mesh.file = file.path;
+    out.skin = out.proxies = true;
+    out.youngs_modulus_pa = 2e4;
+    out.stiffness_damping_s = 2e-3;
+    AttachmentSpec floor;
+    floor.box_min_m = Vec3(-1, -1, -1e-6);
+    floor.box_max_m = Vec3(1, 1, 1e-6);
+    out.attachments.push_back(floor);
+    return out;
+  }
+  scene::Description scene(bool as_one) const {
+    scene::Description d;
+    d.name = "blocks";
+    d.duration_s = 0.03;
+    if (as_one)
+      d.bodies = {body("both", both)};
+    else
+      d.bodies = {body("lower", first), body("upper", second)};
+    if (!as_one) d.bodies[1].attachments.clear();
+    d.gravity_m_s2 = Vec3(0, 0, -9.81);
+    ContactSpec contact;
+    contact.first = d.bodies.front().name;
+    contact.second = d.bodies.back().name;
+    contact.method = "gpu";
+    contact.stiffness_pa_m = 1e7;
+    contact.damping_pa_s_m = 1e3;
+    contact.friction = 0.3;
+    contact.candidate_gap_m = 1e-3;
+    d.contacts.push_back(contact);
+    d.integrator.name = "linearly-implicit-euler";
+    d.integrator.step_s = 0.002;
+    d.integrator.linear_solver = "umfpack";
+    d.coupling.exchange_period_s = d.coupling.contact_refresh_s = 0.004;
+    return d;
+  }
+};
+
+/// How far each node has gone; `pressing`: samples of contact with pressure at the end.
+VecX end_of(const scene::Description& d, int* pressing = nullptr) {
+  const auto world = loop::assemble(d);
+  const VecX start = world->state.q();
+  const auto result = loop::run(*world, {});
+  EXPECT_TRUE(result.status.ok()) << d.integrator.name << ", " << d.integrator.linear_solver << ": " << result.status.message;
+  if (pressing && world->contact)
+    for (const contact::ContactSample& s : world->contact->samples()) *pressing += s.gap < 0.0;
+  return world->state.q() - start;
+}
+
+/// The bar, at rest a U, whose arms are turned towards each other by their bones until the tips meet.
+struct Fork {
+  ModelOnDisk file{bent_bar::model(24, M_PI), "fork.h5"};
+
+  scene::Description scene(const std::string& integrator, bool touching = true) const {
+    scene::Description d;
+    d.name = "fork";
+    d.duration_s = 0.1;
+    SoftBodySpec body;
+    body.name = "fork";
+    body.mesh.file = file.path;
+    body.skin = body.proxies = true;
+    body.youngs_modulus_pa = 2e4;
+    body.stiffness_damping_s = 5e-3;
+    body.skeleton.emplace();
+    for (const auto& [bone, turn] : {std::pair("left", 0.36), std::pair("right", -0.36)}) {
+      JointSpec joint;
+      joint.bone = bone;
+      joint.keyframes.resize(2);
+      joint.keyframes[1].time_s = 0.08;
+      joint.keyframes[1].rotation_vector_rad = Vec3(0, turn, 0);
+      body.skeleton->joints.push_back(joint);
+    }
+    d.bodies.push_back(body);
+    ContactSpec contact;
+    contact.first = contact.second = "fork";
+    contact.method = "gpu";
+    contact.stiffness_pa_m = 1e6;
+    contact.onset_width_m = 5e-3;
+    contact.candidate_gap_m = 0.03;
+    if (touching) d.contacts.push_back(contact);
+    d.bodies[0].proxies = touching;
+    d.integrator.name = integrator;
+    d.integrator.step_s = 1e-3;
+    d.integrator.rtol = 1e-5;
+    d.coupling.exchange_period_s = d.coupling.contact_refresh_s = 0.01;
+    return d;
+  }
+};
+
+}  // namespace
+
+TEST(OwnContactScene, OnlyASceneThatNamesItHasIt) {
+  const Fork fork;
+  counters::reset();
+  loop::assemble(fork.scene("linearly-implicit-euler", false));
+  EXPECT_EQ(counters::counter("contact.own_flesh"), 0);
+  EXPECT_EQ(counters::counter("proxy.pruner"), 0);
+  const Blocks blocks;
+#ifdef PALPATE_HAS_GL
+  loop::assemble(blocks.scene(false));
+  EXPECT_EQ(counters::counter("contact.own_flesh"), 0) << "two bodies";
+  loop::assemble(fork.scene("linearly-implicit-euler"));
+  EXPECT_EQ(counters::counter("contact.own_flesh"), 1);
+#endif
+}
+
+TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
+  const Fork fork;
+  scene::Description d = fork.scene("linearly-implicit-euler");
+  d.contacts[0].method = "analytic";
+  EXPECT_NE(refusal(d).find("a body meets itself in image space; use method = \"gpu\""), std::string::npos) << refusal(d);
+  d = fork.scene("linearly-implicit-euler");
+  d.bodies[0].proxies = false;
+  EXPECT_NE(refusal(d).find("give the body skin = true and proxies = true"), std::string::npos) << refusal(d);
+  d.bodies[0].skin = false;
+  EXPECT_NE(refusal(d).find("give the body skin = true and proxies = true"), std::string::npos) << refusal(d);
+  const Blocks blocks;  // a model whose proxies go with no bone
+  d = blocks.scene(false);
+  d.contacts[0].second = d.contacts[0].first;
+  EXPECT_NE(refusal(d).find("the body's model has none: its proxies go with no bone; `palpate model human` writes one with 19 bones"), std::string::npos) << refusal(d);
+  LayeredModel one = blocks.lower;
+  one.skeleton.bones.push_back({"only", -1, Vec3::Zero(), Vec3(0, 0, 0.01), 0.001, 0.001});
+  one.bone_of_node.assign(static_cast<std::size_t>(one.tets.nodes.cols()), -1);
+  one.proxies = proxy::decompose(one, {.count = 8});
+  const ModelOnDisk file(one, "one-bone.h5");
+  d.bodies[0].mesh.file = file.path;
+  EXPECT_NE(refusal(d).find("the body's model has one bone alone"), std::string::npos) << refusal(d);
+}
+
+#ifdef PALPATE_HAS_GL
+// The same nodes, masses, forces and contact: what falls on another body falls on a part of its own, to rounding.  Later the blocks lie so flat on each other that skin which faces
+// elsewhere is kept too: there two bodies go by their hulls, the parts of one by its skin (pruner.cpp), and the same motion comes out to less than a hundredth.
+TEST(OwnContactScene, TwoBlocksOfOneBodyMeetAsTwoBodies) {
+  const Blocks blocks;
+  scene::Description together = blocks.scene(true), apart = blocks.scene(false), without = blocks.scene(true);
+  without.contacts.clear();
+  without.bodies[0].proxies = false;
+  for (const auto& [duration, bar] : {std::pair(0.016, 1e-10), std::pair(0.03, 0.01)}) {
+    together.duration_s = apart.duration_s = without.duration_s = duration;
+    int pressing = 0;
+    const VecX two = end_of(apart), one = end_of(together, &pressing);
+    ASSERT_EQ(two.size(), one.size());
+    EXPECT_GT(pressing, 1000) << duration;
+    EXPECT_LT((two - one).norm(), bar * two.norm()) << duration;
+    EXPECT_GT((end_of(without) - one).norm(), 0.02 * one.norm()) << "contact is what holds it, " << duration;
+  }
+}
+
+// Every linear solver holds blocks between far nodes of one body, or says why not.
+TEST(OwnContactScene, EveryLinearSolverTakesIt) {
+  const Fork fork;
+  scene::Description d = fork.scene("linearly-implicit-euler");
+  d.integrator.linear_solver = "umfpack";
+  const VecX exact = end_of(d);
+  int solvers = 0;
+  for (const auto& entry : integrate::linear_solver_registry()) {
+    d.integrator.linear_solver = entry.name;
+    EXPECT_LT((end_of(d) - exact).norm(), 2e-4 * exact.norm()) << entry.name;
+    ++solvers;
+  }
+  EXPECT_GE(solvers, 5);
+}
+
+// Against a run of one hundredth of the tolerance: the adaptive ones to a few times theirs, the first-order one by half for half the step.
+TEST(OwnContactScene, ArmsCloseAlikeByThreeIntegrators) {
+  const Fork fork;
+  scene::Description fine = fork.scene("cvode-bdf");
+  fine.integrator.rtol = 1e-7;
+  int pressing = 0;
+  const VecX reference = end_of(fine, &pressing), free = end_of(fork.scene("cvode-bdf", false));
+  EXPECT_GT(pressing, 100) << "the arms have met";
+  EXPECT_GT((free - reference).cwiseAbs().maxCoeff(), 5e-3) << "and are dented: without contact each goes 3.4 cm beyond the middle";
+  for (const char* name : {"cvode-bdf", "ark-dirk-esdirk436"}) EXPECT_LT((end_of(fork.scene(name)) - reference).norm(), 1e-3 * reference.norm()) << name;
+  scene::Description d = fork.scene("linearly-implicit-euler");
+  d.integrator.step_s = 5e-4;
+  const double whole = (end_of(d) - reference).norm();
+  d.integrator.step_s *= 0.5;
+  const double half = (end_of(d) - reference).norm();
+  EXPECT_LT(whole, 0.02 * reference.norm());
+  EXPECT_GT(whole / half, 1.6);
+  EXPECT_LT(whole / half, 2.5);
+}
+
+// What is said of it: one skin, whose handed-on triangles are counted on both sides of the regions; of two bodies each has its own share.
+TEST(OwnContactScene, TheSummarySpeaksOfOneSkin) {
+  const auto pruning = [](const scene::Description& d) {
+    const auto world = loop::assemble(d);
+    const auto result = loop::run(*world, {});
+    EXPECT_TRUE(result.status.ok());
+    store::Summary summary = loop::summarise(*world, result, 0.0);
+    return std::pair(summary.section("pruning").values, world->contact->pruning()[0][0]);
+  };
+  const auto find = [](const auto& values, const std::string& name) -> const store::SummaryValue* {
+    const store::SummaryValue* out = nullptr;
+    for (const auto& [key, value] : values)
+      if (key == name) {
+        EXPECT_EQ(out, nullptr) << name << " stands twice";
+        out = &value;
+      }
+    return out;
+  };
+  const Fork fork;
+  const auto [own, counts] = pruning(fork.scene("linearly-implicit-euler"));
+  ASSERT_NE(find(own, "fork - fork: skin triangles of fork handed on"), nullptr);
+  EXPECT_EQ(std::get<long long>(*find(own, "fork - fork: skin triangles of fork handed on")), counts.faces_a + counts.faces_b);
+  const double share = std::get<double>(*find(own, "fork - fork: share of the skin of fork handed on, mean"));
+  const double faces = static_cast<double>(bent_bar::model(24, M_PI).skin.faces.cols());
+  EXPECT_DOUBLE_EQ(share, static_cast<double>(counts.faces_a + counts.faces_b) / (faces * static_cast<double>(counts.queries)));
+  EXPECT_GT(share, 0.0);
+  EXPECT_LT(share, 0.5);
+  EXPECT_GT(counts.regions, 0);
+  EXPECT_GT(std::get<long long>(*find(own, "fork - fork: pairs of proxies")), 10);
+
+  const Blocks blocks;
+  const auto [two, of_two] = pruning(blocks.scene(false));
+  for (const auto& [name, handed_on, skin] : {std::tuple("lower", of_two.faces_a, blocks.lower.skin.faces.cols()), std::tuple("upper", of_two.faces_b, blocks.upper.skin.faces.cols())}) {
+    const std::string of = std::string("lower - upper: ");
+    ASSERT_NE(find(two, of + "skin triangles of " + name + " handed on"), nullptr);
+    EXPECT_EQ(std::get<long long>(*find(two, of + "skin triangles of " + name + " handed on")), handed_on);
+    EXPECT_GT(handed_on, 0);
+    EXPECT_DOUBLE_EQ(std::get<double>(*find(two, of + "share of the skin of " + name + " handed on, mean")), static_cast<double>(handed_on) / static_cast<double>(of_two.queries * skin));
+  }
+}
+#endif
