@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <iterator>
 
 #include "palpate/core/error.h"
 
@@ -56,23 +57,39 @@ void PatternBuilder::add_clique(const int* nodes, int count) {
     for (int b = a + 1; b < count; ++b) add_pair(nodes[a], nodes[b]);
 }
 
-BlockSparse PatternBuilder::build() const {
-  std::vector<std::pair<int, int>> sorted = pairs_;
-  sorted.reserve(sorted.size() + static_cast<std::size_t>(node_count_));
-  for (int i = 0; i < node_count_; ++i) sorted.emplace_back(i, i);
+NodePairs PatternBuilder::pairs() const {
+  NodePairs sorted = pairs_;
   std::sort(sorted.begin(), sorted.end());
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  return sorted;
+}
+
+BlockSparse PatternBuilder::build() const {
+  const NodePairs all = pairs();
+  return pattern_of(node_count_, {&all});
+}
+
+BlockSparse pattern_of(int node_count, const std::vector<const NodePairs*>& lists) {
+  NodePairs all, more;
+  for (int i = 0; i < node_count; ++i) all.emplace_back(i, i);
+  for (const NodePairs* list : lists) {
+    if (list->empty()) continue;
+    more.clear();
+    more.reserve(all.size() + list->size());
+    std::set_union(all.begin(), all.end(), list->begin(), list->end(), std::back_inserter(more));
+    all.swap(more);
+  }
   BlockSparse out;
-  out.row_start_.assign(static_cast<std::size_t>(node_count_) + 1, 0);
-  out.columns_.reserve(sorted.size());
-  out.diagonal_.resize(static_cast<std::size_t>(node_count_));
-  for (const auto& [i, j] : sorted) {
+  out.row_start_.assign(static_cast<std::size_t>(node_count) + 1, 0);
+  out.columns_.reserve(all.size());
+  out.diagonal_.resize(static_cast<std::size_t>(node_count));
+  for (const auto& [i, j] : all) {
     ++out.row_start_[static_cast<std::size_t>(i) + 1];
     if (i == j) out.diagonal_[static_cast<std::size_t>(i)] = static_cast<int>(out.columns_.size());
     out.columns_.push_back(j);
   }
   for (std::size_t i = 1; i < out.row_start_.size(); ++i) out.row_start_[i] += out.row_start_[i - 1];
-  out.values_.assign(9 * sorted.size(), 0.0);
+  out.values_.assign(9 * all.size(), 0.0);
   out.pattern_version_ = fresh_version();
   return out;
 }

@@ -30,6 +30,24 @@ TEST(PatternBuilder, SortsDeduplicatesAndKeepsTheDiagonal) {
   EXPECT_THROW(builder.add_pair(0, 4), InternalError);
 }
 
+TEST(PatternBuilder, ListsTogetherAreOneThatWasToldAll) {
+  std::mt19937 random(2);
+  std::uniform_int_distribution<int> node(0, 19);
+  PatternBuilder all(20), parts[3] = {PatternBuilder(20), PatternBuilder(20), PatternBuilder(20)};
+  for (int i = 0; i < 90; ++i) {
+    const int a = node(random), b = node(random);
+    all.add_pair(a, b);
+    parts[i % 3].add_pair(a, b);
+    if (i % 7 == 0) parts[(i + 1) % 3].add_pair(a, b);
+  }
+  const NodePairs lists[] = {parts[0].pairs(), {}, parts[1].pairs(), parts[2].pairs()};
+  const BlockSparse one = all.build(), other = pattern_of(20, {&lists[0], &lists[1], &lists[2], &lists[3]});
+  EXPECT_EQ(one.row_start(), other.row_start());
+  EXPECT_EQ(one.columns(), other.columns());
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(one.diagonal(i), other.diagonal(i));
+  EXPECT_EQ(other.values(), std::vector<double>(9 * static_cast<std::size_t>(other.slot_count()), 0.0));
+}
+
 TEST(BlockSparse, EveryPatternHasAVersionOfItsOwn) { EXPECT_NE(chain(3).pattern_version(), chain(3).pattern_version()); }
 
 TEST(BorderedMatrix, ProductAgreesWithTheDenseMatrix) {

@@ -12,6 +12,7 @@ enum class SolveStatus { kOk, kIndefinite, kSingular, kNotConverged };
 
 struct SolverCounters {
   long symbolic = 0;        ///< symbolic analyses (once a pattern)
+  long orderings = 0;       ///< of them, those that looked for a fill-reducing ordering, where the solver keeps one from pattern to pattern
   long factorisations = 0;  ///< numeric factorisations
   long solves = 0;          ///< right-hand sides
   long iterations = 0;      ///< of iterative methods

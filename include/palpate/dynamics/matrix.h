@@ -38,13 +38,16 @@ class BlockSparse {
   std::uint64_t pattern_version() const { return pattern_version_; }
 
  private:
-  friend class PatternBuilder;
+  friend BlockSparse pattern_of(int node_count, const std::vector<const std::vector<std::pair<int, int>>*>& lists);
   std::vector<int> row_start_{0};
   std::vector<int> columns_;
   std::vector<int> diagonal_;
   std::vector<double> values_;
   std::uint64_t pattern_version_ = 0;
 };
+
+/// Node pairs, both ways round, ascending, each once.
+using NodePairs = std::vector<std::pair<int, int>>;
 
 /// Collects which node pairs interact; diagonal blocks are always in.
 class PatternBuilder {
@@ -57,12 +60,16 @@ class PatternBuilder {
   void add_pair(int i, int j);                          ///< (i, j) and (j, i)
   void add_clique(const int* nodes, int count);         ///< every pair of them
   BlockSparse build() const;
+  NodePairs pairs() const;                              ///< what was added
 
  private:
   int node_count_;
   const Layout* layout_ = nullptr;
-  std::vector<std::pair<int, int>> pairs_;
+  NodePairs pairs_;  ///< as they came
 };
+
+/// The pattern of some lists together, and of the diagonal: what a PatternBuilder builds that was told all of them, without sorting them anew.
+BlockSparse pattern_of(int node_count, const std::vector<const NodePairs*>& lists);
 
 /// The matrix of one implicit step in u-space: a sparse body part over the nodes, bordered by dense rows and columns of rigid and articulated blocks.
 ///     [ body    right  ]   nodal_size

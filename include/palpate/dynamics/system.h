@@ -113,6 +113,14 @@ class System {
   mutable std::vector<int> driven_mirrors_;   ///< slot of (j, i) for each block (i, j) in the rows of the driven nodes, one after the other
   std::uint64_t pattern_key_ = 0;  ///< hash of the layout's and the terms' pattern versions that `pattern_` was built from
   BlockSparse pattern_;
+  struct TermPairs {
+    bool known = false;
+    std::uint64_t version = 0;
+    NodePairs pairs;
+  };
+  std::vector<TermPairs> term_pairs_;  ///< of each term, at its version
+  NodePairs mass_pairs_;
+  std::uint64_t pairs_layout_ = 0;     ///< layout version that they were told for
   bool share_no_pair_ = false;     ///< balanced tangents of `pattern_`
   mutable VecX scratch_, known_;
   VecX force_scratch_, held_scratch_, acceleration_scratch_;

@@ -6,6 +6,7 @@ namespace palpate::integrate {
 /// Adds what another solver did to the sum of one that hands matrices on to it.  The ordering stays the sum's own.
 inline void add_counters(const dynamics::SolverCounters& other, dynamics::SolverCounters& sum) {
   sum.symbolic += other.symbolic;
+  sum.orderings += other.orderings;
   sum.factorisations += other.factorisations;
   sum.solves += other.solves;
   sum.iterations += other.iterations;

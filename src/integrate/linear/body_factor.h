@@ -18,6 +18,8 @@ class BodyFactor {
   virtual void analyse(const dynamics::BlockSparse& A) = 0;
   /// The fill-reducing ordering that the analysis took, where there is a choice.
   virtual std::string ordering() const { return {}; }
+  /// How many analyses looked for an ordering.
+  virtual long orderings() const { return 0; }
   /// Numeric factor of A, whose pattern was analysed.
   virtual dynamics::SolveStatus factor(const dynamics::BlockSparse& A) = 0;
   /// X = A^-1 B; X has the size of B and is another object.

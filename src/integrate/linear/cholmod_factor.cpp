@@ -34,6 +34,10 @@ using dynamics::SolveStatus;
 constexpr double kMetisFrom = 2000.0;
 constexpr double kMetisTaken = 0.9;
 
+// Where contact between bodies comes, goes and rolls on, the pattern changes by a few pairs among many.  The ordering found before is then as good as a new one but for
+// some fill, and costs a fraction of it: it is kept while the factor's flops stay below kStillGood of what they were when it was found.
+constexpr double kStillGood = 1.25;
+
 /// Supernodal L L^T (Chen, Davis, Hager, Rajamanickam 2008), ordered by AMD or METIS, whichever is cheaper for the mesh.
 /// Column j of the lower triangle is row j of a symmetric matrix from the diagonal on: the blocks of BlockSparse are read in their own order.
 class CholmodFactor final : public BodyFactor {
@@ -59,12 +63,22 @@ class CholmodFactor final : public BodyFactor {
     build_map(A);
     cholmod_free_factor(&L_, &common_);
     cholmod_sparse lower = view();
+    if (order_.size() == n_) {
+      L_ = analyse_in(order_, lower);
+      if (common_.fl <= kStillGood * flops_) return;
+      cholmod_free_factor(&L_, &common_);
+    }
     L_ = cholmod_analyze(&lower, &common_);
     require("cholmod_analyze");
     ordering_ = "AMD";
-    if (common_.fl >= kMetisFrom * common_.anz) try_metis(A, lower, common_.fl);
+    flops_ = common_.fl;
+    if (common_.fl >= kMetisFrom * common_.anz) try_metis(A, lower);
+    const int* order = static_cast<const int*>(L_->Perm);
+    order_.assign(order, order + n_);
+    ++orderings_;
   }
   std::string ordering() const override { return ordering_; }
+  long orderings() const override { return orderings_; }
 
   SolveStatus factor(const BlockSparse& A) override {
     const double* from = A.values().data();
@@ -110,8 +124,16 @@ class CholmodFactor final : public BodyFactor {
     values_.assign(rows_.size(), 0.0);
   }
 
+  cholmod_factor* analyse_in(std::vector<int>& order, cholmod_sparse& lower) {
+    common_.method[0].ordering = CHOLMOD_GIVEN;
+    cholmod_factor* out = cholmod_analyze_p(&lower, order.data(), nullptr, 0, &common_);
+    common_.method[0].ordering = CHOLMOD_AMD;
+    require("cholmod_analyze_p");
+    return out;
+  }
+
   /// Orders the nodes, three directions each in their wake.
-  void try_metis(const BlockSparse& A, cholmod_sparse& lower, double amd_flops) {
+  void try_metis(const BlockSparse& A, cholmod_sparse& lower) {
     std::vector<int> start(1, 0), neighbours;
     for (int i = 0; i < A.block_rows(); ++i) {
       for (int s = A.row_start()[static_cast<std::size_t>(i)]; s < A.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
@@ -133,13 +155,11 @@ class CholmodFactor final : public BodyFactor {
     require("cholmod_metis");
     for (const int node : nodes)
       for (int axis = 0; axis < 3; ++axis) directions.push_back(3 * node + axis);
-    common_.method[0].ordering = CHOLMOD_GIVEN;
-    cholmod_factor* other = cholmod_analyze_p(&lower, directions.data(), nullptr, 0, &common_);
-    common_.method[0].ordering = CHOLMOD_AMD;
-    require("cholmod_analyze_p");
-    if (common_.fl < kMetisTaken * amd_flops) {
+    cholmod_factor* other = analyse_in(directions, lower);
+    if (common_.fl < kMetisTaken * flops_) {
       std::swap(L_, other);
       ordering_ = "METIS";
+      flops_ = common_.fl;
     }
     cholmod_free_factor(&other, &common_);
   }
@@ -171,6 +191,9 @@ class CholmodFactor final : public BodyFactor {
   cholmod_factor* L_ = nullptr;
   cholmod_dense *X_ = nullptr, *Y_ = nullptr, *E_ = nullptr;  // kept: a warm solve allocates nothing
   std::string ordering_;
+  std::vector<int> order_;  ///< as it was last looked for
+  double flops_ = 0.0;      ///< of the factor then
+  long orderings_ = 0;
   std::size_t n_ = 0;
   std::vector<int> column_start_, rows_, source_;
   std::vector<double> values_;

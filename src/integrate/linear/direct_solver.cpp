@@ -27,6 +27,7 @@ SolveStatus DirectSolver::factor(const BorderedMatrix& A) {
     body_->analyse(A.body);
     ++counters_.symbolic;
     counters_.ordering = body_->ordering();
+    counters_.orderings = body_->orderings();
   }
   pattern_version_ = A.body.pattern_version();
   values_version_ = A.values_version;

@@ -1,0 +1,14 @@
+#pragma once
+#include "palpate/dynamics/matrix.h"
+
+namespace palpate::dynamics {
+
+/// Room for the border of a matrix; nothing where it has it.
+inline void resize_border(BorderedMatrix& A, int nodal, int border) {
+  if (A.right.rows() == nodal && A.corner.rows() == border) return;
+  A.right.resize(nodal, border);
+  A.bottom.resize(border, nodal);
+  A.corner.resize(border, border);
+}
+
+}  // namespace palpate::dynamics

@@ -1,0 +1,73 @@
+#include <algorithm>
+
+#include "dynamics/border.h"
+#include "palpate/core/huge_pages.h"
+#include "palpate/dynamics/system.h"
+
+namespace palpate::dynamics {
+namespace {
+
+/// FNV-1a over version numbers: one number that changes when any of them does.
+struct VersionHash {
+  std::uint64_t value = 1469598103934665603ull;
+  void add(std::uint64_t v) { value = (value ^ v) * 1099511628211ull; }
+};
+
+}  // namespace
+
+// Pairs of a term are kept from one of its versions to the next: where contact changes what it couples, the elements' pairs, which are most, are merged, not sorted anew.
+void System::update_pattern(const StateView& state) {
+  const Layout& layout = *state.layout;
+  VersionHash key;
+  key.add(layout.version);
+  for (const auto& term : terms_) key.add(term->pattern_version());
+  if (key.value == pattern_key_ && pattern_.block_rows() == layout.node_count()) return;
+  if (pairs_layout_ != layout.version || term_pairs_.size() != terms_.size() || pattern_.block_rows() != layout.node_count()) {
+    term_pairs_.assign(terms_.size(), {});
+    PatternBuilder builder(layout);
+    for (const auto& inertia : inertias_) inertia->add_pattern(builder);
+    mass_pairs_ = builder.pairs();
+    pairs_layout_ = layout.version;
+  }
+  std::vector<const NodePairs*> lists{&mass_pairs_};
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    TermPairs& kept = term_pairs_[i];
+    if (const std::uint64_t version = terms_[i]->pattern_version(); !kept.known || kept.version != version) {
+      PatternBuilder builder(layout);
+      terms_[i]->add_pattern(builder);
+      kept = {true, version, builder.pairs()};
+    }
+    lists.push_back(&kept.pairs);
+  }
+  pattern_ = pattern_of(layout.node_count(), lists);
+  pattern_key_ = key.value;
+  share_no_pair_ = tangents_share_no_pair(layout);
+}
+
+bool System::tangents_share_no_pair(const Layout& layout) const {
+  if (!std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().balanced; })) return false;
+  std::size_t pairs = 0;
+  for (const TermPairs& kept : term_pairs_)
+    pairs += kept.pairs.size() - static_cast<std::size_t>(std::count_if(kept.pairs.begin(), kept.pairs.end(), [](const auto& pair) { return pair.first == pair.second; }));
+  return pairs == static_cast<std::size_t>(pattern_.slot_count() - layout.node_count());  // fewer in all: some are shared; more: a mass has some
+}
+
+void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
+  update_pattern(state);
+  const Layout& layout = *state.layout;
+  if (A.body.pattern_version() != pattern_.pattern_version()) {
+    A.body = pattern_;
+    prefer_huge_pages(A.body.values());
+  }
+  resize_border(A, layout.nodal_size, layout.border_size());
+}
+
+bool System::balanced(const StateView& state) {
+  const Layout& layout = *state.layout;
+  if (!nodal_mass_diagonal_ || layout.border_size() > 0 || layout.nodal_size == 0 || nodal_mass_.size() != layout.nodal_size) return false;
+  if (!std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().balanced; })) return false;
+  update_pattern(state);
+  return share_no_pair_;
+}
+
+}  // namespace palpate::dynamics
