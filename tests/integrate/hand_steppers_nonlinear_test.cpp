@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "integrate/hand_steppers.h"
 #include "integrate/top.h"
 #include "palpate/fem/attachments.h"
 #include "palpate/fem/soft_body.h"
@@ -9,8 +10,7 @@ namespace palpate {
 namespace {
 
 using namespace fakes;
-
-const std::vector<std::string> kNewton = {"backward-euler", "implicit-midpoint", "bdf2", "newmark", "generalized-alpha"};
+using hand_steppers::kNewton;
 
 /// Corotational box of 20 cells' nodes, clamped at one end unless free.
 struct Box {

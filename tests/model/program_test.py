@@ -22,6 +22,24 @@ def octahedron(folder, name="body.obj", faces=None):
     return path
 
 
+def scene_of(model, more=""):
+    """One body of a model's file, and what else is said of it."""
+    return f"""
+[scene]
+name = "body"
+duration_s = 0.002
+[[body]]
+name = "body"
+youngs_modulus_pa = 1e5
+density_kg_m3 = 1000.0
+mesh = {{ file = "{model}" }}
+{more}
+[integrator]
+name = "linearly-implicit-euler"
+step_s = 0.001
+"""
+
+
 class Program(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -45,21 +63,7 @@ class Program(unittest.TestCase):
     def test_a_scene_takes_the_model(self):
         source = octahedron(self.path)
         self.assertEqual(run("model", source, "-o", self.path / "body.h5", "--tetrahedra", "600", "-q").returncode, 0)
-        (self.path / "scene.toml").write_text("""
-[scene]
-name = "body"
-duration_s = 0.002
-[[body]]
-name = "body"
-youngs_modulus_pa = 1e5
-poissons_ratio = 0.4
-density_kg_m3 = 1000.0
-[body.mesh]
-file = "body.h5"
-[integrator]
-name = "linearly-implicit-euler"
-step_s = 0.001
-""")
+        (self.path / "scene.toml").write_text(scene_of("body.h5"))
         done = run("inspect", self.path / "scene.toml")
         self.assertEqual(done.returncode, 0, done.stderr)
 
@@ -98,22 +102,8 @@ step_s = 0.001
         self.assertLess(abs(volume / wanted - 1), 0.1)
         self.assertEqual(run("model", source, "-o", self.path / "b.h5", *options, "-q").returncode, 0)
         self.assertEqual((self.path / "a.h5").read_bytes(), (self.path / "b.h5").read_bytes())
-        scene = """
-[scene]
-name = "body"
-duration_s = 0.002
-[[body]]
-name = "body"
-youngs_modulus_pa = 1e5
-density_kg_m3 = 1000.0
-mesh = {{ file = "a.h5" }}
-{}
-[integrator]
-name = "linearly-implicit-euler"
-step_s = 0.001
-"""
-        (self.path / "named.toml").write_text(scene.format('[[body.region]]\nname = "core"\nyoungs_modulus_pa = 1e7\ndensity_kg_m3 = 3000.0'))
-        (self.path / "silent.toml").write_text(scene.format(""))
+        (self.path / "named.toml").write_text(scene_of("a.h5", '[[body.region]]\nname = "core"\nyoungs_modulus_pa = 1e7\ndensity_kg_m3 = 3000.0'))
+        (self.path / "silent.toml").write_text(scene_of("a.h5"))
         named = run("inspect", self.path / "named.toml")
         self.assertEqual(named.returncode, 0, named.stderr)
         row = next(line for line in named.stdout.splitlines() if " core " in line)

@@ -43,8 +43,8 @@ TEST(HandleStep, error_controlled_schemes_follow_the_damped_oscillator) {
     double worst = 0.0;
     for (int i = 0; i < 100; ++i) {
       const double t = 1e-3 * (i + 1);
-      worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).displacement(-kShift, t)) / kShift);
-      worst = std::max(worst, std::abs(trace.turn[i] - turning(spec, 1).displacement(-kTurn, t)) / kTurn);
+      worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).at_time(-kShift, t)) / kShift);
+      worst = std::max(worst, std::abs(trace.turn[i] - turning(spec, 1).at_time(-kTurn, t)) / kTurn);
     }
     EXPECT_LT(worst, 1e-6) << name;
     RecordProperty(name, std::to_string(worst));
@@ -59,8 +59,8 @@ TEST(HandleStep, first_order_error_control_follows_the_damped_oscillator_to_two_
   double worst = 0.0;
   for (int i = 0; i < 100; ++i) {
     const double t = 1e-3 * (i + 1);
-    worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).displacement(-kShift, t)) / kShift);
-    worst = std::max(worst, std::abs(trace.turn[i] - turning(spec, 1).displacement(-kTurn, t)) / kTurn);
+    worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).at_time(-kShift, t)) / kShift);
+    worst = std::max(worst, std::abs(trace.turn[i] - turning(spec, 1).at_time(-kTurn, t)) / kTurn);
   }
   RecordProperty("worst", std::to_string(worst));
   EXPECT_LT(worst, 4e-3);
@@ -90,8 +90,8 @@ TEST(HandleStep, fixed_ticks_follow_their_own_discrete_closed_form) {
       const Trace trace = step_response(spec, axis, 1e-3, 200);
       double worst = 0.0;
       for (int i = 0; i < 200; ++i) {
-        worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).discrete(name, -kShift, 1e-3, i + 1)) / kShift);
-        worst = std::max(worst, std::abs(trace.turn[i] - turning(spec, axis).discrete(name, -kTurn, 1e-3, i + 1)) / kTurn);
+        worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).after_ticks(name, -kShift, 1e-3, i + 1)) / kShift);
+        worst = std::max(worst, std::abs(trace.turn[i] - turning(spec, axis).after_ticks(name, -kTurn, 1e-3, i + 1)) / kTurn);
       }
       EXPECT_LT(worst, 1e-10) << name << " axis " << axis;
     }
@@ -108,8 +108,8 @@ TEST(HandleStep, fixed_ticks_are_of_first_order) {
       const int n = static_cast<int>(std::lround(0.02 / h));
       const Trace trace = step_response(spec, 2, h, n);
       ticks.push_back(h);
-      shift.push_back(std::abs(trace.shift.back() - shifting(spec).displacement(-kShift, 0.02)));
-      turn.push_back(std::abs(trace.turn.back() - turning(spec, 2).displacement(-kTurn, 0.02)));
+      shift.push_back(std::abs(trace.shift.back() - shifting(spec).at_time(-kShift, 0.02)));
+      turn.push_back(std::abs(trace.turn.back() - turning(spec, 2).at_time(-kTurn, 0.02)));
     }
     EXPECT_NEAR(slope(ticks, shift), info.order, 0.15) << info.name;
     EXPECT_NEAR(slope(ticks, turn), info.order, 0.15) << info.name;

@@ -1,0 +1,82 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "palpate/dynamics/system.h"
+#include "palpate/fem/attachments.h"
+#include "palpate/fem/soft_body.h"
+#include "palpate/mesh/generators.h"
+
+namespace palpate {
+
+/// Step matrices M + h^2 K of a beam, held at one end, bent by angles that large rotation needs.
+struct BentBeam {
+  dynamics::State state;
+  dynamics::System system;
+  VecX rest, masses;
+  explicit BentBeam(int cells_along, double youngs_modulus, int cells_across = 0) {
+    const int across = cells_across > 0 ? cells_across : cells_along / 4;
+    const double width = static_cast<double>(across) / cells_along;
+    const TetMesh mesh = mesh::box(Vec3(1.0, width, width), {cells_along, across, across});
+    const auto n = static_cast<int>(mesh.nodes.cols());
+    rest = mesh.nodes.reshaped();
+    const int id = state.insert(dynamics::BlockSpec{.name = "beam", .q_size = 3 * n, .u_size = 3 * n}, rest, VecX::Zero(3 * n));
+    const fem::Material material{.youngs_modulus = youngs_modulus, .poissons_ratio = 0.4, .density = 1000.0};
+    system.add(std::static_pointer_cast<dynamics::ForceTerm>(
+        std::make_shared<fem::SoftBody>("beam", mesh, material, fem::SoftBodyOptions{.tangent = fem::Tangent::kWarped}, id)));
+    masses = fem::lumped_masses(mesh, material.density);
+    system.add(fem::make_gravity(masses, Vec3(0, 0, -9.81), id));
+    system.add(fem::make_lumped_mass(mesh, material.density, id));
+    const std::vector<int> held = fem::dofs_of_nodes(fem::nodes_in_box(mesh.nodes, Vec3(-0.5 - 1e-9, -1, -1), Vec3(-0.5 + 1e-9, 1, 1)), 0, "xyz");
+    VecX x0(static_cast<Eigen::Index>(held.size()));
+    for (std::size_t i = 0; i < held.size(); ++i) x0[static_cast<Eigen::Index>(i)] = rest[held[i]];
+    system.add(fem::make_fixed(held, x0));
+    system.prepare(state.view());
+  }
+  /// Bends the middle line to a circle whose angle at the end is `angle`, writes the step matrix there, and a right-hand side: weight and a wave.
+  void at(double angle, double h, dynamics::BorderedMatrix& A, VecX& b) {
+    bend(angle);
+    system.step_matrix(state.view(), 1.0, h, h * h, A);
+    system.force(state.view(), b);
+    load(angle, h, b);
+  }
+  /// The same of a balanced matrix.
+  void at(double angle, double h, dynamics::BalancedMatrix& A, VecX& b) {
+    bend(angle);
+    ASSERT_TRUE(system.balanced(state.view()));
+    system.balanced_step(state.view(), VecX::Zero(rest.size()), 1.0, h, h * h, b, A);
+    load(angle, h, b);
+  }
+  const dynamics::BlockSparse& pattern() {
+    EXPECT_TRUE(system.balanced(state.view()));
+    return system.pattern();
+  }
+
+ private:
+  void bend(double angle) {
+    VecX q = rest;
+    for (Eigen::Index i = 0; i < q.size(); i += 3) {
+      const double s = rest[i] + 0.5, z = rest[i + 2], turn = angle * s, radius = angle != 0.0 ? 1.0 / angle : 0.0;
+      if (angle == 0.0) continue;
+      q[i] = (radius + z) * std::sin(turn) - 0.5;
+      q[i + 2] = (radius + z) * std::cos(turn) - radius;
+    }
+    state.q() = q;
+  }
+  void load(double angle, double h, VecX& b) {
+    for (Eigen::Index i = 0; i < b.size(); ++i) b[i] = h * b[i] + masses[i / 3] * std::sin(7.0 * rest[i - i % 3] + angle);
+    system.reduce(state.view(), b);
+  }
+};
+
+inline double energy_norm(const dynamics::BorderedMatrix& A, const VecX& x) {
+  VecX Ax;
+  A.multiply(x, Ax);
+  return std::sqrt(x.dot(Ax));
+}
+
+}  // namespace palpate

@@ -1,0 +1,22 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "integrate/oscillator.h"
+
+/// The steppers written by hand, by name.
+namespace hand_steppers {
+
+using namespace palpate;
+
+inline const std::vector<std::string> kHand = {"linearly-implicit-euler", "backward-euler", "implicit-midpoint", "bdf2", "newmark", "generalized-alpha", "symplectic-euler", "rk4"};
+inline const std::vector<std::string> kNewton = {"backward-euler", "implicit-midpoint", "bdf2", "newmark", "generalized-alpha"};
+
+inline IntegratorSpec spec_of(const std::string& name, double h) {
+  IntegratorSpec s;
+  s.name = name;
+  s.step_s = h;
+  return s;
+}
+
+}  // namespace hand_steppers
