@@ -91,17 +91,6 @@ struct Blocks {
   }
 };
 
-/// How far each node has gone; `pressing`: samples of contact with pressure at the end.
-VecX end_of(const scene::Description& d, int* pressing = nullptr) {
-  const auto world = loop::assemble(d);
-  const VecX start = world->state.q();
-  const auto result = loop::run(*world, {});
-  EXPECT_TRUE(result.status.ok()) << d.integrator.name << ", " << d.integrator.linear_solver << ": " << result.status.message;
-  if (pressing && world->contact)
-    for (const contact::ContactSample& s : world->contact->samples()) *pressing += s.gap < 0.0;
-  return world->state.q() - start;
-}
-
 /// The bar, at rest a U, whose arms are turned towards each other by their bones until the tips meet.
 struct Fork {
   ModelOnDisk file{bent_bar::model(24, M_PI), "fork.h5"};
@@ -183,6 +172,21 @@ TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
 }
 
 #ifdef PALPATE_HAS_GL
+namespace {
+
+/// How far each node has gone; `pressing`: samples of contact with pressure at the end.
+VecX end_of(const scene::Description& d, int* pressing = nullptr) {
+  const auto world = loop::assemble(d);
+  const VecX start = world->state.q();
+  const auto result = loop::run(*world, {});
+  EXPECT_TRUE(result.status.ok()) << d.integrator.name << ", " << d.integrator.linear_solver << ": " << result.status.message;
+  if (pressing && world->contact)
+    for (const contact::ContactSample& s : world->contact->samples()) *pressing += s.gap < 0.0;
+  return world->state.q() - start;
+}
+
+}  // namespace
+
 // The same nodes, masses, forces and contact: what falls on another body falls on a part of its own, to rounding.  Later the blocks lie so flat on each other that skin which faces
 // elsewhere is kept too: there two bodies go by their hulls, the parts of one by its skin (pruner.cpp), and the same motion comes out to less than a hundredth.
 TEST(OwnContactScene, TwoBlocksOfOneBodyMeetAsTwoBodies) {
