@@ -85,6 +85,10 @@ std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair)
 }
 
 void check_method(const ContactSpec& spec) {
+  if (spec.method == "vertex" || spec.method == "pixel")
+    fail("contact {} - {}: method = \"{}\": the method says how gaps are found, and with it where: \"analytic\" at each vertex (obstacles, tools of shape \"sphere\"), \"gpu\" at "
+         "each pixel of an image (tools of any shape, other soft bodies); take method = \"{}\"",
+         spec.first, spec.second, spec.method, spec.method == "vertex" ? "analytic" : "gpu");
   if (spec.method != "analytic" && spec.method != "gpu")
     fail("contact {} - {}: unknown method \"{}\"{}", spec.first, spec.second, spec.method, suggestion(spec.method, {"analytic", "gpu"}));
 }

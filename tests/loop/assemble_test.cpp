@@ -52,6 +52,10 @@ TEST(Assemble, ContactsThatCannotBeMadeAreRefusedWithARemedy) {
   d = pressed_block(0.0);
   d.contacts[0].method = "exact";
   expect_refused(d, {"exact", "analytic"});
+  d.contacts[0].method = "vertex";
+  expect_refused(d, {"vertex", "take method = \"analytic\""});
+  d.contacts[0].method = "pixel";
+  expect_refused(d, {"pixel", "take method = \"gpu\""});
   d = pressed_block(0.0);
   d.tool->shape = "mesh";
   d.tool->mesh.generator = "ball";
@@ -60,7 +64,7 @@ TEST(Assemble, ContactsThatCannotBeMadeAreRefusedWithARemedy) {
   expect_refused(d, {"shape", "gpu"});
   d = pressed_block(0.0);
   d.contacts[0].second = "block";
-  expect_refused(d, {"soft bodies"});
+  expect_refused(d, {"a body meets itself", "use method = \"gpu\""});
 }
 #endif
 
