@@ -161,6 +161,8 @@ bool ContactForce::refresh(const dynamics::StateView& state) {
   m.check_samples(state);
   m.all_forces(state, m.force_after);
   m.refresh_force_jump = (m.force_after - m.force_before).norm();
+  m.largest_force_jump = std::max(m.largest_force_jump, m.refresh_force_jump);
+  m.largest_force = std::max(m.largest_force, m.force_after.norm());
   return m.refresh_force_jump > 0.0;
 }
 
@@ -202,5 +204,7 @@ const std::vector<ContactSample>& ContactForce::samples() const { return impl_->
 long ContactForce::queries() const { return impl_->queries; }
 double ContactForce::query_seconds() const { return impl_->query_seconds; }
 double ContactForce::refresh_force_jump() const { return impl_->refresh_force_jump; }
+double ContactForce::largest_force_jump() const { return impl_->largest_force_jump; }
+double ContactForce::largest_force() const { return impl_->largest_force; }
 
 }  // namespace palpate::contact

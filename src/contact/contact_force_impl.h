@@ -20,7 +20,7 @@ struct ContactForce::Impl {
   long queries = 0;
   std::uint64_t events_version = 1;      ///< grows when a query finds other samples than the one before
   double query_seconds = 0.0;
-  double refresh_force_jump = 0.0;
+  double refresh_force_jump = 0.0, largest_force_jump = 0.0, largest_force = 0.0;
 
   void place_frames(const dynamics::StateView& state);
   void query(const dynamics::StateView& state);

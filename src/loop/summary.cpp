@@ -93,6 +93,14 @@ store::Provenance full_provenance() {
   return p;
 }
 
+/// What queries did to the forces: between two of them contact goes on with the pairs and normals of the last one.
+void add_jumps(store::Summary& summary, const World& world) {
+  if (!world.contact) return;
+  store::SummarySection& s = summary.section("contact");
+  s.values.emplace_back("largest_force_jump_at_a_query_n", world.contact->largest_force_jump());
+  s.values.emplace_back("largest_force_after_a_query_n", world.contact->largest_force());
+}
+
 /// What the proxies of a contact left out before the image, over all its queries.
 void add_pruning(store::Summary& summary, const World& world) {
   if (!world.contact) return;
@@ -139,6 +147,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
     const ContactSpec& contact = world.description.contacts[i];
     summary.section("tunnelled").values.emplace_back(contact.first + " - " + contact.second, static_cast<long long>(result.tunnelled[i]));
   }
+  add_jumps(summary, world);
   add_pruning(summary, world);
   for (const scene::Need& need : scene::needs(world.description)) summary.section(need.used ? "in_use" : "left_out").values.emplace_back(need.part, need.why);
   for (const auto& [name, value] : counters::snapshot()) summary.section("constructions").values.emplace_back(name, static_cast<long long>(value));

@@ -134,6 +134,8 @@ TEST(ContactForce, RefreshReportsWhetherTheForceChanged) {
   EXPECT_NEAR(term.refresh_force_jump(), std::sqrt(2 * F * F + moment * moment), 1e-9);
   EXPECT_FALSE(term.refresh(world.state.view()));
   EXPECT_EQ(term.refresh_force_jump(), 0.0);
+  EXPECT_NEAR(term.largest_force_jump(), std::sqrt(2 * F * F + moment * moment), 1e-9) << "of all refreshes";
+  EXPECT_NEAR(term.largest_force(), term.largest_force_jump(), 1e-9) << "from nothing to all";
   EXPECT_EQ(term.queries(), 2);
   EXPECT_GE(term.query_seconds(), 0.0);
 }

@@ -88,6 +88,9 @@ class ContactForce : public dynamics::ForceTerm {
   void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out) const;
   /// Euclidean norm of the change of the force on nodes and frames that the last refresh made, at its state [N]: the price of a slow query.
   double refresh_force_jump() const;
+  /// The largest of them so far, and the largest norm of these forces after a refresh, to judge it by.
+  double largest_force_jump() const;
+  double largest_force() const;
   /// Vertices of each pair, in their order, that went through unseen so far (SampleSource::tunnelled).
   std::vector<long> tunnelled() const;
   /// Of each pair, in their order; null of one without proxies.
