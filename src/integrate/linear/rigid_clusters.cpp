@@ -16,7 +16,7 @@ std::vector<int> run_of_each(const std::vector<int>& start) {
   return run;
 }
 
-struct Circle {
+struct MeanBall {
   Vec3 centre = Vec3::Zero();
   double radius = 0.0;  ///< root of the mean square
 };
@@ -51,18 +51,18 @@ void RigidClusters::place_arms(const NodeOrder& order, const double* positions) 
     return positions ? Vec3(Eigen::Map<const Vec3>(positions + 3 * static_cast<std::ptrdiff_t>(order.node[static_cast<std::size_t>(k)]))) : Vec3::Zero();
   };
   const auto around = [&](int first, int last) {
-    Circle circle;
-    for (int k = first; k < last; ++k) circle.centre += position(k) / (last - first);
+    MeanBall ball;
+    for (int k = first; k < last; ++k) ball.centre += position(k) / (last - first);
     double square = 0.0;
-    for (int k = first; k < last; ++k) square += (position(k) - circle.centre).squaredNorm() / (last - first);
-    circle.radius = std::isfinite(square) ? std::sqrt(square) : 0.0;
-    return circle;
+    for (int k = first; k < last; ++k) square += (position(k) - ball.centre).squaredNorm() / (last - first);
+    ball.radius = std::isfinite(square) ? std::sqrt(square) : 0.0;
+    return ball;
   };
   for (std::size_t c = 0; c + 1 < order.start.size(); ++c) {
-    const Circle cluster = around(order.start[c], order.start[c + 1]);
+    const MeanBall cluster = around(order.start[c], order.start[c + 1]);
     for (auto p = static_cast<std::size_t>(order.piece[c]); p < static_cast<std::size_t>(order.piece[c + 1]); ++p) {
       const int first = order.piece_start[p], last = order.piece_start[p + 1];
-      const Circle piece = finer_ ? around(first, last) : cluster;
+      const MeanBall piece = finer_ ? around(first, last) : cluster;
       const double by = piece.radius > 0.0 ? 1.0 / piece.radius : 0.0, in_cluster = cluster.radius > 0.0 ? 1.0 / cluster.radius : 0.0;
       pieces_[p].offset = (in_cluster * (piece.centre - cluster.centre)).cast<float>();
       pieces_[p].radius = static_cast<float>(in_cluster * piece.radius);
