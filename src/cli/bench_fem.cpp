@@ -41,12 +41,13 @@ void print_steps(const FemBenchReport& report) {
   Rows rows;
   for (const FemBenchRow& r : report.rows)
     rows.push_back({r.size, fmt::format("{}", r.nodes), fmt::format("{:g}", r.youngs_modulus_pa), fmt::format("{:g}", 1e3 * r.step_s), fmt::format("{:g}", r.linear_rtol),
-                    r.linear_solver, fmt::format("{}", r.threads), ms(r.force_ms), ms(r.matrix_ms) + (r.one_pass ? "*" : ""), ms(r.factor_ms), ms(r.solve_ms), ms(r.step_ms), ms(r.step_least_ms), ms(r.step_cpu_ms), ms(r.solver_cpu_ms), ms(r.scaled_ms),
+                    r.linear_solver, fmt::format("{}", r.threads), ms(r.force_ms), ms(r.matrix_ms) + (r.one_pass ? "*" : ""), ms(r.factor_ms), ms(r.solve_ms), ms(r.step_ms), ms(r.step_mean_ms), ms(r.step_least_ms), ms(r.step_cpu_ms), ms(r.solver_cpu_ms), ms(r.scaled_ms), fmt::format("{:.0f}", 100.0 * r.near),
                     fmt::format("{:.1f}", r.iterations), r.error > 0.0 ? fmt::format("{:.1e}", r.error) : "-", r.mass_error > 0.0 ? fmt::format("{:.1e}", r.mass_error) : "-", fmt::format("{:.1f}", r.rotation_rad)});
   fmt::print("one linearly implicit step, median over a motion with large rotation\n"
              "  *: one pass over the elements for forces, product and matrix; scaled: step x measured copy bandwidth / that of the reference machine;\n"
+             "  near: steps solved by the matrix of an earlier one, and by what that leaves of their own equations, which is timed as force;\n"
              "  error: of the velocity change against a direct solution, largest of the checks, in the norms of energy and of mass\n\n{}\n",
-             report::format_table({"size", "nodes", "E [Pa]", "h [ms]", "rtol", "solver", "thr", "force", "matrix", "factor", "solve", "step [ms]", "least", "CPU", "its solver", "scaled", "iter",
+             report::format_table({"size", "nodes", "E [Pa]", "h [ms]", "rtol", "solver", "thr", "force", "matrix", "factor", "solve", "step [ms]", "mean", "least", "CPU", "its solver", "scaled", "near [%]", "iter",
                                    "error", "mass", "turn [rad]"}, rows));
 }
 
@@ -97,7 +98,10 @@ void print_exponents(const FemBenchReport& report) {
     tetrahedra = study::scaling_exponent(members, [](const FemBenchRow& r) { return r.tetrahedra; });
     blocks = study::scaling_exponent(members, [](const FemBenchRow& r) { return r.blocks; });
     std::vector<std::string> row{kind};
-    for (const Stage& stage : kStages) row.push_back(fmt::format("{:.2f} ({:.2f})", study::scaling_exponent(members, stage.time), study::scaling_exponent(members, stage.limit)));
+    for (const Stage& stage : kStages) {
+      const double grows = study::scaling_exponent(members, stage.time);
+      row.push_back(std::isfinite(grows) ? fmt::format("{:.2f} ({:.2f})", grows, study::scaling_exponent(members, stage.limit)) : "-");
+    }
     rows.push_back(row);
   }
   if (rows.empty()) return;

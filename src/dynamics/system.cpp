@@ -182,6 +182,11 @@ void System::balanced_step(const StateView& state, const VecX& shift, double m_s
   for (const auto& term : terms_) term->add_step(state, shift, k_scale, d_scale, f, A);
 }
 
+void System::step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) {
+  f.setZero(state.layout->u_size);
+  for (const auto& term : terms_) term->add_step_force(state, shift, change, f);
+}
+
 void System::step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter) {
   ensure_pattern(state, A);
   A.set_zero();

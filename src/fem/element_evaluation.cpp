@@ -139,7 +139,7 @@ void ElementEvaluation::for_each_run(const Chunk& chunk, const ElementModels& mo
 /// Behind the nodes of the chunk stand the corners of the unit tetrahedron that fills up groups.
 ChunkFields ElementEvaluation::load(const Chunk& chunk, const BodyFields& at, Scratch& scratch) const {
   const int* nodes = chunks_.nodes.data() + chunk.first_node;
-  const auto copy = [&](const double* from, std::vector<Line>& lines, double unit) {
+  const auto copy = [&](const double* from, std::vector<Line>& lines, double unit, const double* more = nullptr) {
     double* to = numbers(lines);
     for (int n = 0; n < chunk.nodes; ++n) {
       if (n + kNodesAhead < chunk.nodes) __builtin_prefetch(from + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
@@ -149,13 +149,15 @@ ChunkFields ElementEvaluation::load(const Chunk& chunk, const BodyFields& at, Sc
       to[4 * n + 2] = p[2];
       to[4 * n + 3] = 0.0;
     }
+    for (int n = 0; more && n < chunk.nodes; ++n)
+      for (int axis = 0; axis < 3; ++axis) to[4 * n + axis] += more[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)];
     std::fill_n(to + 4 * chunk.nodes, 16, 0.0);
     for (int axis = 0; axis < 3; ++axis) to[4 * (chunk.nodes + 1 + axis) + axis] = unit;
     return static_cast<const double*>(to);
   };
   ChunkFields out;
   out.x = copy(at.x, scratch.x, 1.0);
-  if (at.v) out.v = copy(at.v, scratch.v, 0.0);
+  if (at.v) out.v = copy(at.v, scratch.v, 0.0, at.dv);
   if (at.w) out.w = copy(at.w, scratch.w, 0.0);
   return out;
 }
@@ -198,6 +200,7 @@ void ElementEvaluation::add_shared_nodes(double* out) const {
 }
 
 LaneCounts ElementEvaluation::add_force(const ElementModels& models, const BodyFields& at, double* f) { return add_nodal(kernels_->force, models, at, f); }
+LaneCounts ElementEvaluation::add_step_force(const ElementModels& models, const BodyFields& at, double* f) { return add_nodal(kernels_->step_force, models, at, f); }
 LaneCounts ElementEvaluation::apply_tangent(const ElementModels& models, const BodyFields& at, double* y) { return add_nodal(kernels_->apply, models, at, y); }
 
 LaneCounts ElementEvaluation::add_tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A) {

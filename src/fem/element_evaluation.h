@@ -12,6 +12,7 @@ struct BodyFields {
   const double* x = nullptr;  ///< positions [m]
   const double* v = nullptr;  ///< velocities [m/s]
   const double* w = nullptr;  ///< a direction
+  const double* dv = nullptr;  ///< what is added to v [m/s]
 };
 
 /// One a material of the body; their flags and scales agree.
@@ -29,6 +30,8 @@ class ElementEvaluation {
   void use(const LaneKernels& kernels) { kernels_ = &kernels; }
 
   LaneCounts add_force(const ElementModels& models, const BodyFields& at, double* f);
+  /// f += forces - stiffness times w.
+  LaneCounts add_step_force(const ElementModels& models, const BodyFields& at, double* f);
   LaneCounts apply_tangent(const ElementModels& models, const BodyFields& at, double* y);
   LaneCounts add_tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A);
   /// f += forces - stiffness times w, and the off-diagonal blocks of k_scale K + d_scale D, times A.scale, stored in A.

@@ -155,11 +155,8 @@ static void blocks_of(const ElementGroup* groups, int count, const ElementModel&
         Symmetric C{};
         if constexpr (kBlocks == Blocks::kCoupled || kStep) C = coupling(model, F, R, scalar, counts);
         if constexpr (kStep) {
-          const Mask inverted = det <= 0.0;
-          if (any(inverted)) counts.inverted += count_of(inverted);
-          Matrix P = elastic_stress(model, F, R) + elastic_change(model, R, C, gradient_of(at, G, fields.w));
-          if constexpr (kDamped) P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
-          add_forces(at, G, P, -volume, f);
+          count_inverted(det, counts);
+          add_forces(at, G, step_stress<kDamped>(at, G, F, R, C, model, fields), -volume, f);
         }
         set_elastic<kBlocks>(e, model, R, C, G, volume);
       }

@@ -65,6 +65,11 @@ PALPATE_INLINE long count_of(Mask m) {
   return sum;
 }
 
+PALPATE_INLINE void count_inverted(Pack det, LaneCounts& counts) {
+  const Mask inverted = det <= 0.0;
+  if (any(inverted)) counts.inverted += count_of(inverted);
+}
+
 /// 2 mu (F - R) + lambda (tr(R^T F) - 3) R
 PALPATE_INLINE Matrix elastic_stress(const ElementModel& model, const Matrix& F, const Matrix& R) {
   const double mu2 = 2.0 * model.mu;
@@ -82,8 +87,7 @@ static void forces(const ElementGroup* groups, int count, const ElementModel& mo
       Matrix R;
       Pack det;
       rotation(F, scalar, R, det, counts);
-      const Mask inverted = det <= 0.0;
-      if (any(inverted)) counts.inverted += count_of(inverted);
+      count_inverted(det, counts);
       Matrix P = elastic_stress(model, F, R);
       if constexpr (kDamped) P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
       add_forces(at, G, P, -at.volume(), f);
@@ -190,6 +194,39 @@ PALPATE_INLINE Matrix elastic_change(const ElementModel& model, const Matrix& R,
   return {{mu2 * dF.row[0] + (stretch * R.row[0] + turn.z * R.row[1] - turn.y * R.row[2]),
            mu2 * dF.row[1] + (stretch * R.row[1] - turn.z * R.row[0] + turn.x * R.row[2]),
            mu2 * dF.row[2] + (stretch * R.row[2] + turn.y * R.row[0] - turn.x * R.row[1])}};
+}
+
+/// The stress of a linearly implicit step: that of the state and its elastic change by w, and, of what is damped, that of the rate v.
+template <bool kDamped>
+PALPATE_INLINE Matrix step_stress(const Lanes& at, const Matrix& G, const Matrix& F, const Matrix& R, const Symmetric& C, const ElementModel& model, const ChunkFields& fields) {
+  Matrix P = elastic_stress(model, F, R) + elastic_change(model, R, C, gradient_of(at, G, fields.w));
+  if constexpr (kDamped) P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
+  return P;
+}
+
+template <bool kDamped>
+static void step_forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
+                        LaneCounts& counts) {
+  for (int g = 0; g < count; ++g) {
+    fetch_ahead(groups, g, count);
+    for (int part = 0; part < 8; part += kWidth) {
+      const Lanes at{groups[g], part};
+      const Matrix G = gradients(at), F = gradient_of(at, G, fields.x);
+      Matrix R;
+      Pack det;
+      rotation(F, scalar, R, det, counts);
+      count_inverted(det, counts);
+      add_forces(at, G, step_stress<kDamped>(at, G, F, R, coupling(model, F, R, scalar, counts), model, fields), -at.volume(), f);
+    }
+  }
+}
+
+static void step_force(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
+                       LaneCounts& counts) {
+  if (model.damping_mu > 0.0)
+    step_forces<true>(groups, count, model, scalar, fields, f, counts);
+  else
+    step_forces<false>(groups, count, model, scalar, fields, f, counts);
 }
 
 static void apply_tangent(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* y,

@@ -74,6 +74,8 @@ struct LaneKernels {
                   const ChunkBlocks& lower, LaneCounts&);
   /// Puts the chunk's own blocks into the matrix (nine doubles a slot) and leaves the diagonal blocks of nodes that are not its own in `diagonal`.
   void (*flush)(const BlockTargets&, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal, double* values);
+  /// f += nodal forces - stiffness times w.
+  void (*step_force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, LaneCounts&);
   /// Of one linearly implicit step, all at once: f += nodal forces - stiffness times w, and the blocks of a symmetric tangent above the diagonal.
   void (*step)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, const ChunkBlocks& upper, LaneCounts&);
   /// Stores the blocks of `count` edges of a chunk in a matrix in single precision, row by row at values[9 places[k]], whatever stood there.

@@ -18,6 +18,6 @@ namespace {
 }  // namespace
 
 extern const LaneKernels kernels;
-const LaneKernels kernels{PALPATE_NAME, force, apply_tangent, tangent, flush, step, store, energy, power};
+const LaneKernels kernels{PALPATE_NAME, force, apply_tangent, tangent, flush, step_force, step, store, energy, power};
 
 }  // namespace palpate::fem::PALPATE_KERNELS

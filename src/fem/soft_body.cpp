@@ -174,6 +174,20 @@ void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_sc
     Eigen::Map<Vec3>(out + 3 * i) += d_scale * m.drag[i] * Eigen::Map<const Vec3>(direction + 3 * i);
 }
 
+void SoftBody::add_step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) {
+  Impl& m = *impl_;
+  const NodeBlock at = m.place(state);
+  double* force = f.data() + at.u_offset;
+  const double* more = change.data() + at.u_offset;
+  const LaneCounts met = m.elements.add_step_force(m.models_of(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset, more}, force);
+  m.counts.inverted += met.inverted;
+  m.counts.clamped += met.clamped;
+  m.counts.by_scalar += met.by_scalar;
+  if (!m.dragged()) return;
+  m.add_drag(at, force);
+  for (int i = 0; i < node_count(); ++i) Eigen::Map<Vec3>(force + 3 * i) -= m.drag[i] * Eigen::Map<const Vec3>(more + 3 * i);
+}
+
 void SoftBody::add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f, dynamics::BalancedMatrix& A) {
   Impl& m = *impl_;
   const NodeBlock at = m.place(state);

@@ -37,6 +37,9 @@ class StepSolver final : public dynamics::LinearSolver {
   /// Of the chosen solver alone: what it cannot do with a balanced matrix, it says, and wants the whole one, with which the policy above begins.
   dynamics::BalancedMatrix* balanced(const dynamics::BlockSparse& pattern) override { return chosen_->balanced(pattern); }
   dynamics::SolveStatus factor_balanced() override;
+  dynamics::SolveStatus solve_near(dynamics::Residual& left, VecX& x) override {
+    return matrix_ ? dynamics::SolveStatus::kNotConverged : chosen_->solve_near(left, x);
+  }
   /// Sum over both solvers.
   const dynamics::SolverCounters& counters() const override;
 

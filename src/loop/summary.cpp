@@ -28,6 +28,7 @@ void add_counts(store::SummarySection& s, const RunResult& r) {
   add("factorisations", c.solver.factorisations);
   add("linear_solves", c.solver.solves);
   add("linear_iterations", c.solver.iterations);
+  add("near_linear_solves", c.solver.near);
   add("indefinite_matrices", c.indefinite);
   add("projected_matrices", c.projected);
   add("unconverged_linear_solves", c.unconverged);

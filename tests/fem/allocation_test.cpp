@@ -48,6 +48,7 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
         term->dissipated_power(at.state.view());
       }
       symmetric.add_step(at.state.view(), v, 1, 1, f, balanced);
+      symmetric.add_step_force(at.state.view(), v, v, f);
       mass->add_mass(at.state.view(), 1.0, A);
       mass->apply(at.state.view(), v, y);
     };

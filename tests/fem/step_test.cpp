@@ -42,12 +42,13 @@ struct Room {
 
 struct Case {
   TetMesh rest = jittered_cube(10, 0.15, 31);  // three chunks
-  VecX x, v, w;
+  VecX x, v, w, change;
   explicit Case(double shake) {
     Random random(32);
     x = flat(random.rotation() * rest.nodes) + shake * random.vector(3 * rest.nodes.cols());
     v = random.vector(x.size());
     w = random.vector(x.size());
+    change = random.vector(x.size());
   }
 };
 
@@ -93,6 +94,12 @@ TEST(Step, IsForceProductAndTangentInOne) {
           body.apply_tangent(at.state.view(), 1.0, 0.0, c.w, product);
           want -= product;
           EXPECT_LT((f - want).norm(), 1e-12 * want.norm()) << set;
+          product.setZero();
+          body.apply_tangent(at.state.view(), 0.0, 1.0, c.change, product);
+          VecX left = VecX::Zero(c.x.size());
+          body.add_step_force(at.state.view(), c.w, c.change, left);
+          EXPECT_LT((left - (want - product)).norm(), 1e-12 * want.norm()) << set << ", without the matrix";
+          EXPECT_EQ(product.norm() > 0.0, material.stiffness_damping > 0.0);
 
           double largest = 0.0;
           for (const double value : whole.body.values()) largest = std::max(largest, std::abs(value));
@@ -120,6 +127,7 @@ TEST(Step, ThreadsDoNotChangeABit) {
     Room room(body, at.state);
     VecX f = VecX::Zero(c.x.size());
     body.add_step(at.state.view(), c.w, kK, kD, f, room.A);
+    body.add_step_force(at.state.view(), c.w, c.change, f);
     forces.push_back(f);
     values.push_back(room.A.values);
   }

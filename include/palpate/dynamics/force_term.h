@@ -43,6 +43,8 @@ class ForceTerm {
   virtual void add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) = 0;
   /// y += (k_scale K + d_scale D) x without assembling; x and y of u_size.
   virtual void apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) = 0;
+  /// f += force - K shift - D change: a linearly implicit step's share in what it leaves, without the matrix.  Of balanced terms alone; this default is for a zero tangent.
+  virtual void add_step_force(const StateView& state, const VecX& /*shift*/, const VecX& /*change*/, VecX& f) { add_force(state, f); }
   /// f += force - K shift and A += k_scale K + d_scale D: a linearly implicit step's share in one pass over what force and tangent have in common.  Off-diagonal
   /// blocks are stored, not added: System sees to it that no two terms write the same.  Of balanced terms alone; this default is for a zero tangent.
   virtual void add_step(const StateView& state, const VecX& /*shift*/, double /*k_scale*/, double /*d_scale*/, VecX& f, BalancedMatrix& /*A*/) { add_force(state, f); }

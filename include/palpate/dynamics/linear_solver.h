@@ -16,9 +16,19 @@ struct SolverCounters {
   long factorisations = 0;  ///< numeric factorisations
   long solves = 0;          ///< right-hand sides
   long iterations = 0;      ///< of iterative methods
+  long near = 0;            ///< of the right-hand sides, those solved by the matrix of an earlier one
+  long residuals = 0;       ///< that these looked at
   long refreshes = 0;       ///< coarse spaces made anew, where a method has one that it keeps
   double symbolic_s = 0.0, factor_s = 0.0, solve_s = 0.0;  ///< wall time [s]
   std::string ordering;     ///< fill-reducing ordering of the last analysis, where the solver chooses: "AMD", "METIS"
+};
+
+/// A system of equations that is known by what a vector leaves of it.
+class Residual {
+ public:
+  virtual ~Residual() = default;
+  /// r = b - A x; zero along held directions.
+  virtual void at(const VecX& x, VecX& r) = 0;
 };
 
 /// Solves A X = B for a bordered matrix.  Symbolic analysis once per pattern version; numeric work only when the values' version changed.
@@ -40,6 +50,8 @@ class LinearSolver {
   virtual BalancedMatrix* balanced(const BlockSparse& /*pattern*/) { return nullptr; }
   /// factor() of what was written there.  Anything but kOk: it wants the whole matrix in double.  Right-hand sides are zero along held directions.
   virtual SolveStatus factor_balanced() { return SolveStatus::kSingular; }
+  /// Solves A x = b by the balanced matrix last factored, to which A is near, as accurately as a solve with A itself.  Anything but kOk: A's own matrix is wanted.
+  virtual SolveStatus solve_near(Residual& /*left*/, VecX& /*x*/) { return SolveStatus::kNotConverged; }
 };
 
 using MakeLinearSolver = std::unique_ptr<LinearSolver> (*)(const IntegratorSpec&);

@@ -59,6 +59,7 @@ class SoftBody : public dynamics::ForceTerm {
   void add_force(const dynamics::StateView& state, VecX& f) override;
   void add_tangent(const dynamics::StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) override;
   void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) override;
+  void add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change, VecX& f) override;
   void add_step(const dynamics::StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f, dynamics::BalancedMatrix& A) override;
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;

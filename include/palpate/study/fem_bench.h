@@ -22,7 +22,8 @@ struct FemBenchOptions {
   std::vector<double> linear_rtols = {1e-6, 1e-3};
   std::vector<int> threads = {1, 2};
   std::vector<std::string> linear_solvers = {"auto"};
-  int steps = 20;          ///< timed, of each kind
+  int steps = 20;          ///< timed, of 10 ms each
+  bool same_motion = true; ///< of shorter steps as many as take the same motion; false: no more of them
   int checks = 3;          ///< of them, whose solution is compared with a direct one (or, above 12,000 nodes, with one of linear_rtol 1e-10)
 };
 
@@ -55,11 +56,13 @@ struct FemBenchRow {
   int nodes = 0, tetrahedra = 0, blocks = 0, threads = 1, steps = 0;
   double youngs_modulus_pa = 0.0, step_s = 0.0, linear_rtol = 0.0;
   bool one_pass = false;    ///< forces, the product K u and the tangent come in one pass over the elements, timed as matrix_ms
-  double force_ms = 0.0;    ///< forces and the product K u; in one pass, what else the right-hand side needs
+  double force_ms = 0.0;    ///< forces and the product K u; in one pass, what else the right-hand side needs; where most steps are `near`, the residual
   double matrix_ms = 0.0;   ///< tangent, mass and held directions
   double factor_ms = 0.0;   ///< factor or preconditioner, and the copy of the matrix
   double solve_ms = 0.0;
   double step_ms = 0.0;     ///< the whole step
+  double step_mean_ms = 0.0;
+  double near = 0.0;        ///< share of the steps that were solved by the matrix of an earlier one
   double step_least_ms = 0.0, solve_least_ms = 0.0;  ///< of the timed steps, the shortest: what a machine that others use too would take alone
   double step_cpu_ms = 0.0;  ///< median CPU time of the stepping thread; with several threads it holds what that thread spun while it waited
   double solver_cpu_ms = 0.0;  ///< of that, factor and solve

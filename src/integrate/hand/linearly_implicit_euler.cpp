@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "integrate/hand/fixed_step.h"
 #include "integrate/make.h"
 #include "integrate/step_solver.h"
@@ -8,6 +10,8 @@ namespace {
 
 using namespace dynamics;
 
+constexpr double kSameStep = 1e-6;  // relative: steps that differ by rounding
+
 /// Baraff and Witkin (1998), the step of Galoppo et al. (2007).  M (u1 - u0) = h f(q1, u1), q1 = q0 + h N u1, with the
 /// force made linear about (q0, u0) at the time t1 = t0 + h of the implicit rule, f1 = f - K h u1 - D (u1 - u0):
 ///     free directions:  (M + h D + h^2 K) du = h (f - h K u0)
@@ -16,6 +20,8 @@ using namespace dynamics;
 /// so a body that moves rigidly with its drive feels no force.  Order 1; L-stable on linear problems with M, D, K positive.
 /// A value that is not finite ends the step as data; an indefinite matrix is met as StepSolver says: the right-hand side keeps the
 /// true K, so that a projected matrix changes du by h^2 (K_p - K) du, which is O(h^3).
+/// A body that moves little in a step leaves its matrix nearly as it was: the solver then takes the one that it has, and looks at what the true K and D leave,
+/// without their matrix (LinearSolver::solve_near).
 /// Dense output is linear within the last step, which has the method's order.
 class LinearlyImplicitEuler final : public FixedStep {
  public:
@@ -72,12 +78,43 @@ class LinearlyImplicitEuler final : public FixedStep {
     return rhs_.allFinite();
   }
 
+  /// What a velocity change leaves of the right-hand side.
+  class Left final : public Residual {
+   public:
+    Left(LinearlyImplicitEuler& of, const StateView& at, double h) : of_(of), at_(at), h_(h) {}
+    void at(const VecX& x, VecX& r) override { of_.leave(at_, h_, x, r); }
+
+   private:
+    LinearlyImplicitEuler& of_;
+    const StateView& at_;
+    double h_;
+  };
+  /// r = h (f - K (s + h x) - D (dv + x)) - M (dv + x) on free directions; x is zero on driven ones.
+  void leave(const StateView& at, double h, const VecX& x, VecX& r) {
+    const ScopedTimer timer(counters_.force_s);
+    ++counters_.force_evaluations;
+    shift_of_x_ = shift_ + h * x;
+    change_of_x_ = change_ + x;
+    system_.step_force(at, shift_of_x_, change_of_x_, r);
+    system_.apply_mass(at, change_of_x_, product_);
+    r = h * r - product_;
+    system_.reduce(at, r);
+  }
+
+  /// By the matrix of an earlier step, where that serves.
+  bool solve_near(const StateView& at, double h) {
+    if (!(std::abs(h - kept_h_) <= kSameStep * h) || !system_.balanced(at) || system_.pattern().pattern_version() != kept_pattern_) return false;
+    Left left(*this, at, h);
+    return solver_.solve_near(left, du_) == SolveStatus::kOk;
+  }
+
   /// Force, product and matrix in one pass over the bodies, and its solution; false where terms or solver do not take part in that, or the solver fails: the general
   /// way then tells why, or does better.
   bool solve_balanced(const StateView& at, double h) {
     if (!system_.balanced(at)) return false;
     BalancedMatrix* A = solver_.balanced(system_.pattern());
     if (!A) return false;
+    kept_h_ = 0.0;
     {
       const ScopedTimer timer(counters_.tangent_s);
       ++counters_.force_evaluations;
@@ -88,7 +125,10 @@ class LinearlyImplicitEuler final : public FixedStep {
       const ScopedTimer timer(counters_.force_s);
       if (!complete(at, h)) return false;
     }
-    return solver_.factor_balanced() == SolveStatus::kOk && solver_.solve(rhs_, du_) == SolveStatus::kOk;
+    if (solver_.factor_balanced() != SolveStatus::kOk || solver_.solve(rhs_, du_) != SolveStatus::kOk) return false;
+    kept_h_ = h;
+    kept_pattern_ = system_.pattern().pattern_version();
+    return true;
   }
 
   /// The general way; not kOk: what went wrong.
@@ -108,7 +148,7 @@ class LinearlyImplicitEuler final : public FixedStep {
   Attempt attempt(double h, double t1) override {
     predict_drives(t1, h);
     const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
-    if (!solve_balanced(at, h))
+    if (!solve_near(at, h) && !solve_balanced(at, h))
       if (const Attempt solved = solve(at, h); solved.status != StepStatus::kOk) return solved;
     if (!du_.allFinite()) return {.status = StepStatus::kNotFinite, .what = "the velocity is not finite"};
     u1_ = state_.u() + du_;
@@ -118,14 +158,16 @@ class LinearlyImplicitEuler final : public FixedStep {
     system_.impose(layout(), t1, q1_.data(), u1_.data());
     return {.iterations = 1};
   }
-  void forget(ReinitReason) override {}  // one-step, a fresh matrix each time
+  void forget(ReinitReason) override { kept_h_ = 0.0; }
   void collect(StepperCounters& counters) const override {
     solver_.report(counters);
   }
 
   StepSolver solver_;
   BorderedMatrix A_;
-  VecX shift_, change_, rhs_, product_, du_;
+  VecX shift_, change_, rhs_, product_, du_, shift_of_x_, change_of_x_;
+  double kept_h_ = 0.0;              ///< step of the balanced matrix that the solver has; 0: none
+  std::uint64_t kept_pattern_ = 0;
 };
 
 }  // namespace

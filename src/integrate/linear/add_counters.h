@@ -10,6 +10,8 @@ inline void add_counters(const dynamics::SolverCounters& other, dynamics::Solver
   sum.factorisations += other.factorisations;
   sum.solves += other.solves;
   sum.iterations += other.iterations;
+  sum.near += other.near;
+  sum.residuals += other.residuals;
   sum.refreshes += other.refreshes;
   sum.symbolic_s += other.symbolic_s;
   sum.factor_s += other.factor_s;

@@ -114,6 +114,7 @@ class AutoSolver final : public dynamics::LinearSolver {
     values_version_ = 0;
     return active_->factor_balanced();
   }
+  SolveStatus solve_near(dynamics::Residual& left, VecX& x) override { return active_ ? active_->solve_near(left, x) : SolveStatus::kNotConverged; }
   SolveStatus solve(const MatX& B, MatX& X) override { return chosen().solve(B, X); }
   SolveStatus solve(const VecX& b, VecX& x) override { return chosen().solve(b, x); }
 

@@ -14,7 +14,7 @@ namespace palpate::integrate {
 /// Bounds the energy-norm error of one solve; mu outlives it.
 class EnergyBound {
  public:
-  /// @param start  |x_0|_A^2 with x - x_0 orthogonal to x_0 in A's scalar product
+  /// @param start  |x_0|_A^2 with x - x_0 orthogonal to x_0 in A's scalar product; where they are not, |x - x_0|_A^2 is far below it
   void begin(double start);
   /// After a step of length alpha from rho to rho_next.
   void step(double alpha, double rho, double rho_next);

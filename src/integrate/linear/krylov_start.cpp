@@ -23,7 +23,8 @@ void KrylovStart::prepare(const NodeOrder& order) {
     for (Singles* v : {&V_[k], &AV_[k]}) v->assign(4 * order.node.size() + kVectorTail, 0.0f);
   partial_.assign(static_cast<std::size_t>(order.parts()), {});
   count_ = 0;
-  known_ = false;
+  known_ = followed_ = false;
+  std::fill_n(share_, kMostColumns, 1.0);
 }
 
 void KrylovStart::gather_sums(const Doubles& b) {
@@ -72,41 +73,50 @@ double KrylovStart::solve(double* y) const {
 
 KrylovStart::Start KrylovStart::combine(bool warm, double scale, const Doubles& b, Doubles& x, Doubles& Ax) {
   const int count = warm ? count_ : 0;
-  double y[kMostColumns] = {}, energy = 0.0;  // V y solves (scale A) V y = b
+  double y[kMostColumns] = {}, energy = 0.0, change = 0.0;  // V y solves (scale A) V y = b
   if (count > 0) {
     gather_sums(b);
     energy = solve(y);
+    double difference[kMostColumns];
+    for (int j = 0; j < count; ++j) {
+      difference[j] = y[j] - share_[j] * unit_ / scale;
+      for (int i = 0; i <= j; ++i) change += (i < j ? 2.0 : 1.0) * difference[j] * own_[j][i] * difference[i];
+    }
+    for (int j = 0; j < count; ++j) share_[j] = y[j] * scale / unit_;
   }
+  return {scale * energy, add_up(count, y, scale, b, x, Ax), scale * std::max(0.0, change)};
+}
+
+void KrylovStart::foresee(double scale, Doubles& x, Doubles& Ax) {
+  double y[kMostColumns];
+  for (int j = 0; j < kMostColumns; ++j) y[j] = share_[j] * unit_ / scale;
+  add_up(count_, y, scale, x, x, Ax);
+}
+
+/// x and Ax of coefficients y; returns |b - A x|.
+double KrylovStart::add_up(int count, const double* y, double scale, const Doubles& b, Doubles& x, Doubles& Ax) {
   const Pointers at(count, V_, AV_);
   team_.for_each(
       [&](std::size_t c, int first, int last) { partial_[c][0] = kernels_.combine(count, y, scale, at.V, at.AV, b.data(), x.data(), Ax.data(), first, last); });
   double square = 0.0;
   for (const auto& part : partial_) square += part[0];
-  return {scale * energy, std::sqrt(square)};
+  return std::sqrt(square);
 }
 
-void KrylovStart::keep(const Doubles& x) {
-  team_.for_each([&](std::size_t p, int first, int last) {
-    double largest = 0.0;
-    for (std::size_t k = 4 * static_cast<std::size_t>(first); k < 4 * static_cast<std::size_t>(last); ++k) largest = std::max(largest, std::abs(x[k]));
-    partial_[p][0] = largest;
-  });
-  double largest = 0.0;
-  for (const auto& part : partial_) largest = std::max(largest, part[0]);
+void KrylovStart::keep(const Doubles& x, double largest, double scale, const Doubles& Ax) {
   if (!(largest > 0.0)) return;
   const double unit = std::ldexp(1.0, std::ilogb(largest)), by = 1.0 / unit, change = unit_ / unit;
   unit_ = unit;
   count_ = std::min(count_ + 1, most_);
   known_ = false;
+  float *V[kMostColumns], *AV[kMostColumns];
+  for (int k = 0; k < count_; ++k) {
+    V[k] = V_[k].data();
+    AV[k] = AV_[k].data();
+  }
   team_.for_each([&](std::size_t, int first, int last) {
-    for (std::size_t k = 4 * static_cast<std::size_t>(first); k < 4 * static_cast<std::size_t>(last); ++k) {
-      double difference = by * x[k];
-      for (int n = 0; n < count_; ++n) {
-        const double before = change * static_cast<double>(V_[n][k]);
-        V_[n][k] = static_cast<float>(difference);
-        difference -= before;
-      }
-    }
+    kernels_.difference(count_, by, change, x.data(), V, first, last);
+    if (followed_) kernels_.difference(count_, scale * by, change, Ax.data(), AV, first, last);
   });
 }
 

@@ -22,20 +22,26 @@ class KrylovStart {
   int count() const { return count_; }
   Singles* solutions() { return V_; }
   Singles* products() { return AV_; }  ///< with scale A
-  void products_are_known(bool known) { known_ = known; }
+  void products_are_known(bool known) { known_ = followed_ = known; }
   bool products_known() const { return known_; }
+  /// Known, or followed from solution to solution of one matrix.
+  bool products_followed() const { return followed_; }
 
   struct Start {
     double energy;    ///< |x|_A^2
     double residual;  ///< |b - A x|
+    double change;    ///< |x - what was foreseen|_A^2
   };
+  /// What the solutions go on to when their highest difference stays what it is: x, and Ax = A x.
+  void foresee(double scale, Doubles& x, Doubles& Ax);
   /// x = V y and Ax = A V y, both written whole; `warm` false: zero.  A solution that lies in the span of newer ones gives nothing new and is left out.
   Start combine(bool warm, double scale, const Doubles& b, Doubles& x, Doubles& Ax);
-  /// Takes a solution; the oldest is forgotten.
-  void keep(const Doubles& x);
+  /// Takes a solution, the largest number in it, and Ax = A x; the oldest is forgotten.
+  void keep(const Doubles& x, double largest, double scale, const Doubles& Ax);
 
  private:
   void gather_sums(const Doubles& b);
+  double add_up(int count, const double* y, double scale, const Doubles& b, Doubles& x, Doubles& Ax);
   double solve(double* y) const;
 
   const NodeKernels& kernels_;
@@ -43,8 +49,10 @@ class KrylovStart {
   int most_;
   Singles V_[kMostColumns], AV_[kMostColumns];  ///< the newest solution, and its backward differences
   double unit_ = 1.0;  ///< of V_: a power of two
+  double share_[kMostColumns];  ///< of each of V_ in the last start
   int count_ = 0;
-  bool known_ = false;  ///< AV_ is of the present matrix and the present V_
+  bool known_ = false;     ///< AV_ is of the present matrix and the present V_
+  bool followed_ = false;  ///< it is so up to the roundings of A x, which are not of differences between neighbours
   std::vector<std::array<double, kMostSums>> partial_;  ///< one a part
   double own_[kMostColumns][kMostColumns] = {}, right_[kMostColumns] = {};  ///< V^T A V, V^T b
 };

@@ -81,6 +81,8 @@ struct NodeKernels {
   void (*gram)(int count, const float* const* V, const float* const* AV, const double* b, int first, int last, double* out);
   /// x = scale times the sum of y_k V_k, Ax the sum of y_k AV_k; returns |b - Ax|^2
   double (*combine)(int count, const double* y, double scale, const float* const* V, const float* const* AV, const double* b, double* x, double* Ax, int first, int last);
+  /// Backward differences: V_0 becomes by x, V_n the new V_n-1 less `change` times the old one
+  void (*difference)(int count, double by, double change, const double* x, float* const* V, int first, int last);
   /// r = by (b - Ax)
   void (*residual)(double by, const double* b, const double* Ax, float* r, int first, int last);
   /// x += by d

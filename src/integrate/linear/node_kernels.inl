@@ -711,6 +711,23 @@ double combine(int count, const double* y, double scale, const float* const* V, 
   return by_count(count, [&](auto n) __attribute__((always_inline)) { return combine_of<decltype(n)::value>(y, scale, V, AV, b, x, Ax, first, last); });
 }
 
+template <int N>
+[[gnu::always_inline]] static inline void difference_of(double by, double change, const double* x, float* const* V, int first, int last) {
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
+    FourDouble value, old;
+    take(x + k, value);
+    value *= by;
+    for (int n = 0; n < N; ++n) {
+      take(V[n] + k, old);
+      store(V[n] + k, __builtin_convertvector(value, Four));
+      value -= change * old;
+    }
+  }
+}
+void difference(int count, double by, double change, const double* x, float* const* V, int first, int last) {
+  by_count(count, [&](auto n) __attribute__((always_inline)) { difference_of<decltype(n)::value>(by, change, x, V, first, last); });
+}
+
 void residual(double by, const double* b, const double* Ax, float* r, int first, int last) {
   for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
     FourDouble right, image;
@@ -777,5 +794,5 @@ bool invert_diagonal(const double* values, const int* slot, double scale, float*
 }  // namespace palpate::integrate
 
 #define PALPATE_KERNELS_OF(set)                                                                                                              \
-  {#set, set::product, set::pack, set::balance, set::multiply, set::multiply_balanced, set::update, set::jacobi, set::gather_rigid, set::direction, set::dense, set::invert, set::convert, set::multiply_double, set::gram, set::combine, set::residual, \
+  {#set, set::product, set::pack, set::balance, set::multiply, set::multiply_balanced, set::update, set::jacobi, set::gather_rigid, set::direction, set::dense, set::invert, set::convert, set::multiply_double, set::gram, set::combine, set::difference, set::residual, \
    set::correct, set::invert_diagonal}

@@ -23,6 +23,9 @@ class SingleIteration {
   bool first() const { return bounds_[0].first(); }
   /// Whether the error is below rtol of the solution's lower bound, for rho = r . P^-1 r in units of the matrix.
   bool reached(double rho, double rtol) const { return reached(bounds_[0], rho, rtol); }
+  /// Upper bound of the error of the solution, squared, and lower bound of the solution's own square, for such a rho.
+  double error(double rho) const { return bounds_[0].error(rho); }
+  double solution() const { return bounds_[0].solution(); }
   /// Most that rho may be at the end, whatever the bound says.
   void set_floor(double rho) { floor_ = rho; }
 

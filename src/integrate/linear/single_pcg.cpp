@@ -4,6 +4,7 @@
 
 #include "integrate/linear/add_counters.h"
 #include "integrate/linear/krylov_start.h"
+#include "integrate/linear/matrix_age.h"
 #include "integrate/linear/single_iteration.h"
 #include "integrate/make.h"
 #include "integrate/settings.h"
@@ -29,6 +30,10 @@ constexpr double kTrustsSingleStart = 1e-5;
 /// Tighter than rounding of the residual in double is not asked for.
 constexpr double kTightest = 1e-13;
 constexpr int kResidualReplacements = 40;
+/// How well what its age left is solved for.
+constexpr double kRoughly = 0.5;
+/// Looks at what a matrix near the copy leaves, in one solve.
+constexpr int kMostResiduals = 4;
 /// Nodes of a cluster, and most clusters: E^-1 is dense, (6 clusters)^2 numbers read in each iteration and (6 clusters)^3 operations a refresh.
 constexpr int kNodesOfCluster = 150, kMostClusters = 48;
 /// Nodes of its pieces.  The count of iterations hardly changes from 16 to 64, and with pieces it is with 48 clusters what it is with 96 (beams of 32,400 and 99,238 nodes).
@@ -125,6 +130,23 @@ class SinglePcg final : public dynamics::LinearSolver {
     return use_copy(room_->positions);
   }
 
+  SolveStatus solve_near(dynamics::Residual& left, VecX& x) override {
+    const bool can = !delegated_ && !matrix_ && status_ == SolveStatus::kOk && start_.count() > 0 && start_.products_followed() && !iteration_.first();
+    if (!can || !age_.serves()) return SolveStatus::kNotConverged;
+    const double start = wall_seconds();
+    residuals_s_ = 0.0;
+    x.resize(3 * nodes());
+    const SolveStatus status = approach(left, x);
+    counters_.solve_s += wall_seconds() - start - residuals_s_;
+    if (status != SolveStatus::kOk) {
+      age_.failed();
+      return status;
+    }
+    ++counters_.solves;
+    ++counters_.near;
+    return status;
+  }
+
   SolveStatus solve(const VecX& b, VecX& x) override {
     if (delegated_) return bordered_->solve(b, x);
     check_right_hand_side(b.rows());
@@ -158,13 +180,15 @@ class SinglePcg final : public dynamics::LinearSolver {
     iteration_.prepare();
     start_.prepare(copy_.order());
     largest_.assign(static_cast<std::size_t>(copy_.order().parts()), 0.0);
-    for (Doubles* v : {&b_, &x_, &Ax_}) v->assign(4 * static_cast<std::size_t>(n) + kVectorTail, 0.0);
+    for (Doubles* v : {&b_, &x_, &Ax_, &before_}) v->assign(4 * static_cast<std::size_t>(n) + kVectorTail, 0.0);
     too_coarse_ = false;
+    age_ = MatrixAge(rtol_);
   }
 
   // --- once a matrix --------------------------------------------------------------------------------------------------
   SolveStatus use_copy(const double* positions) {
     start_.products_are_known(status_ == SolveStatus::kOk);
+    age_.renew();
     if (status_ == SolveStatus::kOk && two_level_ && lost_ >= price_of_clusters()) refresh_clusters(positions);
     return status_;
   }
@@ -212,19 +236,139 @@ class SinglePcg final : public dynamics::LinearSolver {
     held_.clear();
     for (const std::size_t entry : copy_.held()) held_.push_back(std::exchange(b_[entry], 0.0));
     if (const SolveStatus status = iterate(remember); status != SolveStatus::kOk) return status;
-    team_.for_each([&](std::size_t, int first, int last) {
-      for (int k = first; k < last; ++k) {
-        const double* from = x_.data() + 4 * static_cast<std::ptrdiff_t>(k);
-        double* to = x + 3 * static_cast<std::ptrdiff_t>(node[k]);
-        for (int axis = 0; axis < 3; ++axis) to[axis] = from[axis];
-      }
-    });
+    const double largest = put_solution(x);
     for (std::size_t h = 0; h < held_.size(); ++h) {  // rows of the identity
       const std::size_t entry = copy_.held()[h];
       x[3 * static_cast<std::size_t>(node[entry / 4]) + entry % 4] = held_[h];
     }
-    if (remember) start_.keep(x_);
+    if (remember) {
+      follow_product();
+      start_.keep(x_, largest, copy_.scale(), Ax_);
+    }
     return SolveStatus::kOk;
+  }
+
+  /// x_ in the order and shape of its caller; returns its largest number.
+  double put_solution(double* x) {
+    const int* node = copy_.order().node.data();
+    team_.for_each([&](std::size_t part, int first, int last) {
+      double largest = 0.0;
+      for (int k = first; k < last; ++k) {
+        const double* from = x_.data() + 4 * static_cast<std::ptrdiff_t>(k);
+        double* to = x + 3 * static_cast<std::ptrdiff_t>(node[k]);
+        for (int axis = 0; axis < 3; ++axis) {
+          to[axis] = from[axis];
+          largest = std::max(largest, std::abs(from[axis]));
+        }
+      }
+      largest_[part] = largest;
+    });
+    return *std::max_element(largest_.begin(), largest_.end());
+  }
+
+  // --- a matrix near the copy -----------------------------------------------------------------------------------------
+  // With Ao for the copy and A for what is to be solved, A x = b is Ao x = b - A x + Ao x: where x on the right is an approximation, a system with the copy for a better one,
+  // whose error is A^-1 (Ao - A) of the correction (matrix_age.h).  Ao x needs no product: it is the right-hand side less what the iteration left of it.
+
+  SolveStatus approach(dynamics::Residual& left, VecX& x) {
+    start_.foresee(copy_.scale(), x_, Ax_);
+    int residuals = 1;
+    look(left, x);
+    const KrylovStart::Start start = start_.combine(true, copy_.scale(), b_, x_, Ax_);
+    size_ = start.residual;
+    double energy = start.energy, change = start.change, first_correction = 0.0;
+    for (;;) {
+      if (!std::isfinite(size_)) return SolveStatus::kNotConverged;
+      set_residual();
+      double open = 0.0;
+      if (const SolveStatus status = descend(energy, (1.0 - MatrixAge::kUnseen) * rtol_, open); status != SolveStatus::kOk) return status;
+      const double solution = iteration_.solution(), correction = std::sqrt((change + solution - energy) / solution);
+      follow_product();
+      if (residuals == 1) first_correction = correction;
+      if (age_.sure(correction)) break;
+      if (residuals == kMostResiduals) return SolveStatus::kNotConverged;
+      std::swap(b_, before_);
+      look(left, x);
+      ++residuals;
+      double stale = 0.0;
+      if (const SolveStatus status = mend(solution, stale, open); status != SolveStatus::kOk) return status;
+      age_.seen(stale, correction);
+      if (open <= rtol_) break;
+      if (!age_.converges()) return SolveStatus::kNotConverged;
+      size_ = norm_of_residual();
+      energy = solution;
+      change = stale * stale * solution;
+    }
+    iteration_.end();
+    start_.keep(x_, put_solution(x.data()), copy_.scale(), Ax_);
+    counters_.residuals += residuals;
+    age_.solved(first_correction);
+    return SolveStatus::kOk;
+  }
+
+  /// b_ = what A leaves of x_, and Ao x_.
+  void look(dynamics::Residual& left, VecX& x) {
+    put_solution(x.data());
+    const double start = wall_seconds();
+    left.at(x, residual_);
+    residuals_s_ += wall_seconds() - start;
+    const int* node = copy_.order().node.data();
+    team_.for_each([&](std::size_t, int first, int last) {
+      for (int k = first; k < last; ++k) {
+        const double* from = residual_.data() + 3 * static_cast<std::ptrdiff_t>(node[k]);
+        const std::ptrdiff_t to = 4 * static_cast<std::ptrdiff_t>(k);
+        for (std::ptrdiff_t axis = 0; axis < 3; ++axis) b_[static_cast<std::size_t>(to + axis)] = from[axis] + Ax_[static_cast<std::size_t>(to + axis)];
+      }
+    });
+  }
+
+  /// Takes off what the copy's age left: b_ - before_ = (Ao - A) (the last correction), of which a rough solution tells the size and most of itself.
+  /// @param stale  its size over the solution's  @param open  in: what the iteration left open; out: with what is left of this
+  SolveStatus mend(double solution, double& stale, double& open) {
+    double square = 0.0;
+    for (std::size_t i = 0; i < b_.size(); ++i) square += (b_[i] - before_[i]) * (b_[i] - before_[i]);
+    if (!(square > 0.0)) return square == 0.0 ? SolveStatus::kOk : SolveStatus::kNotConverged;
+    size_ = std::sqrt(square);
+    const double by = 1.0 / size_;
+    team_.for_each([&](std::size_t, int first, int last) { kernels_.residual(by, b_.data(), before_.data(), iteration_.residual().data(), first, last); });
+    double rest = 0.0;
+    if (const SolveStatus status = descend(0.0, kRoughly, rest); status != SolveStatus::kOk) return status;
+    const double found = iteration_.solution();
+    stale = std::sqrt(found * (1.0 + rest * rest) / solution);
+    open += rest * std::sqrt(found / solution);
+    const float* r = iteration_.residual().data();
+    team_.for_each([&](std::size_t, int first, int last) {
+      for (std::size_t k = 4 * static_cast<std::size_t>(first); k < 4 * static_cast<std::size_t>(last); ++k) Ax_[k] += b_[k] - before_[k] - size_ * static_cast<double>(r[k]);
+    });
+    return SolveStatus::kOk;
+  }
+
+  /// Iterates from the iteration's residual, of that size, until the error is below rtol of the solution, or single precision has no more to say.
+  /// @param start  as EnergyBound::begin  @param open  the error then, over the solution
+  SolveStatus descend(double start, double rtol, double& open) {
+    iteration_.begin(start);
+    iteration_.set_floor(HUGE_VAL);
+    iteration_.forget_direction();
+    iteration_.clear_correction();
+    double rho = iteration_.precondition();
+    if (!std::isfinite(rho)) return SolveStatus::kNotConverged;
+    if (!iteration_.reached(rho * unit(), rtol)) {
+      int steps = 0;
+      const SolveStatus status = iteration_.reduce(rho, 0.0, kReductionInSingle * kReductionInSingle * rho, unit(), rtol, kIterationLimit, steps);
+      counters_.iterations += steps;
+      if (status != SolveStatus::kOk) return status;
+      add_correction();
+    }
+    open = std::sqrt(iteration_.error(rho * unit()) / iteration_.solution());
+    return SolveStatus::kOk;
+  }
+
+  /// Ax_ of what the iteration came to.
+  void follow_product() {
+    const float* r = iteration_.residual().data();
+    team_.for_each([&](std::size_t, int first, int last) {
+      for (std::size_t k = 4 * static_cast<std::size_t>(first); k < 4 * static_cast<std::size_t>(last); ++k) Ax_[k] = b_[k] - size_ * static_cast<double>(r[k]);
+    });
   }
 
   SolveStatus iterate(bool warm) {
@@ -241,6 +385,7 @@ class SinglePcg final : public dynamics::LinearSolver {
     const long before = counters_.iterations;
     if (const SolveStatus status = refine(); status != SolveStatus::kOk) return status;
     iteration_.end();
+    age_.solved(std::sqrt((start.change + iteration_.solution() - start.energy) / iteration_.solution()));
     account(static_cast<double>(counters_.iterations - before));
     return SolveStatus::kOk;
   }
@@ -335,7 +480,10 @@ class SinglePcg final : public dynamics::LinearSolver {
   double lost_ = 0.0, fewest_ = HUGE_VAL;  ///< since E was made: iterations above the fewest, and these
   KrylovStart start_;
   SingleIteration iteration_;
-  Doubles b_, x_, Ax_;
+  Doubles b_, x_, Ax_, before_;
+  VecX residual_;
+  double residuals_s_ = 0.0;
+  MatrixAge age_{rtol_};                      ///< of a balanced matrix, which is kept from step to step
   std::vector<double> largest_, held_;  ///< of b: of each part; where it stands alone
   double size_ = 0.0;
 };

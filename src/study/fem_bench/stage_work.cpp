@@ -48,6 +48,12 @@ StepWork work_of(const StepCounts& c) {
                 .written_bytes = kCopy * triangle + (c.starts * kSingleVector + kInverse + kSolverVector + kSingleVector) * c.nodes,
                 .single_flops = (kFactorOfBlock + c.starts * kStartOfBlock) * c.blocks};
   }
+  if (c.near) {  // the residual in one pass: x, u, the shift, the change and the masses once, f written; no matrix
+    w.force = {.read_bytes = kElement * c.tetrahedra + 6.0 * kVector * c.nodes,
+               .written_bytes = kVector * c.nodes,
+               .double_flops = (2.0 * kGradient + kRotation + kForceTail + kProductTail) * c.tetrahedra};
+    w.matrix = w.factor = {};
+  }
   // An iteration: direction (z, p to p), product (p to q, and the masses), update (p, q, d, r and the inverse to d, r, z).
   const double vectors = c.one_pass ? 8.0 : 7.0;
   w.solve = {.read_bytes = c.iterations * ((kCopy + kColumn) * triangle + (vectors * kSingleVector + kInverse) * c.nodes),

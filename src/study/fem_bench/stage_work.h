@@ -9,6 +9,7 @@ struct StepCounts {
   double iterations = 0.0;  ///< of the linear solver
   double starts = 3.0;      ///< earlier solutions that it starts from
   bool one_pass = false;    ///< over the elements, with the blocks off the diagonal in single precision alone
+  bool near = false;        ///< by the matrix of an earlier step
 };
 
 /// The least that each stage of a linearly implicit step (warped tangent, no damping, solved by conjugate gradients in single precision) must do.
