@@ -137,33 +137,42 @@ PALPATE_INLINE void edge_blocks(const Lanes& at, const BlockParts& e, const Chun
   edge_block<kBlocks, kDamped, kByPosition>(at, e, 5, 2, 3, upper, lower);
 }
 
+template <bool kDamped, bool kByPosition>
+PALPATE_INLINE void set_rates(BlockParts& e, const Lanes& at, const ElementModel& model, const Matrix& F, const Matrix& G, Pack volume, const ChunkFields& fields) {
+  if constexpr (kDamped || kByPosition) set_gradients(e, F, G);
+  if constexpr (kDamped) set_damping(e, model, F, volume);
+  if constexpr (kByPosition) set_position(e, model, F, gradient_of(at, G, fields.v), G, volume);
+}
+
 /// Deformation gradient and rotation of an element serve all that is asked for: the blocks, and in a linearly implicit step (kStep) the forces less the stiffness times w.
 template <Blocks kBlocks, bool kDamped, bool kByPosition, bool kStep>
 static void blocks_of(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                       const ChunkBlocks& upper, const ChunkBlocks& lower, LaneCounts& counts) {
+  for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
+    const Matrix G = gradients(at);
+    const Pack volume = at.volume();
+    Symmetric C{};
+    if constexpr (kBlocks == Blocks::kCoupled || kStep) C = coupling(model, F, R, scalar, counts);
+    if constexpr (kStep) {
+      count_inverted(det, counts);
+      add_forces(at, G, step_stress<kDamped>(at, G, F, R, C, model, fields), -volume, f);
+    }
+    BlockParts e;
+    set_elastic<kBlocks>(e, model, R, C, G, volume);
+    set_rates<kDamped, kByPosition>(e, at, model, F, G, volume, fields);
+    edge_blocks<kBlocks, kDamped, kByPosition>(at, e, upper, lower);
+  });
+}
+
+static void damping_blocks(const ElementGroup* groups, int count, const ElementModel& model, const ChunkFields& fields, const ChunkBlocks& upper) {
   for (int g = 0; g < count; ++g) {
     fetch_ahead(groups, g, count);
     for (int part = 0; part < 8; part += kWidth) {
       const Lanes at{groups[g], part};
-      const Matrix G = gradients(at), F = gradient_of(at, G, fields.x);
-      const Pack volume = at.volume();
+      const Matrix G = gradients(at);
       BlockParts e;
-      if constexpr (kBlocks != Blocks::kDampingOnly) {
-        Matrix R;
-        Pack det;
-        rotation(F, scalar, R, det, counts);
-        Symmetric C{};
-        if constexpr (kBlocks == Blocks::kCoupled || kStep) C = coupling(model, F, R, scalar, counts);
-        if constexpr (kStep) {
-          count_inverted(det, counts);
-          add_forces(at, G, step_stress<kDamped>(at, G, F, R, C, model, fields), -volume, f);
-        }
-        set_elastic<kBlocks>(e, model, R, C, G, volume);
-      }
-      if constexpr (kDamped || kByPosition) set_gradients(e, F, G);
-      if constexpr (kDamped) set_damping(e, model, F, volume);
-      if constexpr (kByPosition) set_position(e, model, F, gradient_of(at, G, fields.v), G, volume);
-      edge_blocks<kBlocks, kDamped, kByPosition>(at, e, upper, lower);
+      set_rates<true, false>(e, at, model, gradient_of(at, G, fields.x), G, at.volume(), fields);
+      edge_blocks<Blocks::kDampingOnly, true, false>(at, e, upper, {});
     }
   }
 }
@@ -173,7 +182,7 @@ static void tangent(const ElementGroup* groups, int count, const ElementModel& m
   const bool damped = model.damping_mu > 0.0 && model.d_scale != 0.0, elastic = model.k_scale != 0.0;
   const bool by_position = elastic && model.by_position;
   const auto run = [&](auto* blocks) { blocks(groups, count, model, scalar, fields, nullptr, upper, lower, counts); };
-  if (!elastic) return run(blocks_of<Blocks::kDampingOnly, true, false, false>);
+  if (!elastic) return damping_blocks(groups, count, model, fields, upper);
   if (model.warped) {
     if (by_position) return run(damped ? blocks_of<Blocks::kWarped, true, true, false> : blocks_of<Blocks::kWarped, false, true, false>);
     return run(damped ? blocks_of<Blocks::kWarped, true, false, false> : blocks_of<Blocks::kWarped, false, false, false>);

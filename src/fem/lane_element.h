@@ -32,6 +32,26 @@ PALPATE_INLINE Matrix gradient_of(const Lanes& at, const Matrix& G, const double
            a.z * G.row[0] + b.z * G.row[1] + c.z * G.row[2]}};
 }
 
+/// work(lanes, F, R, det F) for each element of the groups.
+template <class Work>
+PALPATE_INLINE void for_each_rotated(const ElementGroup* groups, int count, const double* x, const ScalarPath& scalar, LaneCounts& counts, Work&& work) {
+  for (int g = 0; g < count; g += kTogether) {
+    const int here = count - g < kTogether ? count - g : kTogether;
+    for (int n = 0; n < here; ++n) fetch_ahead(groups, g + n, count);
+    for (int part = 0; part < 8; part += kWidth) {
+      Matrix F[kTogether], R[kTogether];
+      Pack det[kTogether];
+      for (int n = 0; n < kTogether; ++n) {
+        const Lanes at{groups[g + (n < here ? n : 0)], part};
+        F[n] = gradient_of(at, gradients(at), x);
+      }
+      rotations(F, here, scalar, R, det, counts);
+#pragma GCC unroll 1
+      for (int n = 0; n < here; ++n) work(Lanes{groups[g + n], part}, F[n], R[n], det[n]);
+    }
+  }
+}
+
 /// f_a += scale P g_a; that of corner 0 is minus the sum of the others.
 PALPATE_INLINE void add_forces(const Lanes& at, const Matrix& G, const Matrix& P, Pack scale, double* f) {
   const Matrix Q = scale * P;
@@ -79,20 +99,13 @@ PALPATE_INLINE Matrix elastic_stress(const ElementModel& model, const Matrix& F,
 template <bool kDamped>
 static void forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                    LaneCounts& counts) {
-  for (int g = 0; g < count; ++g) {
-    fetch_ahead(groups, g, count);
-    for (int part = 0; part < 8; part += kWidth) {
-      const Lanes at{groups[g], part};
-      const Matrix G = gradients(at), F = gradient_of(at, G, fields.x);
-      Matrix R;
-      Pack det;
-      rotation(F, scalar, R, det, counts);
-      count_inverted(det, counts);
-      Matrix P = elastic_stress(model, F, R);
-      if constexpr (kDamped) P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
-      add_forces(at, G, P, -at.volume(), f);
-    }
-  }
+  for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
+    const Matrix G = gradients(at);
+    count_inverted(det, counts);
+    Matrix P = elastic_stress(model, F, R);
+    if constexpr (kDamped) P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
+    add_forces(at, G, P, -at.volume(), f);
+  });
 }
 
 static void force(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
@@ -105,20 +118,12 @@ static void force(const ElementGroup* groups, int count, const ElementModel& mod
 
 static void energy(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double sums[8],
                    LaneCounts& counts) {
-  for (int g = 0; g < count; ++g) {
-    fetch_ahead(groups, g, count);
-    for (int part = 0; part < 8; part += kWidth) {
-      const Lanes at{groups[g], part};
-      const Matrix F = gradient_of(at, gradients(at), fields.x);
-      Matrix R;
-      Pack det;
-      rotation(F, scalar, R, det, counts);
-      const Matrix strain = F - R;
-      const Pack trace = double_dot(R, F) - 3.0;
-      const Pack density = model.mu * double_dot(strain, strain) + (0.5 * model.lambda) * trace * trace;
-      *reinterpret_cast<PackInMemory*>(sums + part) += at.volume() * density;
-    }
-  }
+  for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack&) __attribute__((always_inline)) {
+    const Matrix strain = F - R;
+    const Pack trace = double_dot(R, F) - 3.0;
+    const Pack density = model.mu * double_dot(strain, strain) + (0.5 * model.lambda) * trace * trace;
+    *reinterpret_cast<PackInMemory*>(sums + at.first) += at.volume() * density;
+  });
 }
 
 static void power(const ElementGroup* groups, int count, const ElementModel& model, const ChunkFields& fields, double sums[8]) {
@@ -207,18 +212,11 @@ PALPATE_INLINE Matrix step_stress(const Lanes& at, const Matrix& G, const Matrix
 template <bool kDamped>
 static void step_forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                         LaneCounts& counts) {
-  for (int g = 0; g < count; ++g) {
-    fetch_ahead(groups, g, count);
-    for (int part = 0; part < 8; part += kWidth) {
-      const Lanes at{groups[g], part};
-      const Matrix G = gradients(at), F = gradient_of(at, G, fields.x);
-      Matrix R;
-      Pack det;
-      rotation(F, scalar, R, det, counts);
-      count_inverted(det, counts);
-      add_forces(at, G, step_stress<kDamped>(at, G, F, R, coupling(model, F, R, scalar, counts), model, fields), -at.volume(), f);
-    }
-  }
+  for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
+    const Matrix G = gradients(at);
+    count_inverted(det, counts);
+    add_forces(at, G, step_stress<kDamped>(at, G, F, R, coupling(model, F, R, scalar, counts), model, fields), -at.volume(), f);
+  });
 }
 
 static void step_force(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
@@ -231,26 +229,30 @@ static void step_force(const ElementGroup* groups, int count, const ElementModel
 
 static void apply_tangent(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* y,
                           LaneCounts& counts) {
-  const bool damped = model.damping_mu > 0.0;
-  for (int g = 0; g < count; ++g) {
-    fetch_ahead(groups, g, count);
-    for (int part = 0; part < 8; part += kWidth) {
-      const Lanes at{groups[g], part};
-      const Matrix G = gradients(at), F = gradient_of(at, G, fields.x), dF = gradient_of(at, G, fields.w);
-      Matrix dP{};
-      if (model.k_scale != 0.0) {
-        Matrix R;
-        Pack det;
-        rotation(F, scalar, R, det, counts);
-        dP = elastic_change(model, R, coupling(model, F, R, scalar, counts), dF);
-        if (model.by_position) {
-          const Matrix F_dot = gradient_of(at, G, fields.v);
-          dP = dP + dF * full(damping_stress(symmetric_product(F, F_dot), model)) + F * full(damping_stress(symmetric_product(dF, F_dot), model));
-        }
-        dP = (Pack{} + model.k_scale) * dP;
+  const bool damped = model.damping_mu > 0.0 && model.d_scale != 0.0;
+  const auto damping = [&](const Matrix& F, const Matrix& dF) __attribute__((always_inline)) {
+    return (Pack{} + model.d_scale) * (F * full(damping_stress(symmetric_product(F, dF), model)));
+  };
+  if (model.k_scale == 0.0) {
+    for (int g = 0; g < count; ++g) {
+      fetch_ahead(groups, g, count);
+      for (int part = 0; part < 8; part += kWidth) {
+        const Lanes at{groups[g], part};
+        const Matrix G = gradients(at);
+        if (damped) add_forces(at, G, damping(gradient_of(at, G, fields.x), gradient_of(at, G, fields.w)), at.volume(), y);
       }
-      if (damped && model.d_scale != 0.0) dP = dP + (Pack{} + model.d_scale) * (F * full(damping_stress(symmetric_product(F, dF), model)));
-      add_forces(at, G, dP, at.volume(), y);
     }
+    return;
   }
+  for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack&) __attribute__((always_inline)) {
+    const Matrix G = gradients(at), dF = gradient_of(at, G, fields.w);
+    Matrix dP = elastic_change(model, R, coupling(model, F, R, scalar, counts), dF);
+    if (model.by_position) {
+      const Matrix F_dot = gradient_of(at, G, fields.v);
+      dP = dP + dF * full(damping_stress(symmetric_product(F, F_dot), model)) + F * full(damping_stress(symmetric_product(dF, F_dot), model));
+    }
+    dP = (Pack{} + model.k_scale) * dP;
+    if (damped) dP = dP + damping(F, dF);
+    add_forces(at, G, dP, at.volume(), y);
+  });
 }

@@ -20,34 +20,48 @@
 // What rounding does to R is of order |F|^3 / z times the unit roundoff, about s0/(s1 + s2), as it must be: lanes where z < |F|^3 / 100 (flat to
 // a line, or s1 + s2 near 0 where R jumps) and lanes that are not finite are left to the scalar path.
 
+PALPATE_INLINE Matrix cofactors(const Matrix& F) { return {{cross(F.row[1], F.row[2]), cross(F.row[2], F.row[0]), cross(F.row[0], F.row[1])}}; }
+
 /// Half of the relative error that Newton may leave in l; in the stretches it is up to |F|^3 / z, a hundred, times as large.
 constexpr double kLeft = 2e-10;
 
-/// @return lanes where R is right
-PALPATE_INLINE Mask find_rotation(const Matrix& F, Matrix& R, Pack& det) {
-  const Matrix cof{{cross(F.row[1], F.row[2]), cross(F.row[2], F.row[0]), cross(F.row[0], F.row[1])}};
-  det = dot(F.row[0], cof.row[0]);
-  const Pack f = double_dot(F, F), q = 4.0 * double_dot(cof, cof), d = 8.0 * det;
-  Pack l = 1.5 + 0.5 * f;
-  Mask open;
-  for (int i = 0; i < 24; ++i) {
-    const Pack w = l * l - f;
-    const Pack slope = 4.0 * (l * w) - d;  // p' = 8 z
-    const Pack step = (w * w - l * d - q) / slope;
-    l -= step;
-    open = step * step * (3.0 * (l * l) - f) > kLeft * (l * slope);
-    if (!any(open)) break;
-  }
-  const Pack k = 0.5 * (l * l - f), z = k * l - det;
-  const Mask right = (z > 0.0) & (z * z > 1e-4 * (f * f * f)) & ~open;
+/// Elements go together, kTogether in each lane: while one waits for its divisions, the other goes on.
+constexpr int kTogether = 2;
 
-  const Pack inverse = 1.0 / z;
-  const Matrix FFtF = F * full(gram_of_columns(F));
-  const Matrix X = ((k + f) * inverse) * F + (l * inverse) * cof + (-inverse) * FFtF;
-  const Symmetric Q = gram_of_columns(X);
-  const Symmetric correction{1.5 - 0.5 * Q.xx, 1.5 - 0.5 * Q.yy, 1.5 - 0.5 * Q.zz, -0.5 * Q.yz, -0.5 * Q.xz, -0.5 * Q.xy};
-  R = X * full(correction);
-  return right;
+/// @param right  lanes where R is right
+PALPATE_INLINE void find_rotations(const Matrix* F, Matrix* R, Pack* det, Mask* right) {
+  Pack f[kTogether], q[kTogether], d[kTogether], l[kTogether];
+  for (int n = 0; n < kTogether; ++n) {
+    const Matrix cof = cofactors(F[n]);
+    det[n] = dot(F[n].row[0], cof.row[0]);
+    f[n] = double_dot(F[n], F[n]);
+    q[n] = 4.0 * double_dot(cof, cof);
+    d[n] = 8.0 * det[n];
+    l[n] = 1.5 + 0.5 * f[n];
+  }
+  Mask open[kTogether];
+  for (int i = 0; i < 24; ++i) {
+    Mask in_any{};
+    for (int n = 0; n < kTogether; ++n) {
+      const Pack w = l[n] * l[n] - f[n];
+      const Pack slope = 4.0 * (l[n] * w) - d[n];  // p' = 8 z
+      const Pack step = (w * w - l[n] * d[n] - q[n]) / slope;
+      l[n] -= step;
+      open[n] = step * step * (3.0 * (l[n] * l[n]) - f[n]) > kLeft * (l[n] * slope);
+      in_any |= open[n];
+    }
+    if (!any(in_any)) break;
+  }
+  for (int n = 0; n < kTogether; ++n) {
+    const Pack k = 0.5 * (l[n] * l[n] - f[n]), z = k * l[n] - det[n];
+    right[n] = (z > 0.0) & (z * z > 1e-4 * (f[n] * f[n] * f[n])) & ~open[n];
+    const Pack inverse = 1.0 / z;
+    const Matrix FFtF = F[n] * full(gram_of_columns(F[n]));
+    const Matrix X = ((k + f[n]) * inverse) * F[n] + (l[n] * inverse) * cofactors(F[n]) + (-inverse) * FFtF;
+    const Symmetric Q = gram_of_columns(X);
+    const Symmetric correction{1.5 - 0.5 * Q.xx, 1.5 - 0.5 * Q.yy, 1.5 - 0.5 * Q.zz, -0.5 * Q.yz, -0.5 * Q.xz, -0.5 * Q.xy};
+    R[n] = X * full(correction);
+  }
 }
 
 PALPATE_INLINE void take_lane(const Matrix& A, int l, double* a) {
@@ -77,12 +91,15 @@ PALPATE_INLINE void put_lane(const double* a, int l, Matrix& A) {
   }
 }
 
-PALPATE_INLINE void rotation(const Matrix& F, const ScalarPath& scalar, Matrix& R, Pack& det, LaneCounts& counts) {
-  const Mask right = find_rotation(F, R, det);
-  if (any(~right)) [[unlikely]] {
-    Matrix copy_F = F, copy_R = R;
-    Mask copy_right = right;
+/// The rotations of the first `count` of kTogether deformation gradients.
+PALPATE_INLINE void rotations(const Matrix* F, int count, const ScalarPath& scalar, Matrix* R, Pack* det, LaneCounts& counts) {
+  Mask right[kTogether];
+  find_rotations(F, R, det, right);
+  for (int n = 0; n < kTogether; ++n) {
+    if (n >= count || !any(~right[n])) [[likely]] continue;
+    Matrix copy_F = F[n], copy_R = R[n];
+    Mask copy_right = right[n];
     rotate_by_scalar(&copy_F, &copy_R, &copy_right, scalar, counts);
-    R = copy_R;
+    R[n] = copy_R;
   }
 }
