@@ -1,12 +1,10 @@
 #include "palpate/core/team.h"
 
+#include "core/turn.h"
 #include "palpate/core/error.h"
 
 namespace palpate {
 namespace {
-
-/// Some 10 us on a core of 3 GHz: longer than the work between two barriers differs, far shorter than a time slice.
-constexpr int kSpins = 1000;
 
 void pause_briefly() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -16,7 +14,9 @@ void pause_briefly() {
 
 }  // namespace
 
-Team::Team(int size) : size_(size) {
+struct Team::Whose : Turn {};
+
+Team::Team(int size) : size_(size), turn_(std::make_unique<Whose>()) {
   PALPATE_CHECK(size >= 1, "a team of {}", size);
   for (int k = 1; k < size; ++k) workers_.emplace_back([this, k] { live(k); });
 }
@@ -29,8 +29,8 @@ Team::~Team() {
   for (std::thread& worker : workers_) worker.join();
 }
 
-void Team::wait_while(const std::atomic<std::uint32_t>& value, std::uint32_t old) {
-  for (int i = 0; i < kSpins; ++i) {
+void Team::wait_while(const std::atomic<std::uint32_t>& value, std::uint32_t old) const {
+  for (int i = 0; i < Turn::kSpins && turn_->has(); ++i) {
     if (value.load(std::memory_order_acquire) != old) return;
     pause_briefly();
   }
@@ -48,6 +48,7 @@ void Team::live(int k) {
 
 void Team::run_any(void (*call)(void*, int), void* work) {
   if (size_ == 1) return call(work, 0);
+  turn_->take();
   call_ = call;
   work_ = work;
   round_.fetch_add(1, std::memory_order_release);

@@ -6,6 +6,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/turn.h"
 #include "palpate/core/error.h"
 
 namespace palpate::workers {
@@ -45,13 +46,13 @@ class Pool {
   }
 
  private:
-  static constexpr int kSpins = 1000;  // some tens of microseconds
   static constexpr std::uint64_t kBits = 20, kField = (std::uint64_t{1} << kBits) - 1;
   static std::uint64_t next_of(std::uint64_t ticket) { return ticket & kField; }
   static std::uint64_t tasks_of(std::uint64_t ticket) { return (ticket >> kBits) & kField; }
 
   void share(int tasks, Task task, void* context) {
     PALPATE_CHECK(static_cast<std::uint64_t>(tasks) <= kField, "{} tasks in one loop", tasks);
+    turn_.take();
     task_.store(task, std::memory_order_relaxed);
     context_.store(context, std::memory_order_relaxed);
     done_.store(0, std::memory_order_relaxed);
@@ -62,7 +63,7 @@ class Pool {
     for (int spins = 0;; ++spins) {
       const int done = done_.load();
       if (done == tasks) return;
-      if (spins < kSpins)
+      if (spins < Turn::kSpins)
         pause();
       else
         done_.wait(done);
@@ -87,12 +88,8 @@ class Pool {
       const unsigned seen = wake_.load();
       if (stopping_.load()) return;
       take(worker);
-      int spins = 0;
-      while (wake_.load() == seen && spins < kSpins) {
-        pause();
-        ++spins;
-      }
-      if (spins == kSpins) wake_.wait(seen);
+      for (int spins = 0; wake_.load() == seen && spins < Turn::kSpins && turn_.has(); ++spins) pause();
+      wake_.wait(seen);
     }
   }
 
@@ -105,6 +102,7 @@ class Pool {
     stopping_ = false;
   }
 
+  Turn turn_;
   std::mutex busy_;
   std::vector<std::thread> threads_;
   std::atomic<int> count_{1};

@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <thread>
 #include <type_traits>
 #include <vector>
@@ -8,7 +9,7 @@
 namespace palpate {
 
 /// A few threads that work on one thing together, again and again: the caller and size() - 1 workers, which live as long as the team.
-/// Who waits spins for some microseconds and then sleeps: on a machine with fewer free cores than threads a spinning team costs seconds.
+/// Who waits spins for some tens of microseconds and then sleeps: on a machine with fewer free cores than threads a spinning team costs seconds.
 /// One caller at a time.  What a worker throws ends the program: give it work that does not throw.
 class Team {
  public:
@@ -30,9 +31,11 @@ class Team {
  private:
   void run_any(void (*call)(void*, int), void* work);
   void live(int k);
-  static void wait_while(const std::atomic<std::uint32_t>& value, std::uint32_t old);
+  void wait_while(const std::atomic<std::uint32_t>& value, std::uint32_t old) const;
 
+  struct Whose;
   int size_;
+  std::unique_ptr<Whose> turn_;
   std::vector<std::thread> workers_;
   void (*call_)(void*, int) = nullptr;
   void* work_ = nullptr;
