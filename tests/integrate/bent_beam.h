@@ -13,19 +13,26 @@
 
 namespace palpate {
 
+struct BentBeamOptions {
+  double stiffness_damping = 0.0, mass_damping = 0.0;
+  double shake_m = 0.0;  ///< amplitude that the held end is moved with, up and down
+};
+
 /// Step matrices M + h^2 K of a beam, held at one end, bent by angles that large rotation needs.
 struct BentBeam {
   dynamics::State state;
   dynamics::System system;
   VecX rest, masses;
-  explicit BentBeam(int cells_along, double youngs_modulus, int cells_across = 0) {
+  explicit BentBeam(int cells_along, double youngs_modulus, int cells_across = 0, const BentBeamOptions& options = {}) {
     const int across = cells_across > 0 ? cells_across : cells_along / 4;
     const double width = static_cast<double>(across) / cells_along;
     const TetMesh mesh = mesh::box(Vec3(1.0, width, width), {cells_along, across, across});
     const auto n = static_cast<int>(mesh.nodes.cols());
     rest = mesh.nodes.reshaped();
     const int id = state.insert(dynamics::BlockSpec{.name = "beam", .q_size = 3 * n, .u_size = 3 * n}, rest, VecX::Zero(3 * n));
-    const fem::Material material{.youngs_modulus = youngs_modulus, .poissons_ratio = 0.4, .density = 1000.0};
+    fem::Material material{.youngs_modulus = youngs_modulus, .poissons_ratio = 0.4, .density = 1000.0};
+    material.stiffness_damping = options.stiffness_damping;
+    material.mass_damping = options.mass_damping;
     system.add(std::static_pointer_cast<dynamics::ForceTerm>(
         std::make_shared<fem::SoftBody>("beam", mesh, material, fem::SoftBodyOptions{.tangent = fem::Tangent::kWarped}, id)));
     masses = fem::lumped_masses(mesh, material.density);
@@ -33,8 +40,22 @@ struct BentBeam {
     system.add(fem::make_lumped_mass(mesh, material.density, id));
     const std::vector<int> held = fem::dofs_of_nodes(fem::nodes_in_box(mesh.nodes, Vec3(-0.5 - 1e-9, -1, -1), Vec3(-0.5 + 1e-9, 1, 1)), 0, "xyz");
     VecX x0(static_cast<Eigen::Index>(held.size()));
-    for (std::size_t i = 0; i < held.size(); ++i) x0[static_cast<Eigen::Index>(i)] = rest[held[i]];
-    system.add(fem::make_fixed(held, x0));
+    Points points(3, x0.size());
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      x0[static_cast<Eigen::Index>(i)] = rest[held[i]];
+      points.col(static_cast<Eigen::Index>(i)) = mesh.nodes.col(held[i] / 3);
+    }
+    if (options.shake_m > 0.0)
+      system.add(fem::make_driven(held, points, [a = options.shake_m](double t) {
+        constexpr double kRate = 25.0;
+        fem::PathPoint p{};
+        p.pose.translation = Vec3(0, 0, a * std::sin(kRate * t));
+        p.twist.linear = Vec3(0, 0, a * kRate * std::cos(kRate * t));
+        p.acceleration.linear = Vec3(0, 0, -a * kRate * kRate * std::sin(kRate * t));
+        return p;
+      }));
+    else
+      system.add(fem::make_fixed(held, x0));
     system.prepare(state.view());
   }
   /// Bends the middle line to a circle whose angle at the end is `angle`, writes the step matrix there, and a right-hand side: weight and a wave.
