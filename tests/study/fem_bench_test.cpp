@@ -56,6 +56,18 @@ TEST(FemBench, OnePassHasLessToDo) {
   EXPECT_LT(one.working_set, 0.7 * passes.working_set);
 }
 
+// By the matrix of an earlier step: one pass for the residual and no matrix; an iteration costs what it does.
+TEST(FemBench, ANearStepHasNoMatrix) {
+  StepCounts counts{.nodes = 1e3, .tetrahedra = 4e3, .blocks = 1.3e4, .iterations = 10.0, .one_pass = true};
+  const StepWork own = work_of(counts);
+  counts.near = true;
+  const StepWork near = work_of(counts);
+  EXPECT_EQ(near.matrix.limit_ms(machine(), 1e6) + near.factor.limit_ms(machine(), 1e6), 0.0);
+  EXPECT_LT(near.force.double_flops, own.matrix.double_flops);
+  EXPECT_GT(near.force.double_flops, 0.5 * own.matrix.double_flops) << "rotations are most of it";
+  EXPECT_EQ(near.solve.read_bytes, own.solve.read_bytes);
+}
+
 TEST(FemBench, ExponentOfAPowerLaw) {
   std::vector<FemBenchRow> rows(3);
   std::vector<const FemBenchRow*> members;
