@@ -182,9 +182,11 @@ void System::balanced_step(const StateView& state, const VecX& shift, double m_s
   for (const auto& term : terms_) term->add_step(state, shift, k_scale, d_scale, f, A);
 }
 
-void System::step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) {
-  f.setZero(state.layout->u_size);
-  for (const auto& term : terms_) term->add_step_force(state, shift, change, f);
+void System::step_left(const StateView& state, const VecX& shift, const VecX& change, double h, VecX& r) {
+  r.setZero(state.layout->u_size);
+  for (const auto& term : terms_) term->add_step_force(state, shift, change, r);
+  r = h * r - nodal_mass_.cwiseProduct(change);
+  for (int dof : driven_dofs_) r[dof] = 0.0;
 }
 
 void System::step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter) {

@@ -61,8 +61,8 @@ class System {
   const BlockSparse& pattern() const { return pattern_; }
   /// f = sum of force - K shift, and A = m_scale M + d_scale D + k_scale K with the driven directions held, in one pass.
   void balanced_step(const StateView& state, const VecX& shift, double m_scale, double d_scale, double k_scale, VecX& f, BalancedMatrix& A);
-  /// f = sum of force - K shift - D change, where balanced() is true; reads elements once and writes no matrix.
-  void step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f);
+  /// r = h (sum of force - K shift - D change) - M change, zero along driven directions, where balanced() is true; in one pass, without a matrix.
+  void step_left(const StateView& state, const VecX& shift, const VecX& change, double h, VecX& r);
   /// y = M x, all directions
   void apply_mass(const StateView& state, const VecX& x, VecX& y) const;
   /// Zeroes the driven entries of a residual, after adding their reduction to the masters' rows.

@@ -32,15 +32,19 @@ class LinearlyImplicitEuler final : public FixedStep {
   /// s, dv of the derivation above.  A direction carried by a master moves with the master's explicit prediction.
   void predict_drives(double t1, double h) {
     shift_ = h * state_.u();
-    change_.setZero(layout().u_size);
+    if (drives_speed_up_ || change_.size() != layout().u_size) change_.setZero(layout().u_size);
+    drives_speed_up_ = false;
     if (!system_.any_driven()) return;
-    q_dot(layout(), state_.q().data(), state_.u().data(), q1_.data());
-    q1_ = state_.q() + h * q1_;
-    u1_ = state_.u();
+    if (layout().border_size() > 0) {  // masters; without one, what is imposed depends on time alone
+      q_dot(layout(), state_.q().data(), state_.u().data(), q1_.data());
+      q1_ = state_.q() + h * q1_;
+      u1_ = state_.u();
+    }
     system_.impose(layout(), t1, q1_.data(), u1_.data());
     for (int dof : system_.driven_dofs()) {
       shift_[dof] = q1_[dof] - state_.q()[dof];
       change_[dof] = u1_[dof] - state_.u()[dof];
+      drives_speed_up_ = drives_speed_up_ || change_[dof] != 0.0;  // of fixed nodes none is
     }
   }
 
@@ -57,15 +61,14 @@ class LinearlyImplicitEuler final : public FixedStep {
 
   /// From f - K s to the whole right-hand side; false where it is not finite.
   bool complete(const StateView& at, double h) {
-    const bool drives_speed_up = (change_.array() != 0.0).any();  // fixed nodes do not
-    if (drives_speed_up) {
+    if (drives_speed_up_) {
       product_.setZero(rhs_.size());
       for (const auto& term : system_.terms())
         if (term->traits().has_tangent) term->apply_tangent(at, 0.0, 1.0, change_, product_);
       rhs_ -= product_;
     }
     rhs_ *= h;
-    if (drives_speed_up) {
+    if (drives_speed_up_) {
       system_.apply_mass(at, change_, product_);
       rhs_ -= product_;
     }
@@ -94,11 +97,8 @@ class LinearlyImplicitEuler final : public FixedStep {
     const ScopedTimer timer(counters_.force_s);
     ++counters_.force_evaluations;
     shift_of_x_ = shift_ + h * x;
-    change_of_x_ = change_ + x;
-    system_.step_force(at, shift_of_x_, change_of_x_, r);
-    system_.apply_mass(at, change_of_x_, product_);
-    r = h * r - product_;
-    system_.reduce(at, r);
+    if (drives_speed_up_) change_of_x_ = change_ + x;
+    system_.step_left(at, shift_of_x_, drives_speed_up_ ? change_of_x_ : x, h, r);
   }
 
   /// By the matrix of an earlier step, where that serves.
@@ -145,16 +145,29 @@ class LinearlyImplicitEuler final : public FixedStep {
     return {};
   }
 
+  /// The state after a velocity change du: nodes in one pass over the vectors.
+  void move(double h) {
+    if (layout().border_size() == 0) {
+      const auto q = state_.q(), u = state_.u();
+      for (Eigen::Index i = 0; i < du_.size(); ++i) {
+        u1_[i] = u[i] + du_[i];
+        q1_[i] = q[i] + h * u1_[i];
+      }
+      return;
+    }
+    u1_ = state_.u() + du_;
+    q_dot(layout(), state_.q().data(), u1_.data(), q1_.data());
+    q1_ = state_.q() + h * q1_;
+    project(layout(), q1_.data());
+  }
+
   Attempt attempt(double h, double t1) override {
     predict_drives(t1, h);
     const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
     if (!solve_near(at, h) && !solve_balanced(at, h))
       if (const Attempt solved = solve(at, h); solved.status != StepStatus::kOk) return solved;
     if (!du_.allFinite()) return {.status = StepStatus::kNotFinite, .what = "the velocity is not finite"};
-    u1_ = state_.u() + du_;
-    q_dot(layout(), state_.q().data(), u1_.data(), q1_.data());
-    q1_ = state_.q() + h * q1_;
-    project(layout(), q1_.data());
+    move(h);
     system_.impose(layout(), t1, q1_.data(), u1_.data());
     return {.iterations = 1};
   }
@@ -166,6 +179,7 @@ class LinearlyImplicitEuler final : public FixedStep {
   StepSolver solver_;
   BorderedMatrix A_;
   VecX shift_, change_, rhs_, product_, du_, shift_of_x_, change_of_x_;
+  bool drives_speed_up_ = false;     ///< change_ is not zero
   double kept_h_ = 0.0;              ///< step of the balanced matrix that the solver has; 0: none
   std::uint64_t kept_pattern_ = 0;
 };
