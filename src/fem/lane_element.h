@@ -4,7 +4,7 @@
 /// Work on one group takes some 150 ns, a line from memory about as long: well ahead, and into the second-level cache, so that what comes from there meanwhile is not held up.
 constexpr int kGroupsAhead = 8;
 PALPATE_INLINE void fetch_ahead(const ElementGroup* groups, int g, int count) {
-  if (g + kGroupsAhead < count) fetch(groups + g + kGroupsAhead, sizeof(ElementGroup));
+  if (g + kGroupsAhead < count) fetch<2>(groups + g + kGroupsAhead, sizeof(ElementGroup));
 }
 
 /// The lanes of one group from `part` on.

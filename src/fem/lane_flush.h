@@ -68,7 +68,7 @@ constexpr int kRowsAhead = 6;
 PALPATE_INLINE void fetch_row(const BlockTargets& targets, int n, const double* values) {
   if (n >= targets.nodes) return;
   const int begin = targets.row_start[n];
-  for (int p = begin; p < begin + targets.row_own[n]; ++p) fetch(values + 9 * static_cast<std::int64_t>(targets.slots[p]), 64);
+  for (int p = begin; p < begin + targets.row_own[n]; ++p) fetch<3>(values + 9 * static_cast<std::int64_t>(targets.slots[p]), 64);
 }
 
 template <bool kSymmetric>

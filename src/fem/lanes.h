@@ -11,9 +11,10 @@ typedef long long Mask __attribute__((vector_size(8 * PALPATE_WIDTH)));
 typedef double PackInMemory __attribute__((vector_size(8 * PALPATE_WIDTH), may_alias));
 
 PALPATE_INLINE Pack load(const double* p) { return *reinterpret_cast<const PackInMemory*>(p); }
-/// Lines that are wanted soon, into the second-level cache.  A processor's own guess ends at every page of 4 KiB, which here is every 40 elements.
+/// Lines that are wanted soon, at once (3) or rather later (2: into the second-level cache).  A processor's own guess ends at every page of 4 KiB, which here is every 40 elements.
+template <int kHowSoon>
 PALPATE_INLINE void fetch(const void* first, int bytes) {
-  for (int at = 0; at < bytes; at += 64) __builtin_prefetch(static_cast<const char*>(first) + at, 0, 2);
+  for (int at = 0; at < bytes; at += 64) __builtin_prefetch(static_cast<const char*>(first) + at, 0, kHowSoon);
 }
 PALPATE_INLINE bool any(Mask m) {
   long long bits = 0;
