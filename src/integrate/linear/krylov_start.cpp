@@ -103,12 +103,13 @@ double KrylovStart::add_up(int count, const double* y, double scale, const Doubl
   return std::sqrt(square);
 }
 
-void KrylovStart::keep(const Doubles& x, double largest, double scale, const Doubles& Ax) {
+void KrylovStart::keep(const Doubles& x, double largest, double scale, const Doubles* Ax) {
   if (!(largest > 0.0)) return;
   const double unit = std::ldexp(1.0, std::ilogb(largest)), by = 1.0 / unit, change = unit_ / unit;
   unit_ = unit;
   count_ = std::min(count_ + 1, most_);
   known_ = false;
+  followed_ = followed_ && Ax;
   float *V[kMostColumns], *AV[kMostColumns];
   for (int k = 0; k < count_; ++k) {
     V[k] = V_[k].data();
@@ -116,7 +117,7 @@ void KrylovStart::keep(const Doubles& x, double largest, double scale, const Dou
   }
   team_.for_each([&](std::size_t, int first, int last) {
     kernels_.difference(count_, by, change, x.data(), V, first, last);
-    if (followed_) kernels_.difference(count_, scale * by, change, Ax.data(), AV, first, last);
+    if (followed_) kernels_.difference(count_, scale * by, change, Ax->data(), AV, first, last);
   });
 }
 

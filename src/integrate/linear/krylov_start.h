@@ -32,12 +32,12 @@ class KrylovStart {
     double residual;  ///< |b - A x|
     double change;    ///< |x - what was foreseen|_A^2
   };
-  /// What the solutions go on to when their highest difference stays what it is: x, and Ax = A x.
+  /// The next solution as far as it is foreseen: with the shares that the last start took, in the first ones those of a polynomial.  x, and Ax = A x.
   void foresee(double scale, Doubles& x, Doubles& Ax);
   /// x = V y and Ax = A V y, both written whole; `warm` false: zero.  A solution that lies in the span of newer ones gives nothing new and is left out.
   Start combine(bool warm, double scale, const Doubles& b, Doubles& x, Doubles& Ax);
-  /// Takes a solution, the largest number in it, and Ax = A x; the oldest is forgotten.
-  void keep(const Doubles& x, double largest, double scale, const Doubles& Ax);
+  /// Takes a solution, the largest number in it, and Ax = A x (null: products are followed no further); the oldest is forgotten.
+  void keep(const Doubles& x, double largest, double scale, const Doubles* Ax);
 
  private:
   void gather_sums(const Doubles& b);

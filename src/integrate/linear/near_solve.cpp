@@ -19,7 +19,7 @@ constexpr int kMostResiduals = 4;
 
 void NearSolve::prepare() {
   SingleSolve::prepare();
-  before_.assign(b_.size(), 0.0);
+  before_.clear();
   age_ = MatrixAge(rtol_);
 }
 
@@ -65,6 +65,7 @@ SolveStatus NearSolve::approach(dynamics::Residual& left, VecX& x) {
     if (residuals == 1) correction_ = correction;
     if (open <= by_copy && age_.sure(correction)) break;
     if (residuals == kMostResiduals) return SolveStatus::kNotConverged;
+    before_.resize(b_.size());
     std::swap(b_, before_);
     look(left, x);
     ++residuals;
@@ -78,7 +79,7 @@ SolveStatus NearSolve::approach(dynamics::Residual& left, VecX& x) {
     change = stale * stale * solution;
   }
   iteration_.end();
-  start_.keep(x_, put_solution(x.data()), copy_.scale(), Ax_);
+  start_.keep(x_, put_solution(x.data()), copy_.scale(), &Ax_);
   counters_.residuals += residuals;
   return SolveStatus::kOk;
 }

@@ -42,6 +42,7 @@ class SingleMatrix {
   const std::vector<int>& column() const { return column_; }
   int block_count() const { return static_cast<int>(column_.size()); }
   const float* inverse() const { return inverse_.data(); }
+  bool balanced() const { return !original_; }
   double scale() const { return written_.scale; }  ///< a power of two: the copy is scale A
   /// 1 + h^2 tr K / tr M of a balanced matrix: mean stiffness of a node, over its mass.
   double stiffness() const { return stiffness_; }

@@ -56,8 +56,8 @@ SolveStatus SingleSolve::solve(const double* b, double* x, bool remember) {
     x[3 * static_cast<std::size_t>(node[entry / 4]) + entry % 4] = held_[h];
   }
   if (remember) {
-    follow_product();
-    start_.keep(x_, largest, copy_.scale(), Ax_);
+    if (copy_.balanced()) follow_product();  // a next step may be solved by this matrix
+    start_.keep(x_, largest, copy_.scale(), copy_.balanced() ? &Ax_ : nullptr);
   }
   return SolveStatus::kOk;
 }
