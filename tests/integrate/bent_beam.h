@@ -94,6 +94,22 @@ struct BentBeam {
   }
 };
 
+/// A system whose matrix is at hand.
+class Known final : public dynamics::Residual {
+ public:
+  Known(const dynamics::BorderedMatrix& A, const VecX& b) : A_(A), b_(b) {}
+  void at(const VecX& x, VecX& r) override {
+    ++looks;
+    A_.multiply(x, r);
+    r = b_ - r;
+  }
+  int looks = 0;
+
+ private:
+  const dynamics::BorderedMatrix& A_;
+  const VecX& b_;
+};
+
 inline double energy_norm(const dynamics::BorderedMatrix& A, const VecX& x) {
   VecX Ax;
   A.multiply(x, Ax);

@@ -11,22 +11,6 @@ namespace {
 
 using namespace dynamics;
 
-/// A system whose matrix is at hand.
-class Known final : public Residual {
- public:
-  Known(const BorderedMatrix& A, const VecX& b) : A_(A), b_(b) {}
-  void at(const VecX& x, VecX& r) override {
-    ++looks;
-    A_.multiply(x, r);
-    r = b_ - r;
-  }
-  int looks = 0;
-
- private:
-  const BorderedMatrix& A_;
-  const VecX& b_;
-};
-
 VecX direct_solution(const BorderedMatrix& A, const VecX& b) {
   const auto direct = integrate::make_linear_solver("cholmod", {});
   VecX x;
@@ -212,6 +196,18 @@ TEST(NearMatrix, ThreadsDoNotChangeABit) {
   EXPECT_GT(one.near, 20);
   EXPECT_EQ(one.near, three.near);
   EXPECT_EQ(one.q, three.q);
+}
+
+// Tolerances for which the copy in single precision is too coarse: its own steps are corrected by it, each of them looked at, and so are those by an older one.
+TEST(NearMatrix, ARoundedMatrixKeepsTightTolerances) {
+  for (const std::string name : {"pcg-single", "pcg-two-level"})
+    for (const auto& [h, rtol] : {std::pair{1e-3, 1e-8}, {1e-3, 1e-10}, {1e-2, 1e-9}}) {
+      const int steps = static_cast<int>(std::lround(0.08 / h));
+      const Swing s = swing(name, h, rtol, steps, 1.0);
+      EXPECT_LE(s.worst_near, rtol) << name << ", h = " << h;
+      EXPECT_LE(s.worst_own, rtol) << name << ", h = " << h;
+      EXPECT_GE(s.looks, 2 * (steps - 1)) << name << ", h = " << h << ": the first step has nothing to begin with";
+    }
 }
 
 // A stepper that is told of a change takes no matrix from before it.

@@ -8,7 +8,8 @@
 
 namespace palpate::dynamics {
 
-enum class SolveStatus { kOk, kIndefinite, kSingular, kNotConverged };
+/// kRounded: of factor_balanced() alone.
+enum class SolveStatus { kOk, kIndefinite, kSingular, kNotConverged, kRounded };
 
 struct SolverCounters {
   long symbolic = 0;        ///< symbolic analyses (once a pattern)
@@ -48,9 +49,11 @@ class LinearSolver {
   /// Room for a matrix of this pattern in the solver's own order and precision, to be written and then prepared by factor_balanced(); null where it takes none.
   /// The pattern stays where it is until the next call.
   virtual BalancedMatrix* balanced(const BlockSparse& /*pattern*/) { return nullptr; }
-  /// factor() of what was written there.  Anything but kOk: it wants the whole matrix in double.  Right-hand sides are zero along held directions.
+  /// factor() of what was written there.  Right-hand sides are zero along held directions.  kRounded: the solver's precision is too coarse for a solution of this matrix as it
+  /// stands there, and solve_near() is to solve it.  Anything else but kOk: it wants the whole matrix in double.
   virtual SolveStatus factor_balanced() { return SolveStatus::kSingular; }
-  /// Solves A x = b by the balanced matrix last factored, to which A is near, as accurately as a solve with A itself.  Anything but kOk: A's own matrix is wanted.
+  /// Solves A x = b by the balanced matrix last factored, to which A is near, as accurately as a solve with A itself.  Anything but kOk: A's own matrix is wanted; the whole one,
+  /// where that was it.
   virtual SolveStatus solve_near(Residual& /*left*/, VecX& /*x*/) { return SolveStatus::kNotConverged; }
 };
 

@@ -125,7 +125,14 @@ class LinearlyImplicitEuler final : public FixedStep {
       const ScopedTimer timer(counters_.force_s);
       if (!complete(at, h)) return false;
     }
-    if (solver_.factor_balanced() != SolveStatus::kOk || solver_.solve(rhs_, du_) != SolveStatus::kOk) return false;
+    SolveStatus status = solver_.factor_balanced();
+    if (status == SolveStatus::kRounded) {
+      Left left(*this, at, h);
+      status = solver_.solve_near(left, du_);
+    } else if (status == SolveStatus::kOk) {
+      status = solver_.solve(rhs_, du_);
+    }
+    if (status != SolveStatus::kOk) return false;
     kept_h_ = h;
     kept_pattern_ = system_.pattern().pattern_version();
     return true;

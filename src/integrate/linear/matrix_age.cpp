@@ -14,7 +14,7 @@ bool MatrixAge::serves() {
 bool MatrixAge::sure(double correction) const { return since_seen_ < kTrusted && correction <= kSameSize * seen_size_ && small_enough(age_, correction); }
 
 void MatrixAge::seen(double error, double correction) {
-  if (!(correction > 0.0)) return;
+  if (age_ == 0 || !(correction > 0.0)) return;
   const bool again = since_seen_ == 0;  // in one step
   rate_ = std::max(again ? rate_ : 0.0, error / (correction * age_));
   seen_size_ = std::max(again ? seen_size_ : 0.0, correction);

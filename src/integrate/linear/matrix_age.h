@@ -26,10 +26,10 @@ class MatrixAge {
   void renew() { age_ = 0; }
   /// Whether the error that a correction of this size leaves, both over the solution's, needs no look.
   bool sure(double correction) const;
-  /// Such an error was seen.
+  /// Such an error was seen.  That of a step's own matrix is its rounding, and says nothing of its age.
   void seen(double error, double correction);
-  /// Whether corrections by this matrix shrink fast enough to go on.
-  bool converges() const { return rate_ * age_ < kSlow; }
+  /// Whether corrections that leave such an error shrink fast enough to go on.
+  static bool converges(double error, double correction) { return error < kSlow * correction; }
   /// The step has its solution, which was foreseen up to this.
   void solved(double correction) { size_ = correction; }
   /// It has none by this matrix.

@@ -30,20 +30,21 @@ SolveStatus NearSolve::solve(const double* b, double* x, bool remember) {
 }
 
 SolveStatus NearSolve::solve_near(dynamics::Residual& left, VecX& x) {
-  const bool can = start_.count() > 0 && start_.products_followed() && !iteration_.first();
-  if (!can || !age_.serves()) return SolveStatus::kNotConverged;
+  if (!can_correct() || !start_.products_followed()) return SolveStatus::kNotConverged;
+  const bool own = std::exchange(own_, false);
+  if (!own && !age_.serves()) return SolveStatus::kNotConverged;
   const double start = wall_seconds();
   residuals_s_ = 0.0;
   x.resize(3 * nodes());
   const SolveStatus status = approach(left, x);
   counters_.solve_s += wall_seconds() - start - residuals_s_;
   if (status != SolveStatus::kOk) {
-    age_.failed();
+    if (!own) age_.failed();
     return status;
   }
   age_.solved(correction_);
   ++counters_.solves;
-  ++counters_.near;
+  if (!own) ++counters_.near;
   return status;
 }
 
@@ -63,7 +64,7 @@ SolveStatus NearSolve::approach(dynamics::Residual& left, VecX& x) {
     const double solution = iteration_.solution(), correction = std::sqrt((change + solution - energy) / solution);
     follow_product();
     if (residuals == 1) correction_ = correction;
-    if (open <= by_copy && age_.sure(correction)) break;
+    if (open <= by_copy && !rounded_ && age_.sure(correction)) break;
     if (residuals == kMostResiduals) return SolveStatus::kNotConverged;
     before_.resize(b_.size());
     std::swap(b_, before_);
@@ -73,7 +74,7 @@ SolveStatus NearSolve::approach(dynamics::Residual& left, VecX& x) {
     if (const SolveStatus status = mend(solution, stale, open); status != SolveStatus::kOk) return status;
     age_.seen(stale, correction);
     if (open <= rtol_) break;
-    if (!age_.converges()) return SolveStatus::kNotConverged;
+    if (!MatrixAge::converges(stale, correction)) return SolveStatus::kNotConverged;
     size_ = norm_of_residual();
     energy = solution;
     change = stale * stale * solution;

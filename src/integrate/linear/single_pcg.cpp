@@ -44,7 +44,8 @@ int parts_of(int nodes) { return nodes <= kNodesOfOnePart ? 1 : 4 * ((nodes + 4 
 /// neighbours at the distance d.  A itself takes m + h^2 k (d/l)^2 at least, but where the wave bends a body of thickness t, which to first order turns its parts,
 /// m + h^2 k (d/l)^4 (t/d)^2.  The ratio is greatest where both terms are equal, and then
 ///     e sqrt(s) d/(2 t),   s = 1 + h^2 k/m the stiffness number (auto_solver.cpp);
-/// roundings of both signs take off more.  Bodies are several elements thick; one is refused where e sqrt(s) exceeds kRoundingShare tolerances.
+/// roundings of both signs take off more.  Bodies are several elements thick; where e sqrt(s) exceeds kRoundingShare tolerances, the matrix is not taken for A: what the equations
+/// leave of an approximation is looked at, as for the matrix of an earlier step (near_solve.h), and rounding then touches the corrections only.
 ///
 /// Tolerance: linear_rtol bounds the error of the solution itself, |x - x*|_A <= linear_rtol |x*|_A, by energy_bound.h.  In a step A = M + h D + h^2 K, so
 /// the norm is that of the kinetic energy of the velocity change's error plus the elastic energy that its displacement takes; a residual, which peers stop by,
@@ -96,7 +97,7 @@ class SinglePcg final : public dynamics::LinearSolver {
   BalancedMatrix* balanced(const BlockSparse& pattern) override {
     if (pattern.block_rows() == 0) return nullptr;
     const bool known = copy_.analysed(pattern);
-    if (known && too_coarse_) return nullptr;
+    if (known && refused_) return nullptr;
     analyse(pattern);
     delegated_ = false;
     matrix_ = nullptr;
@@ -110,14 +111,22 @@ class SinglePcg final : public dynamics::LinearSolver {
     ++counters_.factorisations;
     KrylovStart& start = solve_.start();
     status_ = copy_.take_balanced(start.count(), start.solutions(), start.products());
-    too_coarse_ = !(kSingleRounding * std::sqrt(copy_.stiffness()) <= kRoundingShare * rtol_);
-    if (status_ == SolveStatus::kOk && too_coarse_) status_ = SolveStatus::kSingular;
-    return use_copy(room_->positions);
+    const bool coarse = !(kSingleRounding * std::sqrt(copy_.stiffness()) <= kRoundingShare * rtol_);
+    use_copy(room_->positions, coarse);
+    if (status_ == SolveStatus::kOk && coarse) status_ = solve_.can_correct() ? SolveStatus::kRounded : SolveStatus::kSingular;
+    return status_;
   }
 
   SolveStatus solve_near(dynamics::Residual& left, VecX& x) override {
-    const bool has_one = !delegated_ && !matrix_ && status_ == SolveStatus::kOk;
-    return has_one ? solve_.solve_near(left, x) : SolveStatus::kNotConverged;
+    const bool own = status_ == SolveStatus::kRounded;
+    if (delegated_ || matrix_ || !(own || status_ == SolveStatus::kOk)) return SolveStatus::kNotConverged;
+    const long before = counters_.iterations;
+    const SolveStatus status = solve_.solve_near(left, x);
+    if (!own) return status;
+    status_ = status;
+    if (status == SolveStatus::kNotConverged) refused_ = true;
+    if (status == SolveStatus::kOk) account(before);
+    return status;
   }
 
   SolveStatus solve(const VecX& b, VecX& x) override {
@@ -151,13 +160,13 @@ class SinglePcg final : public dynamics::LinearSolver {
     copy_.analyse(pattern, two_level_ ? clusters : parts, parts, two_level_ ? n / kNodesOfPiece : 0);
     if (two_level_) clusters_.prepare(copy_.order());
     solve_.prepare();
-    too_coarse_ = false;
+    refused_ = false;
   }
 
   // --- once a matrix --------------------------------------------------------------------------------------------------
-  SolveStatus use_copy(const double* positions) {
+  SolveStatus use_copy(const double* positions, bool rounded = false) {
     solve_.start().products_are_known(status_ == SolveStatus::kOk);
-    solve_.renew();
+    solve_.renew(rounded);
     if (status_ == SolveStatus::kOk && two_level_ && lost_ >= price_of_clusters()) refresh_clusters(positions);
     return status_;
   }
@@ -187,12 +196,14 @@ class SinglePcg final : public dynamics::LinearSolver {
     ++counters_.solves;
     const long before = counters_.iterations;
     const SolveStatus status = solve_.solve(b, x, remember);
-    if (two_level_ && status == SolveStatus::kOk && counters_.iterations > before) account(static_cast<double>(counters_.iterations - before));
+    if (status == SolveStatus::kOk) account(before);
     return status;
   }
 
   /// What the age of E costs, for the decision in use_copy().
-  void account(double iterations) {
+  void account(long iterations_before) {
+    const auto iterations = static_cast<double>(counters_.iterations - iterations_before);
+    if (!two_level_ || iterations == 0.0) return;
     fewest_ = std::min(fewest_, iterations);
     lost_ += iterations - fewest_;
   }
@@ -210,7 +221,7 @@ class SinglePcg final : public dynamics::LinearSolver {
 
   const BorderedMatrix* matrix_ = nullptr;  ///< last given to factor(); null: a balanced one
   const BalancedMatrix* room_ = nullptr;
-  bool too_coarse_ = false;                 ///< for the tolerance: the last balanced matrix of this pattern
+  bool refused_ = false;                    ///< a balanced matrix of this pattern was too coarse even for corrections
   std::uint64_t values_version_ = 0;
   SolveStatus status_ = SolveStatus::kSingular;
   SingleMatrix copy_;

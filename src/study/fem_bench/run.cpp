@@ -38,9 +38,10 @@ class CheckedSolver final : public LinearSolver {
     return timed([&] { return solver_->factor_balanced(); });
   }
   SolveStatus solve_near(Residual& left, VecX& x) override {
+    const long before = solver_->counters().near;
     const SolveStatus status = timed([&] { return solver_->solve_near(left, x); });
     if (status != SolveStatus::kOk) return status;
-    ++near;
+    near += static_cast<int>(solver_->counters().near - before);
     if (!check_next) return status;
     const double start = wall_seconds(), start_cpu = thread_cpu_seconds();
     VecX rhs;
