@@ -47,11 +47,12 @@ void for_each_sum(int count, F&& f) {
   });
 }
 
-/// Nine doubles summed over the contributions to shared edge k.
-void sum_blocks(const SharedSums& sums, int k, const std::vector<double>& contributions, double* sum) {
+/// Nine numbers summed over the contributions to shared edge k.
+template <class Real>
+void sum_blocks(const SharedSums& sums, int k, const std::vector<Real>& contributions, double* sum) {
   std::fill_n(sum, 9, 0.0);
   for (int p = sums.start[static_cast<std::size_t>(k)]; p < sums.start[static_cast<std::size_t>(k) + 1]; ++p) {
-    const double* block = contributions.data() + 9 * static_cast<std::size_t>(sums.entries[static_cast<std::size_t>(p)]);
+    const Real* block = contributions.data() + 9 * static_cast<std::size_t>(sums.entries[static_cast<std::size_t>(p)]);
     for (int c = 0; c < 9; ++c) sum[c] += block[c];
   }
 }
@@ -88,13 +89,7 @@ void keep_blocks(const ChunkBlocks& blocks, int begin, int end, double* to) {
 
 ElementEvaluation::ElementEvaluation(const TetMesh& rest, const RestElements& elements, const std::vector<int>& material_of_element, bool with_lower)
     : chunks_(rest, elements, material_of_element), kernels_(&best_kernels()), with_lower_(with_lower) {
-  const auto node_places = static_cast<std::size_t>(chunks_.shared_nodes.contributions());
-  const auto edge_places = static_cast<std::size_t>(chunks_.shared_edges.contributions());
-  shared_nodes_.resize((node_places + 1) / 2);
-  shared_upper_.resize(9 * edge_places);
-  if (with_lower_) shared_lower_.resize(9 * edge_places);
-  shared_diagonal_.resize(9 * node_places);
-  for (const auto* shared : {&shared_upper_, &shared_lower_, &shared_diagonal_}) prefer_huge_pages(*shared);
+  shared_nodes_.resize((static_cast<std::size_t>(chunks_.shared_nodes.contributions()) + 1) / 2);
   chunk_sums_.resize(chunks_.chunks.size());
   fit_scratch();
 }
@@ -102,12 +97,17 @@ ElementEvaluation::ElementEvaluation(const TetMesh& rest, const RestElements& el
 void ElementEvaluation::fit_scratch() {
   const auto threads = static_cast<std::size_t>(workers::count());
   if (scratch_.size() >= threads) return;
-  const auto nodes = static_cast<std::size_t>(chunks_.most_nodes) + 4, edges = static_cast<std::size_t>(chunks_.most_edges) + 1;
+  const auto nodes = static_cast<std::size_t>(chunks_.most_nodes) + 4;
   const std::size_t first = scratch_.size();
   scratch_.resize(threads);
-  for (std::size_t s = first; s < threads; ++s) {
-    Scratch& scratch = scratch_[s];
-    for (auto* field : {&scratch.x, &scratch.v, &scratch.w, &scratch.sum}) field->resize((nodes + 1) / 2);
+  for (std::size_t s = first; s < threads; ++s)
+    for (auto* field : {&scratch_[s].x, &scratch_[s].v, &scratch_[s].w, &scratch_[s].sum}) field->resize((nodes + 1) / 2);
+}
+
+void ElementEvaluation::fit_blocks() {
+  fit_scratch();
+  const auto nodes = static_cast<std::size_t>(chunks_.most_nodes) + 4, edges = static_cast<std::size_t>(chunks_.most_edges) + 1;
+  for (Scratch& scratch : scratch_) {
     scratch.upper.resize(edges);
     scratch.upper_last.resize(edges);
     if (with_lower_) {
@@ -117,6 +117,16 @@ void ElementEvaluation::fit_scratch() {
     scratch.diagonal.resize(nodes);
     scratch.diagonal_last.resize(nodes);
   }
+}
+
+void ElementEvaluation::fit_leaving() {
+  fit_scratch();
+  const auto edges = static_cast<std::size_t>(chunks_.most_edges) + 1;
+  for (Scratch& scratch : scratch_)
+    for (int turn = 0; turn < 2; ++turn) {
+      scratch.leaving[turn].resize(edges);
+      scratch.leaving_last[turn].resize(edges);
+    }
 }
 
 LaneCounts ElementEvaluation::collect_counts() {
@@ -204,7 +214,7 @@ LaneCounts ElementEvaluation::add_step_force(const ElementModels& models, const 
 LaneCounts ElementEvaluation::apply_tangent(const ElementModels& models, const BodyFields& at, double* y) { return add_nodal(kernels_->apply, models, at, y); }
 
 LaneCounts ElementEvaluation::add_tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A) {
-  fit_scratch();
+  fit_blocks();
   prepare(first_node, A);
   const bool symmetric = !models.front().by_position;
   PALPATE_CHECK(symmetric || with_lower_, "no room was set aside for an unsymmetric tangent");
@@ -232,7 +242,7 @@ LaneCounts ElementEvaluation::add_tangent(const ElementModels& models, const Bod
 void ElementEvaluation::add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const {
   const int edges = chunks_.shared_edges.count();
   for_each_sum(edges, [&](int k) {
-    if (k + kSumsAhead < edges) fetch_sum<2>(k + kSumsAhead, shared_slots_.data(), A.values().data());
+    if (k + kSumsAhead < edges) fetch_sum<2>(k + kSumsAhead, shared_slots_.data(), shared_upper_.data(), A.values().data());
     double sum[9];
     sum_blocks(chunks_.shared_edges, k, shared_upper_, sum);
     double *above = A.block(shared_slots_[2 * static_cast<std::size_t>(k)]), *below = A.block(shared_slots_[2 * static_cast<std::size_t>(k) + 1]);
@@ -254,10 +264,10 @@ void ElementEvaluation::add_shared_blocks(bool symmetric, dynamics::BlockSparse&
 
 /// What the sum over shared edge k reads and writes lies scattered: asked for some sums before, it is there in time.
 template <int kPlaces, class Real>
-void ElementEvaluation::fetch_sum(int k, const std::int32_t* places, const Real* values) const {
+void ElementEvaluation::fetch_sum(int k, const std::int32_t* places, const Real* contributions, const Real* values) const {
   const auto edge = static_cast<std::size_t>(k);
   for (int p = chunks_.shared_edges.start[edge]; p < chunks_.shared_edges.start[edge + 1]; ++p) {
-    const double* block = shared_upper_.data() + 9 * static_cast<std::size_t>(chunks_.shared_edges.entries[static_cast<std::size_t>(p)]);
+    const Real* block = contributions + 9 * static_cast<std::size_t>(chunks_.shared_edges.entries[static_cast<std::size_t>(p)]);
     __builtin_prefetch(block);
     __builtin_prefetch(block + 8);
   }
@@ -269,21 +279,31 @@ void ElementEvaluation::fetch_sum(int k, const std::int32_t* places, const Real*
 }
 
 LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFields& at, int first_node, double* f, dynamics::BalancedMatrix& A) {
-  fit_scratch();
+  fit_leaving();
   prepare_places(first_node, A);
   PALPATE_CHECK(!models.front().by_position, "an unsymmetric tangent in a balanced matrix");
   workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
-    const ChunkBlocks upper{numbers(scratch.upper), scratch.upper_last.data()};
+    const ChunkBlocks upper{numbers(scratch.leaving[scratch.turn]), scratch.leaving_last[scratch.turn].data()};
     double* sum = numbers(scratch.sum);
     std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
-    set_zero(upper, chunk.edges + 1);
     const ChunkFields fields = load(chunk, at, scratch);
-    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->step(groups, count, model, kScalarPath, fields, sum, upper, scratch.counts); });
+    LeavingBlocks& before = scratch.before;
+    int groups_here = 0;
+    chunks_.for_each_run(chunk, [&](const ElementChunks::Run& run) { groups_here += run.groups; });
+    before.at_a_time = (before.count + groups_here - 1) / groups_here;
+    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->step(groups, count, model, kScalarPath, fields, sum, upper, before, scratch.counts); });
     flush_nodal(chunk, sum, f);
-    kernels_->store(store_edges_.data() + chunk.first_edge, places_.data() + chunk.first_edge, chunk.own_edges, upper, A.values.data());
-    keep_blocks(upper, chunk.own_edges, chunk.edges, shared_upper_.data() + 9 * static_cast<std::size_t>(chunk.first_shared_edge));
+    kernels_->leave(before, before.count);
+    before = {upper, leaving_edges_.data() + chunk.first_edge, places_.data() + chunk.first_edge, A.values.data(),
+              shared_single_.data() + 9 * static_cast<std::size_t>(chunk.first_shared_edge), chunk.own_edges, chunk.edges};
+    scratch.turn = 1 - scratch.turn;
+  });
+  workers::for_each(static_cast<int>(scratch_.size()), [&](int s, int) {
+    LeavingBlocks& last = scratch_[static_cast<std::size_t>(s)].before;
+    kernels_->leave(last, last.count);
+    last = {};
   });
   add_shared_nodes(f);
   store_shared_blocks(A);
@@ -293,9 +313,9 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
 void ElementEvaluation::store_shared_blocks(dynamics::BalancedMatrix& A) const {
   const int edges = chunks_.shared_edges.count();
   for_each_sum(edges, [&](int k) {
-    if (k + kSumsAhead < edges) fetch_sum<1>(k + kSumsAhead, shared_places_.data(), A.values.data());
+    if (k + kSumsAhead < edges) fetch_sum<1>(k + kSumsAhead, shared_places_.data(), shared_single_.data(), A.values.data());
     double sum[9];
-    sum_blocks(chunks_.shared_edges, k, shared_upper_, sum);
+    sum_blocks(chunks_.shared_edges, k, shared_single_, sum);
     float* to = A.values.data() + 9 * static_cast<std::size_t>(shared_places_[static_cast<std::size_t>(k)]);
     for (int c = 0; c < 9; ++c) to[c] = static_cast<float>(sum[c]);
   });
@@ -344,6 +364,11 @@ void ElementEvaluation::prepare(int first_node, const dynamics::BlockSparse& A) 
         slots_[static_cast<std::size_t>(p)] = slot(chunks_.nodes[static_cast<std::size_t>(n)], chunks_.nodes[static_cast<std::size_t>(chunk.first_node + chunks_.ends[other])]);
       }
   find_both_sides(chunks_.shared_edges, slot, shared_slots_);
+  const auto edge_places = static_cast<std::size_t>(chunks_.shared_edges.contributions());
+  shared_upper_.resize(9 * edge_places);
+  if (with_lower_) shared_lower_.resize(9 * edge_places);
+  shared_diagonal_.resize(9 * static_cast<std::size_t>(chunks_.shared_nodes.contributions()));
+  for (const auto* shared : {&shared_upper_, &shared_lower_, &shared_diagonal_}) prefer_huge_pages(*shared);
   prefer_huge_pages(slots_);
   pattern_version_ = A.pattern_version();
   first_node_ = first_node;
@@ -354,7 +379,7 @@ void ElementEvaluation::prepare_places(int first_node, const dynamics::BalancedM
   if (A.places_version == places_version_ && first_node == places_first_node_) return;
   const auto place = [&](int i, int j) { return A.place[static_cast<std::size_t>(slot_of(*A.pattern, first_node + i, first_node + j))]; };
   places_.assign(chunks_.ends.size() / 2, -1);
-  store_edges_.assign(places_.size(), 0);
+  leaving_edges_.assign(places_.size(), 0);
   std::vector<std::pair<std::int32_t, std::uint16_t>> own;
   for (const Chunk& chunk : chunks_.chunks) {
     own.clear();
@@ -365,9 +390,12 @@ void ElementEvaluation::prepare_places(int first_node, const dynamics::BalancedM
     std::sort(own.begin(), own.end());
     for (std::size_t k = 0; k < own.size(); ++k) {
       places_[static_cast<std::size_t>(chunk.first_edge) + k] = own[k].first;
-      store_edges_[static_cast<std::size_t>(chunk.first_edge) + k] = own[k].second;
+      leaving_edges_[static_cast<std::size_t>(chunk.first_edge) + k] = own[k].second;
     }
+    for (int k = chunk.own_edges; k < chunk.edges; ++k) leaving_edges_[static_cast<std::size_t>(chunk.first_edge + k)] = static_cast<std::uint16_t>(k);
   }
+  shared_single_.assign(9 * static_cast<std::size_t>(chunks_.shared_edges.contributions()), 0.0f);
+  prefer_huge_pages(shared_single_);
   shared_places_.resize(static_cast<std::size_t>(chunks_.shared_edges.count()));
   for (std::size_t k = 0; k < shared_places_.size(); ++k) shared_places_[k] = place(chunks_.shared_edges.first[k], chunks_.shared_edges.second[k]);
   prefer_huge_pages(places_);
@@ -376,14 +404,15 @@ void ElementEvaluation::prepare_places(int first_node, const dynamics::BalancedM
 }
 
 std::size_t ElementEvaluation::map_bytes() const {
-  return bytes_of(slots_) + bytes_of(chunk_diagonal_) + bytes_of(shared_slots_) + bytes_of(diagonal_) + bytes_of(places_) + bytes_of(store_edges_) + bytes_of(shared_places_);
+  return bytes_of(slots_) + bytes_of(chunk_diagonal_) + bytes_of(shared_slots_) + bytes_of(diagonal_) + bytes_of(places_) + bytes_of(leaving_edges_) + bytes_of(shared_places_);
 }
 
 std::size_t ElementEvaluation::scratch_bytes() const {
-  std::size_t sum = bytes_of(shared_nodes_) + bytes_of(shared_upper_) + bytes_of(shared_lower_) + bytes_of(shared_diagonal_) + bytes_of(chunk_sums_);
-  for (const Scratch& s : scratch_)
-    sum += bytes_of(s.x) + bytes_of(s.v) + bytes_of(s.w) + bytes_of(s.sum) + bytes_of(s.upper) + bytes_of(s.lower) + bytes_of(s.diagonal) +
-           bytes_of(s.upper_last) + bytes_of(s.lower_last) + bytes_of(s.diagonal_last);
+  std::size_t sum = bytes_of(shared_nodes_) + bytes_of(shared_upper_) + bytes_of(shared_lower_) + bytes_of(shared_diagonal_) + bytes_of(shared_single_) + bytes_of(chunk_sums_);
+  for (const Scratch& s : scratch_) {
+    for (const auto* lines : {&s.x, &s.v, &s.w, &s.sum, &s.upper, &s.lower, &s.diagonal, &s.leaving[0], &s.leaving[1]}) sum += bytes_of(*lines);
+    for (const auto* numbers : {&s.upper_last, &s.lower_last, &s.diagonal_last, &s.leaving_last[0], &s.leaving_last[1]}) sum += bytes_of(*numbers);
+  }
   return sum;
 }
 

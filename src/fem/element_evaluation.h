@@ -19,7 +19,7 @@ struct BodyFields {
 using ElementModels = std::vector<ElementModel>;
 
 /// Sums over the elements of one body: the kernels run over the chunks, on as many threads as core's workers have, and what chunks share is summed
-/// in their order.  Results do not depend on the number of threads.  Memory is set aside at construction, and when workers or pattern change.
+/// in their order.  Results do not depend on the number of threads.  Memory is set aside when something is first asked for, and when workers or pattern change.
 class ElementEvaluation {
  public:
   /// @param material_of_element  numbers in the ElementModels; empty: all 0  @param with_lower  room for unsymmetric tangents
@@ -54,6 +54,10 @@ class ElementEvaluation {
     std::vector<Line> x, v, w, sum;             ///< nodal, four doubles a node
     std::vector<Line> upper, lower, diagonal;   ///< rows of eight
     std::vector<double> upper_last, lower_last, diagonal_last;
+    std::vector<Line> leaving[2];               ///< blocks of two chunks by turns, zero between steps
+    std::vector<double> leaving_last[2];
+    int turn = 0;
+    LeavingBlocks before;                       ///< of the chunk before
     LaneCounts counts;
   };
   template <class F>
@@ -61,6 +65,8 @@ class ElementEvaluation {
   using NodalKernel = decltype(LaneKernels::force);
 
   void fit_scratch();
+  void fit_blocks();   ///< for matrices in double
+  void fit_leaving();  ///< for balanced ones
   LaneCounts collect_counts();
   ChunkFields load(const ElementChunks::Chunk& chunk, const BodyFields& at, Scratch& scratch) const;
   void flush_nodal(const ElementChunks::Chunk& chunk, const double* sum, double* out);
@@ -70,7 +76,7 @@ class ElementEvaluation {
   LaneCounts add_nodal(NodalKernel kernel, const ElementModels& models, const BodyFields& at, double* out);
   void add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const;
   template <int kPlaces, class Real>
-  void fetch_sum(int k, const std::int32_t* places, const Real* values) const;
+  void fetch_sum(int k, const std::int32_t* places, const Real* contributions, const Real* values) const;
 
   ElementChunks chunks_;
   const LaneKernels* kernels_;
@@ -78,6 +84,7 @@ class ElementEvaluation {
   std::vector<Scratch> scratch_;                       ///< one a thread
   std::vector<Line> shared_nodes_;                     ///< half a line a contribution
   std::vector<double> shared_upper_, shared_lower_;    ///< nine doubles a contribution
+  std::vector<float> shared_single_;                   ///< nine a contribution to a BalancedMatrix, which is no finer itself
   std::vector<double> shared_diagonal_;
   std::vector<double> chunk_sums_;
   // the maps
@@ -85,7 +92,7 @@ class ElementEvaluation {
   int first_node_ = -1;
   std::vector<std::int32_t> slots_;                    ///< of each entry of ElementChunks::row_edges
   std::vector<std::int32_t> places_, shared_places_;   ///< in a BalancedMatrix: of each chunk's own edges, ascending; of each shared edge
-  std::vector<std::uint16_t> store_edges_;             ///< the edge of each of places_
+  std::vector<std::uint16_t> leaving_edges_;           ///< the edge of each of places_, then the others
   std::uint64_t places_version_ = 0;
   int places_first_node_ = -1;
   std::vector<std::int32_t> chunk_diagonal_;           ///< of each node of each chunk

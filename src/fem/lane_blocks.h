@@ -147,7 +147,7 @@ PALPATE_INLINE void set_rates(BlockParts& e, const Lanes& at, const ElementModel
 /// Deformation gradient and rotation of an element serve all that is asked for: the blocks, and in a linearly implicit step (kStep) the forces less the stiffness times w.
 template <Blocks kBlocks, bool kDamped, bool kByPosition, bool kStep>
 static void blocks_of(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
-                      const ChunkBlocks& upper, const ChunkBlocks& lower, LaneCounts& counts) {
+                      const ChunkBlocks& upper, const ChunkBlocks& lower, LeavingBlocks* before, LaneCounts& counts) {
   for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
     const Matrix G = gradients(at);
     const Pack volume = at.volume();
@@ -161,6 +161,8 @@ static void blocks_of(const ElementGroup* groups, int count, const ElementModel&
     set_elastic<kBlocks>(e, model, R, C, G, volume);
     set_rates<kDamped, kByPosition>(e, at, model, F, G, volume, fields);
     edge_blocks<kBlocks, kDamped, kByPosition>(at, e, upper, lower);
+    if constexpr (kStep)
+      if (at.first == 0) leave(*before, before->at_a_time);
   });
 }
 
@@ -181,7 +183,7 @@ static void tangent(const ElementGroup* groups, int count, const ElementModel& m
                     const ChunkBlocks& upper, const ChunkBlocks& lower, LaneCounts& counts) {
   const bool damped = model.damping_mu > 0.0 && model.d_scale != 0.0, elastic = model.k_scale != 0.0;
   const bool by_position = elastic && model.by_position;
-  const auto run = [&](auto* blocks) { blocks(groups, count, model, scalar, fields, nullptr, upper, lower, counts); };
+  const auto run = [&](auto* blocks) { blocks(groups, count, model, scalar, fields, nullptr, upper, lower, nullptr, counts); };
   if (!elastic) return damping_blocks(groups, count, model, fields, upper);
   if (model.warped) {
     if (by_position) return run(damped ? blocks_of<Blocks::kWarped, true, true, false> : blocks_of<Blocks::kWarped, false, true, false>);
@@ -192,9 +194,9 @@ static void tangent(const ElementGroup* groups, int count, const ElementModel& m
 }
 
 static void step(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
-                 const ChunkBlocks& upper, LaneCounts& counts) {
+                 const ChunkBlocks& upper, LeavingBlocks& before, LaneCounts& counts) {
   const bool damped = model.damping_mu > 0.0;
-  const auto run = [&](auto* blocks) { blocks(groups, count, model, scalar, fields, f, upper, {}, counts); };
+  const auto run = [&](auto* blocks) { blocks(groups, count, model, scalar, fields, f, upper, {}, &before, counts); };
   if (model.warped) return run(damped ? blocks_of<Blocks::kWarped, true, false, true> : blocks_of<Blocks::kWarped, false, false, true>);
   run(damped ? blocks_of<Blocks::kCoupled, true, false, true> : blocks_of<Blocks::kCoupled, false, false, true>);
 }

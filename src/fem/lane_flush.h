@@ -117,6 +117,14 @@ PALPATE_INLINE void store_single(const double* first, double last, float* to) {
 }
 #endif
 
-static void store(const std::uint16_t* edges, const std::int32_t* places, int count, const ChunkBlocks& upper, float* values) {
-  for (int k = 0; k < count; ++k) store_single(upper.first + 8 * edges[k], upper.last[edges[k]], values + 9 * static_cast<std::int64_t>(places[k]));
+static void leave(LeavingBlocks& blocks, int count) {
+  const int end = blocks.count - blocks.gone < count ? blocks.count : blocks.gone + count;
+  for (int k = blocks.gone; k < end; ++k) {
+    const std::uint16_t edge = blocks.edges[k];
+    double *first = blocks.upper.first + 8 * edge, &last = blocks.upper.last[edge];
+    store_single(first, last, k < blocks.own ? blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]) : blocks.shared + 9 * static_cast<std::int64_t>(k - blocks.own));
+    for (int part = 0; part < 8; part += kWidth) *reinterpret_cast<PackInMemory*>(first + part) = Pack{};
+    last = 0.0;
+  }
+  blocks.gone = end;
 }

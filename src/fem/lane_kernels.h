@@ -30,6 +30,18 @@ struct ChunkBlocks {
   double* last = nullptr;
 };
 
+/// Blocks of a chunk on their way to a matrix in single precision, row by row, nine floats a block: of edges[k], k < own, to values[9 places[k]], whatever stood there; of the
+/// others, of which chunks share each, to shared[9 (k - own)].  What has gone is made zero for the next chunk.
+struct LeavingBlocks {
+  ChunkBlocks upper;
+  const std::uint16_t* edges = nullptr;
+  const std::int32_t* places = nullptr;
+  float *values = nullptr, *shared = nullptr;
+  int own = 0, count = 0;
+  int gone = 0;       ///< of `count`
+  int at_a_time = 0;  ///< with each group of elements
+};
+
 /// What the kernels need to know beside the elements.
 struct ElementModel {
   double mu = 0.0, lambda = 0.0;                   ///< elastic [Pa]
@@ -76,10 +88,11 @@ struct LaneKernels {
   void (*flush)(const BlockTargets&, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal, double* values);
   /// f += nodal forces - stiffness times w.
   void (*step_force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, LaneCounts&);
-  /// Of one linearly implicit step, all at once: f += nodal forces - stiffness times w, and the blocks of a symmetric tangent above the diagonal.
-  void (*step)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, const ChunkBlocks& upper, LaneCounts&);
-  /// Stores the blocks of `count` edges of a chunk in a matrix in single precision, row by row at values[9 places[k]], whatever stood there.
-  void (*store)(const std::uint16_t* edges, const std::int32_t* places, int count, const ChunkBlocks& upper, float* values);
+  /// Of one linearly implicit step, all at once: f += nodal forces - stiffness times w, and the blocks of a symmetric tangent above the diagonal.  Meanwhile blocks of the chunk
+  /// before leave: the matrix lies far away, and what is written there is on its way while elements are computed.
+  void (*step)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, const ChunkBlocks& upper, LeavingBlocks& before, LaneCounts&);
+  /// Sends up to `count` more on their way.
+  void (*leave)(LeavingBlocks&, int count);
   /// Elastic energies [J], and powers of the damping [W], summed by lane.
   void (*energy)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double sums[8], LaneCounts&);
   void (*power)(const ElementGroup* groups, int count, const ElementModel&, const ChunkFields&, double sums[8]);

@@ -11,13 +11,13 @@ namespace {
 
 #include "fem/lane_element.h"
 
-#include "fem/lane_blocks.h"
-
 #include "fem/lane_flush.h"
+
+#include "fem/lane_blocks.h"
 
 }  // namespace
 
 extern const LaneKernels kernels;
-const LaneKernels kernels{PALPATE_NAME, force, apply_tangent, tangent, flush, step_force, step, store, energy, power};
+const LaneKernels kernels{PALPATE_NAME, force, apply_tangent, tangent, flush, step_force, step, leave, energy, power};
 
 }  // namespace palpate::fem::PALPATE_KERNELS

@@ -98,7 +98,8 @@ SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Sin
   return std::find(good_.begin(), good_.end(), char{0}) == good_.end() ? SolveStatus::kOk : SolveStatus::kIndefinite;
 }
 
-/// Each pair of nodes has one block there, in the order in which packing meets them.
+/// Each pair of nodes has one block there: part by part and row by row, the rows in the order of their nodes.  Elements that lie together then write what lies together, and packing
+/// meets the blocks of sixteen rows one after the other in each.
 dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& pattern) {
   static std::atomic<std::uint64_t> version{0};
   written_.pattern = &pattern;
@@ -112,23 +113,21 @@ dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& patter
   written_.place.assign(column_.size(), -1);
   written_offset_.assign(packing_.places() + kLanesOfGroup * kStepsAhead, 9 * pairs);
   turned_.assign(packing_.places() / kLanesOfGroup, 0);
-  std::vector<int> row_of_place(packing_.places(), -1), block_of_place(packing_.places(), -1);
-  for (int i = 0; i < nodes(); ++i)
-    for (int s = row_start_[static_cast<std::size_t>(i)] + 1; s < row_start_[static_cast<std::size_t>(i) + 1]; ++s) {
-      if (packing_.turned(static_cast<std::size_t>(s))) continue;
-      row_of_place[packing_.place(static_cast<std::size_t>(s))] = i;
-      block_of_place[packing_.place(static_cast<std::size_t>(s))] = s;
-    }
+  std::vector<int> rows(n);
+  std::iota(rows.begin(), rows.end(), 0);
+  for (std::size_t p = 0; p + 1 < order_.part.size(); ++p)
+    std::sort(rows.begin() + order_.first_node(p), rows.begin() + order_.first_node(p + 1), [&](int a, int b) { return order_.node[static_cast<std::size_t>(a)] < order_.node[static_cast<std::size_t>(b)]; });
   int next = 0;
-  for (std::size_t at = 0; at < row_of_place.size(); ++at) {
-    if (row_of_place[at] < 0) continue;
-    const auto s = static_cast<std::size_t>(block_of_place[at]);
-    const int i = order_.node[static_cast<std::size_t>(row_of_place[at])], j = order_.node[static_cast<std::size_t>(column_[s])];
-    int& number = written_.place[static_cast<std::size_t>(source_[s])];
-    if (number < 0) written_.place[static_cast<std::size_t>(pattern.slot(j, i))] = number = next++;
-    written_offset_[at] = 9 * number;
-    if (i < j) turned_[at / kLanesOfGroup] = static_cast<std::uint16_t>(turned_[at / kLanesOfGroup] | (1u << at % kLanesOfGroup));  // row by row is the transposed one, column by column
-  }
+  for (const int row : rows)
+    for (auto s = static_cast<std::size_t>(row_start_[static_cast<std::size_t>(row)]) + 1; s < static_cast<std::size_t>(row_start_[static_cast<std::size_t>(row) + 1]); ++s) {
+      if (packing_.turned(s)) continue;
+      const int i = order_.node[static_cast<std::size_t>(row)], j = order_.node[static_cast<std::size_t>(column_[s])];
+      const std::size_t at = packing_.place(s), step = at / kLanesOfGroup;
+      int& number = written_.place[static_cast<std::size_t>(source_[s])];
+      if (number < 0) written_.place[static_cast<std::size_t>(pattern.slot(j, i))] = number = next++;
+      written_offset_[at] = 9 * number;
+      if (i < j) turned_[step] = static_cast<std::uint16_t>(turned_[step] | (1u << at % kLanesOfGroup));  // row by row is the transposed one, column by column
+    }
   written_.places_version = ++version;
   prefer_huge_pages(written_.values);
   prefer_huge_pages(written_offset_);
