@@ -63,6 +63,32 @@ void print_shares(const FemBenchReport& report) {
              report::format_table({"size", "E [Pa]", "h [ms]", "rtol", "solver", "thr", "force", "matrix", "factor", "solve", "step", "limit [ms]"}, rows));
 }
 
+void print_elements(const FemBenchReport& report) {
+  Rows rows;
+  std::map<std::pair<std::string, int>, std::vector<const study::ElementTiming*>> kinds;
+  for (const study::ElementTiming& t : report.elements) {
+    rows.push_back({t.size, fmt::format("{}", t.threads), t.stage, ms(t.least_ms), ms(t.median_ms), fmt::format("{:.1f}", 1e6 * t.least_ms / t.tetrahedra), share(t.limit_ms, t.least_ms), fmt::format("{}", t.runs)});
+    kinds[{t.stage, t.threads}].push_back(&t);
+  }
+  fmt::print("one evaluation over the elements by itself, again and again: bent beam, E = 1e6; share of what its bytes and operations take at the bandwidth of just these bytes\n"
+             "  residual: forces less K w; one pass: that and the warped matrix in single precision; tangents are added to a matrix in double, which is set to zero before them\n\n{}\n",
+             report::format_table({"size", "thr", "stage", "least [ms]", "median [ms]", "least [ns/tet]", "limit [%]", "runs"}, rows));
+  Rows growth;
+  for (const auto& [kind, timings] : kinds) {
+    const auto exponent = [&](auto size, double study::ElementTiming::*figure) {
+      std::vector<std::pair<double, double>> points;
+      for (const study::ElementTiming* t : timings) points.emplace_back(t->*size, t->*figure);
+      return study::scaling_exponent(points);
+    };
+    const double grows = exponent(&study::ElementTiming::tetrahedra, &study::ElementTiming::least_ms);
+    if (std::isfinite(grows))
+      growth.push_back({kind.first, fmt::format("{}", kind.second), fmt::format("{:.3f}", grows), fmt::format("{:.3f}", exponent(&study::ElementTiming::nodes, &study::ElementTiming::least_ms)),
+                        fmt::format("{:.3f}", exponent(&study::ElementTiming::tetrahedra, &study::ElementTiming::limit_ms))});
+  }
+  if (!growth.empty())
+    fmt::print("growth of the least time: exponent over tetrahedra, over nodes; of the limit over tetrahedra\n{}\n", report::format_table({"stage", "thr", "tetrahedra", "nodes", "limit"}, growth));
+}
+
 void print_memory(const FemBenchReport& report) {
   Rows rows;
   std::set<std::string> sizes;
@@ -204,6 +230,7 @@ void bench_fem_sizes(const BenchArguments& arguments) {
   print_limits(report);
   print_steps(report);
   print_shares(report);
+  print_elements(report);
   print_exponents(report);
   print_memory(report);
   print_peers(report);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "palpate/core/error.h"
 #include "study/fem_bench/peak_memory.h"
 #include "study/fem_bench/stage_work.h"
 
@@ -68,6 +69,33 @@ TEST(FemBench, ANearStepHasNoMatrix) {
   EXPECT_EQ(near.solve.read_bytes, own.solve.read_bytes);
 }
 
+TEST(FemBench, EvaluationsOverTheElementsOneByOne) {
+  const std::vector<ElementTiming> timings = time_elements({"here", 8, 2}, 0.0);
+  ASSERT_EQ(timings.size(), 7u);
+  for (const ElementTiming& t : timings) {
+    EXPECT_EQ(t.size, "here");
+    EXPECT_EQ(t.nodes, 81);
+    EXPECT_EQ(t.tetrahedra, 160);
+    EXPECT_GE(t.runs, 9);
+    EXPECT_GT(t.least_ms, 0.0) << t.stage;
+    EXPECT_LE(t.least_ms, t.median_ms) << t.stage;
+    EXPECT_GT(element_work(t.stage, {.nodes = 81, .tetrahedra = 160, .blocks = 800}).limit_ms(machine(), 1e5), 0.0) << t.stage;
+  }
+}
+
+TEST(FemBench, WorkOfEvaluationsIsOfWhatTheyDo) {
+  const StepCounts counts{.nodes = 1e3, .tetrahedra = 4e3, .blocks = 1.3e4};
+  const auto work = [&](const char* stage) { return element_work(stage, counts); };
+  EXPECT_GT(work("force, damped").double_flops, work("force").double_flops);
+  EXPECT_GT(work("residual").double_flops, work("force").double_flops);
+  EXPECT_GT(work("one pass").double_flops, work("residual").double_flops);
+  EXPECT_GT(work("tangent, exact").double_flops, work("tangent, warped").double_flops);
+  EXPECT_EQ(work("tangent, exact").read_bytes, work("tangent, warped").read_bytes);
+  EXPECT_EQ(work("matrix set to zero").written_bytes, 72.0 * counts.blocks);
+  EXPECT_EQ(work("matrix set to zero").double_flops, 0.0);
+  EXPECT_THROW(work("forces"), InternalError);
+}
+
 TEST(FemBench, ExponentOfAPowerLaw) {
   std::vector<FemBenchRow> rows(3);
   std::vector<const FemBenchRow*> members;
@@ -77,6 +105,8 @@ TEST(FemBench, ExponentOfAPowerLaw) {
     members.push_back(&rows[k]);
   }
   EXPECT_NEAR(scaling_exponent(members, &FemBenchRow::solve_ms), 1.25, 1e-9);
+  EXPECT_NEAR(scaling_exponent({{10.0, 3.0}, {100.0, 0.0}, {1000.0, 300.0}}), 1.0, 1e-12) << "what was not measured does not count";
+  EXPECT_TRUE(std::isnan(scaling_exponent({{10.0, 3.0}})));
 }
 
 TEST(FemBench, PeakMemorySeesWhatWasGivenBack) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate::study {
@@ -24,6 +25,7 @@ struct FemBenchOptions {
   std::vector<std::string> linear_solvers = {"auto"};
   int steps = 20;          ///< timed, of 10 ms each
   bool same_motion = true; ///< of shorter steps as many as take the same motion; false: no more of them
+  double element_s = 0.3;  ///< that each evaluation over the elements is timed for, by itself
   int checks = 3;          ///< of them, whose solution is compared with a direct one (or, above 12,000 nodes, with one of linear_rtol 1e-10)
 };
 
@@ -79,14 +81,30 @@ struct FemBenchRow {
   double peak_bytes = 0.0;      ///< of the process above what it held before the beam was made, without what checks take; NaN: not known
 };
 
+/// One evaluation over the elements of the bent beam, by itself, again and again [ms].
+struct ElementTiming {
+  std::string size;
+  std::string stage;  ///< "force", "force, damped", "residual", "one pass", "matrix set to zero", "tangent, warped", "tangent, exact"
+  int nodes = 0, tetrahedra = 0, threads = 1, runs = 0;
+  double least_ms = 0.0;   ///< what a machine that others use too would take alone
+  double median_ms = 0.0;
+  double limit_ms = 0.0;   ///< what memory and arithmetic, measured in the same run, allow
+};
+
 struct FemBenchReport {
   std::vector<MachineLimits> limits;
   std::vector<FemBenchRow> rows;
+  std::vector<ElementTiming> elements;  ///< each stage at each size and number of threads
 };
 
 FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)() = nullptr);
 MachineLimits measure_limits(int threads);
+/// Force, residual, tangents and one pass of one beam, on as many workers as core has; limits are set by run_fem_bench().
+/// @param time_s  of each stage
+std::vector<ElementTiming> time_elements(const BeamSize& size, double time_s);
 
+/// Slope of ln y over ln x by least squares over pairs (x, y), those with y > 0; NaN for fewer than two.
+double scaling_exponent(const std::vector<std::pair<double, double>>& points);
 /// ln(a figure of a row) over ln(nodes), by least squares, of rows that differ in size alone; NaN for fewer than two.
 double scaling_exponent(const std::vector<const FemBenchRow*>& rows, const std::function<double(const FemBenchRow&)>& figure);
 

@@ -23,8 +23,10 @@ fem::PathPoint turning(double t) {
 
 }  // namespace
 
+TetMesh beam_mesh(int along, int across) { return mesh::box(Vec3(1.0, 0.25, 0.25), {along, across, across}); }
+
 Beam::Beam(int along, int across, double youngs_modulus_pa) {
-  const TetMesh mesh = mesh::box(Vec3(1.0, 0.25, 0.25), {along, across, across});
+  const TetMesh mesh = beam_mesh(along, across);
   tetrahedra = static_cast<int>(mesh.tets.cols());
   rest = mesh.nodes.reshaped();
   masses = fem::lumped_masses(mesh, kDensity);

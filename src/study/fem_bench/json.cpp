@@ -28,6 +28,12 @@ std::string to_json(const FemBenchReport& report) {
         r.solve_ms, r.step_ms, r.step_mean_ms, r.near, r.scaled_ms, r.step_least_ms, r.solve_least_ms, r.step_cpu_ms, r.solver_cpu_ms, r.iterations, r.stiffness, r.error, r.mass_error, r.rotation_rad,
         r.force_limit_ms, r.matrix_limit_ms, r.factor_limit_ms, r.solve_limit_ms, r.needed_bytes, r.body_bytes, std::isfinite(r.peak_bytes) ? r.peak_bytes : 0.0);
   }
+  out += "\n  ],\n  \"elements\": [";
+  for (std::size_t i = 0; i < report.elements.size(); ++i) {
+    const ElementTiming& t = report.elements[i];
+    out += fmt::format("{}\n    {{\"size\": \"{}\", \"nodes\": {}, \"tetrahedra\": {}, \"threads\": {}, \"stage\": \"{}\", \"runs\": {}, \"least_ms\": {:.4g}, \"median_ms\": {:.4g}, \"limit_ms\": {:.4g}}}",
+                       i ? "," : "", t.size, t.nodes, t.tetrahedra, t.threads, t.stage, t.runs, t.least_ms, t.median_ms, t.limit_ms);
+  }
   return out + "\n  ]\n}\n";
 }
 

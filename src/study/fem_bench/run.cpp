@@ -263,18 +263,41 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
               report.rows.push_back(time_steps(size_named(size), spec, E, options, warm));
             }
     }
-  for (const int threads : options.threads) report.limits.push_back(measure_limits(threads));  // now, so that its memory is not in the peaks
+  for (const std::string& size : options.sizes)  // now, so that their memory is not in the peaks
+    for (const int threads : options.threads) {
+      if (stop && stop()) break;
+      const WorkerCount workers(threads);
+      for (ElementTiming& timing : time_elements(size_named(size), options.element_s)) {
+        timing.threads = threads;
+        report.elements.push_back(timing);
+      }
+    }
+  for (const int threads : options.threads) report.limits.push_back(measure_limits(threads));
   for (FemBenchRow& row : report.rows)
     for (const MachineLimits& limits : report.limits)
       if (limits.threads == row.threads) set_limits(row, limits);
+  for (ElementTiming& timing : report.elements)
+    for (const FemBenchRow& row : report.rows) {
+      if (row.size != timing.size) continue;
+      const StepCounts counts{.nodes = static_cast<double>(row.nodes), .tetrahedra = static_cast<double>(row.tetrahedra), .blocks = static_cast<double>(row.blocks)};
+      const StageWork work = element_work(timing.stage, counts);
+      for (const MachineLimits& limits : report.limits)
+        if (limits.threads == timing.threads) timing.limit_ms = work.limit_ms(limits, work.read_bytes + work.written_bytes);
+    }
   return report;
 }
 
 double scaling_exponent(const std::vector<const FemBenchRow*>& rows, const std::function<double(const FemBenchRow&)>& figure) {
+  std::vector<std::pair<double, double>> points;
+  for (const FemBenchRow* row : rows) points.emplace_back(row->nodes, figure(*row));
+  return scaling_exponent(points);
+}
+
+double scaling_exponent(const std::vector<std::pair<double, double>>& points) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const FemBenchRow* row : rows) {
-    if (!(figure(*row) > 0.0)) continue;
-    const double a = std::log(row->nodes), b = std::log(figure(*row));
+  for (const auto& [size, figure] : points) {
+    if (!(figure > 0.0)) continue;
+    const double a = std::log(size), b = std::log(figure);
     n += 1;
     x += a;
     y += b;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "palpate/core/error.h"
+
 namespace palpate::study {
 namespace {
 
@@ -14,6 +16,8 @@ constexpr double kVector = 24.0, kSolverVector = 32.0, kSingleVector = 16.0, kIn
 
 // Operations of an element, counted in the formulas of lane_element.h, lane_rotation.h and lane_blocks.h; a division counts as one, Newton takes four steps.
 constexpr double kGradient = 54.0, kRotation = 334.0, kForceTail = 123.0, kProductTail = 214.0, kBlocks = 402.0;
+// Of damping, in a force: the stress of the rate and its image.  Of the exact tangent: the coupling matrix, [h_a]x C, and what six blocks have more.
+constexpr double kDampingTail = 114.0, kCoupled = 276.0;
 // Of a block: scaling, or its part of the row's sum, and a product in double for each start; in an iteration one product.  Of a node in an iteration: update, preconditioner, direction.
 constexpr double kFactorOfBlock = 9.0, kStartOfBlock = 18.0, kProductOfBlock = 18.0, kIterationOfNode = 50.0;
 
@@ -62,6 +66,26 @@ StepWork work_of(const StepCounts& c) {
   w.solve_working_set = (kCopy + kColumn) * triangle + (5.0 * kSingleVector + kInverse) * c.nodes;
   w.working_set = bytes_to_store(c);
   return w;
+}
+
+StageWork element_work(const std::string& stage, const StepCounts& c) {
+  StepCounts general = c, one_pass = c, near = c;
+  general.one_pass = general.near = false;
+  one_pass.one_pass = near.near = true;
+  if (stage == "matrix set to zero") return {.written_bytes = kBlock * c.blocks};
+  if (stage == "one pass") return work_of(one_pass).matrix;
+  if (stage == "residual") return work_of(near).force;
+  if (stage.starts_with("tangent")) {  // added to a matrix, which is read for it
+    StageWork work = work_of(general).matrix;
+    work.read_bytes += kBlock * c.blocks;
+    if (stage == "tangent, exact") work.double_flops += kCoupled * c.tetrahedra;
+    return work;
+  }
+  const bool damped = stage == "force, damped";
+  PALPATE_CHECK(damped || stage == "force", "nothing is known of the work of a stage \"{}\"", stage);
+  return {.read_bytes = kElement * c.tetrahedra + (damped ? 3.0 : 2.0) * kVector * c.nodes,
+          .written_bytes = kVector * c.nodes,
+          .double_flops = (kGradient + kRotation + kForceTail + (damped ? kGradient + kDampingTail : 0.0)) * c.tetrahedra};
 }
 
 double bytes_to_store(const StepCounts& c) {

@@ -20,6 +20,9 @@ struct StepWork {
 };
 StepWork work_of(const StepCounts& counts);
 
+/// The least that one evaluation over the elements must do.  @param stage  as ElementTiming names them  @throws InternalError for another
+StageWork element_work(const std::string& stage, const StepCounts& counts);
+
 /// What must be stored for such steps [bytes]: elements, pattern, matrix and its copy in single precision, vectors.
 double bytes_to_store(const StepCounts& counts);
 
