@@ -25,21 +25,21 @@ std::string message_of(const std::function<void(render::Scene&, render::Options&
   return "no error";
 }
 
-void expect(const std::string& part, const std::function<void(render::Scene&, render::Options&)>& spoil) {
+testing::AssertionResult says(const std::string& part, const std::function<void(render::Scene&, render::Options&)>& spoil) {
   const std::string message = message_of(spoil);
-  EXPECT_NE(message.find(part), std::string::npos) << message;
+  return (message.find(part) != std::string::npos ? testing::AssertionSuccess() : testing::AssertionFailure()) << message;
 }
 
 }  // namespace
 
 TEST(DrawErrors, NameTheSurfaceAndTheValue) {
-  expect("surface \"cube\": a face names point 8 of 8", [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = 8; });
-  expect("surface \"cube\": a face names point -1 of 8", [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = -1; });
-  expect("surface \"cube\": a position is not finite", [](auto& scene, auto&) { scene.surfaces[0].points(1, 2) = std::nan(""); });
-  expect("surface \"cube\": 3 values for 8 points", [](auto& scene, auto&) { scene.surfaces[0].values = VecX::Zero(3); });
-  expect("nothing to show", [](auto& scene, auto&) { scene.surfaces.clear(); });
-  expect("8 x 900 pixels", [](auto&, auto& options) { options.width = 8; });
-  expect("supersampling = 0", [](auto&, auto& options) { options.supersampling = 0; });
+  EXPECT_TRUE(says("surface \"cube\": a face names point 8 of 8", [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = 8; }));
+  EXPECT_TRUE(says("surface \"cube\": a face names point -1 of 8", [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = -1; }));
+  EXPECT_TRUE(says("surface \"cube\": a position is not finite", [](auto& scene, auto&) { scene.surfaces[0].points(1, 2) = std::nan(""); }));
+  EXPECT_TRUE(says("surface \"cube\": 3 values for 8 points", [](auto& scene, auto&) { scene.surfaces[0].values = VecX::Zero(3); }));
+  EXPECT_TRUE(says("nothing to show", [](auto& scene, auto&) { scene.surfaces.clear(); }));
+  EXPECT_TRUE(says("8 x 900 pixels", [](auto&, auto& options) { options.width = 8; }));
+  EXPECT_TRUE(says("supersampling = 0", [](auto&, auto& options) { options.supersampling = 0; }));
 }
 
 TEST(SavePng, NamesThePathThatCannotBeWritten) {

@@ -31,9 +31,17 @@ Vec6 random_vec6() {
 
 constexpr CouplingGains kGains{300.0, 2.0, 0.7, 0.02};
 
+/// Each test draws the same numbers, whichever ran before.
+struct Seeded : ::testing::Test {
+  Seeded() { rng.seed(11); }
+};
+struct So3 : Seeded {};
+struct Coupling : Seeded {};
+struct HandlePath : Seeded {};
+
 }  // namespace
 
-TEST(So3, jacobians_are_inverse_and_derivatives) {
+TEST_F(So3, jacobians_are_inverse_and_derivatives) {
   for (double angle : {0.0, 1e-9, 1e-3, 0.2499999, 0.25, 0.7, 2.0, 3.1}) {
     const Vec3 theta = angle * Vec3(2, -1, 2) / 3.0;
     EXPECT_LT((left_jacobian(theta) * left_jacobian_inverse(theta) - Mat3::Identity()).norm(), 2e-13) << angle;
@@ -51,7 +59,7 @@ TEST(So3, jacobians_are_inverse_and_derivatives) {
 }
 
 // F(x exp(h d)) = F(x) - h K d + O(h^2): the remainder falls by 4 as h halves, at random poses and near half a turn.
-TEST(Coupling, tangent_by_taylor) {
+TEST_F(Coupling, tangent_by_taylor) {
   for (int run = 0; run < 8; ++run) {
     const RigidMotion tool{random_pose(), twist_of(random_vec6())};
     RigidMotion handle{random_pose(), twist_of(random_vec6())};
@@ -71,7 +79,7 @@ TEST(Coupling, tangent_by_taylor) {
   }
 }
 
-TEST(Coupling, contact_tangent_by_taylor) {
+TEST_F(Coupling, contact_tangent_by_taylor) {
   for (int run = 0; run < 5; ++run) {
     dynamics::LinearisedContact record;
     record.source = dynamics::LinearisedContact::Source::kCondensed;
@@ -94,7 +102,7 @@ TEST(Coupling, contact_tangent_by_taylor) {
 }
 
 // Force = minus the gradient of the energy in work: F . d = -dE for every direction.
-TEST(Coupling, spring_is_the_gradient_of_its_energy) {
+TEST_F(Coupling, spring_is_the_gradient_of_its_energy) {
   for (int run = 0; run < 5; ++run) {
     const Pose tool = random_pose(), handle{quaternion_of(random_vec()) * tool.rotation, random_vec()};
     const Vec6 F = coupling_wrench(kGains, {tool, {}}, {handle, {}});
@@ -114,7 +122,7 @@ TEST(Coupling, spring_is_the_gradient_of_its_energy) {
 }
 
 // Power in at both ends = rate of the spring's energy + dissipation >= 0: the pair (wrench on tool, opposite on hand) is passive.
-TEST(Coupling, passive_at_its_two_ends) {
+TEST_F(Coupling, passive_at_its_two_ends) {
   for (int run = 0; run < 100; ++run) {
     CouplingGains damper = kGains;
     damper.k = damper.k_r = 0.0;
@@ -126,7 +134,7 @@ TEST(Coupling, passive_at_its_two_ends) {
   }
 }
 
-TEST(Coupling, does_not_see_where_the_world_stands) {
+TEST_F(Coupling, does_not_see_where_the_world_stands) {
   for (int run = 0; run < 20; ++run) {
     const RigidMotion tool{random_pose(), twist_of(random_vec6())}, handle{random_pose(), twist_of(random_vec6())};
     const Pose world = random_pose();
@@ -139,7 +147,7 @@ TEST(Coupling, does_not_see_where_the_world_stands) {
 }
 
 // The path within a tick: ends met in pose and twist, twist the derivative of pose, and fourth order for a smooth handle.
-TEST(HandlePath, hermite_in_pose_and_twist) {
+TEST_F(HandlePath, hermite_in_pose_and_twist) {
   const auto hand = [](double t) {
     const Vec3 theta = Vec3(std::sin(t), t * t, std::cos(2 * t)), rate = Vec3(std::cos(t), 2 * t, -2 * std::sin(2 * t));
     return RigidMotion{{quaternion_of(theta), Vec3(std::sin(3 * t), t, 0)}, {left_jacobian(theta) * rate, Vec3(3 * std::cos(3 * t), 1, 0)}};
