@@ -292,7 +292,7 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
     LeavingBlocks& before = scratch.before;
     int groups_here = 0;
     chunks_.for_each_run(chunk, [&](const ElementChunks::Run& run) { groups_here += run.groups; });
-    before.at_a_time = (before.count + groups_here - 1) / groups_here;
+    before.at_a_time = before.count / std::max(1, groups_here) + 1;
     for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->step(groups, count, model, kScalarPath, fields, sum, upper, before, scratch.counts); });
     flush_nodal(chunk, sum, f);
     kernels_->leave(before, before.count);
