@@ -16,6 +16,7 @@ namespace {
 using Chunk = ElementChunks::Chunk;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 constexpr int kSumsInTask = 512;
+constexpr int kFewChunks = 16;  // of a matrix that caches hold: to fill them with two chunks at a time costs more than waiting for it
 constexpr int kSumsAhead = 6, kNodesAhead = 24;  // how long before they are used memory is asked for
 
 void rotation_by_scalar(const double* F, double* R) {
@@ -282,7 +283,8 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
   fit_leaving();
   prepare_places(first_node, A);
   PALPATE_CHECK(!models.front().by_position, "an unsymmetric tangent in a balanced matrix");
-  workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
+  const int chunks = static_cast<int>(chunks_.chunks.size());
+  workers::for_each(chunks, [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
     const ChunkBlocks upper{numbers(scratch.leaving[scratch.turn]), scratch.leaving_last[scratch.turn].data()};
@@ -298,13 +300,15 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
     kernels_->leave(before, before.count);
     before = {upper, leaving_edges_.data() + chunk.first_edge, places_.data() + chunk.first_edge, A.values.data(),
               shared_single_.data() + 9 * static_cast<std::size_t>(chunk.first_shared_edge), chunk.own_edges, chunk.edges};
-    scratch.turn = 1 - scratch.turn;
+    if (chunks <= kFewChunks || c + workers::count() >= chunks)  // likely this thread's last
+      kernels_->leave(before, before.count);
+    else
+      scratch.turn = 1 - scratch.turn;
   });
-  workers::for_each(static_cast<int>(scratch_.size()), [&](int s, int) {
-    LeavingBlocks& last = scratch_[static_cast<std::size_t>(s)].before;
-    kernels_->leave(last, last.count);
-    last = {};
-  });
+  for (Scratch& scratch : scratch_) {
+    kernels_->leave(scratch.before, scratch.before.count);
+    scratch.before = {};
+  }
   add_shared_nodes(f);
   store_shared_blocks(A);
   return collect_counts();

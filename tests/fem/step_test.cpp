@@ -41,9 +41,9 @@ struct Room {
 };
 
 struct Case {
-  TetMesh rest = jittered_cube(10, 0.15, 31);  // three chunks
+  TetMesh rest;  // of ten cells along three chunks
   VecX x, v, w, change;
-  explicit Case(double shake) {
+  explicit Case(double shake, int cells = 10) : rest(jittered_cube(cells, 0.15, 31)) {
     Random random(32);
     x = flat(random.rotation() * rest.nodes) + shake * random.vector(3 * rest.nodes.cols());
     v = random.vector(x.size());
@@ -114,6 +114,34 @@ TEST(Step, IsForceProductAndTangentInOne) {
           }
         }
   EXPECT_GT(compared, 100000);
+}
+
+// In a large body blocks of one chunk leave while the next one is computed.  Twice: what left is zero again.
+TEST(Step, OfALargeBodyIsTheSame) {
+  const Case c(0.01, 24);
+  ASSERT_GT(c.rest.tets.cols(), 16 * 4096) << "more than sixteen chunks";
+  for (const std::string& set : instruction_sets())
+    for (const int threads : {1, 3}) {
+      workers::set_count(threads);
+      OneBody at(c.x, c.v);
+      SoftBody body("b", c.rest, material_with(0.0, 0.0), {.tangent = Tangent::kWarped, .instructions = set}, at.id);
+      Room room(body, at.state);
+      VecX f = VecX::Zero(c.x.size());
+      dynamics::BorderedMatrix whole;
+      whole.body = room.pattern;
+      body.add_tangent(at.state.view(), kK, kD, whole);
+      for (int run = 0; run < 2; ++run) {
+        std::fill(room.A.values.begin(), room.A.values.end(), 77.0f);
+        body.add_step(at.state.view(), c.w, kK, kD, f, room.A);
+        double worst = 0.0;
+        room.each_pair([&](int i, int j, int s) {
+          const Mat3 exact = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(whole.body.block(s));
+          worst = std::max(worst, (room.block(i, j, s) - exact).norm() / exact.norm());
+        });
+        EXPECT_LT(worst, 1e-6) << set << ", " << threads << " threads, run " << run;
+      }
+    }
+  workers::set_count(1);
 }
 
 TEST(Step, ThreadsDoNotChangeABit) {
