@@ -123,8 +123,9 @@ void ElementEvaluation::fit_blocks() {
 void ElementEvaluation::fit_leaving() {
   fit_scratch();
   const auto edges = static_cast<std::size_t>(chunks_.most_edges) + 1;
+  const int turns = static_cast<int>(chunks_.chunks.size()) <= kFewChunks ? 1 : 2;
   for (Scratch& scratch : scratch_)
-    for (int turn = 0; turn < 2; ++turn) {
+    for (int turn = 0; turn < turns; ++turn) {
       scratch.leaving[turn].resize(edges);
       scratch.leaving_last[turn].resize(edges);
     }

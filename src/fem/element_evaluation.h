@@ -54,7 +54,7 @@ class ElementEvaluation {
     std::vector<Line> x, v, w, sum;             ///< nodal, four doubles a node
     std::vector<Line> upper, lower, diagonal;   ///< rows of eight
     std::vector<double> upper_last, lower_last, diagonal_last;
-    std::vector<Line> leaving[2];               ///< blocks of two chunks by turns, zero between steps
+    std::vector<Line> leaving[2];               ///< blocks of two chunks by turns (of few chunks, of one), zero between steps
     std::vector<double> leaving_last[2];
     int turn = 0;
     LeavingBlocks before;                       ///< of the chunk before
