@@ -6,7 +6,6 @@
 
 #include "corotated.h"
 #include "palpate/core/error.h"
-#include "palpate/core/huge_pages.h"
 #include "palpate/core/polar.h"
 #include "palpate/core/workers.h"
 
@@ -34,10 +33,6 @@ bool coupling_by_scalar(const ElementModel& model, const double* F, const double
 
 constexpr ScalarPath kScalarPath{rotation_by_scalar, coupling_by_scalar};
 
-template <class T>
-std::size_t bytes_of(const std::vector<T>& v) {
-  return v.capacity() * sizeof(T);
-}
 double* numbers(auto& lines) { return lines.empty() ? nullptr : lines.front().value; }
 
 /// Runs f(k) for k in [0, count), in tasks of kSumsInTask.
@@ -55,22 +50,6 @@ void sum_blocks(const SharedSums& sums, int k, const std::vector<Real>& contribu
   for (int p = sums.start[static_cast<std::size_t>(k)]; p < sums.start[static_cast<std::size_t>(k) + 1]; ++p) {
     const Real* block = contributions.data() + 9 * static_cast<std::size_t>(sums.entries[static_cast<std::size_t>(p)]);
     for (int c = 0; c < 9; ++c) sum[c] += block[c];
-  }
-}
-
-std::int32_t slot_of(const dynamics::BlockSparse& A, int i, int j) {
-  const int found = A.slot(i, j);
-  PALPATE_CHECK(found >= 0, "nodes {} and {} are not in the pattern", i, j);
-  return static_cast<std::int32_t>(found);
-}
-
-/// at(i, j) and at(j, i) of each edge that chunks share.
-template <class At>
-void find_both_sides(const SharedSums& edges, At&& at, std::vector<std::int32_t>& sides) {
-  sides.resize(2 * edges.first.size());
-  for (std::size_t k = 0; k < edges.first.size(); ++k) {
-    sides[2 * k] = at(edges.first[k], edges.second[k]);
-    sides[2 * k + 1] = at(edges.second[k], edges.first[k]);
   }
 }
 
@@ -351,74 +330,6 @@ double ElementEvaluation::dissipated_power(const ElementModels& models, const Bo
     chunk_sums_[static_cast<std::size_t>(c)] = std::accumulate(sums.value, sums.value + 8, 0.0);
   });
   return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
-}
-
-void ElementEvaluation::prepare(int first_node, const dynamics::BlockSparse& A) {
-  if (A.pattern_version() == pattern_version_ && first_node == first_node_) return;
-  const auto slot = [&](int i, int j) { return slot_of(A, first_node + i, first_node + j); };
-  slots_.resize(chunks_.row_edges.size());
-  chunk_diagonal_.resize(chunks_.nodes.size());
-  diagonal_.resize(static_cast<std::size_t>(chunks_.node_count()));
-  for (std::size_t i = 0; i < diagonal_.size(); ++i) diagonal_[i] = slot(static_cast<int>(i), static_cast<int>(i));
-  for (std::size_t n = 0; n < chunks_.nodes.size(); ++n) chunk_diagonal_[n] = diagonal_[static_cast<std::size_t>(chunks_.nodes[n])];
-  for (const Chunk& chunk : chunks_.chunks)
-    for (int n = chunk.first_node; n < chunk.first_node + chunk.nodes; ++n)
-      for (int p = chunks_.row_start[static_cast<std::size_t>(n)]; p < chunks_.row_start[static_cast<std::size_t>(n) + 1]; ++p) {
-        const std::uint32_t entry = chunks_.row_edges[static_cast<std::size_t>(p)];
-        const std::size_t other = 2 * (static_cast<std::size_t>(chunk.first_edge) + entry / 2) + (1 - entry % 2);
-        slots_[static_cast<std::size_t>(p)] = slot(chunks_.nodes[static_cast<std::size_t>(n)], chunks_.nodes[static_cast<std::size_t>(chunk.first_node + chunks_.ends[other])]);
-      }
-  find_both_sides(chunks_.shared_edges, slot, shared_slots_);
-  const auto edge_places = static_cast<std::size_t>(chunks_.shared_edges.contributions());
-  shared_upper_.resize(9 * edge_places);
-  if (with_lower_) shared_lower_.resize(9 * edge_places);
-  shared_diagonal_.resize(9 * static_cast<std::size_t>(chunks_.shared_nodes.contributions()));
-  for (const auto* shared : {&shared_upper_, &shared_lower_, &shared_diagonal_}) prefer_huge_pages(*shared);
-  prefer_huge_pages(slots_);
-  pattern_version_ = A.pattern_version();
-  first_node_ = first_node;
-}
-
-/// Ascending in the matrix, so that its memory is written in order.
-void ElementEvaluation::prepare_places(int first_node, const dynamics::BalancedMatrix& A) {
-  if (A.places_version == places_version_ && first_node == places_first_node_) return;
-  const auto place = [&](int i, int j) { return A.place[static_cast<std::size_t>(slot_of(*A.pattern, first_node + i, first_node + j))]; };
-  places_.assign(chunks_.ends.size() / 2, -1);
-  leaving_edges_.assign(places_.size(), 0);
-  std::vector<std::pair<std::int32_t, std::uint16_t>> own;
-  for (const Chunk& chunk : chunks_.chunks) {
-    own.clear();
-    for (int k = 0; k < chunk.own_edges; ++k) {
-      const std::uint16_t* ends = chunks_.ends.data() + 2 * static_cast<std::size_t>(chunk.first_edge + k);
-      own.emplace_back(place(chunks_.nodes[static_cast<std::size_t>(chunk.first_node + ends[0])], chunks_.nodes[static_cast<std::size_t>(chunk.first_node + ends[1])]), k);
-    }
-    std::sort(own.begin(), own.end());
-    for (std::size_t k = 0; k < own.size(); ++k) {
-      places_[static_cast<std::size_t>(chunk.first_edge) + k] = own[k].first;
-      leaving_edges_[static_cast<std::size_t>(chunk.first_edge) + k] = own[k].second;
-    }
-    for (int k = chunk.own_edges; k < chunk.edges; ++k) leaving_edges_[static_cast<std::size_t>(chunk.first_edge + k)] = static_cast<std::uint16_t>(k);
-  }
-  shared_single_.assign(9 * static_cast<std::size_t>(chunks_.shared_edges.contributions()), 0.0f);
-  prefer_huge_pages(shared_single_);
-  shared_places_.resize(static_cast<std::size_t>(chunks_.shared_edges.count()));
-  for (std::size_t k = 0; k < shared_places_.size(); ++k) shared_places_[k] = place(chunks_.shared_edges.first[k], chunks_.shared_edges.second[k]);
-  prefer_huge_pages(places_);
-  places_version_ = A.places_version;
-  places_first_node_ = first_node;
-}
-
-std::size_t ElementEvaluation::map_bytes() const {
-  return bytes_of(slots_) + bytes_of(chunk_diagonal_) + bytes_of(shared_slots_) + bytes_of(diagonal_) + bytes_of(places_) + bytes_of(leaving_edges_) + bytes_of(shared_places_);
-}
-
-std::size_t ElementEvaluation::scratch_bytes() const {
-  std::size_t sum = bytes_of(shared_nodes_) + bytes_of(shared_upper_) + bytes_of(shared_lower_) + bytes_of(shared_diagonal_) + bytes_of(shared_single_) + bytes_of(chunk_sums_);
-  for (const Scratch& s : scratch_) {
-    for (const auto* lines : {&s.x, &s.v, &s.w, &s.sum, &s.upper, &s.lower, &s.diagonal, &s.leaving[0], &s.leaving[1]}) sum += bytes_of(*lines);
-    for (const auto* numbers : {&s.upper_last, &s.lower_last, &s.diagonal_last, &s.leaving_last[0], &s.leaving_last[1]}) sum += bytes_of(*numbers);
-  }
-  return sum;
 }
 
 }  // namespace palpate::fem
