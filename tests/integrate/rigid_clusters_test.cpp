@@ -77,7 +77,7 @@ struct Preconditioner {
   double form(const VecX& r) {
     for (int k = 0; k < matrix.nodes(); ++k)
       for (int axis = 0; axis < 3; ++axis) iteration.residual()[static_cast<std::size_t>(4 * k + axis)] = static_cast<float>(r[3 * matrix.order().node[static_cast<std::size_t>(k)] + axis]);
-    return iteration.precondition() * matrix.scale();
+    return iteration.precondition([](int, int) {}) * matrix.scale();
   }
 };
 

@@ -2,49 +2,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace palpate::integrate {
 namespace {
-
-struct Pointers {
-  const float *V[kMostColumns] = {}, *AV[kMostColumns] = {};
-  Pointers(int count, const Singles* solutions, const Singles* products) {
-    for (int k = 0; k < count; ++k) {
-      V[k] = solutions[k].data();
-      AV[k] = products[k].data();
-    }
-  }
-};
-
+/// Binary orders of magnitude between solutions that have something to do with each other.
+constexpr int kMostOrders = 60;
 }  // namespace
 
 void KrylovStart::prepare(const NodeOrder& order) {
-  for (int k = 0; k < most_; ++k)
+  for (int k = 0; k < most_; ++k) {
     for (Singles* v : {&V_[k], &AV_[k]}) v->assign(4 * order.node.size() + kVectorTail, 0.0f);
+    at_V_[k] = V_[k].data();
+    at_AV_[k] = AV_[k].data();
+  }
   partial_.assign(static_cast<std::size_t>(order.parts()), {});
-  count_ = 0;
-  known_ = followed_ = false;
-  std::fill_n(share_, kMostColumns, 1.0);
+  forget();
 }
 
-void KrylovStart::gather_sums(const Doubles& b) {
-  const Pointers at(count_, V_, AV_);
-  team_.for_each([&](std::size_t c, int first, int last) { kernels_.gram(count_, at.V, at.AV, b.data(), first, last, partial_[c].data()); });
-  std::array<double, kMostSums> sums{};
-  for (const auto& part : partial_)
-    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += part[k];
-  std::size_t k = 0;
-  for (int j = 0; j < count_; ++j)
-    for (int i = 0; i <= j; ++i) own_[j][i] = sums[k++];
-  for (int j = 0; j < count_; ++j) right_[j] = sums[k++];
+void KrylovStart::begin(bool warm, double scale) {
+  scale_ = scale;
+  used_ = warm ? count_ : 0;
+  for (int j = 0; j < used_; ++j) {
+    of_V_[j] = share_[j] * unit_;
+    of_AV_[j] = of_V_[j] / scale;
+  }
 }
 
-/// By Cholesky, column by column.  @return y . V^T b
-double KrylovStart::solve(double* y) const {
+void KrylovStart::add_up(std::size_t part, const double* b, int first, int last) {
+  kernels_.gram(used_, of_AV_, at_V_, at_AV_, b, first, last, partial_[part].data());
+}
+
+/// By Cholesky, column by column.  @return y . V^T b for y = of_AV_
+double KrylovStart::solve() {
+  double* y = of_AV_;
   double L[kMostColumns][kMostColumns] = {}, c[kMostColumns] = {};
   bool used[kMostColumns] = {};
   double energy = 0.0;
-  for (int j = 0; j < count_; ++j) {
+  for (int j = 0; j < used_; ++j) {
     double pivot = own_[j][j];
     for (int i = 0; i < j; ++i) {
       if (!used[i]) continue;
@@ -61,64 +56,67 @@ double KrylovStart::solve(double* y) const {
     c[j] /= L[j][j];
     energy += c[j] * c[j];
   }
-  for (int j = count_ - 1; j >= 0; --j) {
+  for (int j = used_ - 1; j >= 0; --j) {
     y[j] = 0.0;
     if (!used[j]) continue;
     y[j] = c[j];
-    for (int i = j + 1; i < count_; ++i) y[j] -= L[i][j] * y[i];
+    for (int i = j + 1; i < used_; ++i) y[j] -= L[i][j] * y[i];
     y[j] /= L[j][j];
   }
   return energy;
 }
 
-KrylovStart::Start KrylovStart::combine(bool warm, double scale, const Doubles& b, Doubles& x, Doubles& Ax) {
-  const int count = warm ? count_ : 0;
-  double y[kMostColumns] = {}, energy = 0.0, change = 0.0;  // V y solves (scale A) V y = b
-  if (count > 0) {
-    gather_sums(b);
-    energy = solve(y);
-    double difference[kMostColumns];
-    for (int j = 0; j < count; ++j) {
-      difference[j] = y[j] - share_[j] * unit_ / scale;
-      for (int i = 0; i <= j; ++i) change += (i < j ? 2.0 : 1.0) * difference[j] * own_[j][i] * difference[i];
-    }
-    for (int j = 0; j < count; ++j) share_[j] = y[j] * scale / unit_;
+KrylovStart::Start KrylovStart::choose() {
+  std::array<double, kMostSums> sums{};
+  for (const auto& part : partial_)
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += part[k];
+  std::size_t at = 0;
+  for (int j = 0; j < used_; ++j)
+    for (int i = 0; i <= j; ++i) own_[j][i] = sums[at++];
+  for (int j = 0; j < used_; ++j) right_[j] = sums[at++];
+  const double left = std::sqrt(sums[at]);
+  double foreseen[kMostColumns], change = 0.0;
+  std::copy_n(of_AV_, used_, foreseen);
+  const double energy = solve();  // (scale A) V y = b
+  for (int j = 0; j < used_; ++j) {
+    foreseen[j] = of_AV_[j] - foreseen[j];
+    for (int i = 0; i <= j; ++i) change += (i < j ? 2.0 : 1.0) * foreseen[j] * own_[j][i] * foreseen[i];
+    of_V_[j] = of_AV_[j] * scale_;
+    share_[j] = of_V_[j] / unit_;
   }
-  return {scale * energy, add_up(count, y, scale, b, x, Ax), scale * std::max(0.0, change)};
+  return {scale_ * energy, scale_ * std::max(0.0, change), left == 0.0 ? 1.0 : left};
 }
 
-void KrylovStart::foresee(double scale, Doubles& x, Doubles& Ax) {
-  double y[kMostColumns];
-  for (int j = 0; j < kMostColumns; ++j) y[j] = share_[j] * unit_ / scale;
-  add_up(count_, y, scale, x, x, Ax);
-}
+void KrylovStart::solution(double* x, int first, int last) const { kernels_.combine(used_, of_V_, at_V_, x, first, last); }
+void KrylovStart::product(double* Ax, int first, int last) const { kernels_.combine(used_, of_AV_, at_AV_, Ax, first, last); }
+void KrylovStart::residual(double by, const double* b, float* r, int first, int last) const { kernels_.leave(used_, of_AV_, by, at_AV_, b, r, first, last); }
 
-/// x and Ax of coefficients y; returns |b - A x|.
-double KrylovStart::add_up(int count, const double* y, double scale, const Doubles& b, Doubles& x, Doubles& Ax) {
-  const Pointers at(count, V_, AV_);
-  team_.for_each(
-      [&](std::size_t c, int first, int last) { partial_[c][0] = kernels_.combine(count, y, scale, at.V, at.AV, b.data(), x.data(), Ax.data(), first, last); });
-  double square = 0.0;
-  for (const auto& part : partial_) square += part[0];
-  return std::sqrt(square);
-}
-
-void KrylovStart::keep(const Doubles& x, double largest, double scale, const Doubles* Ax) {
-  if (!(largest > 0.0)) return;
-  const double unit = std::ldexp(1.0, std::ilogb(largest)), by = 1.0 / unit, change = unit_ / unit;
-  unit_ = unit;
+void KrylovStart::begin_to_keep(double scale, bool with_products) {
+  scale_ = scale;
   count_ = std::min(count_ + 1, most_);
   known_ = false;
-  followed_ = followed_ && Ax;
-  float *V[kMostColumns], *AV[kMostColumns];
-  for (int k = 0; k < count_; ++k) {
-    V[k] = V_[k].data();
-    AV[k] = AV_[k].data();
-  }
-  team_.for_each([&](std::size_t, int first, int last) {
-    kernels_.difference(count_, by, change, x.data(), V, first, last);
-    if (followed_) kernels_.difference(count_, scale * by, change, Ax->data(), AV, first, last);
-  });
+  followed_ = followed_ && with_products;
+  by_ = 1.0 / next_unit_;
+  change_ = unit_ / next_unit_;
+  unit_ = next_unit_;
+}
+
+void KrylovStart::keep(const double* x, const double* Ax, int first, int last) {
+  kernels_.difference(count_, by_, change_, x, at_V_, first, last);
+  if (followed_) kernels_.difference(count_, scale_ * by_, change_, Ax, at_AV_, first, last);
+}
+
+/// The unit is that of the solution before: one pass over x is enough.
+void KrylovStart::end_to_keep(double largest) {
+  if (!(largest > 0.0) || !std::isfinite(largest)) return forget();
+  next_unit_ = std::ldexp(1.0, std::ilogb(largest));
+  if (std::abs(std::ilogb(largest) - std::ilogb(unit_)) > kMostOrders) forget();
+}
+
+void KrylovStart::forget() {
+  count_ = 0;
+  known_ = followed_ = false;
+  std::fill_n(share_, kMostColumns, 1.0);
 }
 
 }  // namespace palpate::integrate

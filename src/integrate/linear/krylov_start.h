@@ -15,7 +15,7 @@ namespace palpate::integrate {
 class KrylovStart {
  public:
   /// @param most  solutions that are kept, up to kMostColumns
-  KrylovStart(const NodeKernels& kernels, ClusterTeam& team, int most) : kernels_(kernels), team_(team), most_(most) {}
+  KrylovStart(const NodeKernels& kernels, int most) : kernels_(kernels), most_(most) {}
 
   /// Forgets; vectors over the nodes of this order.
   void prepare(const NodeOrder& order);
@@ -27,32 +27,47 @@ class KrylovStart {
   /// Known, or followed from solution to solution of one matrix.
   bool products_followed() const { return followed_; }
 
+  /// One right-hand side b, by what follows in this order.  First x is the next solution as far as it is foreseen, with the shares that the last start took, in the first ones
+  /// those of a polynomial; `warm` false: zero.
+  void begin(bool warm, double scale);
+  /// What choose() needs of a part's nodes, where b is from then on.
+  void add_up(std::size_t part, const double* b, int first, int last);
   struct Start {
-    double energy;    ///< |x|_A^2
-    double residual;  ///< |b - A x|
-    double change;    ///< |x - what was foreseen|_A^2
+    double energy;  ///< |x|_A^2
+    double change;  ///< |x - what was foreseen|_A^2
+    double size;    ///< |b - A x| of what was foreseen, about that of x; not zero
   };
-  /// The next solution as far as it is foreseen: with the shares that the last start took, in the first ones those of a polynomial.  x, and Ax = A x.
-  void foresee(double scale, Doubles& x, Doubles& Ax);
-  /// x = V y and Ax = A V y, both written whole; `warm` false: zero.  A solution that lies in the span of newer ones gives nothing new and is left out.
-  Start combine(bool warm, double scale, const Doubles& b, Doubles& x, Doubles& Ax);
-  /// Takes a solution, the largest number in it, and Ax = A x (null: products are followed no further); the oldest is forgotten.
-  void keep(const Doubles& x, double largest, double scale, const Doubles* Ax);
+  /// x becomes the best.  A solution that lies in the span of newer ones gives nothing new and is left out.
+  Start choose();
+  /// x and A x on nodes [first, last), to numbers that begin with node `first`.
+  void solution(double* x, int first, int last) const;
+  void product(double* Ax, int first, int last) const;
+  /// r = by (b - A x)
+  void residual(double by, const double* b, float* r, int first, int last) const;
+
+  /// Takes a solution: makes room, takes it on ranges of nodes that make up all of them, with Ax = A x where products are followed, and the largest number in it.  The oldest is
+  /// forgotten.  So is everything where solutions differ by so much in size that they say nothing of each other.
+  void begin_to_keep(double scale, bool with_products);
+  void keep(const double* x, const double* Ax, int first, int last);
+  void end_to_keep(double largest);
 
  private:
-  void gather_sums(const Doubles& b);
-  double add_up(int count, const double* y, double scale, const Doubles& b, Doubles& x, Doubles& Ax);
-  double solve(double* y) const;
+  double solve();
+  void forget();
 
   const NodeKernels& kernels_;
-  ClusterTeam& team_;
   int most_;
   Singles V_[kMostColumns], AV_[kMostColumns];  ///< the newest solution, and its backward differences
-  double unit_ = 1.0;  ///< of V_: a power of two
+  float *at_V_[kMostColumns] = {}, *at_AV_[kMostColumns] = {};
+  double unit_ = 1.0, next_unit_ = 1.0;  ///< of V_: a power of two
   double share_[kMostColumns];  ///< of each of V_ in the last start
   int count_ = 0;
   bool known_ = false;     ///< AV_ is of the present matrix and the present V_
   bool followed_ = false;  ///< it is so up to the roundings of A x, which are not of differences between neighbours
+  double scale_ = 1.0;
+  int used_ = 0;                                     ///< columns of this start
+  double of_V_[kMostColumns], of_AV_[kMostColumns];  ///< their shares in x and in A x
+  double by_ = 1.0, change_ = 1.0;                   ///< of the solution that is being taken
   std::vector<std::array<double, kMostSums>> partial_;  ///< one a part
   double own_[kMostColumns][kMostColumns] = {}, right_[kMostColumns] = {};  ///< V^T A V, V^T b
 };

@@ -19,7 +19,7 @@ constexpr int kMostResiduals = 4;
 
 void NearSolve::prepare() {
   SingleSolve::prepare();
-  before_.clear();
+  open_.clear();
   age_ = MatrixAge(rtol_);
 }
 
@@ -49,94 +49,104 @@ SolveStatus NearSolve::solve_near(dynamics::Residual& left, VecX& x) {
 }
 
 SolveStatus NearSolve::approach(dynamics::Residual& left, VecX& x) {
-  start_.foresee(copy_.scale(), x_, Ax_);
-  int residuals = 1;
+  begin(true);
+  put_solution(x.data());
   look(left, x);
-  const KrylovStart::Start start = start_.combine(true, copy_.scale(), b_, x_, Ax_);
-  size_ = start.residual;
-  double energy = start.energy, change = start.change;
+  int residuals = 1;
+  const KrylovStart::Start start = begin_where_it_leaves();
+  if (!std::isfinite(size_)) return SolveStatus::kNotConverged;
+  float* r = iteration_.residual().data();
   const double by_copy = (1.0 - MatrixAge::kUnseen) * rtol_;
+  double open = 0.0, energy = start.energy, change = start.change;
+  SolveStatus status = descend(energy, by_copy, open, [&](int first, int last) { start_.residual(1.0 / size_, b_.data(), r, first, last); });
   for (;;) {
-    if (!std::isfinite(size_)) return SolveStatus::kNotConverged;
-    set_residual();
-    double open = 0.0;
-    if (const SolveStatus status = descend(energy, by_copy, open); status != SolveStatus::kOk) return status;
+    if (status != SolveStatus::kOk) return status;
     const double solution = iteration_.solution(), correction = std::sqrt((change + solution - energy) / solution);
-    follow_product();
     if (residuals == 1) correction_ = correction;
     if (open <= by_copy && !rounded_ && age_.sure(correction)) break;
     if (residuals == kMostResiduals) return SolveStatus::kNotConverged;
-    before_.resize(b_.size());
-    std::swap(b_, before_);
+    add_correction();
+    put_solution(x.data());
     look(left, x);
     ++residuals;
     double stale = 0.0;
-    if (const SolveStatus status = mend(solution, stale, open); status != SolveStatus::kOk) return status;
+    if (status = mend(solution, stale, open); status != SolveStatus::kOk) return status;
     age_.seen(stale, correction);
     if (open <= rtol_) break;
     if (!MatrixAge::converges(stale, correction)) return SolveStatus::kNotConverged;
-    size_ = norm_of_residual();
+    add_correction();
     energy = solution;
     change = stale * stale * solution;
+    status = descend(energy, by_copy, open, [](int, int) {});
   }
   iteration_.end();
-  start_.keep(x_, put_solution(x.data()), copy_.scale(), &Ax_);
+  put_solution(x.data(), true, true);
   counters_.residuals += residuals;
   return SolveStatus::kOk;
 }
 
-/// b_ = what A leaves of x_, and Ao x_.
+/// What A leaves of x.
 void NearSolve::look(dynamics::Residual& left, VecX& x) {
-  put_solution(x.data());
   const double start = wall_seconds();
   left.at(x, residual_);
   residuals_s_ += wall_seconds() - start;
-  const int* node = copy_.order().node.data();
-  team_.for_each([&](std::size_t, int first, int last) {
-    for (int k = first; k < last; ++k) {
-      const double* from = residual_.data() + 3 * static_cast<std::ptrdiff_t>(node[k]);
-      const std::ptrdiff_t to = 4 * static_cast<std::ptrdiff_t>(k);
-      for (std::ptrdiff_t axis = 0; axis < 3; ++axis) b_[static_cast<std::size_t>(to + axis)] = from[axis] + Ax_[static_cast<std::size_t>(to + axis)];
-    }
-  });
 }
 
-/// Takes off what the copy's age left: b_ - before_ = (Ao - A) (the last correction), of which a rough solution tells the size and most of itself.
+/// b_ = what A leaves of x, and Ao x: the copy's own right-hand side.
+KrylovStart::Start NearSolve::begin_where_it_leaves() {
+  const int* node = copy_.order().node.data();
+  team_.for_each([&](std::size_t part, int first, int last) {
+    double* b = b_.data() + 4 * static_cast<std::ptrdiff_t>(first);
+    start_.product(b, first, last);
+    for (int k = first; k < last; ++k, b += 4)
+      for (int axis = 0; axis < 3; ++axis) b[axis] += residual_[3 * static_cast<std::ptrdiff_t>(node[k]) + axis];
+    start_.add_up(part, b_.data(), first, last);
+  });
+  return choose();
+}
+
+/// Takes off what the copy's age left.  A leaves `left` of x, of which the iteration left size_ r open; the rest is (Ao - A) (the last correction), of which a rough solution tells the
+/// size and most of itself.  The iteration's residual is then what both left open.
 /// @param stale  its size over the solution's  @param open  in: what the iteration left open; out: with what is left of this
 SolveStatus NearSolve::mend(double solution, double& stale, double& open) {
-  double square = 0.0;
-  for (std::size_t i = 0; i < b_.size(); ++i) square += (b_[i] - before_[i]) * (b_[i] - before_[i]);
-  if (!(square > 0.0)) return square == 0.0 ? SolveStatus::kOk : SolveStatus::kNotConverged;
-  size_ = std::sqrt(square);
-  const double by = 1.0 / size_;
-  team_.for_each([&](std::size_t, int first, int last) { kernels_.residual(by, b_.data(), before_.data(), iteration_.residual().data(), first, last); });
+  const int* node = copy_.order().node.data();
+  float* r = iteration_.residual().data();
+  open_.resize(b_.size());
   double rest = 0.0;
-  if (const SolveStatus status = descend(0.0, kRoughly, rest); status != SolveStatus::kOk) return status;
+  const SolveStatus status = descend(0.0, kRoughly, rest, [&](int first, int last) {
+    for (int k = first; k < last; ++k)
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t at = 4 * static_cast<std::size_t>(k) + static_cast<std::size_t>(axis);
+        const double by_age = residual_[3 * static_cast<std::ptrdiff_t>(node[k]) + axis] - size_ * static_cast<double>(r[at]);
+        open_[at] = r[at];
+        b_[at] += by_age;
+        r[at] = static_cast<float>(by_age / size_);
+      }
+  });
+  if (status != SolveStatus::kOk) return status;
   const double found = iteration_.solution();
   stale = std::sqrt(found * (1.0 + rest * rest) / solution);
   open += rest * std::sqrt(found / solution);
-  const float* r = iteration_.residual().data();
-  team_.for_each([&](std::size_t, int first, int last) {
-    for (std::size_t k = 4 * static_cast<std::size_t>(first); k < 4 * static_cast<std::size_t>(last); ++k) Ax_[k] += b_[k] - before_[k] - size_ * static_cast<double>(r[k]);
-  });
+  for (std::size_t i = 0; i < open_.size(); ++i) r[i] += open_[i];
   return SolveStatus::kOk;
 }
 
-/// Iterates from the iteration's residual, of that size, until the error is below rtol of the solution, or single precision has no more to say.
+/// Iterates from the residual that is set, until the error is below rtol of the solution, or single precision has no more to say.
 /// @param start  as EnergyBound::begin  @param open  the error then, over the solution
-SolveStatus NearSolve::descend(double start, double rtol, double& open) {
+template <class Set>
+SolveStatus NearSolve::descend(double start, double rtol, double& open, Set&& set_residual) {
   iteration_.begin(start);
   iteration_.set_floor(HUGE_VAL);
-  iteration_.forget_direction();
-  iteration_.clear_correction();
-  double rho = iteration_.precondition();
+  iteration_.restart();
+  double rho = iteration_.precondition(set_residual);
+  open = 0.0;
+  if (rho == 0.0) return SolveStatus::kOk;
   if (!std::isfinite(rho)) return SolveStatus::kNotConverged;
   if (!iteration_.reached(rho * unit(), rtol)) {
     int steps = 0;
     const SolveStatus status = iteration_.reduce(rho, 0.0, kReductionInSingle * kReductionInSingle * rho, unit(), rtol, kIterationLimit, steps);
     counters_.iterations += steps;
     if (status != SolveStatus::kOk) return status;
-    add_correction();
   }
   open = std::sqrt(iteration_.error(rho * unit()) / iteration_.solution());
   return SolveStatus::kOk;

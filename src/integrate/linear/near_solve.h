@@ -30,13 +30,15 @@ class NearSolve : public SingleSolve {
  private:
   dynamics::SolveStatus approach(dynamics::Residual& left, VecX& x);
   void look(dynamics::Residual& left, VecX& x);
+  KrylovStart::Start begin_where_it_leaves();
+  template <class Set>
+  dynamics::SolveStatus descend(double start, double rtol, double& open, Set&& set_residual);
   dynamics::SolveStatus mend(double solution, double& stale, double& open);
-  dynamics::SolveStatus descend(double start, double rtol, double& open);
 
   MatrixAge age_;
   bool rounded_ = false, own_ = false;  ///< the next one is the copy's own
-  Doubles before_;
-  VecX residual_;
+  VecX residual_;                       ///< what a look saw, in the equations' order
+  Singles open_;                        ///< what an iteration before the last one left open
   double residuals_s_ = 0.0;
 };
 

@@ -108,22 +108,32 @@ void gather_rigid(const float* r, const float* arm, float* y, int first, int las
   }
 }
 
-void direction(float a, float b, const float* z, const float* arm, const float* motion, float* d, float* p, int first, int last) {
-  if (!motion) {
-    over_nodes(first, last, [&](auto n, int i) __attribute__((always_inline)) {
-      using N = decltype(n);
-      const auto before = N::take(p + 4 * i);
-      N::put(d + 4 * i, N::take(d + 4 * i) + a * before);
-      N::put(p + 4 * i, N::take(z + 4 * i) + b * before);
-    });
-    return;
-  }
+/// follow(nodes, i, z + rigid motion) of each node.
+template <class Follow>
+PALPATE_INLINE void with_motion(const float* z, const float* arm, const float* motion, int first, int last, Follow&& follow) {
+  if (!motion) return over_nodes(first, last, [&](auto n, int i) __attribute__((always_inline)) { follow(n, i, decltype(n)::take(z + 4 * i)); });
   const Four shift{motion[0], motion[1], motion[2], 0.0f}, turn{motion[3], motion[4], motion[5], 0.0f};
   over_nodes(first, last, [&](auto n, int i) __attribute__((always_inline)) {
     using N = decltype(n);
-    const auto before = N::take(p + 4 * i), at = N::take(arm + 4 * i);
+    const auto at = N::take(arm + 4 * i);
+    follow(n, i, N::take(z + 4 * i) + N::fourth(at) * N::spread(shift) + cross(n, N::spread(turn), at));
+  });
+}
+
+void direction(float a, float b, const float* z, const float* arm, const float* motion, float* d, float* p, int first, int last) {
+  with_motion(z, arm, motion, first, last, [&](auto n, int i, const auto& next) __attribute__((always_inline)) {
+    using N = decltype(n);
+    const auto before = N::take(p + 4 * i);
     N::put(d + 4 * i, N::take(d + 4 * i) + a * before);
-    N::put(p + 4 * i, N::take(z + 4 * i) + N::fourth(at) * N::spread(shift) + cross(n, N::spread(turn), at) + b * before);
+    N::put(p + 4 * i, next + b * before);
+  });
+}
+
+void first_direction(const float* z, const float* arm, const float* motion, float* d, float* p, int first, int last) {
+  with_motion(z, arm, motion, first, last, [&](auto n, int i, const auto& next) __attribute__((always_inline)) {
+    using N = decltype(n);
+    N::put(d + 4 * i, typename N::Numbers{});
+    N::put(p + 4 * i, next);
   });
 }
 

@@ -33,7 +33,7 @@ constexpr std::int64_t inverse_place(int node) { return kInversesOfFour * static
 /// At most so many vectors go through one reading of the matrix.
 constexpr int kMostColumns = 5;
 /// Numbers that `gram` gives.
-constexpr int kMostSums = kMostColumns * (kMostColumns + 1) / 2 + kMostColumns;
+constexpr int kMostSums = kMostColumns * (kMostColumns + 1) / 2 + kMostColumns + 1;
 
 /// The original matrix and the way to it from the order of the nodes here.
 struct DoubleBlocks {
@@ -69,6 +69,8 @@ struct NodeKernels {
   void (*gather_rigid)(const float* r, const float* arm, float* y, int first, int last);
   /// d += a p, then p = z + (w + turn x arm) + b p with w = motion[0..2], turn = motion[3..5]; motion null: p = z + b p
   void (*direction)(float a, float b, const float* z, const float* arm, const float* motion, float* d, float* p, int first, int last);
+  /// The same where there is no direction yet: d = 0, p = z + (w + turn x arm)
+  void (*first_direction)(const float* z, const float* arm, const float* motion, float* d, float* p, int first, int last);
   /// Rows [first, last) of w = E y; rows and y padded by zeros to `stride`, a multiple of 16
   void (*dense)(const float* E, int stride, const float* y, float* w, int first, int last);
   /// E = E^-1 in place, symmetric, rows of `stride`; false at a pivot that is not positive
@@ -77,16 +79,21 @@ struct NodeKernels {
   bool (*convert)(const DoubleBlocks& A, double scale, float* out, int first, int last);
   /// Rows [first, last) of Av = A v in double
   void (*multiply_double)(const DoubleBlocks& A, const double* v, double* Av, int first, int last);
-  /// Sums over nodes [first, last): V_j . AV_i for j = 0, 1, ... and i = 0 ... j, then V_j . b, one after the other into `out`
-  void (*gram)(int count, const float* const* V, const float* const* AV, const double* b, int first, int last, double* out);
-  /// x = scale times the sum of y_k V_k, Ax the sum of y_k AV_k; returns |b - Ax|^2
-  double (*combine)(int count, const double* y, double scale, const float* const* V, const float* const* AV, const double* b, double* x, double* Ax, int first, int last);
+  // Between an iteration and what it serves; x and Ax begin with the numbers of node `first`.
+  /// Sums over nodes [first, last): V_j . AV_i for j = 0, 1, ... and i = 0 ... j, then V_j . b, one after the other into `out`, and |b - sum of y_k AV_k|^2
+  void (*gram)(int count, const double* y, const float* const* V, const float* const* AV, const double* b, int first, int last, double* out);
+  /// x = the sum of y_k V_k
+  void (*combine)(int count, const double* y, const float* const* V, double* x, int first, int last);
+  /// r = by (b - the sum of y_k AV_k)
+  void (*leave)(int count, const double* y, double by, const float* const* AV, const double* b, float* r, int first, int last);
   /// Backward differences: V_0 becomes by x, V_n the new V_n-1 less `change` times the old one
   void (*difference)(int count, double by, double change, const double* x, float* const* V, int first, int last);
-  /// r = by (b - Ax)
+  /// r = by (b - Ax), of which Ax has all nodes
   void (*residual)(double by, const double* b, const double* Ax, float* r, int first, int last);
-  /// x += by d
-  void (*correct)(double by, const float* d, double* x, int first, int last);
+  /// Ax = b - by r
+  void (*image)(double by, const double* b, const float* r, double* Ax, int first, int last);
+  /// x += by (d + a p)
+  void (*correct)(double by, const float* d, float a, const float* p, double* x, int first, int last);
   /// Inverses of the diagonal blocks at slot[node] times 1/scale; false where one is not positive definite
   bool (*invert_diagonal)(const double* values, const int* slot, double scale, float* inverse, int first, int last);
 };

@@ -5,8 +5,8 @@ PALPATE_INLINE void take(const double* p, FourDouble& out) { out = *reinterpret_
 PALPATE_INLINE void put(double* p, const FourDouble& v) { *reinterpret_cast<FourDoubleAnywhere*>(p) = v; }
 
 template <int N>
-[[gnu::always_inline]] static inline void gram_of(const float* const* V, const float* const* AV, const double* b, int first, int last, double* out) {
-  FourDouble sum[kMostSums] = {};
+[[gnu::always_inline]] static inline void gram_of(const double* y, const float* const* V, const float* const* AV, const double* b, int first, int last, double* out) {
+  FourDouble sum[kMostSums] = {}, square{};
   for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
     FourDouble v[N + 1], Av[N + 1], right;
     for (int n = 0; n < N; ++n) {
@@ -18,42 +18,55 @@ template <int N>
     for (int j = 0; j < N; ++j)
       for (int i = 0; i <= j; ++i) sum[at++] += v[j] * Av[i];
     for (int j = 0; j < N; ++j) sum[at++] += v[j] * right;
+    for (int n = 0; n < N; ++n) right -= y[n] * Av[n];
+    square += right * right;
   }
-  for (int at = 0; at < N * (N + 1) / 2 + N; ++at) out[at] = sum3(sum[at]);
+  constexpr int kSums = N * (N + 1) / 2 + N;
+  for (int at = 0; at < kSums; ++at) out[at] = sum3(sum[at]);
+  out[kSums] = sum3(square);
 }
-void gram(int count, const float* const* V, const float* const* AV, const double* b, int first, int last, double* out) {
-  by_count(count, [&](auto n) __attribute__((always_inline)) { gram_of<decltype(n)::value>(V, AV, b, first, last, out); });
+void gram(int count, const double* y, const float* const* V, const float* const* AV, const double* b, int first, int last, double* out) {
+  by_count(count, [&](auto n) __attribute__((always_inline)) { gram_of<decltype(n)::value>(y, V, AV, b, first, last, out); });
 }
 
 template <int N>
-[[gnu::always_inline]] static inline double combine_of(const double* y, double scale, const float* const* V, const float* const* AV, const double* b, double* x,
-                                                       double* Ax, int first, int last) {
-  FourDouble square{};
-  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
-    FourDouble point{}, image{}, right, v;
+[[gnu::always_inline]] static inline void combine_of(const double* y, const float* const* V, double* x, int first, int last) {
+  double* to = x;
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4, to += 4) {
+    FourDouble sum{}, v;
     for (int n = 0; n < N; ++n) {
       take(V[n] + k, v);
-      point += y[n] * v;
-      take(AV[n] + k, v);
-      image += y[n] * v;
+      sum += y[n] * v;
     }
-    put(x + k, scale * point);
-    put(Ax + k, image);
-    take(b + k, right);
-    right -= image;
-    square += right * right;
+    put(to, sum);
   }
-  return sum3(square);
 }
-double combine(int count, const double* y, double scale, const float* const* V, const float* const* AV, const double* b, double* x, double* Ax, int first, int last) {
-  return by_count(count, [&](auto n) __attribute__((always_inline)) { return combine_of<decltype(n)::value>(y, scale, V, AV, b, x, Ax, first, last); });
+void combine(int count, const double* y, const float* const* V, double* x, int first, int last) {
+  by_count(count, [&](auto n) __attribute__((always_inline)) { combine_of<decltype(n)::value>(y, V, x, first, last); });
+}
+
+template <int N>
+[[gnu::always_inline]] static inline void leave_of(const double* y, double by, const float* const* AV, const double* b, float* r, int first, int last) {
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
+    FourDouble left, image;
+    take(b + k, left);
+    for (int n = 0; n < N; ++n) {
+      take(AV[n] + k, image);
+      left -= y[n] * image;
+    }
+    store(r + k, __builtin_convertvector(by * left, Four));
+  }
+}
+void leave(int count, const double* y, double by, const float* const* AV, const double* b, float* r, int first, int last) {
+  by_count(count, [&](auto n) __attribute__((always_inline)) { leave_of<decltype(n)::value>(y, by, AV, b, r, first, last); });
 }
 
 template <int N>
 [[gnu::always_inline]] static inline void difference_of(double by, double change, const double* x, float* const* V, int first, int last) {
-  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
+  const double* from = x;
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4, from += 4) {
     FourDouble value, old;
-    take(x + k, value);
+    take(from, value);
     value *= by;
     for (int n = 0; n < N; ++n) {
       take(V[n] + k, old);
@@ -75,10 +88,20 @@ void residual(double by, const double* b, const double* Ax, float* r, int first,
   }
 }
 
-void correct(double by, const float* d, double* x, int first, int last) {
-  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
-    FourDouble point, change = __builtin_convertvector(load(d + k), FourDouble);
-    take(x + k, point);
-    put(x + k, point + by * change);
+void image(double by, const double* b, const float* r, double* Ax, int first, int last) {
+  double* to = Ax;
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4, to += 4) {
+    FourDouble right, left = __builtin_convertvector(load(r + k), FourDouble);
+    take(b + k, right);
+    put(to, right - by * left);
+  }
+}
+
+void correct(double by, const float* d, float a, const float* p, double* x, int first, int last) {
+  double* to = x;
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4, to += 4) {
+    FourDouble point, change = __builtin_convertvector(load(d + k) + a * load(p + k), FourDouble);
+    take(to, point);
+    put(to, point + by * change);
   }
 }

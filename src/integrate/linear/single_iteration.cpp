@@ -25,7 +25,11 @@ void SingleIteration::prepare() {
   pieces_.assign(6 * static_cast<std::size_t>(matrix_.order().pieces()), 0.0f);
 }
 
-void SingleIteration::clear_correction() { std::fill(d_.begin(), d_.end(), 0.0f); }
+void SingleIteration::clear_correction() {
+  std::fill(d_.begin(), d_.end(), 0.0f);
+  moved_ = false;
+  last_length_ = 0.0f;
+}
 
 void SingleIteration::begin(double start) {
   for (EnergyBound& bound : bounds_) bound.begin(start);
@@ -35,20 +39,13 @@ void SingleIteration::end() {
   for (EnergyBound& bound : bounds_) bound.end();
 }
 
-void SingleIteration::forget_direction() {
-  std::fill(p_.begin(), p_.end(), 0.0f);
+void SingleIteration::restart() {
+  moved_ = false;
   pq_ = 0.0;
 }
 
-double SingleIteration::precondition() {
-  team_.run([&](int t) {
-    team_.over_clusters(t, [&](std::size_t c, int first, int last) {
-      partial_[c] = kernels_.jacobi(matrix_.inverse(), r_.data(), z_.data(), first, last) + gather(c);
-    });
-    team_.barrier();
-    coarse(t);
-  });
-  return sum_of(partial_) + coarse_share();
+void SingleIteration::precondition(std::size_t cluster, int first, int last) {
+  partial_[cluster] = kernels_.jacobi(matrix_.inverse(), r_.data(), z_.data(), first, last) + gather(cluster);
 }
 
 /// Forces on a cluster and motions of its pieces; returns these pieces' share of r . P^-1 r.
@@ -62,20 +59,22 @@ void SingleIteration::coarse(int thread) {
   kernels_.dense(clusters_.inverse(), clusters_.stride(), y_.data(), w_.data(), size * thread / threads, size * (thread + 1) / threads);
 }
 
-double SingleIteration::coarse_share() const {
-  double sum = 0.0;
+/// r . P^-1 r
+double SingleIteration::squared_residual() const {
+  double coarse = 0.0;
   if (coarse_on())
-    for (std::size_t k = 0; k < w_.size(); ++k) sum += static_cast<double>(y_[k]) * w_[k];
-  return sum;
+    for (std::size_t k = 0; k < w_.size(); ++k) coarse += static_cast<double>(y_[k]) * w_[k];
+  return sum_of(partial_) + coarse;
 }
 
-/// d += a p, then p = z + rigid motions + b p on the nodes [first, last) of a cluster.
-void SingleIteration::direction(std::size_t cluster, float a, float b, float* d, float* p, int first, int last) const {
-  if (!coarse_on()) return kernels_.direction(a, b, z_.data(), nullptr, nullptr, d, p, first, last);
+/// follow(arms, motion, first, last) on the nodes [first, last) of a cluster: of each piece, its rigid motion; null where there are none.
+template <class Follow>
+void SingleIteration::over_motions(std::size_t cluster, int first, int last, Follow&& follow) const {
+  if (!coarse_on()) return follow(nullptr, nullptr, first, last);
   const NodeOrder& order = matrix_.order();
   for (auto k = static_cast<std::size_t>(order.piece[cluster]); k < static_cast<std::size_t>(order.piece[cluster + 1]); ++k) {
     const RigidClusters::Six motion = clusters_.motion(k, pieces_.data() + 6 * k, w_.data() + 6 * cluster);
-    kernels_.direction(a, b, z_.data(), clusters_.arm(), motion.data(), d, p, order.piece_start[k], order.piece_start[k + 1]);
+    follow(clusters_.arm(), motion.data(), order.piece_start[k], order.piece_start[k + 1]);
   }
 }
 
@@ -88,6 +87,7 @@ bool SingleIteration::minimise_along_last() {
     d_[i] += a * p_[i];
     r_[i] -= a * q_[i];
   }
+  moved_ = true;
   return true;
 }
 
@@ -95,7 +95,8 @@ double SingleIteration::orthogonal_to_last() {
   double zq = 0.0;
   const NodeOrder& order = matrix_.order();
   for (std::size_t c = 0; c < static_cast<std::size_t>(order.clusters()); ++c)
-    if (coarse_on()) direction(c, 0.0f, 0.0f, d_.data(), z_.data(), order.start[c], order.start[c + 1]);
+    if (coarse_on())
+      over_motions(c, order.start[c], order.start[c + 1], [&](const float* arm, const float* motion, int first, int last) { kernels_.direction(0.0f, 0.0f, z_.data(), arm, motion, d_.data(), z_.data(), first, last); });
   for (std::size_t i = 0; i < 4 * order.node.size(); ++i) zq += static_cast<double>(z_[i]) * q_[i];
   for (Singles* v : {&w_, &pieces_}) std::fill(v->begin(), v->end(), 0.0f);  // are in z now
   return pq_ > 0.0 ? -zq / pq_ : 0.0;
@@ -104,12 +105,22 @@ double SingleIteration::orthogonal_to_last() {
 SolveStatus SingleIteration::reduce(double& rho_in_out, double beta, double spent, double unit, double rtol, int left, int& steps) {
   SolveStatus status = SolveStatus::kOk;
   const double rho_start = rho_in_out;
+  const bool follows = pq_ > 0.0;  // a direction that was taken before
   team_.run([&](int t) {
     EnergyBound& bound = bounds_[static_cast<std::size_t>(t)];
     double rho = rho_start, b = beta;
     float a = 0.0f;  // the last step's length: that step is taken when its direction is read for the next one
     for (int k = 1;; ++k) {
-      team_.over_clusters(t, [&](std::size_t c, int first, int last) { direction(c, a, static_cast<float>(b), d_.data(), p_.data(), first, last); });
+      const bool first_one = k == 1 && !follows;
+      const auto share = static_cast<float>(b);
+      team_.over_clusters(t, [&](std::size_t c, int from, int to) {
+        over_motions(c, from, to, [&](const float* arm, const float* motion, int first, int last) {
+          if (first_one)
+            kernels_.first_direction(z_.data(), arm, motion, d_.data(), p_.data(), first, last);
+          else
+            kernels_.direction(a, share, z_.data(), arm, motion, d_.data(), p_.data(), first, last);
+        });
+      });
       team_.barrier();
       team_.over(t, [&](std::size_t part, int, int) { partial_pq_[part] = matrix_.product(part, p_.data(), q_.data()); });
       team_.barrier();
@@ -123,21 +134,19 @@ SolveStatus SingleIteration::reduce(double& rho_in_out, double beta, double spen
         team_.barrier();
         coarse(t);
         if (coarse_on()) team_.barrier();
-        const double next = sum_of(partial_) + coarse_share();
+        const double next = squared_residual();
         bound.step(rho / pq, rho * unit, next * unit);
         b = next / rho;
         rho = next;
       }
       const bool end = bad || !std::isfinite(rho) || reached(bound, rho * unit, rtol) || rho <= spent || k >= left;
       if (!end) continue;
-      if (!bad)
-        team_.over(t, [&](std::size_t, int first, int last) {
-          for (std::size_t i = 4 * static_cast<std::size_t>(first); i < 4 * static_cast<std::size_t>(last); ++i) d_[i] += a * p_[i];
-        });
       if (t == 0) {
         steps = k;
         rho_in_out = rho;
         pq_ = pq;
+        moved_ = true;
+        last_length_ = a;
         if (bad)
           status = pq <= 0.0 ? SolveStatus::kIndefinite : SolveStatus::kNotConverged;
         else if (!std::isfinite(rho) || (k >= left && !reached(bound, rho * unit, rtol)))

@@ -14,7 +14,10 @@ class SingleIteration {
 
   void prepare();
   Singles& residual() { return r_; }
-  const Singles& correction() const { return d_; }
+  /// Whether it found something: x += by d on nodes [first, last), where x begins with node `first`.
+  bool moved() const { return moved_; }
+  void correct(double by, double* x, int first, int last) const { kernels_.correct(by, d_.data(), last_length_, p_.data(), x, first, last); }
+  /// d = 0, and the search goes on.
   void clear_correction();
 
   /// The bound of a new solve.  @param start  as EnergyBound::begin
@@ -29,10 +32,21 @@ class SingleIteration {
   /// Most that rho may be at the end, whatever the bound says.
   void set_floor(double rho) { floor_ = rho; }
 
-  /// z = P^-1 r; returns r . z.
-  double precondition();
-  /// No direction has been taken yet.
-  void forget_direction();
+  /// z = P^-1 r, of an r that set_residual(first node, last node) makes of all nodes, range by range; returns r . z.
+  template <class Set>
+  double precondition(Set&& set_residual) {
+    team_.run([&](int thread) {
+      team_.over_clusters(thread, [&](std::size_t cluster, int first, int last) {
+        set_residual(first, last);
+        precondition(cluster, first, last);
+      });
+      team_.barrier();
+      coarse(thread);
+    });
+    return squared_residual();
+  }
+  /// Nothing was found and no direction has been taken yet.
+  void restart();
   /// Iterates from z = P^-1 r until rho falls to `spent` or the error is below rtol of the solution.
   /// @param rho   in: of precondition(); out: at the end.  @param beta  share of the last direction in the first one
   /// @param unit  the matrix's energy of a unit of rho.  @param left  most iterations
@@ -45,10 +59,12 @@ class SingleIteration {
  private:
   bool reached(const EnergyBound& bound, double rho, double rtol) const { return bound.error(rho) <= rtol * rtol * bound.solution() && rho <= floor_; }
   bool coarse_on() const { return clusters_.ready(); }
+  void precondition(std::size_t cluster, int first, int last);
   double gather(std::size_t cluster);
   void coarse(int thread);
-  double coarse_share() const;
-  void direction(std::size_t cluster, float a, float b, float* d, float* p, int first, int last) const;
+  double squared_residual() const;
+  template <class Follow>
+  void over_motions(std::size_t cluster, int first, int last, Follow&& follow) const;
 
   const NodeKernels& kernels_;
   ClusterTeam& team_;
@@ -58,6 +74,8 @@ class SingleIteration {
   Singles y_, w_;    ///< of the clusters: force and moment, and their motion
   Singles pieces_;   ///< motion of their pieces
   double pq_ = 0.0, floor_ = 0.0;
+  bool moved_ = false;        ///< d_ + last_length_ p_ is what was found
+  float last_length_ = 0.0f;  ///< of the last step, which d_ lacks
   std::vector<EnergyBound> bounds_;  ///< one a thread, all alike: each decides for itself, with nothing to wait for
   std::vector<double> partial_, partial_pq_;  ///< of clusters, of parts
 };

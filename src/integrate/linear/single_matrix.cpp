@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -209,6 +210,11 @@ template <class Real>
 void SingleMatrix::zero_held(std::size_t part, Real* v) const {
   if (held_.empty()) return;
   for (std::size_t h = held_start_[part]; h < held_start_[part + 1]; ++h) v[held_[h]] = Real{0};
+}
+
+void SingleMatrix::take_held(std::size_t part, double* v, double* values) const {
+  if (held_.empty()) return;
+  for (std::size_t h = held_start_[part]; h < held_start_[part + 1]; ++h) values[h] = std::exchange(v[held_[h]], 0.0);
 }
 
 /// Own blocks of held nodes and their inverses.

@@ -48,6 +48,8 @@ class SingleMatrix {
   double stiffness() const { return stiffness_; }
   /// Entries of vectors, four a node, of which a balanced matrix says that each stands alone; none of a whole one.
   const std::vector<std::size_t>& held() const { return held_; }
+  /// Of those in a part: values[h] is what stood at held()[h] of v, where zero stands then.
+  void take_held(std::size_t part, double* v, double* values) const;
 
  private:
   PackedRows rows(std::size_t part) const { return packing_.rows(part, original_ ? nullptr : mass_single_.data()); }

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "integrate/linear/krylov_start.h"
@@ -26,17 +28,29 @@ class SingleSolve {
   static constexpr double kReductionInSingle = 1e-4;
 
   int nodes() const { return copy_.nodes(); }
-  /// x_ in the order and shape of its caller; returns its largest number.
-  double put_solution(double* x);
-  /// r = (b - A x) / size in single precision, with Ax_ at hand; size, so that r is of order one.
-  void set_residual();
-  double norm_of_residual() const;
+  /// Solutions and products are made a block of nodes at a time, in memory that the cache holds, where nobody asks for the whole of them.
+  static constexpr int kNodesOfBlock = 128;
+  using Block = std::array<double, 4 * kNodesOfBlock>;
+  /// work(first, last) on blocks of nodes.
+  template <class Work>
+  static void over_blocks(int first, int last, Work&& work) {
+    for (; first < last; first += kNodesOfBlock) work(first, std::min(last, first + kNodesOfBlock));
+  }
+
+  /// A new right-hand side; b_ and the sums over it are for the caller to make, part by part.
+  void begin(bool warm);
+  /// The start and its residual.
+  KrylovStart::Start choose();
+  /// r = P^-1 (b - A x) of the start
+  double precondition_start();
+  /// The solution so far on these nodes: there, or in x_ where it is at hand.
+  const double* solution(int first, int last, Block& block) const;
+  /// The same, into x_, which it is added up in from now on; the iteration may find more.
+  void add_correction();
+  /// The solution in the order and shape of its caller; returns its largest number.  @param keep  as one to start from, with its product if `follow`
+  double put_solution(double* x, bool keep = false, bool follow = false);
   /// Energies of the copy's problem (A scale) d = (b - A x)/size in units of the matrix's own: |x|_A^2 = scale size^2 |d|^2.
   double unit() const { return copy_.scale() * size_ * size_; }
-  /// x_ with what the iteration found.
-  void add_correction();
-  /// Ax_ of what the iteration came to.
-  void follow_product();
 
   const NodeKernels& kernels_;
   ClusterTeam& team_;
@@ -45,15 +59,19 @@ class SingleSolve {
   dynamics::SolverCounters& counters_;
   KrylovStart start_;
   SingleIteration iteration_;
-  Doubles b_, x_, Ax_;  ///< in the copy's order
-  double size_ = 0.0;
+  Doubles b_;              ///< in the copy's order
+  Doubles x_;              ///< where it is `at_hand_`; else the solution is its start and what the iteration found
+  bool at_hand_ = false;
+  double size_ = 0.0;      ///< the iteration's residual times this is b - A x
   double correction_ = 0.0;
 
  private:
-  dynamics::SolveStatus iterate(bool warm);
+  dynamics::SolveStatus iterate();
   dynamics::SolveStatus refine();
+  void renew_residual();
   bool at_rounding() const;
 
+  Doubles Ax_;                          ///< made at the first product in double
   std::vector<double> largest_, held_;  ///< of b: of each part; where it stands alone
 };
 
