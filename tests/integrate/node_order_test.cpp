@@ -63,7 +63,9 @@ TEST(RowPacking, TakesEveryBlockOnce) {
       for (auto s = static_cast<std::size_t>(row_start[i]); s < static_cast<std::size_t>(row_start[i + 1]); ++s) {
         const auto j = static_cast<std::size_t>(column[s]);
         const integrate::PackedRows rows = packing.rows(static_cast<std::size_t>(part[packing.turned(s) ? j : i]), nullptr);
-        EXPECT_EQ(rows.column[packing.place(s)], static_cast<int>(4 * (packing.turned(s) ? i : j)));
+        const std::size_t own = integrate::kLanesOfGroup * static_cast<std::size_t>(rows.groups);
+        EXPECT_EQ(packing.place(s) < own, i == j) << "own blocks first";
+        EXPECT_EQ(i == j ? rows.row[packing.place(s)] : rows.column[packing.place(s) - own], static_cast<int>(4 * (packing.turned(s) ? i : j)));
         if (packing.turned(s)) {
           EXPECT_EQ(part[i], part[j]);
           continue;

@@ -132,7 +132,7 @@ void multiply_balanced(const PackedRows& A, const double* mass, double unit, con
       const int* row = A.row + kLanesOfGroup * g + kHalf * part;
       Half3 own, sum{}, other;
       gather(v, row, own);
-      for (std::int64_t s = A.step_start[g] + 1; s < A.step_start[g + 1]; ++s) {
+      for (std::int64_t s = A.step_start[g]; s < A.step_start[g + 1]; ++s) {
         const float* values = A.values + kNumbersOfStep * s + kHalf * part;
         const int* column = A.column + kLanesOfGroup * s + kHalf * part;
         if (part == 0)

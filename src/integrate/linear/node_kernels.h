@@ -5,24 +5,25 @@ namespace palpate::integrate {
 
 /// The rows of a symmetric matrix of 3x3 blocks in single precision that belong to one part of the nodes, sixteen rows side by side, one a lane: in each step of a group every
 /// row meets one of its blocks.  Numbers of one kind (entry r, c of the block) of all lanes follow each other, so that a product multiplies without a shuffle but those that bring
-/// the entries of vectors together.  The first step is the row's own block; then come blocks A_ij to nodes of the same part, which stand for A_ji as well; then, from
-/// single_start on, those to other parts.  Rows that are shorter than the longest of their group meet themselves with a zero block, and so does the group's
-/// first row in lanes without a row.
+/// the entries of vectors together.  First come blocks A_ij to nodes of the same part, which stand for A_ji as well; then, from single_start on, those to other parts.  Rows that
+/// are shorter than the longest of their group meet themselves with a zero block, and so does the group's first row in lanes without a row.  The rows' own blocks stand apart.
 constexpr int kLanesOfGroup = 16, kNumbersOfStep = 9 * kLanesOfGroup;
 struct PackedRows {
+  int groups;               ///< of all parts
   int first_group, last_group, first_node, last_node;
   const int* step_start;    ///< first step of each group; one more entry
   const int* single_start;  ///< first step of each group to other parts
   const int* row;           ///< 4 node, kLanesOfGroup a group
   const int* column;        ///< 4 node, kLanesOfGroup a step
+  float* own;               ///< own blocks of group g, as those of a step
   float* values;            ///< entry (r, c) of the blocks of step s at [kNumbersOfStep s + kLanesOfGroup (3 c + r)], 64-byte aligned
   const float* mass;        ///< of a balanced matrix m, four numbers a node: row i is m_i p_i + sum_j A_ij (p_j - p_i), of which own blocks are no part; null: a whole matrix
 };
 /// Where the blocks are from: nine floats, column by column, at values[offset]; kBlockTail more floats are readable behind the last.
 struct BlockSource {
   const float* values;
-  const int* offset;            ///< kLanesOfGroup a step; of lanes without a block that of zeros; as many as in kStepsAhead steps are readable behind the last
-  const std::uint16_t* turned;  ///< a bit for each lane of a step: the block is the transposed one; null: none is
+  const int* offset;            ///< kLanesOfGroup a group, of own blocks, then as many a step; of lanes without a block that of zeros; kStepsAhead more steps are readable behind the last
+  const std::uint16_t* turned;  ///< a bit for each lane, of groups and then of steps: the block is the transposed one; null: none is
 };
 constexpr int kBlockTail = 16, kVectorTail = 16, kStepsAhead = 4;
 /// Vectors over the nodes hold four numbers a node, the last of them zero, and kVectorTail zeros behind the last node.

@@ -88,5 +88,8 @@ PALPATE_INLINE void each_lane(const Lanes3& v, Put&& put) {
 PALPATE_INLINE void scatter_add(float* field, const int* at, const Lanes3& v) {
   each_lane(v, [&](int lane, const Four& three) __attribute__((always_inline)) { store(field + at[lane], load(field + at[lane]) + three); });
 }
+PALPATE_INLINE void scatter_subtract(float* field, const int* at, const Lanes3& v) {
+  each_lane(v, [&](int lane, const Four& three) __attribute__((always_inline)) { store(field + at[lane], load(field + at[lane]) - three); });
+}
 PALPATE_INLINE Lanes3 operator-(const Lanes3& a, const Lanes3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 PALPATE_INLINE Lanes3 operator+(const Lanes3& a, const Lanes3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }

@@ -21,7 +21,7 @@ PALPATE_INLINE void add_group(const PackedRows& A, const float* const* P, float*
   Lanes3 own[N], sum[N], v;
   for (int n = 0; n < N; ++n) {
     gather(P[n], row, own[n]);
-    sum[n] = kWhole ? times(values, own[n]) : Lanes3{};
+    sum[n] = kWhole ? times(A.own + kNumbersOfStep * static_cast<std::int64_t>(group) + kLanes * part, own[n]) : Lanes3{};
   }
   int s = A.step_start[group];
   const auto next = [&]() __attribute__((always_inline)) {
@@ -31,7 +31,7 @@ PALPATE_INLINE void add_group(const PackedRows& A, const float* const* P, float*
     if (part == 0)
       for (int line = 0; line < kNumbersOfStep; line += 16) __builtin_prefetch(values + kFloatsAhead + line);
   };
-  for (next(); s < single; next())
+  for (; s < single; next())
     for (int n = 0; n < N; ++n) {
       gather(P[n], column, v);
       if constexpr (!kWhole) v = v - own[n];
@@ -39,7 +39,7 @@ PALPATE_INLINE void add_group(const PackedRows& A, const float* const* P, float*
       if constexpr (kWhole)
         scatter_add(Q[n], column, turned_times(values, own[n]));
       else
-        scatter_add(Q[n], column, Lanes3{} - turned_times(values, v));
+        scatter_subtract(Q[n], column, turned_times(values, v));
     }
   for (; s < end; next())
     for (int n = 0; n < N; ++n) {
@@ -116,14 +116,14 @@ void multiply(const PackedRows& A, int count, const float* const* V, float* cons
   by_count(count, [&](auto n) __attribute__((always_inline)) { multiply_columns<decltype(n)::value>(A, V, AV); });
 }
 
-/// Asks for the blocks of a later step.
-PALPATE_INLINE void fetch_blocks(const BlockSource& from, std::int64_t step) {
-  const int* later = from.offset + kLanesOfGroup * (step + kStepsAhead);
+/// Asks for the blocks of a later place in `offset`.
+PALPATE_INLINE void fetch_blocks(const BlockSource& from, std::int64_t at) {
+  const int* later = from.offset + kLanesOfGroup * (at + kStepsAhead);
   for (int l = 0; l < kLanesOfGroup; ++l) __builtin_prefetch(from.values + later[l]);
 }
-/// The blocks of one part of a step, entry (r, c) at [3 c + r].
-PALPATE_INLINE void take_blocks(const BlockSource& from, std::int64_t step, int part, Wide* block) {
-  const int* offset = from.offset + kLanesOfGroup * step + kLanes * part;
+/// The blocks of one part of a place in `offset`, entry (r, c) at [3 c + r].
+PALPATE_INLINE void take_blocks(const BlockSource& from, std::int64_t at, int part, Wide* block) {
+  const int* offset = from.offset + kLanesOfGroup * at + kLanes * part;
   for (int c = 0; c < 3; ++c) {
     Lanes3 column;
     gather(from.values + 3 * c, offset, column);
@@ -134,7 +134,7 @@ PALPATE_INLINE void take_blocks(const BlockSource& from, std::int64_t step, int 
   if (!from.turned) return;
   WideIndex turned;
   for (int l = 0; l < kLanes; ++l) turned[l] = 1 << l;
-  turned = (turned & (from.turned[step] >> (kLanes * part))) != 0;
+  turned = (turned & (from.turned[at] >> (kLanes * part))) != 0;
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < c; ++r) {
       const Wide above = block[3 * c + r], below = block[3 * r + c];
@@ -142,18 +142,21 @@ PALPATE_INLINE void take_blocks(const BlockSource& from, std::int64_t step, int 
       block[3 * r + c] = turned ? above : below;
     }
 }
-PALPATE_INLINE void put_blocks(const PackedRows& A, std::int64_t step, int part, const Wide* block) {
-  for (int k = 0; k < 9; ++k) *reinterpret_cast<WideInMemory*>(A.values + kNumbersOfStep * step + kLanes * part + kLanesOfGroup * k) = block[k];
+PALPATE_INLINE void put_blocks(float* values, std::int64_t step, int part, const Wide* block) {
+  for (int k = 0; k < 9; ++k) *reinterpret_cast<WideInMemory*>(values + kNumbersOfStep * step + kLanes * part + kLanesOfGroup * k) = block[k];
 }
 
 void pack(const PackedRows& A, const BlockSource& from) {
-  for (std::int64_t s = A.step_start[A.first_group]; s < A.step_start[A.last_group]; ++s)
+  const auto move = [&](std::int64_t at, float* values, std::int64_t step) __attribute__((always_inline)) {
+    fetch_blocks(from, at);
     for (int part = 0; part < kParts; ++part) {
       Wide block[9];
-      if (part == 0) fetch_blocks(from, s);
-      take_blocks(from, s, part, block);
-      put_blocks(A, s, part, block);
+      take_blocks(from, at, part, block);
+      put_blocks(values, step, part, block);
     }
+  };
+  for (std::int64_t g = A.first_group; g < A.last_group; ++g) move(g, A.own, g);
+  for (std::int64_t s = A.step_start[A.first_group]; s < A.step_start[A.last_group]; ++s) move(A.groups + s, A.values, s);
 }
 
 /// xx, yy, zz and yz, xz, xy of symmetric blocks.
@@ -194,11 +197,11 @@ PALPATE_INLINE Balanced balance_columns(const PackedRows& A, const BlockSource& 
   for (int g = A.first_group; g < A.last_group; ++g)
     for (int part = 0; part < kParts; ++part) {
       Symmetric row{};
-      for (std::int64_t s = A.step_start[g] + 1; s < A.step_start[g + 1]; ++s) {
+      for (std::int64_t s = A.step_start[g]; s < A.step_start[g + 1]; ++s) {
         Wide block[9];
-        if (part == 0) fetch_blocks(from, s);
-        take_blocks(from, s, part, block);
-        put_blocks(A, s, part, block);
+        if (part == 0) fetch_blocks(from, A.groups + s);
+        take_blocks(from, A.groups + s, part, block);
+        put_blocks(A.values, s, part, block);
         const Symmetric middle = symmetric_part(block);
         row = {row.diagonal + middle.diagonal, row.off + middle.off};
         if (s < A.single_start[g]) add(A.column + kLanesOfGroup * s + kLanes * part, middle);
@@ -222,7 +225,7 @@ PALPATE_INLINE Balanced balance_columns(const PackedRows& A, const BlockSource& 
       probe += (own.diagonal.x + own.diagonal.y + own.diagonal.z + own.off.x + own.off.y + own.off.z) * 0.0f;
       own = {m - own.diagonal, Lanes3{} - own.off};
       const Wide block[9] = {own.diagonal.x, own.off.z, own.off.y, own.off.z, own.diagonal.y, own.off.x, own.off.y, own.off.x, own.diagonal.z};
-      put_blocks(A, A.step_start[g], part, block);
+      put_blocks(A.own, g, part, block);
       definite &= invert_own(own, inverse, row);
     }
   double traces = 0.0;

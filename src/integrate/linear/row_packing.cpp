@@ -18,7 +18,7 @@ struct Entry {
 }  // namespace
 
 struct RowPacking::Row {
-  int node, own;
+  int node;
   std::vector<Entry> shared, single;
 };
 
@@ -28,9 +28,9 @@ void RowPacking::add_group(const Row* rows, int count) {
     for (int l = 0; l < count; ++l) most = std::max(most, (rows[l].*member).size());
     return most;
   };
-  const auto add_step = [&](auto&& entry_of) {
+  const auto add_step = [&](const std::vector<Entry> Row::*entries, std::size_t k) {
     for (int l = 0; l < kLanesOfGroup; ++l) {
-      const Entry* entry = l < count ? entry_of(rows[l]) : nullptr;
+      const Entry* entry = l < count && k < (rows[l].*entries).size() ? &(rows[l].*entries)[k] : nullptr;
       column_.push_back(4 * (entry ? entry->node : rows[l < count ? l : 0].node));
       if (!entry) continue;
       const int place = kLanesOfGroup * steps_ + l;
@@ -40,23 +40,21 @@ void RowPacking::add_group(const Row* rows, int count) {
     ++steps_;
   };
   for (int l = 0; l < kLanesOfGroup; ++l) row_.push_back(4 * rows[l < count ? l : 0].node);
+  for (int l = 0; l < count; ++l) own_place_[static_cast<std::size_t>(rows[l].node)] = kLanesOfGroup * groups_ + l;
+  ++groups_;
   step_start_.push_back(steps_);
-  Entry own{};
-  add_step([&](const Row& row) {
-    own = {row.node, row.own};
-    return &own;
-  });
-  for (std::size_t k = 0, most = longest(&Row::shared); k < most; ++k) add_step([&](const Row& row) { return k < row.shared.size() ? &row.shared[k] : nullptr; });
+  for (std::size_t k = 0, most = longest(&Row::shared); k < most; ++k) add_step(&Row::shared, k);
   single_start_.push_back(steps_);
-  for (std::size_t k = 0, most = longest(&Row::single); k < most; ++k) add_step([&](const Row& row) { return k < row.single.size() ? &row.single[k] : nullptr; });
+  for (std::size_t k = 0, most = longest(&Row::single); k < most; ++k) add_step(&Row::single, k);
 }
 
 void RowPacking::analyse(const NodeOrder& order, const std::vector<int>& row_start, const std::vector<int>& column) {
   for (auto* v : {&group_start_, &step_start_, &single_start_, &row_, &column_}) v->clear();
   place_.assign(column.size(), -1);
+  own_place_.assign(order.node.size(), -1);
   node_start_.clear();
   for (std::size_t p = 0; p < order.part.size(); ++p) node_start_.push_back(order.first_node(p));
-  steps_ = 0;
+  steps_ = groups_ = 0;
   group_start_.push_back(0);
   std::vector<Row> rows;
   std::vector<int> taken(order.node.size(), 0);
@@ -72,7 +70,6 @@ void RowPacking::analyse(const NodeOrder& order, const std::vector<int>& row_sta
       Row& row = rows[static_cast<std::size_t>(i - first)];
       const int begin = row_start[static_cast<std::size_t>(i)];
       row.node = i;
-      row.own = begin;
       for (int s = begin + 1; s < row_start[static_cast<std::size_t>(i) + 1]; ++s) {
         const int j = column[static_cast<std::size_t>(s)];
         if (j < first || j >= last) {
@@ -101,15 +98,19 @@ void RowPacking::analyse(const NodeOrder& order, const std::vector<int>& row_sta
     group_start_.push_back(static_cast<int>(single_start_.size()));
   }
   step_start_.push_back(steps_);
+  for (int& place : place_) place += 2 * kLanesOfGroup * groups_;
+  for (std::size_t i = 0; i < own_place_.size(); ++i) place_[static_cast<std::size_t>(row_start[i])] = 2 * own_place_[i];
   constexpr int kReadAhead = 72;  // lines that a product asks for before it gets there
+  own_.assign(9 * static_cast<std::size_t>(groups_), {});
   values_.assign(9 * static_cast<std::size_t>(steps_) + kReadAhead, {});
   prefer_huge_pages(values_);
   prefer_huge_pages(column_);
 }
 
 PackedRows RowPacking::rows(std::size_t part, const float* mass) {
-  return {.first_group = group_start_[part], .last_group = group_start_[part + 1], .first_node = node_start_[part], .last_node = node_start_[part + 1],
-          .step_start = step_start_.data(), .single_start = single_start_.data(), .row = row_.data(), .column = column_.data(), .values = values_.front().number, .mass = mass};
+  return {.groups = groups_, .first_group = group_start_[part], .last_group = group_start_[part + 1], .first_node = node_start_[part], .last_node = node_start_[part + 1],
+          .step_start = step_start_.data(), .single_start = single_start_.data(), .row = row_.data(), .column = column_.data(), .own = own_.front().number,
+          .values = values_.front().number, .mass = mass};
 }
 
 }  // namespace palpate::integrate

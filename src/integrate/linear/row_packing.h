@@ -17,26 +17,28 @@ class RowPacking {
   /// Of one part.
   PackedRows rows(std::size_t part, const float* mass);
   /// Blocks that have room, those that fill up included.
-  std::size_t places() const { return kLanesOfGroup * static_cast<std::size_t>(steps_); }
+  std::size_t places() const { return kLanesOfGroup * static_cast<std::size_t>(groups_ + steps_); }
   /// Where the k-th block of all rows, one after the other, has its place; and whether it is the transposed one that is there.
   std::size_t place(std::size_t block) const { return static_cast<std::size_t>(place_[block]) / 2; }
   bool turned(std::size_t block) const { return place_[block] % 2 != 0; }
   /// Entry (r, c) of it.
-  float entry(std::size_t block, int r, int c) const { return values_[line(block, r, c)].number[place(block) % kLanesOfGroup]; }
-  float& entry(std::size_t block, int r, int c) { return values_[line(block, r, c)].number[place(block) % kLanesOfGroup]; }
+  float entry(std::size_t block, int r, int c) const {
+    const std::size_t at = place(block) / kLanesOfGroup, own = static_cast<std::size_t>(groups_);
+    return (at < own ? own_[line(at, block, r, c)] : values_[line(at - own, block, r, c)]).number[place(block) % kLanesOfGroup];
+  }
+  /// Of a row's own block.
+  float& own_entry(std::size_t block, int r, int c) { return own_[line(place(block) / kLanesOfGroup, block, r, c)].number[place(block) % kLanesOfGroup]; }
 
  private:
   struct alignas(64) Line { float number[kLanesOfGroup]; };
-  std::size_t line(std::size_t block, int r, int c) const {
-    return 9 * (place(block) / kLanesOfGroup) + static_cast<std::size_t>(turned(block) ? 3 * r + c : 3 * c + r);
-  }
+  std::size_t line(std::size_t step, std::size_t block, int r, int c) const { return 9 * step + static_cast<std::size_t>(turned(block) ? 3 * r + c : 3 * c + r); }
   struct Row;
   void add_group(const Row* rows, int count);
 
   std::vector<int> group_start_, node_start_, step_start_, single_start_, row_, column_;
-  std::vector<int> place_;
-  std::vector<Line> values_;
-  int steps_ = 0;
+  std::vector<int> place_, own_place_;
+  std::vector<Line> own_, values_;
+  int steps_ = 0, groups_ = 0;
 };
 
 }  // namespace palpate::integrate

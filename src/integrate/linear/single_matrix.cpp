@@ -223,8 +223,8 @@ void SingleMatrix::hold(std::size_t part) {
     const std::size_t node = held_[h] / 4, own = static_cast<std::size_t>(row_start_[node]);
     for (; h < held_start_[part + 1] && held_[h] / 4 == node; ++h) {
       const int axis = static_cast<int>(held_[h] % 4);
-      for (int k = 0; k < 3; ++k) packing_.entry(own, k, axis) = packing_.entry(own, axis, k) = 0.0f;
-      packing_.entry(own, axis, axis) = 1.0f;
+      for (int k = 0; k < 3; ++k) packing_.own_entry(own, k, axis) = packing_.own_entry(own, axis, k) = 0.0f;
+      packing_.own_entry(own, axis, axis) = 1.0f;
     }
     Eigen::Matrix3f block;
     for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = packing_.entry(own, k % 3, k / 3);
