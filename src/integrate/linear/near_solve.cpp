@@ -98,8 +98,7 @@ KrylovStart::Start NearSolve::begin_where_it_leaves() {
   team_.for_each([&](std::size_t part, int first, int last) {
     double* b = b_.data() + 4 * static_cast<std::ptrdiff_t>(first);
     start_.product(b, first, last);
-    for (int k = first; k < last; ++k, b += 4)
-      for (int axis = 0; axis < 3; ++axis) b[axis] += residual_[3 * static_cast<std::ptrdiff_t>(node[k]) + axis];
+    kernels_.add_nodes(node, residual_.data(), b, first, last);
     start_.add_up(part, b_.data(), first, last);
   });
   return choose();

@@ -95,6 +95,10 @@ struct NodeKernels {
   void (*image)(double by, const double* b, const float* r, double* Ax, int first, int last);
   /// x += by (d + a p)
   void (*correct)(double by, const float* d, float a, const float* p, double* x, int first, int last);
+  /// out[3 node[k] + axis] = x of nodes k in [first, last); returns the largest of these numbers, of which those that are none do not count
+  double (*put_nodes)(const int* node, const double* x, double* out, int first, int last);
+  /// x += in[3 node[k] + axis]
+  void (*add_nodes)(const int* node, const double* in, double* x, int first, int last);
   /// Inverses of the diagonal blocks at slot[node] times 1/scale; false where one is not positive definite
   bool (*invert_diagonal)(const double* values, const int* slot, double scale, float* inverse, int first, int last);
 };

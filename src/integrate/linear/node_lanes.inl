@@ -7,6 +7,7 @@ typedef float Wide __attribute__((vector_size(4 * PALPATE_LANES)));
 typedef float WideAnywhere __attribute__((vector_size(4 * PALPATE_LANES), aligned(4), may_alias));
 typedef float WideInMemory __attribute__((vector_size(4 * PALPATE_LANES), may_alias));
 typedef double FourDouble __attribute__((vector_size(32)));
+typedef double TwoDoubleAnywhere __attribute__((vector_size(16), aligned(8), may_alias));
 typedef double EightDouble __attribute__((vector_size(64), aligned(8), may_alias));
 typedef float Eight __attribute__((vector_size(32)));
 typedef float EightAnywhere __attribute__((vector_size(32), aligned(4), may_alias));

@@ -105,3 +105,32 @@ void correct(double by, const float* d, float a, const float* p, double* x, int 
     put(to, point + by * change);
   }
 }
+
+// Between the order here and that of who calls, where a vector has three numbers a node.
+
+double put_nodes(const int* node, const double* x, double* out, int first, int last) {
+  FourDouble largest{};
+  const double* from = x;
+  for (int k = first; k < last; ++k, from += 4) {
+    FourDouble value;
+    take(from, value);
+    double* to = out + 3 * static_cast<std::int64_t>(node[k]);
+    *reinterpret_cast<TwoDoubleAnywhere*>(to) = __builtin_shufflevector(value, value, 0, 1);
+    to[2] = value[2];
+    value = value < 0.0 ? -value : value;
+    largest = value > largest ? value : largest;
+  }
+  double most = 0.0;
+  for (int axis = 0; axis < 3; ++axis) most = largest[axis] > most ? largest[axis] : most;
+  return most;
+}
+
+void add_nodes(const int* node, const double* in, double* x, int first, int last) {
+  double* to = x;
+  for (int k = first; k < last; ++k, to += 4) {
+    const double* from = in + 3 * static_cast<std::int64_t>(node[k]);
+    FourDouble value;
+    take(to, value);
+    put(to, value + FourDouble{from[0], from[1], from[2], 0.0});
+  }
+}

@@ -28,7 +28,7 @@ constexpr int kNodesOfPiece = 32;
 constexpr double kSingleRounding = 0x1p-24, kRoundingShare = 4.0;
 /// Nodes of a part, at most: its share of vectors and of the matrix fits a second-level cache, and few pairs of nodes are cut.  Parts come in fours, for threads to share; very
 /// small matrices have one.
-constexpr int kNodesOfPart = 1536, kNodesOfOnePart = 512;
+constexpr int kNodesOfPart = 3072, kNodesOfOnePart = 512;
 int parts_of(int nodes) { return nodes <= kNodesOfOnePart ? 1 : 4 * ((nodes + 4 * kNodesOfPart - 1) / (4 * kNodesOfPart)); }
 
 /// Conjugate gradients in single precision on a copy of the matrix (36 bytes a block where double takes 72: an iteration is one reading of it), right in double:

@@ -109,16 +109,10 @@ double SingleSolve::put_solution(double* x, bool keep, bool follow) {
     over_blocks(begin, end, [&](int first, int last) {
       Block value, image;
       const double* from = solution(first, last, value);
-      for (int k = first; k < last; ++k, from += 4) {
-        double* to = x + 3 * static_cast<std::ptrdiff_t>(node[k]);
-        for (int axis = 0; axis < 3; ++axis) {
-          to[axis] = from[axis];
-          largest = std::max(largest, std::abs(from[axis]));
-        }
-      }
+      largest = std::max(largest, kernels_.put_nodes(node, from, x, first, last));
       if (!keep) return;
       if (follow) kernels_.image(size_, b_.data(), iteration_.residual().data(), image.data(), first, last);
-      start_.keep(from - 4 * (last - first), image.data(), first, last);
+      start_.keep(from, image.data(), first, last);
     });
     largest_[part] = largest;
   });
