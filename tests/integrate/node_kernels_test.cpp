@@ -156,5 +156,95 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   }
 }
 
+// Against plain sums in double, on ranges that begin and end anywhere, of what has each instruction set's own loops.
+TEST(NodeKernels, VectorsOfAStartAreThoseOfPlainSums) {
+  constexpr int kNodes = 37, kFirst = 3, kLast = 36, kCount = 3, kNumbers = 4 * kNodes + integrate::kVectorTail;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> number(-1.0f, 1.0f);
+  const auto field = [&](auto zero) {
+    std::vector<decltype(zero)> v(kNumbers, zero);
+    for (std::size_t i = 0; i < 4 * kNodes; ++i)
+      if (i % 4 != 3) v[i] = number(random);
+    return v;
+  };
+  const std::vector<std::vector<float>> V{field(0.0f), field(0.0f), field(0.0f)}, AV{field(0.0f), field(0.0f), field(0.0f)};
+  const std::vector<double> b = field(0.0), Ax = field(0.0);
+  const std::vector<float> d = field(0.0f), p = field(0.0f);
+  const float *at_V[kCount] = {V[0].data(), V[1].data(), V[2].data()}, *at_AV[kCount] = {AV[0].data(), AV[1].data(), AV[2].data()};
+  const double y[kCount] = {0.5, -2.0, 3.0};
+  const auto combined = [&](const std::vector<std::vector<float>>& of, std::size_t i) { return y[0] * of[0][i] + y[1] * of[1][i] + y[2] * of[2][i]; };
+  std::vector<int> node(kNodes);
+  for (int k = 0; k < kNodes; ++k) node[static_cast<std::size_t>(k)] = (5 * k + 2) % kNodes;
+  constexpr std::size_t kBegin = 4 * kFirst, kEnd = 4 * kLast;
+  for (int limit = 0; limit <= 2; ++limit) {
+    const integrate::NodeKernels& k = integrate::node_kernels(limit);
+    SCOPED_TRACE(k.name);
+    double sums[integrate::kMostSums] = {}, want[10] = {};
+    k.gram(kCount, y, at_V, at_AV, b.data(), kFirst, kLast, sums);
+    for (std::size_t i = kBegin; i < kEnd; ++i) {
+      int at = 0;
+      for (std::size_t j = 0; j < kCount; ++j)
+        for (std::size_t l = 0; l <= j; ++l) want[at++] += static_cast<double>(V[j][i]) * AV[l][i];
+      for (std::size_t j = 0; j < kCount; ++j) want[at++] += V[j][i] * b[i];
+      want[at] += std::pow(b[i] - combined(AV, i), 2);
+    }
+    for (int at = 0; at < 10; ++at) EXPECT_NEAR(sums[at], want[at], 1e-12 * kEnd) << at;
+
+    std::vector<double> x(kEnd - kBegin), image(x), out(3 * kNodes, 7.0), added(x);
+    std::vector<float> r(kNumbers, 9.0f), from_all(r), difference[2] = {V[0], V[1]};
+    float* differences[2] = {difference[0].data(), difference[1].data()};
+    k.combine(kCount, y, at_V, x.data(), kFirst, kLast);
+    k.leave(kCount, y, 0.25, at_AV, b.data(), r.data(), kFirst, kLast);
+    k.residual(0.25, b.data(), Ax.data(), from_all.data(), kFirst, kLast);
+    k.image(0.25, b.data(), d.data(), image.data(), kFirst, kLast);
+    const double largest = k.put_nodes(node.data(), x.data(), out.data(), kFirst, kLast);
+    k.difference(2, 4.0, 0.5, x.data(), differences, kFirst, kLast);
+    added = x;
+    k.add_nodes(node.data(), out.data(), added.data(), kFirst, kLast);
+    const std::vector<double> before = x;
+    k.correct(0.25, d.data(), 3.0f, p.data(), x.data(), kFirst, kLast);
+    double most = 0.0;
+    for (std::size_t i = kBegin; i < kEnd; ++i) {
+      const std::size_t here = i - kBegin;
+      EXPECT_NEAR(before[here], combined(V, i), 1e-14) << i;
+      EXPECT_NEAR(r[i], 0.25 * (b[i] - combined(AV, i)), 1e-6) << i;
+      EXPECT_NEAR(from_all[i], 0.25 * (b[i] - Ax[i]), 1e-7) << i;
+      EXPECT_NEAR(image[here], b[i] - 0.25 * d[i], 1e-14) << i;
+      EXPECT_NEAR(x[here], before[here] + 0.25 * (d[i] + 3.0 * p[i]), 1e-6) << i;
+      EXPECT_NEAR(difference[0][i], 4.0 * before[here], 1e-5) << i;
+      EXPECT_NEAR(difference[1][i], 4.0 * before[here] - 0.5 * V[0][i], 1e-5) << i;
+      EXPECT_EQ(added[here], 2.0 * before[here]) << i;
+      if (i % 4 != 3) {
+        EXPECT_EQ(out[3 * static_cast<std::size_t>(node[i / 4]) + i % 4], before[here]) << i;
+      }
+      most = std::max(most, std::abs(before[here]));
+    }
+    EXPECT_EQ(largest, most);
+    EXPECT_EQ(std::count(out.begin(), out.end(), 7.0), 3 * (kNodes - (kLast - kFirst))) << "others are left alone";
+    EXPECT_EQ(r[kBegin - 1], 9.0f);
+    EXPECT_EQ(r[kEnd], 9.0f);
+
+    // z + motion, with and without a direction before
+    std::vector<float> arm(kNumbers, 0.0f), z = field(0.0f), first_d(d), first_p(p), next_d(d), next_p(p);
+    for (std::size_t i = 0; i < 4 * kNodes; ++i) arm[i] = i % 4 == 3 ? 1.0f : number(random);
+    const float motion[6] = {1.0f, 2.0f, 3.0f, 0.5f, -0.25f, 0.75f};
+    k.first_direction(z.data(), arm.data(), motion, first_d.data(), first_p.data(), kFirst, kLast);
+    k.direction(2.0f, -0.5f, z.data(), arm.data(), motion, next_d.data(), next_p.data(), kFirst, kLast);
+    for (std::size_t n = kFirst; n < kLast; ++n) {
+      const Eigen::Vector3f a = Eigen::Map<const Eigen::Vector3f>(arm.data() + 4 * n), turn(motion[3], motion[4], motion[5]), moved = turn.cross(a);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t i = 4 * n + axis;
+        const float rigid = z[i] + motion[axis] + moved[static_cast<Eigen::Index>(axis)];
+        EXPECT_EQ(first_d[i], 0.0f);
+        EXPECT_NEAR(first_p[i], rigid, 1e-5) << i;
+        EXPECT_NEAR(next_d[i], d[i] + 2.0f * p[i], 1e-6) << i;
+        EXPECT_NEAR(next_p[i], rigid - 0.5f * p[i], 1e-5) << i;
+      }
+    }
+    k.first_direction(z.data(), nullptr, nullptr, first_d.data(), first_p.data(), kFirst, kLast);
+    EXPECT_TRUE(std::equal(z.begin() + kBegin, z.begin() + kEnd, first_p.begin() + kBegin));
+  }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "integrate/bent_beam.h"
 #include "palpate/integrate/integrators.h"
@@ -242,6 +243,31 @@ TEST_P(NodeSolvers, TakeAnyUnits) {
     ASSERT_EQ(other->factor(B), SolveStatus::kOk);
     ASSERT_EQ(other->solve(b, scaled), SolveStatus::kOk);
     EXPECT_EQ(VecX(unit * scaled), x);
+  }
+}
+
+// What is kept of solutions is in single precision: one that is larger or smaller by far than those before has nothing to say of the next, and spoils nothing.
+TEST_P(NodeSolvers, TakeSolutionsOfAnySizeOneAfterTheOther) {
+  BentBeam beam(8, 1e5);
+  const auto solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});
+  const auto direct = integrate::make_linear_solver("cholmod");
+  BorderedMatrix A;
+  VecX b, x, exact;
+  long cold = 0, last = 0;
+  const auto iterations_of = [&](const VecX& c) {
+    EXPECT_EQ(direct->solve(c, exact), SolveStatus::kOk);
+    EXPECT_EQ(solver->solve(c, x), SolveStatus::kOk);
+    EXPECT_LE(energy_norm(A, x - exact), 1e-4 * energy_norm(A, exact));
+    return solver->counters().iterations - std::exchange(last, solver->counters().iterations);
+  };
+  beam.at(0.5, 1e-2, A, b);
+  ASSERT_EQ(direct->factor(A), SolveStatus::kOk);
+  ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
+  cold = iterations_of(b);
+  for (const double size : {std::ldexp(1.0, 150), std::ldexp(1.0, -150), 1.0}) {
+    iterations_of(size * b);
+    iterations_of(size * b);
+    EXPECT_LE(iterations_of(-2.0 * size * b), cold / 4) << "size " << size;
   }
 }
 
