@@ -4,6 +4,7 @@
 
 #include "integrate/error_weights.h"
 #include "palpate/core/clock.h"
+#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 
@@ -60,7 +61,7 @@ bool MechanicalProblem::derivative(double t, const double* y, double* y_dot, Sid
     if (side != Side::kExplicit && side != Side::kFast) ++counters_.force_evaluations;
     const StateView at = view(t, y);
     system_.force(at, force_, filter(side));
-    if (!force_.allFinite()) return false;
+    if (!all_finite(force_)) return false;
     system_.acceleration_of_force(at, force_, acceleration_);
     if ((side == Side::kExplicit || side == Side::kFast) && system_.any_driven()) {  // the drives' own inertia was counted on the other side
       force_.setZero(l.u_size);
@@ -71,7 +72,7 @@ bool MechanicalProblem::derivative(double t, const double* y, double* y_dot, Sid
   }
   Eigen::Map<VecX>(y_dot + l.q_size, l.u_size) = acceleration_;
   for (int dof : system_.driven_dofs()) y_dot[dof] = y_dot[l.q_size + dof] = 0.0;  // node blocks come first: one index serves both
-  return Eigen::Map<const VecX>(y_dot, size()).allFinite();
+  return all_finite(Eigen::Map<const VecX>(y_dot, size()));
 }
 
 void MechanicalProblem::evaluate_tangent(double t, const double* y, Side side) {
@@ -101,7 +102,7 @@ bool MechanicalProblem::residual(double t, const double* y, const double* y_dot,
     r[dof] = y_dot[dof];
     r[l.q_size + dof] = y_dot[l.q_size + dof];
   }
-  return Eigen::Map<const VecX>(r, size()).allFinite();
+  return all_finite(Eigen::Map<const VecX>(r, size()));
 }
 
 SolveStatus MechanicalProblem::solve_residual(const double* y, const double* r, double* d) {

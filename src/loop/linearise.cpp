@@ -3,6 +3,7 @@
 #include "palpate/contact/contact_force.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/core/finite.h"
 #include "palpate/integrate/integrators.h"
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
@@ -104,7 +105,7 @@ bool answer_after(World& world, double H, const contact::FrameLinearisation& c, 
     rhs.col(i) = column;
   }
   MatX solved(rhs.rows(), rhs.cols());
-  if (solver->solve(rhs, solved) != dynamics::SolveStatus::kOk || !solved.allFinite()) return false;
+  if (solver->solve(rhs, solved) != dynamics::SolveStatus::kOk || !all_finite(solved)) return false;
   for (Eigen::Index i = 0; i < solved.cols(); ++i) {
     column = solved.col(i);
     world.system.expand(world.state.view(), column);

@@ -7,6 +7,7 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 
@@ -64,7 +65,7 @@ StepResult FixedStep::cover(double t1, double h, double t_end) {
     q1_.resize(layout().q_size);
     u1_.resize(layout().u_size);
     Attempt tried = attempt(length, to);
-    if (tried.status == StepStatus::kOk && !(q1_.allFinite() && u1_.allFinite()))
+    if (tried.status == StepStatus::kOk && !(all_finite(q1_) && all_finite(u1_)))
       tried = {.status = StepStatus::kNotFinite, .what = "the position or the velocity is not finite"};
     counters_.newton_iterations += tried.iterations;
     if (trace()) tell(tried, length, to);
@@ -110,7 +111,7 @@ void FixedStep::tell(const Attempt& attempt, double h, double t1) const {
   told.error = std::numeric_limits<double>::quiet_NaN();
   told.newton_iterations = attempt.iterations;
   told.outcome = outcome_of(attempt.status);
-  if (attempt.status != StepStatus::kOk && q1_.allFinite() && u1_.allFinite()) {
+  if (attempt.status != StepStatus::kOk && all_finite(q1_) && all_finite(u1_)) {
     const auto [finding, term] = system_.inspect(state_.view(t1, q1_.data(), u1_.data()));
     told.inverted_element = finding.element;
     told.inverted_in = term;
@@ -133,7 +134,7 @@ bool FixedStep::acceleration(double t, const double* q, const double* u, VecX& a
   const ScopedTimer timer(counters_.force_s);
   ++counters_.force_evaluations;
   system_.acceleration(state_.view(t, q, u), a);
-  return a.allFinite();
+  return all_finite(a);
 }
 
 // With s = (t - t0)/h: Hermite's cubic p = (1 - s)^2 (1 + 2s) x0 + s^2 (3 - 2s) x1 + h s (1 - s) ((1 - s) x0' - s x1'),

@@ -4,6 +4,7 @@
 #include "integrate/make.h"
 #include "integrate/step_solver.h"
 #include "palpate/core/clock.h"
+#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 namespace {
@@ -78,7 +79,7 @@ class LinearlyImplicitEuler final : public FixedStep {
       system_.apply_carried_stiffness(at, shift_, product_);
       rhs_ -= h * product_;
     }
-    return rhs_.allFinite();
+    return all_finite(rhs_);
   }
 
   /// What a velocity change leaves of the right-hand side.
@@ -173,7 +174,7 @@ class LinearlyImplicitEuler final : public FixedStep {
     const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
     if (!solve_near(at, h) && !solve_balanced(at, h))
       if (const Attempt solved = solve(at, h); solved.status != StepStatus::kOk) return solved;
-    if (!du_.allFinite()) return {.status = StepStatus::kNotFinite, .what = "the velocity is not finite"};
+    if (!all_finite(du_)) return {.status = StepStatus::kNotFinite, .what = "the velocity is not finite"};
     move(h);
     system_.impose(layout(), t1, q1_.data(), u1_.data());
     return {.iterations = 1};

@@ -1,5 +1,6 @@
 #include "integrate/hand/fixed_step.h"
 #include "integrate/make.h"
+#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 namespace {
@@ -32,7 +33,7 @@ class RungeKutta4 final : public FixedStep {
     if (!stage(0.5 * h, middle, 2.0) || !stage(0.5 * h, middle, 2.0) || !stage(h, t1, 1.0)) return not_finite;
     q1_ = from.q + h / 6.0 * q_sum_;
     u1_ = from.u + h / 6.0 * u_sum_;
-    if (!q1_.allFinite() || !u1_.allFinite()) return not_finite;
+    if (!all_finite(q1_) || !all_finite(u1_)) return not_finite;
     project(layout(), q1_.data());
     system_.impose(layout(), t1, q1_.data(), u1_.data());
     if (!acceleration(t1, q1_.data(), u1_.data(), end_a_)) return not_finite;
@@ -44,7 +45,7 @@ class RungeKutta4 final : public FixedStep {
     q1_ = state_.q() + step * rate_;
     u1_ = state_.u() + step * a_;
     system_.impose(layout(), t, q1_.data(), u1_.data());
-    if (!q1_.allFinite() || !u1_.allFinite() || !acceleration(t, q1_.data(), u1_.data(), a_)) return false;
+    if (!all_finite(q1_) || !all_finite(u1_) || !acceleration(t, q1_.data(), u1_.data(), a_)) return false;
     q_dot(layout(), q1_.data(), u1_.data(), rate_.data());
     q_sum_ += weight * rate_;
     u_sum_ += weight * a_;

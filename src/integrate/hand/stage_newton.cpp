@@ -5,6 +5,7 @@
 #include "integrate/error_weights.h"
 #include "integrate/hand/displace.h"
 #include "palpate/core/clock.h"
+#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 
@@ -58,7 +59,7 @@ bool StageNewton::place(const VecX& a) {
   theta_ = stage_->theta + stage_->c_theta * a;
   if (!displace(layout, from_->q.data(), theta_.data(), q1_->data(), scratch_)) return false;
   system_.impose(layout, stage_->t1, q1_->data(), u1_->data());
-  return q1_->allFinite() && u1_->allFinite();
+  return all_finite(*q1_) && all_finite(*u1_);
 }
 
 bool StageNewton::evaluate(const VecX& a) {
@@ -73,7 +74,7 @@ bool StageNewton::evaluate(const VecX& a) {
   const ScopedTimer timer(counters_->force_s);
   ++counters_->force_evaluations;
   system_.residual(at(), a_s_, residual_);
-  return residual_.allFinite();
+  return all_finite(residual_);
 }
 
 /// The stage of the iterate last evaluated.
@@ -116,7 +117,7 @@ double StageNewton::norm(const VecX& d) {
 }
 
 bool StageNewton::correct(VecX& d, double& size) {
-  if (solver_.solve(residual_, d) != SolveStatus::kOk || !d.allFinite()) return false;
+  if (solver_.solve(residual_, d) != SolveStatus::kOk || !all_finite(d)) return false;
   d = -d;
   size = norm(d);
   return std::isfinite(size);

@@ -3,6 +3,7 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 
@@ -41,7 +42,7 @@ SolveStatus DirectSolver::factor(const BorderedMatrix& A) {
 SolveStatus DirectSolver::factor_values(const BorderedMatrix& A) {
   const auto& values = A.body.values();
   const Eigen::Map<const VecX> body(values.data(), static_cast<Eigen::Index>(values.size()));
-  if (!body.allFinite() || !A.right.allFinite() || !A.bottom.allFinite() || !A.corner.allFinite()) return SolveStatus::kSingular;
+  if (!all_finite(body) || !all_finite(A.right) || !all_finite(A.bottom) || !all_finite(A.corner)) return SolveStatus::kSingular;
   if (nodal_ > 0)
     if (const SolveStatus status = body_->factor(A.body); status != SolveStatus::kOk) return status;
   return border_ > 0 ? factor_border(A) : SolveStatus::kOk;

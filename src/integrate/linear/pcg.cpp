@@ -5,6 +5,7 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 namespace {
@@ -98,7 +99,7 @@ class Pcg final : public dynamics::LinearSolver {
   SolveStatus make_preconditioner(const BorderedMatrix& A) {
     const auto& values = A.body.values();
     const Eigen::Map<const VecX> body(values.data(), static_cast<Eigen::Index>(values.size()));
-    if (!body.allFinite() || !A.right.allFinite() || !A.bottom.allFinite() || !A.corner.allFinite()) return SolveStatus::kSingular;
+    if (!all_finite(body) || !all_finite(A.right) || !all_finite(A.bottom) || !all_finite(A.corner)) return SolveStatus::kSingular;
     Eigen::LLT<Mat3> block;
     for (std::size_t i = 0; i < diagonal_.size(); ++i) {
       block.compute(Eigen::Map<const Mat3>(A.body.block(diagonal_[i])));  // symmetric: the order of storage does not matter

@@ -5,6 +5,7 @@
 
 #include "integrate/sundials/adapter.h"
 #include "integrate/sundials/vector_ops.h"
+#include "palpate/core/finite.h"
 
 // What an Adapter tells of its steps, accepted and not.
 
@@ -42,7 +43,7 @@ StepAttempt Adapter::attempt(double t0, double t1, StepAttempt::Outcome outcome)
 void Adapter::close_attempt(StepAttempt::Outcome outcome) {
   StepAttempt a = attempt(attempt_start_, attempt_reach_, outcome);
   a.worst_dof = attempt_worst_ >= 0 ? problem_->dof_of(attempt_worst_) : -1;
-  if (attempt_y_.allFinite()) {
+  if (all_finite(attempt_y_)) {
     const auto [finding, term] = problem_->inspect(attempt_reach_, attempt_y_.data());
     a.inverted_element = finding.element;
     a.inverted_in = term;

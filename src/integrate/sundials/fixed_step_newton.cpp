@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "integrate/sundials/check.h"
+#include "palpate/core/finite.h"
 
 namespace palpate::integrate::sun {
 
@@ -123,7 +124,7 @@ bool FixedStepNewton::evaluate(const VecX& x) {
   entries(x_) = x;
   const int flag = system_(x_, residual_, memory_);
   flag_ = std::min(flag_, flag);
-  return flag == 0 && entries(residual_).allFinite();
+  return flag == 0 && all_finite(entries(residual_));
 }
 
 bool FixedStepNewton::solved() const { return (entries(residual_).array() == 0.0).all(); }

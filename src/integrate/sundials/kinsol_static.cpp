@@ -13,6 +13,7 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/core/finite.h"
 
 namespace palpate::integrate {
 namespace sun {
@@ -175,7 +176,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     const StateView at = state_.view(t, q.data(), velocity_.data());
     system_.force(at, f);
     system_.reduce(at, f);
-    return f.allFinite();
+    return all_finite(f);
   }
 
   bool residual(const double* x, double sigma, VecX& g) {
@@ -189,7 +190,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
       system_.reduce(at, inertia_);
       g -= sigma * inertia_;
     }
-    return g.allFinite();
+    return all_finite(g);
   }
 
   /// The largest force that any one term puts on a free direction: what "balanced" is measured by.
@@ -203,7 +204,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
       f.setZero(state_.layout().u_size);
       term->add_force(at, f);
       system_.reduce(at, f);
-      if (f.allFinite()) largest = std::max(largest, f.cwiseAbs().maxCoeff());
+      if (all_finite(f)) largest = std::max(largest, f.cwiseAbs().maxCoeff());
     }
     return largest;
   }
@@ -242,7 +243,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   int solve(N_Vector x, N_Vector b) override {
     rhs_ = Eigen::Map<const VecX>(NV_DATA_S(b), NV_LENGTH_S(b));
     for (int dof : system_.driven_dofs()) rhs_[dof] = 0.0;
-    if (solver_.solve(rhs_, step_) != SolveStatus::kOk || !step_.allFinite()) return kRecoverable;
+    if (solver_.solve(rhs_, step_) != SolveStatus::kOk || !all_finite(step_)) return kRecoverable;
     Eigen::Map<VecX>(NV_DATA_S(x), step_.size()) = step_;
     return 0;
   }
