@@ -156,7 +156,8 @@ class SinglePcg final : public dynamics::LinearSolver {
     const ScopedTimer timer(counters_.symbolic_s);
     ++counters_.symbolic;
     const int n = pattern.block_rows(), clusters = std::min((n + kNodesOfCluster - 1) / kNodesOfCluster, kMostClusters);
-    const int parts = two_level_ ? std::min(parts_of(n), clusters) : parts_of(n);
+    int parts = two_level_ ? std::min(parts_of(n), clusters) : parts_of(n);
+    if (two_level_ && clusters == kMostClusters && parts < clusters && 2 * parts > clusters) parts = clusters / 2;  // one or two in a part would differ in size by two
     copy_.analyse(pattern, two_level_ ? clusters : parts, parts, two_level_ ? n / kNodesOfPiece : 0);
     if (two_level_) clusters_.prepare(copy_.order());
     solve_.prepare();
