@@ -11,7 +11,7 @@ namespace palpate::integrate {
 /// V is known before the matrix is: A V is formed while the matrix is packed and still at hand.
 /// V is kept and A V formed in single precision.  V spans the last solutions by the newest one and its backward differences: what a smooth motion goes on with is their plain sum,
 /// where of the solutions themselves it is a difference of large multiples, and with it of their roundings.  A V comes from differences between neighbours, and is off by
-/// some roundings in the energy norm.  x is its combination of V to the last digit, a start like any other; the residual is as wrong as A V (kTrustsSingleStart, single_pcg.cpp).
+/// some roundings in the energy norm.  x is its combination of V to the last digit, a start like any other; the residual is as wrong as A V (kTrustsSingleStart, single_solve.cpp).
 class KrylovStart {
  public:
   /// @param most  solutions that are kept, up to kMostColumns

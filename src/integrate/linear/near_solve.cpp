@@ -19,7 +19,7 @@ constexpr int kMostResiduals = 4;
 
 void NearSolve::prepare() {
   SingleSolve::prepare();
-  open_.clear();
+  open_.assign(b_.size(), 0.0f);
   age_ = MatrixAge(rtol_);
 }
 
@@ -55,10 +55,9 @@ SolveStatus NearSolve::approach(dynamics::Residual& left, VecX& x) {
   int residuals = 1;
   const KrylovStart::Start start = begin_where_it_leaves();
   if (!std::isfinite(size_)) return SolveStatus::kNotConverged;
-  float* r = iteration_.residual().data();
   const double by_copy = (1.0 - MatrixAge::kUnseen) * rtol_;
   double open = 0.0, energy = start.energy, change = start.change;
-  SolveStatus status = descend(energy, by_copy, open, [&](int first, int last) { start_.residual(1.0 / size_, b_.data(), r, first, last); });
+  SolveStatus status = descend(energy, by_copy, open, [&](int first, int last) { set_residual(first, last); });
   for (;;) {
     if (status != SolveStatus::kOk) return status;
     const double solution = iteration_.solution(), correction = std::sqrt((change + solution - energy) / solution);
@@ -110,7 +109,6 @@ KrylovStart::Start NearSolve::begin_where_it_leaves() {
 SolveStatus NearSolve::mend(double solution, double& stale, double& open) {
   const int* node = copy_.order().node.data();
   float* r = iteration_.residual().data();
-  open_.resize(b_.size());
   double rest = 0.0;
   const SolveStatus status = descend(0.0, kRoughly, rest, [&](int first, int last) {
     for (int k = first; k < last; ++k)

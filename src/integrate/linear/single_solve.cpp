@@ -26,8 +26,7 @@ void SingleSolve::prepare() {
   iteration_.prepare();
   start_.prepare(copy_.order());
   largest_.assign(static_cast<std::size_t>(copy_.order().parts()), 0.0);
-  for (Doubles* v : {&b_, &x_}) v->assign(4 * static_cast<std::size_t>(nodes()) + kVectorTail, 0.0);
-  Ax_.clear();
+  for (Doubles* v : {&b_, &x_, &Ax_}) v->assign(4 * static_cast<std::size_t>(nodes()) + kVectorTail, 0.0);
 }
 
 SolveStatus SingleSolve::solve(const double* b, double* x, bool remember) {
@@ -75,10 +74,6 @@ KrylovStart::Start SingleSolve::choose() {
   const KrylovStart::Start start = start_.choose();
   size_ = start.size;
   return start;
-}
-
-double SingleSolve::precondition_start() {
-  return iteration_.precondition([&](int first, int last) { start_.residual(1.0 / size_, b_.data(), iteration_.residual().data(), first, last); });
 }
 
 const double* SingleSolve::solution(int first, int last, Block& block) const {
@@ -132,7 +127,7 @@ SolveStatus SingleSolve::iterate() {
 }
 
 SolveStatus SingleSolve::refine() {
-  double rho = precondition_start();
+  double rho = iteration_.precondition([&](int first, int last) { set_residual(first, last); });
   // Of a first solve the spectrum is not known: the residual's own norm goes ten times below what is asked.
   iteration_.set_floor(iteration_.first() ? 0.01 * rtol_ * rtol_ * rho * unit() : HUGE_VAL);
   const double unchecked = iteration_.first() ? HUGE_VAL : kReductionUnchecked * kReductionUnchecked * rho * unit();
@@ -162,7 +157,6 @@ SolveStatus SingleSolve::refine() {
 
 /// Of b - A x in double, at a price of about an iteration.
 void SingleSolve::renew_residual() {
-  if (Ax_.empty()) Ax_.assign(b_.size(), 0.0);
   add_correction();
   copy_.multiply(x_, Ax_);
   ++counters_.iterations;

@@ -41,8 +41,8 @@ class SingleSolve {
   void begin(bool warm);
   /// The start and its residual.
   KrylovStart::Start choose();
-  /// r = P^-1 (b - A x) of the start
-  double precondition_start();
+  /// The iteration's residual: what the start leaves of b_, on nodes [first, last).
+  void set_residual(int first, int last) { start_.residual(1.0 / size_, b_.data(), iteration_.residual().data(), first, last); }
   /// The solution so far on these nodes: there, or in x_ where it is at hand.
   const double* solution(int first, int last, Block& block) const;
   /// The same, into x_, which it is added up in from now on; the iteration may find more.
@@ -71,7 +71,7 @@ class SingleSolve {
   void renew_residual();
   bool at_rounding() const;
 
-  Doubles Ax_;                          ///< made at the first product in double
+  Doubles Ax_;                          ///< for products in double
   std::vector<double> largest_, held_;  ///< of b: of each part; where it stands alone
 };
 
