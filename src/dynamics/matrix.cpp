@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "palpate/core/error.h"
+#include "palpate/core/huge_pages.h"
 
 namespace palpate::dynamics {
 namespace {
@@ -90,6 +91,7 @@ BlockSparse pattern_of(int node_count, const std::vector<const NodePairs*>& list
   }
   for (std::size_t i = 1; i < out.row_start_.size(); ++i) out.row_start_[i] += out.row_start_[i - 1];
   out.values_.assign(9 * all.size(), 0.0);
+  prefer_huge_pages(out.values_);
   out.pattern_version_ = fresh_version();
   return out;
 }
