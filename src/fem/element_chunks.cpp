@@ -4,6 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <numeric>
+#include <utility>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
 
 #include "palpate/core/error.h"
 #include "palpate/core/huge_pages.h"
@@ -49,12 +53,12 @@ void bisect(const Points& centroids, std::vector<int>& order, int begin, int end
   bisect(centroids, order, middle, end, chunks - left, starts);
 }
 
-/// What is used in a chunk (nodes, or pairs of nodes), with own ones first, and the sums over chunks of what is shared.
+/// What is used in a chunk (nodes, or pairs of nodes), with own ones first, and the sums over chunks of what is late.
 struct Uses {
-  std::vector<std::vector<std::uint64_t>> by_chunk;  ///< ascending, then rearranged: own ascending, shared ascending
+  std::vector<std::vector<std::uint64_t>> by_chunk;  ///< ascending, then rearranged: own ascending, late ascending
   std::vector<int> own;
-  std::vector<int> first_shared;
-  std::vector<std::uint64_t> shared;
+  std::vector<int> first_late;
+  std::vector<std::uint64_t> late;                   ///< ascending, each once
   std::vector<int> start{0}, entries;
 
   explicit Uses(std::vector<std::vector<std::uint64_t>> used) : by_chunk(std::move(used)) {
@@ -66,15 +70,19 @@ struct Uses {
     }
     std::sort(all.begin(), all.end());
     for (std::size_t k = 0; k + 1 < all.size(); ++k)
-      if (all[k] == all[k + 1] && (shared.empty() || shared.back() != all[k])) shared.push_back(all[k]);
-    std::vector<std::vector<int>> contributions(shared.size());
+      if (all[k] == all[k + 1] && (late.empty() || late.back() != all[k])) late.push_back(all[k]);
+    std::vector<std::vector<int>> contributions(late.size());
+    std::vector<char> met(late.size(), 0);
     int place = 0;
     for (auto& keys : by_chunk) {
-      const auto middle = std::stable_partition(keys.begin(), keys.end(), [&](std::uint64_t key) { return !std::binary_search(shared.begin(), shared.end(), key); });
+      const auto middle = std::stable_partition(keys.begin(), keys.end(), [&](std::uint64_t key) {
+        const auto it = std::lower_bound(late.begin(), late.end(), key);
+        return it == late.end() || *it != key || !std::exchange(met[static_cast<std::size_t>(it - late.begin())], 1);
+      });
       own.push_back(static_cast<int>(middle - keys.begin()));
-      first_shared.push_back(place);
+      first_late.push_back(place);
       for (auto it = middle; it != keys.end(); ++it)
-        contributions[static_cast<std::size_t>(std::lower_bound(shared.begin(), shared.end(), *it) - shared.begin())].push_back(place++);
+        contributions[static_cast<std::size_t>(std::lower_bound(late.begin(), late.end(), *it) - late.begin())].push_back(place++);
     }
     for (const auto& places : contributions) {
       entries.insert(entries.end(), places.begin(), places.end());
@@ -100,12 +108,22 @@ Corners sorted_corners(const RestElements& elements, std::size_t e) {
 }
 
 /// A lane that only fills up: a unit tetrahedron at rest on four nodes behind those of the chunk, of no volume, so that it adds zeros there.
-void fill_up(ElementGroup& group, std::size_t lane, int chunk_nodes, int chunk_edges) {
-  for (int k = 0; k < 9; ++k) group.inverse_edges[k][lane] = k % 4 == 0 ? 1.0 : 0.0;
+void fill_up(ElementGroup& group, GroupEdges& edges, std::size_t lane, int chunk_nodes, int chunk_edges) {
+  constexpr double kUnit[6] = {1.0, 0.0, 0.0, 1.0, 0.0, 1.0};
+  for (int k = 0; k < 6; ++k) group.inverse_edges[k][lane] = kUnit[k];
   group.volume[lane] = 0.0;
   for (int a = 0; a < 4; ++a) group.node[a][lane] = static_cast<std::uint16_t>(chunk_nodes + a);
-  for (auto& edge : group.edge) edge[lane] = static_cast<std::uint16_t>(chunk_edges);
-  group.element[lane] = -1;
+  for (auto& edge : edges.edge) edge[lane] = static_cast<std::uint16_t>(chunk_edges);
+}
+
+/// T^-1 of the rest edges Dm = Q T, Q a rotation: T is then that of Dm^T Dm to rounding (Householder), and a triangle's inverse is good in each entry.
+Mat3 inverse_triangle(const Mat3& Dm) {
+  const Eigen::HouseholderQR<Mat3> qr(Dm);
+  Mat3 T = qr.matrixQR().triangularView<Eigen::Upper>();
+  for (int r = 0; r < 2; ++r)
+    if (T(r, r) < 0.0) T.row(r) *= -1.0;
+  if ((T(2, 2) < 0.0) != (Dm.determinant() < 0.0)) T(2, 2) *= -1.0;  // no mirror images
+  return T.triangularView<Eigen::Upper>().solve(Mat3::Identity());
 }
 
 }  // namespace
@@ -137,6 +155,7 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, 
   const Uses node_uses(std::move(node_keys)), edge_uses(std::move(edge_keys));
 
   groups.reserve(static_cast<std::size_t>((element_count_ + 7) / 8 + chunk_count));
+  edges.reserve(groups.capacity());
   row_start.push_back(0);
   for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
     Chunk chunk;
@@ -144,11 +163,11 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, 
     chunk.first_node = static_cast<int>(nodes.size());
     chunk.nodes = static_cast<int>(node_uses.by_chunk[c].size());
     chunk.own_nodes = node_uses.own[c];
-    chunk.first_shared_node = node_uses.first_shared[c];
+    chunk.first_late_node = node_uses.first_late[c];
     chunk.first_edge = static_cast<int>(ends.size() / 2);
     chunk.edges = static_cast<int>(edge_uses.by_chunk[c].size());
     chunk.own_edges = edge_uses.own[c];
-    chunk.first_shared_edge = edge_uses.first_shared[c];
+    chunk.first_late_edge = edge_uses.first_late[c];
     for (std::uint64_t key : node_uses.by_chunk[c]) nodes.push_back(static_cast<int>(key));
     for (std::uint64_t key : edge_uses.by_chunk[c])
       for (std::uint64_t end : {key >> 32, key & 0xffffffffu}) ends.push_back(static_cast<std::uint16_t>(node_uses.find(c, end)));
@@ -164,23 +183,25 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, 
       if (lane == 0) {
         ++runs.back().groups;
         groups.emplace_back();
-        for (std::size_t l = 0; l < kLanes; ++l) fill_up(groups.back(), l, chunk.nodes, chunk.edges);  // those that no element takes stay so
+        edges.emplace_back();
+        numbers_.insert(numbers_.end(), kLanes, -1);
+        for (std::size_t l = 0; l < kLanes; ++l) fill_up(groups.back(), edges.back(), l, chunk.nodes, chunk.edges);  // those that no element takes stay so
       }
       ElementGroup& group = groups.back();
       const Corners corners = sorted_corners(elements, static_cast<std::size_t>(e));
-      const Mat3 rows = elements.gradients(static_cast<std::size_t>(e));
       for (std::size_t a = 0; a < 4; ++a)
         group.node[a][lane] = static_cast<std::uint16_t>(node_uses.find(c, static_cast<std::uint64_t>(node(corners[a], e))));
-      for (int r = 0; r < 3; ++r) {
-        const int corner = corners[static_cast<std::size_t>(r) + 1];
-        const Vec3 g = corner == 0 ? Vec3(-rows.colwise().sum().transpose()) : Vec3(rows.row(corner - 1).transpose());
-        for (int axis = 0; axis < 3; ++axis) group.inverse_edges[3 * r + axis][lane] = g[axis];
-      }
+      Mat3 Dm;
+      for (int a = 1; a < 4; ++a) Dm.col(a - 1) = rest.nodes.col(node(corners[static_cast<std::size_t>(a)], e)) - rest.nodes.col(node(corners[0], e));
+      const Mat3 inverse = inverse_triangle(Dm);
+      int entry = 0;
+      for (int r = 0; r < 3; ++r)
+        for (int axis = r; axis < 3; ++axis) group.inverse_edges[entry++][lane] = inverse(r, axis);
       for (std::size_t k6 = 0; k6 < 6; ++k6)
-        group.edge[k6][lane] = static_cast<std::uint16_t>(edge_uses.find(
+        edges.back().edge[k6][lane] = static_cast<std::uint16_t>(edge_uses.find(
             c, key_of(node(corners[static_cast<std::size_t>(kEdgeCorners[k6][0])], e), node(corners[static_cast<std::size_t>(kEdgeCorners[k6][1])], e))));
       group.volume[lane] = elements.volume[static_cast<std::size_t>(e)];
-      group.element[lane] = e;
+      numbers_[numbers_.size() - kLanes + lane] = e;
     }
     chunk.runs = static_cast<int>(runs.size()) - chunk.first_run;
     most_nodes = std::max(most_nodes, chunk.nodes);
@@ -188,25 +209,26 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, 
     chunks.push_back(chunk);
   }
   PALPATE_CHECK(most_nodes + 4 < 65536 && most_edges + 1 < 65536, "a chunk has {} nodes and {} edges", most_nodes, most_edges);
-  for (std::uint64_t key : node_uses.shared) shared_nodes.first.push_back(static_cast<int>(key));
-  for (std::uint64_t key : edge_uses.shared) {
-    shared_edges.first.push_back(static_cast<int>(key >> 32));
-    shared_edges.second.push_back(static_cast<int>(key & 0xffffffffu));
+  for (std::uint64_t key : node_uses.late) late_nodes.first.push_back(static_cast<int>(key));
+  for (std::uint64_t key : edge_uses.late) {
+    late_edges.first.push_back(static_cast<int>(key >> 32));
+    late_edges.second.push_back(static_cast<int>(key & 0xffffffffu));
   }
-  shared_nodes.start = node_uses.start;
-  shared_nodes.entries = node_uses.entries;
-  shared_edges.start = edge_uses.start;
-  shared_edges.entries = edge_uses.entries;
+  late_nodes.start = node_uses.start;
+  late_nodes.entries = node_uses.entries;
+  late_edges.start = edge_uses.start;
+  late_edges.entries = edge_uses.entries;
   const auto fit = [](auto&... grown) { (grown.shrink_to_fit(), ...); };
-  fit(groups, runs, chunks, nodes, ends, row_start, row_own, row_edges, shared_nodes.first, shared_edges.first, shared_edges.second);
+  fit(groups, edges, numbers_, runs, chunks, nodes, ends, row_start, row_own, row_edges, late_nodes.first, late_edges.first, late_edges.second);
   prefer_huge_pages(groups);
+  prefer_huge_pages(edges);
   prefer_huge_pages(row_edges);
 }
 
-/// The edges at each node of a chunk: its own, by the node at the other end, that is in the order of the matrix's columns; then the shared ones.
+/// The edges at each node of a chunk: its own, by the node at the other end, that is in the order of the matrix's columns; then the late ones.
 void ElementChunks::make_rows(const Chunk& chunk) {
   struct Entry {
-    bool shared;
+    bool late;
     int other;
     std::uint32_t edge;
   };
@@ -219,8 +241,8 @@ void ElementChunks::make_rows(const Chunk& chunk) {
     rows[ends[at + 1]].push_back({k >= chunk.own_edges, global(ends[at]), edge + 1});
   }
   for (auto& row : rows) {
-    std::sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) { return a.shared != b.shared ? b.shared : a.other < b.other; });
-    row_own.push_back(static_cast<std::int32_t>(std::count_if(row.begin(), row.end(), [](const Entry& e) { return !e.shared; })));
+    std::sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) { return a.late != b.late ? b.late : a.other < b.other; });
+    row_own.push_back(static_cast<std::int32_t>(std::count_if(row.begin(), row.end(), [](const Entry& e) { return !e.late; })));
     for (const Entry& e : row) row_edges.push_back(e.edge);
     row_start.push_back(static_cast<std::int32_t>(row_edges.size()));
   }
@@ -233,20 +255,24 @@ Mat3 ElementChunks::Element::edges(const double* field) const {
   return m;
 }
 
-ElementChunks::Element ElementChunks::element(const Chunk& chunk, const Run& run, const ElementGroup& group, int lane) const {
+ElementChunks::Element ElementChunks::element(const Chunk& chunk, const Run& run, int group_number, int lane) const {
+  const ElementGroup& group = groups[static_cast<std::size_t>(group_number)];
   Element out;
   out.material = run.material;
-  out.number = group.element[lane];
+  out.number = numbers_[static_cast<std::size_t>(ElementGroup::kLanes * group_number + lane)];
   for (int a = 0; a < 4; ++a) out.node[a] = nodes[static_cast<std::size_t>(chunk.first_node + group.node[a][lane])];
-  for (int k = 0; k < 9; ++k) out.gradients(k / 3, k % 3) = group.inverse_edges[k][lane];
+  out.gradients.setZero();
+  int entry = 0;
+  for (int r = 0; r < 3; ++r)
+    for (int c = r; c < 3; ++c) out.gradients(r, c) = group.inverse_edges[entry++][lane];
   out.volume = group.volume[lane];
   return out;
 }
 
 std::size_t ElementChunks::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  const auto sums = [&](const SharedSums& s) { return of(s.first) + of(s.second) + of(s.start) + of(s.entries); };
-  return of(groups) + of(runs) + of(chunks) + of(nodes) + of(ends) + of(row_start) + of(row_own) + of(row_edges) + of(nodal_volume) + sums(shared_nodes) + sums(shared_edges);
+  const auto sums = [&](const LateSums& s) { return of(s.first) + of(s.second) + of(s.start) + of(s.entries); };
+  return of(groups) + of(edges) + of(numbers_) + of(runs) + of(chunks) + of(nodes) + of(ends) + of(row_start) + of(row_own) + of(row_edges) + of(nodal_volume) + sums(late_nodes) + sums(late_edges);
 }
 
 }  // namespace palpate::fem

@@ -8,8 +8,8 @@
 
 namespace palpate::fem {
 
-/// Sums over chunks: entry k gathers the contributions entries[start[k]] to entries[start[k + 1]], places in a buffer, in the order of the chunks.
-struct SharedSums {
+/// What chunks add to nodes or edges that an earlier chunk has: entry k gathers the contributions entries[start[k]] to entries[start[k + 1]], places in a buffer, in the order of the chunks.
+struct LateSums {
   std::vector<int> first, second;  ///< the node of the body; for edges the two nodes, ascending
   std::vector<int> start{0}, entries;
   int count() const { return static_cast<int>(first.size()); }
@@ -18,8 +18,8 @@ struct SharedSums {
 
 /// The tetrahedra of a body in compact chunks, eight side by side.
 ///
-/// A chunk sums forces and matrix blocks over its own elements in memory of its own, that fits the cache; nodes and edges that no other chunk has
-/// ("own") go from there straight into the result, the others are summed over the chunks afterwards, in their order.  Chunks depend on the mesh
+/// A chunk sums forces and matrix blocks over its own elements in memory of its own, that fits the cache; nodes and edges that no earlier chunk has
+/// ("own") go from there straight into the result, the others ("late") are put aside and added afterwards, in the order of the chunks.  Chunks depend on the mesh
 /// alone, so that the sums are the same to the last bit whoever computes which chunk.
 ///
 /// A body of several materials has its elements ordered by material within each chunk, and each material begins a group of its own: the kernels run over
@@ -31,7 +31,7 @@ class ElementChunks {
     int first_run = 0, runs = 0;                   ///< in runs()
     int first_node = 0, nodes = 0, own_nodes = 0;  ///< in node(); own ones first
     int first_edge = 0, edges = 0, own_edges = 0;  ///< in ends(); own ones first
-    int first_shared_node = 0, first_shared_edge = 0;  ///< place of the others in the buffers of shared contributions
+    int first_late_node = 0, first_late_edge = 0;  ///< place of the others in the buffers of late contributions
   };
 
   /// Groups of one material, within one chunk.
@@ -47,6 +47,7 @@ class ElementChunks {
   int node_count() const { return static_cast<int>(nodal_volume.size()); }
 
   std::vector<ElementGroup> groups;
+  std::vector<GroupEdges> edges;          ///< of each group
   std::vector<Chunk> chunks;
   std::vector<Run> runs;                  ///< of each chunk, by material
   std::vector<int> nodes;                 ///< node of the body of each node of each chunk
@@ -54,11 +55,11 @@ class ElementChunks {
   std::vector<std::int32_t> row_start;    ///< the edges at node n of nodes(): row_edges[row_start[n]] to [row_start[n + 1]]
   std::vector<std::int32_t> row_own;      ///< how many of them are the chunk's own; these come first
   std::vector<std::uint32_t> row_edges;   ///< 2 edge, plus one where the node is its second
-  SharedSums shared_nodes, shared_edges;
+  LateSums late_nodes, late_edges;
   std::vector<double> nodal_volume;       ///< a quarter of each adjacent tetrahedron [m^3]
   int most_nodes = 0, most_edges = 0;     ///< in a chunk
 
-  /// One element: its number in the mesh, that of its material, its nodes in the body, ascending, the gradients g_1 to g_3 as rows, its volume.
+  /// One element: its number in the mesh, that of its material, its nodes in the body, ascending, the gradients g_1 to g_3 as rows, turned as in ElementGroup, its volume.
   struct Element {
     int number;
     int material;
@@ -74,7 +75,7 @@ class ElementChunks {
       for_each_run(chunk, [&](const Run& run) {
         for (int g = run.first_group; g < run.first_group + run.groups; ++g)
           for (int lane = 0; lane < ElementGroup::kLanes; ++lane)
-            if (groups[static_cast<std::size_t>(g)].element[lane] >= 0) f(element(chunk, run, groups[static_cast<std::size_t>(g)], lane));
+            if (numbers_[static_cast<std::size_t>(ElementGroup::kLanes * g + lane)] >= 0) f(element(chunk, run, g, lane));
       });
   }
   template <class F>
@@ -85,7 +86,8 @@ class ElementChunks {
 
  private:
   void make_rows(const Chunk& chunk);
-  Element element(const Chunk& chunk, const Run& run, const ElementGroup& group, int lane) const;
+  Element element(const Chunk& chunk, const Run& run, int group, int lane) const;
+  std::vector<std::int32_t> numbers_;     ///< in the mesh, of each lane of each group; -1 in lanes that only fill up
   int element_count_ = 0;
 };
 

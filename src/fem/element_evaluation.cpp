@@ -43,14 +43,25 @@ void for_each_sum(int count, F&& f) {
   });
 }
 
-/// Nine numbers summed over the contributions to shared edge k.
+/// sum += the contributions to late node or edge k, nine numbers each.
 template <class Real>
-void sum_blocks(const SharedSums& sums, int k, const std::vector<Real>& contributions, double* sum) {
-  std::fill_n(sum, 9, 0.0);
+void add_contributions(const LateSums& sums, int k, const std::vector<Real>& contributions, double* sum) {
   for (int p = sums.start[static_cast<std::size_t>(k)]; p < sums.start[static_cast<std::size_t>(k) + 1]; ++p) {
     const Real* block = contributions.data() + 9 * static_cast<std::size_t>(sums.entries[static_cast<std::size_t>(p)]);
     for (int c = 0; c < 9; ++c) sum[c] += block[c];
   }
+}
+
+// What the sum over a late edge reads and writes lies scattered: asked for some sums before, it is there in time.
+template <class Real>
+void fetch_block(const Real* block) {
+  __builtin_prefetch(block);
+  __builtin_prefetch(block + 8);
+}
+template <class Real>
+void fetch_contributions(const LateSums& sums, int k, const Real* contributions) {
+  for (int p = sums.start[static_cast<std::size_t>(k)]; p < sums.start[static_cast<std::size_t>(k) + 1]; ++p)
+    fetch_block(contributions + 9 * static_cast<std::size_t>(sums.entries[static_cast<std::size_t>(p)]));
 }
 
 void set_zero(const ChunkBlocks& blocks, int count) {
@@ -69,7 +80,7 @@ void keep_blocks(const ChunkBlocks& blocks, int begin, int end, double* to) {
 
 ElementEvaluation::ElementEvaluation(const TetMesh& rest, const RestElements& elements, const std::vector<int>& material_of_element, bool with_lower)
     : chunks_(rest, elements, material_of_element), kernels_(&best_kernels()), with_lower_(with_lower) {
-  shared_nodes_.resize((static_cast<std::size_t>(chunks_.shared_nodes.contributions()) + 1) / 2);
+  late_nodes_.resize((static_cast<std::size_t>(chunks_.late_nodes.contributions()) + 1) / 2);
   chunk_sums_.resize(chunks_.chunks.size());
   fit_scratch();
 }
@@ -84,30 +95,28 @@ void ElementEvaluation::fit_scratch() {
     for (auto* field : {&scratch_[s].x, &scratch_[s].v, &scratch_[s].w, &scratch_[s].sum}) field->resize((nodes + 1) / 2);
 }
 
+int ElementEvaluation::turns() const { return static_cast<int>(chunks_.chunks.size()) <= kFewChunks ? 1 : 2; }
+
+void ElementEvaluation::BlockMemory::resize(std::size_t count) {
+  first.resize(count);
+  last.resize(count);
+}
+ChunkBlocks ElementEvaluation::BlockMemory::blocks() { return {numbers(first), last.data()}; }
+
 void ElementEvaluation::fit_blocks() {
   fit_scratch();
   const auto nodes = static_cast<std::size_t>(chunks_.most_nodes) + 4, edges = static_cast<std::size_t>(chunks_.most_edges) + 1;
   for (Scratch& scratch : scratch_) {
     scratch.upper.resize(edges);
-    scratch.upper_last.resize(edges);
-    if (with_lower_) {
-      scratch.lower.resize(edges);
-      scratch.lower_last.resize(edges);
-    }
+    if (with_lower_) scratch.lower.resize(edges);
     scratch.diagonal.resize(nodes);
-    scratch.diagonal_last.resize(nodes);
   }
 }
 
 void ElementEvaluation::fit_leaving() {
   fit_scratch();
-  const auto edges = static_cast<std::size_t>(chunks_.most_edges) + 1;
-  const int turns = static_cast<int>(chunks_.chunks.size()) <= kFewChunks ? 1 : 2;
   for (Scratch& scratch : scratch_)
-    for (int turn = 0; turn < turns; ++turn) {
-      scratch.leaving[turn].resize(edges);
-      scratch.leaving_last[turn].resize(edges);
-    }
+    for (int turn = 0; turn < turns(); ++turn) scratch.leaving[turn].resize(static_cast<std::size_t>(chunks_.most_edges) + 1);
 }
 
 LaneCounts ElementEvaluation::collect_counts() {
@@ -125,6 +134,14 @@ LaneCounts ElementEvaluation::collect_counts() {
 template <class F>
 void ElementEvaluation::for_each_run(const Chunk& chunk, const ElementModels& models, F&& f) const {
   chunks_.for_each_run(chunk, [&](const ElementChunks::Run& run) { f(chunks_.groups.data() + run.first_group, run.groups, models[static_cast<std::size_t>(run.material)]); });
+}
+
+/// Runs f(groups, edges, count, model) for each material of a chunk.
+template <class F>
+void ElementEvaluation::for_each_run_with_edges(const Chunk& chunk, const ElementModels& models, F&& f) const {
+  chunks_.for_each_run(chunk, [&](const ElementChunks::Run& run) {
+    f(chunks_.groups.data() + run.first_group, chunks_.edges.data() + run.first_group, run.groups, models[static_cast<std::size_t>(run.material)]);
+  });
 }
 
 /// Behind the nodes of the chunk stand the corners of the unit tetrahedron that fills up groups.
@@ -164,7 +181,7 @@ LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModels&
     for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernel(groups, count, model, kScalarPath, fields, sum, scratch.counts); });
     flush_nodal(chunk, sum, out);
   });
-  add_shared_nodes(out);
+  add_late_nodes(out);
   return collect_counts();
 }
 
@@ -175,18 +192,18 @@ void ElementEvaluation::flush_nodal(const Chunk& chunk, const double* sum, doubl
     if (n + kNodesAhead < chunk.own_nodes) __builtin_prefetch(out + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
     for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)] += sum[4 * n + axis];
   }
-  std::copy_n(sum + 4 * chunk.own_nodes, 4 * (chunk.nodes - chunk.own_nodes), numbers(shared_nodes_) + 4 * static_cast<std::size_t>(chunk.first_shared_node));
+  std::copy_n(sum + 4 * chunk.own_nodes, 4 * (chunk.nodes - chunk.own_nodes), numbers(late_nodes_) + 4 * static_cast<std::size_t>(chunk.first_late_node));
 }
 
-void ElementEvaluation::add_shared_nodes(double* out) const {
-  const SharedSums& shared = chunks_.shared_nodes;
-  for_each_sum(shared.count(), [&](int k) {
+void ElementEvaluation::add_late_nodes(double* out) const {
+  const LateSums& late = chunks_.late_nodes;
+  for_each_sum(late.count(), [&](int k) {
     double sum[3] = {0.0, 0.0, 0.0};
-    for (int p = shared.start[static_cast<std::size_t>(k)]; p < shared.start[static_cast<std::size_t>(k) + 1]; ++p) {
-      const double* part = shared_nodes_.front().value + 4 * static_cast<std::size_t>(shared.entries[static_cast<std::size_t>(p)]);
+    for (int p = late.start[static_cast<std::size_t>(k)]; p < late.start[static_cast<std::size_t>(k) + 1]; ++p) {
+      const double* part = late_nodes_.front().value + 4 * static_cast<std::size_t>(late.entries[static_cast<std::size_t>(p)]);
       for (int axis = 0; axis < 3; ++axis) sum[axis] += part[axis];
     }
-    for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(shared.first[static_cast<std::size_t>(k)]) + static_cast<std::size_t>(axis)] += sum[axis];
+    for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(late.first[static_cast<std::size_t>(k)]) + static_cast<std::size_t>(axis)] += sum[axis];
   });
 }
 
@@ -202,61 +219,46 @@ LaneCounts ElementEvaluation::add_tangent(const ElementModels& models, const Bod
   workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
-    const ChunkBlocks upper{numbers(scratch.upper), scratch.upper_last.data()}, lower{numbers(scratch.lower), scratch.lower_last.data()};
-    const ChunkBlocks diagonal{numbers(scratch.diagonal), scratch.diagonal_last.data()};
+    const ChunkBlocks upper = scratch.upper.blocks(), lower = scratch.lower.blocks(), diagonal = scratch.diagonal.blocks();
     set_zero(upper, chunk.edges + 1);
     if (!symmetric) set_zero(lower, chunk.edges + 1);
     const ChunkFields fields = load(chunk, at, scratch);
-    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->tangent(groups, count, model, kScalarPath, fields, upper, lower, scratch.counts); });
+    for_each_run_with_edges(chunk, models, [&](const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model) {
+      kernels_->tangent(groups, edges, count, model, kScalarPath, fields, upper, lower, scratch.counts);
+    });
     const BlockTargets targets{chunk.nodes, chunk.own_nodes, chunks_.row_start.data() + chunk.first_node, chunks_.row_own.data() + chunk.first_node,
                                chunks_.row_edges.data(), slots_.data(), chunk_diagonal_.data() + chunk.first_node};
     kernels_->flush(targets, upper, lower, symmetric, diagonal, A.values().data());
-    const auto edge_place = 9 * static_cast<std::size_t>(chunk.first_shared_edge);
-    keep_blocks(upper, chunk.own_edges, chunk.edges, shared_upper_.data() + edge_place);
-    if (!symmetric) keep_blocks(lower, chunk.own_edges, chunk.edges, shared_lower_.data() + edge_place);
-    keep_blocks(diagonal, chunk.own_nodes, chunk.nodes, shared_diagonal_.data() + 9 * static_cast<std::size_t>(chunk.first_shared_node));
+    const auto edge_place = 9 * static_cast<std::size_t>(chunk.first_late_edge);
+    keep_blocks(upper, chunk.own_edges, chunk.edges, late_upper_.data() + edge_place);
+    if (!symmetric) keep_blocks(lower, chunk.own_edges, chunk.edges, late_lower_.data() + edge_place);
+    keep_blocks(diagonal, chunk.own_nodes, chunk.nodes, late_diagonal_.data() + 9 * static_cast<std::size_t>(chunk.first_late_node));
   });
-  add_shared_blocks(symmetric, A);
+  add_late_blocks(symmetric, A);
   return collect_counts();
 }
 
-void ElementEvaluation::add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const {
-  const int edges = chunks_.shared_edges.count();
+void ElementEvaluation::add_late_blocks(bool symmetric, dynamics::BlockSparse& A) const {
+  const LateSums& late = chunks_.late_edges;
+  const int edges = late.count();
+  const auto slot = [&](int k, int side) { return late_slots_[static_cast<std::size_t>(2 * k + side)]; };
   for_each_sum(edges, [&](int k) {
-    if (k + kSumsAhead < edges) fetch_sum<2>(k + kSumsAhead, shared_slots_.data(), shared_upper_.data(), A.values().data());
-    double sum[9];
-    sum_blocks(chunks_.shared_edges, k, shared_upper_, sum);
-    double *above = A.block(shared_slots_[2 * static_cast<std::size_t>(k)]), *below = A.block(shared_slots_[2 * static_cast<std::size_t>(k) + 1]);
-    for (int c = 0; c < 9; ++c) above[c] += sum[c];
-    if (symmetric) {
-      for (int c = 0; c < 9; ++c) below[c] += sum[c % 3 * 3 + c / 3];
-    } else {
-      sum_blocks(chunks_.shared_edges, k, shared_lower_, sum);
-      for (int c = 0; c < 9; ++c) below[c] += sum[c];
+    if (k + kSumsAhead < edges) {
+      fetch_contributions(late, k + kSumsAhead, late_upper_.data());
+      for (int side = 0; side < 2; ++side) fetch_block(A.block(slot(k + kSumsAhead, side)));
     }
+    double above[9] = {}, below[9] = {};
+    add_contributions(late, k, late_upper_, above);
+    if (symmetric)
+      for (int c = 0; c < 9; ++c) below[c] = above[c % 3 * 3 + c / 3];
+    else
+      add_contributions(late, k, late_lower_, below);
+    for (int c = 0; c < 9; ++c) A.block(slot(k, 0))[c] += above[c];
+    for (int c = 0; c < 9; ++c) A.block(slot(k, 1))[c] += below[c];
   });
-  for_each_sum(chunks_.shared_nodes.count(), [&](int k) {
-    double sum[9];
-    sum_blocks(chunks_.shared_nodes, k, shared_diagonal_, sum);
-    double* block = A.block(diagonal_[static_cast<std::size_t>(chunks_.shared_nodes.first[static_cast<std::size_t>(k)])]);
-    for (int c = 0; c < 9; ++c) block[c] += sum[c];
+  for_each_sum(chunks_.late_nodes.count(), [&](int k) {
+    add_contributions(chunks_.late_nodes, k, late_diagonal_, A.block(diagonal_[static_cast<std::size_t>(chunks_.late_nodes.first[static_cast<std::size_t>(k)])]));
   });
-}
-
-/// What the sum over shared edge k reads and writes lies scattered: asked for some sums before, it is there in time.
-template <int kPlaces, class Real>
-void ElementEvaluation::fetch_sum(int k, const std::int32_t* places, const Real* contributions, const Real* values) const {
-  const auto edge = static_cast<std::size_t>(k);
-  for (int p = chunks_.shared_edges.start[edge]; p < chunks_.shared_edges.start[edge + 1]; ++p) {
-    const Real* block = contributions + 9 * static_cast<std::size_t>(chunks_.shared_edges.entries[static_cast<std::size_t>(p)]);
-    __builtin_prefetch(block);
-    __builtin_prefetch(block + 8);
-  }
-  for (std::size_t at = kPlaces * edge; at < kPlaces * (edge + 1); ++at) {
-    const Real* place = values + 9 * static_cast<std::size_t>(places[at]);
-    __builtin_prefetch(place);
-    __builtin_prefetch(place + 8);
-  }
 }
 
 LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFields& at, int first_node, double* f, dynamics::BalancedMatrix& A) {
@@ -267,7 +269,7 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
   workers::for_each(chunks, [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
-    const ChunkBlocks upper{numbers(scratch.leaving[scratch.turn]), scratch.leaving_last[scratch.turn].data()};
+    const ChunkBlocks upper = scratch.leaving[scratch.turn].blocks();
     double* sum = numbers(scratch.sum);
     std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
     const ChunkFields fields = load(chunk, at, scratch);
@@ -275,12 +277,14 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
     int groups_here = 0;
     chunks_.for_each_run(chunk, [&](const ElementChunks::Run& run) { groups_here += run.groups; });
     before.at_a_time = before.count / std::max(1, groups_here) + 1;
-    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->step(groups, count, model, kScalarPath, fields, sum, upper, before, scratch.counts); });
+    for_each_run_with_edges(chunk, models, [&](const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model) {
+      kernels_->step(groups, edges, count, model, kScalarPath, fields, sum, upper, before, scratch.counts);
+    });
     flush_nodal(chunk, sum, f);
     kernels_->leave(before, before.count);
     before = {upper, leaving_edges_.data() + chunk.first_edge, places_.data() + chunk.first_edge, A.values.data(),
-              shared_single_.data() + 9 * static_cast<std::size_t>(chunk.first_shared_edge), chunk.own_edges, chunk.edges};
-    if (chunks <= kFewChunks || c + workers::count() >= chunks)  // likely this thread's last
+              late_single_.data() + 9 * static_cast<std::size_t>(chunk.first_late_edge), chunk.own_edges, chunk.edges};
+    if (turns() == 1 || c + workers::count() >= chunks)  // likely this thread's last
       kernels_->leave(before, before.count);
     else
       scratch.turn = 1 - scratch.turn;
@@ -289,18 +293,26 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
     kernels_->leave(scratch.before, scratch.before.count);
     scratch.before = {};
   }
-  add_shared_nodes(f);
-  store_shared_blocks(A);
+  add_late_nodes(f);
+  add_late_blocks(A);
   return collect_counts();
 }
 
-void ElementEvaluation::store_shared_blocks(dynamics::BalancedMatrix& A) const {
-  const int edges = chunks_.shared_edges.count();
+/// The first share stands in the matrix, rounded as the others are: the sum is made in double, in the order of the chunks.
+void ElementEvaluation::add_late_blocks(dynamics::BalancedMatrix& A) const {
+  const LateSums& late = chunks_.late_edges;
+  const int edges = late.count();
   for_each_sum(edges, [&](int k) {
-    if (k + kSumsAhead < edges) fetch_sum<1>(k + kSumsAhead, shared_places_.data(), shared_single_.data(), A.values.data());
+    if (k + kSumsAhead < edges) {
+      const LatePlace& coming = late_places_[static_cast<std::size_t>(k + kSumsAhead)];
+      fetch_contributions(late, coming.edge, late_single_.data());
+      fetch_block(A.values.data() + 9 * static_cast<std::size_t>(coming.place));
+    }
+    const auto [place, edge] = late_places_[static_cast<std::size_t>(k)];
+    float* to = A.values.data() + 9 * static_cast<std::size_t>(place);
     double sum[9];
-    sum_blocks(chunks_.shared_edges, k, shared_single_, sum);
-    float* to = A.values.data() + 9 * static_cast<std::size_t>(shared_places_[static_cast<std::size_t>(k)]);
+    std::copy_n(to, 9, sum);
+    add_contributions(late, edge, late_single_, sum);
     for (int c = 0; c < 9; ++c) to[c] = static_cast<float>(sum[c]);
   });
 }

@@ -49,54 +49,69 @@ class ElementEvaluation {
  private:
   struct alignas(64) Line { double value[8]; };
 
+  struct BlockMemory {
+    std::vector<Line> first;  ///< rows of eight
+    std::vector<double> last;
+    void resize(std::size_t count);
+    ChunkBlocks blocks();
+    std::size_t bytes() const { return first.capacity() * sizeof(Line) + last.capacity() * sizeof(double); }
+  };
+
   /// Memory of one thread.
   struct Scratch {
     std::vector<Line> x, v, w, sum;             ///< nodal, four doubles a node
-    std::vector<Line> upper, lower, diagonal;   ///< rows of eight
-    std::vector<double> upper_last, lower_last, diagonal_last;
-    std::vector<Line> leaving[2];               ///< blocks of two chunks by turns (of few chunks, of one), zero between steps
-    std::vector<double> leaving_last[2];
+    BlockMemory upper, lower, diagonal;
+    BlockMemory leaving[2];                     ///< blocks of two chunks by turns (of few chunks, of one), zero between steps
     int turn = 0;
     LeavingBlocks before;                       ///< of the chunk before
     LaneCounts counts;
   };
+
+  /// Of an edge of ElementChunks::late_edges in a BalancedMatrix.
+  struct LatePlace {
+    std::int32_t place;
+    int edge;
+  };
+
   template <class F>
   void for_each_run(const ElementChunks::Chunk& chunk, const ElementModels& models, F&& f) const;
+  template <class F>
+  void for_each_run_with_edges(const ElementChunks::Chunk& chunk, const ElementModels& models, F&& f) const;
   using NodalKernel = decltype(LaneKernels::force);
 
+  int turns() const;
   void fit_scratch();
   void fit_blocks();   ///< for matrices in double
   void fit_leaving();  ///< for balanced ones
   LaneCounts collect_counts();
   ChunkFields load(const ElementChunks::Chunk& chunk, const BodyFields& at, Scratch& scratch) const;
   void flush_nodal(const ElementChunks::Chunk& chunk, const double* sum, double* out);
-  void add_shared_nodes(double* out) const;
+  void add_late_nodes(double* out) const;
   void prepare_places(int first_node, const dynamics::BalancedMatrix& A);
-  void store_shared_blocks(dynamics::BalancedMatrix& A) const;
+  void add_late_blocks(dynamics::BalancedMatrix& A) const;
   LaneCounts add_nodal(NodalKernel kernel, const ElementModels& models, const BodyFields& at, double* out);
-  void add_shared_blocks(bool symmetric, dynamics::BlockSparse& A) const;
-  template <int kPlaces, class Real>
-  void fetch_sum(int k, const std::int32_t* places, const Real* contributions, const Real* values) const;
+  void add_late_blocks(bool symmetric, dynamics::BlockSparse& A) const;
 
   ElementChunks chunks_;
   const LaneKernels* kernels_;
   bool with_lower_;
   std::vector<Scratch> scratch_;                       ///< one a thread
-  std::vector<Line> shared_nodes_;                     ///< half a line a contribution
-  std::vector<double> shared_upper_, shared_lower_;    ///< nine doubles a contribution
-  std::vector<float> shared_single_;                   ///< nine a contribution to a BalancedMatrix, which is no finer itself
-  std::vector<double> shared_diagonal_;
+  std::vector<Line> late_nodes_;                       ///< half a line a contribution
+  std::vector<double> late_upper_, late_lower_;        ///< nine doubles a contribution
+  std::vector<float> late_single_;                     ///< nine a contribution to a BalancedMatrix, which is no finer itself
+  std::vector<double> late_diagonal_;
   std::vector<double> chunk_sums_;
   // the maps
   std::uint64_t pattern_version_ = 0;
   int first_node_ = -1;
   std::vector<std::int32_t> slots_;                    ///< of each entry of ElementChunks::row_edges
-  std::vector<std::int32_t> places_, shared_places_;   ///< in a BalancedMatrix: of each chunk's own edges, ascending; of each shared edge
-  std::vector<std::uint16_t> leaving_edges_;           ///< the edge of each of places_, then the others
+  std::vector<std::int32_t> places_;                   ///< in a BalancedMatrix, of each chunk's own edges, ascending
+  std::vector<std::uint16_t> leaving_edges_;           ///< the edge of each of places_, then the late ones
+  std::vector<LatePlace> late_places_;                 ///< ascending
   std::uint64_t places_version_ = 0;
   int places_first_node_ = -1;
   std::vector<std::int32_t> chunk_diagonal_;           ///< of each node of each chunk
-  std::vector<std::int32_t> shared_slots_;             ///< (i, j) and (j, i) of each shared edge
+  std::vector<std::int32_t> late_slots_;               ///< (i, j) and (j, i) of each late edge
   std::vector<std::int32_t> diagonal_;                 ///< of each node of the body
 };
 

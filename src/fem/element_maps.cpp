@@ -23,7 +23,7 @@ std::int32_t slot_of(const dynamics::BlockSparse& A, int i, int j) {
 
 /// at(i, j) and at(j, i) of each edge that chunks share.
 template <class At>
-void find_both_sides(const SharedSums& edges, At&& at, std::vector<std::int32_t>& sides) {
+void find_both_sides(const LateSums& edges, At&& at, std::vector<std::int32_t>& sides) {
   sides.resize(2 * edges.first.size());
   for (std::size_t k = 0; k < edges.first.size(); ++k) {
     sides[2 * k] = at(edges.first[k], edges.second[k]);
@@ -48,12 +48,12 @@ void ElementEvaluation::prepare(int first_node, const dynamics::BlockSparse& A) 
         const std::size_t other = 2 * (static_cast<std::size_t>(chunk.first_edge) + entry / 2) + (1 - entry % 2);
         slots_[static_cast<std::size_t>(p)] = slot(chunks_.nodes[static_cast<std::size_t>(n)], chunks_.nodes[static_cast<std::size_t>(chunk.first_node + chunks_.ends[other])]);
       }
-  find_both_sides(chunks_.shared_edges, slot, shared_slots_);
-  const auto edge_places = static_cast<std::size_t>(chunks_.shared_edges.contributions());
-  shared_upper_.resize(9 * edge_places);
-  if (with_lower_) shared_lower_.resize(9 * edge_places);
-  shared_diagonal_.resize(9 * static_cast<std::size_t>(chunks_.shared_nodes.contributions()));
-  for (const auto* shared : {&shared_upper_, &shared_lower_, &shared_diagonal_}) prefer_huge_pages(*shared);
+  find_both_sides(chunks_.late_edges, slot, late_slots_);
+  const auto edge_places = static_cast<std::size_t>(chunks_.late_edges.contributions());
+  late_upper_.resize(9 * edge_places);
+  if (with_lower_) late_lower_.resize(9 * edge_places);
+  late_diagonal_.resize(9 * static_cast<std::size_t>(chunks_.late_nodes.contributions()));
+  for (const auto* late : {&late_upper_, &late_lower_, &late_diagonal_}) prefer_huge_pages(*late);
   prefer_huge_pages(slots_);
   pattern_version_ = A.pattern_version();
   first_node_ = first_node;
@@ -79,24 +79,25 @@ void ElementEvaluation::prepare_places(int first_node, const dynamics::BalancedM
     }
     for (int k = chunk.own_edges; k < chunk.edges; ++k) leaving_edges_[static_cast<std::size_t>(chunk.first_edge + k)] = static_cast<std::uint16_t>(k);
   }
-  shared_single_.assign(9 * static_cast<std::size_t>(chunks_.shared_edges.contributions()), 0.0f);
-  prefer_huge_pages(shared_single_);
-  shared_places_.resize(static_cast<std::size_t>(chunks_.shared_edges.count()));
-  for (std::size_t k = 0; k < shared_places_.size(); ++k) shared_places_[k] = place(chunks_.shared_edges.first[k], chunks_.shared_edges.second[k]);
+  late_places_.clear();
+  for (int k = 0; k < chunks_.late_edges.count(); ++k) late_places_.push_back({place(chunks_.late_edges.first[static_cast<std::size_t>(k)], chunks_.late_edges.second[static_cast<std::size_t>(k)]), k});
+  std::sort(late_places_.begin(), late_places_.end(), [](const LatePlace& a, const LatePlace& b) { return a.place < b.place; });
+  late_single_.assign(9 * static_cast<std::size_t>(chunks_.late_edges.contributions()), 0.0f);
+  prefer_huge_pages(late_single_);
   prefer_huge_pages(places_);
   places_version_ = A.places_version;
   places_first_node_ = first_node;
 }
 
 std::size_t ElementEvaluation::map_bytes() const {
-  return bytes_of(slots_) + bytes_of(chunk_diagonal_) + bytes_of(shared_slots_) + bytes_of(diagonal_) + bytes_of(places_) + bytes_of(leaving_edges_) + bytes_of(shared_places_);
+  return bytes_of(slots_) + bytes_of(chunk_diagonal_) + bytes_of(late_slots_) + bytes_of(diagonal_) + bytes_of(places_) + bytes_of(leaving_edges_) + bytes_of(late_places_);
 }
 
 std::size_t ElementEvaluation::scratch_bytes() const {
-  std::size_t sum = bytes_of(shared_nodes_) + bytes_of(shared_upper_) + bytes_of(shared_lower_) + bytes_of(shared_diagonal_) + bytes_of(shared_single_) + bytes_of(chunk_sums_);
+  std::size_t sum = bytes_of(late_nodes_) + bytes_of(late_upper_) + bytes_of(late_lower_) + bytes_of(late_diagonal_) + bytes_of(late_single_) + bytes_of(chunk_sums_);
   for (const Scratch& s : scratch_) {
-    for (const auto* lines : {&s.x, &s.v, &s.w, &s.sum, &s.upper, &s.lower, &s.diagonal, &s.leaving[0], &s.leaving[1]}) sum += bytes_of(*lines);
-    for (const auto* numbers : {&s.upper_last, &s.lower_last, &s.diagonal_last, &s.leaving_last[0], &s.leaving_last[1]}) sum += bytes_of(*numbers);
+    for (const auto* lines : {&s.x, &s.v, &s.w, &s.sum}) sum += bytes_of(*lines);
+    for (const auto* blocks : {&s.upper, &s.lower, &s.diagonal, &s.leaving[0], &s.leaving[1]}) sum += blocks->bytes();
   }
   return sum;
 }

@@ -2,22 +2,18 @@
 // The element matrices in lanes.  Only the six blocks K_ab, a < b, of the edges are made: a translation of the element changes nothing, so that
 // the blocks of each row sum to zero and a diagonal block is minus the sum of the others of its row, taken once for the whole chunk (lane_flush.h) or by who reads the matrix.
 
-/// What the blocks of an element are made of; h_0 = -(h_1 + h_2 + h_3), and g, k, l likewise.
+/// What the blocks of an element are made of; h_0 = -(h_1 + h_2 + h_3), and k, l likewise.
 struct BlockParts {
-  Vector g[4], h[4], k[4], l[4];
+  Pack gg[4][4];    ///< g_a . g_b of a != b
+  Vector h[4], k[4], l[4];
   Matrix hC[3];     ///< [h_a]x C, scaled
   Pack mu2, lambda; ///< 2 mu, lambda of stiffness, scaled
   Symmetric B2;     ///< mu_d F F^T of the damping, scaled
   Pack damping_mu, damping_lambda;
   Matrix FFdot;     ///< of the damping's derivative by position
-  Vector Sigma_g[4];
+  Pack g_Sigma_g[4][4];
   Pack position_mu, position_lambda, position;
 };
-
-PALPATE_INLINE void spread(const Matrix& M, const Matrix& G, Vector* v) {
-  for (int a = 0; a < 3; ++a) v[a + 1] = apply(M, G.row[a]);
-  v[0] = -(v[1] + v[2] + v[3]);
-}
 
 /// block += a b^T
 PALPATE_INLINE void add_outer(Matrix& block, const Vector& a, const Vector& b) {
@@ -31,37 +27,37 @@ PALPATE_INLINE void add_diagonal(Matrix& block, Pack s) {
   block.row[2].z += s;
 }
 
-/// lambda h_a h_b^T + [h_a]x C [h_b]x + 2 mu (h_a . h_b) I.  A row m^T of [h_a]x C gives (m x h_b)^T.
+/// lambda h_a h_b^T + [h_a]x C [h_b]x + 2 mu (g_a . g_b) I.  A row m^T of [h_a]x C gives (m x h_b)^T.
 PALPATE_INLINE Matrix coupled_block(const BlockParts& e, int a, int b) {
   Matrix block;
   for (int r = 0; r < 3; ++r) block.row[r] = cross(e.hC[a].row[r], e.h[b]);
   add_outer(block, e.lambda * e.h[a], e.h[b]);
-  add_diagonal(block, e.mu2 * dot(e.h[a], e.h[b]));
+  add_diagonal(block, e.mu2 * e.gg[a][b]);
   return block;
 }
 
-/// The same with C = mu I: lambda h_a h_b^T + mu h_b h_a^T + mu (h_a . h_b) I.
+/// The same with C = mu I: lambda h_a h_b^T + mu h_b h_a^T + mu (g_a . g_b) I.
 PALPATE_INLINE Matrix warped_block(const BlockParts& e, int a, int b) {
   const Vector p = e.lambda * e.h[a], q = (0.5 * e.mu2) * e.h[a];
   Matrix block{{p.x * e.h[b], p.y * e.h[b], p.z * e.h[b]}};
   add_outer(block, e.h[b], q);
-  add_diagonal(block, dot(q, e.h[b]));
+  add_diagonal(block, (0.5 * e.mu2) * e.gg[a][b]);
   return block;
 }
 
 /// mu_d ((g_a . g_b) B2 + k_b k_a^T) + lambda_d k_a k_b^T
 PALPATE_INLINE void add_damping_block(Matrix& block, const BlockParts& e, int a, int b) {
-  block = block + dot(e.g[a], e.g[b]) * full(e.B2);
+  block = block + e.gg[a][b] * full(e.B2);
   add_outer(block, e.damping_mu * e.k[b], e.k[a]);
   add_outer(block, e.damping_lambda * e.k[a], e.k[b]);
 }
 
 /// (g_a . Sigma g_b) I + mu_d ((g_a . g_b) F F'^T + k_b l_a^T) + lambda_d k_a l_b^T
 PALPATE_INLINE void add_position_block(Matrix& block, const BlockParts& e, int a, int b) {
-  block = block + (e.position_mu * dot(e.g[a], e.g[b])) * e.FFdot;
+  block = block + (e.position_mu * e.gg[a][b]) * e.FFdot;
   add_outer(block, e.position_mu * e.k[b], e.l[a]);
   add_outer(block, e.position_lambda * e.k[a], e.l[b]);
-  add_diagonal(block, e.position * dot(e.g[a], e.Sigma_g[b]));
+  add_diagonal(block, e.position * e.g_Sigma_g[a][b]);
 }
 
 PALPATE_INLINE void scatter_block(const ChunkBlocks& blocks, const std::uint16_t* edge, const Matrix& block) {
@@ -73,7 +69,7 @@ PALPATE_INLINE void scatter_block(const ChunkBlocks& blocks, const std::uint16_t
 enum class Blocks { kDampingOnly, kWarped, kCoupled };
 
 template <Blocks kBlocks, bool kDamped, bool kByPosition>
-PALPATE_INLINE void edge_block(const Lanes& at, const BlockParts& e, int number, int a, int b, const ChunkBlocks& upper, const ChunkBlocks& lower) {
+PALPATE_INLINE void edge_block(const std::uint16_t* edge, const BlockParts& e, int a, int b, const ChunkBlocks& upper, const ChunkBlocks& lower) {
   Matrix block{};
   if constexpr (kBlocks == Blocks::kWarped) block = warped_block(e, a, b);
   if constexpr (kBlocks == Blocks::kCoupled) block = coupled_block(e, a, b);
@@ -82,15 +78,15 @@ PALPATE_INLINE void edge_block(const Lanes& at, const BlockParts& e, int number,
     Matrix below{{{block.row[0].x, block.row[1].x, block.row[2].x}, {block.row[0].y, block.row[1].y, block.row[2].y},
                   {block.row[0].z, block.row[1].z, block.row[2].z}}};
     add_position_block(below, e, b, a);
-    scatter_block(lower, at.edge(number), below);
+    scatter_block(lower, edge, below);
     add_position_block(block, e, a, b);
   }
-  scatter_block(upper, at.edge(number), block);
+  scatter_block(upper, edge, block);
 }
 
 /// h, and [h_a]x C of a coupled block.
 template <Blocks kBlocks>
-PALPATE_INLINE void set_elastic(BlockParts& e, const ElementModel& model, const Matrix& R, const Symmetric& C, const Matrix& G, Pack volume) {
+PALPATE_INLINE void set_elastic(BlockParts& e, const ElementModel& model, const Matrix& R, const Symmetric& C, const Gradients& G, Pack volume) {
   const Pack k = model.k_scale * volume;
   e.mu2 = (2.0 * model.mu) * k;
   e.lambda = model.lambda * k;
@@ -103,11 +99,15 @@ PALPATE_INLINE void set_elastic(BlockParts& e, const ElementModel& model, const 
   }
 }
 
-/// g and k.
-PALPATE_INLINE void set_gradients(BlockParts& e, const Matrix& F, const Matrix& G) {
-  for (int a = 0; a < 3; ++a) e.g[a + 1] = G.row[a];
-  e.g[0] = -(e.g[1] + e.g[2] + e.g[3]);
-  spread(F, G, e.k);
+/// g_a . v_b for a != b, of v_b = S g_b with a symmetric S: both ways round the same, and each row of the whole sums to zero.
+PALPATE_INLINE void products_with_gradients(const Gradients& G, const Vector* v, Pack (&p)[4][4]) {
+  const Pack p11 = G.xx * v[1].x + G.xy * v[1].y + G.xz * v[1].z, p22 = G.yy * v[2].y + G.yz * v[2].z, p33 = G.zz * v[3].z;
+  p[1][2] = p[2][1] = G.yy * v[1].y + G.yz * v[1].z;
+  p[1][3] = p[3][1] = G.zz * v[1].z;
+  p[2][3] = p[3][2] = G.zz * v[2].z;
+  p[0][1] = p[1][0] = -(p11 + p[1][2] + p[1][3]);
+  p[0][2] = p[2][0] = -(p[1][2] + p22 + p[2][3]);
+  p[0][3] = p[3][0] = -(p[1][3] + p[2][3] + p33);
 }
 
 PALPATE_INLINE void set_damping(BlockParts& e, const ElementModel& model, const Matrix& F, Pack volume) {
@@ -118,9 +118,11 @@ PALPATE_INLINE void set_damping(BlockParts& e, const ElementModel& model, const 
   e.B2 = {e.damping_mu * FFt.xx, e.damping_mu * FFt.yy, e.damping_mu * FFt.zz, e.damping_mu * FFt.yz, e.damping_mu * FFt.xz, e.damping_mu * FFt.xy};
 }
 
-PALPATE_INLINE void set_position(BlockParts& e, const ElementModel& model, const Matrix& F, const Matrix& F_dot, const Matrix& G, Pack volume) {
+PALPATE_INLINE void set_position(BlockParts& e, const ElementModel& model, const Matrix& F, const Matrix& F_dot, const Gradients& G, Pack volume) {
   spread(F_dot, G, e.l);
-  spread(full(damping_stress(symmetric_product(F, F_dot), model)), G, e.Sigma_g);
+  Vector Sigma_g[4];
+  spread(full(damping_stress(symmetric_product(F, F_dot), model)), G, Sigma_g);
+  products_with_gradients(G, Sigma_g, e.g_Sigma_g);
   e.FFdot = times_transposed(F, F_dot);
   e.position = model.k_scale * volume;
   e.position_mu = model.damping_mu * e.position;
@@ -128,29 +130,32 @@ PALPATE_INLINE void set_position(BlockParts& e, const ElementModel& model, const
 }
 
 template <Blocks kBlocks, bool kDamped, bool kByPosition>
-PALPATE_INLINE void edge_blocks(const Lanes& at, const BlockParts& e, const ChunkBlocks& upper, const ChunkBlocks& lower) {
-  edge_block<kBlocks, kDamped, kByPosition>(at, e, 0, 0, 1, upper, lower);
-  edge_block<kBlocks, kDamped, kByPosition>(at, e, 1, 0, 2, upper, lower);
-  edge_block<kBlocks, kDamped, kByPosition>(at, e, 2, 0, 3, upper, lower);
-  edge_block<kBlocks, kDamped, kByPosition>(at, e, 3, 1, 2, upper, lower);
-  edge_block<kBlocks, kDamped, kByPosition>(at, e, 4, 1, 3, upper, lower);
-  edge_block<kBlocks, kDamped, kByPosition>(at, e, 5, 2, 3, upper, lower);
+PALPATE_INLINE void edge_blocks(const GroupEdges& edges, int first, const BlockParts& e, const ChunkBlocks& upper, const ChunkBlocks& lower) {
+  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[0] + first, e, 0, 1, upper, lower);
+  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[1] + first, e, 0, 2, upper, lower);
+  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[2] + first, e, 0, 3, upper, lower);
+  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[3] + first, e, 1, 2, upper, lower);
+  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[4] + first, e, 1, 3, upper, lower);
+  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[5] + first, e, 2, 3, upper, lower);
 }
 
 template <bool kDamped, bool kByPosition>
-PALPATE_INLINE void set_rates(BlockParts& e, const Lanes& at, const ElementModel& model, const Matrix& F, const Matrix& G, Pack volume, const ChunkFields& fields) {
-  if constexpr (kDamped || kByPosition) set_gradients(e, F, G);
+PALPATE_INLINE void set_rates(BlockParts& e, const Lanes& at, const ElementModel& model, const Matrix& F, const Gradients& G, Pack volume, const ChunkFields& fields) {
+  const Vector g[4] = {{}, {G.xx, G.xy, G.xz}, {Pack{}, G.yy, G.yz}, {Pack{}, Pack{}, G.zz}};
+  products_with_gradients(G, g, e.gg);
+  if constexpr (kDamped || kByPosition) spread(F, G, e.k);
   if constexpr (kDamped) set_damping(e, model, F, volume);
   if constexpr (kByPosition) set_position(e, model, F, gradient_of(at, G, fields.v), G, volume);
 }
 
 /// Deformation gradient and rotation of an element serve all that is asked for: the blocks, and in a linearly implicit step (kStep) the forces less the stiffness times w.
 template <Blocks kBlocks, bool kDamped, bool kByPosition, bool kStep>
-static void blocks_of(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
+static void blocks_of(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                       const ChunkBlocks& upper, const ChunkBlocks& lower, LeavingBlocks* before, LaneCounts& counts) {
   for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
-    const Matrix G = gradients(at);
+    const Gradients G = gradients(at);
     const Pack volume = at.volume();
+    if (at.first == 0) fetch_ahead(edges, at.number);
     Symmetric C{};
     if constexpr (kBlocks == Blocks::kCoupled || kStep) C = coupling(model, F, R, scalar, counts);
     if constexpr (kStep) {
@@ -160,31 +165,32 @@ static void blocks_of(const ElementGroup* groups, int count, const ElementModel&
     BlockParts e;
     set_elastic<kBlocks>(e, model, R, C, G, volume);
     set_rates<kDamped, kByPosition>(e, at, model, F, G, volume, fields);
-    edge_blocks<kBlocks, kDamped, kByPosition>(at, e, upper, lower);
+    edge_blocks<kBlocks, kDamped, kByPosition>(edges[at.number], at.first, e, upper, lower);
     if constexpr (kStep)
       if (at.first == 0) leave(*before, before->at_a_time);
   });
 }
 
-static void damping_blocks(const ElementGroup* groups, int count, const ElementModel& model, const ChunkFields& fields, const ChunkBlocks& upper) {
+static void damping_blocks(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model, const ChunkFields& fields, const ChunkBlocks& upper) {
   for (int g = 0; g < count; ++g) {
-    fetch_ahead(groups, g, count);
+    fetch_ahead(groups, g);
+    fetch_ahead(edges, g);
     for (int part = 0; part < 8; part += kWidth) {
-      const Lanes at{groups[g], part};
-      const Matrix G = gradients(at);
+      const Lanes at{groups[g], part, g};
+      const Gradients G = gradients(at);
       BlockParts e;
       set_rates<true, false>(e, at, model, gradient_of(at, G, fields.x), G, at.volume(), fields);
-      edge_blocks<Blocks::kDampingOnly, true, false>(at, e, upper, {});
+      edge_blocks<Blocks::kDampingOnly, true, false>(edges[g], part, e, upper, {});
     }
   }
 }
 
-static void tangent(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields,
+static void tangent(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields,
                     const ChunkBlocks& upper, const ChunkBlocks& lower, LaneCounts& counts) {
   const bool damped = model.damping_mu > 0.0 && model.d_scale != 0.0, elastic = model.k_scale != 0.0;
   const bool by_position = elastic && model.by_position;
-  const auto run = [&](auto* blocks) { blocks(groups, count, model, scalar, fields, nullptr, upper, lower, nullptr, counts); };
-  if (!elastic) return damping_blocks(groups, count, model, fields, upper);
+  const auto run = [&](auto* blocks) { blocks(groups, edges, count, model, scalar, fields, nullptr, upper, lower, nullptr, counts); };
+  if (!elastic) return damping_blocks(groups, edges, count, model, fields, upper);
   if (model.warped) {
     if (by_position) return run(damped ? blocks_of<Blocks::kWarped, true, true, false> : blocks_of<Blocks::kWarped, false, true, false>);
     return run(damped ? blocks_of<Blocks::kWarped, true, false, false> : blocks_of<Blocks::kWarped, false, false, false>);
@@ -193,10 +199,10 @@ static void tangent(const ElementGroup* groups, int count, const ElementModel& m
   return run(damped ? blocks_of<Blocks::kCoupled, true, false, false> : blocks_of<Blocks::kCoupled, false, false, false>);
 }
 
-static void step(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
+static void step(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                  const ChunkBlocks& upper, LeavingBlocks& before, LaneCounts& counts) {
   const bool damped = model.damping_mu > 0.0;
-  const auto run = [&](auto* blocks) { blocks(groups, count, model, scalar, fields, f, upper, {}, &before, counts); };
+  const auto run = [&](auto* blocks) { blocks(groups, edges, count, model, scalar, fields, f, upper, {}, &before, counts); };
   if (model.warped) return run(damped ? blocks_of<Blocks::kWarped, true, false, true> : blocks_of<Blocks::kWarped, false, false, true>);
   run(damped ? blocks_of<Blocks::kCoupled, true, false, true> : blocks_of<Blocks::kCoupled, false, false, true>);
 }

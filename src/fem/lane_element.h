@@ -1,35 +1,46 @@
 #pragma once
 // Force, energy and the product with the tangent, eight elements at a time.  The formulas are those of corotated.h.
 
-/// Work on one group takes some 150 ns, a line from memory about as long: well ahead, and into the second-level cache, so that what comes from there meanwhile is not held up.
-constexpr int kGroupsAhead = 8;
-PALPATE_INLINE void fetch_ahead(const ElementGroup* groups, int g, int count) {
-  if (g + kGroupsAhead < count) fetch<2>(groups + g + kGroupsAhead, sizeof(ElementGroup));
+/// Work on one group takes some 120 ns, a line from memory about as long: well ahead, and into the second-level cache.
+constexpr int kGroupsAhead = 16;
+/// Asks for share number `share` of the lines of what comes kGroupsAhead records later.  A core has some sixteen lines on their way at a time: asked for all at once they hold up what the
+/// work itself wants from the second-level cache, so that a record of many lines is asked for in several places.
+template <class Record>
+PALPATE_INLINE void fetch_ahead(const Record* records, int g, int share = 0, int shares = 1) {
+  constexpr int kLines = (sizeof(Record) + 63) / 64;
+  const char* first = reinterpret_cast<const char*>(records + g + kGroupsAhead);  // behind the last one stand those of the next run, or nothing that hurts
+  for (int line = share * kLines / shares; line < (share + 1) * kLines / shares; ++line) __builtin_prefetch(first + 64 * line, 0, 2);
 }
 
-/// The lanes of one group from `part` on.
+/// The lanes of group number g of a run from `first` on.
 struct Lanes {
   const ElementGroup& group;
-  int first;
-  Pack inverse_edges(int r, int c) const { return load(group.inverse_edges[3 * r + c] + first); }
+  int first, number;
+  Pack inverse_edges(int entry) const { return load(group.inverse_edges[entry] + first); }
   Pack volume() const { return load(group.volume + first); }
   const std::uint16_t* node(int corner) const { return group.node[corner] + first; }
-  const std::uint16_t* edge(int e) const { return group.edge[e] + first; }
 };
 
-/// Rows g_1, g_2, g_3.
-PALPATE_INLINE Matrix gradients(const Lanes& at) {
-  Matrix G;
-  for (int r = 0; r < 3; ++r) G.row[r] = {at.inverse_edges(r, 0), at.inverse_edges(r, 1), at.inverse_edges(r, 2)};
-  return G;
+/// Rows g_1, g_2, g_3 of an upper triangle.
+struct Gradients { Pack xx, xy, xz, yy, yz, zz; };
+PALPATE_INLINE Gradients gradients(const Lanes& at) {
+  return {at.inverse_edges(0), at.inverse_edges(1), at.inverse_edges(2), at.inverse_edges(3), at.inverse_edges(4), at.inverse_edges(5)};
+}
+/// M g_0 to M g_3, where g_0 is minus the sum of the others.
+PALPATE_INLINE void spread(const Matrix& M, const Gradients& G, Vector* v) {
+  const Vector x{M.row[0].x, M.row[1].x, M.row[2].x}, y{M.row[0].y, M.row[1].y, M.row[2].y}, z{M.row[0].z, M.row[1].z, M.row[2].z};
+  v[1] = G.xx * x + G.xy * y + G.xz * z;
+  v[2] = G.yy * y + G.yz * z;
+  v[3] = G.zz * z;
+  v[0] = -(v[1] + v[2] + v[3]);
 }
 
-/// Ds Dm^-1 of a nodal field: its gradient by the rest position.
-PALPATE_INLINE Matrix gradient_of(const Lanes& at, const Matrix& G, const double* field) {
+/// Ds T^-1 of a nodal field: its gradient by the rest position.
+PALPATE_INLINE Matrix gradient_of(const Lanes& at, const Gradients& G, const double* field) {
   const Vector origin = gather(field, at.node(0));
   const Vector a = gather(field, at.node(1)) - origin, b = gather(field, at.node(2)) - origin, c = gather(field, at.node(3)) - origin;
-  return {{a.x * G.row[0] + b.x * G.row[1] + c.x * G.row[2], a.y * G.row[0] + b.y * G.row[1] + c.y * G.row[2],
-           a.z * G.row[0] + b.z * G.row[1] + c.z * G.row[2]}};
+  const Vector x = G.xx * a, y = G.xy * a + G.yy * b, z = G.xz * a + G.yz * b + G.zz * c;
+  return {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
 }
 
 /// work(lanes, F, R, det F) for each element of the groups.
@@ -37,29 +48,29 @@ template <class Work>
 PALPATE_INLINE void for_each_rotated(const ElementGroup* groups, int count, const double* x, const ScalarPath& scalar, LaneCounts& counts, Work&& work) {
   for (int g = 0; g < count; g += kTogether) {
     const int here = count - g < kTogether ? count - g : kTogether;
-    for (int n = 0; n < here; ++n) fetch_ahead(groups, g + n, count);
     for (int part = 0; part < 8; part += kWidth) {
       Matrix F[kTogether], R[kTogether];
       Pack det[kTogether];
       for (int n = 0; n < kTogether; ++n) {
-        const Lanes at{groups[g + (n < here ? n : 0)], part};
+        if (part == 0) fetch_ahead(groups, g + n, 0, 2);
+        const Lanes at{groups[g + (n < here ? n : 0)], part, g + n};
         F[n] = gradient_of(at, gradients(at), x);
       }
       rotations(F, here, scalar, R, det, counts);
 #pragma GCC unroll 1
-      for (int n = 0; n < here; ++n) work(Lanes{groups[g + n], part}, F[n], R[n], det[n]);
+      for (int n = 0; n < here; ++n) {
+        if (part == 0) fetch_ahead(groups, g + n, 1, 2);
+        work(Lanes{groups[g + n], part, g + n}, F[n], R[n], det[n]);
+      }
     }
   }
 }
 
-/// f_a += scale P g_a; that of corner 0 is minus the sum of the others.
-PALPATE_INLINE void add_forces(const Lanes& at, const Matrix& G, const Matrix& P, Pack scale, double* f) {
-  const Matrix Q = scale * P;
-  const Vector a = apply(Q, G.row[0]), b = apply(Q, G.row[1]), c = apply(Q, G.row[2]);
-  scatter_add(f, at.node(0), -(a + b + c));
-  scatter_add(f, at.node(1), a);
-  scatter_add(f, at.node(2), b);
-  scatter_add(f, at.node(3), c);
+/// f_a += scale P g_a
+PALPATE_INLINE void add_forces(const Lanes& at, const Gradients& G, const Matrix& P, Pack scale, double* f) {
+  Vector share[4];
+  spread(scale * P, G, share);
+  for (int a = 0; a < 4; ++a) scatter_add(f, at.node(a), share[a]);
 }
 
 /// sym(A^T B)
@@ -100,7 +111,7 @@ template <bool kDamped>
 static void forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                    LaneCounts& counts) {
   for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
-    const Matrix G = gradients(at);
+    const Gradients G = gradients(at);
     count_inverted(det, counts);
     Matrix P = elastic_stress(model, F, R);
     if constexpr (kDamped) P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
@@ -128,10 +139,10 @@ static void energy(const ElementGroup* groups, int count, const ElementModel& mo
 
 static void power(const ElementGroup* groups, int count, const ElementModel& model, const ChunkFields& fields, double sums[8]) {
   for (int g = 0; g < count; ++g) {
-    fetch_ahead(groups, g, count);
+    fetch_ahead(groups, g);
     for (int part = 0; part < 8; part += kWidth) {
-      const Lanes at{groups[g], part};
-      const Matrix G = gradients(at);
+      const Lanes at{groups[g], part, g};
+      const Gradients G = gradients(at);
       const Symmetric rate = symmetric_product(gradient_of(at, G, fields.x), gradient_of(at, G, fields.v));
       *reinterpret_cast<PackInMemory*>(sums + part) += at.volume() * double_dot(full(rate), full(damping_stress(rate, model)));
     }
@@ -203,7 +214,7 @@ PALPATE_INLINE Matrix elastic_change(const ElementModel& model, const Matrix& R,
 
 /// The stress of a linearly implicit step: that of the state and its elastic change by w, and, of what is damped, that of the rate v.
 template <bool kDamped>
-PALPATE_INLINE Matrix step_stress(const Lanes& at, const Matrix& G, const Matrix& F, const Matrix& R, const Symmetric& C, const ElementModel& model, const ChunkFields& fields) {
+PALPATE_INLINE Matrix step_stress(const Lanes& at, const Gradients& G, const Matrix& F, const Matrix& R, const Symmetric& C, const ElementModel& model, const ChunkFields& fields) {
   Matrix P = elastic_stress(model, F, R) + elastic_change(model, R, C, gradient_of(at, G, fields.w));
   if constexpr (kDamped) P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
   return P;
@@ -213,7 +224,7 @@ template <bool kDamped>
 static void step_forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                         LaneCounts& counts) {
   for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
-    const Matrix G = gradients(at);
+    const Gradients G = gradients(at);
     count_inverted(det, counts);
     add_forces(at, G, step_stress<kDamped>(at, G, F, R, coupling(model, F, R, scalar, counts), model, fields), -at.volume(), f);
   });
@@ -235,17 +246,18 @@ static void apply_tangent(const ElementGroup* groups, int count, const ElementMo
   };
   if (model.k_scale == 0.0) {
     for (int g = 0; g < count; ++g) {
-      fetch_ahead(groups, g, count);
+      fetch_ahead(groups, g);
       for (int part = 0; part < 8; part += kWidth) {
-        const Lanes at{groups[g], part};
-        const Matrix G = gradients(at);
+        const Lanes at{groups[g], part, g};
+        const Gradients G = gradients(at);
         if (damped) add_forces(at, G, damping(gradient_of(at, G, fields.x), gradient_of(at, G, fields.w)), at.volume(), y);
       }
     }
     return;
   }
   for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack&) __attribute__((always_inline)) {
-    const Matrix G = gradients(at), dF = gradient_of(at, G, fields.w);
+    const Gradients G = gradients(at);
+    const Matrix dF = gradient_of(at, G, fields.w);
     Matrix dP = elastic_change(model, R, coupling(model, F, R, scalar, counts), dF);
     if (model.by_position) {
       const Matrix F_dot = gradient_of(at, G, fields.v);

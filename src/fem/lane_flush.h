@@ -117,14 +117,20 @@ PALPATE_INLINE void store_single(const double* first, double last, float* to) {
 }
 #endif
 
+/// What leaves the time after next is asked for, a little each time: stores then find their lines near, and do not hold up those of the elements behind them.
+PALPATE_INLINE void fetch_places(const LeavingBlocks& blocks, int begin, int end) {
+  for (int k = begin; k < end && k < blocks.own; ++k) fetch<2>(blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]) + 8, 64);
+}
+
 static void leave(LeavingBlocks& blocks, int count) {
   const int end = blocks.count - blocks.gone < count ? blocks.count : blocks.gone + count;
   for (int k = blocks.gone; k < end; ++k) {
     const std::uint16_t edge = blocks.edges[k];
     double *first = blocks.upper.first + 8 * edge, &last = blocks.upper.last[edge];
-    store_single(first, last, k < blocks.own ? blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]) : blocks.shared + 9 * static_cast<std::int64_t>(k - blocks.own));
+    store_single(first, last, k < blocks.own ? blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]) : blocks.late + 9 * static_cast<std::int64_t>(k - blocks.own));
     for (int part = 0; part < 8; part += kWidth) *reinterpret_cast<PackInMemory*>(first + part) = Pack{};
     last = 0.0;
   }
   blocks.gone = end;
+  fetch_places(blocks, end + count, end + 2 * count);
 }

@@ -8,13 +8,20 @@ namespace palpate::fem {
 
 /// Eight tetrahedra side by side, one lane each.  Nodes and edges are numbered within a chunk of elements (element_chunks.h).
 /// The corners of an element ascend by node number, so that block K_ab, a < b, of its matrix belongs above the diagonal of the whole.
+///
+/// The material is isotropic, so that nothing changes when an element's rest shape is turned: with F' = F Q for a rotation Q, R' = R Q, P' = P Q, and P g, F g, R g, F F^T are what they
+/// were.  Q is taken from Dm = Q T, T upper triangular (corner 1 on the x axis, corner 2 in the xy plane), and T^-1 stands for Dm^-1: six numbers to read from memory instead of nine, and two
+/// thirds of the products with gradients.
 struct alignas(64) ElementGroup {
   static constexpr int kLanes = 8, kCorners = 4, kEdges = 6;
-  double inverse_edges[9][8];    ///< entry (r, c) of Dm^-1 at [3 r + c] [1/m]; row r is the gradient of corner r + 1
+  double inverse_edges[6][8];    ///< entries xx, xy, xz, yy, yz, zz of T^-1 [1/m]; row r is the gradient of corner r + 1
   double volume[8];              ///< [m^3]; 0 in lanes that only fill up the group
   std::uint16_t node[4][8];
+};
+
+/// The edges of a group's elements; apart from it, as forces need none.
+struct GroupEdges {
   std::uint16_t edge[6][8];      ///< corners (0,1) (0,2) (0,3) (1,2) (1,3) (2,3)
-  std::int32_t element[8];       ///< number in the mesh; -1 in lanes that only fill up
 };
 
 /// Nodal vectors of one chunk, four doubles a node (x, y, z, unused), 32-byte aligned.
@@ -31,12 +38,12 @@ struct ChunkBlocks {
 };
 
 /// Blocks of a chunk on their way to a matrix in single precision, row by row, nine floats a block: of edges[k], k < own, to values[9 places[k]], whatever stood there; of the
-/// others, of which chunks share each, to shared[9 (k - own)].  What has gone is made zero for the next chunk.
+/// others, which an earlier chunk has, to late[9 (k - own)].  What has gone is made zero for the next chunk.
 struct LeavingBlocks {
   ChunkBlocks upper;
   const std::uint16_t* edges = nullptr;
   const std::int32_t* places = nullptr;
-  float *values = nullptr, *shared = nullptr;
+  float *values = nullptr, *late = nullptr;
   int own = 0, count = 0;
   int gone = 0;       ///< of `count`
   int at_a_time = 0;  ///< with each group of elements
@@ -82,15 +89,15 @@ struct LaneKernels {
   /// y += tangent times w.
   void (*apply)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* y, LaneCounts&);
   /// Blocks above the diagonal into `upper`; with by_position those below it into `lower`.
-  void (*tangent)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, const ChunkBlocks& upper,
+  void (*tangent)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, const ChunkBlocks& upper,
                   const ChunkBlocks& lower, LaneCounts&);
-  /// Puts the chunk's own blocks into the matrix (nine doubles a slot) and leaves the diagonal blocks of nodes that are not its own in `diagonal`.
+  /// Adds the chunk's own blocks to the matrix (nine doubles a slot) and leaves the diagonal blocks of nodes that are not its own in `diagonal`.
   void (*flush)(const BlockTargets&, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal, double* values);
   /// f += nodal forces - stiffness times w.
   void (*step_force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, LaneCounts&);
   /// Of one linearly implicit step, all at once: f += nodal forces - stiffness times w, and the blocks of a symmetric tangent above the diagonal.  Meanwhile blocks of the chunk
   /// before leave: the matrix lies far away, and what is written there is on its way while elements are computed.
-  void (*step)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, const ChunkBlocks& upper, LeavingBlocks& before, LaneCounts&);
+  void (*step)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, const ChunkBlocks& upper, LeavingBlocks& before, LaneCounts&);
   /// Sends up to `count` more on their way.
   void (*leave)(LeavingBlocks&, int count);
   /// Elastic energies [J], and powers of the damping [W], summed by lane.
