@@ -144,8 +144,30 @@ void ElementEvaluation::for_each_run_with_edges(const Chunk& chunk, const Elemen
   });
 }
 
+int ElementEvaluation::groups_of(const Chunk& chunk) const {
+  int sum = 0;
+  chunks_.for_each_run(chunk, [&](const ElementChunks::Run& run) { sum += run.groups; });
+  return sum;
+}
+
+/// What the thread that has chunk c is likely to need next; the kernels ask for it while they work.
+ComingNodes ElementEvaluation::coming_nodes(int c, const BodyFields& at, const double* out) const {
+  const auto next = static_cast<std::size_t>(c + workers::count());
+  if (next >= chunks_.chunks.size()) return {};
+  const Chunk& chunk = chunks_.chunks[next];
+  ComingNodes coming;
+  coming.nodes = chunks_.nodes.data() + chunk.first_node;
+  coming.count = chunk.nodes;
+  coming.at_a_time = chunk.nodes / std::max(1, groups_of(chunks_.chunks[static_cast<std::size_t>(c)])) + 1;
+  for (const double* field : {at.x, at.v, at.w, at.dv, out})
+    if (field) coming.fields[coming.field_count++] = field;
+  return coming;
+}
+
 /// Behind the nodes of the chunk stand the corners of the unit tetrahedron that fills up groups.
-ChunkFields ElementEvaluation::load(const Chunk& chunk, const BodyFields& at, Scratch& scratch) const {
+/// @param out  what is added to when the chunk is done
+ChunkFields ElementEvaluation::load(int c, const BodyFields& at, Scratch& scratch, const double* out) const {
+  const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
   const int* nodes = chunks_.nodes.data() + chunk.first_node;
   const auto copy = [&](const double* from, std::vector<Line>& lines, double unit, const double* more = nullptr) {
     double* to = numbers(lines);
@@ -163,11 +185,13 @@ ChunkFields ElementEvaluation::load(const Chunk& chunk, const BodyFields& at, Sc
     for (int axis = 0; axis < 3; ++axis) to[4 * (chunk.nodes + 1 + axis) + axis] = unit;
     return static_cast<const double*>(to);
   };
-  ChunkFields out;
-  out.x = copy(at.x, scratch.x, 1.0);
-  if (at.v) out.v = copy(at.v, scratch.v, 0.0, at.dv);
-  if (at.w) out.w = copy(at.w, scratch.w, 0.0);
-  return out;
+  ChunkFields fields;
+  fields.x = copy(at.x, scratch.x, 1.0);
+  if (at.v) fields.v = copy(at.v, scratch.v, 0.0, at.dv);
+  if (at.w) fields.w = copy(at.w, scratch.w, 0.0);
+  scratch.coming = coming_nodes(c, at, out);
+  fields.coming = &scratch.coming;
+  return fields;
 }
 
 LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModels& models, const BodyFields& at, double* out) {
@@ -175,7 +199,7 @@ LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModels&
   workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
-    const ChunkFields fields = load(chunk, at, scratch);
+    const ChunkFields fields = load(c, at, scratch, out);
     double* sum = numbers(scratch.sum);
     std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
     for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernel(groups, count, model, kScalarPath, fields, sum, scratch.counts); });
@@ -222,7 +246,7 @@ LaneCounts ElementEvaluation::add_tangent(const ElementModels& models, const Bod
     const ChunkBlocks upper = scratch.upper.blocks(), lower = scratch.lower.blocks(), diagonal = scratch.diagonal.blocks();
     set_zero(upper, chunk.edges + 1);
     if (!symmetric) set_zero(lower, chunk.edges + 1);
-    const ChunkFields fields = load(chunk, at, scratch);
+    const ChunkFields fields = load(c, at, scratch);
     for_each_run_with_edges(chunk, models, [&](const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model) {
       kernels_->tangent(groups, edges, count, model, kScalarPath, fields, upper, lower, scratch.counts);
     });
@@ -272,11 +296,9 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
     const ChunkBlocks upper = scratch.leaving[scratch.turn].blocks();
     double* sum = numbers(scratch.sum);
     std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
-    const ChunkFields fields = load(chunk, at, scratch);
+    const ChunkFields fields = load(c, at, scratch, f);
     LeavingBlocks& before = scratch.before;
-    int groups_here = 0;
-    chunks_.for_each_run(chunk, [&](const ElementChunks::Run& run) { groups_here += run.groups; });
-    before.at_a_time = before.count / std::max(1, groups_here) + 1;
+    before.at_a_time = before.count / std::max(1, groups_of(chunk)) + 1;
     for_each_run_with_edges(chunk, models, [&](const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model) {
       kernels_->step(groups, edges, count, model, kScalarPath, fields, sum, upper, before, scratch.counts);
     });
@@ -323,7 +345,7 @@ double ElementEvaluation::energy(const ElementModels& models, const BodyFields& 
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
     Line sums{};
-    const ChunkFields fields = load(chunk, at, scratch);
+    const ChunkFields fields = load(c, at, scratch);
     for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->energy(groups, count, model, kScalarPath, fields, sums.value, scratch.counts); });
     chunk_sums_[static_cast<std::size_t>(c)] = std::accumulate(sums.value, sums.value + 8, 0.0);
   });
@@ -337,7 +359,7 @@ double ElementEvaluation::dissipated_power(const ElementModels& models, const Bo
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
     Line sums{};
-    const ChunkFields fields = load(chunk, at, scratch);
+    const ChunkFields fields = load(c, at, scratch);
     for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->power(groups, count, model, fields, sums.value); });
     chunk_sums_[static_cast<std::size_t>(c)] = std::accumulate(sums.value, sums.value + 8, 0.0);
   });

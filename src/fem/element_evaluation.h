@@ -64,6 +64,7 @@ class ElementEvaluation {
     BlockMemory leaving[2];                     ///< blocks of two chunks by turns (of few chunks, of one), zero between steps
     int turn = 0;
     LeavingBlocks before;                       ///< of the chunk before
+    ComingNodes coming;
     LaneCounts counts;
   };
 
@@ -84,7 +85,9 @@ class ElementEvaluation {
   void fit_blocks();   ///< for matrices in double
   void fit_leaving();  ///< for balanced ones
   LaneCounts collect_counts();
-  ChunkFields load(const ElementChunks::Chunk& chunk, const BodyFields& at, Scratch& scratch) const;
+  int groups_of(const ElementChunks::Chunk& chunk) const;
+  ComingNodes coming_nodes(int c, const BodyFields& at, const double* out) const;
+  ChunkFields load(int c, const BodyFields& at, Scratch& scratch, const double* out = nullptr) const;
   void flush_nodal(const ElementChunks::Chunk& chunk, const double* sum, double* out);
   void add_late_nodes(double* out) const;
   void prepare_places(int first_node, const dynamics::BalancedMatrix& A);

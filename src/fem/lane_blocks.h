@@ -152,7 +152,7 @@ PALPATE_INLINE void set_rates(BlockParts& e, const Lanes& at, const ElementModel
 template <Blocks kBlocks, bool kDamped, bool kByPosition, bool kStep>
 static void blocks_of(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                       const ChunkBlocks& upper, const ChunkBlocks& lower, LeavingBlocks* before, LaneCounts& counts) {
-  for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
+  for_each_rotated(groups, count, fields, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
     const Gradients G = gradients(at);
     const Pack volume = at.volume();
     if (at.first == 0) fetch_ahead(edges, at.number);

@@ -12,6 +12,13 @@ PALPATE_INLINE void fetch_ahead(const Record* records, int g, int share = 0, int
   for (int line = share * kLines / shares; line < (share + 1) * kLines / shares; ++line) __builtin_prefetch(first + 64 * line, 0, 2);
 }
 
+PALPATE_INLINE void fetch_nodes(ComingNodes& coming) {
+  const int end = coming.count - coming.asked < coming.at_a_time ? coming.count : coming.asked + coming.at_a_time;
+  for (int k = coming.asked; k < end; ++k)
+    for (int f = 0; f < coming.field_count; ++f) fetch<2>(coming.fields[f] + 3 * static_cast<std::int64_t>(coming.nodes[k]), 24);
+  coming.asked = end;
+}
+
 /// The lanes of group number g of a run from `first` on.
 struct Lanes {
   const ElementGroup& group;
@@ -45,7 +52,7 @@ PALPATE_INLINE Matrix gradient_of(const Lanes& at, const Gradients& G, const dou
 
 /// work(lanes, F, R, det F) for each element of the groups.
 template <class Work>
-PALPATE_INLINE void for_each_rotated(const ElementGroup* groups, int count, const double* x, const ScalarPath& scalar, LaneCounts& counts, Work&& work) {
+PALPATE_INLINE void for_each_rotated(const ElementGroup* groups, int count, const ChunkFields& fields, const ScalarPath& scalar, LaneCounts& counts, Work&& work) {
   for (int g = 0; g < count; g += kTogether) {
     const int here = count - g < kTogether ? count - g : kTogether;
     for (int part = 0; part < 8; part += kWidth) {
@@ -54,12 +61,15 @@ PALPATE_INLINE void for_each_rotated(const ElementGroup* groups, int count, cons
       for (int n = 0; n < kTogether; ++n) {
         if (part == 0) fetch_ahead(groups, g + n, 0, 2);
         const Lanes at{groups[g + (n < here ? n : 0)], part, g + n};
-        F[n] = gradient_of(at, gradients(at), x);
+        F[n] = gradient_of(at, gradients(at), fields.x);
       }
       rotations(F, here, scalar, R, det, counts);
 #pragma GCC unroll 1
       for (int n = 0; n < here; ++n) {
-        if (part == 0) fetch_ahead(groups, g + n, 1, 2);
+        if (part == 0) {
+          fetch_ahead(groups, g + n, 1, 2);
+          if (fields.coming) fetch_nodes(*fields.coming);
+        }
         work(Lanes{groups[g + n], part, g + n}, F[n], R[n], det[n]);
       }
     }
@@ -110,7 +120,7 @@ PALPATE_INLINE Matrix elastic_stress(const ElementModel& model, const Matrix& F,
 template <bool kDamped>
 static void forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                    LaneCounts& counts) {
-  for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
+  for_each_rotated(groups, count, fields, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
     const Gradients G = gradients(at);
     count_inverted(det, counts);
     Matrix P = elastic_stress(model, F, R);
@@ -129,7 +139,7 @@ static void force(const ElementGroup* groups, int count, const ElementModel& mod
 
 static void energy(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double sums[8],
                    LaneCounts& counts) {
-  for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack&) __attribute__((always_inline)) {
+  for_each_rotated(groups, count, fields, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack&) __attribute__((always_inline)) {
     const Matrix strain = F - R;
     const Pack trace = double_dot(R, F) - 3.0;
     const Pack density = model.mu * double_dot(strain, strain) + (0.5 * model.lambda) * trace * trace;
@@ -223,7 +233,7 @@ PALPATE_INLINE Matrix step_stress(const Lanes& at, const Gradients& G, const Mat
 template <bool kDamped>
 static void step_forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
                         LaneCounts& counts) {
-  for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
+  for_each_rotated(groups, count, fields, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
     const Gradients G = gradients(at);
     count_inverted(det, counts);
     add_forces(at, G, step_stress<kDamped>(at, G, F, R, coupling(model, F, R, scalar, counts), model, fields), -at.volume(), f);
@@ -255,7 +265,7 @@ static void apply_tangent(const ElementGroup* groups, int count, const ElementMo
     }
     return;
   }
-  for_each_rotated(groups, count, fields.x, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack&) __attribute__((always_inline)) {
+  for_each_rotated(groups, count, fields, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack&) __attribute__((always_inline)) {
     const Gradients G = gradients(at);
     const Matrix dF = gradient_of(at, G, fields.w);
     Matrix dP = elastic_change(model, R, coupling(model, F, R, scalar, counts), dF);

@@ -24,11 +24,22 @@ struct GroupEdges {
   std::uint16_t edge[6][8];      ///< corners (0,1) (0,2) (0,3) (1,2) (1,3) (2,3)
 };
 
+/// Nodes that a thread is likely to need with its next chunk, and the nodal vectors of the body that are read or added to there, three doubles a node.
+struct ComingNodes {
+  static constexpr int kMostFields = 5;
+  const int* nodes = nullptr;
+  const double* fields[kMostFields] = {};
+  int field_count = 0, count = 0;
+  int asked = 0;      ///< of `count`
+  int at_a_time = 0;  ///< with each group of elements
+};
+
 /// Nodal vectors of one chunk, four doubles a node (x, y, z, unused), 32-byte aligned.
 struct ChunkFields {
   const double* x = nullptr;  ///< positions [m]
   const double* v = nullptr;  ///< velocities [m/s]
   const double* w = nullptr;  ///< a direction
+  ComingNodes* coming = nullptr;  ///< asked for meanwhile; may be missing
 };
 
 /// 3x3 blocks of one chunk, one an edge: entries 0 to 7, row by row, in `first`, the last one in `last`; `first` is 64-byte aligned.
