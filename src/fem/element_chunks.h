@@ -19,7 +19,7 @@ struct LateSums {
 /// The tetrahedra of a body in compact chunks, eight side by side.
 ///
 /// A chunk sums forces and matrix blocks over its own elements in memory of its own, that fits the cache; nodes and edges that no earlier chunk has
-/// ("own") go from there straight into the result, the others ("late") are put aside and added afterwards, in the order of the chunks.  Chunks depend on the mesh
+/// ("own") go from there straight into the result, the others ("late") are put aside and added afterwards, in the order of the chunks; or at once, where one thread does the chunks in their order.  Chunks depend on the mesh
 /// alone, so that the sums are the same to the last bit whoever computes which chunk.
 ///
 /// A body of several materials has its elements ordered by material within each chunk, and each material begins a group of its own: the kernels run over

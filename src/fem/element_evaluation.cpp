@@ -43,12 +43,12 @@ void for_each_sum(int count, F&& f) {
   });
 }
 
-/// sum += the contributions to late node or edge k, nine numbers each.
+/// to += the contributions to late node or edge k, nine numbers each, one after the other; of a transposed block where `turned`.
 template <class Real>
-void add_contributions(const LateSums& sums, int k, const std::vector<Real>& contributions, double* sum) {
+void add_contributions(const LateSums& sums, int k, const std::vector<Real>& contributions, Real* to, bool turned = false) {
   for (int p = sums.start[static_cast<std::size_t>(k)]; p < sums.start[static_cast<std::size_t>(k) + 1]; ++p) {
     const Real* block = contributions.data() + 9 * static_cast<std::size_t>(sums.entries[static_cast<std::size_t>(p)]);
-    for (int c = 0; c < 9; ++c) sum[c] += block[c];
+    for (int c = 0; c < 9; ++c) to[c] += block[turned ? c % 3 * 3 + c / 3 : c];
   }
 }
 
@@ -209,25 +209,29 @@ LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModels&
   return collect_counts();
 }
 
-/// A chunk's own sums go into `out`, the others aside.
+/// What is late may be added at once: what is not in order adds one share after the other as well, for the same sums to the last bit.
+bool ElementEvaluation::in_order() const { return workers::count() == 1; }
+
+/// A chunk's own sums go into `out`, the late ones aside.
 void ElementEvaluation::flush_nodal(const Chunk& chunk, const double* sum, double* out) {
   const int* nodes = chunks_.nodes.data() + chunk.first_node;
-  for (int n = 0; n < chunk.own_nodes; ++n) {
-    if (n + kNodesAhead < chunk.own_nodes) __builtin_prefetch(out + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
+  const int direct = in_order() ? chunk.nodes : chunk.own_nodes;
+  for (int n = 0; n < direct; ++n) {
+    if (n + kNodesAhead < direct) __builtin_prefetch(out + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
     for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)] += sum[4 * n + axis];
   }
-  std::copy_n(sum + 4 * chunk.own_nodes, 4 * (chunk.nodes - chunk.own_nodes), numbers(late_nodes_) + 4 * static_cast<std::size_t>(chunk.first_late_node));
+  std::copy_n(sum + 4 * direct, 4 * (chunk.nodes - direct), numbers(late_nodes_) + 4 * static_cast<std::size_t>(chunk.first_late_node));
 }
 
 void ElementEvaluation::add_late_nodes(double* out) const {
+  if (in_order()) return;
   const LateSums& late = chunks_.late_nodes;
   for_each_sum(late.count(), [&](int k) {
-    double sum[3] = {0.0, 0.0, 0.0};
+    double* to = out + 3 * static_cast<std::size_t>(late.first[static_cast<std::size_t>(k)]);
     for (int p = late.start[static_cast<std::size_t>(k)]; p < late.start[static_cast<std::size_t>(k) + 1]; ++p) {
       const double* part = late_nodes_.front().value + 4 * static_cast<std::size_t>(late.entries[static_cast<std::size_t>(p)]);
-      for (int axis = 0; axis < 3; ++axis) sum[axis] += part[axis];
+      for (int axis = 0; axis < 3; ++axis) to[axis] += part[axis];
     }
-    for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(late.first[static_cast<std::size_t>(k)]) + static_cast<std::size_t>(axis)] += sum[axis];
   });
 }
 
@@ -251,8 +255,9 @@ LaneCounts ElementEvaluation::add_tangent(const ElementModels& models, const Bod
       kernels_->tangent(groups, edges, count, model, kScalarPath, fields, upper, lower, scratch.counts);
     });
     const BlockTargets targets{chunk.nodes, chunk.own_nodes, chunks_.row_start.data() + chunk.first_node, chunks_.row_own.data() + chunk.first_node,
-                               chunks_.row_edges.data(), slots_.data(), chunk_diagonal_.data() + chunk.first_node};
+                               chunks_.row_edges.data(), slots_.data(), chunk_diagonal_.data() + chunk.first_node, in_order()};
     kernels_->flush(targets, upper, lower, symmetric, diagonal, A.values().data());
+    if (in_order()) return;
     const auto edge_place = 9 * static_cast<std::size_t>(chunk.first_late_edge);
     keep_blocks(upper, chunk.own_edges, chunk.edges, late_upper_.data() + edge_place);
     if (!symmetric) keep_blocks(lower, chunk.own_edges, chunk.edges, late_lower_.data() + edge_place);
@@ -263,6 +268,7 @@ LaneCounts ElementEvaluation::add_tangent(const ElementModels& models, const Bod
 }
 
 void ElementEvaluation::add_late_blocks(bool symmetric, dynamics::BlockSparse& A) const {
+  if (in_order()) return;
   const LateSums& late = chunks_.late_edges;
   const int edges = late.count();
   const auto slot = [&](int k, int side) { return late_slots_[static_cast<std::size_t>(2 * k + side)]; };
@@ -271,14 +277,8 @@ void ElementEvaluation::add_late_blocks(bool symmetric, dynamics::BlockSparse& A
       fetch_contributions(late, k + kSumsAhead, late_upper_.data());
       for (int side = 0; side < 2; ++side) fetch_block(A.block(slot(k + kSumsAhead, side)));
     }
-    double above[9] = {}, below[9] = {};
-    add_contributions(late, k, late_upper_, above);
-    if (symmetric)
-      for (int c = 0; c < 9; ++c) below[c] = above[c % 3 * 3 + c / 3];
-    else
-      add_contributions(late, k, late_lower_, below);
-    for (int c = 0; c < 9; ++c) A.block(slot(k, 0))[c] += above[c];
-    for (int c = 0; c < 9; ++c) A.block(slot(k, 1))[c] += below[c];
+    add_contributions(late, k, late_upper_, A.block(slot(k, 0)));
+    add_contributions(late, k, symmetric ? late_upper_ : late_lower_, A.block(slot(k, 1)), symmetric);
   });
   for_each_sum(chunks_.late_nodes.count(), [&](int k) {
     add_contributions(chunks_.late_nodes, k, late_diagonal_, A.block(diagonal_[static_cast<std::size_t>(chunks_.late_nodes.first[static_cast<std::size_t>(k)])]));
@@ -305,7 +305,7 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
     flush_nodal(chunk, sum, f);
     kernels_->leave(before, before.count);
     before = {upper, leaving_edges_.data() + chunk.first_edge, places_.data() + chunk.first_edge, A.values.data(),
-              late_single_.data() + 9 * static_cast<std::size_t>(chunk.first_late_edge), chunk.own_edges, chunk.edges};
+              in_order() ? nullptr : late_single_.data() + 9 * static_cast<std::size_t>(chunk.first_late_edge), chunk.own_edges, chunk.edges};
     if (turns() == 1 || c + workers::count() >= chunks)  // likely this thread's last
       kernels_->leave(before, before.count);
     else
@@ -320,8 +320,8 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
   return collect_counts();
 }
 
-/// The first share stands in the matrix, rounded as the others are: the sum is made in double, in the order of the chunks.
 void ElementEvaluation::add_late_blocks(dynamics::BalancedMatrix& A) const {
+  if (in_order()) return;
   const LateSums& late = chunks_.late_edges;
   const int edges = late.count();
   for_each_sum(edges, [&](int k) {
@@ -331,11 +331,7 @@ void ElementEvaluation::add_late_blocks(dynamics::BalancedMatrix& A) const {
       fetch_block(A.values.data() + 9 * static_cast<std::size_t>(coming.place));
     }
     const auto [place, edge] = late_places_[static_cast<std::size_t>(k)];
-    float* to = A.values.data() + 9 * static_cast<std::size_t>(place);
-    double sum[9];
-    std::copy_n(to, 9, sum);
-    add_contributions(late, edge, late_single_, sum);
-    for (int c = 0; c < 9; ++c) to[c] = static_cast<float>(sum[c]);
+    add_contributions(late, edge, late_single_, A.values.data() + 9 * static_cast<std::size_t>(place));
   });
 }
 

@@ -88,6 +88,7 @@ class ElementEvaluation {
   int groups_of(const ElementChunks::Chunk& chunk) const;
   ComingNodes coming_nodes(int c, const BodyFields& at, const double* out) const;
   ChunkFields load(int c, const BodyFields& at, Scratch& scratch, const double* out = nullptr) const;
+  bool in_order() const;
   void flush_nodal(const ElementChunks::Chunk& chunk, const double* sum, double* out);
   void add_late_nodes(double* out) const;
   void prepare_places(int first_node, const dynamics::BalancedMatrix& A);
@@ -108,8 +109,8 @@ class ElementEvaluation {
   std::uint64_t pattern_version_ = 0;
   int first_node_ = -1;
   std::vector<std::int32_t> slots_;                    ///< of each entry of ElementChunks::row_edges
-  std::vector<std::int32_t> places_;                   ///< in a BalancedMatrix, of each chunk's own edges, ascending
-  std::vector<std::uint16_t> leaving_edges_;           ///< the edge of each of places_, then the late ones
+  std::vector<std::int32_t> places_;                   ///< in a BalancedMatrix, of each chunk's own edges, ascending, then of its late ones
+  std::vector<std::uint16_t> leaving_edges_;           ///< the edge of each of places_
   std::vector<LatePlace> late_places_;                 ///< ascending
   std::uint64_t places_version_ = 0;
   int places_first_node_ = -1;

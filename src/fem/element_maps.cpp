@@ -63,21 +63,25 @@ void ElementEvaluation::prepare(int first_node, const dynamics::BlockSparse& A) 
 void ElementEvaluation::prepare_places(int first_node, const dynamics::BalancedMatrix& A) {
   if (A.places_version == places_version_ && first_node == places_first_node_) return;
   const auto place = [&](int i, int j) { return A.place[static_cast<std::size_t>(slot_of(*A.pattern, first_node + i, first_node + j))]; };
+  const auto place_of = [&](const Chunk& chunk, int edge) {
+    const std::uint16_t* ends = chunks_.ends.data() + 2 * static_cast<std::size_t>(chunk.first_edge + edge);
+    return place(chunks_.nodes[static_cast<std::size_t>(chunk.first_node + ends[0])], chunks_.nodes[static_cast<std::size_t>(chunk.first_node + ends[1])]);
+  };
   places_.assign(chunks_.ends.size() / 2, -1);
   leaving_edges_.assign(places_.size(), 0);
   std::vector<std::pair<std::int32_t, std::uint16_t>> own;
   for (const Chunk& chunk : chunks_.chunks) {
     own.clear();
-    for (int k = 0; k < chunk.own_edges; ++k) {
-      const std::uint16_t* ends = chunks_.ends.data() + 2 * static_cast<std::size_t>(chunk.first_edge + k);
-      own.emplace_back(place(chunks_.nodes[static_cast<std::size_t>(chunk.first_node + ends[0])], chunks_.nodes[static_cast<std::size_t>(chunk.first_node + ends[1])]), k);
-    }
+    for (int k = 0; k < chunk.own_edges; ++k) own.emplace_back(place_of(chunk, k), k);
     std::sort(own.begin(), own.end());
     for (std::size_t k = 0; k < own.size(); ++k) {
       places_[static_cast<std::size_t>(chunk.first_edge) + k] = own[k].first;
       leaving_edges_[static_cast<std::size_t>(chunk.first_edge) + k] = own[k].second;
     }
-    for (int k = chunk.own_edges; k < chunk.edges; ++k) leaving_edges_[static_cast<std::size_t>(chunk.first_edge + k)] = static_cast<std::uint16_t>(k);
+    for (int k = chunk.own_edges; k < chunk.edges; ++k) {
+      places_[static_cast<std::size_t>(chunk.first_edge + k)] = place_of(chunk, k);
+      leaving_edges_[static_cast<std::size_t>(chunk.first_edge + k)] = static_cast<std::uint16_t>(k);
+    }
   }
   late_places_.clear();
   for (int k = 0; k < chunks_.late_edges.count(); ++k) late_places_.push_back({place(chunks_.late_edges.first[static_cast<std::size_t>(k)], chunks_.late_edges.second[static_cast<std::size_t>(k)]), k});

@@ -67,8 +67,8 @@ struct BlockSum {
 constexpr int kRowsAhead = 6;
 PALPATE_INLINE void fetch_row(const BlockTargets& targets, int n, const double* values) {
   if (n >= targets.nodes) return;
-  const int begin = targets.row_start[n];
-  for (int p = begin; p < begin + targets.row_own[n]; ++p) fetch<3>(values + 9 * static_cast<std::int64_t>(targets.slots[p]), 64);
+  const int begin = targets.row_start[n], end = targets.in_order ? targets.row_start[n + 1] : begin + targets.row_own[n];
+  for (int p = begin; p < end; ++p) fetch<3>(values + 9 * static_cast<std::int64_t>(targets.slots[p]), 64);
 }
 
 template <bool kSymmetric>
@@ -76,16 +76,16 @@ static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, co
   for (int n = 0; n < targets.nodes; ++n) {
     fetch_row(targets, n + kRowsAhead, values);
     BlockSum sum;
-    const int begin = targets.row_start[n], own = begin + targets.row_own[n], end = targets.row_start[n + 1];
+    const int begin = targets.row_start[n], end = targets.row_start[n + 1], direct = targets.in_order ? end : begin + targets.row_own[n];
     for (int p = begin; p < end; ++p) {
       const std::uint32_t edge = targets.entries[p] / 2;
       const bool second = targets.entries[p] % 2 != 0;
       const ChunkBlocks& blocks = !kSymmetric && second ? lower : upper;
-      double* to = p < own ? values + 9 * static_cast<std::int64_t>(targets.slots[p]) : nullptr;
+      double* to = p < direct ? values + 9 * static_cast<std::int64_t>(targets.slots[p]) : nullptr;
       sum.move(blocks.first + 8 * edge, blocks.last[edge], kSymmetric && second, to);
     }
     if (kSymmetric) sum.symmetrise();  // to the last bit: the two sides of an edge's block were summed in different orders
-    if (n < targets.own_nodes)
+    if (targets.in_order || n < targets.own_nodes)
       sum.add_to(values + 9 * static_cast<std::int64_t>(targets.diagonal[n]));
     else
       sum.store(diagonal.first + 8 * n, diagonal.last + n);
@@ -117,9 +117,15 @@ PALPATE_INLINE void store_single(const double* first, double last, float* to) {
 }
 #endif
 
+PALPATE_INLINE void add_single(const double* first, double last, float* to) {
+  for (int c = 0; c < 8; ++c) to[c] += static_cast<float>(first[c]);
+  to[8] += static_cast<float>(last);
+}
+
 /// What leaves the time after next is asked for, a little each time: stores then find their lines near, and do not hold up those of the elements behind them.
 PALPATE_INLINE void fetch_places(const LeavingBlocks& blocks, int begin, int end) {
-  for (int k = begin; k < end && k < blocks.own; ++k) fetch<2>(blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]) + 8, 64);
+  const int last = blocks.late ? blocks.own : blocks.count;
+  for (int k = begin; k < end && k < last; ++k) fetch<2>(blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]) + 8, 64);
 }
 
 static void leave(LeavingBlocks& blocks, int count) {
@@ -127,7 +133,12 @@ static void leave(LeavingBlocks& blocks, int count) {
   for (int k = blocks.gone; k < end; ++k) {
     const std::uint16_t edge = blocks.edges[k];
     double *first = blocks.upper.first + 8 * edge, &last = blocks.upper.last[edge];
-    store_single(first, last, k < blocks.own ? blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]) : blocks.late + 9 * static_cast<std::int64_t>(k - blocks.own));
+    if (k < blocks.own)
+      store_single(first, last, blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]));
+    else if (blocks.late)
+      store_single(first, last, blocks.late + 9 * static_cast<std::int64_t>(k - blocks.own));
+    else
+      add_single(first, last, blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]));
     for (int part = 0; part < 8; part += kWidth) *reinterpret_cast<PackInMemory*>(first + part) = Pack{};
     last = 0.0;
   }

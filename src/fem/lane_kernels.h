@@ -49,7 +49,7 @@ struct ChunkBlocks {
 };
 
 /// Blocks of a chunk on their way to a matrix in single precision, row by row, nine floats a block: of edges[k], k < own, to values[9 places[k]], whatever stood there; of the
-/// others, which an earlier chunk has, to late[9 (k - own)].  What has gone is made zero for the next chunk.
+/// others, which an earlier chunk has, to late[9 (k - own)], or, where there is no `late`, added to what stands at values[9 places[k]].  What has gone is made zero for the next chunk.
 struct LeavingBlocks {
   ChunkBlocks upper;
   const std::uint16_t* edges = nullptr;
@@ -87,10 +87,11 @@ struct ScalarPath {
 struct BlockTargets {
   int nodes = 0, own_nodes = 0;             ///< of the chunk; the own ones come first
   const std::int32_t* row_start = nullptr;  ///< of each node in `entries` and `slots`
-  const std::int32_t* row_own = nullptr;    ///< how many entries of a row the chunk puts into the matrix; the others only count for the diagonal
+  const std::int32_t* row_own = nullptr;    ///< how many entries of a row are the chunk's own; they come first
   const std::uint32_t* entries = nullptr;   ///< 2 edge, plus one where the node is the edge's second
   const std::int32_t* slots = nullptr;      ///< of each entry in the matrix
   const std::int32_t* diagonal = nullptr;   ///< slot of each node's diagonal block
+  bool in_order = false;                    ///< chunks come one after the other: late entries go to the matrix as well; else they only count for the diagonal
 };
 
 struct LaneKernels {
@@ -102,7 +103,7 @@ struct LaneKernels {
   /// Blocks above the diagonal into `upper`; with by_position those below it into `lower`.
   void (*tangent)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, const ChunkBlocks& upper,
                   const ChunkBlocks& lower, LaneCounts&);
-  /// Adds the chunk's own blocks to the matrix (nine doubles a slot) and leaves the diagonal blocks of nodes that are not its own in `diagonal`.
+  /// Adds the chunk's own blocks to the matrix (nine doubles a slot) and leaves the diagonal blocks of nodes that are not its own in `diagonal`; in order, adds them all.
   void (*flush)(const BlockTargets&, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal, double* values);
   /// f += nodal forces - stiffness times w.
   void (*step_force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, LaneCounts&);

@@ -10,7 +10,7 @@ namespace palpate::workers {
 void set_count(int count);
 int count();
 
-/// Runs task(context, t, w) for every t in [0, tasks), w in [0, count()) naming the thread; returns when all are done.  Allocates nothing.  Idle threads
+/// Runs task(context, t, w) for every t in [0, tasks), w in [0, count()) naming the thread; returns when all are done.  One thread takes them in their order.  Allocates nothing.  Idle threads
 /// spin for some tens of microseconds, then sleep.  A loop inside a loop, or beside one in another thread, is run by its caller alone, as w = 0.
 /// Tasks must not throw.  @param tasks  at most 2^20 - 1
 using Task = void (*)(void* context, int task, int worker);
