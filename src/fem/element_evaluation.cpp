@@ -6,6 +6,7 @@
 
 #include "corotated.h"
 #include "palpate/core/error.h"
+#include "palpate/core/huge_pages.h"
 #include "palpate/core/polar.h"
 #include "palpate/core/workers.h"
 
@@ -64,6 +65,13 @@ void fetch_contributions(const LateSums& sums, int k, const Real* contributions)
     fetch_block(contributions + 9 * static_cast<std::size_t>(sums.entries[static_cast<std::size_t>(p)]));
 }
 
+template <class Real>
+void fit_late(std::vector<Real>& blocks, std::size_t count) {
+  if (blocks.size() == 9 * count) return;
+  blocks.resize(9 * count);
+  prefer_huge_pages(blocks);
+}
+
 void set_zero(const ChunkBlocks& blocks, int count) {
   std::fill_n(blocks.first, 8 * count, 0.0);
   std::fill_n(blocks.last, count, 0.0);
@@ -80,12 +88,12 @@ void keep_blocks(const ChunkBlocks& blocks, int begin, int end, double* to) {
 
 ElementEvaluation::ElementEvaluation(const TetMesh& rest, const RestElements& elements, const std::vector<int>& material_of_element, bool with_lower)
     : chunks_(rest, elements, material_of_element), kernels_(&best_kernels()), with_lower_(with_lower) {
-  late_nodes_.resize((static_cast<std::size_t>(chunks_.late_nodes.contributions()) + 1) / 2);
   chunk_sums_.resize(chunks_.chunks.size());
   fit_scratch();
 }
 
 void ElementEvaluation::fit_scratch() {
+  if (!in_order()) late_nodes_.resize((static_cast<std::size_t>(chunks_.late_nodes.contributions()) + 1) / 2);
   const auto threads = static_cast<std::size_t>(workers::count());
   if (scratch_.size() >= threads) return;
   const auto nodes = static_cast<std::size_t>(chunks_.most_nodes) + 4;
@@ -111,12 +119,18 @@ void ElementEvaluation::fit_blocks() {
     if (with_lower_) scratch.lower.resize(edges);
     scratch.diagonal.resize(nodes);
   }
+  if (in_order()) return;
+  const auto late_edges = static_cast<std::size_t>(chunks_.late_edges.contributions());
+  fit_late(late_upper_, late_edges);
+  if (with_lower_) fit_late(late_lower_, late_edges);
+  fit_late(late_diagonal_, static_cast<std::size_t>(chunks_.late_nodes.contributions()));
 }
 
 void ElementEvaluation::fit_leaving() {
   fit_scratch();
   for (Scratch& scratch : scratch_)
     for (int turn = 0; turn < turns(); ++turn) scratch.leaving[turn].resize(static_cast<std::size_t>(chunks_.most_edges) + 1);
+  if (!in_order()) fit_late(late_single_, static_cast<std::size_t>(chunks_.late_edges.contributions()));
 }
 
 LaneCounts ElementEvaluation::collect_counts() {
@@ -220,7 +234,7 @@ void ElementEvaluation::flush_nodal(const Chunk& chunk, const double* sum, doubl
     if (n + kNodesAhead < direct) __builtin_prefetch(out + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
     for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)] += sum[4 * n + axis];
   }
-  std::copy_n(sum + 4 * direct, 4 * (chunk.nodes - direct), numbers(late_nodes_) + 4 * static_cast<std::size_t>(chunk.first_late_node));
+  if (direct < chunk.nodes) std::copy_n(sum + 4 * direct, 4 * (chunk.nodes - direct), numbers(late_nodes_) + 4 * static_cast<std::size_t>(chunk.first_late_node));
 }
 
 void ElementEvaluation::add_late_nodes(double* out) const {

@@ -49,11 +49,6 @@ void ElementEvaluation::prepare(int first_node, const dynamics::BlockSparse& A) 
         slots_[static_cast<std::size_t>(p)] = slot(chunks_.nodes[static_cast<std::size_t>(n)], chunks_.nodes[static_cast<std::size_t>(chunk.first_node + chunks_.ends[other])]);
       }
   find_both_sides(chunks_.late_edges, slot, late_slots_);
-  const auto edge_places = static_cast<std::size_t>(chunks_.late_edges.contributions());
-  late_upper_.resize(9 * edge_places);
-  if (with_lower_) late_lower_.resize(9 * edge_places);
-  late_diagonal_.resize(9 * static_cast<std::size_t>(chunks_.late_nodes.contributions()));
-  for (const auto* late : {&late_upper_, &late_lower_, &late_diagonal_}) prefer_huge_pages(*late);
   prefer_huge_pages(slots_);
   pattern_version_ = A.pattern_version();
   first_node_ = first_node;
@@ -86,8 +81,6 @@ void ElementEvaluation::prepare_places(int first_node, const dynamics::BalancedM
   late_places_.clear();
   for (int k = 0; k < chunks_.late_edges.count(); ++k) late_places_.push_back({place(chunks_.late_edges.first[static_cast<std::size_t>(k)], chunks_.late_edges.second[static_cast<std::size_t>(k)]), k});
   std::sort(late_places_.begin(), late_places_.end(), [](const LatePlace& a, const LatePlace& b) { return a.place < b.place; });
-  late_single_.assign(9 * static_cast<std::size_t>(chunks_.late_edges.contributions()), 0.0f);
-  prefer_huge_pages(late_single_);
   prefer_huge_pages(places_);
   places_version_ = A.places_version;
   places_first_node_ = first_node;
