@@ -71,7 +71,7 @@ void print_elements(const FemBenchReport& report) {
     kinds[{t.stage, t.threads}].push_back(&t);
   }
   fmt::print("one evaluation over the elements by itself, again and again: bent beam, E = 1e6; share of what its bytes and operations take at the bandwidth of just these bytes\n"
-             "  residual: forces less K w; one pass: that and the warped matrix in single precision; tangents are added to a matrix in double, which is set to zero before them\n\n{}\n",
+             "  residual: forces less K w; one pass: that and the warped matrix in single precision; tangents are stored in a matrix in double, whatever stood there\n\n{}\n",
              report::format_table({"size", "thr", "stage", "least [ms]", "median [ms]", "least [ns/tet]", "limit [%]", "runs"}, rows));
   Rows growth;
   for (const auto& [kind, timings] : kinds) {

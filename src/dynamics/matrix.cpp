@@ -23,7 +23,9 @@ int BlockSparse::slot(int i, int j) const {
   return it != last && *it == j ? static_cast<int>(it - columns_.begin()) : -1;
 }
 
-void BlockSparse::set_zero() { std::fill(values_.begin(), values_.end(), 0.0); }
+void BlockSparse::set_zero(int first_row, int rows) {
+  std::fill(block(row_start_[static_cast<std::size_t>(first_row)]), block(row_start_[static_cast<std::size_t>(first_row + rows)]), 0.0);
+}
 
 void BlockSparse::multiply_add(const double* x, double* y) const {
   for (int i = 0; i < block_rows(); ++i) {

@@ -189,16 +189,34 @@ void System::step_left(const StateView& state, const VecX& shift, const VecX& ch
   for (int dof : driven_dofs_) r[dof] = 0.0;
 }
 
+/// k_scale K + d_scale D of what the filter lets pass.  Where a term writes the rows of a node block whole, that is the first that happens to them.
+void System::assemble_tangents(const StateView& state, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter) {
+  const bool any = d_scale != 0.0 || k_scale != 0.0;
+  term_is_in_.assign(terms_.size(), 0);
+  const auto is_left = [&](std::size_t i) { return any && !term_is_in_[i] && terms_[i]->traits().has_tangent && (!filter || filter(terms_[i]->traits())); };
+  for (const Block& block : state.layout->blocks) {
+    if (block.kind != BlockKind::kNodes) continue;
+    std::size_t i = 0;
+    while (i < terms_.size() && !(is_left(i) && terms_[i]->stored_block() == block.id)) ++i;
+    if (i < terms_.size()) {
+      terms_[i]->store_tangent(state, k_scale, d_scale, A);
+      term_is_in_[i] = 1;
+    } else {
+      A.body.set_zero(block.u_offset / 3, block.u_size / 3);
+    }
+  }
+  for (MatX* border : {&A.right, &A.bottom, &A.corner}) border->setZero();
+  for (std::size_t i = 0; i < terms_.size(); ++i)
+    if (is_left(i)) terms_[i]->add_tangent(state, k_scale, d_scale, A);
+}
+
 void System::step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter) {
   ensure_pattern(state, A);
-  A.set_zero();
+  assemble_tangents(state, d_scale, k_scale, A, filter);
   A.positions = state.q.head(state.layout->nodal_size);  // node blocks come first, with q' = u
   A.symmetric = symmetric();
   if (m_scale != 0.0)
     for (const auto& inertia : inertias_) inertia->add_mass(state, m_scale, A);
-  if (d_scale != 0.0 || k_scale != 0.0)
-    for (const auto& term : terms_)
-      if (term->traits().has_tangent && (!filter || filter(term->traits()))) term->add_tangent(state, k_scale, d_scale, A);
   if (any_master_) {
     if (k_scale != 0.0) {
       evaluate_carried_stiffness(state, filter);

@@ -253,7 +253,13 @@ LaneCounts ElementEvaluation::add_force(const ElementModels& models, const BodyF
 LaneCounts ElementEvaluation::add_step_force(const ElementModels& models, const BodyFields& at, double* f) { return add_nodal(kernels_->step_force, models, at, f); }
 LaneCounts ElementEvaluation::apply_tangent(const ElementModels& models, const BodyFields& at, double* y) { return add_nodal(kernels_->apply, models, at, y); }
 
-LaneCounts ElementEvaluation::add_tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A) {
+LaneCounts ElementEvaluation::store_tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A) {
+  prepare(first_node, A);
+  for (std::int32_t slot : bare_slots_) std::fill_n(A.block(slot), 9, 0.0);
+  return tangent(models, at, first_node, A, true);
+}
+
+LaneCounts ElementEvaluation::tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A, bool stored) {
   fit_blocks();
   prepare(first_node, A);
   const bool symmetric = !models.front().by_position;
@@ -264,12 +270,14 @@ LaneCounts ElementEvaluation::add_tangent(const ElementModels& models, const Bod
     const ChunkBlocks upper = scratch.upper.blocks(), lower = scratch.lower.blocks(), diagonal = scratch.diagonal.blocks();
     set_zero(upper, chunk.edges + 1);
     if (!symmetric) set_zero(lower, chunk.edges + 1);
-    const ChunkFields fields = load(c, at, scratch);
+    ChunkFields fields = load(c, at, scratch);
+    scratch.rows = {chunks_.nodes.data() + chunk.first_node, A.row_start().data() + first_node, A.values().data(), in_order() ? chunk.nodes : chunk.own_nodes};
+    fields.rows = &scratch.rows;
     for_each_run_with_edges(chunk, models, [&](const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model) {
       kernels_->tangent(groups, edges, count, model, kScalarPath, fields, upper, lower, scratch.counts);
     });
     const BlockTargets targets{chunk.nodes, chunk.own_nodes, chunks_.row_start.data() + chunk.first_node, chunks_.row_own.data() + chunk.first_node,
-                               chunks_.row_edges.data(), slots_.data(), chunk_diagonal_.data() + chunk.first_node, in_order()};
+                               chunks_.row_edges.data(), slots_.data(), chunk_diagonal_.data() + chunk.first_node, in_order(), stored};
     kernels_->flush(targets, upper, lower, symmetric, diagonal, A.values().data());
     if (in_order()) return;
     const auto edge_place = 9 * static_cast<std::size_t>(chunk.first_late_edge);

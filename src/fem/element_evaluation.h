@@ -33,7 +33,9 @@ class ElementEvaluation {
   /// f += forces - stiffness times w.
   LaneCounts add_step_force(const ElementModels& models, const BodyFields& at, double* f);
   LaneCounts apply_tangent(const ElementModels& models, const BodyFields& at, double* y);
-  LaneCounts add_tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A);
+  LaneCounts add_tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A) { return tangent(models, at, first_node, A, false); }
+  /// The rows of the body's nodes, whole: zeros where the pattern has more, whatever stood there.
+  LaneCounts store_tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A);
   /// f += forces - stiffness times w, and the off-diagonal blocks of k_scale K + d_scale D, times A.scale, stored in A.
   LaneCounts add_step(const ElementModels& models, const BodyFields& at, int first_node, double* f, dynamics::BalancedMatrix& A);
   double energy(const ElementModels& models, const BodyFields& at);
@@ -65,6 +67,7 @@ class ElementEvaluation {
     int turn = 0;
     LeavingBlocks before;                       ///< of the chunk before
     ComingNodes coming;
+    ComingRows rows;
     LaneCounts counts;
   };
 
@@ -91,8 +94,10 @@ class ElementEvaluation {
   bool in_order() const;
   void flush_nodal(const ElementChunks::Chunk& chunk, const double* sum, double* out);
   void add_late_nodes(double* out) const;
+  void find_bare_slots(int first_node, const dynamics::BlockSparse& A);
   void prepare_places(int first_node, const dynamics::BalancedMatrix& A);
   void add_late_blocks(dynamics::BalancedMatrix& A) const;
+  LaneCounts tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A, bool stored);
   LaneCounts add_nodal(NodalKernel kernel, const ElementModels& models, const BodyFields& at, double* out);
   void add_late_blocks(bool symmetric, dynamics::BlockSparse& A) const;
 
@@ -109,6 +114,7 @@ class ElementEvaluation {
   std::uint64_t pattern_version_ = 0;
   int first_node_ = -1;
   std::vector<std::int32_t> slots_;                    ///< of each entry of ElementChunks::row_edges
+  std::vector<std::int32_t> bare_slots_;               ///< in the body's rows, that no element adds to
   std::vector<std::int32_t> places_;                   ///< in a BalancedMatrix, of each chunk's own edges, ascending, then of its late ones
   std::vector<std::uint16_t> leaving_edges_;           ///< the edge of each of places_
   std::vector<LatePlace> late_places_;                 ///< ascending

@@ -49,9 +49,21 @@ void ElementEvaluation::prepare(int first_node, const dynamics::BlockSparse& A) 
         slots_[static_cast<std::size_t>(p)] = slot(chunks_.nodes[static_cast<std::size_t>(n)], chunks_.nodes[static_cast<std::size_t>(chunk.first_node + chunks_.ends[other])]);
       }
   find_both_sides(chunks_.late_edges, slot, late_slots_);
+  find_bare_slots(first_node, A);
   prefer_huge_pages(slots_);
   pattern_version_ = A.pattern_version();
   first_node_ = first_node;
+}
+
+void ElementEvaluation::find_bare_slots(int first_node, const dynamics::BlockSparse& A) {
+  const auto row = [&](int node) { return A.row_start()[static_cast<std::size_t>(first_node + node)]; };
+  const int first = row(0), end = row(chunks_.node_count());
+  std::vector<char> filled(static_cast<std::size_t>(end - first), 0);
+  for (const auto* slots : {&slots_, &chunk_diagonal_})
+    for (std::int32_t slot : *slots) filled[static_cast<std::size_t>(slot - first)] = 1;
+  bare_slots_.clear();
+  for (int slot = first; slot < end; ++slot)
+    if (!filled[static_cast<std::size_t>(slot - first)]) bare_slots_.push_back(slot);
 }
 
 /// Ascending in the matrix, so that its memory is written in order.
@@ -87,7 +99,7 @@ void ElementEvaluation::prepare_places(int first_node, const dynamics::BalancedM
 }
 
 std::size_t ElementEvaluation::map_bytes() const {
-  return bytes_of(slots_) + bytes_of(chunk_diagonal_) + bytes_of(late_slots_) + bytes_of(diagonal_) + bytes_of(places_) + bytes_of(leaving_edges_) + bytes_of(late_places_);
+  return bytes_of(slots_) + bytes_of(bare_slots_) + bytes_of(chunk_diagonal_) + bytes_of(late_slots_) + bytes_of(diagonal_) + bytes_of(places_) + bytes_of(leaving_edges_) + bytes_of(late_places_);
 }
 
 std::size_t ElementEvaluation::scratch_bytes() const {

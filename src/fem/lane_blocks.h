@@ -130,13 +130,17 @@ PALPATE_INLINE void set_position(BlockParts& e, const ElementModel& model, const
 }
 
 template <Blocks kBlocks, bool kDamped, bool kByPosition>
-PALPATE_INLINE void edge_blocks(const GroupEdges& edges, int first, const BlockParts& e, const ChunkBlocks& upper, const ChunkBlocks& lower) {
-  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[0] + first, e, 0, 1, upper, lower);
-  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[1] + first, e, 0, 2, upper, lower);
-  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[2] + first, e, 0, 3, upper, lower);
-  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[3] + first, e, 1, 2, upper, lower);
-  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[4] + first, e, 1, 3, upper, lower);
-  edge_block<kBlocks, kDamped, kByPosition>(edges.edge[5] + first, e, 2, 3, upper, lower);
+PALPATE_INLINE void edge_blocks(const GroupEdges& edges, int first, const BlockParts& e, ComingRows* rows, const ChunkBlocks& upper, const ChunkBlocks& lower) {
+  const auto at_edge = [&](int number, int a, int b) __attribute__((always_inline)) {
+    edge_block<kBlocks, kDamped, kByPosition>(edges.edge[number] + first, e, a, b, upper, lower);
+    if (rows) fetch_rows(*rows);
+  };
+  at_edge(0, 0, 1);
+  at_edge(1, 0, 2);
+  at_edge(2, 0, 3);
+  at_edge(3, 1, 2);
+  at_edge(4, 1, 3);
+  at_edge(5, 2, 3);
 }
 
 template <bool kDamped, bool kByPosition>
@@ -165,7 +169,7 @@ static void blocks_of(const ElementGroup* groups, const GroupEdges* edges, int c
     BlockParts e;
     set_elastic<kBlocks>(e, model, R, C, G, volume);
     set_rates<kDamped, kByPosition>(e, at, model, F, G, volume, fields);
-    edge_blocks<kBlocks, kDamped, kByPosition>(edges[at.number], at.first, e, upper, lower);
+    edge_blocks<kBlocks, kDamped, kByPosition>(edges[at.number], at.first, e, kStep ? nullptr : fields.rows, upper, lower);
     if constexpr (kStep)
       if (at.first == 0) leave(*before, before->at_a_time);
   });
@@ -180,7 +184,7 @@ static void damping_blocks(const ElementGroup* groups, const GroupEdges* edges, 
       const Gradients G = gradients(at);
       BlockParts e;
       set_rates<true, false>(e, at, model, gradient_of(at, G, fields.x), G, at.volume(), fields);
-      edge_blocks<Blocks::kDampingOnly, true, false>(edges[g], part, e, upper, {});
+      edge_blocks<Blocks::kDampingOnly, true, false>(edges[g], part, e, fields.rows, upper, {});
     }
   }
 }

@@ -19,6 +19,19 @@ PALPATE_INLINE void fetch_nodes(ComingNodes& coming) {
   coming.asked = end;
 }
 
+/// A few lines of the rows to come, asked for with each edge of a group: all that a chunk writes, or most of it, is then on its way while there is arithmetic to do.
+PALPATE_INLINE void fetch_rows(ComingRows& rows) {
+  constexpr int kLines = 5;
+  if (rows.next >= rows.end) {
+    if (rows.asked == rows.count) return;
+    const int node = rows.nodes[rows.asked++];
+    rows.next = reinterpret_cast<const char*>(rows.values + 9 * static_cast<std::int64_t>(rows.row_start[node]));
+    rows.end = reinterpret_cast<const char*>(rows.values + 9 * static_cast<std::int64_t>(rows.row_start[node + 1]));
+  }
+  fetch<2>(rows.next, 64 * kLines);
+  rows.next += 64 * kLines;
+}
+
 /// The lanes of group number g of a run from `first` on.
 struct Lanes {
   const ElementGroup& group;

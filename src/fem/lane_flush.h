@@ -10,15 +10,13 @@ struct BlockSum {
   typedef long long Places __attribute__((vector_size(64)));
   Row first{};
   double last = 0.0;
-  /// Takes the block away from the sum, and adds it to the matrix.
-  PALPATE_INLINE_MEMBER void move(const double* block_first, double block_last, bool transposed, double* to) {
+  PALPATE_INLINE_MEMBER static BlockSum of(const double* block_first, double block_last, bool transposed) {
     constexpr Places kPlaces[2] = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 3, 6, 1, 4, 7, 2, 5}};
-    const Row block = __builtin_shuffle(Row(*reinterpret_cast<const RowInMemory*>(block_first)), kPlaces[transposed]);
-    first -= block;
-    last -= block_last;
-    if (to == nullptr) return;
-    *reinterpret_cast<RowInMemory*>(to) += block;
-    to[8] += block_last;
+    return {__builtin_shuffle(Row(*reinterpret_cast<const RowInMemory*>(block_first)), kPlaces[transposed]), block_last};
+  }
+  PALPATE_INLINE_MEMBER void subtract(const BlockSum& block) {
+    first -= block.first;
+    last -= block.last;
   }
   PALPATE_INLINE_MEMBER void symmetrise() {
     const Row mirrored = __builtin_shuffle(first, Places{0, 3, 6, 1, 4, 7, 2, 5});
@@ -37,15 +35,16 @@ struct BlockSum {
 struct BlockSum {
   double first[8] = {};
   double last = 0.0;
-  PALPATE_INLINE_MEMBER void move(const double* block_first, double block_last, bool transposed, double* to) {
+  PALPATE_INLINE_MEMBER static BlockSum of(const double* block_first, double block_last, bool transposed) {
     constexpr int kPlaces[2][8] = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 3, 6, 1, 4, 7, 2, 5}};
-    double block[8];
-    for (int c = 0; c < 8; ++c) block[c] = block_first[kPlaces[transposed][c]];
-    for (int c = 0; c < 8; ++c) first[c] -= block[c];
-    last -= block_last;
-    if (to == nullptr) return;
-    for (int c = 0; c < 8; ++c) to[c] += block[c];
-    to[8] += block_last;
+    BlockSum block;
+    for (int c = 0; c < 8; ++c) block.first[c] = block_first[kPlaces[transposed][c]];
+    block.last = block_last;
+    return block;
+  }
+  PALPATE_INLINE_MEMBER void subtract(const BlockSum& block) {
+    for (int c = 0; c < 8; ++c) first[c] -= block.first[c];
+    last -= block.last;
   }
   PALPATE_INLINE_MEMBER void symmetrise() {
     first[1] = first[3] = 0.5 * (first[1] + first[3]);
@@ -68,25 +67,40 @@ constexpr int kRowsAhead = 6;
 PALPATE_INLINE void fetch_row(const BlockTargets& targets, int n, const double* values) {
   if (n >= targets.nodes) return;
   const int begin = targets.row_start[n], end = targets.in_order ? targets.row_start[n + 1] : begin + targets.row_own[n];
-  for (int p = begin; p < end; ++p) fetch<3>(values + 9 * static_cast<std::int64_t>(targets.slots[p]), 64);
+  if (begin < end) fetch<3>(values + 9 * static_cast<std::int64_t>(targets.slots[begin]), 72 * (end - begin));  // mostly side by side
 }
 
-template <bool kSymmetric>
+template <bool kSymmetric, bool kStored>
 static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, const ChunkBlocks& lower, const ChunkBlocks& diagonal, double* values) {
+  const auto at = [&](std::int32_t slot) { return values + 9 * static_cast<std::int64_t>(slot); };
+  const auto put = [](const BlockSum& block, double* to) __attribute__((always_inline)) {
+    if constexpr (kStored)
+      block.store(to, to + 8);
+    else
+      block.add_to(to);
+  };
   for (int n = 0; n < targets.nodes; ++n) {
     fetch_row(targets, n + kRowsAhead, values);
     BlockSum sum;
-    const int begin = targets.row_start[n], end = targets.row_start[n + 1], direct = targets.in_order ? end : begin + targets.row_own[n];
-    for (int p = begin; p < end; ++p) {
+    const auto take = [&](int p) __attribute__((always_inline)) {
       const std::uint32_t edge = targets.entries[p] / 2;
       const bool second = targets.entries[p] % 2 != 0;
       const ChunkBlocks& blocks = !kSymmetric && second ? lower : upper;
-      double* to = p < direct ? values + 9 * static_cast<std::int64_t>(targets.slots[p]) : nullptr;
-      sum.move(blocks.first + 8 * edge, blocks.last[edge], kSymmetric && second, to);
+      const BlockSum block = BlockSum::of(blocks.first + 8 * edge, blocks.last[edge], kSymmetric && second);
+      sum.subtract(block);
+      return block;
+    };
+    const int begin = targets.row_start[n], end = targets.row_start[n + 1], own = begin + targets.row_own[n];
+    for (int p = begin; p < own; ++p) put(take(p), at(targets.slots[p]));
+    for (int p = own; p < end; ++p) {
+      const BlockSum block = take(p);
+      if (targets.in_order) block.add_to(at(targets.slots[p]));
     }
     if (kSymmetric) sum.symmetrise();  // to the last bit: the two sides of an edge's block were summed in different orders
-    if (targets.in_order || n < targets.own_nodes)
-      sum.add_to(values + 9 * static_cast<std::int64_t>(targets.diagonal[n]));
+    if (n < targets.own_nodes)
+      put(sum, at(targets.diagonal[n]));
+    else if (targets.in_order)
+      sum.add_to(at(targets.diagonal[n]));
     else
       sum.store(diagonal.first + 8 * n, diagonal.last + n);
   }
@@ -94,10 +108,11 @@ static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, co
 
 static void flush(const BlockTargets& targets, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal,
                   double* values) {
+  const auto run = [&](auto* rows) { rows(targets, upper, lower, diagonal, values); };
   if (symmetric)
-    flush_rows<true>(targets, upper, lower, diagonal, values);
+    run(targets.stored ? flush_rows<true, true> : flush_rows<true, false>);
   else
-    flush_rows<false>(targets, upper, lower, diagonal, values);
+    run(targets.stored ? flush_rows<false, true> : flush_rows<false, false>);
 }
 
 // A matrix in single precision takes each block as it is.

@@ -34,12 +34,23 @@ struct ComingNodes {
   int at_a_time = 0;  ///< with each group of elements
 };
 
+/// Rows of the matrix that a chunk writes when its elements are done, asked for meanwhile.
+struct ComingRows {
+  const std::int32_t* nodes = nullptr;  ///< of the body
+  const int* row_start = nullptr;       ///< in the matrix, of each node of the body, in blocks
+  const double* values = nullptr;
+  int count = 0;
+  int asked = 0;                                 ///< of `count`
+  const char *next = nullptr, *end = nullptr;    ///< of the row that is being asked for
+};
+
 /// Nodal vectors of one chunk, four doubles a node (x, y, z, unused), 32-byte aligned.
 struct ChunkFields {
   const double* x = nullptr;  ///< positions [m]
   const double* v = nullptr;  ///< velocities [m/s]
   const double* w = nullptr;  ///< a direction
   ComingNodes* coming = nullptr;  ///< asked for meanwhile; may be missing
+  ComingRows* rows = nullptr;     ///< likewise
 };
 
 /// 3x3 blocks of one chunk, one an edge: entries 0 to 7, row by row, in `first`, the last one in `last`; `first` is 64-byte aligned.
@@ -92,6 +103,7 @@ struct BlockTargets {
   const std::int32_t* slots = nullptr;      ///< of each entry in the matrix
   const std::int32_t* diagonal = nullptr;   ///< slot of each node's diagonal block
   bool in_order = false;                    ///< chunks come one after the other: late entries go to the matrix as well; else they only count for the diagonal
+  bool stored = false;                      ///< own entries, and diagonal blocks of own nodes, replace what stands in the matrix; else they are added to it
 };
 
 struct LaneKernels {
@@ -103,7 +115,8 @@ struct LaneKernels {
   /// Blocks above the diagonal into `upper`; with by_position those below it into `lower`.
   void (*tangent)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, const ChunkBlocks& upper,
                   const ChunkBlocks& lower, LaneCounts&);
-  /// Adds the chunk's own blocks to the matrix (nine doubles a slot) and leaves the diagonal blocks of nodes that are not its own in `diagonal`; in order, adds them all.
+  /// Adds the chunk's own blocks to the matrix (nine doubles a slot), or stores them there, and leaves the diagonal blocks of nodes that are not its own in `diagonal`; in order, adds what
+  /// is not its own to the matrix as well.
   void (*flush)(const BlockTargets&, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal, double* values);
   /// f += nodal forces - stiffness times w.
   void (*step_force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, LaneCounts&);

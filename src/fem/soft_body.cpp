@@ -66,6 +66,23 @@ struct SoftBody::Impl {
     for (int i = 0; i < node_count(); ++i) Eigen::Map<Vec3>(force + 3 * i) -= drag[i] * Eigen::Map<const Vec3>(at.v + 3 * i);
   }
 
+  /// The body's rows of A += or, `stored`, = k_scale K + d_scale D.
+  void tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A, bool stored) {
+    const NodeBlock at = place(state);
+    if (acts(k_scale, d_scale)) {
+      const BodyFields fields{at.x, by_position() && k_scale != 0.0 ? at.v : nullptr};
+      const ElementModels& scaled = models_of(k_scale, d_scale);
+      const LaneCounts met = stored ? elements.store_tangent(scaled, fields, at.first_node, A.body) : elements.add_tangent(scaled, fields, at.first_node, A.body);
+      counts.clamped += met.clamped;
+      counts.by_scalar += met.by_scalar;
+    } else if (stored) {
+      A.body.set_zero(at.first_node, node_count());
+    }
+    if (d_scale == 0.0 || !dragged()) return;
+    elements.prepare(at.first_node, A.body);
+    for (int i = 0; i < node_count(); ++i) A.body.add(elements.diagonal(i), d_scale * drag[i] * Mat3::Identity());
+  }
+
   void set(const std::vector<Material>& list) {
     materials = list;
     models.resize(list.size());
@@ -148,18 +165,10 @@ void SoftBody::add_force(const StateView& state, VecX& f) {
   if (m.dragged()) m.add_drag(at, force);
 }
 
-void SoftBody::add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) {
-  Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
-  if (m.acts(k_scale, d_scale)) {
-    const LaneCounts met = m.elements.add_tangent(m.models_of(k_scale, d_scale), {at.x, m.by_position() && k_scale != 0.0 ? at.v : nullptr}, at.first_node, A.body);
-    m.counts.clamped += met.clamped;
-    m.counts.by_scalar += met.by_scalar;
-  }
-  if (d_scale == 0.0 || !m.dragged()) return;
-  m.elements.prepare(at.first_node, A.body);
-  for (int i = 0; i < node_count(); ++i) A.body.add(m.elements.diagonal(i), d_scale * m.drag[i] * Mat3::Identity());
-}
+void SoftBody::add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) { impl_->tangent(state, k_scale, d_scale, A, false); }
+
+int SoftBody::stored_block() const { return impl_->block_id; }
+void SoftBody::store_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) { impl_->tangent(state, k_scale, d_scale, A, true); }
 
 void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) {
   Impl& m = *impl_;

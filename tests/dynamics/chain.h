@@ -12,7 +12,7 @@
 namespace palpate::dynamics {
 
 /// Springs along a chain of nodes, linear in all three directions: f_i = k (x_{i+1} - x_i - L) and its opposite.
-class ChainSprings final : public ForceTerm {
+class ChainSprings : public ForceTerm {
  public:
   ChainSprings(int nodes, double k, bool balanced = true) : nodes_(nodes), k_(k), balanced_(balanced) {}
   std::string_view name() const override { return "springs"; }

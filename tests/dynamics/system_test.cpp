@@ -1,5 +1,8 @@
 #include "palpate/dynamics/system.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "dynamics/chain.h"
@@ -156,4 +159,60 @@ TEST(System, FiltersTermsByWhatTheyAre) {
   c.system.force(c.state.view(), none, [](const TermTraits& t) { return !t.stiff; });
   EXPECT_GT(all.norm(), 1.0);
   EXPECT_EQ(none.norm(), 0.0);
+}
+
+/// Springs that write the rows of their block whole.
+class StoredSprings final : public ChainSprings {
+ public:
+  StoredSprings(int block, int nodes, double k) : ChainSprings(nodes, k), block_(block), count_(nodes) {}
+  int stored_block() const override { return block_; }
+  void store_tangent(const StateView& s, double k_scale, double d_scale, BorderedMatrix& A) override {
+    A.body.set_zero(0, count_);
+    add_tangent(s, k_scale, d_scale, A);
+    ++stored;
+  }
+  int stored = 0;
+
+ private:
+  int block_, count_;
+};
+
+TEST(System, TermsThatStoreTheirRowsComeFirstAndOnlyOnceABlock) {
+  Chain c(3);  // its own springs, k = 50, add
+  c.state.insert(BlockSpec{.name = "beside", .q_size = 6, .u_size = 6}, VecX::Zero(6), VecX::Zero(6));
+  const auto first = std::make_shared<StoredSprings>(c.block, 3, 20.0), second = std::make_shared<StoredSprings>(c.block, 3, 3.0);
+  c.system.add(first);
+  c.system.add(second);
+  c.system.add(std::make_shared<ChainMass>(c.block, 3, 2.0));
+  const int beside = c.state.layout().find("beside")->id;
+  struct Apart final : InertiaTerm {
+    int block;
+    explicit Apart(int b) : block(b) {}
+    int block_id() const override { return block; }
+    bool diagonal() const override { return true; }
+    void add_mass(const StateView&, double scale, BorderedMatrix& A) const override {
+      for (int i : {3, 4}) A.body.add(A.body.slot(i, i), scale * Mat3::Identity());
+    }
+    void apply(const StateView&, const VecX& x, VecX& y) const override { y.tail(6) += x.tail(6); }
+  };
+  c.system.add(std::make_shared<Apart>(beside));
+  c.system.prepare(c.state.view());
+  BorderedMatrix A;
+  for (int time = 0; time < 2; ++time) {
+    c.system.step_matrix(c.state.view(), 1.0, 0.0, 0.1, A);
+    const MatX dense = A.to_dense();
+    EXPECT_NEAR(dense(0, 0), 2.0 + 0.1 * 73.0, 1e-13) << "time " << time;
+    EXPECT_NEAR(dense(0, 3), -0.1 * 73.0, 1e-13);
+    EXPECT_NEAR(dense(3, 3), 2.0 + 0.2 * 73.0, 1e-13);
+    EXPECT_EQ(MatX(dense.bottomRightCorner(6, 6)), MatX(MatX::Identity(6, 6)));
+    EXPECT_EQ(first->stored, time + 1);
+    EXPECT_EQ(second->stored, 0) << "what another term stored would be lost";
+    std::fill(A.body.values().begin(), A.body.values().end(), 1e300);
+  }
+  c.system.step_matrix(c.state.view(), 1.0, 0.0, 0.0, A);
+  EXPECT_NEAR(A.to_dense().norm(), std::sqrt(9 * 4.0 + 6.0), 1e-13) << "masses alone";
+  std::fill(A.body.values().begin(), A.body.values().end(), 1e300);
+  c.system.step_matrix(c.state.view(), 1.0, 0.0, 0.1, A, [](const TermTraits& t) { return t.contact; });
+  EXPECT_NEAR(A.to_dense().norm(), std::sqrt(9 * 4.0 + 6.0), 1e-13) << "a filter that lets no term pass";
+  EXPECT_EQ(first->stored, 2);
 }

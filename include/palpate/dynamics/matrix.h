@@ -28,7 +28,8 @@ class BlockSparse {
   void add(int slot, const Mat3& m) {
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(block(slot)) += m;
   }
-  void set_zero();
+  void set_zero() { set_zero(0, block_rows()); }
+  void set_zero(int first_row, int rows);
   /// y += A x
   void multiply_add(const double* x, double* y) const;
   /// y += A^T x

@@ -96,6 +96,7 @@ class System {
   void find_driven_slots(const BlockSparse& A) const;
   void eliminate_driven(BorderedMatrix& A) const;
   void solve_mass(const StateView& state, VecX& r, VecX& a);
+  void assemble_tangents(const StateView& state, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter);
   void assemble_mass(const StateView& state, BorderedMatrix& A);
 
   std::vector<std::shared_ptr<ForceTerm>> terms_;
@@ -108,6 +109,7 @@ class System {
   bool any_master_ = false;
   VecX nodal_mass_, inverse_nodal_mass_;
   double mass_scale_ = 1.0;  ///< a power of two near 1 over the mean nodal mass
+  std::vector<char> term_is_in_;  ///< of each term, whether its tangent is in the matrix that is being assembled
   std::vector<char> driven_mask_;
   std::vector<int> driven_dofs_;
   std::vector<HeldNode> driven_nodes_;

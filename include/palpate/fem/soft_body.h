@@ -58,6 +58,8 @@ class SoftBody : public dynamics::ForceTerm {
   std::uint64_t pattern_version() const override;
   void add_force(const dynamics::StateView& state, VecX& f) override;
   void add_tangent(const dynamics::StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) override;
+  int stored_block() const override;
+  void store_tangent(const dynamics::StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) override;
   void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) override;
   void add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change, VecX& f) override;
   void add_step(const dynamics::StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f, dynamics::BalancedMatrix& A) override;

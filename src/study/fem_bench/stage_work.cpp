@@ -74,12 +74,10 @@ StageWork element_work(const std::string& stage, const StepCounts& c) {
   StepCounts general = c, one_pass = c, near = c;
   general.one_pass = general.near = false;
   one_pass.one_pass = near.near = true;
-  if (stage == "matrix set to zero") return {.written_bytes = kBlock * c.blocks};
   if (stage == "one pass") return work_of(one_pass).matrix;
   if (stage == "residual") return work_of(near).force;
-  if (stage.starts_with("tangent")) {  // added to a matrix, which is read for it
+  if (stage.starts_with("tangent")) {
     StageWork work = work_of(general).matrix;
-    work.read_bytes += kBlock * c.blocks;
     if (stage == "tangent, exact") work.double_flops += kCoupled * c.tetrahedra;
     return work;
   }
