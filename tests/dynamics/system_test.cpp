@@ -216,3 +216,20 @@ TEST(System, TermsThatStoreTheirRowsComeFirstAndOnlyOnceABlock) {
   EXPECT_NEAR(A.to_dense().norm(), std::sqrt(9 * 4.0 + 6.0), 1e-13) << "a filter that lets no term pass";
   EXPECT_EQ(first->stored, 2);
 }
+
+TEST(System, ATermThatNamesABlockToStoreMustStoreIt) {
+  struct Forgetful final : ChainSprings {
+    using ChainSprings::ChainSprings;
+    int block = -1;
+    int stored_block() const override { return block; }
+  };
+  Chain c(3);
+  const auto term = std::make_shared<Forgetful>(3, 1.0);
+  c.system.add(term);
+  c.system.add(std::make_shared<ChainMass>(c.block, 3, 2.0));
+  c.system.prepare(c.state.view());
+  BorderedMatrix A;
+  EXPECT_NO_THROW(c.system.step_matrix(c.state.view(), 1.0, 0.0, 0.1, A));
+  term->block = c.block;
+  EXPECT_THROW(c.system.step_matrix(c.state.view(), 1.0, 0.0, 0.1, A), InternalError) << "it would add to what stood there";
+}

@@ -43,8 +43,9 @@ class ForceTerm {
   virtual void add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) = 0;
   /// The node block whose rows of the body part store_tangent() writes; -1: there is none.
   virtual int stored_block() const { return -1; }
-  /// The rows of stored_block() become k_scale K + d_scale D, whatever stood in them: a matrix that need not be set to zero first, nor be read.  Of terms that have such a block alone.
-  virtual void store_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) { add_tangent(state, k_scale, d_scale, A); }
+  /// The rows of stored_block() become k_scale K + d_scale D, whatever stood in them: a matrix that need not be set to zero first, nor be read.  Of terms that have such a block
+  /// alone.  @throws InternalError from this default
+  virtual void store_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A);
   /// y += (k_scale K + d_scale D) x without assembling; x and y of u_size.
   virtual void apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) = 0;
   /// f += force - K shift - D change: a linearly implicit step's share in what it leaves, without the matrix.  Of balanced terms alone; this default is for a zero tangent.
