@@ -11,6 +11,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/core/huge_pages.h"
+#include "palpate/mesh/place_order.h"
 
 namespace palpate::fem {
 namespace {
@@ -35,20 +36,10 @@ void bisect(const Points& centroids, std::vector<int>& order, int begin, int end
     starts.push_back(end);
     return;
   }
-  Vec3 low = Vec3::Constant(1e300), high = -low;
-  for (int k = begin; k < end; ++k) {
-    low = low.cwiseMin(centroids.col(order[static_cast<std::size_t>(k)]));
-    high = high.cwiseMax(centroids.col(order[static_cast<std::size_t>(k)]));
-  }
-  Eigen::Index axis = 0;
-  (high - low).maxCoeff(&axis);
   const int left = chunks / 2;
   const auto share = static_cast<std::int64_t>(end - begin) * left / chunks;
   const int middle = std::min(end, begin + static_cast<int>((share + 7) / 8 * 8));
-  std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, [&](int a, int b) {
-    const double pa = centroids(axis, a), pb = centroids(axis, b);
-    return pa < pb || (pa == pb && a < b);
-  });
+  mesh::cut_across_longest(centroids, order, begin, end, middle);
   bisect(centroids, order, begin, middle, left, starts);
   bisect(centroids, order, middle, end, chunks - left, starts);
 }
@@ -139,8 +130,10 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, 
   const int chunk_count = chunks_of(element_count_);
   bisect(centroids, order, 0, element_count_, chunk_count, starts);
   const auto material = [&](int e) { return material_of_element.empty() ? 0 : material_of_element[static_cast<std::size_t>(e)]; };
-  for (std::size_t c = 0; c + 1 < starts.size(); ++c)  // within a material, the order of the mesh is mostly a good one
-    std::sort(order.begin() + starts[c], order.begin() + starts[c + 1], [&](int a, int b) { return material(a) != material(b) ? material(a) < material(b) : a < b; });
+  for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
+    mesh::order_by_place(centroids, order, starts[c], starts[c + 1]);
+    std::stable_sort(order.begin() + starts[c], order.begin() + starts[c + 1], [&](int a, int b) { return material(a) < material(b); });
+  }
 
   const auto node = [&](int corner, int e) { return elements.node[static_cast<std::size_t>(corner)][static_cast<std::size_t>(e)]; };
   std::vector<std::vector<std::uint64_t>> node_keys(static_cast<std::size_t>(chunk_count)), edge_keys(static_cast<std::size_t>(chunk_count));

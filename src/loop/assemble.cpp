@@ -7,6 +7,7 @@
 #include "palpate/fem/load.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/mesh/checks.h"
+#include "palpate/mesh/place_order.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
 
@@ -32,13 +33,29 @@ fem::SoftBodyOptions options_of(const SoftBodySpec& spec, const fem::Materials& 
   return options;
 }
 
-/// The tetrahedra of a native mesh file or of a model, checked.
-TetMesh check_file(TetMesh tets, const std::string& path, double scale, mesh::MeshReport* report) {
+/// The tetrahedra of a body, from here on numbered by place.
+void take_tets(TetMesh tets, Body& body) {
+  body.file_node = mesh::order_by_place(tets.nodes);
+  body.rest = std::move(tets);
+  mesh::renumber_nodes(body.rest, body.file_node);
+}
+
+/// Those of a native mesh file or of a model, checked.
+void take_file(TetMesh tets, const std::string& path, double scale, Body& body) {
   tets.nodes *= scale;
   mesh::Provenance from;
   from.source = path;
-  *report = mesh::check_tets(tets, from);
-  return tets;
+  body.report = mesh::check_tets(tets, from);
+  take_tets(std::move(tets), body);
+}
+
+/// Those of a model, and whatever stands by its nodes.
+void take_model(LayeredModel& model, const std::string& path, double scale, Body& body) {
+  take_file(std::move(model.tets), path, scale, body);
+  if (model.bone_of_node.empty()) return;
+  std::vector<int> bone_of_node;
+  for (const int node : body.file_node) bone_of_node.push_back(model.bone_of_node[static_cast<std::size_t>(node)]);
+  model.bone_of_node = std::move(bone_of_node);
 }
 
 /// The bones, in the body's own axes as yet.
@@ -59,19 +76,16 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
   const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
   if (spec.skin || spec.skeleton) {
     LayeredModel model = store::read_model(path).model;
+    take_model(model, path, spec.mesh.scale, body);
     if (spec.skeleton) take_skeleton(spec, path, model, body);
-    if (!spec.skin) {
-      body.rest = check_file(std::move(model.tets), path, spec.mesh.scale, &body.report);
-      return std::move(model.regions);
-    }
+    if (!spec.skin) return std::move(model.regions);
     if (model.skin.faces.cols() == 0) fail("body \"{}\": skin = true, but {} has no skin; `palpate model` writes files that have one", spec.name, path);
     counters::count("loop.skin");
     model.skin.vertices *= spec.mesh.scale;
-    body.rest = check_file(std::move(model.tets), path, spec.mesh.scale, &body.report);
     std::shared_ptr<proxy::ProxySet> proxies;
     if (spec.proxies) {
       if (model.proxies.empty()) fail("body \"{}\": proxies = true, but {} has none; `palpate model` writes files that have them", spec.name, path);
-      model.tets = body.rest;  // as checked and scaled
+      model.tets = body.rest;  // as checked, scaled and numbered
       for (ProxyHull& hull : model.proxies) hull.corners *= spec.mesh.scale;
       counters::count("loop.proxies");
       proxies = std::make_shared<proxy::ProxySet>(model);
@@ -81,10 +95,10 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
   }
   std::vector<MaterialRegion> regions;
   if (spec.mesh.file.ends_with(".h5")) {
-    body.rest = check_file(store::read_mesh(path), path, spec.mesh.scale, &body.report);
+    take_file(store::read_mesh(path), path, spec.mesh.scale, body);
     regions = store::read_regions(path, static_cast<int>(body.rest.tets.cols()));
   } else {
-    body.rest = mesh::tet_mesh(spec.mesh, folder, &body.report, &regions);
+    take_tets(mesh::tet_mesh(spec.mesh, folder, &body.report, &regions), body);
   }
   return regions;
 }

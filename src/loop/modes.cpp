@@ -53,7 +53,9 @@ void write_modes(World& world, const integrate::Modes& modes, const std::string&
   std::vector<store::RunPart> parts;
   Eigen::Index count = 0;
   for (const Body& body : world.bodies) {
-    parts.push_back({body.name, world.positions(body), body.rest.tets, {}});
+    const Points positions = world.positions(body);
+    parts.push_back({body.name, positions, body.file_tets(), {}});
+    parts.back().reference(Eigen::all, body.file_node) = positions;
     count += body.placed.cols();
   }
   const scene::Description& d = world.description;
@@ -73,9 +75,9 @@ void write_modes(World& world, const integrate::Modes& modes, const std::string&
       const Body& body = world.bodies[i];
       const Eigen::Index n = body.placed.cols();
       const dynamics::Block& block = *world.state.layout().find(body.block_id);
-      points.middleCols(first, n) = Eigen::Map<const Points>(q.data() + block.q_offset, 3, n);
+      points.middleCols(first, n)(Eigen::all, body.file_node) = Eigen::Map<const Points>(q.data() + block.q_offset, 3, n);
       velocity.middleCols(first, n) = modes.omega(mode) * (points.middleCols(first, n) - parts[i].reference);
-      stress.segment(first, n) = body.nodal_stress(view);
+      stress.segment(first, n)(body.file_node) = body.nodal_stress(view);
       first += n;
     }
     file.append(mode + 1.0, points, velocity, stress);

@@ -39,7 +39,8 @@ struct Recorder::Impl {
     std::vector<store::RunPart> parts;
     Eigen::Index count = 0;
     for (const Body& body : world.bodies) {
-      parts.push_back({body.name, body.placed, body.rest.tets, {}});
+      parts.push_back({body.name, body.placed, body.file_tets(), {}});
+      parts.back().reference(Eigen::all, body.file_node) = body.placed;
       count += body.placed.cols();
     }
     const scene::Description& d = world.description;
@@ -81,9 +82,9 @@ struct Recorder::Impl {
     for (const Body& body : world.bodies) {
       const dynamics::Block& block = *view.layout->find(body.block_id);
       const Eigen::Index n = body.placed.cols();
-      points.middleCols(first, n) = Eigen::Map<const Points>(view.q.data() + block.q_offset, 3, n);
-      velocity.middleCols(first, n) = Eigen::Map<const Points>(view.u.data() + block.u_offset, 3, n);
-      stress.segment(first, n) = body.nodal_stress(view);
+      points.middleCols(first, n)(Eigen::all, body.file_node) = Eigen::Map<const Points>(view.q.data() + block.q_offset, 3, n);
+      velocity.middleCols(first, n)(Eigen::all, body.file_node) = Eigen::Map<const Points>(view.u.data() + block.u_offset, 3, n);
+      stress.segment(first, n)(body.file_node) = body.nodal_stress(view);
       first += n;
     }
     for (const Bone& bone : world.bones) first = place(bone.surface, world.bone_pose(bone), world.bone_twist(bone), first);

@@ -32,7 +32,8 @@ TraceRecorder::~TraceRecorder() { world_.stepper->set_trace(nullptr); }
 void TraceRecorder::attempt(const dynamics::StepAttempt& a) {
   ++attempts_;
   rejected_ += a.outcome != dynamics::StepAttempt::Outcome::kAccepted && a.outcome != dynamics::StepAttempt::Outcome::kEvent;
-  const NamedDirection worst = name_of(world_.state.layout(), a.worst_dof);
+  NamedDirection worst = name_of(world_.state.layout(), a.worst_dof);
+  if (const Body* body = world_.find_body(worst.block); body && worst.node >= 0) worst.node = body->file_node[static_cast<std::size_t>(worst.node)];
   const auto number_or_none = [](int n) { return n < 0 ? store::CsvCell(std::string()) : store::CsvCell(static_cast<double>(n)); };
   csv_.row(std::vector<store::CsvCell>{a.t, a.h, static_cast<double>(a.order), a.error, static_cast<double>(a.newton_iterations), std::string(to_string(a.outcome)),
                                        worst.block, number_or_none(worst.node), worst.axis, a.inverted_element < 0 ? std::string() : a.inverted_in,

@@ -35,6 +35,10 @@ VecX Body::surface_values(const VecX& at_nodes) const {
   return out;
 }
 
+Tets Body::file_tets() const {
+  return rest.tets.unaryExpr([&](int node) { return file_node[static_cast<std::size_t>(node)]; });
+}
+
 const Body* World::find_body(const std::string& name) const {
   for (const Body& b : bodies)
     if (b.name == name) return &b;

@@ -174,7 +174,7 @@ TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
 #ifdef PALPATE_HAS_GL
 namespace {
 
-/// How far each node has gone; `pressing`: samples of contact with pressure at the end.
+/// How far each node has gone, body by body in the order of its file; `pressing`: samples of contact with pressure at the end.
 VecX end_of(const scene::Description& d, int* pressing = nullptr) {
   const auto world = loop::assemble(d);
   const VecX start = world->state.q();
@@ -182,7 +182,14 @@ VecX end_of(const scene::Description& d, int* pressing = nullptr) {
   EXPECT_TRUE(result.status.ok()) << d.integrator.name << ", " << d.integrator.linear_solver << ": " << result.status.message;
   if (pressing && world->contact)
     for (const contact::ContactSample& s : world->contact->samples()) *pressing += s.gap < 0.0;
-  return world->state.q() - start;
+  VecX gone(start.size());
+  Eigen::Index first = 0;
+  for (const loop::Body& body : world->bodies) {
+    const Eigen::Index begin = world->state.layout().find(body.block_id)->q_offset, n = body.placed.cols();
+    gone.segment(first, 3 * n).reshaped(3, n)(Eigen::all, body.file_node) = (world->state.q() - start).segment(begin, 3 * n).reshaped(3, n);
+    first += 3 * n;
+  }
+  return gone;
 }
 
 }  // namespace

@@ -17,7 +17,9 @@ using dynamics::StepAttempt;
 
 namespace {
 
-/// Steps of 1 ms that change nothing; before each, one attempt of 4 ms that fails its error test at node 2, axis y.
+constexpr int kWorstNode = 40;  // as numbered in the state
+
+/// Steps of 1 ms that change nothing; before each, one attempt of 4 ms that fails its error test at node kWorstNode, axis y.
 class FakeStepper final : public dynamics::Stepper {
  public:
   FakeStepper(dynamics::State& state, std::atomic<bool>* raise, int raise_after) : state_(state), raise_(raise), raise_after_(raise_after) {}
@@ -26,7 +28,7 @@ class FakeStepper final : public dynamics::Stepper {
     dynamics::StepResult result;
     while (state_.time() < t_end - 1e-12) {
       if (trace()) {
-        trace()->attempt({state_.time(), 4e-3, 3, 7.5, 2, StepAttempt::Outcome::kErrorTest, 7, 4, "block"});
+        trace()->attempt({state_.time(), 4e-3, 3, 7.5, 2, StepAttempt::Outcome::kErrorTest, 3 * kWorstNode + 1, 4, "block"});
         trace()->attempt({state_.time(), 1e-3, 3, 0.5, 2, StepAttempt::Outcome::kAccepted, 0, -1, ""});
       }
       state_.set_time(state_.time() + 1e-3);
@@ -73,8 +75,10 @@ TEST(Trace, WritesEveryAttemptWithItsReasonAndPlace) {
   const store::CsvTable table = store::read_csv(path.string());
   EXPECT_EQ(table.headers, loop::TraceRecorder::columns());
   ASSERT_EQ(table.rows.size(), 10u);
-  EXPECT_EQ(table.rows[0], (std::vector<std::string>{"0", "0.004", "3", "7.5", "2", "error test", "block", "2", "y", "block", "4"}));
-  EXPECT_EQ(table.rows[1], (std::vector<std::string>{"0", "0.001", "3", "0.5", "2", "accepted", "block", "0", "x", "", ""}));
+  const std::vector<int>& file_node = world->bodies[0].file_node;
+  EXPECT_NE(file_node[kWorstNode], kWorstNode);  // or it would not tell whose number is written
+  EXPECT_EQ(table.rows[0], (std::vector<std::string>{"0", "0.004", "3", "7.5", "2", "error test", "block", std::to_string(file_node[kWorstNode]), "y", "block", "4"}));
+  EXPECT_EQ(table.rows[1], (std::vector<std::string>{"0", "0.001", "3", "0.5", "2", "accepted", "block", std::to_string(file_node[0]), "x", "", ""}));
   std::filesystem::remove(path);
 }
 

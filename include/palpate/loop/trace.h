@@ -10,7 +10,7 @@ namespace palpate::loop {
 /// A direction of the state, for people: "liver", 12, "z" of a body's node; "tool", -1, "rotation x" of a rigid body.
 struct NamedDirection {
   std::string block;
-  int node = -1;          ///< of a body; -1: not a node
+  int node = -1;          ///< of a body, as numbered in the state; -1: not a node
   std::string axis;
 };
 NamedDirection name_of(const dynamics::Layout& layout, int dof);

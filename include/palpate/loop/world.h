@@ -47,7 +47,8 @@ struct Region {
 struct Body {
   std::string name;
   int block_id = -1;
-  TetMesh rest;               ///< rest positions in the body's own axes
+  TetMesh rest;               ///< rest positions in the body's own axes; its nodes are numbered by place (mesh/place_order.h), not as in the mesh's file
+  std::vector<int> file_node; ///< the number of each node in that file, from zero
   Points placed;              ///< the same placed in the world: what the simulation starts from
   mesh::Boundary boundary;    ///< surface; made for every body
   std::optional<Skin> skin;   ///< where the scene asks for it
@@ -65,6 +66,8 @@ struct Body {
   /// Its vertices, and a value at each, from positions [m] and values of the nodes.
   Points surface_points(const Points& nodes) const;
   VecX surface_values(const VecX& at_nodes) const;
+  /// What leaves the program goes by the numbers of the file: the tetrahedra, and what every node has, into out(Eigen::all, file_node).
+  Tets file_tets() const;
   VecX nodal_stress(const dynamics::StateView& state) const { return dilatation ? dilatation->nodal_stress(state) : term->nodal_stress(state); }
 };
 

@@ -5,6 +5,7 @@
 #include "palpate/fem/attachments.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/generators.h"
+#include "palpate/mesh/place_order.h"
 
 namespace palpate::study {
 namespace {
@@ -23,7 +24,11 @@ fem::PathPoint turning(double t) {
 
 }  // namespace
 
-TetMesh beam_mesh(int along, int across) { return mesh::box(Vec3(1.0, 0.25, 0.25), {along, across, across}); }
+TetMesh beam_mesh(int along, int across) {
+  TetMesh beam = mesh::box(Vec3(1.0, 0.25, 0.25), {along, across, across});
+  mesh::renumber_nodes(beam, mesh::order_by_place(beam.nodes));  // as a body of a scene has it
+  return beam;
+}
 
 Beam::Beam(int along, int across, double youngs_modulus_pa) {
   const TetMesh mesh = beam_mesh(along, across);
