@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
 #include <complex>
+#include <map>
 #include <set>
+#include <string>
 
 #include "integrate/dense_ode.h"
 #include "integrate/fakes.h"
@@ -117,6 +120,33 @@ TEST(ArkMethods, ExplicitTablesHaveTheirOrder) {
     ++checked;
   }
   EXPECT_EQ(checked, 4);
+}
+
+/// Where |R(i y)| leaves 1; zero where it does so at once.
+double imaginary_limit(const Table& t) {
+  double y = 0.05;
+  while (t.amplification({0.0, y}) <= 1.0) y += 1e-3;
+  return y > 0.05 ? y : 0.0;
+}
+
+TEST(ArkMethods, ExplicitTablesSayWhatTheyDoToUndampedMotion) {
+  const std::map<std::string, std::string> told = {
+      {"ark-erk-2", "amplifies undamped motion at every step"}, {"ark-erk-3", "stable below 1.7/w_max"}, {"ark-erk-4", "stable below 2.8/w_max"}, {"ark-erk-5", "amplifies undamped motion at every step"}};
+  const std::map<std::string, double> limit = {{"ark-erk-2", 0.0}, {"ark-erk-3", std::sqrt(3.0)}, {"ark-erk-4", std::sqrt(8.0)}, {"ark-erk-5", 0.0}};
+  int checked = 0;
+  for (const auto& m : methods()) {
+    if (m.explicit_table < 0 || m.implicit_table >= 0) continue;
+    const Table t(ARKodeButcherTable_LoadERK(static_cast<ARKODE_ERKTableID>(m.explicit_table)));
+    EXPECT_NEAR(imaginary_limit(t), limit.at(m.name), 2e-3) << m.name;
+    EXPECT_NE(m.summary.find(told.at(m.name)), std::string::npos) << m.name << ": " << m.summary;
+    ++checked;
+  }
+  EXPECT_EQ(checked, 4);
+}
+
+TEST(ArkMethods, CashAndKarpAmplifyByTheSixthPower) {  // |R(iy)| = 1 + y^6/7200 + ...
+  const Table t(ARKodeButcherTable_LoadERK(ARKODE_CASH_KARP_6_4_5));
+  for (double y : {0.1, 0.2, 0.4}) EXPECT_NEAR((t.amplification({0.0, y}) - 1.0) * 7200.0 / std::pow(y, 6), 1.0, 2.0 * y * y + 1e-3) << y;
 }
 
 TEST(ArkMethods, NoStableTableOfTheInstalledVersionIsMissing) {

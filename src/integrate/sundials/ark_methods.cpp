@@ -22,6 +22,9 @@ using dynamics::StepperTraits;
 // right of it; L-stable: R(-inf) = 0 as well.  tests/integrate/ark_methods_test.cpp finds both from the tables of the installed version, and that
 // none of its tables is missing here.
 //
+// Explicit methods on undamped motion, z = i w h: |R|^2 = 1 + y^4/4 (Heun), 1 - y^4/12 + y^6/36 (order 3), 1 - y^6/72 + y^8/576 (order 4) and 1 + y^6/3600 + ... (Cash and Karp, whose R ends
+// in z^6/800).  Orders 3 and 4 are stable up to w_max h = sqrt(3) and sqrt(8); the other two let every mode grow, the highest first, until the error control cuts the step.
+//
 // Order on a stiff mode (Prothero and Robinson 1974).  A mode with |h lambda| >> 1 follows a smooth equilibrium g(t).  Put g into the stages: with
 // stage order q their defects are d_i = O(h^(q+1) g^(q+1)), and the error of a step is d_0 - z b^T (I - z A)^-1 d -> d_0 - b^T A^-1 d for z -> -inf.
 //   stiffly accurate (b the last row of A, or b A^-1 c^j = 1 for all j > 0): the limit is zero and what remains is O(h^q / lambda): order q, with a small
@@ -45,10 +48,10 @@ constexpr auto kL = Stability::kL;
 
 const std::vector<ArkMethod>& ark_methods() {
   static const std::vector<ArkMethod> methods = {
-      {"ark-erk-2", "Heun-Euler 2(1)", 1, -1, ARKODE_HEUN_EULER_2_1_2, explicit_(2)},
-      {"ark-erk-3", "Bogacki and Shampine 1989, 3(2)", 2, -1, ARKODE_BOGACKI_SHAMPINE_4_2_3, explicit_(3)},
-      {"ark-erk-4", "Zonneveld 1963, 4(3)", 3, -1, ARKODE_ZONNEVELD_5_3_4, explicit_(4)},
-      {"ark-erk-5", "Cash and Karp 1990, 5(4); checks references", 4, -1, ARKODE_CASH_KARP_6_4_5, explicit_(5)},
+      {"ark-erk-2", "Heun-Euler 2(1); amplifies undamped motion at every step", 1, -1, ARKODE_HEUN_EULER_2_1_2, explicit_(2)},
+      {"ark-erk-3", "Bogacki and Shampine 1989, 3(2); stable below 1.7/w_max", 2, -1, ARKODE_BOGACKI_SHAMPINE_4_2_3, explicit_(3)},
+      {"ark-erk-4", "Zonneveld 1963, 4(3); stable below 2.8/w_max", 3, -1, ARKODE_ZONNEVELD_5_3_4, explicit_(4)},
+      {"ark-erk-5", "Cash and Karp 1990, 5(4); checks references; amplifies undamped motion at every step", 4, -1, ARKODE_CASH_KARP_6_4_5, explicit_(5)},
 
       {"ark-dirk-sdirk212", "SDIRK 2(1), two stages", 1, ARKODE_SDIRK_2_1_2, -1, implicit(2, 1, kA)},
       {"ark-dirk-billington332", "SDIRK of Billington 1983, 2(3)", 3, ARKODE_BILLINGTON_3_3_2, -1, implicit(2, 2, kL)},
