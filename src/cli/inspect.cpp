@@ -3,8 +3,8 @@
 #include "commands.h"
 #include "palpate/core/clock.h"
 #include "palpate/loop/run.h"
+#include "palpate/loop/summary.h"
 #include "palpate/report/table.h"
-#include "palpate/scene/needs.h"
 #include "scene_of.h"
 
 namespace palpate::cli {
@@ -14,7 +14,7 @@ using Rows = std::vector<std::vector<std::string>>;
 
 void print_needs(const scene::Description& description) {
   Rows rows;
-  for (const scene::Need& need : scene::needs(description))
+  for (const scene::Need& need : loop::needs(description))
     rows.push_back({need.part, need.used ? "in use" : "left out", need.why});
   fmt::print("{}\n", report::format_table({"part", "", "why"}, rows));
 }

@@ -6,7 +6,6 @@
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
 #endif
-#include "palpate/scene/needs.h"
 
 namespace palpate::loop {
 namespace {
@@ -70,7 +69,7 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
   s.values.emplace_back("integrator", d.integrator.name);
   s.values.emplace_back("rtol", d.integrator.rtol);
   s.values.emplace_back("step_s", d.integrator.step_s);
-  s.values.emplace_back("linear_solver", d.integrator.linear_solver);
+  s.values.emplace_back("linear_solver", integrate::linear_solver_of(d.integrator));
   if (!d.tool) return;
   const bool monolithic = d.coupling.scheme == "monolithic";
   s.values.emplace_back("exchange_scheme", d.coupling.scheme);
@@ -132,6 +131,8 @@ void add_pruning(store::Summary& summary, const World& world) {
 
 }  // namespace
 
+std::vector<scene::Need> needs(const scene::Description& description) { return scene::needs(description, integrate::linear_solver_of(description.integrator)); }
+
 store::Summary summarise(const World& world, const RunResult& result, double assemble_s) {
   store::Summary summary;
   summary.scene = world.description.name;
@@ -150,7 +151,8 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   }
   add_jumps(summary, world);
   add_pruning(summary, world);
-  for (const scene::Need& need : scene::needs(world.description)) summary.section(need.used ? "in_use" : "left_out").values.emplace_back(need.part, need.why);
+  for (const scene::Need& need : needs(world.description))
+    summary.section(need.used ? "in_use" : "left_out").values.emplace_back(need.part, need.why);
   for (const auto& [name, value] : counters::snapshot()) summary.section("constructions").values.emplace_back(name, static_cast<long long>(value));
   return summary;
 }

@@ -12,7 +12,7 @@ int count_if(const List& list, Predicate predicate) {
   return static_cast<int>(std::count_if(list.begin(), list.end(), predicate));
 }
 
-void add_body_needs(const Description& d, std::vector<Need>& out) {
+void add_body_needs(const Description& d, const std::string& linear_solver, std::vector<Need>& out) {
   int fixed = 0, driven = 0, carried = 0, loads = 0;
   const int nodal = count_if(d.bodies, [](const auto& b) { return b.volumetric == "nodal"; });
   for (const auto& body : d.bodies) {
@@ -44,10 +44,10 @@ void add_body_needs(const Description& d, std::vector<Need>& out) {
   for (const auto& body : d.bodies) changes += static_cast<int>(body.changes.size());
   out.push_back({"material changes", changes > 0, changes > 0 ? fmt::format("{} [[body.change]]", changes) : "no [[body.change]]"});
   out.push_back({"loads", loads > 0, loads > 0 ? fmt::format("{} [[body.load]]", loads) : "no [[body.load]]"});
-  // Every integrator of this version is implicit; an explicit one will leave these out.
-  const std::string implicit = fmt::format("integrator \"{}\" is implicit", d.integrator.name);
-  out.push_back({"tangent", any, any ? implicit : "no [[body]]"});
-  out.push_back({"factorisation", any, any ? fmt::format("{}; linear solver \"{}\"", implicit, d.integrator.linear_solver) : "no [[body]]"});
+  const bool implicit = any && !linear_solver.empty();
+  const std::string why = !any ? "no [[body]]" : fmt::format("integrator \"{}\" is {}", d.integrator.name, implicit ? "implicit" : "explicit");
+  out.push_back({"tangent", implicit, why});
+  out.push_back({"linear solver", implicit, implicit ? fmt::format("{}; \"{}\"", why, linear_solver) : why});
 }
 
 void add_contact_needs(const Description& d, std::vector<Need>& out) {
@@ -93,9 +93,9 @@ void add_output_needs(const Description& d, std::vector<Need>& out) {
 
 }  // namespace
 
-std::vector<Need> needs(const Description& description) {
+std::vector<Need> needs(const Description& description, const std::string& linear_solver) {
   std::vector<Need> out;
-  add_body_needs(description, out);
+  add_body_needs(description, linear_solver, out);
   add_contact_needs(description, out);
   add_haptic_needs(description, out);
   add_output_needs(description, out);

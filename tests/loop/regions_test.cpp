@@ -88,7 +88,9 @@ TEST_F(Regions, OfTheBodysMaterialChangeNothing) {
   RegionSpec lid = upper_half();
   lid.youngs_modulus_pa = 1e4;
   for (const char* volumetric : {"element", "nodal"}) {
-    scene::Description divided = with(lid), whole = divided;
+    scene::Description divided = with(lid);
+    divided.integrator.linear_solver = "cholmod";  // to rounding
+    scene::Description whole = divided;
     divided.bodies[0].volumetric = whole.bodies[0].volumetric = volumetric;
     divided.bodies[0].poissons_ratio = whole.bodies[0].poissons_ratio = std::string(volumetric) == "nodal" ? 0.2 : 0.45;  // averages of dilatation do stop at a border: nothing is left for them at 0.2
     whole.bodies[0].regions.clear();

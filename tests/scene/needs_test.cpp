@@ -9,9 +9,9 @@
 
 namespace {
 
-std::map<std::string, bool> used(const std::string& scene, const std::vector<std::string>& overrides = {}) {
+std::map<std::string, bool> used(const std::string& scene, const std::vector<std::string>& overrides = {}, const std::string& linear_solver = "cholmod") {
   std::map<std::string, bool> out;
-  for (const auto& need : palpate::scene::needs(palpate::scene::load(scene_texts::kScenes + "/" + scene + ".toml", overrides))) {
+  for (const auto& need : palpate::scene::needs(palpate::scene::load(scene_texts::kScenes + "/" + scene + ".toml", overrides), linear_solver)) {
     EXPECT_FALSE(need.why.empty()) << need.part;
     EXPECT_TRUE(out.emplace(need.part, need.used).second) << need.part << " is listed twice";
   }
@@ -20,12 +20,18 @@ std::map<std::string, bool> used(const std::string& scene, const std::vector<std
 
 TEST(Needs, ASceneWithoutToolLeavesOutAllThatIsHaptic) {
   auto ball = used("falling-ball");
-  EXPECT_TRUE(ball.at("fem") && ball.at("contact") && ball.at("tangent") && ball.at("factorisation") && ball.at("run file"));
+  EXPECT_TRUE(ball.at("fem") && ball.at("contact") && ball.at("tangent") && ball.at("linear solver") && ball.at("run file"));
   for (const char* part : {"tool", "device", "exchange", "exchange thread", "gl", "contact plane", "broad phase", "force file", "friction", "fixed nodes", "compare", "skin", "proxies", "contact between bones"})
     EXPECT_FALSE(ball.at(part)) << part;
   auto bar = used("cantilever");
   EXPECT_TRUE(bar.at("fixed nodes"));
   EXPECT_FALSE(bar.at("contact"));
+}
+
+TEST(Needs, AnExplicitMethodLeavesOutTangentAndSolver) {
+  auto ball = used("falling-ball", {"integrator.name=rk4"}, "");
+  EXPECT_TRUE(ball.at("fem"));
+  EXPECT_FALSE(ball.at("tangent") || ball.at("linear solver"));
 }
 
 TEST(Needs, PressBall) {
