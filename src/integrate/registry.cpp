@@ -32,7 +32,7 @@ dynamics::StepperRegistry make_registry() {
                  {"statics", 1, 1, StepControl::kFixed, Stability::kStatic, true, false, "force, tangent"}, make_kinsol_static});
   const dynamics::StepperRegistry by_hand = {
       {"linearly-implicit-euler", "one linear solve a step; the interactive method of Galoppo et al. 2007",
-       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"}, make_linearly_implicit_euler},
+       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent"}, make_linearly_implicit_euler},
       {"backward-euler", "backward Euler, Newton to its end; full, or a factor kept over factor_kept_steps",
        {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent"}, make_backward_euler},
       {"implicit-midpoint", "implicit midpoint rule, Newton to its end; keeps quadratic invariants; no numerical damping",
