@@ -54,7 +54,10 @@ void System::prepare(const StateView& state) {
   for (Driven& d : driven_) {
     for (int dof : d.motion->dofs()) {
       PALPATE_CHECK(dof >= 0 && dof < layout.nodal_size, "driven direction {} of {}", dof, layout.nodal_size);
-      if (driven_mask_[static_cast<std::size_t>(dof)]) fail("node {} is held or driven twice along axis {}: attachments overlap", dof / 3, dof % 3);
+      if (driven_mask_[static_cast<std::size_t>(dof)]) {
+        const Vec3 at = state.position(dof / 3);
+        fail("the node at [{:g}, {:g}, {:g}] m is held or driven twice along {}: attachments overlap", at.x(), at.y(), at.z(), "xyz"[dof % 3]);
+      }
       driven_mask_[static_cast<std::size_t>(dof)] = 1;
       driven_dofs_.push_back(dof);
     }

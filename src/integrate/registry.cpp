@@ -74,15 +74,13 @@ const dynamics::LinearSolverRegistry& linear_solver_registry() {
 
 std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec) {
   const auto& entry = find(stepper_registry(), spec.name, "integrator");
-  if (!spec.linear_solver.empty()) find(linear_solver_registry(), spec.linear_solver, "linear solver");  // a wrong name is refused even where it would not be used
+  find(linear_solver_registry(), spec.linear_solver, "linear solver");  // a wrong name is refused even where it would not be used
   const std::string solver = linear_solver_of(spec);
   return entry.make(system, state, spec, solver.empty() ? nullptr : make_linear_solver(solver, spec));
 }
 
 std::string linear_solver_of(const IntegratorSpec& spec) {
-  const dynamics::StepperTraits& traits = find(stepper_registry(), spec.name, "integrator").traits;
-  if (!traits.implicit) return {};
-  return spec.linear_solver.empty() ? traits.linear_solver : spec.linear_solver;
+  return find(stepper_registry(), spec.name, "integrator").traits.implicit ? spec.linear_solver : std::string();
 }
 
 std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name, const IntegratorSpec& spec) {

@@ -375,7 +375,7 @@ TEST(LinearSolverRegistry, NamesTheNearest) {
   }
 }
 
-TEST(LinearSolverRegistry, IsAskedForTheMethodsOwnWhereTheSpecNamesNone) {
+TEST(LinearSolverRegistry, IsAskedForNothingByAnExplicitMethod) {
   int factored = 0, none = 0;
   for (const auto& entry : integrate::stepper_registry()) {
     const std::string own = integrate::linear_solver_of({.name = entry.name});

@@ -41,7 +41,7 @@ TEST(Assemble, AttachmentsThatHoldNothingOrOverlapAreRefused) {
   expect_refused(d, {"block", "holds no node", "5"});
   d = held_block();
   d.bodies[0].attachments.push_back(d.bodies[0].attachments[0]);
-  expect_refused(d, {"twice", "overlap"});
+  expect_refused(d, {"the node at [", ", 0] m is held or driven twice along x", "overlap"});
 }
 
 #ifdef PALPATE_HAS_TOOL

@@ -123,7 +123,6 @@ struct StepperTraits {
   bool implicit = false;       ///< asks for tangents and a linear solver
   bool multistep = false;      ///< forgets its history at every re-initialisation
   std::string needs;           ///< of the system, in words: "force", "force, tangent", "tool or contact as the fast part"
-  std::string linear_solver = "cholmod";  ///< where the spec names none: one that sees an indefinite matrix when it factors, so that the step can be projected
 };
 
 using MakeStepper = std::unique_ptr<Stepper> (*)(System&, State&, const IntegratorSpec&, std::unique_ptr<LinearSolver>);

@@ -6,8 +6,8 @@
 /// Orders in which what lies near in space lies near in memory.
 ///
 /// A file numbers its nodes as its mesher met them: Gmsh the surfaces first, then the inside as it was filled.  Elements that are computed together then touch nodes, and rows of a matrix, all
-/// over the memory: a page and a line of the cache each, hardly used.  Cut the points in two across the longest side of the box around them, then each half, until a few are left: any compact
-/// set of n points then lies in a few runs, which number like its surface, n^(2/3), at worst, instead of n.
+/// over the memory: a page and a line of the cache each, hardly used.  Cut the points in two across the longest side of the box around them, then each half, until a few are left: a compact
+/// set of n points then lies in as many runs as its surface has points, some n^(2/3), at most; in a mesher's order in nearly n.
 namespace palpate::mesh {
 
 /// Rearranges order[begin, end), numbers of `points`, so that those before `middle` lie on one side of a plane across the longest side of the box around them, those from it on the other.
