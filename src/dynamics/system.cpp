@@ -18,6 +18,7 @@ bool System::symmetric() const {
 }
 
 void System::set_definite(bool definite) {
+  definite_ = definite;
   for (const auto& term : terms_) term->set_definite(definite);
 }
 

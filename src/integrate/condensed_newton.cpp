@@ -55,6 +55,23 @@ SolveStatus CondensedNewton::factor(double gamma) {
   return status;
 }
 
+/// Solves for du_; right_hand_side() writes rhs_ by the matrices that then stand.
+template <class RightHandSide>
+SolveStatus CondensedNewton::solve_for(RightHandSide&& right_hand_side) {
+  const double gamma = gamma_;
+  const auto reassemble = [&] {
+    evaluate_matrices();
+    combine(gamma);
+  };
+  const auto written = [&]() -> const VecX& {
+    right_hand_side();
+    return rhs_;
+  };
+  const SolveStatus status = solver_.solve(system_, reassemble, written, du_);
+  gamma_ = status == SolveStatus::kOk ? gamma : 0.0;
+  return status;
+}
+
 /// theta = N+ r1; zero along driven directions, and with nodes_only on blocks with kinematics.
 void CondensedNewton::left_inverse(const Layout& layout, const double* q, const double* r1, bool nodes_only) {
   theta_.resize(layout.u_size);
@@ -72,12 +89,15 @@ void CondensedNewton::left_inverse(const Layout& layout, const double* q, const 
 
 SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du, bool nodes_only) {
   left_inverse(layout, q, r1, nodes_only);
-  du_ = Eigen::Map<const VecX>(r2, layout.u_size);
-  for (int dof : system_.driven_dofs()) du_[dof] = 0.0;
-  M_.multiply(du_, rhs_);
-  K_.multiply(theta_, product_);
-  rhs_ -= gamma_ * product_;
-  if (const SolveStatus status = solver_.solve(rhs_, du_); status != SolveStatus::kOk) return status;
+  const double gamma = gamma_;
+  const auto right_hand_side = [&] {
+    free_r2_ = Eigen::Map<const VecX>(r2, layout.u_size);
+    for (int dof : system_.driven_dofs()) free_r2_[dof] = 0.0;
+    M_.multiply(free_r2_, rhs_);
+    K_.multiply(theta_, product_);
+    rhs_ -= gamma * product_;
+  };
+  if (const SolveStatus status = solve_for(right_hand_side); status != SolveStatus::kOk) return status;
 
   dynamics::q_dot(layout, q, du_.data(), dq);
   Eigen::Map<VecX> dq_map(dq, layout.q_size);
@@ -95,10 +115,13 @@ SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const 
 
 SolveStatus CondensedNewton::solve_residual_form(const Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du) {
   left_inverse(layout, q, r1, false);
-  K_.multiply(theta_, product_);
-  rhs_ = gamma_ * (Eigen::Map<const VecX>(r2, layout.u_size) - gamma_ * product_);
-  for (int dof : system_.driven_dofs()) rhs_[dof] = 0.0;
-  if (const SolveStatus status = solver_.solve(rhs_, du_); status != SolveStatus::kOk) return status;
+  const double gamma = gamma_;
+  const auto right_hand_side = [&] {
+    K_.multiply(theta_, product_);
+    rhs_ = gamma * (Eigen::Map<const VecX>(r2, layout.u_size) - gamma * product_);
+    for (int dof : system_.driven_dofs()) rhs_[dof] = 0.0;
+  };
+  if (const SolveStatus status = solve_for(right_hand_side); status != SolveStatus::kOk) return status;
 
   dynamics::q_dot(layout, q, du_.data(), dq);
   Eigen::Map<VecX> dq_map(dq, layout.q_size);

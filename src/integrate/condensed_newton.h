@@ -24,7 +24,7 @@ class CondensedNewton {
       : system_(system), solver_(std::move(solver), spec) {}
 
   /// M, and D and K of the terms that `filter` picks (empty: all), at this state; no factor yet.
-  /// The counters are kept in mind for evaluations that factor() asks for: they outlive it.
+  /// The counters are kept in mind for evaluations that factor() and the solves ask for: they outlive it.
   void evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters, const dynamics::System::TermFilter& filter = {});
   /// Factor of M + gamma D + gamma^2 K with the matrices last evaluated; nothing is done where gamma and they are unchanged.
   dynamics::SolveStatus factor(double gamma);
@@ -40,6 +40,8 @@ class CondensedNewton {
  private:
   void evaluate_matrices();
   void combine(double gamma);
+  template <class RightHandSide>
+  dynamics::SolveStatus solve_for(RightHandSide&& right_hand_side);
   void left_inverse(const dynamics::Layout& layout, const double* q, const double* r1, bool nodes_only);
   dynamics::System& system_;
   StepSolver solver_;
@@ -50,7 +52,7 @@ class CondensedNewton {
   dynamics::System::TermFilter filter_;
   dynamics::BorderedMatrix M_, D_, K_, A_;
   double gamma_ = 0.0;
-  VecX theta_, rhs_, product_, du_;
+  VecX theta_, free_r2_, rhs_, product_, du_;
 };
 
 }  // namespace palpate::integrate

@@ -32,7 +32,7 @@ dynamics::StepperRegistry make_registry() {
                  {"statics", 1, 1, StepControl::kFixed, Stability::kStatic, true, false, "force, tangent"}, make_kinsol_static});
   const dynamics::StepperRegistry by_hand = {
       {"linearly-implicit-euler", "one linear solve a step; the interactive method of Galoppo et al. 2007",
-       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent"}, make_linearly_implicit_euler},
+       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"}, make_linearly_implicit_euler},
       {"backward-euler", "backward Euler, Newton to its end; full, or a factor kept over factor_kept_steps",
        {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent"}, make_backward_euler},
       {"implicit-midpoint", "implicit midpoint rule, Newton to its end; keeps quadratic invariants; no numerical damping",
@@ -74,13 +74,15 @@ const dynamics::LinearSolverRegistry& linear_solver_registry() {
 
 std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec) {
   const auto& entry = find(stepper_registry(), spec.name, "integrator");
-  find(linear_solver_registry(), spec.linear_solver, "linear solver");  // a wrong name is refused even where it would not be used
+  if (!spec.linear_solver.empty()) find(linear_solver_registry(), spec.linear_solver, "linear solver");  // a wrong name is refused even where it would not be used
   const std::string solver = linear_solver_of(spec);
   return entry.make(system, state, spec, solver.empty() ? nullptr : make_linear_solver(solver, spec));
 }
 
 std::string linear_solver_of(const IntegratorSpec& spec) {
-  return find(stepper_registry(), spec.name, "integrator").traits.implicit ? spec.linear_solver : std::string();
+  const dynamics::StepperTraits& traits = find(stepper_registry(), spec.name, "integrator").traits;
+  if (!traits.implicit) return {};
+  return spec.linear_solver.empty() ? traits.linear_solver : spec.linear_solver;
 }
 
 std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name, const IntegratorSpec& spec) {

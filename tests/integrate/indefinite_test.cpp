@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <random>
 
 #include "integrate/condensed_newton.h"
 #include "integrate/fakes.h"
@@ -104,6 +105,100 @@ TEST_P(Indefinite, TakesLuAtOnceWhereAsked) {
   EXPECT_GT(c.indefinite, 0);
   EXPECT_EQ(c.projected, 0);
   EXPECT_EQ(problem.term->definite_tangents, 0);
+}
+
+/// Two unit masses on x, joined so that together they topple and against each other they are held: along (1, 1) q'' = 100 q, along (1, -1) q'' = -300 q.
+/// M + gamma^2 K has positive blocks on its diagonal at any gamma, and is indefinite exactly for gamma > 0.1: only a solve can tell, of a right-hand side along (1, 1).
+/// Such a one comes with a push at kPushed.
+constexpr double kPushed = 500.0;
+struct Toppling {
+  struct Push final : ForceTerm {
+    LinearTerm leaning;
+    MatX definite_K;
+    bool on = false;
+    long definite_tangents = 0;
+    Push() : leaning(MatX::Zero(6, 6), MatX::Zero(6, 6), VecX::Zero(6)) {
+      for (const int i : {1, 2, 4, 5}) leaning.K(i, i) = 100.0;
+      definite_K = leaning.K;
+      leaning.K(0, 0) = leaning.K(3, 3) = 100.0, leaning.K(0, 3) = leaning.K(3, 0) = -200.0;
+      definite_K(0, 0) = definite_K(3, 3) = 150.0, definite_K(0, 3) = definite_K(3, 0) = -150.0;  // the nearest positive semi-definite one
+    }
+    std::string_view name() const override { return "toppling"; }
+    TermTraits traits() const override { return {}; }
+    void add_pattern(PatternBuilder& pattern) const override { leaning.add_pattern(pattern); }
+    void set_definite(bool definite) override { on = definite; }
+    void add_force(const StateView& s, VecX& f) override {
+      leaning.add_force(s, f);
+      if (s.time >= kPushed) f[0] += 1e-3, f[3] += 1e-3;
+    }
+    void add_tangent(const StateView& s, double k, double d, BorderedMatrix& A) override {
+      if (on && k != 0.0) ++definite_tangents;
+      if (!on) return leaning.add_tangent(s, k, d, A);
+      LinearTerm upright(definite_K, leaning.D, leaning.q0);
+      upright.add_tangent(s, k, d, A);
+    }
+    void apply_tangent(const StateView&, double k, double, const VecX& x, VecX& y) override { y += k * ((on ? definite_K : leaning.K) * x); }
+  };
+  State state;
+  System system;
+  std::shared_ptr<Push> term = std::make_shared<Push>();
+  Toppling() {
+    const int id = state.insert(BlockSpec{.name = "masses", .q_size = 6, .u_size = 6}, VecX::Zero(6), VecX::Zero(6));
+    system.add(std::static_pointer_cast<ForceTerm>(term));
+    system.add(std::make_shared<NodalMass>(id, MatX::Identity(6, 6)));
+    system.prepare(state.view());
+  }
+};
+
+/// From rest the steps of error control grow far past gamma = 0.1, and meet the push with it; fixed ones are given so.  A fixed step may fail: a Newton iteration by
+/// the definite matrix, 1, for an equation of slope 1 - 100 gamma^2 < 0 goes away from its solution.
+StepperCounters pushed(Toppling& problem, IntegratorSpec spec) {
+  spec.step_s = 1.0;
+  const auto stepper = integrate::make_stepper(problem.system, problem.state, spec);
+  const StepResult result = stepper->advance_to(kPushed + 1.0);
+  EXPECT_TRUE(problem.state.q().allFinite());
+  EXPECT_FALSE(problem.term->on) << "definite tangents are for one evaluation";
+  EXPECT_TRUE(result.ok() || result.status == StepStatus::kNewtonFailed) << result.message;
+  return stepper->counters();
+}
+
+TEST_P(Indefinite, MetWhileSolvingIsProjected) {
+  for (const char* solver : {"pcg", "pcg-single", "pcg-two-level", "auto"}) {
+    SCOPED_TRACE(solver);
+    Toppling problem;
+    const StepperCounters c = pushed(problem, {.name = GetParam(), .linear_solver = solver});
+    EXPECT_GT(c.indefinite, 0);
+    EXPECT_EQ(c.projected, c.indefinite);
+    EXPECT_GE(problem.term->definite_tangents, c.projected);
+  }
+}
+
+TEST_P(Indefinite, MetWhileSolvingIsAnsweredByLuWhereAsked) {
+  Toppling problem;
+  const StepperCounters c = pushed(problem, {.name = GetParam(), .indefinite = "lu", .linear_solver = "pcg"});
+  EXPECT_GT(c.indefinite, 0);
+  EXPECT_EQ(c.projected, 0);
+  EXPECT_EQ(problem.term->definite_tangents, 0);
+}
+
+// With a projected matrix the masses go where the push sends them; with the true one, LU's, to the other side: (1 - 100) du = 1e-3.
+TEST(LinearlyImplicitEuler, FollowsThePushByAnySolver) {
+  VecX by_factor;
+  for (const char* solver : {"cholmod", "pcg", "pcg-single", "pcg-two-level", "auto"}) {
+    Toppling problem;
+    problem.state.set_time(kPushed);
+    const auto stepper = integrate::make_stepper(problem.system, problem.state, {.name = "linearly-implicit-euler", .step_s = 1.0, .linear_solver = solver});
+    ASSERT_TRUE(stepper->advance_to(kPushed + 1.0).ok());
+    EXPECT_EQ(stepper->counters().projected, 1) << solver;
+    EXPECT_NEAR(problem.state.u()[0], 1e-3, 1e-9) << solver << ": (1 + 0) du = 1e-3";
+    if (by_factor.size() == 0) by_factor = problem.state.u();
+    EXPECT_LT((problem.state.u() - by_factor).norm(), 1e-7 * by_factor.norm()) << solver;
+  }
+  Toppling problem;
+  problem.state.set_time(kPushed);
+  const auto stepper = integrate::make_stepper(problem.system, problem.state, {.name = "linearly-implicit-euler", .step_s = 1.0, .indefinite = "lu"});
+  ASSERT_TRUE(stepper->advance_to(kPushed + 1.0).ok());
+  EXPECT_NEAR(problem.state.u()[0], -1e-3 / 99.0, 1e-9);
 }
 
 // Newton's matrix of the residual form, against the dense matrix that the header derives it from.
@@ -232,7 +327,7 @@ struct Mirrored {
 };
 
 TEST(InvertedElements, GiveAFiniteStepByEitherPolicy) {
-  for (const char* solver : {"cholmod", "pcg"})
+  for (const char* solver : {"cholmod", "pcg", "pcg-single", "pcg-two-level", "auto"})
     for (const char* policy : {"project", "lu"}) {
       Mirrored cube;
       ASSERT_GE(cube.system.inspect(cube.state.view()).first.element, 0) << "the mesh is inside out";
@@ -248,6 +343,67 @@ TEST(InvertedElements, GiveAFiniteStepByEitherPolicy) {
       if (policy == std::string("project")) {
         EXPECT_LT(cube.system.potential_energy(cube.state.view()), energy) << "a definite matrix gives a direction of descent";
       }
+    }
+}
+
+/// A free damped cube whose nodes are crushed onto a line, but for a nanometre at random.
+struct Crushed {
+  State state;
+  System system;
+  explicit Crushed(unsigned seed) {
+    const TetMesh mesh = mesh::box(Vec3::Constant(0.1), {2, 2, 2});
+    const int n = static_cast<int>(mesh.nodes.cols());
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> nanometre(-1e-9, 1e-9);
+    Points x = mesh.nodes;
+    x.bottomRows<2>().setZero();
+    for (double& value : x.reshaped()) value += nanometre(random);
+    const int id = state.insert(BlockSpec{.name = "cube", .q_size = 3 * n, .u_size = 3 * n}, x.reshaped(), VecX::Zero(3 * n));
+    fem::Material material{.youngs_modulus = 1e4, .poissons_ratio = 0.4, .density = kDensity};
+    material.mass_damping = 1.0;
+    material.stiffness_damping = 4e-3;
+    system.add(std::static_pointer_cast<ForceTerm>(std::make_shared<fem::SoftBody>("cube", mesh, material, fem::SoftBodyOptions{}, id)));
+    system.add(fem::make_lumped_mass(mesh, kDensity, id));
+    system.prepare(state.view());
+  }
+};
+
+/// What becomes of the crushed cube of five seeds in 0.5 s: the most energy that it ever had, over that at the start; counts of all.
+double most_energy(const std::string& solver, double rtol, const std::string& policy, StepperCounters& sum) {
+  double most = 0.0;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    Crushed cube(seed);
+    const IntegratorSpec spec{.name = "linearly-implicit-euler", .step_s = 5e-3, .indefinite = policy, .linear_solver = solver, .linear_rtol = rtol};
+    const auto stepper = integrate::make_stepper(cube.system, cube.state, spec);
+    const auto energy = [&] { return cube.system.potential_energy(cube.state.view()) + cube.system.kinetic_energy(cube.state.view()); };
+    const double start = energy();
+    for (int i = 1; i <= 100; ++i) {
+      const StepResult result = stepper->advance_to(i * spec.step_s);
+      EXPECT_TRUE(result.ok()) << solver << ": " << result.message;
+      most = std::max(most, energy() / start);
+    }
+    sum.indefinite += stepper->counters().indefinite;
+    sum.projected += stepper->counters().projected;
+    sum.unconverged += stepper->counters().unconverged;
+  }
+  return most;
+}
+
+// Let go, a crushed body may not gain energy, whether its solver meets the indefinite matrices when it factors or while it solves.  By LU, which follows the linear force model
+// to its saddle, it does.
+TEST(InvertedElements, GainNoEnergyByAnySolver) {
+  StepperCounters by_factor, by_lu;
+  const double expected = most_energy("cholmod", 1e-8, "project", by_factor);
+  EXPECT_LT(expected, 1.0);
+  EXPECT_GT(by_factor.projected, 0);
+  EXPECT_GT(most_energy("cholmod", 1e-8, "lu", by_lu), 2.0);
+  for (const char* solver : {"pcg", "pcg-single", "pcg-two-level", "auto"})
+    for (const double rtol : {1e-3, 1e-8}) {
+      StepperCounters c;
+      EXPECT_NEAR(most_energy(solver, rtol, "project", c), expected, rtol) << solver << ", " << rtol;
+      EXPECT_EQ(c.indefinite, by_factor.indefinite) << solver << ", " << rtol;
+      EXPECT_EQ(c.projected, c.indefinite) << solver << ", " << rtol;
+      EXPECT_EQ(c.unconverged, 0) << solver << ", " << rtol;
     }
 }
 

@@ -375,15 +375,17 @@ TEST(LinearSolverRegistry, NamesTheNearest) {
   }
 }
 
-TEST(LinearSolverRegistry, IsAskedForNothingByAnExplicitMethod) {
-  int factored = 0, none = 0;
+TEST(LinearSolverRegistry, IsAskedForTheMethodsOwnWhereTheSpecNamesNone) {
+  int automatic = 0, factored = 0, none = 0;
   for (const auto& entry : integrate::stepper_registry()) {
     const std::string own = integrate::linear_solver_of({.name = entry.name});
     EXPECT_EQ(own.empty(), !entry.traits.implicit) << entry.name;
     EXPECT_EQ(integrate::linear_solver_of({.name = entry.name, .linear_solver = "klu"}), entry.traits.implicit ? "klu" : "") << entry.name;
-    factored += own == "cholmod", none += own.empty();
+    EXPECT_EQ(own == "auto", entry.name == "linearly-implicit-euler") << entry.name << ": " << own;
+    automatic += own == "auto", factored += own == "cholmod", none += own.empty();
   }
-  EXPECT_EQ(factored + none, static_cast<int>(integrate::stepper_registry().size()));
+  EXPECT_EQ(automatic, 1);
+  EXPECT_EQ(automatic + factored + none, static_cast<int>(integrate::stepper_registry().size()));
   EXPECT_GT(factored, 20);
   EXPECT_GT(none, 5);
   EXPECT_THROW(integrate::linear_solver_of({.name = "leapfrog"}), Error);

@@ -19,8 +19,8 @@ struct IntegratorSpec {
   double spectral_radius = 0.8;      ///< generalized-alpha: of the amplification at infinite frequency, in [0, 1]
   std::string events = "error-control";  ///< how a kink of the force is met: "error-control", or "root-finding" with a restart at the root
   std::string explicit_side = "loads";   ///< ImEx: what is explicit beside what is not stiff: "loads", or "contact" (contact and loads)
-  std::string indefinite = "project";    ///< a step matrix without a Cholesky factor: "project" (definite tangent), then LU; or "lu" at once
-  std::string linear_solver = "cholmod";
+  std::string indefinite = "project";    ///< a step matrix that is not positive definite: "project" (definite tangent), then LU; or "lu" at once
+  std::string linear_solver = {};        ///< empty: the method's own (StepperTraits::linear_solver)
   double linear_rtol = 1e-8;         ///< iterative linear solvers: relative residual of "pcg"; relative error, in the energy norm, of the others
   int threads = 1;                   ///< linear solvers that can share their work; results do not depend on it
 };

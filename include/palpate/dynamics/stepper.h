@@ -37,7 +37,7 @@ struct StepperCounters {
   long events = 0;       ///< roots that a step was cut short at
   long indefinite = 0;   ///< matrices that had no Cholesky factor: answered by definite tangents (projected) or, the rest, by LU
   long projected = 0;    ///< of those, answered by definite tangents
-  long unconverged = 0;  ///< solves that an iterative linear solver gave up and LU answered
+  long unconverged = 0;  ///< solves that an iterative linear solver gave up, for a factor to answer
   double force_s = 0.0, tangent_s = 0.0;  ///< wall time [s]
   SolverCounters solver;
 };
@@ -123,6 +123,7 @@ struct StepperTraits {
   bool implicit = false;       ///< asks for tangents and a linear solver
   bool multistep = false;      ///< forgets its history at every re-initialisation
   std::string needs;           ///< of the system, in words: "force", "force, tangent", "tool or contact as the fast part"
+  std::string linear_solver = "cholmod";  ///< where the spec names none: "auto" where each matrix serves one solve, as those did that it chooses by; a kept factor serves many
 };
 
 using MakeStepper = std::unique_ptr<Stepper> (*)(System&, State&, const IntegratorSpec&, std::unique_ptr<LinearSolver>);

@@ -36,6 +36,7 @@ class System {
   bool symmetric() const;  ///< all terms' tangents are
   /// ForceTerm::set_definite of every term.
   void set_definite(bool definite);
+  bool definite() const { return definite_; }
   /// Root functions of all terms, one after the other (event location).
   int event_count() const;
   std::uint64_t events_version() const;
@@ -107,6 +108,7 @@ class System {
   std::uint64_t mass_layout_ = 0;  ///< layout version that the pattern of `mass_` was built for
   bool nodal_mass_diagonal_ = true;
   bool any_master_ = false;
+  bool definite_ = false;
   VecX nodal_mass_, inverse_nodal_mass_;
   double mass_scale_ = 1.0;  ///< a power of two near 1 over the mean nodal mass
   std::vector<char> term_is_in_;  ///< of each term, whether its tangent is in the matrix that is being assembled

@@ -109,12 +109,12 @@ class LinearlyImplicitEuler final : public FixedStep {
     return solver_.solve_near(left, du_) == SolveStatus::kOk;
   }
 
-  /// Force, product and matrix in one pass over the bodies, and its solution; false where terms or solver do not take part in that, or the solver fails: the general
-  /// way then tells why, or does better.
-  bool solve_balanced(const StateView& at, double h) {
-    if (!system_.balanced(at)) return false;
+  /// Force, product and matrix in one pass over the bodies, and its solution.  kIndefinite: rhs_ is there, the matrix has no use.  Anything else but kOk: terms or solver do not
+  /// take part in that, or the solver fails; the general way then tells why, or does better.
+  SolveStatus solve_balanced(const StateView& at, double h) {
+    if (!system_.balanced(at)) return SolveStatus::kNotConverged;
     BalancedMatrix* A = solver_.balanced(system_.pattern());
-    if (!A) return false;
+    if (!A) return SolveStatus::kNotConverged;
     kept_h_ = 0.0;
     {
       const ScopedTimer timer(counters_.tangent_s);
@@ -124,7 +124,7 @@ class LinearlyImplicitEuler final : public FixedStep {
     }
     {
       const ScopedTimer timer(counters_.force_s);
-      if (!complete(at, h)) return false;
+      if (!complete(at, h)) return SolveStatus::kSingular;
     }
     SolveStatus status = solver_.factor_balanced();
     if (status == SolveStatus::kRounded) {
@@ -133,23 +133,31 @@ class LinearlyImplicitEuler final : public FixedStep {
     } else if (status == SolveStatus::kOk) {
       status = solver_.solve(rhs_, du_);
     }
-    if (status != SolveStatus::kOk) return false;
+    if (status != SolveStatus::kOk) return status;
     kept_h_ = h;
     kept_pattern_ = system_.pattern().pattern_version();
-    return true;
+    return status;
   }
 
   /// The general way; not kOk: what went wrong.
-  Attempt solve(const StateView& at, double h) {
-    if (!right_hand_side(at, h)) return {.status = StepStatus::kNotFinite, .what = "the force is not finite"};
+  /// @param indefinite  the matrix is known to be, and the right-hand side is there
+  Attempt solve(const StateView& at, double h, bool indefinite) {
+    if (!indefinite && !right_hand_side(at, h)) return {.status = StepStatus::kNotFinite, .what = "the force is not finite"};
     const auto assemble = [&] {
       const ScopedTimer timer(counters_.tangent_s);
       ++counters_.tangent_evaluations;
       system_.step_matrix(at, 1.0, h, h * h, A_);
     };
-    assemble();
-    if (solver_.factor(A_, system_, assemble) != SolveStatus::kOk || solver_.solve(rhs_, du_) != SolveStatus::kOk)
-      return {.status = StepStatus::kSolverFailed, .what = "the step matrix is singular or not finite"};
+    SolveStatus status;
+    if (indefinite) {
+      status = solver_.factor_indefinite(A_, system_, assemble);
+    } else {
+      assemble();
+      status = solver_.factor(A_, system_, assemble);
+    }
+    const auto right_hand_side = [this]() -> const VecX& { return rhs_; };
+    if (status == SolveStatus::kOk) status = solver_.solve(system_, assemble, right_hand_side, du_);
+    if (status != SolveStatus::kOk) return {.status = StepStatus::kSolverFailed, .what = "the step matrix is singular or not finite"};
     return {};
   }
 
@@ -172,8 +180,9 @@ class LinearlyImplicitEuler final : public FixedStep {
   Attempt attempt(double h, double t1) override {
     predict_drives(t1, h);
     const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
-    if (!solve_near(at, h) && !solve_balanced(at, h))
-      if (const Attempt solved = solve(at, h); solved.status != StepStatus::kOk) return solved;
+    if (!solve_near(at, h))
+      if (const SolveStatus status = solve_balanced(at, h); status != SolveStatus::kOk)
+        if (const Attempt solved = solve(at, h, status == SolveStatus::kIndefinite); solved.status != StepStatus::kOk) return solved;
     if (!all_finite(du_)) return {.status = StepStatus::kNotFinite, .what = "the velocity is not finite"};
     move(h);
     system_.impose(layout(), t1, q1_.data(), u1_.data());

@@ -90,17 +90,19 @@ bool StageNewton::usable() const {
          near(stage_->weight * stage_->c_theta, k_scale_);
 }
 
+/// At the iterate last evaluated.
+void StageNewton::assemble() {
+  const ScopedTimer timer(counters_->tangent_s);
+  ++counters_->tangent_evaluations;
+  system_.step_matrix(at(), m_scale_, d_scale_, k_scale_, A_);
+}
+
 SolveStatus StageNewton::refresh() {
   m_scale_ = stage_->c_a;
   d_scale_ = stage_->weight * stage_->c_u;
   k_scale_ = stage_->weight * stage_->c_theta;
-  const auto assemble = [this] {
-    const ScopedTimer timer(counters_->tangent_s);
-    ++counters_->tangent_evaluations;
-    system_.step_matrix(at(), m_scale_, d_scale_, k_scale_, A_);
-  };
   assemble();
-  const SolveStatus status = solver_.factor(A_, system_, assemble);
+  const SolveStatus status = solver_.factor(A_, system_, [this] { assemble(); });
   have_factor_ = status == SolveStatus::kOk;
   age_ = 0;
   return status;
@@ -117,7 +119,8 @@ double StageNewton::norm(const VecX& d) {
 }
 
 bool StageNewton::correct(VecX& d, double& size) {
-  if (solver_.solve(residual_, d) != SolveStatus::kOk || !all_finite(d)) return false;
+  const auto right_hand_side = [this]() -> const VecX& { return residual_; };
+  if (solver_.solve(system_, [this] { assemble(); }, right_hand_side, d) != SolveStatus::kOk || !all_finite(d)) return false;
   d = -d;
   size = norm(d);
   return std::isfinite(size);

@@ -47,6 +47,7 @@ class StageNewton : private NewtonEquation {
   bool solved() const override { return (residual_.array() == 0.0).all(); }
   dynamics::StateView at() const;
   bool usable() const;
+  void assemble();
   dynamics::SolveStatus refresh() override;
   double norm(const VecX& d);
   bool correct(VecX& d, double& size) override;

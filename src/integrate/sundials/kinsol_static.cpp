@@ -243,7 +243,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   int solve(N_Vector x, N_Vector b) override {
     rhs_ = Eigen::Map<const VecX>(NV_DATA_S(b), NV_LENGTH_S(b));
     for (int dof : system_.driven_dofs()) rhs_[dof] = 0.0;
-    if (solver_.solve(rhs_, step_) != SolveStatus::kOk || !all_finite(step_)) return kRecoverable;
+    const auto right_hand_side = [this]() -> const VecX& { return rhs_; };
+    if (solver_.solve(system_, [this] { assemble(); }, right_hand_side, step_) != SolveStatus::kOk || !all_finite(step_)) return kRecoverable;
     Eigen::Map<VecX>(NV_DATA_S(x), step_.size()) = step_;
     return 0;
   }

@@ -41,7 +41,8 @@ IntegratorSpec spec_of(const Column& column, double rtol, double step_s) {
 }
 
 std::unique_ptr<dynamics::Stepper> make_stepper(const Column& column, dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec) {
-  auto solver = column.entry->traits.implicit ? integrate::make_linear_solver(spec.linear_solver, spec) : nullptr;
+  const dynamics::StepperTraits& traits = column.entry->traits;  // which may stand in no registry
+  auto solver = traits.implicit ? integrate::make_linear_solver(spec.linear_solver.empty() ? traits.linear_solver : spec.linear_solver, spec) : nullptr;
   return column.entry->make(system, state, spec, std::move(solver));
 }
 
