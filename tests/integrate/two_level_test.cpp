@@ -43,5 +43,37 @@ TEST(TwoLevel, KeepsItsClustersWhileTheyServe) {
   EXPECT_EQ(solver->counters().refreshes, 1);
 }
 
+// A whole matrix and a balanced one are copied in units of their own, by powers of two: clusters made of one serve the other.
+TEST(TwoLevel, ServesWholeAndBalancedMatricesInTurn) {
+  BentBeam beam(16, 1e6);
+  const double h = 1e-2;
+  BorderedMatrix A;
+  VecX b, x;
+  const auto iterations_of = [&](LinearSolver& solver, bool whole) {
+    const long before = solver.counters().iterations;
+    if (whole) {
+      beam.at(0.5, h, A, b);
+      EXPECT_EQ(solver.factor(A), SolveStatus::kOk);
+    } else {
+      BalancedMatrix* room = solver.balanced(beam.pattern());
+      if (!room) throw std::runtime_error("no room");
+      beam.at(0.5, h, *room, b);
+      EXPECT_EQ(solver.factor_balanced(), SolveStatus::kOk);
+    }
+    MatX B = MatX::Zero(b.size(), 2), X;  // several columns start from nothing
+    B.col(0) = b;
+    EXPECT_EQ(solver.solve(B, X), SolveStatus::kOk);
+    x = X.col(0);
+    return static_cast<double>(solver.counters().iterations - before);
+  };
+  for (const bool whole_first : {true, false}) {
+    const auto solver = integrate::make_linear_solver("pcg-two-level", {.linear_rtol = 1e-3});
+    const double first = iterations_of(*solver, whole_first), second = iterations_of(*solver, !whole_first), third = iterations_of(*solver, whole_first);
+    EXPECT_LE(second, 1.2 * first + 2.0) << whole_first;
+    EXPECT_LE(third, 1.2 * first + 2.0) << whole_first;
+    EXPECT_EQ(solver->counters().refreshes, 1) << whole_first;
+  }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -157,7 +157,16 @@ bool RigidClusters::refresh(const SingleMatrix& A, const double* positions, cons
     float& own = E_[k * static_cast<std::size_t>(stride_) + k];
     own = regular(own);
   }
+  scale_ = A.scale();
   return ready_ = kernels.invert(E_.data(), size_, stride_);
+}
+
+void RigidClusters::serve(double scale) {
+  if (!ready_ || scale == scale_) return;
+  const auto by = static_cast<float>(scale_ / scale);  // a power of two
+  for (float& value : E_) value *= by;
+  for (Piece& piece : pieces_) piece.inverse *= by;
+  scale_ = scale;
 }
 
 double RigidClusters::gather(std::size_t cluster, const NodeOrder& order, const NodeKernels& kernels, const float* r, float* of_pieces, float* of_cluster) const {

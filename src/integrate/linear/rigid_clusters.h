@@ -28,6 +28,8 @@ class RigidClusters {
   /// E of this matrix with arms at these positions (original numbering; null: none).  False: E is not positive definite.
   bool refresh(const SingleMatrix& A, const double* positions, const NodeKernels& kernels);
   bool ready() const { return ready_; }
+  /// E and D go on to serve copies of this scale (SingleMatrix::scale): E^-1 of scale A is E^-1 / scale.
+  void serve(double scale);
   void forget() { ready_ = false; }
 
   int stride() const { return stride_; }
@@ -53,6 +55,7 @@ class RigidClusters {
 
   bool ready_ = false, finer_ = false;  ///< finer: there are more pieces than clusters
   int size_ = 0, stride_ = 0;
+  double scale_ = 1.0;                  ///< of the copy that E and D are in the units of
   std::vector<int> cluster_, piece_;    ///< of each node, in the order's numbering
   std::vector<Piece> pieces_;
   std::vector<float> arm_, E_;

@@ -168,6 +168,7 @@ class SinglePcg final : public dynamics::LinearSolver {
   SolveStatus use_copy(const double* positions, bool rounded = false) {
     solve_.start().products_are_known(status_ == SolveStatus::kOk);
     solve_.renew(rounded);
+    clusters_.serve(copy_.scale());
     if (status_ == SolveStatus::kOk && two_level_ && lost_ >= price_of_clusters()) refresh_clusters(positions);
     return status_;
   }
