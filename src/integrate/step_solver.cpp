@@ -65,6 +65,14 @@ SolveStatus StepSolver::factor_balanced() {
   return chosen_->factor_balanced();
 }
 
+SolveStatus StepSolver::factor_balanced_definite() {
+  ++indefinite_;
+  const SolveStatus status = factor_balanced();
+  definite_ = true;
+  if (status == SolveStatus::kOk) ++projected_;
+  return status;
+}
+
 SolveStatus StepSolver::factor(const BorderedMatrix& A) {
   const SolveStatus status = factor_chosen(A);
   return status == SolveStatus::kIndefinite ? factor_direct(A) : status;

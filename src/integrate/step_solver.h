@@ -40,6 +40,8 @@ class StepSolver final : public dynamics::LinearSolver {
   /// Of the chosen solver alone: what it cannot do with a balanced matrix, it says, and wants the whole one, with which the policy above begins.
   dynamics::BalancedMatrix* balanced(const dynamics::BlockSparse& pattern) override { return chosen_->balanced(pattern); }
   dynamics::SolveStatus factor_balanced() override;
+  /// factor_balanced() of definite tangents, in place of those of a matrix that was seen to be indefinite.
+  dynamics::SolveStatus factor_balanced_definite();
   dynamics::SolveStatus solve_near(dynamics::Residual& left, VecX& x) override {
     return matrix_ ? dynamics::SolveStatus::kNotConverged : chosen_->solve_near(left, x);
   }
@@ -57,7 +59,7 @@ class StepSolver final : public dynamics::LinearSolver {
   /// The policy for a matrix that was seen to be indefinite, and need not stand in A.
   template <class Reassemble>
   dynamics::SolveStatus factor_indefinite(const dynamics::BorderedMatrix& A, dynamics::System& system, Reassemble&& reassemble) {
-    if (!matrix_) ++indefinite_;  // a balanced one
+    if (!matrix_ && !definite_) ++indefinite_;  // a balanced one
     if (project_) {
       {
         const DefiniteTangents definite(system);
@@ -84,6 +86,8 @@ class StepSolver final : public dynamics::LinearSolver {
     return active_->solve(right_hand_side(), x);
   }
 
+  /// IntegratorSpec::indefinite = "project"
+  bool projects() const { return project_; }
   /// Writes what it counted, the solvers' own counts included.
   void report(dynamics::StepperCounters& counters) const;
 

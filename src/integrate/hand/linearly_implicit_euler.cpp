@@ -133,10 +133,24 @@ class LinearlyImplicitEuler final : public FixedStep {
     } else if (status == SolveStatus::kOk) {
       status = solver_.solve(rhs_, du_);
     }
+    if (status == SolveStatus::kIndefinite && solver_.projects()) return solve_definite(at, h, *A);
     if (status != SolveStatus::kOk) return status;
     kept_h_ = h;
     kept_pattern_ = system_.pattern().pattern_version();
     return status;
+  }
+
+  /// The same by definite tangents, after kIndefinite.  No step after it is near this matrix.
+  SolveStatus solve_definite(const StateView& at, double h, BalancedMatrix& A) {
+    {
+      const ScopedTimer timer(counters_.tangent_s);
+      ++counters_.tangent_evaluations;
+      const DefiniteTangents definite(system_);
+      system_.balanced_step(at, shift_, 1.0, h, h * h, product_, A);  // rhs_ keeps the true K
+    }
+    const SolveStatus status = solver_.factor_balanced_definite();
+    if (status == SolveStatus::kOk && solver_.solve(rhs_, du_) == SolveStatus::kOk) return SolveStatus::kOk;
+    return SolveStatus::kIndefinite;  // as it was: the whole matrix may do better
   }
 
   /// The general way; not kOk: what went wrong.
