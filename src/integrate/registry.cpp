@@ -34,15 +34,15 @@ dynamics::StepperRegistry make_registry() {
       {"linearly-implicit-euler", "one linear solve a step; the interactive method of Galoppo et al. 2007",
        {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"}, make_linearly_implicit_euler},
       {"backward-euler", "backward Euler, Newton to its end; full, or a factor kept over factor_kept_steps",
-       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent"}, make_backward_euler},
+       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"}, make_backward_euler},
       {"implicit-midpoint", "implicit midpoint rule, Newton to its end; keeps quadratic invariants; no numerical damping",
-       {"Gauss", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent"}, make_implicit_midpoint},
+       {"Gauss", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"}, make_implicit_midpoint},
       {"bdf2", "backward differences of order 2 with variable steps; starts by an L-stable SDIRK step of order 2",
-       {"BDF", 2, 2, StepControl::kFixed, Stability::kL, true, true, "force, tangent"}, make_bdf2},
+       {"BDF", 2, 2, StepControl::kFixed, Stability::kL, true, true, "force, tangent", "auto"}, make_bdf2},
       {"newmark", "Newmark 1959, average acceleration (beta = 1/4, gamma = 1/2); no numerical damping",
-       {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent"}, make_newmark},
+       {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"}, make_newmark},
       {"generalized-alpha", "Chung and Hulbert 1993; damps high frequencies by spectral_radius a step",
-       {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent"}, make_generalized_alpha},
+       {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"}, make_generalized_alpha},
       {"symplectic-euler", "velocity first, then position; one force a step, stable below 2/w_max",
        {"explicit Euler", 1, 0, StepControl::kFixed, Stability::kExplicit, false, false, "force"}, make_symplectic_euler},
       {"rk4", "the classical Runge-Kutta method of order 4; four forces a step, stable below 2.8/w_max",
@@ -82,7 +82,8 @@ std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynami
 std::string linear_solver_of(const IntegratorSpec& spec) {
   const dynamics::StepperTraits& traits = find(stepper_registry(), spec.name, "integrator").traits;
   if (!traits.implicit) return {};
-  return spec.linear_solver.empty() ? traits.linear_solver : spec.linear_solver;
+  if (!spec.linear_solver.empty()) return spec.linear_solver;
+  return spec.factor_kept_steps > 1 ? "cholmod" : traits.linear_solver;
 }
 
 std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name, const IntegratorSpec& spec) {

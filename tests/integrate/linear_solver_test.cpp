@@ -381,10 +381,11 @@ TEST(LinearSolverRegistry, IsAskedForTheMethodsOwnWhereTheSpecNamesNone) {
     const std::string own = integrate::linear_solver_of({.name = entry.name});
     EXPECT_EQ(own.empty(), !entry.traits.implicit) << entry.name;
     EXPECT_EQ(integrate::linear_solver_of({.name = entry.name, .linear_solver = "klu"}), entry.traits.implicit ? "klu" : "") << entry.name;
-    EXPECT_EQ(own == "auto", entry.name == "linearly-implicit-euler") << entry.name << ": " << own;
+    EXPECT_TRUE(own != "auto" || entry.traits.control == StepControl::kFixed) << entry.name << ": error control keeps its factors";
+    EXPECT_EQ(integrate::linear_solver_of({.name = entry.name, .factor_kept_steps = 4}), own == "auto" ? "cholmod" : own) << entry.name;
     automatic += own == "auto", factored += own == "cholmod", none += own.empty();
   }
-  EXPECT_EQ(automatic, 1);
+  EXPECT_EQ(automatic, 6) << "linearly implicit Euler, and those with Newton iterations of their own";
   EXPECT_EQ(automatic + factored + none, static_cast<int>(integrate::stepper_registry().size()));
   EXPECT_GT(factored, 20);
   EXPECT_GT(none, 5);

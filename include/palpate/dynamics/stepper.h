@@ -123,7 +123,7 @@ struct StepperTraits {
   bool implicit = false;       ///< asks for tangents and a linear solver
   bool multistep = false;      ///< forgets its history at every re-initialisation
   std::string needs;           ///< of the system, in words: "force", "force, tangent", "tool or contact as the fast part"
-  std::string linear_solver = "cholmod";  ///< where the spec names none: "auto" where each matrix serves one solve, as those did that it chooses by; a kept factor serves many
+  std::string linear_solver = "cholmod";  ///< where the spec names none: "auto" where a matrix serves a solve or two, as those did that it chooses by; a kept factor serves many
 };
 
 using MakeStepper = std::unique_ptr<Stepper> (*)(System&, State&, const IntegratorSpec&, std::unique_ptr<LinearSolver>);
