@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "integrate/bent_beam.h"
 #include "integrate/linear/auto_choice.h"
+#include "palpate/core/counters.h"
 #include "palpate/integrate/integrators.h"
 
 namespace palpate {
@@ -49,27 +51,60 @@ TEST(Auto, AnswersWhateverTheTableChooses) {
   EXPECT_EQ(checked, 4);
 }
 
-// A matrix far from the last one sends the choice back to a whole one.
-TEST(Auto, KeepsItsChoiceForBalancedMatricesWhileItServes) {
-  BentBeam beam(24, 1e5);
-  const auto solver = integrate::make_linear_solver("auto", {.linear_rtol = 1e-3});
-  EXPECT_EQ(solver->balanced(beam.pattern()), nullptr) << "nothing was chosen yet";
-  BorderedMatrix whole;
-  VecX b, x, exact;
-  beam.at(0.4, 1e-2, whole, b);
-  ASSERT_EQ(solver->factor(whole), SolveStatus::kOk);
-  BalancedMatrix* A = solver->balanced(beam.pattern());
-  ASSERT_NE(A, nullptr);
-  beam.at(0.4, 1e-2, *A, b);
-  ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
-  ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
-  const auto direct = integrate::make_linear_solver("cholmod");
-  ASSERT_EQ(direct->factor(whole), SolveStatus::kOk);
-  ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
-  EXPECT_LE(energy_norm(whole, x - exact), 1e-3 * energy_norm(whole, exact));
-  A = solver->balanced(beam.pattern());
-  beam.at(0.4, 1e-1, *A, b);
-  EXPECT_NE(solver->factor_balanced(), SolveStatus::kOk);
+/// One after the other: balanced matrices of the beam at these steps, solved as accurately as the tolerance says; who had solved how many by then.
+class AutoOnBalanced : public testing::Test {
+ protected:
+  static constexpr double kRtol = 1e-3;
+  BentBeam beam{24, 1e5};
+  std::unique_ptr<LinearSolver> solver = integrate::make_linear_solver("auto", {.linear_rtol = kRtol});
+  std::string expected(double h) {
+    BorderedMatrix A;
+    VecX b;
+    beam.at(0.4, h, A, b);
+    return integrate::measured_choice(beam.masses.size(), integrate::stiffness_number(A.body), kRtol);
+  }
+  void solve(double h) {
+    BorderedMatrix whole;
+    VecX b, x, exact;
+    beam.at(0.4, h, whole, b);
+    BalancedMatrix* A = solver->balanced(beam.pattern());
+    ASSERT_NE(A, nullptr);
+    beam.at(0.4, h, *A, b);
+    ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+    ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+    const auto direct = integrate::make_linear_solver("cholmod");
+    ASSERT_EQ(direct->factor(whole), SolveStatus::kOk);
+    ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
+    EXPECT_LE(energy_norm(whole, x - exact), kRtol * energy_norm(whole, exact)) << h;
+  }
+  static long made(const std::string& name) { return counters::snapshot()["integrate.solver." + name]; }
+};
+
+TEST_F(AutoOnBalanced, ChoosesByWhatItSawOfTheFirst) {
+  constexpr double kSoft = 1e-4, kStiff = 0.1;
+  ASSERT_EQ(expected(kSoft), "pcg-single");
+  ASSERT_EQ(expected(kStiff), "pcg-two-level");
+  const long single = made("pcg-single"), two_level = made("pcg-two-level");
+  solve(kSoft);
+  EXPECT_EQ(made("pcg-two-level"), two_level + 1) << "for now";
+  EXPECT_EQ(made("pcg-single"), single);
+  solve(kSoft);
+  EXPECT_EQ(made("pcg-single"), single + 1);
+  EXPECT_EQ(solver->counters().solves, 2) << "of both";
+  EXPECT_EQ(solver->counters().refreshes, 1);
+  solve(kStiff);
+  EXPECT_EQ(solver->counters().refreshes, 1) << "by the solver of the last one";
+  solve(kStiff);
+  EXPECT_EQ(solver->counters().refreshes, 2) << "and by its own";
+  EXPECT_EQ(made("pcg-two-level"), two_level + 2);
+  EXPECT_EQ(solver->counters().solves, 4);
+}
+
+TEST_F(AutoOnBalanced, KeepsItsChoiceWhileItServes) {
+  const long before = made("pcg-single") + made("pcg-two-level");
+  for (const double h : {0.05, 0.06, 0.08, 0.05}) solve(h);
+  EXPECT_EQ(made("pcg-single") + made("pcg-two-level"), before + 1);
+  EXPECT_EQ(solver->counters().symbolic, 1);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "integrate/linear/add_counters.h"
 #include "integrate/linear/auto_choice.h"
@@ -90,6 +91,8 @@ static double stiffness_number(const dynamics::BalancedMatrix& A) {
 namespace {
 
 /// The solver that was the fastest in what the table holds nearest to this matrix: nodes, stiffness number and linear_rtol, in logarithms.
+/// A whole matrix is looked at before a solver takes it.  A balanced one is written in a solver's own order, so the first goes to kProvisional, which serves stiff and soft ones; what was seen
+/// of one decides who has the next.
 class AutoSolver final : public dynamics::LinearSolver {
  public:
   explicit AutoSolver(const IntegratorSpec& spec) : spec_(spec) { counters::count("integrate.solver.auto"); }
@@ -99,18 +102,18 @@ class AutoSolver final : public dynamics::LinearSolver {
   SolveStatus factor(const BorderedMatrix& A) override {
     PALPATE_CHECK(A.symmetric, "solver auto was given an unsymmetric matrix");
     const bool same = active_ && A.values_version != 0 && A.values_version == values_version_;
-    if (!same) choose(A);
+    if (!same) choose(A.body.block_rows(), stiffness_number(A.body));
     values_version_ = A.values_version;
     return active_->factor(A);
   }
-  /// Of the solver chosen last; the first matrix is a whole one.
   dynamics::BalancedMatrix* balanced(const dynamics::BlockSparse& pattern) override {
-    room_ = active_ && pattern.block_rows() == nodes_ ? active_->balanced(pattern) : nullptr;
-    return room_;
+    if (seen_ > 0.0 && pattern.block_rows() == nodes_) choose(nodes_, seen_);
+    if (!active_) active_ = &made(kProvisional);
+    nodes_ = pattern.block_rows();
+    return room_ = active_->balanced(pattern);
   }
   SolveStatus factor_balanced() override {
-    const double stiffness = stiffness_number(*room_);
-    if (!near(stiffness)) return SolveStatus::kSingular;  // a whole matrix, to choose anew by
+    seen_ = stiffness_number(*room_);
     values_version_ = 0;
     return active_->factor_balanced();
   }
@@ -119,7 +122,7 @@ class AutoSolver final : public dynamics::LinearSolver {
   SolveStatus solve(const VecX& b, VecX& x) override { return chosen().solve(b, x); }
 
   const dynamics::SolverCounters& counters() const override {
-    sum_ = {};
+    sum_ = retired_;
     for (const auto& solver : made_) {
       if (!solver) continue;
       add_counters(solver->counters(), sum_);
@@ -129,36 +132,41 @@ class AutoSolver final : public dynamics::LinearSolver {
   }
 
  private:
+  static constexpr std::array kNames{"cholmod", "pcg-single", "pcg-two-level"};
+  static constexpr std::size_t kProvisional = 2;
+
   dynamics::LinearSolver& chosen() {
     PALPATE_CHECK(active_, "solver auto: solve without a factor");
     return *active_;
   }
+  dynamics::LinearSolver& made(std::size_t k) {
+    if (!made_[k]) made_[k] = make_linear_solver(kNames[k], spec_);
+    return *made_[k];
+  }
 
-  bool near(double stiffness) const { return stiffness < kKept * stiffness_ && kKept * stiffness > stiffness_; }
-
-  void choose(const BorderedMatrix& A) {
-    const double stiffness = stiffness_number(A.body);
-    const bool as_before = active_ && A.body.block_rows() == nodes_ && near(stiffness);
-    if (as_before || (active_ && !std::isfinite(stiffness))) return;
-    nodes_ = A.body.block_rows();
+  void choose(int nodes, double stiffness) {
+    const bool near = stiffness < kKept * stiffness_ && kKept * stiffness > stiffness_;
+    if (active_ && nodes == nodes_ && (near || !std::isfinite(stiffness))) return;
+    const bool provisional = active_ && stiffness_ == 0.0;
+    nodes_ = nodes;
     stiffness_ = std::isfinite(stiffness) ? stiffness : 1.0;
-    const std::string name = measured_choice(nodes_, stiffness_, spec_.linear_rtol);
-    constexpr std::array kNames{"cholmod", "pcg-single", "pcg-two-level"};
-    for (std::size_t k = 0; k < kNames.size(); ++k) {
-      if (name != kNames[k]) continue;
-      if (!made_[k]) made_[k] = make_linear_solver(name, spec_);
-      active_ = made_[k].get();
-    }
-    PALPATE_CHECK(active_, "auto_table.inc names {}", name);
+    const auto* const name = std::find(kNames.begin(), kNames.end(), std::string_view(measured_choice(nodes_, stiffness_, spec_.linear_rtol)));
+    PALPATE_CHECK(name != kNames.end(), "auto_table.inc names a solver that auto does not know");
+    active_ = &made(static_cast<std::size_t>(name - kNames.begin()));
+    if (!provisional || active_ == made_[kProvisional].get()) return;
+    add_counters(made_[kProvisional]->counters(), retired_);
+    made_[kProvisional].reset();
   }
 
   IntegratorSpec spec_;
-  std::array<std::unique_ptr<dynamics::LinearSolver>, 3> made_;
+  std::array<std::unique_ptr<dynamics::LinearSolver>, kNames.size()> made_;
   dynamics::LinearSolver* active_ = nullptr;
   dynamics::BalancedMatrix* room_ = nullptr;  ///< of active_
   std::uint64_t values_version_ = 0;
   int nodes_ = -1;
-  double stiffness_ = 1.0;
+  double stiffness_ = 0.0;                    ///< that active_ was chosen by; 0: it was not
+  double seen_ = 0.0;                         ///< of the last balanced matrix; 0: there was none
+  dynamics::SolverCounters retired_;          ///< of the provisional one, where another was chosen
   mutable dynamics::SolverCounters sum_;
 };
 
