@@ -1,7 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "palpate/core/error.h"
 #include "palpate/study/stability.h"
+
+namespace palpate::study {
+void PrintTo(const StabilityRow& row, std::ostream* out) { *out << row.name; }
+}  // namespace palpate::study
 
 using namespace palpate;
 using namespace palpate::study;

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <filesystem>
 #include <limits>
+#include <ostream>
 
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
@@ -83,6 +84,7 @@ struct Fault {
   Verdict verdict;
   std::string reason;
 };
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.row << ", " << fault.sub_case << ": " << to_string(fault.verdict); }
 class BrokenStepper : public testing::TestWithParam<Fault> {};
 INSTANTIATE_TEST_SUITE_P(Faults, BrokenStepper,
                          testing::Values(Fault{Spoil::kNotANumber, "youngs-modulus", "E = 1e5 Pa", Verdict::kNotFinite, ""},
