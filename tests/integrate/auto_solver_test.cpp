@@ -57,19 +57,21 @@ class AutoOnBalanced : public testing::Test {
   static constexpr double kRtol = 1e-3;
   BentBeam beam{24, 1e5};
   std::unique_ptr<LinearSolver> solver = integrate::make_linear_solver("auto", {.linear_rtol = kRtol});
-  std::string expected(double h) {
+  std::string expected(double h) { return expected(beam, h); }
+  std::string expected(BentBeam& of, double h) {
     BorderedMatrix A;
     VecX b;
-    beam.at(0.4, h, A, b);
-    return integrate::measured_choice(beam.masses.size(), integrate::stiffness_number(A.body), kRtol);
+    of.at(0.4, h, A, b);
+    return integrate::measured_choice(static_cast<double>(of.masses.size()), integrate::stiffness_number(A.body), kRtol);
   }
-  void solve(double h) {
+  void solve(double h) { solve(beam, h); }
+  void solve(BentBeam& of, double h) {
     BorderedMatrix whole;
     VecX b, x, exact;
-    beam.at(0.4, h, whole, b);
-    BalancedMatrix* A = solver->balanced(beam.pattern());
+    of.at(0.4, h, whole, b);
+    BalancedMatrix* A = solver->balanced(of.pattern());
     ASSERT_NE(A, nullptr);
-    beam.at(0.4, h, *A, b);
+    of.at(0.4, h, *A, b);
     ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
     ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
     const auto direct = integrate::make_linear_solver("cholmod");
@@ -105,6 +107,33 @@ TEST_F(AutoOnBalanced, KeepsItsChoiceWhileItServes) {
   for (const double h : {0.05, 0.06, 0.08, 0.05}) solve(h);
   EXPECT_EQ(made("pcg-single") + made("pcg-two-level"), before + 1);
   EXPECT_EQ(solver->counters().symbolic, 1);
+}
+
+TEST_F(AutoOnBalanced, ChoosesAnewForAnotherBody) {
+  BentBeam small(8, 1e5);
+  ASSERT_EQ(expected(0.1), "pcg-two-level");
+  ASSERT_EQ(expected(small, 1e-4), "pcg-single");
+  solve(0.1);
+  solve(0.1);
+  const long single = made("pcg-single");
+  solve(small, 1e-4);
+  EXPECT_EQ(made("pcg-single"), single);
+  solve(small, 1e-4);
+  EXPECT_EQ(made("pcg-single"), single + 1);
+  EXPECT_EQ(solver->counters().solves, 4);
+}
+
+// What was seen of a balanced matrix says nothing once a whole one came after it.
+TEST_F(AutoOnBalanced, ForgetsWhatItSawWhenAWholeMatrixComes) {
+  solve(1e-4);
+  BorderedMatrix whole;
+  VecX b, x;
+  beam.at(0.4, 0.1, whole, b);
+  ASSERT_EQ(solver->factor(whole), SolveStatus::kOk);
+  ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+  const long single = made("pcg-single");
+  solve(0.1);
+  EXPECT_EQ(made("pcg-single"), single);
 }
 
 }  // namespace

@@ -127,20 +127,22 @@ class LinearlyImplicitEuler final : public FixedStep {
       if (!complete(at, h)) return SolveStatus::kSingular;
     }
     SolveStatus status = solver_.factor_balanced();
-    if (status == SolveStatus::kRounded) {
+    const bool rounded = status == SolveStatus::kRounded;
+    if (rounded) {
       Left left(*this, at, h);
       status = solver_.solve_near(left, du_);
     } else if (status == SolveStatus::kOk) {
       status = solver_.solve(rhs_, du_);
     }
-    if (status == SolveStatus::kIndefinite && solver_.projects()) return solve_definite(at, h, *A);
+    if (status == SolveStatus::kIndefinite && !rounded && solver_.projects()) return solve_definite(at, h, *A);
     if (status != SolveStatus::kOk) return status;
     kept_h_ = h;
     kept_pattern_ = system_.pattern().pattern_version();
     return status;
   }
 
-  /// The same by definite tangents, after kIndefinite.  No step after it is near this matrix.
+  /// The same by definite tangents, after kIndefinite.  No step after it is near this matrix.  (Of one that is too coarse for a solution corrections would need residuals by K for the
+  /// motion that is known and by the definite tangent for the one that is sought: that one is left to the whole matrix.)
   SolveStatus solve_definite(const StateView& at, double h, BalancedMatrix& A) {
     {
       const ScopedTimer timer(counters_.tangent_s);

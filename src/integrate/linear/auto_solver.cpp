@@ -104,12 +104,17 @@ class AutoSolver final : public dynamics::LinearSolver {
     const bool same = active_ && A.values_version != 0 && A.values_version == values_version_;
     if (!same) choose(A.body.block_rows(), stiffness_number(A.body));
     values_version_ = A.values_version;
+    seen_ = 0.0;
     return active_->factor(A);
   }
   dynamics::BalancedMatrix* balanced(const dynamics::BlockSparse& pattern) override {
-    if (seen_ > 0.0 && pattern.block_rows() == nodes_) choose(nodes_, seen_);
-    if (!active_) active_ = &made(kProvisional);
-    nodes_ = pattern.block_rows();
+    if (pattern.block_rows() != nodes_) {
+      provisional_ = true;
+      active_ = &made(kProvisional);
+      nodes_ = pattern.block_rows();
+    } else if (seen_ > 0.0) {
+      choose(nodes_, seen_);
+    }
     return room_ = active_->balanced(pattern);
   }
   SolveStatus factor_balanced() override {
@@ -145,17 +150,18 @@ class AutoSolver final : public dynamics::LinearSolver {
   }
 
   void choose(int nodes, double stiffness) {
-    const bool near = stiffness < kKept * stiffness_ && kKept * stiffness > stiffness_;
+    const bool near = !provisional_ && stiffness < kKept * stiffness_ && kKept * stiffness > stiffness_;
     if (active_ && nodes == nodes_ && (near || !std::isfinite(stiffness))) return;
-    const bool provisional = active_ && stiffness_ == 0.0;
     nodes_ = nodes;
     stiffness_ = std::isfinite(stiffness) ? stiffness : 1.0;
     const auto* const name = std::find(kNames.begin(), kNames.end(), std::string_view(measured_choice(nodes_, stiffness_, spec_.linear_rtol)));
     PALPATE_CHECK(name != kNames.end(), "auto_table.inc names a solver that auto does not know");
     active_ = &made(static_cast<std::size_t>(name - kNames.begin()));
-    if (!provisional || active_ == made_[kProvisional].get()) return;
-    add_counters(made_[kProvisional]->counters(), retired_);
-    made_[kProvisional].reset();
+    if (provisional_ && active_ != made_[kProvisional].get()) {
+      add_counters(made_[kProvisional]->counters(), retired_);
+      made_[kProvisional].reset();
+    }
+    provisional_ = false;
   }
 
   IntegratorSpec spec_;
@@ -164,8 +170,9 @@ class AutoSolver final : public dynamics::LinearSolver {
   dynamics::BalancedMatrix* room_ = nullptr;  ///< of active_
   std::uint64_t values_version_ = 0;
   int nodes_ = -1;
-  double stiffness_ = 0.0;                    ///< that active_ was chosen by; 0: it was not
-  double seen_ = 0.0;                         ///< of the last balanced matrix; 0: there was none
+  bool provisional_ = false;                  ///< active_ was not chosen yet
+  double stiffness_ = 0.0;                    ///< that it was chosen by
+  double seen_ = 0.0;                         ///< of the last matrix, where that was a balanced one
   dynamics::SolverCounters retired_;          ///< of the provisional one, where another was chosen
   mutable dynamics::SolverCounters sum_;
 };
