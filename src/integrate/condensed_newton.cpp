@@ -41,6 +41,7 @@ void CondensedNewton::combine(double gamma) {
   A_.bottom = M_.bottom + gamma * D_.bottom + (gamma * gamma) * K_.bottom;
   A_.corner = M_.corner + gamma * D_.corner + (gamma * gamma) * K_.corner;
   A_.symmetric = M_.symmetric && D_.symmetric && K_.symmetric;
+  A_.positions = M_.positions;
   A_.touch();
 }
 

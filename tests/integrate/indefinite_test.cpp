@@ -229,6 +229,37 @@ TEST(CondensedNewton, FactorsOnlyWhatChanged) {
   EXPECT_EQ(counters.tangent_evaluations, 1);
 }
 
+/// Keeps the positions that it is given with a matrix.
+struct PositionsKept final : LinearSolver {
+  VecX& kept;
+  SolverCounters none;
+  explicit PositionsKept(VecX& to) : kept(to) {}
+  std::string name() const override { return "positions"; }
+  bool supports_unsymmetric() const override { return true; }
+  SolveStatus factor(const BorderedMatrix& A) override {
+    kept = A.positions;
+    return SolveStatus::kOk;
+  }
+  SolveStatus solve(const MatX&, MatX&) override { return SolveStatus::kSingular; }
+  SolveStatus solve(const VecX&, VecX&) override { return SolveStatus::kSingular; }
+  const SolverCounters& counters() const override { return none; }
+};
+
+// Preconditioners turn their rigid motions with the body.
+TEST(CondensedNewton, TellsWhereTheNodesAre) {
+  Chain chain;
+  VecX seen;
+  integrate::CondensedNewton newton(chain.system, std::make_unique<PositionsKept>(seen), {});
+  StepperCounters counters;
+  for (const double shift : {0.0, 0.25}) {
+    chain.state.q().array() += shift;
+    newton.evaluate(chain.state.view(), counters);
+    ASSERT_EQ(newton.factor(0.1), SolveStatus::kOk);
+    ASSERT_GT(seen.size(), 0);
+    EXPECT_EQ(seen, VecX(chain.state.q().head(seen.size())));
+  }
+}
+
 // --- soft bodies -----------------------------------------------------------------------------------------------------
 
 constexpr double kLength = 1.0, kWidth = 0.1, kYoung = 1e6, kDensity = 1000.0;
