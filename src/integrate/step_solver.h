@@ -88,6 +88,8 @@ class StepSolver final : public dynamics::LinearSolver {
 
   /// IntegratorSpec::indefinite = "project"
   bool projects() const { return project_; }
+  /// Whether the matrix that stands is of definite tangents, in place of one that was indefinite.
+  bool definite() const { return definite_; }
   /// Writes what it counted, the solvers' own counts included.
   void report(dynamics::StepperCounters& counters) const;
 

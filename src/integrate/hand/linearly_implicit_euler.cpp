@@ -19,8 +19,10 @@ constexpr double kSameStep = 1e-6;  // relative: steps that differ by rounding
 /// Driven directions go to x(t1), v(t1) exactly.  Their displacement dx and velocity change dv enter the free rows as what they are,
 ///     (M + h D + h^2 K) du = h (f - K s - D dv) - M dv,   s = h u0 on free directions, dx on driven ones;  dv = 0 on free ones,
 /// so a body that moves rigidly with its drive feels no force.  Order 1; L-stable on linear problems with M, D, K positive.
-/// A value that is not finite ends the step as data; an indefinite matrix is met as StepSolver says: the right-hand side keeps the
-/// true K, so that a projected matrix changes du by h^2 (K_p - K) du, which is O(h^3).
+/// A value that is not finite ends the step as data; an indefinite matrix is met as StepSolver says.  With a projected one, K_p, the right-hand side takes K_p as well, so that the step is
+///     (M + h D + h^2 K_p) u1 = M u0 + h f + ...,
+/// that of a force model without negative curvature: it may not gain energy.  K itself there, h^2 (K_p - K) u0 more, pushes a moving body along that curvature, which where
+/// elements are flat has no bound.  Where h is small enough for the order to show, matrices are definite.
 /// A body that moves little in a step leaves its matrix nearly as it was: the solver then takes the one that it has, and looks at what the true K and D leave,
 /// without their matrix (LinearSolver::solve_near).
 /// Dense output is linear within the last step, which has the method's order.
@@ -109,7 +111,7 @@ class LinearlyImplicitEuler final : public FixedStep {
     return solver_.solve_near(left, du_) == SolveStatus::kOk;
   }
 
-  /// Force, product and matrix in one pass over the bodies, and its solution.  kIndefinite: rhs_ is there, the matrix has no use.  Anything else but kOk: terms or solver do not
+  /// Force, product and matrix in one pass over the bodies, and its solution.  kIndefinite: the matrix is.  Anything else but kOk: terms or solver do not
   /// take part in that, or the solver fails; the general way then tells why, or does better.
   SolveStatus solve_balanced(const StateView& at, double h) {
     if (!system_.balanced(at)) return SolveStatus::kNotConverged;
@@ -141,14 +143,14 @@ class LinearlyImplicitEuler final : public FixedStep {
     return status;
   }
 
-  /// The same by definite tangents, after kIndefinite.  No step after it is near this matrix.  (Of one that is too coarse for a solution corrections would need residuals by K for the
-  /// motion that is known and by the definite tangent for the one that is sought: that one is left to the whole matrix.)
+  /// The same by definite tangents, after kIndefinite.  No step after it is near this matrix.
   SolveStatus solve_definite(const StateView& at, double h, BalancedMatrix& A) {
     {
       const ScopedTimer timer(counters_.tangent_s);
       ++counters_.tangent_evaluations;
       const DefiniteTangents definite(system_);
-      system_.balanced_step(at, shift_, 1.0, h, h * h, product_, A);  // rhs_ keeps the true K
+      system_.balanced_step(at, shift_, 1.0, h, h * h, rhs_, A);
+      if (!complete(at, h)) return SolveStatus::kSingular;
     }
     const SolveStatus status = solver_.factor_balanced_definite();
     if (status == SolveStatus::kOk && solver_.solve(rhs_, du_) == SolveStatus::kOk) return SolveStatus::kOk;
@@ -156,9 +158,9 @@ class LinearlyImplicitEuler final : public FixedStep {
   }
 
   /// The general way; not kOk: what went wrong.
-  /// @param indefinite  the matrix is known to be, and the right-hand side is there
+  /// @param indefinite  the matrix is known to be
   Attempt solve(const StateView& at, double h, bool indefinite) {
-    if (!indefinite && !right_hand_side(at, h)) return {.status = StepStatus::kNotFinite, .what = "the force is not finite"};
+    if (!right_hand_side(at, h)) return {.status = StepStatus::kNotFinite, .what = "the force is not finite"};
     const auto assemble = [&] {
       const ScopedTimer timer(counters_.tangent_s);
       ++counters_.tangent_evaluations;
@@ -171,8 +173,19 @@ class LinearlyImplicitEuler final : public FixedStep {
       assemble();
       status = solver_.factor(A_, system_, assemble);
     }
-    const auto right_hand_side = [this]() -> const VecX& { return rhs_; };
-    if (status == SolveStatus::kOk) status = solver_.solve(system_, assemble, right_hand_side, du_);
+    bool by_definite = false;  // rhs_ is
+    const auto of_the_matrix = [&]() -> const VecX& {
+      if (by_definite == solver_.definite()) return rhs_;
+      by_definite = solver_.definite();
+      if (by_definite) {
+        const DefiniteTangents definite(system_);
+        right_hand_side(at, h);
+      } else {
+        right_hand_side(at, h);
+      }
+      return rhs_;
+    };
+    if (status == SolveStatus::kOk) status = solver_.solve(system_, assemble, of_the_matrix, du_);
     if (status != SolveStatus::kOk) return {.status = StepStatus::kSolverFailed, .what = "the step matrix is singular or not finite"};
     return {};
   }
