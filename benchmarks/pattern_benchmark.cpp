@@ -1,7 +1,9 @@
-// What it costs when the nodes that contact couples change: a step of the beams S and M of `palpate bench fem` (E = 1e5, 10 ms, linearly implicit) while a patch of
-// coupled pairs lies still, and while it moves by a node every step, so that the matrix has a new pattern.  The patch: 64 nodes of the beam's upper face, each with 9 of
-// the other half, as if the beam were folded onto itself.
-// pattern_ms: patterns of System and slots of the terms; symbolic_ms: what the solver makes of a pattern; each a step.  `ratio` stands in the second of each pair.
+// What it costs when the nodes that contact couples change: a step of the beams S and M of `palpate bench
+// fem` (E = 1e5, 10 ms, linearly implicit) while a patch of coupled pairs lies still, and while it moves by a
+// node every step, so that the matrix has a new pattern.  The patch: 64 nodes of the beam's upper face, each
+// with 9 of the other half, as if the beam were folded onto itself.
+// pattern_ms: patterns of System and slots of the terms; symbolic_ms: what the solver makes of a pattern;
+// each a step.  `ratio` stands in the second of each pair.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -25,11 +27,13 @@ struct UpperFace {
     const double cell = 1.0 / cells_along, top = 0.125;
     for (int i = 0; i < rest.size() / 3; ++i)
       if (const Vec3 x = rest.segment<3>(3 * i); x.z() > top - 0.1 * cell)
-        node[{static_cast<int>(std::lround((x.x() + 0.5) / cell)), static_cast<int>(std::lround((x.y() + 0.125) * cells_across / 0.25))}] = i;
+        node[{static_cast<int>(std::lround((x.x() + 0.5) / cell)),
+              static_cast<int>(std::lround((x.y() + 0.125) * cells_across / 0.25))}] = i;
   }
 };
 
-/// Couples a patch with its mirror image in the beam's middle, with a zero tangent: the price is the pattern's alone.
+/// Couples a patch with its mirror image in the beam's middle, with a zero tangent: the price is the
+/// pattern's alone.
 class Patch final : public dynamics::ForceTerm {
  public:
   Patch(const UpperFace& face, bool moves) : face_(face), moves_(moves) {}
@@ -46,8 +50,10 @@ class Patch final : public dynamics::ForceTerm {
       for (int j = 0; j < kEdge; ++j)
         for (int di = -1; di <= 1; ++di)
           for (int dj = -1; dj <= 1; ++dj) {
-            const auto own = face_.node.find({i, j}), other = face_.node.find({face_.along - i + di, std::clamp(j + dj, 0, face_.across)});
-            if (own != face_.node.end() && other != face_.node.end() && own->second != other->second) pattern.add_pair(own->second, other->second);
+            const auto own = face_.node.find({i, j}),
+                       other = face_.node.find({face_.along - i + di, std::clamp(j + dj, 0, face_.across)});
+            if (own != face_.node.end() && other != face_.node.end() && own->second != other->second)
+              pattern.add_pair(own->second, other->second);
           }
   }
   void step() { at_ += moves_; }
@@ -105,8 +111,11 @@ int main(int argc, char** argv) {
   for (const auto& size : sizes)
     for (const char* solver : {"cholmod", "pcg", "pcg-single", "pcg-two-level"})
       for (const bool moves : {false, true})
-        benchmark::RegisterBenchmark((std::string(size.name) + "/" + solver + (moves ? "/moves" : "/still")).c_str(),
-                                     [size, solver, moves](benchmark::State& state) { Step(state, size.along, size.across, solver, moves); })
+        benchmark::RegisterBenchmark(
+            (std::string(size.name) + "/" + solver + (moves ? "/moves" : "/still")).c_str(),
+            [size, solver, moves](benchmark::State& state) {
+              Step(state, size.along, size.across, solver, moves);
+            })
             ->Unit(benchmark::kMillisecond)
             ->Iterations(12);
   benchmark::Initialize(&argc, argv);

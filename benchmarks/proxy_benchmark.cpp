@@ -1,5 +1,6 @@
-// Two bumpy balls of 44,000 skin vertices on 10,000 tetrahedra and 60 proxies each, pressed together, and one touched by a small rigid ball.
-// The reference is what proxies spare: placing every vertex of the two skins once (SkinPlacedWhole).  A ring that the ball presses from inside its hole, as one hull and as parts.
+// Two bumpy balls of 44,000 skin vertices on 10,000 tetrahedra and 60 proxies each, pressed together, and one
+// touched by a small rigid ball. The reference is what proxies spare: placing every vertex of the two skins
+// once (SkinPlacedWhole).  A ring that the ball presses from inside its hole, as one hull and as parts.
 #include <benchmark/benchmark.h>
 
 #include <numeric>
@@ -53,7 +54,8 @@ void Embed(benchmark::State& state) {
 
 void Decompose(benchmark::State& state) {
   proxy::DecomposeReport report;
-  for (auto _ : state) benchmark::DoNotOptimize(proxy::decompose(head(), {.count = static_cast<int>(state.range(0))}, &report));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(proxy::decompose(head(), {.count = static_cast<int>(state.range(0))}, &report));
   state.counters["outside_mm"] = 1e3 * report.largest_outside;
   state.counters["largest_gap_mm"] = 1e3 * report.largest_gap;
   state.counters["volume_ratio"] = report.hull_volume / report.skin_volume;
@@ -64,7 +66,8 @@ void SkinPlacedWhole(benchmark::State& state) {
   Points skin;
   std::size_t i = 0;
   for (auto _ : state)
-    for (int body = 0; body < 2; ++body) mesh::evaluate(head().embedding, head().tets.tets, nodes[++i % nodes.size()], skin);
+    for (int body = 0; body < 2; ++body)
+      mesh::evaluate(head().embedding, head().tets.tets, nodes[++i % nodes.size()], skin);
 }
 
 void UpdateProxies(benchmark::State& state) {
@@ -77,7 +80,8 @@ void UpdateProxies(benchmark::State& state) {
   state.counters["mean_inflation_mm"] = inflation;
 }
 
-void report(benchmark::State& state, const proxy::PruneCounts& counts, const proxy::ProxySet& a, const proxy::ProxySet& b) {
+void report(benchmark::State& state, const proxy::PruneCounts& counts, const proxy::ProxySet& a,
+            const proxy::ProxySet& b) {
   const double queries = static_cast<double>(counts.queries);
   state.counters["pairs"] = static_cast<double>(counts.pairs);
   state.counters["after_boxes"] = static_cast<double>(counts.after_boxes) / queries;
@@ -135,7 +139,8 @@ const TriMesh& ring() {
 void DecomposeRing(benchmark::State& state) {
   proxy::DecomposeReport report;
   std::size_t hulls = 0;
-  for (auto _ : state) hulls = proxy::decompose_solid(ring(), {.count = static_cast<int>(state.range(0))}).size();
+  for (auto _ : state)
+    hulls = proxy::decompose_solid(ring(), {.count = static_cast<int>(state.range(0))}).size();
   proxy::decompose_solid(ring(), {.count = static_cast<int>(state.range(0))}, &report);
   state.counters["faces"] = static_cast<double>(ring().faces.cols());
   state.counters["hulls"] = static_cast<double>(hulls);
@@ -146,7 +151,9 @@ void RingSet(benchmark::State& state) {
 }
 
 void HeadInRing(benchmark::State& state) {
-  proxy::ProxySet a(head()), b = proxy::rigid_proxies(ring(), {.count = static_cast<int>(state.range(0)), .tolerance = state.range(0) > 24 ? 0.0 : 0.02});
+  proxy::ProxySet a(head()),
+      b = proxy::rigid_proxies(
+          ring(), {.count = static_cast<int>(state.range(0)), .tolerance = state.range(0) > 24 ? 0.0 : 0.02});
   proxy::Pruner pruner(a, b);
   const auto nodes = phases(0.0);
   std::size_t i = 0;

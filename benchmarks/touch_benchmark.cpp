@@ -1,5 +1,6 @@
-// Pruning on the paper's models: what a query costs (proxies, bounds, pairs, patches, regions) and what it hands to the rasteriser, beside the true contact patch.
-// The models are read from the folder that PALPATE_MODELS names, else from where the tests' fixture leaves them (`ctest -R proxy.model`).
+// Pruning on the paper's models: what a query costs (proxies, bounds, pairs, patches, regions) and what it
+// hands to the rasteriser, beside the true contact patch. The models are read from the folder that
+// PALPATE_MODELS names, else from where the tests' fixture leaves them (`ctest -R proxy.model`).
 // The reference is what proxies spare: placing every vertex of the skins once.
 #include <benchmark/benchmark.h>
 
@@ -16,7 +17,8 @@ std::string folder() {
   return given ? given : PALPATE_MODELS_FOLDER;
 }
 
-void add_counters(benchmark::State& state, const touch::Bodies& bodies, const palpate::proxy::PruneCounts& counts) {
+void add_counters(benchmark::State& state, const touch::Bodies& bodies,
+                  const palpate::proxy::PruneCounts& counts) {
   const double queries = static_cast<double>(counts.queries), faces = bodies.a.face_count();
   const auto each = [&](long n) { return static_cast<double>(n) / queries; };
   state.counters["pairs"] = static_cast<double>(counts.pairs);
@@ -66,7 +68,8 @@ void place_whole_skin(benchmark::State& state, const touch::Case& c) {
   Points skin;
   const Points nodes = c.nodes_a(0);
   for (auto _ : state)
-    for (int body = 0; body < 1 + c.b_is_soft(); ++body) palpate::mesh::evaluate(c.a.embedding, c.a.tets.tets, nodes, skin);
+    for (int body = 0; body < 1 + c.b_is_soft(); ++body)
+      palpate::mesh::evaluate(c.a.embedding, c.a.tets.tets, nodes, skin);
 }
 
 }  // namespace
@@ -76,7 +79,9 @@ int main(int argc, char** argv) {
   const char* names[] = {"pumpkins", "head", "human"};
   for (int i = 0; i < 3; ++i) {
     const auto add = [&](const std::string& what, void (*run)(benchmark::State&, const touch::Case&)) {
-      benchmark::RegisterBenchmark((std::string(names[i]) + "/" + what).c_str(), [run, &c = cases[i]](benchmark::State& state) { run(state, c); })->Unit(benchmark::kMicrosecond);
+      benchmark::RegisterBenchmark((std::string(names[i]) + "/" + what).c_str(),
+                                   [run, &c = cases[i]](benchmark::State& state) { run(state, c); })
+          ->Unit(benchmark::kMicrosecond);
     };
     add("query", query);
     add("update_alone", update_alone);

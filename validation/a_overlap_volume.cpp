@@ -6,13 +6,14 @@
 #include "cases.h"
 #include "palpate/mesh/generators.h"
 
-// Overlap volume of two spheres, centres d apart, d^2 >= |R1^2 - R2^2| (the lens lies between the two equators, a height field along the
-// line of centres):  V = pi (R1 + R2 - d)^2 (d^2 + 2 d (R1 + R2) - 3 (R1 - R2)^2) / (12 d).
-// The sum of depth x dA over the `pixel` samples of the gpu path is a midpoint rule for it, on the facets: against their exact overlap
-// only the pixels err (order above 2 as RMS over shifts of the grid: the midpoint rule, and a border where the depth has a kink but no jump);
-// against the true spheres the inscribed facets do, with order 2.
-// Exact overlap of the facets: each pair of facing triangles, projected along the line of centres, is intersected; there the depth is
-// linear, so its positive part is a polygon cut by one more line, integrated exactly.
+// Overlap volume of two spheres, centres d apart, d^2 >= |R1^2 - R2^2| (the lens lies between the two
+// equators, a height field along the line of centres):  V = pi (R1 + R2 - d)^2 (d^2 + 2 d (R1 + R2) - 3 (R1 -
+// R2)^2) / (12 d). The sum of depth x dA over the `pixel` samples of the gpu path is a midpoint rule for it,
+// on the facets: against their exact overlap only the pixels err (order above 2 as RMS over shifts of the
+// grid: the midpoint rule, and a border where the depth has a kink but no jump); against the true spheres the
+// inscribed facets do, with order 2. Exact overlap of the facets: each pair of facing triangles, projected
+// along the line of centres, is intersected; there the depth is linear, so its positive part is a polygon cut
+// by one more line, integrated exactly.
 
 namespace palpate::validation {
 namespace {
@@ -21,10 +22,12 @@ using Vec2 = Eigen::Vector2d;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kR1 = 1.0, kR2 = 0.8, kDistance = 1.5;
 
-/// Both surfaces; z is the line of centres, the first sphere (soft) above.  `orientation` turns them against each other and the axes.
+/// Both surfaces; z is the line of centres, the first sphere (soft) above.  `orientation` turns them against
+/// each other and the axes.
 struct Spheres {
   TriMesh upper, lower;
-  Spheres(int subdivisions, int orientation) : upper(mesh::sphere(kR1, subdivisions)), lower(mesh::sphere(kR2, subdivisions)) {
+  Spheres(int subdivisions, int orientation)
+      : upper(mesh::sphere(kR1, subdivisions)), lower(mesh::sphere(kR2, subdivisions)) {
     const auto turn = [](TriMesh& mesh, double angle, const Vec3& axis) {
       mesh.vertices = (Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix() * mesh.vertices).eval();
     };
@@ -91,8 +94,10 @@ double pair_volume(const Vec3* above, const Vec3* below) {
 std::vector<std::array<Vec3, 3>> facing(const TriMesh& mesh, double sign) {
   std::vector<std::array<Vec3, 3>> out;
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
-    const std::array<Vec3, 3> t = {mesh.vertices.col(mesh.faces(0, f)), mesh.vertices.col(mesh.faces(1, f)), mesh.vertices.col(mesh.faces(2, f))};
-    const double extreme = sign > 0 ? std::max({t[0].z(), t[1].z(), t[2].z()}) : std::min({t[0].z(), t[1].z(), t[2].z()});
+    const std::array<Vec3, 3> t = {mesh.vertices.col(mesh.faces(0, f)), mesh.vertices.col(mesh.faces(1, f)),
+                                   mesh.vertices.col(mesh.faces(2, f))};
+    const double extreme =
+        sign > 0 ? std::max({t[0].z(), t[1].z(), t[2].z()}) : std::min({t[0].z(), t[1].z(), t[2].z()});
     const bool reaches = sign > 0 ? extreme > kDistance - kR1 : extreme < kR2;
     if (reaches && sign * (t[1] - t[0]).cross(t[2] - t[0]).z() > 0.0) out.push_back(t);
   }
@@ -103,25 +108,31 @@ double facet_overlap(const Spheres& spheres) {
   const auto above = facing(spheres.upper, -1.0), below = facing(spheres.lower, 1.0);
   double sum = 0.0;
   for (const auto& a : above) {
-    const Vec2 low = a[0].head<2>().cwiseMin(a[1].head<2>()).cwiseMin(a[2].head<2>()), high = a[0].head<2>().cwiseMax(a[1].head<2>()).cwiseMax(a[2].head<2>());
+    const Vec2 low = a[0].head<2>().cwiseMin(a[1].head<2>()).cwiseMin(a[2].head<2>()),
+               high = a[0].head<2>().cwiseMax(a[1].head<2>()).cwiseMax(a[2].head<2>());
     for (const auto& b : below) {
-      if (((b[0].head<2>().cwiseMin(b[1].head<2>()).cwiseMin(b[2].head<2>()) - high).array() > 0.0).any()) continue;
-      if (((low - b[0].head<2>().cwiseMax(b[1].head<2>()).cwiseMax(b[2].head<2>())).array() > 0.0).any()) continue;
+      if (((b[0].head<2>().cwiseMin(b[1].head<2>()).cwiseMin(b[2].head<2>()) - high).array() > 0.0).any())
+        continue;
+      if (((low - b[0].head<2>().cwiseMax(b[1].head<2>()).cwiseMax(b[2].head<2>())).array() > 0.0).any())
+        continue;
       sum += pair_volume(a.data(), b.data());
     }
   }
   return sum;
 }
 
-/// Sum of depth x dA through the gpu path.  Sabotages: areas measured on the skin instead of projected; gaps counted as negative depths.
-double sampled_overlap(const Spheres& spheres, int pixels, double shift_u, double shift_v, const std::string& sabotage) {
+/// Sum of depth x dA through the gpu path.  Sabotages: areas measured on the skin instead of projected; gaps
+/// counted as negative depths.
+double sampled_overlap(const Spheres& spheres, int pixels, double shift_u, double shift_v,
+                       const std::string& sabotage) {
   SurfaceBody body(spheres.upper);
   contact::GpuOptions options;
   options.pixels = pixels;
   options.candidate_gap = sabotage == "gaps-pull" ? 0.05 : 1e-3;
   options.shift_u = shift_u;
   options.shift_v = shift_v;
-  const auto source = contact::make_gpu_source(body.surface, spheres.lower, 0, contact::fixed_frame(), options);
+  const auto source =
+      contact::make_gpu_source(body.surface, spheres.lower, 0, contact::fixed_frame(), options);
   std::vector<contact::ContactSample> samples;
   source->query(body.state.view(), samples);
   double sum = 0.0;
@@ -144,7 +155,8 @@ std::vector<Measurement> run(const std::string& sabotage) {
     for (const int pixels : {64, 128, 256, 512}) {
       double squares = 0.0;
       constexpr int kShifts = 20;
-      for (int i = 0; i < kShifts; ++i) {  // a lattice of shifts without structure (the golden ratios of two dimensions)
+      // a lattice of shifts without structure (the golden ratios of two dimensions)
+      for (int i = 0; i < kShifts; ++i) {
         const double u = std::fmod(0.754877666 * (i + 1), 1.0), v = std::fmod(0.569840291 * (i + 1), 1.0);
         last = sampled_overlap(spheres, pixels, u, v, sabotage);
         squares += std::pow(last / exact - 1.0, 2) / kShifts;
@@ -166,13 +178,15 @@ std::vector<Measurement> run(const std::string& sabotage) {
   }
   {
     const double exact = kPi * std::pow(kR1 + kR2 - kDistance, 2) *
-                         (kDistance * kDistance + 2 * kDistance * (kR1 + kR2) - 3 * std::pow(kR1 - kR2, 2)) / (12 * kDistance);
+                         (kDistance * kDistance + 2 * kDistance * (kR1 + kR2) - 3 * std::pow(kR1 - kR2, 2)) /
+                         (12 * kDistance);
     std::vector<double> h, error;
     double mean = 0.0;
     constexpr int kOrientations = 6;
     for (const int subdivisions : {12, 17, 24, 34, 48}) {
       mean = 0.0;
-      for (int i = 0; i < kOrientations; ++i) mean += sampled_overlap(Spheres(subdivisions, i), 512, 0.0, 0.0, sabotage) / kOrientations;
+      for (int i = 0; i < kOrientations; ++i)
+        mean += sampled_overlap(Spheres(subdivisions, i), 512, 0.0, 0.0, sabotage) / kOrientations;
       h.push_back(1.0 / subdivisions);
       error.push_back(std::abs(mean / exact - 1.0));
     }
@@ -194,8 +208,14 @@ std::vector<Measurement> run(const std::string& sabotage) {
 }  // namespace
 
 ValidationCase overlap_volume() {
-  return {"overlap-volume", "A", "Overlap volume of two spheres through the gpu path: pixels against the facets, facets against the spheres",
-          "k times this volume is the penalty force; the image decides who faces whom, the rest is exact in double (closed form of the lens).", false, run,
+  return {"overlap-volume",
+          "A",
+          "Overlap volume of two spheres through the gpu path: pixels against the facets, facets against the "
+          "spheres",
+          "k times this volume is the penalty force; the image decides who faces whom, the rest is exact in "
+          "double (closed form of the lens).",
+          false,
+          run,
           {"skin-area", "gaps-pull"}};
 }
 

@@ -8,15 +8,18 @@ SurfaceBody::SurfaceBody(const TriMesh& mesh) {
   dynamics::BlockSpec nodes;
   nodes.name = "surface";
   nodes.q_size = nodes.u_size = static_cast<int>(3 * mesh.vertices.cols());
-  surface.block_id = state.insert(nodes, Eigen::Map<const VecX>(mesh.vertices.data(), mesh.vertices.size()), VecX::Zero(nodes.u_size));
+  surface.block_id = state.insert(nodes, Eigen::Map<const VecX>(mesh.vertices.data(), mesh.vertices.size()),
+                                  VecX::Zero(nodes.u_size));
   surface.node_of_vertex.resize(static_cast<std::size_t>(mesh.vertices.cols()));
-  for (std::size_t i = 0; i < surface.node_of_vertex.size(); ++i) surface.node_of_vertex[i] = static_cast<int>(i);
+  for (std::size_t i = 0; i < surface.node_of_vertex.size(); ++i)
+    surface.node_of_vertex[i] = static_cast<int>(i);
   surface.faces = mesh.faces;
 }
 
 void PointMass::add_mass(const dynamics::StateView& state, double scale, dynamics::BorderedMatrix& A) const {
   const dynamics::Block& block = *state.layout->find(block_id_);
-  for (int i = block.u_offset / 3; i < (block.u_offset + block.u_size) / 3; ++i) A.body.add(A.body.slot(i, i), scale * mass_ * Mat3::Identity());
+  for (int i = block.u_offset / 3; i < (block.u_offset + block.u_size) / 3; ++i)
+    A.body.add(A.body.slot(i, i), scale * mass_ * Mat3::Identity());
 }
 
 void PointMass::apply(const dynamics::StateView& state, const VecX& x, VecX& y) const {
@@ -28,7 +31,8 @@ namespace {
 
 class PunchSource final : public contact::SampleSource {
  public:
-  PunchSource(int node, double area, int across, int frame) : node_(node), area_(area), across_(across), frame_(frame) {}
+  PunchSource(int node, double area, int across, int frame)
+      : node_(node), area_(area), across_(across), frame_(frame) {}
   std::string_view name() const override { return "punch"; }
   void add_pattern(dynamics::PatternBuilder&) const override {}
 

@@ -7,17 +7,19 @@
 #include "palpate/dynamics/system.h"
 #include "palpate/integrate/integrators.h"
 
-// A flat punch of area A and mass m meets a plane at speed v0, without gravity.  The contact is one spring K = k A with damper c = d A:
+// A flat punch of area A and mass m meets a plane at speed v0, without gravity.  The contact is one spring K
+// = k A with damper c = d A:
 //   m x'' + c x' + K x = 0,   x(0) = 0, x'(0) = v0 (depth),   w = sqrt(K/m), zeta = c/(2 sqrt(K m)).
 // No damping: x = v0/w sin(w t); contact lasts pi/w, and the speed comes back whole.
-// Kelvin-Voigt without adhesion, zeta < 1, s = sqrt(1 - zeta^2), b = zeta/s: x = v0/(w s) exp(-zeta w t) sin(w s t).
-// The contact force K x + c x' is zero when  tan(w s t) = -2 zeta s/(1 - 2 zeta^2), first at
+// Kelvin-Voigt without adhesion, zeta < 1, s = sqrt(1 - zeta^2), b = zeta/s: x = v0/(w s) exp(-zeta w t)
+// sin(w s t). The contact force K x + c x' is zero when  tan(w s t) = -2 zeta s/(1 - 2 zeta^2), first at
 //   w s t1 = pi - atan2(2 zeta s, 1 - 2 zeta^2),   with depth still > 0;
-// from there it would pull, so the punch leaves with x'(t1):  e = -x'(t1)/v0 = exp(-b (pi - atan2(2 zeta s, 1 - 2 zeta^2))).
-// zeta = 1 is the limit: w t1 = 2, e = exp(-2).
+// from there it would pull, so the punch leaves with x'(t1):  e = -x'(t1)/v0 = exp(-b (pi - atan2(2 zeta s, 1
+// - 2 zeta^2))). zeta = 1 is the limit: w t1 = 2, e = exp(-2).
 // zeta = 0.1, 0.3, 0.5 give e = 0.744079, 0.450975, 0.298436.
-// Hunt-Crossley (1975), a = 3 c/2:  m v v'(x) = -K x (1 + a v)  separates,  m v dv/(1 + a v) = -K x dx, and x vanishes at both ends, so the
-// integral of v/(1 + a v) from -e v0 to v0 is zero:  G(a v0) = G(-e a v0), G(u) = u - ln(1 + u).  Any shape, as only p(x) (1 + a v) was used.
+// Hunt-Crossley (1975), a = 3 c/2:  m v v'(x) = -K x (1 + a v)  separates,  m v dv/(1 + a v) = -K x dx, and x
+// vanishes at both ends, so the integral of v/(1 + a v) from -e v0 to v0 is zero:  G(a v0) = G(-e a v0), G(u)
+// = u - ln(1 + u).  Any shape, as only p(x) (1 + a v) was used.
 
 namespace palpate::validation {
 namespace {
@@ -44,7 +46,8 @@ struct Bounce {
     term->add_frame(contact::fixed_frame());
     ContactSpec law;
     law.stiffness_pa_m = kStiffness;
-    law.damping_pa_s_m = 2.0 * zeta * std::sqrt(kStiffness * kArea * kMass) / kArea * (sabotage == "half-damping" ? 0.5 : 1.0);
+    law.damping_pa_s_m =
+        2.0 * zeta * std::sqrt(kStiffness * kArea * kMass) / kArea * (sabotage == "half-damping" ? 0.5 : 1.0);
     if (sabotage == "hunt-crossley") {
       law.law = "hunt_crossley";
       law.hunt_crossley_s_m = 2.0 * zeta / kSpeed;  // a v0 = 3 zeta
@@ -79,8 +82,9 @@ struct Bounce {
   }
 
   using Root = std::function<double(const VecX& q, const VecX& u)>;
-  /// Advances by short outputs until the root function is no longer positive, finds where by bisection on the dense output of that step,
-  /// and restarts there: no step of the method straddles the kink.  Returns that time.
+  /// Advances by short outputs until the root function is no longer positive, finds where by bisection on the
+  /// dense output of that step, and restarts there: no step of the method straddles the kink.  Returns that
+  /// time.
   double advance_to_root(double dt, const Root& root) {
     VecX q(3), u(3);
     while (state.time() < 1.0) {
@@ -90,7 +94,8 @@ struct Bounce {
       const double h = advance(t1).h;
       if (root(state.q(), state.u()) > 0.0) continue;
       double low = std::max(t0, t1 - h), high = t1;
-      if (!stepper->dense_output(low, q, u) || root(q, u) <= 0.0) {  // crossed in an earlier step, which the dense output no longer covers
+      // crossed in an earlier step, which the dense output no longer covers
+      if (!stepper->dense_output(low, q, u) || root(q, u) <= 0.0) {
         restart(t0, q0, u0);
         dt /= 8.0;
         continue;
@@ -143,13 +148,15 @@ Outcome bounce(double zeta, double rtol, const std::string& sabotage) {
   const double dt = 0.02 / kOmega;
   const double touch = b.advance_to_root(dt, [](const VecX& q, const VecX&) { return q[2]; });
   b.advance(touch + dt);  // into the contact
-  const double release = b.advance_to_root(dt, [&](const VecX& q, const VecX& u) { return b.force_at(0.0, q, u); });
+  const double release =
+      b.advance_to_root(dt, [&](const VecX& q, const VecX& u) { return b.force_at(0.0, q, u); });
   const double depth = -b.height();
   b.advance(release + kPi / kOmega);  // away
   return {release - touch, b.velocity() / kSpeed, depth};
 }
 
-/// Order of a fixed-step method in smooth contact: depth and speed after a quarter period against the harmonic motion.
+/// Order of a fixed-step method in smooth contact: depth and speed after a quarter period against the
+/// harmonic motion.
 Measurement order_in_contact(const std::string& sabotage) {
   std::vector<double> h, error;
   const double end = 0.5 * kPi / kOmega;
@@ -158,9 +165,12 @@ Measurement order_in_contact(const std::string& sabotage) {
     b.state.q()[2] = -1e-12;  // in contact from the start
     b.advance(end);
     h.push_back(end / steps);
-    error.push_back(std::hypot(kOmega * b.height() + kSpeed, b.velocity()) / kSpeed);  // exact: x = v0/w, x' = 0
+    // exact: x = v0/w, x' = 0
+    error.push_back(std::hypot(kOmega * b.height() + kSpeed, b.velocity()) / kSpeed);
   }
-  Measurement m = against("linearly-implicit-euler in contact, 800 steps a quarter period: depth w/v0 and speed/v0", 1.0 + error.back(), 1.0, 5e-3);
+  Measurement m =
+      against("linearly-implicit-euler in contact, 800 steps a quarter period: depth w/v0 and speed/v0",
+              1.0 + error.back(), 1.0, 5e-3);
   m.order = study::fitted_order(h, error);
   m.order_low = 0.9;
   m.order_high = 1.1;
@@ -171,11 +181,12 @@ Measurement order_in_contact(const std::string& sabotage) {
 Measurement free_flight(const std::string& sabotage) {
   Bounce b(1.0, 0.0, fixed_step(1e-3), sabotage);
   b.advance(0.1);
-  return against("linearly-implicit-euler in free flight, height after 100 steps [m]", b.height(), 1.0 - 0.1 * kSpeed, 1e-12);
+  return against("linearly-implicit-euler in free flight, height after 100 steps [m]", b.height(),
+                 1.0 - 0.1 * kSpeed, 1e-12);
 }
 
-/// Order of a fixed-step method through a damped bounce: the force jumps at touch, somewhere inside a step, so order 1 whatever the method.
-/// Where in the step is chance: RMS over starting heights.
+/// Order of a fixed-step method through a damped bounce: the force jumps at touch, somewhere inside a step,
+/// so order 1 whatever the method. Where in the step is chance: RMS over starting heights.
 Measurement order_through_touch(double zeta, double e, const std::string& sabotage) {
   constexpr int kHeights = 32;
   std::vector<double> h, error;
@@ -192,7 +203,11 @@ Measurement order_through_touch(double zeta, double e, const std::string& sabota
     h.push_back(step);
     error.push_back(std::sqrt(squares));
   }
-  Measurement m = against(fmt::format("restitution by linearly-implicit-euler through touch and release, zeta = {}, RMS over 32 heights", zeta), last, e, 1e-2);
+  Measurement m = against(
+      fmt::format(
+          "restitution by linearly-implicit-euler through touch and release, zeta = {}, RMS over 32 heights",
+          zeta),
+      last, e, 1e-2);
   m.error = error.back();
   m.order = study::fitted_order(h, error);
   m.order_low = 0.9;
@@ -205,8 +220,7 @@ std::vector<Measurement> run_undamped(const std::string& sabotage) {
   return {against("contact duration, cvode-bdf, rtol 1e-8 [s]", o.duration, kPi / kOmega, 1e-6),
           against("speed after over speed before", o.restitution, 1.0, 1e-6),
           against("energy after over energy before", o.restitution * o.restitution, 1.0, 1e-6),
-          order_in_contact(sabotage),
-          free_flight(sabotage)};
+          order_in_contact(sabotage), free_flight(sabotage)};
 }
 
 std::vector<Measurement> run_damped(const std::string& sabotage) {
@@ -217,12 +231,15 @@ std::vector<Measurement> run_damped(const std::string& sabotage) {
     const double e = zeta < 1.0 ? std::exp(-zeta / s * angle) : std::exp(-2.0);
     const double duration = zeta < 1.0 ? angle / (kOmega * s) : 2.0 / kOmega;
     const Outcome o = bounce(zeta, 1e-8, sabotage);
-    out.push_back(against(fmt::format("coefficient of restitution, zeta = {}", zeta), o.restitution, e, 1e-5));
+    out.push_back(
+        against(fmt::format("coefficient of restitution, zeta = {}", zeta), o.restitution, e, 1e-5));
     out.push_back(against(fmt::format("contact duration, zeta = {} [s]", zeta), o.duration, duration, 1e-5));
     Measurement left;
-    left.quantity = fmt::format("depth left when the force ends, zeta = {} [m] (absolute: must be > 0)", zeta);
+    left.quantity =
+        fmt::format("depth left when the force ends, zeta = {} [m] (absolute: must be > 0)", zeta);
     left.computed = o.depth_left;
-    left.exact = zeta < 1.0 ? kSpeed / (kOmega * s) * std::exp(-zeta / s * angle) * std::sin(angle) : kSpeed / kOmega * 2.0 * std::exp(-2.0);
+    left.exact = zeta < 1.0 ? kSpeed / (kOmega * s) * std::exp(-zeta / s * angle) * std::sin(angle)
+                            : kSpeed / kOmega * 2.0 * std::exp(-2.0);
     left.error = o.depth_left > 0.0 ? std::abs(left.computed / left.exact - 1.0) : 1.0;
     left.bar = 1e-5;
     out.push_back(left);
@@ -246,7 +263,8 @@ std::vector<Measurement> run_hunt_crossley(const std::string& sabotage) {
   std::vector<Measurement> out;
   for (const double u : {0.3, 1.0}) {  // a v0 = 3/2 c v0
     const Outcome o = bounce(u / 3.0, 1e-8, sabotage.empty() ? "hunt-crossley" : sabotage);
-    out.push_back(against(fmt::format("coefficient of restitution, 3/2 c v0 = {}", u), o.restitution, hunt_crossley_restitution(u), 1e-5));
+    out.push_back(against(fmt::format("coefficient of restitution, 3/2 c v0 = {}", u), o.restitution,
+                          hunt_crossley_restitution(u), 1e-5));
   }
   return out;
 }
@@ -254,20 +272,34 @@ std::vector<Measurement> run_hunt_crossley(const std::string& sabotage) {
 }  // namespace
 
 ValidationCase punch_bounce() {
-  return {"punch-bounce", "B", "Undamped bounce of a flat punch on a plane: duration, speed, energy; fixed-step order in contact",
-          "A flat contact is one linear spring k A: it must give back what it took, through any integrator.", false, run_undamped,
+  return {"punch-bounce",
+          "B",
+          "Undamped bounce of a flat punch on a plane: duration, speed, energy; fixed-step order in contact",
+          "A flat contact is one linear spring k A: it must give back what it took, through any integrator.",
+          false,
+          run_undamped,
           {"half-area", "loose-tolerance"}};
 }
 
 ValidationCase punch_bounce_damped() {
-  return {"punch-bounce-damped", "B", "Bounce of a flat punch with Kelvin-Voigt damping and no adhesion, zeta = 0.1, 0.3, 0.5, 1",
-          "The pressure is cut where it would pull, so the punch leaves before the depth is gone: the closed form of exactly that.", false, run_damped,
+  return {"punch-bounce-damped",
+          "B",
+          "Bounce of a flat punch with Kelvin-Voigt damping and no adhesion, zeta = 0.1, 0.3, 0.5, 1",
+          "The pressure is cut where it would pull, so the punch leaves before the depth is gone: the closed "
+          "form of exactly that.",
+          false,
+          run_damped,
           {"half-damping", "hunt-crossley"}};
 }
 
 ValidationCase punch_bounce_hunt_crossley() {
-  return {"punch-bounce-hunt-crossley", "B", "Bounce with Hunt-Crossley damping against its implicit closed form, 3/2 c v0 = 0.3 and 1",
-          "The continuous damping law: its loss depends on speed in a way that no linear damper copies.", false, run_hunt_crossley, {"kelvin-voigt"}};
+  return {"punch-bounce-hunt-crossley",
+          "B",
+          "Bounce with Hunt-Crossley damping against its implicit closed form, 3/2 c v0 = 0.3 and 1",
+          "The continuous damping law: its loss depends on speed in a way that no linear damper copies.",
+          false,
+          run_hunt_crossley,
+          {"kelvin-voigt"}};
 }
 
 }  // namespace palpate::validation

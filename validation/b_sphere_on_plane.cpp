@@ -4,12 +4,14 @@
 #include "cases.h"
 #include "palpate/mesh/generators.h"
 
-// A rigid sphere of radius R held with its lowest point delta0 below a plane.  Pressure is k times the depth along the plane's normal,
-// over the area projected on the plane, so the force is k times the volume below the plane: a spherical cap,
+// A rigid sphere of radius R held with its lowest point delta0 below a plane.  Pressure is k times the depth
+// along the plane's normal, over the area projected on the plane, so the force is k times the volume below
+// the plane: a spherical cap,
 //   F = k pi delta0^2 (3 R - delta0)/3.
-// `vertex` sampling: each vertex carries a third of the projected areas around it, so the sum is the integral of the depth interpolated
-// over the facets, cut to zero at the vertices instead of along the waterline.  Both that and the inscribed facets cost h^2.
-// The facets' own volume is exact: each triangle is clipped at the plane, and the depth, linear on it, is integrated over what is left.
+// `vertex` sampling: each vertex carries a third of the projected areas around it, so the sum is the integral
+// of the depth interpolated over the facets, cut to zero at the vertices instead of along the waterline.
+// Both that and the inscribed facets cost h^2. The facets' own volume is exact: each triangle is clipped at
+// the plane, and the depth, linear on it, is integrated over what is left.
 
 namespace palpate::validation {
 namespace {
@@ -20,7 +22,8 @@ constexpr double kRadius = 0.02, kDepth = 0.004, kStiffness = 5e7;
 /// A position off every symmetry of the mesh, lowest point of the true sphere at -kDepth.
 TriMesh placed_sphere(int subdivisions, int orientation) {
   TriMesh mesh = mesh::sphere(kRadius, subdivisions);
-  const Quat turn = Quat(Eigen::AngleAxisd(0.37 + 1.1 * orientation, Vec3(1, 2 - orientation, 3).normalized()));
+  const Quat turn =
+      Quat(Eigen::AngleAxisd(0.37 + 1.1 * orientation, Vec3(1, 2 - orientation, 3).normalized()));
   mesh.vertices = (turn.toRotationMatrix() * mesh.vertices).colwise() + Vec3(0.011, -0.007, kRadius - kDepth);
   return mesh;
 }
@@ -44,8 +47,8 @@ double volume_below(const TriMesh& mesh) {
 }
 
 /// Force of the samples of one source on the body, along z [N].
-double held_force(SurfaceBody& body, std::unique_ptr<contact::SampleSource> source, const std::shared_ptr<contact::MovingFrame>& frame,
-                  const std::string& sabotage) {
+double held_force(SurfaceBody& body, std::unique_ptr<contact::SampleSource> source,
+                  const std::shared_ptr<contact::MovingFrame>& frame, const std::string& sabotage) {
   contact::ContactForce term;
   term.add_frame(frame);
   ContactSpec law;
@@ -58,18 +61,22 @@ double held_force(SurfaceBody& body, std::unique_ptr<contact::SampleSource> sour
 double vertex_force(const TriMesh& mesh, const std::string& sabotage) {
   SurfaceBody body(mesh);
   const auto frame = contact::fixed_frame();
-  // "surface-area": the area on the sphere instead of its projection, what an elastic foundation normal to the skin would use
+  // "surface-area": the area on the sphere instead of its projection, what an elastic foundation normal to
+  // the skin would use
   if (sabotage == "surface-area") {
     double sum = 0.0;
     std::vector<contact::ContactSample> samples;
-    contact::make_plane_source(body.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 1e-6)->query(body.state.view(), samples);
+    contact::make_plane_source(body.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 1e-6)
+        ->query(body.state.view(), samples);
     for (const auto& s : samples) {
       const double cosine = (kRadius - kDepth - body.state.view().position(s.a.node[0]).z()) / kRadius;
       sum += kStiffness * std::max(0.0, -s.gap) * s.area / cosine;
     }
     return sum;
   }
-  return held_force(body, contact::make_plane_source(body.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 1e-6), frame, sabotage);
+  return held_force(body,
+                    contact::make_plane_source(body.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 1e-6),
+                    frame, sabotage);
 }
 
 #ifdef PALPATE_HAS_gl
@@ -103,7 +110,8 @@ std::vector<Measurement> run(const std::string& sabotage) {
   double finest = 0.0;
   for (const int n : ladder) {
     double mean = 0.0;
-    for (int i = 0; i < kOrientations; ++i) mean += vertex_force(placed_sphere(n, i), sabotage) / kOrientations;
+    for (int i = 0; i < kOrientations; ++i)
+      mean += vertex_force(placed_sphere(n, i), sabotage) / kOrientations;
     h.push_back(1.0 / n);
     error.push_back(std::abs(mean / (kStiffness * cap) - 1.0));
     finest = mean;
@@ -111,11 +119,13 @@ std::vector<Measurement> run(const std::string& sabotage) {
   const TriMesh mesh = placed_sphere(ladder.back(), 0);
   const double facets = kStiffness * volume_below(mesh);
   std::vector<Measurement> out;
-  out.push_back(against("force on the facets, vertex samples [N]", vertex_force(mesh, sabotage), facets, 1e-3));
+  out.push_back(
+      against("force on the facets, vertex samples [N]", vertex_force(mesh, sabotage), facets, 1e-3));
 #ifdef PALPATE_HAS_gl
   out.push_back(against("force on the facets, pixel samples [N]", pixel_force(mesh, sabotage), facets, 1e-3));
 #endif
-  Measurement sphere = against("force on the true sphere, vertex samples, mean of 6 orientations [N]", finest, kStiffness * cap, 1e-3);
+  Measurement sphere = against("force on the true sphere, vertex samples, mean of 6 orientations [N]", finest,
+                               kStiffness * cap, 1e-3);
   sphere.order = study::fitted_order(h, error);
   sphere.order_low = 1.9;
   sphere.order_high = 2.1;
@@ -127,8 +137,13 @@ std::vector<Measurement> run(const std::string& sabotage) {
 }  // namespace
 
 ValidationCase sphere_on_plane() {
-  return {"sphere-on-plane", "B", "Force of a rigid sphere held in a fixed plane against k times the cap's volume",
-          "Penalty force per area is stiffness times overlap volume: independent of the mesh up to its own facets (volume of a spherical cap).", false, run,
+  return {"sphere-on-plane",
+          "B",
+          "Force of a rigid sphere held in a fixed plane against k times the cap's volume",
+          "Penalty force per area is stiffness times overlap volume: independent of the mesh up to its own "
+          "facets (volume of a spherical cap).",
+          false,
+          run,
           {"half-stiffness", "surface-area"}};
 }
 

@@ -4,28 +4,34 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Slender cantilever, square section h x h, L/h = 10, nu = 0, small load P on its end: Timoshenko's tip deflection
+// Slender cantilever, square section h x h, L/h = 10, nu = 0, small load P on its end: Timoshenko's tip
+// deflection
 //   P L^3/(3 E I) + P L/(kappa G A),   I = h^4/12, A = h^2, G = E/2, kappa = 5/6.
-// With the parabolic end traction tau(y) = 3P/(2A) (1 - (2y/h)^2) of beam theory, the work-conjugate deflection integral(tau u)/P equals
-// twice the strain energy over P, and the energy of bending and of that shear stress is exactly the two terms (Castigliano).  What is
-// left out is the clamp's hindered warping, a few 1e-4.
+// With the parabolic end traction tau(y) = 3P/(2A) (1 - (2y/h)^2) of beam theory, the work-conjugate
+// deflection integral(tau u)/P equals twice the strain energy over P, and the energy of bending and of that
+// shear stress is exactly the two terms (Castigliano).  What is left out is the clamp's hindered warping, a
+// few 1e-4.
 //
-// nu = 0 and a load along y: u is symmetric in z (u_z = 0 on z = 0), and antisymmetric in y (u_x = u_z = 0 on y = 0).  A quarter of the
-// section, with these supports and a quarter of P, is the whole beam: 16 elements across the section are 8 x 8 here.
+// nu = 0 and a load along y: u is symmetric in z (u_z = 0 on z = 0), and antisymmetric in y (u_x = u_z = 0 on
+// y = 0).  A quarter of the section, with these supports and a quarter of P, is the whole beam: 16 elements
+// across the section are 8 x 8 here.
 
 namespace palpate::validation {
 namespace {
 
 constexpr double kHeight = 0.1, kLength = 1.0, kLoad = 1e-3, kYoung = 1e6;
 
-double traction(double y) { return 1.5 * kLoad / (kHeight * kHeight) * (1.0 - std::pow(2.0 * y / kHeight, 2)); }
+double traction(double y) {
+  return 1.5 * kLoad / (kHeight * kHeight) * (1.0 - std::pow(2.0 * y / kHeight, 2));
+}
 
 /// Deflection [m] conjugate to the load, with `across` elements over the whole height.
 double deflection(int across, const std::string& sabotage) {
   fem::Material m;
   m.youngs_modulus = sabotage == "half-stiffness" ? 0.5 * kYoung : kYoung;
   m.poissons_ratio = 0.0;
-  TetMesh rest = mesh::box(Vec3(kLength, 0.5 * kHeight, 0.5 * kHeight), {10 * across, across / 2, across / 2});
+  TetMesh rest =
+      mesh::box(Vec3(kLength, 0.5 * kHeight, 0.5 * kHeight), {10 * across, across / 2, across / 2});
   const Vec3 corner = rest.nodes.rowwise().minCoeff();
   rest.nodes.colwise() -= corner;
   StaticBody body(rest, m);
@@ -49,7 +55,8 @@ double deflection(int across, const std::string& sabotage) {
 
 std::vector<Measurement> run(const std::string& sabotage) {
   const double inertia = std::pow(kHeight, 4) / 12.0, area = kHeight * kHeight, shear = 0.5 * kYoung;
-  const double exact = kLoad * std::pow(kLength, 3) / (3.0 * kYoung * inertia) + kLoad * kLength / (5.0 / 6.0 * shear * area);
+  const double exact =
+      kLoad * std::pow(kLength, 3) / (3.0 * kYoung * inertia) + kLoad * kLength / (5.0 / 6.0 * shear * area);
   std::vector<double> h, error, tip;
   for (int across : {8, 12, 16}) {
     tip.push_back(deflection(across, sabotage));
@@ -58,9 +65,20 @@ std::vector<Measurement> run(const std::string& sabotage) {
   }
   const double ratio = std::pow(h[1] / h[2], 2);
   const double extrapolated = tip[2] + (tip[2] - tip[1]) / (ratio - 1.0);  // order 2 removed
-  return {{.quantity = "tip deflection [m], 16 elements across", .computed = tip[2], .exact = exact, .error = error[2], .bar = 0.05,
-           .order = study::fitted_order(h, error), .order_low = 1.8, .order_high = 2.2, .note = "8, 12, 16 elements across"},
-          {.quantity = "tip deflection [m], Richardson", .computed = extrapolated, .exact = exact, .error = std::abs(extrapolated / exact - 1.0), .bar = 5e-3,
+  return {{.quantity = "tip deflection [m], 16 elements across",
+           .computed = tip[2],
+           .exact = exact,
+           .error = error[2],
+           .bar = 0.05,
+           .order = study::fitted_order(h, error),
+           .order_low = 1.8,
+           .order_high = 2.2,
+           .note = "8, 12, 16 elements across"},
+          {.quantity = "tip deflection [m], Richardson",
+           .computed = extrapolated,
+           .exact = exact,
+           .error = std::abs(extrapolated / exact - 1.0),
+           .bar = 5e-3,
            .note = "from 12 and 16, order 2"}};
 }
 
@@ -69,8 +87,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase cantilever() {
   return {.name = "cantilever",
           .section = "C",
-          .summary = "slender cantilever under a small end load against Timoshenko's deflection, order and Richardson value",
-          .why = "bending is where linear tetrahedra are poor: says how many elements a thickness needs; Timoshenko 1921, shear factor of Cowper 1966",
+          .summary =
+              "slender cantilever under a small end load against Timoshenko's deflection, order and "
+              "Richardson value",
+          .why =
+              "bending is where linear tetrahedra are poor: says how many elements a thickness needs; "
+              "Timoshenko 1921, shear factor of Cowper 1966",
           .run = run,
           .sabotages = {"half-stiffness", "clamp-too-long"}};
 }

@@ -4,13 +4,16 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Slender cantilever under an end load P that keeps its direction, large deflection: the elastica E I theta'' = -P cos(theta) (Bisshopp and Drucker 1945).
-// With the slope theta0 at the end, p^2 = (1 + sin theta0)/2 and sin phi = 1/(sqrt(2) p),
+// Slender cantilever under an end load P that keeps its direction, large deflection: the elastica E I theta''
+// = -P cos(theta) (Bisshopp and Drucker 1945). With the slope theta0 at the end, p^2 = (1 + sin theta0)/2 and
+// sin phi = 1/(sqrt(2) p),
 //
-//   sqrt(a) = K(p) - F(phi, p),   drop/L = 1 - 2 (E(p) - E(phi, p))/sqrt(a),   1 - shortening/L = sqrt(2 sin(theta0)/a),   a = P L^2/(E I).
+//   sqrt(a) = K(p) - F(phi, p),   drop/L = 1 - 2 (E(p) - E(phi, p))/sqrt(a),   1 - shortening/L = sqrt(2
+//   sin(theta0)/a),   a = P L^2/(E I).
 //
-// nu = 0 and uniaxial strain: psi = E (l - 1)^2/2, so that the moment is E I times the curvature at any strain.  Left out by the elastica: shear and
-// extension of the axis, both below 0.2 % at L/h = 20.  Nothing depends on z (nu = 0): one layer of cells between two planes z = const is the whole beam.
+// nu = 0 and uniaxial strain: psi = E (l - 1)^2/2, so that the moment is E I times the curvature at any
+// strain.  Left out by the elastica: shear and extension of the axis, both below 0.2 % at L/h = 20.  Nothing
+// depends on z (nu = 0): one layer of cells between two planes z = const is the whole beam.
 
 namespace palpate::validation {
 namespace {
@@ -31,7 +34,8 @@ Bend elastica(double a) {
     (std::comp_ellint_1(p) - std::ellint_1(p, phi(p)) < std::sqrt(a) ? low : high) = middle;
   }
   const double p = modulus(low);
-  return {1.0 - 2.0 * (std::comp_ellint_2(p) - std::ellint_2(p, phi(p))) / std::sqrt(a), 1.0 - std::sqrt(2.0 * std::sin(low) / a)};
+  return {1.0 - 2.0 * (std::comp_ellint_2(p) - std::ellint_2(p, phi(p))) / std::sqrt(a),
+          1.0 - std::sqrt(2.0 * std::sin(low) / a)};
 }
 
 struct Beam {
@@ -42,15 +46,19 @@ struct Beam {
   Beam(const TetMesh& rest, const fem::Material& m, double w) : body(rest, m), width(w) {
     for (int i = 0; i < rest.nodes.cols(); ++i) {
       const Vec3 X = rest.nodes.col(i);
-      if (X.x() < 1e-9) body.hold(i, X);
-      else body.hold(i, 2, X.z());
+      if (X.x() < 1e-9)
+        body.hold(i, X);
+      else
+        body.hold(i, 2, X.z());
       if (X.x() > kLength - 1e-9) end.emplace_back(i, X.y() < 1e-9 || X.y() > kHeight - 1e-9 ? 0.5 : 1.0);
     }
     double sum = 0.0;
     for (const auto& [node, share] : end) sum += share;
     for (auto& [node, share] : end) share /= sum;
   }
-  double force_of(double a) const { return a * kYoung * width * std::pow(kHeight, 3) / 12.0 / (kLength * kLength); }
+  double force_of(double a) const {
+    return a * kYoung * width * std::pow(kHeight, 3) / 12.0 / (kLength * kLength);
+  }
   void load(const Vec3& force) {
     body.remove_loads();
     for (const auto& [node, share] : end) body.load(node, share * force);
@@ -64,8 +72,10 @@ struct Beam {
   double end_angle() const {
     Vec3 along = Vec3::Zero();
     for (const auto& [node, share] : end)
-      if (body.rest().nodes(1, node) < 1e-9) along -= body.position(node);
-      else if (body.rest().nodes(1, node) > kHeight - 1e-9) along += body.position(node);
+      if (body.rest().nodes(1, node) < 1e-9)
+        along -= body.position(node);
+      else if (body.rest().nodes(1, node) > kHeight - 1e-9)
+        along += body.position(node);
     return std::atan2(along.x(), along.y());
   }
 };
@@ -104,20 +114,32 @@ std::vector<Bend> bend(int across, const std::vector<double>& loads, const std::
 }
 
 std::vector<Measurement> run(const std::string& sabotage) {
-  const std::vector<double> loads = sabotage.empty() ? std::vector<double>{1, 2, 3, 5, 10} : std::vector<double>{1};
+  const std::vector<double> loads =
+      sabotage.empty() ? std::vector<double>{1, 2, 3, 5, 10} : std::vector<double>{1};
   constexpr int kCoarse = 6, kFine = 8;
   const std::vector<Bend> coarse = bend(kCoarse, loads, sabotage), fine = bend(kFine, loads, sabotage);
   const double ratio = std::pow(static_cast<double>(kFine) / kCoarse, 2);
-  const auto limit = [&](double on_coarse, double on_fine) { return on_fine + (on_fine - on_coarse) / (ratio - 1.0); };  // order 2 removed
+  // order 2 removed
+  const auto limit = [&](double on_coarse, double on_fine) {
+    return on_fine + (on_fine - on_coarse) / (ratio - 1.0);
+  };
   std::vector<Measurement> out;
   for (std::size_t i = 0; i < loads.size(); ++i) {
     const Bend exact = elastica(loads[i]);
     const Bend found{limit(coarse[i].drop, fine[i].drop), limit(coarse[i].shortening, fine[i].shortening)};
-    const std::string note = fmt::format("{:.5f} and {:.5f} with {} and {} elements across", coarse[i].drop, fine[i].drop, kCoarse, kFine);
-    out.push_back({.quantity = fmt::format("drop/L at P L^2/(E I) = {}, extrapolated", loads[i]), .computed = found.drop, .exact = exact.drop,
-                   .error = std::abs(found.drop / exact.drop - 1.0), .bar = 0.01, .note = note});
-    out.push_back({.quantity = fmt::format("shortening/L at P L^2/(E I) = {}, extrapolated", loads[i]), .computed = found.shortening, .exact = exact.shortening,
-                   .error = std::abs(found.shortening / exact.shortening - 1.0), .bar = 0.01});
+    const std::string note = fmt::format("{:.5f} and {:.5f} with {} and {} elements across", coarse[i].drop,
+                                         fine[i].drop, kCoarse, kFine);
+    out.push_back({.quantity = fmt::format("drop/L at P L^2/(E I) = {}, extrapolated", loads[i]),
+                   .computed = found.drop,
+                   .exact = exact.drop,
+                   .error = std::abs(found.drop / exact.drop - 1.0),
+                   .bar = 0.01,
+                   .note = note});
+    out.push_back({.quantity = fmt::format("shortening/L at P L^2/(E I) = {}, extrapolated", loads[i]),
+                   .computed = found.shortening,
+                   .exact = exact.shortening,
+                   .error = std::abs(found.shortening / exact.shortening - 1.0),
+                   .bar = 0.01});
   }
   return out;
 }
@@ -125,12 +147,14 @@ std::vector<Measurement> run(const std::string& sabotage) {
 }  // namespace
 
 ValidationCase large_deflection() {
-  return {.name = "large-deflection",
-          .section = "C",
-          .summary = "slender cantilever under an end load that bends it by up to 75 degrees, against the elastica",
-          .why = "large rotation with small strain is what corotated elements are for; Bisshopp and Drucker 1945",
-          .run = run,
-          .sabotages = {"half-stiffness", "load-turns-with-the-end"}};
+  return {
+      .name = "large-deflection",
+      .section = "C",
+      .summary =
+          "slender cantilever under an end load that bends it by up to 75 degrees, against the elastica",
+      .why = "large rotation with small strain is what corotated elements are for; Bisshopp and Drucker 1945",
+      .run = run,
+      .sabotages = {"half-stiffness", "load-turns-with-the-end"}};
 }
 
 }  // namespace palpate::validation

@@ -7,8 +7,8 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Taylor: |E(x + h w) - E(x) + h f . w| and |f(x + h w) - f(x) + h K w| fall with h^2, down to rounding.  Shapes away from where two signed
-// singular values cancel: R jumps there, and the force has no derivative.
+// Taylor: |E(x + h w) - E(x) + h f . w| and |f(x + h w) - f(x) + h K w| fall with h^2, down to rounding.
+// Shapes away from where two signed singular values cancel: R jumps there, and the force has no derivative.
 
 namespace palpate::validation {
 namespace {
@@ -21,15 +21,18 @@ struct Shape {
 };
 
 Mat3 turned(const Vec3& stretches) {
-  return quaternion_of(Vec3(0.4, -1.1, 0.7)).toRotationMatrix() * stretches.asDiagonal() * quaternion_of(Vec3(-0.8, 0.3, 1.2)).toRotationMatrix();
+  return quaternion_of(Vec3(0.4, -1.1, 0.7)).toRotationMatrix() * stretches.asDiagonal() *
+         quaternion_of(Vec3(-0.8, 0.3, 1.2)).toRotationMatrix();
 }
 
 std::vector<Shape> shapes() {
   std::vector<Shape> out;
   const TetMesh tet = mesh::corner_tet(Vec3(1.0, 1.2, 0.9));
-  const std::pair<const char*, Vec3> kinds[] = {
-      {"one element, regular", {1.2, 0.9, 0.8}}, {"one element, flat", {1.1, 0.8, 0.0}}, {"one element, inverted", {1.3, 0.9, -0.4}}};
-  for (const auto& [name, stretches] : kinds) out.push_back({name, tet, (turned(stretches) * tet.nodes).reshaped(), 1e-2});
+  const std::pair<const char*, Vec3> kinds[] = {{"one element, regular", {1.2, 0.9, 0.8}},
+                                                {"one element, flat", {1.1, 0.8, 0.0}},
+                                                {"one element, inverted", {1.3, 0.9, -0.4}}};
+  for (const auto& [name, stretches] : kinds)
+    out.push_back({name, tet, (turned(stretches) * tet.nodes).reshaped(), 1e-2});
   const TetMesh cube = mesh::perturbed(mesh::box(Vec3::Ones(), {3, 3, 3}), 0.2, 13);
   std::mt19937 engine(14);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -48,7 +51,14 @@ Measurement taylor(const std::string& quantity, double step, const std::function
     r.push_back(remainder(h.back()));
   }
   const double order = study::fitted_order(h, r);
-  return {.quantity = quantity, .computed = order, .exact = 2.0, .error = std::abs(order - 2.0), .bar = 0.1, .order = order, .order_low = 1.9, .order_high = 2.1,
+  return {.quantity = quantity,
+          .computed = order,
+          .exact = 2.0,
+          .error = std::abs(order - 2.0),
+          .bar = 0.1,
+          .order = order,
+          .order_low = 1.9,
+          .order_high = 2.1,
           .note = "error is of the order, absolute"};
 }
 
@@ -75,7 +85,8 @@ void measure(const Shape& shape, const std::string& sabotage, std::vector<Measur
   const auto energy = [&](const VecX& x) { return body.energy(state.view(0.0, x.data(), zero.data())); };
   std::mt19937 engine(15);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const VecX w = VecX::NullaryExpr(n, [&] { return uniform(engine); }), w2 = VecX::NullaryExpr(n, [&] { return uniform(engine); });
+  const VecX w = VecX::NullaryExpr(n, [&] { return uniform(engine); }),
+             w2 = VecX::NullaryExpr(n, [&] { return uniform(engine); });
   const VecX f0 = force(shape.x);
   const double e0 = energy(shape.x);
   VecX Kw = VecX::Zero(n), Kw2 = Kw;
@@ -84,10 +95,15 @@ void measure(const Shape& shape, const std::string& sabotage, std::vector<Measur
   body.apply_tangent(here, 1.0, 0.0, w2, Kw2);
 
   const std::string name = shape.name;
-  out.push_back(taylor(name + ": order of energy + force", shape.step, [&](double h) { return std::abs(energy(shape.x + h * w) - e0 + h * f0.dot(w)); }));
-  out.push_back(taylor(name + ": order of force + tangent", shape.step, [&](double h) { return (force(shape.x + h * w) - f0 + h * Kw).norm(); }));
+  out.push_back(taylor(name + ": order of energy + force", shape.step,
+                       [&](double h) { return std::abs(energy(shape.x + h * w) - e0 + h * f0.dot(w)); }));
+  out.push_back(taylor(name + ": order of force + tangent", shape.step,
+                       [&](double h) { return (force(shape.x + h * w) - f0 + h * Kw).norm(); }));
   const double asymmetry = std::abs(w2.dot(Kw) - w.dot(Kw2)) / (w.norm() * Kw2.norm());
-  out.push_back({.quantity = name + ": asymmetry of the tangent", .computed = asymmetry, .error = asymmetry, .bar = 1e-14});
+  out.push_back({.quantity = name + ": asymmetry of the tangent",
+                 .computed = asymmetry,
+                 .error = asymmetry,
+                 .bar = 1e-14});
 }
 
 std::vector<Measurement> run(const std::string& sabotage) {
@@ -101,8 +117,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase gradient_and_tangent() {
   return {.name = "gradient-and-tangent",
           .section = "C",
-          .summary = "the force is minus the gradient of the energy, the exact tangent the derivative of the force; flat and inverted elements too",
-          .why = "energy is kept and Newton converges only if both hold; finite differences know nothing of the derivation",
+          .summary =
+              "the force is minus the gradient of the energy, the exact tangent the derivative of the force; "
+              "flat and inverted elements too",
+          .why =
+              "energy is kept and Newton converges only if both hold; finite differences know nothing of the "
+              "derivation",
           .run = run,
           .sabotages = {"wrong-sign", "half-force", "no-rotation-derivative"}};
 }

@@ -4,9 +4,10 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Bar held at x = 0, weight along +x, nu = 0: the stress is rho g (L - x), u(x) = rho g (L x - x^2/2)/E, and the elastic energy is
-// the integral of A sigma^2/(2 E) = A (rho g)^2 L^3/(6 E).  With nu = 0 and tension R = I: the nonlinear law has the same solution.
-// Linear elements: energy and nodes converge with order 2 (the mean of the tip is superconvergent: not a measure).
+// Bar held at x = 0, weight along +x, nu = 0: the stress is rho g (L - x), u(x) = rho g (L x - x^2/2)/E, and
+// the elastic energy is the integral of A sigma^2/(2 E) = A (rho g)^2 L^3/(6 E).  With nu = 0 and tension R =
+// I: the nonlinear law has the same solution. Linear elements: energy and nodes converge with order 2 (the
+// mean of the tip is superconvergent: not a measure).
 
 namespace palpate::validation {
 namespace {
@@ -27,7 +28,8 @@ Errors bar(int cells_along, const std::string& sabotage) {
   const Vec3 corner = rest.nodes.rowwise().minCoeff();
   rest.nodes.colwise() -= corner;
   StaticBody body(rest, m);
-  if (sabotage == "one-point-weight") {  // a first-order rule: each element's weight on its node nearest to the holder
+  // a first-order rule: each element's weight on its node nearest to the holder
+  if (sabotage == "one-point-weight") {
     const TetMesh& mesh = body.rest();
     for (const auto& tet : mesh.tets.colwise()) {
       int nearest = tet[0];
@@ -67,10 +69,22 @@ std::vector<Measurement> run(const std::string& sabotage) {
     energy.push_back(last.energy);
     rms.push_back(last.rms);
   }
-  return {{.quantity = "elastic energy [J], 32 cells along", .computed = last.computed_energy, .exact = last.exact_energy, .error = last.energy, .bar = 1e-2,
-           .order = study::fitted_order(h, energy), .order_low = 1.8, .order_high = 2.1},
-          {.quantity = "RMS error of the nodes / RMS displacement, 32 cells along", .computed = last.rms, .exact = 0.0, .error = last.rms, .bar = 1e-2,
-           .order = study::fitted_order(h, rms), .order_low = 1.8, .order_high = 2.1}};
+  return {{.quantity = "elastic energy [J], 32 cells along",
+           .computed = last.computed_energy,
+           .exact = last.exact_energy,
+           .error = last.energy,
+           .bar = 1e-2,
+           .order = study::fitted_order(h, energy),
+           .order_low = 1.8,
+           .order_high = 2.1},
+          {.quantity = "RMS error of the nodes / RMS displacement, 32 cells along",
+           .computed = last.rms,
+           .exact = 0.0,
+           .error = last.rms,
+           .bar = 1e-2,
+           .order = study::fitted_order(h, rms),
+           .order_low = 1.8,
+           .order_high = 2.1}};
 }
 
 }  // namespace
@@ -78,8 +92,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase hanging_bar() {
   return {.name = "hanging-bar",
           .section = "C",
-          .summary = "bar under its own weight, nu = 0: elastic energy and displacement of all nodes, order in the element size",
-          .why = "the simplest non-uniform stress: shows that weight, stiffness and mesh refinement fit together; one-dimensional theory",
+          .summary =
+              "bar under its own weight, nu = 0: elastic energy and displacement of all nodes, order in the "
+              "element size",
+          .why =
+              "the simplest non-uniform stress: shows that weight, stiffness and mesh refinement fit "
+              "together; one-dimensional theory",
           .run = run,
           .sabotages = {"half-stiffness", "one-point-weight"}};
 }

@@ -5,12 +5,15 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// A bar of two materials one behind the other, held at x = 0 and pulled at x = L by a uniform traction s, sides free, nu = 0 in both.  The axial stress is s
-// all along, F is diag(l_i, 1, 1) in layer i with s = E_i (l_i - 1), whatever the size of the strain: the layers are springs in series,
+// A bar of two materials one behind the other, held at x = 0 and pulled at x = L by a uniform traction s,
+// sides free, nu = 0 in both.  The axial stress is s all along, F is diag(l_i, 1, 1) in layer i with s = E_i
+// (l_i - 1), whatever the size of the strain: the layers are springs in series,
 //     u(L) = s (a/E_1 + b/E_2),     u(a) = s a/E_1,     energy = A s^2/2 (a/E_1 + b/E_2).
-// Linear elements hold this field, and their faces follow the border between the layers: exact to rounding on any mesh of that kind.
+// Linear elements hold this field, and their faces follow the border between the layers: exact to rounding on
+// any mesh of that kind.
 //
-// Layers side by side, pulled to the same stretch l, are springs in parallel: force = (l - 1) (A_1 E_1 + A_2 E_2).
+// Layers side by side, pulled to the same stretch l, are springs in parallel: force = (l - 1) (A_1 E_1 + A_2
+// E_2).
 
 namespace palpate::validation {
 namespace {
@@ -39,20 +42,24 @@ TetMesh bar(int axis) {
   for (int i = 0; i < rest.nodes.cols(); ++i)
     if (!outside[static_cast<std::size_t>(i)])
       for (int k = 0; k < 3; ++k)
-        if (k != axis || std::abs(rest.nodes(axis, i)) > 1e-9) rest.nodes(k, i) += 0.01 * std::sin(3.0 * i + k);
+        if (k != axis || std::abs(rest.nodes(axis, i)) > 1e-9)
+          rest.nodes(k, i) += 0.01 * std::sin(3.0 * i + k);
   return rest;
 }
 
 std::vector<Measurement> run(const std::string& sabotage) {
   const TetMesh rest = bar(0);
   StaticBody series(rest, layers(rest, 0, sabotage));
-  const double a = kLength / 2, ends = kTraction * (a / kYoung[0] + a / kYoung[1]), middle = kTraction * a / kYoung[0];
+  const double a = kLength / 2, ends = kTraction * (a / kYoung[0] + a / kYoung[1]),
+               middle = kTraction * a / kYoung[0];
   const mesh::Boundary boundary = mesh::boundary(rest);
   for (const auto& face : boundary.surface.faces.colwise()) {
     const Mat3 x = boundary.surface.vertices(Eigen::all, face);
     if (x.row(0).minCoeff() < a - 1e-9) continue;
     const double area = 0.5 * (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm();
-    for (int corner : face) series.load(boundary.node_of_vertex[static_cast<std::size_t>(corner)], Vec3(kTraction * area / 3.0, 0, 0));
+    for (int corner : face)
+      series.load(boundary.node_of_vertex[static_cast<std::size_t>(corner)],
+                  Vec3(kTraction * area / 3.0, 0, 0));
   }
   for (int i = 0; i < rest.nodes.cols(); ++i)
     if (rest.nodes(0, i) < -a + 1e-9) series.hold(i, Vec3(rest.nodes.col(i)));
@@ -82,22 +89,45 @@ std::vector<Measurement> run(const std::string& sabotage) {
   const double exact_pull = (kStretch - 1.0) * kWidth * kWidth / 2 * (kYoung[0] + kYoung[1]);
 
   const auto relative = [](double found, double exact) { return std::abs(found / exact - 1.0); };
-  return {{.quantity = "layers in series: end displacement [m]", .computed = end, .exact = ends, .error = relative(end, ends), .bar = 1e-9},
-          {.quantity = "the border between them [m]", .computed = middle_found, .exact = middle, .error = relative(middle_found, middle), .bar = 1e-9},
-          {.quantity = "farthest node from the exact field / end displacement", .computed = worst, .exact = 0.0, .error = worst, .bar = 1e-9},
-          {.quantity = "elastic energy [J]", .computed = energy, .exact = exact_energy, .error = relative(energy, exact_energy), .bar = 1e-9},
-          {.quantity = "layers in parallel: force [N]", .computed = pull, .exact = exact_pull, .error = relative(pull, exact_pull), .bar = 1e-9}};
+  return {{.quantity = "layers in series: end displacement [m]",
+           .computed = end,
+           .exact = ends,
+           .error = relative(end, ends),
+           .bar = 1e-9},
+          {.quantity = "the border between them [m]",
+           .computed = middle_found,
+           .exact = middle,
+           .error = relative(middle_found, middle),
+           .bar = 1e-9},
+          {.quantity = "farthest node from the exact field / end displacement",
+           .computed = worst,
+           .exact = 0.0,
+           .error = worst,
+           .bar = 1e-9},
+          {.quantity = "elastic energy [J]",
+           .computed = energy,
+           .exact = exact_energy,
+           .error = relative(energy, exact_energy),
+           .bar = 1e-9},
+          {.quantity = "layers in parallel: force [N]",
+           .computed = pull,
+           .exact = exact_pull,
+           .error = relative(pull, exact_pull),
+           .bar = 1e-9}};
 }
 
 }  // namespace
 
 ValidationCase layered_bar() {
-  return {.name = "layered-bar",
-          .section = "C",
-          .summary = "a bar of two materials, 30 to 1 in stiffness, pulled: springs in series and in parallel",
-          .why = "shows that each element has its own material, on the right side of the border, and that the two share its nodes; exact for nu = 0",
-          .run = run,
-          .sabotages = {"one-material", "turned-round"}};
+  return {
+      .name = "layered-bar",
+      .section = "C",
+      .summary = "a bar of two materials, 30 to 1 in stiffness, pulled: springs in series and in parallel",
+      .why =
+          "shows that each element has its own material, on the right side of the border, and that the two "
+          "share its nodes; exact for nu = 0",
+      .run = run,
+      .sabotages = {"one-material", "turned-round"}};
 }
 
 }  // namespace palpate::validation

@@ -7,18 +7,22 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Volumetric locking.  Cantilever in plane strain, height D, 0 <= x <= L, bent by the parabolic shear stress tau = -(P/(2I)) (D^2/4 - y^2) on its end
-// (per unit width, I = D^3/12).  With E' = E/(1 - nu^2) and nu' = nu/(1 - nu) the exact field, for every nu up to 1/2 (Timoshenko and Goodier, Theory of
-// Elasticity, 21; the displacements as in Augarde and Deeks 2008, checked here by differentiation: sigma_xx = P (L-x) y/I, sigma_yy = 0, tau above), is
+// Volumetric locking.  Cantilever in plane strain, height D, 0 <= x <= L, bent by the parabolic shear stress
+// tau = -(P/(2I)) (D^2/4 - y^2) on its end (per unit width, I = D^3/12).  With E' = E/(1 - nu^2) and nu' =
+// nu/(1 - nu) the exact field, for every nu up to 1/2 (Timoshenko and Goodier, Theory of Elasticity, 21; the
+// displacements as in Augarde and Deeks 2008, checked here by differentiation: sigma_xx = P (L-x) y/I,
+// sigma_yy = 0, tau above), is
 //
 //   u_x =  P y/(6 E'I) [(6L - 3x) x + (2 + nu') (y^2 - D^2/4)],
 //   u_y = -P/(6 E'I) [3 nu' y^2 (L - x) + (4 + 5 nu') D^2 x/4 + (3L - x) x^2].
 //
-// It is put on x = 0.  u_x is odd in y: half the height with u_x = 0 on y = 0.  Plane strain: u_z = 0 on both sides.
+// It is put on x = 0.  u_x is odd in y: half the height with u_x = 0 on y = 0.  Plane strain: u_z = 0 on both
+// sides.
 //
-// At fixed element size and lambda -> inf the plain elements only keep the fields without any change of volume in any tetrahedron, hardly any: the
-// deflection sinks to a share of the exact one that does not depend on lambda any more.  A method that does not lock has an error uniform in nu
-// (Babuska and Suri 1992), and order 2 in the displacements at every nu.
+// At fixed element size and lambda -> inf the plain elements only keep the fields without any change of
+// volume in any tetrahedron, hardly any: the deflection sinks to a share of the exact one that does not
+// depend on lambda any more.  A method that does not lock has an error uniform in nu (Babuska and Suri 1992),
+// and order 2 in the displacements at every nu.
 
 namespace palpate::validation {
 namespace {
@@ -27,21 +31,27 @@ constexpr double kLength = 4.0, kHeight = 1.0, kWidth = 0.25, kYoung = 1e6, kLoa
 
 struct Exact {
   double E, nu, I = std::pow(kHeight, 3) / 12.0;
-  explicit Exact(double poissons_ratio) : E(kYoung / (1.0 - poissons_ratio * poissons_ratio)), nu(poissons_ratio / (1.0 - poissons_ratio)) {}
+  explicit Exact(double poissons_ratio)
+      : E(kYoung / (1.0 - poissons_ratio * poissons_ratio)), nu(poissons_ratio / (1.0 - poissons_ratio)) {}
   Vec3 displacement(const Vec3& X) const {
     const double x = X.x(), y = X.y(), scale = kLoad / (6.0 * E * I), quarter = 0.25 * kHeight * kHeight;
     return {scale * y * ((6.0 * kLength - 3.0 * x) * x + (2.0 + nu) * (y * y - quarter)),
-            -scale * (3.0 * nu * y * y * (kLength - x) + (4.0 + 5.0 * nu) * quarter * x + (3.0 * kLength - x) * x * x), 0.0};
+            -scale * (3.0 * nu * y * y * (kLength - x) + (4.0 + 5.0 * nu) * quarter * x +
+                      (3.0 * kLength - x) * x * x),
+            0.0};
   }
   double traction(double y) const { return -kLoad / (2.0 * I) * (0.25 * kHeight * kHeight - y * y); }
 };
 
-/// The half beam in cells of six tetrahedra around a diagonal, every node moved at random by up to 0.15 cells along the axes on whose end faces it
-/// does not lie.  (The mirrored five-tetrahedra cells of mesh::box depend on each other in their constraints, like crossed triangles in the plane, and
-/// hardly lock: no model of the meshes that people bring.)
+/// The half beam in cells of six tetrahedra around a diagonal, every node moved at random by up to 0.15 cells
+/// along the axes on whose end faces it does not lie.  (The mirrored five-tetrahedra cells of mesh::box
+/// depend on each other in their constraints, like crossed triangles in the plane, and hardly lock: no model
+/// of the meshes that people bring.)
 TetMesh irregular(const std::array<int, 3>& cells) {
   const Vec3 size(kLength, 0.5 * kHeight, kWidth);
-  const auto node = [&](const std::array<int, 3>& at) { return (at[0] * (cells[1] + 1) + at[1]) * (cells[2] + 1) + at[2]; };
+  const auto node = [&](const std::array<int, 3>& at) {
+    return (at[0] * (cells[1] + 1) + at[1]) * (cells[2] + 1) + at[2];
+  };
   TetMesh mesh;
   mesh.nodes.resize(3, (cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1));
   mesh.tets.resize(4, 6 * cells[0] * cells[1] * cells[2]);
@@ -56,7 +66,8 @@ TetMesh irregular(const std::array<int, 3>& cells) {
         bool cell = true;
         for (std::size_t axis = 0; axis < 3; ++axis) {
           const bool inside = at[axis] > 0 && at[axis] < cells[axis];
-          mesh.nodes(static_cast<int>(axis), node(at)) = (at[axis] + (inside ? uniform(engine) : 0.0)) * size[static_cast<int>(axis)] / cells[axis];
+          mesh.nodes(static_cast<int>(axis), node(at)) =
+              (at[axis] + (inside ? uniform(engine) : 0.0)) * size[static_cast<int>(axis)] / cells[axis];
           cell = cell && at[axis] < cells[axis];
         }
         for (int p = 0; cell && p < 6; ++p, ++e) {
@@ -125,33 +136,60 @@ std::vector<Measurement> run(const std::string& sabotage) {
     plain = bend(nu, kFine, false, sabotage);
     nodal = bend(nu, kFine, true, sabotage);
     if (nu == 0.3) easy = nodal;
-    out.push_back({.quantity = fmt::format("tip deflection / exact at nu = {}, nodal dilatation", nu), .computed = nodal.tip, .exact = 1.0,
-                   .error = std::abs(nodal.tip - 1.0), .bar = 0.05, .note = fmt::format("plain elements: {:.4f}; 16 cells over the height", plain.tip)});
+    out.push_back({.quantity = fmt::format("tip deflection / exact at nu = {}, nodal dilatation", nu),
+                   .computed = nodal.tip,
+                   .exact = 1.0,
+                   .error = std::abs(nodal.tip - 1.0),
+                   .bar = 0.05,
+                   .note = fmt::format("plain elements: {:.4f}; 16 cells over the height", plain.tip)});
   }
   std::vector<double> h, error;
   for (int cells : {4, 6, kFine}) {
     h.push_back(0.5 * kHeight / cells);
     error.push_back(bend(kWorst, cells, true, sabotage).error);
   }
-  out.push_back({.quantity = "nodal dilatation at nu = 0.4999: RMS error of the nodes", .computed = error.back(), .exact = 0.0, .error = error.back(), .bar = 0.05,
-                 .order = study::fitted_order(h, error), .order_low = 1.7, .order_high = 2.3, .note = "8, 12, 16 cells over the height"});
-  out.push_back({.quantity = "that error over the one at nu = 0.3", .computed = error.back() / easy.error, .exact = 1.0, .error = error.back() / easy.error, .bar = 2.0,
+  out.push_back({.quantity = "nodal dilatation at nu = 0.4999: RMS error of the nodes",
+                 .computed = error.back(),
+                 .exact = 0.0,
+                 .error = error.back(),
+                 .bar = 0.05,
+                 .order = study::fitted_order(h, error),
+                 .order_low = 1.7,
+                 .order_high = 2.3,
+                 .note = "8, 12, 16 cells over the height"});
+  out.push_back({.quantity = "that error over the one at nu = 0.3",
+                 .computed = error.back() / easy.error,
+                 .exact = 1.0,
+                 .error = error.back() / easy.error,
+                 .bar = 2.0,
                  .note = "uniform in nu: no locking"});
-  out.push_back({.quantity = "that error over the plain elements' at nu = 0.4999", .computed = error.back() / plain.error, .exact = 0.0,
-                 .error = error.back() / plain.error, .bar = 0.1, .note = fmt::format("plain elements: error {:.3f}", plain.error)});
-  out.push_back({.quantity = "plain elements lock: their tip deflection / exact at nu = 0.4999", .computed = plain.tip, .exact = 0.0, .error = plain.tip, .bar = 0.5});
+  out.push_back({.quantity = "that error over the plain elements' at nu = 0.4999",
+                 .computed = error.back() / plain.error,
+                 .exact = 0.0,
+                 .error = error.back() / plain.error,
+                 .bar = 0.1,
+                 .note = fmt::format("plain elements: error {:.3f}", plain.error)});
+  out.push_back({.quantity = "plain elements lock: their tip deflection / exact at nu = 0.4999",
+                 .computed = plain.tip,
+                 .exact = 0.0,
+                 .error = plain.tip,
+                 .bar = 0.5});
   return out;
 }
 
 }  // namespace
 
 ValidationCase locking() {
-  return {.name = "locking",
-          .section = "C",
-          .summary = "cantilever in plane strain for nu = 0.3 to 0.4999: plain elements lock, nodal dilatation does not",
-          .why = "soft tissue is nearly incompressible; exact field of Timoshenko and Goodier, locking as in Babuska and Suri 1992",
-          .run = run,
-          .sabotages = {"plain-elements", "lambda-lost"}};
+  return {
+      .name = "locking",
+      .section = "C",
+      .summary =
+          "cantilever in plane strain for nu = 0.3 to 0.4999: plain elements lock, nodal dilatation does not",
+      .why =
+          "soft tissue is nearly incompressible; exact field of Timoshenko and Goodier, locking as in "
+          "Babuska and Suri 1992",
+      .run = run,
+      .sabotages = {"plain-elements", "lambda-lost"}};
 }
 
 }  // namespace palpate::validation

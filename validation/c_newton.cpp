@@ -9,13 +9,15 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Newton's method with the derivative of the residual converges quadratically, r_(k+1) <= C r_k^2, with any other matrix close to it linearly (Kantorovich;
-// Dennis and Schnabel, Numerical Methods for Unconstrained Optimization, 5.2 and 5.4).  The exponent is the slope of log r_(k+1) over log r_k for
-// consecutive residuals clear of rounding, from starts around one solution.
+// Newton's method with the derivative of the residual converges quadratically, r_(k+1) <= C r_k^2, with any
+// other matrix close to it linearly (Kantorovich; Dennis and Schnabel, Numerical Methods for Unconstrained
+// Optimization, 5.2 and 5.4).  The exponent is the slope of log r_(k+1) over log r_k for consecutive
+// residuals clear of rounding, from starts around one solution.
 //
-// Statics: f(x) + load = 0, a beam bent by about 60 degrees.  One step of backward Euler, H long, of a free body that spins and is
-// deformed: M (v - v0) - H f(x0 + H v, v) = 0 with the matrix M + H D + H^2 K.
-// Exact: the exact tangent, with damping only if the unsymmetric part of its derivative by position is kept.  Inexact: the warped tangent, or that part dropped.
+// Statics: f(x) + load = 0, a beam bent by about 60 degrees.  One step of backward Euler, H long, of a free
+// body that spins and is deformed: M (v - v0) - H f(x0 + H v, v) = 0 with the matrix M + H D + H^2 K.
+// Exact: the exact tangent, with damping only if the unsymmetric part of its derivative by position is kept.
+// Inexact: the warped tangent, or that part dropped.
 
 namespace palpate::validation {
 namespace {
@@ -24,7 +26,7 @@ struct Problem {
   std::function<VecX(const VecX&)> residual;
   std::function<MatX(const VecX&)> matrix;
   VecX solution;  ///< first a guess
-  double size;  ///< of a perturbation to start from
+  double size;    ///< of a perturbation to start from
 };
 
 /// Newton from z until rounding; the residual norms.
@@ -40,14 +42,16 @@ std::vector<double> newton(const Problem& p, VecX z, bool keep_matrix, int steps
   return r;
 }
 
-/// Starts around the solution at halved distances; the slope within each generation (first pair, second pair, ...), pooled: each has a constant of its own.
+/// Starts around the solution at halved distances; the slope within each generation (first pair, second pair,
+/// ...), pooled: each has a constant of its own.
 double exponent(const Problem& p, const std::string& sabotage) {
   constexpr int kStarts = 6, kSteps = 8;
   std::mt19937 engine(71);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const VecX w = VecX::NullaryExpr(p.solution.size(), [&] { return uniform(engine); });
   std::vector<std::vector<double>> runs;
-  for (int k = 0; k < kStarts; ++k) runs.push_back(newton(p, p.solution + p.size * std::pow(0.5, k) * w, sabotage == "matrix-kept", kSteps));
+  for (int k = 0; k < kStarts; ++k)
+    runs.push_back(newton(p, p.solution + p.size * std::pow(0.5, k) * w, sabotage == "matrix-kept", kSteps));
   const double rounding = 100.0 * p.residual(p.solution).norm();
   double xy = 0.0, xx = 0.0;
   for (std::size_t generation = 0; generation + 1 < kSteps; ++generation) {
@@ -58,7 +62,8 @@ double exponent(const Problem& p, const std::string& sabotage) {
         after.push_back(std::log(r[generation + 1]));
       }
     if (before.size() < 3) break;
-    const Eigen::Map<const Eigen::ArrayXd> x(before.data(), static_cast<Eigen::Index>(before.size())), y(after.data(), x.size());
+    const Eigen::Map<const Eigen::ArrayXd> x(before.data(), static_cast<Eigen::Index>(before.size())),
+        y(after.data(), x.size());
     xy += ((x - x.mean()) * (y - y.mean())).sum();
     xx += (x - x.mean()).square().sum();
   }
@@ -69,12 +74,15 @@ double exponent(const Problem& p, const std::string& sabotage) {
 class Body {
  public:
   Body(const TetMesh& rest, const fem::Material& m, const fem::SoftBodyOptions& options)
-      : rest_(rest), state_(static_cast<int>(3 * rest.nodes.cols()), static_cast<int>(3 * rest.nodes.cols())), zero_(VecX::Zero(3 * rest.nodes.cols())) {
+      : rest_(rest),
+        state_(static_cast<int>(3 * rest.nodes.cols()), static_cast<int>(3 * rest.nodes.cols())),
+        zero_(VecX::Zero(3 * rest.nodes.cols())) {
     dynamics::BlockSpec spec;
     spec.q_size = spec.u_size = static_cast<int>(zero_.size());
     const int id = state_.insert(spec, rest.nodes.reshaped(), zero_);
     terms_.push_back(std::make_shared<fem::SoftBody>("body", rest, m, options, id));
-    if (options.volumetric_share < 1.0) terms_.push_back(std::make_shared<fem::NodalDilatation>("body", rest, m, options, id));
+    if (options.volumetric_share < 1.0)
+      terms_.push_back(std::make_shared<fem::NodalDilatation>("body", rest, m, options, id));
     dynamics::PatternBuilder builder(state_.layout());
     for (const auto& term : terms_) term->add_pattern(builder);
     A_.body = builder.build();
@@ -141,14 +149,16 @@ Problem bent_beam(std::shared_ptr<Body> body) {
   Points arc(3, X.cols());
   for (int i = 0; i < X.cols(); ++i) {
     const double angle = kTurn * X(0, i);
-    arc.col(i) = Vec3(std::sin(angle), std::cos(angle) - 1.0, 0.0) / kTurn + Vec3(X(1, i) * std::sin(angle), X(1, i) * std::cos(angle), X(2, i));
+    arc.col(i) = Vec3(std::sin(angle), std::cos(angle) - 1.0, 0.0) / kTurn +
+                 Vec3(X(1, i) * std::sin(angle), X(1, i) * std::cos(angle), X(2, i));
     if (X(0, i) < 1e-9) arc.col(i) = X.col(i);
   }
   p.solution = arc.reshaped();
   return p;
 }
 
-/// One step of backward Euler of the free body, turning by one radian a step, stretched by a tenth.  Unknown: v.
+/// One step of backward Euler of the free body, turning by one radian a step, stretched by a tenth.  Unknown:
+/// v.
 Problem spinning_step(std::shared_ptr<Body> body) {
   constexpr double kStep = 0.02;
   const Points& X = body->rest().nodes;
@@ -157,7 +167,9 @@ Problem spinning_step(std::shared_ptr<Body> body) {
   const VecX x0 = placed.reshaped(), v0 = (cross_matrix(spin) * placed).reshaped();
   Problem p;
   p.size = 0.001 / kStep;
-  p.residual = [=](const VecX& v) { return VecX(body->mass().cwiseProduct(v - v0) - kStep * body->force(x0 + kStep * v, v)); };
+  p.residual = [=](const VecX& v) {
+    return VecX(body->mass().cwiseProduct(v - v0) - kStep * body->force(x0 + kStep * v, v));
+  };
   p.matrix = [=](const VecX& v) {
     MatX A = body->tangent(x0 + kStep * v, v, kStep * kStep, kStep);
     A.diagonal() += body->mass();
@@ -202,12 +214,16 @@ std::vector<Measurement> run(const std::string& sabotage) {
   using fem::Tangent;
   const Row rows[] = {
       {"bent beam, exact tangent", bent_beam, 0.4, 0.0, Tangent::kExact, false, false, 2.0},
-      {"bent beam, nu = 0.49 by nodal dilatation, exact tangent", bent_beam, 0.49, 0.0, Tangent::kExact, false, true, 2.0},
+      {"bent beam, nu = 0.49 by nodal dilatation, exact tangent", bent_beam, 0.49, 0.0, Tangent::kExact,
+       false, true, 2.0},
       {"bent beam, warped tangent", bent_beam, 0.4, 0.0, Tangent::kWarped, false, false, 1.0},
       {"backward Euler, exact tangent", spinning_step, 0.4, 0.0, Tangent::kExact, false, false, 2.0},
-      {"backward Euler, damped, its tangent whole", spinning_step, 0.4, 0.0005, Tangent::kExact, true, false, 2.0},
-      {"backward Euler, damped, nodal dilatation, tangents whole", spinning_step, 0.49, 0.0005, Tangent::kExact, true, true, 2.0},
-      {"backward Euler, damped, its tangent's unsymmetric part dropped", spinning_step, 0.4, 0.0005, Tangent::kExact, false, false, 1.0},
+      {"backward Euler, damped, its tangent whole", spinning_step, 0.4, 0.0005, Tangent::kExact, true, false,
+       2.0},
+      {"backward Euler, damped, nodal dilatation, tangents whole", spinning_step, 0.49, 0.0005,
+       Tangent::kExact, true, true, 2.0},
+      {"backward Euler, damped, its tangent's unsymmetric part dropped", spinning_step, 0.4, 0.0005,
+       Tangent::kExact, false, false, 1.0},
       {"backward Euler, warped tangent", spinning_step, 0.4, 0.0, Tangent::kWarped, false, false, 1.0},
   };
   std::vector<Measurement> out;
@@ -224,8 +240,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
     const bool solved = converge(exact, z);
     p.solution = z;
     const double found = solved ? exponent(p, sabotage) : std::nan("");
-    out.push_back({.quantity = std::string("exponent of the residuals: ") + row.name, .computed = found, .exact = row.expected, .error = std::abs(found - row.expected),
-                   .bar = 0.15, .note = "error is of the exponent, absolute"});
+    out.push_back({.quantity = std::string("exponent of the residuals: ") + row.name,
+                   .computed = found,
+                   .exact = row.expected,
+                   .error = std::abs(found - row.expected),
+                   .bar = 0.15,
+                   .note = "error is of the exponent, absolute"});
   }
   return out;
 }
@@ -235,7 +255,9 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase newton_convergence() {
   return {.name = "newton-convergence",
           .section = "C",
-          .summary = "exponent of Newton's residuals: 2 with the exact tangent, statics and a step of backward Euler, damping too; 1 with inexact ones",
+          .summary =
+              "exponent of Newton's residuals: 2 with the exact tangent, statics and a step of backward "
+              "Euler, damping too; 1 with inexact ones",
           .why = "quadratic convergence shows that force and tangent belong together, where it counts",
           .run = run,
           .sabotages = {"matrix-kept"}};

@@ -7,9 +7,9 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Patch test (Irons 1966): boundary nodes are put to x = A X + t, interior nodes are free.  A linear tetrahedron holds every
-// affine field, so the field is reproduced inside, with the stress P(A) everywhere, on any mesh: exact, no order involved.
-// With A = R S, P = 2 mu (A - R) + lambda tr(S - I) R (DESIGN 3.1).
+// Patch test (Irons 1966): boundary nodes are put to x = A X + t, interior nodes are free.  A linear
+// tetrahedron holds every affine field, so the field is reproduced inside, with the stress P(A) everywhere,
+// on any mesh: exact, no order involved. With A = R S, P = 2 mu (A - R) + lambda tr(S - I) R (DESIGN 3.1).
 
 namespace palpate::validation {
 namespace {
@@ -31,7 +31,8 @@ std::vector<Field> fields() {
   }
   Mat3 S;
   S << 1.3, 0.1, 0.05, 0.1, 0.9, -0.08, 0.05, -0.08, 1.1;
-  out.push_back({"large strain, turned by 2 rad", quaternion_of(2.0 * Vec3(1, -2, 0.5).normalized()).toRotationMatrix() * S});
+  out.push_back({"large strain, turned by 2 rad",
+                 quaternion_of(2.0 * Vec3(1, -2, 0.5).normalized()).toRotationMatrix() * S});
   return out;
 }
 
@@ -67,19 +68,27 @@ std::vector<Measurement> run(const std::string& sabotage) {
       if (boundary[static_cast<std::size_t>(i)])
         body.hold(i, x);
       else
-        body.place(i, x + 0.01 * Vec3(std::sin(3.0 * i), std::cos(5.0 * i), std::sin(7.0 * i)));  // Newton has work to do
+        // Newton has work to do
+        body.place(i, x + 0.01 * Vec3(std::sin(3.0 * i), std::cos(5.0 * i), std::sin(7.0 * i)));
     }
     const bool solved = body.solve();
     double error = solved ? 0.0 : std::nan("");
     for (int i = 0; i < rest.nodes.cols(); ++i)
       error = std::max(error, (body.position(i) - field.A * rest.nodes.col(i) - t).norm() / size);
-    out.push_back({.quantity = std::string(field.name) + ": largest error of a node / largest displacement", .computed = error, .exact = 0.0,
-                   .error = solved ? error : std::nan(""), .bar = 1e-10});
+    out.push_back({.quantity = std::string(field.name) + ": largest error of a node / largest displacement",
+                   .computed = error,
+                   .exact = 0.0,
+                   .error = solved ? error : std::nan(""),
+                   .bar = 1e-10});
     const Mat3 R = polar_decomposition(field.A).R;
-    const Mat3 P = 2.0 * material.mu() * (field.A - R) + material.lambda() * ((R.transpose() * field.A).trace() - 3.0) * R;
+    const Mat3 P = 2.0 * material.mu() * (field.A - R) +
+                   material.lambda() * ((R.transpose() * field.A).trace() - 3.0) * R;
     const Mat3 mean = body.mean_stress();
-    out.push_back({.quantity = std::string(field.name) + ": norm of the mean stress [Pa]", .computed = mean.norm(), .exact = P.norm(),
-                   .error = (mean - P).norm() / P.norm(), .bar = 1e-10});
+    out.push_back({.quantity = std::string(field.name) + ": norm of the mean stress [Pa]",
+                   .computed = mean.norm(),
+                   .exact = P.norm(),
+                   .error = (mean - P).norm() / P.norm(),
+                   .bar = 1e-10});
   }
   return out;
 }
@@ -90,7 +99,9 @@ ValidationCase patch_test() {
   return {.name = "patch-test",
           .section = "C",
           .summary = "any uniform strain is reproduced inside an irregular mesh, and with it its stress",
-          .why = "an element that fails it does not converge on irregular meshes (Irons 1966); exact by theory, on any mesh",
+          .why =
+              "an element that fails it does not converge on irregular meshes (Irons 1966); exact by theory, "
+              "on any mesh",
           .run = run,
           .sabotages = {"one-element-counted-twice"}};
 }

@@ -5,7 +5,8 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// x = Q X + t gives F = Q = R: P = 0 and psi = 0.  With v = w x x + v0 the strain rate sym(F^T F') vanishes, and with it the damping force.
+// x = Q X + t gives F = Q = R: P = 0 and psi = 0.  With v = w x x + v0 the strain rate sym(F^T F') vanishes,
+// and with it the damping force.
 
 namespace palpate::validation {
 namespace {
@@ -51,20 +52,28 @@ std::vector<Measurement> run(const std::string& sabotage) {
     spinning = std::max(spinning, fv.lpNorm<Eigen::Infinity>() / unit);
     energy = std::max(energy, body.energy(state.view(0.0, x.data(), zero.data())) / (unit * h));
   }
-  return {{.quantity = "largest nodal force / (E h^2), 50 poses", .computed = force, .error = force, .bar = 1e-10},
-          {.quantity = "the same while it spins, damping on", .computed = spinning, .error = spinning, .bar = 1e-10},
+  return {{.quantity = "largest nodal force / (E h^2), 50 poses",
+           .computed = force,
+           .error = force,
+           .bar = 1e-10},
+          {.quantity = "the same while it spins, damping on",
+           .computed = spinning,
+           .error = spinning,
+           .bar = 1e-10},
           {.quantity = "energy / (E h^3)", .computed = energy, .error = energy, .bar = 1e-10}};
 }
 
 }  // namespace
 
 ValidationCase rigid_motion() {
-  return {.name = "rigid-motion",
-          .section = "C",
-          .summary = "any rotation and translation: no force, no energy, no damping",
-          .why = "small-strain elasticity fails it by design: a turned body swells; the corotated energy must not",
-          .run = run,
-          .sabotages = {"small-strain"}};
+  return {
+      .name = "rigid-motion",
+      .section = "C",
+      .summary = "any rotation and translation: no force, no energy, no damping",
+      .why =
+          "small-strain elasticity fails it by design: a turned body swells; the corotated energy must not",
+      .run = run,
+      .sabotages = {"small-strain"}};
 }
 
 }  // namespace palpate::validation

@@ -4,8 +4,9 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Square bar a x a between two ends that turn against each other by a small theta, rotated in their plane and free along the axis: Saint-Venant's
-// torsion in the whole bar, however short, since the ends hinder no warping.  Torque G J theta/L with (Timoshenko and Goodier, Theory of Elasticity, 109)
+// Square bar a x a between two ends that turn against each other by a small theta, rotated in their plane and
+// free along the axis: Saint-Venant's torsion in the whole bar, however short, since the ends hinder no
+// warping.  Torque G J theta/L with (Timoshenko and Goodier, Theory of Elasticity, 109)
 //
 //   J = a^4 (1/3 - (64/pi^5) sum_{n odd} tanh(n pi/2)/n^5) = 0.140577 a^4.
 //
@@ -37,7 +38,8 @@ double torque(int across, const std::string& sabotage) {
       body.hold(i, 1, X(1, i) + turn * X(0, i));
       if (sabotage == "warping-hindered") body.hold(i, 2, X(2, i));
     }
-    if (!axis_held && X.col(i).head<2>().norm() < 1e-9) {  // no warping on the axis: one node of it stops the bar from drifting along
+    // no warping on the axis: one node of it stops the bar from drifting along
+    if (!axis_held && X.col(i).head<2>().norm() < 1e-9) {
       body.hold(i, 2, X(2, i));
       axis_held = true;
     }
@@ -59,11 +61,26 @@ std::vector<Measurement> run(const std::string& sabotage) {
     error.push_back(std::abs(found.back() / exact - 1.0));
   }
   const double extrapolated = found[2] + (found[2] - found[1]) / 3.0;  // order 2 removed
-  return {{.quantity = "J / a^4", .computed = torsion_constant() / std::pow(kSide, 4), .exact = 0.140577, .error = std::abs(torsion_constant() / std::pow(kSide, 4) / 0.140577 - 1.0), .bar = 1e-5,
+  return {{.quantity = "J / a^4",
+           .computed = torsion_constant() / std::pow(kSide, 4),
+           .exact = 0.140577,
+           .error = std::abs(torsion_constant() / std::pow(kSide, 4) / 0.140577 - 1.0),
+           .bar = 1e-5,
            .note = "the series against the tabled value"},
-          {.quantity = "torque [N m], 16 elements across", .computed = found[2], .exact = exact, .error = error[2], .bar = 0.05,
-           .order = study::fitted_order(h, error), .order_low = 1.8, .order_high = 2.2, .note = "4, 8, 16 elements across"},
-          {.quantity = "torque [N m], extrapolated", .computed = extrapolated, .exact = exact, .error = std::abs(extrapolated / exact - 1.0), .bar = 0.01,
+          {.quantity = "torque [N m], 16 elements across",
+           .computed = found[2],
+           .exact = exact,
+           .error = error[2],
+           .bar = 0.05,
+           .order = study::fitted_order(h, error),
+           .order_low = 1.8,
+           .order_high = 2.2,
+           .note = "4, 8, 16 elements across"},
+          {.quantity = "torque [N m], extrapolated",
+           .computed = extrapolated,
+           .exact = exact,
+           .error = std::abs(extrapolated / exact - 1.0),
+           .bar = 0.01,
            .note = "from 8 and 16, order 2"}};
 }
 
@@ -73,7 +90,9 @@ ValidationCase torsion() {
   return {.name = "torsion",
           .section = "C",
           .summary = "square bar in torsion, ends free to warp: torque against Saint-Venant's",
-          .why = "shear stress that varies over the section, and warping; Timoshenko and Goodier, Theory of Elasticity",
+          .why =
+              "shear stress that varies over the section, and warping; Timoshenko and Goodier, Theory of "
+              "Elasticity",
           .run = run,
           .sabotages = {"half-stiffness", "warping-hindered"}};
 }

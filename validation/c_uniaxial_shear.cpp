@@ -5,12 +5,15 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Uniaxial stretch l, sides free: R = I, S = diag(l, s, s); no lateral stress 2 mu (s - 1) + lambda (l + 2 s - 3) = 0 gives
+// Uniaxial stretch l, sides free: R = I, S = diag(l, s, s); no lateral stress 2 mu (s - 1) + lambda (l + 2 s
+// - 3) = 0 gives
 //   s = 1 - nu (l - 1),   P = 2 mu (l - 1) + lambda (l + 2 s - 3) = E (l - 1)
 // (nominal stress; linear in l for this energy, at any l > 0).
 //
-// Simple shear F = I + g e1 e2^T: R turns by the angle with cos = 2/r, sin = g/r, r = sqrt(4 + g^2), and tr S = r + 1.  With s = g/r
-//   P12 = 2 mu (g - s) + lambda (r - 2) s,   P21 = 2 mu s - lambda (r - 2) s,   P11 = P22 = 2 mu (1 - 2/r) + lambda (r - 2) 2/r,
+// Simple shear F = I + g e1 e2^T: R turns by the angle with cos = 2/r, sin = g/r, r = sqrt(4 + g^2), and tr S
+// = r + 1.  With s = g/r
+//   P12 = 2 mu (g - s) + lambda (r - 2) s,   P21 = 2 mu s - lambda (r - 2) s,   P11 = P22 = 2 mu (1 - 2/r) +
+//   lambda (r - 2) 2/r,
 //   P33 = lambda (r - 2).
 
 namespace palpate::validation {
@@ -53,13 +56,20 @@ void stretch(double l, const std::string& sabotage, std::vector<Measurement>& ou
       ++counted;
     }
   const double lateral = (top / counted - low.y()) / (high.y() - low.y());
-  const double exact_lateral = 1.0 - true_material.poissons_ratio * (l - 1.0), exact_stress = true_material.youngs_modulus * (l - 1.0);
+  const double exact_lateral = 1.0 - true_material.poissons_ratio * (l - 1.0),
+               exact_stress = true_material.youngs_modulus * (l - 1.0);
   const Mat3 P = body.mean_stress();
   const std::string name = fmt::format("stretch {}: ", l);
-  out.push_back({.quantity = name + "nominal stress [Pa]", .computed = P(0, 0), .exact = exact_stress,
-                 .error = solved ? std::abs(P(0, 0) / exact_stress - 1.0) : nan, .bar = kBar});
-  out.push_back({.quantity = name + "lateral stretch", .computed = lateral, .exact = exact_lateral,
-                 .error = solved ? std::abs(lateral / exact_lateral - 1.0) : nan, .bar = kBar});
+  out.push_back({.quantity = name + "nominal stress [Pa]",
+                 .computed = P(0, 0),
+                 .exact = exact_stress,
+                 .error = solved ? std::abs(P(0, 0) / exact_stress - 1.0) : nan,
+                 .bar = kBar});
+  out.push_back({.quantity = name + "lateral stretch",
+                 .computed = lateral,
+                 .exact = exact_lateral,
+                 .error = solved ? std::abs(lateral / exact_lateral - 1.0) : nan,
+                 .bar = kBar});
 }
 
 void shear(double g, const std::string& sabotage, std::vector<Measurement>& out) {
@@ -83,9 +93,16 @@ void shear(double g, const std::string& sabotage, std::vector<Measurement>& out)
   const Mat3 P = body.mean_stress();
   const double nan = std::nan("");
   const std::string name = fmt::format("shear {}: ", g);
-  out.push_back({.quantity = name + "P12 [Pa]", .computed = P(0, 1), .exact = exact(0, 1), .error = solved ? std::abs(P(0, 1) / exact(0, 1) - 1.0) : nan, .bar = kBar});
-  out.push_back({.quantity = name + "norm of P, all entries compared [Pa]", .computed = P.norm(), .exact = exact.norm(),
-                 .error = solved ? (P - exact).norm() / exact.norm() : nan, .bar = kBar});
+  out.push_back({.quantity = name + "P12 [Pa]",
+                 .computed = P(0, 1),
+                 .exact = exact(0, 1),
+                 .error = solved ? std::abs(P(0, 1) / exact(0, 1) - 1.0) : nan,
+                 .bar = kBar});
+  out.push_back({.quantity = name + "norm of P, all entries compared [Pa]",
+                 .computed = P.norm(),
+                 .exact = exact.norm(),
+                 .error = solved ? (P - exact).norm() / exact.norm() : nan,
+                 .bar = kBar});
 }
 
 std::vector<Measurement> run(const std::string& sabotage) {
@@ -98,12 +115,15 @@ std::vector<Measurement> run(const std::string& sabotage) {
 }  // namespace
 
 ValidationCase uniaxial_and_shear() {
-  return {.name = "uniaxial-and-shear",
-          .section = "C",
-          .summary = "one block stretched with free sides, and sheared: nominal stress and lateral contraction",
-          .why = "the constitutive law itself at large strain, in closed form for this energy (derivation in the file)",
-          .run = run,
-          .sabotages = {"half-stiffness", "no-lateral-coupling"}};
+  return {
+      .name = "uniaxial-and-shear",
+      .section = "C",
+      .summary = "one block stretched with free sides, and sheared: nominal stress and lateral contraction",
+      .why =
+          "the constitutive law itself at large strain, in closed form for this energy (derivation in the "
+          "file)",
+      .run = run,
+      .sabotages = {"half-stiffness", "no-lateral-coupling"}};
 }
 
 }  // namespace palpate::validation

@@ -4,11 +4,13 @@
 #include "modal_body.h"
 #include "palpate/mesh/generators.h"
 
-// Bar of length L held at x = 0, nu = 0: axial strain makes no lateral stress, so u(x, t) obeys u_tt = c^2 u_xx, c = sqrt(E/rho), exactly, and
+// Bar of length L held at x = 0, nu = 0: axial strain makes no lateral stress, so u(x, t) obeys u_tt = c^2
+// u_xx, c = sqrt(E/rho), exactly, and
 //     u_n = sin((2n - 1) pi x / 2L),   f_n = (2n - 1) c / (4 L).
 // Linear elements with lumped mass: w_h = w (1 - (k h)^2/24 ...) in one dimension, order 2 in any.
-// A quarter of the square section stands for the bar: its two inner faces are planes of symmetry (no displacement across them), which keeps every
-// axial motion and shuts out bending and torsion, whose frequencies cross the axial ones.  Modes are named by their overlap with u_n.
+// A quarter of the square section stands for the bar: its two inner faces are planes of symmetry (no
+// displacement across them), which keeps every axial motion and shuts out bending and torsion, whose
+// frequencies cross the axial ones.  Modes are named by their overlap with u_n.
 
 namespace palpate::validation {
 namespace {
@@ -21,7 +23,8 @@ std::vector<double> frequencies(int cells_along, const std::string& sabotage) {
   ModalBody bar;
   bar.material.youngs_modulus = sabotage == "half-stiffness" ? 0.5 * kYoung : kYoung;
   bar.material.poissons_ratio = sabotage == "lateral-strain" ? 0.4 : 0.0;
-  bar.rest = mesh::box(Vec3(kLength, kHalfWidth, kHalfWidth), {cells_along, cells_along / 8, cells_along / 8});
+  bar.rest =
+      mesh::box(Vec3(kLength, kHalfWidth, kHalfWidth), {cells_along, cells_along / 8, cells_along / 8});
   const Vec3 corner = bar.rest.nodes.rowwise().minCoeff();
   bar.rest.nodes.colwise() -= corner;
   const double clamp = sabotage == "clamp-too-long" ? 0.04 * kLength : 1e-9;
@@ -36,7 +39,8 @@ std::vector<double> frequencies(int cells_along, const std::string& sabotage) {
   std::vector<double> out;
   for (int n = 1; n <= kModes; ++n) {
     const double k = (2 * n - 1) * M_PI / (2.0 * kLength);
-    const Match match = best_match(bar, modes, bar.field([k](const Vec3& X) { return Vec3(std::sin(k * X.x()), 0.0, 0.0); }));
+    const Match match =
+        best_match(bar, modes, bar.field([k](const Vec3& X) { return Vec3(std::sin(k * X.x()), 0.0, 0.0); }));
     out.push_back(match.overlap > 0.95 ? match.omega / (2.0 * M_PI) : std::nan(""));
   }
   return out;
@@ -55,9 +59,16 @@ std::vector<Measurement> run(const std::string& sabotage) {
   for (int n = 1; n <= kModes; ++n) {
     const double exact = (2 * n - 1) * c / (4.0 * kLength);
     std::vector<double> error;
-    for (const auto& one : found) error.push_back(std::abs(one[static_cast<std::size_t>(n - 1)] / exact - 1.0));
-    out.push_back({.quantity = fmt::format("frequency {} [Hz], {} cells along", n, cells.back()), .computed = found.back()[static_cast<std::size_t>(n - 1)],
-                   .exact = exact, .error = error.back(), .bar = 5e-3, .order = study::fitted_order(h, error), .order_low = 1.8, .order_high = 2.1,
+    for (const auto& one : found)
+      error.push_back(std::abs(one[static_cast<std::size_t>(n - 1)] / exact - 1.0));
+    out.push_back({.quantity = fmt::format("frequency {} [Hz], {} cells along", n, cells.back()),
+                   .computed = found.back()[static_cast<std::size_t>(n - 1)],
+                   .exact = exact,
+                   .error = error.back(),
+                   .bar = 5e-3,
+                   .order = study::fitted_order(h, error),
+                   .order_low = 1.8,
+                   .order_high = 2.1,
                    .note = "16, 24, 32, 48 cells along"});
   }
   return out;
@@ -68,8 +79,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase axial_vibration() {
   return {.name = "axial-vibration",
           .section = "D",
-          .summary = "a bar vibrates along its axis: first three frequencies against (2n - 1) c / 4L, order in the element size",
-          .why = "stiffness and mass together against the wave equation, whose solution is exact for nu = 0 (Rayleigh 1877)",
+          .summary =
+              "a bar vibrates along its axis: first three frequencies against (2n - 1) c / 4L, order in the "
+              "element size",
+          .why =
+              "stiffness and mass together against the wave equation, whose solution is exact for nu = 0 "
+              "(Rayleigh 1877)",
           .run = run,
           .sabotages = {"half-stiffness", "clamp-too-long", "lateral-strain", "held-sides"}};
 }

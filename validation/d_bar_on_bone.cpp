@@ -5,12 +5,15 @@
 #include "modal_body.h"
 #include "palpate/mesh/generators.h"
 
-// Bar of length L, section A, nu = 0, with its face x = 0 on a free rigid bone of mass m_b, its other end free: u_tt = c^2 u_xx, c = sqrt(E/rho), and
+// Bar of length L, section A, nu = 0, with its face x = 0 on a free rigid bone of mass m_b, its other end
+// free: u_tt = c^2 u_xx, c = sqrt(E/rho), and
 //     m_b u_tt(0) = E A u_x(0),   u_x(L) = 0.
-// u = cos(k (L - x)) cos(c k t) gives  tan(kL) = -b kL,  b = m_b / (rho A L): one root in each ((n - 1/2) pi, n pi) (Timoshenko, Vibration Problems in
-// Engineering, 1937, section 52: a bar with a mass at its end).  A bone without mass leaves a free bar, kL = n pi; one that is heavy holds it.
-// The bone's own equation is all inertia that it has: where the face's reaction, or the inertia of the nodes on it, did not reach it, both frequencies would be wrong.
-// A quarter of the square section stands for the bar, as in the case without a bone: planes of symmetry shut out bending and torsion.  The bone sits in the
+// u = cos(k (L - x)) cos(c k t) gives  tan(kL) = -b kL,  b = m_b / (rho A L): one root in each ((n - 1/2) pi,
+// n pi) (Timoshenko, Vibration Problems in Engineering, 1937, section 52: a bar with a mass at its end).  A
+// bone without mass leaves a free bar, kL = n pi; one that is heavy holds it.
+// The bone's own equation is all inertia that it has: where the face's reaction, or the inertia of the nodes
+// on it, did not reach it, both frequencies would be wrong. A quarter of the square section stands for the
+// bar, as in the case without a bone: planes of symmetry shut out bending and torsion.  The bone sits in the
 // middle of the quarter's face, so that axial motion does not turn it.
 
 namespace palpate::validation {
@@ -51,7 +54,8 @@ double frequency(int cells, double b, const std::string& sabotage) {
   bar.hold("z", [](const Vec3& X) { return X.z() < 1e-9 && X.x() > 1e-9; });
   const double k = root(b, 1) / kLength;
   const integrate::Modes modes = bar.lowest(8);
-  const Match match = best_match(bar, modes, bar.field([k](const Vec3& X) { return Vec3(std::cos(k * (kLength - X.x())), 0.0, 0.0); }));
+  const Match match = best_match(
+      bar, modes, bar.field([k](const Vec3& X) { return Vec3(std::cos(k * (kLength - X.x())), 0.0, 0.0); }));
   return match.overlap > 0.95 ? match.omega / (2.0 * M_PI) : std::nan("");
 }
 
@@ -68,8 +72,16 @@ std::vector<Measurement> run(const std::string& sabotage) {
       found = frequency(n, b, sabotage);
       error.push_back(std::abs(found / exact - 1.0));
     }
-    out.push_back({.quantity = fmt::format("frequency [Hz], bone of {:g} of the bar's mass, {} cells along", b, cells.back()), .computed = found, .exact = exact, .error = error.back(),
-                   .bar = 5e-3, .order = study::fitted_order(h, error), .order_low = 1.8, .order_high = 2.1, .note = "16, 24, 32, 48 cells along"});
+    out.push_back({.quantity = fmt::format("frequency [Hz], bone of {:g} of the bar's mass, {} cells along",
+                                           b, cells.back()),
+                   .computed = found,
+                   .exact = exact,
+                   .error = error.back(),
+                   .bar = 5e-3,
+                   .order = study::fitted_order(h, error),
+                   .order_low = 1.8,
+                   .order_high = 2.1,
+                   .note = "16, 24, 32, 48 cells along"});
   }
   return out;
 }
@@ -79,8 +91,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase bar_on_bone() {
   return {.name = "bar-on-bone",
           .section = "D",
-          .summary = "a bar vibrates along its axis against a free bone at its end: frequency against tan(kL) = -(m_b/m) kL, order in the element size",
-          .why = "momentum goes from flesh to bone and back at the right rate, also where the bone is a thousandth of the flesh (Timoshenko 1937)",
+          .summary =
+              "a bar vibrates along its axis against a free bone at its end: frequency against tan(kL) = "
+              "-(m_b/m) kL, order in the element size",
+          .why =
+              "momentum goes from flesh to bone and back at the right rate, also where the bone is a "
+              "thousandth of the flesh (Timoshenko 1937)",
           .run = run,
           .sabotages = {"half-stiffness", "light-bone", "no-bone"}};
 }

@@ -4,14 +4,17 @@
 #include "modal_body.h"
 #include "palpate/mesh/generators.h"
 
-// Slender cantilever, square section h x h, nu = 0.  Euler and Bernoulli: cos(bL) cosh(bL) = -1, b1 L = 1.875104,
+// Slender cantilever, square section h x h, nu = 0.  Euler and Bernoulli: cos(bL) cosh(bL) = -1, b1 L =
+// 1.875104,
 //     f1 = (b1 L)^2/(2 pi) sqrt(E I/(rho A L^4)),   I/A = h^2/12,
-// times what shear and rotary inertia take (Timoshenko 1921, shear factor 5/6, G = E/2, solved for the first root):
+// times what shear and rotary inertia take (Timoshenko 1921, shear factor 5/6, G = E/2, solved for the first
+// root):
 // 0.99350 at L/h = 10 and 0.99836 at L/h = 20.
 //
-// A quarter of the section stands for the beam that bends along y, as in the static case: u is symmetric in z (u_z = 0 on z = 0) and
-// antisymmetric in y (u_x = u_z = 0 on y = 0).  Bending along z and torsion are shut out by that; the lowest mode is the one.
-// Elements h/n: order 2 in 1/n, the error of linear tetrahedra in bending being of the size (h/n)^2 / (h^2/12); Richardson's value is held to the bar.
+// A quarter of the section stands for the beam that bends along y, as in the static case: u is symmetric in z
+// (u_z = 0 on z = 0) and antisymmetric in y (u_x = u_z = 0 on y = 0).  Bending along z and torsion are shut
+// out by that; the lowest mode is the one. Elements h/n: order 2 in 1/n, the error of linear tetrahedra in
+// bending being of the size (h/n)^2 / (h^2/12); Richardson's value is held to the bar.
 
 namespace palpate::validation {
 namespace {
@@ -23,7 +26,8 @@ double frequency(double slenderness, int across, const std::string& sabotage) {
   ModalBody beam;
   beam.material.youngs_modulus = sabotage == "half-stiffness" ? 0.5 * kYoung : kYoung;
   beam.material.poissons_ratio = 0.0;
-  beam.rest = mesh::box(Vec3(length, 0.5 * kHeight, 0.5 * kHeight), {static_cast<int>(slenderness) * across, across / 2, across / 2});
+  beam.rest = mesh::box(Vec3(length, 0.5 * kHeight, 0.5 * kHeight),
+                        {static_cast<int>(slenderness) * across, across / 2, across / 2});
   const Vec3 corner = beam.rest.nodes.rowwise().minCoeff();
   beam.rest.nodes.colwise() -= corner;
   const double clamp = sabotage == "clamp-too-long" ? 0.02 * length : 1e-9;
@@ -33,9 +37,11 @@ double frequency(double slenderness, int across, const std::string& sabotage) {
   return beam.lowest(1).frequency_hz(0);
 }
 
-void add(double slenderness, double timoshenko, const std::vector<int>& across, const std::string& sabotage, std::vector<Measurement>& out) {
+void add(double slenderness, double timoshenko, const std::vector<int>& across, const std::string& sabotage,
+         std::vector<Measurement>& out) {
   const double length = slenderness * kHeight, density = fem::Material{}.density;
-  const double exact = timoshenko * std::pow(1.875104, 2) / (2.0 * M_PI) * std::sqrt(kYoung * kHeight * kHeight / (12.0 * density * std::pow(length, 4)));
+  const double exact = timoshenko * std::pow(1.875104, 2) / (2.0 * M_PI) *
+                       std::sqrt(kYoung * kHeight * kHeight / (12.0 * density * std::pow(length, 4)));
   std::vector<double> h, found, error;
   for (int n : across) {
     h.push_back(kHeight / n);
@@ -45,11 +51,22 @@ void add(double slenderness, double timoshenko, const std::vector<int>& across, 
   const std::size_t last = h.size() - 1;
   const double ratio = std::pow(h[last - 1] / h[last], 2);
   const double extrapolated = found[last] + (found[last] - found[last - 1]) / (ratio - 1.0);
-  out.push_back({.quantity = fmt::format("first frequency [Hz], L/h = {}, {} elements across", slenderness, across.back()), .computed = found.back(), .exact = exact,
-                 .error = error.back(), .bar = 0.05, .order = study::fitted_order(h, error), .order_low = 1.8, .order_high = 2.2,
+  out.push_back({.quantity = fmt::format("first frequency [Hz], L/h = {}, {} elements across", slenderness,
+                                         across.back()),
+                 .computed = found.back(),
+                 .exact = exact,
+                 .error = error.back(),
+                 .bar = 0.05,
+                 .order = study::fitted_order(h, error),
+                 .order_low = 1.8,
+                 .order_high = 2.2,
                  .note = fmt::format("{} elements across", fmt::join(across, ", "))});
-  out.push_back({.quantity = fmt::format("first frequency [Hz], L/h = {}, Richardson", slenderness), .computed = extrapolated, .exact = exact,
-                 .error = std::abs(extrapolated / exact - 1.0), .bar = 1e-2, .note = "order 2 removed from the last two"});
+  out.push_back({.quantity = fmt::format("first frequency [Hz], L/h = {}, Richardson", slenderness),
+                 .computed = extrapolated,
+                 .exact = exact,
+                 .error = std::abs(extrapolated / exact - 1.0),
+                 .bar = 1e-2,
+                 .note = "order 2 removed from the last two"});
 }
 
 std::vector<Measurement> run(const std::string& sabotage) {
@@ -64,8 +81,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase bending_vibration() {
   return {.name = "bending-vibration",
           .section = "D",
-          .summary = "first frequency of a slender cantilever against Timoshenko's beam, L/h = 10 and 20, order and Richardson value",
-          .why = "the lowest mode of most soft bodies is bending, and linear tetrahedra are stiff in it; Timoshenko 1921",
+          .summary =
+              "first frequency of a slender cantilever against Timoshenko's beam, L/h = 10 and 20, order and "
+              "Richardson value",
+          .why =
+              "the lowest mode of most soft bodies is bending, and linear tetrahedra are stiff in it; "
+              "Timoshenko 1921",
           .run = run,
           .sabotages = {"half-stiffness", "clamp-too-long"}};
 }

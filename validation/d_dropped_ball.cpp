@@ -10,34 +10,43 @@
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/generators.h"
 
-// A ball falls on a fixed plane and bounces.  The plane's normal does not turn, so each sample's force k A max(0, -gap) n is the gradient
-// of k A gap^2/2, A its projected area: undamped, kinetic energy + weight + contact is constant, damped it falls.  It must never rise.
-//   rigid   a point mass that carries the vertices of a sphere as arms (a sphere on a plane has no reason to turn): areas are constant, and what
-//           energy is gained is the integrator's.  Looked at every millisecond, where the contact is queried anew, as in a scene.
-//   soft    a ball of tetrahedra: the projected areas of its vertices change with its shape, and are held between two queries.  The energy
+// A ball falls on a fixed plane and bounces.  The plane's normal does not turn, so each sample's force k A
+// max(0, -gap) n is the gradient of k A gap^2/2, A its projected area: undamped, kinetic energy + weight +
+// contact is constant, damped it falls.  It must never rise.
+//   rigid   a point mass that carries the vertices of a sphere as arms (a sphere on a plane has no reason to
+//   turn): areas are constant, and what
+//           energy is gained is the integrator's.  Looked at every millisecond, where the contact is queried
+//           anew, as in a scene.
+//   soft    a ball of tetrahedra: the projected areas of its vertices change with its shape, and are held
+//   between two queries.  The energy
 //           gained at each query is the price of the slow query: reported, with no bar.
 // Gains are relative to the energy of the fall, m g h.
 //
-// Why additive pairs look for the kinks.  A vertex that touches at the part theta of a step turns its force by J: y'' = J (t - theta h)+.  The step's error in the
-// velocity is then J h^2 |sum b_i (c_i - theta)+ - (1 - theta)^2/2|, and what its estimate sees of that J h^2 |sum (b_i - b^_i) (c_i - theta)+|.  The error is
-// 3 times the estimate in the middle of all theta with Cash and Karp's pair and more than 100 times in 0.7 % of them; 35 times and in 18 % with ark-imex-4b,
-// 20 times and in 18 % (more than 860 times in a tenth) with ark-imex-5b.  So a tolerance of 1e-10 lets kinks through, and ark-imex-5b gains 3e-6 by
-// error control alone, at rtol 1e-9 and 1e-10 alike.  With the kinks found as roots the steps on both sides are smooth, and it keeps the bar.
+// Why additive pairs look for the kinks.  A vertex that touches at the part theta of a step turns its force
+// by J: y'' = J (t - theta h)+.  The step's error in the velocity is then J h^2 |sum b_i (c_i - theta)+ - (1
+// - theta)^2/2|, and what its estimate sees of that J h^2 |sum (b_i - b^_i) (c_i - theta)+|.  The error is
+//   3 times the estimate in the middle of all theta with Cash and Karp's pair and more than 100 times in 0.7
+//   % of them; 35 times and in 18 % with ark-imex-4b,
+// 20 times and in 18 % (more than 860 times in a tenth) with ark-imex-5b.  So a tolerance of 1e-10 lets kinks
+// through, and ark-imex-5b gains 3e-6 by error control alone, at rtol 1e-9 and 1e-10 alike.  With the kinks
+// found as roots the steps on both sides are smooth, and it keeps the bar.
 
 namespace palpate::validation {
 namespace {
 
 constexpr double kRadius = 0.02, kDrop = 0.01, kGravity = 9.81, kMass = 0.03;
-constexpr double kStiffness = 5e8;  // [Pa/m]: depth about 1 mm, 12 ms of contact
+constexpr double kStiffness = 5e8;             // [Pa/m]: depth about 1 mm, 12 ms of contact
 constexpr double kRefresh = 1e-3, kEnd = 0.4;  // [s]: four bounces
 
 /// The vertices of a sphere carried by one node, over the plane z = 0 of frame 0.
 class BallSource final : public contact::SampleSource {
  public:
-  BallSource(int node, const std::string& sabotage) : node_(node), sphere_(mesh::sphere(kRadius, 12)), sabotage_(sabotage) {
+  BallSource(int node, const std::string& sabotage)
+      : node_(node), sphere_(mesh::sphere(kRadius, 12)), sabotage_(sabotage) {
     areas_.setZero(sphere_.vertices.cols());
     for (const auto& face : sphere_.faces.colwise()) {
-      const Vec3 a = sphere_.vertices.col(face[0]), b = sphere_.vertices.col(face[1]), c = sphere_.vertices.col(face[2]);
+      const Vec3 a = sphere_.vertices.col(face[0]), b = sphere_.vertices.col(face[1]),
+                 c = sphere_.vertices.col(face[2]);
       for (int corner : face) areas_[corner] -= (b - a).cross(c - a).z() / 6.0;
     }
   }
@@ -45,7 +54,8 @@ class BallSource final : public contact::SampleSource {
   void add_pattern(dynamics::PatternBuilder&) const override {}
   void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& samples) override {
     const Vec3 x = state.position(node_);
-    const double look_ahead = sabotage_ == "no-look-ahead" ? 0.0 : 2.0 * kRefresh * std::max(0.0, -state.velocity(node_).z());
+    const double look_ahead =
+        sabotage_ == "no-look-ahead" ? 0.0 : 2.0 * kRefresh * std::max(0.0, -state.velocity(node_).z());
     for (Eigen::Index i = 0; i < areas_.size(); ++i) {
       const Vec3 arm = sphere_.vertices.col(i);
       const double gap = x.z() + arm.z();
@@ -92,7 +102,9 @@ struct Fall {
     contact->refresh(state.view());
     system.prepare(state.view());
     const auto stepper = integrate::make_stepper(system, state, spec);
-    const auto energy = [&] { return system.kinetic_energy(state.view()) + system.potential_energy(state.view()); };
+    const auto energy = [&] {
+      return system.kinetic_energy(state.view()) + system.potential_energy(state.view());
+    };
     const double start = energy();
     Outcome out;
     out.deepest = state.q()[2];
@@ -144,8 +156,10 @@ Fall::Outcome drop_soft(const IntegratorSpec& spec, double& mass) {
   nodes.u_scale = std::sqrt(2.0 * kGravity * kDrop);
   const int id = fall.state.insert(nodes, q0, VecX::Zero(q0.size()));
   const mesh::Boundary boundary = mesh::boundary(rest);
-  fall.contact->add_pair(contact::make_plane_source({id, boundary.node_of_vertex, boundary.surface.faces}, 0, contact::fixed_frame(), Vec3::Zero(),
-                                                    Vec3::UnitZ(), 1e-3, 2.0 * kRefresh), fall.law);
+  fall.contact->add_pair(
+      contact::make_plane_source({id, boundary.node_of_vertex, boundary.surface.faces}, 0,
+                                 contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 1e-3, 2.0 * kRefresh),
+      fall.law);
   fall.system.add(std::make_shared<fem::SoftBody>("ball", rest, m, fem::SoftBodyOptions{}, id));
   fall.system.add(std::static_pointer_cast<dynamics::ForceTerm>(fall.contact));
   fall.system.add(fem::make_gravity(masses, Vec3(0, 0, -kGravity), id));
@@ -158,7 +172,8 @@ std::vector<Measurement> run(const std::string& sabotage) {
   std::vector<Measurement> out;
   IntegratorSpec spec;
   for (const auto& entry : integrate::stepper_registry()) {
-    if (entry.traits.control == StepControl::kFixed || entry.traits.stability == dynamics::Stability::kStatic) continue;
+    if (entry.traits.control == StepControl::kFixed || entry.traits.stability == dynamics::Stability::kStatic)
+      continue;
     if (entry.traits.order <= 2) continue;  // a gain below 1e-6 would take them millions of steps
     spec.name = entry.name;
     spec.events = entry.traits.family == "ImEx Runge-Kutta" ? "root-finding" : "error-control";
@@ -166,9 +181,13 @@ std::vector<Measurement> run(const std::string& sabotage) {
     for (const double damping : {0.0, 2e6}) {
       const Fall::Outcome fall = drop_rigid(spec, damping, sabotage);
       const bool bounced = fall.deepest < kRadius - 1e-4;
-      out.push_back({.quantity = fmt::format("rigid ball, {}, {}: energy gained / m g h", damping > 0.0 ? "damped" : "undamped", entry.name),
-                     .computed = fall.gain, .error = bounced ? fall.gain : std::nan(""), .bar = 1e-6,
-                     .note = fmt::format("rtol 1e-10, {:.2g} mm deep, {} queries", 1e3 * (kRadius - fall.deepest), fall.queries)});
+      out.push_back({.quantity = fmt::format("rigid ball, {}, {}: energy gained / m g h",
+                                             damping > 0.0 ? "damped" : "undamped", entry.name),
+                     .computed = fall.gain,
+                     .error = bounced ? fall.gain : std::nan(""),
+                     .bar = 1e-6,
+                     .note = fmt::format("rtol 1e-10, {:.2g} mm deep, {} queries",
+                                         1e3 * (kRadius - fall.deepest), fall.queries)});
     }
   }
   if (!sabotage.empty()) return out;
@@ -176,9 +195,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
   spec.rtol = 1e-6;
   double mass = 0.0;
   const Fall::Outcome soft = drop_soft(spec, mass);
-  out.push_back({.quantity = "soft ball, undamped, cvode-bdf: energy gained / m g h", .computed = soft.gain, .error = soft.gain,
-                 .bar = std::numeric_limits<double>::infinity(),
-                 .note = "reported, not barred: projected areas are held between two queries, 1 ms apart; rtol 1e-6"});
+  out.push_back(
+      {.quantity = "soft ball, undamped, cvode-bdf: energy gained / m g h",
+       .computed = soft.gain,
+       .error = soft.gain,
+       .bar = std::numeric_limits<double>::infinity(),
+       .note = "reported, not barred: projected areas are held between two queries, 1 ms apart; rtol 1e-6"});
   return out;
 }
 
@@ -187,7 +209,9 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase dropped_ball() {
   return {.name = "dropped-ball",
           .section = "D",
-          .summary = "a rigid ball bounces on a plane: energy gained, integrators of order 3 and more with error control, additive pairs with root finding; a soft ball beside it",
+          .summary =
+              "a rigid ball bounces on a plane: energy gained, integrators of order 3 and more with error "
+              "control, additive pairs with root finding; a soft ball beside it",
           .why = "energy from nowhere at contact is what makes a haptic device kick; conservation of energy",
           .run = run,
           .sabotages = {"no-look-ahead", "loose-tolerance"}};

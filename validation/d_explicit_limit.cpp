@@ -10,19 +10,24 @@
 #include "palpate/mesh/generators.h"
 
 // Symplectic Euler on one mode q'' + 2 z w q' + w^2 q = 0, W = w h, velocity first and then q1 = q0 + h u1:
-//   damping at the old velocity   u1 = u0 - h (w^2 q0 + 2 z w u0):  characteristic polynomial  r^2 - (2 - W^2 - 2 z W) r + (1 - 2 z W).
-//     Roots inside the circle while 1 + trace + determinant > 0, 4 - W^2 - 4 z W > 0:            W < 2 (sqrt(1 + z^2) - z)
-//   damping at the new velocity   u1 = u0 - h (w^2 q0 + 2 z w u1):  (1 + 2 z W) r^2 - (2 + 2 z W - W^2) r + 1.
-//     4 + 4 z W - W^2 > 0:                                                                       W < 2 (sqrt(1 + z^2) + z)
-// Undamped both are W < 2.  With stiffness damping z = beta w/2 both limits fall with w: the highest mode has the smallest, and it is excited.
-// Above the limit its amplitude grows by a factor a step, so that a limit is found by bisection on whether it has grown a thousandfold.
-// The implicit variant is no integrator of the registry: M (u1 - u0) = h f(q0, u1), f linear in u, is made here of the System's own step matrix,
-// (M + h D) du = h f(q0, u0).
+//   damping at the old velocity   u1 = u0 - h (w^2 q0 + 2 z w u0):  characteristic polynomial  r^2 - (2 - W^2
+//   - 2 z W) r + (1 - 2 z W).
+//     Roots inside the circle while 1 + trace + determinant > 0, 4 - W^2 - 4 z W > 0:            W < 2
+//     (sqrt(1 + z^2) - z)
+//   damping at the new velocity   u1 = u0 - h (w^2 q0 + 2 z w u1):  (1 + 2 z W) r^2 - (2 + 2 z W - W^2) r +
+//   1.
+//     4 + 4 z W - W^2 > 0:                                                                       W < 2
+//     (sqrt(1 + z^2) + z)
+// Undamped both are W < 2.  With stiffness damping z = beta w/2 both limits fall with w: the highest mode has
+// the smallest, and it is excited. Above the limit its amplitude grows by a factor a step, so that a limit is
+// found by bisection on whether it has grown a thousandfold. The implicit variant is no integrator of the
+// registry: M (u1 - u0) = h f(q0, u1), f linear in u, is made here of the System's own step matrix, (M + h D)
+// du = h f(q0, u0).
 
 namespace palpate::validation {
 namespace {
 
-constexpr double kAmplitude = 1e-9;  // [m]: the body is linear, and stays so when grown a thousandfold
+constexpr double kAmplitude = 1e-9;    // [m]: the body is linear, and stays so when grown a thousandfold
 constexpr double kDampingRatio = 0.4;  // of the highest mode
 
 struct Bar {
@@ -93,7 +98,8 @@ bool grows(double h, double beta, Damping damping, const VecX& shape, const std:
 }
 
 /// Largest stable step [s] between half and twice the expected one.
-double found_limit(double expected, double beta, Damping damping, const VecX& shape, const std::string& sabotage) {
+double found_limit(double expected, double beta, Damping damping, const VecX& shape,
+                   const std::string& sabotage) {
   double low = 0.5 * expected, high = 2.0 * expected;
   if (grows(low, beta, damping, shape, sabotage)) return low;
   if (!grows(high, beta, damping, shape, sabotage)) return high;
@@ -106,13 +112,18 @@ double found_limit(double expected, double beta, Damping damping, const VecX& sh
 
 std::vector<Measurement> run(const std::string& sabotage) {
   Bar bar(0.0, "");
-  const integrate::Modes modes = integrate::find_modes(bar.system, bar.state.view(), {1, integrate::ModesOptions::End::kHighest});
+  const integrate::Modes modes =
+      integrate::find_modes(bar.system, bar.state.view(), {1, integrate::ModesOptions::End::kHighest});
   const double w = modes.omega(0), z = kDampingRatio, beta = 2.0 * z / w, root = std::sqrt(1.0 + z * z);
   const VecX shape = modes.shapes.col(0);
   std::vector<Measurement> out;
   const auto add = [&](const std::string& what, double exact, double damping, Damping kind) {
     const double found = found_limit(exact, sabotage == "no-damping" ? 0.0 : damping, kind, shape, sabotage);
-    out.push_back({.quantity = "largest stable step [s], " + what, .computed = found, .exact = exact, .error = std::abs(found / exact - 1.0), .bar = 0.02,
+    out.push_back({.quantity = "largest stable step [s], " + what,
+                   .computed = found,
+                   .exact = exact,
+                   .error = std::abs(found / exact - 1.0),
+                   .bar = 0.02,
                    .note = fmt::format("highest mode {:.4g} rad/s, by bisection", w)});
   };
   add("undamped", 2.0 / w, 0.0, Damping::kOld);
@@ -126,8 +137,11 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase explicit_limit() {
   return {.name = "explicit-limit",
           .section = "D",
-          .summary = "largest stable step of symplectic Euler: undamped, damped at the old and at the new velocity",
-          .why = "what an explicit method costs on a stiff body is set by one number, the highest frequency; linear stability theory",
+          .summary =
+              "largest stable step of symplectic Euler: undamped, damped at the old and at the new velocity",
+          .why =
+              "what an explicit method costs on a stiff body is set by one number, the highest frequency; "
+              "linear stability theory",
           .run = run,
           .sabotages = {"stiffer", "lighter", "no-damping", "implicit"}};
 }

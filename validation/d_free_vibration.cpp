@@ -5,32 +5,39 @@
 #include "palpate/integrate/integrators.h"
 #include "vibrating_bar.h"
 
-// Fixed steps of every method that can take them: the observed order against the one that the registry claims, on both sides.  (The
-// motion and its exact answer: vibrating_bar.h.)  An order is seen only where the method is in its asymptotic range for the modes that
-// it carries (VALIDATION, D); the motion starts at rest in the three lowest, and runs for T, half a period of the first.  With w the
-// third, the error of one step relative to the mode is C (w H)^{p+1}, of the run C (w H)^p w T:
+// Fixed steps of every method that can take them: the observed order against the one that the registry
+// claims, on both sides.  (The motion and its exact answer: vibrating_bar.h.)  An order is seen only where
+// the method is in its asymptotic range for the modes that it carries (VALIDATION, D); the motion starts at
+// rest in the three lowest, and runs for T, half a period of the first.  With w the third, the error of one
+// step relative to the mode is C (w H)^{p+1}, of the run C (w H)^p w T:
 //     order 1:      w^2 H T/2 <= 0.2      (the amplitude's damping e^{-w^2 H T/2})
 //     order 2:      w H <= 0.3 and w^3 H^2 T/12 <= 0.1      (the phase)
 //     order p >= 3: w H <= 0.1, where w^{p+1} H^p T/12 <= 0.1 holds by itself.
-// Tables with a small leading or a large next term show their order later: the coarsest step is a quarter of that bound for order 2 (sdirk212),
-// and w H = 0.05 for order 3 (esdirk325).
-// An explicit method is besides kept inside its stability limit for the highest mode: w_max H <= 0.5 of order 1 to 3, since that of order 2
-// has none on the imaginary axis but grows by (w_max H)^4/8 a step, which must not lift rounding to where it is seen; 1.5 of higher order,
-// whose error would else begin at rounding.
-// Steps shrink by 2 (order <= 2) or 1.5, so that the error at the finest stays above rounding.  Nonlinear and linear equations are solved
-// to rtol = newton_rtol = 1e-9: the problem is linear, and the first correction is exact but for rounding.
+// Tables with a small leading or a large next term show their order later: the coarsest step is a quarter of
+// that bound for order 2 (sdirk212), and w H = 0.05 for order 3 (esdirk325).
+// An explicit method is besides kept inside its stability limit for the highest mode: w_max H <= 0.5 of order
+// 1 to 3, since that of order 2 has none on the imaginary axis but grows by (w_max H)^4/8 a step, which must
+// not lift rounding to where it is seen; 1.5 of higher order, whose error would else begin at rounding.
+// Steps shrink by 2 (order <= 2) or 1.5, so that the error at the finest stays above rounding.  Nonlinear and
+// linear equations are solved to rtol = newton_rtol = 1e-9: the problem is linear, and the first correction
+// is exact but for rounding.
 
 namespace palpate::validation {
 namespace {
 
 double coarsest_step(const dynamics::StepperTraits& traits, const VibratingBar& bar, double T) {
   const double w = bar.omega[VibratingBar::kModes - 1];
-  const double accurate = traits.order == 1 ? 0.4 / (w * w * T) : traits.order == 2 ? 0.25 * std::min(0.3 / w, std::sqrt(1.2 / (w * w * w * T)))
-                          : traits.order == 3 ? 0.05 / w : 0.1 / w;
-  return traits.stability == dynamics::Stability::kExplicit ? std::min(accurate, (traits.order <= 3 ? 0.5 : 1.5) / bar.highest_omega) : accurate;
+  const double accurate = traits.order == 1   ? 0.4 / (w * w * T)
+                          : traits.order == 2 ? 0.25 * std::min(0.3 / w, std::sqrt(1.2 / (w * w * w * T)))
+                          : traits.order == 3 ? 0.05 / w
+                                              : 0.1 / w;
+  return traits.stability == dynamics::Stability::kExplicit
+             ? std::min(accurate, (traits.order <= 3 ? 0.5 : 1.5) / bar.highest_omega)
+             : accurate;
 }
 
-Measurement order_of_steps(const VibratingBar& bar, const dynamics::StepperEntry& entry, const std::string& sabotage) {
+Measurement order_of_steps(const VibratingBar& bar, const dynamics::StepperEntry& entry,
+                           const std::string& sabotage) {
   const double T = 0.5 * bar.period(), ratio = entry.traits.order <= 2 ? 2.0 : 1.5;
   IntegratorSpec spec;
   spec.name = entry.name;
@@ -43,9 +50,15 @@ Measurement order_of_steps(const VibratingBar& bar, const dynamics::StepperEntry
     errors.push_back(vibration_error(bar, spec, {.T = T}, sabotage));
   }
   const double order = entry.traits.order;
-  return {.quantity = entry.name + ": error at the finest step", .computed = errors.back(), .error = errors.back(), .bar = 0.05,
-          .order = study::fitted_order(steps, errors), .order_low = order - 0.1, .order_high = order + 0.1,
-          .note = fmt::format("order in the step, 4 steps from {:.2g} to {:.2g} s", steps.front(), steps.back())};
+  return {
+      .quantity = entry.name + ": error at the finest step",
+      .computed = errors.back(),
+      .error = errors.back(),
+      .bar = 0.05,
+      .order = study::fitted_order(steps, errors),
+      .order_low = order - 0.1,
+      .order_high = order + 0.1,
+      .note = fmt::format("order in the step, 4 steps from {:.2g} to {:.2g} s", steps.front(), steps.back())};
 }
 
 std::vector<Measurement> run(const std::string& sabotage) {
@@ -53,12 +66,17 @@ std::vector<Measurement> run(const std::string& sabotage) {
   const VibratingBar bar;
   std::vector<Measurement> out;
   for (const auto& entry : integrate::stepper_registry())
-    if (entry.traits.stability != dynamics::Stability::kStatic && entry.traits.control != StepControl::kAdaptive)
+    if (entry.traits.stability != dynamics::Stability::kStatic &&
+        entry.traits.control != StepControl::kAdaptive)
       out.push_back(order_of_steps(bar, entry, sabotage));
   IntegratorSpec spec;
   spec.rtol = 1e-4;
   const double e = vibration_error(bar, spec, {.T = 0.5 * bar.period(), .amplitude = 1e-5}, sabotage);
-  out.push_back({.quantity = "corotational body at amplitude 1e-5 m, cvode-bdf: error", .computed = e, .error = e, .bar = 1e-3, .note = "rtol 1e-4; the nonlinearity is 1e-5"});
+  out.push_back({.quantity = "corotational body at amplitude 1e-5 m, cvode-bdf: error",
+                 .computed = e,
+                 .error = e,
+                 .bar = 1e-3,
+                 .note = "rtol 1e-4; the nonlinearity is 1e-5"});
   return out;
 }
 
@@ -67,8 +85,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase free_vibration() {
   return {.name = "free-vibration",
           .section = "D",
-          .summary = "free vibration of a clamped bar against the modes of its own K and M: order of every integrator in its step",
-          .why = "exact in time, so each integrator's error is its own; eigenvectors by a dense solver that no integrator uses",
+          .summary =
+              "free vibration of a clamped bar against the modes of its own K and M: order of every "
+              "integrator in its step",
+          .why =
+              "exact in time, so each integrator's error is its own; eigenvectors by a dense solver that no "
+              "integrator uses",
           .run = run,
           .sabotages = {"half-stiffness", "one-percent"}};
 }

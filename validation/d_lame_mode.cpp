@@ -6,11 +6,13 @@
 
 // Free block a x a x b.  The field (Lame 1852; Mindlin 1956)
 //     u = cos(pi x/a) sin(pi y/a),   v = -sin(pi x/a) cos(pi y/a),   w = 0      (x, y in [0, a])
-// has no divergence, so lambda is out of it: rho u_tt = mu laplace u gives w^2 = 2 mu (pi/a)^2/rho.  Its stresses  s_xx = -s_yy = -2 mu (pi/a) sin sin
-// vanish on all four sides, and so do s_xy = mu (u_y + v_x) = 0 everywhere and all stresses on z = 0, b: it is a mode of the free block,
+// has no divergence, so lambda is out of it: rho u_tt = mu laplace u gives w^2 = 2 mu (pi/a)^2/rho.  Its
+// stresses  s_xx = -s_yy = -2 mu (pi/a) sin sin vanish on all four sides, and so do s_xy = mu (u_y + v_x) = 0
+// everywhere and all stresses on z = 0, b: it is a mode of the free block,
 //     omega = sqrt(2) pi sqrt(mu/rho)/a,
-// for any Poisson's ratio and thickness.  b differs from a, so that the same mode in other planes has no such frequency to mix with.
-// The mode is found by its overlap (mass-weighted; modal assurance criterion, Allemang and Brown 1982) > 0.95.
+// for any Poisson's ratio and thickness.  b differs from a, so that the same mode in other planes has no such
+// frequency to mix with. The mode is found by its overlap (mass-weighted; modal assurance criterion, Allemang
+// and Brown 1982) > 0.95.
 
 namespace palpate::validation {
 namespace {
@@ -46,9 +48,19 @@ void add(double poisson, const std::string& sabotage, std::vector<Measurement>& 
     error.push_back(std::abs(frequency / exact - 1.0));
     overlap = std::min(overlap, match.overlap);
   }
-  out.push_back({.quantity = fmt::format("frequency [Hz], nu = {}, 25 cells a side", poisson), .computed = frequency, .exact = exact, .error = error.back(),
-                 .bar = 5e-3, .order = study::fitted_order(h, error), .order_low = 1.8, .order_high = 2.1, .note = "15, 20, 25 cells a side"});
-  out.push_back({.quantity = fmt::format("1 - overlap with Lame's mode, nu = {}", poisson), .computed = 1.0 - overlap, .error = 1.0 - overlap, .bar = 0.05,
+  out.push_back({.quantity = fmt::format("frequency [Hz], nu = {}, 25 cells a side", poisson),
+                 .computed = frequency,
+                 .exact = exact,
+                 .error = error.back(),
+                 .bar = 5e-3,
+                 .order = study::fitted_order(h, error),
+                 .order_low = 1.8,
+                 .order_high = 2.1,
+                 .note = "15, 20, 25 cells a side"});
+  out.push_back({.quantity = fmt::format("1 - overlap with Lame's mode, nu = {}", poisson),
+                 .computed = 1.0 - overlap,
+                 .error = 1.0 - overlap,
+                 .bar = 0.05,
                  .note = "the worst of three meshes"});
 }
 
@@ -63,8 +75,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase lame_mode() {
   return {.name = "lame-mode",
           .section = "D",
-          .summary = "a free block vibrates in Lame's mode, found by its overlap: frequency and order in the element size",
-          .why = "the only mode of a three-dimensional free body in closed form; G alone is in it, so a wrong lambda shows; rigid motions must not disturb it",
+          .summary =
+              "a free block vibrates in Lame's mode, found by its overlap: frequency and order in the "
+              "element size",
+          .why =
+              "the only mode of a three-dimensional free body in closed form; G alone is in it, so a wrong "
+              "lambda shows; rigid motions must not disturb it",
           .run = run,
           .sabotages = {"double-density", "other-poisson", "held-side"}};
 }

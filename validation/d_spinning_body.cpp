@@ -8,22 +8,29 @@
 #include "palpate/integrate/integrators.h"
 #include "palpate/mesh/generators.h"
 
-// Relative equilibrium of a free body that spins with w: v = w x x and, at every node, f(x) = m w x (w x x).  The solution of
-//     r(x) = f(x) - M W x = 0,  W x = w x (w x x),  by Newton with the exact tangent K + M W (derivative of -r),
-// turns rigidly for ever.  E' = sym(F^T F') = 0 in it, so an objective stiffness damping takes nothing, and angular momentum
-// H = sum m x x v and energy T + U stay what they are.  The motion along w and the turn about w are free: the least-norm step leaves them.
+// Relative equilibrium of a free body that spins with w: v = w x x and, at every node, f(x) = m w x (w x x).
+// The solution of
+//     r(x) = f(x) - M W x = 0,  W x = w x (w x x),  by Newton with the exact tangent K + M W (derivative of
+//     -r),
+// turns rigidly for ever.  E' = sym(F^T F') = 0 in it, so an objective stiffness damping takes nothing, and
+// angular momentum H = sum m x x v and energy T + U stay what they are.  The motion along w and the turn
+// about w are free: the least-norm step leaves them.
 //
-// The implicit midpoint rule has relative equilibria of its own, at any step h.  Let the shape S be one of the continuous body at spin w (about z),
-// tan(th/2) = w h/2, and let q_n = R(n th) q, u_n = w x q_n with q = S with its part across the axis enlarged by 1/cos(th/2), turned by -th/2.
-// Then q_m = (q_0 + q_1)/2 = S and u_m = w x S: (q_1 - q_0)/h = (2/h) tan(th/2) e_z x S = u_m, and M (u_1 - u_0)/h = M w x (w x S) = f(S), while
-// damping sees a rigid spin.  So the rule turns this body rigidly for ever too, at every step size, and energy and momentum are kept to Newton's tolerance:
-// a residual r of a step adds h sum x_m x r to H and h u_m . r to the energy.  A correction left at newton_rtol (relative to the speeds) may
-// add up over the steps: 2 turns of 32 steps are safe at newton_rtol = 1e-9/64, about 1e-11.  Measured, since Newton converges quadratically and
-// ends below its tolerance: drift 4e-9 at newton_rtol = 1e-4, 1e-11 at 1e-6, 6e-13 at 1e-8, rounding at 1e-11.
-// Started in the continuous equilibrium instead, the shape rings, and the energy, which the rule keeps only of quadratic systems, swings by
-// about (w h)^2/8 (4e-3 here), while H stays.
+// The implicit midpoint rule has relative equilibria of its own, at any step h.  Let the shape S be one of
+// the continuous body at spin w (about z), tan(th/2) = w h/2, and let q_n = R(n th) q, u_n = w x q_n with q =
+// S with its part across the axis enlarged by 1/cos(th/2), turned by -th/2.
+// Then q_m = (q_0 + q_1)/2 = S and u_m = w x S: (q_1 - q_0)/h = (2/h) tan(th/2) e_z x S = u_m, and M (u_1 -
+// u_0)/h = M w x (w x S) = f(S), while damping sees a rigid spin.  So the rule turns this body rigidly for
+// ever too, at every step size, and energy and momentum are kept to Newton's tolerance:
+// a residual r of a step adds h sum x_m x r to H and h u_m . r to the energy.  A correction left at
+// newton_rtol (relative to the speeds) may add up over the steps: 2 turns of 32 steps are safe at newton_rtol
+// = 1e-9/64, about 1e-11.  Measured, since Newton converges quadratically and ends below its tolerance: drift
+// 4e-9 at newton_rtol = 1e-4, 1e-11 at 1e-6, 6e-13 at 1e-8, rounding at 1e-11.
+// Started in the continuous equilibrium instead, the shape rings, and the energy, which the rule keeps only
+// of quadratic systems, swings by about (w h)^2/8 (4e-3 here), while H stays.
 //
-// For any state at all, internal forces have no resultant and no moment (P F^T symmetric), and damping no power under v = w x x.
+// For any state at all, internal forces have no resultant and no moment (P F^T symmetric), and damping no
+// power under v = w x x.
 
 namespace palpate::validation {
 namespace {
@@ -31,10 +38,13 @@ namespace {
 /// Stiffness damping that is not objective: f = -beta K0 v with the rest tangent.  It brakes the spin.
 class RayleighDamping final : public dynamics::ForceTerm {
  public:
-  RayleighDamping(std::shared_ptr<fem::SoftBody> body, VecX rest, double beta) : body_(std::move(body)), rest_(std::move(rest)), beta_(beta) {}
+  RayleighDamping(std::shared_ptr<fem::SoftBody> body, VecX rest, double beta)
+      : body_(std::move(body)), rest_(std::move(rest)), beta_(beta) {}
   std::string_view name() const override { return "rayleigh"; }
   dynamics::TermTraits traits() const override { return {}; }
-  void add_force(const dynamics::StateView& s, VecX& f) override { apply_tangent(s, 0.0, -1.0, VecX(s.u), f); }
+  void add_force(const dynamics::StateView& s, VecX& f) override {
+    apply_tangent(s, 0.0, -1.0, VecX(s.u), f);
+  }
   void add_tangent(const dynamics::StateView& s, double, double d, dynamics::BorderedMatrix& A) override {
     body_->add_tangent(at_rest(s), d * beta_, 0.0, A);
   }
@@ -43,7 +53,9 @@ class RayleighDamping final : public dynamics::ForceTerm {
   }
 
  private:
-  dynamics::StateView at_rest(const dynamics::StateView& s) const { return dynamics::make_view(*s.layout, s.time, rest_.data(), s.u.data()); }
+  dynamics::StateView at_rest(const dynamics::StateView& s) const {
+    return dynamics::make_view(*s.layout, s.time, rest_.data(), s.u.data());
+  }
   std::shared_ptr<fem::SoftBody> body_;
   VecX rest_;
   double beta_;
@@ -77,12 +89,15 @@ struct Spinner {
     const int id = state.insert(spec, rest.nodes.reshaped(), VecX::Zero(mass.size()));
     body = std::make_shared<fem::SoftBody>("spinner", rest, m, fem::SoftBodyOptions{}, id);
     system.add(std::static_pointer_cast<dynamics::ForceTerm>(body));
-    if (sabotage == "rayleigh-damping") system.add(std::make_shared<RayleighDamping>(body, rest.nodes.reshaped(), kBeta));
+    if (sabotage == "rayleigh-damping")
+      system.add(std::make_shared<RayleighDamping>(body, rest.nodes.reshaped(), kBeta));
     system.add(fem::make_lumped_mass(rest, m.density, id));
     system.prepare(state.view());
   }
 
-  static VecX spin(const Vec3& w, const VecX& x) { return (cross_matrix(w) * x.reshaped(3, x.size() / 3)).reshaped(); }
+  static VecX spin(const Vec3& w, const VecX& x) {
+    return (cross_matrix(w) * x.reshaped(3, x.size() / 3)).reshaped();
+  }
 
   /// Newton from the rest shape; false when it does not get to rounding.
   bool find_equilibrium() {
@@ -112,7 +127,8 @@ struct Spinner {
 
   Vec3 angular_momentum() {
     Vec3 H = Vec3::Zero();
-    for (int i = 0; i < mass.size() / 3; ++i) H += mass[3 * i] * state.q().segment<3>(3 * i).cross(state.u().segment<3>(3 * i));
+    for (int i = 0; i < mass.size() / 3; ++i)
+      H += mass[3 * i] * state.q().segment<3>(3 * i).cross(state.u().segment<3>(3 * i));
     return H;
   }
   double energy() { return system.kinetic_energy(state.view()) + system.potential_energy(state.view()); }
@@ -123,7 +139,8 @@ void place_for_midpoint(Spinner& s, double h) {
   const double t = 0.5 * kSpin.z() * h;  // tan(th/2)
   for (Eigen::Index i = 0; i < s.state.q().size(); i += 3) {
     const Vec3 S = s.state.q().segment<3>(i);
-    s.state.q().segment<3>(i) = Vec3(S.x() + t * S.y(), S.y() - t * S.x(), S.z());  // turned by -half, across the axis over cos(half)
+    // turned by -half, across the axis over cos(half)
+    s.state.q().segment<3>(i) = Vec3(S.x() + t * S.y(), S.y() - t * S.x(), S.z());
   }
 }
 
@@ -140,7 +157,8 @@ Drift drift(Spinner& s, const IntegratorSpec& spec, int turns) {
   const auto stepper = integrate::make_stepper(s.system, s.state, spec);
   Drift out;
   for (int i = 1; i <= turns * kLooks; ++i) {
-    if (!stepper->advance_to(i * 2.0 * M_PI / (kLooks * kSpin.norm())).ok()) return {std::nan(""), std::nan("")};
+    if (!stepper->advance_to(i * 2.0 * M_PI / (kLooks * kSpin.norm())).ok())
+      return {std::nan(""), std::nan("")};
     out.momentum = std::max(out.momentum, (s.angular_momentum() - H0).norm() / H0.norm());
     out.energy = std::max(out.energy, std::abs(s.energy() - E0) / E0);
   }
@@ -154,8 +172,16 @@ void add_drifts(const std::string& sabotage, std::vector<Measurement>& out) {
     if (midpoint && sabotage != "continuous-shape") place_for_midpoint(s, spec.step_s);
     Drift d = drift(s, spec, 2);
     if (!found) d = {std::nan(""), std::nan("")};
-    out.push_back({.quantity = "drift of angular momentum, 2 turns, " + spec.name, .computed = d.momentum, .error = d.momentum, .bar = 1e-9, .note = note});
-    out.push_back({.quantity = "drift of energy, 2 turns, " + spec.name, .computed = d.energy, .error = d.energy, .bar = 1e-9, .note = note});
+    out.push_back({.quantity = "drift of angular momentum, 2 turns, " + spec.name,
+                   .computed = d.momentum,
+                   .error = d.momentum,
+                   .bar = 1e-9,
+                   .note = note});
+    out.push_back({.quantity = "drift of energy, 2 turns, " + spec.name,
+                   .computed = d.energy,
+                   .error = d.energy,
+                   .bar = 1e-9,
+                   .note = note});
   };
   IntegratorSpec spec;
   spec.rtol = 1e-12;
@@ -166,12 +192,15 @@ void add_drifts(const std::string& sabotage, std::vector<Measurement>& out) {
   add(spec, "32 steps a turn, newton_rtol 1e-11, stiffness damping on", true);
 }
 
-/// Over random states: moment of all internal forces, and power of damping under a rigid spin, against what the same speeds cost in shear.
+/// Over random states: moment of all internal forces, and power of damping under a rigid spin, against what
+/// the same speeds cost in shear.
 void add_instantaneous(const std::string& sabotage, std::vector<Measurement>& out) {
   Spinner s(sabotage);
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto random = [&](Eigen::Index n) { return VecX(VecX::NullaryExpr(n, [&] { return uniform(engine); })); };
+  const auto random = [&](Eigen::Index n) {
+    return VecX(VecX::NullaryExpr(n, [&] { return uniform(engine); }));
+  };
   double moment = 0.0, power = 0.0;
   for (int k = 0; k < 20; ++k) {
     const VecX x = s.rest.nodes.reshaped() + 0.004 * random(s.mass.size()), v = random(s.mass.size());
@@ -193,8 +222,14 @@ void add_instantaneous(const std::string& sabotage, std::vector<Measurement>& ou
     const double reference = std::abs(v.dot(f - still)) * speed_ratio * speed_ratio;
     power = std::max(power, std::abs(spin.dot(forces(spin) - still)) / reference);
   }
-  out.push_back({.quantity = "moment of internal forces / sum |x||f|, 20 random states", .computed = moment, .error = moment, .bar = 1e-12});
-  out.push_back({.quantity = "damping power under v = w x x / that of the same speeds at random", .computed = power, .error = power, .bar = 1e-12});
+  out.push_back({.quantity = "moment of internal forces / sum |x||f|, 20 random states",
+                 .computed = moment,
+                 .error = moment,
+                 .bar = 1e-12});
+  out.push_back({.quantity = "damping power under v = w x x / that of the same speeds at random",
+                 .computed = power,
+                 .error = power,
+                 .bar = 1e-12});
 }
 
 std::vector<Measurement> run(const std::string& sabotage) {
@@ -207,12 +242,17 @@ std::vector<Measurement> run(const std::string& sabotage) {
 }  // namespace
 
 ValidationCase spinning_body() {
-  return {.name = "spinning-body",
-          .section = "D",
-          .summary = "free soft body spinning in relative equilibrium, stiffness damping on: angular momentum and energy kept",
-          .why = "damping that is not objective brakes every turning body; relative equilibrium by Newton (Simo, Posbergh, Marsden 1990)",
-          .run = run,
-          .sabotages = {"mass-damping", "rayleigh-damping", "rest-shape", "loose-newton", "continuous-shape"}};
+  return {
+      .name = "spinning-body",
+      .section = "D",
+      .summary =
+          "free soft body spinning in relative equilibrium, stiffness damping on: angular momentum and "
+          "energy kept",
+      .why =
+          "damping that is not objective brakes every turning body; relative equilibrium by Newton (Simo, "
+          "Posbergh, Marsden 1990)",
+      .run = run,
+      .sabotages = {"mass-damping", "rayleigh-damping", "rest-shape", "loose-newton", "continuous-shape"}};
 }
 
 }  // namespace palpate::validation

@@ -4,13 +4,15 @@
 #include "modal_body.h"
 #include "palpate/mesh/generators.h"
 
-// A bar held at x = 0 and free at x = L, of material 1 up to x = a and material 2 behind it (b = L - a), nu = 0: one-dimensional waves, k_i = w/c_i,
+// A bar held at x = 0 and free at x = L, of material 1 up to x = a and material 2 behind it (b = L - a), nu =
+// 0: one-dimensional waves, k_i = w/c_i,
 //     u = sin(k_1 x)  for x < a,     u = B cos(k_2 (L - x))  behind.
 // At the border u and the force E u' are continuous:
 //     sin(k_1 a) = B cos(k_2 b),   E_1 k_1 cos(k_1 a) = E_2 k_2 B sin(k_2 b),   hence
 //     E_1 k_1 cos(k_1 a) cos(k_2 b) - E_2 k_2 sin(k_1 a) sin(k_2 b) = 0,
-// whose roots w are the frequencies: found by bisection between changes of sign on a fine grid.  With E and rho alike this is cos(w L/c) = 0.
-// The border lies between elements, the mode is smooth on either side: linear elements keep their order 2.
+// whose roots w are the frequencies: found by bisection between changes of sign on a fine grid.  With E and
+// rho alike this is cos(w L/c) = 0. The border lies between elements, the mode is smooth on either side:
+// linear elements keep their order 2.
 
 namespace palpate::validation {
 namespace {
@@ -26,7 +28,8 @@ constexpr Layer kFirst{1e6, 800.0}, kSecond{8e6, 2000.0};
 
 double frequency_equation(double w) {
   const double k1 = w / kFirst.speed(), k2 = w / kSecond.speed(), a = kBorder, b = kLength - kBorder;
-  return kFirst.youngs_modulus * k1 * std::cos(k1 * a) * std::cos(k2 * b) - kSecond.youngs_modulus * k2 * std::sin(k1 * a) * std::sin(k2 * b);
+  return kFirst.youngs_modulus * k1 * std::cos(k1 * a) * std::cos(k2 * b) -
+         kSecond.youngs_modulus * k2 * std::sin(k1 * a) * std::sin(k2 * b);
 }
 
 /// The first roots [rad/s].
@@ -48,7 +51,8 @@ std::vector<double> exact_omegas() {
 /// Frequencies [rad/s] of the axial modes; NaN where none overlaps by more than 0.95.
 std::vector<double> found_omegas(int cells_along, bool consistent, const std::string& sabotage) {
   ModalBody bar;
-  bar.rest = mesh::box(Vec3(kLength, kHalfWidth, kHalfWidth), {cells_along, cells_along / 8, cells_along / 8});
+  bar.rest =
+      mesh::box(Vec3(kLength, kHalfWidth, kHalfWidth), {cells_along, cells_along / 8, cells_along / 8});
   const Vec3 corner = bar.rest.nodes.rowwise().minCoeff();
   bar.rest.nodes.colwise() -= corner;
   fem::Material first, second;
@@ -58,15 +62,18 @@ std::vector<double> found_omegas(int cells_along, bool consistent, const std::st
   first.density = kFirst.density;
   second.density = sabotage == "one-density" ? kFirst.density : kSecond.density;
   bar.layers = fem::Materials({first, second}, {});
-  for (const auto& tet : bar.rest.tets.colwise()) bar.layers->of_element.push_back(bar.rest.nodes(0, tet).mean() > kBorder);
+  for (const auto& tet : bar.rest.tets.colwise())
+    bar.layers->of_element.push_back(bar.rest.nodes(0, tet).mean() > kBorder);
   bar.consistent_mass = consistent;
   bar.hold("xyz", [](const Vec3& X) { return X.x() < 1e-9; });
-  bar.hold("y", [](const Vec3& X) { return X.y() < 1e-9; });  // a quarter of the section: axial-vibration says why
+  // a quarter of the section: axial-vibration says why
+  bar.hold("y", [](const Vec3& X) { return X.y() < 1e-9; });
   bar.hold("z", [](const Vec3& X) { return X.z() < 1e-9; });
   const integrate::Modes modes = bar.lowest(6);
   std::vector<double> out;
   for (const double w : exact_omegas()) {
-    const double k1 = w / kFirst.speed(), k2 = w / kSecond.speed(), B = std::sin(k1 * kBorder) / std::cos(k2 * (kLength - kBorder));
+    const double k1 = w / kFirst.speed(), k2 = w / kSecond.speed(),
+                 B = std::sin(k1 * kBorder) / std::cos(k2 * (kLength - kBorder));
     const Match match = best_match(bar, modes, bar.field([&](const Vec3& X) {
       return Vec3(X.x() < kBorder ? std::sin(k1 * X.x()) : B * std::cos(k2 * (kLength - X.x())), 0.0, 0.0);
     }));
@@ -89,9 +96,16 @@ std::vector<Measurement> run(const std::string& sabotage) {
     for (std::size_t n = 0; n < exact.size(); ++n) {
       std::vector<double> error;
       for (const auto& one : found) error.push_back(std::abs(one[n] / exact[n] - 1.0));
-      out.push_back({.quantity = fmt::format("frequency {} [rad/s], {} mass, {} cells along", n + 1, consistent ? "consistent" : "lumped", cells.back()),
-                     .computed = found.back()[n], .exact = exact[n], .error = error.back(), .bar = 5e-3, .order = study::fitted_order(h, error), .order_low = 1.8,
-                     .order_high = 2.1, .note = "16, 24, 32, 48 cells along"});
+      out.push_back({.quantity = fmt::format("frequency {} [rad/s], {} mass, {} cells along", n + 1,
+                                             consistent ? "consistent" : "lumped", cells.back()),
+                     .computed = found.back()[n],
+                     .exact = exact[n],
+                     .error = error.back(),
+                     .bar = 5e-3,
+                     .order = study::fitted_order(h, error),
+                     .order_low = 1.8,
+                     .order_high = 2.1,
+                     .note = "16, 24, 32, 48 cells along"});
     }
   }
   return out;
@@ -102,8 +116,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase two_material_bar() {
   return {.name = "two-material-bar",
           .section = "D",
-          .summary = "a bar of two materials vibrates along its axis: first three frequencies against the roots of its frequency equation, order in the element size",
-          .why = "stiffness and mass of both materials, and what passes between them, against one-dimensional waves, whose solution is exact for nu = 0",
+          .summary =
+              "a bar of two materials vibrates along its axis: first three frequencies against the roots of "
+              "its frequency equation, order in the element size",
+          .why =
+              "stiffness and mass of both materials, and what passes between them, against one-dimensional "
+              "waves, whose solution is exact for nu = 0",
           .run = run,
           .sabotages = {"one-stiffness", "one-density"}};
 }

@@ -4,24 +4,31 @@
 #include "palpate/integrate/integrators.h"
 #include "vibrating_bar.h"
 
-// Error control of every method that has it: over two periods of the lowest mode (the motion and its exact answer: vibrating_bar.h) the error
-// falls with the tolerance, slope 0.8 to 1.2.  Why 1: an embedded pair of orders p and p - 1 estimates the error of a step as C h^p and
-// holds it at rtol, so h ~ rtol^{1/p}; the solution carried on has order p, so its error over a given time is ~ h^p ~ rtol.
-// Backward differences hold C h^{k+1} of order k <= 5 at a tolerance T: error ~ T^{k/(k+1)}.  They are given T = rtol^{6/5} (adapter.h), which makes that 0.9 to 1
-// for k from 3 to 5.  Adams holds the same, but its k rises along the ladder up to 12, so that its error falls faster than at any one k.
-// Two pairs (ESDIRK437, and ARK548 also as one half of an additive pair) estimate a linear motion better than others: of the conditions of order p on the
-// embedded weights, that of the tall tree, b^T A^(p-1) 1 = 1/p!, which alone counts in a linear system, is met to 2e-6 and 2e-8.  There the estimate is
-// O(h^(p+1)); the tolerance that they are given is half-way between (ark.cpp), and their slope here (p + 1/2)/(p + 1): 0.90 and 0.92.
-// Two motions in the three lowest modes: undamped; and with damping ratio 0.03 of the lowest, where beta K damps the upper modes heavily.
-// Explicit methods are held by stability, not by their error, once w_max h is at its limit: they are judged undamped, below that.  The step's mean w_max h
-// here is 1.6 of order 3 and 2.6 of order 4 at rtol = 1e-3, as it is at 1e-2; from 1e-4 it falls.  Cash and Karp's pair of order 5 has no limit on the imaginary
-// axis to stay below: of its stability polynomial 1 + z + ... + z^5/120 + z^6/800,
+// Error control of every method that has it: over two periods of the lowest mode (the motion and its exact
+// answer: vibrating_bar.h) the error falls with the tolerance, slope 0.8 to 1.2.  Why 1: an embedded pair of
+// orders p and p - 1 estimates the error of a step as C h^p and holds it at rtol, so h ~ rtol^{1/p}; the
+// solution carried on has order p, so its error over a given time is ~ h^p ~ rtol.
+// Backward differences hold C h^{k+1} of order k <= 5 at a tolerance T: error ~ T^{k/(k+1)}.  They are given
+// T = rtol^{6/5} (adapter.h), which makes that 0.9 to 1 for k from 3 to 5.  Adams holds the same, but its k
+// rises along the ladder up to 12, so that its error falls faster than at any one k.
+// Two pairs (ESDIRK437, and ARK548 also as one half of an additive pair) estimate a linear motion better than
+// others: of the conditions of order p on the embedded weights, that of the tall tree, b^T A^(p-1) 1 = 1/p!,
+// which alone counts in a linear system, is met to 2e-6 and 2e-8.  There the estimate is O(h^(p+1)); the
+// tolerance that they are given is half-way between (ark.cpp), and their slope here (p + 1/2)/(p + 1): 0.90
+// and 0.92. Two motions in the three lowest modes: undamped; and with damping ratio 0.03 of the lowest, where
+// beta K damps the upper modes heavily. Explicit methods are held by stability, not by their error, once
+// w_max h is at its limit: they are judged undamped, below that.  The step's mean w_max h here is 1.6 of
+// order 3 and 2.6 of order 4 at rtol = 1e-3, as it is at 1e-2; from 1e-4 it falls.  Cash and Karp's pair of
+// order 5 has no limit on the imaginary axis to stay below: of its stability polynomial 1 + z + ... + z^5/120
+// + z^6/800,
 //     |R(iy)|^2 - 1 = 2 (1/720 - 1/800) y^6 + ...,   |R(iy)| = 1 + y^6/7200 + ...,
-// so that it amplifies undamped motion at every step, by 2 % each at y = 2 and 7 % at 2.5.  Where the error of the lowest modes would allow such steps, the highest
-// modes grow from rounding to the tolerance, never die away, and hold the step at w_max h = 1.35 whatever the tolerance (1e-3 to 3e-6): the error is theirs there, 130
-// times that of the three modes at 1e-3, and some 0.8 rtol.
+// so that it amplifies undamped motion at every step, by 2 % each at y = 2 and 7 % at 2.5.  Where the error
+// of the lowest modes would allow such steps, the highest modes grow from rounding to the tolerance, never
+// die away, and hold the step at w_max h = 1.35 whatever the tolerance (1e-3 to 3e-6): the error is theirs
+// there, 130 times that of the three modes at 1e-3, and some 0.8 rtol.
 // From rtol = 1e-7 the lowest modes ask for less than they can use to grow.
-// A third motion is reported and has no bar: undamped, all modes at equal amplitude, some of which no tolerance of the ladder resolves.
+// A third motion is reported and has no bar: undamped, all modes at equal amplitude, some of which no
+// tolerance of the ladder resolves.
 
 namespace palpate::validation {
 namespace {
@@ -44,8 +51,10 @@ Decades decades(const dynamics::StepperTraits& traits, bool damped) {
   return {3, 8};
 }
 
-Measurement slope(const VibratingBar& bar, const dynamics::StepperEntry& entry, bool damped, const std::string& sabotage) {
-  const VibrationTrial trial{.T = 2.0 * bar.period(), .looks = 8, .beta = damped ? 2.0 * kDampingRatio / bar.omega[0] : 0.0};
+Measurement slope(const VibratingBar& bar, const dynamics::StepperEntry& entry, bool damped,
+                  const std::string& sabotage) {
+  const VibrationTrial trial{
+      .T = 2.0 * bar.period(), .looks = 8, .beta = damped ? 2.0 * kDampingRatio / bar.omega[0] : 0.0};
   const Decades range = decades(entry.traits, damped);
   IntegratorSpec spec;
   spec.name = entry.name;
@@ -58,9 +67,16 @@ Measurement slope(const VibratingBar& bar, const dynamics::StepperEntry& entry, 
     errors.push_back(vibration_error(bar, spec, trial, sabotage));
     table += fmt::format(" {:.1e}", errors.back());
   }
-  return {.quantity = fmt::format("{}, {}: error at rtol 1e-{}", entry.name, damped ? "damped" : "undamped", range.tightest), .computed = errors.back(),
-          .error = errors.back(), .bar = std::pow(10.0, 2 - range.tightest), .order = study::fitted_order(tolerances, errors), .order_low = 0.8, .order_high = 1.2,
-          .note = fmt::format("slope of the error against rtol, 1e-{} to 1e-{}:{}", range.loosest, range.tightest, table)};
+  return {.quantity = fmt::format("{}, {}: error at rtol 1e-{}", entry.name, damped ? "damped" : "undamped",
+                                  range.tightest),
+          .computed = errors.back(),
+          .error = errors.back(),
+          .bar = std::pow(10.0, 2 - range.tightest),
+          .order = study::fitted_order(tolerances, errors),
+          .order_low = 0.8,
+          .order_high = 1.2,
+          .note = fmt::format("slope of the error against rtol, 1e-{} to 1e-{}:{}", range.loosest,
+                              range.tightest, table)};
 }
 
 Measurement full_spectrum(const VibratingBar& bar, const dynamics::StepperEntry& entry) {
@@ -73,8 +89,11 @@ Measurement full_spectrum(const VibratingBar& bar, const dynamics::StepperEntry&
     tolerances.push_back(spec.rtol);
     errors.push_back(vibration_error(bar, spec, {.T = 2.0 * bar.period(), .looks = 8}, ""));
   }
-  return {.quantity = entry.name + ", undamped full spectrum: error at rtol 1e-5", .computed = errors.back(), .error = errors.back(),
-          .bar = std::numeric_limits<double>::infinity(), .order = study::fitted_order(tolerances, errors),
+  return {.quantity = entry.name + ", undamped full spectrum: error at rtol 1e-5",
+          .computed = errors.back(),
+          .error = errors.back(),
+          .bar = std::numeric_limits<double>::infinity(),
+          .order = study::fitted_order(tolerances, errors),
           .note = "reported, not barred: slope of the error against rtol, 1e-2 to 1e-5"};
 }
 
@@ -97,8 +116,12 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase vibration_tolerance() {
   return {.name = "vibration-tolerance",
           .section = "D",
-          .summary = "free vibration of a clamped bar under error control: slope of the error against the tolerance, every adaptive integrator",
-          .why = "a tolerance is worth what it promises only where the error follows it; exact in time, so no reference run",
+          .summary =
+              "free vibration of a clamped bar under error control: slope of the error against the "
+              "tolerance, every adaptive integrator",
+          .why =
+              "a tolerance is worth what it promises only where the error follows it; exact in time, so no "
+              "reference run",
           .slow = true,
           .run = run,
           .sabotages = {"half-stiffness", "one-percent", "tolerance-ignored"}};

@@ -4,8 +4,9 @@
 #include "cases.h"
 #include "palpate/device/limiter.h"
 
-// A property, not a formula: for any stream of wrenches (a millionfold too large, not finite, with lost poses), force and torque stay within their
-// maximum and their slew, and are zero from 20 ms after the last valid tick on.
+// A property, not a formula: for any stream of wrenches (a millionfold too large, not finite, with lost
+// poses), force and torque stay within their maximum and their slew, and are zero from 20 ms after the last
+// valid tick on.
 
 namespace palpate::validation {
 namespace {
@@ -14,13 +15,17 @@ constexpr double kForce = 3.3, kTorque = 0.2, kForceSlew = 400.0, kTorqueSlew = 
 
 /// What a program without that care would send: the last finite wish, clipped by component.
 Wrench careless(const Wrench& wanted, bool clip) {
-  return clip ? Wrench{wanted.moment.cwiseMax(-kTorque).cwiseMin(kTorque), wanted.force.cwiseMax(-kForce).cwiseMin(kForce)} : wanted;
+  return clip ? Wrench{wanted.moment.cwiseMax(-kTorque).cwiseMin(kTorque),
+                       wanted.force.cwiseMax(-kForce).cwiseMin(kForce)}
+              : wanted;
 }
 
 std::vector<Measurement> run(const std::string& sabotage) {
   std::mt19937 rng(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto vec = [&](double size) { return Vec3(size * uniform(rng), size * uniform(rng), size * uniform(rng)); };
+  const auto vec = [&](double size) {
+    return Vec3(size * uniform(rng), size * uniform(rng), size * uniform(rng));
+  };
   double force = 0, slew = 0, late = 0, t = 0, last_valid = -1;
   long not_finite = 0, silent = 0;
   Wrench before;
@@ -28,16 +33,20 @@ std::vector<Measurement> run(const std::string& sabotage) {
   for (int i = 0; i < 200000; ++i) {
     const double dt = 1e-3 * std::pow(3.0, uniform(rng));
     t += dt;
-    Wrench wanted{vec(kTorque * std::pow(10.0, 6 * uniform(rng))), vec(kForce * std::pow(10.0, 6 * uniform(rng)))};
+    Wrench wanted{vec(kTorque * std::pow(10.0, 6 * uniform(rng))),
+                  vec(kForce * std::pow(10.0, 6 * uniform(rng)))};
     const bool valid = (i / 50) % 3 != 0;
-    if (uniform(rng) > 0.98 && sabotage != "componentwise-clip") wanted.force.x() = std::numeric_limits<double>::quiet_NaN();
+    if (uniform(rng) > 0.98 && sabotage != "componentwise-clip")
+      wanted.force.x() = std::numeric_limits<double>::quiet_NaN();
     if (valid && wanted.force.allFinite()) last_valid = t;
-    const Wrench out = sabotage == "no-limiter"           ? careless(wanted, false)
-                       : sabotage == "componentwise-clip" ? careless(wanted, true)
-                                                          : limiter.limit(t, wanted, valid || sabotage == "no-timeout");
+    const Wrench out = sabotage == "no-limiter" ? careless(wanted, false)
+                       : sabotage == "componentwise-clip"
+                           ? careless(wanted, true)
+                           : limiter.limit(t, wanted, valid || sabotage == "no-timeout");
     not_finite += !(out.force.allFinite() && out.moment.allFinite());
     force = std::max({force, out.force.norm() / kForce, out.moment.norm() / kTorque});
-    slew = std::max({slew, (out.force - before.force).norm() / (kForceSlew * dt), (out.moment - before.moment).norm() / (kTorqueSlew * dt)});
+    slew = std::max({slew, (out.force - before.force).norm() / (kForceSlew * dt),
+                     (out.moment - before.moment).norm() / (kTorqueSlew * dt)});
     if (t - last_valid >= device::kFallTime) {
       late = std::max(late, out.force.norm() + out.moment.norm());
       ++silent;
@@ -45,10 +54,24 @@ std::vector<Measurement> run(const std::string& sabotage) {
     before = out;
   }
   const auto over = [](double ratio) { return std::isfinite(ratio) ? std::max(0.0, ratio - 1.0) : ratio; };
-  return {{.quantity = "ticks that sent a number not finite [count]", .computed = static_cast<double>(not_finite), .error = static_cast<double>(not_finite)},
-          {.quantity = "largest force or torque / its maximum", .computed = force, .exact = 1.0, .error = over(force), .bar = 0.0},
-          {.quantity = "largest slew / its bound", .computed = slew, .exact = 1.0, .error = over(slew), .bar = 1e-9, .note = "the tick is known to rounding of t"},
-          {.quantity = "force + torque 20 ms after the last valid tick [N, N m]", .computed = late, .error = silent > 1000 ? late : NAN, .bar = 0.0}};
+  return {{.quantity = "ticks that sent a number not finite [count]",
+           .computed = static_cast<double>(not_finite),
+           .error = static_cast<double>(not_finite)},
+          {.quantity = "largest force or torque / its maximum",
+           .computed = force,
+           .exact = 1.0,
+           .error = over(force),
+           .bar = 0.0},
+          {.quantity = "largest slew / its bound",
+           .computed = slew,
+           .exact = 1.0,
+           .error = over(slew),
+           .bar = 1e-9,
+           .note = "the tick is known to rounding of t"},
+          {.quantity = "force + torque 20 ms after the last valid tick [N, N m]",
+           .computed = late,
+           .error = silent > 1000 ? late : NAN,
+           .bar = 0.0}};
 }
 
 }  // namespace
@@ -56,7 +79,9 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase device_limits() {
   return {.name = "device-limits",
           .section = "E",
-          .summary = "200,000 random ticks: force, torque and slew never above their bounds, zero 20 ms after the last valid pose",
+          .summary =
+              "200,000 random ticks: force, torque and slew never above their bounds, zero 20 ms after the "
+              "last valid pose",
           .why = "the last thing before motors that a person holds",
           .run = run,
           .sabotages = {"no-limiter", "componentwise-clip", "no-timeout"}};

@@ -1,8 +1,9 @@
 #include "cases.h"
 #include "e_oscillator.h"
 
-// A wall that pushes with K times the depth of the tool, the handle held a depth D below its surface: the two springs stand in series,
-// k (D - z) = K z, so the tool stays at z = k D/(k + K) and the hand feels F = k K/(k + K) D.  A device never renders more than its coupling.
+// A wall that pushes with K times the depth of the tool, the handle held a depth D below its surface: the two
+// springs stand in series, k (D - z) = K z, so the tool stays at z = k D/(k + K) and the hand feels F = k
+// K/(k + K) D.  A device never renders more than its coupling.
 
 namespace palpate::validation {
 namespace {
@@ -18,7 +19,9 @@ dynamics::LinearisedContact wall(double stiffness) {
 }
 
 std::vector<Measurement> run(const std::string& sabotage) {
-  const double stiffness = sabotage == "half-wall" ? 0.5 * kWall : sabotage == "pulling-wall" ? -kWall : kWall;
+  const double stiffness = sabotage == "half-wall"      ? 0.5 * kWall
+                           : sabotage == "pulling-wall" ? -kWall
+                                                        : kWall;
   std::vector<Measurement> out;
   for (const auto& info : tool::tool_integrators()) {
     ToolSpec spec = desktop_tool(info.name);
@@ -28,9 +31,14 @@ std::vector<Measurement> run(const std::string& sabotage) {
     const Pose below{Quat::Identity(), Vec3(0, 0, -kDepth)};
     bool ok = true;
     for (int i = 0; ok && i < 300; ++i) ok = body.advance(1e-3, {below, below, {}, {}}, wall(stiffness)).ok();
-    const Pose felt = sabotage == "tool-as-proxy" ? Pose{Quat::Identity(), Vec3(0, 0, -kDepth) - body.pose().translation} : below;
+    const Pose felt = sabotage == "tool-as-proxy"
+                          ? Pose{Quat::Identity(), Vec3(0, 0, -kDepth) - body.pose().translation}
+                          : below;
     const double force = ok ? body.wrench_on_hand(felt, {}).force.z() : NAN;
-    out.push_back({.quantity = info.name + ": force on the hand [N]", .computed = force, .exact = exact, .error = std::abs(force - exact) / exact,
+    out.push_back({.quantity = info.name + ": force on the hand [N]",
+                   .computed = force,
+                   .exact = exact,
+                   .error = std::abs(force - exact) / exact,
                    .bar = 1e-6});
   }
   return out;
@@ -39,12 +47,13 @@ std::vector<Measurement> run(const std::string& sabotage) {
 }  // namespace
 
 ValidationCase handle_below_wall() {
-  return {.name = "handle-below-wall",
-          .section = "E",
-          .summary = "steady force of a handle held below a linear wall: coupling and wall in series",
-          .why = "the force that a device renders is the wall's softened by the coupling, by exactly k K/(k + K)",
-          .run = run,
-          .sabotages = {"half-wall", "pulling-wall", "tool-as-proxy"}};
+  return {
+      .name = "handle-below-wall",
+      .section = "E",
+      .summary = "steady force of a handle held below a linear wall: coupling and wall in series",
+      .why = "the force that a device renders is the wall's softened by the coupling, by exactly k K/(k + K)",
+      .run = run,
+      .sabotages = {"half-wall", "pulling-wall", "tool-as-proxy"}};
 }
 
 }  // namespace palpate::validation

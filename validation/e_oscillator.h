@@ -5,7 +5,8 @@
 
 #include "palpate/tool/tool.h"
 
-/// The damped oscillator m y'' + b y' + k y = 0 released at rest from y0: what one direction of a virtual coupling is, in time and in ticks.
+/// The damped oscillator m y'' + b y' + k y = 0 released at rest from y0: what one direction of a virtual
+/// coupling is, in time and in ticks.
 namespace palpate::validation {
 
 struct Oscillator {
@@ -18,13 +19,16 @@ struct Oscillator {
   }
 
   // With u = differences of y over h, eliminate u from y_{n+1} = y_n + h u_{n+1} and
-  //   backward Euler       m (u_{n+1} - u_n) = -h (b u_{n+1} + k y_{n+1}):  (m + hb + h^2 k) y_{n+1} - (2m + hb) y_n + m y_{n-1} = 0
-  //   semi-implicit Euler  m (u_{n+1} - u_n) = -h (b u_n + k y_n):          m y_{n+1} - (2m - hb - h^2 k) y_n + (m - hb) y_{n-1} = 0
+  //   backward Euler       m (u_{n+1} - u_n) = -h (b u_{n+1} + k y_{n+1}):  (m + hb + h^2 k) y_{n+1} - (2m +
+  //   hb) y_n + m y_{n-1} = 0
+  //   semi-implicit Euler  m (u_{n+1} - u_n) = -h (b u_n + k y_n):          m y_{n+1} - (2m - hb - h^2 k) y_n
+  //   + (m - hb) y_{n-1} = 0
   // and start with u_0 = 0.  The solution is A z1^n + B z2^n over the roots of the recurrence.
   double after_ticks(const std::string& scheme, double y0, double h, int n) const {
     const double hb = h * b, hhk = h * h * k;
     const bool implicit = scheme == "linearly-implicit-euler";
-    const double a2 = implicit ? m + hb + hhk : m, a1 = implicit ? -(2 * m + hb) : -(2 * m - hb - hhk), a0 = implicit ? m : m - hb;
+    const double a2 = implicit ? m + hb + hhk : m, a1 = implicit ? -(2 * m + hb) : -(2 * m - hb - hhk),
+                 a0 = implicit ? m : m - hb;
     const double y1 = implicit ? (m + hb) / a2 * y0 : (1 - hhk / m) * y0;
     const std::complex<double> root = std::sqrt(std::complex<double>(a1 * a1 - 4 * a2 * a0));
     const auto z1 = (-a1 + root) / (2 * a2), z2 = (-a1 - root) / (2 * a2);
@@ -33,7 +37,8 @@ struct Oscillator {
   }
 };
 
-/// A desktop device's tool: 100 g, three different moments of inertia, an underdamped coupling in every direction.
+/// A desktop device's tool: 100 g, three different moments of inertia, an underdamped coupling in every
+/// direction.
 inline ToolSpec desktop_tool(const std::string& integrator) {
   ToolSpec spec;
   spec.integrator = integrator;

@@ -2,13 +2,15 @@
 #include "palpate/core/error.h"
 #include "palpate/study/exchange.h"
 
-// A round tool presses a soft block, the handle on a path with two continuous derivatives.  Tool and block as one system of one integrator know of no
-// exchange.  The partitioned scheme holds over each exchange period H a contact that is linear in time and in the tool's motion, and steps the tool by a
-// first-order tick of H/10: both errors are O(H), so that
+// A round tool presses a soft block, the handle on a path with two continuous derivatives.  Tool and block as
+// one system of one integrator know of no exchange.  The partitioned scheme holds over each exchange period H
+// a contact that is linear in time and in the tool's motion, and steps the tool by a first-order tick of
+// H/10: both errors are O(H), so that
 //     |F_partitioned - F_monolithic| = C H + O(H^2)
-// for force and torque on the hand and for the block's nodes.  The contact is refreshed at the same times for all.
-// The coupling swings at w = sqrt(300 / 0.05) = 77/s: H w from 0.096 to 0.012.  The handle turns as well, so that the coupling's torque is none of zero; a round
-// tool without friction feels no moment of the block, so the torque's distance is that of the ticks.
+// for force and torque on the hand and for the block's nodes.  The contact is refreshed at the same times for
+// all. The coupling swings at w = sqrt(300 / 0.05) = 77/s: H w from 0.096 to 0.012.  The handle turns as
+// well, so that the coupling's torque is none of zero; a round tool without friction feels no moment of the
+// block, so the torque's distance is that of the ticks.
 
 namespace palpate::validation {
 namespace {
@@ -72,12 +74,19 @@ std::vector<Measurement> run(const std::string& sabotage) {
     force.push_back(point.error.force_rms_n);
     torque.push_back(point.error.torque_rms_n_m);
     position.push_back(point.error.position_rel_l2);
-    table += fmt::format("{}{:g} ms: {:.2e} N, {:.2e} N m, {:.2e}", table.empty() ? "" : "; ", 1e3 * periods.back(), force.back(), torque.back(), position.back());
+    table += fmt::format("{}{:g} ms: {:.2e} N, {:.2e} N m, {:.2e}", table.empty() ? "" : "; ",
+                         1e3 * periods.back(), force.back(), torque.back(), position.back());
   }
   std::vector<Measurement> out;
   const auto add = [&](const std::string& quantity, const std::vector<double>& errors, double bar) {
-    out.push_back({.quantity = quantity, .computed = errors.back(), .error = errors.back(), .bar = bar, .order = study::fitted_order(periods, errors),
-                   .order_low = 0.85, .order_high = 2.2, .note = table});
+    out.push_back({.quantity = quantity,
+                   .computed = errors.back(),
+                   .error = errors.back(),
+                   .bar = bar,
+                   .order = study::fitted_order(periods, errors),
+                   .order_low = 0.85,
+                   .order_high = 2.2,
+                   .note = table});
   };
   add("force on the hand, RMS distance at the shortest period [N]", force, 1e-3);
   add("torque on the hand, RMS distance at the shortest period [N m]", torque, 1e-5);
@@ -90,8 +99,11 @@ std::vector<Measurement> run(const std::string& sabotage) {
 ValidationCase partitioned_monolithic() {
   return {.name = "partitioned-monolithic",
           .section = "E",
-          .summary = "a block pressed in two rates tends to the same as one system as the exchange period shrinks",
-          .why = "an exchange that lacks a part of the bodies' answer stays away from the truth at any period; the device force is only as good as this distance",
+          .summary =
+              "a block pressed in two rates tends to the same as one system as the exchange period shrinks",
+          .why =
+              "an exchange that lacks a part of the bodies' answer stays away from the truth at any period; "
+              "the device force is only as good as this distance",
           .run = run,
           .sabotages = {"half-contact-stiffness", "late-handle", "heavy-tool"}};
 }

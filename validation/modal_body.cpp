@@ -24,7 +24,8 @@ void add_bone(const ModalBody& body, dynamics::State& state, dynamics::System& s
   const int bone = state.insert(dynamics::rigid_block("bone", 1.0, 1.0), q, VecX::Zero(6));
   system.add(dynamics::make_rigid_inertia(bone, body.bone_mass, body.bone_inertia));
   Points local(3, 3 * static_cast<Eigen::Index>(body.carried.size()));
-  for (Eigen::Index i = 0; i < local.cols(); ++i) local.col(i) = body.rest.nodes.col(body.carried[static_cast<std::size_t>(i / 3)]) - at;
+  for (Eigen::Index i = 0; i < local.cols(); ++i)
+    local.col(i) = body.rest.nodes.col(body.carried[static_cast<std::size_t>(i / 3)]) - at;
   system.add(fem::make_carried(fem::dofs_of_nodes(body.carried, 0, "xyz"), local, bone));
 }
 
@@ -39,7 +40,8 @@ integrate::Modes ModalBody::lowest(int count) const {
   const VecX q0 = rest.nodes.reshaped();
   const int id = state.insert(spec, q0, VecX::Zero(q0.size()));
   system.add(std::make_shared<fem::SoftBody>("body", rest, materials(), fem::SoftBodyOptions{}, id));
-  system.add(consistent_mass ? fem::make_consistent_mass(rest, materials(), id) : fem::make_lumped_mass(rest, materials(), id));
+  system.add(consistent_mass ? fem::make_consistent_mass(rest, materials(), id)
+                             : fem::make_lumped_mass(rest, materials(), id));
   if (consistent_mass) system.set_mass_solver(integrate::make_linear_solver("cholmod"));
   std::vector<int> dofs = held;
   std::sort(dofs.begin(), dofs.end());
@@ -67,7 +69,9 @@ VecX ModalBody::field(const std::function<Vec3(const Vec3&)>& displacement) cons
 Match best_match(const ModalBody& body, const integrate::Modes& modes, const VecX& shape) {
   Match best;
   for (int j = 0; j < modes.count(); ++j)
-    if (const double overlap = body.overlap(modes.shapes.col(j).head(shape.size()), shape); overlap > best.overlap) best = {j, overlap, modes.omega(j)};
+    if (const double overlap = body.overlap(modes.shapes.col(j).head(shape.size()), shape);
+        overlap > best.overlap)
+      best = {j, overlap, modes.omega(j)};
   return best;
 }
 

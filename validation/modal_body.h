@@ -13,7 +13,7 @@ struct ModalBody {
   fem::Material material;
   std::optional<fem::Materials> layers;  ///< in its place
   bool consistent_mass = false;
-  std::vector<int> held;  ///< directions of u, any order
+  std::vector<int> held;     ///< directions of u, any order
   std::vector<int> carried;  ///< nodes that sit on a free rigid bone, ascending; empty: there is none
   double bone_mass = 0.0;    ///< [kg]
   Vec3 bone_inertia = Vec3::Zero(), bone_centre = Vec3::Zero();
@@ -22,7 +22,8 @@ struct ModalBody {
   void hold(const std::string& axes, const std::function<bool(const Vec3&)>& where);
   /// The lowest modes.  @throws Error where they do not converge
   integrate::Modes lowest(int count) const;
-  /// Mass-weighted overlap (f M g)^2 / ((f M f)(g M g)) of two fields, lumped; held directions count as they stand, a bone does not.
+  /// Mass-weighted overlap (f M g)^2 / ((f M f)(g M g)) of two fields, lumped; held directions count as they
+  /// stand, a bone does not.
   double overlap(const VecX& f, const VecX& g) const;
   fem::Materials materials() const { return layers ? *layers : fem::Materials(material); }
   VecX field(const std::function<Vec3(const Vec3&)>& displacement) const;  ///< its values at the nodes

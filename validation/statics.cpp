@@ -9,7 +9,8 @@
 
 namespace palpate::validation {
 
-StaticBody::StaticBody(const TetMesh& rest, const fem::Materials& materials, const fem::SoftBodyOptions& options)
+StaticBody::StaticBody(const TetMesh& rest, const fem::Materials& materials,
+                       const fem::SoftBodyOptions& options)
     : rest_(rest), state_(static_cast<int>(rest.nodes.size()), static_cast<int>(rest.nodes.size())) {
   x_ = rest.nodes.reshaped();
   v_ = VecX::Zero(x_.size());
@@ -21,10 +22,13 @@ StaticBody::StaticBody(const TetMesh& rest, const fem::Materials& materials, con
   block_ = state_.insert(spec, x_, v_);
   body_ = std::make_shared<fem::SoftBody>("body", rest, materials, options, block_);
   terms_ = {body_};
-  if (options.volumetric_share < 1.0) terms_.push_back(std::make_shared<fem::NodalDilatation>("body", rest, materials, options, block_));
+  if (options.volumetric_share < 1.0)
+    terms_.push_back(std::make_shared<fem::NodalDilatation>("body", rest, materials, options, block_));
 }
 
-void StaticBody::add(const std::function<std::shared_ptr<dynamics::ForceTerm>(int)>& make) { terms_.push_back(make(block_)); }
+void StaticBody::add(const std::function<std::shared_ptr<dynamics::ForceTerm>(int)>& make) {
+  terms_.push_back(make(block_));
+}
 
 void StaticBody::hold(int node, int axis, double position) {
   held_[static_cast<std::size_t>(3 * node + axis)] = 1;
@@ -58,12 +62,15 @@ bool StaticBody::newton_step(const VecX& residual) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(static_cast<std::size_t>(K_.body.slot_count()) * 5);
   for (int i = 0; i < K_.body.block_rows(); ++i)
-    for (int s = K_.body.row_start()[static_cast<std::size_t>(i)]; s < K_.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
+    for (int s = K_.body.row_start()[static_cast<std::size_t>(i)];
+         s < K_.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) {
           const int row = number[static_cast<std::size_t>(3 * i + r)];
-          const int column = number[static_cast<std::size_t>(3 * K_.body.columns()[static_cast<std::size_t>(s)] + c)];
-          if (row >= 0 && column >= 0 && column <= row) entries.emplace_back(row, column, K_.body.block(s)[3 * r + c]);
+          const int column =
+              number[static_cast<std::size_t>(3 * K_.body.columns()[static_cast<std::size_t>(s)] + c)];
+          if (row >= 0 && column >= 0 && column <= row)
+            entries.emplace_back(row, column, K_.body.block(s)[3 * r + c]);
         }
   Eigen::SparseMatrix<double> A(free, free);
   A.setFromTriplets(entries.begin(), entries.end());
@@ -122,8 +129,8 @@ Points StaticBody::internal_forces() {
   return f.reshaped(3, rest_.nodes.cols());
 }
 
-// Balance div P = -b, so the integral of P is that of traction X^T and body force X^T: nodal forces times rest positions.
-// In equilibrium those are minus the internal ones.
+// Balance div P = -b, so the integral of P is that of traction X^T and body force X^T: nodal forces times
+// rest positions. In equilibrium those are minus the internal ones.
 Mat3 StaticBody::mean_stress() {
   VecX f;
   internal_force(f);

@@ -11,7 +11,8 @@
 
 namespace palpate::validation {
 
-/// Equilibrium of one soft body by Newton's method with the exact tangent and a plain LDL^T of Eigen: nothing of the integrators is in it.
+/// Equilibrium of one soft body by Newton's method with the exact tangent and a plain LDL^T of Eigen: nothing
+/// of the integrators is in it.
 class StaticBody {
  public:
   /// A volumetric share below 1 brings the rest of lambda by fem::NodalDilatation.
@@ -30,7 +31,8 @@ class StaticBody {
   void place(int node, const Vec3& position) { x_.segment<3>(3 * node) = position; }
 
   /// Newton from the present positions, until the residual is at rounding.  False when it does not get there.
-  /// @param good_enough  residual, over the forces that act, that counts as rounding; iterations go on while they still help
+  /// @param good_enough  residual, over the forces that act, that counts as rounding; iterations go on
+  ///   while they still help
   bool solve(double good_enough = 1e-11);
   /// One linear step from the present positions: the small-displacement solution.
   bool solve_linear();
@@ -40,7 +42,8 @@ class StaticBody {
   double elastic_energy();
   /// Forces [N] of the body on its nodes.
   Points internal_forces();
-  /// Mean first Piola-Kirchhoff stress, from the forces that hold and load the body: V P = sum over nodes of f X^T.
+  /// Mean first Piola-Kirchhoff stress, from the forces that hold and load the body: V P = sum over nodes of
+  /// f X^T.
   Mat3 mean_stress();
 
  private:
@@ -64,7 +67,8 @@ class StaticBody {
 
 double volume(const TetMesh& mesh);
 
-/// Consistent nodal loads [N] of a traction(y) [Pa] on the face x = `length`, in the direction of y (or any one); the midpoint rule of edges, exact for a quadratic traction's resultant.
+/// Consistent nodal loads [N] of a traction(y) [Pa] on the face x = `length`, in the direction of y (or any
+/// one); the midpoint rule of edges, exact for a quadratic traction's resultant.
 VecX end_loads(const TetMesh& mesh, double length, const std::function<double(double y)>& traction);
 
 /// True where the node lies on the boundary of the mesh.

@@ -17,23 +17,28 @@ namespace {
 /// f = -s K (q - q0 + beta u) with a constant assembled K: the body at infinitesimal amplitude.
 class LinearBody final : public dynamics::ForceTerm {
  public:
-  LinearBody(dynamics::BorderedMatrix K, VecX q0, double beta, double scale) : K_(std::move(K)), q0_(std::move(q0)), beta_(beta), scale_(scale) {}
+  LinearBody(dynamics::BorderedMatrix K, VecX q0, double beta, double scale)
+      : K_(std::move(K)), q0_(std::move(q0)), beta_(beta), scale_(scale) {}
   std::string_view name() const override { return "linear body"; }
   dynamics::TermTraits traits() const override { return {.conservative = true}; }
   void add_pattern(dynamics::PatternBuilder& pattern) const override {
     for (int i = 0; i < K_.body.block_rows(); ++i)
-      for (int s = K_.body.row_start()[static_cast<std::size_t>(i)]; s < K_.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
+      for (int s = K_.body.row_start()[static_cast<std::size_t>(i)];
+           s < K_.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
         pattern.add_pair(i, K_.body.columns()[static_cast<std::size_t>(s)]);
   }
   void add_force(const dynamics::StateView& state, VecX& f) override {
     shift_ = state.q - q0_ + beta_ * state.u;
     apply_tangent(state, -1.0, 0.0, shift_, f);
   }
-  void add_tangent(const dynamics::StateView&, double k_scale, double d_scale, dynamics::BorderedMatrix& A) override {
+  void add_tangent(const dynamics::StateView&, double k_scale, double d_scale,
+                   dynamics::BorderedMatrix& A) override {
     auto& to = A.body.values();  // the only term: the patterns are the same
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] += (k_scale + beta_ * d_scale) * scale_ * K_.body.values()[i];
+    for (std::size_t i = 0; i < to.size(); ++i)
+      to[i] += (k_scale + beta_ * d_scale) * scale_ * K_.body.values()[i];
   }
-  void apply_tangent(const dynamics::StateView&, double k_scale, double d_scale, const VecX& x, VecX& y) override {
+  void apply_tangent(const dynamics::StateView&, double k_scale, double d_scale, const VecX& x,
+                     VecX& y) override {
     K_.multiply(x, product_);
     y += (k_scale + beta_ * d_scale) * scale_ * product_;
   }
@@ -77,23 +82,27 @@ void VibratingBar::find_modes(bool all) {
   for (int i = 0; i < q0.size(); ++i)
     if (!std::binary_search(clamped.begin(), clamped.end(), i)) free.push_back(i);
   const MatX dense = K.to_dense();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> modes(dense(free, free), MatX(mass(free).asDiagonal()));
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> modes(dense(free, free),
+                                                             MatX(mass(free).asDiagonal()));
   PALPATE_CHECK(modes.info() == Eigen::Success, "no modes");
   const Eigen::Index count = all ? static_cast<Eigen::Index>(free.size()) : kModes;
   omega = modes.eigenvalues().head(count).cwiseSqrt();
   highest_omega = std::sqrt(modes.eigenvalues()[static_cast<Eigen::Index>(free.size()) - 1]);
   phi = MatX::Zero(q0.size(), count);
-  for (Eigen::Index j = 0; j < count; ++j) phi(free, j) = modes.eigenvectors().col(j) / modes.eigenvectors().col(j).lpNorm<Eigen::Infinity>();
+  for (Eigen::Index j = 0; j < count; ++j)
+    phi(free, j) = modes.eigenvectors().col(j) / modes.eigenvectors().col(j).lpNorm<Eigen::Infinity>();
 }
 
 VecX VibratingBar::displacement(double t, double beta) const {
-  const Eigen::ArrayXd g = 0.5 * beta * omega.array().square(), v = (omega.array().square() - g.square()).sqrt();
+  const Eigen::ArrayXd g = 0.5 * beta * omega.array().square(),
+                       v = (omega.array().square() - g.square()).sqrt();
   return phi * ((-g * t).exp() * ((v * t).cos() + g / v * (v * t).sin())).matrix();
 }
 
 double VibratingBar::norm(const VecX& d) const { return std::sqrt(d.dot(mass.cwiseProduct(d))); }
 
-double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, const VibrationTrial& trial, const std::string& sabotage) {
+double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, const VibrationTrial& trial,
+                       const std::string& sabotage) {
   dynamics::State state;
   const double a = trial.amplitude > 0.0 ? trial.amplitude : 1.0;
   const int id = bar.insert(state, a);
@@ -102,7 +111,10 @@ double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, cons
   if (trial.amplitude > 0.0)
     system.add(std::make_shared<fem::SoftBody>("bar", bar.rest, bar.material, fem::SoftBodyOptions{}, id));
   else
-    system.add(std::make_shared<LinearBody>(bar.K, bar.q0, trial.beta, sabotage == "half-stiffness" ? 0.5 : sabotage == "one-percent" ? 1.01 : 1.0));
+    system.add(std::make_shared<LinearBody>(bar.K, bar.q0, trial.beta,
+                                            sabotage == "half-stiffness" ? 0.5
+                                            : sabotage == "one-percent"  ? 1.01
+                                                                         : 1.0));
   system.add(fem::make_lumped_mass(bar.rest, bar.material.density, id));
   system.add(fem::make_fixed(bar.clamped, bar.q0(bar.clamped)));
   system.prepare(state.view());
@@ -111,7 +123,9 @@ double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, cons
   for (int i = 1; i <= trial.looks; ++i) {
     const double t = trial.T * i / trial.looks;
     if (!stepper->advance_to(t).ok()) return std::nan("");
-    sum += std::pow(bar.norm((state.q() - bar.q0) / a - bar.displacement(t, trial.beta)) / bar.norm(bar.displacement(0.0, 0.0)), 2);
+    sum += std::pow(bar.norm((state.q() - bar.q0) / a - bar.displacement(t, trial.beta)) /
+                        bar.norm(bar.displacement(0.0, 0.0)),
+                    2);
   }
   return std::sqrt(sum / trial.looks);
 }

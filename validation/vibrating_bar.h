@@ -10,9 +10,11 @@ class State;
 
 namespace palpate::validation {
 
-/// A clamped bar of corotational tetrahedra at rest, its K and M, and some of its modes from a dense solver of Eigen that no integrator uses.
-/// M q'' + D q' + K (q - q0) = 0 with K phi_j = w_j^2 M phi_j and D = beta K: every mode is an oscillator of its own,
-///     q(t) = q0 + sum_j phi_j e^{-g_j t} (cos v_j t + (g_j/v_j) sin v_j t),   g_j = beta w_j^2/2,  v_j^2 = w_j^2 - g_j^2,
+/// A clamped bar of corotational tetrahedra at rest, its K and M, and some of its modes from a dense solver
+/// of Eigen that no integrator uses. M q'' + D q' + K (q - q0) = 0 with K phi_j = w_j^2 M phi_j and D = beta
+/// K: every mode is an oscillator of its own,
+///     q(t) = q0 + sum_j phi_j e^{-g_j t} (cos v_j t + (g_j/v_j) sin v_j t),   g_j = beta w_j^2/2,  v_j^2 =
+///     w_j^2 - g_j^2,
 /// exact in time, so no reference run is needed.
 struct VibratingBar {
   static constexpr int kModes = 3;
@@ -23,7 +25,7 @@ struct VibratingBar {
   MatX phi;                    ///< their shapes, zero where clamped, largest entry 1
   double highest_omega = 0.0;  ///< of the whole spectrum [rad/s]
   dynamics::BorderedMatrix K;
-  std::vector<int> clamped;    ///< directions of u
+  std::vector<int> clamped;  ///< directions of u
 
   explicit VibratingBar(bool all_modes = false);
   double period() const { return 2.0 * 3.14159265358979323846 / omega[0]; }  ///< of the lowest mode [s]
@@ -36,13 +38,17 @@ struct VibratingBar {
 };
 
 struct VibrationTrial {
-  double T = 0.0;          ///< [s]
-  int looks = 1;           ///< times at which the error is taken, the last at T
-  double beta = 0.0;       ///< stiffness damping [s]
-  double amplitude = 0.0;  ///< 0: the linear body at amplitude 1, so that no rounding hides a small error; else the corotational one [m]
+  double T = 0.0;     ///< [s]
+  int looks = 1;      ///< times at which the error is taken, the last at T
+  double beta = 0.0;  ///< stiffness damping [s]
+  /// 0: the linear body at amplitude 1, so that no rounding hides a small error; else the corotational one
+  /// [m]
+  double amplitude = 0.0;
 };
 
-/// Mass-weighted relative error of q, RMS over the looks; NaN where the integrator gives up.  `sabotage`: "half-stiffness", "one-percent".
-double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, const VibrationTrial& trial, const std::string& sabotage);
+/// Mass-weighted relative error of q, RMS over the looks; NaN where the integrator gives up.  `sabotage`:
+/// "half-stiffness", "one-percent".
+double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, const VibrationTrial& trial,
+                       const std::string& sabotage);
 
 }  // namespace palpate::validation

@@ -15,9 +15,10 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 void bench_fem(const BenchArguments& arguments) {
-  const study::FemBench b = study::bench_fem(arguments.cells, arguments.step_s, arguments.steps, arguments.linear_solvers.front());
-  fmt::print("one step of {} of {:g} ms: {} nodes, {} tetrahedra, {}; median of {} steps\n\n", b.integrator, 1e3 * b.step_s,
-             b.nodes, b.tetrahedra, arguments.linear_solvers.front(), b.steps);
+  const study::FemBench b =
+      study::bench_fem(arguments.cells, arguments.step_s, arguments.steps, arguments.linear_solvers.front());
+  fmt::print("one step of {} of {:g} ms: {} nodes, {} tetrahedra, {}; median of {} steps\n\n", b.integrator,
+             1e3 * b.step_s, b.nodes, b.tetrahedra, arguments.linear_solvers.front(), b.steps);
   Rows rows;
   const auto add = [&](const std::string& stage, double ms) {
     rows.push_back({stage, fmt::format("{:.2f}", ms), fmt::format("{:.0f}", 100.0 * ms / b.step_ms)});
@@ -28,8 +29,8 @@ void bench_fem(const BenchArguments& arguments) {
   add("solve", b.solve_ms);
   add("all else", b.other_ms);
   add("step", b.step_ms);
-  fmt::print("{}\nassembled in {:.2f} s, peak memory {:.0f} MiB\n", report::format_table({"stage", "ms", "% of the step"}, rows),
-             b.assemble_s, b.peak_mib);
+  fmt::print("{}\nassembled in {:.2f} s, peak memory {:.0f} MiB\n",
+             report::format_table({"stage", "ms", "% of the step"}, rows), b.assemble_s, b.peak_mib);
 }
 
 void bench_leave_out(const std::string& scene, int repeats) {
@@ -39,7 +40,8 @@ void bench_leave_out(const std::string& scene, int repeats) {
     rows.push_back({r.variant, fmt::format("{:.1f}", r.startup_ms), fmt::format("{:.1f}", r.memory_mib),
                     fmt::format("{:.4g}", r.step_ms), fmt::format("{:.3f}", r.ratio)});
   fmt::print("{}, median of {} runs, each in a process of its own\n{}\n", short_name(description), repeats,
-             report::format_table({"variant", "start-up [ms]", "memory [MiB]", "step [ms]", "step / bare loop"}, rows));
+             report::format_table(
+                 {"variant", "start-up [ms]", "memory [MiB]", "step [ms]", "step / bare loop"}, rows));
 }
 
 }  // namespace

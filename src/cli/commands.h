@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-/// One function a command, one file a function.  Each returns the exit status; Error means that the input is at fault.
+/// One function a command, one file a function.  Each returns the exit status; Error means that the input is
+/// at fault.
 namespace palpate::cli {
 
 /// Which scene, and what is changed in it.
@@ -24,14 +25,14 @@ int run(const RunArguments& arguments);
 
 struct CompareArguments {
   std::vector<std::string> scenes;
-  std::vector<std::string> overrides;    ///< of every scene
+  std::vector<std::string> overrides;  ///< of every scene
   std::string folder;
   std::vector<std::string> integrators;  ///< names, or labels of ladders; empty: every one
   bool all = false;                      ///< every one beside those named
   int repeats = 3, jobs = 0;             ///< no jobs: as many as there are cores
   double limit_s = 10.0, reference_limit_s = 120.0;
   double duration_s = 0.0;
-  bool fresh = false;                    ///< forget what an earlier study left in the folder
+  bool fresh = false;  ///< forget what an earlier study left in the folder
 };
 int compare(const CompareArguments& arguments);
 
@@ -51,16 +52,17 @@ struct ModesArguments {
 };
 int modes(const ModesArguments& arguments);
 
-/// Becomes the program palpate-model, which takes these words.  @throws Error where this build has none; returns never else
+/// Becomes the program palpate-model, which takes these words.  @throws Error where this build has none;
+/// returns never else
 int model(const std::vector<std::string>& arguments);
 
 struct StabilityArguments {
   std::vector<std::string> rows, integrators;  ///< empty: all
-  bool slow = false;       ///< the rows that take minutes, too
-  bool cells = false;      ///< print every cell, not only the unexpected ones
+  bool slow = false;                           ///< the rows that take minutes, too
+  bool cells = false;                          ///< print every cell, not only the unexpected ones
   int seeds = 10, jobs = 1;
-  double limit_s = 20.0;   ///< CPU time of a cell
-  std::string folder;      ///< empty: out/stability
+  double limit_s = 20.0;  ///< CPU time of a cell
+  std::string folder;     ///< empty: out/stability
 };
 int stability(const StabilityArguments& arguments);
 
@@ -81,14 +83,14 @@ struct BenchArguments {
   int cells = 0;                    ///< of fem, along one beam by way of a scene; 0: the sizes below
   double step_s = 0.01;             ///< of fem with cells
   std::vector<std::string> linear_solvers = {"auto"};
-  std::vector<std::string> sizes;           ///< of fem; empty: S and M
-  std::vector<int> threads;                 ///< of fem; empty: 1 and 2
-  std::vector<double> linear_rtols;         ///< of fem; empty: 1e-6 and 1e-3
-  std::vector<double> youngs_moduli_pa;     ///< of fem; empty: 1e5 and 1e6
-  std::string folder;                       ///< of fem: where JSON and plot go; empty: nowhere
-  bool accuracy = false;                    ///< of fem: error against run time of one motion instead
-  std::string calibrate;                    ///< of fem: file for the measured table of linear_solver = "auto"
-  int repeats = 5;  ///< of leave-out
+  std::vector<std::string> sizes;        ///< of fem; empty: S and M
+  std::vector<int> threads;              ///< of fem; empty: 1 and 2
+  std::vector<double> linear_rtols;      ///< of fem; empty: 1e-6 and 1e-3
+  std::vector<double> youngs_moduli_pa;  ///< of fem; empty: 1e5 and 1e6
+  std::string folder;                    ///< of fem: where JSON and plot go; empty: nowhere
+  bool accuracy = false;                 ///< of fem: error against run time of one motion instead
+  std::string calibrate;                 ///< of fem: file for the measured table of linear_solver = "auto"
+  int repeats = 5;                       ///< of leave-out
 };
 int bench(const BenchArguments& arguments);
 

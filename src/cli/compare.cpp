@@ -26,10 +26,13 @@ std::vector<scene::Description> scenes_of(const CompareArguments& arguments) {
   std::vector<scene::Description> out;
   for (const std::string& name : arguments.scenes) {
     SceneArguments one{name, arguments.overrides, ""};
-    if (arguments.duration_s > 0.0) one.overrides.push_back(fmt::format("compare.duration_s={}", arguments.duration_s));
+    if (arguments.duration_s > 0.0)
+      one.overrides.push_back(fmt::format("compare.duration_s={}", arguments.duration_s));
     out.push_back(scene_of(one));
-    const auto same = std::count_if(out.begin(), out.end(), [&](const scene::Description& d) { return d.name == out.back().name; });
-    if (same > 1) fail("two scenes are called \"{}\"; give one of them another [scene] name", out.back().name);
+    const auto same = std::count_if(out.begin(), out.end(),
+                                    [&](const scene::Description& d) { return d.name == out.back().name; });
+    if (same > 1)
+      fail("two scenes are called \"{}\"; give one of them another [scene] name", out.back().name);
   }
   return out;
 }
@@ -40,7 +43,8 @@ std::string default_name(const std::vector<scene::Description>& scenes) {
   return out;
 }
 
-study::Comparison compare_watched(const std::vector<scene::Description>& scenes, const CompareArguments& arguments, const std::string& folder) {
+study::Comparison compare_watched(const std::vector<scene::Description>& scenes,
+                                  const CompareArguments& arguments, const std::string& folder) {
   Progress progress("reference runs");
   study::CompareOptions options;
   options.repeats = arguments.repeats;
@@ -60,12 +64,15 @@ study::Comparison compare_watched(const std::vector<scene::Description>& scenes,
 
 int compare(const CompareArguments& arguments) {
   const std::vector<scene::Description> scenes = scenes_of(arguments);
-  const std::string folder = arguments.folder.empty() ? default_folder(default_name(scenes)) : arguments.folder;
+  const std::string folder =
+      arguments.folder.empty() ? default_folder(default_name(scenes)) : arguments.folder;
   make_folder(folder);
 
   const study::Comparison comparison = compare_watched(scenes, arguments, folder);
   study::write(comparison, folder);
-  if (comparison.reused > 0) fmt::print("{} runs were done before, and were not done again (--fresh starts anew)\n\n", comparison.reused);
+  if (comparison.reused > 0)
+    fmt::print("{} runs were done before, and were not done again (--fresh starts anew)\n\n",
+               comparison.reused);
   const fs::path points = fs::path(folder) / "compare.csv";
   const report::Table table = fs::exists(points) ? report::read_csv(points) : report::Table{};
   for (const study::SceneComparison& scene : comparison.scenes) {

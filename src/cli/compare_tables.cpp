@@ -24,7 +24,8 @@ std::string outcome_text(const study::ComparePoint& p) {
 /// The end of a run of neighbouring rungs that failed alike: one line tells them all.
 std::size_t end_of_failures(const std::vector<study::ComparePoint>& points, std::size_t first) {
   std::size_t end = first + 1;
-  while (points[first].status != study::PointStatus::kOk && end < points.size() && points[end].label == points[first].label && points[end].status == points[first].status)
+  while (points[first].status != study::PointStatus::kOk && end < points.size() &&
+         points[end].label == points[first].label && points[end].status == points[first].status)
     ++end;
   return end;
 }
@@ -32,7 +33,8 @@ std::size_t end_of_failures(const std::vector<study::ComparePoint>& points, std:
 }  // namespace
 
 void print_points(const study::SceneComparison& scene) {
-  std::vector<std::string> headers = {"integrator", "setting", "position error", "CPU [s]", "steps", "force evals", "factors", ""};
+  std::vector<std::string> headers = {"integrator", "setting",     "position error", "CPU [s]",
+                                      "steps",      "force evals", "factors",        ""};
   if (scene.tool) headers.insert(headers.begin() + 3, {"force error [N]", "torque error [N m]"});
   Rows rows;
   for (std::size_t i = 0; i < scene.points.size(); i = end_of_failures(scene.points, i)) {
@@ -42,11 +44,14 @@ void print_points(const study::SceneComparison& scene) {
     const bool ran = p.status == study::PointStatus::kOk;
     const auto count = [&](long n) { return ran ? std::to_string(n) : std::string("-"); };
     std::string setting = report::setting_text(p.setting_name, p.setting);
-    if (const std::size_t end = end_of_failures(scene.points, i); end > i + 1) setting += " to " + report::setting_text(p.setting_name, scene.points[end - 1].setting);
-    rows.push_back({p.label, setting, report::short_number(p.error.position_rel_l2), ran ? fmt::format("{:.3f}", p.cpu_median_s) : "-", count(c.steps),
+    if (const std::size_t end = end_of_failures(scene.points, i); end > i + 1)
+      setting += " to " + report::setting_text(p.setting_name, scene.points[end - 1].setting);
+    rows.push_back({p.label, setting, report::short_number(p.error.position_rel_l2),
+                    ran ? fmt::format("{:.3f}", p.cpu_median_s) : "-", count(c.steps),
                     count(c.force_evaluations), count(c.solver.factorisations), outcome_text(p)});
     if (scene.tool)
-      rows.back().insert(rows.back().begin() + 3, {report::short_number(p.error.force_rms_n), report::short_number(p.error.torque_rms_n_m)});
+      rows.back().insert(rows.back().begin() + 3, {report::short_number(p.error.force_rms_n),
+                                                   report::short_number(p.error.torque_rms_n_m)});
   }
   if (rows.size() <= kPointsOnScreen)
     fmt::print("{}\n", report::format_table(headers, rows));
@@ -63,20 +68,27 @@ void print_prices(const report::Table& table, double reference_error) {
   for (const report::Ladder& ladder : report::ladders(table, kError, "cpu_s_median")) {
     std::string order = "-";
     for (const report::FittedOrder& fit : fits)
-      if (fit.label == ladder.label && fit.points > 1) order = fmt::format("{:.2f} in {}", fit.order, fit.setting_name);
+      if (fit.label == ladder.label && fit.points > 1)
+        order = fmt::format("{:.2f} in {}", fit.order, fit.setting_name);
     double best = report::kUnknown;
     for (const report::LadderPoint& point : ladder.points)
       if (!point.unresolved) best = std::fmin(best, point.error);
     rows.push_back({ladder.label, order, std::to_string(ladder.points.size()), report::short_number(best)});
-    for (const double target : report::kTargets) rows.back().push_back(report::cost_text(report::cost_at(ladder, target, reference_error)));
+    for (const double target : report::kTargets)
+      rows.back().push_back(report::cost_text(report::cost_at(ladder, target, reference_error)));
   }
   fmt::print("{}\n", report::format_table(headers, rows));
   rows.clear();
-  for (const report::Winner& win : report::winners(table, kError, "cpu_s_median", report::kTargets, reference_error))
-    rows.push_back({fmt::format("{:g}", win.target), win.found ? win.label : "none reaches it", win.found ? report::cost_text(win.cost) : "-",
-                    win.runner_up.empty() ? "-" : fmt::format("{} ({:.2f} x)", win.runner_up, win.runner_up_ratio),
-                    std::isfinite(win.baseline_ratio) ? fmt::format("{:.3g} x", win.baseline_ratio) : "-"});
-  fmt::print("{}\n", report::format_table({"position error at most", "cheapest", "CPU [s]", "runner-up", report::kBaseline}, rows));
+  for (const report::Winner& win :
+       report::winners(table, kError, "cpu_s_median", report::kTargets, reference_error))
+    rows.push_back(
+        {fmt::format("{:g}", win.target), win.found ? win.label : "none reaches it",
+         win.found ? report::cost_text(win.cost) : "-",
+         win.runner_up.empty() ? "-" : fmt::format("{} ({:.2f} x)", win.runner_up, win.runner_up_ratio),
+         std::isfinite(win.baseline_ratio) ? fmt::format("{:.3g} x", win.baseline_ratio) : "-"});
+  fmt::print("{}\n",
+             report::format_table(
+                 {"position error at most", "cheapest", "CPU [s]", "runner-up", report::kBaseline}, rows));
 }
 
 void print_restarts(const study::SceneComparison& scene) {
@@ -85,23 +97,30 @@ void print_restarts(const study::SceneComparison& scene) {
     if (p.status == study::PointStatus::kMissing) continue;
     const dynamics::StepperCounters& c = p.result.counters;
     const bool ran = p.status == study::PointStatus::kOk;
-    const auto rate = [&](long n) { return ran ? fmt::format("{:.0f}", static_cast<double>(n) / p.result.time) : std::string("-"); };
-    rows.push_back({p.label, p.multistep ? "yes" : "no", fmt::format("{:g}", 1e3 * p.setting), ran ? std::to_string(c.reinits) : "-", rate(c.steps),
-                    rate(c.force_evaluations), ran ? "" : p.reason});
+    const auto rate = [&](long n) {
+      return ran ? fmt::format("{:.0f}", static_cast<double>(n) / p.result.time) : std::string("-");
+    };
+    rows.push_back({p.label, p.multistep ? "yes" : "no", fmt::format("{:g}", 1e3 * p.setting),
+                    ran ? std::to_string(c.reinits) : "-", rate(c.steps), rate(c.force_evaluations),
+                    ran ? "" : p.reason});
   }
   if (rows.empty()) return;
-  fmt::print("{}\n", report::format_table({"integrator", "multistep", "contact refresh [ms]", "restarts", "steps / s", "force evals / s", ""}, rows));
+  fmt::print("{}\n", report::format_table({"integrator", "multistep", "contact refresh [ms]", "restarts",
+                                           "steps / s", "force evals / s", ""},
+                                          rows));
 }
 
 void print_exchange(const study::SceneComparison& scene) {
   if (scene.exchange.empty()) return;
   Rows rows;
   for (const study::ExchangePoint& p : scene.exchange)
-    rows.push_back({fmt::format("{:g}", 1e3 * p.exchange_period_s), fmt::format("{:.2e}", p.error.position_rel_l2),
+    rows.push_back({fmt::format("{:g}", 1e3 * p.exchange_period_s),
+                    fmt::format("{:.2e}", p.error.position_rel_l2),
                     fmt::format("{:.2e}", p.error.force_rms_n), fmt::format("{:.2e}", p.error.torque_rms_n_m),
                     fmt::format("{:.3f}", p.cpu_s)});
-  fmt::print("{}\n", report::format_table(
-                         {"exchange period [ms]", "position error", "force error [N]", "torque error [N m]", "CPU [s]"}, rows));
+  fmt::print("{}\n", report::format_table({"exchange period [ms]", "position error", "force error [N]",
+                                           "torque error [N m]", "CPU [s]"},
+                                          rows));
 }
 
 void print_methods(const study::SceneComparison& scene) {
@@ -110,18 +129,21 @@ void print_methods(const study::SceneComparison& scene) {
   for (const study::MethodPoint& p : scene.methods)
     rows.push_back({p.method, fmt::format("{:.2e}", p.difference.position_rel_l2),
                     fmt::format("{:.2e}", p.difference.force_rms_n), fmt::format("{:.4f}", p.peak_force_n),
-                    std::to_string(p.most_samples), fmt::format("{:.3f}", p.query_s), fmt::format("{:.3f}", p.cpu_s)});
-  fmt::print("{}\n", report::format_table({"contact found by", "position difference", "force difference [N]", "peak force [N]",
-                                           "samples", "queries [s]", "CPU [s]"},
+                    std::to_string(p.most_samples), fmt::format("{:.3f}", p.query_s),
+                    fmt::format("{:.3f}", p.cpu_s)});
+  fmt::print("{}\n", report::format_table({"contact found by", "position difference", "force difference [N]",
+                                           "peak force [N]", "samples", "queries [s]", "CPU [s]"},
                                           rows));
 }
 
 void print_reference(const study::SceneComparison& scene) {
   const study::Reference& r = scene.reference;
   fmt::print("{}: reference {}; its own error: position {}{}\n", scene.scene, r.description,
-             std::isfinite(r.own_error.position_rel_l2) ? fmt::format("{:.1e}", r.own_error.position_rel_l2) : "unknown",
+             std::isfinite(r.own_error.position_rel_l2) ? fmt::format("{:.1e}", r.own_error.position_rel_l2)
+                                                        : "unknown",
              scene.tool && std::isfinite(r.own_error.force_rms_n)
-                 ? fmt::format(", force {:.1e} N, torque {:.1e} N m", r.own_error.force_rms_n, r.own_error.torque_rms_n_m)
+                 ? fmt::format(", force {:.1e} N, torque {:.1e} N m", r.own_error.force_rms_n,
+                               r.own_error.torque_rms_n_m)
                  : "");
   if (!r.trouble.empty()) fmt::print("{}: {}\n", scene.scene, r.trouble);
   for (const std::string& note : scene.notes) fmt::print("{}: {}\n", scene.scene, note);

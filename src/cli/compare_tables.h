@@ -7,9 +7,11 @@ namespace palpate::cli {
 
 /// How it was made, and how far it can be trusted.
 void print_reference(const study::SceneComparison& scene);
-/// A line a point, neighbouring rungs that failed alike in one; only their number where a screen cannot hold them.
+/// A line a point, neighbouring rungs that failed alike in one; only their number where a screen cannot hold
+/// them.
 void print_points(const study::SceneComparison& scene);
-/// A line a ladder: fitted order, best error, what each of report::kTargets costs.  Then who is cheapest.  @param table  the scene's lines of compare.csv
+/// A line a ladder: fitted order, best error, what each of report::kTargets costs.  Then who is cheapest.
+/// @param table  the scene's lines of compare.csv
 void print_prices(const report::Table& table, double reference_error);
 void print_restarts(const study::SceneComparison& scene);
 void print_exchange(const study::SceneComparison& scene);

@@ -18,7 +18,8 @@ int demo(const DemoArguments& arguments) {
   price.folder = arguments.folder;
   price.integrators = {"cvode-bdf", "linearly-implicit-euler"};
   price.repeats = 1;
-  price.overrides = {"compare.reference_rtol=1e-9", "compare.reference_check_rtol=1e-8"};  // a thousand times below what these two reach, in a third of the time
+  // a thousand times below what these two reach, in a third of the time
+  price.overrides = {"compare.reference_rtol=1e-9", "compare.reference_check_rtol=1e-8"};
   return compare(price);
 }
 

@@ -23,13 +23,14 @@ void print_bodies(const loop::World& world) {
   Rows rows;
   for (const loop::Body& body : world.bodies)
     rows.push_back({body.name, std::to_string(body.report.nodes), std::to_string(body.report.elements),
-                    std::to_string(body.boundary.surface.faces.cols()), fmt::format("{:.3g}", body.report.volume),
-                    fmt::format("{:.3g}", body.masses.sum()),
+                    std::to_string(body.boundary.surface.faces.cols()),
+                    fmt::format("{:.3g}", body.report.volume), fmt::format("{:.3g}", body.masses.sum()),
                     fmt::format("{:.3g} to {:.3g}", body.report.smallest_edge, body.report.largest_edge),
-                    fmt::format("{:.1f}", body.report.smallest_dihedral_deg), std::to_string(body.report.flipped)});
+                    fmt::format("{:.1f}", body.report.smallest_dihedral_deg),
+                    std::to_string(body.report.flipped)});
   if (!rows.empty())
-    fmt::print("{}\n", report::format_table({"body", "nodes", "tetrahedra", "surface faces", "volume [m^3]", "mass [kg]",
-                                             "edges [m]", "least dihedral [deg]", "mended"},
+    fmt::print("{}\n", report::format_table({"body", "nodes", "tetrahedra", "surface faces", "volume [m^3]",
+                                             "mass [kg]", "edges [m]", "least dihedral [deg]", "mended"},
                                             rows));
 }
 
@@ -40,8 +41,10 @@ void print_regions(const loop::World& world) {
     if (body.regions.empty()) continue;
     const auto add = [&](const std::string& name, int tetrahedra, double volume, int material) {
       const fem::Material& m = body.term->materials()[static_cast<std::size_t>(material)];
-      rows.push_back({body.name, name, std::to_string(tetrahedra), fmt::format("{:.3g}", volume), fmt::format("{:.3g}", m.density * volume), material > 0 ? "its own" : "the body's",
-                      fmt::format("{:.4g}", m.youngs_modulus), fmt::format("{:g}", m.poissons_ratio), fmt::format("{:g}", m.density), fmt::format("{:g}", m.mass_damping),
+      rows.push_back({body.name, name, std::to_string(tetrahedra), fmt::format("{:.3g}", volume),
+                      fmt::format("{:.3g}", m.density * volume), material > 0 ? "its own" : "the body's",
+                      fmt::format("{:.4g}", m.youngs_modulus), fmt::format("{:g}", m.poissons_ratio),
+                      fmt::format("{:g}", m.density), fmt::format("{:g}", m.mass_damping),
                       fmt::format("{:g}", m.stiffness_damping)});
     };
     int left = body.report.elements;
@@ -54,7 +57,10 @@ void print_regions(const loop::World& world) {
     if (left > 0) add("(the rest)", left, volume, 0);
   }
   if (!rows.empty())
-    fmt::print("{}\n", report::format_table({"body", "region", "tetrahedra", "volume [m^3]", "mass [kg]", "material", "E [Pa]", "nu", "rho [kg/m^3]", "alpha [1/s]", "beta [s]"}, rows));
+    fmt::print("{}\n",
+               report::format_table({"body", "region", "tetrahedra", "volume [m^3]", "mass [kg]", "material",
+                                     "E [Pa]", "nu", "rho [kg/m^3]", "alpha [1/s]", "beta [s]"},
+                                    rows));
 }
 
 void print_bones(const loop::World& world) {
@@ -62,10 +68,19 @@ void print_bones(const loop::World& world) {
   for (const loop::Bone& bone : world.bones) {
     const Pose pose = world.bone_pose(bone);
     const Vec3 turn = rotation_vector(pose.rotation);
-    rows.push_back({bone.name, bone.path ? "a function of time" : bone.tree ? "on a joint" : "free", bone.path ? "-" : fmt::format("{:.3g}", bone.mass), std::to_string(bone.dofs.size() / 3),
-                    fmt::format("{:.3g} {:.3g} {:.3g}", pose.translation.x(), pose.translation.y(), pose.translation.z()), fmt::format("{:.3g} {:.3g} {:.3g}", turn.x(), turn.y(), turn.z())});
+    rows.push_back({bone.name,
+                    bone.path   ? "a function of time"
+                    : bone.tree ? "on a joint"
+                                : "free",
+                    bone.path ? "-" : fmt::format("{:.3g}", bone.mass), std::to_string(bone.dofs.size() / 3),
+                    fmt::format("{:.3g} {:.3g} {:.3g}", pose.translation.x(), pose.translation.y(),
+                                pose.translation.z()),
+                    fmt::format("{:.3g} {:.3g} {:.3g}", turn.x(), turn.y(), turn.z())});
   }
-  if (!rows.empty()) fmt::print("{}\n", report::format_table({"bone", "", "mass [kg]", "nodes", "position [m]", "rotation vector [rad]"}, rows));
+  if (!rows.empty())
+    fmt::print("{}\n",
+               report::format_table(
+                   {"bone", "", "mass [kg]", "nodes", "position [m]", "rotation vector [rad]"}, rows));
 }
 
 void print_system(loop::World& world, double assemble_s, double memory_mib) {
@@ -75,7 +90,8 @@ void print_system(loop::World& world, double assemble_s, double memory_mib) {
     dynamics::BorderedMatrix A;
     world.system.step_matrix(world.state.view(), 1.0, 0.0, 0.0, A);
     add("unknowns (velocities)",
-        std::to_string(world.state.u().size() - static_cast<Eigen::Index>(world.system.driven_dofs().size())));
+        std::to_string(world.state.u().size() -
+                       static_cast<Eigen::Index>(world.system.driven_dofs().size())));
     add("held or driven directions", std::to_string(world.system.driven_dofs().size()));
     add("blocks of the step matrix (3 x 3)", std::to_string(A.body.slot_count()));
     if (A.border_size() > 0) add("width of its border", std::to_string(A.border_size()));

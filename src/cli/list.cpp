@@ -36,16 +36,18 @@ loop::ChoiceList scene_choices() {
 }
 
 void print(const loop::ChoiceList& list) {
-  const bool orders = std::any_of(list.choices.begin(), list.choices.end(), [](const loop::Choice& c) { return c.order > 0; });
+  const bool orders = std::any_of(list.choices.begin(), list.choices.end(),
+                                  [](const loop::Choice& c) { return c.order > 0; });
   std::vector<std::vector<std::string>> rows;
   for (const loop::Choice& choice : list.choices) {
     rows.push_back({choice.name, choice.summary});
-    if (orders) rows.back().insert(rows.back().begin() + 1, choice.order > 0 ? std::to_string(choice.order) : "-");
+    if (orders)
+      rows.back().insert(rows.back().begin() + 1, choice.order > 0 ? std::to_string(choice.order) : "-");
   }
   fmt::print("{} ({})\n", list.what, list.summary);
   if (rows.empty()) rows.push_back({"-", "none in this build"});
-  const std::vector<std::string> headers =
-      orders ? std::vector<std::string>{"name", "order", "what it is"} : std::vector<std::string>{"name", "what it is"};
+  const std::vector<std::string> headers = orders ? std::vector<std::string>{"name", "order", "what it is"}
+                                                  : std::vector<std::string>{"name", "what it is"};
   fmt::print("{}\n", report::format_table(headers, rows));
 }
 

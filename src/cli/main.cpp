@@ -20,13 +20,15 @@ int guarded(const std::function<int()>& action) {
     fmt::print(stderr, "palpate: error: {}\n", e.what());
     return kExitError;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "palpate: error: not enough memory; a coarser mesh (element_size_m) or fewer recorded states need less\n");
+    fmt::print(stderr,
+               "palpate: error: not enough memory; a coarser mesh (element_size_m) or fewer recorded states "
+               "need less\n");
     return kExitError;
   } catch (const std::exception& e) {
-    fmt::print(
-        stderr,
-        "palpate: internal error: {}\nThis is a mistake in palpate, not in your input: please report it with the scene and this message.\n",
-        e.what());
+    fmt::print(stderr,
+               "palpate: internal error: {}\nThis is a mistake in palpate, not in your input: please report "
+               "it with the scene and this message.\n",
+               e.what());
     return kExitInternalError;
   }
 }

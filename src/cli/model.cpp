@@ -12,9 +12,13 @@
 namespace palpate::cli {
 
 int model(const std::vector<std::string>& arguments) {
-  const std::filesystem::path program = std::filesystem::canonical("/proc/self/exe").parent_path() / "palpate-model";
+  const std::filesystem::path program =
+      std::filesystem::canonical("/proc/self/exe").parent_path() / "palpate-model";
   if (!std::filesystem::exists(program))
-    fail("model: {} is not there: this build makes no models; configure with -DPALPATE_WITH_MODEL=ON (packages libcgal-dev, libgmsh-dev) and build the target palpate-model", program.string());
+    fail(
+        "model: {} is not there: this build makes no models; configure with -DPALPATE_WITH_MODEL=ON "
+        "(packages libcgal-dev, libgmsh-dev) and build the target palpate-model",
+        program.string());
   std::vector<std::string> words = {"palpate model"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;

@@ -20,9 +20,10 @@ namespace {
 void print_modes(const integrate::Modes& modes) {
   std::vector<std::vector<std::string>> rows;
   for (int j = 0; j < modes.count(); ++j)
-    rows.push_back({std::to_string(j + 1), fmt::format("{:.6g}", modes.frequency_hz(j)), fmt::format("{:.6g}", modes.omega(j)),
-                    fmt::format("{:.1e}", modes.residuals[j]),
-                    modes.omega_squared[j] < 0.0   ? fmt::format("unstable: w^2 = {:.4g}", modes.omega_squared[j])
+    rows.push_back({std::to_string(j + 1), fmt::format("{:.6g}", modes.frequency_hz(j)),
+                    fmt::format("{:.6g}", modes.omega(j)), fmt::format("{:.1e}", modes.residuals[j]),
+                    modes.omega_squared[j] < 0.0
+                        ? fmt::format("unstable: w^2 = {:.4g}", modes.omega_squared[j])
                     : modes.omega_squared[j] == 0.0 ? "rigid"
                                                     : ""});
   fmt::print("{}", report::format_table({"mode", "frequency [Hz]", "omega [rad/s]", "residual", ""}, rows));
@@ -31,7 +32,8 @@ void print_modes(const integrate::Modes& modes) {
 void write_table(const integrate::Modes& modes, const std::string& path) {
   store::CsvWriter csv(path, {"mode", "frequency_hz", "omega_rad_s", "omega_squared_1_s2", "residual"});
   for (int j = 0; j < modes.count(); ++j)
-    csv.row(std::vector<double>{j + 1.0, modes.frequency_hz(j), modes.omega(j), modes.omega_squared[j], modes.residuals[j]});
+    csv.row(std::vector<double>{j + 1.0, modes.frequency_hz(j), modes.omega(j), modes.omega_squared[j],
+                                modes.residuals[j]});
   csv.close();
 }
 
@@ -43,7 +45,8 @@ void draw_modes(const loop::World& world, const integrate::Modes& modes, const s
   std::vector<int> pictured;
   for (int j = 0; j < modes.count() && pictured.size() < kPictured; ++j)
     if (modes.omega_squared[j] != 0.0) pictured.push_back(j);
-  if (pictured.empty()) fail("--picture: the first {} modes are rigid motions; ask for more (--count)", modes.count());
+  if (pictured.empty())
+    fail("--picture: the first {} modes are rigid motions; ask for more (--count)", modes.count());
   Eigen::AlignedBox3d box;
   for (const loop::Body& body : world.bodies)
     for (const auto& x : body.placed.colwise()) box.extend(Vec3(x));
@@ -51,10 +54,12 @@ void draw_modes(const loop::World& world, const integrate::Modes& modes, const s
   render::Scene scene;
   std::vector<std::string> frequencies;
   for (std::size_t i = 0; i < pictured.size(); ++i) {
-    const Vec3 place(static_cast<double>(i % kColumns) * room.x(), 0.0, -static_cast<double>(i / kColumns) * room.z());
+    const Vec3 place(static_cast<double>(i % kColumns) * room.x(), 0.0,
+                     -static_cast<double>(i / kColumns) * room.z());
     for (const loop::Body& body : world.bodies) {
       const Points now = displaced(world, body, modes, pictured[i]), rest = world.positions(body);
-      const VecX moved = (now - rest).colwise().norm().transpose() / (loop::kModeAmplitude * box.sizes().maxCoeff());
+      const VecX moved =
+          (now - rest).colwise().norm().transpose() / (loop::kModeAmplitude * box.sizes().maxCoeff());
       render::Surface surface{body.name, body.surface_points(now), body.surface_faces(),
                               body.surface_values(moved)};
       surface.points.colwise() += place;
@@ -76,13 +81,17 @@ void draw_modes(const loop::World& world, const integrate::Modes& modes, const s
 
 int modes(const ModesArguments& arguments) {
 #ifndef PALPATE_HAS_RENDER
-  if (arguments.picture) fail("--picture: this build draws no pictures; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev)");
+  if (arguments.picture)
+    fail(
+        "--picture: this build draws no pictures; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, "
+        "libepoxy-dev)");
 #endif
   const scene::Description description = scene_of(arguments.scene);
   const std::unique_ptr<loop::World> world = loop::assemble(description);
   const integrate::Modes found = loop::find_modes(*world, arguments.count);
   print_modes(found);
-  const std::string folder = arguments.folder.empty() ? default_folder("modes-" + short_name(description)) : arguments.folder;
+  const std::string folder =
+      arguments.folder.empty() ? default_folder("modes-" + short_name(description)) : arguments.folder;
   make_folder(folder);
   const std::filesystem::path base(folder);
   write_table(found, (base / "modes.csv").string());
@@ -91,7 +100,10 @@ int modes(const ModesArguments& arguments) {
   if (arguments.picture) draw_modes(*world, found, (base / "modes.png").string());
 #endif
   fmt::print("in {}: modes.csv, modes.vtkhdf{}\n", folder, arguments.picture ? ", modes.png" : "");
-  if (!found.converged) fail("the modes did not converge: see their residuals; a mesh with better elements, or fewer modes (--count), may help");
+  if (!found.converged)
+    fail(
+        "the modes did not converge: see their residuals; a mesh with better elements, or fewer modes "
+        "(--count), may help");
   return 0;
 }
 

@@ -14,8 +14,10 @@ namespace palpate::cli {
 namespace {
 
 constexpr const char* kDescription =
-    "palpate renders touch: a hand moves a haptic handle, a virtual spring pulls a rigid tool after it, the tool presses into a soft body,\n"
-    "and the force goes back to the hand.  Every figure has a known error, and every error its price in run time.";
+    "palpate renders touch: a hand moves a haptic handle, a virtual spring pulls a rigid tool after it, the "
+    "tool presses into a soft body,\n"
+    "and the force goes back to the hand.  Every figure has a known error, and every error its price in run "
+    "time.";
 
 constexpr const char* kExamples = R"(Examples:
   palpate demo                                   the whole of it in a minute; open out/demo/report.html
@@ -29,7 +31,8 @@ constexpr const char* kExamples = R"(Examples:
 
 `palpate COMMAND --help` tells more about each.)";
 
-constexpr const char* kSceneHelp = "a scene file (.toml), or the name of one that comes with palpate (`palpate list scenes`)";
+constexpr const char* kSceneHelp =
+    "a scene file (.toml), or the name of one that comes with palpate (`palpate list scenes`)";
 
 /// CLI::PositiveNumber lets NaN pass, and its message spells out the largest double.
 const CLI::Validator duration(
@@ -44,11 +47,14 @@ void add_scene(CLI::App& command, SceneArguments& scene, bool integrator) {
   command.add_option("SCENE", scene.scene, kSceneHelp)->required();
   command
       .add_option("--set", scene.overrides,
-                  "change one value of the scene: KEY=VALUE, the key dotted, tables counted from 0, the value as in TOML")
+                  "change one value of the scene: KEY=VALUE, the key dotted, tables counted from 0, the "
+                  "value as in TOML")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   if (integrator)
-    command.add_option("--integrator", scene.integrator, "instead of the scene's: see `palpate list integrators`")
+    command
+        .add_option("--integrator", scene.integrator,
+                    "instead of the scene's: see `palpate list integrators`")
         ->type_name("NAME");
 }
 
@@ -56,17 +62,20 @@ void add_run(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("run", "run a scene and keep what it records");
   auto arguments = std::make_shared<RunArguments>();
   add_scene(*command, arguments->scene, true);
-  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/SCENE")->type_name("DIR");
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/SCENE")
+      ->type_name("DIR");
   command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scene's [s]")
       ->type_name("SECONDS")
       ->check(duration);
-  command->add_flag("--picture", arguments->picture,
-                    "also a picture of the moment of the largest force, or of the end without a tool (picture.png)");
+  command->add_flag(
+      "--picture", arguments->picture,
+      "also a picture of the moment of the largest force, or of the end without a tool (picture.png)");
   command->add_option("--shade", arguments->shade, "what colours the picture: displacement or stress")
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--report", arguments->report, "also a page to look at (report.html)");
-  command->add_flag("--trace", arguments->trace, "also every attempted step, and why it was rejected (trace.csv; a plot in the report)");
+  command->add_flag("--trace", arguments->trace,
+                    "also every attempted step, and why it was rejected (trace.csv; a plot in the report)");
   command->footer(R"(Examples:
   palpate run falling-ball
   palpate run press-ball --integrator linearly-implicit-euler --set integrator.step_s=0.002
@@ -82,32 +91,50 @@ summary.json (versions, options, counts, timings).  Ctrl-C ends the run; what wa
 }
 
 void add_compare(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("compare", "error against run time of every integrator on one scene or several");
+  CLI::App* command =
+      app.add_subcommand("compare", "error against run time of every integrator on one scene or several");
   auto arguments = std::make_shared<CompareArguments>();
-  command->add_option("SCENE", arguments->scenes, "one or several: a scene file (.toml), or the name of one that comes with palpate")->required();
-  command->add_option("--set", arguments->overrides, "change one value of every scene: KEY=VALUE, as for `palpate run`")
+  command
+      ->add_option("SCENE", arguments->scenes,
+                   "one or several: a scene file (.toml), or the name of one that comes with palpate")
+      ->required();
+  command
+      ->add_option("--set", arguments->overrides,
+                   "change one value of every scene: KEY=VALUE, as for `palpate run`")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command
       ->add_option("--integrator", arguments->integrators,
-                   "only this one: a name of `palpate list integrators`, or the label of a [[compare.ladder]]; may be given more than once")
+                   "only this one: a name of `palpate list integrators`, or the label of a "
+                   "[[compare.ladder]]; may be given more than once")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  command->add_flag("--all", arguments->all, "every integrator that moves in time, beside those named: the default where none is named");
-  command->add_option("--repeats", arguments->repeats, "runs of each point at most, for the spread of its time")
+  command->add_flag(
+      "--all", arguments->all,
+      "every integrator that moves in time, beside those named: the default where none is named");
+  command
+      ->add_option("--repeats", arguments->repeats, "runs of each point at most, for the spread of its time")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--limit-s", arguments->limit_s, "CPU time of a point [s]")->type_name("SECONDS")->check(duration)->capture_default_str();
-  command->add_option("--reference-limit-s", arguments->reference_limit_s, "CPU time of a reference, and of its check [s]")
+  command->add_option("--limit-s", arguments->limit_s, "CPU time of a point [s]")
       ->type_name("SECONDS")
       ->check(duration)
       ->capture_default_str();
-  command->add_option("--jobs", arguments->jobs, "runs side by side; default: the number of cores")->check(CLI::Range(1, 1024));
-  command->add_flag("--fresh", arguments->fresh, "start anew instead of going on from what stands in the folder");
+  command
+      ->add_option("--reference-limit-s", arguments->reference_limit_s,
+                   "CPU time of a reference, and of its check [s]")
+      ->type_name("SECONDS")
+      ->check(duration)
+      ->capture_default_str();
+  command->add_option("--jobs", arguments->jobs, "runs side by side; default: the number of cores")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--fresh", arguments->fresh,
+                    "start anew instead of going on from what stands in the folder");
   command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scenes' [s]")
       ->type_name("SECONDS")
       ->check(duration);
-  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/compare-SCENE")->type_name("DIR");
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/compare-SCENE")
+      ->type_name("DIR");
   command->footer(R"(Examples:
   palpate compare cantilever
   palpate compare cantilever press-ball --limit-s 5 -o out/both
@@ -127,8 +154,10 @@ void add_validate(CLI::App& app, Invocation& invocation) {
   auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("CASE", arguments->cases, "only these; see `palpate list cases`");
   command->add_flag("--slow", arguments->slow, "also the cases that take minutes");
-  command->add_flag("--sabotage", arguments->sabotage, "break the physics of each case on purpose: every one must then fail");
-  command->add_option("-o,--output", arguments->folder, "also write validation.json and report.html here")->type_name("DIR");
+  command->add_flag("--sabotage", arguments->sabotage,
+                    "break the physics of each case on purpose: every one must then fail");
+  command->add_option("-o,--output", arguments->folder, "also write validation.json and report.html here")
+      ->type_name("DIR");
   command->footer(R"(Examples:
   palpate validate
   palpate validate patch-test cantilever -o out/validation
@@ -145,9 +174,13 @@ void add_modes(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("modes", "frequencies and shapes of a scene's free vibrations");
   auto arguments = std::make_shared<ModesArguments>();
   add_scene(*command, arguments->scene, false);
-  command->add_option("--count", arguments->count, "how many, from the lowest")->check(CLI::Range(1, 1000))->capture_default_str();
-  command->add_flag("--picture", arguments->picture, "also a picture of the first six that are no rigid motions (modes.png)");
-  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/modes-SCENE")->type_name("DIR");
+  command->add_option("--count", arguments->count, "how many, from the lowest")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag("--picture", arguments->picture,
+                    "also a picture of the first six that are no rigid motions (modes.png)");
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/modes-SCENE")
+      ->type_name("DIR");
   command->footer(R"(Examples:
   palpate modes cantilever
   palpate modes cantilever --count 20 --picture -o out/modes
@@ -162,16 +195,32 @@ modes.vtkhdf: ParaView opens it as a time series in which time is the mode's num
 }
 
 void add_stability(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("stability", "stiff and extreme cases against every integrator, each held against theory");
+  CLI::App* command = app.add_subcommand(
+      "stability", "stiff and extreme cases against every integrator, each held against theory");
   auto arguments = std::make_shared<StabilityArguments>();
-  command->add_option("--row", arguments->rows, "only this row; may be given more than once")->type_name("NAME")->allow_extra_args(false);
-  command->add_option("--integrator", arguments->integrators, "only this one; may be given more than once")->type_name("NAME")->allow_extra_args(false);
+  command->add_option("--row", arguments->rows, "only this row; may be given more than once")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  command->add_option("--integrator", arguments->integrators, "only this one; may be given more than once")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   command->add_flag("--slow", arguments->slow, "also the rows that take minutes");
-  command->add_flag("--cells", arguments->cells, "print every cell with its figure, not only the unexpected ones");
-  command->add_option("--seeds", arguments->seeds, "random starts of the squashed and scattered bodies")->check(CLI::Range(1, 100000))->capture_default_str();
-  command->add_option("--jobs", arguments->jobs, "processes")->check(CLI::Range(1, 256))->capture_default_str();
-  command->add_option("--limit-s", arguments->limit_s, "CPU time of a cell; in rows that take minutes ten times that [s]")->type_name("SECONDS")->check(duration)->capture_default_str();
-  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/stability")->type_name("DIR");
+  command->add_flag("--cells", arguments->cells,
+                    "print every cell with its figure, not only the unexpected ones");
+  command->add_option("--seeds", arguments->seeds, "random starts of the squashed and scattered bodies")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--jobs", arguments->jobs, "processes")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  command
+      ->add_option("--limit-s", arguments->limit_s,
+                   "CPU time of a cell; in rows that take minutes ten times that [s]")
+      ->type_name("SECONDS")
+      ->check(duration)
+      ->capture_default_str();
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/stability")
+      ->type_name("DIR");
   command->footer(R"(Examples:
   palpate stability --jobs 2
   palpate stability --row youngs-modulus --integrator cvode-bdf --cells
@@ -185,24 +234,28 @@ Writes stability.csv, stability.json and report.html with the heat map.  Exit st
 }
 
 void add_inspect(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("inspect", "what a scene uses, what it leaves out, sizes and memory");
+  CLI::App* command =
+      app.add_subcommand("inspect", "what a scene uses, what it leaves out, sizes and memory");
   auto arguments = std::make_shared<InspectArguments>();
   add_scene(*command, arguments->scene, true);
   command->footer(R"(Examples:
   palpate inspect press-ball
   palpate inspect my.toml --set body.0.mesh.element_size_m=0.005      how large would it be?)");
-  command->callback([arguments, &invocation] { invocation.action = [arguments] { return inspect(*arguments); }; });
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return inspect(*arguments); }; });
 }
 
 void add_list(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("list", "the names that scenes and options know");
   auto arguments = std::make_shared<ListArguments>();
-  command->add_option("WHAT", arguments->what,
-                      "integrators, linear-solvers, tool-integrators, devices, cases, parts, scenes; all without it");
+  command->add_option(
+      "WHAT", arguments->what,
+      "integrators, linear-solvers, tool-integrators, devices, cases, parts, scenes; all without it");
   command->footer(R"(Examples:
   palpate list
   palpate list integrators)");
-  command->callback([arguments, &invocation] { invocation.action = [arguments] { return list(*arguments); }; });
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return list(*arguments); }; });
 }
 
 void add_bench(CLI::App& app, Invocation& invocation) {
@@ -210,25 +263,45 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   auto arguments = std::make_shared<BenchArguments>();
   command
       ->add_option("WHAT", arguments->what,
-                   "fem: one implicit step of a soft beam at several sizes, split into its stages; leave-out: what absent and present parts cost")
+                   "fem: one implicit step of a soft beam at several sizes, split into its stages; "
+                   "leave-out: what absent and present parts cost")
       ->required();
   command->add_option("SCENE", arguments->scenes, "of leave-out; default falling-ball and cantilever");
-  command->add_option("--size", arguments->sizes, "fem: XS, S, M, L, XL (1,425 to 100,000 nodes); default S and M")->delimiter(',');
-  command->add_option("--threads", arguments->threads, "fem: numbers of threads; default 1,2")->delimiter(',')->check(CLI::Range(1, 64));
-  command->add_option("--linear-rtol", arguments->linear_rtols, "fem: tolerances; default 1e-6,1e-3")->delimiter(',')->check(CLI::PositiveNumber);
-  command->add_option("--youngs-modulus-pa", arguments->youngs_moduli_pa, "fem: default 1e5,1e6")->delimiter(',')->check(CLI::PositiveNumber);
-  command->add_option("--steps", arguments->steps, "fem: steps of 10 ms that are timed; of 1 ms ten times as many, the same motion")
+  command
+      ->add_option("--size", arguments->sizes,
+                   "fem: XS, S, M, L, XL (1,425 to 100,000 nodes); default S and M")
+      ->delimiter(',');
+  command->add_option("--threads", arguments->threads, "fem: numbers of threads; default 1,2")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 64));
+  command->add_option("--linear-rtol", arguments->linear_rtols, "fem: tolerances; default 1e-6,1e-3")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  command->add_option("--youngs-modulus-pa", arguments->youngs_moduli_pa, "fem: default 1e5,1e6")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--steps", arguments->steps,
+                   "fem: steps of 10 ms that are timed; of 1 ms ten times as many, the same motion")
       ->check(CLI::Range(3, 1000000))
       ->capture_default_str();
   command->add_option("--linear-solver", arguments->linear_solvers, "fem: see `palpate list linear-solvers`")
       ->type_name("NAME")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_flag("--accuracy", arguments->accuracy, "fem: error against run time of one motion instead of the stages of a step");
-  command->add_option("-o,--output", arguments->folder, "fem: folder for bench-fem.json and bench-fem.svg")->type_name("DIR");
-  command->add_option("--calibrate", arguments->calibrate, "fem: measure which solver is the fastest where, and write the table of \"auto\"")->type_name("FILE");
-  command->add_option("--cells", arguments->cells, "fem: one beam of so many cells along, by way of a scene")->check(CLI::Range(4, 1000));
-  command->add_option("--step-s", arguments->step_s, "fem with --cells: the step [s]")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_flag("--accuracy", arguments->accuracy,
+                    "fem: error against run time of one motion instead of the stages of a step");
+  command->add_option("-o,--output", arguments->folder, "fem: folder for bench-fem.json and bench-fem.svg")
+      ->type_name("DIR");
+  command
+      ->add_option("--calibrate", arguments->calibrate,
+                   "fem: measure which solver is the fastest where, and write the table of \"auto\"")
+      ->type_name("FILE");
+  command->add_option("--cells", arguments->cells, "fem: one beam of so many cells along, by way of a scene")
+      ->check(CLI::Range(4, 1000));
+  command->add_option("--step-s", arguments->step_s, "fem with --cells: the step [s]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_option("--repeats", arguments->repeats, "leave-out: runs of each variant")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -245,10 +318,14 @@ void add_bench(CLI::App& app, Invocation& invocation) {
 }
 
 void add_demo(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("demo", "a tool presses a soft ball: picture, force curve, error and its price");
+  CLI::App* command =
+      app.add_subcommand("demo", "a tool presses a soft ball: picture, force curve, error and its price");
   auto arguments = std::make_shared<DemoArguments>();
-  command->add_option("-o,--output", arguments->folder, "folder for the results")->type_name("DIR")->capture_default_str();
-  command->footer("Example:\n  palpate demo                                   then open out/demo/report.html");
+  command->add_option("-o,--output", arguments->folder, "folder for the results")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->footer(
+      "Example:\n  palpate demo                                   then open out/demo/report.html");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return demo(*arguments); };
     invocation.factorises = true;
@@ -257,9 +334,12 @@ void add_demo(CLI::App& app, Invocation& invocation) {
 
 /// Its own program parses what follows: here stands only what `palpate --help` says of it.
 void add_model(CLI::App& app, Invocation& invocation) {
-  CLI::App* command = app.add_subcommand("model", "a layered model of a closed surface: tetrahedra, skin, proxies");
+  CLI::App* command =
+      app.add_subcommand("model", "a layered model of a closed surface: tetrahedra, skin, proxies");
   command->prefix_command();
-  command->callback([command, &invocation] { invocation.action = [words = command->remaining()] { return model(words); }; });
+  command->callback([command, &invocation] {
+    invocation.action = [words = command->remaining()] { return model(words); };
+  });
 }
 
 /// What is wrong with the line, and where help is: CLI11's own messages name the option.
@@ -267,7 +347,8 @@ void refuse(const CLI::App& app, const CLI::ParseError& error, int argc, char** 
   std::string command = "palpate", message = error.what();
   for (const CLI::App* used : app.get_subcommands()) command += " " + used->get_name();
   const std::vector<std::string> words(argv + 1, argv + argc);
-  const auto first = std::find_if(words.begin(), words.end(), [](const std::string& word) { return !word.starts_with("-"); });
+  const auto first = std::find_if(words.begin(), words.end(),
+                                  [](const std::string& word) { return !word.starts_with("-"); });
   if (app.get_subcommands().empty() && first != words.end()) {
     std::vector<std::string> known;
     for (const CLI::App* one : app.get_subcommands({})) known.push_back(one->get_name());
@@ -283,7 +364,8 @@ Invocation parse(int argc, char** argv) {
   CLI::App app(kDescription, "palpate");
   app.set_version_flag("--version", [] {
     const store::Provenance made_by = store::provenance();
-    return fmt::format("palpate {} (commit {}, {}, {})", made_by.version, made_by.commit, made_by.compiler, made_by.build_type);
+    return fmt::format("palpate {} (commit {}, {}, {})", made_by.version, made_by.commit, made_by.compiler,
+                       made_by.build_type);
   });
   app.get_formatter()->column_width(34);
   app.add_flag("-q,--quiet", invocation.quiet, "only errors");

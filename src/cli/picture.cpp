@@ -17,10 +17,13 @@ VecX shading(loop::World& world, const loop::Body& body, const Points& now, cons
 
 void check_picture(const std::string& shade) {
 #ifndef PALPATE_HAS_RENDER
-  fail("--picture: this build draws no pictures; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev)");
+  fail(
+      "--picture: this build draws no pictures; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, "
+      "libepoxy-dev)");
 #endif
   const std::vector<std::string> known = {"displacement", "stress"};
-  if (shade != known[0] && shade != known[1]) fail("--shade: unknown \"{}\"{}", shade, suggestion(shade, known));
+  if (shade != known[0] && shade != known[1])
+    fail("--shade: unknown \"{}\"{}", shade, suggestion(shade, known));
 }
 
 void Snapshot::tick(const loop::TickRecord& tick) {
@@ -61,14 +64,17 @@ void Snapshot::save(const loop::World& world, const std::string& path) const {
     // A skeleton has one entry in the legend.
     const int body = world.bones[i].body;
     const bool first = i == 0 || world.bones[i - 1].body != body;
-    const std::string name = body < 0 ? world.bones[i].name : first ? "bones of " + world.bodies[static_cast<std::size_t>(body)].name : "";
+    const std::string name = body < 0 ? world.bones[i].name
+                             : first  ? "bones of " + world.bodies[static_cast<std::size_t>(body)].name
+                                      : "";
     render::Surface surface{name, now, shape.faces};
     surface.colour = {0.93f, 0.90f, 0.80f};
     scene.surfaces.push_back(surface);
   }
   if (world.description.tool) {
     TriMesh tool = loop::tool_surface(*world.description.tool, world.folder);
-    for (Eigen::Index i = 0; i < tool.vertices.cols(); ++i) tool.vertices.col(i) = tool_ * Vec3(tool.vertices.col(i));
+    for (Eigen::Index i = 0; i < tool.vertices.cols(); ++i)
+      tool.vertices.col(i) = tool_ * Vec3(tool.vertices.col(i));
     render::Surface surface{"tool", tool.vertices, tool.faces};
     surface.colour = {0.80f, 0.42f, 0.20f};
     surface.opacity = 0.45;  // the dent lies under it

@@ -10,13 +10,15 @@ namespace palpate::cli {
 /// @throws Error where pictures were not compiled in, or for another name
 void check_picture(const std::string& shade);
 
-/// Keeps one instant of a run for a picture: the period in which the hand felt the largest force, or the last one where there is no tool.
+/// Keeps one instant of a run for a picture: the period in which the hand felt the largest force, or the last
+/// one where there is no tool.
 class Snapshot : public loop::Observer {
  public:
   explicit Snapshot(std::string shade) : shade_(std::move(shade)) {}
   void period(loop::World& world, double t) override;
   void tick(const loop::TickRecord& tick) override;
-  /// Surfaces shaded by displacement [m] or von Mises stress [Pa], the tool, bones seen through the flesh, a floor where the scene has one.
+  /// Surfaces shaded by displacement [m] or von Mises stress [Pa], the tool, bones seen through the flesh, a
+  /// floor where the scene has one.
   void save(const loop::World& world, const std::string& path) const;
 
  private:

@@ -11,7 +11,9 @@ namespace palpate::cli {
 namespace fs = std::filesystem;
 namespace {
 
-fs::path scene_folder() { return fs::canonical("/proc/self/exe").parent_path().parent_path() / "share" / "palpate" / "scenes"; }
+fs::path scene_folder() {
+  return fs::canonical("/proc/self/exe").parent_path().parent_path() / "share" / "palpate" / "scenes";
+}
 
 }  // namespace
 
@@ -32,8 +34,10 @@ std::string find_scene(const std::string& name_or_path) {
     if (known.back() == name_or_path) return scene;
   }
   if (fs::is_directory(name_or_path))
-    fail("{}: is a folder; give a scene file (.toml) or the name of a scene: see `palpate list scenes`", name_or_path);
-  fail("{}: no such file, and no scene that comes with palpate has this name{}", name_or_path, suggestion(name_or_path, known));
+    fail("{}: is a folder; give a scene file (.toml) or the name of a scene: see `palpate list scenes`",
+         name_or_path);
+  fail("{}: no such file, and no scene that comes with palpate has this name{}", name_or_path,
+       suggestion(name_or_path, known));
 }
 
 std::string default_folder(const std::string& name) { return (fs::path("out") / name).string(); }

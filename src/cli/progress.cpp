@@ -31,7 +31,8 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {} min", s / 3600, s % 3600 / 60);
 }
 
-Progress::Progress(std::string what) : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1), start_(wall_seconds()) {
+Progress::Progress(std::string what)
+    : what_(std::move(what)), terminal_(::isatty(STDERR_FILENO) == 1), start_(wall_seconds()) {
   if (const char* term = std::getenv("TERM"); term && std::string(term) == "dumb") terminal_ = false;
 }
 
@@ -43,9 +44,10 @@ void Progress::operator()(double fraction, const std::string& text) {
   last_ = now;
   fraction = std::clamp(fraction, 0.0, 1.0);
   const int filled = static_cast<int>(fraction * kBarWidth);
-  std::string line =
-      fmt::format("[{}{}] {:3.0f} %", std::string(filled, '#'), std::string(kBarWidth - filled, '-'), 100.0 * fraction);
-  if (fraction > 0.02) line += fmt::format("  {} left", duration_text((now - start_) * (1.0 - fraction) / fraction));
+  std::string line = fmt::format("[{}{}] {:3.0f} %", std::string(filled, '#'),
+                                 std::string(kBarWidth - filled, '-'), 100.0 * fraction);
+  if (fraction > 0.02)
+    line += fmt::format("  {} left", duration_text((now - start_) * (1.0 - fraction) / fraction));
   line += "  " + (text.empty() ? what_ : text);
   line.resize(std::min<std::size_t>(line.size(), static_cast<std::size_t>(terminal_width() - 1)));
   fmt::print(stderr, "\r\033[K{}", line);

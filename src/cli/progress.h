@@ -3,9 +3,9 @@
 
 namespace palpate::cli {
 
-/// One line on standard error that shows how far something is and how long it still takes: `assembling  [#####-----]  50 %  12 s left`.
-/// It appears after the first second, is rewritten at most ten times a second, is wiped at the end, and stays silent where standard error is
-/// no terminal.
+/// One line on standard error that shows how far something is and how long it still takes: `assembling
+/// [#####-----]  50 %  12 s left`. It appears after the first second, is rewritten at most ten times a
+/// second, is wiped at the end, and stays silent where standard error is no terminal.
 class Progress {
  public:
   explicit Progress(std::string what);
@@ -13,7 +13,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// @param fraction  done, in [0, 1]  @param text  what is being done now; empty: the name given at the start
+  /// @param fraction  done, in [0, 1]  @param text  what is being done now; empty: the name given at the
+  ///   start
   void operator()(double fraction, const std::string& text = {});
   void wipe();
 

@@ -30,24 +30,27 @@ class PeakWrench : public loop::Observer {
   double force_n = 0.0, force_s = 0.0, torque_n_m = 0.0, torque_s = 0.0;
 };
 
-void print_outcome(const loop::World& world, const loop::RunResult& result, const PeakWrench& peak, double assemble_s) {
-  fmt::print("{}: {:g} s simulated in {:.2f} s, assembled in {:.2f} s\n", short_name(world.description), result.time,
-             result.wall_s, assemble_s);
+void print_outcome(const loop::World& world, const loop::RunResult& result, const PeakWrench& peak,
+                   double assemble_s) {
+  fmt::print("{}: {:g} s simulated in {:.2f} s, assembled in {:.2f} s\n", short_name(world.description),
+             result.time, result.wall_s, assemble_s);
   if (world.stepper) {
     const dynamics::StepperCounters& c = result.counters;
     fmt::print("{}: {} steps, {} force and {} tangent evaluations, {} factorisations, {} contact queries\n",
-               world.stepper->name(), c.steps, c.force_evaluations, c.tangent_evaluations, c.solver.factorisations,
-               result.contact_queries);
+               world.stepper->name(), c.steps, c.force_evaluations, c.tangent_evaluations,
+               c.solver.factorisations, result.contact_queries);
   }
   if (result.ticks > 0)
     fmt::print(
-        "on the hand: at most {:.4g} N (at {:g} s) and {:.4g} N m (at {:g} s) in {} ticks; {} held at the device's limit\n",
+        "on the hand: at most {:.4g} N (at {:g} s) and {:.4g} N m (at {:g} s) in {} ticks; {} held at the "
+        "device's limit\n",
         peak.force_n, peak.force_s, peak.torque_n_m, peak.torque_s, result.ticks, result.limited_ticks);
 }
 
 /// A word of the command line, quoted where a shell would split or expand it.
 std::string quoted(const std::string& word) {
-  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+@%") == std::string::npos &&
+  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+@%") ==
+          std::string::npos &&
       !word.empty())
     return word;
   std::string out = "'";
@@ -67,8 +70,8 @@ std::string command_of(const RunArguments& a) {
   return a.folder.empty() ? out : out + " -o " + quoted(a.folder);
 }
 
-void keep_summary(const loop::World& world, const loop::RunResult& result, double assemble_s, const RunArguments& arguments,
-                  const std::string& folder) {
+void keep_summary(const loop::World& world, const loop::RunResult& result, double assemble_s,
+                  const RunArguments& arguments, const std::string& folder) {
   store::Summary summary = loop::summarise(world, result, assemble_s);
   summary.command = command_of(arguments);
   summary.overrides = arguments.scene.overrides;
@@ -85,7 +88,8 @@ void print_files(const std::string& folder) {
   fmt::print("in {}: {}\n", folder, fmt::join(names, ", "));
 }
 
-loop::RunResult run_watched(loop::World& world, const RunArguments& arguments, std::vector<loop::Observer*> observers) {
+loop::RunResult run_watched(loop::World& world, const RunArguments& arguments,
+                            std::vector<loop::Observer*> observers) {
   Progress progress(fmt::format("running {}", short_name(world.description)));
   loop::RunOptions options;
   options.duration_s = arguments.duration_s;
@@ -105,8 +109,10 @@ int run(const RunArguments& arguments) {
   const double assemble_s = wall_seconds() - start;
 
   // A scene that records nothing writes nothing, unless something was asked for here.
-  const bool keep = description.record || !arguments.folder.empty() || arguments.picture || arguments.report || arguments.trace;
-  const std::string folder = arguments.folder.empty() ? default_folder(short_name(description)) : arguments.folder;
+  const bool keep = description.record || !arguments.folder.empty() || arguments.picture ||
+                    arguments.report || arguments.trace;
+  const std::string folder =
+      arguments.folder.empty() ? default_folder(short_name(description)) : arguments.folder;
   if (keep) make_folder(folder);
 
   PeakWrench peak;
@@ -133,10 +139,13 @@ int run(const RunArguments& arguments) {
   }
   if (!result.status.ok())
     fail(
-        "{} gave up at t = {:g} s: {}{}; a smaller tolerance or step often helps (--set integrator.rtol=..., integrator.step_s=...)",
-        description.integrator.name, result.status.t, result.status.message, keep ? " (what was recorded by then is whole)" : "");
+        "{} gave up at t = {:g} s: {}{}; a smaller tolerance or step often helps (--set integrator.rtol=..., "
+        "integrator.step_s=...)",
+        description.integrator.name, result.status.t, result.status.message,
+        keep ? " (what was recorded by then is whole)" : "");
   if (result.stopped) {
-    fmt::print(stderr, "palpate: stopped at t = {:g} s{}\n", result.time, keep ? "; what was recorded by then is whole" : "");
+    fmt::print(stderr, "palpate: stopped at t = {:g} s{}\n", result.time,
+               keep ? "; what was recorded by then is whole" : "");
     return kExitStopped;
   }
   return 0;

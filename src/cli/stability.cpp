@@ -27,7 +27,8 @@ void print_matrix(const study::StabilityMatrix& matrix) {
   std::vector<std::string> integrators;
   std::vector<std::pair<std::string, std::map<std::string, std::string>>> rows;
   for (const StabilityCell& cell : matrix.cells) {
-    if (std::find(integrators.begin(), integrators.end(), cell.integrator) == integrators.end()) integrators.push_back(cell.integrator);
+    if (std::find(integrators.begin(), integrators.end(), cell.integrator) == integrators.end())
+      integrators.push_back(cell.integrator);
     const std::string name = fmt::format("{}: {}", cell.row, cell.sub_case);
     if (rows.empty() || rows.back().first != name) rows.push_back({name, {}});
     rows.back().second[cell.integrator] = fmt::format("{}{}", letter(cell), cell.as_expected() ? ' ' : '!');
@@ -40,19 +41,25 @@ void print_matrix(const study::StabilityMatrix& matrix) {
   fmt::print("\n");
   for (const auto& [name, cells] : rows) {
     std::string line = fmt::format("{:{}}", name, width);
-    for (const std::string& integrator : integrators) line += "  " + (cells.contains(integrator) ? cells.at(integrator) : ". ");
+    for (const std::string& integrator : integrators)
+      line += "  " + (cells.contains(integrator) ? cells.at(integrator) : ". ");
     fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
   }
-  fmt::print("\nA accurate  S stable  B bounded  E ended with a clear error  G grew  N not finite  F failed in silence  T too slow  ! unexpected  . no such cell\n");
+  fmt::print(
+      "\nA accurate  S stable  B bounded  E ended with a clear error  G grew  N not finite  F failed in "
+      "silence  T too slow  ! unexpected  . no such cell\n");
 }
 
 void print_cells(const study::StabilityMatrix& matrix, bool only_unexpected) {
   std::vector<std::vector<std::string>> rows;
   for (const StabilityCell& c : matrix.cells)
     if (!only_unexpected || !c.as_expected())
-      rows.push_back({c.row, c.sub_case, c.integrator, study::to_string(c.verdict), c.expected.text(), c.figure, fmt::format("{:.2f}", c.cpu_s), c.reason});
+      rows.push_back({c.row, c.sub_case, c.integrator, study::to_string(c.verdict), c.expected.text(),
+                      c.figure, fmt::format("{:.2f}", c.cpu_s), c.reason});
   if (!rows.empty())
-    fmt::print("\n{}", report::format_table({"row", "case", "integrator", "verdict", "expected", "figure", "CPU [s]", "reason"}, rows));
+    fmt::print("\n{}", report::format_table({"row", "case", "integrator", "verdict", "expected", "figure",
+                                             "CPU [s]", "reason"},
+                                            rows));
 }
 
 std::string command_of(const StabilityArguments& arguments) {
@@ -60,7 +67,8 @@ std::string command_of(const StabilityArguments& arguments) {
   for (const std::string& row : arguments.rows) command += " --row " + row;
   for (const std::string& integrator : arguments.integrators) command += " --integrator " + integrator;
   if (arguments.slow) command += " --slow";
-  return command + fmt::format(" --seeds {} --jobs {} --limit-s {:g}", arguments.seeds, arguments.jobs, arguments.limit_s);
+  return command + fmt::format(" --seeds {} --jobs {} --limit-s {:g}", arguments.seeds, arguments.jobs,
+                               arguments.limit_s);
 }
 
 study::StabilityMatrix watched(const StabilityArguments& arguments) {
@@ -87,7 +95,8 @@ int stability(const StabilityArguments& arguments) {
   print_matrix(matrix);
   print_cells(matrix, !arguments.cells);
   const long unexpected = matrix.unexpected();
-  fmt::print("\n{} of {} cells as theory expects, in {:.0f} s\n", static_cast<long>(matrix.cells.size()) - unexpected, matrix.cells.size(), matrix.wall_s);
+  fmt::print("\n{} of {} cells as theory expects, in {:.0f} s\n",
+             static_cast<long>(matrix.cells.size()) - unexpected, matrix.cells.size(), matrix.wall_s);
   fmt::print("written: {}\n", report::write_run_report(folder).string());
   if (matrix.stopped) {
     fmt::print(stderr, "palpate: stopped; the cells that were finished are in {}\n", folder);

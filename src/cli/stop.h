@@ -3,11 +3,13 @@
 
 namespace palpate::cli {
 
-/// Set by the first Ctrl-C (or SIGTERM): loops poll it and end cleanly.  A second Ctrl-C ends the program at once.
+/// Set by the first Ctrl-C (or SIGTERM): loops poll it and end cleanly.  A second Ctrl-C ends the program at
+/// once.
 const std::atomic<bool>& stop_flag();
 void catch_stop_signals();
 
-inline constexpr int kExitError = 1;  ///< the input is at fault, the integrator gave up, or a case with a known answer failed
+/// the input is at fault, the integrator gave up, or a case with a known answer failed
+inline constexpr int kExitError = 1;
 inline constexpr int kExitInternalError = 2;  ///< a mistake of ours
 inline constexpr int kExitStopped = 130;      ///< Ctrl-C, as shells report it
 

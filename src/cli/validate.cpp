@@ -28,7 +28,8 @@ std::vector<const ValidationCase*> chosen(const ValidateArguments& arguments) {
   std::vector<const ValidationCase*> out;
   for (const std::string& name : arguments.cases) {
     const auto at = std::find(known.begin(), known.end(), name);
-    if (at == known.end()) fail("there is no case \"{}\"{}; see `palpate list cases`", name, suggestion(name, known));
+    if (at == known.end())
+      fail("there is no case \"{}\"{}; see `palpate list cases`", name, suggestion(name, known));
     out.push_back(&study::validation_cases()[static_cast<std::size_t>(at - known.begin())]);
   }
   if (arguments.cases.empty())
@@ -75,8 +76,8 @@ Json to_json(const ValidationCase& one, const std::vector<Measurement>& measurem
 }
 
 bool all_pass(const std::vector<Measurement>& measurements) {
-  return !measurements.empty() &&
-         std::all_of(measurements.begin(), measurements.end(), [](const Measurement& m) { return m.passed(); });
+  return !measurements.empty() && std::all_of(measurements.begin(), measurements.end(),
+                                              [](const Measurement& m) { return m.passed(); });
 }
 
 struct Run {
@@ -89,7 +90,8 @@ void run_one(const ValidationCase& one, Run& out) {
   const double start = wall_seconds();
   const std::vector<Measurement> measurements = one.run("");
   for (const Measurement& m : measurements) out.rows.push_back(row(one, m));
-  if (measurements.empty()) out.rows.push_back({one.name, "nothing was measured", "-", "-", "-", "-", "-", "FAIL"});
+  if (measurements.empty())
+    out.rows.push_back({one.name, "nothing was measured", "-", "-", "-", "-", "-", "FAIL"});
   out.cases.push_back(to_json(one, measurements, wall_seconds() - start));
   if (!all_pass(measurements)) ++out.failed;
 }
@@ -126,10 +128,10 @@ int validate(const ValidateArguments& arguments) {
     }
   }
   using Headers = std::vector<std::string>;
-  fmt::print("{}", report::format_table(
-                       arguments.sabotage ? Headers{"case", "sabotage", "outcome"}
-                                          : Headers{"case", "quantity", "computed", "exact", "error", "bar", "order", "verdict"},
-                       out.rows));
+  fmt::print("{}", report::format_table(arguments.sabotage ? Headers{"case", "sabotage", "outcome"}
+                                                           : Headers{"case", "quantity", "computed", "exact",
+                                                                     "error", "bar", "order", "verdict"},
+                                        out.rows));
   fmt::print("{} of {} cases {}{}\n", done - static_cast<std::size_t>(out.failed), done,
              arguments.sabotage ? "fail when broken on purpose" : "keep their bars",
              done < cases.size() ? fmt::format("; stopped before the other {}", cases.size() - done) : "");

@@ -14,15 +14,24 @@ namespace {
 struct Nearest {
   double gap;
   Vec3 normal;
-  double radius = 0.0;  ///< of a sphere or cylinder there [m]: its centre lies that far within; 0 of faces and edges, which turn with the shape
+  /// of a sphere or cylinder there [m]: its centre lies that far within; 0 of faces and edges, which turn
+  /// with the shape
+  double radius = 0.0;
 };
 
-/// Vertices of a surface against an exact shape.  `Shape` gives `Nearest at(x)` for the frame's pose of this query.
+/// Vertices of a surface against an exact shape.  `Shape` gives `Nearest at(x)` for the frame's pose of this
+/// query.
 template <class Shape>
 class AnalyticSource final : public SampleSource {
  public:
-  AnalyticSource(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, Shape shape, double candidate_gap, double look_ahead)
-      : surface_(std::move(surface)), frame_(frame), motion_(std::move(motion)), shape_(shape), candidate_gap_(candidate_gap), look_ahead_(look_ahead) {
+  AnalyticSource(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, Shape shape,
+                 double candidate_gap, double look_ahead)
+      : surface_(std::move(surface)),
+        frame_(frame),
+        motion_(std::move(motion)),
+        shape_(shape),
+        candidate_gap_(candidate_gap),
+        look_ahead_(look_ahead) {
     PALPATE_CHECK(motion_, "a {} source needs a frame", Shape::kName);
     PALPATE_CHECK(candidate_gap >= 0.0, "candidate gap {} must not be negative", candidate_gap);
     PALPATE_CHECK(look_ahead >= 0.0, "look-ahead {} must not be negative", look_ahead);
@@ -60,7 +69,8 @@ class AnalyticSource final : public SampleSource {
   }
 
  private:
-  /// Near, or near at the next query: gap + look_ahead gap' < candidate_gap, with the frame's own motion in gap'.
+  /// Near, or near at the next query: gap + look_ahead gap' < candidate_gap, with the frame's own motion in
+  /// gap'.
   bool find_candidates(const dynamics::StateView& state, const Pose& pose) {
     bool any = false;
     const Twist twist = motion_->twist(state);
@@ -68,7 +78,8 @@ class AnalyticSource final : public SampleSource {
     for (int v = 0; v < surface_.vertex_count(); ++v) {
       const Vec3 x = surface_.positions().col(v);
       const Nearest nearest = shape_.at(x);
-      const double rate = nearest.normal.dot(surface_.velocity(v, state) - twist.at(x - nearest.gap * nearest.normal - pose.translation));
+      const double rate = nearest.normal.dot(surface_.velocity(v, state) -
+                                             twist.at(x - nearest.gap * nearest.normal - pose.translation));
       if (nearest.gap + look_ahead_ * std::min(rate, 0.0) < candidate_gap_) {
         wanted_[static_cast<std::size_t>(v)] = 1;
         any = true;
@@ -77,8 +88,8 @@ class AnalyticSource final : public SampleSource {
     return any;
   }
 
-  /// A vertex's way since the last query, seen from the frame, as a straight line: outside at both ends, but through the shape in between.
-  /// Nothing pushed it back; it is on the wrong side, or inside a body that is.
+  /// A vertex's way since the last query, seen from the frame, as a straight line: outside at both ends, but
+  /// through the shape in between. Nothing pushed it back; it is on the wrong side, or inside a body that is.
   void find_tunnelled(const Pose& inverse, double t) {
     const Points& world = surface_.positions();
     seen_.resize(3, world.cols());
@@ -90,8 +101,10 @@ class AnalyticSource final : public SampleSource {
     seen_before_ = true;
     if (tunnelled_ == 0 || warned_) return;
     warned_ = true;
-    log::warn("contact at t = {:.6g} s: {} vertices went through the {} between two queries, unseen; refresh contact more often (contact_refresh_s), make the contact stiffer, or the {} thicker",
-              t, tunnelled_, Shape::kName, Shape::kName);
+    log::warn(
+        "contact at t = {:.6g} s: {} vertices went through the {} between two queries, unseen; refresh "
+        "contact more often (contact_refresh_s), make the contact stiffer, or the {} thicker",
+        t, tunnelled_, Shape::kName, Shape::kName);
   }
 
   SurfaceState surface_;
@@ -101,7 +114,7 @@ class AnalyticSource final : public SampleSource {
   double candidate_gap_, look_ahead_;
   std::vector<char> wanted_;
   Points areas_;
-  Points seen_;               ///< vertices at the last query, in the frame
+  Points seen_;  ///< vertices at the last query, in the frame
   bool seen_before_ = false, warned_ = false;
   long tunnelled_ = 0;
 };
@@ -136,9 +149,11 @@ class Sphere {
   // The point of the segment nearest to the centre.
   bool is_crossed(const Vec3& a, const Vec3& b) const {
     const Vec3 d = b - a, from_a = centre_ - a;
-    const double length2 = d.squaredNorm(), s = length2 > 0.0 ? std::clamp(from_a.dot(d) / length2, 0.0, 1.0) : 0.0;
+    const double length2 = d.squaredNorm(),
+                 s = length2 > 0.0 ? std::clamp(from_a.dot(d) / length2, 0.0, 1.0) : 0.0;
     const double r2 = radius_ * radius_;
-    return from_a.squaredNorm() > r2 && (centre_ - b).squaredNorm() > r2 && (from_a - s * d).squaredNorm() < r2;
+    return from_a.squaredNorm() > r2 && (centre_ - b).squaredNorm() > r2 &&
+           (from_a - s * d).squaredNorm() < r2;
   }
 
  private:
@@ -162,7 +177,8 @@ struct Part {
   }
 };
 
-/// |x_i| <= h_i in its own axes.  Outside, e_i = max(|x_i| - h_i, 0) is the way from the nearest point, signs left out.
+/// |x_i| <= h_i in its own axes.  Outside, e_i = max(|x_i| - h_i, 0) is the way from the nearest point, signs
+/// left out.
 class Box {
  public:
   static constexpr const char* kName = "box";
@@ -202,16 +218,20 @@ class Box {
 class Cylinder {
  public:
   static constexpr const char* kName = "cylinder";
-  Cylinder(const Pose& place, double radius, double length) : place_(place), inverse_(place.inverse()), radius_(radius), half_(0.5 * length) {}
+  Cylinder(const Pose& place, double radius, double length)
+      : place_(place), inverse_(place.inverse()), radius_(radius), half_(0.5 * length) {}
   void place(const Pose& pose) { world_ = pose * place_; }
   // On the axis every radial direction is as near; one is taken.
   Nearest at(const Vec3& world) const {
     const Vec3 x = world_.inverse() * world;
     const double r = std::hypot(x.x(), x.y()), side = r - radius_, end = std::abs(x.z()) - half_;
-    const Vec3 radial = r > 0.0 ? Vec3(x.x() / r, x.y() / r, 0.0) : Vec3(Vec3::UnitX()), axial = std::copysign(1.0, x.z()) * Vec3::UnitZ();
-    const double out_side = std::max(side, 0.0), out_end = std::max(end, 0.0), distance = std::hypot(out_side, out_end);
+    const Vec3 radial = r > 0.0 ? Vec3(x.x() / r, x.y() / r, 0.0) : Vec3(Vec3::UnitX()),
+               axial = std::copysign(1.0, x.z()) * Vec3::UnitZ();
+    const double out_side = std::max(side, 0.0), out_end = std::max(end, 0.0),
+                 distance = std::hypot(out_side, out_end);
     if (out_end == 0.0 && (side > 0.0 || side > end)) return {side, world_.rotation * radial, radius_};
-    if (distance > 0.0) return {distance, world_.rotation * Vec3((out_side * radial + out_end * axial) / distance)};
+    if (distance > 0.0)
+      return {distance, world_.rotation * Vec3((out_side * radial + out_end * axial) / distance)};
     return {end, world_.rotation * axial};
   }
   // |a + s d|^2 = r^2 in x and y: A s^2 + 2 B s + C = 0.
@@ -220,7 +240,8 @@ class Cylinder {
     if (!outside(a) || !outside(b)) return false;
     Part part;
     part.cut(a.z(), d.z(), -half_, half_);
-    const double A = d.head<2>().squaredNorm(), B = a.head<2>().dot(d.head<2>()), C = a.head<2>().squaredNorm() - radius_ * radius_;
+    const double A = d.head<2>().squaredNorm(), B = a.head<2>().dot(d.head<2>()),
+                 C = a.head<2>().squaredNorm() - radius_ * radius_;
     if (A == 0.0) return C < 0.0 && part.s0 < part.s1;
     const double root2 = B * B - A * C;
     if (root2 <= 0.0) return false;
@@ -231,7 +252,9 @@ class Cylinder {
   }
 
  private:
-  bool outside(const Vec3& x) const { return std::abs(x.z()) > half_ || x.head<2>().squaredNorm() > radius_ * radius_; }
+  bool outside(const Vec3& x) const {
+    return std::abs(x.z()) > half_ || x.head<2>().squaredNorm() > radius_ * radius_;
+  }
   Pose place_, inverse_;
   double radius_, half_;
   Pose world_;
@@ -239,31 +262,41 @@ class Cylinder {
 
 }  // namespace
 
-std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& point,
+std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame,
+                                                std::shared_ptr<MovingFrame> motion, const Vec3& point,
                                                 const Vec3& normal, double candidate_gap, double look_ahead) {
-  if (!(normal.norm() > 0.0) || !normal.allFinite()) fail("plane: normal = ({}, {}, {}) has no direction", normal.x(), normal.y(), normal.z());
-  return std::make_unique<AnalyticSource<Plane>>(std::move(surface), frame, std::move(motion), Plane(point, normal), candidate_gap,
-                                                 look_ahead);
+  if (!(normal.norm() > 0.0) || !normal.allFinite())
+    fail("plane: normal = ({}, {}, {}) has no direction", normal.x(), normal.y(), normal.z());
+  return std::make_unique<AnalyticSource<Plane>>(std::move(surface), frame, std::move(motion),
+                                                 Plane(point, normal), candidate_gap, look_ahead);
 }
 
-std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& centre,
+std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame,
+                                                 std::shared_ptr<MovingFrame> motion, const Vec3& centre,
                                                  double radius, double candidate_gap, double look_ahead) {
   if (!(radius > 0.0) || !std::isfinite(radius)) fail("sphere: radius = {} must be positive", radius);
-  return std::make_unique<AnalyticSource<Sphere>>(std::move(surface), frame, std::move(motion), Sphere(centre, radius), candidate_gap,
-                                                  look_ahead);
+  return std::make_unique<AnalyticSource<Sphere>>(std::move(surface), frame, std::move(motion),
+                                                  Sphere(centre, radius), candidate_gap, look_ahead);
 }
 
-std::unique_ptr<SampleSource> make_box_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Pose& place, const Vec3& size,
-                                              double candidate_gap, double look_ahead) {
-  if (!(size.minCoeff() > 0.0) || !size.allFinite()) fail("box: size = ({}, {}, {}) must be positive", size.x(), size.y(), size.z());
-  return std::make_unique<AnalyticSource<Box>>(std::move(surface), frame, std::move(motion), Box(place, size), candidate_gap, look_ahead);
+std::unique_ptr<SampleSource> make_box_source(NodeSurface surface, int frame,
+                                              std::shared_ptr<MovingFrame> motion, const Pose& place,
+                                              const Vec3& size, double candidate_gap, double look_ahead) {
+  if (!(size.minCoeff() > 0.0) || !size.allFinite())
+    fail("box: size = ({}, {}, {}) must be positive", size.x(), size.y(), size.z());
+  return std::make_unique<AnalyticSource<Box>>(std::move(surface), frame, std::move(motion), Box(place, size),
+                                               candidate_gap, look_ahead);
 }
 
-std::unique_ptr<SampleSource> make_cylinder_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Pose& place, double radius,
-                                                   double length, double candidate_gap, double look_ahead) {
+std::unique_ptr<SampleSource> make_cylinder_source(NodeSurface surface, int frame,
+                                                   std::shared_ptr<MovingFrame> motion, const Pose& place,
+                                                   double radius, double length, double candidate_gap,
+                                                   double look_ahead) {
   if (!(radius > 0.0) || !std::isfinite(radius)) fail("cylinder: radius = {} must be positive", radius);
   if (!(length > 0.0) || !std::isfinite(length)) fail("cylinder: length = {} must be positive", length);
-  return std::make_unique<AnalyticSource<Cylinder>>(std::move(surface), frame, std::move(motion), Cylinder(place, radius, length), candidate_gap, look_ahead);
+  return std::make_unique<AnalyticSource<Cylinder>>(std::move(surface), frame, std::move(motion),
+                                                    Cylinder(place, radius, length), candidate_gap,
+                                                    look_ahead);
 }
 
 }  // namespace palpate::contact

@@ -13,7 +13,9 @@ namespace {
 
 /// Whether two samples stand for the same two points, wherever these are now: the points of a frame slide.
 bool is_same_pair(const ContactSample& s, const ContactSample& t) {
-  const auto is_same = [](const SurfacePoint& p, const SurfacePoint& q) { return p.frame == q.frame && p.count == q.count && (p.frame >= 0 || p.node == q.node); };
+  const auto is_same = [](const SurfacePoint& p, const SurfacePoint& q) {
+    return p.frame == q.frame && p.count == q.count && (p.frame >= 0 || p.node == q.node);
+  };
   return s.source == t.source && is_same(s.a, t.a) && is_same(s.b, t.b);
 }
 
@@ -42,24 +44,28 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
   ++queries;
   counters::count("contact.query");
   std::swap(samples, next_samples);
-  if (!std::equal(samples.begin(), samples.end(), next_samples.begin(), next_samples.end(), is_same_pair)) ++events_version;
+  if (!std::equal(samples.begin(), samples.end(), next_samples.begin(), next_samples.end(), is_same_pair))
+    ++events_version;
 }
 
 void ContactForce::Impl::check_samples(const dynamics::StateView& state) const {
   const int frame_count = static_cast<int>(frames.size()), node_count = state.layout->node_count();
   for (const ContactSample& s : samples) {
     for (const SurfacePoint* p : {&s.a, &s.b}) {
-      PALPATE_CHECK(p->frame < frame_count && (p->frame >= 0 || (p->count > 0 && p->count <= 4)), "contact sample: frame {} of {}, {} nodes", p->frame,
-                    frame_count, p->count);
+      PALPATE_CHECK(p->frame < frame_count && (p->frame >= 0 || (p->count > 0 && p->count <= 4)),
+                    "contact sample: frame {} of {}, {} nodes", p->frame, frame_count, p->count);
       for (int i = 0; p->frame < 0 && i < p->count; ++i)
-        PALPATE_CHECK(p->node[static_cast<std::size_t>(i)] < node_count, "contact sample: node {} of {}", p->node[static_cast<std::size_t>(i)], node_count);
+        PALPATE_CHECK(p->node[static_cast<std::size_t>(i)] < node_count, "contact sample: node {} of {}",
+                      p->node[static_cast<std::size_t>(i)], node_count);
     }
     PALPATE_CHECK(s.area >= 0.0 && s.normal.allFinite(), "contact sample: area {}", s.area);
   }
 }
 
 void ContactForce::Impl::add_force(const dynamics::StateView& state, VecX& f) {
-  const auto row = [&](const SurfacePoint& p) { return p.frame >= 0 ? frame_states[static_cast<std::size_t>(p.frame)].u_offset : -1; };
+  const auto row = [&](const SurfacePoint& p) {
+    return p.frame >= 0 ? frame_states[static_cast<std::size_t>(p.frame)].u_offset : -1;
+  };
   for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const Vec3 force = sample_force(s, motion, law);
     add_point_force(s.a, motion.a.arm, force, row(s.a), f);
@@ -95,13 +101,16 @@ int ContactForce::add_pair(std::unique_ptr<SampleSource> source, const ContactSp
 
 std::string_view ContactForce::name() const { return "contact"; }
 
-// Friction has no potential; the rows of a frame in the State see rotations, which do not commute (see tangent.cpp).
+// Friction has no potential; the rows of a frame in the State see rotations, which do not commute (see
+// tangent.cpp).
 dynamics::TermTraits ContactForce::traits() const {
   dynamics::TermTraits traits;
   const auto& pairs = impl_->pairs;
-  const bool friction = std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return p.law.friction > 0.0; });
+  const bool friction =
+      std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return p.law.friction > 0.0; });
   const bool damping = std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return p.law.d > 0.0; });
-  const bool frames = std::any_of(impl_->frames.begin(), impl_->frames.end(), [](const auto& f) { return f->in_state(); });
+  const bool frames =
+      std::any_of(impl_->frames.begin(), impl_->frames.end(), [](const auto& f) { return f->in_state(); });
   traits.symmetric_tangent = !friction && !frames;
   traits.conservative = !friction && !damping;
   traits.contact = true;
@@ -120,37 +129,41 @@ std::uint64_t ContactForce::pattern_version() const {
 
 void ContactForce::add_force(const dynamics::StateView& state, VecX& f) { impl_->add_force(state, f); }
 
-void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) {
+void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
+                               dynamics::BorderedMatrix& A) {
   Impl& m = *impl_;
   m.for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const SampleForce force = sample_force_and_tangent(s, motion, law);
-    add_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force), Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale,
-                       d_scale, state.layout->nodal_size, A);
+    add_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force),
+                       Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale, d_scale,
+                       state.layout->nodal_size, A);
   });
 }
 
-void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) {
+void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
+                                 const VecX& x, VecX& y) {
   Impl& m = *impl_;
   m.for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const SampleForce force = sample_force_and_tangent(s, motion, law);
-    apply_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force), Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale,
-                         d_scale, x, y);
+    apply_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force),
+                         Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale, d_scale, x,
+                         y);
   });
 }
 
 double ContactForce::energy(const dynamics::StateView& state) {
   double sum = 0.0;
-  impl_->for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-    sum += s.area * pressure(law, motion.gap, motion.rate).energy_density;
-  });
+  impl_->for_each_active(state,
+                         [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+                           sum += s.area * pressure(law, motion.gap, motion.rate).energy_density;
+                         });
   return sum;
 }
 
 double ContactForce::dissipated_power(const dynamics::StateView& state) {
   double sum = 0.0;
-  impl_->for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-    sum += sample_dissipation(s, motion, law);
-  });
+  impl_->for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion,
+                                    const PressureLaw& law) { sum += sample_dissipation(s, motion, law); });
   return sum;
 }
 
@@ -175,7 +188,8 @@ int ContactForce::event_count() const {
 
 std::uint64_t ContactForce::events_version() const { return impl_->events_version; }
 
-// A candidate that is far apart is among them: it may close before the next query.  A sample whose gap is far away costs a root finder an evaluation, no more.
+// A candidate that is far apart is among them: it may close before the next query.  A sample whose gap is far
+// away costs a root finder an evaluation, no more.
 void ContactForce::events(const dynamics::StateView& state, double* g) {
   Impl& m = *impl_;
   m.place_frames(state);

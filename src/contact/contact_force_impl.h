@@ -18,7 +18,7 @@ struct ContactForce::Impl {
   std::vector<FrameState> frame_states;  ///< at the state of the evaluation under way
   VecX force_before, force_after;        ///< scratch of refresh
   long queries = 0;
-  std::uint64_t events_version = 1;      ///< grows when a query finds other samples than the one before
+  std::uint64_t events_version = 1;  ///< grows when a query finds other samples than the one before
   double query_seconds = 0.0;
   double refresh_force_jump = 0.0, largest_force_jump = 0.0, largest_force = 0.0;
 
@@ -26,7 +26,8 @@ struct ContactForce::Impl {
   void query(const dynamics::StateView& state);
   void check_samples(const dynamics::StateView& state) const;
   void add_force(const dynamics::StateView& state, VecX& f);
-  /// Forces on the nodes and on every frame (six rows each, given ones too): what a refresh must not change unseen.
+  /// Forces on the nodes and on every frame (six rows each, given ones too): what a refresh must not change
+  /// unseen.
   void all_forces(const dynamics::StateView& state, VecX& f);
 
   /// visit(sample, motion, law) for each sample in penetration, in order.

@@ -16,7 +16,8 @@ struct Box {
 
 Box face_box(const Patch& patch, int face) {
   const auto corner = [&](int k) { return patch.uvw.col((*patch.faces)(k, face)); };
-  return {corner(0).cwiseMin(corner(1)).cwiseMin(corner(2)), corner(0).cwiseMax(corner(1)).cwiseMax(corner(2))};
+  return {corner(0).cwiseMin(corner(1)).cwiseMin(corner(2)),
+          corner(0).cwiseMax(corner(1)).cwiseMax(corner(2))};
 }
 
 /// Keeps the faces of `patch.visible` that reach into `window`; returns their bounds.
@@ -25,7 +26,8 @@ Box cut(Patch& patch, const Box& window) {
   std::size_t kept = 0;
   for (const int face : patch.visible) {
     const Box box = face_box(patch, face);
-    if ((box.low.array() > window.high.array()).any() || (box.high.array() < window.low.array()).any()) continue;
+    if ((box.low.array() > window.high.array()).any() || (box.high.array() < window.low.array()).any())
+      continue;
     bounds.low = bounds.low.cwiseMin(box.low);
     bounds.high = bounds.high.cwiseMax(box.high);
     patch.visible[kept++] = face;

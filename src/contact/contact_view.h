@@ -12,18 +12,21 @@ struct ContactAxes {
 
   ContactAxes() = default;
   ContactAxes(const Vec3& region_origin, const Vec3& normal);
-  void to_axes(const Points& world, Points& out) const { out.noalias() = to_world.transpose() * (world.colwise() - origin); }
+  void to_axes(const Points& world, Points& out) const {
+    out.noalias() = to_world.transpose() * (world.colwise() - origin);
+  }
   Vec3 in_axes(const Vec3& world) const { return to_world.transpose() * (world - origin); }
   Vec3 world(const Vec3& uvw) const { return origin + to_world * uvw; }
   Vec3 normal() const { return to_world.col(2); }
 };
 
-/// The orthographic camera of a region and what it sees: a rectangle of the plane, cut into square pixels, and a slab along the normal.
+/// The orthographic camera of a region and what it sees: a rectangle of the plane, cut into square pixels,
+/// and a slab along the normal.
 struct ContactCamera {
-  double u0 = 0, v0 = 0;     ///< lower left corner [m]
-  double pixel = 0;          ///< edge of a pixel [m]
-  int width = 0, height = 0; ///< [pixels]
-  double near = 0, far = 0;  ///< along w [m]
+  double u0 = 0, v0 = 0;      ///< lower left corner [m]
+  double pixel = 0;           ///< edge of a pixel [m]
+  int width = 0, height = 0;  ///< [pixels]
+  double near = 0, far = 0;   ///< along w [m]
 
   bool sees_something() const { return width > 0 && far > near; }
   double u(int column) const { return u0 + (column + 0.5) * pixel; }
@@ -32,18 +35,20 @@ struct ContactCamera {
 
 /// One surface in contact axes, and which of its faces the camera may see.
 struct Patch {
-  Points uvw;                 ///< vertices
+  Points uvw;  ///< vertices
   const Faces* faces = nullptr;
-  std::vector<int> visible;   ///< faces
+  std::vector<int> visible;  ///< faces
 };
 
 /// Fits the camera to the overlap of a (above) and b (below), and fills both patches' `visible`.
 ///
-/// At a pixel the pair is a's lowest point against b's highest; it counts when that gap is under `candidate_gap`.  So a's faces wholly
-/// above max(w of b) + candidate_gap, and b's wholly below min(w of a) - candidate_gap, are of no interest; nor is anything outside the
-/// rectangle that both patches cover.  Leaving faces out shrinks the slab and that the rectangle, so the cut is repeated.
+/// At a pixel the pair is a's lowest point against b's highest; it counts when that gap is under
+/// `candidate_gap`.  So a's faces wholly above max(w of b) + candidate_gap, and b's wholly below min(w of a)
+/// - candidate_gap, are of no interest; nor is anything outside the rectangle that both patches cover.
+///   Leaving faces out shrinks the slab and that the rectangle, so the cut is repeated.
 ///
-/// The pixels span one more than the rectangle, so that the grid may be shifted by a part of a pixel (`shift`, in [0, 1)) and still cover it.
+/// The pixels span one more than the rectangle, so that the grid may be shifted by a part of a pixel
+/// (`shift`, in [0, 1)) and still cover it.
 ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels, const Eigen::Vector2d& shift);
 
 }  // namespace palpate::contact

@@ -10,11 +10,13 @@ void CoupledNodes::take(std::span<const ContactSample> samples) {
   met_.clear();
   const ContactSample* before = nullptr;
   for (const ContactSample& s : samples) {
-    const bool same = before && s.a.count == before->a.count && s.b.count == before->b.count && s.a.node == before->a.node && s.b.node == before->b.node;
+    const bool same = before && s.a.count == before->a.count && s.b.count == before->b.count &&
+                      s.a.node == before->a.node && s.b.node == before->b.node;
     before = &s;
     if (same) continue;  // the next pixel of the same two triangles
     for (int i = 0; i < s.a.count; ++i)
-      for (int j = 0; j < s.b.count; ++j) met_.emplace_back(s.a.node[static_cast<std::size_t>(i)], s.b.node[static_cast<std::size_t>(j)]);
+      for (int j = 0; j < s.b.count; ++j)
+        met_.emplace_back(s.a.node[static_cast<std::size_t>(i)], s.b.node[static_cast<std::size_t>(j)]);
   }
   std::sort(met_.begin(), met_.end());
   met_.erase(std::unique(met_.begin(), met_.end()), met_.end());

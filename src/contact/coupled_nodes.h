@@ -9,10 +9,12 @@
 
 namespace palpate::contact {
 
-/// Which nodes of one body the samples couple to which of another, or to others of its own: blocks of the tangent that come and go with the contact.
+/// Which nodes of one body the samples couple to which of another, or to others of its own: blocks of the
+/// tangent that come and go with the contact.
 ///
-/// A sample's gap moves with the nodes of both its points, so its K = A k n n^T couples each node of a with each of b (tangent.cpp).  All nodes of one skin with
-/// all of the other would be a dense matrix: the pattern holds what was met, and grows as contact slides on, so that it changes seldom (each change costs a
+/// A sample's gap moves with the nodes of both its points, so its K = A k n n^T couples each node of a with
+/// each of b (tangent.cpp).  All nodes of one skin with all of the other would be a dense matrix: the pattern
+/// holds what was met, and grows as contact slides on, so that it changes seldom (each change costs a
 /// symbolic analysis); where it has become twice what is met now, it starts anew.
 class CoupledNodes {
  public:

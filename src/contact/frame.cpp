@@ -37,7 +37,8 @@ class BlockFrame final : public MovingFrame {
  private:
   const dynamics::Block& block(const dynamics::StateView& state) const {
     const dynamics::Block* b = state.layout->find(block_id_);
-    PALPATE_CHECK(b && b->q_size == 7 && b->u_size == 6, "block {} is no free rigid body of this State", block_id_);
+    PALPATE_CHECK(b && b->q_size == 7 && b->u_size == 6, "block {} is no free rigid body of this State",
+                  block_id_);
     return *b;
   }
   int block_id_;
@@ -45,7 +46,8 @@ class BlockFrame final : public MovingFrame {
 
 /// The motion that goes on with one knot's twist.
 Pose continued(const Pose& pose, const Twist& twist, double dt) {
-  return {(quaternion_of(dt * twist.angular) * pose.rotation).normalized(), pose.translation + dt * twist.linear};
+  return {(quaternion_of(dt * twist.angular) * pose.rotation).normalized(),
+          pose.translation + dt * twist.linear};
 }
 
 struct Sampled {
@@ -53,12 +55,16 @@ struct Sampled {
   Twist twist;
 };
 
-/// Between two knots, h apart, at s in [0, 1]: position p and rotation vector phi (world axes, from the first orientation) are cubics.
-///   R(t) = exp(phi(t)) R0,   w = J(phi) phi'    so    phi(0) = 0, phi'(0) = w0, phi(1) = log(R1 R0^-1), phi'(1) = J(phi1)^-1 w1.
-Sampled between(const Pose& pose0, const Twist& twist0, const Pose& pose1, const Twist& twist1, double h, double s) {
+/// Between two knots, h apart, at s in [0, 1]: position p and rotation vector phi (world axes, from the first
+/// orientation) are cubics.
+///   R(t) = exp(phi(t)) R0,   w = J(phi) phi'    so    phi(0) = 0, phi'(0) = w0, phi(1) = log(R1 R0^-1),
+///   phi'(1) = J(phi1)^-1 w1.
+Sampled between(const Pose& pose0, const Twist& twist0, const Pose& pose1, const Twist& twist1, double h,
+                double s) {
   const Vec3 phi1 = rotation_vector(pose1.rotation * pose0.rotation.conjugate());
   const Cubic p = hermite(s, pose0.translation, h * twist0.linear, pose1.translation, h * twist1.linear);
-  const Cubic phi = hermite(s, Vec3::Zero(), h * twist0.angular, phi1, h * (left_jacobian_inverse(phi1) * twist1.angular));
+  const Cubic phi =
+      hermite(s, Vec3::Zero(), h * twist0.angular, phi1, h * (left_jacobian_inverse(phi1) * twist1.angular));
   Sampled out;
   out.pose = {(quaternion_of(phi.value) * pose0.rotation).normalized(), p.value};
   out.twist = {left_jacobian(phi.value) * phi.slope / h, p.slope / h};
@@ -69,7 +75,8 @@ Sampled between(const Pose& pose0, const Twist& twist0, const Pose& pose1, const
 template <class Knots>
 std::size_t knot_before(const Knots& knots, double t) {
   PALPATE_CHECK(!knots.empty(), "a trajectory frame without a knot was asked for its pose at t = {}", t);
-  const auto after = std::upper_bound(knots.begin(), knots.end(), t, [](double value, const auto& k) { return value < k.t; });
+  const auto after = std::upper_bound(knots.begin(), knots.end(), t,
+                                      [](double value, const auto& k) { return value < k.t; });
   return after == knots.begin() ? 0 : static_cast<std::size_t>(after - knots.begin()) - 1;
 }
 
@@ -90,11 +97,14 @@ std::shared_ptr<MovingFrame> block_frame(int block_id) { return std::make_shared
 void TrajectoryFrame::clear() { knots_.clear(); }
 
 void TrajectoryFrame::append(double t, const Pose& pose, const Twist& twist) {
-  PALPATE_CHECK(knots_.empty() || t > knots_.back().t, "knot at t = {} after the one at {}", t, knots_.back().t);
+  PALPATE_CHECK(knots_.empty() || t > knots_.back().t, "knot at t = {} after the one at {}", t,
+                knots_.back().t);
   knots_.push_back({t, pose, twist});
 }
 
 Pose TrajectoryFrame::pose(const dynamics::StateView& state) const { return sample(knots_, state.time).pose; }
-Twist TrajectoryFrame::twist(const dynamics::StateView& state) const { return sample(knots_, state.time).twist; }
+Twist TrajectoryFrame::twist(const dynamics::StateView& state) const {
+  return sample(knots_, state.time).twist;
+}
 
 }  // namespace palpate::contact

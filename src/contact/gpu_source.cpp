@@ -6,7 +6,9 @@
 
 namespace palpate::contact {
 
-ImageSource::ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b, const GpuOptions& options) : a_(std::move(a)), b_(std::move(b)), options_(options) {
+ImageSource::ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b,
+                         const GpuOptions& options)
+    : a_(std::move(a)), b_(std::move(b)), options_(options) {
   counters::count("contact.gpu_source");
 }
 
@@ -21,8 +23,11 @@ void ImageSource::add_pattern(dynamics::PatternBuilder& pattern) const {
   coupled_.add_pattern(pattern);
 }
 
-std::uint64_t ImageSource::sides_version() const { return a_->soft()->pattern_version() + (b_->soft() ? b_->soft()->pattern_version() : 0); }
-std::uint64_t ImageSource::pattern_version() const { return sides_version() + coupled_.version(); }  // each grows only
+std::uint64_t ImageSource::sides_version() const {
+  return a_->soft()->pattern_version() + (b_->soft() ? b_->soft()->pattern_version() : 0);
+}
+// each grows only
+std::uint64_t ImageSource::pattern_version() const { return sides_version() + coupled_.version(); }
 
 void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSample>& samples) {
   a_->update(state);
@@ -55,13 +60,15 @@ class WholeSource final : public ImageSource {
     axes.to_axes(below, patch_b_.uvw);
     patch_a_.faces = &a_->faces();
     patch_b_.faces = &b_->faces();
-    const ContactCamera camera = fit_camera(patch_a_, patch_b_, options_.candidate_gap, options_.pixels, {options_.shift_u, options_.shift_v});
+    const ContactCamera camera = fit_camera(patch_a_, patch_b_, options_.candidate_gap, options_.pixels,
+                                            {options_.shift_u, options_.shift_v});
     if (!camera.sees_something()) return;
     image().find_pairs(patch_a_, patch_b_, camera, options_.candidate_gap, pairs_);
     for (const PixelPair& pair : pairs_) {
       const int face_a = patch_a_.visible[pair.a], face_b = patch_b_.visible[pair.b];
       const std::optional<Facing> facing = facing_at(pair, camera, patch_a_, face_a, patch_b_, face_b);
-      if (facing && facing->gap() < options_.candidate_gap) samples.push_back(sample_of(*facing, *a_, face_a, *b_, face_b, camera, axes));
+      if (facing && facing->gap() < options_.candidate_gap)
+        samples.push_back(sample_of(*facing, *a_, face_a, *b_, face_b, camera, axes));
     }
   }
 
@@ -71,22 +78,27 @@ class WholeSource final : public ImageSource {
 };
 
 void check_arguments(const NodeSurface& surface, Eigen::Index other_faces, const GpuOptions& options) {
-  if (options.pixels < 2 || options.pixels > 8192) fail("gpu contact: pixels = {} must lie between 2 and 8192", options.pixels);
-  if (!(options.candidate_gap >= 0.0)) fail("gpu contact: candidate gap = {} must not be negative", options.candidate_gap);
+  if (options.pixels < 2 || options.pixels > 8192)
+    fail("gpu contact: pixels = {} must lie between 2 and 8192", options.pixels);
+  if (!(options.candidate_gap >= 0.0))
+    fail("gpu contact: candidate gap = {} must not be negative", options.candidate_gap);
   for (const double shift : {options.shift_u, options.shift_v})
     if (!(shift >= 0.0 && shift < 1.0)) fail("gpu contact: grid shift = {} must lie in [0, 1)", shift);
-  if (surface.faces.cols() == 0 || other_faces == 0) fail("gpu contact needs two surfaces with faces, got {} and {}", surface.faces.cols(), other_faces);
+  if (surface.faces.cols() == 0 || other_faces == 0)
+    fail("gpu contact needs two surfaces with faces, got {} and {}", surface.faces.cols(), other_faces);
 }
 
 void check_arguments(const NodeSurface& surface, const TriMesh& rigid, const GpuOptions& options) {
   check_arguments(surface, rigid.faces.cols(), options);
   for (Eigen::Index f = 0; f < rigid.faces.cols(); ++f)
-    PALPATE_CHECK(rigid.faces.col(f).minCoeff() >= 0 && rigid.faces.col(f).maxCoeff() < rigid.vertices.cols(), "rigid surface: face {} names a vertex that is not there", f);
+    PALPATE_CHECK(rigid.faces.col(f).minCoeff() >= 0 && rigid.faces.col(f).maxCoeff() < rigid.vertices.cols(),
+                  "rigid surface: face {} names a vertex that is not there", f);
 }
 
 void check_proxies(const Faces& faces, const std::shared_ptr<proxy::ProxySet>& proxies) {
   PALPATE_CHECK(proxies, "a pruned gpu source needs proxies on both sides");
-  PALPATE_CHECK(proxies->face_count() == faces.cols(), "proxies of {} faces for a surface of {}", proxies->face_count(), faces.cols());
+  PALPATE_CHECK(proxies->face_count() == faces.cols(), "proxies of {} faces for a surface of {}",
+                proxies->face_count(), faces.cols());
 }
 
 void check_proxies(const NodeSurface& surface, const std::shared_ptr<proxy::ProxySet>& proxies) {
@@ -96,36 +108,47 @@ void check_proxies(const NodeSurface& surface, const std::shared_ptr<proxy::Prox
 
 }  // namespace
 
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid, int frame, std::shared_ptr<MovingFrame> motion,
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid, int frame,
+                                              std::shared_ptr<MovingFrame> motion,
                                               const GpuOptions& options) {
   check_arguments(surface, rigid, options);
-  return std::make_unique<WholeSource>(soft_side(std::move(surface)), rigid_side(std::move(rigid), frame, std::move(motion)), options);
+  return std::make_unique<WholeSource>(soft_side(std::move(surface)),
+                                       rigid_side(std::move(rigid), frame, std::move(motion)), options);
 }
 
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, TriMesh rigid, std::shared_ptr<proxy::ProxySet> proxies_rigid,
-                                              int frame, std::shared_ptr<MovingFrame> motion, const GpuOptions& options) {
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
+                                              TriMesh rigid, std::shared_ptr<proxy::ProxySet> proxies_rigid,
+                                              int frame, std::shared_ptr<MovingFrame> motion,
+                                              const GpuOptions& options) {
   check_arguments(surface, rigid, options);
   check_proxies(surface, proxies);
   check_proxies(rigid.faces, proxies_rigid);
-  return make_pruned_source(soft_side(std::move(surface)), std::move(proxies), rigid_side(std::move(rigid), frame, std::move(motion)), std::move(proxies_rigid), options);
+  return make_pruned_source(soft_side(std::move(surface)), std::move(proxies),
+                            rigid_side(std::move(rigid), frame, std::move(motion)), std::move(proxies_rigid),
+                            options);
 }
 
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, NodeSurface b, const GpuOptions& options) {
   check_arguments(a, b.faces.cols(), options);
-  PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies has block {} on both sides", a.block_id);
+  PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies has block {} on both sides",
+                a.block_id);
   return std::make_unique<WholeSource>(soft_side(std::move(a)), soft_side(std::move(b)), options);
 }
 
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, std::shared_ptr<proxy::ProxySet> proxies_a, NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, std::shared_ptr<proxy::ProxySet> proxies_a,
+                                              NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
                                               const GpuOptions& options) {
   check_arguments(a, b.faces.cols(), options);
-  PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies has block {} on both sides", a.block_id);
+  PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies has block {} on both sides",
+                a.block_id);
   check_proxies(a, proxies_a);
   check_proxies(b, proxies_b);
-  return make_pruned_source(soft_side(std::move(a)), std::move(proxies_a), soft_side(std::move(b)), std::move(proxies_b), options);
+  return make_pruned_source(soft_side(std::move(a)), std::move(proxies_a), soft_side(std::move(b)),
+                            std::move(proxies_b), options);
 }
 
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, const Points& rest_nodes, const GpuOptions& options) {
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
+                                              const Points& rest_nodes, const GpuOptions& options) {
   check_arguments(surface, surface.faces.cols(), options);
   check_proxies(surface, proxies);
   return make_pruned_source(soft_side(std::move(surface)), std::move(proxies), rest_nodes, options);

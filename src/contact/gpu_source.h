@@ -9,7 +9,8 @@
 
 namespace palpate::contact {
 
-/// What the sources in image space share: two sides, which may be the same, an image, and what their samples couple.  Side a is soft; the normal points from b to a.
+/// What the sources in image space share: two sides, which may be the same, an image, and what their samples
+/// couple.  Side a is soft; the normal points from b to a.
 class ImageSource : public SampleSource {
  public:
   ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b, const GpuOptions& options);
@@ -20,7 +21,7 @@ class ImageSource : public SampleSource {
 
  protected:
   virtual void look(std::vector<ContactSample>& samples) = 0;  ///< at the sides as they are
-  GpuImage& image();  ///< opened when something is to be seen
+  GpuImage& image();                                           ///< opened when something is to be seen
   bool of_one_body() const { return a_ == b_; }
 
   std::shared_ptr<ImageSide> a_, b_;
@@ -29,14 +30,19 @@ class ImageSource : public SampleSource {
 
  private:
   std::optional<GpuImage> image_;
-  CoupledNodes coupled_;             // of two soft sides
+  CoupledNodes coupled_;                // of two soft sides
   std::uint64_t sides_version() const;  // grows with what either side couples by itself
-  std::uint64_t counted_ = 0;        // the one that `coupled_` was made for
+  std::uint64_t counted_ = 0;           // the one that `coupled_` was made for
 };
 
-std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::shared_ptr<ImageSide> b,
-                                                 std::shared_ptr<proxy::ProxySet> proxies_b, const GpuOptions& options);
+std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> a,
+                                                 std::shared_ptr<proxy::ProxySet> proxies_a,
+                                                 std::shared_ptr<ImageSide> b,
+                                                 std::shared_ptr<proxy::ProxySet> proxies_b,
+                                                 const GpuOptions& options);
 /// One side against itself, its bones' regions against each other.
-std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> side, std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes, const GpuOptions& options);
+std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> side,
+                                                 std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes,
+                                                 const GpuOptions& options);
 
 }  // namespace palpate::contact

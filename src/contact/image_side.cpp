@@ -13,7 +13,9 @@ class SoftSide final : public ImageSide {
   const Points& positions() override { return state_.positions(); }
   Vec3 vertex(int vertex) const override { return state_.positions().col(vertex); }
   void place(proxy::ProxySet& proxies) const override { proxies.update(state_.nodes()); }
-  SurfacePoint point(int face, const Vec3& weights, const Vec3&) const override { return state_.face_point(face, weights); }
+  SurfacePoint point(int face, const Vec3& weights, const Vec3&) const override {
+    return state_.face_point(face, weights);
+  }
   const SurfaceState* soft() const override { return &state_; }
 
  private:
@@ -22,7 +24,8 @@ class SoftSide final : public ImageSide {
 
 class RigidSide final : public ImageSide {
  public:
-  RigidSide(TriMesh surface, int frame, std::shared_ptr<MovingFrame> motion) : surface_(std::move(surface)), frame_(frame), motion_(std::move(motion)) {
+  RigidSide(TriMesh surface, int frame, std::shared_ptr<MovingFrame> motion)
+      : surface_(std::move(surface)), frame_(frame), motion_(std::move(motion)) {
     PALPATE_CHECK(motion_, "a gpu source needs a frame");
   }
   void update(const dynamics::StateView& state) override {
@@ -38,7 +41,9 @@ class RigidSide final : public ImageSide {
   }
   Vec3 vertex(int vertex) const override { return turn_ * surface_.vertices.col(vertex) + pose_.translation; }
   void place(proxy::ProxySet& proxies) const override { proxies.update(pose_); }
-  SurfacePoint point(int, const Vec3&, const Vec3& world) const override { return frame_point(frame_, inverse_, world); }
+  SurfacePoint point(int, const Vec3&, const Vec3& world) const override {
+    return frame_point(frame_, inverse_, world);
+  }
 
  private:
   TriMesh surface_;
@@ -51,7 +56,9 @@ class RigidSide final : public ImageSide {
 
 }  // namespace
 
-std::unique_ptr<ImageSide> soft_side(NodeSurface surface) { return std::make_unique<SoftSide>(std::move(surface)); }
+std::unique_ptr<ImageSide> soft_side(NodeSurface surface) {
+  return std::make_unique<SoftSide>(std::move(surface));
+}
 std::unique_ptr<ImageSide> rigid_side(TriMesh surface, int frame, std::shared_ptr<MovingFrame> motion) {
   return std::make_unique<RigidSide>(std::move(surface), frame, std::move(motion));
 }

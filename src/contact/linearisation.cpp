@@ -14,7 +14,8 @@ void reset(FrameLinearisation& out, Eigen::Index nodal) {
   out.active = 0;
 }
 
-/// The other side's nodes against the frame: see the derivation in tangent.cpp, with q (columns) or p (rows) the frame.
+/// The other side's nodes against the frame: see the derivation in tangent.cpp, with q (columns) or p (rows)
+/// the frame.
 void add_node_coupling(const Side& frame, const Side& nodes, const SampleForce& s, FrameLinearisation& out) {
   const double sign = frame.sign * nodes.sign;
   Mat36 columns_k = sign * s.K * frame.Z;
@@ -44,25 +45,28 @@ void add_frame_block(const Side& frame, const SampleForce& s, FrameLinearisation
 
 Wrench ContactForce::frame_wrench(const dynamics::StateView& state, int frame) const {
   Wrench sum;
-  impl_->for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-    if (s.a.frame != frame && s.b.frame != frame) return;
-    const Vec3 force = sample_force(s, motion, law);
-    if (s.a.frame == frame) sum += {motion.a.arm.cross(force), force};
-    if (s.b.frame == frame) sum += {-motion.b.arm.cross(force), -force};
-  });
+  impl_->for_each_active(state,
+                         [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+                           if (s.a.frame != frame && s.b.frame != frame) return;
+                           const Vec3 force = sample_force(s, motion, law);
+                           if (s.a.frame == frame) sum += {motion.a.arm.cross(force), force};
+                           if (s.b.frame == frame) sum += {-motion.b.arm.cross(force), -force};
+                         });
   return sum;
 }
 
 void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out) const {
   Impl& m = *impl_;
-  PALPATE_CHECK(frame >= 0 && frame < static_cast<int>(m.frames.size()), "frame {} of {}", frame, m.frames.size());
+  PALPATE_CHECK(frame >= 0 && frame < static_cast<int>(m.frames.size()), "frame {} of {}", frame,
+                m.frames.size());
   reset(out, state.layout->nodal_size);
   m.for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     if (s.a.frame != frame && s.b.frame != frame) return;
     PALPATE_CHECK(s.a.frame != s.b.frame, "a contact sample has frame {} on both sides", frame);
     const SampleForce force = sample_force_and_tangent(s, motion, law);
     if (force.force.isZero(0.0)) return;
-    const Side a(s.a, motion.a, m.frame_states, 1.0, force.force), b(s.b, motion.b, m.frame_states, -1.0, force.force);
+    const Side a(s.a, motion.a, m.frame_states, 1.0, force.force),
+        b(s.b, motion.b, m.frame_states, -1.0, force.force);
     const Side& mine = s.a.frame == frame ? a : b;
     const Side& other = s.a.frame == frame ? b : a;
     out.wrench.force += mine.sign * force.force;

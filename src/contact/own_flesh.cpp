@@ -1,19 +1,27 @@
-// Seen along the normal n, from b to a, a's skin faces down and b's faces up; they overlap where x_b lies above x_a.  Three things look like that:
-//   contact         a's flesh begins at x_a and b's ends at x_b: between them is flesh of both, twice in one place;
+// Seen along the normal n, from b to a, a's skin faces down and b's faces up; they overlap where x_b lies
+// above x_a.  Three things look like that:
+//   contact         a's flesh begins at x_a and b's ends at x_b: between them is flesh of both, twice in one
+//   place;
 //   own thickness   b's skin is the back of the flesh that begins at x_a: between them is flesh once;
-//   passed by       the flesh that begins at x_a ends below the flesh that ends at x_b, air between: b's flesh is above a's, and they do not touch here.
-// What they differ in is where the straight way from x_a to x_b ends if it is walked through the tetrahedra, from one to its neighbour across a face.  It ends in contact
-// somewhere inside a's flesh, at a point Y of the body at rest; in own thickness at X_b, the very point of the skin; passing by, it comes out before.  The same is asked of the way
-// from b, and one such answer is enough: a thin part that has been swallowed by a thick one ends the one way and not the other.  Where both are thinner than the overlap is deep, no
-// way stays inside and nothing is said to touch.
+//   passed by       the flesh that begins at x_a ends below the flesh that ends at x_b, air between: b's
+//   flesh is above a's, and they do not touch here.
+// What they differ in is where the straight way from x_a to x_b ends if it is walked through the tetrahedra,
+// from one to its neighbour across a face.  It ends in contact somewhere inside a's flesh, at a point Y of
+// the body at rest; in own thickness at X_b, the very point of the skin; passing by, it comes out before.
+// The same is asked of the way from b, and one such answer is enough: a thin part that has been swallowed by
+// a thick one ends the one way and not the other.  Where both are thinner than the overlap is deep, no way
+// stays inside and nothing is said to touch.
 //
-// Y and X_b are compared by their distance from the way's begin.  In own thickness |Y - X_b| is rounding, and the skin's distance from the tetrahedra where these do not fill it.  In
-// contact Y lies below the skin at X_a and X_b lies on the skin, so while |Y - X_a| is less than half of the flesh's thickness, |Y - X_b| is not less than Y's depth,
-// |Y - X_a| cos(tilt of the skin against n).  Half of |Y - X_a| parts the two.  At rest every overlap of a skin that does not cut itself is own thickness, with Y = X_b: the body at
+// Y and X_b are compared by their distance from the way's begin.  In own thickness |Y - X_b| is rounding, and
+// the skin's distance from the tetrahedra where these do not fill it.  In contact Y lies below the skin at
+// X_a and X_b lies on the skin, so while |Y - X_a| is less than half of the flesh's thickness, |Y - X_b| is
+// not less than Y's depth,
+// |Y - X_a| cos(tilt of the skin against n).  Half of |Y - X_a| parts the two.  At rest every overlap of a
+// skin that does not cut itself is own thickness, with Y = X_b: the body at
 // rest feels nothing, whatever the gap that is looked into.
 //
-// The way may end outside of the tetrahedra by as much as the skin does; there the last tetrahedron is continued.  One that is too flat to have weights ends the way: no force
-// comes from nowhere.
+// The way may end outside of the tetrahedra by as much as the skin does; there the last tetrahedron is
+// continued.  One that is too flat to have weights ends the way: no force comes from nowhere.
 #include "contact/own_flesh.h"
 
 #include <Eigen/LU>
@@ -51,7 +59,8 @@ Tets neighbours(const Tets& tets) {
   return across;
 }
 
-/// The map from a place, relative to the first corner, to the weights of the other three; false where the tetrahedron is flat.
+/// The map from a place, relative to the first corner, to the weights of the other three; false where the
+/// tetrahedron is flat.
 bool weights_of(const Tets& tets, const Points& nodes, int tet, Mat3& map) {
   constexpr double kFlat = 1e-6;  // volume over the cube of the longest edge
   Mat3 edges;
@@ -64,14 +73,18 @@ bool weights_of(const Tets& tets, const Points& nodes, int tet, Mat3& map) {
 
 }  // namespace
 
-OwnFlesh::OwnFlesh(const SurfaceState& skin, Points rest_nodes) : skin_(skin), rest_nodes_(std::move(rest_nodes)) {
+OwnFlesh::OwnFlesh(const SurfaceState& skin, Points rest_nodes)
+    : skin_(skin), rest_nodes_(std::move(rest_nodes)) {
   counters::count("contact.own_flesh");
   const NodeSurface& surface = skin.surface();
-  PALPATE_CHECK(surface.node_of_vertex.empty() && surface.tets.cols() > 0, "contact of a body with itself needs a skin on tetrahedra");
-  PALPATE_CHECK(surface.tets.maxCoeff() < rest_nodes_.cols(), "contact of a body with itself: node {} of {}", surface.tets.maxCoeff(), rest_nodes_.cols());
+  PALPATE_CHECK(surface.node_of_vertex.empty() && surface.tets.cols() > 0,
+                "contact of a body with itself needs a skin on tetrahedra");
+  PALPATE_CHECK(surface.tets.maxCoeff() < rest_nodes_.cols(), "contact of a body with itself: node {} of {}",
+                surface.tets.maxCoeff(), rest_nodes_.cols());
   across_ = neighbours(surface.tets);
   mesh::evaluate(surface.embedding, surface.tets, rest_nodes_, rest_vertices_);
-  // A negative weight is a distance outside of the face opposite to its corner, in heights of that corner: 1 / |gradient of the weight|.
+  // A negative weight is a distance outside of the face opposite to its corner, in heights of that corner: 1
+  // / |gradient of the weight|.
   for (int v = 0; v < surface.embedding.size(); ++v) {
     if (surface.embedding.weights.col(v).minCoeff() >= 0.0) continue;
     Mat3 map;

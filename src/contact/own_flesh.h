@@ -5,7 +5,8 @@
 
 namespace palpate::contact {
 
-/// A point of a body's skin: the tetrahedron that carries it, and where it is at rest (of the body) and now (in the world) [m].
+/// A point of a body's skin: the tetrahedron that carries it, and where it is at rest (of the body) and now
+/// (in the world) [m].
 struct SkinPoint {
   int tet;
   Vec3 rest, now;
@@ -20,11 +21,15 @@ class OwnFlesh {
 
   /// The point of a face with these weights of its corners, which is now at `world`.
   SkinPoint point(int face, const Vec3& weights, const Vec3& world) const;
-  /// Whether skin at a and at b, each behind the other, overlap because one has come into the other's flesh, at the skin's last update.
-  bool in_contact(const SkinPoint& a, const SkinPoint& b) const { return ends_elsewhere(a, b) || ends_elsewhere(b, a); }
+  /// Whether skin at a and at b, each behind the other, overlap because one has come into the other's flesh,
+  /// at the skin's last update.
+  bool in_contact(const SkinPoint& a, const SkinPoint& b) const {
+    return ends_elsewhere(a, b) || ends_elsewhere(b, a);
+  }
 
  private:
-  /// A straight way through the tetrahedra: the part of it that lies in them, the last of them, and the weights of the way's end there.
+  /// A straight way through the tetrahedra: the part of it that lies in them, the last of them, and the
+  /// weights of the way's end there.
   struct Way {
     double inside;
     int tet;

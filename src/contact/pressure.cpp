@@ -15,36 +15,50 @@ void require(const ContactSpec& spec, bool ok, const char* key, double value, co
 }  // namespace
 
 PressureLaw pressure_law(const ContactSpec& spec) {
-  require(spec, spec.stiffness_pa_m > 0 && std::isfinite(spec.stiffness_pa_m), "stiffness_pa_m", spec.stiffness_pa_m, "must be positive");
-  require(spec, spec.damping_pa_s_m >= 0 && std::isfinite(spec.damping_pa_s_m), "damping_pa_s_m", spec.damping_pa_s_m, "must not be negative");
-  require(spec, spec.hunt_crossley_s_m >= 0 && std::isfinite(spec.hunt_crossley_s_m), "hunt_crossley_s_m", spec.hunt_crossley_s_m,
+  require(spec, spec.stiffness_pa_m > 0 && std::isfinite(spec.stiffness_pa_m), "stiffness_pa_m",
+          spec.stiffness_pa_m, "must be positive");
+  require(spec, spec.damping_pa_s_m >= 0 && std::isfinite(spec.damping_pa_s_m), "damping_pa_s_m",
+          spec.damping_pa_s_m, "must not be negative");
+  require(spec, spec.hunt_crossley_s_m >= 0 && std::isfinite(spec.hunt_crossley_s_m), "hunt_crossley_s_m",
+          spec.hunt_crossley_s_m, "must not be negative");
+  require(spec, spec.friction >= 0 && std::isfinite(spec.friction), "friction", spec.friction,
           "must not be negative");
-  require(spec, spec.friction >= 0 && std::isfinite(spec.friction), "friction", spec.friction, "must not be negative");
-  require(spec, spec.friction_regularisation_m_s > 0 && std::isfinite(spec.friction_regularisation_m_s), "friction_regularisation_m_s",
-          spec.friction_regularisation_m_s, "must be positive: below this sliding speed friction is viscous");
-  require(spec, spec.onset_width_m >= 0 && std::isfinite(spec.onset_width_m), "onset_width_m", spec.onset_width_m, "must not be negative; 0 lets the pressure set in at once");
-  PressureLaw law{PressureLaw::Kind::kKelvinVoigt, spec.stiffness_pa_m, spec.damping_pa_s_m, spec.onset_width_m, spec.friction, spec.friction_regularisation_m_s};
+  require(spec, spec.friction_regularisation_m_s > 0 && std::isfinite(spec.friction_regularisation_m_s),
+          "friction_regularisation_m_s", spec.friction_regularisation_m_s,
+          "must be positive: below this sliding speed friction is viscous");
+  require(spec, spec.onset_width_m >= 0 && std::isfinite(spec.onset_width_m), "onset_width_m",
+          spec.onset_width_m, "must not be negative; 0 lets the pressure set in at once");
+  PressureLaw law{PressureLaw::Kind::kKelvinVoigt,
+                  spec.stiffness_pa_m,
+                  spec.damping_pa_s_m,
+                  spec.onset_width_m,
+                  spec.friction,
+                  spec.friction_regularisation_m_s};
   if (spec.law == "kelvin_voigt") return law;
   if (spec.law != "hunt_crossley")
-    fail("contact \"{}\" with \"{}\": unknown law \"{}\"{}", spec.first, spec.second, spec.law, suggestion(spec.law, {"kelvin_voigt", "hunt_crossley"}));
+    fail("contact \"{}\" with \"{}\": unknown law \"{}\"{}", spec.first, spec.second, spec.law,
+         suggestion(spec.law, {"kelvin_voigt", "hunt_crossley"}));
   law.kind = PressureLaw::Kind::kHuntCrossley;
   law.d = spec.hunt_crossley_s_m;
   return law;
 }
 
-// A parabola that meets the line delta - w/2 with equal value w/2 and slope 1 at delta = w.  Its integral is delta^3/(6 w) up to w, w^2/6 there, and
-// delta^2/2 - w delta/2 + w^2/6 beyond.
+// A parabola that meets the line delta - w/2 with equal value w/2 and slope 1 at delta = w.  Its integral is
+// delta^3/(6 w) up to w, w^2/6 there, and delta^2/2 - w delta/2 + w^2/6 beyond.
 Onset onset(double width, double depth) {
   if (!(depth > 0.0)) return {0.0, 0.0, 0.0};
-  if (depth < width) return {0.5 * depth * depth / width, depth / width, depth * depth * depth / (6.0 * width)};
+  if (depth < width)
+    return {0.5 * depth * depth / width, depth / width, depth * depth * depth / (6.0 * width)};
   return {depth - 0.5 * width, 1.0, 0.5 * depth * (depth - width) + width * width / 6.0};
 }
 
-// With delta = -gap, delta' = -gap_rate, so dp/dgap = -dp/ddelta and dp/drate = -dp/ddelta'; s'' = 1/w up to w, 0 beyond:
+// With delta = -gap, delta' = -gap_rate, so dp/dgap = -dp/ddelta and dp/drate = -dp/ddelta'; s'' = 1/w up to
+// w, 0 beyond:
 //   kelvin_voigt   dp/ddelta = k s' + d s'' delta'       dp/ddelta' = d s'
 //   hunt_crossley  dp/ddelta = k s' (1 + 3/2 c delta')   dp/ddelta' = 3/2 k c s
-// The damper of kelvin_voigt takes s', so that it does not jump at first touch, and is whole from w on.  hunt_crossley keeps s: whatever function of depth
-// stands there, m v dv = -F(delta) (1 + a v) ddelta separates, and the speeds before and after an impact are related by the same G(a v) = a v - ln(1 + a v).
+// The damper of kelvin_voigt takes s', so that it does not jump at first touch, and is whole from w on.
+// hunt_crossley keeps s: whatever function of depth stands there, m v dv = -F(delta) (1 + a v) ddelta
+// separates, and the speeds before and after an impact are related by the same G(a v) = a v - ln(1 + a v).
 // Where the formula gives tension the pressure and its derivatives are zero: a contact never pulls.
 Pressure pressure(const PressureLaw& law, double gap, double gap_rate) {
   const double depth = -gap, rate = -gap_rate;
@@ -52,23 +66,33 @@ Pressure pressure(const PressureLaw& law, double gap, double gap_rate) {
   const Onset s = onset(law.onset, depth);
   const double energy = law.k * s.integral;
   if (law.kind == PressureLaw::Kind::kKelvinVoigt) {
-    const double p = law.k * s.value + law.d * s.slope * rate, bend = depth < law.onset ? law.d * rate / law.onset : 0.0;
-    return p > 0.0 ? Pressure{p, -law.k * s.slope - bend, -law.d * s.slope, energy} : Pressure{0.0, 0.0, 0.0, energy};
+    const double p = law.k * s.value + law.d * s.slope * rate,
+                 bend = depth < law.onset ? law.d * rate / law.onset : 0.0;
+    return p > 0.0 ? Pressure{p, -law.k * s.slope - bend, -law.d * s.slope, energy}
+                   : Pressure{0.0, 0.0, 0.0, energy};
   }
   const double factor = 1.0 + 1.5 * law.d * rate;
-  return factor > 0.0 ? Pressure{law.k * s.value * factor, -law.k * s.slope * factor, -1.5 * law.k * law.d * s.value, energy} : Pressure{0.0, 0.0, 0.0, energy};
+  return factor > 0.0 ? Pressure{law.k * s.value * factor, -law.k * s.slope * factor,
+                                 -1.5 * law.k * law.d * s.value, energy}
+                      : Pressure{0.0, 0.0, 0.0, energy};
 }
 
 // p > 0 where delta > 0 and
 //   kelvin_voigt   k delta + d delta' > 0         that is  gap + (d/k) rate < 0
-//   hunt_crossley  1 + 3/2 c delta' > 0           that is  3/2 c rate - 1 < 0, times any length to stand beside a gap
-// so the larger of gap and that is negative exactly there.  (For laws without an onset: with one the force has no kink to find.)
+//   hunt_crossley  1 + 3/2 c delta' > 0           that is  3/2 c rate - 1 < 0, times any length to stand
+//   beside a gap
+// so the larger of gap and that is negative exactly there.  (For laws without an onset: with one the force
+// has no kink to find.)
 double pressing(const PressureLaw& law, double gap, double gap_rate) {
   if (law.d == 0.0) return gap;
   constexpr double kLength = 1e-3;  // [m]
-  return std::max(gap, law.kind == PressureLaw::Kind::kKelvinVoigt ? gap + law.d / law.k * gap_rate : kLength * (1.5 * law.d * gap_rate - 1.0));
+  return std::max(gap, law.kind == PressureLaw::Kind::kKelvinVoigt
+                           ? gap + law.d / law.k * gap_rate
+                           : kLength * (1.5 * law.d * gap_rate - 1.0));
 }
 
-Pressure pressure(const ContactSpec& law, double gap, double gap_rate) { return pressure(pressure_law(law), gap, gap_rate); }
+Pressure pressure(const ContactSpec& law, double gap, double gap_rate) {
+  return pressure(pressure_law(law), gap, gap_rate);
+}
 
 }  // namespace palpate::contact

@@ -6,8 +6,8 @@ namespace palpate::contact {
 /// A ContactSpec's law, its name resolved once.
 struct PressureLaw {
   enum class Kind { kKelvinVoigt, kHuntCrossley } kind = Kind::kKelvinVoigt;
-  double k = 0.0;  ///< [Pa/m]
-  double d = 0.0;  ///< [Pa s/m], or c of hunt_crossley [s/m]
+  double k = 0.0;      ///< [Pa/m]
+  double d = 0.0;      ///< [Pa s/m], or c of hunt_crossley [s/m]
   double onset = 0.0;  ///< w [m]
   double friction = 0.0;
   double regularisation = 1e-3;  ///< v_r [m/s]
@@ -19,10 +19,13 @@ PressureLaw pressure_law(const ContactSpec& spec);
 Pressure pressure(const PressureLaw& law, double gap, double gap_rate);
 
 /// s(delta) with its derivative and its integral from 0.
-struct Onset { double value, slope, integral; };
+struct Onset {
+  double value, slope, integral;
+};
 Onset onset(double width, double depth);
 
-/// Negative while the law presses, positive while it does not, and zero exactly where that changes [m].  Continuous in gap and rate.
+/// Negative while the law presses, positive while it does not, and zero exactly where that changes [m].
+/// Continuous in gap and rate.
 double pressing(const PressureLaw& law, double gap, double gap_rate);
 
 }  // namespace palpate::contact

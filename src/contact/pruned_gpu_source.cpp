@@ -10,16 +10,22 @@ namespace {
 /// The image of gpu_source.cpp, once for each region that the proxies leave.
 class PrunedSource final : public ImageSource {
  public:
-  PrunedSource(std::shared_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::shared_ptr<ImageSide> b, std::shared_ptr<proxy::ProxySet> proxies_b,
+  PrunedSource(std::shared_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a,
+               std::shared_ptr<ImageSide> b, std::shared_ptr<proxy::ProxySet> proxies_b,
                const GpuOptions& options)
-      : ImageSource(std::move(a), std::move(b), options), proxies_a_(std::move(proxies_a)), proxies_b_(std::move(proxies_b)),
+      : ImageSource(std::move(a), std::move(b), options),
+        proxies_a_(std::move(proxies_a)),
+        proxies_b_(std::move(proxies_b)),
         pruner_(*proxies_a_, *proxies_b_, {.between_bones = of_one_body()}) {}
   /// One body's bones.
-  PrunedSource(std::shared_ptr<ImageSide> side, std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes, const GpuOptions& options) : PrunedSource(side, proxies, side, proxies, options) {
+  PrunedSource(std::shared_ptr<ImageSide> side, std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes,
+               const GpuOptions& options)
+      : PrunedSource(side, proxies, side, proxies, options) {
     flesh_.emplace(*a_->soft(), std::move(rest_nodes));
     proxy_of_face_.resize(static_cast<std::size_t>(proxies_a_->face_count()));
     for (const proxy::SkinPatch& patch : proxies_a_->patches())
-      for (const int face : proxies_a_->faces(patch)) proxy_of_face_[static_cast<std::size_t>(face)] = patch.proxy;
+      for (const int face : proxies_a_->faces(patch))
+        proxy_of_face_[static_cast<std::size_t>(face)] = patch.proxy;
   }
 
   const proxy::PruneCounts* pruning() const override { return &pruner_.counts(); }
@@ -33,7 +39,9 @@ class PrunedSource final : public ImageSource {
       ContactCamera camera = look_along(region, axes);
       for (int turn = 0; turn < kTurns && turn_to_overlap(axes); ++turn) camera = look_along(region, axes);
       for (const FacingFaces& at : facings_)
-        samples.push_back(sample_of(at.facing, *a_, piece_a_.face_of[static_cast<std::size_t>(at.face_a)], *b_, piece_b_.face_of[static_cast<std::size_t>(at.face_b)], camera, axes));
+        samples.push_back(sample_of(at.facing, *a_, piece_a_.face_of[static_cast<std::size_t>(at.face_a)],
+                                    *b_, piece_b_.face_of[static_cast<std::size_t>(at.face_b)], camera,
+                                    axes));
     }
   }
 
@@ -43,10 +51,11 @@ class PrunedSource final : public ImageSource {
     Faces faces;
     std::vector<int> face_of;  ///< in the whole surface
     Patch patch;
-    std::vector<int> local;    ///< of the surface's vertices, -1: not taken
+    std::vector<int> local;  ///< of the surface's vertices, -1: not taken
     std::vector<int> taken;
 
-    /// Those whose normal has the sign `side` along the plane's: what is turned away lies behind skin of its own body, which may be in another region.
+    /// Those whose normal has the sign `side` along the plane's: what is turned away lies behind skin of its
+    /// own body, which may be in another region.
     template <class Place>
     void take(const Faces& all, const std::vector<int>& wanted, double side, const Place& place) {
       for (const int vertex : taken) local[static_cast<std::size_t>(vertex)] = -1;
@@ -59,7 +68,8 @@ class PrunedSource final : public ImageSource {
             taken.push_back(vertex);
           }
       patch.uvw.resize(3, static_cast<Eigen::Index>(taken.size()));
-      for (std::size_t i = 0; i < taken.size(); ++i) patch.uvw.col(static_cast<Eigen::Index>(i)) = place(taken[i]);
+      for (std::size_t i = 0; i < taken.size(); ++i)
+        patch.uvw.col(static_cast<Eigen::Index>(i)) = place(taken[i]);
       face_of.clear();
       faces.resize(3, static_cast<Eigen::Index>(wanted.size()));
       for (const int face : wanted) {
@@ -84,31 +94,43 @@ class PrunedSource final : public ImageSource {
   /// Fills `facings_` with what the region shows along these axes.
   ContactCamera look_along(const proxy::ContactRegion& region, const ContactAxes& axes) {
     facings_.clear();
-    piece_a_.take(a_->faces(), region.faces_a, -1.0, [&](int vertex) { return axes.in_axes(a_->vertex(vertex)); });
-    piece_b_.take(b_->faces(), region.faces_b, 1.0, [&](int vertex) { return axes.in_axes(b_->vertex(vertex)); });
+    piece_a_.take(a_->faces(), region.faces_a, -1.0,
+                  [&](int vertex) { return axes.in_axes(a_->vertex(vertex)); });
+    piece_b_.take(b_->faces(), region.faces_b, 1.0,
+                  [&](int vertex) { return axes.in_axes(b_->vertex(vertex)); });
     if (piece_a_.faces.cols() == 0 || piece_b_.faces.cols() == 0) return {};
     Patch &a = piece_a_.patch, &b = piece_b_.patch;
-    const ContactCamera camera = fit_camera(a, b, options_.candidate_gap, options_.pixels, {options_.shift_u, options_.shift_v});
+    const ContactCamera camera =
+        fit_camera(a, b, options_.candidate_gap, options_.pixels, {options_.shift_u, options_.shift_v});
     if (!camera.sees_something()) return camera;
     image().find_pairs(a, b, camera, options_.candidate_gap, pairs_);
     for (const PixelPair& pair : pairs_) {
       const int face_a = a.visible[pair.a], face_b = b.visible[pair.b];
       const std::optional<Facing> facing = facing_at(pair, camera, a, face_a, b, face_b);
-      if (facing && facing->gap() < options_.candidate_gap && (!flesh_ || may_touch(*facing, face_a, face_b, axes))) facings_.push_back({*facing, face_a, face_b});
+      if (facing && facing->gap() < options_.candidate_gap &&
+          (!flesh_ || may_touch(*facing, face_a, face_b, axes)))
+        facings_.push_back({*facing, face_a, face_b});
     }
     return camera;
   }
 
   /// Of one body: a pair of proxies, each of which is looked at once, and no back of its own flesh.
   bool may_touch(const Facing& at, int face_a, int face_b, const ContactAxes& axes) const {
-    const int a = piece_a_.face_of[static_cast<std::size_t>(face_a)], b = piece_b_.face_of[static_cast<std::size_t>(face_b)];
-    if (!pruner_.is_pair(proxy_of_face_[static_cast<std::size_t>(a)], proxy_of_face_[static_cast<std::size_t>(b)])) return false;
-    return at.gap() >= 0.0 || flesh_->in_contact(flesh_->point(a, at.weights_a, axes.world(Vec3(at.u, at.v, at.w_a))), flesh_->point(b, at.weights_b, axes.world(Vec3(at.u, at.v, at.w_b))));
+    const int a = piece_a_.face_of[static_cast<std::size_t>(face_a)],
+              b = piece_b_.face_of[static_cast<std::size_t>(face_b)];
+    if (!pruner_.is_pair(proxy_of_face_[static_cast<std::size_t>(a)],
+                         proxy_of_face_[static_cast<std::size_t>(b)]))
+      return false;
+    return at.gap() >= 0.0 ||
+           flesh_->in_contact(flesh_->point(a, at.weights_a, axes.world(Vec3(at.u, at.v, at.w_a))),
+                              flesh_->point(b, at.weights_b, axes.world(Vec3(at.u, at.v, at.w_b))));
   }
 
-  // The region's normal came from patches, which reach beyond the overlap, more or less as the body is cut.  The overlap itself has one: its boundary is closed, so the
-  // area vectors of a's skin in b and of b's in a are opposite, and their common direction pushes the bodies apart.  Seen along n, a pixel of area dA shows (s, 1) dA of
-  // each, s the slope of -a's or of b's skin: n turns by the mean slope of both, and stays where that is zero.  It depends on the pose alone.
+  // The region's normal came from patches, which reach beyond the overlap, more or less as the body is cut.
+  // The overlap itself has one: its boundary is closed, so the area vectors of a's skin in b and of b's in a
+  // are opposite, and their common direction pushes the bodies apart.  Seen along n, a pixel of area dA shows
+  // (s, 1) dA of each, s the slope of -a's or of b's skin: n turns by the mean slope of both, and stays where
+  // that is zero.  It depends on the pose alone.
   static constexpr int kTurns = 3;
   bool turn_to_overlap(ContactAxes& axes) const {
     constexpr double kAligned = 1e-3, kSteepest = 10.0;  // [rad]; a wall's slope is no direction
@@ -135,19 +157,25 @@ class PrunedSource final : public ImageSource {
   std::shared_ptr<proxy::ProxySet> proxies_a_, proxies_b_;
   proxy::Pruner pruner_;
   Piece piece_a_, piece_b_;
-  std::optional<OwnFlesh> flesh_;   ///< of one body
+  std::optional<OwnFlesh> flesh_;  ///< of one body
   std::vector<int> proxy_of_face_;
   std::vector<FacingFaces> facings_;
 };
 
 }  // namespace
 
-std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a, std::shared_ptr<ImageSide> b,
-                                                 std::shared_ptr<proxy::ProxySet> proxies_b, const GpuOptions& options) {
-  return std::make_unique<PrunedSource>(std::move(a), std::move(proxies_a), std::move(b), std::move(proxies_b), options);
+std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> a,
+                                                 std::shared_ptr<proxy::ProxySet> proxies_a,
+                                                 std::shared_ptr<ImageSide> b,
+                                                 std::shared_ptr<proxy::ProxySet> proxies_b,
+                                                 const GpuOptions& options) {
+  return std::make_unique<PrunedSource>(std::move(a), std::move(proxies_a), std::move(b),
+                                        std::move(proxies_b), options);
 }
 
-std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> side, std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes, const GpuOptions& options) {
+std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> side,
+                                                 std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes,
+                                                 const GpuOptions& options) {
   return std::make_unique<PrunedSource>(std::move(side), std::move(proxies), std::move(rest_nodes), options);
 }
 

@@ -8,8 +8,11 @@ Mat3 left_jacobian(const Vec3& phi);
 /// Its inverse, for |phi| < 2 pi.
 Mat3 left_jacobian_inverse(const Vec3& phi);
 
-/// Cubic Hermite interpolation on [0, 1]: value and derivative by s, from the end values and the end derivatives by s.
-struct Cubic { Vec3 value, slope; };
+/// Cubic Hermite interpolation on [0, 1]: value and derivative by s, from the end values and the end
+/// derivatives by s.
+struct Cubic {
+  Vec3 value, slope;
+};
 Cubic hermite(double s, const Vec3& x0, const Vec3& m0, const Vec3& x1, const Vec3& m1);
 
 }  // namespace palpate::contact

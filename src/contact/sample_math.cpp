@@ -5,11 +5,14 @@
 namespace palpate::contact {
 namespace {
 
-Vec3 tangential(const ContactSample& sample, const SampleMotion& motion) { return motion.a.v - motion.b.v - motion.rate * sample.normal; }
+Vec3 tangential(const ContactSample& sample, const SampleMotion& motion) {
+  return motion.a.v - motion.b.v - motion.rate * sample.normal;
+}
 
 }  // namespace
 
-PointMotion point_motion(const SurfacePoint& point, const dynamics::StateView& state, const std::vector<FrameState>& frames) {
+PointMotion point_motion(const SurfacePoint& point, const dynamics::StateView& state,
+                         const std::vector<FrameState>& frames) {
   if (point.frame >= 0) {
     const FrameState& frame = frames[static_cast<std::size_t>(point.frame)];
     const Vec3 turning = frame.R * point.offset, arm = turning + point.slide;
@@ -24,7 +27,8 @@ PointMotion point_motion(const SurfacePoint& point, const dynamics::StateView& s
   return motion;
 }
 
-SampleMotion sample_motion(const ContactSample& sample, const dynamics::StateView& state, const std::vector<FrameState>& frames) {
+SampleMotion sample_motion(const ContactSample& sample, const dynamics::StateView& state,
+                           const std::vector<FrameState>& frames) {
   SampleMotion motion{point_motion(sample.a, state, frames), point_motion(sample.b, state, frames), 0.0, 0.0};
   motion.gap = sample.normal.dot(motion.a.x - motion.b.x);
   motion.rate = sample.normal.dot(motion.a.v - motion.b.v);
@@ -46,7 +50,8 @@ Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const
 //   dF/dv_rel = A (p_rate m n^T - mu p ds/dv_t P),   P = I - n n^T
 //   ds/dv_t   = I / v_r                        for |v_t| <= v_r
 //             = (I - t t^T) / |v_t|, t = s     beyond
-SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
+SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion,
+                                     const PressureLaw& law) {
   const Pressure p = pressure(law, motion.gap, motion.rate);
   const Vec3& n = sample.normal;
   if (law.friction == 0.0) {
@@ -62,15 +67,18 @@ SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMo
   return {sample.area * p.p * m, -p.dp_dgap * mn, -p.dp_drate * mn + sample.area * law.friction * p.p * ds};
 }
 
-// The spring stores A k S, S' = s; the contact gives the power -A p delta' to the two surfaces.  What is missing:
+// The spring stores A k S, S' = s; the contact gives the power -A p delta' to the two surfaces.  What is
+// missing:
 //   -(A k s delta' - A p delta') = A (p - k s) delta'  =  A d s' delta'^2  or  A 3/2 k c s delta'^2,
-// and where the pressure was cut to zero, -A k s delta' with delta' < 0: all >= 0.  Friction takes A mu p |v_t|^2 / max(|v_t|, v_r).
+// and where the pressure was cut to zero, -A k s delta' with delta' < 0: all >= 0.  Friction takes A mu p
+// |v_t|^2 / max(|v_t|, v_r).
 double sample_dissipation(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
   if (motion.gap >= 0.0) return 0.0;
   const double p = pressure(law, motion.gap, motion.rate).p;
   const double normal_part = (p - law.k * onset(law.onset, -motion.gap).value) * -motion.rate;
   const Vec3 v_t = tangential(sample, motion);
-  return sample.area * (normal_part + law.friction * p * v_t.squaredNorm() / std::max(v_t.norm(), law.regularisation));
+  return sample.area *
+         (normal_part + law.friction * p * v_t.squaredNorm() / std::max(v_t.norm(), law.regularisation));
 }
 
 }  // namespace palpate::contact

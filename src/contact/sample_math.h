@@ -17,9 +17,9 @@ struct FrameState {
 
 /// Where one side's point is and how it moves.
 struct PointMotion {
-  Vec3 x, v;    ///< position [m], velocity of the material there [m/s]
-  Vec3 arm;     ///< frames: from the frame's origin [m], world axes
-  Vec3 turning; ///< the part of it that turns with the frame, arm - slide
+  Vec3 x, v;     ///< position [m], velocity of the material there [m/s]
+  Vec3 arm;      ///< frames: from the frame's origin [m], world axes
+  Vec3 turning;  ///< the part of it that turns with the frame, arm - slide
 };
 
 /// Both points of a sample, their gap and its rate.
@@ -34,11 +34,14 @@ struct SampleForce {
   Mat3 K, D;   ///< -dF/dx_rel [N/m], -dF/dv_rel [N s/m]
 };
 
-PointMotion point_motion(const SurfacePoint& point, const dynamics::StateView& state, const std::vector<FrameState>& frames);
-SampleMotion sample_motion(const ContactSample& sample, const dynamics::StateView& state, const std::vector<FrameState>& frames);
+PointMotion point_motion(const SurfacePoint& point, const dynamics::StateView& state,
+                         const std::vector<FrameState>& frames);
+SampleMotion sample_motion(const ContactSample& sample, const dynamics::StateView& state,
+                           const std::vector<FrameState>& frames);
 
 Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
-SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
+SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion,
+                                     const PressureLaw& law);
 /// Power that damping and friction take out [W], >= 0.
 double sample_dissipation(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
 

@@ -8,24 +8,30 @@
 namespace palpate::contact {
 
 SurfaceState::SurfaceState(NodeSurface surface) : surface_(std::move(surface)) {
-  positions_.resize(3, is_skin() ? surface_.embedding.size() : static_cast<int>(surface_.node_of_vertex.size()));
+  positions_.resize(3,
+                    is_skin() ? surface_.embedding.size() : static_cast<int>(surface_.node_of_vertex.size()));
   for (int f = 0; f < face_count(); ++f)
     for (int k = 0; k < 3; ++k)
-      PALPATE_CHECK(surface_.faces(k, f) >= 0 && surface_.faces(k, f) < vertex_count(), "contact surface: face {} names vertex {} of {}", f,
-                    surface_.faces(k, f), vertex_count());
+      PALPATE_CHECK(surface_.faces(k, f) >= 0 && surface_.faces(k, f) < vertex_count(),
+                    "contact surface: face {} names vertex {} of {}", f, surface_.faces(k, f),
+                    vertex_count());
   if (!is_skin()) return;
-  PALPATE_CHECK(surface_.embedding.weights.cols() == vertex_count(), "contact skin: {} weights for {} vertices", surface_.embedding.weights.cols(), vertex_count());
+  PALPATE_CHECK(surface_.embedding.weights.cols() == vertex_count(),
+                "contact skin: {} weights for {} vertices", surface_.embedding.weights.cols(),
+                vertex_count());
   carriers_ = surface_.embedding.tet;
   std::sort(carriers_.begin(), carriers_.end());
   carriers_.erase(std::unique(carriers_.begin(), carriers_.end()), carriers_.end());
   if (carriers_.empty()) return;
-  PALPATE_CHECK(carriers_.front() >= 0 && carriers_.back() < surface_.tets.cols(), "contact skin: a vertex hangs on tetrahedron {} of {}",
+  PALPATE_CHECK(carriers_.front() >= 0 && carriers_.back() < surface_.tets.cols(),
+                "contact skin: a vertex hangs on tetrahedron {} of {}",
                 carriers_.front() < 0 ? carriers_.front() : carriers_.back(), surface_.tets.cols());
 }
 
 void SurfaceState::update(const dynamics::StateView& state) {
   const dynamics::Block* block = state.layout->find(surface_.block_id);
-  PALPATE_CHECK(block && block->kind == dynamics::BlockKind::kNodes, "contact surface: block {} is no node block of this State", surface_.block_id);
+  PALPATE_CHECK(block && block->kind == dynamics::BlockKind::kNodes,
+                "contact surface: block {} is no node block of this State", surface_.block_id);
   if (const int offset = block->u_offset / 3; offset != node_offset_) {
     node_offset_ = offset;
     ++pattern_version_;
@@ -36,13 +42,15 @@ void SurfaceState::update(const dynamics::StateView& state) {
   } else {
     for (int v = 0; v < vertex_count(); ++v) positions_.col(v) = state.position(node(v));
   }
-  PALPATE_CHECK(positions_.allFinite(), "contact query at t = {}: a surface position is not finite", state.time);
+  PALPATE_CHECK(positions_.allFinite(), "contact query at t = {}: a surface position is not finite",
+                state.time);
 }
 
 Vec3 SurfaceState::velocity(int vertex, const dynamics::StateView& state) const {
   if (!is_skin()) return state.velocity(node(vertex));
   Vec3 v = Vec3::Zero();
-  for (int k = 0; k < 4; ++k) v += surface_.embedding.weights(k, vertex) * state.velocity(node_of_tet(tet_of(vertex), k));
+  for (int k = 0; k < 4; ++k)
+    v += surface_.embedding.weights(k, vertex) * state.velocity(node_of_tet(tet_of(vertex), k));
   return v;
 }
 
@@ -56,9 +64,11 @@ SurfacePoint SurfaceState::vertex_point(int vertex) const {
   return point;
 }
 
-// Of a skin, the corners of a face may hang on three tetrahedra, twelve nodes in all; a contact point has four.  It is tied to the tetrahedron of the corner
-// nearest to it, by its barycentric coordinates there as it stands now: so it lies where it is seen, and a force at it keeps its moment.  Between two
-// queries it moves with that one tetrahedron, and leaves the face by a part of the difference of the tetrahedra's strains.
+// Of a skin, the corners of a face may hang on three tetrahedra, twelve nodes in all; a contact point has
+// four.  It is tied to the tetrahedron of the corner nearest to it, by its barycentric coordinates there as
+// it stands now: so it lies where it is seen, and a force at it keeps its moment.  Between two queries it
+// moves with that one tetrahedron, and leaves the face by a part of the difference of the tetrahedra's
+// strains.
 SurfacePoint SurfaceState::face_point(int face, const Vec3& weights) const {
   const auto corner = surface_.faces.col(face);
   if (!is_skin()) {
@@ -72,11 +82,13 @@ SurfacePoint SurfaceState::face_point(int face, const Vec3& weights) const {
   }
   Eigen::Index nearest = 0;
   weights.maxCoeff(&nearest);
-  const Vec3 x = weights[0] * positions_.col(corner[0]) + weights[1] * positions_.col(corner[1]) + weights[2] * positions_.col(corner[2]);
+  const Vec3 x = weights[0] * positions_.col(corner[0]) + weights[1] * positions_.col(corner[1]) +
+                 weights[2] * positions_.col(corner[2]);
   return point_of_tet(tet_of(corner[nearest]), x, surface_.embedding.weights.col(corner[nearest]));
 }
 
-/// By its barycentric coordinates; on a tetrahedron too flat to have them, by the corner's own weights and an offset that does not turn.
+/// By its barycentric coordinates; on a tetrahedron too flat to have them, by the corner's own weights and an
+/// offset that does not turn.
 SurfacePoint SurfaceState::point_of_tet(int tet, const Vec3& x, const Eigen::Vector4d& of_corner) const {
   constexpr double kFlat = 1e-6;  // volume over the cube of the longest edge
   const auto at = [&](int k) -> Vec3 { return nodes_.col(surface_.tets(k, tet)); };
@@ -104,7 +116,9 @@ void SurfaceState::area_vectors(const std::vector<char>& wanted, Points& areas) 
   areas.setZero(3, vertex_count());
   for (int f = 0; f < face_count(); ++f) {
     const int i = surface_.faces(0, f), j = surface_.faces(1, f), k = surface_.faces(2, f);
-    if (!wanted[static_cast<std::size_t>(i)] && !wanted[static_cast<std::size_t>(j)] && !wanted[static_cast<std::size_t>(k)]) continue;
+    if (!wanted[static_cast<std::size_t>(i)] && !wanted[static_cast<std::size_t>(j)] &&
+        !wanted[static_cast<std::size_t>(k)])
+      continue;
     const Vec3 edge1 = positions_.col(j) - positions_.col(i), edge2 = positions_.col(k) - positions_.col(i);
     const Vec3 third = edge1.cross(edge2) / 6.0;
     for (const int v : {i, j, k}) areas.col(v) += third;
@@ -114,7 +128,8 @@ void SurfaceState::area_vectors(const std::vector<char>& wanted, Points& areas) 
 double SurfaceState::mean_edge() const {
   double sum = 0.0;
   for (int f = 0; f < face_count(); ++f)
-    for (int k = 0; k < 3; ++k) sum += (positions_.col(surface_.faces(k, f)) - positions_.col(surface_.faces((k + 1) % 3, f))).norm();
+    for (int k = 0; k < 3; ++k)
+      sum += (positions_.col(surface_.faces(k, f)) - positions_.col(surface_.faces((k + 1) % 3, f))).norm();
   return face_count() > 0 ? sum / (3.0 * face_count()) : 0.0;
 }
 

@@ -9,7 +9,8 @@ namespace palpate::contact {
 /// A NodeSurface at a state: where its vertices are, which nodes of the State carry them.
 class SurfaceState {
  public:
-  /// @throws InternalError for faces that name a vertex which is not there, and for an embedding that names a tetrahedron or node which is not
+  /// @throws InternalError for faces that name a vertex which is not there, and for an embedding that names
+  ///   a tetrahedron or node which is not
   explicit SurfaceState(NodeSurface surface);
 
   void update(const dynamics::StateView& state);
@@ -25,7 +26,8 @@ class SurfaceState {
   SurfacePoint vertex_point(int vertex) const;
   /// The point of a face with these weights of its corners.
   SurfacePoint face_point(int face, const Vec3& weights) const;
-  /// One third of the area vectors of the adjacent faces, deformed [m^2]; outward.  Sums over `faces` with a vertex in `wanted`.
+  /// One third of the area vectors of the adjacent faces, deformed [m^2]; outward.  Sums over `faces` with a
+  /// vertex in `wanted`.
   void area_vectors(const std::vector<char>& wanted, Points& areas) const;
   /// Mean length of the faces' edges at the last update [m].
   double mean_edge() const;
@@ -34,13 +36,16 @@ class SurfaceState {
   void add_vertex_pattern(dynamics::PatternBuilder& pattern) const;
   void add_face_pattern(dynamics::PatternBuilder& pattern) const;
   std::uint64_t pattern_version() const { return pattern_version_; }
-  std::uint64_t vertex_pattern_version() const { return is_skin() ? pattern_version_ : 0; }  ///< nodes by themselves couple nothing, wherever they stand
+  /// nodes by themselves couple nothing, wherever they stand
+  std::uint64_t vertex_pattern_version() const { return is_skin() ? pattern_version_ : 0; }
 
  private:
   bool is_skin() const { return surface_.node_of_vertex.empty(); }
   int tet_of(int vertex) const { return surface_.embedding.tet[static_cast<std::size_t>(vertex)]; }
   int node_of_tet(int tet, int corner) const { return node_offset_ + surface_.tets(corner, tet); }
-  int node(int vertex) const { return node_offset_ + surface_.node_of_vertex[static_cast<std::size_t>(vertex)]; }
+  int node(int vertex) const {
+    return node_offset_ + surface_.node_of_vertex[static_cast<std::size_t>(vertex)];
+  }
   SurfacePoint point_of_tet(int tet, const Vec3& x, const Eigen::Vector4d& at_rest) const;
 
   NodeSurface surface_;

@@ -4,21 +4,25 @@
 
 namespace palpate::contact {
 
-// The tangent of one sample.  With x_rel = x_a - x_b, the sample's force F on a and its derivatives K = -dF/dx_rel, D = -dF/dv_rel,
-// and each side's map B (w_i I or Z), the generalised force on side p is  s_p B_p^T F.  Its derivatives, negated:
+// The tangent of one sample.  With x_rel = x_a - x_b, the sample's force F on a and its derivatives K =
+// -dF/dx_rel, D = -dF/dv_rel, and each side's map B (w_i I or Z), the generalised force on side p is  s_p
+// B_p^T F.  Its derivatives, negated:
 //
-//   by side q's position   s_p s_q B_p^T (K B_q + D V_q)      V_q: a frame's twist, held, moves the turned arm otherwise
+//   by side q's position   s_p s_q B_p^T (K B_q + D V_q)      V_q: a frame's twist, held, moves the turned
+//   arm otherwise
 //   by side q's velocity   s_p s_q B_p^T  D B_q
 //   geometric (p = q)      a frame's moment s_p (r x F) changes with its own arm, dr = dtheta x R o:
-//                          d(r x F) = (dtheta x R o) x F = F x (R o x dtheta) = [F]x [R o]x dtheta = G dtheta,  so K_theta,theta += -s_p G
+//                          d(r x F) = (dtheta x R o) x F = F x (R o x dtheta) = [F]x [R o]x dtheta = G
+//                          dtheta,  so K_theta,theta += -s_p G
 //
-// The slide s does not turn, so positions move with R o and velocities, w x r, with r = R o + s; but s is parallel to n, and K acts on n . dx alone:
+// The slide s does not turn, so positions move with R o and velocities, w x r, with r = R o + s; but s is
+// parallel to n, and K acts on n . dx alone:
 // K (dtheta x s) = 0, and Z serves for both.
 //
-// Node-node blocks stay symmetric without friction (K = A k n n^T).  Frame blocks do not: G is symmetric only up to the moment
-// that it is the derivative of (rotations do not commute), and D V has no transpose partner.
-Side::Side(const SurfacePoint& surface_point, const PointMotion& motion, const std::vector<FrameState>& frames, double side_sign,
-           const Vec3& force_on_a)
+// Node-node blocks stay symmetric without friction (K = A k n n^T).  Frame blocks do not: G is symmetric only
+// up to the moment that it is the derivative of (rotations do not commute), and D V has no transpose partner.
+Side::Side(const SurfacePoint& surface_point, const PointMotion& motion,
+           const std::vector<FrameState>& frames, double side_sign, const Vec3& force_on_a)
     : point(surface_point), frame(nullptr), sign(side_sign), arm(motion.arm) {
   if (point.frame < 0) return;
   frame = &frames[static_cast<std::size_t>(point.frame)];
@@ -36,13 +40,16 @@ void add_node_node(const Side& p, const Side& q, const Mat3& block, dynamics::Bo
     for (int j = 0; j < q.point.count; ++j) {
       const auto ki = static_cast<std::size_t>(i), kj = static_cast<std::size_t>(j);
       const int slot = A.body.slot(p.point.node[ki], q.point.node[kj]);
-      PALPATE_CHECK(slot >= 0, "contact couples nodes {} and {}, which its source did not announce in add_pattern", p.point.node[ki], q.point.node[kj]);
+      PALPATE_CHECK(slot >= 0,
+                    "contact couples nodes {} and {}, which its source did not announce in add_pattern",
+                    p.point.node[ki], q.point.node[kj]);
       A.body.add(slot, p.point.weight[ki] * q.point.weight[kj] * block);
     }
 }
 
 /// s_p s_q B_p^T (k (K B_q + D V_q) + d D B_q) for one pair of sides.
-void add_pair_block(const Side& p, const Side& q, const SampleForce& s, double k_scale, double d_scale, int nodal_size, dynamics::BorderedMatrix& A) {
+void add_pair_block(const Side& p, const Side& q, const SampleForce& s, double k_scale, double d_scale,
+                    int nodal_size, dynamics::BorderedMatrix& A) {
   const double sign = p.sign * q.sign;
   const Mat3 C = sign * (k_scale * s.K + d_scale * s.D);
   if (q.is_nodes()) {
@@ -77,15 +84,16 @@ void add_geometric(const Side& p, double k_scale, int nodal_size, dynamics::Bord
 
 }  // namespace
 
-void add_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale, int nodal_size,
-                        dynamics::BorderedMatrix& A) {
+void add_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale,
+                        int nodal_size, dynamics::BorderedMatrix& A) {
   for (const Side* p : {&a, &b}) {
     for (const Side* q : {&a, &b}) add_pair_block(*p, *q, s, k_scale, d_scale, nodal_size, A);
     add_geometric(*p, k_scale, nodal_size, A);
   }
 }
 
-void apply_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale, const VecX& x, VecX& y) {
+void apply_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale,
+                          const VecX& x, VecX& y) {
   Vec3 dx = Vec3::Zero(), dv = Vec3::Zero();  // of x_rel by u-directions, and of v_rel by the turning arms
   for (const Side* q : {&a, &b}) {
     if (q->is_nodes()) {

@@ -19,7 +19,8 @@ std::atomic<long>& counter(std::string_view name) {
   Table& t = table();
   const std::lock_guard lock(t.mutex);
   auto it = t.values.find(name);
-  if (it == t.values.end()) it = t.values.emplace(std::string(name), std::make_unique<std::atomic<long>>(0)).first;
+  if (it == t.values.end())
+    it = t.values.emplace(std::string(name), std::make_unique<std::atomic<long>>(0)).first;
   return *it->second;
 }
 

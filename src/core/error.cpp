@@ -37,7 +37,8 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   std::size_t best_distance = std::max<std::size_t>(1, name.size() / 2) + 1;
   for (const auto& candidate : candidates) {
     std::size_t distance = edit_distance(name, candidate);
-    if (!name.empty() && (candidate.starts_with(name) || name.starts_with(candidate))) distance = std::min<std::size_t>(distance, 1);
+    if (!name.empty() && (candidate.starts_with(name) || name.starts_with(candidate)))
+      distance = std::min<std::size_t>(distance, 1);
     if (distance < best_distance) {
       best_distance = distance;
       best = candidate;
@@ -47,7 +48,8 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates) {
-  if (const std::string near = nearest_name(name, candidates); !near.empty()) return fmt::format(" (did you mean \"{}\"?)", near);
+  if (const std::string near = nearest_name(name, candidates); !near.empty())
+    return fmt::format(" (did you mean \"{}\"?)", near);
   if (candidates.empty()) return "";
   return fmt::format(" (known: {})", fmt::join(candidates, ", "));
 }

@@ -16,7 +16,8 @@ void prefer_huge_pages([[maybe_unused]] const void* memory, [[maybe_unused]] std
   if (first >= last) return;
   void* begin = reinterpret_cast<void*>(first);
   ::madvise(begin, last - first, MADV_HUGEPAGE);  // for pages that are not there yet
-  constexpr int kCollapse = 25;  // MADV_COLLAPSE of Linux 6.1, which C libraries name later; older kernels refuse
+  // MADV_COLLAPSE of Linux 6.1, which C libraries name later; older kernels refuse
+  constexpr int kCollapse = 25;
   ::madvise(begin, last - first, kCollapse);  // for those that are
 #endif
 }

@@ -22,8 +22,9 @@ Mat3 cofactor(const Mat3& F) {
 
 /// Newton's method on X^T X = I from X0 = F, scaled after Higham (1986), "Computing the polar decomposition":
 ///   X <- (g X + X^-T / g) / 2,   g^2 = |X^-1|_F / |X|_F.
-/// Each singular value s of X goes to (g s + 1/(g s))/2 while the singular vectors stay, so the limit is R of F = R S.
-/// Quadratic: e <- e^2/2, so a step below 1e-8 means that the iterate it led to is orthogonal to rounding.
+/// Each singular value s of X goes to (g s + 1/(g s))/2 while the singular vectors stay, so the limit is R of
+/// F = R S. Quadratic: e <- e^2/2, so a step below 1e-8 means that the iterate it led to is orthogonal to
+/// rounding.
 std::optional<Mat3> newton_rotation(const Mat3& F) {
   constexpr int kMaxIterations = 12;
   constexpr double kStepSquared = 1e-16;
@@ -40,15 +41,15 @@ std::optional<Mat3> newton_rotation(const Mat3& F) {
   return std::nullopt;
 }
 
-/// The cofactors lose digits as (largest / smallest singular value)^2; within these bounds that is harmless, and every
-/// element of a mesh in ordinary use is within them.  False for NaN.
+/// The cofactors lose digits as (largest / smallest singular value)^2; within these bounds that is harmless,
+/// and every element of a mesh in ordinary use is within them.  False for NaN.
 bool well_conditioned(const Mat3& F) {
   constexpr double kSmallestDet = 0.05, kLargestNormSquared = 30.0;
   return F.squaredNorm() < kLargestNormSquared && F.determinant() > kSmallestDet;
 }
 
-/// One-sided Jacobi (Hestenes): turns pairs of columns of B = F V until all are orthogonal.  Works on F itself, never on F^T F,
-/// so that small singular values keep their digits.
+/// One-sided Jacobi (Hestenes): turns pairs of columns of B = F V until all are orthogonal.  Works on F
+/// itself, never on F^T F, so that small singular values keep their digits.
 void orthogonalise_columns(Mat3& B, Mat3& V) {
   constexpr int kMaxSweeps = 30;  // quadratic: 4 to 6 are usual
   constexpr double kRelative = 4 * std::numeric_limits<double>::epsilon(), kAbsolute = 1e-80;
@@ -85,7 +86,8 @@ void sort_columns(Mat3& B, Mat3& V) {
 
 }  // namespace
 
-// U is completed as (u0, u1, u0 x u1), hence proper, and the sign of the smallest singular value follows: sigma2 = u2 . (F v2).
+// U is completed as (u0, u1, u0 x u1), hence proper, and the sign of the smallest singular value follows:
+// sigma2 = u2 . (F v2).
 SignedSvd signed_svd(const Mat3& F) {
   const double scale = F.cwiseAbs().maxCoeff();
   if (!F.allFinite()) {
@@ -102,7 +104,8 @@ SignedSvd signed_svd(const Mat3& F) {
   const Vec3 rest = B.col(1) - u0 * u0.dot(B.col(1));
   const Vec3 u1 = rest.norm() > kRankOne ? rest.normalized() : u0.unitOrthogonal();
   const Vec3 u2 = u0.cross(u1);
-  const double s0 = B.col(0).norm(), s1 = std::min(B.col(1).norm(), s0), s2 = std::clamp(u2.dot(B.col(2)), -s1, s1);
+  const double s0 = B.col(0).norm(), s1 = std::min(B.col(1).norm(), s0),
+               s2 = std::clamp(u2.dot(B.col(2)), -s1, s1);
   SignedSvd out;
   out.U << u0, u1, u2;
   out.sigma = scale * Vec3(s0, s1, s2);

@@ -20,9 +20,10 @@ void pause() {
 #endif
 }
 
-// One word, `ticket_`, holds the loop's number (24 bits), its tasks and the next of them (20 bits each).  A thread that takes a task swaps the word
-// for its successor: when that succeeds, the loop was open all the while between the two looks at the word, and with it what was read of the loop
-// in between.  So the caller need not wait for threads that slept through the loop, only for the tasks.
+// One word, `ticket_`, holds the loop's number (24 bits), its tasks and the next of them (20 bits each).  A
+// thread that takes a task swaps the word for its successor: when that succeeds, the loop was open all the
+// while between the two looks at the word, and with it what was read of the loop in between.  So the caller
+// need not wait for threads that slept through the loop, only for the tasks.
 class Pool {
  public:
   ~Pool() { stop(); }

@@ -8,22 +8,28 @@ namespace palpate::device {
 namespace {
 
 /// How far along a segment one is: s in [0, 1] and its first two derivatives by time.
-struct Blend { double s = 0.0, s_dot = 0.0, s_ddot = 0.0; };
+struct Blend {
+  double s = 0.0, s_dot = 0.0, s_ddot = 0.0;
+};
 
-// x = (t - t0)/T.  The quintic with s(0) = 0, s(1) = 1 and s', s'' zero at both ends minimises the integral of the squared jerk
-// (Flash and Hogan 1985): s = 10 x^3 - 15 x^4 + 6 x^5.  Resting at each keyframe, it joins the next segment with C2.
+// x = (t - t0)/T.  The quintic with s(0) = 0, s(1) = 1 and s', s'' zero at both ends minimises the integral
+// of the squared jerk (Flash and Hogan 1985): s = 10 x^3 - 15 x^4 + 6 x^5.  Resting at each keyframe, it
+// joins the next segment with C2.
 Blend minimum_jerk(double x, double T) {
   const double y = 1.0 - x;
-  return {x * x * x * (10.0 - 15.0 * x + 6.0 * x * x), 30.0 * x * x * y * y / T, 60.0 * x * y * (1.0 - 2.0 * x) / (T * T)};
+  return {x * x * x * (10.0 - 15.0 * x + 6.0 * x * x), 30.0 * x * x * y * y / T,
+          60.0 * x * y * (1.0 - 2.0 * x) / (T * T)};
 }
 Blend linear(double x, double T) { return {x, 1.0 / T, 0.0}; }
-Blend step(double, double) { return {}; }  // stays until the next keyframe's own time, where the next segment begins
+// stays until the next keyframe's own time, where the next segment begins
+Blend step(double, double) { return {}; }
 
 using MakeBlend = Blend (*)(double x, double T);
 const Registry<MakeBlend>& blend_registry() {
-  static const Registry<MakeBlend> registry = {{"minimum_jerk", "quintic, at rest at each keyframe", 0, minimum_jerk},
-                                               {"linear", "constant velocity", 0, linear},
-                                               {"step", "jumps at the keyframe's time", 0, step}};
+  static const Registry<MakeBlend> registry = {
+      {"minimum_jerk", "quintic, at rest at each keyframe", 0, minimum_jerk},
+      {"linear", "constant velocity", 0, linear},
+      {"step", "jumps at the keyframe's time", 0, step}};
   return registry;
 }
 
@@ -37,17 +43,20 @@ HandleSample at_rest(const KeyframeSpec& key) {
 
 }  // namespace
 
-// With d the rotation vector that carries the first orientation to the second (world axes), R(t) = exp(s d) R0.  The axis d stands still, so
-// the right (and left) Jacobian of SO(3) at s d maps d to itself: omega = J(s d) (s' d) = s' d, and alpha = s'' d.  No approximation.
+// With d the rotation vector that carries the first orientation to the second (world axes), R(t) = exp(s d)
+// R0.  The axis d stands still, so the right (and left) Jacobian of SO(3) at s d maps d to itself: omega =
+// J(s d) (s' d) = s' d, and alpha = s'' d.  No approximation.
 HandleSample sample_keyframes(const std::vector<KeyframeSpec>& keyframes, double t) {
   if (keyframes.empty()) fail("keyframes: the path is empty; give at least one keyframe");
   if (!(t >= keyframes.front().time_s)) return at_rest(keyframes.front());
   if (t >= keyframes.back().time_s) return at_rest(keyframes.back());
-  const auto to = std::upper_bound(keyframes.begin(), keyframes.end(), t, [](double time, const KeyframeSpec& key) { return time < key.time_s; });
+  const auto to = std::upper_bound(keyframes.begin(), keyframes.end(), t,
+                                   [](double time, const KeyframeSpec& key) { return time < key.time_s; });
   const auto from = to - 1;
 
   const double T = to->time_s - from->time_s;
-  const Blend blend = find(blend_registry(), to->interpolation, "interpolation").make((t - from->time_s) / T, T);
+  const Blend blend =
+      find(blend_registry(), to->interpolation, "interpolation").make((t - from->time_s) / T, T);
   const Pose start = pose_of(*from);
   const Vec6 d = pose_difference(start, pose_of(*to));
   HandleSample sample;
@@ -59,24 +68,31 @@ HandleSample sample_keyframes(const std::vector<KeyframeSpec>& keyframes, double
 }
 
 void check_keyframes(const std::vector<KeyframeSpec>& keyframes, const std::string& where) {
-  if (keyframes.empty()) fail("{}: no keyframes; give at least one (one alone holds the handle still)", where);
+  if (keyframes.empty())
+    fail("{}: no keyframes; give at least one (one alone holds the handle still)", where);
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     const KeyframeSpec& key = keyframes[i];
     if (!std::isfinite(key.time_s) || !key.position_m.allFinite() || !key.rotation_vector_rad.allFinite())
       fail("{}: keyframes[{}]: time, position and rotation must be finite numbers", where, i);
     const auto known = names(blend_registry());
     if (std::find(known.begin(), known.end(), key.interpolation) == known.end())
-      fail("{}: keyframes[{}]: unknown interpolation \"{}\"{}", where, i, key.interpolation, suggestion(key.interpolation, known));
+      fail("{}: keyframes[{}]: unknown interpolation \"{}\"{}", where, i, key.interpolation,
+           suggestion(key.interpolation, known));
     if (i == 0) continue;
     const KeyframeSpec& before = keyframes[i - 1];
     if (!(key.time_s > before.time_s))
-      fail("{}: keyframes[{}]: time_s = {} must be greater than the one before ({}); for a jump use interpolation = \"step\"", where, i,
-           key.time_s, before.time_s);
-    // exp is a contraction from rotation vectors to rotations, so a difference of at most pi can never hide a longer way round.
+      fail(
+          "{}: keyframes[{}]: time_s = {} must be greater than the one before ({}); for a jump use "
+          "interpolation = \"step\"",
+          where, i, key.time_s, before.time_s);
+    // exp is a contraction from rotation vectors to rotations, so a difference of at most pi can never hide a
+    // longer way round.
     const double turn = (key.rotation_vector_rad - before.rotation_vector_rad).norm();
     if (turn > std::numbers::pi * (1.0 + 1e-12))
-      fail("{}: keyframes[{}]: rotation_vector_rad is {:.6g} rad from the one before; more than half a turn is ambiguous, put a keyframe between",
-           where, i, turn);
+      fail(
+          "{}: keyframes[{}]: rotation_vector_rad is {:.6g} rad from the one before; more than half a turn "
+          "is ambiguous, put a keyframe between",
+          where, i, turn);
   }
 }
 

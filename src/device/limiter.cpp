@@ -17,8 +17,8 @@ double smoothstep(double x) {
   return x * x * (3.0 - 2.0 * x);
 }
 
-// With x = |v|/max, |v| becomes max x / (1 + x^6)^(1/6): smooth everywhere (even power), monotone, below max, and off by
-// 1 - (1 + 2^-6)^(-1/6) = 0.26 % at half the maximum (tanh itself would be off by 7.6 % there).
+// With x = |v|/max, |v| becomes max x / (1 + x^6)^(1/6): smooth everywhere (even power), monotone, below max,
+// and off by 1 - (1 + 2^-6)^(-1/6) = 0.26 % at half the maximum (tanh itself would be off by 7.6 % there).
 Vec3 saturate(const Vec3& v, double max) {
   const double norm = v.stableNorm();
   const double x = norm / max;
@@ -42,15 +42,24 @@ Vec3 towards(const Vec3& from, const Vec3& to, double reach) {
 
 void check_slew(double slew, double max, const char* what) {
   const double least = kSteepest * max / kFallTime;
-  if (!(slew >= least)) fail("device: {} = {} is too small to fall from {} to zero within 20 ms; use at least {}", what, slew, max, least);
+  if (!(slew >= least))
+    fail("device: {} = {} is too small to fall from {} to zero within 20 ms; use at least {}", what, slew,
+         max, least);
 }
 
 }  // namespace
 
-WrenchLimiter::WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s, double max_force_slew_n_s, double max_torque_slew_n_m_s)
-    : max_force_(max_force_n), max_torque_(max_torque_n_m), ramp_(ramp_s), force_slew_(max_force_slew_n_s), torque_slew_(max_torque_slew_n_m_s) {
-  if (!(max_force_ > 0.0) || !std::isfinite(max_force_)) fail("device: max_force_n = {} must be positive", max_force_);
-  if (!(max_torque_ > 0.0) || !std::isfinite(max_torque_)) fail("device: max_torque_n_m = {} must be positive", max_torque_);
+WrenchLimiter::WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s,
+                             double max_force_slew_n_s, double max_torque_slew_n_m_s)
+    : max_force_(max_force_n),
+      max_torque_(max_torque_n_m),
+      ramp_(ramp_s),
+      force_slew_(max_force_slew_n_s),
+      torque_slew_(max_torque_slew_n_m_s) {
+  if (!(max_force_ > 0.0) || !std::isfinite(max_force_))
+    fail("device: max_force_n = {} must be positive", max_force_);
+  if (!(max_torque_ > 0.0) || !std::isfinite(max_torque_))
+    fail("device: max_torque_n_m = {} must be positive", max_torque_);
   if (!(ramp_ >= 0.0) || !std::isfinite(ramp_)) fail("device: ramp_s = {} must not be negative", ramp_);
   check_slew(force_slew_, max_force_, "max_force_slew_n_s");
   check_slew(torque_slew_, max_torque_, "max_torque_slew_n_m_s");
@@ -77,8 +86,10 @@ Wrench WrenchLimiter::follow(double t, double dt, const Wrench& wanted) {
   last_valid_ = t;
   if (wanted.force.stableNorm() > max_force_ || wanted.moment.stableNorm() > max_torque_) ++limited_;
   const double ramp = ramp_ > 0.0 ? smoothstep((t - start_) / ramp_) : 1.0;
-  held_.force = inside(towards(last_.force, ramp * saturate(wanted.force, max_force_), force_slew_ * dt), max_force_);
-  held_.moment = inside(towards(last_.moment, ramp * saturate(wanted.moment, max_torque_), torque_slew_ * dt), max_torque_);
+  held_.force =
+      inside(towards(last_.force, ramp * saturate(wanted.force, max_force_), force_slew_ * dt), max_force_);
+  held_.moment = inside(towards(last_.moment, ramp * saturate(wanted.moment, max_torque_), torque_slew_ * dt),
+                        max_torque_);
   return held_;
 }
 

@@ -6,7 +6,9 @@ namespace {
 /// A hand that follows keyframes, whatever it feels.
 class ScriptHandle : public Handle {
  public:
-  explicit ScriptHandle(const DeviceSpec& spec) : keyframes_(spec.keyframes) { check_keyframes(keyframes_, "device"); }
+  explicit ScriptHandle(const DeviceSpec& spec) : keyframes_(spec.keyframes) {
+    check_keyframes(keyframes_, "device");
+  }
   HandleSample sample(double t) override { return sample_keyframes(keyframes_, t); }
 
  private:
@@ -17,11 +19,16 @@ class ScriptHandle : public Handle {
 
 const Registry<MakeHandle>& handle_registry() {
   static const Registry<MakeHandle> registry = {
-      {"script", "follows the keyframes of the scene", 0, [](const DeviceSpec& spec) -> std::unique_ptr<Handle> { return std::make_unique<ScriptHandle>(spec); }},
+      {"script", "follows the keyframes of the scene", 0,
+       [](const DeviceSpec& spec) -> std::unique_ptr<Handle> {
+         return std::make_unique<ScriptHandle>(spec);
+       }},
   };
   return registry;
 }
 
-std::unique_ptr<Handle> make_handle(const DeviceSpec& spec) { return find(handle_registry(), spec.type, "device type").make(spec); }
+std::unique_ptr<Handle> make_handle(const DeviceSpec& spec) {
+  return find(handle_registry(), spec.type, "device type").make(spec);
+}
 
 }  // namespace palpate::device

@@ -2,7 +2,8 @@
 
 namespace palpate::dynamics {
 
-void carry(const RigidMotion& frame, const Twist& acceleration, const std::vector<int>& dofs, const Points& local, VecX& x, VecX& v, VecX& a) {
+void carry(const RigidMotion& frame, const Twist& acceleration, const std::vector<int>& dofs,
+           const Points& local, VecX& x, VecX& v, VecX& a) {
   const Mat3 R = frame.pose.rotation.toRotationMatrix();
   const Vec3& w = frame.twist.angular;
   x.resize(local.cols());

@@ -4,6 +4,8 @@
 
 namespace palpate::dynamics {
 
-void ForceTerm::store_tangent(const StateView&, double, double, BorderedMatrix&) { PALPATE_CHECK(false, "term \"{}\" names a block whose rows it stores, and stores none", name()); }
+void ForceTerm::store_tangent(const StateView&, double, double, BorderedMatrix&) {
+  PALPATE_CHECK(false, "term \"{}\" names a block whose rows it stores, and stores none", name());
+}
 
 }  // namespace palpate::dynamics

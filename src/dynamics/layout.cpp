@@ -3,7 +3,8 @@
 namespace palpate::dynamics {
 namespace {
 
-/// Quaternion rate with world angular velocity w: q' = 1/2 (0, w) q (Shuster 1993).  Left inverse: (0, w) = 2 q' q* / |q|^2.
+/// Quaternion rate with world angular velocity w: q' = 1/2 (0, w) q (Shuster 1993).  Left inverse: (0, w) = 2
+/// q' q* / |q|^2.
 class FreeBodyKinematics final : public BlockKinematics {
  public:
   void q_dot(const ConstSegment& q, const ConstSegment& u, Segment out) const override {

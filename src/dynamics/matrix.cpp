@@ -24,33 +24,40 @@ int BlockSparse::slot(int i, int j) const {
 }
 
 void BlockSparse::set_zero(int first_row, int rows) {
-  std::fill(block(row_start_[static_cast<std::size_t>(first_row)]), block(row_start_[static_cast<std::size_t>(first_row + rows)]), 0.0);
+  std::fill(block(row_start_[static_cast<std::size_t>(first_row)]),
+            block(row_start_[static_cast<std::size_t>(first_row + rows)]), 0.0);
 }
 
 void BlockSparse::multiply_add(const double* x, double* y) const {
   for (int i = 0; i < block_rows(); ++i) {
     Vec3 sum = Vec3::Zero();
-    for (int s = row_start_[static_cast<std::size_t>(i)]; s < row_start_[static_cast<std::size_t>(i) + 1]; ++s)
-      sum += Eigen::Map<const Block3>(block(s)) * Eigen::Map<const Vec3>(x + 3 * columns_[static_cast<std::size_t>(s)]);
+    for (int s = row_start_[static_cast<std::size_t>(i)]; s < row_start_[static_cast<std::size_t>(i) + 1];
+         ++s)
+      sum += Eigen::Map<const Block3>(block(s)) *
+             Eigen::Map<const Vec3>(x + 3 * columns_[static_cast<std::size_t>(s)]);
     Eigen::Map<Vec3>(y + 3 * i) += sum;
   }
 }
 
 void BlockSparse::multiply_transposed_add(const double* x, double* y) const {
   for (int i = 0; i < block_rows(); ++i)
-    for (int s = row_start_[static_cast<std::size_t>(i)]; s < row_start_[static_cast<std::size_t>(i) + 1]; ++s)
-      Eigen::Map<Vec3>(y + 3 * columns_[static_cast<std::size_t>(s)]) += Eigen::Map<const Block3>(block(s)).transpose() * Eigen::Map<const Vec3>(x + 3 * i);
+    for (int s = row_start_[static_cast<std::size_t>(i)]; s < row_start_[static_cast<std::size_t>(i) + 1];
+         ++s)
+      Eigen::Map<Vec3>(y + 3 * columns_[static_cast<std::size_t>(s)]) +=
+          Eigen::Map<const Block3>(block(s)).transpose() * Eigen::Map<const Vec3>(x + 3 * i);
 }
 
 int PatternBuilder::first_node(int block_id) const {
   if (!layout_) return 0;
   const Block* block = layout_->find(block_id);
-  PALPATE_CHECK(block && block->kind == BlockKind::kNodes, "block {} is no node block of this layout", block_id);
+  PALPATE_CHECK(block && block->kind == BlockKind::kNodes, "block {} is no node block of this layout",
+                block_id);
   return block->u_offset / 3;
 }
 
 void PatternBuilder::add_pair(int i, int j) {
-  PALPATE_CHECK(i >= 0 && j >= 0 && i < node_count_ && j < node_count_, "pair ({}, {}) of {} nodes", i, j, node_count_);
+  PALPATE_CHECK(i >= 0 && j >= 0 && i < node_count_ && j < node_count_, "pair ({}, {}) of {} nodes", i, j,
+                node_count_);
   pairs_.emplace_back(i, j);
   pairs_.emplace_back(j, i);
 }
@@ -122,8 +129,10 @@ MatX BorderedMatrix::to_dense() const {
   const Eigen::Index n = nodal_size(), m = border_size();
   MatX dense = MatX::Zero(n + m, n + m);
   for (int i = 0; i < body.block_rows(); ++i)
-    for (int s = body.row_start()[static_cast<std::size_t>(i)]; s < body.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
-      dense.block<3, 3>(3 * i, 3 * body.columns()[static_cast<std::size_t>(s)]) = Eigen::Map<const Block3>(body.block(s));
+    for (int s = body.row_start()[static_cast<std::size_t>(i)];
+         s < body.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
+      dense.block<3, 3>(3 * i, 3 * body.columns()[static_cast<std::size_t>(s)]) =
+          Eigen::Map<const Block3>(body.block(s));
   if (m > 0) {
     dense.topRightCorner(n, m) = right;
     dense.bottomLeftCorner(m, n) = bottom;

@@ -9,7 +9,8 @@ namespace {
 
 class RigidInertia : public InertiaTerm {
  public:
-  RigidInertia(int block_id, double mass, const Vec3& inertia) : block_id_(block_id), mass_(mass), inertia_(inertia) {
+  RigidInertia(int block_id, double mass, const Vec3& inertia)
+      : block_id_(block_id), mass_(mass), inertia_(inertia) {
     check_inertia(mass, inertia, "rigid body");
   }
   int block_id() const override { return block_id_; }
@@ -22,7 +23,8 @@ class RigidInertia : public InertiaTerm {
   }
   void apply(const StateView& state, const VecX& x, VecX& y) const override {
     const auto& block = rigid_block_of(state, block_id_);
-    y.segment<3>(block.u_offset) += world_inertia(motion_of(state, block).pose, inertia_) * x.segment<3>(block.u_offset);
+    y.segment<3>(block.u_offset) +=
+        world_inertia(motion_of(state, block).pose, inertia_) * x.segment<3>(block.u_offset);
     y.segment<3>(block.u_offset + 3) += mass_ * x.segment<3>(block.u_offset + 3);
   }
 
@@ -34,11 +36,14 @@ class RigidInertia : public InertiaTerm {
 
 class Gyroscopic : public RigidForce {
  public:
-  Gyroscopic(int block_id, const Vec3& inertia, bool tangent) : RigidForce(block_id), inertia_(inertia), tangent_(tangent) {
+  Gyroscopic(int block_id, const Vec3& inertia, bool tangent)
+      : RigidForce(block_id), inertia_(inertia), tangent_(tangent) {
     check_inertia(1.0, inertia, "rigid body");
   }
   std::string_view name() const override { return "gyroscopic"; }
-  TermTraits traits() const override { return {.stiff = false, .symmetric_tangent = !tangent_, .has_tangent = tangent_}; }
+  TermTraits traits() const override {
+    return {.stiff = false, .symmetric_tangent = !tangent_, .has_tangent = tangent_};
+  }
   Vec6 force(double, const RigidMotion& m) const override {
     Vec6 f = Vec6::Zero();
     f.head<3>() = -m.twist.angular.cross(world_inertia(m.pose, inertia_) * m.twist.angular);
@@ -77,15 +82,18 @@ void check_inertia(double mass, const Vec3& inertia, const char* where) {
   if (!(mass > 0.0) || !std::isfinite(mass)) fail("{}: mass_kg = {} must be positive", where, mass);
   const double largest = inertia.maxCoeff();
   if (!inertia.allFinite() || !(inertia.minCoeff() > 0.0))
-    fail("{}: inertia_kg_m2 = [{}, {}, {}] must have three positive entries (or three zeros, for a solid sphere's)", where, inertia.x(), inertia.y(),
-         inertia.z());
+    fail(
+        "{}: inertia_kg_m2 = [{}, {}, {}] must have three positive entries (or three zeros, for a solid "
+        "sphere's)",
+        where, inertia.x(), inertia.y(), inertia.z());
   if (largest > (inertia.sum() - largest) * (1.0 + 1e-9))
-    fail("{}: inertia_kg_m2 = [{}, {}, {}] belongs to no body: each must be at most the sum of the other two", where, inertia.x(), inertia.y(),
-         inertia.z());
+    fail("{}: inertia_kg_m2 = [{}, {}, {}] belongs to no body: each must be at most the sum of the other two",
+         where, inertia.x(), inertia.y(), inertia.z());
 }
 
 BlockSpec rigid_block(std::string name, double length, double speed) {
-  PALPATE_CHECK(length > 0.0 && speed > 0.0, "scales of rigid block \"{}\": {} m, {} m/s", name, length, speed);
+  PALPATE_CHECK(length > 0.0 && speed > 0.0, "scales of rigid block \"{}\": {} m, {} m/s", name, length,
+                speed);
   return {std::move(name), BlockKind::kRigidBody, 7, 6, length, speed, free_body_kinematics()};
 }
 

@@ -27,12 +27,14 @@ void place_blocks(Layout& layout) {
 }
 
 void check_spec(const BlockSpec& spec, const ConstSegment& q, const ConstSegment& u) {
-  PALPATE_CHECK(spec.q_size == q.size() && spec.u_size == u.size(), "block \"{}\": q {} of {}, u {} of {}", spec.name, q.size(), spec.q_size,
-                u.size(), spec.u_size);
-  PALPATE_CHECK(spec.kinematics || spec.q_size == spec.u_size, "block \"{}\": q' = u needs equal sizes, got {} and {}", spec.name, spec.q_size,
-                spec.u_size);
-  PALPATE_CHECK(spec.kind != BlockKind::kNodes || (spec.u_size % 3 == 0 && !spec.kinematics), "node block \"{}\" has {} u", spec.name, spec.u_size);
-  PALPATE_CHECK(spec.q_scale > 0.0 && spec.u_scale > 0.0, "block \"{}\": scales {} and {} must be positive", spec.name, spec.q_scale, spec.u_scale);
+  PALPATE_CHECK(spec.q_size == q.size() && spec.u_size == u.size(), "block \"{}\": q {} of {}, u {} of {}",
+                spec.name, q.size(), spec.q_size, u.size(), spec.u_size);
+  PALPATE_CHECK(spec.kinematics || spec.q_size == spec.u_size,
+                "block \"{}\": q' = u needs equal sizes, got {} and {}", spec.name, spec.q_size, spec.u_size);
+  PALPATE_CHECK(spec.kind != BlockKind::kNodes || (spec.u_size % 3 == 0 && !spec.kinematics),
+                "node block \"{}\" has {} u", spec.name, spec.u_size);
+  PALPATE_CHECK(spec.q_scale > 0.0 && spec.u_scale > 0.0, "block \"{}\": scales {} and {} must be positive",
+                spec.name, spec.q_scale, spec.u_scale);
 }
 
 }  // namespace
@@ -47,7 +49,9 @@ int State::insert(const BlockSpec& spec, const ConstSegment& q, const ConstSegme
   check_spec(spec, q, u);
   const bool nodes = spec.kind == BlockKind::kNodes;
   auto place = layout_.blocks.end();
-  if (nodes) place = std::find_if(layout_.blocks.begin(), layout_.blocks.end(), [](const Block& b) { return b.kind != BlockKind::kNodes; });
+  if (nodes)
+    place = std::find_if(layout_.blocks.begin(), layout_.blocks.end(),
+                         [](const Block& b) { return b.kind != BlockKind::kNodes; });
   const auto q_at = place == layout_.blocks.end() ? layout_.q_size : place->q_offset;
   const auto u_at = place == layout_.blocks.end() ? layout_.u_size : place->u_offset;
   q_.insert(q_.begin() + q_at, q.data(), q.data() + q.size());
@@ -61,7 +65,8 @@ int State::insert(const BlockSpec& spec, const ConstSegment& q, const ConstSegme
 }
 
 BlockSpec State::extract(int id, VecX& q, VecX& u) {
-  const auto it = std::find_if(layout_.blocks.begin(), layout_.blocks.end(), [id](const Block& b) { return b.id == id; });
+  const auto it =
+      std::find_if(layout_.blocks.begin(), layout_.blocks.end(), [id](const Block& b) { return b.id == id; });
   PALPATE_CHECK(it != layout_.blocks.end(), "no block with id {}", id);
   const BlockSpec spec = *it;
   const auto q_first = q_.begin() + it->q_offset;
@@ -75,7 +80,9 @@ BlockSpec State::extract(int id, VecX& q, VecX& u) {
   return spec;
 }
 
-StateView State::view(double t, const double* q, const double* u) const { return make_view(layout_, t, q, u); }
+StateView State::view(double t, const double* q, const double* u) const {
+  return make_view(layout_, t, q, u);
+}
 
 StateView make_view(const Layout& layout, double t, const double* q, const double* u) {
   StateView view;

@@ -10,11 +10,14 @@ namespace palpate::dynamics {
 
 void System::add(std::shared_ptr<ForceTerm> term) { terms_.push_back(std::move(term)); }
 void System::add(std::shared_ptr<InertiaTerm> inertia) { inertias_.push_back(std::move(inertia)); }
-void System::add(std::shared_ptr<DrivenMotion> motion) { driven_.push_back({std::move(motion), -1, 0, {}, {}, {}, {}, {}, {}}); }
+void System::add(std::shared_ptr<DrivenMotion> motion) {
+  driven_.push_back({std::move(motion), -1, 0, {}, {}, {}, {}, {}, {}});
+}
 void System::set_mass_solver(std::unique_ptr<LinearSolver> solver) { mass_solver_ = std::move(solver); }
 
 bool System::symmetric() const {
-  return std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().symmetric_tangent; });
+  return std::all_of(terms_.begin(), terms_.end(),
+                     [](const auto& t) { return t->traits().symmetric_tangent; });
 }
 
 void System::set_definite(bool definite) {
@@ -43,7 +46,8 @@ void System::events(const StateView& state, double* g) const {
 
 std::pair<Finding, std::string> System::inspect(const StateView& state) const {
   for (const auto& term : terms_)
-    if (const Finding found = term->inspect(state); found.element >= 0) return {found, std::string(term->name())};
+    if (const Finding found = term->inspect(state); found.element >= 0)
+      return {found, std::string(term->name())};
   return {};
 }
 
@@ -57,7 +61,8 @@ void System::prepare(const StateView& state) {
       PALPATE_CHECK(dof >= 0 && dof < layout.nodal_size, "driven direction {} of {}", dof, layout.nodal_size);
       if (driven_mask_[static_cast<std::size_t>(dof)]) {
         const Vec3 at = state.position(dof / 3);
-        fail("the node at [{:g}, {:g}, {:g}] m is held or driven twice along {}: attachments overlap", at.x(), at.y(), at.z(), "xyz"[dof % 3]);
+        fail("the node at [{:g}, {:g}, {:g}] m is held or driven twice along {}: attachments overlap", at.x(),
+             at.y(), at.z(), "xyz"[dof % 3]);
       }
       driven_mask_[static_cast<std::size_t>(dof)] = 1;
       driven_dofs_.push_back(dof);
@@ -65,7 +70,8 @@ void System::prepare(const StateView& state) {
     d.master_offset = -1;
     if (d.motion->master_block() < 0) continue;
     const Block* master = layout.find(d.motion->master_block());
-    PALPATE_CHECK(master && master->kind != BlockKind::kNodes, "driven nodes follow block {}, which is no rigid block", d.motion->master_block());
+    PALPATE_CHECK(master && master->kind != BlockKind::kNodes,
+                  "driven nodes follow block {}, which is no rigid block", d.motion->master_block());
     d.master_offset = master->u_offset;
     d.master_size = master->u_size;
     any_master_ = true;
@@ -98,7 +104,8 @@ void System::prepare(const StateView& state) {
   } else {
     PALPATE_CHECK(mass_solver_, "a consistent mass needs a mass solver");
     const SolveStatus status = mass_solver_->factor(mass_);
-    PALPATE_CHECK(status == SolveStatus::kOk, "the mass matrix has no factor (status {})", static_cast<int>(status));
+    PALPATE_CHECK(status == SolveStatus::kOk, "the mass matrix has no factor (status {})",
+                  static_cast<int>(status));
   }
 }
 
@@ -113,7 +120,8 @@ void System::acceleration(const StateView& state, VecX& a) {
   acceleration_of_force(state, force_scratch_, a);
 }
 
-// With a = P a_free + a_known (given accelerations; G a_master + gamma under a master) and T = d a / d (a_free, a_master):
+// With a = P a_free + a_known (given accelerations; G a_master + gamma under a master) and T = d a / d
+// (a_free, a_master):
 //   T^T M T (a_free, a_master) = T^T (f - M a_known).
 void System::acceleration_of_force(const StateView& state, VecX& f, VecX& a) {
   const Layout& layout = *state.layout;
@@ -121,7 +129,8 @@ void System::acceleration_of_force(const StateView& state, VecX& f, VecX& a) {
   evaluate_driven(state);
   known_.setZero(layout.u_size);
   for (const Driven& d : driven_)
-    for (std::size_t i = 0; i < d.motion->dofs().size(); ++i) known_[d.motion->dofs()[i]] = d.a[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < d.motion->dofs().size(); ++i)
+      known_[d.motion->dofs()[i]] = d.a[static_cast<Eigen::Index>(i)];
   if (!nodal_mass_diagonal_ || any_master_) {
     scratch_.setZero(layout.u_size);
     apply_mass(state, known_, scratch_);
@@ -174,10 +183,12 @@ void System::solve_mass(const StateView& state, VecX& r, VecX& a) {
   }
   SolveStatus status = mass_solver_->factor(mass_);
   if (status == SolveStatus::kOk) status = mass_solver_->solve(r, a);
-  PALPATE_CHECK(status == SolveStatus::kOk, "the mass matrix has no factor (status {})", static_cast<int>(status));
+  PALPATE_CHECK(status == SolveStatus::kOk, "the mass matrix has no factor (status {})",
+                static_cast<int>(status));
 }
 
-void System::balanced_step(const StateView& state, const VecX& shift, double m_scale, double d_scale, double k_scale, VecX& f, BalancedMatrix& A) {
+void System::balanced_step(const StateView& state, const VecX& shift, double m_scale, double d_scale,
+                           double k_scale, VecX& f, BalancedMatrix& A) {
   f.setZero(state.layout->u_size);
   A.scale = mass_scale_;
   A.diagonal = m_scale * nodal_mass_;
@@ -193,11 +204,16 @@ void System::step_left(const StateView& state, const VecX& shift, const VecX& ch
   for (int dof : driven_dofs_) r[dof] = 0.0;
 }
 
-/// k_scale K + d_scale D of what the filter lets pass.  Where a term writes the rows of a node block whole, that is the first that happens to them.
-void System::assemble_tangents(const StateView& state, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter) {
+/// k_scale K + d_scale D of what the filter lets pass.  Where a term writes the rows of a node block whole,
+/// that is the first that happens to them.
+void System::assemble_tangents(const StateView& state, double d_scale, double k_scale, BorderedMatrix& A,
+                               const TermFilter& filter) {
   const bool any = d_scale != 0.0 || k_scale != 0.0;
   term_is_in_.assign(terms_.size(), 0);
-  const auto is_left = [&](std::size_t i) { return any && !term_is_in_[i] && terms_[i]->traits().has_tangent && (!filter || filter(terms_[i]->traits())); };
+  const auto is_left = [&](std::size_t i) {
+    return any && !term_is_in_[i] && terms_[i]->traits().has_tangent &&
+           (!filter || filter(terms_[i]->traits()));
+  };
   for (const Block& block : state.layout->blocks) {
     if (block.kind != BlockKind::kNodes) continue;
     std::size_t i = 0;
@@ -214,7 +230,8 @@ void System::assemble_tangents(const StateView& state, double d_scale, double k_
     if (is_left(i)) terms_[i]->add_tangent(state, k_scale, d_scale, A);
 }
 
-void System::step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter) {
+void System::step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale,
+                         BorderedMatrix& A, const TermFilter& filter) {
   ensure_pattern(state, A);
   assemble_tangents(state, d_scale, k_scale, A, filter);
   A.positions = state.q.head(state.layout->nodal_size);  // node blocks come first, with q' = u

@@ -1,4 +1,5 @@
-/// Directions given from outside, by functions or by a master that carries them: what they take out of the equations of motion, and bring to their master's.
+/// Directions given from outside, by functions or by a master that carries them: what they take out of the
+/// equations of motion, and bring to their master's.
 #include "palpate/core/error.h"
 #include "palpate/dynamics/system.h"
 
@@ -22,15 +23,17 @@ void System::impose(const Layout& layout, double t, double* q, double* u) const 
   evaluate_driven(make_view(layout, t, q, u));
   for (const Driven& d : driven_) {
     const auto& dofs = d.motion->dofs();
-    for (std::size_t i = 0; i < dofs.size(); ++i) {  // node blocks come first with q' = u: one index serves both
+    // node blocks come first with q' = u: one index serves both
+    for (std::size_t i = 0; i < dofs.size(); ++i) {
       q[dofs[i]] = d.x[static_cast<Eigen::Index>(i)];
       u[dofs[i]] = d.v[static_cast<Eigen::Index>(i)];
     }
   }
 }
 
-// What carried nodes press on their master with, c = f - M u', turns with it.  It is taken with u' of the present state: a body that falls freely presses
-// with nothing, and of a light master the forces and moments c are in balance, which makes K symmetric.
+// What carried nodes press on their master with, c = f - M u', turns with it.  It is taken with u' of the
+// present state: a body that falls freely presses with nothing, and of a light master the forces and moments
+// c are in balance, which makes K symmetric.
 void System::evaluate_carried_stiffness(const StateView& state, const TermFilter& filter) {
   force(state, held_scratch_, filter);
   force_scratch_ = held_scratch_;
@@ -47,41 +50,53 @@ void System::evaluate_carried_stiffness(const StateView& state, const TermFilter
   }
 }
 
-void System::apply_carried_stiffness(const StateView& state, const VecX& x, VecX& y, const TermFilter& filter) {
+void System::apply_carried_stiffness(const StateView& state, const VecX& x, VecX& y,
+                                     const TermFilter& filter) {
   if (!any_master_) return;
   evaluate_carried_stiffness(state, filter);
   for (const Driven& d : driven_)
-    if (d.master_offset >= 0) y.segment(d.master_offset, d.master_size) += d.K * x.segment(d.master_offset, d.master_size);
+    if (d.master_offset >= 0)
+      y.segment(d.master_offset, d.master_size) += d.K * x.segment(d.master_offset, d.master_size);
 }
 
-// T^T A T with T = [P Ghat; 0 I]: the driven columns, carried by their master, add to its columns, and likewise the rows.
+// T^T A T with T = [P Ghat; 0 I]: the driven columns, carried by their master, add to its columns, and
+// likewise the rows.
 //     right' = right + B G,   corner' = corner + G^T right' + bottom G,   bottom' = bottom + (B^T G)^T,
-// over the rows of the carried directions alone.  B has a symmetric pattern: column j of nodes is read along row j.
+// over the rows of the carried directions alone.  B has a symmetric pattern: column j of nodes is read along
+// row j.
 void System::reduce_to_masters(const StateView& state, BorderedMatrix& A) const {
   using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   const auto each_carried = [&](auto&& visit) {  // (direction, first border column of its master, row of G)
     for (const Driven& d : driven_)
       for (std::size_t i = 0; d.master_offset >= 0 && i < d.motion->dofs().size(); ++i)
-        visit(d.motion->dofs()[i], d.master_offset - state.layout->nodal_size, d.G.row(static_cast<Eigen::Index>(i)));
+        visit(d.motion->dofs()[i], d.master_offset - state.layout->nodal_size,
+              d.G.row(static_cast<Eigen::Index>(i)));
   };
-  each_carried([&](int dof, int at, const auto& g) { A.corner.middleCols(at, g.size()) += A.bottom.col(dof) * g; });
+  each_carried(
+      [&](int dof, int at, const auto& g) { A.corner.middleCols(at, g.size()) += A.bottom.col(dof) * g; });
   each_carried([&](int dof, int at, const auto& g) {
     const int node = dof / 3, axis = dof % 3;
-    for (int s = A.body.row_start()[static_cast<std::size_t>(node)]; s < A.body.row_start()[static_cast<std::size_t>(node) + 1]; ++s) {
+    for (int s = A.body.row_start()[static_cast<std::size_t>(node)];
+         s < A.body.row_start()[static_cast<std::size_t>(node) + 1]; ++s) {
       const int other = A.body.columns()[static_cast<std::size_t>(s)];
       const Vec3 row = Eigen::Map<const RowMajor3>(A.body.block(s)).row(axis);
-      const Vec3 column = A.symmetric ? row : Vec3(Eigen::Map<const RowMajor3>(A.body.block(A.body.slot(other, node))).col(axis));
+      const Vec3 column =
+          A.symmetric ? row
+                      : Vec3(Eigen::Map<const RowMajor3>(A.body.block(A.body.slot(other, node))).col(axis));
       A.right.block(3 * other, at, 3, g.size()) += column * g;
       A.bottom.block(at, 3 * other, g.size(), 3) += g.transpose() * row.transpose();
     }
   });
-  each_carried([&](int dof, int at, const auto& g) { A.corner.middleRows(at, g.size()) += g.transpose() * A.right.row(dof); });
+  each_carried([&](int dof, int at, const auto& g) {
+    A.corner.middleRows(at, g.size()) += g.transpose() * A.right.row(dof);
+  });
 }
 
 void System::find_driven_slots(const BlockSparse& A) const {
   driven_mirrors_.clear();
   for (const HeldNode& d : driven_nodes_)
-    for (int s = A.row_start()[static_cast<std::size_t>(d.node)]; s < A.row_start()[static_cast<std::size_t>(d.node) + 1]; ++s)
+    for (int s = A.row_start()[static_cast<std::size_t>(d.node)];
+         s < A.row_start()[static_cast<std::size_t>(d.node) + 1]; ++s)
       driven_mirrors_.push_back(A.slot(A.columns()[static_cast<std::size_t>(s)], d.node));
   driven_pattern_ = A.pattern_version();
 }
@@ -90,7 +105,8 @@ void System::eliminate_driven(BorderedMatrix& A) const {
   if (driven_pattern_ != A.body.pattern_version()) find_driven_slots(A.body);
   std::size_t mirror = 0;
   for (const HeldNode& d : driven_nodes_) {
-    for (int s = A.body.row_start()[static_cast<std::size_t>(d.node)]; s < A.body.row_start()[static_cast<std::size_t>(d.node) + 1]; ++s, ++mirror) {
+    for (int s = A.body.row_start()[static_cast<std::size_t>(d.node)];
+         s < A.body.row_start()[static_cast<std::size_t>(d.node) + 1]; ++s, ++mirror) {
       double *block = A.body.block(s), *mirrored = A.body.block(driven_mirrors_[mirror]);
       for (int axis = 0; axis < 3; ++axis) {
         if (!d.axes[static_cast<std::size_t>(axis)]) continue;
@@ -114,7 +130,8 @@ void System::reduce(const StateView& state, VecX& r) const {
     for (const Driven& d : driven_) {
       if (d.master_offset < 0) continue;
       for (std::size_t i = 0; i < d.motion->dofs().size(); ++i)
-        r.segment(d.master_offset, d.master_size) += d.G.row(static_cast<Eigen::Index>(i)).transpose() * r[d.motion->dofs()[i]];
+        r.segment(d.master_offset, d.master_size) +=
+            d.G.row(static_cast<Eigen::Index>(i)).transpose() * r[d.motion->dofs()[i]];
     }
   }
   for (int dof : driven_dofs_) r[dof] = 0.0;
@@ -126,7 +143,8 @@ void System::expand(const StateView& state, VecX& x) const {
   evaluate_driven(state);
   for (const Driven& d : driven_)
     for (std::size_t i = 0; d.master_offset >= 0 && i < d.motion->dofs().size(); ++i)
-      x[d.motion->dofs()[i]] = d.G.row(static_cast<Eigen::Index>(i)).dot(x.segment(d.master_offset, d.master_size));
+      x[d.motion->dofs()[i]] =
+          d.G.row(static_cast<Eigen::Index>(i)).dot(x.segment(d.master_offset, d.master_size));
 }
 
 void System::reactions(const StateView& state, VecX& r) {

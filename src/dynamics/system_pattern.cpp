@@ -15,14 +15,16 @@ struct VersionHash {
 
 }  // namespace
 
-// Pairs of a term are kept from one of its versions to the next: where contact changes what it couples, the elements' pairs, which are most, are merged, not sorted anew.
+// Pairs of a term are kept from one of its versions to the next: where contact changes what it couples, the
+// elements' pairs, which are most, are merged, not sorted anew.
 void System::update_pattern(const StateView& state) {
   const Layout& layout = *state.layout;
   VersionHash key;
   key.add(layout.version);
   for (const auto& term : terms_) key.add(term->pattern_version());
   if (key.value == pattern_key_ && pattern_.block_rows() == layout.node_count()) return;
-  if (pairs_layout_ != layout.version || term_pairs_.size() != terms_.size() || pattern_.block_rows() != layout.node_count()) {
+  if (pairs_layout_ != layout.version || term_pairs_.size() != terms_.size() ||
+      pattern_.block_rows() != layout.node_count()) {
     term_pairs_.assign(terms_.size(), {});
     PatternBuilder builder(layout);
     for (const auto& inertia : inertias_) inertia->add_pattern(builder);
@@ -45,11 +47,15 @@ void System::update_pattern(const StateView& state) {
 }
 
 bool System::tangents_share_no_pair(const Layout& layout) const {
-  if (!std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().balanced; })) return false;
+  if (!std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().balanced; }))
+    return false;
   std::size_t pairs = 0;
   for (const TermPairs& kept : term_pairs_)
-    pairs += kept.pairs.size() - static_cast<std::size_t>(std::count_if(kept.pairs.begin(), kept.pairs.end(), [](const auto& pair) { return pair.first == pair.second; }));
-  return pairs == static_cast<std::size_t>(pattern_.slot_count() - layout.node_count());  // fewer in all: some are shared; more: a mass has some
+    pairs += kept.pairs.size() - static_cast<std::size_t>(std::count_if(
+                                     kept.pairs.begin(), kept.pairs.end(),
+                                     [](const auto& pair) { return pair.first == pair.second; }));
+  // fewer in all: some are shared; more: a mass has some
+  return pairs == static_cast<std::size_t>(pattern_.slot_count() - layout.node_count());
 }
 
 void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
@@ -64,8 +70,11 @@ void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
 
 bool System::balanced(const StateView& state) {
   const Layout& layout = *state.layout;
-  if (!nodal_mass_diagonal_ || layout.border_size() > 0 || layout.nodal_size == 0 || nodal_mass_.size() != layout.nodal_size) return false;
-  if (!std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().balanced; })) return false;
+  if (!nodal_mass_diagonal_ || layout.border_size() > 0 || layout.nodal_size == 0 ||
+      nodal_mass_.size() != layout.nodal_size)
+    return false;
+  if (!std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().balanced; }))
+    return false;
   update_pattern(state);
   return share_no_pair_;
 }

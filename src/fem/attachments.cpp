@@ -10,9 +10,11 @@ namespace palpate::fem {
 namespace {
 
 void check_dofs(const std::vector<int>& dofs, Eigen::Index values) {
-  PALPATE_CHECK(static_cast<Eigen::Index>(dofs.size()) == values, "{} directions and {} values", dofs.size(), values);
+  PALPATE_CHECK(static_cast<Eigen::Index>(dofs.size()) == values, "{} directions and {} values", dofs.size(),
+                values);
   PALPATE_CHECK(dofs.empty() || dofs.front() >= 0, "direction {}", dofs.front());
-  PALPATE_CHECK(std::adjacent_find(dofs.begin(), dofs.end(), std::greater_equal<>()) == dofs.end(), "directions must ascend, each once");
+  PALPATE_CHECK(std::adjacent_find(dofs.begin(), dofs.end(), std::greater_equal<>()) == dofs.end(),
+                "directions must ascend, each once");
 }
 
 class Fixed final : public dynamics::DrivenMotion {
@@ -33,7 +35,8 @@ class Fixed final : public dynamics::DrivenMotion {
 /// Points of a frame that moves along a path.
 class Driven final : public dynamics::DrivenMotion {
  public:
-  Driven(std::vector<int> dofs, Points local, Path path) : dofs_(std::move(dofs)), local_(std::move(local)), path_(std::move(path)) {}
+  Driven(std::vector<int> dofs, Points local, Path path)
+      : dofs_(std::move(dofs)), local_(std::move(local)), path_(std::move(path)) {}
   const std::vector<int>& dofs() const override { return dofs_; }
   void evaluate(const dynamics::StateView& state, VecX& x, VecX& v, VecX& a) const override {
     const PathPoint now = path_(state.time);
@@ -46,12 +49,16 @@ class Driven final : public dynamics::DrivenMotion {
   Path path_;
 };
 
-/// See make_carried.  Its geometric stiffness: under a turn e of the body, dr = e x r, and with the force f held the moment r x f changes by
-///     (e x r) x f = [f][r] e = (r f^T - (r . f) I) e,      K = -d(r x f)/de = (r . f) I - r f^T     (rotation against rotation alone).
-/// Summed over nodes, K - K^T is the cross matrix of the sum of r x f: it is symmetric where the moments are in balance.
+/// See make_carried.  Its geometric stiffness: under a turn e of the body, dr = e x r, and with the force f
+/// held the moment r x f changes by
+///     (e x r) x f = [f][r] e = (r f^T - (r . f) I) e,      K = -d(r x f)/de = (r . f) I - r f^T
+///     (rotation against rotation alone).
+/// Summed over nodes, K - K^T is the cross matrix of the sum of r x f: it is symmetric where the moments are
+/// in balance.
 class Carried final : public dynamics::DrivenMotion {
  public:
-  Carried(std::vector<int> dofs, Points local, int master) : dofs_(std::move(dofs)), local_(std::move(local)), master_(master) {}
+  Carried(std::vector<int> dofs, Points local, int master)
+      : dofs_(std::move(dofs)), local_(std::move(local)), master_(master) {}
   const std::vector<int>& dofs() const override { return dofs_; }
   int master_block() const override { return master_; }
   void evaluate(const dynamics::StateView& state, VecX& x, VecX& v, VecX& a) const override {
@@ -106,7 +113,8 @@ std::vector<int> nodes_in_sphere(const Points& placed, const Vec3& centre, doubl
 std::vector<int> dofs_of_nodes(const std::vector<int>& nodes, int first_node, const std::string& axes) {
   bool held[3] = {false, false, false};
   for (char c : axes) {
-    if (c < 'x' || c > 'z' || held[c - 'x']) fail("attachment: axes = \"{}\" must name each of x, y, z at most once, for example \"xz\"", axes);
+    if (c < 'x' || c > 'z' || held[c - 'x'])
+      fail("attachment: axes = \"{}\" must name each of x, y, z at most once, for example \"xz\"", axes);
     held[c - 'x'] = true;
   }
   if (axes.empty()) fail("attachment: axes = \"\" holds nothing; name at least one of x, y, z");
@@ -124,13 +132,15 @@ std::shared_ptr<dynamics::DrivenMotion> make_fixed(std::vector<int> dofs, VecX x
   return std::make_shared<Fixed>(std::move(dofs), std::move(x0));
 }
 
-std::shared_ptr<dynamics::DrivenMotion> make_driven(std::vector<int> dofs, Points local_points_per_dof, Path path) {
+std::shared_ptr<dynamics::DrivenMotion> make_driven(std::vector<int> dofs, Points local_points_per_dof,
+                                                    Path path) {
   check_dofs(dofs, local_points_per_dof.cols());
   PALPATE_CHECK(path, "driven nodes need a path");
   return std::make_shared<Driven>(std::move(dofs), std::move(local_points_per_dof), std::move(path));
 }
 
-std::shared_ptr<dynamics::DrivenMotion> make_carried(std::vector<int> dofs, Points local_points_per_dof, int master_block_id) {
+std::shared_ptr<dynamics::DrivenMotion> make_carried(std::vector<int> dofs, Points local_points_per_dof,
+                                                     int master_block_id) {
   check_dofs(dofs, local_points_per_dof.cols());
   PALPATE_CHECK(master_block_id >= 0, "carried nodes need a rigid block, not {}", master_block_id);
   PALPATE_CHECK(local_points_per_dof.allFinite(), "a carried node's position is not finite");

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "fem/revolved.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/mesh/generators.h"
-#include "fem/revolved.h"
 
 namespace palpate::fem {
 namespace {
@@ -22,7 +22,8 @@ TriMesh capsule_surface(double radius, double length) {
     for (int i = 0; i <= kCapRings; ++i) {
       const double latitude = 0.5 * pi * (cap < 0.0 ? i - kCapRings : i) / kCapRings;
       const bool pole = i == (cap < 0.0 ? 0 : kCapRings);
-      profile.emplace_back(pole ? 0.0 : radius * std::cos(latitude), 0.5 * cap * length + radius * std::sin(latitude));
+      profile.emplace_back(pole ? 0.0 : radius * std::cos(latitude),
+                           0.5 * cap * length + radius * std::sin(latitude));
     }
   return revolved(profile);
 }
@@ -31,8 +32,10 @@ TriMesh capsule_surface(double radius, double length) {
 ///   sphere     2/5 r^2
 ///   box        (b^2 + c^2)/12
 ///   cylinder   axis r^2/2, across (3 r^2 + L^2)/12
-///   capsule    a cylinder and two half spheres, in the ratio of their volumes.  The middle of mass of a half sphere is 3/8 r from its flat face and its
-///              moment across about it (2/5 - 9/64) r^2; carried to the capsule's middle, over L/2 + 3/8 r, both make 2/5 r^2 + L^2/4 + 3/8 L r a unit of mass.
+///   capsule    a cylinder and two half spheres, in the ratio of their volumes.  The middle of mass of a half
+///   sphere is 3/8 r from its flat face and its
+///              moment across about it (2/5 - 9/64) r^2; carried to the capsule's middle, over L/2 + 3/8 r,
+///              both make 2/5 r^2 + L^2/4 + 3/8 L r a unit of mass.
 Vec3 unit_moments(const BoneSpec& spec) {
   const double r = spec.radius_m, L = spec.length_m, r2 = r * r;
   if (spec.shape == "sphere") return Vec3::Constant(0.4 * r2);
@@ -42,15 +45,19 @@ Vec3 unit_moments(const BoneSpec& spec) {
   }
   const double across = (3.0 * r2 + L * L) / 12.0, along = r2 / 2.0;
   if (spec.shape == "cylinder") return {across, across, along};
-  const double rod = L / (L + 4.0 / 3.0 * r), caps = 1.0 - rod, both = rod * across + caps * (0.4 * r2 + L * L / 4.0 + 0.375 * L * r);
+  const double rod = L / (L + 4.0 / 3.0 * r), caps = 1.0 - rod,
+               both = rod * across + caps * (0.4 * r2 + L * L / 4.0 + 0.375 * L * r);
   return {both, both, rod * along + caps * 0.4 * r2};
 }
 
-bool known(const std::string& shape) { return shape == "sphere" || shape == "box" || shape == "cylinder" || shape == "capsule"; }
+bool known(const std::string& shape) {
+  return shape == "sphere" || shape == "box" || shape == "cylinder" || shape == "capsule";
+}
 
 void check_shape(const BoneSpec& spec) {
   if (spec.shape.empty() || known(spec.shape)) return;
-  fail("bone \"{}\": unknown shape \"{}\"{}", spec.name, spec.shape, suggestion(spec.shape, {"sphere", "box", "cylinder", "capsule"}));
+  fail("bone \"{}\": unknown shape \"{}\"{}", spec.name, spec.shape,
+       suggestion(spec.shape, {"sphere", "box", "cylinder", "capsule"}));
 }
 
 }  // namespace
@@ -66,7 +73,9 @@ double bone_volume(const BoneSpec& spec) {
 
 BoneInertia bone_inertia(const BoneSpec& spec) {
   const double volume = bone_volume(spec);
-  if (!spec.shape.empty() && !(volume > 0.0)) fail("bone \"{}\": shape = \"{}\" has a volume of {} m^3; its sizes must be positive", spec.name, spec.shape, volume);
+  if (!spec.shape.empty() && !(volume > 0.0))
+    fail("bone \"{}\": shape = \"{}\" has a volume of {} m^3; its sizes must be positive", spec.name,
+         spec.shape, volume);
   BoneInertia out{spec.mass_kg > 0.0 ? spec.mass_kg : spec.density_kg_m3 * volume, spec.inertia_kg_m2};
   if (out.principal.isZero(0.0) && !spec.shape.empty()) out.principal = out.mass * unit_moments(spec);
   dynamics::check_inertia(out.mass, out.principal, fmt::format("bone \"{}\"", spec.name).c_str());
@@ -86,7 +95,8 @@ TriMesh bone_surface(const BoneSpec& spec) {
   check_shape(spec);
   if (spec.shape == "sphere") return mesh::sphere(spec.radius_m, 8);
   if (spec.shape == "box") return mesh::box_surface(spec.size_m, {1, 1, 1});
-  if (spec.shape == "cylinder") return mesh::cylinder_surface(spec.radius_m, spec.length_m, 0.3 * spec.radius_m);
+  if (spec.shape == "cylinder")
+    return mesh::cylinder_surface(spec.radius_m, spec.length_m, 0.3 * spec.radius_m);
   return spec.shape == "capsule" ? capsule_surface(spec.radius_m, spec.length_m) : TriMesh{};
 }
 

@@ -11,7 +11,8 @@ inline bool in_box(const Vec3& p, const Vec3& low, const Vec3& high) {
 }
 
 inline std::string describe(const Vec3& low, const Vec3& high) {
-  return fmt::format("({}, {}, {}) to ({}, {}, {}) m", low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
+  return fmt::format("({}, {}, {}) to ({}, {}, {}) m", low.x(), low.y(), low.z(), high.x(), high.y(),
+                     high.z());
 }
 
 inline void check_box(const Vec3& low, const Vec3& high, const char* what) {

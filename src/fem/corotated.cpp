@@ -49,7 +49,8 @@ Mat3 rotation_coupling(Tangent tangent, const Mat3& F, const Mat3& R, const Lame
   const Mat3 B = 0.5 * (FRt + FRt.transpose());
   const double c = 2.0 * lame.mu - lame.lambda * (B.trace() - 3.0);
   const Mat3 A = B.trace() * Mat3::Identity() - B;  // G^-1: eigenvalues s_i + s_j >= 0
-  // The product of the two larger sums is at most (tr A / 2)^2, so this bounds the smallest from below, without eigenvalues.
+  // The product of the two larger sums is at most (tr A / 2)^2, so this bounds the smallest from below,
+  // without eigenvalues.
   const double half_trace = 0.5 * A.trace();
   const bool regular = A.determinant() > kSmallestSum * half_trace * half_trace;
   const bool exact = tangent == Tangent::kExact;
@@ -61,7 +62,8 @@ Mat3 rotation_coupling(Tangent tangent, const Mat3& F, const Mat3& R, const Lame
   return bounded_coupling(A, c, exact ? unbounded : lame.mu, clamped);
 }
 
-void add_elastic_blocks(const Mat3& gradients, const Mat3& R, const Mat3& C, const Lame& lame, double scale, ElementBlocks& K) {
+void add_elastic_blocks(const Mat3& gradients, const Mat3& R, const Mat3& C, const Lame& lame, double scale,
+                        ElementBlocks& K) {
   const Mat3 H = R * gradients.transpose();  // columns h_a
   const Mat3 gram = gradients * gradients.transpose();
   for (int a = 0; a < 3; ++a) {
@@ -92,7 +94,8 @@ Mat3 damping_stress(const Mat3& rate, const Lame& damping) {
   return sigma;
 }
 
-void add_damping_blocks(const Mat3& gradients, const Mat3& F, const Lame& damping, double scale, ElementBlocks& D) {
+void add_damping_blocks(const Mat3& gradients, const Mat3& F, const Lame& damping, double scale,
+                        ElementBlocks& D) {
   const Mat3 k = F * gradients.transpose();  // columns k_a
   const Mat3 gram = gradients * gradients.transpose();
   const Mat3 B2 = F * F.transpose();
@@ -105,14 +108,17 @@ void add_damping_blocks(const Mat3& gradients, const Mat3& F, const Lame& dampin
     }
 }
 
-void add_damping_position_blocks(const Mat3& gradients, const Mat3& F, const Mat3& F_dot, const Lame& damping, double scale, ElementBlocks& K) {
+void add_damping_position_blocks(const Mat3& gradients, const Mat3& F, const Mat3& F_dot, const Lame& damping,
+                                 double scale, ElementBlocks& K) {
   const Mat3 k = F * gradients.transpose(), l = F_dot * gradients.transpose();
   const Mat3 gram = gradients * gradients.transpose();
-  const Mat3 geometric = gradients * damping_stress(strain_rate(F, F_dot), damping) * gradients.transpose();  // g_a . Sigma g_b
+  // g_a . Sigma g_b
+  const Mat3 geometric = gradients * damping_stress(strain_rate(F, F_dot), damping) * gradients.transpose();
   const Mat3 FFdot = F * F_dot.transpose();
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) {
-      Mat3 block = damping.mu * (gram(a, b) * FFdot + k.col(b) * l.col(a).transpose()) + damping.lambda * k.col(a) * l.col(b).transpose();
+      Mat3 block = damping.mu * (gram(a, b) * FFdot + k.col(b) * l.col(a).transpose()) +
+                   damping.lambda * k.col(a) * l.col(b).transpose();
       block.diagonal().array() += geometric(a, b);
       K[static_cast<std::size_t>(3 * a + b)] += scale * block;
     }

@@ -16,8 +16,9 @@
 namespace palpate::fem {
 namespace {
 
-/// Elements in a chunk, at most and at least.  The blocks of a chunk then fit a second-level cache; smaller ones share more of their edges, but a mesh of some ten thousand elements
-/// shall give each of a few threads several.
+/// Elements in a chunk, at most and at least.  The blocks of a chunk then fit a second-level cache; smaller
+/// ones share more of their edges, but a mesh of some ten thousand elements shall give each of a few threads
+/// several.
 constexpr int kMostElements = 4096, kLeastElements = 1024, kChunksToShare = 8;
 int chunks_of(int elements) {
   const auto parts = [&](int size) { return (elements + size - 1) / size; };
@@ -28,10 +29,14 @@ constexpr std::size_t kLanes = ElementGroup::kLanes;
 using Corners = std::array<int, 4>;
 constexpr int kEdgeCorners[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
-std::uint64_t key_of(int i, int j) { return (static_cast<std::uint64_t>(i) << 32) | static_cast<std::uint32_t>(j); }
+std::uint64_t key_of(int i, int j) {
+  return (static_cast<std::uint64_t>(i) << 32) | static_cast<std::uint32_t>(j);
+}
 
-/// Cuts [begin, end) of `order` into `chunks` compact parts of nearly equal size: recursively, across the longest side of the box around the centroids.
-void bisect(const Points& centroids, std::vector<int>& order, int begin, int end, int chunks, std::vector<int>& starts) {
+/// Cuts [begin, end) of `order` into `chunks` compact parts of nearly equal size: recursively, across the
+/// longest side of the box around the centroids.
+void bisect(const Points& centroids, std::vector<int>& order, int begin, int end, int chunks,
+            std::vector<int>& starts) {
   if (chunks <= 1) {
     starts.push_back(end);
     return;
@@ -44,12 +49,14 @@ void bisect(const Points& centroids, std::vector<int>& order, int begin, int end
   bisect(centroids, order, middle, end, chunks - left, starts);
 }
 
-/// What is used in a chunk (nodes, or pairs of nodes), with own ones first, and the sums over chunks of what is late.
+/// What is used in a chunk (nodes, or pairs of nodes), with own ones first, and the sums over chunks of what
+/// is late.
 struct Uses {
-  std::vector<std::vector<std::uint64_t>> by_chunk;  ///< ascending, then rearranged: own ascending, late ascending
+  /// ascending, then rearranged: own ascending, late ascending
+  std::vector<std::vector<std::uint64_t>> by_chunk;
   std::vector<int> own;
   std::vector<int> first_late;
-  std::vector<std::uint64_t> late;                   ///< ascending, each once
+  std::vector<std::uint64_t> late;  ///< ascending, each once
   std::vector<int> start{0}, entries;
 
   explicit Uses(std::vector<std::vector<std::uint64_t>> used) : by_chunk(std::move(used)) {
@@ -68,12 +75,15 @@ struct Uses {
     for (auto& keys : by_chunk) {
       const auto middle = std::stable_partition(keys.begin(), keys.end(), [&](std::uint64_t key) {
         const auto it = std::lower_bound(late.begin(), late.end(), key);
-        return it == late.end() || *it != key || !std::exchange(met[static_cast<std::size_t>(it - late.begin())], 1);
+        return it == late.end() || *it != key ||
+               !std::exchange(met[static_cast<std::size_t>(it - late.begin())], 1);
       });
       own.push_back(static_cast<int>(middle - keys.begin()));
       first_late.push_back(place);
       for (auto it = middle; it != keys.end(); ++it)
-        contributions[static_cast<std::size_t>(std::lower_bound(late.begin(), late.end(), *it) - late.begin())].push_back(place++);
+        contributions[static_cast<std::size_t>(std::lower_bound(late.begin(), late.end(), *it) -
+                                               late.begin())]
+            .push_back(place++);
     }
     for (const auto& places : contributions) {
       entries.insert(entries.end(), places.begin(), places.end());
@@ -94,11 +104,14 @@ struct Uses {
 /// Corners of an element, ascending by node.
 Corners sorted_corners(const RestElements& elements, std::size_t e) {
   Corners corners{0, 1, 2, 3};
-  std::sort(corners.begin(), corners.end(), [&](int a, int b) { return elements.node[static_cast<std::size_t>(a)][e] < elements.node[static_cast<std::size_t>(b)][e]; });
+  std::sort(corners.begin(), corners.end(), [&](int a, int b) {
+    return elements.node[static_cast<std::size_t>(a)][e] < elements.node[static_cast<std::size_t>(b)][e];
+  });
   return corners;
 }
 
-/// A lane that only fills up: a unit tetrahedron at rest on four nodes behind those of the chunk, of no volume, so that it adds zeros there.
+/// A lane that only fills up: a unit tetrahedron at rest on four nodes behind those of the chunk, of no
+/// volume, so that it adds zeros there.
 void fill_up(ElementGroup& group, GroupEdges& edges, std::size_t lane, int chunk_nodes, int chunk_edges) {
   constexpr double kUnit[6] = {1.0, 0.0, 0.0, 1.0, 0.0, 1.0};
   for (int k = 0; k < 6; ++k) group.inverse_edges[k][lane] = kUnit[k];
@@ -107,7 +120,8 @@ void fill_up(ElementGroup& group, GroupEdges& edges, std::size_t lane, int chunk
   for (auto& edge : edges.edge) edge[lane] = static_cast<std::uint16_t>(chunk_edges);
 }
 
-/// T^-1 of the rest edges Dm = Q T, Q a rotation: T is then that of Dm^T Dm to rounding (Householder), and a triangle's inverse is good in each entry.
+/// T^-1 of the rest edges Dm = Q T, Q a rotation: T is then that of Dm^T Dm to rounding (Householder), and a
+/// triangle's inverse is good in each entry.
 Mat3 inverse_triangle(const Mat3& Dm) {
   const Eigen::HouseholderQR<Mat3> qr(Dm);
   Mat3 T = qr.matrixQR().triangularView<Eigen::Upper>();
@@ -119,7 +133,9 @@ Mat3 inverse_triangle(const Mat3& Dm) {
 
 }  // namespace
 
-ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, const std::vector<int>& material_of_element) : nodal_volume(elements.nodal_volume), element_count_(elements.count()) {
+ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements,
+                             const std::vector<int>& material_of_element)
+    : nodal_volume(elements.nodal_volume), element_count_(elements.count()) {
   Points centroids(3, element_count_);
   for (int e = 0; e < element_count_; ++e) {
     centroids.col(e).setZero();
@@ -129,21 +145,28 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, 
   std::iota(order.begin(), order.end(), 0);
   const int chunk_count = chunks_of(element_count_);
   bisect(centroids, order, 0, element_count_, chunk_count, starts);
-  const auto material = [&](int e) { return material_of_element.empty() ? 0 : material_of_element[static_cast<std::size_t>(e)]; };
+  const auto material = [&](int e) {
+    return material_of_element.empty() ? 0 : material_of_element[static_cast<std::size_t>(e)];
+  };
   for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
     mesh::order_by_place(centroids, order, starts[c], starts[c + 1]);
-    std::stable_sort(order.begin() + starts[c], order.begin() + starts[c + 1], [&](int a, int b) { return material(a) < material(b); });
+    std::stable_sort(order.begin() + starts[c], order.begin() + starts[c + 1],
+                     [&](int a, int b) { return material(a) < material(b); });
   }
 
-  const auto node = [&](int corner, int e) { return elements.node[static_cast<std::size_t>(corner)][static_cast<std::size_t>(e)]; };
-  std::vector<std::vector<std::uint64_t>> node_keys(static_cast<std::size_t>(chunk_count)), edge_keys(static_cast<std::size_t>(chunk_count));
+  const auto node = [&](int corner, int e) {
+    return elements.node[static_cast<std::size_t>(corner)][static_cast<std::size_t>(e)];
+  };
+  std::vector<std::vector<std::uint64_t>> node_keys(static_cast<std::size_t>(chunk_count)),
+      edge_keys(static_cast<std::size_t>(chunk_count));
   for (std::size_t c = 0; c < node_keys.size(); ++c)
     for (int k = starts[c]; k < starts[c + 1]; ++k) {
       const int e = order[static_cast<std::size_t>(k)];
       const Corners corners = sorted_corners(elements, static_cast<std::size_t>(e));
       for (int corner : corners) node_keys[c].push_back(static_cast<std::uint64_t>(node(corner, e)));
       for (const auto& [a, b] : kEdgeCorners)
-        edge_keys[c].push_back(key_of(node(corners[static_cast<std::size_t>(a)], e), node(corners[static_cast<std::size_t>(b)], e)));
+        edge_keys[c].push_back(key_of(node(corners[static_cast<std::size_t>(a)], e),
+                                      node(corners[static_cast<std::size_t>(b)], e)));
     }
   const Uses node_uses(std::move(node_keys)), edge_uses(std::move(edge_keys));
 
@@ -163,7 +186,8 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, 
     chunk.first_late_edge = edge_uses.first_late[c];
     for (std::uint64_t key : node_uses.by_chunk[c]) nodes.push_back(static_cast<int>(key));
     for (std::uint64_t key : edge_uses.by_chunk[c])
-      for (std::uint64_t end : {key >> 32, key & 0xffffffffu}) ends.push_back(static_cast<std::uint16_t>(node_uses.find(c, end)));
+      for (std::uint64_t end : {key >> 32, key & 0xffffffffu})
+        ends.push_back(static_cast<std::uint16_t>(node_uses.find(c, end)));
     make_rows(chunk);
     std::size_t lane = 0;
     for (int k = starts[c]; k < starts[c + 1]; ++k, lane = (lane + 1) % kLanes) {
@@ -178,21 +202,27 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, 
         groups.emplace_back();
         edges.emplace_back();
         numbers_.insert(numbers_.end(), kLanes, -1);
-        for (std::size_t l = 0; l < kLanes; ++l) fill_up(groups.back(), edges.back(), l, chunk.nodes, chunk.edges);  // those that no element takes stay so
+        // those that no element takes stay so
+        for (std::size_t l = 0; l < kLanes; ++l)
+          fill_up(groups.back(), edges.back(), l, chunk.nodes, chunk.edges);
       }
       ElementGroup& group = groups.back();
       const Corners corners = sorted_corners(elements, static_cast<std::size_t>(e));
       for (std::size_t a = 0; a < 4; ++a)
-        group.node[a][lane] = static_cast<std::uint16_t>(node_uses.find(c, static_cast<std::uint64_t>(node(corners[a], e))));
+        group.node[a][lane] =
+            static_cast<std::uint16_t>(node_uses.find(c, static_cast<std::uint64_t>(node(corners[a], e))));
       Mat3 Dm;
-      for (int a = 1; a < 4; ++a) Dm.col(a - 1) = rest.nodes.col(node(corners[static_cast<std::size_t>(a)], e)) - rest.nodes.col(node(corners[0], e));
+      for (int a = 1; a < 4; ++a)
+        Dm.col(a - 1) = rest.nodes.col(node(corners[static_cast<std::size_t>(a)], e)) -
+                        rest.nodes.col(node(corners[0], e));
       const Mat3 inverse = inverse_triangle(Dm);
       int entry = 0;
       for (int r = 0; r < 3; ++r)
         for (int axis = r; axis < 3; ++axis) group.inverse_edges[entry++][lane] = inverse(r, axis);
       for (std::size_t k6 = 0; k6 < 6; ++k6)
-        edges.back().edge[k6][lane] = static_cast<std::uint16_t>(edge_uses.find(
-            c, key_of(node(corners[static_cast<std::size_t>(kEdgeCorners[k6][0])], e), node(corners[static_cast<std::size_t>(kEdgeCorners[k6][1])], e))));
+        edges.back().edge[k6][lane] = static_cast<std::uint16_t>(
+            edge_uses.find(c, key_of(node(corners[static_cast<std::size_t>(kEdgeCorners[k6][0])], e),
+                                     node(corners[static_cast<std::size_t>(kEdgeCorners[k6][1])], e))));
       group.volume[lane] = elements.volume[static_cast<std::size_t>(e)];
       numbers_[numbers_.size() - kLanes + lane] = e;
     }
@@ -201,7 +231,8 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, 
     most_edges = std::max(most_edges, chunk.edges);
     chunks.push_back(chunk);
   }
-  PALPATE_CHECK(most_nodes + 4 < 65536 && most_edges + 1 < 65536, "a chunk has {} nodes and {} edges", most_nodes, most_edges);
+  PALPATE_CHECK(most_nodes + 4 < 65536 && most_edges + 1 < 65536, "a chunk has {} nodes and {} edges",
+                most_nodes, most_edges);
   for (std::uint64_t key : node_uses.late) late_nodes.first.push_back(static_cast<int>(key));
   for (std::uint64_t key : edge_uses.late) {
     late_edges.first.push_back(static_cast<int>(key >> 32));
@@ -212,13 +243,15 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements, 
   late_edges.start = edge_uses.start;
   late_edges.entries = edge_uses.entries;
   const auto fit = [](auto&... grown) { (grown.shrink_to_fit(), ...); };
-  fit(groups, edges, numbers_, runs, chunks, nodes, ends, row_start, row_own, row_edges, late_nodes.first, late_edges.first, late_edges.second);
+  fit(groups, edges, numbers_, runs, chunks, nodes, ends, row_start, row_own, row_edges, late_nodes.first,
+      late_edges.first, late_edges.second);
   prefer_huge_pages(groups);
   prefer_huge_pages(edges);
   prefer_huge_pages(row_edges);
 }
 
-/// The edges at each node of a chunk: its own, by the node at the other end, that is in the order of the matrix's columns; then the late ones.
+/// The edges at each node of a chunk: its own, by the node at the other end, that is in the order of the
+/// matrix's columns; then the late ones.
 void ElementChunks::make_rows(const Chunk& chunk) {
   struct Entry {
     bool late;
@@ -228,14 +261,18 @@ void ElementChunks::make_rows(const Chunk& chunk) {
   std::vector<std::vector<Entry>> rows(static_cast<std::size_t>(chunk.nodes));
   for (int k = 0; k < chunk.edges; ++k) {
     const auto at = 2 * static_cast<std::size_t>(chunk.first_edge + k);
-    const auto global = [&](std::uint16_t end) { return nodes[static_cast<std::size_t>(chunk.first_node + end)]; };
+    const auto global = [&](std::uint16_t end) {
+      return nodes[static_cast<std::size_t>(chunk.first_node + end)];
+    };
     const auto edge = 2 * static_cast<std::uint32_t>(k);
     rows[ends[at]].push_back({k >= chunk.own_edges, global(ends[at + 1]), edge});
     rows[ends[at + 1]].push_back({k >= chunk.own_edges, global(ends[at]), edge + 1});
   }
   for (auto& row : rows) {
-    std::sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) { return a.late != b.late ? b.late : a.other < b.other; });
-    row_own.push_back(static_cast<std::int32_t>(std::count_if(row.begin(), row.end(), [](const Entry& e) { return !e.late; })));
+    std::sort(row.begin(), row.end(),
+              [](const Entry& a, const Entry& b) { return a.late != b.late ? b.late : a.other < b.other; });
+    row_own.push_back(static_cast<std::int32_t>(
+        std::count_if(row.begin(), row.end(), [](const Entry& e) { return !e.late; })));
     for (const Entry& e : row) row_edges.push_back(e.edge);
     row_start.push_back(static_cast<std::int32_t>(row_edges.size()));
   }
@@ -248,12 +285,14 @@ Mat3 ElementChunks::Element::edges(const double* field) const {
   return m;
 }
 
-ElementChunks::Element ElementChunks::element(const Chunk& chunk, const Run& run, int group_number, int lane) const {
+ElementChunks::Element ElementChunks::element(const Chunk& chunk, const Run& run, int group_number,
+                                              int lane) const {
   const ElementGroup& group = groups[static_cast<std::size_t>(group_number)];
   Element out;
   out.material = run.material;
   out.number = numbers_[static_cast<std::size_t>(ElementGroup::kLanes * group_number + lane)];
-  for (int a = 0; a < 4; ++a) out.node[a] = nodes[static_cast<std::size_t>(chunk.first_node + group.node[a][lane])];
+  for (int a = 0; a < 4; ++a)
+    out.node[a] = nodes[static_cast<std::size_t>(chunk.first_node + group.node[a][lane])];
   out.gradients.setZero();
   int entry = 0;
   for (int r = 0; r < 3; ++r)
@@ -264,8 +303,11 @@ ElementChunks::Element ElementChunks::element(const Chunk& chunk, const Run& run
 
 std::size_t ElementChunks::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  const auto sums = [&](const LateSums& s) { return of(s.first) + of(s.second) + of(s.start) + of(s.entries); };
-  return of(groups) + of(edges) + of(numbers_) + of(runs) + of(chunks) + of(nodes) + of(ends) + of(row_start) + of(row_own) + of(row_edges) + of(nodal_volume) + sums(late_nodes) + sums(late_edges);
+  const auto sums = [&](const LateSums& s) {
+    return of(s.first) + of(s.second) + of(s.start) + of(s.entries);
+  };
+  return of(groups) + of(edges) + of(numbers_) + of(runs) + of(chunks) + of(nodes) + of(ends) +
+         of(row_start) + of(row_own) + of(row_edges) + of(nodal_volume) + sums(late_nodes) + sums(late_edges);
 }
 
 }  // namespace palpate::fem

@@ -16,7 +16,8 @@ namespace {
 using Chunk = ElementChunks::Chunk;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 constexpr int kSumsInTask = 512;
-constexpr int kFewChunks = 16;  // of a matrix that caches hold: to fill them with two chunks at a time costs more than waiting for it
+// of a matrix that caches hold: to fill them with two chunks at a time costs more than waiting for it
+constexpr int kFewChunks = 16;
 constexpr int kSumsAhead = 6, kNodesAhead = 24;  // how long before they are used memory is asked for
 
 void rotation_by_scalar(const double* F, double* R) {
@@ -26,9 +27,12 @@ void rotation_by_scalar(const double* F, double* R) {
 
 bool coupling_by_scalar(const ElementModel& model, const double* F, const double* R, double* C) {
   bool clamped = false;
-  const Tangent tangent = model.warped ? Tangent::kWarped : model.projected ? Tangent::kProjected : Tangent::kExact;
+  const Tangent tangent = model.warped      ? Tangent::kWarped
+                          : model.projected ? Tangent::kProjected
+                                            : Tangent::kExact;
   Eigen::Map<RowMajor> out(C);
-  out = rotation_coupling(tangent, Eigen::Map<const RowMajor>(F), Eigen::Map<const RowMajor>(R), {model.mu, model.lambda}, clamped);
+  out = rotation_coupling(tangent, Eigen::Map<const RowMajor>(F), Eigen::Map<const RowMajor>(R),
+                          {model.mu, model.lambda}, clamped);
   return clamped;
 }
 
@@ -44,16 +48,21 @@ void for_each_sum(int count, F&& f) {
   });
 }
 
-/// to += the contributions to late node or edge k, nine numbers each, one after the other; of a transposed block where `turned`.
+/// to += the contributions to late node or edge k, nine numbers each, one after the other; of a transposed
+/// block where `turned`.
 template <class Real>
-void add_contributions(const LateSums& sums, int k, const std::vector<Real>& contributions, Real* to, bool turned = false) {
-  for (int p = sums.start[static_cast<std::size_t>(k)]; p < sums.start[static_cast<std::size_t>(k) + 1]; ++p) {
-    const Real* block = contributions.data() + 9 * static_cast<std::size_t>(sums.entries[static_cast<std::size_t>(p)]);
+void add_contributions(const LateSums& sums, int k, const std::vector<Real>& contributions, Real* to,
+                       bool turned = false) {
+  for (int p = sums.start[static_cast<std::size_t>(k)]; p < sums.start[static_cast<std::size_t>(k) + 1];
+       ++p) {
+    const Real* block =
+        contributions.data() + 9 * static_cast<std::size_t>(sums.entries[static_cast<std::size_t>(p)]);
     for (int c = 0; c < 9; ++c) to[c] += block[turned ? c % 3 * 3 + c / 3 : c];
   }
 }
 
-// What the sum over a late edge reads and writes lies scattered: asked for some sums before, it is there in time.
+// What the sum over a late edge reads and writes lies scattered: asked for some sums before, it is there in
+// time.
 template <class Real>
 void fetch_block(const Real* block) {
   __builtin_prefetch(block);
@@ -79,14 +88,16 @@ void set_zero(const ChunkBlocks& blocks, int count) {
 
 void keep_blocks(const ChunkBlocks& blocks, int begin, int end, double* to) {
   for (int k = begin; k < end; ++k, to += 9) {
-    std::memcpy(to, blocks.first + 8 * k, 8 * sizeof(double));  // they never overlap: no call for sixty-four bytes
+    // they never overlap: no call for sixty-four bytes
+    std::memcpy(to, blocks.first + 8 * k, 8 * sizeof(double));
     to[8] = blocks.last[k];
   }
 }
 
 }  // namespace
 
-ElementEvaluation::ElementEvaluation(const TetMesh& rest, const RestElements& elements, const std::vector<int>& material_of_element, bool with_lower)
+ElementEvaluation::ElementEvaluation(const TetMesh& rest, const RestElements& elements,
+                                     const std::vector<int>& material_of_element, bool with_lower)
     : chunks_(rest, elements, material_of_element), kernels_(&best_kernels()), with_lower_(with_lower) {
   chunk_sums_.resize(chunks_.chunks.size());
   fit_scratch();
@@ -100,7 +111,8 @@ void ElementEvaluation::fit_scratch() {
   const std::size_t first = scratch_.size();
   scratch_.resize(threads);
   for (std::size_t s = first; s < threads; ++s)
-    for (auto* field : {&scratch_[s].x, &scratch_[s].v, &scratch_[s].w, &scratch_[s].sum}) field->resize((nodes + 1) / 2);
+    for (auto* field : {&scratch_[s].x, &scratch_[s].v, &scratch_[s].w, &scratch_[s].sum})
+      field->resize((nodes + 1) / 2);
 }
 
 int ElementEvaluation::turns() const { return static_cast<int>(chunks_.chunks.size()) <= kFewChunks ? 1 : 2; }
@@ -113,7 +125,8 @@ ChunkBlocks ElementEvaluation::BlockMemory::blocks() { return {numbers(first), l
 
 void ElementEvaluation::fit_blocks() {
   fit_scratch();
-  const auto nodes = static_cast<std::size_t>(chunks_.most_nodes) + 4, edges = static_cast<std::size_t>(chunks_.most_edges) + 1;
+  const auto nodes = static_cast<std::size_t>(chunks_.most_nodes) + 4,
+             edges = static_cast<std::size_t>(chunks_.most_edges) + 1;
   for (Scratch& scratch : scratch_) {
     scratch.upper.resize(edges);
     if (with_lower_) scratch.lower.resize(edges);
@@ -129,7 +142,8 @@ void ElementEvaluation::fit_blocks() {
 void ElementEvaluation::fit_leaving() {
   fit_scratch();
   for (Scratch& scratch : scratch_)
-    for (int turn = 0; turn < turns(); ++turn) scratch.leaving[turn].resize(static_cast<std::size_t>(chunks_.most_edges) + 1);
+    for (int turn = 0; turn < turns(); ++turn)
+      scratch.leaving[turn].resize(static_cast<std::size_t>(chunks_.most_edges) + 1);
   if (!in_order()) fit_late(late_single_, static_cast<std::size_t>(chunks_.late_edges.contributions()));
 }
 
@@ -147,14 +161,18 @@ LaneCounts ElementEvaluation::collect_counts() {
 /// Runs f(groups, count, model) for each material of a chunk.
 template <class F>
 void ElementEvaluation::for_each_run(const Chunk& chunk, const ElementModels& models, F&& f) const {
-  chunks_.for_each_run(chunk, [&](const ElementChunks::Run& run) { f(chunks_.groups.data() + run.first_group, run.groups, models[static_cast<std::size_t>(run.material)]); });
+  chunks_.for_each_run(chunk, [&](const ElementChunks::Run& run) {
+    f(chunks_.groups.data() + run.first_group, run.groups, models[static_cast<std::size_t>(run.material)]);
+  });
 }
 
 /// Runs f(groups, edges, count, model) for each material of a chunk.
 template <class F>
-void ElementEvaluation::for_each_run_with_edges(const Chunk& chunk, const ElementModels& models, F&& f) const {
+void ElementEvaluation::for_each_run_with_edges(const Chunk& chunk, const ElementModels& models,
+                                                F&& f) const {
   chunks_.for_each_run(chunk, [&](const ElementChunks::Run& run) {
-    f(chunks_.groups.data() + run.first_group, chunks_.edges.data() + run.first_group, run.groups, models[static_cast<std::size_t>(run.material)]);
+    f(chunks_.groups.data() + run.first_group, chunks_.edges.data() + run.first_group, run.groups,
+      models[static_cast<std::size_t>(run.material)]);
   });
 }
 
@@ -183,10 +201,12 @@ ComingNodes ElementEvaluation::coming_nodes(int c, const BodyFields& at, const d
 ChunkFields ElementEvaluation::load(int c, const BodyFields& at, Scratch& scratch, const double* out) const {
   const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
   const int* nodes = chunks_.nodes.data() + chunk.first_node;
-  const auto copy = [&](const double* from, std::vector<Line>& lines, double unit, const double* more = nullptr) {
+  const auto copy = [&](const double* from, std::vector<Line>& lines, double unit,
+                        const double* more = nullptr) {
     double* to = numbers(lines);
     for (int n = 0; n < chunk.nodes; ++n) {
-      if (n + kNodesAhead < chunk.nodes) __builtin_prefetch(from + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
+      if (n + kNodesAhead < chunk.nodes)
+        __builtin_prefetch(from + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
       const double* p = from + 3 * static_cast<std::size_t>(nodes[n]);
       to[4 * n] = p[0];
       to[4 * n + 1] = p[1];
@@ -194,7 +214,8 @@ ChunkFields ElementEvaluation::load(int c, const BodyFields& at, Scratch& scratc
       to[4 * n + 3] = 0.0;
     }
     for (int n = 0; more && n < chunk.nodes; ++n)
-      for (int axis = 0; axis < 3; ++axis) to[4 * n + axis] += more[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)];
+      for (int axis = 0; axis < 3; ++axis)
+        to[4 * n + axis] += more[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)];
     std::fill_n(to + 4 * chunk.nodes, 16, 0.0);
     for (int axis = 0; axis < 3; ++axis) to[4 * (chunk.nodes + 1 + axis) + axis] = unit;
     return static_cast<const double*>(to);
@@ -208,7 +229,8 @@ ChunkFields ElementEvaluation::load(int c, const BodyFields& at, Scratch& scratc
   return fields;
 }
 
-LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModels& models, const BodyFields& at, double* out) {
+LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModels& models, const BodyFields& at,
+                                        double* out) {
   fit_scratch();
   workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
@@ -216,14 +238,17 @@ LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModels&
     const ChunkFields fields = load(c, at, scratch, out);
     double* sum = numbers(scratch.sum);
     std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
-    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernel(groups, count, model, kScalarPath, fields, sum, scratch.counts); });
+    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) {
+      kernel(groups, count, model, kScalarPath, fields, sum, scratch.counts);
+    });
     flush_nodal(chunk, sum, out);
   });
   add_late_nodes(out);
   return collect_counts();
 }
 
-/// What is late may be added at once: what is not in order adds one share after the other as well, for the same sums to the last bit.
+/// What is late may be added at once: what is not in order adds one share after the other as well, for the
+/// same sums to the last bit.
 bool ElementEvaluation::in_order() const { return workers::count() == 1; }
 
 /// A chunk's own sums go into `out`, the late ones aside.
@@ -231,10 +256,14 @@ void ElementEvaluation::flush_nodal(const Chunk& chunk, const double* sum, doubl
   const int* nodes = chunks_.nodes.data() + chunk.first_node;
   const int direct = in_order() ? chunk.nodes : chunk.own_nodes;
   for (int n = 0; n < direct; ++n) {
-    if (n + kNodesAhead < direct) __builtin_prefetch(out + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
-    for (int axis = 0; axis < 3; ++axis) out[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)] += sum[4 * n + axis];
+    if (n + kNodesAhead < direct)
+      __builtin_prefetch(out + 3 * static_cast<std::size_t>(nodes[n + kNodesAhead]));
+    for (int axis = 0; axis < 3; ++axis)
+      out[3 * static_cast<std::size_t>(nodes[n]) + static_cast<std::size_t>(axis)] += sum[4 * n + axis];
   }
-  if (direct < chunk.nodes) std::copy_n(sum + 4 * direct, 4 * (chunk.nodes - direct), numbers(late_nodes_) + 4 * static_cast<std::size_t>(chunk.first_late_node));
+  if (direct < chunk.nodes)
+    std::copy_n(sum + 4 * direct, 4 * (chunk.nodes - direct),
+                numbers(late_nodes_) + 4 * static_cast<std::size_t>(chunk.first_late_node));
 }
 
 void ElementEvaluation::add_late_nodes(double* out) const {
@@ -242,24 +271,34 @@ void ElementEvaluation::add_late_nodes(double* out) const {
   const LateSums& late = chunks_.late_nodes;
   for_each_sum(late.count(), [&](int k) {
     double* to = out + 3 * static_cast<std::size_t>(late.first[static_cast<std::size_t>(k)]);
-    for (int p = late.start[static_cast<std::size_t>(k)]; p < late.start[static_cast<std::size_t>(k) + 1]; ++p) {
-      const double* part = late_nodes_.front().value + 4 * static_cast<std::size_t>(late.entries[static_cast<std::size_t>(p)]);
+    for (int p = late.start[static_cast<std::size_t>(k)]; p < late.start[static_cast<std::size_t>(k) + 1];
+         ++p) {
+      const double* part =
+          late_nodes_.front().value + 4 * static_cast<std::size_t>(late.entries[static_cast<std::size_t>(p)]);
       for (int axis = 0; axis < 3; ++axis) to[axis] += part[axis];
     }
   });
 }
 
-LaneCounts ElementEvaluation::add_force(const ElementModels& models, const BodyFields& at, double* f) { return add_nodal(kernels_->force, models, at, f); }
-LaneCounts ElementEvaluation::add_step_force(const ElementModels& models, const BodyFields& at, double* f) { return add_nodal(kernels_->step_force, models, at, f); }
-LaneCounts ElementEvaluation::apply_tangent(const ElementModels& models, const BodyFields& at, double* y) { return add_nodal(kernels_->apply, models, at, y); }
+LaneCounts ElementEvaluation::add_force(const ElementModels& models, const BodyFields& at, double* f) {
+  return add_nodal(kernels_->force, models, at, f);
+}
+LaneCounts ElementEvaluation::add_step_force(const ElementModels& models, const BodyFields& at, double* f) {
+  return add_nodal(kernels_->step_force, models, at, f);
+}
+LaneCounts ElementEvaluation::apply_tangent(const ElementModels& models, const BodyFields& at, double* y) {
+  return add_nodal(kernels_->apply, models, at, y);
+}
 
-LaneCounts ElementEvaluation::store_tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A) {
+LaneCounts ElementEvaluation::store_tangent(const ElementModels& models, const BodyFields& at, int first_node,
+                                            dynamics::BlockSparse& A) {
   prepare(first_node, A);
   for (std::int32_t slot : bare_slots_) std::fill_n(A.block(slot), 9, 0.0);
   return tangent(models, at, first_node, A, true);
 }
 
-LaneCounts ElementEvaluation::tangent(const ElementModels& models, const BodyFields& at, int first_node, dynamics::BlockSparse& A, bool stored) {
+LaneCounts ElementEvaluation::tangent(const ElementModels& models, const BodyFields& at, int first_node,
+                                      dynamics::BlockSparse& A, bool stored) {
   fit_blocks();
   prepare(first_node, A);
   const bool symmetric = !models.front().by_position;
@@ -267,23 +306,35 @@ LaneCounts ElementEvaluation::tangent(const ElementModels& models, const BodyFie
   workers::for_each(static_cast<int>(chunks_.chunks.size()), [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
-    const ChunkBlocks upper = scratch.upper.blocks(), lower = scratch.lower.blocks(), diagonal = scratch.diagonal.blocks();
+    const ChunkBlocks upper = scratch.upper.blocks(), lower = scratch.lower.blocks(),
+                      diagonal = scratch.diagonal.blocks();
     set_zero(upper, chunk.edges + 1);
     if (!symmetric) set_zero(lower, chunk.edges + 1);
     ChunkFields fields = load(c, at, scratch);
-    scratch.rows = {chunks_.nodes.data() + chunk.first_node, A.row_start().data() + first_node, A.values().data(), in_order() ? chunk.nodes : chunk.own_nodes};
+    scratch.rows = {chunks_.nodes.data() + chunk.first_node, A.row_start().data() + first_node,
+                    A.values().data(), in_order() ? chunk.nodes : chunk.own_nodes};
     fields.rows = &scratch.rows;
-    for_each_run_with_edges(chunk, models, [&](const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model) {
-      kernels_->tangent(groups, edges, count, model, kScalarPath, fields, upper, lower, scratch.counts);
-    });
-    const BlockTargets targets{chunk.nodes, chunk.own_nodes, chunks_.row_start.data() + chunk.first_node, chunks_.row_own.data() + chunk.first_node,
-                               chunks_.row_edges.data(), slots_.data(), chunk_diagonal_.data() + chunk.first_node, in_order(), stored};
+    for_each_run_with_edges(
+        chunk, models,
+        [&](const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model) {
+          kernels_->tangent(groups, edges, count, model, kScalarPath, fields, upper, lower, scratch.counts);
+        });
+    const BlockTargets targets{chunk.nodes,
+                               chunk.own_nodes,
+                               chunks_.row_start.data() + chunk.first_node,
+                               chunks_.row_own.data() + chunk.first_node,
+                               chunks_.row_edges.data(),
+                               slots_.data(),
+                               chunk_diagonal_.data() + chunk.first_node,
+                               in_order(),
+                               stored};
     kernels_->flush(targets, upper, lower, symmetric, diagonal, A.values().data());
     if (in_order()) return;
     const auto edge_place = 9 * static_cast<std::size_t>(chunk.first_late_edge);
     keep_blocks(upper, chunk.own_edges, chunk.edges, late_upper_.data() + edge_place);
     if (!symmetric) keep_blocks(lower, chunk.own_edges, chunk.edges, late_lower_.data() + edge_place);
-    keep_blocks(diagonal, chunk.own_nodes, chunk.nodes, late_diagonal_.data() + 9 * static_cast<std::size_t>(chunk.first_late_node));
+    keep_blocks(diagonal, chunk.own_nodes, chunk.nodes,
+                late_diagonal_.data() + 9 * static_cast<std::size_t>(chunk.first_late_node));
   });
   add_late_blocks(symmetric, A);
   return collect_counts();
@@ -303,11 +354,14 @@ void ElementEvaluation::add_late_blocks(bool symmetric, dynamics::BlockSparse& A
     add_contributions(late, k, symmetric ? late_upper_ : late_lower_, A.block(slot(k, 1)), symmetric);
   });
   for_each_sum(chunks_.late_nodes.count(), [&](int k) {
-    add_contributions(chunks_.late_nodes, k, late_diagonal_, A.block(diagonal_[static_cast<std::size_t>(chunks_.late_nodes.first[static_cast<std::size_t>(k)])]));
+    add_contributions(
+        chunks_.late_nodes, k, late_diagonal_,
+        A.block(diagonal_[static_cast<std::size_t>(chunks_.late_nodes.first[static_cast<std::size_t>(k)])]));
   });
 }
 
-LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFields& at, int first_node, double* f, dynamics::BalancedMatrix& A) {
+LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFields& at, int first_node,
+                                       double* f, dynamics::BalancedMatrix& A) {
   fit_leaving();
   prepare_places(first_node, A);
   PALPATE_CHECK(!models.front().by_position, "an unsymmetric tangent in a balanced matrix");
@@ -321,13 +375,22 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
     const ChunkFields fields = load(c, at, scratch, f);
     LeavingBlocks& before = scratch.before;
     before.at_a_time = before.count / std::max(1, groups_of(chunk)) + 1;
-    for_each_run_with_edges(chunk, models, [&](const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model) {
-      kernels_->step(groups, edges, count, model, kScalarPath, fields, sum, upper, before, scratch.counts);
-    });
+    for_each_run_with_edges(
+        chunk, models,
+        [&](const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model) {
+          kernels_->step(groups, edges, count, model, kScalarPath, fields, sum, upper, before,
+                         scratch.counts);
+        });
     flush_nodal(chunk, sum, f);
     kernels_->leave(before, before.count);
-    before = {upper, leaving_edges_.data() + chunk.first_edge, places_.data() + chunk.first_edge, A.values.data(),
-              in_order() ? nullptr : late_single_.data() + 9 * static_cast<std::size_t>(chunk.first_late_edge), chunk.own_edges, chunk.edges};
+    before = {
+        upper,
+        leaving_edges_.data() + chunk.first_edge,
+        places_.data() + chunk.first_edge,
+        A.values.data(),
+        in_order() ? nullptr : late_single_.data() + 9 * static_cast<std::size_t>(chunk.first_late_edge),
+        chunk.own_edges,
+        chunk.edges};
     if (turns() == 1 || c + workers::count() >= chunks)  // likely this thread's last
       kernels_->leave(before, before.count);
     else
@@ -364,7 +427,9 @@ double ElementEvaluation::energy(const ElementModels& models, const BodyFields& 
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
     Line sums{};
     const ChunkFields fields = load(c, at, scratch);
-    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->energy(groups, count, model, kScalarPath, fields, sums.value, scratch.counts); });
+    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) {
+      kernels_->energy(groups, count, model, kScalarPath, fields, sums.value, scratch.counts);
+    });
     chunk_sums_[static_cast<std::size_t>(c)] = std::accumulate(sums.value, sums.value + 8, 0.0);
   });
   collect_counts();
@@ -378,7 +443,9 @@ double ElementEvaluation::dissipated_power(const ElementModels& models, const Bo
     Scratch& scratch = scratch_[static_cast<std::size_t>(worker)];
     Line sums{};
     const ChunkFields fields = load(c, at, scratch);
-    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) { kernels_->power(groups, count, model, fields, sums.value); });
+    for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) {
+      kernels_->power(groups, count, model, fields, sums.value);
+    });
     chunk_sums_[static_cast<std::size_t>(c)] = std::accumulate(sums.value, sums.value + 8, 0.0);
   });
   return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);

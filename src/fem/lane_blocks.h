@@ -1,16 +1,17 @@
 #pragma once
-// The element matrices in lanes.  Only the six blocks K_ab, a < b, of the edges are made: a translation of the element changes nothing, so that
-// the blocks of each row sum to zero and a diagonal block is minus the sum of the others of its row, taken once for the whole chunk (lane_flush.h) or by who reads the matrix.
+// The element matrices in lanes.  Only the six blocks K_ab, a < b, of the edges are made: a translation of
+// the element changes nothing, so that the blocks of each row sum to zero and a diagonal block is minus the
+// sum of the others of its row, taken once for the whole chunk (lane_flush.h) or by who reads the matrix.
 
 /// What the blocks of an element are made of; h_0 = -(h_1 + h_2 + h_3), and k, l likewise.
 struct BlockParts {
-  Pack gg[4][4];    ///< g_a . g_b of a != b
+  Pack gg[4][4];  ///< g_a . g_b of a != b
   Vector h[4], k[4], l[4];
-  Matrix hC[3];     ///< [h_a]x C, scaled
-  Pack mu2, lambda; ///< 2 mu, lambda of stiffness, scaled
-  Symmetric B2;     ///< mu_d F F^T of the damping, scaled
+  Matrix hC[3];      ///< [h_a]x C, scaled
+  Pack mu2, lambda;  ///< 2 mu, lambda of stiffness, scaled
+  Symmetric B2;      ///< mu_d F F^T of the damping, scaled
   Pack damping_mu, damping_lambda;
-  Matrix FFdot;     ///< of the damping's derivative by position
+  Matrix FFdot;  ///< of the damping's derivative by position
   Pack g_Sigma_g[4][4];
   Pack position_mu, position_lambda, position;
 };
@@ -61,7 +62,8 @@ PALPATE_INLINE void add_position_block(Matrix& block, const BlockParts& e, int a
 }
 
 PALPATE_INLINE void scatter_block(const ChunkBlocks& blocks, const std::uint16_t* edge, const Matrix& block) {
-  const Pack k[8] = {block.row[0].x, block.row[0].y, block.row[0].z, block.row[1].x, block.row[1].y, block.row[1].z, block.row[2].x, block.row[2].y};
+  const Pack k[8] = {block.row[0].x, block.row[0].y, block.row[0].z, block.row[1].x,
+                     block.row[1].y, block.row[1].z, block.row[2].x, block.row[2].y};
   scatter_rows(blocks.first, edge, k);
   for (int l = 0; l < kWidth; ++l) blocks.last[edge[l]] += block.row[2].z[l];
 }
@@ -69,13 +71,15 @@ PALPATE_INLINE void scatter_block(const ChunkBlocks& blocks, const std::uint16_t
 enum class Blocks { kDampingOnly, kWarped, kCoupled };
 
 template <Blocks kBlocks, bool kDamped, bool kByPosition>
-PALPATE_INLINE void edge_block(const std::uint16_t* edge, const BlockParts& e, int a, int b, const ChunkBlocks& upper, const ChunkBlocks& lower) {
+PALPATE_INLINE void edge_block(const std::uint16_t* edge, const BlockParts& e, int a, int b,
+                               const ChunkBlocks& upper, const ChunkBlocks& lower) {
   Matrix block{};
   if constexpr (kBlocks == Blocks::kWarped) block = warped_block(e, a, b);
   if constexpr (kBlocks == Blocks::kCoupled) block = coupled_block(e, a, b);
   if constexpr (kDamped) add_damping_block(block, e, a, b);
   if constexpr (kByPosition) {
-    Matrix below{{{block.row[0].x, block.row[1].x, block.row[2].x}, {block.row[0].y, block.row[1].y, block.row[2].y},
+    Matrix below{{{block.row[0].x, block.row[1].x, block.row[2].x},
+                  {block.row[0].y, block.row[1].y, block.row[2].y},
                   {block.row[0].z, block.row[1].z, block.row[2].z}}};
     add_position_block(below, e, b, a);
     scatter_block(lower, edge, below);
@@ -86,7 +90,8 @@ PALPATE_INLINE void edge_block(const std::uint16_t* edge, const BlockParts& e, i
 
 /// h, and [h_a]x C of a coupled block.
 template <Blocks kBlocks>
-PALPATE_INLINE void set_elastic(BlockParts& e, const ElementModel& model, const Matrix& R, const Symmetric& C, const Gradients& G, Pack volume) {
+PALPATE_INLINE void set_elastic(BlockParts& e, const ElementModel& model, const Matrix& R, const Symmetric& C,
+                                const Gradients& G, Pack volume) {
   const Pack k = model.k_scale * volume;
   e.mu2 = (2.0 * model.mu) * k;
   e.lambda = model.lambda * k;
@@ -95,13 +100,16 @@ PALPATE_INLINE void set_elastic(BlockParts& e, const ElementModel& model, const 
   const Matrix kC = k * full(C);
   for (int a = 0; a < 3; ++a) {
     const Vector& h = e.h[a];
-    e.hC[a] = {{h.y * kC.row[2] - h.z * kC.row[1], h.z * kC.row[0] - h.x * kC.row[2], h.x * kC.row[1] - h.y * kC.row[0]}};
+    e.hC[a] = {{h.y * kC.row[2] - h.z * kC.row[1], h.z * kC.row[0] - h.x * kC.row[2],
+                h.x * kC.row[1] - h.y * kC.row[0]}};
   }
 }
 
-/// g_a . v_b for a != b, of v_b = S g_b with a symmetric S: both ways round the same, and each row of the whole sums to zero.
+/// g_a . v_b for a != b, of v_b = S g_b with a symmetric S: both ways round the same, and each row of the
+/// whole sums to zero.
 PALPATE_INLINE void products_with_gradients(const Gradients& G, const Vector* v, Pack (&p)[4][4]) {
-  const Pack p11 = G.xx * v[1].x + G.xy * v[1].y + G.xz * v[1].z, p22 = G.yy * v[2].y + G.yz * v[2].z, p33 = G.zz * v[3].z;
+  const Pack p11 = G.xx * v[1].x + G.xy * v[1].y + G.xz * v[1].z, p22 = G.yy * v[2].y + G.yz * v[2].z,
+             p33 = G.zz * v[3].z;
   p[1][2] = p[2][1] = G.yy * v[1].y + G.yz * v[1].z;
   p[1][3] = p[3][1] = G.zz * v[1].z;
   p[2][3] = p[3][2] = G.zz * v[2].z;
@@ -115,10 +123,12 @@ PALPATE_INLINE void set_damping(BlockParts& e, const ElementModel& model, const 
   e.damping_mu = model.damping_mu * d;
   e.damping_lambda = model.damping_lambda * d;
   const Symmetric FFt = gram_of_rows(F);
-  e.B2 = {e.damping_mu * FFt.xx, e.damping_mu * FFt.yy, e.damping_mu * FFt.zz, e.damping_mu * FFt.yz, e.damping_mu * FFt.xz, e.damping_mu * FFt.xy};
+  e.B2 = {e.damping_mu * FFt.xx, e.damping_mu * FFt.yy, e.damping_mu * FFt.zz,
+          e.damping_mu * FFt.yz, e.damping_mu * FFt.xz, e.damping_mu * FFt.xy};
 }
 
-PALPATE_INLINE void set_position(BlockParts& e, const ElementModel& model, const Matrix& F, const Matrix& F_dot, const Gradients& G, Pack volume) {
+PALPATE_INLINE void set_position(BlockParts& e, const ElementModel& model, const Matrix& F,
+                                 const Matrix& F_dot, const Gradients& G, Pack volume) {
   spread(F_dot, G, e.l);
   Vector Sigma_g[4];
   spread(full(damping_stress(symmetric_product(F, F_dot), model)), G, Sigma_g);
@@ -130,7 +140,8 @@ PALPATE_INLINE void set_position(BlockParts& e, const ElementModel& model, const
 }
 
 template <Blocks kBlocks, bool kDamped, bool kByPosition>
-PALPATE_INLINE void edge_blocks(const GroupEdges& edges, int first, const BlockParts& e, ComingRows* rows, const ChunkBlocks& upper, const ChunkBlocks& lower) {
+PALPATE_INLINE void edge_blocks(const GroupEdges& edges, int first, const BlockParts& e, ComingRows* rows,
+                                const ChunkBlocks& upper, const ChunkBlocks& lower) {
   const auto at_edge = [&](int number, int a, int b) __attribute__((always_inline)) {
     edge_block<kBlocks, kDamped, kByPosition>(edges.edge[number] + first, e, a, b, upper, lower);
     if (rows) fetch_rows(*rows);
@@ -144,7 +155,8 @@ PALPATE_INLINE void edge_blocks(const GroupEdges& edges, int first, const BlockP
 }
 
 template <bool kDamped, bool kByPosition>
-PALPATE_INLINE void set_rates(BlockParts& e, const Lanes& at, const ElementModel& model, const Matrix& F, const Gradients& G, Pack volume, const ChunkFields& fields) {
+PALPATE_INLINE void set_rates(BlockParts& e, const Lanes& at, const ElementModel& model, const Matrix& F,
+                              const Gradients& G, Pack volume, const ChunkFields& fields) {
   const Vector g[4] = {{}, {G.xx, G.xy, G.xz}, {Pack{}, G.yy, G.yz}, {Pack{}, Pack{}, G.zz}};
   products_with_gradients(G, g, e.gg);
   if constexpr (kDamped || kByPosition) spread(F, G, e.k);
@@ -152,30 +164,37 @@ PALPATE_INLINE void set_rates(BlockParts& e, const Lanes& at, const ElementModel
   if constexpr (kByPosition) set_position(e, model, F, gradient_of(at, G, fields.v), G, volume);
 }
 
-/// Deformation gradient and rotation of an element serve all that is asked for: the blocks, and in a linearly implicit step (kStep) the forces less the stiffness times w.
+/// Deformation gradient and rotation of an element serve all that is asked for: the blocks, and in a linearly
+/// implicit step (kStep) the forces less the stiffness times w.
 template <Blocks kBlocks, bool kDamped, bool kByPosition, bool kStep>
-static void blocks_of(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
-                      const ChunkBlocks& upper, const ChunkBlocks& lower, LeavingBlocks* before, LaneCounts& counts) {
-  for_each_rotated(groups, count, fields, scalar, counts, [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
-    const Gradients G = gradients(at);
-    const Pack volume = at.volume();
-    if (at.first == 0) fetch_ahead(edges, at.number);
-    Symmetric C{};
-    if constexpr (kBlocks == Blocks::kCoupled || kStep) C = coupling(model, F, R, scalar, counts);
-    if constexpr (kStep) {
-      count_inverted(det, counts);
-      add_forces(at, G, step_stress<kDamped>(at, G, F, R, C, model, fields), -volume, f);
-    }
-    BlockParts e;
-    set_elastic<kBlocks>(e, model, R, C, G, volume);
-    set_rates<kDamped, kByPosition>(e, at, model, F, G, volume, fields);
-    edge_blocks<kBlocks, kDamped, kByPosition>(edges[at.number], at.first, e, kStep ? nullptr : fields.rows, upper, lower);
-    if constexpr (kStep)
-      if (at.first == 0) leave(*before, before->at_a_time);
-  });
+static void blocks_of(const ElementGroup* groups, const GroupEdges* edges, int count,
+                      const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields,
+                      double* f, const ChunkBlocks& upper, const ChunkBlocks& lower, LeavingBlocks* before,
+                      LaneCounts& counts) {
+  for_each_rotated(
+      groups, count, fields, scalar, counts,
+      [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
+        const Gradients G = gradients(at);
+        const Pack volume = at.volume();
+        if (at.first == 0) fetch_ahead(edges, at.number);
+        Symmetric C{};
+        if constexpr (kBlocks == Blocks::kCoupled || kStep) C = coupling(model, F, R, scalar, counts);
+        if constexpr (kStep) {
+          count_inverted(det, counts);
+          add_forces(at, G, step_stress<kDamped>(at, G, F, R, C, model, fields), -volume, f);
+        }
+        BlockParts e;
+        set_elastic<kBlocks>(e, model, R, C, G, volume);
+        set_rates<kDamped, kByPosition>(e, at, model, F, G, volume, fields);
+        edge_blocks<kBlocks, kDamped, kByPosition>(edges[at.number], at.first, e,
+                                                   kStep ? nullptr : fields.rows, upper, lower);
+        if constexpr (kStep)
+          if (at.first == 0) leave(*before, before->at_a_time);
+      });
 }
 
-static void damping_blocks(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model, const ChunkFields& fields, const ChunkBlocks& upper) {
+static void damping_blocks(const ElementGroup* groups, const GroupEdges* edges, int count,
+                           const ElementModel& model, const ChunkFields& fields, const ChunkBlocks& upper) {
   for (int g = 0; g < count; ++g) {
     fetch_ahead(groups, g);
     fetch_ahead(edges, g);
@@ -189,24 +208,39 @@ static void damping_blocks(const ElementGroup* groups, const GroupEdges* edges, 
   }
 }
 
-static void tangent(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields,
-                    const ChunkBlocks& upper, const ChunkBlocks& lower, LaneCounts& counts) {
+static void tangent(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model,
+                    const ScalarPath& scalar, const ChunkFields& fields, const ChunkBlocks& upper,
+                    const ChunkBlocks& lower, LaneCounts& counts) {
   const bool damped = model.damping_mu > 0.0 && model.d_scale != 0.0, elastic = model.k_scale != 0.0;
   const bool by_position = elastic && model.by_position;
-  const auto run = [&](auto* blocks) { blocks(groups, edges, count, model, scalar, fields, nullptr, upper, lower, nullptr, counts); };
+  const auto run = [&](auto* blocks) {
+    blocks(groups, edges, count, model, scalar, fields, nullptr, upper, lower, nullptr, counts);
+  };
   if (!elastic) return damping_blocks(groups, edges, count, model, fields, upper);
   if (model.warped) {
-    if (by_position) return run(damped ? blocks_of<Blocks::kWarped, true, true, false> : blocks_of<Blocks::kWarped, false, true, false>);
-    return run(damped ? blocks_of<Blocks::kWarped, true, false, false> : blocks_of<Blocks::kWarped, false, false, false>);
+    if (by_position)
+      return run(damped ? blocks_of<Blocks::kWarped, true, true, false>
+                        : blocks_of<Blocks::kWarped, false, true, false>);
+    return run(damped ? blocks_of<Blocks::kWarped, true, false, false>
+                      : blocks_of<Blocks::kWarped, false, false, false>);
   }
-  if (by_position) return run(damped ? blocks_of<Blocks::kCoupled, true, true, false> : blocks_of<Blocks::kCoupled, false, true, false>);
-  return run(damped ? blocks_of<Blocks::kCoupled, true, false, false> : blocks_of<Blocks::kCoupled, false, false, false>);
+  if (by_position)
+    return run(damped ? blocks_of<Blocks::kCoupled, true, true, false>
+                      : blocks_of<Blocks::kCoupled, false, true, false>);
+  return run(damped ? blocks_of<Blocks::kCoupled, true, false, false>
+                    : blocks_of<Blocks::kCoupled, false, false, false>);
 }
 
-static void step(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields, double* f,
-                 const ChunkBlocks& upper, LeavingBlocks& before, LaneCounts& counts) {
+static void step(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model,
+                 const ScalarPath& scalar, const ChunkFields& fields, double* f, const ChunkBlocks& upper,
+                 LeavingBlocks& before, LaneCounts& counts) {
   const bool damped = model.damping_mu > 0.0;
-  const auto run = [&](auto* blocks) { blocks(groups, edges, count, model, scalar, fields, f, upper, {}, &before, counts); };
-  if (model.warped) return run(damped ? blocks_of<Blocks::kWarped, true, false, true> : blocks_of<Blocks::kWarped, false, false, true>);
-  run(damped ? blocks_of<Blocks::kCoupled, true, false, true> : blocks_of<Blocks::kCoupled, false, false, true>);
+  const auto run = [&](auto* blocks) {
+    blocks(groups, edges, count, model, scalar, fields, f, upper, {}, &before, counts);
+  };
+  if (model.warped)
+    return run(damped ? blocks_of<Blocks::kWarped, true, false, true>
+                      : blocks_of<Blocks::kWarped, false, false, true>);
+  run(damped ? blocks_of<Blocks::kCoupled, true, false, true>
+             : blocks_of<Blocks::kCoupled, false, false, true>);
 }

@@ -1,7 +1,8 @@
 #pragma once
 // From the blocks of a chunk to the matrix.
 
-// Blocks as rows of eight doubles and one.  Widths below eight go entry by entry: their time is in the memory as well.
+// Blocks as rows of eight doubles and one.  Widths below eight go entry by entry: their time is in the memory
+// as well.
 
 #if PALPATE_WIDTH == 8
 struct BlockSum {
@@ -12,7 +13,8 @@ struct BlockSum {
   double last = 0.0;
   PALPATE_INLINE_MEMBER static BlockSum of(const double* block_first, double block_last, bool transposed) {
     constexpr Places kPlaces[2] = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 3, 6, 1, 4, 7, 2, 5}};
-    return {__builtin_shuffle(Row(*reinterpret_cast<const RowInMemory*>(block_first)), kPlaces[transposed]), block_last};
+    return {__builtin_shuffle(Row(*reinterpret_cast<const RowInMemory*>(block_first)), kPlaces[transposed]),
+            block_last};
   }
   PALPATE_INLINE_MEMBER void subtract(const BlockSum& block) {
     first -= block.first;
@@ -62,16 +64,20 @@ struct BlockSum {
 };
 #endif
 
-/// The rows of the matrix that follow: six rows, some eighty blocks, take longer to add up than a line takes to come from memory.
+/// The rows of the matrix that follow: six rows, some eighty blocks, take longer to add up than a line takes
+/// to come from memory.
 constexpr int kRowsAhead = 6;
 PALPATE_INLINE void fetch_row(const BlockTargets& targets, int n, const double* values) {
   if (n >= targets.nodes) return;
-  const int begin = targets.row_start[n], end = targets.in_order ? targets.row_start[n + 1] : begin + targets.row_own[n];
-  if (begin < end) fetch<3>(values + 9 * static_cast<std::int64_t>(targets.slots[begin]), 72 * (end - begin));  // mostly side by side
+  const int begin = targets.row_start[n],
+            end = targets.in_order ? targets.row_start[n + 1] : begin + targets.row_own[n];
+  // mostly side by side
+  if (begin < end) fetch<3>(values + 9 * static_cast<std::int64_t>(targets.slots[begin]), 72 * (end - begin));
 }
 
 template <bool kSymmetric, bool kStored>
-static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, const ChunkBlocks& lower, const ChunkBlocks& diagonal, double* values) {
+static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, const ChunkBlocks& lower,
+                       const ChunkBlocks& diagonal, double* values) {
   const auto at = [&](std::int32_t slot) { return values + 9 * static_cast<std::int64_t>(slot); };
   const auto put = [](const BlockSum& block, double* to) __attribute__((always_inline)) {
     if constexpr (kStored)
@@ -96,7 +102,8 @@ static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, co
       const BlockSum block = take(p);
       if (targets.in_order) block.add_to(at(targets.slots[p]));
     }
-    if (kSymmetric) sum.symmetrise();  // to the last bit: the two sides of an edge's block were summed in different orders
+    // to the last bit: the two sides of an edge's block were summed in different orders
+    if (kSymmetric) sum.symmetrise();
     if (n < targets.own_nodes)
       put(sum, at(targets.diagonal[n]));
     else if (targets.in_order)
@@ -106,8 +113,8 @@ static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, co
   }
 }
 
-static void flush(const BlockTargets& targets, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal,
-                  double* values) {
+static void flush(const BlockTargets& targets, const ChunkBlocks& upper, const ChunkBlocks& lower,
+                  bool symmetric, const ChunkBlocks& diagonal, double* values) {
   const auto run = [&](auto* rows) { rows(targets, upper, lower, diagonal, values); };
   if (symmetric)
     run(targets.stored ? flush_rows<true, true> : flush_rows<true, false>);
@@ -122,7 +129,8 @@ PALPATE_INLINE void store_single(const double* first, double last, float* to) {
   typedef double Row __attribute__((vector_size(64), may_alias));
   typedef float Singles __attribute__((vector_size(32)));
   typedef float SinglesInMemory __attribute__((vector_size(32), may_alias, aligned(4)));
-  *reinterpret_cast<SinglesInMemory*>(to) = __builtin_convertvector(*reinterpret_cast<const Row*>(first), Singles);
+  *reinterpret_cast<SinglesInMemory*>(to) =
+      __builtin_convertvector(*reinterpret_cast<const Row*>(first), Singles);
   to[8] = static_cast<float>(last);
 }
 #else
@@ -137,10 +145,12 @@ PALPATE_INLINE void add_single(const double* first, double last, float* to) {
   to[8] += static_cast<float>(last);
 }
 
-/// What leaves the time after next is asked for, a little each time: stores then find their lines near, and do not hold up those of the elements behind them.
+/// What leaves the time after next is asked for, a little each time: stores then find their lines near, and
+/// do not hold up those of the elements behind them.
 PALPATE_INLINE void fetch_places(const LeavingBlocks& blocks, int begin, int end) {
   const int last = blocks.late ? blocks.own : blocks.count;
-  for (int k = begin; k < end && k < last; ++k) fetch<2>(blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]) + 8, 64);
+  for (int k = begin; k < end && k < last; ++k)
+    fetch<2>(blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]) + 8, 64);
 }
 
 static void leave(LeavingBlocks& blocks, int count) {

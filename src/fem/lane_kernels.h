@@ -2,29 +2,34 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The element kernels as plain functions on plain data.  One source (lane_kernels.inl) is compiled for several instruction sets, so this
-/// header may hold no inline function and no template: the linker would keep one copy of it, made for whichever set it met first.
+/// The element kernels as plain functions on plain data.  One source (lane_kernels.inl) is compiled for
+/// several instruction sets, so this header may hold no inline function and no template: the linker would
+/// keep one copy of it, made for whichever set it met first.
 namespace palpate::fem {
 
-/// Eight tetrahedra side by side, one lane each.  Nodes and edges are numbered within a chunk of elements (element_chunks.h).
-/// The corners of an element ascend by node number, so that block K_ab, a < b, of its matrix belongs above the diagonal of the whole.
+/// Eight tetrahedra side by side, one lane each.  Nodes and edges are numbered within a chunk of elements
+/// (element_chunks.h). The corners of an element ascend by node number, so that block K_ab, a < b, of its
+/// matrix belongs above the diagonal of the whole.
 ///
-/// The material is isotropic, so that nothing changes when an element's rest shape is turned: with F' = F Q for a rotation Q, R' = R Q, P' = P Q, and P g, F g, R g, F F^T are what they
-/// were.  Q is taken from Dm = Q T, T upper triangular (corner 1 on the x axis, corner 2 in the xy plane), and T^-1 stands for Dm^-1: six numbers to read from memory instead of nine, and two
-/// thirds of the products with gradients.
+/// The material is isotropic, so that nothing changes when an element's rest shape is turned: with F' = F Q
+/// for a rotation Q, R' = R Q, P' = P Q, and P g, F g, R g, F F^T are what they were.  Q is taken from Dm = Q
+/// T, T upper triangular (corner 1 on the x axis, corner 2 in the xy plane), and T^-1 stands for Dm^-1: six
+/// numbers to read from memory instead of nine, and two thirds of the products with gradients.
 struct alignas(64) ElementGroup {
   static constexpr int kLanes = 8, kCorners = 4, kEdges = 6;
-  double inverse_edges[6][8];    ///< entries xx, xy, xz, yy, yz, zz of T^-1 [1/m]; row r is the gradient of corner r + 1
-  double volume[8];              ///< [m^3]; 0 in lanes that only fill up the group
+  /// entries xx, xy, xz, yy, yz, zz of T^-1 [1/m]; row r is the gradient of corner r + 1
+  double inverse_edges[6][8];
+  double volume[8];  ///< [m^3]; 0 in lanes that only fill up the group
   std::uint16_t node[4][8];
 };
 
 /// The edges of a group's elements; apart from it, as forces need none.
 struct GroupEdges {
-  std::uint16_t edge[6][8];      ///< corners (0,1) (0,2) (0,3) (1,2) (1,3) (2,3)
+  std::uint16_t edge[6][8];  ///< corners (0,1) (0,2) (0,3) (1,2) (1,3) (2,3)
 };
 
-/// Nodes that a thread is likely to need with its next chunk, and the nodal vectors of the body that are read or added to there, three doubles a node.
+/// Nodes that a thread is likely to need with its next chunk, and the nodal vectors of the body that are read
+/// or added to there, three doubles a node.
 struct ComingNodes {
   static constexpr int kMostFields = 5;
   const int* nodes = nullptr;
@@ -40,27 +45,30 @@ struct ComingRows {
   const int* row_start = nullptr;       ///< in the matrix, of each node of the body, in blocks
   const double* values = nullptr;
   int count = 0;
-  int asked = 0;                                 ///< of `count`
-  const char *next = nullptr, *end = nullptr;    ///< of the row that is being asked for
+  int asked = 0;                               ///< of `count`
+  const char *next = nullptr, *end = nullptr;  ///< of the row that is being asked for
 };
 
 /// Nodal vectors of one chunk, four doubles a node (x, y, z, unused), 32-byte aligned.
 struct ChunkFields {
-  const double* x = nullptr;  ///< positions [m]
-  const double* v = nullptr;  ///< velocities [m/s]
-  const double* w = nullptr;  ///< a direction
+  const double* x = nullptr;      ///< positions [m]
+  const double* v = nullptr;      ///< velocities [m/s]
+  const double* w = nullptr;      ///< a direction
   ComingNodes* coming = nullptr;  ///< asked for meanwhile; may be missing
   ComingRows* rows = nullptr;     ///< likewise
 };
 
-/// 3x3 blocks of one chunk, one an edge: entries 0 to 7, row by row, in `first`, the last one in `last`; `first` is 64-byte aligned.
+/// 3x3 blocks of one chunk, one an edge: entries 0 to 7, row by row, in `first`, the last one in `last`;
+/// `first` is 64-byte aligned.
 struct ChunkBlocks {
   double* first = nullptr;
   double* last = nullptr;
 };
 
-/// Blocks of a chunk on their way to a matrix in single precision, row by row, nine floats a block: of edges[k], k < own, to values[9 places[k]], whatever stood there; of the
-/// others, which an earlier chunk has, to late[9 (k - own)], or, where there is no `late`, added to what stands at values[9 places[k]].  What has gone is made zero for the next chunk.
+/// Blocks of a chunk on their way to a matrix in single precision, row by row, nine floats a block: of
+/// edges[k], k < own, to values[9 places[k]], whatever stood there; of the others, which an earlier chunk
+/// has, to late[9 (k - own)], or, where there is no `late`, added to what stands at values[9 places[k]].
+/// What has gone is made zero for the next chunk.
 struct LeavingBlocks {
   ChunkBlocks upper;
   const std::uint16_t* edges = nullptr;
@@ -73,11 +81,12 @@ struct LeavingBlocks {
 
 /// What the kernels need to know beside the elements.
 struct ElementModel {
-  double mu = 0.0, lambda = 0.0;                   ///< elastic [Pa]
-  double damping_mu = 0.0, damping_lambda = 0.0;   ///< [Pa s]; 0: none
-  bool warped = false, projected = false;          ///< neither: exact
-  bool by_position = false;                        ///< the damping's derivative by position too, which is unsymmetric
-  double k_scale = 0.0, d_scale = 0.0;             ///< of stiffness and damping in a tangent
+  double mu = 0.0, lambda = 0.0;                  ///< elastic [Pa]
+  double damping_mu = 0.0, damping_lambda = 0.0;  ///< [Pa s]; 0: none
+  bool warped = false, projected = false;         ///< neither: exact
+  /// the damping's derivative by position too, which is unsymmetric
+  bool by_position = false;
+  double k_scale = 0.0, d_scale = 0.0;  ///< of stiffness and damping in a tangent
 };
 
 /// Counts of lanes.
@@ -94,45 +103,63 @@ struct ScalarPath {
   bool (*coupling)(const ElementModel& model, const double* F, const double* R, double* C);
 };
 
-/// Where the blocks of one chunk go in a matrix: row by row, one row a node, since the matrix is far larger than the blocks and is best met in order.
+/// Where the blocks of one chunk go in a matrix: row by row, one row a node, since the matrix is far larger
+/// than the blocks and is best met in order.
 struct BlockTargets {
   int nodes = 0, own_nodes = 0;             ///< of the chunk; the own ones come first
   const std::int32_t* row_start = nullptr;  ///< of each node in `entries` and `slots`
-  const std::int32_t* row_own = nullptr;    ///< how many entries of a row are the chunk's own; they come first
-  const std::uint32_t* entries = nullptr;   ///< 2 edge, plus one where the node is the edge's second
-  const std::int32_t* slots = nullptr;      ///< of each entry in the matrix
-  const std::int32_t* diagonal = nullptr;   ///< slot of each node's diagonal block
-  bool in_order = false;                    ///< chunks come one after the other: late entries go to the matrix as well; else they only count for the diagonal
-  bool stored = false;                      ///< own entries, and diagonal blocks of own nodes, replace what stands in the matrix; else they are added to it
+  /// how many entries of a row are the chunk's own; they come first
+  const std::int32_t* row_own = nullptr;
+  const std::uint32_t* entries = nullptr;  ///< 2 edge, plus one where the node is the edge's second
+  const std::int32_t* slots = nullptr;     ///< of each entry in the matrix
+  const std::int32_t* diagonal = nullptr;  ///< slot of each node's diagonal block
+  /// chunks come one after the other: late entries go to the matrix as well; else they only count for the
+  /// diagonal
+  bool in_order = false;
+  /// own entries, and diagonal blocks of own nodes, replace what stands in the matrix; else they are added to
+  /// it
+  bool stored = false;
 };
 
 struct LaneKernels {
   const char* name;
   /// f += nodal forces of the groups, four doubles a node.
-  void (*force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, LaneCounts&);
+  void (*force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
+                const ChunkFields&, double* f, LaneCounts&);
   /// y += tangent times w.
-  void (*apply)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* y, LaneCounts&);
+  void (*apply)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
+                const ChunkFields&, double* y, LaneCounts&);
   /// Blocks above the diagonal into `upper`; with by_position those below it into `lower`.
-  void (*tangent)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, const ChunkBlocks& upper,
-                  const ChunkBlocks& lower, LaneCounts&);
-  /// Adds the chunk's own blocks to the matrix (nine doubles a slot), or stores them there, and leaves the diagonal blocks of nodes that are not its own in `diagonal`; in order, adds what
-  /// is not its own to the matrix as well.
-  void (*flush)(const BlockTargets&, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric, const ChunkBlocks& diagonal, double* values);
+  void (*tangent)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&,
+                  const ScalarPath&, const ChunkFields&, const ChunkBlocks& upper, const ChunkBlocks& lower,
+                  LaneCounts&);
+  /// Adds the chunk's own blocks to the matrix (nine doubles a slot), or stores them there, and leaves the
+  /// diagonal blocks of nodes that are not its own in `diagonal`; in order, adds what is not its own to the
+  /// matrix as well.
+  void (*flush)(const BlockTargets&, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric,
+                const ChunkBlocks& diagonal, double* values);
   /// f += nodal forces - stiffness times w.
-  void (*step_force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, LaneCounts&);
-  /// Of one linearly implicit step, all at once: f += nodal forces - stiffness times w, and the blocks of a symmetric tangent above the diagonal.  Meanwhile blocks of the chunk
-  /// before leave: the matrix lies far away, and what is written there is on its way while elements are computed.
-  void (*step)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double* f, const ChunkBlocks& upper, LeavingBlocks& before, LaneCounts&);
+  void (*step_force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
+                     const ChunkFields&, double* f, LaneCounts&);
+  /// Of one linearly implicit step, all at once: f += nodal forces - stiffness times w, and the blocks of a
+  /// symmetric tangent above the diagonal.  Meanwhile blocks of the chunk before leave: the matrix lies far
+  /// away, and what is written there is on its way while elements are computed.
+  void (*step)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&,
+               const ScalarPath&, const ChunkFields&, double* f, const ChunkBlocks& upper,
+               LeavingBlocks& before, LaneCounts&);
   /// Sends up to `count` more on their way.
   void (*leave)(LeavingBlocks&, int count);
   /// Elastic energies [J], and powers of the damping [W], summed by lane.
-  void (*energy)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&, const ChunkFields&, double sums[8], LaneCounts&);
-  void (*power)(const ElementGroup* groups, int count, const ElementModel&, const ChunkFields&, double sums[8]);
+  void (*energy)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
+                 const ChunkFields&, double sums[8], LaneCounts&);
+  void (*power)(const ElementGroup* groups, int count, const ElementModel&, const ChunkFields&,
+                double sums[8]);
 };
 
 /// @param name  "baseline", "avx2" or "avx512"; nullptr where the build or the processor lacks it
 const LaneKernels* find_kernels(const char* name);
-/// The widest that this processor has; the environment variable PALPATE_INSTRUCTIONS may name another.  @throws Error when that is not to be had.
+/// The widest that this processor has; the environment variable PALPATE_INSTRUCTIONS may name another.
+/// @throws Error when that is not to be had.
 const LaneKernels& best_kernels();
 
 }  // namespace palpate::fem

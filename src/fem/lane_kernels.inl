@@ -1,5 +1,6 @@
-// The element kernels in lanes.  A file that includes this one names the instruction set by PALPATE_KERNELS (a namespace), PALPATE_NAME
-// (its name) and PALPATE_WIDTH (doubles in a vector).  No other header with inline code may come in here: see lane_kernels.h.
+// The element kernels in lanes.  A file that includes this one names the instruction set by PALPATE_KERNELS
+// (a namespace), PALPATE_NAME (its name) and PALPATE_WIDTH (doubles in a vector).  No other header with
+// inline code may come in here: see lane_kernels.h.
 #include "fem/lane_kernels.h"
 
 namespace palpate::fem::PALPATE_KERNELS {
@@ -18,6 +19,7 @@ namespace {
 }  // namespace
 
 extern const LaneKernels kernels;
-const LaneKernels kernels{PALPATE_NAME, force, apply_tangent, tangent, flush, step_force, step, leave, energy, power};
+const LaneKernels kernels{PALPATE_NAME, force, apply_tangent, tangent, flush,
+                          step_force,   step,  leave,         energy,  power};
 
 }  // namespace palpate::fem::PALPATE_KERNELS

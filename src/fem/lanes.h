@@ -1,20 +1,24 @@
 #pragma once
-// Elements in the lanes of a vector, by the compiler's own vector types.  Included by lane_kernels.inl alone, inside the namespace of one
-// instruction set; everything here is static and inlined, so that no copy for one set is linked into another.
+// Elements in the lanes of a vector, by the compiler's own vector types.  Included by lane_kernels.inl alone,
+// inside the namespace of one instruction set; everything here is static and inlined, so that no copy for one
+// set is linked into another.
 
 #define PALPATE_INLINE [[gnu::always_inline]] static inline
 #define PALPATE_INLINE_MEMBER [[gnu::always_inline]]
 
-constexpr int kWidth = PALPATE_WIDTH;  // lanes of one vector: 2, 4 or 8; a group of eight is worked through in 8 / kWidth parts
+// lanes of one vector: 2, 4 or 8; a group of eight is worked through in 8 / kWidth parts
+constexpr int kWidth = PALPATE_WIDTH;
 typedef double Pack __attribute__((vector_size(8 * PALPATE_WIDTH)));
 typedef long long Mask __attribute__((vector_size(8 * PALPATE_WIDTH)));
 typedef double PackInMemory __attribute__((vector_size(8 * PALPATE_WIDTH), may_alias));
 
 PALPATE_INLINE Pack load(const double* p) { return *reinterpret_cast<const PackInMemory*>(p); }
-/// Lines that are wanted soon, at once (3) or rather later (2: into the second-level cache).  A processor's own guess ends at every page of 4 KiB, which here is every 40 elements.
+/// Lines that are wanted soon, at once (3) or rather later (2: into the second-level cache).  A processor's
+/// own guess ends at every page of 4 KiB, which here is every 40 elements.
 template <int kHowSoon>
 PALPATE_INLINE void fetch(const void* first, int bytes) {
-  for (int at = 0; at < bytes; at += 64) __builtin_prefetch(static_cast<const char*>(first) + at, 0, kHowSoon);
+  for (int at = 0; at < bytes; at += 64)
+    __builtin_prefetch(static_cast<const char*>(first) + at, 0, kHowSoon);
 }
 PALPATE_INLINE bool any(Mask m) {
   long long bits = 0;
@@ -22,35 +26,66 @@ PALPATE_INLINE bool any(Mask m) {
   return bits != 0;
 }
 
-struct Vector { Pack x, y, z; };
-struct Matrix { Vector row[3]; };
+struct Vector {
+  Pack x, y, z;
+};
+struct Matrix {
+  Vector row[3];
+};
 
-PALPATE_INLINE Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-PALPATE_INLINE Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+PALPATE_INLINE Vector operator+(const Vector& a, const Vector& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+PALPATE_INLINE Vector operator-(const Vector& a, const Vector& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
 PALPATE_INLINE Vector operator-(const Vector& a) { return {-a.x, -a.y, -a.z}; }
 PALPATE_INLINE Vector operator*(Pack s, const Vector& a) { return {s * a.x, s * a.y, s * a.z}; }
 PALPATE_INLINE Pack dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-PALPATE_INLINE Vector cross(const Vector& a, const Vector& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-PALPATE_INLINE Matrix operator+(const Matrix& A, const Matrix& B) { return {{A.row[0] + B.row[0], A.row[1] + B.row[1], A.row[2] + B.row[2]}}; }
-PALPATE_INLINE Matrix operator-(const Matrix& A, const Matrix& B) { return {{A.row[0] - B.row[0], A.row[1] - B.row[1], A.row[2] - B.row[2]}}; }
-PALPATE_INLINE Matrix operator*(Pack s, const Matrix& A) { return {{s * A.row[0], s * A.row[1], s * A.row[2]}}; }
+PALPATE_INLINE Vector cross(const Vector& a, const Vector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+PALPATE_INLINE Matrix operator+(const Matrix& A, const Matrix& B) {
+  return {{A.row[0] + B.row[0], A.row[1] + B.row[1], A.row[2] + B.row[2]}};
+}
+PALPATE_INLINE Matrix operator-(const Matrix& A, const Matrix& B) {
+  return {{A.row[0] - B.row[0], A.row[1] - B.row[1], A.row[2] - B.row[2]}};
+}
+PALPATE_INLINE Matrix operator*(Pack s, const Matrix& A) {
+  return {{s * A.row[0], s * A.row[1], s * A.row[2]}};
+}
 /// a^T B
-PALPATE_INLINE Vector times(const Vector& a, const Matrix& B) { return a.x * B.row[0] + a.y * B.row[1] + a.z * B.row[2]; }
+PALPATE_INLINE Vector times(const Vector& a, const Matrix& B) {
+  return a.x * B.row[0] + a.y * B.row[1] + a.z * B.row[2];
+}
 /// A b
-PALPATE_INLINE Vector apply(const Matrix& A, const Vector& b) { return {dot(A.row[0], b), dot(A.row[1], b), dot(A.row[2], b)}; }
-PALPATE_INLINE Matrix operator*(const Matrix& A, const Matrix& B) { return {{times(A.row[0], B), times(A.row[1], B), times(A.row[2], B)}}; }
+PALPATE_INLINE Vector apply(const Matrix& A, const Vector& b) {
+  return {dot(A.row[0], b), dot(A.row[1], b), dot(A.row[2], b)};
+}
+PALPATE_INLINE Matrix operator*(const Matrix& A, const Matrix& B) {
+  return {{times(A.row[0], B), times(A.row[1], B), times(A.row[2], B)}};
+}
 /// A B^T
-PALPATE_INLINE Matrix times_transposed(const Matrix& A, const Matrix& B) { return {{apply(B, A.row[0]), apply(B, A.row[1]), apply(B, A.row[2])}}; }
-PALPATE_INLINE Pack double_dot(const Matrix& A, const Matrix& B) { return dot(A.row[0], B.row[0]) + dot(A.row[1], B.row[1]) + dot(A.row[2], B.row[2]); }
+PALPATE_INLINE Matrix times_transposed(const Matrix& A, const Matrix& B) {
+  return {{apply(B, A.row[0]), apply(B, A.row[1]), apply(B, A.row[2])}};
+}
+PALPATE_INLINE Pack double_dot(const Matrix& A, const Matrix& B) {
+  return dot(A.row[0], B.row[0]) + dot(A.row[1], B.row[1]) + dot(A.row[2], B.row[2]);
+}
 
 /// A symmetric matrix: xx, yy, zz, yz, xz, xy.
-struct Symmetric { Pack xx, yy, zz, yz, xz, xy; };
-PALPATE_INLINE Matrix full(const Symmetric& S) { return {{{S.xx, S.xy, S.xz}, {S.xy, S.yy, S.yz}, {S.xz, S.yz, S.zz}}}; }
+struct Symmetric {
+  Pack xx, yy, zz, yz, xz, xy;
+};
+PALPATE_INLINE Matrix full(const Symmetric& S) {
+  return {{{S.xx, S.xy, S.xz}, {S.xy, S.yy, S.yz}, {S.xz, S.yz, S.zz}}};
+}
 /// A^T A and A A^T
 PALPATE_INLINE Symmetric gram_of_columns(const Matrix& A) {
   const Vector &a = A.row[0], &b = A.row[1], &c = A.row[2];
-  return {a.x * a.x + b.x * b.x + c.x * c.x, a.y * a.y + b.y * b.y + c.y * c.y, a.z * a.z + b.z * b.z + c.z * c.z,
-          a.y * a.z + b.y * b.z + c.y * c.z, a.x * a.z + b.x * b.z + c.x * c.z, a.x * a.y + b.x * b.y + c.x * c.y};
+  return {a.x * a.x + b.x * b.x + c.x * c.x, a.y * a.y + b.y * b.y + c.y * c.y,
+          a.z * a.z + b.z * b.z + c.z * c.z, a.y * a.z + b.y * b.z + c.y * c.z,
+          a.x * a.z + b.x * b.z + c.x * c.z, a.x * a.y + b.x * b.y + c.x * c.y};
 }
 PALPATE_INLINE Symmetric gram_of_rows(const Matrix& A) {
   return {dot(A.row[0], A.row[0]), dot(A.row[1], A.row[1]), dot(A.row[2], A.row[2]),
@@ -79,7 +114,8 @@ PALPATE_INLINE void scatter_add(double* field, const std::uint16_t* node, const 
 }
 /// Adds entries 0 to 7 of a block to the row of eight of its edge.
 PALPATE_INLINE void scatter_rows(double* rows, const std::uint16_t* edge, const Pack* k) {
-  PackInMemory *first = reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[0])), *second = reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[1]));
+  PackInMemory *first = reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[0])),
+               *second = reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[1]));
   for (int c = 0; c < 4; ++c) first[c] += __builtin_shufflevector(k[2 * c], k[2 * c + 1], 0, 2);
   for (int c = 0; c < 4; ++c) second[c] += __builtin_shufflevector(k[2 * c], k[2 * c + 1], 1, 3);
 }
@@ -87,15 +123,20 @@ PALPATE_INLINE void scatter_rows(double* rows, const std::uint16_t* edge, const 
 #elif PALPATE_WIDTH == 4
 
 PALPATE_INLINE Vector gather(const double* field, const std::uint16_t* node) {
-  const Pack a = load(field + 4 * place(node[0])), b = load(field + 4 * place(node[1])), c = load(field + 4 * place(node[2])), d = load(field + 4 * place(node[3]));
+  const Pack a = load(field + 4 * place(node[0])), b = load(field + 4 * place(node[1])),
+             c = load(field + 4 * place(node[2])), d = load(field + 4 * place(node[3]));
   const Pack ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
-  const Pack ab_y = __builtin_shufflevector(a, b, 1, 5, 3, 7), cd_y = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab_y, cd_y, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7)};
+  const Pack ab_y = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+             cd_y = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return {__builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab_y, cd_y, 0, 1, 4, 5),
+          __builtin_shufflevector(ab, cd, 2, 3, 6, 7)};
 }
 /// Row l of the result: entry l of the four packs.
 PALPATE_INLINE void transpose(const Pack* k, Pack* row) {
-  const Pack a = __builtin_shufflevector(k[0], k[1], 0, 4, 2, 6), b = __builtin_shufflevector(k[2], k[3], 0, 4, 2, 6);
-  const Pack c = __builtin_shufflevector(k[0], k[1], 1, 5, 3, 7), d = __builtin_shufflevector(k[2], k[3], 1, 5, 3, 7);
+  const Pack a = __builtin_shufflevector(k[0], k[1], 0, 4, 2, 6),
+             b = __builtin_shufflevector(k[2], k[3], 0, 4, 2, 6);
+  const Pack c = __builtin_shufflevector(k[0], k[1], 1, 5, 3, 7),
+             d = __builtin_shufflevector(k[2], k[3], 1, 5, 3, 7);
   row[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
   row[1] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
   row[2] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
@@ -123,23 +164,31 @@ PALPATE_INLINE void scatter_rows(double* rows, const std::uint16_t* edge, const 
 typedef double Quad __attribute__((vector_size(32)));
 typedef double QuadInMemory __attribute__((vector_size(32), may_alias));
 PALPATE_INLINE Pack pair(const double* low, const double* high) {
-  return __builtin_shufflevector(*reinterpret_cast<const QuadInMemory*>(low), *reinterpret_cast<const QuadInMemory*>(high), 0, 1, 2, 3, 4, 5, 6, 7);
+  return __builtin_shufflevector(*reinterpret_cast<const QuadInMemory*>(low),
+                                 *reinterpret_cast<const QuadInMemory*>(high), 0, 1, 2, 3, 4, 5, 6, 7);
 }
 PALPATE_INLINE Pack even(Pack a, Pack b) { return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14); }
 PALPATE_INLINE Pack odd(Pack a, Pack b) { return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15); }
-PALPATE_INLINE Pack low_pairs(Pack a, Pack b) { return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13); }
-PALPATE_INLINE Pack high_pairs(Pack a, Pack b) { return __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15); }
+PALPATE_INLINE Pack low_pairs(Pack a, Pack b) {
+  return __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13);
+}
+PALPATE_INLINE Pack high_pairs(Pack a, Pack b) {
+  return __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15);
+}
 
 PALPATE_INLINE Vector gather(const double* field, const std::uint16_t* node) {
-  const Pack a = pair(field + 4 * place(node[0]), field + 4 * place(node[4])), b = pair(field + 4 * place(node[1]), field + 4 * place(node[5]));
-  const Pack c = pair(field + 4 * place(node[2]), field + 4 * place(node[6])), d = pair(field + 4 * place(node[3]), field + 4 * place(node[7]));
+  const Pack a = pair(field + 4 * place(node[0]), field + 4 * place(node[4])),
+             b = pair(field + 4 * place(node[1]), field + 4 * place(node[5]));
+  const Pack c = pair(field + 4 * place(node[2]), field + 4 * place(node[6])),
+             d = pair(field + 4 * place(node[3]), field + 4 * place(node[7]));
   const Pack ab = even(a, b), cd = even(c, d);
   return {low_pairs(ab, cd), low_pairs(odd(a, b), odd(c, d)), high_pairs(ab, cd)};
 }
 PALPATE_INLINE void add_quad(double* p, Quad q) { *reinterpret_cast<QuadInMemory*>(p) += q; }
 PALPATE_INLINE void scatter_add(double* field, const std::uint16_t* node, const Vector& f) {
   const Pack zero{}, xy = even(f.x, f.y), z = even(f.z, zero), xy_odd = odd(f.x, f.y), z_odd = odd(f.z, zero);
-  const Pack rows[4] = {low_pairs(xy, z), low_pairs(xy_odd, z_odd), high_pairs(xy, z), high_pairs(xy_odd, z_odd)};
+  const Pack rows[4] = {low_pairs(xy, z), low_pairs(xy_odd, z_odd), high_pairs(xy, z),
+                        high_pairs(xy_odd, z_odd)};
   for (int l = 0; l < 4; ++l) {
     add_quad(field + 4 * place(node[l]), __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3));
     add_quad(field + 4 * place(node[l + 4]), __builtin_shufflevector(rows[l], rows[l], 4, 5, 6, 7));
@@ -152,8 +201,10 @@ PALPATE_INLINE void scatter_rows(double* rows, const std::uint16_t* edge, const 
   const Pack low[4] = {low_pairs(a0, b0), low_pairs(a1, b1), high_pairs(a0, b0), high_pairs(a1, b1)};
   const Pack high[4] = {low_pairs(c0, d0), low_pairs(c1, d1), high_pairs(c0, d0), high_pairs(c1, d1)};
   for (int l = 0; l < 4; ++l) {
-    *reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[l])) += __builtin_shufflevector(low[l], high[l], 0, 1, 2, 3, 8, 9, 10, 11);
-    *reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[l + 4])) += __builtin_shufflevector(low[l], high[l], 4, 5, 6, 7, 12, 13, 14, 15);
+    *reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[l])) +=
+        __builtin_shufflevector(low[l], high[l], 0, 1, 2, 3, 8, 9, 10, 11);
+    *reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[l + 4])) +=
+        __builtin_shufflevector(low[l], high[l], 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }
 

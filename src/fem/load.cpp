@@ -14,18 +14,30 @@ using dynamics::StateView;
 /// Forces that neither state nor time changes; potential -f . x.
 class DeadLoad final : public dynamics::ForceTerm {
  public:
-  DeadLoad(std::string name, VecX forces, int block_id) : name_(std::move(name)), forces_(std::move(forces)), block_id_(block_id) {}
+  DeadLoad(std::string name, VecX forces, int block_id)
+      : name_(std::move(name)), forces_(std::move(forces)), block_id_(block_id) {}
   std::string_view name() const override { return name_; }
   dynamics::TermTraits traits() const override {
-    return {.stiff = false, .fast = false, .symmetric_tangent = true, .has_tangent = true, .conservative = true, .balanced = true};
+    return {.stiff = false,
+            .fast = false,
+            .symmetric_tangent = true,
+            .has_tangent = true,
+            .conservative = true,
+            .balanced = true};
   }
-  void add_force(const StateView& state, VecX& f) override { f.segment(place(state).u_offset, forces_.size()) += forces_; }
+  void add_force(const StateView& state, VecX& f) override {
+    f.segment(place(state).u_offset, forces_.size()) += forces_;
+  }
   void add_tangent(const StateView&, double, double, dynamics::BorderedMatrix&) override {}
   void apply_tangent(const StateView&, double, double, const VecX&, VecX&) override {}
-  double energy(const StateView& state) override { return -forces_.dot(Eigen::Map<const VecX>(place(state).x, forces_.size())); }
+  double energy(const StateView& state) override {
+    return -forces_.dot(Eigen::Map<const VecX>(place(state).x, forces_.size()));
+  }
 
  private:
-  NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id_, static_cast<int>(forces_.size() / 3)); }
+  NodeBlock place(const StateView& state) const {
+    return NodeBlock(state, block_id_, static_cast<int>(forces_.size() / 3));
+  }
   std::string name_;
   VecX forces_;
   int block_id_;
@@ -34,7 +46,8 @@ class DeadLoad final : public dynamics::ForceTerm {
 }  // namespace
 
 std::shared_ptr<dynamics::ForceTerm> make_gravity(const VecX& masses, const Vec3& gravity, int block_id) {
-  if (!gravity.allFinite()) fail("gravity_m_s2 = ({}, {}, {}) must be finite", gravity.x(), gravity.y(), gravity.z());
+  if (!gravity.allFinite())
+    fail("gravity_m_s2 = ({}, {}, {}) must be finite", gravity.x(), gravity.y(), gravity.z());
   const Points weights = gravity * masses.transpose();
   return std::make_shared<DeadLoad>("gravity", weights.reshaped(), block_id);
 }
@@ -46,7 +59,8 @@ std::shared_ptr<dynamics::ForceTerm> make_dead_load(std::string name, const Poin
 
 Points spread_over_boundary(const TetMesh& placed, const LoadSpec& load) {
   check_box(load.box_min_m, load.box_max_m, "load");
-  if (!load.force_n.allFinite()) fail("load: force_n = ({}, {}, {}) must be finite", load.force_n.x(), load.force_n.y(), load.force_n.z());
+  if (!load.force_n.allFinite())
+    fail("load: force_n = ({}, {}, {}) must be finite", load.force_n.x(), load.force_n.y(), load.force_n.z());
   const mesh::Boundary boundary = mesh::boundary(placed);
   VecX share = VecX::Zero(placed.nodes.cols());
   for (const auto& face : boundary.surface.faces.colwise()) {
@@ -62,7 +76,9 @@ Points spread_over_boundary(const TetMesh& placed, const LoadSpec& load) {
     for (int i = 0; i < 3; ++i) share[node[i]] += third;
   }
   const double area = share.sum();
-  if (!(area > 0.0)) fail("load: no boundary triangle of the mesh lies in the box {}; make it larger", describe(load.box_min_m, load.box_max_m));
+  if (!(area > 0.0))
+    fail("load: no boundary triangle of the mesh lies in the box {}; make it larger",
+         describe(load.box_min_m, load.box_max_m));
   return load.force_n * (share / area).transpose();
 }
 

@@ -37,11 +37,14 @@ class LumpedMass final : public dynamics::InertiaTerm {
   }
   void apply(const StateView& state, const VecX& x, VecX& y) const override {
     const int offset = place(state).u_offset;
-    for (int i = 0; i < masses_.size(); ++i) y.segment<3>(offset + 3 * i) += masses_[i] * x.segment<3>(offset + 3 * i);
+    for (int i = 0; i < masses_.size(); ++i)
+      y.segment<3>(offset + 3 * i) += masses_[i] * x.segment<3>(offset + 3 * i);
   }
 
  private:
-  NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id_, static_cast<int>(masses_.size())); }
+  NodeBlock place(const StateView& state) const {
+    return NodeBlock(state, block_id_, static_cast<int>(masses_.size()));
+  }
   VecX masses_;
   int block_id_;
 };
@@ -50,7 +53,9 @@ class LumpedMass final : public dynamics::InertiaTerm {
 class ConsistentMass final : public dynamics::InertiaTerm {
  public:
   ConsistentMass(const TetMesh& rest, const Materials& materials, int block_id)
-      : elements_(make_rest_elements(rest, "mass")), masses_(element_masses(elements_, materials)), block_id_(block_id) {}
+      : elements_(make_rest_elements(rest, "mass")),
+        masses_(element_masses(elements_, materials)),
+        block_id_(block_id) {}
   int block_id() const override { return block_id_; }
   bool diagonal() const override { return false; }
   void add_pattern(dynamics::PatternBuilder& pattern) const override {
@@ -61,7 +66,8 @@ class ConsistentMass final : public dynamics::InertiaTerm {
     scatter_.prepare(elements_, place(state).first_node, A.body);
     for (std::size_t e = 0; e < masses_.size(); ++e)
       for (int a = 0; a < 4; ++a)
-        for (int b = 0; b < 4; ++b) A.body.add(scatter_.slot(e, a, b), scale * entry(e, a == b) * Mat3::Identity());
+        for (int b = 0; b < 4; ++b)
+          A.body.add(scatter_.slot(e, a, b), scale * entry(e, a == b) * Mat3::Identity());
   }
   void apply(const StateView& state, const VecX& x, VecX& y) const override {
     const int offset = place(state).u_offset;
@@ -75,7 +81,9 @@ class ConsistentMass final : public dynamics::InertiaTerm {
 
  private:
   double entry(std::size_t e, bool diagonal) const { return masses_[e] / 20.0 * (diagonal ? 2.0 : 1.0); }
-  NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id_, elements_.node_count()); }
+  NodeBlock place(const StateView& state) const {
+    return NodeBlock(state, block_id_, elements_.node_count());
+  }
   RestElements elements_;
   std::vector<double> masses_;  ///< of the elements [kg]
   int block_id_;
@@ -87,7 +95,9 @@ class ConsistentMass final : public dynamics::InertiaTerm {
 VecX lumped_masses(const TetMesh& rest, const Materials& materials) {
   check(materials, static_cast<int>(rest.tets.cols()), "mass");
   const RestElements elements = make_rest_elements(rest, "mass");
-  if (materials.of_element.empty()) return materials.list[0].density * Eigen::Map<const VecX>(elements.nodal_volume.data(), elements.node_count());
+  if (materials.of_element.empty())
+    return materials.list[0].density *
+           Eigen::Map<const VecX>(elements.nodal_volume.data(), elements.node_count());
   VecX out = VecX::Zero(elements.node_count());
   const std::vector<double> masses = element_masses(elements, materials);
   for (std::size_t e = 0; e < masses.size(); ++e)
@@ -96,17 +106,20 @@ VecX lumped_masses(const TetMesh& rest, const Materials& materials) {
 }
 VecX lumped_masses(const TetMesh& rest, double density) { return lumped_masses(rest, of_density(density)); }
 
-std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, const Materials& materials, int block_id) {
+std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, const Materials& materials,
+                                                        int block_id) {
   return std::make_shared<LumpedMass>(lumped_masses(rest, materials), block_id);
 }
 std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, double density, int block_id) {
   return make_lumped_mass(rest, of_density(density), block_id);
 }
 
-std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, const Materials& materials, int block_id) {
+std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, const Materials& materials,
+                                                            int block_id) {
   return std::make_shared<ConsistentMass>(rest, materials, block_id);
 }
-std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, double density, int block_id) {
+std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, double density,
+                                                            int block_id) {
   return make_consistent_mass(rest, of_density(density), block_id);
 }
 

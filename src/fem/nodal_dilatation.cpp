@@ -14,34 +14,44 @@
 #include "palpate/core/polar.h"
 #include "stress.h"
 
-// A linear tetrahedron has one constraint of volume as lambda -> inf; a mesh has five to six times as many tetrahedra as nodes, more constraints than
-// the three directions a node has: it locks.  Averages at the nodes are one constraint a node.  With theta_e = tr(R^T F) - 3 (corotated.h),
+// A linear tetrahedron has one constraint of volume as lambda -> inf; a mesh has five to six times as many
+// tetrahedra as nodes, more constraints than the three directions a node has: it locks.  Averages at the
+// nodes are one constraint a node.  With theta_e = tr(R^T F) - 3 (corotated.h),
 //
-//   theta_n = (1/V_n) sum_{e at n} (V_e/4) theta_e,   V_n = sum_{e at n} V_e/4,      E = (kappa/2) sum_n V_n theta_n^2,
+//   theta_n = (1/V_n) sum_{e at n} (V_e/4) theta_e,   V_n = sum_{e at n} V_e/4,      E = (kappa/2) sum_n V_n
+//   theta_n^2,
 //
 // kappa = (1 - share) lambda.  As d theta_e = R : dF (corotated.h: dR drops out),
 //
-//   dE = kappa sum_n theta_n sum_{e at n} (V_e/4) R : dF = sum_e V_e P_e : dF,   P_e = kappa theta*_e R,   theta*_e = mean of theta_n over the four nodes:
+//   dE = kappa sum_n theta_n sum_{e at n} (V_e/4) R : dF = sum_e V_e P_e : dF,   P_e = kappa theta*_e R,
+//   theta*_e = mean of theta_n over the four nodes:
 //
-// the element's own force with the average of averages in place of theta_e.  Uniform strain has theta* = theta: the patch test holds; P_e F^T is
-// symmetric: no moment; a tetrahedron alone has theta* = theta_e: it is the element.
+// the element's own force with the average of averages in place of theta_e.  Uniform strain has theta* =
+// theta: the patch test holds; P_e F^T is symmetric: no moment; a tetrahedron alone has theta* = theta_e: it
+// is the element.
 //
-// Of several materials the averages are taken within each: theta jumps where lambda does (the pressure across the border is what agrees), and an average
-// over both sides would hold the soft side to what the stiff one does.  So n runs over sites, the pairs of a node and a material at it, V_n and kappa_n are
-// the site's own, and theta*_e is the mean over the four sites that e has corners at.  All of the above holds as it stands: each element's corners still
-// have weights that sum to one over its own material.
+// Of several materials the averages are taken within each: theta jumps where lambda does (the pressure across
+// the border is what agrees), and an average over both sides would hold the soft side to what the stiff one
+// does.  So n runs over sites, the pairs of a node and a material at it, V_n and kappa_n are the site's own,
+// and theta*_e is the mean over the four sites that e has corners at.  All of the above holds as it stands:
+// each element's corners still have weights that sum to one over its own material.
 //
-// Tangent.  V_n d theta_n = sum_j b_nj . dx_j over the ring of n, b_nj = sum_{e at n and j} (V_e/4) R g_j; so that
+// Tangent.  V_n d theta_n = sum_j b_nj . dx_j over the ring of n, b_nj = sum_{e at n and j} (V_e/4) R g_j; so
+// that
 //
-//   K_ij = sum_n (kappa/V_n) b_ni b_nj^T + sum_{e at i and j} V_e [h_i]x C [h_j]x,   C = -kappa theta*_e G,   h = R g, G = d axl / dR of corotated.h.
+//   K_ij = sum_n (kappa/V_n) b_ni b_nj^T + sum_{e at i and j} V_e [h_i]x C [h_j]x,   C = -kappa theta*_e G,
+//   h = R g, G = d axl / dR of corotated.h.
 //
-// The first sum is positive semi-definite, of rank one a node.  The second, kappa theta* dR, adds to SoftBody's -c dR and is exact with it; its twists have the
-// eigenvalues 2 kappa theta*/(s_i + s_j): projected takes C only where theta* > 0; warped leaves it out, as there C = mu I is that of theta = 0.
+// The first sum is positive semi-definite, of rank one a node.  The second, kappa theta* dR, adds to
+// SoftBody's -c dR and is exact with it; its twists have the eigenvalues 2 kappa theta*/(s_i + s_j):
+// projected takes C only where theta* > 0; warped leaves it out, as there C = mu I is that of theta = 0.
 //
 // Damping (corotated.h) alike, with tau_e = tr E' = F : F' in place of theta_e:
 //
-//   P_d = kappa_d tau*_e F,   D_ij = sum_n (kappa_d/V_n) d_ni d_nj^T,   d_nj = sum (V_e/4) F g_j,   power = kappa_d sum_n V_n tau_n^2 >= 0,
-//   by position (unsymmetric):  K_ij = sum_e V_e kappa_d tau*_e (g_i . g_j) I + sum_n (kappa_d/V_n) d_ni l_nj^T,   l_nj = sum (V_e/4) F' g_j.
+//   P_d = kappa_d tau*_e F,   D_ij = sum_n (kappa_d/V_n) d_ni d_nj^T,   d_nj = sum (V_e/4) F g_j,   power =
+//   kappa_d sum_n V_n tau_n^2 >= 0,
+//   by position (unsymmetric):  K_ij = sum_e V_e kappa_d tau*_e (g_i . g_j) I + sum_n (kappa_d/V_n) d_ni
+//   l_nj^T,   l_nj = sum (V_e/4) F' g_j.
 
 namespace palpate::fem {
 
@@ -55,7 +65,8 @@ using Gradients = Eigen::Matrix<double, 3, 4>;
 
 double double_dot(const Mat3& A, const Mat3& B) { return A.cwiseProduct(B).sum(); }
 
-/// Where averages are taken: at each node, once for each material at it.  Of one material, the nodes themselves: nothing is kept then.
+/// Where averages are taken: at each node, once for each material at it.  Of one material, the nodes
+/// themselves: nothing is kept then.
 struct Sites {
   std::array<std::vector<int>, 4> corner;  ///< site of each corner of each element
   std::vector<double> volume;              ///< [m^3]
@@ -78,9 +89,15 @@ struct Sites {
         volume[static_cast<std::size_t>(corner[a].back())] += 0.25 * elements.volume[e];
       }
   }
-  const std::array<std::vector<int>, 4>& of_corner(const RestElements& elements) const { return node.empty() ? elements.node : corner; }
-  double volume_of(const RestElements& elements, int site) const { return (node.empty() ? elements.nodal_volume : volume)[static_cast<std::size_t>(site)]; }
-  int count(const RestElements& elements) const { return node.empty() ? elements.node_count() : static_cast<int>(node.size()); }
+  const std::array<std::vector<int>, 4>& of_corner(const RestElements& elements) const {
+    return node.empty() ? elements.node : corner;
+  }
+  double volume_of(const RestElements& elements, int site) const {
+    return (node.empty() ? elements.nodal_volume : volume)[static_cast<std::size_t>(site)];
+  }
+  int count(const RestElements& elements) const {
+    return node.empty() ? elements.node_count() : static_cast<int>(node.size());
+  }
   int node_of(int site) const { return node.empty() ? site : node[static_cast<std::size_t>(site)]; }
 };
 
@@ -96,26 +113,32 @@ struct NodalDilatation::Impl {
   SoftBodyOptions options;
   int block_id;
   RestElements elements;
-  std::vector<int> material_of_element;                ///< empty: one material
+  std::vector<int> material_of_element;  ///< empty: one material
   Sites sites;
   NodeRings rings;
   struct Constants {
-    Lame kept;                    ///< of the SoftBody [Pa]
-    double kappa = 0.0;           ///< (1 - share) lambda [Pa]
-    double kappa_d = 0.0;         ///< (1 - share) lambda_d [Pa s]
+    Lame kept;             ///< of the SoftBody [Pa]
+    double kappa = 0.0;    ///< (1 - share) lambda [Pa]
+    double kappa_d = 0.0;  ///< (1 - share) lambda_d [Pa s]
   };
   std::vector<Constants> constants;  ///< of the materials
   bool definite = false;
-  std::vector<Mat3> F, R;         ///< of each element at the state last deformed to
-  VecX element, site, rate;       ///< element values and averages at the sites; averages of the rate
+  std::vector<Mat3> F, R;    ///< of each element at the state last deformed to
+  VecX element, site, rate;  ///< element values and averages at the sites; averages of the rate
   std::vector<Vec3> turned, deformed, moving;  ///< ring rows b, d, l of the tangents
 
   Impl(std::string n, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& o, int id)
-      : name(std::move(n)), options(o), block_id(id), elements(make_rest_elements(rest, fmt::format("body \"{}\"", name))),
-        material_of_element(materials.of_element), sites(elements, materials), rings(elements, sites.of_corner(elements), sites.count(elements)) {
+      : name(std::move(n)),
+        options(o),
+        block_id(id),
+        elements(make_rest_elements(rest, fmt::format("body \"{}\"", name))),
+        material_of_element(materials.of_element),
+        sites(elements, materials),
+        rings(elements, sites.of_corner(elements), sites.count(elements)) {
     check(materials, elements.count(), fmt::format("body \"{}\"", name).c_str());
-    PALPATE_CHECK(options.volumetric_shares.empty() || options.volumetric_shares.size() == materials.list.size(), "{} shares of {} materials", options.volumetric_shares.size(),
-                  materials.list.size());
+    PALPATE_CHECK(
+        options.volumetric_shares.empty() || options.volumetric_shares.size() == materials.list.size(),
+        "{} shares of {} materials", options.volumetric_shares.size(), materials.list.size());
     set(materials.list);
     F.resize(count());
     R.resize(count());
@@ -135,13 +158,20 @@ struct NodalDilatation::Impl {
     }
   }
   std::size_t count() const { return elements.volume.size(); }
-  const Constants& of_element(std::size_t e) const { return constants[material_of_element.empty() ? 0 : static_cast<std::size_t>(material_of_element[e])]; }
-  const Constants& of_site(int s) const { return constants[sites.material.empty() ? 0 : static_cast<std::size_t>(sites.material[static_cast<std::size_t>(s)])]; }
+  const Constants& of_element(std::size_t e) const {
+    return constants[material_of_element.empty() ? 0 : static_cast<std::size_t>(material_of_element[e])];
+  }
+  const Constants& of_site(int s) const {
+    return constants[sites.material.empty()
+                         ? 0
+                         : static_cast<std::size_t>(sites.material[static_cast<std::size_t>(s)])];
+  }
   const std::array<std::vector<int>, 4>& corners() const { return sites.of_corner(elements); }
   double site_volume(int s) const { return sites.volume_of(elements, s); }
   NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, elements.node_count()); }
   bool damped() const {
-    return std::any_of(constants.begin(), constants.end(), [](const Constants& c) { return c.kappa_d != 0.0; });
+    return std::any_of(constants.begin(), constants.end(),
+                       [](const Constants& c) { return c.kappa_d != 0.0; });
   }
   bool damped_by_position() const { return damped() && options.full_damping_tangent && !definite; }
   Tangent tangent() const { return definite ? Tangent::kProjected : options.tangent; }
@@ -152,7 +182,9 @@ struct NodalDilatation::Impl {
     g.col(0) = -g.rightCols<3>().rowwise().sum();
     return g;
   }
-  Mat3 gradient_of(std::size_t e, const double* field) const { return elements.edges(e, field) * elements.gradients(e); }
+  Mat3 gradient_of(std::size_t e, const double* field) const {
+    return elements.edges(e, field) * elements.gradients(e);
+  }
 
   void deform(const double* x, bool rotations = true) {
     for (std::size_t e = 0; e < count(); ++e) {
@@ -185,24 +217,31 @@ struct NodalDilatation::Impl {
   /// sum_s kappa_s V_s site_s^2, or with kappa_d.
   double weighted_square(double Constants::*kappa) const {
     double sum = 0.0;
-    for (int s = 0; s < rings.site_count(); ++s) sum += of_site(s).*kappa * site_volume(s) * site[s] * site[s];
+    for (int s = 0; s < rings.site_count(); ++s)
+      sum += of_site(s).*kappa * site_volume(s) * site[s] * site[s];
     return sum;
   }
   /// Averages at the nodes of what stands at the sites, by volume.
   VecX at_nodes() const {
     if (sites.node.empty()) return site;
     VecX out = VecX::Zero(elements.node_count());
-    for (int s = 0; s < rings.site_count(); ++s) out[sites.node_of(s)] += site_volume(s) / elements.nodal_volume[static_cast<std::size_t>(sites.node_of(s))] * site[s];
+    for (int s = 0; s < rings.site_count(); ++s)
+      out[sites.node_of(s)] +=
+          site_volume(s) / elements.nodal_volume[static_cast<std::size_t>(sites.node_of(s))] * site[s];
     return out;
   }
   double dilatation(std::size_t e) const { return double_dot(R[e], F[e]) - 3.0; }
-  double strain_rate_trace(std::size_t e, const double* v) const { return double_dot(F[e], gradient_of(e, v)); }
+  double strain_rate_trace(std::size_t e, const double* v) const {
+    return double_dot(F[e], gradient_of(e, v));
+  }
   double star(const VecX& values, std::size_t e) const { return values[static_cast<Eigen::Index>(e)]; }
 
-  /// out += scale V P g_a; that of node 0 is minus the sum of the others, so that momentum is kept to rounding.
+  /// out += scale V P g_a; that of node 0 is minus the sum of the others, so that momentum is kept to
+  /// rounding.
   void scatter(std::size_t e, const Mat3& P, double scale, double* out) const {
     const Mat3 H = (scale * elements.volume[e]) * P * elements.gradients(e).transpose();
-    for (std::size_t a = 1; a < 4; ++a) Eigen::Map<Vec3>(out + 3 * elements.node[a][e]) += H.col(static_cast<int>(a) - 1);
+    for (std::size_t a = 1; a < 4; ++a)
+      Eigen::Map<Vec3>(out + 3 * elements.node[a][e]) += H.col(static_cast<int>(a) - 1);
     Eigen::Map<Vec3>(out + 3 * elements.node[0][e]) -= H.rowwise().sum();
   }
 
@@ -226,14 +265,16 @@ struct NodalDilatation::Impl {
   }
 
   /// A += sum_n (scale kappa_n/V_n) left_ni right_nj^T.
-  void add_products(double scale, double Constants::*kappa, const std::vector<Vec3>& left, const std::vector<Vec3>& right, dynamics::BlockSparse& A) const {
+  void add_products(double scale, double Constants::*kappa, const std::vector<Vec3>& left,
+                    const std::vector<Vec3>& right, dynamics::BlockSparse& A) const {
     for (int n = 0; n < rings.site_count(); ++n) {
       const double volume = site_volume(n), factor = scale * of_site(n).*kappa;
       if (!(volume > 0.0) || factor == 0.0) continue;
       const auto first = static_cast<std::size_t>(rings.begin(n));
       for (int i = 0; i < rings.size(n); ++i) {
         const Vec3 row = factor / volume * left[first + static_cast<std::size_t>(i)];
-        for (int j = 0; j < rings.size(n); ++j) A.add(rings.slot(n, i, j), row * right[first + static_cast<std::size_t>(j)].transpose());
+        for (int j = 0; j < rings.size(n); ++j)
+          A.add(rings.slot(n, i, j), row * right[first + static_cast<std::size_t>(j)].transpose());
       }
     }
   }
@@ -243,17 +284,20 @@ struct NodalDilatation::Impl {
   void add_element(std::size_t e, const Block& block, dynamics::BlockSparse& A) const {
     for (int a = 0; a < 4; ++a) {
       const int n = corners()[static_cast<std::size_t>(a)][e], first = rings.begin(n);
-      for (int b = 0; b < 4; ++b) A.add(rings.slot(n, rings.entry(e, a, a) - first, rings.entry(e, a, b) - first), block(a, b));
+      for (int b = 0; b < 4; ++b)
+        A.add(rings.slot(n, rings.entry(e, a, a) - first, rings.entry(e, a, b) - first), block(a, b));
     }
   }
 };
 
-NodalDilatation::NodalDilatation(std::string name, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& options, int block_id)
+NodalDilatation::NodalDilatation(std::string name, const TetMesh& rest, const Materials& materials,
+                                 const SoftBodyOptions& options, int block_id)
     : impl_(std::make_unique<Impl>(std::move(name), rest, materials, options, block_id)) {
   counters::count("fem.nodal_dilatation");
 }
 void NodalDilatation::set_materials(const std::vector<Material>& materials) {
-  PALPATE_CHECK(materials.size() == impl_->constants.size(), "{} materials in the place of {}", materials.size(), impl_->constants.size());
+  PALPATE_CHECK(materials.size() == impl_->constants.size(), "{} materials in the place of {}",
+                materials.size(), impl_->constants.size());
   for (const Material& material : materials) check(material, fmt::format("body \"{}\"", impl_->name).c_str());
   impl_->set(materials);
 }
@@ -263,10 +307,16 @@ std::string_view NodalDilatation::name() const { return impl_->name; }
 void NodalDilatation::set_definite(bool definite) { impl_->definite = definite; }
 
 dynamics::TermTraits NodalDilatation::traits() const {
-  return {.stiff = true, .fast = false, .symmetric_tangent = !impl_->damped_by_position(), .has_tangent = true, .conservative = true};
+  return {.stiff = true,
+          .fast = false,
+          .symmetric_tangent = !impl_->damped_by_position(),
+          .has_tangent = true,
+          .conservative = true};
 }
 
-void NodalDilatation::add_pattern(dynamics::PatternBuilder& pattern) const { impl_->rings.add_pattern(pattern.first_node(impl_->block_id), pattern); }
+void NodalDilatation::add_pattern(dynamics::PatternBuilder& pattern) const {
+  impl_->rings.add_pattern(pattern.first_node(impl_->block_id), pattern);
+}
 
 void NodalDilatation::add_force(const StateView& state, VecX& f) {
   Impl& m = *impl_;
@@ -289,7 +339,8 @@ void NodalDilatation::add_tangent(const StateView& state, double k_scale, double
   m.rings.prepare(at.first_node, A.body);
   m.deform(at.x);
   if (m.damped()) m.fill_rows([&](std::size_t e) { return m.F[e]; }, m.deformed);
-  if (d_scale != 0.0 && m.damped()) m.add_products(d_scale, &Impl::Constants::kappa_d, m.deformed, m.deformed, A.body);
+  if (d_scale != 0.0 && m.damped())
+    m.add_products(d_scale, &Impl::Constants::kappa_d, m.deformed, m.deformed, A.body);
   if (k_scale == 0.0) return;
   m.fill_rows([&](std::size_t e) { return m.R[e]; }, m.turned);
   m.add_products(k_scale, &Impl::Constants::kappa, m.turned, m.turned, A.body);
@@ -297,27 +348,32 @@ void NodalDilatation::add_tangent(const StateView& state, double k_scale, double
   for (std::size_t e = 0; e < m.count(); ++e) {
     const Gradients h = m.R[e] * m.gradients(e);
     const Mat3 C = k_scale * m.elements.volume[e] * m.coupling(e);
-    m.add_element(e, [&](int a, int b) -> Mat3 { return cross_matrix(h.col(a)) * C * cross_matrix(h.col(b)); }, A.body);
+    m.add_element(
+        e, [&](int a, int b) -> Mat3 { return cross_matrix(h.col(a)) * C * cross_matrix(h.col(b)); }, A.body);
   }
   if (!m.damped_by_position()) return;
   m.average([&](std::size_t e) { return m.strain_rate_trace(e, at.v); }, m.rate);
   for (std::size_t e = 0; e < m.count(); ++e) {
     const Gradients g = m.gradients(e);
     const double scale = k_scale * m.of_element(e).kappa_d * m.elements.volume[e] * m.star(m.rate, e);
-    m.add_element(e, [&](int a, int b) -> Mat3 { return scale * g.col(a).dot(g.col(b)) * Mat3::Identity(); }, A.body);
+    m.add_element(
+        e, [&](int a, int b) -> Mat3 { return scale * g.col(a).dot(g.col(b)) * Mat3::Identity(); }, A.body);
   }
   m.fill_rows([&](std::size_t e) { return m.gradient_of(e, at.v); }, m.moving);
   m.add_products(k_scale, &Impl::Constants::kappa_d, m.deformed, m.moving, A.body);
 }
 
-void NodalDilatation::apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) {
+void NodalDilatation::apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x,
+                                    VecX& y) {
   Impl& m = *impl_;
   const NodeBlock at = m.place(state);
   const double* direction = x.data() + at.u_offset;
   double* out = y.data() + at.u_offset;
   m.deform(at.x);
-  const auto spread = [&](const VecX& values, double scale, double Impl::Constants::*kappa, const std::vector<Mat3>& along) {
-    for (std::size_t e = 0; e < m.count(); ++e) m.scatter(e, m.star(values, e) * along[e], scale * m.of_element(e).*kappa, out);
+  const auto spread = [&](const VecX& values, double scale, double Impl::Constants::*kappa,
+                          const std::vector<Mat3>& along) {
+    for (std::size_t e = 0; e < m.count(); ++e)
+      m.scatter(e, m.star(values, e) * along[e], scale * m.of_element(e).*kappa, out);
   };
   if (d_scale != 0.0 && m.damped()) {
     m.average([&](std::size_t e) { return m.strain_rate_trace(e, direction); }, m.rate);
@@ -328,12 +384,15 @@ void NodalDilatation::apply_tangent(const StateView& state, double k_scale, doub
   spread(m.element, k_scale, &Impl::Constants::kappa, m.R);
   m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
   for (std::size_t e = 0; e < m.count(); ++e)
-    m.scatter(e, elastic_stress_change(m.gradient_of(e, direction), m.R[e], m.coupling(e), Lame{}), k_scale, out);
+    m.scatter(e, elastic_stress_change(m.gradient_of(e, direction), m.R[e], m.coupling(e), Lame{}), k_scale,
+              out);
   if (!m.damped_by_position()) return;
-  m.average([&](std::size_t e) { return double_dot(m.gradient_of(e, direction), m.gradient_of(e, at.v)); }, m.rate);
+  m.average([&](std::size_t e) { return double_dot(m.gradient_of(e, direction), m.gradient_of(e, at.v)); },
+            m.rate);
   spread(m.rate, k_scale, &Impl::Constants::kappa_d, m.F);
   m.average([&](std::size_t e) { return m.strain_rate_trace(e, at.v); }, m.rate);
-  for (std::size_t e = 0; e < m.count(); ++e) m.scatter(e, m.star(m.rate, e) * m.gradient_of(e, direction), k_scale * m.of_element(e).kappa_d, out);
+  for (std::size_t e = 0; e < m.count(); ++e)
+    m.scatter(e, m.star(m.rate, e) * m.gradient_of(e, direction), k_scale * m.of_element(e).kappa_d, out);
 }
 
 double NodalDilatation::energy(const StateView& state) {
@@ -363,7 +422,9 @@ VecX NodalDilatation::nodal_stress(const StateView& state) {
   Impl& m = *impl_;
   m.deform(m.place(state).x);
   m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
-  m.to_sites([&](std::size_t e) { return von_mises(m.F[e], m.of_element(e).kept, m.of_element(e).kappa * m.star(m.element, e)); });
+  m.to_sites([&](std::size_t e) {
+    return von_mises(m.F[e], m.of_element(e).kept, m.of_element(e).kappa * m.star(m.element, e));
+  });
   return m.at_nodes();
 }
 

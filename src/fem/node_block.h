@@ -4,7 +4,8 @@
 
 namespace palpate::fem {
 
-/// Where one body's nodes stand in a state: looked up anew at each evaluation, since blocks move when others come and go.
+/// Where one body's nodes stand in a state: looked up anew at each evaluation, since blocks move when others
+/// come and go.
 struct NodeBlock {
   const double* x;  ///< positions [m], three a node
   const double* v;  ///< velocities [m/s]

@@ -6,12 +6,15 @@
 
 namespace palpate::fem {
 
-NodeRings::NodeRings(const RestElements& elements, const std::array<std::vector<int>, 4>& sites, int site_count) : nodes_(elements.node_count()) {
+NodeRings::NodeRings(const RestElements& elements, const std::array<std::vector<int>, 4>& sites,
+                     int site_count)
+    : nodes_(elements.node_count()) {
   const auto count = static_cast<std::size_t>(elements.count());
   std::vector<std::vector<int>> rings(static_cast<std::size_t>(site_count));
   for (std::size_t e = 0; e < count; ++e)
     for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t b = 0; b < 4; ++b) rings[static_cast<std::size_t>(sites[a][e])].push_back(elements.node[b][e]);
+      for (std::size_t b = 0; b < 4; ++b)
+        rings[static_cast<std::size_t>(sites[a][e])].push_back(elements.node[b][e]);
   start_.push_back(0);
   first_slot_.push_back(0);
   for (auto& ring : rings) {
@@ -26,8 +29,9 @@ NodeRings::NodeRings(const RestElements& elements, const std::array<std::vector<
     for (std::size_t a = 0; a < 4; ++a)
       for (std::size_t b = 0; b < 4; ++b) {
         const int n = sites[a][e];
-        entry_[16 * e + 4 * a + b] =
-            static_cast<int>(std::lower_bound(node_.begin() + begin(n), node_.begin() + begin(n + 1), elements.node[b][e]) - node_.begin());
+        entry_[16 * e + 4 * a + b] = static_cast<int>(
+            std::lower_bound(node_.begin() + begin(n), node_.begin() + begin(n + 1), elements.node[b][e]) -
+            node_.begin());
       }
 }
 
@@ -53,7 +57,8 @@ void NodeRings::prepare(int first_node, const dynamics::BlockSparse& A) {
   for (int n = 0; n < site_count(); ++n)
     for (int i = 0; i < size(n); ++i)
       for (int j = 0; j < size(n); ++j) {
-        const int row = first_node + node(begin(n) + i), column = first_node + node(begin(n) + j), slot = A.slot(row, column);
+        const int row = first_node + node(begin(n) + i), column = first_node + node(begin(n) + j),
+                  slot = A.slot(row, column);
         PALPATE_CHECK(slot >= 0, "nodes {} and {} around site {} are not in the pattern", row, column, n);
         slot_[first_slot_[static_cast<std::size_t>(n)] + static_cast<std::size_t>(i * size(n) + j)] = slot;
       }

@@ -6,27 +6,34 @@
 
 namespace palpate::fem {
 
-/// The ring of a site, a node in the eyes of some of the elements at it: all nodes of these elements, itself included, ascending.  A quantity averaged at
-/// sites depends on their rings, so that its square couples every pair of a ring: each node with its neighbours' neighbours.
+/// The ring of a site, a node in the eyes of some of the elements at it: all nodes of these elements, itself
+/// included, ascending.  A quantity averaged at sites depends on their rings, so that its square couples
+/// every pair of a ring: each node with its neighbours' neighbours.
 class NodeRings {
  public:
-  /// @param sites  the site of each corner of each element, of `count`; elements.node where each node is one site
+  /// @param sites  the site of each corner of each element, of `count`; elements.node where each node is
+  ///   one site
   NodeRings(const RestElements& elements, const std::array<std::vector<int>, 4>& sites, int count);
 
   int site_count() const { return static_cast<int>(start_.size()) - 1; }
   int entry_count() const { return static_cast<int>(node_.size()); }
-  int begin(int n) const { return start_[static_cast<std::size_t>(n)]; }   ///< first entry of the ring of site n
+  /// first entry of the ring of site n
+  int begin(int n) const { return start_[static_cast<std::size_t>(n)]; }
   int size(int n) const { return begin(n + 1) - begin(n); }
   int node(int entry) const { return node_[static_cast<std::size_t>(entry)]; }
   /// Entry of node b of element e in the ring of the site at its corner a.
-  int entry(std::size_t e, int a, int b) const { return entry_[16 * e + static_cast<std::size_t>(4 * a + b)]; }
+  int entry(std::size_t e, int a, int b) const {
+    return entry_[16 * e + static_cast<std::size_t>(4 * a + b)];
+  }
 
   /// Adds the pairs of all rings.
   void add_pattern(int first_node, dynamics::PatternBuilder& pattern) const;
   /// Finds the slots of A for every pair of every ring, unless they are at hand.
   void prepare(int first_node, const dynamics::BlockSparse& A);
   /// Slot of the i-th and j-th node of the ring of site n.
-  int slot(int n, int i, int j) const { return slot_[first_slot_[static_cast<std::size_t>(n)] + static_cast<std::size_t>(i * size(n) + j)]; }
+  int slot(int n, int i, int j) const {
+    return slot_[first_slot_[static_cast<std::size_t>(n)] + static_cast<std::size_t>(i * size(n) + j)];
+  }
 
  private:
   int nodes_ = 0;

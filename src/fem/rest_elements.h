@@ -7,15 +7,18 @@
 
 namespace palpate::fem {
 
-/// Rest shape of linear tetrahedra, one array a number (structure of arrays: neighbouring elements fill vector lanes).
+/// Rest shape of linear tetrahedra, one array a number (structure of arrays: neighbouring elements fill
+/// vector lanes).
 ///
-/// With the rest edges Dm = [X1-X0, X2-X0, X3-X0] the rows of Dm^-1 are the gradients g_a of the shape functions of
-/// nodes 1, 2, 3, and g_0 = -(g_1 + g_2 + g_3).
+/// With the rest edges Dm = [X1-X0, X2-X0, X3-X0] the rows of Dm^-1 are the gradients g_a of the shape
+/// functions of nodes 1, 2, 3, and g_0 = -(g_1 + g_2 + g_3).
 struct RestElements {
   std::array<std::vector<int>, 4> node;
-  std::array<std::vector<double>, 9> inverse_edges;  ///< entry (r, c) of Dm^-1 is inverse_edges[3 r + c] [1/m]
-  std::vector<double> volume;                        ///< [m^3]
-  std::vector<double> nodal_volume;                  ///< a quarter of each adjacent tetrahedron [m^3]; one a node
+  /// entry (r, c) of Dm^-1 is inverse_edges[3 r + c] [1/m]
+  std::array<std::vector<double>, 9> inverse_edges;
+  std::vector<double> volume;  ///< [m^3]
+  /// a quarter of each adjacent tetrahedron [m^3]; one a node
+  std::vector<double> nodal_volume;
 
   int count() const { return static_cast<int>(volume.size()); }
   int node_count() const { return static_cast<int>(nodal_volume.size()); }
@@ -27,16 +30,19 @@ struct RestElements {
       for (int c = 0; c < 3; ++c) m(r, c) = inverse_edges[static_cast<std::size_t>(3 * r + c)][e];
     return m;
   }
-  /// Ds = [x1-x0, x2-x0, x3-x0] of any nodal vector field (positions, velocities, directions); `field` starts at node 0 of the body.
+  /// Ds = [x1-x0, x2-x0, x3-x0] of any nodal vector field (positions, velocities, directions); `field` starts
+  /// at node 0 of the body.
   Mat3 edges(std::size_t e, const double* field) const {
     const Eigen::Map<const Vec3> origin(field + 3 * node[0][e]);
     Mat3 m;
-    for (std::size_t a = 1; a < 4; ++a) m.col(static_cast<int>(a) - 1) = Eigen::Map<const Vec3>(field + 3 * node[a][e]) - origin;
+    for (std::size_t a = 1; a < 4; ++a)
+      m.col(static_cast<int>(a) - 1) = Eigen::Map<const Vec3>(field + 3 * node[a][e]) - origin;
     return m;
   }
 };
 
-/// @throws Error where a tetrahedron names a node that is not there or has no positive, finite volume; `where` begins the message.
+/// @throws Error where a tetrahedron names a node that is not there or has no positive, finite volume;
+///   `where` begins the message.
 RestElements make_rest_elements(const TetMesh& rest, std::string_view where);
 
 }  // namespace palpate::fem

@@ -19,7 +19,8 @@ TriMesh revolved(const std::vector<Eigen::Vector2d>& profile) {
   for (int r = 0; r < rings; ++r)
     for (int i = 0; i < n; ++i) {
       const Eigen::Vector2d& p = profile[static_cast<std::size_t>(r) + 1];
-      out.vertices.col(vertex(r, i)) = Vec3(p.x() * std::cos(2.0 * pi * i / n), p.x() * std::sin(2.0 * pi * i / n), p.y());
+      out.vertices.col(vertex(r, i)) =
+          Vec3(p.x() * std::cos(2.0 * pi * i / n), p.x() * std::sin(2.0 * pi * i / n), p.y());
     }
   const int last = n * rings + 1;
   out.vertices.col(last) = Vec3(0.0, 0.0, profile.back().y());

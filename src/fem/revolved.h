@@ -5,7 +5,8 @@
 
 namespace palpate::fem {
 
-/// Surface of revolution about z of a profile (radius, z) from one pole to the other; only the first and last have radius 0.
+/// Surface of revolution about z of a profile (radius, z) from one pole to the other; only the first and last
+/// have radius 0.
 TriMesh revolved(const std::vector<Eigen::Vector2d>& profile);
 
 }  // namespace palpate::fem

@@ -22,16 +22,20 @@ struct SoftBody::Impl {
   int block_id;
   ElementEvaluation elements;
   std::vector<Material> materials;
-  ElementModels models;   ///< of the materials, for the evaluation at hand
-  VecX drag;              ///< mass-proportional damping of each node [kg/s]; empty: none
+  ElementModels models;  ///< of the materials, for the evaluation at hand
+  VecX drag;             ///< mass-proportional damping of each node [kg/s]; empty: none
   ElementCounts counts;
   bool definite = false;  ///< the projected tangent in place of the named one
 
   Impl(std::string body, const TetMesh& rest, const Materials& from, const SoftBodyOptions& opts, int block)
-      : name(std::move(body)), options(opts), block_id(block),
-        elements(rest, make_rest_elements(rest, fmt::format("body \"{}\"", name)), from.of_element, opts.full_damping_tangent) {
+      : name(std::move(body)),
+        options(opts),
+        block_id(block),
+        elements(rest, make_rest_elements(rest, fmt::format("body \"{}\"", name)), from.of_element,
+                 opts.full_damping_tangent) {
     check(from, elements.chunks().element_count(), fmt::format("body \"{}\"", name).c_str());
-    PALPATE_CHECK(options.volumetric_shares.empty() || options.volumetric_shares.size() == from.list.size(), "{} shares of {} materials", options.volumetric_shares.size(), from.list.size());
+    PALPATE_CHECK(options.volumetric_shares.empty() || options.volumetric_shares.size() == from.list.size(),
+                  "{} shares of {} materials", options.volumetric_shares.size(), from.list.size());
     set(from.list);
   }
 
@@ -39,7 +43,8 @@ struct SoftBody::Impl {
   NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, node_count()); }
   /// Whether any material has stiffness damping.
   bool damped() const {
-    return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.stiffness_damping > 0.0; });
+    return std::any_of(materials.begin(), materials.end(),
+                       [](const Material& m) { return m.stiffness_damping > 0.0; });
   }
   bool by_position() const { return damped() && options.full_damping_tangent && !definite; }
 
@@ -63,7 +68,8 @@ struct SoftBody::Impl {
 
   bool dragged() const { return drag.size() > 0; }
   void add_drag(const NodeBlock& at, double* force) const {
-    for (int i = 0; i < node_count(); ++i) Eigen::Map<Vec3>(force + 3 * i) -= drag[i] * Eigen::Map<const Vec3>(at.v + 3 * i);
+    for (int i = 0; i < node_count(); ++i)
+      Eigen::Map<Vec3>(force + 3 * i) -= drag[i] * Eigen::Map<const Vec3>(at.v + 3 * i);
   }
 
   /// The body's rows of A += or, `stored`, = k_scale K + d_scale D.
@@ -72,7 +78,8 @@ struct SoftBody::Impl {
     if (acts(k_scale, d_scale)) {
       const BodyFields fields{at.x, by_position() && k_scale != 0.0 ? at.v : nullptr};
       const ElementModels& scaled = models_of(k_scale, d_scale);
-      const LaneCounts met = stored ? elements.store_tangent(scaled, fields, at.first_node, A.body) : elements.add_tangent(scaled, fields, at.first_node, A.body);
+      const LaneCounts met = stored ? elements.store_tangent(scaled, fields, at.first_node, A.body)
+                                    : elements.add_tangent(scaled, fields, at.first_node, A.body);
       counts.clamped += met.clamped;
       counts.by_scalar += met.by_scalar;
     } else if (stored) {
@@ -80,17 +87,21 @@ struct SoftBody::Impl {
     }
     if (d_scale == 0.0 || !dragged()) return;
     elements.prepare(at.first_node, A.body);
-    for (int i = 0; i < node_count(); ++i) A.body.add(elements.diagonal(i), d_scale * drag[i] * Mat3::Identity());
+    for (int i = 0; i < node_count(); ++i)
+      A.body.add(elements.diagonal(i), d_scale * drag[i] * Mat3::Identity());
   }
 
   void set(const std::vector<Material>& list) {
     materials = list;
     models.resize(list.size());
     drag.resize(0);
-    if (std::none_of(list.begin(), list.end(), [](const Material& m) { return m.mass_damping > 0.0; })) return;
+    if (std::none_of(list.begin(), list.end(), [](const Material& m) { return m.mass_damping > 0.0; }))
+      return;
     drag = VecX::Zero(node_count());
     if (list.size() == 1) {
-      for (int i = 0; i < node_count(); ++i) drag[i] = list[0].mass_damping * (list[0].density * elements.chunks().nodal_volume[static_cast<std::size_t>(i)]);
+      for (int i = 0; i < node_count(); ++i)
+        drag[i] = list[0].mass_damping *
+                  (list[0].density * elements.chunks().nodal_volume[static_cast<std::size_t>(i)]);
       return;
     }
     elements.chunks().for_each([&](const ElementChunks::Element& e) {
@@ -100,13 +111,17 @@ struct SoftBody::Impl {
   }
 };
 
-SoftBody::SoftBody(std::string name, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& options, int block_id)
+SoftBody::SoftBody(std::string name, const TetMesh& rest, const Materials& materials,
+                   const SoftBodyOptions& options, int block_id)
     : impl_(std::make_unique<Impl>(std::move(name), rest, materials, options, block_id)) {
   counters::count("fem.soft_body");
   if (!options.instructions.empty()) {
     const LaneKernels* kernels = find_kernels(options.instructions.c_str());
     if (kernels == nullptr)
-      fail("body \"{}\": this build or this processor has no instructions \"{}\"; baseline, avx2 and avx512 exist", impl_->name, options.instructions);
+      fail(
+          "body \"{}\": this build or this processor has no instructions \"{}\"; baseline, avx2 and avx512 "
+          "exist",
+          impl_->name, options.instructions);
     impl_->elements.use(*kernels);
   }
 }
@@ -117,7 +132,8 @@ const ElementCounts& SoftBody::counts() const { return impl_->counts; }
 void SoftBody::reset_counts() { impl_->counts = {}; }
 const std::vector<Material>& SoftBody::materials() const { return impl_->materials; }
 void SoftBody::set_materials(const std::vector<Material>& materials) {
-  PALPATE_CHECK(materials.size() == impl_->materials.size(), "{} materials in the place of {}", materials.size(), impl_->materials.size());
+  PALPATE_CHECK(materials.size() == impl_->materials.size(), "{} materials in the place of {}",
+                materials.size(), impl_->materials.size());
   for (const Material& material : materials) check(material, fmt::format("body \"{}\"", impl_->name).c_str());
   impl_->set(materials);
 }
@@ -130,7 +146,12 @@ MemoryUse SoftBody::memory() const {
 
 dynamics::TermTraits SoftBody::traits() const {
   const bool symmetric = !impl_->by_position();
-  return {.stiff = true, .fast = false, .symmetric_tangent = symmetric, .has_tangent = true, .conservative = true, .balanced = symmetric};
+  return {.stiff = true,
+          .fast = false,
+          .symmetric_tangent = symmetric,
+          .has_tangent = true,
+          .conservative = true,
+          .balanced = symmetric};
 }
 
 void SoftBody::set_definite(bool definite) { impl_->definite = definite; }
@@ -140,7 +161,8 @@ dynamics::Finding SoftBody::inspect(const StateView& state) const {
   dynamics::Finding worst;
   impl_->elements.chunks().for_each([&](const ElementChunks::Element& e) {
     const double volume_ratio = (e.edges(at.x) * e.gradients).determinant();
-    if (volume_ratio < worst.measure || (volume_ratio == worst.measure && e.number > worst.element)) worst = {e.number, volume_ratio};
+    if (volume_ratio < worst.measure || (volume_ratio == worst.measure && e.number > worst.element))
+      worst = {e.number, volume_ratio};
   });
   return worst;
 }
@@ -159,16 +181,21 @@ void SoftBody::add_force(const StateView& state, VecX& f) {
   Impl& m = *impl_;
   const NodeBlock at = m.place(state);
   double* force = f.data() + at.u_offset;
-  const LaneCounts met = m.elements.add_force(m.models_of(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr}, force);
+  const LaneCounts met =
+      m.elements.add_force(m.models_of(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr}, force);
   m.counts.inverted += met.inverted;
   m.counts.by_scalar += met.by_scalar;
   if (m.dragged()) m.add_drag(at, force);
 }
 
-void SoftBody::add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) { impl_->tangent(state, k_scale, d_scale, A, false); }
+void SoftBody::add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) {
+  impl_->tangent(state, k_scale, d_scale, A, false);
+}
 
 int SoftBody::stored_block() const { return impl_->block_id; }
-void SoftBody::store_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) { impl_->tangent(state, k_scale, d_scale, A, true); }
+void SoftBody::store_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) {
+  impl_->tangent(state, k_scale, d_scale, A, true);
+}
 
 void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) {
   Impl& m = *impl_;
@@ -176,7 +203,11 @@ void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_sc
   const double* direction = x.data() + at.u_offset;
   double* out = y.data() + at.u_offset;
   if (m.acts(k_scale, d_scale)) {
-    m.counts.by_scalar += m.elements.apply_tangent(m.models_of(k_scale, d_scale), {at.x, m.by_position() && k_scale != 0.0 ? at.v : nullptr, direction}, out).by_scalar;
+    m.counts.by_scalar +=
+        m.elements
+            .apply_tangent(m.models_of(k_scale, d_scale),
+                           {at.x, m.by_position() && k_scale != 0.0 ? at.v : nullptr, direction}, out)
+            .by_scalar;
   }
   if (d_scale == 0.0 || !m.dragged()) return;
   for (int i = 0; i < node_count(); ++i)
@@ -188,36 +219,44 @@ void SoftBody::add_step_force(const StateView& state, const VecX& shift, const V
   const NodeBlock at = m.place(state);
   double* force = f.data() + at.u_offset;
   const double* more = change.data() + at.u_offset;
-  const LaneCounts met = m.elements.add_step_force(m.models_of(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset, more}, force);
+  const LaneCounts met = m.elements.add_step_force(
+      m.models_of(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset, more}, force);
   m.counts.inverted += met.inverted;
   m.counts.clamped += met.clamped;
   m.counts.by_scalar += met.by_scalar;
   if (!m.dragged()) return;
   m.add_drag(at, force);
-  for (int i = 0; i < node_count(); ++i) Eigen::Map<Vec3>(force + 3 * i) -= m.drag[i] * Eigen::Map<const Vec3>(more + 3 * i);
+  for (int i = 0; i < node_count(); ++i)
+    Eigen::Map<Vec3>(force + 3 * i) -= m.drag[i] * Eigen::Map<const Vec3>(more + 3 * i);
 }
 
-void SoftBody::add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f, dynamics::BalancedMatrix& A) {
+void SoftBody::add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
+                        dynamics::BalancedMatrix& A) {
   Impl& m = *impl_;
   const NodeBlock at = m.place(state);
   double* force = f.data() + at.u_offset;
-  const LaneCounts met = m.elements.add_step(m.models_of(A.scale * k_scale, A.scale * d_scale), {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset},
+  const LaneCounts met = m.elements.add_step(m.models_of(A.scale * k_scale, A.scale * d_scale),
+                                             {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset},
                                              at.first_node, force, A);
   m.counts.inverted += met.inverted;
   m.counts.clamped += met.clamped;
   m.counts.by_scalar += met.by_scalar;
   if (!m.dragged()) return;
   m.add_drag(at, force);
-  for (int i = 0; i < node_count(); ++i) A.diagonal.segment<3>(at.u_offset + 3 * i).array() += d_scale * m.drag[i];
+  for (int i = 0; i < node_count(); ++i)
+    A.diagonal.segment<3>(at.u_offset + 3 * i).array() += d_scale * m.drag[i];
 }
 
-double SoftBody::energy(const StateView& state) { return impl_->elements.energy(impl_->models_of(0.0, 0.0), {impl_->place(state).x}); }
+double SoftBody::energy(const StateView& state) {
+  return impl_->elements.energy(impl_->models_of(0.0, 0.0), {impl_->place(state).x});
+}
 
 double SoftBody::dissipated_power(const StateView& state) {
   Impl& m = *impl_;
   const NodeBlock at = m.place(state);
   double sum = m.damped() ? m.elements.dissipated_power(m.models_of(0.0, 0.0), {at.x, at.v}) : 0.0;
-  for (int i = 0; m.dragged() && i < node_count(); ++i) sum += m.drag[i] * Eigen::Map<const Vec3>(at.v + 3 * i).squaredNorm();
+  for (int i = 0; m.dragged() && i < node_count(); ++i)
+    sum += m.drag[i] * Eigen::Map<const Vec3>(at.v + 3 * i).squaredNorm();
   return sum;
 }
 

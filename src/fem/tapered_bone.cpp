@@ -11,13 +11,16 @@ namespace {
 
 using std::numbers::pi;
 
-/// The profile along the axis, x from the head: balls of radii r0 at 0 and r1 at L, and the cone that touches both.  With s = (r1 - r0) / L the cone touches the
-/// balls where their normals make the angle asin s with the plane across: at x = c - s r, in a circle of radius r sqrt(1 - s^2).  For |s| >= 1 one ball holds the other.
+/// The profile along the axis, x from the head: balls of radii r0 at 0 and r1 at L, and the cone that touches
+/// both.  With s = (r1 - r0) / L the cone touches the balls where their normals make the angle asin s with
+/// the plane across: at x = c - s r, in a circle of radius r sqrt(1 - s^2).  For |s| >= 1 one ball holds the
+/// other.
 struct Profile {
   double r0, r1, length, low, high;  ///< of the whole, from low to high
   double cone_low, cone_high, cone_r0, cone_r1;
 
-  explicit Profile(const Bone& bone) : r0(bone.head_radius), r1(bone.tail_radius), length((bone.tail - bone.head).norm()) {
+  explicit Profile(const Bone& bone)
+      : r0(bone.head_radius), r1(bone.tail_radius), length((bone.tail - bone.head).norm()) {
     if (!(r0 > 0.0 && r1 > 0.0)) fail("bone \"{}\": radii {} and {} m must be positive", bone.name, r0, r1);
     const double s = length > 0.0 ? (r1 - r0) / length : (r1 >= r0 ? 1.0 : -1.0);
     if (s >= 1.0) r0 = 0.0;  // a ball about the tail alone
@@ -37,7 +40,8 @@ struct Profile {
   double square_at(double x) const {
     if (x < cone_low) return std::max(0.0, r0 * r0 - x * x);
     if (x > cone_high) return std::max(0.0, r1 * r1 - (x - length) * (x - length));
-    const double t = cone_high > cone_low ? (x - cone_low) / (cone_high - cone_low) : 0.0, r = cone_r0 + t * (cone_r1 - cone_r0);
+    const double t = cone_high > cone_low ? (x - cone_low) / (cone_high - cone_low) : 0.0,
+                 r = cone_r0 + t * (cone_r1 - cone_r0);
     return r * r;
   }
 };
@@ -57,14 +61,16 @@ double integral(const Profile& p, const F& f) {
 
 }  // namespace
 
-// Slices of squared radius c(x), quadratic on each piece:  V = pi int c,  x_m = pi int x c / V,  along the axis pi/2 int c^2,  across pi int (c^2/4 + (x - x_m)^2 c).
+// Slices of squared radius c(x), quadratic on each piece:  V = pi int c,  x_m = pi int x c / V,  along the
+// axis pi/2 int c^2,  across pi int (c^2/4 + (x - x_m)^2 c).
 TaperedBone tapered_bone(const Bone& bone) {
   const Profile p(bone);
   TaperedBone out;
   out.volume = pi * integral(p, [&](double x) { return p.square_at(x); });
   const double middle = pi * integral(p, [&](double x) { return x * p.square_at(x); }) / out.volume;
   const double along = 0.5 * pi * integral(p, [&](double x) { return p.square_at(x) * p.square_at(x); });
-  const double across = 0.5 * along + pi * integral(p, [&](double x) { return (x - middle) * (x - middle) * p.square_at(x); });
+  const double across =
+      0.5 * along + pi * integral(p, [&](double x) { return (x - middle) * (x - middle) * p.square_at(x); });
   out.unit_moments = Vec3(across, across, along) / out.volume;
   const Vec3 axis = p.length > 0.0 ? Vec3((bone.tail - bone.head) / p.length) : Vec3::UnitZ();
   out.frame = {Quat::FromTwoVectors(Vec3::UnitZ(), axis), bone.head + middle * axis};
@@ -74,11 +80,13 @@ TaperedBone tapered_bone(const Bone& bone) {
 TriMesh tapered_bone_surface(const Bone& bone) {
   constexpr int kCapRings = 6;
   const Profile p(bone);
-  const double middle = (tapered_bone(bone).frame.translation - bone.head).dot(p.length > 0.0 ? Vec3((bone.tail - bone.head) / p.length) : Vec3::UnitZ());
+  const double middle = (tapered_bone(bone).frame.translation - bone.head)
+                            .dot(p.length > 0.0 ? Vec3((bone.tail - bone.head) / p.length) : Vec3::UnitZ());
   std::vector<Eigen::Vector2d> profile;
   const auto add = [&](double x) { profile.emplace_back(std::sqrt(p.square_at(x)), x - middle); };
   const auto cap = [&](double c, double r, double from, double to) {  // equal steps of latitude
-    const double first = std::asin(std::clamp((from - c) / r, -1.0, 1.0)), last = std::asin(std::clamp((to - c) / r, -1.0, 1.0));
+    const double first = std::asin(std::clamp((from - c) / r, -1.0, 1.0)),
+                 last = std::asin(std::clamp((to - c) / r, -1.0, 1.0));
     for (int i = 0; i <= kCapRings; ++i) add(c + r * std::sin(first + (last - first) * i / kCapRings));
   };
   if (p.r0 > 0.0) cap(0.0, p.r0, p.low, p.r1 > 0.0 ? p.cone_low : p.high);

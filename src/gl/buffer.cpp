@@ -20,7 +20,8 @@ Buffer::~Buffer() {
   if (id_ && Context::opened()) glDeleteBuffers(1, &id_);
 }
 
-Buffer::Buffer(Buffer&& other) noexcept : id_(std::exchange(other.id_, 0)), capacity_(std::exchange(other.capacity_, 0)) {}
+Buffer::Buffer(Buffer&& other) noexcept
+    : id_(std::exchange(other.id_, 0)), capacity_(std::exchange(other.capacity_, 0)) {}
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {
   std::swap(id_, other.id_);
@@ -43,13 +44,15 @@ void Buffer::reserve(std::size_t bytes) {
 }
 
 void Buffer::read(void* out, std::size_t bytes, std::size_t offset) const {
-  PALPATE_CHECK(offset + bytes <= capacity_, "reading {} bytes at {} of a buffer of {}", bytes, offset, capacity_);
+  PALPATE_CHECK(offset + bytes <= capacity_, "reading {} bytes at {} of a buffer of {}", bytes, offset,
+                capacity_);
   glBindBuffer(kScratchTarget, id_);
   glGetBufferSubData(kScratchTarget, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), out);
 }
 
 void Buffer::write(const void* data, std::size_t bytes, std::size_t offset) {
-  PALPATE_CHECK(offset + bytes <= capacity_, "writing {} bytes at {} of a buffer of {}", bytes, offset, capacity_);
+  PALPATE_CHECK(offset + bytes <= capacity_, "writing {} bytes at {} of a buffer of {}", bytes, offset,
+                capacity_);
   glBindBuffer(kScratchTarget, id_);
   glBufferSubData(kScratchTarget, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
 }
@@ -69,11 +72,13 @@ VertexArray& VertexArray::operator=(VertexArray&& other) noexcept {
   return *this;
 }
 
-void VertexArray::attribute(unsigned location, const Buffer& buffer, int components, int stride, std::size_t offset) {
+void VertexArray::attribute(unsigned location, const Buffer& buffer, int components, int stride,
+                            std::size_t offset) {
   glBindVertexArray(id_);
   glBindBuffer(GL_ARRAY_BUFFER, buffer.id());
   glEnableVertexAttribArray(location);
-  glVertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, stride, reinterpret_cast<const void*>(offset));
+  glVertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, stride,
+                        reinterpret_cast<const void*>(offset));
 }
 
 void VertexArray::indices(const Buffer& buffer) {

@@ -8,7 +8,8 @@
 namespace palpate::gl {
 
 void set_plain_state(int width, int height, Keep keep) {
-  for (const GLenum feature : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL, GL_DEPTH_CLAMP, GL_MULTISAMPLE})
+  for (const GLenum feature : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST,
+                               GL_POLYGON_OFFSET_FILL, GL_DEPTH_CLAMP, GL_MULTISAMPLE})
     glDisable(feature);
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -31,8 +32,10 @@ void draw_triangles(const VertexArray& vertices, std::size_t index_count) {
 void dispatch(const Program& program, int groups_x, int groups_y, int groups_z) {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   program.use();
-  glDispatchCompute(static_cast<GLuint>(groups_x), static_cast<GLuint>(groups_y), static_cast<GLuint>(groups_z));
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+  glDispatchCompute(static_cast<GLuint>(groups_x), static_cast<GLuint>(groups_y),
+                    static_cast<GLuint>(groups_z));
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT |
+                  GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
 }
 
 }  // namespace palpate::gl

@@ -16,7 +16,8 @@
 namespace palpate::gl {
 namespace {
 
-constexpr const char* kMesaPackages = "install libegl1, libegl-mesa0, libgl1 and libgl1-mesa-dri (Mesa's software rasteriser needs no GPU)";
+constexpr const char* kMesaPackages =
+    "install libegl1, libegl-mesa0, libgl1 and libgl1-mesa-dri (Mesa's software rasteriser needs no GPU)";
 
 bool has_word(const char* list, std::string_view word) {
   if (!list) return false;
@@ -34,44 +35,57 @@ struct Candidate {
   const char* platform = "";
 };
 
-/// Displays that need no window system, hardware first: devices that are not software, Mesa's surfaceless platform, the rest.
-/// (eglGetDisplay(EGL_DEFAULT_DISPLAY) fails without a window system.)
+/// Displays that need no window system, hardware first: devices that are not software, Mesa's surfaceless
+/// platform, the rest. (eglGetDisplay(EGL_DEFAULT_DISPLAY) fails without a window system.)
 std::vector<Candidate> candidates() {
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   std::vector<Candidate> hardware, software;
-  if (has_word(client, "EGL_EXT_platform_device") && (has_word(client, "EGL_EXT_device_enumeration") || has_word(client, "EGL_EXT_device_base"))) {
+  if (has_word(client, "EGL_EXT_platform_device") &&
+      (has_word(client, "EGL_EXT_device_enumeration") || has_word(client, "EGL_EXT_device_base"))) {
     EGLDeviceEXT devices[16];
     EGLint count = 0;
     if (eglQueryDevicesEXT(16, devices, &count)) {
       for (int i = 0; i < count; ++i) {
-        const bool is_software = has_word(eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS), "EGL_MESA_device_software");
-        (is_software ? software : hardware).push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr), "device"});
+        const bool is_software =
+            has_word(eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS), "EGL_MESA_device_software");
+        (is_software ? software : hardware)
+            .push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr), "device"});
       }
     }
   }
   if (has_word(client, "EGL_MESA_platform_surfaceless"))
-    hardware.push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr), "surfaceless"});
+    hardware.push_back(
+        {eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr), "surfaceless"});
   hardware.insert(hardware.end(), software.begin(), software.end());
   return hardware;
 }
 
-/// A core context of version 4.5, else of 4.3 (compute shaders and shader storage).  No surface: EGL_KHR_surfaceless_context.
+/// A core context of version 4.5, else of 4.3 (compute shaders and shader storage).  No surface:
+/// EGL_KHR_surfaceless_context.
 EGLContext create_context(EGLDisplay display) {
   if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
-  const EGLint config_wanted[] = {EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+  const EGLint config_wanted[] = {EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                  EGL_NONE};
   EGLConfig config = nullptr;
   EGLint count = 0;
-  if (!eglChooseConfig(display, config_wanted, &config, 1, &count) || count < 1) config = nullptr;  // EGL_KHR_no_config_context
+  // EGL_KHR_no_config_context
+  if (!eglChooseConfig(display, config_wanted, &config, 1, &count) || count < 1) config = nullptr;
   for (const int minor : {5, 3}) {
-    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, minor, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
+                             4,
+                             EGL_CONTEXT_MINOR_VERSION,
+                             minor,
+                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                             EGL_NONE};
     if (const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted)) return context;
   }
   return EGL_NO_CONTEXT;
 }
 
 bool is_software(std::string renderer) {
-  std::transform(renderer.begin(), renderer.end(), renderer.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(renderer.begin(), renderer.end(), renderer.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const char* name : {"llvmpipe", "softpipe", "swrast", "software"})
     if (renderer.find(name) != std::string::npos) return true;
   return false;
@@ -92,10 +106,13 @@ struct Context::Handles {
   std::thread::id owner;
 };
 
-// libepoxy opens its libraries itself, but aborts the process where they are missing; so they are tried first.
+// libepoxy opens its libraries itself, but aborts the process where they are missing; so they are tried
+// first.
 void require_library(const std::string& file, const std::string& package) {
   void* handle = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
-  if (!handle) fail("OpenGL without a display needs {}, which cannot be loaded ({}); install the package {}", file, dlerror(), package);
+  if (!handle)
+    fail("OpenGL without a display needs {}, which cannot be loaded ({}); install the package {}", file,
+         dlerror(), package);
   dlclose(handle);
 }
 
@@ -127,7 +144,9 @@ Context::Context() : handles_(std::make_unique<Handles>()) {
     info_.platform = candidate.platform;
     break;
   }
-  if (handles_->context == EGL_NO_CONTEXT) fail("no EGL device gives OpenGL 4.3 without a display (tried {}); {}", tried.empty() ? "none" : tried, kMesaPackages);
+  if (handles_->context == EGL_NO_CONTEXT)
+    fail("no EGL device gives OpenGL 4.3 without a display (tried {}); {}", tried.empty() ? "none" : tried,
+         kMesaPackages);
   make_current();
   info_.vendor = gl_string(GL_VENDOR);
   info_.renderer = gl_string(GL_RENDERER);
@@ -137,7 +156,8 @@ Context::Context() : handles_(std::make_unique<Handles>()) {
   counters::count("gl.context");
 }
 
-// A static object: it is constructed after EGL's libraries were loaded, so it is destroyed before their own exit handlers run.
+// A static object: it is constructed after EGL's libraries were loaded, so it is destroyed before their own
+// exit handlers run.
 Context::~Context() {
   g_opened = false;
   if (handles_->context == EGL_NO_CONTEXT) return;
@@ -149,9 +169,10 @@ Context::~Context() {
 void Context::make_current() {
   const auto self = std::this_thread::get_id();
   if (handles_->owner == self) return;
-  PALPATE_CHECK(handles_->owner == std::thread::id{}, "the GL context is current on another thread, which has to release it first");
-  PALPATE_CHECK(eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles_->context), "eglMakeCurrent failed, EGL error {:#x}",
-                static_cast<unsigned>(eglGetError()));
+  PALPATE_CHECK(handles_->owner == std::thread::id{},
+                "the GL context is current on another thread, which has to release it first");
+  PALPATE_CHECK(eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles_->context),
+                "eglMakeCurrent failed, EGL error {:#x}", static_cast<unsigned>(eglGetError()));
   handles_->owner = self;
 }
 

@@ -5,7 +5,7 @@
 namespace palpate::gl {
 
 struct EmbeddedShader {
-  std::string_view name;    ///< path under shaders/
+  std::string_view name;  ///< path under shaders/
   std::string_view source;
 };
 

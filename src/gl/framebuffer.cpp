@@ -37,7 +37,8 @@ int max_texture_size() {
 Texture::Texture(int width, int height, Format format) : width_(width), height_(height), format_(format) {
   const int largest = max_texture_size();
   if (width < 1 || height < 1 || width > largest || height > largest)
-    fail("an image of {} x {} pixels cannot be made: this OpenGL device allows 1 to {} an edge", width, height, largest);
+    fail("an image of {} x {} pixels cannot be made: this OpenGL device allows 1 to {} an edge", width,
+         height, largest);
   // The classic binding calls, because direct state access needs 4.5.
   glGenTextures(1, &id_);
   glBindTexture(GL_TEXTURE_2D, id_);
@@ -52,7 +53,10 @@ Texture::~Texture() {
 }
 
 Texture::Texture(Texture&& other) noexcept
-    : id_(std::exchange(other.id_, 0)), width_(other.width_), height_(other.height_), format_(other.format_) {}
+    : id_(std::exchange(other.id_, 0)),
+      width_(other.width_),
+      height_(other.height_),
+      format_(other.format_) {}
 
 Texture& Texture::operator=(Texture&& other) noexcept {
   std::swap(id_, other.id_);
@@ -70,7 +74,8 @@ void Texture::bind_unit(unsigned unit) const {
 void Texture::upload(const void* pixels) {
   glBindTexture(GL_TEXTURE_2D, id_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, info(format_).external, info(format_).type, pixels);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, info(format_).external, info(format_).type,
+                  pixels);
 }
 
 void Texture::set_linear(bool linear) {
@@ -79,7 +84,8 @@ void Texture::set_linear(bool linear) {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, linear ? GL_LINEAR : GL_NEAREST);
 }
 
-Framebuffer::Framebuffer(int width, int height, const std::vector<Format>& colours, bool with_depth) : width_(width), height_(height) {
+Framebuffer::Framebuffer(int width, int height, const std::vector<Format>& colours, bool with_depth)
+    : width_(width), height_(height) {
   for (const Format format : colours) colours_.emplace_back(width, height, format);
   if (with_depth) depth_.emplace_back(width, height, Format::kDepth32f);
   glGenFramebuffers(1, &id_);
@@ -89,10 +95,12 @@ Framebuffer::Framebuffer(int width, int height, const std::vector<Format>& colou
     targets.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(targets.size()));
     glFramebufferTexture2D(GL_FRAMEBUFFER, targets.back(), GL_TEXTURE_2D, texture.id(), 0);
   }
-  if (with_depth) glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_[0].id(), 0);
+  if (with_depth)
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth_[0].id(), 0);
   glDrawBuffers(static_cast<GLsizei>(targets.size()), targets.data());
   const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
-  PALPATE_CHECK(status == GL_FRAMEBUFFER_COMPLETE, "framebuffer of {} x {} is incomplete, status {:#x}", width, height, status);
+  PALPATE_CHECK(status == GL_FRAMEBUFFER_COMPLETE, "framebuffer of {} x {} is incomplete, status {:#x}",
+                width, height, status);
 }
 
 Framebuffer::~Framebuffer() {
@@ -100,7 +108,11 @@ Framebuffer::~Framebuffer() {
 }
 
 Framebuffer::Framebuffer(Framebuffer&& other) noexcept
-    : id_(std::exchange(other.id_, 0)), width_(other.width_), height_(other.height_), colours_(std::move(other.colours_)), depth_(std::move(other.depth_)) {}
+    : id_(std::exchange(other.id_, 0)),
+      width_(other.width_),
+      height_(other.height_),
+      colours_(std::move(other.colours_)),
+      depth_(std::move(other.depth_)) {}
 
 Framebuffer& Framebuffer::operator=(Framebuffer&& other) noexcept {
   std::swap(id_, other.id_);
@@ -162,9 +174,11 @@ std::vector<std::uint32_t> Framebuffer::read_r32ui(int attachment) const {
 
 std::vector<float> Framebuffer::read_float(int attachment) const {
   const Format format = colour(attachment).format();
-  PALPATE_CHECK(format == Format::kR32f || format == Format::kRgba32f, "attachment {} holds no floats", attachment);
+  PALPATE_CHECK(format == Format::kR32f || format == Format::kRgba32f, "attachment {} holds no floats",
+                attachment);
   const std::size_t components = format == Format::kR32f ? 1 : 4;
-  std::vector<float> pixels(components * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  std::vector<float> pixels(components * static_cast<std::size_t>(width_) *
+                            static_cast<std::size_t>(height_));
   read_pixels(attachment, info(format).external, GL_FLOAT, pixels.data());
   return pixels;
 }

@@ -42,7 +42,8 @@ unsigned link(const std::vector<unsigned>& shaders, const std::string& name) {
   for (const unsigned shader : shaders) glDeleteShader(shader);  // goes with the program
   GLint ok = 0;
   glGetProgramiv(id, GL_LINK_STATUS, &ok);
-  PALPATE_CHECK(ok, "shader program {} does not link:\n{}", name, info_log(id, glGetProgramiv, glGetProgramInfoLog));
+  PALPATE_CHECK(ok, "shader program {} does not link:\n{}", name,
+                info_log(id, glGetProgramiv, glGetProgramInfoLog));
   return id;
 }
 
@@ -61,18 +62,23 @@ std::vector<std::string> shader_names() {
   return names;
 }
 
-Program::Program(std::string_view vertex, std::string_view fragment) : name_(std::string(vertex) + " + " + std::string(fragment)) {
+Program::Program(std::string_view vertex, std::string_view fragment)
+    : name_(std::string(vertex) + " + " + std::string(fragment)) {
   id_ = link({compile(GL_VERTEX_SHADER, vertex), compile(GL_FRAGMENT_SHADER, fragment)}, name_);
 }
 
-Program::Program(std::string_view compute) : name_(compute) { id_ = link({compile(GL_COMPUTE_SHADER, compute)}, name_); }
+Program::Program(std::string_view compute) : name_(compute) {
+  id_ = link({compile(GL_COMPUTE_SHADER, compute)}, name_);
+}
 
 Program::~Program() {
   if (id_ && Context::opened()) glDeleteProgram(id_);
 }
 
 Program::Program(Program&& other) noexcept
-    : id_(std::exchange(other.id_, 0)), name_(std::move(other.name_)), locations_(std::move(other.locations_)) {}
+    : id_(std::exchange(other.id_, 0)),
+      name_(std::move(other.name_)),
+      locations_(std::move(other.locations_)) {}
 
 Program& Program::operator=(Program&& other) noexcept {
   std::swap(id_, other.id_);
@@ -87,17 +93,30 @@ int Program::location(const std::string& name) {
   const auto it = locations_.find(name);
   if (it != locations_.end()) return it->second;
   const int found = glGetUniformLocation(id_, name.c_str());
-  PALPATE_CHECK(found >= 0, "shader program {} has no uniform \"{}\" (or the compiler removed it, unused)", name_, name);
+  PALPATE_CHECK(found >= 0, "shader program {} has no uniform \"{}\" (or the compiler removed it, unused)",
+                name_, name);
   return locations_[name] = found;
 }
 
 void Program::set(const std::string& name, int value) { glProgramUniform1i(id_, location(name), value); }
-void Program::set(const std::string& name, unsigned value) { glProgramUniform1ui(id_, location(name), value); }
+void Program::set(const std::string& name, unsigned value) {
+  glProgramUniform1ui(id_, location(name), value);
+}
 void Program::set(const std::string& name, float value) { glProgramUniform1f(id_, location(name), value); }
-void Program::set(const std::string& name, const Eigen::Vector2f& v) { glProgramUniform2fv(id_, location(name), 1, v.data()); }
-void Program::set(const std::string& name, const Eigen::Vector3f& v) { glProgramUniform3fv(id_, location(name), 1, v.data()); }
-void Program::set(const std::string& name, const Eigen::Vector4f& v) { glProgramUniform4fv(id_, location(name), 1, v.data()); }
-void Program::set(const std::string& name, const Eigen::Matrix3f& m) { glProgramUniformMatrix3fv(id_, location(name), 1, GL_FALSE, m.data()); }
-void Program::set(const std::string& name, const Eigen::Matrix4f& m) { glProgramUniformMatrix4fv(id_, location(name), 1, GL_FALSE, m.data()); }
+void Program::set(const std::string& name, const Eigen::Vector2f& v) {
+  glProgramUniform2fv(id_, location(name), 1, v.data());
+}
+void Program::set(const std::string& name, const Eigen::Vector3f& v) {
+  glProgramUniform3fv(id_, location(name), 1, v.data());
+}
+void Program::set(const std::string& name, const Eigen::Vector4f& v) {
+  glProgramUniform4fv(id_, location(name), 1, v.data());
+}
+void Program::set(const std::string& name, const Eigen::Matrix3f& m) {
+  glProgramUniformMatrix3fv(id_, location(name), 1, GL_FALSE, m.data());
+}
+void Program::set(const std::string& name, const Eigen::Matrix4f& m) {
+  glProgramUniformMatrix4fv(id_, location(name), 1, GL_FALSE, m.data());
+}
 
 }  // namespace palpate::gl

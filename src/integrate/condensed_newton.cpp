@@ -9,7 +9,8 @@ using dynamics::BorderedMatrix;
 using dynamics::Layout;
 using dynamics::SolveStatus;
 
-void CondensedNewton::evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters, const dynamics::System::TermFilter& filter) {
+void CondensedNewton::evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters,
+                               const dynamics::System::TermFilter& filter) {
   counters_ = &counters;
   filter_ = filter;
   layout_ = state.layout;
@@ -29,11 +30,13 @@ void CondensedNewton::evaluate_matrices() {
   gamma_ = 0.0;
 }
 
-// All three carry the identity in driven rows, which then hold 1 + gamma + gamma^2: any positive number serves there.
+// All three carry the identity in driven rows, which then hold 1 + gamma + gamma^2: any positive number
+// serves there.
 void CondensedNewton::combine(double gamma) {
   if (A_.body.pattern_version() != M_.body.pattern_version() || A_.border_size() != M_.border_size()) A_ = M_;
   const auto map = [](const BorderedMatrix& B) {
-    return Eigen::Map<const Eigen::ArrayXd>(B.body.values().data(), static_cast<Eigen::Index>(B.body.values().size()));
+    return Eigen::Map<const Eigen::ArrayXd>(B.body.values().data(),
+                                            static_cast<Eigen::Index>(B.body.values().size()));
   };
   Eigen::Map<Eigen::ArrayXd>(A_.body.values().data(), static_cast<Eigen::Index>(A_.body.values().size())) =
       map(M_) + gamma * map(D_) + (gamma * gamma) * map(K_);
@@ -83,12 +86,14 @@ void CondensedNewton::left_inverse(const Layout& layout, const double* q, const 
     else if (nodes_only)
       theta_.segment(b.u_offset, b.u_size).setZero();
     else
-      b.kinematics->u_of_q_dot(Eigen::Map<const VecX>(q + b.q_offset, b.q_size), r, theta_.segment(b.u_offset, b.u_size));
+      b.kinematics->u_of_q_dot(Eigen::Map<const VecX>(q + b.q_offset, b.q_size), r,
+                               theta_.segment(b.u_offset, b.u_size));
   }
   for (int dof : system_.driven_dofs()) theta_[dof] = 0.0;
 }
 
-SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du, bool nodes_only) {
+SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const double* r1, const double* r2,
+                                   double* dq, double* du, bool nodes_only) {
   left_inverse(layout, q, r1, nodes_only);
   const double gamma = gamma_;
   const auto right_hand_side = [&] {
@@ -114,7 +119,8 @@ SolveStatus CondensedNewton::solve(const Layout& layout, const double* q, const 
   return SolveStatus::kOk;
 }
 
-SolveStatus CondensedNewton::solve_residual_form(const Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du) {
+SolveStatus CondensedNewton::solve_residual_form(const Layout& layout, const double* q, const double* r1,
+                                                 const double* r2, double* dq, double* du) {
   left_inverse(layout, q, r1, false);
   const double gamma = gamma_;
   const auto right_hand_side = [&] {

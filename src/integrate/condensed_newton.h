@@ -3,8 +3,9 @@
 
 namespace palpate::integrate {
 
-/// Newton's matrix I - gamma J of the first-order form y = [q; u], never assembled at that size.  With q' = N(q) u,
-/// M u' = f, K = -df/dq N, D = -df/du, and theta the displacement along u-directions (dq = N theta), its two rows are
+/// Newton's matrix I - gamma J of the first-order form y = [q; u], never assembled at that size.  With q' =
+/// N(q) u, M u' = f, K = -df/dq N, D = -df/du, and theta the displacement along u-directions (dq = N theta),
+/// its two rows are
 ///     dq - gamma N du = r1                      (d(N u)/dq is left out: gamma times a rigid body's spin)
 ///     M du + gamma (K theta + D du) = M r2
 /// With the left inverse N+ of N, theta = N+ r1 + gamma du, and so
@@ -17,23 +18,29 @@ namespace palpate::integrate {
 ///     (M + gamma D + gamma^2 K) du = gamma r2 - gamma^2 K N+ r1,     dq = gamma (r1 + N du).
 /// Rows of driven directions (q' - v(t), u' - a(t)) give dq = gamma r1, du = gamma r2.
 ///
-/// An indefinite matrix is met as StepSolver says; "project" evaluates M, D and K again with definite tangents, and those serve until the next evaluate().
+/// An indefinite matrix is met as StepSolver says; "project" evaluates M, D and K again with definite
+/// tangents, and those serve until the next evaluate().
 class CondensedNewton {
  public:
-  CondensedNewton(dynamics::System& system, std::unique_ptr<dynamics::LinearSolver> solver, const IntegratorSpec& spec)
+  CondensedNewton(dynamics::System& system, std::unique_ptr<dynamics::LinearSolver> solver,
+                  const IntegratorSpec& spec)
       : system_(system), solver_(std::move(solver), spec) {}
 
   /// M, and D and K of the terms that `filter` picks (empty: all), at this state; no factor yet.
   /// The counters are kept in mind for evaluations that factor() and the solves ask for: they outlive it.
-  void evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters, const dynamics::System::TermFilter& filter = {});
-  /// Factor of M + gamma D + gamma^2 K with the matrices last evaluated; nothing is done where gamma and they are unchanged.
+  void evaluate(const dynamics::StateView& state, dynamics::StepperCounters& counters,
+                const dynamics::System::TermFilter& filter = {});
+  /// Factor of M + gamma D + gamma^2 K with the matrices last evaluated; nothing is done where gamma and they
+  /// are unchanged.
   dynamics::SolveStatus factor(double gamma);
   /// Solves for (dq, du), first-order form.  N is taken at q.  The outputs may not alias the residuals.
-  /// @param nodes_only  q' = N u of blocks with kinematics is not part of the system that is solved: dq = r1 there
-  dynamics::SolveStatus solve(const dynamics::Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du,
-                              bool nodes_only = false);
+  /// @param nodes_only  q' = N u of blocks with kinematics is not part of the system that is solved: dq =
+  ///   r1 there
+  dynamics::SolveStatus solve(const dynamics::Layout& layout, const double* q, const double* r1,
+                              const double* r2, double* dq, double* du, bool nodes_only = false);
   /// The same of the residual form.
-  dynamics::SolveStatus solve_residual_form(const dynamics::Layout& layout, const double* q, const double* r1, const double* r2, double* dq, double* du);
+  dynamics::SolveStatus solve_residual_form(const dynamics::Layout& layout, const double* q, const double* r1,
+                                            const double* r2, double* dq, double* du);
   double gamma() const { return gamma_; }  ///< of the last factor; 0 when there is none
   const StepSolver& solver() const { return solver_; }
 

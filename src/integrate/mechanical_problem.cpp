@@ -14,7 +14,8 @@ using dynamics::SolveStatus;
 using dynamics::StateView;
 using dynamics::TermTraits;
 
-MechanicalProblem::MechanicalProblem(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+MechanicalProblem::MechanicalProblem(dynamics::System& system, dynamics::State& state,
+                                     const IntegratorSpec& spec,
                                      std::unique_ptr<dynamics::LinearSolver> solver)
     : system_(system), state_(state), spec_(spec) {
   if (solver) newton_ = std::make_unique<CondensedNewton>(system, std::move(solver), spec);
@@ -30,7 +31,9 @@ StateView MechanicalProblem::view(double t, const double* y) {
 
 dynamics::System::TermFilter MechanicalProblem::filter(Side side) const {
   const bool contact_explicit = spec_.explicit_side == "contact";
-  const auto is_implicit = [contact_explicit](const TermTraits& t) { return t.stiff && !(t.contact && contact_explicit); };
+  const auto is_implicit = [contact_explicit](const TermTraits& t) {
+    return t.stiff && !(t.contact && contact_explicit);
+  };
   const auto is_fast = [](const TermTraits& t) { return t.fast || t.contact; };
   switch (side) {
     case Side::kAll: return {};
@@ -51,7 +54,8 @@ void MechanicalProblem::rates(Side side, const StateView& at, double* q_dot) con
   dynamics::q_dot(l, at.q.data(), at.u.data(), q_dot);
   if (side != Side::kSlow && side != Side::kFast) return;
   for (const Block& b : l.blocks)
-    if ((b.kinematics != nullptr) != (side == Side::kFast)) Eigen::Map<VecX>(q_dot + b.q_offset, b.q_size).setZero();
+    if ((b.kinematics != nullptr) != (side == Side::kFast))
+      Eigen::Map<VecX>(q_dot + b.q_offset, b.q_size).setZero();
 }
 
 bool MechanicalProblem::derivative(double t, const double* y, double* y_dot, Side side) {
@@ -63,7 +67,8 @@ bool MechanicalProblem::derivative(double t, const double* y, double* y_dot, Sid
     system_.force(at, force_, filter(side));
     if (!all_finite(force_)) return false;
     system_.acceleration_of_force(at, force_, acceleration_);
-    if ((side == Side::kExplicit || side == Side::kFast) && system_.any_driven()) {  // the drives' own inertia was counted on the other side
+    // the drives' own inertia was counted on the other side
+    if ((side == Side::kExplicit || side == Side::kFast) && system_.any_driven()) {
       force_.setZero(l.u_size);
       system_.acceleration_of_force(at, force_, driven_part_);
       acceleration_ -= driven_part_;
@@ -71,7 +76,8 @@ bool MechanicalProblem::derivative(double t, const double* y, double* y_dot, Sid
     rates(side, at, y_dot);
   }
   Eigen::Map<VecX>(y_dot + l.q_size, l.u_size) = acceleration_;
-  for (int dof : system_.driven_dofs()) y_dot[dof] = y_dot[l.q_size + dof] = 0.0;  // node blocks come first: one index serves both
+  // node blocks come first: one index serves both
+  for (int dof : system_.driven_dofs()) y_dot[dof] = y_dot[l.q_size + dof] = 0.0;
   return all_finite(Eigen::Map<const VecX>(y_dot, size()));
 }
 
@@ -96,7 +102,8 @@ bool MechanicalProblem::residual(double t, const double* y, const double* y_dot,
     system_.residual(at, acceleration_, force_);
     dynamics::q_dot(l, at.q.data(), at.u.data(), r);
   }
-  Eigen::Map<VecX>(r, l.q_size) = Eigen::Map<const VecX>(y_dot, l.q_size) - Eigen::Map<const VecX>(r, l.q_size);
+  Eigen::Map<VecX>(r, l.q_size) =
+      Eigen::Map<const VecX>(y_dot, l.q_size) - Eigen::Map<const VecX>(r, l.q_size);
   Eigen::Map<VecX>(r + l.q_size, l.u_size) = force_;
   for (int dof : system_.driven_dofs()) {
     r[dof] = y_dot[dof];
@@ -116,11 +123,14 @@ int MechanicalProblem::dof_of(int i) const {
   const Layout& l = layout();
   if (i >= l.q_size) return i - l.q_size;
   for (const Block& b : l.blocks)
-    if (i >= b.q_offset && i < b.q_offset + b.q_size) return b.u_offset + (b.kinematics ? std::min(i - b.q_offset, b.u_size - 1) : i - b.q_offset);
+    if (i >= b.q_offset && i < b.q_offset + b.q_size)
+      return b.u_offset + (b.kinematics ? std::min(i - b.q_offset, b.u_size - 1) : i - b.q_offset);
   return -1;
 }
 
-std::pair<dynamics::Finding, std::string> MechanicalProblem::inspect(double t, const double* y) { return system_.inspect(view(t, y)); }
+std::pair<dynamics::Finding, std::string> MechanicalProblem::inspect(double t, const double* y) {
+  return system_.inspect(view(t, y));
+}
 
 bool MechanicalProblem::has_manifold() const {
   const auto& blocks = layout().blocks;

@@ -5,17 +5,21 @@
 namespace palpate::integrate {
 
 /// A System as y' = f(t, y), y = [q; u], f = [N(q) u; M^-1 (sum of forces)].
-/// Driven directions keep their places in y with y' = 0 and are never read: before every evaluation the System writes
-/// their exact values into a copy.  So a drive costs no accuracy and no step, and its jumps stay outside the history.
+/// Driven directions keep their places in y with y' = 0 and are never read: before every evaluation the
+/// System writes their exact values into a copy.  So a drive costs no accuracy and no step, and its jumps
+/// stay outside the history.
 ///
 /// Splits, by what the force terms say of themselves (TermTraits):
-///     implicit   stiff terms and q' = N u         explicit   the others; with explicit_side = "contact" contact as well
-///     slow       node blocks' q' = u, and terms   fast       contact, terms that say so (a virtual coupling), rigid blocks' q' = N u
+///     implicit   stiff terms and q' = N u         explicit   the others; with explicit_side = "contact"
+///     contact as well
+///     slow       node blocks' q' = u, and terms   fast       contact, terms that say so (a virtual
+///     coupling), rigid blocks' q' = N u
 /// Accelerations of driven directions belong to the implicit and to the slow side.
 class MechanicalProblem final : public OdeProblem {
  public:
   /// @param solver  null for an explicit method: nothing is factored
-  MechanicalProblem(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec, std::unique_ptr<dynamics::LinearSolver> solver);
+  MechanicalProblem(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+                    std::unique_ptr<dynamics::LinearSolver> solver);
 
   int size() const override { return layout().q_size + layout().u_size; }
   std::uint64_t version() const override { return layout().version; }

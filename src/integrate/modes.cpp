@@ -1,7 +1,7 @@
 #include "palpate/integrate/modes.h"
 
-#include <Eigen/Eigenvalues>
 #include <Spectra/SymGEigsShiftSolver.h>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -10,39 +10,51 @@
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 
-// Free vibration M x'' + K (x - x0) = 0 with x = x0 + phi cos(w t):  K phi = l M phi, l = w^2, on the free directions.
+// Free vibration M x'' + K (x - x0) = 0 with x = x0 + phi cos(w t):  K phi = l M phi, l = w^2, on the free
+// directions.
 //
-// Shift and invert.  With A = K - s M the pencil becomes  A^-1 M phi = nu phi,  nu = 1/(l - s): the modes nearest to the shift s are the
-// largest nu, and Lanczos iteration finds those first (Ericsson and Ruhe 1980), orthogonal in the M product, in which A^-1 M is symmetric.
-//   lowest    s below the spectrum: K - s M is positive definite, and a Cholesky factor proves it.  K of a body at rest is semi-definite, zero
-//             for rigid motions of a free body, so a small negative s will do; where there is no factor (the state is an unstable
-//             equilibrium) s goes down until there is one.  Nothing then lies below s, so the modes nearest to it are the lowest.
-//   highest   s above it: s M - K is positive definite.  Doubling and bisection find s within 2 % above the highest l (Sylvester's law of inertia).
-// The unit of l is |s| and the unit of mass the mean one, so that the iteration's absolute thresholds mean what they should.
+// Shift and invert.  With A = K - s M the pencil becomes  A^-1 M phi = nu phi,  nu = 1/(l - s): the modes
+// nearest to the shift s are the largest nu, and Lanczos iteration finds those first (Ericsson and Ruhe
+// 1980), orthogonal in the M product, in which A^-1 M is symmetric.
+//   lowest    s below the spectrum: K - s M is positive definite, and a Cholesky factor proves it.  K of a
+//   body at rest is semi-definite, zero
+//             for rigid motions of a free body, so a small negative s will do; where there is no factor (the
+//             state is an unstable
+//             equilibrium) s goes down until there is one.  Nothing then lies below s, so the modes nearest
+//             to it are the lowest.
+//   highest   s above it: s M - K is positive definite.  Doubling and bisection find s within 2 % above the
+//   highest l (Sylvester's law of inertia).
+// The unit of l is |s| and the unit of mass the mean one, so that the iteration's absolute thresholds mean
+// what they should.
 //
-// Repeated modes.  One start vector sees one direction of each eigenspace; its other directions appear by rounding alone, and may be missed.
-// So the search is repeated in the M-complement of what was found, and what appears there before the last one found is taken in, until
-// nothing does.  It ends with Rayleigh-Ritz on A^-1 M X: the modes of the pencil restricted to that space, M-orthonormal to rounding.
+// Repeated modes.  One start vector sees one direction of each eigenspace; its other directions appear by
+// rounding alone, and may be missed. So the search is repeated in the M-complement of what was found, and
+// what appears there before the last one found is taken in, until nothing does.  It ends with Rayleigh-Ritz
+// on A^-1 M X: the modes of the pencil restricted to that space, M-orthonormal to rounding.
 //
-// Rounding.  The entries of K phi are sums that cancel: | |K||phi| | is larger than |K phi| by about w_max^2/w^2, and eps times it is what K
-// itself is known to.  A shape whose |K phi| is below 1e-12 of it is a rigid motion, l = 0.
+// Rounding.  The entries of K phi are sums that cancel: | |K||phi| | is larger than |K phi| by about
+// w_max^2/w^2, and eps times it is what K itself is known to.  A shape whose |K phi| is below 1e-12 of it is
+// a rigid motion, l = 0.
 
 namespace palpate::integrate {
 namespace {
 
 using namespace dynamics;
 
-constexpr double kTolerance = 1e-8;         // of the residual
-constexpr double kRounding = 1e-14;         // of | |K||phi| |: below it a residual is no error
-constexpr double kRigid = 1e-12;            // of | |K||phi| |: a force below it is none
-constexpr double kLowShift = 1e-7;          // of the mean of the spectrum, tr K / tr M
+constexpr double kTolerance = 1e-8;  // of the residual
+constexpr double kRounding = 1e-14;  // of | |K||phi| |: below it a residual is no error
+constexpr double kRigid = 1e-12;     // of | |K||phi| |: a force below it is none
+constexpr double kLowShift = 1e-7;   // of the mean of the spectrum, tr K / tr M
 
 /// K and M on the free directions.
 class Pencil {
  public:
   Pencil(System& system, const StateView& state) {
     system.step_matrix(state, 0.0, 0.0, 1.0, K_);
-    if (!K_.symmetric) fail("modes: the tangent is unsymmetric (friction, or a damping that depends on position): vibration has no real modes; leave that term out");
+    if (!K_.symmetric)
+      fail(
+          "modes: the tangent is unsymmetric (friction, or a damping that depends on position): vibration "
+          "has no real modes; leave that term out");
     system.step_matrix(state, 1.0, 0.0, 0.0, M_);
     for (int i = 0; i < state.layout->u_size; ++i)
       if (!system.driven_mask()[static_cast<std::size_t>(i)]) free_.push_back(i);
@@ -79,7 +91,8 @@ class Pencil {
   void shifted(double shift, double sign, BorderedMatrix& A) const {
     if (A.body.pattern_version() != K_.body.pattern_version()) A = K_;
     const auto combine = [&](const auto& k, const auto& m) { return sign * (k - shift * m); };
-    for (std::size_t i = 0; i < A.body.values().size(); ++i) A.body.values()[i] = combine(K_.body.values()[i], M_.body.values()[i]);
+    for (std::size_t i = 0; i < A.body.values().size(); ++i)
+      A.body.values()[i] = combine(K_.body.values()[i], M_.body.values()[i]);
     A.right = sign * (K_.right - shift * M_.right);
     A.bottom = sign * (K_.bottom - shift * M_.bottom);
     A.corner = sign * (K_.corner - shift * M_.corner);
@@ -94,7 +107,8 @@ class Pencil {
   double trace(const BorderedMatrix& A) const {
     double sum = 0.0;
     for (int i : free_)
-      sum += i < A.nodal_size() ? A.body.block(A.body.slot(i / 3, i / 3))[4 * (i % 3)] : A.corner(i - A.nodal_size(), i - A.nodal_size());
+      sum += i < A.nodal_size() ? A.body.block(A.body.slot(i / 3, i / 3))[4 * (i % 3)]
+                                : A.corner(i - A.nodal_size(), i - A.nodal_size());
     return sum;
   }
   VecX product(const BorderedMatrix& A, const VecX& x) const {
@@ -116,7 +130,8 @@ class Pencil {
 /// The factor of sign (K - shift M), positive definite, with the shift outside the spectrum.
 class ShiftedFactor {
  public:
-  ShiftedFactor(const Pencil& pencil, ModesOptions::End end) : pencil_(pencil), solver_(make_linear_solver("cholmod")), b_(VecX::Zero(pencil.K().size())) {
+  ShiftedFactor(const Pencil& pencil, ModesOptions::End end)
+      : pencil_(pencil), solver_(make_linear_solver("cholmod")), b_(VecX::Zero(pencil.K().size())) {
     const double mean = pencil.mean_square();
     if (!std::isfinite(mean)) fail("modes: the stiffness at this state is not finite");
     const double unit = mean > 0.0 ? mean : 1.0;
@@ -136,7 +151,8 @@ class ShiftedFactor {
   bool definite(double shift) {
     pencil_.shifted(shift_ = shift, sign_, A_);
     const SolveStatus status = solver_->factor(A_);
-    if (status == SolveStatus::kSingular) fail("modes: the stiffness or the mass at this state is not finite");
+    if (status == SolveStatus::kSingular)
+      fail("modes: the stiffness or the mass at this state is not finite");
     return status == SolveStatus::kOk;
   }
   void go_below(double mean) {
@@ -167,11 +183,13 @@ class ShiftedFactor {
   mutable VecX b_, x_;
 };
 
-/// What Spectra asks of (K - shift M)^-1, in units of |shift| and of the mean mass, with the modes already found projected out.
+/// What Spectra asks of (K - shift M)^-1, in units of |shift| and of the mean mass, with the modes already
+/// found projected out.
 class Inverse {
  public:
   using Scalar = double;
-  Inverse(const ShiftedFactor& factor, double scale, const MatX& found, const MatX& mass_found, Eigen::Index size)
+  Inverse(const ShiftedFactor& factor, double scale, const MatX& found, const MatX& mass_found,
+          Eigen::Index size)
       : factor_(factor), scale_(factor.sign() * scale), found_(found), mass_found_(mass_found), size_(size) {}
   Eigen::Index rows() const { return size_; }
   Eigen::Index cols() const { return size_; }
@@ -206,7 +224,9 @@ class Mass {
 
 /// Entries in [-1, 1] without a pattern: fractional parts of multiples of the golden ratio.
 VecX start_vector(Eigen::Index n) {
-  return VecX::NullaryExpr(n, [](Eigen::Index i) { return 2.0 * std::fmod(0.6180339887498949 * static_cast<double>((i + 1) * (i + 3)), 1.0) - 1.0; });
+  return VecX::NullaryExpr(n, [](Eigen::Index i) {
+    return 2.0 * std::fmod(0.6180339887498949 * static_cast<double>((i + 1) * (i + 3)), 1.0) - 1.0;
+  });
 }
 
 /// Up to `wanted` modes nearest to the shift in the M-complement of those found; columns M-orthonormal.
@@ -217,7 +237,8 @@ MatX lanczos(const Pencil& pencil, const ShiftedFactor& factor, Eigen::Index wan
   Inverse inverse(factor, std::abs(factor.shift()) * unit_mass, found, mass_found, n);
   Mass mass(pencil, unit_mass);
   const Eigen::Index room = std::min(n, std::max<Eigen::Index>(2 * wanted + 10, 20));
-  Spectra::SymGEigsShiftSolver<Inverse, Mass, Spectra::GEigsMode::ShiftInvert> solver(inverse, mass, wanted, room, -factor.sign());
+  Spectra::SymGEigsShiftSolver<Inverse, Mass, Spectra::GEigsMode::ShiftInvert> solver(inverse, mass, wanted,
+                                                                                      room, -factor.sign());
   VecX start = start_vector(n);
   if (found.cols() > 0) start -= found * (mass_found.transpose() * start);
   solver.init(start.data());
@@ -238,25 +259,30 @@ Pairs ordered(const VecX& squared, const MatX& shapes, bool lowest, Eigen::Index
 Pairs rayleigh_ritz(const Pencil& pencil, MatX X, bool lowest, Eigen::Index wanted) {
   for (Eigen::Index c = 0; c < X.cols(); ++c) X.col(c) /= std::sqrt(X.col(c).dot(pencil.mass(X.col(c))));
   const MatX k = X.transpose() * pencil.stiffness_of_all(X), m = X.transpose() * pencil.mass_of_all(X);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> small(0.5 * (k + k.transpose()), 0.5 * (m + m.transpose()));
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> small(0.5 * (k + k.transpose()),
+                                                             0.5 * (m + m.transpose()));
   PALPATE_CHECK(small.info() == Eigen::Success, "modes: {} Ritz vectors are dependent", X.cols());
   return ordered(small.eigenvalues(), X * small.eigenvectors(), lowest, wanted);
 }
 
 Pairs all_by_dense(const Pencil& pencil, bool lowest, Eigen::Index wanted) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> solver(pencil.dense(pencil.K()), pencil.dense(pencil.M()));
-  if (solver.info() != Eigen::Success) fail("modes: the stiffness is not finite, or the mass not positive definite, at this state");
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> solver(pencil.dense(pencil.K()),
+                                                              pencil.dense(pencil.M()));
+  if (solver.info() != Eigen::Success)
+    fail("modes: the stiffness is not finite, or the mass not positive definite, at this state");
   return ordered(solver.eigenvalues(), solver.eigenvectors(), lowest, wanted);
 }
 
 /// The search, repeated in the complement of what was found until nothing appears before the last one.
 Pairs by_lanczos(const Pencil& pencil, const ShiftedFactor& factor, bool lowest, Eigen::Index wanted) {
-  Pairs pairs = rayleigh_ritz(pencil, lanczos(pencil, factor, wanted, MatX(pencil.size(), 0)), lowest, wanted);
+  Pairs pairs =
+      rayleigh_ritz(pencil, lanczos(pencil, factor, wanted, MatX(pencil.size(), 0)), lowest, wanted);
   while (pairs.squared.size() > 0) {
     const MatX more = lanczos(pencil, factor, 1, pairs.shapes);
     if (more.cols() == 0) break;
     const VecX x = more.col(0);
-    const double squared = x.dot(pencil.stiffness(x)) / x.dot(pencil.mass(x)), last = pairs.squared[pairs.squared.size() - 1];
+    const double squared = x.dot(pencil.stiffness(x)) / x.dot(pencil.mass(x)),
+                 last = pairs.squared[pairs.squared.size() - 1];
     const double before = (lowest ? last - squared : squared - last) - 1e-9 * std::abs(last - factor.shift());
     if (pairs.squared.size() == wanted && before <= 0.0) break;
     MatX X(pencil.size(), pairs.shapes.cols() + 1);

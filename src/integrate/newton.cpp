@@ -10,7 +10,8 @@ namespace {
 constexpr double kSlow = 0.5;  // contraction above which an old matrix is renewed
 constexpr double kSmallestDamping = 1.0 / 64.0;
 
-/// Bound of what is left after a correction of this size at this contraction (geometric series), at least the correction itself.
+/// Bound of what is left after a correction of this size at this contraction (geometric series), at least the
+/// correction itself.
 double left_over(double correction, double contraction) {
   return correction * std::max(1.0, contraction < 0.95 ? contraction / (1.0 - contraction) : 20.0);
 }
@@ -19,8 +20,12 @@ double left_over(double correction, double contraction) {
 
 NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, Way way, bool usable) {
   const bool every_time = way != Way::kKeptMatrix;
-  const auto failed = [](StepStatus status, int iterations, double correction, const char* what) { return NewtonResult{status, iterations, correction, what}; };
-  const auto converged = [&](double correction, double contraction) { return left_over(correction, contraction) <= 1.0 || correction <= equation.rounding(x); };
+  const auto failed = [](StepStatus status, int iterations, double correction, const char* what) {
+    return NewtonResult{status, iterations, correction, what};
+  };
+  const auto converged = [&](double correction, double contraction) {
+    return left_over(correction, contraction) <= 1.0 || correction <= equation.rounding(x);
+  };
   if (!equation.evaluate(x)) return failed(StepStatus::kNotFinite, 0, 0.0, "the force is not finite");
   if (equation.solved()) return {};
   bool fresh = every_time || !usable;
@@ -38,9 +43,11 @@ NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, W
     for (; !taken && lambda >= kSmallestDamping; lambda /= 2.0) {
       trial_ = x + lambda * d_;
       if (equation.evaluate(trial_)) {
-        if (!equation.correct(e_, next)) return failed(StepStatus::kSolverFailed, k, size, "the step matrix is singular or not finite");
+        if (!equation.correct(e_, next))
+          return failed(StepStatus::kSolverFailed, k, size, "the step matrix is singular or not finite");
         kappa = next / size;
-        taken = way == Way::kLeaps || next <= 1.0 || next <= equation.rounding(trial_) || kappa <= 1.0 - lambda / 4.0;
+        taken = way == Way::kLeaps || next <= 1.0 || next <= equation.rounding(trial_) ||
+                kappa <= 1.0 - lambda / 4.0;
       }
       if (!taken && !fresh) break;
     }
@@ -58,7 +65,8 @@ NewtonResult DampedNewton::solve(NewtonEquation& equation, VecX& x, int limit, W
     if (every_time || !taken || kappa > kSlow) {
       fresh = true;
       const double kept = taken ? kappa : 0.0;
-      if (equation.refresh() != SolveStatus::kOk || !equation.correct(d_, size)) return failed(StepStatus::kSolverFailed, k, next, "the step matrix is singular or not finite");
+      if (equation.refresh() != SolveStatus::kOk || !equation.correct(d_, size))
+        return failed(StepStatus::kSolverFailed, k, next, "the step matrix is singular or not finite");
       contraction_ = kept;  // what a fresh matrix does is seen after its first correction
     } else {
       fresh = false;

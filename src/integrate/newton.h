@@ -28,14 +28,17 @@ struct NewtonResult {
   const char* what = "";
 };
 
-/// Newton's method after Deuflhard (2004, sections 2.1 and 3.3): affine invariant, so neither units nor the stiffness enter.
-/// With the factored matrix A of the iterate x_k, d = -A^-1 r(x_k) is the correction and, after it, the simplified correction
-/// e = -A^-1 r(x_k + d), which costs a residual and a solve and no factor, tells both how well it went and what is left:
-///     contraction kappa = |e|/|d|;   converged where |e| max(1, kappa/(1 - kappa)) <= 1, and e is then added too.
-/// kappa > 1 - lambda/4 refuses the correction lambda d: with a fresh matrix lambda is halved (down to 1/64), with an old one the
-/// matrix is made afresh.  A linear equation takes one matrix, two solves and two residuals.
-/// Leaps: every correction is taken whole, whatever kappa, with a fresh matrix each.  Where the residual jumps (the rotation of an element without volume, a damper
-/// at first touch) no small correction descends, and a whole one may land where it is smooth.
+/// Newton's method after Deuflhard (2004, sections 2.1 and 3.3): affine invariant, so neither units nor the
+/// stiffness enter. With the factored matrix A of the iterate x_k, d = -A^-1 r(x_k) is the correction and,
+/// after it, the simplified correction e = -A^-1 r(x_k + d), which costs a residual and a solve and no
+/// factor, tells both how well it went and what is left:
+///     contraction kappa = |e|/|d|;   converged where |e| max(1, kappa/(1 - kappa)) <= 1, and e is then added
+///     too.
+/// kappa > 1 - lambda/4 refuses the correction lambda d: with a fresh matrix lambda is halved (down to 1/64),
+/// with an old one the matrix is made afresh.  A linear equation takes one matrix, two solves and two
+/// residuals. Leaps: every correction is taken whole, whatever kappa, with a fresh matrix each.  Where the
+/// residual jumps (the rotation of an element without volume, a damper at first touch) no small correction
+/// descends, and a whole one may land where it is smooth.
 class DampedNewton {
  public:
   enum class Way {

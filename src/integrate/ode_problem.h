@@ -7,8 +7,9 @@
 
 namespace palpate::integrate {
 
-/// y' = f(t, y) with its Newton matrix, as an adapter of SUNDIALS sees it: the one thing between a System and the library.
-/// The adapters know no mechanics and the mechanics no SUNDIALS; a dense test equation fits as well as a soft body.
+/// y' = f(t, y) with its Newton matrix, as an adapter of SUNDIALS sees it: the one thing between a System and
+/// the library. The adapters know no mechanics and the mechanics no SUNDIALS; a dense test equation fits as
+/// well as a soft body.
 class OdeProblem {
  public:
   /// What of f is asked for.  f = implicit + explicit = slow + fast.
@@ -39,7 +40,8 @@ class OdeProblem {
   /// Factor of I - gamma J; nothing is done where it stands already.
   virtual dynamics::SolveStatus factor(double gamma) = 0;
   virtual double gamma() const = 0;  ///< of the factor; 0 without one
-  /// Asks for a positive semi-definite tangent from now on, where there is one (true), or for the true one (false).
+  /// Asks for a positive semi-definite tangent from now on, where there is one (true), or for the true one
+  /// (false).
   virtual void set_definite(bool) {}
   /// (I - gamma J) d = r.  d may not be r.
   virtual dynamics::SolveStatus solve(const double* y, const double* r, double* d) = 0;
@@ -51,7 +53,8 @@ class OdeProblem {
 
   /// Functions that change sign where f has a kink.
   virtual int event_count() const { return 0; }
-  virtual std::uint64_t events_version() const { return 0; }  ///< grows when they are other functions than before
+  /// grows when they are other functions than before
+  virtual std::uint64_t events_version() const { return 0; }
   virtual void events(double /*t*/, const double* /*y*/, double* /*g*/) {}
 
   /// For traces: the entry of u that entry i of y belongs to (-1: none), and what is inside out at y.
@@ -63,7 +66,9 @@ class OdeProblem {
   virtual void collect_solver_counters() {}
 };
 
-/// An adapter of SUNDIALS over any problem; spec.name as in the registry.  @throws Error for a method that is none of SUNDIALS'
-std::unique_ptr<dynamics::Stepper> make_ode_stepper(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);
+/// An adapter of SUNDIALS over any problem; spec.name as in the registry.  @throws Error for a method that is
+/// none of SUNDIALS'
+std::unique_ptr<dynamics::Stepper> make_ode_stepper(std::unique_ptr<OdeProblem> problem,
+                                                    const IntegratorSpec& spec);
 
 }  // namespace palpate::integrate

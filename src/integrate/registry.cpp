@@ -14,39 +14,67 @@ namespace {
 /// In the order in which they are listed and compared: by SUNDIALS, then by hand.
 dynamics::StepperRegistry make_registry() {
   dynamics::StepperRegistry all = {
-      {"cvode-bdf", "backward differences of SUNDIALS CVODE, order 1 to 5 (max_order)",
-       {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"}, make_cvode},
-      {"cvode-adams", "Adams-Moulton of SUNDIALS CVODE, order 1 to 12 (max_order), fixed-point iteration",
-       {"Adams", 12, 0, StepControl::kAdaptive, Stability::kExplicit, false, true, "force"}, make_cvode},
-      {"ida", "backward differences of SUNDIALS IDA on the residual M u' - f, order 1 to 5 (max_order)",
-       {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"}, make_ida},
+      {"cvode-bdf",
+       "backward differences of SUNDIALS CVODE, order 1 to 5 (max_order)",
+       {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"},
+       make_cvode},
+      {"cvode-adams",
+       "Adams-Moulton of SUNDIALS CVODE, order 1 to 12 (max_order), fixed-point iteration",
+       {"Adams", 12, 0, StepControl::kAdaptive, Stability::kExplicit, false, true, "force"},
+       make_cvode},
+      {"ida",
+       "backward differences of SUNDIALS IDA on the residual M u' - f, order 1 to 5 (max_order)",
+       {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"},
+       make_ida},
   };
   for (const ArkMethod& m : ark_methods()) all.push_back({m.name, m.summary, m.traits, make_ark});
   const auto multi_rate = [](int order, int stiff_order) {
-    return dynamics::StepperTraits{"multi-rate", order, stiff_order, StepControl::kFixed, Stability::kA, true, false, "force, tangent; contact and tool as the fast side"};
+    return dynamics::StepperTraits{
+        "multi-rate",  order, stiff_order, StepControl::kFixed,
+        Stability::kA, true,  false,       "force, tangent; contact and tool as the fast side"};
   };
-  all.push_back({"ark-mri-2", "multi-rate IRK21a of Sandu 2019: bodies by an implicit slow step, contact and tool fast", multi_rate(2, 2), make_mri});
+  all.push_back({"ark-mri-2",
+                 "multi-rate IRK21a of Sandu 2019: bodies by an implicit slow step, contact and tool fast",
+                 multi_rate(2, 2), make_mri});
   all.push_back({"ark-mri-3", "multi-rate ESDIRK34a of Sandu 2019", multi_rate(3, 2), make_mri});
   all.push_back({"ark-mri-4", "multi-rate ESDIRK46a of Sandu 2019", multi_rate(4, 2), make_mri});
-  all.push_back({"kinsol-static", "quasi-static equilibrium of SUNDIALS KINSOL: no inertia, no velocity",
-                 {"statics", 1, 1, StepControl::kFixed, Stability::kStatic, true, false, "force, tangent"}, make_kinsol_static});
+  all.push_back({"kinsol-static",
+                 "quasi-static equilibrium of SUNDIALS KINSOL: no inertia, no velocity",
+                 {"statics", 1, 1, StepControl::kFixed, Stability::kStatic, true, false, "force, tangent"},
+                 make_kinsol_static});
   const dynamics::StepperRegistry by_hand = {
-      {"linearly-implicit-euler", "one linear solve a step; the interactive method of Galoppo et al. 2007",
-       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"}, make_linearly_implicit_euler},
-      {"backward-euler", "backward Euler, Newton to its end; full, or a factor kept over factor_kept_steps",
-       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"}, make_backward_euler},
-      {"implicit-midpoint", "implicit midpoint rule, Newton to its end; keeps quadratic invariants; no numerical damping",
-       {"Gauss", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"}, make_implicit_midpoint},
-      {"bdf2", "backward differences of order 2 with variable steps; starts by an L-stable SDIRK step of order 2",
-       {"BDF", 2, 2, StepControl::kFixed, Stability::kL, true, true, "force, tangent", "auto"}, make_bdf2},
-      {"newmark", "Newmark 1959, average acceleration (beta = 1/4, gamma = 1/2); no numerical damping",
-       {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"}, make_newmark},
-      {"generalized-alpha", "Chung and Hulbert 1993; damps high frequencies by spectral_radius a step",
-       {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"}, make_generalized_alpha},
-      {"symplectic-euler", "velocity first, then position; one force a step, stable below 2/w_max",
-       {"explicit Euler", 1, 0, StepControl::kFixed, Stability::kExplicit, false, false, "force"}, make_symplectic_euler},
-      {"rk4", "the classical Runge-Kutta method of order 4; four forces a step, stable below 2.8/w_max",
-       {"explicit Runge-Kutta", 4, 0, StepControl::kFixed, Stability::kExplicit, false, false, "force"}, make_rk4},
+      {"linearly-implicit-euler",
+       "one linear solve a step; the interactive method of Galoppo et al. 2007",
+       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"},
+       make_linearly_implicit_euler},
+      {"backward-euler",
+       "backward Euler, Newton to its end; full, or a factor kept over factor_kept_steps",
+       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"},
+       make_backward_euler},
+      {"implicit-midpoint",
+       "implicit midpoint rule, Newton to its end; keeps quadratic invariants; no numerical damping",
+       {"Gauss", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"},
+       make_implicit_midpoint},
+      {"bdf2",
+       "backward differences of order 2 with variable steps; starts by an L-stable SDIRK step of order 2",
+       {"BDF", 2, 2, StepControl::kFixed, Stability::kL, true, true, "force, tangent", "auto"},
+       make_bdf2},
+      {"newmark",
+       "Newmark 1959, average acceleration (beta = 1/4, gamma = 1/2); no numerical damping",
+       {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"},
+       make_newmark},
+      {"generalized-alpha",
+       "Chung and Hulbert 1993; damps high frequencies by spectral_radius a step",
+       {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"},
+       make_generalized_alpha},
+      {"symplectic-euler",
+       "velocity first, then position; one force a step, stable below 2/w_max",
+       {"explicit Euler", 1, 0, StepControl::kFixed, Stability::kExplicit, false, false, "force"},
+       make_symplectic_euler},
+      {"rk4",
+       "the classical Runge-Kutta method of order 4; four forces a step, stable below 2.8/w_max",
+       {"explicit Runge-Kutta", 4, 0, StepControl::kFixed, Stability::kExplicit, false, false, "force"},
+       make_rk4},
   };
   all.insert(all.end(), by_hand.begin(), by_hand.end());
   return all;
@@ -61,20 +89,38 @@ const dynamics::StepperRegistry& stepper_registry() {
 
 const dynamics::LinearSolverRegistry& linear_solver_registry() {
   static const dynamics::LinearSolverRegistry registry = {
-      {"cholmod", "supernodal Cholesky of SuiteSparse, ordered by AMD or METIS; symmetric positive definite matrices", 0, make_cholmod},
+      {"cholmod",
+       "supernodal Cholesky of SuiteSparse, ordered by AMD or METIS; symmetric positive definite matrices", 0,
+       make_cholmod},
       {"umfpack", "multifrontal LU of SuiteSparse; unsymmetric and indefinite matrices", 0, make_umfpack},
-      {"klu", "left-looking LU of SuiteSparse, pivot order kept; unsymmetric and indefinite matrices, of small bodies (3,700 nodes: many times umfpack's time)", 0, make_klu},
-      {"pcg", "conjugate gradients, block-Jacobi, warm start, to linear_rtol; symmetric positive definite matrices", 0, make_pcg},
-      {"auto", "the fastest of cholmod, pcg-single and pcg-two-level for the matrix's size and stiffness and for linear_rtol, by measurements kept in the source", 0, make_auto},
-      {"pcg-single", "conjugate gradients in single precision with residuals in double, block-Jacobi, start from three solutions; linear_rtol bounds the error", 0, make_pcg_single},
-      {"pcg-two-level", "pcg-single with rigid motions of node clusters, large and small, beside its blocks: for stiff bodies, long steps and fine meshes", 0, make_pcg_two_level},
+      {"klu",
+       "left-looking LU of SuiteSparse, pivot order kept; unsymmetric and indefinite matrices, of small "
+       "bodies (3,700 nodes: many times umfpack's time)",
+       0, make_klu},
+      {"pcg",
+       "conjugate gradients, block-Jacobi, warm start, to linear_rtol; symmetric positive definite matrices",
+       0, make_pcg},
+      {"auto",
+       "the fastest of cholmod, pcg-single and pcg-two-level for the matrix's size and stiffness and for "
+       "linear_rtol, by measurements kept in the source",
+       0, make_auto},
+      {"pcg-single",
+       "conjugate gradients in single precision with residuals in double, block-Jacobi, start from three "
+       "solutions; linear_rtol bounds the error",
+       0, make_pcg_single},
+      {"pcg-two-level",
+       "pcg-single with rigid motions of node clusters, large and small, beside its blocks: for stiff "
+       "bodies, long steps and fine meshes",
+       0, make_pcg_two_level},
   };
   return registry;
 }
 
-std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec) {
+std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynamics::State& state,
+                                                const IntegratorSpec& spec) {
   const auto& entry = find(stepper_registry(), spec.name, "integrator");
-  if (!spec.linear_solver.empty()) find(linear_solver_registry(), spec.linear_solver, "linear solver");  // a wrong name is refused even where it would not be used
+  // a wrong name is refused even where it would not be used
+  if (!spec.linear_solver.empty()) find(linear_solver_registry(), spec.linear_solver, "linear solver");
   const std::string solver = linear_solver_of(spec);
   return entry.make(system, state, spec, solver.empty() ? nullptr : make_linear_solver(solver, spec));
 }
@@ -86,11 +132,13 @@ std::string linear_solver_of(const IntegratorSpec& spec) {
   return spec.factor_kept_steps > 1 ? "cholmod" : traits.linear_solver;
 }
 
-std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name, const IntegratorSpec& spec) {
+std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name,
+                                                           const IntegratorSpec& spec) {
   return find(linear_solver_registry(), name, "linear solver").make(spec);
 }
 
-std::unique_ptr<dynamics::LinearSolver> make_robust_linear_solver(const std::string& name, const IntegratorSpec& spec) {
+std::unique_ptr<dynamics::LinearSolver> make_robust_linear_solver(const std::string& name,
+                                                                  const IntegratorSpec& spec) {
   return std::make_unique<StepSolver>(make_linear_solver(name, spec), spec);
 }
 

@@ -27,7 +27,8 @@ SolveStatus StepSolver::factor_by_cholesky(const BorderedMatrix& A) {
   return cholesky_->factor(A);
 }
 
-/// By what needs no iteration: a Cholesky factor where there is one, a third of the time of LU, and the chosen solver has not just looked for it.
+/// By what needs no iteration: a Cholesky factor where there is one, a third of the time of LU, and the
+/// chosen solver has not just looked for it.
 SolveStatus StepSolver::factor_direct(const BorderedMatrix& A) {
   definite_ = false;
   if (A.symmetric && chosen_->name() != "cholmod")

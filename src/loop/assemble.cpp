@@ -23,13 +23,17 @@ fem::SoftBodyOptions options_of(const SoftBodySpec& spec, const fem::Materials& 
   else if (spec.tangent == "warped")
     options.tangent = fem::Tangent::kWarped;
   else
-    fail("body \"{}\": unknown tangent \"{}\"{}", spec.name, spec.tangent, suggestion(spec.tangent, {"exact", "projected", "warped"}));
+    fail("body \"{}\": unknown tangent \"{}\"{}", spec.name, spec.tangent,
+         suggestion(spec.tangent, {"exact", "projected", "warped"}));
   options.full_damping_tangent = spec.full_damping_tangent;
   if (spec.volumetric == "nodal") {
-    for (const fem::Material& material : materials.list) options.volumetric_shares.push_back(fem::kept_volumetric_share(material));
-    options.volumetric_share = *std::min_element(options.volumetric_shares.begin(), options.volumetric_shares.end());
+    for (const fem::Material& material : materials.list)
+      options.volumetric_shares.push_back(fem::kept_volumetric_share(material));
+    options.volumetric_share =
+        *std::min_element(options.volumetric_shares.begin(), options.volumetric_shares.end());
   } else if (spec.volumetric != "element")
-    fail("body \"{}\": unknown volumetric \"{}\"{}", spec.name, spec.volumetric, suggestion(spec.volumetric, {"element", "nodal"}));
+    fail("body \"{}\": unknown volumetric \"{}\"{}", spec.name, spec.volumetric,
+         suggestion(spec.volumetric, {"element", "nodal"}));
   return options;
 }
 
@@ -54,13 +58,16 @@ void take_model(LayeredModel& model, const std::string& path, double scale, Body
   take_file(std::move(model.tets), path, scale, body);
   if (model.bone_of_node.empty()) return;
   std::vector<int> bone_of_node;
-  for (const int node : body.file_node) bone_of_node.push_back(model.bone_of_node[static_cast<std::size_t>(node)]);
+  for (const int node : body.file_node)
+    bone_of_node.push_back(model.bone_of_node[static_cast<std::size_t>(node)]);
   model.bone_of_node = std::move(bone_of_node);
 }
 
 /// The bones, in the body's own axes as yet.
 void take_skeleton(const SoftBodySpec& spec, const std::string& path, const LayeredModel& model, Body& body) {
-  if (model.skeleton.bones.empty()) fail("body \"{}\": [body.skeleton], but {} has no bones; `palpate model human` writes a file that has", spec.name, path);
+  if (model.skeleton.bones.empty())
+    fail("body \"{}\": [body.skeleton], but {} has no bones; `palpate model human` writes a file that has",
+         spec.name, path);
   counters::count("loop.skeleton");
   body.skeleton = model.skeleton;
   body.bone_of_node = model.bone_of_node;
@@ -70,8 +77,9 @@ void take_skeleton(const SoftBodySpec& spec, const std::string& path, const Laye
   }
 }
 
-/// A body's tetrahedra, and the skin and proxies that the scene names.  Returns the regions of its file.  Of a model file the tetrahedra alone are read where it names neither; else the file is
-/// read and checked as a whole, and what is not named is let go.
+/// A body's tetrahedra, and the skin and proxies that the scene names.  Returns the regions of its file.  Of
+/// a model file the tetrahedra alone are read where it names neither; else the file is read and checked as a
+/// whole, and what is not named is let go.
 std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::string& folder, Body& body) {
   const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
   if (spec.skin || spec.skeleton) {
@@ -79,12 +87,16 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
     take_model(model, path, spec.mesh.scale, body);
     if (spec.skeleton) take_skeleton(spec, path, model, body);
     if (!spec.skin) return std::move(model.regions);
-    if (model.skin.faces.cols() == 0) fail("body \"{}\": skin = true, but {} has no skin; `palpate model` writes files that have one", spec.name, path);
+    if (model.skin.faces.cols() == 0)
+      fail("body \"{}\": skin = true, but {} has no skin; `palpate model` writes files that have one",
+           spec.name, path);
     counters::count("loop.skin");
     model.skin.vertices *= spec.mesh.scale;
     std::shared_ptr<proxy::ProxySet> proxies;
     if (spec.proxies) {
-      if (model.proxies.empty()) fail("body \"{}\": proxies = true, but {} has none; `palpate model` writes files that have them", spec.name, path);
+      if (model.proxies.empty())
+        fail("body \"{}\": proxies = true, but {} has none; `palpate model` writes files that have them",
+             spec.name, path);
       model.tets = body.rest;  // as checked, scaled and numbered
       for (ProxyHull& hull : model.proxies) hull.corners *= spec.mesh.scale;
       counters::count("loop.proxies");
@@ -107,7 +119,8 @@ std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::strin
 VecX initial_velocities(const SoftBodySpec& spec, const Points& placed, const VecX& masses) {
   const Vec3 centre = placed * masses / masses.sum();
   Points v(3, placed.cols());
-  for (Eigen::Index i = 0; i < placed.cols(); ++i) v.col(i) = spec.velocity_m_s + spec.angular_velocity_rad_s.cross(placed.col(i) - centre);
+  for (Eigen::Index i = 0; i < placed.cols(); ++i)
+    v.col(i) = spec.velocity_m_s + spec.angular_velocity_rad_s.cross(placed.col(i) - centre);
   return Eigen::Map<const VecX>(v.data(), v.size());
 }
 
@@ -117,7 +130,8 @@ Body place_body(World& world, const SoftBodySpec& spec, fem::Materials& material
   std::vector<MaterialRegion> regions = load_mesh(spec, world.folder, body);
   const Pose pose{quaternion_of(spec.rotation_vector_rad), spec.position_m};
   body.placed.resize(3, body.rest.nodes.cols());
-  for (Eigen::Index i = 0; i < body.placed.cols(); ++i) body.placed.col(i) = pose * Vec3(body.rest.nodes.col(i));
+  for (Eigen::Index i = 0; i < body.placed.cols(); ++i)
+    body.placed.col(i) = pose * Vec3(body.rest.nodes.col(i));
   for (palpate::Bone& bone : body.skeleton.bones) bone.head = pose * bone.head, bone.tail = pose * bone.tail;
   materials = assemble_materials(spec, std::move(regions), body);
   body.masses = fem::lumped_masses(body.rest, materials);
@@ -125,7 +139,8 @@ Body place_body(World& world, const SoftBodySpec& spec, fem::Materials& material
   return body;
 }
 
-/// Errors are asked for in units of strain: lengths by the body's size, velocities by its bar wave speed sqrt(E/rho), that of its own material.
+/// Errors are asked for in units of strain: lengths by the body's size, velocities by its bar wave speed
+/// sqrt(E/rho), that of its own material.
 dynamics::BlockSpec block_of(const SoftBodySpec& spec, const Body& body) {
   dynamics::BlockSpec block;
   block.name = spec.name;
@@ -140,17 +155,23 @@ void add_forces(World& world, Body& body, const SoftBodySpec& spec, const fem::M
   body.term = std::make_shared<fem::SoftBody>(spec.name, body.rest, materials, options, body.block_id);
   world.system.add(body.term);
   if (options.volumetric_share < 1.0) {
-    body.dilatation = std::make_shared<fem::NodalDilatation>("volume of " + spec.name, body.rest, materials, options, body.block_id);
+    body.dilatation = std::make_shared<fem::NodalDilatation>("volume of " + spec.name, body.rest, materials,
+                                                             options, body.block_id);
     world.system.add(body.dilatation);
   }
   const bool consistent = spec.mass == "consistent";
-  if (!consistent && spec.mass != "lumped") fail("body \"{}\": unknown mass \"{}\"{}", spec.name, spec.mass, suggestion(spec.mass, {"lumped", "consistent"}));
+  if (!consistent && spec.mass != "lumped")
+    fail("body \"{}\": unknown mass \"{}\"{}", spec.name, spec.mass,
+         suggestion(spec.mass, {"lumped", "consistent"}));
   world.system.add(consistent ? fem::make_consistent_mass(body.rest, materials, body.block_id)
                               : fem::make_lumped_mass(body.rest, materials, body.block_id));
   if (consistent) world.system.set_mass_solver(integrate::make_linear_solver("cholmod"));
-  if (!world.description.gravity_m_s2.isZero()) world.system.add(fem::make_gravity(body.masses, world.description.gravity_m_s2, body.block_id));
+  if (!world.description.gravity_m_s2.isZero())
+    world.system.add(fem::make_gravity(body.masses, world.description.gravity_m_s2, body.block_id));
   for (const LoadSpec& load : spec.loads)
-    world.system.add(fem::make_dead_load("load on " + spec.name, fem::spread_over_boundary({body.placed, body.rest.tets}, load), body.block_id));
+    world.system.add(fem::make_dead_load("load on " + spec.name,
+                                         fem::spread_over_boundary({body.placed, body.rest.tets}, load),
+                                         body.block_id));
 }
 
 }  // namespace
@@ -165,9 +186,11 @@ void assemble_bodies(World& world) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const SoftBodySpec& spec = world.description.bodies[i];
     const VecX q = Eigen::Map<const VecX>(bodies[i].placed.data(), bodies[i].placed.size());
-    bodies[i].block_id = world.state.insert(block_of(spec, bodies[i]), q, initial_velocities(spec, bodies[i].placed, bodies[i].masses));
+    bodies[i].block_id = world.state.insert(block_of(spec, bodies[i]), q,
+                                            initial_velocities(spec, bodies[i].placed, bodies[i].masses));
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) add_forces(world, bodies[i], world.description.bodies[i], materials[i]);
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    add_forces(world, bodies[i], world.description.bodies[i], materials[i]);
 }
 
 std::unique_ptr<World> assemble(const scene::Description& description) {

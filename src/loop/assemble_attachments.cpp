@@ -18,7 +18,9 @@ std::vector<int> nodes_inside(const World& world, const Body& body, const Attach
   if (spec.region == "box") return fem::nodes_in_box(body.placed, spec.box_min_m, spec.box_max_m);
   if (spec.region == "sphere") return fem::nodes_in_sphere(body.placed, spec.centre_m, spec.radius_m);
   const BoneSpec* bone = spec_of(world, spec.to);
-  if (!bone) return fem::nodes_in_sphere(body.placed, world.description.tool->position_m, world.description.tool->radius_m);
+  if (!bone)
+    return fem::nodes_in_sphere(body.placed, world.description.tool->position_m,
+                                world.description.tool->radius_m);
   const Pose from_world = Pose{quaternion_of(bone->rotation_vector_rad), bone->position_m}.inverse();
   std::vector<int> out;
   for (int i = 0; i < body.placed.cols(); ++i)
@@ -30,17 +32,22 @@ void check_nodes(const Body& body, const AttachmentSpec& spec, const std::vector
   if (!nodes.empty()) return;
   const std::string where = fmt::format("body \"{}\": attachment", body.name);
   if (spec.region == "box")
-    fail("{} box [{}, {}, {}] to [{}, {}, {}] m holds no node; enlarge it or move it over the body", where, spec.box_min_m.x(), spec.box_min_m.y(), spec.box_min_m.z(),
-         spec.box_max_m.x(), spec.box_max_m.y(), spec.box_max_m.z());
+    fail("{} box [{}, {}, {}] to [{}, {}, {}] m holds no node; enlarge it or move it over the body", where,
+         spec.box_min_m.x(), spec.box_min_m.y(), spec.box_min_m.z(), spec.box_max_m.x(), spec.box_max_m.y(),
+         spec.box_max_m.z());
   if (spec.region == "sphere")
-    fail("{} sphere of radius {} m about [{}, {}, {}] m holds no node; enlarge it or move it over the body", where, spec.radius_m, spec.centre_m.x(), spec.centre_m.y(), spec.centre_m.z());
-  fail("{}: no node lies inside \"{}\"; move it into the body, refine the mesh, or choose nodes by a box or a sphere", where, spec.to);
+    fail("{} sphere of radius {} m about [{}, {}, {}] m holds no node; enlarge it or move it over the body",
+         where, spec.radius_m, spec.centre_m.x(), spec.centre_m.y(), spec.centre_m.z());
+  fail(
+      "{}: no node lies inside \"{}\"; move it into the body, refine the mesh, or choose nodes by a box or a "
+      "sphere",
+      where, spec.to);
 }
 
 /// Which way the nodes of an attachment go, and the frame that they are fixed in at the start.
 struct Carrier {
-  int block_id = -1;            ///< a rigid block, or
-  fem::Path path;               ///< a function of time; neither: they stay
+  int block_id = -1;  ///< a rigid block, or
+  fem::Path path;     ///< a function of time; neither: they stay
   Pose start;
   std::vector<int>* dofs = nullptr;  ///< where a bone keeps a list of what it carries
 };
@@ -48,10 +55,13 @@ struct Carrier {
 /// Keyframes move the region about its own centre: x(t) = centre + position(t) + R(t) (x0 - centre).
 Carrier along_keyframes(const AttachmentSpec& spec) {
   const Vec3 centre = spec.region == "sphere" ? spec.centre_m : Vec3(0.5 * (spec.box_min_m + spec.box_max_m));
-  return {-1, [keyframes = spec.keyframes, centre](double t) {
+  return {-1,
+          [keyframes = spec.keyframes, centre](double t) {
             const device::HandleSample s = device::sample_keyframes(keyframes, t);
             return fem::PathPoint{{s.pose.rotation, s.pose.translation + centre}, s.twist, s.acceleration};
-          }, {Quat::Identity(), centre}, nullptr};
+          },
+          {Quat::Identity(), centre},
+          nullptr};
 }
 
 Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {
@@ -59,10 +69,14 @@ Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {
   for (Bone& bone : world.bones)
     if (bone.name == spec.to) {
       const BoneSpec& placed = *spec_of(world, spec.to);
-      return {bone.block_id, bone.path, {quaternion_of(placed.rotation_vector_rad), placed.position_m}, &bone.dofs};
+      return {bone.block_id,
+              bone.path,
+              {quaternion_of(placed.rotation_vector_rad), placed.position_m},
+              &bone.dofs};
     }
   if (spec.to != "tool" || !world.monolithic())
-    fail("body \"{}\": attachment to = \"{}\" is neither a bone nor the tool of a monolithic scheme", body.name, spec.to);
+    fail("body \"{}\": attachment to = \"{}\" is neither a bone nor the tool of a monolithic scheme",
+         body.name, spec.to);
   return {world.tool_block_id, {}, world.tool_pose(), nullptr};
 }
 
@@ -95,7 +109,8 @@ void attach(World& world, const Body& body, const AttachmentSpec& spec) {
 
 void assemble_attachments(World& world) {
   for (std::size_t i = 0; i < world.bodies.size(); ++i)
-    for (const AttachmentSpec& attachment : world.description.bodies[i].attachments) attach(world, world.bodies[i], attachment);
+    for (const AttachmentSpec& attachment : world.description.bodies[i].attachments)
+      attach(world, world.bodies[i], attachment);
 }
 
 }  // namespace palpate::loop

@@ -14,11 +14,14 @@ fem::Path path_of(const BoneSpec& spec) {
   if (spec.fixed) return [placed](double) { return fem::PathPoint{placed, {}, {}}; };
   return [keyframes = spec.keyframes, placed](double t) {
     const device::HandleSample s = device::sample_keyframes(keyframes, t);
-    return fem::PathPoint{{s.pose.rotation * placed.rotation, s.pose.translation + placed.translation}, s.twist, s.acceleration};
+    return fem::PathPoint{{s.pose.rotation * placed.rotation, s.pose.translation + placed.translation},
+                          s.twist,
+                          s.acceleration};
   };
 }
 
-/// Errors are asked for in the units of the flesh that it carries: an error in its turn counts as that of a node a body's size away.
+/// Errors are asked for in the units of the flesh that it carries: an error in its turn counts as that of a
+/// node a body's size away.
 dynamics::BlockSpec block_of(const World& world, const BoneSpec& spec) {
   double length = 0.0, speed = 0.0;
   for (std::size_t i = 0; i < world.bodies.size(); ++i)
@@ -43,7 +46,8 @@ void add_free(World& world, Bone& bone, const BoneSpec& spec) {
   world.system.add(dynamics::make_rigid_inertia(bone.block_id, inertia.mass, inertia.principal));
   world.system.add(dynamics::make_gyroscopic(bone.block_id, inertia.principal));
   if (spec.gravity && !world.description.gravity_m_s2.isZero())
-    world.system.add(dynamics::make_rigid_weight(bone.block_id, inertia.mass, world.description.gravity_m_s2));
+    world.system.add(
+        dynamics::make_rigid_weight(bone.block_id, inertia.mass, world.description.gravity_m_s2));
 }
 
 }  // namespace

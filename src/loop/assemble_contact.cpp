@@ -13,7 +13,9 @@ namespace {
 double mean_edge(const TriMesh& surface) {
   double sum = 0.0;
   for (Eigen::Index f = 0; f < surface.faces.cols(); ++f)
-    for (int k = 0; k < 3; ++k) sum += (surface.vertices.col(surface.faces(k, f)) - surface.vertices.col(surface.faces((k + 1) % 3, f))).norm();
+    for (int k = 0; k < 3; ++k)
+      sum += (surface.vertices.col(surface.faces(k, f)) - surface.vertices.col(surface.faces((k + 1) % 3, f)))
+                 .norm();
   return sum / static_cast<double>(3 * surface.faces.cols());
 }
 
@@ -27,22 +29,36 @@ struct Pair {
 Pair pair_of(const World& world, const ContactSpec& spec, const std::string& name) {
   const Body* body = world.find_body(name);
   if (!body) fail("contact: no body called \"{}\"", name);
-  const double gap = spec.candidate_gap_m > 0.0 ? spec.candidate_gap_m : mean_edge(body->skin ? body->skin->rest : body->boundary.surface);
-  if (body->skin) return {spec, {body->block_id, {}, body->skin->rest.faces, body->skin->embedding, body->rest.tets}, gap, body->skin->proxies};
+  const double gap = spec.candidate_gap_m > 0.0
+                         ? spec.candidate_gap_m
+                         : mean_edge(body->skin ? body->skin->rest : body->boundary.surface);
+  if (body->skin)
+    return {spec,
+            {body->block_id, {}, body->skin->rest.faces, body->skin->embedding, body->rest.tets},
+            gap,
+            body->skin->proxies};
   return {spec, {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces}, gap};
 }
 
 [[maybe_unused]] [[noreturn]] void refuse_gpu() {
-  fail("contact: method \"gpu\": this palpate was built without OpenGL; configure with -DPALPATE_WITH_GL=ON (packages libepoxy-dev, libegl-dev)");
+  fail(
+      "contact: method \"gpu\": this palpate was built without OpenGL; configure with -DPALPATE_WITH_GL=ON "
+      "(packages libepoxy-dev, libegl-dev)");
 }
 
 /// Two soft bodies.
 std::unique_ptr<contact::SampleSource> gpu_source(Pair a, Pair b) {
-  if (a.spec.method != "gpu") fail("contact {} - {}: two soft bodies meet in image space; use method = \"gpu\"", a.spec.first, a.spec.second);
-  if (!a.proxies != !b.proxies) fail("contact {} - {}: proxies on one side alone; both need them, or neither", a.spec.first, a.spec.second);
+  if (a.spec.method != "gpu")
+    fail("contact {} - {}: two soft bodies meet in image space; use method = \"gpu\"", a.spec.first,
+         a.spec.second);
+  if (!a.proxies != !b.proxies)
+    fail("contact {} - {}: proxies on one side alone; both need them, or neither", a.spec.first,
+         a.spec.second);
 #ifdef PALPATE_HAS_GL
   const contact::GpuOptions options{a.spec.pixels, a.candidate_gap};
-  if (a.proxies) return contact::make_gpu_source(std::move(a.surface), std::move(a.proxies), std::move(b.surface), std::move(b.proxies), options);
+  if (a.proxies)
+    return contact::make_gpu_source(std::move(a.surface), std::move(a.proxies), std::move(b.surface),
+                                    std::move(b.proxies), options);
   return contact::make_gpu_source(std::move(a.surface), std::move(b.surface), options);
 #else
   refuse_gpu();
@@ -53,16 +69,23 @@ std::unique_ptr<contact::SampleSource> gpu_source(Pair a, Pair b) {
 std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair) {
   const std::string who = fmt::format("contact {} - {}", pair.spec.first, pair.spec.second);
   if (pair.spec.method != "gpu") fail("{}: a body meets itself in image space; use method = \"gpu\"", who);
-  if (!pair.proxies) fail("{}: which of a body's skin may touch itself is known by its proxies; give the body skin = true and proxies = true", who);
+  if (!pair.proxies)
+    fail(
+        "{}: which of a body's skin may touch itself is known by its proxies; give the body skin = true and "
+        "proxies = true",
+        who);
   const proxy::ProxySet& set = *pair.proxies;
   bool two_bones = false;
   for (int p = 1; p < set.size(); ++p) two_bones = two_bones || set.bone(p) != set.bone(0);
   if (!two_bones)
-    fail("{}: the skin of one bone against that of another may touch, but the body's model has {}; `palpate model human` writes one with 19 bones", who,
-         set.bone(0) < 0 ? "none: its proxies go with no bone" : "one bone alone");
+    fail(
+        "{}: the skin of one bone against that of another may touch, but the body's model has {}; `palpate "
+        "model human` writes one with 19 bones",
+        who, set.bone(0) < 0 ? "none: its proxies go with no bone" : "one bone alone");
 #ifdef PALPATE_HAS_GL
   const contact::GpuOptions options{pair.spec.pixels, pair.candidate_gap};
-  return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies), world.find_body(pair.spec.first)->rest.nodes, options);
+  return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies),
+                                  world.find_body(pair.spec.first)->rest.nodes, options);
 #else
   static_cast<void>(world);
   refuse_gpu();
@@ -71,26 +94,34 @@ std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair)
 
 /// A rigid surface in a frame.
 /// @param rigid_proxies  of it: made where the body has proxies and nobody made them yet
-[[maybe_unused]] std::unique_ptr<contact::SampleSource> gpu_source(Pair pair, TriMesh rigid, std::shared_ptr<proxy::ProxySet>& rigid_proxies, int frame,
-                                                                   std::shared_ptr<contact::MovingFrame> motion) {
+[[maybe_unused]] std::unique_ptr<contact::SampleSource> gpu_source(
+    Pair pair, TriMesh rigid, std::shared_ptr<proxy::ProxySet>& rigid_proxies, int frame,
+    std::shared_ptr<contact::MovingFrame> motion) {
 #ifdef PALPATE_HAS_GL
   const contact::GpuOptions options{pair.spec.pixels, pair.candidate_gap};
-  if (!pair.proxies) return contact::make_gpu_source(std::move(pair.surface), std::move(rigid), frame, std::move(motion), options);
+  if (!pair.proxies)
+    return contact::make_gpu_source(std::move(pair.surface), std::move(rigid), frame, std::move(motion),
+                                    options);
   if (!rigid_proxies) rigid_proxies = std::make_shared<proxy::ProxySet>(proxy::rigid_proxies(rigid));
-  return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies), std::move(rigid), rigid_proxies, frame, std::move(motion), options);
+  return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies), std::move(rigid),
+                                  rigid_proxies, frame, std::move(motion), options);
 #else
-  static_cast<void>(pair), static_cast<void>(rigid), static_cast<void>(rigid_proxies), static_cast<void>(frame), static_cast<void>(motion);
+  static_cast<void>(pair), static_cast<void>(rigid), static_cast<void>(rigid_proxies),
+      static_cast<void>(frame), static_cast<void>(motion);
   refuse_gpu();
 #endif
 }
 
 void check_method(const ContactSpec& spec) {
   if (spec.method == "vertex" || spec.method == "pixel")
-    fail("contact {} - {}: method = \"{}\": the method says how gaps are found, and with it where: \"analytic\" at each vertex (obstacles, tools of shape \"sphere\"), \"gpu\" at "
-         "each pixel of an image (tools of any shape, other soft bodies); take method = \"{}\"",
-         spec.first, spec.second, spec.method, spec.method == "vertex" ? "analytic" : "gpu");
+    fail(
+        "contact {} - {}: method = \"{}\": the method says how gaps are found, and with it where: "
+        "\"analytic\" at each vertex (obstacles, tools of shape \"sphere\"), \"gpu\" at "
+        "each pixel of an image (tools of any shape, other soft bodies); take method = \"{}\"",
+        spec.first, spec.second, spec.method, spec.method == "vertex" ? "analytic" : "gpu");
   if (spec.method != "analytic" && spec.method != "gpu")
-    fail("contact {} - {}: unknown method \"{}\"{}", spec.first, spec.second, spec.method, suggestion(spec.method, {"analytic", "gpu"}));
+    fail("contact {} - {}: unknown method \"{}\"{}", spec.first, spec.second, spec.method,
+         suggestion(spec.method, {"analytic", "gpu"}));
 }
 
 /// The tool's frame in contact: its block of the State, or its motion over one exchange period.
@@ -107,31 +138,48 @@ std::shared_ptr<contact::MovingFrame> tool_motion(World& world) {
 std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
   const ToolSpec& tool = *world.description.tool;
   const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world);
-  if (pair.spec.method == "gpu") return gpu_source(std::move(pair), tool_surface(tool, world.folder), world.tool_proxies, world.tool_frame_index, motion);
-  if (tool.shape != "sphere") fail("contact {} - tool: method \"analytic\" needs shape = \"sphere\", the tool's is \"{}\"; use method = \"gpu\"", pair.spec.first, tool.shape);
-  return contact::make_sphere_source(std::move(pair.surface), world.tool_frame_index, motion, Vec3::Zero(), tool.radius_m, pair.candidate_gap,
+  if (pair.spec.method == "gpu")
+    return gpu_source(std::move(pair), tool_surface(tool, world.folder), world.tool_proxies,
+                      world.tool_frame_index, motion);
+  if (tool.shape != "sphere")
+    fail(
+        "contact {} - tool: method \"analytic\" needs shape = \"sphere\", the tool's is \"{}\"; use method = "
+        "\"gpu\"",
+        pair.spec.first, tool.shape);
+  return contact::make_sphere_source(std::move(pair.surface), world.tool_frame_index, motion, Vec3::Zero(),
+                                     tool.radius_m, pair.candidate_gap,
                                      world.description.coupling.contact_refresh_s);
 }
 
-std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair, const ObstacleSpec& obstacle) {
+std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
+                                                       const ObstacleSpec& obstacle) {
   auto motion = contact::fixed_frame();
   const int frame = world.contact->add_frame(motion);
   if (obstacle.type == "plane") {
-    if (pair.spec.method == "gpu") fail("contact {} - {}: a plane has exact gaps and needs no image; use method = \"analytic\"", pair.spec.first, obstacle.name);
-    return contact::make_plane_source(std::move(pair.surface), frame, motion, obstacle.position_m, obstacle.normal, pair.candidate_gap,
+    if (pair.spec.method == "gpu")
+      fail("contact {} - {}: a plane has exact gaps and needs no image; use method = \"analytic\"",
+           pair.spec.first, obstacle.name);
+    return contact::make_plane_source(std::move(pair.surface), frame, motion, obstacle.position_m,
+                                      obstacle.normal, pair.candidate_gap,
                                       world.description.coupling.contact_refresh_s);
   }
   const double ahead = world.description.coupling.contact_refresh_s;
   const Pose place{quaternion_of(obstacle.rotation_vector_rad), obstacle.position_m};
   if (obstacle.type != "sphere" && obstacle.type != "box" && obstacle.type != "cylinder")
-    fail("obstacle \"{}\": unknown type \"{}\"{}", obstacle.name, obstacle.type, suggestion(obstacle.type, {"plane", "sphere", "box", "cylinder"}));
+    fail("obstacle \"{}\": unknown type \"{}\"{}", obstacle.name, obstacle.type,
+         suggestion(obstacle.type, {"plane", "sphere", "box", "cylinder"}));
   if (obstacle.type != "sphere" && pair.spec.method == "gpu")
-    fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"analytic\"", pair.spec.first, obstacle.name, obstacle.type);
-  if (obstacle.type == "box") return contact::make_box_source(std::move(pair.surface), frame, motion, place, obstacle.size_m, pair.candidate_gap, ahead);
+    fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"analytic\"",
+         pair.spec.first, obstacle.name, obstacle.type);
+  if (obstacle.type == "box")
+    return contact::make_box_source(std::move(pair.surface), frame, motion, place, obstacle.size_m,
+                                    pair.candidate_gap, ahead);
   if (obstacle.type == "cylinder")
-    return contact::make_cylinder_source(std::move(pair.surface), frame, motion, place, obstacle.radius_m, obstacle.length_m, pair.candidate_gap, ahead);
+    return contact::make_cylinder_source(std::move(pair.surface), frame, motion, place, obstacle.radius_m,
+                                         obstacle.length_m, pair.candidate_gap, ahead);
   if (pair.spec.method == "analytic")
-    return contact::make_sphere_source(std::move(pair.surface), frame, motion, obstacle.position_m, obstacle.radius_m, pair.candidate_gap, ahead);
+    return contact::make_sphere_source(std::move(pair.surface), frame, motion, obstacle.position_m,
+                                       obstacle.radius_m, pair.candidate_gap, ahead);
   ToolSpec ball;
   ball.radius_m = obstacle.radius_m;
   TriMesh surface = tool_surface(ball, world.folder);
@@ -147,7 +195,8 @@ void assemble_contact(World& world) {
   for (const ContactSpec& spec : world.description.contacts) {
     check_method(spec);
     const auto& obstacles = world.description.obstacles;
-    const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(), [&](const ObstacleSpec& o) { return o.name == spec.second; });
+    const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(),
+                                       [&](const ObstacleSpec& o) { return o.name == spec.second; });
     if (spec.second == "tool" && world.description.tool)
       world.contact->add_pair(tool_source(world, pair_of(world, spec, spec.first)), spec);
     else if (obstacle != obstacles.end())
@@ -155,9 +204,11 @@ void assemble_contact(World& world) {
     else if (spec.second == spec.first && world.find_body(spec.first))
       world.contact->add_pair(own_source(world, pair_of(world, spec, spec.first)), spec);
     else if (world.find_body(spec.second))
-      world.contact->add_pair(gpu_source(pair_of(world, spec, spec.first), pair_of(world, spec, spec.second)), spec);
+      world.contact->add_pair(gpu_source(pair_of(world, spec, spec.first), pair_of(world, spec, spec.second)),
+                              spec);
     else
-      fail("contact {} - {}: the second partner must be one of the soft bodies, an obstacle or \"tool\"", spec.first, spec.second);
+      fail("contact {} - {}: the second partner must be one of the soft bodies, an obstacle or \"tool\"",
+           spec.first, spec.second);
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
   if (!world.tool_frame || world.description.coupling.linearisation != "condensed") return;

@@ -11,7 +11,8 @@ namespace {
 
 /// The body's own.
 fem::Material material_of(const SoftBodySpec& spec) {
-  return {spec.youngs_modulus_pa, spec.poissons_ratio, spec.density_kg_m3, spec.mass_damping_per_s, spec.stiffness_damping_s};
+  return {spec.youngs_modulus_pa, spec.poissons_ratio, spec.density_kg_m3, spec.mass_damping_per_s,
+          spec.stiffness_damping_s};
 }
 
 std::vector<std::string> names_of(const std::vector<Region>& regions) {
@@ -25,7 +26,8 @@ std::vector<int> elements_in(const RegionSpec& spec, const Points& placed, const
   std::vector<int> out;
   for (Eigen::Index t = 0; t < tets.cols(); ++t) {
     const Vec3 middle = placed(Eigen::all, tets.col(t)).rowwise().mean();
-    const bool inside = spec.region == "box" ? (middle.array() >= spec.box_min_m.array()).all() && (middle.array() <= spec.box_max_m.array()).all()
+    const bool inside = spec.region == "box" ? (middle.array() >= spec.box_min_m.array()).all() &&
+                                                   (middle.array() <= spec.box_max_m.array()).all()
                                              : (middle - spec.centre_m).norm() <= spec.radius_m;
     if (inside) out.push_back(static_cast<int>(t));
   }
@@ -33,17 +35,23 @@ std::vector<int> elements_in(const RegionSpec& spec, const Points& placed, const
 }
 
 /// The region that a table of the scene speaks of: one of the file, or a new one.
-Region& region_for(const SoftBodySpec& spec, const RegionSpec& wanted, std::vector<Region>& regions, const Body& body) {
-  const auto found = std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return r.name == wanted.name; });
+Region& region_for(const SoftBodySpec& spec, const RegionSpec& wanted, std::vector<Region>& regions,
+                   const Body& body) {
+  const auto found =
+      std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return r.name == wanted.name; });
   if (wanted.region == "file") {
     if (found != regions.end()) return *found;
     if (regions.empty())
-      fail("body \"{}\": [[body.region]] \"{}\", but {} has no regions; `palpate model` makes some (--region), or say which elements by box_min_m and box_max_m, or by centre_m and radius_m",
-           spec.name, wanted.name, spec.mesh.file);
-    fail("body \"{}\": {} has no region \"{}\"{}", spec.name, spec.mesh.file, wanted.name, suggestion(wanted.name, names_of(regions)));
+      fail(
+          "body \"{}\": [[body.region]] \"{}\", but {} has no regions; `palpate model` makes some "
+          "(--region), or say which elements by box_min_m and box_max_m, or by centre_m and radius_m",
+          spec.name, wanted.name, spec.mesh.file);
+    fail("body \"{}\": {} has no region \"{}\"{}", spec.name, spec.mesh.file, wanted.name,
+         suggestion(wanted.name, names_of(regions)));
   }
   if (found != regions.end())
-    fail("body \"{}\": region \"{}\" is one of {} too; give the {} another name", spec.name, wanted.name, spec.mesh.file, wanted.region);
+    fail("body \"{}\": region \"{}\" is one of {} too; give the {} another name", spec.name, wanted.name,
+         spec.mesh.file, wanted.region);
   regions.push_back({wanted.name, elements_in(wanted, body.placed, body.rest.tets)});
   return regions.back();
 }
@@ -64,11 +72,14 @@ void settle(Body& body) {
   std::vector<int> owner(static_cast<std::size_t>(body.rest.tets.cols()), -1);
   std::vector<std::size_t> order(body.regions.size());
   for (std::size_t r = 0; r < order.size(); ++r) order[r] = r;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return body.regions[a].material < body.regions[b].material; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return body.regions[a].material < body.regions[b].material;
+  });
   for (const std::size_t r : order)
     for (const int tet : body.regions[r].tets) owner[static_cast<std::size_t>(tet)] = static_cast<int>(r);
   for (std::size_t r = 0; r < body.regions.size(); ++r)
-    std::erase_if(body.regions[r].tets, [&](int tet) { return owner[static_cast<std::size_t>(tet)] != static_cast<int>(r); });
+    std::erase_if(body.regions[r].tets,
+                  [&](int tet) { return owner[static_cast<std::size_t>(tet)] != static_cast<int>(r); });
 }
 
 }  // namespace
@@ -80,7 +91,8 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
   std::vector<fem::Material> bases;  // of the regions of the file
   std::vector<std::string> unnamed;
   for (MaterialRegion& region : in_file) {
-    const bool named = std::any_of(spec.regions.begin(), spec.regions.end(), [&](const RegionSpec& r) { return r.name == region.name; });
+    const bool named = std::any_of(spec.regions.begin(), spec.regions.end(),
+                                   [&](const RegionSpec& r) { return r.name == region.name; });
     body.regions.push_back({region.name, std::move(region.tets), 0, 0.0, region.youngs_modulus_factor});
     fem::Material& base = bases.emplace_back(out.list[0]);
     base.youngs_modulus *= region.youngs_modulus_factor;
@@ -102,7 +114,8 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
     fem::check(out.list.back(), fmt::format("{}: region \"{}\"", where, region.name).c_str());
   }
   if (!unnamed.empty())
-    log::info("body \"{}\": of the body's own material, as the scene does not name {}: {} of {}", spec.name, unnamed.size() == 1 ? "it" : "them", fmt::join(unnamed, ", "), spec.mesh.file);
+    log::info("body \"{}\": of the body's own material, as the scene does not name {}: {} of {}", spec.name,
+              unnamed.size() == 1 ? "it" : "them", fmt::join(unnamed, ", "), spec.mesh.file);
   if (body.regions.empty()) return out;
   settle(body);
   std::erase_if(body.regions, [](const Region& r) { return r.tets.empty() && r.material == 0; });
@@ -110,12 +123,16 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
     for (const int tet : region.tets) region.volume += mesh::tet_volume(body.rest, tet);
   for (const Region& region : body.regions)
     if (region.tets.empty())
-      fail("{}: region \"{}\" holds no tetrahedron; a box or a sphere takes those whose middle it holds, and the last region that holds one has it", where, region.name);
+      fail(
+          "{}: region \"{}\" holds no tetrahedron; a box or a sphere takes those whose middle it holds, and "
+          "the last region that holds one has it",
+          where, region.name);
   if (out.list.size() == 1) return out;
   counters::count("loop.regions");
   body.material_of_element.assign(static_cast<std::size_t>(body.rest.tets.cols()), 0);
   for (const Region& region : body.regions)
-    for (const int tet : region.tets) body.material_of_element[static_cast<std::size_t>(tet)] = region.material;
+    for (const int tet : region.tets)
+      body.material_of_element[static_cast<std::size_t>(tet)] = region.material;
   out.of_element = body.material_of_element;
   return out;
 }

@@ -9,8 +9,9 @@
 #include "palpate/tool/bone_tree.h"
 #endif
 
-// Bones of a model file.  Each hangs on its parent by a joint at its head, a root on the world.  A bone is told how to move where everything from it up to the
-// world is welded or has keyframes: then it is a function of time, and costs no unknown.  All others of a body are one tree in reduced coordinates.
+// Bones of a model file.  Each hangs on its parent by a joint at its head, a root on the world.  A bone is
+// told how to move where everything from it up to the world is welded or has keyframes: then it is a function
+// of time, and costs no unknown.  All others of a body are one tree in reduced coordinates.
 
 namespace palpate::loop {
 namespace {
@@ -21,7 +22,7 @@ struct Entry {
   const JointSpec* own = nullptr;  ///< the scene's table about its joint; null: none
   std::string type;                ///< of its joint
   fem::TaperedBone shape;
-  Pose start;                      ///< of its own frame
+  Pose start;                        ///< of its own frame
   bool told = false, moves = false;  ///< a function of time; and not a constant one
   fem::Path path;
   int in_tree = -1;
@@ -33,14 +34,17 @@ std::vector<Entry> entries_of(const Body& body, const SoftBodySpec& spec) {
   for (const palpate::Bone& bone : body.skeleton.bones) names.push_back(bone.name);
   for (const JointSpec& joint : skeleton.joints)
     if (std::find(names.begin(), names.end(), joint.bone) == names.end())
-      fail("body \"{}\": skeleton: {} has no bone \"{}\"{}", spec.name, spec.mesh.file, joint.bone, suggestion(joint.bone, names));
+      fail("body \"{}\": skeleton: {} has no bone \"{}\"{}", spec.name, spec.mesh.file, joint.bone,
+           suggestion(joint.bone, names));
   std::vector<Entry> out;
   for (const palpate::Bone& bone : body.skeleton.bones) {
     Entry entry;
     entry.bone = &bone;
     for (const JointSpec& joint : skeleton.joints)
       if (joint.bone == bone.name) entry.own = &joint;
-    entry.type = entry.own && !entry.own->type.empty() ? entry.own->type : bone.parent < 0 ? skeleton.root : skeleton.others;
+    entry.type = entry.own && !entry.own->type.empty() ? entry.own->type
+                 : bone.parent < 0                     ? skeleton.root
+                                                       : skeleton.others;
     entry.shape = fem::tapered_bone(bone);  // the bone stands in the world already
     entry.start = entry.shape.frame;
     const bool scripted = entry.own && !entry.own->keyframes.empty();
@@ -48,9 +52,15 @@ std::vector<Entry> entries_of(const Body& body, const SoftBodySpec& spec) {
     entry.told = (scripted || entry.type == "weld") && (!parent || parent->told);
     entry.moves = entry.told && (scripted || (parent && parent->moves));
     const std::string where = fmt::format("body \"{}\": joint of \"{}\"", spec.name, bone.name);
-    if (scripted && !entry.told) fail("{}: it has keyframes, but \"{}\", which it hangs on, moves freely; give keyframes or weld all the way up to the root", where, parent->bone->name);
+    if (scripted && !entry.told)
+      fail(
+          "{}: it has keyframes, but \"{}\", which it hangs on, moves freely; give keyframes or weld all the "
+          "way up to the root",
+          where, parent->bone->name);
     if (!entry.told && parent && parent->moves)
-      fail("{}: a bone that moves freely cannot hang on \"{}\", which moves by keyframes; weld one of the two", where, parent->bone->name);
+      fail(
+          "{}: a bone that moves freely cannot hang on \"{}\", which moves by keyframes; weld one of the two",
+          where, parent->bone->name);
     out.push_back(std::move(entry));
   }
   return out;
@@ -85,35 +95,51 @@ tool::TreeBone tree_bone(const Entry& entry, const SoftBodySpec& spec, const std
   const SkeletonSpec& skeleton = *spec.skeleton;
   tool::TreeBone bone;
   bone.name = entry.bone->name;
-  if (entry.bone->parent >= 0) bone.parent = all[static_cast<std::size_t>(entry.bone->parent)].in_tree;  // -1 where that is told, and stands still
-  bone.joint = entry.type == "hinge" ? tool::Joint::kHinge : entry.type == "ball" ? tool::Joint::kBall : entry.type == "free" ? tool::Joint::kFree : tool::Joint::kWeld;
+  // -1 where that is told, and stands still
+  if (entry.bone->parent >= 0) bone.parent = all[static_cast<std::size_t>(entry.bone->parent)].in_tree;
+  bone.joint = entry.type == "hinge"  ? tool::Joint::kHinge
+               : entry.type == "ball" ? tool::Joint::kBall
+               : entry.type == "free" ? tool::Joint::kFree
+                                      : tool::Joint::kWeld;
   bone.start = entry.start;
   bone.mass = skeleton.density_kg_m3 * entry.shape.volume;
   bone.inertia = bone.mass * entry.shape.unit_moments;
   bone.joint_position = entry.bone->head;
   if (entry.own) bone.axis = quaternion_of(spec.rotation_vector_rad) * entry.own->axis;
-  bone.stiffness = entry.own && entry.own->stiffness_n_m_rad >= 0.0 ? entry.own->stiffness_n_m_rad : skeleton.stiffness_n_m_rad;
-  bone.damping = entry.own && entry.own->damping_n_m_s_rad >= 0.0 ? entry.own->damping_n_m_s_rad : skeleton.damping_n_m_s_rad;
+  bone.stiffness = entry.own && entry.own->stiffness_n_m_rad >= 0.0 ? entry.own->stiffness_n_m_rad
+                                                                    : skeleton.stiffness_n_m_rad;
+  bone.damping = entry.own && entry.own->damping_n_m_s_rad >= 0.0 ? entry.own->damping_n_m_s_rad
+                                                                  : skeleton.damping_n_m_s_rad;
   return bone;
 }
 
 /// The tree of all that is not told; -1 and null where everything is.
-std::pair<int, std::shared_ptr<const tool::BoneTree>> add_tree(World& world, const Body& body, const SoftBodySpec& spec, std::vector<Entry>& entries) {
+std::pair<int, std::shared_ptr<const tool::BoneTree>> add_tree(World& world, const Body& body,
+                                                               const SoftBodySpec& spec,
+                                                               std::vector<Entry>& entries) {
   std::vector<tool::TreeBone> bones;
   for (Entry& entry : entries) {
     if (entry.told) continue;
     entry.in_tree = static_cast<int>(bones.size());
-    if (entry.type == "free" && entry.bone->parent >= 0) fail("body \"{}\": joint of \"{}\": type = \"free\" is for a bone without a parent; use \"ball\" or \"hinge\"", spec.name, entry.bone->name);
+    if (entry.type == "free" && entry.bone->parent >= 0)
+      fail(
+          "body \"{}\": joint of \"{}\": type = \"free\" is for a bone without a parent; use \"ball\" or "
+          "\"hinge\"",
+          spec.name, entry.bone->name);
     if (!(spec.skeleton->density_kg_m3 > 0.0))
-      fail("body \"{}\": skeleton: density_kg_m3 is missing: \"{}\" moves freely; bone has about 800 kg/m^3 more than the flesh that its nodes weigh", spec.name, entry.bone->name);
+      fail(
+          "body \"{}\": skeleton: density_kg_m3 is missing: \"{}\" moves freely; bone has about 800 kg/m^3 "
+          "more than the flesh that its nodes weigh",
+          spec.name, entry.bone->name);
     bones.push_back(tree_bone(entry, spec, entries));
   }
   if (bones.empty()) return {-1, nullptr};
   const auto tree = std::make_shared<const tool::BoneTree>(std::move(bones), world.description.gravity_m_s2);
   const dynamics::Block flesh = *world.state.layout().find(body.block_id);
   const Vec3 centre = body.placed * body.masses / body.masses.sum();
-  const int id = world.state.insert(tree->block("skeleton of " + spec.name, flesh.q_scale, flesh.u_scale), tree->start(),
-                                    tree->rigid_start(spec.velocity_m_s, spec.angular_velocity_rad_s, centre));
+  const int id =
+      world.state.insert(tree->block("skeleton of " + spec.name, flesh.q_scale, flesh.u_scale), tree->start(),
+                         tree->rigid_start(spec.velocity_m_s, spec.angular_velocity_rad_s, centre));
   world.system.add(tool::make_tree_inertia(id, tree));
   world.system.add(tool::make_tree_force(id, tree));
   return {id, tree};
@@ -126,15 +152,19 @@ void assemble_skeleton(World& world, int index) {
   std::vector<Entry> entries = entries_of(body, spec);
   for (Entry& entry : entries) {
     if (!entry.told) continue;
-    const Entry* parent = entry.bone->parent < 0 ? nullptr : &entries[static_cast<std::size_t>(entry.bone->parent)];
-    entry.path = told_path({entry.start, entry.bone->head, quaternion_of(spec.rotation_vector_rad), entry.own ? entry.own->keyframes : std::vector<KeyframeSpec>{}},
+    const Entry* parent =
+        entry.bone->parent < 0 ? nullptr : &entries[static_cast<std::size_t>(entry.bone->parent)];
+    entry.path = told_path({entry.start, entry.bone->head, quaternion_of(spec.rotation_vector_rad),
+                            entry.own ? entry.own->keyframes : std::vector<KeyframeSpec>{}},
                            parent ? parent->path : fem::Path{}, parent ? parent->start : Pose{});
   }
 #ifdef PALPATE_HAS_TOOL
   const auto [block_id, tree] = add_tree(world, body, spec, entries);
 #else
   for (const Entry& entry : entries)
-    if (!entry.told) fail("body \"{}\": \"{}\" hangs on a joint, which needs the part \"tool\": not in this build", spec.name, entry.bone->name);
+    if (!entry.told)
+      fail("body \"{}\": \"{}\" hangs on a joint, which needs the part \"tool\": not in this build",
+           spec.name, entry.bone->name);
 #endif
   for (std::size_t b = 0; b < entries.size(); ++b) {
     const Entry& entry = entries[b];
@@ -154,10 +184,13 @@ void assemble_skeleton(World& world, int index) {
     }
 #endif
     if (!load.dofs.empty()) {
-      if (entry.told && !entry.moves) world.system.add(fem::make_fixed(load.dofs, load.x0));
-      else if (entry.told) world.system.add(fem::make_driven(load.dofs, load.local, entry.path));
+      if (entry.told && !entry.moves)
+        world.system.add(fem::make_fixed(load.dofs, load.x0));
+      else if (entry.told)
+        world.system.add(fem::make_driven(load.dofs, load.local, entry.path));
 #ifdef PALPATE_HAS_TOOL
-      else world.system.add(tool::make_tree_carried(load.dofs, load.local, entry.in_tree, block_id, tree));
+      else
+        world.system.add(tool::make_tree_carried(load.dofs, load.local, entry.in_tree, block_id, tree));
 #endif
     }
     world.bones.push_back(std::move(bone));

@@ -11,10 +11,14 @@ namespace palpate::loop {
 #ifdef PALPATE_HAS_TOOL
 namespace {
 
-/// The handle as a function of time, which one integrator of tool and bodies needs: it looks ahead of the tick, and back.
+/// The handle as a function of time, which one integrator of tool and bodies needs: it looks ahead of the
+/// tick, and back.
 tool::HandlePath path_of(const DeviceSpec& spec) {
   if (spec.type != "script")
-    fail("exchange: scheme = \"monolithic\" needs a handle whose path is known beforehand, type = \"script\"; that of type = \"{}\" is not", spec.type);
+    fail(
+        "exchange: scheme = \"monolithic\" needs a handle whose path is known beforehand, type = \"script\"; "
+        "that of type = \"{}\" is not",
+        spec.type);
   return [keyframes = spec.keyframes](double t) {
     const device::HandleSample s = device::sample_keyframes(keyframes, t);
     return tool::HandleState{s.pose, s.twist};
@@ -42,15 +46,19 @@ void assemble_tool([[maybe_unused]] World& world) {
 #ifdef PALPATE_HAS_TOOL
   const scene::Description& d = world.description;
   world.handle = device::make_handle(*d.device);
-  world.limiter = std::make_unique<device::WrenchLimiter>(d.device->max_force_n, d.device->max_torque_n_m, d.device->ramp_s);
+  world.limiter = std::make_unique<device::WrenchLimiter>(d.device->max_force_n, d.device->max_torque_n_m,
+                                                          d.device->ramp_s);
   if (d.coupling.scheme == "monolithic")
     assemble_block(world);
   else if (d.coupling.scheme == "partitioned")
     world.tool = std::make_unique<tool::Tool>(*d.tool, d.tool->gravity ? d.gravity_m_s2 : Vec3(Vec3::Zero()));
   else
-    fail("exchange: unknown scheme \"{}\"{}", d.coupling.scheme, suggestion(d.coupling.scheme, {"partitioned", "monolithic"}));
+    fail("exchange: unknown scheme \"{}\"{}", d.coupling.scheme,
+         suggestion(d.coupling.scheme, {"partitioned", "monolithic"}));
 #else
-  fail("[tool]: this palpate was built without rigid tools; configure with -DPALPATE_WITH_TOOL=ON (package libsimbody-dev)");
+  fail(
+      "[tool]: this palpate was built without rigid tools; configure with -DPALPATE_WITH_TOOL=ON (package "
+      "libsimbody-dev)");
 #endif
 }
 

@@ -2,9 +2,11 @@
 
 namespace palpate::loop {
 
-// Keyframes give a turn Q(t), with rate w and its rate a, and a shift d(t), as if the parent stood where it was at the start.  Then the bone's origin o is at
+// Keyframes give a turn Q(t), with rate w and its rate a, and a shift d(t), as if the parent stood where it
+// was at the start.  Then the bone's origin o is at
 //     y = j + d + r,  y' = d' + w x r,  y'' = d'' + a x r + w x (w x r),      r = Q (o - j),  j the joint.
-// The parent has moved since from (R0, p0) to (R, p), with twist (W, V) and its rate (A, V').  With T = R R0^T and s = T (y - p0):
+// The parent has moved since from (R0, p0) to (R, p), with twist (W, V) and its rate (A, V').  With T = R
+// R0^T and s = T (y - p0):
 //     x = p + s,   v = V + W x s + T y',   x'' = V' + A x s + W x (W x s) + 2 W x T y' + T y'',
 //     rotation T Q,   angular velocity W + T w,   its rate A + T a + W x T w.
 fem::Path told_path(const ToldJoint& joint, fem::Path parent, const Pose& parent_start) {
@@ -12,16 +14,21 @@ fem::Path told_path(const ToldJoint& joint, fem::Path parent, const Pose& parent
     device::HandleSample s;
     if (!joint.keyframes.empty()) s = device::sample_keyframes(joint.keyframes, t);
     const Quat Q = joint.axes * s.pose.rotation * joint.axes.conjugate();
-    const Vec3 r = Q * (joint.start.translation - joint.position), w = joint.axes * s.twist.angular, a = joint.axes * s.acceleration.angular;
+    const Vec3 r = Q * (joint.start.translation - joint.position), w = joint.axes * s.twist.angular,
+               a = joint.axes * s.acceleration.angular;
     const Vec3 y = joint.position + joint.axes * s.pose.translation + r;
-    const Vec3 y1 = joint.axes * s.twist.linear + w.cross(r), y2 = joint.axes * s.acceleration.linear + a.cross(r) + w.cross(w.cross(r));
+    const Vec3 y1 = joint.axes * s.twist.linear + w.cross(r),
+               y2 = joint.axes * s.acceleration.linear + a.cross(r) + w.cross(w.cross(r));
     if (!parent) return fem::PathPoint{{Q * joint.start.rotation, y}, {w, y1}, {a, y2}};
     const fem::PathPoint at = parent(t);
     const Quat T = at.pose.rotation * parent_start.rotation.conjugate();
-    const Vec3 from = T * (y - parent_start.translation), &W = at.twist.angular, &A = at.acceleration.angular, Tw = T * w, Ty1 = T * y1;
-    return fem::PathPoint{{T * Q * joint.start.rotation, at.pose.translation + from},
-                          {W + Tw, at.twist.linear + W.cross(from) + Ty1},
-                          {A + T * a + W.cross(Tw), at.acceleration.linear + A.cross(from) + W.cross(W.cross(from)) + 2.0 * W.cross(Ty1) + T * y2}};
+    const Vec3 from = T * (y - parent_start.translation), &W = at.twist.angular, &A = at.acceleration.angular,
+               Tw = T * w, Ty1 = T * y1;
+    return fem::PathPoint{
+        {T * Q * joint.start.rotation, at.pose.translation + from},
+        {W + Tw, at.twist.linear + W.cross(from) + Ty1},
+        {A + T * a + W.cross(Tw),
+         at.acceleration.linear + A.cross(from) + W.cross(W.cross(from)) + 2.0 * W.cross(Ty1) + T * y2}};
   };
 }
 

@@ -16,22 +16,30 @@ namespace {
 
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-// What the bodies make of the contact over a time H, by one linearly implicit Euler step of theirs from (x0, u0), while the tool is displaced by dx and
-// its twist changed by dv.  n all nodes, f free, t tool; c = -df/d(tool), -dF/d(node) as ContactForce::linearise gives them, M, D, K with contact in them.
-// Driven nodes go to x(t0 + H), v(t0 + H), carried ones with their bone (rows and columns reduced onto it by System): s and w are the displacements and velocity changes that are known beforehand,
-//     s = H u0 on free directions, x(t0 + H) - x0 on driven ones;      w = 0 on free directions, v(t0 + H) - u0 on driven ones.
-// With u1 = u0 + w + du, du = 0 on driven directions, nodes end at x0 + s + H du, and the force there is, to first order,
+// What the bodies make of the contact over a time H, by one linearly implicit Euler step of theirs from (x0,
+// u0), while the tool is displaced by dx and its twist changed by dv.  n all nodes, f free, t tool; c =
+// -df/d(tool), -dF/d(node) as ContactForce::linearise gives them, M, D, K with contact in them.
+// Driven nodes go to x(t0 + H), v(t0 + H), carried ones with their bone (rows and columns reduced onto it by
+// System): s and w are the displacements and velocity changes that are known beforehand,
+//     s = H u0 on free directions, x(t0 + H) - x0 on driven ones;      w = 0 on free directions, v(t0 + H) -
+//     u0 on driven ones.
+// With u1 = u0 + w + du, du = 0 on driven directions, nodes end at x0 + s + H du, and the force there is, to
+// first order,
 //     f1 = f_n - K_nn (s + H du) - D_nn (w + du) - K_nt dx - B_nt dv.
 // M (u1 - u0) = H f1 on free directions is
 //     A du = H (f_n - K_nn s - D_nn w) - M w - H (K_nt dx + B_nt dv),      A = M + H D + H^2 K,
 // and the tool feels, linearised about the same state,
 //     F = F_t - K_tt dx - B_tt dv - K_tn (s + H du) - B_tn (w + du)
-//       = [F_t - K_tn s - B_tn w - C g] + J dx + B dv,      C = H K_tn + B_tn,  A g = H (f_n - K_nn s - D_nn w) - M w,
-//     J = -K_tt + H C A^-1 K_nt,  B = -B_tt + H C A^-1 B_nt:      the Schur complement of the step matrix onto the tool.
-// One part of K_tt is no stiffness of the contact but of its force: the arms that turn under it.  It is taken of the forces after the step, at x0 + s + H g,
-// u0 + w + g; to first order that is the same.  But where the forces are out of balance it is not: a depth that came about unseen may press with 1e4 N now
-// and with 0.1 N after the step, and a tool that turned under the first would spin up without end.
-// H -> 0 gives `frozen`, H -> infinity the quasi-static answer K_tt - K_tn K^-1 K_nt.  (Forces that depend on time alone are taken at t0.)
+//       = [F_t - K_tn s - B_tn w - C g] + J dx + B dv,      C = H K_tn + B_tn,  A g = H (f_n - K_nn s - D_nn
+//       w) - M w,
+//     J = -K_tt + H C A^-1 K_nt,  B = -B_tt + H C A^-1 B_nt:      the Schur complement of the step matrix
+//     onto the tool.
+// One part of K_tt is no stiffness of the contact but of its force: the arms that turn under it.  It is taken
+// of the forces after the step, at x0 + s + H g, u0 + w + g; to first order that is the same.  But where the
+// forces are out of balance it is not: a depth that came about unseen may press with 1e4 N now and with 0.1 N
+// after the step, and a tool that turned under the first would spin up without end.
+// H -> 0 gives `frozen`, H -> infinity the quasi-static answer K_tt - K_tn K^-1 K_nt.  (Forces that depend on
+// time alone are taken at t0.)
 struct Answer {
   Vec6 wrench;  ///< [F_t - K_tn s - B_tn w - C g]
   Mat6 J, B;
@@ -76,14 +84,17 @@ VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w) {
   return r - H * stiff;
 }
 
-/// A factor of the step matrix: by LU where it is indefinite (an inverted element, a compressed strut), null where it has none at all.
+/// A factor of the step matrix: by LU where it is indefinite (an inverted element, a compressed strut), null
+/// where it has none at all.
 dynamics::LinearSolver* factored(World& world) {
   const dynamics::SolveStatus status = world.condenser->factor(world.condensed_matrix);
   if (status == dynamics::SolveStatus::kOk) return world.condenser.get();
   if (status != dynamics::SolveStatus::kIndefinite) return nullptr;
   counters::count("loop.condensed_by_lu");
   if (!world.condenser_lu) world.condenser_lu = integrate::make_linear_solver("umfpack");
-  return world.condenser_lu->factor(world.condensed_matrix) == dynamics::SolveStatus::kOk ? world.condenser_lu.get() : nullptr;
+  return world.condenser_lu->factor(world.condensed_matrix) == dynamics::SolveStatus::kOk
+             ? world.condenser_lu.get()
+             : nullptr;
 }
 
 /// False where the step matrix has no factor.
@@ -121,19 +132,23 @@ bool answer_after(World& world, double H, const contact::FrameLinearisation& c, 
   VecX q = moved(world, s + H * g), u = world.state.u() + w + g;
   world.system.impose(world.state.layout(), world.state.time() + H, q.data(), u.data());
   contact::FrameLinearisation after;
-  world.contact->linearise(world.state.view(world.state.time(), q.data(), u.data()), world.tool_frame_index, after);
+  world.contact->linearise(world.state.view(world.state.time(), q.data(), u.data()), world.tool_frame_index,
+                           after);
   out.J.topLeftCorner<3, 3>() += after.geometric - c.geometric;
   return true;
 }
 
-// What the tool feels over the period while it goes on with the velocity v0 that it has, as the line through what one implicit step makes of that wrench
-// after one tick and after the period; J and B of the period for what it does otherwise.  After a time s the one is w(s) + s J(s) v0 (s = tick or period),
+// What the tool feels over the period while it goes on with the velocity v0 that it has, as the line through
+// what one implicit step makes of that wrench after one tick and after the period; J and B of the period for
+// what it does otherwise.  After a time s the one is w(s) + s J(s) v0 (s = tick or period),
 //     line(s) = W0 + s S,      F = line + J (dx - s v0) + B (v - v0) = W0 + s (S - J v0) + J dx + B (v - v0).
-// A contact whose nodes move within a tick answers it more stiffly than it answers the period, and the tool's own way is where that shows: with J of the
-// period for all of dx, the error stood still between periods of 5 and 2.5 ms.
-// A stiff contact that the last period has left out of balance is relaxed within the first tick, as it is in the bodies' own implicit step, where a line
-// that began at the present wrench would press with it for half the period.  Where nothing is stiff, it begins there to O(tick^2).
-bool condense(World& world, double period, const contact::FrameLinearisation& c, dynamics::LinearisedContact& record) {
+// A contact whose nodes move within a tick answers it more stiffly than it answers the period, and the tool's
+// own way is where that shows: with J of the period for all of dx, the error stood still between periods of 5
+// and 2.5 ms. A stiff contact that the last period has left out of balance is relaxed within the first tick,
+// as it is in the bodies' own implicit step, where a line that began at the present wrench would press with
+// it for half the period.  Where nothing is stiff, it begins there to O(tick^2).
+bool condense(World& world, double period, const contact::FrameLinearisation& c,
+              dynamics::LinearisedContact& record) {
   const double tick = world.description.tool->tick_s;
   Answer last, first;
   if (!answer_after(world, period, c, last)) return false;
@@ -143,7 +158,8 @@ bool condense(World& world, double period, const contact::FrameLinearisation& c,
     const Twist twist = world.tool->twist();
     Vec6 v0;
     v0 << twist.angular, twist.linear;
-    const Vec6 after_tick = first.wrench + tick * (first.J * v0), after_period = last.wrench + period * (last.J * v0);
+    const Vec6 after_tick = first.wrench + tick * (first.J * v0),
+               after_period = last.wrench + period * (last.J * v0);
     const Vec6 slope = (after_period - after_tick) / (period - tick);
     F0 = after_tick - tick * slope;
     F1 = slope - last.J * v0;
@@ -158,7 +174,8 @@ bool condense(World& world, double period, const contact::FrameLinearisation& c,
 
 }  // namespace
 
-dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t version, double period_s, long& frozen_fallbacks) {
+dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t version, double period_s,
+                                              long& frozen_fallbacks) {
   counters::count("loop.exchange_record");
   dynamics::LinearisedContact record;
   record.version = version;
@@ -169,7 +186,8 @@ dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t versio
   record.samples = c.active;
   const Pose x0 = world.tool->pose();
   const Twist v0 = world.tool->twist();
-  record.x0 = {x0.rotation.w(), x0.rotation.x(), x0.rotation.y(), x0.rotation.z(), x0.translation.x(), x0.translation.y(), x0.translation.z()};
+  record.x0 = {x0.rotation.w(),    x0.rotation.x(),    x0.rotation.y(),   x0.rotation.z(),
+               x0.translation.x(), x0.translation.y(), x0.translation.z()};
   Eigen::Map<Vec6>(record.v0.data()) << v0.angular, v0.linear;
   Eigen::Map<Vec6>(record.F0.data()) << c.wrench.moment, c.wrench.force;
   Eigen::Map<RowMajor6>(record.J.data()) = -c.K;

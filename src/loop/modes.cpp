@@ -26,13 +26,15 @@ double scale_of(const World& world, const VecX& shape) {
     const Eigen::Map<const Points> nodes(shape.data() + block.u_offset, 3, body.placed.cols());
     largest = std::max(largest, nodes.colwise().norm().maxCoeff());
   }
-  return largest > 0.0 ? kModeAmplitude * size_of(world) / largest : 0.0;  // a mode of the tool alone moves no body
+  // a mode of the tool alone moves no body
+  return largest > 0.0 ? kModeAmplitude * size_of(world) / largest : 0.0;
 }
 
 }  // namespace
 
 integrate::Modes find_modes(World& world, int count) {
-  if (world.bodies.empty()) fail("{}: modes are of soft bodies, and the scene has no [[body]]", world.description.path);
+  if (world.bodies.empty())
+    fail("{}: modes are of soft bodies, and the scene has no [[body]]", world.description.path);
 #ifdef PALPATE_HAS_TOOL
   if (world.tool_frame) {  // contact with the tool: as it stands at the start
     world.tool_frame->clear();
@@ -46,7 +48,9 @@ integrate::Modes find_modes(World& world, int count) {
 Points displaced(const World& world, const Body& body, const integrate::Modes& modes, int mode) {
   const VecX shape = modes.shapes.col(mode);
   const dynamics::Block& block = *world.state.layout().find(body.block_id);
-  return world.positions(body) + scale_of(world, shape) * Eigen::Map<const Points>(shape.data() + block.u_offset, 3, body.placed.cols());
+  return world.positions(body) +
+         scale_of(world, shape) *
+             Eigen::Map<const Points>(shape.data() + block.u_offset, 3, body.placed.cols());
 }
 
 void write_modes(World& world, const integrate::Modes& modes, const std::string& path) {
@@ -59,7 +63,8 @@ void write_modes(World& world, const integrate::Modes& modes, const std::string&
     count += body.placed.cols();
   }
   const scene::Description& d = world.description;
-  store::RunFile file(path, parts, store::RunInfo{d.name, d.source, store::provenance().version, modes.count()});
+  store::RunFile file(path, parts,
+                      store::RunInfo{d.name, d.source, store::provenance().version, modes.count()});
   Points points(3, count), velocity(3, count);
   VecX stress(count), q = world.state.q();
   const VecX still = VecX::Zero(world.state.u().size());
@@ -67,7 +72,8 @@ void write_modes(World& world, const integrate::Modes& modes, const std::string&
     q = world.state.q();
     for (const Body& body : world.bodies) {
       const dynamics::Block& block = *world.state.layout().find(body.block_id);
-      Eigen::Map<Points>(q.data() + block.q_offset, 3, body.placed.cols()) = displaced(world, body, modes, mode);
+      Eigen::Map<Points>(q.data() + block.q_offset, 3, body.placed.cols()) =
+          displaced(world, body, modes, mode);
     }
     const dynamics::StateView view = world.state.view(world.state.time(), q.data(), still.data());
     Eigen::Index first = 0;
@@ -75,7 +81,8 @@ void write_modes(World& world, const integrate::Modes& modes, const std::string&
       const Body& body = world.bodies[i];
       const Eigen::Index n = body.placed.cols();
       const dynamics::Block& block = *world.state.layout().find(body.block_id);
-      points.middleCols(first, n)(Eigen::all, body.file_node) = Eigen::Map<const Points>(q.data() + block.q_offset, 3, n);
+      points.middleCols(first, n)(Eigen::all, body.file_node) =
+          Eigen::Map<const Points>(q.data() + block.q_offset, 3, n);
       velocity.middleCols(first, n) = modes.omega(mode) * (points.middleCols(first, n) - parts[i].reference);
       stress.segment(first, n)(body.file_node) = body.nodal_stress(view);
       first += n;

@@ -5,7 +5,8 @@
 namespace palpate::loop {
 namespace {
 
-/// Ticks and output times are multiples of different decimal numbers: what is nearer than this part of a tick is the same time.
+/// Ticks and output times are multiples of different decimal numbers: what is nearer than this part of a tick
+/// is the same time.
 constexpr double kSame = 1e-6;
 
 TickRecord tick_of(const World& world, double t, const dynamics::StateView& state) {
@@ -22,7 +23,8 @@ TickRecord tick_of(const World& world, double t, const dynamics::StateView& stat
 
 }  // namespace
 
-MonolithicTicks::MonolithicTicks(World& world, Emit emit) : world_(world), emit_(std::move(emit)), tick_s_(world.description.tool->tick_s) {
+MonolithicTicks::MonolithicTicks(World& world, Emit emit)
+    : world_(world), emit_(std::move(emit)), tick_s_(world.description.tool->tick_s) {
   PALPATE_CHECK(world.monolithic() && world.stepper, "ticks of a tool that is no block of the State");
   follows_ = world.stepper->follow(this);
 }
@@ -48,7 +50,8 @@ dynamics::StepResult MonolithicTicks::advance_to(double t1) {
 void MonolithicTicks::stepped(const dynamics::Stepper& stepper, double t0, double t1) {
   while (due(t1)) {
     const double t = std::clamp(next(), t0, t1);
-    PALPATE_CHECK(stepper.dense_output(t, q_, u_), "{} has no value at t = {} within its step from {} to {}", stepper.name(), t, t0, t1);
+    PALPATE_CHECK(stepper.dense_output(t, q_, u_), "{} has no value at t = {} within its step from {} to {}",
+                  stepper.name(), t, t0, t1);
     emit_at(next(), dynamics::make_view(world_.state.layout(), t, q_.data(), u_.data()));
   }
 }

@@ -5,8 +5,9 @@
 
 namespace palpate::loop {
 
-/// The haptic ticks of a monolithic scene: the integrator steps tool and bodies as it likes, and the tool at each tick is read from its dense output.
-/// An integrator that does not tell of its steps is made to land on every tick instead.
+/// The haptic ticks of a monolithic scene: the integrator steps tool and bodies as it likes, and the tool at
+/// each tick is read from its dense output. An integrator that does not tell of its steps is made to land on
+/// every tick instead.
 class MonolithicTicks : private dynamics::StepFollower {
  public:
   using Emit = std::function<void(const TickRecord& tick)>;  ///< gets time, tool and the contact's wrench

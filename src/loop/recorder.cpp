@@ -27,9 +27,9 @@ struct Recorder::Impl {
   std::unique_ptr<store::RunFile> states;
   std::unique_ptr<store::ForceFile> forces;
   std::unique_ptr<store::BoneFile> bones;
-  TriMesh tool;       ///< in its own axes; empty without a tool
-  int every = 1;      ///< periods
-  long seen = 0;      ///< periods
+  TriMesh tool;   ///< in its own axes; empty without a tool
+  int every = 1;  ///< periods
+  long seen = 0;  ///< periods
   Pose tool_pose;
   Twist tool_twist;
   Points points, velocity;
@@ -56,7 +56,8 @@ struct Recorder::Impl {
       count += tool.vertices.cols();
     }
     const int steps = static_cast<int>(d.duration_s / (every * period_of(d))) + 2;
-    states = std::make_unique<store::RunFile>(path, parts, store::RunInfo{d.name, d.source, store::provenance().version, steps});
+    states = std::make_unique<store::RunFile>(
+        path, parts, store::RunInfo{d.name, d.source, store::provenance().version, steps});
     points.resize(3, count);
     velocity.resize(3, count);
     stress.setZero(count);
@@ -72,7 +73,8 @@ struct Recorder::Impl {
   Eigen::Index place(const TriMesh& surface, const Pose& pose, const Twist& twist, Eigen::Index first) {
     const Eigen::Index n = surface.vertices.cols();
     points.middleCols(first, n) = placed(surface, pose);
-    for (Eigen::Index i = first; i < first + n; ++i) velocity.col(i) = twist.at(points.col(i) - pose.translation);
+    for (Eigen::Index i = first; i < first + n; ++i)
+      velocity.col(i) = twist.at(points.col(i) - pose.translation);
     return first + n;
   }
 
@@ -82,12 +84,15 @@ struct Recorder::Impl {
     for (const Body& body : world.bodies) {
       const dynamics::Block& block = *view.layout->find(body.block_id);
       const Eigen::Index n = body.placed.cols();
-      points.middleCols(first, n)(Eigen::all, body.file_node) = Eigen::Map<const Points>(view.q.data() + block.q_offset, 3, n);
-      velocity.middleCols(first, n)(Eigen::all, body.file_node) = Eigen::Map<const Points>(view.u.data() + block.u_offset, 3, n);
+      points.middleCols(first, n)(Eigen::all, body.file_node) =
+          Eigen::Map<const Points>(view.q.data() + block.q_offset, 3, n);
+      velocity.middleCols(first, n)(Eigen::all, body.file_node) =
+          Eigen::Map<const Points>(view.u.data() + block.u_offset, 3, n);
       stress.segment(first, n)(body.file_node) = body.nodal_stress(view);
       first += n;
     }
-    for (const Bone& bone : world.bones) first = place(bone.surface, world.bone_pose(bone), world.bone_twist(bone), first);
+    for (const Bone& bone : world.bones)
+      first = place(bone.surface, world.bone_pose(bone), world.bone_twist(bone), first);
     if (tool.vertices.cols() > 0) place(tool, tool_pose, tool_twist, first);
     states->append(t, points, velocity, stress);
   }
@@ -95,7 +100,8 @@ struct Recorder::Impl {
   void append_bones(World& world, double t) {
     const std::vector<Wrench> wrenches = world.wrenches_on_bones();
     for (std::size_t i = 0; i < wrenches.size(); ++i)
-      bones->append({t, static_cast<int>(i), world.bone_pose(world.bones[i]), world.bone_twist(world.bones[i]), wrenches[i]});
+      bones->append({t, static_cast<int>(i), world.bone_pose(world.bones[i]),
+                     world.bone_twist(world.bones[i]), wrenches[i]});
     bones->flush();
   }
 };
@@ -109,8 +115,10 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
   if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
   const std::filesystem::path base(folder);
   if (d.record->states && !world.bodies.empty()) impl_->open_states(world, (base / kRunFile).string());
-  if (d.record->states && !world.bones.empty()) impl_->bones = std::make_unique<store::BoneFile>((base / kBoneFile).string());
-  if (d.record->forces && d.tool) impl_->forces = std::make_unique<store::ForceFile>((base / kForceFile).string());
+  if (d.record->states && !world.bones.empty())
+    impl_->bones = std::make_unique<store::BoneFile>((base / kBoneFile).string());
+  if (d.record->forces && d.tool)
+    impl_->forces = std::make_unique<store::ForceFile>((base / kForceFile).string());
 }
 
 Recorder::~Recorder() = default;
@@ -128,7 +136,8 @@ void Recorder::period(World& world, double t) {
 
 void Recorder::tick(const TickRecord& tick) {
   if (!impl_->forces) return;
-  const bool limited = (tick.device.force - tick.wanted.force).norm() > 1e-12 || (tick.device.moment - tick.wanted.moment).norm() > 1e-12;
+  const bool limited = (tick.device.force - tick.wanted.force).norm() > 1e-12 ||
+                       (tick.device.moment - tick.wanted.moment).norm() > 1e-12;
   impl_->forces->append({tick.time, tick.handle, tick.tool, tick.device, limited});
 }
 

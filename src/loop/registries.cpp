@@ -24,8 +24,13 @@ std::vector<Choice> stepper_choices() {
   std::vector<Choice> out;
   for (const auto& entry : integrate::stepper_registry()) {
     const dynamics::StepperTraits& t = entry.traits;
-    const char* control = t.control == StepControl::kAdaptive ? "rtol" : t.control == StepControl::kFixed ? "step_s" : "rtol, or step_s";
-    out.push_back({entry.name, fmt::format("{} [{}; {}; {}]", entry.summary, t.family, dynamics::to_string(t.stability), control), t.order});
+    const char* control = t.control == StepControl::kAdaptive ? "rtol"
+                          : t.control == StepControl::kFixed  ? "step_s"
+                                                              : "rtol, or step_s";
+    out.push_back(
+        {entry.name,
+         fmt::format("{} [{}; {}; {}]", entry.summary, t.family, dynamics::to_string(t.stability), control),
+         t.order});
   }
   return out;
 }
@@ -39,7 +44,8 @@ std::vector<Choice> part_choices() {
 #ifdef PALPATE_HAS_GL
   const std::string gl = "compiled in";
 #else
-  const std::string gl = "not compiled in; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev, libccd-dev)";
+  const std::string gl =
+      "not compiled in; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev, libccd-dev)";
 #endif
   return {{"bodies", "soft bodies of corotational tetrahedra: always there"},
           {"contact", "penalty contact with analytic obstacles: always there"},
@@ -54,14 +60,16 @@ const dynamics::StepperRegistry& steppers() { return integrate::stepper_registry
 std::vector<Choice> tool_steppers() {
   std::vector<Choice> out;
 #ifdef PALPATE_HAS_TOOL
-  for (const tool::ToolIntegratorInfo& info : tool::tool_integrators()) out.push_back({info.name, info.summary, info.order});
+  for (const tool::ToolIntegratorInfo& info : tool::tool_integrators())
+    out.push_back({info.name, info.summary, info.order});
 #endif
   return out;
 }
 
 std::vector<ChoiceList> registries() {
   return {{"integrators", "of soft bodies: [integrator] name, --integrator", stepper_choices()},
-          {"linear-solvers", "of implicit integrators: [integrator] linear_solver", choices(integrate::linear_solver_registry())},
+          {"linear-solvers", "of implicit integrators: [integrator] linear_solver",
+           choices(integrate::linear_solver_registry())},
           {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_steppers()},
           {"devices", "what the hand holds: [device] type", choices(device::handle_registry())},
           {"parts", "optional parts of this build", part_choices()}};

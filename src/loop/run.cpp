@@ -28,7 +28,10 @@ class Loop {
     const double duration = options_.duration_s > 0.0 ? options_.duration_s : d.duration_s;
     const double period = period_of(d);
     if (!(duration / period < 1e9))
-      fail("duration_s = {} makes {:.3g} exchange periods of {} s, more than can be counted; choose a shorter duration", duration, duration / period, period);
+      fail(
+          "duration_s = {} makes {:.3g} exchange periods of {} s, more than can be counted; choose a shorter "
+          "duration",
+          duration, duration / period, period);
     const int periods = whole_number(std::ceil(duration / period - 1e-9));
     const double wall = wall_seconds(), cpu = cpu_seconds();
     if (world_.stepper) world_.stepper->set_interrupt(options_.stop);
@@ -41,7 +44,8 @@ class Loop {
       }
       const double t1 = i + 1 == periods ? duration : (i + 1) * period;
       one_period(i * period, t1);
-      if (result_.status.status == dynamics::StepStatus::kInterrupted) {  // within the period: nothing of it is kept
+      // within the period: nothing of it is kept
+      if (result_.status.status == dynamics::StepStatus::kInterrupted) {
         result_.status = {};
         result_.stopped = true;
       }
@@ -68,10 +72,12 @@ class Loop {
   void refresh_contact() {
     if (!world_.contact || world_.bodies.empty()) return;
     const ScopedTimer timer(result_.query_s);
-    if (world_.contact->refresh(world_.state.view())) world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
+    if (world_.contact->refresh(world_.state.view()))
+      world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
   }
 
-  /// Bodies follow over the same period, with the tool's motion known or, monolithic, beside them: refreshes of the contact inside it are whole fractions.
+  /// Bodies follow over the same period, with the tool's motion known or, monolithic, beside them: refreshes
+  /// of the contact inside it are whole fractions.
   void advance_state(double t0, double t1) {
     const double refresh = world_.contact ? world_.description.coupling.contact_refresh_s : t1 - t0;
     const int parts = whole_number((t1 - t0) / refresh);
@@ -88,7 +94,8 @@ class Loop {
     for (;;) {
       const double stop = next_change();
       const bool on_the_way = stop < t * (1.0 - 1e-12);
-      result_.status = ticks_ ? ticks_->advance_to(on_the_way ? stop : t) : world_.stepper->advance_to(on_the_way ? stop : t);
+      result_.status = ticks_ ? ticks_->advance_to(on_the_way ? stop : t)
+                              : world_.stepper->advance_to(on_the_way ? stop : t);
       if (!result_.status.ok()) return;
       if (stop <= t * (1.0 + 1e-12)) change_materials(stop);
       if (!on_the_way) return;
@@ -107,7 +114,8 @@ class Loop {
     changed_ = time;
     for (std::size_t i = 0; i < world_.bodies.size(); ++i)
       for (const MaterialChangeSpec& change : world_.description.bodies[i].changes)
-        if (change.time_s == time) world_.set_youngs_modulus(world_.bodies[i], change.youngs_modulus_pa, change.region);
+        if (change.time_s == time)
+          world_.set_youngs_modulus(world_.bodies[i], change.youngs_modulus_pa, change.region);
   }
 
 #ifdef PALPATE_HAS_TOOL
@@ -156,7 +164,8 @@ class Loop {
   void feel(TickRecord tick) {
     const device::HandleSample& handle = world_.handle_now = world_.handle->sample(tick.time);
     tick.handle = handle.pose;
-    tick.wanted = tool::coupling_on_hand(*world_.description.tool, {tick.tool, tick.tool_twist}, {handle.pose, handle.twist});
+    tick.wanted = tool::coupling_on_hand(*world_.description.tool, {tick.tool, tick.tool_twist},
+                                         {handle.pose, handle.twist});
     tick.device = world_.limiter->limit(tick.time, tick.wanted, handle.valid);
     world_.handle->feedback(tick.time, tick.device);
     ++result_.ticks;

@@ -12,7 +12,9 @@ namespace {
 
 void add_counts(store::SummarySection& s, const RunResult& r) {
   const dynamics::StepperCounters& c = r.counters;
-  const auto add = [&](const char* name, long value) { s.values.emplace_back(name, static_cast<long long>(value)); };
+  const auto add = [&](const char* name, long value) {
+    s.values.emplace_back(name, static_cast<long long>(value));
+  };
   add("periods", r.periods);
   add("ticks", r.ticks);
   add("limited_ticks", r.limited_ticks);
@@ -93,7 +95,8 @@ store::Provenance full_provenance() {
   return p;
 }
 
-/// What queries did to the forces: between two of them contact goes on with the pairs and normals of the last one.
+/// What queries did to the forces: between two of them contact goes on with the pairs and normals of the last
+/// one.
 void add_jumps(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   store::SummarySection& s = summary.section("contact");
@@ -110,20 +113,25 @@ void add_pruning(store::Summary& summary, const World& world) {
     const proxy::PruneCounts& c = *counts[i];
     const ContactSpec& contact = world.description.contacts[i];
     store::SummarySection& s = summary.section("pruning");
-    const auto add = [&](const char* what, auto value) { s.values.emplace_back(fmt::format("{} - {}: {}", contact.first, contact.second, what), value); };
+    const auto add = [&](const char* what, auto value) {
+      s.values.emplace_back(fmt::format("{} - {}: {}", contact.first, contact.second, what), value);
+    };
     add("queries", static_cast<long long>(c.queries));
     add("pairs of proxies", static_cast<long long>(c.pairs));
     add("left by boxes", static_cast<long long>(c.after_boxes));
     add("left by hulls", static_cast<long long>(c.after_hulls));
     add("regions", static_cast<long long>(c.regions));
     const bool own = contact.first == contact.second;  // one skin, of which each region has two sides
-    const std::vector<std::pair<std::string, long>> sides = own ? std::vector{std::pair(contact.first, c.faces_a + c.faces_b)}
-                                                                : std::vector{std::pair(contact.first, c.faces_a), std::pair(contact.second, c.faces_b)};
+    const std::vector<std::pair<std::string, long>> sides =
+        own ? std::vector{std::pair(contact.first, c.faces_a + c.faces_b)}
+            : std::vector{std::pair(contact.first, c.faces_a), std::pair(contact.second, c.faces_b)};
     for (const auto& [name, faces] : sides) {
       add(fmt::format("skin triangles of {} handed on", name).c_str(), static_cast<long long>(faces));
       const Body* body = world.find_body(name);  // else a tool
       if (body && c.queries > 0)
-        add(fmt::format("share of the skin of {} handed on, mean", name).c_str(), static_cast<double>(faces) / (static_cast<double>(c.queries) * static_cast<double>(body->surface_faces().cols())));
+        add(fmt::format("share of the skin of {} handed on, mean", name).c_str(),
+            static_cast<double>(faces) /
+                (static_cast<double>(c.queries) * static_cast<double>(body->surface_faces().cols())));
     }
     add("largest turn of a normal [rad]", c.largest_turn);
   }
@@ -131,7 +139,9 @@ void add_pruning(store::Summary& summary, const World& world) {
 
 }  // namespace
 
-std::vector<scene::Need> needs(const scene::Description& description) { return scene::needs(description, integrate::linear_solver_of(description.integrator)); }
+std::vector<scene::Need> needs(const scene::Description& description) {
+  return scene::needs(description, integrate::linear_solver_of(description.integrator));
+}
 
 store::Summary summarise(const World& world, const RunResult& result, double assemble_s) {
   store::Summary summary;
@@ -141,19 +151,24 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   summary.message = result.status.message;
   summary.provenance = full_provenance();
   add_options(summary.section("options"), world.description);
-  if (const std::string& ordering = result.counters.solver.ordering; !ordering.empty()) summary.section("options").values.emplace_back("ordering", ordering);
+  if (const std::string& ordering = result.counters.solver.ordering; !ordering.empty())
+    summary.section("options").values.emplace_back("ordering", ordering);
   add_sizes(summary.section("sizes"), world);
   add_counts(summary.section("counts"), result);
   add_timings(summary.section("timings"), result, assemble_s);
-  for (std::size_t i = 0; i < result.tunnelled.size(); ++i) {  // vertices that went through unseen, for each [[contact]]
+  // vertices that went through unseen, for each [[contact]]
+  for (std::size_t i = 0; i < result.tunnelled.size(); ++i) {
     const ContactSpec& contact = world.description.contacts[i];
-    summary.section("tunnelled").values.emplace_back(contact.first + " - " + contact.second, static_cast<long long>(result.tunnelled[i]));
+    summary.section("tunnelled")
+        .values.emplace_back(contact.first + " - " + contact.second,
+                             static_cast<long long>(result.tunnelled[i]));
   }
   add_jumps(summary, world);
   add_pruning(summary, world);
   for (const scene::Need& need : needs(world.description))
     summary.section(need.used ? "in_use" : "left_out").values.emplace_back(need.part, need.why);
-  for (const auto& [name, value] : counters::snapshot()) summary.section("constructions").values.emplace_back(name, static_cast<long long>(value));
+  for (const auto& [name, value] : counters::snapshot())
+    summary.section("constructions").values.emplace_back(name, static_cast<long long>(value));
   return summary;
 }
 

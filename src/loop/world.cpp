@@ -31,7 +31,8 @@ VecX Body::surface_values(const VecX& at_nodes) const {
   if (!skin) return at_nodes(boundary.node_of_vertex);
   VecX out(skin->embedding.size());
   for (Eigen::Index v = 0; v < out.size(); ++v)
-    out[v] = skin->embedding.weights.col(v).dot(at_nodes(rest.tets.col(skin->embedding.tet[static_cast<std::size_t>(v)])));
+    out[v] = skin->embedding.weights.col(v).dot(
+        at_nodes(rest.tets.col(skin->embedding.tet[static_cast<std::size_t>(v)])));
   return out;
 }
 
@@ -47,18 +48,22 @@ const Body* World::find_body(const std::string& name) const {
 
 void World::set_youngs_modulus(Body& body, double youngs_modulus_pa, const std::string& region) {
   std::vector<fem::Material> materials = body.term->materials();
-  const auto set = [&](int material, double value) { materials[static_cast<std::size_t>(material)].youngs_modulus = value; };
+  const auto set = [&](int material, double value) {
+    materials[static_cast<std::size_t>(material)].youngs_modulus = value;
+  };
   if (region.empty()) {
     set(0, youngs_modulus_pa);
     for (const Region& r : body.regions)
       if (r.material > 0 && !r.own_stiffness) set(r.material, r.stiffness_factor * youngs_modulus_pa);
   } else {
-    const auto found = std::find_if(body.regions.begin(), body.regions.end(), [&](const Region& r) { return r.name == region && r.material > 0; });
+    const auto found = std::find_if(body.regions.begin(), body.regions.end(),
+                                    [&](const Region& r) { return r.name == region && r.material > 0; });
     if (found == body.regions.end()) {
       std::vector<std::string> names;
       for (const Region& r : body.regions)
         if (r.material > 0) names.push_back(r.name);
-      fail("body \"{}\": no region \"{}\" has a material of its own{}", body.name, region, suggestion(region, names));
+      fail("body \"{}\": no region \"{}\" has a material of its own{}", body.name, region,
+           suggestion(region, names));
     }
     set(found->material, youngs_modulus_pa);
   }
@@ -85,7 +90,8 @@ dynamics::RigidMotion motion_of(const World& world, const Bone& bone) {
 #ifdef PALPATE_HAS_TOOL
   if (bone.tree) {
     const dynamics::Block& block = *view.layout->find(bone.block_id);
-    return bone.tree->motion(view.q.segment(block.q_offset, block.q_size), view.u.segment(block.u_offset, block.u_size), bone.tree_bone);
+    return bone.tree->motion(view.q.segment(block.q_offset, block.q_size),
+                             view.u.segment(block.u_offset, block.u_size), bone.tree_bone);
   }
 #endif
   return dynamics::motion_of(view, dynamics::rigid_block_of(view, bone.block_id));

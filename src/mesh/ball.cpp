@@ -7,9 +7,10 @@
 #include "palpate/mesh/generators.h"
 #include "rings.h"
 
-// The ball is cut into 20 sectors over the faces of an icosahedron; a sector is nearly a regular tetrahedron (edges 1 and 1.05), so shells
-// of it cut like a tetrahedral lattice give nearly regular elements everywhere.  A place on a shell of frequency m is given by the weights
-// (i, j, k), i + j + k = m, of the sector's three corner directions, and lies at the shell's radius.
+// The ball is cut into 20 sectors over the faces of an icosahedron; a sector is nearly a regular tetrahedron
+// (edges 1 and 1.05), so shells of it cut like a tetrahedral lattice give nearly regular elements everywhere.
+// A place on a shell of frequency m is given by the weights (i, j, k), i + j + k = m, of the sector's three
+// corner directions, and lies at the shell's radius.
 namespace palpate::mesh {
 namespace {
 
@@ -19,7 +20,8 @@ struct Icosahedron {
   std::vector<Vec3> corners;
   std::vector<std::array<int, 3>> faces;  // outwards
 
-  /// Corners (0, +-1, +-phi) and their cyclic turns have edges of length 2; faces are the triples at that distance.
+  /// Corners (0, +-1, +-phi) and their cyclic turns have edges of length 2; faces are the triples at that
+  /// distance.
   Icosahedron() {
     const double phi = 0.5 * (1 + std::sqrt(5.0));
     for (int k = 0; k < 3; ++k)
@@ -34,7 +36,8 @@ struct Icosahedron {
     for (int a = 0; a < 12; ++a)
       for (int b = a + 1; b < 12; ++b)
         for (int c = b + 1; c < 12; ++c)
-          if (joined(a, b) && joined(b, c) && joined(a, c)) faces.push_back(at(a).dot(at(b).cross(at(c))) > 0 ? std::array{a, b, c} : std::array{a, c, b});
+          if (joined(a, b) && joined(b, c) && joined(a, c))
+            faces.push_back(at(a).dot(at(b).cross(at(c))) > 0 ? std::array{a, b, c} : std::array{a, c, b});
   }
   const Vec3& at(int corner) const { return corners[static_cast<std::size_t>(corner)]; }
 };
@@ -44,7 +47,8 @@ const Icosahedron& icosahedron() {
   return out;
 }
 
-/// The nodes of one shell.  Places on an edge or corner of a sector are shared: they are known by corners and weights, zeros left out.
+/// The nodes of one shell.  Places on an edge or corner of a sector are shared: they are known by corners and
+/// weights, zeros left out.
 class Shell {
  public:
   Shell(const Ring& ring, Builder& builder) : ring_(ring) {
@@ -52,7 +56,8 @@ class Shell {
       for (int i = 0; i <= ring.frequency; ++i)
         for (int j = 0; i + j <= ring.frequency; ++j) {
           const Weights w(i, j, ring.frequency - i - j);
-          if (const auto [it, is_new] = ids_.try_emplace(key(sector, w), 0); is_new) it->second = builder.add_point(position(sector, w));
+          if (const auto [it, is_new] = ids_.try_emplace(key(sector, w), 0); is_new)
+            it->second = builder.add_point(position(sector, w));
         }
   }
   int node(std::size_t sector, const Weights& w) const { return ids_.at(key(sector, w)); }
@@ -64,13 +69,16 @@ class Shell {
   static Key key(std::size_t sector, const Weights& w) {
     Key out{};
     for (int k = 0; k < 3; ++k)
-      if (w[k] > 0) out[static_cast<std::size_t>(k)] = {icosahedron().faces[sector][static_cast<std::size_t>(k)] + 1, w[k]};
+      if (w[k] > 0)
+        out[static_cast<std::size_t>(k)] = {icosahedron().faces[sector][static_cast<std::size_t>(k)] + 1,
+                                            w[k]};
     std::sort(out.begin(), out.end());
     return out;
   }
   Vec3 position(std::size_t sector, const Weights& w) const {
     Vec3 p = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) p += w[k] * icosahedron().at(icosahedron().faces[sector][static_cast<std::size_t>(k)]);
+    for (int k = 0; k < 3; ++k)
+      p += w[k] * icosahedron().at(icosahedron().faces[sector][static_cast<std::size_t>(k)]);
     return ring_.frequency == 0 ? p : Vec3(ring_.radius * p.normalized());
   }
 
@@ -89,27 +97,33 @@ const Weights kUnit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 /// Four tetrahedra around the shortest of an octahedron's diagonals; pairs[i] are opposite corners.
 void add_octahedron(Builder& builder, const std::array<std::array<int, 2>, 3>& pairs) {
   std::size_t axis = 0;
-  const auto length = [&](std::size_t i) { return (builder.point(pairs[i][0]) - builder.point(pairs[i][1])).norm(); };
+  const auto length = [&](std::size_t i) {
+    return (builder.point(pairs[i][0]) - builder.point(pairs[i][1])).norm();
+  };
   for (const std::size_t i : {1u, 2u})
     if (length(i) < length(axis) * (1 - 1e-9)) axis = i;  // ties go to the first on any machine
   const auto &b = pairs[(axis + 1) % 3], &c = pairs[(axis + 2) % 3];
-  for (const auto& [p, q] : {std::pair{b[0], c[0]}, {c[0], b[1]}, {b[1], c[1]}, {c[1], b[0]}}) builder.add_tet(pairs[axis][0], pairs[axis][1], p, q);
+  for (const auto& [p, q] : {std::pair{b[0], c[0]}, {c[0], b[1]}, {b[1], c[1]}, {c[1], b[0]}})
+    builder.add_tet(pairs[axis][0], pairs[axis][1], p, q);
 }
 
 /// Between frequency m and m - 1: the layer of a tetrahedral lattice.
 void add_layer(Builder& builder, std::size_t s, const Shell& outer, const Shell& inner) {
   const auto P = [&](const Weights& w) { return outer.node(s, w); };
   const auto Q = [&](const Weights& w) { return inner.node(s, w); };
-  const auto &[x, y, z] = kUnit;
+  const auto& [x, y, z] = kUnit;
   const int m = outer.frequency();
   for_each_place(m - 1, [&](const Weights& w) { builder.add_tet(Q(w), P(w + x), P(w + y), P(w + z)); });
   for_each_place(m - 2, [&](const Weights& w) {
     add_octahedron(builder, {{{Q(w + x), P(w + y + z)}, {Q(w + y), P(w + z + x)}, {Q(w + z), P(w + x + y)}}});
   });
-  for_each_place(m - 3, [&](const Weights& w) { builder.add_tet(P(w + x + y + z), Q(w + x + y), Q(w + y + z), Q(w + z + x)); });
+  for_each_place(m - 3, [&](const Weights& w) {
+    builder.add_tet(P(w + x + y + z), Q(w + x + y), Q(w + y + z), Q(w + z + x));
+  });
 }
 
-/// Between frequency m and m / 2: over each inner triangle (a, b, c) four outer ones, with corners at 2a, 2b, 2c and a+b, b+c, c+a.
+/// Between frequency m and m / 2: over each inner triangle (a, b, c) four outer ones, with corners at 2a, 2b,
+/// 2c and a+b, b+c, c+a.
 void add_halving_layer(Builder& builder, std::size_t s, const Shell& outer, const Shell& inner) {
   const auto P = [&](const Weights& w) { return outer.node(s, w); };
   const auto Q = [&](const Weights& w) { return inner.node(s, w); };
@@ -151,7 +165,9 @@ TriMesh sphere(double radius, int subdivisions) {
   const Shell shell({subdivisions, radius}, builder);
   const auto& [x, y, z] = kUnit;
   for (std::size_t s = 0; s < 20; ++s) {
-    const auto add = [&](const Weights& a, const Weights& b, const Weights& c) { builder.faces.emplace_back(shell.node(s, a), shell.node(s, b), shell.node(s, c)); };
+    const auto add = [&](const Weights& a, const Weights& b, const Weights& c) {
+      builder.faces.emplace_back(shell.node(s, a), shell.node(s, b), shell.node(s, c));
+    };
     for_each_place(subdivisions - 1, [&](const Weights& w) { add(w + x, w + y, w + z); });
     for_each_place(subdivisions - 2, [&](const Weights& w) { add(w + x + y, w + y + z, w + z + x); });
   }

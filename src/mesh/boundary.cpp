@@ -37,7 +37,8 @@ std::vector<Side> single_sides(std::vector<Side> all) {
     const bool like_next = i + 1 < all.size() && all[i + 1].nodes == all[i].nodes;
     if (!like_last && !like_next) out.push_back(all[i]);
   }
-  std::sort(out.begin(), out.end(), [](const Side& a, const Side& b) { return std::pair(a.tet, a.face) < std::pair(b.tet, b.face); });
+  std::sort(out.begin(), out.end(),
+            [](const Side& a, const Side& b) { return std::pair(a.tet, a.face) < std::pair(b.tet, b.face); });
   return out;
 }
 
@@ -68,14 +69,15 @@ Boundary boundary(const TetMesh& mesh) {
   return out;
 }
 
-// Divergence theorem with the field x/3: V = sum over faces of (a - o) . ((b - o) x (c - o)) / 6 for any o; the middle of the vertices
-// keeps the terms small.
+// Divergence theorem with the field x/3: V = sum over faces of (a - o) . ((b - o) x (c - o)) / 6 for any o;
+// the middle of the vertices keeps the terms small.
 double enclosed_volume(const TriMesh& surface) {
   if (surface.vertices.cols() == 0) return 0.0;
   const Vec3 o = surface.vertices.rowwise().mean();
   double volume = 0;
   for (Eigen::Index f = 0; f < surface.faces.cols(); ++f) {
-    const Vec3 a = surface.vertices.col(surface.faces(0, f)) - o, b = surface.vertices.col(surface.faces(1, f)) - o,
+    const Vec3 a = surface.vertices.col(surface.faces(0, f)) - o,
+               b = surface.vertices.col(surface.faces(1, f)) - o,
                c = surface.vertices.col(surface.faces(2, f)) - o;
     volume += a.dot(b.cross(c)) / 6.0;
   }
@@ -86,7 +88,9 @@ double enclosed_volume(const TriMesh& surface) {
 double winding_number(const TriMesh& surface, const std::vector<int>& faces, const Vec3& p) {
   double sum = 0;
   for (const int f : faces) {
-    const Vec3 a = surface.vertices.col(surface.faces(0, f)) - p, b = surface.vertices.col(surface.faces(1, f)) - p, c = surface.vertices.col(surface.faces(2, f)) - p;
+    const Vec3 a = surface.vertices.col(surface.faces(0, f)) - p,
+               b = surface.vertices.col(surface.faces(1, f)) - p,
+               c = surface.vertices.col(surface.faces(2, f)) - p;
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
     sum += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }

@@ -3,8 +3,8 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/generators.h"
 
-// A cube is five tetrahedra: one at each corner of even i + j + k, and the regular one between the four odd corners.  Every diagonal of a
-// face then joins two odd nodes, whichever cell looks at it: faces match.
+// A cube is five tetrahedra: one at each corner of even i + j + k, and the regular one between the four odd
+// corners.  Every diagonal of a face then joins two odd nodes, whichever cell looks at it: faces match.
 namespace palpate::mesh {
 namespace {
 
@@ -13,24 +13,31 @@ struct Lattice {
   Builder builder;
 
   Lattice(const Vec3& size, const std::array<int, 3>& n, double grading) : cells(n) {
-    PALPATE_CHECK(n[0] > 0 && n[1] > 0 && n[2] > 0 && size.minCoeff() > 0, "cells {} {} {}", n[0], n[1], n[2]);
-    const auto x = graded_coordinates(size.x(), n[0], grading), y = graded_coordinates(size.y(), n[1], grading),
+    PALPATE_CHECK(n[0] > 0 && n[1] > 0 && n[2] > 0 && size.minCoeff() > 0, "cells {} {} {}", n[0], n[1],
+                  n[2]);
+    const auto x = graded_coordinates(size.x(), n[0], grading),
+               y = graded_coordinates(size.y(), n[1], grading),
                z = graded_coordinates(size.z(), n[2], grading);
     for (const double zk : z)
       for (const double yj : y)
         for (const double xi : x) builder.add_point({xi, yj, zk});
   }
-  int node(const std::array<int, 3>& at) const { return at[0] + (cells[0] + 1) * (at[1] + (cells[1] + 1) * at[2]); }
+  int node(const std::array<int, 3>& at) const {
+    return at[0] + (cells[0] + 1) * (at[1] + (cells[1] + 1) * at[2]);
+  }
 };
 
 bool is_odd(const std::array<int, 3>& at) { return (at[0] + at[1] + at[2]) % 2 != 0; }
 
 void add_cell(Lattice& lattice, int i, int j, int k) {
-  const auto corner = [&](int bits) { return std::array{i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2)}; };
+  const auto corner = [&](int bits) {
+    return std::array{i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2)};
+  };
   const auto node = [&](int bits) { return lattice.node(corner(bits)); };
   const int odd = is_odd(corner(0)) ? 0 : 1;  // bits of the odd corners: {0, 3, 5, 6} or {1, 2, 4, 7}
   for (int bits = 0; bits < 8; ++bits)
-    if (!is_odd(corner(bits))) lattice.builder.add_tet(node(bits), node(bits ^ 1), node(bits ^ 2), node(bits ^ 4));
+    if (!is_odd(corner(bits)))
+      lattice.builder.add_tet(node(bits), node(bits ^ 1), node(bits ^ 2), node(bits ^ 4));
   lattice.builder.add_tet(node(odd), node(odd ^ 3), node(odd ^ 5), node(odd ^ 6));
 }
 
@@ -46,8 +53,10 @@ void add_side(Lattice& lattice, std::size_t axis, bool at_end) {
         at[v] = b + db;
         return at;
       };
-      std::array<int, 4> quad = {lattice.node(corner(0, 0)), lattice.node(corner(1, 0)), lattice.node(corner(1, 1)), lattice.node(corner(0, 1))};
-      if (!at_end) std::swap(quad[1], quad[3]);  // seen from outside, counter-clockwise; 0 and 2 stay opposite
+      std::array<int, 4> quad = {lattice.node(corner(0, 0)), lattice.node(corner(1, 0)),
+                                 lattice.node(corner(1, 1)), lattice.node(corner(0, 1))};
+      // seen from outside, counter-clockwise; 0 and 2 stay opposite
+      if (!at_end) std::swap(quad[1], quad[3]);
       auto& faces = lattice.builder.faces;
       if (is_odd(corner(0, 0))) {
         faces.emplace_back(quad[0], quad[1], quad[2]);

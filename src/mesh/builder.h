@@ -44,7 +44,8 @@ struct Builder {
       }
     TriMesh out{gathered(used), Faces(3, static_cast<Eigen::Index>(faces.size()))};
     for (std::size_t f = 0; f < faces.size(); ++f)
-      for (int k = 0; k < 3; ++k) out.faces(k, static_cast<Eigen::Index>(f)) = place[static_cast<std::size_t>(faces[f][k])];
+      for (int k = 0; k < 3; ++k)
+        out.faces(k, static_cast<Eigen::Index>(f)) = place[static_cast<std::size_t>(faces[f][k])];
     return out;
   }
 

@@ -15,15 +15,19 @@ inline void refuse_non_finite(const Points& points, const Provenance& from) {
   for (int i = 0; i < static_cast<int>(points.cols()); ++i)
     for (int k = 0; k < 3; ++k)
       if (const double x = points(k, i); !(std::abs(x) <= kLargest))
-        fail("{}: {} = {} is not a finite length within 1e30 m; write the mesh again", from.node(i), "xyz"[k], x);
+        fail("{}: {} = {} is not a finite length within 1e30 m; write the mesh again", from.node(i), "xyz"[k],
+             x);
 }
 
 template <int Corners>
-void refuse_repeated_nodes(const Eigen::Matrix<int, Corners, Eigen::Dynamic>& elements, const Provenance& from) {
+void refuse_repeated_nodes(const Eigen::Matrix<int, Corners, Eigen::Dynamic>& elements,
+                           const Provenance& from) {
   for (int e = 0; e < static_cast<int>(elements.cols()); ++e)
     for (int i = 0; i < Corners; ++i)
       for (int j = 0; j < i; ++j)
-        if (elements(i, e) == elements(j, e)) fail("{} is degenerate: it has {} twice; remove it or mesh again", from.element(e), from.node_name(elements(i, e)));
+        if (elements(i, e) == elements(j, e))
+          fail("{} is degenerate: it has {} twice; remove it or mesh again", from.element(e),
+               from.node_name(elements(i, e)));
 }
 
 template <int Corners>
@@ -39,12 +43,13 @@ void refuse_duplicates(const Eigen::Matrix<int, Corners, Eigen::Dynamic>& elemen
   std::sort(sets.begin(), sets.end());
   for (std::size_t i = 1; i < sets.size(); ++i)
     if (sets[i - 1].first == sets[i].first)
-      fail("{} has the same corners as {}; remove one of the two", from.element(sets[i].second), from.element(sets[i - 1].second));
+      fail("{} has the same corners as {}; remove one of the two", from.element(sets[i].second),
+           from.element(sets[i - 1].second));
 }
 
 template <int Corners>
-void refuse_unreferenced(Eigen::Index points, const Eigen::Matrix<int, Corners, Eigen::Dynamic>& elements, const Provenance& from,
-                         std::string_view remedy) {
+void refuse_unreferenced(Eigen::Index points, const Eigen::Matrix<int, Corners, Eigen::Dynamic>& elements,
+                         const Provenance& from, std::string_view remedy) {
   std::vector<char> used(static_cast<std::size_t>(points), 0);
   for (Eigen::Index i = 0; i < elements.size(); ++i) used[static_cast<std::size_t>(elements.data()[i])] = 1;
   const auto unused = std::count(used.begin(), used.end(), 0);

@@ -8,8 +8,9 @@
 #include "palpate/mesh/generators.h"
 #include "rings.h"
 
-// A disc of six sectors in rings, extruded along z into prisms.  A prism over (a, b, c), a < b < c, is the tetrahedra a b c c', a b b' c',
-// a a' b' c': the diagonal of each of its quads starts at the bottom's smaller number, so neighbours agree (Dompierre et al. 1999).
+// A disc of six sectors in rings, extruded along z into prisms.  A prism over (a, b, c), a < b < c, is the
+// tetrahedra a b c c', a b b' c', a a' b' c': the diagonal of each of its quads starts at the bottom's
+// smaller number, so neighbours agree (Dompierre et al. 1999).
 namespace palpate::mesh {
 namespace {
 
@@ -56,7 +57,8 @@ Disc make_disc(double radius, double element_size, double grading) {
       const double angle = ring.frequency == 0 ? 0 : std::numbers::pi * i / (3.0 * ring.frequency);
       out.points.emplace_back(ring.radius * std::cos(angle), ring.radius * std::sin(angle));
     }
-    if (outer.frequency > 0) (inner.frequency == outer.frequency - 1 ? add_ring : add_halving_ring)(out, outer, inner);
+    if (outer.frequency > 0)
+      (inner.frequency == outer.frequency - 1 ? add_ring : add_halving_ring)(out, outer, inner);
     outer = inner;
   }
   return out;

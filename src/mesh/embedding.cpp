@@ -6,10 +6,12 @@
 namespace palpate::mesh {
 namespace {
 
-constexpr double kTie = 1e-9;  ///< distances (of the mesh's size) and sums of weights that differ by less are equal: rounding decides nothing
+/// distances (of the mesh's size) and sums of weights that differ by less are equal: rounding decides nothing
+constexpr double kTie = 1e-9;
 
 /// Of the tetrahedra that are as near as any, the one that continues its weights least; the first of equals.
-int least_extrapolating(const TetMesh& mesh, const std::vector<int>& tets, const Vec3& point, Eigen::Vector4d& weights) {
+int least_extrapolating(const TetMesh& mesh, const std::vector<int>& tets, const Vec3& point,
+                        Eigen::Vector4d& weights) {
   int best = -1;
   double least = 0.0;
   for (const int tet : tets) {
@@ -23,7 +25,8 @@ int least_extrapolating(const TetMesh& mesh, const std::vector<int>& tets, const
   return best;
 }
 
-/// Above this sum |w| the nearest tetrahedron is a poor one to continue (a flat one, seen along its thin direction), and others nearly as near are asked as well.
+/// Above this sum |w| the nearest tetrahedron is a poor one to continue (a flat one, seen along its thin
+/// direction), and others nearly as near are asked as well.
 constexpr double kPoor = 3.0;
 constexpr double kNearly = 0.25;  ///< of the distance
 constexpr double kBetter = 0.9;   ///< of the sum: what it takes to prefer one that is farther
@@ -56,9 +59,11 @@ Embedding embed(const TetMesh& mesh, const Points& points, EmbeddingReport* repo
     out.weights.col(i) = weights;
     const double sum = weights.cwiseAbs().sum();
     if (!(sum <= kLargestWeightSum))
-      fail("skin vertex {} at ({:.6g}, {:.6g}, {:.6g}) m lies {:.3g} m outside the tetrahedra: its weights in the nearest one, {}, sum to {:.3g} in magnitude "
-           "(at most {}); mesh the body closer to its skin, or with rounder elements",
-           i, p.x(), p.y(), p.z(), distance, guess, sum, kLargestWeightSum);
+      fail(
+          "skin vertex {} at ({:.6g}, {:.6g}, {:.6g}) m lies {:.3g} m outside the tetrahedra: its weights in "
+          "the nearest one, {}, sum to {:.3g} in magnitude "
+          "(at most {}); mesh the body closer to its skin, or with rounder elements",
+          i, p.x(), p.y(), p.z(), distance, guess, sum, kLargestWeightSum);
     if (distance > kTie * size) {
       ++found.outside;
       if (distance > found.largest_distance) found.largest_distance = distance, found.farthest = i;
@@ -74,22 +79,27 @@ void evaluate(const Embedding& embedding, const Tets& tets, const Points& nodes,
   for (int i = 0; i < embedding.size(); ++i) {
     const auto corner = tets.col(embedding.tet[static_cast<std::size_t>(i)]);
     const auto w = embedding.weights.col(i);
-    points.col(i) = w[0] * nodes.col(corner[0]) + w[1] * nodes.col(corner[1]) + w[2] * nodes.col(corner[2]) + w[3] * nodes.col(corner[3]);
+    points.col(i) = w[0] * nodes.col(corner[0]) + w[1] * nodes.col(corner[1]) + w[2] * nodes.col(corner[2]) +
+                    w[3] * nodes.col(corner[3]);
   }
 }
 
-void add_to_nodes(const Embedding& embedding, const Tets& tets, const Points& point_forces, Points& node_forces) {
-  PALPATE_CHECK(point_forces.cols() == embedding.size(), "{} forces on {} embedded points", point_forces.cols(), embedding.size());
+void add_to_nodes(const Embedding& embedding, const Tets& tets, const Points& point_forces,
+                  Points& node_forces) {
+  PALPATE_CHECK(point_forces.cols() == embedding.size(), "{} forces on {} embedded points",
+                point_forces.cols(), embedding.size());
   for (int i = 0; i < embedding.size(); ++i)
     for (int k = 0; k < 4; ++k)
-      node_forces.col(tets(k, embedding.tet[static_cast<std::size_t>(i)])) += embedding.weights(k, i) * point_forces.col(i);
+      node_forces.col(tets(k, embedding.tet[static_cast<std::size_t>(i)])) +=
+          embedding.weights(k, i) * point_forces.col(i);
 }
 
 // Area vector of a face: (x1 - x0) x (x2 - x0) / 2, outward.
 void vertex_area_vectors(const Faces& faces, const Points& vertices, Points& area_vectors) {
   area_vectors.setZero(3, vertices.cols());
   for (Eigen::Index f = 0; f < faces.cols(); ++f) {
-    const Vec3 a = vertices.col(faces(0, f)), third = (vertices.col(faces(1, f)) - a).cross(vertices.col(faces(2, f)) - a) / 6.0;
+    const Vec3 a = vertices.col(faces(0, f)),
+               third = (vertices.col(faces(1, f)) - a).cross(vertices.col(faces(2, f)) - a) / 6.0;
     for (int k = 0; k < 3; ++k) area_vectors.col(faces(k, f)) += third;
   }
 }
@@ -98,7 +108,8 @@ void vertex_normals_and_areas(const Faces& faces, const Points& vertices, Points
   normals.setZero(3, vertices.cols());
   areas.setZero(vertices.cols());
   for (Eigen::Index f = 0; f < faces.cols(); ++f) {
-    const Vec3 a = vertices.col(faces(0, f)), third = (vertices.col(faces(1, f)) - a).cross(vertices.col(faces(2, f)) - a) / 6.0;
+    const Vec3 a = vertices.col(faces(0, f)),
+               third = (vertices.col(faces(1, f)) - a).cross(vertices.col(faces(2, f)) - a) / 6.0;
     const double area = third.norm();
     for (int k = 0; k < 3; ++k) {
       normals.col(faces(k, f)) += third;

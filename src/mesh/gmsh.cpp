@@ -24,7 +24,8 @@ void add_tet(TextFile& file, Content& content, long tag, long physical, long ent
   content.tets.push_back(nodes);
   content.tet_tags.push_back(tag);
   content.tet_lines.push_back(file.line());
-  content.tet_physical.push_back(static_cast<double>(std::abs(physical)));  // negative where the volume is turned round
+  // negative where the volume is turned round
+  content.tet_physical.push_back(static_cast<double>(std::abs(physical)));
   content.tet_entity.push_back(static_cast<double>(entity));
 }
 
@@ -35,8 +36,10 @@ void physical_names(TextFile& file, Content& content) {
     file.require_line("a physical name");
     const long dimension = file.integer("dimension"), tag = file.integer("physical tag");
     const std::string_view quoted = file.rest();
-    if (quoted.size() < 2 || quoted.front() != '"' || quoted.back() != '"') file.fail("a name in double quotes is expected, here stands {}", printable(quoted));
-    if (dimension == 3) content.volume_names[static_cast<double>(tag)] = std::string(quoted.substr(1, quoted.size() - 2));
+    if (quoted.size() < 2 || quoted.front() != '"' || quoted.back() != '"')
+      file.fail("a name in double quotes is expected, here stands {}", printable(quoted));
+    if (dimension == 3)
+      content.volume_names[static_cast<double>(tag)] = std::string(quoted.substr(1, quoted.size() - 2));
   }
 }
 
@@ -55,15 +58,19 @@ int major_version(TextFile& file) {
     section = file.word();
   }
   if (section == "$NOD") file.fail("this is Gmsh format 1 ($NOD), which palpate does not read; {}", convert);
-  if (section != "$MeshFormat") file.fail("a Gmsh mesh starts with $MeshFormat, here stands \"{}\"; is this a .msh of Gmsh?", printable(section));
+  if (section != "$MeshFormat")
+    file.fail("a Gmsh mesh starts with $MeshFormat, here stands \"{}\"; is this a .msh of Gmsh?",
+              printable(section));
   file.require_line("the format's version");
   const double version = file.real("version");
   const long is_binary = file.integer("file type");
-  if (is_binary != 0) file.fail("this mesh is binary (file type {}), palpate reads ASCII; {}", is_binary, convert);
+  if (is_binary != 0)
+    file.fail("this mesh is binary (file type {}), palpate reads ASCII; {}", is_binary, convert);
   const bool is_2 = version >= 2.0 && version < 2.25, is_41 = version == 4.1;
   if (!is_2 && !is_41) file.fail("Gmsh format {} is not read, only 2.2 and 4.1; {}", version, convert);
   file.require_line("$EndMeshFormat");
-  if (const auto end = file.word(); end != "$EndMeshFormat") file.fail("$EndMeshFormat is expected, here stands \"{}\"", printable(end));
+  if (const auto end = file.word(); end != "$EndMeshFormat")
+    file.fail("$EndMeshFormat is expected, here stands \"{}\"", printable(end));
   return is_2 ? 2 : 4;
 }
 
@@ -77,7 +84,9 @@ Content read(TextFile& file) {
   const bool is_2 = major_version(file) == 2;
   while (file.next_line()) {
     const std::string_view name = file.word();
-    if (!name.starts_with('$')) file.fail("a section ($...) is expected, here stands \"{}\"; a count before it may be too small", printable(name));
+    if (!name.starts_with('$'))
+      file.fail("a section ($...) is expected, here stands \"{}\"; a count before it may be too small",
+                printable(name));
     const std::string end = fmt::format("$End{}", name.substr(1));
     if (name == "$PhysicalNames" || (name == "$Entities" && !is_2)) {
       name == "$Entities" ? entities_41(file, content) : physical_names(file, content);
@@ -92,7 +101,9 @@ Content read(TextFile& file) {
     if (nodes) is_2 ? nodes_22(file, content) : nodes_41(file, content);
     if (elements) is_2 ? elements_22(file, content) : elements_41(file, content);
     file.require_line(end);
-    if (const auto word = file.word(); word != end) file.fail("{} is expected, here stands \"{}\"; the count of its entries is wrong", end, printable(word));
+    if (const auto word = file.word(); word != end)
+      file.fail("{} is expected, here stands \"{}\"; the count of its entries is wrong", end,
+                printable(word));
   }
   return content;
 }
@@ -109,8 +120,8 @@ std::unordered_map<long, int> places_of_tags(const std::string& path, const Cont
   std::unordered_map<long, int> out;
   for (std::size_t i = 0; i < content.nodes.size(); ++i)
     if (const auto [it, is_new] = out.emplace(content.node_tags[i], static_cast<int>(i)); !is_new)
-      fail("{}:{}: node {} stands here and in line {}; node numbers must differ", path, content.node_lines[i], content.node_tags[i],
-           content.node_lines[static_cast<std::size_t>(it->second)]);
+      fail("{}:{}: node {} stands here and in line {}; node numbers must differ", path, content.node_lines[i],
+           content.node_tags[i], content.node_lines[static_cast<std::size_t>(it->second)]);
   return out;
 }
 
@@ -121,23 +132,32 @@ TetFile read_gmsh(const std::string& path) {
   TextFile file(path);
   gmsh::Content content = gmsh::read(file);
   if (content.tets.empty() && content.second_order_tets > 0)
-    fail("{}: its {} tetrahedra are of second order (type 11), palpate takes linear ones; mesh with Mesh.ElementOrder = 1", path, content.second_order_tets);
+    fail(
+        "{}: its {} tetrahedra are of second order (type 11), palpate takes linear ones; mesh with "
+        "Mesh.ElementOrder = 1",
+        path, content.second_order_tets);
 
   const auto places = gmsh::places_of_tags(path, content);
   TetFile out;
   out.mesh.nodes.resize(3, static_cast<Eigen::Index>(content.nodes.size()));
-  for (std::size_t i = 0; i < content.nodes.size(); ++i) out.mesh.nodes.col(static_cast<Eigen::Index>(i)) = content.nodes[i];
+  for (std::size_t i = 0; i < content.nodes.size(); ++i)
+    out.mesh.nodes.col(static_cast<Eigen::Index>(i)) = content.nodes[i];
   out.mesh.tets.resize(4, static_cast<Eigen::Index>(content.tets.size()));
   for (std::size_t t = 0; t < content.tets.size(); ++t)
     for (int k = 0; k < 4; ++k) {
       const long tag = content.tets[t][static_cast<std::size_t>(k)];
       const auto place = places.find(tag);
       if (place == places.end())
-        fail("{}:{}: element {}: node {} is not in the file; it has {} nodes", path, content.tet_lines[t], content.tet_tags[t], tag, content.nodes.size());
+        fail("{}:{}: element {}: node {} is not in the file; it has {} nodes", path, content.tet_lines[t],
+             content.tet_tags[t], tag, content.nodes.size());
       out.mesh.tets(k, static_cast<Eigen::Index>(t)) = place->second;
     }
-  out.from = {.source = path, .node_source = "", .node_number = std::move(content.node_tags), .element_number = std::move(content.tet_tags),
-              .node_line = std::move(content.node_lines), .element_line = std::move(content.tet_lines)};
+  out.from = {.source = path,
+              .node_source = "",
+              .node_number = std::move(content.node_tags),
+              .element_number = std::move(content.tet_tags),
+              .node_line = std::move(content.node_lines),
+              .element_line = std::move(content.tet_lines)};
   out.regions = gmsh::regions(content);
   return out;
 }

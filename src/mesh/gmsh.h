@@ -17,15 +17,16 @@ struct Content {
   std::vector<std::array<long, 4>> tets;
   std::vector<long> tet_tags;
   std::vector<int> tet_lines;
-  std::vector<double> tet_physical, tet_entity;   ///< numbers, of each tetrahedron; physical 0: none
-  std::map<double, std::string> volume_names;     ///< of physical volumes
-  std::map<long, long> physical_of_volume;        ///< 4.1: the first one of each volume of the model
+  std::vector<double> tet_physical, tet_entity;  ///< numbers, of each tetrahedron; physical 0: none
+  std::map<double, std::string> volume_names;    ///< of physical volumes
+  std::map<long, long> physical_of_volume;       ///< 4.1: the first one of each volume of the model
   long second_order_tets = 0;
 };
 
 constexpr long kTet4 = 4, kTet10 = 11;  // Gmsh's element types
 
-/// The three coordinates of node `tag`, which stands before them on the line (2.2) or on a line of its own (4.1).
+/// The three coordinates of node `tag`, which stands before them on the line (2.2) or on a line of its own
+/// (4.1).
 void add_node(TextFile& file, Content& content, long tag);
 /// The four nodes of tetrahedron `tag`, up to the end of the line.
 void add_tet(TextFile& file, Content& content, long tag, long physical, long entity);

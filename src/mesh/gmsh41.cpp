@@ -1,14 +1,18 @@
 #include "gmsh.h"
 
 // Gmsh 4.1, ASCII (reference manual, "MSH file format"):
-//   $Entities: points curves surfaces volumes, then a line each, in this order; a volume: tag, 6 numbers of its box, number of physical tags, these, ...
-//   $Nodes: blocks nodes min-tag max-tag; each block: dimension entity parametric n, n lines of tags, n lines  x y z [u v w]
+//   $Entities: points curves surfaces volumes, then a line each, in this order; a volume: tag, 6 numbers of
+//   its box, number of physical tags, these, ...
+//   $Nodes: blocks nodes min-tag max-tag; each block: dimension entity parametric n, n lines of tags, n lines
+//   x y z [u v w]
 //   $Elements: blocks elements min-tag max-tag; each block: dimension entity type n, n lines  tag node...
 namespace palpate::mesh::gmsh {
 namespace {
 
 void require_total(const TextFile& file, std::string_view what, long announced, long found) {
-  if (announced != found) file.fail("{} {} stand in the blocks, but the section announces {}; one of the counts is wrong", found, what, announced);
+  if (announced != found)
+    file.fail("{} {} stand in the blocks, but the section announces {}; one of the counts is wrong", found,
+              what, announced);
 }
 
 }  // namespace
@@ -16,14 +20,16 @@ void require_total(const TextFile& file, std::string_view what, long announced, 
 void entities_41(TextFile& file, Content& content) {
   file.require_line("the counts of $Entities");
   long before = 0;
-  for (const char* what : {"number of points", "number of curves", "number of surfaces"}) before += file.count(what);
+  for (const char* what : {"number of points", "number of curves", "number of surfaces"})
+    before += file.count(what);
   const int volumes = file.count("number of volumes");
   for (long i = 0; i < before; ++i) file.require_line("a point, curve or surface");
   for (int i = 0; i < volumes; ++i) {
     file.require_line("a volume");
     const long tag = file.integer("volume tag");
     for (int k = 0; k < 6; ++k) file.real("bound of its box");
-    if (file.count("number of physical tags") > 0) content.physical_of_volume[tag] = file.integer("physical tag");
+    if (file.count("number of physical tags") > 0)
+      content.physical_of_volume[tag] = file.integer("physical tag");
   }
 }
 
@@ -67,7 +73,9 @@ void elements_41(TextFile& file, Content& content) {
     const int n = file.count("number of elements in the block");
     for (int i = 0; i < n; ++i) {
       file.require_line("an element");
-      if (type == kTet4) add_tet(file, content, file.integer("element number"), physical == content.physical_of_volume.end() ? 0 : physical->second, entity);
+      if (type == kTet4)
+        add_tet(file, content, file.integer("element number"),
+                physical == content.physical_of_volume.end() ? 0 : physical->second, entity);
     }
     if (type == kTet10) content.second_order_tets += n;
     found += n;

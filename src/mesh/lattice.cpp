@@ -19,7 +19,8 @@ int graded_cells(double length, double element_size, double grading) {
 
 std::vector<double> graded_coordinates(double length, int cells, double grading) {
   std::vector<double> out;
-  for (int i = 0; i <= cells; ++i) out.push_back(0.5 * length * graded(static_cast<double>(2 * i - cells) / cells, grading));
+  for (int i = 0; i <= cells; ++i)
+    out.push_back(0.5 * length * graded(static_cast<double>(2 * i - cells) / cells, grading));
   return out;
 }
 

@@ -5,17 +5,19 @@
 #include "palpate/mesh/readers.h"
 #include "text_file.h"
 
-// Wavefront OBJ:  v x y z [w | r g b]   and   f v v v ..., each v one of  7  7/1  7//3  7/1/3, counted from 1, or from the end if negative.
-// Texture coordinates, normals, groups and materials are passed over.
+// Wavefront OBJ:  v x y z [w | r g b]   and   f v v v ..., each v one of  7  7/1  7//3  7/1/3, counted from
+// 1, or from the end if negative. Texture coordinates, normals, groups and materials are passed over.
 namespace palpate::mesh {
 namespace {
 
-/// The vertex of one corner, counted from zero; a vertex of a later line is allowed, so the upper bound is checked at the end.
+/// The vertex of one corner, counted from zero; a vertex of a later line is allowed, so the upper bound is
+/// checked at the end.
 int corner(TextFile& file, std::string_view word, std::size_t vertices) {
   const std::string_view digits = word.substr(0, word.find('/'));
   long value = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (code != std::errc() || end != digits.data() + digits.size()) file.fail("corner \"{}\" has no vertex number", printable(word));
+  if (code != std::errc() || end != digits.data() + digits.size())
+    file.fail("corner \"{}\" has no vertex number", printable(word));
   if (value == 0) file.fail("corner \"{}\": vertices are counted from 1", printable(word));
   const long place = value > 0 ? value - 1 : static_cast<long>(vertices) + value;
   if (place < 0 || place > std::numeric_limits<int>::max())
@@ -23,10 +25,12 @@ int corner(TextFile& file, std::string_view word, std::size_t vertices) {
   return static_cast<int>(place);
 }
 
-void read_face(TextFile& file, std::size_t vertices, std::vector<Eigen::Vector3i>& faces, Provenance& from, long number) {
+void read_face(TextFile& file, std::size_t vertices, std::vector<Eigen::Vector3i>& faces, Provenance& from,
+               long number) {
   file.about("face", number);
   std::vector<int> polygon;
-  for (auto word = file.word(); !word.empty(); word = file.word()) polygon.push_back(corner(file, word, vertices));
+  for (auto word = file.word(); !word.empty(); word = file.word())
+    polygon.push_back(corner(file, word, vertices));
   if (polygon.size() < 3) file.fail("it has {} corners, a face has at least 3", polygon.size());
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
     faces.emplace_back(polygon[0], polygon[i], polygon[i + 1]);
@@ -57,11 +61,13 @@ SurfaceFile read_obj(const std::string& path) {
     }
   }
   out.mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices.size()));
-  for (std::size_t i = 0; i < vertices.size(); ++i) out.mesh.vertices.col(static_cast<Eigen::Index>(i)) = vertices[i];
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    out.mesh.vertices.col(static_cast<Eigen::Index>(i)) = vertices[i];
   out.mesh.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (const int largest = faces[f].maxCoeff(); largest >= static_cast<int>(vertices.size()))
-      fail("{}: vertex {} is not in the file; it has {} vertices", out.from.element(static_cast<int>(f)), static_cast<long>(largest) + 1, vertices.size());
+      fail("{}: vertex {} is not in the file; it has {} vertices", out.from.element(static_cast<int>(f)),
+           static_cast<long>(largest) + 1, vertices.size());
     out.mesh.faces.col(static_cast<Eigen::Index>(f)) = faces[f];
   }
   return out;

@@ -45,9 +45,11 @@ std::vector<int> order_by_place(const Points& points) {
 }
 
 void renumber_nodes(TetMesh& mesh, const std::vector<int>& order) {
-  PALPATE_CHECK(static_cast<Eigen::Index>(order.size()) == mesh.nodes.cols(), "{} of {} nodes are renumbered", order.size(), mesh.nodes.cols());
+  PALPATE_CHECK(static_cast<Eigen::Index>(order.size()) == mesh.nodes.cols(), "{} of {} nodes are renumbered",
+                order.size(), mesh.nodes.cols());
   std::vector<int> number(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k) number[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
+  for (std::size_t k = 0; k < order.size(); ++k)
+    number[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
   mesh.nodes = Points(mesh.nodes(Eigen::all, order));
   mesh.tets = mesh.tets.unaryExpr([&](int node) { return number[static_cast<std::size_t>(node)]; }).eval();
 }

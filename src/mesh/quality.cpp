@@ -7,15 +7,18 @@
 
 namespace palpate::mesh {
 
-double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return (b - a).cross(c - a).dot(d - a) / 6.0; }
+double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  return (b - a).cross(c - a).dot(d - a) / 6.0;
+}
 
 double tet_volume(const TetMesh& mesh, int tet) {
   const auto n = mesh.tets.col(tet);
   return tet_volume(mesh.nodes.col(n[0]), mesh.nodes.col(n[1]), mesh.nodes.col(n[2]), mesh.nodes.col(n[3]));
 }
 
-// Faces f and g meet in the edge that joins the two nodes other than f and g; with outward normals n_f, n_g the angle inside is pi minus
-// the angle between them: atan2(|n_f x n_g|, -n_f . n_g), accurate for slivers too.
+// Faces f and g meet in the edge that joins the two nodes other than f and g; with outward normals n_f, n_g
+// the angle inside is pi minus the angle between them: atan2(|n_f x n_g|, -n_f . n_g), accurate for slivers
+// too.
 std::array<double, 6> dihedral_angles(const TetMesh& mesh, int tet) {
   std::array<Vec3, 4> normal;
   for (std::size_t f = 0; f < 4; ++f) {
@@ -25,7 +28,8 @@ std::array<double, 6> dihedral_angles(const TetMesh& mesh, int tet) {
   std::array<double, 6> out;
   for (std::size_t e = 0; e < 6; ++e) {
     const auto& opposite = kTetEdges[5 - e];  // the edges are listed so that e and 5 - e share no node
-    const Vec3 &n = normal[static_cast<std::size_t>(opposite[0])], &m = normal[static_cast<std::size_t>(opposite[1])];
+    const Vec3 &n = normal[static_cast<std::size_t>(opposite[0])],
+               &m = normal[static_cast<std::size_t>(opposite[1])];
     out[e] = std::atan2(n.cross(m).norm(), -n.dot(m));
   }
   return out;

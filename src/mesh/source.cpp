@@ -12,9 +12,13 @@ namespace {
 
 /// Exactly one of file and generator is given.
 bool is_file(const MeshSpec& spec) {
-  if (!spec.file.empty() && !spec.generator.empty()) fail("mesh: file = \"{}\" and generator = \"{}\" exclude each other; give one", spec.file, spec.generator);
-  if (spec.file.empty() && spec.generator.empty()) fail("mesh: neither file nor generator is given; give one (generators: box, ball, cylinder, tet)");
-  if (!(spec.scale > 0 && std::isfinite(spec.scale))) fail("mesh: scale = {} must be positive; it multiplies the file's coordinates", spec.scale);
+  if (!spec.file.empty() && !spec.generator.empty())
+    fail("mesh: file = \"{}\" and generator = \"{}\" exclude each other; give one", spec.file,
+         spec.generator);
+  if (spec.file.empty() && spec.generator.empty())
+    fail("mesh: neither file nor generator is given; give one (generators: box, ball, cylinder, tet)");
+  if (!(spec.scale > 0 && std::isfinite(spec.scale)))
+    fail("mesh: scale = {} must be positive; it multiplies the file's coordinates", spec.scale);
   return !spec.file.empty();
 }
 
@@ -28,12 +32,17 @@ TetFile read_tets(const std::string& path) {
   const std::string kind = ending(path);
   if (kind == ".msh") return read_gmsh(path);
   if (kind == ".node" || kind == ".ele") return read_tetgen(path);
-  if (kind == ".obj") fail("{}: an .obj holds a surface, a soft body needs tetrahedra (.msh, .node/.ele); mesh its inside first, for example with Gmsh", path);
+  if (kind == ".obj")
+    fail(
+        "{}: an .obj holds a surface, a soft body needs tetrahedra (.msh, .node/.ele); mesh its inside "
+        "first, for example with Gmsh",
+        path);
   fail("{}: unknown ending \"{}\" for tetrahedra; .msh (Gmsh), .node and .ele (TetGen) are read", path, kind);
 }
 
 SurfaceFile read_surface(const std::string& path) {
-  if (const std::string kind = ending(path); kind != ".obj") fail("{}: unknown ending \"{}\" for a surface; .obj is read", path, kind);
+  if (const std::string kind = ending(path); kind != ".obj")
+    fail("{}: unknown ending \"{}\" for a surface; .obj is read", path, kind);
   return read_obj(path);
 }
 
@@ -41,7 +50,8 @@ std::string generator_name(const MeshSpec& spec) { return fmt::format("generator
 
 }  // namespace
 
-TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report, std::vector<MaterialRegion>* regions) {
+TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report,
+                 std::vector<MaterialRegion>* regions) {
   TetFile out;
   if (is_file(spec)) {
     out = read_tets((std::filesystem::path(folder) / spec.file).string());

@@ -11,7 +11,8 @@
 namespace palpate::mesh {
 namespace {
 
-/// An edge and one of its faces: nodes sorted; `forward` when the face runs from the smaller to the larger vertex.
+/// An edge and one of its faces: nodes sorted; `forward` when the face runs from the smaller to the larger
+/// vertex.
 struct EdgeOfFace {
   std::array<int, 2> nodes;
   int face;
@@ -31,7 +32,8 @@ std::vector<EdgeOfFace> sorted_edges(const Faces& faces) {
   return out;
 }
 
-/// The face across each of a face's edges, and whether both run along the edge the same way (then one of them is turned round).
+/// The face across each of a face's edges, and whether both run along the edge the same way (then one of them
+/// is turned round).
 struct Neighbour {
   int face;
   bool same_way;
@@ -47,11 +49,15 @@ Neighbours neighbours(const Faces& faces, const Provenance& from) {
     while (end < edges.size() && edges[end].nodes == edges[i].nodes) ++end;
     const auto& [a, b] = edges[i].nodes;
     if (end - i == 1)
-      fail("{}: the edge from {} to {} belongs to no other face: the surface is not closed there; fill the hole", from.element(edges[i].face),
-           from.node_name(a), from.node_name(b));
+      fail(
+          "{}: the edge from {} to {} belongs to no other face: the surface is not closed there; fill the "
+          "hole",
+          from.element(edges[i].face), from.node_name(a), from.node_name(b));
     if (end - i > 2)
-      fail("{}: the edge from {} to {} belongs to {} faces; a closed surface has two at each edge, separate the parts", from.element(edges[i].face),
-           from.node_name(a), from.node_name(b), end - i);
+      fail(
+          "{}: the edge from {} to {} belongs to {} faces; a closed surface has two at each edge, separate "
+          "the parts",
+          from.element(edges[i].face), from.node_name(a), from.node_name(b), end - i);
     const EdgeOfFace &p = edges[i], &q = edges[i + 1];
     out[static_cast<std::size_t>(p.face)].push_back({q.face, p.forward == q.forward});
     out[static_cast<std::size_t>(q.face)].push_back({p.face, p.forward == q.forward});
@@ -64,7 +70,8 @@ void flip(Faces& faces, int f) { std::swap(faces(1, f), faces(2, f)); }
 
 /// Walks from face to face within each connected shell and turns those that disagree with the shell's first.
 /// Returns the shell of each face; `turned` remembers what was done.
-std::vector<int> walk(Faces& faces, const Neighbours& across, const Provenance& from, std::vector<char>& turned) {
+std::vector<int> walk(Faces& faces, const Neighbours& across, const Provenance& from,
+                      std::vector<char>& turned) {
   std::vector<int> shell(across.size(), -1), stack;
   int shells = 0;
   for (int seed = 0; seed < static_cast<int>(across.size()); ++seed) {
@@ -82,7 +89,8 @@ std::vector<int> walk(Faces& faces, const Neighbours& across, const Provenance& 
           turned[g] = turn;
           stack.push_back(n.face);
         } else if ((turned[g] != 0) != turn) {
-          fail("{}: the surface cannot be oriented (it is one-sided, like a Moebius strip); repair it", from.element(n.face));
+          fail("{}: the surface cannot be oriented (it is one-sided, like a Moebius strip); repair it",
+               from.element(n.face));
         }
       }
     }
@@ -98,7 +106,8 @@ std::pair<double, double> shell_volume(const TriMesh& mesh, const std::vector<in
   const Vec3 o = mesh.vertices.col(mesh.faces(0, faces[0]));
   double volume = 0, terms = 0;
   for (const int f : faces) {
-    const Vec3 a = mesh.vertices.col(mesh.faces(0, f)) - o, b = mesh.vertices.col(mesh.faces(1, f)) - o, c = mesh.vertices.col(mesh.faces(2, f)) - o;
+    const Vec3 a = mesh.vertices.col(mesh.faces(0, f)) - o, b = mesh.vertices.col(mesh.faces(1, f)) - o,
+               c = mesh.vertices.col(mesh.faces(2, f)) - o;
     volume += a.dot(b.cross(c)) / 6;
     terms += a.norm() * b.cross(c).norm() / 6;
   }
@@ -106,7 +115,8 @@ std::pair<double, double> shell_volume(const TriMesh& mesh, const std::vector<in
 }
 
 /// Each shell outwards, or inwards where it lies within an odd number of others (it bounds a cavity then).
-void turn_shells_outwards(TriMesh& mesh, const std::vector<int>& shell_of_face, const Provenance& from, std::vector<char>& turned) {
+void turn_shells_outwards(TriMesh& mesh, const std::vector<int>& shell_of_face, const Provenance& from,
+                          std::vector<char>& turned) {
   std::vector<std::vector<int>> shells;
   for (int f = 0; f < static_cast<int>(shell_of_face.size()); ++f) {
     const auto s = static_cast<std::size_t>(shell_of_face[static_cast<std::size_t>(f)]);
@@ -116,7 +126,8 @@ void turn_shells_outwards(TriMesh& mesh, const std::vector<int>& shell_of_face, 
   for (std::size_t s = 0; s < shells.size(); ++s) {
     const auto [volume, rounding] = shell_volume(mesh, shells[s]);
     if (!(std::abs(volume) > rounding))
-      fail("{}: the closed shell of {} faces that starts here encloses no volume ({:.3g} m^3); remove it", from.element(shells[s][0]), shells[s].size(), volume);
+      fail("{}: the closed shell of {} faces that starts here encloses no volume ({:.3g} m^3); remove it",
+           from.element(shells[s][0]), shells[s].size(), volume);
     int depth = 0;
     const Vec3 point = mesh.vertices.col(mesh.faces(0, shells[s][0]));
     for (std::size_t other = 0; other < shells.size(); ++other)
@@ -133,11 +144,14 @@ void turn_shells_outwards(TriMesh& mesh, const std::vector<int>& shell_of_face, 
 void measure_faces(const TriMesh& mesh, const Provenance& from, MeshReport& report) {
   report.smallest_edge = std::numeric_limits<double>::infinity();
   for (int f = 0; f < static_cast<int>(mesh.faces.cols()); ++f) {
-    const Vec3 a = mesh.vertices.col(mesh.faces(0, f)), b = mesh.vertices.col(mesh.faces(1, f)), c = mesh.vertices.col(mesh.faces(2, f));
+    const Vec3 a = mesh.vertices.col(mesh.faces(0, f)), b = mesh.vertices.col(mesh.faces(1, f)),
+               c = mesh.vertices.col(mesh.faces(2, f));
     const std::array<double, 3> edges = {(b - a).norm(), (c - b).norm(), (a - c).norm()};
-    const double longest = *std::max_element(edges.begin(), edges.end()), twice_area = (b - a).cross(c - a).norm();
+    const double longest = *std::max_element(edges.begin(), edges.end()),
+                 twice_area = (b - a).cross(c - a).norm();
     if (!(twice_area > kDegenerateTriangle * longest * longest))
-      fail("{} is degenerate: area = {:.3g} m^2 with edges up to {:.3g} m; collapse its shortest edge", from.element(f), twice_area / 2, longest);
+      fail("{} is degenerate: area = {:.3g} m^2 with edges up to {:.3g} m; collapse its shortest edge",
+           from.element(f), twice_area / 2, longest);
     report.largest_edge = std::max(report.largest_edge, longest);
     report.smallest_edge = std::min(report.smallest_edge, *std::min_element(edges.begin(), edges.end()));
   }

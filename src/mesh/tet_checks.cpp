@@ -13,11 +13,13 @@ namespace {
 
 double longest_edge(const TetMesh& mesh, int t) {
   double out = 0;
-  for (const auto& [i, j] : kTetEdges) out = std::max(out, (mesh.nodes.col(mesh.tets(i, t)) - mesh.nodes.col(mesh.tets(j, t))).norm());
+  for (const auto& [i, j] : kTetEdges)
+    out = std::max(out, (mesh.nodes.col(mesh.tets(i, t)) - mesh.nodes.col(mesh.tets(j, t))).norm());
   return out;
 }
 
-/// What rounding of the coordinates alone gives a flat element as relative volume: edges carry an error of epsilon |x|.
+/// What rounding of the coordinates alone gives a flat element as relative volume: edges carry an error of
+/// epsilon |x|.
 double rounding_volume(const TetMesh& mesh, int t, double longest) {
   double far = 0;
   for (int k = 0; k < 4; ++k) far = std::max(far, mesh.nodes.col(mesh.tets(k, t)).cwiseAbs().maxCoeff());
@@ -29,9 +31,11 @@ int orient(TetMesh& mesh, const Provenance& from) {
   int flipped = 0;
   for (int t = 0; t < static_cast<int>(mesh.tets.cols()); ++t) {
     const double longest = longest_edge(mesh, t), volume = tet_volume(mesh, t);
-    const double relative = 6 * std::sqrt(2.0) * volume / (longest * longest * longest);  // 1 for the regular tetrahedron
+    // 1 for the regular tetrahedron
+    const double relative = 6 * std::sqrt(2.0) * volume / (longest * longest * longest);
     if (!(std::abs(relative) > std::max(kDegenerateTet, rounding_volume(mesh, t, longest))))
-      fail("{} is degenerate: volume = {:.3g} m^3 with edges up to {:.3g} m; remove it or mesh again", from.element(t), volume, longest);
+      fail("{} is degenerate: volume = {:.3g} m^3 with edges up to {:.3g} m; remove it or mesh again",
+           from.element(t), volume, longest);
     if (volume > 0) continue;
     std::swap(mesh.tets(2, t), mesh.tets(3, t));
     ++flipped;
@@ -58,21 +62,24 @@ void refuse_crowded_faces(const Tets& tets, const Provenance& from) {
   std::sort(sides.begin(), sides.end());
   for (std::size_t i = 2; i < sides.size(); ++i)
     if (sides[i - 2].nodes == sides[i].nodes)
-      fail("{} is the third element on the face of {}, {}, {}; elements overlap there, mesh again", from.element(sides[i].tet),
-           from.node_name(sides[i].nodes[0]), from.node_name(sides[i].nodes[1]), from.node_name(sides[i].nodes[2]));
+      fail("{} is the third element on the face of {}, {}, {}; elements overlap there, mesh again",
+           from.element(sides[i].tet), from.node_name(sides[i].nodes[0]), from.node_name(sides[i].nodes[1]),
+           from.node_name(sides[i].nodes[2]));
 }
 
 }  // namespace
 
 MeshReport check_tets(TetMesh& mesh, const Provenance& from) {
-  if (mesh.tets.cols() == 0) fail("{}: the mesh has no tetrahedra; mesh the volume (in Gmsh: -3), not only its surface", from.source);
+  if (mesh.tets.cols() == 0)
+    fail("{}: the mesh has no tetrahedra; mesh the volume (in Gmsh: -3), not only its surface", from.source);
   refuse_non_finite(mesh.nodes, from);
   refuse_repeated_nodes(mesh.tets, from);
   refuse_duplicates(mesh.tets, from);
   const int flipped = orient(mesh, from);
   refuse_crowded_faces(mesh.tets, from);
   refuse_unreferenced(mesh.nodes.cols(), mesh.tets, from,
-                      "belongs to no tetrahedron; delete such nodes (in Gmsh: put the volume in a Physical Volume and save only that)");
+                      "belongs to no tetrahedron; delete such nodes (in Gmsh: put the volume in a Physical "
+                      "Volume and save only that)");
   MeshReport report = measure(mesh);
   report.flipped = flipped;
   return report;

@@ -20,10 +20,12 @@ double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - s * edge).norm();
 }
 
-// The foot of the perpendicular lies in the triangle when it is on the inner side of each edge; else the nearest point is on an edge.
+// The foot of the perpendicular lies in the triangle when it is on the inner side of each edge; else the
+// nearest point is on an edge.
 double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a);
-  const bool above = n.dot((b - a).cross(p - a)) >= 0.0 && n.dot((c - b).cross(p - b)) >= 0.0 && n.dot((a - c).cross(p - c)) >= 0.0;
+  const bool above = n.dot((b - a).cross(p - a)) >= 0.0 && n.dot((c - b).cross(p - b)) >= 0.0 &&
+                     n.dot((a - c).cross(p - c)) >= 0.0;
   if (above && n.squaredNorm() > 0.0) return std::abs(n.normalized().dot(p - a));
   return std::min({segment_distance(p, a, b), segment_distance(p, b, c), segment_distance(p, c, a)});
 }
@@ -42,8 +44,10 @@ double tet_distance(const TetMesh& mesh, int tet, const Vec3& point) {
   double nearest = 0.0;
   bool outside = false;
   for (const auto& face : kTetFaces) {
-    const Vec3 a = mesh.nodes.col(mesh.tets(face[0], tet)), b = mesh.nodes.col(mesh.tets(face[1], tet)), c = mesh.nodes.col(mesh.tets(face[2], tet));
-    if ((b - a).cross(c - a).dot(point - a) <= 0.0) continue;  // on the inner side: another face is nearer, or none is needed
+    const Vec3 a = mesh.nodes.col(mesh.tets(face[0], tet)), b = mesh.nodes.col(mesh.tets(face[1], tet)),
+               c = mesh.nodes.col(mesh.tets(face[2], tet));
+    // on the inner side: another face is nearer, or none is needed
+    if ((b - a).cross(c - a).dot(point - a) <= 0.0) continue;
     const double distance = triangle_distance(point, a, b, c);
     nearest = outside ? std::min(nearest, distance) : distance;
     outside = true;
@@ -73,8 +77,11 @@ void TetTree::build(std::size_t box, int first, int count) {
   if (count <= kLeaf) return;
   Eigen::Index axis = 0;
   (high - low).maxCoeff(&axis);
-  const auto along = [&](int tet) { return node(tet, 0)[axis] + node(tet, 1)[axis] + node(tet, 2)[axis] + node(tet, 3)[axis]; };
-  std::nth_element(begin, begin + count / 2, end, [&](int s, int t) { return std::pair(along(s), s) < std::pair(along(t), t); });
+  const auto along = [&](int tet) {
+    return node(tet, 0)[axis] + node(tet, 1)[axis] + node(tet, 2)[axis] + node(tet, 3)[axis];
+  };
+  std::nth_element(begin, begin + count / 2, end,
+                   [&](int s, int t) { return std::pair(along(s), s) < std::pair(along(t), t); });
   const std::size_t children = boxes_.size();
   boxes_[box].first = static_cast<int>(children);
   boxes_[box].count = 0;
@@ -97,7 +104,8 @@ double TetTree::nearest(const Vec3& point, double tolerance, int guess, std::vec
     open_.pop_back();
     if (box_distance(box, point) > least + tolerance) continue;
     if (box.count == 0) {
-      const bool second_first = box_distance(boxes_[static_cast<std::size_t>(box.first)], point) > box_distance(boxes_[static_cast<std::size_t>(box.first) + 1], point);
+      const bool second_first = box_distance(boxes_[static_cast<std::size_t>(box.first)], point) >
+                                box_distance(boxes_[static_cast<std::size_t>(box.first) + 1], point);
       open_.push_back(box.first + (second_first ? 0 : 1));
       open_.push_back(box.first + (second_first ? 1 : 0));
       continue;

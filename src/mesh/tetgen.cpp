@@ -11,7 +11,8 @@ namespace {
 
 /// Numbers must run on from the first, as TetGen writes them: element lines refer to them.
 void require_next(const TextFile& file, std::string_view what, long number, long expected) {
-  if (number != expected) file.fail("{} {} stands where {} is expected; numbers must run on without gaps", what, number, expected);
+  if (number != expected)
+    file.fail("{} {} stands where {} is expected; numbers must run on without gaps", what, number, expected);
 }
 
 void read_nodes(TextFile& file, TetFile& out, long& first) {
@@ -23,7 +24,8 @@ void read_nodes(TextFile& file, TetFile& out, long& first) {
   for (int i = 0; i < n; ++i) {
     file.require_line("a point");
     const long number = file.integer("point number");
-    if (i == 0 && number != 0 && number != 1) file.fail("the first point has number {}, TetGen counts from 0 or 1", number);
+    if (i == 0 && number != 0 && number != 1)
+      file.fail("the first point has number {}, TetGen counts from 0 or 1", number);
     if (i == 0) first = number;
     require_next(file, "point", number, first + i);
     file.about("node", number);
@@ -32,14 +34,17 @@ void read_nodes(TextFile& file, TetFile& out, long& first) {
     out.from.node_number.push_back(number);
     out.from.node_line.push_back(file.line());
   }
-  if (file.next_line()) file.fail("more lines follow the {} points that the header announces; one of them is wrong", n);
+  if (file.next_line())
+    file.fail("more lines follow the {} points that the header announces; one of them is wrong", n);
 }
 
 void read_elements(TextFile& file, TetFile& out, long first) {
   file.require_line("the header of the tetrahedra");
   const int n = file.count("number of tetrahedra");
   const long corners = file.integer("nodes per tetrahedron");
-  if (corners != 4) file.fail("{} nodes per tetrahedron; palpate takes linear ones, with 4 (run tetgen without -o2)", corners);
+  if (corners != 4)
+    file.fail("{} nodes per tetrahedron; palpate takes linear ones, with 4 (run tetgen without -o2)",
+              corners);
   const long points = static_cast<long>(out.mesh.nodes.cols());
   const long attributes = file.at_end_of_line() ? 0 : file.integer("number of attributes");
   std::vector<double> labels;
@@ -52,14 +57,16 @@ void read_elements(TextFile& file, TetFile& out, long first) {
     for (int k = 0; k < 4; ++k) {
       const long node = file.integer("node number");
       if (node < first || node >= first + points)
-        file.fail("node {} is outside {} to {}, the points of the .node file", node, first, first + points - 1);
+        file.fail("node {} is outside {} to {}, the points of the .node file", node, first,
+                  first + points - 1);
       out.mesh.tets(k, t) = static_cast<int>(node - first);
     }
     if (attributes > 0) labels.push_back(file.real("attribute"));
     out.from.element_number.push_back(number);
     out.from.element_line.push_back(file.line());
   }
-  if (file.next_line()) file.fail("more lines follow the {} tetrahedra that the header announces; one of them is wrong", n);
+  if (file.next_line())
+    file.fail("more lines follow the {} tetrahedra that the header announces; one of them is wrong", n);
   out.regions = regions_of_labels(labels);
 }
 

@@ -16,7 +16,8 @@ constexpr std::string_view kBlank = " \t\r\v\f";
 
 std::string read_whole(const std::string& path) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) palpate::fail("{}: no such file; check the path (relative to the scene file)", path);
+  if (!std::filesystem::is_regular_file(path, ignored))
+    palpate::fail("{}: no such file; check the path (relative to the scene file)", path);
   std::ifstream stream(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream) palpate::fail("{}: cannot be read; check its permissions", path);
@@ -32,7 +33,8 @@ std::string printable(std::string_view word) {
   return word.size() > 40 ? out + "..." : out;
 }
 
-TextFile::TextFile(const std::string& path, char comment) : path_(path), text_(read_whole(path)), comment_(comment) {
+TextFile::TextFile(const std::string& path, char comment)
+    : path_(path), text_(read_whole(path)), comment_(comment) {
   if (text_.starts_with("\xEF\xBB\xBF")) next_ = 3;  // byte order mark
 }
 
@@ -51,7 +53,8 @@ bool TextFile::next_line() {
 }
 
 void TextFile::require_line(std::string_view what) {
-  if (!next_line()) fail("the file ends where {} should follow; it is truncated, or a count in it is too large", what);
+  if (!next_line())
+    fail("the file ends where {} should follow; it is truncated, or a count in it is too large", what);
 }
 
 bool TextFile::at_end_of_line() { return rest_.find_first_not_of(kBlank) == std::string_view::npos; }
@@ -82,8 +85,10 @@ double TextFile::real(std::string_view what) {
   const std::string_view digits = w.substr(w.starts_with('+') ? 1 : 0);
   double value = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (code == std::errc::invalid_argument || end != digits.data() + digits.size()) fail("{} = \"{}\" is not a number", what, printable(w));
-  if (code == std::errc::result_out_of_range) value = std::strtod(std::string(digits).c_str(), nullptr);  // 0 or infinity
+  if (code == std::errc::invalid_argument || end != digits.data() + digits.size())
+    fail("{} = \"{}\" is not a number", what, printable(w));
+  // 0 or infinity
+  if (code == std::errc::result_out_of_range) value = std::strtod(std::string(digits).c_str(), nullptr);
   if (!std::isfinite(value)) fail("{} = {} is not finite; write the mesh again", what, printable(w));
   return value;
 }
@@ -93,7 +98,8 @@ long TextFile::integer(std::string_view what) {
   const std::string_view digits = w.substr(w.starts_with('+') ? 1 : 0);
   long value = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (code != std::errc() || end != digits.data() + digits.size()) fail("{} = \"{}\" is not a whole number", what, printable(w));
+  if (code != std::errc() || end != digits.data() + digits.size())
+    fail("{} = \"{}\" is not a whole number", what, printable(w));
   return value;
 }
 
@@ -102,12 +108,15 @@ int TextFile::count(std::string_view what) {
   if (value < 0) fail("{} = {} is negative", what, value);
   const std::size_t left = text_.size() - std::min(next_, text_.size());
   if (static_cast<std::size_t>(value) > (left + 1) / 2 || value > std::numeric_limits<int>::max())
-    fail("{} = {}, but only {} bytes follow; the file is truncated, or the count is wrong", what, value, left);
+    fail("{} = {}, but only {} bytes follow; the file is truncated, or the count is wrong", what, value,
+         left);
   return static_cast<int>(value);
 }
 
 void TextFile::require_end_of_line() {
-  if (!at_end_of_line()) fail("\"{}\" is one entry too many; the kind of this line, or a count above it, is wrong", printable(word()));
+  if (!at_end_of_line())
+    fail("\"{}\" is one entry too many; the kind of this line, or a count above it, is wrong",
+         printable(word()));
 }
 
 }  // namespace palpate::mesh

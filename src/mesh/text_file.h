@@ -6,22 +6,24 @@
 
 namespace palpate::mesh {
 
-/// A text file read line by line and word by word, whose every complaint carries FILE:LINE.  Holds the whole file in memory, so that a
-/// count in a header can be compared with what is really there before anything is allocated for it.
+/// A text file read line by line and word by word, whose every complaint carries FILE:LINE.  Holds the whole
+/// file in memory, so that a count in a header can be compared with what is really there before anything is
+/// allocated for it.
 class TextFile {
  public:
   /// Throws Error when the file cannot be read.  From `comment` on, a line is ignored ('\0': no comments).
   explicit TextFile(const std::string& path, char comment = '\0');
 
-  bool next_line();              ///< goes to the next line that has a word; false at the end of the file
+  bool next_line();  ///< goes to the next line that has a word; false at the end of the file
   void require_line(std::string_view what);
-  std::string_view word();       ///< next word of this line, empty when there is none left
-  std::string_view rest();       ///< what is left of this line, without blanks around it
+  std::string_view word();  ///< next word of this line, empty when there is none left
+  std::string_view rest();  ///< what is left of this line, without blanks around it
   bool at_end_of_line();
 
-  double real(std::string_view what);        ///< a finite number
+  double real(std::string_view what);  ///< a finite number
   long integer(std::string_view what);
-  /// A count of entries that stand in the rest of this file, at least two bytes each: refused when they cannot.
+  /// A count of entries that stand in the rest of this file, at least two bytes each: refused when they
+  /// cannot.
   int count(std::string_view what);
   void require_end_of_line();
 
@@ -42,10 +44,10 @@ class TextFile {
 
   std::string path_, text_;
   char comment_;
-  std::size_t next_ = 0;      // where the next line starts in text_
-  std::string_view rest_;     // of the current line
+  std::size_t next_ = 0;   // where the next line starts in text_
+  std::string_view rest_;  // of the current line
   int line_number_ = 0;
-  std::string_view noun_;     // literals only
+  std::string_view noun_;  // literals only
   long number_ = 0;
 };
 

@@ -8,11 +8,14 @@
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/quality.h"
 
-// A bound c on circumradii gives N = k V / c^3 tetrahedra and edges of about 1.3 c, k about 5 but for the shape.  Each mesh made tells k anew, and the next
-// bound follows by c <- c (N / wanted)^(1/3), or c <- c wanted / found for edges.  Optimisation takes a few in a hundred cells away again (exuded slivers), by a share
-// that hardly depends on c: it is guessed at first, measured afterwards.
-// Where a number of nodes is wanted too, facets of size s are refined apart from cells.  On a slender body nearly all nodes are boundary nodes: their number goes as s^-1.3 and
-// hardly with c, and coarser cells leave fewer nodes inside, which raises nodes per tetrahedron by about c^0.2 (measured on a standing figure: 0.1 to 0.3).
+// A bound c on circumradii gives N = k V / c^3 tetrahedra and edges of about 1.3 c, k about 5 but for the
+// shape.  Each mesh made tells k anew, and the next bound follows by c <- c (N / wanted)^(1/3), or c <- c
+// wanted / found for edges.  Optimisation takes a few in a hundred cells away again (exuded slivers), by a
+// share that hardly depends on c: it is guessed at first, measured afterwards.
+// Where a number of nodes is wanted too, facets of size s are refined apart from cells.  On a slender body
+// nearly all nodes are boundary nodes: their number goes as s^-1.3 and hardly with c, and coarser cells leave
+// fewer nodes inside, which raises nodes per tetrahedron by about c^0.2 (measured on a standing figure: 0.1
+// to 0.3).
 namespace palpate::model {
 namespace {
 
@@ -32,15 +35,18 @@ struct Aim {
   }
   /// The relative error of the number, or of the edge.
   double error(const CellCount& found, double share) const {
-    return by_size() ? std::abs(found.mean_edge / options.element_size_m - 1) : std::abs(found.tetrahedra * share / options.tetrahedra - 1);
+    return by_size() ? std::abs(found.mean_edge / options.element_size_m - 1)
+                     : std::abs(found.tetrahedra * share / options.tetrahedra - 1);
   }
 };
 
 CellCount count_of(const TetMesh& mesh) {
   double edges = 0;
   for (Eigen::Index t = 0; t < mesh.tets.cols(); ++t)
-    for (const auto& [i, j] : mesh::kTetEdges) edges += (mesh.nodes.col(mesh.tets(i, t)) - mesh.nodes.col(mesh.tets(j, t))).norm();
-  return {static_cast<int>(mesh.tets.cols()), static_cast<int>(mesh.nodes.cols()), edges / (6.0 * std::max<double>(static_cast<double>(mesh.tets.cols()), 1.0))};
+    for (const auto& [i, j] : mesh::kTetEdges)
+      edges += (mesh.nodes.col(mesh.tets(i, t)) - mesh.nodes.col(mesh.tets(j, t))).norm();
+  return {static_cast<int>(mesh.tets.cols()), static_cast<int>(mesh.nodes.cols()),
+          edges / (6.0 * std::max<double>(static_cast<double>(mesh.tets.cols()), 1.0))};
 }
 
 /// Sizes of cells and facets, and how they follow from what a mesh has.
@@ -49,7 +55,9 @@ struct Sizes {
   double cell, facet, largest;
 
   bool by_nodes() const { return options.nodes > 0 && options.element_size_m <= 0; }
-  double node_error(const CellCount& found) const { return by_nodes() ? std::abs(static_cast<double>(found.nodes) / options.nodes - 1) : 0.0; }
+  double node_error(const CellCount& found) const {
+    return by_nodes() ? std::abs(static_cast<double>(found.nodes) / options.nodes - 1) : 0.0;
+  }
   /// @param left  share of the tetrahedra found that optimising will leave
   void correct(const Aim& aim, const CellCount& found, double left) {
     if (!by_nodes()) {
@@ -59,7 +67,8 @@ struct Sizes {
     constexpr double kNodesByFacet = 1.3, kRatioByCell = 0.2, kLargestStep = 0.4;
     const auto step = [&](double x) { return std::exp(std::clamp(x, -kLargestStep, kLargestStep)); };
     facet *= step(std::log(static_cast<double>(std::max(found.nodes, 1)) / options.nodes) / kNodesByFacet);
-    const double wanted = static_cast<double>(options.nodes) / options.tetrahedra, ratio = std::max(found.nodes, 1) / (std::max(found.tetrahedra, 1) * left);
+    const double wanted = static_cast<double>(options.nodes) / options.tetrahedra,
+                 ratio = std::max(found.nodes, 1) / (std::max(found.tetrahedra, 1) * left);
     cell = std::clamp(cell * step(std::log(wanted / ratio) / kRatioByCell), 0.5 * facet, 6.0 * facet);
   }
 };
@@ -70,19 +79,26 @@ void check(const TetrahedraOptions& options, double volume) {
   if (options.element_size_m == 0 && (options.tetrahedra < 20 || options.tetrahedra > kLargestNumber))
     fail("--tetrahedra {} must lie in [20, {}]", options.tetrahedra, kLargestNumber);
   if (options.element_size_m > 0)
-    if (const double number = kCellsPerVolume * volume / std::pow(options.element_size_m / kEdgePerCell, 3); number > kLargestNumber || number < 20)
-      fail("--element-size-m {} would make about {:.2g} tetrahedra of {:.4g} m^3, must make between 20 and {}; is the unit right? --scale changes it", options.element_size_m, number,
-           volume, kLargestNumber);
+    if (const double number = kCellsPerVolume * volume / std::pow(options.element_size_m / kEdgePerCell, 3);
+        number > kLargestNumber || number < 20)
+      fail(
+          "--element-size-m {} would make about {:.2g} tetrahedra of {:.4g} m^3, must make between 20 and "
+          "{}; is the unit right? --scale changes it",
+          options.element_size_m, number, volume, kLargestNumber);
 }
 
 }  // namespace
 
-Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const TetrahedraOptions& options, const Progress& progress) {
-  constexpr double kLargestCell = 1.3;  // of the first guess, where creases may bring more than the wanted number: cells beside them stay as small as they should be
+Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const TetrahedraOptions& options,
+                        const Progress& progress) {
+  // of the first guess, where creases may bring more than the wanted number: cells beside them stay as small
+  // as they should be
+  constexpr double kLargestCell = 1.3;
   constexpr double kClose = 0.012;
   constexpr int kRounds = 3;
   const int attempts = options.nodes > 0 ? 16 : 7;
-  // One round is the rule and has nine tenths of the bar; each further one has nine tenths of what is left, so that it never runs back.
+  // One round is the rule and has nine tenths of the bar; each further one has nine tenths of what is left,
+  // so that it never runs back.
   double begun = 0.0, left_of_bar = 1.0;
   const auto tell = [&](double fraction) {
     if (progress) progress(begun + left_of_bar * fraction);
@@ -91,15 +107,22 @@ Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const Tet
   Aim aim{options};
   Tetrahedra out;
   CellCount last;
-  const double guess = aim.by_size() ? options.element_size_m / kEdgePerCell : std::cbrt(kCellsPerVolume * volume * aim.left / options.tetrahedra);
-  Sizes sizes{options, guess, guess, options.at_least && !aim.by_size() ? kLargestCell * guess : std::numeric_limits<double>::infinity()};
-  const auto enough = [&](const CellCount& found, double share) { return sizes.cell == sizes.largest && found.tetrahedra * share > options.tetrahedra; };
+  const double guess = aim.by_size() ? options.element_size_m / kEdgePerCell
+                                     : std::cbrt(kCellsPerVolume * volume * aim.left / options.tetrahedra);
+  Sizes sizes{
+      options, guess, guess,
+      options.at_least && !aim.by_size() ? kLargestCell * guess : std::numeric_limits<double>::infinity()};
+  const auto enough = [&](const CellCount& found, double share) {
+    return sizes.cell == sizes.largest && found.tetrahedra * share > options.tetrahedra;
+  };
   for (int round = 0; round < kRounds; ++round, begun += 0.9 * left_of_bar, left_of_bar *= 0.1) {
     for (int attempt = 0;; ++attempt) {
       last = mesher.refine(sizes.cell, sizes.facet);
       ++out.attempts;
       tell(0.4 * (1 - 1.0 / (2 + attempt)));
-      if ((aim.error(last, aim.left) < kClose && sizes.node_error(last) < kClose) || enough(last, aim.left) || attempt + 1 == attempts) break;
+      if ((aim.error(last, aim.left) < kClose && sizes.node_error(last) < kClose) || enough(last, aim.left) ||
+          attempt + 1 == attempts)
+        break;
       sizes.correct(aim, last, aim.left);
     }
     mesher.optimise([&](double fraction) { tell(0.4 + 0.5 * fraction); });
@@ -107,7 +130,8 @@ Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const Tet
     const CellCount left = count_of(made.mesh);
     const bool met = aim.error(left, 1.0) < 0.8 * kTolerance && sizes.node_error(left) < 0.8 * kTolerance;
     if (met || enough(left, 1.0) || round + 1 == kRounds) {
-      if (left.tetrahedra > 0) fit_volume(made, mesher, sizes.facet, exact ? std::optional(volume) : std::nullopt);
+      if (left.tetrahedra > 0)
+        fit_volume(made, mesher, sizes.facet, exact ? std::optional(volume) : std::nullopt);
       out.mesh = std::move(made.mesh);
       out.cell_size = sizes.cell;
       last = left;
@@ -117,12 +141,17 @@ Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const Tet
     sizes.correct(aim, left, 1.0);
   }
   if (aim.error(last, 1.0) > kTolerance && !enough(last, 1.0)) {
-    if (aim.by_size()) fail("no mesh with edges of {} m within 3 % was found, the nearest has {:.4g} m; ask for another size", options.element_size_m, last.mean_edge);
-    fail("no mesh of {} tetrahedra within 3 % was found, the nearest has {}; ask for another number: the surface's details and creases need a least one", options.tetrahedra,
-         last.tetrahedra);
+    if (aim.by_size())
+      fail("no mesh with edges of {} m within 3 % was found, the nearest has {:.4g} m; ask for another size",
+           options.element_size_m, last.mean_edge);
+    fail(
+        "no mesh of {} tetrahedra within 3 % was found, the nearest has {}; ask for another number: the "
+        "surface's details and creases need a least one",
+        options.tetrahedra, last.tetrahedra);
   }
   if (sizes.node_error(last) > kTolerance)
-    fail("no mesh of {} tetrahedra with {} nodes within 3 % was found, the nearest has {} and {}", options.tetrahedra, options.nodes, last.tetrahedra, last.nodes);
+    fail("no mesh of {} tetrahedra with {} nodes within 3 % was found, the nearest has {} and {}",
+         options.tetrahedra, options.nodes, last.tetrahedra, last.nodes);
   if (progress) progress(1.0);
   return out;
 }

@@ -10,12 +10,15 @@ namespace {
 
 /// Elements with corners in the numbering of the points that they use, which go to `points`.
 template <std::size_t N>
-Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> compact(const std::vector<std::array<int, N>>& elements, const Cells& cells, const std::string& path, Points& points,
-                                                                mesh::Provenance& from) {
+Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> compact(
+    const std::vector<std::array<int, N>>& elements, const Cells& cells, const std::string& path,
+    Points& points, mesh::Provenance& from) {
   std::vector<int> place(cells.points.size(), -1);
   for (std::size_t e = 0; e < elements.size(); ++e)
     for (const int corner : elements[e]) {
-      if (corner < 0 || static_cast<std::size_t>(corner) >= cells.points.size()) fail("{}: element {} counted from 0 names point {}, the file has {}", path, e, corner, cells.points.size());
+      if (corner < 0 || static_cast<std::size_t>(corner) >= cells.points.size())
+        fail("{}: element {} counted from 0 names point {}, the file has {}", path, e, corner,
+             cells.points.size());
       place[static_cast<std::size_t>(corner)] = 0;
     }
   int used = 0;
@@ -26,9 +29,12 @@ Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> compact(const std::vecto
       from.node_number.push_back(cells.point_numbers.empty() ? static_cast<long>(i) : cells.point_numbers[i]);
       place[i] = used++;
     }
-  Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> out(static_cast<int>(N), static_cast<Eigen::Index>(elements.size()));
+  Eigen::Matrix<int, static_cast<int>(N), Eigen::Dynamic> out(static_cast<int>(N),
+                                                              static_cast<Eigen::Index>(elements.size()));
   for (std::size_t e = 0; e < elements.size(); ++e)
-    for (std::size_t k = 0; k < N; ++k) out(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(e)) = place[static_cast<std::size_t>(elements[e][k])];
+    for (std::size_t k = 0; k < N; ++k)
+      out(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(e)) =
+          place[static_cast<std::size_t>(elements[e][k])];
   return out;
 }
 
@@ -48,14 +54,18 @@ void Cells::unread(std::string_view what) {
 }
 
 SourceFile Cells::finish(std::string format) const {
-  if (!unread_.empty()) fail("{}: holds {} {}, which are not read; linear tetrahedra or a surface of linear triangles are", path_, unread_[0].second, unread_[0].first);
-  if (tets_.empty() && triangles_.empty()) fail("{}: holds neither tetrahedra nor triangles ({} points)", path_, points.size());
+  if (!unread_.empty())
+    fail("{}: holds {} {}, which are not read; linear tetrahedra or a surface of linear triangles are", path_,
+         unread_[0].second, unread_[0].first);
+  if (tets_.empty() && triangles_.empty())
+    fail("{}: holds neither tetrahedra nor triangles ({} points)", path_, points.size());
   SourceFile out;
   out.format = std::move(format);
   if (!tets_.empty()) {
     out.from.source = path_;
     out.tets.tets = compact(tets_, *this, path_, out.tets.nodes, out.from);
-    PALPATE_CHECK(labels.empty() || labels.size() == tets_.size(), "{}: {} numbers of regions for {} tetrahedra", path_, labels.size(), tets_.size());
+    PALPATE_CHECK(labels.empty() || labels.size() == tets_.size(),
+                  "{}: {} numbers of regions for {} tetrahedra", path_, labels.size(), tets_.size());
     out.regions = mesh::regions_of_labels(labels, label_names, no_label);
   } else {
     out.from = mesh::surface_provenance(path_);

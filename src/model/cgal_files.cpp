@@ -13,7 +13,8 @@ SourceFile read_by_cgal(const std::string& path, const std::string& format) {
   try {
     good = CGAL::IO::read_polygon_soup(path, points, faces);
   } catch (const std::exception&) { good = false; }
-  if (!good || points.empty()) fail("{}: cannot be read as {}; is it whole, and of that format?", path, format);
+  if (!good || points.empty())
+    fail("{}: cannot be read as {}; is it whole, and of that format?", path, format);
   Cells cells(path);
   for (const auto& p : points) cells.points.emplace_back(p.x(), p.y(), p.z());
   for (const auto& face : faces) {

@@ -13,11 +13,19 @@ CgalSurface cgal_of(const Soup& soup) {
   auto vertex_source = mesh.add_property_map<CgalSurface::Vertex_index, int>("v:source", -1).first;
   auto face_source = mesh.add_property_map<CgalSurface::Face_index, int>("f:source", -1).first;
   for (std::size_t v = 0; v < soup.vertices.size(); ++v)
-    vertex_source[mesh.add_vertex({soup.vertices[v].x(), soup.vertices[v].y(), soup.vertices[v].z()})] = soup.vertex_source[v];
+    vertex_source[mesh.add_vertex({soup.vertices[v].x(), soup.vertices[v].y(), soup.vertices[v].z()})] =
+        soup.vertex_source[v];
   for (std::size_t f = 0; f < soup.faces.size(); ++f) {
-    const auto index = [&](int k) { return CgalSurface::Vertex_index(static_cast<CgalSurface::size_type>(soup.faces[f][static_cast<std::size_t>(k)])); };
+    const auto index = [&](int k) {
+      return CgalSurface::Vertex_index(
+          static_cast<CgalSurface::size_type>(soup.faces[f][static_cast<std::size_t>(k)]));
+    };
     const auto face = mesh.add_face(index(0), index(1), index(2));
-    if (face == CgalSurface::null_face()) fail("{}: this face cannot be joined to its neighbours: more than two faces meet at an edge, or they touch in a point only", soup.face_name(static_cast<int>(f)));
+    if (face == CgalSurface::null_face())
+      fail(
+          "{}: this face cannot be joined to its neighbours: more than two faces meet at an edge, or they "
+          "touch in a point only",
+          soup.face_name(static_cast<int>(f)));
     face_source[face] = soup.face_source[f];
   }
   return mesh;

@@ -20,7 +20,10 @@ template <class Work>
 auto guarded(const Soup& soup, Work work) {
   try {
     return work();
-  } catch (const CGAL::Failure_exception& e) { fail("{}: the surface cannot be mended: CGAL says {} ({})", soup.from->source, e.message(), e.expression()); }
+  } catch (const CGAL::Failure_exception& e) {
+    fail("{}: the surface cannot be mended: CGAL says {} ({})", soup.from->source, e.message(),
+         e.expression());
+  }
 }
 
 }  // namespace palpate::model

@@ -27,15 +27,21 @@ std::optional<double> crease_angle(const TriMesh& surface) {
     for (int k = 0; k < 3; ++k) {
       const int a = surface.faces(k, f), b = surface.faces((k + 1) % 3, f);
       const auto [at, fresh] = first_face.try_emplace({std::min(a, b), std::max(a, b)}, f);
-      if (fresh || normal(surface, at->second).dot(normal(surface, f)) > std::cos(kSharpDeg * std::numbers::pi / 180)) continue;
+      if (fresh ||
+          normal(surface, at->second).dot(normal(surface, f)) > std::cos(kSharpDeg * std::numbers::pi / 180))
+        continue;
       ++sharp_edges_at[static_cast<std::size_t>(a)];
       ++sharp_edges_at[static_cast<std::size_t>(b)];
       length += (surface.vertices.col(a) - surface.vertices.col(b)).norm();
     }
-  const double diagonal = (surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff()).norm();
-  const auto touched = std::count_if(sharp_edges_at.begin(), sharp_edges_at.end(), [](int n) { return n > 0; });
+  const double diagonal =
+      (surface.vertices.rowwise().maxCoeff() - surface.vertices.rowwise().minCoeff()).norm();
+  const auto touched =
+      std::count_if(sharp_edges_at.begin(), sharp_edges_at.end(), [](int n) { return n > 0; });
   const auto loose = std::count(sharp_edges_at.begin(), sharp_edges_at.end(), 1);
-  if (length < kLeastShareOfDiagonal * diagonal || static_cast<double>(loose) > kLooseEnds * static_cast<double>(touched)) return std::nullopt;
+  if (length < kLeastShareOfDiagonal * diagonal ||
+      static_cast<double>(loose) > kLooseEnds * static_cast<double>(touched))
+    return std::nullopt;
   return kSharpDeg;
 }
 

@@ -8,12 +8,16 @@
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/quality.h"
 
-// A mesh whose boundary nodes lie on a curved surface cuts its bulges off: the gap g between a flat facet and the surface is e^2 / (8 R) in the middle, and at edges of
-// a tenth of a limb's radius that takes 1 % of its volume.  Let d be the movement of the boundary along its normals, linear over each facet.  The d that is nearest to g,
-// with the mass matrix lumped, is
-//   d_v = (sum over facets around v of integral g phi_v) / (sum of integral phi_v),      integral by the rule of three points (2/3, 1/6, 1/6), exact for quadratics.
-// Where the surface is flat g = 0 and nothing moves: the sides of a box stay its sides.  The volume is a cubic of the scale s in x_v + s d_v n_v; three steps of the
-// secant method meet the wanted one.  Where elements would be spoiled, their nodes' movement is halved until they are not, and the others make up for it.
+// A mesh whose boundary nodes lie on a curved surface cuts its bulges off: the gap g between a flat facet and
+// the surface is e^2 / (8 R) in the middle, and at edges of a tenth of a limb's radius that takes 1 % of its
+// volume.  Let d be the movement of the boundary along its normals, linear over each facet.  The d that is
+// nearest to g, with the mass matrix lumped, is
+//   d_v = (sum over facets around v of integral g phi_v) / (sum of integral phi_v),      integral by the rule
+//   of three points (2/3, 1/6, 1/6), exact for quadratics.
+// Where the surface is flat g = 0 and nothing moves: the sides of a box stay its sides.  The volume is a
+// cubic of the scale s in x_v + s d_v n_v; three steps of the secant method meet the wanted one.  Where
+// elements would be spoiled, their nodes' movement is halved until they are not, and the others make up for
+// it.
 namespace palpate::model {
 namespace {
 
@@ -42,12 +46,14 @@ Movement movement(const FittedMesh& mesh, const SurfaceQuery& surface, double ce
   VecX gaps = VecX::Zero(skin.vertices.cols()), areas = gaps;
   Points normals = Points::Zero(3, skin.vertices.cols());
   for (Eigen::Index f = 0; f < skin.faces.cols(); ++f) {
-    const std::array<Vec3, 3> corner{skin.vertices.col(skin.faces(0, f)), skin.vertices.col(skin.faces(1, f)), skin.vertices.col(skin.faces(2, f))};
+    const std::array<Vec3, 3> corner{skin.vertices.col(skin.faces(0, f)), skin.vertices.col(skin.faces(1, f)),
+                                     skin.vertices.col(skin.faces(2, f))};
     const Vec3 twice_area = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
     for (int q = 0; q < 3; ++q) {
       Vec3 p = Vec3::Zero();
       for (int k = 0; k < 3; ++k) p += (k == q ? 2.0 / 3 : 1.0 / 6) * corner[static_cast<std::size_t>(k)];
-      const double g = gap(surface, p, twice_area.normalized(), kReach * cell_size), weight = twice_area.norm() / 6;
+      const double g = gap(surface, p, twice_area.normalized(), kReach * cell_size),
+                   weight = twice_area.norm() / 6;
       for (int k = 0; k < 3; ++k) {
         const double phi = k == q ? 2.0 / 3 : 1.0 / 6;
         gaps[skin.faces(k, f)] += weight * g * phi;
@@ -58,8 +64,11 @@ Movement movement(const FittedMesh& mesh, const SurfaceQuery& surface, double ce
   }
   out.step.resize(3, skin.vertices.cols());
   for (Eigen::Index v = 0; v < skin.vertices.cols(); ++v) {
-    const bool held = mesh.on_crease[static_cast<std::size_t>(out.boundary.node_of_vertex[static_cast<std::size_t>(v)])] != 0;
-    const double d = held ? 0.0 : std::clamp(gaps[v] / areas[v], -kFarthest * cell_size, kFarthest * cell_size);
+    const bool held =
+        mesh.on_crease[static_cast<std::size_t>(out.boundary.node_of_vertex[static_cast<std::size_t>(v)])] !=
+        0;
+    const double d =
+        held ? 0.0 : std::clamp(gaps[v] / areas[v], -kFarthest * cell_size, kFarthest * cell_size);
     out.step.col(v) = d * normals.col(v).normalized();
   }
   return out;
@@ -67,7 +76,8 @@ Movement movement(const FittedMesh& mesh, const SurfaceQuery& surface, double ce
 
 TetMesh moved(const TetMesh& mesh, const Movement& by, double scale) {
   TetMesh out = mesh;
-  for (Eigen::Index v = 0; v < by.step.cols(); ++v) out.nodes.col(by.boundary.node_of_vertex[static_cast<std::size_t>(v)]) += scale * by.step.col(v);
+  for (Eigen::Index v = 0; v < by.step.cols(); ++v)
+    out.nodes.col(by.boundary.node_of_vertex[static_cast<std::size_t>(v)]) += scale * by.step.col(v);
   return out;
 }
 
@@ -103,7 +113,8 @@ bool hold_back(const TetMesh& moved, double bearable, const std::vector<int>& ve
     if (smallest_dihedral(moved, t) >= bearable) continue;
     any = true;
     for (int k = 0; k < 4; ++k)
-      if (const int v = vertex_of_node[static_cast<std::size_t>(moved.tets(k, t))]; v >= 0) held[static_cast<std::size_t>(v)] = 1;
+      if (const int v = vertex_of_node[static_cast<std::size_t>(moved.tets(k, t))]; v >= 0)
+        held[static_cast<std::size_t>(v)] = 1;
   }
   for (Eigen::Index v = 0; v < by.step.cols(); ++v)
     if (held[static_cast<std::size_t>(v)]) by.step.col(v) /= 2;
@@ -112,13 +123,16 @@ bool hold_back(const TetMesh& moved, double bearable, const std::vector<int>& ve
 
 }  // namespace
 
-void fit_volume(FittedMesh& mesh, const SurfaceQuery& surface, double cell_size, std::optional<double> volume) {
+void fit_volume(FittedMesh& mesh, const SurfaceQuery& surface, double cell_size,
+                std::optional<double> volume) {
   constexpr int kRounds = 25;
   Movement by = movement(mesh, surface, cell_size);
   std::vector<int> vertex_of_node(static_cast<std::size_t>(mesh.mesh.nodes.cols()), -1);
-  for (std::size_t v = 0; v < by.boundary.node_of_vertex.size(); ++v) vertex_of_node[static_cast<std::size_t>(by.boundary.node_of_vertex[v])] = static_cast<int>(v);
+  for (std::size_t v = 0; v < by.boundary.node_of_vertex.size(); ++v)
+    vertex_of_node[static_cast<std::size_t>(by.boundary.node_of_vertex[v])] = static_cast<int>(v);
   double before = std::numbers::pi;
-  for (int t = 0; t < static_cast<int>(mesh.mesh.tets.cols()); ++t) before = std::min(before, smallest_dihedral(mesh.mesh, t));
+  for (int t = 0; t < static_cast<int>(mesh.mesh.tets.cols()); ++t)
+    before = std::min(before, smallest_dihedral(mesh.mesh, t));
   const double bearable = std::min(0.9 * before, 10.0 * std::numbers::pi / 180);
   for (int round = 0; round < kRounds; ++round) {
     TetMesh trial = moved(mesh.mesh, by, volume ? scale_for(by, *volume) : 1.0);

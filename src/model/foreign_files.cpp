@@ -19,8 +19,10 @@ struct Ending {
   const char* ending;
   const char* format;
 };
-constexpr Ending kEndings[] = {{".obj", "Wavefront OBJ"}, {".msh", "Gmsh"},   {".node", "TetGen"}, {".ele", "TetGen"}, {".mesh", "Medit"}, {".meshb", "Medit"},
-                               {".vtk", "legacy VTK"},    {".vtu", "VTK XML"}, {".stl", "STL"},     {".ply", "PLY"},    {".off", "OFF"},    {".h5", "palpate HDF5"}};
+constexpr Ending kEndings[] = {{".obj", "Wavefront OBJ"}, {".msh", "Gmsh"},    {".node", "TetGen"},
+                               {".ele", "TetGen"},        {".mesh", "Medit"},  {".meshb", "Medit"},
+                               {".vtk", "legacy VTK"},    {".vtu", "VTK XML"}, {".stl", "STL"},
+                               {".ply", "PLY"},           {".off", "OFF"},     {".h5", "palpate HDF5"}};
 
 SourceFile of_tets(mesh::TetFile file, std::string format) {
   SourceFile out;
@@ -40,14 +42,17 @@ SourceFile read_msh(const std::string& path) {
   if (section == "$NOD") return read_by_gmsh(path, "Gmsh 1");
   const std::string format = fmt::format("Gmsh {}{}", version, binary == 0 ? "" : " binary");
   if (section == "$MeshFormat" && binary == 0 && (version.starts_with("2") || version == "4.1"))
-    if (mesh::TetFile file = mesh::read_gmsh(path); file.mesh.tets.cols() > 0) return of_tets(std::move(file), format);
+    if (mesh::TetFile file = mesh::read_gmsh(path); file.mesh.tets.cols() > 0)
+      return of_tets(std::move(file), format);
   return read_by_gmsh(path, format);
 }
 
 }  // namespace
 
 const std::vector<std::string>& known_region_arrays() {
-  static const std::vector<std::string> names = {"gmsh:physical", "medit:ref", "CellEntityIds", "MaterialIds", "MaterialId", "Material", "RegionIds", "RegionId", "Region", "PhysicalIds", "attribute"};
+  static const std::vector<std::string> names = {
+      "gmsh:physical", "medit:ref", "CellEntityIds", "MaterialIds", "MaterialId", "Material",
+      "RegionIds",     "RegionId",  "Region",        "PhysicalIds", "attribute"};
   return names;
 }
 
@@ -60,9 +65,12 @@ std::string known_endings() {
 SourceFile read_source(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) fail("{}: no such file", path);
   std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto known = std::find_if(std::begin(kEndings), std::end(kEndings), [&](const Ending& e) { return ending == e.ending; });
-  if (known == std::end(kEndings)) fail("{}: unknown ending \"{}\"; these are read: {}", path, ending, known_endings());
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto known = std::find_if(std::begin(kEndings), std::end(kEndings),
+                                  [&](const Ending& e) { return ending == e.ending; });
+  if (known == std::end(kEndings))
+    fail("{}: unknown ending \"{}\"; these are read: {}", path, ending, known_endings());
   if (ending == ".msh") return read_msh(path);
   if (ending == ".vtu") return read_vtu(path);
   if (ending == ".meshb") return read_meshb(path);
@@ -82,7 +90,8 @@ SourceFile read_source(const std::string& path) {
     out = read_by_gmsh(path, known->format);
     if (ending != ".vtk" || out.tets.tets.cols() == 0) return out;
     const std::vector<double> labels = labels_of_vtk(path);
-    if (!labels.empty() && static_cast<Eigen::Index>(labels.size()) != out.tets.tets.cols()) fail("{}: has {} tetrahedra, and {} numbers of regions", path, out.tets.tets.cols(), labels.size());
+    if (!labels.empty() && static_cast<Eigen::Index>(labels.size()) != out.tets.tets.cols())
+      fail("{}: has {} tetrahedra, and {} numbers of regions", path, out.tets.tets.cols(), labels.size());
     out.regions = mesh::regions_of_labels(labels);
   }
   return out;

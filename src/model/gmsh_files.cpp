@@ -9,14 +9,16 @@
 #include "cells.h"
 #include "palpate/core/error.h"
 
-// libgmsh takes 0.12 s and 48 MB to load, so that it is opened by name at the first file that needs it, and only its C interface is used.
+// libgmsh takes 0.12 s and 48 MB to load, so that it is opened by name at the first file that needs it, and
+// only its C interface is used.
 namespace palpate::model {
 namespace {
 
 class Gmsh {
  public:
   Gmsh() : handle_(::dlopen(PALPATE_GMSH_LIBRARY, RTLD_NOW | RTLD_LOCAL)) {
-    if (!handle_) fail("{} cannot be loaded ({}); the package libgmsh4.8 brings it", PALPATE_GMSH_LIBRARY, ::dlerror());
+    if (!handle_)
+      fail("{} cannot be loaded ({}); the package libgmsh4.8 brings it", PALPATE_GMSH_LIBRARY, ::dlerror());
     int error = 0;
     function<decltype(gmshInitialize)>("gmshInitialize")(0, nullptr, 0, &error);
     const auto option = function<decltype(gmshOptionSetNumber)>("gmshOptionSetNumber");
@@ -25,7 +27,8 @@ class Gmsh {
   }
   ~Gmsh() {
     int error = 0;
-    function<decltype(gmshFinalize)>("gmshFinalize")(&error);  // the library stays loaded: it does not survive being unloaded
+    // the library stays loaded: it does not survive being unloaded
+    function<decltype(gmshFinalize)>("gmshFinalize")(&error);
   }
   Gmsh(const Gmsh&) = delete;
   Gmsh& operator=(const Gmsh&) = delete;
@@ -67,19 +70,28 @@ struct Kind {
   int type, corners;
   const char* name;
 };
-constexpr Kind kKinds[] = {{2, 3, "triangles"}, {3, 4, "quadrangles"}, {4, 4, "tetrahedra"}, {5, 8, "hexahedra"}, {6, 6, "prisms"}, {7, 5, "pyramids"}, {9, 6, "triangles of second order"},
+constexpr Kind kKinds[] = {{2, 3, "triangles"},
+                           {3, 4, "quadrangles"},
+                           {4, 4, "tetrahedra"},
+                           {5, 8, "hexahedra"},
+                           {6, 6, "prisms"},
+                           {7, 5, "pyramids"},
+                           {9, 6, "triangles of second order"},
                            {11, 10, "tetrahedra of second order"}};
 
-/// The number and the name of the region of each volume: its first physical group, 0 for none; where no volume has a group, the volumes themselves.
+/// The number and the name of the region of each volume: its first physical group, 0 for none; where no
+/// volume has a group, the volumes themselves.
 std::map<int, double> regions_of_volumes(const Gmsh& gmsh, Cells& cells) {
   int error = 0;
   Array<int> entities(gmsh);
-  gmsh.function<decltype(gmshModelGetEntities)>("gmshModelGetEntities")(&entities.data, &entities.size, 3, &error);
+  gmsh.function<decltype(gmshModelGetEntities)>("gmshModelGetEntities")(&entities.data, &entities.size, 3,
+                                                                        &error);
   std::map<int, double> out;
   bool any = false;
   for (std::size_t i = 1; i < entities.size; i += 2) {  // pairs of dimension and tag
     Array<int> groups(gmsh);
-    gmsh.function<decltype(gmshModelGetPhysicalGroupsForEntity)>("gmshModelGetPhysicalGroupsForEntity")(3, entities.data[i], &groups.data, &groups.size, &error);
+    gmsh.function<decltype(gmshModelGetPhysicalGroupsForEntity)>("gmshModelGetPhysicalGroupsForEntity")(
+        3, entities.data[i], &groups.data, &groups.size, &error);
     const int group = error || groups.size == 0 ? 0 : std::abs(groups.data[0]);
     out[entities.data[i]] = group;
     any = any || group != 0;
@@ -89,7 +101,8 @@ std::map<int, double> regions_of_volumes(const Gmsh& gmsh, Cells& cells) {
     if (name && *name) cells.label_names[group] = name;
     if (name) gmsh.free(name);
   }
-  if (any) cells.no_label = 0.0;
+  if (any)
+    cells.no_label = 0.0;
   else
     for (auto& [volume, label] : out) label = volume;
   return out;
@@ -101,7 +114,8 @@ std::map<std::size_t, double> labels_of_tetrahedra(const Gmsh& gmsh, Cells& cell
   for (const auto& [volume, label] : regions_of_volumes(gmsh, cells)) {
     int error = 0;
     Array<std::size_t> elements(gmsh), nodes(gmsh);
-    gmsh.function<decltype(gmshModelMeshGetElementsByType)>("gmshModelMeshGetElementsByType")(4, &elements.data, &elements.size, &nodes.data, &nodes.size, volume, 0, 1, &error);
+    gmsh.function<decltype(gmshModelMeshGetElementsByType)>("gmshModelMeshGetElementsByType")(
+        4, &elements.data, &elements.size, &nodes.data, &nodes.size, volume, 0, 1, &error);
     for (std::size_t e = 0; !error && e < elements.size; ++e) out[elements.data[e]] = label;
   }
   return out;
@@ -116,32 +130,41 @@ SourceFile read_by_gmsh(const std::string& path, const std::string& format) {
   if (error) fail("{}: cannot be read as {}: Gmsh says: {}", path, format, gmsh.last_error());
 
   Cells cells(path);
-  std::map<std::size_t, int> place;  // tags may be sparse and in any order; sorted, they give the same numbering whatever the file's order
+  // tags may be sparse and in any order; sorted, they give the same numbering whatever the file's order
+  std::map<std::size_t, int> place;
   {
     Array<std::size_t> tags(gmsh);
     Array<double> coordinates(gmsh), parameters(gmsh);
-    gmsh.function<decltype(gmshModelMeshGetNodes)>("gmshModelMeshGetNodes")(&tags.data, &tags.size, &coordinates.data, &coordinates.size, &parameters.data, &parameters.size, -1, -1, 0, 0, &error);
-    if (error || coordinates.size != 3 * tags.size) fail("{}: its nodes cannot be read: Gmsh says: {}", path, gmsh.last_error());
+    gmsh.function<decltype(gmshModelMeshGetNodes)>("gmshModelMeshGetNodes")(
+        &tags.data, &tags.size, &coordinates.data, &coordinates.size, &parameters.data, &parameters.size, -1,
+        -1, 0, 0, &error);
+    if (error || coordinates.size != 3 * tags.size)
+      fail("{}: its nodes cannot be read: Gmsh says: {}", path, gmsh.last_error());
     std::vector<std::size_t> order(tags.size);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return tags.data[a] < tags.data[b]; });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return tags.data[a] < tags.data[b]; });
     for (const std::size_t i : order) {
       if (!place.emplace(tags.data[i], static_cast<int>(cells.points.size())).second) continue;
-      cells.points.emplace_back(coordinates.data[3 * i], coordinates.data[3 * i + 1], coordinates.data[3 * i + 2]);
+      cells.points.emplace_back(coordinates.data[3 * i], coordinates.data[3 * i + 1],
+                                coordinates.data[3 * i + 2]);
       cells.point_numbers.push_back(static_cast<long>(tags.data[i]));
     }
   }
   const std::map<std::size_t, double> labels = labels_of_tetrahedra(gmsh, cells);
   for (const Kind& kind : kKinds) {
     Array<std::size_t> elements(gmsh), nodes(gmsh);
-    gmsh.function<decltype(gmshModelMeshGetElementsByType)>("gmshModelMeshGetElementsByType")(kind.type, &elements.data, &elements.size, &nodes.data, &nodes.size, -1, 0, 1, &error);
+    gmsh.function<decltype(gmshModelMeshGetElementsByType)>("gmshModelMeshGetElementsByType")(
+        kind.type, &elements.data, &elements.size, &nodes.data, &nodes.size, -1, 0, 1, &error);
     if (error) continue;  // no element of this type
     for (std::size_t e = 0; e < elements.size; ++e) {
       std::vector<int> corners;
       for (int k = 0; k < kind.corners; ++k) {
-        const std::size_t tag = nodes.data[e * static_cast<std::size_t>(kind.corners) + static_cast<std::size_t>(k)];
+        const std::size_t tag =
+            nodes.data[e * static_cast<std::size_t>(kind.corners) + static_cast<std::size_t>(k)];
         const auto at = place.find(tag);
-        if (at == place.end()) fail("{}: element {} names node {}, which the file does not have", path, elements.data[e], tag);
+        if (at == place.end())
+          fail("{}: element {} names node {}, which the file does not have", path, elements.data[e], tag);
         corners.push_back(at->second);
       }
       if (kind.type == 2 || kind.type == 3)

@@ -20,21 +20,27 @@ double lattice_volume(const std::function<double(const Vec3&)>& f, const Vec3& c
   int inside = 0;
   for (int i = 0; i < kCells; ++i)
     for (int j = 0; j < kCells; ++j)
-      for (int k = 0; k < kCells; ++k) inside += f(centre + width * (Vec3(i, j, k).array() + 0.5 - kCells / 2.0).matrix()) < 0;
+      for (int k = 0; k < kCells; ++k)
+        inside += f(centre + width * (Vec3(i, j, k).array() + 0.5 - kCells / 2.0).matrix()) < 0;
   return inside * width * width * width;
 }
 
 }  // namespace
 
-Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec3& centre, double radius, const TetrahedraOptions& options, const Progress& progress) {
-  if (!(radius > 0 && std::isfinite(radius))) fail("the ball around an implicit surface has radius {} m, must be positive", radius);
-  if (!(f(centre) < 0)) fail("the implicit function is {} at the centre ({}, {}, {}) m, must be negative inside", f(centre), centre.x(), centre.y(), centre.z());
+Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec3& centre, double radius,
+                          const TetrahedraOptions& options, const Progress& progress) {
+  if (!(radius > 0 && std::isfinite(radius)))
+    fail("the ball around an implicit surface has radius {} m, must be positive", radius);
+  if (!(f(centre) < 0))
+    fail("the implicit function is {} at the centre ({}, {}, {}) m, must be negative inside", f(centre),
+         centre.x(), centre.y(), centre.z());
   const auto value = [&f](const Kernel::Point_3& p) { return f(Vec3(p.x(), p.y(), p.z())); };
   constexpr double kRelativeError = 1e-7;  // of a point on the surface, by bisection, in radii
   try {
     CGAL::Random random(0);
-    Domain domain = Domain::create_implicit_mesh_domain(value, Kernel::Sphere_3(Kernel::Point_3(centre.x(), centre.y(), centre.z()), radius * radius),
-                                                        CGAL::parameters::relative_error_bound = kRelativeError, CGAL::parameters::p_rng = &random);
+    Domain domain = Domain::create_implicit_mesh_domain(
+        value, Kernel::Sphere_3(Kernel::Point_3(centre.x(), centre.y(), centre.z()), radius * radius),
+        CGAL::parameters::relative_error_bound = kRelativeError, CGAL::parameters::p_rng = &random);
     std::vector<std::vector<Kernel::Point_3>> lines;
     for (const Polyline& line : cut_at_corners(options.creases)) {
       lines.emplace_back();
@@ -43,7 +49,10 @@ Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec
     if (!lines.empty()) domain.add_features(lines.begin(), lines.end());
     Mesher<Domain> mesher(domain, !lines.empty(), {});
     return search_cells(mesher, lattice_volume(f, centre, radius), false, options, progress);
-  } catch (const CGAL::Failure_exception& e) { fail("the inside of the implicit surface cannot be filled with tetrahedra: CGAL says {} ({})", e.message(), e.expression()); }
+  } catch (const CGAL::Failure_exception& e) {
+    fail("the inside of the implicit surface cannot be filled with tetrahedra: CGAL says {} ({})",
+         e.message(), e.expression());
+  }
 }
 
 }  // namespace palpate::model

@@ -12,7 +12,8 @@ std::vector<char> inside_of(const TriMesh& surface, const Points& points) {
     const CgalSurface mesh = cgal_of(soup);
     const CGAL::Side_of_triangle_mesh<CgalSurface, Kernel> side(mesh);
     std::vector<char> out;
-    for (const auto& p : points.colwise()) out.push_back(side(Kernel::Point_3(p.x(), p.y(), p.z())) != CGAL::ON_UNBOUNDED_SIDE);
+    for (const auto& p : points.colwise())
+      out.push_back(side(Kernel::Point_3(p.x(), p.y(), p.z())) != CGAL::ON_UNBOUNDED_SIDE);
     return out;
   });
 }

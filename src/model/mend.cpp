@@ -35,15 +35,20 @@ int close_holes(CgalSurface& mesh, const Soup& soup, double largest_share, int& 
     const auto vertex = mesh.target(border);
     const auto refuse = [&](const std::string& why) {
       const int source = mesh.property_map<CgalSurface::Vertex_index, int>("v:source").first[vertex];
-      fail("{} at ({:.6g}, {:.6g}, {:.6g}) m: the surface is open there: a hole of {} edges, {:.3g} m across, {}; a body's surface is closed", source >= 0 ? soup.from->node(source) : soup.from->source,
-           start.x(), start.y(), start.z(), edges, across, why);
+      fail(
+          "{} at ({:.6g}, {:.6g}, {:.6g}) m: the surface is open there: a hole of {} edges, {:.3g} m across, "
+          "{}; a body's surface is closed",
+          source >= 0 ? soup.from->node(source) : soup.from->source, start.x(), start.y(), start.z(), edges,
+          across, why);
     };
     std::vector<CgalSurface::Face_index> patch;
     std::vector<CgalSurface::Vertex_index> fresh;
-    const bool faired = std::get<0>(PMP::triangulate_refine_and_fair_hole(mesh, border, std::back_inserter(patch), std::back_inserter(fresh)));
+    const bool faired = std::get<0>(PMP::triangulate_refine_and_fair_hole(
+        mesh, border, std::back_inserter(patch), std::back_inserter(fresh)));
     if (patch.empty()) refuse("which no triangles close");
     if (const double share = PMP::area(patch, mesh) / whole; !(share <= largest_share))
-      refuse(fmt::format("whose closing would add {:.0f} % to its area, more than {:.0f} %", 100 * share, 100 * largest_share));
+      refuse(fmt::format("whose closing would add {:.0f} % to its area, more than {:.0f} %", 100 * share,
+                         100 * largest_share));
     static_cast<void>(faired);  // a patch that could not be smoothed is flat: closed all the same
     faces_added += static_cast<int>(patch.size());
   }
@@ -57,14 +62,18 @@ void collapse_degenerate(CgalSurface& mesh, const mesh::Provenance& from) {
   const Soup now = soup_of(mesh, from);
   bool needles = false;
   const auto flat = [&](const std::array<int, 3>& f) {
-    const auto at = [&](std::size_t k) -> const Vec3& { return now.vertices[static_cast<std::size_t>(f[k])]; };
-    const double longest = std::max({(at(1) - at(0)).squaredNorm(), (at(2) - at(1)).squaredNorm(), (at(0) - at(2)).squaredNorm()});
+    const auto at = [&](std::size_t k) -> const Vec3& {
+      return now.vertices[static_cast<std::size_t>(f[k])];
+    };
+    const double longest = std::max(
+        {(at(1) - at(0)).squaredNorm(), (at(2) - at(1)).squaredNorm(), (at(0) - at(2)).squaredNorm()});
     return !((at(1) - at(0)).cross(at(2) - at(0)).norm() > 1e-7 * longest);
   };
   for (const auto& f : now.faces) needles |= flat(f);
   if (!needles) return;
   const double whole = now.diagonal();
-  PMP::experimental::remove_almost_degenerate_faces(mesh, std::cos(179.99 * CGAL_PI / 180), 1e5, 1e-4 * whole);
+  PMP::experimental::remove_almost_degenerate_faces(mesh, std::cos(179.99 * CGAL_PI / 180), 1e5,
+                                                    1e-4 * whole);
 }
 
 /// One shell at a time: faces of different shells that cross are no fault of a shell's.
@@ -90,33 +99,43 @@ void append(Soup& all, const Soup& one) {
 
 int turn(Soup& soup) {
   std::vector<Kernel::Point_3> points;
-  std::map<std::array<double, 3>, int> source;  // CGAL doubles the vertices where it parts the surface: the new ones stand where old ones do
+  // CGAL doubles the vertices where it parts the surface: the new ones stand where old ones do
+  std::map<std::array<double, 3>, int> source;
   for (std::size_t v = 0; v < soup.vertices.size(); ++v) {
     points.emplace_back(soup.vertices[v].x(), soup.vertices[v].y(), soup.vertices[v].z());
-    source.emplace(std::array{soup.vertices[v].x(), soup.vertices[v].y(), soup.vertices[v].z()}, soup.vertex_source[v]);
+    source.emplace(std::array{soup.vertices[v].x(), soup.vertices[v].y(), soup.vertices[v].z()},
+                   soup.vertex_source[v]);
   }
   std::vector<std::vector<std::size_t>> faces;
-  for (const auto& f : soup.faces) faces.push_back({static_cast<std::size_t>(f[0]), static_cast<std::size_t>(f[1]), static_cast<std::size_t>(f[2])});
+  for (const auto& f : soup.faces)
+    faces.push_back(
+        {static_cast<std::size_t>(f[0]), static_cast<std::size_t>(f[1]), static_cast<std::size_t>(f[2])});
   PMP::orient_polygon_soup(points, faces);
   const auto position = [&](std::size_t v) { return Vec3(points[v].x(), points[v].y(), points[v].z()); };
   for (std::size_t v = soup.vertices.size(); v < points.size(); ++v) {
     soup.vertices.push_back(position(v));
     soup.vertex_source.push_back(source.at({points[v].x(), points[v].y(), points[v].z()}));
   }
-  // A face that was turned has its corners in the other order, whatever vertices they were given: their places tell.
+  // A face that was turned has its corners in the other order, whatever vertices they were given: their
+  // places tell.
   std::vector<char> turned;
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const auto before = [&](int k) -> const Vec3& { return soup.vertices[static_cast<std::size_t>(soup.faces[f][static_cast<std::size_t>(k)])]; };
+    const auto before = [&](int k) -> const Vec3& {
+      return soup.vertices[static_cast<std::size_t>(soup.faces[f][static_cast<std::size_t>(k)])];
+    };
     const Vec3 old_normal = (before(1) - before(0)).cross(before(2) - before(0));
-    soup.faces[f] = {static_cast<int>(faces[f][0]), static_cast<int>(faces[f][1]), static_cast<int>(faces[f][2])};
+    soup.faces[f] = {static_cast<int>(faces[f][0]), static_cast<int>(faces[f][1]),
+                     static_cast<int>(faces[f][2])};
     turned.push_back(old_normal.dot((before(1) - before(0)).cross(before(2) - before(0))) < 0);
   }
   int count = 0;
   for (const std::vector<int>& shell : shells_of(soup.surface())) {
-    const auto of_shell = std::count_if(shell.begin(), shell.end(), [&](int f) { return turned[static_cast<std::size_t>(f)] != 0; });
+    const auto of_shell = std::count_if(shell.begin(), shell.end(),
+                                        [&](int f) { return turned[static_cast<std::size_t>(f)] != 0; });
     const bool most = 2 * of_shell > static_cast<long>(shell.size());
     for (const int f : shell)
-      if (most) std::swap(soup.faces[static_cast<std::size_t>(f)][1], soup.faces[static_cast<std::size_t>(f)][2]);
+      if (most)
+        std::swap(soup.faces[static_cast<std::size_t>(f)][1], soup.faces[static_cast<std::size_t>(f)][2]);
     count += static_cast<int>(most ? static_cast<long>(shell.size()) - of_shell : of_shell);
   }
   return count;
@@ -138,7 +157,8 @@ Mended mend_unguarded(const Soup& soup, double largest_hole) {
     if (const auto crossing = static_cast<int>(crossing_faces(sound).size()); crossing > 0) {
       out.crossings += crossing;
       CgalSurface repaired = one;
-      const bool gone = PMP::experimental::remove_self_intersections(repaired, CGAL::parameters::preserve_genus(false));
+      const bool gone =
+          PMP::experimental::remove_self_intersections(repaired, CGAL::parameters::preserve_genus(false));
       const Soup after = soup_of(repaired, *soup.from);
       if (gone && !after.faces.empty()) sound = after;
     }

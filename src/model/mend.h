@@ -6,14 +6,15 @@
 
 namespace palpate::model {
 
-/// Turns the faces of each connected piece to agree, most of them as they stood, and parts the surface where more than two faces meet at an edge, or pieces touch in a
-/// point.  Returns how many faces were turned.
+/// Turns the faces of each connected piece to agree, most of them as they stood, and parts the surface where
+/// more than two faces meet at an edge, or pieces touch in a point.  Returns how many faces were turned.
 int turn_to_agree(Soup& soup);
 
 struct Mended {
   Soup soup;
   int holes = 0, hole_faces = 0, removed = 0;
-  int crossings = 0;  ///< faces that went through others of their shell at first; where cutting them out failed, they still do
+  /// faces that went through others of their shell at first; where cutting them out failed, they still do
+  int crossings = 0;
 };
 
 /// Closes holes, collapses needles and flat faces, and cuts out faces that cross.

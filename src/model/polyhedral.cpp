@@ -21,15 +21,19 @@ using Domain = CGAL::Polyhedral_mesh_domain_with_features_3<Kernel>;
 Polyhedron polyhedron_of(const TriMesh& surface) {
   std::vector<Kernel::Point_3> points;
   std::vector<std::array<std::size_t, 3>> faces;
-  for (Eigen::Index v = 0; v < surface.vertices.cols(); ++v) points.emplace_back(surface.vertices(0, v), surface.vertices(1, v), surface.vertices(2, v));
+  for (Eigen::Index v = 0; v < surface.vertices.cols(); ++v)
+    points.emplace_back(surface.vertices(0, v), surface.vertices(1, v), surface.vertices(2, v));
   for (Eigen::Index f = 0; f < surface.faces.cols(); ++f)
-    faces.push_back({static_cast<std::size_t>(surface.faces(0, f)), static_cast<std::size_t>(surface.faces(1, f)), static_cast<std::size_t>(surface.faces(2, f))});
+    faces.push_back({static_cast<std::size_t>(surface.faces(0, f)),
+                     static_cast<std::size_t>(surface.faces(1, f)),
+                     static_cast<std::size_t>(surface.faces(2, f))});
   Polyhedron out;
   CGAL::Polygon_mesh_processing::polygon_soup_to_polygon_mesh(points, faces, out);
   return out;
 }
 
-/// Lines through the faces of each shell, spread over it: refinement finds a shell only where it starts on it.
+/// Lines through the faces of each shell, spread over it: refinement finds a shell only where it starts on
+/// it.
 std::vector<Seed> seeds_of(const TriMesh& surface) {
   constexpr std::size_t kEach = 16;
   std::vector<Seed> out;
@@ -37,7 +41,8 @@ std::vector<Seed> seeds_of(const TriMesh& surface) {
     for (std::size_t i = 0; i < kEach; ++i) {
       const int f = shell[i * shell.size() / kEach];
       const auto corner = [&](int k) -> Vec3 { return surface.vertices.col(surface.faces(k, f)); };
-      const Vec3 middle = (corner(0) + corner(1) + corner(2)) / 3, twice_area = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+      const Vec3 middle = (corner(0) + corner(1) + corner(2)) / 3,
+                 twice_area = (corner(1) - corner(0)).cross(corner(2) - corner(0));
       const Vec3 step = 0.05 * twice_area / std::sqrt(twice_area.norm());
       out.push_back({middle - step, middle + step});
     }
@@ -46,7 +51,8 @@ std::vector<Seed> seeds_of(const TriMesh& surface) {
 
 }  // namespace
 
-Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& options, const Progress& progress) {
+Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& options,
+                          const Progress& progress) {
   try {
     Domain domain(polyhedron_of(surface));
     if (options.crease_deg) domain.detect_features(*options.crease_deg);
@@ -60,7 +66,9 @@ Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& optio
     }
     Mesher<Domain> mesher(domain, options.crease_deg || !options.creases.empty(), seeds_of(surface));
     return search_cells(mesher, mesh::enclosed_volume(surface), true, options, progress);
-  } catch (const CGAL::Failure_exception& e) { fail("the surface cannot be filled with tetrahedra: CGAL says {} ({})", e.message(), e.expression()); }
+  } catch (const CGAL::Failure_exception& e) {
+    fail("the surface cannot be filled with tetrahedra: CGAL says {} ({})", e.message(), e.expression());
+  }
 }
 
 }  // namespace palpate::model

@@ -21,28 +21,36 @@ Points middles(const TetMesh& mesh) {
 std::vector<char> inside_bones(const Skeleton& skeleton, const Points& points) {
   std::vector<char> out;
   for (const auto& p : points.colwise())
-    out.push_back(std::any_of(skeleton.bones.begin(), skeleton.bones.end(), [&](const Bone& bone) { return distance_to_bone(bone, p) <= 0.0; }));
+    out.push_back(std::any_of(skeleton.bones.begin(), skeleton.bones.end(),
+                              [&](const Bone& bone) { return distance_to_bone(bone, p) <= 0.0; }));
   return out;
 }
 
 std::string box_of(const Points& points) {
   const Vec3 low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
-  return fmt::format("({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m", low.x(), low.y(), low.z(), high.x(), high.y(), high.z());
+  return fmt::format("({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g}) m", low.x(), low.y(), low.z(),
+                     high.x(), high.y(), high.z());
 }
 
-std::vector<char> inside(const RegionSource& source, const TetMesh& tets, const Points& points, const Skeleton& skeleton, double& volume) {
+std::vector<char> inside(const RegionSource& source, const TetMesh& tets, const Points& points,
+                         const Skeleton& skeleton, double& volume) {
   if (source.skeleton) {
-    if (skeleton.bones.empty()) fail("--region {}=skeleton: the model has no bones; of the shapes, human has some", source.name);
+    if (skeleton.bones.empty())
+      fail("--region {}=skeleton: the model has no bones; of the shapes, human has some", source.name);
     std::vector<char> out = inside_bones(skeleton, points);
-    if (std::find(out.begin(), out.end(), 1) == out.end()) fail("--region {}=skeleton: no tetrahedron has its middle in a bone; ask for more tetrahedra", source.name);
+    if (std::find(out.begin(), out.end(), 1) == out.end())
+      fail("--region {}=skeleton: no tetrahedron has its middle in a bone; ask for more tetrahedra",
+           source.name);
     return out;
   }
   const TriMesh surface = repair(source.surface, source.from).surface;
   volume = mesh::enclosed_volume(surface);
   std::vector<char> out = inside_of(surface, points);
   if (std::find(out.begin(), out.end(), 1) == out.end())
-    fail("--region {}={}: no tetrahedron has its middle inside: the surface reaches from {}, the tetrahedra from {}; it is scaled as the body is (--scale), and a thin one needs more tetrahedra",
-         source.name, source.from.source, box_of(surface.vertices), box_of(tets.nodes));
+    fail(
+        "--region {}={}: no tetrahedron has its middle inside: the surface reaches from {}, the tetrahedra "
+        "from {}; it is scaled as the body is (--scale), and a thin one needs more tetrahedra",
+        source.name, source.from.source, box_of(surface.vertices), box_of(tets.nodes));
   return out;
 }
 
@@ -57,14 +65,17 @@ std::vector<MaterialRegion> regions_of(std::vector<MaterialRegion> regions, cons
 
 }  // namespace
 
-std::vector<MaterialRegion> add_regions(const TetMesh& tets, const Skeleton& skeleton, std::vector<MaterialRegion> regions, const std::vector<RegionSource>& sources,
+std::vector<MaterialRegion> add_regions(const TetMesh& tets, const Skeleton& skeleton,
+                                        std::vector<MaterialRegion> regions,
+                                        const std::vector<RegionSource>& sources,
                                         std::vector<double>& surface_volumes) {
   std::vector<int> owner = mesh::region_of_element(regions, static_cast<int>(tets.tets.cols()));
   const Points points = middles(tets);
   surface_volumes.assign(sources.size(), 0.0);
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const std::string& name = sources[s].name;
-    if (std::any_of(regions.begin(), regions.end(), [&](const MaterialRegion& r) { return r.name == name; })) fail("--region {}=...: there is a region of this name already; choose another", name);
+    if (std::any_of(regions.begin(), regions.end(), [&](const MaterialRegion& r) { return r.name == name; }))
+      fail("--region {}=...: there is a region of this name already; choose another", name);
     const std::vector<char> in = inside(sources[s], tets, points, skeleton, surface_volumes[s]);
     for (std::size_t t = 0; t < owner.size(); ++t)
       if (in[t]) owner[t] = static_cast<int>(regions.size());
@@ -73,11 +84,13 @@ std::vector<MaterialRegion> add_regions(const TetMesh& tets, const Skeleton& ske
   return regions_of(std::move(regions), owner);
 }
 
-std::vector<MaterialRegion> carried_over(const TetMesh& old, const std::vector<MaterialRegion>& regions, const TetMesh& tets) {
+std::vector<MaterialRegion> carried_over(const TetMesh& old, const std::vector<MaterialRegion>& regions,
+                                         const TetMesh& tets) {
   if (regions.empty()) return {};
   const std::vector<int> old_owner = mesh::region_of_element(regions, static_cast<int>(old.tets.cols()));
   std::vector<int> owner;
-  for (const int tet : mesh::embed(old, middles(tets)).tet) owner.push_back(old_owner[static_cast<std::size_t>(tet)]);
+  for (const int tet : mesh::embed(old, middles(tets)).tet)
+    owner.push_back(old_owner[static_cast<std::size_t>(tet)]);
   return regions_of(regions, owner);
 }
 

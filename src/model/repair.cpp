@@ -16,9 +16,10 @@
 namespace palpate::model {
 namespace {
 
-constexpr double kWeld = 1e-6;                             // of the diagonal
+constexpr double kWeld = 1e-6;                                 // of the diagonal
 constexpr double kWrapAlpha = 0.01, kWrapOffset = 1.0 / 1500;  // of the diagonal
-constexpr double kLargestRemoval = 0.05;                   // of the volume, by cutting crossing faces out; beyond, the wrap is nearer to what was meant
+// of the volume, by cutting crossing faces out; beyond, the wrap is nearer to what was meant
+constexpr double kLargestRemoval = 0.05;
 
 void note(std::vector<std::string>& notes, int count, const std::string& what) {
   if (count > 0) notes.push_back(fmt::format("{} {}", count, what));
@@ -28,11 +29,14 @@ void note(std::vector<std::string>& notes, int count, const std::string& what) {
 int open_edges(const Soup& soup) {
   std::map<std::array<int, 2>, int> faces_at;
   for (const auto& f : soup.faces)
-    for (std::size_t k = 0; k < 3; ++k) ++faces_at[{std::min(f[k], f[(k + 1) % 3]), std::max(f[k], f[(k + 1) % 3])}];
-  return static_cast<int>(std::count_if(faces_at.begin(), faces_at.end(), [](const auto& edge) { return edge.second == 1; }));
+    for (std::size_t k = 0; k < 3; ++k)
+      ++faces_at[{std::min(f[k], f[(k + 1) % 3]), std::max(f[k], f[(k + 1) % 3])}];
+  return static_cast<int>(
+      std::count_if(faces_at.begin(), faces_at.end(), [](const auto& edge) { return edge.second == 1; }));
 }
 
-/// Welds what lies closer than rounding of single precision only where the surface is open without that: seams of parts written one by one.
+/// Welds what lies closer than rounding of single precision only where the surface is open without that:
+/// seams of parts written one by one.
 int weld_seams(Soup& soup) {
   const int before = open_edges(soup);
   if (before == 0) return 0;
@@ -49,20 +53,30 @@ int weld_seams(Soup& soup) {
 
 double absolute_volume(const Soup& soup) { return std::abs(mesh::enclosed_volume(soup.surface())); }
 
-Soup wrap(const Soup& soup, const std::vector<int>& crossing, const RepairOptions& options, std::vector<std::string>& notes) {
+Soup wrap(const Soup& soup, const std::vector<int>& crossing, const RepairOptions& options,
+          std::vector<std::string>& notes) {
   if (!options.wrap)
-    fail("{}: this face and {} others go through each other, and cutting them out did not help; mend the surface there, or leave --no-wrap out", soup.face_name(crossing[0]), crossing.size() - 1);
+    fail(
+        "{}: this face and {} others go through each other, and cutting them out did not help; mend the "
+        "surface there, or leave --no-wrap out",
+        soup.face_name(crossing[0]), crossing.size() - 1);
   const double diagonal = soup.diagonal(), before = absolute_volume(soup);
   Soup out = wrapped(soup, kWrapAlpha * diagonal, kWrapOffset * diagonal);
-  if (out.faces.empty()) fail("{}: this face and {} others go through each other, and nothing could be wrapped around them", soup.face_name(crossing[0]), crossing.size() - 1);
-  notes.push_back(fmt::format("the surface still went through itself at {} faces, first {}: it was wrapped at {:.3g} m, which smooths details below {:.3g} m; volume {:.6g} -> {:.6g} m^3", crossing.size(),
-                              soup.face_name(crossing[0]), kWrapOffset * diagonal, kWrapAlpha * diagonal, before, absolute_volume(out)));
+  if (out.faces.empty())
+    fail("{}: this face and {} others go through each other, and nothing could be wrapped around them",
+         soup.face_name(crossing[0]), crossing.size() - 1);
+  notes.push_back(
+      fmt::format("the surface still went through itself at {} faces, first {}: it was wrapped at {:.3g} m, "
+                  "which smooths details below {:.3g} m; volume {:.6g} -> {:.6g} m^3",
+                  crossing.size(), soup.face_name(crossing[0]), kWrapOffset * diagonal, kWrapAlpha * diagonal,
+                  before, absolute_volume(out)));
   return out;
 }
 
 }  // namespace
 
-RepairedSurface repair(const TriMesh& faces, const mesh::Provenance& from, const RepairOptions& options, const Progress& progress) {
+RepairedSurface repair(const TriMesh& faces, const mesh::Provenance& from, const RepairOptions& options,
+                       const Progress& progress) {
   const auto tell = [&](double fraction) {
     if (progress) progress(fraction);
   };
@@ -78,17 +92,20 @@ RepairedSurface repair(const TriMesh& faces, const mesh::Provenance& from, const
   note(out.notes, turn_to_agree(soup), "faces were turned to agree with their neighbours");
   const double meant = absolute_volume(soup);
   Mended mended = mend(soup, options.largest_hole);
-  if (mended.holes > 0) out.notes.push_back(fmt::format("{} holes were closed by {} faces", mended.holes, mended.hole_faces));
+  if (mended.holes > 0)
+    out.notes.push_back(fmt::format("{} holes were closed by {} faces", mended.holes, mended.hole_faces));
   note(out.notes, mended.removed, "needles and flat faces were collapsed");
   tell(0.7);
   std::vector<int> crossing = crossing_faces(mended.soup);
-  const bool cut_too_much = mended.holes == 0 && std::abs(absolute_volume(mended.soup) - meant) > kLargestRemoval * meant;
+  const bool cut_too_much =
+      mended.holes == 0 && std::abs(absolute_volume(mended.soup) - meant) > kLargestRemoval * meant;
   const bool wrap_original = crossing.empty() && cut_too_much;
   if (wrap_original) crossing = crossing_faces(soup);
   if (!crossing.empty()) {
     soup = wrap(wrap_original ? soup : mended.soup, crossing, options, out.notes);
   } else {
-    note(out.notes, mended.crossings, "faces that went through each other were cut out and the place closed anew");
+    note(out.notes, mended.crossings,
+         "faces that went through each other were cut out and the place closed anew");
     soup = std::move(mended.soup);
   }
   soup = keep_one_body(soup, options.largest_shell, out.notes);

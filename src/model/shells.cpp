@@ -14,15 +14,17 @@ constexpr double kSpeck = 1e-4;  // of the largest shell's volume
 
 struct Shell {
   std::vector<int> faces;
-  double volume = 0.0;          // signed: positive when it turns outwards
-  std::vector<int> holders;     // shells around it
+  double volume = 0.0;       // signed: positive when it turns outwards
+  std::vector<int> holders;  // shells around it
 };
 
 double signed_volume(const TriMesh& surface, const std::vector<int>& faces) {
   const Vec3 o = surface.vertices.col(surface.faces(0, faces[0]));
   double volume = 0;
   for (const int f : faces) {
-    const Vec3 a = surface.vertices.col(surface.faces(0, f)) - o, b = surface.vertices.col(surface.faces(1, f)) - o, c = surface.vertices.col(surface.faces(2, f)) - o;
+    const Vec3 a = surface.vertices.col(surface.faces(0, f)) - o,
+               b = surface.vertices.col(surface.faces(1, f)) - o,
+               c = surface.vertices.col(surface.faces(2, f)) - o;
     volume += a.dot(b.cross(c)) / 6;
   }
   return volume;
@@ -40,14 +42,18 @@ std::vector<Shell> measured(const TriMesh& surface) {
 void find_holders(const TriMesh& surface, std::vector<Shell>& shells) {
   for (Shell& inner : shells)
     for (std::size_t o = 0; o < shells.size(); ++o)
-      if (&shells[o] != &inner && std::abs(mesh::winding_number(surface, shells[o].faces, surface.vertices.col(surface.faces(0, inner.faces[0])))) > 0.5)
+      if (&shells[o] != &inner &&
+          std::abs(mesh::winding_number(surface, shells[o].faces,
+                                        surface.vertices.col(surface.faces(0, inner.faces[0])))) > 0.5)
         inner.holders.push_back(static_cast<int>(o));
 }
 
-std::string bodies_text(const Soup& soup, const std::vector<Shell>& shells, const std::vector<std::size_t>& bodies) {
+std::string bodies_text(const Soup& soup, const std::vector<Shell>& shells,
+                        const std::vector<std::size_t>& bodies) {
   std::string out;
   for (std::size_t i = 0; i < std::min<std::size_t>(bodies.size(), 3); ++i)
-    out += fmt::format("{}{:.4g} m^3 from {}", i ? ", " : "", std::abs(shells[bodies[i]].volume), soup.face_name(shells[bodies[i]].faces[0]));
+    out += fmt::format("{}{:.4g} m^3 from {}", i ? ", " : "", std::abs(shells[bodies[i]].volume),
+                       soup.face_name(shells[bodies[i]].faces[0]));
   return out + (bodies.size() > 3 ? ", ..." : "");
 }
 
@@ -65,7 +71,9 @@ std::vector<std::vector<int>> shells_of(const TriMesh& surface) {
   std::vector<int> root(faces);
   for (std::size_t f = 0; f < faces; ++f) root[f] = static_cast<int>(f);
   const auto find = [&](int f) {
-    while (root[static_cast<std::size_t>(f)] != f) f = root[static_cast<std::size_t>(f)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(f)])];
+    while (root[static_cast<std::size_t>(f)] != f)
+      f = root[static_cast<std::size_t>(f)] =
+          root[static_cast<std::size_t>(root[static_cast<std::size_t>(f)])];
     return f;
   };
   for (std::size_t i = 1; i < edges.size(); ++i)
@@ -92,18 +100,27 @@ Soup keep_one_body(const Soup& soup, bool largest, std::vector<std::string>& not
   double most = 0;
   for (const Shell& shell : shells) most = std::max(most, std::abs(shell.volume));
   const double rounding = 1e-12 * std::pow(soup.diagonal(), 3);
-  if (!(most > rounding)) fail("{}: the surface encloses no volume ({:.3g} m^3); a body's surface has an inside", soup.face_name(0), most);
-  if (const auto specks = std::erase_if(shells, [&](const Shell& s) { return std::abs(s.volume) < kSpeck * most; })) notes.push_back(fmt::format("{} shells smaller than 1e-4 of the largest were dropped", specks));
+  if (!(most > rounding))
+    fail("{}: the surface encloses no volume ({:.3g} m^3); a body's surface has an inside", soup.face_name(0),
+         most);
+  if (const auto specks =
+          std::erase_if(shells, [&](const Shell& s) { return std::abs(s.volume) < kSpeck * most; }))
+    notes.push_back(fmt::format("{} shells smaller than 1e-4 of the largest were dropped", specks));
   find_holders(surface, shells);
 
   std::vector<std::size_t> bodies;
   for (std::size_t s = 0; s < shells.size(); ++s)
     if (shells[s].holders.empty()) bodies.push_back(s);
-  std::stable_sort(bodies.begin(), bodies.end(), [&](std::size_t a, std::size_t b) { return std::abs(shells[a].volume) > std::abs(shells[b].volume); });
+  std::stable_sort(bodies.begin(), bodies.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(shells[a].volume) > std::abs(shells[b].volume);
+  });
   if (bodies.size() > 1 && !largest)
-    fail("{}: the surface is {} separate bodies: {}; a model is one: give a file of its own to each, or --largest-shell to keep the largest", soup.from->source, bodies.size(),
-         bodies_text(soup, shells, bodies));
-  if (bodies.size() > 1) notes.push_back(fmt::format("of {} separate bodies the largest was kept", bodies.size()));
+    fail(
+        "{}: the surface is {} separate bodies: {}; a model is one: give a file of its own to each, or "
+        "--largest-shell to keep the largest",
+        soup.from->source, bodies.size(), bodies_text(soup, shells, bodies));
+  if (bodies.size() > 1)
+    notes.push_back(fmt::format("of {} separate bodies the largest was kept", bodies.size()));
   const int body = static_cast<int>(bodies[0]);
   const bool inside_out = shells[bodies[0]].volume < 0;
   if (inside_out) notes.emplace_back("the surface was turned outwards");

@@ -30,9 +30,12 @@ std::string place(const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g}) 
 }  // namespace
 
 TriMesh Soup::surface() const {
-  TriMesh out{Points(3, static_cast<Eigen::Index>(vertices.size())), Faces(3, static_cast<Eigen::Index>(faces.size()))};
-  for (std::size_t i = 0; i < vertices.size(); ++i) out.vertices.col(static_cast<Eigen::Index>(i)) = vertices[i];
-  for (std::size_t f = 0; f < faces.size(); ++f) out.faces.col(static_cast<Eigen::Index>(f)) << faces[f][0], faces[f][1], faces[f][2];
+  TriMesh out{Points(3, static_cast<Eigen::Index>(vertices.size())),
+              Faces(3, static_cast<Eigen::Index>(faces.size()))};
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    out.vertices.col(static_cast<Eigen::Index>(i)) = vertices[i];
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    out.faces.col(static_cast<Eigen::Index>(f)) << faces[f][0], faces[f][1], faces[f][2];
   return out;
 }
 
@@ -43,14 +46,16 @@ double Soup::diagonal() const {
 
 std::string Soup::vertex_name(int v) const {
   const int source = vertex_source[static_cast<std::size_t>(v)];
-  return fmt::format("{} at {}", source >= 0 ? from->node(source) : from->source + ": a vertex", place(vertices[static_cast<std::size_t>(v)]));
+  return fmt::format("{} at {}", source >= 0 ? from->node(source) : from->source + ": a vertex",
+                     place(vertices[static_cast<std::size_t>(v)]));
 }
 
 std::string Soup::face_name(int f) const {
   const int source = face_source[static_cast<std::size_t>(f)];
   Vec3 middle = Vec3::Zero();
   for (const int v : faces[static_cast<std::size_t>(f)]) middle += vertices[static_cast<std::size_t>(v)] / 3;
-  return fmt::format("{} at {}", source >= 0 ? from->element(source) : from->source + ": a face", place(middle));
+  return fmt::format("{} at {}", source >= 0 ? from->element(source) : from->source + ": a face",
+                     place(middle));
 }
 
 Soup soup_of(const TriMesh& faces, const mesh::Provenance& from) {
@@ -61,21 +66,25 @@ Soup soup_of(const TriMesh& faces, const mesh::Provenance& from) {
   for (int i = 0; i < static_cast<int>(faces.vertices.cols()); ++i) {
     const Vec3 p = faces.vertices.col(i);
     for (int k = 0; k < 3; ++k)
-      if (!(std::abs(p[k]) <= kLargest)) fail("{}: {} = {} is not a finite length within 1e30 m; write the surface again", from.node(i), "xyz"[k], p[k]);
+      if (!(std::abs(p[k]) <= kLargest))
+        fail("{}: {} = {} is not a finite length within 1e30 m; write the surface again", from.node(i),
+             "xyz"[k], p[k]);
     out.vertices.push_back(p);
     out.vertex_source.push_back(i);
   }
   for (int f = 0; f < static_cast<int>(faces.faces.cols()); ++f) {
     for (int k = 0; k < 3; ++k)
       if (const int v = faces.faces(k, f); v < 0 || v >= static_cast<int>(faces.vertices.cols()))
-        fail("{} names vertex {} counted from 0, the surface has {}", from.element(f), v, faces.vertices.cols());
+        fail("{} names vertex {} counted from 0, the surface has {}", from.element(f), v,
+             faces.vertices.cols());
     out.faces.push_back({faces.faces(0, f), faces.faces(1, f), faces.faces(2, f)});
     out.face_source.push_back(f);
   }
   return out;
 }
 
-// Sorted by x, each vertex is compared with those after it until x is farther than the tolerance; the first in the file's order is kept.
+// Sorted by x, each vertex is compared with those after it until x is farther than the tolerance; the first
+// in the file's order is kept.
 int weld(Soup& soup, double tolerance) {
   const std::size_t count = soup.vertices.size();
   std::vector<int> order(count), target(count);
@@ -86,7 +95,8 @@ int weld(Soup& soup, double tolerance) {
     const std::array<double, 3> p{at(a).x(), at(a).y(), at(a).z()}, q{at(b).x(), at(b).y(), at(b).z()};
     return p != q ? p < q : a < b;
   });
-  const auto root = [&](int v) {  // targets are never larger than what points at them, so that following them ends
+  // targets are never larger than what points at them, so that following them ends
+  const auto root = [&](int v) {
     while (target[static_cast<std::size_t>(v)] != v) v = target[static_cast<std::size_t>(v)];
     return v;
   };

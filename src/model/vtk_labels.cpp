@@ -10,17 +10,20 @@
 #include "palpate/core/error.h"
 #include "palpate/store/atomic_file.h"
 
-// libgmsh 4.8 writes the numbers of cells into legacy VTK files and does not read them.  Here they are (VTK User's Guide 11, "VTK file formats", versions up to 4):
+// libgmsh 4.8 writes the numbers of cells into legacy VTK files and does not read them.  Here they are (VTK
+// User's Guide 11, "VTK file formats", versions up to 4):
 //   # vtk DataFile Version x.x / title / ASCII | BINARY / DATASET UNSTRUCTURED_GRID
 //   POINTS n type, 3 n values          CELLS n size, `size` ints          CELL_TYPES n, n ints
-//   CELL_DATA n:  SCALARS name type [components] / LOOKUP_TABLE name, n values;   FIELD name k, k times: name components tuples type, values;   others
+//   CELL_DATA n:  SCALARS name type [components] / LOOKUP_TABLE name, n values;   FIELD name k, k times: name
+//   components tuples type, values;   others
 //   POINT_DATA n: the same
 // binary values are big-endian and begin on the line after.
 namespace palpate::model {
 namespace {
 
 std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
@@ -41,7 +44,8 @@ class Legacy {
   std::size_t count() {
     const std::string w = word();
     std::size_t value = 0;
-    if (const auto [end, code] = std::from_chars(w.data(), w.data() + w.size(), value); code != std::errc() || end != w.data() + w.size() || value > text_.size())
+    if (const auto [end, code] = std::from_chars(w.data(), w.data() + w.size(), value);
+        code != std::errc() || end != w.data() + w.size() || value > text_.size())
       fail("{}: \"{}\" stands where a count is expected", path_, w.substr(0, 40));
     return value;
   }
@@ -63,7 +67,8 @@ class Legacy {
   double text_value() {
     const std::string w = word();
     double value = 0;
-    if (const auto [end, code] = std::from_chars(w.data(), w.data() + w.size(), value); code != std::errc() || end != w.data() + w.size())
+    if (const auto [end, code] = std::from_chars(w.data(), w.data() + w.size(), value);
+        code != std::errc() || end != w.data() + w.size())
       fail("{}: \"{}\" stands where a number is expected", path_, w.substr(0, 40));
     return value;
   }
@@ -96,7 +101,10 @@ class Legacy {
 /// Rank of an array's name among those that are known; their number where it is not.
 std::size_t rank_of(const std::string& name) {
   const std::vector<std::string>& known = known_region_arrays();
-  return static_cast<std::size_t>(std::find_if(known.begin(), known.end(), [&](const std::string& k) { return lower(k) == lower(name); }) - known.begin());
+  return static_cast<std::size_t>(
+      std::find_if(known.begin(), known.end(),
+                   [&](const std::string& k) { return lower(k) == lower(name); }) -
+      known.begin());
 }
 
 }  // namespace
@@ -148,7 +156,9 @@ std::vector<double> labels_of_vtk(const std::string& path) {
     }
   }
   if (labels.empty()) return {};
-  if (labels.size() != types.size()) fail("{}: \"{}\" has {} numbers for {} cells", path, known_region_arrays()[best], labels.size(), types.size());
+  if (labels.size() != types.size())
+    fail("{}: \"{}\" has {} numbers for {} cells", path, known_region_arrays()[best], labels.size(),
+         types.size());
   std::vector<double> out;
   for (std::size_t c = 0; c < types.size(); ++c)
     if (types[c] == kTetrahedron) out.push_back(labels[c]);

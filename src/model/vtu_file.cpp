@@ -13,17 +13,19 @@
 #include "palpate/core/error.h"
 #include "palpate/store/atomic_file.h"
 
-// VTK's XML files (VTK User's Guide 11, "VTK file formats"): arrays as text, as base64 in place, or appended (base64 or raw) at an offset; bytes are
+// VTK's XML files (VTK User's Guide 11, "VTK file formats"): arrays as text, as base64 in place, or appended
+// (base64 or raw) at an offset; bytes are
 //   [size][data]                                                        as they are, or
 //   [blocks][size of a block][size of the last, 0: whole][sizes when compressed ...][compressed blocks ...]
-// with all sizes of type header_type.  In base64 the sizes may be encoded apart from the data, each ending with its own padding: decoding goes on after padding.
+// with all sizes of type header_type.  In base64 the sizes may be encoded apart from the data, each ending
+// with its own padding: decoding goes on after padding.
 namespace palpate::model {
 namespace {
 
 struct Document {
   std::string path;
   pugi::xml_document xml;
-  std::string appended;        ///< what stands after the underscore
+  std::string appended;  ///< what stands after the underscore
   bool appended_raw = false, compressed = false, wide_header = false, swap = false;
 };
 
@@ -63,8 +65,10 @@ T value_at(const Document& document, const std::string& bytes, std::size_t at, c
   return std::bit_cast<T>(raw);
 }
 
-std::uint64_t header_at(const Document& document, const std::string& bytes, std::size_t number, const std::string& what) {
-  return document.wide_header ? value_at<std::uint64_t>(document, bytes, 8 * number, what) : value_at<std::uint32_t>(document, bytes, 4 * number, what);
+std::uint64_t header_at(const Document& document, const std::string& bytes, std::size_t number,
+                        const std::string& what) {
+  return document.wide_header ? value_at<std::uint64_t>(document, bytes, 8 * number, what)
+                              : value_at<std::uint32_t>(document, bytes, 4 * number, what);
 }
 
 /// The array's own bytes, without sizes, uncompressed.
@@ -72,19 +76,25 @@ std::string payload(const Document& document, const std::string& bytes, const st
   const std::size_t word = document.wide_header ? 8 : 4;
   if (!document.compressed) {
     const std::uint64_t size = header_at(document, bytes, 0, what);
-    if (size > bytes.size() - word) fail("{}: {} ends before its time: {} of {} bytes", document.path, what, bytes.size() - word, size);
+    if (size > bytes.size() - word)
+      fail("{}: {} ends before its time: {} of {} bytes", document.path, what, bytes.size() - word, size);
     return bytes.substr(word, size);
   }
-  const std::uint64_t blocks = header_at(document, bytes, 0, what), whole = header_at(document, bytes, 1, what), last = header_at(document, bytes, 2, what);
-  if (blocks > bytes.size() || whole > (std::uint64_t{1} << 32)) fail("{}: {} has a damaged header", document.path, what);
+  const std::uint64_t blocks = header_at(document, bytes, 0, what),
+                      whole = header_at(document, bytes, 1, what), last = header_at(document, bytes, 2, what);
+  if (blocks > bytes.size() || whole > (std::uint64_t{1} << 32))
+    fail("{}: {} has a damaged header", document.path, what);
   std::string out;
   std::size_t at = (3 + blocks) * word;
   for (std::uint64_t b = 0; b < blocks; ++b) {
     const std::uint64_t packed = header_at(document, bytes, 3 + b, what);
-    if (at > bytes.size() || packed > bytes.size() - at) fail("{}: {} ends before its time", document.path, what);
+    if (at > bytes.size() || packed > bytes.size() - at)
+      fail("{}: {} ends before its time", document.path, what);
     uLongf size = b + 1 == blocks && last != 0 ? last : whole;
     std::string block(size, '\0');
-    if (::uncompress(reinterpret_cast<Bytef*>(block.data()), &size, reinterpret_cast<const Bytef*>(bytes.data() + at), packed) != Z_OK) fail("{}: {} cannot be uncompressed", document.path, what);
+    if (::uncompress(reinterpret_cast<Bytef*>(block.data()), &size,
+                     reinterpret_cast<const Bytef*>(bytes.data() + at), packed) != Z_OK)
+      fail("{}: {} cannot be uncompressed", document.path, what);
     out.append(block, 0, size);
     at += packed;
   }
@@ -92,8 +102,10 @@ std::string payload(const Document& document, const std::string& bytes, const st
 }
 
 template <class T, class Out>
-void convert(const Document& document, const std::string& bytes, const std::string& what, std::vector<Out>& out) {
-  for (std::size_t at = 0; at + sizeof(T) <= bytes.size(); at += sizeof(T)) out.push_back(static_cast<Out>(value_at<T>(document, bytes, at, what)));
+void convert(const Document& document, const std::string& bytes, const std::string& what,
+             std::vector<Out>& out) {
+  for (std::size_t at = 0; at + sizeof(T) <= bytes.size(); at += sizeof(T))
+    out.push_back(static_cast<Out>(value_at<T>(document, bytes, at, what)));
 }
 
 template <class Out>
@@ -106,7 +118,9 @@ std::vector<Out> from_text(const Document& document, std::string_view text, cons
     if (at == end) return out;
     Out value{};
     const auto [next, code] = std::from_chars(at, end, value);
-    if (code != std::errc()) fail("{}: {}: \"{}\" is no number", document.path, what, std::string_view(at, std::min<std::size_t>(20, static_cast<std::size_t>(end - at))));
+    if (code != std::errc())
+      fail("{}: {}: \"{}\" is no number", document.path, what,
+           std::string_view(at, std::min<std::size_t>(20, static_cast<std::size_t>(end - at))));
     out.push_back(value);
     at = next;
   }
@@ -115,29 +129,41 @@ std::vector<Out> from_text(const Document& document, std::string_view text, cons
 template <class Out>
 std::vector<Out> numbers(const Document& document, const pugi::xml_node& array, const std::string& what) {
   if (!array) fail("{}: has no {}", document.path, what);
-  const std::string format = array.attribute("format").as_string("ascii"), type = array.attribute("type").as_string();
+  const std::string format = array.attribute("format").as_string("ascii"),
+                    type = array.attribute("type").as_string();
   if (format == "ascii") return from_text<Out>(document, array.child_value(), what);
   std::string bytes;
   if (format == "binary") {
     bytes = decode_base64(array.child_value());
   } else if (format == "appended") {
     const std::size_t offset = array.attribute("offset").as_ullong();
-    if (offset >= document.appended.size()) fail("{}: {} starts at {} of {} appended bytes", document.path, what, offset, document.appended.size());
-    bytes = document.appended_raw ? document.appended.substr(offset) : decode_base64(std::string_view(document.appended).substr(offset));
+    if (offset >= document.appended.size())
+      fail("{}: {} starts at {} of {} appended bytes", document.path, what, offset, document.appended.size());
+    bytes = document.appended_raw ? document.appended.substr(offset)
+                                  : decode_base64(std::string_view(document.appended).substr(offset));
   } else {
     fail("{}: {} has the unknown format \"{}\"", document.path, what, format);
   }
   bytes = payload(document, bytes, what);
   std::vector<Out> out;
-  if (type == "Float64") convert<double>(document, bytes, what, out);
-  else if (type == "Float32") convert<float>(document, bytes, what, out);
-  else if (type == "Int64") convert<std::int64_t>(document, bytes, what, out);
-  else if (type == "UInt64") convert<std::uint64_t>(document, bytes, what, out);
-  else if (type == "Int32") convert<std::int32_t>(document, bytes, what, out);
-  else if (type == "UInt32") convert<std::uint32_t>(document, bytes, what, out);
-  else if (type == "UInt8") convert<std::uint8_t>(document, bytes, what, out);
-  else if (type == "Int8") convert<std::int8_t>(document, bytes, what, out);
-  else fail("{}: {} has the unknown type \"{}\"", document.path, what, type);
+  if (type == "Float64")
+    convert<double>(document, bytes, what, out);
+  else if (type == "Float32")
+    convert<float>(document, bytes, what, out);
+  else if (type == "Int64")
+    convert<std::int64_t>(document, bytes, what, out);
+  else if (type == "UInt64")
+    convert<std::uint64_t>(document, bytes, what, out);
+  else if (type == "Int32")
+    convert<std::int32_t>(document, bytes, what, out);
+  else if (type == "UInt32")
+    convert<std::uint32_t>(document, bytes, what, out);
+  else if (type == "UInt8")
+    convert<std::uint8_t>(document, bytes, what, out);
+  else if (type == "Int8")
+    convert<std::int8_t>(document, bytes, what, out);
+  else
+    fail("{}: {} has the unknown type \"{}\"", document.path, what, type);
   return out;
 }
 
@@ -146,7 +172,8 @@ void load(Document& document) {
   std::string text = store::read_file(document.path);
   if (const std::size_t tag = text.find("<AppendedData"); tag != std::string::npos) {
     const std::size_t close = text.find('>', tag), start = text.find('_', close);
-    if (close == std::string::npos || start == std::string::npos) fail("{}: its appended data do not start with an underscore", document.path);
+    if (close == std::string::npos || start == std::string::npos)
+      fail("{}: its appended data do not start with an underscore", document.path);
     document.appended_raw = text.substr(tag, close - tag).find("raw") != std::string::npos;
     document.appended = text.substr(start + 1);
     text = text.substr(0, tag) + "</VTKFile>";
@@ -154,16 +181,21 @@ void load(Document& document) {
   if (const pugi::xml_parse_result parsed = document.xml.load_buffer(text.data(), text.size()); !parsed)
     fail("{}: is no XML at byte {}: {}", document.path, parsed.offset, parsed.description());
   const pugi::xml_node root = document.xml.child("VTKFile");
-  if (std::string(root.attribute("type").as_string()) != "UnstructuredGrid") fail("{}: is no VTK file of an unstructured grid, but of \"{}\"", document.path, root.attribute("type").as_string());
+  if (std::string(root.attribute("type").as_string()) != "UnstructuredGrid")
+    fail("{}: is no VTK file of an unstructured grid, but of \"{}\"", document.path,
+         root.attribute("type").as_string());
   const std::string compressor = root.attribute("compressor").as_string();
-  if (!compressor.empty() && compressor != "vtkZLibDataCompressor") fail("{}: is compressed by {}, vtkZLibDataCompressor is read", document.path, compressor);
+  if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
+    fail("{}: is compressed by {}, vtkZLibDataCompressor is read", document.path, compressor);
   document.compressed = !compressor.empty();
   document.wide_header = std::string(root.attribute("header_type").as_string("UInt32")) == "UInt64";
-  document.swap = (std::string(root.attribute("byte_order").as_string("LittleEndian")) == "BigEndian") != (std::endian::native == std::endian::big);
+  document.swap = (std::string(root.attribute("byte_order").as_string("LittleEndian")) == "BigEndian") !=
+                  (std::endian::native == std::endian::big);
 }
 
 std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
@@ -172,8 +204,11 @@ std::vector<double> labels_of(const Document& document, const pugi::xml_node& pi
   for (const std::string& known : known_region_arrays())
     for (const pugi::xml_node& array : piece.child("CellData").children("DataArray")) {
       if (lower(array.attribute("Name").as_string()) != lower(known)) continue;
-      std::vector<double> out = numbers<double>(document, array, fmt::format("array \"{}\"", array.attribute("Name").as_string()));
-      if (out.size() != cells) fail("{}: array \"{}\" has {} numbers for {} cells", document.path, array.attribute("Name").as_string(), out.size(), cells);
+      std::vector<double> out =
+          numbers<double>(document, array, fmt::format("array \"{}\"", array.attribute("Name").as_string()));
+      if (out.size() != cells)
+        fail("{}: array \"{}\" has {} numbers for {} cells", document.path,
+             array.attribute("Name").as_string(), out.size(), cells);
       return out;
     }
   return {};
@@ -181,9 +216,12 @@ std::vector<double> labels_of(const Document& document, const pugi::xml_node& pi
 
 void take_cell(Cells& cells, int type, const std::vector<int>& corners) {
   constexpr int kTriangle = 5, kPolygon = 7, kQuadrangle = 9, kTetrahedron = 10, kLastLine = 4;
-  if (type == kTetrahedron && corners.size() == 4) cells.tetrahedron(corners[0], corners[1], corners[2], corners[3]);
-  else if (type == kTriangle || type == kPolygon || type == kQuadrangle) cells.polygon(corners);
-  else if (type > kLastLine) cells.unread(fmt::format("cells of VTK's type {}", type));
+  if (type == kTetrahedron && corners.size() == 4)
+    cells.tetrahedron(corners[0], corners[1], corners[2], corners[3]);
+  else if (type == kTriangle || type == kPolygon || type == kQuadrangle)
+    cells.polygon(corners);
+  else if (type > kLastLine)
+    cells.unread(fmt::format("cells of VTK's type {}", type));
 }
 
 }  // namespace
@@ -193,27 +231,38 @@ SourceFile read_vtu(const std::string& path) {
   document.path = path;
   load(document);
   Cells cells(path);
-  for (const pugi::xml_node& piece : document.xml.child("VTKFile").child("UnstructuredGrid").children("Piece")) {
+  for (const pugi::xml_node& piece :
+       document.xml.child("VTKFile").child("UnstructuredGrid").children("Piece")) {
     const int first = static_cast<int>(cells.points.size());
     const auto coordinates = numbers<double>(document, piece.child("Points").child("DataArray"), "points");
-    for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3) cells.points.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
-    const auto array = [&](const char* name) { return numbers<long long>(document, piece.child("Cells").find_child_by_attribute("DataArray", "Name", name), fmt::format("array \"{}\"", name)); };
-    const std::vector<long long> connectivity = array("connectivity"), offsets = array("offsets"), types = array("types");
-    if (offsets.size() != types.size()) fail("{}: has {} offsets and {} types of cells", path, offsets.size(), types.size());
+    for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3)
+      cells.points.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
+    const auto array = [&](const char* name) {
+      return numbers<long long>(document,
+                                piece.child("Cells").find_child_by_attribute("DataArray", "Name", name),
+                                fmt::format("array \"{}\"", name));
+    };
+    const std::vector<long long> connectivity = array("connectivity"), offsets = array("offsets"),
+                                 types = array("types");
+    if (offsets.size() != types.size())
+      fail("{}: has {} offsets and {} types of cells", path, offsets.size(), types.size());
     const std::vector<double> labels = labels_of(document, piece, offsets.size());
     if (!labels.empty()) cells.labels.resize(cells.tetrahedra(), 0.0);
     long long begin = 0;
     for (std::size_t c = 0; c < offsets.size(); ++c) {
-      if (offsets[c] < begin || offsets[c] > static_cast<long long>(connectivity.size())) fail("{}: cell {} ends at {} of {} entries", path, c, offsets[c], connectivity.size());
+      if (offsets[c] < begin || offsets[c] > static_cast<long long>(connectivity.size()))
+        fail("{}: cell {} ends at {} of {} entries", path, c, offsets[c], connectivity.size());
       std::vector<int> corners;
       for (long long i = begin; i < offsets[c]; ++i) {
         const long long corner = connectivity[static_cast<std::size_t>(i)];
-        if (corner < 0 || corner >= static_cast<long long>(coordinates.size() / 3)) fail("{}: cell {} names point {}, the piece has {}", path, c, corner, coordinates.size() / 3);
+        if (corner < 0 || corner >= static_cast<long long>(coordinates.size() / 3))
+          fail("{}: cell {} names point {}, the piece has {}", path, c, corner, coordinates.size() / 3);
         corners.push_back(first + static_cast<int>(corner));
       }
       const std::size_t before = cells.tetrahedra();
       take_cell(cells, static_cast<int>(types[c]), corners);
-      if ((!labels.empty() || !cells.labels.empty()) && cells.tetrahedra() > before) cells.labels.push_back(labels.empty() ? 0.0 : labels[c]);
+      if ((!labels.empty() || !cells.labels.empty()) && cells.tetrahedra() > before)
+        cells.labels.push_back(labels.empty() ? 0.0 : labels[c]);
       begin = offsets[c];
     }
   }

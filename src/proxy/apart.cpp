@@ -8,7 +8,9 @@ namespace {
 constexpr int kSteps = 12;
 
 /// Least of u . (x - y) over both hulls.
-double least_along(const ProxySet& a, int p, const ProxySet& b, int q, const Vec3& u) { return -a.most_along(p, -u) - b.most_along(q, u); }
+double least_along(const ProxySet& a, int p, const ProxySet& b, int q, const Vec3& u) {
+  return -a.most_along(p, -u) - b.most_along(q, u);
+}
 
 /// The shortest vector from v toward s.
 Vec3 shorten(const Vec3& v, const Vec3& s) {
@@ -19,7 +21,8 @@ Vec3 shorten(const Vec3& v, const Vec3& s) {
 
 }  // namespace
 
-bool apart(const ProxySet& a, int p, const ProxySet& b, int q, double margin, Vec3& direction, bool& by_memory) {
+bool apart(const ProxySet& a, int p, const ProxySet& b, int q, double margin, Vec3& direction,
+           bool& by_memory) {
   by_memory = !direction.isZero() && least_along(a, p, b, q, direction) > margin;  // kept as a unit vector
   if (by_memory) return true;
   Vec3 v = a.centre(p) - b.centre(q);

@@ -13,7 +13,8 @@ void BodyMotion::resize(int nodes) {
   then_.resize(padded(nodes));
   samples_.clear();
   const int samples = std::min(nodes, kSamples);
-  for (int i = 0; i < samples; ++i) samples_.push_back(static_cast<int>(static_cast<long>(i) * nodes / samples));
+  for (int i = 0; i < samples; ++i)
+    samples_.push_back(static_cast<int>(static_cast<long>(i) * nodes / samples));
   coefficients_.setZero(3, samples);
 }
 
@@ -32,7 +33,8 @@ void BodyMotion::fit(const Eigen::Ref<const Points>& nodes) {
 void BodyMotion::update(const Eigen::Ref<const Points>& nodes) {
   fit(nodes);
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = linear_;
-  residual_ = std::sqrt(take(nodes.data(), static_cast<int>(nodes.outerStride()), count_, then_.read(0), rows.data(), offset_.data(), now_.write(0)));
+  residual_ = std::sqrt(take(nodes.data(), static_cast<int>(nodes.outerStride()), count_, then_.read(0),
+                             rows.data(), offset_.data(), now_.write(0)));
 }
 
 void BodyMotion::keep() {
@@ -40,7 +42,8 @@ void BodyMotion::keep() {
   then_ = now_;  // of equal size: copies
   middle_.setZero();
   for (const int n : samples_) middle_ += then_.point(n) / static_cast<double>(samples_.size());
-  for (std::size_t i = 0; i < samples_.size(); ++i) coefficients_.col(static_cast<Eigen::Index>(i)) = then_.point(samples_[i]) - middle_;
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    coefficients_.col(static_cast<Eigen::Index>(i)) = then_.point(samples_[i]) - middle_;
   Mat3 M = coefficients_ * coefficients_.transpose();
   M += kFlat * M.trace() * Mat3::Identity();  // a flat body, or of few nodes, has a map too
   coefficients_ = (M.trace() > 0.0 ? Mat3(M.inverse()) : Mat3(Mat3::Zero())) * coefficients_;

@@ -5,10 +5,12 @@
 
 namespace palpate::proxy {
 
-/// How a body's nodes have moved since they were last kept: x = linear x_then + offset to within `residual`, for every node.
+/// How a body's nodes have moved since they were last kept: x = linear x_then + offset to within `residual`,
+/// for every node.
 ///
-/// Any affine map serves (the residual is measured against it, node by node); it is the one of least squares for a few nodes spread over the body, so that a body
-/// that moves as a whole, and stretches evenly, leaves no residual at all.
+/// Any affine map serves (the residual is measured against it, node by node); it is the one of least squares
+/// for a few nodes spread over the body, so that a body that moves as a whole, and stretches evenly, leaves
+/// no residual at all.
 class BodyMotion {
  public:
   void resize(int nodes);
@@ -28,8 +30,8 @@ class BodyMotion {
   int count_ = 0;
   Table now_, then_;
   std::vector<int> samples_;
-  Vec3 middle_ = Vec3::Zero();         // of the samples, then
-  Points coefficients_;                // q = M^-1 (x_then - middle): see proxy_set.cpp
+  Vec3 middle_ = Vec3::Zero();  // of the samples, then
+  Points coefficients_;         // q = M^-1 (x_then - middle): see proxy_set.cpp
   Mat3 linear_ = Mat3::Identity();
   Vec3 offset_ = Vec3::Zero();
   double residual_ = 0.0;

@@ -23,7 +23,8 @@ struct Span {
   int dimension = 0;
 };
 
-// Each axis points to the point that is farthest from what the axes so far span; what is left within kFlat of the size is rounding, or flat to any use.
+// Each axis points to the point that is farthest from what the axes so far span; what is left within kFlat of
+// the size is rounding, or flat to any use.
 Span span(const Points& points) {
   constexpr double kFlat = 1e-7;
   Span out{points.col(0), Mat3::Zero(), 0};
@@ -43,7 +44,8 @@ Span span(const Points& points) {
   return out;
 }
 
-/// What Qhull says of points in the plane or in space: facets (normal, offset), extreme points, volume or area.
+/// What Qhull says of points in the plane or in space: facets (normal, offset), extreme points, volume or
+/// area.
 struct Facets {
   std::vector<std::array<double, 4>> planes;  // inside is normal . x + offset <= 0
   std::vector<int> corners;
@@ -63,8 +65,10 @@ class Qhull {
 
   Facets run(int dimension, MatX& coordinates) {
     char command[] = "qhull Pp";
-    const int failed = qh_new_qhull(&qh_, dimension, static_cast<int>(coordinates.cols()), coordinates.data(), False, command, nullptr, log_.get());
-    PALPATE_CHECK(failed == 0, "Qhull gave code {} for {} points in {} dimensions", failed, coordinates.cols(), dimension);
+    const int failed = qh_new_qhull(&qh_, dimension, static_cast<int>(coordinates.cols()), coordinates.data(),
+                                    False, command, nullptr, log_.get());
+    PALPATE_CHECK(failed == 0, "Qhull gave code {} for {} points in {} dimensions", failed,
+                  coordinates.cols(), dimension);
     Facets out;
     qh_getarea(&qh_, qh_.facet_list);
     out.content = qh_.totvol;
@@ -74,7 +78,8 @@ class Qhull {
       plane[3] = facet->offset;
       out.planes.push_back(plane);
     }
-    for (vertexT* vertex = qh_.vertex_list; vertex && vertex->next; vertex = vertex->next) out.corners.push_back(qh_pointid(&qh_, vertex->point));
+    for (vertexT* vertex = qh_.vertex_list; vertex && vertex->next; vertex = vertex->next)
+      out.corners.push_back(qh_pointid(&qh_, vertex->point));
     std::sort(out.corners.begin(), out.corners.end());
     return out;
   }
@@ -89,9 +94,11 @@ class Qhull {
 
 }  // namespace
 
-// In the coordinates y = axes^T (x - origin) / size of its span a facet reads n . y + o <= 0, which is (axes n) . x <= (axes n) . origin - o size.
+// In the coordinates y = axes^T (x - origin) / size of its span a facet reads n . y + o <= 0, which is (axes
+// n) . x <= (axes n) . origin - o size.
 ConvexHull convex_hull(const Points& points) {
-  PALPATE_CHECK(points.cols() > 0 && points.allFinite(), "convex hull of {} points, or not finite ones", points.cols());
+  PALPATE_CHECK(points.cols() > 0 && points.allFinite(), "convex hull of {} points, or not finite ones",
+                points.cols());
   const Span in = span(points);
   const int d = in.dimension;
   MatX y = in.axes.leftCols(d).transpose() * (points.colwise() - in.origin);
@@ -131,7 +138,8 @@ std::vector<int> greedy_corners(const Points& points, int count, double toleranc
   const std::vector<int> extreme = convex_hull(points).corners;
   if (static_cast<int>(extreme.size()) <= count) return extreme;
   std::set<int> taken;
-  for (int axis = 0; axis < 3 && static_cast<int>(taken.size()) + 2 <= count; ++axis) {  // the ends along the axes: where most hulls reach farthest
+  // the ends along the axes: where most hulls reach farthest
+  for (int axis = 0; axis < 3 && static_cast<int>(taken.size()) + 2 <= count; ++axis) {
     const auto along = [&](int i, int j) { return points(axis, i) < points(axis, j); };
     const auto [low, high] = std::minmax_element(extreme.begin(), extreme.end(), along);
     taken.insert({*low, *high});

@@ -1,17 +1,21 @@
-// The solid B is cut by planes into B in C_1, B in C_2, ..., the cells C boxes that tile a box around it.  What one cell holds, P = closure(int B in int C), is in
-// the hull of its extreme points (Krein and Milman 1940), and there are few of them.  Where such a point e is inside B, P is near e what C is, so e is a corner of
-// C.  Where it is on the surface and a face of that goes on into the cell, e is in the part of the face that lies in the cell.  Where none does, the cell near e is
-// all solid, and e a corner of C again.  So
+// The solid B is cut by planes into B in C_1, B in C_2, ..., the cells C boxes that tile a box around it.
+// What one cell holds, P = closure(int B in int C), is in the hull of its extreme points (Krein and Milman
+// 1940), and there are few of them.  Where such a point e is inside B, P is near e what C is, so e is a
+// corner of C.  Where it is on the surface and a face of that goes on into the cell, e is in the part of the
+// face that lies in the cell.  Where none does, the cell near e is all solid, and e a corner of C again.  So
 //
-//   P is in the hull of { the corners of the faces' parts in C } and { the corners of C that are in B or on it },
+//   P is in the hull of { the corners of the faces' parts in C } and { the corners of C that are in B or on
+//   it },
 //
-// and whether a corner is solid towards the cell is asked one small step into it: where the surface comes nearer than that, the corner is missed by no more.
-// A proxy's hull is that of these points and of the faces that it owns, whole, or rather of a few of them that lie farthest out.  How far the others are outside is what
-// ProxyHull::outside says, and what ProxySet finds for the members.
+// and whether a corner is solid towards the cell is asked one small step into it: where the surface comes
+// nearer than that, the corner is missed by no more. A proxy's hull is that of these points and of the faces
+// that it owns, whole, or rather of a few of them that lie farthest out.  How far the others are outside is
+// what ProxyHull::outside says, and what ProxySet finds for the members.
 //
-// Where to cut.  From a point of the surface along its normal the hull is left at once where the solid is convex, and late where a hollow is in front: the gap of
-// HullQuality, whose integral over the surface is about the hollow's volume.  The piece with the largest hollow is cut across one of the three axes, in its middle
-// or, where that leaves clearly less of a hollow in the two together, at the point of the largest gap.
+// Where to cut.  From a point of the surface along its normal the hull is left at once where the solid is
+// convex, and late where a hollow is in front: the gap of HullQuality, whose integral over the surface is
+// about the hollow's volume.  The piece with the largest hollow is cut across one of the three axes, in its
+// middle or, where that leaves clearly less of a hollow in the two together, at the point of the largest gap.
 #include "palpate/proxy/decompose_solid.h"
 
 #include <algorithm>
@@ -30,11 +34,11 @@
 namespace palpate::proxy {
 namespace {
 
-constexpr double kFlat = 1e-9;  // of the solid's size: in a plane
-constexpr double kStep = 1e-7;  // of the solid's size: into a cell
-constexpr int kLooks = 1000;    // polygons of a piece that say whether to cut it
-constexpr int kGlances = 600;   // and where
-constexpr int kDirections = 64; // in which its farthest points stand for its hull
+constexpr double kFlat = 1e-9;   // of the solid's size: in a plane
+constexpr double kStep = 1e-7;   // of the solid's size: into a cell
+constexpr int kLooks = 1000;     // polygons of a piece that say whether to cut it
+constexpr int kGlances = 600;    // and where
+constexpr int kDirections = 64;  // in which its farthest points stand for its hull
 
 Points columns(const std::vector<Vec3>& points) {
   Points out(3, static_cast<Eigen::Index>(points.size()));
@@ -42,7 +46,8 @@ Points columns(const std::vector<Vec3>& points) {
   return out;
 }
 
-/// Those of some points that lie farthest in `count` directions, on a spiral of Fibonacci, of a space in which they reach equally far along the axes.
+/// Those of some points that lie farthest in `count` directions, on a spiral of Fibonacci, of a space in
+/// which they reach equally far along the axes.
 std::vector<int> farthest_points(const Points& points, int count) {
   const Vec3 extent = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
   const Vec3 scale = extent.cwiseMax(1e-6 * extent.maxCoeff()).cwiseInverse();
@@ -50,7 +55,8 @@ std::vector<int> farthest_points(const Points& points, int count) {
   columns.append(points);
   std::vector<int> out;
   for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / count, turn = i * M_PI * (3.0 - std::sqrt(5.0)), r = std::sqrt(1.0 - z * z);
+    const double z = 1.0 - (2.0 * i + 1.0) / count, turn = i * M_PI * (3.0 - std::sqrt(5.0)),
+                 r = std::sqrt(1.0 - z * z);
     const Vec3 direction = Vec3(r * std::cos(turn), r * std::sin(turn), z).cwiseProduct(scale);
     const int at = farthest(columns.read(0), columns.size(), direction.data());
     out.push_back(at < points.cols() ? at : 0);
@@ -61,12 +67,14 @@ std::vector<int> farthest_points(const Points& points, int count) {
 }
 
 struct Solid {
-  TriMesh surface;               // in its principal axes
+  TriMesh surface;  // in its principal axes
   std::vector<int> all_faces;
   Box box;
   double size = 0.0;
 
-  bool holds(const Vec3& point) const { return std::abs(mesh::winding_number(surface, all_faces, point)) > 0.5; }
+  bool holds(const Vec3& point) const {
+    return std::abs(mesh::winding_number(surface, all_faces, point)) > 0.5;
+  }
 };
 
 /// Where the hull stands off a piece.
@@ -91,7 +99,8 @@ SolidPiece thinned(const SolidPiece& piece, std::size_t most) {
 
 ConvexHull hull_of(const SolidPiece& piece) {
   std::vector<Vec3> points;
-  for (const Polygon& polygon : piece.surface) points.insert(points.end(), polygon.corner.begin(), polygon.corner.begin() + polygon.count);
+  for (const Polygon& polygon : piece.surface)
+    points.insert(points.end(), polygon.corner.begin(), polygon.corner.begin() + polygon.count);
   const Points all = columns(points);
   return convex_hull(all(Eigen::all, farthest_points(all, kDirections)));
 }
@@ -134,7 +143,8 @@ std::vector<SolidPiece> best_cut(const Measured& from, const Solid& solid) {
   for (const bool at_deepest : {false, true})
     for (int turn = 0; turn < 3; ++turn) {
       const int axis = (longest + turn) % 3;
-      const double at = at_deepest ? from.hollow.deepest[axis] : 0.5 * (low[axis] + high[axis]), margin = kMargin * (high[axis] - low[axis]);
+      const double at = at_deepest ? from.hollow.deepest[axis] : 0.5 * (low[axis] + high[axis]),
+                   margin = kMargin * (high[axis] - low[axis]);
       if (at < low[axis] + margin || at > high[axis] - margin) continue;
       const auto halves = cut(some, solid.surface, axis, at, kFlat * solid.size);
       if (halves[0].surface.empty() || halves[1].surface.empty()) continue;
@@ -153,8 +163,12 @@ std::vector<SolidPiece> cut_up(const Solid& solid, const SolidOptions& options) 
   std::vector<Measured> pieces;
   pieces.push_back(measured(whole_piece(solid.surface)));
   while (static_cast<int>(pieces.size()) < options.count) {
-    const auto hollow = [&](const Measured& one) { return one.hollow.gap > options.tolerance * solid.size ? one.hollow.volume : 0.0; };
-    const auto worst = std::max_element(pieces.begin(), pieces.end(), [&](const Measured& a, const Measured& b) { return hollow(a) < hollow(b); });
+    const auto hollow = [&](const Measured& one) {
+      return one.hollow.gap > options.tolerance * solid.size ? one.hollow.volume : 0.0;
+    };
+    const auto worst =
+        std::max_element(pieces.begin(), pieces.end(),
+                         [&](const Measured& a, const Measured& b) { return hollow(a) < hollow(b); });
     if (hollow(*worst) == 0.0) break;
     auto halves = best_cut(*worst, solid);
     if (halves.empty()) {
@@ -181,8 +195,11 @@ ProxyHull proxy_of(const SolidPiece& piece, const Solid& solid, const SolidOptio
       for (int k = 0; k < polygon.count; ++k) inner.push_back(polygon.corner[static_cast<std::size_t>(k)]);
   const Vec3 middle = 0.5 * (piece.cell.low + piece.cell.high);
   for (int i = 0; i < 8; ++i) {
-    const Vec3 corner(i & 1 ? piece.cell.low.x() : piece.cell.high.x(), i & 2 ? piece.cell.low.y() : piece.cell.high.y(), i & 4 ? piece.cell.low.z() : piece.cell.high.z());
-    if (solid.box.high.cwiseEqual(corner).any() || solid.box.low.cwiseEqual(corner).any()) continue;  // no solid beyond: the surface is here
+    const Vec3 corner(i & 1 ? piece.cell.low.x() : piece.cell.high.x(),
+                      i & 2 ? piece.cell.low.y() : piece.cell.high.y(),
+                      i & 4 ? piece.cell.low.z() : piece.cell.high.z());
+    // no solid beyond: the surface is here
+    if (solid.box.high.cwiseEqual(corner).any() || solid.box.low.cwiseEqual(corner).any()) continue;
     if (solid.holds(corner + kStep * solid.size * (middle - corner).normalized())) inner.push_back(corner);
   }
   const auto members = static_cast<Eigen::Index>(out.members.size());
@@ -194,7 +211,8 @@ ProxyHull proxy_of(const SolidPiece& piece, const Solid& solid, const SolidOptio
   const ConvexHull hull = convex_hull(out.corners);
   const Hull whole(out.corners);
   for (const Vec3& x : inner)
-    if (hull.beyond(x) > 0.0) out.outside = std::max(out.outside, nearest_difference(Hull(Points(x)), whole).norm());
+    if (hull.beyond(x) > 0.0)
+      out.outside = std::max(out.outside, nearest_difference(Hull(Points(x)), whole).norm());
   out.outside += kStep * solid.size;
   return out;
 }
@@ -202,13 +220,16 @@ ProxyHull proxy_of(const SolidPiece& piece, const Solid& solid, const SolidOptio
 void check(const TriMesh& surface, const SolidOptions& options) {
   if (surface.faces.cols() == 0) fail("convex decomposition: the surface has no faces");
   if (options.count < 1) fail("convex decomposition: {} hulls; ask for one at least", options.count);
-  if (options.max_corners < 4) fail("convex decomposition: hulls of {} corners; 4 at least", options.max_corners);
-  if (!(options.tolerance >= 0.0)) fail("convex decomposition: tolerance = {} must not be negative", options.tolerance);
+  if (options.max_corners < 4)
+    fail("convex decomposition: hulls of {} corners; 4 at least", options.max_corners);
+  if (!(options.tolerance >= 0.0))
+    fail("convex decomposition: tolerance = {} must not be negative", options.tolerance);
 }
 
 }  // namespace
 
-std::vector<ProxyHull> decompose_solid(const TriMesh& surface, const SolidOptions& options, DecomposeReport* report) {
+std::vector<ProxyHull> decompose_solid(const TriMesh& surface, const SolidOptions& options,
+                                       DecomposeReport* report) {
   check(surface, options);
   const Mat3 axes = principal_axes(surface);
   Solid solid;

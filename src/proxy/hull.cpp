@@ -13,8 +13,9 @@ struct Simplex {
   int count = 0;
 };
 
-/// The point nearest to the origin of the hull of N + 1 points: p0 + E l with l = -(E^T E)^-1 E^T p0, E = [p1 - p0, ...].
-/// False when it lies outside (fewer of the points then have it) or they are degenerate: det(E^T E) over the product of its diagonal is 1 for edges at right
+/// The point nearest to the origin of the hull of N + 1 points: p0 + E l with l = -(E^T E)^-1 E^T p0, E = [p1
+/// - p0, ...]. False when it lies outside (fewer of the points then have it) or they are degenerate:
+///   det(E^T E) over the product of its diagonal is 1 for edges at right
 /// angles (Hadamard), the square of the angle's sine for two.
 template <int N>
 bool nearest_of(const Simplex& s, const int* index, Vec3& nearest) {
@@ -78,8 +79,9 @@ void Hull::assign(const Eigen::Ref<const Points>& points, const Vec3& origin, do
   centre_ /= static_cast<double>(points.cols());
 }
 
-// v is a point of the convex set C = a - b, s = argmin over C of v.s; v.v - v.s bounds how much nearer the origin another point can be.
-// s joins the simplex that carries v, and the next v is the nearest point of that.
+// v is a point of the convex set C = a - b, s = argmin over C of v.s; v.v - v.s bounds how much nearer the
+// origin another point can be. s joins the simplex that carries v, and the next v is the nearest point of
+// that.
 Vec3 nearest_difference(const Hull& a, const Hull& b) {
   constexpr int kMaxSteps = 100;
   constexpr double kRelativeGap = 1e-9;

@@ -16,7 +16,8 @@ class Hull {
   const Vec3& centre() const { return centre_; }
   /// Its point farthest along a direction; the first of equals.
   Vec3 support(const Vec3& direction) const {
-    const auto i = static_cast<std::size_t>(farthest({x_.data(), y_.data(), z_.data()}, static_cast<int>(x_.size()), direction.data()));
+    const auto i = static_cast<std::size_t>(
+        farthest({x_.data(), y_.data(), z_.data()}, static_cast<int>(x_.size()), direction.data()));
     return {x_[i], y_[i], z_[i]};
   }
 
@@ -25,7 +26,8 @@ class Hull {
   Vec3 centre_ = Vec3::Zero();
 };
 
-/// Depth along a unit direction n from b to a: how far a must move along n to be clear of b; negative when it is.
+/// Depth along a unit direction n from b to a: how far a must move along n to be clear of b; negative when it
+/// is.
 struct DepthAlong {
   double depth;
   Vec3 lowest_a, highest_b;
@@ -35,7 +37,8 @@ inline DepthAlong depth_along(const Hull& a, const Hull& b, const Vec3& n) {
   return {n.dot(high - low), low, high};
 }
 
-/// The algorithm of Gilbert, Johnson and Keerthi (1988) on the difference a - b: its point nearest to the origin (the direction is judged by the caller:
+/// The algorithm of Gilbert, Johnson and Keerthi (1988) on the difference a - b: its point nearest to the
+/// origin (the direction is judged by the caller:
 /// every direction with negative depth proves that the hulls are apart).  Zero where the hulls overlap.
 Vec3 nearest_difference(const Hull& a, const Hull& b);
 

@@ -11,7 +11,8 @@
 namespace palpate::proxy {
 namespace {
 
-HullQuality quality(const ProxyHull& proxy, const Points& vertices, const Points& normals, const VecX& areas) {
+HullQuality quality(const ProxyHull& proxy, const Points& vertices, const Points& normals,
+                    const VecX& areas) {
   const ConvexHull hull = convex_hull(proxy.corners);
   HullQuality out;
   out.volume = hull.volume;
@@ -38,7 +39,8 @@ HullQuality quality(const ProxyHull& proxy, const Points& vertices, const Points
 double gap_along(const ConvexHull& hull, const Vec3& x, const Vec3& m) {
   double gap = std::numeric_limits<double>::infinity();
   for (Eigen::Index f = 0; f < hull.normals.cols(); ++f)
-    if (const double ahead = hull.normals.col(f).dot(m); ahead > 1e-12) gap = std::min(gap, (hull.offsets[f] - hull.normals.col(f).dot(x)) / ahead);
+    if (const double ahead = hull.normals.col(f).dot(m); ahead > 1e-12)
+      gap = std::min(gap, (hull.offsets[f] - hull.normals.col(f).dot(x)) / ahead);
   return std::isfinite(gap) ? std::max(gap, 0.0) : 0.0;
 }
 

@@ -7,13 +7,14 @@
 namespace palpate::proxy {
 namespace {
 
-// GCC's vectors become whatever registers the function's target has.  Sums are formed lane by lane; with fused multiply-add their last bits differ
-// between targets, which moves a bound by rounding and no force.
+// GCC's vectors become whatever registers the function's target has.  Sums are formed lane by lane; with
+// fused multiply-add their last bits differ between targets, which moves a bound by rounding and no force.
 typedef double Pack __attribute__((vector_size(8 * kLanes)));
 typedef double PackInMemory __attribute__((vector_size(8 * kLanes), may_alias, aligned(8)));
 typedef long long Mask __attribute__((vector_size(8 * kLanes)));
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(__SANITIZE_ADDRESS__)
 #define PALPATE_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define PALPATE_CLONES
@@ -26,7 +27,8 @@ typedef long long Mask __attribute__((vector_size(8 * kLanes)));
   Mask where = {}, here = {};
   for (int lane = 0; lane < kLanes; ++lane) here[lane] = lane;
   for (int i = 0; i < count; i += kLanes, here += kLanes) {
-    const Pack along = d[0] * PALPATE_LOAD(p.x + i) + d[1] * PALPATE_LOAD(p.y + i) + d[2] * PALPATE_LOAD(p.z + i);
+    const Pack along =
+        d[0] * PALPATE_LOAD(p.x + i) + d[1] * PALPATE_LOAD(p.y + i) + d[2] * PALPATE_LOAD(p.z + i);
     const Mask more = along > most;
     most = more ? along : most;
     where = more ? here : where;
@@ -40,11 +42,13 @@ typedef long long Mask __attribute__((vector_size(8 * kLanes)));
 [[gnu::always_inline]] inline double most_along_inline(Columns p, int count, const double d[3]) {
   Pack most = Pack{} - std::numeric_limits<double>::infinity();
   for (int i = 0; i < count; i += kLanes) {
-    const Pack along = d[0] * PALPATE_LOAD(p.x + i) + d[1] * PALPATE_LOAD(p.y + i) + d[2] * PALPATE_LOAD(p.z + i);
+    const Pack along =
+        d[0] * PALPATE_LOAD(p.x + i) + d[1] * PALPATE_LOAD(p.y + i) + d[2] * PALPATE_LOAD(p.z + i);
     most = along > most ? along : most;
   }
   const auto greater = [](double a, double b) { return a > b ? a : b; };
-  return greater(greater(greater(most[0], most[1]), greater(most[2], most[3])), greater(greater(most[4], most[5]), greater(most[6], most[7])));
+  return greater(greater(greater(most[0], most[1]), greater(most[2], most[3])),
+                 greater(greater(most[4], most[5]), greater(most[6], most[7])));
 }
 
 }  // namespace
@@ -73,7 +77,8 @@ PALPATE_CLONES void moments(Columns p, Columns q, int count, double sums[12]) {
   }
 }
 
-PALPATE_CLONES double residuals(Columns p, Columns rest, int count, const double a[9], const double o[3], double* squares) {
+PALPATE_CLONES double residuals(Columns p, Columns rest, int count, const double a[9], const double o[3],
+                                double* squares) {
   Pack most = {}, total = {};
   for (int i = 0; i < count; i += kLanes) {
     const Pack x = PALPATE_LOAD(rest.x + i), y = PALPATE_LOAD(rest.y + i), z = PALPATE_LOAD(rest.z + i);
@@ -90,16 +95,19 @@ PALPATE_CLONES double residuals(Columns p, Columns rest, int count, const double
     out = std::max(out, most[lane]);
     sum += total[lane];
   }
-  return std::isfinite(sum) ? out : std::numeric_limits<double>::quiet_NaN();  // comparisons do not see what is not a number
+  // comparisons do not see what is not a number
+  return std::isfinite(sum) ? out : std::numeric_limits<double>::quiet_NaN();
 }
 
-PALPATE_CLONES void move(Columns rest, int count, const double a[9], const double o[3], MutableColumns out, double low[3], double high[3]) {
+PALPATE_CLONES void move(Columns rest, int count, const double a[9], const double o[3], MutableColumns out,
+                         double low[3], double high[3]) {
   const double infinity = std::numeric_limits<double>::infinity();
   double* const columns[3] = {out.x, out.y, out.z};
   for (int k = 0; k < 3; ++k) {
     Pack least = Pack{} + infinity, most = Pack{} - infinity;
     for (int i = 0; i < count; i += kLanes) {
-      const Pack value = o[k] + a[3 * k] * PALPATE_LOAD(rest.x + i) + a[3 * k + 1] * PALPATE_LOAD(rest.y + i) + a[3 * k + 2] * PALPATE_LOAD(rest.z + i);
+      const Pack value = o[k] + a[3 * k] * PALPATE_LOAD(rest.x + i) +
+                         a[3 * k + 1] * PALPATE_LOAD(rest.y + i) + a[3 * k + 2] * PALPATE_LOAD(rest.z + i);
       PALPATE_STORE(columns[k] + i, value);
       least = value < least ? value : least;
       most = value > most ? value : most;
@@ -115,13 +123,17 @@ PALPATE_CLONES void move(Columns rest, int count, const double a[9], const doubl
 
 PALPATE_CLONES int farthest(Columns p, int count, const double d[3]) { return farthest_inline(p, count, d); }
 
-PALPATE_CLONES double most_along(Columns p, int count, const double d[3]) { return most_along_inline(p, count, d); }
+PALPATE_CLONES double most_along(Columns p, int count, const double d[3]) {
+  return most_along_inline(p, count, d);
+}
 
 // Loads as wide as the lanes, then two shuffles a coordinate.
-PALPATE_CLONES double take(const double* points, int stride, int count, Columns then, const double a[9], const double o[3], MutableColumns out) {
+PALPATE_CLONES double take(const double* points, int stride, int count, Columns then, const double a[9],
+                           const double o[3], MutableColumns out) {
   static_assert(kLanes == 8);
   Pack most = {}, total = {};
-  const auto measure = [&](int i, const Pack& px, const Pack& py, const Pack& pz) __attribute__((always_inline)) {
+  const auto measure = [&](int i, const Pack& px, const Pack& py, const Pack& pz)
+      __attribute__((always_inline)) {
     const Pack x = PALPATE_LOAD(then.x + i), y = PALPATE_LOAD(then.y + i), z = PALPATE_LOAD(then.z + i);
     PALPATE_STORE(out.x + i, px);
     PALPATE_STORE(out.y + i, py);
@@ -137,9 +149,11 @@ PALPATE_CLONES double take(const double* points, int stride, int count, Columns 
   for (; stride == 3 && i + kLanes <= count; i += kLanes) {
     const double* p = points + 3 * static_cast<long>(i);
     const Pack p0 = PALPATE_LOAD(p), p1 = PALPATE_LOAD(p + 8), p2 = PALPATE_LOAD(p + 16);
-    const Pack x = __builtin_shufflevector(p0, p1, 0, 3, 6, 9, 12, 15, 0, 0), y = __builtin_shufflevector(p0, p1, 1, 4, 7, 10, 13, 0, 0, 0),
+    const Pack x = __builtin_shufflevector(p0, p1, 0, 3, 6, 9, 12, 15, 0, 0),
+               y = __builtin_shufflevector(p0, p1, 1, 4, 7, 10, 13, 0, 0, 0),
                z = __builtin_shufflevector(p0, p1, 2, 5, 8, 11, 14, 0, 0, 0);
-    measure(i, __builtin_shufflevector(x, p2, 0, 1, 2, 3, 4, 5, 10, 13), __builtin_shufflevector(y, p2, 0, 1, 2, 3, 4, 8, 11, 14),
+    measure(i, __builtin_shufflevector(x, p2, 0, 1, 2, 3, 4, 5, 10, 13),
+            __builtin_shufflevector(y, p2, 0, 1, 2, 3, 4, 8, 11, 14),
             __builtin_shufflevector(z, p2, 0, 1, 2, 3, 4, 9, 12, 15));
   }
   for (; i < count; i += kLanes) {
@@ -160,10 +174,11 @@ PALPATE_CLONES double take(const double* points, int stride, int count, Columns 
   return std::isfinite(sum) ? largest : std::numeric_limits<double>::quiet_NaN();
 }
 
-PALPATE_CLONES void gather(Columns p, const int* index, int count, const double origin[3], MutableColumns out) {
+PALPATE_CLONES void gather(Columns p, const int* index, int count, const double origin[3],
+                           MutableColumns out) {
   const double ox = origin[0], oy = origin[1], oz = origin[2];
   const double *px = p.x, *py = p.y, *pz = p.z;
-  double *__restrict x = out.x, *__restrict y = out.y, *__restrict z = out.z;
+  double* __restrict x = out.x, * __restrict y = out.y, * __restrict z = out.z;
   for (int i = 0; i < count; ++i) {
     x[i] = px[index[i]] - ox;
     y[i] = py[index[i]] - oy;
@@ -171,26 +186,34 @@ PALPATE_CLONES void gather(Columns p, const int* index, int count, const double 
   }
 }
 
-PALPATE_CLONES void balls_beyond(const double d[3], double limit, Columns c, const double* radii, int count, unsigned char* near) {
+PALPATE_CLONES void balls_beyond(const double d[3], double limit, Columns c, const double* radii, int count,
+                                 unsigned char* near) {
   for (int i = 0; i < count; i += kLanes) {
-    const Mask beyond = d[0] * PALPATE_LOAD(c.x + i) + d[1] * PALPATE_LOAD(c.y + i) + d[2] * PALPATE_LOAD(c.z + i) - PALPATE_LOAD(radii + i) > limit;
+    const Mask beyond = d[0] * PALPATE_LOAD(c.x + i) + d[1] * PALPATE_LOAD(c.y + i) +
+                            d[2] * PALPATE_LOAD(c.z + i) - PALPATE_LOAD(radii + i) >
+                        limit;
     for (int lane = 0; lane < kLanes; ++lane) near[i + lane] = near[i + lane] && !beyond[lane];
   }
 }
 
-// Lane by lane: v from a point w of the hull to the ball's centre, and the corner s farthest along v.  v.c - v.s > reach |v| proves the ball apart; |v| <= reach that
-// it is near; else w goes toward s as far as |v| falls.
-PALPATE_CLONES void balls_near(const HullColumns& hull, Columns c, const double* radii, int count, int steps, unsigned char* near) {
+// Lane by lane: v from a point w of the hull to the ball's centre, and the corner s farthest along v.  v.c -
+// v.s > reach |v| proves the ball apart; |v| <= reach that it is near; else w goes toward s as far as |v|
+// falls.
+PALPATE_CLONES void balls_near(const HullColumns& hull, Columns c, const double* radii, int count, int steps,
+                               unsigned char* near) {
   const Pack zero = {}, one = zero + 1.0;
-  Pack wx = zero + hull.inside[0], wy = zero + hull.inside[1], wz = zero + hull.inside[2];  // handed on: neighbours in the list are neighbours in space
+  // handed on: neighbours in the list are neighbours in space
+  Pack wx = zero + hull.inside[0], wy = zero + hull.inside[1], wz = zero + hull.inside[2];
   const auto any = [](const Mask& mask) __attribute__((always_inline)) {
     long long all = 0;
     for (int lane = 0; lane < kLanes; ++lane) all |= mask[lane];
     return all != 0;
   };
   for (int i = 0; i < count; i += kLanes) {
-    const Pack cx = PALPATE_LOAD(c.x + i), cy = PALPATE_LOAD(c.y + i), cz = PALPATE_LOAD(c.z + i), r = PALPATE_LOAD(radii + i), reach = r + hull.margin;
-    Mask apart = (hull.low[0] - cx > r) | (hull.low[1] - cy > r) | (hull.low[2] - cz > r) | (cx - hull.high[0] > r) | (cy - hull.high[1] > r) | (cz - hull.high[2] > r);
+    const Pack cx = PALPATE_LOAD(c.x + i), cy = PALPATE_LOAD(c.y + i), cz = PALPATE_LOAD(c.z + i),
+               r = PALPATE_LOAD(radii + i), reach = r + hull.margin;
+    Mask apart = (hull.low[0] - cx > r) | (hull.low[1] - cy > r) | (hull.low[2] - cz > r) |
+                 (cx - hull.high[0] > r) | (cy - hull.high[1] > r) | (cz - hull.high[2] > r);
     Mask open = ~apart;
     for (int step = 0; step < steps && any(open); ++step) {
       const Pack vx = cx - wx, vy = cy - wy, vz = cz - wz, length2 = vx * vx + vy * vy + vz * vz;

@@ -1,5 +1,6 @@
-// The bound of proxy_set.cpp for a patch of skin, at rest in a ball of centre c and radius r: its faces are within |F|_2 r + s D of F c + t, with the D of the whole
-// proxy, or, which is less where a dent is elsewhere on it, with that of the nodes that the patch's vertices hang on.
+// The bound of proxy_set.cpp for a patch of skin, at rest in a ball of centre c and radius r: its faces are
+// within |F|_2 r + s D of F c + t, with the D of the whole proxy, or, which is less where a dent is elsewhere
+// on it, with that of the nodes that the patch's vertices hang on.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,11 +13,14 @@ void ProxySet::Impl::ready_balls(int proxy) {
   const auto at = static_cast<std::size_t>(proxy);
   const ProxyState& state = ready(proxy);
   if (std::exchange(balls_at[at], moment) == moment) return;
-  const int first = first_ball[at], lanes = (at + 1 < first_ball.size() ? first_ball[at + 1] : rest_balls.size()) - first;
+  const int first = first_ball[at],
+            lanes = (at + 1 < first_ball.size() ? first_ball[at + 1] : rest_balls.size()) - first;
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = state.linear;
   double low[3], high[3];
   move(rest_balls.read(first), lanes, rows.data(), state.offset.data(), balls.write(first), low, high);
-  for (int i = first; i < first + lanes; ++i) radius[static_cast<std::size_t>(i)] = state.stretch * rest_radius[static_cast<std::size_t>(i)] + state.residual;
+  for (int i = first; i < first + lanes; ++i)
+    radius[static_cast<std::size_t>(i)] =
+        state.stretch * rest_radius[static_cast<std::size_t>(i)] + state.residual;
 }
 
 /// Replaces the proxy's residual by that of the patch's own nodes, where it is not small anyway.
@@ -31,27 +35,37 @@ void ProxySet::Impl::measure(int number) {
   for (int i = patch.first_slot; i < patch.first_slot + patch.slot_count; ++i)
     most = std::max(most, squares[static_cast<std::size_t>(patch_slots[static_cast<std::size_t>(i)])]);
   const int ball = ball_of_patch[static_cast<std::size_t>(number)];
-  radius[static_cast<std::size_t>(ball)] = state.stretch * patch.radius + patch.weight_sum * std::sqrt(most) + 1e-13 * balls.point(ball).cwiseAbs().maxCoeff();
+  radius[static_cast<std::size_t>(ball)] = state.stretch * patch.radius + patch.weight_sum * std::sqrt(most) +
+                                           1e-13 * balls.point(ball).cwiseAbs().maxCoeff();
 }
 
-void ProxySet::patches_near(int proxy, const ProxySet& other, int hull, double gap, const Vec3& toward, std::span<const unsigned char> known, std::vector<int>& out) const {
+void ProxySet::patches_near(int proxy, const ProxySet& other, int hull, double gap, const Vec3& toward,
+                            std::span<const unsigned char> known, std::vector<int>& out) const {
   constexpr int kQuickSteps = 2, kSteps = 4;
   Impl& s = *impl_;
   s.ready_balls(proxy);
   const ProxyState& state = s.states[static_cast<std::size_t>(proxy)];
   const ProxyState& grown = other.state(hull);
   const double margin = grown.inflation + gap;
-  const int first = s.first_ball[static_cast<std::size_t>(proxy)], first_patch = s.skin.first_of_proxy[static_cast<std::size_t>(proxy)];
+  const int first = s.first_ball[static_cast<std::size_t>(proxy)],
+            first_patch = s.skin.first_of_proxy[static_cast<std::size_t>(proxy)];
   const int count = s.skin.first_of_proxy[static_cast<std::size_t>(proxy) + 1] - first_patch;
-  for (int i = 0; i < padded(count); ++i) s.near[static_cast<std::size_t>(i)] = i < count && !known[static_cast<std::size_t>(first_patch + i)];
+  for (int i = 0; i < padded(count); ++i)
+    s.near[static_cast<std::size_t>(i)] = i < count && !known[static_cast<std::size_t>(first_patch + i)];
   const Vec3 between = (centre(proxy) - other.centre(hull)).normalized();
   for (const Vec3& direction : {toward, between})
     if (!direction.isZero() && direction.allFinite())
-      balls_beyond(direction.data(), other.most_along(hull, direction) + margin, s.balls.read(first), s.radius.data() + first, padded(count), s.near.data());
+      balls_beyond(direction.data(), other.most_along(hull, direction) + margin, s.balls.read(first),
+                   s.radius.data() + first, padded(count), s.near.data());
 
   const Vec3 low = grown.low.array() - gap, high = grown.high.array() + gap;
-  const HullColumns columns{other.impl_->corners.read(other.impl_->first_corner[static_cast<std::size_t>(hull)]), padded(other.corner_count(hull)), low.data(), high.data(),
-                            other.centre(hull).data(), margin};
+  const HullColumns columns{
+      other.impl_->corners.read(other.impl_->first_corner[static_cast<std::size_t>(hull)]),
+      padded(other.corner_count(hull)),
+      low.data(),
+      high.data(),
+      other.centre(hull).data(),
+      margin};
   int left = 0;
   for (int i = 0; i < count; ++i)
     if (s.near[static_cast<std::size_t>(i)]) s.near_patch[static_cast<std::size_t>(left++)] = first_patch + i;
@@ -66,10 +80,12 @@ void ProxySet::patches_near(int proxy, const ProxySet& other, int hull, double g
       s.near_balls.x[at] = c.x(), s.near_balls.y[at] = c.y(), s.near_balls.z[at] = c.z();
       s.near_radius[at] = s.radius[static_cast<std::size_t>(ball)];
     }
-    balls_near(columns, s.near_balls.read(0), s.near_radius.data(), padded(left), round == static_cast<int>(twice) ? kSteps : kQuickSteps, s.near.data());
+    balls_near(columns, s.near_balls.read(0), s.near_radius.data(), padded(left),
+               round == static_cast<int>(twice) ? kSteps : kQuickSteps, s.near.data());
     int kept = 0;
     for (int i = 0; i < left; ++i)
-      if (s.near[static_cast<std::size_t>(i)]) s.near_patch[static_cast<std::size_t>(kept++)] = s.near_patch[static_cast<std::size_t>(i)];
+      if (s.near[static_cast<std::size_t>(i)])
+        s.near_patch[static_cast<std::size_t>(kept++)] = s.near_patch[static_cast<std::size_t>(i)];
     left = kept;
   }
   out.assign(s.near_patch.begin(), s.near_patch.begin() + left);
@@ -78,7 +94,8 @@ void ProxySet::patches_near(int proxy, const ProxySet& other, int hull, double g
 std::span<const SkinPatch> ProxySet::patches() const { return impl_->skin.patches; }
 
 std::span<const SkinPatch> ProxySet::patches(int proxy) const {
-  const int first = impl_->skin.first_of_proxy[static_cast<std::size_t>(proxy)], end = impl_->skin.first_of_proxy[static_cast<std::size_t>(proxy) + 1];
+  const int first = impl_->skin.first_of_proxy[static_cast<std::size_t>(proxy)],
+            end = impl_->skin.first_of_proxy[static_cast<std::size_t>(proxy) + 1];
   return {impl_->skin.patches.data() + first, static_cast<std::size_t>(end - first)};
 }
 
@@ -92,7 +109,8 @@ Ball ProxySet::ball(const SkinPatch& patch) const {
 // Area vectors turn with the cofactors: n da = cof(F) N dA (Nanson).
 Vec3 ProxySet::area(const SkinPatch& patch) const {
   const Mat3& F = state(patch.proxy).linear;
-  return patch.area.x() * F.col(1).cross(F.col(2)) + patch.area.y() * F.col(2).cross(F.col(0)) + patch.area.z() * F.col(0).cross(F.col(1));
+  return patch.area.x() * F.col(1).cross(F.col(2)) + patch.area.y() * F.col(2).cross(F.col(0)) +
+         patch.area.z() * F.col(0).cross(F.col(1));
 }
 
 std::span<const int> ProxySet::faces(const SkinPatch& patch) const {

@@ -1,26 +1,34 @@
-// The bound.  A vertex of the skin at rest X = sum w_k X_k (weights of its tetrahedron, sum 1) is now at x = sum w_k x_k.  Let the proxy move by
-// g(X) = F X + t, any F and t, and let node k differ from that by d_k = x_k - g(X_k).  Because g is affine and the weights sum to one,
+// The bound.  A vertex of the skin at rest X = sum w_k X_k (weights of its tetrahedron, sum 1) is now at x =
+// sum w_k x_k.  Let the proxy move by g(X) = F X + t, any F and t, and let node k differ from that by d_k =
+// x_k - g(X_k).  Because g is affine and the weights sum to one,
 //
-//   x - g(X) = sum w_k (x_k - g(X_k)) = sum w_k d_k,      |x - g(X)| <= s D,   s = max over the skin of sum |w_k| (1 inside),   D = max over the nodes of |d_k|.
+//   x - g(X) = sum w_k (x_k - g(X_k)) = sum w_k d_k,      |x - g(X)| <= s D,   s = max over the skin of sum
+//   |w_k| (1 inside),   D = max over the nodes of |d_k|.
 //
-// The hull H has few corners, so at rest the vertex may lie outside of it by up to e: X = y + z, y in H, |z| <= e.  Then g(y) lies in the moved hull F H + t
-// (the image of a hull under an affine map is the hull of the images, mirrored and flat ones too), and
+// The hull H has few corners, so at rest the vertex may lie outside of it by up to e: X = y + z, y in H, |z|
+// <= e.  Then g(y) lies in the moved hull F H + t (the image of a hull under an affine map is the hull of the
+// images, mirrored and flat ones too), and
 //
 //   distance of x from F H + t  <=  |x - g(X)| + |g(X) - g(y)|  <=  s D + |F|_2 e  =  the inflation.
 //
-// A node of a tetrahedron that the proxy owns is within |d_k| + |F|_2 e of it, which is no more.  Nothing was asked of F and t: what the nodes did (squashed,
-// inverted, scattered) makes the inflation larger, never wrong.  The best F and t make D small: those of least squares,
+// A node of a tetrahedron that the proxy owns is within |d_k| + |F|_2 e of it, which is no more.  Nothing was
+// asked of F and t: what the nodes did (squashed, inverted, scattered) makes the inflation larger, never
+// wrong.  The best F and t make D small: those of least squares,
 //
 //   t = mean x - F mean X,   F = [sum x_k (X_k - mean X)^T] M^-1,   M = sum (X_k - mean X)(X_k - mean X)^T,
 //
-// where stretch, shear and flattening cost nothing and only what is curved within a proxy counts; or the mean rotation, F = polar factor of the sum in brackets,
-// where strain counts with the proxy's size.  With q_k = M^-1 (X_k - mean X), which sum to zero, F = sum x_k q_k^T from any origin: one pass over the nodes.
+// where stretch, shear and flattening cost nothing and only what is curved within a proxy counts; or the mean
+// rotation, F = polar factor of the sum in brackets, where strain counts with the proxy's size.  With q_k =
+// M^-1 (X_k - mean X), which sum to zero, F = sum x_k q_k^T from any origin: one pass over the nodes.
 //
-// Which are found.  That costs a pass over the nodes of each proxy, and most proxies are nowhere near anything: their boxes say so.  A box that holds all points y
-// of a proxy is kept from time to time, with the positions of all nodes then.  Later x = G x_k,then + h + d_k for each node, G and h any one map for the whole
-// body (body_motion.h), and by the first line again each point of the proxy is at G y + h to within s max |d_k|: it lies in the box around the moved box,
-// of centre G c + h and half edges |G| e, grown by that.  The maximum is one pass over the nodes.  Nothing else depends on what was kept: a proxy whose box may
-// meet something is fitted to the nodes as they are.  Where the boxes have grown by a fifth all are fitted and kept anew.
+// Which are found.  That costs a pass over the nodes of each proxy, and most proxies are nowhere near
+// anything: their boxes say so.  A box that holds all points y of a proxy is kept from time to time, with the
+// positions of all nodes then.  Later x = G x_k,then + h + d_k for each node, G and h any one map for the
+// whole body (body_motion.h), and by the first line again each point of the proxy is at G y + h to within s
+// max |d_k|: it lies in the box around the moved box, of centre G c + h and half edges |G| e, grown by that.
+// The maximum is one pass over the nodes.  Nothing else depends on what was kept: a proxy whose box may meet
+// something is fitted to the nodes as they are.  Where the boxes have grown by a fifth all are fitted and
+// kept anew.
 #include "palpate/proxy/proxy_set.h"
 
 #include <Eigen/LU>
@@ -35,8 +43,9 @@
 namespace palpate::proxy {
 namespace {
 
-/// Spectral norm from the largest root of the characteristic polynomial of C = F^T F, with the trigonometric formula (Smith 1961): with m = tr C / 3,
-/// p^2 = |C - m I|_F^2 / 6 and r = det((C - m I) / p) / 2 it is m + 2 p cos(acos(r) / 3).
+/// Spectral norm from the largest root of the characteristic polynomial of C = F^T F, with the trigonometric
+/// formula (Smith 1961): with m = tr C / 3, p^2 = |C - m I|_F^2 / 6 and r = det((C - m I) / p) / 2 it is m +
+/// 2 p cos(acos(r) / 3).
 double spectral_norm(const Mat3& F) {
   const Mat3 C = F.transpose() * F;
   const double m = C.trace() / 3.0;
@@ -62,14 +71,17 @@ void ProxySet::Impl::gather(const Cloud& cloud, const Vec3& origin) {
   proxy::gather(motion.nodes(), node.data() + cloud.first, cloud.lanes, origin.data(), gathered.write(0));
 }
 
-/// The map of least squares or the mean rotation, from the cloud's nodes as gathered about its first: the entries that fill up the lanes are zero then.
+/// The map of least squares or the mean rotation, from the cloud's nodes as gathered about its first: the
+/// entries that fill up the lanes are zero then.
 void ProxySet::Impl::fit(const Cloud& cloud, ProxyState& state) {
   const Vec3 origin = first_node(cloud);
   gather(cloud, origin);
   double sums[12];
   moments(gathered.read(0), coefficients.read(cloud.first), cloud.lanes, sums);
   const Mat3 F = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(sums + 3);
-  state.linear = options.follow == Follow::kAffine ? F : polar_decomposition(F * (cloud.spread / cloud.spread.trace())).R;
+  state.linear = options.follow == Follow::kAffine
+                     ? F
+                     : polar_decomposition(F * (cloud.spread / cloud.spread.trace())).R;
   state.offset = origin + Eigen::Map<const Vec3>(sums) / cloud.count - state.linear * cloud.middle;
 }
 
@@ -82,8 +94,8 @@ void ProxySet::Impl::place(int proxy, double residual, double reach) {
   state.residual = weight_sum[at] * residual + kRounding * reach;
   state.inflation = state.stretch * outside[at] + state.residual;
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = state.linear;
-  move(rest_corners.read(first_corner[at]), padded(corner_count[at]), rows.data(), state.offset.data(), corners.write(first_corner[at]), state.low.data(),
-       state.high.data());
+  move(rest_corners.read(first_corner[at]), padded(corner_count[at]), rows.data(), state.offset.data(),
+       corners.write(first_corner[at]), state.low.data(), state.high.data());
   state.low.array() -= state.inflation;
   state.high.array() += state.inflation;
   centre[at] = state.linear * rest_centre[at] + state.offset;
@@ -98,7 +110,8 @@ void ProxySet::Impl::refit(int p) {
   if (guide[at].first != cloud.first) gather(cloud, origin);
   const Vec3 relative = state.offset + state.linear * cloud.middle - origin;
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = state.linear;
-  const double most = residuals(gathered.read(0), rest_nodes.read(cloud.first), cloud.lanes, rows.data(), relative.data(), squares.data() + cloud.first);
+  const double most = residuals(gathered.read(0), rest_nodes.read(cloud.first), cloud.lanes, rows.data(),
+                                relative.data(), squares.data() + cloud.first);
   place(p, std::sqrt(most), origin.cwiseAbs().maxCoeff());
   fitted_at[at] = moment;
 }
@@ -121,7 +134,8 @@ double ProxySet::Impl::loosen() {
 void ProxySet::update(const Eigen::Ref<const Points>& nodes) {
   constexpr double kLoose = 1.2;
   Impl& s = *impl_;
-  PALPATE_CHECK(s.soft && nodes.cols() == s.node_count, "{} node positions for proxies of a body of {}", nodes.cols(), s.node_count);
+  PALPATE_CHECK(s.soft && nodes.cols() == s.node_count, "{} node positions for proxies of a body of {}",
+                nodes.cols(), s.node_count);
   ++s.moment;
   s.motion.update(nodes);
   PALPATE_CHECK(std::isfinite(s.motion.residual()), "proxies: the position of a node is not finite");
@@ -130,7 +144,8 @@ void ProxySet::update(const Eigen::Ref<const Points>& nodes) {
     s.kept_size = 0.0;
     for (int p = 0; p < s.count; ++p) {
       const ProxyState& state = s.ready(p);
-      PALPATE_CHECK(std::isfinite(state.inflation) && state.low.allFinite() && state.high.allFinite(), "proxy {}: a position of its nodes is not finite", p);
+      PALPATE_CHECK(std::isfinite(state.inflation) && state.low.allFinite() && state.high.allFinite(),
+                    "proxy {}: a position of its nodes is not finite", p);
       s.kept_boxes[static_cast<std::size_t>(p)] = {state.low, state.high};
       s.kept_size += 0.5 * (state.high - state.low).sum();
     }
@@ -165,13 +180,16 @@ const Vec3& ProxySet::centre(int proxy) const {
 }
 std::span<const ProxyBranch> ProxySet::tree() const { return impl_->tree; }
 
-bool ProxySet::neighbours(int p, int q) const { return impl_->adjacent[static_cast<std::size_t>(p * impl_->count + q)] != 0; }
+bool ProxySet::neighbours(int p, int q) const {
+  return impl_->adjacent[static_cast<std::size_t>(p * impl_->count + q)] != 0;
+}
 
 bool ProxySet::grown_together(int p, int q) const {
   if (neighbours(p, q) || !impl_->soft) return neighbours(p, q);
   const auto nodes = [&](int proxy) {  // ascending
     const Cloud& cloud = impl_->own[static_cast<std::size_t>(proxy)];
-    return std::span(impl_->node).subspan(static_cast<std::size_t>(cloud.first), static_cast<std::size_t>(cloud.count));
+    return std::span(impl_->node)
+        .subspan(static_cast<std::size_t>(cloud.first), static_cast<std::size_t>(cloud.count));
   };
   const auto of_p = nodes(p), of_q = nodes(q);
   for (auto i = of_p.begin(), j = of_q.begin(); i != of_p.end() && j != of_q.end();) {
@@ -196,7 +214,8 @@ Vec3 ProxySet::support(int proxy, const Vec3& direction) const {
 
 double ProxySet::most_along(int proxy, const Vec3& direction) const {
   impl_->ready(proxy);
-  return proxy::most_along(impl_->corners.read(impl_->first_corner[static_cast<std::size_t>(proxy)]), padded(corner_count(proxy)), direction.data());
+  return proxy::most_along(impl_->corners.read(impl_->first_corner[static_cast<std::size_t>(proxy)]),
+                           padded(corner_count(proxy)), direction.data());
 }
 
 }  // namespace palpate::proxy

@@ -31,8 +31,10 @@ Cloud ProxySet::Impl::add_cloud(const TetMesh& tets, const std::vector<int>& nod
   const Points arm = rest.colwise() - cloud.middle;
   cloud.spread = arm * arm.transpose();
   Mat3 M = cloud.spread;
-  if (Eigen::SelfAdjointEigenSolver<Mat3>(M, Eigen::EigenvaluesOnly).eigenvalues()[0] <= kFlat * M.trace()) M += kFlat * M.trace() * Mat3::Identity();
-  for (int i = 0; i < cloud.lanes; ++i) node.push_back(nodes[static_cast<std::size_t>(i < cloud.count ? i : 0)]);
+  if (Eigen::SelfAdjointEigenSolver<Mat3>(M, Eigen::EigenvaluesOnly).eigenvalues()[0] <= kFlat * M.trace())
+    M += kFlat * M.trace() * Mat3::Identity();
+  for (int i = 0; i < cloud.lanes; ++i)
+    node.push_back(nodes[static_cast<std::size_t>(i < cloud.count ? i : 0)]);
   rest_nodes.append(arm);
   coefficients.append_padded_with_zero(M.inverse() * arm);
   largest_cloud = std::max(largest_cloud, cloud.lanes);
@@ -47,14 +49,18 @@ void ProxySet::Impl::add_patch_nodes(const LayeredModel& model) {
     if (patch.proxy != proxy) {
       proxy = patch.proxy;
       const Cloud& cloud = own[static_cast<std::size_t>(proxy)];
-      for (int i = 0; i < cloud.count; ++i) slot_of_node[static_cast<std::size_t>(node[static_cast<std::size_t>(cloud.first + i)])] = cloud.first + i;
+      for (int i = 0; i < cloud.count; ++i)
+        slot_of_node[static_cast<std::size_t>(node[static_cast<std::size_t>(cloud.first + i)])] =
+            cloud.first + i;
     }
     std::vector<int> slots;
     for (int f = patch.first_face; f < patch.first_face + patch.face_count; ++f)
       for (int k = 0; k < 3; ++k) {
         const int v = model.skin.faces(k, skin.faces[static_cast<std::size_t>(f)]);
         patch.weight_sum = std::max(patch.weight_sum, model.embedding.weights.col(v).cwiseAbs().sum());
-        for (int n = 0; n < 4; ++n) slots.push_back(slot_of_node[static_cast<std::size_t>(model.tets.tets(n, model.embedding.tet[static_cast<std::size_t>(v)]))]);
+        for (int n = 0; n < 4; ++n)
+          slots.push_back(slot_of_node[static_cast<std::size_t>(
+              model.tets.tets(n, model.embedding.tet[static_cast<std::size_t>(v)]))]);
       }
     slots = sorted_unique(std::move(slots));
     patch.first_slot = static_cast<int>(patch_slots.size());
@@ -68,7 +74,8 @@ void ProxySet::Impl::add_balls() {
   ball_of_patch.resize(skin.patches.size());
   std::size_t most = 0;
   for (int p = 0; p < count; ++p) {
-    const int first = skin.first_of_proxy[static_cast<std::size_t>(p)], patches = skin.first_of_proxy[static_cast<std::size_t>(p) + 1] - first;
+    const int first = skin.first_of_proxy[static_cast<std::size_t>(p)],
+              patches = skin.first_of_proxy[static_cast<std::size_t>(p) + 1] - first;
     first_ball.push_back(rest_balls.size());
     Points centres(3, patches);
     for (int i = 0; i < patches; ++i) {
@@ -91,18 +98,24 @@ void ProxySet::Impl::add_balls() {
   near_patch.resize(most);
 }
 
-ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : impl_(std::make_unique<Impl>()) {
+ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options)
+    : impl_(std::make_unique<Impl>()) {
   Impl& s = *impl_;
   counters::count("proxy.proxy_set");
   if (model.proxies.empty()) fail("body \"{}\": it has no proxies", model.name);
-  if (options.patch_faces < 0) fail("body \"{}\": patches of {} faces; one at least, or 0 for a 2000th of the skin", model.name, options.patch_faces);
+  if (options.patch_faces < 0)
+    fail("body \"{}\": patches of {} faces; one at least, or 0 for a 2000th of the skin", model.name,
+         options.patch_faces);
   s.options = options;
-  if (options.patch_faces == 0) s.options.patch_faces = std::clamp(static_cast<int>(model.skin.faces.cols() / 2000), 4, 64);
+  if (options.patch_faces == 0)
+    s.options.patch_faces = std::clamp(static_cast<int>(model.skin.faces.cols() / 2000), 4, 64);
   s.soft = model.tets.tets.cols() > 0;
   s.node_count = model.tets.nodes.cols();
   s.count = static_cast<int>(model.proxies.size());
   const Eigen::Index vertices = model.skin.vertices.cols();
-  if (s.soft && model.embedding.size() != vertices) fail("body \"{}\": {} of its {} skin vertices are embedded", model.name, model.embedding.size(), vertices);
+  if (s.soft && model.embedding.size() != vertices)
+    fail("body \"{}\": {} of its {} skin vertices are embedded", model.name, model.embedding.size(),
+         vertices);
   const std::vector<int> owner_of_face = owner_of_faces(model.skin.faces, vertices, model.proxies);
   s.skin = skin_patches(model.skin, owner_of_face, s.count, s.options.patch_faces);
 
@@ -110,10 +123,13 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : 
   std::vector<std::vector<int>> owned(model.proxies.size());
   std::vector<Cloud> of_bone(model.skeleton.bones.size());
   if (s.soft) {
-    const auto owner = owner_of_tets(model.tets.tets, s.node_count, model.embedding, owner_of_vertices(vertices, model.proxies));
+    const auto owner = owner_of_tets(model.tets.tets, s.node_count, model.embedding,
+                                     owner_of_vertices(vertices, model.proxies));
     for (std::size_t t = 0; t < owner.size(); ++t)
-      for (int k = 0; k < 4; ++k) owned[static_cast<std::size_t>(owner[t])].push_back(model.tets.tets(k, static_cast<Eigen::Index>(t)));
-    for (std::size_t b = 0; b < of_bone.size() && options.follow == Follow::kRigid && !model.bone_of_node.empty(); ++b) {
+      for (int k = 0; k < 4; ++k)
+        owned[static_cast<std::size_t>(owner[t])].push_back(model.tets.tets(k, static_cast<Eigen::Index>(t)));
+    for (std::size_t b = 0;
+         b < of_bone.size() && options.follow == Follow::kRigid && !model.bone_of_node.empty(); ++b) {
       std::vector<int> carried;
       for (std::size_t n = 0; n < model.bone_of_node.size(); ++n)
         if (model.bone_of_node[n] == static_cast<int>(b)) carried.push_back(static_cast<int>(n));
@@ -125,8 +141,11 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : 
   for (int p = 0; p < s.count; ++p) {
     const auto at = static_cast<std::size_t>(p);
     const ProxyHull& hull = model.proxies[at];
-    if (hull.corners.cols() == 0 || !hull.corners.allFinite()) fail("body \"{}\": proxy {} has no corners, or one that is not finite", model.name, p);
-    if (hull.bone >= static_cast<int>(model.skeleton.bones.size())) fail("body \"{}\": proxy {} goes with bone {} of {}", model.name, p, hull.bone, model.skeleton.bones.size());
+    if (hull.corners.cols() == 0 || !hull.corners.allFinite())
+      fail("body \"{}\": proxy {} has no corners, or one that is not finite", model.name, p);
+    if (hull.bone >= static_cast<int>(model.skeleton.bones.size()))
+      fail("body \"{}\": proxy {} goes with bone {} of {}", model.name, p, hull.bone,
+           model.skeleton.bones.size());
     s.bone.push_back(hull.bone);
     s.first_corner.push_back(s.rest_corners.size());
     s.corner_count.push_back(static_cast<int>(hull.corners.cols()));
@@ -145,7 +164,8 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : 
       reach_for(model.skin.vertices.col(v));
       if (!s.soft) continue;
       sum = std::max(sum, model.embedding.weights.col(v).cwiseAbs().sum());
-      for (int k = 0; k < 4; ++k) nodes_of[at].push_back(model.tets.tets(k, model.embedding.tet[static_cast<std::size_t>(v)]));
+      for (int k = 0; k < 4; ++k)
+        nodes_of[at].push_back(model.tets.tets(k, model.embedding.tet[static_cast<std::size_t>(v)]));
     }
     for (const int n : owned[at]) reach_for(model.tets.nodes.col(n));
     const double size = (hull.corners.rowwise().maxCoeff() - hull.corners.rowwise().minCoeff()).norm();
@@ -154,7 +174,8 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : 
     if (!s.soft) continue;
     nodes_of[at].insert(nodes_of[at].end(), owned[at].begin(), owned[at].end());
     s.own.push_back(s.add_cloud(model.tets, sorted_unique(std::move(nodes_of[at]))));
-    const bool by_bone = hull.bone >= 0 && hull.bone < static_cast<int>(of_bone.size()) && of_bone[static_cast<std::size_t>(hull.bone)].count > 0;
+    const bool by_bone = hull.bone >= 0 && hull.bone < static_cast<int>(of_bone.size()) &&
+                         of_bone[static_cast<std::size_t>(hull.bone)].count > 0;
     s.guide.push_back(by_bone ? of_bone[static_cast<std::size_t>(hull.bone)] : s.own.back());
   }
   s.corners = s.rest_corners;
@@ -172,7 +193,8 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options) : 
   std::vector<std::vector<int>> at_vertex(static_cast<std::size_t>(vertices));
   for (int p = 0; p < s.count; ++p) {
     s.adjacent[static_cast<std::size_t>(p * s.count + p)] = 1;
-    for (const int v : model.proxies[static_cast<std::size_t>(p)].members) at_vertex[static_cast<std::size_t>(v)].push_back(p);
+    for (const int v : model.proxies[static_cast<std::size_t>(p)].members)
+      at_vertex[static_cast<std::size_t>(v)].push_back(p);
   }
   for (const auto& list : at_vertex)
     for (const int p : list)

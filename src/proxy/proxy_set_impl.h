@@ -5,7 +5,8 @@
 #include "proxy/body_motion.h"
 #include "proxy/skin_patches.h"
 
-/// What proxy_set_build.cpp (once), proxy_set.cpp (every update) and proxy_patches.cpp (what is asked of patches) work on; the derivation stands in proxy_set.cpp.
+/// What proxy_set_build.cpp (once), proxy_set.cpp (every update) and proxy_patches.cpp (what is asked of
+/// patches) work on; the derivation stands in proxy_set.cpp.
 namespace palpate::proxy {
 
 /// Nodes whose motion is fitted or bounded.
@@ -23,33 +24,33 @@ struct ProxySet::Impl {
   std::vector<int> bone;
   std::vector<ProxyState> states;
   std::vector<Vec3> rest_centre, centre;
-  std::vector<double> outside, weight_sum;   // e and s of each proxy
-  std::vector<Cloud> own, guide;             // what bounds it; what moves it
+  std::vector<double> outside, weight_sum;  // e and s of each proxy
+  std::vector<Cloud> own, guide;            // what bounds it; what moves it
   std::vector<int> first_corner, corner_count;
   Table rest_corners, corners;
-  std::vector<int> node;                     // of each slot of the node tables
-  Table rest_nodes, coefficients;            // from the cloud's middle; q
-  Table gathered;                            // positions of one cloud
-  std::vector<double> squares;               // |d|^2 of every slot
-  std::vector<char> adjacent;                // count x count
+  std::vector<int> node;           // of each slot of the node tables
+  Table rest_nodes, coefficients;  // from the cloud's middle; q
+  Table gathered;                  // positions of one cloud
+  std::vector<double> squares;     // |d|^2 of every slot
+  std::vector<char> adjacent;      // count x count
   SkinPatches skin;
-  std::vector<int> patch_slots;              // slots of each patch's nodes
-  Table rest_balls, balls;                   // centres of the patches, proxy by proxy in whole lanes
+  std::vector<int> patch_slots;  // slots of each patch's nodes
+  Table rest_balls, balls;       // centres of the patches, proxy by proxy in whole lanes
   std::vector<double> rest_radius, radius;
-  std::vector<int> first_ball;               // of each proxy
+  std::vector<int> first_ball;  // of each proxy
   std::vector<int> ball_of_patch;
-  std::vector<long> balls_at, measured_at;   // by proxy, by patch: the update that they were last found for
-  std::vector<unsigned char> near;           // scratch of patches_near
+  std::vector<long> balls_at, measured_at;  // by proxy, by patch: the update that they were last found for
+  std::vector<unsigned char> near;          // scratch of patches_near
   Table near_balls;
   std::vector<double> near_radius;
   std::vector<int> near_patch;
   std::vector<ProxyBranch> tree;
 
-  long moment = 0;                           // counts updates
-  std::vector<long> fitted_at;               // by proxy
+  long moment = 0;              // counts updates
+  std::vector<long> fitted_at;  // by proxy
   BodyMotion motion;
-  std::vector<Box> boxes, kept_boxes;        // by proxy: loose, now; and close, when `motion` was kept
-  double kept_size = 0.0;                    // sum of their edges' halves; 0: never kept
+  std::vector<Box> boxes, kept_boxes;  // by proxy: loose, now; and close, when `motion` was kept
+  double kept_size = 0.0;              // sum of their edges' halves; 0: never kept
 
   Cloud add_cloud(const TetMesh& tets, const std::vector<int>& nodes);
   void add_patch_nodes(const LayeredModel& model);

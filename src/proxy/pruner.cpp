@@ -1,40 +1,53 @@
-// Nothing is lost.  The inflated hulls of each body cover its skin and its inside (proxy_set.cpp).  A point of a's skin that is inside b, or nearer to it than
-// the gap, lies in a face of one patch of one proxy i, and within the gap of an inflated hull j of b.  So the boxes of i and j come within the gap, no
-// direction proves i and j farther apart than the sum of their inflations and the gap, and none proves the patch's ball farther from j than that: (i, j)
-// stays a pair and the patch stays.  Each step leaves out only what a checked inequality says is far.  With a and b exchanged the same holds for b's skin.
+// Nothing is lost.  The inflated hulls of each body cover its skin and its inside (proxy_set.cpp).  A point
+// of a's skin that is inside b, or nearer to it than the gap, lies in a face of one patch of one proxy i, and
+// within the gap of an inflated hull j of b.  So the boxes of i and j come within the gap, no direction
+// proves i and j farther apart than the sum of their inflations and the gap, and none proves the patch's ball
+// farther from j than that: (i, j) stays a pair and the patch stays.  Each step leaves out only what a
+// checked inequality says is far.  With a and b exchanged the same holds for b's skin.
 //
-// What faces it.  Seen along the normal a point of a inside b is paired with the point of b's skin above it.  If that is inside a, it stays by the rule above.
-// If not, a has been swallowed there: the way up leaves a before it leaves b, through skin of a that faces up inside b.  Under each kept patch of a that
-// faces up, b's patches that face up, and are above, are taken in too (`look_through`), and the mirror image for b.  Only where the
-// kept skin of the side that is looked for faces no one way: where it does, the line comes in through it, nobody is swallowed, and what lies beyond is the far
-// side of a body that holds the other from two sides; the line would be paired with its end there.
+// What faces it.  Seen along the normal a point of a inside b is paired with the point of b's skin above it.
+// If that is inside a, it stays by the rule above. If not, a has been swallowed there: the way up leaves a
+// before it leaves b, through skin of a that faces up inside b.  Under each kept patch of a that faces up,
+// b's patches that face up, and are above, are taken in too (`look_through`), and the mirror image for b.
+// Only where the kept skin of the side that is looked for faces no one way: where it does, the line comes in
+// through it, nobody is swallowed, and what lies beyond is the far side of a body that holds the other from
+// two sides; the line would be paired with its end there.
 //
-// Nothing is counted twice.  Every face of a belongs to one patch, that to one proxy i, and all that is kept of i goes into one region: the faces of a are
-// divided among the regions.  The force is an integral over a's skin (each point against what b shows it along its region's normal), so each point of a
-// contributes once, however b's side is shared, and however either body is cut into proxies.
+// Nothing is counted twice.  Every face of a belongs to one patch, that to one proxy i, and all that is kept
+// of i goes into one region: the faces of a are divided among the regions.  The force is an integral over a's
+// skin (each point against what b shows it along its region's normal), so each point of a contributes once,
+// however b's side is shared, and however either body is cut into proxies.
 //
-// Jumps.  A patch that comes or goes is farther away than the gap: no force comes or goes with it.  What can jump is a normal: when region i's changes by the
-// angle phi, its force F_i keeps its size to first order and turns, |dF_i| <= 2 sin(phi / 2) |F_i|.  Regions merge only when what their skins face differs
-// by less than the merge angle.  `turned` and `largest_turn` report phi.
+// Jumps.  A patch that comes or goes is farther away than the gap: no force comes or goes with it.  What can
+// jump is a normal: when region i's changes by the angle phi, its force F_i keeps its size to first order and
+// turns, |dF_i| <= 2 sin(phi / 2) |F_i|.  Regions merge only when what their skins face differs by less than
+// the merge angle.  `turned` and `largest_turn` report phi.
 //
-// Which proxies share a plane.  The resultant of a uniform pressure on the part of a's skin inside b is minus its area vector, which by the divergence theorem
-// is the area vector of b's skin inside a: both say which way the contact pushes, D = -A_a / |A_a|_1 + A_b / |A_b|_1 with area vectors A and areas |A|_1 of
-// the kept patches.  Neighbours (with neighbours) whose D agree make one region, and D over all of it is its normal: an integral over the skin, it does not
-// know how the bodies are cut, and moves as they move, where the normals of coarse hulls go from facet to facet; but where libccd's normal on the same side is
-// better by more than the hulls are inexact (their inflation: flat faces), that is taken.  Where there is no D (one body's skin is far from
-// the other's, or all around it: swallowed) the normal stays what it was at the last query, the side that the bodies came from; and where they never met before, it
-// is libccd's for the hull of all the region's proxies together, in which the walls between a body's own proxies are no surfaces.  A
+// Which proxies share a plane.  The resultant of a uniform pressure on the part of a's skin inside b is minus
+// its area vector, which by the divergence theorem is the area vector of b's skin inside a: both say which
+// way the contact pushes, D = -A_a / |A_a|_1 + A_b / |A_b|_1 with area vectors A and areas |A|_1 of the kept
+// patches.  Neighbours (with neighbours) whose D agree make one region, and D over all of it is its normal:
+// an integral over the skin, it does not know how the bodies are cut, and moves as they move, where the
+// normals of coarse hulls go from facet to facet; but where libccd's normal on the same side is better by
+// more than the hulls are inexact (their inflation: flat faces), that is taken.  Where there is no D (one
+// body's skin is far from the other's, or all around it: swallowed) the normal stays what it was at the last
+// query, the side that the bodies came from; and where they never met before, it is libccd's for the hull of
+// all the region's proxies together, in which the walls between a body's own proxies are no surfaces.  A
 // region whose hulls are proven apart along its normal ends.
 //
-// Between the bones of one body.  Both sides are the same skin: a proxy may be on side a against one bone and on side b against another, so each pair of proxies is
-// allowed once, that of the lower bone as a's; is_pair() tells whoever pairs triangles in a region's image which of them these are, since a region holds all proxies
-// of its pairs.  Proxies that are grown together are no pair: their hulls meet wherever the body is, and what lies between them is its own flesh.  Skin of two others may
-// still have nothing but flesh between (hulls of a hollow shape reach across it): that is for the triangles to decide (own_flesh.h).
+// Between the bones of one body.  Both sides are the same skin: a proxy may be on side a against one bone and
+// on side b against another, so each pair of proxies is allowed once, that of the lower bone as a's;
+// is_pair() tells whoever pairs triangles in a region's image which of them these are, since a region holds
+// all proxies of its pairs.  Proxies that are grown together are no pair: their hulls meet wherever the body
+// is, and what lies between them is its own flesh.  Skin of two others may still have nothing but flesh
+// between (hulls of a hollow shape reach across it): that is for the triangles to decide (own_flesh.h).
 //
-// Limbs meet side by side and at narrow places, where skin that faces elsewhere is within the gap too, and D is short of 2 without anybody being swallowed; its direction is
-// still that of the contact, since what faces elsewhere cancels.  The hulls know less: those of a region's proxies lie around joints, and the hull of all of them fills the space that
-// the contact is in.  So between bones a D of an eighth of its length is a direction, and where two bodies would turn to their hulls or to the past, it is taken.  Where D is
-// clear, two parts of a body meet as two bodies do.
+// Limbs meet side by side and at narrow places, where skin that faces elsewhere is within the gap too, and D
+// is short of 2 without anybody being swallowed; its direction is still that of the contact, since what faces
+// elsewhere cancels.  The hulls know less: those of a region's proxies lie around joints, and the hull of all
+// of them fills the space that the contact is in.  So between bones a D of an eighth of its length is a
+// direction, and where two bodies would turn to their hulls or to the past, it is taken.  Where D is clear,
+// two parts of a body meet as two bodies do.
 #include "palpate/proxy/pruner.h"
 
 #include <algorithm>
@@ -57,15 +70,20 @@ bool boxes_apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const
 /// Both trees from the root down, the larger branch first.
 void Pruner::Impl::visit(int x, int y) {
   const auto tree_a = a.set.tree(), tree_b = b.set.tree();
-  const ProxyBranch &branch_a = tree_a[static_cast<std::size_t>(x)], &branch_b = tree_b[static_cast<std::size_t>(y)];
+  const ProxyBranch &branch_a = tree_a[static_cast<std::size_t>(x)],
+                    &branch_b = tree_b[static_cast<std::size_t>(y)];
   ++counts.boxes_tested;
   if (boxes_apart(branch_a.low, branch_a.high, branch_b.low, branch_b.high, gap)) return;
   if (branch_a.proxy >= 0 && branch_b.proxy >= 0) return test_pair(branch_a.proxy, branch_b.proxy);
-  const bool open_a = branch_b.proxy >= 0 || (branch_a.proxy < 0 && (branch_a.high - branch_a.low).squaredNorm() >= (branch_b.high - branch_b.low).squaredNorm());
+  const bool open_a =
+      branch_b.proxy >= 0 || (branch_a.proxy < 0 && (branch_a.high - branch_a.low).squaredNorm() >=
+                                                        (branch_b.high - branch_b.low).squaredNorm());
   if (open_a)
-    for (int child = x + 1; child < branch_a.after; child = tree_a[static_cast<std::size_t>(child)].after) visit(child, y);
+    for (int child = x + 1; child < branch_a.after; child = tree_a[static_cast<std::size_t>(child)].after)
+      visit(child, y);
   else
-    for (int child = y + 1; child < branch_b.after; child = tree_b[static_cast<std::size_t>(child)].after) visit(x, child);
+    for (int child = y + 1; child < branch_b.after; child = tree_b[static_cast<std::size_t>(child)].after)
+      visit(x, child);
 }
 
 void Pruner::Impl::test_pair(int p, int q) {
@@ -103,23 +121,31 @@ void Pruner::Impl::collect() {
     keep_patches(a, pair.a, b, pair.b, direction);
     keep_patches(b, pair.b, a, pair.a, -direction);
   }
-  std::erase_if(pairs, [&](const Pair& pair) { return a.facing_of(pair.a, counts.queries).size == 0.0 && b.facing_of(pair.b, counts.queries).size == 0.0; });
-  std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
+  std::erase_if(pairs, [&](const Pair& pair) {
+    return a.facing_of(pair.a, counts.queries).size == 0.0 && b.facing_of(pair.b, counts.queries).size == 0.0;
+  });
+  std::sort(pairs.begin(), pairs.end(),
+            [](const Pair& p, const Pair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
   active.clear();
   for (const Pair& pair : pairs) {
-    if (active.empty() || active.back().proxy != pair.a) active.push_back({pair.a, a.facing_of(pair.a, counts.queries), {}, -1});
+    if (active.empty() || active.back().proxy != pair.a)
+      active.push_back({pair.a, a.facing_of(pair.a, counts.queries), {}, -1});
     active.back().b.add(b.facing_of(pair.b, counts.queries));
   }
 }
 
-Pruner::Pruner(const ProxySet& a, const ProxySet& b, const PruneOptions& options) : impl_(std::make_unique<Impl>(a, b, options)) {
+Pruner::Pruner(const ProxySet& a, const ProxySet& b, const PruneOptions& options)
+    : impl_(std::make_unique<Impl>(a, b, options)) {
   counters::count("proxy.pruner");
-  if (!(options.merge_angle_rad >= 0.0 && options.merge_angle_rad <= 3.2)) fail("contact regions: merge angle = {} rad must lie between 0 and pi", options.merge_angle_rad);
-  PALPATE_CHECK(!options.between_bones || &a == &b, "contact between the bones of one body has that body on both sides");
+  if (!(options.merge_angle_rad >= 0.0 && options.merge_angle_rad <= 3.2))
+    fail("contact regions: merge angle = {} rad must lie between 0 and pi", options.merge_angle_rad);
+  PALPATE_CHECK(!options.between_bones || &a == &b,
+                "contact between the bones of one body has that body on both sides");
   if (options.between_bones) {
     impl_->may_touch.reserve(impl_->separating.size());
     for (int p = 0; p < a.size(); ++p)
-      for (int q = 0; q < a.size(); ++q) impl_->may_touch.push_back(a.bone(p) < a.bone(q) && !a.grown_together(p, q));
+      for (int q = 0; q < a.size(); ++q)
+        impl_->may_touch.push_back(a.bone(p) < a.bone(q) && !a.grown_together(p, q));
   }
   for (int p = 0; p < a.size(); ++p)
     for (int q = 0; q < b.size(); ++q) impl_->counts.pairs += impl_->allowed(p, q);
@@ -134,7 +160,8 @@ std::span<const ContactRegion> Pruner::query(double gap) {
   ++s.counts.queries;
   s.used = 0;
   s.pairs.clear();
-  for (Side* side : {&s.a, &s.b}) std::fill(side->kept.begin(), side->kept.end(), static_cast<unsigned char>(0));
+  for (Side* side : {&s.a, &s.b})
+    std::fill(side->kept.begin(), side->kept.end(), static_cast<unsigned char>(0));
   s.visit(0, 0);
   s.collect();
 
@@ -144,7 +171,9 @@ std::span<const ContactRegion> Pruner::query(double gap) {
     const Active& one = s.active[static_cast<std::size_t>(i)];
     return one.a.size * std::pow(one.direction().norm(), 4);
   };
-  std::sort(s.order.begin(), s.order.end(), [&](int i, int j) { return clear(i) != clear(j) ? clear(i) > clear(j) : i < j; });  // the clearest contact first
+  // the clearest contact first
+  std::sort(s.order.begin(), s.order.end(),
+            [&](int i, int j) { return clear(i) != clear(j) ? clear(i) > clear(j) : i < j; });
   int number = 0;
   for (const int seed : s.order) {
     if (s.active[static_cast<std::size_t>(seed)].region >= 0) continue;

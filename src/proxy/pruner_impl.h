@@ -5,7 +5,8 @@
 
 #include "palpate/proxy/pruner.h"
 
-/// What pruner.cpp (pairs and patches) and pruner_regions.cpp (planes and faces) work on; the derivation stands in pruner.cpp.
+/// What pruner.cpp (pairs and patches) and pruner_regions.cpp (planes and faces) work on; the derivation
+/// stands in pruner.cpp.
 namespace palpate::proxy {
 
 /// Skin kept on one side: its area vector and area.
@@ -20,7 +21,8 @@ struct Facing {
     area += other.area;
     size += other.size;
   }
-  /// It faces one way, as skin in contact does; not skin of a swallowed body, which is kept all around, nor none.
+  /// It faces one way, as skin in contact does; not skin of a swallowed body, which is kept all around, nor
+  /// none.
   bool directed() const { return area.norm() > 0.5 * size; }
 };
 
@@ -28,7 +30,8 @@ struct Facing {
 inline Vec3 facing(const Facing& a, const Facing& b) {
   return a.size > 0.0 && b.size > 0.0 ? Vec3(b.area / b.size - a.area / a.size) : Vec3(Vec3::Zero());
 }
-inline constexpr double kClear = 1.0;  ///< |D| of skins that face each other is 2, of swallowed skin 0; above this it is a direction
+/// |D| of skins that face each other is 2, of swallowed skin 0; above this it is a direction
+inline constexpr double kClear = 1.0;
 inline constexpr double kClearOwn = 0.25;  ///< the same between the bones of one body: see pruner.cpp
 
 /// One body of the query: its patches as far as they were looked at.
@@ -37,13 +40,19 @@ struct Side {
   std::span<const SkinPatch> patches;
   std::vector<Ball> balls;
   std::vector<Vec3> areas;
-  std::vector<long> measured_at;           // by patch
-  std::vector<unsigned char> kept;         // by patch, in this query
-  std::vector<Facing> facing;              // by proxy, of what is kept of it
+  std::vector<long> measured_at;    // by patch
+  std::vector<unsigned char> kept;  // by patch, in this query
+  std::vector<Facing> facing;       // by proxy, of what is kept of it
   std::vector<long> facing_at;
 
   explicit Side(const ProxySet& s)
-      : set(s), patches(s.patches()), balls(patches.size()), areas(balls.size()), measured_at(balls.size(), -1), kept(balls.size(), 0), facing(static_cast<std::size_t>(s.size())),
+      : set(s),
+        patches(s.patches()),
+        balls(patches.size()),
+        areas(balls.size()),
+        measured_at(balls.size(), -1),
+        kept(balls.size(), 0),
+        facing(static_cast<std::size_t>(s.size())),
         facing_at(facing.size(), -1) {}
   int first(int proxy) const { return static_cast<int>(set.patches(proxy).data() - patches.data()); }
   void measure(std::size_t patch, long query) {
@@ -76,16 +85,19 @@ struct Pruner::Impl {
   RegionFinder finder;
   Side a, b;
   double gap = 0.0;
-  std::vector<char> may_touch;       // by pair, of one body's bones; else empty
-  std::vector<Vec3> separating;      // by pair: the last direction that its proxies were found apart along, or that the search ended with; zero for none
-  std::vector<Vec3> last_normal;     // by proxy of a
+  std::vector<char> may_touch;  // by pair, of one body's bones; else empty
+  // by pair: the last direction that its proxies were found apart along, or that the search ended with; zero
+  // for none
+  std::vector<Vec3> separating;
+  std::vector<Vec3> last_normal;  // by proxy of a
   std::vector<long> last_query;
   std::vector<Pair> pairs;
   std::vector<Active> active;
   std::vector<int> open, near;
-  std::vector<long> claimed_a, in_region_b;  // by patch: the query that looked through to it; the region (counted over all queries) that has it
+  // by patch: the query that looked through to it; the region (counted over all queries) that has it
+  std::vector<long> claimed_a, in_region_b;
   std::vector<int> order, proxies_a, proxies_b, patches_a, patches_b;
-  Points corners_a, corners_b;         // room for all of a body; of the region at hand the first `count`
+  Points corners_a, corners_b;  // room for all of a body; of the region at hand the first `count`
   Eigen::Index count_a = 0, count_b = 0;
   std::vector<ContactRegion> regions;  // the first `used` are the last query's
   std::size_t used = 0;
@@ -93,29 +105,46 @@ struct Pruner::Impl {
   bool faces_a = false, faces_b = false;  // of the region at hand: Facing::directed
 
   Impl(const ProxySet& set_a, const ProxySet& set_b, const PruneOptions& given)
-      : options(given), a(set_a), b(set_b), separating(static_cast<std::size_t>(set_a.size()) * static_cast<std::size_t>(set_b.size()), Vec3::Zero()),
-        last_normal(static_cast<std::size_t>(set_a.size()), Vec3::Zero()), last_query(static_cast<std::size_t>(set_a.size()), -2),
-        claimed_a(set_a.patches().size(), -1), in_region_b(set_b.patches().size(), -1), corners_a(room(set_a)), corners_b(room(set_b)) {}
+      : options(given),
+        a(set_a),
+        b(set_b),
+        separating(static_cast<std::size_t>(set_a.size()) * static_cast<std::size_t>(set_b.size()),
+                   Vec3::Zero()),
+        last_normal(static_cast<std::size_t>(set_a.size()), Vec3::Zero()),
+        last_query(static_cast<std::size_t>(set_a.size()), -2),
+        claimed_a(set_a.patches().size(), -1),
+        in_region_b(set_b.patches().size(), -1),
+        corners_a(room(set_a)),
+        corners_b(room(set_b)) {}
   static Points room(const ProxySet& set) {
     Eigen::Index count = 0;
     for (int p = 0; p < set.size(); ++p) count += set.corner_count(p);
     return Points::Zero(3, count);
   }
 
-  bool allowed(int p, int q) const { return !options.between_bones || may_touch[static_cast<std::size_t>(p) * static_cast<std::size_t>(b.set.size()) + static_cast<std::size_t>(q)] != 0; }
+  bool allowed(int p, int q) const {
+    return !options.between_bones ||
+           may_touch[static_cast<std::size_t>(p) * static_cast<std::size_t>(b.set.size()) +
+                     static_cast<std::size_t>(q)] != 0;
+  }
   double clear() const { return options.between_bones ? kClearOwn : kClear; }
   void visit(int x, int y);
   void test_pair(int p, int q);
   void keep_patches(Side& side, int own, const Side& other, int against, const Vec3& toward);
-  Vec3& separating_of(int p, int q) { return separating[static_cast<std::size_t>(p) * static_cast<std::size_t>(b.set.size()) + static_cast<std::size_t>(q)]; }
+  Vec3& separating_of(int p, int q) {
+    return separating[static_cast<std::size_t>(p) * static_cast<std::size_t>(b.set.size()) +
+                      static_cast<std::size_t>(q)];
+  }
   void collect();
   bool linked(int p, int p2) const;
   void grow(std::size_t seed, int region);
-  double gather(const Side& side, const std::vector<int>& proxies, Points& corners, Eigen::Index& count) const;
+  double gather(const Side& side, const std::vector<int>& proxies, Points& corners,
+                Eigen::Index& count) const;
   void turn_to(Region& region, const Vec3& n, RegionMethod method) const;
   bool find_plane(int number, ContactRegion& region);
   template <class Take>
-  void look_through(Side& from, const std::vector<int>& from_patches, Side& to, const ContactRegion& region, double sign, Take take);
+  void look_through(Side& from, const std::vector<int>& from_patches, Side& to, const ContactRegion& region,
+                    double sign, Take take);
   void fill(ContactRegion& region);
   void remember(ContactRegion& region);
 };

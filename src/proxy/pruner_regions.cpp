@@ -15,19 +15,22 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 bool Pruner::Impl::linked(int p, int p2) const {
   if (!a.set.neighbours(p, p2)) return false;
   const auto less = [](const Pair& pair, int proxy) { return pair.a < proxy; };
-  const auto begin = std::lower_bound(pairs.begin(), pairs.end(), p, less), begin2 = std::lower_bound(pairs.begin(), pairs.end(), p2, less);
+  const auto begin = std::lower_bound(pairs.begin(), pairs.end(), p, less),
+             begin2 = std::lower_bound(pairs.begin(), pairs.end(), p2, less);
   for (auto i = begin; i != pairs.end() && i->a == p; ++i)
     for (auto j = begin2; j != pairs.end() && j->a == p2; ++j)
       if (b.set.neighbours(i->b, j->b)) return true;
   return false;
 }
 
-/// The region of a seed: what is linked to it, step by step, and faces as it does.  Swallowed skin, which faces every way, faces with all.
+/// The region of a seed: what is linked to it, step by step, and faces as it does.  Swallowed skin, which
+/// faces every way, faces with all.
 void Pruner::Impl::grow(std::size_t seed, int region) {
   const Vec3 direction = active[seed].direction();
   const auto agrees = [&](const Active& other) {
     const Vec3 d = other.direction();
-    return d.norm() < clear() || direction.norm() < clear() || d.dot(direction) >= std::cos(options.merge_angle_rad) * d.norm() * direction.norm();
+    return d.norm() < clear() || direction.norm() < clear() ||
+           d.dot(direction) >= std::cos(options.merge_angle_rad) * d.norm() * direction.norm();
   };
   active[seed].region = region;
   open.assign(1, static_cast<int>(seed));
@@ -43,7 +46,8 @@ void Pruner::Impl::grow(std::size_t seed, int region) {
 }
 
 /// All corners of some proxies, in the first columns; returns the largest inflation among them.
-double Pruner::Impl::gather(const Side& side, const std::vector<int>& proxies, Points& corners, Eigen::Index& at) const {
+double Pruner::Impl::gather(const Side& side, const std::vector<int>& proxies, Points& corners,
+                            Eigen::Index& at) const {
   double inflation = 0.0;
   at = 0;
   for (const int p : proxies) {
@@ -57,7 +61,8 @@ double Pruner::Impl::gather(const Side& side, const std::vector<int>& proxies, P
 /// The plane along another normal.
 void Pruner::Impl::turn_to(Region& region, const Vec3& n, RegionMethod method) const {
   Eigen::Index lowest = 0, highest = 0;
-  region.depth = -n.transpose().lazyProduct(corners_a.leftCols(count_a)).minCoeff(&lowest) + n.transpose().lazyProduct(corners_b.leftCols(count_b)).maxCoeff(&highest);
+  region.depth = -n.transpose().lazyProduct(corners_a.leftCols(count_a)).minCoeff(&lowest) +
+                 n.transpose().lazyProduct(corners_b.leftCols(count_b)).maxCoeff(&highest);
   region.origin = 0.5 * (corners_a.col(lowest) + corners_b.col(highest));
   region.normal = n;
   region.method = method;
@@ -76,7 +81,9 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
     proxies_a.push_back(one.proxy);
     facing_a.add(one.a);
     facing_b.add(one.b);
-    if (const Vec3& last = last_normal[static_cast<std::size_t>(one.proxy)]; proxies_a.size() == 1 && !last.isZero()) finder.remember(last);
+    if (const Vec3& last = last_normal[static_cast<std::size_t>(one.proxy)];
+        proxies_a.size() == 1 && !last.isZero())
+      finder.remember(last);
     for (const Pair& pair : pairs)
       if (pair.a == one.proxy) {
         region.pairs.emplace_back(pair.a, pair.b);
@@ -85,18 +92,23 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   }
   std::sort(proxies_b.begin(), proxies_b.end());
   proxies_b.erase(std::unique(proxies_b.begin(), proxies_b.end()), proxies_b.end());
-  const double inflation_a = gather(a, proxies_a, corners_a, count_a), inflation_b = gather(b, proxies_b, corners_b, count_b);
+  const double inflation_a = gather(a, proxies_a, corners_a, count_a),
+               inflation_b = gather(b, proxies_b, corners_b, count_b);
   const double inexact = inflation_a + inflation_b;
   region.facing = facing(facing_a, facing_b);
   faces_a = facing_a.directed();
   faces_b = facing_b.directed();
   const bool is_clear = region.facing.norm() >= clear();
   if (is_clear) turn_to(region.region, region.facing.normalized(), RegionMethod::kAreas);
-  if (!is_clear || (region.region.depth > inexact && region.facing.norm() >= kClear)) {  // else the hulls know nothing that is sharper
-    const Region by_hulls = finder.find(corners_a.leftCols(count_a), corners_b.leftCols(count_b), inexact + gap);
+  // else the hulls know nothing that is sharper
+  if (!is_clear || (region.region.depth > inexact && region.facing.norm() >= kClear)) {
+    const Region by_hulls =
+        finder.find(corners_a.leftCols(count_a), corners_b.leftCols(count_b), inexact + gap);
     if (!by_hulls.found) return false;
     const Vec3& last = last_normal[static_cast<std::size_t>(proxies_a.front())];
-    if (is_clear ? by_hulls.depth < region.region.depth - inexact && by_hulls.normal.dot(region.region.normal) > kSameSide : last.isZero())
+    if (is_clear ? by_hulls.depth < region.region.depth - inexact &&
+                       by_hulls.normal.dot(region.region.normal) > kSameSide
+                 : last.isZero())
       region.region = by_hulls;
     else if (!is_clear)
       turn_to(region.region, last, RegionMethod::kLastNormal);
@@ -104,7 +116,9 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   if (region.region.depth < -inexact - gap) return false;
   region.region.found = true;
   const RegionMethod by = region.region.method;
-  ++(by == RegionMethod::kAreas ? counts.normals_by_areas : by == RegionMethod::kLastNormal ? counts.normals_kept : counts.normals_by_hulls);
+  ++(by == RegionMethod::kAreas        ? counts.normals_by_areas
+     : by == RegionMethod::kLastNormal ? counts.normals_kept
+                                       : counts.normals_by_hulls);
   const Vec3& n = region.region.normal;
   region.axes.col(0) = n.unitOrthogonal();
   region.axes.col(1) = n.cross(region.axes.col(0));
@@ -112,9 +126,11 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   return true;
 }
 
-/// Patches of `to` that `from` sees through itself: see above.  sign: +1 from a up to b, along the normal; -1 from b down to a.  take(patch) says whether it is new.
+/// Patches of `to` that `from` sees through itself: see above.  sign: +1 from a up to b, along the normal; -1
+/// from b down to a.  take(patch) says whether it is new.
 template <class Take>
-void Pruner::Impl::look_through(Side& from, const std::vector<int>& from_patches, Side& to, const ContactRegion& region, double sign, Take take) {
+void Pruner::Impl::look_through(Side& from, const std::vector<int>& from_patches, Side& to,
+                                const ContactRegion& region, double sign, Take take) {
   constexpr double kFacesUp = 0.1;
   const Mat3 to_axes = region.axes.transpose();
   const Vec3 up = sign * region.region.normal, origin = region.region.origin;
@@ -131,11 +147,15 @@ void Pruner::Impl::look_through(Side& from, const std::vector<int>& from_patches
   if (!(low.x() <= high.x())) return;
   const auto misses = [&](const Vec3& centre, double radius) {
     const Vec3 place = to_axes * (centre - origin);
-    return sign * place.z() + radius < lowest || ((place.head<2>() - high).array() > radius).any() || ((low - place.head<2>()).array() > radius).any();
+    return sign * place.z() + radius < lowest || ((place.head<2>() - high).array() > radius).any() ||
+           ((low - place.head<2>()).array() > radius).any();
   };
-  const auto faces_one = [&](int q) {  // a proxy of one body is shown to those alone that it makes a pair with
-    return !options.between_bones || (sign > 0.0 ? std::any_of(proxies_a.begin(), proxies_a.end(), [&](int p) { return allowed(p, q); })
-                                                 : std::any_of(proxies_b.begin(), proxies_b.end(), [&](int p) { return allowed(q, p); }));
+  // a proxy of one body is shown to those alone that it makes a pair with
+  const auto faces_one = [&](int q) {
+    return !options.between_bones ||
+           (sign > 0.0
+                ? std::any_of(proxies_a.begin(), proxies_a.end(), [&](int p) { return allowed(p, q); })
+                : std::any_of(proxies_b.begin(), proxies_b.end(), [&](int p) { return allowed(q, p); }));
   };
   for (int q = 0; q < to.set.size(); ++q) {
     if (!faces_one(q)) continue;
@@ -172,11 +192,13 @@ void Pruner::Impl::fill(ContactRegion& region) {
     open.assign(patches_b.begin(), patches_b.begin() + static_cast<std::ptrdiff_t>(kept_b));
     look_through(b, open, a, region, -1.0, [&](int s) {
       const auto at = static_cast<std::size_t>(s);
-      if (!a.kept[at] && std::exchange(claimed_a[at], counts.queries) != counts.queries) patches_a.push_back(s);
+      if (!a.kept[at] && std::exchange(claimed_a[at], counts.queries) != counts.queries)
+        patches_a.push_back(s);
     });
   }
 
-  const auto extent = [&](const Side& side, const std::vector<int>& patches, std::vector<int>& faces, Vec3& low, Vec3& high) {
+  const auto extent = [&](const Side& side, const std::vector<int>& patches, std::vector<int>& faces,
+                          Vec3& low, Vec3& high) {
     low.setConstant(kInfinity);
     high.setConstant(-kInfinity);
     faces.clear();
@@ -206,7 +228,8 @@ void Pruner::Impl::remember(ContactRegion& region) {
   for (const int p : proxies_a) {
     const auto at = static_cast<std::size_t>(p);
     if (last_query[at] == counts.queries - 1)
-      region.turned = std::max(region.turned, std::atan2(last_normal[at].cross(region.region.normal).norm(), last_normal[at].dot(region.region.normal)));
+      region.turned = std::max(region.turned, std::atan2(last_normal[at].cross(region.region.normal).norm(),
+                                                         last_normal[at].dot(region.region.normal)));
     last_query[at] = counts.queries;
     last_normal[at] = region.region.normal;
   }

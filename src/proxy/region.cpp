@@ -14,7 +14,8 @@ namespace palpate::proxy {
 namespace {
 
 void ccd_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* out) {
-  const Vec3 p = static_cast<const Hull*>(object)->support(Vec3(ccdVec3X(direction), ccdVec3Y(direction), ccdVec3Z(direction)));
+  const Vec3 p = static_cast<const Hull*>(object)->support(
+      Vec3(ccdVec3X(direction), ccdVec3Y(direction), ccdVec3Z(direction)));
   ccdVec3Set(out, p.x(), p.y(), p.z());
 }
 
@@ -60,7 +61,8 @@ struct Best {
 };
 
 /// Asks one algorithm; true when its answer stands up to the two support calls.
-bool offer_answer(Penetration algorithm, RegionMethod by, const Hull& a, const Hull& b, Best& best, RegionCounts& counts) {
+bool offer_answer(Penetration algorithm, RegionMethod by, const Hull& a, const Hull& b, Best& best,
+                  RegionCounts& counts) {
   constexpr double kMismatch = 1e-3;  // of unit-sized shapes
   const auto answer = ask(algorithm, a, b);
   if (!answer) return false;
@@ -90,11 +92,13 @@ RegionFinder::RegionFinder() : scaled_(std::make_unique<Scaled>()) { counters::c
 RegionFinder::~RegionFinder() = default;
 RegionFinder::RegionFinder(RegionFinder&&) noexcept = default;
 
-Region RegionFinder::find(const Eigen::Ref<const Points>& a, const Eigen::Ref<const Points>& b, double margin) {
+Region RegionFinder::find(const Eigen::Ref<const Points>& a, const Eigen::Ref<const Points>& b,
+                          double margin) {
   check_points(a, "the first body");
   check_points(b, "the second body");
   ++counts_.queries;
-  const Vec3 low = a.rowwise().minCoeff().cwiseMin(b.rowwise().minCoeff()), high = a.rowwise().maxCoeff().cwiseMax(b.rowwise().maxCoeff());
+  const Vec3 low = a.rowwise().minCoeff().cwiseMin(b.rowwise().minCoeff()),
+             high = a.rowwise().maxCoeff().cwiseMax(b.rowwise().maxCoeff());
   const Vec3 origin = 0.5 * (low + high);
   const double size = (high - low).maxCoeff(), scale = size > 0.0 ? 1.0 / size : 1.0;
   Hull &hull_a = scaled_->a, &hull_b = scaled_->b;
@@ -109,9 +113,11 @@ Region RegionFinder::find(const Eigen::Ref<const Points>& a, const Eigen::Ref<co
   }
   best.offer(hull_a, hull_b, hull_a.centre() - hull_b.centre(), RegionMethod::kCentroids);
   if (has_last_) best.offer(hull_a, hull_b, last_normal_, RegionMethod::kLastNormal);
-  if (best.depth <= 0.0 || best.method == RegionMethod::kCentroids || best.method == RegionMethod::kLastNormal)
+  if (best.depth <= 0.0 || best.method == RegionMethod::kCentroids ||
+      best.method == RegionMethod::kLastNormal)
     best.offer(hull_a, hull_b, nearest_difference(hull_a, hull_b), RegionMethod::kDistance);
-  if (best.normal.isZero()) best = {0.0, Vec3::UnitZ(), RegionMethod::kCentroids};  // two coincident points: any direction
+  // two coincident points: any direction
+  if (best.normal.isZero()) best = {0.0, Vec3::UnitZ(), RegionMethod::kCentroids};
 
   counts_.last_normal += best.method == RegionMethod::kLastNormal;
   counts_.distance += best.method == RegionMethod::kDistance;

@@ -13,7 +13,8 @@ namespace {
 using Features = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// How many clusters each group gets: one, and of the rest its share by area (largest remainders first; of equals the first group).
+/// How many clusters each group gets: one, and of the rest its share by area (largest remainders first; of
+/// equals the first group).
 std::vector<int> share_out(const VecX& area, int count) {
   const int groups = static_cast<int>(area.size()), rest = std::max(0, count - groups);
   std::vector<int> shares(static_cast<std::size_t>(groups), 1), order(static_cast<std::size_t>(groups));
@@ -27,11 +28,13 @@ std::vector<int> share_out(const VecX& area, int count) {
   }
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return remainder[a] > remainder[b]; });
-  for (int i = 0; i < groups && given < rest; ++i, ++given) ++shares[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])];
+  for (int i = 0; i < groups && given < rest; ++i, ++given)
+    ++shares[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])];
   return shares;
 }
 
-/// Lloyd's k-means, weighted by area.  It starts from points that are each farthest from those before (Gonzalez 1985), the first farthest from the middle:
+/// Lloyd's k-means, weighted by area.  It starts from points that are each farthest from those before
+/// (Gonzalez 1985), the first farthest from the middle:
 /// no chance in it.  Of equals the first wins.
 std::vector<int> k_means(const Features& x, const VecX& weight, int count) {
   constexpr int kMaxRounds = 25;
@@ -78,7 +81,8 @@ std::vector<int> k_means(const Features& x, const VecX& weight, int count) {
 
 }  // namespace
 
-// The capsule with radii r0 and r1 at its ends, taken as |x - (head + s (tail - head))| - (r0 + s (r1 - r0)) at the s in [0, 1] nearest on the axis.
+// The capsule with radii r0 and r1 at its ends, taken as |x - (head + s (tail - head))| - (r0 + s (r1 - r0))
+// at the s in [0, 1] nearest on the axis.
 std::vector<int> nearest_bone(const Skeleton& skeleton, const Points& points) {
   std::vector<int> out(static_cast<std::size_t>(points.cols()), 0);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -86,8 +90,10 @@ std::vector<int> nearest_bone(const Skeleton& skeleton, const Points& points) {
     for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
       const Bone& bone = skeleton.bones[b];
       const Vec3 axis = bone.tail - bone.head, arm = points.col(i) - bone.head;
-      const double length2 = axis.squaredNorm(), s = length2 > 0.0 ? std::clamp(arm.dot(axis) / length2, 0.0, 1.0) : 0.0;
-      const double distance = (arm - s * axis).norm() - bone.head_radius - s * (bone.tail_radius - bone.head_radius);
+      const double length2 = axis.squaredNorm(),
+                   s = length2 > 0.0 ? std::clamp(arm.dot(axis) / length2, 0.0, 1.0) : 0.0;
+      const double distance =
+          (arm - s * axis).norm() - bone.head_radius - s * (bone.tail_radius - bone.head_radius);
       if (distance < least) {
         least = distance;
         out[static_cast<std::size_t>(i)] = static_cast<int>(b);
@@ -97,8 +103,10 @@ std::vector<int> nearest_bone(const Skeleton& skeleton, const Points& points) {
   return out;
 }
 
-// Positions are measured in the edge of a cluster's share of the area, L = sqrt(area / count); normals so that opposite ones are normal_weight apart.
-std::vector<int> skin_clusters(const TriMesh& skin, const std::vector<int>& group_of_vertex, int count, double normal_weight) {
+// Positions are measured in the edge of a cluster's share of the area, L = sqrt(area / count); normals so
+// that opposite ones are normal_weight apart.
+std::vector<int> skin_clusters(const TriMesh& skin, const std::vector<int>& group_of_vertex, int count,
+                               double normal_weight) {
   const int groups = 1 + *std::max_element(group_of_vertex.begin(), group_of_vertex.end());
   Points normals;
   VecX areas;
@@ -107,10 +115,12 @@ std::vector<int> skin_clusters(const TriMesh& skin, const std::vector<int>& grou
   const double length = std::sqrt(areas.sum() / std::max(1, count));
 
   std::vector<std::vector<int>> vertices(static_cast<std::size_t>(groups));
-  for (std::size_t v = 0; v < group_of_vertex.size(); ++v) vertices[static_cast<std::size_t>(group_of_vertex[v])].push_back(static_cast<int>(v));
+  for (std::size_t v = 0; v < group_of_vertex.size(); ++v)
+    vertices[static_cast<std::size_t>(group_of_vertex[v])].push_back(static_cast<int>(v));
   std::erase_if(vertices, [](const std::vector<int>& group) { return group.empty(); });
   VecX group_area(static_cast<Eigen::Index>(vertices.size()));
-  for (std::size_t g = 0; g < vertices.size(); ++g) group_area[static_cast<Eigen::Index>(g)] = areas(vertices[g]).sum();
+  for (std::size_t g = 0; g < vertices.size(); ++g)
+    group_area[static_cast<Eigen::Index>(g)] = areas(vertices[g]).sum();
   const std::vector<int> shares = share_out(group_area, count);
 
   std::vector<int> out(group_of_vertex.size(), -1);
@@ -120,7 +130,8 @@ std::vector<int> skin_clusters(const TriMesh& skin, const std::vector<int>& grou
     x.topRows<3>() = skin.vertices(Eigen::all, vertices[g]) / length;
     x.bottomRows<3>() = 0.5 * normal_weight * normals(Eigen::all, vertices[g]);
     const std::vector<int> cluster = k_means(x, areas(vertices[g]), shares[g]);
-    std::vector<int> number(static_cast<std::size_t>(shares[g]), -1);  // those that are not empty, in the order in which their vertices come
+    // those that are not empty, in the order in which their vertices come
+    std::vector<int> number(static_cast<std::size_t>(shares[g]), -1);
     for (std::size_t i = 0; i < cluster.size(); ++i) {
       int& own = number[static_cast<std::size_t>(cluster[i])];
       if (own < 0) own = next++;

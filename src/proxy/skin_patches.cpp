@@ -8,7 +8,9 @@ namespace palpate::proxy {
 namespace {
 
 Vec3 face_middle(const TriMesh& skin, int f) {
-  return (skin.vertices.col(skin.faces(0, f)) + skin.vertices.col(skin.faces(1, f)) + skin.vertices.col(skin.faces(2, f))) / 3.0;
+  return (skin.vertices.col(skin.faces(0, f)) + skin.vertices.col(skin.faces(1, f)) +
+          skin.vertices.col(skin.faces(2, f))) /
+         3.0;
 }
 
 /// The axis along which points reach farthest.
@@ -28,7 +30,8 @@ template <class Place>
 std::size_t halve(std::span<int> items, Place place) {
   const int axis = longest_axis(std::span<const int>(items), place);
   const auto half = static_cast<std::ptrdiff_t>(items.size() / 2);
-  std::nth_element(items.begin(), items.begin() + half, items.end(), [&](int f, int g) { return std::pair(place(f)[axis], f) < std::pair(place(g)[axis], g); });
+  std::nth_element(items.begin(), items.begin() + half, items.end(),
+                   [&](int f, int g) { return std::pair(place(f)[axis], f) < std::pair(place(g)[axis], g); });
   return static_cast<std::size_t>(half);
 }
 
@@ -43,12 +46,14 @@ Ball ball_of(const TriMesh& skin, std::span<const int> faces) {
     }
   out.centre = 0.5 * (low + high);
   for (const int f : faces)
-    for (int k = 0; k < 3; ++k) out.radius = std::max(out.radius, (skin.vertices.col(skin.faces(k, f)) - out.centre).norm());
+    for (int k = 0; k < 3; ++k)
+      out.radius = std::max(out.radius, (skin.vertices.col(skin.faces(k, f)) - out.centre).norm());
   return out;
 }
 
 /// The faces [first, first + count) of out.faces as one patch, or as two halves that are cut on.
-void add_faces(const TriMesh& skin, int proxy, std::size_t first, std::size_t count, int patch_faces, SkinPatches& out) {
+void add_faces(const TriMesh& skin, int proxy, std::size_t first, std::size_t count, int patch_faces,
+               SkinPatches& out) {
   const std::span<int> faces(out.faces.data() + first, count);
   if (static_cast<int>(count) <= patch_faces) {
     const Ball ball = ball_of(skin, faces);
@@ -59,7 +64,8 @@ void add_faces(const TriMesh& skin, int proxy, std::size_t first, std::size_t co
     patch.centre = ball.centre;
     patch.radius = ball.radius;
     for (const int f : faces) {
-      const Vec3 a = skin.vertices.col(skin.faces(0, f)), b = skin.vertices.col(skin.faces(1, f)), c = skin.vertices.col(skin.faces(2, f));
+      const Vec3 a = skin.vertices.col(skin.faces(0, f)), b = skin.vertices.col(skin.faces(1, f)),
+                 c = skin.vertices.col(skin.faces(2, f));
       patch.area += 0.5 * (b - a).cross(c - a);
     }
     out.patches.push_back(patch);
@@ -82,24 +88,29 @@ void add_halved(std::vector<ProxyBranch>& tree, std::span<int> proxies, const Po
 }
 
 /// The bone's own proxies and, below them, the bones that hang on it; nothing for a bone without any.
-void add_bone(std::vector<ProxyBranch>& tree, const Skeleton& skeleton, std::vector<std::vector<int>>& of_bone, const Points& middle, int bone, int parent) {
+void add_bone(std::vector<ProxyBranch>& tree, const Skeleton& skeleton,
+              std::vector<std::vector<int>>& of_bone, const Points& middle, int bone, int parent) {
   const auto branch = tree.size();
   tree.push_back({parent, 0, -1, Vec3::Zero(), Vec3::Zero()});
-  if (auto& own = of_bone[static_cast<std::size_t>(bone)]; !own.empty()) add_halved(tree, own, middle, static_cast<int>(branch));
+  if (auto& own = of_bone[static_cast<std::size_t>(bone)]; !own.empty())
+    add_halved(tree, own, middle, static_cast<int>(branch));
   for (std::size_t child = 0; child < skeleton.bones.size(); ++child)
-    if (skeleton.bones[child].parent == bone) add_bone(tree, skeleton, of_bone, middle, static_cast<int>(child), static_cast<int>(branch));
+    if (skeleton.bones[child].parent == bone)
+      add_bone(tree, skeleton, of_bone, middle, static_cast<int>(child), static_cast<int>(branch));
   if (tree.size() == branch + 1) return tree.pop_back();
   tree[branch].after = static_cast<int>(tree.size());
 }
 
 }  // namespace
 
-SkinPatches skin_patches(const TriMesh& skin, const std::vector<int>& owner_of_face, int proxies, int patch_faces) {
+SkinPatches skin_patches(const TriMesh& skin, const std::vector<int>& owner_of_face, int proxies,
+                         int patch_faces) {
   SkinPatches out;
   out.faces.resize(owner_of_face.size());
   std::iota(out.faces.begin(), out.faces.end(), 0);
-  std::stable_sort(out.faces.begin(), out.faces.end(),
-                   [&](int f, int g) { return owner_of_face[static_cast<std::size_t>(f)] < owner_of_face[static_cast<std::size_t>(g)]; });
+  std::stable_sort(out.faces.begin(), out.faces.end(), [&](int f, int g) {
+    return owner_of_face[static_cast<std::size_t>(f)] < owner_of_face[static_cast<std::size_t>(g)];
+  });
   std::size_t first = 0;
   for (int p = 0; p < proxies; ++p) {
     out.first_of_proxy.push_back(static_cast<int>(out.patches.size()));
@@ -112,12 +123,16 @@ SkinPatches skin_patches(const TriMesh& skin, const std::vector<int>& owner_of_f
   return out;
 }
 
-std::vector<ProxyBranch> proxy_tree(const Skeleton& skeleton, const std::vector<ProxyHull>& proxies, const Points& middle) {
+std::vector<ProxyBranch> proxy_tree(const Skeleton& skeleton, const std::vector<ProxyHull>& proxies,
+                                    const Points& middle) {
   std::vector<ProxyBranch> tree;
   std::vector<std::vector<int>> of_bone(skeleton.bones.size());
   std::vector<int> free;
   for (int p = 0; p < static_cast<int>(proxies.size()); ++p)
-    (proxies[static_cast<std::size_t>(p)].bone >= 0 ? of_bone[static_cast<std::size_t>(proxies[static_cast<std::size_t>(p)].bone)] : free).push_back(p);
+    (proxies[static_cast<std::size_t>(p)].bone >= 0
+         ? of_bone[static_cast<std::size_t>(proxies[static_cast<std::size_t>(p)].bone)]
+         : free)
+        .push_back(p);
   if (free.size() == proxies.size()) {
     add_halved(tree, free, middle, -1);
     return tree;
@@ -133,8 +148,10 @@ std::vector<ProxyBranch> proxy_tree(const Skeleton& skeleton, const std::vector<
 void refit(std::vector<ProxyBranch>& tree, const std::vector<Box>& boxes) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (ProxyBranch& branch : tree) {
-    branch.low = branch.proxy < 0 ? Vec3(Vec3::Constant(infinity)) : boxes[static_cast<std::size_t>(branch.proxy)].low;
-    branch.high = branch.proxy < 0 ? Vec3(Vec3::Constant(-infinity)) : boxes[static_cast<std::size_t>(branch.proxy)].high;
+    branch.low =
+        branch.proxy < 0 ? Vec3(Vec3::Constant(infinity)) : boxes[static_cast<std::size_t>(branch.proxy)].low;
+    branch.high = branch.proxy < 0 ? Vec3(Vec3::Constant(-infinity))
+                                   : boxes[static_cast<std::size_t>(branch.proxy)].high;
   }
   for (std::size_t i = tree.size(); i-- > 1;) {  // preorder: children stand after their parent
     ProxyBranch& parent = tree[static_cast<std::size_t>(tree[i].parent)];

@@ -16,12 +16,16 @@ Polygon clipped(const Polygon& polygon, int axis, double at, double side, double
   out.face = polygon.face;
   out.is_cut = true;
   const auto add = [&out](const Vec3& corner) {
-    PALPATE_CHECK(out.count < static_cast<int>(out.corner.size()), "face {} has more than {} corners in a cell", out.face, out.corner.size());
+    PALPATE_CHECK(out.count < static_cast<int>(out.corner.size()),
+                  "face {} has more than {} corners in a cell", out.face, out.corner.size());
     out.corner[static_cast<std::size_t>(out.count++)] = corner;
   };
-  const auto height = [&](const Vec3& x) { return std::abs(x[axis] - at) <= flat ? 0.0 : side * (x[axis] - at); };
+  const auto height = [&](const Vec3& x) {
+    return std::abs(x[axis] - at) <= flat ? 0.0 : side * (x[axis] - at);
+  };
   for (int i = 0; i < polygon.count; ++i) {
-    const Vec3 &p = polygon.corner[static_cast<std::size_t>(i)], &q = polygon.corner[static_cast<std::size_t>((i + 1) % polygon.count)];
+    const Vec3 &p = polygon.corner[static_cast<std::size_t>(i)],
+               &q = polygon.corner[static_cast<std::size_t>((i + 1) % polygon.count)];
     const double above_p = height(p), above_q = height(q);
     if (above_p >= 0.0) add(p);
     if (above_p * above_q < 0.0) add(p + above_p / (above_p - above_q) * (q - p));
@@ -50,7 +54,8 @@ Vec3 Polygon::middle() const {
 
 Vec3 Polygon::area() const {
   Vec3 twice = Vec3::Zero();
-  for (std::size_t i = 2; i < static_cast<std::size_t>(count); ++i) twice += (corner[i - 1] - corner[0]).cross(corner[i] - corner[0]);
+  for (std::size_t i = 2; i < static_cast<std::size_t>(count); ++i)
+    twice += (corner[i - 1] - corner[0]).cross(corner[i] - corner[0]);
   return 0.5 * twice;
 }
 
@@ -61,13 +66,15 @@ SolidPiece whole_piece(const TriMesh& surface) {
     Polygon& polygon = out.surface.emplace_back();
     polygon.face = f;
     polygon.count = 3;
-    for (int k = 0; k < 3; ++k) polygon.corner[static_cast<std::size_t>(k)] = surface.vertices.col(surface.faces(k, f));
+    for (int k = 0; k < 3; ++k)
+      polygon.corner[static_cast<std::size_t>(k)] = surface.vertices.col(surface.faces(k, f));
     out.faces.push_back(f);
   }
   return out;
 }
 
-std::array<SolidPiece, 2> cut(const SolidPiece& piece, const TriMesh& surface, int axis, double at, double flat) {
+std::array<SolidPiece, 2> cut(const SolidPiece& piece, const TriMesh& surface, int axis, double at,
+                              double flat) {
   std::array<SolidPiece, 2> out;
   auto& [below, above] = out;
   below.cell = above.cell = piece.cell;
@@ -97,14 +104,16 @@ std::array<SolidPiece, 2> cut(const SolidPiece& piece, const TriMesh& surface, i
   return out;
 }
 
-// The covariance of a triangle's points about its middle m is (sum over corners of (x - m)(x - m)^T) / 12, times its area.
+// The covariance of a triangle's points about its middle m is (sum over corners of (x - m)(x - m)^T) / 12,
+// times its area.
 Mat3 principal_axes(const TriMesh& surface) {
   Mat3 second = Mat3::Zero();
   Vec3 first = Vec3::Zero();
   double area = 0.0;
   for (Eigen::Index f = 0; f < surface.faces.cols(); ++f) {
     Mat3 x;
-    for (int k = 0; k < 3; ++k) x.col(k) = surface.vertices.col(surface.faces(k, f)) - surface.vertices.col(surface.faces(0, 0));
+    for (int k = 0; k < 3; ++k)
+      x.col(k) = surface.vertices.col(surface.faces(k, f)) - surface.vertices.col(surface.faces(0, 0));
     const double a = 0.5 * (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0)).norm();
     const Vec3 m = x.rowwise().mean();
     const Mat3 arm = x.colwise() - m;
@@ -113,7 +122,8 @@ Mat3 principal_axes(const TriMesh& surface) {
     area += a;
   }
   if (!(area > 0.0)) return Mat3::Identity();
-  Mat3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(second / area - (first / area) * (first / area).transpose()).eigenvectors();
+  Mat3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(second / area - (first / area) * (first / area).transpose())
+                  .eigenvectors();
   axes.col(2) = axes.col(0).cross(axes.col(1));
   return axes;
 }

@@ -23,15 +23,18 @@ Mat3 camera_axes(const Vec3& backwards, const Vec3& up) {
 
 }  // namespace
 
-// In the axes of the camera about the middle of the points, with its target at (cx, cy, 0) and the eye a distance d behind, a point p appears at x = (px - cx) / ((d - pz) t),
-// t the tangent of half the image's angle.  |x| <= 1 for all points means px + t pz - cx <= t d and -px + t pz + cx <= t d: with R and L
-// the maxima of px + t pz and -px + t pz, the nearest eye has d = (R + L) / (2 t) at cx = (R - L) / 2.  Likewise upwards; the larger d serves both.
-// Margins shrink t, and shift the image by their difference.
+// In the axes of the camera about the middle of the points, with its target at (cx, cy, 0) and the eye a
+// distance d behind, a point p appears at x = (px - cx) / ((d - pz) t), t the tangent of half the image's
+// angle.  |x| <= 1 for all points means px + t pz - cx <= t d and -px + t pz + cx <= t d: with R and L the
+// maxima of px + t pz and -px + t pz, the nearest eye has d = (R + L) / (2 t) at cx = (R - L) / 2.  Likewise
+// upwards; the larger d serves both. Margins shrink t, and shift the image by their difference.
 Camera framed(const Points& points, const View& view, double aspect, const Margins& margins) {
   PALPATE_CHECK(points.cols() > 0 && points.allFinite(), "{} points to frame", points.cols());
   const double degree = std::numbers::pi / 180.0;
   const double azimuth = view.azimuth_deg * degree, elevation = view.elevation_deg * degree;
-  const Mat3 axes = camera_axes({std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation), std::sin(elevation)}, Vec3::UnitZ());
+  const Mat3 axes = camera_axes(
+      {std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation), std::sin(elevation)},
+      Vec3::UnitZ());
   const Vec3 middle = 0.5 * (points.rowwise().minCoeff() + points.rowwise().maxCoeff());
   const Points p = axes.transpose() * (points.colwise() - middle);
   const double front = p.row(2).maxCoeff(), behind = p.row(2).minCoeff();
@@ -41,16 +44,21 @@ Camera framed(const Points& points, const View& view, double aspect, const Margi
   camera.shift = {margins.left - margins.right, margins.bottom - margins.top};
   const double width = 1.0 - margins.left - margins.right, height = 1.0 - margins.bottom - margins.top;
   const double tangent = std::tan(0.5 * view.angle_deg * degree);
-  const double tx = view.perspective ? tangent * aspect * width : 0.0, ty = view.perspective ? tangent * height : 0.0;
-  const auto reach = [&](int row, double sign, double t) { return (sign * p.row(row) + t * p.row(2)).maxCoeff(); };
-  const double right = reach(0, 1.0, tx), left = reach(0, -1.0, tx), top = reach(1, 1.0, ty), bottom = reach(1, -1.0, ty);
+  const double tx = view.perspective ? tangent * aspect * width : 0.0,
+               ty = view.perspective ? tangent * height : 0.0;
+  const auto reach = [&](int row, double sign, double t) {
+    return (sign * p.row(row) + t * p.row(2)).maxCoeff();
+  };
+  const double right = reach(0, 1.0, tx), left = reach(0, -1.0, tx), top = reach(1, 1.0, ty),
+               bottom = reach(1, -1.0, ty);
   const double depth = std::max(front - behind, 1e-6 * (1.0 + middle.norm()));
   double distance = front + 2.0 * depth;
   if (view.perspective) {
     distance = std::max({(right + left) / (2.0 * tx), (top + bottom) / (2.0 * ty), front + 0.05 * depth});
     camera.half_height = tangent;
   } else {
-    camera.half_height = std::max({(right + left) / (2.0 * aspect * width), (top + bottom) / (2.0 * height), 1e-9});
+    camera.half_height =
+        std::max({(right + left) / (2.0 * aspect * width), (top + bottom) / (2.0 * height), 1e-9});
   }
   const Vec3 centre((right - left) / 2.0, (top - bottom) / 2.0, 0.0);
   camera.target = middle + axes * centre;

@@ -7,14 +7,17 @@
 namespace palpate::render {
 
 // cairo keeps a pixel as one native 32-bit word, 0xXXRRGGBB.
-Canvas::Canvas(const Picture& picture) : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture.width, picture.height)) {
-  PALPATE_CHECK(cairo_surface_status(surface_) == CAIRO_STATUS_SUCCESS, "cairo: {}", cairo_status_to_string(cairo_surface_status(surface_)));
+Canvas::Canvas(const Picture& picture)
+    : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture.width, picture.height)) {
+  PALPATE_CHECK(cairo_surface_status(surface_) == CAIRO_STATUS_SUCCESS, "cairo: {}",
+                cairo_status_to_string(cairo_surface_status(surface_)));
   const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(surface_));
   unsigned char* data = cairo_image_surface_get_data(surface_);
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x) {
       const std::uint8_t* p = picture.pixel(x, y);
-      const std::uint32_t word = static_cast<std::uint32_t>(p[0]) << 16 | static_cast<std::uint32_t>(p[1]) << 8 | p[2];
+      const std::uint32_t word =
+          static_cast<std::uint32_t>(p[0]) << 16 | static_cast<std::uint32_t>(p[1]) << 8 | p[2];
       std::memcpy(data + static_cast<std::size_t>(y) * stride + 4 * static_cast<std::size_t>(x), &word, 4);
     }
   cairo_surface_mark_dirty(surface_);
@@ -43,12 +46,15 @@ Picture Canvas::result() const {
       std::uint32_t word = 0;
       std::memcpy(&word, data + static_cast<std::size_t>(y) * stride + 4 * static_cast<std::size_t>(x), 4);
       std::uint8_t* p = picture.pixel(x, y);
-      p[0] = static_cast<std::uint8_t>(word >> 16), p[1] = static_cast<std::uint8_t>(word >> 8), p[2] = static_cast<std::uint8_t>(word);
+      p[0] = static_cast<std::uint8_t>(word >> 16), p[1] = static_cast<std::uint8_t>(word >> 8),
+      p[2] = static_cast<std::uint8_t>(word);
     }
   return picture;
 }
 
-void Canvas::set_colour(Rgb colour, double opacity) { cairo_set_source_rgba(pen_, colour.r, colour.g, colour.b, opacity); }
+void Canvas::set_colour(Rgb colour, double opacity) {
+  cairo_set_source_rgba(pen_, colour.r, colour.g, colour.b, opacity);
+}
 
 void Canvas::fill_rectangle(double x, double y, double width, double height) {
   cairo_rectangle(pen_, x, y, width, height);
@@ -56,7 +62,8 @@ void Canvas::fill_rectangle(double x, double y, double width, double height) {
 }
 
 void Canvas::choose_font(double size, bool bold) {
-  cairo_select_font_face(pen_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_select_font_face(pen_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   cairo_set_font_size(pen_, size);
 }
 

@@ -20,7 +20,8 @@ FacesOfPoint faces_of_point(const Surface& surface) {
   out.faces.resize(static_cast<std::size_t>(surface.faces.size()));
   std::vector<int> next(out.begin.begin(), out.begin.end() - 1);
   for (int f = 0; f < surface.faces.cols(); ++f)
-    for (int k = 0; k < 3; ++k) out.faces[static_cast<std::size_t>(next[static_cast<std::size_t>(surface.faces(k, f))]++)] = f;
+    for (int k = 0; k < 3; ++k)
+      out.faces[static_cast<std::size_t>(next[static_cast<std::size_t>(surface.faces(k, f))]++)] = f;
   return out;
 }
 
@@ -28,7 +29,8 @@ FacesOfPoint faces_of_point(const Surface& surface) {
 Points face_vectors(const Surface& surface) {
   Points vectors(3, surface.faces.cols());
   for (int f = 0; f < surface.faces.cols(); ++f) {
-    const Vec3 a = surface.points.col(surface.faces(0, f)), b = surface.points.col(surface.faces(1, f)), c = surface.points.col(surface.faces(2, f));
+    const Vec3 a = surface.points.col(surface.faces(0, f)), b = surface.points.col(surface.faces(1, f)),
+               c = surface.points.col(surface.faces(2, f));
     vectors.col(f) = (b - a).cross(c - a);
   }
   return vectors;
@@ -37,7 +39,8 @@ Points face_vectors(const Surface& surface) {
 float scaled(const Surface& surface, const ColourScale& scale, int point) {
   constexpr float kPlain = -10.0f;
   if (surface.values.size() == 0 || !std::isfinite(surface.values[point])) return kPlain;
-  return static_cast<float>(std::clamp((surface.values[point] - scale.low) / (scale.high - scale.low), 0.0, 1.0));
+  return static_cast<float>(
+      std::clamp((surface.values[point] - scale.low) / (scale.high - scale.low), 0.0, 1.0));
 }
 
 }  // namespace
@@ -53,11 +56,13 @@ std::vector<Corner> corners(const Surface& surface, const ColourScale& scale, co
     for (int k = 0; k < 3; ++k) {
       const int point = surface.faces(k, f);
       Vec3 sum = vectors.col(f);
-      for (int i = around.begin[static_cast<std::size_t>(point)]; i < around.begin[static_cast<std::size_t>(point) + 1]; ++i) {
+      for (int i = around.begin[static_cast<std::size_t>(point)];
+           i < around.begin[static_cast<std::size_t>(point) + 1]; ++i) {
         const int other = around.faces[static_cast<std::size_t>(i)];
         if (other != f && normals.col(other).dot(normals.col(f)) >= least_cosine) sum += vectors.col(other);
       }
-      const Eigen::Vector3f p = (surface.points.col(point) - origin).cast<float>(), n = sum.normalized().cast<float>();
+      const Eigen::Vector3f p = (surface.points.col(point) - origin).cast<float>(),
+                            n = sum.normalized().cast<float>();
       out.push_back({{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, scaled(surface, scale, point)});
     }
   }

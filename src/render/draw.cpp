@@ -13,17 +13,24 @@ namespace {
 
 void check(const Surface& surface, std::size_t index) {
   const std::string name = surface.name.empty() ? fmt::format("{}", index) : "\"" + surface.name + "\"";
-  if (surface.faces.size() > 0 && (surface.faces.minCoeff() < 0 || surface.faces.maxCoeff() >= surface.points.cols()))
-    fail("picture: surface {}: a face names point {} of {}", name, surface.faces.minCoeff() < 0 ? surface.faces.minCoeff() : surface.faces.maxCoeff(), surface.points.cols());
-  if (!surface.points.allFinite()) fail("picture: surface {}: a position is not finite: the simulation has diverged; take a smaller step", name);
+  if (surface.faces.size() > 0 &&
+      (surface.faces.minCoeff() < 0 || surface.faces.maxCoeff() >= surface.points.cols()))
+    fail("picture: surface {}: a face names point {} of {}", name,
+         surface.faces.minCoeff() < 0 ? surface.faces.minCoeff() : surface.faces.maxCoeff(),
+         surface.points.cols());
+  if (!surface.points.allFinite())
+    fail("picture: surface {}: a position is not finite: the simulation has diverged; take a smaller step",
+         name);
   if (surface.values.size() != 0 && surface.values.size() != surface.points.cols())
-    fail("picture: surface {}: {} values for {} points; give one a point or none", name, surface.values.size(), surface.points.cols());
+    fail("picture: surface {}: {} values for {} points; give one a point or none", name,
+         surface.values.size(), surface.points.cols());
 }
 
 void check(const Options& options) {
   if (options.width < 16 || options.height < 16 || options.width > 8192 || options.height > 8192)
     fail("picture: {} x {} pixels; each side must be 16 to 8192", options.width, options.height);
-  if (options.supersampling < 1 || options.supersampling > 8) fail("picture: supersampling = {} must be 1 to 8", options.supersampling);
+  if (options.supersampling < 1 || options.supersampling > 8)
+    fail("picture: supersampling = {} must be 1 to 8", options.supersampling);
 }
 
 /// The points of all surfaces side by side.
@@ -61,13 +68,19 @@ Picture draw(const Scene& scene, const Options& options) {
   const Vec3 low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
   staging.centre = 0.5 * (low + high);
   staging.radius = std::max((points.colwise() - staging.centre).colwise().norm().maxCoeff(), 1e-9);
-  if (scene.ground) staging.grid_spacing = scene.ground->spacing > 0.0 ? scene.ground->spacing : round_up(0.2 * staging.radius);
-  const bool with_scale = std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [](const Surface& s) { return s.values.size() > 0; });
+  if (scene.ground)
+    staging.grid_spacing =
+        scene.ground->spacing > 0.0 ? scene.ground->spacing : round_up(0.2 * staging.radius);
+  const bool with_scale = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                                      [](const Surface& s) { return s.values.size() > 0; });
   const double aspect = static_cast<double>(options.width) / options.height;
-  staging.camera = options.camera ? *options.camera : framed(points, options.view, aspect, margins_of(scene, options, with_scale));
+  staging.camera = options.camera
+                       ? *options.camera
+                       : framed(points, options.view, aspect, margins_of(scene, options, with_scale));
 
   const Picture shaded = shade(scene, staging, options);
-  return options.annotated ? annotated(shaded, scene, staging.scale, with_scale, staging.grid_spacing) : shaded;
+  return options.annotated ? annotated(shaded, scene, staging.scale, with_scale, staging.grid_spacing)
+                           : shaded;
 }
 
 }  // namespace palpate::render

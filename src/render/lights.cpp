@@ -7,7 +7,8 @@ Lights lights_of(const Camera& camera) {
   Vec3 right = forward.cross(Vec3::UnitZ());
   right = right.norm() > 1e-6 ? Vec3(right.normalized()) : Vec3::UnitX();
   const Vec3 back = Vec3::UnitZ().cross(right).normalized() * -1.0;
-  return {(1.0 * Vec3::UnitZ() - 0.55 * right + 0.45 * back).normalized(), (0.25 * Vec3::UnitZ() + 0.9 * right + 0.5 * back).normalized()};
+  return {(1.0 * Vec3::UnitZ() - 0.55 * right + 0.45 * back).normalized(),
+          (0.25 * Vec3::UnitZ() + 0.9 * right + 0.5 * back).normalized()};
 }
 
 Eigen::Matrix4d light_projection(const Vec3& key, double radius) {

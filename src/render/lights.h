@@ -3,7 +3,8 @@
 
 namespace palpate::render {
 
-/// Directions towards the two lights, fixed to the camera: the key from above and from the left, the fill low and from the right.
+/// Directions towards the two lights, fixed to the camera: the key from above and from the left, the fill low
+/// and from the right.
 struct Lights {
   Vec3 key, fill;
 };

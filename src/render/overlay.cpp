@@ -47,7 +47,8 @@ Margins margins_of(const Scene& scene, const Options& options, bool with_scale) 
   return margins;
 }
 
-void draw_scale(Canvas& canvas, const ColourScale& scale, double x, double y, double width, double height, double text_size) {
+void draw_scale(Canvas& canvas, const ColourScale& scale, double x, double y, double width, double height,
+                double text_size) {
   const ScaledUnit unit = scaled_unit(scale.unit, std::max(std::abs(scale.low), std::abs(scale.high)));
   const int rows = std::max(2, static_cast<int>(height));
   for (int i = 0; i < rows; ++i) {
@@ -62,7 +63,8 @@ void draw_scale(Canvas& canvas, const ColourScale& scale, double x, double y, do
   }
 }
 
-Picture annotated(const Picture& picture, const Scene& scene, const ColourScale& scale, bool with_scale, double grid_spacing) {
+Picture annotated(const Picture& picture, const Scene& scene, const ColourScale& scale, bool with_scale,
+                  double grid_spacing) {
   Canvas canvas(picture);
   const double u = picture.height / kDesignHeight, width = picture.width, height = picture.height;
   canvas.set_colour(kInk);

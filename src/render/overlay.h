@@ -8,9 +8,12 @@ namespace palpate::render {
 Margins margins_of(const Scene& scene, const Options& options, bool with_scale);
 
 /// A vertical colour bar with ticks to its right and its label above.
-void draw_scale(Canvas& canvas, const ColourScale& scale, double x, double y, double width, double height, double text_size);
+void draw_scale(Canvas& canvas, const ColourScale& scale, double x, double y, double width, double height,
+                double text_size);
 
-/// Title and subtitle at the top left, colour scale at the right, names of plain surfaces and the grid's spacing at the bottom left.
-Picture annotated(const Picture& picture, const Scene& scene, const ColourScale& scale, bool with_scale, double grid_spacing);
+/// Title and subtitle at the top left, colour scale at the right, names of plain surfaces and the grid's
+/// spacing at the bottom left.
+Picture annotated(const Picture& picture, const Scene& scene, const ColourScale& scale, bool with_scale,
+                  double grid_spacing);
 
 }  // namespace palpate::render

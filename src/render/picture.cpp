@@ -19,7 +19,8 @@ void save_png(const Picture& picture, const std::filesystem::path& path) {
   Canvas canvas(picture);
   const cairo_status_t status = cairo_surface_write_to_png(canvas.surface(), path.c_str());
   if (status != CAIRO_STATUS_SUCCESS)
-    fail("{}: the picture cannot be written ({}); check that the folder exists, may be written, and has room", path.string(), cairo_status_to_string(status));
+    fail("{}: the picture cannot be written ({}); check that the folder exists, may be written, and has room",
+         path.string(), cairo_status_to_string(status));
 }
 
 }  // namespace palpate::render

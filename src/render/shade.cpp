@@ -21,7 +21,8 @@ constexpr int kShadowSize = 2048;
 
 /// A surface on the GPU.
 struct Drawable {
-  Drawable(const std::vector<Corner>& corners, const Surface* of) : surface(of), count(static_cast<int>(corners.size())) {
+  Drawable(const std::vector<Corner>& corners, const Surface* of)
+      : surface(of), count(static_cast<int>(corners.size())) {
     buffer.upload(corners);
     array.attribute(0, buffer, 3, sizeof(Corner), offsetof(Corner, position));
     array.attribute(1, buffer, 3, sizeof(Corner), offsetof(Corner, normal));
@@ -38,7 +39,8 @@ struct Drawable {
 };
 
 Drawable ground_square(const Ground& ground, const Staging& staging) {
-  const float reach = 12.0f * static_cast<float>(staging.radius), z = static_cast<float>(ground.z - staging.centre.z());
+  const float reach = 12.0f * static_cast<float>(staging.radius),
+              z = static_cast<float>(ground.z - staging.centre.z());
   std::vector<Corner> corners;
   for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, -1}, {1, 1}, {-1, 1}})
     corners.push_back({{reach * static_cast<float>(x), reach * static_cast<float>(y), z}, {0, 0, 1}, -10.0f});
@@ -78,7 +80,8 @@ class Shader {
   Camera camera_;  // relative to the scene's centre
   Lights lights_;
   Eigen::Matrix4f view_, light_;
-  gl::Program surface_{"render/surface.vert", "render/surface.frag"}, ground_{"render/surface.vert", "render/ground.frag"},
+  gl::Program surface_{"render/surface.vert", "render/surface.frag"},
+      ground_{"render/surface.vert", "render/ground.frag"},
       shadow_{"render/shadow.vert", "render/shadow.frag"};
   gl::Texture table_ = colour_table();
   gl::Framebuffer shadow_map_{kShadowSize, kShadowSize, {}, true};
@@ -86,13 +89,18 @@ class Shader {
 };
 
 Shader::Shader(const Scene& scene, const Staging& staging, const Options& options)
-    : scene_(scene), staging_(staging), options_(options), camera_(staging.camera), lights_(lights_of(staging.camera)) {
+    : scene_(scene),
+      staging_(staging),
+      options_(options),
+      camera_(staging.camera),
+      lights_(lights_of(staging.camera)) {
   camera_.eye -= staging.centre;
   camera_.target -= staging.centre;
   view_ = view_projection(camera_, static_cast<double>(options.width) / options.height).cast<float>();
   light_ = light_projection(lights_.key, staging.radius).cast<float>();
   for (const Surface& surface : scene.surfaces)
-    if (surface.faces.cols() > 0) drawables_.emplace_back(corners(surface, staging.scale, staging.centre), &surface);
+    if (surface.faces.cols() > 0)
+      drawables_.emplace_back(corners(surface, staging.scale, staging.centre), &surface);
 }
 
 void Shader::draw_shadows() {
@@ -133,7 +141,9 @@ void Shader::draw_surface(const Drawable& drawable) {
   surface_.set("plain_colour", vector_of(drawable.surface->colour));
   surface_.set("opacity", static_cast<float>(drawable.surface->opacity));
   surface_.set("parallel", camera_.perspective ? 0 : 1);
-  surface_.set("eye", Eigen::Vector3f((camera_.perspective ? camera_.eye : Vec3(camera_.eye - camera_.target)).cast<float>()));
+  surface_.set("eye",
+               Eigen::Vector3f(
+                   (camera_.perspective ? camera_.eye : Vec3(camera_.eye - camera_.target)).cast<float>()));
   surface_.set("key_light", Eigen::Vector3f(lights_.key.cast<float>()));
   surface_.set("fill_light", Eigen::Vector3f(lights_.fill.cast<float>()));
   surface_.set("shadow_radius", 0.008f);
@@ -142,7 +152,8 @@ void Shader::draw_surface(const Drawable& drawable) {
   drawable.draw();
 }
 
-/// Depth first, then colour where depth is equal: only the layer nearest to the eye is blended, in whatever order triangles come.
+/// Depth first, then colour where depth is equal: only the layer nearest to the eye is blended, in whatever
+/// order triangles come.
 void Shader::draw_transparent(const Drawable& drawable) {
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   draw_surface(drawable);
@@ -157,7 +168,8 @@ void Shader::draw_transparent(const Drawable& drawable) {
 
 /// Whoever drew before in this context may have left anything.
 void set_state() {
-  for (const GLenum off : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL}) glDisable(off);
+  for (const GLenum off : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL})
+    glDisable(off);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);
@@ -168,7 +180,8 @@ void set_state() {
 Picture Shader::run() {
   set_state();
   draw_shadows();
-  gl::Framebuffer target(options_.width * options_.supersampling, options_.height * options_.supersampling, {gl::Format::kRgba8}, true);
+  gl::Framebuffer target(options_.width * options_.supersampling, options_.height * options_.supersampling,
+                         {gl::Format::kRgba8}, true);
   const float background[4] = {options_.background.r, options_.background.g, options_.background.b, 1.0f};
   target.bind();
   target.clear(0, background);

@@ -18,8 +18,11 @@ double round_up(double x) {
 
 ScaledUnit scaled_unit(const std::string& unit, double largest) {
   static const std::array<std::string, 8> prefixable = {"m", "m/s", "Pa", "N", "J", "N m", "s", "W"};
-  static const std::array<std::pair<double, const char*>, 6> prefixes = {{{1e9, "n"}, {1e6, "µ"}, {1e3, "m"}, {1.0, ""}, {1e-3, "k"}, {1e-6, "M"}}};
-  if (!(largest > 0.0) || !std::isfinite(largest) || std::find(prefixable.begin(), prefixable.end(), unit) == prefixable.end()) return {1.0, unit};
+  static const std::array<std::pair<double, const char*>, 6> prefixes = {
+      {{1e9, "n"}, {1e6, "µ"}, {1e3, "m"}, {1.0, ""}, {1e-3, "k"}, {1e-6, "M"}}};
+  if (!(largest > 0.0) || !std::isfinite(largest) ||
+      std::find(prefixable.begin(), prefixable.end(), unit) == prefixable.end())
+    return {1.0, unit};
   for (const auto& [factor, prefix] : prefixes)
     if (largest * factor < 1000.0) return {factor, prefix + unit};
   return {1e-9, "G" + unit};
@@ -34,7 +37,8 @@ std::vector<Tick> ticks(double low, double high, const ScaledUnit& unit) {
   for (double k = std::ceil((first - slack) / step); k * step <= last + slack; k += 1.0) {
     const double value = k == 0.0 ? 0.0 : k * step;  // never "-0"
     const bool plain = std::abs(last) < 1e5 && decimals <= 6;
-    out.push_back({value / unit.factor, plain ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:.3g}", value)});
+    out.push_back({value / unit.factor,
+                   plain ? fmt::format("{:.{}f}", value, decimals) : fmt::format("{:.3g}", value)});
   }
   return out;
 }

@@ -16,7 +16,8 @@ std::string tick_label(double value, int exponent, int digit, bool plain) {
 
 std::vector<std::pair<double, std::string>> logarithmic_ticks(double low, double high) {
   const double decades = std::log10(high / low);
-  const int first = static_cast<int>(std::floor(std::log10(low))), last = static_cast<int>(std::ceil(std::log10(high)));
+  const int first = static_cast<int>(std::floor(std::log10(low))),
+            last = static_cast<int>(std::ceil(std::log10(high)));
   const bool plain = first >= -4 && last <= 4;
   const int stride = std::max(1, static_cast<int>(std::ceil(decades / 9.0)));
   std::vector<std::pair<double, std::string>> ticks;
@@ -25,7 +26,8 @@ std::vector<std::pair<double, std::string>> logarithmic_ticks(double low, double
       if (digit != 1 && decades > 2.2) continue;
       if (digit == 1 && decades > 2.2 && e % stride != 0) continue;
       const double value = digit * std::pow(10.0, e);
-      if (value >= low * 0.999 && value <= high * 1.001) ticks.emplace_back(value, tick_label(value, e, digit, plain));
+      if (value >= low * 0.999 && value <= high * 1.001)
+        ticks.emplace_back(value, tick_label(value, e, digit, plain));
     }
   }
   return ticks;
@@ -58,7 +60,8 @@ std::string axis_commands(const std::string& name, const Axis& axis) {
   out += fmt::format("set {}range [{:.9g}:{:.9g}]\n", name, axis.low, axis.high);
   if (axis.ticks.empty()) return out;
   out += fmt::format("set {}tics (", name);
-  for (std::size_t i = 0; i < axis.ticks.size(); ++i) out += fmt::format("{}'{}' {:.9g}", i > 0 ? ", " : "", axis.ticks[i].second, axis.ticks[i].first);
+  for (std::size_t i = 0; i < axis.ticks.size(); ++i)
+    out += fmt::format("{}'{}' {:.9g}", i > 0 ? ", " : "", axis.ticks[i].second, axis.ticks[i].first);
   return out + ")\n";
 }
 

@@ -8,14 +8,16 @@
 namespace palpate::report {
 
 std::vector<Quantity> quantities_of(const Table& table, const ReferenceError& reference) {
-  const std::vector<Quantity> all = {{"position_error_rel_l2", "position error, relative L2 [-]", reference.position_error_rel_l2},
-                                     {"force_error_rms_n", "force error, RMS [N]", reference.force_error_rms_n},
-                                     {"torque_error_rms_n_m", "torque error, RMS [N m]", reference.torque_error_rms_n_m}};
+  const std::vector<Quantity> all = {
+      {"position_error_rel_l2", "position error, relative L2 [-]", reference.position_error_rel_l2},
+      {"force_error_rms_n", "force error, RMS [N]", reference.force_error_rms_n},
+      {"torque_error_rms_n_m", "torque error, RMS [N m]", reference.torque_error_rms_n_m}};
   std::vector<Quantity> present;
   for (const Quantity& q : all) {
     if (!table.has(q.column)) continue;
     const std::vector<double> values = table.numbers(q.column);
-    if (std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v) && v > kRounding; })) present.push_back(q);
+    if (std::any_of(values.begin(), values.end(), [](double v) { return std::isfinite(v) && v > kRounding; }))
+      present.push_back(q);
   }
   return present;
 }
@@ -30,7 +32,9 @@ std::string cell_text(const Table& table, std::size_t row, const std::string& co
   const std::string& cell = table.rows[row][table.column(column)];
   const double value = to_number(cell);
   if (std::isnan(value) && !cell.empty() && cell != "nan") return cell;
-  return std::isnan(value) ? "-" : value == std::floor(value) && std::abs(value) < 1e15 ? fmt::format("{:.0f}", value) : short_number(value);
+  return std::isnan(value)                                      ? "-"
+         : value == std::floor(value) && std::abs(value) < 1e15 ? fmt::format("{:.0f}", value)
+                                                                : short_number(value);
 }
 
 }  // namespace palpate::report

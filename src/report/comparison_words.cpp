@@ -17,7 +17,11 @@ std::string list_of(const std::vector<std::string>& names) {
   return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
 }
 
-std::string times(double ratio) { return ratio < 1.995 ? fmt::format("{:.2f} times", ratio) : ratio < 9.95 ? fmt::format("{:.2g} times", ratio) : fmt::format("{:.0f} times", ratio); }
+std::string times(double ratio) {
+  return ratio < 1.995  ? fmt::format("{:.2f} times", ratio)
+         : ratio < 9.95 ? fmt::format("{:.2g} times", ratio)
+                        : fmt::format("{:.0f} times", ratio);
+}
 
 std::string winners_in_words(const Table& compare, double reference_error) {
   std::string out;
@@ -27,9 +31,12 @@ std::string winners_in_words(const Table& compare, double reference_error) {
       unreached.push_back(fmt::format("{:g}", win.target));
       continue;
     }
-    out += fmt::format("For an error of {:g}, {} is the cheapest ({}{} s)", win.target, win.label, win.cost.at_most ? "at most " : "", short_number(win.cost.value));
-    if (!win.runner_up.empty()) out += fmt::format("; the next, {}, takes {} as long", win.runner_up, times(win.runner_up_ratio));
-    if (win.label != kBaseline && win.runner_up != kBaseline && std::isfinite(win.baseline_ratio)) out += fmt::format(", {} {}", kBaseline, times(win.baseline_ratio));
+    out += fmt::format("For an error of {:g}, {} is the cheapest ({}{} s)", win.target, win.label,
+                       win.cost.at_most ? "at most " : "", short_number(win.cost.value));
+    if (!win.runner_up.empty())
+      out += fmt::format("; the next, {}, takes {} as long", win.runner_up, times(win.runner_up_ratio));
+    if (win.label != kBaseline && win.runner_up != kBaseline && std::isfinite(win.baseline_ratio))
+      out += fmt::format(", {} {}", kBaseline, times(win.baseline_ratio));
     out += ". ";
   }
   if (!unreached.empty()) out += fmt::format("No point reaches {}. ", list_of(unreached));
@@ -39,8 +46,11 @@ std::string winners_in_words(const Table& compare, double reference_error) {
 std::string baseline_in_words(const std::vector<Ladder>& all) {
   for (const Ladder& ladder : all) {
     if (ladder.integrator != kBaseline || ladder.points.empty()) continue;
-    const auto best = std::min_element(ladder.points.begin(), ladder.points.end(), [](const LadderPoint& a, const LadderPoint& b) { return a.error < b.error; });
-    return fmt::format("The best of {} is {} in {} s. ", ladder.label, short_number(best->error), short_number(best->cost));
+    const auto best =
+        std::min_element(ladder.points.begin(), ladder.points.end(),
+                         [](const LadderPoint& a, const LadderPoint& b) { return a.error < b.error; });
+    return fmt::format("The best of {} is {} in {} s. ", ladder.label, short_number(best->error),
+                       short_number(best->cost));
   }
   return "";
 }
@@ -48,18 +58,22 @@ std::string baseline_in_words(const std::vector<Ladder>& all) {
 std::string families_in_words(const std::vector<Ladder>& all, double target) {
   std::vector<std::string> families;
   for (const Ladder& ladder : all)
-    if (std::any_of(ladder.points.begin(), ladder.points.end(), [&](const LadderPoint& p) { return p.error <= target; }) &&
+    if (std::any_of(ladder.points.begin(), ladder.points.end(),
+                    [&](const LadderPoint& p) { return p.error <= target; }) &&
         std::find(families.begin(), families.end(), ladder.family) == families.end())
       families.push_back(ladder.family);
   if (families.empty()) return "";
-  return fmt::format("{:g} is reached by {} {}: {}. ", target, families.size(), families.size() == 1 ? "family" : "families", list_of(families));
+  return fmt::format("{:g} is reached by {} {}: {}. ", target, families.size(),
+                     families.size() == 1 ? "family" : "families", list_of(families));
 }
 
-/// What kind of failure it was, "Newton did not converge" of "Newton did not converge: ark-mri-2: ...": what many ladders may share.
+/// What kind of failure it was, "Newton did not converge" of "Newton did not converge: ark-mri-2: ...": what
+/// many ladders may share.
 std::string kind_of(const std::pair<std::string, std::string>& failure) {
   if (failure.first == "out of time" || failure.first == "not tried") return "out of time";
   if (failure.second.empty()) return failure.first;
-  const std::string start = failure.second.substr(0, std::min(failure.second.find_first_of("\n(:"), std::size_t{90}));
+  const std::string start =
+      failure.second.substr(0, std::min(failure.second.find_first_of("\n(:"), std::size_t{90}));
   return start.substr(0, start.find_last_not_of(" ,;:") + 1);
 }
 
@@ -72,12 +86,13 @@ std::string failures_in_words(const std::vector<Ladder>& all) {
   }
   std::string out;
   for (const auto& [why, labels] : nothing) out += fmt::format("No point of {}: {}. ", list_of(labels), why);
-  for (const auto& [why, labels] : some) out += fmt::format("Some rungs of {} failed: {}. ", list_of(labels), why);
+  for (const auto& [why, labels] : some)
+    out += fmt::format("Some rungs of {} failed: {}. ", list_of(labels), why);
   return out;
 }
 
-/// An explicit method is held by stability, not accuracy, where a tolerance ten times tighter hardly costs more force evaluations, and where a longer
-/// fixed step fails or blows up.
+/// An explicit method is held by stability, not accuracy, where a tolerance ten times tighter hardly costs
+/// more force evaluations, and where a longer fixed step fails or blows up.
 std::string explicit_in_words(const Table& compare) {
   std::vector<std::string> by_tolerance, by_step;
   for (const Ladder& ladder : ladders(compare, kError, "force_evaluations")) {
@@ -86,15 +101,24 @@ std::string explicit_in_words(const Table& compare) {
     bool unstable = ladder.setting_name != "rtol" && !ladder.failures.empty(), flat = false;
     for (std::size_t i = 0; i < ladder.points.size(); ++i) {
       const LadderPoint& p = ladder.points[i];
-      if (ladder.setting_name == "rtol") flat |= i > 0 && p.setting <= 0.11 * ladder.points[i - 1].setting && p.cost < 1.25 * ladder.points[i - 1].cost;
-      else if (p.error > 1.0) unstable = true;
-      else if (!(p.setting <= longest)) longest = p.setting;
+      if (ladder.setting_name == "rtol")
+        flat |= i > 0 && p.setting <= 0.11 * ladder.points[i - 1].setting &&
+                p.cost < 1.25 * ladder.points[i - 1].cost;
+      else if (p.error > 1.0)
+        unstable = true;
+      else if (!(p.setting <= longest))
+        longest = p.setting;
     }
     if (flat) by_tolerance.push_back(ladder.label);
-    if (unstable && std::isfinite(longest)) by_step.push_back(fmt::format("{} (usable from {} on)", ladder.label, setting_text(ladder.setting_name, longest)));
+    if (unstable && std::isfinite(longest))
+      by_step.push_back(
+          fmt::format("{} (usable from {} on)", ladder.label, setting_text(ladder.setting_name, longest)));
   }
   std::string out;
-  if (!by_tolerance.empty()) out += fmt::format("Explicit and held by its stability limit, so that a looser tolerance saves nothing: {}. ", list_of(by_tolerance));
+  if (!by_tolerance.empty())
+    out += fmt::format(
+        "Explicit and held by its stability limit, so that a looser tolerance saves nothing: {}. ",
+        list_of(by_tolerance));
   if (!by_step.empty()) out += fmt::format("Explicit and unstable at longer steps: {}. ", list_of(by_step));
   return out;
 }
@@ -108,15 +132,23 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
       if (!p.unresolved && !(p.error >= best)) best = p.error;
     }
   if (std::isnan(best)) return "No point has an error that could be told from the reference's.";
-  if (std::isnan(reference_error)) return "The reference's own error is not known: read small errors with care.";
+  if (std::isnan(reference_error))
+    return "The reference's own error is not known: read small errors with care.";
   if (best < kMargin * reference_error)
-    return fmt::format("The reference's own error is {}: errors below {} are not told apart by it (the best point shows {}).", short_number(reference_error),
-                       short_number(kMargin * reference_error), short_number(best));
-  std::string out = fmt::format("The reference's own error, {}, is {} below the best point that it can judge, {}: it bears every figure here{}.", short_number(reference_error),
-                                times(best / reference_error), short_number(best), unresolved ? " but the marked ones" : "");
+    return fmt::format(
+        "The reference's own error is {}: errors below {} are not told apart by it (the best point shows "
+        "{}).",
+        short_number(reference_error), short_number(kMargin * reference_error), short_number(best));
+  std::string out = fmt::format(
+      "The reference's own error, {}, is {} below the best point that it can judge, {}: it bears every "
+      "figure here{}.",
+      short_number(reference_error), times(best / reference_error), short_number(best),
+      unresolved ? " but the marked ones" : "");
   if (unresolved)
-    out += fmt::format(" {} within {:g} times of it, {}: errors below {} are not told apart.", unresolved == 1 ? "1 point lies" : fmt::format("{} points lie", unresolved), kMargin,
-                       unresolved == 1 ? "is marked, and counts nowhere" : "are marked, and count nowhere", short_number(kMargin * reference_error));
+    out += fmt::format(" {} within {:g} times of it, {}: errors below {} are not told apart.",
+                       unresolved == 1 ? "1 point lies" : fmt::format("{} points lie", unresolved), kMargin,
+                       unresolved == 1 ? "is marked, and counts nowhere" : "are marked, and count nowhere",
+                       short_number(kMargin * reference_error));
   return out;
 }
 
@@ -125,8 +157,10 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
 std::string in_words(const Table& compare, double reference_error) {
   const std::vector<Ladder> all = ladders(compare, kError, "cpu_s_median");
   std::string out;
-  for (std::string paragraph : {winners_in_words(compare, reference_error) + baseline_in_words(all) + families_in_words(all, kTargets.back()),
-                                explicit_in_words(compare) + failures_in_words(all), reference_in_words(all, reference_error)}) {
+  for (std::string paragraph :
+       {winners_in_words(compare, reference_error) + baseline_in_words(all) +
+            families_in_words(all, kTargets.back()),
+        explicit_in_words(compare) + failures_in_words(all), reference_in_words(all, reference_error)}) {
     paragraph.erase(paragraph.find_last_not_of(' ') + 1);
     if (!paragraph.empty()) out += (out.empty() ? "" : "\n") + paragraph;
   }

@@ -1,5 +1,5 @@
-#include "palpate/report/table.h"
 #include "palpate/store/csv.h"
+#include "palpate/report/table.h"
 
 namespace palpate::report {
 

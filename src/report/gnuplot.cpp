@@ -25,7 +25,8 @@ class TemporaryDirectory {
   TemporaryDirectory() {
     std::string name = (fs::temp_directory_path() / "palpate-plot-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr)
-      fail("{}: no temporary directory could be made ({}); set TMPDIR to a folder that can be written", name, std::strerror(errno));
+      fail("{}: no temporary directory could be made ({}); set TMPDIR to a folder that can be written", name,
+           std::strerror(errno));
     path_ = name;
   }
   ~TemporaryDirectory() {
@@ -45,7 +46,8 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Runs `gnuplot -d plot.gp` (-d: a person's ~/.gnuplot must not change our figures) with its output in `log`; returns the exit status.
+/// Runs `gnuplot -d plot.gp` (-d: a person's ~/.gnuplot must not change our figures) with its output in
+/// `log`; returns the exit status.
 int spawn_gnuplot(const fs::path& dir, const fs::path& log) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -61,8 +63,7 @@ int spawn_gnuplot(const fs::path& dir, const fs::path& log) {
   if (error == ENOENT) fail("gnuplot was not found: it draws the plots; install the package gnuplot-nox");
   if (error != 0) fail("gnuplot could not be started: {}", std::strerror(error));
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 

@@ -6,7 +6,8 @@ namespace palpate::report {
 namespace {
 
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) text.replace(at, from.size(), to);
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
 }
 
 /// Removes every `begin ... end`, both included.
@@ -22,7 +23,8 @@ void remove_all(std::string& text, const std::string& begin, const std::string& 
 
 std::string inline_svg(const std::string& document, const std::string& id_prefix) {
   const std::size_t begin = document.find("<svg"), end = document.rfind("</svg>");
-  if (begin == std::string::npos || end == std::string::npos) fail("not an SVG document: no <svg> element; it begins with \"{}\"", document.substr(0, 60));
+  if (begin == std::string::npos || end == std::string::npos)
+    fail("not an SVG document: no <svg> element; it begins with \"{}\"", document.substr(0, 60));
   std::string svg = document.substr(begin, end + 6 - begin);
   remove_all(svg, "<title>", "</title>");
   remove_all(svg, "<desc>", "</desc>");
@@ -37,7 +39,8 @@ std::string inline_svg(const std::string& document, const std::string& id_prefix
     replace_all(svg, fmt::format("{}=\"black\"", attribute), fmt::format("{}=\"currentColor\"", attribute));
     replace_all(svg, fmt::format("{}='black'", attribute), fmt::format("{}='currentColor'", attribute));
   }
-  for (const char* black : {"rgb(  0,   0,   0)", "rgb(0,0,0)"}) replace_all(svg, black, "currentColor");  // as gnuplot writes a colour that was asked for
+  // as gnuplot writes a colour that was asked for
+  for (const char* black : {"rgb(  0,   0,   0)", "rgb(0,0,0)"}) replace_all(svg, black, "currentColor");
   // color="currentColor" inherits, which is what is meant.
   replace_all(svg, "<svg", "<svg class=\"plot\" role=\"img\"");
   return svg;

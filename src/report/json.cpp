@@ -16,17 +16,21 @@ Json read_json(const std::filesystem::path& path) {
   try {
     return Json::parse(in);
   } catch (const nlohmann::json::exception& e) {
-    fail("{}: is not valid JSON: {}; was the run that wrote it cut short? run it again", path.string(), e.what());
+    fail("{}: is not valid JSON: {}; was the run that wrote it cut short? run it again", path.string(),
+         e.what());
   }
 }
 
 double number_at(const Json& object, const char* key) {
-  if (!object.is_object() || !object.contains(key) || !object[key].is_number()) return std::numeric_limits<double>::quiet_NaN();
+  if (!object.is_object() || !object.contains(key) || !object[key].is_number())
+    return std::numeric_limits<double>::quiet_NaN();
   return object[key].get<double>();
 }
 
 std::string text_at(const Json& object, const char* key, const std::string& otherwise) {
-  return object.is_object() && object.contains(key) && object[key].is_string() ? object[key].get<std::string>() : otherwise;
+  return object.is_object() && object.contains(key) && object[key].is_string()
+             ? object[key].get<std::string>()
+             : otherwise;
 }
 
 std::string value_text(const Json& value) {
@@ -43,8 +47,10 @@ std::string value_text(const Json& value) {
 
 std::string key_text(const std::string& key) {
   static const std::vector<std::pair<std::string, std::string>> units = {
-      {"_kg_m3", "kg/m³"}, {"_n_s_m", "N s/m"}, {"_n_m", "N m"}, {"_m_s2", "m/s²"}, {"_m_s", "m/s"}, {"_pa", "Pa"}, {"_kg", "kg"}, {"_mib", "MiB"},
-      {"_hz", "Hz"},       {"_rad", "rad"},     {"_ms", "ms"},   {"_us", "µs"},     {"_s", "s"},     {"_n", "N"},   {"_m", "m"},   {"_j", "J"}};
+      {"_kg_m3", "kg/m³"}, {"_n_s_m", "N s/m"}, {"_n_m", "N m"}, {"_m_s2", "m/s²"},
+      {"_m_s", "m/s"},     {"_pa", "Pa"},       {"_kg", "kg"},   {"_mib", "MiB"},
+      {"_hz", "Hz"},       {"_rad", "rad"},     {"_ms", "ms"},   {"_us", "µs"},
+      {"_s", "s"},         {"_n", "N"},         {"_m", "m"},     {"_j", "J"}};
   std::string name = key, unit;
   for (const auto& [ending, text] : units) {
     if (!key.ends_with(ending) || key.size() == ending.size()) continue;
@@ -61,7 +67,8 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Json& object) {
   if (!object.is_object()) return facts;
   for (const auto& [key, value] : object.items()) {
     if (value.is_object()) continue;
-    if (std::string text = value_text(value); !text.empty()) facts.emplace_back(key_text(key), std::move(text));
+    if (std::string text = value_text(value); !text.empty())
+      facts.emplace_back(key_text(key), std::move(text));
   }
   return facts;
 }

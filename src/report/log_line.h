@@ -4,7 +4,8 @@
 
 namespace palpate::report {
 
-/// Slope and intercept of the line through (log x, log y) by least squares; points that are not finite and positive are left out.
+/// Slope and intercept of the line through (log x, log y) by least squares; points that are not finite and
+/// positive are left out.
 struct LogLine {
   double slope = std::numeric_limits<double>::quiet_NaN(), intercept = 0.0;
   int points = 0;

@@ -23,7 +23,8 @@ std::string base64(const std::string& bytes) {
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
     unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
     for (std::size_t k = 0; k < 4; ++k) out += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
   }
   return out;
@@ -43,7 +44,8 @@ const char* class_of(RowMark mark) {
 }
 
 std::string figure(const std::string& content, const std::string& caption) {
-  return "<figure>\n" + content + (caption.empty() ? "" : "\n<figcaption>" + escape_html(caption) + "</figcaption>") + "\n</figure>\n";
+  return "<figure>\n" + content +
+         (caption.empty() ? "" : "\n<figcaption>" + escape_html(caption) + "</figcaption>") + "\n</figure>\n";
 }
 
 /// Beside other tables, short values stand to the right, so that numbers line up.
@@ -51,7 +53,10 @@ std::string facts_table(const Page::Facts& facts, bool short_to_the_right) {
   std::string table = "<table class=\"facts\"><tbody>\n";
   for (const auto& [name, value] : facts)
     table += fmt::format("<tr><th>{}</th><td{}>{}</td></tr>\n", escape_html(name),
-                         value.size() > kLongCell ? " class=\"w\"" : short_to_the_right ? " class=\"n\"" : "", escape_html(value));
+                         value.size() > kLongCell ? " class=\"w\""
+                         : short_to_the_right     ? " class=\"n\""
+                                                  : "",
+                         escape_html(value));
   return table + "</tbody></table>\n";
 }
 
@@ -67,7 +72,10 @@ std::string escape_html(const std::string& text) {
       case '>': out += "&gt;"; break;
       case '"': out += "&quot;"; break;
       case '\'': out += "&#39;"; break;
-      default: out += (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7f ? std::string("\xEF\xBF\xBD") : std::string(1, c);
+      default:
+        out += (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') || c == 0x7f
+                   ? std::string("\xEF\xBF\xBD")
+                   : std::string(1, c);
     }
   }
   return out;
@@ -86,21 +94,28 @@ Page& Page::add_paragraph(const std::string& text) {
   return *this;
 }
 
-Page& Page::add_table(const std::vector<std::string>& headers, const std::vector<std::vector<std::string>>& rows, const std::string& caption,
+Page& Page::add_table(const std::vector<std::string>& headers,
+                      const std::vector<std::vector<std::string>>& rows, const std::string& caption,
                       const std::vector<RowMark>& marks) {
-  PALPATE_CHECK(marks.empty() || marks.size() == rows.size(), "{} marks for {} rows", marks.size(), rows.size());
-  for (const auto& row : rows) PALPATE_CHECK(row.size() == headers.size(), "a row of {} cells under {} headers", row.size(), headers.size());
+  PALPATE_CHECK(marks.empty() || marks.size() == rows.size(), "{} marks for {} rows", marks.size(),
+                rows.size());
+  for (const auto& row : rows)
+    PALPATE_CHECK(row.size() == headers.size(), "a row of {} cells under {} headers", row.size(),
+                  headers.size());
   std::vector<const char*> classes;
-  for (std::size_t c = 0; c < headers.size(); ++c) classes.push_back(is_numeric_column(rows, c) ? " class=\"n\"" : "");
+  for (std::size_t c = 0; c < headers.size(); ++c)
+    classes.push_back(is_numeric_column(rows, c) ? " class=\"n\"" : "");
   body_ += "<div class=\"scroll\"><table>\n";
   if (!caption.empty()) body_ += "<caption>" + escape_html(caption) + "</caption>\n";
   body_ += "<thead><tr>";
-  for (std::size_t c = 0; c < headers.size(); ++c) body_ += fmt::format("<th{}>{}</th>", classes[c], escape_html(headers[c]));
+  for (std::size_t c = 0; c < headers.size(); ++c)
+    body_ += fmt::format("<th{}>{}</th>", classes[c], escape_html(headers[c]));
   body_ += "</tr></thead>\n<tbody>\n";
   for (std::size_t r = 0; r < rows.size(); ++r) {
     body_ += fmt::format("<tr{}>", marks.empty() ? "" : class_of(marks[r]));
     for (std::size_t c = 0; c < headers.size(); ++c)
-      body_ += fmt::format("<td{}>{}</td>", rows[r][c].size() > kLongCell ? " class=\"w\"" : classes[c], escape_html(rows[r][c]));
+      body_ += fmt::format("<td{}>{}</td>", rows[r][c].size() > kLongCell ? " class=\"w\"" : classes[c],
+                           escape_html(rows[r][c]));
     body_ += "</tr>\n";
   }
   body_ += "</tbody></table></div>\n";
@@ -114,7 +129,8 @@ Page& Page::add_facts(const Facts& facts) {
 
 Page& Page::add_fact_groups(const std::vector<std::pair<std::string, Facts>>& groups) {
   body_ += "<div class=\"groups\">\n";
-  for (const auto& [name, facts] : groups) body_ += "<section>\n<h3>" + escape_html(name) + "</h3>\n" + facts_table(facts, true) + "</section>\n";
+  for (const auto& [name, facts] : groups)
+    body_ += "<section>\n<h3>" + escape_html(name) + "</h3>\n" + facts_table(facts, true) + "</section>\n";
   body_ += "</div>\n";
   return *this;
 }
@@ -128,8 +144,11 @@ Page& Page::add_png(const fs::path& png, const std::string& caption) {
   std::ifstream in(png, std::ios::binary);
   if (!in) fail("{}: cannot be opened for reading; check the path and its permissions", png.string());
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) fail("{}: is not a PNG file; only PNG pictures can be embedded", png.string());
-  body_ += figure("<img alt=\"" + escape_html(caption.empty() ? png.stem().string() : caption) + "\" src=\"data:image/png;base64," + base64(bytes) + "\"/>", caption);
+  if (!bytes.starts_with("\x89PNG\r\n\x1a\n"))
+    fail("{}: is not a PNG file; only PNG pictures can be embedded", png.string());
+  body_ += figure("<img alt=\"" + escape_html(caption.empty() ? png.stem().string() : caption) +
+                      "\" src=\"data:image/png;base64," + base64(bytes) + "\"/>",
+                  caption);
   return *this;
 }
 
@@ -166,8 +185,9 @@ Page& Page::end_details() {
 std::string Page::html() const {
   const std::string title = escape_html(title_);
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>" + title + "</title>\n<style>" + kStyleSheet +
-         "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n" + body_ + "</body>\n</html>\n";
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>" +
+         title + "</title>\n<style>" + kStyleSheet + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n" +
+         body_ + "</body>\n</html>\n";
 }
 
 void write(const Page& page, const fs::path& path) { store::write_atomically(path.string(), page.html()); }

@@ -15,8 +15,8 @@ std::map<std::string, ReferenceError> read_references(const Json& json) {
   if (!json.contains("scenes")) return out;
   for (const Json& one : json["scenes"]) {
     ReferenceError& r = out[text_at(one, "scene")];
-    r = {number_at(one, "position_error_rel_l2"), number_at(one, "force_error_rms_n"), number_at(one, "torque_error_rms_n_m"), text_at(one, "description"),
-         text_at(one, "trouble")};
+    r = {number_at(one, "position_error_rel_l2"), number_at(one, "force_error_rms_n"),
+         number_at(one, "torque_error_rms_n_m"), text_at(one, "description"), text_at(one, "trouble")};
     if (one.contains("notes"))
       for (const Json& note : one["notes"]) r.notes.push_back(note.get<std::string>());
   }
@@ -24,8 +24,10 @@ std::map<std::string, ReferenceError> read_references(const Json& json) {
 }
 
 void add_comparison_of(Page& page, const fs::path& dir) {
-  const Json reference = fs::exists(dir / "reference.json") ? read_json(dir / "reference.json") : Json::object();
-  add_comparison(page, read_csv(dir / "compare.csv"), read_references(reference), text_at(reference, "rules"));
+  const Json reference =
+      fs::exists(dir / "reference.json") ? read_json(dir / "reference.json") : Json::object();
+  add_comparison(page, read_csv(dir / "compare.csv"), read_references(reference),
+                 text_at(reference, "rules"));
 }
 
 /// The scene as it was run: kept in summary.json, else the file beside the results.
@@ -35,7 +37,8 @@ std::string scene_source(const fs::path& dir, const Json& summary) {
 }
 
 bool holds_results(const fs::path& dir) {
-  for (const char* name : {"summary.json", "force.csv", "trace.csv", "compare.csv", "restarts.csv", "exchange.csv", "validation.json", "stability.json"})
+  for (const char* name : {"summary.json", "force.csv", "trace.csv", "compare.csv", "restarts.csv",
+                           "exchange.csv", "validation.json", "stability.json"})
     if (fs::exists(dir / name)) return true;
   return false;
 }
@@ -45,7 +48,10 @@ bool holds_results(const fs::path& dir) {
 fs::path write_run_report(const fs::path& dir) {
   if (!fs::is_directory(dir)) fail("{}: is not a directory; give the one that a run wrote", dir.string());
   if (!holds_results(dir))
-    fail("{}: holds no results to report (none of summary.json, force.csv, compare.csv, exchange.csv, validation.json, stability.json); give the directory that a run wrote", dir.string());
+    fail(
+        "{}: holds no results to report (none of summary.json, force.csv, compare.csv, exchange.csv, "
+        "validation.json, stability.json); give the directory that a run wrote",
+        dir.string());
   const auto has = [&](const char* name) { return fs::exists(dir / name); };
   const Json summary = has("summary.json") ? read_json(dir / "summary.json") : Json::object();
 
@@ -64,7 +70,8 @@ fs::path write_run_report(const fs::path& dir) {
   add_figures(page, summary);
   add_parts(page, summary);
   add_provenance(page, summary);
-  if (const std::string source = scene_source(dir, summary); !source.empty()) page.add_heading("The scene").add_code(source);
+  if (const std::string source = scene_source(dir, summary); !source.empty())
+    page.add_heading("The scene").add_code(source);
   const fs::path path = dir / "report.html";
   write(page, path);
   return path;

@@ -17,7 +17,9 @@ const std::set<std::string> kElsewhere = {"in_use", "left_out", "pictures"};
 
 /// A group of figures that summary.json holds, else an empty object.
 Json figures_of(const Json& summary, const char* group) {
-  if (!summary.is_object() || !summary.contains("figures") || !summary["figures"].is_object() || !summary["figures"].contains(group)) return Json::object();
+  if (!summary.is_object() || !summary.contains("figures") || !summary["figures"].is_object() ||
+      !summary["figures"].contains(group))
+    return Json::object();
   return summary["figures"][group];
 }
 
@@ -27,12 +29,14 @@ void add_object(Page& page, const Json& object, const std::set<std::string>& wit
   std::vector<std::pair<std::string, Page::Facts>> groups;
   if (object.is_object())
     for (const auto& [key, value] : object.items())
-      if (auto facts = facts_of(value); !without.contains(key) && !facts.empty()) groups.emplace_back(key_text(key), std::move(facts));
+      if (auto facts = facts_of(value); !without.contains(key) && !facts.empty())
+        groups.emplace_back(key_text(key), std::move(facts));
   if (!groups.empty()) page.add_fact_groups(groups);
 }
 
 std::string sentence_case(std::string text) {
-  std::replace_if(text.begin(), text.end(), [](char c) { return c == '-' || c == '_'; }, ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '-' || c == '_'; }, ' ');
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
   return text;
 }
@@ -47,18 +51,22 @@ std::string limit_text(double limit, const char* unit) {
 void add_plot(Page& page, const Plot& plot, const std::string& caption) {
   try {
     page.add_svg(plot_svg(plot), caption);
-  } catch (const Error& e) {
-    page.add_paragraph("Figure not drawn (" + caption + "): " + e.what());
-  }
+  } catch (const Error& e) { page.add_paragraph("Figure not drawn (" + caption + "): " + e.what()); }
 }
 
 void add_head(Page& page, const Json& summary) {
   Page::Facts facts;
   for (const char* key : {"command", "scene", "outcome", "message", "overrides"})
     if (summary.is_object() && summary.contains(key))
-      if (std::string text = value_text(summary[key]); !text.empty()) facts.emplace_back(key_text(key), std::move(text));
-  const Json options = figures_of(summary, "options"), sizes = figures_of(summary, "sizes"), timings = figures_of(summary, "timings");
-  for (const auto& [object, key] : {std::pair{&options, "integrator"}, {&sizes, "nodes"}, {&sizes, "tetrahedra"}, {&timings, "simulated_s"}, {&timings, "loop_cpu_s"}})
+      if (std::string text = value_text(summary[key]); !text.empty())
+        facts.emplace_back(key_text(key), std::move(text));
+  const Json options = figures_of(summary, "options"), sizes = figures_of(summary, "sizes"),
+             timings = figures_of(summary, "timings");
+  for (const auto& [object, key] : {std::pair{&options, "integrator"},
+                                    {&sizes, "nodes"},
+                                    {&sizes, "tetrahedra"},
+                                    {&timings, "simulated_s"},
+                                    {&timings, "loop_cpu_s"}})
     if (object->contains(key)) facts.emplace_back(key_text(key), value_text((*object)[key]));
   page.add_facts(facts);
 }
@@ -76,16 +84,21 @@ void add_pictures(Page& page, const Json& summary, const fs::path& dir) {
   std::sort(pngs.begin(), pngs.end());
   const Json captions = figures_of(summary, "pictures");
   for (const fs::path& png : pngs) {
-    const std::string stem = png.stem().string();  // "picture" alone says nothing; the picture has its own title
-    page.add_png(png, text_at(captions, png.filename().c_str(), stem == "picture" ? "" : sentence_case(stem)));
+    // "picture" alone says nothing; the picture has its own title
+    const std::string stem = png.stem().string();
+    page.add_png(png,
+                 text_at(captions, png.filename().c_str(), stem == "picture" ? "" : sentence_case(stem)));
   }
 }
 
 void add_forces(Page& page, const Json& summary, const Table& force) {
   const Json options = figures_of(summary, "options");
   page.add_heading("Force on the hand");
-  const double max_force = number_at(options, "max_force_n"), max_torque = number_at(options, "max_torque_n_m");
-  add_plot(page, force_plot(force, max_force), "Force that the device sends to the hand, in world components and as a magnitude" + limit_text(max_force, "N"));
+  const double max_force = number_at(options, "max_force_n"),
+               max_torque = number_at(options, "max_torque_n_m");
+  add_plot(page, force_plot(force, max_force),
+           "Force that the device sends to the hand, in world components and as a magnitude" +
+               limit_text(max_force, "N"));
   constexpr double kRounding = 1e-15;  // [N m]
   const bool has_torque = std::any_of(force.headers.begin(), force.headers.end(), [&](const std::string& h) {
     if (!h.ends_with("_n_m")) return false;
@@ -93,11 +106,13 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
     return std::any_of(values.begin(), values.end(), [](double v) { return !(std::abs(v) <= kRounding); });
   });
   if (!has_torque) page.add_paragraph("No torque: nothing in this scene turns the tool.");
-  if (has_torque) add_plot(page, torque_plot(force, max_torque), "Torque, likewise" + limit_text(max_torque, "N m"));
+  if (has_torque)
+    add_plot(page, torque_plot(force, max_torque), "Torque, likewise" + limit_text(max_torque, "N m"));
 }
 
 void add_validation(Page& page, const Json& validation) {
-  const Json& cases = validation.is_object() && validation.contains("cases") ? validation["cases"] : validation;
+  const Json& cases =
+      validation.is_object() && validation.contains("cases") ? validation["cases"] : validation;
   if (!cases.is_array()) return;
   std::vector<std::vector<std::string>> rows;
   std::vector<RowMark> marks;
@@ -110,16 +125,21 @@ void add_validation(Page& page, const Json& validation) {
     for (const Json& m : one["measurements"]) {
       const bool passed = m.value("passed", false);
       std::string order = short_number(number_at(m, "order"));
-      if (std::isfinite(number_at(m, "order_low"))) order += fmt::format(" in [{:g}, {:g}]", number_at(m, "order_low"), number_at(m, "order_high"));
-      rows.push_back({text_at(one, "name"), text_at(m, "quantity"), fmt::format("{:.6g}", number_at(m, "computed")), fmt::format("{:.6g}", number_at(m, "exact")),
-                      short_number(number_at(m, "error")), short_number(number_at(m, "bar")), order, passed ? "pass" : "FAIL"});
+      if (std::isfinite(number_at(m, "order_low")))
+        order += fmt::format(" in [{:g}, {:g}]", number_at(m, "order_low"), number_at(m, "order_high"));
+      rows.push_back({text_at(one, "name"), text_at(m, "quantity"),
+                      fmt::format("{:.6g}", number_at(m, "computed")),
+                      fmt::format("{:.6g}", number_at(m, "exact")), short_number(number_at(m, "error")),
+                      short_number(number_at(m, "bar")), order, passed ? "pass" : "FAIL"});
       marks.push_back(passed ? RowMark::kGood : RowMark::kBad);
     }
   }
   const auto failed = std::count(marks.begin(), marks.end(), RowMark::kBad);
   page.add_heading("Validation against exact answers");
-  page.add_paragraph(failed == 0 ? fmt::format("All {} measurements pass.", rows.size()) : fmt::format("{} of {} measurements FAIL.", failed, rows.size()));
-  page.add_table({"case", "quantity", "computed", "exact", "error", "bar", "order", "verdict"}, rows, "Errors are relative unless the quantity says otherwise.", marks);
+  page.add_paragraph(failed == 0 ? fmt::format("All {} measurements pass.", rows.size())
+                                 : fmt::format("{} of {} measurements FAIL.", failed, rows.size()));
+  page.add_table({"case", "quantity", "computed", "exact", "error", "bar", "order", "verdict"}, rows,
+                 "Errors are relative unless the quantity says otherwise.", marks);
 }
 
 void add_parts(Page& page, const Json& summary) {
@@ -134,7 +154,8 @@ void add_parts(Page& page, const Json& summary) {
     rows.push_back({part, "left out", value_text(why)});
     marks.push_back(RowMark::kFaint);
   }
-  if (!rows.empty()) page.add_heading("Parts in use, parts left out").add_table({"part", "", "why"}, rows, "", marks);
+  if (!rows.empty())
+    page.add_heading("Parts in use, parts left out").add_table({"part", "", "why"}, rows, "", marks);
 }
 
 void add_provenance(Page& page, const Json& summary) {

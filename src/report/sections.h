@@ -8,10 +8,12 @@
 #include "palpate/report/table.h"
 #include "palpate/report/work_precision.h"
 
-/// The sections of a run's report, each from its own file or object.  A section with nothing to say adds nothing.
+/// The sections of a run's report, each from its own file or object.  A section with nothing to say adds
+/// nothing.
 namespace palpate::report {
 
-/// The plot as a figure, or, when it cannot be drawn, a paragraph with the reason: a page without one figure is better than no page.
+/// The plot as a figure, or, when it cannot be drawn, a paragraph with the reason: a page without one figure
+/// is better than no page.
 void add_plot(Page& page, const Plot& plot, const std::string& caption);
 
 void add_head(Page& page, const Json& summary);     ///< what was run, in a few lines
@@ -19,7 +21,8 @@ void add_figures(Page& page, const Json& summary);  ///< all that was counted an
 void add_pictures(Page& page, const Json& summary, const std::filesystem::path& dir);
 void add_forces(Page& page, const Json& summary, const Table& force);
 /// @param references  by scene  @param rules  how runs were repeated and limited
-void add_comparison(Page& page, const Table& compare, const std::map<std::string, ReferenceError>& references, const std::string& rules);
+void add_comparison(Page& page, const Table& compare, const std::map<std::string, ReferenceError>& references,
+                    const std::string& rules);
 void add_trace(Page& page, const Table& trace);
 void add_restarts(Page& page, const Table& restarts);
 void add_exchange(Page& page, const Table& exchange);

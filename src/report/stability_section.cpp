@@ -9,15 +9,20 @@
 namespace palpate::report {
 namespace {
 
-struct VerdictName { const char* name; const char* letter; const char* meaning; };
-constexpr std::array<VerdictName, 8> kVerdicts = {{{"accurate", "A", "within the error that theory allows of an exact answer"},
-                                                   {"stable", "S", "never more energy or motion than was put in"},
-                                                   {"bounded", "B", "more than was put in, within a bound"},
-                                                   {"error", "E", "ended early, with a message that says why"},
-                                                   {"grew", "G", "went beyond every bound and called it success"},
-                                                   {"not finite", "N", "returned NaN or infinity as a result"},
-                                                   {"silent", "F", "failed without a reason, or kept back what it had to report"},
-                                                   {"too slow", "T", "cut off at the time limit"}}};
+struct VerdictName {
+  const char* name;
+  const char* letter;
+  const char* meaning;
+};
+constexpr std::array<VerdictName, 8> kVerdicts = {
+    {{"accurate", "A", "within the error that theory allows of an exact answer"},
+     {"stable", "S", "never more energy or motion than was put in"},
+     {"bounded", "B", "more than was put in, within a bound"},
+     {"error", "E", "ended early, with a message that says why"},
+     {"grew", "G", "went beyond every bound and called it success"},
+     {"not finite", "N", "returned NaN or infinity as a result"},
+     {"silent", "F", "failed without a reason, or kept back what it had to report"},
+     {"too slow", "T", "cut off at the time limit"}}};
 
 std::size_t index_of(const std::string& verdict) {
   std::size_t v = 0;
@@ -39,9 +44,10 @@ HeatCell heat_cell(const Json& cell) {
   out.css = fmt::format("v{}", v);
   out.outlined = !cell.value("as_expected", false);
   const std::string reason = text_at(cell, "reason");
-  out.title = fmt::format("{}, {}\n{}: {} (expected: {})\n{}{}\n{} steps, {} s of CPU", text_at(cell, "row"), text_at(cell, "sub_case"), text_at(cell, "integrator"),
-                          kVerdicts[v].name, expected_text(cell), text_at(cell, "figure"), reason.empty() ? "" : "\n" + reason, short_number(number_at(cell, "steps")),
-                          short_number(number_at(cell, "cpu_s")));
+  out.title = fmt::format("{}, {}\n{}: {} (expected: {})\n{}{}\n{} steps, {} s of CPU", text_at(cell, "row"),
+                          text_at(cell, "sub_case"), text_at(cell, "integrator"), kVerdicts[v].name,
+                          expected_text(cell), text_at(cell, "figure"), reason.empty() ? "" : "\n" + reason,
+                          short_number(number_at(cell, "steps")), short_number(number_at(cell, "cpu_s")));
   return out;
 }
 
@@ -59,7 +65,8 @@ struct HeatMap {
   }
   void add(const Json& cell, const std::map<std::string, std::string>& summaries) {
     const std::string row = text_at(cell, "row"), sub_case = text_at(cell, "sub_case");
-    if (groups.empty() || groups.back().name != row) groups.push_back({row, summaries.contains(row) ? summaries.at(row) : "", {}, {}});
+    if (groups.empty() || groups.back().name != row)
+      groups.push_back({row, summaries.contains(row) ? summaries.at(row) : "", {}, {}});
     HeatGroup& group = groups.back();
     if (group.rows.empty() || group.rows.back() != sub_case) {
       group.rows.push_back(sub_case);
@@ -78,7 +85,9 @@ std::vector<std::vector<const Json*>> parted(const Json& cells) {
     std::size_t part = parts.size();
     for (std::size_t p = 0; p < parts.size(); ++p)
       if (text_at(*parts[p].back(), "row") == row) part = p;
-    if (const auto known = part_of_integrator.find(integrator); part == parts.size() && known != part_of_integrator.end()) part = known->second;
+    if (const auto known = part_of_integrator.find(integrator);
+        part == parts.size() && known != part_of_integrator.end())
+      part = known->second;
     if (part == parts.size()) parts.emplace_back();
     part_of_integrator.try_emplace(integrator, part);
     parts[part].push_back(&cell);
@@ -90,18 +99,21 @@ void add_unexpected(Page& page, const Json& cells) {
   std::vector<std::vector<std::string>> rows;
   for (const Json& cell : cells)
     if (!cell.value("as_expected", false))
-      rows.push_back({text_at(cell, "row"), text_at(cell, "sub_case"), text_at(cell, "integrator"), text_at(cell, "verdict"), expected_text(cell), text_at(cell, "figure"),
+      rows.push_back({text_at(cell, "row"), text_at(cell, "sub_case"), text_at(cell, "integrator"),
+                      text_at(cell, "verdict"), expected_text(cell), text_at(cell, "figure"),
                       text_at(cell, "reason")});
   if (rows.empty()) return;
   page.add_heading("Cells that are not what theory expects", 3);
-  page.add_table({"row", "case", "integrator", "verdict", "expected", "figure", "reason"}, rows, "", std::vector<RowMark>(rows.size(), RowMark::kBad));
+  page.add_table({"row", "case", "integrator", "verdict", "expected", "figure", "reason"}, rows, "",
+                 std::vector<RowMark>(rows.size(), RowMark::kBad));
 }
 
 void add_ends(Page& page, const Json& cells) {
   std::vector<std::vector<std::string>> rows;
   for (const Json& cell : cells)
     if (text_at(cell, "verdict") == "error" && cell.value("as_expected", false))
-      rows.push_back({text_at(cell, "row"), text_at(cell, "sub_case"), text_at(cell, "integrator"), text_at(cell, "reason")});
+      rows.push_back({text_at(cell, "row"), text_at(cell, "sub_case"), text_at(cell, "integrator"),
+                      text_at(cell, "reason")});
   if (rows.empty()) return;
   page.add_heading("What the clear ends said", 3);
   page.add_table({"row", "case", "integrator", "message"}, rows);
@@ -110,19 +122,26 @@ void add_ends(Page& page, const Json& cells) {
 }  // namespace
 
 void add_stability(Page& page, const Json& stability) {
-  if (!stability.is_object() || !stability.contains("cells") || !stability["cells"].is_array() || stability["cells"].empty()) return;
+  if (!stability.is_object() || !stability.contains("cells") || !stability["cells"].is_array() ||
+      stability["cells"].empty())
+    return;
   const Json& cells = stability["cells"];
-  const auto odd = std::count_if(cells.begin(), cells.end(), [](const Json& c) { return !c.value("as_expected", false); });
+  const auto odd =
+      std::count_if(cells.begin(), cells.end(), [](const Json& c) { return !c.value("as_expected", false); });
   std::map<std::string, std::string> summaries;
   if (stability.contains("rows"))
     for (const Json& row : stability["rows"]) summaries[text_at(row, "name")] = text_at(row, "summary");
 
   page.add_heading("Stability");
-  page.add_paragraph(fmt::format("Stiff and extreme cases against every integrator: {} cells. What each must show was written down beforehand, from theory, as a set of verdicts; {}. "
-                                 "A cell tells its figure, its expectation and its reason where the pointer rests on it.",
-                                 cells.size(), odd == 0 ? "all show it" : fmt::format("{} do not, and are outlined", odd)));
+  page.add_paragraph(
+      fmt::format("Stiff and extreme cases against every integrator: {} cells. What each must show was "
+                  "written down beforehand, from theory, as a set of verdicts; {}. "
+                  "A cell tells its figure, its expectation and its reason where the pointer rests on it.",
+                  cells.size(), odd == 0 ? "all show it" : fmt::format("{} do not, and are outlined", odd)));
   std::vector<HeatCell> key;
-  for (std::size_t v = 0; v < kVerdicts.size(); ++v) key.push_back({kVerdicts[v].letter, fmt::format("v{}", v), fmt::format("{}: {}", kVerdicts[v].name, kVerdicts[v].meaning)});
+  for (std::size_t v = 0; v < kVerdicts.size(); ++v)
+    key.push_back({kVerdicts[v].letter, fmt::format("v{}", v),
+                   fmt::format("{}: {}", kVerdicts[v].name, kVerdicts[v].meaning)});
   key.push_back({"A", "v0", "outlined: not what theory expects", true});
   page.add_fragment(heat_key_html(key));
   for (const auto& part : parted(cells)) {

@@ -2,8 +2,8 @@
 
 namespace palpate::report {
 
-// The floor's fill and the rings' fill are told apart by the colours that the plots give them (see kFloorColour): a figure then
-// follows the page into dark mode without being drawn twice.
+// The floor's fill and the rings' fill are told apart by the colours that the plots give them (see
+// kFloorColour): a figure then follows the page into dark mode without being drawn twice.
 const char* const kStyleSheet = R"css(
 :root { color-scheme: light dark; --page: #ffffff; --ink: #1c2126; --quiet: #5c6670; --line: #d9dee3; --tint: #f4f6f8; --accent: #1f6fae;
   --good: #1e7a46; --bad: #b3261e; --good-tint: #e9f5ee; --bad-tint: #fbeae9; }

@@ -9,11 +9,15 @@
 
 namespace palpate::report {
 
-bool Table::has(std::string_view header) const { return std::find(headers.begin(), headers.end(), header) != headers.end(); }
+bool Table::has(std::string_view header) const {
+  return std::find(headers.begin(), headers.end(), header) != headers.end();
+}
 
 std::size_t Table::column(std::string_view header) const {
   const auto it = std::find(headers.begin(), headers.end(), header);
-  if (it == headers.end()) fail("{}: has no column \"{}\"{}", source.empty() ? "table" : source, header, suggestion(header, headers));
+  if (it == headers.end())
+    fail("{}: has no column \"{}\"{}", source.empty() ? "table" : source, header,
+         suggestion(header, headers));
   return static_cast<std::size_t>(it - headers.begin());
 }
 
@@ -28,7 +32,8 @@ std::vector<double> Table::numbers(std::string_view header) const {
 double to_number(std::string_view cell) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc{} || end != cell.data() + cell.size()) return std::numeric_limits<double>::quiet_NaN();
+  if (error != std::errc{} || end != cell.data() + cell.size())
+    return std::numeric_limits<double>::quiet_NaN();
   return value;
 }
 
@@ -49,7 +54,8 @@ namespace {
 
 /// Code points of a UTF-8 text: every byte but continuation bytes (10xxxxxx).
 std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 void append_padded(std::string& line, const std::string& cell, std::size_t width, bool to_the_right) {
@@ -57,7 +63,8 @@ void append_padded(std::string& line, const std::string& cell, std::size_t width
   line += to_the_right ? blanks + cell : cell + blanks;
 }
 
-/// A line never ends in blanks: a terminal that is one column too narrow would otherwise show an empty line after each.
+/// A line never ends in blanks: a terminal that is one column too narrow would otherwise show an empty line
+/// after each.
 std::string without_trailing_blanks(std::string line) {
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
@@ -65,7 +72,8 @@ std::string without_trailing_blanks(std::string line) {
 
 }  // namespace
 
-std::string format_table(const std::vector<std::string>& headers, const std::vector<std::vector<std::string>>& rows) {
+std::string format_table(const std::vector<std::string>& headers,
+                         const std::vector<std::vector<std::string>>& rows) {
   const std::size_t columns = headers.size();
   std::vector<std::size_t> widths(columns);
   for (std::size_t c = 0; c < columns; ++c) widths[c] = width_of(headers[c]);

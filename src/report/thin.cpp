@@ -13,8 +13,11 @@ void thin(std::vector<double>& x, std::vector<double>& y, std::size_t pixels) {
     const auto column = static_cast<std::size_t>((x[begin] - x.front()) * scale);
     std::size_t end = begin + 1;
     while (end < x.size() && static_cast<std::size_t>((x[end] - x.front()) * scale) == column) ++end;
-    const auto [least, greatest] = std::minmax_element(y.begin() + static_cast<long>(begin), y.begin() + static_cast<long>(end));
-    for (const std::size_t i : std::set<std::size_t>{begin, static_cast<std::size_t>(least - y.begin()), static_cast<std::size_t>(greatest - y.begin()), end - 1}) {
+    const auto [least, greatest] =
+        std::minmax_element(y.begin() + static_cast<long>(begin), y.begin() + static_cast<long>(end));
+    for (const std::size_t i :
+         std::set<std::size_t>{begin, static_cast<std::size_t>(least - y.begin()),
+                               static_cast<std::size_t>(greatest - y.begin()), end - 1}) {
       thin_x.push_back(x[i]);
       thin_y.push_back(y[i]);
     }

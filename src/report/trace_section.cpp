@@ -12,18 +12,22 @@ namespace {
 constexpr const char* kAccepted = "accepted";
 
 /// Directions named most often, with how often: the table's lines.
-std::vector<std::vector<std::string>> most_frequent(const std::map<std::string, long>& counts, std::size_t most) {
+std::vector<std::vector<std::string>> most_frequent(const std::map<std::string, long>& counts,
+                                                    std::size_t most) {
   std::vector<std::pair<std::string, long>> sorted(counts.begin(), counts.end());
-  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<std::vector<std::string>> rows;
-  for (std::size_t i = 0; i < std::min(most, sorted.size()); ++i) rows.push_back({sorted[i].first, std::to_string(sorted[i].second)});
+  for (std::size_t i = 0; i < std::min(most, sorted.size()); ++i)
+    rows.push_back({sorted[i].first, std::to_string(sorted[i].second)});
   return rows;
 }
 
 std::string worst_of(const Table& trace, std::size_t row) {
   const auto cell = [&](const char* column) { return trace.rows[row][trace.column(column)]; };
   if (cell("worst_body").empty()) return "";
-  return fmt::format("{}{}, {}", cell("worst_body"), cell("worst_node").empty() ? "" : ", node " + cell("worst_node"), cell("worst_axis"));
+  return fmt::format("{}{}, {}", cell("worst_body"),
+                     cell("worst_node").empty() ? "" : ", node " + cell("worst_node"), cell("worst_axis"));
 }
 
 }  // namespace
@@ -46,11 +50,13 @@ Plot step_plot(const Table& trace) {
   };
   plot.series.push_back(series_of(kAccepted, Mark::kLine));
   plot.series[0].colour = "#7a7f8a";
-  const std::map<std::string, std::string> colours = {{"error test", "#d1495b"}, {"Newton", "#b0529e"}, {"not finite", "#d9720a"}, {"event", "#2b7bba"}};
+  const std::map<std::string, std::string> colours = {
+      {"error test", "#d1495b"}, {"Newton", "#b0529e"}, {"not finite", "#d9720a"}, {"event", "#2b7bba"}};
   for (const std::string& which : distinct(trace, "outcome")) {
     if (which == kAccepted) continue;
     plot.series.push_back(series_of(which, Mark::kPoints));
-    if (const auto colour = colours.find(which); colour != colours.end()) plot.series.back().colour = colour->second;
+    if (const auto colour = colours.find(which); colour != colours.end())
+      plot.series.back().colour = colour->second;
   }
   return plot;
 }
@@ -62,14 +68,22 @@ void add_trace(Page& page, const Table& trace) {
   for (std::size_t i = 0; i < trace.rows.size(); ++i) {
     const std::string& what = trace.rows[i][outcome];
     ++outcomes[what];
-    if (const std::string where = worst_of(trace, i); !where.empty()) ++(what == kAccepted ? worst_accepted : worst_rejected)[where];
+    if (const std::string where = worst_of(trace, i); !where.empty())
+      ++(what == kAccepted ? worst_accepted : worst_rejected)[where];
     if (const std::string& body = trace.rows[i][inverted]; !body.empty()) ++inverted_in[body];
   }
-  add_plot(page, step_plot(trace), "Step over time: the line is what was accepted, a point is an attempt that was not, coloured by the reason (an event cuts a step short at a root).");
+  add_plot(page, step_plot(trace),
+           "Step over time: the line is what was accepted, a point is an attempt that was not, coloured by "
+           "the reason (an event cuts a step short at a root).");
   page.add_table({"outcome", "attempts"}, most_frequent(outcomes, outcomes.size()));
-  if (!worst_rejected.empty()) page.add_table({"where the error was largest when a step was rejected", "times"}, most_frequent(worst_rejected, 10));
-  if (!worst_accepted.empty()) page.add_table({"where the error was largest in accepted steps", "times"}, most_frequent(worst_accepted, 10));
-  if (!inverted_in.empty()) page.add_table({"attempts with an inverted element, in", "times"}, most_frequent(inverted_in, 10));
+  if (!worst_rejected.empty())
+    page.add_table({"where the error was largest when a step was rejected", "times"},
+                   most_frequent(worst_rejected, 10));
+  if (!worst_accepted.empty())
+    page.add_table({"where the error was largest in accepted steps", "times"},
+                   most_frequent(worst_accepted, 10));
+  if (!inverted_in.empty())
+    page.add_table({"attempts with an inverted element, in", "times"}, most_frequent(inverted_in, 10));
 }
 
 }  // namespace palpate::report

@@ -36,12 +36,14 @@ LogLine fit_log_line(const std::vector<double>& x, const std::vector<double>& y)
 }
 
 const std::vector<std::string>& exchange_columns() {
-  static const std::vector<std::string> columns = {"exchange_period_s", "position_error_rel_l2", "force_error_rms_n", "torque_error_rms_n_m", "cpu_s"};
+  static const std::vector<std::string> columns = {"exchange_period_s", "position_error_rel_l2",
+                                                   "force_error_rms_n", "torque_error_rms_n_m", "cpu_s"};
   return columns;
 }
 
 std::string setting_text(const std::string& setting_name, double setting) {
-  if (setting_name == "step_s" || setting_name == "tick_s") return setting < 1e-3 ? fmt::format("{:.3g} us", setting * 1e6) : fmt::format("{:.3g} ms", setting * 1e3);
+  if (setting_name == "step_s" || setting_name == "tick_s")
+    return setting < 1e-3 ? fmt::format("{:.3g} us", setting * 1e6) : fmt::format("{:.3g} ms", setting * 1e3);
   // 1e-04 as people write it: 1e-4.
   std::string text = fmt::format("{:.0e}", setting);
   if (to_number(text) != setting) text = fmt::format("{:.3g}", setting);
@@ -53,7 +55,8 @@ Table rows_where(const Table& table, const std::string& column, const std::strin
   if (!table.has(column)) return table;
   Table out{table.headers, {}, table.source};
   const std::size_t c = table.column(column);
-  std::copy_if(table.rows.begin(), table.rows.end(), std::back_inserter(out.rows), [&](const auto& row) { return row[c] == value; });
+  std::copy_if(table.rows.begin(), table.rows.end(), std::back_inserter(out.rows),
+               [&](const auto& row) { return row[c] == value; });
   return out;
 }
 
@@ -65,17 +68,26 @@ std::vector<std::string> distinct(const Table& table, const std::string& column)
   return out;
 }
 
-std::vector<Ladder> ladders(const Table& compare, const std::string& error_column, const std::string& cost_column) {
-  const std::vector<double> setting = compare.numbers("setting"), error = compare.numbers(error_column), cost = compare.numbers(cost_column),
-                            order = compare.numbers("order");
-  const auto text = [&](std::size_t row, const char* column) { return compare.rows[row][compare.column(column)]; };
+std::vector<Ladder> ladders(const Table& compare, const std::string& error_column,
+                            const std::string& cost_column) {
+  const std::vector<double> setting = compare.numbers("setting"), error = compare.numbers(error_column),
+                            cost = compare.numbers(cost_column), order = compare.numbers("order");
+  const auto text = [&](std::size_t row, const char* column) {
+    return compare.rows[row][compare.column(column)];
+  };
   const std::size_t below = compare.column(below_column(compare, error_column));
   std::vector<Ladder> out;
   for (std::size_t i = 0; i < compare.rows.size(); ++i) {
     const std::string label = text(i, "label");
     auto ladder = std::find_if(out.begin(), out.end(), [&](const Ladder& l) { return l.label == label; });
     if (ladder == out.end()) {
-      out.push_back({label, text(i, "integrator"), text(i, "family"), text(i, "stability"), text(i, "setting_name"), 0, {}});
+      out.push_back({label,
+                     text(i, "integrator"),
+                     text(i, "family"),
+                     text(i, "stability"),
+                     text(i, "setting_name"),
+                     0,
+                     {}});
       ladder = out.end() - 1;
       ladder->order = std::isfinite(order[i]) ? static_cast<int>(order[i]) : 0;
     }
@@ -105,7 +117,9 @@ std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& 
 }
 
 Cost cost_at(const Ladder& ladder, double target, double reference_error) {
-  const auto known = [&](const LadderPoint& p) { return std::isfinite(reference_error) ? std::max(p.error, reference_error) : p.error; };
+  const auto known = [&](const LadderPoint& p) {
+    return std::isfinite(reference_error) ? std::max(p.error, reference_error) : p.error;
+  };
   Cost best;
   const auto offer = [&](double value, bool at_most) {
     if (value >= 0.0 && !(value >= best.value)) best = {value, at_most};
@@ -124,14 +138,17 @@ Cost cost_at(const Ladder& ladder, double target, double reference_error) {
     }
     const double share = std::log(known(coarse) / target) / std::log(known(coarse) / known(fine));
     const bool positive = coarse.cost > 0.0 && fine.cost > 0.0;
-    offer(positive ? std::exp((1.0 - share) * std::log(coarse.cost) + share * std::log(fine.cost)) : fine.cost, false);
+    offer(
+        positive ? std::exp((1.0 - share) * std::log(coarse.cost) + share * std::log(fine.cost)) : fine.cost,
+        false);
   }
   return best;
 }
 
 std::string cost_text(const Cost& cost) { return (cost.at_most ? "<= " : "") + short_number(cost.value); }
 
-std::vector<Winner> winners(const Table& compare, const std::string& error_column, const std::string& cost_column, const std::vector<double>& targets,
+std::vector<Winner> winners(const Table& compare, const std::string& error_column,
+                            const std::string& cost_column, const std::vector<double>& targets,
                             double reference_error) {
   const std::vector<Ladder> all = ladders(compare, error_column, cost_column);
   std::vector<Winner> out;

@@ -20,13 +20,15 @@ constexpr std::size_t kManyInFamily = 6;
 constexpr const char* kFaintColour = "#c3c9d0";
 
 /// Twelve hues of middle lightness for families, in the order of their first line.
-constexpr std::array<const char*, 12> kFamilyColours = {"#2b7bba", "#d9720a", "#2a9461", "#b0529e", "#d1495b", "#0f9aa8",
-                                                        "#8a6d3b", "#6a5acd", "#8fae1b", "#c2185b", "#4c6a7d", "#e0a100"};
+constexpr std::array<const char*, 12> kFamilyColours = {"#2b7bba", "#d9720a", "#2a9461", "#b0529e",
+                                                        "#d1495b", "#0f9aa8", "#8a6d3b", "#6a5acd",
+                                                        "#8fae1b", "#c2185b", "#4c6a7d", "#e0a100"};
 
 std::map<std::string, std::string> family_colours(const std::vector<Ladder>& all) {
   std::map<std::string, std::string> out;
   for (const Ladder& ladder : all)
-    if (!out.contains(ladder.family)) out.emplace(ladder.family, kFamilyColours[out.size() % kFamilyColours.size()]);
+    if (!out.contains(ladder.family))
+      out.emplace(ladder.family, kFamilyColours[out.size() % kFamilyColours.size()]);
   return out;
 }
 
@@ -42,7 +44,8 @@ Series line_of(const Ladder& ladder, bool labelled) {
   return series;
 }
 
-/// The points that no other point beats in both cost and error, from cheap to accurate; each ladder is named where it first takes over.
+/// The points that no other point beats in both cost and error, from cheap to accurate; each ladder is named
+/// where it first takes over.
 Series best_envelope(const std::vector<Ladder>& all) {
   struct Entry {
     double cost, error;
@@ -51,9 +54,13 @@ Series best_envelope(const std::vector<Ladder>& all) {
   std::vector<Entry> entries;
   for (const Ladder& ladder : all)
     for (const LadderPoint& p : ladder.points)
-      if (p.cost > 0.0 && p.error > 0.0 && p.error <= kLargestDrawn && !p.unresolved) entries.push_back({p.cost, p.error, &ladder});
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.cost != b.cost ? a.cost < b.cost : a.error < b.error; });
-  Series out{.name = "best of all", .x = {}, .y = {}, .mark = Mark::kLine, .labels_below = true, .colour = "ink"};
+      if (p.cost > 0.0 && p.error > 0.0 && p.error <= kLargestDrawn && !p.unresolved)
+        entries.push_back({p.cost, p.error, &ladder});
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.cost != b.cost ? a.cost < b.cost : a.error < b.error;
+  });
+  Series out{
+      .name = "best of all", .x = {}, .y = {}, .mark = Mark::kLine, .labels_below = true, .colour = "ink"};
   double least = std::numeric_limits<double>::infinity();
   std::set<const Ladder*> named;
   for (const Entry& e : entries) {
@@ -78,7 +85,8 @@ Plot frame_of(const std::string& error_label, double reference_error, const std:
 
 }  // namespace
 
-Plot work_precision_plot(const Table& compare, const std::string& error_column, const std::string& error_label, double reference_error,
+Plot work_precision_plot(const Table& compare, const std::string& error_column,
+                         const std::string& error_label, double reference_error,
                          const std::string& cost_column, const std::string& cost_label) {
   const std::vector<Ladder> all = ladders(compare, error_column, cost_column);
   Plot plot = frame_of(error_label, reference_error, cost_label);
@@ -102,17 +110,21 @@ Plot work_precision_plot(const Table& compare, const std::string& error_column, 
   return plot;
 }
 
-std::vector<Plot> family_plots(const Table& compare, const std::string& error_column, const std::string& error_label, double reference_error,
+std::vector<Plot> family_plots(const Table& compare, const std::string& error_column,
+                               const std::string& error_label, double reference_error,
                                const std::string& cost_column, const std::string& cost_label) {
   const std::vector<Ladder> all = ladders(compare, error_column, cost_column);
   std::map<std::string, std::size_t> sizes;
   for (const Ladder& ladder : all) ++sizes[ladder.family];
   const auto panel_of = [&](const Ladder& ladder) {
-    return sizes[ladder.family] > kManyInFamily && ladder.order > 0 ? fmt::format("{}, order {}", ladder.family, ladder.order) : ladder.family;
+    return sizes[ladder.family] > kManyInFamily && ladder.order > 0
+               ? fmt::format("{}, order {}", ladder.family, ladder.order)
+               : ladder.family;
   };
   std::vector<std::string> panels;
   for (const Ladder& ladder : all)
-    if (!ladder.points.empty() && std::find(panels.begin(), panels.end(), panel_of(ladder)) == panels.end()) panels.push_back(panel_of(ladder));
+    if (!ladder.points.empty() && std::find(panels.begin(), panels.end(), panel_of(ladder)) == panels.end())
+      panels.push_back(panel_of(ladder));
   std::vector<Plot> out;
   for (const std::string& panel : panels) {
     Plot plot = frame_of(error_label, reference_error, cost_label);
@@ -142,7 +154,8 @@ std::vector<Plot> family_plots(const Table& compare, const std::string& error_co
 }
 
 Plot exchange_plot(const Table& exchange, const std::string& error_column, const std::string& error_label) {
-  const std::vector<double> period = exchange.numbers("exchange_period_s"), error = exchange.numbers(error_column);
+  const std::vector<double> period = exchange.numbers("exchange_period_s"),
+                            error = exchange.numbers(error_column);
   Plot plot;
   plot.x_label = "exchange period [s]";
   plot.y_label = error_label;
@@ -152,7 +165,11 @@ Plot exchange_plot(const Table& exchange, const std::string& error_column, const
   const LogLine line = fit_log_line(period, error);
   if (std::isfinite(line.slope)) {
     const auto [least, greatest] = std::minmax_element(period.begin(), period.end());
-    Series fit{.name = fmt::format("fitted order {:.2f}", line.slope), .x = {*least, *greatest}, .y = {}, .mark = Mark::kDashed, .colour = "ink"};
+    Series fit{.name = fmt::format("fitted order {:.2f}", line.slope),
+               .x = {*least, *greatest},
+               .y = {},
+               .mark = Mark::kDashed,
+               .colour = "ink"};
     for (const double x : fit.x) fit.y.push_back(std::exp(line.intercept + line.slope * std::log(x)));
     plot.series.push_back(std::move(fit));
   }
@@ -160,8 +177,11 @@ Plot exchange_plot(const Table& exchange, const std::string& error_column, const
 }
 
 Plot restart_plot(const Table& restarts, const std::string& count_column, const std::string& count_label) {
-  const std::vector<double> refresh = restarts.numbers("contact_refresh_s"), count = restarts.numbers(count_column), simulated = restarts.numbers("simulated_s");
-  const std::size_t label = restarts.column("label"), multistep = restarts.column("multistep"), status = restarts.column("status");
+  const std::vector<double> refresh = restarts.numbers("contact_refresh_s"),
+                            count = restarts.numbers(count_column),
+                            simulated = restarts.numbers("simulated_s");
+  const std::size_t label = restarts.column("label"), multistep = restarts.column("multistep"),
+                    status = restarts.column("status");
   Plot plot;
   plot.x_label = "contact refreshes per simulated second";
   plot.y_label = count_label;

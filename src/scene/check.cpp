@@ -16,7 +16,8 @@ std::string at(const char* list, std::size_t i, const std::string& rest = "") {
 void check_name(const Document& doc, const std::string& where, const std::string& name) {
   for (const unsigned char c : name)
     if (c < 0x20 || c == 0x7f || c == '/' || c == '\\' || c == '"')
-      refuse(place(doc, where), "", fmt::format("the name \"{}\" must not contain slashes, quotes or control characters", name));
+      refuse(place(doc, where), "",
+             fmt::format("the name \"{}\" must not contain slashes, quotes or control characters", name));
 }
 
 void check_names(const Document& doc, const Description& d) {
@@ -27,7 +28,9 @@ void check_names(const Document& doc, const Description& d) {
     const std::string where = fmt::format("{} \"{}\"", kind, name);
     check_name(doc, key, name);
     if (name == "tool") refuse(place(doc, key), where, "name \"tool\" is kept for the tool; choose another");
-    if (!seen.insert(name).second) refuse(place(doc, key), where, fmt::format("name \"{}\" is taken; bodies, bones and obstacles need names of their own", name));
+    if (!seen.insert(name).second)
+      refuse(place(doc, key), where,
+             fmt::format("name \"{}\" is taken; bodies, bones and obstacles need names of their own", name));
   };
   for (std::size_t i = 0; i < d.bodies.size(); ++i) check_one("body", i, d.bodies[i].name);
   for (std::size_t i = 0; i < d.bones.size(); ++i) check_one("bone", i, d.bones[i].name);
@@ -38,13 +41,17 @@ void check_loads(const Document& doc, const Description& d) {
   for (std::size_t i = 0; i < d.bodies.size(); ++i)
     for (std::size_t j = 0; j < d.bodies[i].loads.size(); ++j) {
       const LoadSpec& load = d.bodies[i].loads[j];
-      check_box(doc, at("body", i, at("load", j)), fmt::format("body \"{}\": load[{}]", d.bodies[i].name, j), load.box_min_m, load.box_max_m);
+      check_box(doc, at("body", i, at("load", j)), fmt::format("body \"{}\": load[{}]", d.bodies[i].name, j),
+                load.box_min_m, load.box_max_m);
     }
 }
 
 void check_tool(const Document& doc, const Description& d) {
-  if (d.tool && !d.device) refuse(place(doc, "tool"), "tool", "a tool needs a hand: add [device] with [[device.keyframe]]");
-  if (d.device && !d.tool) refuse(place(doc, "device"), "device", "a device needs something to move: add [tool], or remove [device]");
+  if (d.tool && !d.device)
+    refuse(place(doc, "tool"), "tool", "a tool needs a hand: add [device] with [[device.keyframe]]");
+  if (d.device && !d.tool)
+    refuse(place(doc, "device"), "device",
+           "a device needs something to move: add [tool], or remove [device]");
   if (d.device && d.device->type == "script" && d.device->keyframes.empty())
     refuse(place(doc, "device"), "device", "a scripted handle needs at least one [[device.keyframe]]");
   if (d.device) check_keyframes(doc, "device.keyframe", "device", d.device->keyframes);
@@ -52,11 +59,13 @@ void check_tool(const Document& doc, const Description& d) {
 
   const Vec3& inertia = d.tool->inertia_kg_m2;
   if (d.tool->shape == "mesh" && inertia.isZero(0.0))
-    refuse(place(doc, "tool.inertia_kg_m2"), "tool", "inertia_kg_m2 is missing: shape = \"mesh\" has no inertia of its own");
+    refuse(place(doc, "tool.inertia_kg_m2"), "tool",
+           "inertia_kg_m2 is missing: shape = \"mesh\" has no inertia of its own");
   const double largest = inertia.maxCoeff();
   if (!inertia.isZero(0.0) && (inertia.minCoeff() <= 0.0 || 2.0 * largest > inertia.sum() * (1.0 + 1e-9)))
     refuse(place(doc, "tool.inertia_kg_m2"), "tool",
-           fmt::format("inertia_kg_m2 = [{}, {}, {}] belongs to no rigid body: all must be positive and none larger than the other two together",
+           fmt::format("inertia_kg_m2 = [{}, {}, {}] belongs to no rigid body: all must be positive and none "
+                       "larger than the other two together",
                        inertia[0], inertia[1], inertia[2]));
 }
 
@@ -66,42 +75,63 @@ bool is_multiple(double whole, double part) {
   return n >= 1.0 && std::abs(ratio - n) <= 1e-9 * n;
 }
 
-void check_period(const Document& doc, const std::string& key, const std::string& where, double period, double tick) {
+void check_period(const Document& doc, const std::string& key, const std::string& where, double period,
+                  double tick) {
   const double most = 1e6;
   if (period / tick > most)
-    refuse(place(doc, "tool.tick_s"), where, fmt::format("tick_s = {} of the tool makes {:.3g} ticks of one exchange period of {} s, at most {:g} are possible; a haptic device asks for 0.001",
-                                                         tick, period / tick, period, most));
+    refuse(place(doc, "tool.tick_s"), where,
+           fmt::format("tick_s = {} of the tool makes {:.3g} ticks of one exchange period of {} s, at most "
+                       "{:g} are possible; a haptic device asks for 0.001",
+                       tick, period / tick, period, most));
   if (is_multiple(period, tick)) return;
   const double below = std::floor(period / tick), n = std::max(1.0, below);
-  refuse(place(doc, key), where, fmt::format("{} = {} must be a whole number of the tool's ticks of {} s; use {:.9g} or {:.9g}",
-                                             where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, tick, n * tick, (n + 1.0) * tick));
+  refuse(place(doc, key), where,
+         fmt::format("{} = {} must be a whole number of the tool's ticks of {} s; use {:.9g} or {:.9g}",
+                     where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, tick, n * tick,
+                     (n + 1.0) * tick));
 }
 
-/// Between exchanges the tool feels a record of the body as it was: a body with a tool changes where one begins.
+/// Between exchanges the tool feels a record of the body as it was: a body with a tool changes where one
+/// begins.
 void check_changes(const Document& doc, const Description& d) {
   for (std::size_t i = 0; i < d.bodies.size(); ++i) {
     const std::string where = fmt::format("body \"{}\": change", d.bodies[i].name);
     for (std::size_t j = 0; j < d.bodies[i].changes.size(); ++j) {
-      const double time = d.bodies[i].changes[j].time_s, period = d.coupling.scheme == "monolithic" ? d.coupling.contact_refresh_s : d.coupling.exchange_period_s;
+      const double time = d.bodies[i].changes[j].time_s, period = d.coupling.scheme == "monolithic"
+                                                                      ? d.coupling.contact_refresh_s
+                                                                      : d.coupling.exchange_period_s;
       const std::string key = at("body", i, at("change", j, "time_s"));
       if (j > 0 && time < d.bodies[i].changes[j - 1].time_s)
-        refuse(place(doc, key), where, fmt::format("time_s = {} must be greater than the one before ({})", time, d.bodies[i].changes[j - 1].time_s));
+        refuse(place(doc, key), where,
+               fmt::format("time_s = {} must be greater than the one before ({})", time,
+                           d.bodies[i].changes[j - 1].time_s));
       for (std::size_t k = 0; k < j; ++k)
-        if (d.bodies[i].changes[k].time_s == time && d.bodies[i].changes[k].region == d.bodies[i].changes[j].region)
-          refuse(place(doc, key), where, fmt::format("time_s = {} must be greater than the one before ({}): both change the same", time, time));
-      if (time >= d.duration_s) refuse(place(doc, key), where, fmt::format("time_s = {} is not before the end of the run, {} s", time, d.duration_s));
+        if (d.bodies[i].changes[k].time_s == time &&
+            d.bodies[i].changes[k].region == d.bodies[i].changes[j].region)
+          refuse(place(doc, key), where,
+                 fmt::format("time_s = {} must be greater than the one before ({}): both change the same",
+                             time, time));
+      if (time >= d.duration_s)
+        refuse(place(doc, key), where,
+               fmt::format("time_s = {} is not before the end of the run, {} s", time, d.duration_s));
       if (d.tool && !is_multiple(time, period))
-        refuse(place(doc, key), where, fmt::format("time_s = {} must be a whole number of {} of {} s: between them the tool feels the body as it was", time,
-                                                   d.coupling.scheme == "monolithic" ? "contact refreshes" : "exchange periods", period));
+        refuse(place(doc, key), where,
+               fmt::format("time_s = {} must be a whole number of {} of {} s: between them the tool feels "
+                           "the body as it was",
+                           time, d.coupling.scheme == "monolithic" ? "contact refreshes" : "exchange periods",
+                           period));
     }
   }
 }
 
 /// A period that the run ends before: nothing would be exchanged in it.
-void check_length(const Document& doc, const std::string& key, const std::string& where, double period, double duration) {
+void check_length(const Document& doc, const std::string& key, const std::string& where, double period,
+                  double duration) {
   if (period <= duration * (1.0 + 1e-9)) return;
-  refuse(place(doc, key), where, fmt::format("{} = {} is longer than the whole run of {} s; use at most {}, a tenth of it or less is usual",
-                                             where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, duration, duration));
+  refuse(place(doc, key), where,
+         fmt::format(
+             "{} = {} is longer than the whole run of {} s; use at most {}, a tenth of it or less is usual",
+             where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, duration, duration));
 }
 
 void check_periods(const Document& doc, const Description& d) {
@@ -109,8 +139,10 @@ void check_periods(const Document& doc, const Description& d) {
   const bool own = given(doc, "exchange.exchange_period_s");
   const double compared = d.compare.duration_s > 0.0 ? d.compare.duration_s : d.duration_s;
   if (c.scheme != "monolithic") {
-    check_period(doc, own ? "exchange.exchange_period_s" : "tool.tick_s", "exchange", c.exchange_period_s, d.tool->tick_s);
-    check_length(doc, own ? "exchange.exchange_period_s" : "scene.duration_s", "exchange", c.exchange_period_s, d.duration_s);
+    check_period(doc, own ? "exchange.exchange_period_s" : "tool.tick_s", "exchange", c.exchange_period_s,
+                 d.tool->tick_s);
+    check_length(doc, own ? "exchange.exchange_period_s" : "scene.duration_s", "exchange",
+                 c.exchange_period_s, d.duration_s);
   }
   for (std::size_t i = 0; i < d.compare.exchange_periods_s.size(); ++i) {
     const std::string key = fmt::format("compare.exchange_periods_s[{}]", i);
@@ -124,39 +156,53 @@ void check_exchange(const Document& doc, Description& d) {
   if (d.tool)
     check_periods(doc, d);
   else if (c.scheme == "monolithic")
-    refuse(place(doc, "exchange.scheme"), "exchange", "scheme = \"monolithic\" needs a tool: there is nothing to couple without one");
+    refuse(place(doc, "exchange.scheme"), "exchange",
+           "scheme = \"monolithic\" needs a tool: there is nothing to couple without one");
   else if (!d.compare.exchange_periods_s.empty())
-    refuse(place(doc, "compare.exchange_periods_s"), "compare", "exchange_periods_s needs a tool: nothing is exchanged without one");
+    refuse(place(doc, "compare.exchange_periods_s"), "compare",
+           "exchange_periods_s needs a tool: nothing is exchanged without one");
   if (c.scheme == "monolithic") return;  // contact is refreshed at a period of its own
   if (!is_multiple(c.exchange_period_s, c.contact_refresh_s))
-    refuse(place(doc, "exchange.contact_refresh_s"), "exchange",
-           fmt::format("contact_refresh_s = {} must be a whole fraction of exchange_period_s = {}; use {:.9g}", c.contact_refresh_s,
-                       c.exchange_period_s, c.exchange_period_s / std::max(1.0, std::ceil(c.exchange_period_s / c.contact_refresh_s - 1e-9))));
+    refuse(
+        place(doc, "exchange.contact_refresh_s"), "exchange",
+        fmt::format("contact_refresh_s = {} must be a whole fraction of exchange_period_s = {}; use {:.9g}",
+                    c.contact_refresh_s, c.exchange_period_s,
+                    c.exchange_period_s /
+                        std::max(1.0, std::ceil(c.exchange_period_s / c.contact_refresh_s - 1e-9))));
 }
 
 void check_compare(const Document& doc, const Description& d) {
   for (std::size_t i = 0; i < d.compare.ladders.size(); ++i)
     if (d.compare.ladders[i].values.empty())
-      refuse(place(doc, fmt::format("compare.ladder[{}]", i)), fmt::format("compare: ladder[{}]", i), "needs rungs: rtol = [...] or step_s = [...]");
+      refuse(place(doc, fmt::format("compare.ladder[{}]", i)), fmt::format("compare: ladder[{}]", i),
+             "needs rungs: rtol = [...] or step_s = [...]");
 }
 
 }  // namespace
 
-void check_keyframes(const Document& doc, const std::string& key, const std::string& where, const std::vector<KeyframeSpec>& frames) {
+void check_keyframes(const Document& doc, const std::string& key, const std::string& where,
+                     const std::vector<KeyframeSpec>& frames) {
   for (std::size_t i = 1; i < frames.size(); ++i)
     if (frames[i].time_s <= frames[i - 1].time_s)
       refuse(place(doc, fmt::format("{}[{}].time_s", key, i)), fmt::format("{}: keyframe[{}]", where, i),
-             fmt::format("time_s = {} must come after {}, the keyframe before; put keyframes in the order of time", frames[i].time_s, frames[i - 1].time_s));
+             fmt::format(
+                 "time_s = {} must come after {}, the keyframe before; put keyframes in the order of time",
+                 frames[i].time_s, frames[i - 1].time_s));
 }
 
-void check_box(const Document& doc, const std::string& key, const std::string& where, const Vec3& low, const Vec3& high) {
+void check_box(const Document& doc, const std::string& key, const std::string& where, const Vec3& low,
+               const Vec3& high) {
   for (int axis = 0; axis < 3; ++axis)
     if (low[axis] > high[axis])
-      refuse(place(doc, key + ".box_max_m"), where, fmt::format("box_max_m = {} must not be below box_min_m = {} along {}", high[axis], low[axis], "xyz"[axis]));
+      refuse(place(doc, key + ".box_max_m"), where,
+             fmt::format("box_max_m = {} must not be below box_min_m = {} along {}", high[axis], low[axis],
+                         "xyz"[axis]));
 }
 
 void check(const Document& doc, Description& d) {
-  if (d.bodies.empty() && !d.tool) refuse(place(doc, "scene"), "", "there is nothing to simulate: add a [[body]], or a [tool] with a [device]");
+  if (d.bodies.empty() && !d.tool)
+    refuse(place(doc, "scene"), "",
+           "there is nothing to simulate: add a [[body]], or a [tool] with a [device]");
   check_names(doc, d);
   check_meshes(doc, d);
   check_regions(doc, d);

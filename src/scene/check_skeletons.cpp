@@ -6,17 +6,24 @@
 namespace palpate::scene {
 namespace {
 
-void check_joint(const Document& doc, const std::string& key, const std::string& where, const JointSpec& joint) {
+void check_joint(const Document& doc, const std::string& key, const std::string& where,
+                 const JointSpec& joint) {
   const auto has = [&](const char* word) { return given(doc, key + "." + word); };
   check_keyframes(doc, key + ".keyframe", where, joint.keyframes);
   if (!joint.keyframes.empty())
     for (const char* word : {"type", "axis", "stiffness_n_m_rad", "damping_n_m_s_rad"})
-      if (has(word)) refuse(place(doc, key + "." + word), where, fmt::format("{} means nothing to a joint with keyframes; remove it", word));
-  if (joint.type == "hinge" && !(joint.axis.norm() > 0.0)) refuse(place(doc, key), where, "axis is missing: a hinge turns about one, in the body's own axes, for example [1.0, 0.0, 0.0]");
-  if (has("axis") && joint.type != "hinge") refuse(place(doc, key + ".axis"), where, "axis means nothing but to type = \"hinge\"; remove it");
+      if (has(word))
+        refuse(place(doc, key + "." + word), where,
+               fmt::format("{} means nothing to a joint with keyframes; remove it", word));
+  if (joint.type == "hinge" && !(joint.axis.norm() > 0.0))
+    refuse(place(doc, key), where,
+           "axis is missing: a hinge turns about one, in the body's own axes, for example [1.0, 0.0, 0.0]");
+  if (has("axis") && joint.type != "hinge")
+    refuse(place(doc, key + ".axis"), where, "axis means nothing but to type = \"hinge\"; remove it");
   for (const char* word : {"stiffness_n_m_rad", "damping_n_m_s_rad"})
     if (has(word) && (joint.type == "weld" || joint.type == "free"))
-      refuse(place(doc, key + "." + word), where, fmt::format("{} means nothing to type = \"{}\"; remove it", word, joint.type));
+      refuse(place(doc, key + "." + word), where,
+             fmt::format("{} means nothing to type = \"{}\"; remove it", word, joint.type));
 }
 
 }  // namespace
@@ -26,14 +33,20 @@ void check_skeletons(const Document& doc, const Description& d) {
   for (std::size_t i = 0; i < d.bodies.size(); ++i) {
     const SoftBodySpec& body = d.bodies[i];
     if (!body.skeleton) continue;
-    const std::string key = fmt::format("body[{}].skeleton", i), where = fmt::format("body \"{}\": skeleton", body.name);
+    const std::string key = fmt::format("body[{}].skeleton", i),
+                      where = fmt::format("body \"{}\": skeleton", body.name);
     if (!body.mesh.file.ends_with(".h5"))
-      refuse(place(doc, key), where, "needs mesh = { file = \"MODEL.h5\" }, a model file with bones; `palpate model human -o human.h5` makes one");
+      refuse(place(doc, key), where,
+             "needs mesh = { file = \"MODEL.h5\" }, a model file with bones; `palpate model human -o "
+             "human.h5` makes one");
     std::set<std::string> seen;
     for (std::size_t j = 0; j < body.skeleton->joints.size(); ++j) {
       const JointSpec& joint = body.skeleton->joints[j];
-      const std::string at = fmt::format("{}.joint[{}]", key, j), of = fmt::format("body \"{}\": joint of \"{}\"", body.name, joint.bone);
-      if (!seen.insert(joint.bone).second) refuse(place(doc, at + ".bone"), of, "a bone hangs on its parent by one joint; this is its second table");
+      const std::string at = fmt::format("{}.joint[{}]", key, j),
+                        of = fmt::format("body \"{}\": joint of \"{}\"", body.name, joint.bone);
+      if (!seen.insert(joint.bone).second)
+        refuse(place(doc, at + ".bone"), of,
+               "a bone hangs on its parent by one joint; this is its second table");
       check_joint(doc, at, of, joint);
     }
   }

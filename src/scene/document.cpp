@@ -9,7 +9,8 @@ namespace {
 constexpr std::string_view kOverride = "--set ";
 
 /// The text that describes the scene as it runs: comments survive only where nothing was overridden.
-std::string effective_source(const toml::table& root, const std::string& text, const std::vector<std::string>& overrides) {
+std::string effective_source(const toml::table& root, const std::string& text,
+                             const std::vector<std::string>& overrides) {
   if (overrides.empty()) return text;
   std::ostringstream out;
   for (const std::string& one : overrides) out << "# " << kOverride << one << '\n';
@@ -18,14 +19,13 @@ std::string effective_source(const toml::table& root, const std::string& text, c
 }
 }  // namespace
 
-Document parse_document(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+Document parse_document(const std::string& text, const std::string& path,
+                        const std::vector<std::string>& overrides) {
   Document document;
   document.path = path.empty() ? "scene" : path;
   try {
     document.root = toml::parse(text, document.path);
-  } catch (const toml::parse_error& e) {
-    fail("{}: not valid TOML: {}", place(e.source()), e.description());
-  }
+  } catch (const toml::parse_error& e) { fail("{}: not valid TOML: {}", place(e.source()), e.description()); }
   for (const std::string& one : overrides) apply_override(document.root, one);
   document.source = effective_source(document.root, text, overrides);
   return document;
@@ -46,6 +46,8 @@ std::string place(const Document& document, std::string at) {
   }
 }
 
-bool given(const Document& document, std::string_view at) { return static_cast<bool>(toml::at_path(document.root, at)); }
+bool given(const Document& document, std::string_view at) {
+  return static_cast<bool>(toml::at_path(document.root, at));
+}
 
 }  // namespace palpate::scene

@@ -7,7 +7,8 @@
 
 namespace palpate::scene {
 
-/// A parsed scene with its overrides applied.  Every node knows where it stands: in the file, or in an override.
+/// A parsed scene with its overrides applied.  Every node knows where it stands: in the file, or in an
+/// override.
 struct Document {
   toml::table root;
   std::string path;    ///< as messages show it
@@ -15,7 +16,8 @@ struct Document {
 };
 
 /// Parses `text` and applies the overrides.  @throws Error with the place, for bad TOML and bad overrides
-Document parse_document(const std::string& text, const std::string& path, const std::vector<std::string>& overrides);
+Document parse_document(const std::string& text, const std::string& path,
+                        const std::vector<std::string>& overrides);
 
 /// `FILE:LINE:COLUMN`, or `--set PATH=VALUE` for what an override brought.
 std::string place(const toml::source_region& region);
@@ -26,7 +28,8 @@ std::string place(const Document& document, std::string at);
 /// Whether the scene gives this key.
 bool given(const Document& document, std::string_view at);
 
-/// Sets one value by its dotted path: `body.0.youngs_modulus_pa=1e5`.  @throws Error that begins with the override's text
+/// Sets one value by its dotted path: `body.0.youngs_modulus_pa=1e5`.  @throws Error that begins with the
+/// override's text
 void apply_override(toml::table& root, const std::string& text);
 
 }  // namespace palpate::scene

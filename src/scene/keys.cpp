@@ -22,7 +22,8 @@ const KeyTable<ObstacleSpec>& obstacle_keys() {
 void read_between(const Value& value, ContactSpec& spec) {
   const std::vector<std::string> names = read_texts(value);
   if (names.size() != 2)
-    refuse(place(value.node.source()), value.where, fmt::format("between must name two things, [\"ball\", \"floor\"], not {}", names.size()));
+    refuse(place(value.node.source()), value.where,
+           fmt::format("between must name two things, [\"ball\", \"floor\"], not {}", names.size()));
   spec.first = names[0];
   spec.second = names[1];
 }
@@ -31,11 +32,13 @@ const KeyTable<ContactSpec>& contact_keys() {
   static const KeyTable<ContactSpec> keys = {
       required(Key<ContactSpec>{"between", read_between}),
       text("method", &ContactSpec::method, {"analytic", "gpu"}),
-      number("stiffness_pa_m", &ContactSpec::stiffness_pa_m, positive("10 x Young's modulus / the size of the dent is a start")),
+      number("stiffness_pa_m", &ContactSpec::stiffness_pa_m,
+             positive("10 x Young's modulus / the size of the dent is a start")),
       number("damping_pa_s_m", &ContactSpec::damping_pa_s_m, at_least(0.0)),
       number("hunt_crossley_s_m", &ContactSpec::hunt_crossley_s_m, at_least(0.0)),
       text("law", &ContactSpec::law, {"kelvin_voigt", "hunt_crossley"}),
-      number("onset_width_m", &ContactSpec::onset_width_m, at_least(0.0, "0 lets the pressure set in at once; a tenth of the depth is a smooth onset")),
+      number("onset_width_m", &ContactSpec::onset_width_m,
+             at_least(0.0, "0 lets the pressure set in at once; a tenth of the depth is a smooth onset")),
       number("friction", &ContactSpec::friction, at_least(0.0)),
       number("friction_regularisation_m_s", &ContactSpec::friction_regularisation_m_s, positive()),
       number("candidate_gap_m", &ContactSpec::candidate_gap_m, at_least(0.0, "0 lets the mesh choose")),
@@ -60,7 +63,9 @@ const KeyTable<ToolSpec>& tool_keys() {
       number("radius_m", &ToolSpec::radius_m, positive()),
       table("mesh", &ToolSpec::mesh, mesh_keys()),
       number("mass_kg", &ToolSpec::mass_kg, positive()),
-      vec3("inertia_kg_m2", &ToolSpec::inertia_kg_m2, at_least(0.0, "it is the principal inertia about the centre of mass; [0, 0, 0] is a solid sphere's")),
+      vec3("inertia_kg_m2", &ToolSpec::inertia_kg_m2,
+           at_least(0.0,
+                    "it is the principal inertia about the centre of mass; [0, 0, 0] is a solid sphere's")),
       vec3("position_m", &ToolSpec::position_m),
       vec3("rotation_vector_rad", &ToolSpec::rotation_vector_rad),
       boolean("gravity", &ToolSpec::gravity),
@@ -95,22 +100,27 @@ const KeyTable<CouplingSpec>& exchange_keys() {
 const KeyTable<IntegratorSpec>& integrator_keys() {
   static const KeyTable<IntegratorSpec> keys = {
       text("name", &IntegratorSpec::name),
-      number("rtol", &IntegratorSpec::rtol, {.low = 0.0, .high = 1.0, .low_open = true, .remedy = "1e-3 is a good start"}),
+      number("rtol", &IntegratorSpec::rtol,
+             {.low = 0.0, .high = 1.0, .low_open = true, .remedy = "1e-3 is a good start"}),
       number("atol_q", &IntegratorSpec::atol_q, positive()),
       number("atol_u", &IntegratorSpec::atol_u, positive()),
       number("step_s", &IntegratorSpec::step_s, positive()),
       boolean("fixed_step", &IntegratorSpec::fixed_step),
       integer("factor_kept_steps", &IntegratorSpec::factor_kept_steps, at_least(1)),
-      number("newton_rtol", &IntegratorSpec::newton_rtol, {.low = 0.0, .high = 1.0, .low_open = true, .remedy = "1e-8 is usual"}),
-      number("spectral_radius", &IntegratorSpec::spectral_radius, closed(0.0, 1.0, "0 damps what the step cannot resolve at once, 1 not at all")),
+      number("newton_rtol", &IntegratorSpec::newton_rtol,
+             {.low = 0.0, .high = 1.0, .low_open = true, .remedy = "1e-8 is usual"}),
+      number("spectral_radius", &IntegratorSpec::spectral_radius,
+             closed(0.0, 1.0, "0 damps what the step cannot resolve at once, 1 not at all")),
       text("events", &IntegratorSpec::events, {"error-control", "root-finding"}),
       text("explicit_side", &IntegratorSpec::explicit_side, {"loads", "contact"}),
       text("indefinite", &IntegratorSpec::indefinite, {"project", "lu"}),
-      number("linear_rtol", &IntegratorSpec::linear_rtol, {.low = 0.0, .high = 1.0, .low_open = true, .remedy = "1e-8 is usual"}),
+      number("linear_rtol", &IntegratorSpec::linear_rtol,
+             {.low = 0.0, .high = 1.0, .low_open = true, .remedy = "1e-8 is usual"}),
       integer("max_order", &IntegratorSpec::max_order, closed(0, 12, "0 leaves the order to the method")),
       integer("max_steps", &IntegratorSpec::max_steps, at_least(1)),
       text("linear_solver", &IntegratorSpec::linear_solver),
-      integer("threads", &IntegratorSpec::threads, closed(1, 64, "of linear solvers that can share their work; results do not depend on it")),
+      integer("threads", &IntegratorSpec::threads,
+              closed(1, 64, "of linear solvers that can share their work; results do not depend on it")),
   };
   return keys;
 }
@@ -128,20 +138,24 @@ const KeyTable<RecordSpec>& record_keys() {
 Key<LadderSpec> rungs(const char* name) {
   return {name, [](const Value& value, LadderSpec& spec) {
             const std::string at = place(value.node.source());
-            if (!spec.values.empty()) refuse(at, value.where, fmt::format("{} and {} exclude each other", spec.setting, value.key));
+            if (!spec.values.empty())
+              refuse(at, value.where, fmt::format("{} and {} exclude each other", spec.setting, value.key));
             spec.setting = value.key;
             spec.values = read_numbers(value, positive());
-            if (spec.values.empty()) refuse(at, value.where, fmt::format("{} must list at least one number", value.key));
+            if (spec.values.empty())
+              refuse(at, value.where, fmt::format("{} must list at least one number", value.key));
             for (std::size_t i = 1; i < spec.values.size(); ++i)
               if (spec.values[i] >= spec.values[i - 1])
-                refuse(at, value.where, fmt::format("{} must fall from the coarsest to the finest, but {} comes after {}", value.key,
-                                                    spec.values[i], spec.values[i - 1]));
+                refuse(at, value.where,
+                       fmt::format("{} must fall from the coarsest to the finest, but {} comes after {}",
+                                   value.key, spec.values[i], spec.values[i - 1]));
           }};
 }
 
 const KeyTable<LadderSpec>& ladder_keys() {
-  static const KeyTable<LadderSpec> keys = {required(text("integrator", &LadderSpec::integrator)), text("label", &LadderSpec::label),
-                                              texts("set", &LadderSpec::set), rungs("rtol"), rungs("step_s")};
+  static const KeyTable<LadderSpec> keys = {required(text("integrator", &LadderSpec::integrator)),
+                                            text("label", &LadderSpec::label), texts("set", &LadderSpec::set),
+                                            rungs("rtol"), rungs("step_s")};
   return keys;
 }
 
@@ -150,7 +164,9 @@ void read_methods(const Value& value, CompareSpec& spec) {
   spec.contact_methods = read_texts(value);
   for (const std::string& method : spec.contact_methods)
     if (std::find(known.begin(), known.end(), method) == known.end())
-      refuse(place(value.node.source()), value.where, fmt::format("contact_methods holds the unknown method \"{}\"{}", method, suggestion(method, known)));
+      refuse(place(value.node.source()), value.where,
+             fmt::format("contact_methods holds the unknown method \"{}\"{}", method,
+                         suggestion(method, known)));
 }
 
 const KeyTable<CompareSpec>& compare_keys() {
@@ -159,7 +175,8 @@ const KeyTable<CompareSpec>& compare_keys() {
       numbers("exchange_periods_s", &CompareSpec::exchange_periods_s, positive()),
       numbers("refresh_periods_s", &CompareSpec::refresh_periods_s, positive()),
       text("reference", &CompareSpec::reference),
-      number("reference_rtol", &CompareSpec::reference_rtol, closed(1e-13, 1e-2, "it must be tighter than every rung; 1e-9 is a good start")),
+      number("reference_rtol", &CompareSpec::reference_rtol,
+             closed(1e-13, 1e-2, "it must be tighter than every rung; 1e-9 is a good start")),
       text("reference_check", &CompareSpec::reference_check),
       number("reference_check_rtol", &CompareSpec::reference_check_rtol, closed(1e-13, 1e-2)),
       Key<CompareSpec>{"contact_methods", read_methods},

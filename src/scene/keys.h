@@ -9,6 +9,7 @@ const KeyTable<Description>& description_keys();  ///< the file itself
 const KeyTable<SoftBodySpec>& body_keys();        ///< [[body]]
 const KeyTable<BoneSpec>& bone_keys();            ///< [[bone]]
 const KeyTable<MeshSpec>& mesh_keys();            ///< [body.mesh], [tool.mesh]
-const KeyTable<KeyframeSpec>& keyframe_keys();    ///< [[device.keyframe]], [[body.attachment.keyframe]], [[body.skeleton.joint.keyframe]], [[bone.keyframe]]
+/// [[device.keyframe]], [[body.attachment.keyframe]], [[body.skeleton.joint.keyframe]], [[bone.keyframe]]
+const KeyTable<KeyframeSpec>& keyframe_keys();
 
 }  // namespace palpate::scene

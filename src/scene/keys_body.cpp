@@ -71,7 +71,8 @@ const KeyTable<SkeletonSpec>& skeleton_keys() {
   static const KeyTable<SkeletonSpec> keys = {
       text("root", &SkeletonSpec::root, {"weld", "ball", "free"}),
       text("joints", &SkeletonSpec::others, {"weld", "ball"}),
-      number("density_kg_m3", &SkeletonSpec::density_kg_m3, positive("bone has about 1800, 800 more than the flesh that its nodes weigh")),
+      number("density_kg_m3", &SkeletonSpec::density_kg_m3,
+             positive("bone has about 1800, 800 more than the flesh that its nodes weigh")),
       number("stiffness_n_m_rad", &SkeletonSpec::stiffness_n_m_rad, at_least(0.0)),
       number("damping_n_m_s_rad", &SkeletonSpec::damping_n_m_s_rad, at_least(0.0)),
       tables("joint", &SkeletonSpec::joints, joint_keys()),
@@ -89,7 +90,9 @@ const KeyTable<MeshSpec>& mesh_keys() {
       number("radius_m", &MeshSpec::radius_m, positive()),
       number("length_m", &MeshSpec::length_m, positive()),
       number("element_size_m", &MeshSpec::element_size_m, positive()),
-      number("grading", &MeshSpec::grading, closed(0.5, 32.0, "1 is uniform, 2 makes elements in the middle twice as large as at the surface")),
+      number(
+          "grading", &MeshSpec::grading,
+          closed(0.5, 32.0, "1 is uniform, 2 makes elements in the middle twice as large as at the surface")),
       number("scale", &MeshSpec::scale, positive("0.001 turns a file in millimetres into metres")),
   };
   return keys;

@@ -15,20 +15,23 @@ constexpr std::uintmax_t kLargestSceneBytes = 16u << 20;  // a scene names meshe
 std::string read_text_file(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (error || !std::filesystem::exists(status)) fail("{}: no such scene file; `palpate list scenes` shows those that come with palpate", path);
+  if (error || !std::filesystem::exists(status))
+    fail("{}: no such scene file; `palpate list scenes` shows those that come with palpate", path);
   if (std::filesystem::is_directory(status)) fail("{}: is a folder; name a scene file (.toml) in it", path);
   std::ifstream in(path, std::ios::binary);
   if (!in) fail("{}: cannot be opened; check its permissions", path);
   std::string text;
   for (char block[65536]; in.read(block, sizeof block) || in.gcount() > 0;) {
     text.append(block, static_cast<std::size_t>(in.gcount()));
-    if (text.size() > kLargestSceneBytes) fail("{}: larger than {} MiB; is this a scene?", path, kLargestSceneBytes >> 20);
+    if (text.size() > kLargestSceneBytes)
+      fail("{}: larger than {} MiB; is this a scene?", path, kLargestSceneBytes >> 20);
   }
   return text;
 }
 }  // namespace
 
-Description parse(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+Description parse(const std::string& text, const std::string& path,
+                  const std::vector<std::string>& overrides) {
   const Document document = parse_document(text, path, overrides);
   Description description;
   read_table(document.root, "", description_keys(), description);
@@ -38,7 +41,9 @@ Description parse(const std::string& text, const std::string& path, const std::v
   return description;
 }
 
-Description load(const std::string& path, const std::vector<std::string>& overrides) { return parse(read_text_file(path), path, overrides); }
+Description load(const std::string& path, const std::vector<std::string>& overrides) {
+  return parse(read_text_file(path), path, overrides);
+}
 
 std::vector<std::string> known_keys() { return dotted_names(description_keys()); }
 

@@ -23,29 +23,58 @@ void add_body_needs(const Description& d, const std::string& linear_solver, std:
   }
   const bool any = !d.bodies.empty();
   const bool weight = any && !d.gravity_m_s2.isZero(0.0);
-  out.push_back({"fem", any, any ? fmt::format("{} soft {}", d.bodies.size(), d.bodies.size() == 1 ? "body" : "bodies") : "no [[body]]"});
-  out.push_back({"nodal dilatation", nodal > 0, nodal > 0 ? fmt::format("{} [[body]] with volumetric = \"nodal\"", nodal) : "no [[body]] with volumetric = \"nodal\""});
+  out.push_back({"fem", any,
+                 any ? fmt::format("{} soft {}", d.bodies.size(), d.bodies.size() == 1 ? "body" : "bodies")
+                     : "no [[body]]"});
+  out.push_back({"nodal dilatation", nodal > 0,
+                 nodal > 0 ? fmt::format("{} [[body]] with volumetric = \"nodal\"", nodal)
+                           : "no [[body]] with volumetric = \"nodal\""});
   const int skins = count_if(d.bodies, [](const auto& b) { return b.skin; });
-  out.push_back({"skin", skins > 0, skins > 0 ? fmt::format("{} [[body]] with skin = true", skins) : "no [[body]] with skin = true"});
+  out.push_back(
+      {"skin", skins > 0,
+       skins > 0 ? fmt::format("{} [[body]] with skin = true", skins) : "no [[body]] with skin = true"});
   const int proxies = count_if(d.bodies, [](const auto& b) { return b.proxies; });
-  out.push_back({"proxies", proxies > 0, proxies > 0 ? fmt::format("{} [[body]] with proxies = true: contact in regions", proxies) : "no [[body]] with proxies = true"});
-  out.push_back({"gravity", weight, weight ? "gravity_m_s2 is not zero" : "gravity_m_s2 is zero, or there is no body"});
-  out.push_back({"fixed nodes", fixed > 0, fixed > 0 ? fmt::format("{} [[body.attachment]] without keyframes", fixed) : "no [[body.attachment]] without keyframes"});
-  out.push_back({"driven nodes", driven > 0, driven > 0 ? fmt::format("{} [[body.attachment]] with keyframes", driven) : "no [[body.attachment.keyframe]]"});
-  const int told = count_if(d.bones, [](const auto& b) { return b.fixed || !b.keyframes.empty(); }), free = static_cast<int>(d.bones.size()) - told;
-  out.push_back({"carried nodes", carried > 0, carried > 0 ? fmt::format("{} [[body.attachment]] to a bone or the tool", carried) : "no [[body.attachment]] with to"});
-  out.push_back({"rigid bones", free > 0, free > 0 ? fmt::format("{} free [[bone]]: rigid blocks beside the nodes", free) : told > 0 ? "every [[bone]] is fixed or has keyframes: a function of time" : "no [[bone]]"});
+  out.push_back({"proxies", proxies > 0,
+                 proxies > 0 ? fmt::format("{} [[body]] with proxies = true: contact in regions", proxies)
+                             : "no [[body]] with proxies = true"});
+  out.push_back(
+      {"gravity", weight, weight ? "gravity_m_s2 is not zero" : "gravity_m_s2 is zero, or there is no body"});
+  out.push_back({"fixed nodes", fixed > 0,
+                 fixed > 0 ? fmt::format("{} [[body.attachment]] without keyframes", fixed)
+                           : "no [[body.attachment]] without keyframes"});
+  out.push_back({"driven nodes", driven > 0,
+                 driven > 0 ? fmt::format("{} [[body.attachment]] with keyframes", driven)
+                            : "no [[body.attachment.keyframe]]"});
+  const int told = count_if(d.bones, [](const auto&b) { return b.fixed || !b.keyframes.empty(); }),
+            free = static_cast<int>(d.bones.size()) - told;
+  out.push_back({"carried nodes", carried > 0,
+                 carried > 0 ? fmt::format("{} [[body.attachment]] to a bone or the tool", carried)
+                             : "no [[body.attachment]] with to"});
+  out.push_back({"rigid bones", free > 0,
+                 free > 0   ? fmt::format("{} free [[bone]]: rigid blocks beside the nodes", free)
+                 : told > 0 ? "every [[bone]] is fixed or has keyframes: a function of time"
+                            : "no [[bone]]"});
   const int skeletons = count_if(d.bodies, [](const auto& b) { return b.skeleton.has_value(); });
-  out.push_back({"skeleton", skeletons > 0, skeletons > 0 ? fmt::format("{} [body.skeleton]: bones of the model file; those on joints by Simbody", skeletons) : "no [body.skeleton]"});
+  out.push_back(
+      {"skeleton", skeletons > 0,
+       skeletons > 0
+           ? fmt::format("{} [body.skeleton]: bones of the model file; those on joints by Simbody", skeletons)
+           : "no [body.skeleton]"});
   int regions = 0;
   for (const auto& body : d.bodies) regions += static_cast<int>(body.regions.size());
-  out.push_back({"materials by region", regions > 0, regions > 0 ? fmt::format("{} [[body.region]]", regions) : "no [[body.region]]: each body is of one material"});
+  out.push_back({"materials by region", regions > 0,
+                 regions > 0 ? fmt::format("{} [[body.region]]", regions)
+                             : "no [[body.region]]: each body is of one material"});
   int changes = 0;
   for (const auto& body : d.bodies) changes += static_cast<int>(body.changes.size());
-  out.push_back({"material changes", changes > 0, changes > 0 ? fmt::format("{} [[body.change]]", changes) : "no [[body.change]]"});
-  out.push_back({"loads", loads > 0, loads > 0 ? fmt::format("{} [[body.load]]", loads) : "no [[body.load]]"});
+  out.push_back({"material changes", changes > 0,
+                 changes > 0 ? fmt::format("{} [[body.change]]", changes) : "no [[body.change]]"});
+  out.push_back(
+      {"loads", loads > 0, loads > 0 ? fmt::format("{} [[body.load]]", loads) : "no [[body.load]]"});
   const bool implicit = any && !linear_solver.empty();
-  const std::string why = !any ? "no [[body]]" : fmt::format("integrator \"{}\" is {}", d.integrator.name, implicit ? "implicit" : "explicit");
+  const std::string why =
+      !any ? "no [[body]]"
+           : fmt::format("integrator \"{}\" is {}", d.integrator.name, implicit ? "implicit" : "explicit");
   out.push_back({"tangent", implicit, why});
   out.push_back({"linear solver", implicit, implicit ? fmt::format("{}; \"{}\"", why, linear_solver) : why});
 }
@@ -57,38 +86,73 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
   const int own = count_if(d.contacts, [](const auto& c) { return c.first == c.second; });
   const std::string no_gpu = any ? "every contact has an analytic gap" : "no [[contact]]";
   out.push_back({"contact", any, any ? fmt::format("{} [[contact]]", d.contacts.size()) : "no [[contact]]"});
-  out.push_back({"friction", rubbing > 0, rubbing > 0 ? fmt::format("{} [[contact]] with friction > 0", rubbing) : "no contact with friction > 0"});
-  out.push_back({"contact between bones", own > 0, own > 0 ? fmt::format("{} [[contact]] of a body with itself", own) : any ? "every [[contact]] names two" : "no [[contact]]"});
-  out.push_back({"contact plane", gpu > 0, gpu > 0 ? fmt::format("{} contact with method \"gpu\" needs its plane", gpu) : no_gpu});
-  out.push_back({"broad phase", gpu > 1, gpu > 1 ? fmt::format("{} pairs in image space", gpu) : "fewer than two pairs in image space"});
-  out.push_back({"gl", gpu > 0, gpu > 0 ? "method \"gpu\" rasterises" : no_gpu + "; pictures only on request"});
+  out.push_back({"friction", rubbing > 0,
+                 rubbing > 0 ? fmt::format("{} [[contact]] with friction > 0", rubbing)
+                             : "no contact with friction > 0"});
+  out.push_back({"contact between bones", own > 0,
+                 own > 0 ? fmt::format("{} [[contact]] of a body with itself", own)
+                 : any   ? "every [[contact]] names two"
+                         : "no [[contact]]"});
+  out.push_back({"contact plane", gpu > 0,
+                 gpu > 0 ? fmt::format("{} contact with method \"gpu\" needs its plane", gpu) : no_gpu});
+  out.push_back(
+      {"broad phase", gpu > 1,
+       gpu > 1 ? fmt::format("{} pairs in image space", gpu) : "fewer than two pairs in image space"});
+  out.push_back(
+      {"gl", gpu > 0, gpu > 0 ? "method \"gpu\" rasterises" : no_gpu + "; pictures only on request"});
 }
 
 void add_haptic_needs(const Description& d, std::vector<Need>& out) {
   const bool tool = d.tool.has_value();
-  out.push_back({"tool", tool, tool ? fmt::format("[tool], {} under a virtual coupling, {}", d.tool->shape, d.coupling.scheme) : "no [tool]"});
-  out.push_back({"device", d.device.has_value(), d.device ? fmt::format("[device], type \"{}\"", d.device->type) : "no [device]"});
-  const bool monolithic = tool && d.coupling.scheme == "monolithic", two_rates = tool && !monolithic && !d.bodies.empty();
+  out.push_back(
+      {"tool", tool,
+       tool ? fmt::format("[tool], {} under a virtual coupling, {}", d.tool->shape, d.coupling.scheme)
+            : "no [tool]"});
+  out.push_back({"device", d.device.has_value(),
+                 d.device ? fmt::format("[device], type \"{}\"", d.device->type) : "no [device]"});
+  const bool monolithic = tool && d.coupling.scheme == "monolithic",
+             two_rates = tool && !monolithic && !d.bodies.empty();
   const std::string one_system = "scheme \"monolithic\": tool and bodies are one system of one integrator";
-  out.push_back({"exchange", two_rates, two_rates ? fmt::format("tool ticks every {} s, exchange every {} s", d.tool->tick_s, d.coupling.exchange_period_s)
-                                        : monolithic ? one_system : "one rate only"});
+  out.push_back({"exchange", two_rates,
+                 two_rates    ? fmt::format("tool ticks every {} s, exchange every {} s", d.tool->tick_s,
+                                            d.coupling.exchange_period_s)
+                 : monolithic ? one_system
+                              : "one rate only"});
   const bool touched = count_if(d.contacts, [](const auto& c) { return c.second == "tool"; }) > 0;
   const bool condensed = two_rates && touched && d.coupling.linearisation == "condensed";
-  out.push_back({"condenser", condensed, condensed ? "linearisation \"condensed\": the bodies' step matrix is factored once an exchange"
-                                         : monolithic ? one_system : !touched ? "no contact with a tool" : "linearisation \"frozen\""});
+  out.push_back({"condenser", condensed,
+                 condensed
+                     ? "linearisation \"condensed\": the bodies' step matrix is factored once an exchange"
+                 : monolithic ? one_system
+                 : !touched   ? "no contact with a tool"
+                              : "linearisation \"frozen\""});
   out.push_back({"exchange thread", false, "time is virtual: everything takes turns in one thread"});
 }
 
 void add_output_needs(const Description& d, std::vector<Need>& out) {
   const bool states = d.record && d.record->states, forces = d.record && d.record->forces && d.tool;
   const std::string none = d.record ? "" : "no [record]";
-  out.push_back({"run file", states, states ? fmt::format("[record] states, every {} s", d.record->state_period_s) : none.empty() ? "[record] states = false" : none});
-  const bool any_bones = !d.bones.empty() || count_if(d.bodies, [](const auto& b) { return b.skeleton.has_value(); }) > 0;
+  out.push_back({"run file", states,
+                 states         ? fmt::format("[record] states, every {} s", d.record->state_period_s)
+                 : none.empty() ? "[record] states = false"
+                                : none});
+  const bool any_bones =
+      !d.bones.empty() || count_if(d.bodies, [](const auto& b) { return b.skeleton.has_value(); }) > 0;
   const bool bones = states && any_bones;
-  out.push_back({"bone file", bones, bones ? fmt::format("[record] states, {} [[bone]] and the skeletons' own", d.bones.size()) : !none.empty() ? none : !any_bones ? "no [[bone]]" : "[record] states = false"});
-  out.push_back({"force file", forces, forces ? "[record] forces, every tick" : !none.empty() ? none : d.tool ? "[record] forces = false" : "no [tool]"});
+  out.push_back({"bone file", bones,
+                 bones ? fmt::format("[record] states, {} [[bone]] and the skeletons' own", d.bones.size())
+                 : !none.empty() ? none
+                 : !any_bones    ? "no [[bone]]"
+                                 : "[record] states = false"});
+  out.push_back({"force file", forces,
+                 forces          ? "[record] forces, every tick"
+                 : !none.empty() ? none
+                 : d.tool        ? "[record] forces = false"
+                                 : "no [tool]"});
   const std::size_t ladders = d.compare.ladders.size();
-  out.push_back({"compare", ladders > 0, ladders > 0 ? fmt::format("{} [[compare.ladder]], for `palpate compare` only", ladders) : "no [[compare.ladder]]"});
+  out.push_back({"compare", ladders > 0,
+                 ladders > 0 ? fmt::format("{} [[compare.ladder]], for `palpate compare` only", ladders)
+                             : "no [[compare.ladder]]"});
 }
 
 }  // namespace

@@ -16,18 +16,23 @@ std::string trimmed(std::string_view text) {
 std::vector<std::string> split(const std::string& path) {
   std::vector<std::string> parts(1);
   for (const char c : path) {
-    if (c == '.') parts.emplace_back();
-    else parts.back() += c;
+    if (c == '.')
+      parts.emplace_back();
+    else
+      parts.back() += c;
   }
   return parts;
 }
 
 /// A name or a path: nothing in it has a meaning to TOML outside quotes.
 bool is_bare_word(const std::string& text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) || std::string_view("_-./~").find(static_cast<char>(c)) != std::string_view::npos; });
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) || std::string_view("_-./~").find(static_cast<char>(c)) != std::string_view::npos;
+  });
 }
 
-/// The value after `=`.  A bare word or path is a string, because a shell has eaten the quotes: integrator.name=cvode-bdf.
+/// The value after `=`.  A bare word or path is a string, because a shell has eaten the quotes:
+/// integrator.name=cvode-bdf.
 toml::table parse_value(const std::string& value, const std::string& from) {
   try {
     toml::table parsed = toml::parse("value = " + value, from);
@@ -35,7 +40,8 @@ toml::table parse_value(const std::string& value, const std::string& from) {
   } catch (const toml::parse_error&) {
     if (is_bare_word(value)) return toml::parse("value = \"" + value + "\"", from);
   }
-  fail("{}: `{}` is not one TOML value; write a number, true, false, a word, [1, 2, 3] or \"text\"", from, value);
+  fail("{}: `{}` is not one TOML value; write a number, true, false, a word, [1, 2, 3] or \"text\"", from,
+       value);
 }
 
 std::size_t array_index(const toml::array& array, const std::string& part, const std::string& from) {
@@ -52,15 +58,19 @@ std::vector<std::string> keys_of(const toml::table& table) {
   return keys;
 }
 
-/// The node called `part` inside `node`; a missing table is made (the reader refuses it later if no such table exists).
-toml::node& descend(toml::node& node, const std::string& part, const std::string& next, const toml::source_region& region) {
+/// The node called `part` inside `node`; a missing table is made (the reader refuses it later if no such
+/// table exists).
+toml::node& descend(toml::node& node, const std::string& part, const std::string& next,
+                    const toml::source_region& region) {
   const std::string& from = *region.path;
   if (toml::array* array = node.as_array()) return *array->get(array_index(*array, part, from));
   toml::table* table = node.as_table();
   if (!table) fail("{}: \"{}\" stands inside a plain value", from, part);
   if (!table->contains(part)) {
-    const bool index_follows = !next.empty() && std::all_of(next.begin(), next.end(), [](unsigned char c) { return std::isdigit(c); });
-    if (part.empty() || index_follows) fail("{}: the scene has no \"{}\"{}", from, part, suggestion(part, keys_of(*table)));
+    const bool index_follows = !next.empty() && std::all_of(next.begin(), next.end(),
+                                                            [](unsigned char c) { return std::isdigit(c); });
+    if (part.empty() || index_follows)
+      fail("{}: the scene has no \"{}\"{}", from, part, suggestion(part, keys_of(*table)));
     table->insert(toml::key(part, region), toml::table{});
   }
   return *table->get(part);
@@ -86,7 +96,8 @@ void assign(toml::node& node, const std::string& part, toml::node& value, const 
 void apply_override(toml::table& root, const std::string& text) {
   const std::string from = "--set " + text;
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || trimmed(text.substr(0, equals)).empty() || trimmed(text.substr(equals + 1)).empty())
+  if (equals == std::string::npos || trimmed(text.substr(0, equals)).empty() ||
+      trimmed(text.substr(equals + 1)).empty())
     fail("{}: must be PATH=VALUE, as in body.0.youngs_modulus_pa=1e5", from);
   const std::vector<std::string> parts = split(trimmed(text.substr(0, equals)));
   toml::table parsed = parse_value(trimmed(text.substr(equals + 1)), from);

@@ -7,7 +7,8 @@ namespace {
 
 /// A node as messages show it, near to how a person wrote it.
 std::string shown(const toml::node& node) {
-  if (const auto* text = node.as_string()) return text->get().size() <= 60 ? '"' + text->get() + '"' : "a longer string";
+  if (const auto* text = node.as_string())
+    return text->get().size() <= 60 ? '"' + text->get() + '"' : "a longer string";
   if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
   if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
   if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
@@ -15,13 +16,16 @@ std::string shown(const toml::node& node) {
   if (!array) return node.is_table() ? "a table" : "a date or time";
   if (array->size() > 6) return fmt::format("a list of {}", array->size());
   std::string text;
-  for (const toml::node& one : *array) text += (text.empty() ? "" : ", ") + (one.is_array() ? std::string("[...]") : shown(one));
+  for (const toml::node& one : *array)
+    text += (text.empty() ? "" : ", ") + (one.is_array() ? std::string("[...]") : shown(one));
   return "[" + text + "]";
 }
 
-/// `part` is the value itself, or the element of it that is at fault: the message shows the whole value, at the part's place.
+/// `part` is the value itself, or the element of it that is at fault: the message shows the whole value, at
+/// the part's place.
 [[noreturn]] void refuse_value(const Value& v, const std::string& must, const toml::node* part = nullptr) {
-  refuse(place((part ? *part : v.node).source()), v.where, fmt::format("{} = {} {}", v.key, shown(v.node), must));
+  refuse(place((part ? *part : v.node).source()), v.where,
+         fmt::format("{} = {} {}", v.key, shown(v.node), must));
 }
 
 std::string bounds(const Range& r) {
@@ -29,17 +33,22 @@ std::string bounds(const Range& r) {
     if (r.low == 0.0 && r.low_open) return "must be positive";
     return r.low == 0.0 ? "must not be negative" : fmt::format("must be at least {}", r.low);
   }
-  return fmt::format("must lie in {}{}, {}{}", r.low_open ? '(' : '[', r.low, r.high, r.high_open ? ')' : ']');
+  return fmt::format("must lie in {}{}, {}{}", r.low_open ? '(' : '[', r.low, r.high,
+                     r.high_open ? ')' : ']');
 }
 
-bool inside(double x, const Range& r) { return (r.low_open ? x > r.low : x >= r.low) && (r.high_open ? x < r.high : x <= r.high); }
+bool inside(double x, const Range& r) {
+  return (r.low_open ? x > r.low : x >= r.low) && (r.high_open ? x < r.high : x <= r.high);
+}
 
-/// One finite number within a range.  Whole numbers are numbers too; NaN and infinity, which TOML can spell, are not.
+/// One finite number within a range.  Whole numbers are numbers too; NaN and infinity, which TOML can spell,
+/// are not.
 double number_in(const Value& v, const toml::node& node, const Range& range) {
   if (!node.is_number()) refuse_value(v, "must be a number", &node);
   const double x = *node.value<double>();
   if (!std::isfinite(x)) refuse_value(v, "must be a finite number", &node);
-  if (!inside(x, range)) refuse_value(v, bounds(range) + (range.remedy.empty() ? "" : "; " + range.remedy), &node);
+  if (!inside(x, range))
+    refuse_value(v, bounds(range) + (range.remedy.empty() ? "" : "; " + range.remedy), &node);
   return x;
 }
 
@@ -52,7 +61,9 @@ void refuse(const std::string& place, const std::string& where, const std::strin
 Range any() { return {}; }
 Range positive(std::string remedy) { return {.low = 0.0, .low_open = true, .remedy = std::move(remedy)}; }
 Range at_least(double low, std::string remedy) { return {.low = low, .remedy = std::move(remedy)}; }
-Range closed(double low, double high, std::string remedy) { return {.low = low, .high = high, .remedy = std::move(remedy)}; }
+Range closed(double low, double high, std::string remedy) {
+  return {.low = low, .high = high, .remedy = std::move(remedy)};
+}
 Range open(double low, double high, std::string remedy) {
   return {.low = low, .high = high, .low_open = true, .high_open = true, .remedy = std::move(remedy)};
 }
@@ -62,7 +73,8 @@ double read_number(const Value& v, const Range& range) { return number_in(v, v.n
 int read_integer(const Value& v, const Range& range) {
   if (!v.node.is_integer()) refuse_value(v, "must be a whole number");
   const double x = number_in(v, v.node, range);
-  if (std::abs(x) > std::numeric_limits<int>::max()) refuse_value(v, fmt::format("must not exceed {}", std::numeric_limits<int>::max()));
+  if (std::abs(x) > std::numeric_limits<int>::max())
+    refuse_value(v, fmt::format("must not exceed {}", std::numeric_limits<int>::max()));
   return static_cast<int>(x);
 }
 
@@ -108,24 +120,32 @@ std::vector<std::string> read_texts(const Value& v) {
 const toml::table& read_table_node(const Value& v) {
   if (const toml::table* found = v.node.as_table()) return *found;
   const bool many = v.node.is_array_of_tables();
-  refuse(place(v.node.source()), v.where, fmt::format("{} must be one table: write [{}]{}", v.key, v.key, many ? " once, with single brackets" : ""));
+  refuse(place(v.node.source()), v.where,
+         fmt::format("{} must be one table: write [{}]{}", v.key, v.key,
+                     many ? " once, with single brackets" : ""));
 }
 
 std::vector<const toml::table*> read_table_array(const Value& v) {
   if (!v.node.is_array_of_tables())
-    refuse(place(v.node.source()), v.where, fmt::format("{} must be a list of tables: write [[{}]] with double brackets", v.key, v.key));
+    refuse(place(v.node.source()), v.where,
+           fmt::format("{} must be a list of tables: write [[{}]] with double brackets", v.key, v.key));
   std::vector<const toml::table*> out;
   for (const toml::node& node : *v.node.as_array()) out.push_back(node.as_table());
   return out;
 }
 
-std::string label(const std::string& where, const std::string& key, const toml::table& table, std::optional<std::size_t> index) {
+std::string label(const std::string& where, const std::string& key, const toml::table& table,
+                  std::optional<std::size_t> index) {
   std::string own = key;
   const auto name = index ? table["name"].value<std::string>() : std::nullopt;
-  const auto first = table["between"][0].value<std::string>(), second = table["between"][1].value<std::string>();
-  if (name && !name->empty()) own = fmt::format("{} \"{}\"", key, *name);
-  else if (index && first && second) own = fmt::format("{} between \"{}\" and \"{}\"", key, *first, *second);
-  else if (index) own = fmt::format("{}[{}]", key, *index);
+  const auto first = table["between"][0].value<std::string>(),
+             second = table["between"][1].value<std::string>();
+  if (name && !name->empty())
+    own = fmt::format("{} \"{}\"", key, *name);
+  else if (index && first && second)
+    own = fmt::format("{} between \"{}\" and \"{}\"", key, *first, *second);
+  else if (index)
+    own = fmt::format("{}[{}]", key, *index);
   return where.empty() ? own : where + ": " + own;
 }
 
@@ -133,7 +153,9 @@ void refuse_unknown(const toml::table& table, const std::string& where, const Na
   for (const auto& [key, node] : table) {
     bool found = false;
     for (const std::string& name : known) found = found || name == key.str();
-    if (!found) refuse(place(key.source()), where, fmt::format("unknown key \"{}\"{}", key.str(), suggestion(key.str(), known)));
+    if (!found)
+      refuse(place(key.source()), where,
+             fmt::format("unknown key \"{}\"{}", key.str(), suggestion(key.str(), known)));
   }
 }
 

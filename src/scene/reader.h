@@ -11,8 +11,9 @@
 #include "palpate/core/types.h"
 #include "scene/document.h"
 
-/// Reads TOML tables into plain specs by tables of keys.  A key table says everything about a scene table: the names that may stand in
-/// it, their types, ranges and whether they must be there; what is not in it is refused with the nearest name that is.
+/// Reads TOML tables into plain specs by tables of keys.  A key table says everything about a scene table:
+/// the names that may stand in it, their types, ranges and whether they must be there; what is not in it is
+/// refused with the nearest name that is.
 namespace palpate::scene {
 
 /// A value on its way into a spec, and how messages speak of it.
@@ -51,7 +52,8 @@ const toml::table& read_table_node(const Value& value);
 std::vector<const toml::table*> read_table_array(const Value& value);
 
 /// `body "ball"`, `contact between "ball" and "floor"`, `device: keyframe[2]`: how messages speak of a table.
-std::string label(const std::string& where, const std::string& key, const toml::table& table, std::optional<std::size_t> index);
+std::string label(const std::string& where, const std::string& key, const toml::table& table,
+                  std::optional<std::size_t> index);
 
 void refuse_unknown(const toml::table& table, const std::string& where, const Names& known);
 void refuse_missing(const toml::table& table, const std::string& where, const std::string& key);
@@ -138,34 +140,43 @@ Key<Spec> texts(const char* name, std::vector<std::string> Spec::*member) {
 /// [name] whose keys go into a spec of its own.
 template <class Spec, class Sub>
 Key<Spec> table(const char* name, Sub Spec::*member, const KeyTable<Sub>& keys) {
-  return {name, [member, &keys](const Value& v, Spec& spec) {
+  return {name,
+          [member, &keys](const Value& v, Spec& spec) {
             read_table(read_table_node(v), label(v.where, v.key, read_table_node(v), {}), keys, spec.*member);
-          }, dotted_names(keys)};
+          },
+          dotted_names(keys)};
 }
 template <class Spec, class Sub>
 Key<Spec> table(const char* name, std::optional<Sub> Spec::*member, const KeyTable<Sub>& keys) {
-  return {name, [member, &keys](const Value& v, Spec& spec) {
-            read_table(read_table_node(v), label(v.where, v.key, read_table_node(v), {}), keys, (spec.*member).emplace());
-          }, dotted_names(keys)};
+  return {name,
+          [member, &keys](const Value& v, Spec& spec) {
+            read_table(read_table_node(v), label(v.where, v.key, read_table_node(v), {}), keys,
+                       (spec.*member).emplace());
+          },
+          dotted_names(keys)};
 }
 
 /// [name] whose keys go into the enclosing spec.
 template <class Spec>
 Key<Spec> group(const char* name, const KeyTable<Spec>& keys) {
-  return {name, [&keys](const Value& v, Spec& spec) {
+  return {name,
+          [&keys](const Value& v, Spec& spec) {
             read_table(read_table_node(v), label(v.where, v.key, read_table_node(v), {}), keys, spec);
-          }, dotted_names(keys)};
+          },
+          dotted_names(keys)};
 }
 
 /// [[name]], one spec a table.
 template <class Spec, class Sub>
 Key<Spec> tables(const char* name, std::vector<Sub> Spec::*member, const KeyTable<Sub>& keys) {
-  return {name, [member, &keys](const Value& v, Spec& spec) {
+  return {name,
+          [member, &keys](const Value& v, Spec& spec) {
             for (const toml::table* one : read_table_array(v)) {
               Sub& sub = (spec.*member).emplace_back();
               read_table(*one, label(v.where, v.key, *one, (spec.*member).size() - 1), keys, sub);
             }
-          }, dotted_names(keys)};
+          },
+          dotted_names(keys)};
 }
 
 }  // namespace palpate::scene

@@ -20,11 +20,14 @@ TriMesh with_mirror_image(const TriMesh& half) {
   whole.vertices.resize(3, next);
   whole.vertices.leftCols(n) = half.vertices;
   for (int v = 0; v < n; ++v)
-    if (image[static_cast<std::size_t>(v)] >= n) whole.vertices.col(image[static_cast<std::size_t>(v)]) = Vec3(-half.vertices(0, v), half.vertices(1, v), half.vertices(2, v));
+    if (image[static_cast<std::size_t>(v)] >= n)
+      whole.vertices.col(image[static_cast<std::size_t>(v)]) =
+          Vec3(-half.vertices(0, v), half.vertices(1, v), half.vertices(2, v));
   whole.faces.resize(3, 2 * faces);
   whole.faces.leftCols(faces) = half.faces;
   for (int f = 0; f < faces; ++f)
-    for (int k = 0; k < 3; ++k) whole.faces(k, faces + f) = image[static_cast<std::size_t>(half.faces(2 - k, f))];
+    for (int k = 0; k < 3; ++k)
+      whole.faces(k, faces + f) = image[static_cast<std::size_t>(half.faces(2 - k, f))];
   return whole;
 }
 

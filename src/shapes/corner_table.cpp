@@ -10,7 +10,9 @@
 namespace palpate::shapes {
 namespace {
 
-std::uint64_t edge(int a, int b) { return static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b); }
+std::uint64_t edge(int a, int b) {
+  return static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b);
+}
 
 }  // namespace
 
@@ -28,7 +30,8 @@ CornerTable::CornerTable(const Faces& faces, int vertices) {
   for (std::size_t i = 0; i + 1 < halves.size(); ++i) {
     if (halves[i].first != halves[i + 1].first) continue;
     const int h = halves[i].second, t = halves[i + 1].second;
-    PALPATE_CHECK(twin[h] < 0 && from(h) == to(t), "edge {} {} is in more than two faces, or twice the same way round", from(h), to(h));
+    PALPATE_CHECK(twin[h] < 0 && from(h) == to(t),
+                  "edge {} {} is in more than two faces, or twice the same way round", from(h), to(h));
     join(h, t);
   }
   std::unordered_map<int, int> rim;  // from a vertex along the rim, against the faces
@@ -79,7 +82,8 @@ int CornerTable::valence(int v) const {
 // Faces (a, b, c) and (b, a, d) on the edge h = ab become (c, a, d) and (d, b, c).
 void CornerTable::flip(int h) {
   const int t = twin[h], a = from(h), b = to(h), c = opposite(h), d = opposite(t);
-  const int bc = twin[next(h)], ca = twin[previous(h)], ad = twin[next(t)], db = twin[previous(t)], f = h / 3, g = t / 3;
+  const int bc = twin[next(h)], ca = twin[previous(h)], ad = twin[next(t)], db = twin[previous(t)], f = h / 3,
+            g = t / 3;
   face(f, c, a, d);
   face(g, d, b, c);
   join(3 * f, ca), join(3 * f + 1, ad), join(3 * f + 2, 3 * g + 2), join(3 * g, db), join(3 * g + 1, bc);
@@ -88,7 +92,8 @@ void CornerTable::flip(int h) {
 // Faces (a, b, c) and (b, a, d) become (a, m, c), (m, b, c), (m, a, d), (b, m, d).
 void CornerTable::split(int h, int m) {
   const int t = twin[h], a = from(h), b = to(h), c = opposite(h), d = opposite(t);
-  const int bc = twin[next(h)], ca = twin[previous(h)], ad = twin[next(t)], db = twin[previous(t)], f = h / 3, g = t / 3;
+  const int bc = twin[next(h)], ca = twin[previous(h)], ad = twin[next(t)], db = twin[previous(t)], f = h / 3,
+            g = t / 3;
   const int e = static_cast<int>(origin.size()) / 3, k = e + 1;
   origin.resize(origin.size() + 6);
   twin.resize(twin.size() + 6, -1);

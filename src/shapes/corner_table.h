@@ -5,13 +5,15 @@
 
 namespace palpate::shapes {
 
-/// A closed triangle surface that can change: half-edge h runs from vertex origin[h] to origin[next(h)] in face h/3, and twin[h] runs back.
-/// A surface with rims is closed by a ghost vertex a rim, joined to all of it, so that no operation needs to know about rims.
-/// Edges and vertices come and go; what is gone keeps its number and is skipped (origin -1, out -1).
+/// A closed triangle surface that can change: half-edge h runs from vertex origin[h] to origin[next(h)] in
+/// face h/3, and twin[h] runs back. A surface with rims is closed by a ghost vertex a rim, joined to all of
+/// it, so that no operation needs to know about rims. Edges and vertices come and go; what is gone keeps its
+/// number and is skipped (origin -1, out -1).
 class CornerTable {
  public:
   CornerTable() = default;
-  explicit CornerTable(const Faces& faces, int vertices);  ///< @pre each edge in one face or two, oriented consistently
+  /// @pre each edge in one face or two, oriented consistently
+  explicit CornerTable(const Faces& faces, int vertices);
 
   static int next(int h) { return h % 3 == 2 ? h - 2 : h + 1; }
   static int previous(int h) { return h % 3 == 0 ? h + 2 : h - 1; }
@@ -36,13 +38,14 @@ class CornerTable {
   }
   int valence(int v) const;
 
-  int add_vertex();           ///< its number; belongs to no face yet
-  void flip(int h);           ///< turns the edge inside its two faces
-  void split(int h, int m);   ///< puts vertex m on the edge
+  int add_vertex();          ///< its number; belongs to no face yet
+  void flip(int h);          ///< turns the edge inside its two faces
+  void split(int h, int m);  ///< puts vertex m on the edge
   /// Moves everything at from(h) over to to(h).
   void collapse(int h);
-  bool can_flip(int h) const;      ///< the new edge is not there yet
-  bool can_collapse(int h) const;  ///< the ends share the two opposite vertices and no other (link condition), which keep three neighbours
+  bool can_flip(int h) const;  ///< the new edge is not there yet
+  /// the ends share the two opposite vertices and no other (link condition), which keep three neighbours
+  bool can_collapse(int h) const;
 
   std::vector<int> origin, twin;  ///< three a face
   std::vector<int> out;           ///< a half-edge out of each vertex

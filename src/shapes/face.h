@@ -1,7 +1,8 @@
 #pragma once
 #include "palpate/core/types.h"
 
-/// Details of a head, right half (x >= 0), millimetres in the axes of head_mm.  Each takes the head so far and gives it back with the detail.
+/// Details of a head, right half (x >= 0), millimetres in the axes of head_mm.  Each takes the head so far
+/// and gives it back with the detail.
 namespace palpate::shapes {
 
 double with_eye(double head, const Vec3& p, bool fine);

@@ -8,12 +8,15 @@ namespace {
 /// Bones added by name; a pair is a bone and its mirror image.
 class Builder {
  public:
-  void one(const std::string& name, const std::string& parent, const Vec3& head, const Vec3& tail, double head_radius, double tail_radius) {
+  void one(const std::string& name, const std::string& parent, const Vec3& head, const Vec3& tail,
+           double head_radius, double tail_radius) {
     skeleton_.bones.push_back({name, number(parent), head, tail, head_radius, tail_radius});
   }
-  void pair(const std::string& name, const std::string& parent, bool parent_is_pair, const Vec3& head, const Vec3& tail, double head_radius, double tail_radius) {
+  void pair(const std::string& name, const std::string& parent, bool parent_is_pair, const Vec3& head,
+            const Vec3& tail, double head_radius, double tail_radius) {
     one(name + "_left", parent_is_pair ? parent + "_left" : parent, head, tail, head_radius, tail_radius);
-    one(name + "_right", parent_is_pair ? parent + "_right" : parent, mirrored(head), mirrored(tail), head_radius, tail_radius);
+    one(name + "_right", parent_is_pair ? parent + "_right" : parent, mirrored(head), mirrored(tail),
+        head_radius, tail_radius);
   }
   Skeleton take() { return std::move(skeleton_); }
 

@@ -6,9 +6,10 @@
 #include "palpate/core/error.h"
 #include "plane.h"
 
-// The surface is a chain of loops around the axis: up the teeth, in over the top, down the bore, out over the bottom.  Between two loops of as many points is
-// a band of quadrilaterals; between others, in a plane, a ring that is filled with triangles.  Going along the chain with the loops counter-clockwise,
-// the outside is always on the same hand.
+// The surface is a chain of loops around the axis: up the teeth, in over the top, down the bore, out over the
+// bottom.  Between two loops of as many points is a band of quadrilaterals; between others, in a plane, a
+// ring that is filled with triangles.  Going along the chain with the loops counter-clockwise, the outside is
+// always on the same hand.
 namespace palpate::shapes {
 namespace {
 
@@ -19,35 +20,46 @@ struct Loop {
 
 /// What the gear's surface passes, and the spacing of its points [m].
 struct Plan {
-  std::vector<Loop> top;   ///< from the teeth's upper edge in to the bore's
+  std::vector<Loop> top;  ///< from the teeth's upper edge in to the bore's
   int teeth_rows = 1, bore_rows = 1;
 };
 
 std::vector<Point2> ring(double radius, int count) {
   std::vector<Point2> out;
-  for (int i = 0; i < count; ++i) out.emplace_back(radius * std::cos(2.0 * std::numbers::pi * i / count), radius * std::sin(2.0 * std::numbers::pi * i / count));
+  for (int i = 0; i < count; ++i)
+    out.emplace_back(radius * std::cos(2.0 * std::numbers::pi * i / count),
+                     radius * std::sin(2.0 * std::numbers::pi * i / count));
   return out;
 }
 
-int pieces(double length, double spacing) { return std::max(1, static_cast<int>(std::lround(length / spacing))); }
-
-/// A cone from one radius to another, in rows; the first loop is left out.
-void add_cone(std::vector<Loop>& chain, double r0, double z0, double r1, double z1, int count, double spacing) {
-  const int rows = pieces(std::hypot(r1 - r0, z1 - z0), spacing);
-  for (int i = 1; i <= rows; ++i) chain.push_back({ring(r0 + (r1 - r0) * i / rows, count), z0 + (z1 - z0) * i / rows});
+int pieces(double length, double spacing) {
+  return std::max(1, static_cast<int>(std::lround(length / spacing)));
 }
 
-constexpr double kChamfer = 0.0005, kBoreChamfer = 0.0008;                                           // [m]
-constexpr double kRecess = 0.0015, kRim = 0.037, kWebOuter = 0.0355, kWebInner = 0.0215, kHub = 0.020;  // of the web between rim and hub [m]
+/// A cone from one radius to another, in rows; the first loop is left out.
+void add_cone(std::vector<Loop>& chain, double r0, double z0, double r1, double z1, int count,
+              double spacing) {
+  const int rows = pieces(std::hypot(r1 - r0, z1 - z0), spacing);
+  for (int i = 1; i <= rows; ++i)
+    chain.push_back({ring(r0 + (r1 - r0) * i / rows, count), z0 + (z1 - z0) * i / rows});
+}
 
-/// The outline moved inwards by a chamfer, point by point.  At a tip's corner that meets both sides' offsets, the point also slides along each side; its neighbours share
-/// the slide, less and less over half the tip, so that none passes another.
+constexpr double kChamfer = 0.0005, kBoreChamfer = 0.0008;  // [m]
+// of the web between rim and hub [m]
+constexpr double kRecess = 0.0015, kRim = 0.037, kWebOuter = 0.0355, kWebInner = 0.0215, kHub = 0.020;
+
+/// The outline moved inwards by a chamfer, point by point.  At a tip's corner that meets both sides' offsets,
+/// the point also slides along each side; its neighbours share the slide, less and less over half the tip, so
+/// that none passes another.
 std::vector<Point2> chamfered(const GearProfile& profile, double chamfer) {
   const int n = static_cast<int>(profile.points.size());
   const auto at = [&](int i) { return static_cast<std::size_t>((i % n + n) % n); };
   std::vector<Point2> out;
-  for (std::size_t i = 0; i < profile.points.size(); ++i) out.push_back(profile.points[i] - chamfer * profile.normals[i]);
-  const double reach = 0.45 * (profile.points[at(profile.corners[1])] - profile.points[at(profile.corners[2])]).norm();  // across a tip, from corner to corner
+  for (std::size_t i = 0; i < profile.points.size(); ++i)
+    out.push_back(profile.points[i] - chamfer * profile.normals[i]);
+  // across a tip, from corner to corner
+  const double reach =
+      0.45 * (profile.points[at(profile.corners[1])] - profile.points[at(profile.corners[2])]).norm();
   for (const int corner : profile.corners)
     for (const int side : {-1, 1}) {
       const Point2 first = (profile.points[at(corner + side)] - profile.points[at(corner)]).normalized();
@@ -70,12 +82,15 @@ Plan plan_of(const GearSize& size, double spacing, bool fine) {
   plan.teeth_rows = pieces(size.width - (fine ? 2.0 * kChamfer : 0.0), spacing);
   plan.bore_rows = pieces(size.width - (fine ? 2.0 * kBoreChamfer : 0.0), spacing);
   if (!fine) {
-    plan.top = {{profile.points, h}, {ring(size.bore, pieces(2.0 * std::numbers::pi * size.bore, spacing)), h}};
+    plan.top = {{profile.points, h},
+                {ring(size.bore, pieces(2.0 * std::numbers::pi * size.bore, spacing)), h}};
     return plan;
   }
   plan.top.push_back({profile.points, h - kChamfer});
   plan.top.push_back({chamfered(profile, kChamfer), h});
-  const int at_rim = pieces(2.0 * std::numbers::pi * kRim, spacing), at_hub = pieces(2.0 * std::numbers::pi * kHub, spacing), at_bore = pieces(2.0 * std::numbers::pi * size.bore, spacing);
+  const int at_rim = pieces(2.0 * std::numbers::pi * kRim, spacing),
+            at_hub = pieces(2.0 * std::numbers::pi * kHub, spacing),
+            at_bore = pieces(2.0 * std::numbers::pi * size.bore, spacing);
   plan.top.push_back({ring(kRim, at_rim), h});
   add_cone(plan.top, kRim, h, kWebOuter, h - kRecess, at_rim, spacing);
   plan.top.push_back({ring(kWebInner, at_hub), h - kRecess});
@@ -85,20 +100,24 @@ Plan plan_of(const GearSize& size, double spacing, bool fine) {
   return plan;
 }
 
-bool is_plane_ring(const Loop& a, const Loop& b) { return a.points.size() != b.points.size() || (a.z == b.z); }
+bool is_plane_ring(const Loop& a, const Loop& b) {
+  return a.points.size() != b.points.size() || (a.z == b.z);
+}
 
 /// Vertices inside each plane ring of the top, for triangles of edge `spacing`.
 std::vector<int> fillings(const Plan& plan, double spacing) {
   std::vector<int> out;
   for (std::size_t i = 0; i + 1 < plan.top.size(); ++i)
-    if (is_plane_ring(plan.top[i], plan.top[i + 1])) out.push_back(vertices_between(plan.top[i].points, plan.top[i + 1].points, spacing));
+    if (is_plane_ring(plan.top[i], plan.top[i + 1]))
+      out.push_back(vertices_between(plan.top[i].points, plan.top[i + 1].points, spacing));
   return out;
 }
 
 int total(const Plan& plan, const std::vector<int>& filling) {
   std::size_t n = 0;
   for (const Loop& loop : plan.top) n += 2 * loop.points.size();
-  n += static_cast<std::size_t>(plan.teeth_rows - 1) * plan.top.front().points.size() + static_cast<std::size_t>(plan.bore_rows - 1) * plan.top.back().points.size();
+  n += static_cast<std::size_t>(plan.teeth_rows - 1) * plan.top.front().points.size() +
+       static_cast<std::size_t>(plan.bore_rows - 1) * plan.top.back().points.size();
   for (const int inside : filling) n += 2 * static_cast<std::size_t>(inside);
   return static_cast<int>(n);
 }
@@ -116,15 +135,20 @@ class Assembly {
     for (int i = 0; i < count; ++i) {
       const int j = (i + 1) % count, p = a + i, q = a + j, r = b + j, s = b + i;
       const double one = (at(p) - at(r)).squaredNorm(), other = (at(q) - at(s)).squaredNorm();
-      if (std::abs(one - other) < 1e-9 * (one + other) ? i % 2 == 0 : one < other) triangle(p, q, r), triangle(p, r, s);
-      else triangle(p, q, s), triangle(q, r, s);
+      if (std::abs(one - other) < 1e-9 * (one + other) ? i % 2 == 0 : one < other)
+        triangle(p, q, r), triangle(p, r, s);
+      else
+        triangle(p, q, s), triangle(q, r, s);
     }
   }
   /// A plane ring; `facing` +1 up, -1 down.  Loops stand at a (outer) and b.
   void plane(const TriMesh& mesh, int a, int outer, int b, int hole, double z, int facing) {
     const int first = static_cast<int>(points_.size()) - outer - hole;
-    for (Eigen::Index v = outer + hole; v < mesh.vertices.cols(); ++v) points_.emplace_back(mesh.vertices(0, v), mesh.vertices(1, v), z);
-    const auto number = [&](int v) { return v < outer ? a + v : v < outer + hole ? b + v - outer : first + v; };
+    for (Eigen::Index v = outer + hole; v < mesh.vertices.cols(); ++v)
+      points_.emplace_back(mesh.vertices(0, v), mesh.vertices(1, v), z);
+    const auto number = [&](int v) {
+      return v < outer ? a + v : v < outer + hole ? b + v - outer : first + v;
+    };
     for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
       const int p = number(mesh.faces(0, f)), q = number(mesh.faces(1, f)), r = number(mesh.faces(2, f));
       facing > 0 ? triangle(p, q, r) : triangle(p, r, q);
@@ -134,7 +158,8 @@ class Assembly {
   TriMesh take() const {
     TriMesh mesh;
     mesh.vertices.resize(3, static_cast<Eigen::Index>(points_.size()));
-    for (std::size_t v = 0; v < points_.size(); ++v) mesh.vertices.col(static_cast<Eigen::Index>(v)) = points_[v];
+    for (std::size_t v = 0; v < points_.size(); ++v)
+      mesh.vertices.col(static_cast<Eigen::Index>(v)) = points_[v];
     mesh.faces.resize(3, static_cast<Eigen::Index>(faces_.size()));
     for (std::size_t f = 0; f < faces_.size(); ++f) mesh.faces.col(static_cast<Eigen::Index>(f)) = faces_[f];
     return mesh;
@@ -146,7 +171,8 @@ class Assembly {
   std::vector<Eigen::Vector3i> faces_;
 };
 
-/// Surface and, on request, where it is sharp (the base: the outline and the bore above and below, the tips' corners in between).
+/// Surface and, on request, where it is sharp (the base: the outline and the bore above and below, the tips'
+/// corners in between).
 TriMesh build(const GearSize& size, int vertices, bool fine, std::vector<std::vector<Vec3>>* creases) {
   double low = 1e-5, high = 0.02;
   for (int i = 0; i < 40; ++i) {  // the number falls as the spacing grows
@@ -156,7 +182,8 @@ TriMesh build(const GearSize& size, int vertices, bool fine, std::vector<std::ve
   }
   const Plan plan = plan_of(size, high, fine);
   std::vector<int> filling = fillings(plan, high);
-  const std::size_t largest = static_cast<std::size_t>(std::max_element(filling.begin(), filling.end()) - filling.begin());
+  const std::size_t largest =
+      static_cast<std::size_t>(std::max_element(filling.begin(), filling.end()) - filling.begin());
   filling[largest] = std::max(0, filling[largest] + (vertices - total(plan, filling)) / 2);
 
   Assembly out;
@@ -179,13 +206,16 @@ TriMesh build(const GearSize& size, int vertices, bool fine, std::vector<std::ve
       out.band(bottom[i + 1], bottom[i], count);
     }
   }
-  const auto wall = [&](std::size_t i, int rows, bool up) {  // between the top's and the bottom's copy of a loop
+  // between the top's and the bottom's copy of a loop
+  const auto wall = [&](std::size_t i, int rows, bool up) {
     const Loop& loop = plan.top[i];
     std::vector<int> starts = {bottom[i]};
     for (int k = 1; k < rows; ++k) starts.push_back(out.add({loop.points, loop.z * (2.0 * k / rows - 1.0)}));
     starts.push_back(top[i]);
     const int count = static_cast<int>(loop.points.size());
-    for (int k = 0; k < rows; ++k) up ? out.band(starts[static_cast<std::size_t>(k)], starts[static_cast<std::size_t>(k) + 1], count) : out.band(starts[static_cast<std::size_t>(k) + 1], starts[static_cast<std::size_t>(k)], count);
+    for (int k = 0; k < rows; ++k)
+      up ? out.band(starts[static_cast<std::size_t>(k)], starts[static_cast<std::size_t>(k) + 1], count)
+         : out.band(starts[static_cast<std::size_t>(k) + 1], starts[static_cast<std::size_t>(k)], count);
     return starts;
   };
   const std::vector<int> rows = wall(0, plan.teeth_rows, true);

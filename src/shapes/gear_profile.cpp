@@ -7,13 +7,16 @@
 
 // Half a tooth, from the middle of the tip clockwise seen from the tooth, that is with growing polar angle:
 //   tip arc   radius ra, from angle 0 to the flank's end
-//   involute  of the base circle rb: at roll t the radius is rb sqrt(1 + t^2) and the polar angle has turned by t - atan t = inv(alpha), alpha = atan t.  On the pitch
-//             circle half a tooth spans pi / (2 z), so the flank stands at angle  h(t) = pi / (2 z) + inv(alpha_0) - (t - atan t)
+//   involute  of the base circle rb: at roll t the radius is rb sqrt(1 + t^2) and the polar angle has turned
+//   by t - atan t = inv(alpha), alpha = atan t.  On the pitch
+//             circle half a tooth spans pi / (2 z), so the flank stands at angle  h(t) = pi / (2 z) +
+//             inv(alpha_0) - (t - atan t)
 //   line      radial, from the base circle in to the fillet
 //   fillet    a circle of radius f that touches the radial line and, from outside, the root circle
 //   root arc  to the middle of the gap at pi / z
-// Areas swept by the radius, 1/2 int r^2 dtheta = 1/2 int (x dy - y dx): an arc 1/2 r^2 dtheta; a radial line nothing; the involute, with
-// d(t - atan t) = t^2/(1 + t^2) dt, rb^2 t^3 / 6; the fillet about its centre c, points c + f u(phi): 1/2 [f c x (u1 - u0) + f^2 (phi1 - phi0)].
+// Areas swept by the radius, 1/2 int r^2 dtheta = 1/2 int (x dy - y dx): an arc 1/2 r^2 dtheta; a radial line
+// nothing; the involute, with d(t - atan t) = t^2/(1 + t^2) dt, rb^2 t^3 / 6; the fillet about its centre c,
+// points c + f u(phi): 1/2 [f c x (u1 - u0) + f^2 (phi1 - phi0)].
 namespace palpate::shapes {
 namespace {
 
@@ -24,14 +27,15 @@ double cross(const Point2& a, const Point2& b) { return a.x() * b.y() - a.y() * 
 /// What the pieces of half a tooth have in common.
 struct HalfTooth {
   double ra, rb, rf, f;
-  double roll_tip;             // of the involute at the tip circle
-  double flank_base;           // polar angle of the flank on the base circle and of the radial line
-  double middle;               // of the gap
-  Point2 centre;               // of the fillet
-  double touch_radius;         // where the fillet leaves the radial line
-  double root_angle;           // polar angle where it meets the root circle
+  double roll_tip;      // of the involute at the tip circle
+  double flank_base;    // polar angle of the flank on the base circle and of the radial line
+  double middle;        // of the gap
+  Point2 centre;        // of the fillet
+  double touch_radius;  // where the fillet leaves the radial line
+  double root_angle;    // polar angle where it meets the root circle
 
-  explicit HalfTooth(const GearSize& g) : ra(g.tip_radius()), rb(g.base_radius()), rf(g.root_radius()), f(g.fillet * g.module) {
+  explicit HalfTooth(const GearSize& g)
+      : ra(g.tip_radius()), rb(g.base_radius()), rf(g.root_radius()), f(g.fillet * g.module) {
     const double t0 = std::tan(radians(g.pressure_angle_deg));
     roll_tip = std::sqrt(ra * ra / (rb * rb) - 1.0);
     flank_base = std::numbers::pi / (2.0 * g.teeth) + t0 - std::atan(t0);
@@ -41,7 +45,8 @@ struct HalfTooth {
     touch_radius = along;
     centre = along * polar(1.0, flank_base) + f * polar(1.0, flank_base + 0.5 * std::numbers::pi);
     root_angle = std::atan2(centre.y(), centre.x());
-    PALPATE_CHECK(touch_radius < rb && root_angle < middle && angle(roll_tip) > 0.0, "no such gear: {} teeth", g.teeth);
+    PALPATE_CHECK(touch_radius < rb && root_angle < middle && angle(roll_tip) > 0.0, "no such gear: {} teeth",
+                  g.teeth);
   }
   double angle(double roll) const { return flank_base - (roll - std::atan(roll)); }
 };
@@ -54,7 +59,8 @@ double gear_area(const GearSize& size) {
   const HalfTooth h(size);
   const double tip = 0.5 * h.ra * h.ra * h.angle(h.roll_tip);
   const double flank = h.rb * h.rb * std::pow(h.roll_tip, 3) / 6.0;
-  // From the line's side (direction from the centre to the line) round to the root's (from the centre to the axis); both ends of u.
+  // From the line's side (direction from the centre to the line) round to the root's (from the centre to the
+  // axis); both ends of u.
   const Point2 u0 = -polar(1.0, h.flank_base + 0.5 * std::numbers::pi), u1 = -polar(1.0, h.root_angle);
   const double turn = std::atan2(cross(u0, u1), u0.dot(u1));
   const double fillet = 0.5 * (h.f * cross(h.centre, u1 - u0) + h.f * h.f * turn);
@@ -65,11 +71,18 @@ double gear_area(const GearSize& size) {
 GearProfile gear_profile(const GearSize& size, double spacing) {
   const HalfTooth h(size);
   std::vector<Point2> points, normals;  // half a tooth
-  const auto pieces = [&](double length, int least) { return std::max(least, static_cast<int>(std::lround(length / spacing))); };
-  const auto add = [&](const Point2& p, const Point2& n) { points.push_back(p), normals.push_back(n.normalized()); };
+  const auto pieces = [&](double length, int least) {
+    return std::max(least, static_cast<int>(std::lround(length / spacing)));
+  };
+  const auto add = [&](const Point2& p, const Point2& n) {
+    points.push_back(p), normals.push_back(n.normalized());
+  };
   const auto on_flank = [&](double t) { return polar(h.rb * std::sqrt(1.0 + t * t), h.angle(t)); };
-  // The involute's normal touches the base circle: it points along the unwound string, at angle h(t) + pi/2 - atan t.
-  const auto flank_normal = [&](double t) { return polar(1.0, h.angle(t) + 0.5 * std::numbers::pi - std::atan(t)); };
+  // The involute's normal touches the base circle: it points along the unwound string, at angle h(t) + pi/2 -
+  // atan t.
+  const auto flank_normal = [&](double t) {
+    return polar(1.0, h.angle(t) + 0.5 * std::numbers::pi - std::atan(t));
+  };
 
   const double tip_angle = h.angle(h.roll_tip);
   int n = pieces(h.ra * tip_angle, 1);

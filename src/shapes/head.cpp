@@ -7,31 +7,34 @@
 #include "face.h"
 #include "solids.h"
 
-// Skull, face and jaw are ellipsoids and limbs that grow together; the details of face.cpp go on in the order of a sculptor, from the sockets to the skin.
+// Skull, face and jaw are ellipsoids and limbs that grow together; the details of face.cpp go on in the order
+// of a sculptor, from the sockets to the skin.
 namespace palpate::shapes {
 namespace {
 
 constexpr double kScale = 1e-3;  // metres in a millimetre: 0.24 m from chin to crown
 
 double skull(const Vec3& p) {
-  double d = ellipsoid(p, {0, 12, 34}, {75.5, 95, 81});                                  // cranium
-  d = join(d, ellipsoid(p, {0, -36, 40}, {61, 51, 52}), 12.0);                           // forehead
-  d = join(d, ellipsoid(p, {0, 44, 0}, {58, 58, 54}), 12.0);                             // back of the head
-  d = join(d, ellipsoid(p, {0, -41, -30}, {57, 48, 66}), 14.0);                          // face
-  d = join(d, limb(p, {45, -61, -22}, {62, -20, -14}, 12, 8), 18.0);                     // cheekbone
-  d = join(d, ellipsoid(p, {40, -44, -46}, {20, 28, 30}), 16.0);                         // cheek
-  d = join(d, limb(p, {53, 4, -25}, {45, -4, -70}, 13, 12), 16.0);                       // jaw: branch, body, chin
+  double d = ellipsoid(p, {0, 12, 34}, {75.5, 95, 81});               // cranium
+  d = join(d, ellipsoid(p, {0, -36, 40}, {61, 51, 52}), 12.0);        // forehead
+  d = join(d, ellipsoid(p, {0, 44, 0}, {58, 58, 54}), 12.0);          // back of the head
+  d = join(d, ellipsoid(p, {0, -41, -30}, {57, 48, 66}), 14.0);       // face
+  d = join(d, limb(p, {45, -61, -22}, {62, -20, -14}, 12, 8), 18.0);  // cheekbone
+  d = join(d, ellipsoid(p, {40, -44, -46}, {20, 28, 30}), 16.0);      // cheek
+  // jaw: branch, body, chin
+  d = join(d, limb(p, {53, 4, -25}, {45, -4, -70}, 13, 12), 16.0);
   d = join(d, limb(p, {45, -4, -70}, {13, -72, -103}, 12, 12.5), 16.0);
   d = join(d, ellipsoid(p, {0, -79, -103}, {19, 14, 16}), 12.0);
-  d = join(d, ellipsoid(p, {0, -30, -84}, {42, 48, 27}), 12.0);                          // below the mouth
-  return join(d, ellipsoid(p, {0, -71, -66}, {33, 25, 33}), 14.0);                       // muzzle
+  d = join(d, ellipsoid(p, {0, -30, -84}, {42, 48, 27}), 12.0);     // below the mouth
+  return join(d, ellipsoid(p, {0, -71, -66}, {33, 25, 33}), 14.0);  // muzzle
 }
 
 double neck(const Vec3& p) {
   double d = limb(p, {0, 26, -60}, {0, 32, -200}, 49, 53);
-  d = join(d, limb(p, {54, 30, -45}, {14, -20, -200}, 9, 11), 16.0);                     // sternocleidomastoid
-  d = join(d, limb(p, {26, 58, -60}, {46, 58, -200}, 12, 24), 24.0);                     // trapezius
-  return join(d, ellipsoid(p, {0, -25, -138}, {9, 9, 15}), 14.0);                        // larynx
+  // sternocleidomastoid
+  d = join(d, limb(p, {54, 30, -45}, {14, -20, -200}, 9, 11), 16.0);
+  d = join(d, limb(p, {26, 58, -60}, {46, 58, -200}, 12, 24), 24.0);  // trapezius
+  return join(d, ellipsoid(p, {0, -25, -138}, {9, 9, 15}), 14.0);     // larynx
 }
 
 }  // namespace
@@ -40,7 +43,7 @@ double head_mm(const Vec3& place, const HeadParts& parts) {
   const Vec3 p(std::abs(place.x()), place.y(), place.z());
   double d = skull(p);
   if (parts.neck) d = join(d, neck(p), 14.0);
-  d = join(d, limb(p, {11, -88, 15}, {45, -75, 18}, 6.5, 5.0), 14.0);                    // brow ridge
+  d = join(d, limb(p, {11, -88, 15}, {45, -75, 18}, 6.5, 5.0), 14.0);  // brow ridge
   d = with_eye(d, p, parts.fine);
   d = with_nose(d, p, parts.fine);
   d = with_mouth(d, p, parts.fine);
@@ -58,7 +61,9 @@ double head_mm(const Vec3& place, const HeadParts& parts) {
 
 double head_size_mm(const Vec3& place) {
   const Vec3 p(std::abs(place.x()), place.y(), place.z());
-  const auto near = [&](const Vec3& centre, double inner, double outer) { return 1.0 - ramp((p - centre).norm(), inner, outer); };
+  const auto near = [&](const Vec3& centre, double inner, double outer) {
+    return 1.0 - ramp((p - centre).norm(), inner, outer);
+  };
   double size = 1.0;
   size = std::min(size, 1.0 - 0.68 * near({32, -90, 0}, 17, 50));
   size = std::min(size, 1.0 - 0.40 * near({0, -98, -42}, 18, 45));
@@ -82,7 +87,8 @@ Shape make_head(const Resolution& resolution) {
   plan.lattice = 0.003;
   plan.symmetric = true;
   shape.base = contour(plan, resolution.base_vertices);
-  // The finest relief has four edges a wave; 0.19 m^2 of surface with half as many triangles' worth of refinement again.
+  // The finest relief has four edges a wave; 0.19 m^2 of surface with half as many triangles' worth of
+  // refinement again.
   const double edge_mm = std::sqrt(2.0 / std::sqrt(3.0) * 0.30 / resolution.skin_vertices) / kScale;
   plan.inside = body({true, true, 3.0 * edge_mm});
   plan.size = [](const Vec3& x) { return head_size_mm(x / kScale); };

@@ -11,8 +11,8 @@ struct HeadParts {
   double wavelength = 0.0;  ///< of the finest relief [mm]; 0: none
 };
 
-/// A head that measures 240 from chin to crown, in millimetres: the origin between the eyes' level and the ears, crown at z = 120, chin at z = -120.
-/// Mirror image of itself about x = 0.
+/// A head that measures 240 from chin to crown, in millimetres: the origin between the eyes' level and the
+/// ears, crown at z = 120, chin at z = -120. Mirror image of itself about x = 0.
 double head_mm(const Vec3& place, const HeadParts& parts);
 /// Wanted edge length there, as a factor: less at the eyes, nose, mouth and ears.
 double head_size_mm(const Vec3& place);

@@ -6,10 +6,12 @@
 #include "contour.h"
 #include "palpate/core/error.h"
 
-// Each cube of the lattice is cut into six tetrahedra around its diagonal (Kuhn 1960): a tetrahedron goes from the low corner to the high one along the
-// three axes in one of their six orders.  The cut is the same in every cube, so faces match, and a plane of the lattice is a union of faces: a
-// symmetric body may be cut there.  The surface crosses an edge where the function changes sign; a tetrahedron holds one triangle or two.
-// A block of cubes is skipped where |inside(centre)| exceeds the Lipschitz bound times its half diagonal.
+// Each cube of the lattice is cut into six tetrahedra around its diagonal (Kuhn 1960): a tetrahedron goes
+// from the low corner to the high one along the three axes in one of their six orders.  The cut is the same
+// in every cube, so faces match, and a plane of the lattice is a union of faces: a symmetric body may be cut
+// there.  The surface crosses an edge where the function changes sign; a tetrahedron holds one triangle or
+// two. A block of cubes is skipped where |inside(centre)| exceeds the Lipschitz bound times its half
+// diagonal.
 namespace palpate::shapes {
 namespace {
 
@@ -19,9 +21,11 @@ using Place = std::array<int, 3>;
 
 class March {
  public:
-  explicit March(const Blueprint& blueprint) : blueprint_(blueprint), low_(blueprint.low), h_(blueprint.lattice) {
+  explicit March(const Blueprint& blueprint)
+      : blueprint_(blueprint), low_(blueprint.low), h_(blueprint.lattice) {
     if (blueprint.symmetric) low_.x() = 0.0;
-    for (int a = 0; a < 3; ++a) blocks_[a] = static_cast<int>(std::ceil((blueprint.high[a] - low_[a]) / (h_ * kBlock)));
+    for (int a = 0; a < 3; ++a)
+      blocks_[a] = static_cast<int>(std::ceil((blueprint.high[a] - low_[a]) / (h_ * kBlock)));
   }
 
   TriMesh run() {
@@ -35,9 +39,12 @@ class March {
         }
     TriMesh mesh;
     mesh.vertices.resize(3, static_cast<Eigen::Index>(points_.size()));
-    for (std::size_t p = 0; p < points_.size(); ++p) mesh.vertices.col(static_cast<Eigen::Index>(p)) = points_[p];
+    for (std::size_t p = 0; p < points_.size(); ++p)
+      mesh.vertices.col(static_cast<Eigen::Index>(p)) = points_[p];
     mesh.faces.resize(3, static_cast<Eigen::Index>(faces_.size()));
-    for (std::size_t f = 0; f < faces_.size(); ++f) mesh.faces.col(static_cast<Eigen::Index>(f)) = Eigen::Vector3i(faces_[f][0], faces_[f][1], faces_[f][2]);
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+      mesh.faces.col(static_cast<Eigen::Index>(f)) =
+          Eigen::Vector3i(faces_[f][0], faces_[f][1], faces_[f][2]);
     return mesh;
   }
 
@@ -50,7 +57,8 @@ class March {
     for (int a = 0; a <= kBlock; ++a)
       for (int b = 0; b <= kBlock; ++b)
         for (int c = 0; c <= kBlock; ++c) {
-          const double f = values_[static_cast<std::size_t>(local(a, b, c))] = blueprint_.inside(at({first[0] + a, first[1] + b, first[2] + c}));
+          const double f = values_[static_cast<std::size_t>(local(a, b, c))] =
+              blueprint_.inside(at({first[0] + a, first[1] + b, first[2] + c}));
           (f < 0 ? some_in : some_out) = true;
         }
     if (!some_in || !some_out) return;
@@ -71,37 +79,53 @@ class March {
     }
     std::array<int, 4> in{}, out{};
     int ins = 0, outs = 0;
-    for (int n = 0; n < 4; ++n) (value[static_cast<std::size_t>(n)] < 0 ? in[static_cast<std::size_t>(ins++)] : out[static_cast<std::size_t>(outs++)]) = n;
+    for (int n = 0; n < 4; ++n)
+      (value[static_cast<std::size_t>(n)] < 0 ? in[static_cast<std::size_t>(ins++)]
+                                              : out[static_cast<std::size_t>(outs++)]) = n;
     if (ins == 0 || outs == 0) return;
     const auto vertex = [&](int i, int o) {
-      const auto a = static_cast<std::size_t>(in[static_cast<std::size_t>(i)]), b = static_cast<std::size_t>(out[static_cast<std::size_t>(o)]);
+      const auto a = static_cast<std::size_t>(in[static_cast<std::size_t>(i)]),
+                 b = static_cast<std::size_t>(out[static_cast<std::size_t>(o)]);
       return crossing(corner[a], corner[b], value[a], value[b]);
     };
-    // Outwards: from the mean of the corners inside to that of those outside.  Judged at the middles of the edges, where no triangle is thin.
+    // Outwards: from the mean of the corners inside to that of those outside.  Judged at the middles of the
+    // edges, where no triangle is thin.
     Vec3 outwards = Vec3::Zero();
-    for (int i = 0; i < ins; ++i) outwards -= place(corner[static_cast<std::size_t>(in[static_cast<std::size_t>(i)])]) / ins;
-    for (int o = 0; o < outs; ++o) outwards += place(corner[static_cast<std::size_t>(out[static_cast<std::size_t>(o)])]) / outs;
+    for (int i = 0; i < ins; ++i)
+      outwards -= place(corner[static_cast<std::size_t>(in[static_cast<std::size_t>(i)])]) / ins;
+    for (int o = 0; o < outs; ++o)
+      outwards += place(corner[static_cast<std::size_t>(out[static_cast<std::size_t>(o)])]) / outs;
     const auto middle = [&](int i, int o) {
-      return Vec3(0.5 * (place(corner[static_cast<std::size_t>(in[static_cast<std::size_t>(i)])]) + place(corner[static_cast<std::size_t>(out[static_cast<std::size_t>(o)])])));
+      return Vec3(0.5 * (place(corner[static_cast<std::size_t>(in[static_cast<std::size_t>(i)])]) +
+                         place(corner[static_cast<std::size_t>(out[static_cast<std::size_t>(o)])])));
     };
     using Edge = std::array<int, 2>;
     const auto emit = [&](Edge a, Edge b, Edge c) {
-      const Vec3 normal = (middle(b[0], b[1]) - middle(a[0], a[1])).cross(middle(c[0], c[1]) - middle(a[0], a[1]));
+      const Vec3 normal =
+          (middle(b[0], b[1]) - middle(a[0], a[1])).cross(middle(c[0], c[1]) - middle(a[0], a[1]));
       if (normal.dot(outwards) < 0) std::swap(b, c);
       faces_.push_back({vertex(a[0], a[1]), vertex(b[0], b[1]), vertex(c[0], c[1])});
     };
-    if (ins == 1) emit({0, 0}, {0, 1}, {0, 2});
-    else if (outs == 1) emit({0, 0}, {1, 0}, {2, 0});
-    else emit({0, 0}, {0, 1}, {1, 1}), emit({0, 0}, {1, 1}, {1, 0});
+    if (ins == 1)
+      emit({0, 0}, {0, 1}, {0, 2});
+    else if (outs == 1)
+      emit({0, 0}, {1, 0}, {2, 0});
+    else
+      emit({0, 0}, {0, 1}, {1, 1}), emit({0, 0}, {1, 1}, {1, 0});
   }
 
   static Vec3 place(const Place& p) { return {double(p[0]), double(p[1]), double(p[2])}; }
 
-  /// The vertex on an edge of the lattice, made when it is first asked for; kept off the edge's ends: crossings that crowd around a lattice point make slivers.
+  /// The vertex on an edge of the lattice, made when it is first asked for; kept off the edge's ends:
+  /// crossings that crowd around a lattice point make slivers.
   int crossing(Place a, Place b, double fa, double fb) {
     if (b < a) std::swap(a, b), std::swap(fa, fb);
     const auto way = static_cast<std::uint64_t>((b[0] - a[0]) * 4 + (b[1] - a[1]) * 2 + (b[2] - a[2]));
-    const std::uint64_t key = ((static_cast<std::uint64_t>(a[0]) << 20 | static_cast<std::uint64_t>(a[1])) << 20 | static_cast<std::uint64_t>(a[2])) << 3 | way;
+    const std::uint64_t key =
+        ((static_cast<std::uint64_t>(a[0]) << 20 | static_cast<std::uint64_t>(a[1])) << 20 |
+         static_cast<std::uint64_t>(a[2]))
+            << 3 |
+        way;
     const auto [entry, fresh] = vertex_.try_emplace(key, static_cast<int>(points_.size()));
     if (fresh) points_.push_back(at(a) + std::clamp(fa / (fa - fb), 0.15, 0.85) * (at(b) - at(a)));
     return entry->second;

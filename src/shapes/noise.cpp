@@ -6,7 +6,8 @@
 namespace palpate::shapes {
 namespace {
 
-/// Mixes all bits: multiplications by odd numbers and shifts are invertible, so no two inputs of one word share an output.
+/// Mixes all bits: multiplications by odd numbers and shifts are invertible, so no two inputs of one word
+/// share an output.
 std::uint32_t mix(std::uint32_t h) {
   h ^= h >> 16;
   h *= 0x7feb352dU;
@@ -37,10 +38,14 @@ double noise(const Vec3& p, unsigned seed) {
   const Vec3 cell = p.array().floor();
   const int i = static_cast<int>(cell.x()), j = static_cast<int>(cell.y()), k = static_cast<int>(cell.z());
   const Vec3 d = p - cell;
-  const auto corner = [&](int a, int b, int c) { return slope(hash(i + a, j + b, k + c, seed), d.x() - a, d.y() - b, d.z() - c); };
+  const auto corner = [&](int a, int b, int c) {
+    return slope(hash(i + a, j + b, k + c, seed), d.x() - a, d.y() - b, d.z() - c);
+  };
   const double u = fade(d.x()), v = fade(d.y()), w = fade(d.z());
-  const double low = between(between(corner(0, 0, 0), corner(1, 0, 0), u), between(corner(0, 1, 0), corner(1, 1, 0), u), v);
-  const double high = between(between(corner(0, 0, 1), corner(1, 0, 1), u), between(corner(0, 1, 1), corner(1, 1, 1), u), v);
+  const double low =
+      between(between(corner(0, 0, 0), corner(1, 0, 0), u), between(corner(0, 1, 0), corner(1, 1, 0), u), v);
+  const double high =
+      between(between(corner(0, 0, 1), corner(1, 0, 1), u), between(corner(0, 1, 1), corner(1, 1, 1), u), v);
   return between(low, high, w);
 }
 

@@ -5,12 +5,14 @@
 #include "palpate/core/error.h"
 #include "remesh.h"
 
-// First any triangulation, by cutting ears off the loop that a bridge from the outer loop to the hole and back makes of both; then the remesher
-// puts vertices inside.  The loops stay as they are.
+// First any triangulation, by cutting ears off the loop that a bridge from the outer loop to the hole and
+// back makes of both; then the remesher puts vertices inside.  The loops stay as they are.
 namespace palpate::shapes {
 namespace {
 
-double cross(const Point2& a, const Point2& b, const Point2& c) { return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x()); }
+double cross(const Point2& a, const Point2& b, const Point2& c) {
+  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
 
 double area(const std::vector<Point2>& loop) {
   double sum = 0.0;
@@ -21,8 +23,8 @@ double area(const std::vector<Point2>& loop) {
   return sum;
 }
 
-
-/// Ears of a simple polygon: of the corners that hold no other vertex, the one with the best shape is cut first among a few, to keep slivers away.
+/// Ears of a simple polygon: of the corners that hold no other vertex, the one with the best shape is cut
+/// first among a few, to keep slivers away.
 std::vector<std::array<int, 3>> ears(const std::vector<Point2>& at, std::vector<int> loop) {
   std::vector<std::array<int, 3>> out;
   std::size_t i = 0, misses = 0;
@@ -35,7 +37,9 @@ std::vector<std::array<int, 3>> ears(const std::vector<Point2>& at, std::vector<
     for (std::size_t j = 0; ear && j < n; ++j) {
       const int p = loop[j];
       if (p == a || p == b || p == c) continue;
-      if (cross(at[a], at[b], at[p]) >= 0.0 && cross(at[b], at[c], at[p]) >= 0.0 && cross(at[c], at[a], at[p]) >= 0.0) ear = false;
+      if (cross(at[a], at[b], at[p]) >= 0.0 && cross(at[b], at[c], at[p]) >= 0.0 &&
+          cross(at[c], at[a], at[p]) >= 0.0)
+        ear = false;
     }
     if (!ear) {
       ++i, ++misses;
@@ -52,10 +56,12 @@ std::vector<std::array<int, 3>> ears(const std::vector<Point2>& at, std::vector<
 
 }  // namespace
 
-// Euler: V - E + F = 0 for a ring, 3 F = 2 E - B with B edges on its rims, so F = 2 V - B = 2 (inside) + B; each face has sqrt(3)/4 edge^2.
+// Euler: V - E + F = 0 for a ring, 3 F = 2 E - B with B edges on its rims, so F = 2 V - B = 2 (inside) + B;
+// each face has sqrt(3)/4 edge^2.
 int vertices_between(const std::vector<Point2>& outer, const std::vector<Point2>& hole, double edge) {
   const double faces = (area(outer) - area(hole)) / (std::sqrt(3.0) / 4.0 * edge * edge);
-  return std::max(0, static_cast<int>(std::lround(0.5 * (faces - static_cast<double>(outer.size() + hole.size())))));
+  return std::max(
+      0, static_cast<int>(std::lround(0.5 * (faces - static_cast<double>(outer.size() + hole.size())))));
 }
 
 TriMesh between(const std::vector<Point2>& outer, const std::vector<Point2>& hole, int inside_vertices) {
@@ -70,12 +76,15 @@ TriMesh between(const std::vector<Point2>& outer, const std::vector<Point2>& hol
   mesh.vertices = Points::Zero(3, n + m);
   for (int i = 0; i < n + m; ++i) mesh.vertices.col(i).head<2>() = at[static_cast<std::size_t>(i)];
   mesh.faces.resize(3, static_cast<Eigen::Index>(triangles.size()));
-  for (std::size_t f = 0; f < triangles.size(); ++f) mesh.faces.col(static_cast<Eigen::Index>(f)) = Eigen::Vector3i(triangles[f][0], triangles[f][1], triangles[f][2]);
+  for (std::size_t f = 0; f < triangles.size(); ++f)
+    mesh.faces.col(static_cast<Eigen::Index>(f)) =
+        Eigen::Vector3i(triangles[f][0], triangles[f][1], triangles[f][2]);
 
   RemeshRules rules;
   rules.inside = [](const Vec3& p) { return p.z(); };
   Remesher remesher(mesh, rules);
-  const double edge = std::sqrt((area(outer) - area(hole)) / (std::sqrt(3.0) / 4.0 * (2.0 * inside_vertices + n + m)));
+  const double edge =
+      std::sqrt((area(outer) - area(hole)) / (std::sqrt(3.0) / 4.0 * (2.0 * inside_vertices + n + m)));
   remesher.delaunay();
   for (int round = 0; round < 6; ++round) remesher.round(edge), remesher.delaunay();
   remesher.trim(edge, n + m + inside_vertices);

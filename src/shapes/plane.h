@@ -4,8 +4,8 @@
 
 namespace palpate::shapes {
 
-/// Triangles of a plane region between an outer loop (counter-clockwise) and a hole (counter-clockwise too), at z = 0, facing up.
-/// Vertices: the outer loop, the hole, then those inside, as many as asked.
+/// Triangles of a plane region between an outer loop (counter-clockwise) and a hole (counter-clockwise too),
+/// at z = 0, facing up. Vertices: the outer loop, the hole, then those inside, as many as asked.
 /// @pre the segment from outer[0] to hole[0] lies in the region
 TriMesh between(const std::vector<Point2>& outer, const std::vector<Point2>& hole, int inside_vertices);
 

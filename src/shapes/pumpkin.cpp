@@ -8,8 +8,8 @@
 #include "noise.h"
 #include "solids.h"
 
-// Twelve ribs stand around an axis, each an ellipsoid of its own size; where two meet is a groove, where all meet is the dimple that holds the stem, bent and
-// five-cornered.  0.30 m across.
+// Twelve ribs stand around an axis, each an ellipsoid of its own size; where two meet is a groove, where all
+// meet is the dimple that holds the stem, bent and five-cornered.  0.30 m across.
 namespace palpate::shapes {
 namespace {
 
@@ -24,7 +24,8 @@ const Rib& rib_of(int i) {
     std::array<Rib, kRibs> out{};
     for (int own = 0; own < kRibs; ++own) {
       const double angle = 2.0 * std::numbers::pi * (own + 0.22 * (chance(own, 1) - 0.5)) / kRibs;
-      out[static_cast<std::size_t>(own)] = {std::cos(angle), std::sin(angle), 0.006 * (chance(own, 3) - 0.5), 1.0 + 0.07 * (chance(own, 2) - 0.5)};
+      out[static_cast<std::size_t>(own)] = {std::cos(angle), std::sin(angle), 0.006 * (chance(own, 3) - 0.5),
+                                            1.0 + 0.07 * (chance(own, 2) - 0.5)};
     }
     return out;
   }();
@@ -49,14 +50,16 @@ double flesh(const Vec3& p, bool fine) {
 
 double stem(const Vec3& p, bool fine) {
   const Vec3 foot(0, 0, 0.070), knee(0.004, -0.003, 0.112), end(0.026, -0.014, 0.146);
-  const Vec3 axis = p.z() < knee.z() ? Vec3(foot + (knee - foot) * ((p.z() - foot.z()) / (knee.z() - foot.z())))
-                                     : Vec3(knee + (end - knee) * ((p.z() - knee.z()) / (end.z() - knee.z())));
+  const Vec3 axis = p.z() < knee.z()
+                        ? Vec3(foot + (knee - foot) * ((p.z() - foot.z()) / (knee.z() - foot.z())))
+                        : Vec3(knee + (end - knee) * ((p.z() - knee.z()) / (end.z() - knee.z())));
   double d = join(limb(p, foot, knee, 0.021, 0.0125), limb(p, knee, end, 0.0125, 0.0150), 0.010);
   d = join(d, ellipsoid(p, {0, 0, 0.082}, {0.030, 0.030, 0.010}), 0.012);
   const double radius = std::hypot(p.x() - axis.x(), p.y() - axis.y());
   const double turn = std::atan2(p.y() - axis.y(), p.x() - axis.x()) + 9.0 * (p.z() - 0.08);
   if (fine) d -= 0.0020 * std::cos(5.0 * turn) * ramp(radius, 0.003, 0.009);
-  return meet(d, (p - Vec3(0.024, -0.013, 0.147)).dot(Vec3(0.5, -0.25, 0.83).normalized()), 0.003);  // where it was cut
+  // where it was cut
+  return meet(d, (p - Vec3(0.024, -0.013, 0.147)).dot(Vec3(0.5, -0.25, 0.83).normalized()), 0.003);
 }
 
 /// Skin: shallow dents, a few warts, fine streaks along the ribs.
@@ -92,7 +95,11 @@ Shape make_pumpkin(const Resolution& resolution) {
   shape.base = contour(plan, resolution.base_vertices);
   const double edge = std::sqrt(2.0 / std::sqrt(3.0) * 0.27 / resolution.skin_vertices);
   plan.inside = [wavelength = 3.0 * edge](const Vec3& p) { return pumpkin(p, true, wavelength); };
-  plan.size = [](const Vec3& p) { return p.z() > 0.06 && std::hypot(p.x(), p.y()) < 0.05 ? 1.0 - 0.4 * ramp(0.05 - std::hypot(p.x(), p.y()), 0.0, 0.02) * ramp(p.z(), 0.06, 0.08) : 1.0; };
+  plan.size = [](const Vec3& p) {
+    return p.z() > 0.06 && std::hypot(p.x(), p.y()) < 0.05
+               ? 1.0 - 0.4 * ramp(0.05 - std::hypot(p.x(), p.y()), 0.0, 0.02) * ramp(p.z(), 0.06, 0.08)
+               : 1.0;
+  };
   plan.lattice = 0.0035;
   plan.lipschitz = 2.0;
   shape.skin = contour(plan, resolution.skin_vertices);

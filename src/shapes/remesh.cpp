@@ -9,7 +9,8 @@
 namespace palpate::shapes {
 namespace {
 
-constexpr double kLongest = 4.0 / 3.0, kShortest = 4.0 / 5.0;  // Botsch and Kobbelt 2004: neither step undoes the other
+// Botsch and Kobbelt 2004: neither step undoes the other
+constexpr double kLongest = 4.0 / 3.0, kShortest = 4.0 / 5.0;
 
 double cotangent(const Vec3& at, const Vec3& a, const Vec3& b) {
   const Vec3 u = a - at, v = b - at;
@@ -18,7 +19,8 @@ double cotangent(const Vec3& at, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-Remesher::Remesher(const TriMesh& mesh, RemeshRules rules) : table_(mesh.faces, static_cast<int>(mesh.vertices.cols())), rules_(std::move(rules)) {
+Remesher::Remesher(const TriMesh& mesh, RemeshRules rules)
+    : table_(mesh.faces, static_cast<int>(mesh.vertices.cols())), rules_(std::move(rules)) {
   for (Eigen::Index v = 0; v < mesh.vertices.cols(); ++v) {
     x_.push_back(mesh.vertices.col(v));
     size_.push_back(size_at(x_.back()));
@@ -30,9 +32,11 @@ Remesher::Remesher(const TriMesh& mesh, RemeshRules rules) : table_(mesh.faces, 
     table_.around(ghost, [&](int h) { rim_[table_.to(h)] = 1; });
 }
 
-/// Gradient from four values at the corners of a small tetrahedron, which err by O(probe^2) in their mean and O(probe) in the slope's curvature alone.
+/// Gradient from four values at the corners of a small tetrahedron, which err by O(probe^2) in their mean and
+/// O(probe) in the slope's curvature alone.
 Vec3 Remesher::slope(const Vec3& p, double* value) const {
-  static const std::array<Vec3, 4> corners = {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)};
+  static const std::array<Vec3, 4> corners = {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1),
+                                              Vec3(-1, -1, 1)};
   Vec3 gradient = Vec3::Zero();
   double sum = 0.0;
   for (const Vec3& c : corners) {
@@ -86,11 +90,14 @@ int Remesher::count() const {
   return n;
 }
 
-// An even mesh has two triangles a vertex, each of area sqrt(3)/4 (size edge)^2: the number of vertices is the integral of dA 2 / (sqrt(3) size^2 edge^2).
+// An even mesh has two triangles a vertex, each of area sqrt(3)/4 (size edge)^2: the number of vertices is
+// the integral of dA 2 / (sqrt(3) size^2 edge^2).
 double Remesher::edge_for(int vertices) const {
   double sum = 0.0;
   for (int h = 0; h < static_cast<int>(table_.origin.size()); h += 3) {
-    if (table_.gone(h) || table_.is_ghost(table_.from(h)) || table_.is_ghost(table_.to(h)) || table_.is_ghost(table_.opposite(h))) continue;
+    if (table_.gone(h) || table_.is_ghost(table_.from(h)) || table_.is_ghost(table_.to(h)) ||
+        table_.is_ghost(table_.opposite(h)))
+      continue;
     const double size = (size_[table_.from(h)] + size_[table_.to(h)] + size_[table_.opposite(h)]) / 3.0;
     sum += area_vector(h).norm() / (size * size);
   }
@@ -105,7 +112,9 @@ bool Remesher::try_split(int h) {
   const double length = (x_[a] - x_[b]).norm();
   Vec3 middle = 0.5 * (x_[a] + x_[b]);
   if (on_rim) middle.x() = 0.0;
-  else if (is_chord(h)) middle = 0.5 * middle + 0.25 * (x_[table_.opposite(h)] + x_[table_.opposite(table_.twin[h])]);  // off the plane
+  // off the plane
+  else if (is_chord(h))
+    middle = 0.5 * middle + 0.25 * (x_[table_.opposite(h)] + x_[table_.opposite(table_.twin[h])]);
   const int m = table_.add_vertex();
   x_.push_back(on_surface(middle, on_rim, 0.25 * length));
   size_.push_back(size_at(x_.back()));
@@ -114,7 +123,8 @@ bool Remesher::try_split(int h) {
   return true;
 }
 
-/// Collapses from(h) into to(h) unless an edge grows beyond `longest` (of the wanted length), a face turns over, or a rim would change.
+/// Collapses from(h) into to(h) unless an edge grows beyond `longest` (of the wanted length), a face turns
+/// over, or a rim would change.
 bool Remesher::try_collapse(int h, double longest) {
   const int a = table_.from(h), b = table_.to(h), c = table_.opposite(h), d = table_.opposite(table_.twin[h]);
   if (is_rim(a) && (!rules_.rims_in_plane || !table_.on_rim(h))) return false;
@@ -124,15 +134,22 @@ bool Remesher::try_collapse(int h, double longest) {
   table_.around(a, [&](int o) {
     const int v = table_.to(o), w = table_.opposite(o);
     if (!fine || table_.is_ghost(v)) return;
-    if (rules_.rims_in_plane && is_rim(b) && is_rim(v) && v != c && v != d && !table_.on_rim(o)) fine = false;  // a new chord
+    // a new chord
+    if (rules_.rims_in_plane && is_rim(b) && is_rim(v) && v != c && v != d && !table_.on_rim(o)) fine = false;
     if (v != b && (x_[v] - x_[b]).norm() > longest * 0.5 * (size_[v] + size_[b])) fine = false;
     if (table_.is_ghost(w) || v == b || w == b) return;
     const Vec3 after = (x_[v] - x_[b]).cross(x_[w] - x_[b]), before = (x_[v] - x_[a]).cross(x_[w] - x_[a]);
-    const double longest2 = std::max({(x_[v] - x_[b]).squaredNorm(), (x_[w] - x_[b]).squaredNorm(), (x_[v] - x_[w]).squaredNorm()});
+    const double longest2 = std::max(
+        {(x_[v] - x_[b]).squaredNorm(), (x_[w] - x_[b]).squaredNorm(), (x_[v] - x_[w]).squaredNorm()});
     const double size = after.norm();
-    const double quality = size / longest2, quality_before = before.norm() / std::max({(x_[v] - x_[a]).squaredNorm(), (x_[w] - x_[a]).squaredNorm(), (x_[v] - x_[w]).squaredNorm()});
+    const double quality = size / longest2,
+                 quality_before =
+                     before.norm() / std::max({(x_[v] - x_[a]).squaredNorm(), (x_[w] - x_[a]).squaredNorm(),
+                                               (x_[v] - x_[w]).squaredNorm()});
     if (quality < std::min(0.15, 0.8 * quality_before)) fine = false;  // a sliver where none was
-    if (after.dot(ring) < 0.3 * size || (quality_before > 0.2 && after.dot(before) < 0.5 * size * before.norm())) fine = false;
+    if (after.dot(ring) < 0.3 * size ||
+        (quality_before > 0.2 && after.dot(before) < 0.5 * size * before.norm()))
+      fine = false;
   });
   if (!fine) return false;
   table_.collapse(h);
@@ -152,20 +169,27 @@ void Remesher::collapse_short(double edge) {
     if (real(h) && relative(h) < kShortest * edge) try_collapse(h, kLongest * edge);
 }
 
-// Sum of |valence - 6| over the four vertices (4 on a rim, counting real neighbours), less after the flip than before.
+// Sum of |valence - 6| over the four vertices (4 on a rim, counting real neighbours), less after the flip
+// than before.
 void Remesher::flip_by_valence() {
   std::vector<int> valence(x_.size(), 0);
   for (int v = 0; v < static_cast<int>(x_.size()); ++v)
     if (table_.out[v] >= 0 && !table_.is_ghost(v)) valence[v] = table_.valence(v) - (is_rim(v) ? 1 : 0);
   for (int h = 0; h < static_cast<int>(table_.origin.size()); ++h) {
     if (!real(h) || h > table_.twin[h] || table_.on_rim(h)) continue;
-    const int t = table_.twin[h], a = table_.from(h), b = table_.to(h), c = table_.opposite(h), d = table_.opposite(t);
+    const int t = table_.twin[h], a = table_.from(h), b = table_.to(h), c = table_.opposite(h),
+              d = table_.opposite(t);
     const auto away = [&](int v, int change) { return std::abs(valence[v] + change - (is_rim(v) ? 4 : 6)); };
-    if (away(a, -1) + away(b, -1) + away(c, 1) + away(d, 1) >= away(a, 0) + away(b, 0) + away(c, 0) + away(d, 0)) continue;
+    if (away(a, -1) + away(b, -1) + away(c, 1) + away(d, 1) >=
+        away(a, 0) + away(b, 0) + away(c, 0) + away(d, 0))
+      continue;
     if (is_rim(c) && is_rim(d) && rules_.rims_in_plane) continue;
     const Vec3 before = area_vector(h) + area_vector(t);
-    const Vec3 one = 0.5 * (x_[a] - x_[c]).cross(x_[d] - x_[c]), two = 0.5 * (x_[b] - x_[d]).cross(x_[c] - x_[d]);
-    if (one.dot(before) < 0.8 * one.norm() * before.norm() || two.dot(before) < 0.8 * two.norm() * before.norm()) continue;
+    const Vec3 one = 0.5 * (x_[a] - x_[c]).cross(x_[d] - x_[c]),
+               two = 0.5 * (x_[b] - x_[d]).cross(x_[c] - x_[d]);
+    if (one.dot(before) < 0.8 * one.norm() * before.norm() ||
+        two.dot(before) < 0.8 * two.norm() * before.norm())
+      continue;
     const double longest2 = (x_[c] - x_[d]).squaredNorm();
     if (std::min(one.norm(), two.norm()) < 0.15 * longest2 || !table_.can_flip(h)) continue;
     table_.flip(h);
@@ -173,16 +197,21 @@ void Remesher::flip_by_valence() {
   }
 }
 
-// Delaunay's criterion: the angles opposite an edge add up to less than pi, so cot + cot > 0; else the flip raises the smallest angle.
+// Delaunay's criterion: the angles opposite an edge add up to less than pi, so cot + cot > 0; else the flip
+// raises the smallest angle.
 int Remesher::flip_by_angle() {
   int flips = 0;
   for (int h = 0; h < static_cast<int>(table_.origin.size()); ++h) {
     if (!real(h) || h > table_.twin[h] || table_.on_rim(h)) continue;
     const int t = table_.twin[h];
-    const Vec3 &a = x_[table_.from(h)], &b = x_[table_.to(h)], &c = x_[table_.opposite(h)], &d = x_[table_.opposite(t)];
+    const Vec3 &a = x_[table_.from(h)], &b = x_[table_.to(h)], &c = x_[table_.opposite(h)],
+               &d = x_[table_.opposite(t)];
     if (cotangent(c, a, b) + cotangent(d, a, b) > -1e-3) continue;
-    const Vec3 before = area_vector(h) + area_vector(t), one = (a - c).cross(d - c), two = (b - d).cross(c - d);
-    if (one.dot(before) < 0.7 * one.norm() * before.norm() || two.dot(before) < 0.7 * two.norm() * before.norm()) continue;
+    const Vec3 before = area_vector(h) + area_vector(t), one = (a - c).cross(d - c),
+               two = (b - d).cross(c - d);
+    if (one.dot(before) < 0.7 * one.norm() * before.norm() ||
+        two.dot(before) < 0.7 * two.norm() * before.norm())
+      continue;
     if (rules_.rims_in_plane && is_rim(table_.opposite(h)) && is_rim(table_.opposite(t))) continue;
     if (!table_.can_flip(h)) continue;
     table_.flip(h);
@@ -191,8 +220,9 @@ int Remesher::flip_by_angle() {
   return flips;
 }
 
-// Towards the mean of the middles of the faces around, weighted by area / size^2 (equal for the wanted triangles), within the tangent plane.
-// On a rim in the plane: towards the middle of its two neighbours along the rim.  A move that turns a face over is not made.
+// Towards the mean of the middles of the faces around, weighted by area / size^2 (equal for the wanted
+// triangles), within the tangent plane. On a rim in the plane: towards the middle of its two neighbours along
+// the rim.  A move that turns a face over is not made.
 void Remesher::move() {
   for (int v = 0; v < static_cast<int>(x_.size()); ++v) {
     if (table_.out[v] < 0 || table_.is_ghost(v) || (is_rim(v) && !rules_.rims_in_plane)) continue;
@@ -280,7 +310,8 @@ void Remesher::trim(double edge, int vertices) {
     for (const auto& [length, h] : order) {
       if (wanted == 0) break;
       if (!real(h) || std::abs(relative(h) - std::abs(length)) > 1e-12) continue;  // changed meanwhile
-      if (split ? try_split(h) : try_collapse(h, 1.6 * edge) || try_collapse(table_.twin[h], 1.6 * edge)) --wanted;
+      if (split ? try_split(h) : try_collapse(h, 1.6 * edge) || try_collapse(table_.twin[h], 1.6 * edge))
+        --wanted;
     }
     flip_by_valence();
     move();
@@ -298,10 +329,13 @@ TriMesh Remesher::result() const {
     if (number[v] >= 0) mesh.vertices.col(number[v]) = x_[v];
   std::vector<int> kept;
   for (int h = 0; h < static_cast<int>(table_.origin.size()); h += 3)
-    if (!table_.gone(h) && !table_.is_ghost(table_.from(h)) && !table_.is_ghost(table_.to(h)) && !table_.is_ghost(table_.opposite(h))) kept.push_back(h);
+    if (!table_.gone(h) && !table_.is_ghost(table_.from(h)) && !table_.is_ghost(table_.to(h)) &&
+        !table_.is_ghost(table_.opposite(h)))
+      kept.push_back(h);
   mesh.faces.resize(3, static_cast<Eigen::Index>(kept.size()));
   for (std::size_t f = 0; f < kept.size(); ++f)
-    for (int k = 0; k < 3; ++k) mesh.faces(k, static_cast<Eigen::Index>(f)) = number[table_.origin[kept[f] + k]];
+    for (int k = 0; k < 3; ++k)
+      mesh.faces(k, static_cast<Eigen::Index>(f)) = number[table_.origin[kept[f] + k]];
   return mesh;
 }
 

@@ -9,12 +9,14 @@ namespace palpate::shapes {
 struct RemeshRules {
   Implicit inside;                          ///< vertices lie on its zero set
   std::function<double(const Vec3&)> size;  ///< wanted edge length, as a factor; empty: 1
-  bool rims_in_plane = false;               ///< rims lie in x = 0 and slide in it; else they are kept as they are
-  double probe = 1e-5;                      ///< step of differences for the slope of `inside` [m]
+  /// rims lie in x = 0 and slide in it; else they are kept as they are
+  bool rims_in_plane = false;
+  double probe = 1e-5;  ///< step of differences for the slope of `inside` [m]
 };
 
-/// Makes a triangle surface even: splits long edges, collapses short ones, flips edges towards six neighbours a vertex, moves vertices towards
-/// the middle of their surroundings and back onto the surface (Botsch and Kobbelt 2004, "A remeshing approach to multiresolution modeling").
+/// Makes a triangle surface even: splits long edges, collapses short ones, flips edges towards six neighbours
+/// a vertex, moves vertices towards the middle of their surroundings and back onto the surface (Botsch and
+/// Kobbelt 2004, "A remeshing approach to multiresolution modeling").
 /// Keeps genus and rims.  The same input gives the same output to the bit.
 class Remesher {
  public:
@@ -22,10 +24,11 @@ class Remesher {
 
   double edge_for(int vertices) const;  ///< the edge length [m] at which an even mesh has that many vertices
   void round(double edge);              ///< one round of all four steps
-  void delaunay();                      ///< flips edges until none is left to flip: what a plane triangulation of slivers needs first
-  void settle(int rounds);              ///< flips and moves alone: the number of vertices stays
-  void trim(double edge, int vertices); ///< splits or collapses the worst edges until the number is met
-  int count() const;                    ///< vertices; of the whole body where half of it is meshed
+  /// flips edges until none is left to flip: what a plane triangulation of slivers needs first
+  void delaunay();
+  void settle(int rounds);               ///< flips and moves alone: the number of vertices stays
+  void trim(double edge, int vertices);  ///< splits or collapses the worst edges until the number is met
+  int count() const;                     ///< vertices; of the whole body where half of it is meshed
   TriMesh result() const;
 
  private:
@@ -37,8 +40,11 @@ class Remesher {
   Vec3 ring_vector(int v) const;
   bool real(int h) const { return !table_.gone(h) && !table_.touches_ghost(h); }
   bool is_rim(int v) const { return rim_[v] != 0; }
-  /// Between two vertices of rims in the plane, but not along a rim: such edges make faces that lie in the plane, and do not stay.
-  bool is_chord(int h) const { return rules_.rims_in_plane && is_rim(table_.from(h)) && is_rim(table_.to(h)) && !table_.on_rim(h); }
+  /// Between two vertices of rims in the plane, but not along a rim: such edges make faces that lie in the
+  /// plane, and do not stay.
+  bool is_chord(int h) const {
+    return rules_.rims_in_plane && is_rim(table_.from(h)) && is_rim(table_.to(h)) && !table_.on_rim(h);
+  }
   bool try_split(int h);
   bool try_collapse(int h, double longest);
   void split_long(double edge);

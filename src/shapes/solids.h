@@ -5,11 +5,14 @@
 
 #include "palpate/core/types.h"
 
-/// Solids as functions: negative inside, near the surface about the signed distance; and how they grow together.  Any unit of length, the same for all.
+/// Solids as functions: negative inside, near the surface about the signed distance; and how they grow
+/// together.  Any unit of length, the same for all.
 namespace palpate::shapes {
 
-/// The larger part of a hull of two solids: min(a, b), rounded where they differ by less than k.  With h = max(k - |a - b|, 0) / k it is min(a, b) - k h^2 / 4:
-/// at a = b it lies k/4 below, and value and slope meet min(a, b) at |a - b| = k.  Symmetric in a and b to the bit.
+/// The larger part of a hull of two solids: min(a, b), rounded where they differ by less than k.  With h =
+/// max(k - |a - b|, 0) / k it is min(a, b) - k h^2 / 4:
+/// at a = b it lies k/4 below, and value and slope meet min(a, b) at |a - b| = k.  Symmetric in a and b to
+/// the bit.
 inline double join(double a, double b, double k) {
   const double h = std::max(k - std::abs(a - b), 0.0) / k;
   return std::min(a, b) - 0.25 * k * h * h;
@@ -27,7 +30,8 @@ inline double ramp(double t, double low, double high) {
 
 inline double ball(const Vec3& p, const Vec3& centre, double radius) { return (p - centre).norm() - radius; }
 
-/// Ellipsoid along the axes: g = |q| - 1 with q = (p - c)/r componentwise, divided by |grad g| = |q/r| / |q|: the distance to first order (Taubin 1994).
+/// Ellipsoid along the axes: g = |q| - 1 with q = (p - c)/r componentwise, divided by |grad g| = |q/r| / |q|:
+/// the distance to first order (Taubin 1994).
 inline double ellipsoid(const Vec3& p, const Vec3& centre, const Vec3& radii) {
   const Vec3 q = (p - centre).cwiseQuotient(radii);
   const double length = q.norm();
@@ -39,9 +43,11 @@ inline double ellipsoid(const Vec3& p, const Vec3& centre, const Vec3& radii, co
   return ellipsoid(Vec3(axes.transpose() * (p - centre)), Vec3::Zero(), radii);
 }
 
-/// A limb from a to b: balls along a line, whose radius goes from ra to rb and swells by `belly` at the place `at` in (0, 1).
-/// The swelling is 16 t'^2 (1 - t')^2 in t' = t^e, e = ln(1/2) / ln(at): 1 at t = at, level at both ends.
-inline double limb(const Vec3& p, const Vec3& a, const Vec3& b, double ra, double rb, double belly = 0.0, double at = 0.5) {
+/// A limb from a to b: balls along a line, whose radius goes from ra to rb and swells by `belly` at the place
+/// `at` in (0, 1). The swelling is 16 t'^2 (1 - t')^2 in t' = t^e, e = ln(1/2) / ln(at): 1 at t = at, level
+/// at both ends.
+inline double limb(const Vec3& p, const Vec3& a, const Vec3& b, double ra, double rb, double belly = 0.0,
+                   double at = 0.5) {
   const Vec3 along = b - a;
   const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
   double radius = ra + (rb - ra) * t;
@@ -55,7 +61,8 @@ inline double limb(const Vec3& p, const Vec3& a, const Vec3& b, double ra, doubl
 /// Right-handed axes turned by angles about x, then y, then z [degrees].
 inline Mat3 turned(double about_x_deg, double about_y_deg, double about_z_deg) {
   const double degree = std::numbers::pi / 180.0;
-  return (Eigen::AngleAxisd(about_z_deg * degree, Vec3::UnitZ()) * Eigen::AngleAxisd(about_y_deg * degree, Vec3::UnitY()) *
+  return (Eigen::AngleAxisd(about_z_deg * degree, Vec3::UnitZ()) *
+          Eigen::AngleAxisd(about_y_deg * degree, Vec3::UnitY()) *
           Eigen::AngleAxisd(about_x_deg * degree, Vec3::UnitX()))
       .toRotationMatrix();
 }

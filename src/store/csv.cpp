@@ -33,9 +33,12 @@ std::vector<std::vector<std::string>> split(const std::string& text, const std::
     const char c = text[i];
     if (c == '\n') ++line;
     if (quoted) {
-      if (c != '"') row.back() += c;
-      else if (i + 1 < text.size() && text[i + 1] == '"') row.back() += text[i++];
-      else quoted = false;
+      if (c != '"')
+        row.back() += c;
+      else if (i + 1 < text.size() && text[i + 1] == '"')
+        row.back() += text[i++];
+      else
+        quoted = false;
     } else if (c == '"') {
       quoted = any = true;
       opened = line;
@@ -78,8 +81,10 @@ void CsvWriter::row(std::span<const double> values) {
 
 void CsvWriter::row(const std::vector<CsvCell>& cells) {
   for (const CsvCell& cell : cells) {
-    if (const double* value = std::get_if<double>(&cell)) append_number(line_, *value);
-    else append_text(line_, std::get<std::string>(cell));
+    if (const double* value = std::get_if<double>(&cell))
+      append_number(line_, *value);
+    else
+      append_text(line_, std::get<std::string>(cell));
     line_ += ',';
   }
   end_row(cells.size());
@@ -127,7 +132,8 @@ std::vector<double> CsvTable::numbers(const std::string& header) const {
   for (const std::string& cell : column(header)) {
     double value = 0.0;
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc{} || end != cell.data() + cell.size()) fail("column \"{}\", row {}: \"{}\" is no number", header, out.size() + 1, cell);
+    if (error != std::errc{} || end != cell.data() + cell.size())
+      fail("column \"{}\", row {}: \"{}\" is no number", header, out.size() + 1, cell);
     out.push_back(value);
   }
   return out;

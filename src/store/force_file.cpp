@@ -13,7 +13,8 @@ Row flatten(const ForceRow& r) {
   Row row{};
   row[0] = r.time_s;
   std::size_t at = 1;
-  for (const Vec3& v : {r.handle.translation, handle, r.tool.translation, tool, r.on_hand.force, r.on_hand.moment})
+  for (const Vec3& v :
+       {r.handle.translation, handle, r.tool.translation, tool, r.on_hand.force, r.on_hand.moment})
     for (int axis = 0; axis < 3; ++axis) row[at++] = v[axis];
   row[at] = r.limited ? 1.0 : 0.0;
   return row;
@@ -21,11 +22,26 @@ Row flatten(const ForceRow& r) {
 }  // namespace
 
 const std::vector<std::string>& force_headers() {
-  static const std::vector<std::string> headers = {
-      "time_s",
-      "handle_x_m", "handle_y_m", "handle_z_m", "handle_rotation_x_rad", "handle_rotation_y_rad", "handle_rotation_z_rad",
-      "tool_x_m", "tool_y_m", "tool_z_m", "tool_rotation_x_rad", "tool_rotation_y_rad", "tool_rotation_z_rad",
-      "force_x_n", "force_y_n", "force_z_n", "torque_x_n_m", "torque_y_n_m", "torque_z_n_m", "limited"};
+  static const std::vector<std::string> headers = {"time_s",
+                                                   "handle_x_m",
+                                                   "handle_y_m",
+                                                   "handle_z_m",
+                                                   "handle_rotation_x_rad",
+                                                   "handle_rotation_y_rad",
+                                                   "handle_rotation_z_rad",
+                                                   "tool_x_m",
+                                                   "tool_y_m",
+                                                   "tool_z_m",
+                                                   "tool_rotation_x_rad",
+                                                   "tool_rotation_y_rad",
+                                                   "tool_rotation_z_rad",
+                                                   "force_x_n",
+                                                   "force_y_n",
+                                                   "force_z_n",
+                                                   "torque_x_n_m",
+                                                   "torque_y_n_m",
+                                                   "torque_z_n_m",
+                                                   "limited"};
   return headers;
 }
 
@@ -41,7 +57,11 @@ std::vector<ForceRow> read_forces(const std::string& path) {
   std::vector<ForceRow> rows(table.rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto vec = [&](std::size_t c) { return Vec3(columns[c][i], columns[c + 1][i], columns[c + 2][i]); };
-    rows[i] = {columns[0][i], {quaternion_of(vec(4)), vec(1)}, {quaternion_of(vec(10)), vec(7)}, {vec(16), vec(13)}, columns[19][i] != 0.0};
+    rows[i] = {columns[0][i],
+               {quaternion_of(vec(4)), vec(1)},
+               {quaternion_of(vec(10)), vec(7)},
+               {vec(16), vec(13)},
+               columns[19][i] != 0.0};
   }
   return rows;
 }

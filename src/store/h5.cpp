@@ -7,8 +7,8 @@
 namespace palpate::store::h5 {
 namespace {
 
-/// After a write that failed (a full disk), HDF5's own clean-up at exit crashes; every handle here has an owner that closes it, so it is not needed.
-/// Must come before any other call of HDF5.
+/// After a write that failed (a full disk), HDF5's own clean-up at exit crashes; every handle here has an
+/// owner that closes it, so it is not needed. Must come before any other call of HDF5.
 [[maybe_unused]] const herr_t kNoCleanUpAtExit = H5dont_atexit();
 
 herr_t take_description(unsigned n, const H5E_error2_t* error, void* out) {
@@ -81,20 +81,24 @@ hid_t check(hid_t id, const std::string& path, const std::string& what) {
 
 Id create_file(const std::string& path) {
   const Id access = access_without_need_of_locks();
-  return {check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), path, "cannot be written; is its folder there, writable, and not full?"), H5Fclose};
+  return {check(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), path,
+                "cannot be written; is its folder there, writable, and not full?"),
+          H5Fclose};
 }
 
 Id open_file(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) fail("{}: no such file", path);
   const Id access = access_without_need_of_locks();
-  return {check(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), path, "is not an HDF5 file that can be read"), H5Fclose};
+  return {check(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), path, "is not an HDF5 file that can be read"),
+          H5Fclose};
 }
 
 Id create_in_memory(const std::string& path) {
   const Id access = access_without_need_of_locks();
   constexpr std::size_t kGrowth = 1 << 20;
   H5Pset_fapl_core(access, kGrowth, false);
-  return {check(H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), path, "cannot be made in memory"), H5Fclose};
+  return {check(H5Fcreate("in memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), path, "cannot be made in memory"),
+          H5Fclose};
 }
 
 std::string image(hid_t file, const std::string& path) {
@@ -108,14 +112,20 @@ std::string image(hid_t file, const std::string& path) {
 
 Id create_group(hid_t parent, const std::string& name, const std::string& path) {
   const Id timeless = created_without_time(H5P_GROUP_CREATE);
-  return {check(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, timeless, H5P_DEFAULT), path, "cannot make group " + name), H5Gclose};
+  return {check(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, timeless, H5P_DEFAULT), path,
+                "cannot make group " + name),
+          H5Gclose};
 }
 
-void write(hid_t parent, const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* data, const std::string& path) {
+void write(hid_t parent, const std::string& name, hid_t type, const std::vector<hsize_t>& shape,
+           const void* data, const std::string& path) {
   const Id space = space_of(shape);
   const Id timeless = created_without_time(H5P_DATASET_CREATE);
-  const Id set{check(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, timeless, H5P_DEFAULT), path, "cannot make " + name), H5Dclose};
-  if (H5Sget_simple_extent_npoints(space) > 0) check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path, "cannot write " + name);
+  const Id set{check(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, timeless, H5P_DEFAULT), path,
+                     "cannot make " + name),
+               H5Dclose};
+  if (H5Sget_simple_extent_npoints(space) > 0)
+    check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path, "cannot write " + name);
 }
 
 void write_text(hid_t parent, const std::string& name, const std::string& text, const std::string& path) {
@@ -123,27 +133,36 @@ void write_text(hid_t parent, const std::string& name, const std::string& text, 
   write(parent, name, type, {}, text.c_str(), path);
 }
 
-void write_attribute(hid_t object, const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* data, const std::string& path) {
+void write_attribute(hid_t object, const std::string& name, hid_t type, const std::vector<hsize_t>& shape,
+                     const void* data, const std::string& path) {
   const Id space = space_of(shape);
-  const Id attribute{check(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), path, "cannot make attribute " + name), H5Aclose};
+  const Id attribute{check(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), path,
+                           "cannot make attribute " + name),
+                     H5Aclose};
   check(H5Awrite(attribute, type, data), path, "cannot write attribute " + name);
 }
 
-void write_attribute_text(hid_t object, const std::string& name, const std::string& text, const std::string& path) {
+void write_attribute_text(hid_t object, const std::string& name, const std::string& text,
+                          const std::string& path) {
   const Id type = text_type(text.size());
   write_attribute(object, name, type, {}, text.c_str(), path);
 }
 
-Opened open(hid_t parent, const std::string& name, H5T_class_t type_class, std::size_t rank, const std::string& path) {
+Opened open(hid_t parent, const std::string& name, H5T_class_t type_class, std::size_t rank,
+            const std::string& path) {
   if (H5Lexists(parent, name.c_str(), H5P_DEFAULT) <= 0) fail("{}: has no data set \"{}\"", path, name);
   Opened out;
   out.id = Id{check(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), path, "cannot open " + name), H5Dclose};
   const Id type{H5Dget_type(out.id), H5Tclose};
   const Id space{H5Dget_space(out.id), H5Sclose};
   if (H5Tget_class(type) != type_class)
-    fail("{}: \"{}\" must hold {}", path, name, type_class == H5T_FLOAT ? "floating-point numbers" : type_class == H5T_INTEGER ? "integers" : "text");
+    fail("{}: \"{}\" must hold {}", path, name,
+         type_class == H5T_FLOAT     ? "floating-point numbers"
+         : type_class == H5T_INTEGER ? "integers"
+                                     : "text");
   const int dimensions = H5Sget_simple_extent_ndims(space);
-  if (dimensions != static_cast<int>(rank)) fail("{}: \"{}\" has {} dimensions, must have {}", path, name, dimensions, rank);
+  if (dimensions != static_cast<int>(rank))
+    fail("{}: \"{}\" has {} dimensions, must have {}", path, name, dimensions, rank);
   out.shape.resize(rank);
   if (rank > 0) H5Sget_simple_extent_dims(space, out.shape.data(), nullptr);
   return out;
@@ -153,8 +172,11 @@ void read(const Opened& data, const std::string& name, hid_t type, void* out, co
   check(H5Dread(data.id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, out), path, "cannot read " + name);
 }
 
-void read_rows(const Opened& data, const std::string& name, hid_t type, hsize_t first, hsize_t count, void* out, const std::string& path) {
-  if (first + count > data.shape.at(0)) fail("{}: \"{}\" ends at row {}, must reach {}; the file is damaged", path, name, data.shape[0], first + count);
+void read_rows(const Opened& data, const std::string& name, hid_t type, hsize_t first, hsize_t count,
+               void* out, const std::string& path) {
+  if (first + count > data.shape.at(0))
+    fail("{}: \"{}\" ends at row {}, must reach {}; the file is damaged", path, name, data.shape[0],
+         first + count);
   if (count == 0) return;
   std::vector<hsize_t> start(data.shape.size(), 0), size = data.shape;
   start[0] = first;
@@ -175,16 +197,19 @@ std::string read_text(hid_t parent, const std::string& name, const std::string& 
 }
 
 std::string read_attribute_text(hid_t object, const std::string& name, const std::string& path) {
-  const Id attribute{check(H5Aopen(object, name.c_str(), H5P_DEFAULT), path, "has no attribute " + name), H5Aclose};
+  const Id attribute{check(H5Aopen(object, name.c_str(), H5P_DEFAULT), path, "has no attribute " + name),
+                     H5Aclose};
   const Id type{H5Aget_type(attribute), H5Tclose};
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0) fail("{}: attribute \"{}\" must be a string of fixed length", path, name);
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0)
+    fail("{}: attribute \"{}\" must be a string of fixed length", path, name);
   std::vector<char> raw(H5Tget_size(type));
   check(H5Aread(attribute, type, raw.data()), path, "cannot read attribute " + name);
   return text_of(type, raw);
 }
 
 long long read_attribute_integer(hid_t object, const std::string& name, const std::string& path) {
-  const Id attribute{check(H5Aopen(object, name.c_str(), H5P_DEFAULT), path, "has no attribute " + name), H5Aclose};
+  const Id attribute{check(H5Aopen(object, name.c_str(), H5P_DEFAULT), path, "has no attribute " + name),
+                     H5Aclose};
   const Id space{H5Aget_space(attribute), H5Sclose};
   if (H5Sget_simple_extent_npoints(space) != 1) fail("{}: attribute \"{}\" must be one integer", path, name);
   long long value = 0;

@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-/// The little of HDF5 that palpate uses, with owners that close and errors that say which file and what failed.
+/// The little of HDF5 that palpate uses, with owners that close and errors that say which file and what
+/// failed.
 namespace palpate::store::h5 {
 
 /// Owns one HDF5 identifier.
@@ -20,7 +21,9 @@ class Id {
     std::swap(close_, other.close_);
     return *this;
   }
-  ~Id() { if (id_ >= 0) close_(id_); }
+  ~Id() {
+    if (id_ >= 0) close_(id_);
+  }
   operator hid_t() const { return id_; }
 
  private:
@@ -28,7 +31,8 @@ class Id {
   Close close_ = nullptr;
 };
 
-/// HDF5 prints its errors on standard error by default; while one of these lives, it keeps quiet and we speak.
+/// HDF5 prints its errors on standard error by default; while one of these lives, it keeps quiet and we
+/// speak.
 class Quiet {
  public:
   Quiet();
@@ -48,26 +52,32 @@ hid_t check(hid_t id, const std::string& path, const std::string& what);
 
 Id create_file(const std::string& path);
 Id open_file(const std::string& path);  ///< for reading
-/// A file that lives in memory; `path` is what messages call it.  Its bytes, once all is written, are image().
+/// A file that lives in memory; `path` is what messages call it.  Its bytes, once all is written, are
+/// image().
 Id create_in_memory(const std::string& path);
 std::string image(hid_t file, const std::string& path);
 Id create_group(hid_t parent, const std::string& name, const std::string& path);
 
 /// A data set written once, without the time of day.  `type` is the type in memory and in the file.
-void write(hid_t parent, const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* data, const std::string& path);
+void write(hid_t parent, const std::string& name, hid_t type, const std::vector<hsize_t>& shape,
+           const void* data, const std::string& path);
 void write_text(hid_t parent, const std::string& name, const std::string& text, const std::string& path);
-void write_attribute(hid_t object, const std::string& name, hid_t type, const std::vector<hsize_t>& shape, const void* data, const std::string& path);
-void write_attribute_text(hid_t object, const std::string& name, const std::string& text, const std::string& path);
+void write_attribute(hid_t object, const std::string& name, hid_t type, const std::vector<hsize_t>& shape,
+                     const void* data, const std::string& path);
+void write_attribute_text(hid_t object, const std::string& name, const std::string& text,
+                          const std::string& path);
 
 /// A data set opened for reading, checked: of this class of type and this many dimensions.
 struct Opened {
   Id id;
   std::vector<hsize_t> shape;
 };
-Opened open(hid_t parent, const std::string& name, H5T_class_t type_class, std::size_t rank, const std::string& path);
+Opened open(hid_t parent, const std::string& name, H5T_class_t type_class, std::size_t rank,
+            const std::string& path);
 void read(const Opened& data, const std::string& name, hid_t type, void* out, const std::string& path);
 /// Rows [first, first + count) of a data set.
-void read_rows(const Opened& data, const std::string& name, hid_t type, hsize_t first, hsize_t count, void* out, const std::string& path);
+void read_rows(const Opened& data, const std::string& name, hid_t type, hsize_t first, hsize_t count,
+               void* out, const std::string& path);
 std::string read_text(hid_t parent, const std::string& name, const std::string& path);
 std::string read_attribute_text(hid_t object, const std::string& name, const std::string& path);
 long long read_attribute_integer(hid_t object, const std::string& name, const std::string& path);

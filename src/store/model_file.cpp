@@ -15,7 +15,8 @@ struct Writer {
   template <class Matrix>
   void matrix(hid_t parent, const char* name, const Matrix& m) const {
     const hid_t type = std::is_same_v<typename Matrix::Scalar, double> ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT;
-    h5::write(parent, name, type, {static_cast<hsize_t>(m.cols()), static_cast<hsize_t>(m.rows())}, m.data(), path);
+    h5::write(parent, name, type, {static_cast<hsize_t>(m.cols()), static_cast<hsize_t>(m.rows())}, m.data(),
+              path);
   }
   void column(hid_t parent, const char* name, const std::vector<int>& values) const {
     h5::write(parent, name, H5T_NATIVE_INT, {values.size()}, values.data(), path);
@@ -23,7 +24,9 @@ struct Writer {
   void column(hid_t parent, const char* name, const std::vector<double>& values) const {
     h5::write(parent, name, H5T_NATIVE_DOUBLE, {values.size()}, values.data(), path);
   }
-  void text(hid_t parent, const char* name, const std::string& value) const { h5::write_text(parent, name, value, path); }
+  void text(hid_t parent, const char* name, const std::string& value) const {
+    h5::write_text(parent, name, value, path);
+  }
   void lines(hid_t parent, const char* name, const std::vector<std::string>& values) const {
     std::string joined;
     for (const std::string& value : values) {
@@ -54,7 +57,8 @@ void write_proxies(const Writer& to, hid_t file, const std::vector<ProxyHull>& p
     bones.push_back(proxy.bone);
   }
   Points corners(3, corner_offsets.back());
-  for (std::size_t p = 0; p < proxies.size(); ++p) corners.middleCols(corner_offsets[p], proxies[p].corners.cols()) = proxies[p].corners;
+  for (std::size_t p = 0; p < proxies.size(); ++p)
+    corners.middleCols(corner_offsets[p], proxies[p].corners.cols()) = proxies[p].corners;
   const h5::Id group = to.group(file, "proxies");
   to.matrix(group, "corners", corners);
   to.column(group, "corner_offsets", corner_offsets);

@@ -17,7 +17,10 @@ namespace {
 class Group {
  public:
   Group(hid_t file, const char* name, const std::string& path) : name_(name), path_(path) {
-    if (H5Lexists(file, name, H5P_DEFAULT) > 0) id_ = h5::Id{h5::check(H5Gopen2(file, name, H5P_DEFAULT), path, std::string("cannot open group ") + name), H5Gclose};
+    if (H5Lexists(file, name, H5P_DEFAULT) > 0)
+      id_ =
+          h5::Id{h5::check(H5Gopen2(file, name, H5P_DEFAULT), path, std::string("cannot open group ") + name),
+                 H5Gclose};
   }
   explicit operator bool() const { return id_ >= 0; }
   std::string full(const char* name) const { return fmt::format("{}: \"{}/{}\"", path_, name_, name); }
@@ -27,7 +30,8 @@ class Group {
   Matrix matrix(const char* name, Eigen::Index width, Eigen::Index rows = -1) const {
     constexpr bool real = std::is_same_v<typename Matrix::Scalar, double>;
     const h5::Opened set = h5::open(id_, name, real ? H5T_FLOAT : H5T_INTEGER, 2, path_);
-    if (set.shape[1] != static_cast<hsize_t>(width)) fail("{} is {} x {}, must be n x {}", full(name), set.shape[0], set.shape[1], width);
+    if (set.shape[1] != static_cast<hsize_t>(width))
+      fail("{} is {} x {}, must be n x {}", full(name), set.shape[0], set.shape[1], width);
     Matrix out(width, counted(name, set.shape[0], rows));
     h5::read(set, name, real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT, out.data(), path_);
     if constexpr (real)
@@ -59,17 +63,21 @@ class Group {
   /// Offsets that cut `total` entries into `parts`.
   std::vector<int> offsets(const char* name, Eigen::Index parts, Eigen::Index total) const {
     const std::vector<int> out = column<int>(name, parts + 1);
-    if (out.front() != 0 || out.back() != total || !std::is_sorted(out.begin(), out.end())) fail("{} must rise from 0 to {}", full(name), total);
+    if (out.front() != 0 || out.back() != total || !std::is_sorted(out.begin(), out.end()))
+      fail("{} must rise from 0 to {}", full(name), total);
     return out;
   }
   void within(const char* name, int index, int low, Eigen::Index end) const {
-    if (index < low || index >= end) fail("{} names {}, must lie in [{}, {}); indices count from 0", full(name), index, low, end);
+    if (index < low || index >= end)
+      fail("{} names {}, must lie in [{}, {}); indices count from 0", full(name), index, low, end);
   }
 
  private:
   Eigen::Index counted(const char* name, hsize_t found, Eigen::Index wanted) const {
-    if (found > static_cast<hsize_t>(std::numeric_limits<int>::max())) fail("{} has {} rows, more than {}", full(name), found, std::numeric_limits<int>::max());
-    if (wanted >= 0 && found != static_cast<hsize_t>(wanted)) fail("{} has {} rows, must have {}", full(name), found, wanted);
+    if (found > static_cast<hsize_t>(std::numeric_limits<int>::max()))
+      fail("{} has {} rows, more than {}", full(name), found, std::numeric_limits<int>::max());
+    if (wanted >= 0 && found != static_cast<hsize_t>(wanted))
+      fail("{} has {} rows, must have {}", full(name), found, wanted);
     return static_cast<Eigen::Index>(found);
   }
 
@@ -85,13 +93,17 @@ void read_skin(hid_t file, const std::string& path, LayeredModel& model) {
   }
   model.skin.vertices = skin.matrix<Points>("vertices", 3);
   model.skin.faces = skin.matrix<Faces>("faces", 3);
-  for (Eigen::Index i = 0; i < model.skin.faces.size(); ++i) skin.within("faces", model.skin.faces.data()[i], 0, model.skin.vertices.cols());
+  for (Eigen::Index i = 0; i < model.skin.faces.size(); ++i)
+    skin.within("faces", model.skin.faces.data()[i], 0, model.skin.vertices.cols());
   if (!embedding) return;
   model.embedding.tet = embedding.column<int>("tet", model.skin.vertices.cols());
   for (const int tet : model.embedding.tet) embedding.within("tet", tet, 0, model.tets.tets.cols());
-  model.embedding.weights = embedding.matrix<Eigen::Matrix<double, 4, Eigen::Dynamic>>("weights", 4, model.skin.vertices.cols());
-  for (Eigen::Index i = 0; i < model.embedding.weights.cols(); ++i)  // a vertex far outside has large weights, whose sum rounds accordingly
-    if (const double sum = model.embedding.weights.col(i).sum(); std::abs(sum - 1.0) > 1e-9 * (1.0 + model.embedding.weights.col(i).cwiseAbs().sum()))
+  model.embedding.weights =
+      embedding.matrix<Eigen::Matrix<double, 4, Eigen::Dynamic>>("weights", 4, model.skin.vertices.cols());
+  // a vertex far outside has large weights, whose sum rounds accordingly
+  for (Eigen::Index i = 0; i < model.embedding.weights.cols(); ++i)
+    if (const double sum = model.embedding.weights.col(i).sum();
+        std::abs(sum - 1.0) > 1e-9 * (1.0 + model.embedding.weights.col(i).cwiseAbs().sum()))
       fail("{}: row {} sums to {}, must sum to 1", embedding.full("weights"), i, sum);
 }
 
@@ -102,12 +114,16 @@ void read_skeleton(hid_t file, const std::string& path, LayeredModel& model) {
   const auto count = static_cast<Eigen::Index>(names.size());
   const std::vector<int> parents = group.column<int>("parent", count);
   const Points heads = group.matrix<Points>("head", 3, count), tails = group.matrix<Points>("tail", 3, count);
-  const std::vector<double> head_radii = group.column<double>("head_radius", count), tail_radii = group.column<double>("tail_radius", count);
+  const std::vector<double> head_radii = group.column<double>("head_radius", count),
+                            tail_radii = group.column<double>("tail_radius", count);
   for (std::size_t b = 0; b < names.size(); ++b) {
     const auto at = static_cast<Eigen::Index>(b);
     group.within("parent", parents[b], -1, at);  // parents stand before their children
-    if (!(head_radii[b] > 0 && tail_radii[b] > 0)) fail("{}: bone \"{}\" has radii {} and {} m, must be positive", path, names[b], head_radii[b], tail_radii[b]);
-    model.skeleton.bones.push_back({names[b], parents[b], heads.col(at), tails.col(at), head_radii[b], tail_radii[b]});
+    if (!(head_radii[b] > 0 && tail_radii[b] > 0))
+      fail("{}: bone \"{}\" has radii {} and {} m, must be positive", path, names[b], head_radii[b],
+           tail_radii[b]);
+    model.skeleton.bones.push_back(
+        {names[b], parents[b], heads.col(at), tails.col(at), head_radii[b], tail_radii[b]});
   }
   model.bone_of_node = group.column<int>("bone_of_node", model.tets.nodes.cols());
   for (const int bone : model.bone_of_node) group.within("bone_of_node", bone, -1, count);
@@ -121,21 +137,26 @@ void read_proxies(hid_t file, const std::string& path, LayeredModel& model) {
   const auto count = static_cast<Eigen::Index>(bones.size());
   const Points corners = group.matrix<Points>("corners", 3);
   const std::vector<int> of_corners = group.offsets("corner_offsets", count, corners.cols());
-  const std::vector<int> of_members = group.offsets("member_offsets", count, static_cast<Eigen::Index>(members.size()));
+  const std::vector<int> of_members =
+      group.offsets("member_offsets", count, static_cast<Eigen::Index>(members.size()));
   std::vector<char> held(static_cast<std::size_t>(model.skin.vertices.cols()), 0);
   for (const int vertex : members) {
     group.within("members", vertex, 0, model.skin.vertices.cols());
     held[static_cast<std::size_t>(vertex)] = 1;
   }
-  if (const auto lost = std::find(held.begin(), held.end(), 0); lost != held.end()) fail("{}: skin vertex {} belongs to no proxy", path, lost - held.begin());
+  if (const auto lost = std::find(held.begin(), held.end(), 0); lost != held.end())
+    fail("{}: skin vertex {} belongs to no proxy", path, lost - held.begin());
   for (std::size_t p = 0; p < bones.size(); ++p) {
     group.within("bone", bones[p], -1, static_cast<Eigen::Index>(model.skeleton.bones.size()));
     ProxyHull proxy;
     const int size = of_corners[p + 1] - of_corners[p];
-    if (size < 1 || size > kLargestHull) fail("{}: proxy {} has {} corners, must have between 1 and {}", path, p, size, kLargestHull);
+    if (size < 1 || size > kLargestHull)
+      fail("{}: proxy {} has {} corners, must have between 1 and {}", path, p, size, kLargestHull);
     proxy.corners = corners.middleCols(of_corners[p], size);
     proxy.members.assign(members.begin() + of_members[p], members.begin() + of_members[p + 1]);
-    if (std::adjacent_find(proxy.members.begin(), proxy.members.end(), std::greater_equal<>()) != proxy.members.end()) fail("{}: the members of proxy {} must rise, each once", path, p);
+    if (std::adjacent_find(proxy.members.begin(), proxy.members.end(), std::greater_equal<>()) !=
+        proxy.members.end())
+      fail("{}: the members of proxy {} must rise, each once", path, p);
     proxy.bone = bones[p];
     model.proxies.push_back(std::move(proxy));
   }
@@ -148,18 +169,25 @@ std::vector<MaterialRegion> regions_in(hid_t file, const std::string& path, Eige
   const auto count = static_cast<Eigen::Index>(names.size());
   const std::vector<int> tets = group.column<int>("tets");
   const std::vector<int> offsets = group.offsets("offsets", count, static_cast<Eigen::Index>(tets.size()));
-  const std::vector<double> stiffness = group.column<double>("youngs_modulus_factor", count), density = group.column<double>("density_factor", count);
+  const std::vector<double> stiffness = group.column<double>("youngs_modulus_factor", count),
+                            density = group.column<double>("density_factor", count);
   std::vector<char> taken(static_cast<std::size_t>(count_of_tets), 0);
   for (const int tet : tets) {
     group.within("tets", tet, 0, count_of_tets);
-    if (std::exchange(taken[static_cast<std::size_t>(tet)], 1)) fail("{}: tetrahedron {} stands in it twice; it belongs to one region", group.full("tets"), tet);
+    if (std::exchange(taken[static_cast<std::size_t>(tet)], 1))
+      fail("{}: tetrahedron {} stands in it twice; it belongs to one region", group.full("tets"), tet);
   }
   std::vector<MaterialRegion> out;
   for (std::size_t r = 0; r < names.size(); ++r) {
-    if (std::count(names.begin(), names.end(), names[r]) > 1) fail("{}: \"{}\" names two regions", group.full("names"), names[r]);
-    if (!(stiffness[r] > 0 && density[r] > 0)) fail("{}: region \"{}\" has factors {} and {}, must be positive", path, names[r], stiffness[r], density[r]);
-    out.push_back({names[r], {tets.begin() + offsets[r], tets.begin() + offsets[r + 1]}, stiffness[r], density[r]});
-    if (!std::is_sorted(out.back().tets.begin(), out.back().tets.end())) fail("{}: those of region \"{}\" must rise", group.full("tets"), names[r]);
+    if (std::count(names.begin(), names.end(), names[r]) > 1)
+      fail("{}: \"{}\" names two regions", group.full("names"), names[r]);
+    if (!(stiffness[r] > 0 && density[r] > 0))
+      fail("{}: region \"{}\" has factors {} and {}, must be positive", path, names[r], stiffness[r],
+           density[r]);
+    out.push_back(
+        {names[r], {tets.begin() + offsets[r], tets.begin() + offsets[r + 1]}, stiffness[r], density[r]});
+    if (!std::is_sorted(out.back().tets.begin(), out.back().tets.end()))
+      fail("{}: those of region \"{}\" must rise", group.full("tets"), names[r]);
   }
   return out;
 }
@@ -167,7 +195,8 @@ std::vector<MaterialRegion> regions_in(hid_t file, const std::string& path, Eige
 ModelRecord read_record(hid_t file, const std::string& path) {
   const Group group(file, "made", path);
   if (!group) return {};
-  ModelRecord record{group.text("source"), group.text("source_hash"), group.text("options"), group.text("version"), group.lines("notes"), {}};
+  ModelRecord record{group.text("source"),  group.text("source_hash"), group.text("options"),
+                     group.text("version"), group.lines("notes"),      {}};
   const std::vector<std::string> names = group.lines("figure_names");
   const std::vector<double> values = group.column<double>("figures", static_cast<Eigen::Index>(names.size()));
   for (std::size_t i = 0; i < names.size(); ++i) record.figures.emplace_back(names[i], values[i]);
@@ -179,7 +208,11 @@ ModelRecord read_record(hid_t file, const std::string& path) {
 ModelFile read_model(const std::string& path) {
   ModelFile out;
   out.model.tets = read_mesh(path);
-  if (!is_model(path)) fail("{}: holds tetrahedra alone, not a model: its format is not \"{}\"; `palpate model {} -o FILE.h5` makes one of it", path, kModelFormat, path);
+  if (!is_model(path))
+    fail(
+        "{}: holds tetrahedra alone, not a model: its format is not \"{}\"; `palpate model {} -o FILE.h5` "
+        "makes one of it",
+        path, kModelFormat, path);
   const h5::Quiet quiet;
   const h5::Id file = h5::open_file(path);
   out.model.name = h5::read_attribute_text(file, "name", path);

@@ -9,10 +9,13 @@
 
 // VTKHDF, UnstructuredGrid, temporal, as its reader takes it apart (offsets in rows):
 //   points of step s      Points[PointOffsets[s] ... + NumberOfPoints[PartOffsets[s]]]
-//   cells of step s       Offsets[CellOffsets[s] + PartOffsets[s] ... + NumberOfCells + 1], Connectivity[ConnectivityIdOffsets[s] ...]
-//   data of step s        PointData/NAME[PointDataOffsets/NAME[s] ...], CellData/NAME[CellDataOffsets/NAME[s] ...]
-// One topology for all steps therefore means: one part, one entry in each NumberOf..., and PartOffsets, CellOffsets,
-// ConnectivityIdOffsets, CellDataOffsets all zero; only the offsets of points and of their data move.
+//   cells of step s       Offsets[CellOffsets[s] + PartOffsets[s] ... + NumberOfCells + 1],
+//   Connectivity[ConnectivityIdOffsets[s] ...]
+//   data of step s        PointData/NAME[PointDataOffsets/NAME[s] ...], CellData/NAME[CellDataOffsets/NAME[s]
+//   ...]
+// One topology for all steps therefore means: one part, one entry in each NumberOf..., and PartOffsets,
+// CellOffsets, ConnectivityIdOffsets, CellDataOffsets all zero; only the offsets of points and of their data
+// move.
 namespace palpate::store {
 namespace {
 constexpr std::uint8_t kVtkTriangle = 5, kVtkTetra = 10;
@@ -34,8 +37,10 @@ struct Cells {
 
 void check_part(const RunPart& part) {
   const auto n = part.reference.cols();
-  PALPATE_CHECK(part.tets.size() == 0 || (part.tets.minCoeff() >= 0 && part.tets.maxCoeff() < n), "part \"{}\": tetrahedra of {} points", part.name, n);
-  PALPATE_CHECK(part.faces.size() == 0 || (part.faces.minCoeff() >= 0 && part.faces.maxCoeff() < n), "part \"{}\": faces of {} points", part.name, n);
+  PALPATE_CHECK(part.tets.size() == 0 || (part.tets.minCoeff() >= 0 && part.tets.maxCoeff() < n),
+                "part \"{}\": tetrahedra of {} points", part.name, n);
+  PALPATE_CHECK(part.faces.size() == 0 || (part.faces.minCoeff() >= 0 && part.faces.maxCoeff() < n),
+                "part \"{}\": faces of {} points", part.name, n);
   PALPATE_CHECK(part.reference.allFinite(), "part \"{}\": reference positions are not finite", part.name);
 }
 }  // namespace
@@ -46,13 +51,17 @@ struct RunFile::Impl {
   Points reference, displacement;
   hsize_t capacity = 1;
   std::int64_t steps = 0;
-  std::vector<Series> values, zeros, offsets, fields;  ///< one row of time, of zeros, of offsets a step; rows of data a step
+  /// one row of time, of zeros, of offsets a step; rows of data a step
+  std::vector<Series> values, zeros, offsets, fields;
 
   void write_cells(const std::vector<RunPart>& parts);
   void write_scene(const std::vector<RunPart>& parts, const RunInfo& info);
   void make_series();
   void resize(hsize_t new_capacity);
-  void each(auto&& f) { for (auto* list : {&values, &zeros, &offsets, &fields}) for (Series& one : *list) f(one); }
+  void each(auto&& f) {
+    for (auto* list : {&values, &zeros, &offsets, &fields})
+      for (Series& one : *list) f(one);
+  }
 };
 
 void RunFile::Impl::write_cells(const std::vector<RunPart>& parts) {
@@ -63,18 +72,22 @@ void RunFile::Impl::write_cells(const std::vector<RunPart>& parts) {
     cells.add(parts[i].faces, kVtkTriangle, first, static_cast<int>(i));
     first += parts[i].reference.cols();
   }
-  const auto count = [&](const char* name, std::int64_t n) { h5::write(root, name, H5T_NATIVE_INT64, {1}, &n, path); };
+  const auto count = [&](const char* name, std::int64_t n) {
+    h5::write(root, name, H5T_NATIVE_INT64, {1}, &n, path);
+  };
   count("NumberOfPoints", first);
   count("NumberOfCells", static_cast<std::int64_t>(cells.types.size()));
   count("NumberOfConnectivityIds", static_cast<std::int64_t>(cells.connectivity.size()));
-  h5::write(root, "Connectivity", H5T_NATIVE_INT64, {cells.connectivity.size()}, cells.connectivity.data(), path);
+  h5::write(root, "Connectivity", H5T_NATIVE_INT64, {cells.connectivity.size()}, cells.connectivity.data(),
+            path);
   h5::write(root, "Offsets", H5T_NATIVE_INT64, {cells.offsets.size()}, cells.offsets.data(), path);
   h5::write(root, "Types", H5T_NATIVE_UINT8, {cells.types.size()}, cells.types.data(), path);
   const h5::Id data = h5::create_group(root, "CellData", path);
   h5::write(data, "body", H5T_NATIVE_INT32, {cells.body.size()}, cells.body.data(), path);
 }
 
-/// What VTK need not know stands beside its group, where its format leaves room: the scene, and which points and cells are whose.
+/// What VTK need not know stands beside its group, where its format leaves room: the scene, and which points
+/// and cells are whose.
 void RunFile::Impl::write_scene(const std::vector<RunPart>& parts, const RunInfo& info) {
   const h5::Id group = h5::create_group(file, "palpate", path);
   h5::write_attribute_text(group, "version", info.version, path);
@@ -85,7 +98,8 @@ void RunFile::Impl::write_scene(const std::vector<RunPart>& parts, const RunInfo
     const h5::Id part = h5::create_group(list, std::to_string(i), path);
     h5::write_attribute_text(part, "name", parts[i].name, path);
     const RunPart& p = parts[i];
-    h5::write(part, "reference", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(p.reference.cols()), 3}, p.reference.data(), path);
+    h5::write(part, "reference", H5T_NATIVE_DOUBLE, {static_cast<hsize_t>(p.reference.cols()), 3},
+              p.reference.data(), path);
     h5::write(part, "tets", H5T_NATIVE_INT, {static_cast<hsize_t>(p.tets.cols()), 4}, p.tets.data(), path);
     h5::write(part, "faces", H5T_NATIVE_INT, {static_cast<hsize_t>(p.faces.cols()), 3}, p.faces.data(), path);
   }
@@ -96,13 +110,16 @@ void RunFile::Impl::write_scene(const std::vector<RunPart>& parts, const RunInfo
 void RunFile::Impl::make_series() {
   const hsize_t n = static_cast<hsize_t>(reference.cols());
   const h5::Id point_data = h5::create_group(root, "PointData", path);
-  const h5::Id point_offsets = h5::create_group(steps_group, "PointDataOffsets", path), cell_offsets = h5::create_group(steps_group, "CellDataOffsets", path);
+  const h5::Id point_offsets = h5::create_group(steps_group, "PointDataOffsets", path),
+               cell_offsets = h5::create_group(steps_group, "CellDataOffsets", path);
   values.emplace_back(steps_group, "Values", H5T_NATIVE_DOUBLE, 1, 0, capacity, "s", path);
   values.emplace_back(steps_group, "NumberOfParts", H5T_NATIVE_INT64, 1, 0, capacity, "", path);
-  for (const char* name : {"PartOffsets", "CellOffsets", "ConnectivityIdOffsets"}) zeros.emplace_back(steps_group, name, H5T_NATIVE_INT64, 1, 0, capacity, "", path);
+  for (const char* name : {"PartOffsets", "CellOffsets", "ConnectivityIdOffsets"})
+    zeros.emplace_back(steps_group, name, H5T_NATIVE_INT64, 1, 0, capacity, "", path);
   zeros.emplace_back(cell_offsets, "body", H5T_NATIVE_INT64, 1, 0, capacity, "", path);
   offsets.emplace_back(steps_group, "PointOffsets", H5T_NATIVE_INT64, 1, 0, capacity, "", path);
-  for (const char* name : {"displacement", "velocity", "stress"}) offsets.emplace_back(point_offsets, name, H5T_NATIVE_INT64, 1, 0, capacity, "", path);
+  for (const char* name : {"displacement", "velocity", "stress"})
+    offsets.emplace_back(point_offsets, name, H5T_NATIVE_INT64, 1, 0, capacity, "", path);
   fields.emplace_back(root, "Points", H5T_NATIVE_DOUBLE, n, 3, capacity, "m", path);
   fields.emplace_back(point_data, "displacement", H5T_NATIVE_DOUBLE, n, 3, capacity, "m", path);
   fields.emplace_back(point_data, "velocity", H5T_NATIVE_DOUBLE, n, 3, capacity, "m/s", path);
@@ -116,7 +133,8 @@ void RunFile::Impl::resize(hsize_t new_capacity) {
   capacity = new_capacity;
 }
 
-RunFile::RunFile(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info) : impl_(std::make_unique<Impl>()) {
+RunFile::RunFile(const std::string& path, const std::vector<RunPart>& parts, const RunInfo& info)
+    : impl_(std::make_unique<Impl>()) {
   counters::count("store.run_file");
   const h5::Quiet quiet;
   Impl& d = *impl_;
@@ -143,7 +161,8 @@ RunFile::RunFile(const std::string& path, const std::vector<RunPart>& parts, con
   d.write_cells(parts);
   d.steps_group = h5::create_group(d.root, "Steps", path);
   h5::write_attribute(d.steps_group, "NSteps", H5T_NATIVE_INT64, {}, &none, path);
-  d.n_steps = h5::Id{h5::check(H5Aopen(d.steps_group, "NSteps", H5P_DEFAULT), path, "cannot open NSteps"), H5Aclose};
+  d.n_steps =
+      h5::Id{h5::check(H5Aopen(d.steps_group, "NSteps", H5P_DEFAULT), path, "cannot open NSteps"), H5Aclose};
   d.make_series();
   h5::check(H5Fflush(d.file, H5F_SCOPE_LOCAL), path, "cannot be flushed; is the disk full?");
 }
@@ -152,9 +171,11 @@ void RunFile::append(double time_s, const Points& points, const Points& velocity
   Impl& d = *impl_;
   const Eigen::Index n = d.reference.cols();
   PALPATE_CHECK(d.file >= 0, "{} is closed", d.path);
-  PALPATE_CHECK(points.cols() == n && velocity.cols() == n && stress.size() == n, "{} points, {} velocities, {} stresses; the run has {}", points.cols(),
-                velocity.cols(), stress.size(), n);
-  PALPATE_CHECK(points.allFinite() && velocity.allFinite() && stress.allFinite(), "t = {}: a state that is not finite must not be recorded", time_s);
+  PALPATE_CHECK(points.cols() == n && velocity.cols() == n && stress.size() == n,
+                "{} points, {} velocities, {} stresses; the run has {}", points.cols(), velocity.cols(),
+                stress.size(), n);
+  PALPATE_CHECK(points.allFinite() && velocity.allFinite() && stress.allFinite(),
+                "t = {}: a state that is not finite must not be recorded", time_s);
   const h5::Quiet quiet;
   const hsize_t step = static_cast<hsize_t>(d.steps);
   if (step >= d.capacity) d.resize(2 * d.capacity);
@@ -171,7 +192,8 @@ void RunFile::append(double time_s, const Points& points, const Points& velocity
   d.fields[3].write(step, stress.data());
   h5::check(H5Fflush(d.file, H5F_SCOPE_LOCAL), d.path, "cannot be flushed; is the disk full?");
 
-  const std::int64_t done = d.steps + 1;  // the commit: until this number is in the file, the step is not there
+  // the commit: until this number is in the file, the step is not there
+  const std::int64_t done = d.steps + 1;
   h5::check(H5Awrite(d.n_steps, H5T_NATIVE_INT64, &done), d.path, "cannot write NSteps");
   h5::check(H5Fflush(d.file, H5F_SCOPE_LOCAL), d.path, "cannot be flushed; is the disk full?");
   d.steps = done;

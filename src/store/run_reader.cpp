@@ -7,17 +7,21 @@ namespace {
 
 /// A 2-d data set as a matrix whose columns are its rows.
 template <class Matrix>
-Matrix read_columns(hid_t parent, const char* name, H5T_class_t type_class, hid_t type, const std::string& path) {
+Matrix read_columns(hid_t parent, const char* name, H5T_class_t type_class, hid_t type,
+                    const std::string& path) {
   const h5::Opened set = h5::open(parent, name, type_class, 2, path);
-  if (set.shape[1] != static_cast<hsize_t>(Matrix::RowsAtCompileTime)) fail("{}: \"{}\" has {} columns, must have {}", path, name, set.shape[1], int{Matrix::RowsAtCompileTime});
+  if (set.shape[1] != static_cast<hsize_t>(Matrix::RowsAtCompileTime))
+    fail("{}: \"{}\" has {} columns, must have {}", path, name, set.shape[1], int{Matrix::RowsAtCompileTime});
   Matrix out(Matrix::RowsAtCompileTime, static_cast<Eigen::Index>(set.shape[0]));
   if (out.size() > 0) h5::read(set, name, type, out.data(), path);
   return out;
 }
 
 h5::Id open_group(hid_t parent, const std::string& name, const std::string& path) {
-  if (H5Lexists(parent, name.c_str(), H5P_DEFAULT) <= 0) fail("{}: has no group \"{}\"; is it a run of palpate?", path, name);
-  return {h5::check(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), path, "cannot open group " + name), H5Gclose};
+  if (H5Lexists(parent, name.c_str(), H5P_DEFAULT) <= 0)
+    fail("{}: has no group \"{}\"; is it a run of palpate?", path, name);
+  return {h5::check(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), path, "cannot open group " + name),
+          H5Gclose};
 }
 
 }  // namespace
@@ -57,17 +61,21 @@ void RunReader::Impl::read_steps() {
   const h5::Id steps = open_group(root, "Steps", path);
   const long long count = h5::read_attribute_integer(steps, "NSteps", path);
   const h5::Opened values = h5::open(steps, "Values", H5T_FLOAT, 1, path);
-  if (count < 0 || static_cast<hsize_t>(count) > values.shape[0]) fail("{}: NSteps = {} but {} times; the file is damaged", path, count, values.shape[0]);
+  if (count < 0 || static_cast<hsize_t>(count) > values.shape[0])
+    fail("{}: NSteps = {} but {} times; the file is damaged", path, count, values.shape[0]);
   times.resize(static_cast<std::size_t>(count));
   h5::read_rows(values, "Values", H5T_NATIVE_DOUBLE, 0, static_cast<hsize_t>(count), times.data(), path);
 }
 
 void RunReader::Impl::rows(const char* name, std::size_t rank, int step, double* out) const {
-  if (step < 0 || step >= static_cast<int>(times.size())) fail("{}: step {} must lie in [0, {})", path, step, times.size());
+  if (step < 0 || step >= static_cast<int>(times.size()))
+    fail("{}: step {} must lie in [0, {})", path, step, times.size());
   const h5::Quiet quiet;
   const h5::Opened set = h5::open(root, name, H5T_FLOAT, rank, path);
-  if (rank == 2 && set.shape[1] != 3) fail("{}: \"{}\" has {} columns, must have 3", path, name, set.shape[1]);
-  h5::read_rows(set, name, H5T_NATIVE_DOUBLE, static_cast<hsize_t>(step) * static_cast<hsize_t>(n), static_cast<hsize_t>(n), out, path);
+  if (rank == 2 && set.shape[1] != 3)
+    fail("{}: \"{}\" has {} columns, must have 3", path, name, set.shape[1]);
+  h5::read_rows(set, name, H5T_NATIVE_DOUBLE, static_cast<hsize_t>(step) * static_cast<hsize_t>(n),
+                static_cast<hsize_t>(n), out, path);
 }
 
 RunReader::RunReader(const std::string& path) : impl_(std::make_unique<Impl>()) {

@@ -10,8 +10,8 @@
 namespace palpate::store {
 namespace {
 
-constexpr int kBusyMs = 20000;  ///< another program may be reading
-constexpr int kTextColumns = 9; ///< before the numbers: key ... reason
+constexpr int kBusyMs = 20000;   ///< another program may be reading
+constexpr int kTextColumns = 9;  ///< before the numbers: key ... reason
 
 /// A prepared statement; indices of parameters from 1, of columns from 0, as SQLite counts.
 class Statement {
@@ -23,10 +23,16 @@ class Statement {
   Statement(const Statement&) = delete;
   Statement& operator=(const Statement&) = delete;
 
-  void bind(int i, const std::string& text) { check(sqlite3_bind_text(statement_, i, text.c_str(), static_cast<int>(text.size()), SQLITE_TRANSIENT)); }
-  void bind(int i, double value) { check(std::isnan(value) ? sqlite3_bind_null(statement_, i) : sqlite3_bind_double(statement_, i, value)); }
+  void bind(int i, const std::string& text) {
+    check(sqlite3_bind_text(statement_, i, text.c_str(), static_cast<int>(text.size()), SQLITE_TRANSIENT));
+  }
+  void bind(int i, double value) {
+    check(std::isnan(value) ? sqlite3_bind_null(statement_, i) : sqlite3_bind_double(statement_, i, value));
+  }
   void bind(int i, int value) { check(sqlite3_bind_int(statement_, i, value)); }
-  void bind_blob(int i, const std::string& bytes) { check(sqlite3_bind_blob64(statement_, i, bytes.data(), bytes.size(), SQLITE_TRANSIENT)); }
+  void bind_blob(int i, const std::string& bytes) {
+    check(sqlite3_bind_blob64(statement_, i, bytes.data(), bytes.size(), SQLITE_TRANSIENT));
+  }
   /// True while there is a row.
   bool step() {
     const int outcome = sqlite3_step(statement_);
@@ -35,16 +41,20 @@ class Statement {
   }
   std::string text(int i) const {
     const void* bytes = sqlite3_column_blob(statement_, i);
-    return bytes ? std::string(static_cast<const char*>(bytes), static_cast<std::size_t>(sqlite3_column_bytes(statement_, i))) : std::string();
+    return bytes ? std::string(static_cast<const char*>(bytes),
+                               static_cast<std::size_t>(sqlite3_column_bytes(statement_, i)))
+                 : std::string();
   }
   double number(int i) const {
-    return sqlite3_column_type(statement_, i) == SQLITE_NULL ? std::numeric_limits<double>::quiet_NaN() : sqlite3_column_double(statement_, i);
+    return sqlite3_column_type(statement_, i) == SQLITE_NULL ? std::numeric_limits<double>::quiet_NaN()
+                                                             : sqlite3_column_double(statement_, i);
   }
   int integer(int i) const { return sqlite3_column_int(statement_, i); }
 
  private:
   void check(int outcome) {
-    if (outcome != SQLITE_OK) fail("{}: {} (SQLite: {})", path_, sqlite3_errmsg(db_), sqlite3_errstr(outcome));
+    if (outcome != SQLITE_OK)
+      fail("{}: {} (SQLite: {})", path_, sqlite3_errmsg(db_), sqlite3_errstr(outcome));
   }
   sqlite3* db_;
   const std::string& path_;
@@ -71,7 +81,10 @@ struct StudyDb::Impl {
     if (sqlite3_exec(db, sql.c_str(), nullptr, nullptr, &message) == SQLITE_OK) return;
     const std::string why = message ? message : "unknown";
     sqlite3_free(message);
-    fail("{}: is no study database of palpate, or cannot be written ({}); remove it, or choose another folder with -o DIR", path, why);
+    fail(
+        "{}: is no study database of palpate, or cannot be written ({}); remove it, or choose another folder "
+        "with -o DIR",
+        path, why);
   }
 
   /// The columns that the table has now, after the texts.
@@ -88,19 +101,27 @@ struct StudyDb::Impl {
   sqlite3* db = nullptr;
 };
 
-StudyDb::StudyDb(const std::string& path, const std::vector<std::string>& numbers) : impl_(std::make_unique<Impl>(path, numbers)) {
+StudyDb::StudyDb(const std::string& path, const std::vector<std::string>& numbers)
+    : impl_(std::make_unique<Impl>(path, numbers)) {
   std::string columns;
   for (const std::string& name : numbers) columns += ", \"" + name + "\" real";
-  impl_->execute("create table if not exists run (key text not null, repeat integer not null, scene text, label text, integrator text, "
-                 "setting_name text, setting real, status text, reason text" + columns + ", primary key (key, repeat))");
-  impl_->execute("create table if not exists artefact (key text primary key, what text, status text, reason text, cpu_s real, bytes blob)");
-  if (impl_->found_columns() != numbers) fail("{}: was made by another version of palpate, with other columns; start anew with --fresh", path);
+  impl_->execute(
+      "create table if not exists run (key text not null, repeat integer not null, scene text, label text, "
+      "integrator text, "
+      "setting_name text, setting real, status text, reason text" +
+      columns + ", primary key (key, repeat))");
+  impl_->execute(
+      "create table if not exists artefact (key text primary key, what text, status text, reason text, cpu_s "
+      "real, bytes blob)");
+  if (impl_->found_columns() != numbers)
+    fail("{}: was made by another version of palpate, with other columns; start anew with --fresh", path);
 }
 
 StudyDb::~StudyDb() = default;
 
 void StudyDb::put(const StudyRun& run) {
-  PALPATE_CHECK(run.numbers.size() == impl_->numbers.size(), "{} numbers for {} columns", run.numbers.size(), impl_->numbers.size());
+  PALPATE_CHECK(run.numbers.size() == impl_->numbers.size(), "{} numbers for {} columns", run.numbers.size(),
+                impl_->numbers.size());
   std::string places = "?";
   for (std::size_t i = 1; i < kTextColumns + run.numbers.size(); ++i) places += ",?";
   Statement insert(impl_->db, impl_->path, "insert or replace into run values (" + places + ")");
@@ -113,7 +134,8 @@ void StudyDb::put(const StudyRun& run) {
   insert.bind(7, run.setting);
   insert.bind(8, run.status);
   insert.bind(9, run.reason);
-  for (std::size_t i = 0; i < run.numbers.size(); ++i) insert.bind(kTextColumns + 1 + static_cast<int>(i), run.numbers[i]);
+  for (std::size_t i = 0; i < run.numbers.size(); ++i)
+    insert.bind(kTextColumns + 1 + static_cast<int>(i), run.numbers[i]);
   insert.step();
 }
 
@@ -122,8 +144,10 @@ std::vector<StudyRun> StudyDb::runs(const std::string& key) const {
   select.bind(1, key);
   std::vector<StudyRun> out;
   while (select.step()) {
-    StudyRun run{select.text(0), select.integer(1), select.text(2), select.text(3), select.text(4), select.text(5), select.number(6), select.text(7), select.text(8), {}};
-    for (std::size_t i = 0; i < impl_->numbers.size(); ++i) run.numbers.push_back(select.number(kTextColumns + static_cast<int>(i)));
+    StudyRun run{select.text(0), select.integer(1), select.text(2), select.text(3), select.text(4),
+                 select.text(5), select.number(6),  select.text(7), select.text(8), {}};
+    for (std::size_t i = 0; i < impl_->numbers.size(); ++i)
+      run.numbers.push_back(select.number(kTextColumns + static_cast<int>(i)));
     out.push_back(std::move(run));
   }
   return out;
@@ -144,7 +168,8 @@ std::optional<StudyArtefact> StudyDb::artefact(const std::string& key) const {
   Statement select(impl_->db, impl_->path, "select * from artefact where key = ?");
   select.bind(1, key);
   if (!select.step()) return std::nullopt;
-  return StudyArtefact{select.text(0), select.text(1), select.text(2), select.text(3), select.number(4), select.text(5)};
+  return StudyArtefact{select.text(0), select.text(1),   select.text(2),
+                       select.text(3), select.number(4), select.text(5)};
 }
 
 long StudyDb::run_count() const {

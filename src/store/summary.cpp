@@ -11,7 +11,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const SummaryValue& value) {
-  return std::visit([](const auto& v) { return Json(v); }, value);  // the library writes NaN and infinity as null
+  // the library writes NaN and infinity as null
+  return std::visit([](const auto& v) { return Json(v); }, value);
 }
 
 SummaryValue value_of(const Json& json) {
@@ -30,18 +31,28 @@ SummaryValue value_of(const Json& json) {
 Json json_of(const Provenance& p) {
   Json libraries = Json::object();
   for (const auto& [name, version] : p.libraries) libraries[name] = version;
-  return {{"version", p.version}, {"commit", p.commit}, {"compiler", p.compiler}, {"build_type", p.build_type}, {"libraries", libraries},
-          {"cpu", p.cpu}, {"cores", p.cores}, {"system", p.system}, {"started_utc", p.started_utc}};
+  return {{"version", p.version},       {"commit", p.commit},     {"compiler", p.compiler},
+          {"build_type", p.build_type}, {"libraries", libraries}, {"cpu", p.cpu},
+          {"cores", p.cores},           {"system", p.system},     {"started_utc", p.started_utc}};
 }
 
 Provenance provenance_of(const Json& json) {
-  Provenance p{json.at("version"), json.at("commit"), json.at("compiler"), json.at("build_type"), {}, json.at("cpu"), json.at("cores"), json.at("system"), json.at("started_utc")};
-  for (const auto& [name, version] : json.at("libraries").items()) p.libraries.emplace_back(name, version.get<std::string>());
+  Provenance p{json.at("version"), json.at("commit"), json.at("compiler"), json.at("build_type"), {},
+               json.at("cpu"),     json.at("cores"),  json.at("system"),   json.at("started_utc")};
+  for (const auto& [name, version] : json.at("libraries").items())
+    p.libraries.emplace_back(name, version.get<std::string>());
   return p;
 }
 
 Summary summary_of(const Json& json) {
-  Summary s{json.at("command"), json.at("scene"), json.at("scene_source"), json.at("overrides"), json.at("outcome"), json.at("message"), provenance_of(json.at("provenance")), {}};
+  Summary s{json.at("command"),
+            json.at("scene"),
+            json.at("scene_source"),
+            json.at("overrides"),
+            json.at("outcome"),
+            json.at("message"),
+            provenance_of(json.at("provenance")),
+            {}};
   for (const auto& [name, values] : json.at("figures").items()) {
     SummarySection& section = s.section(name);
     for (const auto& [key, value] : values.items()) section.values.emplace_back(key, value_of(value));
@@ -64,19 +75,26 @@ std::string to_json(const Summary& s) {
     for (const auto& [key, value] : section.values) values[key] = json_of(value);
     figures[section.name] = values;
   }
-  const Json json = {{"command", s.command}, {"scene", s.scene}, {"outcome", s.outcome}, {"message", s.message}, {"overrides", s.overrides},
-                     {"figures", figures}, {"provenance", json_of(s.provenance)}, {"scene_source", s.scene_source}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // a path need not be UTF-8; the file is
+  const Json json = {{"command", s.command},
+                     {"scene", s.scene},
+                     {"outcome", s.outcome},
+                     {"message", s.message},
+                     {"overrides", s.overrides},
+                     {"figures", figures},
+                     {"provenance", json_of(s.provenance)},
+                     {"scene_source", s.scene_source}};
+  // a path need not be UTF-8; the file is
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-void write_summary(const std::string& path, const Summary& summary) { write_atomically(path, to_json(summary)); }
+void write_summary(const std::string& path, const Summary& summary) {
+  write_atomically(path, to_json(summary));
+}
 
 Summary read_summary(const std::string& path) {
   try {
     return summary_of(Json::parse(read_file(path)));
-  } catch (const Json::exception& e) {
-    fail("{}: is no summary of palpate: {}", path, e.what());
-  }
+  } catch (const Json::exception& e) { fail("{}: is no summary of palpate: {}", path, e.what()); }
 }
 
 }  // namespace palpate::store

@@ -1,5 +1,5 @@
-#include <array>
 #include <algorithm>
+#include <array>
 
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
@@ -40,7 +40,8 @@ class StageTimes : public loop::Observer {
  public:
   void period(loop::World& world, double) override {
     const dynamics::StepperCounters& c = world.stepper->counters();
-    const std::array<double, 5> now{c.force_s, c.tangent_s, c.solver.factor_s + c.solver.symbolic_s, c.solver.solve_s, wall_seconds()};
+    const std::array<double, 5> now{c.force_s, c.tangent_s, c.solver.factor_s + c.solver.symbolic_s,
+                                    c.solver.solve_s, wall_seconds()};
     for (std::size_t i = 0; i < now.size() && started_; ++i) stages_[i].push_back(1e3 * (now[i] - last_[i]));
     last_ = now;
     started_ = true;
@@ -48,7 +49,8 @@ class StageTimes : public loop::Observer {
   /// Medians in ms; the first step carries the symbolic analysis and is left out.
   double median(std::size_t stage) const {
     std::vector<double> times(stages_[stage].begin() + 1, stages_[stage].end());
-    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
+    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
+                     times.end());
     return times[times.size() / 2];
   }
 
@@ -61,7 +63,8 @@ class StageTimes : public loop::Observer {
 }  // namespace
 
 FemBench bench_fem(int cells_along, double step_s, int steps, const std::string& linear_solver) {
-  if (cells_along < 4 || steps < 3) fail("bench fem: {} cells along and {} steps; use at least 4 cells and 3 steps", cells_along, steps);
+  if (cells_along < 4 || steps < 3)
+    fail("bench fem: {} cells along and {} steps; use at least 4 cells and 3 steps", cells_along, steps);
   const scene::Description d = beam(cells_along, step_s, steps, linear_solver);
   const double start = wall_seconds();
   const auto world = loop::assemble(d);

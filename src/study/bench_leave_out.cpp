@@ -14,7 +14,9 @@
 namespace palpate::study {
 namespace {
 
-struct Figures { double startup_ms, memory_mib, step_ms; };
+struct Figures {
+  double startup_ms, memory_mib, step_ms;
+};
 
 /// Runs `measure` in a child process, so that what one variant loads or allocates is not there for the next.
 Figures in_child(const std::function<Figures()>& measure) {
@@ -38,7 +40,8 @@ Figures in_child(const std::function<Figures()>& measure) {
   close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);
-  if (got != sizeof figures || figures.startup_ms < 0) fail("bench leave-out: a measured process failed (status {})", status);
+  if (got != sizeof figures || figures.startup_ms < 0)
+    fail("bench leave-out: a measured process failed (status {})", status);
   return figures;
 }
 
@@ -52,7 +55,8 @@ Figures bare_loop(const scene::Description& d) {
   const int periods = static_cast<int>(d.duration_s / period + 0.5);
   const double t0 = wall_seconds();
   for (int i = 0; i < periods; ++i) {
-    if (world->contact && world->contact->refresh(world->state.view())) world->stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
+    if (world->contact && world->contact->refresh(world->state.view()))
+      world->stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
     if (!world->stepper->advance_to((i + 1) * period).ok()) fail("the bare loop's integrator failed");
   }
   out.step_ms = 1e3 * (wall_seconds() - t0) / periods;
@@ -63,7 +67,8 @@ Figures bare_loop(const scene::Description& d) {
 Figures palpate_loop(const scene::Description& d, bool record) {
   const double start = wall_seconds();
   const auto world = loop::assemble(d);
-  const std::string folder = (std::filesystem::temp_directory_path() / fmt::format("palpate-leave-out-{}", getpid())).string();
+  const std::string folder =
+      (std::filesystem::temp_directory_path() / fmt::format("palpate-leave-out-{}", getpid())).string();
   std::unique_ptr<loop::Recorder> recorder;
   if (record) recorder = std::make_unique<loop::Recorder>(*world, folder);
   Figures out{};
@@ -134,11 +139,14 @@ std::vector<Variant> variants_of(const scene::Description& d) {
   out.push_back({"bare loop over the same parts", [quiet] { return bare_loop(quiet); }});
   out.push_back({"palpate, as the scene names it", [quiet] { return palpate_loop(quiet, false); }});
   out.push_back({"... and recording", [recorded] { return palpate_loop(recorded, true); }});
-  out.push_back({"... and a plane out of reach", [quiet] { return palpate_loop(with_plane_out_of_reach(quiet), false); }});
+  out.push_back({"... and a plane out of reach",
+                 [quiet] { return palpate_loop(with_plane_out_of_reach(quiet), false); }});
 #ifdef PALPATE_HAS_TOOL
-  out.push_back({"... and a tool out of reach", [quiet] { return palpate_loop(with_tool_out_of_reach(quiet), false); }});
+  out.push_back({"... and a tool out of reach",
+                 [quiet] { return palpate_loop(with_tool_out_of_reach(quiet), false); }});
 #ifdef PALPATE_HAS_GL
-  out.push_back({"... with contact in image space", [quiet] { return palpate_loop(with_image_contact_out_of_reach(quiet), false); }});
+  out.push_back({"... with contact in image space",
+                 [quiet] { return palpate_loop(with_image_contact_out_of_reach(quiet), false); }});
 #endif
 #endif
   return out;
@@ -147,7 +155,11 @@ std::vector<Variant> variants_of(const scene::Description& d) {
 }  // namespace
 
 std::vector<LeaveOutRow> bench_leave_out(const scene::Description& d, int repeats) {
-  if (d.tool) fail("scene \"{}\" has a tool; bench leave-out takes a scene that leaves it out (falling-ball, cantilever)", d.name);
+  if (d.tool)
+    fail(
+        "scene \"{}\" has a tool; bench leave-out takes a scene that leaves it out (falling-ball, "
+        "cantilever)",
+        d.name);
   if (d.bodies.empty()) fail("scene \"{}\" has no body to step", d.name);
   const std::vector<Variant> variants = variants_of(d);
   std::vector<std::vector<Figures>> runs(variants.size());

@@ -7,7 +7,8 @@
 #include "palpate/core/error.h"
 #include "palpate/core/types.h"
 
-/// Plain data as bytes and back, bit for bit: between a run's own process and the study, and into the study's database.
+/// Plain data as bytes and back, bit for bit: between a run's own process and the study, and into the study's
+/// database.
 namespace palpate::study {
 
 class ByteWriter {
@@ -23,7 +24,9 @@ class ByteWriter {
     bytes_ += text;
     return *this;
   }
-  ByteWriter& put(const VecX& values) { return put_range(values.data(), static_cast<std::size_t>(values.size())); }
+  ByteWriter& put(const VecX& values) {
+    return put_range(values.data(), static_cast<std::size_t>(values.size()));
+  }
   ByteWriter& put(const std::vector<double>& values) { return put_range(values.data(), values.size()); }
   std::string take() { return std::move(bytes_); }
 
@@ -65,7 +68,8 @@ class ByteReader {
 
  private:
   const char* take(std::size_t count) {
-    if (count > bytes_.size() - at_) fail("a stored result ends too soon ({} of {} bytes)", at_, bytes_.size());
+    if (count > bytes_.size() - at_)
+      fail("a stored result ends too soon ({} of {} bytes)", at_, bytes_.size());
     const char* out = bytes_.data() + at_;
     at_ += count;
     return out;

@@ -22,13 +22,16 @@ PointStatus status_of(Outcome::End end) {
   return PointStatus::kCrashed;
 }
 
-/// A study as it proceeds.  All results pass through the database's rows, whether they were made now or before: a study that was killed and
-/// started again gives the same table.
+/// A study as it proceeds.  All results pass through the database's rows, whether they were made now or
+/// before: a study that was killed and started again gives the same table.
 class Study {
  public:
   Study(const std::vector<scene::Description>& scenes, const CompareOptions& options)
-      : options_(options), jobs_(options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
-        database_(options.database.empty() ? ":memory:" : options.database, run_columns()), ledger_(scenes, options) {}
+      : options_(options),
+        jobs_(options.jobs > 0 ? options.jobs
+                               : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
+        database_(options.database.empty() ? ":memory:" : options.database, run_columns()),
+        ledger_(scenes, options) {}
 
   Comparison run() {
     ProcessPool pool(jobs_);
@@ -77,7 +80,8 @@ class Study {
     }
     for (const store::StudyRun& row : database_.runs(ledger_.key_of(task))) {
       const bool wants_more_time = row.status == "out of time" && study::limit_of(row) < options_.limit_s;
-      const bool other_reference = task.kind == Task::Kind::kPoint && point_run_of(row).reference != ledger_.work[task.scene].reference_used;
+      const bool other_reference = task.kind == Task::Kind::kPoint &&
+                                   point_run_of(row).reference != ledger_.work[task.scene].reference_used;
       if (row.repeat == task.repeat && !wants_more_time && !other_reference) reuse(task, row);
     }
   }
@@ -92,7 +96,8 @@ class Study {
   void start(ProcessPool& pool, Task& task) {
     task.started = true;
     Task* at = &task;
-    pool.start([this, at](const std::atomic<bool>& late) { return work(*at, late); }, ledger_.limit_of(task), [this, at](const Outcome& outcome) { done(*at, outcome); });
+    pool.start([this, at](const std::atomic<bool>& late) { return work(*at, late); }, ledger_.limit_of(task),
+               [this, at](const Outcome& outcome) { done(*at, outcome); });
   }
 
   /// In the process of the run.
@@ -107,7 +112,8 @@ class Study {
       case Task::Kind::kPoint:
       case Task::Kind::kRestart: break;
     }
-    return bytes_of(run_point(ledger_.point_of(task).description, options_.limit_s, task.kind == Task::Kind::kPoint ? scene.reference : nullptr, &late));
+    return bytes_of(run_point(ledger_.point_of(task).description, options_.limit_s,
+                              task.kind == Task::Kind::kPoint ? scene.reference : nullptr, &late));
   }
 
   /// In the study's own process: keeps the result, then uses it.
@@ -129,8 +135,10 @@ class Study {
 
   store::StudyRun row_of(const Task& task, const Outcome& outcome) {
     PointRun run;
-    if (outcome.end == Outcome::End::kDone) run = point_run_of(outcome.bytes);
-    else run.status = status_of(outcome.end), run.reason = outcome.bytes;
+    if (outcome.end == Outcome::End::kDone)
+      run = point_run_of(outcome.bytes);
+    else
+      run.status = status_of(outcome.end), run.reason = outcome.bytes;
     run.reference = ledger_.work[task.scene].reference_used;
     store::StudyRun row = study::row_of(run, options_.limit_s);
     const ComparePoint& point = ledger_.point_of(task);
@@ -146,7 +154,12 @@ class Study {
 
   store::StudyArtefact artefact_of(const Task& task, const Outcome& outcome) const {
     static const char* const kWhat[] = {"reference", "check", "point", "restart", "exchange", "methods"};
-    store::StudyArtefact kept{ledger_.artefact_key(task), kWhat[static_cast<int>(task.kind)], to_string(status_of(outcome.end)), "", 0.0, ""};
+    store::StudyArtefact kept{ledger_.artefact_key(task),
+                              kWhat[static_cast<int>(task.kind)],
+                              to_string(status_of(outcome.end)),
+                              "",
+                              0.0,
+                              ""};
     if (outcome.end != Outcome::End::kDone) {
       kept.reason = outcome.bytes;
     } else {
@@ -156,20 +169,23 @@ class Study {
         kept.cpu_s = result.cpu_s;
         if (result.stopped) {
           kept.status = to_string(PointStatus::kOutOfTime);
-          kept.reason = fmt::format("out of time: {:g} s (at t = {:.4g} s)", options_.reference_limit_s, result.time);
+          kept.reason =
+              fmt::format("out of time: {:g} s (at t = {:.4g} s)", options_.reference_limit_s, result.time);
         } else if (!result.status.ok()) {
           kept.status = to_string(PointStatus::kFailed);
           kept.reason = result.status.message;
         }
       }
     }
-    if (kept.status == to_string(PointStatus::kOutOfTime)) kept.cpu_s = options_.reference_limit_s;  // a longer limit tries again
+    // a longer limit tries again
+    if (kept.status == to_string(PointStatus::kOutOfTime)) kept.cpu_s = options_.reference_limit_s;
     return kept;
   }
 
   void report(const Task& task) {
     if (!options_.progress) return;
-    const auto finished = std::count_if(ledger_.tasks.begin(), ledger_.tasks.end(), [](const Task& t) { return t.done; });
+    const auto finished =
+        std::count_if(ledger_.tasks.begin(), ledger_.tasks.end(), [](const Task& t) { return t.done; });
     const std::string& scene = ledger_.out.scenes[task.scene].scene;
     std::string what = (task.is_reference() ? "reference of " : "charts of ") + scene;
     if (task.is_point()) {
@@ -187,6 +203,8 @@ class Study {
 
 }  // namespace
 
-Comparison compare(const std::vector<scene::Description>& scenes, const CompareOptions& options) { return Study(scenes, options).run(); }
+Comparison compare(const std::vector<scene::Description>& scenes, const CompareOptions& options) {
+  return Study(scenes, options).run();
+}
 
 }  // namespace palpate::study

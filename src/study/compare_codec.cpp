@@ -7,8 +7,9 @@
 namespace palpate::study {
 namespace {
 
-constexpr std::array<PointStatus, 7> kStatuses = {PointStatus::kOk,      PointStatus::kFailed,   PointStatus::kOutOfTime, PointStatus::kCrashed,
-                                                  PointStatus::kRefused, PointStatus::kNotTried, PointStatus::kMissing};
+constexpr std::array<PointStatus, 7> kStatuses = {
+    PointStatus::kOk,      PointStatus::kFailed,   PointStatus::kOutOfTime, PointStatus::kCrashed,
+    PointStatus::kRefused, PointStatus::kNotTried, PointStatus::kMissing};
 
 // One list of the members of each record serves writing, reading and naming.
 template <class Error, class Visit>
@@ -61,7 +62,9 @@ auto reading(ByteReader& in) {
   return [&in](const char*, auto& value) { value = in.get<std::remove_reference_t<decltype(value)>>(); };
 }
 
-void put_status(ByteWriter& out, const dynamics::StepResult& s) { out.put(s.status).put(s.t).put(s.h).put(s.order).put(s.iterations).put(s.residual).put(s.message); }
+void put_status(ByteWriter& out, const dynamics::StepResult& s) {
+  out.put(s.status).put(s.t).put(s.h).put(s.order).put(s.iterations).put(s.residual).put(s.message);
+}
 
 dynamics::StepResult get_status(ByteReader& in) {
   dynamics::StepResult s;
@@ -187,7 +190,9 @@ PointRun point_run_of(const store::StudyRun& row) {
     if (row.status == to_string(one)) run.status = one;
   run.reference = static_cast<ReferenceUsed>(static_cast<int>(row.numbers[1]));
   std::size_t i = 2;
-  const auto take = [&](const char*, auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(row.numbers[i++]); };
+  const auto take = [&](const char*, auto& value) {
+    value = static_cast<std::remove_reference_t<decltype(value)>>(row.numbers[i++]);
+  };
   visit_error(run.error, take);
   visit_result(run.result, take);
   return run;

@@ -26,7 +26,7 @@ PointRun point_run_of(const std::string& bytes);
 const std::vector<std::string>& run_columns();
 store::StudyRun row_of(const PointRun& run, double limit_s);
 PointRun point_run_of(const store::StudyRun& row);
-double limit_of(const store::StudyRun& row);   ///< that it ran under [s]
+double limit_of(const store::StudyRun& row);  ///< that it ran under [s]
 
 std::string bytes_of(const std::vector<ExchangePoint>& points);
 std::vector<ExchangePoint> exchange_of(const std::string& bytes);

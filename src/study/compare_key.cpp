@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Version and commit.  A commit does not name sources that were changed since: there, size and time of the program and of its own libraries do.
+/// Version and commit.  A commit does not name sources that were changed since: there, size and time of the
+/// program and of its own libraries do.
 const std::string& made_by() {
   static const std::string made = [] {
     const store::Provenance p = store::provenance();
@@ -23,10 +24,13 @@ const std::string& made_by() {
     std::set<std::string> files = {fs::canonical("/proc/self/exe").string()};
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);)
-      if (const auto at = line.find('/'); at != std::string::npos && line.find("libpalpate_") != std::string::npos) files.insert(line.substr(at));
+      if (const auto at = line.find('/');
+          at != std::string::npos && line.find("libpalpate_") != std::string::npos)
+        files.insert(line.substr(at));
     for (const std::string& file : files) {
       std::error_code none;
-      out += fmt::format(" {} {}", fs::file_size(file, none), fs::last_write_time(file, none).time_since_epoch().count());
+      out += fmt::format(" {} {}", fs::file_size(file, none),
+                         fs::last_write_time(file, none).time_since_epoch().count());
     }
     return out;
   }();
@@ -38,7 +42,8 @@ void add_mesh(store::ContentHash& hash, const MeshSpec& mesh, const std::string&
   const fs::path path = fs::path(folder) / mesh.file;
   hash.add_file(path.string());
   for (const char* beside : {".node", ".ele"})  // TetGen's pair
-    if (path.extension() == ".node" || path.extension() == ".ele") hash.add_file(fs::path(path).replace_extension(beside).string());
+    if (path.extension() == ".node" || path.extension() == ".ele")
+      hash.add_file(fs::path(path).replace_extension(beside).string());
 }
 
 }  // namespace
@@ -52,7 +57,8 @@ std::string without_compare(const std::string& source) {
     const std::size_t first = line.find_first_not_of(" \t");
     if (first != std::string::npos && line[first] == '[') {
       const std::size_t name = line.find_first_not_of("[ \t", first);
-      left_out = name != std::string::npos && (line.compare(name, 8, "compare]") == 0 || line.compare(name, 8, "compare.") == 0);
+      left_out = name != std::string::npos &&
+                 (line.compare(name, 8, "compare]") == 0 || line.compare(name, 8, "compare.") == 0);
     }
     if (!left_out) out += line + "\n";
   }

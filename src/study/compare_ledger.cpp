@@ -7,7 +7,8 @@
 
 namespace palpate::study {
 
-Ledger::Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options) : options_(options) {
+Ledger::Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options)
+    : options_(options) {
   for (const scene::Description& d : scenes) plan(d);
   add_tasks();
 }
@@ -24,8 +25,10 @@ void Ledger::plan(const scene::Description& d) {
   own.planned = plan_reference(own.description, told.points);
   own.truth_key = result_key(own.planned.truth, "reference");
   own.check_key = result_key(own.planned.check, "reference");
-  for (const ComparePoint& p : told.points) own.point_keys.push_back(result_key(p.description, "point " + own.truth_key + own.check_key));
-  for (const ComparePoint& p : told.restarts) own.restart_keys.push_back(result_key(p.description, "restart"));
+  for (const ComparePoint& p : told.points)
+    own.point_keys.push_back(result_key(p.description, "point " + own.truth_key + own.check_key));
+  for (const ComparePoint& p : told.restarts)
+    own.restart_keys.push_back(result_key(p.description, "restart"));
   work.push_back(std::move(own));
   out.scenes.push_back(std::move(told));
 }
@@ -45,8 +48,10 @@ void Ledger::add_tasks() {
           if (rung(s, p) == r) tasks.push_back({Task::Kind::kPoint, s, p, repeat});
     if (repeat > 0) continue;
     for (std::size_t s = 0; s < work.size(); ++s) {
-      for (std::size_t p = 0; p < out.scenes[s].restarts.size(); ++p) tasks.push_back({Task::Kind::kRestart, s, p});
-      if (!work[s].description.compare.exchange_periods_s.empty()) tasks.push_back({Task::Kind::kExchange, s});
+      for (std::size_t p = 0; p < out.scenes[s].restarts.size(); ++p)
+        tasks.push_back({Task::Kind::kRestart, s, p});
+      if (!work[s].description.compare.exchange_periods_s.empty())
+        tasks.push_back({Task::Kind::kExchange, s});
       if (!work[s].description.compare.contact_methods.empty()) tasks.push_back({Task::Kind::kMethods, s});
     }
   }
@@ -60,7 +65,8 @@ std::size_t Ledger::rung(std::size_t s, std::size_t p) const {
 }
 const ComparePoint* Ledger::coarser(const Task& task) const {
   const auto& points = out.scenes[task.scene].points;
-  return task.point > 0 && points[task.point - 1].label == points[task.point].label ? &points[task.point - 1] : nullptr;
+  return task.point > 0 && points[task.point - 1].label == points[task.point].label ? &points[task.point - 1]
+                                                                                    : nullptr;
 }
 
 ComparePoint& Ledger::point_of(const Task& task) {
@@ -79,7 +85,8 @@ std::string Ledger::artefact_key(const Task& task) const {
   switch (task.kind) {
     case Task::Kind::kTruth: return own.truth_key;
     case Task::Kind::kCheck: return own.check_key;
-    case Task::Kind::kExchange: return result_key(own.description, fmt::format("exchange {}", fmt::join(c.exchange_periods_s, " ")));
+    case Task::Kind::kExchange:
+      return result_key(own.description, fmt::format("exchange {}", fmt::join(c.exchange_periods_s, " ")));
     default: return result_key(own.description, fmt::format("methods {}", fmt::join(c.contact_methods, " ")));
   }
 }

@@ -25,7 +25,7 @@ struct SceneWork {
   PlannedReference planned;
   std::string truth_key, check_key;
   ReferenceRun truth, check;
-  const Trajectory* reference = nullptr;   ///< what points are held against
+  const Trajectory* reference = nullptr;  ///< what points are held against
   ReferenceUsed reference_used = ReferenceUsed::kNone;
   bool reference_settled = false;
   std::vector<std::string> point_keys, restart_keys;
@@ -36,16 +36,18 @@ class Ledger {
  public:
   Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options);
 
-  std::deque<Task> tasks;          ///< in the order in which they are wanted; a task stays where it is
-  std::vector<SceneWork> work;     ///< of each scene
+  std::deque<Task> tasks;       ///< in the order in which they are wanted; a task stays where it is
+  std::vector<SceneWork> work;  ///< of each scene
   Comparison out;
 
   const CompareOptions& options() const { return options_; }
   ComparePoint& point_of(const Task& task);
-  const ComparePoint* coarser(const Task& task) const;   ///< the rung before it, or null
-  const std::string& key_of(const Task& task) const;     ///< of a point's runs in the database
-  std::string artefact_key(const Task& task) const;      ///< of all else
-  double limit_of(const Task& task) const { return task.is_point() ? options_.limit_s : options_.reference_limit_s; }
+  const ComparePoint* coarser(const Task& task) const;  ///< the rung before it, or null
+  const std::string& key_of(const Task& task) const;    ///< of a point's runs in the database
+  std::string artefact_key(const Task& task) const;     ///< of all else
+  double limit_of(const Task& task) const {
+    return task.is_point() ? options_.limit_s : options_.reference_limit_s;
+  }
 
   /// Whether what it needs is there: the reference, the rung before it, the first of its repeats.
   bool is_ready(const Task& task);
@@ -63,7 +65,8 @@ class Ledger {
  private:
   void plan(const scene::Description& description);
   void add_tasks();
-  std::size_t rung(std::size_t scene, std::size_t point) const;   ///< how many rungs of the same ladder come before it
+  /// how many rungs of the same ladder come before it
+  std::size_t rung(std::size_t scene, std::size_t point) const;
   bool reference_tasks_done(std::size_t scene) const;
   const CompareOptions& options_;
 };

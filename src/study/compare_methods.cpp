@@ -16,12 +16,16 @@ scene::Description with_method(scene::Description d, const std::string& method) 
 /// The largest number of samples at one time.
 class SampleCount : public loop::Observer {
  public:
-  void period(loop::World& world, double) override { most = std::max(most, static_cast<long>(world.contact->samples().size())); }
+  void period(loop::World& world, double) override {
+    most = std::max(most, static_cast<long>(world.contact->samples().size()));
+  }
   long most = 0;
 };
 
-/// One run with one method; false where it was stopped.  @throws Error where the method cannot be had or the run gives up
-bool run_method(const scene::Description& d, const std::string& method, const std::atomic<bool>* stop, Trajectory& trajectory, MethodPoint& point) {
+/// One run with one method; false where it was stopped.  @throws Error where the method cannot be had or the
+/// run gives up
+bool run_method(const scene::Description& d, const std::string& method, const std::atomic<bool>* stop,
+                Trajectory& trajectory, MethodPoint& point) {
   const auto world = loop::assemble(with_method(d, method));
   if (world->tool_frame_index < 0) fail("there is no [[contact]] with \"tool\"");
   TrajectoryRecorder recorder;

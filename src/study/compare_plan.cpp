@@ -21,18 +21,27 @@ const StepperEntry* find_stepper(const std::string& name) {
   return nullptr;
 }
 
-std::string label_of(const scene::LadderSpec& ladder) { return ladder.label.empty() ? ladder.integrator : ladder.label; }
+std::string label_of(const scene::LadderSpec& ladder) {
+  return ladder.label.empty() ? ladder.integrator : ladder.label;
+}
 
-bool contains(const std::vector<std::string>& list, const std::string& name) { return std::find(list.begin(), list.end(), name) != list.end(); }
+bool contains(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
 
-/// Whether the user's list asks for a ladder: by its label, or by its integrator where no ladder has that name for a label.
-bool is_named(const std::vector<std::string>& wanted, const scene::LadderSpec& ladder, const std::vector<scene::LadderSpec>& all) {
+/// Whether the user's list asks for a ladder: by its label, or by its integrator where no ladder has that
+/// name for a label.
+bool is_named(const std::vector<std::string>& wanted, const scene::LadderSpec& ladder,
+              const std::vector<scene::LadderSpec>& all) {
   if (contains(wanted, label_of(ladder))) return true;
-  const auto has_that_label = [&](const scene::LadderSpec& other) { return label_of(other) == ladder.integrator; };
+  const auto has_that_label = [&](const scene::LadderSpec& other) {
+    return label_of(other) == ladder.integrator;
+  };
   return contains(wanted, ladder.integrator) && std::none_of(all.begin(), all.end(), has_that_label);
 }
 
-/// rtol 1e-2 ... 1e-8 under error control; else halvings of the loop's period, or of 10 ms: an explicit method may need very short steps.
+/// rtol 1e-2 ... 1e-8 under error control; else halvings of the loop's period, or of 10 ms: an explicit
+/// method may need very short steps.
 scene::LadderSpec default_ladder(const scene::Description& d, const StepperEntry& entry) {
   scene::LadderSpec ladder;
   ladder.integrator = entry.name;
@@ -57,12 +66,15 @@ scene::LadderSpec tick_ladder(const scene::Description& d, const std::string& in
 }
 
 void check_ladder(const scene::Description& d, const scene::LadderSpec& ladder) {
-  const StepperEntry& entry = find(loop::steppers(), ladder.integrator, fmt::format("integrator in [[compare.ladder]] of {}:", d.path).c_str());
+  const StepperEntry& entry = find(loop::steppers(), ladder.integrator,
+                                   fmt::format("integrator in [[compare.ladder]] of {}:", d.path).c_str());
   const StepControl control = entry.traits.control;
   if (control == StepControl::kAdaptive && ladder.setting != "rtol")
-    fail("{}: [[compare.ladder]] \"{}\": {} steps under error control; give rtol = [...] instead of {}", d.path, label_of(ladder), entry.name, ladder.setting);
+    fail("{}: [[compare.ladder]] \"{}\": {} steps under error control; give rtol = [...] instead of {}",
+         d.path, label_of(ladder), entry.name, ladder.setting);
   if (control == StepControl::kFixed && ladder.setting != "step_s")
-    fail("{}: [[compare.ladder]] \"{}\": {} takes fixed steps; give step_s = [...] instead of {}", d.path, label_of(ladder), entry.name, ladder.setting);
+    fail("{}: [[compare.ladder]] \"{}\": {} takes fixed steps; give step_s = [...] instead of {}", d.path,
+         label_of(ladder), entry.name, ladder.setting);
 }
 
 /// The ladders that are wanted: the scene's own first, in its order.
@@ -78,7 +90,8 @@ std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const Com
       if (named) met.insert({ladder.integrator, label_of(ladder)});
       if (!everything && !named) continue;
       if (!labels.insert(label_of(ladder)).second)
-        fail("{}: two [[compare.ladder]] are called \"{}\"; give one of them a label", d.path, label_of(ladder));
+        fail("{}: two [[compare.ladder]] are called \"{}\"; give one of them a label", d.path,
+             label_of(ladder));
       integrators.insert(ladder.integrator);
       out.push_back(ladder);
     }
@@ -91,13 +104,17 @@ std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const Com
     out.push_back(make());
   };
   if (tool_only) {
-    for (const loop::Choice& one : loop::tool_steppers()) add(one.name, true, [&] { return tick_ladder(d, one.name); });
+    for (const loop::Choice& one : loop::tool_steppers())
+      add(one.name, true, [&] { return tick_ladder(d, one.name); });
   } else {
-    for (const StepperEntry& entry : loop::steppers()) add(entry.name, entry.traits.stability != Stability::kStatic, [&] { return default_ladder(d, entry); });
+    for (const StepperEntry& entry : loop::steppers())
+      add(entry.name, entry.traits.stability != Stability::kStatic, [&] { return default_ladder(d, entry); });
     for (const scene::LadderSpec& ladder : d.compare.ladders) known.push_back(label_of(ladder));
   }
   for (const std::string& name : wanted)
-    if (!met.contains(name)) fail("{}: no integrator and no [[compare.ladder]] is called \"{}\"{}", d.path, name, suggestion(name, known));
+    if (!met.contains(name))
+      fail("{}: no integrator and no [[compare.ladder]] is called \"{}\"{}", d.path, name,
+           suggestion(name, known));
   return out;
 }
 
@@ -141,7 +158,8 @@ ComparePoint point_of(const scene::Description& d, const scene::LadderSpec& ladd
 }  // namespace
 
 scene::Description with_overrides(const scene::Description& d, const std::vector<std::string>& overrides) {
-  if (d.source.empty()) fail("scene \"{}\": has no text; a comparison needs scenes from scene::load or scene::parse", d.name);
+  if (d.source.empty())
+    fail("scene \"{}\": has no text; a comparison needs scenes from scene::load or scene::parse", d.name);
   return scene::parse(d.source, d.path, overrides);
 }
 
@@ -164,11 +182,14 @@ std::vector<ComparePoint> plan_restarts(const scene::Description& d, const Compa
   if (d.contacts.empty() || d.bodies.empty()) return points;
   CompareOptions own = options;
   for (const scene::LadderSpec& ladder : ladders_of(d, own)) {
-    const bool chosen = contains(options.integrators, ladder.integrator) || contains(options.integrators, label_of(ladder)) ||
-                        std::any_of(d.compare.ladders.begin(), d.compare.ladders.end(), [&](const auto& l) { return label_of(l) == label_of(ladder); });
+    const bool chosen = contains(options.integrators, ladder.integrator) ||
+                        contains(options.integrators, label_of(ladder)) ||
+                        std::any_of(d.compare.ladders.begin(), d.compare.ladders.end(),
+                                    [&](const auto& l) { return label_of(l) == label_of(ladder); });
     if (!chosen) continue;
     for (const double period : d.compare.refresh_periods_s) {
-      std::vector<std::string> overrides = overrides_of(ladder, ladder.setting == "rtol" ? d.integrator.rtol : d.integrator.step_s);
+      std::vector<std::string> overrides =
+          overrides_of(ladder, ladder.setting == "rtol" ? d.integrator.rtol : d.integrator.step_s);
       overrides.push_back("exchange.contact_refresh_s=" + toml_number(period));
       if (!d.tool) overrides.push_back("exchange.exchange_period_s=" + toml_number(period));
       ComparePoint point = point_of(d, ladder);
@@ -187,7 +208,8 @@ PlannedReference plan_reference(const scene::Description& d, const std::vector<C
     double finest = d.tool->tick_s;
     for (const ComparePoint& point : points) finest = std::min(finest, point.setting);
     const auto made = [&](const std::string& integrator) {
-      return with_overrides(d, {"tool.integrator=\"" + integrator + "\"", "tool.tick_s=" + toml_number(0.5 * finest)});
+      return with_overrides(
+          d, {"tool.integrator=\"" + integrator + "\"", "tool.tick_s=" + toml_number(0.5 * finest)});
     };
     out.made_by = fmt::format("simbody-rkmerson at ticks of {:g} s", 0.5 * finest);
     out.checked_by = "simbody-cpodes at the same";
@@ -208,7 +230,8 @@ PlannedReference plan_reference(const scene::Description& d, const std::vector<C
   out.check = made(c.reference_check, c.reference_check_rtol);
   out.made_by = fmt::format("{} at rtol {:g}", c.reference, c.reference_rtol);
   out.checked_by = fmt::format("{} at rtol {:g}", c.reference_check, c.reference_check_rtol);
-  if (c.reference != c.reference_check && find_stepper(c.reference)->traits.family == find_stepper(c.reference_check)->traits.family)
+  if (c.reference != c.reference_check &&
+      find_stepper(c.reference)->traits.family == find_stepper(c.reference_check)->traits.family)
     out.checked_by += " (of the same family)";
   return out;
 }

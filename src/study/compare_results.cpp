@@ -47,7 +47,9 @@ void Ledger::take(const Task& task, const store::StudyArtefact& kept) {
   else if (task.kind == Task::Kind::kCheck)
     own.check = reference_run_of(kept);
   else if (kept.status != "ok")
-    told.notes.push_back(fmt::format("no chart of {}: {}", task.kind == Task::Kind::kExchange ? "the exchange period" : "the contact methods", kept.reason));
+    told.notes.push_back(fmt::format(
+        "no chart of {}: {}",
+        task.kind == Task::Kind::kExchange ? "the exchange period" : "the contact methods", kept.reason));
   else if (task.kind == Task::Kind::kExchange)
     told.exchange = exchange_of(kept.bytes);
   else
@@ -67,7 +69,8 @@ void Ledger::settle_references() {
 }
 
 bool Ledger::reference_tasks_done(std::size_t s) const {
-  return std::all_of(tasks.begin(), tasks.end(), [s](const Task& t) { return t.scene != s || !t.is_reference() || t.done; });
+  return std::all_of(tasks.begin(), tasks.end(),
+                     [s](const Task& t) { return t.scene != s || !t.is_reference() || t.done; });
 }
 
 void Ledger::finish(int jobs) {
@@ -76,12 +79,17 @@ void Ledger::finish(int jobs) {
       for (ComparePoint& point : *points) summarise(point, scene.reference.own_error);
     // A method that refuses the scene says so once.
     std::set<std::string> refused;
-    std::erase_if(scene.points, [&](const ComparePoint& p) { return p.status == PointStatus::kRefused && !refused.insert(p.label).second; });
+    std::erase_if(scene.points, [&](const ComparePoint& p) {
+      return p.status == PointStatus::kRefused && !refused.insert(p.label).second;
+    });
     std::sort(scene.notes.begin(), scene.notes.end());
   }
-  out.rules = fmt::format("Each run had a process of its own, {} at a time, and at most {:g} CPU seconds ({:g} for references and further charts). A point was run "
-                          "up to {} times, again only while its runs together took less than {:g} CPU seconds, the repeats interleaved over all points; times are medians.",
-                          jobs, options_.limit_s, options_.reference_limit_s, options_.repeats, 0.2 * options_.limit_s);
+  out.rules = fmt::format(
+      "Each run had a process of its own, {} at a time, and at most {:g} CPU seconds ({:g} for references "
+      "and further charts). A point was run "
+      "up to {} times, again only while its runs together took less than {:g} CPU seconds, the repeats "
+      "interleaved over all points; times are medians.",
+      jobs, options_.limit_s, options_.reference_limit_s, options_.repeats, 0.2 * options_.limit_s);
 }
 
 }  // namespace palpate::study

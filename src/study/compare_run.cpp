@@ -6,7 +6,8 @@
 
 namespace palpate::study {
 
-PointRun run_point(const scene::Description& d, double limit_s, const Trajectory* reference, const std::atomic<bool>* late) {
+PointRun run_point(const scene::Description& d, double limit_s, const Trajectory* reference,
+                   const std::atomic<bool>* late) {
   const Run run = run_once(d, d.compare.duration_s, late);
   const dynamics::StepResult& last = run.result.status;
   PointRun out;
@@ -15,7 +16,8 @@ PointRun run_point(const scene::Description& d, double limit_s, const Trajectory
     out.status = PointStatus::kOutOfTime;
     out.reason = fmt::format("out of time: {:g} s (at t = {:.4g} s)", limit_s, run.result.time);
   } else if (!last.ok()) {
-    out.status = last.status == dynamics::StepStatus::kBadSettings ? PointStatus::kRefused : PointStatus::kFailed;
+    out.status =
+        last.status == dynamics::StepStatus::kBadSettings ? PointStatus::kRefused : PointStatus::kFailed;
     out.reason = fmt::format("{}: {}", dynamics::to_string(last.status), last.message);
   } else {
     out.status = PointStatus::kOk;
@@ -37,14 +39,19 @@ Reference settle(const PlannedReference& planned, const ReferenceRun& truth, con
     out.own_error = distance(check.run->trajectory, truth.run->trajectory);
   } else if (truth.run) {
     out.description = planned.made_by + ", not checked";
-    out.trouble = fmt::format("the check by {} failed ({}): the reference's own error is not known", planned.checked_by, check.trouble);
+    out.trouble = fmt::format("the check by {} failed ({}): the reference's own error is not known",
+                              planned.checked_by, check.trouble);
   } else if (check.run) {
     out.description = planned.checked_by + ", not checked";
-    out.trouble = fmt::format("the reference by {} failed ({}): what was to check it took its place, and its own error is not known", planned.made_by, truth.trouble);
+    out.trouble = fmt::format(
+        "the reference by {} failed ({}): what was to check it took its place, and its own error is not "
+        "known",
+        planned.made_by, truth.trouble);
   } else {
     out.description = "none";
-    out.trouble = fmt::format("there is no reference: {} failed ({}), and so did {} ({}); the points have costs, but no errors", planned.made_by, truth.trouble,
-                              planned.checked_by, check.trouble);
+    out.trouble = fmt::format(
+        "there is no reference: {} failed ({}), and so did {} ({}); the points have costs, but no errors",
+        planned.made_by, truth.trouble, planned.checked_by, check.trouble);
   }
   if (out.available) out.cpu_s = (truth.run ? truth : check).run->result.cpu_s;
   return out;

@@ -34,7 +34,8 @@ void limit_cpu(double limit_s) {
   action.sa_flags = SA_RESTART;
   sigaction(SIGPROF, &action, nullptr);
   const double whole = std::floor(limit_s);
-  const itimerval timer{{0, 0}, {static_cast<time_t>(whole), static_cast<suseconds_t>(std::max(1.0, 1e6 * (limit_s - whole)))}};
+  const itimerval timer{
+      {0, 0}, {static_cast<time_t>(whole), static_cast<suseconds_t>(std::max(1.0, 1e6 * (limit_s - whole)))}};
   setitimer(ITIMER_PROF, &timer, nullptr);
   const auto last = static_cast<rlim_t>(std::ceil(cpu_seconds() + limit_s + kGraceSeconds));
   const rlimit seconds{last, last + 5}, none{0, 0};
@@ -81,8 +82,7 @@ ProcessPool::ProcessPool(int jobs) : jobs_(std::max(1, jobs)) {}
 ProcessPool::~ProcessPool() {
   for (const Child& child : children_) kill(child.pid, SIGKILL);
   for (const Child& child : children_) {
-    while (waitpid(child.pid, nullptr, 0) < 0 && errno == EINTR) {
-    }
+    while (waitpid(child.pid, nullptr, 0) < 0 && errno == EINTR) {}
     close(child.pipe);
   }
 }
@@ -106,7 +106,8 @@ void ProcessPool::start(Work work, double limit_s, Done done) {
 bool ProcessPool::is_asleep(Child& child) {
   clockid_t clock{};
   timespec used{};
-  if (clock_getcpuclockid(child.pid, &clock) != 0 || clock_gettime(clock, &used) != 0) return false;  // it has ended
+  // it has ended
+  if (clock_getcpuclockid(child.pid, &clock) != 0 || clock_gettime(clock, &used) != 0) return false;
   const double cpu_s = static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
   if (cpu_s > child.cpu_s) child.moved = wall_seconds();
   child.cpu_s = cpu_s;
@@ -118,16 +119,17 @@ void ProcessPool::finish(std::list<Child>::iterator at) {
   children_.erase(at);
   close(child.pipe);
   int status = 0;
-  while (waitpid(child.pid, &status, 0) < 0 && errno == EINTR) {
-  }
+  while (waitpid(child.pid, &status, 0) < 0 && errno == EINTR) {}
   Outcome outcome;
   const bool late = child.killed || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU);
   if (late) {
     outcome = {Outcome::End::kOutOfTime, fmt::format("out of time: {:g} s", child.limit_s)};
   } else if (WIFSIGNALED(status)) {
-    outcome = {Outcome::End::kCrash, fmt::format("killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))};
+    outcome = {Outcome::End::kCrash,
+               fmt::format("killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))};
   } else if (WEXITSTATUS(status) != 0 || child.bytes.empty()) {
-    outcome = {Outcome::End::kCrash, fmt::format("ended with exit status {} and no result", WEXITSTATUS(status))};
+    outcome = {Outcome::End::kCrash,
+               fmt::format("ended with exit status {} and no result", WEXITSTATUS(status))};
   } else {
     outcome = {child.bytes[0] == kGood ? Outcome::End::kDone : Outcome::End::kError, child.bytes.substr(1)};
   }
@@ -140,14 +142,16 @@ void ProcessPool::wait(double most_s) {
     std::vector<pollfd> polled;
     for (const Child& child : children_) polled.push_back({child.pipe, POLLIN, 0});
     const double left = end - wall_seconds();
-    if (poll(polled.data(), polled.size(), static_cast<int>(1e3 * std::clamp(left, 0.0, 0.2))) < 0 && errno != EINTR)
+    if (poll(polled.data(), polled.size(), static_cast<int>(1e3 * std::clamp(left, 0.0, 0.2))) < 0 &&
+        errno != EINTR)
       fail("waiting for a run failed: {}", std::strerror(errno));
     bool any = false;
     for (auto child = children_.begin(); child != children_.end();) {
       const auto current = child++;
       char block[1 << 16];
       ssize_t n;
-      while ((n = read(current->pipe, block, sizeof block)) > 0) current->bytes.append(block, static_cast<std::size_t>(n));
+      while ((n = read(current->pipe, block, sizeof block)) > 0)
+        current->bytes.append(block, static_cast<std::size_t>(n));
       if (n == 0) {
         finish(current);
         any = true;

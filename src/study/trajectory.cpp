@@ -8,7 +8,9 @@
 namespace palpate::study {
 namespace {
 
-VecX nodal_positions(const loop::World& world) { return world.state.q().head(world.state.layout().nodal_size); }
+VecX nodal_positions(const loop::World& world) {
+  return world.state.q().head(world.state.layout().nodal_size);
+}
 
 /// Nodes of all bodies; of a scene without any, the tool's origin.
 VecX positions_of(const loop::World& world, const Vec3& tool_origin) {
@@ -49,7 +51,8 @@ void TrajectoryRecorder::period(loop::World& world, double t) {
     trajectory_.node_weights.setOnes(trajectory_.start.size());
     for (const loop::Body& body : world.bodies) {
       const int first = world.state.layout().find(body.block_id)->u_offset;
-      for (Eigen::Index i = 0; i < body.masses.size(); ++i) trajectory_.node_weights.segment<3>(first + 3 * i).setConstant(body.masses[i]);
+      for (Eigen::Index i = 0; i < body.masses.size(); ++i)
+        trajectory_.node_weights.segment<3>(first + 3 * i).setConstant(body.masses[i]);
     }
   }
   trajectory_.period_times.push_back(t);
@@ -66,28 +69,31 @@ void TrajectoryRecorder::tick(const loop::TickRecord& tick) {
 TrajectoryError distance(const Trajectory& computed, const Trajectory& reference) {
   TrajectoryError error;
   double difference = 0.0, size = 0.0;
-  const int common = for_common_times(computed.period_times, reference.period_times, [&](std::size_t i, std::size_t j) {
-    const VecX& x = computed.positions[i];
-    const VecX& y = reference.positions[j];
-    PALPATE_CHECK(x.size() == y.size(), "trajectories of {} and {} coordinates", x.size(), y.size());
-    if (x.size() > 0) {
-      difference += reference.node_weights.dot((x - y).cwiseAbs2());
-      size += reference.node_weights.dot((y - reference.start).cwiseAbs2());
-      for (Eigen::Index n = 0; n < x.size(); n += 3) error.position_max_m = worse(error.position_max_m, (x.segment<3>(n) - y.segment<3>(n)).norm());
-    }
-    error.energy_j = worse(error.energy_j, std::abs(computed.energies[i] - reference.energies[j]));
-  });
+  const int common =
+      for_common_times(computed.period_times, reference.period_times, [&](std::size_t i, std::size_t j) {
+        const VecX& x = computed.positions[i];
+        const VecX& y = reference.positions[j];
+        PALPATE_CHECK(x.size() == y.size(), "trajectories of {} and {} coordinates", x.size(), y.size());
+        if (x.size() > 0) {
+          difference += reference.node_weights.dot((x - y).cwiseAbs2());
+          size += reference.node_weights.dot((y - reference.start).cwiseAbs2());
+          for (Eigen::Index n = 0; n < x.size(); n += 3)
+            error.position_max_m = worse(error.position_max_m, (x.segment<3>(n) - y.segment<3>(n)).norm());
+        }
+        error.energy_j = worse(error.energy_j, std::abs(computed.energies[i] - reference.energies[j]));
+      });
   PALPATE_CHECK(common > 0, "two trajectories without a common time");
   error.position_rel_l2 = size > 0.0 ? std::sqrt(difference / size) : std::sqrt(difference);
   double force2 = 0.0, torque2 = 0.0;
-  const int ticks = for_common_times(computed.tick_times, reference.tick_times, [&](std::size_t i, std::size_t j) {
-    const double force = (computed.device[i].force - reference.device[j].force).norm();
-    const double torque = (computed.device[i].moment - reference.device[j].moment).norm();
-    force2 += force * force;
-    torque2 += torque * torque;
-    error.force_max_n = worse(error.force_max_n, force);
-    error.torque_max_n_m = worse(error.torque_max_n_m, torque);
-  });
+  const int ticks =
+      for_common_times(computed.tick_times, reference.tick_times, [&](std::size_t i, std::size_t j) {
+        const double force = (computed.device[i].force - reference.device[j].force).norm();
+        const double torque = (computed.device[i].moment - reference.device[j].moment).norm();
+        force2 += force * force;
+        torque2 += torque * torque;
+        error.force_max_n = worse(error.force_max_n, force);
+        error.torque_max_n_m = worse(error.torque_max_n_m, torque);
+      });
   if (ticks > 0) {
     error.force_rms_n = std::sqrt(force2 / ticks);
     error.torque_rms_n_m = std::sqrt(torque2 / ticks);

@@ -27,9 +27,13 @@ void check(const TreeBone& bone, int index) {
   const std::string where = fmt::format("bone \"{}\"", bone.name);
   dynamics::check_inertia(bone.mass, bone.inertia, where.c_str());
   PALPATE_CHECK(bone.parent < index, "{}: its parent {} stands after it", where, bone.parent);
-  if (bone.joint == Joint::kFree && bone.parent >= 0) fail("{}: a free joint is for a root; it hangs on another bone: use \"ball\", \"hinge\" or \"weld\"", where);
+  if (bone.joint == Joint::kFree && bone.parent >= 0)
+    fail("{}: a free joint is for a root; it hangs on another bone: use \"ball\", \"hinge\" or \"weld\"",
+         where);
   if (bone.joint == Joint::kHinge && !(bone.axis.norm() > 0.0)) fail("{}: a hinge needs an axis", where);
-  if (!(bone.stiffness >= 0.0 && bone.damping >= 0.0)) fail("{}: stiffness {} and damping {} of its joint must not be negative", where, bone.stiffness, bone.damping);
+  if (!(bone.stiffness >= 0.0 && bone.damping >= 0.0))
+    fail("{}: stiffness {} and damping {} of its joint must not be negative", where, bone.stiffness,
+         bone.damping);
 }
 
 /// The frame of a joint at the start: a hinge turns about its z.
@@ -39,17 +43,24 @@ Pose joint_frame(const TreeBone& bone) {
 }
 
 SimTK::MobilizedBody add(SimTK::MobilizedBody& parent, const Pose& parent_start, const TreeBone& bone) {
-  const SimTK::Body::Rigid body(SimTK::MassProperties(bone.mass, SimTK::Vec3(0), SimTK::Inertia(bone.inertia.x(), bone.inertia.y(), bone.inertia.z())));
-  if (bone.joint == Joint::kFree) return SimTK::MobilizedBody::Free(parent, SimTK::Transform(), body, SimTK::Transform());
+  const SimTK::Body::Rigid body(SimTK::MassProperties(
+      bone.mass, SimTK::Vec3(0), SimTK::Inertia(bone.inertia.x(), bone.inertia.y(), bone.inertia.z())));
+  if (bone.joint == Joint::kFree)
+    return SimTK::MobilizedBody::Free(parent, SimTK::Transform(), body, SimTK::Transform());
   const Pose joint = joint_frame(bone);
-  const SimTK::Transform on_parent = to(parent_start.inverse() * joint), on_bone = to(bone.start.inverse() * joint);
+  const SimTK::Transform on_parent = to(parent_start.inverse() * joint),
+                         on_bone = to(bone.start.inverse() * joint);
   if (bone.joint == Joint::kHinge) return SimTK::MobilizedBody::Pin(parent, on_parent, body, on_bone);
   if (bone.joint == Joint::kBall) return SimTK::MobilizedBody::Ball(parent, on_parent, body, on_bone);
   return SimTK::MobilizedBody::Weld(parent, on_parent, body, on_bone);
 }
 
-constexpr int q_count(Joint joint) { return joint == Joint::kFree ? 7 : joint == Joint::kBall ? 4 : joint == Joint::kHinge ? 1 : 0; }
-constexpr int u_count(Joint joint) { return joint == Joint::kFree ? 6 : joint == Joint::kBall ? 3 : joint == Joint::kHinge ? 1 : 0; }
+constexpr int q_count(Joint joint) {
+  return joint == Joint::kFree ? 7 : joint == Joint::kBall ? 4 : joint == Joint::kHinge ? 1 : 0;
+}
+constexpr int u_count(Joint joint) {
+  return joint == Joint::kFree ? 6 : joint == Joint::kBall ? 3 : joint == Joint::kHinge ? 1 : 0;
+}
 
 /// q' = N u joint by joint: a quaternion's is that of a free body, the rest are rates.
 class TreeKinematics final : public dynamics::BlockKinematics {
@@ -57,7 +68,8 @@ class TreeKinematics final : public dynamics::BlockKinematics {
   explicit TreeKinematics(const std::vector<TreeBone>& bones) {
     for (const TreeBone& bone : bones) joints_.push_back(bone.joint);
   }
-  void q_dot(const dynamics::ConstSegment& q, const dynamics::ConstSegment& u, dynamics::Segment out) const override {
+  void q_dot(const dynamics::ConstSegment& q, const dynamics::ConstSegment& u,
+             dynamics::Segment out) const override {
     each([&](Joint joint, int i, int j) {
       if (joint == Joint::kHinge) {
         out[i] = u[j];
@@ -69,13 +81,15 @@ class TreeKinematics final : public dynamics::BlockKinematics {
       if (joint == Joint::kFree) out.segment<3>(i + 4) = u.segment<3>(j + 3);
     });
   }
-  void u_of_q_dot(const dynamics::ConstSegment& q, const dynamics::ConstSegment& q_dot, dynamics::Segment u) const override {
+  void u_of_q_dot(const dynamics::ConstSegment& q, const dynamics::ConstSegment& q_dot,
+                  dynamics::Segment u) const override {
     each([&](Joint joint, int i, int j) {
       if (joint == Joint::kHinge) {
         u[j] = q_dot[i];
         return;
       }
-      const Quat rotation(q[i], q[i + 1], q[i + 2], q[i + 3]), rate(q_dot[i], q_dot[i + 1], q_dot[i + 2], q_dot[i + 3]);
+      const Quat rotation(q[i], q[i + 1], q[i + 2], q[i + 3]),
+          rate(q_dot[i], q_dot[i + 1], q_dot[i + 2], q_dot[i + 3]);
       u.segment<3>(j) = 2.0 * (rate * rotation.conjugate()).vec() / rotation.squaredNorm();
       if (joint == Joint::kFree) u.segment<3>(j + 3) = q_dot.segment<3>(i + 4);
     });
@@ -101,15 +115,18 @@ class TreeKinematics final : public dynamics::BlockKinematics {
 
 }  // namespace
 
-BoneTree::Impl::Impl(std::vector<TreeBone> bones_in, const Vec3& gravity_in) : bones(std::move(bones_in)), gravity(gravity_in), matter(system), forces(system) {
+BoneTree::Impl::Impl(std::vector<TreeBone> bones_in, const Vec3& gravity_in)
+    : bones(std::move(bones_in)), gravity(gravity_in), matter(system), forces(system) {
   PALPATE_CHECK(!bones.empty(), "a tree without bones");
   counters::count("tool.simbody_system");
   int q = 0, u = 0;
   for (int i = 0; i < static_cast<int>(bones.size()); ++i) {
     const TreeBone& bone = bones[static_cast<std::size_t>(i)];
     check(bone, i);
-    SimTK::MobilizedBody& parent = bone.parent < 0 ? static_cast<SimTK::MobilizedBody&>(matter.Ground()) : bodies[static_cast<std::size_t>(bone.parent)];
-    bodies.push_back(add(parent, bone.parent < 0 ? Pose{} : bones[static_cast<std::size_t>(bone.parent)].start, bone));
+    SimTK::MobilizedBody& parent = bone.parent < 0 ? static_cast<SimTK::MobilizedBody&>(matter.Ground())
+                                                   : bodies[static_cast<std::size_t>(bone.parent)];
+    bodies.push_back(
+        add(parent, bone.parent < 0 ? Pose{} : bones[static_cast<std::size_t>(bone.parent)].start, bone));
     first_q.push_back(q);
     first_u.push_back(u);
     q += q_count(bone.joint);
@@ -121,21 +138,27 @@ BoneTree::Impl::Impl(std::vector<TreeBone> bones_in, const Vec3& gravity_in) : b
   if (!gravity.isZero(0.0)) SimTK::Force::UniformGravity(forces, matter, to(gravity));
   state = system.realizeTopology();
   system.realizeModel(state);
-  PALPATE_CHECK(state.getNQ() == q_size && state.getNU() == u_size, "Simbody has {} q and {} u, the tree {} and {}", state.getNQ(), state.getNU(), q_size, u_size);
+  PALPATE_CHECK(state.getNQ() == q_size && state.getNU() == u_size,
+                "Simbody has {} q and {} u, the tree {} and {}", state.getNQ(), state.getNU(), q_size,
+                u_size);
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (q_count(bones[i].joint) > 0)
-      PALPATE_CHECK(bodies[i].getFirstQIndex(state) == first_q[i] && bodies[i].getFirstUIndex(state) == first_u[i], "Simbody orders its coordinates in another way");
+      PALPATE_CHECK(
+          bodies[i].getFirstQIndex(state) == first_q[i] && bodies[i].getFirstUIndex(state) == first_u[i],
+          "Simbody orders its coordinates in another way");
   poses.resize(bones.size());
   twists.resize(bones.size());
 }
 
 void BoneTree::Impl::go_to(const VecX& q, const VecX& u) {
-  PALPATE_CHECK(q.size() == q_size && u.size() == u_size, "a tree of {} q and {} u was given {} and {}", q_size, u_size, q.size(), u.size());
+  PALPATE_CHECK(q.size() == q_size && u.size() == u_size, "a tree of {} q and {} u was given {} and {}",
+                q_size, u_size, q.size(), u.size());
   if (at_q.size() == q.size() && at_q == q && at_u == u) return;
   SimTK::Vector& sq = state.updQ();
   SimTK::Vector& su = state.updU();
   for (int i = 0; i < q_size; ++i) sq[i] = q[i];
-  for (std::size_t b = 0; b < bones.size(); ++b) {  // a trial state's quaternion is not unit to rounding: its direction counts
+  // a trial state's quaternion is not unit to rounding: its direction counts
+  for (std::size_t b = 0; b < bones.size(); ++b) {
     if (q_count(bones[b].joint) < 4) continue;
     const Eigen::Vector4d unit = q.segment<4>(first_q[b]).normalized();
     for (int k = 0; k < 4; ++k) sq[first_q[b] + k] = unit[k];
@@ -175,7 +198,8 @@ Vec3 BoneTree::Impl::turn(const VecX& q, std::size_t bone) const {
   return rotation_vector(Quat(r[0], r[1], r[2], r[3]).normalized());
 }
 
-BoneTree::BoneTree(std::vector<TreeBone> bones, const Vec3& gravity) : impl_(std::make_unique<Impl>(std::move(bones), gravity)) {}
+BoneTree::BoneTree(std::vector<TreeBone> bones, const Vec3& gravity)
+    : impl_(std::make_unique<Impl>(std::move(bones), gravity)) {}
 BoneTree::~BoneTree() = default;
 
 int BoneTree::size() const { return static_cast<int>(impl_->bones.size()); }
@@ -189,7 +213,8 @@ VecX BoneTree::start() const {
     const TreeBone& bone = impl_->bones[b];
     const auto at = impl_->first_q[b];
     if (bone.joint == Joint::kBall) q[at] = 1.0;
-    if (bone.joint == Joint::kFree) q.segment<7>(at) << bone.start.rotation.w(), bone.start.rotation.vec(), bone.start.translation;
+    if (bone.joint == Joint::kFree)
+      q.segment<7>(at) << bone.start.rotation.w(), bone.start.rotation.vec(), bone.start.translation;
   }
   return q;
 }
@@ -198,13 +223,21 @@ VecX BoneTree::rigid_start(const Vec3& velocity, const Vec3& angular_velocity, c
   VecX u = VecX::Zero(u_size());
   for (std::size_t b = 0; b < impl_->bones.size(); ++b)
     if (impl_->bones[b].joint == Joint::kFree)
-      u.segment<6>(impl_->first_u[b]) << angular_velocity, velocity + angular_velocity.cross(impl_->bones[b].start.translation - centre);
+      u.segment<6>(impl_->first_u[b]) << angular_velocity,
+          velocity + angular_velocity.cross(impl_->bones[b].start.translation - centre);
   return u;
 }
 
 dynamics::BlockSpec BoneTree::block(std::string name, double length, double speed) const {
-  const bool free = std::any_of(impl_->bones.begin(), impl_->bones.end(), [](const TreeBone& b) { return b.joint == Joint::kFree; });
-  dynamics::BlockSpec spec{std::move(name), dynamics::BlockKind::kArticulated, q_size(), u_size(), 1.0, speed / length, std::make_shared<TreeKinematics>(impl_->bones)};
+  const bool free = std::any_of(impl_->bones.begin(), impl_->bones.end(),
+                                [](const TreeBone& b) { return b.joint == Joint::kFree; });
+  dynamics::BlockSpec spec{std::move(name),
+                           dynamics::BlockKind::kArticulated,
+                           q_size(),
+                           u_size(),
+                           1.0,
+                           speed / length,
+                           std::make_shared<TreeKinematics>(impl_->bones)};
   if (free) {
     spec.q_scale = std::min(1.0, length);
     spec.u_scale = std::min(speed, speed / length);
@@ -226,7 +259,8 @@ Eigen::Ref<const MatX> BoneTree::jacobian(const VecX& q, const VecX& u, int bone
 Vec6 BoneTree::bias(const VecX& q, const VecX& u, int bone) const {
   impl_->go_to(q, u);
   impl_->need_bias();
-  const SimTK::SpatialVec& b = impl_->biases[impl_->bodies[static_cast<std::size_t>(bone)].getMobilizedBodyIndex()];
+  const SimTK::SpatialVec& b =
+      impl_->biases[impl_->bodies[static_cast<std::size_t>(bone)].getMobilizedBodyIndex()];
   Vec6 out;
   out << from(b[0]), from(b[1]);
   return out;
@@ -244,22 +278,26 @@ const MatX& BoneTree::mass(const VecX& q) const {
   return i.M;
 }
 
-// Inverse dynamics gives the residual M u' + C(q, u) - f_applied; at u' = 0 the right-hand side is its negative.
+// Inverse dynamics gives the residual M u' + C(q, u) - f_applied; at u' = 0 the right-hand side is its
+// negative.
 VecX BoneTree::force(const VecX& q, const VecX& u) const {
   Impl& i = *impl_;
   i.go_to(q, u);
   i.system.realize(i.state, SimTK::Stage::Dynamics);
   i.zero.resize(i.u_size);
   i.zero.setToZero();
-  i.matter.calcResidualForceIgnoringConstraints(i.state, i.zero, i.system.getRigidBodyForces(i.state, SimTK::Stage::Dynamics), i.zero, i.residual);
+  i.matter.calcResidualForceIgnoringConstraints(
+      i.state, i.zero, i.system.getRigidBodyForces(i.state, SimTK::Stage::Dynamics), i.zero, i.residual);
   VecX f(i.u_size);
   for (int k = 0; k < i.u_size; ++k) f[k] = -i.residual[k];
   for (std::size_t b = 0; b < i.bones.size(); ++b) {
     const TreeBone& bone = i.bones[b];
     const auto at = i.first_u[b];
     if (bone.joint == Joint::kHinge) f[at] -= bone.stiffness * q[i.first_q[b]] + bone.damping * u[at];
-    // The rotation vector is an eigenvector of its own Jacobian: the moment of the energy k |theta|^2 / 2 is -k theta.
-    if (bone.joint == Joint::kBall) f.segment<3>(at) -= bone.stiffness * i.turn(q, b) + bone.damping * u.segment<3>(at);
+    // The rotation vector is an eigenvector of its own Jacobian: the moment of the energy k |theta|^2 / 2 is
+    // -k theta.
+    if (bone.joint == Joint::kBall)
+      f.segment<3>(at) -= bone.stiffness * i.turn(q, b) + bone.damping * u.segment<3>(at);
   }
   return f;
 }
@@ -279,7 +317,8 @@ void BoneTree::tangent(const VecX& q, double k_scale, double d_scale, MatX& A) c
     if (bone.joint == Joint::kHinge) A(at, at) += k_scale * bone.stiffness + d_scale * bone.damping;
     if (bone.joint != Joint::kBall) continue;
     const Mat3 J = left_jacobian_inverse(i.turn(q, b));  // theta' = J^-1 u
-    A.block<3, 3>(at, at) += 0.5 * k_scale * bone.stiffness * (J + J.transpose()) + d_scale * bone.damping * Mat3::Identity();
+    A.block<3, 3>(at, at) +=
+        0.5 * k_scale * bone.stiffness * (J + J.transpose()) + d_scale * bone.damping * Mat3::Identity();
   }
 }
 
@@ -300,7 +339,8 @@ double BoneTree::dissipated_power(const VecX& u) const {
   double power = 0.0;
   for (std::size_t b = 0; b < impl_->bones.size(); ++b) {
     const TreeBone& bone = impl_->bones[b];
-    if (bone.joint == Joint::kHinge || bone.joint == Joint::kBall) power += bone.damping * u.segment(impl_->first_u[b], u_count(bone.joint)).squaredNorm();
+    if (bone.joint == Joint::kHinge || bone.joint == Joint::kBall)
+      power += bone.damping * u.segment(impl_->first_u[b], u_count(bone.joint)).squaredNorm();
   }
   return power;
 }

@@ -11,15 +11,20 @@ Vec3 moment(const Mat3& S) { return {S(1, 2) - S(2, 1), S(2, 0) - S(0, 2), S(0, 
 
 }  // namespace
 
-// Generalised force of held forces f_k at points x_k along a direction i that turns what lies behind joint i about an axis w_i through p_i:
+// Generalised force of held forces f_k at points x_k along a direction i that turns what lies behind joint i
+// about an axis w_i through p_i:
 //     Q_i = w_i . m_i,   m_i = sum (x_k - p_i) x f_k over what i turns.
 // Along a direction j, a turn w_j about p_j:
-//   j is i's own joint, or lies before it: points and p_i turn together, and where it lies before it, w_i turns too:
-//     dQ_i = (w_j x w_i) . m_i + w_i . sum (w_j x (x_k - p_i)) x f_k;      of the same joint the axes stand in the parent: the first term is not there
+//   j is i's own joint, or lies before it: points and p_i turn together, and where it lies before it, w_i
+//   turns too:
+//     dQ_i = (w_j x w_i) . m_i + w_i . sum (w_j x (x_k - p_i)) x f_k;      of the same joint the axes stand
+//     in the parent: the first term is not there
 //   j lies behind i: of what i turns, only what j turns moves:
 //     dQ_i = w_i . sum (w_j x (x_k - p_j)) x f_k  over what j turns
-//   else, or where i or j shifts a free root: 0 (a shift moves x_k and p_i alike, and its own direction stands still).
-// K is symmetric between different joints; within a ball or a free root it is up to the cross matrix of m, as for one rigid body.
+//   else, or where i or j shifts a free root: 0 (a shift moves x_k and p_i alike, and its own direction
+//   stands still).
+// K is symmetric between different joints; within a ball or a free root it is up to the cross matrix of m, as
+// for one rigid body.
 void BoneTree::add_geometric_stiffness(const VecX& q, const std::vector<HeldForce>& held, MatX& K) const {
   Impl& t = *impl_;
   t.go_to(q, t.at_u.size() == t.u_size ? t.at_u : VecX(VecX::Zero(t.u_size)));
@@ -48,9 +53,12 @@ void BoneTree::add_geometric_stiffness(const VecX& q, const std::vector<HeldForc
   };
   const auto shifts = [&](int i) {
     const int b = t.bone_of_u[static_cast<std::size_t>(i)];
-    return t.bones[static_cast<std::size_t>(b)].joint == Joint::kFree && i - t.first_u[static_cast<std::size_t>(b)] >= 3;
+    return t.bones[static_cast<std::size_t>(b)].joint == Joint::kFree &&
+           i - t.first_u[static_cast<std::size_t>(b)] >= 3;
   };
-  const auto axis = [&](int i) -> Vec3 { return t.J.block<3, 1>(6 * t.bone_of_u[static_cast<std::size_t>(i)], i); };
+  const auto axis = [&](int i) -> Vec3 {
+    return t.J.block<3, 1>(6 * t.bone_of_u[static_cast<std::size_t>(i)], i);
+  };
   for (int i = 0; i < t.u_size; ++i) {
     if (shifts(i)) continue;
     const int bi = t.bone_of_u[static_cast<std::size_t>(i)];

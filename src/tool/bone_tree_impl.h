@@ -27,7 +27,7 @@ struct BoneTree::Impl {
   std::vector<Pose> poses;
   std::vector<Twist> twists;
   bool has_jacobian = false, has_bias = false, has_mass = false;
-  MatX J;           ///< six rows a bone
+  MatX J;  ///< six rows a bone
   MatX M;
   SimTK::Matrix_<SimTK::SpatialVec> columns;
   SimTK::Vector_<SimTK::SpatialVec> biases;

@@ -7,13 +7,15 @@ namespace {
 
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-bool is_none(const dynamics::LinearisedContact& record) { return record.source == dynamics::LinearisedContact::Source::kNone; }
+bool is_none(const dynamics::LinearisedContact& record) {
+  return record.source == dynamics::LinearisedContact::Source::kNone;
+}
 
 }  // namespace
 
 CouplingGains coupling_gains(const ToolSpec& spec) {
-  return {spec.coupling_stiffness_n_m, spec.coupling_damping_n_s_m, spec.coupling_rotational_stiffness_n_m_rad,
-          spec.coupling_rotational_damping_n_m_s_rad};
+  return {spec.coupling_stiffness_n_m, spec.coupling_damping_n_s_m,
+          spec.coupling_rotational_stiffness_n_m_rad, spec.coupling_rotational_damping_n_m_s_rad};
 }
 
 Vec6 stacked(const Twist& twist) {
@@ -31,8 +33,9 @@ Vec6 coupling_wrench(const CouplingGains& gains, const RigidMotion& tool, const 
   return wrench;
 }
 
-// Q = R_h R_t^T = exp(d).  A turn of the tool, R_t -> exp(e) R_t, makes it Q exp(-e) = exp(d) exp(-e): a disturbance from the right, so
-// dd = -J_right^-1(d) e, and J_right^-1(d) = J_left^-1(-d).  Hence -d(moment)/de = k_r J_left^-1(-d), whose unsymmetric part is [moment]/2:
+// Q = R_h R_t^T = exp(d).  A turn of the tool, R_t -> exp(e) R_t, makes it Q exp(-e) = exp(d) exp(-e): a
+// disturbance from the right, so dd = -J_right^-1(d) e, and J_right^-1(d) = J_left^-1(-d).  Hence
+// -d(moment)/de = k_r J_left^-1(-d), whose unsymmetric part is [moment]/2:
 // world-axes increments are no coordinates.
 Mat6 coupling_stiffness(const CouplingGains& gains, const Pose& tool, const Pose& handle) {
   Mat6 K = Mat6::Zero();
@@ -53,13 +56,15 @@ double coupling_energy(const CouplingGains& gains, const Pose& tool, const Pose&
 }
 
 double coupling_dissipation(const CouplingGains& gains, const Twist& tool, const Twist& handle) {
-  return gains.b_r * (handle.angular - tool.angular).squaredNorm() + gains.b * (handle.linear - tool.linear).squaredNorm();
+  return gains.b_r * (handle.angular - tool.angular).squaredNorm() +
+         gains.b * (handle.linear - tool.linear).squaredNorm();
 }
 
 // The record reads e = rotation vector of R R0^T; a turn from the left changes it by J_left^-1(e).
 Mat6 contact_stiffness(const dynamics::LinearisedContact& record, const Pose& tool) {
   if (is_none(record)) return Mat6::Zero();
-  const Pose x0{Quat(record.x0[0], record.x0[1], record.x0[2], record.x0[3]), Vec3(record.x0[4], record.x0[5], record.x0[6])};
+  const Pose x0{Quat(record.x0[0], record.x0[1], record.x0[2], record.x0[3]),
+                Vec3(record.x0[4], record.x0[5], record.x0[6])};
   Mat6 K = -Eigen::Map<const RowMajor6>(record.J.data());
   K.leftCols<3>() *= left_jacobian_inverse(pose_difference(x0, tool).head<3>());
   return K;

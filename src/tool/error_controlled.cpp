@@ -12,20 +12,25 @@ constexpr double kAccuracy = 1e-10;
 constexpr int kMaxSteps = 100000;
 
 // Semi-explicit Euler, twice with h against once with 2 h:
-//   u1 = u0 + h u'(q0, u0),  q1 = q0 + h N(q0) u1,   and the same from (q1, u1);      ub = u0 + 2 h u'(q0, u0),  qb = q0 + 2 h N(q0) ub.
-// y2 - yb = h^2 (u'', ..) + O(h^3) is the error of y2, which is kept (no extrapolation).  Simbody takes it relative to a speed that is not small, and a
-// coupling that swings at w has |u''| = w^2 |u|, so that a local error T leaves steps 2 h ~ 2 sqrt(T)/w, and t/2h of them make a
+//   u1 = u0 + h u'(q0, u0),  q1 = q0 + h N(q0) u1,   and the same from (q1, u1);      ub = u0 + 2 h u'(q0,
+//   u0),  qb = q0 + 2 h N(q0) ub.
+// y2 - yb = h^2 (u'', ..) + O(h^3) is the error of y2, which is kept (no extrapolation).  Simbody takes it
+// relative to a speed that is not small, and a coupling that swings at w has |u''| = w^2 |u|, so that a local
+// error T leaves steps 2 h ~ 2 sqrt(T)/w, and t/2h of them make a
 //   relative error ~ w t sqrt(T)/2     for     w/(2 sqrt(T)) steps a second.
-// w = 100/s, t = 0.1 s (what the damping remembers):  T = 1e-10: 5e-5 for 5,000 steps a tick of 1 ms;  T = 1e-6: 5e-3 for 50.  (Measured: w = 2e4/s takes 9,000 a tick.)
-// So 1e-6 it is: two to three digits, never the eight of the other two.  A tick that swings faster than kFirstOrderMaxSteps can follow ends with an error.
+// w = 100/s, t = 0.1 s (what the damping remembers):  T = 1e-10: 5e-5 for 5,000 steps a tick of 1 ms;  T =
+// 1e-6: 5e-3 for 50.  (Measured: w = 2e4/s takes 9,000 a tick.) So 1e-6 it is: two to three digits, never the
+// eight of the other two.  A tick that swings faster than kFirstOrderMaxSteps can follow ends with an error.
 constexpr double kFirstOrderAccuracy = 1e-6;
 constexpr int kFirstOrderMaxSteps = 20000;
 
-/// One of Simbody's own integrators, landing on the end of each tick.  Where the input changes between ticks the later begins with a
-/// reinitialisation (a multistep method then begins at order 1); after one, stepTo may return at once without a step, hence the loop.
+/// One of Simbody's own integrators, landing on the end of each tick.  Where the input changes between ticks
+/// the later begins with a reinitialisation (a multistep method then begins at order 1); after one, stepTo
+/// may return at once without a step, hence the loop.
 class ErrorControlled : public TickScheme {
  public:
-  ErrorControlled(SimbodyBody& body, std::unique_ptr<SimTK::Integrator> integrator, double accuracy = kAccuracy, int max_steps = kMaxSteps)
+  ErrorControlled(SimbodyBody& body, std::unique_ptr<SimTK::Integrator> integrator,
+                  double accuracy = kAccuracy, int max_steps = kMaxSteps)
       : body_(body), integrator_(std::move(integrator)), max_steps_(max_steps) {
     integrator_->setAccuracy(accuracy);
     integrator_->setInternalStepLimit(max_steps);
@@ -33,12 +38,14 @@ class ErrorControlled : public TickScheme {
 
   dynamics::StepResult advance(const TickInput& input, RigidMotion& motion) override {
     const double target = input.t0 + input.h;
-    dynamics::StepResult result{dynamics::StepStatus::kOk, target, input.h, integrator_->getMethodMinOrder(), 0, 0.0, {}};
+    dynamics::StepResult result{
+        dynamics::StepStatus::kOk, target, input.h, integrator_->getMethodMinOrder(), 0, 0.0, {}};
     try {
       start(input, motion);
       const int before = integrator_->getNumStepsTaken();
       while (integrator_->getTime() < target) {
-        if (integrator_->stepTo(target, target) == SimTK::Integrator::ReachedStepLimit) return too_many(input);
+        if (integrator_->stepTo(target, target) == SimTK::Integrator::ReachedStepLimit)
+          return too_many(input);
       }
       result.iterations = integrator_->getNumStepsTaken() - before;
       if (result.iterations > 0) result.h = integrator_->getPreviousStepSizeTaken();
@@ -47,7 +54,8 @@ class ErrorControlled : public TickScheme {
       reset();
       result.status = dynamics::StepStatus::kErrorTestFailed;
       result.t = input.t0;
-      result.message = fmt::format("{} at t = {:.9g} s, tick {:.3g} s: {}", integrator_->getMethodName(), input.t0, input.h, e.what());
+      result.message = fmt::format("{} at t = {:.9g} s, tick {:.3g} s: {}", integrator_->getMethodName(),
+                                   input.t0, input.h, e.what());
     }
     return result;
   }
@@ -71,10 +79,17 @@ class ErrorControlled : public TickScheme {
 
   dynamics::StepResult too_many(const TickInput& input) {
     reset();
-    return {dynamics::StepStatus::kTooManySteps, input.t0, input.h, integrator_->getMethodMinOrder(), max_steps_, 0.0,
-            fmt::format("{} at t = {:.9g} s: more than {} steps in a tick of {:.3g} s: the tool turns or swings too fast for its accuracy of {:g}; use "
+    return {dynamics::StepStatus::kTooManySteps,
+            input.t0,
+            input.h,
+            integrator_->getMethodMinOrder(),
+            max_steps_,
+            0.0,
+            fmt::format("{} at t = {:.9g} s: more than {} steps in a tick of {:.3g} s: the tool turns or "
+                        "swings too fast for its accuracy of {:g}; use "
                         "linearly-implicit-euler, which has no limit, or a softer coupling",
-                        integrator_->getMethodName(), input.t0, max_steps_, input.h, integrator_->getAccuracyInUse())};
+                        integrator_->getMethodName(), input.t0, max_steps_, input.h,
+                        integrator_->getAccuracyInUse())};
   }
 
   SimbodyBody& body_;
@@ -87,10 +102,13 @@ class ErrorControlled : public TickScheme {
 }  // namespace
 
 std::unique_ptr<TickScheme> make_runge_kutta_merson(SimbodyBody& body) {
-  return std::make_unique<ErrorControlled>(body, std::make_unique<SimTK::RungeKuttaMersonIntegrator>(body.system()));
+  return std::make_unique<ErrorControlled>(
+      body, std::make_unique<SimTK::RungeKuttaMersonIntegrator>(body.system()));
 }
 std::unique_ptr<TickScheme> make_semi_explicit_euler2(SimbodyBody& body) {
-  return std::make_unique<ErrorControlled>(body, std::make_unique<SimTK::SemiExplicitEuler2Integrator>(body.system()), kFirstOrderAccuracy, kFirstOrderMaxSteps);
+  return std::make_unique<ErrorControlled>(
+      body, std::make_unique<SimTK::SemiExplicitEuler2Integrator>(body.system()), kFirstOrderAccuracy,
+      kFirstOrderMaxSteps);
 }
 std::unique_ptr<TickScheme> make_cpodes(SimbodyBody& body) {
   return std::make_unique<ErrorControlled>(body, std::make_unique<SimTK::CPodesIntegrator>(body.system()));

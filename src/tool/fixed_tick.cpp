@@ -17,15 +17,21 @@ dynamics::StepResult done(const TickInput& input, double residual = 0.0) {
   return {dynamics::StepStatus::kOk, input.t0 + input.h, input.h, 1, 1, residual, {}};
 }
 
-// Gyroscopic term of both schemes, written in the body's axes (where I is constant) with L0 = I w0: f = -w x I w is taken as -w1 x L0, so that
-//   I (w1 - w0) = -h w1 x L0  gives  w1 . I w1 = w1 . I w0 <= |w1|_I |w0|_I:  it never adds energy, at any spin and any tick
-// (taken explicitly it does, and blows up where a tick turns the tool by a radian).  As -w1 x L0 = L0 x w1, its matrix G = -[L0] is skew: the
-// symmetric part of M + h (B + G) + h^2 K stays positive definite wherever those of K and B are semi-definite.  World components at the tick's
-// start serve for body axes: exp(h w1) leaves w1 itself unturned.
-Mat3 gyroscopic_matrix(const Mat6& M, const Twist& twist) { return -cross_matrix(M.topLeftCorner<3, 3>() * twist.angular); }
+// Gyroscopic term of both schemes, written in the body's axes (where I is constant) with L0 = I w0: f = -w x
+// I w is taken as -w1 x L0, so that
+//   I (w1 - w0) = -h w1 x L0  gives  w1 . I w1 = w1 . I w0 <= |w1|_I |w0|_I:  it never adds energy, at any
+//   spin and any tick
+// (taken explicitly it does, and blows up where a tick turns the tool by a radian).  As -w1 x L0 = L0 x w1,
+// its matrix G = -[L0] is skew: the symmetric part of M + h (B + G) + h^2 K stays positive definite wherever
+// those of K and B are semi-definite.  World components at the tick's start serve for body axes: exp(h w1)
+// leaves w1 itself unturned.
+Mat3 gyroscopic_matrix(const Mat6& M, const Twist& twist) {
+  return -cross_matrix(M.topLeftCorner<3, 3>() * twist.angular);
+}
 
 // (M + h G) (u1 - u0) = h f(x0, u0, handle at the start),  x1 = x0 + h u1.
-// For one direction, x1 = z x0: z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0; |z| <= 1 until z = -1, that is k = 4 m/h^2 - 2 b/h.
+// For one direction, x1 = z x0: z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0; |z| <= 1 until z = -1, that is
+// k = 4 m/h^2 - 2 b/h.
 class SemiImplicitEuler : public TickScheme {
  public:
   explicit SemiImplicitEuler(SimbodyBody& body) : body_(body) {}
@@ -44,9 +50,11 @@ class SemiImplicitEuler : public TickScheme {
   SimbodyBody& body_;
 };
 
-// Backward Euler, u1 = u0 + h M^-1 f(x1, u1, handle at the end), x1 = x0 + h u1, with f linearised about (x0, u0):
+// Backward Euler, u1 = u0 + h M^-1 f(x1, u1, handle at the end), x1 = x0 + h u1, with f linearised about (x0,
+// u0):
 //   (M + h (B + G) + h^2 K) (u1 - u0) = h (f0 - h K u0),   K = -df/dx, B = -df/du of coupling and contact.
-// In a translation, and in a rotation about a principal axis, f is linear and this is backward Euler itself: no bound on k.
+// In a translation, and in a rotation about a principal axis, f is linear and this is backward Euler itself:
+// no bound on k.
 class LinearlyImplicitEuler : public TickScheme {
  public:
   explicit LinearlyImplicitEuler(SimbodyBody& body) : body_(body) {}
@@ -55,9 +63,11 @@ class LinearlyImplicitEuler : public TickScheme {
     const TickInput held = with_handle_held(input, input.handle.pose1, input.handle.twist1);
     const Vec6 u0 = stacked(motion.twist);
     const Mat6 M = body_.mass_matrix(motion.pose);
-    const Vec6 f0 = M * body_.acceleration(input.t0 + h, motion, held);  // the record's own time, too, is the tick's end
+    // the record's own time, too, is the tick's end
+    const Vec6 f0 = M * body_.acceleration(input.t0 + h, motion, held);
 
-    const Mat6 K = coupling_stiffness(input.gains, motion.pose, input.handle.pose1) + contact_stiffness(input.contact, motion.pose);
+    const Mat6 K = coupling_stiffness(input.gains, motion.pose, input.handle.pose1) +
+                   contact_stiffness(input.contact, motion.pose);
     Mat6 B = coupling_damping(input.gains) + contact_damping(input.contact);
     B.topLeftCorner<3, 3>() += gyroscopic_matrix(M, motion.twist);
     const Mat6 A = M + h * B + h * h * K;
@@ -75,7 +85,11 @@ class LinearlyImplicitEuler : public TickScheme {
 
 }  // namespace
 
-std::unique_ptr<TickScheme> make_semi_implicit_euler(SimbodyBody& body) { return std::make_unique<SemiImplicitEuler>(body); }
-std::unique_ptr<TickScheme> make_linearly_implicit_euler(SimbodyBody& body) { return std::make_unique<LinearlyImplicitEuler>(body); }
+std::unique_ptr<TickScheme> make_semi_implicit_euler(SimbodyBody& body) {
+  return std::make_unique<SemiImplicitEuler>(body);
+}
+std::unique_ptr<TickScheme> make_linearly_implicit_euler(SimbodyBody& body) {
+  return std::make_unique<LinearlyImplicitEuler>(body);
+}
 
 }  // namespace palpate::tool

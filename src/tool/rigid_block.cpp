@@ -12,14 +12,18 @@ class CouplingTerm : public dynamics::RigidForce {
   CouplingTerm(int block_id, const CouplingGains& gains, HandlePath handle, bool symmetric)
       : RigidForce(block_id), gains_(gains), handle_(std::move(handle)), symmetric_(symmetric) {}
   std::string_view name() const override { return "virtual coupling"; }
-  dynamics::TermTraits traits() const override { return {.fast = true, .symmetric_tangent = symmetric_, .conservative = true}; }
+  dynamics::TermTraits traits() const override {
+    return {.fast = true, .symmetric_tangent = symmetric_, .conservative = true};
+  }
   Vec6 force(double t, const RigidMotion& m) const override { return coupling_wrench(gains_, m, handle(t)); }
   Mat6 tangent(double t, const RigidMotion& m, double k_scale, double d_scale) const override {
     Mat6 K = coupling_stiffness(gains_, m.pose, handle(t).pose);
     if (symmetric_) K = (0.5 * (K + K.transpose())).eval();
     return k_scale * K + d_scale * coupling_damping(gains_);
   }
-  double energy(const StateView& state) override { return coupling_energy(gains_, motion(state).pose, handle(state.time).pose); }
+  double energy(const StateView& state) override {
+    return coupling_energy(gains_, motion(state).pose, handle(state.time).pose);
+  }
   double dissipated_power(const StateView& state) override {
     return coupling_dissipation(gains_, motion(state).twist, handle(state.time).twist);
   }
@@ -38,10 +42,12 @@ class CouplingTerm : public dynamics::RigidForce {
 }  // namespace
 
 Wrench coupling_on_hand(const ToolSpec& spec, const HandleState& tool, const HandleState& handle) {
-  const Wrench on_tool = wrench_of(coupling_wrench(coupling_gains(spec), {tool.pose, tool.twist}, {handle.pose, handle.twist}));
+  const Wrench on_tool =
+      wrench_of(coupling_wrench(coupling_gains(spec), {tool.pose, tool.twist}, {handle.pose, handle.twist}));
   return {-on_tool.moment, -on_tool.force};
 }
-std::shared_ptr<dynamics::ForceTerm> make_coupling_term(int block_id, const ToolSpec& spec, HandlePath handle, bool symmetric) {
+std::shared_ptr<dynamics::ForceTerm> make_coupling_term(int block_id, const ToolSpec& spec, HandlePath handle,
+                                                        bool symmetric) {
   return std::make_shared<CouplingTerm>(block_id, coupling_gains(spec), std::move(handle), symmetric);
 }
 

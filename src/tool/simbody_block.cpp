@@ -13,10 +13,12 @@ using dynamics::rigid_block_of;
 using dynamics::RigidForce;
 using dynamics::StateView;
 
-/// M(q), rows and columns in the order of u: the mobilizer's (angular, linear) in world axes are the block's own.
+/// M(q), rows and columns in the order of u: the mobilizer's (angular, linear) in world axes are the block's
+/// own.
 class SimbodyInertia : public dynamics::InertiaTerm {
  public:
-  SimbodyInertia(int block_id, std::shared_ptr<SimbodyBody> body) : block_id_(block_id), body_(std::move(body)) {}
+  SimbodyInertia(int block_id, std::shared_ptr<SimbodyBody> body)
+      : block_id_(block_id), body_(std::move(body)) {}
   int block_id() const override { return block_id_; }
   bool diagonal() const override { return false; }
   void add_mass(const StateView& state, double scale, dynamics::BorderedMatrix& A) const override {
@@ -35,12 +37,16 @@ class SimbodyInertia : public dynamics::InertiaTerm {
 };
 
 /// M u' = f: what Simbody has on the right, coupling and contact left to their own terms.
-/// Simbody gives no derivatives; the weight has none, and those of the gyroscopic force of one body are known.
+/// Simbody gives no derivatives; the weight has none, and those of the gyroscopic force of one body are
+/// known.
 class SimbodyForce : public RigidForce {
  public:
-  SimbodyForce(int block_id, std::shared_ptr<SimbodyBody> body) : RigidForce(block_id), body_(std::move(body)) {}
+  SimbodyForce(int block_id, std::shared_ptr<SimbodyBody> body)
+      : RigidForce(block_id), body_(std::move(body)) {}
   std::string_view name() const override { return "tool (Simbody)"; }
-  dynamics::TermTraits traits() const override { return {.stiff = false, .fast = true, .symmetric_tangent = false, .conservative = true}; }
+  dynamics::TermTraits traits() const override {
+    return {.stiff = false, .fast = true, .symmetric_tangent = false, .conservative = true};
+  }
   Vec6 force(double t, const RigidMotion& motion) const override { return body_->calc_force(t, motion); }
   Mat6 tangent(double, const RigidMotion& motion, double k_scale, double d_scale) const override {
     return gyroscopic_tangent(motion, body_->parameters().inertia, k_scale, d_scale);

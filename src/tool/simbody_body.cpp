@@ -8,7 +8,8 @@ namespace {
 SimTK::Vec3 to(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 SimTK::Body::Rigid make_body(const RigidParameters& p) {
-  return SimTK::Body::Rigid(SimTK::MassProperties(p.mass, SimTK::Vec3(0), SimTK::Inertia(p.inertia.x(), p.inertia.y(), p.inertia.z())));
+  return SimTK::Body::Rigid(SimTK::MassProperties(
+      p.mass, SimTK::Vec3(0), SimTK::Inertia(p.inertia.x(), p.inertia.y(), p.inertia.z())));
 }
 
 RigidMotion motion_of(const SimTK::Vector& q, const SimTK::Vector& u) {
@@ -21,17 +22,18 @@ RigidMotion motion_of(const SimTK::Vector& q, const SimTK::Vector& u) {
 
 }  // namespace
 
-/// Coupling and contact as one Simbody force.  The tick's input is a discrete variable of the State: changing it invalidates what was
-/// realised from it, and an integrator's trial states all see the same tick.
+/// Coupling and contact as one Simbody force.  The tick's input is a discrete variable of the State: changing
+/// it invalidates what was realised from it, and an integrator's trial states all see the same tick.
 class SimbodyBody::TickForce : public SimTK::Force::Custom::Implementation {
  public:
-  TickForce(const SimTK::GeneralForceSubsystem& forces, const SimTK::MobilizedBody& body) : forces_(forces), body_(body) {}
+  TickForce(const SimTK::GeneralForceSubsystem& forces, const SimTK::MobilizedBody& body)
+      : forces_(forces), body_(body) {}
 
   void realizeTopology(SimTK::State& state) const override {
     index_ = forces_.allocateDiscreteVariable(state, SimTK::Stage::Dynamics, new SimTK::Value<TickInput>());
   }
-  void calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& body_forces, SimTK::Vector_<SimTK::Vec3>&,
-                 SimTK::Vector&) const override {
+  void calcForce(const SimTK::State& state, SimTK::Vector_<SimTK::SpatialVec>& body_forces,
+                 SimTK::Vector_<SimTK::Vec3>&, SimTK::Vector&) const override {
     const auto& input = SimTK::Value<TickInput>::downcast(forces_.getDiscreteVariable(state, index_)).get();
     if (input.h <= 0.0) return;  // no tick yet
     const Vec6 w = applied_wrench(input, state.getTime(), motion_of(state.getQ(), state.getU()));
@@ -50,11 +52,15 @@ class SimbodyBody::TickForce : public SimTK::Force::Custom::Implementation {
 };
 
 SimbodyBody::SimbodyBody(const RigidParameters& parameters)
-    : parameters_(parameters), matter_(system_), forces_(system_), body_(matter_.Ground(), make_body(parameters)) {
+    : parameters_(parameters),
+      matter_(system_),
+      forces_(system_),
+      body_(matter_.Ground(), make_body(parameters)) {
   counters::count("tool.simbody_system");
   force_ = new TickForce(forces_, body_);
   SimTK::Force::Custom(forces_, force_);  // takes ownership
-  if (!parameters_.gravity.isZero(0.0)) SimTK::Force::UniformGravity(forces_, matter_, to(parameters_.gravity));
+  if (!parameters_.gravity.isZero(0.0))
+    SimTK::Force::UniformGravity(forces_, matter_, to(parameters_.gravity));
   state_ = system_.realizeTopology();
   system_.realizeModel(state_);
 }
@@ -69,7 +75,9 @@ void SimbodyBody::write(SimTK::State& state, double t, const RigidMotion& motion
   for (int i = 0; i < 3; ++i) u[i] = motion.twist.angular[i], u[3 + i] = motion.twist.linear[i];
 }
 
-RigidMotion SimbodyBody::read(const SimTK::State& state) const { return motion_of(state.getQ(), state.getU()); }
+RigidMotion SimbodyBody::read(const SimTK::State& state) const {
+  return motion_of(state.getQ(), state.getU());
+}
 
 void SimbodyBody::set_input(SimTK::State& state, const TickInput& input) const { force_->set(state, input); }
 
@@ -93,14 +101,16 @@ Mat6 SimbodyBody::calc_mass(const RigidMotion& motion) {
   return M;
 }
 
-// Inverse dynamics gives the residual r = M u' + C(q, u) - f_applied; at u' = 0 the right-hand side of M u' = f is -r.
+// Inverse dynamics gives the residual r = M u' + C(q, u) - f_applied; at u' = 0 the right-hand side of M u' =
+// f is -r.
 Vec6 SimbodyBody::calc_force(double t, const RigidMotion& motion) {
   write(state_, t, motion);
   force_->set(state_, {});
   system_.realize(state_, SimTK::Stage::Dynamics);
   zero_.resize(6);
   zero_.setToZero();
-  matter_.calcResidualForceIgnoringConstraints(state_, zero_, system_.getRigidBodyForces(state_, SimTK::Stage::Dynamics), zero_, residual_);
+  matter_.calcResidualForceIgnoringConstraints(
+      state_, zero_, system_.getRigidBodyForces(state_, SimTK::Stage::Dynamics), zero_, residual_);
   Vec6 f;
   for (int i = 0; i < 6; ++i) f[i] = -residual_[i];
   return f;

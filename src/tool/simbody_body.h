@@ -6,8 +6,9 @@
 
 namespace palpate::tool {
 
-/// The tool's Simbody System: one MobilizedBody::Free under one force element that reads the tick's input from the State.
-/// Its coordinates are ours: q = (qw qx qy qz px py pz), u = (angular, linear) in world axes, origin at the centre of mass.
+/// The tool's Simbody System: one MobilizedBody::Free under one force element that reads the tick's input
+/// from the State. Its coordinates are ours: q = (qw qx qy qz px py pz), u = (angular, linear) in world axes,
+/// origin at the centre of mass.
 class SimbodyBody {
  public:
   explicit SimbodyBody(const RigidParameters& parameters);
@@ -23,11 +24,13 @@ class SimbodyBody {
   RigidMotion read(const SimTK::State& state) const;
   void set_input(SimTK::State& state, const TickInput& input) const;
 
-  /// u' at a time and motion under an input, by Simbody's forward dynamics (coupling, contact, gravity, gyroscopic terms).
+  /// u' at a time and motion under an input, by Simbody's forward dynamics (coupling, contact, gravity,
+  /// gyroscopic terms).
   Vec6 acceleration(double t, const RigidMotion& motion, const TickInput& input);
   /// M of M u' = f at a pose, by Simbody's calcM.
   Mat6 calc_mass(const RigidMotion& motion);
-  /// f without coupling and contact: gyroscopic forces and weight, minus what Simbody's inverse dynamics asks for u' = 0.
+  /// f without coupling and contact: gyroscopic forces and weight, minus what Simbody's inverse dynamics asks
+  /// for u' = 0.
   Vec6 calc_force(double t, const RigidMotion& motion);
   double calc_potential_energy(const RigidMotion& motion);  ///< of the weight [J]
   /// diag(R I R^T, m), world axes, angular first.
@@ -41,9 +44,9 @@ class SimbodyBody {
   SimTK::SimbodyMatterSubsystem matter_;
   SimTK::GeneralForceSubsystem forces_;
   SimTK::MobilizedBody::Free body_;
-  TickForce* force_ = nullptr;  ///< owned by forces_
-  SimTK::State state_;          ///< scratch
-  SimTK::Matrix mass_;          ///< scratch
+  TickForce* force_ = nullptr;     ///< owned by forces_
+  SimTK::State state_;             ///< scratch
+  SimTK::Matrix mass_;             ///< scratch
   SimTK::Vector zero_, residual_;  ///< scratch
 };
 

@@ -12,7 +12,8 @@ class SimbodyBody;
 class TickScheme {
  public:
   virtual ~TickScheme() = default;
-  /// From `motion` at input.t0 to input.t0 + input.h.  On failure `motion` may hold anything: the caller keeps the last good one.
+  /// From `motion` at input.t0 to input.t0 + input.h.  On failure `motion` may hold anything: the caller
+  /// keeps the last good one.
   virtual dynamics::StepResult advance(const TickInput& input, RigidMotion& motion) = 0;
   /// The motion was changed from outside, or the last advance was rejected: forget history.
   virtual void reset() {}

@@ -10,7 +10,8 @@ namespace palpate::tool {
 
 struct Tool::Impl {
   Impl(const ToolSpec& spec, const Vec3& gravity)
-      : body(rigid_parameters(spec, gravity)), scheme(find(tick_scheme_registry(), spec.integrator, "tool integrator").make(body)) {
+      : body(rigid_parameters(spec, gravity)),
+        scheme(find(tick_scheme_registry(), spec.integrator, "tool integrator").make(body)) {
     motion.pose = {quaternion_of(spec.rotation_vector_rad), spec.position_m};
     input.gains = coupling_gains(spec);
   }
@@ -31,7 +32,8 @@ const ToolSpec& checked(const ToolSpec& spec) {
 
 }  // namespace
 
-Tool::Tool(const ToolSpec& spec, const Vec3& gravity) : impl_(std::make_unique<Impl>(checked(spec), gravity)) {}
+Tool::Tool(const ToolSpec& spec, const Vec3& gravity)
+    : impl_(std::make_unique<Impl>(checked(spec), gravity)) {}
 Tool::~Tool() = default;
 Tool::Tool(Tool&&) noexcept = default;
 
@@ -49,7 +51,8 @@ void Tool::set_state(double t, const Pose& pose, const Twist& twist) {
   impl_->scheme->reset();
 }
 
-dynamics::StepResult Tool::advance(double h, const HandleMotion& handle, const dynamics::LinearisedContact& contact) {
+dynamics::StepResult Tool::advance(double h, const HandleMotion& handle,
+                                   const dynamics::LinearisedContact& contact) {
   PALPATE_CHECK(h > 0.0 && std::isfinite(h), "tick of {} s", h);
   Impl& me = *impl_;
   me.input.t0 = me.time;
@@ -58,8 +61,14 @@ dynamics::StepResult Tool::advance(double h, const HandleMotion& handle, const d
   me.input.contact = contact;
   const auto not_finite = [&](const char* what) {
     me.scheme->reset();
-    return dynamics::StepResult{dynamics::StepStatus::kNotFinite, me.time, h, 0, 0, 0.0,
-                                fmt::format("tool at t = {:.9g} s: {} not finite; the tool stays where it was", me.time, what)};
+    return dynamics::StepResult{
+        dynamics::StepStatus::kNotFinite,
+        me.time,
+        h,
+        0,
+        0,
+        0.0,
+        fmt::format("tool at t = {:.9g} s: {} not finite; the tool stays where it was", me.time, what)};
   };
   if (!is_finite(me.input)) return not_finite("handle or contact record is");
   RigidMotion next = me.motion;
@@ -75,8 +84,9 @@ Wrench Tool::coupling_wrench(const Pose& handle, const Twist& handle_twist) cons
   return wrench_of(tool::coupling_wrench(impl_->input.gains, impl_->motion, {handle, handle_twist}));
 }
 
-// Equal and opposite, each about its own origin.  With this pair the coupling takes in b |v_h - v_t|^2 + b_r |omega_h - omega_t|^2 and stores the
-// rest: it is passive at its two ends.  (Moving the force to the other origin instead would add the moment of the damping force, of either sign.)
+// Equal and opposite, each about its own origin.  With this pair the coupling takes in b |v_h - v_t|^2 + b_r
+// |omega_h - omega_t|^2 and stores the rest: it is passive at its two ends.  (Moving the force to the other
+// origin instead would add the moment of the damping force, of either sign.)
 Wrench Tool::wrench_on_hand(const Pose& handle, const Twist& handle_twist) const {
   const Wrench on_tool = coupling_wrench(handle, handle_twist);
   return {-on_tool.moment, -on_tool.force};
@@ -96,7 +106,8 @@ double Tool::kinetic_energy() const {
 
 double Tool::potential_energy(const Pose& handle) const {
   const RigidParameters& p = impl_->body.parameters();
-  return coupling_energy(impl_->input.gains, impl_->motion.pose, handle) - p.mass * p.gravity.dot(impl_->motion.pose.translation);
+  return coupling_energy(impl_->input.gains, impl_->motion.pose, handle) -
+         p.mass * p.gravity.dot(impl_->motion.pose.translation);
 }
 
 std::string simbody_version() { return PALPATE_SIMBODY_VERSION; }

@@ -11,12 +11,15 @@ namespace bent_bar {
 
 using namespace palpate;
 
-inline constexpr double kLength = 1.8, kWidth = 0.3, kHeight = 0.24, kMiddle = 0.4;  ///< [m]; the middle bone from -kMiddle to kMiddle
+/// [m]; the middle bone from -kMiddle to kMiddle
+inline constexpr double kLength = 1.8, kWidth = 0.3, kHeight = 0.24, kMiddle = 0.4;
 
-/// A point of the straight bar, along x, where the bend by `angle` puts it: |x| < kMiddle on an arc, inwards is +z, the arms straight on.
+/// A point of the straight bar, along x, where the bend by `angle` puts it: |x| < kMiddle on an arc, inwards
+/// is +z, the arms straight on.
 inline Vec3 bend(const Vec3& x, double angle) {
   if (angle == 0.0) return x;
-  const double r = 2.0 * kMiddle / angle, along = std::clamp(x.x(), -kMiddle, kMiddle), phi = along / r, beyond = x.x() - along;
+  const double r = 2.0 * kMiddle / angle, along = std::clamp(x.x(), -kMiddle, kMiddle), phi = along / r,
+               beyond = x.x() - along;
   const Vec3 tangent(std::cos(phi), 0, std::sin(phi)), inwards(-std::sin(phi), 0, std::cos(phi));
   return Vec3(r * std::sin(phi), x.y(), r * (1.0 - std::cos(phi))) + beyond * tangent + x.z() * inwards;
 }
@@ -27,9 +30,12 @@ inline Points bend(const Points& straight, double angle) {
   return out;
 }
 
-/// The angle at which the inner edges of the tips overlap by about `depth`: tip to tip 2 (r sin(phi) - l sin(alpha) - h cos(alpha) / 2), phi = angle / 2 = pi / 2 + alpha, by bisection.
+/// The angle at which the inner edges of the tips overlap by about `depth`: tip to tip 2 (r sin(phi) - l
+/// sin(alpha) - h cos(alpha) / 2), phi = angle / 2 = pi / 2 + alpha, by bisection.
 inline double closing_angle(double depth) {
-  const auto apart = [](double angle) { return 2.0 * bend(Vec3(0.5 * kLength, 0, 0.5 * kHeight), angle).x(); };
+  const auto apart = [](double angle) {
+    return 2.0 * bend(Vec3(0.5 * kLength, 0, 0.5 * kHeight), angle).x();
+  };
   double low = M_PI, high = 1.6 * M_PI;
   while (high - low > 1e-12) (apart(0.5 * (low + high)) > -depth ? low : high) = 0.5 * (low + high);
   return low;
@@ -43,10 +49,13 @@ inline LayeredModel model(int count = 24, double rest_angle = 0.0) {
   const Vec3 size(kLength, kWidth, kHeight);
   bar.tets = mesh::box(size, {18, 2, 2});
   bar.skin = mesh::box_surface(size, {54, 9, 9});
-  const double ends[] = {-kMiddle, kMiddle, -kMiddle, -0.5 * kLength, kMiddle, 0.5 * kLength}, flesh = 0.15;  // of its joints
+  // of its joints
+  const double ends[] = {-kMiddle, kMiddle, -kMiddle, -0.5 * kLength, kMiddle, 0.5 * kLength}, flesh = 0.15;
   const char* names[] = {"middle", "left", "right"};
   const auto on_axis = [&](double x) { return bend(Vec3(x, 0, 0), rest_angle); };
-  for (std::size_t i = 0; i < 3; ++i) bar.skeleton.bones.push_back({names[i], i == 0 ? -1 : 0, on_axis(ends[2 * i]), on_axis(ends[2 * i + 1]), 0.05, 0.05});
+  for (std::size_t i = 0; i < 3; ++i)
+    bar.skeleton.bones.push_back(
+        {names[i], i == 0 ? -1 : 0, on_axis(ends[2 * i]), on_axis(ends[2 * i + 1]), 0.05, 0.05});
   for (Eigen::Index n = 0; n < bar.tets.nodes.cols(); ++n) {
     const Vec3 x = bar.tets.nodes.col(n);
     const bool bone = x.tail<2>().norm() < 1e-9 && std::abs(std::abs(x.x()) - kMiddle) > flesh - 1e-9;

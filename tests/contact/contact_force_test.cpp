@@ -14,7 +14,8 @@ ContactSpec spec(double friction = 0.0) {
   return s;
 }
 
-/// Sum of forces and of moments about the world's origin on everything, frames given from outside included, over the sum of magnitudes.
+/// Sum of forces and of moments about the world's origin on everything, frames given from outside included,
+/// over the sum of magnitudes.
 struct Balance {
   double force, moment;
 };
@@ -54,7 +55,8 @@ TEST(ContactForce, BalanceOfForceAndMomentForRandomPoses) {
     term.add_frame(body);
     std::vector<contact::ContactSample> samples;
     const double w = uniform(random), v = uniform(random);
-    const auto a = node_point({0, 1, 2}, {w, v, 1 - w - v}), b = node_point({3, 4, 5, 6}, {0.1, 0.2, 0.3, 0.4});
+    const auto a = node_point({0, 1, 2}, {w, v, 1 - w - v}),
+               b = node_point({3, 4, 5, 6}, {0.1, 0.2, 0.3, 0.4});
     samples.push_back(on_frame(a, 0, poses[0], vector(random), 0.01, 0.3, world.state));
     samples.push_back(on_frame(b, 1, poses[1], vector(random), 0.02, 0.2, world.state));
     // Node against node, without any offset: b's first node is put on the line through a.
@@ -79,7 +81,8 @@ TEST(ContactForce, FrictionBalancesUpToItsDepth) {
   contact::ContactForce term;
   term.add_frame(contact::fixed_frame());
   const double depth = 0.01, mu = 0.5;
-  const auto s = on_frame(node_point({0, 1, 2}, {0.3, 0.3, 0.4}), 0, Pose{}, {0, 0, 1}, depth, 0.3, world.state);
+  const auto s =
+      on_frame(node_point({0, 1, 2}, {0.3, 0.3, 0.4}), 0, Pose{}, {0, 0, 1}, depth, 0.3, world.state);
   term.add_pair(std::make_unique<ListSource>(std::vector{s}), spec(mu));
   term.refresh(world.state.view());
   const auto view = world.state.view();
@@ -129,7 +132,8 @@ TEST(ContactForce, RefreshReportsWhetherTheForceChanged) {
   undamped.damping_pa_s_m = 0.0;
   term.add_pair(std::make_unique<ListSource>(std::vector{pressed}), undamped);
   EXPECT_TRUE(term.refresh(world.state.view()));
-  // 1e5 Pa/m x 0.01 m x 0.3 m^2 on the node and again on the frame, whose moment about the world's origin is |r x F|
+  // 1e5 Pa/m x 0.01 m x 0.3 m^2 on the node and again on the frame, whose moment about the world's origin is
+  // |r x F|
   const double F = 300.0, moment = world.state.view().position(0).head<2>().norm() * F;
   EXPECT_NEAR(term.refresh_force_jump(), std::sqrt(2 * F * F + moment * moment), 1e-9);
   EXPECT_FALSE(term.refresh(world.state.view()));
@@ -140,7 +144,8 @@ TEST(ContactForce, RefreshReportsWhetherTheForceChanged) {
   EXPECT_GE(term.query_seconds(), 0.0);
 }
 
-// One root function a sample: its sign tells whether it presses, for any gap and rate, also where a damper is cut off while the gap is still closed.
+// One root function a sample: its sign tells whether it presses, for any gap and rate, also where a damper is
+// cut off while the gap is still closed.
 TEST(ContactForce, EventsChangeSignExactlyWhereASampleOpensOrCloses) {
   int pressing = 0, parting = 0, apart = 0;
   for (const char* law : {"kelvin_voigt", "hunt_crossley"})
@@ -152,7 +157,9 @@ TEST(ContactForce, EventsChangeSignExactlyWhereASampleOpensOrCloses) {
       World world(2, false, 8);
       contact::ContactForce term;
       term.add_frame(contact::fixed_frame());
-      const auto sample = [&](int node) { return on_frame(node_point({node}, {1.0}), 0, Pose{}, {0, 0, 1}, -0.1, 0.1, world.state); };
+      const auto sample = [&](int node) {
+        return on_frame(node_point({node}, {1.0}), 0, Pose{}, {0, 0, 1}, -0.1, 0.1, world.state);
+      };
       term.add_pair(std::make_unique<ListSource>(std::vector{sample(0), sample(1)}), contact_spec);
       term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{}), contact_spec);
       term.refresh(world.state.view());
@@ -168,7 +175,7 @@ TEST(ContactForce, EventsChangeSignExactlyWhereASampleOpensOrCloses) {
           term.events(world.state.view(), g);
           for (int k = 0; k < 2; ++k) {
             const double own = k == 0 ? gap : -gap, p = contact::pressure(contact_spec, own, rate).p;
-            EXPECT_EQ(g[k] < 0.0, p > 0.0) << law << " gap " << own << " rate " << rate;
+            EXPECT_EQ(g[k]<0.0, p> 0.0) << law << " gap " << own << " rate " << rate;
             (p > 0.0 ? pressing : own < 0.0 ? parting : apart) += 1;
           }
         }
@@ -183,7 +190,9 @@ TEST(ContactForce, EventsAreContinuousAndStandForTheSamplesBetweenTwoQueries) {
   World world(1, false, 8);
   contact::ContactForce term;
   term.add_frame(contact::fixed_frame());
-  term.add_pair(std::make_unique<ListSource>(std::vector{on_frame(node_point({0}, {1.0}), 0, Pose{}, {0, 0, 1}, -0.1, 0.1, world.state)}), contact_spec);
+  term.add_pair(std::make_unique<ListSource>(std::vector{
+                    on_frame(node_point({0}, {1.0}), 0, Pose{}, {0, 0, 1}, -0.1, 0.1, world.state)}),
+                contact_spec);
   EXPECT_EQ(term.event_count(), 0) << "before the first query";
   term.refresh(world.state.view());
   EXPECT_EQ(term.event_count(), 1);
@@ -207,7 +216,9 @@ TEST(ContactForce, AnOnsetLeavesNothingToFind) {
   World world(1, false, 8);
   contact::ContactForce term;
   term.add_frame(contact::fixed_frame());
-  term.add_pair(std::make_unique<ListSource>(std::vector{on_frame(node_point({0}, {1.0}), 0, Pose{}, {0, 0, 1}, -0.1, 0.1, world.state)}), smooth);
+  term.add_pair(std::make_unique<ListSource>(std::vector{
+                    on_frame(node_point({0}, {1.0}), 0, Pose{}, {0, 0, 1}, -0.1, 0.1, world.state)}),
+                smooth);
   term.refresh(world.state.view());
   EXPECT_EQ(term.event_count(), 0);
 }

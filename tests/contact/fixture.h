@@ -9,12 +9,15 @@
 #include "palpate/contact/sources.h"
 #include "palpate/core/error.h"
 
-/// What the contact tests share: a State with nodes and a rigid body, a source that hands out given samples, Taylor tests.
+/// What the contact tests share: a State with nodes and a rigid body, a source that hands out given samples,
+/// Taylor tests.
 namespace contact_tests {
 
 using namespace palpate;
 
-inline double uniform(std::mt19937& random) { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }
+inline double uniform(std::mt19937& random) {
+  return std::uniform_real_distribution<double>(-1.0, 1.0)(random);
+}
 inline Vec3 vector(std::mt19937& random) { return {uniform(random), uniform(random), uniform(random)}; }
 inline Quat rotation(std::mt19937& random) { return quaternion_of(2.0 * vector(random)); }
 
@@ -23,12 +26,15 @@ class ListSource final : public contact::SampleSource {
  public:
   explicit ListSource(std::vector<contact::ContactSample> samples) : samples_(std::move(samples)) {}
   std::string_view name() const override { return "list"; }
-  void query(const dynamics::StateView&, std::vector<contact::ContactSample>& out) override { out.insert(out.end(), samples_.begin(), samples_.end()); }
+  void query(const dynamics::StateView&, std::vector<contact::ContactSample>& out) override {
+    out.insert(out.end(), samples_.begin(), samples_.end());
+  }
   void add_pattern(dynamics::PatternBuilder& pattern) const override {
     for (const auto& s : samples_) {
       std::vector<int> nodes;
       for (const auto* p : {&s.a, &s.b})
-        for (int i = 0; p->frame < 0 && i < p->count; ++i) nodes.push_back(p->node[static_cast<std::size_t>(i)]);
+        for (int i = 0; p->frame < 0 && i < p->count; ++i)
+          nodes.push_back(p->node[static_cast<std::size_t>(i)]);
       pattern.add_clique(nodes.data(), static_cast<int>(nodes.size()));
     }
   }
@@ -91,7 +97,8 @@ struct World {
   }
 };
 
-inline contact::SurfacePoint node_point(std::vector<int> nodes, std::vector<double> weights, const Vec3& offset = Vec3::Zero()) {
+inline contact::SurfacePoint node_point(std::vector<int> nodes, std::vector<double> weights,
+                                        const Vec3& offset = Vec3::Zero()) {
   contact::SurfacePoint p;
   p.count = static_cast<int>(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -104,12 +111,14 @@ inline contact::SurfacePoint node_point(std::vector<int> nodes, std::vector<doub
 
 inline Vec3 position(const contact::SurfacePoint& p, const dynamics::State& state) {
   Vec3 x = p.offset;
-  for (int i = 0; i < p.count; ++i) x += p.weight[static_cast<std::size_t>(i)] * state.view().position(p.node[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < p.count; ++i)
+    x += p.weight[static_cast<std::size_t>(i)] * state.view().position(p.node[static_cast<std::size_t>(i)]);
   return x;
 }
 
 /// A sample whose point b lies `depth` above a along the normal, in a frame.
-inline contact::ContactSample on_frame(const contact::SurfacePoint& a, int frame, const Pose& pose, const Vec3& normal, double depth, double area,
+inline contact::ContactSample on_frame(const contact::SurfacePoint& a, int frame, const Pose& pose,
+                                       const Vec3& normal, double depth, double area,
                                        const dynamics::State& state) {
   contact::ContactSample s;
   s.a = a;
@@ -122,7 +131,8 @@ inline contact::ContactSample on_frame(const contact::SurfacePoint& a, int frame
 }
 
 /// A sample between two weighted sets of nodes; b's world offset puts it on the line through a.
-inline contact::ContactSample on_nodes(const contact::SurfacePoint& a, contact::SurfacePoint b, const Vec3& normal, double depth, double area,
+inline contact::ContactSample on_nodes(const contact::SurfacePoint& a, contact::SurfacePoint b,
+                                       const Vec3& normal, double depth, double area,
                                        const dynamics::State& state) {
   contact::ContactSample s;
   s.normal = normal.normalized();
@@ -141,7 +151,8 @@ inline VecX force(contact::ContactForce& term, const dynamics::State& state) {
   return f;
 }
 
-inline dynamics::BorderedMatrix step_matrix(contact::ContactForce& term, const dynamics::State& state, double k_scale, double d_scale) {
+inline dynamics::BorderedMatrix step_matrix(contact::ContactForce& term, const dynamics::State& state,
+                                            double k_scale, double d_scale) {
   dynamics::PatternBuilder pattern(state.layout().node_count());
   term.add_pattern(pattern);
   dynamics::BorderedMatrix A;
@@ -154,7 +165,8 @@ inline dynamics::BorderedMatrix step_matrix(contact::ContactForce& term, const d
   return A;
 }
 
-/// Residuals r(h) = |f(h) - f(0) - h df| for h = h0 2^-i must fall with slope 2, over seven halvings, or be rounding throughout (f linear).
+/// Residuals r(h) = |f(h) - f(0) - h df| for h = h0 2^-i must fall with slope 2, over seven halvings, or be
+/// rounding throughout (f linear).
 template <class Function>
 void expect_derivative(Function f, const VecX& df, double h0, const char* what) {
   const VecX f0 = f(0.0);

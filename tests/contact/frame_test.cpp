@@ -4,12 +4,14 @@ using namespace contact_tests;
 
 namespace {
 
-/// A smooth motion with its exact twist: rotation exp(a(t)) exp(b(t)) about two fixed axes, so that the axis of the whole wanders.
+/// A smooth motion with its exact twist: rotation exp(a(t)) exp(b(t)) about two fixed axes, so that the axis
+/// of the whole wanders.
 ///   w = a' n + exp(a n) (b' m)
 struct Motion {
   Vec3 n = Vec3(1, 2, -1).normalized(), m = Vec3(0, 1, 3).normalized();
   Pose pose(double t) const {
-    return {quaternion_of(std::sin(2 * t) * n) * quaternion_of(std::cos(3 * t) * m), Vec3(std::sin(t), std::cos(2 * t), t * t)};
+    return {quaternion_of(std::sin(2 * t) * n) * quaternion_of(std::cos(3 * t) * m),
+            Vec3(std::sin(t), std::cos(2 * t), t * t)};
   }
   Twist twist(double t) const {
     return {2 * std::cos(2 * t) * n + quaternion_of(std::sin(2 * t) * n) * Vec3(-3 * std::sin(3 * t) * m),
@@ -40,9 +42,7 @@ TEST(TrajectoryFrame, MeetsItsKnots) {
     EXPECT_LT((motion.twist(t).angular - frame.twist(at(t)).angular).norm(), 1e-12);
     EXPECT_LT((motion.twist(t).linear - frame.twist(at(t)).linear).norm(), 1e-12);
     // and from the left, at the end of the interval before
-    if (i > 0) {
-      EXPECT_LT((motion.twist(t).angular - frame.twist(at(t - 1e-9)).angular).norm(), 1e-6);
-    }
+    if (i > 0) { EXPECT_LT((motion.twist(t).angular - frame.twist(at(t - 1e-9)).angular).norm(), 1e-6); }
   }
 }
 
@@ -68,7 +68,8 @@ TEST(TrajectoryFrame, PoseOfOrderFourTwistOfOrderThree) {
   }
 }
 
-// The twist is the derivative of the pose, also in the middle of an interval (central differences, error h^2).
+// The twist is the derivative of the pose, also in the middle of an interval (central differences, error
+// h^2).
 TEST(TrajectoryFrame, TwistIsTheDerivativeOfThePose) {
   const auto frame = ticks(Motion{}, 0.25, 4);
   for (const double t : {0.1, 0.33, 0.6, 0.9}) {

@@ -15,7 +15,8 @@ contact::GpuOptions options(int pixels, double candidate_gap) {
   return out;
 }
 
-/// A soft unit sphere above a rigid one of radius 0.8, in a turned and moved frame; the line of centres is oblique.
+/// A soft unit sphere above a rigid one of radius 0.8, in a turned and moved frame; the line of centres is
+/// oblique.
 struct Pair {
   Vec3 axis = Vec3(0.3, -0.5, 0.8).normalized();
   double depth = 0.1;
@@ -25,7 +26,8 @@ struct Pair {
   SurfaceWorld soft{sphere(rigid_centre + (1.8 - depth) * axis, 1.0, 50)};
 
   std::vector<contact::ContactSample> samples(int pixels, double candidate_gap) {
-    auto source = contact::make_gpu_source(soft.surface, rigid, 0, contact::fixed_frame(pose), options(pixels, candidate_gap));
+    auto source = contact::make_gpu_source(soft.surface, rigid, 0, contact::fixed_frame(pose),
+                                           options(pixels, candidate_gap));
     std::vector<contact::ContactSample> out;
     source->query(soft.state.view(), out);
     return out;
@@ -36,10 +38,13 @@ struct Pair {
 double ray(const TriMesh& mesh, const Pose& pose, const Vec3& x, const Vec3& n, bool least) {
   double best = std::nan("");
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
-    const Vec3 p0 = pose * mesh.vertices.col(mesh.faces(0, f)), p1 = pose * mesh.vertices.col(mesh.faces(1, f)), p2 = pose * mesh.vertices.col(mesh.faces(2, f));
+    const Vec3 p0 = pose * mesh.vertices.col(mesh.faces(0, f)),
+               p1 = pose * mesh.vertices.col(mesh.faces(1, f)),
+               p2 = pose * mesh.vertices.col(mesh.faces(2, f));
     const double d = n.dot((p1 - p0).cross(p2 - p0));
     if (std::abs(d) < 1e-14) continue;
-    const Vec3 w = Vec3(n.dot((p1 - x).cross(p2 - x)), n.dot((p2 - x).cross(p0 - x)), n.dot((p0 - x).cross(p1 - x))) / d;
+    const Vec3 w =
+        Vec3(n.dot((p1 - x).cross(p2 - x)), n.dot((p2 - x).cross(p0 - x)), n.dot((p0 - x).cross(p1 - x))) / d;
     if (w.minCoeff() < 0.0) continue;
     const double s = n.dot(w[0] * p0 + w[1] * p1 + w[2] * p2 - x);
     if (std::isnan(best) || (least ? s < best : s > best)) best = s;
@@ -49,7 +54,8 @@ double ray(const TriMesh& mesh, const Pose& pose, const Vec3& x, const Vec3& n, 
 
 TriMesh deformed(const SurfaceWorld& world) {
   TriMesh mesh{Points(3, world.surface.node_of_vertex.size()), world.surface.faces};
-  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) mesh.vertices.col(i) = world.state.view().position(2 + static_cast<int>(i));
+  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i)
+    mesh.vertices.col(i) = world.state.view().position(2 + static_cast<int>(i));
   return mesh;
 }
 
@@ -77,7 +83,8 @@ TEST(GpuSource, GapsAreThoseOfTheFacets) {
     EXPECT_NEAR(s.a.weight[0] + s.a.weight[1] + s.a.weight[2], 1.0, 1e-13);
     EXPECT_NEAR(s.normal.dot(xa - xb), s.gap, 1e-13);
     EXPECT_LT((xa - xb).cross(s.normal).norm(), 1e-13);  // both on one line along the normal
-    const double exact = ray(soft, Pose{}, xb, s.normal, true) - ray(pair.rigid, pair.pose, xb, s.normal, false);
+    const double exact =
+        ray(soft, Pose{}, xb, s.normal, true) - ray(pair.rigid, pair.pose, xb, s.normal, false);
     worst = std::max(worst, std::abs(s.gap - exact));
     (s.gap < 0 ? pressed : candidates) += 1;
   }
@@ -107,7 +114,8 @@ TEST(GpuSource, SamplesDoNotDependOnTheOrderOfTriangles) {
   }
 }
 
-// Force and moment of real samples, oblique and far from the origin: about the tool's origin, over force x body size.
+// Force and moment of real samples, oblique and far from the origin: about the tool's origin, over force x
+// body size.
 TEST(GpuSource, ForceAndMomentBalance) {
   Pair pair;
   contact::ContactForce term;
@@ -131,14 +139,16 @@ TEST(GpuSource, ForceAndMomentBalance) {
   EXPECT_GT(*std::max_element(A.body.values().begin(), A.body.values().end()), 1.0);
 }
 
-// A skin pressed by a ball: each sample lies where the image saw it, so that the contact is that of nodes in the skin's places, and force and moment balance.
+// A skin pressed by a ball: each sample lies where the image saw it, so that the contact is that of nodes in
+// the skin's places, and force and moment balance.
 TEST(GpuSource, ASkinIsSeenWhereItIs) {
   SkinWorld skin;
   SurfaceWorld nodes({skin.vertices, skin.skin.faces});
   const TriMesh rigid = sphere(Vec3(0, 0, skin.vertices.row(2).maxCoeff() + 0.4), 0.5, 30);
   const auto query = [&](const contact::NodeSurface& surface, const dynamics::State& state) {
     std::vector<contact::ContactSample> out;
-    contact::make_gpu_source(surface, rigid, 0, contact::fixed_frame(), options(64, 0.02))->query(state.view(), out);
+    contact::make_gpu_source(surface, rigid, 0, contact::fixed_frame(), options(64, 0.02))
+        ->query(state.view(), out);
     return out;
   };
   const auto of_skin = query(skin.surface, skin.state), of_nodes = query(nodes.surface, nodes.state);
@@ -148,17 +158,22 @@ TEST(GpuSource, ASkinIsSeenWhereItIs) {
     EXPECT_NEAR(of_skin[i].gap, of_nodes[i].gap, 1e-13);
     const Vec3 a = point_on_nodes(of_skin[i].a, skin.state.view());
     EXPECT_LT((a - point_on_nodes(of_nodes[i].a, nodes.state.view())).norm(), 1e-13);
-    EXPECT_LT(of_skin[i].a.offset.norm(), 1e-13) << "a point that its nodes do not carry has a moment of its own";
+    EXPECT_LT(of_skin[i].a.offset.norm(), 1e-13)
+        << "a point that its nodes do not carry has a moment of its own";
     EXPECT_NEAR(of_skin[i].gap, of_skin[i].normal.dot(a - of_skin[i].b.offset), 1e-13);
   }
 }
 
-// Where the tetrahedron is squashed flat its barycentric coordinates say nothing: the corner's weights and an offset place the sample.
+// Where the tetrahedron is squashed flat its barycentric coordinates say nothing: the corner's weights and an
+// offset place the sample.
 TEST(GpuSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
   SkinWorld skin;
-  for (Eigen::Index i = 8; i < skin.state.q().size(); i += 3) skin.state.q()[i] = 0.0;  // all nodes in the plane z = 0
+  // all nodes in the plane z = 0
+  for (Eigen::Index i = 8; i < skin.state.q().size(); i += 3) skin.state.q()[i] = 0.0;
   std::vector<contact::ContactSample> samples;
-  contact::make_gpu_source(skin.surface, sphere(Vec3(0, 0, 0.45), 0.5, 30), 0, contact::fixed_frame(), options(64, 0.02))->query(skin.state.view(), samples);
+  contact::make_gpu_source(skin.surface, sphere(Vec3(0, 0, 0.45), 0.5, 30), 0, contact::fixed_frame(),
+                           options(64, 0.02))
+      ->query(skin.state.view(), samples);
   EXPECT_GT(samples.size(), 50u);
   for (const auto& s : samples) {
     EXPECT_TRUE(std::isfinite(s.gap));
@@ -166,27 +181,33 @@ TEST(GpuSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
   }
 }
 
-// --- proxies ------------------------------------------------------------------------------------------------------------
+// --- proxies
+// ------------------------------------------------------------------------------------------------------------
 
-// The same pose cut into 1, 8 and 64 cells: force and moment within 1 % (DESIGN 3.3: a surface point contributes once), and the force as large as the uncut
-// surface's, whose plane is the hulls' and tilted by some degrees.
+// The same pose cut into 1, 8 and 64 cells: force and moment within 1 % (DESIGN 3.3: a surface point
+// contributes once), and the force as large as the uncut surface's, whose plane is the hulls' and tilted by
+// some degrees.
 TEST(PrunedGpuSource, ForceDoesNotDependOnTheCut) {
   SkinWorld skin;
   const TriMesh rigid = sphere(Vec3(0.1, 0.05, skin.vertices.row(2).maxCoeff() + 0.35), 0.5, 30);
   std::vector<contact::ContactSample> samples;
-  contact::make_gpu_source(skin.surface, rigid, 0, contact::fixed_frame(), options(256, 0.02))->query(skin.state.view(), samples);
+  contact::make_gpu_source(skin.surface, rigid, 0, contact::fixed_frame(), options(256, 0.02))
+      ->query(skin.state.view(), samples);
   const Total whole = total(samples, skin.state.view());
   EXPECT_GT(whole.pressed, 1000);
   Total uncut;
   for (const int cells : {1, 2, 4}) {
     samples.clear();
-    const auto source =
-        contact::make_gpu_source(skin.surface, proxies_of(skin.ball, skin.skin, skin.surface.embedding, cells), rigid, proxies_of(rigid), 0, contact::fixed_frame(), options(256, 0.02));
+    const auto source = contact::make_gpu_source(
+        skin.surface, proxies_of(skin.ball, skin.skin, skin.surface.embedding, cells), rigid,
+        proxies_of(rigid), 0, contact::fixed_frame(), options(256, 0.02));
     source->query(skin.state.view(), samples);
     const Total cut = total(samples, skin.state.view());
     if (cells == 1) uncut = cut;
-    EXPECT_LT((cut.force - uncut.force).norm(), 0.01 * uncut.force.norm()) << cells << " cells an edge: " << cut.force.transpose() << " against " << uncut.force.transpose();
-    EXPECT_LT((cut.moment - uncut.moment).norm(), 0.01 * uncut.moment.norm()) << cells << " cells an edge: " << cut.moment.transpose() << " against " << uncut.moment.transpose();
+    EXPECT_LT((cut.force - uncut.force).norm(), 0.01 * uncut.force.norm())
+        << cells << " cells an edge: " << cut.force.transpose() << " against " << uncut.force.transpose();
+    EXPECT_LT((cut.moment - uncut.moment).norm(), 0.01 * uncut.moment.norm())
+        << cells << " cells an edge: " << cut.moment.transpose() << " against " << uncut.moment.transpose();
     EXPECT_NEAR(cut.force.norm() / whole.force.norm(), 1.0, 0.01) << cells;
     EXPECT_LT(cut.force.normalized().cross(whole.force.normalized()).norm(), 0.05) << cells;
     ASSERT_NE(source->pruning(), nullptr);
@@ -195,7 +216,8 @@ TEST(PrunedGpuSource, ForceDoesNotDependOnTheCut) {
   }
 }
 
-// Two balls of one body with a rigid ball between them: as a whole no height field from any side.  Each is pressed away by its own overlap.
+// Two balls of one body with a rigid ball between them: as a whole no height field from any side.  Each is
+// pressed away by its own overlap.
 TEST(PrunedGpuSource, FindsContactOnBothSides) {
   TetMesh tets = mesh::ball(1.0, 0.45);
   TriMesh skin = mesh::sphere(1.0, 16);
@@ -215,13 +237,16 @@ TEST(PrunedGpuSource, FindsContactOnBothSides) {
   nodes.name = "balls";
   nodes.q_size = nodes.u_size = static_cast<int>(tets.nodes.size());
   contact::NodeSurface surface;
-  surface.block_id = state.insert(nodes, Eigen::Map<const VecX>(tets.nodes.data(), tets.nodes.size()), VecX::Zero(tets.nodes.size()));
+  surface.block_id = state.insert(nodes, Eigen::Map<const VecX>(tets.nodes.data(), tets.nodes.size()),
+                                  VecX::Zero(tets.nodes.size()));
   surface.faces = skin.faces;
   surface.embedding = mesh::embed(tets, skin.vertices);
   surface.tets = tets.tets;
   std::vector<contact::ContactSample> samples;
   const TriMesh rigid = mesh::sphere(0.4, 20);
-  const auto source = contact::make_gpu_source(surface, proxies_of(tets, skin, surface.embedding, 4), rigid, proxies_of(rigid), 0, contact::fixed_frame(), options(128, 0.02));
+  const auto source =
+      contact::make_gpu_source(surface, proxies_of(tets, skin, surface.embedding, 4), rigid,
+                               proxies_of(rigid), 0, contact::fixed_frame(), options(128, 0.02));
   source->query(state.view(), samples);
   Vec3 left = Vec3::Zero(), right = Vec3::Zero();
   for (const auto& s : samples) {
@@ -233,7 +258,8 @@ TEST(PrunedGpuSource, FindsContactOnBothSides) {
   const double d = 1.3, volume = M_PI * 0.01 * (d * d + 2.0 * d * 1.4 - 3.0 * 0.36) / (12.0 * d);
   EXPECT_NEAR(left.x() / -volume, 1.0, 0.05);
   EXPECT_NEAR(right.x() / volume, 1.0, 0.05);
-  EXPECT_LT((left + right).norm(), 0.01 * volume) << left.transpose() << " and " << right.transpose() << " of " << volume;
+  EXPECT_LT((left + right).norm(), 0.01 * volume)
+      << left.transpose() << " and " << right.transpose() << " of " << volume;
   EXPECT_GE(source->pruning()->regions, 2);
 }
 
@@ -243,12 +269,21 @@ TEST(PrunedGpuSource, RefusesWhatDoesNotBelongTogether) {
   const auto proxies = proxies_of(skin.ball, skin.skin, skin.surface.embedding, 1);
   const TriMesh rigid = sphere(Vec3::Zero(), 0.5, 8);
   const auto of_rigid = proxies_of(rigid);
-  EXPECT_THROW(contact::make_gpu_source(nodes.surface, proxies, rigid, of_rigid, 0, contact::fixed_frame(), options(64, 0.02)), InternalError) << "nodes have no embedding to follow";
-  EXPECT_THROW(contact::make_gpu_source(skin.surface, proxies, rigid, nullptr, 0, contact::fixed_frame(), options(64, 0.02)), InternalError);
-  EXPECT_THROW(contact::make_gpu_source(skin.surface, proxies, sphere(Vec3::Zero(), 0.5, 9), of_rigid, 0, contact::fixed_frame(), options(64, 0.02)), InternalError);
+  EXPECT_THROW(contact::make_gpu_source(nodes.surface, proxies, rigid, of_rigid, 0, contact::fixed_frame(),
+                                        options(64, 0.02)),
+               InternalError)
+      << "nodes have no embedding to follow";
+  EXPECT_THROW(contact::make_gpu_source(skin.surface, proxies, rigid, nullptr, 0, contact::fixed_frame(),
+                                        options(64, 0.02)),
+               InternalError);
+  EXPECT_THROW(contact::make_gpu_source(skin.surface, proxies, sphere(Vec3::Zero(), 0.5, 9), of_rigid, 0,
+                                        contact::fixed_frame(), options(64, 0.02)),
+               InternalError);
   contact::NodeSurface fewer = skin.surface;
   fewer.faces.conservativeResize(3, fewer.faces.cols() - 1);
-  EXPECT_THROW(contact::make_gpu_source(fewer, proxies, rigid, of_rigid, 0, contact::fixed_frame(), options(64, 0.02)), InternalError);
+  EXPECT_THROW(
+      contact::make_gpu_source(fewer, proxies, rigid, of_rigid, 0, contact::fixed_frame(), options(64, 0.02)),
+      InternalError);
 }
 
 TEST(GpuSource, RefusesBadOptions) {
@@ -256,12 +291,11 @@ TEST(GpuSource, RefusesBadOptions) {
   const auto message = [&](TriMesh rigid, contact::GpuOptions with) {
     try {
       contact::make_gpu_source(pair.soft.surface, std::move(rigid), 0, contact::fixed_frame(), with);
-    } catch (const std::exception& e) {
-      return std::string(e.what());
-    }
+    } catch (const std::exception& e) { return std::string(e.what()); }
     return std::string();
   };
-  EXPECT_NE(message(pair.rigid, options(0, 0.1)).find("pixels = 0 must lie between 2 and 8192"), std::string::npos);
+  EXPECT_NE(message(pair.rigid, options(0, 0.1)).find("pixels = 0 must lie between 2 and 8192"),
+            std::string::npos);
   EXPECT_NE(message(pair.rigid, options(64, -0.1)).find("candidate gap = -0.1"), std::string::npos);
   EXPECT_NE(message(TriMesh{}, options(64, 0.1)).find("two surfaces with faces"), std::string::npos);
   contact::GpuOptions shifted = options(64, 0.1);

@@ -18,7 +18,9 @@ inline std::vector<ProxyHull> grid_proxies(const TriMesh& skin, int cells) {
     Vec3 middle = Vec3::Zero();
     for (const int v : skin.faces.col(f)) middle += skin.vertices.col(v) / 3.0;
     int cell = 0;
-    for (int axis = 0; axis < 3; ++axis) cell = cells * cell + std::clamp(static_cast<int>(cells * (middle - low)[axis] / size[axis]), 0, cells - 1);
+    for (int axis = 0; axis < 3; ++axis)
+      cell = cells * cell +
+             std::clamp(static_cast<int>(cells * (middle - low)[axis] / size[axis]), 0, cells - 1);
     for (const int v : skin.faces.col(f)) members[static_cast<std::size_t>(cell)].insert(v);
   }
   std::vector<ProxyHull> out;
@@ -29,13 +31,15 @@ inline std::vector<ProxyHull> grid_proxies(const TriMesh& skin, int cells) {
     const Points points = skin.vertices(Eigen::all, hull.members);
     const Vec3 a = points.rowwise().minCoeff(), b = points.rowwise().maxCoeff();
     hull.corners.resize(3, 8);
-    for (int i = 0; i < 8; ++i) hull.corners.col(i) = Vec3(i & 1 ? b.x() : a.x(), i & 2 ? b.y() : a.y(), i & 4 ? b.z() : a.z());
+    for (int i = 0; i < 8; ++i)
+      hull.corners.col(i) = Vec3(i & 1 ? b.x() : a.x(), i & 2 ? b.y() : a.y(), i & 4 ? b.z() : a.z());
     out.push_back(hull);
   }
   return out;
 }
 
-inline std::shared_ptr<proxy::ProxySet> proxies_of(const TetMesh& tets, const TriMesh& skin, const mesh::Embedding& embedding, int cells) {
+inline std::shared_ptr<proxy::ProxySet> proxies_of(const TetMesh& tets, const TriMesh& skin,
+                                                   const mesh::Embedding& embedding, int cells) {
   LayeredModel model;
   model.name = "test";
   model.tets = tets;
@@ -46,7 +50,8 @@ inline std::shared_ptr<proxy::ProxySet> proxies_of(const TetMesh& tets, const Tr
 }
 
 /// Of a rigid surface.
-inline std::shared_ptr<proxy::ProxySet> proxies_of(const TriMesh& rigid, const proxy::SolidOptions& options = {}) {
+inline std::shared_ptr<proxy::ProxySet> proxies_of(const TriMesh& rigid,
+                                                   const proxy::SolidOptions& options = {}) {
   return std::make_shared<proxy::ProxySet>(proxy::rigid_proxies(rigid, options));
 }
 

@@ -1,4 +1,5 @@
-// A body against itself: what two of its parts feel is what two bodies of the same shape would, and at rest it feels nothing.
+// A body against itself: what two of its parts feel is what two bodies of the same shape would, and at rest
+// it feels nothing.
 #include "bent_bar.h"
 #include "grid_proxies.h"
 #include "palpate/proxy/pruner.h"
@@ -53,12 +54,17 @@ struct Bar {
   contact::NodeSurface surface;
   std::shared_ptr<proxy::ProxySet> proxies;
 
-  explicit Bar(int count = 24) : model(bent_bar::model(count)), surface(surface_of(model, add_block(state, model.tets.nodes, 0.0))), proxies(std::make_shared<proxy::ProxySet>(model)) {}
+  explicit Bar(int count = 24)
+      : model(bent_bar::model(count)),
+        surface(surface_of(model, add_block(state, model.tets.nodes, 0.0))),
+        proxies(std::make_shared<proxy::ProxySet>(model)) {}
   void bend(double angle) {
     const Points bent = bent_bar::bend(model.tets.nodes, angle);
     state.q() = Eigen::Map<const VecX>(bent.data(), bent.size());
   }
-  std::unique_ptr<contact::SampleSource> source(double gap, int pixels = 96) const { return contact::make_gpu_source(surface, proxies, model.tets.nodes, options(gap, pixels)); }
+  std::unique_ptr<contact::SampleSource> source(double gap, int pixels = 96) const {
+    return contact::make_gpu_source(surface, proxies, model.tets.nodes, options(gap, pixels));
+  }
   bool is_left(int node) const { return model.tets.nodes(0, node) < 0.0; }
 };
 
@@ -69,8 +75,10 @@ ContactSpec law() {
   return out;
 }
 
-/// k times the volume of the overlap.  The arms lean against each other by the angle alpha each, and meet in the plane x = 0; what of an arm is beyond it is a wedge between its inner
-/// side and its end, right-angled, its corner depth / 2 away from the plane: of legs (depth / 2) / sin(alpha) and (depth / 2) / cos(alpha).  There are two.
+/// k times the volume of the overlap.  The arms lean against each other by the angle alpha each, and meet in
+/// the plane x = 0; what of an arm is beyond it is a wedge between its inner side and its end, right-angled,
+/// its corner depth / 2 away from the plane: of legs (depth / 2) / sin(alpha) and (depth / 2) / cos(alpha).
+/// There are two.
 double overlap_force(double depth) {
   const double alpha = 0.5 * (bent_bar::closing_angle(depth) - M_PI), half = 0.5 * depth;
   return 1e6 * bent_bar::kWidth * half * half / (std::sin(alpha) * std::cos(alpha));
@@ -86,11 +94,15 @@ Vec3 force_on_left(const Bar& bar, contact::ContactForce& term) {
 
 }  // namespace
 
-// Two bodies, and one body of the same nodes in two shells: the same samples, forces and tangent, to rounding.
+// Two bodies, and one body of the same nodes in two shells: the same samples, forces and tangent, to
+// rounding.
 TEST(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
-  const LayeredModel a = ball(Pose{}, 1.0), b = ball({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2), both = together(a, b);
+  const LayeredModel a = ball(Pose{}, 1.0),
+                     b = ball({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2),
+                     both = together(a, b);
   dynamics::State two, one;
-  const int block_a = add_block(two, a.tets.nodes, 0.0), block_b = add_block(two, b.tets.nodes, 1.0), block = add_block(one, both.tets.nodes, 0.0);
+  const int block_a = add_block(two, a.tets.nodes, 0.0), block_b = add_block(two, b.tets.nodes, 1.0),
+            block = add_block(one, both.tets.nodes, 0.0);
   one.u() = two.u();
   ASSERT_EQ(one.q(), two.q());
   Points rest = both.tets.nodes;  // what overlaps at rest is no contact: there they stand apart
@@ -99,8 +111,13 @@ TEST(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
   with_all.damping_pa_s_m = 1e5;
   with_all.friction = 0.4;
   contact::ContactForce between, within;
-  between.add_pair(contact::make_gpu_source(surface_of(a, block_a), std::make_shared<proxy::ProxySet>(a), surface_of(b, block_b), std::make_shared<proxy::ProxySet>(b), options(0.02)), with_all);
-  within.add_pair(contact::make_gpu_source(surface_of(both, block), std::make_shared<proxy::ProxySet>(both), rest, options(0.02)), with_all);
+  between.add_pair(
+      contact::make_gpu_source(surface_of(a, block_a), std::make_shared<proxy::ProxySet>(a),
+                               surface_of(b, block_b), std::make_shared<proxy::ProxySet>(b), options(0.02)),
+      with_all);
+  within.add_pair(contact::make_gpu_source(surface_of(both, block), std::make_shared<proxy::ProxySet>(both),
+                                           rest, options(0.02)),
+                  with_all);
   const int n = static_cast<int>(a.tets.nodes.size());
   for (const double shift : {0.0, 0.1, 0.1}) {  // and again, a rolling off: normals are remembered alike
     for (dynamics::State* state : {&two, &one})
@@ -123,7 +140,8 @@ TEST(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
     const VecX f = force(between, two), g = force(within, one);
     EXPECT_GT(f.norm(), 100.0);
     EXPECT_LT((f - g).norm(), 1e-12 * f.norm());
-    const MatX A = step_matrix(between, two, 1.0, 0.3).to_dense(), B = step_matrix(within, one, 1.0, 0.3).to_dense();
+    const MatX A = step_matrix(between, two, 1.0, 0.3).to_dense(),
+               B = step_matrix(within, one, 1.0, 0.3).to_dense();
     EXPECT_GT(A.topRightCorner(n, A.cols() - n).norm(), 0.1 * A.topLeftCorner(n, n).norm());
     EXPECT_LT((A - B).norm(), 1e-12 * A.norm());
   }
@@ -135,7 +153,8 @@ TEST(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
   EXPECT_EQ(of_two.faces_b, of_one.faces_b);
 }
 
-// The gap that is looked into is larger than the bar is thick, and its proxies are so few that their hulls reach across each other.
+// The gap that is looked into is larger than the bar is thick, and its proxies are so few that their hulls
+// reach across each other.
 TEST(OwnContact, AtRestABodyFeelsNothing) {
   for (const int count : {3, 9, 24}) {
     Bar bar(count);
@@ -151,8 +170,8 @@ TEST(OwnContact, AtRestABodyFeelsNothing) {
   }
 }
 
-// Bones that lie across from themselves: bone 1 is the left arm's tip and the right arm's lower part, between bone 0 and bone 2.  One region holds them all, bone 1 on both sides; in its
-// image bone 1 faces itself.
+// Bones that lie across from themselves: bone 1 is the left arm's tip and the right arm's lower part, between
+// bone 0 and bone 2.  One region holds them all, bone 1 on both sides; in its image bone 1 faces itself.
 TEST(OwnContact, NoBoneMeetsItself) {
   Bar bar(48);
   for (ProxyHull& hull : bar.model.proxies) {
@@ -163,7 +182,8 @@ TEST(OwnContact, NoBoneMeetsItself) {
   std::vector<std::set<int>> bones(static_cast<std::size_t>(bar.model.skin.vertices.cols()));
   for (const ProxyHull& hull : bar.model.proxies)
     for (const int v : hull.members) bones[static_cast<std::size_t>(v)].insert(hull.bone);
-  const auto bone_of = [&](const contact::SurfacePoint& point) {  // of the nearest vertex; -1 where two share it
+  // of the nearest vertex; -1 where two share it
+  const auto bone_of = [&](const contact::SurfacePoint& point) {
     Vec3 x = Vec3::Zero();
     for (std::size_t i = 0; i < 4; ++i) x += point.weight[i] * bar.model.tets.nodes.col(point.node[i]);
     Eigen::Index nearest = 0;
@@ -184,7 +204,8 @@ TEST(OwnContact, NoBoneMeetsItself) {
   EXPECT_GT(met, 1000);
 }
 
-// Arms pressed together: equal and opposite on both, along the line of the tips; none on the middle.  The overlap is symmetric, so is the force.
+// Arms pressed together: equal and opposite on both, along the line of the tips; none on the middle.  The
+// overlap is symmetric, so is the force.
 TEST(OwnContact, ArmsThatMeetPushEachOtherApart) {
   Bar bar;
   bar.bend(bent_bar::closing_angle(0.03));
@@ -204,12 +225,15 @@ TEST(OwnContact, ArmsThatMeetPushEachOtherApart) {
   EXPECT_NEAR(-left.x() / overlap_force(0.03), 1.0, 0.02);
   EXPECT_LT((left + right).norm(), 1e-12 * left.norm());
   EXPECT_LT(moment.norm(), 1e-11 * left.norm());
-  // The normal is the mean slope of the skin in the overlap: tan(alpha) along the inner side, -1 / tan(alpha) across the end, which cancel but for a row of pixels.
-  const double alpha = 0.5 * (bent_bar::closing_angle(0.03) - M_PI), height = 0.015 / std::tan(alpha) + 0.015 * std::tan(alpha);
+  // The normal is the mean slope of the skin in the overlap: tan(alpha) along the inner side, -1 / tan(alpha)
+  // across the end, which cancel but for a row of pixels.
+  const double alpha = 0.5 * (bent_bar::closing_angle(0.03) - M_PI),
+               height = 0.015 / std::tan(alpha) + 0.015 * std::tan(alpha);
   EXPECT_LT(left.tail<2>().norm(), bent_bar::kWidth / (kPixels - 1) / height / std::tan(alpha) * left.norm());
 }
 
-// Between two queries the force is minus the gradient of the contact's energy, and the tangent its derivative: symmetric, with blocks between the arms.
+// Between two queries the force is minus the gradient of the contact's energy, and the tangent its
+// derivative: symmetric, with blocks between the arms.
 TEST(OwnContact, TheTangentCouplesTheBodysParts) {
   Bar bar;
   bar.bend(bent_bar::closing_angle(0.04));
@@ -232,7 +256,8 @@ TEST(OwnContact, TheTangentCouplesTheBodysParts) {
   VecX K = VecX::Zero(size);
   term.apply_tangent(bar.state.view(), 1.0, 0.0, direction, K);
   expect_derivative([&](double h) { return force(term, moved(h)); }, -K, 1e-3, "by position");
-  expect_derivative([&](double h) { return VecX::Constant(1, term.energy(moved(h).view())).eval(); }, VecX::Constant(1, -force(term, bar.state).dot(direction)), 1e-3, "energy");
+  expect_derivative([&](double h) { return VecX::Constant(1, term.energy(moved(h).view())).eval(); },
+                    VecX::Constant(1, -force(term, bar.state).dot(direction)), 1e-3, "energy");
 
   const dynamics::BorderedMatrix A = step_matrix(term, bar.state, 1.0, 0.7);
   VecX assembled;
@@ -270,6 +295,9 @@ TEST(OwnContact, SetsInWithoutAJump) {
 
 TEST(OwnContact, RefusesWhatHasNoBones) {
   Bar bar;
-  EXPECT_THROW(contact::make_gpu_source(bar.surface, nullptr, bar.model.tets.nodes, options(0.1)), InternalError);
-  EXPECT_THROW(contact::make_gpu_source(bar.surface, bar.proxies, Points(bar.model.tets.nodes.leftCols(3)), options(0.1)), InternalError);
+  EXPECT_THROW(contact::make_gpu_source(bar.surface, nullptr, bar.model.tets.nodes, options(0.1)),
+               InternalError);
+  EXPECT_THROW(contact::make_gpu_source(bar.surface, bar.proxies, Points(bar.model.tets.nodes.leftCols(3)),
+                                        options(0.1)),
+               InternalError);
 }

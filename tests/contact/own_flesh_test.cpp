@@ -1,4 +1,5 @@
-// What two overlapping points of one skin are: contact, the body's own thickness, or parts that passed each other by.
+// What two overlapping points of one skin are: contact, the body's own thickness, or parts that passed each
+// other by.
 #include "contact/own_flesh.h"
 
 #include "bent_bar.h"
@@ -22,7 +23,8 @@ struct Bar {
     dynamics::BlockSpec nodes;
     nodes.name = "bar";
     nodes.q_size = nodes.u_size = static_cast<int>(model.tets.nodes.size());
-    block_id = state.insert(nodes, Eigen::Map<const VecX>(model.tets.nodes.data(), nodes.q_size), VecX::Zero(nodes.u_size));
+    block_id = state.insert(nodes, Eigen::Map<const VecX>(model.tets.nodes.data(), nodes.q_size),
+                            VecX::Zero(nodes.u_size));
     contact::NodeSurface out;
     out.block_id = block_id;
     out.faces = model.skin.faces;
@@ -39,7 +41,11 @@ struct Bar {
   contact::SkinPoint at(const Vec3& x) const {
     int best = 0;
     double least = 1e9;
-    const auto middle = [&](const Points& points, int f) { return Vec3((points.col(model.skin.faces(0, f)) + points.col(model.skin.faces(1, f)) + points.col(model.skin.faces(2, f))) / 3.0); };
+    const auto middle = [&](const Points& points, int f) {
+      return Vec3((points.col(model.skin.faces(0, f)) + points.col(model.skin.faces(1, f)) +
+                   points.col(model.skin.faces(2, f))) /
+                  3.0);
+    };
     for (int f = 0; f < skin.face_count(); ++f)
       if (const double d = (middle(model.skin.vertices, f) - x).norm(); d < least) best = f, least = d;
     return flesh.point(best, Vec3::Constant(1.0 / 3.0), middle(skin.positions(), best));
@@ -58,7 +64,8 @@ TEST(OwnFlesh, ThicknessIsNoContact) {
     bar.bend(angle);
     for (double x = -0.85; x < 0.86; x += 0.1)
       for (const double shift : {-0.06, 0.0, 0.06}) {
-        const contact::SkinPoint above = bar.at(Vec3(x, 0.07, kUp)), below = bar.at(Vec3(x + shift, -0.02, -kUp));
+        const contact::SkinPoint above = bar.at(Vec3(x, 0.07, kUp)),
+                                 below = bar.at(Vec3(x + shift, -0.02, -kUp));
         EXPECT_FALSE(bar.flesh.in_contact(above, below)) << angle << ", " << x << ", " << shift;
         EXPECT_FALSE(bar.flesh.in_contact(below, above)) << angle << ", " << x << ", " << shift;
         ++looked;

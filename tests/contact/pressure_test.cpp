@@ -66,7 +66,8 @@ TEST(Pressure, DerivativesAreThoseOfTheFormula) {
 }
 
 TEST(Onset, ByHand) {
-  // k = 2e6, w = 1 mm, at half of w: k d^2/(2 w) = 2e6 * 2.5e-7/2e-3 = 250 Pa, half the slope; at 3 mm: k (3 - 0.5) mm = 5000 Pa.
+  // k = 2e6, w = 1 mm, at half of w: k d^2/(2 w) = 2e6 * 2.5e-7/2e-3 = 250 Pa, half the slope; at 3 mm: k (3
+  // - 0.5) mm = 5000 Pa.
   ContactSpec s = spec("kelvin_voigt");
   s.damping_pa_s_m = 0.0;
   s.onset_width_m = 1e-3;
@@ -79,7 +80,8 @@ TEST(Onset, ByHand) {
   EXPECT_NEAR(p.dp_dgap, -2e6, 1e-6);
 }
 
-// Pressure and its derivatives have no jump, neither at first touch nor at the end of the onset; without an onset the derivative has one.
+// Pressure and its derivatives have no jump, neither at first touch nor at the end of the onset; without an
+// onset the derivative has one.
 TEST(Onset, PressureAndItsDerivativesAreContinuous) {
   int checked = 0;
   for (const char* law : {"kelvin_voigt", "hunt_crossley"})
@@ -89,10 +91,15 @@ TEST(Onset, PressureAndItsDerivativesAreContinuous) {
       const double slope = 2e6 * 2.0;  // no derivative by depth is larger
       for (const double depth : {0.0, 1e-3}) {
         const double e = 1e-9;
-        const auto below = contact::pressure(s, -(depth - e), rate), above = contact::pressure(s, -(depth + e), rate);
+        const auto below = contact::pressure(s, -(depth - e), rate),
+                   above = contact::pressure(s, -(depth + e), rate);
         EXPECT_NEAR(below.p, above.p, 2 * e * slope) << law;
-        if (depth == 0.0 || rate == 0.0) {  // a damper that grows with depth bends the pressure at the end of the onset, in proportion to the rate
-          EXPECT_NEAR(below.dp_dgap, above.dp_dgap, std::abs(rate) * spec(law).damping_pa_s_m / 1e-3 * (law[0] == 'k') + 1e-4 * slope) << law << " " << depth;
+        // a damper that grows with depth bends the pressure at the end of the onset, in proportion to the
+        // rate
+        if (depth == 0.0 || rate == 0.0) {
+          EXPECT_NEAR(below.dp_dgap, above.dp_dgap,
+                      std::abs(rate) * spec(law).damping_pa_s_m / 1e-3 * (law[0] == 'k') + 1e-4 * slope)
+              << law << " " << depth;
         }
         EXPECT_NEAR(below.dp_drate, above.dp_drate, 1e-4 * 300.0) << law;
         ++checked;
@@ -113,7 +120,11 @@ TEST(Onset, DerivativesByTaylor) {
         const auto p = contact::pressure(s, -depth, rate);
         ASSERT_GT(p.p, 0.0);
         const VecX df = VecX::Constant(1, p.dp_dgap * 1e-4 + p.dp_drate * 0.05);
-        expect_derivative([&](double h) { return VecX(VecX::Constant(1, contact::pressure(s, -depth + h * 1e-4, rate + h * 0.05).p)); }, df, 1.0, law);
+        expect_derivative(
+            [&](double h) {
+              return VecX(VecX::Constant(1, contact::pressure(s, -depth + h * 1e-4, rate + h * 0.05).p));
+            },
+            df, 1.0, law);
         ++checked;
       }
   EXPECT_EQ(checked, 12);
@@ -126,7 +137,8 @@ TEST(Onset, EnergyIsTheIntegralOfTheSpring) {
   // Simpson's rule is exact on each of the two polynomials.
   const auto p = [&](double depth) { return contact::pressure(s, -depth, 0.0).p; };
   const auto simpson = [&](double a, double b) { return (b - a) / 6 * (p(a) + 4 * p(0.5 * (a + b)) + p(b)); };
-  const double e1 = contact::pressure(s, -1e-3, 0.0).energy_density, e2 = contact::pressure(s, -4e-3, 0.0).energy_density;
+  const double e1 = contact::pressure(s, -1e-3, 0.0).energy_density,
+               e2 = contact::pressure(s, -4e-3, 0.0).energy_density;
   EXPECT_NEAR(e1, simpson(0.0, 1e-3), 1e-14);
   EXPECT_NEAR(e2, simpson(0.0, 1e-3) + simpson(1e-3, 4e-3), 1e-12);
 }
@@ -168,6 +180,8 @@ TEST(Pressure, BadValuesAreRefusedByName) {
   refused([](ContactSpec& s) { s.hunt_crossley_s_m = -2.0; }, "hunt_crossley_s_m = -2");
   refused([](ContactSpec& s) { s.onset_width_m = -1e-3; }, "onset_width_m = -0.001 must not be negative");
   refused([](ContactSpec& s) { s.friction = -0.1; }, "friction = -0.1");
-  refused([](ContactSpec& s) { s.friction_regularisation_m_s = 0.0; }, "friction_regularisation_m_s = 0 must be positive");
-  refused([](ContactSpec& s) { s.law = "kelvin"; }, "unknown law \"kelvin\" (did you mean \"kelvin_voigt\"?)");
+  refused([](ContactSpec& s) { s.friction_regularisation_m_s = 0.0; },
+          "friction_regularisation_m_s = 0 must be positive");
+  refused([](ContactSpec& s) { s.law = "kelvin"; },
+          "unknown law \"kelvin\" (did you mean \"kelvin_voigt\"?)");
 }

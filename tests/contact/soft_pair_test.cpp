@@ -6,7 +6,8 @@ using namespace contact_tests;
 
 namespace {
 
-/// A ball of tetrahedra, and above it the same, turned, larger and pressed into it; both under fine skins, with velocities.
+/// A ball of tetrahedra, and above it the same, turned, larger and pressed into it; both under fine skins,
+/// with velocities.
 struct TwoBalls {
   struct Body {
     LayeredModel model;
@@ -16,7 +17,8 @@ struct TwoBalls {
   dynamics::State state;
   Body a, b;
 
-  TwoBalls() : a(body(Pose{}, 1.0)), b(body({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2)) {}
+  TwoBalls()
+      : a(body(Pose{}, 1.0)), b(body({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2)) {}
 
   Body body(const Pose& pose, double scale) {
     Body out;
@@ -33,7 +35,8 @@ struct TwoBalls {
     nodes.q_size = nodes.u_size = static_cast<int>(out.model.tets.nodes.size());
     VecX speeds(nodes.u_size);
     for (Eigen::Index i = 0; i < speeds.size(); ++i) speeds[i] = 0.1 * std::sin(1.0 + i + scale);
-    out.surface.block_id = state.insert(nodes, Eigen::Map<const VecX>(out.model.tets.nodes.data(), nodes.q_size), speeds);
+    out.surface.block_id =
+        state.insert(nodes, Eigen::Map<const VecX>(out.model.tets.nodes.data(), nodes.q_size), speeds);
     return out;
   }
 
@@ -44,7 +47,8 @@ struct TwoBalls {
     return out;
   }
   std::unique_ptr<contact::SampleSource> source(bool pruned) const {
-    return pruned ? contact::make_gpu_source(a.surface, a.proxies, b.surface, b.proxies, options()) : contact::make_gpu_source(a.surface, b.surface, options());
+    return pruned ? contact::make_gpu_source(a.surface, a.proxies, b.surface, b.proxies, options())
+                  : contact::make_gpu_source(a.surface, b.surface, options());
   }
   int nodes_of_a() const { return static_cast<int>(a.model.tets.nodes.cols()); }
 };
@@ -57,7 +61,8 @@ ContactSpec law() {
 
 }  // namespace
 
-// Third law: resultant and moment of both bodies' forces vanish to rounding, each alone does not; the force pushes a up, off b.
+// Third law: resultant and moment of both bodies' forces vanish to rounding, each alone does not; the force
+// pushes a up, off b.
 TEST(SoftPair, ActionIsReaction) {
   TwoBalls balls;
   Vec3 whole = Vec3::Zero();
@@ -80,7 +85,9 @@ TEST(SoftPair, ActionIsReaction) {
     EXPECT_GT(on_a.z(), 100.0);
     EXPECT_LT(sum.norm(), 1e-12 * on_a.norm());
     int sliding = 0;
-    double arm = 0.0;  // friction acts along both points, which lie up to the depth apart along the normal: its moment is friction x depth
+    // friction acts along both points, which lie up to the depth apart along the normal: its moment is
+    // friction x depth
+    double arm = 0.0;
     for (const auto& s : term.samples()) {
       EXPECT_GE(s.b.count, 4);
       arm = std::max(arm, -s.gap);
@@ -97,12 +104,15 @@ TEST(SoftPair, ActionIsReaction) {
     smooth.refresh(balls.state.view());
     const VecX g = force(smooth, balls.state);
     moment.setZero();
-    for (int i = 0; i < balls.state.layout().node_count(); ++i) moment += balls.state.view().position(i).cross(Vec3(g.segment<3>(3 * i)));
-    EXPECT_LT(moment.norm(), 1e-11 * on_a.norm()) << "both points of a sample lie on one line along the normal";
+    for (int i = 0; i < balls.state.layout().node_count(); ++i)
+      moment += balls.state.view().position(i).cross(Vec3(g.segment<3>(3 * i)));
+    EXPECT_LT(moment.norm(), 1e-11 * on_a.norm())
+        << "both points of a sample lie on one line along the normal";
   }
 }
 
-// With the smooth onset the force is C1, so that the Taylor residual falls with slope 2; the assembled tangent is the applied one, and symmetric.
+// With the smooth onset the force is C1, so that the Taylor residual falls with slope 2; the assembled
+// tangent is the applied one, and symmetric.
 TEST(SoftPair, TheTangentCouplesBothBodies) {
   TwoBalls balls;
   ContactSpec smooth = law();
@@ -147,7 +157,8 @@ TEST(SoftPair, TheTangentCouplesBothBodies) {
   EXPECT_LT(shifted.norm(), 1e-11 * K.norm());
 }
 
-// The pattern holds what the contact has met: it rests while nothing new is met, and grows when the contact slides.
+// The pattern holds what the contact has met: it rests while nothing new is met, and grows when the contact
+// slides.
 TEST(SoftPair, ThePatternGrowsWithTheContact) {
   TwoBalls balls;
   contact::ContactForce term;
@@ -172,5 +183,7 @@ TEST(SoftPair, ThePatternGrowsWithTheContact) {
 TEST(SoftPair, RefusesOneBodyTwice) {
   TwoBalls balls;
   EXPECT_THROW(contact::make_gpu_source(balls.a.surface, balls.a.surface, balls.options()), InternalError);
-  EXPECT_THROW(contact::make_gpu_source(balls.a.surface, balls.a.proxies, balls.b.surface, nullptr, balls.options()), InternalError);
+  EXPECT_THROW(
+      contact::make_gpu_source(balls.a.surface, balls.a.proxies, balls.b.surface, nullptr, balls.options()),
+      InternalError);
 }

@@ -12,7 +12,7 @@ Vec3 position_of(const contact::SurfacePoint& p, const dynamics::State& state, c
 
 TEST(PlaneSource, GapsAreDistancesAndAreasSumToTheCap) {
   const Pose pose{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)};  // the plane's frame
-  const Vec3 point(0.1, 0.2, 0.3), normal(0, 0, 2);                              // scaled on purpose
+  const Vec3 point(0.1, 0.2, 0.3), normal(0, 0, 2);                            // scaled on purpose
   const Vec3 n = pose.rotation * Vec3::UnitZ(), origin = pose * point;
   SurfaceWorld world(sphere(origin + 0.6 * n, 1.0, 40));  // centre 0.6 above: depth 0.4
   const auto frame = contact::fixed_frame(pose);
@@ -39,7 +39,8 @@ TEST(PlaneSource, GapsAreDistancesAndAreasSumToTheCap) {
 
 TEST(PlaneSource, CandidateGapComesFromTheMeshWhenNoneIsGiven) {
   SurfaceWorld world(sphere(Vec3(0, 0, 1.01), 1.0, 20));  // 0.01 apart; edges are about 0.15
-  auto source = contact::make_plane_source(world.surface, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.0);
+  auto source =
+      contact::make_plane_source(world.surface, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.0);
   std::vector<contact::ContactSample> samples;
   source->query(world.state.view(), samples);
   EXPECT_GT(samples.size(), 5u);
@@ -48,7 +49,8 @@ TEST(PlaneSource, CandidateGapComesFromTheMeshWhenNoneIsGiven) {
 
 TEST(PlaneSource, VerticesTurnedAwayDoNotPull) {
   SurfaceWorld world(sphere(Vec3(0, 0, -3), 1.0, 12));  // wholly below the plane
-  auto source = contact::make_plane_source(world.surface, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.1);
+  auto source =
+      contact::make_plane_source(world.surface, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.1);
   std::vector<contact::ContactSample> samples;
   source->query(world.state.view(), samples);
   EXPECT_GT(samples.size(), 50u);
@@ -101,7 +103,8 @@ double sampled_distance(const Vec3& x, bool inside, const Surface& surface) {
   return inside ? -least : least;
 }
 
-/// Random points as a soft surface: one triangle each would be needed for areas, so the samples are asked for by their gap alone.
+/// Random points as a soft surface: one triangle each would be needed for areas, so the samples are asked for
+/// by their gap alone.
 TriMesh scattered(int count, double reach, const Vec3& toward) {
   std::mt19937 random(5);
   TriMesh mesh;
@@ -117,18 +120,22 @@ TriMesh scattered(int count, double reach, const Vec3& toward) {
   return mesh;
 }
 
-/// Every sample: a's gap is the distance to the solid, b lies on its surface, the normal is the gap's gradient.
+/// Every sample: a's gap is the distance to the solid, b lies on its surface, the normal is the gap's
+/// gradient.
 template <class Surface, class Inside>
-int check_solid(contact::SampleSource& source, const SurfaceWorld& world, const Pose& frame, const Pose& place, Surface surface, Inside inside, double grid) {
+int check_solid(contact::SampleSource& source, const SurfaceWorld& world, const Pose& frame,
+                const Pose& place, Surface surface, Inside inside, double grid) {
   std::vector<contact::ContactSample> samples;
   source.query(world.state.view(), samples);
   for (const auto& s : samples) {
-    const Vec3 xa = position_of(s.a, world.state, frame), xb = position_of(s.b, world.state, frame), local = (frame * place).inverse() * xa;
+    const Vec3 xa = position_of(s.a, world.state, frame), xb = position_of(s.b, world.state, frame),
+               local = (frame * place).inverse() * xa;
     EXPECT_NEAR(s.gap, sampled_distance(local, inside(local), surface), grid) << local.transpose();
     EXPECT_NEAR(s.gap, s.normal.dot(xa - xb), 1e-12);
     EXPECT_NEAR(s.normal.norm(), 1.0, 1e-12);
     EXPECT_LT((xa - xb).cross(s.normal).norm(), 1e-12);
-    EXPECT_LT(std::abs(sampled_distance((frame * place).inverse() * xb, false, surface)), grid) << "b is on the surface";
+    EXPECT_LT(std::abs(sampled_distance((frame * place).inverse() * xb, false, surface)), grid)
+        << "b is on the surface";
   }
   return static_cast<int>(samples.size());
 }
@@ -136,7 +143,8 @@ int check_solid(contact::SampleSource& source, const SurfaceWorld& world, const 
 }  // namespace
 
 TEST(BoxSource, GapsAreDistances) {
-  const Pose frame{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)}, place{quaternion_of(Vec3(-0.2, 0.7, 0.1)), Vec3(0.1, 0.2, -0.1)};
+  const Pose frame{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)},
+      place{quaternion_of(Vec3(-0.2, 0.7, 0.1)), Vec3(0.1, 0.2, -0.1)};
   const Vec3 half(0.3, 0.5, 0.2);
   const auto surface = [&](auto visit) {
     constexpr int n = 40;
@@ -152,16 +160,21 @@ TEST(BoxSource, GapsAreDistances) {
           }
   };
   int seen = 0;
-  for (const Vec3& toward : {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitX()), Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitZ())}) {
+  for (const Vec3& toward :
+       {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitX()), Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitZ())}) {
     SurfaceWorld world(scattered(60, 0.9, toward));
-    auto source = contact::make_box_source(world.surface, 0, contact::fixed_frame(frame), place, 2.0 * half, 2.0);
-    seen += check_solid(*source, world, frame, place, surface, [&](const Vec3& x) { return (x.cwiseAbs().array() <= half.array()).all(); }, 0.02);
+    auto source =
+        contact::make_box_source(world.surface, 0, contact::fixed_frame(frame), place, 2.0 * half, 2.0);
+    seen += check_solid(
+        *source, world, frame, place, surface,
+        [&](const Vec3& x) { return (x.cwiseAbs().array() <= half.array()).all(); }, 0.02);
   }
   EXPECT_GT(seen, 200);
 }
 
 TEST(CylinderSource, GapsAreDistances) {
-  const Pose frame{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)}, place{quaternion_of(Vec3(-0.2, 0.7, 0.1)), Vec3(0.1, 0.2, -0.1)};
+  const Pose frame{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)},
+      place{quaternion_of(Vec3(-0.2, 0.7, 0.1)), Vec3(0.1, 0.2, -0.1)};
   const double radius = 0.3, half = 0.4;
   const auto surface = [&](auto visit) {
     constexpr int n = 120;
@@ -174,15 +187,20 @@ TEST(CylinderSource, GapsAreDistances) {
     }
   };
   int seen = 0;
-  for (const Vec3& toward : {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitX()), Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitZ())}) {
+  for (const Vec3& toward :
+       {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitX()), Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitZ())}) {
     SurfaceWorld world(scattered(60, 0.9, toward));
-    auto source = contact::make_cylinder_source(world.surface, 0, contact::fixed_frame(frame), place, radius, 2 * half, 2.0);
-    seen += check_solid(*source, world, frame, place, surface, [&](const Vec3& x) { return std::hypot(x.x(), x.y()) <= radius && std::abs(x.z()) <= half; }, 0.02);
+    auto source = contact::make_cylinder_source(world.surface, 0, contact::fixed_frame(frame), place, radius,
+                                                2 * half, 2.0);
+    seen += check_solid(
+        *source, world, frame, place, surface,
+        [&](const Vec3& x) { return std::hypot(x.x(), x.y()) <= radius && std::abs(x.z()) <= half; }, 0.02);
   }
   EXPECT_GT(seen, 200);
 }
 
-// A round surface that turns about its own centre or axis stays where it is: neither force nor gap may change between two queries, and no moment may come of it.
+// A round surface that turns about its own centre or axis stays where it is: neither force nor gap may change
+// between two queries, and no moment may come of it.
 TEST(RoundSources, TurningAboutTheCentreChangesNothing) {
   const Pose start{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)};
   const Vec3 axis = start.rotation * Vec3::UnitZ();
@@ -197,7 +215,8 @@ TEST(RoundSources, TurningAboutTheCentreChangesNothing) {
     ContactSpec law;
     law.stiffness_pa_m = 1e9;
     term.add_pair(round ? contact::make_sphere_source(world.surface, frame, motion, Vec3::Zero(), 0.7, 0.1)
-                        : contact::make_cylinder_source(world.surface, frame, motion, {}, 0.7, 9.0, 0.1), law);
+                        : contact::make_cylinder_source(world.surface, frame, motion, {}, 0.7, 9.0, 0.1),
+                  law);
     term.refresh(world.state.view());
     const Wrench before = term.frame_wrench(world.state.view(), frame);
     const double energy = term.energy(world.state.view()), size = 0.7 * before.force.norm();
@@ -212,7 +231,8 @@ TEST(RoundSources, TurningAboutTheCentreChangesNothing) {
       EXPECT_LT((after.force - before.force).norm(), 1e-12 * before.force.norm()) << angle;
       EXPECT_NEAR(term.energy(world.state.view()), energy, 1e-12 * energy) << angle;
       EXPECT_LT(std::abs(about.dot(after.moment)), 1e-12 * size) << angle;
-      EXPECT_LT((seen.K.leftCols<3>() * about).norm(), 1e-12 * seen.K.rightCols<3>().norm()) << "nor may a linearisation say that it would";
+      EXPECT_LT((seen.K.leftCols<3>() * about).norm(), 1e-12 * seen.K.rightCols<3>().norm())
+          << "nor may a linearisation say that it would";
       EXPECT_LT((seen.geometric * about).norm(), 1e-12 * size) << angle;
       ++pressed;
     }
@@ -222,7 +242,8 @@ TEST(RoundSources, TurningAboutTheCentreChangesNothing) {
 
 namespace {
 
-/// Vertices that are counted when a small triangle's three vertices go from one place to another between two queries.
+/// Vertices that are counted when a small triangle's three vertices go from one place to another between two
+/// queries.
 long counted(contact::SampleSource& source, SurfaceWorld& world, const Vec3& from, const Vec3& to) {
   const auto at = [&](const Vec3& x) {
     std::vector<contact::ContactSample> samples;
@@ -249,10 +270,23 @@ TEST(Tunnelling, WhatGoesThroughUnseenIsCountedAndNothingElse) {
   };
   SurfaceWorld world(one);
   std::vector<Shape> shapes;
-  shapes.push_back({contact::make_box_source(world.surface, 0, frame, {}, Vec3(2, 2, 0.02), 0.01), {0.1, 0.2, 0.5}, {0.1, 0.2, 0}, {0.3, 0.1, -0.4}, {3, 0, -0.5}});
-  shapes.push_back({contact::make_sphere_source(world.surface, 0, frame, Vec3::Zero(), 0.1, 0.01), {0.02, 0, 0.5}, {0, 0.02, 0}, {0, 0.03, -0.4}, {1.5, 0, -0.5}});
-  shapes.push_back({contact::make_cylinder_source(world.surface, 0, frame, {quaternion_of(Vec3(kPi / 2, 0, 0)), Vec3::Zero()}, 0.05, 2.0, 0.01),
-                    {0.01, 0.2, 0.5}, {0, 0.2, 0.01}, {-0.01, 0.3, -0.4}, {1.5, 0, -0.5}});
+  shapes.push_back({contact::make_box_source(world.surface, 0, frame, {}, Vec3(2, 2, 0.02), 0.01),
+                    {0.1, 0.2, 0.5},
+                    {0.1, 0.2, 0},
+                    {0.3, 0.1, -0.4},
+                    {3, 0, -0.5}});
+  shapes.push_back({contact::make_sphere_source(world.surface, 0, frame, Vec3::Zero(), 0.1, 0.01),
+                    {0.02, 0, 0.5},
+                    {0, 0.02, 0},
+                    {0, 0.03, -0.4},
+                    {1.5, 0, -0.5}});
+  shapes.push_back(
+      {contact::make_cylinder_source(world.surface, 0, frame,
+                                     {quaternion_of(Vec3(kPi / 2, 0, 0)), Vec3::Zero()}, 0.05, 2.0, 0.01),
+       {0.01, 0.2, 0.5},
+       {0, 0.2, 0.01},
+       {-0.01, 0.3, -0.4},
+       {1.5, 0, -0.5}});
   for (Shape& s : shapes) {
     EXPECT_EQ(counted(*s.source, world, s.above, s.below), 3) << s.source->name();
     EXPECT_EQ(counted(*s.source, world, s.below, s.above), 3) << s.source->name() << ", back again";
@@ -288,26 +322,33 @@ TEST(Skins, VerticesActAsNodesInTheirPlaces) {
   SurfaceWorld nodes({skin.vertices, skin.skin.faces});
   std::vector<contact::ContactSample> of_skin, of_nodes;
   const Vec3 point(0, 0, -0.6), normal(0.1, 0.2, 1.0);
-  contact::make_plane_source(skin.surface, 0, contact::fixed_frame(), point, normal, 0.05)->query(skin.state.view(), of_skin);
-  contact::make_plane_source(nodes.surface, 0, contact::fixed_frame(), point, normal, 0.05)->query(nodes.state.view(), of_nodes);
+  contact::make_plane_source(skin.surface, 0, contact::fixed_frame(), point, normal, 0.05)
+      ->query(skin.state.view(), of_skin);
+  contact::make_plane_source(nodes.surface, 0, contact::fixed_frame(), point, normal, 0.05)
+      ->query(nodes.state.view(), of_nodes);
   ASSERT_EQ(of_skin.size(), of_nodes.size());
   EXPECT_GT(of_skin.size(), 50u);
   int extrapolated = 0;
   for (std::size_t i = 0; i < of_skin.size(); ++i) {
     EXPECT_NEAR(of_skin[i].gap, of_nodes[i].gap, 1e-14);
     EXPECT_NEAR(of_skin[i].area, of_nodes[i].area, 1e-14);
-    EXPECT_LT((point_on_nodes(of_skin[i].a, skin.state.view()) - point_on_nodes(of_nodes[i].a, nodes.state.view())).norm(), 1e-14);
+    EXPECT_LT(
+        (point_on_nodes(of_skin[i].a, skin.state.view()) - point_on_nodes(of_nodes[i].a, nodes.state.view()))
+            .norm(),
+        1e-14);
     extrapolated += *std::min_element(of_skin[i].a.weight.begin(), of_skin[i].a.weight.end()) < -1e-9;
   }
   EXPECT_GT(extrapolated, 5) << "the skin stands out between the ball's flat faces";
 }
 
-// Ahead of a fast body samples are kept by the skin's own velocity: all nodes come down, at 2 m/s and 0.1 s ahead 0.2 m.
+// Ahead of a fast body samples are kept by the skin's own velocity: all nodes come down, at 2 m/s and 0.1 s
+// ahead 0.2 m.
 TEST(Skins, VelocityIsThatOfTheSkin) {
   SkinWorld skin;
   for (Eigen::Index i = 6; i < skin.state.u().size(); ++i) skin.state.u()[i] = i % 3 == 2 ? -2.0 : 0.0;
   const double lowest = skin.vertices.row(2).minCoeff();
-  auto source = contact::make_plane_source(skin.surface, 0, contact::fixed_frame(), Vec3(0, 0, lowest - 0.3), Vec3::UnitZ(), 0.15, 0.1);
+  auto source = contact::make_plane_source(skin.surface, 0, contact::fixed_frame(), Vec3(0, 0, lowest - 0.3),
+                                           Vec3::UnitZ(), 0.15, 0.1);
   std::vector<contact::ContactSample> samples;
   source->query(skin.state.view(), samples);
   int expected = 0;
@@ -320,10 +361,12 @@ TEST(Skins, BadEmbeddingsAreRefused) {
   SkinWorld skin;
   contact::NodeSurface bad = skin.surface;
   bad.embedding.tet[5] = static_cast<int>(skin.ball.tets.cols());
-  EXPECT_THROW(contact::make_plane_source(bad, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.1), InternalError);
+  EXPECT_THROW(contact::make_plane_source(bad, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.1),
+               InternalError);
   bad = skin.surface;
   bad.embedding.weights.conservativeResize(4, 3);
-  EXPECT_THROW(contact::make_plane_source(bad, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.1), InternalError);
+  EXPECT_THROW(contact::make_plane_source(bad, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.1),
+               InternalError);
 }
 
 TEST(Sources, BadInputIsRefused) {
@@ -332,22 +375,42 @@ TEST(Sources, BadInputIsRefused) {
   const auto message = [](auto make) {
     try {
       make();
-    } catch (const std::exception& e) {
-      return std::string(e.what());
-    }
+    } catch (const std::exception& e) { return std::string(e.what()); }
     return std::string();
   };
-  EXPECT_NE(message([&] { contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::Zero(), 0.1); }).find("has no direction"), std::string::npos);
-  EXPECT_NE(message([&] { contact::make_sphere_source(world.surface, 0, frame, Vec3::Zero(), -1.0, 0.1); }).find("radius = -1 must be positive"), std::string::npos);
-  EXPECT_NE(message([&] { contact::make_box_source(world.surface, 0, frame, {}, Vec3(1, 0, 1), 0.1); }).find("must be positive"), std::string::npos);
-  EXPECT_NE(message([&] { contact::make_cylinder_source(world.surface, 0, frame, {}, 1.0, -2.0, 0.1); }).find("length = -2 must be positive"), std::string::npos);
-  EXPECT_NE(message([&] { contact::make_plane_source(world.surface, 0, nullptr, Vec3::Zero(), Vec3::UnitZ(), 0.1); }).find("needs a frame"), std::string::npos);
-  EXPECT_NE(message([&] { contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), -0.1); }).find("must not be negative"), std::string::npos);
+  EXPECT_NE(message([&] {
+              contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::Zero(), 0.1);
+            }).find("has no direction"),
+            std::string::npos);
+  EXPECT_NE(message([&] {
+              contact::make_sphere_source(world.surface, 0, frame, Vec3::Zero(), -1.0, 0.1);
+            }).find("radius = -1 must be positive"),
+            std::string::npos);
+  EXPECT_NE(message([&] {
+              contact::make_box_source(world.surface, 0, frame, {}, Vec3(1, 0, 1), 0.1);
+            }).find("must be positive"),
+            std::string::npos);
+  EXPECT_NE(message([&] {
+              contact::make_cylinder_source(world.surface, 0, frame, {}, 1.0, -2.0, 0.1);
+            }).find("length = -2 must be positive"),
+            std::string::npos);
+  EXPECT_NE(message([&] {
+              contact::make_plane_source(world.surface, 0, nullptr, Vec3::Zero(), Vec3::UnitZ(), 0.1);
+            }).find("needs a frame"),
+            std::string::npos);
+  EXPECT_NE(message([&] {
+              contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), -0.1);
+            }).find("must not be negative"),
+            std::string::npos);
   contact::NodeSurface bad = world.surface;
   bad.faces(1, 0) = 1000;
-  EXPECT_NE(message([&] { contact::make_plane_source(bad, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 0.1); }).find("names vertex 1000"), std::string::npos);
+  EXPECT_NE(message([&] {
+              contact::make_plane_source(bad, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 0.1);
+            }).find("names vertex 1000"),
+            std::string::npos);
   world.state.q()[8] = std::nan("");
   auto source = contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 0.1);
   std::vector<contact::ContactSample> samples;
-  EXPECT_NE(message([&] { source->query(world.state.view(), samples); }).find("not finite"), std::string::npos);
+  EXPECT_NE(message([&] { source->query(world.state.view(), samples); }).find("not finite"),
+            std::string::npos);
 }

@@ -14,7 +14,9 @@ inline TriMesh sphere(const Vec3& centre, double radius, int rings) {
   for (int i = 1; i < rings; ++i)
     for (int j = 0; j < around; ++j) {
       const double theta = kPi * i / rings, phi = 2 * kPi * j / around;
-      mesh.vertices.col((i - 1) * around + j) = centre + radius * Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
+      mesh.vertices.col((i - 1) * around + j) =
+          centre +
+          radius * Vec3(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
     }
   const int north = (rings - 1) * around, south = north + 1;
   mesh.vertices.col(north) = centre + Vec3(0, 0, radius);
@@ -47,14 +49,17 @@ struct SurfaceWorld {
     dynamics::BlockSpec nodes;
     nodes.name = "surface";
     nodes.q_size = nodes.u_size = static_cast<int>(3 * mesh.vertices.cols());
-    surface.block_id = state.insert(nodes, Eigen::Map<const VecX>(mesh.vertices.data(), mesh.vertices.size()), VecX::Zero(nodes.u_size));
+    surface.block_id = state.insert(nodes, Eigen::Map<const VecX>(mesh.vertices.data(), mesh.vertices.size()),
+                                    VecX::Zero(nodes.u_size));
     surface.node_of_vertex.resize(static_cast<std::size_t>(mesh.vertices.cols()));
-    for (std::size_t i = 0; i < surface.node_of_vertex.size(); ++i) surface.node_of_vertex[i] = static_cast<int>(i);
+    for (std::size_t i = 0; i < surface.node_of_vertex.size(); ++i)
+      surface.node_of_vertex[i] = static_cast<int>(i);
     surface.faces = mesh.faces;
   }
 };
 
-/// A coarse ball of tetrahedra, bent and stretched, that carries a fine sphere as its skin (some of it outside, between the flat faces); behind another block.
+/// A coarse ball of tetrahedra, bent and stretched, that carries a fine sphere as its skin (some of it
+/// outside, between the flat faces); behind another block.
 struct SkinWorld {
   TetMesh ball = mesh::ball(1.0, 0.45);
   TriMesh skin = mesh::sphere(1.0, 12);
@@ -68,7 +73,9 @@ struct SkinWorld {
     other.q_size = other.u_size = 6;
     state.insert(other, VecX::Constant(6, 100.0), VecX::Zero(6));
     Points bent = ball.nodes;
-    for (auto x : bent.colwise()) x = Vec3(1.2 * x.x() + 0.2 * x.z() * x.z(), 0.9 * x.y() + 0.1 * x.x() * x.z(), x.z() + 0.15 * x.x() * x.x());
+    for (auto x : bent.colwise())
+      x = Vec3(1.2 * x.x() + 0.2 * x.z() * x.z(), 0.9 * x.y() + 0.1 * x.x() * x.z(),
+               x.z() + 0.15 * x.x() * x.x());
     dynamics::BlockSpec nodes;
     nodes.name = "ball";
     nodes.q_size = nodes.u_size = static_cast<int>(bent.size());
@@ -85,7 +92,8 @@ struct SkinWorld {
 /// Where a point on weighted nodes is.
 inline Vec3 point_on_nodes(const contact::SurfacePoint& p, const dynamics::StateView& state) {
   Vec3 x = p.offset;
-  for (int k = 0; k < p.count; ++k) x += p.weight[static_cast<std::size_t>(k)] * state.position(p.node[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < p.count; ++k)
+    x += p.weight[static_cast<std::size_t>(k)] * state.position(p.node[static_cast<std::size_t>(k)]);
   return x;
 }
 

@@ -9,8 +9,8 @@ struct Law {
   double friction, regularisation;
 };
 
-/// Deep enough contacts of every kind: nodes on a given frame, nodes on a body of the State, nodes on nodes, body on a given frame.
-/// Depths of 0.4 at speeds of order 1 keep every sample pressed along a Taylor test.
+/// Deep enough contacts of every kind: nodes on a given frame, nodes on a body of the State, nodes on nodes,
+/// body on a given frame. Depths of 0.4 at speeds of order 1 keep every sample pressed along a Taylor test.
 struct Scene {
   /// The same point on a round surface, its centre 0.6 within: half of its arm does not turn with the frame.
   static contact::ContactSample rounded(contact::ContactSample s, const Pose& frame) {
@@ -33,11 +33,16 @@ struct Scene {
     const Pose body_pose = body->pose(view);
     std::vector<contact::ContactSample> samples;
     const auto tri = node_point({0, 1, 2}, {0.2, 0.9, -0.1}), single = node_point({4}, {1.0});
-    if (with_given) samples.push_back(on_frame(tri, given_index, given_pose, {0.1, -0.2, 1}, 0.4, 0.7, world.state));
+    if (with_given)
+      samples.push_back(on_frame(tri, given_index, given_pose, {0.1, -0.2, 1}, 0.4, 0.7, world.state));
     samples.push_back(on_frame(single, body_index, body_pose, {1, 0.5, -0.3}, 0.5, 0.6, world.state));
-    samples.push_back(rounded(on_frame(single, body_index, body_pose, {0.4, 0.5, -0.8}, 0.5, 0.6, world.state), body_pose));
-    if (with_given) samples.push_back(rounded(on_frame(single, given_index, given_pose, {0.3, -0.6, 0.8}, 0.4, 0.7, world.state), given_pose));
-    samples.push_back(on_nodes(tri, node_point({3, 4, 5}, {0.3, 0.3, 0.4}), {-0.3, 1, 0.2}, 0.45, 0.5, world.state));
+    samples.push_back(
+        rounded(on_frame(single, body_index, body_pose, {0.4, 0.5, -0.8}, 0.5, 0.6, world.state), body_pose));
+    if (with_given)
+      samples.push_back(rounded(
+          on_frame(single, given_index, given_pose, {0.3, -0.6, 0.8}, 0.4, 0.7, world.state), given_pose));
+    samples.push_back(
+        on_nodes(tri, node_point({3, 4, 5}, {0.3, 0.3, 0.4}), {-0.3, 1, 0.2}, 0.45, 0.5, world.state));
     if (with_given) {  // a: the body, b: the given frame
       contact::ContactSample s;
       s.a.frame = body_index;
@@ -60,7 +65,10 @@ struct Scene {
   }
 };
 
-const Law kLaws[] = {{"kelvin_voigt", 0.0, 1.0}, {"hunt_crossley", 0.0, 1.0}, {"kelvin_voigt", 0.4, 1e-3}, {"hunt_crossley", 0.4, 100.0}};
+const Law kLaws[] = {{"kelvin_voigt", 0.0, 1.0},
+                     {"hunt_crossley", 0.0, 1.0},
+                     {"kelvin_voigt", 0.4, 1e-3},
+                     {"hunt_crossley", 0.4, 100.0}};
 
 VecX direction(int size, unsigned seed) {
   std::mt19937 random(seed);
@@ -76,7 +84,8 @@ TEST(ContactTangent, PositionDerivative) {
     Scene scene(law);
     const VecX d = direction(scene.world.state.layout().u_size, 3);
     const MatX K = step_matrix(scene.term, scene.world.state, 1.0, 0.0).to_dense();
-    expect_derivative([&](double h) { return force(scene.term, scene.world.moved(d, h)); }, -(K * d), 0.02, law.name);
+    expect_derivative([&](double h) { return force(scene.term, scene.world.moved(d, h)); }, -(K * d), 0.02,
+                      law.name);
   }
 }
 
@@ -85,7 +94,8 @@ TEST(ContactTangent, VelocityDerivative) {
     Scene scene(law);
     const VecX d = direction(scene.world.state.layout().u_size, 4);
     const MatX D = step_matrix(scene.term, scene.world.state, 0.0, 1.0).to_dense();
-    expect_derivative([&](double h) { return force(scene.term, scene.world.pushed(d, h)); }, -(D * d), 0.05, law.name);
+    expect_derivative([&](double h) { return force(scene.term, scene.world.pushed(d, h)); }, -(D * d), 0.05,
+                      law.name);
   }
 }
 
@@ -149,13 +159,16 @@ TEST(FrameLinearisation, TaylorByPoseTwistAndNodes) {
     };
     expect_derivative(
         [&](double h) {
-          place({quaternion_of(h * d.head<3>()) * scene.given_pose.rotation, scene.given_pose.translation + h * d.tail<3>()}, scene.given_twist);
+          place({quaternion_of(h * d.head<3>()) * scene.given_pose.rotation,
+                 scene.given_pose.translation + h * d.tail<3>()},
+                scene.given_twist);
           return wrench_and_nodes(scene.world.state);
         },
         by_pose, 0.02, law.name);
     expect_derivative(
         [&](double h) {
-          place(scene.given_pose, {scene.given_twist.angular + h * d.head<3>(), scene.given_twist.linear + h * d.tail<3>()});
+          place(scene.given_pose,
+                {scene.given_twist.angular + h * d.head<3>(), scene.given_twist.linear + h * d.tail<3>()});
           return wrench_and_nodes(scene.world.state);
         },
         by_twist, 0.05, law.name);
@@ -163,12 +176,15 @@ TEST(FrameLinearisation, TaylorByPoseTwistAndNodes) {
     VecX nodes = VecX::Zero(scene.world.state.layout().u_size);
     nodes.head(nodal) = direction(nodal, 7);
     const auto wrench = [&](const dynamics::State& state) { return VecX(wrench_and_nodes(state).head(6)); };
-    expect_derivative([&](double h) { return wrench(scene.world.moved(nodes, h)); }, -(lin.K_frame * nodes.head(nodal)), 0.02, law.name);
-    expect_derivative([&](double h) { return wrench(scene.world.pushed(nodes, h)); }, -(lin.B_frame * nodes.head(nodal)), 0.05, law.name);
+    expect_derivative([&](double h) { return wrench(scene.world.moved(nodes, h)); },
+                      -(lin.K_frame * nodes.head(nodal)), 0.02, law.name);
+    expect_derivative([&](double h) { return wrench(scene.world.pushed(nodes, h)); },
+                      -(lin.B_frame * nodes.head(nodal)), 0.05, law.name);
   }
 }
 
-// Force is minus the gradient of the energy, in nodes and in the body's pose (undamped, against frames that stand still).
+// Force is minus the gradient of the energy, in nodes and in the body's pose (undamped, against frames that
+// stand still).
 TEST(ContactEnergy, ForceIsItsGradient) {
   Scene scene(kLaws[0]);
   scene.world.state.u().setZero();
@@ -187,15 +203,18 @@ TEST(ContactEnergy, ForceIsItsGradient) {
       slope, 0.02, "energy");
 }
 
-// Power balance at any state: d(energy)/dt = -(power given to nodes and bodies) - dissipated power, with all frames at rest or in the State.
+// Power balance at any state: d(energy)/dt = -(power given to nodes and bodies) - dissipated power, with all
+// frames at rest or in the State.
 TEST(ContactEnergy, DissipationClosesThePowerBalance) {
   for (const Law& law : kLaws) {
     Scene scene(law, false);
     const VecX u = scene.world.state.u();
-    const double given_power = force(scene.term, scene.world.state).dot(u), dissipated = scene.term.dissipated_power(scene.world.state.view());
+    const double given_power = force(scene.term, scene.world.state).dot(u),
+                 dissipated = scene.term.dissipated_power(scene.world.state.view());
     const double h = 1e-6;
-    const double rate =
-        (scene.term.energy(scene.world.moved(u, h).view()) - scene.term.energy(scene.world.moved(u, -h).view())) / (2 * h);
+    const double rate = (scene.term.energy(scene.world.moved(u, h).view()) -
+                         scene.term.energy(scene.world.moved(u, -h).view())) /
+                        (2 * h);
     EXPECT_NEAR(rate, -given_power - dissipated, 1e-7 * (std::abs(given_power) + dissipated)) << law.name;
     EXPECT_GT(dissipated, 0.0);
   }

@@ -8,9 +8,7 @@ namespace {
 std::string message_of(auto&& call) {
   try {
     call();
-  } catch (const std::exception& e) {
-    return e.what();
-  }
+  } catch (const std::exception& e) { return e.what(); }
   return "nothing was thrown";
 }
 }  // namespace
@@ -33,7 +31,8 @@ TEST(Error, SuggestionNamesTheNearestOrListsAll) {
 
 TEST(Error, FailFormatsAndIsCatchableAsError) {
   EXPECT_THROW(fail("{}: {}", "a", 1), Error);
-  EXPECT_EQ(message_of([] { fail("mass_kg = {} must be positive", -0.5); }), "mass_kg = -0.5 must be positive");
+  EXPECT_EQ(message_of([] { fail("mass_kg = {} must be positive", -0.5); }),
+            "mass_kg = -0.5 must be positive");
 }
 
 TEST(Error, CheckNamesPlaceConditionAndValues) {

@@ -17,7 +17,9 @@ TEST(AllFinite, FindsWhatIsNoNumberWhereverItStands) {
       EXPECT_TRUE(all_finite(v)) << "the largest is one";
       v[at] = -std::numeric_limits<double>::denorm_min();
       EXPECT_TRUE(all_finite(v));
-      for (const double wrong : {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+      for (const double wrong :
+           {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+            std::numeric_limits<double>::quiet_NaN()}) {
         v[at] = wrong;
         EXPECT_FALSE(all_finite(v)) << wrong << " at " << at << " of " << size;
       }

@@ -8,7 +8,8 @@ namespace palpate {
 namespace {
 
 TEST(HugePages, ContentsStay) {
-  for (const std::size_t count : {std::size_t{0}, std::size_t{100}, std::size_t{3} << 20}) {  // nothing, less than a page, 24 MiB
+  // nothing, less than a page, 24 MiB
+  for (const std::size_t count : {std::size_t{0}, std::size_t{100}, std::size_t{3} << 20}) {
     std::vector<double> v(count), expected(count);
     std::iota(v.begin(), v.end(), 0.0);
     std::iota(expected.begin(), expected.end(), 0.0);

@@ -19,10 +19,13 @@ Vec3 random_vector(std::mt19937& random, double scale) {
   return {x, y, z};
 }
 
-Mat3 random_rotation(std::mt19937& random) { return quaternion_of(random_vector(random, 3.0)).toRotationMatrix(); }
+Mat3 random_rotation(std::mt19937& random) {
+  return quaternion_of(random_vector(random, 3.0)).toRotationMatrix();
+}
 
 double distance_from_rotation(const Mat3& R) {
-  return std::max((R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff(), std::abs(R.determinant() - 1.0));
+  return std::max((R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff(),
+                  std::abs(R.determinant() - 1.0));
 }
 
 /// F = U diag(sigma) V^T with random rotations: every signed spectrum that a mesh may meet.
@@ -31,11 +34,21 @@ struct Spectrum {
   Vec3 sigma;
 };
 const std::vector<Spectrum> kSpectra = {
-    {"rest", {1, 1, 1}},          {"ordinary", {1.3, 0.9, 0.7}},   {"stretched", {40, 1, 0.5}},
-    {"squeezed", {1, 1, 0.051}},  {"switch", {1, 1, 0.049}},       {"nearly singular", {1, 0.8, 1e-9}},
-    {"flat", {1, 0.8, 0}},        {"rank one", {1, 0, 0}},         {"zero", {0, 0, 0}},
-    {"inverted", {1, 0.8, -0.3}}, {"mirror image", {1, 1, -1}},    {"nearly inverted", {1, 0.8, -1e-9}},
-    {"tiny", {1e-9, 8e-10, 5e-10}}, {"huge", {1e9, 8e8, 5e8}},     {"thin and long", {1e4, 1, 1e-3}},
+    {"rest", {1, 1, 1}},
+    {"ordinary", {1.3, 0.9, 0.7}},
+    {"stretched", {40, 1, 0.5}},
+    {"squeezed", {1, 1, 0.051}},
+    {"switch", {1, 1, 0.049}},
+    {"nearly singular", {1, 0.8, 1e-9}},
+    {"flat", {1, 0.8, 0}},
+    {"rank one", {1, 0, 0}},
+    {"zero", {0, 0, 0}},
+    {"inverted", {1, 0.8, -0.3}},
+    {"mirror image", {1, 1, -1}},
+    {"nearly inverted", {1, 0.8, -1e-9}},
+    {"tiny", {1e-9, 8e-10, 5e-10}},
+    {"huge", {1e9, 8e8, 5e8}},
+    {"thin and long", {1e4, 1, 1e-3}},
 };
 
 }  // namespace
@@ -65,7 +78,8 @@ TEST(Polar, SignedSvdRebuildsItsMatrixWithProperRotations) {
       ASSERT_LE(distance_from_rotation(svd.U), 1e-14) << spectrum.name;
       ASSERT_LE(distance_from_rotation(svd.V), 1e-14) << spectrum.name;
       ASSERT_LE((svd.sigma - spectrum.sigma).cwiseAbs().maxCoeff(), 1e-14 * scale) << spectrum.name;
-      ASSERT_LE((svd.U * svd.sigma.asDiagonal() * svd.V.transpose() - F).cwiseAbs().maxCoeff(), 1e-14 * scale) << spectrum.name;
+      ASSERT_LE((svd.U * svd.sigma.asDiagonal() * svd.V.transpose() - F).cwiseAbs().maxCoeff(), 1e-14 * scale)
+          << spectrum.name;
       ASSERT_GE(svd.sigma[0], svd.sigma[1]);
       ASSERT_GE(svd.sigma[1], std::abs(svd.sigma[2]));
     }
@@ -85,16 +99,19 @@ TEST(Polar, FindsTheRotationThatTheMatrixWasMadeFrom) {
   }
 }
 
-// Newton serves det F > 0.05, the signed SVD the rest: both must be the same function on either side of the switch.
+// Newton serves det F > 0.05, the signed SVD the rest: both must be the same function on either side of the
+// switch.
 TEST(Polar, NewtonAgreesWithSignedSvd) {
   std::mt19937 random(4);
   int checked = 0;
   for (int i = 0; i < 2000; ++i) {
-    const Mat3 F = Mat3::Identity() + cross_matrix(random_vector(random, 2.0)) + Mat3(random_vector(random, 0.8).asDiagonal());
+    const Mat3 F = Mat3::Identity() + cross_matrix(random_vector(random, 2.0)) +
+                   Mat3(random_vector(random, 0.8).asDiagonal());
     if (F.determinant() < 0.02) continue;
     const SignedSvd svd = signed_svd(F);
     const double condition = svd.sigma[0] / (svd.sigma[1] + svd.sigma[2]);
-    ASSERT_LE((polar_decomposition(F).R - svd.U * svd.V.transpose()).cwiseAbs().maxCoeff(), 2e-14 * std::max(1.0, condition));
+    ASSERT_LE((polar_decomposition(F).R - svd.U * svd.V.transpose()).cwiseAbs().maxCoeff(),
+              2e-14 * std::max(1.0, condition));
     ++checked;
   }
   EXPECT_GT(checked, 1500);
@@ -110,7 +127,8 @@ TEST(Polar, TurningTheMatrixTurnsTheRotation) {
 }
 
 TEST(Polar, NonFiniteInputEndsAndStaysVisible) {
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Mat3 F = Mat3::Identity();
     F(1, 2) = bad;
     EXPECT_TRUE(signed_svd(F).sigma.hasNaN());

@@ -13,9 +13,11 @@ const Vec3 kAxis = Vec3(1, -2, 3).normalized();
 }  // namespace
 
 TEST(Pose, RotationVectorRoundTripKeepsRelativeAccuracyAtEveryAngle) {
-  for (const double angle : {1e-200, 1e-30, 1e-12, 1e-8, 1e-4, 0.1, 1.0, kPi / 2, 3.0, kPi - 1e-4, kPi - 1e-9}) {
+  for (const double angle :
+       {1e-200, 1e-30, 1e-12, 1e-8, 1e-4, 0.1, 1.0, kPi / 2, 3.0, kPi - 1e-4, kPi - 1e-9}) {
     const Vec3 r = angle * kAxis;
-    EXPECT_LE((rotation_vector(quaternion_of(r)) - r).cwiseAbs().maxCoeff(), 1e-15 * std::max(angle, 0.0) * 4) << angle;
+    EXPECT_LE((rotation_vector(quaternion_of(r)) - r).cwiseAbs().maxCoeff(), 1e-15 * std::max(angle, 0.0) * 4)
+        << angle;
   }
   EXPECT_EQ(rotation_vector(quaternion_of(Vec3::Zero())), Vec3::Zero());
 }
@@ -26,7 +28,8 @@ TEST(Pose, AnglesBeyondPiComeBackAsTheShorterWayRound) {
 }
 
 TEST(Pose, BothSignsOfAQuaternionAreOneRotation) {
-  for (const Quat& q : {quaternion_of(0.3 * kAxis), quaternion_of(-2.9 * kAxis), Quat(0, 0, -0.6, 0.8), Quat(0, 1, 0, 0), Quat(1, 0, 0, 0)}) {
+  for (const Quat& q : {quaternion_of(0.3 * kAxis), quaternion_of(-2.9 * kAxis), Quat(0, 0, -0.6, 0.8),
+                        Quat(0, 1, 0, 0), Quat(1, 0, 0, 0)}) {
     const Quat minus(-q.w(), -q.x(), -q.y(), -q.z());
     EXPECT_EQ(rotation_vector(q), rotation_vector(minus));
     EXPECT_LE(rotation_vector(q).norm(), kPi + 1e-15);
@@ -45,7 +48,8 @@ TEST(Pose, QuaternionsAreUnitAndTurnTheRightWay) {
 }
 
 TEST(Pose, DifferenceCarriesOnePoseToTheOther) {
-  const Pose from{quaternion_of({0.4, -0.2, 1.1}), {1, 2, 3}}, to{quaternion_of({-0.9, 0.8, 0.1}), {-4, 0.5, 2}};
+  const Pose from{quaternion_of({0.4, -0.2, 1.1}), {1, 2, 3}},
+      to{quaternion_of({-0.9, 0.8, 0.1}), {-4, 0.5, 2}};
   const Vec6 d = pose_difference(from, to);
   const Quat carried = quaternion_of(d.head<3>()) * from.rotation;
   EXPECT_LE(carried.angularDistance(to.rotation), 1e-14);

@@ -6,7 +6,8 @@ using namespace palpate;
 
 namespace {
 using Make = int (*)();
-const Registry<Make> kRegistry = {{"box", "a box", 0, [] { return 6; }}, {"ball", "a ball", 2, [] { return 1; }}};
+const Registry<Make> kRegistry = {{"box", "a box", 0, [] { return 6; }},
+                                  {"ball", "a ball", 2, [] { return 1; }}};
 }  // namespace
 
 TEST(Registry, FindsByExactName) {
@@ -19,7 +20,5 @@ TEST(Registry, UnknownNameIsRefusedWithTheNearest) {
   try {
     find(kRegistry, "bal", "generator");
     FAIL() << "accepted";
-  } catch (const Error& e) {
-    EXPECT_STREQ(e.what(), "unknown generator \"bal\" (did you mean \"ball\"?)");
-  }
+  } catch (const Error& e) { EXPECT_STREQ(e.what(), "unknown generator \"bal\" (did you mean \"ball\"?)"); }
 }

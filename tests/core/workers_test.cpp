@@ -20,7 +20,8 @@ void expect_every_task_once(int tasks) {
     ++runs[static_cast<std::size_t>(task)];
     if (worker < 0 || worker >= workers::count()) ++strangers;
   });
-  for (int t = 0; t < 300; ++t) ASSERT_EQ(runs[static_cast<std::size_t>(t)], t < tasks ? 1 : 0) << "task " << t << " of " << tasks;
+  for (int t = 0; t < 300; ++t)
+    ASSERT_EQ(runs[static_cast<std::size_t>(t)], t < tasks ? 1 : 0) << "task " << t << " of " << tasks;
   EXPECT_EQ(strangers, 0);
 }
 

@@ -27,9 +27,7 @@ Wrench steady(double force, double max) {
 std::string message(double force, double torque, double ramp, double slew) {
   try {
     WrenchLimiter(force, torque, ramp, slew);
-  } catch (const Error& e) {
-    return e.what();
-  }
+  } catch (const Error& e) { return e.what(); }
   return "";
 }
 
@@ -57,8 +55,11 @@ TEST(WrenchLimiter, identity_below_half_and_never_above) {
 }
 
 TEST(WrenchLimiter, is_c1_at_the_maximum) {
-  const auto slope = [](double x, double h) { return (steady(x + h, 1.0).force.z() - steady(x - h, 1.0).force.z()) / (2 * h); };
-  for (double x : {0.9, 0.99, 1.0, 1.01, 1.1}) EXPECT_NEAR(slope(x, 1e-4), std::pow(1.0 + std::pow(x, 6), -7.0 / 6.0), 1e-6);
+  const auto slope = [](double x, double h) {
+    return (steady(x + h, 1.0).force.z() - steady(x - h, 1.0).force.z()) / (2 * h);
+  };
+  for (double x : {0.9, 0.99, 1.0, 1.01, 1.1})
+    EXPECT_NEAR(slope(x, 1e-4), std::pow(1.0 + std::pow(x, 6), -7.0 / 6.0), 1e-6);
 }
 
 TEST(WrenchLimiter, ramps_in_and_keeps_the_direction) {
@@ -101,9 +102,7 @@ TEST(WrenchLimiter, a_nan_falls_to_zero_and_is_counted) {
   for (int i = 11; i <= 40; ++i, ++ticks) {
     const Wrench out = limiter.limit(1e-3 * i, wrench(Vec3(i % 2 ? kNaN : kInf, 0, 0)), true);
     EXPECT_TRUE(out.force.allFinite());
-    if (i > 30) {
-      EXPECT_EQ(out.force.norm(), 0.0);
-    }
+    if (i > 30) { EXPECT_EQ(out.force.norm(), 0.0); }
   }
   EXPECT_EQ(limiter.rejected_ticks(), ticks);
   EXPECT_NEAR(limiter.limit(0.041, wrench(Vec3(1, 0, 0)), true).force.x(), 1.0, 1e-3);  // and comes back
@@ -121,15 +120,19 @@ TEST(WrenchLimiter, a_clock_that_stops_or_jumps_cannot_hold_a_force) {
     }
     EXPECT_EQ(last, 0.0) << bad;
     EXPECT_EQ(limiter.rejected_ticks(), 21);
-    EXPECT_GT(limiter.limit(0.011, wrench(Vec3(2, 0, 0)), true).force.norm(), 1.0) << "lives again with the clock";
+    EXPECT_GT(limiter.limit(0.011, wrench(Vec3(2, 0, 0)), true).force.norm(), 1.0)
+        << "lives again with the clock";
   }
 }
 
-// Whatever comes in: finite, inside the maximum, slew within its bound, zero from 20 ms after the last valid tick on.
+// Whatever comes in: finite, inside the maximum, slew within its bound, zero from 20 ms after the last valid
+// tick on.
 TEST(WrenchLimiter, property_over_random_inputs) {
   std::mt19937 rng(20240611);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto vec = [&](double scale) { return Vec3(scale * uniform(rng), scale * uniform(rng), scale * uniform(rng)); };
+  const auto vec = [&](double scale) {
+    return Vec3(scale * uniform(rng), scale * uniform(rng), scale * uniform(rng));
+  };
   long checked = 0, silent = 0, slewing = 0;
   for (int run = 0; run < 50; ++run) {
     const double force = std::pow(10.0, 2 * uniform(rng)), torque = std::pow(10.0, 2 * uniform(rng));
@@ -140,7 +143,8 @@ TEST(WrenchLimiter, property_over_random_inputs) {
     for (int i = 0; i < 4000; ++i) {
       const double dt = 1e-3 * std::pow(10.0, uniform(rng));
       t += dt;
-      Wrench wanted = wrench(vec(force * std::pow(10.0, 4 * uniform(rng))), vec(torque * std::pow(10.0, 4 * uniform(rng))));
+      Wrench wanted = wrench(vec(force * std::pow(10.0, 4 * uniform(rng))),
+                             vec(torque * std::pow(10.0, 4 * uniform(rng))));
       bool valid = (i / 40) % 3 != 0 || uniform(rng) > 0.9;
       if (uniform(rng) > 0.98) wanted.force[i % 3] = kNaN;
       if (uniform(rng) > 0.98) wanted.moment[i % 3] = -kInf;

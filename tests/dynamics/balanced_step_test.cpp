@@ -16,9 +16,12 @@ BalancedMatrix room_for(const BlockSparse& pattern) {
   A.place.assign(static_cast<std::size_t>(pattern.slot_count()), -1);
   int pairs = 0;
   for (int i = 0; i < pattern.block_rows(); ++i)
-    for (int s = pattern.row_start()[static_cast<std::size_t>(i)]; s < pattern.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+    for (int s = pattern.row_start()[static_cast<std::size_t>(i)];
+         s < pattern.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
       const int j = pattern.columns()[static_cast<std::size_t>(s)];
-      if (j > i) A.place[static_cast<std::size_t>(s)] = A.place[static_cast<std::size_t>(pattern.slot(j, i))] = pairs++;
+      if (j > i)
+        A.place[static_cast<std::size_t>(s)] = A.place[static_cast<std::size_t>(pattern.slot(j, i))] =
+            pairs++;
     }
   A.values.assign(9 * static_cast<std::size_t>(pairs), 0.0f);
   A.places_version = 1;
@@ -27,7 +30,8 @@ BalancedMatrix room_for(const BlockSparse& pattern) {
 
 }  // namespace
 
-// The balanced matrix says what step_matrix says: off-diagonal blocks, and on the diagonal m less the row's sum; held rows apart.
+// The balanced matrix says what step_matrix says: off-diagonal blocks, and on the diagonal m less the row's
+// sum; held rows apart.
 TEST(System, ABalancedStepIsTheStep) {
   Chain c(5);
   c.system.add(std::make_shared<ChainMass>(c.block, 5, 2.0));
@@ -53,17 +57,19 @@ TEST(System, ABalancedStepIsTheStep) {
   const MatX dense = whole.to_dense();
   for (int i = 0; i < 5; ++i) {
     Mat3 own = A.diagonal.segment<3>(3 * i).asDiagonal();
-    for (int s = c.system.pattern().row_start()[static_cast<std::size_t>(i)]; s < c.system.pattern().row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+    for (int s = c.system.pattern().row_start()[static_cast<std::size_t>(i)];
+         s < c.system.pattern().row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
       const int j = c.system.pattern().columns()[static_cast<std::size_t>(s)];
       if (j == i) continue;
-      const Mat3 block = Eigen::Map<const Eigen::Matrix3f>(A.values.data() + 9 * A.place[static_cast<std::size_t>(s)]).cast<double>() / A.scale;
+      const Mat3 block =
+          Eigen::Map<const Eigen::Matrix3f>(A.values.data() + 9 * A.place[static_cast<std::size_t>(s)])
+              .cast<double>() /
+          A.scale;
       own -= block;
       if (i == 0 || j == 0) continue;
       EXPECT_LT((block - dense.block<3, 3>(3 * i, 3 * j)).norm(), 1e-7);
     }
-    if (i > 0) {
-      EXPECT_LT((own - dense.block<3, 3>(3 * i, 3 * i)).norm(), 1e-6) << "node " << i;
-    }
+    if (i > 0) { EXPECT_LT((own - dense.block<3, 3>(3 * i, 3 * i)).norm(), 1e-6) << "node " << i; }
   }
 }
 
@@ -77,7 +83,8 @@ TEST(System, AStepIsBalancedOnlyWhereEveryTermIs) {
   };
   const auto lumped = [](Chain& c) { c.system.add(std::make_shared<ChainMass>(c.block, 4, 2.0)); };
   EXPECT_TRUE(balanced(lumped));
-  EXPECT_FALSE(balanced([](Chain& c) { c.system.add(std::make_shared<ChainMass>(c.block, 4, 2.0, 0.5)); })) << "a consistent mass";
+  EXPECT_FALSE(balanced([](Chain& c) { c.system.add(std::make_shared<ChainMass>(c.block, 4, 2.0, 0.5)); }))
+      << "a consistent mass";
   EXPECT_FALSE(balanced([&](Chain& c) {
     lumped(c);
     c.system.add(std::make_shared<ChainSprings>(2, 1.0, false));

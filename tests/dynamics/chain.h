@@ -1,5 +1,6 @@
 #pragma once
-// A chain of nodes with springs, masses, held and carried nodes: the smallest systems that have all that a System puts together.
+// A chain of nodes with springs, masses, held and carried nodes: the smallest systems that have all that a
+// System puts together.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -11,19 +12,22 @@
 
 namespace palpate::dynamics {
 
-/// Springs along a chain of nodes, linear in all three directions: f_i = k (x_{i+1} - x_i - L) and its opposite.
+/// Springs along a chain of nodes, linear in all three directions: f_i = k (x_{i+1} - x_i - L) and its
+/// opposite.
 class ChainSprings : public ForceTerm {
  public:
   ChainSprings(int nodes, double k, bool balanced = true) : nodes_(nodes), k_(k), balanced_(balanced) {}
   std::string_view name() const override { return "springs"; }
   TermTraits traits() const override { return {.balanced = balanced_}; }
-  void add_step(const StateView& s, const VecX& shift, double k_scale, double, VecX& f, BalancedMatrix& A) override {
+  void add_step(const StateView& s, const VecX& shift, double k_scale, double, VecX& f,
+                BalancedMatrix& A) override {
     add_force(s, f);
     VecX product = VecX::Zero(f.size());
     apply_tangent(s, 1.0, 0.0, shift, product);
     f -= product;
     for (int i = 0; i + 1 < nodes_; ++i)
-      Eigen::Map<Eigen::Matrix3f>(A.values.data() + 9 * A.place[static_cast<std::size_t>(A.pattern->slot(i, i + 1))]) =
+      Eigen::Map<Eigen::Matrix3f>(A.values.data() +
+                                  9 * A.place[static_cast<std::size_t>(A.pattern->slot(i, i + 1))]) =
           static_cast<float>(-A.scale * k_scale * k_) * Eigen::Matrix3f::Identity();
   }
   void add_pattern(PatternBuilder& pattern) const override {
@@ -39,7 +43,8 @@ class ChainSprings : public ForceTerm {
   void add_tangent(const StateView&, double k_scale, double, BorderedMatrix& A) override {
     for (int i = 0; i + 1 < nodes_; ++i)
       for (int a : {i, i + 1})
-        for (int b : {i, i + 1}) A.body.add(A.body.slot(a, b), (a == b ? k_scale : -k_scale) * k_ * Mat3::Identity());
+        for (int b : {i, i + 1})
+          A.body.add(A.body.slot(a, b), (a == b ? k_scale : -k_scale) * k_ * Mat3::Identity());
   }
   void apply_tangent(const StateView& s, double k_scale, double, const VecX& x, VecX& y) override {
     BorderedMatrix A;
@@ -59,7 +64,8 @@ class ChainSprings : public ForceTerm {
 /// Mass m on every node; with `coupling` > 0 neighbours share inertia (a consistent mass).
 class ChainMass final : public InertiaTerm {
  public:
-  ChainMass(int block, int nodes, double m, double coupling = 0.0) : block_(block), nodes_(nodes), m_(m), c_(coupling) {}
+  ChainMass(int block, int nodes, double m, double coupling = 0.0)
+      : block_(block), nodes_(nodes), m_(m), c_(coupling) {}
   int block_id() const override { return block_; }
   bool diagonal() const override { return c_ == 0.0; }
   void add_pattern(PatternBuilder& pattern) const override {
@@ -92,13 +98,17 @@ class BoneMass final : public InertiaTerm {
   BoneMass(int block, double mass, double inertia) : block_(block), mass_(mass), inertia_(inertia) {}
   int block_id() const override { return block_; }
   bool diagonal() const override { return false; }
-  void add_mass(const StateView&, double scale, BorderedMatrix& A) const override { A.corner.diagonal() += scale * diagonal_entries(); }
+  void add_mass(const StateView&, double scale, BorderedMatrix& A) const override {
+    A.corner.diagonal() += scale * diagonal_entries();
+  }
   void apply(const StateView& s, const VecX& x, VecX& y) const override {
     y.tail<6>() += diagonal_entries().cwiseProduct(x.segment<6>(s.layout->nodal_size));
   }
 
  private:
-  Vec6 diagonal_entries() const { return (Vec6() << inertia_, inertia_, inertia_, mass_, mass_, mass_).finished(); }
+  Vec6 diagonal_entries() const {
+    return (Vec6() << inertia_, inertia_, inertia_, mass_, mass_, mass_).finished();
+  }
   int block_;
   double mass_, inertia_;
 };
@@ -123,7 +133,8 @@ class Held final : public DrivenMotion {
 /// The second client: one node carried by a rigid body, x = p + R c.
 class OnBone final : public DrivenMotion {
  public:
-  OnBone(int node, int bone, const Vec3& c) : dofs_{3 * node, 3 * node + 1, 3 * node + 2}, bone_(bone), c_(c) {}
+  OnBone(int node, int bone, const Vec3& c)
+      : dofs_{3 * node, 3 * node + 1, 3 * node + 2}, bone_(bone), c_(c) {}
   const std::vector<int>& dofs() const override { return dofs_; }
   int master_block() const override { return bone_; }
   void evaluate(const StateView& s, VecX& x, VecX& v, VecX& a) const override {

@@ -46,7 +46,9 @@ TEST(Exchange, RecordsAreNeverTornNorGoBackwards) {
 }
 
 TEST(Exchange, FitsAnyPlainRecord) {  // a second client of the interface: a bare clock
-  struct Clock { double t; };
+  struct Clock {
+    double t;
+  };
   Exchange<Clock> exchange;
   EXPECT_EQ(exchange.latest().t, 0.0);
   exchange.publish({1.5});

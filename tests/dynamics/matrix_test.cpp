@@ -48,7 +48,9 @@ TEST(PatternBuilder, ListsTogetherAreOneThatWasToldAll) {
   EXPECT_EQ(other.values(), std::vector<double>(9 * static_cast<std::size_t>(other.slot_count()), 0.0));
 }
 
-TEST(BlockSparse, EveryPatternHasAVersionOfItsOwn) { EXPECT_NE(chain(3).pattern_version(), chain(3).pattern_version()); }
+TEST(BlockSparse, EveryPatternHasAVersionOfItsOwn) {
+  EXPECT_NE(chain(3).pattern_version(), chain(3).pattern_version());
+}
 
 TEST(BorderedMatrix, ProductAgreesWithTheDenseMatrix) {
   std::mt19937 random(3);

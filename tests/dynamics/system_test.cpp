@@ -84,8 +84,10 @@ TEST(System, StepMatrixHasIdentityRowsForDrivenDirectionsAndKeepsItsPattern) {
   EXPECT_NE(A.values_version, values);
 }
 
-// A node welded to a light bone: its force must turn and move the bone, and the two together obey Newton and Euler:
-// total force on bone + node = rate of total linear momentum, moment about the bone's centre = rate of angular momentum.
+// A node welded to a light bone: its force must turn and move the bone, and the two together obey Newton and
+// Euler:
+// total force on bone + node = rate of total linear momentum, moment about the bone's centre = rate of
+// angular momentum.
 TEST(System, NodesOnABoneBringTheirForceAndInertiaToIt) {
   for (const double coupling : {0.0, 0.5}) {
     Chain c(3);
@@ -180,7 +182,8 @@ class StoredSprings final : public ChainSprings {
 TEST(System, TermsThatStoreTheirRowsComeFirstAndOnlyOnceABlock) {
   Chain c(3);  // its own springs, k = 50, add
   c.state.insert(BlockSpec{.name = "beside", .q_size = 6, .u_size = 6}, VecX::Zero(6), VecX::Zero(6));
-  const auto first = std::make_shared<StoredSprings>(c.block, 3, 20.0), second = std::make_shared<StoredSprings>(c.block, 3, 3.0);
+  const auto first = std::make_shared<StoredSprings>(c.block, 3, 20.0),
+             second = std::make_shared<StoredSprings>(c.block, 3, 3.0);
   c.system.add(first);
   c.system.add(second);
   c.system.add(std::make_shared<ChainMass>(c.block, 3, 2.0));
@@ -231,5 +234,6 @@ TEST(System, ATermThatNamesABlockToStoreMustStoreIt) {
   BorderedMatrix A;
   EXPECT_NO_THROW(c.system.step_matrix(c.state.view(), 1.0, 0.0, 0.1, A));
   term->block = c.block;
-  EXPECT_THROW(c.system.step_matrix(c.state.view(), 1.0, 0.0, 0.1, A), InternalError) << "it would add to what stood there";
+  EXPECT_THROW(c.system.step_matrix(c.state.view(), 1.0, 0.0, 0.1, A), InternalError)
+      << "it would add to what stood there";
 }

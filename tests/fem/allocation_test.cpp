@@ -14,19 +14,23 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
   workers::set_count(2);
   const TetMesh rest = jittered_cube(8, 0.1, 71);
   Random random(72);
-  const VecX x = flat(rest.nodes) + 0.07 * random.vector(3 * rest.nodes.cols()), v = random.vector(x.size());  // inverted elements too
+  // inverted elements too
+  const VecX x = flat(rest.nodes) + 0.07 * random.vector(3 * rest.nodes.cols()), v = random.vector(x.size());
   OneBody at(x, v);
   Material material = soft_material();
   material.stiffness_damping = 0.1;
   material.mass_damping = 0.1;
-  Materials materials({material, soft_material()}, std::vector<int>(static_cast<std::size_t>(rest.tets.cols()), 0));
+  Materials materials({material, soft_material()},
+                      std::vector<int>(static_cast<std::size_t>(rest.tets.cols()), 0));
   for (std::size_t e = 0; e < materials.of_element.size(); e += 3) materials.of_element[e] = 1;
   const long before_all = malloc_calls;
   const auto mass = make_consistent_mass(rest, materials, at.id);
   EXPECT_GT(malloc_calls, before_all);  // the counter counts
   for (Tangent tangent : {Tangent::kExact, Tangent::kProjected, Tangent::kWarped}) {
     SoftBody body("b", rest, materials, {.tangent = tangent, .full_damping_tangent = true}, at.id);
-    NodalDilatation dilatation("b", rest, materials, {.tangent = tangent, .full_damping_tangent = true, .volumetric_share = 0.5}, at.id);
+    NodalDilatation dilatation("b", rest, materials,
+                               {.tangent = tangent, .full_damping_tangent = true, .volumetric_share = 0.5},
+                               at.id);
     dynamics::PatternBuilder builder(at.state.layout());
     dilatation.add_pattern(builder);  // the element's pairs are among them
     dynamics::BorderedMatrix A;

@@ -8,7 +8,8 @@ using namespace palpate::fem::testing;
 
 namespace {
 
-/// A frame that turns about a fixed tilted axis with angle(t) = a t^2 + b t and whose origin moves on a parabola.
+/// A frame that turns about a fixed tilted axis with angle(t) = a t^2 + b t and whose origin moves on a
+/// parabola.
 PathPoint turning(double t) {
   const Vec3 axis = Vec3(1, 2, -1).normalized();
   const double a = 0.7, b = 1.3;
@@ -39,12 +40,14 @@ TEST(Attachments, NodesInABoxBordersIncluded) {
   p.col(1) = Vec3(1, 1, 1);
   p.col(2) = Vec3(1, 1, 1.001);
   EXPECT_EQ(nodes_in_box(p, Vec3::Zero(), Vec3::Ones()), (std::vector<int>{0, 1}));
-  expect_contains(message_of([&] { nodes_in_box(p, Vec3(0, 2, 0), Vec3::Ones()); }), "attachment: box_min_m[1] = 2 must not exceed box_max_m[1] = 1");
+  expect_contains(message_of([&] { nodes_in_box(p, Vec3(0, 2, 0), Vec3::Ones()); }),
+                  "attachment: box_min_m[1] = 2 must not exceed box_max_m[1] = 1");
 }
 
 TEST(Attachments, DirectionsOfNodesByAxis) {
   EXPECT_EQ(dofs_of_nodes({4, 1}, 10, "zx"), (std::vector<int>{33, 35, 42, 44}));
-  expect_contains(message_of([] { dofs_of_nodes({0}, 0, "xw"); }), "attachment: axes = \"xw\" must name each of x, y, z at most once");
+  expect_contains(message_of([] { dofs_of_nodes({0}, 0, "xw"); }),
+                  "attachment: axes = \"xw\" must name each of x, y, z at most once");
   expect_contains(message_of([] { dofs_of_nodes({0}, 0, "xx"); }), "axes = \"xx\"");
   expect_contains(message_of([] { dofs_of_nodes({0}, 0, ""); }), "holds nothing");
 }
@@ -66,7 +69,8 @@ TEST(Attachments, DrivenVelocityAndAccelerationAreTheDerivativesOfItsPosition) {
   const double t = 0.4;
   const Motion m(*driven, t);
   for (std::size_t i = 0; i < dofs.size(); ++i)
-    EXPECT_NEAR(m.x[static_cast<Eigen::Index>(i)], (turning(t).pose * Vec3(local.col(static_cast<Eigen::Index>(i))))[dofs[i] % 3], 1e-15);
+    EXPECT_NEAR(m.x[static_cast<Eigen::Index>(i)],
+                (turning(t).pose * Vec3(local.col(static_cast<Eigen::Index>(i))))[dofs[i] % 3], 1e-15);
   expect_slope_two([&](double h) { return Motion(*driven, t + h).x; }, m.v, 0.05, "velocity");
   expect_slope_two([&](double h) { return Motion(*driven, t + h).v; }, m.a, 0.05, "acceleration");
 }
@@ -77,6 +81,7 @@ TEST(Attachments, RefuseDisorderedDirectionsAndMissingPaths) {
   expect_contains(message_of([] { make_fixed({-1, 1}, VecX::Zero(2)); }), "direction -1");
   expect_contains(message_of([] { make_fixed({0, 1}, VecX::Zero(3)); }), "2 directions and 3 values");
   expect_contains(message_of([] { make_fixed({0}, VecX::Constant(1, std::nan(""))); }), "not finite");
-  expect_contains(message_of([] { make_driven({0}, Points::Zero(3, 2), turning); }), "1 directions and 2 values");
+  expect_contains(message_of([] { make_driven({0}, Points::Zero(3, 2), turning); }),
+                  "1 directions and 2 values");
   expect_contains(message_of([] { make_driven({0}, Points::Zero(3, 1), Path()); }), "need a path");
 }

@@ -12,8 +12,7 @@ struct Shaken {
   TetMesh rest = jittered_cube(3, 0.15, 21);
   VecX x, v;
   SoftBody body;
-  explicit Shaken(double stiffness_damping)
-      : body("b", rest, material(stiffness_damping), {}, 0) {
+  explicit Shaken(double stiffness_damping) : body("b", rest, material(stiffness_damping), {}, 0) {
     Random random(22);
     x = flat(random.rotation() * rest.nodes) + 0.1 * random.vector(3 * rest.nodes.cols());
     v = random.vector(x.size());
@@ -66,7 +65,8 @@ TEST(Balance, DampingTakesPowerOutOfAnyOtherMotion) {
     const VecX x = s.x + 0.3 * random.vector(s.x.size()), v = random.vector(s.x.size());
     const double power = s.power(x, v);
     EXPECT_GT(power, 0.0);
-    EXPECT_NEAR(-(s.force(x, v) - elastic.force(x, v)).dot(v), power, 1e-12 * power);  // the power of the damping force itself
+    // the power of the damping force itself
+    EXPECT_NEAR(-(s.force(x, v) - elastic.force(x, v)).dot(v), power, 1e-12 * power);
   }
 }
 
@@ -82,7 +82,8 @@ TEST(Balance, MassDampingBrakesWithTheMomentum) {
   body.add_force(at.state.view(), f);
   const double mass = lumped_masses(rest, m.density).sum();
   EXPECT_LT((unflat(f).rowwise().sum() + 0.7 * mass * velocity).norm(), 1e-13 * mass);
-  EXPECT_NEAR(body.dissipated_power(at.state.view()), 0.7 * mass * velocity.squaredNorm(), 1e-13 * mass * velocity.squaredNorm());
+  EXPECT_NEAR(body.dissipated_power(at.state.view()), 0.7 * mass * velocity.squaredNorm(),
+              1e-13 * mass * velocity.squaredNorm());
 }
 
 TEST(Balance, RotationAndTranslationChangeNeitherEnergyNorTurnedForce) {
@@ -99,7 +100,8 @@ TEST(Balance, RotationAndTranslationChangeNeitherEnergyNorTurnedForce) {
 TEST(Balance, RestShapeHasNoEnergyNoForceNoStress) {
   Shaken s(0.0);
   Random random(26);
-  const VecX x = flat((random.rotation() * s.rest.nodes).colwise() + Vec3(1, 2, 3)), zero = VecX::Zero(x.size());
+  const VecX x = flat((random.rotation() * s.rest.nodes).colwise() + Vec3(1, 2, 3)),
+             zero = VecX::Zero(x.size());
   EXPECT_LT(s.energy(x), 1e-26);
   EXPECT_LT(s.force(x, zero).norm(), 1e-13);
   const OneBody at(x, zero);
@@ -131,6 +133,8 @@ TEST(Balance, RenumberingNodesAndElementsPermutesTheResult) {
   body.add_force(at.state.view(), f);
   const VecX expected = s.force(s.x, s.v);
   double error = 0.0;
-  for (int i = 0; i < n; ++i) error += (f.segment<3>(3 * place[static_cast<std::size_t>(i)]) - expected.segment<3>(3 * i)).squaredNorm();
+  for (int i = 0; i < n; ++i)
+    error +=
+        (f.segment<3>(3 * place[static_cast<std::size_t>(i)]) - expected.segment<3>(3 * i)).squaredNorm();
   EXPECT_LT(std::sqrt(error), 1e-12 * expected.norm());
 }

@@ -7,24 +7,29 @@
 namespace palpate::fem::testing {
 
 struct BoneOptions {
-  int cells = 3;                    ///< of the cube's edge, 0.1 m
-  double mass_ratio = 1e-3;         ///< bone to flesh
-  Vec3 centre{0.005, -0.01, 0.015}; ///< of the bone's origin, from the middle of the cube: off its carried nodes' centroid [m]
-  double radius = 0.03;             ///< nodes nearer to the middle than this are carried [m]
-  double youngs_modulus = 5e4;      ///< [Pa]
-  double damping = 0.0;             ///< stiffness-proportional [s]
-  double spread = 1.0;              ///< the bone holds its nodes this much farther apart than they stand at rest
+  int cells = 3;             ///< of the cube's edge, 0.1 m
+  double mass_ratio = 1e-3;  ///< bone to flesh
+  /// of the bone's origin, from the middle of the cube: off its carried nodes' centroid [m]
+  Vec3 centre{0.005, -0.01, 0.015};
+  double radius = 0.03;         ///< nodes nearer to the middle than this are carried [m]
+  double youngs_modulus = 5e4;  ///< [Pa]
+  double damping = 0.0;         ///< stiffness-proportional [s]
+  /// the bone holds its nodes this much farther apart than they stand at rest
+  double spread = 1.0;
   bool consistent = false;
-  bool turning = true;              ///< false: without the geometric stiffness of carried nodes
+  bool turning = true;  ///< false: without the geometric stiffness of carried nodes
 };
 
-/// The same motion, its geometric stiffness left out of every matrix: what it is there for shows against this.
+/// The same motion, its geometric stiffness left out of every matrix: what it is there for shows against
+/// this.
 struct WithoutTurning final : dynamics::DrivenMotion {
   std::shared_ptr<dynamics::DrivenMotion> whole;
   explicit WithoutTurning(std::shared_ptr<dynamics::DrivenMotion> motion) : whole(std::move(motion)) {}
   const std::vector<int>& dofs() const override { return whole->dofs(); }
   int master_block() const override { return whole->master_block(); }
-  void evaluate(const dynamics::StateView& s, VecX& x, VecX& v, VecX& a) const override { whole->evaluate(s, x, v, a); }
+  void evaluate(const dynamics::StateView& s, VecX& x, VecX& v, VecX& a) const override {
+    whole->evaluate(s, x, v, a);
+  }
   void jacobian(const dynamics::StateView& s, MatX& G) const override { whole->jacobian(s, G); }
 };
 
@@ -34,7 +39,7 @@ struct BoneInFlesh {
   dynamics::System system;
   std::shared_ptr<SoftBody> term;
   TetMesh rest;
-  VecX masses;               ///< of the nodes [kg]
+  VecX masses;  ///< of the nodes [kg]
   double bone_mass = 0.0;
   Vec3 inertia = Vec3::Zero();
   int flesh = -1, bone = -1;
@@ -52,14 +57,21 @@ struct BoneInFlesh {
     masses = lumped_masses(rest, m.density);
     carried = nodes_in_sphere(rest.nodes, Vec3::Zero(), o.radius);
     const int n = static_cast<int>(rest.nodes.cols());
-    flesh = state.insert({.name = "flesh", .q_size = 3 * n, .u_size = 3 * n, .q_scale = 0.1, .u_scale = std::sqrt(o.youngs_modulus / m.density)}, flat(rest.nodes), VecX::Zero(3 * n));
+    flesh = state.insert({.name = "flesh",
+                          .q_size = 3 * n,
+                          .u_size = 3 * n,
+                          .q_scale = 0.1,
+                          .u_scale = std::sqrt(o.youngs_modulus / m.density)},
+                         flat(rest.nodes), VecX::Zero(3 * n));
     const Quat r = quaternion_of(Vec3(0.3, -0.5, 0.8));
     VecX q(7);
     q << r.w(), r.vec(), o.centre;
-    bone = state.insert(dynamics::rigid_block("bone", 0.1, std::sqrt(o.youngs_modulus / m.density)), q, VecX::Zero(6));
+    bone = state.insert(dynamics::rigid_block("bone", 0.1, std::sqrt(o.youngs_modulus / m.density)), q,
+                        VecX::Zero(6));
     term = std::make_shared<SoftBody>("flesh", rest, m, SoftBodyOptions{}, flesh);
     system.add(std::static_pointer_cast<dynamics::ForceTerm>(term));
-    system.add(o.consistent ? make_consistent_mass(rest, m.density, flesh) : make_lumped_mass(rest, m.density, flesh));
+    system.add(o.consistent ? make_consistent_mass(rest, m.density, flesh)
+                            : make_lumped_mass(rest, m.density, flesh));
     bone_mass = o.mass_ratio * masses.sum();
     inertia = bone_mass * Vec3(1e-4, 1.5e-4, 2e-4);
     system.add(dynamics::make_rigid_inertia(bone, bone_mass, inertia));
@@ -68,8 +80,10 @@ struct BoneInFlesh {
     local.resize(3, static_cast<Eigen::Index>(carried.size()));
     Points per_dof(3, static_cast<Eigen::Index>(dofs.size()));
     for (std::size_t i = 0; i < carried.size(); ++i) {
-      local.col(static_cast<Eigen::Index>(i)) = r.conjugate() * (o.spread * Vec3(rest.nodes.col(carried[i])) - o.centre);
-      for (int k = 0; k < 3; ++k) per_dof.col(static_cast<Eigen::Index>(3 * i) + k) = local.col(static_cast<Eigen::Index>(i));
+      local.col(static_cast<Eigen::Index>(i)) =
+          r.conjugate() * (o.spread * Vec3(rest.nodes.col(carried[i])) - o.centre);
+      for (int k = 0; k < 3; ++k)
+        per_dof.col(static_cast<Eigen::Index>(3 * i) + k) = local.col(static_cast<Eigen::Index>(i));
     }
     const auto motion = make_carried(dofs, per_dof, bone);
     if (o.turning)
@@ -93,20 +107,23 @@ struct BoneInFlesh {
   }
   /// The whole as one rigid body: velocity v of the middle of the cube, angular velocity w.
   void throw_rigidly(const Vec3& v, const Vec3& w) {
-    for (Eigen::Index i = 0; i < masses.size(); ++i) state.u().segment<3>(3 * i) = v + w.cross(Vec3(state.q().segment<3>(3 * i)));
+    for (Eigen::Index i = 0; i < masses.size(); ++i)
+      state.u().segment<3>(3 * i) = v + w.cross(Vec3(state.q().segment<3>(3 * i)));
     const auto& b = *state.layout().find(bone);
     state.u().segment<3>(b.u_offset) = w;
     state.u().segment<3>(b.u_offset + 3) = v + w.cross(Vec3(state.q().segment<3>(b.q_offset + 4)));
     impose();
   }
-  /// (angular about the world's origin, linear) of velocities or, with accelerations, its rate less the bone's w x I w.
+  /// (angular about the world's origin, linear) of velocities or, with accelerations, its rate less the
+  /// bone's w x I w.
   Vec6 momentum_of(const VecX& u) const {
     const auto view = state.view();
     const auto& b = *state.layout().find(bone);
     const Pose pose = dynamics::motion_of(view, b).pose;
     const Vec3 wb = u.segment<3>(b.u_offset), vb = u.segment<3>(b.u_offset + 3);
     Vec6 out;
-    out << dynamics::world_inertia(pose, inertia) * wb + bone_mass * pose.translation.cross(vb), bone_mass * vb;
+    out << dynamics::world_inertia(pose, inertia) * wb + bone_mass * pose.translation.cross(vb),
+        bone_mass * vb;
     for (int i = 0; i < masses.size(); ++i) {
       const Vec3 p = masses[i] * u.segment<3>(3 * i);
       out.head<3>() += view.position(i).cross(p);

@@ -26,7 +26,8 @@ std::vector<BoneSpec> shapes() {
 
 }  // namespace
 
-// Volume and second moments by the midpoint rule over what inside_bone says is inside, on a grid turned against the shape, so that no face runs along it.
+// Volume and second moments by the midpoint rule over what inside_bone says is inside, on a grid turned
+// against the shape, so that no face runs along it.
 TEST(Bone, MassAndInertiaAreThoseOfItsInside) {
   for (BoneSpec spec : shapes()) {
     spec.density_kg_m3 = 1800.0;
@@ -45,7 +46,8 @@ TEST(Bone, MassAndInertiaAreThoseOfItsInside) {
     const BoneInertia inertia = bone_inertia(spec);
     EXPECT_NEAR(bone_volume(spec) / volume, 1.0, 5e-3) << spec.name;
     EXPECT_NEAR(inertia.mass / (1800.0 * volume), 1.0, 5e-3) << spec.name;
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(inertia.principal[k] / (1800.0 * moments[k]), 1.0, 1e-2) << spec.name << ", axis " << k;
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(inertia.principal[k] / (1800.0 * moments[k]), 1.0, 1e-2) << spec.name << ", axis " << k;
   }
 }
 
@@ -53,8 +55,10 @@ TEST(Bone, SurfaceIsClosedOrientedAndOnTheBorder) {
   for (const BoneSpec& spec : shapes()) {
     const TriMesh s = bone_surface(spec);
     double volume = 0.0;
-    for (const auto& f : s.faces.colwise()) volume += s.vertices.col(f[0]).dot(s.vertices.col(f[1]).cross(s.vertices.col(f[2]))) / 6.0;
-    EXPECT_NEAR(volume / bone_volume(spec), 1.0, 0.06) << spec.name << ": a facetted body is a little smaller";
+    for (const auto& f : s.faces.colwise())
+      volume += s.vertices.col(f[0]).dot(s.vertices.col(f[1]).cross(s.vertices.col(f[2]))) / 6.0;
+    EXPECT_NEAR(volume / bone_volume(spec), 1.0, 0.06)
+        << spec.name << ": a facetted body is a little smaller";
     EXPECT_GT(volume, 0.0);
     EXPECT_EQ(2 * s.vertices.cols() - 4, s.faces.cols()) << spec.name << ": Euler";
     for (const auto& v : s.vertices.colwise()) {
@@ -72,7 +76,9 @@ TEST(Bone, GivenNumbersComeBeforeTheShapes) {
   spec.inertia_kg_m2 = Vec3(1e-4, 2e-4, 2.5e-4);
   EXPECT_EQ(bone_inertia(spec).principal, spec.inertia_kg_m2);
   spec.inertia_kg_m2 = Vec3(1e-4, 2e-4, 4e-4);
-  expect_contains(message_of([&] { bone_inertia(spec); }), "bone \"sphere\": inertia_kg_m2 = [0.0001, 0.0002, 0.0004] belongs to no body");
+  expect_contains(message_of([&] { bone_inertia(spec); }),
+                  "bone \"sphere\": inertia_kg_m2 = [0.0001, 0.0002, 0.0004] belongs to no body");
   spec.shape = "spere";
-  expect_contains(message_of([&] { bone_volume(spec); }), "bone \"sphere\": unknown shape \"spere\" (did you mean \"sphere\"?)");
+  expect_contains(message_of([&] { bone_volume(spec); }),
+                  "bone \"sphere\": unknown shape \"spere\" (did you mean \"sphere\"?)");
 }

@@ -38,7 +38,8 @@ TEST(Carried, StandsWhereTheFormulaSays) {
   ASSERT_GE(b.carried.size(), 4u);
   for (std::size_t i = 0; i < b.carried.size(); ++i) {
     const Vec3 arm = r.normalized() * Vec3(b.local.col(static_cast<Eigen::Index>(i)));
-    const Vec3 x = b.state.q(block).tail<3>() + arm, v = b.state.u(block).tail<3>() + Vec3(b.state.u(block).head<3>()).cross(arm);
+    const Vec3 x = b.state.q(block).tail<3>() + arm,
+               v = b.state.u(block).tail<3>() + Vec3(b.state.u(block).head<3>()).cross(arm);
     EXPECT_LT((b.state.view().position(b.carried[i]) - x).norm(), 1e-15);
     EXPECT_LT((b.state.view().velocity(b.carried[i]) - v).norm(), 1e-14);
   }
@@ -52,11 +53,14 @@ TEST(Carried, JacobianAndGammaAreDerivatives) {
   const Vec6 u = b.state.u().segment<6>(at), rate = test_twist();
   VecX x, v, gamma;
   MatX G;
-  const auto motion = make_carried(dofs_of_nodes(b.carried, 0, "xyz"), [&] {
-    Points per_dof(3, 3 * b.local.cols());
-    for (Eigen::Index i = 0; i < per_dof.cols(); ++i) per_dof.col(i) = b.local.col(i / 3);
-    return per_dof;
-  }(), b.bone);
+  const auto motion = make_carried(
+      dofs_of_nodes(b.carried, 0, "xyz"),
+      [&] {
+        Points per_dof(3, 3 * b.local.cols());
+        for (Eigen::Index i = 0; i < per_dof.cols(); ++i) per_dof.col(i) = b.local.col(i / 3);
+        return per_dof;
+      }(),
+      b.bone);
   EXPECT_EQ(motion->master_block(), b.bone);
   motion->evaluate(b.state.view(), x, v, gamma);
   motion->jacobian(b.state.view(), G);
@@ -65,7 +69,8 @@ TEST(Carried, JacobianAndGammaAreDerivatives) {
     move_bone(b, q0, u, h);
     b.state.u().segment<6>(at) = u + h * rate;
     VecX other, a;
-    (&moved == &x ? motion->evaluate(b.state.view(), x, other, a) : motion->evaluate(b.state.view(), other, v, a));
+    (&moved == &x ? motion->evaluate(b.state.view(), x, other, a)
+                  : motion->evaluate(b.state.view(), other, v, a));
     return moved;
   };
   const VecX speed = G * u, change = G * rate + gamma;
@@ -73,8 +78,9 @@ TEST(Carried, JacobianAndGammaAreDerivatives) {
   expect_slope_two([&](double h) { return evaluate(h, v); }, change, 0.05, "velocities");
 }
 
-// The step matrix's K, rows of the bone: what its turn makes of the force and moment that the nodes press on it with, those held that are of the nodes' own.
-// K is symmetrised; what is lost is half the cross matrix of the moment out of balance.
+// The step matrix's K, rows of the bone: what its turn makes of the force and moment that the nodes press on
+// it with, those held that are of the nodes' own. K is symmetrised; what is lost is half the cross matrix of
+// the moment out of balance.
 TEST(Carried, TangentIsTheDerivativeOfTheReducedForce) {
   BoneInFlesh b = disturbed({.damping = 0.0});
   b.state.u().setZero();
@@ -102,7 +108,9 @@ TEST(Carried, TangentIsTheDerivativeOfTheReducedForce) {
   VecX c = f - Ma;
   Vec3 moment = Vec3::Zero();
   for (std::size_t i = 0; i < b.carried.size(); ++i)
-    moment += (b.state.view().position(b.carried[i]) - Vec3(b.state.q().segment<3>(layout.find(b.bone)->q_offset + 4))).cross(Vec3(c.segment<3>(3 * b.carried[i])));
+    moment += (b.state.view().position(b.carried[i]) -
+               Vec3(b.state.q().segment<3>(layout.find(b.bone)->q_offset + 4)))
+                  .cross(Vec3(c.segment<3>(3 * b.carried[i])));
   K.topLeftCorner<3, 3>() += 0.5 * cross_matrix(moment);
   expect_slope_two(pressed, VecX(-K * test_twist()), 2e-3, "reduced force");
   // And it matters: without it the derivative is wrong in its first term.
@@ -115,7 +123,8 @@ TEST(Carried, TangentIsTheDerivativeOfTheReducedForce) {
   EXPECT_EQ(turned.head(layout.nodal_size).norm(), 0.0);
 }
 
-// Newton's and Euler's laws for flesh and bone together, any state, any bone: no force from outside, no change of momentum.
+// Newton's and Euler's laws for flesh and bone together, any state, any bone: no force from outside, no
+// change of momentum.
 TEST(Carried, FleshAndBoneKeepTheirMomentumAtEveryInstant) {
   for (const double ratio : {1.0, 1e-3, 1e-6}) {
     BoneInFlesh b = disturbed({.mass_ratio = ratio, .damping = 1e-2});
@@ -139,7 +148,8 @@ TEST(Carried, FleshAndBoneKeepTheirMomentumAtEveryInstant) {
   }
 }
 
-// Carried acceleration against the congruence written out densely, and its limit as the bone's mass goes to zero.
+// Carried acceleration against the congruence written out densely, and its limit as the bone's mass goes to
+// zero.
 TEST(Carried, AccelerationIsThatOfTheReducedEquationsAndHasALimitWithoutABone) {
   std::vector<std::pair<double, VecX>> along;
   int counted = 0;
@@ -167,7 +177,8 @@ TEST(Carried, AccelerationIsThatOfTheReducedEquationsAndHasALimitWithoutABone) {
       gamma.segment<3>(3 * node) = w.cross(w.cross(arm));
     }
     const MatX P = T(Eigen::all, free);
-    const VecX expected = P * MatX(P.transpose() * M * P).ldlt().solve(P.transpose() * (f - M * gamma)) + gamma;
+    const VecX expected =
+        P * MatX(P.transpose() * M * P).ldlt().solve(P.transpose() * (f - M * gamma)) + gamma;
     if (ratio > 0.0) {
       b.system.acceleration(b.state.view(), a);
       EXPECT_LT((a - expected).norm(), 1e-11 * expected.norm()) << "mass ratio " << ratio;
@@ -175,15 +186,20 @@ TEST(Carried, AccelerationIsThatOfTheReducedEquationsAndHasALimitWithoutABone) {
       continue;
     }
     for (std::size_t i = 1; i < along.size(); ++i, ++counted)
-      EXPECT_NEAR((along[i - 1].second - expected).norm() / (along[i].second - expected).norm(), 10.0, 0.5) << "mass ratio " << along[i].first << ": linear in it";
+      EXPECT_NEAR((along[i - 1].second - expected).norm() / (along[i].second - expected).norm(), 10.0, 0.5)
+          << "mass ratio " << along[i].first << ": linear in it";
   }
   EXPECT_EQ(counted, 3);
 }
 
 TEST(Carried, BadInputIsRefused) {
-  expect_contains(message_of([] { make_carried({0, 1}, Points::Zero(3, 1), 0); }), "2 directions and 1 values");
+  expect_contains(message_of([] {
+                    make_carried({0, 1}, Points::Zero(3, 1), 0);
+                  }),
+                  "2 directions and 1 values");
   expect_contains(message_of([] { make_carried({0}, Points::Zero(3, 1), -1); }), "need a rigid block");
-  expect_contains(message_of([] { nodes_in_sphere(Points::Zero(3, 1), Vec3::Zero(), 0.0); }), "radius_m = 0 must be positive");
+  expect_contains(message_of([] { nodes_in_sphere(Points::Zero(3, 1), Vec3::Zero(), 0.0); }),
+                  "radius_m = 0 must be positive");
   BoneInFlesh b;
   b.system.add(make_carried({0}, Points::Zero(3, 1), b.flesh));
   expect_contains(message_of([&] { b.prepare(); }), "which is no rigid block");

@@ -36,7 +36,8 @@ Mat9 hessian(const Mat3& F, Tangent tangent, bool* was_clamped = nullptr) {
 /// The nearest positive semi-definite matrix, by numeric eigenvalues.
 Mat9 numeric_projection(const Mat9& H) {
   const Eigen::SelfAdjointEigenSolver<Mat9> eigen(0.5 * (H + H.transpose()));
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+         eigen.eigenvectors().transpose();
 }
 
 }  // namespace
@@ -46,8 +47,11 @@ TEST(Corotated, StressIsTheDerivativeOfTheEnergy) {
   for (const auto& [name, stretches] : stretch_cases()) {
     const Mat3 F = deformation(random, stretches), dF = random.matrix();
     const double derivative = elastic_stress(F, rotation_of(F), kLame).cwiseProduct(dF).sum();
-    expect_slope_two([&](double h) { return VecX::Constant(1, elastic_energy_density(F + h * dF, rotation_of(F + h * dF), kLame)); },
-                     VecX::Constant(1, derivative), 1e-2, name);
+    expect_slope_two(
+        [&](double h) {
+          return VecX::Constant(1, elastic_energy_density(F + h * dF, rotation_of(F + h * dF), kLame));
+        },
+        VecX::Constant(1, derivative), 1e-2, name);
   }
 }
 
@@ -58,8 +62,9 @@ TEST(Corotated, ExactTangentIsTheDerivativeOfTheStress) {
     bool clamped = false;
     const Mat3 C = rotation_coupling(Tangent::kExact, F, rotation_of(F), kLame, clamped);
     EXPECT_FALSE(clamped);
-    expect_slope_two([&](double h) { return vec(elastic_stress(F + h * dF, rotation_of(F + h * dF), kLame)); },
-                     vec(elastic_stress_change(dF, rotation_of(F), C, kLame)), 1e-2, name);
+    expect_slope_two(
+        [&](double h) { return vec(elastic_stress(F + h * dF, rotation_of(F + h * dF), kLame)); },
+        vec(elastic_stress_change(dF, rotation_of(F), C, kLame)), 1e-2, name);
   }
 }
 
@@ -69,10 +74,12 @@ TEST(Corotated, HessianHasTheEigenvaluesOfTheTheory) {
   for (const auto& [name, s] : stretch_cases()) {
     const double c = 2 * kLame.mu - kLame.lambda * (s.sum() - 3);
     VecX expected(9);
-    expected << 2 * kLame.mu + 3 * kLame.lambda, VecX::Constant(5, 2 * kLame.mu), 2 * kLame.mu - 2 * c / (s[0] + s[1]),
-        2 * kLame.mu - 2 * c / (s[0] + s[2]), 2 * kLame.mu - 2 * c / (s[1] + s[2]);
+    expected << 2 * kLame.mu + 3 * kLame.lambda, VecX::Constant(5, 2 * kLame.mu),
+        2 * kLame.mu - 2 * c / (s[0] + s[1]), 2 * kLame.mu - 2 * c / (s[0] + s[2]),
+        2 * kLame.mu - 2 * c / (s[1] + s[2]);
     std::sort(expected.begin(), expected.end());
-    const VecX found = Eigen::SelfAdjointEigenSolver<Mat9>(hessian(deformation(random, s), Tangent::kExact)).eigenvalues();
+    const VecX found =
+        Eigen::SelfAdjointEigenSolver<Mat9>(hessian(deformation(random, s), Tangent::kExact)).eigenvalues();
     EXPECT_LT((found - expected).norm(), 1e-11 * expected.norm()) << name;
   }
 }
@@ -88,7 +95,7 @@ TEST(Corotated, ProjectedEqualsTheNumericProjection) {
     if ((projected - exact).norm() > 1e-6) ++changed;
     EXPECT_GT(Eigen::SelfAdjointEigenSolver<Mat9>(projected).eigenvalues()[0], -1e-12 * exact.norm());
   }
-  EXPECT_GT(changed, 50);   // both branches were taken
+  EXPECT_GT(changed, 50);  // both branches were taken
   EXPECT_LT(changed, 200);
 }
 
@@ -142,14 +149,16 @@ TEST(Corotated, BlocksContractTheStressChange) {
         const auto block = static_cast<std::size_t>(3 * a + b);
         EXPECT_LT((K[block] * w - V * elastic_stress_change(dF, R, C, kLame) * g).norm(), 1e-12);
         EXPECT_LT((D[block] * w - V * F * damping_stress(strain_rate(F, dF), kDamping) * g).norm(), 1e-12);
-        const Mat3 by_position = dF * damping_stress(strain_rate(F, F_dot), kDamping) + F * damping_stress(strain_rate(dF, F_dot), kDamping);
+        const Mat3 by_position = dF * damping_stress(strain_rate(F, F_dot), kDamping) +
+                                 F * damping_stress(strain_rate(dF, F_dot), kDamping);
         EXPECT_LT((Kd[block] * w - V * by_position * g).norm(), 1e-12);
       }
   }
 }
 
 TEST(Corotated, WarpedBlocksAreTheRotatedStiffnessOfLinearElasticity) {
-  // K_linear,ab = V (lambda g_a g_b^T + mu g_b g_a^T + mu (g_a . g_b) I); warped: R K R^T (Mueller and Gross 2004, eq. 7).
+  // K_linear,ab = V (lambda g_a g_b^T + mu g_b g_a^T + mu (g_a . g_b) I); warped: R K R^T (Mueller and Gross
+  // 2004, eq. 7).
   Random random(9);
   const Mat3 R = random.rotation(), gradients = random.matrix();
   ElementBlocks K;
@@ -159,7 +168,8 @@ TEST(Corotated, WarpedBlocksAreTheRotatedStiffnessOfLinearElasticity) {
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) {
       const Vec3 ga = gradients.row(a), gb = gradients.row(b);
-      const Mat3 linear = kLame.lambda * ga * gb.transpose() + kLame.mu * gb * ga.transpose() + kLame.mu * ga.dot(gb) * Mat3::Identity();
+      const Mat3 linear = kLame.lambda * ga * gb.transpose() + kLame.mu * gb * ga.transpose() +
+                          kLame.mu * ga.dot(gb) * Mat3::Identity();
       EXPECT_LT((K[static_cast<std::size_t>(3 * a + b)] - 2.0 * R * linear * R.transpose()).norm(), 1e-12);
     }
 }

@@ -24,14 +24,16 @@ Mat3 rest_edges(const TetMesh& mesh, const ElementChunks::Element& e) {
 
 using Key = std::pair<int, int>;
 
-/// Which chunk has each node or edge as its own, and which have it late, in their order; `keys(chunk)` lists its own ones, then the late ones.
+/// Which chunk has each node or edge as its own, and which have it late, in their order; `keys(chunk)` lists
+/// its own ones, then the late ones.
 struct Holders {
   std::map<Key, int> own;
   std::map<Key, std::vector<std::pair<int, int>>> late;  ///< chunk, place of the contribution
 };
 
 template <class Keys>
-Holders holders(const ElementChunks& chunks, int ElementChunks::Chunk::*own, int ElementChunks::Chunk::*first_late, Keys&& keys) {
+Holders holders(const ElementChunks& chunks, int ElementChunks::Chunk::*own,
+                int ElementChunks::Chunk::*first_late, Keys&& keys) {
   Holders out;
   for (std::size_t c = 0; c < chunks.chunks.size(); ++c) {
     const ElementChunks::Chunk& chunk = chunks.chunks[c];
@@ -40,13 +42,15 @@ Holders holders(const ElementChunks& chunks, int ElementChunks::Chunk::*own, int
       if (static_cast<int>(k) < chunk.*own)
         EXPECT_TRUE(out.own.emplace(all[k], static_cast<int>(c)).second) << "own of two chunks";
       else
-        out.late[all[k]].emplace_back(static_cast<int>(c), chunk.*first_late + static_cast<int>(k) - chunk.*own);
+        out.late[all[k]].emplace_back(static_cast<int>(c),
+                                      chunk.*first_late + static_cast<int>(k) - chunk.*own);
     }
   }
   return out;
 }
 
-/// Each is own of the first chunk that has it, and the sums gather what each later one puts aside, in the order of the chunks, once.
+/// Each is own of the first chunk that has it, and the sums gather what each later one puts aside, in the
+/// order of the chunks, once.
 void expect_sums(const Holders& found, const LateSums& sums, bool edges) {
   ASSERT_EQ(static_cast<std::size_t>(sums.count()), found.late.size());
   std::set<int> places;
@@ -79,7 +83,8 @@ TEST(ElementChunks, HaveEachElementOnce) {
   EXPECT_EQ(times, std::vector<int>(times.size(), 1));
 }
 
-/// T^-1 is a triangle, and Dm T^-1 = Q is a rotation, no mirror image: which is all that an isotropic material needs.
+/// T^-1 is a triangle, and Dm T^-1 = Q is a rotation, no mirror image: which is all that an isotropic
+/// material needs.
 TEST(ElementChunks, HaveRestShapesTurnedIntoTriangles) {
   const TetMesh rest = mesh();
   int odd = 0;
@@ -110,22 +115,28 @@ TEST(ElementChunks, ShareNodesAndEdgesThatTheFirstOneOwns) {
   const TetMesh rest = mesh();
   const ElementChunks chunks = chunks_of(rest);
   ASSERT_GE(chunks.chunks.size(), 8u);
-  const auto node = [&](const ElementChunks::Chunk& chunk, int k) { return chunks.nodes[static_cast<std::size_t>(chunk.first_node + k)]; };
-  const Holders nodes = holders(chunks, &ElementChunks::Chunk::own_nodes, &ElementChunks::Chunk::first_late_node, [&](const ElementChunks::Chunk& chunk) {
-    std::vector<Key> keys;
-    for (int k = 0; k < chunk.nodes; ++k) keys.emplace_back(node(chunk, k), 0);
-    return keys;
-  });
+  const auto node = [&](const ElementChunks::Chunk& chunk, int k) {
+    return chunks.nodes[static_cast<std::size_t>(chunk.first_node + k)];
+  };
+  const Holders nodes =
+      holders(chunks, &ElementChunks::Chunk::own_nodes, &ElementChunks::Chunk::first_late_node,
+              [&](const ElementChunks::Chunk& chunk) {
+                std::vector<Key> keys;
+                for (int k = 0; k < chunk.nodes; ++k) keys.emplace_back(node(chunk, k), 0);
+                return keys;
+              });
   EXPECT_EQ(static_cast<Eigen::Index>(nodes.own.size()), rest.nodes.cols());
   expect_sums(nodes, chunks.late_nodes, false);
-  const Holders edges = holders(chunks, &ElementChunks::Chunk::own_edges, &ElementChunks::Chunk::first_late_edge, [&](const ElementChunks::Chunk& chunk) {
-    std::vector<Key> keys;
-    for (int k = 0; k < chunk.edges; ++k) {
-      const std::uint16_t* ends = chunks.ends.data() + 2 * static_cast<std::size_t>(chunk.first_edge + k);
-      keys.emplace_back(node(chunk, ends[0]), node(chunk, ends[1]));
-    }
-    return keys;
-  });
+  const Holders edges = holders(
+      chunks, &ElementChunks::Chunk::own_edges, &ElementChunks::Chunk::first_late_edge,
+      [&](const ElementChunks::Chunk& chunk) {
+        std::vector<Key> keys;
+        for (int k = 0; k < chunk.edges; ++k) {
+          const std::uint16_t* ends = chunks.ends.data() + 2 * static_cast<std::size_t>(chunk.first_edge + k);
+          keys.emplace_back(node(chunk, ends[0]), node(chunk, ends[1]));
+        }
+        return keys;
+      });
   std::set<Key> expected;
   for (Eigen::Index e = 0; e < rest.tets.cols(); ++e)
     for (int a = 0; a < 4; ++a)

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include "palpate/core/error.h"
 #include "palpate/core/pose.h"
@@ -21,8 +21,12 @@ class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
   double operator()() { return uniform_(engine_); }
-  VecX vector(Eigen::Index n) { return VecX::NullaryExpr(n, [this] { return (*this)(); }); }
-  Mat3 matrix() { return Mat3::NullaryExpr([this] { return (*this)(); }); }
+  VecX vector(Eigen::Index n) {
+    return VecX::NullaryExpr(n, [this] { return (*this)(); });
+  }
+  Mat3 matrix() {
+    return Mat3::NullaryExpr([this] { return (*this)(); });
+  }
   Mat3 rotation() { return quaternion_of(3.0 * vector(3)).toRotationMatrix(); }
 
  private:
@@ -30,7 +34,8 @@ class Random {
   std::uniform_real_distribution<double> uniform_{-1.0, 1.0};
 };
 
-/// n^3 unit cubes of six tetrahedra each, scaled to the unit cube; inner and outer nodes moved by `jitter` cells.
+/// n^3 unit cubes of six tetrahedra each, scaled to the unit cube; inner and outer nodes moved by `jitter`
+/// cells.
 inline TetMesh jittered_cube(int n, double jitter, unsigned seed) {
   Random random(seed);
   TetMesh mesh;
@@ -39,7 +44,8 @@ inline TetMesh jittered_cube(int n, double jitter, unsigned seed) {
   const auto node = [m](int i, int j, int k) { return (i * m + j) * m + k; };
   for (int i = 0; i < m; ++i)
     for (int j = 0; j < m; ++j)
-      for (int k = 0; k < m; ++k) mesh.nodes.col(node(i, j, k)) = (Vec3(i, j, k) + jitter * Vec3(random.vector(3))) / n;
+      for (int k = 0; k < m; ++k)
+        mesh.nodes.col(node(i, j, k)) = (Vec3(i, j, k) + jitter * Vec3(random.vector(3))) / n;
   const int paths[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
   mesh.tets.resize(4, 6 * n * n * n);
   int e = 0;
@@ -93,8 +99,10 @@ struct OneBody {
 inline VecX flat(const Points& p) { return p.reshaped(); }
 inline Points unflat(const VecX& x) { return x.reshaped(3, x.size() / 3); }
 
-/// The remainder of a first-order expansion must fall with slope 2: r(h) = |y(h) - y(0) - h y'| over h = h0 / 2^k.
-inline void expect_slope_two(const std::function<VecX(double)>& y, const VecX& derivative, double h0, const std::string& what, int steps = 6) {
+/// The remainder of a first-order expansion must fall with slope 2: r(h) = |y(h) - y(0) - h y'| over h = h0 /
+/// 2^k.
+inline void expect_slope_two(const std::function<VecX(double)>& y, const VecX& derivative, double h0,
+                             const std::string& what, int steps = 6) {
   const VecX y0 = y(0.0);
   double previous = 0.0;
   int counted = 0;
@@ -125,20 +133,25 @@ inline void expect_balanced(const Points& f, const Points& x) {
 inline std::string message_of(const std::function<void()>& f) {
   try {
     f();
-  } catch (const std::exception& e) {
-    return e.what();
-  }
+  } catch (const std::exception& e) { return e.what(); }
   return "";
 }
 
-inline void expect_contains(const std::string& text, const std::string& part) { EXPECT_NE(text.find(part), std::string::npos) << "message: " << text; }
+inline void expect_contains(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << "message: " << text;
+}
 
 /// A deformation with given signed stretches, rotated on both sides.
-inline Mat3 deformation(Random& random, const Vec3& stretches) { return random.rotation() * stretches.asDiagonal() * random.rotation(); }
+inline Mat3 deformation(Random& random, const Vec3& stretches) {
+  return random.rotation() * stretches.asDiagonal() * random.rotation();
+}
 
 /// Signed stretches of the kinds that occur: ordinary, large, flattened to a plane, inverted.
 inline std::vector<std::pair<std::string, Vec3>> stretch_cases() {
-  return {{"regular", {1.2, 0.9, 0.8}}, {"stretched", {3.0, 1.5, 1.2}}, {"flat", {1.1, 0.8, 0.0}}, {"inverted", {1.3, 0.9, -0.4}}};
+  return {{"regular", {1.2, 0.9, 0.8}},
+          {"stretched", {3.0, 1.5, 1.2}},
+          {"flat", {1.1, 0.8, 0.0}},
+          {"inverted", {1.3, 0.9, -0.4}}};
 }
 
 }  // namespace palpate::fem::testing

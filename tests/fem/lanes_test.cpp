@@ -15,7 +15,8 @@ namespace {
 std::vector<std::string> instruction_sets() {
   std::vector<std::string> out;
   for (const char* name : {"baseline", "avx2", "avx512"})
-    if (message_of([&] { SoftBody("b", one_tet(), soft_material(), {.instructions = name}, 0); }).empty()) out.emplace_back(name);
+    if (message_of([&] { SoftBody("b", one_tet(), soft_material(), {.instructions = name}, 0); }).empty())
+      out.emplace_back(name);
   return out;
 }
 
@@ -42,7 +43,8 @@ struct Evaluation {
   ElementCounts counts;
 };
 
-Evaluation evaluate(const TetMesh& rest, const Material& material, const SoftBodyOptions& options, const VecX& x, const VecX& v, const VecX& w, bool dense) {
+Evaluation evaluate(const TetMesh& rest, const Material& material, const SoftBodyOptions& options,
+                    const VecX& x, const VecX& v, const VecX& w, bool dense) {
   OneBody at(x, v);
   SoftBody body("b", rest, material, options, at.id);
   dynamics::PatternBuilder builder(at.state.layout());
@@ -67,9 +69,11 @@ struct Reference {
   VecX f, y;
   double energy = 0.0, power = 0.0;
 };
-Reference reference(const TetMesh& rest, const Material& material, Tangent tangent, bool by_position, const VecX& x, const VecX& v, const VecX& w) {
+Reference reference(const TetMesh& rest, const Material& material, Tangent tangent, bool by_position,
+                    const VecX& x, const VecX& v, const VecX& w) {
   const Lame elastic{material.mu(), material.lambda()};
-  const Lame damping{material.stiffness_damping * material.mu(), material.stiffness_damping * material.lambda()};
+  const Lame damping{material.stiffness_damping * material.mu(),
+                     material.stiffness_damping * material.lambda()};
   Reference out;
   out.f = out.y = VecX::Zero(x.size());
   for (Eigen::Index e = 0; e < rest.tets.cols(); ++e) {
@@ -81,14 +85,19 @@ Reference reference(const TetMesh& rest, const Material& material, Tangent tange
     };
     const Mat3 Dm = edges(flat(rest.nodes)), gradients = Dm.inverse();
     const double V = Dm.determinant() / 6.0;
-    const Mat3 F = edges(x) * gradients, F_dot = edges(v) * gradients, dF = edges(w) * gradients, R = polar_decomposition(F).R;
+    const Mat3 F = edges(x) * gradients, F_dot = edges(v) * gradients, dF = edges(w) * gradients,
+               R = polar_decomposition(F).R;
     bool clamped = false;
     const Mat3 C = rotation_coupling(tangent, F, R, elastic, clamped);
     const Mat3 P = elastic_stress(F, R, elastic) + F * damping_stress(strain_rate(F, F_dot), damping);
-    Mat3 dP = 0.7 * elastic_stress_change(dF, R, C, elastic) + 1.9 * F * damping_stress(strain_rate(F, dF), damping);
-    if (by_position) dP += 0.7 * (dF * damping_stress(strain_rate(F, F_dot), damping) + F * damping_stress(strain_rate(dF, F_dot), damping));
+    Mat3 dP = 0.7 * elastic_stress_change(dF, R, C, elastic) +
+              1.9 * F * damping_stress(strain_rate(F, dF), damping);
+    if (by_position)
+      dP += 0.7 * (dF * damping_stress(strain_rate(F, F_dot), damping) +
+                   F * damping_stress(strain_rate(dF, F_dot), damping));
     for (int a = 0; a < 4; ++a) {
-      const Vec3 g = a == 0 ? Vec3(-gradients.colwise().sum().transpose()) : Vec3(gradients.row(a - 1).transpose());
+      const Vec3 g =
+          a == 0 ? Vec3(-gradients.colwise().sum().transpose()) : Vec3(gradients.row(a - 1).transpose());
       const double mass_damping = material.mass_damping * material.density * 0.25 * V;
       out.f.segment<3>(3 * tet[a]) -= V * P * g + mass_damping * v.segment<3>(3 * tet[a]);
       out.y.segment<3>(3 * tet[a]) += V * dP * g + 1.9 * mass_damping * w.segment<3>(3 * tet[a]);
@@ -135,7 +144,8 @@ double apart(const VecX& a, const VecX& b) { return (a - b).norm() / b.norm(); }
 }  // namespace
 
 TEST(Lanes, EveryShapeGetsWhatTheScalarFormulasGive) {
-  // Relative to each element's own norm.  Where two signed singular values nearly cancel, R moves by a rounding of F over their sum, C by that over the sum again.
+  // Relative to each element's own norm.  Where two signed singular values nearly cancel, R moves by a
+  // rounding of F over their sum, C by that over the sum again.
   Random random(81);
   std::vector<Mat3> deformations;
   std::vector<double> sums;
@@ -155,13 +165,17 @@ TEST(Lanes, EveryShapeGetsWhatTheScalarFormulasGive) {
   for (const std::string& instructions : instruction_sets())
     for (Tangent tangent : {Tangent::kExact, Tangent::kProjected, Tangent::kWarped})
       for (bool full : {false, true}) {
-        const Evaluation found = evaluate(m.rest, damped_material(), options(tangent, full, instructions), m.x, m.v, m.w, false);
+        const Evaluation found =
+            evaluate(m.rest, damped_material(), options(tangent, full, instructions), m.x, m.v, m.w, false);
         const Reference expected = reference(m.rest, damped_material(), tangent, full, m.x, m.v, m.w);
         for (std::size_t e = 0; e < sums.size(); ++e) {
           const auto at = static_cast<Eigen::Index>(12 * e);
           const double close = std::min(1.0, sums[e]);
-          EXPECT_LT(apart(found.f.segment<12>(at), expected.f.segment<12>(at)), 1e-13 + 1e-14 / close) << instructions << ", element " << e;
-          EXPECT_LT(apart(found.y.segment<12>(at), expected.y.segment<12>(at)), 1e-13 + 2e-15 / (close * close)) << instructions << ", element " << e;
+          EXPECT_LT(apart(found.f.segment<12>(at), expected.f.segment<12>(at)), 1e-13 + 1e-14 / close)
+              << instructions << ", element " << e;
+          EXPECT_LT(apart(found.y.segment<12>(at), expected.y.segment<12>(at)),
+                    1e-13 + 2e-15 / (close * close))
+              << instructions << ", element " << e;
         }
         EXPECT_NEAR(found.energy, expected.energy, 1e-13 * expected.energy);
         EXPECT_NEAR(found.power, expected.power, 1e-13 * expected.power);
@@ -177,7 +191,8 @@ TEST(Lanes, ChunksAddUpToTheScalarSum) {
   const Shaken m(9, 0.02, 83);  // 4,374 elements in three chunks, the last group not full
   for (const std::string& instructions : instruction_sets())
     for (bool full : {false, true}) {
-      const Evaluation found = evaluate(m.rest, damped_material(), options(Tangent::kExact, full, instructions), m.x, m.v, m.w, false);
+      const Evaluation found = evaluate(m.rest, damped_material(),
+                                        options(Tangent::kExact, full, instructions), m.x, m.v, m.w, false);
       const Reference expected = reference(m.rest, damped_material(), Tangent::kExact, full, m.x, m.v, m.w);
       EXPECT_LT(apart(found.f, expected.f), 1e-13) << instructions;
       EXPECT_LT(apart(found.y, expected.y), 1e-12) << instructions;
@@ -201,10 +216,12 @@ TEST(Lanes, InstructionSetsAgree) {
   const std::vector<std::string> sets = instruction_sets();
   EXPECT_EQ(sets.front(), "baseline");
   for (Tangent tangent : {Tangent::kExact, Tangent::kProjected, Tangent::kWarped}) {
-    const Evaluation base = evaluate(m.rest, damped_material(), options(tangent, true, "baseline"), m.x, m.v, m.w, true);
+    const Evaluation base =
+        evaluate(m.rest, damped_material(), options(tangent, true, "baseline"), m.x, m.v, m.w, true);
     EXPECT_GT(base.counts.inverted, 3);
     for (const std::string& instructions : sets) {
-      const Evaluation found = evaluate(m.rest, damped_material(), options(tangent, true, instructions), m.x, m.v, m.w, true);
+      const Evaluation found =
+          evaluate(m.rest, damped_material(), options(tangent, true, instructions), m.x, m.v, m.w, true);
       EXPECT_LT(apart(found.f, base.f), 1e-12) << instructions;
       EXPECT_LT(apart(found.y, base.y), 1e-12) << instructions;
       EXPECT_LT((found.A - base.A).norm(), 1e-12 * base.A.norm()) << instructions;
@@ -219,11 +236,14 @@ TEST(Lanes, ThreadsChangeNoBit) {
   const Shaken m(10, 0.03, 87);  // 6,000 elements in three chunks
   for (Tangent tangent : {Tangent::kExact, Tangent::kProjected, Tangent::kWarped}) {
     workers::set_count(1);
-    const Evaluation alone = evaluate(m.rest, damped_material(), {.tangent = tangent, .full_damping_tangent = true}, m.x, m.v, m.w, false);
+    const Evaluation alone = evaluate(
+        m.rest, damped_material(), {.tangent = tangent, .full_damping_tangent = true}, m.x, m.v, m.w, false);
     for (int threads : {2, 3, 5})
       for (int repeat = 0; repeat < 3; ++repeat) {
         workers::set_count(threads);
-        const Evaluation found = evaluate(m.rest, damped_material(), {.tangent = tangent, .full_damping_tangent = true}, m.x, m.v, m.w, false);
+        const Evaluation found =
+            evaluate(m.rest, damped_material(), {.tangent = tangent, .full_damping_tangent = true}, m.x, m.v,
+                     m.w, false);
         EXPECT_EQ(found.f, alone.f);
         EXPECT_EQ(found.y, alone.y);
         EXPECT_EQ(found.values, alone.values);
@@ -261,7 +281,8 @@ TEST(Lanes, ExactTangentIsTheDerivativeUpToTheSingularSetAndCountsItsClampThere)
     int tested = 0;
     for (double sum : {0.5, 0.1, 0.02, 3e-3, 1e-3}) {
       const VecX x = flat(deformation(random, {1.2, 0.6, -0.6 + sum}) * rest.nodes), w = random.vector(12);
-      expect_slope_two([&](double h) { return force_at(x + h * w); }, -tangent_times(x, w), 0.01 * sum, fmt::format("{} from the singular set", sum), 5);
+      expect_slope_two([&](double h) { return force_at(x + h * w); }, -tangent_times(x, w), 0.01 * sum,
+                       fmt::format("{} from the singular set", sum), 5);
       ++tested;
     }
     EXPECT_EQ(tested, 5);
@@ -276,12 +297,15 @@ TEST(Lanes, ExactTangentIsTheDerivativeUpToTheSingularSetAndCountsItsClampThere)
 TEST(Lanes, InstructionsByNameAndByEnvironment) {
   SoftBody baseline("b", one_tet(), soft_material(), {.instructions = "baseline"}, 0);
   EXPECT_EQ(baseline.instructions(), "baseline");
-  expect_contains(message_of([] { SoftBody("liver", one_tet(), soft_material(), {.instructions = "mmx"}, 0); }),
-                  "body \"liver\": this build or this processor has no instructions \"mmx\"; baseline, avx2 and avx512 exist");
+  expect_contains(
+      message_of([] { SoftBody("liver", one_tet(), soft_material(), {.instructions = "mmx"}, 0); }),
+      "body \"liver\": this build or this processor has no instructions \"mmx\"; baseline, avx2 and avx512 "
+      "exist");
   setenv("PALPATE_INSTRUCTIONS", "baseline", 1);
   EXPECT_EQ(SoftBody("b", one_tet(), soft_material(), {}, 0).instructions(), "baseline");
   setenv("PALPATE_INSTRUCTIONS", "sse9", 1);
-  expect_contains(message_of([] { SoftBody("b", one_tet(), soft_material(), {}, 0); }), "PALPATE_INSTRUCTIONS = \"sse9\"");
+  expect_contains(message_of([] { SoftBody("b", one_tet(), soft_material(), {}, 0); }),
+                  "PALPATE_INSTRUCTIONS = \"sse9\"");
   unsetenv("PALPATE_INSTRUCTIONS");
   EXPECT_EQ(SoftBody("b", one_tet(), soft_material(), {}, 0).instructions(), instruction_sets().back());
 }
@@ -291,7 +315,8 @@ TEST(Lanes, NotANumberStaysWhereItIsAndIsNoCrash) {
   m.x[0] = std::nan("");
   const Evaluation found = evaluate(m.rest, damped_material(), {}, m.x, m.v, m.w, false);
   EXPECT_TRUE(std::isnan(found.f[0]));
-  EXPECT_TRUE(found.f.tail<3>().allFinite());  // the node at the other corner has no element in common with it
+  // the node at the other corner has no element in common with it
+  EXPECT_TRUE(found.f.tail<3>().allFinite());
 }
 
 TEST(Lanes, MemoryIsSaid) {
@@ -299,7 +324,8 @@ TEST(Lanes, MemoryIsSaid) {
   OneBody at(m.x, m.v);
   SoftBody body("b", m.rest, soft_material(), {}, at.id);
   const auto count = static_cast<std::size_t>(m.rest.tets.cols());
-  EXPECT_GE(body.memory().elements, 96 * count);  // ten numbers of the rest shape and four nodes, at the least
+  // ten numbers of the rest shape and four nodes, at the least
+  EXPECT_GE(body.memory().elements, 96 * count);
   EXPECT_LT(body.memory().elements, 400 * count);
   EXPECT_EQ(body.memory().maps, 0u);  // before the first matrix
 }

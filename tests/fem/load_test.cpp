@@ -27,7 +27,8 @@ TEST(Load, DeadLoadIsMinusTheGradientOfItsEnergy) {
   OneBody here(x, VecX::Zero(12)), there(x + w, VecX::Zero(12));
   const auto load = make_dead_load("pull", forces, 0);
   EXPECT_EQ(load->name(), "pull");
-  EXPECT_NEAR(load->energy(there.state.view()) - load->energy(here.state.view()), -flat(forces).dot(w), 1e-14);
+  EXPECT_NEAR(load->energy(there.state.view()) - load->energy(here.state.view()), -flat(forces).dot(w),
+              1e-14);
 }
 
 TEST(Load, TractionIsSharedByBoundaryArea) {
@@ -55,12 +56,17 @@ TEST(Load, RefusesEmptyBoxesAndBadNumbers) {
   spec.force_n = Vec3(0, 0, 1);
   spec.box_min_m = Vec3(5, 5, 5);
   spec.box_max_m = Vec3(6, 6, 6);
-  expect_contains(message_of([&] { spread_over_boundary(mesh, spec); }), "load: no boundary triangle of the mesh lies in the box (5, 5, 5) to (6, 6, 6) m");
+  expect_contains(message_of([&] { spread_over_boundary(mesh, spec); }),
+                  "load: no boundary triangle of the mesh lies in the box (5, 5, 5) to (6, 6, 6) m");
   spec.box_min_m = Vec3(7, 5, 5);
-  expect_contains(message_of([&] { spread_over_boundary(mesh, spec); }), "load: box_min_m[0] = 7 must not exceed box_max_m[0] = 6");
+  expect_contains(message_of([&] { spread_over_boundary(mesh, spec); }),
+                  "load: box_min_m[0] = 7 must not exceed box_max_m[0] = 6");
   spec.box_min_m = Vec3::Zero();
   spec.force_n.y() = std::nan("");
-  expect_contains(message_of([&] { spread_over_boundary(mesh, spec); }), "force_n = (0, nan, 1) must be finite");
-  expect_contains(message_of([] { make_gravity(VecX::Ones(4), Vec3(0, std::nan(""), 0), 0); }), "gravity_m_s2 = (0, nan, 0) must be finite");
-  expect_contains(message_of([] { make_dead_load("pull", Points::Constant(3, 4, std::nan("")), 0); }), "load \"pull\": forces must be finite");
+  expect_contains(message_of([&] { spread_over_boundary(mesh, spec); }),
+                  "force_n = (0, nan, 1) must be finite");
+  expect_contains(message_of([] { make_gravity(VecX::Ones(4), Vec3(0, std::nan(""), 0), 0); }),
+                  "gravity_m_s2 = (0, nan, 0) must be finite");
+  expect_contains(message_of([] { make_dead_load("pull", Points::Constant(3, 4, std::nan("")), 0); }),
+                  "load \"pull\": forces must be finite");
 }

@@ -79,5 +79,6 @@ TEST(Mass, AppliedEqualsAssembled) {
 
 TEST(Mass, RefusesABadDensity) {
   expect_contains(message_of([] { lumped_masses(one_tet(), 0.0); }), "density_kg_m3 = 0 must be positive");
-  expect_contains(message_of([] { make_consistent_mass(one_tet(), -1.0, 0); }), "density_kg_m3 = -1 must be positive");
+  expect_contains(message_of([] { make_consistent_mass(one_tet(), -1.0, 0); }),
+                  "density_kg_m3 = -1 must be positive");
 }

@@ -2,8 +2,9 @@
 #include "palpate/core/workers.h"
 #include "palpate/fem/nodal_dilatation.h"
 
-// Bodies of several materials.  Everything but the shared nodes is a sum over elements, so that a body of two materials is the sum of two bodies on the same
-// nodes, each with the elements of one material and nothing else: what is computed by one body of one material checks all that is computed by the mixed one.
+// Bodies of several materials.  Everything but the shared nodes is a sum over elements, so that a body of two
+// materials is the sum of two bodies on the same nodes, each with the elements of one material and nothing
+// else: what is computed by one body of one material checks all that is computed by the mixed one.
 
 using namespace palpate;
 using namespace palpate::fem;
@@ -16,18 +17,33 @@ Material soft() {
   m.mass_damping = 0.3;
   return m;
 }
-Material stiff() { return {.youngs_modulus = 9e3, .poissons_ratio = 0.2, .density = 7.0, .mass_damping = 0.0, .stiffness_damping = 0.02}; }
-Material rubber() { return {.youngs_modulus = 40.0, .poissons_ratio = 0.49, .density = 1.5, .mass_damping = 0.8, .stiffness_damping = 0.4}; }
+Material stiff() {
+  return {.youngs_modulus = 9e3,
+          .poissons_ratio = 0.2,
+          .density = 7.0,
+          .mass_damping = 0.0,
+          .stiffness_damping = 0.02};
+}
+Material rubber() {
+  return {.youngs_modulus = 40.0,
+          .poissons_ratio = 0.49,
+          .density = 1.5,
+          .mass_damping = 0.8,
+          .stiffness_damping = 0.4};
+}
 
 /// A cube, its elements of three materials without any order, moved about.
 struct Mixed {
   TetMesh rest;
   Materials materials{{soft(), stiff(), rubber()}, {}};
   VecX x, v, w;
-  explicit Mixed(int cells, double shake = 0.05, unsigned seed = 51) : rest(jittered_cube(cells, 0.12, seed)) {
+  explicit Mixed(int cells, double shake = 0.05, unsigned seed = 51)
+      : rest(jittered_cube(cells, 0.12, seed)) {
     Random random(seed + 1);
-    for (Eigen::Index e = 0; e < rest.tets.cols(); ++e) materials.of_element.push_back(static_cast<int>(1.5 * (random() + 1.0)));
-    x = flat(random.rotation() * (Mat3::Identity() + 0.1 * random.matrix()) * rest.nodes) + shake / cells * random.vector(3 * rest.nodes.cols());
+    for (Eigen::Index e = 0; e < rest.tets.cols(); ++e)
+      materials.of_element.push_back(static_cast<int>(1.5 * (random() + 1.0)));
+    x = flat(random.rotation() * (Mat3::Identity() + 0.1 * random.matrix()) * rest.nodes) +
+        shake / cells * random.vector(3 * rest.nodes.cols());
     v = random.vector(x.size());
     w = random.vector(x.size());
   }
@@ -36,7 +52,8 @@ struct Mixed {
     TetMesh out{rest.nodes, Tets(4, rest.tets.cols())};
     Eigen::Index count = 0;
     for (Eigen::Index e = 0; e < rest.tets.cols(); ++e)
-      if (materials.of_element[static_cast<std::size_t>(e)] == material) out.tets.col(count++) = rest.tets.col(e);
+      if (materials.of_element[static_cast<std::size_t>(e)] == material)
+        out.tets.col(count++) = rest.tets.col(e);
     out.tets.conservativeResize(4, count);
     return out;
   }
@@ -49,7 +66,8 @@ struct Figures {
   double energy = 0.0, power = 0.0;
 };
 
-Figures evaluate(dynamics::ForceTerm& term, const dynamics::ForceTerm& pattern_of, const Mixed& m, bool dense = true) {
+Figures evaluate(dynamics::ForceTerm& term, const dynamics::ForceTerm& pattern_of, const Mixed& m,
+                 bool dense = true) {
   OneBody at(m.x, m.v);
   const dynamics::StateView view = at.state.view();
   Figures out;
@@ -112,34 +130,43 @@ TEST(Materials, ABodyOfThreeIsTheSumOfTheThree) {
 TEST(Materials, AveragesOfDilatationStayWithinEach) {
   const Mixed m(3);
   SoftBodyOptions options{.full_damping_tangent = true};
-  for (const Material& material : m.materials.list) options.volumetric_shares.push_back(kept_volumetric_share(material));
+  for (const Material& material : m.materials.list)
+    options.volumetric_shares.push_back(kept_volumetric_share(material));
   EXPECT_EQ(options.share_of(1), 1.0);  // nu = 0.2: nothing is left for the averages
   EXPECT_LT(options.share_of(2), 0.1);
   NodalDilatation whole("b", m.rest, m.materials, options, 0);
   std::vector<Figures> parts;
   for (const int i : {0, 2}) {
-    NodalDilatation part("b", m.part(i), m.materials.list[static_cast<std::size_t>(i)], {.full_damping_tangent = true, .volumetric_share = options.share_of(static_cast<std::size_t>(i))}, 0);
+    NodalDilatation part(
+        "b", m.part(i), m.materials.list[static_cast<std::size_t>(i)],
+        {.full_damping_tangent = true, .volumetric_share = options.share_of(static_cast<std::size_t>(i))}, 0);
     parts.push_back(evaluate(part, whole, m));
   }
   expect_sum(evaluate(whole, whole, m), parts, "dilatation");
   // Pressed alike, theta is the same everywhere, whatever the materials.
   OneBody pressed(flat(0.9 * m.rest.nodes), m.v);
-  EXPECT_LT((whole.dilatations(pressed.state.view()) + VecX::Constant(m.rest.nodes.cols(), 0.3)).cwiseAbs().maxCoeff(), 1e-13);
+  EXPECT_LT((whole.dilatations(pressed.state.view()) + VecX::Constant(m.rest.nodes.cols(), 0.3))
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-13);
 }
 
 TEST(Materials, DerivativesAreThoseOfTheForceAndTheEnergy) {
   const Mixed m(2);
   SoftBodyOptions options{.full_damping_tangent = true};
-  for (const Material& material : m.materials.list) options.volumetric_shares.push_back(kept_volumetric_share(material));
+  for (const Material& material : m.materials.list)
+    options.volumetric_shares.push_back(kept_volumetric_share(material));
   SoftBody body("b", m.rest, m.materials, options, 0);
   NodalDilatation dilatation("b", m.rest, m.materials, options, 0);
   const VecX still = VecX::Zero(m.x.size());
   for (dynamics::ForceTerm* term : std::initializer_list<dynamics::ForceTerm*>{&body, &dilatation}) {
     const std::string name(term->name());
-    expect_slope_two([&](double h) {
-      const OneBody at(m.x + h * m.w, still);
-      return VecX::Constant(1, term->energy(at.state.view()));
-    }, VecX::Constant(1, -force(*term, m.x, still).dot(m.w)), 4e-4, name);
+    expect_slope_two(
+        [&](double h) {
+          const OneBody at(m.x + h * m.w, still);
+          return VecX::Constant(1, term->energy(at.state.view()));
+        },
+        VecX::Constant(1, -force(*term, m.x, still).dot(m.w)), 4e-4, name);
     OneBody at(m.x, m.v);
     VecX product = still;
     term->apply_tangent(at.state.view(), 1.0, 0.0, m.w, product);
@@ -166,10 +193,14 @@ TEST(Materials, OneStepIsForceProductAndTangentInOne) {
     int pairs = 0;
     const auto each_pair = [&](auto&& work) {  // i < j
       for (int i = 0; i < whole.body.block_rows(); ++i)
-        for (int s = whole.body.row_start()[static_cast<std::size_t>(i)]; s < whole.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
+        for (int s = whole.body.row_start()[static_cast<std::size_t>(i)];
+             s < whole.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
           if (const int j = whole.body.columns()[static_cast<std::size_t>(s)]; i < j) work(i, j, s);
     };
-    each_pair([&](int i, int j, int s) { A.place[static_cast<std::size_t>(s)] = A.place[static_cast<std::size_t>(whole.body.slot(j, i))] = pairs++; });
+    each_pair([&](int i, int j, int s) {
+      A.place[static_cast<std::size_t>(s)] = A.place[static_cast<std::size_t>(whole.body.slot(j, i))] =
+          pairs++;
+    });
     A.values.assign(9 * static_cast<std::size_t>(pairs), 0.0f);
     A.diagonal = VecX::Zero(m.x.size());
     A.places_version = 1;
@@ -182,7 +213,9 @@ TEST(Materials, OneStepIsForceProductAndTangentInOne) {
     double largest = 0.0;
     for (const double value : whole.body.values()) largest = std::max(largest, std::abs(value));
     each_pair([&](int, int, int s) {
-      const Mat3 stored = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(A.values.data() + 9 * A.place[static_cast<std::size_t>(s)]).cast<double>();
+      const Mat3 stored = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(
+                              A.values.data() + 9 * A.place[static_cast<std::size_t>(s)])
+                              .cast<double>();
       const Mat3 exact = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(whole.body.block(s));
       EXPECT_LT((stored - exact).norm(), 1e-7 * exact.norm() + 1e-12 * largest) << "block " << s;
     });
@@ -201,7 +234,10 @@ TEST(Materials, TheSameMaterialInTwoRegionsIsThatOfOne) {
   EXPECT_NEAR(a.energy, b.energy, 1e-13 * a.energy);
   EXPECT_NEAR(a.power, b.power, 1e-13 * a.power);
   // A list of which only one is used is that one, to the last bit.
-  SoftBody first("b", m.rest, Materials({rubber(), stiff()}, std::vector<int>(static_cast<std::size_t>(m.rest.tets.cols()), 0)), {}, 0);
+  SoftBody first(
+      "b", m.rest,
+      Materials({rubber(), stiff()}, std::vector<int>(static_cast<std::size_t>(m.rest.tets.cols()), 0)), {},
+      0);
   EXPECT_EQ(evaluate(first, first, m, false).force, a.force);
   EXPECT_EQ(first.memory().elements, one.memory().elements);
 }
@@ -224,9 +260,12 @@ TEST(Materials, ThreadsDoNotChangeABit) {
 TEST(Materials, CostAFewEmptyLanesAndNothingElse) {
   const Mixed m(10);
   Materials halves({soft(), stiff()}, {});
-  for (const auto& tet : m.rest.tets.colwise()) halves.of_element.push_back(m.rest.nodes(0, tet).mean() > 0.5);
-  const std::size_t one = SoftBody("b", m.rest, soft(), {}, 0).memory().elements, two = SoftBody("b", m.rest, halves, {}, 0).memory().elements;
-  constexpr std::size_t kGroupBytes = 832, kRunBytes = 12, kChunks = 8;  // 8 lanes of ten doubles, ten half-words and a word
+  for (const auto& tet : m.rest.tets.colwise())
+    halves.of_element.push_back(m.rest.nodes(0, tet).mean() > 0.5);
+  const std::size_t one = SoftBody("b", m.rest, soft(), {}, 0).memory().elements,
+                    two = SoftBody("b", m.rest, halves, {}, 0).memory().elements;
+  // 8 lanes of ten doubles, ten half-words and a word
+  constexpr std::size_t kGroupBytes = 832, kRunBytes = 12, kChunks = 8;
   EXPECT_LE(two - one, kChunks * (kGroupBytes + kRunBytes));
 }
 
@@ -235,7 +274,8 @@ TEST(Materials, MassesGoByElement) {
   const VecX mixed = lumped_masses(m.rest, m.materials);
   VecX sum = VecX::Zero(m.rest.nodes.cols());
   OneBody at(m.x, m.v);
-  VecX product = VecX::Zero(m.x.size()), parts = product, unit = flat(Vec3::UnitY().replicate(1, m.rest.nodes.cols()));
+  VecX product = VecX::Zero(m.x.size()), parts = product,
+       unit = flat(Vec3::UnitY().replicate(1, m.rest.nodes.cols()));
   make_consistent_mass(m.rest, m.materials, at.id)->apply(at.state.view(), m.v, product);
   for (int i = 0; i < 3; ++i) {
     const double density = m.materials.list[static_cast<std::size_t>(i)].density;
@@ -271,7 +311,8 @@ TEST(Materials, WhatDoesNotFitIsRefused) {
   short_of_one.of_element.pop_back();
   beyond.of_element[2] = 3;
   bad.list[2].poissons_ratio = 0.5;
-  expect_contains(message_of([&] { SoftBody("b", m.rest, short_of_one, {}, 0); }), "5 numbers of materials for 6 elements");
+  expect_contains(message_of([&] { SoftBody("b", m.rest, short_of_one, {}, 0); }),
+                  "5 numbers of materials for 6 elements");
   expect_contains(message_of([&] { SoftBody("b", m.rest, beyond, {}, 0); }), "material 3 of 3");
   expect_contains(message_of([&] { SoftBody("b", m.rest, bad, {}, 0); }), "poissons_ratio = 0.5");
   expect_contains(message_of([&] { lumped_masses(m.rest, beyond); }), "material 3 of 3");

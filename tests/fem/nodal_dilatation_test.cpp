@@ -28,7 +28,8 @@ struct Shaken {
   VecX x, v;
   explicit Shaken(unsigned seed, double shake = 0.06) : rest(jittered_cube(2, 0.12, seed)) {
     Random random(seed + 100);
-    x = flat(random.rotation() * (Mat3::Identity() + 0.15 * random.matrix()) * rest.nodes) + shake * random.vector(3 * rest.nodes.cols());
+    x = flat(random.rotation() * (Mat3::Identity() + 0.15 * random.matrix()) * rest.nodes) +
+        shake * random.vector(3 * rest.nodes.cols());
     v = random.vector(x.size());
   }
 };
@@ -72,22 +73,28 @@ TEST(NodalDilatation, KeptShareIsAllUpToNuOfAQuarterAndThenMuOfLambda) {
 }
 
 TEST(NodalDilatation, OneTetrahedronIsTheElement) {
-  // All four nodes average over the one element: with the kept share it must give the plain element, whatever its shape.
+  // All four nodes average over the one element: with the kept share it must give the plain element, whatever
+  // its shape.
   const TetMesh rest = one_tet();
   const Material m = nearly_incompressible(0.3);
   Random random(41);
   for (const auto& [name, stretches] : stretch_cases()) {
     const VecX x = flat(deformation(random, stretches) * rest.nodes), v = random.vector(12);
-    SoftBody plain("b", rest, m, {.full_damping_tangent = true}, 0), kept("b", rest, m, nodal(m, Tangent::kExact, true), 0);
+    SoftBody plain("b", rest, m, {.full_damping_tangent = true}, 0),
+        kept("b", rest, m, nodal(m, Tangent::kExact, true), 0);
     NodalDilatation rest_of_it("b", rest, m, nodal(m, Tangent::kExact, true), 0);
     const VecX f = force(plain, x, v);
     EXPECT_LT((force(kept, x, v) + force(rest_of_it, x, v) - f).norm(), 1e-12 * f.norm()) << name;
     EXPECT_NEAR(energy(kept, x) + energy(rest_of_it, x), energy(plain, x), 1e-12 * energy(plain, x)) << name;
     const MatX K = assembled(plain, x, v, 1.0, 0.5);
-    EXPECT_LT((assembled(kept, x, v, 1.0, 0.5) + assembled(rest_of_it, x, v, 1.0, 0.5) - K).norm(), 1e-11 * K.norm()) << name;
+    EXPECT_LT((assembled(kept, x, v, 1.0, 0.5) + assembled(rest_of_it, x, v, 1.0, 0.5) - K).norm(),
+              1e-11 * K.norm())
+        << name;
     const OneBody at(x, v);
     const double power = plain.dissipated_power(at.state.view());
-    EXPECT_NEAR(kept.dissipated_power(at.state.view()) + rest_of_it.dissipated_power(at.state.view()), power, 1e-12 * power) << name;
+    EXPECT_NEAR(kept.dissipated_power(at.state.view()) + rest_of_it.dissipated_power(at.state.view()), power,
+                1e-12 * power)
+        << name;
     const VecX stress = plain.nodal_stress(at.state.view());
     EXPECT_LT((rest_of_it.nodal_stress(at.state.view()) - stress).norm(), 1e-12 * stress.norm()) << name;
   }
@@ -115,19 +122,23 @@ TEST(NodalDilatation, ForceIsMinusTheGradientAndTheTangentItsDerivative) {
     const Material m = nearly_incompressible();
     NodalDilatation term("b", s.rest, m, nodal(m), 0);
     const VecX w = Random(45).vector(s.x.size()), zero = VecX::Zero(s.x.size());
-    expect_slope_two([&](double h) { return VecX::Constant(1, energy(term, s.x + h * w)); }, VecX::Constant(1, -force(term, s.x, zero).dot(w)), 4e-4, "energy");
-    expect_slope_two([&](double h) { return force(term, s.x + h * w, zero); }, -apply(term, s.x, zero, 1, 0, w), 4e-4, "force");
+    expect_slope_two([&](double h) { return VecX::Constant(1, energy(term, s.x + h * w)); },
+                     VecX::Constant(1, -force(term, s.x, zero).dot(w)), 4e-4, "energy");
+    expect_slope_two([&](double h) { return force(term, s.x + h * w, zero); },
+                     -apply(term, s.x, zero, 1, 0, w), 4e-4, "force");
   }
 }
 
 TEST(NodalDilatation, FullDampingTangentIsTheDerivativeOfTheDampedForce) {
   Shaken s(46);
   const Material m = nearly_incompressible(0.4);
-  NodalDilatation term("b", s.rest, m, nodal(m, Tangent::kExact, true), 0), symmetric("b", s.rest, m, nodal(m), 0);
+  NodalDilatation term("b", s.rest, m, nodal(m, Tangent::kExact, true), 0),
+      symmetric("b", s.rest, m, nodal(m), 0);
   EXPECT_FALSE(term.traits().symmetric_tangent);
   EXPECT_TRUE(symmetric.traits().symmetric_tangent);
   const VecX w = Random(47).vector(s.x.size());
-  expect_slope_two([&](double h) { return force(term, s.x + h * w, s.v); }, -apply(term, s.x, s.v, 1, 0, w), 2e-3, "by position");
+  expect_slope_two([&](double h) { return force(term, s.x + h * w, s.v); }, -apply(term, s.x, s.v, 1, 0, w),
+                   2e-3, "by position");
   const VecX change = force(term, s.x, s.v + w) - force(term, s.x, s.v);
   EXPECT_LT((change + apply(term, s.x, s.v, 0, 1, w)).norm(), 1e-12 * change.norm());
 }
@@ -171,7 +182,8 @@ TEST(NodalDilatation, ExactTangentAtRestHasRankOneANode) {
   const Material m = nearly_incompressible();
   NodalDilatation term("b", rest, m, nodal(m), 0);
   const VecX x = flat(rest.nodes);
-  const VecX values = Eigen::SelfAdjointEigenSolver<MatX>(assembled(term, x, VecX::Zero(x.size()), 1, 0)).eigenvalues();
+  const VecX values =
+      Eigen::SelfAdjointEigenSolver<MatX>(assembled(term, x, VecX::Zero(x.size()), 1, 0)).eigenvalues();
   EXPECT_LE((values.array() > 1e-12 * values.maxCoeff()).count(), rest.nodes.cols());
 }
 
@@ -185,8 +197,8 @@ TEST(NodalDilatation, NoResultantNoMomentNoBrakeOnARigidMotion) {
   const OneBody moving(s.x, s.v), spinning(s.x, rigid);
   EXPECT_LT(term.dissipated_power(spinning.state.view()), 1e-12 * term.dissipated_power(moving.state.view()));
   NodalDilatation elastic("b", s.rest, nearly_incompressible(), nodal(nearly_incompressible()), 0);
-  EXPECT_NEAR(-(force(term, s.x, s.v) - force(elastic, s.x, s.v)).dot(s.v), term.dissipated_power(moving.state.view()),
-              1e-12 * term.dissipated_power(moving.state.view()));
+  EXPECT_NEAR(-(force(term, s.x, s.v) - force(elastic, s.x, s.v)).dot(s.v),
+              term.dissipated_power(moving.state.view()), 1e-12 * term.dissipated_power(moving.state.view()));
 }
 
 TEST(NodalDilatation, TurnsWithTheBody) {
@@ -194,7 +206,8 @@ TEST(NodalDilatation, TurnsWithTheBody) {
   const Material m = nearly_incompressible(0.5);
   NodalDilatation term("b", s.rest, m, nodal(m), 0);
   const Mat3 Q = Random(54).rotation();
-  const VecX x = flat((Q * unflat(s.x)).colwise() + Vec3(0.3, -2.0, 1.1)), v = flat(Q * unflat(s.v)), expected = flat(Q * unflat(force(term, s.x, s.v)));
+  const VecX x = flat((Q * unflat(s.x)).colwise() + Vec3(0.3, -2.0, 1.1)), v = flat(Q * unflat(s.v)),
+             expected = flat(Q * unflat(force(term, s.x, s.v)));
   EXPECT_NEAR(energy(term, x), energy(term, s.x), 1e-12 * energy(term, s.x));
   EXPECT_LT((force(term, x, v) - expected).norm(), 1e-12 * expected.norm());
 }
@@ -227,5 +240,6 @@ TEST(NodalDilatation, SecondBlockOfAStateAndAChangedPattern) {
 TEST(NodalDilatation, RefusesABadMaterialNamingTheBody) {
   Material m = soft_material();
   m.poissons_ratio = 0.5;
-  expect_contains(message_of([&] { NodalDilatation("liver", one_tet(), m, {}, 0); }), "body \"liver\": poissons_ratio = 0.5 must lie in (-1, 0.5)");
+  expect_contains(message_of([&] { NodalDilatation("liver", one_tet(), m, {}, 0); }),
+                  "body \"liver\": poissons_ratio = 0.5 must lie in (-1, 0.5)");
 }

@@ -41,7 +41,8 @@ TEST(SoftBody, TwoBodiesInOneStateDoNotMix) {
 }
 
 TEST(SoftBody, UniaxialStressShowsAsVonMises) {
-  // F = diag(l, t, t), t = 1 - nu (l - 1): only S_xx carries stress, T_xx = E (l - 1), Cauchy stress T_xx l / (l t^2).
+  // F = diag(l, t, t), t = 1 - nu (l - 1): only S_xx carries stress, T_xx = E (l - 1), Cauchy stress T_xx l /
+  // (l t^2).
   const TetMesh rest = jittered_cube(2, 0.1, 34);
   const Material m = soft_material();
   const double l = 1.2, t = 1.0 - m.poissons_ratio * (l - 1.0);
@@ -64,12 +65,14 @@ TEST(SoftBody, EnergyOfAUniformStretch) {
 }
 
 TEST(SoftBody, VolumetricShareIsOfLambdaAlone) {
-  // With half the share, the energy of a uniform stretch has half its lambda part: mu sum (s_i - 1)^2 + lambda/4 (sum (s_i - 1))^2.
+  // With half the share, the energy of a uniform stretch has half its lambda part: mu sum (s_i - 1)^2 +
+  // lambda/4 (sum (s_i - 1))^2.
   const TetMesh rest = jittered_cube(1, 0.0, 36);
   const Material m = soft_material();
   const OneBody at(flat(Vec3(1.3, 0.9, 1.1).asDiagonal() * rest.nodes), VecX::Zero(3 * rest.nodes.cols()));
   SoftBody body("b", rest, m, {.volumetric_share = 0.5}, at.id);
-  EXPECT_NEAR(body.energy(at.state.view()), m.mu() * (0.09 + 0.01 + 0.01) + 0.25 * m.lambda() * 0.3 * 0.3, 1e-14);
+  EXPECT_NEAR(body.energy(at.state.view()), m.mu() * (0.09 + 0.01 + 0.01) + 0.25 * m.lambda() * 0.3 * 0.3,
+              1e-14);
   EXPECT_EQ(body.materials()[0].lambda(), m.lambda());
 }
 
@@ -117,13 +120,15 @@ TEST(SoftBody, RefusesBadMeshesWithElementAndValue) {
   expect_contains(message_of([&] { SoftBody("b", nan, soft_material(), {}, 0); }), "has volume nan");
   TetMesh outside = one_tet();
   outside.tets(2, 0) = 4;
-  expect_contains(message_of([&] { SoftBody("b", outside, soft_material(), {}, 0); }), "element 0 names node 4 of 4");
+  expect_contains(message_of([&] { SoftBody("b", outside, soft_material(), {}, 0); }),
+                  "element 0 names node 4 of 4");
 }
 
 TEST(SoftBody, RefusesABadMaterialNamingTheBody) {
   Material m = soft_material();
   m.poissons_ratio = 0.5;
-  expect_contains(message_of([&] { SoftBody("liver", one_tet(), m, {}, 0); }), "body \"liver\": poissons_ratio = 0.5 must lie in (-1, 0.5)");
+  expect_contains(message_of([&] { SoftBody("liver", one_tet(), m, {}, 0); }),
+                  "body \"liver\": poissons_ratio = 0.5 must lie in (-1, 0.5)");
   SoftBody body("liver", one_tet(), soft_material(), {}, 0);
   expect_contains(message_of([&] { body.set_materials({m}); }), "body \"liver\": poissons_ratio = 0.5");
 }

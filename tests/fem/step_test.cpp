@@ -22,7 +22,9 @@ struct Room {
     int next = (pattern.slot_count() - pattern.block_rows()) / 2;
     A.values.assign(9 * static_cast<std::size_t>(next), 77.0f);
     each_pair([&](int i, int j, int slot) {
-      if (i < j) A.place[static_cast<std::size_t>(slot)] = A.place[static_cast<std::size_t>(pattern.slot(j, i))] = --next;
+      if (i < j)
+        A.place[static_cast<std::size_t>(slot)] = A.place[static_cast<std::size_t>(pattern.slot(j, i))] =
+            --next;
     });
     A.scale = kScale;
     A.diagonal = VecX::Ones(state.layout().u_size);
@@ -31,11 +33,16 @@ struct Room {
   template <class Work>
   void each_pair(Work&& work) const {
     for (int i = 0; i < pattern.block_rows(); ++i)
-      for (int s = pattern.row_start()[static_cast<std::size_t>(i)]; s < pattern.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
-        if (pattern.columns()[static_cast<std::size_t>(s)] != i) work(i, pattern.columns()[static_cast<std::size_t>(s)], s);
+      for (int s = pattern.row_start()[static_cast<std::size_t>(i)];
+           s < pattern.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
+        if (pattern.columns()[static_cast<std::size_t>(s)] != i)
+          work(i, pattern.columns()[static_cast<std::size_t>(s)], s);
   }
   Mat3 block(int i, int j, int slot) const {
-    const Mat3 above = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(A.values.data() + 9 * A.place[static_cast<std::size_t>(slot)]).cast<double>() / kScale;
+    const Mat3 above = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(
+                           A.values.data() + 9 * A.place[static_cast<std::size_t>(slot)])
+                           .cast<double>() /
+                       kScale;
     return i < j ? above : above.transpose();
   }
 };
@@ -62,13 +69,15 @@ Material material_with(double stiffness_damping, double mass_damping) {
 std::vector<std::string> instruction_sets() {
   std::vector<std::string> out;
   for (const char* name : {"baseline", "avx2", "avx512"})
-    if (message_of([&] { SoftBody("b", one_tet(), soft_material(), {.instructions = name}, 0); }).empty()) out.emplace_back(name);
+    if (message_of([&] { SoftBody("b", one_tet(), soft_material(), {.instructions = name}, 0); }).empty())
+      out.emplace_back(name);
   return out;
 }
 
 }  // namespace
 
-// One pass gives what three give: force less stiffness times the shift, and the blocks off the diagonal to single precision, every one of them.
+// One pass gives what three give: force less stiffness times the shift, and the blocks off the diagonal to
+// single precision, every one of them.
 TEST(Step, IsForceProductAndTangentInOne) {
   int compared = 0;
   for (const std::string& set : instruction_sets())
@@ -105,12 +114,15 @@ TEST(Step, IsForceProductAndTangentInOne) {
           for (const double value : whole.body.values()) largest = std::max(largest, std::abs(value));
           const VecX masses = lumped_masses(c.rest, material.density);
           room.each_pair([&](int i, int j, int s) {
-            const Mat3 exact = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(whole.body.block(s));
-            EXPECT_LT((room.block(i, j, s) - exact).norm(), 1e-7 * exact.norm() + 1e-12 * largest) << set << ", block " << s;
+            const Mat3 exact =
+                Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(whole.body.block(s));
+            EXPECT_LT((room.block(i, j, s) - exact).norm(), 1e-7 * exact.norm() + 1e-12 * largest)
+                << set << ", block " << s;
             ++compared;
           });
           for (int i = 0; i < room.pattern.block_rows(); ++i) {
-            for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(room.A.diagonal[3 * i + axis], 1.0 + kD * material.mass_damping * masses[i], 1e-14);
+            for (int axis = 0; axis < 3; ++axis)
+              EXPECT_NEAR(room.A.diagonal[3 * i + axis], 1.0 + kD * material.mass_damping * masses[i], 1e-14);
           }
         }
   EXPECT_GT(compared, 100000);
@@ -124,7 +136,8 @@ TEST(Step, OfALargeBodyIsTheSame) {
     for (const int threads : {1, 3}) {
       workers::set_count(threads);
       OneBody at(c.x, c.v);
-      SoftBody body("b", c.rest, material_with(0.0, 0.0), {.tangent = Tangent::kWarped, .instructions = set}, at.id);
+      SoftBody body("b", c.rest, material_with(0.0, 0.0), {.tangent = Tangent::kWarped, .instructions = set},
+                    at.id);
       Room room(body, at.state);
       VecX f = VecX::Zero(c.x.size());
       dynamics::BorderedMatrix whole;
@@ -135,7 +148,8 @@ TEST(Step, OfALargeBodyIsTheSame) {
         body.add_step(at.state.view(), c.w, kK, kD, f, room.A);
         double worst = 0.0;
         room.each_pair([&](int i, int j, int s) {
-          const Mat3 exact = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(whole.body.block(s));
+          const Mat3 exact =
+              Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(whole.body.block(s));
           worst = std::max(worst, (room.block(i, j, s) - exact).norm() / exact.norm());
         });
         EXPECT_LT(worst, 1e-6) << set << ", " << threads << " threads, run " << run;

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kOthers = 7.0;
 
-/// A body of some chunks behind a block of three nodes that are not its own, in a matrix that has pairs which no element joins.
+/// A body of some chunks behind a block of three nodes that are not its own, in a matrix that has pairs which
+/// no element joins.
 struct Scene {
   TetMesh rest = jittered_cube(9, 0.15, 31);  // 4,374 elements in several chunks
   dynamics::State state;
@@ -21,7 +22,10 @@ struct Scene {
   dynamics::BorderedMatrix A;
   SoftBody body;
 
-  explicit Scene(const SoftBodyOptions& options) : others(insert("others", VecX::Zero(9))), id(insert("body", shaken())), body("b", rest, material(), options, id) {
+  explicit Scene(const SoftBodyOptions& options)
+      : others(insert("others", VecX::Zero(9))),
+        id(insert("body", shaken())),
+        body("b", rest, material(), options, id) {
     dynamics::PatternBuilder builder(state.layout());
     body.add_pattern(builder);
     const int last = state.layout().node_count() - 1;
@@ -34,7 +38,8 @@ struct Scene {
 
   int insert(const std::string& name, const VecX& x) {
     const int size = static_cast<int>(x.size());
-    return state.insert(dynamics::BlockSpec{.name = name, .q_size = size, .u_size = size}, x, Random(33).vector(size));
+    return state.insert(dynamics::BlockSpec{.name = name, .q_size = size, .u_size = size}, x,
+                        Random(33).vector(size));
   }
   VecX shaken() const {
     Random random(32);
@@ -46,7 +51,8 @@ struct Scene {
     m.mass_damping = 0.3;
     return m;
   }
-  std::size_t own_values() const { return 9 * static_cast<std::size_t>(A.body.row_start()[3]); }  ///< where the body's rows begin
+  /// where the body's rows begin
+  std::size_t own_values() const { return 9 * static_cast<std::size_t>(A.body.row_start()[3]); }
 
   std::vector<double> added(double k_scale, double d_scale) {
     A.set_zero();
@@ -76,11 +82,15 @@ struct Scene {
 
 TEST(StoredTangent, IsTheAddedOneWhateverStoodThere) {
   for (const char* instructions : {"baseline", "avx2", "avx512"}) {
-    if (!message_of([&] { SoftBody("b", one_tet(), soft_material(), {.instructions = instructions}, 0); }).empty()) continue;
+    if (!message_of([&] {
+           SoftBody("b", one_tet(), soft_material(), {.instructions = instructions}, 0);
+         }).empty())
+      continue;
     for (const bool full : {false, true}) {
       Scene scene({.tangent = Tangent::kExact, .full_damping_tangent = full, .instructions = instructions});
       for (const int threads : {1, 2}) {
-        SCOPED_TRACE(std::string(instructions) + (full ? ", unsymmetric, threads: " : ", threads: ") + std::to_string(threads));
+        SCOPED_TRACE(std::string(instructions) + (full ? ", unsymmetric, threads: " : ", threads: ") +
+                     std::to_string(threads));
         workers::set_count(threads);
         scene.expect_same(0.7, 1.9);
         scene.expect_same(0.7, 0.0);

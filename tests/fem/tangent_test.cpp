@@ -63,10 +63,9 @@ TEST(Tangent, ForceIsMinusTheGradientOfTheEnergy) {
     SoftBody body("b", m.rest, soft_material(), {}, 0);
     const VecX w = Random(7).vector(m.x.size());
     const VecX f = force(body, m.x, VecX::Zero(m.x.size()));
-    if (shake > 0.1) {
-      EXPECT_GT(body.counts().inverted, 3);
-    }
-    expect_slope_two([&](double h) { return VecX::Constant(1, energy(body, m.x + h * w)); }, VecX::Constant(1, -f.dot(w)), 4e-4, "energy");
+    if (shake > 0.1) { EXPECT_GT(body.counts().inverted, 3); }
+    expect_slope_two([&](double h) { return VecX::Constant(1, energy(body, m.x + h * w)); },
+                     VecX::Constant(1, -f.dot(w)), 4e-4, "energy");
   }
 }
 
@@ -75,10 +74,9 @@ TEST(Tangent, ExactTangentIsTheDerivativeOfTheForce) {
     Moving m(4, shake);
     const VecX zero = VecX::Zero(m.x.size()), w = Random(8).vector(m.x.size());
     SoftBody body("b", m.rest, soft_material(), {}, 0);
-    expect_slope_two([&](double h) { return force(body, m.x + h * w, zero); }, -apply(body, m.x, zero, 1, 0, w), 4e-4, "force");
-    if (shake > 0.1) {
-      EXPECT_GT(body.counts().inverted, 3);
-    }
+    expect_slope_two([&](double h) { return force(body, m.x + h * w, zero); },
+                     -apply(body, m.x, zero, 1, 0, w), 4e-4, "force");
+    if (shake > 0.1) { EXPECT_GT(body.counts().inverted, 3); }
   }
 }
 
@@ -86,10 +84,13 @@ TEST(Tangent, OneElementInEveryShape) {
   const TetMesh rest = one_tet();
   Random random(11);
   for (const auto& [name, stretches] : stretch_cases()) {
-    const VecX x = flat(deformation(random, stretches) * rest.nodes), zero = VecX::Zero(12), w = random.vector(12);
+    const VecX x = flat(deformation(random, stretches) * rest.nodes), zero = VecX::Zero(12),
+               w = random.vector(12);
     SoftBody body("b", rest, soft_material(), {}, 0);
-    expect_slope_two([&](double h) { return VecX::Constant(1, energy(body, x + h * w)); }, VecX::Constant(1, -force(body, x, zero).dot(w)), 1e-2, name);
-    expect_slope_two([&](double h) { return force(body, x + h * w, zero); }, -apply(body, x, zero, 1, 0, w), 1e-2, name);
+    expect_slope_two([&](double h) { return VecX::Constant(1, energy(body, x + h * w)); },
+                     VecX::Constant(1, -force(body, x, zero).dot(w)), 1e-2, name);
+    expect_slope_two([&](double h) { return force(body, x + h * w, zero); }, -apply(body, x, zero, 1, 0, w),
+                     1e-2, name);
   }
 }
 
@@ -98,7 +99,8 @@ TEST(Tangent, FullDampingTangentIsTheDerivativeOfTheDampedForce) {
   SoftBody body("b", m.rest, damped(), {.tangent = Tangent::kExact, .full_damping_tangent = true}, 0);
   EXPECT_FALSE(body.traits().symmetric_tangent);
   const VecX w = Random(9).vector(m.x.size());
-  expect_slope_two([&](double h) { return force(body, m.x + h * w, m.v); }, -apply(body, m.x, m.v, 1, 0, w), 2e-3, "by position");
+  expect_slope_two([&](double h) { return force(body, m.x + h * w, m.v); }, -apply(body, m.x, m.v, 1, 0, w),
+                   2e-3, "by position");
   // The damping force is linear in the velocity: its derivative is exact.
   const VecX change = force(body, m.x, m.v + w) - force(body, m.x, m.v);
   EXPECT_LT((change + apply(body, m.x, m.v, 0, 1, w)).norm(), 1e-12 * change.norm());
@@ -149,7 +151,8 @@ TEST(Tangent, ProjectedIsPositiveSemiDefiniteWhereExactIsNot) {
 TEST(Tangent, WarpedEqualsExactAtARotatedRestShape) {
   const TetMesh rest = jittered_cube(2, 0.1, 9);
   const VecX x = flat(Random(12).rotation() * rest.nodes), zero = VecX::Zero(x.size());
-  SoftBody exact("b", rest, soft_material(), {}, 0), warped("b", rest, soft_material(), {.tangent = Tangent::kWarped}, 0);
+  SoftBody exact("b", rest, soft_material(), {}, 0),
+      warped("b", rest, soft_material(), {.tangent = Tangent::kWarped}, 0);
   const MatX K = assembled(exact, x, zero, 1, 0);
   EXPECT_LT((assembled(warped, x, zero, 1, 0) - K).norm(), 1e-12 * K.norm());
 }

@@ -29,7 +29,8 @@ struct Solid {
   explicit Solid(const TriMesh& mesh) {
     Mat3 second = Mat3::Zero();
     for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
-      const Vec3 a = mesh.vertices.col(mesh.faces(0, f)), b = mesh.vertices.col(mesh.faces(1, f)), c = mesh.vertices.col(mesh.faces(2, f)), s = a + b + c;
+      const Vec3 a = mesh.vertices.col(mesh.faces(0, f)), b = mesh.vertices.col(mesh.faces(1, f)),
+                 c = mesh.vertices.col(mesh.faces(2, f)), s = a + b + c;
       const double v = a.dot(b.cross(c)) / 6.0;
       volume += v;
       middle += v * s / 4.0;
@@ -54,7 +55,8 @@ TEST(TaperedBone, OfOneRadiusIsTheCapsule) {
   const fem::TaperedBone bone = fem::tapered_bone(bone_of(0.02, 0.02, 0.11));
   EXPECT_NEAR(bone.volume, fem::bone_volume(capsule), 1e-15);
   EXPECT_LT((bone.unit_moments - fem::bone_inertia(capsule).principal).norm(), 1e-15);
-  EXPECT_LT((bone.frame.translation - (bone_of(0.02, 0.02, 0.11).head + 0.055 * Vec3(2, -1, 2) / 3.0)).norm(), 1e-15);
+  EXPECT_LT((bone.frame.translation - (bone_of(0.02, 0.02, 0.11).head + 0.055 * Vec3(2, -1, 2) / 3.0)).norm(),
+            1e-15);
   EXPECT_LT((bone.frame.rotation * Vec3::UnitZ() - Vec3(2, -1, 2) / 3.0).norm(), 1e-15);
 }
 
@@ -68,7 +70,8 @@ TEST(TaperedBone, WhoseBallHoldsTheOtherIsThatBall) {
   }
 }
 
-// Its surface is inscribed, 24 meridians and 6 rings a cap: it lacks 1 - (24/2 pi) sin(2 pi/24) = 1.1 % of its sections and as much again of the caps.
+// Its surface is inscribed, 24 meridians and 6 rings a cap: it lacks 1 - (24/2 pi) sin(2 pi/24) = 1.1 % of
+// its sections and as much again of the caps.
 TEST(TaperedBone, HasTheMassOfItsSurface) {
   for (const auto& [r0, r1] : {std::pair{0.03, 0.015}, {0.01, 0.04}, {0.02, 0.02}}) {
     const palpate::Bone b = bone_of(r0, r1, 0.12);
@@ -79,8 +82,10 @@ TEST(TaperedBone, HasTheMassOfItsSurface) {
     EXPECT_NEAR(solid.volume / bone.volume, 1.0, 0.03);
     EXPECT_LT(solid.volume, bone.volume);
     EXPECT_LT(solid.middle.norm(), 0.01 * 0.12) << "the frame's origin is the centre of mass";
-    EXPECT_LT(((solid.moments - bone.unit_moments).array() / bone.unit_moments.array()).abs().maxCoeff(), 0.04);
-    EXPECT_NEAR(surface.vertices.row(2).maxCoeff() - surface.vertices.row(2).minCoeff(), 0.12 + r0 + r1, 1e-12);
+    EXPECT_LT(((solid.moments - bone.unit_moments).array() / bone.unit_moments.array()).abs().maxCoeff(),
+              0.04);
+    EXPECT_NEAR(surface.vertices.row(2).maxCoeff() - surface.vertices.row(2).minCoeff(), 0.12 + r0 + r1,
+                1e-12);
   }
 }
 

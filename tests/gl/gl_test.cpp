@@ -38,9 +38,7 @@ TEST(GlContext, AnotherThreadTakesItOnlyAfterRelease) {
   std::thread([&] {
     try {
       context.make_current();
-    } catch (const InternalError& e) {
-      refused = std::string(e.what()).find("release") != std::string::npos;
-    }
+    } catch (const InternalError& e) { refused = std::string(e.what()).find("release") != std::string::npos; }
   }).join();
   context.release();
   std::thread([&] {
@@ -55,20 +53,23 @@ TEST(GlContext, AnotherThreadTakesItOnlyAfterRelease) {
 
 TEST(GlProgram, UnknownShaderAndUniformAreNamed) {
   gl::Context::shared();
-  EXPECT_THROW(gl::Program("contact/patch.vert", "contact/patch.vert"), InternalError);  // two vertex shaders: does not link
+  // two vertex shaders: does not link
+  EXPECT_THROW(gl::Program("contact/patch.vert", "contact/patch.vert"), InternalError);
   try {
     gl::shader_source("contact/patch.vrt");
     FAIL();
   } catch (const InternalError& e) {
-    EXPECT_NE(std::string(e.what()).find("did you mean \"contact/patch.vert\""), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("did you mean \"contact/patch.vert\""), std::string::npos)
+        << e.what();
   }
   gl::Program program("contact/patch.vert", "contact/patch.frag");
   EXPECT_THROW(program.set("sclae", 1.0f), InternalError);
   gl::check_errors("the test");
 }
 
-// A triangle over the lower left half of a 4 x 4 image covers the pixels whose centre has x + y < 4 (x, y in pixels from
-// the corner): rows of 3 (centre 3.5 + 0.5 = 4 lies on the edge), 2, 1 and 0 pixels inside; those on the edge may go either way.
+// A triangle over the lower left half of a 4 x 4 image covers the pixels whose centre has x + y < 4 (x, y in
+// pixels from the corner): rows of 3 (centre 3.5 + 0.5 = 4 lies on the edge), 2, 1 and 0 pixels inside; those
+// on the edge may go either way.
 TEST(GlFramebuffer, DrawsIdsAndDepthWhereTheTriangleIs) {
   gl::Context::shared();
   gl::Framebuffer target(4, 4, {gl::Format::kR32ui}, true);
@@ -121,9 +122,7 @@ TEST(GlFramebuffer, ReadsBackColoursAndRefusesWrongFormatsAndSizes) {
   try {
     gl::Texture(0, 8, gl::Format::kRgba8);
     FAIL();
-  } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("0 x 8"), std::string::npos);
-  }
+  } catch (const Error& e) { EXPECT_NE(std::string(e.what()).find("0 x 8"), std::string::npos); }
 }
 
 TEST(GlBuffer, GrowsReadsAndWrites) {

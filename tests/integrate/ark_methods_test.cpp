@@ -44,7 +44,8 @@ struct Table {
     const Eigen::VectorXcd stages = M.partialPivLu().solve(Eigen::VectorXcd::Ones(s));
     return std::abs(1.0 + z * (b.cast<Complex>().transpose() * stages)(0));
   }
-  /// With no pole in the left half plane the maximum principle leaves the imaginary axis to look at; poles are at 1 / a_ii > 0.
+  /// With no pole in the left half plane the maximum principle leaves the imaginary axis to look at; poles
+  /// are at 1 / a_ii > 0.
   bool a_stable() const {
     if (A.diagonal().minCoeff() < 0.0) return false;
     for (double e = -4.0; e < 8.0; e += 0.01)
@@ -52,8 +53,9 @@ struct Table {
     return true;
   }
   double at_infinity() const { return amplification({-1e8, 0.0}); }
-  /// Of what a stiff mode leaves: b A^-1 c^j = 1 for all j > 0 (a first explicit stage, where c = 0, left out).  So it is where b is the last row of A and its
-  /// c is 1; and in SDIRK-2-1, c = (1, 0), b A^-1 = (1, 1/2).
+  /// Of what a stiff mode leaves: b A^-1 c^j = 1 for all j > 0 (a first explicit stage, where c = 0, left
+  /// out).  So it is where b is the last row of A and its c is 1; and in SDIRK-2-1, c = (1, 0), b A^-1 = (1,
+  /// 1/2).
   bool stiffly_accurate() const {
     const Eigen::Index e = A(0, 0) == 0.0 ? 1 : 0, n = A.rows() - e;
     const VecX row = MatX(A.bottomRightCorner(n, n)).transpose().partialPivLu().solve(b.tail(n));
@@ -70,7 +72,8 @@ struct Table {
 
 const std::vector<integrate::ArkMethod>& methods() { return integrate::ark_methods(); }
 
-/// d^T A^(p-1) 1 = 1/p! for the embedded weights d of a pair p (p - 1): of the conditions of order p the tall tree's, the only one on a linear motion.
+/// d^T A^(p-1) 1 = 1/p! for the embedded weights d of a pair p (p - 1): of the conditions of order p the tall
+/// tree's, the only one on a linear motion.
 double tall_tree_defect(ARKodeButcherTable t) {
   const Table table(ARKodeButcherTable_Copy(t));
   VecX stages = VecX::Ones(t->stages);
@@ -79,7 +82,8 @@ double tall_tree_defect(ARKodeButcherTable t) {
     stages = table.A * stages;
     factorial *= k;
   }
-  const double defect = std::abs(Eigen::Map<const VecX>(t->d, t->stages).dot(stages) * factorial * t->q - 1.0);
+  const double defect =
+      std::abs(Eigen::Map<const VecX>(t->d, t->stages).dot(stages) * factorial * t->q - 1.0);
   ARKodeButcherTable_Free(t);
   return defect;
 }
@@ -88,7 +92,8 @@ TEST(ArkMethods, ThreePairsAreSharperOnLinearMotion) {
   int sharper = 0;
   for (const auto& m : methods()) {
     if (m.implicit_table < 0 || m.embedded_order >= m.traits.order) continue;
-    const double defect = tall_tree_defect(ARKodeButcherTable_LoadDIRK(static_cast<ARKODE_DIRKTableID>(m.implicit_table)));
+    const double defect =
+        tall_tree_defect(ARKodeButcherTable_LoadDIRK(static_cast<ARKODE_DIRKTableID>(m.implicit_table)));
     EXPECT_EQ(m.sharper_on_linear_motion, defect < 1e-3) << m.name << ": " << defect;
     sharper += defect < 1e-3;
   }
@@ -101,7 +106,8 @@ TEST(ArkMethods, ImplicitTablesAreAsStableAsTheySay) {
     if (m.implicit_table < 0) continue;
     const Table t(ARKodeButcherTable_LoadDIRK(static_cast<ARKODE_DIRKTableID>(m.implicit_table)));
     EXPECT_TRUE(t.a_stable()) << m.name;
-    EXPECT_EQ(t.at_infinity() < 1e-5, m.traits.stability == dynamics::Stability::kL) << m.name << ": R(-inf) = " << t.at_infinity();
+    EXPECT_EQ(t.at_infinity() < 1e-5, m.traits.stability == dynamics::Stability::kL)
+        << m.name << ": R(-inf) = " << t.at_infinity();
     EXPECT_EQ(t.order, m.traits.order) << m.name;
     EXPECT_EQ(t.embedded, m.embedded_order) << m.name;
     EXPECT_EQ(m.traits.stiff_order, t.stiffly_accurate() ? t.stage_order() : t.stage_order() + 1) << m.name;
@@ -130,9 +136,12 @@ double imaginary_limit(const Table& t) {
 }
 
 TEST(ArkMethods, ExplicitTablesSayWhatTheyDoToUndampedMotion) {
-  const std::map<std::string, std::string> told = {
-      {"ark-erk-2", "amplifies undamped motion at every step"}, {"ark-erk-3", "stable below 1.7/w_max"}, {"ark-erk-4", "stable below 2.8/w_max"}, {"ark-erk-5", "amplifies undamped motion at every step"}};
-  const std::map<std::string, double> limit = {{"ark-erk-2", 0.0}, {"ark-erk-3", std::sqrt(3.0)}, {"ark-erk-4", std::sqrt(8.0)}, {"ark-erk-5", 0.0}};
+  const std::map<std::string, std::string> told = {{"ark-erk-2", "amplifies undamped motion at every step"},
+                                                   {"ark-erk-3", "stable below 1.7/w_max"},
+                                                   {"ark-erk-4", "stable below 2.8/w_max"},
+                                                   {"ark-erk-5", "amplifies undamped motion at every step"}};
+  const std::map<std::string, double> limit = {
+      {"ark-erk-2", 0.0}, {"ark-erk-3", std::sqrt(3.0)}, {"ark-erk-4", std::sqrt(8.0)}, {"ark-erk-5", 0.0}};
   int checked = 0;
   for (const auto& m : methods()) {
     if (m.explicit_table < 0 || m.implicit_table >= 0) continue;
@@ -146,7 +155,8 @@ TEST(ArkMethods, ExplicitTablesSayWhatTheyDoToUndampedMotion) {
 
 TEST(ArkMethods, CashAndKarpAmplifyByTheSixthPower) {  // |R(iy)| = 1 + y^6/7200 + ...
   const Table t(ARKodeButcherTable_LoadERK(ARKODE_CASH_KARP_6_4_5));
-  for (double y : {0.1, 0.2, 0.4}) EXPECT_NEAR((t.amplification({0.0, y}) - 1.0) * 7200.0 / std::pow(y, 6), 1.0, 2.0 * y * y + 1e-3) << y;
+  for (double y : {0.1, 0.2, 0.4})
+    EXPECT_NEAR((t.amplification({0.0, y}) - 1.0) * 7200.0 / std::pow(y, 6), 1.0, 2.0 * y * y + 1e-3) << y;
 }
 
 TEST(ArkMethods, NoStableTableOfTheInstalledVersionIsMissing) {
@@ -163,21 +173,35 @@ TEST(ArkMethods, NoStableTableOfTheInstalledVersionIsMissing) {
   EXPECT_EQ(stable, 23);
 }
 
-// --- Order on a stiff mode ---------------------------------------------------------------------------------------------------------------
+// --- Order on a stiff mode
+// ---------------------------------------------------------------------------------------------------------------
 //
-// Prothero and Robinson's problem in mechanical form: a stiff spring and damper that follow a smooth motion g(t),
-//     q' = u,   u' = -w^2 (q - g) - 2 w (u - g') + g'',       y = (q, u),  y' = L (y - G) + G',   G = (g, g'),
-// both eigenvalues of L are -w, and h w >> 1.  From G(0) the exact solution is G.  Put G into the stages (c^j by entries, A, b, c the table):
-//     D = sum_j h^(j+1) d_j G^(j+1) / j!,  d_j = c^(j+1) / (j+1) - A c^j  of the stages,     and  e_j = 1 / (j+1) - b.c^j  of the step.
-// d_j = 0 below the stage order.  The errors E of the stages and e of the step then obey E = e_n + h A L E - D, e_(n+1) = e_n + h b L E - (e_j terms), so that
-//     e_(n+1) = R(h L) e_n + sum_j h^(j+1) / j! [ (b A^-1 d_j - e_j) + (h L)^-1 b A^-2 d_j + O((h w)^-2) ] G^(j+1),     L^-1 = [-2/w, -1/w^2; 1, 0].
-// (A first explicit stage has d = 0: it is left out of A, b and d.)  R(h L) = R(-inf) + O((h L)^-1), |R(-inf)| < 1: errors are forgotten, not summed.
-//   stiffly accurate  b A^-1 d_j = e_j for all j.  What is left is (h L)^-1: position 2/w h^j, velocity h^j, j the first with b A^-2 d_j != 0: in general the
-//                     stage order, in both.  In the velocity no 1/w makes it small: a stiff spring's velocity is the derivative of a constraint.
-//   else              position h^(j+1), j the first with b A^-1 d_j != e_j; the velocity loses one order to (h L)^-1 of that, or to b A^-2 d_j != 0.
-// Were the stiffness all in the damper, q would be slow, and what is of order h^j here would hide behind the classical error of q: hence w^2 and 2 w.
+// Prothero and Robinson's problem in mechanical form: a stiff spring and damper that follow a smooth motion
+// g(t),
+//     q' = u,   u' = -w^2 (q - g) - 2 w (u - g') + g'',       y = (q, u),  y' = L (y - G) + G',   G = (g,
+//     g'),
+// both eigenvalues of L are -w, and h w >> 1.  From G(0) the exact solution is G.  Put G into the stages (c^j
+// by entries, A, b, c the table):
+//     D = sum_j h^(j+1) d_j G^(j+1) / j!,  d_j = c^(j+1) / (j+1) - A c^j  of the stages,     and  e_j = 1 /
+//     (j+1) - b.c^j  of the step.
+// d_j = 0 below the stage order.  The errors E of the stages and e of the step then obey E = e_n + h A L E -
+// D, e_(n+1) = e_n + h b L E - (e_j terms), so that
+//     e_(n+1) = R(h L) e_n + sum_j h^(j+1) / j! [ (b A^-1 d_j - e_j) + (h L)^-1 b A^-2 d_j + O((h w)^-2) ]
+//     G^(j+1),     L^-1 = [-2/w, -1/w^2; 1, 0].
+// (A first explicit stage has d = 0: it is left out of A, b and d.)  R(h L) = R(-inf) + O((h L)^-1),
+// |R(-inf)| < 1: errors are forgotten, not summed.
+//   stiffly accurate  b A^-1 d_j = e_j for all j.  What is left is (h L)^-1: position 2/w h^j, velocity h^j,
+//   j the first with b A^-2 d_j != 0: in general the
+//                     stage order, in both.  In the velocity no 1/w makes it small: a stiff spring's velocity
+//                     is the derivative of a constraint.
+//   else              position h^(j+1), j the first with b A^-1 d_j != e_j; the velocity loses one order to
+//   (h L)^-1 of that, or to b A^-2 d_j != 0.
+// Were the stiffness all in the damper, q would be slow, and what is of order h^j here would hide behind the
+// classical error of q: hence w^2 and 2 w.
 
-struct StiffOrders { int position = 0, velocity = 0; };
+struct StiffOrders {
+  int position = 0, velocity = 0;
+};
 
 StiffOrders stiff_orders(const Table& t) {
   const Eigen::Index s = t.A.rows(), explicit_first = t.A(0, 0) == 0.0 ? 1 : 0, n = s - explicit_first;
@@ -187,7 +211,8 @@ StiffOrders stiff_orders(const Table& t) {
   for (int j = 1; j <= 5 && out.position * out.velocity == 0; ++j) {
     const VecX d = (VecX(t.c.array().pow(j + 1) / (j + 1)) - t.A * VecX(t.c.array().pow(j))).tail(n);
     const double e = 1.0 / (j + 1) - t.b.dot(VecX(t.c.array().pow(j)));
-    const bool direct = std::abs(b.dot(inverse * d) - e) > 1e-8, next = std::abs(b.dot(inverse * (inverse * d))) > 1e-8;
+    const bool direct = std::abs(b.dot(inverse * d) - e) > 1e-8,
+               next = std::abs(b.dot(inverse * (inverse * d))) > 1e-8;
     if (out.velocity == 0 && (direct || next)) out.velocity = j;
     if (out.position == 0 && t.stiffly_accurate() && next) out.position = j;
     if (out.position == 0 && !t.stiffly_accurate() && direct) out.position = j + 1;
@@ -202,7 +227,8 @@ struct Follow final : dynamics::ForceTerm {
   std::string_view name() const override { return "follow"; }
   dynamics::TermTraits traits() const override { return {}; }
   void add_force(const dynamics::StateView& s, VecX& f) override {
-    f.array() += -kStiff * kStiff * (s.q.array() - std::sin(s.time)) - 2.0 * kStiff * (s.u.array() - std::cos(s.time));
+    f.array() +=
+        -kStiff * kStiff * (s.q.array() - std::sin(s.time)) - 2.0 * kStiff * (s.u.array() - std::cos(s.time));
   }
   void add_tangent(const dynamics::StateView&, double k, double d, dynamics::BorderedMatrix& A) override {
     A.body.add(0, (k * kStiff * kStiff + d * 2.0 * kStiff) * Mat3::Identity());
@@ -212,7 +238,8 @@ struct Follow final : dynamics::ForceTerm {
   }
 };
 
-/// g'': on the explicit side of an additive pair, whose defects there enter by (h w)^-1 less, and change no order.
+/// g'': on the explicit side of an additive pair, whose defects there enter by (h w)^-1 less, and change no
+/// order.
 struct Push final : dynamics::ForceTerm {
   std::string_view name() const override { return "push"; }
   dynamics::TermTraits traits() const override { return {.stiff = false}; }
@@ -221,13 +248,16 @@ struct Push final : dynamics::ForceTerm {
   void apply_tangent(const dynamics::StateView&, double, double, const VecX&, VecX&) override {}
 };
 
-struct StiffErrors { double position = 0.0, velocity = 0.0; };
+struct StiffErrors {
+  double position = 0.0, velocity = 0.0;
+};
 
 /// Largest errors from 0.8 to 1.6 s, where what the first steps made is forgotten.
 StiffErrors stiff_errors(const std::string& name, double h) {
   dynamics::State state;
   dynamics::System system;
-  const int id = state.insert(dynamics::BlockSpec{.name = "one", .q_size = 3, .u_size = 3}, VecX::Zero(3), VecX::Ones(3));
+  const int id = state.insert(dynamics::BlockSpec{.name = "one", .q_size = 3, .u_size = 3}, VecX::Zero(3),
+                              VecX::Ones(3));
   system.add(std::make_shared<Follow>());
   system.add(std::make_shared<Push>());
   system.add(std::make_shared<fakes::NodalMass>(id, MatX::Identity(3, 3)));
@@ -253,7 +283,8 @@ TEST(ArkMethods, HaveTheirStiffOrder) {
   int checked = 0;
   for (const auto& m : methods()) {
     if (m.implicit_table < 0) continue;
-    const StiffOrders expected = stiff_orders(Table(ARKodeButcherTable_LoadDIRK(static_cast<ARKODE_DIRKTableID>(m.implicit_table))));
+    const StiffOrders expected =
+        stiff_orders(Table(ARKodeButcherTable_LoadDIRK(static_cast<ARKODE_DIRKTableID>(m.implicit_table))));
     EXPECT_GE(expected.position, m.traits.stiff_order) << m.name;
     std::vector<double> steps = {0.08, 0.04, 0.02, 0.01}, position, velocity;
     for (const double h : steps) {
@@ -262,7 +293,8 @@ TEST(ArkMethods, HaveTheirStiffOrder) {
       velocity.push_back(e.velocity);
     }
     const double p = fakes::slope(steps, position), v = fakes::slope(steps, velocity);
-    RecordProperty(m.name, fmt::format("position {:.2f} of {}, velocity {:.2f} of {}", p, expected.position, v, expected.velocity));
+    RecordProperty(m.name, fmt::format("position {:.2f} of {}, velocity {:.2f} of {}", p, expected.position,
+                                       v, expected.velocity));
     EXPECT_NEAR(p, expected.position, 0.15) << m.name << ", finest " << position.back();
     EXPECT_NEAR(v, expected.velocity, 0.15) << m.name << ", finest " << velocity.back();
     ++checked;
@@ -270,7 +302,8 @@ TEST(ArkMethods, HaveTheirStiffOrder) {
   EXPECT_EQ(checked, 28);
 }
 
-/// R = 1 + (l_I b_I + l_E b_E)^T Z with the stages Z = (I - l_I A_I - l_E A_E)^-1 1: one step of y' = l_I y + l_E y, h = 1.
+/// R = 1 + (l_I b_I + l_E b_E)^T Z with the stages Z = (I - l_I A_I - l_E A_E)^-1 1: one step of y' = l_I y +
+/// l_E y, h = 1.
 double one_step(const integrate::ArkMethod& m, double l_implicit, double l_explicit) {
   MatX A;
   VecX b;
@@ -279,23 +312,28 @@ double one_step(const integrate::ArkMethod& m, double l_implicit, double l_expli
     A += l * t.A;
     b += l * t.b;
   };
-  if (m.implicit_table >= 0) add(Table(ARKodeButcherTable_LoadDIRK(static_cast<ARKODE_DIRKTableID>(m.implicit_table))), l_implicit);
-  if (m.explicit_table >= 0) add(Table(ARKodeButcherTable_LoadERK(static_cast<ARKODE_ERKTableID>(m.explicit_table))), l_explicit);
+  if (m.implicit_table >= 0)
+    add(Table(ARKodeButcherTable_LoadDIRK(static_cast<ARKODE_DIRKTableID>(m.implicit_table))), l_implicit);
+  if (m.explicit_table >= 0)
+    add(Table(ARKodeButcherTable_LoadERK(static_cast<ARKODE_ERKTableID>(m.explicit_table))), l_explicit);
   const auto s = A.rows();
   return 1.0 + b.dot(VecX((MatX::Identity(s, s) - A).partialPivLu().solve(VecX::Ones(s))));
 }
 
-/// n equal steps of a linear equation are the n-th power of one: not so where a step begins with another f than that of its start.  Both sides act.
+/// n equal steps of a linear equation are the n-th power of one: not so where a step begins with another f
+/// than that of its start.  Both sides act.
 TEST(ArkMethods, EachStepBeginsWhereTheLastOneEnded) {
   constexpr double kImplicit = -0.9, kExplicit = 0.4, kStep = 0.5;
   constexpr int kSteps = 4;
   int checked = 0;
   for (const auto& m : methods()) {
     const bool one_side = m.implicit_table < 0 || m.explicit_table < 0;
-    const fakes::Equation e{[&](const VecX& y, VecX& f) { f = (one_side ? kImplicit + kExplicit : kImplicit) * y; },
-                            [&](const VecX&, MatX& J) { J(0, 0) = one_side ? kImplicit + kExplicit : kImplicit; }, VecX::Ones(1), VecX::Ones(1),
-                            [&](const VecX& y, VecX& g) { g = (one_side ? 0.0 : kExplicit) * y; }};
-    const double l_implicit = kStep * (one_side ? kImplicit + kExplicit : kImplicit), l_explicit = kStep * (one_side ? kImplicit + kExplicit : kExplicit);
+    const fakes::Equation e{
+        [&](const VecX& y, VecX& f) { f = (one_side ? kImplicit + kExplicit : kImplicit) * y; },
+        [&](const VecX&, MatX& J) { J(0, 0) = one_side ? kImplicit + kExplicit : kImplicit; }, VecX::Ones(1),
+        VecX::Ones(1), [&](const VecX& y, VecX& g) { g = (one_side ? 0.0 : kExplicit) * y; }};
+    const double l_implicit = kStep * (one_side ? kImplicit + kExplicit : kImplicit),
+                 l_explicit = kStep * (one_side ? kImplicit + kExplicit : kExplicit);
     IntegratorSpec spec;
     spec.name = m.name;
     spec.fixed_step = true;
@@ -303,7 +341,8 @@ TEST(ArkMethods, EachStepBeginsWhereTheLastOneEnded) {
     spec.newton_rtol = 1e-12;
     VecX y;
     double t = 0.0;
-    const auto stepper = integrate::make_ode_stepper(std::make_unique<fakes::DenseOde>(e, spec.rtol, y, t), spec);
+    const auto stepper =
+        integrate::make_ode_stepper(std::make_unique<fakes::DenseOde>(e, spec.rtol, y, t), spec);
     const auto result = stepper->advance_to(kSteps * kStep);
     ASSERT_TRUE(result.ok()) << m.name << ": " << result.message;
     EXPECT_NEAR(y[0] / std::pow(one_step(m, l_implicit, l_explicit), kSteps), 1.0, 1e-11) << m.name;

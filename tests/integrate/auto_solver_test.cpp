@@ -17,7 +17,8 @@ using namespace dynamics;
 
 // Rows of M + h^2 K sum to those of M: the number is what the definition says, from masses and diagonal.
 TEST(Auto, ReadsTheStiffnessNumberFromTheMatrix) {
-  for (const auto& [cells, h] : {std::pair{16, 1e-4}, {16, 1e-2}, {36, 1e-3}}) {  // the last has rows that are not looked at
+  // the last has rows that are not looked at
+  for (const auto& [cells, h] : {std::pair{16, 1e-4}, {16, 1e-2}, {36, 1e-3}}) {
     BentBeam beam(cells, 1e5);
     BorderedMatrix A;
     VecX b;
@@ -37,7 +38,8 @@ TEST(Auto, AnswersWhateverTheTableChooses) {
   int checked = 0;
   for (const auto& [cells, E] : {std::pair{8, 1e5}, {8, 1e9}, {24, 1e5}, {24, 1e8}}) {
     BentBeam beam(cells, E);
-    const auto solver = integrate::make_linear_solver("auto", {.linear_rtol = 1e-6}), direct = integrate::make_linear_solver("cholmod");
+    const auto solver = integrate::make_linear_solver("auto", {.linear_rtol = 1e-6}),
+               direct = integrate::make_linear_solver("cholmod");
     BorderedMatrix A;
     VecX b, x, exact;
     beam.at(0.4, 1e-2, A, b);
@@ -51,7 +53,8 @@ TEST(Auto, AnswersWhateverTheTableChooses) {
   EXPECT_EQ(checked, 4);
 }
 
-/// One after the other: balanced matrices of the beam at these steps, solved as accurately as the tolerance says; who had solved how many by then.
+/// One after the other: balanced matrices of the beam at these steps, solved as accurately as the tolerance
+/// says; who had solved how many by then.
 class AutoOnBalanced : public testing::Test {
  protected:
   static constexpr double kRtol = 1e-3;
@@ -62,7 +65,8 @@ class AutoOnBalanced : public testing::Test {
     BorderedMatrix A;
     VecX b;
     of.at(0.4, h, A, b);
-    return integrate::measured_choice(static_cast<double>(of.masses.size()), integrate::stiffness_number(A.body), kRtol);
+    return integrate::measured_choice(static_cast<double>(of.masses.size()),
+                                      integrate::stiffness_number(A.body), kRtol);
   }
   void solve(double h) { solve(beam, h); }
   void solve(BentBeam& of, double h) {

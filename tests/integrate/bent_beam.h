@@ -23,22 +23,25 @@ struct BentBeam {
   dynamics::State state;
   dynamics::System system;
   VecX rest, masses;
-  explicit BentBeam(int cells_along, double youngs_modulus, int cells_across = 0, const BentBeamOptions& options = {}) {
+  explicit BentBeam(int cells_along, double youngs_modulus, int cells_across = 0,
+                    const BentBeamOptions& options = {}) {
     const int across = cells_across > 0 ? cells_across : cells_along / 4;
     const double width = static_cast<double>(across) / cells_along;
     const TetMesh mesh = mesh::box(Vec3(1.0, width, width), {cells_along, across, across});
     const auto n = static_cast<int>(mesh.nodes.cols());
     rest = mesh.nodes.reshaped();
-    const int id = state.insert(dynamics::BlockSpec{.name = "beam", .q_size = 3 * n, .u_size = 3 * n}, rest, VecX::Zero(3 * n));
+    const int id = state.insert(dynamics::BlockSpec{.name = "beam", .q_size = 3 * n, .u_size = 3 * n}, rest,
+                                VecX::Zero(3 * n));
     fem::Material material{.youngs_modulus = youngs_modulus, .poissons_ratio = 0.4, .density = 1000.0};
     material.stiffness_damping = options.stiffness_damping;
     material.mass_damping = options.mass_damping;
-    system.add(std::static_pointer_cast<dynamics::ForceTerm>(
-        std::make_shared<fem::SoftBody>("beam", mesh, material, fem::SoftBodyOptions{.tangent = fem::Tangent::kWarped}, id)));
+    system.add(std::static_pointer_cast<dynamics::ForceTerm>(std::make_shared<fem::SoftBody>(
+        "beam", mesh, material, fem::SoftBodyOptions{.tangent = fem::Tangent::kWarped}, id)));
     masses = fem::lumped_masses(mesh, material.density);
     system.add(fem::make_gravity(masses, Vec3(0, 0, -9.81), id));
     system.add(fem::make_lumped_mass(mesh, material.density, id));
-    const std::vector<int> held = fem::dofs_of_nodes(fem::nodes_in_box(mesh.nodes, Vec3(-0.5 - 1e-9, -1, -1), Vec3(-0.5 + 1e-9, 1, 1)), 0, "xyz");
+    const std::vector<int> held = fem::dofs_of_nodes(
+        fem::nodes_in_box(mesh.nodes, Vec3(-0.5 - 1e-9, -1, -1), Vec3(-0.5 + 1e-9, 1, 1)), 0, "xyz");
     VecX x0(static_cast<Eigen::Index>(held.size()));
     Points points(3, x0.size());
     for (std::size_t i = 0; i < held.size(); ++i) {
@@ -58,7 +61,8 @@ struct BentBeam {
       system.add(fem::make_fixed(held, x0));
     system.prepare(state.view());
   }
-  /// Bends the middle line to a circle whose angle at the end is `angle`, writes the step matrix there, and a right-hand side: weight and a wave.
+  /// Bends the middle line to a circle whose angle at the end is `angle`, writes the step matrix there, and a
+  /// right-hand side: weight and a wave.
   void at(double angle, double h, dynamics::BorderedMatrix& A, VecX& b) {
     bend(angle);
     system.step_matrix(state.view(), 1.0, h, h * h, A);
@@ -81,7 +85,8 @@ struct BentBeam {
   void bend(double angle) {
     VecX q = rest;
     for (Eigen::Index i = 0; i < q.size(); i += 3) {
-      const double s = rest[i] + 0.5, z = rest[i + 2], turn = angle * s, radius = angle != 0.0 ? 1.0 / angle : 0.0;
+      const double s = rest[i] + 0.5, z = rest[i + 2], turn = angle * s,
+                   radius = angle != 0.0 ? 1.0 / angle : 0.0;
       if (angle == 0.0) continue;
       q[i] = (radius + z) * std::sin(turn) - 0.5;
       q[i + 2] = (radius + z) * std::cos(turn) - radius;
@@ -89,7 +94,8 @@ struct BentBeam {
     state.q() = q;
   }
   void load(double angle, double h, VecX& b) {
-    for (Eigen::Index i = 0; i < b.size(); ++i) b[i] = h * b[i] + masses[i / 3] * std::sin(7.0 * rest[i - i % 3] + angle);
+    for (Eigen::Index i = 0; i < b.size(); ++i)
+      b[i] = h * b[i] + masses[i / 3] * std::sin(7.0 * rest[i - i % 3] + angle);
     system.reduce(state.view(), b);
   }
 };

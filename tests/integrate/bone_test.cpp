@@ -1,4 +1,5 @@
-// Flesh around a free bone of a thousandth of its mass, under the integrators of the registry: what of its momentum is kept, and whether it is stable.
+// Flesh around a free bone of a thousandth of its mass, under the integrators of the registry: what of its
+// momentum is kept, and whether it is stable.
 #include <gtest/gtest.h>
 
 #include "fem/bone_in_flesh.h"
@@ -32,14 +33,18 @@ std::pair<double, double> drift(const IntegratorSpec& spec) {
   const Vec6 before = b.momentum();
   advance(b, spec, 0.2);
   const Vec6 change = b.momentum() - before;
-  return {change.head<3>().norm() / before.head<3>().norm(), change.tail<3>().norm() / before.tail<3>().norm()};
+  return {change.head<3>().norm() / before.head<3>().norm(),
+          change.tail<3>().norm() / before.tail<3>().norm()};
 }
 
-// Nodes on a bone move on circles, which a step replaces by chords: what is kept to rounding at every instant is kept in time to the method's order.
+// Nodes on a bone move on circles, which a step replaces by chords: what is kept to rounding at every instant
+// is kept in time to the method's order.
 TEST(Bone, FixedStepsKeepMomentumToTheirOrder) {
-  for (const char* name : {"linearly-implicit-euler", "backward-euler", "implicit-midpoint", "bdf2", "newmark", "generalized-alpha"}) {
+  for (const char* name : {"linearly-implicit-euler", "backward-euler", "implicit-midpoint", "bdf2",
+                           "newmark", "generalized-alpha"}) {
     const int order = find(integrate::stepper_registry(), name, "integrator").traits.order;
-    std::vector<double> steps = {0.005, 0.0025, 0.00125}, angular, linear;  // 10 ms does not resolve the flesh's own modes
+    // 10 ms does not resolve the flesh's own modes
+    std::vector<double> steps = {0.005, 0.0025, 0.00125}, angular, linear;
     for (const double h : steps) {
       const auto [dL, dP] = drift(spec_of(name, h));
       angular.push_back(dL);
@@ -61,8 +66,9 @@ TEST(Bone, ErrorControlKeepsMomentumToTheTolerance) {
   }
 }
 
-// A bone that presses its flesh together, let go at rest: forces of the flesh on its nodes are in balance, and stay so when it turns, for they turn with it.
-// A step that holds them while the arms turn sees a moment that is not there: with compressed flesh it grows, and spins the whole up out of nothing.
+// A bone that presses its flesh together, let go at rest: forces of the flesh on its nodes are in balance,
+// and stay so when it turns, for they turn with it. A step that holds them while the arms turn sees a moment
+// that is not there: with compressed flesh it grows, and spins the whole up out of nothing.
 TEST(Bone, ALightBoneUnderPrestressDoesNotSpinUp) {
   double spin[2] = {0.0, 0.0};
   for (const bool turning : {true, false}) {
@@ -77,7 +83,8 @@ TEST(Bone, ALightBoneUnderPrestressDoesNotSpinUp) {
   EXPECT_GT(spin[false], 1e-2) << "what the geometric stiffness is there for";
 }
 
-// Linearly implicit Euler at 10 ms, and the mass of the bone down to nothing: the same motion, no smaller step.
+// Linearly implicit Euler at 10 ms, and the mass of the bone down to nothing: the same motion, no smaller
+// step.
 TEST(Bone, ItsMassMayGoToNothing) {
   Vec6 last = Vec6::Zero();
   for (const double ratio : {1e-3, 1e-6, 1e-9}) {
@@ -87,15 +94,14 @@ TEST(Bone, ItsMassMayGoToNothing) {
     advance(b, spec_of("linearly-implicit-euler", 0.01), 0.5);
     const auto& block = *b.state.layout().find(b.bone);
     const Vec6 u = b.state.u(block);
-    if (ratio < 1e-3) {
-      EXPECT_LT((u - last).norm(), 2e-2 * u.norm() + 1e-6) << ratio;
-    }
+    if (ratio < 1e-3) { EXPECT_LT((u - last).norm(), 2e-2 * u.norm() + 1e-6) << ratio; }
     EXPECT_LT(u.norm(), 20.0);
     last = u;
   }
 }
 
-// Flesh so stiff that flesh and bone are one rigid body: they tumble as Euler's top with the moments of all masses together.
+// Flesh so stiff that flesh and bone are one rigid body: they tumble as Euler's top with the moments of all
+// masses together.
 TEST(Bone, StiffFleshAndItsBoneTumbleAsOneRigidBody) {
   BoneInFlesh b({.mass_ratio = 0.3, .youngs_modulus = 1e8, .damping = 1e-5});
   b.inertia = b.bone_mass * Vec3(1e-4, 1.5e-4, 2e-4);
@@ -109,13 +115,17 @@ TEST(Bone, StiffFleshAndItsBoneTumbleAsOneRigidBody) {
     centre += b.masses[i] * b.state.view().position(i);
   }
   centre /= mass;
-  const auto about_centre = [&](double m, const Vec3& x) -> Mat3 { return m * ((x - centre).squaredNorm() * Mat3::Identity() - (x - centre) * (x - centre).transpose()); };
-  Mat3 I = dynamics::world_inertia(dynamics::motion_of(b.state.view(), block).pose, b.inertia) + about_centre(b.bone_mass, b.state.q(block).tail<3>());
+  const auto about_centre = [&](double m, const Vec3& x) -> Mat3 {
+    return m * ((x - centre).squaredNorm() * Mat3::Identity() - (x - centre) * (x - centre).transpose());
+  };
+  Mat3 I = dynamics::world_inertia(dynamics::motion_of(b.state.view(), block).pose, b.inertia) +
+           about_centre(b.bone_mass, b.state.q(block).tail<3>());
   for (int i = 0; i < b.masses.size(); ++i) I += about_centre(b.masses[i], b.state.view().position(i));
   b.throw_rigidly(-w0.cross(centre), w0);  // about the centre of mass, which stays
   const Quat start(b.state.q(block)[0], b.state.q(block)[1], b.state.q(block)[2], b.state.q(block)[3]);
 
-  // Torque-free: L = I w0 stands in space, w = R I^-1 R^T L, q' = 1/2 (0, w) q; by the classical fourth-order rule with steps of 0.1 ms.
+  // Torque-free: L = I w0 stands in space, w = R I^-1 R^T L, q' = 1/2 (0, w) q; by the classical fourth-order
+  // rule with steps of 0.1 ms.
   const Vec3 L = I * w0;
   const Mat3 inverse = I.inverse();
   const double T = 0.6, h = 1e-4;
@@ -128,10 +138,12 @@ TEST(Bone, StiffFleshAndItsBoneTumbleAsOneRigidBody) {
     return Eigen::Vector4d(0.5 * Eigen::Vector4d(d.w(), d.x(), d.y(), d.z()));
   };
   for (int i = 0; i < std::lround(T / h); ++i) {
-    const Eigen::Vector4d k1 = rate(r), k2 = rate(r + h / 2 * k1), k3 = rate(r + h / 2 * k2), k4 = rate(r + h * k3);
+    const Eigen::Vector4d k1 = rate(r), k2 = rate(r + h / 2 * k1), k3 = rate(r + h / 2 * k2),
+                          k4 = rate(r + h * k3);
     r = (r + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)).normalized();
   }
-  advance(b, spec_of("cvode-bdf", 0.01, 1e-8), T);  // tolerances are in units of the flesh's wave speed, 316 m/s
+  // tolerances are in units of the flesh's wave speed, 316 m/s
+  advance(b, spec_of("cvode-bdf", 0.01, 1e-8), T);
   const Quat now(b.state.q(block)[0], b.state.q(block)[1], b.state.q(block)[2], b.state.q(block)[3]);
   const double off = rotation_vector(now * (Quat(r[0], r[1], r[2], r[3]) * start).conjugate()).norm();
   EXPECT_GT(rotation_vector(Quat(r[0], r[1], r[2], r[3])).norm(), 2.0) << "it turned";

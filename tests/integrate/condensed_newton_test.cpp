@@ -20,10 +20,13 @@ TEST(CondensedNewton, SolvesTheResidualForm) {
   const double gamma = 0.07;
   ASSERT_EQ(newton.factor(gamma), SolveStatus::kOk);
   MatX J(2 * n, 2 * n);
-  J << MatX::Identity(n, n) / gamma, -MatX::Identity(n, n), chain.term->K, chain.term->D + MatX::Identity(n, n) / gamma;
+  J << MatX::Identity(n, n) / gamma, -MatX::Identity(n, n), chain.term->K,
+      chain.term->D + MatX::Identity(n, n) / gamma;
   const VecX r = VecX::LinSpaced(2 * n, -1.0, 2.0), expected = J.partialPivLu().solve(r);
   VecX d(2 * n);
-  ASSERT_EQ(newton.solve_residual_form(chain.state.layout(), chain.state.q().data(), r.data(), r.data() + n, d.data(), d.data() + n), SolveStatus::kOk);
+  ASSERT_EQ(newton.solve_residual_form(chain.state.layout(), chain.state.q().data(), r.data(), r.data() + n,
+                                       d.data(), d.data() + n),
+            SolveStatus::kOk);
   EXPECT_LT((d - expected).norm(), 1e-12 * expected.norm());
 }
 

@@ -4,7 +4,8 @@
 
 #include "integrate/ode_problem.h"
 
-/// A small equation in the place of a System, with a dense solver in the place of ours: what is tested is the adapters alone.
+/// A small equation in the place of a System, with a dense solver in the place of ours: what is tested is the
+/// adapters alone.
 namespace palpate::fakes {
 
 using dynamics::SolveStatus;
@@ -34,7 +35,9 @@ class DenseOde final : public OdeProblem {
     y_ = Eigen::Map<const VecX>(y, size());
     t_ = t;
   }
-  void finish(double, const double* y, VecX& q, VecX&) const override { q = Eigen::Map<const VecX>(y, size()); }
+  void finish(double, const double* y, VecX& q, VecX&) const override {
+    q = Eigen::Map<const VecX>(y, size());
+  }
   void weights(const double* y, double* w) const override {
     for (int i = 0; i < size(); ++i) w[i] = 1.0 / (rtol_ * (std::abs(y[i]) + 1e-3 * e_.scale[i]));
   }

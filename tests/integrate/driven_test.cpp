@@ -9,8 +9,9 @@ namespace {
 
 using namespace fakes;
 
-/// Node 0 is moved along x by A sin(W t); node 1 follows through a spring k, a damper c and the off-diagonal mass of a linear bar element.
-/// Free row: m11 a1 + m10 a0 = -k (d1 - d0) - c (v1 - v0).  With d0 = Im(A e^{iWt}), d1 = Im(X e^{iWt}):
+/// Node 0 is moved along x by A sin(W t); node 1 follows through a spring k, a damper c and the off-diagonal
+/// mass of a linear bar element. Free row: m11 a1 + m10 a0 = -k (d1 - d0) - c (v1 - v0).  With d0 = Im(A
+/// e^{iWt}), d1 = Im(X e^{iWt}):
 ///     X (k + i W c - W^2 m11) = A (k + i W c + W^2 m10).
 struct DrivenBar {
   static constexpr double kA = 0.1, kW = 5.0, kK = 100.0, kC = 3.0, kM11 = 2.0, kM10 = 1.0;
@@ -89,7 +90,9 @@ TEST_P(Driven, NodesFollowExactlyAndTheRestRespondsAtTheOrder) {
 
 // The whole bar moves with its drive at a constant velocity: no force, any step.
 TEST_P(Driven, RigidMotionWithTheDriveFeelsNoForce) {
-  const MatX K = (MatX(6, 6) << MatX::Identity(3, 3), -MatX::Identity(3, 3), -MatX::Identity(3, 3), MatX::Identity(3, 3)).finished();
+  const MatX K =
+      (MatX(6, 6) << MatX::Identity(3, 3), -MatX::Identity(3, 3), -MatX::Identity(3, 3), MatX::Identity(3, 3))
+          .finished();
   VecX q0(6);
   q0 << 0, 0, 0, 1, 0, 0;
   State state;
@@ -109,7 +112,8 @@ TEST_P(Driven, RigidMotionWithTheDriveFeelsNoForce) {
   const auto stepper = integrate::make_stepper(system, state, s);
   ASSERT_TRUE(stepper->advance_to(1.0).ok());
   const bool at_its_limit = is_explicit(GetParam()) && !steps_are_fixed(GetParam());
-  const double bar = at_its_limit ? 2.1 * s.rtol : 1e-9;  // there rounding grows to the tolerance, of a speed of 2
+  // there rounding grows to the tolerance, of a speed of 2
+  const double bar = at_its_limit ? 2.1 * s.rtol : 1e-9;
   EXPECT_LT((state.q() - q0 - VecX::Constant(6, 2.0)).norm(), bar);
   EXPECT_LT((state.u() - VecX::Constant(6, 2.0)).norm(), bar);
 }
@@ -135,14 +139,18 @@ struct BallMass final : InertiaTerm {
   explicit BallMass(int i) : id(i) {}
   int block_id() const override { return id; }
   bool diagonal() const override { return true; }
-  void add_mass(const StateView&, double scale, BorderedMatrix& A) const override { A.corner += scale * MatX::Identity(6, 6); }
+  void add_mass(const StateView&, double scale, BorderedMatrix& A) const override {
+    A.corner += scale * MatX::Identity(6, 6);
+  }
   void apply(const StateView& s, const VecX& x, VecX& y) const override {
     y.segment<6>(s.layout->find(id)->u_offset) += x.segment<6>(s.layout->find(id)->u_offset);
   }
 };
 
-// Light bone (1 kg), heavy flesh: node 0 (3 kg) is carried, node 1 (2 kg) hangs on it by k = 50.  Two masses 4 and 2 on one spring:
-// omega^2 = k (1/4 + 1/2).  The carried node's mass and stiffness must enter the bone's equations, or both are wrong.
+// Light bone (1 kg), heavy flesh: node 0 (3 kg) is carried, node 1 (2 kg) hangs on it by k = 50.  Two masses
+// 4 and 2 on one spring:
+// omega^2 = k (1/4 + 1/2).  The carried node's mass and stiffness must enter the bone's equations, or both
+// are wrong.
 TEST_P(Driven, NodesCarriedByABodyLoadIt) {
   std::vector<double> values, errors;
   const int n = order();
@@ -156,9 +164,15 @@ TEST_P(Driven, NodesCarriedByABodyLoadIt) {
     M.diagonal() << 3, 3, 3, 2, 2, 2;
     VecX q = VecX::Zero(6), pose = VecX::Unit(7, 0);
     q[3] = 0.1;
-    const int nodes = state.insert(BlockSpec{.name = "flesh", .q_size = 6, .u_size = 6, .q_scale = 0.1}, q, VecX::Zero(6));
-    const int bone = state.insert(
-        BlockSpec{.name = "bone", .kind = BlockKind::kRigidBody, .q_size = 7, .u_size = 6, .q_scale = 0.1, .kinematics = free_body_kinematics()}, pose, VecX::Zero(6));
+    const int nodes =
+        state.insert(BlockSpec{.name = "flesh", .q_size = 6, .u_size = 6, .q_scale = 0.1}, q, VecX::Zero(6));
+    const int bone = state.insert(BlockSpec{.name = "bone",
+                                            .kind = BlockKind::kRigidBody,
+                                            .q_size = 7,
+                                            .u_size = 6,
+                                            .q_scale = 0.1,
+                                            .kinematics = free_body_kinematics()},
+                                  pose, VecX::Zero(6));
     system.add(std::make_shared<LinearTerm>(K, 0.0 * K, VecX::Zero(6)));
     system.add(std::make_shared<NodalMass>(nodes, M));
     system.add(std::make_shared<BallMass>(bone));
@@ -171,7 +185,8 @@ TEST_P(Driven, NodesCarriedByABodyLoadIt) {
     EXPECT_EQ(state.q()[0], state.q(*state.layout().find(bone))[4]) << "the node stays where its bone is";
     const double centre = 0.1 / 3.0, apart = 0.1 * std::cos(w * T);
     values.push_back(value);
-    errors.push_back(std::abs(state.q()[3] - centre - apart * 2.0 / 3.0) + std::abs(state.q()[0] - centre + apart / 3.0));
+    errors.push_back(std::abs(state.q()[3] - centre - apart * 2.0 / 3.0) +
+                     std::abs(state.q()[0] - centre + apart / 3.0));
   }
   EXPECT_GT(slope(values, errors), l.low);
   EXPECT_LT(slope(values, errors), l.high);
@@ -181,7 +196,8 @@ TEST_P(Driven, NodesCarriedByABodyLoadIt) {
 TEST_P(Driven, AllNodesDriven) {
   State state;
   System system;
-  const int id = state.insert(BlockSpec{.name = "one", .q_size = 3, .u_size = 3}, VecX::Zero(3), VecX::Zero(3));
+  const int id =
+      state.insert(BlockSpec{.name = "one", .q_size = 3, .u_size = 3}, VecX::Zero(3), VecX::Zero(3));
   system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
   system.add(std::make_shared<Scripted>(std::vector<int>{0, 1, 2}, [](double t, VecX& x, VecX& v, VecX& a) {
     x.setConstant(t * t);

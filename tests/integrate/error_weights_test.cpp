@@ -14,7 +14,13 @@ struct TwoBlocks {
   State state;
   TwoBlocks() {
     BlockSpec nodes{.name = "n", .q_size = 6, .u_size = 6, .q_scale = 0.1, .u_scale = 2.0};
-    BlockSpec body{.name = "b", .kind = BlockKind::kRigidBody, .q_size = 7, .u_size = 6, .q_scale = 0.5, .u_scale = 3.0, .kinematics = free_body_kinematics()};
+    BlockSpec body{.name = "b",
+                   .kind = BlockKind::kRigidBody,
+                   .q_size = 7,
+                   .u_size = 6,
+                   .q_scale = 0.5,
+                   .u_scale = 3.0,
+                   .kinematics = free_body_kinematics()};
     state.insert(nodes, VecX::Zero(6), VecX::Constant(6, 4.0));
     state.insert(body, VecX::Unit(7, 0), VecX::Zero(6));
   }
@@ -31,11 +37,11 @@ VecX weights(const TwoBlocks& two, const std::vector<char>& driven) {
 
 TEST(ErrorWeights, AreTheInversesOfTheTolerances) {
   const VecX w = weights(TwoBlocks{}, std::vector<char>(12, 0));
-  EXPECT_DOUBLE_EQ(w[0], 1.0 / (1e-4 * 0.01 * 0.1));                 // node position
-  EXPECT_DOUBLE_EQ(w[6], 1.0 / (1e-4 * 0.01));                       // quaternion
-  EXPECT_DOUBLE_EQ(w[10], 1.0 / (1e-4 * 0.01 * 0.5));                // body position
-  EXPECT_DOUBLE_EQ(w[13], 1.0 / (1e-4 * (0.1 * 2.0 + 4.0)));         // node velocity, rms 4
-  EXPECT_DOUBLE_EQ(w[19], 1.0 / (1e-4 * 0.1 * 3.0 / 0.5));           // angular velocity at rest
+  EXPECT_DOUBLE_EQ(w[0], 1.0 / (1e-4 * 0.01 * 0.1));          // node position
+  EXPECT_DOUBLE_EQ(w[6], 1.0 / (1e-4 * 0.01));                // quaternion
+  EXPECT_DOUBLE_EQ(w[10], 1.0 / (1e-4 * 0.01 * 0.5));         // body position
+  EXPECT_DOUBLE_EQ(w[13], 1.0 / (1e-4 * (0.1 * 2.0 + 4.0)));  // node velocity, rms 4
+  EXPECT_DOUBLE_EQ(w[19], 1.0 / (1e-4 * 0.1 * 3.0 / 0.5));    // angular velocity at rest
   EXPECT_DOUBLE_EQ(w[22], 1.0 / (1e-4 * 0.1 * 3.0));
 }
 

@@ -11,7 +11,8 @@ namespace palpate::fakes {
 
 using namespace dynamics;
 
-/// f = -K (q - q0) - D u over the node blocks, all nodes coupled; on request unsymmetric, or not a number from a time on.
+/// f = -K (q - q0) - D u over the node blocks, all nodes coupled; on request unsymmetric, or not a number
+/// from a time on.
 struct LinearTerm final : ForceTerm {
   MatX K, D;
   VecX q0;
@@ -64,19 +65,23 @@ struct NodalMass final : InertiaTerm {
       for (int j = 0; j < M.rows() / 3; ++j)
         if (const int s = A.body.slot(i, j); s >= 0) A.body.add(s, scale * M.block<3, 3>(3 * i, 3 * j));
   }
-  void apply(const StateView&, const VecX& x, VecX& y) const override { y.head(M.rows()) += M * x.head(M.rows()); }
+  void apply(const StateView&, const VecX& x, VecX& y) const override {
+    y.head(M.rows()) += M * x.head(M.rows());
+  }
 };
 
 /// Directions that follow functions of time.
 struct Scripted final : DrivenMotion {
   std::vector<int> indices;
   std::function<void(double t, VecX& x, VecX& v, VecX& a)> motion;
-  Scripted(std::vector<int> i, std::function<void(double, VecX&, VecX&, VecX&)> m) : indices(std::move(i)), motion(std::move(m)) {}
+  Scripted(std::vector<int> i, std::function<void(double, VecX&, VecX&, VecX&)> m)
+      : indices(std::move(i)), motion(std::move(m)) {}
   const std::vector<int>& dofs() const override { return indices; }
   void evaluate(const StateView& s, VecX& x, VecX& v, VecX& a) const override { motion(s.time, x, v, a); }
 };
 
-/// Chain of `nodes` equal masses along x, springs k between neighbours and from the first to a wall, in x; each node held by k in y and z.
+/// Chain of `nodes` equal masses along x, springs k between neighbours and from the first to a wall, in x;
+/// each node held by k in y and z.
 inline MatX chain_stiffness(int nodes, double k) {
   MatX K = MatX::Zero(3 * nodes, 3 * nodes);
   for (int i = 0; i < nodes; ++i) {
@@ -91,7 +96,8 @@ inline MatX chain_stiffness(int nodes, double k) {
   return K;
 }
 
-/// Undamped chain with unit masses; omega_j = 2 sqrt(k) sin((2j - 1) pi / (4n + 2)), phi_i = sin(i (2j - 1) pi / (2n + 1)) (fixed at one end, free at the other).
+/// Undamped chain with unit masses; omega_j = 2 sqrt(k) sin((2j - 1) pi / (4n + 2)), phi_i = sin(i (2j - 1)
+/// pi / (2n + 1)) (fixed at one end, free at the other).
 struct Chain {
   int nodes = 4;
   double k = 100.0;
@@ -132,7 +138,8 @@ inline VecX run(System& system, State& state, const IntegratorSpec& spec, double
   return state.q();
 }
 
-/// What a conformance suite runs over: every integrator of the registry, and those that can do both once more with a fixed step ("ark-erk-3, fixed step").
+/// What a conformance suite runs over: every integrator of the registry, and those that can do both once more
+/// with a fixed step ("ark-erk-3, fixed step").
 inline constexpr const char* kFixedStep = ", fixed step";
 inline std::vector<std::string> stepper_modes(bool dynamic_only = true) {
   std::vector<std::string> out;
@@ -147,7 +154,7 @@ inline IntegratorSpec mode_spec(const std::string& mode) {
   IntegratorSpec spec;
   spec.fixed_step = mode.ends_with(kFixedStep);
   spec.name = spec.fixed_step ? mode.substr(0, mode.size() - std::string(kFixedStep).size()) : mode;
-  spec.newton_rtol = 1e-11;  // below the error of the finest step of order 5
+  spec.newton_rtol = 1e-11;                                // below the error of the finest step of order 5
   if (spec.name.starts_with("ark-mri")) spec.rtol = 1e-8;  // of the fast side
   return spec;
 }
@@ -156,22 +163,30 @@ inline const StepperTraits& mode_traits(const std::string& mode) {
 }
 inline bool is_explicit(const std::string& mode) { return !mode_traits(mode).implicit; }
 /// True when a step decides the accuracy, not a tolerance.
-inline bool steps_are_fixed(const std::string& mode) { return mode_traits(mode).control == StepControl::kFixed || mode_spec(mode).fixed_step; }
+inline bool steps_are_fixed(const std::string& mode) {
+  return mode_traits(mode).control == StepControl::kFixed || mode_spec(mode).fixed_step;
+}
 /// The order that a ladder of steps shows; 0 of a method that tolerances steer.
-inline int ladder_order(const std::string& mode) { return steps_are_fixed(mode) ? mode_traits(mode).order : 0; }
+inline int ladder_order(const std::string& mode) {
+  return steps_are_fixed(mode) ? mode_traits(mode).order : 0;
+}
 
 /// The setting that a ladder refines: the step of a method of known order, else the tolerance.
-inline void set_accuracy(IntegratorSpec& spec, int order, double value) { (order > 0 ? spec.step_s : spec.rtol) = value; }
+inline void set_accuracy(IntegratorSpec& spec, int order, double value) {
+  (order > 0 ? spec.step_s : spec.rtol) = value;
+}
 
 inline double slope(const std::vector<double>& x, const std::vector<double>& y) {
   const auto n = static_cast<Eigen::Index>(x.size());
-  const Eigen::ArrayXd lx = Eigen::Map<const Eigen::ArrayXd>(x.data(), n).log(), ly = Eigen::Map<const Eigen::ArrayXd>(y.data(), n).log();
+  const Eigen::ArrayXd lx = Eigen::Map<const Eigen::ArrayXd>(x.data(), n).log(),
+                       ly = Eigen::Map<const Eigen::ArrayXd>(y.data(), n).log();
   return ((lx - lx.mean()) * (ly - ly.mean())).sum() / (lx - lx.mean()).square().sum();
 }
 
-/// Settings of a ladder over which the error must fall with the theoretical slope, and the band of that slope.
-/// Fixed steps: the order; w h small enough for the next term of the error to stay below a tenth, large enough for a high order to stay above rounding.
-/// A tolerance: of variable order k/(k+1) to 1, with k from 2 to 5 along the ladder; of one order 1.  A low order is spared the tightest rungs.
+/// Settings of a ladder over which the error must fall with the theoretical slope, and the band of that
+/// slope. Fixed steps: the order; w h small enough for the next term of the error to stay below a tenth,
+/// large enough for a high order to stay above rounding. A tolerance: of variable order k/(k+1) to 1, with k
+/// from 2 to 5 along the ladder; of one order 1.  A low order is spared the tightest rungs.
 struct Ladder {
   std::vector<double> values;
   double low, high;
@@ -180,7 +195,12 @@ struct Ladder {
 inline Ladder ladder(const std::string& mode, double omega, double T) {
   const int order = mode_traits(mode).order;
   if (steps_are_fixed(mode)) {
-    const double coarsest = (order == 1 ? 1e-3 : order == 2 ? 0.02 : order == 3 ? 0.008 : order == 4 ? 0.06 : 0.045) / omega;
+    const double coarsest = (order == 1   ? 1e-3
+                             : order == 2 ? 0.02
+                             : order == 3 ? 0.008
+                             : order == 4 ? 0.06
+                                          : 0.045) /
+                            omega;
     const double ratio = order <= 2 ? 2.0 : order == 3 ? 1.4 : order == 4 ? 1.5 : 1.25;
     Ladder l{{}, order - 0.1, order + 0.1};
     for (double h = coarsest; l.values.size() < 4; h /= ratio) l.values.push_back(T / std::ceil(T / h));

@@ -9,8 +9,16 @@ namespace hand_steppers {
 
 using namespace palpate;
 
-inline const std::vector<std::string> kHand = {"linearly-implicit-euler", "backward-euler", "implicit-midpoint", "bdf2", "newmark", "generalized-alpha", "symplectic-euler", "rk4"};
-inline const std::vector<std::string> kNewton = {"backward-euler", "implicit-midpoint", "bdf2", "newmark", "generalized-alpha"};
+inline const std::vector<std::string> kHand = {"linearly-implicit-euler",
+                                               "backward-euler",
+                                               "implicit-midpoint",
+                                               "bdf2",
+                                               "newmark",
+                                               "generalized-alpha",
+                                               "symplectic-euler",
+                                               "rk4"};
+inline const std::vector<std::string> kNewton = {"backward-euler", "implicit-midpoint", "bdf2", "newmark",
+                                                 "generalized-alpha"};
 
 inline IntegratorSpec spec_of(const std::string& name, double h) {
   IntegratorSpec s;

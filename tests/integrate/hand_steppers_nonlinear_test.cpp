@@ -26,11 +26,14 @@ struct Box {
     mass = fem::lumped_masses(rest, m.density).transpose().replicate(3, 1).reshaped();
     const VecX q0 = rest.nodes.reshaped();
     const int n = static_cast<int>(q0.size());
-    const int id = state.insert(BlockSpec{.name = "box", .q_size = n, .u_size = n, .q_scale = 0.1, .u_scale = 1.0}, q0, VecX::Zero(n));
+    const int id =
+        state.insert(BlockSpec{.name = "box", .q_size = n, .u_size = n, .q_scale = 0.1, .u_scale = 1.0}, q0,
+                     VecX::Zero(n));
     system.add(std::make_shared<fem::SoftBody>("box", rest, m, fem::SoftBodyOptions{}, id));
     system.add(fem::make_lumped_mass(rest, m.density, id));
     if (clamped) {
-      const auto dofs = fem::dofs_of_nodes(fem::nodes_in_box(rest.nodes, Vec3(-0.5, -1, -1), Vec3(-0.4999, 1, 1)), 0, "xyz");
+      const auto dofs = fem::dofs_of_nodes(
+          fem::nodes_in_box(rest.nodes, Vec3(-0.5, -1, -1), Vec3(-0.4999, 1, 1)), 0, "xyz");
       system.add(fem::make_fixed(dofs, q0(dofs)));
     }
     system.prepare(state.view());
@@ -43,11 +46,14 @@ struct Box {
     }
   }
   void spin(const Vec3& w) {
-    for (int i = 0; i < rest.nodes.cols(); ++i) state.u().segment<3>(3 * i) = w.cross(rest.nodes.col(i)) + 0.2 * Vec3(rest.nodes(1, i), rest.nodes(2, i), rest.nodes(0, i));
+    for (int i = 0; i < rest.nodes.cols(); ++i)
+      state.u().segment<3>(3 * i) =
+          w.cross(rest.nodes.col(i)) + 0.2 * Vec3(rest.nodes(1, i), rest.nodes(2, i), rest.nodes(0, i));
   }
   Vec3 angular_momentum() const {
     Vec3 sum = Vec3::Zero();
-    for (int i = 0; i < rest.nodes.cols(); ++i) sum += mass[3 * i] * state.q().segment<3>(3 * i).cross(state.u().segment<3>(3 * i));
+    for (int i = 0; i < rest.nodes.cols(); ++i)
+      sum += mass[3 * i] * state.q().segment<3>(3 * i).cross(state.u().segment<3>(3 * i));
     return sum;
   }
 };
@@ -55,7 +61,8 @@ struct Box {
 constexpr double kEnd = 0.16;
 
 /// (q, kEnd u) at kEnd.
-VecX swung(const std::string& name, double step_or_rtol, bool rtol, StepperCounters* counters = nullptr, int kept = 1) {
+VecX swung(const std::string& name, double step_or_rtol, bool rtol, StepperCounters* counters = nullptr,
+           int kept = 1) {
   Box box(true);
   box.swing(3.0);
   IntegratorSpec s;
@@ -75,9 +82,12 @@ TEST(HandSteppersNonlinear, ConvergeOnABendingBodyAtTheirOrder) {
   const VecX truth = swung("cvode-bdf", 1e-11, true), start = Box(true).state.q();
   EXPECT_GT((truth.head(start.size()) - start).lpNorm<Eigen::Infinity>(), 0.3) << "it bends far";
   EXPECT_LT((truth - swung("cvode-bdf", 1e-10, true)).norm(), 3e-9);
-  for (const std::string name : {"linearly-implicit-euler", "backward-euler", "symplectic-euler", "implicit-midpoint", "bdf2", "newmark", "generalized-alpha", "rk4"}) {
+  for (const std::string name : {"linearly-implicit-euler", "backward-euler", "symplectic-euler",
+                                 "implicit-midpoint", "bdf2", "newmark", "generalized-alpha", "rk4"}) {
     const int order = ladder_order(name);
-    const std::vector<double> steps = order == 4 ? std::vector<double>{2e-3, 1e-3, 5e-4} : order == 2 ? std::vector<double>{1e-3, 5e-4, 2.5e-4} : std::vector<double>{5e-4, 2.5e-4, 1.25e-4};
+    const std::vector<double> steps = order == 4   ? std::vector<double>{2e-3, 1e-3, 5e-4}
+                                      : order == 2 ? std::vector<double>{1e-3, 5e-4, 2.5e-4}
+                                                   : std::vector<double>{5e-4, 2.5e-4, 1.25e-4};
     std::vector<double> errors;
     for (const double h : steps) errors.push_back((swung(name, h, false) - truth).norm());
     EXPECT_NEAR(slope(steps, errors), order, 0.15) << name << ", finest error " << errors.back();
@@ -106,7 +116,8 @@ TEST(HandSteppersNonlinear, SolveALargeStep) {
     }
 }
 
-// Angular momentum of nodes is a quadratic invariant: kept by Gauss' method to Newton's tolerance, by no other here.
+// Angular momentum of nodes is a quadratic invariant: kept by Gauss' method to Newton's tolerance, by no
+// other here.
 TEST(ImplicitMidpoint, KeepsTheAngularMomentumOfASoftBody) {
   const auto drift = [](const std::string& name) {
     Box box(false);
@@ -140,7 +151,8 @@ double top_drift(const std::string& name, double h, double duration) {
   return worst;
 }
 
-// R I R^T w is no quadratic function of quaternion and w: off by O(h^2), but the method is symmetric and the free top reversible: no drift.
+// R I R^T w is no quadratic function of quaternion and w: off by O(h^2), but the method is symmetric and the
+// free top reversible: no drift.
 TEST(ImplicitMidpoint, KeepsTheAngularMomentumOfARigidBodyNearWithoutDrift) {
   std::vector<double> steps = {0.02, 0.01, 0.005}, errors;
   for (const double h : steps) errors.push_back(top_drift("implicit-midpoint", h, 3.0));

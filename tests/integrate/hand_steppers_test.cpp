@@ -8,9 +8,11 @@ namespace {
 using namespace fakes;
 using namespace hand_steppers;
 
-// --- Orders in special circumstances ---------------------------------------------------------------------------------------------------
+// --- Orders in special circumstances
+// ---------------------------------------------------------------------------------------------------
 
-/// Error at 1.2 s of the oscillator, with outputs at uneven times, so that neighbouring intervals have other steps.
+/// Error at 1.2 s of the oscillator, with outputs at uneven times, so that neighbouring intervals have other
+/// steps.
 double uneven_error(const IntegratorSpec& s, bool reinit) {
   Oscillator o(3.0, 0.1);
   const auto stepper = integrate::make_stepper(o.system, o.state, s);
@@ -20,30 +22,39 @@ double uneven_error(const IntegratorSpec& s, bool reinit) {
     EXPECT_TRUE(stepper->advance_to(std::min(next, 1.2)).ok());
     if (reinit && k % 2 == 1) stepper->reinit(ReinitReason::kContactRefreshed);
   }
-  return std::abs(o.state.q()[0] - 0.3 * std::exp(-g * 1.2) * (std::cos(v * 1.2) + g / v * std::sin(v * 1.2)));
+  return std::abs(o.state.q()[0] -
+                  0.3 * std::exp(-g * 1.2) * (std::cos(v * 1.2) + g / v * std::sin(v * 1.2)));
 }
 
 TEST(HandSteppers, KeepTheirOrderOverUnevenStepsAndRestarts) {
   for (const std::string& name : kHand)
     for (const bool reinit : {false, true}) {
       const int order = ladder_order(name);
-      std::vector<double> steps = order == 4 ? std::vector<double>{0.08, 0.04, 0.02, 0.01} : std::vector<double>{0.01, 0.005, 0.0025, 0.00125}, errors;
+      std::vector<double> steps = order == 4 ? std::vector<double>{0.08, 0.04, 0.02, 0.01}
+                                             : std::vector<double>{0.01, 0.005, 0.0025, 0.00125},
+                          errors;
       for (const double h : steps) errors.push_back(uneven_error(spec_of(name, h), reinit));
       EXPECT_NEAR(slope(steps, errors), order, 0.2) << name << (reinit ? ", restarted" : "");
     }
 }
 
-/// f = -k (q - g) - c (u - g') + g'' with g = sin t: the exact motion from (g, g') is g, however stiff k and c (Prothero and Robinson 1974).
+/// f = -k (q - g) - c (u - g') + g'' with g = sin t: the exact motion from (g, g') is g, however stiff k and
+/// c (Prothero and Robinson 1974).
 struct Smooth final : ForceTerm {
   double k, c;
   Smooth(double stiffness, double damping) : k(stiffness), c(damping) {}
   std::string_view name() const override { return "smooth"; }
   TermTraits traits() const override { return {}; }
   void add_force(const StateView& s, VecX& f) override {
-    f.array() += -k * (s.q.array() - std::sin(s.time)) - c * (s.u.array() - std::cos(s.time)) - std::sin(s.time);
+    f.array() +=
+        -k * (s.q.array() - std::sin(s.time)) - c * (s.u.array() - std::cos(s.time)) - std::sin(s.time);
   }
-  void add_tangent(const StateView&, double a, double b, BorderedMatrix& A) override { A.body.add(0, (a * k + b * c) * Mat3::Identity()); }
-  void apply_tangent(const StateView&, double a, double b, const VecX& x, VecX& y) override { y += (a * k + b * c) * x; }
+  void add_tangent(const StateView&, double a, double b, BorderedMatrix& A) override {
+    A.body.add(0, (a * k + b * c) * Mat3::Identity());
+  }
+  void apply_tangent(const StateView&, double a, double b, const VecX& x, VecX& y) override {
+    y += (a * k + b * c) * x;
+  }
 };
 
 TEST(HandSteppers, HaveTheirStiffOrder) {
@@ -53,7 +64,8 @@ TEST(HandSteppers, HaveTheirStiffOrder) {
     for (const double h : {0.08, 0.04, 0.02, 0.01}) {
       State state;
       System system;
-      const int id = state.insert(BlockSpec{.name = "one", .q_size = 3, .u_size = 3}, VecX::Zero(3), VecX::Ones(3));
+      const int id =
+          state.insert(BlockSpec{.name = "one", .q_size = 3, .u_size = 3}, VecX::Zero(3), VecX::Ones(3));
       system.add(std::make_shared<Smooth>(1e6, 1e6));  // fast rate 1e6: h of it at least 1e4; slow rate 1
       system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
       system.prepare(state.view());
@@ -75,7 +87,9 @@ TEST(HandSteppers, HaveTheirStiffOrder) {
 TEST(HandSteppers, InterpolateAtTheirOrder) {
   for (const std::string& name : kHand) {
     const int order = ladder_order(name);
-    std::vector<double> steps = order == 4 ? std::vector<double>{0.08, 0.04, 0.02, 0.01} : std::vector<double>{0.008, 0.004, 0.002, 0.001}, q_errors, u_errors;
+    std::vector<double> steps = order == 4 ? std::vector<double>{0.08, 0.04, 0.02, 0.01}
+                                           : std::vector<double>{0.008, 0.004, 0.002, 0.001},
+                        q_errors, u_errors;
     for (const double h : steps) {
       Oscillator o(3.0, 0.0);
       const auto stepper = integrate::make_stepper(o.system, o.state, spec_of(name, h));
@@ -96,7 +110,8 @@ TEST(HandSteppers, InterpolateAtTheirOrder) {
   }
 }
 
-// --- Newton ----------------------------------------------------------------------------------------------------------------------------
+// --- Newton
+// ----------------------------------------------------------------------------------------------------------------------------
 
 TEST(HandSteppers, TakeOneFactorForALinearStepAndOneForManyWhereItIsKept) {
   for (const std::string& name : kNewton) {
@@ -124,8 +139,12 @@ struct Liar final : ForceTerm {
   std::string_view name() const override { return "liar"; }
   TermTraits traits() const override { return {}; }
   void add_force(const StateView& s, VecX& f) override { f -= k * s.q; }
-  void add_tangent(const StateView&, double a, double, BorderedMatrix& A) override { A.body.add(0, a * share * k * Mat3::Identity()); }
-  void apply_tangent(const StateView&, double a, double, const VecX& x, VecX& y) override { y += a * share * k * x; }
+  void add_tangent(const StateView&, double a, double, BorderedMatrix& A) override {
+    A.body.add(0, a * share * k * Mat3::Identity());
+  }
+  void apply_tangent(const StateView&, double a, double, const VecX& x, VecX& y) override {
+    y += a * share * k * x;
+  }
   Finding inspect(const StateView&) const override { return {7, -0.5}; }
 };
 
@@ -133,7 +152,8 @@ struct Lied {
   State state;
   System system;
   Lied(double k, double share) {
-    const int id = state.insert(BlockSpec{.name = "one", .q_size = 3, .u_size = 3}, VecX::Constant(3, 0.1), VecX::Zero(3));
+    const int id = state.insert(BlockSpec{.name = "one", .q_size = 3, .u_size = 3}, VecX::Constant(3, 0.1),
+                                VecX::Zero(3));
     system.add(std::make_shared<Liar>(k, share));
     system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
     system.prepare(state.view());
@@ -145,7 +165,8 @@ struct Kept final : StepTrace {
   void attempt(const StepAttempt& a) override { attempts.push_back(a); }
 };
 
-// Newton's iteration matrix is 1 - lambda R, R = 1 + W^2 with no stiffness told: with lambda >= 1/64 it contracts while R < 128.
+// Newton's iteration matrix is 1 - lambda R, R = 1 + W^2 with no stiffness told: with lambda >= 1/64 it
+// contracts while R < 128.
 TEST(HandSteppers, GiveUpOnANewtonThatCannotConverge) {
   for (const std::string& name : kNewton) {
     Lied lied(1e8, 0.0);
@@ -155,7 +176,8 @@ TEST(HandSteppers, GiveUpOnANewtonThatCannotConverge) {
     const StepResult result = stepper->advance_to(1.0);
     EXPECT_EQ(result.status, StepStatus::kNewtonFailed);
     EXPECT_NE(result.message.find(name + ": Newton"), std::string::npos) << result.message;
-    EXPECT_NE(result.message.find("not even at h/64 (t = 0, h = 0.015625)"), std::string::npos) << result.message;
+    EXPECT_NE(result.message.find("not even at h/64 (t = 0, h = 0.015625)"), std::string::npos)
+        << result.message;
     EXPECT_EQ(lied.state.time(), 0.0);
     EXPECT_EQ(lied.state.q()[0], 0.1) << "the last good state";
     EXPECT_EQ(stepper->counters().rejected, 7);
@@ -178,8 +200,11 @@ TEST(BackwardEuler, CoversAStepThatNewtonFailsAtInParts) {
   EXPECT_EQ(stepper->counters().steps, 32);
   EXPECT_EQ(lied.state.time(), 1.0);
   EXPECT_EQ(result.h, 1.0 / 32);
-  ASSERT_TRUE(integrate::make_stepper(honest.system, honest.state, spec_of("backward-euler", 1.0 / 32))->advance_to(1.0).ok());
-  EXPECT_NEAR(lied.state.u()[0], honest.state.u()[0], 1e-8) << "the equation is the same, whatever the matrix";
+  ASSERT_TRUE(integrate::make_stepper(honest.system, honest.state, spec_of("backward-euler", 1.0 / 32))
+                  ->advance_to(1.0)
+                  .ok());
+  EXPECT_NEAR(lied.state.u()[0], honest.state.u()[0], 1e-8)
+      << "the equation is the same, whatever the matrix";
 }
 
 TEST(HandSteppers, TraceEveryStep) {
@@ -245,22 +270,26 @@ TEST(HandSteppers, RefuseBadNewtonSettings) {
     change(s);
     try {
       integrate::make_stepper(chain.system, chain.state, s);
-    } catch (const Error& e) {
-      return e.what();
-    }
+    } catch (const Error& e) { return e.what(); }
     return "";
   };
   using S = IntegratorSpec;
   for (const std::string& name : kNewton) {
     const std::string who = "integrator \"" + name + "\": ";
-    EXPECT_EQ(message(name, [](S& s) { s.factor_kept_steps = 0; }), who + "factor_kept_steps = 0 must be at least 1; 1 is full Newton");
-    EXPECT_EQ(message(name, [](S& s) { s.newton_rtol = 0.0; }), who + "newton_rtol = 0 must lie in [1e-14, 0.1]; 1e-8 is usual");
-    EXPECT_EQ(message(name, [](S& s) { s.newton_rtol = std::nan(""); }), who + "newton_rtol = nan must lie in [1e-14, 0.1]; 1e-8 is usual");
-    EXPECT_EQ(message(name, [](S& s) { s.atol_q = 0.0; }), who + "atol_q = 0 must be positive and finite; 0.01 is usual");
+    EXPECT_EQ(message(name, [](S& s) { s.factor_kept_steps = 0; }),
+              who + "factor_kept_steps = 0 must be at least 1; 1 is full Newton");
+    EXPECT_EQ(message(name, [](S& s) { s.newton_rtol = 0.0; }),
+              who + "newton_rtol = 0 must lie in [1e-14, 0.1]; 1e-8 is usual");
+    EXPECT_EQ(message(name, [](S& s) { s.newton_rtol = std::nan(""); }),
+              who + "newton_rtol = nan must lie in [1e-14, 0.1]; 1e-8 is usual");
+    EXPECT_EQ(message(name, [](S& s) { s.atol_q = 0.0; }),
+              who + "atol_q = 0 must be positive and finite; 0.01 is usual");
     EXPECT_EQ(message(name, [](S&) {}), "");
   }
   for (const double bad : {1.5, -0.1, std::nan("")})
-    EXPECT_NE(message("generalized-alpha", [&](S& s) { s.spectral_radius = bad; }).find("must lie in [0, 1]; 1 damps nothing, 0 the most"), std::string::npos);
+    EXPECT_NE(message("generalized-alpha", [&](S& s) { s.spectral_radius = bad; })
+                  .find("must lie in [0, 1]; 1 damps nothing, 0 the most"),
+              std::string::npos);
   EXPECT_EQ(message("newmark", [](S& s) { s.spectral_radius = 1.5; }), "") << "not its setting";
 }
 

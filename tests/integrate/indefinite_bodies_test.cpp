@@ -1,4 +1,5 @@
-// Struts beyond their critical load, and bodies inside out or crushed flat: their step matrices are indefinite.
+// Struts beyond their critical load, and bodies inside out or crushed flat: their step matrices are
+// indefinite.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -17,8 +18,10 @@ using namespace dynamics;
 
 constexpr double kLength = 1.0, kWidth = 0.1, kYoung = 1e6, kDensity = 1000.0;
 
-/// Column along x of square section, nu = 0, all nodes of one end held, under a dead load P on the other that is met by uniform compression:
-/// F = diag(1 - e, 1, 1), R = I, P_xx = -E e, P = E A e: an equilibrium at any e.  Its tangent loses definiteness at Euler's load
+/// Column along x of square section, nu = 0, all nodes of one end held, under a dead load P on the other that
+/// is met by uniform compression:
+/// F = diag(1 - e, 1, 1), R = I, P_xx = -E e, P = E A e: an equilibrium at any e.  Its tangent loses
+/// definiteness at Euler's load
 ///   P_cr = pi^2 E I / (4 L^2),  e_cr = P_cr / (E A) = pi^2 w^2 / (48 L^2)
 /// of a beam; linear tetrahedra are stiffer in bending, so that of the mesh lies above.
 struct Strut {
@@ -30,7 +33,8 @@ struct Strut {
     Points x = mesh.nodes;
     x.row(0) = ((1.0 - e) * (x.row(0).array() + kLength / 2) - kLength / 2).matrix();
     const int n = static_cast<int>(x.cols());
-    const int id = state.insert(BlockSpec{.name = "strut", .q_size = 3 * n, .u_size = 3 * n}, x.reshaped(), VecX::Zero(3 * n));
+    const int id = state.insert(BlockSpec{.name = "strut", .q_size = 3 * n, .u_size = 3 * n}, x.reshaped(),
+                                VecX::Zero(3 * n));
     fem::Material material{.youngs_modulus = kYoung, .poissons_ratio = 0.0, .density = kDensity};
     const auto body = std::make_shared<fem::SoftBody>("strut", mesh, material, fem::SoftBodyOptions{}, id);
     system.add(std::static_pointer_cast<ForceTerm>(body));
@@ -55,7 +59,9 @@ struct Strut {
     system.step_matrix(state.view(), 0.0, 0.0, 1.0, K);
     system.step_matrix(state.view(), 1.0, 0.0, 0.0, M);
     const VecX scale = M.to_dense().diagonal().cwiseSqrt().cwiseInverse();
-    return Eigen::SelfAdjointEigenSolver<MatX>(scale.asDiagonal() * K.to_dense() * scale.asDiagonal(), Eigen::EigenvaluesOnly).eigenvalues()[0];
+    return Eigen::SelfAdjointEigenSolver<MatX>(scale.asDiagonal() * K.to_dense() * scale.asDiagonal(),
+                                               Eigen::EigenvaluesOnly)
+        .eigenvalues()[0];
   }
 };
 
@@ -64,7 +70,8 @@ TEST(EulerStrut, IsStableBelowTheCriticalLoadAndNotWellAbove) {
   EXPECT_LT(Strut(4.0).smallest_eigenvalue(), 0.0);
 }
 
-// M + h^2 K is positive definite exactly when 1 + h^2 lambda > 0 for the smallest eigenvalue lambda of (K, M): with lambda = -sigma^2 < 0, when h < 1 / sigma.
+// M + h^2 K is positive definite exactly when 1 + h^2 lambda > 0 for the smallest eigenvalue lambda of (K,
+// M): with lambda = -sigma^2 < 0, when h < 1 / sigma.
 TEST(EulerStrut, StepMatrixTurnsIndefiniteAtTheGrowthRate) {
   const double sigma = std::sqrt(-Strut(4.0).smallest_eigenvalue());
   for (const auto& [h_sigma, expected] : {std::pair{0.98, 0L}, std::pair{1.02, 1L}})
@@ -72,20 +79,25 @@ TEST(EulerStrut, StepMatrixTurnsIndefiniteAtTheGrowthRate) {
       for (const char* policy : {"project", "lu"}) {
         Strut strut(4.0);
         const VecX q0 = strut.state.q();
-        IntegratorSpec spec{.name = "linearly-implicit-euler", .step_s = h_sigma / sigma, .indefinite = policy, .linear_solver = solver};
+        IntegratorSpec spec{.name = "linearly-implicit-euler",
+                            .step_s = h_sigma / sigma,
+                            .indefinite = policy,
+                            .linear_solver = solver};
         const auto stepper = integrate::make_stepper(strut.system, strut.state, spec);
         const StepResult result = stepper->advance_to(spec.step_s);
         ASSERT_TRUE(result.ok()) << result.message;
         EXPECT_LT((strut.state.q() - q0).norm(), 1e-9) << "an equilibrium, if an unstable one";
         EXPECT_TRUE(strut.state.u().allFinite());
-        if (solver != std::string("cholmod")) continue;  // PCG meets a direction of negative curvature only where the right-hand side has one
+        // PCG meets a direction of negative curvature only where the right-hand side has one
+        if (solver != std::string("cholmod")) continue;
         EXPECT_EQ(stepper->counters().indefinite, expected) << policy << ", h sigma = " << h_sigma;
         EXPECT_EQ(stepper->counters().projected, policy == std::string("project") ? expected : 0);
       }
     }
 }
 
-/// A cube, one end held, the nodes of its free half mirrored through the middle plane: every element between is inside out.
+/// A cube, one end held, the nodes of its free half mirrored through the middle plane: every element between
+/// is inside out.
 struct Mirrored {
   State state;
   System system;
@@ -99,9 +111,11 @@ struct Mirrored {
       if (x(0, i) < -0.05 + 1e-9)
         for (int axis = 0; axis < 3; ++axis) held.push_back(3 * i + axis);
     }
-    const int id = state.insert(BlockSpec{.name = "cube", .q_size = 3 * n, .u_size = 3 * n}, x.reshaped(), VecX::Zero(3 * n));
+    const int id = state.insert(BlockSpec{.name = "cube", .q_size = 3 * n, .u_size = 3 * n}, x.reshaped(),
+                                VecX::Zero(3 * n));
     fem::Material material{.youngs_modulus = 1e5, .poissons_ratio = 0.4, .density = kDensity};
-    system.add(std::static_pointer_cast<ForceTerm>(std::make_shared<fem::SoftBody>("cube", mesh, material, fem::SoftBodyOptions{}, id)));
+    system.add(std::static_pointer_cast<ForceTerm>(
+        std::make_shared<fem::SoftBody>("cube", mesh, material, fem::SoftBodyOptions{}, id)));
     system.add(fem::make_lumped_mass(mesh, kDensity, id));
     VecX x0(static_cast<Eigen::Index>(held.size()));
     for (std::size_t i = 0; i < held.size(); ++i) x0[static_cast<Eigen::Index>(i)] = state.q()[held[i]];
@@ -115,7 +129,8 @@ TEST(InvertedElements, GiveAFiniteStepByEitherPolicy) {
     for (const char* policy : {"project", "lu"}) {
       Mirrored cube;
       ASSERT_GE(cube.system.inspect(cube.state.view()).first.element, 0) << "the mesh is inside out";
-      IntegratorSpec spec{.name = "linearly-implicit-euler", .step_s = 0.01, .indefinite = policy, .linear_solver = solver};
+      IntegratorSpec spec{
+          .name = "linearly-implicit-euler", .step_s = 0.01, .indefinite = policy, .linear_solver = solver};
       const auto stepper = integrate::make_stepper(cube.system, cube.state, spec);
       const double energy = cube.system.potential_energy(cube.state.view());
       const StepResult result = stepper->advance_to(0.01);
@@ -125,7 +140,8 @@ TEST(InvertedElements, GiveAFiniteStepByEitherPolicy) {
       EXPECT_EQ(c.indefinite, 1) << solver << ", " << policy;
       EXPECT_EQ(c.projected, policy == std::string("project") ? 1 : 0);
       if (policy == std::string("project")) {
-        EXPECT_LT(cube.system.potential_energy(cube.state.view()), energy) << "a definite matrix gives a direction of descent";
+        EXPECT_LT(cube.system.potential_energy(cube.state.view()), energy)
+            << "a definite matrix gives a direction of descent";
       }
     }
 }
@@ -142,24 +158,32 @@ struct Crushed {
     Points x = mesh.nodes;
     x.bottomRows<2>().setZero();
     for (double& value : x.reshaped()) value += nanometre(random);
-    const int id = state.insert(BlockSpec{.name = "cube", .q_size = 3 * n, .u_size = 3 * n}, x.reshaped(), VecX::Zero(3 * n));
+    const int id = state.insert(BlockSpec{.name = "cube", .q_size = 3 * n, .u_size = 3 * n}, x.reshaped(),
+                                VecX::Zero(3 * n));
     fem::Material material{.youngs_modulus = 1e4, .poissons_ratio = 0.4, .density = kDensity};
     material.mass_damping = 1.0;
     material.stiffness_damping = 4e-3;
-    system.add(std::static_pointer_cast<ForceTerm>(std::make_shared<fem::SoftBody>("cube", mesh, material, fem::SoftBodyOptions{}, id)));
+    system.add(std::static_pointer_cast<ForceTerm>(
+        std::make_shared<fem::SoftBody>("cube", mesh, material, fem::SoftBodyOptions{}, id)));
     system.add(fem::make_lumped_mass(mesh, kDensity, id));
     system.prepare(state.view());
   }
 };
 
-// A moving body's step gains no energy, whether its matrix is made again in one pass or as a whole: its right-hand side is h (f - K_p h u0) by the same tangent.  By the true one,
-// which the flat elements make stiffer and softer without bound, it would leave at 2e4 m/s.
+// A moving body's step gains no energy, whether its matrix is made again in one pass or as a whole: its
+// right-hand side is h (f - K_p h u0) by the same tangent.  By the true one, which the flat elements make
+// stiffer and softer without bound, it would leave at 2e4 m/s.
 TEST(InvertedElements, AreProjectedAlikeInOnePass) {
   const auto step_by = [](const char* solver, StepperCounters& c) {
     Crushed cube(1);
-    for (Eigen::Index i = 0; i < cube.state.u().size(); ++i) cube.state.u()[i] = 0.3 * std::sin(1.0 + 2.0 * static_cast<double>(i));
-    const auto stepper = integrate::make_stepper(cube.system, cube.state, {.name = "linearly-implicit-euler", .step_s = 5e-3, .linear_solver = solver, .linear_rtol = 1e-5});
-    const auto energy = [&] { return cube.system.potential_energy(cube.state.view()) + cube.system.kinetic_energy(cube.state.view()); };
+    for (Eigen::Index i = 0; i < cube.state.u().size(); ++i)
+      cube.state.u()[i] = 0.3 * std::sin(1.0 + 2.0 * static_cast<double>(i));
+    const auto stepper = integrate::make_stepper(
+        cube.system, cube.state,
+        {.name = "linearly-implicit-euler", .step_s = 5e-3, .linear_solver = solver, .linear_rtol = 1e-5});
+    const auto energy = [&] {
+      return cube.system.potential_energy(cube.state.view()) + cube.system.kinetic_energy(cube.state.view());
+    };
     const double start = energy();
     EXPECT_TRUE(stepper->advance_to(5e-3).ok()) << solver;
     EXPECT_LT(energy(), start) << solver;
@@ -177,14 +201,21 @@ TEST(InvertedElements, AreProjectedAlikeInOnePass) {
   }
 }
 
-/// What becomes of the crushed cube of five seeds in 0.5 s: the most energy that it ever had, over that at the start; counts of all.
+/// What becomes of the crushed cube of five seeds in 0.5 s: the most energy that it ever had, over that at
+/// the start; counts of all.
 double most_energy(const std::string& solver, double rtol, const std::string& policy, StepperCounters& sum) {
   double most = 0.0;
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Crushed cube(seed);
-    const IntegratorSpec spec{.name = "linearly-implicit-euler", .step_s = 5e-3, .indefinite = policy, .linear_solver = solver, .linear_rtol = rtol};
+    const IntegratorSpec spec{.name = "linearly-implicit-euler",
+                              .step_s = 5e-3,
+                              .indefinite = policy,
+                              .linear_solver = solver,
+                              .linear_rtol = rtol};
     const auto stepper = integrate::make_stepper(cube.system, cube.state, spec);
-    const auto energy = [&] { return cube.system.potential_energy(cube.state.view()) + cube.system.kinetic_energy(cube.state.view()); };
+    const auto energy = [&] {
+      return cube.system.potential_energy(cube.state.view()) + cube.system.kinetic_energy(cube.state.view());
+    };
     const double start = energy();
     for (int i = 1; i <= 100; ++i) {
       const StepResult result = stepper->advance_to(i * spec.step_s);
@@ -198,8 +229,8 @@ double most_energy(const std::string& solver, double rtol, const std::string& po
   return most;
 }
 
-// Let go, a crushed body may not gain energy, whether its solver meets the indefinite matrices when it factors or while it solves.  By LU, which follows the linear force model
-// to its saddle, it does.
+// Let go, a crushed body may not gain energy, whether its solver meets the indefinite matrices when it
+// factors or while it solves.  By LU, which follows the linear force model to its saddle, it does.
 TEST(InvertedElements, GainNoEnergyByAnySolver) {
   StepperCounters by_factor, by_lu;
   const double expected = most_energy("cholmod", 1e-8, "project", by_factor);

@@ -20,19 +20,23 @@ struct Buckling final : ForceTerm {
   void add_force(const StateView& s, VecX& f) override { f -= K * s.q; }
   void add_tangent(const StateView&, double k, double, BorderedMatrix& A) override {
     if (definite && k != 0.0) ++definite_tangents;
-    for (int i = 0; i < K.rows() / 3; ++i) A.body.add(A.body.slot(i, i), k * (definite ? definite_K : K).block<3, 3>(3 * i, 3 * i));
+    for (int i = 0; i < K.rows() / 3; ++i)
+      A.body.add(A.body.slot(i, i), k * (definite ? definite_K : K).block<3, 3>(3 * i, 3 * i));
   }
-  void apply_tangent(const StateView&, double k, double, const VecX& x, VecX& y) override { y += k * ((definite ? definite_K : K) * x); }
+  void apply_tangent(const StateView&, double k, double, const VecX& x, VecX& y) override {
+    y += k * ((definite ? definite_K : K) * x);
+  }
 };
 
-/// Two unit masses without coupling at an unstable equilibrium: q'' = 100 q along x of the first, stable along the rest.
-/// M + gamma^2 K is indefinite exactly for gamma > 0.1.
+/// Two unit masses without coupling at an unstable equilibrium: q'' = 100 q along x of the first, stable
+/// along the rest. M + gamma^2 K is indefinite exactly for gamma > 0.1.
 struct Unstable {
   State state;
   System system;
   std::shared_ptr<Buckling> term;
   explicit Unstable(bool has_definite_tangent) {
-    const int id = state.insert(BlockSpec{.name = "masses", .q_size = 6, .u_size = 6}, VecX::Zero(6), VecX::Zero(6));
+    const int id =
+        state.insert(BlockSpec{.name = "masses", .q_size = 6, .u_size = 6}, VecX::Zero(6), VecX::Zero(6));
     MatX K = 100.0 * MatX::Identity(6, 6);
     K(0, 0) = -100.0;
     MatX stand_in = K;
@@ -53,7 +57,8 @@ std::vector<std::string> implicit_methods() {
 
 class Indefinite : public testing::TestWithParam<std::string> {
  protected:
-  /// From rest at the equilibrium there is no error to control and no force: adaptive steps grow past gamma = 0.1, and the fixed ones are given so.
+  /// From rest at the equilibrium there is no error to control and no force: adaptive steps grow past gamma =
+  /// 0.1, and the fixed ones are given so.
   StepperCounters counts(Unstable& problem, const std::string& policy) const {
     IntegratorSpec spec;
     spec.name = GetParam();
@@ -63,7 +68,8 @@ class Indefinite : public testing::TestWithParam<std::string> {
     const StepResult result = stepper->advance_to(1000.0);
     EXPECT_TRUE(result.ok()) << result.message;
     EXPECT_EQ(problem.state.q().norm(), 0.0);
-    if (stepper->counters().tangent_evaluations == 0) {  // saw that no force was left, and asked for no matrix: one step from beside the equilibrium
+    // saw that no force was left, and asked for no matrix: one step from beside the equilibrium
+    if (stepper->counters().tangent_evaluations == 0) {
       problem.state.q().setConstant(1e-3);
       stepper->reinit(ReinitReason::kStateChanged);
       const StepResult beside = stepper->advance_to(1001.0);
@@ -100,8 +106,10 @@ TEST_P(Indefinite, TakesLuAtOnceWhereAsked) {
   EXPECT_EQ(problem.term->definite_tangents, 0);
 }
 
-/// Two unit masses on x, joined so that together they topple and against each other they are held: along (1, 1) q'' = 100 q, along (1, -1) q'' = -300 q.
-/// M + gamma^2 K has positive blocks on its diagonal at any gamma, and is indefinite exactly for gamma > 0.1: only a solve can tell, of a right-hand side along (1, 1).
+/// Two unit masses on x, joined so that together they topple and against each other they are held: along (1,
+/// 1) q'' = 100 q, along (1, -1) q'' = -300 q. M + gamma^2 K has positive blocks on its diagonal at any
+/// gamma, and is indefinite exactly for gamma > 0.1: only a solve can tell, of a right-hand side along (1,
+/// 1).
 /// Such a one comes with a push at kPushed.
 constexpr double kPushed = 500.0;
 struct Toppling {
@@ -114,7 +122,8 @@ struct Toppling {
       for (const int i : {1, 2, 4, 5}) leaning.K(i, i) = 100.0;
       definite_K = leaning.K;
       leaning.K(0, 0) = leaning.K(3, 3) = 100.0, leaning.K(0, 3) = leaning.K(3, 0) = -200.0;
-      definite_K(0, 0) = definite_K(3, 3) = 150.0, definite_K(0, 3) = definite_K(3, 0) = -150.0;  // the nearest positive semi-definite one
+      // the nearest positive semi-definite one
+      definite_K(0, 0) = definite_K(3, 3) = 150.0, definite_K(0, 3) = definite_K(3, 0) = -150.0;
     }
     std::string_view name() const override { return "toppling"; }
     TermTraits traits() const override { return {}; }
@@ -130,21 +139,25 @@ struct Toppling {
       LinearTerm upright(definite_K, leaning.D, leaning.q0);
       upright.add_tangent(s, k, d, A);
     }
-    void apply_tangent(const StateView&, double k, double, const VecX& x, VecX& y) override { y += k * ((on ? definite_K : leaning.K) * x); }
+    void apply_tangent(const StateView&, double k, double, const VecX& x, VecX& y) override {
+      y += k * ((on ? definite_K : leaning.K) * x);
+    }
   };
   State state;
   System system;
   std::shared_ptr<Push> term = std::make_shared<Push>();
   Toppling() {
-    const int id = state.insert(BlockSpec{.name = "masses", .q_size = 6, .u_size = 6}, VecX::Zero(6), VecX::Zero(6));
+    const int id =
+        state.insert(BlockSpec{.name = "masses", .q_size = 6, .u_size = 6}, VecX::Zero(6), VecX::Zero(6));
     system.add(std::static_pointer_cast<ForceTerm>(term));
     system.add(std::make_shared<NodalMass>(id, MatX::Identity(6, 6)));
     system.prepare(state.view());
   }
 };
 
-/// From rest the steps of error control grow far past gamma = 0.1, and meet the push with it; fixed ones are given so.  A fixed step may fail: a Newton iteration by
-/// the definite matrix, 1, for an equation of slope 1 - 100 gamma^2 < 0 goes away from its solution.
+/// From rest the steps of error control grow far past gamma = 0.1, and meet the push with it; fixed ones are
+/// given so.  A fixed step may fail: a Newton iteration by the definite matrix, 1, for an equation of slope 1
+/// - 100 gamma^2 < 0 goes away from its solution.
 StepperCounters pushed(Toppling& problem, IntegratorSpec spec) {
   spec.step_s = 1.0;
   const auto stepper = integrate::make_stepper(problem.system, problem.state, spec);
@@ -174,13 +187,16 @@ TEST_P(Indefinite, MetWhileSolvingIsAnsweredByLuWhereAsked) {
   EXPECT_EQ(problem.term->definite_tangents, 0);
 }
 
-// With a projected matrix the masses go where the push sends them; with the true one, LU's, to the other side: (1 - 100) du = 1e-3.
+// With a projected matrix the masses go where the push sends them; with the true one, LU's, to the other
+// side: (1 - 100) du = 1e-3.
 TEST(LinearlyImplicitEuler, FollowsThePushByAnySolver) {
   VecX by_factor;
   for (const char* solver : {"cholmod", "pcg", "pcg-single", "pcg-two-level", "auto"}) {
     Toppling problem;
     problem.state.set_time(kPushed);
-    const auto stepper = integrate::make_stepper(problem.system, problem.state, {.name = "linearly-implicit-euler", .step_s = 1.0, .linear_solver = solver});
+    const auto stepper =
+        integrate::make_stepper(problem.system, problem.state,
+                                {.name = "linearly-implicit-euler", .step_s = 1.0, .linear_solver = solver});
     ASSERT_TRUE(stepper->advance_to(kPushed + 1.0).ok());
     EXPECT_EQ(stepper->counters().projected, 1) << solver;
     EXPECT_NEAR(problem.state.u()[0], 1e-3, 1e-9) << solver << ": (1 + 0) du = 1e-3";
@@ -189,7 +205,8 @@ TEST(LinearlyImplicitEuler, FollowsThePushByAnySolver) {
   }
   Toppling problem;
   problem.state.set_time(kPushed);
-  const auto stepper = integrate::make_stepper(problem.system, problem.state, {.name = "linearly-implicit-euler", .step_s = 1.0, .indefinite = "lu"});
+  const auto stepper = integrate::make_stepper(
+      problem.system, problem.state, {.name = "linearly-implicit-euler", .step_s = 1.0, .indefinite = "lu"});
   ASSERT_TRUE(stepper->advance_to(kPushed + 1.0).ok());
   EXPECT_NEAR(problem.state.u()[0], -1e-3 / 99.0, 1e-9);
 }

@@ -15,8 +15,8 @@ using namespace dynamics;
 
 enum class Kind { kSpd, kUnsymmetric, kIndefinite };
 
-/// Random bordered matrix with a dominant diagonal: positive definite; symmetric with every third node's and the corner's sign turned; or (values of the
-/// two triangles drawn apart) unsymmetric.
+/// Random bordered matrix with a dominant diagonal: positive definite; symmetric with every third node's and
+/// the corner's sign turned; or (values of the two triangles drawn apart) unsymmetric.
 BorderedMatrix random_matrix(int nodes, int border, Kind kind, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> value(-1.0, 1.0);
@@ -28,11 +28,13 @@ BorderedMatrix random_matrix(int nodes, int border, Kind kind, unsigned seed) {
   A.symmetric = kind != Kind::kUnsymmetric;
   const double corner_sign = kind == Kind::kIndefinite ? -1.0 : 1.0;
   for (int i = 0; i < nodes; ++i)
-    for (int s = A.body.row_start()[static_cast<std::size_t>(i)]; s < A.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+    for (int s = A.body.row_start()[static_cast<std::size_t>(i)];
+         s < A.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
       const int j = A.body.columns()[static_cast<std::size_t>(s)];
       const Mat3 m = Mat3::NullaryExpr([&] { return value(random); });
       if (i == j)
-        A.body.add(s, (kind == Kind::kIndefinite && i % 3 == 0 ? -60.0 : 60.0) * Mat3::Identity() + (A.symmetric ? Mat3(m + m.transpose()) : m));
+        A.body.add(s, (kind == Kind::kIndefinite && i % 3 == 0 ? -60.0 : 60.0) * Mat3::Identity() +
+                          (A.symmetric ? Mat3(m + m.transpose()) : m));
       else if (!A.symmetric)
         A.body.add(s, m);
       else if (i < j) {
@@ -54,7 +56,8 @@ class LinearSolvers : public testing::TestWithParam<std::string> {
   /// An iterative solver's tolerance is set so that it must agree like a direct one.
   std::unique_ptr<LinearSolver> solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-14});
   std::vector<Kind> kinds() const {
-    return solver->supports_unsymmetric() ? std::vector{Kind::kSpd, Kind::kIndefinite, Kind::kUnsymmetric} : std::vector{Kind::kSpd};
+    return solver->supports_unsymmetric() ? std::vector{Kind::kSpd, Kind::kIndefinite, Kind::kUnsymmetric}
+                                          : std::vector{Kind::kSpd};
   }
 };
 
@@ -172,14 +175,16 @@ TEST_P(LinearSolvers, RefuseWhatIsNotFiniteAnywhere) {
   EXPECT_EQ(refused, 12);
 }
 
-// A free graph of springs has no stiffness against translation: the LU factors meet a pivot of rounding's size, wherever in the order it falls.
+// A free graph of springs has no stiffness against translation: the LU factors meet a pivot of rounding's
+// size, wherever in the order it falls.
 TEST_P(LinearSolvers, RefuseASingularMatrix) {
   if (!solver->supports_unsymmetric()) GTEST_SKIP() << "rounding may make a Cholesky pivot positive";
   BorderedMatrix A = random_matrix(40, 0, Kind::kSpd, 9);
   for (int i = 0; i < 40; ++i) {
     const int own = A.body.slot(i, i);
     std::fill_n(A.body.block(own), 9, 0.0);
-    for (int s = A.body.row_start()[static_cast<std::size_t>(i)]; s < A.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+    for (int s = A.body.row_start()[static_cast<std::size_t>(i)];
+         s < A.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
       const int j = A.body.columns()[static_cast<std::size_t>(s)];
       if (j == i) continue;
       const double k = 1.0 + 0.1 * ((i * j) % 7);  // the same for (j, i)
@@ -193,7 +198,8 @@ TEST_P(LinearSolvers, RefuseASingularMatrix) {
   EXPECT_EQ(solver->factor(A), SolveStatus::kSingular);
 }
 
-// A kept pivot order meets values that it was not chosen for: the diagonal fades, and the order of the first factorisation would divide by it.
+// A kept pivot order meets values that it was not chosen for: the diagonal fades, and the order of the first
+// factorisation would divide by it.
 TEST_P(LinearSolvers, KeepTheirAccuracyOverChangingValues) {
   if (!solver->supports_unsymmetric()) GTEST_SKIP() << "for solvers that pivot";
   const BorderedMatrix first = random_matrix(30, 0, Kind::kUnsymmetric, 2);
@@ -221,7 +227,8 @@ TEST_P(LinearSolvers, RobustOnesTakeAnyMatrix) {
   }
 }
 
-// --- conjugate gradients ---------------------------------------------------------------------------------------------
+// --- conjugate gradients
+// ---------------------------------------------------------------------------------------------
 
 /// A cantilever of springs: nodes in a row, the first held; condition of the order of the number squared.
 BorderedMatrix row_of_springs(int nodes, double mass, int border = 0) {
@@ -232,7 +239,8 @@ BorderedMatrix row_of_springs(int nodes, double mass, int border = 0) {
   A.body.add(A.body.slot(0, 0), Mat3::Identity());
   for (int i = 0; i < nodes; ++i) A.body.add(A.body.slot(i, i), mass * Mat3::Identity());
   for (int i = 0; i + 1 < nodes; ++i)
-    for (const auto& [a, b, sign] : {std::tuple{i, i, 1.0}, {i + 1, i + 1, 1.0}, {i, i + 1, -1.0}, {i + 1, i, -1.0}})
+    for (const auto& [a, b, sign] :
+         {std::tuple{i, i, 1.0}, {i + 1, i + 1, 1.0}, {i, i + 1, -1.0}, {i + 1, i, -1.0}})
       A.body.add(A.body.slot(a, b), sign * Mat3::Identity());
   A.right = MatX::Zero(3 * nodes, border);
   A.bottom = MatX::Zero(border, 3 * nodes);
@@ -271,7 +279,8 @@ TEST(Pcg, StartsFromTheLastSolutionScaled) {
   const long cold = iterations(b);
   x = y;
   EXPECT_GT(cold, 50);
-  EXPECT_LE(iterations(-7.0 * b), 8) << "the same direction needs only its scale, and what the tolerance left";
+  EXPECT_LE(iterations(-7.0 * b), 8)
+      << "the same direction needs only its scale, and what the tolerance left";
   EXPECT_LT((y + 7.0 * x).norm(), 1e-5 * y.norm());
   iterations(b);
   EXPECT_LT(iterations(b + 1e-4 * VecX::Ones(b.size())), 3 * cold / 4) << "half of the digits are there";
@@ -287,7 +296,8 @@ TEST(Pcg, AnswersZeroByZeroAndWithoutWork) {
   EXPECT_EQ(solver->counters().iterations, 0);
 }
 
-// The blocks on the diagonal are positive definite, the matrix is not: 1 - 2 cos of the longest wave is below zero.
+// The blocks on the diagonal are positive definite, the matrix is not: 1 - 2 cos of the longest wave is below
+// zero.
 TEST(Pcg, FindsNegativeCurvatureWhileItSolves) {
   const BorderedMatrix A = row_of_springs(50, -0.01);
   const auto solver = integrate::make_linear_solver("pcg");
@@ -316,14 +326,16 @@ TEST(Pcg, GivesUpAnIterationThatDoesNotEnd) {
   EXPECT_NEAR(x[A.size() - 1], 4000.0, 1e-6) << "springs in series";
 }
 
-/// A rigid tool of six directions in contact with `touched` nodes, each by a spring k along a direction of its own.
+/// A rigid tool of six directions in contact with `touched` nodes, each by a spring k along a direction of
+/// its own.
 BorderedMatrix touched_by_a_tool(double k, int touched) {
   BorderedMatrix A = row_of_springs(100, 0.01, 6);
   A.corner = 0.1 * MatX::Identity(6, 6);
   std::mt19937 random(4);
   std::uniform_real_distribution<double> value(-1.0, 1.0);
   for (int i = 0; i < touched; ++i) {
-    const Vec3 n = Vec3::NullaryExpr([&] { return value(random); }).normalized(), arm = Vec3::NullaryExpr([&] { return value(random); });
+    const Vec3 n = Vec3::NullaryExpr([&] { return value(random); }).normalized(),
+               arm = Vec3::NullaryExpr([&] { return value(random); });
     Vec6 along;
     along << arm.cross(n), n;
     const int node = 99 - 2 * i;
@@ -336,7 +348,8 @@ BorderedMatrix touched_by_a_tool(double k, int touched) {
   return A;
 }
 
-// The preconditioner's coarse space holds the six directions in which nodes and tool move together: six orders of stiffness do not show in the count.
+// The preconditioner's coarse space holds the six directions in which nodes and tool move together: six
+// orders of stiffness do not show in the count.
 TEST(Pcg, IsNotRuinedByAStiffTool) {
   std::vector<long> iterations;
   for (const double k : {1.0, 1e2, 1e4, 1e6}) {
@@ -350,11 +363,13 @@ TEST(Pcg, IsNotRuinedByAStiffTool) {
     EXPECT_LE((b - Ax).norm(), 1e-6 * b.norm());
     iterations.push_back(solver->counters().iterations);
   }
-  for (const long n : iterations) EXPECT_LT(2 * n, 3 * iterations.front()) << testing::PrintToString(iterations);
+  for (const long n : iterations)
+    EXPECT_LT(2 * n, 3 * iterations.front()) << testing::PrintToString(iterations);
 }
 
 TEST(Pcg, RefusesAToleranceOutOfRange) {
-  for (const double bad : {0.0, -1e-8, 0.5, std::nan("")}) EXPECT_THROW(integrate::make_linear_solver("pcg", {.linear_rtol = bad}), Error) << bad;
+  for (const double bad : {0.0, -1e-8, 0.5, std::nan("")})
+    EXPECT_THROW(integrate::make_linear_solver("pcg", {.linear_rtol = bad}), Error) << bad;
 }
 
 TEST(Pcg, ChecksThatItsMatrixStands) {
@@ -380,9 +395,14 @@ TEST(LinearSolverRegistry, IsAskedForTheMethodsOwnWhereTheSpecNamesNone) {
   for (const auto& entry : integrate::stepper_registry()) {
     const std::string own = integrate::linear_solver_of({.name = entry.name});
     EXPECT_EQ(own.empty(), !entry.traits.implicit) << entry.name;
-    EXPECT_EQ(integrate::linear_solver_of({.name = entry.name, .linear_solver = "klu"}), entry.traits.implicit ? "klu" : "") << entry.name;
-    EXPECT_TRUE(own != "auto" || entry.traits.control == StepControl::kFixed) << entry.name << ": error control keeps its factors";
-    EXPECT_EQ(integrate::linear_solver_of({.name = entry.name, .factor_kept_steps = 4}), own == "auto" ? "cholmod" : own) << entry.name;
+    EXPECT_EQ(integrate::linear_solver_of({.name = entry.name, .linear_solver = "klu"}),
+              entry.traits.implicit ? "klu" : "")
+        << entry.name;
+    EXPECT_TRUE(own != "auto" || entry.traits.control == StepControl::kFixed)
+        << entry.name << ": error control keeps its factors";
+    EXPECT_EQ(integrate::linear_solver_of({.name = entry.name, .factor_kept_steps = 4}),
+              own == "auto" ? "cholmod" : own)
+        << entry.name;
     automatic += own == "auto", factored += own == "cholmod", none += own.empty();
   }
   EXPECT_EQ(automatic, 6) << "linearly implicit Euler, and those with Newton iterations of their own";

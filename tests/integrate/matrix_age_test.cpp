@@ -5,7 +5,8 @@
 using palpate::integrate::MatrixAge;
 
 namespace {
-constexpr double kRtol = 1e-3, kSize = 1e-2, kRho = 2e-3;  // twice rho of one step of age, times the correction, is a sixth of what may go unseen
+// twice rho of one step of age, times the correction, is a sixth of what may go unseen
+constexpr double kRtol = 1e-3, kSize = 1e-2, kRho = 2e-3;
 
 /// Takes steps while the matrix serves, as a solver would; returns how many.
 int steps(MatrixAge& age, double size, int most, int* looks = nullptr) {

@@ -2,7 +2,8 @@
 
 #include "integrate/fakes.h"
 
-/// Small mechanical systems of the literature through the condensed Newton matrix, against Runge-Kutta-4 of this file at tiny steps.
+/// Small mechanical systems of the literature through the condensed Newton matrix, against Runge-Kutta-4 of
+/// this file at tiny steps.
 namespace palpate {
 namespace {
 
@@ -13,8 +14,8 @@ using Acceleration = std::function<VecX(const VecX& q)>;
 void reference(const Acceleration& a, VecX& q, VecX& u, double T, int steps) {
   const double h = T / steps;
   for (int n = 0; n < steps; ++n) {
-    const VecX k1 = u, l1 = a(q), k2 = u + 0.5 * h * l1, l2 = a(q + 0.5 * h * k1), k3 = u + 0.5 * h * l2, l3 = a(q + 0.5 * h * k2), k4 = u + h * l3,
-               l4 = a(q + h * k3);
+    const VecX k1 = u, l1 = a(q), k2 = u + 0.5 * h * l1, l2 = a(q + 0.5 * h * k1), k3 = u + 0.5 * h * l2,
+               l3 = a(q + 0.5 * h * k2), k4 = u + h * l3, l4 = a(q + h * k3);
     q += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
     u += h / 6.0 * (l1 + 2.0 * l2 + 2.0 * l3 + l4);
   }
@@ -39,7 +40,9 @@ struct Potential final : ForceTerm {
     for (int i = 0; i < nodes; ++i)
       for (int j = 0; j < nodes; ++j) A.body.add(A.body.slot(i, j), H.block<3, 3>(3 * i, 3 * j));
   }
-  void apply_tangent(const StateView& s, double k, double, const VecX& x, VecX& y) override { y += k * (hessian(s.q) * x); }
+  void apply_tangent(const StateView& s, double k, double, const VecX& x, VecX& y) override {
+    y += k * (hessian(s.q) * x);
+  }
   double energy(const StateView& s) override { return value(s.q); }
 };
 
@@ -48,7 +51,10 @@ struct Problem {
   System system;
   std::shared_ptr<Potential> potential;
   Problem(const VecX& q, const VecX& u, std::shared_ptr<Potential> p) : potential(std::move(p)) {
-    const int id = state.insert(BlockSpec{.name = "points", .q_size = static_cast<int>(q.size()), .u_size = static_cast<int>(q.size())}, q, u);
+    const int id = state.insert(
+        BlockSpec{
+            .name = "points", .q_size = static_cast<int>(q.size()), .u_size = static_cast<int>(q.size())},
+        q, u);
     system.add(std::static_pointer_cast<ForceTerm>(potential));
     system.add(std::make_shared<NodalMass>(id, MatX::Identity(q.size(), q.size())));
     system.prepare(state.view());
@@ -56,7 +62,8 @@ struct Problem {
   double energy() { return system.kinetic_energy(state.view()) + potential->value(state.q()); }
 };
 
-/// A unit mass on a spring of stiffness 1/eps^2 and length 1 under g = 1: the pendulum as eps -> 0 (Lubich 1993).
+/// A unit mass on a spring of stiffness 1/eps^2 and length 1 under g = 1: the pendulum as eps -> 0 (Lubich
+/// 1993).
 std::shared_ptr<Potential> spring_pendulum(double k) {
   auto p = std::make_shared<Potential>();
   p->value = [k](const VecX& q) { return 0.5 * k * std::pow(q.norm() - 1.0, 2) + q[1]; };
@@ -69,7 +76,8 @@ std::shared_ptr<Potential> spring_pendulum(double k) {
   return p;
 }
 
-/// Fermi-Pasta-Ulam with 3 stiff linear and 4 soft cubic springs, w = 50 (Hairer, Lubich, Wanner 2006, I.5.1), along x; y and z of each mass are free and at rest.
+/// Fermi-Pasta-Ulam with 3 stiff linear and 4 soft cubic springs, w = 50 (Hairer, Lubich, Wanner 2006,
+/// I.5.1), along x; y and z of each mass are free and at rest.
 std::shared_ptr<Potential> fermi_pasta_ulam(double w) {
   constexpr int kMasses = 6;
   auto p = std::make_shared<Potential>();
@@ -116,17 +124,21 @@ std::vector<std::string> accurate_methods() {
 class Mechanics : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Registry, Mechanics, testing::ValuesIn(accurate_methods()), registry_test_name);
 
-void expect_reference(const std::string& name, const std::shared_ptr<Potential>& potential, const VecX& q0, const VecX& u0, double T, double fastest) {
+void expect_reference(const std::string& name, const std::shared_ptr<Potential>& potential, const VecX& q0,
+                      const VecX& u0, double T, double fastest) {
   VecX q = q0, u = u0;
-  reference([&](const VecX& at) { return VecX(-potential->gradient(at)); }, q, u, T, static_cast<int>(std::ceil(T * fastest / 2e-3)));
+  reference([&](const VecX& at) { return VecX(-potential->gradient(at)); }, q, u, T,
+            static_cast<int>(std::ceil(T * fastest / 2e-3)));
   Problem problem(q0, u0, potential);
   const double energy = problem.energy();
-  const auto stepper = integrate::make_stepper(problem.system, problem.state, {.name = name, .rtol = 1e-8, .max_steps = 5000000});
+  const auto stepper = integrate::make_stepper(problem.system, problem.state,
+                                               {.name = name, .rtol = 1e-8, .max_steps = 5000000});
   const StepResult result = stepper->advance_to(T);
   ASSERT_TRUE(result.ok()) << result.message;
   EXPECT_LT((problem.state.q() - q).norm() / q.norm(), 2e-5);
   EXPECT_LT((problem.state.u() - u).norm() / std::max(1.0, u.norm()), 2e-4 * std::sqrt(fastest));
-  EXPECT_NEAR(problem.energy(), energy, 1e-4 * std::max(1.0, std::abs(energy)));  // about 1 goes back and forth
+  // about 1 goes back and forth
+  EXPECT_NEAR(problem.energy(), energy, 1e-4 * std::max(1.0, std::abs(energy)));
 }
 
 TEST_P(Mechanics, StiffSpringPendulum) {

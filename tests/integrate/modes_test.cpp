@@ -33,10 +33,14 @@ struct Dense {
     system.add(std::static_pointer_cast<ForceTerm>(term));
     system.add(std::make_shared<NodalMass>(block, M));
     if (!M.isDiagonal()) system.set_mass_solver(integrate::make_linear_solver("cholmod"));
-    if (!held.empty()) system.add(std::make_shared<Scripted>(held, [](double, VecX& x, VecX& v, VecX& a) { x.setZero(), v.setConstant(3.0), a.setZero(); }));
+    if (!held.empty())
+      system.add(std::make_shared<Scripted>(
+          held, [](double, VecX& x, VecX& v, VecX& a) { x.setZero(), v.setConstant(3.0), a.setZero(); }));
     system.prepare(state.view());
   }
-  Modes modes(int count, ModesOptions::End end = ModesOptions::End::kLowest) { return find_modes(system, state.view(), {count, end}); }
+  Modes modes(int count, ModesOptions::End end = ModesOptions::End::kLowest) {
+    return find_modes(system, state.view(), {count, end});
+  }
   std::shared_ptr<LinearTerm> term;
 };
 
@@ -48,7 +52,10 @@ MatX random_matrix(int rows, int columns, unsigned seed) {
 /// Positive definite, eigenvalues from about 1 to 1e4 times `scale`.
 MatX random_definite(int n, unsigned seed, double scale) {
   const MatX Q = MatX(random_matrix(n, n, seed)).householderQr().householderQ();
-  return scale * (Q * VecX(VecX::LinSpaced(n, 0.0, 4.0).unaryExpr([](double e) { return std::pow(10.0, e); })).asDiagonal() * Q.transpose());
+  return scale * (Q * VecX(VecX::LinSpaced(n, 0.0, 4.0).unaryExpr([](double e) {
+                        return std::pow(10.0, e);
+                      })).asDiagonal() *
+                  Q.transpose());
 }
 /// Points joined each to each by springs: no force resists the six rigid motions.
 MatX spring_network(const MatX& points, double k) {
@@ -71,12 +78,18 @@ void expect_modes_of(const Dense& d, const Modes& modes) {
   for (int j = 0; j < modes.count(); ++j) {
     const VecX phi = modes.shapes.col(j), force = d.K * phi;
     EXPECT_LE(modes.residuals[j], 1e-8) << j;
-    EXPECT_LE((force - modes.omega_squared[j] * (d.M * phi)).norm(), 1e-8 * force.norm() + 1e-12 * d.K.norm() * phi.norm()) << j;
+    EXPECT_LE((force - modes.omega_squared[j] * (d.M * phi)).norm(),
+              1e-8 * force.norm() + 1e-12 * d.K.norm() * phi.norm())
+        << j;
   }
-  EXPECT_LE((modes.shapes.transpose() * d.M * modes.shapes - MatX::Identity(modes.count(), modes.count())).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_LE((modes.shapes.transpose() * d.M * modes.shapes - MatX::Identity(modes.count(), modes.count()))
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-10);
 }
 
-TEST(Modes, OfTheChainAreKnown) {  // w_j = 2 sqrt(k) sin((2j - 1) pi/18); k itself, 100, comes from j = 2 and from y and z: nine times
+// w_j = 2 sqrt(k) sin((2j - 1) pi/18); k itself, 100, comes from j = 2 and from y and z: nine times
+TEST(Modes, OfTheChainAreKnown) {
   Chain chain;
   const Modes modes = find_modes(chain.system, chain.state.view(), {5});
   ASSERT_EQ(modes.count(), 5);
@@ -85,7 +98,8 @@ TEST(Modes, OfTheChainAreKnown) {  // w_j = 2 sqrt(k) sin((2j - 1) pi/18); k its
   const VecX phi = chain.mode().normalized();
   EXPECT_LE((modes.shapes.col(0) - phi).norm(), 1e-9) << "the largest entry is positive";
   for (int j = 1; j < 5; ++j) EXPECT_NEAR(modes.omega_squared[j], 100.0, 1e-9) << j;
-  EXPECT_LE((modes.shapes.transpose() * modes.shapes - MatX::Identity(5, 5)).norm(), 1e-10) << "repeated modes, and each direction once";
+  EXPECT_LE((modes.shapes.transpose() * modes.shapes - MatX::Identity(5, 5)).norm(), 1e-10)
+      << "repeated modes, and each direction once";
   EXPECT_TRUE(modes.converged);
 }
 
@@ -108,7 +122,8 @@ TEST(Modes, AllOfThemWhereMoreAreWantedThanThereAre) {
 TEST(Modes, EqualThoseOfADenseSolver) {
   for (const bool consistent : {false, true}) {
     const int n = 60;
-    const MatX mass = consistent ? MatX(random_definite(n, 2, 1e-4)) : MatX(VecX(random_matrix(n, 1, 2).cwiseAbs().array() + 0.1).asDiagonal());
+    const MatX mass = consistent ? MatX(random_definite(n, 2, 1e-4))
+                                 : MatX(VecX(random_matrix(n, 1, 2).cwiseAbs().array() + 0.1).asDiagonal());
     Dense d(random_definite(n, 1, 1e5), mass);
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> dense(d.K, d.M);
     for (const auto end : {ModesOptions::End::kLowest, kHighest}) {
@@ -129,14 +144,16 @@ TEST(Modes, OfAFreeBodyBeginWithSixRigidMotions) {
   ASSERT_EQ(modes.count(), 9);
   for (int j = 0; j < 6; ++j) EXPECT_EQ(modes.omega_squared[j], 0.0) << j;
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatX> dense(d.K, d.M);
-  for (int j = 6; j < 9; ++j) EXPECT_NEAR(modes.omega_squared[j], dense.eigenvalues()[j], 1e-9 * dense.eigenvalues()[j]) << j;
+  for (int j = 6; j < 9; ++j)
+    EXPECT_NEAR(modes.omega_squared[j], dense.eigenvalues()[j], 1e-9 * dense.eigenvalues()[j]) << j;
   expect_modes_of(d, modes);
   // Translations and rotations lie in the span of the six.
   const MatX zero = modes.shapes.leftCols(6);
   for (int axis = 0; axis < 3; ++axis)
     for (const bool turn : {false, true}) {
       VecX rigid(90);
-      for (int i = 0; i < 30; ++i) rigid.segment<3>(3 * i) = turn ? Vec3(Vec3::Unit(axis).cross(Vec3(points.col(i)))) : Vec3::Unit(axis);
+      for (int i = 0; i < 30; ++i)
+        rigid.segment<3>(3 * i) = turn ? Vec3(Vec3::Unit(axis).cross(Vec3(points.col(i)))) : Vec3::Unit(axis);
       EXPECT_LE((rigid - zero * (zero.transpose() * (d.M * rigid))).norm(), 1e-8 * rigid.norm()) << axis;
     }
 }
@@ -198,9 +215,7 @@ TEST(Modes, RefuseWhatHasNone) {
   const auto message = [](Dense& d, int count) {
     try {
       d.modes(count);
-    } catch (const Error& e) {
-      return std::string(e.what());
-    }
+    } catch (const Error& e) { return std::string(e.what()); }
     return std::string();
   };
   Dense d(MatX::Identity(6, 6), MatX::Identity(6, 6));

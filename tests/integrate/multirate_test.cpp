@@ -1,4 +1,5 @@
-// The matrix of one multi-rate step against what is known of it: each side alone, the order of both together, and the steps that the method takes.
+// The matrix of one multi-rate step against what is known of it: each side alone, the order of both together,
+// and the steps that the method takes.
 #include "palpate/integrate/multirate.h"
 
 #include <gtest/gtest.h>
@@ -27,10 +28,15 @@ MatX oscillator(double k, double d) {
 TEST(MultirateAmplification, OfOneSideAloneIsWhatTheoryGives) {
   const MatX none = MatX::Zero(2, 2);
   for (const char* name : kNames) {
-    EXPECT_NEAR(multirate_amplification(name, none, oscillator(25.0, 2.0), 0.3), std::exp(-0.3), 1e-12) << "exact: exp(-d/2 H)";
-    for (const double y : {0.1, 1.0, 10.0, 1e3}) EXPECT_LE(multirate_amplification(name, oscillator(y * y, 0.0), none, 1.0), 1.0 + 1e-12) << "A-stable: " << name << " " << y;
+    EXPECT_NEAR(multirate_amplification(name, none, oscillator(25.0, 2.0), 0.3), std::exp(-0.3), 1e-12)
+        << "exact: exp(-d/2 H)";
+    for (const double y : {0.1, 1.0, 10.0, 1e3})
+      EXPECT_LE(multirate_amplification(name, oscillator(y * y, 0.0), none, 1.0), 1.0 + 1e-12)
+          << "A-stable: " << name << " " << y;
   }
-  for (const double y : {0.1, 1.0, 10.0, 1e3}) EXPECT_NEAR(multirate_amplification("ark-mri-2", oscillator(y * y, 0.0), none, 1.0), 1.0, 1e-12) << "the trapezoidal rule";
+  for (const double y : {0.1, 1.0, 10.0, 1e3})
+    EXPECT_NEAR(multirate_amplification("ark-mri-2", oscillator(y * y, 0.0), none, 1.0), 1.0, 1e-12)
+        << "the trapezoidal rule";
 }
 
 // A motion with damping d has the modulus exp(-d H/2); that of a method of order p is off by H^(p+1).
@@ -39,7 +45,9 @@ TEST(MultirateAmplification, ComesToTheExactOneWithTheMethodsOrder) {
   MatX slow = oscillator(4.0, kDamping), fast = MatX::Zero(2, 2);
   fast(1, 0) = -9.0;
   for (int p = 2; p <= 4; ++p) {
-    const auto off = [&](double H) { return std::abs(multirate_amplification(kNames[p - 2], slow, fast, H) - std::exp(-0.5 * kDamping * H)); };
+    const auto off = [&](double H) {
+      return std::abs(multirate_amplification(kNames[p - 2], slow, fast, H) - std::exp(-0.5 * kDamping * H));
+    };
     EXPECT_NEAR(std::log2(off(0.05) / off(0.025)), p + 1.0, 0.15) << p;
   }
 }
@@ -56,7 +64,8 @@ struct FastSpring final : ForceTerm {
   void apply_tangent(const StateView&, double, double, const VecX&, VecX&) override {}
 };
 
-// One mode of two springs, each stable alone: a step from a displacement and one from a speed are the columns of the step's matrix.
+// One mode of two springs, each stable alone: a step from a displacement and one from a speed are the columns
+// of the step's matrix.
 TEST(MultirateAmplification, IsThatOfTheStepsThatAreTaken) {
   constexpr double kFast = 300.0, kStep = 0.15, kSmall = 1e-3;
   int unstable = 0;
@@ -71,7 +80,8 @@ TEST(MultirateAmplification, IsThatOfTheStepsThatAreTaken) {
       chain.system.prepare(chain.state.view());
       const VecX mode = chain.mode() / chain.mode().norm();
       (column == 0 ? chain.state.q() : chain.state.u()) += kSmall * mode;
-      const auto stepper = integrate::make_stepper(chain.system, chain.state, {.name = name, .step_s = kStep});
+      const auto stepper =
+          integrate::make_stepper(chain.system, chain.state, {.name = name, .step_s = kStep});
       const StepResult result = stepper->advance_to(kStep);
       ASSERT_TRUE(result.ok()) << result.message;
       ASSERT_EQ(stepper->counters().steps, 1);

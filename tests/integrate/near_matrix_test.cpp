@@ -19,8 +19,10 @@ VecX direct_solution(const BorderedMatrix& A, const VecX& b) {
   return x;
 }
 
-/// A solver that has its balanced matrix of a beam bent by `angle`, and solved with it for the loads of a bend that grows.
-std::unique_ptr<LinearSolver> solver_at(BentBeam& beam, const std::string& name, double angle, double h, double rtol) {
+/// A solver that has its balanced matrix of a beam bent by `angle`, and solved with it for the loads of a
+/// bend that grows.
+std::unique_ptr<LinearSolver> solver_at(BentBeam& beam, const std::string& name, double angle, double h,
+                                        double rtol) {
   auto solver = integrate::make_linear_solver(name, {.linear_rtol = rtol});
   VecX b, x;
   for (int k = 3; k >= 0; --k) {
@@ -50,7 +52,8 @@ TEST(NearMatrix, SolvesAsAccuratelyAsTheMatrixItself) {
           break;
         }
         const VecX exact = direct_solution(A, b);
-        EXPECT_LE(energy_norm(A, x - exact), rtol * energy_norm(A, exact)) << name << ", " << rtol << ", step " << k;
+        EXPECT_LE(energy_norm(A, x - exact), rtol * energy_norm(A, exact))
+            << name << ", " << rtol << ", step " << k;
         EXPECT_GE(left.looks, k == 1 ? 2 : 1);
       }
       EXPECT_GE(solver->counters().near, rtol > 5e-4 ? 5 : 1) << name << ", " << rtol;
@@ -74,7 +77,8 @@ TEST(NearMatrix, SaysWhereItIsTooFar) {
     ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
     ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
     const VecX exact = direct_solution(A, b);
-    EXPECT_LE(energy_norm(A, x - exact), 1e-6 * energy_norm(A, exact)) << name << ": its own matrix is taken up as if nothing had been";
+    EXPECT_LE(energy_norm(A, x - exact), 1e-6 * energy_norm(A, exact))
+        << name << ": its own matrix is taken up as if nothing had been";
   }
 }
 
@@ -95,7 +99,8 @@ TEST(NearMatrix, NeedsABalancedMatrixAndASolution) {
 /// Between a stepper and its solver: compares every solution of a step with a direct one of its matrix.
 class EverySolve final : public LinearSolver {
  public:
-  EverySolve(std::unique_ptr<LinearSolver> solver, BentBeam& beam, double h) : solver_(std::move(solver)), beam_(beam), h_(h) {}
+  EverySolve(std::unique_ptr<LinearSolver> solver, BentBeam& beam, double h)
+      : solver_(std::move(solver)), beam_(beam), h_(h) {}
   std::string name() const override { return solver_->name(); }
   bool supports_unsymmetric() const override { return false; }
   SolveStatus factor(const BorderedMatrix& A) override { return solver_->factor(A); }
@@ -121,7 +126,8 @@ class EverySolve final : public LinearSolver {
  private:
   void compare(const VecX& b, const VecX& x, double& worst) {
     const double t1 = beam_.state.time() + h_;
-    beam_.system.step_matrix(beam_.state.view(t1, beam_.state.q().data(), beam_.state.u().data()), 1.0, h_, h_ * h_, A_);
+    beam_.system.step_matrix(beam_.state.view(t1, beam_.state.q().data(), beam_.state.u().data()), 1.0, h_,
+                             h_ * h_, A_);
     const VecX exact = direct_solution(A_, b);
     worst = std::max(worst, energy_norm(A_, x - exact) / energy_norm(A_, exact));
   }
@@ -137,12 +143,18 @@ struct Swing {
   VecX q;
 };
 /// Swings a beam; `blow` is a velocity that its end gets all of a sudden, half way.
-Swing swing(const std::string& name, double h, double rtol, int steps, double blow, int threads = 1, const BentBeamOptions& options = {}) {
+Swing swing(const std::string& name, double h, double rtol, int steps, double blow, int threads = 1,
+            const BentBeamOptions& options = {}) {
   BentBeam beam(16, 1e5, 0, options);
-  const IntegratorSpec spec{.name = "linearly-implicit-euler", .step_s = h, .linear_solver = name, .linear_rtol = rtol, .threads = threads};
+  const IntegratorSpec spec{.name = "linearly-implicit-euler",
+                            .step_s = h,
+                            .linear_solver = name,
+                            .linear_rtol = rtol,
+                            .threads = threads};
   auto every = std::make_unique<EverySolve>(integrate::make_linear_solver(name, spec), beam, h);
   EverySolve& seen = *every;
-  const auto stepper = find(integrate::stepper_registry(), spec.name, "integrator").make(beam.system, beam.state, spec, std::move(every));
+  const auto stepper = find(integrate::stepper_registry(), spec.name, "integrator")
+                           .make(beam.system, beam.state, spec, std::move(every));
   for (int k = 0; k < steps; ++k) {
     if (k == steps / 2)
       for (Eigen::Index i = 0; i < beam.rest.size(); i += 3)
@@ -151,12 +163,15 @@ Swing swing(const std::string& name, double h, double rtol, int steps, double bl
     EXPECT_TRUE(r.ok()) << r.message;
   }
   const StepperCounters& c = stepper->counters();
-  return {seen.worst_own, seen.worst_near, (beam.state.q() - beam.rest).lpNorm<Eigen::Infinity>(), c.solver.near, c.steps, c.solver.residuals, beam.state.q()};
+  return {seen.worst_own, seen.worst_near, (beam.state.q() - beam.rest).lpNorm<Eigen::Infinity>(),
+          c.solver.near,  c.steps,         c.solver.residuals,
+          beam.state.q()};
 }
 
 TEST(NearMatrix, EveryStepOfASwingHasItsTolerance) {
   for (const std::string name : {"pcg-single", "pcg-two-level", "auto"})
-    for (const auto& [h, rtol] : {std::pair{1e-3, 1e-3}, {1e-3, 1e-4}, {1e-3, 1e-6}, {4e-3, 1e-3}, {1e-2, 1e-3}}) {
+    for (const auto& [h, rtol] :
+         {std::pair{1e-3, 1e-3}, {1e-3, 1e-4}, {1e-3, 1e-6}, {4e-3, 1e-3}, {1e-2, 1e-3}}) {
       if (name == "auto" && rtol != 1e-4) continue;
       const int steps = static_cast<int>(std::lround(0.16 / h));
       const Swing s = swing(name, h, rtol, steps, 0.0);
@@ -182,8 +197,12 @@ TEST(NearMatrix, ABlowIsSeen) {
 
 // Damping of both kinds and an end that moves are in what a step leaves as they are in its matrix.
 TEST(NearMatrix, DampedAndDrivenItIsTheSameMotion) {
-  for (const BentBeamOptions& options : {BentBeamOptions{.stiffness_damping = 0.01}, {.mass_damping = 20.0}, {.stiffness_damping = 0.003, .mass_damping = 5.0, .shake_m = 0.01}}) {
-    const Swing near = swing("pcg-single", 1e-3, 1e-3, 100, 0.0, 1, options), direct = swing("cholmod", 1e-3, 1e-3, 100, 0.0, 1, options);
+  for (const BentBeamOptions& options :
+       {BentBeamOptions{.stiffness_damping = 0.01},
+        {.mass_damping = 20.0},
+        {.stiffness_damping = 0.003, .mass_damping = 5.0, .shake_m = 0.01}}) {
+    const Swing near = swing("pcg-single", 1e-3, 1e-3, 100, 0.0, 1, options),
+                direct = swing("cholmod", 1e-3, 1e-3, 100, 0.0, 1, options);
     EXPECT_GT(near.near, 30);
     EXPECT_EQ(direct.near, 0);
     EXPECT_LE(near.worst_near, 1e-3);
@@ -192,13 +211,15 @@ TEST(NearMatrix, DampedAndDrivenItIsTheSameMotion) {
 }
 
 TEST(NearMatrix, ThreadsDoNotChangeABit) {
-  const Swing one = swing("pcg-two-level", 1e-3, 1e-3, 60, 0.0, 1), three = swing("pcg-two-level", 1e-3, 1e-3, 60, 0.0, 3);
+  const Swing one = swing("pcg-two-level", 1e-3, 1e-3, 60, 0.0, 1),
+              three = swing("pcg-two-level", 1e-3, 1e-3, 60, 0.0, 3);
   EXPECT_GT(one.near, 20);
   EXPECT_EQ(one.near, three.near);
   EXPECT_EQ(one.q, three.q);
 }
 
-// Tolerances for which the copy in single precision is too coarse: its own steps are corrected by it, each of them looked at, and so are those by an older one.
+// Tolerances for which the copy in single precision is too coarse: its own steps are corrected by it, each of
+// them looked at, and so are those by an older one.
 TEST(NearMatrix, ARoundedMatrixKeepsTightTolerances) {
   for (const std::string name : {"pcg-single", "pcg-two-level"})
     for (const auto& [h, rtol] : {std::pair{1e-3, 1e-8}, {1e-3, 1e-10}, {1e-2, 1e-9}}) {
@@ -206,22 +227,25 @@ TEST(NearMatrix, ARoundedMatrixKeepsTightTolerances) {
       const Swing s = swing(name, h, rtol, steps, 1.0);
       EXPECT_LE(s.worst_near, rtol) << name << ", h = " << h;
       EXPECT_LE(s.worst_own, rtol) << name << ", h = " << h;
-      EXPECT_GE(s.looks, 2 * (steps - 1)) << name << ", h = " << h << ": the first step has nothing to begin with";
+      EXPECT_GE(s.looks, 2 * (steps - 1))
+          << name << ", h = " << h << ": the first step has nothing to begin with";
     }
 }
 
 // A stepper that is told of a change takes no matrix from before it.
 TEST(NearMatrix, IsForgottenAtAReinitialisation) {
   BentBeam beam(16, 1e5);
-  const auto stepper = integrate::make_stepper(beam.system, beam.state, {.name = "linearly-implicit-euler", .step_s = 1e-3, .linear_solver = "pcg-single", .linear_rtol = 1e-3});
+  const auto stepper = integrate::make_stepper(beam.system, beam.state,
+                                               {.name = "linearly-implicit-euler",
+                                                .step_s = 1e-3,
+                                                .linear_solver = "pcg-single",
+                                                .linear_rtol = 1e-3});
   int kept_steps = 0;
   for (int k = 1; k <= 60; ++k) {
     const long factors = stepper->counters().solver.factorisations, near = stepper->counters().solver.near;
     if (k > 40) stepper->reinit(ReinitReason::kParametersChanged);
     ASSERT_TRUE(stepper->advance_to(1e-3 * k).ok());
-    if (k > 40) {
-      EXPECT_EQ(stepper->counters().solver.factorisations, factors + 1);
-    }
+    if (k > 40) { EXPECT_EQ(stepper->counters().solver.factorisations, factors + 1); }
     kept_steps += static_cast<int>(stepper->counters().solver.near - near);
   }
   EXPECT_GT(kept_steps, 10);

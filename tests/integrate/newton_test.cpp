@@ -1,4 +1,5 @@
-// Newton's method by itself, on equations whose solutions are known, and what fixed steps of ARKODE do where a solve fails.
+// Newton's method by itself, on equations whose solutions are known, and what fixed steps of ARKODE do where
+// a solve fails.
 #include "integrate/newton.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,8 @@ struct Scalar final : integrate::NewtonEquation {
   std::function<double(double)> r, slope;
   double tolerance = 1e-12, x_ = 0.0, r_ = 0.0, a_ = 0.0;
   int residuals = 0, matrices = 0;
-  Scalar(std::function<double(double)> f, std::function<double(double)> df) : r(std::move(f)), slope(std::move(df)) {}
+  Scalar(std::function<double(double)> f, std::function<double(double)> df)
+      : r(std::move(f)), slope(std::move(df)) {}
   bool evaluate(const VecX& x) override {
     ++residuals;
     x_ = x[0];
@@ -56,10 +58,9 @@ TEST(DampedNewton, DampsWhereAWholeCorrectionWouldDiverge) {
     Scalar arctan([](double x) { return std::atan(x); }, [](double x) { return 1.0 / (1.0 + x * x); });
     VecX x = VecX::Constant(1, start);
     const auto result = DampedNewton().solve(arctan, x, 60, Way::kFresh, false);
-    EXPECT_EQ(result.status, start < 50.0 ? StepStatus::kOk : StepStatus::kNewtonFailed) << start;  // a damping of 1/64 reaches so far
-    if (start < 50.0) {
-      EXPECT_NEAR(x[0], 0.0, 1e-11) << start;
-    }
+    // a damping of 1/64 reaches so far
+    EXPECT_EQ(result.status, start < 50.0 ? StepStatus::kOk : StepStatus::kNewtonFailed) << start;
+    if (start < 50.0) { EXPECT_NEAR(x[0], 0.0, 1e-11) << start; }
   }
   Scalar arctan([](double x) { return std::atan(x); }, [](double x) { return 1.0 / (1.0 + x * x); });
   VecX x = VecX::Constant(1, 2.0);
@@ -72,16 +73,21 @@ TEST(DampedNewton, AKeptMatrixServesUntilItContractsTooLittle) {
   VecX x = VecX::Constant(1, 1.5);
   ASSERT_EQ(newton.solve(square, x, 20, Way::kKeptMatrix, false).status, StepStatus::kOk);
   EXPECT_EQ(square.matrices, 1);
-  ASSERT_EQ(newton.solve(square, x = VecX::Constant(1, 1.4), 20, Way::kKeptMatrix, true).status, StepStatus::kOk);
+  ASSERT_EQ(newton.solve(square, x = VecX::Constant(1, 1.4), 20, Way::kKeptMatrix, true).status,
+            StepStatus::kOk);
   EXPECT_EQ(square.matrices, 1) << "the old one served";
-  ASSERT_EQ(newton.solve(square, x = VecX::Constant(1, 40.0), 60, Way::kKeptMatrix, true).status, StepStatus::kOk);
+  ASSERT_EQ(newton.solve(square, x = VecX::Constant(1, 40.0), 60, Way::kKeptMatrix, true).status,
+            StepStatus::kOk);
   EXPECT_GT(square.matrices, 1) << "the old one led astray";
   EXPECT_NEAR(x[0], std::sqrt(2.0), 1e-11);
 }
 
-// x + jump at 0, no slope of the jump in the matrix: from the right the solution x = -1 lies behind it, and no small correction descends over it.
+// x + jump at 0, no slope of the jump in the matrix: from the right the solution x = -1 lies behind it, and
+// no small correction descends over it.
 TEST(DampedNewton, LeapsOverAJump) {
-  const auto residual = [](double x) { return x > 0.0 ? 0.5 * x + 0.2 : x + 1.0 + 1e3 * std::max(0.0, x + 1e-3); };
+  const auto residual = [](double x) {
+    return x > 0.0 ? 0.5 * x + 0.2 : x + 1.0 + 1e3 * std::max(0.0, x + 1e-3);
+  };
   const auto slope = [](double x) { return x > 0.0 ? 0.5 : x > -1e-3 ? 1e3 + 1.0 : 1.0; };
   Scalar jump(residual, slope);
   VecX x = VecX::Constant(1, 0.3);
@@ -94,7 +100,8 @@ TEST(DampedNewton, LeapsOverAJump) {
 }
 
 TEST(DampedNewton, AResidualThatIsNotFiniteIsSaidAndNotTaken) {
-  Scalar log([](double x) { return std::log(x); }, [](double x) { return 1.0 / x; });  // from 10 the whole correction goes to -13
+  // from 10 the whole correction goes to -13
+  Scalar log([](double x) { return std::log(x); }, [](double x) { return 1.0 / x; });
   VecX x = VecX::Constant(1, 10.0);
   ASSERT_EQ(DampedNewton().solve(log, x, 60, Way::kFresh, false).status, StepStatus::kOk);
   EXPECT_NEAR(x[0], 1.0, 1e-11);
@@ -102,8 +109,9 @@ TEST(DampedNewton, AResidualThatIsNotFiniteIsSaidAndNotTaken) {
   EXPECT_EQ(DampedNewton().solve(log, x, 60, Way::kFresh, false).status, StepStatus::kNotFinite);
 }
 
-// y' = y^2, y(0) = 1: y = 1/(1 - t).  A stage y1 = y0 + g y1^2 has no solution for 4 g y0 > 1, so a step of H cannot be taken whole by a table whose first stage
-// has g = H a_11 > 1/4, and ends near 1/(1 - H) where it is taken in parts.
+// y' = y^2, y(0) = 1: y = 1/(1 - t).  A stage y1 = y0 + g y1^2 has no solution for 4 g y0 > 1, so a step of H
+// cannot be taken whole by a table whose first stage has g = H a_11 > 1/4, and ends near 1/(1 - H) where it
+// is taken in parts.
 TEST(FixedStepNewton, AStepThatHasNoSolutionIsTakenInParts) {
   fakes::Equation growth;
   growth.f = [](const VecX& y, VecX& f) { f = y.cwiseProduct(y); };
@@ -113,7 +121,8 @@ TEST(FixedStepNewton, AStepThatHasNoSolutionIsTakenInParts) {
     VecX y;
     double t = 0.0;
     IntegratorSpec spec{.name = name, .step_s = 0.65, .fixed_step = true};
-    const auto stepper = integrate::make_ode_stepper(std::make_unique<fakes::DenseOde>(growth, 1e-8, y, t), spec);
+    const auto stepper =
+        integrate::make_ode_stepper(std::make_unique<fakes::DenseOde>(growth, 1e-8, y, t), spec);
     const dynamics::StepResult result = stepper->advance_to(0.65);
     ASSERT_TRUE(result.ok()) << name << ": " << result.message;
     EXPECT_EQ(t, 0.65);
@@ -133,7 +142,8 @@ TEST(FixedStepNewton, CountsEachSolveOnce) {
   VecX y;
   double t = 0.0;
   IntegratorSpec spec{.name = "ark-dirk-sdirk212", .step_s = 0.1, .fixed_step = true};
-  const auto stepper = integrate::make_ode_stepper(std::make_unique<fakes::DenseOde>(decay, 1e-8, y, t), spec);
+  const auto stepper =
+      integrate::make_ode_stepper(std::make_unique<fakes::DenseOde>(decay, 1e-8, y, t), spec);
   ASSERT_TRUE(stepper->advance_to(1.0).ok());
   EXPECT_EQ(stepper->counters().steps, 10);
   EXPECT_EQ(stepper->counters().newton_iterations, 2 * 10) << "two linear stages a step";
@@ -141,7 +151,8 @@ TEST(FixedStepNewton, CountsEachSolveOnce) {
 }
 
 TEST(FixedStepNewton, WhereNoPartHelpsItIsSaid) {
-  fakes::Equation jump;  // y' jumps from 1 to -1 at y = 1/2: a stage there has no solution however short the step
+  // y' jumps from 1 to -1 at y = 1/2: a stage there has no solution however short the step
+  fakes::Equation jump;
   jump.f = [](const VecX& y, VecX& f) { f = VecX::Constant(1, y[0] < 0.5 ? 1.0 : -1.0); };
   jump.jacobian = [](const VecX&, MatX& J) { J.setZero(1, 1); };
   jump.y0 = VecX::Zero(1);

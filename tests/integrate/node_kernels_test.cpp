@@ -27,13 +27,15 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   for (std::size_t i = 0; i < n; ++i) {
     diagonal[i] = A.body.diagonal(static_cast<int>(i));
     const auto row = source.begin() + A.body.row_start()[i];
-    std::rotate(row, source.begin() + diagonal[i], source.begin() + diagonal[i] + 1);  // the row's own block first
+    // the row's own block first
+    std::rotate(row, source.begin() + diagonal[i], source.begin() + diagonal[i] + 1);
   }
   std::vector<int> column;
   for (const int slot : source) column.push_back(A.body.columns()[static_cast<std::size_t>(slot)]);
   std::vector<int> row_start(A.body.row_start().begin(), A.body.row_start().end());
   integrate::NodeOrder order = integrate::cluster_nodes(A.body, 3, 3);
-  for (std::size_t i = 0; i < n; ++i) order.node[i] = static_cast<int>(i);  // parts of nodes as they come: many blocks between parts
+  // parts of nodes as they come: many blocks between parts
+  for (std::size_t i = 0; i < n; ++i) order.node[i] = static_cast<int>(i);
   integrate::RowPacking packing;
   packing.analyse(order, row_start, column);
   std::vector<double> v(4 * n + integrate::kVectorTail), Av(v);
@@ -43,20 +45,29 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   A.multiply(b, exact);
   for (int limit = 0; limit <= 2; ++limit) {
     const integrate::NodeKernels& k = integrate::node_kernels(limit);
-    std::vector<float> values(9 * (source.size() + 1) + integrate::kBlockTail), p(4 * n + integrate::kVectorTail), q(p), inverse(static_cast<std::size_t>(integrate::inverse_place(static_cast<int>(n) + 3)));
-    const integrate::DoubleBlocks D{row_start.data(), column.data(), source.data(), A.body.values().data(), A.body.slot_count() - 1};
+    std::vector<float> values(9 * (source.size() + 1) + integrate::kBlockTail),
+        p(4 * n + integrate::kVectorTail), q(p),
+        inverse(static_cast<std::size_t>(integrate::inverse_place(static_cast<int>(n) + 3)));
+    const integrate::DoubleBlocks D{row_start.data(), column.data(), source.data(), A.body.values().data(),
+                                    A.body.slot_count() - 1};
     ASSERT_TRUE(k.convert(D, 1.0, values.data(), 0, static_cast<int>(n)));
     k.multiply_double(D, v.data(), Av.data(), 0, static_cast<int>(n));
     for (std::size_t i = 0; i < v.size(); ++i) p[i] = static_cast<float>(v[i]);
-    std::vector<int> offset(packing.places() + integrate::kLanesOfGroup * integrate::kStepsAhead, 9 * static_cast<int>(source.size()));
+    std::vector<int> offset(packing.places() + integrate::kLanesOfGroup * integrate::kStepsAhead,
+                            9 * static_cast<int>(source.size()));
     std::vector<std::uint16_t> turned(packing.places() / integrate::kLanesOfGroup, 0);
     for (std::size_t s = 0; s < source.size(); ++s)
       if (!packing.turned(s)) offset[packing.place(s)] = 9 * static_cast<int>(s);
     double pq = 0.0;
-    for (std::size_t part = 0; part < 3; ++part) k.pack(packing.rows(part, nullptr), {values.data(), offset.data(), nullptr});
-    for (std::size_t part = 0; part < 3; ++part) pq += k.product(packing.rows(part, nullptr), p.data(), q.data());
-    ASSERT_TRUE(k.invert_diagonal(A.body.values().data(), diagonal.data(), 1.0, inverse.data(), 0, static_cast<int>(n)));
-    const auto lacks_held_columns = [&](std::size_t i) { return beam.rest[static_cast<Eigen::Index>(3 * i)] < -0.5 + 0.2; };
+    for (std::size_t part = 0; part < 3; ++part)
+      k.pack(packing.rows(part, nullptr), {values.data(), offset.data(), nullptr});
+    for (std::size_t part = 0; part < 3; ++part)
+      pq += k.product(packing.rows(part, nullptr), p.data(), q.data());
+    ASSERT_TRUE(k.invert_diagonal(A.body.values().data(), diagonal.data(), 1.0, inverse.data(), 0,
+                                  static_cast<int>(n)));
+    const auto lacks_held_columns = [&](std::size_t i) {
+      return beam.rest[static_cast<Eigen::Index>(3 * i)] < -0.5 + 0.2;
+    };
     const auto off_identity = [&](bool balanced) {
       double most = 0.0;
       for (std::size_t i = 0; i < n; ++i) {
@@ -64,7 +75,9 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
         const Mat3 own = Eigen::Map<const Mat3>(A.body.block(diagonal[i]));
         Mat3 J;
         for (int c = 0; c < 3; ++c)
-          for (int r = 0; r < 3; ++r) J(r, c) = inverse[static_cast<std::size_t>(integrate::inverse_place(static_cast<int>(i)) + (r == c ? r : integrate::kToOffDiagonal + 3 - r - c))];
+          for (int r = 0; r < 3; ++r)
+            J(r, c) = inverse[static_cast<std::size_t>(integrate::inverse_place(static_cast<int>(i)) +
+                                                       (r == c ? r : integrate::kToOffDiagonal + 3 - r - c))];
         most = std::max(most, (own * J - Mat3::Identity()).norm());
       }
       return most;
@@ -88,15 +101,23 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
       for (std::size_t a = 0; a < 3; ++a) {
         double sum = 0.0;
         for (int s = A.body.row_start()[i]; s < A.body.row_start()[i + 1]; ++s)
-          sum += A.body.columns()[static_cast<std::size_t>(s)] == static_cast<int>(i) ? A.body.block(s)[4 * a] : static_cast<float>(A.body.block(s)[4 * a]);
+          sum += A.body.columns()[static_cast<std::size_t>(s)] == static_cast<int>(i)
+                     ? A.body.block(s)[4 * a]
+                     : static_cast<float>(A.body.block(s)[4 * a]);
         mass[4 * i + a] = sum;
         mass_single[4 * i + a] = static_cast<float>(sum);
       }
     for (std::size_t s = 0; s < source.size(); ++s) {
       const std::size_t at = packing.place(s);
-      if (packing.turned(s) || at % 3 != 0 || column[s] == static_cast<int>(std::upper_bound(row_start.begin(), row_start.end(), static_cast<int>(s)) - row_start.begin()) - 1) continue;
+      if (packing.turned(s) || at % 3 != 0 ||
+          column[s] ==
+              static_cast<int>(std::upper_bound(row_start.begin(), row_start.end(), static_cast<int>(s)) -
+                               row_start.begin()) -
+                  1)
+        continue;
       Eigen::Map<Eigen::Matrix3f>(values.data() + 9 * s).transposeInPlace();
-      turned[at / integrate::kLanesOfGroup] = static_cast<std::uint16_t>(turned[at / integrate::kLanesOfGroup] | 1u << at % integrate::kLanesOfGroup);
+      turned[at / integrate::kLanesOfGroup] = static_cast<std::uint16_t>(
+          turned[at / integrate::kLanesOfGroup] | 1u << at % integrate::kLanesOfGroup);
     }
     std::vector<float> sums(8 * n + integrate::kVectorTail), Vs[5], AVs[5];
     const float* V[5] = {};
@@ -113,7 +134,9 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     double trace = 0.0, all_traces = 0.0;
     for (std::size_t part = 0; part < 3; ++part) {
       const integrate::PackedRows rows = packing.rows(part, mass_single.data());
-      ASSERT_EQ(k.balance(rows, {values.data(), offset.data(), turned.data()}, sums.data(), inverse.data(), &trace, static_cast<int>(part) + 3, V, AV), integrate::Balanced::kOk);
+      ASSERT_EQ(k.balance(rows, {values.data(), offset.data(), turned.data()}, sums.data(), inverse.data(),
+                          &trace, static_cast<int>(part) + 3, V, AV),
+                integrate::Balanced::kOk);
       all_traces += trace;
     }
     pq = 0.0;
@@ -130,7 +153,9 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
         const double want = exact[static_cast<Eigen::Index>(3 * i + a)];
         off = std::max(off, std::abs(Av[4 * i + a] - want));
         off_single = std::max(off_single, std::abs(q[4 * i + a] - want));
-        for (std::size_t c = 0; c < 3; ++c) off_columns = std::max(off_columns, std::abs(AVs[c][4 * i + a] / static_cast<double>(c + 1) - want));
+        for (std::size_t c = 0; c < 3; ++c)
+          off_columns =
+              std::max(off_columns, std::abs(AVs[c][4 * i + a] / static_cast<double>(c + 1) - want));
       }
     }
     EXPECT_LT(off, 1e-6 * exact.cwiseAbs().maxCoeff()) << k.name;
@@ -148,7 +173,8 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     std::vector<float> E(size * stride, 0.0f), w(stride, 0.0f), y(stride, 0.0f);
     for (int i = 0; i < size; ++i) {
       y[static_cast<std::size_t>(i)] = static_cast<float>(S.row(i).sum());
-      for (int j = 0; j < size; ++j) E[static_cast<std::size_t>(i * stride + j)] = static_cast<float>(S(i, j));
+      for (int j = 0; j < size; ++j)
+        E[static_cast<std::size_t>(i * stride + j)] = static_cast<float>(S(i, j));
     }
     ASSERT_TRUE(k.invert(E.data(), size, stride));
     k.dense(E.data(), stride, y.data(), w.data(), 0, size);
@@ -156,9 +182,11 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   }
 }
 
-// Against plain sums in double, on ranges that begin and end anywhere, of what has each instruction set's own loops.
+// Against plain sums in double, on ranges that begin and end anywhere, of what has each instruction set's own
+// loops.
 TEST(NodeKernels, VectorsOfAStartAreThoseOfPlainSums) {
-  constexpr int kNodes = 37, kFirst = 3, kLast = 36, kCount = 3, kNumbers = 4 * kNodes + integrate::kVectorTail;
+  constexpr int kNodes = 37, kFirst = 3, kLast = 36, kCount = 3,
+                kNumbers = 4 * kNodes + integrate::kVectorTail;
   std::mt19937 random(7);
   std::uniform_real_distribution<float> number(-1.0f, 1.0f);
   const auto field = [&](auto zero) {
@@ -167,12 +195,16 @@ TEST(NodeKernels, VectorsOfAStartAreThoseOfPlainSums) {
       if (i % 4 != 3) v[i] = number(random);
     return v;
   };
-  const std::vector<std::vector<float>> V{field(0.0f), field(0.0f), field(0.0f)}, AV{field(0.0f), field(0.0f), field(0.0f)};
+  const std::vector<std::vector<float>> V{field(0.0f), field(0.0f), field(0.0f)},
+      AV{field(0.0f), field(0.0f), field(0.0f)};
   const std::vector<double> b = field(0.0), Ax = field(0.0);
   const std::vector<float> d = field(0.0f), p = field(0.0f);
-  const float *at_V[kCount] = {V[0].data(), V[1].data(), V[2].data()}, *at_AV[kCount] = {AV[0].data(), AV[1].data(), AV[2].data()};
+  const float *at_V[kCount] = {V[0].data(), V[1].data(), V[2].data()},
+              *at_AV[kCount] = {AV[0].data(), AV[1].data(), AV[2].data()};
   const double y[kCount] = {0.5, -2.0, 3.0};
-  const auto combined = [&](const std::vector<std::vector<float>>& of, std::size_t i) { return y[0] * of[0][i] + y[1] * of[1][i] + y[2] * of[2][i]; };
+  const auto combined = [&](const std::vector<std::vector<float>>& of, std::size_t i) {
+    return y[0] * of[0][i] + y[1] * of[1][i] + y[2] * of[2][i];
+  };
   std::vector<int> node(kNodes);
   for (int k = 0; k < kNodes; ++k) node[static_cast<std::size_t>(k)] = (5 * k + 2) % kNodes;
   constexpr std::size_t kBegin = 4 * kFirst, kEnd = 4 * kLast;
@@ -220,7 +252,8 @@ TEST(NodeKernels, VectorsOfAStartAreThoseOfPlainSums) {
       most = std::max(most, std::abs(before[here]));
     }
     EXPECT_EQ(largest, most);
-    EXPECT_EQ(std::count(out.begin(), out.end(), 7.0), 3 * (kNodes - (kLast - kFirst))) << "others are left alone";
+    EXPECT_EQ(std::count(out.begin(), out.end(), 7.0), 3 * (kNodes - (kLast - kFirst)))
+        << "others are left alone";
     EXPECT_EQ(r[kBegin - 1], 9.0f);
     EXPECT_EQ(r[kEnd], 9.0f);
 
@@ -231,7 +264,8 @@ TEST(NodeKernels, VectorsOfAStartAreThoseOfPlainSums) {
     k.first_direction(z.data(), arm.data(), motion, first_d.data(), first_p.data(), kFirst, kLast);
     k.direction(2.0f, -0.5f, z.data(), arm.data(), motion, next_d.data(), next_p.data(), kFirst, kLast);
     for (std::size_t n = kFirst; n < kLast; ++n) {
-      const Eigen::Vector3f a = Eigen::Map<const Eigen::Vector3f>(arm.data() + 4 * n), turn(motion[3], motion[4], motion[5]), moved = turn.cross(a);
+      const Eigen::Vector3f a = Eigen::Map<const Eigen::Vector3f>(arm.data() + 4 * n),
+                            turn(motion[3], motion[4], motion[5]), moved = turn.cross(a);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t i = 4 * n + axis;
         const float rigid = z[i] + motion[axis] + moved[static_cast<Eigen::Index>(axis)];

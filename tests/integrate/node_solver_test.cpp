@@ -16,13 +16,15 @@ namespace {
 using namespace dynamics;
 
 class NodeSolvers : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Registry, NodeSolvers, testing::Values("pcg-single", "pcg-two-level"), [](const auto& p) {
-  std::string name = p.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Registry, NodeSolvers, testing::Values("pcg-single", "pcg-two-level"),
+                         [](const auto& p) {
+                           std::string name = p.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
-// What linear_rtol says: the error of the solution in the energy norm, against a direct solve, over a motion, with what the last steps left to start from.
+// What linear_rtol says: the error of the solution in the energy norm, against a direct solve, over a motion,
+// with what the last steps left to start from.
 TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSays) {
   int checked = 0;
   for (const double E : {1e5, 1e6})
@@ -39,7 +41,8 @@ TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSays) {
           ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
           ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
           ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
-          EXPECT_LE(energy_norm(A, x - exact), rtol * energy_norm(A, exact)) << "E " << E << ", h " << h << ", rtol " << rtol << ", step " << k;
+          EXPECT_LE(energy_norm(A, x - exact), rtol * energy_norm(A, exact))
+              << "E " << E << ", h " << h << ", rtol " << rtol << ", step " << k;
           ++checked;
         }
         EXPECT_EQ(solver->counters().symbolic, 1);
@@ -47,9 +50,11 @@ TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSays) {
   EXPECT_EQ(checked, 96);
 }
 
-// A balanced matrix, off-diagonal blocks in single precision, is held to the same promise: against a direct solve of the whole matrix in double.  Across from four elements to
-// one, where rounding of the blocks tells most; from matrices that are nearly mass to those that are nearly stiffness.  Where it is too coarse for the tolerance, the solver says so,
-// and corrects by it what the equations leave, once it has a solution to begin with.
+// A balanced matrix, off-diagonal blocks in single precision, is held to the same promise: against a direct
+// solve of the whole matrix in double.  Across from four elements to one, where rounding of the blocks tells
+// most; from matrices that are nearly mass to those that are nearly stiffness.  Where it is too coarse for
+// the tolerance, the solver says so, and corrects by it what the equations leave, once it has a solution to
+// begin with.
 TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSaysOfABalancedMatrix) {
   int checked = 0, rounded = 0;
   for (const int across : {4, 1})
@@ -75,12 +80,16 @@ TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSaysOfABalancedMatrix) {
           }
           if (status == SolveStatus::kRounded) {
             Known left(whole, b);
-            ASSERT_EQ(solver->solve_near(left, x), SolveStatus::kOk) << across << " across, E " << E << ", rtol " << rtol << ", step " << k;
+            ASSERT_EQ(solver->solve_near(left, x), SolveStatus::kOk)
+                << across << " across, E " << E << ", rtol " << rtol << ", step " << k;
             EXPECT_GE(left.looks, 2) << "none is believed unseen";
             ++rounded;
           } else
-            ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk) << across << " across, E " << E << ", rtol " << rtol << ", step " << k << ", iterations " << solver->counters().iterations;
-          EXPECT_LE(energy_norm(whole, x - exact), rtol * energy_norm(whole, exact)) << across << " across, E " << E << ", rtol " << rtol << ", step " << k;
+            ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk)
+                << across << " across, E " << E << ", rtol " << rtol << ", step " << k << ", iterations "
+                << solver->counters().iterations;
+          EXPECT_LE(energy_norm(whole, x - exact), rtol * energy_norm(whole, exact))
+              << across << " across, E " << E << ", rtol " << rtol << ", step " << k;
           ++checked;
         }
         EXPECT_EQ(solver->counters().symbolic, 1);
@@ -131,7 +140,8 @@ TEST_P(NodeSolvers, SayWhatTheyCannotDoWithABalancedMatrix) {
   EXPECT_EQ(solver->factor_balanced(), SolveStatus::kOk);
 }
 
-// A system that is not the matrix's is no rounding: it is said, and balanced matrices of this pattern are not taken again.
+// A system that is not the matrix's is no rounding: it is said, and balanced matrices of this pattern are not
+// taken again.
 TEST_P(NodeSolvers, RefuseARoundedMatrixThatCorrectsNothing) {
   BentBeam beam(8, 1e6);
   const auto solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-9});
@@ -153,7 +163,8 @@ TEST_P(NodeSolvers, RefuseARoundedMatrixThatCorrectsNothing) {
   EXPECT_EQ(solver->counters().near, 0);
 }
 
-// Rows of held directions are the identity's: what the right-hand side has there is the answer, and the rest does not feel it; in place, too.
+// Rows of held directions are the identity's: what the right-hand side has there is the answer, and the rest
+// does not feel it; in place, too.
 TEST_P(NodeSolvers, HeldRowsStandAlone) {
   BentBeam beam(8, 1e5);
   const auto solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-6});
@@ -194,7 +205,8 @@ TEST_P(NodeSolvers, ThreadsDoNotChangeABit) {
       ASSERT_NE(balanced, nullptr);
       beam.at(0.3 * k, 1e-2, *balanced, b);
       ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
-      ASSERT_EQ(solver->solve(VecX(b.reverse().cwiseProduct((b.array() != 0.0).cast<double>().matrix())), x), SolveStatus::kOk);
+      ASSERT_EQ(solver->solve(VecX(b.reverse().cwiseProduct((b.array() != 0.0).cast<double>().matrix())), x),
+                SolveStatus::kOk);
       all.segment(all.size() - 2 * x.size(), x.size()) = x;
     }
     answers.push_back(all);
@@ -203,7 +215,8 @@ TEST_P(NodeSolvers, ThreadsDoNotChangeABit) {
   EXPECT_EQ(answers[0], answers[2]);
 }
 
-// The same matrix again is solved by what is remembered; a second right-hand side of one factor starts from products with that factor's matrix.
+// The same matrix again is solved by what is remembered; a second right-hand side of one factor starts from
+// products with that factor's matrix.
 TEST_P(NodeSolvers, StartFromTheLastSolutions) {
   BentBeam beam(16, 1e5);
   const auto solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});
@@ -226,7 +239,8 @@ TEST_P(NodeSolvers, StartFromTheLastSolutions) {
   EXPECT_EQ(x, VecX(VecX::Zero(b.size())));
 }
 
-// Units: the same problem in other units of force is solved to the same bits but for a power of two, far outside of what single precision can hold.
+// Units: the same problem in other units of force is solved to the same bits but for a power of two, far
+// outside of what single precision can hold.
 TEST_P(NodeSolvers, TakeAnyUnits) {
   BentBeam beam(8, 1e5);
   BorderedMatrix A;
@@ -246,7 +260,8 @@ TEST_P(NodeSolvers, TakeAnyUnits) {
   }
 }
 
-// What is kept of solutions is in single precision: one that is larger or smaller by far than those before has nothing to say of the next, and spoils nothing.
+// What is kept of solutions is in single precision: one that is larger or smaller by far than those before
+// has nothing to say of the next, and spoils nothing.
 TEST_P(NodeSolvers, TakeSolutionsOfAnySizeOneAfterTheOther) {
   BentBeam beam(8, 1e5);
   const auto solver = integrate::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});
@@ -276,7 +291,8 @@ TEST_P(NodeSolvers, FindNegativeCurvatureWhileTheySolve) {
   for (int i = 0; i + 1 < 50; ++i) pattern.add_pair(i, i + 1);
   BorderedMatrix A;
   A.body = pattern.build();
-  for (int i = 0; i < 50; ++i) A.body.add(A.body.slot(i, i), (i == 0 || i == 49 ? 0.99 : 1.99) * Mat3::Identity());
+  for (int i = 0; i < 50; ++i)
+    A.body.add(A.body.slot(i, i), (i == 0 || i == 49 ? 0.99 : 1.99) * Mat3::Identity());
   for (int i = 0; i + 1 < 50; ++i) {
     A.body.add(A.body.slot(i, i + 1), -Mat3::Identity());
     A.body.add(A.body.slot(i + 1, i), -Mat3::Identity());
@@ -285,9 +301,7 @@ TEST_P(NodeSolvers, FindNegativeCurvatureWhileTheySolve) {
   const auto solver = integrate::make_linear_solver(GetParam());
   const SolveStatus factored = solver->factor(A);
   VecX x = VecX::Ones(150);
-  if (factored == SolveStatus::kOk) {
-    EXPECT_EQ(solver->solve(VecX(x), x), SolveStatus::kIndefinite);
-  }
+  if (factored == SolveStatus::kOk) { EXPECT_EQ(solver->solve(VecX(x), x), SolveStatus::kIndefinite); }
   const auto robust = integrate::make_robust_linear_solver(GetParam());
   ASSERT_EQ(robust->factor(A), SolveStatus::kOk);
   const VecX b = VecX::Ones(150);
@@ -298,8 +312,10 @@ TEST_P(NodeSolvers, FindNegativeCurvatureWhileTheySolve) {
 }
 
 TEST_P(NodeSolvers, RefuseSettingsOutOfRange) {
-  for (const double bad : {0.0, -1e-8, 0.5, std::nan("")}) EXPECT_THROW(integrate::make_linear_solver(GetParam(), {.linear_rtol = bad}), Error) << bad;
-  for (const int bad : {0, -1, 65}) EXPECT_THROW(integrate::make_linear_solver(GetParam(), {.threads = bad}), Error) << bad;
+  for (const double bad : {0.0, -1e-8, 0.5, std::nan("")})
+    EXPECT_THROW(integrate::make_linear_solver(GetParam(), {.linear_rtol = bad}), Error) << bad;
+  for (const int bad : {0, -1, 65})
+    EXPECT_THROW(integrate::make_linear_solver(GetParam(), {.threads = bad}), Error) << bad;
 }
 
 }  // namespace

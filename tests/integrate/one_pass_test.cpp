@@ -11,12 +11,17 @@ namespace {
 
 using namespace dynamics;
 
-// Steps in one pass are the steps of the general way, to the solver's tolerance; and no whole matrix was made on the way.
+// Steps in one pass are the steps of the general way, to the solver's tolerance; and no whole matrix was made
+// on the way.
 TEST(LinearlyImplicitEuler, StepsTheSameInOnePass) {
   for (const std::string name : {"pcg-single", "pcg-two-level"}) {
     BentBeam fast(16, 1e5), direct(16, 1e5);
-    const auto one_pass = integrate::make_stepper(fast.system, fast.state, {.name = "linearly-implicit-euler", .step_s = 2e-3, .linear_solver = name, .linear_rtol = 1e-6});
-    const auto general = integrate::make_stepper(direct.system, direct.state, {.name = "linearly-implicit-euler", .step_s = 2e-3, .linear_solver = "cholmod"});
+    const auto one_pass = integrate::make_stepper(
+        fast.system, fast.state,
+        {.name = "linearly-implicit-euler", .step_s = 2e-3, .linear_solver = name, .linear_rtol = 1e-6});
+    const auto general = integrate::make_stepper(
+        direct.system, direct.state,
+        {.name = "linearly-implicit-euler", .step_s = 2e-3, .linear_solver = "cholmod"});
     for (int k = 1; k <= 20; ++k) {
       ASSERT_TRUE(one_pass->advance_to(2e-3 * k).ok());
       ASSERT_TRUE(general->advance_to(2e-3 * k).ok());
@@ -38,7 +43,9 @@ TEST(LinearlyImplicitEuler, AllocatesNothingOnceWarm) {
 #if PALPATE_CAN_COUNT
   for (const std::string name : {"pcg-single", "pcg-two-level", "auto"}) {
     BentBeam beam(16, 1e5);
-    const auto stepper = integrate::make_stepper(beam.system, beam.state, {.name = "linearly-implicit-euler", .step_s = 1e-3, .linear_solver = name, .linear_rtol = 1e-4});
+    const auto stepper = integrate::make_stepper(
+        beam.system, beam.state,
+        {.name = "linearly-implicit-euler", .step_s = 1e-3, .linear_solver = name, .linear_rtol = 1e-4});
     for (int k = 1; k <= 8; ++k) ASSERT_TRUE(stepper->advance_to(1e-3 * k).ok());
     const long warm = malloc_calls;
     for (int k = 9; k <= 16; ++k) ASSERT_TRUE(stepper->advance_to(1e-3 * k).ok());

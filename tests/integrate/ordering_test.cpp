@@ -11,13 +11,19 @@ namespace {
 
 using namespace dynamics;
 
-/// Springs along the edges of a square grid of nodes and along some further pairs, each node tied to the ground; node k of the grid is number[k].
-BorderedMatrix grid(const std::vector<int>& number, int edge, const std::vector<std::pair<int, int>>& further = {}) {
+/// Springs along the edges of a square grid of nodes and along some further pairs, each node tied to the
+/// ground; node k of the grid is number[k].
+BorderedMatrix grid(const std::vector<int>& number, int edge,
+                    const std::vector<std::pair<int, int>>& further = {}) {
   std::vector<std::pair<int, int>> springs = further;
   for (int i = 0; i < edge; ++i)
     for (int j = 0; j < edge; ++j) {
-      if (i + 1 < edge) springs.emplace_back(number[static_cast<std::size_t>(edge * i + j)], number[static_cast<std::size_t>(edge * i + edge + j)]);
-      if (j + 1 < edge) springs.emplace_back(number[static_cast<std::size_t>(edge * i + j)], number[static_cast<std::size_t>(edge * i + j + 1)]);
+      if (i + 1 < edge)
+        springs.emplace_back(number[static_cast<std::size_t>(edge * i + j)],
+                             number[static_cast<std::size_t>(edge * i + edge + j)]);
+      if (j + 1 < edge)
+        springs.emplace_back(number[static_cast<std::size_t>(edge * i + j)],
+                             number[static_cast<std::size_t>(edge * i + j + 1)]);
     }
   PatternBuilder pattern(edge * edge);
   for (const auto& [a, b] : springs) pattern.add_pair(a, b);
@@ -25,7 +31,8 @@ BorderedMatrix grid(const std::vector<int>& number, int edge, const std::vector<
   A.body = pattern.build();
   for (int n = 0; n < edge * edge; ++n) A.body.add(A.body.diagonal(n), 0.1 * Mat3::Identity());
   for (const auto& [a, b] : springs)
-    for (const auto& [i, j, sign] : {std::tuple{a, a, 1.0}, {b, b, 1.0}, {a, b, -1.0}, {b, a, -1.0}}) A.body.add(A.body.slot(i, j), sign * Mat3::Identity());
+    for (const auto& [i, j, sign] : {std::tuple{a, a, 1.0}, {b, b, 1.0}, {a, b, -1.0}, {b, a, -1.0}})
+      A.body.add(A.body.slot(i, j), sign * Mat3::Identity());
   A.right = MatX(3 * edge * edge, 0);
   A.bottom = MatX(0, 3 * edge * edge);
   A.corner = MatX(0, 0);
@@ -44,8 +51,9 @@ double error_of(LinearSolver& solver, const BorderedMatrix& A) {
 
 }  // namespace
 
-// Contact that rolls on couples other pairs at every step: the ordering found first goes on, and the answers with it.  A mesh numbered anew is another matrix: its
-// separators are elsewhere, the old ordering fills up, and a new one is looked for.
+// Contact that rolls on couples other pairs at every step: the ordering found first goes on, and the answers
+// with it.  A mesh numbered anew is another matrix: its separators are elsewhere, the old ordering fills up,
+// and a new one is looked for.
 TEST(Ordering, IsKeptWhileItServes) {
   constexpr int kEdge = 30;
   std::vector<int> number(kEdge * kEdge);
@@ -54,7 +62,10 @@ TEST(Ordering, IsKeptWhileItServes) {
   EXPECT_LT(error_of(*solver, grid(number, kEdge)), 1e-12);
   EXPECT_EQ(solver->counters().orderings, 1);
   for (int step = 0; step < 5; ++step) {
-    EXPECT_LT(error_of(*solver, grid(number, kEdge, {{step, kEdge + step + 1}, {step + 2, kEdge * 3 + step}})), 1e-12) << step;
+    EXPECT_LT(
+        error_of(*solver, grid(number, kEdge, {{step, kEdge + step + 1}, {step + 2, kEdge * 3 + step}})),
+        1e-12)
+        << step;
     EXPECT_EQ(solver->counters().symbolic, step + 2);
     EXPECT_EQ(solver->counters().orderings, 1) << step;
   }

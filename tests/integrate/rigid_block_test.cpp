@@ -12,7 +12,8 @@ INSTANTIATE_TEST_SUITE_P(Registry, RigidBlock, testing::ValuesIn(fakes::stepper_
 
 TEST_P(RigidBlock, TumblesAndSwingsAtTheOrder) {
   const int order = fakes::ladder_order(GetParam());
-  const Ladder l = ladder(GetParam(), std::max((Top().w0).norm(), std::sqrt(kSpring * (1.0 / kMass + 1.0 / kNodeMass))), 1.0);
+  const Ladder l = ladder(
+      GetParam(), std::max((Top().w0).norm(), std::sqrt(kSpring * (1.0 / kMass + 1.0 / kNodeMass))), 1.0);
   std::vector<double> values, errors;
   for (const double value : l.values) {
     Top top;

@@ -39,7 +39,8 @@ TEST_P(Steppers, LandExactly) {
 }
 
 TEST_P(Steppers, ConvergeToTheModeAtTheirOrder) {
-  if (!steps_are_fixed(GetParam())) GTEST_SKIP() << GetParam() << " chooses its steps: see FollowTheirToleranceOverTwoPeriods";
+  if (!steps_are_fixed(GetParam()))
+    GTEST_SKIP() << GetParam() << " chooses its steps: see FollowTheirToleranceOverTwoPeriods";
   std::vector<double> values, errors;
   const Ladder l = ladder(GetParam(), Chain().omega(), 0.5);
   const double amplitude = 10.0;  // far above the rest positions' rounding
@@ -58,8 +59,9 @@ TEST_P(Steppers, ConvergeToTheModeAtTheirOrder) {
   EXPECT_LT(errors.back(), 2e-4);
 }
 
-/// Error of the mode after two periods in the norm of its energy, sqrt((w dq)^2 + du^2) / w: amplitude and phase at once, so that no
-/// zero of the one hides the other.  One output, so that steps are the method's own.
+/// Error of the mode after two periods in the norm of its energy, sqrt((w dq)^2 + du^2) / w: amplitude and
+/// phase at once, so that no zero of the one hides the other.  One output, so that steps are the method's
+/// own.
 double error_after_two_periods(const IntegratorSpec& spec) {
   Chain chain;
   chain.start_in_mode(0.1);
@@ -96,7 +98,8 @@ TEST_P(Steppers, LoseEnergyToDamping) {
   double before = chain.system.potential_energy(chain.state.view());
   for (int i = 1; i <= 20; ++i) {
     ASSERT_TRUE(stepper->advance_to(0.1 * i).ok());
-    const double now = chain.system.potential_energy(chain.state.view()) + chain.system.kinetic_energy(chain.state.view());
+    const double now =
+        chain.system.potential_energy(chain.state.view()) + chain.system.kinetic_energy(chain.state.view());
     EXPECT_LT(now, before);
     before = now;
   }
@@ -122,8 +125,11 @@ TEST_P(Steppers, InterpolateWithinTheLastStep) {
   EXPECT_LT((q - chain.state.q()).norm() + (u - chain.state.u()).norm(), 1e-14);
   const double t = 0.4 - 0.5 * result.h;
   ASSERT_TRUE(stepper->dense_output(t, q, u));
-  const auto error = [&](double at, const VecX& x) { return (x - chain.term->q0 - 0.1 * std::cos(at * chain.omega()) * chain.mode()).norm(); };
-  EXPECT_LT(error(t, q), std::max(1e-3 * 0.1, 1.1 * error(0.4, chain.state.q()))) << "no worse than the step's end";
+  const auto error = [&](double at, const VecX& x) {
+    return (x - chain.term->q0 - 0.1 * std::cos(at * chain.omega()) * chain.mode()).norm();
+  };
+  EXPECT_LT(error(t, q), std::max(1e-3 * 0.1, 1.1 * error(0.4, chain.state.q())))
+      << "no worse than the step's end";
   EXPECT_FALSE(stepper->dense_output(0.4 - 2.0 * result.h, q, u));
   EXPECT_FALSE(stepper->dense_output(0.5, q, u));
   stepper->reinit(ReinitReason::kStateChanged);
@@ -141,12 +147,14 @@ TEST_P(Steppers, StartAnewAfterReinit) {
   ASSERT_TRUE(stepper->advance_to(0.6).ok());
   fresh.state.q().setConstant(0.5);
   fresh.state.set_time(0.3);
-  const double tolerance = integrate::linear_solver_of(spec()) == "auto" ? spec().linear_rtol : 1e-12;  // an iteration starts from what it solved before
+  // an iteration starts from what it solved before
+  const double tolerance = integrate::linear_solver_of(spec()) == "auto" ? spec().linear_rtol : 1e-12;
   EXPECT_LT((run(fresh.system, fresh.state, spec(), 0.6) - chain.state.q()).norm(), tolerance);
   EXPECT_EQ(stepper->counters().reinits, 1);
 }
 
-// A contact set that changed costs a multistep method its history; a one-step method goes on with the step that it had.
+// A contact set that changed costs a multistep method its history; a one-step method goes on with the step
+// that it had.
 TEST_P(Steppers, PayForARestartOnlyIfTheyHaveAHistory) {
   const auto steps_with = [this](int restarts) {
     Chain chain;
@@ -189,7 +197,9 @@ TEST_P(Steppers, FollowALayoutThatGrows) {
   chain.system.prepare(chain.state.view());
   stepper->reinit(ReinitReason::kLayoutChanged);
   ASSERT_TRUE(stepper->advance_to(0.5).ok());
-  EXPECT_LT((chain.state.q(*chain.state.layout().find(id)) - VecX::Constant(3, 0.25)).norm(), is_explicit(GetParam()) ? 1e-12 : 1e-7);  // Newton's remainder
+  // Newton's remainder
+  EXPECT_LT((chain.state.q(*chain.state.layout().find(id)) - VecX::Constant(3, 0.25)).norm(),
+            is_explicit(GetParam()) ? 1e-12 : 1e-7);
   const VecX exact = chain.term->q0 + 0.1 * std::cos(0.5 * chain.omega()) * chain.mode();
   EXPECT_LT((chain.state.q().head(12) - exact).norm(), 1e-2 * 0.1);
 }
@@ -295,7 +305,9 @@ struct DenseSolver final : LinearSolver {
     return SolveStatus::kOk;
   }
   SolveStatus solve(const MatX& B, MatX& X) override { return X = lu.solve(B), SolveStatus::kOk; }
-  SolveStatus solve(const VecX& b, VecX& x) override { return x = lu.solve(b), ++count.solves, SolveStatus::kOk; }
+  SolveStatus solve(const VecX& b, VecX& x) override {
+    return x = lu.solve(b), ++count.solves, SolveStatus::kOk;
+  }
   const SolverCounters& counters() const override { return count; }
 };
 
@@ -306,7 +318,8 @@ TEST_P(Steppers, TakeAForeignLinearSolver) {
   const auto& entry = find(integrate::stepper_registry(), spec().name, "integrator");
   const auto stepper = entry.make(chain.system, chain.state, spec(), std::make_unique<DenseSolver>());
   ASSERT_TRUE(stepper->advance_to(0.3).ok());
-  EXPECT_LT((chain.state.q() - run(same.system, same.state, spec(), 0.3)).norm(), 1e-8);  // a hundredth of the tolerance
+  // a hundredth of the tolerance
+  EXPECT_LT((chain.state.q() - run(same.system, same.state, spec(), 0.3)).norm(), 1e-8);
   EXPECT_EQ(stepper->counters().solver.solves == 0, is_explicit(GetParam()));
 }
 
@@ -318,33 +331,46 @@ void expect_refused(const IntegratorSpec& good, Change change, const std::string
   try {
     integrate::make_stepper(chain.system, chain.state, s);
     FAIL() << message;
-  } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
-  }
+  } catch (const Error& e) { EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what(); }
 }
 
 TEST_P(Steppers, RefuseBadSettings) {
   using S = IntegratorSpec;
-  expect_refused(spec(), [](S& s) { s.max_steps = 0; }, "max_steps = 0 must be at least 1");
-  expect_refused(spec(), [](S& s) { s.linear_solver = "pardiso"; }, "unknown linear solver \"pardiso\"");
+  expect_refused(
+      spec(), [](S& s) { s.max_steps = 0; }, "max_steps = 0 must be at least 1");
+  expect_refused(
+      spec(), [](S& s) { s.linear_solver = "pardiso"; }, "unknown linear solver \"pardiso\"");
   if (steps_are_fixed(GetParam())) {
-    expect_refused(spec(), [](S& s) { s.step_s = 0.0; }, "step_s = 0 must be positive");
-    expect_refused(spec(), [](S& s) { s.step_s = -1e-3; }, "step_s = -0.001 must be positive");
-    expect_refused(spec(), [](S& s) { s.step_s = std::nan(""); }, "step_s = nan must be positive");
+    expect_refused(
+        spec(), [](S& s) { s.step_s = 0.0; }, "step_s = 0 must be positive");
+    expect_refused(
+        spec(), [](S& s) { s.step_s = -1e-3; }, "step_s = -0.001 must be positive");
+    expect_refused(
+        spec(), [](S& s) { s.step_s = std::nan(""); }, "step_s = nan must be positive");
     return;
   }
-  expect_refused(spec(), [](S& s) { s.rtol = 0.0; }, "rtol = 0 must be positive");
-  expect_refused(spec(), [](S& s) { s.rtol = std::nan(""); }, "rtol = nan must be positive");
-  expect_refused(spec(), [](S& s) { s.rtol = 0.5; }, "rtol = 0.5 must be at most 0.1");
-  expect_refused(spec(), [](S& s) { s.atol_q = 0.0; }, "atol_q = 0 must be positive");
-  expect_refused(spec(), [](S& s) { s.atol_u = -1.0; }, "atol_u = -1 must be positive");
+  expect_refused(
+      spec(), [](S& s) { s.rtol = 0.0; }, "rtol = 0 must be positive");
+  expect_refused(
+      spec(), [](S& s) { s.rtol = std::nan(""); }, "rtol = nan must be positive");
+  expect_refused(
+      spec(), [](S& s) { s.rtol = 0.5; }, "rtol = 0.5 must be at most 0.1");
+  expect_refused(
+      spec(), [](S& s) { s.atol_q = 0.0; }, "atol_q = 0 must be positive");
+  expect_refused(
+      spec(), [](S& s) { s.atol_u = -1.0; }, "atol_u = -1 must be positive");
   const int highest = mode_traits(GetParam()).order;
-  expect_refused(spec(), [](S& s) { s.max_order = 13; }, fmt::format("max_order = 13 must lie in [0, {}]", highest));
-  if (mode_traits(GetParam()).control == StepControl::kAdaptive) expect_refused(spec(), [](S& s) { s.fixed_step = true; }, "fixed_step");
+  expect_refused(
+      spec(), [](S& s) { s.max_order = 13; }, fmt::format("max_order = 13 must lie in [0, {}]", highest));
+  if (mode_traits(GetParam()).control == StepControl::kAdaptive)
+    expect_refused(
+        spec(), [](S& s) { s.fixed_step = true; }, "fixed_step");
 }
 
 TEST(StepperRegistry, NamesTheNearest) {
-  expect_refused({}, [](IntegratorSpec& s) { s.name = "cvode-bdg"; }, "unknown integrator \"cvode-bdg\" (did you mean \"cvode-bdf\"?)");
+  expect_refused(
+      {}, [](IntegratorSpec& s) { s.name = "cvode-bdg"; },
+      "unknown integrator \"cvode-bdg\" (did you mean \"cvode-bdf\"?)");
 }
 
 TEST(LinearlyImplicitEuler, FallsBackToLuOnAnIndefiniteMatrix) {
@@ -370,7 +396,8 @@ TEST(CvodeBdf, CapsItsOrder) {
 TEST(CvodeBdf, FactorsSeldom) {
   Chain chain;
   chain.start_in_mode(0.1);
-  const auto stepper = integrate::make_stepper(chain.system, chain.state, {.name = "cvode-bdf", .rtol = 1e-6});
+  const auto stepper =
+      integrate::make_stepper(chain.system, chain.state, {.name = "cvode-bdf", .rtol = 1e-6});
   ASSERT_TRUE(stepper->advance_to(5.0).ok());
   EXPECT_LT(4 * stepper->counters().solver.factorisations, stepper->counters().steps);
 }

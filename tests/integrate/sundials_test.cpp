@@ -9,7 +9,8 @@ namespace {
 using namespace fakes;
 
 /// A unit mass under g over a one-sided spring k that begins at x = 0: a kink, with its root function.
-/// From height H at rest: free fall for sqrt(2 H / g), then x(t) = -(v/w) sin(w t) + (g/w^2)(cos(w t) - 1) until x = 0 again, with the speed it came with.
+/// From height H at rest: free fall for sqrt(2 H / g), then x(t) = -(v/w) sin(w t) + (g/w^2)(cos(w t) - 1)
+/// until x = 0 again, with the speed it came with.
 struct OneSidedSpring final : ForceTerm {
   double k, g;
   OneSidedSpring(double stiffness, double gravity) : k(stiffness), g(gravity) {}
@@ -21,7 +22,9 @@ struct OneSidedSpring final : ForceTerm {
     K(0, 0) = s.q[0] < 0.0 ? ks * k : 0.0;
     A.body.add(A.body.slot(0, 0), K);
   }
-  void apply_tangent(const StateView& s, double ks, double, const VecX& x, VecX& y) override { y[0] += s.q[0] < 0.0 ? ks * k * x[0] : 0.0; }
+  void apply_tangent(const StateView& s, double ks, double, const VecX& x, VecX& y) override {
+    y[0] += s.q[0] < 0.0 ? ks * k * x[0] : 0.0;
+  }
   int event_count() const override { return 1; }
   void events(const StateView& s, double* out) override { out[0] = s.q[0]; }
 };
@@ -33,7 +36,8 @@ struct Bouncer {
   Bouncer() {
     VecX q = VecX::Zero(3);
     q[0] = kHeight;
-    const int id = state.insert(BlockSpec{.name = "ball", .q_size = 3, .u_size = 3, .q_scale = kHeight}, q, VecX::Zero(3));
+    const int id = state.insert(BlockSpec{.name = "ball", .q_size = 3, .u_size = 3, .q_scale = kHeight}, q,
+                                VecX::Zero(3));
     system.add(std::make_shared<OneSidedSpring>(kStiffness, kGravity));
     system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
     system.prepare(state.view());
@@ -120,7 +124,8 @@ TEST_P(Traces, TellEveryAttemptAndWhyItFailed) {
 TEST_P(Traces, CostNothingWhereNobodyLooks) {
   Bouncer looked_at, alone;
   const IntegratorSpec s{.name = GetParam(), .rtol = 1e-5};
-  const auto a = integrate::make_stepper(looked_at.system, looked_at.state, s), b = integrate::make_stepper(alone.system, alone.state, s);
+  const auto a = integrate::make_stepper(looked_at.system, looked_at.state, s),
+             b = integrate::make_stepper(alone.system, alone.state, s);
   Kept kept;
   a->set_trace(&kept);
   ASSERT_TRUE(a->advance_to(0.3).ok());
@@ -129,7 +134,8 @@ TEST_P(Traces, CostNothingWhereNobodyLooks) {
   EXPECT_EQ(a->counters().force_evaluations, b->counters().force_evaluations);
 }
 
-// The same number means another thing in each library, and another again where a linear solver is set up (the libraries' own headers).
+// The same number means another thing in each library, and another again where a linear solver is set up (the
+// libraries' own headers).
 TEST(FlagNames, AreThoseOfTheLibraryThatWasCalled) {
   using integrate::self_test::flag_name;
   EXPECT_EQ(flag_name("CVode", -4), "CV_CONV_FAILURE");
@@ -169,12 +175,15 @@ TEST(FixedStep, ABlowUpIsCalledByItsName) {
   const auto stepper = integrate::make_stepper(chain.system, chain.state, spec);
   const StepResult r = stepper->advance_to(100.0);
   ASSERT_FALSE(r.ok());
-  EXPECT_NE(r.message.find("an explicit step_s must stay below its stability limit"), std::string::npos) << r.message;
+  EXPECT_NE(r.message.find("an explicit step_s must stay below its stability limit"), std::string::npos)
+      << r.message;
 }
 
-// --- many fast steps in a slow one -------------------------------------------------------------------------------------
+// --- many fast steps in a slow one
+// -------------------------------------------------------------------------------------
 
-/// A fast damper of 1e6/s: the explicit fast side needs some 4e4 steps for 0.1 s.  Raises a flag at a given evaluation.
+/// A fast damper of 1e6/s: the explicit fast side needs some 4e4 steps for 0.1 s.  Raises a flag at a given
+/// evaluation.
 struct FastDamper final : ForceTerm {
   long evaluations = 0, raise_at = -1;
   std::atomic<bool> raised{false};
@@ -209,7 +218,8 @@ TEST(MultiRate, FastStepsAreLimitedAndInterrupted) {
   }
 }
 
-// --- statics ----------------------------------------------------------------------------------------------------------
+// --- statics
+// ----------------------------------------------------------------------------------------------------------
 
 const IntegratorSpec kStatic{.name = "kinsol-static"};
 
@@ -240,7 +250,8 @@ TEST(KinsolStatic, FindsTheEquilibriumOfALinearSystem) {
   EXPECT_LE(stepper->counters().newton_iterations, 2);
 }
 
-/// Snap-through: a mass on two springs that meet at a shallow angle, V = k (sqrt(1 + x^2) - L)^2 with L > 1, pressed beyond its limit load.
+/// Snap-through: a mass on two springs that meet at a shallow angle, V = k (sqrt(1 + x^2) - L)^2 with L > 1,
+/// pressed beyond its limit load.
 struct SnapThrough final : ForceTerm {
   double k = 100.0, L = 1.1, load;
   explicit SnapThrough(double p) : load(p) {}
@@ -285,7 +296,8 @@ TEST(KinsolStatic, SnapsThroughALimitLoad) {
 TEST(KinsolStatic, SaysThatAFreeBodyHasNoEquilibrium) {
   State state;
   System system;
-  const int id = state.insert(BlockSpec{.name = "free", .q_size = 3, .u_size = 3}, VecX::Zero(3), VecX::Zero(3));
+  const int id =
+      state.insert(BlockSpec{.name = "free", .q_size = 3, .u_size = 3}, VecX::Zero(3), VecX::Zero(3));
   system.add(std::make_shared<Push>(VecX::Ones(3)));
   system.add(std::make_shared<NodalMass>(id, MatX::Identity(3, 3)));
   system.prepare(state.view());

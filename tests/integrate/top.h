@@ -8,7 +8,9 @@ namespace palpate::fakes {
 inline constexpr double kI1 = 0.02, kI3 = 0.05, kMass = 2.0, kNodeMass = 0.5, kSpring = 40.0;
 
 inline Mat3 inertia_in_world(const StateView& s, const Block& b) {
-  const Mat3 R = Quat(s.q[b.q_offset], s.q[b.q_offset + 1], s.q[b.q_offset + 2], s.q[b.q_offset + 3]).normalized().toRotationMatrix();
+  const Mat3 R = Quat(s.q[b.q_offset], s.q[b.q_offset + 1], s.q[b.q_offset + 2], s.q[b.q_offset + 3])
+                     .normalized()
+                     .toRotationMatrix();
   return R * Vec3(kI1, kI1, kI3).asDiagonal() * R.transpose();
 }
 
@@ -64,8 +66,9 @@ struct TopForces final : ForceTerm {
   }
 };
 
-/// Torque-free symmetric top: the axis e3 precesses about L at |L|/I1, and the body turns about e3 by w3 (1 - I3/I1) beside that (Landau and Lifshitz, Mechanics, 33).
-/// Its centre and a node swing about their common centre of mass with omega^2 = k (1/m1 + 1/m2).
+/// Torque-free symmetric top: the axis e3 precesses about L at |L|/I1, and the body turns about e3 by w3 (1 -
+/// I3/I1) beside that (Landau and Lifshitz, Mechanics, 33). Its centre and a node swing about their common
+/// centre of mass with omega^2 = k (1/m1 + 1/m2).
 struct Top {
   State state;
   System system;
@@ -76,7 +79,12 @@ struct Top {
     state.insert(BlockSpec{.name = "node", .q_size = 3, .u_size = 3}, node0, VecX::Zero(3));
     VecX q = VecX::Unit(7, 0), u = VecX::Zero(6);
     u.head<3>() = w0;
-    const int id = state.insert(BlockSpec{.name = "top", .kind = BlockKind::kRigidBody, .q_size = 7, .u_size = 6, .kinematics = free_body_kinematics()}, q, u);
+    const int id = state.insert(BlockSpec{.name = "top",
+                                          .kind = BlockKind::kRigidBody,
+                                          .q_size = 7,
+                                          .u_size = 6,
+                                          .kinematics = free_body_kinematics()},
+                                q, u);
     L = Vec3(kI1, kI1, kI3).cwiseProduct(w0);
     system.add(std::make_shared<TopForces>(id));
     system.add(std::make_shared<TopInertia>(id));
@@ -92,8 +100,10 @@ struct Top {
     const double t = state.time(), swing = std::cos(t * std::sqrt(kSpring * (1.0 / kMass + 1.0 / kNodeMass)));
     const auto q = state.q(*body);
     const Vec3 centre = kNodeMass / (kMass + kNodeMass) * node0;
-    const Vec3 apart = q.tail<3>() - state.q().head<3>(), middle = (kMass * q.tail<3>() + kNodeMass * state.q().head<3>()) / (kMass + kNodeMass);
-    return rotation_vector(Quat(q[0], q[1], q[2], q[3]) * rotation(t).conjugate()).norm() + (apart + swing * node0).norm() + (middle - centre).norm();
+    const Vec3 apart = q.tail<3>() - state.q().head<3>(),
+               middle = (kMass * q.tail<3>() + kNodeMass * state.q().head<3>()) / (kMass + kNodeMass);
+    return rotation_vector(Quat(q[0], q[1], q[2], q[3]) * rotation(t).conjugate()).norm() +
+           (apart + swing * node0).norm() + (middle - centre).norm();
   }
 };
 

@@ -11,7 +11,8 @@ namespace {
 
 using namespace dynamics;
 
-// Twice the stiffness number is 1.4 times the iterations of block Jacobi; rigid clusters take the long waves, so that the count hardly grows.
+// Twice the stiffness number is 1.4 times the iterations of block Jacobi; rigid clusters take the long waves,
+// so that the count hardly grows.
 TEST(TwoLevel, StiffnessHardlyShowsInTheCount) {
   std::vector<long> two_level, single;
   for (const double E : {1e5, 1e7}) {
@@ -43,7 +44,8 @@ TEST(TwoLevel, KeepsItsClustersWhileTheyServe) {
   EXPECT_EQ(solver->counters().refreshes, 1);
 }
 
-// A whole matrix and a balanced one are copied in units of their own, by powers of two: clusters made of one serve the other.
+// A whole matrix and a balanced one are copied in units of their own, by powers of two: clusters made of one
+// serve the other.
 TEST(TwoLevel, ServesWholeAndBalancedMatricesInTurn) {
   BentBeam beam(16, 1e6);
   const double h = 1e-2;
@@ -68,7 +70,8 @@ TEST(TwoLevel, ServesWholeAndBalancedMatricesInTurn) {
   };
   for (const bool whole_first : {true, false}) {
     const auto solver = integrate::make_linear_solver("pcg-two-level", {.linear_rtol = 1e-3});
-    const double first = iterations_of(*solver, whole_first), second = iterations_of(*solver, !whole_first), third = iterations_of(*solver, whole_first);
+    const double first = iterations_of(*solver, whole_first), second = iterations_of(*solver, !whole_first),
+                 third = iterations_of(*solver, whole_first);
     EXPECT_LE(second, 1.2 * first + 2.0) << whole_first;
     EXPECT_LE(third, 1.2 * first + 2.0) << whole_first;
     EXPECT_EQ(solver->counters().refreshes, 1) << whole_first;

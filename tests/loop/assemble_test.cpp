@@ -14,7 +14,8 @@ namespace {
 
 void expect_refused(const scene::Description& d, const std::vector<std::string>& parts) {
   const std::string message = refusal(d);
-  for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\n lacks: " << part;
+  for (const std::string& part : parts)
+    EXPECT_NE(message.find(part), std::string::npos) << message << "\n lacks: " << part;
 }
 
 TEST(Assemble, NamesThatNoRegistryKnowsAreRefusedWithTheNearest) {
@@ -77,7 +78,8 @@ TEST(Assemble, WhatASceneDoesNotNameIsNotMade) {
   EXPECT_EQ(world->tool, nullptr);
   EXPECT_EQ(world->tool_frame, nullptr);
   EXPECT_EQ(world->condenser, nullptr);
-  for (const char* part : {"contact.force", "loop.skin", "proxy.region_finder", "tool.simbody_system", "gl.context", "store.run_file", "render.picture", "integrate.cvode-bdf"})
+  for (const char* part : {"contact.force", "loop.skin", "proxy.region_finder", "tool.simbody_system",
+                           "gl.context", "store.run_file", "render.picture", "integrate.cvode-bdf"})
     EXPECT_EQ(counters::counter(part), 0) << part;
   EXPECT_EQ(counters::counter("integrate.linearly-implicit-euler"), 1) << "the counters count";
 }

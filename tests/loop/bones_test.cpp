@@ -18,7 +18,8 @@ using namespace palpate::scene_checks;
 
 namespace {
 
-/// A block of flesh, 4 x 4 x 8 cm and 0.128 kg, around a capsule of a thousandth of its mass; nothing holds it.
+/// A block of flesh, 4 x 4 x 8 cm and 0.128 kg, around a capsule of a thousandth of its mass; nothing holds
+/// it.
 scene::Description limb() {
   scene::Description d;
   d.name = "limb";
@@ -55,8 +56,10 @@ TEST(Bones, AFreeOneIsABlockAndCarriesTheNodesInside) {
   const auto world = loop::assemble(limb());
   ASSERT_EQ(world->bones.size(), 1u);
   EXPECT_EQ(world->state.layout().border_size(), 6);
-  EXPECT_EQ(world->bones[0].dofs.size(), 3u * 27u) << "nodes 1 cm apart: five in each of the five layers of the rod, one in each cap";
-  for (int dof : world->bones[0].dofs) EXPECT_TRUE(world->system.driven_mask()[static_cast<std::size_t>(dof)]);
+  EXPECT_EQ(world->bones[0].dofs.size(), 3u * 27u)
+      << "nodes 1 cm apart: five in each of the five layers of the rod, one in each cap";
+  for (int dof : world->bones[0].dofs)
+    EXPECT_TRUE(world->system.driven_mask()[static_cast<std::size_t>(dof)]);
 }
 
 TEST(Bones, ASceneWithoutOneHasNoRigidBlock) {
@@ -78,7 +81,8 @@ TEST(Bones, FleshAndBoneTumbleFreelyWithoutLoss) {
     const Vec6 before = momentum(*world);
     ASSERT_TRUE(loop::run(*world, {}).status.ok()) << name;
     const Vec6 change = momentum(*world) - before;
-    const bool first_order = std::string(name) == "linearly-implicit-euler" || std::string(name) == "backward-euler";
+    const bool first_order =
+        std::string(name) == "linearly-implicit-euler" || std::string(name) == "backward-euler";
     EXPECT_LT(change.head<3>().norm(), (first_order ? 0.05 : 1e-3) * before.head<3>().norm()) << name;
     EXPECT_LT(change.tail<3>().norm(), 1e-3 * 0.128 * 0.4) << name;
   }
@@ -103,7 +107,8 @@ TEST(Bones, AFixedOneIsAFixedAttachment) {
   ASSERT_EQ(boxed->system.driven_dofs(), tied->system.driven_dofs());
   ASSERT_TRUE(loop::run(*boxed, {}).status.ok());
   EXPECT_LT((tied->state.q() - boxed->state.q()).norm(), 1e-12);
-  for (int dof : tied->bones[0].dofs) EXPECT_NEAR(tied->state.q()[dof], tied->bodies[0].placed(dof % 3, dof / 3), 1e-15);
+  for (int dof : tied->bones[0].dofs)
+    EXPECT_NEAR(tied->state.q()[dof], tied->bodies[0].placed(dof % 3, dof / 3), 1e-15);
 }
 
 TEST(Bones, KeyframesMoveOneFromWhereItIsPlaced) {
@@ -119,12 +124,14 @@ TEST(Bones, KeyframesMoveOneFromWhereItIsPlaced) {
   ASSERT_TRUE(loop::run(*world, {}).status.ok());
   ASSERT_FALSE(world->bones[0].dofs.empty());
   for (int dof : world->bones[0].dofs) {
-    const Vec3 x = quaternion_of(Vec3(0.5, 0, 0)) * Vec3(world->bodies[0].placed.col(dof / 3)) + Vec3(0.01, 0, 0);
+    const Vec3 x =
+        quaternion_of(Vec3(0.5, 0, 0)) * Vec3(world->bodies[0].placed.col(dof / 3)) + Vec3(0.01, 0, 0);
     EXPECT_NEAR(world->state.q()[dof], x[dof % 3], 1e-15);
   }
 }
 
-// A hanging limb at rest: what the flesh exerts on the bone that holds it is its weight, and with a free bone nothing but the bone's own inertia.
+// A hanging limb at rest: what the flesh exerts on the bone that holds it is its weight, and with a free bone
+// nothing but the bone's own inertia.
 TEST(Bones, TheWrenchOnABoneBalances) {
   scene::Description d = limb();
   d.bodies[0].angular_velocity_rad_s.setZero();
@@ -165,7 +172,8 @@ TEST(Bones, AreRecordedWithTheirPoses) {
   const Pose now = world->bone_pose(world->bones[0]);
   EXPECT_LT(pose_difference(now, rows[2].pose).norm(), 1e-12);
   EXPECT_LT((world->bone_twist(world->bones[0]).angular - rows[2].twist.angular).norm(), 1e-12);
-  EXPECT_GT(rotation_vector(rows[2].pose.rotation).norm(), 0.5) << "10 rad/s for 0.1 s, less what a step of 10 ms loses";
+  EXPECT_GT(rotation_vector(rows[2].pose.rotation).norm(), 0.5)
+      << "10 rad/s for 0.1 s, less what a step of 10 ms loses";
   const store::RunReader run(folder + "/run.vtkhdf");
   ASSERT_EQ(run.parts().size(), 2u);
   EXPECT_EQ(run.parts()[1].name, "bone");
@@ -179,7 +187,8 @@ TEST(Bones, AreRecordedWithTheirPoses) {
 TEST(Bones, NodesThatNoBoneHoldsAreRefused) {
   scene::Description d = limb();
   d.bones[0].position_m = Vec3(1, 0, 0);
-  EXPECT_NE(refusal(d).find("body \"flesh\": attachment: no node lies inside \"bone\""), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("body \"flesh\": attachment: no node lies inside \"bone\""), std::string::npos)
+      << refusal(d);
   d = limb();
   d.bodies[0].attachments[0].to = "tool";
   d.bodies[0].attachments[0].region = "box";
@@ -187,7 +196,8 @@ TEST(Bones, NodesThatNoBoneHoldsAreRefused) {
   d.bones.clear();
   d.bodies[0].attachments[0].region = "sphere";
   d.bodies[0].attachments[0].radius_m = 0.02;
-  EXPECT_NE(refusal(d).find("neither a bone nor the tool of a monolithic scheme"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("neither a bone nor the tool of a monolithic scheme"), std::string::npos)
+      << refusal(d);
 }
 
 #ifdef PALPATE_HAS_TOOL
@@ -213,8 +223,10 @@ TEST(Bones, TheToolOfAMonolithicSceneCarriesNodes) {
   world->system.force(world->state.view(), f);
   world->system.acceleration(world->state.view(), a);
   Vec3 change = d.tool->mass_kg * a.segment<3>(tool.u_offset + 3);
-  for (int i = 0; i < world->bodies[0].masses.size(); ++i) change += world->bodies[0].masses[i] * a.segment<3>(3 * i);
-  EXPECT_LT((change - f.segment<3>(tool.u_offset + 3)).norm(), 1e-12 * f.lpNorm<1>()) << "Newton's law for tool and flesh together";
+  for (int i = 0; i < world->bodies[0].masses.size(); ++i)
+    change += world->bodies[0].masses[i] * a.segment<3>(3 * i);
+  EXPECT_LT((change - f.segment<3>(tool.u_offset + 3)).norm(), 1e-12 * f.lpNorm<1>())
+      << "Newton's law for tool and flesh together";
   EXPECT_GT(f.segment<3>(tool.u_offset + 3).norm(), 1e-3);
 }
 
@@ -232,7 +244,8 @@ TEST(Bones, AToolMayTouchFleshThatSitsOnAFreeBone) {
   const loop::RunResult result = loop::run(*world, {});
   ASSERT_TRUE(result.status.ok()) << result.status.message;
   EXPECT_EQ(result.frozen_fallbacks, 0);
-  EXPECT_LT(world->bone_twist(world->bones[0]).linear.z(), -1e-4) << "pushed away downwards, nothing holds it";
+  EXPECT_LT(world->bone_twist(world->bones[0]).linear.z(), -1e-4)
+      << "pushed away downwards, nothing holds it";
   EXPECT_TRUE(world->state.q().allFinite());
 }
 #endif

@@ -10,7 +10,8 @@ using namespace palpate;
 
 namespace {
 
-/// A cube that just touches an incline below the angle of friction; k = 1e7 Pa/m under a quarter of its face and an eighth of its mass make w H = 6.
+/// A cube that just touches an incline below the angle of friction; k = 1e7 Pa/m under a quarter of its face
+/// and an eighth of its mass make w H = 6.
 scene::Description on_an_incline(const std::string& integrator) {
   constexpr double kSlope = 0.2;
   scene::Description d;
@@ -40,8 +41,8 @@ scene::Description on_an_incline(const std::string& integrator) {
   return d;
 }
 
-/// Cash's two tables have c = -0.7: that stage stands before the step, where the damper of the contact jumps, and its equation need have no solution.  They are given
-/// a contact without the jump.
+/// Cash's two tables have c = -0.7: that stage stands before the step, where the damper of the contact jumps,
+/// and its equation need have no solution.  They are given a contact without the jump.
 bool has_a_stage_behind_its_start(const std::string& name) { return name.starts_with("ark-dirk-cash"); }
 
 }  // namespace
@@ -59,7 +60,8 @@ TEST(FixedStepContact, EveryImplicitTableOfArkodeFindsIt) {
     const Points v = Eigen::Map<const Points>(world->state.u().data(), 3, world->state.u().size() / 3);
     EXPECT_NEAR(v.row(0).mean(), 0.02, 2e-4) << entry.name;
     EXPECT_LT(std::abs(v.row(2).mean()), 2e-4) << entry.name;
-    EXPECT_LT(result.counters.tangent_evaluations, 3 * result.counters.steps) << entry.name << ": one tangent does but where contact closes";
+    EXPECT_LT(result.counters.tangent_evaluations, 3 * result.counters.steps)
+        << entry.name << ": one tangent does but where contact closes";
     ++tried;
   }
   EXPECT_EQ(tried, 28);

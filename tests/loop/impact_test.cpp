@@ -36,8 +36,9 @@ class Energies : public loop::Observer {
 
 }  // namespace
 
-// Between two queries, 10 ms apart, the block goes farther than the candidate gap (its mean edge, 11 mm): it was found 5 to 25 mm deep in the plane
-// and thrown back by a spring that nothing had pressed, with many times its energy.  With the look-ahead it meets the plane where the plane is.
+// Between two queries, 10 ms apart, the block goes farther than the candidate gap (its mean edge, 11 mm): it
+// was found 5 to 25 mm deep in the plane and thrown back by a spring that nothing had pressed, with many
+// times its energy.  With the look-ahead it meets the plane where the plane is.
 TEST(Impact, AFastBlockIsCaughtByThePlaneAndGainsNoEnergy) {
   for (const double speed : {0.5, 1.5, 3.0}) {
     const auto world = loop::assemble(thrown_block(speed, 0.0125));
@@ -47,11 +48,13 @@ TEST(Impact, AFastBlockIsCaughtByThePlaneAndGainsNoEnergy) {
     const loop::RunResult result = loop::run(*world, options);
     ASSERT_TRUE(result.status.ok()) << result.status.message;
     EXPECT_LT(energies.worst_gain(), 1e-3) << "at " << speed << " m/s";
-    EXPECT_LT(energies.values.back(), 0.9 * energies.values.front()) << "it was damped while it was squashed, at " << speed << " m/s";
+    EXPECT_LT(energies.values.back(), 0.9 * energies.values.front())
+        << "it was damped while it was squashed, at " << speed << " m/s";
   }
 }
 
-// 20 m/s through a plate of 1 mm, between queries 10 ms apart, by a contact far too soft to stop it.  A stiff one is not passed, and says so.
+// 20 m/s through a plate of 1 mm, between queries 10 ms apart, by a contact far too soft to stop it.  A stiff
+// one is not passed, and says so.
 TEST(Impact, AFastBlockThatGoesThroughAThinPlateIsCounted) {
   const auto through_plate = [](double speed, double stiffness) {
     scene::Description d = thrown_block(speed, 0.005);
@@ -65,7 +68,8 @@ TEST(Impact, AFastBlockThatGoesThroughAThinPlateIsCounted) {
   const loop::RunResult result = loop::run(*fast, {});
   ASSERT_TRUE(result.status.ok()) << result.status.message;
   ASSERT_EQ(result.tunnelled.size(), 1u);
-  EXPECT_EQ(result.tunnelled[0], fast->bodies[0].boundary.surface.vertices.cols()) << "every vertex of its surface";
+  EXPECT_EQ(result.tunnelled[0], fast->bodies[0].boundary.surface.vertices.cols())
+      << "every vertex of its surface";
   EXPECT_LT(fast->positions(fast->bodies[0]).row(2).maxCoeff(), -0.001) << "it is through";
   store::Summary summary = loop::summarise(*fast, result, 0.0);
   ASSERT_EQ(summary.section("tunnelled").values.size(), 1u);
@@ -77,8 +81,9 @@ TEST(Impact, AFastBlockThatGoesThroughAThinPlateIsCounted) {
   EXPECT_EQ(stopped.tunnelled, std::vector<long>{0});
 }
 
-// A tumbling block comes near the plane vertex by vertex: at a query the list of those that may touch changes while nothing presses yet, and the force
-// does not.  What a root finder keeps of the old list must go all the same.
+// A tumbling block comes near the plane vertex by vertex: at a query the list of those that may touch changes
+// while nothing presses yet, and the force does not.  What a root finder keeps of the old list must go all
+// the same.
 TEST(Impact, RootsAreFoundWhileTheListOfCandidatesChanges) {
   const auto landed = [](const std::string& integrator, const std::string& events) {
     scene::Description d = thrown_block(0.5, 0.0125);
@@ -91,11 +96,12 @@ TEST(Impact, RootsAreFoundWhileTheListOfCandidatesChanges) {
     const auto world = loop::assemble(d);
     const loop::RunResult result = loop::run(*world, {});
     EXPECT_TRUE(result.status.ok()) << integrator << ", " << events << ": " << result.status.message;
-    if (events == "root-finding") {
-      EXPECT_GT(result.counters.events, 3) << integrator;
-    }
+    if (events == "root-finding") { EXPECT_GT(result.counters.events, 3) << integrator; }
     return VecX(world->state.q());
   };
   for (const char* integrator : {"cvode-bdf", "ida", "ark-dirk-esdirk437", "ark-erk-3"})
-    EXPECT_LT((landed(integrator, "root-finding") - landed(integrator, "error-control")).cwiseAbs().maxCoeff(), 1e-6) << integrator;
+    EXPECT_LT(
+        (landed(integrator, "root-finding") - landed(integrator, "error-control")).cwiseAbs().maxCoeff(),
+        1e-6)
+        << integrator;
 }

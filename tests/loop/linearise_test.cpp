@@ -45,7 +45,8 @@ Vec6 wrench_after_step(double H, const Vec3& dx) {
   return out;
 }
 
-// What `condensed` claims: the change of the wrench when the bodies have answered the tool's displacement by one linearly implicit step.
+// What `condensed` claims: the change of the wrench when the bodies have answered the tool's displacement by
+// one linearly implicit step.
 TEST(Linearise, CondensedIsTheAnswerOfOneImplicitStep) {
   const double H = 0.01, e = 1e-7;
   long fallbacks = 0;
@@ -56,7 +57,8 @@ TEST(Linearise, CondensedIsTheAnswerOfOneImplicitStep) {
   ASSERT_GT(record.samples, 0);
   const Mat6 J = stiffness(record);
   for (int axis = 0; axis < 3; ++axis) {
-    const Vec6 change = (wrench_after_step(H, e * Vec3::Unit(axis)) - wrench_after_step(H, -e * Vec3::Unit(axis))) / (2 * e);
+    const Vec6 change =
+        (wrench_after_step(H, e * Vec3::Unit(axis)) - wrench_after_step(H, -e * Vec3::Unit(axis))) / (2 * e);
     const Vec3 expected = J.block<3, 1>(3, 3 + axis);
     const double size = J.bottomRightCorner(3, 3).norm();
     EXPECT_LT((change.tail(3) - expected).norm(), 1e-5 * size) << "axis " << axis;
@@ -89,8 +91,8 @@ TEST(Linearise, FrozenRecordRepeatsTheContactAtItsOwnPose) {
   EXPECT_GT(exact.force.z(), 0.0) << "the block pushes the tool up";
 }
 
-/// The pressed block in balance with the tool, on a floor that moves, and then struck: every part of the derivation is at work, and the changes
-/// over one period are small enough for no sample to open or close.
+/// The pressed block in balance with the tool, on a floor that moves, and then struck: every part of the
+/// derivation is at work, and the changes over one period are small enough for no sample to open or close.
 struct Struck {
   std::unique_ptr<loop::World> world;
   VecX q, u;
@@ -148,7 +150,8 @@ struct Struck {
   }
 };
 
-// The bodies' own motion, which the record lacked: velocities, forces out of balance, driven nodes and damping, after a tick and after the period.
+// The bodies' own motion, which the record lacked: velocities, forces out of balance, driven nodes and
+// damping, after a tick and after the period.
 TEST(Linearise, CondensedRecordIsTheWrenchAfterOneImplicitStepOfMovingBodies) {
   Struck s;
   const double H = 0.01, tick = s.world->description.tool->tick_s;
@@ -181,7 +184,8 @@ TEST(Linearise, CondensedRecordFollowsTheToolsDisplacementAndTwist) {
     const Pose behind{quaternion_of(-dx.head<3>()) * s.x0.rotation, s.x0.translation - dx.tail<3>()};
     const Vec6 linear = dynamics::contact_wrench(record, s.t0 + H, ahead, {dv.head<3>(), dv.tail<3>()}) -
                         dynamics::contact_wrench(record, s.t0 + H, behind, {-dv.head<3>(), -dv.tail<3>()});
-    EXPECT_LT((change - linear).norm(), 2e-3 * change.norm() + 1e-16) << "direction " << k;  // the floor moves the contact by 5e-4 of its depth meanwhile: a product of both changes
+    // the floor moves the contact by 5e-4 of its depth meanwhile: a product of both changes
+    EXPECT_LT((change - linear).norm(), 2e-3 * change.norm() + 1e-16) << "direction " << k;
   }
   EXPECT_EQ(checked, 12);
 }
@@ -205,12 +209,15 @@ TEST(Linearise, AnIndefiniteStepMatrixIsFactoredByLu) {
   EXPECT_GE(counters::counter("loop.condensed_by_lu"), 1);
 }
 
-// The tool was thrown away by 29 m: where contact is so stiff that a period without it leaves 1e4 N, the record must say that the bodies give way.
+// The tool was thrown away by 29 m: where contact is so stiff that a period without it leaves 1e4 N, the
+// record must say that the bodies give way.
 TEST(Linearise, AStiffContactDoesNotThrowTheToolAway) {
   class Bounds : public loop::Observer {
    public:
     // Left out: the contact's energy, of a depth that came about between two samples.
-    void period(loop::World& world, double) override { energy = std::max(energy, world.mechanical_energy() - world.contact->energy(world.state.view())); }
+    void period(loop::World& world, double) override {
+      energy = std::max(energy, world.mechanical_energy() - world.contact->energy(world.state.view()));
+    }
     void tick(const loop::TickRecord& tick) override {
       away = std::max(away, (tick.tool.translation - tick.handle.translation).norm());
       turned = std::max(turned, rotation_vector(tick.tool.rotation).norm());
@@ -234,7 +241,9 @@ TEST(Linearise, AStiffContactDoesNotThrowTheToolAway) {
     const loop::RunResult result = loop::run(*world, options);
     EXPECT_TRUE(result.status.ok()) << result.status.message;
     EXPECT_LT(bounds.away, 0.01) << "at " << stiffness << " Pa/m";
-    EXPECT_LT(bounds.energy, 0.5 * d.tool->coupling_stiffness_n_m * 0.01 * 0.01) << "at " << stiffness << " Pa/m";  // the hand never did more work
+    // the hand never did more work
+    EXPECT_LT(bounds.energy, 0.5 * d.tool->coupling_stiffness_n_m * 0.01 * 0.01)
+        << "at " << stiffness << " Pa/m";
     EXPECT_LT(bounds.turned, 1e-9) << "at " << stiffness << " Pa/m: without friction nothing turns a sphere";
   }
 }

@@ -27,7 +27,8 @@ scene::Description sagging(const std::string& integrator) {
 
 }  // namespace
 
-// A one-step method knows the state alone, and cholmod the matrix alone: after the change they do what they do from that state with the new modulus, to the last bit.
+// A one-step method knows the state alone, and cholmod the matrix alone: after the change they do what they
+// do from that state with the new modulus, to the last bit.
 TEST(MaterialChange, CountsFromTheNextStepOn) {
   for (const char* name : {"linearly-implicit-euler", "implicit-midpoint", "newmark"}) {
     scene::Description d = sagging(name);

@@ -38,7 +38,8 @@ TEST(ModesOfAScene, OfAFreeBlockBeginWithSixRigidMotionsWhereverItStandsAndLies)
       EXPECT_EQ(one.omega_squared[j], 0.0) << mass << " " << j;
       EXPECT_EQ(other.omega_squared[j], 0.0) << mass << " " << j;
     }
-    for (int j = 6; j < 9; ++j) EXPECT_NEAR(other.omega(j), one.omega(j), 1e-8 * one.omega(j)) << mass << " " << j;
+    for (int j = 6; j < 9; ++j)
+      EXPECT_NEAR(other.omega(j), one.omega(j), 1e-8 * one.omega(j)) << mass << " " << j;
   }
 }
 
@@ -51,26 +52,29 @@ TEST(ModesOfAScene, NodalDilatationUnlocksThemAndAddsNoneOfZeroEnergy) {
   const auto nodal = loop::assemble(d);
   d.bodies[0].poissons_ratio = 0.499;
   const auto softer = loop::assemble(d);
-  const integrate::Modes one = loop::find_modes(*locked, 14), other = loop::find_modes(*nodal, 14), less = loop::find_modes(*softer, 14);
+  const integrate::Modes one = loop::find_modes(*locked, 14), other = loop::find_modes(*nodal, 14),
+                         less = loop::find_modes(*softer, 14);
   EXPECT_TRUE(other.converged);
   EXPECT_FALSE(locked->bodies[0].dilatation);
   ASSERT_TRUE(nodal->bodies[0].dilatation);
   for (int j = 0; j < 14; ++j) {
-    EXPECT_EQ(other.omega_squared[j] == 0.0, j < 6) << j << ": six rigid motions, and no other mode without energy";
-    EXPECT_LE(other.omega_squared[j], one.omega_squared[j] * (1.0 + 1e-9)) << j << ": averages never exceed what they average (Jensen), so no frequency rises (Weyl)";
-    if (j >= 6) {
-      EXPECT_GT(other.omega(j), 0.9 * less.omega(j)) << j;
-    }
+    EXPECT_EQ(other.omega_squared[j] == 0.0, j < 6)
+        << j << ": six rigid motions, and no other mode without energy";
+    EXPECT_LE(other.omega_squared[j], one.omega_squared[j] * (1.0 + 1e-9))
+        << j << ": averages never exceed what they average (Jensen), so no frequency rises (Weyl)";
+    if (j >= 6) { EXPECT_GT(other.omega(j), 0.9 * less.omega(j)) << j; }
   }
 }
 
 #ifdef PALPATE_HAS_TOOL
 TEST(ModesOfAScene, AToolThatPressesStiffensThem) {
-  const auto free = loop::assemble(held_block()), pressed = loop::assemble(pressed_block(0.002)), above = loop::assemble(pressed_block(-0.01));
+  const auto free = loop::assemble(held_block()), pressed = loop::assemble(pressed_block(0.002)),
+             above = loop::assemble(pressed_block(-0.01));
   const auto squares = [](loop::World& world) { return loop::find_modes(world, 8).omega_squared; };
   const VecX without = squares(*free), with = squares(*pressed);
   EXPECT_GT(with.sum(), 1.001 * without.sum());
-  EXPECT_GE((with - without).minCoeff(), -1e-9 * without[0]) << "a stiffness that is added lowers no frequency (Weyl)";
+  EXPECT_GE((with - without).minCoeff(), -1e-9 * without[0])
+      << "a stiffness that is added lowers no frequency (Weyl)";
   EXPECT_LE((squares(*above) - without).cwiseAbs().maxCoeff(), 1e-9 * without[7]);
 }
 #endif
@@ -87,7 +91,8 @@ TEST(ModesOfAScene, AreWrittenOneAStep) {
     const Points moved = file.displacement(j), by_place = modes.shapes.col(j).reshaped(3, file.point_count());
     Points shape(3, file.point_count());
     shape(Eigen::all, world->bodies[0].file_node) = by_place;
-    EXPECT_NEAR(moved.colwise().norm().maxCoeff(), loop::kModeAmplitude * 0.04, 1e-12) << "a tenth of the longest edge";
+    EXPECT_NEAR(moved.colwise().norm().maxCoeff(), loop::kModeAmplitude * 0.04, 1e-12)
+        << "a tenth of the longest edge";
     const double cosine = moved.reshaped().dot(shape.reshaped()) / (moved.norm() * shape.norm());
     EXPECT_NEAR(cosine, 1.0, 1e-12);
     EXPECT_LE((file.velocity(j) - modes.omega(j) * moved).norm(), 1e-9 * file.velocity(j).norm());

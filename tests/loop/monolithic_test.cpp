@@ -94,7 +94,8 @@ TEST(Monolithic, TicksComeInTheirOrderAndNumberWhateverTheRefresh) {
     ASSERT_TRUE(out.result.status.ok()) << out.result.status.message;
     EXPECT_EQ(out.result.ticks, 40);
     ASSERT_EQ(out.log.ticks.size(), 40u);
-    for (std::size_t i = 0; i < out.log.ticks.size(); ++i) EXPECT_NEAR(out.log.ticks[i].time, 1e-3 * static_cast<double>(i + 1), 1e-12);
+    for (std::size_t i = 0; i < out.log.ticks.size(); ++i)
+      EXPECT_NEAR(out.log.ticks[i].time, 1e-3 * static_cast<double>(i + 1), 1e-12);
     EXPECT_EQ(out.result.periods, std::lround(0.04 / refresh));
   }
 }
@@ -133,8 +134,8 @@ TEST(Monolithic, RestsWhereThePartitionedSchemeRests) {
   EXPECT_LT((a.device.force - b.device.force).norm(), 1e-3 * b.device.force.norm());
 }
 
-// Nothing damps, the handle rests, the contact is queried once: kinetic, elastic, contact and coupling energy together are kept,
-// and far more than the tolerance passes between tool and block.
+// Nothing damps, the handle rests, the contact is queried once: kinetic, elastic, contact and coupling energy
+// together are kept, and far more than the tolerance passes between tool and block.
 TEST(Monolithic, ToolAndBodiesKeepTheirEnergyTogether) {
   scene::Description d = pressed_block(0.003);
   d.coupling.scheme = "monolithic";
@@ -147,7 +148,8 @@ TEST(Monolithic, ToolAndBodiesKeepTheirEnergyTogether) {
   d.duration_s = 0.002;  // to the next query
   const auto world = loop::assemble(d);
   world->contact->refresh(world->state.view());
-  const double before = world->mechanical_energy(), elastic_before = world->bodies[0].term->energy(world->state.view());
+  const double before = world->mechanical_energy(),
+               elastic_before = world->bodies[0].term->energy(world->state.view());
   const auto status = world->stepper->advance_to(0.02);
   ASSERT_TRUE(status.ok()) << status.message;
   const double elastic = world->bodies[0].term->energy(world->state.view());
@@ -155,7 +157,8 @@ TEST(Monolithic, ToolAndBodiesKeepTheirEnergyTogether) {
   EXPECT_NEAR(world->mechanical_energy() / before, 1.0, 1e-5);
 }
 
-// One tool, two ways to it that share no integrator: CVODE on the block of the State, and Simbody's Merson on a System of its own.
+// One tool, two ways to it that share no integrator: CVODE on the block of the State, and Simbody's Merson on
+// a System of its own.
 TEST(Monolithic, AToolAloneMovesAsInASystemOfItsOwn) {
   scene::Description d = monolithic_press(0.02);
   d.bodies.clear();
@@ -174,8 +177,9 @@ TEST(Monolithic, AToolAloneMovesAsInASystemOfItsOwn) {
     EXPECT_LT(pose_difference(whole.log.ticks[i].tool, parts.log.ticks[i].tool).norm(), 1e-6) << "tick " << i;
 }
 
-// An integrator that steps bodies also steps a tool beside them: its block's unit quaternion, the border of the Newton matrix.  All of the registry,
-// against cvode-bdf at rtol 1e-8, over the first 20 ms of a press: the tool touches at once and is 0.6 mm deep at the end.
+// An integrator that steps bodies also steps a tool beside them: its block's unit quaternion, the border of
+// the Newton matrix.  All of the registry, against cvode-bdf at rtol 1e-8, over the first 20 ms of a press:
+// the tool touches at once and is 0.6 mm deep at the end.
 class MonolithicRegistry : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> moving_integrators() {
@@ -206,7 +210,8 @@ TEST_P(MonolithicRegistry, StepsToolAndBodiesAsOneSystem) {
   const bool fixed = traits.control == dynamics::StepControl::kFixed;
   d.integrator.name = GetParam();
   d.integrator.rtol = 1e-5;  // of the tool's radius, 15 mm: 2e-4 of the way that it goes
-  d.integrator.step_s = traits.stability == dynamics::Stability::kExplicit ? 2e-5 : 2e-4;  // explicit: below its stability limit
+  // explicit: below its stability limit
+  d.integrator.step_s = traits.stability == dynamics::Stability::kExplicit ? 2e-5 : 2e-4;
   const Outcome out = run(d, kDuration);
   ASSERT_TRUE(out.result.status.ok()) << out.result.status.message;
   ASSERT_EQ(out.log.ticks.size(), truth.log.ticks.size());
@@ -214,7 +219,8 @@ TEST_P(MonolithicRegistry, StepsToolAndBodiesAsOneSystem) {
   for (std::size_t i = 0; i < truth.log.ticks.size(); ++i)
     worst = std::max(worst, (out.log.ticks[i].tool.translation - truth.log.ticks[i].tool.translation).norm());
   RecordProperty("error", std::to_string(worst / moved));
-  // Of order 1: h times a rate, sqrt(k/m) = 77/s of the coupling, some times over.  Of a higher one, or under error control: the kink at the touch is left.
+  // Of order 1: h times a rate, sqrt(k/m) = 77/s of the coupling, some times over.  Of a higher one, or under
+  // error control: the kink at the touch is left.
   EXPECT_LT(worst, (fixed && traits.order == 1 ? 2e-2 : 1e-3) * moved);
   EXPECT_NEAR(out.q.tail<7>().head<4>().norm(), 1.0, 1e-12);
 }

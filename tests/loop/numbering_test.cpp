@@ -24,7 +24,8 @@ namespace {
 /// Two blocks, the second from a file whose nodes stand in no order; it swings.
 class Numbering : public testing::Test {
  protected:
-  Numbering() : folder_(std::filesystem::temp_directory_path() / ("palpate-numbering-" + std::to_string(getpid()))) {
+  Numbering()
+      : folder_(std::filesystem::temp_directory_path() / ("palpate-numbering-" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
     file_ = mesh::box(Vec3(0.04, 0.04, 0.02), {5, 4, 3});
     std::vector<int> order(static_cast<std::size_t>(file_.nodes.cols()));
@@ -58,7 +59,8 @@ class Numbering : public testing::Test {
       moved = std::max(moved, (points.col(written) - file_.nodes.col(written) - shift_).norm());
     }
     EXPECT_GT(moved, 1e-6);
-    EXPECT_LT(moved, 2e-3);  // each stands near its place in the file: none is mistaken for another, 5 mm away
+    // each stands near its place in the file: none is mistaken for another, 5 mm away
+    EXPECT_LT(moved, 2e-3);
   }
 
   std::filesystem::path folder_;
@@ -87,7 +89,8 @@ TEST_F(Numbering, ARunIsWrittenInTheOrderOfTheFile) {
   const auto n = file_.nodes.cols();
   const dynamics::Block& block = *world->state.layout().find(body.block_id);
   const Points velocity = file.velocity(last).middleCols(file.first_point(1), n);
-  const VecX written = file.stress(last).segment(file.first_point(1), n), stress = body.nodal_stress(world->state.view());
+  const VecX written = file.stress(last).segment(file.first_point(1), n),
+             stress = body.nodal_stress(world->state.view());
   for (Eigen::Index i = 0; i < n; ++i) {
     const int number = body.file_node[static_cast<std::size_t>(i)];
     EXPECT_EQ(Vec3(velocity.col(number)), Vec3(world->state.u().segment<3>(block.u_offset + 3 * i)));
@@ -105,10 +108,14 @@ TEST_F(Numbering, ModesAreWrittenInTheOrderOfTheFile) {
   const auto n = file_.nodes.cols();
   const loop::Body& body = world->bodies[1];
   for (int mode = 0; mode < 4; ++mode) {
-    const Points shape = loop::displaced(*world, body, modes, mode), written = file.points(mode).middleCols(file.first_point(1), n);
-    const Points velocity = file.velocity(mode).middleCols(file.first_point(1), n), rest = file_.nodes.colwise() + shift_;
-    for (Eigen::Index i = 0; i < n; ++i) EXPECT_EQ(Vec3(written.col(body.file_node[static_cast<std::size_t>(i)])), Vec3(shape.col(i)));
-    EXPECT_LT((velocity - modes.omega(mode) * (written - rest)).cwiseAbs().maxCoeff(), 1e-12 * (1.0 + modes.omega(mode)));
+    const Points shape = loop::displaced(*world, body, modes, mode),
+                 written = file.points(mode).middleCols(file.first_point(1), n);
+    const Points velocity = file.velocity(mode).middleCols(file.first_point(1), n),
+                 rest = file_.nodes.colwise() + shift_;
+    for (Eigen::Index i = 0; i < n; ++i)
+      EXPECT_EQ(Vec3(written.col(body.file_node[static_cast<std::size_t>(i)])), Vec3(shape.col(i)));
+    EXPECT_LT((velocity - modes.omega(mode) * (written - rest)).cwiseAbs().maxCoeff(),
+              1e-12 * (1.0 + modes.omega(mode)));
   }
 }
 

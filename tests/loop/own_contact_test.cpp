@@ -1,4 +1,5 @@
-// A body against itself in scenes: two blocks of one body meet as two bodies do; arms on scripted bones close by any integrator and linear solver.
+// A body against itself in scenes: two blocks of one body meet as two bodies do; arms on scripted bones close
+// by any integrator and linear solver.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -25,13 +26,16 @@ namespace {
 struct ModelOnDisk {
   std::string path;
   ModelOnDisk(const LayeredModel& model, const std::string& name)
-      : path((std::filesystem::temp_directory_path() / ("palpate_own_contact_test_" + std::to_string(getpid()) + "_" + name)).string()) {
+      : path((std::filesystem::temp_directory_path() /
+              ("palpate_own_contact_test_" + std::to_string(getpid()) + "_" + name))
+                 .string()) {
     store::write_model(path, {model, {}});
   }
   ~ModelOnDisk() { std::filesystem::remove(path); }
 };
 
-constexpr double kFall = 0.02876;  // height of the upper block's middle [m]: its lowest corner 0.2 mm above the lower block
+// height of the upper block's middle [m]: its lowest corner 0.2 mm above the lower block
+constexpr double kFall = 0.02876;
 
 /// A block where it stands, under a finer skin.
 LayeredModel block(const Pose& pose, const Vec3& size) {
@@ -48,8 +52,11 @@ LayeredModel block(const Pose& pose, const Vec3& size) {
 
 /// A block on the ground, and a smaller one, a little tilted, that falls on it from a fifth of a millimetre.
 struct Blocks {
-  LayeredModel lower = block({Quat::Identity(), Vec3(0, 0, 0.01)}, Vec3(0.06, 0.06, 0.02)), upper = block({quaternion_of(Vec3(0.05, 0.03, 0.5)), Vec3(0.003, -0.002, kFall)}, Vec3(0.03, 0.03, 0.015));
-  ModelOnDisk first{lower, "lower.h5"}, second{upper, "upper.h5"}, both{contact_tests::together(lower, upper), "both.h5"};
+  LayeredModel lower = block({Quat::Identity(), Vec3(0, 0, 0.01)}, Vec3(0.06, 0.06, 0.02)),
+               upper = block({quaternion_of(Vec3(0.05, 0.03, 0.5)), Vec3(0.003, -0.002, kFall)},
+                             Vec3(0.03, 0.03, 0.015));
+  ModelOnDisk first{lower, "lower.h5"}, second{upper, "upper.h5"},
+      both{contact_tests::together(lower, upper), "both.h5"};
 
   static SoftBodySpec body(const std::string& name, const ModelOnDisk& file) {
     SoftBodySpec out;
@@ -152,7 +159,8 @@ TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
   const Fork fork;
   scene::Description d = fork.scene("linearly-implicit-euler");
   d.contacts[0].method = "analytic";
-  EXPECT_NE(refusal(d).find("a body meets itself in image space; use method = \"gpu\""), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("a body meets itself in image space; use method = \"gpu\""), std::string::npos)
+      << refusal(d);
   d = fork.scene("linearly-implicit-euler");
   d.bodies[0].proxies = false;
   EXPECT_NE(refusal(d).find("give the body skin = true and proxies = true"), std::string::npos) << refusal(d);
@@ -161,7 +169,10 @@ TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
   const Blocks blocks;  // a model whose proxies go with no bone
   d = blocks.scene(false);
   d.contacts[0].second = d.contacts[0].first;
-  EXPECT_NE(refusal(d).find("the body's model has none: its proxies go with no bone; `palpate model human` writes one with 19 bones"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("the body's model has none: its proxies go with no bone; `palpate model human` "
+                            "writes one with 19 bones"),
+            std::string::npos)
+      << refusal(d);
   LayeredModel one = blocks.lower;
   one.skeleton.bones.push_back({"only", -1, Vec3::Zero(), Vec3(0, 0, 0.01), 0.001, 0.001});
   one.bone_of_node.assign(static_cast<std::size_t>(one.tets.nodes.cols()), -1);
@@ -174,19 +185,22 @@ TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
 #ifdef PALPATE_HAS_GL
 namespace {
 
-/// How far each node has gone, body by body in the order of its file; `pressing`: samples of contact with pressure at the end.
+/// How far each node has gone, body by body in the order of its file; `pressing`: samples of contact with
+/// pressure at the end.
 VecX end_of(const scene::Description& d, int* pressing = nullptr) {
   const auto world = loop::assemble(d);
   const VecX start = world->state.q();
   const auto result = loop::run(*world, {});
-  EXPECT_TRUE(result.status.ok()) << d.integrator.name << ", " << d.integrator.linear_solver << ": " << result.status.message;
+  EXPECT_TRUE(result.status.ok()) << d.integrator.name << ", " << d.integrator.linear_solver << ": "
+                                  << result.status.message;
   if (pressing && world->contact)
     for (const contact::ContactSample& s : world->contact->samples()) *pressing += s.gap < 0.0;
   VecX gone(start.size());
   Eigen::Index first = 0;
   for (const loop::Body& body : world->bodies) {
     const Eigen::Index begin = world->state.layout().find(body.block_id)->q_offset, n = body.placed.cols();
-    gone.segment(first, 3 * n).reshaped(3, n)(Eigen::all, body.file_node) = (world->state.q() - start).segment(begin, 3 * n).reshaped(3, n);
+    gone.segment(first, 3 * n).reshaped(3, n)(Eigen::all, body.file_node) =
+        (world->state.q() - start).segment(begin, 3 * n).reshaped(3, n);
     first += 3 * n;
   }
   return gone;
@@ -194,8 +208,10 @@ VecX end_of(const scene::Description& d, int* pressing = nullptr) {
 
 }  // namespace
 
-// The same nodes, masses, forces and contact: what falls on another body falls on a part of its own, to rounding.  Later the blocks lie so flat on each other that skin which faces
-// elsewhere is kept too: there two bodies go by their hulls, the parts of one by its skin (pruner.cpp), and the same motion comes out to less than a hundredth.
+// The same nodes, masses, forces and contact: what falls on another body falls on a part of its own, to
+// rounding.  Later the blocks lie so flat on each other that skin which faces elsewhere is kept too: there
+// two bodies go by their hulls, the parts of one by its skin (pruner.cpp), and the same motion comes out to
+// less than a hundredth.
 TEST(OwnContactScene, TwoBlocksOfOneBodyMeetAsTwoBodies) {
   const Blocks blocks;
   scene::Description together = blocks.scene(true), apart = blocks.scene(false), without = blocks.scene(true);
@@ -227,7 +243,8 @@ TEST(OwnContactScene, EveryLinearSolverTakesIt) {
   EXPECT_GE(solvers, 5);
 }
 
-// Against a run of one hundredth of the tolerance: the adaptive ones to a few times theirs, the first-order one by half for half the step.
+// Against a run of one hundredth of the tolerance: the adaptive ones to a few times theirs, the first-order
+// one by half for half the step.
 TEST(OwnContactScene, ArmsCloseAlikeByThreeIntegrators) {
   const Fork fork;
   scene::Description fine = fork.scene("cvode-bdf");
@@ -235,8 +252,10 @@ TEST(OwnContactScene, ArmsCloseAlikeByThreeIntegrators) {
   int pressing = 0;
   const VecX reference = end_of(fine, &pressing), free = end_of(fork.scene("cvode-bdf", false));
   EXPECT_GT(pressing, 100) << "the arms have met";
-  EXPECT_GT((free - reference).cwiseAbs().maxCoeff(), 5e-3) << "and are dented: without contact each goes 3.4 cm beyond the middle";
-  for (const char* name : {"cvode-bdf", "ark-dirk-esdirk436"}) EXPECT_LT((end_of(fork.scene(name)) - reference).norm(), 1e-3 * reference.norm()) << name;
+  EXPECT_GT((free - reference).cwiseAbs().maxCoeff(), 5e-3)
+      << "and are dented: without contact each goes 3.4 cm beyond the middle";
+  for (const char* name : {"cvode-bdf", "ark-dirk-esdirk436"})
+    EXPECT_LT((end_of(fork.scene(name)) - reference).norm(), 1e-3 * reference.norm()) << name;
   scene::Description d = fork.scene("linearly-implicit-euler");
   d.integrator.step_s = 5e-4;
   const double whole = (end_of(d) - reference).norm();
@@ -247,7 +266,8 @@ TEST(OwnContactScene, ArmsCloseAlikeByThreeIntegrators) {
   EXPECT_LT(whole / half, 2.5);
 }
 
-// What is said of it: one skin, whose handed-on triangles are counted on both sides of the regions; of two bodies each has its own share.
+// What is said of it: one skin, whose handed-on triangles are counted on both sides of the regions; of two
+// bodies each has its own share.
 TEST(OwnContactScene, TheSummarySpeaksOfOneSkin) {
   const auto pruning = [](const scene::Description& d) {
     const auto world = loop::assemble(d);
@@ -268,10 +288,12 @@ TEST(OwnContactScene, TheSummarySpeaksOfOneSkin) {
   const Fork fork;
   const auto [own, counts] = pruning(fork.scene("linearly-implicit-euler"));
   ASSERT_NE(find(own, "fork - fork: skin triangles of fork handed on"), nullptr);
-  EXPECT_EQ(std::get<long long>(*find(own, "fork - fork: skin triangles of fork handed on")), counts.faces_a + counts.faces_b);
+  EXPECT_EQ(std::get<long long>(*find(own, "fork - fork: skin triangles of fork handed on")),
+            counts.faces_a + counts.faces_b);
   const double share = std::get<double>(*find(own, "fork - fork: share of the skin of fork handed on, mean"));
   const double faces = static_cast<double>(bent_bar::model(24, M_PI).skin.faces.cols());
-  EXPECT_DOUBLE_EQ(share, static_cast<double>(counts.faces_a + counts.faces_b) / (faces * static_cast<double>(counts.queries)));
+  EXPECT_DOUBLE_EQ(share, static_cast<double>(counts.faces_a + counts.faces_b) /
+                              (faces * static_cast<double>(counts.queries)));
   EXPECT_GT(share, 0.0);
   EXPECT_LT(share, 0.5);
   EXPECT_GT(counts.regions, 0);
@@ -279,12 +301,15 @@ TEST(OwnContactScene, TheSummarySpeaksOfOneSkin) {
 
   const Blocks blocks;
   const auto [two, of_two] = pruning(blocks.scene(false));
-  for (const auto& [name, handed_on, skin] : {std::tuple("lower", of_two.faces_a, blocks.lower.skin.faces.cols()), std::tuple("upper", of_two.faces_b, blocks.upper.skin.faces.cols())}) {
+  for (const auto& [name, handed_on, skin] :
+       {std::tuple("lower", of_two.faces_a, blocks.lower.skin.faces.cols()),
+        std::tuple("upper", of_two.faces_b, blocks.upper.skin.faces.cols())}) {
     const std::string of = std::string("lower - upper: ");
     ASSERT_NE(find(two, of + "skin triangles of " + name + " handed on"), nullptr);
     EXPECT_EQ(std::get<long long>(*find(two, of + "skin triangles of " + name + " handed on")), handed_on);
     EXPECT_GT(handed_on, 0);
-    EXPECT_DOUBLE_EQ(std::get<double>(*find(two, of + "share of the skin of " + name + " handed on, mean")), static_cast<double>(handed_on) / static_cast<double>(of_two.queries * skin));
+    EXPECT_DOUBLE_EQ(std::get<double>(*find(two, of + "share of the skin of " + name + " handed on, mean")),
+                     static_cast<double>(handed_on) / static_cast<double>(of_two.queries * skin));
   }
 }
 #endif

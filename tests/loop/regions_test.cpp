@@ -1,4 +1,5 @@
-// Regions of a body with materials of their own: by box and sphere, by the names of a mesh file and of a model file.
+// Regions of a body with materials of their own: by box and sphere, by the names of a mesh file and of a
+// model file.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -21,7 +22,10 @@ namespace {
 
 class Regions : public testing::Test {
  protected:
-  Regions() : folder_(std::filesystem::temp_directory_path() / ("palpate-regions-" + std::to_string(::getpid()))) { std::filesystem::create_directories(folder_); }
+  Regions()
+      : folder_(std::filesystem::temp_directory_path() / ("palpate-regions-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
   ~Regions() override { std::filesystem::remove_all(folder_); }
   std::string at(const std::string& name) const { return (folder_ / name).string(); }
   std::filesystem::path folder_;
@@ -53,9 +57,7 @@ VecX end_of(const scene::Description& d) {
 std::string refusal(const scene::Description& d) {
   try {
     loop::assemble(d);
-  } catch (const Error& e) {
-    return e.what();
-  }
+  } catch (const Error& e) { return e.what(); }
   return "accepted";
 }
 
@@ -92,7 +94,9 @@ TEST_F(Regions, OfTheBodysMaterialChangeNothing) {
     divided.integrator.linear_solver = "cholmod";  // to rounding
     scene::Description whole = divided;
     divided.bodies[0].volumetric = whole.bodies[0].volumetric = volumetric;
-    divided.bodies[0].poissons_ratio = whole.bodies[0].poissons_ratio = std::string(volumetric) == "nodal" ? 0.2 : 0.45;  // averages of dilatation do stop at a border: nothing is left for them at 0.2
+    // averages of dilatation do stop at a border: nothing is left for them at 0.2
+    divided.bodies[0].poissons_ratio = whole.bodies[0].poissons_ratio =
+        std::string(volumetric) == "nodal" ? 0.2 : 0.45;
     whole.bodies[0].regions.clear();
     const VecX a = end_of(divided), b = end_of(whole);
     EXPECT_LT((a - b).norm(), 1e-12 * b.norm());
@@ -124,7 +128,8 @@ TEST_F(Regions, ChangeAlongWithTheBodyOrAlone) {
   own.youngs_modulus_pa = 5e4;
   const auto follows = loop::assemble(with(lid)), keeps = loop::assemble(with(own));
   const auto moduli = [](const loop::World& world) {
-    return std::pair(world.bodies[0].term->materials()[0].youngs_modulus, world.bodies[0].term->materials()[1].youngs_modulus);
+    return std::pair(world.bodies[0].term->materials()[0].youngs_modulus,
+                     world.bodies[0].term->materials()[1].youngs_modulus);
   };
   follows->set_youngs_modulus(follows->bodies[0], 2e4);
   keeps->set_youngs_modulus(keeps->bodies[0], 2e4);
@@ -137,7 +142,12 @@ TEST_F(Regions, ChangeAlongWithTheBodyOrAlone) {
   try {
     follows->set_youngs_modulus(follows->bodies[0], 7e4, "lit");
     FAIL();
-  } catch (const Error& e) { EXPECT_NE(std::string(e.what()).find("no region \"lit\" has a material of its own (did you mean \"lid\"?)"), std::string::npos) << e.what(); }
+  } catch (const Error& e) {
+    EXPECT_NE(
+        std::string(e.what()).find("no region \"lit\" has a material of its own (did you mean \"lid\"?)"),
+        std::string::npos)
+        << e.what();
+  }
   EXPECT_THROW(follows->set_youngs_modulus(follows->bodies[0], -1.0, "lid"), Error);
 
   // In a run: the same end as with the modulus from the start, from rest without forces until the change.
@@ -150,8 +160,10 @@ TEST_F(Regions, ChangeAlongWithTheBodyOrAlone) {
 
 TEST_F(Regions, OfAMeshFileGoByName) {
   // Two tetrahedra on one face: volumes 1/6 and 1/3.
-  const std::string msh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"flesh\"\n3 2 \"bone\"\n$EndPhysicalNames\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n"
-                          "$EndNodes\n$Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 2 2 2 3 4 5\n$EndElements\n";
+  const std::string msh =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"flesh\"\n3 2 "
+      "\"bone\"\n$EndPhysicalNames\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n"
+      "$EndNodes\n$Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 2 2 2 3 4 5\n$EndElements\n";
   std::ofstream(at("two.msh")) << msh;
   scene::Description d = held_block();
   d.path = at("scene.toml");
@@ -159,7 +171,8 @@ TEST_F(Regions, OfAMeshFileGoByName) {
   d.bodies[0].mesh.file = "two.msh";
   d.bodies[0].attachments.clear();
   {
-    const auto world = loop::assemble(d);  // named by nobody: of the body's own material, and known to be there
+    // named by nobody: of the body's own material, and known to be there
+    const auto world = loop::assemble(d);
     ASSERT_EQ(world->bodies[0].regions.size(), 2u);
     EXPECT_EQ(world->bodies[0].regions[1].material, 0);
     EXPECT_EQ(world->bodies[0].term->materials().size(), 1u);
@@ -171,11 +184,14 @@ TEST_F(Regions, OfAMeshFileGoByName) {
   d.bodies[0].regions = {bone};
   EXPECT_NEAR(loop::assemble(d)->bodies[0].masses.sum(), 1000.0 / 6.0 + 4000.0 / 3.0, 1e-9);
   d.bodies[0].regions[0].name = "bones";
-  EXPECT_NE(refusal(d).find("two.msh has no region \"bones\" (did you mean \"bone\"?)"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("two.msh has no region \"bones\" (did you mean \"bone\"?)"), std::string::npos)
+      << refusal(d);
   d.bodies[0].regions[0].name = "bone";
   d.bodies[0].regions[0].region = "sphere";
   d.bodies[0].regions[0].radius_m = 1.0;
-  EXPECT_NE(refusal(d).find("region \"bone\" is one of two.msh too; give the sphere another name"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("region \"bone\" is one of two.msh too; give the sphere another name"),
+            std::string::npos)
+      << refusal(d);
   d.bodies[0].regions[0].name = "nothing";
   d.bodies[0].regions[0].centre_m = Vec3::Constant(9);
   EXPECT_NE(refusal(d).find("region \"nothing\" holds no tetrahedron"), std::string::npos) << refusal(d);
@@ -191,10 +207,19 @@ TEST_F(Regions, OfAMeshFileGoByName) {
   d.bodies[0].regions = {bone, all};
   EXPECT_NE(refusal(d).find("region \"bone\" holds no tetrahedron"), std::string::npos) << refusal(d);
 
-  store::write_mesh(at("plain.h5"), loop::assemble(d = [&] { scene::Description e = d; e.bodies[0].regions.clear(); return e; }())->bodies[0].rest);
+  store::write_mesh(at("plain.h5"), loop::assemble(d =
+                                                       [&] {
+                                                         scene::Description e = d;
+                                                         e.bodies[0].regions.clear();
+                                                         return e;
+                                                       }())
+                                        ->bodies[0]
+                                        .rest);
   d.bodies[0].mesh.file = "plain.h5";
   d.bodies[0].regions = {bone};
-  EXPECT_NE(refusal(d).find("plain.h5 has no regions; `palpate model` makes some (--region)"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("plain.h5 has no regions; `palpate model` makes some (--region)"),
+            std::string::npos)
+      << refusal(d);
 }
 
 TEST_F(Regions, OfAModelFileBringTheirFactors) {
@@ -222,5 +247,6 @@ TEST_F(Regions, OfAModelFileBringTheirFactors) {
   d.bodies[0].regions = {hard};
   world = loop::assemble(d);
   EXPECT_EQ(world->bodies[0].term->materials()[1].youngs_modulus, 7e5);
-  EXPECT_EQ(world->bodies[0].term->materials()[1].density, 2000.0) << "of the file, as the scene says nothing of it";
+  EXPECT_EQ(world->bodies[0].term->materials()[1].density, 2000.0)
+      << "of the file, as the scene says nothing of it";
 }

@@ -46,7 +46,8 @@ TEST(Run, BodyAtRestStaysAtRestToRounding) {
 }
 
 TEST(Run, NodalDilatationStepsUnderErrorControlAndWithOneLinearSolveAStep) {
-  // Nearly incompressible, let go under six times its weight: two integrators of different families must tell the same story.
+  // Nearly incompressible, let go under six times its weight: two integrators of different families must tell
+  // the same story.
   scene::Description d = held_block();
   d.gravity_m_s2 = Vec3(0, 20, -60);
   d.bodies[0].poissons_ratio = 0.4999;
@@ -62,7 +63,8 @@ TEST(Run, NodalDilatationStepsUnderErrorControlAndWithOneLinearSolveAStep) {
   const VecX reference = end("cvode-bdf", 1e-6);
   EXPECT_GT(reference.lpNorm<Eigen::Infinity>(), 1e-3);
   EXPECT_LT((end("cvode-bdf", 1e-4) - reference).norm(), 1e-2 * reference.norm());
-  const double coarse = (end("linearly-implicit-euler", 2e-3) - reference).norm(), fine = (end("linearly-implicit-euler", 1e-3) - reference).norm();
+  const double coarse = (end("linearly-implicit-euler", 2e-3) - reference).norm(),
+               fine = (end("linearly-implicit-euler", 1e-3) - reference).norm();
   EXPECT_LT(fine, 0.1 * reference.norm());
   EXPECT_NEAR(std::log2(coarse / fine), 1.0, 0.3) << "order 1";
 }
@@ -118,7 +120,8 @@ TEST(Run, PeriodsAndTicksComeInTheirOrderAndNumber) {
   EXPECT_EQ(log.periods.front(), 0.0);
   EXPECT_DOUBLE_EQ(log.periods.back(), 0.04);
   ASSERT_EQ(log.ticks.size(), 40u);
-  for (std::size_t i = 0; i < log.ticks.size(); ++i) EXPECT_NEAR(log.ticks[i].time, 1e-3 * static_cast<double>(i + 1), 1e-15);
+  for (std::size_t i = 0; i < log.ticks.size(); ++i)
+    EXPECT_NEAR(log.ticks[i].time, 1e-3 * static_cast<double>(i + 1), 1e-15);
 }
 
 TEST(Run, SameSceneSameNumbersBitForBit) {
@@ -126,10 +129,12 @@ TEST(Run, SameSceneSameNumbersBitForBit) {
   ASSERT_TRUE(run_with(pressed_block(0.002), first).status.ok());
   ASSERT_TRUE(run_with(pressed_block(0.002), second).status.ok());
   EXPECT_EQ(first.positions, second.positions);
-  for (std::size_t i = 0; i < first.ticks.size(); ++i) EXPECT_EQ(first.ticks[i].device.force, second.ticks[i].device.force);
+  for (std::size_t i = 0; i < first.ticks.size(); ++i)
+    EXPECT_EQ(first.ticks[i].device.force, second.ticks[i].device.force);
 }
 
-// At rest the spring of the hand carries the contact: k (x_h - x_t) + F = 0, and the block carries the same force.
+// At rest the spring of the hand carries the contact: k (x_h - x_t) + F = 0, and the block carries the same
+// force.
 TEST(Run, HeldHandleComesToRestInBalanceWithTheBlock) {
   const scene::Description d = pressed_block(0.003);
   const auto world = loop::assemble(d);
@@ -143,11 +148,13 @@ TEST(Run, HeldHandleComesToRestInBalanceWithTheBlock) {
   const Wrench contact = world->contact->frame_wrench(world->state.view(), world->tool_frame_index);
   ASSERT_GT(contact.force.z(), 0.05);
   EXPECT_LT((spring + contact.force).norm(), 1e-6 * contact.force.norm());
-  EXPECT_LT((last.device.force + spring).norm(), 1e-2 * spring.norm()) << "the hand feels the spring, but for the limiter's smooth onset";
+  EXPECT_LT((last.device.force + spring).norm(), 1e-2 * spring.norm())
+      << "the hand feels the spring, but for the limiter's smooth onset";
   VecX reactions;
   world->system.reactions(world->state.view(), reactions);
   const Vec3 support = Eigen::Map<const Points>(reactions.data(), 3, reactions.size() / 3).rowwise().sum();
-  EXPECT_LT((support - contact.force).norm(), 1e-5 * contact.force.norm()) << "what presses down on the block is held below it";
+  EXPECT_LT((support - contact.force).norm(), 1e-5 * contact.force.norm())
+      << "what presses down on the block is held below it";
 }
 
 TEST(Run, ForceAboveTheDevicesMaximumNeverGetsOut) {

@@ -23,9 +23,14 @@ using namespace palpate::scene_checks;
 
 namespace {
 
-std::string temporary(const std::string& name) { return (std::filesystem::temp_directory_path() / ("palpate_skeleton_test_" + std::to_string(getpid()) + "_" + name)).string(); }
+std::string temporary(const std::string& name) {
+  return (std::filesystem::temp_directory_path() /
+          ("palpate_skeleton_test_" + std::to_string(getpid()) + "_" + name))
+      .string();
+}
 
-/// A limb along x, 24 cm long, around a chain of three bones of 6 cm; nodes on its axis within a bone are the bone's.
+/// A limb along x, 24 cm long, around a chain of three bones of 6 cm; nodes on its axis within a bone are the
+/// bone's.
 LayeredModel limb_model() {
   LayeredModel model;
   model.name = "limb";
@@ -45,7 +50,10 @@ LayeredModel limb_model() {
     const Vec3 x = model.tets.nodes.col(n);
     int owner = -1;
     for (int i = 0; i < 3; ++i)
-      if (x.tail<2>().norm() < 1e-9 && x.x() > model.skeleton.bones[static_cast<std::size_t>(i)].head.x() - 1e-9 && x.x() < model.skeleton.bones[static_cast<std::size_t>(i)].tail.x() + 1e-9) owner = i;
+      if (x.tail<2>().norm() < 1e-9 &&
+          x.x() > model.skeleton.bones[static_cast<std::size_t>(i)].head.x() - 1e-9 &&
+          x.x() < model.skeleton.bones[static_cast<std::size_t>(i)].tail.x() + 1e-9)
+        owner = i;
     model.bone_of_node.push_back(owner);
   }
   return model;
@@ -116,7 +124,8 @@ TEST(Skeleton, WeldedBonesHoldTheirNodes) {
   ASSERT_EQ(world->bones.size(), 3u);
   EXPECT_EQ(world->bones[0].name, "limb upper");
   EXPECT_EQ(world->state.layout().border_size(), 0);
-  EXPECT_EQ(world->bones[1].dofs.size(), 3u * 6u) << "nodes 1 cm apart on 6 cm, from half a step behind the head";
+  EXPECT_EQ(world->bones[1].dofs.size(), 3u * 6u)
+      << "nodes 1 cm apart on 6 cm, from half a step behind the head";
   const Points before = world->positions(world->bodies[0]);
   ASSERT_TRUE(loop::run(*world, {}).status.ok());
   const Points after = world->positions(world->bodies[0]);
@@ -124,17 +133,24 @@ TEST(Skeleton, WeldedBonesHoldTheirNodes) {
   double flesh = 0.0;
   for (Eigen::Index n = 0; n < after.cols(); ++n) {
     const double moved = (after.col(n) - before.col(n)).norm();
-    if (owner[static_cast<std::size_t>(world->bodies[0].file_node[static_cast<std::size_t>(n)])] >= 0) EXPECT_LT(moved, 1e-15);
-    else flesh = std::max(flesh, moved);
+    if (owner[static_cast<std::size_t>(world->bodies[0].file_node[static_cast<std::size_t>(n)])] >= 0)
+      EXPECT_LT(moved, 1e-15);
+    else
+      flesh = std::max(flesh, moved);
   }
   EXPECT_GT(flesh, 1e-4) << "and the flesh sags on them";
 }
 
-// Path, twist and acceleration of a chain of scripts are derivatives of one another; the joint stays together; turns are in the body's own axes.
+// Path, twist and acceleration of a chain of scripts are derivatives of one another; the joint stays
+// together; turns are in the body's own axes.
 TEST(Skeleton, AChainOfScriptsMovesAsItsDerivativesSay) {
-  loop::ToldJoint first{{quaternion_of(Vec3(0.1, 0.2, -0.3)), Vec3(0.3, 0.1, 0.2)}, Vec3(0.25, 0.1, 0.2), quaternion_of(Vec3(0.4, 0.0, 0.2)), {}};
+  loop::ToldJoint first{{quaternion_of(Vec3(0.1, 0.2, -0.3)), Vec3(0.3, 0.1, 0.2)},
+                        Vec3(0.25, 0.1, 0.2),
+                        quaternion_of(Vec3(0.4, 0.0, 0.2)),
+                        {}};
   first.keyframes = scripted("a", Vec3(0.9, -0.5, 0.3), Vec3(0.02, 0.01, -0.03)).keyframes;
-  loop::ToldJoint second{{quaternion_of(Vec3(-0.3, 0.1, 0.2)), Vec3(0.5, 0.2, 0.1)}, Vec3(0.4, 0.15, 0.15), first.axes, {}};
+  loop::ToldJoint second{
+      {quaternion_of(Vec3(-0.3, 0.1, 0.2)), Vec3(0.5, 0.2, 0.1)}, Vec3(0.4, 0.15, 0.15), first.axes, {}};
   second.keyframes = scripted("b", Vec3(-0.4, 0.8, 0.6)).keyframes;
   const fem::Path upper = loop::told_path(first, {}, {}), lower = loop::told_path(second, upper, first.start);
   EXPECT_LT(pose_difference(lower(0.0).pose, second.start).norm(), 1e-15);
@@ -144,14 +160,21 @@ TEST(Skeleton, AChainOfScriptsMovesAsItsDerivativesSay) {
       const fem::PathPoint at = path(t), before = path(t - e), after = path(t + e);
       const Vec6 rate = pose_difference(before.pose, after.pose) / (2.0 * e);
       EXPECT_LT((rate.head<3>() - at.twist.angular).norm() + (rate.tail<3>() - at.twist.linear).norm(), 3e-5);
-      EXPECT_LT(((after.twist.angular - before.twist.angular) / (2.0 * e) - at.acceleration.angular).norm(), 3e-3);
-      EXPECT_LT(((after.twist.linear - before.twist.linear) / (2.0 * e) - at.acceleration.linear).norm(), 3e-3);
+      EXPECT_LT(((after.twist.angular - before.twist.angular) / (2.0 * e) - at.acceleration.angular).norm(),
+                3e-3);
+      EXPECT_LT(((after.twist.linear - before.twist.linear) / (2.0 * e) - at.acceleration.linear).norm(),
+                3e-3);
       EXPECT_GT(at.acceleration.linear.norm(), 1.0);
     }
   const fem::PathPoint u = upper(0.05), l = lower(0.05);
-  EXPECT_LT(((u.pose * (first.start.inverse() * second.position)) - (l.pose * (second.start.inverse() * second.position))).norm(), 1e-15) << "no shift: the joint holds";
+  EXPECT_LT(((u.pose * (first.start.inverse() * second.position)) -
+             (l.pose * (second.start.inverse() * second.position)))
+                .norm(),
+            1e-15)
+      << "no shift: the joint holds";
   const Quat turned = first.axes * quaternion_of(Vec3(0.9, -0.5, 0.3)) * first.axes.conjugate();
-  EXPECT_LT(rotation_vector(upper(0.1).pose.rotation * (turned * first.start.rotation).conjugate()).norm(), 1e-14);
+  EXPECT_LT(rotation_vector(upper(0.1).pose.rotation * (turned * first.start.rotation).conjugate()).norm(),
+            1e-14);
 }
 
 TEST(Skeleton, AScriptTakesTheFleshAlong) {
@@ -163,9 +186,11 @@ TEST(Skeleton, AScriptTakesTheFleshAlong) {
   const Vec3 before = world->bone_pose(world->bones[2]).translation;
   ASSERT_TRUE(loop::run(*world, {}).status.ok());
   const Vec3 after = world->bone_pose(world->bones[2]).translation;
-  const Vec3 joint = quaternion_of(d.bodies[0].rotation_vector_rad) * Vec3(-0.035, 0, 0) + d.bodies[0].position_m;
+  const Vec3 joint =
+      quaternion_of(d.bodies[0].rotation_vector_rad) * Vec3(-0.035, 0, 0) + d.bodies[0].position_m;
   EXPECT_NEAR((after - joint).norm(), (before - joint).norm(), 1e-14);
-  EXPECT_NEAR((after - before).norm(), 2.0 * std::sin(0.25) * (before - joint).norm(), 1e-12) << "the hand goes with what it hangs on";
+  EXPECT_NEAR((after - before).norm(), 2.0 * std::sin(0.25) * (before - joint).norm(), 1e-12)
+      << "the hand goes with what it hangs on";
 }
 
 #ifdef PALPATE_HAS_TOOL
@@ -194,7 +219,8 @@ TEST(Skeleton, BonesOnJointsAreOneBlockAndCarryTheirNodes) {
   EXPECT_EQ(loop::assemble(d)->state.layout().border_size(), 6 + 3 + 1);
 }
 
-// Under its weight, held by the upper bone: nodes go with their bones, joints hold, the hand hangs lower than what it hangs on.
+// Under its weight, held by the upper bone: nodes go with their bones, joints hold, the hand hangs lower than
+// what it hangs on.
 TEST(Skeleton, ALimbOnJointsHangsFromItsRoot) {
   const ModelOnDisk file;
   for (const char* name : {"linearly-implicit-euler", "implicit-midpoint", "cvode-bdf"}) {
@@ -211,10 +237,13 @@ TEST(Skeleton, ALimbOnJointsHangsFromItsRoot) {
     const Points after = world->positions(world->bodies[0]);
     for (std::size_t b = 0; b < start.size(); ++b)
       for (const int dof : world->bones[b].dofs) {
-        const Vec3 then = start[b].inverse() * Vec3(before.col(dof / 3)), now = world->bone_pose(world->bones[b]).inverse() * Vec3(after.col(dof / 3));
+        const Vec3 then = start[b].inverse() * Vec3(before.col(dof / 3)),
+                   now = world->bone_pose(world->bones[b]).inverse() * Vec3(after.col(dof / 3));
         EXPECT_LT((now - then).norm(), 1e-12) << name << ", bone " << b;
       }
-    const double fall = world->bone_pose(world->bones[2]).translation.z() - (d.bodies[0].position_m + quaternion_of(d.bodies[0].rotation_vector_rad) * Vec3(0.07, 0, 0)).z();
+    const double fall =
+        world->bone_pose(world->bones[2]).translation.z() -
+        (d.bodies[0].position_m + quaternion_of(d.bodies[0].rotation_vector_rad) * Vec3(0.07, 0, 0)).z();
     EXPECT_LT(fall, -5e-3) << name;
   }
 }
@@ -222,7 +251,8 @@ TEST(Skeleton, ALimbOnJointsHangsFromItsRoot) {
 // Nothing holds it and nothing pulls: momentum stays.
 TEST(Skeleton, AFreeLimbKeepsItsMomentum) {
   const ModelOnDisk file;
-  for (const auto& [name, step, bar] : {std::tuple{"implicit-midpoint", 0.002, 1e-4}, {"cvode-bdf", 0.002, 1e-4}}) {
+  for (const auto& [name, step, bar] :
+       {std::tuple{"implicit-midpoint", 0.002, 1e-4}, {"cvode-bdf", 0.002, 1e-4}}) {
     scene::Description d = jointed(file, "free");
     d.bodies[0].youngs_modulus_pa = 500.0;
     d.bodies[0].velocity_m_s = Vec3(0.3, -0.2, 0.1);
@@ -233,7 +263,8 @@ TEST(Skeleton, AFreeLimbKeepsItsMomentum) {
     const auto world = loop::assemble(d);
     VecX inertia(9);
     for (int b = 0; b < 3; ++b) {
-      const fem::TaperedBone shape = fem::tapered_bone(world->bodies[0].skeleton.bones[static_cast<std::size_t>(b)]);
+      const fem::TaperedBone shape =
+          fem::tapered_bone(world->bodies[0].skeleton.bones[static_cast<std::size_t>(b)]);
       inertia.segment<3>(3 * b) = 800.0 * shape.volume * shape.unit_moments;
     }
     const Vec6 before = momentum(*world, inertia);
@@ -241,7 +272,8 @@ TEST(Skeleton, AFreeLimbKeepsItsMomentum) {
     const Vec6 change = momentum(*world, inertia) - before;
     EXPECT_LT(change.head<3>().norm(), bar * before.head<3>().norm()) << name;
     EXPECT_LT(change.tail<3>().norm(), bar * before.tail<3>().norm()) << name;
-    const Quat turned = world->bone_pose(world->bones[2]).rotation * world->bone_pose(world->bones[0]).rotation.conjugate();
+    const Quat turned =
+        world->bone_pose(world->bones[2]).rotation * world->bone_pose(world->bones[0]).rotation.conjugate();
     EXPECT_GT(rotation_vector(turned).norm(), 5e-3) << "it bends while it tumbles: the joints take part";
   }
 }
@@ -272,19 +304,25 @@ TEST(Skeleton, RefusesWhatCannotHang) {
   const ModelOnDisk file;
   scene::Description d = jointed(file);
   d.bodies[0].skeleton->density_kg_m3 = 0.0;
-  EXPECT_NE(refusal(d).find("density_kg_m3 is missing: \"lower\" moves freely"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("density_kg_m3 is missing: \"lower\" moves freely"), std::string::npos)
+      << refusal(d);
   d = jointed(file);
   d.bodies[0].skeleton->joints.push_back(joint_of("hnad", "weld"));
-  EXPECT_NE(refusal(d).find("has no bone \"hnad\" (did you mean \"hand\"?)"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("has no bone \"hnad\" (did you mean \"hand\"?)"), std::string::npos)
+      << refusal(d);
   d = jointed(file);
   d.bodies[0].skeleton->joints.push_back(scripted("hand", Vec3(0, 0, 1)));
-  EXPECT_NE(refusal(d).find("has keyframes, but \"lower\", which it hangs on, moves freely"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("has keyframes, but \"lower\", which it hangs on, moves freely"),
+            std::string::npos)
+      << refusal(d);
   d = jointed(file);
   d.bodies[0].skeleton->joints.push_back(scripted("upper", Vec3(0, 0, 1)));
-  EXPECT_NE(refusal(d).find("cannot hang on \"upper\", which moves by keyframes"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("cannot hang on \"upper\", which moves by keyframes"), std::string::npos)
+      << refusal(d);
   d = jointed(file);
   d.bodies[0].skeleton->joints.push_back(joint_of("hand", "free"));
-  EXPECT_NE(refusal(d).find("type = \"free\" is for a bone without a parent"), std::string::npos) << refusal(d);
+  EXPECT_NE(refusal(d).find("type = \"free\" is for a bone without a parent"), std::string::npos)
+      << refusal(d);
 }
 
 #endif

@@ -20,9 +20,14 @@ namespace {
 using namespace palpate;
 using small_scenes::held_block;
 
-std::string temporary(const std::string& name) { return (std::filesystem::temp_directory_path() / ("palpate_skin_test_" + std::to_string(getpid()) + "_" + name)).string(); }
+std::string temporary(const std::string& name) {
+  return (std::filesystem::temp_directory_path() /
+          ("palpate_skin_test_" + std::to_string(getpid()) + "_" + name))
+      .string();
+}
 
-/// The block of small_scenes.h as a model, with its own boundary as its skin, cut finer: the same shape with many more points.
+/// The block of small_scenes.h as a model, with its own boundary as its skin, cut finer: the same shape with
+/// many more points.
 LayeredModel block_model(bool with_skin) {
   LayeredModel model;
   model.name = "block";
@@ -35,7 +40,10 @@ LayeredModel block_model(bool with_skin) {
 
 struct ModelOnDisk {
   std::string path;
-  explicit ModelOnDisk(const LayeredModel& model, const std::string& name = "block.h5") : path(temporary(name)) { store::write_model(path, {model, {}}); }
+  explicit ModelOnDisk(const LayeredModel& model, const std::string& name = "block.h5")
+      : path(temporary(name)) {
+    store::write_model(path, {model, {}});
+  }
   ~ModelOnDisk() { std::filesystem::remove(path); }
 };
 
@@ -88,9 +96,10 @@ TEST(Skin, OnlyASceneThatNamesItHasOne) {
   EXPECT_GT(skinned->bodies[0].surface_faces().cols(), 10 * plain->bodies[0].surface_faces().cols());
 }
 
-// The skin lies in the block's flat faces, so both see the same body; the skin's 0.6 mm find the dent of radius 4.9 mm that the nodes' 10 mm miss.
-// The force is k times the overlap's volume, pi d^2 (3R - d)/3, but that depth, area and force are taken along the ball's normal: a factor cos^3 of its angle,
-// 1 - 3/2 <r^2>/R^2 with the depth as weight, <r^2> = a^2/3 = 2 R d/3.  So 1 - d/R.
+// The skin lies in the block's flat faces, so both see the same body; the skin's 0.6 mm find the dent of
+// radius 4.9 mm that the nodes' 10 mm miss. The force is k times the overlap's volume, pi d^2 (3R - d)/3, but
+// that depth, area and force are taken along the ball's normal: a factor cos^3 of its angle, 1 - 3/2
+// <r^2>/R^2 with the depth as weight, <r^2> = a^2/3 = 2 R d/3.  So 1 - d/R.
 TEST(Skin, FindsWhatLiesBetweenTheNodes) {
   const ModelOnDisk file(block_model(true));
   constexpr double d = 0.0008, R = 0.015, exact = 1e7 * M_PI * d * d * (3.0 * R - d) / 3.0 * (1.0 - d / R);
@@ -104,7 +113,8 @@ TEST(Skin, CarriesTheContactThroughARun) {
   d.duration_s = 0.2;
   const auto world = loop::assemble(d);
   EXPECT_TRUE(loop::run(*world, {}).status.ok());
-  const double deepest = world->bodies[0].surface_points(world->positions(world->bodies[0])).row(2).minCoeff();
+  const double deepest =
+      world->bodies[0].surface_points(world->positions(world->bodies[0])).row(2).minCoeff();
   EXPECT_GT(deepest, -1e-9) << "nothing went through the floor";
   int pressed = 0;
   for (const contact::ContactSample& sample : world->contact->samples()) pressed += sample.gap < 0.0;
@@ -129,7 +139,8 @@ void expect_refused(const scene::Description& d, const std::vector<std::string>&
     loop::assemble(d);
     ADD_FAILURE() << "not refused";
   } catch (const Error& e) {
-    for (const std::string& word : words) EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
+    for (const std::string& word : words)
+      EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
   }
 }
 
@@ -144,7 +155,8 @@ TEST(Skin, RegionsOfItsModelAct) {
   const ModelOnDisk file(stiff, "stiff.h5");
   const auto world = loop::assemble(block_from(file.path, true));
   ASSERT_EQ(world->bodies[0].term->materials().size(), 2u);
-  EXPECT_DOUBLE_EQ(world->bodies[0].term->materials()[1].youngs_modulus, 10.0 * world->bodies[0].term->materials()[0].youngs_modulus);
+  EXPECT_DOUBLE_EQ(world->bodies[0].term->materials()[1].youngs_modulus,
+                   10.0 * world->bodies[0].term->materials()[0].youngs_modulus);
 }
 
 }  // namespace

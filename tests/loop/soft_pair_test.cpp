@@ -36,19 +36,24 @@ Vec3 force_on_first(const loop::World& world) {
   Vec3 sum = Vec3::Zero();
   for (const auto& s : world.contact->samples()) {
     Vec3 apart = Vec3::Zero();
-    for (int i = 0; i < s.a.count; ++i) apart += s.a.weight[static_cast<std::size_t>(i)] * world.state.view().position(s.a.node[static_cast<std::size_t>(i)]);
-    for (int i = 0; i < s.b.count; ++i) apart -= s.b.weight[static_cast<std::size_t>(i)] * world.state.view().position(s.b.node[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < s.a.count; ++i)
+      apart += s.a.weight[static_cast<std::size_t>(i)] *
+               world.state.view().position(s.a.node[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < s.b.count; ++i)
+      apart -= s.b.weight[static_cast<std::size_t>(i)] *
+               world.state.view().position(s.b.node[static_cast<std::size_t>(i)]);
     sum += kStiffness * std::max(0.0, -s.normal.dot(apart)) * s.area * s.normal;
   }
   return sum;
 }
 
-// Outer faces held, pressed into each other by d: two bars of stiffness E A / L and the contact k A in a row (nu = 0: no lateral strain, so that the uniform stress of
-// a bar solves the block),
+// Outer faces held, pressed into each other by d: two bars of stiffness E A / L and the contact k A in a row
+// (nu = 0: no lateral strain, so that the uniform stress of a bar solves the block),
 //   F = d / (2 L / (E A) + 1 / (k A)),
 // which is one block of length 2 L compressed by what the contact leaves of d.
 TEST(SoftPair, PressedTogetherTheyAreOneBlock) {
-  constexpr double d = 1e-3, area = kWidth * kWidth, exact = d / (2 * kLength / (kYoung * area) + 1 / (kStiffness * area));
+  constexpr double d = 1e-3, area = kWidth * kWidth,
+                   exact = d / (2 * kLength / (kYoung * area) + 1 / (kStiffness * area));
   scene::Description description = two_blocks(-d);
   description.duration_s = 0.8;
   const auto world = loop::assemble(description);
@@ -57,7 +62,8 @@ TEST(SoftPair, PressedTogetherTheyAreOneBlock) {
   EXPECT_NEAR(-force.z() / exact, 1.0, 0.005);
   EXPECT_LT(force.head<2>().norm(), 1e-6 * exact);
   // Symmetric about the middle plane: each face gives way by F L / (E A).
-  const double lower = world->positions(world->bodies[0]).row(2).maxCoeff(), upper = world->positions(world->bodies[1]).row(2).minCoeff();
+  const double lower = world->positions(world->bodies[0]).row(2).maxCoeff(),
+               upper = world->positions(world->bodies[1]).row(2).minCoeff();
   EXPECT_NEAR(kLength - lower, exact * kLength / (kYoung * area), 0.01 * d);
   EXPECT_NEAR(upper - (kLength - d), exact * kLength / (kYoung * area), 0.01 * d);
   EXPECT_NEAR(lower - upper, exact / (kStiffness * area), 0.01 * d);
@@ -75,7 +81,8 @@ TEST(SoftPair, ACollisionKeepsMomentum) {
   const auto momentum = [&](std::size_t body) {
     Vec3 sum = Vec3::Zero();
     const auto& block = *world->state.layout().find(world->bodies[body].block_id);
-    for (Eigen::Index i = 0; i < world->bodies[body].masses.size(); ++i) sum += world->bodies[body].masses[i] * world->state.u().segment<3>(block.u_offset + 3 * i);
+    for (Eigen::Index i = 0; i < world->bodies[body].masses.size(); ++i)
+      sum += world->bodies[body].masses[i] * world->state.u().segment<3>(block.u_offset + 3 * i);
     return sum;
   };
   const Vec3 before = momentum(0) + momentum(1);
@@ -90,9 +97,7 @@ TEST(SoftPair, RefusesWhatItCannotDo) {
   const auto refusal = [](const scene::Description& d) {
     try {
       loop::assemble(d);
-    } catch (const Error& e) {
-      return std::string(e.what());
-    }
+    } catch (const Error& e) { return std::string(e.what()); }
     return std::string();
   };
   scene::Description d = two_blocks(0.0);

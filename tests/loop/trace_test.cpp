@@ -19,16 +19,19 @@ namespace {
 
 constexpr int kWorstNode = 40;  // as numbered in the state
 
-/// Steps of 1 ms that change nothing; before each, one attempt of 4 ms that fails its error test at node kWorstNode, axis y.
+/// Steps of 1 ms that change nothing; before each, one attempt of 4 ms that fails its error test at node
+/// kWorstNode, axis y.
 class FakeStepper final : public dynamics::Stepper {
  public:
-  FakeStepper(dynamics::State& state, std::atomic<bool>* raise, int raise_after) : state_(state), raise_(raise), raise_after_(raise_after) {}
+  FakeStepper(dynamics::State& state, std::atomic<bool>* raise, int raise_after)
+      : state_(state), raise_(raise), raise_after_(raise_after) {}
   std::string name() const override { return "fake"; }
   dynamics::StepResult advance_to(double t_end) override {
     dynamics::StepResult result;
     while (state_.time() < t_end - 1e-12) {
       if (trace()) {
-        trace()->attempt({state_.time(), 4e-3, 3, 7.5, 2, StepAttempt::Outcome::kErrorTest, 3 * kWorstNode + 1, 4, "block"});
+        trace()->attempt({state_.time(), 4e-3, 3, 7.5, 2, StepAttempt::Outcome::kErrorTest,
+                          3 * kWorstNode + 1, 4, "block"});
         trace()->attempt({state_.time(), 1e-3, 3, 0.5, 2, StepAttempt::Outcome::kAccepted, 0, -1, ""});
       }
       state_.set_time(state_.time() + 1e-3);
@@ -60,7 +63,8 @@ std::unique_ptr<loop::World> faked(std::atomic<bool>* raise = nullptr, int raise
 }
 
 TEST(Trace, WritesEveryAttemptWithItsReasonAndPlace) {
-  const auto path = std::filesystem::temp_directory_path() / ("palpate-trace-" + std::to_string(getpid()) + ".csv");
+  const auto path =
+      std::filesystem::temp_directory_path() / ("palpate-trace-" + std::to_string(getpid()) + ".csv");
   const auto world = faked();
   {
     loop::TraceRecorder trace(*world, path.string());
@@ -77,14 +81,18 @@ TEST(Trace, WritesEveryAttemptWithItsReasonAndPlace) {
   ASSERT_EQ(table.rows.size(), 10u);
   const std::vector<int>& file_node = world->bodies[0].file_node;
   EXPECT_NE(file_node[kWorstNode], kWorstNode);  // or it would not tell whose number is written
-  EXPECT_EQ(table.rows[0], (std::vector<std::string>{"0", "0.004", "3", "7.5", "2", "error test", "block", std::to_string(file_node[kWorstNode]), "y", "block", "4"}));
-  EXPECT_EQ(table.rows[1], (std::vector<std::string>{"0", "0.001", "3", "0.5", "2", "accepted", "block", std::to_string(file_node[0]), "x", "", ""}));
+  EXPECT_EQ(table.rows[0],
+            (std::vector<std::string>{"0", "0.004", "3", "7.5", "2", "error test", "block",
+                                      std::to_string(file_node[kWorstNode]), "y", "block", "4"}));
+  EXPECT_EQ(table.rows[1], (std::vector<std::string>{"0", "0.001", "3", "0.5", "2", "accepted", "block",
+                                                     std::to_string(file_node[0]), "x", "", ""}));
   std::filesystem::remove(path);
 }
 
 TEST(Trace, NamesDirectionsOfBodiesAndTools) {
   dynamics::State state;
-  dynamics::BlockSpec body{"liver", dynamics::BlockKind::kNodes, 6, 6}, tool{"probe", dynamics::BlockKind::kRigidBody, 7, 6};
+  dynamics::BlockSpec body{"liver", dynamics::BlockKind::kNodes, 6, 6},
+      tool{"probe", dynamics::BlockKind::kRigidBody, 7, 6};
   tool.kinematics = dynamics::free_body_kinematics();
   state.insert(body, VecX::Zero(6), VecX::Zero(6));
   state.insert(tool, (VecX(7) << 1, 0, 0, 0, 0, 0, 0).finished(), VecX::Zero(6));

@@ -27,14 +27,18 @@ TEST(Boundary, LeavesOutInteriorNodesAndNamesEachFacesTetrahedron) {
     int shared = 0;
     Vec3 centre = Vec3::Zero(), normal_at = Vec3::Zero();
     for (int k = 0; k < 3; ++k) {
-      const int node = b.node_of_vertex[static_cast<std::size_t>(b.surface.faces(k, static_cast<Eigen::Index>(f)))];
+      const int node =
+          b.node_of_vertex[static_cast<std::size_t>(b.surface.faces(k, static_cast<Eigen::Index>(f)))];
       normal_at += mesh.nodes.col(node) / 3;
       for (int j = 0; j < 4; ++j) shared += mesh.tets(j, b.tet_of_face[f]) == node;
     }
     for (int j = 0; j < 4; ++j) centre += mesh.nodes.col(mesh.tets(j, b.tet_of_face[f])) / 4;
     EXPECT_EQ(shared, 3);
-    const auto v = [&](int k) -> Vec3 { return b.surface.vertices.col(b.surface.faces(k, static_cast<Eigen::Index>(f))); };
-    EXPECT_GT((v(1) - v(0)).cross(v(2) - v(0)).dot(normal_at - centre), 0) << "face " << f << " looks inwards";
+    const auto v = [&](int k) -> Vec3 {
+      return b.surface.vertices.col(b.surface.faces(k, static_cast<Eigen::Index>(f)));
+    };
+    EXPECT_GT((v(1) - v(0)).cross(v(2) - v(0)).dot(normal_at - centre), 0)
+        << "face " << f << " looks inwards";
   }
 }
 
@@ -57,7 +61,8 @@ TEST(Quality, DihedralAnglesOfKnownTetrahedra) {
 
   // Along the legs of the unit corner the faces are perpendicular; along the others, acos(1/sqrt 3).
   const auto corner = dihedral_angles(corner_tet({1, 1, 1}), 0);
-  for (std::size_t e = 0; e < 6; ++e) EXPECT_NEAR(corner[e], kTetEdges[e][0] == 0 ? 90 * degree : std::acos(1 / std::sqrt(3.0)), 1e-15) << e;
+  for (std::size_t e = 0; e < 6; ++e)
+    EXPECT_NEAR(corner[e], kTetEdges[e][0] == 0 ? 90 * degree : std::acos(1 / std::sqrt(3.0)), 1e-15) << e;
 
   // A sliver: its four nodes almost in a plane, small angles keep their relative accuracy.
   TetMesh sliver = corner_tet({1, 1, 1});

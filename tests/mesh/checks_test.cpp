@@ -74,7 +74,8 @@ TEST(TetChecks, RefuseWhatNoSimulationCanUse) {
   expect_contains(refusal(bad), "here: node 4 (one of 1) belongs to no tetrahedron");
 }
 
-// 6 sqrt 2 V / edge^3 with V = lift/3 and edge = 2 for the square sliver of helpers: 2.1 lift for a square of diagonal 2 and half-height lift.
+// 6 sqrt 2 V / edge^3 with V = lift/3 and edge = 2 for the square sliver of helpers: 2.1 lift for a square of
+// diagonal 2 and half-height lift.
 TEST(TetChecks, KeepSliversAndRefuseOnlyWhatRoundingCannotTell) {
   const auto sliver = [](double lift, double offset) {
     TetMesh mesh = corner_tet({1, 1, 1});
@@ -123,7 +124,8 @@ TEST(SurfaceChecks, RefuseOpenCrowdedDegenerateDuplicateAndUnreferenced) {
   expect_contains(refusal(bad), "belongs to no other face: the surface is not closed there");
 
   bad = good;
-  bad.vertices.col(bad.faces(0, 0)) = 0.5 * (bad.vertices.col(bad.faces(1, 0)) + bad.vertices.col(bad.faces(2, 0)));
+  bad.vertices.col(bad.faces(0, 0)) =
+      0.5 * (bad.vertices.col(bad.faces(1, 0)) + bad.vertices.col(bad.faces(2, 0)));
   expect_contains(refusal(bad), "here: face 0 is degenerate: area = 0 m^2");
 
   bad = both(good, good);
@@ -139,7 +141,8 @@ TEST(SurfaceChecks, RefuseOpenCrowdedDegenerateDuplicateAndUnreferenced) {
 
 TEST(SurfaceChecks, RefuseAShellWithoutVolume) {
   TriMesh flat = box_surface({1, 1, 1}, {3, 3, 1});
-  for (Eigen::Index v = 0; v < flat.vertices.cols(); ++v) {  // pressed flat, the vertical sides folded outwards
+  // pressed flat, the vertical sides folded outwards
+  for (Eigen::Index v = 0; v < flat.vertices.cols(); ++v) {
     flat.vertices.col(v).head<2>() *= flat.vertices(2, v) > 0 ? 1.0 : 1.3;
     flat.vertices(2, v) = 0;
   }

@@ -35,8 +35,8 @@ class Random {
   std::mt19937 engine_;
 };
 
-/// Distance to the hull of four points by trying all 15 of its faces, edges, corners and itself: the nearest point of the affine space of one of them
-/// that lies inside it.  Another way than the code's.
+/// Distance to the hull of four points by trying all 15 of its faces, edges, corners and itself: the nearest
+/// point of the affine space of one of them that lies inside it.  Another way than the code's.
 double brute_distance(const TetMesh& mesh, int tet, const Vec3& p) {
   double least = std::numeric_limits<double>::infinity();
   for (int mask = 1; mask < 16; ++mask) {
@@ -57,13 +57,16 @@ double weight_sum(const TetMesh& mesh, int tet, const Vec3& p) {
   Eigen::Matrix4d places;
   places.row(3).setOnes();
   for (int k = 0; k < 4; ++k) places.col(k).head<3>() = mesh.nodes.col(mesh.tets(k, tet));
-  return Eigen::Vector4d(places.partialPivLu().solve(Eigen::Vector4d(p.x(), p.y(), p.z(), 1.0))).cwiseAbs().sum();
+  return Eigen::Vector4d(places.partialPivLu().solve(Eigen::Vector4d(p.x(), p.y(), p.z(), 1.0)))
+      .cwiseAbs()
+      .sum();
 }
 
 }  // namespace
 
 TEST(Embedding, NearestTetrahedraAreThoseOfBruteForce) {
-  const TetMesh meshes[] = {mesh::perturbed(mesh::ball(0.8, 0.3), 0.2, 5), mesh::perturbed(mesh::box(Vec3(1, 1.5, 0.7), {4, 5, 3}), 0.2, 6)};
+  const TetMesh meshes[] = {mesh::perturbed(mesh::ball(0.8, 0.3), 0.2, 5),
+                            mesh::perturbed(mesh::box(Vec3(1, 1.5, 0.7), {4, 5, 3}), 0.2, 6)};
   Random random(7);
   int held = 0, outside = 0, farther = 0;
   for (const TetMesh& mesh : meshes) {
@@ -73,23 +76,23 @@ TEST(Embedding, NearestTetrahedraAreThoseOfBruteForce) {
       try {
         const auto one = mesh::embed(mesh, points.col(i), &report);
         double least = std::numeric_limits<double>::infinity();
-        for (int t = 0; t < mesh.tets.cols(); ++t) least = std::min(least, brute_distance(mesh, t, points.col(i)));
+        for (int t = 0; t < mesh.tets.cols(); ++t)
+          least = std::min(least, brute_distance(mesh, t, points.col(i)));
         const double taken = brute_distance(mesh, one.tet[0], points.col(i));
         if (taken > least + 3e-9) {  // a better one nearly as near
           ++farther;
           EXPECT_LE(taken, 1.25 * least + 3e-9) << i;
           double of_nearest = std::numeric_limits<double>::infinity();
           for (int t = 0; t < mesh.tets.cols(); ++t)
-            if (brute_distance(mesh, t, points.col(i)) < least + 3e-9) of_nearest = std::min(of_nearest, weight_sum(mesh, t, points.col(i)));
+            if (brute_distance(mesh, t, points.col(i)) < least + 3e-9)
+              of_nearest = std::min(of_nearest, weight_sum(mesh, t, points.col(i)));
           EXPECT_GT(of_nearest, 3.0) << i;
           EXPECT_LT(one.weights.col(0).cwiseAbs().sum(), 0.9 * of_nearest) << i;
         }
         if (least > 1e-8) { EXPECT_NEAR(report.largest_distance, least, 1e-9); }
         EXPECT_EQ(report.outside, least > 1e-8 ? 1 : 0);
         ++(report.outside ? outside : held);
-      } catch (const Error& e) {
-        expect_contains(e.what(), "skin vertex 0 at");
-      }
+      } catch (const Error& e) { expect_contains(e.what(), "skin vertex 0 at"); }
     }
   }
   EXPECT_GT(held, 150);
@@ -107,8 +110,8 @@ TEST(Embedding, WeightsSumToOneAndGiveThePointBack) {
   mesh::evaluate(embedding, mesh.tets, mesh.nodes, back);
   EXPECT_LT((back - skin.vertices).cwiseAbs().maxCoeff(), 1e-13);
   EXPECT_EQ(report.outside, skin.vertices.cols());
-  // boundary nodes lie on the unit sphere, 0.02 below the skin; the middle of a face whose corners lie on a circle of radius c <= h / sqrt(3) of the
-  // sphere (nearly equilateral) lies 1 - sqrt(1 - c^2) deeper
+  // boundary nodes lie on the unit sphere, 0.02 below the skin; the middle of a face whose corners lie on a
+  // circle of radius c <= h / sqrt(3) of the sphere (nearly equilateral) lies 1 - sqrt(1 - c^2) deeper
   EXPECT_GE(report.largest_distance, 0.02);
   EXPECT_LT(report.largest_distance, 1.02 - std::sqrt(1 - std::pow(mesh::measure(mesh).largest_edge, 2) / 3));
   EXPECT_GT(report.largest_weight_sum, 1.0);
@@ -137,7 +140,8 @@ TEST(Embedding, ForcesKeepWorkResultantAndMoment) {
   const TriMesh skin = mesh::sphere(1.05, 20);
   const auto embedding = mesh::embed(mesh, skin.vertices);
   Random random(10);
-  const Points nodes = mesh.nodes + random.points(static_cast<int>(mesh.nodes.cols()), 0.3), moved = random.points(static_cast<int>(mesh.nodes.cols()), 1.0);
+  const Points nodes = mesh.nodes + random.points(static_cast<int>(mesh.nodes.cols()), 0.3),
+               moved = random.points(static_cast<int>(mesh.nodes.cols()), 1.0);
   const Points f = random.points(static_cast<int>(skin.vertices.cols()), 1.0);
   Points points, step, node_f = Points::Zero(3, mesh.nodes.cols());
   mesh::evaluate(embedding, mesh.tets, nodes, points);
@@ -151,13 +155,15 @@ TEST(Embedding, ForcesKeepWorkResultantAndMoment) {
   EXPECT_LT(moment.norm(), 1e-11);
 }
 
-// A point on a common face, edge or node has several tetrahedra; the first is taken, whatever stood before it in the list.
+// A point on a common face, edge or node has several tetrahedra; the first is taken, whatever stood before it
+// in the list.
 TEST(Embedding, TiesGoToTheFirstInAnyOrder) {
   const TetMesh mesh = mesh::box(Vec3(1, 1, 1), {3, 3, 3});
   std::vector<Vec3> shared;
   for (int t = 0; t < mesh.tets.cols(); t += 7)
     for (const auto& face : mesh::kTetFaces) {
-      const Vec3 a = mesh.nodes.col(mesh.tets(face[0], t)), b = mesh.nodes.col(mesh.tets(face[1], t)), c = mesh.nodes.col(mesh.tets(face[2], t));
+      const Vec3 a = mesh.nodes.col(mesh.tets(face[0], t)), b = mesh.nodes.col(mesh.tets(face[1], t)),
+                 c = mesh.nodes.col(mesh.tets(face[2], t));
       shared.insert(shared.end(), {a, 0.5 * (a + b), (a + b + c) / 3.0, 0.3 * a + 0.3 * b + 0.4 * c});
     }
   Points points(3, static_cast<Eigen::Index>(shared.size()));
@@ -178,7 +184,8 @@ TEST(Embedding, TiesGoToTheFirstInAnyOrder) {
   std::iota(order.begin(), order.end(), 0);
   std::shuffle(order.begin(), order.end(), Random(11).engine());
   const auto shuffled = mesh::embed(mesh, Points(points(Eigen::all, order)));
-  for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(shuffled.tet[i], embedding.tet[static_cast<std::size_t>(order[i])]);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    EXPECT_EQ(shuffled.tet[i], embedding.tet[static_cast<std::size_t>(order[i])]);
 }
 
 TEST(Embedding, AbsurdWeightsAreRefusedByName) {
@@ -193,14 +200,15 @@ TEST(Embedding, AbsurdWeightsAreRefusedByName) {
   mesh::embed(mesh, points, &report);
   EXPECT_EQ(report.farthest, 1);
   EXPECT_EQ(report.most_extrapolated, 1);
-  EXPECT_NEAR(report.largest_weight_sum, 2.6, 1e-12);                  // weights -0.8, 0.6, 0.6, 0.6
-  EXPECT_NEAR(report.largest_distance, 0.8 / std::sqrt(3.0), 1e-12);   // plane x + y + z = 1
+  EXPECT_NEAR(report.largest_weight_sum, 2.6, 1e-12);                 // weights -0.8, 0.6, 0.6, 0.6
+  EXPECT_NEAR(report.largest_distance, 0.8 / std::sqrt(3.0), 1e-12);  // plane x + y + z = 1
   points(0, 0) = std::numeric_limits<double>::quiet_NaN();
   expect_contains(error_of([&] { mesh::embed(mesh, points); }), "skin vertex 0 at (nan");
   expect_contains(error_of([&] { mesh::embed(TetMesh{}, points); }), "no tetrahedra");
 }
 
-// Area vectors of a closed surface cancel; areas of the vertices of a box's corner: of its three faces of two triangles each, one or two touch it.
+// Area vectors of a closed surface cancel; areas of the vertices of a box's corner: of its three faces of two
+// triangles each, one or two touch it.
 TEST(Embedding, NormalsAndAreas) {
   const TriMesh sphere = mesh::sphere(2.0, 30);
   Points normals, vectors;
@@ -210,7 +218,8 @@ TEST(Embedding, NormalsAndAreas) {
   EXPECT_LT(vectors.rowwise().sum().norm(), 1e-12);
   double area = 0.0;
   for (Eigen::Index f = 0; f < sphere.faces.cols(); ++f) {
-    const Vec3 a = sphere.vertices.col(sphere.faces(0, f)), b = sphere.vertices.col(sphere.faces(1, f)), c = sphere.vertices.col(sphere.faces(2, f));
+    const Vec3 a = sphere.vertices.col(sphere.faces(0, f)), b = sphere.vertices.col(sphere.faces(1, f)),
+               c = sphere.vertices.col(sphere.faces(2, f));
     area += 0.5 * (b - a).cross(c - a).norm();
   }
   EXPECT_NEAR(areas.sum(), area, 1e-10);
@@ -221,7 +230,8 @@ TEST(Embedding, NormalsAndAreas) {
     EXPECT_LT((vectors.col(v).normalized() - normals.col(v)).norm(), 1e-12);
     EXPECT_LE(vectors.col(v).norm(), areas[v] * (1 + 1e-12));
   }
-  // divergence theorem: sum of x . a over the vertices is three times the enclosed volume, up to the faces' own spread
+  // divergence theorem: sum of x . a over the vertices is three times the enclosed volume, up to the faces'
+  // own spread
   EXPECT_NEAR(sphere.vertices.cwiseProduct(vectors).sum() / 3.0, mesh::enclosed_volume(sphere), 1e-10);
 
   TriMesh folded;  // two faces back to back: their normals cancel, their areas do not

@@ -3,7 +3,8 @@
 
 #include "helpers.h"
 
-// Whatever a file holds, reading it ends in a mesh or in palpate::Error: any other exception fails the test, and the sanitizers see the rest.
+// Whatever a file holds, reading it ends in a mesh or in palpate::Error: any other exception fails the test,
+// and the sanitizers see the rest.
 namespace {
 
 struct Sample {
@@ -12,14 +13,20 @@ struct Sample {
 };
 
 const std::vector<Sample> kSamples = {
-    {"a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n$EndNodes\n$Elements\n3\n"
-              "1 2 2 0 1 1 2 3\n2 4 2 0 1 1 2 3 4\n3 4 2 0 1 2 3 4 5\n$EndElements\n"},
-    {"b.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n2 5 1 5\n2 1 1 2\n1\n2\n0 0 0 0 0\n1 0 0 1 0\n3 1 0 3\n3\n4\n5\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n"
-              "$Elements\n2 3 1 3\n2 1 2 1\n1 1 2 3\n3 1 4 2\n2 1 2 3 4\n3 2 3 4 5\n$EndElements\n"},
+    {"a.msh",
+     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 "
+     "1\n$EndNodes\n$Elements\n3\n"
+     "1 2 2 0 1 1 2 3\n2 4 2 0 1 1 2 3 4\n3 4 2 0 1 2 3 4 5\n$EndElements\n"},
+    {"b.msh",
+     "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n2 5 1 5\n2 1 1 2\n1\n2\n0 0 0 0 0\n1 0 0 1 0\n3 1 0 "
+     "3\n3\n4\n5\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n"
+     "$Elements\n2 3 1 3\n2 1 2 1\n1 1 2 3\n3 1 4 2\n2 1 2 3 4\n3 2 3 4 5\n$EndElements\n"},
     {"c.node", "5 3 1 1\n0 0 0 0 1 1\n1 1 0 0 1 1\n2 0 1 0 1 1\n3 0 0 1 1 1\n4 1 1 1 1 0 # last\n"},
     {"c.ele", "2 4 1\n0 0 1 2 3 9\n1 1 2 3 4 9\n"},
-    {"d.obj", "o cube\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nvn 0 0 1\nf 4 3 2 1\nf 5//1 6//1 7//1 8//1\nf 1 2 6 5\n"
-              "f -7 -6 -2 -3\nf 3 4 8 7\nf 4 1 5\nf 4 5 8\n"},
+    {"d.obj",
+     "o cube\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nvn 0 0 1\nf 4 3 2 1\nf "
+     "5//1 6//1 7//1 8//1\nf 1 2 6 5\n"
+     "f -7 -6 -2 -3\nf 3 4 8 7\nf 4 1 5\nf 4 5 8\n"},
 };
 
 /// Flips bytes, repeats or drops a piece, or cuts the end off.

@@ -89,7 +89,8 @@ TEST(Generators, EverySurfaceIsTheBoundaryOfTheTetrahedraOfItsName) {
         std::vector<std::array<int, 3>> out;
         for (Eigen::Index f = 0; f < faces.cols(); ++f) {
           std::array<int, 3> n = {faces(0, f), faces(1, f), faces(2, f)};
-          std::rotate(n.begin(), std::min_element(n.begin(), n.end()), n.end());  // keeps the sense of rotation
+          // keeps the sense of rotation
+          std::rotate(n.begin(), std::min_element(n.begin(), n.end()), n.end());
           out.push_back(n);
         }
         std::sort(out.begin(), out.end());
@@ -119,13 +120,16 @@ TEST(Generators, BoxHasItsVolumeCornersAndAngles) {
   const TetMesh cube = box({2, 2, 2}, {3, 3, 3});
   EXPECT_EQ(cube.nodes.rowwise().minCoeff(), Vec3(-1, -1, -1));
   EXPECT_EQ(cube.nodes.rowwise().maxCoeff(), Vec3(1, 1, 1));
-  EXPECT_NEAR(measure(cube).smallest_dihedral_deg, std::acos(1 / std::sqrt(3.0)) * 180 / kPi, 1e-10);  // between an edge-wise and the slanted face
+  // between an edge-wise and the slanted face
+  EXPECT_NEAR(measure(cube).smallest_dihedral_deg, std::acos(1 / std::sqrt(3.0)) * 180 / kPi, 1e-10);
 }
 
 TEST(Generators, GradedCellsGrowTowardsTheMiddleByTheGrading) {
   const TetMesh graded = box({1, 1, 1}, {40, 1, 1}, 4.0);
-  const double end = graded.nodes(0, 1) - graded.nodes(0, 0), middle = graded.nodes(0, 20) - graded.nodes(0, 19);
-  // A cell is the mean of 1 + 3 (1 - s^2) over its width of 0.05: 4 - 0.0025 in the middle, 1 + 3 (0.05 - 0.05^2 / 3) at the end.
+  const double end = graded.nodes(0, 1) - graded.nodes(0, 0),
+               middle = graded.nodes(0, 20) - graded.nodes(0, 19);
+  // A cell is the mean of 1 + 3 (1 - s^2) over its width of 0.05: 4 - 0.0025 in the middle, 1 + 3 (0.05 -
+  // 0.05^2 / 3) at the end.
   EXPECT_NEAR(middle / end, (4 - 0.0025) / (1 + 3 * (0.05 - 0.0025 / 3)), 1e-12);
 }
 
@@ -158,7 +162,8 @@ TEST(Generators, BallsAreWellShapedAtEveryGradingAndSize) {
   for (const double grading : {0.5, 1.0, 1.42, 2.0, 2.8, 4.0, 8.0, 32.0})
     for (const double h : {1.0, 0.5, 0.34, 0.25, 0.17, 0.12, 0.08}) {
       const MeshReport r = measure(ball(1.0, h, grading));
-      EXPECT_GE(r.smallest_dihedral_deg, grading == 1.0 ? 36.0 : 20.0) << "h = " << h << ", grading = " << grading;
+      EXPECT_GE(r.smallest_dihedral_deg, grading == 1.0 ? 36.0 : 20.0)
+          << "h = " << h << ", grading = " << grading;
       ++checked;
     }
   EXPECT_EQ(checked, 56);
@@ -185,7 +190,8 @@ TEST(Generators, CylinderVolumeConvergesWithOrderTwo) {
     EXPECT_EQ(mesh.nodes.row(2).maxCoeff(), 1.0);
   }
   EXPECT_NEAR(fitted_order(h, error), 2.0, 0.1);
-  EXPECT_NEAR(measure(cylinder(0.5, 2.0, 0.1, 2.0)).volume, measure(cylinder(0.5, 2.0, 0.1)).volume, 1e-12);  // the same rim
+  // the same rim
+  EXPECT_NEAR(measure(cylinder(0.5, 2.0, 0.1, 2.0)).volume, measure(cylinder(0.5, 2.0, 0.1)).volume, 1e-12);
 }
 
 TEST(Generators, SphereIsClosedAndOutwards) {
@@ -221,14 +227,19 @@ TEST(Generators, BadSpecsAreRefusedWithKeyAndValue) {
     expect_contains(error_of([&] { tet_mesh(spec, ""); }), fragment);
   };
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  refused([](MeshSpec& s) { s.generator = "bal"; }, "unknown mesh generator \"bal\" (did you mean \"ball\"?)");
+  refused([](MeshSpec& s) { s.generator = "bal"; },
+          "unknown mesh generator \"bal\" (did you mean \"ball\"?)");
   refused([](MeshSpec& s) { s.radius_m = -1; }, "generator \"ball\": radius_m = -1 must lie in (0, 1e6) m");
   refused([](MeshSpec& s) { s.radius_m = kNan; }, "radius_m = nan");
   refused([](MeshSpec& s) { s.element_size_m = 0; }, "element_size_m = 0 must lie in");
   refused([](MeshSpec& s) { s.element_size_m = 1e-9; }, "element_size_m = 1e-09 would make about");
   refused([](MeshSpec& s) { s.grading = 0; }, "grading = 0 must lie in [0.5, 32]");
   refused([](MeshSpec& s) { s.size_m = {1, 0, 1}; }, "size_m[1] = 0", "box");
-  refused([](MeshSpec& s) { s.size_m = {1e5, 1e-9, 1e-9}, s.element_size_m = 1e-5; }, "would make about", "box");
+  refused(
+      [](MeshSpec& s) {
+        s.size_m = {1e5, 1e-9, 1e-9}, s.element_size_m = 1e-5;
+      },
+      "would make about", "box");
   refused([](MeshSpec& s) { s.length_m = -2; }, "length_m = -2", "cylinder");
   refused([](MeshSpec& s) { s.size_m[2] = -1; }, "size_m[2] = -1", "tet");
   refused([](MeshSpec& s) { s.file = "a.msh"; }, "exclude each other");

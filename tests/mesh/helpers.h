@@ -10,7 +10,8 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/source.h"
 
-/// A folder of this test's own, gone with it; in memory where that is possible, because the fuzz test writes thousands of files.
+/// A folder of this test's own, gone with it; in memory where that is possible, because the fuzz test writes
+/// thousands of files.
 class TempFolder {
  public:
   TempFolder() {
@@ -25,7 +26,9 @@ class TempFolder {
   TempFolder(const TempFolder&) = delete;
   TempFolder& operator=(const TempFolder&) = delete;
 
-  void write(const std::string& name, std::string_view text) const { std::ofstream(path_ / name, std::ios::binary) << text; }
+  void write(const std::string& name, std::string_view text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+  }
   std::string path() const { return path_.string(); }
 
  private:
@@ -61,9 +64,7 @@ template <class Call>
 std::string error_of(Call call) {
   try {
     call();
-  } catch (const palpate::Error& e) {
-    return e.what();
-  }
+  } catch (const palpate::Error& e) { return e.what(); }
   return "nothing was refused";
 }
 

@@ -67,9 +67,11 @@ TEST(PlaceOrder, RenumberedMeshIsTheSameMesh) {
   const std::vector<int> order = mesh::order_by_place(before.nodes);
   mesh::renumber_nodes(after, order);
   ASSERT_EQ(after.nodes.cols(), before.nodes.cols());
-  for (std::size_t k = 0; k < order.size(); ++k) ASSERT_EQ(Vec3(after.nodes.col(static_cast<Eigen::Index>(k))), Vec3(before.nodes.col(order[k])));
+  for (std::size_t k = 0; k < order.size(); ++k)
+    ASSERT_EQ(Vec3(after.nodes.col(static_cast<Eigen::Index>(k))), Vec3(before.nodes.col(order[k])));
   for (Eigen::Index t = 0; t < before.tets.cols(); ++t)
-    for (int corner = 0; corner < 4; ++corner) ASSERT_EQ(Vec3(after.nodes.col(after.tets(corner, t))), Vec3(before.nodes.col(before.tets(corner, t))));
+    for (int corner = 0; corner < 4; ++corner)
+      ASSERT_EQ(Vec3(after.nodes.col(after.tets(corner, t))), Vec3(before.nodes.col(before.tets(corner, t))));
   EXPECT_NE(after.tets, before.tets);
 }
 
@@ -87,14 +89,16 @@ int runs_in_ball(const Points& points, const std::vector<int>& order, double rad
   return runs;
 }
 
-// Of n points of a compact part those at its surface, some 4 n^(2/3) of them in a ball, may each begin a run of their own; in the order of a mesher nearly every point does.
+// Of n points of a compact part those at its surface, some 4 n^(2/3) of them in a ball, may each begin a run
+// of their own; in the order of a mesher nearly every point does.
 TEST(PlaceOrder, ACompactPartLiesInRunsThatNumberLikeItsSurface) {
   const Points points = Points::Random(3, 200000);
   const std::vector<int> mesher = shuffled(200000, 7), placed = mesh::order_by_place(points);
   std::vector<double> size, count;
   for (const double radius : {0.15, 0.3, 0.6}) {
     int n = 0;
-    const int runs = runs_in_ball(points, placed, radius, &n), scattered = runs_in_ball(points, mesher, radius, &n);
+    const int runs = runs_in_ball(points, placed, radius, &n),
+              scattered = runs_in_ball(points, mesher, radius, &n);
     EXPECT_LT(runs, 2.0 * std::pow(n, 2.0 / 3.0)) << n << " points";
     EXPECT_GT(scattered, 0.8 * n);
     size.push_back(std::log(n));

@@ -8,7 +8,8 @@ using namespace palpate::mesh;
 
 namespace {
 
-// Two tetrahedra on the faces of the triangle (1,0,0), (0,1,0), (0,0,1): the unit corner, 1/6, and its mirror point (1,1,1), 1/3.
+// Two tetrahedra on the faces of the triangle (1,0,0), (0,1,0), (0,0,1): the unit corner, 1/6, and its mirror
+// point (1,1,1), 1/3.
 constexpr const char* kGmsh22 = R"($Comments
  any text, $Nodes too
 $EndComments
@@ -88,13 +89,16 @@ void expect_two_tets(const MeshReport& r) {
 
 }  // namespace
 
-TEST(Readers, Gmsh22TakesTetrahedraAmongOthersWithSparseTags) { expect_two_tets(read_text("two.msh", kGmsh22)); }
+TEST(Readers, Gmsh22TakesTetrahedraAmongOthersWithSparseTags) {
+  expect_two_tets(read_text("two.msh", kGmsh22));
+}
 
 TEST(Readers, Gmsh41TakesSeveralBlocksAndParametricNodes) { expect_two_tets(read_text("two.msh", kGmsh41)); }
 
 TEST(Readers, GmshEndingsOfOtherSystemsAreRead) {
   std::string text = kGmsh41;
-  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.replace(at, 1, "\r\n");
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2)
+    text.replace(at, 1, "\r\n");
   expect_two_tets(read_text("TWO.MSH", "\xEF\xBB\xBF" + text));
 }
 
@@ -141,7 +145,9 @@ TEST(Readers, ScaleMultipliesCoordinates) {
 
 TEST(Readers, TetGenCountsFromZeroOrOneWithCommentsAttributesAndMarkers) {
   const TempFolder folder;
-  folder.write("one.node", "# made by hand\n5 3 1 1\n\n1 0 0 0 0.5 1\n2 1 0 0 0.5 1 # corner\n3 0 1 0 0.5 1\n4 0 0 1 0.5 0\n5 1 1 1 0.5 0\n");
+  folder.write("one.node",
+               "# made by hand\n5 3 1 1\n\n1 0 0 0 0.5 1\n2 1 0 0 0.5 1 # corner\n3 0 1 0 0.5 1\n4 0 0 1 0.5 "
+               "0\n5 1 1 1 0.5 0\n");
   folder.write("one.ele", "2 4 1\n1 1 2 3 4 7\n2 2 3 4 5 7\n# end\n");
   expect_two_tets(read_any(folder.path(), "one.node"));
   expect_two_tets(read_any(folder.path(), "one.ele"));
@@ -153,14 +159,16 @@ TEST(Readers, TetGenCountsFromZeroOrOneWithCommentsAttributesAndMarkers) {
 namespace {
 
 /// "NAME: ELEMENTS; " for each region.
-std::string regions_of(const std::string& name, std::string_view text, const std::string& other = "", std::string_view other_text = "") {
+std::string regions_of(const std::string& name, std::string_view text, const std::string& other = "",
+                       std::string_view other_text = "") {
   const TempFolder folder;
   folder.write(name, text);
   if (!other.empty()) folder.write(other, other_text);
   std::vector<MaterialRegion> regions;
   tet_mesh(file_spec(name), folder.path(), nullptr, &regions);
   std::string out;
-  for (const MaterialRegion& region : regions) out += fmt::format("{}: {}; ", region.name, fmt::join(region.tets, " "));
+  for (const MaterialRegion& region : regions)
+    out += fmt::format("{}: {}; ", region.name, fmt::join(region.tets, " "));
   return out;
 }
 
@@ -174,25 +182,42 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 TEST(Readers, PhysicalVolumesAreRegions) {
   const std::string first = "\n3 4 2 0 1 10 7 300 2000000000", second = "\n9 4 0 7";
-  EXPECT_EQ(regions_of("a.msh", kGmsh22), "region-0: 1; region-1: 0; ") << "no physical group: the volumes of the model, none is 0";
+  EXPECT_EQ(regions_of("a.msh", kGmsh22), "region-0: 1; region-1: 0; ")
+      << "no physical group: the volumes of the model, none is 0";
   const std::string flesh = replaced(kGmsh22, first, "\n3 4 2 1 5 10 7 300 2000000000");
   EXPECT_EQ(regions_of("a.msh", flesh), "flesh: 0; ");
   EXPECT_EQ(regions_of("a.msh", replaced(flesh, second, "\n9 4 3 -12 5 0 7")), "flesh: 0; region-12: 1; ");
-  EXPECT_EQ(regions_of("a.msh", replaced(flesh, second, "\n9 4 2 1 7 7")), "flesh: 0 1; ") << "one named region of all is one";
-  EXPECT_EQ(regions_of("a.msh", replaced(replaced(flesh, second, "\n9 4 2 1 7 7"), "3 1 \"flesh\"", "2 1 \"flesh\"")), "") << "that is the name of a surface";
+  EXPECT_EQ(regions_of("a.msh", replaced(flesh, second, "\n9 4 2 1 7 7")), "flesh: 0 1; ")
+      << "one named region of all is one";
+  EXPECT_EQ(regions_of("a.msh",
+                       replaced(replaced(flesh, second, "\n9 4 2 1 7 7"), "3 1 \"flesh\"", "2 1 \"flesh\"")),
+            "")
+      << "that is the name of a surface";
 
   EXPECT_EQ(regions_of("b.msh", kGmsh41), "region-1: 0; region-2: 1; ") << "volumes of the model";
-  const std::string physical = replaced(kGmsh41, "0 0 0 1\n1 0 0 0 1 1 1 0 0\n", "1 0 0 2\n1 0 0 0 0\n1 0 0 0 1 1 1 2 7 8 0\n2 0 0 0 1 1 1 0 0\n");
+  const std::string physical = replaced(kGmsh41, "0 0 0 1\n1 0 0 0 1 1 1 0 0\n",
+                                        "1 0 0 2\n1 0 0 0 0\n1 0 0 0 1 1 1 2 7 8 0\n2 0 0 0 1 1 1 0 0\n");
   EXPECT_EQ(regions_of("b.msh", physical), "region-7: 0; ") << "the first of two; the other volume has none";
-  EXPECT_EQ(regions_of("b.msh", replaced(physical, "$Entities", "$PhysicalNames\n2\n2 7 \"a side\"\n3 7 \"bone of the leg\"\n$EndPhysicalNames\n$Entities")), "bone of the leg: 0; ");
-  EXPECT_NE(error_of([&] { regions_of("b.msh", replaced(physical, "$Entities", "$PhysicalNames\n1\n3 7 bone\n$EndPhysicalNames\n$Entities")); })
-                .find("b.msh:6: a name in double quotes is expected, here stands bone"), std::string::npos);
+  EXPECT_EQ(
+      regions_of(
+          "b.msh",
+          replaced(
+              physical, "$Entities",
+              "$PhysicalNames\n2\n2 7 \"a side\"\n3 7 \"bone of the leg\"\n$EndPhysicalNames\n$Entities")),
+      "bone of the leg: 0; ");
+  EXPECT_NE(error_of([&] {
+              regions_of("b.msh", replaced(physical, "$Entities",
+                                           "$PhysicalNames\n1\n3 7 bone\n$EndPhysicalNames\n$Entities"));
+            }).find("b.msh:6: a name in double quotes is expected, here stands bone"),
+            std::string::npos);
 }
 
 TEST(Readers, TetGensAttributesAreRegions) {
   const std::string nodes = "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n";
-  EXPECT_EQ(regions_of("a.ele", "2 4 1\n1 1 2 3 4 7\n2 2 3 4 5 -1.5\n", "a.node", nodes), "region--1.5: 1; region-7: 0; ");
-  EXPECT_EQ(regions_of("a.ele", "2 4 1\n1 1 2 3 4 7\n2 2 3 4 5 7\n", "a.node", nodes), "") << "all alike: it says nothing";
+  EXPECT_EQ(regions_of("a.ele", "2 4 1\n1 1 2 3 4 7\n2 2 3 4 5 -1.5\n", "a.node", nodes),
+            "region--1.5: 1; region-7: 0; ");
+  EXPECT_EQ(regions_of("a.ele", "2 4 1\n1 1 2 3 4 7\n2 2 3 4 5 7\n", "a.node", nodes), "")
+      << "all alike: it says nothing";
   EXPECT_EQ(regions_of("a.ele", "2 4 0\n1 1 2 3 4\n2 2 3 4 5\n", "a.node", nodes), "");
   EXPECT_EQ(regions_of("a.ele", "2 4\n1 1 2 3 4\n2 2 3 4 5\n", "a.node", nodes), "");
 }
@@ -205,11 +230,15 @@ TEST(Readers, ARegionHasEachElementOnce) {
 }
 
 TEST(Readers, ObjTakesPolygonsNormalsTexturesAndNegativeIndices) {
-  const std::string vertices = "mtllib a.mtl\no cube\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
-                               "vt 0 0\nvn 0 0 1\ng side\nusemtl red\ns off\n";
-  for (const char* faces : {"f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n",
-                            "f 4/1 3/1 2/1 1/1\nf 5/1/1 6/1/1 7/1/1 8/1/1\nf 1//1 2//1 6//1 5//1 # quad\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n",
-                            "f -5 -6 -7 -8\nf -4 -3 -2 -1\nf -8 -7 -3 -4\nf -7 -6 -2 -3\nf -6 -5 -1 -2\nf -5 -8 -4 -1\n"}) {
+  const std::string vertices =
+      "mtllib a.mtl\no cube\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 "
+      "1\nv 0 1 1\n"
+      "vt 0 0\nvn 0 0 1\ng side\nusemtl red\ns off\n";
+  for (const char* faces :
+       {"f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n",
+        "f 4/1 3/1 2/1 1/1\nf 5/1/1 6/1/1 7/1/1 8/1/1\nf 1//1 2//1 6//1 5//1 # quad\nf 2 3 7 6\nf 3 4 8 7\nf "
+        "4 1 5 8\n",
+        "f -5 -6 -7 -8\nf -4 -3 -2 -1\nf -8 -7 -3 -4\nf -7 -6 -2 -3\nf -6 -5 -1 -2\nf -5 -8 -4 -1\n"}) {
     const MeshReport r = read_text("cube.obj", vertices + faces);
     EXPECT_EQ(r.nodes, 8);
     EXPECT_EQ(r.elements, 12);
@@ -226,10 +255,14 @@ TEST(Readers, AbsolutePathsIgnoreTheFolder) {
 
 TEST(Readers, WrongKindsOfFileAreRefusedWithAWayOut) {
   const TempFolder folder;
-  expect_contains(error_of([&] { tet_mesh(file_spec("no.msh"), folder.path()); }), "no.msh: no such file; check the path");
-  expect_contains(error_of([&] { tet_mesh(file_spec("cow.obj"), folder.path()); }), "an .obj holds a surface");
-  expect_contains(error_of([&] { tet_mesh(file_spec("cow.stl"), folder.path()); }), "unknown ending \".stl\"");
-  expect_contains(error_of([&] { surface(file_spec("ball.msh"), folder.path()); }), "unknown ending \".msh\" for a surface");
+  expect_contains(error_of([&] { tet_mesh(file_spec("no.msh"), folder.path()); }),
+                  "no.msh: no such file; check the path");
+  expect_contains(error_of([&] { tet_mesh(file_spec("cow.obj"), folder.path()); }),
+                  "an .obj holds a surface");
+  expect_contains(error_of([&] { tet_mesh(file_spec("cow.stl"), folder.path()); }),
+                  "unknown ending \".stl\"");
+  expect_contains(error_of([&] { surface(file_spec("ball.msh"), folder.path()); }),
+                  "unknown ending \".msh\" for a surface");
   std::filesystem::create_directories(folder.path() + "/folder.msh");
   expect_contains(error_of([&] { tet_mesh(file_spec("folder.msh"), folder.path()); }), "no such file");
 }

@@ -1,4 +1,5 @@
-// The search for cells of the right size, with a mesher that obeys a formula: how often it goes round, and what it tells of it.
+// The search for cells of the right size, with a mesher that obeys a formula: how often it goes round, and
+// what it tells of it.
 #include "model/cell_search.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,8 @@ using namespace palpate;
 
 namespace {
 
-/// 5 V / c^3 tetrahedra of a unit volume, of which optimising leaves another share each time, never the one that was measured the time before.
+/// 5 V / c^3 tetrahedra of a unit volume, of which optimising leaves another share each time, never the one
+/// that was measured the time before.
 struct FickleMesher final : model::CellMesher {
   std::vector<double> shares;
   int found = 0, taken = 0;
@@ -37,17 +39,22 @@ struct FickleMesher final : model::CellMesher {
 
 }  // namespace
 
-// Three rounds, the last of which leaves nothing, so that the search gives up: the bar has gone on through all of them, and each had room.
+// Three rounds, the last of which leaves nothing, so that the search gives up: the bar has gone on through
+// all of them, and each had room.
 TEST(CellSearch, TheBarNeverRunsBackOverSeveralRounds) {
   model::TetrahedraOptions options;
   options.tetrahedra = 1000;
   FickleMesher mesher({0.7, 0.5, 0.0});
   std::vector<double> told;
-  EXPECT_THROW(model::search_cells(mesher, 1.0, false, options, [&](double fraction) { told.push_back(fraction); }), Error);
+  EXPECT_THROW(
+      model::search_cells(mesher, 1.0, false, options, [&](double fraction) { told.push_back(fraction); }),
+      Error);
   EXPECT_EQ(mesher.taken, 3);
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   EXPECT_GE(told.front(), 0.0);
   EXPECT_LE(told.back(), 1.0);
   for (const auto& [low, high] : {std::pair(0.0, 0.9), std::pair(0.9, 0.99), std::pair(0.99, 0.999)})
-    EXPECT_GT(std::count_if(told.begin(), told.end(), [&](double x) { return x > low && x <= high + 1e-12; }), 4) << low;
+    EXPECT_GT(std::count_if(told.begin(), told.end(), [&](double x) { return x > low && x <= high + 1e-12; }),
+              4)
+        << low;
 }

@@ -23,7 +23,10 @@ namespace {
 
 class ForeignFiles : public testing::Test {
  protected:
-  ForeignFiles() : folder_(std::filesystem::temp_directory_path() / ("palpate-model-" + std::to_string(::getpid()))) { std::filesystem::create_directories(folder_); }
+  ForeignFiles()
+      : folder_(std::filesystem::temp_directory_path() / ("palpate-model-" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
   ~ForeignFiles() override { std::filesystem::remove_all(folder_); }
   std::string at(const std::string& name) const { return (folder_ / name).string(); }
   std::string put(const std::string& name, const std::string& text) const {
@@ -33,10 +36,15 @@ class ForeignFiles : public testing::Test {
   std::filesystem::path folder_;
 };
 
-std::string words(const TriMesh& mesh, const std::string& before_point, const std::string& before_face, int first) {
+std::string words(const TriMesh& mesh, const std::string& before_point, const std::string& before_face,
+                  int first) {
   std::string out;
-  for (Eigen::Index v = 0; v < mesh.vertices.cols(); ++v) out += fmt::format("{}{:.17g} {:.17g} {:.17g}\n", before_point, mesh.vertices(0, v), mesh.vertices(1, v), mesh.vertices(2, v));
-  for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) out += fmt::format("{}{} {} {}\n", before_face, mesh.faces(0, f) + first, mesh.faces(1, f) + first, mesh.faces(2, f) + first);
+  for (Eigen::Index v = 0; v < mesh.vertices.cols(); ++v)
+    out += fmt::format("{}{:.17g} {:.17g} {:.17g}\n", before_point, mesh.vertices(0, v), mesh.vertices(1, v),
+                       mesh.vertices(2, v));
+  for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f)
+    out += fmt::format("{}{} {} {}\n", before_face, mesh.faces(0, f) + first, mesh.faces(1, f) + first,
+                       mesh.faces(2, f) + first);
   return out;
 }
 
@@ -51,16 +59,22 @@ void expect_surface(const std::string& path, const TriMesh& wanted, double toler
 TEST_F(ForeignFiles, SurfacesAsText) {
   const TriMesh b = box();
   expect_surface(put("a.obj", words(b, "v ", "f ", 1)), b, 1e-12);
-  expect_surface(put("a.off", fmt::format("OFF\n{} {} 0\n", b.vertices.cols(), b.faces.cols()) + words(b, "", "3 ", 0)), b, 1e-12);
-  expect_surface(put("a.ply", fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\nelement face {}\nproperty list uchar int "
-                                          "vertex_indices\nend_header\n",
-                                          b.vertices.cols(), b.faces.cols()) +
-                                  words(b, "", "3 ", 0)),
-                 b, 1e-12);
+  expect_surface(
+      put("a.off", fmt::format("OFF\n{} {} 0\n", b.vertices.cols(), b.faces.cols()) + words(b, "", "3 ", 0)),
+      b, 1e-12);
+  expect_surface(
+      put("a.ply", fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double "
+                               "y\nproperty double z\nelement face {}\nproperty list uchar int "
+                               "vertex_indices\nend_header\n",
+                               b.vertices.cols(), b.faces.cols()) +
+                       words(b, "", "3 ", 0)),
+      b, 1e-12);
   std::string stl = "solid a\n";
   for (Eigen::Index f = 0; f < b.faces.cols(); ++f) {
     stl += "facet normal 0 0 0\nouter loop\n";
-    for (int k = 0; k < 3; ++k) stl += fmt::format("vertex {:.9g} {:.9g} {:.9g}\n", b.vertices(0, b.faces(k, f)), b.vertices(1, b.faces(k, f)), b.vertices(2, b.faces(k, f)));
+    for (int k = 0; k < 3; ++k)
+      stl += fmt::format("vertex {:.9g} {:.9g} {:.9g}\n", b.vertices(0, b.faces(k, f)),
+                         b.vertices(1, b.faces(k, f)), b.vertices(2, b.faces(k, f)));
     stl += "endloop\nendfacet\n";
   }
   expect_surface(put("a.stl", stl + "endsolid a\n"), b, 1e-6);
@@ -68,10 +82,15 @@ TEST_F(ForeignFiles, SurfacesAsText) {
 
 TEST_F(ForeignFiles, SurfacesAsBytes) {
   const TriMesh b = box();
-  std::string stl(80, ' '), ply = fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nelement face {}\nproperty list uchar int "
-                                              "vertex_indices\nend_header\n",
-                                              b.vertices.cols(), b.faces.cols());
-  const auto add = [](std::string& to, const auto& value) { to.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
+  std::string stl(80, ' '),
+      ply = fmt::format(
+          "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float "
+          "y\nproperty float z\nelement face {}\nproperty list uchar int "
+          "vertex_indices\nend_header\n",
+          b.vertices.cols(), b.faces.cols());
+  const auto add = [](std::string& to, const auto& value) {
+    to.append(reinterpret_cast<const char*>(&value), sizeof(value));
+  };
   add(stl, static_cast<std::uint32_t>(b.faces.cols()));
   for (Eigen::Index f = 0; f < b.faces.cols(); ++f) {
     for (int i = 0; i < 3; ++i) add(stl, 0.0f);
@@ -92,9 +111,12 @@ TEST_F(ForeignFiles, SurfacesAsBytes) {
 TEST_F(ForeignFiles, TetrahedraByGmsh) {
   const TetMesh b = mesh::box(Vec3(2, 1, 1), {4, 2, 2});
   std::string msh = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", b.nodes.cols());
-  for (Eigen::Index i = 0; i < b.nodes.cols(); ++i) msh += fmt::format("{} {:.17g} {:.17g} {:.17g}\n", i + 1, b.nodes(0, i), b.nodes(1, i), b.nodes(2, i));
+  for (Eigen::Index i = 0; i < b.nodes.cols(); ++i)
+    msh += fmt::format("{} {:.17g} {:.17g} {:.17g}\n", i + 1, b.nodes(0, i), b.nodes(1, i), b.nodes(2, i));
   msh += fmt::format("$EndNodes\n$Elements\n{}\n", b.tets.cols());
-  for (Eigen::Index t = 0; t < b.tets.cols(); ++t) msh += fmt::format("{} 4 2 1 1 {} {} {} {}\n", t + 1, b.tets(0, t) + 1, b.tets(1, t) + 1, b.tets(2, t) + 1, b.tets(3, t) + 1);
+  for (Eigen::Index t = 0; t < b.tets.cols(); ++t)
+    msh += fmt::format("{} 4 2 1 1 {} {} {} {}\n", t + 1, b.tets(0, t) + 1, b.tets(1, t) + 1,
+                       b.tets(2, t) + 1, b.tets(3, t) + 1);
   put("a.msh", msh + "$EndElements\n");
 
   int error = 0;
@@ -109,8 +131,9 @@ TEST_F(ForeignFiles, TetrahedraByGmsh) {
     gmshWrite(at(name).c_str(), &error);
     EXPECT_EQ(error, 0) << name;
   };
-  const std::vector<std::tuple<std::string, double, double>> kinds = {{"1.msh", 1.0, 0}, {"22.msh", 2.2, 0}, {"22b.msh", 2.2, 1}, {"41.msh", 4.1, 0}, {"41b.msh", 4.1, 1}, {"a.vtk", 4.1, 0}, {"b.vtk", 4.1, 1},
-                                                                      {"a.mesh", 4.1, 0}};
+  const std::vector<std::tuple<std::string, double, double>> kinds = {
+      {"1.msh", 1.0, 0},   {"22.msh", 2.2, 0}, {"22b.msh", 2.2, 1}, {"41.msh", 4.1, 0},
+      {"41b.msh", 4.1, 1}, {"a.vtk", 4.1, 0},  {"b.vtk", 4.1, 1},   {"a.mesh", 4.1, 0}};
   for (const auto& [name, version, binary] : kinds) write(name, version, binary);
   gmshFinalize(&error);
 
@@ -128,19 +151,23 @@ TEST_F(ForeignFiles, TetrahedraByGmsh) {
 /// "NAME: COUNT; " for each region.
 std::string regions_of(const model::SourceFile& file) {
   std::string out;
-  for (const MaterialRegion& region : file.regions) out += fmt::format("{}: {}; ", region.name, region.tets.size());
+  for (const MaterialRegion& region : file.regions)
+    out += fmt::format("{}: {}; ", region.name, region.tets.size());
   return out;
 }
 
 /// A box of 80 tetrahedra in two volumes of 40, in the order of the file first those of volume 2.
 std::string msh_of_two(const std::string& names, const std::array<int, 2>& physical) {
   const TetMesh b = mesh::box(Vec3(2, 1, 1), {4, 2, 2});
-  std::string msh = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{}$Nodes\n{}\n", names, b.nodes.cols());
-  for (Eigen::Index i = 0; i < b.nodes.cols(); ++i) msh += fmt::format("{} {:.17g} {:.17g} {:.17g}\n", i + 1, b.nodes(0, i), b.nodes(1, i), b.nodes(2, i));
+  std::string msh =
+      fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{}$Nodes\n{}\n", names, b.nodes.cols());
+  for (Eigen::Index i = 0; i < b.nodes.cols(); ++i)
+    msh += fmt::format("{} {:.17g} {:.17g} {:.17g}\n", i + 1, b.nodes(0, i), b.nodes(1, i), b.nodes(2, i));
   msh += fmt::format("$EndNodes\n$Elements\n{}\n", b.tets.cols());
   for (Eigen::Index t = 0; t < b.tets.cols(); ++t) {
     const int volume = b.nodes(0, b.tets.col(t)).mean() < 0 ? 2 : 5;
-    msh += fmt::format("{} 4 2 {} {} {} {} {} {}\n", t + 1, physical[volume == 5], volume, b.tets(0, t) + 1, b.tets(1, t) + 1, b.tets(2, t) + 1, b.tets(3, t) + 1);
+    msh += fmt::format("{} 4 2 {} {} {} {} {} {}\n", t + 1, physical[volume == 5], volume, b.tets(0, t) + 1,
+                       b.tets(1, t) + 1, b.tets(2, t) + 1, b.tets(3, t) + 1);
   }
   return msh + "$EndElements\n";
 }
@@ -151,7 +178,8 @@ TEST_F(ForeignFiles, RegionsOfEveryFormatOfGmsh) {
   put("plain.msh", msh_of_two("", {0, 0}));
   put("half.msh", msh_of_two(names, {0, 9}));
   int error = 0, read = 0;
-  const auto expect = [&](const std::string& from, const std::string& name, double version, double binary, const std::string& wanted) {
+  const auto expect = [&](const std::string& from, const std::string& name, double version, double binary,
+                          const std::string& wanted) {
     gmshInitialize(0, nullptr, 0, &error);
     gmshOptionSetNumber("General.Terminal", 0, &error);
     gmshOptionSetNumber("Mesh.SaveAll", from == "plain.msh", &error);  // else version 2.2 forgets the groups
@@ -163,7 +191,8 @@ TEST_F(ForeignFiles, RegionsOfEveryFormatOfGmsh) {
     gmshFinalize(&error);
     const model::SourceFile got = model::read_source(at(name));
     ASSERT_EQ(regions_of(got), wanted) << name << " of " << from;
-    for (const int tet : got.regions[0].tets) EXPECT_LT(got.tets.nodes(0, got.tets.tets.col(tet)).mean(), 0.0) << name;
+    for (const int tet : got.regions[0].tets)
+      EXPECT_LT(got.tets.nodes(0, got.tets.tets.col(tet)).mean(), 0.0) << name;
     ++read;
   };
   for (const double binary : {0.0, 1.0})
@@ -191,19 +220,25 @@ std::string base64(const std::string& bytes) {
   std::string out;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
+    for (std::size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += i + k <= bytes.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
   }
   return out;
 }
 
 template <class T>
-std::string raw(const std::vector<T>& values) { return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)}; }
+std::string raw(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
 
 /// The four arrays of a VTU file, each in one of the ways in which VTK writes them.
 struct Vtu {
   std::string attributes, appended, appended_encoding;
-  std::function<std::string(const std::string& type, const std::string& name, int components, const std::string& bytes, const std::string& text)> array;
+  std::function<std::string(const std::string& type, const std::string& name, int components,
+                            const std::string& bytes, const std::string& text)>
+      array;
 };
 
 std::string vtu_text(const TetMesh& mesh, Vtu way) {
@@ -211,17 +246,24 @@ std::string vtu_text(const TetMesh& mesh, Vtu way) {
   std::vector<std::int64_t> connectivity(mesh.tets.data(), mesh.tets.data() + mesh.tets.size()), offsets;
   std::vector<std::uint8_t> types(static_cast<std::size_t>(mesh.tets.cols()), 10);
   for (Eigen::Index t = 1; t <= mesh.tets.cols(); ++t) offsets.push_back(4 * t);
-  const std::string body = fmt::format("<Points>{}</Points><Cells>{}{}{}</Cells>", way.array("Float64", "Points", 3, raw(points), fmt::format("{}", fmt::join(points, " "))),
-                                       way.array("Int64", "connectivity", 1, raw(connectivity), fmt::format("{}", fmt::join(connectivity, " "))),
-                                       way.array("Int64", "offsets", 1, raw(offsets), fmt::format("{}", fmt::join(offsets, "\n"))),
-                                       way.array("UInt8", "types", 1, raw(types), fmt::format("{}", fmt::join(types, " "))));
-  return fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" {}><UnstructuredGrid><Piece NumberOfPoints=\"{}\" "
-                     "NumberOfCells=\"{}\">{}</Piece></UnstructuredGrid>",
-                     way.attributes, mesh.nodes.cols(), mesh.tets.cols(), body);
+  const std::string body =
+      fmt::format("<Points>{}</Points><Cells>{}{}{}</Cells>",
+                  way.array("Float64", "Points", 3, raw(points), fmt::format("{}", fmt::join(points, " "))),
+                  way.array("Int64", "connectivity", 1, raw(connectivity),
+                            fmt::format("{}", fmt::join(connectivity, " "))),
+                  way.array("Int64", "offsets", 1, raw(offsets), fmt::format("{}", fmt::join(offsets, "\n"))),
+                  way.array("UInt8", "types", 1, raw(types), fmt::format("{}", fmt::join(types, " "))));
+  return fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+      "byte_order=\"LittleEndian\" header_type=\"UInt64\" {}><UnstructuredGrid><Piece NumberOfPoints=\"{}\" "
+      "NumberOfCells=\"{}\">{}</Piece></UnstructuredGrid>",
+      way.attributes, mesh.nodes.cols(), mesh.tets.cols(), body);
 }
 
-std::string header(const std::string& type, const std::string& name, int components, const std::string& format) {
-  return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" {}>", type, name, components, format);
+std::string header(const std::string& type, const std::string& name, int components,
+                   const std::string& format) {
+  return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" {}>", type, name,
+                     components, format);
 }
 
 TEST_F(ForeignFiles, VtuInEveryEncoding) {
@@ -233,12 +275,15 @@ TEST_F(ForeignFiles, VtuInEveryEncoding) {
     EXPECT_EQ(got.tets.nodes, b.nodes) << name;
   };
   Vtu ascii;
-  ascii.array = [](const auto& type, const auto& name, int n, const auto&, const auto& text) { return header(type, name, n, "format=\"ascii\"") + text + "</DataArray>"; };
+  ascii.array = [](const auto& type, const auto& name, int n, const auto&, const auto& text) {
+    return header(type, name, n, "format=\"ascii\"") + text + "</DataArray>";
+  };
   expect("ascii.vtu", vtu_text(b, ascii) + end);
 
   Vtu binary;
   binary.array = [](const auto& type, const auto& name, int n, const auto& bytes, const auto&) {
-    return header(type, name, n, "format=\"binary\"") + "\n  " + base64(raw<std::uint64_t>({bytes.size()}) + bytes) + "\n</DataArray>";
+    return header(type, name, n, "format=\"binary\"") + "\n  " +
+           base64(raw<std::uint64_t>({bytes.size()}) + bytes) + "\n</DataArray>";
   };
   expect("binary.vtu", vtu_text(b, binary) + end);
 
@@ -251,7 +296,8 @@ TEST_F(ForeignFiles, VtuInEveryEncoding) {
       const std::size_t size = std::min<std::size_t>(1000, bytes.size() - at);
       uLongf room = compressBound(size);
       std::string block(room, '\0');
-      compress(reinterpret_cast<Bytef*>(block.data()), &room, reinterpret_cast<const Bytef*>(bytes.data() + at), size);
+      compress(reinterpret_cast<Bytef*>(block.data()), &room,
+               reinterpret_cast<const Bytef*>(bytes.data() + at), size);
       packed.append(block, 0, room);
       sizes.push_back(room);
     }
@@ -262,7 +308,8 @@ TEST_F(ForeignFiles, VtuInEveryEncoding) {
   std::string all;  // raw bytes after the XML, which is no XML any more
   Vtu appended;
   appended.array = [&all](const auto& type, const auto& name, int n, const auto& bytes, const auto&) {
-    const std::string out = header(type, name, n, fmt::format("format=\"appended\" offset=\"{}\"", all.size())) + "</DataArray>";
+    const std::string out =
+        header(type, name, n, fmt::format("format=\"appended\" offset=\"{}\"", all.size())) + "</DataArray>";
     all += raw<std::uint64_t>({bytes.size()}) + bytes;
     return out;
   };
@@ -272,18 +319,28 @@ TEST_F(ForeignFiles, VtuInEveryEncoding) {
 
 TEST_F(ForeignFiles, ArraysOfVtuCellsAreRegions) {
   const auto text = [](const std::string& name, const std::string& values) {
-    return "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"5\" NumberOfCells=\"3\"><CellData><DataArray type=\"Float64\" "
-           "Name=\"stress\" format=\"ascii\">1 2 3</DataArray><DataArray type=\"Int32\" Name=\"" + name + "\" format=\"ascii\">" + values +
-           "</DataArray></CellData><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points><Cells><DataArray type=\"Int64\" "
-           "Name=\"connectivity\" format=\"ascii\">0 1 2 3 0 1 2 1 2 4 3</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4 7 11</DataArray><DataArray type=\"UInt8\" "
+    return "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+           "byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"5\" "
+           "NumberOfCells=\"3\"><CellData><DataArray type=\"Float64\" "
+           "Name=\"stress\" format=\"ascii\">1 2 3</DataArray><DataArray type=\"Int32\" Name=\"" +
+           name + "\" format=\"ascii\">" + values +
+           "</DataArray></CellData><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+           "format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataArray></Points><Cells><DataArray "
+           "type=\"Int64\" "
+           "Name=\"connectivity\" format=\"ascii\">0 1 2 3 0 1 2 1 2 4 3</DataArray><DataArray "
+           "type=\"Int64\" Name=\"offsets\" format=\"ascii\">4 7 11</DataArray><DataArray type=\"UInt8\" "
            "Name=\"types\" format=\"ascii\">10 5 10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
   };
-  for (const std::string& name : model::known_region_arrays()) EXPECT_EQ(regions_of(model::read_source(put("a.vtu", text(name, "4 8 3")))), "region-3: 1; region-4: 1; ") << name;
-  EXPECT_EQ(regions_of(model::read_source(put("a.vtu", text("materialIDs", "4 8 3")))), "region-3: 1; region-4: 1; ");
+  for (const std::string& name : model::known_region_arrays())
+    EXPECT_EQ(regions_of(model::read_source(put("a.vtu", text(name, "4 8 3")))), "region-3: 1; region-4: 1; ")
+        << name;
+  EXPECT_EQ(regions_of(model::read_source(put("a.vtu", text("materialIDs", "4 8 3")))),
+            "region-3: 1; region-4: 1; ");
   EXPECT_EQ(regions_of(model::read_source(put("a.vtu", text("temperature", "4 8 3")))), "");
   EXPECT_EQ(regions_of(model::read_source(put("a.vtu", text("Material", "4 8 4")))), "") << "all alike";
   const std::string path = put("a.vtu", text("Material", "4 8"));
-  EXPECT_NE(refusal([&] { model::read_source(path); }).find("array \"Material\" has 2 numbers for 3 cells"), std::string::npos);
+  EXPECT_NE(refusal([&] { model::read_source(path); }).find("array \"Material\" has 2 numbers for 3 cells"),
+            std::string::npos);
 }
 
 /// Two tetrahedra on one face in Medit's binary form, by hand.
@@ -294,7 +351,9 @@ std::string meshb(int version, bool swapped, int last_corner = 5) {
     if (swapped) std::reverse(raw.begin(), raw.end());
     out += raw;
   };
-  const auto integer = [&](int value) { version < 4 ? add(static_cast<std::int32_t>(value)) : add(static_cast<std::int64_t>(value)); };
+  const auto integer = [&](int value) {
+    version < 4 ? add(static_cast<std::int32_t>(value)) : add(static_cast<std::int64_t>(value));
+  };
   const auto block = [&](int keyword, const auto& content) {
     add(static_cast<std::int32_t>(keyword));
     const std::size_t place = out.size(), width = version < 3 ? 4 : 8;
@@ -347,7 +406,8 @@ TEST_F(ForeignFiles, MeditsBinaryForm) {
   const std::string good = meshb(2, false);
   EXPECT_NE(message("no mesh at all").find("does not start with the number 1"), std::string::npos);
   EXPECT_NE(message(good.substr(0, good.size() - 40)).find("ends before its time"), std::string::npos);
-  EXPECT_NE(message(meshb(2, false, 6)).find("names point 5, the file has 5"), std::string::npos) << message(meshb(2, false, 6));
+  EXPECT_NE(message(meshb(2, false, 6)).find("names point 5, the file has 5"), std::string::npos)
+      << message(meshb(2, false, 6));
   EXPECT_NE(message(meshb(2, false, 0)).find("names point -1"), std::string::npos);
   EXPECT_NE(message(std::string("\1\0\0\0\11\0\0\0", 8)).find("has version 9"), std::string::npos);
 }
@@ -356,10 +416,15 @@ TEST_F(ForeignFiles, MeditsBinaryForm) {
 TEST_F(ForeignFiles, TetGensTwoFiles) {
   for (const int first : {0, 1}) {
     const TetMesh b = mesh::box(Vec3(2, 1, 1), {4, 2, 2});
-    std::string nodes = fmt::format("{} 3 0 0\n", b.nodes.cols()), elements = fmt::format("{} 4 1\n", b.tets.cols());
-    for (Eigen::Index i = 0; i < b.nodes.cols(); ++i) nodes += fmt::format("{} {:.17g} {:.17g} {:.17g}\n", i + first, b.nodes(0, i), b.nodes(1, i), b.nodes(2, i));
+    std::string nodes = fmt::format("{} 3 0 0\n", b.nodes.cols()),
+                elements = fmt::format("{} 4 1\n", b.tets.cols());
+    for (Eigen::Index i = 0; i < b.nodes.cols(); ++i)
+      nodes +=
+          fmt::format("{} {:.17g} {:.17g} {:.17g}\n", i + first, b.nodes(0, i), b.nodes(1, i), b.nodes(2, i));
     for (Eigen::Index t = 0; t < b.tets.cols(); ++t)
-      elements += fmt::format("{} {} {} {} {} {}\n", t + first, b.tets(0, t) + first, b.tets(1, t) + first, b.tets(2, t) + first, b.tets(3, t) + first, b.nodes(0, b.tets.col(t)).mean() < 0 ? 2 : 5);
+      elements += fmt::format("{} {} {} {} {} {}\n", t + first, b.tets(0, t) + first, b.tets(1, t) + first,
+                              b.tets(2, t) + first, b.tets(3, t) + first,
+                              b.nodes(0, b.tets.col(t)).mean() < 0 ? 2 : 5);
     put("a.node", nodes);
     const model::SourceFile got = model::read_source(put("a.ele", elements + "# end\n"));
     EXPECT_EQ(got.tets.tets, b.tets);
@@ -369,10 +434,15 @@ TEST_F(ForeignFiles, TetGensTwoFiles) {
 }
 
 TEST_F(ForeignFiles, FieldsOfLegacyVtkCellsAreRegions) {
-  const std::string head = "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\nCELLS 3 14\n4 0 1 2 3\n3 0 1 2\n4 1 2 4 3\nCELL_TYPES 3\n10 5 10\n";
-  EXPECT_EQ(regions_of(model::read_source(put("a.vtk", head + "POINT_DATA 5\nSCALARS Material int 1\nLOOKUP_TABLE default\n1 2 3 4 5\nCELL_DATA 3\nVECTORS flow float\n1 1 1 2 2 2 3 3 3\nFIELD all 2\nt 1 3 double\n1 2 3\n"
-                                                                 "Material 1 3 int\n4 8 3\n"))),
-            "region-3: 1; region-4: 1; ");
+  const std::string head =
+      "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0 1 0 0 0 1 0 "
+      "0 0 1 1 1 1\nCELLS 3 14\n4 0 1 2 3\n3 0 1 2\n4 1 2 4 3\nCELL_TYPES 3\n10 5 10\n";
+  EXPECT_EQ(
+      regions_of(model::read_source(put(
+          "a.vtk", head + "POINT_DATA 5\nSCALARS Material int 1\nLOOKUP_TABLE default\n1 2 3 4 5\nCELL_DATA "
+                          "3\nVECTORS flow float\n1 1 1 2 2 2 3 3 3\nFIELD all 2\nt 1 3 double\n1 2 3\n"
+                          "Material 1 3 int\n4 8 3\n"))),
+      "region-3: 1; region-4: 1; ");
   // Gmsh's own files, as later versions of it end them.
   const std::string plain = put("plain.msh", msh_of_two("", {0, 0}));
   for (const bool binary : {false, true}) {
@@ -386,11 +456,16 @@ TEST_F(ForeignFiles, FieldsOfLegacyVtkCellsAreRegions) {
     gmshFinalize(&error);
     EXPECT_EQ(regions_of(model::read_source(at("d.vtk"))), "");
     std::string values;
-    for (int t = 0; t < 80; ++t) values += binary ? std::string{'\0', '\0', '\0', t < 40 ? '\2' : '\5'} : t < 40 ? "2\n" : "5\n";
-    std::ofstream(at("d.vtk"), std::ios::binary | std::ios::app) << "\nCELL_DATA 80\nSCALARS CellEntityIds int 1\nLOOKUP_TABLE default\n" << values;
+    for (int t = 0; t < 80; ++t)
+      values += binary ? std::string{'\0', '\0', '\0', t < 40 ? '\2' : '\5'} : t < 40 ? "2\n" : "5\n";
+    std::ofstream(at("d.vtk"), std::ios::binary | std::ios::app)
+        << "\nCELL_DATA 80\nSCALARS CellEntityIds int 1\nLOOKUP_TABLE default\n"
+        << values;
     EXPECT_EQ(regions_of(model::read_source(at("d.vtk"))), "region-2: 40; region-5: 40; ") << binary;
   }
-  EXPECT_EQ(regions_of(model::read_source(put("b.vtk", head + "CELL_DATA 3\nSCALARS heat int\nLOOKUP_TABLE default\n4 8 3\n"))), "");
+  EXPECT_EQ(regions_of(model::read_source(
+                put("b.vtk", head + "CELL_DATA 3\nSCALARS heat int\nLOOKUP_TABLE default\n4 8 3\n"))),
+            "");
   EXPECT_EQ(regions_of(model::read_source(put("c.vtk", head))), "");
 }
 
@@ -403,7 +478,9 @@ TEST_F(ForeignFiles, BrokenFilesAreRefusedWithTheirName) {
   EXPECT_NE(message("a.stl", "not at all").find("cannot be read as STL"), std::string::npos);
   EXPECT_NE(message("a.ply", "ply\n").find("cannot be read as PLY"), std::string::npos);
   EXPECT_NE(message("a.off", "OFF\n3 1 0\n0 0 0\n").find("a.off: "), std::string::npos);
-  EXPECT_NE(message("a.vtu", "<VTKFile type=\"PolyData\"/>").find("is no VTK file of an unstructured grid, but of \"PolyData\""), std::string::npos);
+  EXPECT_NE(message("a.vtu", "<VTKFile type=\"PolyData\"/>")
+                .find("is no VTK file of an unstructured grid, but of \"PolyData\""),
+            std::string::npos);
   EXPECT_NE(message("b.vtu", "<VTKFile").find("is no XML"), std::string::npos);
   EXPECT_NE(message("a.mesh", "MeshVersionFormatted 1\nDimension 3\nEnd\n"), "accepted");
   EXPECT_NE(message("a.msh", "$NOD\n1\n1 0 0 0\n$ENDNOD\n$ELM\n0\n$ENDELM\n"), "accepted");
@@ -411,8 +488,13 @@ TEST_F(ForeignFiles, BrokenFilesAreRefusedWithTheirName) {
 }
 
 TEST_F(ForeignFiles, HexahedraAreRefusedByName) {
-  const std::string path = put("hex.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n$EndNodes\n$Elements\n1\n1 5 2 1 1 1 2 3 4 5 6 7 8\n$EndElements\n");
-  EXPECT_NE(refusal([&] { model::read_source(path); }).find("holds 1 hexahedra, which are not read"), std::string::npos) << refusal([&] { model::read_source(path); });
+  const std::string path =
+      put("hex.msh",
+          "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 "
+          "0 1\n7 1 1 1\n8 0 1 1\n$EndNodes\n$Elements\n1\n1 5 2 1 1 1 2 3 4 5 6 7 8\n$EndElements\n");
+  EXPECT_NE(refusal([&] { model::read_source(path); }).find("holds 1 hexahedra, which are not read"),
+            std::string::npos)
+      << refusal([&] { model::read_source(path); });
 }
 
 TEST_F(ForeignFiles, RealGmsh1) {

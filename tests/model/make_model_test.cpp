@@ -34,7 +34,8 @@ model::Made made(model::Input from, const model::Options& options = small()) {
 TEST(MakeModel, HasEveryLevel) {
   model::Input from = input(ball(1.0, 10));
   from.skin = ball(1.02, 20);
-  from.skeleton.bones = {{"root", -1, {0, 0, -0.5}, {0, 0, 0}, 0.3, 0.3}, {"tip", 0, {0, 0, 0}, {0, 0, 0.5}, 0.3, 0.2}};
+  from.skeleton.bones = {{"root", -1, {0, 0, -0.5}, {0, 0, 0}, 0.3, 0.3},
+                         {"tip", 0, {0, 0, 0}, {0, 0, 0.5}, 0.3, 0.2}};
   const model::Made result = made(std::move(from));
   const LayeredModel& m = result.file.model;
   EXPECT_NEAR(m.tets.tets.cols(), 1000, 30);

@@ -15,7 +15,8 @@ TetMesh regular() {
   TetMesh out;
   out.nodes = (Points(3, 4) << 1, 1, -1, -1, 1, -1, 1, -1, 1, -1, -1, 1).finished();
   out.tets = (Tets(4, 1) << 0, 1, 2, 3).finished();
-  Vec3 a = out.nodes.col(1) - out.nodes.col(0), b = out.nodes.col(2) - out.nodes.col(0), c = out.nodes.col(3) - out.nodes.col(0);
+  Vec3 a = out.nodes.col(1) - out.nodes.col(0), b = out.nodes.col(2) - out.nodes.col(0),
+       c = out.nodes.col(3) - out.nodes.col(0);
   if (a.cross(b).dot(c) < 0) out.tets.row(0).swap(out.tets.row(1));
   return out;
 }
@@ -32,29 +33,41 @@ TEST(QualityGate, RegularTetrahedron) {
 }
 
 TEST(QualityGate, CornerTetrahedron) {
-  // Three faces at right angles; the fourth meets them at acos(1/sqrt 3).  Inscribed radius 3 V / A = (1/2) / (3/2 + sqrt(3)/2).
+  // Three faces at right angles; the fourth meets them at acos(1/sqrt 3).  Inscribed radius 3 V / A = (1/2) /
+  // (3/2 + sqrt(3)/2).
   const TetMesh corner = mesh::corner_tet(Vec3::Ones());
   const model::TetQuality q = model::measure_quality(corner, 1.0 / 6);
   EXPECT_NEAR(q.smallest_dihedral_deg, std::acos(1 / std::sqrt(3.0)) * 180 / M_PI, 1e-10);
   EXPECT_NEAR(q.largest_dihedral_deg, 90.0, 1e-10);
-  EXPECT_NEAR(q.worst_aspect, std::sqrt(2.0) / (2 * std::sqrt(6.0) * 0.5 / (1.5 + std::sqrt(3.0) / 2)), 1e-12);
+  EXPECT_NEAR(q.worst_aspect, std::sqrt(2.0) / (2 * std::sqrt(6.0) * 0.5 / (1.5 + std::sqrt(3.0) / 2)),
+              1e-12);
 }
 
 TEST(QualityGate, RefusesASliverWithItsPlace) {
   TetMesh flat = regular();
   flat.nodes.row(2) *= 0.05;
-  const model::TetQuality q = model::measure_quality(flat, mesh::enclosed_volume(mesh::boundary(flat).surface));
+  const model::TetQuality q =
+      model::measure_quality(flat, mesh::enclosed_volume(mesh::boundary(flat).surface));
   const std::string message = refusal([&] { model::pass_gate(flat, q, {}, "a.obj"); });
-  EXPECT_NE(message.find("a.obj: tetrahedron 0 at (0, 0, 0) m has a dihedral angle of "), std::string::npos) << message;
+  EXPECT_NE(message.find("a.obj: tetrahedron 0 at (0, 0, 0) m has a dihedral angle of "), std::string::npos)
+      << message;
   EXPECT_NE(message.find("must have 8"), std::string::npos) << message;
 }
 
 TEST(QualityGate, RefusesAVolumeThatIsOff) {
   const double volume = model::measure_quality(regular(), 1.0).volume;
-  EXPECT_EQ(refusal([&] { model::pass_gate(regular(), model::measure_quality(regular(), volume / 1.009), {}, "a.obj"); }), "accepted");
-  const std::string message = refusal([&] { model::pass_gate(regular(), model::measure_quality(regular(), volume / 1.011), {}, "a.obj"); });
+  EXPECT_EQ(refusal([&] {
+              model::pass_gate(regular(), model::measure_quality(regular(), volume / 1.009), {}, "a.obj");
+            }),
+            "accepted");
+  const std::string message = refusal(
+      [&] { model::pass_gate(regular(), model::measure_quality(regular(), volume / 1.011), {}, "a.obj"); });
   EXPECT_NE(message.find("1.10 % off, must lie within 1 %"), std::string::npos) << message;
-  EXPECT_NE(refusal([&] { model::pass_gate(TetMesh{}, model::measure_quality(TetMesh{Points(3, 0), Tets(4, 0)}, 1.0), {}, "a.obj"); }), "accepted");
+  EXPECT_NE(refusal([&] {
+              model::pass_gate(TetMesh{}, model::measure_quality(TetMesh{Points(3, 0), Tets(4, 0)}, 1.0), {},
+                               "a.obj");
+            }),
+            "accepted");
 }
 
 }  // namespace

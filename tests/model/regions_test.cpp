@@ -11,21 +11,27 @@ using namespace surfaces;
 
 namespace {
 
-model::RegionSource source(const std::string& name, const TriMesh& surface) { return {name, false, surface, from()}; }
+model::RegionSource source(const std::string& name, const TriMesh& surface) {
+  return {name, false, surface, from()};
+}
 
-std::vector<MaterialRegion> added(const TetMesh& tets, const std::vector<model::RegionSource>& sources, std::vector<MaterialRegion> before = {}) {
+std::vector<MaterialRegion> added(const TetMesh& tets, const std::vector<model::RegionSource>& sources,
+                                  std::vector<MaterialRegion> before = {}) {
   std::vector<double> volumes;
   return model::add_regions(tets, {}, std::move(before), sources, volumes);
 }
 
-Vec3 middle(const TetMesh& mesh, int tet) { return mesh.nodes(Eigen::all, mesh.tets.col(tet)).rowwise().mean(); }
+Vec3 middle(const TetMesh& mesh, int tet) {
+  return mesh.nodes(Eigen::all, mesh.tets.col(tet)).rowwise().mean();
+}
 
 std::string refused(const std::function<void()>& f) { return refusal(f); }
 
 TEST(Regions, AreTheTetrahedraWithTheirMiddleInside) {
   const TetMesh tets = mesh::ball(1.0, 0.12);
   std::vector<double> volumes;
-  const std::vector<MaterialRegion> regions = model::add_regions(tets, {}, {}, {source("core", ball(0.5, 20))}, volumes);
+  const std::vector<MaterialRegion> regions =
+      model::add_regions(tets, {}, {}, {source("core", ball(0.5, 20))}, volumes);
   ASSERT_EQ(regions.size(), 1u);
   std::vector<char> in(static_cast<std::size_t>(tets.tets.cols()), 0);
   for (const int tet : regions[0].tets) in[static_cast<std::size_t>(tet)] = 1;
@@ -33,8 +39,10 @@ TEST(Regions, AreTheTetrahedraWithTheirMiddleInside) {
   int near = 0;
   for (int t = 0; t < tets.tets.cols(); ++t) {
     const double r = middle(tets, t).norm();
-    if (std::abs(r - 0.5) < 0.004) ++near;  // the facets of the ball are that flat
-    else EXPECT_EQ(in[static_cast<std::size_t>(t)] != 0, r < 0.5) << r;
+    if (std::abs(r - 0.5) < 0.004)
+      ++near;  // the facets of the ball are that flat
+    else
+      EXPECT_EQ(in[static_cast<std::size_t>(t)] != 0, r < 0.5) << r;
     if (in[static_cast<std::size_t>(t)]) volume += mesh::tet_volume(tets, t);
   }
   EXPECT_LT(near, tets.tets.cols() / 20);
@@ -44,13 +52,17 @@ TEST(Regions, AreTheTetrahedraWithTheirMiddleInside) {
 
 TEST(Regions, TheLastSourceHasATetrahedron) {
   const TetMesh tets = mesh::ball(1.0, 0.2);
-  const std::vector<MaterialRegion> regions = added(tets, {source("shell", ball(2.0)), source("core", ball(0.5))});
+  const std::vector<MaterialRegion> regions =
+      added(tets, {source("shell", ball(2.0)), source("core", ball(0.5))});
   ASSERT_EQ(regions.size(), 2u);
   EXPECT_EQ(static_cast<Eigen::Index>(regions[0].tets.size() + regions[1].tets.size()), tets.tets.cols());
-  const std::vector<MaterialRegion> beside = added(tets, {source("core", ball(0.5))}, {{"left", {0, 1, 2}}, {"right", {3}}});
+  const std::vector<MaterialRegion> beside =
+      added(tets, {source("core", ball(0.5))}, {{"left", {0, 1, 2}}, {"right", {3}}});
   EXPECT_EQ(beside.back().tets, regions[1].tets);
-  for (const MaterialRegion& region : beside) EXPECT_TRUE(std::is_sorted(region.tets.begin(), region.tets.end()));
-  EXPECT_EQ(added(tets, {source("core", ball(0.5)), source("all", ball(2.0))}).size(), 1u) << "what is left with none goes";
+  for (const MaterialRegion& region : beside)
+    EXPECT_TRUE(std::is_sorted(region.tets.begin(), region.tets.end()));
+  EXPECT_EQ(added(tets, {source("core", ball(0.5)), source("all", ball(2.0))}).size(), 1u)
+      << "what is left with none goes";
 }
 
 TEST(Regions, OfTheBones) {
@@ -58,7 +70,8 @@ TEST(Regions, OfTheBones) {
   Skeleton skeleton;
   skeleton.bones = {{"a", -1, {0, 0, -0.5}, {0, 0, 0.5}, 0.3, 0.3}};
   std::vector<double> volumes;
-  const std::vector<MaterialRegion> regions = model::add_regions(tets, skeleton, {}, {{"bone", true, {}, {}}}, volumes);
+  const std::vector<MaterialRegion> regions =
+      model::add_regions(tets, skeleton, {}, {{"bone", true, {}, {}}}, volumes);
   ASSERT_EQ(regions.size(), 1u);
   for (const int tet : regions[0].tets) {
     const Vec3 p = middle(tets, tet), nearest(0, 0, std::clamp(p.z(), -0.5, 0.5));
@@ -71,10 +84,22 @@ TEST(Regions, OfTheBones) {
 
 TEST(Regions, Refusals) {
   const TetMesh tets = mesh::ball(1.0, 0.3);
-  EXPECT_NE(refused([&] { added(tets, {source("core", ball(0.5, 8, Vec3(3, 0, 0)))}); }).find("--region core=test.obj: no tetrahedron has its middle inside: the surface reaches from (2.5, "), std::string::npos);
-  EXPECT_NE(refused([&] { added(tets, {source("left", ball(0.5))}, {{"left", {0}}}); }).find("there is a region of this name already"), std::string::npos);
-  EXPECT_NE(refused([&] { added(tets, {{"bone", true, {}, {}}}); }).find("the model has no bones"), std::string::npos);
-  EXPECT_NE(refused([&] { added(tets, {source("core", without(ball(), [](const Vec3& p) { return p.z() > 0; }))}); }).find("hole"), std::string::npos);
+  EXPECT_NE(refused([&] { added(tets, {source("core", ball(0.5, 8, Vec3(3, 0, 0)))}); })
+                .find("--region core=test.obj: no tetrahedron has its middle inside: the surface reaches "
+                      "from (2.5, "),
+            std::string::npos);
+  EXPECT_NE(refused([&] {
+              added(tets, {source("left", ball(0.5))}, {{"left", {0}}});
+            }).find("there is a region of this name already"),
+            std::string::npos);
+  EXPECT_NE(refused([&] {
+              added(tets, {{"bone", true, {}, {}}});
+            }).find("the model has no bones"),
+            std::string::npos);
+  EXPECT_NE(refused([&] {
+              added(tets, {source("core", without(ball(), [](const Vec3& p) { return p.z() > 0; }))});
+            }).find("hole"),
+            std::string::npos);
 }
 
 TEST(Regions, GoThroughTheWholeOfIt) {
@@ -94,7 +119,8 @@ TEST(Regions, GoThroughTheWholeOfIt) {
   ASSERT_EQ(taken.file.model.regions.size(), 2u);
   ASSERT_EQ(taken.regions.size(), 2u);
   EXPECT_EQ(taken.regions[1].name, "core");
-  EXPECT_NEAR(taken.regions[1].surface_volume, 1e-9 * surfaces::volume(ball(0.4)), 1e-21) << "scaled as the body is";
+  EXPECT_NEAR(taken.regions[1].surface_volume, 1e-9 * surfaces::volume(ball(0.4)), 1e-21)
+      << "scaled as the body is";
   options.regions.clear();
   options.remesh = true;
   options.tetrahedra.tetrahedra = 1500;

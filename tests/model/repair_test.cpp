@@ -35,7 +35,9 @@ TEST(Repair, JoinsLooseTriangles) {
 
 TEST(Repair, JoinsSeamsThatRoundingLeftOpen) {
   TriMesh mesh = loose(ball());
-  for (Eigen::Index i = 0; i < mesh.vertices.size(); ++i) mesh.vertices.data()[i] = static_cast<float>(mesh.vertices.data()[i]) * (1 + 1e-7 * std::sin(static_cast<double>(i)));
+  for (Eigen::Index i = 0; i < mesh.vertices.size(); ++i)
+    mesh.vertices.data()[i] =
+        static_cast<float>(mesh.vertices.data()[i]) * (1 + 1e-7 * std::sin(static_cast<double>(i)));
   const model::RepairedSurface result = repaired(mesh);
   EXPECT_EQ(result.surface.vertices.cols(), ball().vertices.cols());
   EXPECT_TRUE(noted(result, "seams"));
@@ -44,7 +46,8 @@ TEST(Repair, JoinsSeamsThatRoundingLeftOpen) {
 TEST(Repair, TurnsFlippedFaces) {
   TriMesh mesh = ball();
   int planted = 0;
-  for (Eigen::Index f = 0; f < mesh.faces.cols(); f += 7, ++planted) std::swap(mesh.faces(1, f), mesh.faces(2, f));
+  for (Eigen::Index f = 0; f < mesh.faces.cols(); f += 7, ++planted)
+    std::swap(mesh.faces(1, f), mesh.faces(2, f));
   const model::RepairedSurface result = repaired(mesh);
   EXPECT_NEAR(volume(result.surface), volume(ball()), 1e-12);
   EXPECT_TRUE(noted(result, std::to_string(planted) + " faces were turned")) << result.notes.size();
@@ -74,7 +77,8 @@ TEST(Repair, ClosesASmallHoleByASmoothPatch) {
   ASSERT_LT(open.faces.cols(), ball().faces.cols());
   const model::RepairedSurface result = repaired(open);
   EXPECT_TRUE(noted(result, "1 holes were closed"));
-  // The cap that went has a volume of pi h^2 (3 - h) / 3 = 0.0077; a flat lid loses it, a smooth patch hardly.
+  // The cap that went has a volume of pi h^2 (3 - h) / 3 = 0.0077; a flat lid loses it, a smooth patch
+  // hardly.
   EXPECT_NEAR(volume(result.surface), volume(ball()), 0.004);
 }
 
@@ -94,7 +98,8 @@ TEST(Repair, RefusesASheet) {
 TEST(Repair, RefusesNumbersThatAreNotFinite) {
   TriMesh mesh = ball();
   mesh.vertices(1, 17) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(refusal([&] { repaired(mesh); }), "test.obj: vertex 17: y = nan is not a finite length within 1e30 m; write the surface again");
+  EXPECT_EQ(refusal([&] { repaired(mesh); }),
+            "test.obj: vertex 17: y = nan is not a finite length within 1e30 m; write the surface again");
 }
 
 TEST(Repair, RefusesASurfaceWithoutAnInside) {

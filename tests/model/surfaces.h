@@ -58,7 +58,9 @@ inline TriMesh loose(const TriMesh& mesh) {
 
 inline mesh::Provenance from() { return mesh::surface_provenance("test.obj"); }
 
-inline model::RepairedSurface repaired(const TriMesh& mesh, const model::RepairOptions& options = {}) { return model::repair(mesh, from(), options); }
+inline model::RepairedSurface repaired(const TriMesh& mesh, const model::RepairOptions& options = {}) {
+  return model::repair(mesh, from(), options);
+}
 
 /// The message of the Error that `work` throws; "accepted" where it throws none.
 template <class Work>

@@ -58,7 +58,8 @@ TEST(Tetrahedralise, ProgressNeverRunsBack) {
 }
 
 TEST(Tetrahedralise, SameSurfaceSameBits) {
-  const model::Tetrahedra one = model::tetrahedralise(ball(), number(800)), two = model::tetrahedralise(ball(), number(800));
+  const model::Tetrahedra one = model::tetrahedralise(ball(), number(800)),
+                          two = model::tetrahedralise(ball(), number(800));
   EXPECT_EQ(one.mesh.nodes, two.mesh.nodes);
   EXPECT_EQ(one.mesh.tets, two.mesh.tets);
 }
@@ -76,7 +77,8 @@ TEST(Tetrahedralise, KeepsTheCreasesOfABox) {
   for (const double x : {-1.0, 1.0})
     for (const double y : {-0.5, 0.5})
       for (const double z : {-0.5, 0.5})
-        for (Eigen::Index i = 0; i < made.mesh.nodes.cols(); ++i) corners += (made.mesh.nodes.col(i) - Vec3(x, y, z)).norm() < 1e-9;
+        for (Eigen::Index i = 0; i < made.mesh.nodes.cols(); ++i)
+          corners += (made.mesh.nodes.col(i) - Vec3(x, y, z)).norm() < 1e-9;
   EXPECT_EQ(corners, 8);
   for (Eigen::Index i = 0; i < boundary.surface.vertices.cols(); ++i) {
     const Vec3 p = boundary.surface.vertices.col(i).cwiseAbs();
@@ -91,7 +93,8 @@ TEST(Tetrahedralise, KeepsGivenLines) {
   const model::Tetrahedra made = model::tetrahedralise(box(), options);
   for (const Vec3& corner : {a, b, c, d}) {
     double nearest = 1;
-    for (Eigen::Index i = 0; i < made.mesh.nodes.cols(); ++i) nearest = std::min(nearest, (made.mesh.nodes.col(i) - corner).norm());
+    for (Eigen::Index i = 0; i < made.mesh.nodes.cols(); ++i)
+      nearest = std::min(nearest, (made.mesh.nodes.col(i) - corner).norm());
     EXPECT_LT(nearest, 1e-9);
   }
   EXPECT_LE(sound(made.mesh, 2.0).volume_error, 0.01);
@@ -114,12 +117,15 @@ TEST(Tetrahedralise, FillsAnImplicitBall) {
 }
 
 TEST(Tetrahedralise, RefusesWhatCannotBe) {
-  EXPECT_EQ(refusal([] { model::tetrahedralise(ball(), number(3)); }), "--tetrahedra 3 must lie in [20, 20000000]");
+  EXPECT_EQ(refusal([] { model::tetrahedralise(ball(), number(3)); }),
+            "--tetrahedra 3 must lie in [20, 20000000]");
   model::TetrahedraOptions tiny;
   tiny.element_size_m = 1e-6;
-  EXPECT_NE(refusal([&] { model::tetrahedralise(ball(), tiny); }).find("is the unit right?"), std::string::npos);
+  EXPECT_NE(refusal([&] { model::tetrahedralise(ball(), tiny); }).find("is the unit right?"),
+            std::string::npos);
   const auto outside = [](const Vec3& p) { return p.norm() + 1.0; };
-  EXPECT_EQ(refusal([&] { model::tetrahedralise(outside, Vec3::Zero(), 1.0, number(100)); }), "the implicit function is 1 at the centre (0, 0, 0) m, must be negative inside");
+  EXPECT_EQ(refusal([&] { model::tetrahedralise(outside, Vec3::Zero(), 1.0, number(100)); }),
+            "the implicit function is 1 at the centre (0, 0, 0) m, must be negative inside");
 }
 
 }  // namespace

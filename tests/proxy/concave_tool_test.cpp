@@ -13,7 +13,8 @@ using namespace pruning;
 
 namespace {
 
-/// A torus about a unit ball that is wider than its hole by 2 kPress, each point of the ring's inside pressing alike.
+/// A torus about a unit ball that is wider than its hole by 2 kPress, each point of the ring's inside
+/// pressing alike.
 constexpr double kTube = 0.5, kPress = 0.05, kRing = 1.0 + kTube - kPress, kGap = 0.02;
 const TriMesh& ring() {
   static const TriMesh surface = tools::torus(kRing, kTube, 120, 60);
@@ -32,7 +33,8 @@ LayeredModel block(const Vec3& size, int fine) {
   LayeredModel model;
   model.tets = mesh::box(size, {4, 4, 4});
   const Vec3 cells = fine * size;
-  model.skin = mesh::box_surface(size, {static_cast<int>(cells.x()), static_cast<int>(cells.y()), static_cast<int>(cells.z())});
+  model.skin = mesh::box_surface(
+      size, {static_cast<int>(cells.x()), static_cast<int>(cells.y()), static_cast<int>(cells.z())});
   model.embedding = mesh::embed(model.tets, model.skin.vertices);
   model.proxies = proxy::decompose(model, {.count = 40});
   return model;
@@ -47,7 +49,9 @@ std::set<int> near_faces(const TriMesh& skin, const Points& points, const Near& 
 }
 
 Vec3 middle_of(const TriMesh& skin, const Points& points, int face) {
-  return (points.col(skin.faces(0, face)) + points.col(skin.faces(1, face)) + points.col(skin.faces(2, face))) / 3.0;
+  return (points.col(skin.faces(0, face)) + points.col(skin.faces(1, face)) +
+          points.col(skin.faces(2, face))) /
+         3.0;
 }
 
 /// A block about the origin, moved, against the fork that tests/proxy/tools.h describes.
@@ -57,7 +61,10 @@ struct Forked {
   proxy::ProxySet tool;
   proxy::Pruner pruner;
   Forked(const Vec3& size, const proxy::SolidOptions& options)
-      : model(block(size, 10)), body(model), tool(proxy::rigid_proxies(tools::fork(8), options)), pruner(body.set, tool) {}
+      : model(block(size, 10)),
+        body(model),
+        tool(proxy::rigid_proxies(tools::fork(8), options)),
+        pruner(body.set, tool) {}
   std::span<const proxy::ContactRegion> at(const Vec3& place) {
     body.place({Quat::Identity(), place}, 0.0, 0);
     return pruner.query(kGap);
@@ -70,22 +77,27 @@ double distance_to_fork(const Vec3& x) {
     const Vec3 beyond = (x - middle).cwiseAbs() - half;
     return beyond.maxCoeff() <= 0.0 ? beyond.maxCoeff() : beyond.cwiseMax(0.0).norm();
   };
-  return std::min({box(Vec3(-1, 0, 1.5), Vec3(0.5, 0.5, 1.5)), box(Vec3(1, 0, 1.5), Vec3(0.5, 0.5, 1.5)), box(Vec3(0, 0, 2.5), Vec3(1.5, 0.5, 0.5))});
+  return std::min({box(Vec3(-1, 0, 1.5), Vec3(0.5, 0.5, 1.5)), box(Vec3(1, 0, 1.5), Vec3(0.5, 0.5, 1.5)),
+                   box(Vec3(0, 0, 2.5), Vec3(1.5, 0.5, 0.5))});
 }
 
-double share(const std::set<int>& faces, const TriMesh& skin) { return static_cast<double>(faces.size()) / static_cast<double>(skin.faces.cols()); }
+double share(const std::set<int>& faces, const TriMesh& skin) {
+  return static_cast<double>(faces.size()) / static_cast<double>(skin.faces.cols());
+}
 
 }  // namespace
 
-// Nothing near is lost, on either side; each region looks across the ring where it is: its normal is minus the mean radius of what it holds of the ball, and no point
-// that touches is seen at a more glancing angle than the merge angle, the width of a proxy and what is near but does not touch explain.
+// Nothing near is lost, on either side; each region looks across the ring where it is: its normal is minus
+// the mean radius of what it holds of the ball, and no point that touches is seen at a more glancing angle
+// than the merge angle, the width of a proxy and what is near but does not touch explain.
 TEST(ConcaveTool, ATorusAroundABallTouchesAllAround) {
   const LayeredModel model = ball();
   Placed body(model);
   proxy::ProxySet tool = proxy::rigid_proxies(ring());
   EXPECT_GE(tool.size(), 6);
   proxy::Pruner pruner(body.set, tool);
-  const Pose turned{Quat(0.9, 0.1, -0.3, 0.2).normalized(), Vec3(0.3, 2.0, -1.0)};  // both, so that nothing is aligned
+  // both, so that nothing is aligned
+  const Pose turned{Quat(0.9, 0.1, -0.3, 0.2).normalized(), Vec3(0.3, 2.0, -1.0)};
   body.place(turned, 0.0, 0);
   tool.update(turned);
   const auto regions = pruner.query(kGap);
@@ -97,14 +109,17 @@ TEST(ConcaveTool, ATorusAroundABallTouchesAllAround) {
     const Vec3 x = back * world;
     return std::hypot(std::hypot(x.x(), x.y()) - kRing, x.z()) - kTube;
   };
-  const auto near_a = near_faces(model.skin, body.skin, [&](const Vec3& x) { return from_ring(x) < kGap - kSag; });
-  const auto near_b = near_faces(ring(), ring().vertices, [&](const Vec3& x) { return x.norm() < 1.0 + kGap - 0.01; });
+  const auto near_a =
+      near_faces(model.skin, body.skin, [&](const Vec3& x) { return from_ring(x) < kGap - kSag; });
+  const auto near_b =
+      near_faces(ring(), ring().vertices, [&](const Vec3& x) { return x.norm() < 1.0 + kGap - 0.01; });
   EXPECT_GT(near_a.size(), 500u);
   EXPECT_GT(near_b.size(), 500u);
   EXPECT_TRUE(holds(found.a, near_a));
   EXPECT_TRUE(holds(found.b, near_b));
 
-  const auto touching = near_faces(model.skin, body.skin, [&](const Vec3& x) { return from_ring(x) < -kSag; });
+  const auto touching =
+      near_faces(model.skin, body.skin, [&](const Vec3& x) { return from_ring(x) < -kSag; });
   EXPECT_GE(regions.size(), 3u);  // at most 2 x 60 degrees each
   std::size_t seen = 0;
   for (const auto& region : regions) {
@@ -129,7 +144,8 @@ TEST(ConcaveTool, ATorusAroundABallTouchesAllAround) {
   proxy::Pruner of_one(body.set, one);
   const Handed all = handed(of_one.query(kGap));
   EXPECT_TRUE(holds(all.a, near_a));
-  EXPECT_LT(share(found.a, model.skin), 0.6 * share(all.a, model.skin)) << "one hull closes the hole, and all of the ball's belt is in it";
+  EXPECT_LT(share(found.a, model.skin), 0.6 * share(all.a, model.skin))
+      << "one hull closes the hole, and all of the ball's belt is in it";
   RecordProperty("ball_handed_percent_of_parts", static_cast<int>(100 * share(found.a, model.skin)));
   RecordProperty("ball_handed_percent_of_one_hull", static_cast<int>(100 * share(all.a, model.skin)));
   RecordProperty("ball_near_percent", static_cast<int>(100 * share(near_a, model.skin)));
@@ -141,7 +157,8 @@ TEST(ConcaveTool, AForkStandsOnItsProngs) {
   const Vec3 place(0, 0, -0.5 + 0.03);
   const auto regions = parts.at(place);
   const Handed found = handed(regions), all = handed(one.at(place));
-  const auto near = near_faces(parts.model.skin, parts.body.skin, [](const Vec3& x) { return distance_to_fork(x) < kGap; });
+  const auto near =
+      near_faces(parts.model.skin, parts.body.skin, [](const Vec3& x) { return distance_to_fork(x) < kGap; });
   EXPECT_GT(near.size(), 100u);
   EXPECT_TRUE(holds(found.a, near));
   ASSERT_GE(regions.size(), 1u);
@@ -149,18 +166,21 @@ TEST(ConcaveTool, AForkStandsOnItsProngs) {
   EXPECT_LE(found.a.size(), all.a.size());
 }
 
-// A narrow block in the gap: pressed against the bridge it is seen from above; against a prong, from that side.  As one hull the fork has swallowed it, and all of
-// its skin is handed on.
+// A narrow block in the gap: pressed against the bridge it is seen from above; against a prong, from that
+// side.  As one hull the fork has swallowed it, and all of its skin is handed on.
 TEST(ConcaveTool, BetweenTheProngsEachWallIsItsOwn) {
   const Vec3 size(0.8, 2.0, 1.6);
   Forked parts(size, {}), one(size, {.count = 1});
   struct {
     Vec3 place, normal;
-  } const cases[] = {{Vec3(0, 0, 2.0 - 0.8 + 0.03), -Vec3::UnitZ()}, {Vec3(0.13, 0, 1.0), -Vec3::UnitX()}, {Vec3(-0.13, 0, 1.0), Vec3::UnitX()}};
+  } const cases[] = {{Vec3(0, 0, 2.0 - 0.8 + 0.03), -Vec3::UnitZ()},
+                     {Vec3(0.13, 0, 1.0), -Vec3::UnitX()},
+                     {Vec3(-0.13, 0, 1.0), Vec3::UnitX()}};
   for (const auto& c : cases) {
     const auto regions = parts.at(c.place);
     const Handed found = handed(regions), all = handed(one.at(c.place));
-    const auto near = near_faces(parts.model.skin, parts.body.skin, [](const Vec3& x) { return distance_to_fork(x) < kGap; });
+    const auto near = near_faces(parts.model.skin, parts.body.skin,
+                                 [](const Vec3& x) { return distance_to_fork(x) < kGap; });
     EXPECT_GT(near.size(), 20u);
     EXPECT_TRUE(holds(found.a, near));
     EXPECT_TRUE(holds(all.a, near));

@@ -39,7 +39,8 @@ TriMesh hollow_ball() {
   out.vertices.rightCols(inner.vertices.cols()) = inner.vertices;
   out.faces.conservativeResize(3, m + inner.faces.cols());
   for (Eigen::Index f = 0; f < inner.faces.cols(); ++f)
-    out.faces.col(m + f) = Eigen::Vector3i(inner.faces(0, f), inner.faces(2, f), inner.faces(1, f)).array() + static_cast<int>(n);
+    out.faces.col(m + f) = Eigen::Vector3i(inner.faces(0, f), inner.faces(2, f), inner.faces(1, f)).array() +
+                           static_cast<int>(n);
   return out;
 }
 
@@ -49,7 +50,8 @@ bool is_inside(const TriMesh& surface, const Vec3& p) {
   return mesh::winding_number(surface, all, p) > 0.5;
 }
 
-/// Distance of a point from the nearest of the hulls, each inflated as the set says; not positive in one of them.
+/// Distance of a point from the nearest of the hulls, each inflated as the set says; not positive in one of
+/// them.
 double outside_all(const proxy::ProxySet& set, const std::vector<ProxyHull>& hulls, const Vec3& p) {
   double nearest = 1e300;
   for (int i = 0; i < set.size(); ++i) {
@@ -69,18 +71,18 @@ proxy::ProxySet set_of(const TriMesh& surface, const std::vector<ProxyHull>& hul
 std::string error_of(const TriMesh& surface, const proxy::SolidOptions& options) {
   try {
     decompose_solid(surface, options);
-  } catch (const Error& e) {
-    return e.what();
-  }
+  } catch (const Error& e) { return e.what(); }
   return "nothing was refused";
 }
 
 }  // namespace
 
-// What a pruner may leave out hangs on this: points drawn at random inside, most of them far from the surface, lie in an inflated hull, however many hulls.
+// What a pruner may leave out hangs on this: points drawn at random inside, most of them far from the
+// surface, lie in an inflated hull, however many hulls.
 TEST(DecomposeSolid, CoversTheInside) {
   std::mt19937 random(3);
-  const TriMesh solids[] = {turned(torus(1.0, 0.3, 40, 20)), turned(fork(4)), slotted_cube(), turned(slotted_cube()), hollow_ball()};
+  const TriMesh solids[] = {turned(torus(1.0, 0.3, 40, 20)), turned(fork(4)), slotted_cube(),
+                            turned(slotted_cube()), hollow_ball()};
   for (const TriMesh& solid : solids) {
     const Vec3 low = solid.vertices.rowwise().minCoeff(), high = solid.vertices.rowwise().maxCoeff();
     std::vector<Vec3> points;
@@ -102,14 +104,16 @@ TEST(DecomposeSolid, CoversTheInside) {
   }
 }
 
-// As many segments as the tolerance asks for: over a segment of angle t the hull leaves the inner side along the chord, (R - r)(1 - cos(t/2)) off, which must be
-// below the tolerance, and need not be below a quarter of it as a cut halves t.  The hole is left open.
+// As many segments as the tolerance asks for: over a segment of angle t the hull leaves the inner side along
+// the chord, (R - r)(1 - cos(t/2)) off, which must be below the tolerance, and need not be below a quarter of
+// it as a cut halves t.  The hole is left open.
 TEST(DecomposeSolid, ATorusBecomesARing) {
   constexpr double R = 1.0, r = 0.3, tolerance = 0.02;
   const TriMesh ring = turned(torus(R, r, 96, 32));
   proxy::DecomposeReport report;
   const auto hulls = decompose_solid(ring, {.tolerance = tolerance}, &report);
-  const double size = report.skin_size, most = 2 * std::acos(1.0 - tolerance * size / (R - r)), least = 2 * std::acos(1.0 - 0.25 * tolerance * size / (R - r));
+  const double size = report.skin_size, most = 2 * std::acos(1.0 - tolerance * size / (R - r)),
+               least = 2 * std::acos(1.0 - 0.25 * tolerance * size / (R - r));
   EXPECT_GE(static_cast<double>(hulls.size()), std::floor(2 * M_PI / most));
   EXPECT_LE(static_cast<double>(hulls.size()), std::ceil(2 * M_PI / least));
   EXPECT_LT(report.hull_volume, 1.15 * report.skin_volume);
@@ -117,12 +121,16 @@ TEST(DecomposeSolid, ATorusBecomesARing) {
   EXPECT_LT(report.largest_outside, 0.02 * size);
   const proxy::ProxySet set = set_of(ring, hulls);
   for (int i = 0; i < 24; ++i)
-    EXPECT_GT(outside_all(set, hulls, kTurn * Vec3(0.5 * std::cos(i), 0.5 * std::sin(i), 0.0) + Vec3(3, -1, 2)), 0.05) << i;
+    EXPECT_GT(
+        outside_all(set, hulls, kTurn * Vec3(0.5 * std::cos(i), 0.5 * std::sin(i), 0.0) + Vec3(3, -1, 2)),
+        0.05)
+        << i;
   const auto one = decompose_solid(ring, {.count = 1});
   EXPECT_LT(outside_all(set_of(ring, one), one, Vec3(3, -1, 2)), 0.0) << "one hull closes it";
 }
 
-// Planes through the fork's own corners: its parts are convex, so the hulls have its volume, 7, whichever way it is turned; the gap between the prongs is open.
+// Planes through the fork's own corners: its parts are convex, so the hulls have its volume, 7, whichever way
+// it is turned; the gap between the prongs is open.
 TEST(DecomposeSolid, AForkBecomesItsParts) {
   for (const TriMesh& tool : {fork(8), turned(fork(8))}) {
     proxy::DecomposeReport report;
@@ -140,7 +148,9 @@ TEST(DecomposeSolid, AForkBecomesItsParts) {
 }
 
 TEST(DecomposeSolid, WhatIsConvexStaysWhole) {
-  for (const TriMesh& solid : {mesh::sphere(0.02, 8), mesh::box_surface(Vec3(1, 2, 3), {1, 2, 3}), mesh::cylinder_surface(0.1, 1.0, 0.05), turned(mesh::box_surface(Vec3(1, 1, 1), {5, 5, 5}))}) {
+  for (const TriMesh& solid :
+       {mesh::sphere(0.02, 8), mesh::box_surface(Vec3(1, 2, 3), {1, 2, 3}),
+        mesh::cylinder_surface(0.1, 1.0, 0.05), turned(mesh::box_surface(Vec3(1, 1, 1), {5, 5, 5}))}) {
     const auto hulls = decompose_solid(solid);
     EXPECT_EQ(hulls.size(), 1u);
     EXPECT_LE(hulls[0].corners.cols(), 32);
@@ -148,7 +158,8 @@ TEST(DecomposeSolid, WhatIsConvexStaysWhole) {
 }
 
 TEST(DecomposeSolid, TheSameSurfaceGivesTheSameHulls) {
-  const auto first = decompose_solid(torus(1.0, 0.3, 40, 20)), second = decompose_solid(torus(1.0, 0.3, 40, 20));
+  const auto first = decompose_solid(torus(1.0, 0.3, 40, 20)),
+             second = decompose_solid(torus(1.0, 0.3, 40, 20));
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t p = 0; p < first.size(); ++p) {
     EXPECT_EQ(first[p].members, second[p].members);

@@ -18,18 +18,18 @@ namespace {
 std::string error_of(const LayeredModel& model, const proxy::DecomposeOptions& options) {
   try {
     decompose(model, options);
-  } catch (const Error& e) {
-    return e.what();
-  }
+  } catch (const Error& e) { return e.what(); }
   return "nothing was refused";
 }
 
 }  // namespace
 
-// Hulls of the cube's corners with points inside, of a square, a line and a point: corners, planes and volume are known.
+// Hulls of the cube's corners with points inside, of a square, a line and a point: corners, planes and volume
+// are known.
 TEST(ConvexHull, SetsOfEveryDimension) {
   Points cube(3, 10);
-  for (int i = 0; i < 8; ++i) cube.col(i) = Vec3(i & 1, (i >> 1) & 1, (i >> 2) & 1) * 1e-3 + Vec3::Constant(7.0);
+  for (int i = 0; i < 8; ++i)
+    cube.col(i) = Vec3(i & 1, (i >> 1) & 1, (i >> 2) & 1) * 1e-3 + Vec3::Constant(7.0);
   cube.col(8) = Vec3::Constant(7.0005);
   cube.col(9) = Vec3(7.0002, 7.0009, 7.0001);
   auto hull = proxy::convex_hull(cube);
@@ -60,7 +60,8 @@ TEST(ConvexHull, SetsOfEveryDimension) {
   EXPECT_THROW(proxy::convex_hull(Points(3, 0)), InternalError);
 }
 
-// With enough corners the hull is the whole one; with fewer it misses less and less, never by more than the one before.
+// With enough corners the hull is the whole one; with fewer it misses less and less, never by more than the
+// one before.
 TEST(ConvexHull, GreedyCornersMissLessAndLess) {
   const Points points = mesh::sphere(1.0, 8).vertices;
   double before = 1.0;
@@ -85,30 +86,37 @@ TEST(Decompose, EveryVertexFaceAndTetrahedronHasAProxy) {
     whole.proxies = decompose(model, {.count = count}, &report);
     EXPECT_LE(static_cast<int>(whole.proxies.size()), count);
     EXPECT_GE(static_cast<int>(whole.proxies.size()), count - count / 10);
-    const auto faces = proxy::owner_of_faces(model.skin.faces, model.skin.vertices.cols(), whole.proxies);  // throws for a lost one
+    // throws for a lost one
+    const auto faces = proxy::owner_of_faces(model.skin.faces, model.skin.vertices.cols(), whole.proxies);
     EXPECT_EQ(std::set<int>(faces.begin(), faces.end()).size(), whole.proxies.size());
-    const auto tets = proxy::owner_of_tets(model.tets.tets, model.tets.nodes.cols(), model.embedding, proxy::owner_of_vertices(model.skin.vertices.cols(), whole.proxies));
+    const auto tets =
+        proxy::owner_of_tets(model.tets.tets, model.tets.nodes.cols(), model.embedding,
+                             proxy::owner_of_vertices(model.skin.vertices.cols(), whole.proxies));
     std::vector<proxy::ConvexHull> hulls;
     for (const auto& p : whole.proxies) {
       EXPECT_TRUE(std::is_sorted(p.members.begin(), p.members.end()));
       EXPECT_LE(p.corners.cols(), 32);
       EXPECT_EQ(p.bone, -1);
       hulls.push_back(proxy::convex_hull(p.corners));
-      EXPECT_EQ(static_cast<Eigen::Index>(hulls.back().corners.size()), p.corners.cols());  // in convex position
+      // in convex position
+      EXPECT_EQ(static_cast<Eigen::Index>(hulls.back().corners.size()), p.corners.cols());
     }
     double outside = 0.0;
     for (std::size_t t = 0; t < tets.size(); ++t)
       for (int k = 0; k < 4; ++k)
-        outside = std::max(outside, hulls[static_cast<std::size_t>(tets[t])].beyond(model.tets.nodes.col(model.tets.tets(k, static_cast<Eigen::Index>(t)))));
+        outside = std::max(outside, hulls[static_cast<std::size_t>(tets[t])].beyond(model.tets.nodes.col(
+                                        model.tets.tets(k, static_cast<Eigen::Index>(t)))));
     for (std::size_t p = 0; p < hulls.size(); ++p)
       for (const int v : whole.proxies[p].members) {
         outside = std::max(outside, hulls[p].beyond(model.skin.vertices.col(v)));
         EXPECT_LE(hulls[p].beyond(model.skin.vertices.col(v)), report.hulls[p].outside + 1e-12);
       }
-    // FACTS section 10: 0.01-0.02 R outside for 16 to 32 hulls of 32 vertices; one hull has to make do with 32 for the whole ball
+    // FACTS section 10: 0.01-0.02 R outside for 16 to 32 hulls of 32 vertices; one hull has to make do with
+    // 32 for the whole ball
     EXPECT_LT(outside, count == 1 ? 0.2 : count == 8 ? 0.06 : 0.02) << count;
     EXPECT_GT(report.hull_volume, 0.8 * report.skin_volume);
-    EXPECT_LT(report.hull_volume, 2.2 * report.skin_volume);  // a wedge of diameter 0.46 takes whole elements of 0.2 in: (0.46 + 0.2)^2 / 0.46^2 = 2.06
+    // a wedge of diameter 0.46 takes whole elements of 0.2 in: (0.46 + 0.2)^2 / 0.46^2 = 2.06
+    EXPECT_LT(report.hull_volume, 2.2 * report.skin_volume);
     EXPECT_GE(report.largest_gap, 0.0);
     EXPECT_LT(report.largest_gap, 0.15);
   }

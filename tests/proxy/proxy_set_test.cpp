@@ -32,7 +32,8 @@ std::vector<Deformation> deformations() {
   };
   const auto twist = [](const Vec3& x, double rate) {
     const double angle = rate * x.z();
-    return Vec3(std::cos(angle) * x.x() - std::sin(angle) * x.y(), std::sin(angle) * x.x() + std::cos(angle) * x.y(), x.z());
+    return Vec3(std::cos(angle) * x.x() - std::sin(angle) * x.y(),
+                std::sin(angle) * x.x() + std::cos(angle) * x.y(), x.z());
   };
   return {{"rest", [](const Vec3& x) { return x; }},
           {"moved far", [](const Vec3& x) { return Vec3(x + Vec3(1000, -2000, 500)); }},
@@ -44,7 +45,10 @@ std::vector<Deformation> deformations() {
           {"mirrored", [](const Vec3& x) { return Vec3(x.x(), -x.y(), x.z()); }},
           {"stretched", [](const Vec3& x) { return Vec3(5 * x.x(), x.y(), x.z()); }},
           {"twisted", [=](const Vec3& x) { return twist(x, 3.0); }},
-          {"bent", [](const Vec3& x) { return Vec3((2 + x.y()) * std::sin(x.x() / 2), (2 + x.y()) * std::cos(x.x() / 2) - 2, x.z()); }},
+          {"bent",
+           [](const Vec3& x) {
+             return Vec3((2 + x.y()) * std::sin(x.x() / 2), (2 + x.y()) * std::cos(x.x() / 2) - 2, x.z());
+           }},
           {"turned inside out", [](const Vec3& x) { return Vec3(x / std::max(0.1, x.squaredNorm())); }},
           {"scattered", [=](const Vec3&) { return noise(3.0); }},
           {"exploded", [=](const Vec3& x) { return Vec3(100 * x + noise(50.0)); }}};
@@ -70,8 +74,8 @@ LayeredModel decomposed(LayeredModel model, int count) {
 
 }  // namespace
 
-// The promise: whatever the nodes do, every vertex of the skin is in the inflated hull of each of its proxies, in its box, and in its patches' balls; and every
-// tetrahedron in its owner's.
+// The promise: whatever the nodes do, every vertex of the skin is in the inflated hull of each of its
+// proxies, in its box, and in its patches' balls; and every tetrahedron in its owner's.
 TEST(ProxySet, NothingLeavesItsProxyUnderAnyDeformation) {
   LayeredModel bar = bar_on_bones({8, 3, 2});
   for (Eigen::Index n = 0; n < bar.tets.nodes.cols(); ++n) {
@@ -91,25 +95,33 @@ TEST(ProxySet, NothingLeavesItsProxyUnderAnyDeformation) {
         for (int p = 0; p < set.size(); ++p) {
           const auto& state = set.state(p);
           for (const int v : model.proxies[static_cast<std::size_t>(p)].members) {
-            ASSERT_LE(distance_to(set, p, skin.col(v)), state.inflation + room) << how.name << ", proxy " << p << ", vertex " << v;
-            ASSERT_TRUE((skin.col(v).array() >= state.low.array() - room).all() && (skin.col(v).array() <= state.high.array() + room).all()) << how.name;
+            ASSERT_LE(distance_to(set, p, skin.col(v)), state.inflation + room)
+                << how.name << ", proxy " << p << ", vertex " << v;
+            ASSERT_TRUE((skin.col(v).array() >= state.low.array() - room).all() &&
+                        (skin.col(v).array() <= state.high.array() + room).all())
+                << how.name;
             ++checked;
           }
         }
         for (const auto& patch : set.patches()) {
           const proxy::Ball ball = set.ball(patch);
           for (const int f : set.faces(patch))
-            for (int k = 0; k < 3; ++k) ASSERT_LE((skin.col(model.skin.faces(k, f)) - ball.centre).norm(), ball.radius + room) << how.name;
+            for (int k = 0; k < 3; ++k)
+              ASSERT_LE((skin.col(model.skin.faces(k, f)) - ball.centre).norm(), ball.radius + room)
+                  << how.name;
         }
         const auto root = set.tree()[0];
         for (Eigen::Index n = 0; n < nodes.cols(); ++n)
-          ASSERT_TRUE((nodes.col(n).array() >= root.low.array() - room).all() && (nodes.col(n).array() <= root.high.array() + room).all()) << how.name;
+          ASSERT_TRUE((nodes.col(n).array() >= root.low.array() - room).all() &&
+                      (nodes.col(n).array() <= root.high.array() + room).all())
+              << how.name;
       }
     }
   EXPECT_GT(checked, 50000);
 }
 
-// Affine motions cost the affine follower nothing, and rigid ones neither; a stretch by 1 + s costs the rigid one about s times the proxy's half size.
+// Affine motions cost the affine follower nothing, and rigid ones neither; a stretch by 1 + s costs the rigid
+// one about s times the proxy's half size.
 TEST(ProxySet, WhatFollowsExactlyInflatesNoMore) {
   const LayeredModel model = decomposed(bumpy_ball(1.0, 0.3, 14), 12);
   ProxySet affine(model), rigid(model, {.follow = Follow::kRigid});
@@ -135,13 +147,15 @@ TEST(ProxySet, WhatFollowsExactlyInflatesNoMore) {
     EXPECT_NEAR(affine.state(p).inflation, 1.2 * rest[static_cast<std::size_t>(p)], 1e-9);
     const auto& corners = model.proxies[static_cast<std::size_t>(p)].corners;
     const double extent = corners.row(0).maxCoeff() - corners.row(0).minCoeff();
-    EXPECT_GT(rigid.state(p).inflation - rest[static_cast<std::size_t>(p)], 0.2 * 0.4 * extent);  // the farther end from the nodes' middle
+    // the farther end from the nodes' middle
+    EXPECT_GT(rigid.state(p).inflation - rest[static_cast<std::size_t>(p)], 0.2 * 0.4 * extent);
   }
 }
 
-// A bend, strains up to a half: the bound against what it bounds, the largest distance of a member from where the hull's motion takes it.  The map's second
-// derivative is at most 1.25 (3/4 along x twice, 1/2 along x and y), so over a proxy of diameter L an affine map comes within 1.25 L^2 / 8 of it (Taylor, from
-// the middle); a rotation also pays for the strain.
+// A bend, strains up to a half: the bound against what it bounds, the largest distance of a member from where
+// the hull's motion takes it.  The map's second derivative is at most 1.25 (3/4 along x twice, 1/2 along x
+// and y), so over a proxy of diameter L an affine map comes within 1.25 L^2 / 8 of it (Taylor, from the
+// middle); a rotation also pays for the strain.
 TEST(ProxySet, BoundsAreTightForModerateDeformations) {
   const LayeredModel model = decomposed(bumpy_ball(1.0, 0.2, 24), 60);
   ProxySet affine(model), rigid(model, {.follow = Follow::kRigid});
@@ -159,18 +173,22 @@ TEST(ProxySet, BoundsAreTightForModerateDeformations) {
         const auto& state = set->state(p);
         double moved = 0.0;
         for (const int v : model.proxies[static_cast<std::size_t>(p)].members)
-          moved = std::max(moved, (skin.col(v) - state.linear * model.skin.vertices.col(v) - state.offset).norm());
+          moved = std::max(moved,
+                           (skin.col(v) - state.linear * model.skin.vertices.col(v) - state.offset).norm());
         const auto& corners = model.proxies[static_cast<std::size_t>(p)].corners;
         double diameter = 0.0;
-        for (Eigen::Index c = 0; c < corners.cols(); ++c) diameter = std::max(diameter, (corners.colwise() - corners.col(c)).colwise().norm().maxCoeff());
+        for (Eigen::Index c = 0; c < corners.cols(); ++c)
+          diameter = std::max(diameter, (corners.colwise() - corners.col(c)).colwise().norm().maxCoeff());
         allowed += 1.25 / 8 * diameter * diameter;
         sum += state.inflation;
         largest = std::max(largest, state.inflation);
         ratio += state.inflation / (moved + 0.02) / set->size();
         ++checked;
       }
-      RecordProperty(set == &affine ? "affine_mean_inflation_um" : "rigid_mean_inflation_um", static_cast<int>(1e6 * sum / set->size()));
-      RecordProperty(set == &affine ? "affine_largest_inflation_um" : "rigid_largest_inflation_um", static_cast<int>(1e6 * largest));
+      RecordProperty(set == &affine ? "affine_mean_inflation_um" : "rigid_mean_inflation_um",
+                     static_cast<int>(1e6 * sum / set->size()));
+      RecordProperty(set == &affine ? "affine_largest_inflation_um" : "rigid_largest_inflation_um",
+                     static_cast<int>(1e6 * largest));
       EXPECT_LT(ratio, 3.0);
       if (set == &affine) {
         EXPECT_LT(sum, allowed + 0.01 * set->size());  // and what lies outside at rest
@@ -188,7 +206,10 @@ TEST(ProxySet, ABonesProxiesFollowItsNodes) {
   LayeredModel model = bar_on_bones({8, 3, 2});
   for (Eigen::Index n = 0; n < model.tets.nodes.cols(); ++n) {
     const Vec3 x = model.tets.nodes.col(n);
-    model.bone_of_node.push_back(std::hypot(x.y(), x.z()) < 0.28 ? (x.x() < -0.01 ? 0 : x.x() > 0.01 ? 1 : -1) : -1);
+    model.bone_of_node.push_back(std::hypot(x.y(), x.z()) < 0.28 ? (x.x() < -0.01  ? 0
+                                                                    : x.x() > 0.01 ? 1
+                                                                                   : -1)
+                                                                 : -1);
   }
   ASSERT_GE(std::count(model.bone_of_node.begin(), model.bone_of_node.end(), 0), 4);
   model.proxies = proxy::decompose(model, {.count = 4});
@@ -203,7 +224,8 @@ TEST(ProxySet, ABonesProxiesFollowItsNodes) {
     else if (bone < 0)
       nodes.col(n) += Vec3(in(random), in(random), in(random));
   set.update(nodes);
-  for (int p = 0; p < set.size(); ++p) EXPECT_LT((set.state(p).linear - (set.bone(p) == 1 ? R : Mat3(Mat3::Identity()))).norm(), 1e-10);
+  for (int p = 0; p < set.size(); ++p)
+    EXPECT_LT((set.state(p).linear - (set.bone(p) == 1 ? R : Mat3(Mat3::Identity()))).norm(), 1e-10);
 }
 
 TEST(ProxySet, RigidBodiesFollowTheirPose) {

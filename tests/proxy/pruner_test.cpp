@@ -12,8 +12,8 @@
 #include "shapes.h"
 
 using namespace palpate;
-using proxy::Pruner;
 using proxy::ProxySet;
+using proxy::Pruner;
 using namespace pruning;
 
 namespace {
@@ -31,10 +31,12 @@ Pose random_pose(std::mt19937& random, double distance) {
 
 }  // namespace
 
-// The reference: all vertices of each body against all faces of the other.  Random poses from apart to swallowed, waves through both bodies: no face with a vertex
-// inside the other body is missing, every face of a is there once.
+// The reference: all vertices of each body against all faces of the other.  Random poses from apart to
+// swallowed, waves through both bodies: no face with a vertex inside the other body is missing, every face of
+// a is there once.
 TEST(Pruner, NothingTrulyOverlappingIsMissed) {
-  const LayeredModel ball = cut(bumpy_ball(1.0, 0.3, 9), 20), small = cut(bumpy_ball(0.5, 0.2, 7, 0.1, 5), 12);
+  const LayeredModel ball = cut(bumpy_ball(1.0, 0.3, 9), 20),
+                     small = cut(bumpy_ball(0.5, 0.2, 7, 0.1, 5), 12);
   Placed a(ball), b(small);
   Pruner pruner(a.set, b.set);
   std::mt19937 random(5);
@@ -47,14 +49,17 @@ TEST(Pruner, NothingTrulyOverlappingIsMissed) {
     const Handed found = handed(regions);
     EXPECT_FALSE(found.a_twice) << i;
     const auto b_in_a = inside(b.skin, ball.skin.faces, a.skin);
-    const auto faces_a = true_patch(ball.skin.faces, a.skin, small.skin.faces, b.skin), faces_b = faces_at(small.skin.faces, b_in_a);
+    const auto faces_a = true_patch(ball.skin.faces, a.skin, small.skin.faces, b.skin),
+               faces_b = faces_at(small.skin.faces, b_in_a);
     EXPECT_TRUE(holds(found.a, faces_a)) << i;
     EXPECT_TRUE(holds(found.b, faces_b)) << i;
     for (const auto& region : regions) {
       EXPECT_NEAR(region.region.normal.norm(), 1.0, 1e-12);
       EXPECT_NEAR((region.axes.transpose() * region.axes - Mat3::Identity()).norm(), 0.0, 1e-12);
       EXPECT_NEAR((region.axes.col(2) - region.region.normal).norm(), 0.0, 1e-15);
-      if (!faces_b.empty() && faces_a.empty()) { EXPECT_FALSE(region.faces_a.empty() && region.faces_b.empty()); }
+      if (!faces_b.empty() && faces_a.empty()) {
+        EXPECT_FALSE(region.faces_a.empty() && region.faces_b.empty());
+      }
     }
     const bool all_in = std::count(b_in_a.begin(), b_in_a.end(), 1) == static_cast<long>(b_in_a.size());
     ++(faces_a.empty() && faces_b.empty() ? apart : all_in ? swallowed : overlapping);
@@ -64,7 +69,8 @@ TEST(Pruner, NothingTrulyOverlappingIsMissed) {
   EXPECT_GT(swallowed, 4);
   EXPECT_GT(regions_seen, 20);
   EXPECT_EQ(pruner.counts().queries, 40);
-  EXPECT_EQ(pruner.counts().after_boxes, pruner.counts().apart_by_memory + pruner.counts().apart_by_search + pruner.counts().after_hulls);
+  EXPECT_EQ(pruner.counts().after_boxes,
+            pruner.counts().apart_by_memory + pruner.counts().apart_by_search + pruner.counts().after_hulls);
 }
 
 // Points within the gap count as touching: brute force over vertices and faces' corners of the other side.
@@ -86,7 +92,8 @@ TEST(Pruner, TheGapIsHonoured) {
   EXPECT_TRUE(pruner.query(0.0).empty() || handed(pruner.query(0.0)).a.size() < found.a.size());
 }
 
-// The same pose cut into 1, 8 and 64 proxies: the same faces in contact, each once; one region whose normal is the line of centres.
+// The same pose cut into 1, 8 and 64 proxies: the same faces in contact, each once; one region whose normal
+// is the line of centres.
 TEST(Pruner, TheCutDoesNotChangeWhatTouches) {
   const LayeredModel whole = bumpy_ball(1.0, 0.2, 20, 0.0);
   const Vec3 axis = Vec3(1, 2, -2) / 3;
@@ -97,15 +104,18 @@ TEST(Pruner, TheCutDoesNotChangeWhatTouches) {
     Pruner pruner(a.set, b.set);
     const auto regions = pruner.query(0.0);
     ASSERT_EQ(regions.size(), 1u) << count;
-    EXPECT_GT(regions[0].region.normal.dot(axis), std::cos(0.04)) << count;  // libccd on the hulls alone is off by 0.27, 0.03 and 0.02 here
+    // libccd on the hulls alone is off by 0.27, 0.03 and 0.02 here
+    EXPECT_GT(regions[0].region.normal.dot(axis), std::cos(0.04)) << count;
     const Handed found = handed(regions);
     EXPECT_FALSE(found.a_twice);
-    const auto faces_a = true_patch(model.skin.faces, a.skin, model.skin.faces, b.skin), faces_b = true_patch(model.skin.faces, b.skin, model.skin.faces, a.skin);
+    const auto faces_a = true_patch(model.skin.faces, a.skin, model.skin.faces, b.skin),
+               faces_b = true_patch(model.skin.faces, b.skin, model.skin.faces, a.skin);
     EXPECT_GT(faces_a.size(), 20u);
     EXPECT_TRUE(holds(found.a, faces_a));
     EXPECT_TRUE(holds(found.b, faces_b));
     const std::string name = std::to_string(count) + "_proxies_";
-    RecordProperty(name + "normal_off_mrad", static_cast<int>(1e3 * std::acos(std::min(1.0, regions[0].region.normal.dot(axis)))));
+    RecordProperty(name + "normal_off_mrad",
+                   static_cast<int>(1e3 * std::acos(std::min(1.0, regions[0].region.normal.dot(axis)))));
     RecordProperty(name + "faces_per_true_percent", static_cast<int>(100 * found.a.size() / faces_a.size()));
   }
 }
@@ -117,7 +127,8 @@ TEST(Pruner, HandsOnLittleMoreThanThePatch) {
   Pruner pruner(a.set, b.set);
   int checked = 0;
   for (const double distance : {1.98, 1.9, 1.8, 1.6}) {
-    b.place({Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX())), distance * Vec3(1, 0.3, 0.2).normalized()}, 0.03, 1);
+    b.place({Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX())), distance * Vec3(1, 0.3, 0.2).normalized()}, 0.03,
+            1);
     const Handed found = handed(pruner.query(0.0));
     const double all = static_cast<double>(pumpkin.skin.faces.cols());
     const double truth_a = true_patch(pumpkin.skin.faces, a.skin, pumpkin.skin.faces, b.skin).size() / all;
@@ -129,7 +140,8 @@ TEST(Pruner, HandsOnLittleMoreThanThePatch) {
   EXPECT_GE(checked, 3);
 }
 
-// A block pressed into the inner corner of two walls meets each along its own normal: two regions; against one wall, one.
+// A block pressed into the inner corner of two walls meets each along its own normal: two regions; against
+// one wall, one.
 TEST(Pruner, WallsThatFaceDifferentWaysAreDifferentRegions) {
   LayeredModel wall;  // rigid: two thick slabs that make an L
   const auto slab = [](const Vec3& centre, const Vec3& size) {
@@ -147,7 +159,9 @@ TEST(Pruner, WallsThatFaceDifferentWaysAreDifferentRegions) {
     ProxyHull hull;
     hull.corners.resize(3, 8);
     const Vec3 low = s->vertices.rowwise().minCoeff(), high = s->vertices.rowwise().maxCoeff();
-    for (int i = 0; i < 8; ++i) hull.corners.col(i) = Vec3(i & 1 ? low.x() : high.x(), i & 2 ? low.y() : high.y(), i & 4 ? low.z() : high.z());
+    for (int i = 0; i < 8; ++i)
+      hull.corners.col(i) =
+          Vec3(i & 1 ? low.x() : high.x(), i & 2 ? low.y() : high.y(), i & 4 ? low.z() : high.z());
     for (int v = 0; v < n; ++v) hull.members.push_back(v + (s == &side ? static_cast<int>(n) : 0));
     wall.proxies.push_back(hull);
   }
@@ -186,8 +200,9 @@ TEST(Pruner, WallsThatFaceDifferentWaysAreDifferentRegions) {
   EXPECT_FALSE(handed(regions).a_twice);
 }
 
-// One ball slides around the other, a hundredth of a radian a step, over the borders of many proxies: the normal follows the line of centres, and the jumps that
-// patches make as they come and go stay small.  What turns is what was recorded: the largest `turned` of a region is `largest_turn`.
+// One ball slides around the other, a hundredth of a radian a step, over the borders of many proxies: the
+// normal follows the line of centres, and the jumps that patches make as they come and go stay small.  What
+// turns is what was recorded: the largest `turned` of a region is `largest_turn`.
 TEST(Pruner, SlidingOverProxiesTurnsTheNormalSmoothly) {
   const LayeredModel ball = cut(bumpy_ball(1.0, 0.25, 24, 0.0), 60);
   Placed a(ball), b(ball);
@@ -214,7 +229,8 @@ TEST(Pruner, SlidingOverProxiesTurnsTheNormalSmoothly) {
 
 // A ball swallowed by a bigger one still meets the skin that is above it: what it was pushed through.
 TEST(Pruner, SwallowedSkinLooksThroughItself) {
-  const LayeredModel big = cut(bumpy_ball(1.0, 0.25, 16, 0.0), 30), small = cut(bumpy_ball(0.15, 0.08, 6, 0.0), 6);
+  const LayeredModel big = cut(bumpy_ball(1.0, 0.25, 16, 0.0), 30),
+                     small = cut(bumpy_ball(0.15, 0.08, 6, 0.0), 6);
   Placed a(small), b(big);
   Pruner pruner(a.set, b.set);
   for (const double z : {1.2, 1.1, 1.0, 0.9, 0.8, 0.7}) {
@@ -227,7 +243,9 @@ TEST(Pruner, SwallowedSkinLooksThroughItself) {
     for (const auto& region : regions) {
       EXPECT_GT(region.region.normal.z(), 0.8) << z;
       for (const int f : region.faces_b) {
-        const Vec3 middle = (b.skin.col(big.skin.faces(0, f)) + b.skin.col(big.skin.faces(1, f)) + b.skin.col(big.skin.faces(2, f))) / 3.0;
+        const Vec3 middle = (b.skin.col(big.skin.faces(0, f)) + b.skin.col(big.skin.faces(1, f)) +
+                             b.skin.col(big.skin.faces(2, f))) /
+                            3.0;
         seen |= middle.z() > 0.95 && middle.head<2>().norm() < 0.15;
       }
       EXPECT_FALSE(region.faces_a.empty());
@@ -254,7 +272,8 @@ TEST(Pruner, BonesOfOneBodyMayTouch) {
       EXPECT_LT(one.set.bone(p), one.set.bone(q));
       EXPECT_FALSE(one.set.neighbours(p, q));
     }
-  Points nodes = bar.tets.nodes;  // rolled up to a ring around y whose ends overlap: radius r with 2 pi r a little less than the length
+  // rolled up to a ring around y whose ends overlap: radius r with 2 pi r a little less than the length
+  Points nodes = bar.tets.nodes;
   const double r = 1.9 / (2 * M_PI);
   for (Eigen::Index n = 0; n < nodes.cols(); ++n) {
     const Vec3 x = nodes.col(n);
@@ -266,11 +285,13 @@ TEST(Pruner, BonesOfOneBodyMayTouch) {
   for (const auto& region : regions)
     for (const auto& [p, q] : region.pairs) ends |= one.set.bone(p) == 0 && one.set.bone(q) == 2;
   EXPECT_TRUE(ends);
-  // Each pair once, and none whose proxies have a node in common: around a joint these are all, on whichever sides of the bar.
+  // Each pair once, and none whose proxies have a node in common: around a joint these are all, on whichever
+  // sides of the bar.
   const auto owner = [&](int p) {
     std::set<int> own;
     for (const int v : bar.proxies[static_cast<std::size_t>(p)].members)
-      for (int k = 0; k < 4; ++k) own.insert(bar.tets.tets(k, bar.embedding.tet[static_cast<std::size_t>(v)]));
+      for (int k = 0; k < 4; ++k)
+        own.insert(bar.tets.tets(k, bar.embedding.tet[static_cast<std::size_t>(v)]));
     return own;
   };
   int allowed = 0, grown = 0;

@@ -26,7 +26,8 @@ struct Placed {
   void place(const Pose& pose, double wave, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> in(-2.0, 2.0);
-    const Mat3 K = Mat3::NullaryExpr([&] { return in(random); }), P = Mat3::NullaryExpr([&] { return in(random); });
+    const Mat3 K = Mat3::NullaryExpr([&] { return in(random); }),
+               P = Mat3::NullaryExpr([&] { return in(random); });
     nodes = model.tets.nodes;
     for (Eigen::Index n = 0; n < nodes.cols(); ++n) {
       const Vec3 x = nodes.col(n);
@@ -50,9 +51,12 @@ inline Handed handed(std::span<const proxy::ContactRegion> regions) {
   return out;
 }
 
-inline bool holds(const std::set<int>& all, const std::set<int>& some) { return std::includes(all.begin(), all.end(), some.begin(), some.end()); }
+inline bool holds(const std::set<int>& all, const std::set<int>& some) {
+  return std::includes(all.begin(), all.end(), some.begin(), some.end());
+}
 
-/// Winding number of a closed surface around a point: the solid angles of its faces (van Oosterom and Strackee 1983) over 4 pi.
+/// Winding number of a closed surface around a point: the solid angles of its faces (van Oosterom and
+/// Strackee 1983) over 4 pi.
 inline double winding(const Faces& faces, const Points& skin, const Vec3& p) {
   double angle = 0.0;
   for (Eigen::Index f = 0; f < faces.cols(); ++f) {
@@ -68,7 +72,9 @@ inline std::vector<char> inside(const Points& points, const Faces& faces, const 
   const Vec3 low = skin.rowwise().minCoeff(), high = skin.rowwise().maxCoeff();
   std::vector<char> out(static_cast<std::size_t>(points.cols()));
   for (Eigen::Index v = 0; v < points.cols(); ++v)
-    out[static_cast<std::size_t>(v)] = (points.col(v).array() > low.array()).all() && (points.col(v).array() < high.array()).all() && winding(faces, skin, points.col(v)) > 0.5;
+    out[static_cast<std::size_t>(v)] = (points.col(v).array() > low.array()).all() &&
+                                       (points.col(v).array() < high.array()).all() &&
+                                       winding(faces, skin, points.col(v)) > 0.5;
   return out;
 }
 
@@ -82,7 +88,8 @@ inline std::set<int> faces_at(const Faces& faces, const std::vector<char>& flag)
 }
 
 /// Faces of `one` with a vertex inside the other closed skin: the true contact patch.
-inline std::set<int> true_patch(const Faces& faces, const Points& one, const Faces& other_faces, const Points& other) {
+inline std::set<int> true_patch(const Faces& faces, const Points& one, const Faces& other_faces,
+                                const Points& other) {
   return faces_at(faces, inside(one, other_faces, other));
 }
 

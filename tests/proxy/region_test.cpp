@@ -15,7 +15,8 @@ namespace {
 Points box(const Vec3& centre, const Vec3& half, const Quat& rotation = Quat::Identity()) {
   Points p(3, 8);
   for (int i = 0; i < 8; ++i)
-    p.col(i) = centre + rotation * Vec3((i & 1 ? 1 : -1) * half.x(), (i & 2 ? 1 : -1) * half.y(), (i & 4 ? 1 : -1) * half.z());
+    p.col(i) = centre + rotation * Vec3((i & 1 ? 1 : -1) * half.x(), (i & 2 ? 1 : -1) * half.y(),
+                                        (i & 4 ? 1 : -1) * half.z());
   return p;
 }
 
@@ -30,25 +31,30 @@ Points sphere(const Vec3& centre, double radius, int count) {
   return p;
 }
 
-double brute_depth(const Points& a, const Points& b, const Vec3& n) { return (n.transpose() * b).maxCoeff() - (n.transpose() * a).minCoeff(); }
+double brute_depth(const Points& a, const Points& b, const Vec3& n) {
+  return (n.transpose() * b).maxCoeff() - (n.transpose() * a).minCoeff();
+}
 
 }  // namespace
 
-// Box a stands 0.1 deep in box b, by its face along +z: the least way out, at any scale and far from the origin.
+// Box a stands 0.1 deep in box b, by its face along +z: the least way out, at any scale and far from the
+// origin.
 TEST(Region, BoxesAtEveryScale) {
   for (const double scale : {1e-3, 1.0, 1e3}) {
     const Vec3 far = scale * Vec3(100, -50, 20);
     proxy::RegionFinder finder;
-    const auto region = finder.find(box(far + scale * Vec3(0.1, 0.05, 0.9), scale * Vec3(0.4, 0.3, 0.5)), box(far, scale * Vec3(1, 1, 0.5)), 0.0);
+    const auto region = finder.find(box(far + scale * Vec3(0.1, 0.05, 0.9), scale * Vec3(0.4, 0.3, 0.5)),
+                                    box(far, scale * Vec3(1, 1, 0.5)), 0.0);
     EXPECT_TRUE(region.found);
     EXPECT_NEAR(region.depth, 0.1 * scale, 1e-6 * scale);
     EXPECT_GT(region.normal.z(), 1 - 1e-8);
-    EXPECT_NEAR((region.origin - far).z(), 0.45 * scale, 1e-6 * scale);  // between 0.4 (a's lowest) and 0.5 (b's highest)
+    // between 0.4 (a's lowest) and 0.5 (b's highest)
+    EXPECT_NEAR((region.origin - far).z(), 0.45 * scale, 1e-6 * scale);
   }
 }
 
-// Spheres: the normal lies along the line of centres up to the tessellation; the depth found is never less than the true least depth
-// of the hulls, and at most the depth along the line of centres.
+// Spheres: the normal lies along the line of centres up to the tessellation; the depth found is never less
+// than the true least depth of the hulls, and at most the depth along the line of centres.
 TEST(Region, SpheresAlongRandomDirections) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
@@ -60,9 +66,11 @@ TEST(Region, SpheresAlongRandomDirections) {
     proxy::RegionFinder finder;
     const auto region = finder.find(a, b, 0.0);
     EXPECT_TRUE(region.found);
-    EXPECT_LE(region.depth, brute_depth(a, b, axis) + 1e-4);  // the lattice's own centroid is a little off the axis
+    // the lattice's own centroid is a little off the axis
+    EXPECT_LE(region.depth, brute_depth(a, b, axis) + 1e-4);
     EXPECT_NEAR(region.depth, brute_depth(a, b, region.normal), 1e-12);
-    EXPECT_NEAR(region.depth, depth, 0.01);                                       // hulls lie inside by up to h^2/8
+    // hulls lie inside by up to h^2/8
+    EXPECT_NEAR(region.depth, depth, 0.01);
     EXPECT_GT(region.normal.dot(axis), 0.97) << i;
     ++checked;
   }
@@ -95,12 +103,12 @@ TEST(Region, ApartWhereCentroidsMislead) {
 TEST(Region, TouchingFlatAndDegenerateStayFinite) {
   const Points cube = box(Vec3::Zero(), Vec3::Constant(0.5));
   const std::vector<Points> others = {
-      box(Vec3(0, 0, 1), Vec3::Constant(0.5)),              // touching faces
-      box(Vec3(1, 1, 1), Vec3::Constant(0.5)),              // touching corners
-      box(Vec3(0, 0, 0.45), Vec3(0.3, 0.3, 0.0)),           // flat plate inside
-      box(Vec3::Zero(), Vec3::Constant(0.5)),               // the same cube
-      box(Vec3(0.1, 0, 0.5), Vec3::Zero()),                 // one point on a face, eight times
-      box(Vec3::Zero(), Vec3::Zero()),                      // one point at the centre
+      box(Vec3(0, 0, 1), Vec3::Constant(0.5)),     // touching faces
+      box(Vec3(1, 1, 1), Vec3::Constant(0.5)),     // touching corners
+      box(Vec3(0, 0, 0.45), Vec3(0.3, 0.3, 0.0)),  // flat plate inside
+      box(Vec3::Zero(), Vec3::Constant(0.5)),      // the same cube
+      box(Vec3(0.1, 0, 0.5), Vec3::Zero()),        // one point on a face, eight times
+      box(Vec3::Zero(), Vec3::Zero()),             // one point at the centre
   };
   for (std::size_t i = 0; i < others.size(); ++i) {
     proxy::RegionFinder finder;

@@ -28,14 +28,18 @@ inline TriMesh torus(double radius, double tube, int around, int across) {
   return out;
 }
 
-/// The surface of those cubes of edge `edge` that `solid` wants, cell (i, j, k) from edge (i, j, k) on; no two of them meet at an edge or a corner alone.
-inline TriMesh of_cubes(const std::array<int, 3>& cells, double edge, const std::function<bool(int, int, int)>& solid) {
+/// The surface of those cubes of edge `edge` that `solid` wants, cell (i, j, k) from edge (i, j, k) on; no
+/// two of them meet at an edge or a corner alone.
+inline TriMesh of_cubes(const std::array<int, 3>& cells, double edge,
+                        const std::function<bool(int, int, int)>& solid) {
   std::map<std::array<int, 3>, int> vertex;
   std::vector<Vec3> points;
   std::vector<Eigen::Vector3i> faces;
   const auto wanted = [&](std::array<int, 3> c) {
     for (int axis = 0; axis < 3; ++axis)
-      if (c[static_cast<std::size_t>(axis)] < 0 || c[static_cast<std::size_t>(axis)] >= cells[static_cast<std::size_t>(axis)]) return false;
+      if (c[static_cast<std::size_t>(axis)] < 0 ||
+          c[static_cast<std::size_t>(axis)] >= cells[static_cast<std::size_t>(axis)])
+        return false;
     return solid(c[0], c[1], c[2]);
   };
   const auto at = [&](const std::array<int, 3>& corner) {
@@ -72,9 +76,11 @@ inline TriMesh of_cubes(const std::array<int, 3>& cells, double edge, const std:
   return out;
 }
 
-/// Two prongs down from a bridge, x in [-1.5, 1.5], y in [-0.5, 0.5], z in [0, 3]; prongs 1 wide, the bridge above z = 2.  `fine` cubes a unit.
+/// Two prongs down from a bridge, x in [-1.5, 1.5], y in [-0.5, 0.5], z in [0, 3]; prongs 1 wide, the bridge
+/// above z = 2.  `fine` cubes a unit.
 inline TriMesh fork(int fine) {
-  TriMesh out = of_cubes({3 * fine, fine, 3 * fine}, 1.0 / fine, [fine](int i, int, int k) { return k >= 2 * fine || i < fine || i >= 2 * fine; });
+  TriMesh out = of_cubes({3 * fine, fine, 3 * fine}, 1.0 / fine,
+                         [fine](int i, int, int k) { return k >= 2 * fine || i < fine || i >= 2 * fine; });
   out.vertices.row(0).array() -= 1.5;
   out.vertices.row(1).array() -= 0.5;
   return out;

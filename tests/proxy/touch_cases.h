@@ -11,23 +11,25 @@
 #include "palpate/store/model_file.h"
 #include "proxy/pruning.h"
 
-/// The paper's models touched as in its figures: two pumpkins in contact, the head by a sphere at the bridge of the nose, the human at the leg.
-/// A touch goes in and out once in `kPhases` queries, and dents what it touches.
+/// The paper's models touched as in its figures: two pumpkins in contact, the head by a sphere at the bridge
+/// of the nose, the human at the leg. A touch goes in and out once in `kPhases` queries, and dents what it
+/// touches.
 namespace touch {
 
 using namespace palpate;
 using pruning::true_patch;
 
 inline constexpr int kPhases = 8;
-inline double pressed(int phase) { return 0.5 - 0.5 * std::cos(2 * M_PI * phase / kPhases); }  ///< 0 to 1 and back
+/// 0 to 1 and back
+inline double pressed(int phase) { return 0.5 - 0.5 * std::cos(2 * M_PI * phase / kPhases); }
 
 struct Case {
   LayeredModel a, b;
-  Vec3 place = Vec3::Zero();     ///< where they touch
-  Vec3 inward = Vec3::Zero();    ///< unit, into a
-  double size = 0.0;             ///< of the dent [m]
+  Vec3 place = Vec3::Zero();       ///< where they touch
+  Vec3 inward = Vec3::Zero();      ///< unit, into a
+  double size = 0.0;               ///< of the dent [m]
   double least = 0.0, most = 0.0;  ///< depth that they overlap by, at the phases' ends [m]
-  double gap = 0.0;              ///< mean edge of a's skin, as a scene asks for [m]
+  double gap = 0.0;                ///< mean edge of a's skin, as a scene asks for [m]
 
   bool b_is_soft() const { return b.tets.tets.cols() > 0; }
 
@@ -45,7 +47,8 @@ struct Case {
  private:
   Points dented(Points nodes, const Vec3& along, int phase) const {
     for (Eigen::Index n = 0; n < nodes.cols(); ++n)
-      nodes.col(n) += 0.25 * depth(phase) * std::exp(-(nodes.col(n) - place).squaredNorm() / (2 * size * size)) * along;
+      nodes.col(n) +=
+          0.25 * depth(phase) * std::exp(-(nodes.col(n) - place).squaredNorm() / (2 * size * size)) * along;
     return nodes;
   }
 };
@@ -53,17 +56,21 @@ struct Case {
 inline double mean_edge(const TriMesh& skin) {
   double sum = 0.0;
   for (Eigen::Index f = 0; f < skin.faces.cols(); ++f)
-    for (int k = 0; k < 3; ++k) sum += (skin.vertices.col(skin.faces(k, f)) - skin.vertices.col(skin.faces((k + 1) % 3, f))).norm();
+    for (int k = 0; k < 3; ++k)
+      sum += (skin.vertices.col(skin.faces(k, f)) - skin.vertices.col(skin.faces((k + 1) % 3, f))).norm();
   return sum / static_cast<double>(3 * skin.faces.cols());
 }
 
-/// A rigid ball that touches a's skin from in front (along y) where a line through (x, z) meets it first; depth 0.
+/// A rigid ball that touches a's skin from in front (along y) where a line through (x, z) meets it first;
+/// depth 0.
 inline void add_ball(Case& out, double radius, double x, double z) {
   const double gap = mean_edge(out.a.skin);
   Eigen::Index nearest = -1;
   for (Eigen::Index v = 0; v < out.a.skin.vertices.cols(); ++v) {
     const Vec3 p = out.a.skin.vertices.col(v);
-    if (std::hypot(p.x() - x, p.z() - z) < 2 * gap && (nearest < 0 || p.y() < out.a.skin.vertices(1, nearest))) nearest = v;
+    if (std::hypot(p.x() - x, p.z() - z) < 2 * gap &&
+        (nearest < 0 || p.y() < out.a.skin.vertices(1, nearest)))
+      nearest = v;
   }
   PALPATE_CHECK(nearest >= 0, "no skin at x = {}, z = {}", x, z);
   out.place = out.a.skin.vertices.col(nearest);
@@ -90,7 +97,9 @@ inline Case human(const std::string& folder) {
   Case out;
   out.a = store::read_model(folder + "/human.h5").model;
   const auto& bones = out.a.skeleton.bones;
-  const auto shank = std::find_if(bones.begin(), bones.end(), [](const Bone& bone) { return bone.name.find("shank") != std::string::npos; });
+  const auto shank = std::find_if(bones.begin(), bones.end(), [](const Bone& bone) {
+    return bone.name.find("shank") != std::string::npos;
+  });
   PALPATE_CHECK(shank != bones.end(), "the human has no shank");
   const Vec3 middle = 0.5 * (shank->head + shank->tail);
   add_ball(out, 0.03, middle.x(), middle.z());
@@ -99,7 +108,8 @@ inline Case human(const std::string& folder) {
   return out;
 }
 
-/// Side by side: the second is the first turned by half a turn about z, so that their farthest points along x meet.
+/// Side by side: the second is the first turned by half a turn about z, so that their farthest points along x
+/// meet.
 inline Case pumpkins(const std::string& folder) {
   Case out;
   out.a = store::read_model(folder + "/pumpkin.h5").model;
@@ -129,7 +139,8 @@ struct Bodies {
   proxy::ProxySet a, b;
   std::vector<Points> nodes_a, nodes_b;
 
-  explicit Bodies(const Case& c) : touch(c), a(c.a), b(c.b, {.patch_faces = c.b_is_soft() ? 0 : 16}) {  // a tool's grain, as of rigid_proxies
+  // a tool's grain, as of rigid_proxies
+  explicit Bodies(const Case& c) : touch(c), a(c.a), b(c.b, {.patch_faces = c.b_is_soft() ? 0 : 16}) {
     for (int i = 0; i < kPhases; ++i) {
       nodes_a.push_back(c.nodes_a(i));
       if (c.b_is_soft()) nodes_b.push_back(c.nodes_b(i));

@@ -1,4 +1,5 @@
-// The bars on the paper's models as `palpate model` makes them; their files come from the fixture in CMakeLists.txt.
+// The bars on the paper's models as `palpate model` makes them; their files come from the fixture in
+// CMakeLists.txt.
 #include <gtest/gtest.h>
 
 #include "malloc_count.h"
@@ -10,10 +11,12 @@ using pruning::handed;
 
 namespace {
 
-double share(const std::set<int>& faces, const TriMesh& skin) { return static_cast<double>(faces.size()) / static_cast<double>(skin.faces.cols()); }
+double share(const std::set<int>& faces, const TriMesh& skin) {
+  return static_cast<double>(faces.size()) / static_cast<double>(skin.faces.cols());
+}
 
-/// Handed on: all of the true patch, and at most twice its share and 3 % of the skin, on each soft skin and on both skins together (a tool is all near where it
-/// touches).
+/// Handed on: all of the true patch, and at most twice its share and 3 % of the skin, on each soft skin and
+/// on both skins together (a tool is all near where it touches).
 void check(const Case& c) {
   Bodies bodies(c);
   ASSERT_EQ(bodies.a.size(), 60);
@@ -23,7 +26,8 @@ void check(const Case& c) {
     bodies.update(phase);
     const Handed found = handed(pruner.query(c.gap));
     const Skins skins(c, phase);
-    const auto true_a = true_patch(c.a.skin.faces, skins.a, c.b.skin.faces, skins.b), true_b = true_patch(c.b.skin.faces, skins.b, c.a.skin.faces, skins.a);
+    const auto true_a = true_patch(c.a.skin.faces, skins.a, c.b.skin.faces, skins.b),
+               true_b = true_patch(c.b.skin.faces, skins.b, c.a.skin.faces, skins.a);
     ASSERT_FALSE(true_a.empty());
     EXPECT_FALSE(found.a_twice);
     EXPECT_TRUE(pruning::holds(found.a, true_a));
@@ -31,7 +35,8 @@ void check(const Case& c) {
     EXPECT_LE(share(found.a, c.a.skin), 2 * share(true_a, c.a.skin) + 0.03);
     if (c.b_is_soft()) { EXPECT_LE(share(found.b, c.b.skin), 2 * share(true_b, c.b.skin) + 0.03); }
     const double all = static_cast<double>(c.a.skin.faces.cols() + c.b.skin.faces.cols());
-    EXPECT_LE(static_cast<double>(found.a.size() + found.b.size()) / all, 2 * static_cast<double>(true_a.size() + true_b.size()) / all + 0.03);
+    EXPECT_LE(static_cast<double>(found.a.size() + found.b.size()) / all,
+              2 * static_cast<double>(true_a.size() + true_b.size()) / all + 0.03);
   }
   const auto& counts = pruner.counts();
   EXPECT_EQ(counts.pairs, 60L * bodies.b.size());

@@ -5,7 +5,8 @@
 using namespace palpate;
 
 TEST(Average, IsTakenInLinearLightAndTurnsRowsOver) {
-  // Two pixels, one above the other, of 2 x 2 samples; rows from below.  Lower: half black, half white.  Upper: all of level 200.
+  // Two pixels, one above the other, of 2 x 2 samples; rows from below.  Lower: half black, half white.
+  // Upper: all of level 200.
   std::vector<std::uint8_t> samples(2 * 4 * 4, 255);
   for (const int i : {0, 2})
     for (int c = 0; c < 3; ++c) samples[static_cast<std::size_t>(4 * i + c)] = 0;

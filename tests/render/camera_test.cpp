@@ -68,15 +68,18 @@ TEST(Framed, ShowsEveryPointInsideTheMarginsAndNoSmallerThanItMust) {
   for (const double azimuth : {-60.0, 30.0, 200.0})
     for (const double elevation : {-30.0, 0.0, 22.0, 90.0})
       for (const bool perspective : {true, false}) {
-        const Camera camera = render::framed(points, {azimuth, elevation, perspective, 26.0}, aspect, margins);
+        const Camera camera =
+            render::framed(points, {azimuth, elevation, perspective, 26.0}, aspect, margins);
         const Points p = projected(camera, aspect, points);
-        const double left = p.row(0).minCoeff(), right = p.row(0).maxCoeff(), bottom = p.row(1).minCoeff(), top = p.row(1).maxCoeff();
+        const double left = p.row(0).minCoeff(), right = p.row(0).maxCoeff(), bottom = p.row(1).minCoeff(),
+                     top = p.row(1).maxCoeff();
         // A margin is a fraction of the image, whose coordinates here go from -1 to 1.
         EXPECT_GE(left, -1.0 + 2.0 * margins.left - 1e-9);
         EXPECT_LE(right, 1.0 - 2.0 * margins.right + 1e-9);
         EXPECT_GE(bottom, -1.0 + 2.0 * margins.bottom - 1e-9);
         EXPECT_LE(top, 1.0 - 2.0 * margins.top + 1e-9);
-        const double free_x = 2.0 * (1.0 - margins.left - margins.right), free_y = 2.0 * (1.0 - margins.bottom - margins.top);
+        const double free_x = 2.0 * (1.0 - margins.left - margins.right),
+                     free_y = 2.0 * (1.0 - margins.bottom - margins.top);
         EXPECT_NEAR(std::max((right - left) / free_x, (top - bottom) / free_y), 1.0, 1e-9);
         EXPECT_GT(p.row(2).minCoeff(), -1.0);
         EXPECT_LT(p.row(2).maxCoeff(), 1.0);

@@ -19,7 +19,8 @@ double lightness(render::Rgb c) {
 
 TEST(Viridis, FollowsThePublishedColours) {
   // #440154, #3b528b, #21918c, #5ec962, #fde725 at 0, 1/4, 1/2, 3/4, 1
-  const int published[5][3] = {{0x44, 0x01, 0x54}, {0x3b, 0x52, 0x8b}, {0x21, 0x91, 0x8c}, {0x5e, 0xc9, 0x62}, {0xfd, 0xe7, 0x25}};
+  const int published[5][3] = {
+      {0x44, 0x01, 0x54}, {0x3b, 0x52, 0x8b}, {0x21, 0x91, 0x8c}, {0x5e, 0xc9, 0x62}, {0xfd, 0xe7, 0x25}};
   for (int i = 0; i < 5; ++i) {
     const render::Rgb c = render::viridis(i / 4.0);
     EXPECT_NEAR(c.r, published[i][0] / 255.0, 0.02) << i;
@@ -52,7 +53,8 @@ TEST(Settled, FillsOpenEndsAndIsNeverEmpty) {
   EXPECT_EQ(half.high, 3.0);
   const render::ColourScale flat = render::settled({"a", "m"}, 2.0, 2.0);
   EXPECT_LT(flat.low, flat.high);
-  const render::ColourScale none = render::settled({"a", "m"}, INFINITY, -INFINITY);  // no finite value at all
+  // no finite value at all
+  const render::ColourScale none = render::settled({"a", "m"}, INFINITY, -INFINITY);
   EXPECT_LT(none.low, none.high);
   EXPECT_TRUE(std::isfinite(none.low) && std::isfinite(none.high));
 }

@@ -19,8 +19,8 @@ TEST(Corners, KeepACubesEdgesSharp) {
   ASSERT_EQ(corners.size(), 36u);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec3 n = vec(corners[i].normal), p = vec(corners[i].position);
-    EXPECT_NEAR(n.cwiseAbs().maxCoeff(), 1.0, 1e-6);                 // along an axis
-    EXPECT_NEAR((p - Vec3::Constant(0.5)).dot(n), 0.5, 1e-6) << i;   // outwards
+    EXPECT_NEAR(n.cwiseAbs().maxCoeff(), 1.0, 1e-6);                // along an axis
+    EXPECT_NEAR((p - Vec3::Constant(0.5)).dot(n), 0.5, 1e-6) << i;  // outwards
   }
 }
 
@@ -28,7 +28,8 @@ TEST(Corners, RoundOffWhatIsSmooth) {
   const Vec3 centre(5, -3, 2);
   const render::Surface ball = ball_surface(centre, 0.7, 40);
   for (const auto& corner : render::corners(ball, {"", "", 0, 1}, centre))
-    EXPECT_GT(vec(corner.normal).dot(vec(corner.position) / 0.7), std::cos(0.04));  // within half a band of radial
+    // within half a band of radial
+    EXPECT_GT(vec(corner.normal).dot(vec(corner.position) / 0.7), std::cos(0.04));
 }
 
 TEST(Corners, ScaleTheirValuesAndMarkThePlain) {

@@ -19,24 +19,28 @@ std::string message_of(const std::function<void(render::Scene&, render::Options&
   spoil(scene, options);
   try {
     render::draw(scene, options);
-  } catch (const Error& e) {
-    return e.what();
-  }
+  } catch (const Error& e) { return e.what(); }
   return "no error";
 }
 
-testing::AssertionResult says(const std::string& part, const std::function<void(render::Scene&, render::Options&)>& spoil) {
+testing::AssertionResult says(const std::string& part,
+                              const std::function<void(render::Scene&, render::Options&)>& spoil) {
   const std::string message = message_of(spoil);
-  return (message.find(part) != std::string::npos ? testing::AssertionSuccess() : testing::AssertionFailure()) << message;
+  return (message.find(part) != std::string::npos ? testing::AssertionSuccess() : testing::AssertionFailure())
+         << message;
 }
 
 }  // namespace
 
 TEST(DrawErrors, NameTheSurfaceAndTheValue) {
-  EXPECT_TRUE(says("surface \"cube\": a face names point 8 of 8", [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = 8; }));
-  EXPECT_TRUE(says("surface \"cube\": a face names point -1 of 8", [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = -1; }));
-  EXPECT_TRUE(says("surface \"cube\": a position is not finite", [](auto& scene, auto&) { scene.surfaces[0].points(1, 2) = std::nan(""); }));
-  EXPECT_TRUE(says("surface \"cube\": 3 values for 8 points", [](auto& scene, auto&) { scene.surfaces[0].values = VecX::Zero(3); }));
+  EXPECT_TRUE(says("surface \"cube\": a face names point 8 of 8",
+                   [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = 8; }));
+  EXPECT_TRUE(says("surface \"cube\": a face names point -1 of 8",
+                   [](auto& scene, auto&) { scene.surfaces[0].faces(0, 0) = -1; }));
+  EXPECT_TRUE(says("surface \"cube\": a position is not finite",
+                   [](auto& scene, auto&) { scene.surfaces[0].points(1, 2) = std::nan(""); }));
+  EXPECT_TRUE(says("surface \"cube\": 3 values for 8 points",
+                   [](auto& scene, auto&) { scene.surfaces[0].values = VecX::Zero(3); }));
   EXPECT_TRUE(says("nothing to show", [](auto& scene, auto&) { scene.surfaces.clear(); }));
   EXPECT_TRUE(says("8 x 900 pixels", [](auto&, auto& options) { options.width = 8; }));
   EXPECT_TRUE(says("supersampling = 0", [](auto&, auto& options) { options.supersampling = 0; }));
@@ -47,6 +51,7 @@ TEST(SavePng, NamesThePathThatCannotBeWritten) {
     render::save_png(render::Picture(16, 16, {}), "/nowhere/picture.png");
     FAIL() << "a folder that is not there was written to";
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("/nowhere/picture.png: the picture cannot be written"), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("/nowhere/picture.png: the picture cannot be written"),
+              std::string::npos);
   }
 }

@@ -103,7 +103,8 @@ TEST(Draw, WhatIsNearerHides) {
   const Picture before = render::draw(scene, plain_options());
   expect_colour(before, kPixels / 2, kPixels / 2, {1, 0, 0}, 1.0);
   scene.surfaces[0].points.row(1).array() += 4 * kRadius;  // now behind
-  expect_colour(render::draw(scene, plain_options()), kPixels / 2, kPixels / 2, scene.surfaces[1].colour, 1.0);
+  expect_colour(render::draw(scene, plain_options()), kPixels / 2, kPixels / 2, scene.surfaces[1].colour,
+                1.0);
 }
 
 TEST(Draw, OpacityBlendsOnlyTheNearestLayer) {
@@ -113,7 +114,8 @@ TEST(Draw, OpacityBlendsOnlyTheNearestLayer) {
   const render::Options options = plain_options();
   const render::Rgb b = options.background;
   // One layer of black at a quarter, not the two that a ball has.
-  expect_colour(render::draw(scene, options), kPixels / 2, kPixels / 2, {0.75f * b.r, 0.75f * b.g, 0.75f * b.b}, 1.5);
+  expect_colour(render::draw(scene, options), kPixels / 2, kPixels / 2,
+                {0.75f * b.r, 0.75f * b.g, 0.75f * b.b}, 1.5);
 }
 
 TEST(Draw, TheGroundTakesAShadowAndIsUnseenFromBelow) {
@@ -127,7 +129,8 @@ TEST(Draw, TheGroundTakesAShadowAndIsUnseenFromBelow) {
   const Picture grounded = render::draw(scene, options);
   double darkest_change = 0.0;
   for (int y = 0; y < kPixels; ++y)
-    for (int x = 0; x < kPixels; ++x) darkest_change = std::max(darkest_change, brightness(bare, x, y) - brightness(grounded, x, y));
+    for (int x = 0; x < kPixels; ++x)
+      darkest_change = std::max(darkest_change, brightness(bare, x, y) - brightness(grounded, x, y));
   EXPECT_GT(darkest_change, 90.0);  // the shadow: at least 12 % of white
   options.view.elevation_deg = -40.0;
   scene.ground.reset();
@@ -147,7 +150,8 @@ TEST(Draw, IsTheSameTwiceToTheByteOnDisk) {
   options.height = 360;
   const auto folder = std::filesystem::path(testing::TempDir());
   const long before = counters::counter("render.picture");
-  for (const char* name : {"one.png", "two.png"}) render::save_png(render::draw(scene, options), folder / name);
+  for (const char* name : {"one.png", "two.png"})
+    render::save_png(render::draw(scene, options), folder / name);
   EXPECT_EQ(counters::counter("render.picture"), before + 2);
   EXPECT_EQ(bytes_of(folder / "one.png"), bytes_of(folder / "two.png"));
 
@@ -159,7 +163,8 @@ TEST(Draw, IsTheSameTwiceToTheByteOnDisk) {
 }
 
 TEST(Draw, FramesFarFromTheOriginWithoutLosingPrecision) {
-  // Floats at 1 km resolve 0.06 mm: the ball's 40 mm would be rough if positions were not taken relative to the scene.
+  // Floats at 1 km resolve 0.06 mm: the ball's 40 mm would be rough if positions were not taken relative to
+  // the scene.
   const render::Options options = [] {
     render::Options o;
     o.width = o.height = kPixels;

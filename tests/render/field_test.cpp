@@ -23,9 +23,9 @@ TEST(Field, PaintsEachValueRowsFromBelow) {
     EXPECT_NEAR(picture.pixel(x, y)[1], 255.0 * c.g, 1.0);
     EXPECT_NEAR(picture.pixel(x, y)[2], 255.0 * c.b, 1.0);
   };
-  expect(left + 50, top + 150, 0.0);   // lower left
-  expect(left + 150, top + 150, 1.0);  // lower right
-  expect(left + 150, top + 50, 0.5);   // upper right
+  expect(left + 50, top + 150, 0.0);                      // lower left
+  expect(left + 150, top + 150, 1.0);                     // lower right
+  expect(left + 150, top + 50, 0.5);                      // upper right
   EXPECT_GT(picture.pixel(left + 50, top + 50)[0], 230);  // no value: pale
 }
 
@@ -33,7 +33,5 @@ TEST(Field, RefusesAMisfit) {
   try {
     render::draw_field({3, 2, {1.0}}, {}, "");
     FAIL() << "1 value for 3 x 2 was accepted";
-  } catch (const Error& e) {
-    EXPECT_STREQ(e.what(), "picture of a field: 1 values for 3 x 2");
-  }
+  } catch (const Error& e) { EXPECT_STREQ(e.what(), "picture of a field: 1 values for 3 x 2"); }
 }

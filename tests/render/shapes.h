@@ -4,7 +4,8 @@
 
 #include "palpate/render/scene.h"
 
-/// A ball of `n` bands from pole to pole: its silhouette is a polygon within r (1 - cos(pi / 2n)) of the circle.
+/// A ball of `n` bands from pole to pole: its silhouette is a polygon within r (1 - cos(pi / 2n)) of the
+/// circle.
 inline palpate::render::Surface ball_surface(const palpate::Vec3& centre, double radius, int n) {
   using std::numbers::pi;
   palpate::render::Surface surface;
@@ -16,7 +17,8 @@ inline palpate::render::Surface ball_surface(const palpate::Vec3& centre, double
     for (int j = 0; j < around; ++j) {
       const double polar = pi * i / n, azimuth = 2.0 * pi * j / around;
       surface.points.col(i * around + j) =
-          centre + radius * palpate::Vec3(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
+          centre + radius * palpate::Vec3(std::sin(polar) * std::cos(azimuth),
+                                          std::sin(polar) * std::sin(azimuth), std::cos(polar));
       const int a = i * around + j, b = i * around + (j + 1) % around;
       if (i > 0 && i < n) surface.faces.col(face++) = Eigen::Vector3i(a, b + around, b);
       if (i < n - 1) surface.faces.col(face++) = Eigen::Vector3i(a, a + around, b + around);
@@ -31,13 +33,13 @@ inline palpate::render::Surface cube_surface() {
   surface.points.resize(3, 8);
   for (int i = 0; i < 8; ++i) surface.points.col(i) = palpate::Vec3(i & 1, i >> 1 & 1, i >> 2 & 1);
   surface.faces.resize(3, 12);
-  surface.faces << 0, 0, 4, 4, 0, 0, 2, 2, 0, 0, 1, 1,
-                   2, 3, 5, 7, 1, 5, 6, 7, 4, 6, 3, 7,
-                   3, 1, 7, 6, 5, 4, 7, 3, 6, 2, 7, 5;
+  surface.faces << 0, 0, 4, 4, 0, 0, 2, 2, 0, 0, 1, 1, 2, 3, 5, 7, 1, 5, 6, 7, 4, 6, 3, 7, 3, 1, 7, 6, 5, 4,
+      7, 3, 6, 2, 7, 5;
   return surface;
 }
 
-/// Looks along +y at the origin, parallel: world x to the right, world z up; `half_height` metres from the middle to the top.
+/// Looks along +y at the origin, parallel: world x to the right, world z up; `half_height` metres from the
+/// middle to the top.
 inline palpate::render::Camera front_camera(double half_height) {
   palpate::render::Camera camera;
   camera.eye = {0.0, -10.0 * half_height, 0.0};

@@ -25,14 +25,24 @@ std::size_t count(const std::string& text, const std::string& what) {
 
 TEST(Page, EscapesEverythingThatIsGiven) {
   report::Page page(kNasty);
-  page.add_heading(kNasty).add_paragraph(kNasty).add_table({kNasty}, {{kNasty}}, kNasty).add_facts({{kNasty, kNasty}}).add_fact_groups({{kNasty, {{kNasty, kNasty}}}}).add_code(kNasty);
+  page.add_heading(kNasty)
+      .add_paragraph(kNasty)
+      .add_table({kNasty}, {{kNasty}}, kNasty)
+      .add_facts({{kNasty, kNasty}})
+      .add_fact_groups({{kNasty, {{kNasty, kNasty}}}})
+      .add_code(kNasty);
   const std::string html = page.html();
   EXPECT_EQ(html.find("<script"), std::string::npos);
-  EXPECT_EQ(count(html, kNastyEscaped), 13u);  // the title twice; heading, paragraph; header, cell, caption; name, value; group, name, value; code
+  // the title twice; heading, paragraph; header, cell, caption; name, value; group, name, value; code
+  EXPECT_EQ(count(html, kNastyEscaped), 13u);
   EXPECT_EQ(well_formed_problem(html), "");
 }
 
-TEST(Page, ReplacesControlCharacters) { EXPECT_EQ(report::escape_html(std::string("a\x01") + "b\n"), "a\xEF\xBF\xBD" "b\n"); }
+TEST(Page, ReplacesControlCharacters) {
+  EXPECT_EQ(report::escape_html(std::string("a\x01") + "b\n"),
+            "a\xEF\xBF\xBD"
+            "b\n");
+}
 
 TEST(Page, SetsColumnsOfNumbersToTheRight) {
   report::Page page("t");
@@ -41,8 +51,10 @@ TEST(Page, SetsColumnsOfNumbersToTheRight) {
 }
 
 TEST(Page, MakesIdsUniqueAndTakesBlackFromThePage) {
-  const std::string svg = "<?xml version=\"1.0\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">"
-                          "<path id='p' fill=\"black\"/><use xlink:href='#p'/></svg>";
+  const std::string svg =
+      "<?xml version=\"1.0\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
+      "xmlns:xlink=\"http://www.w3.org/1999/xlink\">"
+      "<path id='p' fill=\"black\"/><use xlink:href='#p'/></svg>";
   report::Page page("t");
   page.add_svg(svg, "one").add_svg(svg, "two");
   const std::string html = page.html();
@@ -73,7 +85,5 @@ TEST(Page, SaysWhereItCannotBeWritten) {
   try {
     report::write(report::Page("t"), "/nowhere/page.html");
     FAIL() << "a folder that is not there was written to";
-  } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("/nowhere/page.html"), std::string::npos);
-  }
+  } catch (const Error& e) { EXPECT_NE(std::string(e.what()).find("/nowhere/page.html"), std::string::npos); }
 }

@@ -23,8 +23,13 @@ report::Plot small_plot() {
   plot.title = "A title";
   plot.x_label = "time [s]";
   plot.y_label = "force_x [N]";
-  plot.series.push_back({.name = "first_series <a&b>", .x = {0, 1, 2}, .y = {0, 1, 4}, .mark = report::Mark::kLinePoints, .labels = {"p0", "p\"1", "p2"}});
-  plot.series.push_back({.name = "second", .x = {0, 2}, .y = {4, 0}, .mark = report::Mark::kDashed, .colour = "ink"});
+  plot.series.push_back({.name = "first_series <a&b>",
+                         .x = {0, 1, 2},
+                         .y = {0, 1, 4},
+                         .mark = report::Mark::kLinePoints,
+                         .labels = {"p0", "p\"1", "p2"}});
+  plot.series.push_back(
+      {.name = "second", .x = {0, 2}, .y = {4, 0}, .mark = report::Mark::kDashed, .colour = "ink"});
   plot.levels.push_back({3.0, "limit 3 N"});
   return plot;
 }
@@ -32,16 +37,16 @@ report::Plot small_plot() {
 std::string message_of(const report::Plot& plot) {
   try {
     report::plot_svg(plot);
-  } catch (const Error& e) {
-    return e.what();
-  }
+  } catch (const Error& e) { return e.what(); }
   return "no error";
 }
 
 /// The variable's value comes back at the end of the scope.
 class ScopedVariable {
  public:
-  ScopedVariable(const char* name, const char* value) : name_(name), old_(std::getenv(name)) { setenv(name, value, 1); }
+  ScopedVariable(const char* name, const char* value) : name_(name), old_(std::getenv(name)) {
+    setenv(name, value, 1);
+  }
   ~ScopedVariable() { setenv(name_, old_.c_str(), 1); }
 
  private:
@@ -53,7 +58,8 @@ class ScopedVariable {
 
 TEST(Plot, ShowsNamesLabelsAndLevels) {
   const std::string svg = report::plot_svg(small_plot());
-  for (const char* text : {"A title", "time [s]", "force_x [N]", "first_series &lt;a&amp;b>", "second", ">p0<", "p2", "limit 3 N"})
+  for (const char* text : {"A title", "time [s]", "force_x [N]", "first_series &lt;a&amp;b>", "second",
+                           ">p0<", "p2", "limit 3 N"})
     EXPECT_NE(svg.find(text), std::string::npos) << text;
   EXPECT_EQ(well_formed_problem(svg.substr(svg.find("<svg"))), "");
 }
@@ -72,7 +78,8 @@ TEST(Plot, LeavesNoBlackInAPage) {
   // A curve in ink must follow the page's text into dark mode.
   const std::string html = report::Page("t").add_svg(report::plot_svg(small_plot()), "").html();
   const std::string svg = html.substr(html.find("<svg"));
-  for (const char* black : {"black", "rgb(  0,   0,   0)", "rgb(0,0,0)"}) EXPECT_EQ(svg.find(black), std::string::npos) << black;
+  for (const char* black : {"black", "rgb(  0,   0,   0)", "rgb(0,0,0)"})
+    EXPECT_EQ(svg.find(black), std::string::npos) << black;
 }
 
 TEST(Plot, IsTheSameTwice) { EXPECT_EQ(report::plot_svg(small_plot()), report::plot_svg(small_plot())); }
@@ -80,7 +87,8 @@ TEST(Plot, IsTheSameTwice) { EXPECT_EQ(report::plot_svg(small_plot()), report::p
 TEST(Plot, LeavesOutWhatAnAxisCannotShow) {
   report::Plot plot = small_plot();
   plot.log_x = plot.log_y = true;
-  EXPECT_EQ(report::plot_svg(plot).find(">p0<"), std::string::npos);  // (0, 0) has no place on logarithmic axes
+  // (0, 0) has no place on logarithmic axes
+  EXPECT_EQ(report::plot_svg(plot).find(">p0<"), std::string::npos);
 }
 
 TEST(Plot, SaysWhenThereIsNothingToDraw) {

@@ -38,7 +38,8 @@ std::string joined(const std::vector<std::string>& cells) {
 /// Every file that a report is made from, small.
 fs::path full_dir() {
   const fs::path dir = fresh_dir("full_report");
-  put(dir / "summary.json", R"({"command": "palpate run press-ball", "scene": "press <ball>", "outcome": "finished", "message": "", "overrides": ["a=1"],
+  put(dir / "summary.json",
+      R"({"command": "palpate run press-ball", "scene": "press <ball>", "outcome": "finished", "message": "", "overrides": ["a=1"],
       "figures": {"options": {"integrator": "cvode-bdf", "max_force_n": 2.5}, "counts": {"steps": 812}, "in_use": {"fem": "a soft body"},
       "left_out": {"proxy": "one body"}, "pictures": {"picture-of-it.png": "The ball & its dent"}},
       "provenance": {"version": "0.1.0", "commit": "abc", "libraries": {"Eigen": "3.4.0"}}})");
@@ -48,14 +49,19 @@ fs::path full_dir() {
   for (const char* line : {"1e-3,1e-3,1", "1e-4,1e-4,2", "1e-5,1e-5,4"}) {
     const std::string text = line;
     const auto first = text.find(','), last = text.rfind(',');
-    compare += "press,cvode_<bdf>,cvode-bdf,BDF,5,A(alpha),yes,rtol," + text.substr(0, first) + "," + text.substr(first + 1, last - first - 1) + ",,,,,,," + text.substr(last + 1) +
+    compare += "press,cvode_<bdf>,cvode-bdf,BDF,5,A(alpha),yes,rtol," + text.substr(0, first) + "," +
+               text.substr(first + 1, last - first - 1) + ",,,,,,," + text.substr(last + 1) +
                ",1,4,1,10,2,3,10,12,9,8,1,0,ok,,no,no,no\n";
   }
   put(dir / "compare.csv", compare);
-  put(dir / "reference.json", R"({"rules": "one run a point", "scenes": [{"scene": "press", "position_error_rel_l2": 1e-6, "force_error_rms_n": null, "torque_error_rms_n_m": null,
+  put(dir / "reference.json",
+      R"({"rules": "one run a point", "scenes": [{"scene": "press", "position_error_rel_l2": 1e-6, "force_error_rms_n": null, "torque_error_rms_n_m": null,
       "description": "cvode-bdf at 1e-9", "trouble": "", "notes": []}]})");
-  put(dir / "restarts.csv", joined(store::restart_columns()) + "press,cvode_<bdf>,cvode-bdf,yes,0.01,0.5,3,100,120,20,0.1,ok,\npress,cvode_<bdf>,cvode-bdf,yes,0.001,0.5,30,400,500,60,0.3,ok,\n");
-  put(dir / "exchange.csv", joined(report::exchange_columns()) + "0.02,2e-2,,,1\n0.01,1e-2,,,2\n0.005,5e-3,,,4\n");
+  put(dir / "restarts.csv", joined(store::restart_columns()) +
+                                "press,cvode_<bdf>,cvode-bdf,yes,0.01,0.5,3,100,120,20,0.1,ok,\npress,cvode_<"
+                                "bdf>,cvode-bdf,yes,0.001,0.5,30,400,500,60,0.3,ok,\n");
+  put(dir / "exchange.csv",
+      joined(report::exchange_columns()) + "0.02,2e-2,,,1\n0.01,1e-2,,,2\n0.005,5e-3,,,4\n");
   put(dir / "validation.json", R"({"cases": [{"name": "patch-test", "measurements": [
       {"quantity": "stress [Pa]", "computed": 1, "exact": 1, "error": 0, "bar": 1e-6, "order": null, "passed": true},
       {"quantity": "broken [m]", "computed": 2, "exact": 1, "error": 1, "bar": 1e-6, "order": null, "passed": false}]}]})");
@@ -68,12 +74,38 @@ fs::path full_dir() {
 TEST(RunReport, HoldsEverySectionAndNothingFromOutside) {
   const std::string html = read(report::write_run_report(full_dir()));
   EXPECT_EQ(well_formed_problem(html), "");
-  for (const char* text : {"palpate: press &lt;ball&gt;", "The ball &amp; its dent", "palpate run press-ball", "<td class=\"n\">812</td>", "a soft body", "3.4.0", "Force on the hand", "device limit 2.5 N", "Error against run time", "cvode_&lt;bdf&gt;",
-                           "Reference: cvode-bdf at 1e-9", "one run a point", "the reference's own error", "Cheapest for a wanted error", "Cost of a wanted error", "What a restart costs", "(multistep)", "Fitted order", "1.00 (3 points)",
-                           "Error of the exchange period", "fitted order 1.00", "patch-test", "FAIL", "1 of 2 measurements FAIL", "left out", "one body", "Provenance", "abc",
+  for (const char* text : {"palpate: press &lt;ball&gt;",
+                           "The ball &amp; its dent",
+                           "palpate run press-ball",
+                           "<td class=\"n\">812</td>",
+                           "a soft body",
+                           "3.4.0",
+                           "Force on the hand",
+                           "device limit 2.5 N",
+                           "Error against run time",
+                           "cvode_&lt;bdf&gt;",
+                           "Reference: cvode-bdf at 1e-9",
+                           "one run a point",
+                           "the reference's own error",
+                           "Cheapest for a wanted error",
+                           "Cost of a wanted error",
+                           "What a restart costs",
+                           "(multistep)",
+                           "Fitted order",
+                           "1.00 (3 points)",
+                           "Error of the exchange period",
+                           "fitted order 1.00",
+                           "patch-test",
+                           "FAIL",
+                           "1 of 2 measurements FAIL",
+                           "left out",
+                           "one body",
+                           "Provenance",
+                           "abc",
                            "# a &amp; b"})
     EXPECT_NE(html.find(text), std::string::npos) << text;
-  for (const char* outside : {"http:", "https:", "src=\"/", "src=\"file", "@import", "url(", "<link", "<script"})
+  for (const char* outside :
+       {"http:", "https:", "src=\"/", "src=\"file", "@import", "url(", "<link", "<script"})
     EXPECT_EQ(html.find(outside), std::string::npos) << outside;
   EXPECT_EQ(html.find("Figure not drawn"), std::string::npos);
 }
@@ -83,7 +115,8 @@ TEST(RunReport, LeavesOutSectionsWithoutAFile) {
   put(dir / "summary.json", R"({"scene": "one-tet"})");
   const std::string html = read(report::write_run_report(dir));
   EXPECT_NE(html.find("palpate: one-tet"), std::string::npos);
-  for (const char* text : {"Force on the hand", "Error against run time", "Validation", "Provenance"}) EXPECT_EQ(html.find(text), std::string::npos) << text;
+  for (const char* text : {"Force on the hand", "Error against run time", "Validation", "Provenance"})
+    EXPECT_EQ(html.find(text), std::string::npos) << text;
 }
 
 TEST(RunReport, GivesTheReasonInPlaceOfAFigureThatCannotBeDrawn) {

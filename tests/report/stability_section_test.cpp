@@ -52,7 +52,8 @@ TEST(StabilitySection, IsAMapOfLettersWithTheUnexpectedOutlined) {
   EXPECT_NE(page.find("a&lt;b&gt;"), std::string::npos);
   EXPECT_NE(page.find("E &amp; H, &lt;stiff&gt;"), std::string::npos);
   EXPECT_NE(page.find("expected: accurate or stable"), std::string::npos);
-  EXPECT_NE(page.find("second: &quot;too&quot; &lt;much&gt; work"), std::string::npos) << "what the clear ends said";
+  EXPECT_NE(page.find("second: &quot;too&quot; &lt;much&gt; work"), std::string::npos)
+      << "what the clear ends said";
   EXPECT_NE(page.find("Cells that are not what theory expects"), std::string::npos);
 }
 

@@ -21,16 +21,15 @@ std::filesystem::path file_with(const std::string& name, const std::string& text
 std::string message_of(const std::filesystem::path& path) {
   try {
     report::read_csv(path);
-  } catch (const Error& e) {
-    return e.what();
-  }
+  } catch (const Error& e) { return e.what(); }
   return "no error";
 }
 
 }  // namespace
 
 TEST(FormatTable, SetsNumbersToTheRightAndWordsToTheLeft) {
-  const std::string text = report::format_table({"name", "error"}, {{"a", "1e-05"}, {"longer", "0.25"}, {"none", "-"}});
+  const std::string text =
+      report::format_table({"name", "error"}, {{"a", "1e-05"}, {"longer", "0.25"}, {"none", "-"}});
   EXPECT_EQ(text,
             "name    error\n"
             "------  -----\n"
@@ -49,7 +48,9 @@ TEST(FormatTable, LeavesNoBlanksAtTheEndOfALine) {
   EXPECT_EQ(text.find(" \n"), std::string::npos);
 }
 
-TEST(FormatTable, RefusesARaggedRow) { EXPECT_THROW(report::format_table({"a", "b"}, {{"only one"}}), InternalError); }
+TEST(FormatTable, RefusesARaggedRow) {
+  EXPECT_THROW(report::format_table({"a", "b"}, {{"only one"}}), InternalError);
+}
 
 TEST(ReadCsv, KeepsCellsAsTextAndGivesColumnsAsNumbers) {
   const report::Table table = report::read_csv(file_with("good.csv", "a,b\n1.5,\"x, \"\"y\"\"\"\nnan,z\n"));
@@ -81,5 +82,6 @@ TEST(Table, NamesTheNearestColumn) {
 
 TEST(ToNumber, TakesExactlyOneNumber) {
   EXPECT_EQ(report::to_number("-1.5e3"), -1500.0);
-  for (const char* bad : {"", "1,5", "1.5 m", " 1", "x"}) EXPECT_TRUE(std::isnan(report::to_number(bad))) << bad;
+  for (const char* bad : {"", "1,5", "1.5 m", " 1", "x"})
+    EXPECT_TRUE(std::isnan(report::to_number(bad))) << bad;
 }

@@ -14,13 +14,19 @@ using namespace palpate;
 namespace {
 
 const char* const kText =
-    "time_s,step_s,order,error,newton_iterations,outcome,worst_body,worst_node,worst_axis,inverted_body,inverted_element\n"
-    "0,0.004,3,7.5,2,error test,liver,2,y,,\n0,0.001,3,0.5,2,accepted,liver,0,x,,\n0.001,0.002,3,nan,9,Newton,,,,liver,12\n0.001,0.001,3,0.4,2,accepted,liver,0,x,,\n";
+    "time_s,step_s,order,error,newton_iterations,outcome,worst_body,worst_node,worst_axis,inverted_body,"
+    "inverted_element\n"
+    "0,0.004,3,7.5,2,error "
+    "test,liver,2,y,,\n0,0.001,3,0.5,2,accepted,liver,0,x,,\n0.001,0.002,3,nan,9,Newton,,,,liver,12\n0.001,0."
+    "001,3,0.4,2,accepted,liver,0,x,,\n";
 
 TEST(StepPlot, ShowsAcceptedStepsAsALineAndRejectedOnesByReason) {
   report::Table table;
   table.headers = {"time_s", "step_s", "outcome"};
-  table.rows = {{"0", "0.004", "error test"}, {"0", "0.001", "accepted"}, {"0.001", "0.002", "Newton"}, {"0.001", "0.001", "accepted"}};
+  table.rows = {{"0", "0.004", "error test"},
+                {"0", "0.001", "accepted"},
+                {"0.001", "0.002", "Newton"},
+                {"0.001", "0.001", "accepted"}};
   const report::Plot plot = report::step_plot(table);
   ASSERT_EQ(plot.series.size(), 3u);
   EXPECT_EQ(plot.series[0].name, "accepted");
@@ -40,7 +46,9 @@ TEST(RunReport, ShowsATrace) {
   std::ifstream in(dir / "report.html", std::ios::binary);
   const std::string html{std::istreambuf_iterator<char>(in), {}};
   EXPECT_EQ(well_formed_problem(html), "");
-  for (const char* text : {"why they were rejected", "liver, node 2, y", "liver, node 0, x", "inverted element", "<svg"}) EXPECT_NE(html.find(text), std::string::npos) << text;
+  for (const char* text :
+       {"why they were rejected", "liver, node 2, y", "liver, node 0, x", "inverted element", "<svg"})
+    EXPECT_NE(html.find(text), std::string::npos) << text;
 }
 
 }  // namespace

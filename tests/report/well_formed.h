@@ -3,8 +3,9 @@
 #include <string>
 #include <vector>
 
-/// What is wrong with a page as XML: a tag that is not closed, or closed out of turn, or a bare < or &.  Empty: nothing.
-/// A small checker of our own, so that the tests need no XML library; style and comments are skipped.
+/// What is wrong with a page as XML: a tag that is not closed, or closed out of turn, or a bare < or &.
+/// Empty: nothing. A small checker of our own, so that the tests need no XML library; style and comments are
+/// skipped.
 inline std::string well_formed_problem(const std::string& html) {
   std::vector<std::string> open;
   for (std::size_t at = 0; at < html.size(); ++at) {
@@ -20,8 +21,10 @@ inline std::string well_formed_problem(const std::string& html) {
     std::size_t end = at + 1;
     for (char quote = 0; end < html.size() && (quote != 0 || html[end] != '>'); ++end) {
       if (quote != 0 && html[end] == '<') return "a < inside an attribute at " + html.substr(at, 40);
-      if (quote == 0 && (html[end] == '"' || html[end] == '\'')) quote = html[end];
-      else if (html[end] == quote) quote = 0;
+      if (quote == 0 && (html[end] == '"' || html[end] == '\''))
+        quote = html[end];
+      else if (html[end] == quote)
+        quote = 0;
     }
     if (end >= html.size()) return "a tag is never closed: " + html.substr(at, 40);
     const bool closing = html[at + 1] == '/', empty = html[end - 1] == '/';
@@ -30,7 +33,8 @@ inline std::string well_formed_problem(const std::string& html) {
     const std::string name = html.substr(at + 1 + closing, name_end - at - 1 - closing);
     if (name.empty()) return "a bare < at " + html.substr(at, 40);
     if (closing) {
-      if (open.empty() || open.back() != name) return "</" + name + "> closes " + (open.empty() ? "nothing" : open.back());
+      if (open.empty() || open.back() != name)
+        return "</" + name + "> closes " + (open.empty() ? "nothing" : open.back());
       open.pop_back();
     } else if (!empty) {
       open.push_back(name);

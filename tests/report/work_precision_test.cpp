@@ -11,7 +11,8 @@ using namespace palpate;
 
 namespace {
 
-/// A table with the columns of compare.csv; `fast` is of order 1 at 1/h seconds, `good` of order 2 at 3/h seconds.
+/// A table with the columns of compare.csv; `fast` is of order 1 at 1/h seconds, `good` of order 2 at 3/h
+/// seconds.
 report::Table compare_table() {
   report::Table table;
   table.headers = store::compare_columns();
@@ -69,20 +70,23 @@ TEST(FittedOrders, OnePointHasNone) {
   EXPECT_TRUE(std::isnan(orders[0].order));
 }
 
-// Errors of `fast`: 0.05 0.025 0.0125 0.00625 at 10 20 40 80 s, so that error x cost = 0.5; of `good`: 0.02 0.005 0.00125 0.0003125 at 30 60 120 240 s,
-// so that error x cost^2 = 18.  Both are straight in log-log: interpolation is exact.
+// Errors of `fast`: 0.05 0.025 0.0125 0.00625 at 10 20 40 80 s, so that error x cost = 0.5; of `good`: 0.02
+// 0.005 0.00125 0.0003125 at 30 60 120 240 s, so that error x cost^2 = 18.  Both are straight in log-log:
+// interpolation is exact.
 TEST(CostAt, IsExactOnPowerLaws) {
   const auto all = report::ladders(compare_table(), "position_error_rel_l2", "cpu_s_median");
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0].failures.size(), 1u);
-  for (const double target : {0.03, 0.01, 0.00625}) EXPECT_NEAR(report::cost_at(all[0], target, report::kUnknown).value, 0.5 / target, 1e-9);
+  for (const double target : {0.03, 0.01, 0.00625})
+    EXPECT_NEAR(report::cost_at(all[0], target, report::kUnknown).value, 0.5 / target, 1e-9);
   EXPECT_NEAR(report::cost_at(all[1], 0.001, report::kUnknown).value, std::sqrt(18.0 / 0.001), 1e-9);
   EXPECT_FALSE(report::cost_at(all[1], 0.001, report::kUnknown).at_most);
 }
 
 TEST(CostAt, ExtrapolatesNothing) {
   const auto all = report::ladders(compare_table(), "position_error_rel_l2", "cpu_s_median");
-  EXPECT_TRUE(std::isnan(report::cost_at(all[0], 0.006, report::kUnknown).value)) << "finer than its finest rung";
+  EXPECT_TRUE(std::isnan(report::cost_at(all[0], 0.006, report::kUnknown).value))
+      << "finer than its finest rung";
   const report::Cost coarse = report::cost_at(all[1], 0.5, report::kUnknown);
   EXPECT_DOUBLE_EQ(coarse.value, 30.0);
   EXPECT_TRUE(coarse.at_most) << "coarser than its coarsest rung";
@@ -93,12 +97,14 @@ TEST(CostAt, ExtrapolatesNothing) {
 TEST(CostAt, TrustsNoErrorBelowTheReference) {
   const auto all = report::ladders(compare_table(), "position_error_rel_l2", "cpu_s_median");
   EXPECT_TRUE(std::isnan(report::cost_at(all[0], 0.007, 0.01).value));
-  const double cost = report::cost_at(all[0], 0.02, 0.0125 * 1.2).value;  // from 0.025 at 20 s to 0.015 at 40 s
+  // from 0.025 at 20 s to 0.015 at 40 s
+  const double cost = report::cost_at(all[0], 0.02, 0.0125 * 1.2).value;
   EXPECT_NEAR(cost, 20.0 * std::pow(2.0, std::log(0.025 / 0.02) / std::log(0.025 / 0.015)), 1e-9);
 }
 
 TEST(Winners, AreTheCheapestWithTheirLead) {
-  const auto wins = report::winners(compare_table(), "position_error_rel_l2", "cpu_s_median", {0.05, 0.01, 0.001, 1e-4});
+  const auto wins =
+      report::winners(compare_table(), "position_error_rel_l2", "cpu_s_median", {0.05, 0.01, 0.001, 1e-4});
   ASSERT_EQ(wins.size(), 4u);
   EXPECT_EQ(wins[0].label, "fast");
   EXPECT_DOUBLE_EQ(wins[0].cost.value, 10.0);
@@ -115,7 +121,8 @@ TEST(Winners, AreTheCheapestWithTheirLead) {
 TEST(Winners, TellHowMuchSlowerTheInteractiveMethodIs) {
   report::Table table = compare_table();
   for (auto& row : table.rows)
-    if (row[table.column("label")] == "fast") row[table.column("label")] = row[table.column("integrator")] = report::kBaseline;
+    if (row[table.column("label")] == "fast")
+      row[table.column("label")] = row[table.column("integrator")] = report::kBaseline;
   const auto wins = report::winners(table, "position_error_rel_l2", "cpu_s_median", {0.01, 0.001});
   EXPECT_NEAR(wins[0].baseline_ratio, 50.0 / std::sqrt(1800.0), 1e-9);
   EXPECT_TRUE(std::isnan(wins[1].baseline_ratio)) << "it does not get there";
@@ -124,14 +131,20 @@ TEST(Winners, TellHowMuchSlowerTheInteractiveMethodIs) {
 TEST(InWords, SaysWhatTheNumbersSay) {
   report::Table table = compare_table();
   std::string words = report::in_words(table, 1e-6);
-  for (const char* part : {"For an error of 0.01, good is the cheapest (42.4 s); the next, fast, takes 1.18 times as long", "For an error of 0.001, good is the cheapest (134 s).",
-                           "No point reaches 0.0001 and 1e-06", "Some rungs of fast failed: diverged."})
+  for (const char* part :
+       {"For an error of 0.01, good is the cheapest (42.4 s); the next, fast, takes 1.18 times as long",
+        "For an error of 0.001, good is the cheapest (134 s).", "No point reaches 0.0001 and 1e-06",
+        "Some rungs of fast failed: diverged."})
     EXPECT_NE(words.find(part), std::string::npos) << part << " in: " << words;
   EXPECT_NE(words.find("are not told apart"), std::string::npos) << "one point lies below the reference";
   table.rows.pop_back();
   words = report::in_words(table, 2e-6);
-  EXPECT_NE(words.find("The reference's own error, 2e-06, is 156 times below the best point that it can judge, 0.000313: it bears every figure here."), std::string::npos) << words;
-  EXPECT_NE(report::in_words(table, 1e-4).find("are not told apart"), std::string::npos) << "only three times below";
+  EXPECT_NE(words.find("The reference's own error, 2e-06, is 156 times below the best point that it can "
+                       "judge, 0.000313: it bears every figure here."),
+            std::string::npos)
+      << words;
+  EXPECT_NE(report::in_words(table, 1e-4).find("are not told apart"), std::string::npos)
+      << "only three times below";
   EXPECT_NE(report::in_words(table, report::kUnknown).find("own error is not known"), std::string::npos);
 }
 
@@ -139,12 +152,16 @@ TEST(InWords, SaysWhatTheNumbersSay) {
 TEST(InWords, NamesExplicitMethodsAtTheirStabilityLimit) {
   report::Table table;
   table.headers = store::compare_columns();
-  const auto add = [&](const char* label, const char* stability, const char* setting, double value, double error, double evaluations, const char* status) {
+  const auto add = [&](const char* label, const char* stability, const char* setting, double value,
+                       double error, double evaluations, const char* status) {
     std::vector<std::string> row(table.headers.size(), "");
     const auto put = [&](const char* column, const std::string& text) { row[table.column(column)] = text; };
-    put("label", label), put("integrator", label), put("family", label), put("stability", stability), put("setting_name", setting), put("status", status);
-    put("setting", fmt::format("{}", value)), put("position_error_rel_l2", fmt::format("{}", error)), put("reason", "not finite: at t = 1");
-    put("cpu_s_median", fmt::format("{}", evaluations)), put("force_evaluations", fmt::format("{}", evaluations)), put("unresolved", "no");
+    put("label", label), put("integrator", label), put("family", label), put("stability", stability),
+        put("setting_name", setting), put("status", status);
+    put("setting", fmt::format("{}", value)), put("position_error_rel_l2", fmt::format("{}", error)),
+        put("reason", "not finite: at t = 1");
+    put("cpu_s_median", fmt::format("{}", evaluations)),
+        put("force_evaluations", fmt::format("{}", evaluations)), put("unresolved", "no");
     table.rows.push_back(row);
   };
   add("held", "explicit", "rtol", 1e-2, 1e-5, 1000, "ok");
@@ -161,13 +178,15 @@ TEST(InWords, NamesExplicitMethodsAtTheirStabilityLimit) {
 }
 
 TEST(WorkPrecisionPlot, HasOneLineALadderWithoutFailedPoints) {
-  const report::Plot plot = report::work_precision_plot(compare_table(), "position_error_rel_l2", "error", 1e-4);
+  const report::Plot plot =
+      report::work_precision_plot(compare_table(), "position_error_rel_l2", "error", 1e-4);
   ASSERT_EQ(plot.series.size(), 2u);
   EXPECT_EQ(plot.series[0].x.size(), 4u);
   EXPECT_EQ(plot.series[1].labels[0], "100 ms");
   EXPECT_TRUE(plot.series[1].hollow.back());
   const std::string svg = report::plot_svg(plot);
-  for (const char* text : {"fast", "good", "100 ms", "the reference's own error"}) EXPECT_NE(svg.find(text), std::string::npos) << text;
+  for (const char* text : {"fast", "good", "100 ms", "the reference's own error"})
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
 }
 
 // Forty lines are told apart by family; what none beats is joined by one dark line, and named.
@@ -177,7 +196,8 @@ TEST(WorkPrecisionPlot, OfManyIsColouredByFamilyAndShowsTheEnvelope) {
   for (int copy = 0; copy < 3; ++copy)
     for (auto row : two.rows) {
       row[two.column("label")] += std::to_string(copy);
-      row[two.column("cpu_s_median")] = fmt::format("{}", 2.0 * report::to_number(row[two.column("cpu_s_median")]));
+      row[two.column("cpu_s_median")] =
+          fmt::format("{}", 2.0 * report::to_number(row[two.column("cpu_s_median")]));
       many.rows.push_back(row);
     }
   const report::Plot plot = report::work_precision_plot(many, "position_error_rel_l2", "error", 1e-4);
@@ -188,7 +208,8 @@ TEST(WorkPrecisionPlot, OfManyIsColouredByFamilyAndShowsTheEnvelope) {
   EXPECT_EQ(plot.series[0].colour, plot.series[2].colour);
   const report::Series& best = plot.series.back();
   EXPECT_EQ(best.colour, "ink");
-  // In the order of cost: fast at 10 and 20 s, good at 30 s (0.02 < 0.025), fast at 40 s (0.0125 < 0.02), good at 60, 120 and 240 s.
+  // In the order of cost: fast at 10 and 20 s, good at 30 s (0.02 < 0.025), fast at 40 s (0.0125 < 0.02),
+  // good at 60, 120 and 240 s.
   EXPECT_EQ(best.x, (std::vector<double>{10, 20, 30, 40, 60, 120, 240}));
   EXPECT_EQ(best.labels, (std::vector<std::string>{"fast", "", "good", "", "", "", ""}));
   const auto panels = report::family_plots(many, "position_error_rel_l2", "error", 1e-4);
@@ -202,9 +223,11 @@ TEST(RestartPlot, ShowsRatesAgainstRefreshes) {
   report::Table table;
   table.headers = store::restart_columns();
   const auto add = [&](const char* label, const char* multistep, double refresh, double steps) {
-    table.rows.push_back({"s", label, label, multistep, fmt::format("{}", refresh), "0.5", "3", fmt::format("{}", steps), "9", "9", "1", "ok", ""});
+    table.rows.push_back({"s", label, label, multistep, fmt::format("{}", refresh), "0.5", "3",
+                          fmt::format("{}", steps), "9", "9", "1", "ok", ""});
   };
-  add("bdf", "yes", 0.01, 100), add("bdf", "yes", 0.001, 400), add("euler", "no", 0.01, 50), add("euler", "no", 0.001, 50);
+  add("bdf", "yes", 0.01, 100), add("bdf", "yes", 0.001, 400), add("euler", "no", 0.01, 50),
+      add("euler", "no", 0.001, 50);
   const report::Plot plot = report::restart_plot(table, "steps", "steps per second");
   ASSERT_EQ(plot.series.size(), 2u);
   EXPECT_EQ(plot.series[0].name, "bdf (multistep)");
@@ -216,7 +239,8 @@ TEST(RestartPlot, ShowsRatesAgainstRefreshes) {
 TEST(ExchangePlot, DrawsTheFittedOrder) {
   report::Table table;
   table.headers = report::exchange_columns();
-  for (const double h : {0.02, 0.01, 0.005}) table.rows.push_back({fmt::format("{}", h), fmt::format("{}", 3.0 * h * h), "", "", "1"});
+  for (const double h : {0.02, 0.01, 0.005})
+    table.rows.push_back({fmt::format("{}", h), fmt::format("{}", 3.0 * h * h), "", "", "1"});
   const report::Plot plot = report::exchange_plot(table, "position_error_rel_l2", "error");
   ASSERT_EQ(plot.series.size(), 2u);
   EXPECT_EQ(plot.series[1].name, "fitted order 2.00");

@@ -14,42 +14,80 @@ struct Broken {
 };
 
 const Broken kCases[] = {
-    {"attachment-box", "10:13", "body \"ball\": attachment[0]: box_max_m = -1 must not be below box_min_m = 0 along y"},
-    {"attachment-nowhere", "8:1", "body \"ball\": attachment[0]: box_min_m is missing: say which nodes, by box_min_m and box_max_m, or by centre_m and radius_m"},
-    {"attachment-to-partitioned-tool", "9:6", "body \"ball\": attachment[0]: to = \"tool\" needs [exchange] scheme = \"monolithic\": a tool with ticks of its own cannot carry nodes of a body that steps later"},
-    {"attachment-to-unknown", "9:6", "body \"ball\": attachment[0]: no bone is called \"fermur\" (did you mean \"femur\"?)"},
-    {"attachment-two-regions", "11:12", "body \"ball\": attachment[0]: a box and a sphere exclude each other; remove box_min_m and box_max_m, or centre_m and radius_m"},
-    {"bone-carries-nothing", "8:1", "bone \"femur\": carries nothing: give a body a [[body.attachment]] with to = \"femur\""},
+    {"attachment-box", "10:13",
+     "body \"ball\": attachment[0]: box_max_m = -1 must not be below box_min_m = 0 along y"},
+    {"attachment-nowhere", "8:1",
+     "body \"ball\": attachment[0]: box_min_m is missing: say which nodes, by box_min_m and box_max_m, or by "
+     "centre_m and radius_m"},
+    {"attachment-to-partitioned-tool", "9:6",
+     "body \"ball\": attachment[0]: to = \"tool\" needs [exchange] scheme = \"monolithic\": a tool with "
+     "ticks of its own cannot carry nodes of a body that steps later"},
+    {"attachment-to-unknown", "9:6",
+     "body \"ball\": attachment[0]: no bone is called \"fermur\" (did you mean \"femur\"?)"},
+    {"attachment-two-regions", "11:12",
+     "body \"ball\": attachment[0]: a box and a sphere exclude each other; remove box_min_m and box_max_m, "
+     "or centre_m and radius_m"},
+    {"bone-carries-nothing", "8:1",
+     "bone \"femur\": carries nothing: give a body a [[body.attachment]] with to = \"femur\""},
     {"bone-fixed-mass", "14:11", "bone \"femur\": mass_kg means nothing to a fixed bone; remove it"},
-    {"bone-inertia", "13:17", "bone \"femur\": inertia_kg_m2 = [1e-06, 1e-06, 3e-06] belongs to no rigid body: none may be larger than the other two together"},
+    {"bone-inertia", "13:17",
+     "bone \"femur\": inertia_kg_m2 = [1e-06, 1e-06, 3e-06] belongs to no rigid body: none may be larger "
+     "than the other two together"},
     {"bone-shape", "10:1", "bone \"femur\": length_m is missing: shape = \"capsule\" needs it"},
-    {"change-order", "12:10", "body \"ball\": change: time_s = 0.4 must be greater than the one before (0.5)"},
-    {"bone-without-mass", "10:1", "bone \"femur\": mass_kg (or density_kg_m3 of its shape) is missing; a bone that shall not move needs fixed = true or a [[bone.keyframe]]"},
-    {"skeleton-hinge", "8:1", "body \"limb\": joint of \"hand\": axis is missing: a hinge turns about one, in the body's own axes, for example [1.0, 0.0, 0.0]"},
-    {"skeleton-scripted-type", "10:8", "body \"limb\": joint of \"hand\": type means nothing to a joint with keyframes; remove it"},
-    {"skeleton-twice", "11:8", "body \"limb\": joint of \"hand\": a bone hangs on its parent by one joint; this is its second table"},
-    {"skeleton-without-model", "8:1", "body \"limb\": skeleton: needs mesh = { file = \"MODEL.h5\" }, a model file with bones; `palpate model human -o human.h5` makes one"},
-    {"contact-with-itself", "9:11", "contact between \"ball\" and \"ball\": a body touches itself with the skin of one bone against that of another, by its proxies: give it skin = true and proxies = true, or name two things"},
-    {"contact-with-nothing", "12:20", "contact between \"ball\" and \"flor\": nothing is called \"flor\" (did you mean \"floor\"?)"},
-    {"contact-without-tool", "9:12", "contact between \"tool\" and \"ball\": \"tool\" is named, but the scene has no [tool]"},
-    {"device-without-tool", "8:1", "device: a device needs something to move: add [tool], or remove [device]"},
-    {"exchange-period", "9:21", "exchange: exchange_period_s = 0.0105 must be a whole number of the tool's ticks of 0.001 s; use 0.01 or 0.011"},
+    {"change-order", "12:10",
+     "body \"ball\": change: time_s = 0.4 must be greater than the one before (0.5)"},
+    {"bone-without-mass", "10:1",
+     "bone \"femur\": mass_kg (or density_kg_m3 of its shape) is missing; a bone that shall not move needs "
+     "fixed = true or a [[bone.keyframe]]"},
+    {"skeleton-hinge", "8:1",
+     "body \"limb\": joint of \"hand\": axis is missing: a hinge turns about one, in the body's own axes, "
+     "for example [1.0, 0.0, 0.0]"},
+    {"skeleton-scripted-type", "10:8",
+     "body \"limb\": joint of \"hand\": type means nothing to a joint with keyframes; remove it"},
+    {"skeleton-twice", "11:8",
+     "body \"limb\": joint of \"hand\": a bone hangs on its parent by one joint; this is its second table"},
+    {"skeleton-without-model", "8:1",
+     "body \"limb\": skeleton: needs mesh = { file = \"MODEL.h5\" }, a model file with bones; `palpate model "
+     "human -o human.h5` makes one"},
+    {"contact-with-itself", "9:11",
+     "contact between \"ball\" and \"ball\": a body touches itself with the skin of one bone against that of "
+     "another, by its proxies: give it skin = true and proxies = true, or name two things"},
+    {"contact-with-nothing", "12:20",
+     "contact between \"ball\" and \"flor\": nothing is called \"flor\" (did you mean \"floor\"?)"},
+    {"contact-without-tool", "9:12",
+     "contact between \"tool\" and \"ball\": \"tool\" is named, but the scene has no [tool]"},
+    {"device-without-tool", "8:1",
+     "device: a device needs something to move: add [tool], or remove [device]"},
+    {"exchange-period", "9:21",
+     "exchange: exchange_period_s = 0.0105 must be a whole number of the tool's ticks of 0.001 s; use 0.01 "
+     "or 0.011"},
     {"idle-key", "11:10", "body \"ball\": mesh: size_m means nothing to generator = \"ball\"; remove it"},
-    {"inertia", "5:17", "tool: inertia_kg_m2 = [1e-06, 1e-06, 3e-06] belongs to no rigid body: all must be positive and none larger than the other two together"},
-    {"keyframe-order", "9:10", "device: keyframe[1]: time_s = 0.25 must come after 0.5, the keyframe before; put keyframes in the order of time"},
-    {"ladder-order", "11:8", "compare: ladder[0]: rtol must fall from the coarsest to the finest, but 0.01 comes after 0.001"},
+    {"inertia", "5:17",
+     "tool: inertia_kg_m2 = [1e-06, 1e-06, 3e-06] belongs to no rigid body: all must be positive and none "
+     "larger than the other two together"},
+    {"keyframe-order", "9:10",
+     "device: keyframe[1]: time_s = 0.25 must come after 0.5, the keyframe before; put keyframes in the "
+     "order of time"},
+    {"ladder-order", "11:8",
+     "compare: ladder[0]: rtol must fall from the coarsest to the finest, but 0.01 comes after 0.001"},
     {"missing-stiffness", "5:1", "body \"ball\": youngs_modulus_pa is missing and has no default"},
-    {"misspelt-key", "6:1", "body \"ball\": unknown key \"young_modulus_pa\" (did you mean \"youngs_modulus_pa\"?)"},
+    {"misspelt-key", "6:1",
+     "body \"ball\": unknown key \"young_modulus_pa\" (did you mean \"youngs_modulus_pa\"?)"},
     {"nan", "4:27", "scene: gravity_m_s2 = [0, 0, nan] must be a finite number"},
     {"nothing", "1:1", "there is nothing to simulate: add a [[body]], or a [tool] with a [device]"},
-    {"poissons-ratio", "7:18", "body \"ball\": poissons_ratio = 0.5 must lie in (-1, 0.5); use 0.49 for nearly incompressible tissue"},
-    {"refresh", "10:21", "exchange: contact_refresh_s = 0.003 must be a whole fraction of exchange_period_s = 0.01; use 0.0025"},
+    {"poissons-ratio", "7:18",
+     "body \"ball\": poissons_ratio = 0.5 must lie in (-1, 0.5); use 0.49 for nearly incompressible tissue"},
+    {"refresh", "10:21",
+     "exchange: contact_refresh_s = 0.003 must be a whole fraction of exchange_period_s = 0.01; use 0.0025"},
     {"short-vector", "4:16", "scene: gravity_m_s2 = [0, -9.81] must be three numbers, [x, y, z]"},
     {"single-brackets", "4:1", "body must be a list of tables: write [[body]] with double brackets"},
-    {"skin-of-generator", "8:8", "body \"ball\": skin = true needs mesh = { file = \"MODEL.h5\" }, a model file; `palpate model SURFACE -o MODEL.h5` makes one"},
+    {"skin-of-generator", "8:8",
+     "body \"ball\": skin = true needs mesh = { file = \"MODEL.h5\" }, a model file; `palpate model SURFACE "
+     "-o MODEL.h5` makes one"},
     {"syntax", "3:14", "not valid TOML: "},
     {"tool-without-device", "4:1", "tool: a tool needs a hand: add [device] with [[device.keyframe]]"},
-    {"two-of-a-name", "10:8", "obstacle \"ball\": name \"ball\" is taken; bodies, bones and obstacles need names of their own"},
+    {"two-of-a-name", "10:8",
+     "obstacle \"ball\": name \"ball\" is taken; bodies, bones and obstacles need names of their own"},
     {"unknown-choice", "7:11", "body \"ball\": tangent = \"exakt\" is not known (did you mean \"exact\"?)"},
     {"unknown-table", "4:2", "unknown key \"integrater\" (did you mean \"integrator\"?)"},
     {"wrong-type", "3:14", "scene: duration_s = \"one second\" must be a number"},
@@ -58,9 +96,7 @@ const Broken kCases[] = {
 std::string message_of(const std::string& path) {
   try {
     palpate::scene::load(path);
-  } catch (const palpate::Error& e) {
-    return e.what();
-  }
+  } catch (const palpate::Error& e) { return e.what(); }
   return "no error";
 }
 
@@ -68,8 +104,10 @@ TEST(BrokenScene, IsRefusedAtItsPlace) {
   for (const Broken& one : kCases) {
     const std::string path = scene_texts::kBroken + "/" + one.file + ".toml";
     const std::string expected = path + ":" + one.place + ": " + one.message, message = message_of(path);
-    if (std::string(one.file) == "syntax") EXPECT_TRUE(message.starts_with(expected)) << message;
-    else EXPECT_EQ(message, expected);
+    if (std::string(one.file) == "syntax")
+      EXPECT_TRUE(message.starts_with(expected)) << message;
+    else
+      EXPECT_EQ(message, expected);
   }
 }
 
@@ -78,7 +116,9 @@ TEST(BrokenScene, EveryFileIsListed) {
 }
 
 TEST(BrokenScene, AFileThatIsNotThereIsNamed) {
-  EXPECT_EQ(message_of("/no/such/scene.toml"), "/no/such/scene.toml: no such scene file; `palpate list scenes` shows those that come with palpate");
+  EXPECT_EQ(
+      message_of("/no/such/scene.toml"),
+      "/no/such/scene.toml: no such scene file; `palpate list scenes` shows those that come with palpate");
   EXPECT_EQ(message_of("/tmp"), "/tmp: is a folder; name a scene file (.toml) in it");
 }
 

@@ -9,19 +9,38 @@
 
 namespace {
 
-const char* const kFragments[] = {"[", "]", "[[", "]]", "=", "\"", "'''", "\n", ",", ".", "{", "}", "nan", "-inf", "1e999", "0x", "-", "#", "body", "tool",
-                                  "keyframe", "99999999999999999999", "true", "\xff\xfe", "\xe2\x82", "\\u0000", "0.0", "-1", "[[body]]\n", "[tool]\n"};
+const char* const kFragments[] = {"[",          "]",
+                                  "[[",         "]]",
+                                  "=",          "\"",
+                                  "'''",        "\n",
+                                  ",",          ".",
+                                  "{",          "}",
+                                  "nan",        "-inf",
+                                  "1e999",      "0x",
+                                  "-",          "#",
+                                  "body",       "tool",
+                                  "keyframe",   "99999999999999999999",
+                                  "true",       "\xff\xfe",
+                                  "\xe2\x82",   "\\u0000",
+                                  "0.0",        "-1",
+                                  "[[body]]\n", "[tool]\n"};
 
 std::string damaged(std::string text, std::mt19937& random) {
-  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % std::max<std::size_t>(1, n)); };
+  const auto below = [&](std::size_t n) {
+    return static_cast<std::size_t>(random() % std::max<std::size_t>(1, n));
+  };
   for (std::size_t n = 1 + below(4); n > 0; --n) {
     const std::size_t at = below(text.size()), length = 1 + below(20);
     switch (below(5)) {
       case 0: text.erase(at, length); break;
       case 1: text.insert(at, kFragments[below(std::size(kFragments))]); break;
-      case 2: if (!text.empty()) text[at] = static_cast<char>(random()); break;
+      case 2:
+        if (!text.empty()) text[at] = static_cast<char>(random());
+        break;
       case 3: text.insert(below(text.size()), text.substr(at, 4 * length)); break;
-      default: if (at < text.size()) text.resize(text.size() - below(text.size() / 8 + 1)); break;
+      default:
+        if (at < text.size()) text.resize(text.size() - below(text.size() / 8 + 1));
+        break;
     }
   }
   return text;
@@ -53,7 +72,8 @@ TEST(Fuzz, DamagedScenesAreReadOrRefused) {
 TEST(Fuzz, DamagedOverridesAreAppliedOrRefused) {
   std::mt19937 random(4);
   int refused = 0;
-  for (int i = 0; i < 1000; ++i) refused += !is_read(scene_texts::kWhole, {damaged("device.keyframe.1.position_m=[0, 0, 0.5]", random)});
+  for (int i = 0; i < 1000; ++i)
+    refused += !is_read(scene_texts::kWhole, {damaged("device.keyframe.1.position_m=[0, 0, 0.5]", random)});
   EXPECT_GT(refused, 500);
 }
 

@@ -81,8 +81,10 @@ radius_m = 0.01
   EXPECT_EQ(d.bodies[1].attachments[1].to, "tibia");
   EXPECT_THROW(parse(text, "bones.toml", {"body.1.attachment.1.axes=\"xy\""}), palpate::Error);
   EXPECT_THROW(parse(text, "bones.toml", {"bone.0.mass_kg=1"}), palpate::Error) << "mass and density";
-  const Description mono = parse(text, "bones.toml", {"exchange.scheme=\"monolithic\"", "body.1.attachment.0.to=\"tool\"", "body.1.attachment.0.radius_m=0.01",
-                                                      "body.1.attachment.0.centre_m=[0,0,0]", "body.0.attachment.0.to=\"femur\""});
+  const Description mono = parse(text, "bones.toml",
+                                 {"exchange.scheme=\"monolithic\"", "body.1.attachment.0.to=\"tool\"",
+                                  "body.1.attachment.0.radius_m=0.01", "body.1.attachment.0.centre_m=[0,0,0]",
+                                  "body.0.attachment.0.to=\"femur\""});
   EXPECT_EQ(mono.bodies[1].attachments[0].to, "tool");
 }
 
@@ -106,9 +108,12 @@ TEST(Load, AbsentTablesStayAbsent) {
 }
 
 TEST(Load, RegionsSayWhatDiffersFromTheBody) {
-  const Description d = parse(scene_texts::kWhole, "whole.toml",
-                              {"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, density_kg_m3 = 2e3}, {name = \"half\", box_min_m = [0, 0, 0], box_max_m = [1, 1, 1]}]",
-                               "body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5}, {time_s = 0.1, youngs_modulus_pa = 2e5, region = \"half\"}]"});
+  const Description d =
+      parse(scene_texts::kWhole, "whole.toml",
+            {"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, density_kg_m3 = 2e3}, "
+             "{name = \"half\", box_min_m = [0, 0, 0], box_max_m = [1, 1, 1]}]",
+             "body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5}, {time_s = 0.1, youngs_modulus_pa = "
+             "2e5, region = \"half\"}]"});
   ASSERT_EQ(d.bodies[0].regions.size(), 2u);
   EXPECT_EQ(d.bodies[0].regions[0].region, "sphere");
   EXPECT_EQ(d.bodies[0].regions[1].region, "box");
@@ -120,39 +125,58 @@ TEST(Load, RegionsSayWhatDiffersFromTheBody) {
 TEST(Load, TwoSoftBodiesMeetInImageSpace) {
   const auto refusal = [](const std::string& more, const std::string& contact) -> std::string {
     try {
-      parse("[scene]\nname = \"pair\"\nduration_s = 1.0\n[[body]]\nname = \"a\"\nmesh = { generator = \"ball\", radius_m = 0.1, element_size_m = 0.05 }\nyoungs_modulus_pa = 1e4\n[[body]]\nname = \"b\"\nyoungs_modulus_pa = 1e4\n" + more +
-                "[[contact]]\nbetween = [\"a\", \"b\"]\n" + contact,
-            "pair.toml", {});
-    } catch (const palpate::Error& e) {
-      return e.what();
-    }
+      parse(
+          "[scene]\nname = \"pair\"\nduration_s = 1.0\n[[body]]\nname = \"a\"\nmesh = { generator = "
+          "\"ball\", radius_m = 0.1, element_size_m = 0.05 }\nyoungs_modulus_pa = 1e4\n[[body]]\nname = "
+          "\"b\"\nyoungs_modulus_pa = 1e4\n" +
+              more + "[[contact]]\nbetween = [\"a\", \"b\"]\n" + contact,
+          "pair.toml", {});
+    } catch (const palpate::Error& e) { return e.what(); }
     return "accepted";
   };
-  const std::string ball = "mesh = { generator = \"ball\", radius_m = 0.1, element_size_m = 0.05 }\n", model = "mesh = { file = \"b.h5\" }\nskin = true\nproxies = true\n";
+  const std::string ball = "mesh = { generator = \"ball\", radius_m = 0.1, element_size_m = 0.05 }\n",
+                    model = "mesh = { file = \"b.h5\" }\nskin = true\nproxies = true\n";
   EXPECT_EQ(refusal(ball, "method = \"gpu\"\n"), "accepted");
-  EXPECT_NE(refusal(ball, "").find("two soft bodies meet in image space: write method = \"gpu\""), std::string::npos);
-  EXPECT_NE(refusal(ball, "method = \"gpu\"\n[[contact]]\nbetween = [\"b\", \"a\"]\nmethod = \"gpu\"\n").find("this pair stands here twice"), std::string::npos);
-  EXPECT_NE(refusal(model, "method = \"gpu\"\n").find("proxies = true stands in \"b\" alone; both need it, or neither"), std::string::npos);
+  EXPECT_NE(refusal(ball, "").find("two soft bodies meet in image space: write method = \"gpu\""),
+            std::string::npos);
+  EXPECT_NE(refusal(ball, "method = \"gpu\"\n[[contact]]\nbetween = [\"b\", \"a\"]\nmethod = \"gpu\"\n")
+                .find("this pair stands here twice"),
+            std::string::npos);
+  EXPECT_NE(refusal(model, "method = \"gpu\"\n")
+                .find("proxies = true stands in \"b\" alone; both need it, or neither"),
+            std::string::npos);
 }
 
 TEST(Load, ABodyMeetsItselfByItsBones) {
   const auto refusal = [](const std::string& keys, const std::string& contact) -> std::string {
     try {
-      const Description d = parse("[scene]\nname = \"fist\"\nduration_s = 1.0\n[[obstacle]]\nname = \"floor\"\ntype = \"plane\"\n[[body]]\nname = \"hand\"\nyoungs_modulus_pa = 1e4\nmesh = { file = \"hand.h5\" }\n" + keys + "[[contact]]\n" + contact, "fist.toml", {});
+      const Description d = parse(
+          "[scene]\nname = \"fist\"\nduration_s = 1.0\n[[obstacle]]\nname = \"floor\"\ntype = "
+          "\"plane\"\n[[body]]\nname = \"hand\"\nyoungs_modulus_pa = 1e4\nmesh = { file = \"hand.h5\" }\n" +
+              keys + "[[contact]]\n" + contact,
+          "fist.toml", {});
       bool needed = false;
-      for (const auto& need : palpate::scene::needs(d, "cholmod")) needed |= need.part == "contact between bones" && need.used;
+      for (const auto& need : palpate::scene::needs(d, "cholmod"))
+        needed |= need.part == "contact between bones" && need.used;
       EXPECT_TRUE(needed);
-    } catch (const palpate::Error& e) {
-      return e.what();
-    }
+    } catch (const palpate::Error& e) { return e.what(); }
     return "accepted";
   };
-  const std::string proxies = "skin = true\nproxies = true\n", itself = "between = [\"hand\", \"hand\"]\n", gpu = "method = \"gpu\"\n";
+  const std::string proxies = "skin = true\nproxies = true\n", itself = "between = [\"hand\", \"hand\"]\n",
+                    gpu = "method = \"gpu\"\n";
   EXPECT_EQ(refusal(proxies, itself + gpu), "accepted");
-  EXPECT_NE(refusal(proxies, itself).find("no [[contact]] of this body has method = \"gpu\", which alone uses them"), std::string::npos);
-  EXPECT_NE(refusal("skin = true\n", itself + gpu).find("give it skin = true and proxies = true, or name two things"), std::string::npos);
-  EXPECT_NE(refusal(proxies, itself + gpu + "[[contact]]\n" + itself + gpu).find("this pair stands here twice"), std::string::npos);
-  EXPECT_NE(refusal("", "between = [\"floor\", \"floor\"]\n").find("only a soft body may touch itself; name two"), std::string::npos);
+  EXPECT_NE(refusal(proxies, itself)
+                .find("no [[contact]] of this body has method = \"gpu\", which alone uses them"),
+            std::string::npos);
+  EXPECT_NE(refusal("skin = true\n", itself + gpu)
+                .find("give it skin = true and proxies = true, or name two things"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal(proxies, itself + gpu + "[[contact]]\n" + itself + gpu).find("this pair stands here twice"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal("", "between = [\"floor\", \"floor\"]\n").find("only a soft body may touch itself; name two"),
+      std::string::npos);
 }
 
 /// What two keys of one table ask of each other; the places are covered by broken_test.
@@ -160,9 +184,7 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
   const auto refusal = [](const std::vector<std::string>& overrides) -> std::string {
     try {
       parse(scene_texts::kWhole, "whole.toml", overrides);
-    } catch (const palpate::Error& e) {
-      return e.what();
-    }
+    } catch (const palpate::Error& e) { return e.what(); }
     return "accepted";
   };
   EXPECT_EQ(refusal({}), "accepted");
@@ -185,33 +207,50 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
       {{"contact.1.between=[\"ball\"]"}, "between must name two things, [\"ball\", \"floor\"], not 1"},
       {{"tool.shape=mesh"}, "needs a [tool.mesh]"},
       {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\""}, "inertia_kg_m2 is missing"},
-      {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\"", "tool.inertia_kg_m2=[1,1,1]"}, "needs a tool with shape = \"sphere\""},
+      {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\"", "tool.inertia_kg_m2=[1,1,1]"},
+       "needs a tool with shape = \"sphere\""},
       {{"device.keyframe=[]"}, "write [[keyframe]] with double brackets"},
       {{"compare.exchange_periods_s=[50.0, 0.01]"}, "exchange_periods_s = 50 is longer than the whole run"},
       {{"exchange.exchange_period_s=50.0"}, "exchange_period_s = 50 is longer than the whole run"},
       {{"obstacle.0.type=box"}, "size_m is missing: type = \"box\" needs it"},
-      {{"obstacle.0.type=cylinder", "obstacle.0.radius_m=1.0"}, "length_m is missing: type = \"cylinder\" needs it"},
+      {{"obstacle.0.type=cylinder", "obstacle.0.radius_m=1.0"},
+       "length_m is missing: type = \"cylinder\" needs it"},
       {{"compare.ladder=[{integrator = \"x\"}]"}, "needs rungs"},
-      {{"compare.ladder=[{integrator = \"x\", rtol = [1e-3], step_s = [1e-3]}]"}, "rtol and step_s exclude each other"},
-      {{"tool.tick_s=0.003"}, "exchange_period_s = 0.01 must be a whole number of the tool's ticks of 0.003 s; use 0.009 or 0.012"},
+      {{"compare.ladder=[{integrator = \"x\", rtol = [1e-3], step_s = [1e-3]}]"},
+       "rtol and step_s exclude each other"},
+      {{"tool.tick_s=0.003"},
+       "exchange_period_s = 0.01 must be a whole number of the tool's ticks of 0.003 s; use 0.009 or 0.012"},
       {{"exchange.scheme=monolith"}, "exchange: scheme = \"monolith\" is not known"},
       {{"integrator.max_order=2.5"}, "must be a whole number"},
       {{"tool.gravity=1"}, "must be true or false"},
       {{"contact.0.stiffness_pa_m=-1"}, "must be positive"},
       {{"contact.0.friction=inf"}, "must be a finite number"},
-      {{"body.0.region=[{name = \"core\", youngs_modulus_pa = 1e5}]"}, "region \"core\": box_min_m is missing: generator = \"ball\" makes no regions; say which elements"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01}]"}, "says nothing of its material: give youngs_modulus_pa"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], youngs_modulus_pa = 1e5}]"}, "region \"core\": radius_m is missing"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, box_min_m = [0, 0, 0], youngs_modulus_pa = 1e5}]"}, "a box and a sphere exclude each other"},
-      {{"body.0.region=[{name = \"core\", box_min_m = [0, 0, 0], box_max_m = [1, -1, 1], youngs_modulus_pa = 1e5}]"}, "box_max_m = -1 must not be below box_min_m = 0 along y"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus_pa = 1e5}, {name = \"core\", centre_m = [0, 0, 0], radius_m = 0.02, density_kg_m3 = 2e3}]"},
+      {{"body.0.region=[{name = \"core\", youngs_modulus_pa = 1e5}]"},
+       "region \"core\": box_min_m is missing: generator = \"ball\" makes no regions; say which elements"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01}]"},
+       "says nothing of its material: give youngs_modulus_pa"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], youngs_modulus_pa = 1e5}]"},
+       "region \"core\": radius_m is missing"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, box_min_m = [0, 0, 0], "
+        "youngs_modulus_pa = 1e5}]"},
+       "a box and a sphere exclude each other"},
+      {{"body.0.region=[{name = \"core\", box_min_m = [0, 0, 0], box_max_m = [1, -1, 1], youngs_modulus_pa = "
+        "1e5}]"},
+       "box_max_m = -1 must not be below box_min_m = 0 along y"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus_pa = 1e5}, "
+        "{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.02, density_kg_m3 = 2e3}]"},
        "region \"core\": this is its second table"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, poissons_ratio = 0.5}]"}, "poissons_ratio = 0.5 must lie in (-1, 0.5)"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus = 1e5}]"}, "unknown key \"youngs_modulus\" (did you mean \"youngs_modulus_pa\"?)"},
-      {{"body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5, region = \"core\"}]"}, "change: region = \"core\", but the body has no [[body.region]]"},
-      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, density_kg_m3 = 2e3}]", "body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5, region = \"cor\"}]"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, poissons_ratio = 0.5}]"},
+       "poissons_ratio = 0.5 must lie in (-1, 0.5)"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, youngs_modulus = 1e5}]"},
+       "unknown key \"youngs_modulus\" (did you mean \"youngs_modulus_pa\"?)"},
+      {{"body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5, region = \"core\"}]"},
+       "change: region = \"core\", but the body has no [[body.region]]"},
+      {{"body.0.region=[{name = \"core\", centre_m = [0, 0, 0], radius_m = 0.01, density_kg_m3 = 2e3}]",
+        "body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5, region = \"cor\"}]"},
        "no [[body.region]] is called \"cor\" (did you mean \"core\"?)"},
-      {{"body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5}, {time_s = 0.1, youngs_modulus_pa = 2e5}]"}, "time_s = 0.1 must be greater than the one before (0.1): both change the same"},
+      {{"body.0.change=[{time_s = 0.1, youngs_modulus_pa = 1e5}, {time_s = 0.1, youngs_modulus_pa = 2e5}]"},
+       "time_s = 0.1 must be greater than the one before (0.1): both change the same"},
       {{"record=true"}, "record must be one table: write [record]"},
   };
   for (const auto& [overrides, expected] : cases) {

@@ -9,9 +9,11 @@
 
 namespace {
 
-std::map<std::string, bool> used(const std::string& scene, const std::vector<std::string>& overrides = {}, const std::string& linear_solver = "cholmod") {
+std::map<std::string, bool> used(const std::string& scene, const std::vector<std::string>& overrides = {},
+                                 const std::string& linear_solver = "cholmod") {
   std::map<std::string, bool> out;
-  for (const auto& need : palpate::scene::needs(palpate::scene::load(scene_texts::kScenes + "/" + scene + ".toml", overrides), linear_solver)) {
+  for (const auto& need : palpate::scene::needs(
+           palpate::scene::load(scene_texts::kScenes + "/" + scene + ".toml", overrides), linear_solver)) {
     EXPECT_FALSE(need.why.empty()) << need.part;
     EXPECT_TRUE(out.emplace(need.part, need.used).second) << need.part << " is listed twice";
   }
@@ -20,8 +22,11 @@ std::map<std::string, bool> used(const std::string& scene, const std::vector<std
 
 TEST(Needs, ASceneWithoutToolLeavesOutAllThatIsHaptic) {
   auto ball = used("falling-ball");
-  EXPECT_TRUE(ball.at("fem") && ball.at("contact") && ball.at("tangent") && ball.at("linear solver") && ball.at("run file"));
-  for (const char* part : {"tool", "device", "exchange", "exchange thread", "gl", "contact plane", "broad phase", "force file", "friction", "fixed nodes", "compare", "skin", "proxies", "contact between bones"})
+  EXPECT_TRUE(ball.at("fem") && ball.at("contact") && ball.at("tangent") && ball.at("linear solver") &&
+              ball.at("run file"));
+  for (const char* part :
+       {"tool", "device", "exchange", "exchange thread", "gl", "contact plane", "broad phase", "force file",
+        "friction", "fixed nodes", "compare", "skin", "proxies", "contact between bones"})
     EXPECT_FALSE(ball.at(part)) << part;
   auto bar = used("cantilever");
   EXPECT_TRUE(bar.at("fixed nodes"));
@@ -36,7 +41,9 @@ TEST(Needs, AnExplicitMethodLeavesOutTangentAndSolver) {
 
 TEST(Needs, PressBall) {
   auto press = used("press-ball");
-  for (const char* part : {"fem", "contact", "tool", "device", "exchange", "fixed nodes", "run file", "force file", "compare"}) EXPECT_TRUE(press.at(part)) << part;
+  for (const char* part :
+       {"fem", "contact", "tool", "device", "exchange", "fixed nodes", "run file", "force file", "compare"})
+    EXPECT_TRUE(press.at(part)) << part;
   EXPECT_FALSE(press.at("gl"));
   EXPECT_FALSE(press.at("gravity"));
   auto image = used("press-ball", {"contact.1.method=gpu"});

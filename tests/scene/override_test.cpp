@@ -9,58 +9,76 @@ using palpate::scene::parse;
 
 namespace {
 
-Description with(const std::vector<std::string>& overrides) { return parse(scene_texts::kWhole, "whole.toml", overrides); }
+Description with(const std::vector<std::string>& overrides) {
+  return parse(scene_texts::kWhole, "whole.toml", overrides);
+}
 
 std::string refusal(const std::string& override_text) {
   try {
     with({override_text});
-  } catch (const palpate::Error& e) {
-    return e.what();
-  }
+  } catch (const palpate::Error& e) { return e.what(); }
   return "accepted";
 }
 
 TEST(Override, ReplacesAddsAndReachesIntoLists) {
   EXPECT_EQ(with({"body.0.youngs_modulus_pa=1e5"}).bodies[0].youngs_modulus_pa, 1e5);
-  EXPECT_EQ(with({" body.0.youngs_modulus_pa = 1e5 "}).bodies[0].youngs_modulus_pa, 1e5) << "blanks do no harm";
+  EXPECT_EQ(with({" body.0.youngs_modulus_pa = 1e5 "}).bodies[0].youngs_modulus_pa, 1e5)
+      << "blanks do no harm";
   EXPECT_EQ(with({"device.keyframe.1.position_m.2=0.5"}).device->keyframes[1].position_m[2], 0.5);
   EXPECT_EQ(with({"integrator.rtol=1e-6"}).integrator.rtol, 1e-6) << "the table was not there";
   EXPECT_FALSE(with({"record.states=false"}).record->states);
   EXPECT_EQ(with({"scene.gravity_m_s2=[0, 1, 2]"}).gravity_m_s2, palpate::Vec3(0, 1, 2));
-  EXPECT_EQ(with({"integrator.rtol=1e-6", "integrator.rtol=1e-7"}).integrator.rtol, 1e-7) << "the last one counts";
+  EXPECT_EQ(with({"integrator.rtol=1e-6", "integrator.rtol=1e-7"}).integrator.rtol, 1e-7)
+      << "the last one counts";
 }
 
 TEST(Override, TakesBareWordsAsText) {
   EXPECT_EQ(with({"integrator.name=linearly-implicit-euler"}).integrator.name, "linearly-implicit-euler");
   EXPECT_EQ(with({"integrator.name=\"cvode-bdf\""}).integrator.name, "cvode-bdf");
   EXPECT_EQ(with({"scene.name=a.b-c_d"}).name, "a.b-c_d");
-  EXPECT_NE(refusal("scene.name=/home/you/liver.msh").find("must not contain slashes"), std::string::npos) << "read as a path, refused as a name";
+  EXPECT_NE(refusal("scene.name=/home/you/liver.msh").find("must not contain slashes"), std::string::npos)
+      << "read as a path, refused as a name";
 }
 
 TEST(Override, IsNamedInErrors) {
   EXPECT_EQ(refusal("body.0.poissons_ratio=0.5"),
-            "--set body.0.poissons_ratio=0.5: body \"ball\": poissons_ratio = 0.5 must lie in (-1, 0.5); use 0.49 for nearly incompressible tissue");
-  EXPECT_EQ(refusal("body.0.poisons_ratio=0.4"), "--set body.0.poisons_ratio=0.4: body \"ball\": unknown key \"poisons_ratio\" (did you mean \"poissons_ratio\"?)");
-  EXPECT_EQ(refusal("integrater.rtol=1e-3"), "--set integrater.rtol=1e-3: unknown key \"integrater\" (did you mean \"integrator\"?)");
+            "--set body.0.poissons_ratio=0.5: body \"ball\": poissons_ratio = 0.5 must lie in (-1, 0.5); use "
+            "0.49 for nearly incompressible tissue");
+  EXPECT_EQ(refusal("body.0.poisons_ratio=0.4"),
+            "--set body.0.poisons_ratio=0.4: body \"ball\": unknown key \"poisons_ratio\" (did you mean "
+            "\"poissons_ratio\"?)");
+  EXPECT_EQ(refusal("integrater.rtol=1e-3"),
+            "--set integrater.rtol=1e-3: unknown key \"integrater\" (did you mean \"integrator\"?)");
   EXPECT_EQ(refusal("contact.1.between=[\"ball\", \"tol\"]"),
-            "--set contact.1.between=[\"ball\", \"tol\"]: contact between \"ball\" and \"tol\": nothing is called \"tol\" (did you mean \"tool\"?)");
+            "--set contact.1.between=[\"ball\", \"tol\"]: contact between \"ball\" and \"tol\": nothing is "
+            "called \"tol\" (did you mean \"tool\"?)");
   EXPECT_EQ(refusal("device.keyframe.1.time_s=0"),
-            "--set device.keyframe.1.time_s=0: device: keyframe[1]: time_s = 0 must come after 0, the keyframe before; put keyframes in the order of time");
+            "--set device.keyframe.1.time_s=0: device: keyframe[1]: time_s = 0 must come after 0, the "
+            "keyframe before; put keyframes in the order of time");
 }
 
 TEST(Override, ThatCannotBeAppliedSaysWhy) {
   EXPECT_EQ(refusal("tool.tick_s=1e-12"),
-            "--set tool.tick_s=1e-12: exchange: tick_s = 1e-12 of the tool makes 1e+10 ticks of one exchange period of 0.01 s, at most 1e+06 are possible; "
+            "--set tool.tick_s=1e-12: exchange: tick_s = 1e-12 of the tool makes 1e+10 ticks of one exchange "
+            "period of 0.01 s, at most 1e+06 are possible; "
             "a haptic device asks for 0.001");
-  EXPECT_EQ(refusal("body.0.youngs_modulus_pa"), "--set body.0.youngs_modulus_pa: must be PATH=VALUE, as in body.0.youngs_modulus_pa=1e5");
+  EXPECT_EQ(refusal("body.0.youngs_modulus_pa"),
+            "--set body.0.youngs_modulus_pa: must be PATH=VALUE, as in body.0.youngs_modulus_pa=1e5");
   EXPECT_EQ(refusal("=3"), "--set =3: must be PATH=VALUE, as in body.0.youngs_modulus_pa=1e5");
-  EXPECT_EQ(refusal("body.1.youngs_modulus_pa=1e5"), "--set body.1.youngs_modulus_pa=1e5: \"1\" must be an index from 0 to 0");
-  EXPECT_EQ(refusal("body.x.youngs_modulus_pa=1e5"), "--set body.x.youngs_modulus_pa=1e5: \"x\" must be an index from 0 to 0");
-  EXPECT_EQ(refusal("bodi.0.name=a"), "--set bodi.0.name=a: the scene has no \"bodi\" (did you mean \"body\"?)");
+  EXPECT_EQ(refusal("body.1.youngs_modulus_pa=1e5"),
+            "--set body.1.youngs_modulus_pa=1e5: \"1\" must be an index from 0 to 0");
+  EXPECT_EQ(refusal("body.x.youngs_modulus_pa=1e5"),
+            "--set body.x.youngs_modulus_pa=1e5: \"x\" must be an index from 0 to 0");
+  EXPECT_EQ(refusal("bodi.0.name=a"),
+            "--set bodi.0.name=a: the scene has no \"bodi\" (did you mean \"body\"?)");
   EXPECT_EQ(refusal("scene.name.x=1"), "--set scene.name.x=1: \"x\" stands inside a plain value");
   EXPECT_EQ(refusal("scene.name.x.y=1"), "--set scene.name.x.y=1: \"x\" stands inside a plain value");
-  EXPECT_EQ(refusal("scene.duration_s=1 2"), "--set scene.duration_s=1 2: `1 2` is not one TOML value; write a number, true, false, a word, [1, 2, 3] or \"text\"");
-  EXPECT_EQ(refusal("scene.duration_s=1\nx=2"), "--set scene.duration_s=1\nx=2: `1\nx=2` is not one TOML value; write a number, true, false, a word, [1, 2, 3] or \"text\"");
+  EXPECT_EQ(refusal("scene.duration_s=1 2"),
+            "--set scene.duration_s=1 2: `1 2` is not one TOML value; write a number, true, false, a word, "
+            "[1, 2, 3] or \"text\"");
+  EXPECT_EQ(refusal("scene.duration_s=1\nx=2"),
+            "--set scene.duration_s=1\nx=2: `1\nx=2` is not one TOML value; write a number, true, false, a "
+            "word, [1, 2, 3] or \"text\"");
   EXPECT_NE(refusal("scene..x=1"), "accepted");
   EXPECT_NE(refusal("...=1"), "accepted");
 }
@@ -68,7 +86,8 @@ TEST(Override, ThatCannotBeAppliedSaysWhy) {
 /// The kept source is the scene as it ran: it parses to the same values, to the last bit.
 TEST(Override, EffectiveSourceParsesToTheSame) {
   const double odd = 0.1 + 0.2;
-  const Description d = with({fmt::format("integrator.rtol={}", odd), "body.0.youngs_modulus_pa=123456.789e-7", "integrator.name=cvode-bdf"});
+  const Description d = with({fmt::format("integrator.rtol={}", odd),
+                              "body.0.youngs_modulus_pa=123456.789e-7", "integrator.name=cvode-bdf"});
   EXPECT_NE(d.source.find("# --set integrator.name=cvode-bdf"), std::string::npos);
   const Description again = parse(d.source, "again.toml");
   EXPECT_EQ(again.integrator.rtol, odd);

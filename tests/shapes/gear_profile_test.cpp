@@ -30,7 +30,8 @@ TEST(GearProfile, HasTheDiametersOfItsModule) {
   EXPECT_NEAR(2.0 * size.tip_radius(), 0.100, 1e-12);
   EXPECT_NEAR(2.0 * size.root_radius(), 0.082, 1e-12);
   double least = 1.0, greatest = 0.0;
-  for (const Point2& p : shapes::gear_profile(size, 1e-3).points) least = std::min(least, p.norm()), greatest = std::max(greatest, p.norm());
+  for (const Point2& p : shapes::gear_profile(size, 1e-3).points)
+    least = std::min(least, p.norm()), greatest = std::max(greatest, p.norm());
   EXPECT_NEAR(greatest, size.tip_radius(), 1e-12);
   EXPECT_NEAR(least, size.root_radius(), 1e-12);
 }
@@ -39,13 +40,15 @@ TEST(GearProfile, HasTheDiametersOfItsModule) {
 TEST(GearProfile, AreaTendsToItsClosedForm) {
   const GearSize size;
   const double exact = shapes::gear_area(size);
-  const double coarse = polygon_area(shapes::gear_profile(size, 4e-4)) - exact, fine = polygon_area(shapes::gear_profile(size, 1e-4)) - exact;
+  const double coarse = polygon_area(shapes::gear_profile(size, 4e-4)) - exact,
+               fine = polygon_area(shapes::gear_profile(size, 1e-4)) - exact;
   EXPECT_LT(std::abs(fine), 2e-5 * exact);
   EXPECT_GT(coarse / fine, 12.0);
   EXPECT_LT(coarse / fine, 20.0);
 }
 
-// On the pitch circle a tooth is half a pitch wide: pi m / 2.  (The flank crosses it between two points; linear in between is exact enough there.)
+// On the pitch circle a tooth is half a pitch wide: pi m / 2.  (The flank crosses it between two points;
+// linear in between is exact enough there.)
 TEST(GearProfile, ToothAndGapAreEquallyWideOnThePitchCircle) {
   const GearSize size;
   const GearProfile profile = shapes::gear_profile(size, 2e-5);
@@ -53,7 +56,8 @@ TEST(GearProfile, ToothAndGapAreEquallyWideOnThePitchCircle) {
     const double a = profile.points[i].norm(), b = profile.points[i + 1].norm(), r = size.pitch_radius();
     if (a < r || b > r) continue;
     const Point2 p = profile.points[i] + (a - r) / (a - b) * (profile.points[i + 1] - profile.points[i]);
-    EXPECT_NEAR(2.0 * size.pitch_radius() * std::atan2(p.y(), p.x()), 0.5 * std::numbers::pi * size.module, 1e-7);
+    EXPECT_NEAR(2.0 * size.pitch_radius() * std::atan2(p.y(), p.x()), 0.5 * std::numbers::pi * size.module,
+                1e-7);
     return;
   }
   FAIL() << "the flank never crosses the pitch circle";
@@ -84,7 +88,8 @@ TEST(GearProfile, NormalsStandAcrossTheOutline) {
     const Point2 normal = profile.normals[i].normalized();
     EXPECT_NEAR(along.dot(normal), 0.0, 0.2) << i;
     EXPECT_GT(along.x() * normal.y() - along.y() * normal.x(), -1.01);
-    EXPECT_LT(along.x() * normal.y() - along.y() * normal.x(), -0.95) << i;  // counter-clockwise: the outside is on the right
+    // counter-clockwise: the outside is on the right
+    EXPECT_LT(along.x() * normal.y() - along.y() * normal.x(), -0.95) << i;
     ++looked_at;
   }
   EXPECT_GT(looked_at, 1000);

@@ -1,6 +1,6 @@
-#include <ctime>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <numbers>
@@ -17,7 +17,8 @@ namespace {
 /// A surface turned about the vertical and put aside.
 render::Surface placed(const TriMesh& mesh, double turn_deg, const Vec3& shift, render::Rgb colour) {
   render::Surface surface;
-  surface.points = Eigen::AngleAxisd(turn_deg * std::numbers::pi / 180.0, Vec3::UnitZ()).toRotationMatrix() * mesh.vertices;
+  surface.points = Eigen::AngleAxisd(turn_deg * std::numbers::pi / 180.0, Vec3::UnitZ()).toRotationMatrix() *
+                   mesh.vertices;
   surface.points.colwise() += shift;
   surface.faces = mesh.faces;
   surface.colour = colour;
@@ -27,8 +28,8 @@ render::Surface placed(const TriMesh& mesh, double turn_deg, const Vec3& shift, 
 struct Look {
   std::string name;
   render::Rgb colour;
-  double apart;                 ///< between two views [m]; 0: one view
-  double turn_deg, other_deg;   ///< of the two
+  double apart;                ///< between two views [m]; 0: one view
+  double turn_deg, other_deg;  ///< of the two
   double elevation_deg;
   int width, height;
   double crease_deg;
@@ -48,7 +49,8 @@ void draw(const Look& look, const std::filesystem::path& folder, bool of_base) {
   const TriMesh& mesh = of_base ? shape.base : shape.skin;
   render::Scene scene;
   scene.surfaces.push_back(placed(mesh, look.turn_deg, Vec3(-0.5 * look.apart, 0, 0), look.colour));
-  if (look.apart > 0.0) scene.surfaces.push_back(placed(mesh, look.other_deg, Vec3(0.5 * look.apart, 0, 0), look.colour));
+  if (look.apart > 0.0)
+    scene.surfaces.push_back(placed(mesh, look.other_deg, Vec3(0.5 * look.apart, 0, 0), look.colour));
   for (render::Surface& surface : scene.surfaces) surface.crease_deg = look.crease_deg;
   scene.ground = render::Ground{mesh.vertices.row(2).minCoeff()};
   render::Options options;
@@ -58,9 +60,12 @@ void draw(const Look& look, const std::filesystem::path& folder, bool of_base) {
   options.view.elevation_deg = look.elevation_deg;
   const std::filesystem::path file = folder / (look.name + (of_base ? "-base.png" : ".png"));
   render::save_png(render::draw(scene, options), file);
-  std::printf("%s: Euler %d, %d vertices, %d faces, base %d vertices, %.4g m^3, %.2f s of CPU, %s (%.0f kB)\n", look.name.c_str(), static_cast<int>(shape.skin.vertices.cols() - shape.skin.faces.cols() / 2), static_cast<int>(shape.skin.vertices.cols()),
-              static_cast<int>(shape.skin.faces.cols()), static_cast<int>(shape.base.vertices.cols()), mesh::enclosed_volume(shape.skin), seconds, file.c_str(),
-              static_cast<double>(std::filesystem::file_size(file)) / 1000.0);
+  std::printf(
+      "%s: Euler %d, %d vertices, %d faces, base %d vertices, %.4g m^3, %.2f s of CPU, %s (%.0f kB)\n",
+      look.name.c_str(), static_cast<int>(shape.skin.vertices.cols() - shape.skin.faces.cols() / 2),
+      static_cast<int>(shape.skin.vertices.cols()), static_cast<int>(shape.skin.faces.cols()),
+      static_cast<int>(shape.base.vertices.cols()), mesh::enclosed_volume(shape.skin), seconds, file.c_str(),
+      static_cast<double>(std::filesystem::file_size(file)) / 1000.0);
 }
 
 }  // namespace

@@ -61,7 +61,8 @@ TEST(March, SymmetricBodyIsCutInItsPlane) {
   EXPECT_GT(rim, 20);
 }
 
-// The detector that the other tests rely on: two balls apart do not cut each other, two that overlap do, all along the circle where they meet.
+// The detector that the other tests rely on: two balls apart do not cut each other, two that overlap do, all
+// along the circle where they meet.
 TEST(SelfIntersections, AreFoundWhereTheyAre) {
   const TriMesh ball = shapes::contour(ball_plan(0.5, false), 700);
   for (const double distance : {1.1, 0.7}) {
@@ -77,12 +78,14 @@ TEST(SelfIntersections, AreFoundWhereTheyAre) {
       EXPECT_EQ(found, 0);
       continue;
     }
-    const double circle = 2.0 * std::numbers::pi * std::sqrt(0.25 - 0.35 * 0.35), edge = (vertex(ball, 0, 0) - vertex(ball, 0, 1)).norm();
+    const double circle = 2.0 * std::numbers::pi * std::sqrt(0.25 - 0.35 * 0.35),
+                 edge = (vertex(ball, 0, 0) - vertex(ball, 0, 1)).norm();
     EXPECT_GT(found, circle / edge);
   }
 }
 
-// Volume of a sphere's inscribed triangles: V (1 - c h^2); the count is met, the triangles are good, every vertex lies on the sphere.
+// Volume of a sphere's inscribed triangles: V (1 - c h^2); the count is met, the triangles are good, every
+// vertex lies on the sphere.
 TEST(Contour, BallHasItsVolumeCountAndShape) {
   for (const bool symmetric : {false, true}) {
     const double radius = 0.5, exact = 4.0 / 3.0 * std::numbers::pi * std::pow(radius, 3);
@@ -121,7 +124,8 @@ TEST(Contour, FollowsTheWantedSize) {
   double above = 0.0, below = 0.0;
   int faces_above = 0, faces_below = 0;
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
-    const double z = (vertex(mesh, f, 0).z() + vertex(mesh, f, 1).z() + vertex(mesh, f, 2).z()) / 3.0, edge = (vertex(mesh, f, 0) - vertex(mesh, f, 1)).norm();
+    const double z = (vertex(mesh, f, 0).z() + vertex(mesh, f, 1).z() + vertex(mesh, f, 2).z()) / 3.0,
+                 edge = (vertex(mesh, f, 0) - vertex(mesh, f, 1)).norm();
     if (z > 0.15) above += edge, ++faces_above;
     if (z < -0.15) below += edge, ++faces_below;
   }
@@ -134,7 +138,8 @@ TEST(Plane, FillsBetweenTwoLoops) {
   const auto square = [](double half, int a_side, std::vector<shapes::Point2>& out) {
     const shapes::Point2 corner[4] = {{half, -half}, {half, half}, {-half, half}, {-half, -half}};
     for (int s = 0; s < 4; ++s)
-      for (int i = 0; i < a_side; ++i) out.push_back(corner[s] + (corner[(s + 1) % 4] - corner[s]) * i / a_side);
+      for (int i = 0; i < a_side; ++i)
+        out.push_back(corner[s] + (corner[(s + 1) % 4] - corner[s]) * i / a_side);
   };
   square(1.0, 20, outer);
   square(0.4, 8, hole);
@@ -144,21 +149,22 @@ TEST(Plane, FillsBetweenTwoLoops) {
   EXPECT_EQ(mesh.faces.cols(), 2 * inside + 80 + 32);  // Euler, for a ring
   double area = 0.0;
   for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
-    const double a = 0.5 * (vertex(mesh, f, 1) - vertex(mesh, f, 0)).cross(vertex(mesh, f, 2) - vertex(mesh, f, 0)).z();
+    const double a =
+        0.5 * (vertex(mesh, f, 1) - vertex(mesh, f, 0)).cross(vertex(mesh, f, 2) - vertex(mesh, f, 0)).z();
     EXPECT_GT(a, 0.0);
     area += a;
   }
   EXPECT_NEAR(area, 4.0 - 0.64, 1e-12);
   EXPECT_GT(smallest_angle_deg(mesh), 20.0);
-  for (int i = 0; i < 80; ++i) EXPECT_EQ(Vec3(mesh.vertices.col(i)), Vec3(outer[static_cast<std::size_t>(i)].x(), outer[static_cast<std::size_t>(i)].y(), 0));
+  for (int i = 0; i < 80; ++i)
+    EXPECT_EQ(Vec3(mesh.vertices.col(i)),
+              Vec3(outer[static_cast<std::size_t>(i)].x(), outer[static_cast<std::size_t>(i)].y(), 0));
 }
 
 // A flip there and back, a split and its collapse: the surface stays closed with each edge in two faces.
 TEST(CornerTable, OperationsKeepTheSurfaceClosed) {
   Faces octahedron(3, 8);
-  octahedron << 0, 1, 2, 3, 1, 2, 3, 0,
-                1, 2, 3, 0, 0, 1, 2, 3,
-                4, 4, 4, 4, 5, 5, 5, 5;
+  octahedron << 0, 1, 2, 3, 1, 2, 3, 0, 1, 2, 3, 0, 0, 1, 2, 3, 4, 4, 4, 4, 5, 5, 5, 5;
   shapes::CornerTable table(octahedron, 6);
   const auto closed = [&] {
     int faces = 0;
@@ -189,12 +195,8 @@ TEST(CornerTable, OperationsKeepTheSurfaceClosed) {
 // Two faces that run along an edge the same way, and an edge in three faces.
 TEST(CornerTable, RefusesSurfacesThatAreNone) {
   Faces same(3, 2), three(3, 3);
-  same << 0, 0,
-          1, 1,
-          2, 3;
-  three << 0, 1, 0,
-           1, 0, 1,
-           2, 3, 4;
+  same << 0, 0, 1, 1, 2, 3;
+  three << 0, 1, 0, 1, 0, 1, 2, 3, 4;
   EXPECT_THROW(shapes::CornerTable(same, 4), InternalError);
   EXPECT_THROW(shapes::CornerTable(three, 5), InternalError);
 }
@@ -202,9 +204,7 @@ TEST(CornerTable, RefusesSurfacesThatAreNone) {
 // A tetrahedron has nothing to spare: its collapse would fold it flat, its flip would double an edge.
 TEST(CornerTable, RefusesWhatWouldBreakTheSurface) {
   Faces faces(3, 4);
-  faces << 0, 0, 0, 1,
-           2, 1, 3, 2,
-           1, 3, 2, 3;
+  faces << 0, 0, 0, 1, 2, 1, 3, 2, 1, 3, 2, 3;
   const shapes::CornerTable table(faces, 4);
   for (int h = 0; h < 12; ++h) {
     EXPECT_FALSE(table.can_flip(h));

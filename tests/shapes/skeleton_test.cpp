@@ -27,7 +27,9 @@ TEST(HumanSkeleton, HasItsBonesParentsFirst) {
     EXPECT_GT(bones()[b].head_radius, 0.0);
     EXPECT_GT(bones()[b].tail_radius, 0.0);
   }
-  for (const char* name : {"pelvis", "thorax", "head", "upper_arm_left", "forearm_right", "hand_left", "thigh_right", "shank_left", "foot_right"}) EXPECT_TRUE(names.count(name)) << name;
+  for (const char* name : {"pelvis", "thorax", "head", "upper_arm_left", "forearm_right", "hand_left",
+                           "thigh_right", "shank_left", "foot_right"})
+    EXPECT_TRUE(names.count(name)) << name;
 }
 
 TEST(HumanSkeleton, LeftAndRightAreMirrorImages) {
@@ -36,7 +38,8 @@ TEST(HumanSkeleton, LeftAndRightAreMirrorImages) {
     const std::size_t at = bone.name.find("_left");
     if (at == std::string::npos) continue;
     const std::string other = bone.name.substr(0, at) + "_right";
-    const auto right = std::find_if(bones().begin(), bones().end(), [&](const Bone& b) { return b.name == other; });
+    const auto right =
+        std::find_if(bones().begin(), bones().end(), [&](const Bone& b) { return b.name == other; });
     ASSERT_NE(right, bones().end());
     EXPECT_EQ(right->head, Vec3(-bone.head.x(), bone.head.y(), bone.head.z()));
     EXPECT_EQ(right->tail, Vec3(-bone.tail.x(), bone.tail.y(), bone.tail.z()));
@@ -55,9 +58,12 @@ std::vector<Vec3> surface_points(const Bone& bone) {
   for (int i = 0; i <= 12; ++i)
     for (int j = 0; j < 10; ++j)
       for (int k = 0; k < 16; ++k) {
-        const double t = i / 12.0, polar = std::numbers::pi * (j + 0.5) / 10.0, turn = 2.0 * std::numbers::pi * k / 16.0;
+        const double t = i / 12.0, polar = std::numbers::pi * (j + 0.5) / 10.0,
+                     turn = 2.0 * std::numbers::pi * k / 16.0;
         const double radius = bone.head_radius + t * (bone.tail_radius - bone.head_radius);
-        out.push_back(bone.head + t * along + radius * Vec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)));
+        out.push_back(bone.head + t * along +
+                      radius * Vec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn),
+                                    std::cos(polar)));
       }
   return out;
 }
@@ -74,7 +80,8 @@ TEST(HumanSkeleton, LiesInsideTheFlesh) {
 // The function of the body is even in x to the bit, which the mirrored mesh takes for granted.
 TEST(HumanSkeleton, BodyIsItsOwnMirrorImage) {
   for (const Bone& bone : bones())
-    for (const Vec3& p : surface_points(bone)) ASSERT_EQ(shapes::human(p, true), shapes::human(Vec3(-p.x(), p.y(), p.z()), true));
+    for (const Vec3& p : surface_points(bone))
+      ASSERT_EQ(shapes::human(p, true), shapes::human(Vec3(-p.x(), p.y(), p.z()), true));
 }
 
 }  // namespace

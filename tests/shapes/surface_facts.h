@@ -19,14 +19,17 @@ inline double smallest_angle_deg(const TriMesh& m) {
   double smallest = 180.0;
   for (Eigen::Index f = 0; f < m.faces.cols(); ++f)
     for (int k = 0; k < 3; ++k) {
-      const Vec3 u = vertex(m, f, (k + 1) % 3) - vertex(m, f, k), v = vertex(m, f, (k + 2) % 3) - vertex(m, f, k);
+      const Vec3 u = vertex(m, f, (k + 1) % 3) - vertex(m, f, k),
+                 v = vertex(m, f, (k + 2) % 3) - vertex(m, f, k);
       smallest = std::min(smallest, std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi);
     }
   return smallest;
 }
 
 /// V - E + F of a closed surface, where E = 3 F / 2: 2 for a sphere, 0 with one hole through it.
-inline int euler_characteristic(const TriMesh& m) { return static_cast<int>(m.vertices.cols() - m.faces.cols() / 2); }
+inline int euler_characteristic(const TriMesh& m) {
+  return static_cast<int>(m.vertices.cols() - m.faces.cols() / 2);
+}
 
 inline int pieces(const TriMesh& m) {
   std::vector<int> parent(static_cast<std::size_t>(m.vertices.cols()));
@@ -42,25 +45,31 @@ inline int pieces(const TriMesh& m) {
   return n;
 }
 
-/// The segment pq crosses the triangle abc, at a point inside both (five signs of volumes).  An end within 1e-9 of the triangle's size of its plane does not
-/// count: there, on a gear's flat faces, signs are rounding.
+/// The segment pq crosses the triangle abc, at a point inside both (five signs of volumes).  An end within
+/// 1e-9 of the triangle's size of its plane does not count: there, on a gear's flat faces, signs are
+/// rounding.
 inline bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
-  const double before = normal.dot(p - a), after = normal.dot(q - a), rounding = 1e-9 * normal.norm() * (b - a).norm();
+  const double before = normal.dot(p - a), after = normal.dot(q - a),
+               rounding = 1e-9 * normal.norm() * (b - a).norm();
   if (before * after > 0.0 || std::min(std::abs(before), std::abs(after)) < rounding) return false;
   const Vec3 d = q - p;
-  const double u = d.dot((a - p).cross(b - p)), v = d.dot((b - p).cross(c - p)), w = d.dot((c - p).cross(a - p));
+  const double u = d.dot((a - p).cross(b - p)), v = d.dot((b - p).cross(c - p)),
+               w = d.dot((c - p).cross(a - p));
   return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
 }
 
-/// Pairs of triangles without a common vertex that cut each other.  All pairs whose boxes share a cell of a grid are looked at.
+/// Pairs of triangles without a common vertex that cut each other.  All pairs whose boxes share a cell of a
+/// grid are looked at.
 /// @param looked_at  how many pairs were tested
 inline int self_intersections(const TriMesh& m, long* looked_at) {
   double edge = 0.0;
-  for (Eigen::Index f = 0; f < m.faces.cols(); ++f) edge += (vertex(m, f, 0) - vertex(m, f, 1)).norm() / static_cast<double>(m.faces.cols());
+  for (Eigen::Index f = 0; f < m.faces.cols(); ++f)
+    edge += (vertex(m, f, 0) - vertex(m, f, 1)).norm() / static_cast<double>(m.faces.cols());
   const double cell = 1.5 * edge;
   const auto key = [](int i, int j, int k) {
-    return (static_cast<std::uint64_t>(i + (1 << 20)) << 42) | (static_cast<std::uint64_t>(j + (1 << 20)) << 21) | static_cast<std::uint64_t>(k + (1 << 20));
+    return (static_cast<std::uint64_t>(i + (1 << 20)) << 42) |
+           (static_cast<std::uint64_t>(j + (1 << 20)) << 21) | static_cast<std::uint64_t>(k + (1 << 20));
   };
   std::unordered_map<std::uint64_t, std::vector<int>> grid;
   struct Box {
@@ -81,7 +90,8 @@ inline int self_intersections(const TriMesh& m, long* looked_at) {
     for (std::size_t x = 0; x < faces.size(); ++x)
       for (std::size_t y = x + 1; y < faces.size(); ++y) {
         const int f = faces[x], g = faces[y];
-        const Eigen::Vector3i first = boxes[f].low.cwiseMax(boxes[g].low);  // the pair belongs to the first cell that both touch
+        // the pair belongs to the first cell that both touch
+        const Eigen::Vector3i first = boxes[f].low.cwiseMax(boxes[g].low);
         if (key(first.x(), first.y(), first.z()) != place) continue;
         bool touch = false;
         for (int k = 0; k < 3; ++k)
@@ -90,8 +100,10 @@ inline int self_intersections(const TriMesh& m, long* looked_at) {
         ++*looked_at;
         bool cut = false;
         for (int k = 0; k < 3 && !cut; ++k)
-          cut = crosses(vertex(m, f, k), vertex(m, f, (k + 1) % 3), vertex(m, g, 0), vertex(m, g, 1), vertex(m, g, 2)) ||
-                crosses(vertex(m, g, k), vertex(m, g, (k + 1) % 3), vertex(m, f, 0), vertex(m, f, 1), vertex(m, f, 2));
+          cut = crosses(vertex(m, f, k), vertex(m, f, (k + 1) % 3), vertex(m, g, 0), vertex(m, g, 1),
+                        vertex(m, g, 2)) ||
+                crosses(vertex(m, g, k), vertex(m, g, (k + 1) % 3), vertex(m, f, 0), vertex(m, f, 1),
+                        vertex(m, f, 2));
         found += cut ? 1 : 0;
       }
   return found;

@@ -16,7 +16,8 @@ namespace {
 
 TEST(Csv, NumbersReadBackToTheLastBit) {
   const sample_run::Folder folder;
-  const std::vector<double> odd = {0.1 + 0.2, -1e-308, 5e-324, 1e300, 0.0, -0.0, std::numeric_limits<double>::max()};
+  const std::vector<double> odd = {
+      0.1 + 0.2, -1e-308, 5e-324, 1e300, 0.0, -0.0, std::numeric_limits<double>::max()};
   store::CsvWriter csv(folder / "a.csv", {"time_s", "force_n"});
   for (const double x : odd) csv.row(std::array{x, -x});
   csv.row(std::array{1.0, std::nan("")});
@@ -46,9 +47,7 @@ TEST(Csv, TextWithCommasQuotesAndLineEnds) {
 std::string refusal(const auto& action) {
   try {
     action();
-  } catch (const Error& e) {
-    return e.what();
-  }
+  } catch (const Error& e) { return e.what(); }
   return "accepted";
 }
 
@@ -65,8 +64,10 @@ TEST(Csv, ErrorsSayWhere) {
   EXPECT_EQ(read("force_n\n1\n", "force_m"), "no column \"force_m\" (did you mean \"force_n\"?)");
   EXPECT_EQ(read("a\n1\n2x\n", "a"), "column \"a\", row 2: \"2x\" is no number");
   EXPECT_EQ(read("a\n1\n\"2\n", "a"), path + ":3: a quote is never closed");
-  EXPECT_EQ(refusal([] { store::CsvWriter csv("/no/such/a.csv", {"a"}); }), "/no/such/a.csv: cannot be written; is its folder there, writable, and not full?");
-  EXPECT_EQ(refusal([] { store::read_csv("/no/such.csv"); }), "/no/such.csv: no such file, or it cannot be read");
+  EXPECT_EQ(refusal([] { store::CsvWriter csv("/no/such/a.csv", {"a"}); }),
+            "/no/such/a.csv: cannot be written; is its folder there, writable, and not full?");
+  EXPECT_EQ(refusal([] { store::read_csv("/no/such.csv"); }),
+            "/no/such.csv: no such file, or it cannot be read");
   store::CsvWriter csv(path, {"a", "b"});
   EXPECT_THROW(csv.row(std::array{1.0}), InternalError);
 }
@@ -80,7 +81,11 @@ TEST(Csv, AFullDiskIsReported) {
 
 TEST(ForceFile, RoundTrip) {
   const sample_run::Folder folder;
-  store::ForceRow row{0.125, {quaternion_of({0.1, 0.2, 0.3}), {1, 2, 3}}, {quaternion_of({0, 0, -1.5}), {4, 5, 6}}, {{7, 8, 9}, {10, 11, 12}}, true};
+  store::ForceRow row{0.125,
+                      {quaternion_of({0.1, 0.2, 0.3}), {1, 2, 3}},
+                      {quaternion_of({0, 0, -1.5}), {4, 5, 6}},
+                      {{7, 8, 9}, {10, 11, 12}},
+                      true};
   {
     store::ForceFile file(folder / "force.csv");
     file.append(row);
@@ -110,7 +115,8 @@ TEST(AtomicFile, ReplacesWholeAndLeavesNothingBeside) {
   int files = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder / "")) ++files;
   EXPECT_EQ(files, 1);
-  EXPECT_EQ(refusal([] { store::write_atomically("/no/such/a.txt", "x"); }), "/no/such/a.txt: cannot be written; is its folder there, writable, and not full?");
+  EXPECT_EQ(refusal([] { store::write_atomically("/no/such/a.txt", "x"); }),
+            "/no/such/a.txt: cannot be written; is its folder there, writable, and not full?");
 }
 
 }  // namespace

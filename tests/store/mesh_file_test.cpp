@@ -25,8 +25,10 @@ TEST(MeshFile, RoundTrip) {
 }
 
 /// A data set made by other hands.
-void put(const std::string& path, bool first, const char* name, hid_t type, std::vector<hsize_t> shape, const void* data) {
-  const hid_t file = first ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT) : H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+void put(const std::string& path, bool first, const char* name, hid_t type, std::vector<hsize_t> shape,
+         const void* data) {
+  const hid_t file = first ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)
+                           : H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   const hid_t space = H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
   const hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
@@ -38,9 +40,7 @@ void put(const std::string& path, bool first, const char* name, hid_t type, std:
 std::string refusal(const std::string& path) {
   try {
     store::read_mesh(path);
-  } catch (const Error& e) {
-    return std::string(e.what()).substr(path.size());
-  }
+  } catch (const Error& e) { return std::string(e.what()).substr(path.size()); }
   return "accepted";
 }
 

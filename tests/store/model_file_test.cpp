@@ -27,10 +27,16 @@ store::ModelFile small_model() {
   m.embedding.tet = {0, 0, 0, 0};
   m.embedding.weights = Eigen::Matrix4d::Identity();
   m.proxies = {{m.skin.vertices.leftCols(3), {0, 1, 2}, 0}, {m.skin.vertices.rightCols(2), {2, 3}, -1}};
-  m.skeleton.bones = {{"root", -1, Vec3::Zero(), Vec3::UnitX(), 0.1, 0.2}, {"tip of it", 0, Vec3::UnitX(), Vec3::UnitY(), 0.3, 0.1 + 0.2}};
+  m.skeleton.bones = {{"root", -1, Vec3::Zero(), Vec3::UnitX(), 0.1, 0.2},
+                      {"tip of it", 0, Vec3::UnitX(), Vec3::UnitY(), 0.3, 0.1 + 0.2}};
   m.bone_of_node = {0, -1, 1, -1, -1};
   m.regions = {{"soft", {0}, 0.5, 1.0}, {"hard", {1}, 20.0, 1.1}};
-  out.record = {"corner.obj", "0123", "--tetrahedra 2", "0.1.0", {"one hole of 3 edges was closed", "nothing else"}, {{"tetrahedra", 2.0}, {"volume_m3", 1.0 / 3.0}}};
+  out.record = {"corner.obj",
+                "0123",
+                "--tetrahedra 2",
+                "0.1.0",
+                {"one hole of 3 edges was closed", "nothing else"},
+                {{"tetrahedra", 2.0}, {"volume_m3", 1.0 / 3.0}}};
   return out;
 }
 
@@ -84,11 +90,11 @@ TEST(ModelFile, RegionsAreReadAlone) {
     try {
       store::read_regions(folder / "bad.h5", 2);
       return "accepted";
-    } catch (const Error& e) {
-      return e.what();
-    }
+    } catch (const Error& e) { return e.what(); }
   };
-  EXPECT_NE(refusal({{"a", {0, 1}}, {"b", {1}}}).find("tetrahedron 1 stands in it twice; it belongs to one region"), std::string::npos);
+  EXPECT_NE(
+      refusal({{"a", {0, 1}}, {"b", {1}}}).find("tetrahedron 1 stands in it twice; it belongs to one region"),
+      std::string::npos);
   EXPECT_NE(refusal({{"a", {0}}, {"a", {1}}}).find("\"a\" names two regions"), std::string::npos);
   EXPECT_NE(refusal({{"a", {1, 0}}}).find("those of region \"a\" must rise"), std::string::npos);
   EXPECT_NE(refusal({{"a", {0, 2}}}).find("names 2, must lie in [0, 2)"), std::string::npos);
@@ -120,7 +126,8 @@ TEST(ModelFile, WhatIsEmptyIsNotThere) {
 TEST(ModelFile, SameModelSameBytesAtAnotherTime) {
   const sample_run::Folder folder;
   store::write_model(folder / "one.h5", small_model());
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // HDF5 keeps whole seconds where it keeps times
+  // HDF5 keeps whole seconds where it keeps times
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   store::write_model(folder / "two.h5", small_model());
   EXPECT_EQ(store::read_file(folder / "one.h5"), store::read_file(folder / "two.h5"));
 }
@@ -135,29 +142,45 @@ std::string refusal(Change change) {
   store::write_model(path, file);
   try {
     store::read_model(path);
-  } catch (const Error& e) {
-    return std::string(e.what()).substr(path.size());
-  }
+  } catch (const Error& e) { return std::string(e.what()).substr(path.size()); }
   return "accepted";
 }
 
 TEST(ModelFile, RefusesPartsThatDoNotFit) {
   EXPECT_EQ(refusal([](LayeredModel&) {}), "accepted");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.tets.tets(0, 1) = 9; }), ": tets[1] names node 9, must lie in [0, 5); indices count from 0");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.skin.faces(0, 0) = 4; }), ": \"skin/faces\" names 4, must lie in [0, 4); indices count from 0");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.skin.vertices(1, 2) = NAN; }), ": \"skin/vertices\": row 2 is not finite");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.embedding.tet.pop_back(); }), ": \"embedding/tet\" has 3 rows, must have 4");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.embedding.tet[1] = 2; }), ": \"embedding/tet\" names 2, must lie in [0, 2); indices count from 0");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.embedding.weights(0, 3) = 0.5; }), ": \"embedding/weights\": row 3 sums to 1.5, must sum to 1");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.proxies[1].members = {2}; }), ": skin vertex 3 belongs to no proxy");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.proxies[1].members = {3, 2}; }), ": the members of proxy 1 must rise, each once");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.proxies[0].bone = 2; }), ": \"proxies/bone\" names 2, must lie in [-1, 2); indices count from 0");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.proxies[0].corners.resize(3, 33), m.proxies[0].corners.setZero(); }), ": proxy 0 has 33 corners, must have between 1 and 32");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.skeleton.bones[0].parent = 1; }), ": \"skeleton/parent\" names 1, must lie in [-1, 0); indices count from 0");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.skeleton.bones[1].head_radius = 0; }), ": bone \"tip of it\" has radii 0 and 0.30000000000000004 m, must be positive");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.bone_of_node[0] = 2; }), ": \"skeleton/bone_of_node\" names 2, must lie in [-1, 2); indices count from 0");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.regions[1].tets = {2}; }), ": \"regions/tets\" names 2, must lie in [0, 2); indices count from 0");
-  EXPECT_EQ(refusal([](LayeredModel& m) { m.regions[1].density_factor = -1; }), ": region \"hard\" has factors 20 and -1, must be positive");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.tets.tets(0, 1) = 9; }),
+            ": tets[1] names node 9, must lie in [0, 5); indices count from 0");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.skin.faces(0, 0) = 4; }),
+            ": \"skin/faces\" names 4, must lie in [0, 4); indices count from 0");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.skin.vertices(1, 2) = NAN; }),
+            ": \"skin/vertices\": row 2 is not finite");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.embedding.tet.pop_back(); }),
+            ": \"embedding/tet\" has 3 rows, must have 4");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.embedding.tet[1] = 2; }),
+            ": \"embedding/tet\" names 2, must lie in [0, 2); indices count from 0");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.embedding.weights(0, 3) = 0.5; }),
+            ": \"embedding/weights\": row 3 sums to 1.5, must sum to 1");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.proxies[1].members = {2}; }),
+            ": skin vertex 3 belongs to no proxy");
+  EXPECT_EQ(refusal([](LayeredModel& m) {
+              m.proxies[1].members = {3, 2};
+            }),
+            ": the members of proxy 1 must rise, each once");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.proxies[0].bone = 2; }),
+            ": \"proxies/bone\" names 2, must lie in [-1, 2); indices count from 0");
+  EXPECT_EQ(
+      refusal([](LayeredModel& m) { m.proxies[0].corners.resize(3, 33), m.proxies[0].corners.setZero(); }),
+      ": proxy 0 has 33 corners, must have between 1 and 32");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.skeleton.bones[0].parent = 1; }),
+            ": \"skeleton/parent\" names 1, must lie in [-1, 0); indices count from 0");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.skeleton.bones[1].head_radius = 0; }),
+            ": bone \"tip of it\" has radii 0 and 0.30000000000000004 m, must be positive");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.bone_of_node[0] = 2; }),
+            ": \"skeleton/bone_of_node\" names 2, must lie in [-1, 2); indices count from 0");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.regions[1].tets = {2}; }),
+            ": \"regions/tets\" names 2, must lie in [0, 2); indices count from 0");
+  EXPECT_EQ(refusal([](LayeredModel& m) { m.regions[1].density_factor = -1; }),
+            ": region \"hard\" has factors 20 and -1, must be positive");
 }
 
 TEST(ModelFile, RefusesOtherFiles) {
@@ -174,7 +197,8 @@ TEST(ModelFile, OffsetsThatDoNotRiseAreRefused) {
   const sample_run::Folder folder;
   const std::string path = folder / "m.h5";
   store::write_model(path, small_model());
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), set = H5Dopen2(file, "proxies/corner_offsets", H5P_DEFAULT);
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT),
+              set = H5Dopen2(file, "proxies/corner_offsets", H5P_DEFAULT);
   const int wrong[3] = {0, 9, 5};
   H5Dwrite(set, H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, wrong);
   H5Dclose(set);
@@ -183,7 +207,8 @@ TEST(ModelFile, OffsetsThatDoNotRiseAreRefused) {
     store::read_model(path);
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_EQ(std::string(e.what()).substr(path.size()), ": \"proxies/corner_offsets\" must rise from 0 to 5");
+    EXPECT_EQ(std::string(e.what()).substr(path.size()),
+              ": \"proxies/corner_offsets\" must rise from 0 to 5");
   }
 }
 

@@ -66,7 +66,8 @@ TEST(RunFile, IsReadableWhileItIsWritten) {
   RunFile file(path, sample_run::parts(), sample_run::info(2));
   for (int s = 0; s < 5; ++s) {
     sample_run::append(file, s);
-    std::filesystem::copy_file(path, copy, std::filesystem::copy_options::overwrite_existing);  // what a crash now would leave
+    // what a crash now would leave
+    std::filesystem::copy_file(path, copy, std::filesystem::copy_options::overwrite_existing);
     expect_steps(copy, s + 1);
   }
 }
@@ -75,10 +76,12 @@ TEST(RunFile, OneChunkMayBeSmallerThanAStep) {
   const sample_run::Folder folder;
   const std::string path = folder / "large.vtkhdf";
   const int n = 300000;  // 7 MB of positions a step
-  store::RunPart part{.name = "cloud", .reference = Points::Zero(3, n), .tets = Tets(4, 0), .faces = Faces(3, 0)};
+  store::RunPart part{
+      .name = "cloud", .reference = Points::Zero(3, n), .tets = Tets(4, 0), .faces = Faces(3, 0)};
   {
     RunFile file(path, {part}, sample_run::info(2));
-    for (int s = 0; s < 2; ++s) file.append(s, Points::Constant(3, n, s + 1.0), Points::Zero(3, n), VecX::Constant(n, s));
+    for (int s = 0; s < 2; ++s)
+      file.append(s, Points::Constant(3, n, s + 1.0), Points::Zero(3, n), VecX::Constant(n, s));
   }
   const RunReader run(path);
   EXPECT_EQ(run.points(1).minCoeff(), 2.0);
@@ -99,7 +102,8 @@ TEST(RunFile, RefusesWhatMustNotBeRecorded) {
   Points bad = sample_run::points(0);
   bad(1, 2) = std::nan("");
   EXPECT_THROW(file.append(0.0, bad, sample_run::velocity(0), sample_run::stress(0)), InternalError);
-  EXPECT_THROW(file.append(0.0, Points::Zero(3, 2), sample_run::velocity(0), sample_run::stress(0)), InternalError);
+  EXPECT_THROW(file.append(0.0, Points::Zero(3, 2), sample_run::velocity(0), sample_run::stress(0)),
+               InternalError);
   file.close();
   EXPECT_THROW(sample_run::append(file, 0), InternalError);
   auto parts = sample_run::parts();
@@ -110,20 +114,21 @@ TEST(RunFile, RefusesWhatMustNotBeRecorded) {
 std::string refusal(const auto& action) {
   try {
     action();
-  } catch (const Error& e) {
-    return e.what();
-  }
+  } catch (const Error& e) { return e.what(); }
   return "accepted";
 }
 
 TEST(RunFile, ErrorsNameTheFile) {
   const sample_run::Folder folder;
-  EXPECT_TRUE(refusal([] { RunFile("/no/such/folder/run.vtkhdf", sample_run::parts(), sample_run::info(1)); })
-                  .starts_with("/no/such/folder/run.vtkhdf: cannot be written; is its folder there, writable, and not full?"));
+  EXPECT_TRUE(
+      refusal([] { RunFile("/no/such/folder/run.vtkhdf", sample_run::parts(), sample_run::info(1)); })
+          .starts_with(
+              "/no/such/folder/run.vtkhdf: cannot be written; is its folder there, writable, and not full?"));
   EXPECT_EQ(refusal([] { RunReader run("/no/such.vtkhdf"); }), "/no/such.vtkhdf: no such file");
   const std::string text = folder / "text.vtkhdf";
   std::ofstream(text) << "not HDF5";
-  EXPECT_TRUE(refusal([&] { RunReader run(text); }).starts_with(text + ": is not an HDF5 file that can be read"));
+  EXPECT_TRUE(
+      refusal([&] { RunReader run(text); }).starts_with(text + ": is not an HDF5 file that can be read"));
   const std::string path = folder / "run.vtkhdf";
   { RunFile file(path, sample_run::parts(), sample_run::info(1)); }
   EXPECT_EQ(refusal([&] { RunReader(path).points(0); }), path + ": step 0 must lie in [0, 0)");

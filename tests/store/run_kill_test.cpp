@@ -10,7 +10,8 @@
 
 namespace {
 
-/// Starts the endless writer, kills it after it has reported `steps` steps and a while more; gives the number that it had reported by then.
+/// Starts the endless writer, kills it after it has reported `steps` steps and a while more; gives the number
+/// that it had reported by then.
 int kill_after(const std::string& path, int expected, int steps, int more_us) {
   int ends[2];
   if (pipe(ends) != 0) return -1;
@@ -19,7 +20,8 @@ int kill_after(const std::string& path, int expected, int steps, int more_us) {
     dup2(ends[1], STDOUT_FILENO);
     close(ends[0]);
     close(ends[1]);
-    execl(PALPATE_TEST_ENDLESS_RUN, PALPATE_TEST_ENDLESS_RUN, path.c_str(), std::to_string(expected).c_str(), static_cast<char*>(nullptr));
+    execl(PALPATE_TEST_ENDLESS_RUN, PALPATE_TEST_ENDLESS_RUN, path.c_str(), std::to_string(expected).c_str(),
+          static_cast<char*>(nullptr));
     _exit(127);
   }
   close(ends[1]);
@@ -39,8 +41,10 @@ TEST(RunKill, LeavesEveryCommittedStep) {
   const sample_run::Folder folder;
   for (int i = 0; i < 30; ++i) {
     const std::string path = folder / "run.vtkhdf";
-    const int expected = 5000;  // room for all that it can write in the time: nothing but steps touches the file
-    const int reported = kill_after(path, expected, 1 + static_cast<int>(random() % 20), static_cast<int>(random() % 3000));
+    // room for all that it can write in the time: nothing but steps touches the file
+    const int expected = 5000;
+    const int reported =
+        kill_after(path, expected, 1 + static_cast<int>(random() % 20), static_cast<int>(random() % 3000));
     ASSERT_GE(reported, 1);
     const palpate::store::RunReader run(path);
     ASSERT_GE(run.steps(), reported);

@@ -24,7 +24,16 @@ class StudyDbTest : public testing::Test {
 };
 
 store::StudyRun sample(const std::string& key, int repeat) {
-  return {key, repeat, "scene; drop table run", "a 'label'", "cvode-bdf", "rtol", 1e-3, "failed", "because\nof this", {0.1, std::nan(""), 9007199254740991.0}};
+  return {key,
+          repeat,
+          "scene; drop table run",
+          "a 'label'",
+          "cvode-bdf",
+          "rtol",
+          1e-3,
+          "failed",
+          "because\nof this",
+          {0.1, std::nan(""), 9007199254740991.0}};
 }
 
 const std::vector<std::string> kColumns = {"error", "force error", "steps"};
@@ -77,8 +86,9 @@ TEST_F(StudyDbTest, RefusesOtherColumnsAndOtherFiles) {
 // Values by an independent implementation with whole numbers of any size (Python).
 TEST(ContentHash, IsFnv1aOf128Bits) {
   EXPECT_EQ(store::ContentHash().hex(), "6c62272e07bb014262b821756295c58d");
-  EXPECT_EQ(store::ContentHash().add("a").hex(), "a68c894e6e8b5822836dbc791ef90399");           // of "1:a"
-  EXPECT_EQ(store::ContentHash().add("abc").add("de").hex(), "91f3dfb4b204f1aebf68bef937b780e7");  // of "3:abc2:de"
+  EXPECT_EQ(store::ContentHash().add("a").hex(), "a68c894e6e8b5822836dbc791ef90399");  // of "1:a"
+  // of "3:abc2:de"
+  EXPECT_EQ(store::ContentHash().add("abc").add("de").hex(), "91f3dfb4b204f1aebf68bef937b780e7");
   EXPECT_NE(store::ContentHash().add("ab").add("cde").hex(), store::ContentHash().add("abc").add("de").hex());
 }
 

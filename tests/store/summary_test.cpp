@@ -21,7 +21,8 @@ store::Summary sample() {
   s.overrides = {"integrator.rtol=1e-4"};
   s.provenance = store::provenance();
   s.section("counts").values = {{"force_evaluations", 1234LL}, {"contact_queries", 40LL}};
-  s.section("errors").values = {{"position_relative", 1.5e-3}, {"reference_error", std::nan("")}, {"marked", true}};
+  s.section("errors").values = {
+      {"position_relative", 1.5e-3}, {"reference_error", std::nan("")}, {"marked", true}};
   s.section("timings").values = {{"cpu_s", std::vector<double>{0.1, 0.2}}};
   return s;
 }

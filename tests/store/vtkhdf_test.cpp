@@ -1,4 +1,5 @@
-// The file as a program that knows nothing of palpate sees it: through h5py, with the arithmetic of VTK's reader.
+// The file as a program that knows nothing of palpate sees it: through h5py, with the arithmetic of VTK's
+// reader.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -16,7 +17,8 @@ struct Output {
 Output run(const std::string& command) {
   Output out;
   std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  for (char block[4096]; const std::size_t n = std::fread(block, 1, sizeof block, pipe);) out.text.append(block, n);
+  for (char block[4096]; const std::size_t n = std::fread(block, 1, sizeof block, pipe);)
+    out.text.append(block, n);
   out.status = pclose(pipe);
   return out;
 }

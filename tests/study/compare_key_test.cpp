@@ -13,7 +13,9 @@ using namespace palpate;
 namespace {
 
 TEST(CompareKey, LeavesOutWhatIsComparedWithWhat) {
-  EXPECT_EQ(study::without_compare("a = 1\n[compare]\nx = 2\n[[compare.ladder]]\ny = [\n[1]]\n[body]\nz = 3\n"), "a = 1\n[1]]\n[body]\nz = 3\n");
+  EXPECT_EQ(
+      study::without_compare("a = 1\n[compare]\nx = 2\n[[compare.ladder]]\ny = [\n[1]]\n[body]\nz = 3\n"),
+      "a = 1\n[1]]\n[body]\nz = 3\n");
   EXPECT_EQ(study::without_compare("[comparer]\nx = 2\n"), "[comparer]\nx = 2\n");
   const std::string with_text = "name = \"\"\"\n[compare]\n\"\"\"\n";
   EXPECT_EQ(study::without_compare(with_text), with_text);

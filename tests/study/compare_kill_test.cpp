@@ -45,7 +45,8 @@ long rows_in(const fs::path& database) {
   } catch (const Error&) { return 0; }  // it is being made in this moment
 }
 
-/// A process that makes the study, killed when it has finished some more runs and a while later; true where it was still at work.
+/// A process that makes the study, killed when it has finished some more runs and a while later; true where
+/// it was still at work.
 bool study_killed_after(const fs::path& database, long rows, int more_us) {
   const pid_t child = fork();
   if (child == 0) {

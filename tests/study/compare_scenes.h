@@ -5,15 +5,18 @@
 
 namespace palpate::compare_scenes {
 
-/// A soft block of a few tetrahedra under its weight: smooth, no contact, so that orders are those of theory.  @param more  TOML after it
-inline std::string block_text(const std::string& more, const std::string& name = "block", double youngs_modulus_pa = 1e4) {
+/// A soft block of a few tetrahedra under its weight: smooth, no contact, so that orders are those of theory.
+/// @param more  TOML after it
+inline std::string block_text(const std::string& more, const std::string& name = "block",
+                              double youngs_modulus_pa = 1e4) {
   return "[scene]\nname = \"" + name + R"("
 duration_s = 0.05
 gravity_m_s2 = [3.0, 0.0, -9.81]
 [[body]]
 name = "block"
 position_m = [0.0, 0.0, 0.01]
-youngs_modulus_pa = )" + std::to_string(youngs_modulus_pa) + R"(
+youngs_modulus_pa = )" +
+         std::to_string(youngs_modulus_pa) + R"(
 stiffness_damping_s = 2e-3
 [body.mesh]
 generator = "box"
@@ -27,7 +30,8 @@ state_period_s = 0.01
 )" + more;
 }
 
-inline scene::Description block(const std::string& more, const std::string& name = "block", double youngs_modulus_pa = 1e4) {
+inline scene::Description block(const std::string& more, const std::string& name = "block",
+                                double youngs_modulus_pa = 1e4) {
   return scene::parse(block_text(more, name, youngs_modulus_pa), name + ".toml");
 }
 
@@ -61,7 +65,8 @@ time_s = 0.03
 position_m = [0.01, 0.0, 0.04]
 [exchange]
 exchange_period_s = 0.01
-)", "tool.toml");
+)",
+                      "tool.toml");
 }
 
 }  // namespace palpate::compare_scenes

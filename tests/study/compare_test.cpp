@@ -34,7 +34,8 @@ std::string message_of(const scene::Description& d, const study::CompareOptions&
 }
 
 std::filesystem::path fresh_folder(const std::string& name) {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("palpate-" + name + "-" + std::to_string(getpid()));
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("palpate-" + name + "-" + std::to_string(getpid()));
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
@@ -77,7 +78,8 @@ TEST(Compare, SeveralScenesEachAgainstItsOwnReference) {
   study::CompareOptions options = quick();
   options.integrators = {"cvode-bdf"};
   options.jobs = 2;
-  const auto soft = compare_scenes::block(compare_scenes::kLadders, "soft"), stiff = compare_scenes::block(compare_scenes::kLadders, "stiff", 4e4);
+  const auto soft = compare_scenes::block(compare_scenes::kLadders, "soft"),
+             stiff = compare_scenes::block(compare_scenes::kLadders, "stiff", 4e4);
   const study::Comparison all = study::compare({soft, stiff}, options);
   ASSERT_EQ(all.scenes.size(), 2u);
   EXPECT_EQ(all.scenes[1].scene, "stiff");
@@ -87,10 +89,12 @@ TEST(Compare, SeveralScenesEachAgainstItsOwnReference) {
   }
   EXPECT_NE(all.scenes[0].points[0].error.position_rel_l2, all.scenes[1].points[0].error.position_rel_l2);
   const auto alone = study::compare({soft}, options);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(alone.scenes[0].points[i].error.position_rel_l2, all.scenes[0].points[i].error.position_rel_l2);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(alone.scenes[0].points[i].error.position_rel_l2, all.scenes[0].points[i].error.position_rel_l2);
 }
 
-// Without a ladder in the scene, each integrator gets one by what steers its step; nobody has to list the registry.
+// Without a ladder in the scene, each integrator gets one by what steers its step; nobody has to list the
+// registry.
 TEST(Compare, ComparesWhatTheSceneDoesNotName) {
   study::CompareOptions options = quick();
   options.limit_s = 1.0;
@@ -105,14 +109,17 @@ TEST(Compare, ComparesWhatTheSceneDoesNotName) {
   EXPECT_DOUBLE_EQ(c.points.front().setting, 1e-2);
   for (std::size_t i = 1; i < c.points.size(); ++i) {
     if (c.points[i].label != c.points[i - 1].label) continue;
-    EXPECT_NEAR(c.points[i].setting / c.points[i - 1].setting, c.points[i].setting_name == "rtol" ? 0.1 : 0.5, 1e-12);
+    EXPECT_NEAR(c.points[i].setting / c.points[i - 1].setting, c.points[i].setting_name == "rtol" ? 0.1 : 0.5,
+                1e-12);
   }
 }
 
 TEST(Compare, LaddersOfOneIntegratorAreToldApartByTheirLabels) {
   study::CompareOptions options = quick();
   options.integrators = {"capped at 2"};
-  const std::string labelled = compare_scenes::kLadders + "[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nlabel = \"capped at 2\"\nset = [\"integrator.max_order=2\"]\nrtol = [1e-4]\n";
+  const std::string labelled = compare_scenes::kLadders +
+                               "[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nlabel = \"capped at 2\"\nset "
+                               "= [\"integrator.max_order=2\"]\nrtol = [1e-4]\n";
   study::SceneComparison c = study::compare({compare_scenes::block(labelled)}, options).scenes[0];
   ASSERT_EQ(c.points.size(), 1u);
   EXPECT_EQ(c.points[0].label, "capped at 2");
@@ -126,24 +133,38 @@ TEST(Compare, LaddersOfOneIntegratorAreToldApartByTheirLabels) {
 }
 
 TEST(Compare, LaddersThatMakeNoSenseAreRefused) {
-  const auto with = [](const std::string& ladder) { return compare_scenes::block("[[compare.ladder]]\n" + ladder); };
+  const auto with = [](const std::string& ladder) {
+    return compare_scenes::block("[[compare.ladder]]\n" + ladder);
+  };
   study::CompareOptions everything;
   everything.repeats = 1;
-  EXPECT_NE(message_of(with("integrator = \"cvode-bdf\"\nstep_s = [0.01]\n"), everything).find("steps under error control"), std::string::npos);
-  EXPECT_NE(message_of(with("integrator = \"linearly-implicit-euler\"\nrtol = [0.01]\n"), everything).find("takes fixed steps"), std::string::npos);
-  EXPECT_NE(message_of(with("integrator = \"cvode-bfd\"\nrtol = [0.01]\n"), everything).find("did you mean \"cvode-bdf\"?"), std::string::npos);
+  EXPECT_NE(message_of(with("integrator = \"cvode-bdf\"\nstep_s = [0.01]\n"), everything)
+                .find("steps under error control"),
+            std::string::npos);
+  EXPECT_NE(message_of(with("integrator = \"linearly-implicit-euler\"\nrtol = [0.01]\n"), everything)
+                .find("takes fixed steps"),
+            std::string::npos);
+  EXPECT_NE(message_of(with("integrator = \"cvode-bfd\"\nrtol = [0.01]\n"), everything)
+                .find("did you mean \"cvode-bdf\"?"),
+            std::string::npos);
   const std::string twice = "integrator = \"cvode-bdf\"\nrtol = [0.01]\n";
-  EXPECT_NE(message_of(with(twice + "[[compare.ladder]]\n" + twice), everything).find("give one of them a label"), std::string::npos);
+  EXPECT_NE(
+      message_of(with(twice + "[[compare.ladder]]\n" + twice), everything).find("give one of them a label"),
+      std::string::npos);
   study::CompareOptions unknown = quick();
   unknown.integrators = {"cvode-bfd"};
-  EXPECT_NE(message_of(compare_scenes::block(""), unknown).find("did you mean \"cvode-bdf\"?"), std::string::npos);
+  EXPECT_NE(message_of(compare_scenes::block(""), unknown).find("did you mean \"cvode-bdf\"?"),
+            std::string::npos);
   scene::Description made_by_hand = small_scenes::held_block();
   EXPECT_NE(message_of(made_by_hand, quick()).find("has no text"), std::string::npos);
 }
 
-// A run that gives up after a hundredth of the time is close to the truth for that long: no error is told for it.
+// A run that gives up after a hundredth of the time is close to the truth for that long: no error is told for
+// it.
 TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
-  const std::string text = "[integrator]\nmax_steps = 2000\n[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s = [1e-3, 1e-6]\n";
+  const std::string text =
+      "[integrator]\nmax_steps = 2000\n[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s "
+      "= [1e-3, 1e-6]\n";
   study::CompareOptions options = quick();
   options.integrators = {"linearly-implicit-euler"};
   const study::Comparison all = study::compare({compare_scenes::block(text)}, options);
@@ -153,7 +174,9 @@ TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
   EXPECT_EQ(c.points[1].status, PointStatus::kFailed);
   EXPECT_NE(c.points[1].reason.find("steps before t_end"), std::string::npos) << c.points[1].reason;
   const study::TrajectoryError& e = c.points[1].error;
-  for (const double value : {e.position_rel_l2, e.position_max_m, e.force_rms_n, e.torque_rms_n_m, e.energy_j}) EXPECT_TRUE(std::isnan(value));
+  for (const double value :
+       {e.position_rel_l2, e.position_max_m, e.force_rms_n, e.torque_rms_n_m, e.energy_j})
+    EXPECT_TRUE(std::isnan(value));
   EXPECT_FALSE(c.points[1].unresolved || c.points[1].force_unresolved || c.points[1].torque_unresolved);
 
   const std::filesystem::path folder = fresh_folder("compare-write");
@@ -169,11 +192,13 @@ TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
 }
 
 TEST(Compare, ALadderEndsWhereItRunsOutOfTime) {
-  const std::string text = "[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s = [1e-3, 1e-7, 1e-8]\n";
+  const std::string text =
+      "[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s = [1e-3, 1e-7, 1e-8]\n";
   study::CompareOptions options = quick();
   options.integrators = {"linearly-implicit-euler"};
   options.limit_s = 0.3;
-  const auto d = scene::parse(compare_scenes::block_text("[integrator]\nmax_steps = 1000000000\n" + text), "block.toml");
+  const auto d =
+      scene::parse(compare_scenes::block_text("[integrator]\nmax_steps = 1000000000\n" + text), "block.toml");
   const study::SceneComparison c = study::compare({d}, options).scenes[0];
   ASSERT_EQ(c.points.size(), 3u);
   EXPECT_EQ(c.points[0].status, PointStatus::kOk);
@@ -184,21 +209,27 @@ TEST(Compare, ALadderEndsWhereItRunsOutOfTime) {
 }
 
 TEST(Compare, WhatCannotRunTheSceneSaysSoOnce) {
-  const std::string text = "[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nset = [\"integrator.linear_solver=nonsense\"]\nrtol = [1e-2, 1e-3]\n";
+  const std::string text =
+      "[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nset = [\"integrator.linear_solver=nonsense\"]\nrtol = "
+      "[1e-2, 1e-3]\n";
   study::CompareOptions options = quick();
   options.integrators = {"cvode-bdf"};
   const study::SceneComparison c = study::compare({compare_scenes::block(text)}, options).scenes[0];
   ASSERT_EQ(c.points.size(), 1u);
   EXPECT_EQ(c.points[0].status, PointStatus::kRefused);
-  EXPECT_NE(c.points[0].reason.find("unknown linear solver \"nonsense\""), std::string::npos) << c.points[0].reason;
+  EXPECT_NE(c.points[0].reason.find("unknown linear solver \"nonsense\""), std::string::npos)
+      << c.points[0].reason;
 }
 
 // The explicit check needs more steps than it may take on a stiff block; cvode-bdf does not.
 TEST(Compare, WithoutACheckTheReferencesOwnErrorIsNotKnown) {
-  const std::string text = "[integrator]\nmax_steps = 400\n[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nrtol = [1e-3]\n[compare]\nreference_rtol = 1e-6\n";
+  const std::string text =
+      "[integrator]\nmax_steps = 400\n[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nrtol = "
+      "[1e-3]\n[compare]\nreference_rtol = 1e-6\n";
   study::CompareOptions options = quick();
   options.integrators = {"cvode-bdf"};
-  const study::SceneComparison c = study::compare({compare_scenes::block(text, "stiff", 1e8)}, options).scenes[0];
+  const study::SceneComparison c =
+      study::compare({compare_scenes::block(text, "stiff", 1e8)}, options).scenes[0];
   EXPECT_TRUE(c.reference.available);
   EXPECT_TRUE(std::isnan(c.reference.own_error.position_rel_l2));
   EXPECT_NE(c.reference.trouble.find("the check by ark-erk-5"), std::string::npos) << c.reference.trouble;
@@ -209,7 +240,9 @@ TEST(Compare, WithoutACheckTheReferencesOwnErrorIsNotKnown) {
 }
 
 TEST(Compare, WithoutAReferencePointsHaveCostsAndNoErrors) {
-  const std::string text = "[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s = [1e-3]\n[compare]\nreference_rtol = 1e-12\nreference_check_rtol = 1e-12\n";
+  const std::string text =
+      "[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s = "
+      "[1e-3]\n[compare]\nreference_rtol = 1e-12\nreference_check_rtol = 1e-12\n";
   study::CompareOptions options = quick();
   options.integrators = {"linearly-implicit-euler"};
   options.reference_limit_s = 1e-6;  // less than any run takes
@@ -249,7 +282,9 @@ TEST(Compare, GoesOnFromItsDatabaseAndDoesNothingTwice) {
     EXPECT_EQ(again.scenes[0].points[i].error.energy_j, first.scenes[0].points[i].error.energy_j);
   }
   // Another rung changes no other run; another scene changes all.
-  const auto longer = compare_scenes::block(compare_scenes::kLadders + "[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nlabel = \"more\"\nrtol = [1e-5]\n");
+  const auto longer = compare_scenes::block(
+      compare_scenes::kLadders +
+      "[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nlabel = \"more\"\nrtol = [1e-5]\n");
   options.integrators.push_back("more");
   study::compare({longer}, options);
   EXPECT_EQ(runs, 2);
@@ -266,7 +301,8 @@ TEST(Compare, MoreTimeTriesAgain) {
   options.integrators = {"linearly-implicit-euler"};
   options.database = (folder / "study.sqlite").string();
   options.limit_s = 0.02;
-  const auto d = compare_scenes::block("[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s = [1e-5]\n");
+  const auto d = compare_scenes::block(
+      "[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s = [1e-5]\n");
   EXPECT_EQ(study::compare({d}, options).scenes[0].points[0].status, PointStatus::kOutOfTime);
   EXPECT_EQ(study::compare({d}, options).reused, 3);
   options.limit_s = 60.0;
@@ -275,7 +311,8 @@ TEST(Compare, MoreTimeTriesAgain) {
 }
 
 #ifdef PALPATE_HAS_TOOL
-// Each of Simbody's schemes at its own order in the tick; the error-controlled ones see only the handle, which is sampled by the tick.
+// Each of Simbody's schemes at its own order in the tick; the error-controlled ones see only the handle,
+// which is sampled by the tick.
 TEST(Compare, AToolWithoutABodyIsComparedByItsTicks) {
   study::CompareOptions options;
   options.repeats = 1;
@@ -299,7 +336,8 @@ TEST(Compare, AToolWithoutABodyIsComparedByItsTicks) {
   EXPECT_LT(order, 1.1);
 }
 
-// A multistep method begins anew at every refresh that changes the contact: it needs more steps the more often that is; a one-step method's count stays.
+// A multistep method begins anew at every refresh that changes the contact: it needs more steps the more
+// often that is; a one-step method's count stays.
 TEST(Compare, RestartsCostMultistepMethods) {
   const std::string text = R"([scene]
 name = "falling block"

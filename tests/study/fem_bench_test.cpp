@@ -50,10 +50,13 @@ TEST(FemBench, OnePassHasLessToDo) {
   const StepWork passes = work_of(counts);
   counts.one_pass = true;
   const StepWork one = work_of(counts);
-  EXPECT_LT(one.force.double_flops + one.matrix.double_flops, passes.force.double_flops + passes.matrix.double_flops);
+  EXPECT_LT(one.force.double_flops + one.matrix.double_flops,
+            passes.force.double_flops + passes.matrix.double_flops);
   EXPECT_GT(one.matrix.double_flops, passes.matrix.double_flops);
-  EXPECT_EQ(one.matrix.written_bytes, 36.0 * 0.5 * (counts.blocks - counts.nodes) + 24.0 * counts.nodes) << "each pair of nodes once";
-  EXPECT_EQ(passes.solve.read_bytes - one.solve.read_bytes, counts.iterations * (40.0 - 16.0) * counts.nodes) << "masses for diagonal blocks";
+  EXPECT_EQ(one.matrix.written_bytes, 36.0 * 0.5 * (counts.blocks - counts.nodes) + 24.0 * counts.nodes)
+      << "each pair of nodes once";
+  EXPECT_EQ(passes.solve.read_bytes - one.solve.read_bytes, counts.iterations * (40.0 - 16.0) * counts.nodes)
+      << "masses for diagonal blocks";
   EXPECT_LT(one.working_set, 0.7 * passes.working_set);
 }
 
@@ -79,7 +82,9 @@ TEST(FemBench, EvaluationsOverTheElementsOneByOne) {
     EXPECT_GE(t.runs, 9);
     EXPECT_GT(t.least_ms, 0.0) << t.stage;
     EXPECT_LE(t.least_ms, t.median_ms) << t.stage;
-    EXPECT_GT(element_work(t.stage, {.nodes = 81, .tetrahedra = 160, .blocks = 800}).limit_ms(machine(), 1e5), 0.0) << t.stage;
+    EXPECT_GT(element_work(t.stage, {.nodes = 81, .tetrahedra = 160, .blocks = 800}).limit_ms(machine(), 1e5),
+              0.0)
+        << t.stage;
   }
 }
 
@@ -104,7 +109,8 @@ TEST(FemBench, ExponentOfAPowerLaw) {
     members.push_back(&rows[k]);
   }
   EXPECT_NEAR(scaling_exponent(members, &FemBenchRow::solve_ms), 1.25, 1e-9);
-  EXPECT_NEAR(scaling_exponent({{10.0, 3.0}, {100.0, 0.0}, {1000.0, 300.0}}), 1.0, 1e-12) << "what was not measured does not count";
+  EXPECT_NEAR(scaling_exponent({{10.0, 3.0}, {100.0, 0.0}, {1000.0, 300.0}}), 1.0, 1e-12)
+      << "what was not measured does not count";
   EXPECT_TRUE(std::isnan(scaling_exponent({{10.0, 3.0}})));
 }
 

@@ -34,7 +34,8 @@ void spin_until(const std::atomic<bool>* flag) {
 }
 
 TEST(ProcessPool, ReturnsBytesWhole) {
-  const auto outcome = outcome_of([](const auto&) { return std::string(3'000'000, 'x') + std::string("\0end", 4); });
+  const auto outcome =
+      outcome_of([](const auto&) { return std::string(3'000'000, 'x') + std::string("\0end", 4); });
   EXPECT_EQ(outcome.end, End::kDone);
   ASSERT_EQ(outcome.bytes.size(), 3'000'004u);
   EXPECT_EQ(outcome.bytes.substr(3'000'000), std::string("\0end", 4));
@@ -47,7 +48,10 @@ TEST(ProcessPool, AnExceptionIsItsMessage) {
 }
 
 TEST(ProcessPool, ACrashIsItsSignal) {
-  const auto outcome = outcome_of([](const auto&) -> std::string { raise(SIGSEGV); return ""; });
+  const auto outcome = outcome_of([](const auto&) -> std::string {
+    raise(SIGSEGV);
+    return "";
+  });
   EXPECT_EQ(outcome.end, End::kCrash);
   EXPECT_NE(outcome.bytes.find("killed by signal 11"), std::string::npos) << outcome.bytes;
   const auto left = outcome_of([](const auto&) -> std::string { _exit(3); });
@@ -56,16 +60,32 @@ TEST(ProcessPool, ACrashIsItsSignal) {
 }
 
 TEST(ProcessPool, WorkThatHeedsItsLimitEndsByItself) {
-  const auto outcome = outcome_of([](const std::atomic<bool>& late) { spin_until(&late); return std::string("cut short"); }, 0.1);
+  const auto outcome = outcome_of(
+      [](const std::atomic<bool>& late) {
+        spin_until(&late);
+        return std::string("cut short");
+      },
+      0.1);
   EXPECT_EQ(outcome.end, End::kDone);
   EXPECT_EQ(outcome.bytes, "cut short");
 }
 
 TEST(ProcessPool, WorkThatDoesNotIsKilled) {
-  const auto outcome = outcome_of([](const auto&) { spin_until(nullptr); return std::string(); }, 0.1);
+  const auto outcome = outcome_of(
+      [](const auto&) {
+        spin_until(nullptr);
+        return std::string();
+      },
+      0.1);
   EXPECT_EQ(outcome.end, End::kOutOfTime);
   EXPECT_EQ(outcome.bytes, "out of time: 0.1 s");
-  const auto asleep = outcome_of([](const auto&) { for (;;) pause(); return std::string(); }, 0.1);  // uses no CPU time
+  // uses no CPU time
+  const auto asleep = outcome_of(
+      [](const auto&) {
+        for (;;) pause();
+        return std::string();
+      },
+      0.1);
   EXPECT_EQ(asleep.end, End::kOutOfTime);
 }
 
@@ -73,8 +93,15 @@ TEST(ProcessPool, OneCrashTouchesNoOther) {
   ProcessPool pool(4);
   std::vector<std::string> outcomes(4);
   for (std::size_t i = 0; i < 4; ++i)
-    pool.start([i](const auto&) -> std::string { if (i == 1) abort(); return std::to_string(i); }, 60.0,
-               [&outcomes, i](const ProcessPool::Outcome& o) { outcomes[i] = o.end == End::kDone ? o.bytes : "crash"; });
+    pool.start(
+        [i](const auto&) -> std::string {
+          if (i == 1) abort();
+          return std::to_string(i);
+        },
+        60.0,
+        [&outcomes, i](const ProcessPool::Outcome& o) {
+          outcomes[i] = o.end == End::kDone ? o.bytes : "crash";
+        });
   while (!pool.idle()) pool.wait(1.0);
   EXPECT_EQ(outcomes, (std::vector<std::string>{"0", "crash", "2", "3"}));
 }
@@ -87,7 +114,12 @@ TEST(ProcessPool, AChildDiesWithItsParent) {
   if (parent == 0) {
     close(ends[0]);
     ProcessPool pool(1);
-    pool.start([fd = ends[1]](const auto&) { if (write(fd, "x", 1) == 1) spin_until(nullptr); return std::string(); }, 60.0, [](const auto&) {});
+    pool.start(
+        [fd = ends[1]](const auto&) {
+          if (write(fd, "x", 1) == 1) spin_until(nullptr);
+          return std::string();
+        },
+        60.0, [](const auto&) {});
     for (;;) pause();
   }
   close(ends[1]);

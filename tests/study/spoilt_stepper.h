@@ -14,13 +14,24 @@
 namespace palpate::spoilt {
 
 enum class Spoil {
-  kNothing, kNotANumber, kGainsEnergy, kGainsALittle, kFailsInSilence, kThrows, kNeverEnds, kCrashes, kClaimsErrorControl, kClaimsToBeExplicit, kFallsUpward
+  kNothing,
+  kNotANumber,
+  kGainsEnergy,
+  kGainsALittle,
+  kFailsInSilence,
+  kThrows,
+  kNeverEnds,
+  kCrashes,
+  kClaimsErrorControl,
+  kClaimsToBeExplicit,
+  kFallsUpward
 };
 
 template <Spoil kSpoil>
 class SpoiltStepper final : public dynamics::Stepper {
  public:
-  SpoiltStepper(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec) : state_(state) {
+  SpoiltStepper(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec)
+      : state_(state) {
     IntegratorSpec inner = spec;
     inner.name = "linearly-implicit-euler";
     inner_ = integrate::make_stepper(system, state, inner);
@@ -56,10 +67,13 @@ const dynamics::StepperRegistry& registry_of() {
   using dynamics::Stability;
   using dynamics::StepControl;
   static const dynamics::StepperRegistry registry = {
-      {"spoilt", "broken on purpose",
+      {"spoilt",
+       "broken on purpose",
        {"Euler", 1, 1, kSpoil == Spoil::kClaimsErrorControl ? StepControl::kAdaptive : StepControl::kFixed,
-        kSpoil == Spoil::kClaimsToBeExplicit ? Stability::kExplicit : Stability::kL, true, false, "force, tangent"},
-       [](dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec, std::unique_ptr<dynamics::LinearSolver>) -> std::unique_ptr<dynamics::Stepper> {
+        kSpoil == Spoil::kClaimsToBeExplicit ? Stability::kExplicit : Stability::kL, true, false,
+        "force, tangent"},
+       [](dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+          std::unique_ptr<dynamics::LinearSolver>) -> std::unique_ptr<dynamics::Stepper> {
          return std::make_unique<SpoiltStepper<kSpoil>>(system, state, spec);
        }}};
   return registry;

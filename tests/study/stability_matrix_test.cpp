@@ -28,6 +28,7 @@ TEST_P(WholeRow, IsAsTheoryExpects) {
   std::string unexpected;
   for (const StabilityCell& c : stability(options).cells)
     if (!c.as_expected())
-      unexpected += fmt::format("{} / {}: {}, expected {}; {}; {}\n", c.sub_case, c.integrator, to_string(c.verdict), c.expected.text(), c.figure, c.reason);
+      unexpected += fmt::format("{} / {}: {}, expected {}; {}; {}\n", c.sub_case, c.integrator,
+                                to_string(c.verdict), c.expected.text(), c.figure, c.reason);
   EXPECT_EQ(unexpected, "");
 }

@@ -21,7 +21,8 @@ using spoilt::Spoil;
 
 namespace {
 
-StabilityMatrix matrix_of(const dynamics::StepperRegistry& registry, const std::vector<std::string>& rows, double limit_s = 20.0, int jobs = 1) {
+StabilityMatrix matrix_of(const dynamics::StepperRegistry& registry, const std::vector<std::string>& rows,
+                          double limit_s = 20.0, int jobs = 1) {
   StabilityOptions options;
   options.registry = &registry;
   options.rows = rows;
@@ -35,7 +36,8 @@ std::string unexpected_of(const StabilityMatrix& matrix) {
   std::string out;
   for (const StabilityCell& c : matrix.cells)
     if (!c.as_expected())
-      out += fmt::format("{} / {} / {}: {}, expected {}; {}; {}\n", c.row, c.sub_case, c.integrator, to_string(c.verdict), c.expected.text(), c.figure, c.reason);
+      out += fmt::format("{} / {} / {}: {}, expected {}; {}; {}\n", c.row, c.sub_case, c.integrator,
+                         to_string(c.verdict), c.expected.text(), c.figure, c.reason);
   return out;
 }
 
@@ -54,13 +56,16 @@ TEST(Verdicts, AreSets) {
   EXPECT_FALSE(StabilityCell{}.as_expected()) << "nothing is expected of a cell that has no expectation";
 }
 
-// --- every integrator of the registry, on the rows that take seconds ---------------------------------------------------------------------
+// --- every integrator of the registry, on the rows that take seconds
+// ---------------------------------------------------------------------
 class EveryIntegrator : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Rows, EveryIntegrator, testing::Values("youngs-modulus", "poissons-ratio", "step", "rest", "sizes"), [](const auto& param) {
-  std::string name = param.param;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Rows, EveryIntegrator,
+                         testing::Values("youngs-modulus", "poissons-ratio", "step", "rest", "sizes"),
+                         [](const auto& param) {
+                           std::string name = param.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 TEST_P(EveryIntegrator, DoesWhatTheoryExpects) {
   const StabilityMatrix matrix = matrix_of(integrate::stepper_registry(), {GetParam()});
   EXPECT_EQ(unexpected_of(matrix), "");
@@ -69,7 +74,8 @@ TEST_P(EveryIntegrator, DoesWhatTheoryExpects) {
 }
 
 TEST(Stability, EndsWithTheMethodThatTheoryNames) {
-  // Backward Euler by hand: order 1, L-stable.  Resolved at 1e3 Pa it is not yet accurate, in between it is stable, and where every mode has w H > 100 it finds rest.
+  // Backward Euler by hand: order 1, L-stable.  Resolved at 1e3 Pa it is not yet accurate, in between it is
+  // stable, and where every mode has w H > 100 it finds rest.
   const StabilityMatrix matrix = matrix_of(spoilt::registry(Spoil::kNothing), {"youngs-modulus"});
   EXPECT_EQ(unexpected_of(matrix), "");
   EXPECT_EQ(cell_of(matrix, "E = 1e6 Pa").verdict, Verdict::kStable);
@@ -77,36 +83,42 @@ TEST(Stability, EndsWithTheMethodThatTheoryNames) {
   for (const StabilityCell& cell : matrix.cells) EXPECT_LE(cell.gain, 1e-6);
 }
 
-// --- steppers that are broken on purpose: each must make cells fail, with the verdict that names its fault -----------------------------------
+// --- steppers that are broken on purpose: each must make cells fail, with the verdict that names its fault
+// -----------------------------------
 struct Fault {
   Spoil spoil;
   std::string row, sub_case;
   Verdict verdict;
   std::string reason;
 };
-void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.row << ", " << fault.sub_case << ": " << to_string(fault.verdict); }
+void PrintTo(const Fault& fault, std::ostream* out) {
+  *out << fault.row << ", " << fault.sub_case << ": " << to_string(fault.verdict);
+}
 class BrokenStepper : public testing::TestWithParam<Fault> {};
-INSTANTIATE_TEST_SUITE_P(Faults, BrokenStepper,
-                         testing::Values(Fault{Spoil::kNotANumber, "youngs-modulus", "E = 1e5 Pa", Verdict::kNotFinite, ""},
-                                         Fault{Spoil::kNotANumber, "rest", "a free cube", Verdict::kNotFinite, "not finite"},
-                                         Fault{Spoil::kNotANumber, "contact-stiffness", "k = 1e6 Pa/m", Verdict::kNotFinite, "not finite"},
-                                         Fault{Spoil::kNotANumber, "squashed", "mirror image", Verdict::kNotFinite, "not finite"},
-                                         Fault{Spoil::kGainsEnergy, "youngs-modulus", "E = 1e5 Pa", Verdict::kGrew, ""},
-                                         Fault{Spoil::kGainsEnergy, "contact-stiffness", "k = 1e2 Pa/m", Verdict::kGrew, "then:"},
-                                         Fault{Spoil::kGainsALittle, "youngs-modulus", "E = 1e3 Pa", Verdict::kBounded, ""},
-                                         Fault{Spoil::kFailsInSilence, "youngs-modulus", "E = 1e5 Pa", Verdict::kSilent, ""},
-                                         Fault{Spoil::kFailsInSilence, "impact", "10 m/s", Verdict::kSilent, ""},
-                                         Fault{Spoil::kThrows, "sizes", "no body", Verdict::kSilent, "internal error"},
-                                         Fault{Spoil::kNeverEnds, "rest", "a free cube", Verdict::kTooSlow, "cut off"},
-                                         Fault{Spoil::kClaimsErrorControl, "youngs-modulus", "E = 1e5 Pa", Verdict::kStable, ""},
-                                         Fault{Spoil::kClaimsToBeExplicit, "youngs-modulus", "E = 1e7 Pa", Verdict::kStable, ""},
-                                         Fault{Spoil::kFallsUpward, "sizes", "one element falls", Verdict::kGrew, ""}),
-                         [](const auto& param) { return fmt::format("fault_{}", param.index); });
+INSTANTIATE_TEST_SUITE_P(
+    Faults, BrokenStepper,
+    testing::Values(Fault{Spoil::kNotANumber, "youngs-modulus", "E = 1e5 Pa", Verdict::kNotFinite, ""},
+                    Fault{Spoil::kNotANumber, "rest", "a free cube", Verdict::kNotFinite, "not finite"},
+                    Fault{Spoil::kNotANumber, "contact-stiffness", "k = 1e6 Pa/m", Verdict::kNotFinite,
+                          "not finite"},
+                    Fault{Spoil::kNotANumber, "squashed", "mirror image", Verdict::kNotFinite, "not finite"},
+                    Fault{Spoil::kGainsEnergy, "youngs-modulus", "E = 1e5 Pa", Verdict::kGrew, ""},
+                    Fault{Spoil::kGainsEnergy, "contact-stiffness", "k = 1e2 Pa/m", Verdict::kGrew, "then:"},
+                    Fault{Spoil::kGainsALittle, "youngs-modulus", "E = 1e3 Pa", Verdict::kBounded, ""},
+                    Fault{Spoil::kFailsInSilence, "youngs-modulus", "E = 1e5 Pa", Verdict::kSilent, ""},
+                    Fault{Spoil::kFailsInSilence, "impact", "10 m/s", Verdict::kSilent, ""},
+                    Fault{Spoil::kThrows, "sizes", "no body", Verdict::kSilent, "internal error"},
+                    Fault{Spoil::kNeverEnds, "rest", "a free cube", Verdict::kTooSlow, "cut off"},
+                    Fault{Spoil::kClaimsErrorControl, "youngs-modulus", "E = 1e5 Pa", Verdict::kStable, ""},
+                    Fault{Spoil::kClaimsToBeExplicit, "youngs-modulus", "E = 1e7 Pa", Verdict::kStable, ""},
+                    Fault{Spoil::kFallsUpward, "sizes", "one element falls", Verdict::kGrew, ""}),
+    [](const auto& param) { return fmt::format("fault_{}", param.index); });
 TEST_P(BrokenStepper, MakesTheCellFail) {
   const Fault& fault = GetParam();
   const StabilityMatrix matrix = matrix_of(spoilt::registry(fault.spoil), {fault.row}, 1.0);
   const StabilityCell& cell = cell_of(matrix, fault.sub_case);
-  EXPECT_EQ(to_string(cell.verdict), std::string(to_string(fault.verdict))) << cell.figure << "; " << cell.reason;
+  EXPECT_EQ(to_string(cell.verdict), std::string(to_string(fault.verdict)))
+      << cell.figure << "; " << cell.reason;
   EXPECT_NE(cell.reason.find(fault.reason), std::string::npos) << cell.reason;
   EXPECT_FALSE(cell.as_expected()) << "expected " << cell.expected.text();
   EXPECT_GT(matrix.unexpected(), 0);
@@ -140,7 +152,8 @@ TEST(Stability, ACrashIsACell) {
 
 TEST(Stability, DoesNotDependOnTheNumberOfProcesses) {
   const auto& registry = spoilt::registry(Spoil::kNothing);
-  const StabilityMatrix one = matrix_of(registry, {"youngs-modulus", "squashed"}, 20.0, 1), three = matrix_of(registry, {"youngs-modulus", "squashed"}, 20.0, 3);
+  const StabilityMatrix one = matrix_of(registry, {"youngs-modulus", "squashed"}, 20.0, 1),
+                        three = matrix_of(registry, {"youngs-modulus", "squashed"}, 20.0, 3);
   ASSERT_EQ(one.cells.size(), three.cells.size());
   for (std::size_t i = 0; i < one.cells.size(); ++i) {
     EXPECT_EQ(one.cells[i].sub_case, three.cells[i].sub_case);

@@ -4,14 +4,16 @@
 #include "palpate/scene/load.h"
 #include "palpate/study/trajectory.h"
 
-/// One setting for a material from jelly to plastic: the same bar, loaded at its end by P L^2 / (E I) = 1 from t = 0 on, to the same end time.
+/// One setting for a material from jelly to plastic: the same bar, loaded at its end by P L^2 / (E I) = 1
+/// from t = 0 on, to the same end time.
 namespace palpate {
 namespace {
 
 constexpr double kLength = 0.2, kWidth = 0.04, kEnd = 0.2;
 
 std::string bar(double youngs_modulus) {
-  const double second_moment = std::pow(kWidth, 4) / 12.0, load = youngs_modulus * second_moment / (kLength * kLength);
+  const double second_moment = std::pow(kWidth, 4) / 12.0,
+               load = youngs_modulus * second_moment / (kLength * kLength);
   return fmt::format(R"(
 [scene]
 name = "stiffness-ladder"
@@ -35,7 +37,8 @@ box_max_m = [0.101, 0.1, 0.1]
 force_n = [0.0, 0.0, {}]
 [record]
 state_period_s = 0.02
-)", kEnd, youngs_modulus, -load);
+)",
+                     kEnd, youngs_modulus, -load);
 }
 
 study::Run run(double youngs_modulus, const IntegratorSpec& spec) {
@@ -46,9 +49,12 @@ study::Run run(double youngs_modulus, const IntegratorSpec& spec) {
 
 class StiffnessLadder : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Pascal, StiffnessLadder, testing::Values(1e4, 1e5, 1e6, 1e7, 1e8, 1e9),
-                         [](const auto& given) { return fmt::format("1e{}", static_cast<int>(std::lround(std::log10(given.param)))); });
+                         [](const auto& given) {
+                           return fmt::format("1e{}", static_cast<int>(std::lround(std::log10(given.param))));
+                         });
 
-// Every implicit method of SUNDIALS with error control, at one tolerance for all of E: 1e-7, and 1e-5 for those of order 2.
+// Every implicit method of SUNDIALS with error control, at one tolerance for all of E: 1e-7, and 1e-5 for
+// those of order 2.
 TEST_P(StiffnessLadder, EveryImplicitMethodOfSundialsReaches1eMinus5) {
   const study::Run truth = run(GetParam(), {.name = "cvode-bdf", .rtol = 1e-9});
   ASSERT_TRUE(truth.result.status.ok()) << truth.result.status.message;
@@ -59,11 +65,14 @@ TEST_P(StiffnessLadder, EveryImplicitMethodOfSundialsReaches1eMinus5) {
   int methods = 0;
   for (const auto& entry : integrate::stepper_registry()) {
     if (!entry.traits.implicit || entry.traits.control == dynamics::StepControl::kFixed) continue;
-    const study::Run r = run(GetParam(), {.name = entry.name, .rtol = entry.traits.order <= 2 ? 1e-5 : 1e-7, .max_steps = 1000000});
+    const study::Run r =
+        run(GetParam(),
+            {.name = entry.name, .rtol = entry.traits.order <= 2 ? 1e-5 : 1e-7, .max_steps = 1000000});
     ASSERT_TRUE(r.result.status.ok()) << entry.name << ": " << r.result.status.message;
     const double error = study::distance(r.trajectory, truth.trajectory).position_rel_l2;
     EXPECT_LT(error, 1e-5) << entry.name;
-    std::printf("E = %g  %-24s error %.1e  steps %6ld  cpu %.2f s\n", GetParam(), entry.name.c_str(), error, r.result.counters.steps, r.result.cpu_s);
+    std::printf("E = %g  %-24s error %.1e  steps %6ld  cpu %.2f s\n", GetParam(), entry.name.c_str(), error,
+                r.result.counters.steps, r.result.cpu_s);
     ++methods;
   }
   EXPECT_GE(methods, 25);

@@ -53,12 +53,16 @@ TEST(Distance, IsMassWeightedRelativeToTheDisplacementAtTheCommonTimes) {
 // std::max(0, NaN) is 0: a run of NaN must not look exact.
 TEST(Distance, OfNaNIsNaN) {
   Trajectory broken = line({1, 2, 3});
-  broken.positions[1][4] = broken.energies[1] = broken.device[1].force[0] = broken.device[1].moment[0] = std::nan("");
+  broken.positions[1][4] = broken.energies[1] = broken.device[1].force[0] = broken.device[1].moment[0] =
+      std::nan("");
   const TrajectoryError e = distance(broken, line({1, 2, 3}));
-  for (const double value : {e.position_rel_l2, e.position_max_m, e.force_rms_n, e.force_max_n, e.torque_rms_n_m, e.torque_max_n_m, e.energy_j})
+  for (const double value : {e.position_rel_l2, e.position_max_m, e.force_rms_n, e.force_max_n,
+                             e.torque_rms_n_m, e.torque_max_n_m, e.energy_j})
     EXPECT_TRUE(std::isnan(value));
 }
 
-TEST(Distance, RefusesTrajectoriesWithoutACommonTime) { EXPECT_THROW(distance(line({1}), line({2})), InternalError); }
+TEST(Distance, RefusesTrajectoriesWithoutACommonTime) {
+  EXPECT_THROW(distance(line({1}), line({2})), InternalError);
+}
 
 }  // namespace

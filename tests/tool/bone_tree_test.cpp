@@ -14,7 +14,8 @@ namespace {
 
 const Vec3 kGravity(0.5, -2.0, -9.81);
 
-TreeBone bone_at(const std::string& name, int parent, Joint joint, const Vec3& joint_position, const Vec3& middle) {
+TreeBone bone_at(const std::string& name, int parent, Joint joint, const Vec3& joint_position,
+                 const Vec3& middle) {
   TreeBone b;
   b.name = name;
   b.parent = parent;
@@ -48,7 +49,8 @@ struct Place {
   dynamics::BlockSpec block;
   VecX q, u;
 
-  Place(const BoneTree& tree_in, unsigned seed) : tree(tree_in), block(tree_in.block("tree", 0.5, 2.0)), q(tree_in.start()), u(tree_in.u_size()) {
+  Place(const BoneTree& tree_in, unsigned seed)
+      : tree(tree_in), block(tree_in.block("tree", 0.5, 2.0)), q(tree_in.start()), u(tree_in.u_size()) {
     std::mt19937 rng(seed);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     for (double& x : u) x = uniform(rng);
@@ -56,7 +58,8 @@ struct Place {
     for (double& x : turn) x = 0.8 * uniform(rng);
     for (int i = 0; i < 20; ++i) q = moved(q, turn / 20.0);
   }
-  /// q a step of displacement d away: one step of the rule of Simpson's kind (midpoint), enough where d is small.
+  /// q a step of displacement d away: one step of the rule of Simpson's kind (midpoint), enough where d is
+  /// small.
   VecX moved(const VecX& from, const VecX& d) const {
     VecX rate(q.size()), half = from, out = from;
     block.kinematics->q_dot(half, d, rate);
@@ -94,11 +97,13 @@ TEST(BoneTree, OneFreeBoneIsTheRigidBodyOfTheClosedForm) {
   EXPECT_LT((m.pose.translation - at.q.tail<3>()).norm(), 1e-15);
 }
 
-// Two rods on hinges about y in a plane, x to the side and z up.  With angles a, b of the rods from straight down (b of the second absolute), length L of the
-// first, distance d of a middle of mass from its joint, and I about it, the Lagrangian gives
+// Two rods on hinges about y in a plane, x to the side and z up.  With angles a, b of the rods from straight
+// down (b of the second absolute), length L of the first, distance d of a middle of mass from its joint, and
+// I about it, the Lagrangian gives
 //   M_aa = I1 + m1 d^2 + m2 L^2,  M_ab = m2 L d cos(a - b),  M_bb = I2 + m2 d^2,
 //   Q_a = -(m1 d + m2 L) g sin a - m2 L d sin(a - b) b'^2,   Q_b = -m2 d g sin b + m2 L d sin(a - b) a'^2.
-// The tree's second coordinate is b - a: u = (a', b' - a'), so M_tree = T^T M T and f_tree = T^T Q with (a', b') = T u, T = [1 0; 1 1].
+// The tree's second coordinate is b - a: u = (a', b' - a'), so M_tree = T^T M T and f_tree = T^T Q with (a',
+// b') = T u, T = [1 0; 1 1].
 TEST(BoneTree, ADoublePendulumHasLagrangesEquations) {
   constexpr double kLength = 0.4, d = 0.25, g = 9.81;
   std::vector<TreeBone> rods(2);
@@ -121,10 +126,12 @@ TEST(BoneTree, ADoublePendulumHasLagrangesEquations) {
   for (int run = 0; run < 20; ++run) {
     const double a = uniform(rng), b = uniform(rng), va = uniform(rng), vb = uniform(rng);
     Eigen::Matrix2d M, T;
-    M << I + m1 * d * d + m2 * kLength * kLength, m2 * kLength * d * std::cos(a - b), m2 * kLength * d * std::cos(a - b), I + m2 * d * d;
+    M << I + m1 * d * d + m2 * kLength * kLength, m2 * kLength * d * std::cos(a - b),
+        m2 * kLength * d * std::cos(a - b), I + m2 * d * d;
     T << 1, 0, 1, 1;
-    const Eigen::Vector2d Q(-(m1 * d + m2 * kLength) * g * std::sin(a) - m2 * kLength * d * std::sin(a - b) * vb * vb,
-                            -m2 * d * g * std::sin(b) + m2 * kLength * d * std::sin(a - b) * va * va);
+    const Eigen::Vector2d Q(
+        -(m1 * d + m2 * kLength) * g * std::sin(a) - m2 * kLength * d * std::sin(a - b) * vb * vb,
+        -m2 * d * g * std::sin(b) + m2 * kLength * d * std::sin(a - b) * va * va);
     const VecX q = Eigen::Vector2d(a, b - a), u = Eigen::Vector2d(va, vb - va);
     EXPECT_LT((tree.mass(q) - T.transpose() * M * T).norm(), 1e-13);
     EXPECT_LT((tree.force(q, u) - T.transpose() * Q).norm(), 1e-12);
@@ -159,12 +166,14 @@ TEST(BoneTree, ItsJointsNeverComeApart) {
   for (int b = 1; b < tree.size(); ++b) {
     const TreeBone &bone = tree.bone(b), &parent = tree.bone(bone.parent);
     const Vec3 on_bone = tree.motion(at.q, at.u, b).pose * (bone.start.inverse() * bone.joint_position);
-    const Vec3 on_parent = tree.motion(at.q, at.u, bone.parent).pose * (parent.start.inverse() * bone.joint_position);
+    const Vec3 on_parent =
+        tree.motion(at.q, at.u, bone.parent).pose * (parent.start.inverse() * bone.joint_position);
     EXPECT_LT((on_bone - on_parent).norm(), 1e-15) << bone.name;
   }
   for (int b = 0; b < tree.size(); ++b) {
     const Pose start = tree.motion(tree.start(), VecX::Zero(tree.u_size()), b).pose;
-    EXPECT_LT(pose_difference(start, tree.bone(b).start).norm(), 1e-14) << "at the start it stands where it was put";
+    EXPECT_LT(pose_difference(start, tree.bone(b).start).norm(), 1e-14)
+        << "at the start it stands where it was put";
   }
 }
 
@@ -174,7 +183,9 @@ TEST(BoneTree, WhatItLosesIsWhatItsDampersTake) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Place at(tree, seed);
     const double power = at.u.dot(tree.force(at.q, at.u));
-    const auto energy = [&](const VecX& q) { return Eigen::Matrix<double, 1, 1>(0.5 * at.u.dot(tree.mass(q) * at.u) + tree.potential_energy(q)); };
+    const auto energy = [&](const VecX& q) {
+      return Eigen::Matrix<double, 1, 1>(0.5 * at.u.dot(tree.mass(q) * at.u) + tree.potential_energy(q));
+    };
     EXPECT_NEAR(power + slope(at, at.u, energy)[0], -tree.dissipated_power(at.u), 1e-7) << seed;
     EXPECT_GT(tree.dissipated_power(at.u), 0.0);
   }
@@ -186,7 +197,10 @@ TEST(BoneTree, HeldForcesStiffenItAsTheirDerivativeSays) {
   std::mt19937 rng(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto random = [&] { return Vec3(uniform(rng), uniform(rng), uniform(rng)); };
-  struct Pull { int bone; Vec3 local, force; };
+  struct Pull {
+    int bone;
+    Vec3 local, force;
+  };
   std::vector<Pull> pulls;
   for (int b = 0; b < tree.size(); ++b)
     for (int i = 0; i < 3; ++i) pulls.push_back({b, random(), random()});
@@ -202,7 +216,8 @@ TEST(BoneTree, HeldForcesStiffenItAsTheirDerivativeSays) {
   std::vector<HeldForce> held(static_cast<std::size_t>(tree.size()));
   for (const Pull& p : pulls) {
     held[static_cast<std::size_t>(p.bone)].force += p.force;
-    held[static_cast<std::size_t>(p.bone)].moment += (tree.motion(at.q, at.u, p.bone).pose.rotation * p.local) * p.force.transpose();
+    held[static_cast<std::size_t>(p.bone)].moment +=
+        (tree.motion(at.q, at.u, p.bone).pose.rotation * p.local) * p.force.transpose();
   }
   MatX K = MatX::Zero(tree.u_size(), tree.u_size());
   tree.add_geometric_stiffness(at.q, held, K);
@@ -223,8 +238,11 @@ TEST(BoneTree, TheTangentIsTheDerivativeAtRest) {
   tree.tangent(at.q, 0.0, 1.0, D);
   for (int j = 0; j < tree.u_size(); ++j) {
     const VecX unit = VecX::Unit(tree.u_size(), j);
-    EXPECT_LT((K.col(j) + slope(at, unit, [&](const VecX& q) { return tree.force(q, still); })).norm(), 1e-7) << j;
-    EXPECT_LT((D.col(j) + (tree.force(at.q, 1e-4 * unit) - tree.force(at.q, -1e-4 * unit)) / 2e-4).norm(), 1e-9) << j;
+    EXPECT_LT((K.col(j) + slope(at, unit, [&](const VecX& q) { return tree.force(q, still); })).norm(), 1e-7)
+        << j;
+    EXPECT_LT((D.col(j) + (tree.force(at.q, 1e-4 * unit) - tree.force(at.q, -1e-4 * unit)) / 2e-4).norm(),
+              1e-9)
+        << j;
   }
   const BoneTree balls(limbs(), Vec3::Zero());
   const Place there(balls, 6);
@@ -233,7 +251,9 @@ TEST(BoneTree, TheTangentIsTheDerivativeAtRest) {
   EXPECT_LT((ball - ball.transpose()).norm(), 1e-15);
   Mat3 numeric;
   for (int j = 0; j < 3; ++j)
-    numeric.col(j) = -slope(there, VecX::Unit(balls.u_size(), 6 + j), [&](const VecX& q) { return balls.force(q, VecX::Zero(balls.u_size())); }).segment<3>(6);
+    numeric.col(j) = -slope(there, VecX::Unit(balls.u_size(), 6 + j), [&](const VecX& q) {
+                        return balls.force(q, VecX::Zero(balls.u_size()));
+                      }).segment<3>(6);
   EXPECT_LT((ball - 0.5 * (numeric + numeric.transpose())).norm(), 1e-8);
 }
 
@@ -250,14 +270,13 @@ TEST(BoneTree, RefusesWhatIsNoTree) {
   const auto message = [](std::vector<TreeBone> bones) -> std::string {
     try {
       BoneTree tree(std::move(bones), Vec3::Zero());
-    } catch (const Error& e) {
-      return e.what();
-    }
+    } catch (const Error& e) { return e.what(); }
     return "accepted";
   };
   std::vector<TreeBone> bones = limbs();
   bones[1].joint = Joint::kFree;
-  EXPECT_NE(message(bones).find("bone \"upper\": a free joint is for a root"), std::string::npos) << message(bones);
+  EXPECT_NE(message(bones).find("bone \"upper\": a free joint is for a root"), std::string::npos)
+      << message(bones);
   bones = limbs();
   bones[2].axis.setZero();
   EXPECT_NE(message(bones).find("bone \"lower\": a hinge needs an axis"), std::string::npos);

@@ -44,7 +44,8 @@ struct HandlePath : Seeded {};
 TEST_F(So3, jacobians_are_inverse_and_derivatives) {
   for (double angle : {0.0, 1e-9, 1e-3, 0.2499999, 0.25, 0.7, 2.0, 3.1}) {
     const Vec3 theta = angle * Vec3(2, -1, 2) / 3.0;
-    EXPECT_LT((left_jacobian(theta) * left_jacobian_inverse(theta) - Mat3::Identity()).norm(), 2e-13) << angle;
+    EXPECT_LT((left_jacobian(theta) * left_jacobian_inverse(theta) - Mat3::Identity()).norm(), 2e-13)
+        << angle;
     EXPECT_LT((left_jacobian_inverse(-theta) - left_jacobian_inverse(theta).transpose()).norm(), 1e-15);
     EXPECT_LT((left_jacobian(theta) * theta - theta).norm(), 1e-14);  // the axis stands still
     if (angle < 0.1) continue;  // there the difference is exact to rounding, and has no order
@@ -58,7 +59,8 @@ TEST_F(So3, jacobians_are_inverse_and_derivatives) {
   }
 }
 
-// F(x exp(h d)) = F(x) - h K d + O(h^2): the remainder falls by 4 as h halves, at random poses and near half a turn.
+// F(x exp(h d)) = F(x) - h K d + O(h^2): the remainder falls by 4 as h halves, at random poses and near half
+// a turn.
 TEST_F(Coupling, tangent_by_taylor) {
   for (int run = 0; run < 8; ++run) {
     const RigidMotion tool{random_pose(), twist_of(random_vec6())};
@@ -75,7 +77,8 @@ TEST_F(Coupling, tangent_by_taylor) {
     }
     EXPECT_NEAR(slope(hs, e), 2.0, 0.1) << run;
     const RigidMotion there{moved(tool.pose, d), twist_of(stacked(tool.twist) + dv)};
-    EXPECT_LT((coupling_wrench(kGains, there, handle) - F0 + K * d + B * dv).tail<3>().norm(), 1e-11) << "translation is linear";
+    EXPECT_LT((coupling_wrench(kGains, there, handle) - F0 + K * d + B * dv).tail<3>().norm(), 1e-11)
+        << "translation is linear";
   }
 }
 
@@ -111,7 +114,10 @@ TEST_F(Coupling, spring_is_the_gradient_of_its_energy) {
       Vec6 error;
       for (int i = 0; i < 6; ++i) {
         const Vec6 d = Vec6::Unit(i);
-        error[i] = (coupling_energy(kGains, moved(tool, h * d), handle) - coupling_energy(kGains, moved(tool, -h * d), handle)) / (2 * h) + F[i];
+        error[i] = (coupling_energy(kGains, moved(tool, h * d), handle) -
+                    coupling_energy(kGains, moved(tool, -h * d), handle)) /
+                       (2 * h) +
+                   F[i];
       }
       EXPECT_LT(error.tail<3>().norm(), 1e-9);  // quadratic
       hs.push_back(h);
@@ -121,12 +127,14 @@ TEST_F(Coupling, spring_is_the_gradient_of_its_energy) {
   }
 }
 
-// Power in at both ends = rate of the spring's energy + dissipation >= 0: the pair (wrench on tool, opposite on hand) is passive.
+// Power in at both ends = rate of the spring's energy + dissipation >= 0: the pair (wrench on tool, opposite
+// on hand) is passive.
 TEST_F(Coupling, passive_at_its_two_ends) {
   for (int run = 0; run < 100; ++run) {
     CouplingGains damper = kGains;
     damper.k = damper.k_r = 0.0;
-    const RigidMotion tool{random_pose(), twist_of(random_vec6())}, handle{random_pose(), twist_of(random_vec6())};
+    const RigidMotion tool{random_pose(), twist_of(random_vec6())},
+        handle{random_pose(), twist_of(random_vec6())};
     const Vec6 F = coupling_wrench(damper, tool, handle);
     const double power_in = F.dot(stacked(handle.twist)) - F.dot(stacked(tool.twist));
     EXPECT_NEAR(power_in, coupling_dissipation(damper, tool.twist, handle.twist), 1e-13);
@@ -136,21 +144,28 @@ TEST_F(Coupling, passive_at_its_two_ends) {
 
 TEST_F(Coupling, does_not_see_where_the_world_stands) {
   for (int run = 0; run < 20; ++run) {
-    const RigidMotion tool{random_pose(), twist_of(random_vec6())}, handle{random_pose(), twist_of(random_vec6())};
+    const RigidMotion tool{random_pose(), twist_of(random_vec6())},
+        handle{random_pose(), twist_of(random_vec6())};
     const Pose world = random_pose();
     const auto turned = [&](const RigidMotion& m) {
       return RigidMotion{world * m.pose, {world.rotation * m.twist.angular, world.rotation * m.twist.linear}};
     };
-    const Vec6 F = coupling_wrench(kGains, tool, handle), G = coupling_wrench(kGains, turned(tool), turned(handle));
-    EXPECT_LT((world.rotation * Vec3(F.head<3>()) - G.head<3>()).norm() + (world.rotation * Vec3(F.tail<3>()) - G.tail<3>()).norm(), 1e-11);
+    const Vec6 F = coupling_wrench(kGains, tool, handle),
+               G = coupling_wrench(kGains, turned(tool), turned(handle));
+    EXPECT_LT((world.rotation * Vec3(F.head<3>()) - G.head<3>()).norm() +
+                  (world.rotation * Vec3(F.tail<3>()) - G.tail<3>()).norm(),
+              1e-11);
   }
 }
 
-// The path within a tick: ends met in pose and twist, twist the derivative of pose, and fourth order for a smooth handle.
+// The path within a tick: ends met in pose and twist, twist the derivative of pose, and fourth order for a
+// smooth handle.
 TEST_F(HandlePath, hermite_in_pose_and_twist) {
   const auto hand = [](double t) {
-    const Vec3 theta = Vec3(std::sin(t), t * t, std::cos(2 * t)), rate = Vec3(std::cos(t), 2 * t, -2 * std::sin(2 * t));
-    return RigidMotion{{quaternion_of(theta), Vec3(std::sin(3 * t), t, 0)}, {left_jacobian(theta) * rate, Vec3(3 * std::cos(3 * t), 1, 0)}};
+    const Vec3 theta = Vec3(std::sin(t), t * t, std::cos(2 * t)),
+               rate = Vec3(std::cos(t), 2 * t, -2 * std::sin(2 * t));
+    return RigidMotion{{quaternion_of(theta), Vec3(std::sin(3 * t), t, 0)},
+                       {left_jacobian(theta) * rate, Vec3(3 * std::cos(3 * t), 1, 0)}};
   };
   const auto tick = [&](double t0, double h) {
     TickInput input;
@@ -173,8 +188,10 @@ TEST_F(HandlePath, hermite_in_pose_and_twist) {
   std::vector<double> steps, errors;
   for (double h = 0.02; h > 5e-4; h /= 2) {
     steps.push_back(h);
-    errors.push_back((pose_difference(handle_at(input, 0.5 - h).pose, handle_at(input, 0.5 + h).pose) / (2 * h) -
-                      stacked(handle_at(input, 0.5).twist)).norm());
+    errors.push_back(
+        (pose_difference(handle_at(input, 0.5 - h).pose, handle_at(input, 0.5 + h).pose) / (2 * h) -
+         stacked(handle_at(input, 0.5).twist))
+            .norm());
   }
   EXPECT_NEAR(slope(steps, errors), 2.0, 0.1);
 }

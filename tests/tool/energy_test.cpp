@@ -12,11 +12,14 @@ namespace {
 const Pose kStart{quaternion_of(Vec3(0.9, -1.1, 0.7)), Vec3(0.01, -0.02, 0.015)};
 const Twist kThrown{Vec3(3, -5, 2), Vec3(0.1, 0.0, -0.2)};
 
-double stored(const ToolSpec& spec, const Tool& tool) { return tool.kinetic_energy() + coupling_energy(coupling_gains(spec), tool.pose(), {}); }
+double stored(const ToolSpec& spec, const Tool& tool) {
+  return tool.kinetic_energy() + coupling_energy(coupling_gains(spec), tool.pose(), {});
+}
 
 }  // namespace
 
-// Translation and a large turn about no principal axis, gyroscopic terms at work: without damping, kinetic + coupling energy is kept.
+// Translation and a large turn about no principal axis, gyroscopic terms at work: without damping, kinetic +
+// coupling energy is kept.
 TEST(ToolEnergy, undamped_coupling_keeps_it) {
   for (const std::string name : {"simbody-rkmerson", "simbody-cpodes"}) {
     ToolSpec spec = spec_for(name);
@@ -33,7 +36,8 @@ TEST(ToolEnergy, undamped_coupling_keeps_it) {
   }
 }
 
-// What the damper took is what is missing: E(0) - E(T) = int (b |v|^2 + b_r |w|^2) dt, by Simpson's rule over the ticks.
+// What the damper took is what is missing: E(0) - E(T) = int (b |v|^2 + b_r |w|^2) dt, by Simpson's rule over
+// the ticks.
 TEST(ToolEnergy, the_damper_accounts_for_the_loss) {
   ToolSpec spec = spec_for("simbody-rkmerson");
   Tool tool(spec, Vec3::Zero());
@@ -62,7 +66,8 @@ TEST(ToolEnergy, a_free_top_keeps_energy_and_angular_momentum) {
   const Vec3 L = momentum();
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(tool.advance(1e-3, held(tool.pose()), {}).ok());
   EXPECT_LT((momentum() - L).norm() / L.norm(), 1e-7);
-  EXPECT_NEAR((tool.kinetic_energy() - 0.5 * spec.mass_kg * tool.twist().linear.squaredNorm()) / energy, 1.0, 1e-7);
+  EXPECT_NEAR((tool.kinetic_energy() - 0.5 * spec.mass_kg * tool.twist().linear.squaredNorm()) / energy, 1.0,
+              1e-7);
 }
 
 TEST(ToolEnergy, weight_only_where_asked) {
@@ -73,6 +78,7 @@ TEST(ToolEnergy, weight_only_where_asked) {
       spec.coupling_stiffness_n_m = spec.coupling_damping_n_s_m = 0.0;
       Tool tool(spec, Vec3(0, 0, -9.81));
       for (int i = 0; i < 10; ++i) ASSERT_TRUE(tool.advance(1e-3, held({}), {}).ok());
-      EXPECT_NEAR(tool.twist().linear.z(), on ? -0.0981 : 0.0, 1e-12) << info.name;  // v = g t is exact in all of them
+      // v = g t is exact in all of them
+      EXPECT_NEAR(tool.twist().linear.z(), on ? -0.0981 : 0.0, 1e-12) << info.name;
     }
 }

@@ -12,8 +12,11 @@ const std::vector<std::string> kFixed = {"linearly-implicit-euler", "semi-implic
 const std::vector<std::string> kErrorControlled = {"simbody-rkmerson", "simbody-cpodes"};
 constexpr double kShift = 0.01, kTurn = 2.5;  // [m], [rad]
 
-/// The handle has jumped by (kShift along `axis`, kTurn about it) and rests: the tool's distance from it after each tick, (turn, shift).
-struct Trace { std::vector<double> turn, shift; };
+/// The handle has jumped by (kShift along `axis`, kTurn about it) and rests: the tool's distance from it
+/// after each tick, (turn, shift).
+struct Trace {
+  std::vector<double> turn, shift;
+};
 Trace step_response(const ToolSpec& spec, int axis, double h, int ticks) {
   const Vec3 e = Vec3::Unit(axis);
   Tool tool(spec, Vec3::Zero());
@@ -29,9 +32,12 @@ Trace step_response(const ToolSpec& spec, int axis, double h, int ticks) {
   return out;
 }
 
-Oscillator shifting(const ToolSpec& s) { return {s.mass_kg, s.coupling_damping_n_s_m, s.coupling_stiffness_n_m}; }
+Oscillator shifting(const ToolSpec& s) {
+  return {s.mass_kg, s.coupling_damping_n_s_m, s.coupling_stiffness_n_m};
+}
 Oscillator turning(const ToolSpec& s, int axis) {
-  return {s.inertia_kg_m2[axis], s.coupling_rotational_damping_n_m_s_rad, s.coupling_rotational_stiffness_n_m_rad};
+  return {s.inertia_kg_m2[axis], s.coupling_rotational_damping_n_m_s_rad,
+          s.coupling_rotational_stiffness_n_m_rad};
 }
 
 }  // namespace
@@ -51,8 +57,9 @@ TEST(HandleStep, error_controlled_schemes_follow_the_damped_oscillator) {
   }
 }
 
-// A first-order method that keeps its local error at 1e-6.  By the estimate in error_controlled.cpp a turn at 87/s is off by 4e-3 of itself after 0.1 s at the
-// most, damping left out; not less than a thousandth of that either, or it would not be the method that it says.
+// A first-order method that keeps its local error at 1e-6.  By the estimate in error_controlled.cpp a turn at
+// 87/s is off by 4e-3 of itself after 0.1 s at the most, damping left out; not less than a thousandth of that
+// either, or it would not be the method that it says.
 TEST(HandleStep, first_order_error_control_follows_the_damped_oscillator_to_two_digits_and_more) {
   const ToolSpec spec = spec_for("simbody-semi-explicit-euler2");
   const Trace trace = step_response(spec, 1, 1e-3, 100);
@@ -67,7 +74,8 @@ TEST(HandleStep, first_order_error_control_follows_the_damped_oscillator_to_two_
   EXPECT_GT(worst, 4e-6);
 }
 
-// A coupling of 2e6 N m/rad swings the tool at 2e5/s: by the same estimate 500 w = 1e8 steps a second, 1e5 a tick.
+// A coupling of 2e6 N m/rad swings the tool at 2e5/s: by the same estimate 500 w = 1e8 steps a second, 1e5 a
+// tick.
 TEST(HandleStep, first_order_error_control_ends_in_words_where_a_tick_asks_for_too_many_steps) {
   ToolSpec spec = spec_for("simbody-semi-explicit-euler2");
   spec.coupling_rotational_stiffness_n_m_rad = 2e6;
@@ -76,7 +84,8 @@ TEST(HandleStep, first_order_error_control_ends_in_words_where_a_tick_asks_for_t
   const auto result = tool.advance(1e-3, held(there), {});
   EXPECT_EQ(result.status, dynamics::StepStatus::kTooManySteps) << result.message;
   EXPECT_NE(result.message.find("SemiExplicitEuler2"), std::string::npos) << result.message;
-  EXPECT_NE(result.message.find("more than 20000 steps in a tick of 0.001 s"), std::string::npos) << result.message;
+  EXPECT_NE(result.message.find("more than 20000 steps in a tick of 0.001 s"), std::string::npos)
+      << result.message;
   EXPECT_NE(result.message.find("use linearly-implicit-euler"), std::string::npos) << result.message;
   EXPECT_EQ(tool.time(), 0.0);
   EXPECT_EQ(rotation_vector(tool.pose().rotation).norm(), 0.0) << "it stays where it was";
@@ -90,8 +99,12 @@ TEST(HandleStep, fixed_ticks_follow_their_own_discrete_closed_form) {
       const Trace trace = step_response(spec, axis, 1e-3, 200);
       double worst = 0.0;
       for (int i = 0; i < 200; ++i) {
-        worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).after_ticks(name, -kShift, 1e-3, i + 1)) / kShift);
-        worst = std::max(worst, std::abs(trace.turn[i] - turning(spec, axis).after_ticks(name, -kTurn, 1e-3, i + 1)) / kTurn);
+        worst = std::max(
+            worst,
+            std::abs(trace.shift[i] - shifting(spec).after_ticks(name, -kShift, 1e-3, i + 1)) / kShift);
+        worst = std::max(
+            worst,
+            std::abs(trace.turn[i] - turning(spec, axis).after_ticks(name, -kTurn, 1e-3, i + 1)) / kTurn);
       }
       EXPECT_LT(worst, 1e-10) << name << " axis " << axis;
     }
@@ -117,7 +130,8 @@ TEST(HandleStep, fixed_ticks_are_of_first_order) {
   EXPECT_EQ(listed, 2);
 }
 
-// Steady state of k (z_h - z) + K (0 - z) = 0 is z = k z_h/(k + K), and the force on the hand k K/(k + K) |z_h|.
+// Steady state of k (z_h - z) + K (0 - z) = 0 is z = k z_h/(k + K), and the force on the hand k K/(k + K)
+// |z_h|.
 TEST(HandleStep, held_below_a_wall) {
   for (const auto& info : tool_integrators()) {
     ToolSpec spec = spec_for(info.name);
@@ -133,7 +147,8 @@ TEST(HandleStep, held_below_a_wall) {
   }
 }
 
-// A handle that moves: every scheme sees the same Hermite path, and the fixed ticks converge to the error-controlled ones at first order.
+// A handle that moves: every scheme sees the same Hermite path, and the fixed ticks converge to the
+// error-controlled ones at first order.
 TEST(HandleStep, a_moving_handle_in_all_schemes) {
   const auto path = [](double t) {
     const Vec3 turn_axis = Vec3(1, 2, -1).normalized();
@@ -151,7 +166,8 @@ TEST(HandleStep, a_moving_handle_in_all_schemes) {
     return tool.pose();
   };
   const Pose reference = end("simbody-rkmerson", 5e-4);
-  EXPECT_LT(pose_difference(reference, end("simbody-rkmerson", 1e-3)).norm(), 1e-7);  // the path's own error, O(h^4)
+  // the path's own error, O(h^4)
+  EXPECT_LT(pose_difference(reference, end("simbody-rkmerson", 1e-3)).norm(), 1e-7);
   EXPECT_LT(pose_difference(reference, end("simbody-cpodes", 1e-3)).norm(), 1e-6);
   for (const auto& name : kFixed) {
     std::vector<double> h = {1e-3, 5e-4, 2.5e-4}, e;
@@ -160,7 +176,8 @@ TEST(HandleStep, a_moving_handle_in_all_schemes) {
   }
 }
 
-// While the handle stands still and the record stays, Simbody's integrators go on without a restart; what changes between two ticks must be seen all the same.
+// While the handle stands still and the record stays, Simbody's integrators go on without a restart; what
+// changes between two ticks must be seen all the same.
 TEST(HandleStep, WhatChangesAfterRestIsSeen) {
   constexpr double kForce = 0.3;
   for (const std::string name : {"simbody-rkmerson", "simbody-cpodes"}) {
@@ -169,7 +186,8 @@ TEST(HandleStep, WhatChangesAfterRestIsSeen) {
     Tool tool(spec, Vec3::Zero());
     dynamics::LinearisedContact record;
     const auto rest = [&](const Vec3& handle) {
-      for (int i = 0; i < 1500; ++i) ASSERT_TRUE(tool.advance(1e-3, held({Quat::Identity(), handle}), record).ok());
+      for (int i = 0; i < 1500; ++i)
+        ASSERT_TRUE(tool.advance(1e-3, held({Quat::Identity(), handle}), record).ok());
     };
     rest(Vec3::Zero());
     record.version = 1;
@@ -178,14 +196,16 @@ TEST(HandleStep, WhatChangesAfterRestIsSeen) {
     rest(Vec3::Zero());
     EXPECT_NEAR(tool.pose().translation.x(), there, 1e-6 * there) << name << ": a record";
     rest(Vec3(0, kShift, 0));
-    EXPECT_NEAR(tool.pose().translation.y(), kShift, 1e-6 * kShift) << name << ": another place of the handle";
+    EXPECT_NEAR(tool.pose().translation.y(), kShift, 1e-6 * kShift)
+        << name << ": another place of the handle";
     EXPECT_NEAR(tool.pose().translation.x(), there, 1e-6 * there) << name;
-    HandleMotion slide;  // from rest at kShift to rest at 0 within a tick: its ends are where it stood, the twists are not zero
+    // from rest at kShift to rest at 0 within a tick: its ends are where it stood, the twists are not zero
+    HandleMotion slide;
     slide.pose0 = slide.pose1 = Pose{Quat::Identity(), Vec3(0, kShift, 0)};
     slide.twist0.linear = Vec3(0, 5.0, 0);
     const double before = tool.pose().translation.y();
     ASSERT_TRUE(tool.advance(1e-3, slide, record).ok());
-    EXPECT_GT(std::abs(tool.pose().translation.y() - before), 1e-8) << name << ": a handle that moves within a tick";
+    EXPECT_GT(std::abs(tool.pose().translation.y() - before), 1e-8)
+        << name << ": a handle that moves within a tick";
   }
 }
-

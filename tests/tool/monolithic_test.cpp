@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "palpate/integrate/integrators.h"
 #include "palpate/dynamics/system.h"
+#include "palpate/integrate/integrators.h"
 #include "palpate/tool/rigid_block.h"
 #include "tool_fixtures.h"
 
@@ -54,7 +54,8 @@ TEST(Monolithic, cvode_follows_the_damped_oscillator) {
     m.system.add(make_gyroscopic(m.id, spec.inertia_kg_m2, !symmetric));
     m.system.add(make_coupling_term(m.id, spec, still(handle), symmetric));
     m.start("cvode-bdf", 1e-9);
-    const Oscillator turning{spec.inertia_kg_m2.y(), spec.coupling_rotational_damping_n_m_s_rad, spec.coupling_rotational_stiffness_n_m_rad};
+    const Oscillator turning{spec.inertia_kg_m2.y(), spec.coupling_rotational_damping_n_m_s_rad,
+                             spec.coupling_rotational_stiffness_n_m_rad};
     const Oscillator shifting{spec.mass_kg, spec.coupling_damping_n_s_m, spec.coupling_stiffness_n_m};
     for (int i = 1; i <= 10; ++i) {
       const auto result = m.stepper->advance_to(0.01 * i);
@@ -80,14 +81,15 @@ TEST(Monolithic, a_free_top_keeps_energy_and_angular_momentum) {
   EXPECT_NEAR(m.system.kinetic_energy(m.state.view()) / energy, 1.0, 1e-6);
 }
 
-// Two implementations that share no integrator and no body: Simbody's Merson and CVODE on the block, a large turn about no principal axis and a
-// handle that moves.
+// Two implementations that share no integrator and no body: Simbody's Merson and CVODE on the block, a large
+// turn about no principal axis and a handle that moves.
 TEST(Monolithic, agrees_with_the_simbody_tool) {
   const ToolSpec spec = spec_for("simbody-rkmerson");
   const Vec3 axis = Vec3(1, 2, -1).normalized();
   const HandlePath path = [axis](double t) {
-    return HandleState{{quaternion_of((1.5 + 0.8 * std::sin(9 * t)) * axis), Vec3(0.02 * std::sin(11 * t), 0, 0.01 * t)},
-                       {7.2 * std::cos(9 * t) * axis, Vec3(0.22 * std::cos(11 * t), 0, 0.01)}};
+    return HandleState{
+        {quaternion_of((1.5 + 0.8 * std::sin(9 * t)) * axis), Vec3(0.02 * std::sin(11 * t), 0, 0.01 * t)},
+        {7.2 * std::cos(9 * t) * axis, Vec3(0.22 * std::cos(11 * t), 0, 0.01)}};
   };
   const Pose start{quaternion_of(Vec3(0.4, -0.6, 0.5)), Vec3(0.01, 0.02, 0)};
   Tool tool(spec, Vec3::Zero());

@@ -30,11 +30,13 @@ struct OneBody {
 
 Pose random_pose(std::mt19937& rng) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  return {quaternion_of(Vec3(uniform(rng), uniform(rng), uniform(rng))), Vec3(uniform(rng), uniform(rng), uniform(rng))};
+  return {quaternion_of(Vec3(uniform(rng), uniform(rng), uniform(rng))),
+          Vec3(uniform(rng), uniform(rng), uniform(rng))};
 }
 
 /// Remainder f(x + h d, u + h e) - f + h (K d + D e), fitted order over 6 halvings.
-double taylor_order(dynamics::ForceTerm& term, OneBody& body, const Pose& pose, const Twist& twist, const Vec6& d, const Vec6& e) {
+double taylor_order(dynamics::ForceTerm& term, OneBody& body, const Pose& pose, const Twist& twist,
+                    const Vec6& d, const Vec6& e) {
   const auto at = [&](double h) {
     const Quat r = quaternion_of(h * d.head<3>()) * pose.rotation;
     body.state.q() << r.w(), r.vec(), pose.translation + h * d.tail<3>();
@@ -67,12 +69,15 @@ TEST(RigidBlock, tangents_by_taylor) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (int run = 0; run < 5; ++run) {
     const Pose pose = random_pose(rng);
-    const Twist twist{5 * Vec3(uniform(rng), uniform(rng), uniform(rng)), Vec3(uniform(rng), uniform(rng), uniform(rng))};
+    const Twist twist{5 * Vec3(uniform(rng), uniform(rng), uniform(rng)),
+                      Vec3(uniform(rng), uniform(rng), uniform(rng))};
     OneBody body(pose, twist);
-    const Vec6 d = Vec6::NullaryExpr([&] { return uniform(rng); }), e = Vec6::NullaryExpr([&] { return uniform(rng); });
+    const Vec6 d = Vec6::NullaryExpr([&] { return uniform(rng); }),
+               e = Vec6::NullaryExpr([&] { return uniform(rng); });
     const auto gyroscopic = make_gyroscopic(body.id, kInertia, true);
     EXPECT_NEAR(taylor_order(*gyroscopic, body, pose, twist, d, e), 2.0, 0.1);
-    const auto coupling = make_coupling_term(body.id, spec_for("linearly-implicit-euler"), still(random_pose(rng)));
+    const auto coupling =
+        make_coupling_term(body.id, spec_for("linearly-implicit-euler"), still(random_pose(rng)));
     EXPECT_NEAR(taylor_order(*coupling, body, pose, twist, d, e), 2.0, 0.1);
   }
 }
@@ -123,7 +128,8 @@ TEST(RigidBlock, accelerates_as_the_simbody_tool_does) {
     spec.gravity = true;
     Tool tool(spec, gravity);
     tool.set_state(0.0, pose, twist);
-    const double h = 1e-8;  // semi-implicit: (u1 - u0)/h is the acceleration at the start, but for h times the gyroscopic rate
+    // semi-implicit: (u1 - u0)/h is the acceleration at the start, but for h times the gyroscopic rate
+    const double h = 1e-8;
     ASSERT_TRUE(tool.advance(h, held(handle), {}).ok());
 
     OneBody body(pose, twist);
@@ -138,11 +144,18 @@ TEST(RigidBlock, accelerates_as_the_simbody_tool_does) {
     Vec6 expected;
     expected << (tool.twist().angular - twist.angular) / h, (tool.twist().linear - twist.linear) / h;
     EXPECT_LT((a - expected).norm(), 1e-6 * a.norm());
-    EXPECT_NEAR(system.kinetic_energy(body.state.view()), [&] { tool.set_state(0, pose, twist); return tool.kinetic_energy(); }(), 1e-15);
+    EXPECT_NEAR(
+        system.kinetic_energy(body.state.view()),
+        [&] {
+          tool.set_state(0, pose, twist);
+          return tool.kinetic_energy();
+        }(),
+        1e-15);
   }
 }
 
-// A torque-free top through the System alone (classical Runge-Kutta on q' = N u, u' = a): energy and angular momentum are kept to its order, 4.
+// A torque-free top through the System alone (classical Runge-Kutta on q' = N u, u' = a): energy and angular
+// momentum are kept to its order, 4.
 TEST(RigidBlock, a_free_top_keeps_energy_and_angular_momentum) {
   const auto drift = [](double h) {
     OneBody body({quaternion_of(Vec3(0.3, 0.2, 0.1)), Vec3::Zero()}, {Vec3(2, 30, 1), Vec3::Zero()});
@@ -174,7 +187,8 @@ TEST(RigidBlock, a_free_top_keeps_energy_and_angular_momentum) {
       dynamics::project(body.state.layout(), y.data());
     }
     const VecX after = invariants(y);
-    return std::max((after - before).head<3>().norm() / before.head<3>().norm(), std::abs(after[3] / before[3] - 1.0));
+    return std::max((after - before).head<3>().norm() / before.head<3>().norm(),
+                    std::abs(after[3] / before[3] - 1.0));
   };
   std::vector<double> hs = {4e-3, 2e-3, 1e-3}, e;
   for (double h : hs) e.push_back(drift(h));

@@ -51,7 +51,8 @@ struct Both {
 
 }  // namespace
 
-// Two derivations of one rigid body: Simbody's recursive dynamics and Newton and Euler's equations written out.
+// Two derivations of one rigid body: Simbody's recursive dynamics and Newton and Euler's equations written
+// out.
 TEST(SimbodyBlock, has_the_mass_force_and_energy_of_the_closed_form) {
   std::mt19937 rng(11);
   int checked = 0;
@@ -93,16 +94,19 @@ TEST(SimbodyBlock, assembled_mass_and_tangent_are_the_closed_forms) {
   EXPECT_FALSE(terms.simbody.symmetric()) << "a gyroscopic tangent is not";
 }
 
-// f(x + h d, u + h e) - f + h (K d + D e) falls as h^2: the tangent is that of Simbody's force, not only of the closed form.
+// f(x + h d, u + h e) - f + h (K d + D e) falls as h^2: the tangent is that of Simbody's force, not only of
+// the closed form.
 TEST(SimbodyBlock, tangent_is_the_derivative_of_simbodys_force) {
   std::mt19937 rng(13);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const ToolSpec spec = heavy_tool();
   RandomState body(spec, rng);
   const SimbodyTerms terms = make_simbody_terms(body.id, spec, kGravity);
-  const Quat r0 = Quat(body.state.q()[9], body.state.q()[10], body.state.q()[11], body.state.q()[12]).normalized();
+  const Quat r0 =
+      Quat(body.state.q()[9], body.state.q()[10], body.state.q()[11], body.state.q()[12]).normalized();
   const VecX u0 = body.state.u();
-  const Vec6 d = Vec6::NullaryExpr([&] { return uniform(rng); }), e = Vec6::NullaryExpr([&] { return 20 * uniform(rng); });
+  const Vec6 d = Vec6::NullaryExpr([&] { return uniform(rng); }),
+             e = Vec6::NullaryExpr([&] { return 20 * uniform(rng); });
   const auto at = [&](double h) {
     const Quat r = quaternion_of(h * d.head<3>()) * r0;
     body.state.q().segment<4>(9) << r.w(), r.vec();
@@ -148,10 +152,12 @@ TEST(SimbodyBlock, scales_are_the_couplings_own) {
 TEST(SimbodyBlock, the_hand_feels_what_the_simbody_tool_lets_it_feel) {
   const ToolSpec spec = heavy_tool();
   Tool tool(spec, Vec3::Zero());
-  const Pose pose{quaternion_of(Vec3(0.1, -0.4, 0.2)), Vec3(0.01, 0.02, 0.03)}, handle{quaternion_of(Vec3(0.3, 0.1, 0)), Vec3(0, 0.01, 0)};
+  const Pose pose{quaternion_of(Vec3(0.1, -0.4, 0.2)), Vec3(0.01, 0.02, 0.03)},
+      handle{quaternion_of(Vec3(0.3, 0.1, 0)), Vec3(0, 0.01, 0)};
   const Twist twist{Vec3(1, 2, 3), Vec3(0.1, 0.2, 0.3)}, handle_twist{Vec3(0, 1, 0), Vec3(0, 0, 0.5)};
   tool.set_state(0.0, pose, twist);
-  const Wrench expected = tool.wrench_on_hand(handle, handle_twist), got = coupling_on_hand(spec, {tool.pose(), twist}, {handle, handle_twist});
+  const Wrench expected = tool.wrench_on_hand(handle, handle_twist),
+               got = coupling_on_hand(spec, {tool.pose(), twist}, {handle, handle_twist});
   EXPECT_LT((got.force - expected.force).norm(), 1e-14);
   EXPECT_LT((got.moment - expected.moment).norm(), 1e-14);
 }

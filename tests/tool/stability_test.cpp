@@ -47,8 +47,9 @@ TEST(ToolStability, linearly_implicit_euler_has_no_limit) {
     for (double b : {0.0, 2.0}) EXPECT_TRUE(stays_bounded("linearly-implicit-euler", k, b)) << k;
 }
 
-// Any stiffness, tick and start, turned by up to nearly half a turn, with and without damping, against a stiff wall: the tool ends at rest on its
-// target.  Per tick the method takes out (w h)^2/2 of an oscillation for small w h, and nearly all for large: 0.1 <= w h <= 1e4 here.
+// Any stiffness, tick and start, turned by up to nearly half a turn, with and without damping, against a
+// stiff wall: the tool ends at rest on its target.  Per tick the method takes out (w h)^2/2 of an oscillation
+// for small w h, and nearly all for large: 0.1 <= w h <= 1e4 here.
 TEST(ToolStability, linearly_implicit_euler_settles_from_anywhere) {
   std::mt19937 rng(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -62,14 +63,16 @@ TEST(ToolStability, linearly_implicit_euler_settles_from_anywhere) {
     spec.coupling_damping_n_s_m = run % 2 ? 0.0 : 1.0;
     spec.coupling_rotational_damping_n_m_s_rad = run % 2 ? 0.0 : 1e-4;
     Tool tool(spec, Vec3::Zero());
-    tool.set_state(0.0, {quaternion_of(3.0 * std::abs(uniform(rng)) * vec().normalized()), vec()}, {100.0 * vec(), 10.0 * vec()});
+    tool.set_state(0.0, {quaternion_of(3.0 * std::abs(uniform(rng)) * vec().normalized()), vec()},
+                   {100.0 * vec(), 10.0 * vec()});
     for (int i = 0; i < 4000; ++i) ASSERT_TRUE(tool.advance(h, held({}), wall(1e8)).ok());
     EXPECT_LT(tool.kinetic_energy(), 1e-12) << run;
     EXPECT_LT(pose_difference(Pose{}, tool.pose()).norm(), 1e-6) << run;
   }
 }
 
-// w1 . I w1 = w1 . I w0: the gyroscopic step never adds energy, at 1 rad a tick and far beyond; an explicit one blows up.
+// w1 . I w1 = w1 . I w0: the gyroscopic step never adds energy, at 1 rad a tick and far beyond; an explicit
+// one blows up.
 class FreeSpin : public ::testing::TestWithParam<const char*> {};
 TEST_P(FreeSpin, never_gains_energy) {
   std::mt19937 rng(5);
@@ -79,7 +82,8 @@ TEST_P(FreeSpin, never_gains_energy) {
     spec.inertia_kg_m2 = Vec3(1e-5, 4e-5, 4.9e-5);
     spec.coupling_rotational_stiffness_n_m_rad = spec.coupling_rotational_damping_n_m_s_rad = 0.0;
     Tool tool(spec, Vec3::Zero());
-    tool.set_state(0.0, {}, {spin * Vec3(uniform(rng), uniform(rng), uniform(rng)).normalized(), Vec3::Zero()});
+    tool.set_state(0.0, {},
+                   {spin * Vec3(uniform(rng), uniform(rng), uniform(rng)).normalized(), Vec3::Zero()});
     double energy = tool.kinetic_energy();
     for (int i = 0; i < 5000; ++i) {
       ASSERT_TRUE(tool.advance(kTick, held({}), {}).ok());
@@ -89,7 +93,8 @@ TEST_P(FreeSpin, never_gains_energy) {
     EXPECT_GT(energy, 0.0);
   }
 }
-INSTANTIATE_TEST_SUITE_P(FixedTicks, FreeSpin, ::testing::Values("linearly-implicit-euler", "semi-implicit-euler"));
+INSTANTIATE_TEST_SUITE_P(FixedTicks, FreeSpin,
+                         ::testing::Values("linearly-implicit-euler", "semi-implicit-euler"));
 
 // A handle thrown by a metre and spun at 1000 rad/s: finite and bounded by what the handle does.
 TEST(ToolStability, a_thrown_handle_stays_finite) {

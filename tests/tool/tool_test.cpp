@@ -14,9 +14,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 std::string message(const ToolSpec& spec) {
   try {
     Tool tool(spec, Vec3(0, 0, -9.81));
-  } catch (const Error& e) {
-    return e.what();
-  }
+  } catch (const Error& e) { return e.what(); }
   return "";
 }
 
@@ -79,7 +77,9 @@ TEST(Tool, equal_states_give_equal_ticks) {
   for (const auto& info : tool_integrators()) {
     const auto run = [&] {
       Tool tool(spec_for(info.name), Vec3::Zero());
-      for (int i = 0; i < 20; ++i) EXPECT_TRUE(tool.advance(1e-3, held({quaternion_of(Vec3(0.1, 0.2, 0.3)), Vec3(0.01, 0, 0)}), wall(100)).ok());
+      for (int i = 0; i < 20; ++i)
+        EXPECT_TRUE(
+            tool.advance(1e-3, held({quaternion_of(Vec3(0.1, 0.2, 0.3)), Vec3(0.01, 0, 0)}), wall(100)).ok());
       return tool.pose();
     };
     const Pose a = run(), b = run();
@@ -95,7 +95,8 @@ TEST(Tool, what_is_not_finite_stays_out) {
     const Pose before = tool.pose();
     auto bad_record = wall(100);
     bad_record.F0[2] = kNaN;
-    for (const auto& result : {tool.advance(1e-3, held({Quat::Identity(), Vec3(kNaN, 0, 0)}), {}), tool.advance(1e-3, held({}), bad_record)}) {
+    for (const auto& result : {tool.advance(1e-3, held({Quat::Identity(), Vec3(kNaN, 0, 0)}), {}),
+                               tool.advance(1e-3, held({}), bad_record)}) {
       EXPECT_EQ(result.status, dynamics::StepStatus::kNotFinite);
       EXPECT_NE(result.message.find("handle or contact record is not finite"), std::string::npos);
     }
@@ -115,8 +116,8 @@ TEST(Tool, hand_feels_the_opposite) {
   const Pose handle{quaternion_of(Vec3(0.2, 0, 0)), Vec3(0, 0.01, 0)};
   const Twist twist{Vec3(0, 0, 1), Vec3(0.5, 0, 0)};
   const Wrench tool_side = tool.coupling_wrench(handle, twist), hand = tool.wrench_on_hand(handle, twist);
-  EXPECT_NEAR(tool_side.force.y(), 3.0, 1e-12);   // 300 N/m x 1 cm
-  EXPECT_NEAR(tool_side.force.x(), 1.0, 1e-12);   // 2 N s/m x 0.5 m/s
+  EXPECT_NEAR(tool_side.force.y(), 3.0, 1e-12);    // 300 N/m x 1 cm
+  EXPECT_NEAR(tool_side.force.x(), 1.0, 1e-12);    // 2 N s/m x 0.5 m/s
   EXPECT_NEAR(tool_side.moment.x(), 0.06, 1e-14);  // 0.3 N m/rad x 0.2 rad
   EXPECT_NEAR(tool_side.moment.z(), 1e-3, 1e-16);
   EXPECT_EQ(hand.force, Vec3(-tool_side.force));
@@ -135,14 +136,22 @@ TEST(Tool, counts_its_simbody_system) {
 }
 
 TEST(Tool, bad_settings_are_refused) {
-  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
-  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.integrator = "semi-implicit"; }), "unknown tool integrator \"semi-implicit\""));
+  const auto has = [](const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.integrator = "semi-implicit"; }),
+                  "unknown tool integrator \"semi-implicit\""));
   EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.mass_kg = 0; }), "tool: mass_kg = 0 must be positive"));
-  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.inertia_kg_m2 = Vec3(1, 1, 2.1); }), "belongs to no body"));
-  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.inertia_kg_m2 = Vec3(1, 0, 1); }), "three positive entries"));
-  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.inertia_kg_m2.setZero(), s.radius_m = 0; }), "radius_m = 0 must be positive"));
-  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.coupling_stiffness_n_m = -1; }), "coupling_stiffness_n_m = -1"));
-  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.coupling_rotational_damping_n_m_s_rad = kNaN; }), "coupling_rotational_damping_n_m_s_rad = nan"));
+  EXPECT_TRUE(
+      has(message_with([](ToolSpec& s) { s.inertia_kg_m2 = Vec3(1, 1, 2.1); }), "belongs to no body"));
+  EXPECT_TRUE(
+      has(message_with([](ToolSpec& s) { s.inertia_kg_m2 = Vec3(1, 0, 1); }), "three positive entries"));
+  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.inertia_kg_m2.setZero(), s.radius_m = 0; }),
+                  "radius_m = 0 must be positive"));
+  EXPECT_TRUE(
+      has(message_with([](ToolSpec& s) { s.coupling_stiffness_n_m = -1; }), "coupling_stiffness_n_m = -1"));
+  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.coupling_rotational_damping_n_m_s_rad = kNaN; }),
+                  "coupling_rotational_damping_n_m_s_rad = nan"));
   EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.tick_s = 0; }), "tick_s = 0 must be positive"));
   EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.position_m.x() = kNaN; }), "position_m"));
   Tool tool(spec_for("linearly-implicit-euler"), Vec3::Zero());

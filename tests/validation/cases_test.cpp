@@ -20,8 +20,10 @@ std::vector<ValidationCase> cases(bool slow) {
 }
 
 std::string text(const Measurement& m) {
-  return m.quantity + ": computed " + std::to_string(m.computed) + ", exact " + std::to_string(m.exact) + ", error " + std::to_string(m.error) + ", bar " +
-         std::to_string(m.bar) + ", order " + std::to_string(m.order) + " in [" + std::to_string(m.order_low) + ", " + std::to_string(m.order_high) + "] " + m.note;
+  return m.quantity + ": computed " + std::to_string(m.computed) + ", exact " + std::to_string(m.exact) +
+         ", error " + std::to_string(m.error) + ", bar " + std::to_string(m.bar) + ", order " +
+         std::to_string(m.order) + " in [" + std::to_string(m.order_low) + ", " +
+         std::to_string(m.order_high) + "] " + m.note;
 }
 
 }  // namespace
@@ -44,14 +46,17 @@ TEST_P(Case, FailsWhenItsPhysicsIsBroken) {
   ASSERT_FALSE(GetParam().sabotages.empty()) << "a case that cannot fail is worthless";
   for (const std::string& sabotage : GetParam().sabotages) {
     const std::vector<Measurement> measurements = GetParam().run(sabotage);
-    EXPECT_TRUE(std::any_of(measurements.begin(), measurements.end(), [](const Measurement& m) { return !m.passed(); }))
-        << "still passes with " << sabotage << (measurements.empty() ? "" : "; first: " + text(measurements.front()));
+    EXPECT_TRUE(std::any_of(measurements.begin(), measurements.end(),
+                            [](const Measurement& m) { return !m.passed(); }))
+        << "still passes with " << sabotage
+        << (measurements.empty() ? "" : "; first: " + text(measurements.front()));
   }
 }
 
 std::string test_name(const testing::TestParamInfo<ValidationCase>& info) {
   std::string name = info.param.section + "_" + info.param.name;
-  std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
   return name;
 }
 
@@ -89,6 +94,8 @@ TEST(Measurement, PassesOnlyInsideItsBarAndBand) {
   EXPECT_FALSE(m.passed()) << "a NaN error passes nothing";
 }
 
-TEST(FittedOrder, IsTheSlopeOfAPowerLaw) { EXPECT_NEAR(palpate::study::fitted_order({1, 0.5, 0.25}, {8, 1, 0.125}), 3.0, 1e-12); }
+TEST(FittedOrder, IsTheSlopeOfAPowerLaw) {
+  EXPECT_NEAR(palpate::study::fitted_order({1, 0.5, 0.25}, {8, 1, 0.125}), 3.0, 1e-12);
+}
 
 }  // namespace

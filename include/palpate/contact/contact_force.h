@@ -12,8 +12,9 @@
 
 namespace palpate::contact {
 
-/// A surface that nodes of the State carry.  Its vertices are nodes themselves: vertex i is node `node_of_vertex[i]` counted inside the block;
-/// or points of a skin: vertex i hangs on the tetrahedron `tets.col(embedding.tet[i])` by four weights (DESIGN 3.2).
+/// A surface that nodes of the State carry.  Its vertices are nodes themselves: vertex i is node
+/// `node_of_vertex[i]` counted inside the block; or points of a skin: vertex i hangs on the tetrahedron
+/// `tets.col(embedding.tet[i])` by four weights (DESIGN 3.2).
 struct NodeSurface {
   int block_id = -1;
   std::vector<int> node_of_vertex;  ///< empty of a skin
@@ -32,30 +33,36 @@ class SampleSource {
   /// Node pairs its samples may couple (faces of each surface; of two soft bodies also across).
   virtual void add_pattern(dynamics::PatternBuilder& pattern) const = 0;
   virtual std::uint64_t pattern_version() const { return 0; }
-  /// Vertices that went through the shape between two queries, outside it at both: nothing has pushed them back.
+  /// Vertices that went through the shape between two queries, outside it at both: nothing has pushed them
+  /// back.
   virtual long tunnelled() const { return 0; }
   /// What was left out before the image, of a source that has proxies; else null.
   virtual const proxy::PruneCounts* pruning() const { return nullptr; }
 };
 
 /// Pressure p(gap, gap_rate) [Pa] and its derivatives; p >= 0 always (never adhesive), zero for gap >= 0.
-/// With the depth delta = -gap > 0, its rate delta' = -gap_rate, and the onset s(delta) = delta^2/(2w) up to the width w, delta - w/2 beyond (delta for w = 0):
+/// With the depth delta = -gap > 0, its rate delta' = -gap_rate, and the onset s(delta) = delta^2/(2w) up to
+/// the width w, delta - w/2 beyond (delta for w = 0):
 ///   kelvin_voigt   p = max(0, k s + d s' delta')
 ///   hunt_crossley  p = max(0, k s (1 + 3/2 c delta'))      (Hunt and Crossley 1975)
-/// With w > 0 the spring, and all of hunt_crossley, is C1 in depth and rate; the damper of kelvin_voigt sets in without its jump, but with a kink
-/// (its slope by depth there is d delta'/w).  Where the pressure is cut off in parting it stays continuous, with a kink.
-/// `energy_density` is that of the spring, k times the integral of s [J/m^2].
-struct Pressure { double p, dp_dgap, dp_drate, energy_density; };
+/// With w > 0 the spring, and all of hunt_crossley, is C1 in depth and rate; the damper of kelvin_voigt sets
+/// in without its jump, but with a kink (its slope by depth there is d delta'/w).  Where the pressure is cut
+/// off in parting it stays continuous, with a kink. `energy_density` is that of the spring, k times the
+/// integral of s [J/m^2].
+struct Pressure {
+  double p, dp_dgap, dp_drate, energy_density;
+};
 Pressure pressure(const ContactSpec& law, double gap, double gap_rate);
 
 /// Derivatives of the contact seen from one frame, about its origin, angular first.
 struct FrameLinearisation {
-  Wrench wrench;             ///< on the frame
-  Mat6 K, B;                 ///< -dF/dx, -dF/dv of the frame, bodies held
-  Mat3 geometric;            ///< the part of -K that is the turning arms' under the forces as they are (rows and columns of rotation)
-  MatX K_body, B_body;       ///< nodal_size x 6: -df_nodes/dx_frame, -df_nodes/dv_frame
-  MatX K_frame, B_frame;     ///< 6 x nodal_size: -dF_frame/dx_nodes, -dF_frame/dv_nodes
-  int active = 0;            ///< samples with pressure
+  Wrench wrench;  ///< on the frame
+  Mat6 K, B;      ///< -dF/dx, -dF/dv of the frame, bodies held
+  /// the part of -K that is the turning arms' under the forces as they are (rows and columns of rotation)
+  Mat3 geometric;
+  MatX K_body, B_body;    ///< nodal_size x 6: -df_nodes/dx_frame, -df_nodes/dv_frame
+  MatX K_frame, B_frame;  ///< 6 x nodal_size: -dF_frame/dx_nodes, -dF_frame/dv_nodes
+  int active = 0;         ///< samples with pressure
 };
 
 /// All contacts of a scene as one force term (DESIGN 3.4).
@@ -63,7 +70,7 @@ class ContactForce : public dynamics::ForceTerm {
  public:
   ContactForce();
   ~ContactForce() override;
-  int add_frame(std::shared_ptr<MovingFrame> frame);                     ///< index for SurfacePoint::frame
+  int add_frame(std::shared_ptr<MovingFrame> frame);  ///< index for SurfacePoint::frame
   int add_pair(std::unique_ptr<SampleSource> source, const ContactSpec& law);
 
   std::string_view name() const override;
@@ -71,14 +78,18 @@ class ContactForce : public dynamics::ForceTerm {
   void add_pattern(dynamics::PatternBuilder& pattern) const override;
   std::uint64_t pattern_version() const override;
   void add_force(const dynamics::StateView& state, VecX& f) override;
-  void add_tangent(const dynamics::StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) override;
-  void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) override;
+  void add_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
+                   dynamics::BorderedMatrix& A) override;
+  void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x,
+                     VecX& y) override;
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;
   bool refresh(const dynamics::StateView& state) override;
-  /// One root function for each sample that sets in with a kink (onset_width_m = 0): negative while it presses, positive while it does not, zero
-  /// exactly where it opens or closes.  With the damper cut off in parting that is not where the gap closes: see events in contact_force.cpp.
-  /// Their number is constant between two refreshes, and a refresh may change it, also one that changes no force and returns false.
+  /// One root function for each sample that sets in with a kink (onset_width_m = 0): negative while it
+  /// presses, positive while it does not, zero exactly where it opens or closes.  With the damper cut off in
+  /// parting that is not where the gap closes: see events in contact_force.cpp.
+  /// Their number is constant between two refreshes, and a refresh may change it, also one that changes no
+  /// force and returns false.
   int event_count() const override;
   std::uint64_t events_version() const override;
   void events(const dynamics::StateView& state, double* g) override;
@@ -86,7 +97,8 @@ class ContactForce : public dynamics::ForceTerm {
   const std::vector<ContactSample>& samples() const;
   Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
   void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out) const;
-  /// Euclidean norm of the change of the force on nodes and frames that the last refresh made, at its state [N]: the price of a slow query.
+  /// Euclidean norm of the change of the force on nodes and frames that the last refresh made, at its state
+  /// [N]: the price of a slow query.
   double refresh_force_jump() const;
   /// The largest of them so far, and the largest norm of these forces after a refresh, to judge it by.
   double largest_force_jump() const;

@@ -25,10 +25,11 @@ std::shared_ptr<MovingFrame> fixed_frame(const Pose& pose = {});
 /// The free rigid body with that block id (q = qw qx qy qz px py pz, u = angular, linear).
 std::shared_ptr<MovingFrame> block_frame(int block_id);
 
-/// A frame whose motion over one exchange period is known: cubic Hermite through the poses of the ticks, of the origin's
-/// position and of the rotation vector from each tick's orientation.  Poses and twists at the ticks are met exactly; between
-/// them the pose is of order 4 in the tick and the twist of order 3.  Before the first knot and behind the last the motion goes
-/// on with that knot's twist (an integrator may look a little ahead).  Each tick turns by less than half a turn.
+/// A frame whose motion over one exchange period is known: cubic Hermite through the poses of the ticks, of
+/// the origin's position and of the rotation vector from each tick's orientation.  Poses and twists at the
+/// ticks are met exactly; between them the pose is of order 4 in the tick and the twist of order 3.  Before
+/// the first knot and behind the last the motion goes on with that knot's twist (an integrator may look a
+/// little ahead).  Each tick turns by less than half a turn.
 class TrajectoryFrame : public MovingFrame {
  public:
   void clear();
@@ -37,7 +38,11 @@ class TrajectoryFrame : public MovingFrame {
   Twist twist(const dynamics::StateView& state) const override;
 
  private:
-  struct Knot { double t; Pose pose; Twist twist; };
+  struct Knot {
+    double t;
+    Pose pose;
+    Twist twist;
+  };
   std::vector<Knot> knots_;
 };
 

@@ -7,18 +7,21 @@ namespace palpate::contact {
 
 /// One side of a contact sample: a point of a soft body (weighted nodes) or of a rigid frame.
 struct SurfacePoint {
-  int frame = -1;                ///< index of a MovingFrame, or -1: weighted nodes
-  int count = 0;                 ///< nodes used, at most 4
-  std::array<int, 4> node{};     ///< counted over all node blocks (rows 3 node .. 3 node + 2 of u)
-  std::array<double, 4> weight{};///< sum to one; may be slightly negative at edges
-  Vec3 offset = Vec3::Zero();    ///< nodes: world offset added to the weighted position; frame: a point in the frame's axes [m]
-  /// Frames: from there to the surface point, along the sample's normal, in the world's axes: it does not turn with the frame [m].  On a round surface
-  /// `offset` is the centre of curvature: the surface that turns about it stays where it was, and so do the point, its gap and its force.
+  int frame = -1;                  ///< index of a MovingFrame, or -1: weighted nodes
+  int count = 0;                   ///< nodes used, at most 4
+  std::array<int, 4> node{};       ///< counted over all node blocks (rows 3 node .. 3 node + 2 of u)
+  std::array<double, 4> weight{};  ///< sum to one; may be slightly negative at edges
+  /// nodes: world offset added to the weighted position; frame: a point in the frame's axes [m]
+  Vec3 offset = Vec3::Zero();
+  /// Frames: from there to the surface point, along the sample's normal, in the world's axes: it does not
+  /// turn with the frame [m].  On a round surface `offset` is the centre of curvature: the surface that turns
+  /// about it stays where it was, and so do the point, its gap and its force.
   Vec3 slide = Vec3::Zero();
 };
 
-/// Two surface points on one line along `normal`, and what they stand for.  The same record from an obstacle, the GPU, the CPU or the exact query.
-/// Between queries the gap is linear in the positions: gap = normal . (x_a - x_b); negative is penetration.  The force on a is p area normal, on b its opposite.
+/// Two surface points on one line along `normal`, and what they stand for.  The same record from an obstacle,
+/// the GPU, the CPU or the exact query. Between queries the gap is linear in the positions: gap = normal .
+/// (x_a - x_b); negative is penetration.  The force on a is p area normal, on b its opposite.
 struct ContactSample {
   SurfacePoint a, b;
   Vec3 normal = Vec3::UnitZ();  ///< unit, from b to a: pushes a away

@@ -7,52 +7,76 @@
 
 namespace palpate::contact {
 
-/// Vertices of a soft surface against an exact shape in a frame.  One sample a vertex: gap = signed distance, normal = the shape's
-/// outward normal at the closest point, area = the vertex's area vector projected on that normal (one third of each adjacent triangle, deformed).
+/// Vertices of a soft surface against an exact shape in a frame.  One sample a vertex: gap = signed distance,
+/// normal = the shape's outward normal at the closest point, area = the vertex's area vector projected on
+/// that normal (one third of each adjacent triangle, deformed).
 /// Vertices turned away from the shape (where pressure would pull) make no sample.
-/// @param candidate_gap  vertices nearer than this are kept as candidates [m]; 0: the surface's mean edge at the first query
-/// @param look_ahead     [s] to the next query: vertices that come nearer than candidate_gap in this time, at their present speed, are kept as well.
-///                       Without it a fast body passes through unseen and is thrown back with energy from nowhere.
-std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& point, const Vec3& normal, double candidate_gap,
+/// @param candidate_gap  vertices nearer than this are kept as candidates [m]; 0: the surface's mean edge
+///   at the first query
+/// @param look_ahead     [s] to the next query: vertices that come nearer than candidate_gap in this time,
+///   at their present speed, are kept as well.
+///                       Without it a fast body passes through unseen and is thrown back with energy from
+///                       nowhere.
+std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame,
+                                                std::shared_ptr<MovingFrame> motion, const Vec3& point,
+                                                const Vec3& normal, double candidate_gap,
                                                 double look_ahead = 0.0);
-std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Vec3& centre, double radius, double candidate_gap,
+std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame,
+                                                 std::shared_ptr<MovingFrame> motion, const Vec3& centre,
+                                                 double radius, double candidate_gap,
                                                  double look_ahead = 0.0);
-/// A box with the given edges, and a cylinder along its own z between flat ends; both centred in `place`, a pose in the frame.
-/// Outside, the nearest point of the surface and the way from it (at edges and corners a direction between the faces'); inside, the nearest face.
-std::unique_ptr<SampleSource> make_box_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Pose& place, const Vec3& size, double candidate_gap,
+/// A box with the given edges, and a cylinder along its own z between flat ends; both centred in `place`, a
+/// pose in the frame. Outside, the nearest point of the surface and the way from it (at edges and corners a
+/// direction between the faces'); inside, the nearest face.
+std::unique_ptr<SampleSource> make_box_source(NodeSurface surface, int frame,
+                                              std::shared_ptr<MovingFrame> motion, const Pose& place,
+                                              const Vec3& size, double candidate_gap,
                                               double look_ahead = 0.0);
-std::unique_ptr<SampleSource> make_cylinder_source(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Pose& place, double radius, double length,
-                                                   double candidate_gap, double look_ahead = 0.0);
+std::unique_ptr<SampleSource> make_cylinder_source(NodeSurface surface, int frame,
+                                                   std::shared_ptr<MovingFrame> motion, const Pose& place,
+                                                   double radius, double length, double candidate_gap,
+                                                   double look_ahead = 0.0);
 
 struct GpuOptions {
-  int pixels = 256;             ///< longer edge of the image
-  double candidate_gap = 0.0;   ///< [m]; 0: a quarter of the soft surface's mean edge
-  double shift_u = 0.0;         ///< the pixel grid moved by this part of a pixel, in [0, 1): for studies of the pixels' error
+  int pixels = 256;            ///< longer edge of the image
+  double candidate_gap = 0.0;  ///< [m]; 0: a quarter of the soft surface's mean edge
+  /// the pixel grid moved by this part of a pixel, in [0, 1): for studies of the pixels' error
+  double shift_u = 0.0;
   double shift_v = 0.0;
 };
 
-/// Image space on the GPU (DESIGN 3.3): one region with its plane from libccd, both surfaces rasterised along its normal, one `pixel` sample
-/// for each pixel where both are covered; the gap in double on the two triangles that the image paired.
-/// The GL context is opened at the first query.  @throws Error when no EGL device can be opened, with the package that brings it.
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid, int frame, std::shared_ptr<MovingFrame> motion, const GpuOptions& options);
+/// Image space on the GPU (DESIGN 3.3): one region with its plane from libccd, both surfaces rasterised along
+/// its normal, one `pixel` sample for each pixel where both are covered; the gap in double on the two
+/// triangles that the image paired. The GL context is opened at the first query.  @throws Error when no EGL
+/// device can be opened, with the package that brings it.
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid, int frame,
+                                              std::shared_ptr<MovingFrame> motion, const GpuOptions& options);
 
-/// The same with proxies of both sides (DESIGN 3.2, 3.3): only skin that may be near is looked at, in regions that have each its own plane and image, so
-/// that bodies which are no height field as a whole are seen from all sides that they are touched on.  Each face of the skin is in one region at most.
+/// The same with proxies of both sides (DESIGN 3.2, 3.3): only skin that may be near is looked at, in regions
+/// that have each its own plane and image, so that bodies which are no height field as a whole are seen from
+/// all sides that they are touched on.  Each face of the skin is in one region at most.
 /// @param proxies  of `surface`, a skin: the set's faces are the surface's; it may serve several sources
-/// @param proxies_rigid  of `rigid`, in its frame, as proxy::rigid_proxies makes them; it may serve several sources
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, TriMesh rigid, std::shared_ptr<proxy::ProxySet> proxies_rigid,
-                                              int frame, std::shared_ptr<MovingFrame> motion, const GpuOptions& options);
-
-/// Two soft bodies: both points of a sample hang on nodes, so its force reaches both bodies, equal and opposite, and its tangent couples them.  The pattern has
-/// blocks between the two bodies' nodes where samples were found, and grows with the contact (pattern_version).
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, NodeSurface b, const GpuOptions& options);
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, std::shared_ptr<proxy::ProxySet> proxies_a, NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
+/// @param proxies_rigid  of `rigid`, in its frame, as proxy::rigid_proxies makes them; it may serve several
+///   sources
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
+                                              TriMesh rigid, std::shared_ptr<proxy::ProxySet> proxies_rigid,
+                                              int frame, std::shared_ptr<MovingFrame> motion,
                                               const GpuOptions& options);
 
-/// One soft body against itself: the skin of each bone's proxies against that of every other bone's, but for proxies that are grown together (they share skin or
-/// nodes), so that a limb's flesh may slide into itself where it is creased, next to the joint.  What overlaps because the body is thick there is no contact, at rest
-/// nothing is.  Parts that are both thinner than they overlap are not seen.
+/// Two soft bodies: both points of a sample hang on nodes, so its force reaches both bodies, equal and
+/// opposite, and its tangent couples them.  The pattern has blocks between the two bodies' nodes where
+/// samples were found, and grows with the contact (pattern_version).
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, NodeSurface b, const GpuOptions& options);
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, std::shared_ptr<proxy::ProxySet> proxies_a,
+                                              NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
+                                              const GpuOptions& options);
+
+/// One soft body against itself: the skin of each bone's proxies against that of every other bone's, but for
+/// proxies that are grown together (they share skin or nodes), so that a limb's flesh may slide into itself
+/// where it is creased, next to the joint.  What overlaps because the body is thick there is no contact, at
+/// rest nothing is.  Parts that are both thinner than they overlap are not seen.
 /// @param rest_nodes  of the surface's tetrahedra [m], in any axes
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies, const Points& rest_nodes, const GpuOptions& options);
+std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
+                                              const Points& rest_nodes, const GpuOptions& options);
 
 }  // namespace palpate::contact

@@ -2,11 +2,11 @@
 
 namespace palpate {
 
-double wall_seconds();        ///< monotonic wall clock [s]
-double cpu_seconds();         ///< CPU time of this process, all threads [s]
-double thread_cpu_seconds();  ///< CPU time of the calling thread [s]
-double peak_memory_mib();     ///< largest resident set so far [MiB]
-double resident_memory_mib(); ///< resident set now [MiB]
+double wall_seconds();         ///< monotonic wall clock [s]
+double cpu_seconds();          ///< CPU time of this process, all threads [s]
+double thread_cpu_seconds();   ///< CPU time of the calling thread [s]
+double peak_memory_mib();      ///< largest resident set so far [MiB]
+double resident_memory_mib();  ///< resident set now [MiB]
 
 /// Adds the wall time of its life to a sum [s].
 class ScopedTimer {

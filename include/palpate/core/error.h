@@ -30,7 +30,8 @@ namespace detail {
 [[noreturn]] void check_failed(const char* file, int line, const char* condition, const std::string& message);
 }  // namespace detail
 
-/// The candidate with the smallest edit distance to `name`; empty when none is close (distance > half its length).
+/// The candidate with the smallest edit distance to `name`; empty when none is close (distance > half its
+/// length).
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
 /// ` (did you mean "x"?)` or, when none is near, ` (known: a, b, c)`; for the end of an error message.
@@ -39,7 +40,8 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
 }  // namespace palpate
 
 /// An invariant of ours, always on.  PALPATE_CHECK(n == m, "n = {}, m = {}", n, m)
-#define PALPATE_CHECK(condition, ...)                                                                     \
-  do {                                                                                                    \
-    if (!(condition)) ::palpate::detail::check_failed(__FILE__, __LINE__, #condition, fmt::format(__VA_ARGS__)); \
+#define PALPATE_CHECK(condition, ...)                                                            \
+  do {                                                                                           \
+    if (!(condition))                                                                            \
+      ::palpate::detail::check_failed(__FILE__, __LINE__, #condition, fmt::format(__VA_ARGS__)); \
   } while (false)

@@ -9,7 +9,9 @@ struct Pose {
   Vec3 translation = Vec3::Zero();  ///< [m]
 
   Vec3 operator*(const Vec3& p) const { return rotation * p + translation; }
-  Pose operator*(const Pose& other) const { return {rotation * other.rotation, rotation * other.translation + translation}; }
+  Pose operator*(const Pose& other) const {
+    return {rotation * other.rotation, rotation * other.translation + translation};
+  }
   Pose inverse() const { return {rotation.conjugate(), -(rotation.conjugate() * translation)}; }
 };
 
@@ -25,16 +27,22 @@ struct Twist {
 struct Wrench {
   Vec3 moment = Vec3::Zero();
   Vec3 force = Vec3::Zero();
-  Wrench& operator+=(const Wrench& o) { moment += o.moment; force += o.force; return *this; }
+  Wrench& operator+=(const Wrench& o) {
+    moment += o.moment;
+    force += o.force;
+    return *this;
+  }
 };
 
-/// Rotation vector of a unit quaternion, angle in [0, pi] [rad].  Accurate for small angles; both signs of q give the same result.
+/// Rotation vector of a unit quaternion, angle in [0, pi] [rad].  Accurate for small angles; both signs of q
+/// give the same result.
 Vec3 rotation_vector(const Quat& q);
 
 /// The unit quaternion of a rotation vector [rad].
 Quat quaternion_of(const Vec3& rotation_vector);
 
-/// The 6-vector (angular, linear) [rad, m] that carries `from` to `to`: rotation vector of to.rotation * from.rotation^-1 (world axes) and to.translation - from.translation.
+/// The 6-vector (angular, linear) [rad, m] that carries `from` to `to`: rotation vector of to.rotation *
+/// from.rotation^-1 (world axes) and to.translation - from.translation.
 Vec6 pose_difference(const Pose& from, const Pose& to);
 
 }  // namespace palpate

@@ -8,8 +8,9 @@
 
 namespace palpate {
 
-/// A few threads that work on one thing together, again and again: the caller and size() - 1 workers, which live as long as the team.
-/// Who waits spins for some tens of microseconds and then sleeps: on a machine with fewer free cores than threads a spinning team costs seconds.
+/// A few threads that work on one thing together, again and again: the caller and size() - 1 workers, which
+/// live as long as the team. Who waits spins for some tens of microseconds and then sleeps: on a machine with
+/// fewer free cores than threads a spinning team costs seconds.
 /// One caller at a time.  What a worker throws ends the program: give it work that does not throw.
 class Team {
  public:
@@ -19,7 +20,8 @@ class Team {
   Team& operator=(const Team&) = delete;
   int size() const { return size_; }
 
-  /// Calls work(k) for k = 0 ... size() - 1, one thread each, the caller as 0; returns when all have returned.  Allocates nothing.
+  /// Calls work(k) for k = 0 ... size() - 1, one thread each, the caller as 0; returns when all have
+  /// returned.  Allocates nothing.
   template <class Work>
   void run(Work&& work) {
     using W = std::remove_reference_t<Work>;

@@ -2,19 +2,22 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-/// Scalars and small fixed shapes that every part speaks in.  SI units, double precision, world axes unless a name says otherwise.
+/// Scalars and small fixed shapes that every part speaks in.  SI units, double precision, world axes unless a
+/// name says otherwise.
 namespace palpate {
 
 using Vec3 = Eigen::Vector3d;
-using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< spatial vector: angular part first, then linear (Simbody's order)
+/// spatial vector: angular part first, then linear (Simbody's order)
+using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat3 = Eigen::Matrix3d;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 using VecX = Eigen::VectorXd;
 using MatX = Eigen::MatrixXd;
 using Quat = Eigen::Quaterniond;
 using Points = Eigen::Matrix<double, 3, Eigen::Dynamic>;  ///< 3 x n, one point a column [m]
-using Faces = Eigen::Matrix<int, 3, Eigen::Dynamic>;      ///< 3 x n, vertex indices, counter-clockwise seen from outside
-using Tets = Eigen::Matrix<int, 4, Eigen::Dynamic>;       ///< 4 x n, node indices, positive volume
+/// 3 x n, vertex indices, counter-clockwise seen from outside
+using Faces = Eigen::Matrix<int, 3, Eigen::Dynamic>;
+using Tets = Eigen::Matrix<int, 4, Eigen::Dynamic>;  ///< 4 x n, node indices, positive volume
 
 /// [v]x, the matrix with [v]x w = v x w.
 inline Mat3 cross_matrix(const Vec3& v) {

@@ -17,7 +17,8 @@ struct HandleSample {
   bool valid = true;   ///< false: no pose arrived; forces must fall to zero
 };
 
-/// Something a hand holds.  `sample` is called once a tick with times that do not decrease; `feedback` gives the wrench that the hand feels.
+/// Something a hand holds.  `sample` is called once a tick with times that do not decrease; `feedback` gives
+/// the wrench that the hand feels.
 class Handle {
  public:
   virtual ~Handle() = default;
@@ -29,14 +30,15 @@ using MakeHandle = std::unique_ptr<Handle> (*)(const DeviceSpec&);
 const Registry<MakeHandle>& handle_registry();
 std::unique_ptr<Handle> make_handle(const DeviceSpec& spec);
 
-/// The path through keyframes: before the first and after the last it rests there.  Rotations interpolate on the rotation vector between neighbours
-/// (about one fixed axis a segment), so twist and acceleration are the exact derivatives of the pose.  At a keyframe's own time the segment
-/// that starts there counts.  A "step" or a kink of "linear" has no derivative: the jump is in the pose or the twist alone.
+/// The path through keyframes: before the first and after the last it rests there.  Rotations interpolate on
+/// the rotation vector between neighbours (about one fixed axis a segment), so twist and acceleration are the
+/// exact derivatives of the pose.  At a keyframe's own time the segment that starts there counts.  A "step"
+/// or a kink of "linear" has no derivative: the jump is in the pose or the twist alone.
 /// @throws Error for an empty path
 HandleSample sample_keyframes(const std::vector<KeyframeSpec>& keyframes, double t);
 
-/// Checks a path: at least one keyframe, all finite, times strictly ascending, known interpolations, and turns of at most half a turn from one
-/// keyframe to the next (beyond that the way round is ambiguous).
+/// Checks a path: at least one keyframe, all finite, times strictly ascending, known interpolations, and
+/// turns of at most half a turn from one keyframe to the next (beyond that the way round is ambiguous).
 /// @throws Error beginning with `where`, e.g. "device"
 void check_keyframes(const std::vector<KeyframeSpec>& keyframes, const std::string& where);
 

@@ -6,20 +6,26 @@ namespace palpate::device {
 /// Time within which the wrench falls to zero after the last valid pose [s].
 inline constexpr double kFallTime = 0.020;
 
-/// The last thing before the motors: never lets a wrench above the device's maximum out (smoothly: |f| -> fmax tanh-like, C1, identity to within 1 % below half the maximum),
-/// ramps in, bounds the slew, and falls to zero within 20 ms after the last valid pose.
+/// The last thing before the motors: never lets a wrench above the device's maximum out (smoothly: |f| ->
+/// fmax tanh-like, C1, identity to within 1 % below half the maximum), ramps in, bounds the slew, and falls
+/// to zero within 20 ms after the last valid pose.
 ///
-/// Before the first tick the output is zero, so the first tick gives zero: a slew needs a time span.  After a fall to zero the wrench ramps in anew.
-/// A wrench that is not finite counts as an invalid tick: a NaN never gets out.  So does a time that is not finite or does not increase; the
-/// fall then runs on a clock of its own, one last good tick at a time, so that a stopped clock cannot hold a force.
+/// Before the first tick the output is zero, so the first tick gives zero: a slew needs a time span.  After a
+/// fall to zero the wrench ramps in anew. A wrench that is not finite counts as an invalid tick: a NaN never
+/// gets out.  So does a time that is not finite or does not increase; the fall then runs on a clock of its
+/// own, one last good tick at a time, so that a stopped clock cannot hold a force.
 class WrenchLimiter {
  public:
-  /// @throws Error for a maximum that is not positive, a negative ramp, or a slew too small to reach zero in time (1.5 maximum / 20 ms)
-  WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s, double max_force_slew_n_s = 1e5, double max_torque_slew_n_m_s = 1e4);
+  /// @throws Error for a maximum that is not positive, a negative ramp, or a slew too small to reach zero
+  ///   in time (1.5 maximum / 20 ms)
+  WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s, double max_force_slew_n_s = 1e5,
+                double max_torque_slew_n_m_s = 1e4);
   /// @param t [s], increasing  @param valid  whether the handle's pose of this tick is valid
   Wrench limit(double t, const Wrench& wanted, bool valid);
-  long limited_ticks() const { return limited_; }    ///< valid ticks whose wanted force or torque was above its maximum
-  long rejected_ticks() const { return rejected_; }  ///< ticks with a wrench that was not finite or a time that did not increase
+  /// valid ticks whose wanted force or torque was above its maximum
+  long limited_ticks() const { return limited_; }
+  /// ticks with a wrench that was not finite or a time that did not increase
+  long rejected_ticks() const { return rejected_; }
 
  private:
   Wrench fall(double age);
@@ -29,10 +35,10 @@ class WrenchLimiter {
   double start_ = 0.0, last_valid_ = 0.0;   ///< first tick of this ramp, last valid tick [s]
   double last_time_ = 0.0, last_dt_ = 0.0;  ///< last tick whose time increased, and its length [s]
   double stalled_ = 0.0;                    ///< what the substitute clock counted since then [s]
-  bool started_ = false;  ///< some tick was seen
-  bool live_ = false;     ///< a valid pose came within the last 20 ms
-  Wrench last_;           ///< what went out last
-  Wrench held_;           ///< what went out at the last valid pose
+  bool started_ = false;                    ///< some tick was seen
+  bool live_ = false;                       ///< a valid pose came within the last 20 ms
+  Wrench last_;                             ///< what went out last
+  Wrench held_;                             ///< what went out at the last valid pose
   long limited_ = 0, rejected_ = 0;
 };
 

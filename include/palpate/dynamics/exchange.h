@@ -9,17 +9,18 @@
 
 namespace palpate::dynamics {
 
-/// Contact seen from the tool, linear in time and about one pose: F = F0 + (t - time) F1 + J dx + B (v - v0), dx = pose_difference(x0, x).
-/// F1 is what the bodies' own motion makes of the wrench while the tool stands.
+/// Contact seen from the tool, linear in time and about one pose: F = F0 + (t - time) F1 + J dx + B (v - v0),
+/// dx = pose_difference(x0, x). F1 is what the bodies' own motion makes of the wrench while the tool stands.
 /// Wrenches and 6-vectors: (moment about the tool's origin, force) and (angular, linear), world axes.
 struct LinearisedContact {
-  std::uint64_t version = 0;  ///< grows with each record; 0: none yet
-  double time = 0.0;          ///< of x0 [s]
+  std::uint64_t version = 0;                      ///< grows with each record; 0: none yet
+  double time = 0.0;                              ///< of x0 [s]
   std::array<double, 7> x0{1, 0, 0, 0, 0, 0, 0};  ///< pose: qw qx qy qz px py pz
   std::array<double, 6> v0{};
   std::array<double, 6> F0{};
   std::array<double, 6> F1{};  ///< [N m/s, N/s]
-  std::array<double, 36> J{};  ///< dF/dx, row-major [N/m, N m/rad, mixed]; negative definite for a stable contact
+  /// dF/dx, row-major [N/m, N m/rad, mixed]; negative definite for a stable contact
+  std::array<double, 36> J{};
   std::array<double, 36> B{};  ///< dF/dv, row-major
   enum class Source : int { kNone, kFrozen, kCondensed } source = Source::kNone;
   int samples = 0;  ///< contact samples it was made from
@@ -29,8 +30,8 @@ static_assert(std::is_trivially_copyable_v<LinearisedContact>);
 /// The wrench of a record at a time, pose and twist (order: moment, force).
 Vec6 contact_wrench(const LinearisedContact& record, double t, const Pose& pose, const Twist& twist);
 
-/// One writer, one reader, two threads: the reader always sees a whole record, never a torn one, and never waits
-/// (a triple buffer: the writer fills its own slot and swaps it with the middle one).
+/// One writer, one reader, two threads: the reader always sees a whole record, never a torn one, and never
+/// waits (a triple buffer: the writer fills its own slot and swaps it with the middle one).
 template <class Record>
 class Exchange {
   static_assert(std::is_trivially_copyable_v<Record>);
@@ -42,7 +43,8 @@ class Exchange {
   }
   /// The newest record published so far.
   const Record& latest() {
-    if (middle_.load(std::memory_order_relaxed) & kFresh) front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kIndex;
+    if (middle_.load(std::memory_order_relaxed) & kFresh)
+      front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kIndex;
     return slots_[front_];
   }
 

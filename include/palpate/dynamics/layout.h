@@ -24,7 +24,8 @@ class BlockKinematics {
   virtual void project(Segment q) const = 0;
 };
 
-/// Free rigid body: q = (qw qx qy qz px py pz), u = (angular, linear) in world axes; q_w' = 1/2 (0, angular) * q_w.
+/// Free rigid body: q = (qw qx qy qz px py pz), u = (angular, linear) in world axes; q_w' = 1/2 (0, angular)
+/// * q_w.
 std::shared_ptr<const BlockKinematics> free_body_kinematics();
 
 struct BlockSpec {
@@ -32,8 +33,9 @@ struct BlockSpec {
   BlockKind kind = BlockKind::kNodes;
   int q_size = 0;
   int u_size = 0;
-  double q_scale = 1.0;  ///< size of a q that matters (a body's displacement, [m]): the unit of its absolute tolerance
-  double u_scale = 1.0;  ///< size of a u that matters [m/s]
+  /// size of a q that matters (a body's displacement, [m]): the unit of its absolute tolerance
+  double q_scale = 1.0;
+  double u_scale = 1.0;                                 ///< size of a u that matters [m/s]
   std::shared_ptr<const BlockKinematics> kinematics{};  ///< null: q' = u
 };
 
@@ -55,7 +57,7 @@ struct Layout {
 
   int node_count() const { return nodal_size / 3; }
   int border_size() const { return u_size - nodal_size; }
-  const Block* find(int id) const;            ///< null when there is none
+  const Block* find(int id) const;  ///< null when there is none
   const Block* find(const std::string& name) const;
 };
 

@@ -12,8 +12,10 @@ namespace palpate::dynamics {
 enum class SolveStatus { kOk, kIndefinite, kSingular, kNotConverged, kRounded };
 
 struct SolverCounters {
-  long symbolic = 0;        ///< symbolic analyses (once a pattern)
-  long orderings = 0;       ///< of them, those that looked for a fill-reducing ordering, where the solver keeps one from pattern to pattern
+  long symbolic = 0;  ///< symbolic analyses (once a pattern)
+  /// of them, those that looked for a fill-reducing ordering, where the solver keeps one from pattern to
+  /// pattern
+  long orderings = 0;
   long factorisations = 0;  ///< numeric factorisations
   long solves = 0;          ///< right-hand sides
   long iterations = 0;      ///< of iterative methods
@@ -21,7 +23,8 @@ struct SolverCounters {
   long residuals = 0;       ///< that these looked at
   long refreshes = 0;       ///< coarse spaces made anew, where a method has one that it keeps
   double symbolic_s = 0.0, factor_s = 0.0, solve_s = 0.0;  ///< wall time [s]
-  std::string ordering;     ///< fill-reducing ordering of the last analysis, where the solver chooses: "AMD", "METIS"
+  /// fill-reducing ordering of the last analysis, where the solver chooses: "AMD", "METIS"
+  std::string ordering;
 };
 
 /// A system of equations that is known by what a vector leaves of it.
@@ -32,28 +35,32 @@ class Residual {
   virtual void at(const VecX& x, VecX& r) = 0;
 };
 
-/// Solves A X = B for a bordered matrix.  Symbolic analysis once per pattern version; numeric work only when the values' version changed.
+/// Solves A X = B for a bordered matrix.  Symbolic analysis once per pattern version; numeric work only when
+/// the values' version changed.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string name() const = 0;
   virtual bool supports_unsymmetric() const = 0;
-  /// Prepares for A; cheap when neither its pattern nor its values changed.  kIndefinite: a Cholesky factor does not exist.
-  /// A stays where it is, unchanged, until the last solve with it: an iterative method reads it there.
+  /// Prepares for A; cheap when neither its pattern nor its values changed.  kIndefinite: a Cholesky factor
+  /// does not exist. A stays where it is, unchanged, until the last solve with it: an iterative method reads
+  /// it there.
   virtual SolveStatus factor(const BorderedMatrix& A) = 0;
   /// X = A^-1 B for the matrix last factored; B and X are size x nrhs, may be the same object.
   virtual SolveStatus solve(const MatX& B, MatX& X) = 0;
   virtual SolveStatus solve(const VecX& b, VecX& x) = 0;
   virtual const SolverCounters& counters() const = 0;
 
-  /// Room for a matrix of this pattern in the solver's own order and precision, to be written and then prepared by factor_balanced(); null where it takes none.
-  /// The pattern stays where it is until the next call.
+  /// Room for a matrix of this pattern in the solver's own order and precision, to be written and then
+  /// prepared by factor_balanced(); null where it takes none. The pattern stays where it is until the next
+  /// call.
   virtual BalancedMatrix* balanced(const BlockSparse& /*pattern*/) { return nullptr; }
-  /// factor() of what was written there.  Right-hand sides are zero along held directions.  kRounded: the solver's precision is too coarse for a solution of this matrix as it
-  /// stands there, and solve_near() is to solve it.  Anything else but kOk: it wants the whole matrix in double.
+  /// factor() of what was written there.  Right-hand sides are zero along held directions.  kRounded: the
+  /// solver's precision is too coarse for a solution of this matrix as it stands there, and solve_near() is
+  /// to solve it.  Anything else but kOk: it wants the whole matrix in double.
   virtual SolveStatus factor_balanced() { return SolveStatus::kSingular; }
-  /// Solves A x = b by the balanced matrix last factored, to which A is near, as accurately as a solve with A itself.  Anything but kOk: A's own matrix is wanted; the whole one,
-  /// where that was it.
+  /// Solves A x = b by the balanced matrix last factored, to which A is near, as accurately as a solve with A
+  /// itself.  Anything but kOk: A's own matrix is wanted; the whole one, where that was it.
   virtual SolveStatus solve_near(Residual& /*left*/, VecX& /*x*/) { return SolveStatus::kNotConverged; }
 };
 

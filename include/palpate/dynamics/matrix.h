@@ -35,11 +35,13 @@ class BlockSparse {
   /// y += A^T x
   void multiply_transposed_add(const double* x, double* y) const;
 
-  /// Grows whenever the pattern is rebuilt: symbolic analyses and scatter maps made for another version are stale.  Unique over all matrices of the process.
+  /// Grows whenever the pattern is rebuilt: symbolic analyses and scatter maps made for another version are
+  /// stale.  Unique over all matrices of the process.
   std::uint64_t pattern_version() const { return pattern_version_; }
 
  private:
-  friend BlockSparse pattern_of(int node_count, const std::vector<const std::vector<std::pair<int, int>>*>& lists);
+  friend BlockSparse pattern_of(int node_count,
+                                const std::vector<const std::vector<std::pair<int, int>>*>& lists);
   std::vector<int> row_start_{0};
   std::vector<int> columns_;
   std::vector<int> diagonal_;
@@ -58,10 +60,10 @@ class PatternBuilder {
   explicit PatternBuilder(const Layout& layout) : node_count_(layout.node_count()), layout_(&layout) {}
   /// First node of a node block, counted over all node blocks; 0 where the builder was made without a layout.
   int first_node(int block_id) const;
-  void add_pair(int i, int j);                          ///< (i, j) and (j, i)
-  void add_clique(const int* nodes, int count);         ///< every pair of them
+  void add_pair(int i, int j);                   ///< (i, j) and (j, i)
+  void add_clique(const int* nodes, int count);  ///< every pair of them
   BlockSparse build() const;
-  NodePairs pairs() const;                              ///< what was added
+  NodePairs pairs() const;  ///< what was added
 
  private:
   int node_count_;
@@ -69,20 +71,24 @@ class PatternBuilder {
   NodePairs pairs_;  ///< as they came
 };
 
-/// The pattern of some lists together, and of the diagonal: what a PatternBuilder builds that was told all of them, without sorting them anew.
+/// The pattern of some lists together, and of the diagonal: what a PatternBuilder builds that was told all of
+/// them, without sorting them anew.
 BlockSparse pattern_of(int node_count, const std::vector<const NodePairs*>& lists);
 
-/// The matrix of one implicit step in u-space: a sparse body part over the nodes, bordered by dense rows and columns of rigid and articulated blocks.
+/// The matrix of one implicit step in u-space: a sparse body part over the nodes, bordered by dense rows and
+/// columns of rigid and articulated blocks.
 ///     [ body    right  ]   nodal_size
 ///     [ bottom  corner ]   border_size
 struct BorderedMatrix {
   BlockSparse body;
-  MatX right;    ///< nodal_size x border
-  MatX bottom;   ///< border x nodal_size
-  MatX corner;   ///< border x border
-  VecX positions;  ///< of the nodes [m], three numbers each, for preconditioners that know rigid motions; empty: not known
+  MatX right;   ///< nodal_size x border
+  MatX bottom;  ///< border x nodal_size
+  MatX corner;  ///< border x border
+  /// of the nodes [m], three numbers each, for preconditioners that know rigid motions; empty: not known
+  VecX positions;
   bool symmetric = true;
-  std::uint64_t values_version = 0;  ///< grows with every change of values; equal versions and patterns mean an equal matrix
+  /// grows with every change of values; equal versions and patterns mean an equal matrix
+  std::uint64_t values_version = 0;
 
   int nodal_size() const { return 3 * body.block_rows(); }
   int border_size() const { return static_cast<int>(corner.rows()); }

@@ -7,16 +7,20 @@
 #include "palpate/dynamics/inertia_term.h"
 
 /// A free rigid body as a block of the State: a bone, or the tool of a monolithic scene.
-/// q = (qw qx qy qz px py pz), u = (angular, linear) in world axes; the origin is the centre of mass, the body axes are principal.
+/// q = (qw qx qy qz px py pz), u = (angular, linear) in world axes; the origin is the centre of mass, the
+/// body axes are principal.
 namespace palpate::dynamics {
 
-/// The block of that body; `length` [m] and `speed` [m/s] are the sizes that matter to error control (an angle counts as length/`length`).
+/// The block of that body; `length` [m] and `speed` [m/s] are the sizes that matter to error control (an
+/// angle counts as length/`length`).
 BlockSpec rigid_block(std::string name, double length, double speed);
 
-/// M = diag(R I R^T, m): turns with the body.  @param inertia principal moments [kg m^2]  @throws Error for moments that are no body's
+/// M = diag(R I R^T, m): turns with the body.  @param inertia principal moments [kg m^2]  @throws Error for
+/// moments that are no body's
 std::shared_ptr<InertiaTerm> make_rigid_inertia(int block_id, double mass, const Vec3& inertia);
 
-/// -omega x (R I R^T omega).  Its tangent is unsymmetric and usually small against the rest: left out, and the term symmetric, unless asked for.
+/// -omega x (R I R^T omega).  Its tangent is unsymmetric and usually small against the rest: left out, and
+/// the term symmetric, unless asked for.
 std::shared_ptr<ForceTerm> make_gyroscopic(int block_id, const Vec3& inertia, bool tangent = false);
 
 /// m g at the centre of mass.
@@ -34,7 +38,8 @@ struct RigidMotion {
 /// The free rigid body with that block id.  @throws InternalError where there is none
 const Block& rigid_block_of(const StateView& state, int block_id);
 
-/// Its pose and twist.  A trial state's quaternion is not unit to rounding: the rotation is that of its direction.
+/// Its pose and twist.  A trial state's quaternion is not unit to rounding: the rotation is that of its
+/// direction.
 RigidMotion motion_of(const StateView& state, const Block& block);
 
 /// R I R^T

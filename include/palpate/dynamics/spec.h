@@ -4,25 +4,34 @@
 namespace palpate {
 
 /// Integrator by name and its settings.  Plain data, the `[integrator]` table of a scene.
-/// What a method has no use for it ignores (a step_s under error control); what it cannot do it refuses (a fixed step by CVODE).
+/// What a method has no use for it ignores (a step_s under error control); what it cannot do it refuses (a
+/// fixed step by CVODE).
 struct IntegratorSpec {
   std::string name = "cvode-bdf";
-  double rtol = 1e-3;                ///< adaptive methods: relative tolerance
-  double atol_q = 0.01;              ///< absolute tolerance of q is atol_q * rtol * the block's q_scale
-  double atol_u = 0.1;               ///< the same for u
-  double step_s = 1e-3;              ///< fixed-step methods [s]
-  bool fixed_step = false;           ///< methods that can do both: steps of step_s in place of error control
-  int max_order = 0;                 ///< cap on the order; 0: the method's own
-  int max_steps = 100000;            ///< internal steps between two outputs before giving up
-  int factor_kept_steps = 1;         ///< hand-written implicit methods: steps that one tangent and factor serve (1: full Newton)
-  double newton_rtol = 1e-8;         ///< hand-written implicit methods: Newton ends when its correction, in the units of rtol, is below this
-  double spectral_radius = 0.8;      ///< generalized-alpha: of the amplification at infinite frequency, in [0, 1]
-  std::string events = "error-control";  ///< how a kink of the force is met: "error-control", or "root-finding" with a restart at the root
-  std::string explicit_side = "loads";   ///< ImEx: what is explicit beside what is not stiff: "loads", or "contact" (contact and loads)
-  std::string indefinite = "project";    ///< a step matrix that is not positive definite: "project" (definite tangent), then LU; or "lu" at once
-  std::string linear_solver = {};        ///< empty: the method's own (StepperTraits::linear_solver)
-  double linear_rtol = 1e-8;         ///< iterative linear solvers: relative residual of "pcg"; relative error, in the energy norm, of the others
-  int threads = 1;                   ///< linear solvers that can share their work; results do not depend on it
+  double rtol = 1e-3;       ///< adaptive methods: relative tolerance
+  double atol_q = 0.01;     ///< absolute tolerance of q is atol_q * rtol * the block's q_scale
+  double atol_u = 0.1;      ///< the same for u
+  double step_s = 1e-3;     ///< fixed-step methods [s]
+  bool fixed_step = false;  ///< methods that can do both: steps of step_s in place of error control
+  int max_order = 0;        ///< cap on the order; 0: the method's own
+  int max_steps = 100000;   ///< internal steps between two outputs before giving up
+  /// hand-written implicit methods: steps that one tangent and factor serve (1: full Newton)
+  int factor_kept_steps = 1;
+  /// hand-written implicit methods: Newton ends when its correction, in the units of rtol, is below this
+  double newton_rtol = 1e-8;
+  /// generalized-alpha: of the amplification at infinite frequency, in [0, 1]
+  double spectral_radius = 0.8;
+  /// how a kink of the force is met: "error-control", or "root-finding" with a restart at the root
+  std::string events = "error-control";
+  /// ImEx: what is explicit beside what is not stiff: "loads", or "contact" (contact and loads)
+  std::string explicit_side = "loads";
+  /// a step matrix that is not positive definite: "project" (definite tangent), then LU; or "lu" at once
+  std::string indefinite = "project";
+  std::string linear_solver = {};  ///< empty: the method's own (StepperTraits::linear_solver)
+  /// iterative linear solvers: relative residual of "pcg"; relative error, in the energy norm, of the others
+  double linear_rtol = 1e-8;
+  /// linear solvers that can share their work; results do not depend on it
+  int threads = 1;
 };
 
 }  // namespace palpate

@@ -3,7 +3,8 @@
 
 namespace palpate::dynamics {
 
-/// What a force term sees: time, coordinates and velocities, not owned.  Integrators hand out views of their own vectors, so nothing is copied.
+/// What a force term sees: time, coordinates and velocities, not owned.  Integrators hand out views of their
+/// own vectors, so nothing is copied.
 struct StateView {
   const Layout* layout = nullptr;
   double time = 0.0;  ///< [s]
@@ -14,7 +15,8 @@ struct StateView {
   Vec3 velocity(int node) const { return u.segment<3>(3 * node); }
 };
 
-/// Owns q and u of all blocks.  Storage is reserved once, so that inserting and extracting blocks within the capacity allocates no vector storage.
+/// Owns q and u of all blocks.  Storage is reserved once, so that inserting and extracting blocks within the
+/// capacity allocates no vector storage.
 class State {
  public:
   explicit State(int q_capacity = 0, int u_capacity = 0, int block_capacity = 8);

@@ -12,7 +12,16 @@ namespace palpate::dynamics {
 
 class System;
 
-enum class StepStatus { kOk, kNewtonFailed, kErrorTestFailed, kSolverFailed, kNotFinite, kTooManySteps, kBadSettings, kInterrupted };
+enum class StepStatus {
+  kOk,
+  kNewtonFailed,
+  kErrorTestFailed,
+  kSolverFailed,
+  kNotFinite,
+  kTooManySteps,
+  kBadSettings,
+  kInterrupted
+};
 const char* to_string(StepStatus status);
 
 /// Numerical outcomes are data: the loop decides what to do with them.
@@ -34,8 +43,9 @@ struct StepperCounters {
   long error_test_failures = 0, newton_failures = 0, newton_iterations = 0;
   long force_evaluations = 0, tangent_evaluations = 0;
   long reinits = 0;
-  long events = 0;       ///< roots that a step was cut short at
-  long indefinite = 0;   ///< matrices that had no Cholesky factor: answered by definite tangents (projected) or, the rest, by LU
+  long events = 0;  ///< roots that a step was cut short at
+  /// matrices that had no Cholesky factor: answered by definite tangents (projected) or, the rest, by LU
+  long indefinite = 0;
   long projected = 0;    ///< of those, answered by definite tangents
   long unconverged = 0;  ///< solves that an iterative linear solver gave up, for a factor to answer
   double force_s = 0.0, tangent_s = 0.0;  ///< wall time [s]
@@ -44,16 +54,20 @@ struct StepperCounters {
 
 /// One attempted step, accepted or not: what `--trace` keeps.
 struct StepAttempt {
-  enum class Outcome { kAccepted, kErrorTest, kNewton, kNotFinite, kEvent };  ///< kEvent: cut short at a root, then restarted
-  double t = 0.0;               ///< start of the step [s]
-  double h = 0.0;               ///< its length [s]
+  /// kEvent: cut short at a root, then restarted
+  enum class Outcome { kAccepted, kErrorTest, kNewton, kNotFinite, kEvent };
+  double t = 0.0;  ///< start of the step [s]
+  double h = 0.0;  ///< its length [s]
   int order = 0;
-  double error = 0.0;           ///< estimate in the method's weighted norm, 1 is the tolerance; NaN where the method has none
+  /// estimate in the method's weighted norm, 1 is the tolerance; NaN where the method has none
+  double error = 0.0;
   int newton_iterations = 0;
   Outcome outcome = Outcome::kAccepted;
-  int worst_dof = -1;           ///< entry of u (a node's axis, a rigid body's direction) with the largest share of the error; -1: unknown
-  int inverted_element = -1;    ///< the most inverted element at the attempted state, over the terms in their order; -1: none
-  std::string inverted_in;      ///< the term that it belongs to
+  /// entry of u (a node's axis, a rigid body's direction) with the largest share of the error; -1: unknown
+  int worst_dof = -1;
+  /// the most inverted element at the attempted state, over the terms in their order; -1: none
+  int inverted_element = -1;
+  std::string inverted_in;  ///< the term that it belongs to
 };
 const char* to_string(StepAttempt::Outcome outcome);
 
@@ -66,8 +80,8 @@ class StepTrace {
 
 class Stepper;
 
-/// Told of every accepted step while its interpolant stands: dense_output then answers for times in [t0, t1], and the State is at t1.
-/// What a loop needs that wants the solution at more times than it lands on.
+/// Told of every accepted step while its interpolant stands: dense_output then answers for times in [t0, t1],
+/// and the State is at t1. What a loop needs that wants the solution at more times than it lands on.
 class StepFollower {
  public:
   virtual ~StepFollower() = default;
@@ -79,19 +93,24 @@ class Stepper {
  public:
   virtual ~Stepper() = default;
   virtual std::string name() const = 0;
-  /// Steps until exactly t_end (> state time); on success the State's time is t_end.  On failure the State holds the last good step.
+  /// Steps until exactly t_end (> state time); on success the State's time is t_end.  On failure the State
+  /// holds the last good step.
   virtual StepResult advance_to(double t_end) = 0;
-  /// q and u at a time within the last step (or between the last two outputs), by the method's own interpolant.  False where t is outside.
+  /// q and u at a time within the last step (or between the last two outputs), by the method's own
+  /// interpolant.  False where t is outside.
   virtual bool dense_output(double t, VecX& q, VecX& u) const = 0;
   /// The right-hand side or the State was changed from outside: forget history.
   virtual void reinit(ReinitReason reason) = 0;
   virtual const StepperCounters& counters() const = 0;
 
-  /// Tells a trace of every attempted step from now on; null for none.  What a step costs without a trace does not change.
+  /// Tells a trace of every attempted step from now on; null for none.  What a step costs without a trace
+  /// does not change.
   void set_trace(StepTrace* trace) { trace_ = trace; }
-  /// Tells a follower of every accepted step from now on; null for none.  False where the method does not: what is wanted must then be landed on.
+  /// Tells a follower of every accepted step from now on; null for none.  False where the method does not:
+  /// what is wanted must then be landed on.
   virtual bool follow(StepFollower*) { return false; }
-  /// Where a flag is given and becomes true, advance_to ends after the current step with kInterrupted and the last good state.
+  /// Where a flag is given and becomes true, advance_to ends after the current step with kInterrupted and the
+  /// last good state.
   void set_interrupt(const std::atomic<bool>* flag) { interrupt_ = flag; }
 
  protected:
@@ -103,35 +122,42 @@ class Stepper {
   const std::atomic<bool>* interrupt_ = nullptr;
 };
 
-/// What theory says of a method: read by the conformance suite, the stability matrix, reports and `palpate list`.
+/// What theory says of a method: read by the conformance suite, the stability matrix, reports and `palpate
+/// list`.
 enum class StepControl { kAdaptive, kFixed, kEither };  ///< rtol; step_s; either, by fixed_step
 enum class Stability {
-  kExplicit,   ///< stable up to a step that the largest frequency bounds
-  kStatic,     ///< no dynamics: equilibria
-  kAlpha,      ///< A(alpha)-stable: a sector of the left half plane (BDF 3 to 5)
-  kA,          ///< A-stable: every stable linear problem decays, at any step
-  kL,          ///< A-stable, and stiff modes vanish at once
+  kExplicit,  ///< stable up to a step that the largest frequency bounds
+  kStatic,    ///< no dynamics: equilibria
+  kAlpha,     ///< A(alpha)-stable: a sector of the left half plane (BDF 3 to 5)
+  kA,         ///< A-stable: every stable linear problem decays, at any step
+  kL,         ///< A-stable, and stiff modes vanish at once
 };
 const char* to_string(Stability stability);
 
 struct StepperTraits {
-  std::string family;          ///< "BDF", "DIRK", "explicit Runge-Kutta": references are checked across families
-  int order = 1;               ///< of a smooth, non-stiff problem; of a variable-order method the highest
-  int stiff_order = 1;         ///< of a stiff, strongly damped mode that the step does not resolve (order reduction); 0: unstable there
+  /// "BDF", "DIRK", "explicit Runge-Kutta": references are checked across families
+  std::string family;
+  int order = 1;  ///< of a smooth, non-stiff problem; of a variable-order method the highest
+  /// of a stiff, strongly damped mode that the step does not resolve (order reduction); 0: unstable there
+  int stiff_order = 1;
   StepControl control = StepControl::kFixed;
   Stability stability = Stability::kExplicit;
-  bool implicit = false;       ///< asks for tangents and a linear solver
-  bool multistep = false;      ///< forgets its history at every re-initialisation
-  std::string needs;           ///< of the system, in words: "force", "force, tangent", "tool or contact as the fast part"
-  std::string linear_solver = "cholmod";  ///< where the spec names none: "auto" where a matrix serves a solve or two, as those did that it chooses by; a kept factor serves many
+  bool implicit = false;   ///< asks for tangents and a linear solver
+  bool multistep = false;  ///< forgets its history at every re-initialisation
+  /// of the system, in words: "force", "force, tangent", "tool or contact as the fast part"
+  std::string needs;
+  /// where the spec names none: "auto" where a matrix serves a solve or two, as those did that it chooses by;
+  /// a kept factor serves many
+  std::string linear_solver = "cholmod";
 };
 
-using MakeStepper = std::unique_ptr<Stepper> (*)(System&, State&, const IntegratorSpec&, std::unique_ptr<LinearSolver>);
+using MakeStepper = std::unique_ptr<Stepper> (*)(System&, State&, const IntegratorSpec&,
+                                                 std::unique_ptr<LinearSolver>);
 struct StepperEntry {
   std::string name;
   std::string summary;
   StepperTraits traits;
-  MakeStepper make;            ///< of an explicit method the linear solver is null
+  MakeStepper make;  ///< of an explicit method the linear solver is null
 };
 using StepperRegistry = std::vector<StepperEntry>;
 

@@ -11,12 +11,14 @@
 
 namespace palpate::dynamics {
 
-/// M u' = sum of the force terms, q' = N(q) u, with some directions driven.  Knows no element, no contact, no integrator.
+/// M u' = sum of the force terms, q' = N(q) u, with some directions driven.  Knows no element, no contact, no
+/// integrator.
 ///
-/// Driven directions stay in q and u (no renumbering), but not among the unknowns: their rows and columns of every
-/// matrix made here are those of the identity, their right-hand sides are zero, and `impose` writes their known values.
-/// A direction with a master block is reduced by the congruence T = [I; G]: its force and tangent enter the master's rows, and with the
-/// tangent comes what the turning of G makes of the force held: K of the master gets -d(G^T c)/dq, c = f - M u' what the nodes press on it with.
+/// Driven directions stay in q and u (no renumbering), but not among the unknowns: their rows and columns of
+/// every matrix made here are those of the identity, their right-hand sides are zero, and `impose` writes
+/// their known values. A direction with a master block is reduced by the congruence T = [I; G]: its force and
+/// tangent enter the master's rows, and with the tangent comes what the turning of G makes of the force held:
+/// K of the master gets -d(G^T c)/dq, c = f - M u' what the nodes press on it with.
 class System {
  public:
   void add(std::shared_ptr<ForceTerm> term);
@@ -54,31 +56,41 @@ class System {
   void acceleration(const StateView& state, VecX& a);
   /// u' from a force already evaluated (f is changed: reduced onto the free directions).
   void acceleration_of_force(const StateView& state, VecX& f, VecX& a);
-  /// A = m_scale M + d_scale D + k_scale K, driven rows and columns replaced by the identity (reduced onto masters where they have one).  Rebuilds the pattern when a term's version grew.
-  void step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter = {});
-  /// Whether balanced_step() serves: all tangents are balanced and share no pair of nodes, the mass is lumped, no block is rigid.
+  /// A = m_scale M + d_scale D + k_scale K, driven rows and columns replaced by the identity (reduced onto
+  /// masters where they have one).  Rebuilds the pattern when a term's version grew.
+  void step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A,
+                   const TermFilter& filter = {});
+  /// Whether balanced_step() serves: all tangents are balanced and share no pair of nodes, the mass is
+  /// lumped, no block is rigid.
   bool balanced(const StateView& state);
   /// Of all force terms and masses, at the last balanced() or step_matrix().
   const BlockSparse& pattern() const { return pattern_; }
-  /// f = sum of force - K shift, and A = m_scale M + d_scale D + k_scale K with the driven directions held, in one pass.
-  void balanced_step(const StateView& state, const VecX& shift, double m_scale, double d_scale, double k_scale, VecX& f, BalancedMatrix& A);
-  /// r = h (sum of force - K shift - D change) - M change, zero along driven directions, where balanced() is true; in one pass, without a matrix.
+  /// f = sum of force - K shift, and A = m_scale M + d_scale D + k_scale K with the driven directions held,
+  /// in one pass.
+  void balanced_step(const StateView& state, const VecX& shift, double m_scale, double d_scale,
+                     double k_scale, VecX& f, BalancedMatrix& A);
+  /// r = h (sum of force - K shift - D change) - M change, zero along driven directions, where balanced() is
+  /// true; in one pass, without a matrix.
   void step_left(const StateView& state, const VecX& shift, const VecX& change, double h, VecX& r);
   /// y = M x, all directions
   void apply_mass(const StateView& state, const VecX& x, VecX& y) const;
   /// Zeroes the driven entries of a residual, after adding their reduction to the masters' rows.
   void reduce(const StateView& state, VecX& r) const;
-  /// The other way: the driven entries of a velocity change follow those of their masters (G x_master), or are zero.
+  /// The other way: the driven entries of a velocity change follow those of their masters (G x_master), or
+  /// are zero.
   void expand(const StateView& state, VecX& x) const;
-  /// y += K x on masters' rows, K what the turning of G adds to the tangent (step_matrix has it in); nothing without masters.
+  /// y += K x on masters' rows, K what the turning of G adds to the tangent (step_matrix has it in); nothing
+  /// without masters.
   void apply_carried_stiffness(const StateView& state, const VecX& x, VecX& y, const TermFilter& filter = {});
-  /// r = M u' - f on free directions for a given u' (driven entries of which are replaced by what drives them), 0 on driven ones.
+  /// r = M u' - f on free directions for a given u' (driven entries of which are replaced by what drives
+  /// them), 0 on driven ones.
   void residual(const StateView& state, const VecX& acceleration, VecX& r);
-  /// Forces [N] that the drives exert on the driven directions: M a - f there, zero elsewhere.  Of carried nodes, what their master exerts on them.
+  /// Forces [N] that the drives exert on the driven directions: M a - f there, zero elsewhere.  Of carried
+  /// nodes, what their master exerts on them.
   void reactions(const StateView& state, VecX& r);
 
-  double kinetic_energy(const StateView& state) const;    ///< 1/2 u M u [J]
-  double potential_energy(const StateView& state);        ///< sum over terms [J]
+  double kinetic_energy(const StateView& state) const;  ///< 1/2 u M u [J]
+  double potential_energy(const StateView& state);      ///< sum over terms [J]
 
  private:
   struct Driven {  ///< one motion with its place in the layout, its values at the last evaluation, and its G
@@ -97,7 +109,8 @@ class System {
   void find_driven_slots(const BlockSparse& A) const;
   void eliminate_driven(BorderedMatrix& A) const;
   void solve_mass(const StateView& state, VecX& r, VecX& a);
-  void assemble_tangents(const StateView& state, double d_scale, double k_scale, BorderedMatrix& A, const TermFilter& filter);
+  void assemble_tangents(const StateView& state, double d_scale, double k_scale, BorderedMatrix& A,
+                         const TermFilter& filter);
   void assemble_mass(const StateView& state, BorderedMatrix& A);
 
   std::vector<std::shared_ptr<ForceTerm>> terms_;
@@ -111,13 +124,16 @@ class System {
   bool definite_ = false;
   VecX nodal_mass_, inverse_nodal_mass_;
   double mass_scale_ = 1.0;  ///< a power of two near 1 over the mean nodal mass
-  std::vector<char> term_is_in_;  ///< of each term, whether its tangent is in the matrix that is being assembled
+  /// of each term, whether its tangent is in the matrix that is being assembled
+  std::vector<char> term_is_in_;
   std::vector<char> driven_mask_;
   std::vector<int> driven_dofs_;
   std::vector<HeldNode> driven_nodes_;
   mutable std::uint64_t driven_pattern_ = 0;  ///< version that `driven_mirrors_` was found for
-  mutable std::vector<int> driven_mirrors_;   ///< slot of (j, i) for each block (i, j) in the rows of the driven nodes, one after the other
-  std::uint64_t pattern_key_ = 0;  ///< hash of the layout's and the terms' pattern versions that `pattern_` was built from
+  /// slot of (j, i) for each block (i, j) in the rows of the driven nodes, one after the other
+  mutable std::vector<int> driven_mirrors_;
+  /// hash of the layout's and the terms' pattern versions that `pattern_` was built from
+  std::uint64_t pattern_key_ = 0;
   BlockSparse pattern_;
   struct TermPairs {
     bool known = false;
@@ -126,8 +142,8 @@ class System {
   };
   std::vector<TermPairs> term_pairs_;  ///< of each term, at its version
   NodePairs mass_pairs_;
-  std::uint64_t pairs_layout_ = 0;     ///< layout version that they were told for
-  bool share_no_pair_ = false;     ///< balanced tangents of `pattern_`
+  std::uint64_t pairs_layout_ = 0;  ///< layout version that they were told for
+  bool share_no_pair_ = false;      ///< balanced tangents of `pattern_`
   mutable VecX scratch_, known_;
   VecX force_scratch_, held_scratch_, acceleration_scratch_;
 };

@@ -14,28 +14,39 @@ namespace palpate::fem {
 /// Nodes of `placed` (initial world positions) inside the box, borders included.
 std::vector<int> nodes_in_box(const Points& placed, const Vec3& box_min, const Vec3& box_max);
 
-/// The u indices of the named axes ("x", "xz", "xyz") of nodes, ascending; `first_node`: of the body, counted over all node blocks.
+/// The u indices of the named axes ("x", "xz", "xyz") of nodes, ascending; `first_node`: of the body, counted
+/// over all node blocks.
 /// @throws Error for letters other than x, y, z, repeated ones, or none.
 std::vector<int> dofs_of_nodes(const std::vector<int>& nodes, int first_node, const std::string& axes);
 
-/// Holds directions of nodes where they are: x = x0, v = 0.  `dofs` are u indices, ascending; x0 [m] one each.
+/// Holds directions of nodes where they are: x = x0, v = 0.  `dofs` are u indices, ascending; x0 [m] one
+/// each.
 std::shared_ptr<dynamics::DrivenMotion> make_fixed(std::vector<int> dofs, VecX x0);
 
 /// Position and its first two derivatives of a point path; used for nodes driven by time.
-struct PathPoint { Pose pose; Twist twist; Twist acceleration; };
+struct PathPoint {
+  Pose pose;
+  Twist twist;
+  Twist acceleration;
+};
 using Path = std::function<PathPoint(double t)>;
 
-/// Moves nodes rigidly with a path: x = path(t).pose * p, with p fixed in the path's frame, all three axes or the listed dofs of them.
-std::shared_ptr<dynamics::DrivenMotion> make_driven(std::vector<int> dofs, Points local_points_per_dof, Path path);
+/// Moves nodes rigidly with a path: x = path(t).pose * p, with p fixed in the path's frame, all three axes or
+/// the listed dofs of them.
+std::shared_ptr<dynamics::DrivenMotion> make_driven(std::vector<int> dofs, Points local_points_per_dof,
+                                                    Path path);
 
-/// Nodes of `placed` inside the sphere, its surface included.  @throws Error for a radius that is not positive
+/// Nodes of `placed` inside the sphere, its surface included.  @throws Error for a radius that is not
+/// positive
 std::vector<int> nodes_in_sphere(const Points& placed, const Vec3& centre, double radius);
 
-/// Nodes that sit rigidly on a free rigid body (block kRigidBody of the State, dynamics/rigid_body.h), all three axes or the listed dofs of them.
-/// With the body's pose (p, R), velocity v_c of its origin, angular velocity w and l fixed in it, r = R l, world axes throughout:
+/// Nodes that sit rigidly on a free rigid body (block kRigidBody of the State, dynamics/rigid_body.h), all
+/// three axes or the listed dofs of them. With the body's pose (p, R), velocity v_c of its origin, angular
+/// velocity w and l fixed in it, r = R l, world axes throughout:
 ///     x = p + r,   v = v_c + w x r,   a = v_c' + w' x r + w x (w x r).
-/// With u = (w, v_c):  v = G u with G = [-[r]x, I], so that the row of axis k is ((r x e_k)^T, e_k^T), and gamma = w x (w x r).
-/// A force f on the node is the wrench (r x f, f) on the body: G^T f.
-std::shared_ptr<dynamics::DrivenMotion> make_carried(std::vector<int> dofs, Points local_points_per_dof, int master_block_id);
+/// With u = (w, v_c):  v = G u with G = [-[r]x, I], so that the row of axis k is ((r x e_k)^T, e_k^T), and
+/// gamma = w x (w x r). A force f on the node is the wrench (r x f, f) on the body: G^T f.
+std::shared_ptr<dynamics::DrivenMotion> make_carried(std::vector<int> dofs, Points local_points_per_dof,
+                                                     int master_block_id);
 
 }  // namespace palpate::fem

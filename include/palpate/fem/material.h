@@ -6,23 +6,26 @@ namespace palpate::fem {
 
 /// Isotropic linear material of the corotated energy, and its damping.
 struct Material {
-  double youngs_modulus = 1e4;        ///< E [Pa] > 0
-  double poissons_ratio = 0.3;        ///< nu in (-1, 0.5)
-  double density = 1000.0;            ///< [kg/m^3] > 0
-  double mass_damping = 0.0;          ///< alpha [1/s]
-  double stiffness_damping = 0.0;     ///< beta [s]: mu_d = beta mu, lambda_d = beta lambda
+  double youngs_modulus = 1e4;     ///< E [Pa] > 0
+  double poissons_ratio = 0.3;     ///< nu in (-1, 0.5)
+  double density = 1000.0;         ///< [kg/m^3] > 0
+  double mass_damping = 0.0;       ///< alpha [1/s]
+  double stiffness_damping = 0.0;  ///< beta [s]: mu_d = beta mu, lambda_d = beta lambda
 
   double mu() const { return youngs_modulus / (2.0 * (1.0 + poissons_ratio)); }
-  double lambda() const { return youngs_modulus * poissons_ratio / ((1.0 + poissons_ratio) * (1.0 - 2.0 * poissons_ratio)); }
+  double lambda() const {
+    return youngs_modulus * poissons_ratio / ((1.0 + poissons_ratio) * (1.0 - 2.0 * poissons_ratio));
+  }
 };
 
 /// The materials of a body: one, or a list and the number in it of each tetrahedron.
 struct Materials {
-  std::vector<Material> list;    ///< at least one
-  std::vector<int> of_element;   ///< in the order of the mesh; empty: all are list[0]
+  std::vector<Material> list;   ///< at least one
+  std::vector<int> of_element;  ///< in the order of the mesh; empty: all are list[0]
 
   Materials(const Material& all) : list{all} {}
-  Materials(std::vector<Material> materials, std::vector<int> numbers) : list(std::move(materials)), of_element(std::move(numbers)) {}
+  Materials(std::vector<Material> materials, std::vector<int> numbers)
+      : list(std::move(materials)), of_element(std::move(numbers)) {}
   int number(std::size_t element) const { return of_element.empty() ? 0 : of_element[element]; }
   const Material& of(std::size_t element) const { return list[static_cast<std::size_t>(number(element))]; }
 };

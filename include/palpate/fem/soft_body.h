@@ -16,36 +16,47 @@ enum class Tangent { kExact, kProjected, kWarped };
 struct SoftBodyOptions {
   Tangent tangent = Tangent::kExact;
   bool full_damping_tangent = false;  ///< keep the unsymmetric part of the damping's derivative by position
-  double volumetric_share = 1.0;      ///< of lambda (and of lambda_d), acting element by element; the rest belongs to another term
-  /// "baseline", "avx2" or "avx512"; empty: the widest that the processor has, or what the environment variable PALPATE_INSTRUCTIONS names.
+  /// of lambda (and of lambda_d), acting element by element; the rest belongs to another term
+  double volumetric_share = 1.0;
+  /// "baseline", "avx2" or "avx512"; empty: the widest that the processor has, or what the environment
+  /// variable PALPATE_INSTRUCTIONS names.
   std::string instructions = {};
-  std::vector<double> volumetric_shares = {};  ///< of each material, where they differ; empty: volumetric_share of all
+  /// of each material, where they differ; empty: volumetric_share of all
+  std::vector<double> volumetric_shares = {};
 
-  double share_of(std::size_t material) const { return volumetric_shares.empty() ? volumetric_share : volumetric_shares[material]; }
+  double share_of(std::size_t material) const {
+    return volumetric_shares.empty() ? volumetric_share : volumetric_shares[material];
+  }
 };
 
 /// What one evaluation met, for reports: counts since the last reset.
 struct ElementCounts {
-  long inverted = 0;          ///< det F <= 0
-  long clamped = 0;           ///< exact tangent near its singular set (two signed singular values cancel)
-  long by_scalar = 0;         ///< lanes that were finished one by one: close to the singular set, or in need of eigenvalues (projected tangent)
+  long inverted = 0;  ///< det F <= 0
+  long clamped = 0;   ///< exact tangent near its singular set (two signed singular values cancel)
+  /// lanes that were finished one by one: close to the singular set, or in need of eigenvalues (projected
+  /// tangent)
+  long by_scalar = 0;
 };
 
 /// What a body holds, in bytes.
 struct MemoryUse {
-  std::size_t elements = 0;   ///< rest shapes, topology, chunks
-  std::size_t maps = 0;       ///< into the pattern of the matrix
-  std::size_t scratch = 0;    ///< of all threads, and sums that chunks share
+  std::size_t elements = 0;  ///< rest shapes, topology, chunks
+  std::size_t maps = 0;      ///< into the pattern of the matrix
+  std::size_t scratch = 0;   ///< of all threads, and sums that chunks share
 };
 
-/// Corotational tetrahedra as one force term over one node block (DESIGN 3.1): elastic force, objective stiffness damping, their tangents, energy.
-/// Mass-proportional damping acts here too (it needs the lumped masses): f = -alpha M v; of several materials f_i = -c_i v_i, c_i = sum (alpha rho V / 4) over the elements at node i.
-/// Materials belong to elements: where two meet, they share nodes and displacements, and the traction is continuous as far as the mesh resolves it.
-/// Elements are worked through in the lanes of vectors and on core's workers (core/workers.h); results do not depend on the number of threads.
+/// Corotational tetrahedra as one force term over one node block (DESIGN 3.1): elastic force, objective
+/// stiffness damping, their tangents, energy. Mass-proportional damping acts here too (it needs the lumped
+/// masses): f = -alpha M v; of several materials f_i = -c_i v_i, c_i = sum (alpha rho V / 4) over the
+/// elements at node i. Materials belong to elements: where two meet, they share nodes and displacements, and
+/// the traction is continuous as far as the mesh resolves it. Elements are worked through in the lanes of
+/// vectors and on core's workers (core/workers.h); results do not depend on the number of threads.
 class SoftBody : public dynamics::ForceTerm {
  public:
-  /// @param rest  rest positions and tetrahedra, volumes positive  @param block_id  the node block in the State
-  SoftBody(std::string name, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& options, int block_id);
+  /// @param rest  rest positions and tetrahedra, volumes positive  @param block_id  the node block in the
+  ///   State
+  SoftBody(std::string name, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& options,
+           int block_id);
   ~SoftBody() override;
 
   std::string_view name() const override;
@@ -57,26 +68,33 @@ class SoftBody : public dynamics::ForceTerm {
   void add_pattern(dynamics::PatternBuilder& pattern) const override;
   std::uint64_t pattern_version() const override;
   void add_force(const dynamics::StateView& state, VecX& f) override;
-  void add_tangent(const dynamics::StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) override;
+  void add_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
+                   dynamics::BorderedMatrix& A) override;
   int stored_block() const override;
-  void store_tangent(const dynamics::StateView& state, double k_scale, double d_scale, dynamics::BorderedMatrix& A) override;
-  void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) override;
-  void add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change, VecX& f) override;
-  void add_step(const dynamics::StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f, dynamics::BalancedMatrix& A) override;
+  void store_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
+                     dynamics::BorderedMatrix& A) override;
+  void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x,
+                     VecX& y) override;
+  void add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change,
+                      VecX& f) override;
+  void add_step(const dynamics::StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
+                dynamics::BalancedMatrix& A) override;
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;
 
   const ElementCounts& counts() const;
   void reset_counts();
   const std::vector<Material>& materials() const;  ///< the list that it was made with
-  /// Others in their places, as many; they take effect at the next evaluation.  Which element has which stays.
+  /// Others in their places, as many; they take effect at the next evaluation.  Which element has which
+  /// stays.
   void set_materials(const std::vector<Material>& materials);
   int node_count() const;
   int element_count() const;
   /// Name of the instruction set in use.
   std::string_view instructions() const;
   MemoryUse memory() const;
-  /// Von Mises norm of the element Cauchy stress, averaged to nodes by volume [Pa]; size node_count (pictures and records).
+  /// Von Mises norm of the element Cauchy stress, averaged to nodes by volume [Pa]; size node_count (pictures
+  /// and records).
   VecX nodal_stress(const dynamics::StateView& state) const;
 
  private:
@@ -90,9 +108,12 @@ VecX lumped_masses(const TetMesh& rest, const Materials& materials);
 
 /// Lumped or consistent mass of one node block; of the materials only the densities count.
 std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, double density, int block_id);
-std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, const Materials& materials, int block_id);
-std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, double density, int block_id);
-std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, const Materials& materials, int block_id);
+std::shared_ptr<dynamics::InertiaTerm> make_lumped_mass(const TetMesh& rest, const Materials& materials,
+                                                        int block_id);
+std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, double density,
+                                                            int block_id);
+std::shared_ptr<dynamics::InertiaTerm> make_consistent_mass(const TetMesh& rest, const Materials& materials,
+                                                            int block_id);
 
 /// Weight: f_i = m_i g (lumped; equal to the consistent load of a constant field).
 std::shared_ptr<dynamics::ForceTerm> make_gravity(const VecX& masses, const Vec3& gravity, int block_id);

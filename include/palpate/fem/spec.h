@@ -9,62 +9,79 @@
 
 namespace palpate {
 
-/// Nodes inside a box or a sphere (where they stand at the start, world frame, borders included), or inside the bone that they are tied to: held, driven or carried.
+/// Nodes inside a box or a sphere (where they stand at the start, world frame, borders included), or inside
+/// the bone that they are tied to: held, driven or carried.
 struct AttachmentSpec {
-  std::string region = "box";              ///< which keys say where: "box", "sphere", or "shape" of what `to` names, where neither is given
+  /// which keys say where: "box", "sphere", or "shape" of what `to` names, where neither is given
+  std::string region = "box";
   Vec3 box_min_m = Vec3::Zero();
   Vec3 box_max_m = Vec3::Zero();
   Vec3 centre_m = Vec3::Zero();
   double radius_m = 0.0;
-  std::string to;                          ///< a bone, or "tool": its nodes go with it; empty: with the world, or along the keyframes
-  std::string axes = "xyz";                ///< which directions are held
-  std::vector<KeyframeSpec> keyframes;     ///< empty: fixed; else the region moves rigidly along them (position and rotation about its own centre)
+  /// a bone, or "tool": its nodes go with it; empty: with the world, or along the keyframes
+  std::string to;
+  std::string axes = "xyz";  ///< which directions are held
+  /// empty: fixed; else the region moves rigidly along them (position and rotation about its own centre)
+  std::vector<KeyframeSpec> keyframes;
 };
 
-/// The `[[bone]]` tables of a scene: a rigid body inside soft ones, which carries nodes of theirs.  Free unless it is fixed or has keyframes.
+/// The `[[bone]]` tables of a scene: a rigid body inside soft ones, which carries nodes of theirs.  Free
+/// unless it is fixed or has keyframes.
 struct BoneSpec {
   std::string name;
-  std::string shape;                       ///< "sphere", "box", "cylinder" or "capsule" (both along z), around its origin; empty: mass and inertia are given
+  /// "sphere", "box", "cylinder" or "capsule" (both along z), around its origin; empty: mass and inertia are
+  /// given
+  std::string shape;
   double radius_m = 0.0;
-  double length_m = 0.0;                   ///< of a cylinder, and of a capsule between the middles of its caps
-  Vec3 size_m = Vec3::Zero();              ///< of a box
-  double mass_kg = 0.0;                    ///< or density_kg_m3 of the shape
+  /// of a cylinder, and of a capsule between the middles of its caps
+  double length_m = 0.0;
+  Vec3 size_m = Vec3::Zero();  ///< of a box
+  double mass_kg = 0.0;        ///< or density_kg_m3 of the shape
   double density_kg_m3 = 0.0;
-  Vec3 inertia_kg_m2 = Vec3::Zero();       ///< principal, about the centre of mass; zero: the shape's, filled evenly
-  Vec3 position_m = Vec3::Zero();          ///< of its centre of mass, at the start
+  /// principal, about the centre of mass; zero: the shape's, filled evenly
+  Vec3 inertia_kg_m2 = Vec3::Zero();
+  Vec3 position_m = Vec3::Zero();  ///< of its centre of mass, at the start
   Vec3 rotation_vector_rad = Vec3::Zero();
   Vec3 velocity_m_s = Vec3::Zero();
   Vec3 angular_velocity_rad_s = Vec3::Zero();
-  bool gravity = true;                     ///< false: the bone itself has no weight
-  bool fixed = false;                      ///< stays where it is placed
-  std::vector<KeyframeSpec> keyframes;     ///< moves from where it is placed: by these positions, and by these turns about its own origin
+  bool gravity = true;  ///< false: the bone itself has no weight
+  bool fixed = false;   ///< stays where it is placed
+  /// moves from where it is placed: by these positions, and by these turns about its own origin
+  std::vector<KeyframeSpec> keyframes;
 };
 
 /// One joint of a skeleton that differs from the rest, or moves by a script.
 struct JointSpec {
-  std::string bone;                        ///< which hangs on its parent by it
-  std::string type;                        ///< "weld", "hinge", "ball", of a root also "free"; empty: the skeleton's
-  Vec3 axis = Vec3::Zero();                ///< of a hinge, in the body's own axes
-  double stiffness_n_m_rad = -1.0;         ///< negative: the skeleton's
-  double damping_n_m_s_rad = -1.0;         ///< negative: the skeleton's
-  std::vector<KeyframeSpec> keyframes;     ///< turns about the joint, and shifts, against its parent, in the body's own axes; then it has no type
+  std::string bone;  ///< which hangs on its parent by it
+  /// "weld", "hinge", "ball", of a root also "free"; empty: the skeleton's
+  std::string type;
+  Vec3 axis = Vec3::Zero();         ///< of a hinge, in the body's own axes
+  double stiffness_n_m_rad = -1.0;  ///< negative: the skeleton's
+  double damping_n_m_s_rad = -1.0;  ///< negative: the skeleton's
+  /// turns about the joint, and shifts, against its parent, in the body's own axes; then it has no type
+  std::vector<KeyframeSpec> keyframes;
 };
 
-/// The `[body.skeleton]` table: the bones of a model file, on joints, carry the nodes that the file binds to them.
+/// The `[body.skeleton]` table: the bones of a model file, on joints, carry the nodes that the file binds to
+/// them.
 struct SkeletonSpec {
-  std::string root = "weld";               ///< how bones without a parent hang on the world: "weld", "ball" or "free"
-  std::string others = "weld";             ///< how the others hang on their parents: "weld" or "ball"
-  double density_kg_m3 = 0.0;              ///< of bones that move freely, on top of the flesh that their nodes weigh
-  double stiffness_n_m_rad = 0.0;          ///< of hinges and balls, towards the start
+  /// how bones without a parent hang on the world: "weld", "ball" or "free"
+  std::string root = "weld";
+  std::string others = "weld";  ///< how the others hang on their parents: "weld" or "ball"
+  /// of bones that move freely, on top of the flesh that their nodes weigh
+  double density_kg_m3 = 0.0;
+  double stiffness_n_m_rad = 0.0;  ///< of hinges and balls, towards the start
   double damping_n_m_s_rad = 0.0;
   std::vector<JointSpec> joints;
 };
 
-/// Elements of a body with a material of their own: those of a region of the mesh file, by its name, or those whose middle lies in a box or a sphere (where they
-/// stand at the start, world frame, borders included).  What is not given is the body's.
+/// Elements of a body with a material of their own: those of a region of the mesh file, by its name, or those
+/// whose middle lies in a box or a sphere (where they stand at the start, world frame, borders included).
+/// What is not given is the body's.
 struct RegionSpec {
   std::string name;
-  std::string region = "file";             ///< which keys say where: "box", "sphere", or "file" where neither is given
+  /// which keys say where: "box", "sphere", or "file" where neither is given
+  std::string region = "file";
   Vec3 box_min_m = Vec3::Zero();
   Vec3 box_max_m = Vec3::Zero();
   Vec3 centre_m = Vec3::Zero();
@@ -80,7 +97,8 @@ struct RegionSpec {
 struct MaterialChangeSpec {
   double time_s = 0.0;
   double youngs_modulus_pa = 0.0;
-  std::string region;                      ///< empty: the body, with those of its regions that have no Young's modulus of their own
+  /// empty: the body, with those of its regions that have no Young's modulus of their own
+  std::string region;
 };
 
 /// A load spread over nodes in a box by their share of the boundary area: total force [N].
@@ -94,26 +112,32 @@ struct LoadSpec {
 struct SoftBodySpec {
   std::string name;
   MeshSpec mesh;
-  bool skin = false;                       ///< contact and pictures on the skin of mesh.file, a model file; else on the tetrahedra's own boundary
-  bool proxies = false;                    ///< contact in image space looks only where the skin's convex proxies come near, in regions of their own plane
-  Vec3 position_m = Vec3::Zero();          ///< placed here at the start
+  /// contact and pictures on the skin of mesh.file, a model file; else on the tetrahedra's own boundary
+  bool skin = false;
+  /// contact in image space looks only where the skin's convex proxies come near, in regions of their own
+  /// plane
+  bool proxies = false;
+  Vec3 position_m = Vec3::Zero();  ///< placed here at the start
   Vec3 rotation_vector_rad = Vec3::Zero();
   Vec3 velocity_m_s = Vec3::Zero();
   Vec3 angular_velocity_rad_s = Vec3::Zero();  ///< about the centre of mass
   double youngs_modulus_pa = 1e4;
   double poissons_ratio = 0.3;
   double density_kg_m3 = 1000.0;
-  double mass_damping_per_s = 0.0;         ///< alpha
-  double stiffness_damping_s = 0.0;        ///< beta: (mu_d, lambda_d) = beta (mu, lambda)
-  std::string mass = "lumped";             ///< or "consistent"
-  std::string tangent = "exact";           ///< "exact", "projected", "warped"
-  std::string volumetric = "element";      ///< resistance to change of volume: "element", or "nodal" averages (no locking for nu -> 0.5)
-  bool full_damping_tangent = false;       ///< keep the unsymmetric part of the damping's derivative by position
-  std::vector<RegionSpec> regions;         ///< an element in several is of the last
-  std::optional<SkeletonSpec> skeleton;    ///< its bones stand in mesh.file, a model file
+  double mass_damping_per_s = 0.0;   ///< alpha
+  double stiffness_damping_s = 0.0;  ///< beta: (mu_d, lambda_d) = beta (mu, lambda)
+  std::string mass = "lumped";       ///< or "consistent"
+  std::string tangent = "exact";     ///< "exact", "projected", "warped"
+  /// resistance to change of volume: "element", or "nodal" averages (no locking for nu -> 0.5)
+  std::string volumetric = "element";
+  /// keep the unsymmetric part of the damping's derivative by position
+  bool full_damping_tangent = false;
+  std::vector<RegionSpec> regions;       ///< an element in several is of the last
+  std::optional<SkeletonSpec> skeleton;  ///< its bones stand in mesh.file, a model file
   std::vector<AttachmentSpec> attachments;
   std::vector<LoadSpec> loads;
-  std::vector<MaterialChangeSpec> changes;  ///< times ascend, or stay for another region; each acts from the step that begins then
+  /// times ascend, or stay for another region; each acts from the step that begins then
+  std::vector<MaterialChangeSpec> changes;
 };
 
 }  // namespace palpate

@@ -15,7 +15,9 @@ class Buffer {
   /// Replaces the contents (the old ones are orphaned, so that the GPU need not be waited for).
   void upload(const void* data, std::size_t bytes);
   template <class T>
-  void upload(const std::vector<T>& values) { upload(values.data(), values.size() * sizeof(T)); }
+  void upload(const std::vector<T>& values) {
+    upload(values.data(), values.size() * sizeof(T));
+  }
   /// Makes room for at least that many bytes; contents undefined when it had to grow.
   void reserve(std::size_t bytes);
   /// Copies bytes [offset, offset + bytes) back, waiting for the GPU.

@@ -7,17 +7,17 @@ namespace palpate::gl {
 
 /// What the context turned out to be.
 struct ContextInfo {
-  std::string platform;  ///< "device" or "surfaceless"
+  std::string platform;                   ///< "device" or "surfaceless"
   std::string vendor, renderer, version;  ///< of GL_VENDOR, GL_RENDERER, GL_VERSION
-  bool software = false; ///< a software rasteriser (llvmpipe, softpipe, swrast)
+  bool software = false;                  ///< a software rasteriser (llvmpipe, softpipe, swrast)
 };
 
-/// The process's one GL context (OpenGL 4.5 core, or 4.3).  No GL library is loaded before the first call of `shared`.
-/// It is current on one thread: `make_current` takes it, `release` lets another thread take it.
+/// The process's one GL context (OpenGL 4.5 core, or 4.3).  No GL library is loaded before the first call of
+/// `shared`. It is current on one thread: `make_current` takes it, `release` lets another thread take it.
 class Context {
  public:
-  /// Opens the context at the first call and makes it current on the calling thread; later calls make it current there.
-  /// A hardware device is preferred; else Mesa's software rasteriser.  Counts "gl.context".
+  /// Opens the context at the first call and makes it current on the calling thread; later calls make it
+  /// current there. A hardware device is preferred; else Mesa's software rasteriser.  Counts "gl.context".
   /// @throws Error when no EGL library, device or OpenGL >= 4.3 is found, naming the package that brings it.
   static Context& shared();
   static bool opened();  ///< asks without opening
@@ -37,7 +37,8 @@ class Context {
   ContextInfo info_;
 };
 
-/// The libraries that a context needs, by file name.  @throws Error with the Debian package of the first that cannot be loaded.
+/// The libraries that a context needs, by file name.  @throws Error with the Debian package of the first that
+/// cannot be loaded.
 void require_library(const std::string& file, const std::string& package);
 
 /// Throws InternalError when GL recorded an error since the last call; `what` names the work.

@@ -18,9 +18,9 @@ class Texture {
   int width() const { return width_; }
   int height() const { return height_; }
   Format format() const { return format_; }
-  void bind_unit(unsigned unit) const;         ///< for a sampler
-  void upload(const void* pixels);             ///< all of it, rows from below, no padding
-  void set_linear(bool linear);                ///< linear filtering of floats and colours
+  void bind_unit(unsigned unit) const;  ///< for a sampler
+  void upload(const void* pixels);      ///< all of it, rows from below, no padding
+  void set_linear(bool linear);         ///< linear filtering of floats and colours
 
  private:
   unsigned id_ = 0;
@@ -48,9 +48,9 @@ class Framebuffer {
   const Texture& depth() const;  ///< precondition: made with depth
 
   /// Pixels of one attachment, rows from below.
-  std::vector<std::uint8_t> read_rgba8(int attachment = 0) const;   ///< 4 bytes a pixel
+  std::vector<std::uint8_t> read_rgba8(int attachment = 0) const;  ///< 4 bytes a pixel
   std::vector<std::uint32_t> read_r32ui(int attachment = 0) const;
-  std::vector<float> read_float(int attachment = 0) const;          ///< kR32f: 1 a pixel, kRgba32f: 4
+  std::vector<float> read_float(int attachment = 0) const;  ///< kR32f: 1 a pixel, kRgba32f: 4
   std::vector<float> read_depth() const;
 
  private:

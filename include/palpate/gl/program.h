@@ -8,7 +8,8 @@
 
 namespace palpate::gl {
 
-/// Text of a file under shaders/, embedded at build time: shader_source("contact/patch.vert").  Adding a shader is adding its file.
+/// Text of a file under shaders/, embedded at build time: shader_source("contact/patch.vert").  Adding a
+/// shader is adding its file.
 /// @throws InternalError for an unknown name
 std::string_view shader_source(std::string_view name);
 std::vector<std::string> shader_names();
@@ -26,7 +27,8 @@ class Program {
 
   void use() const;
   unsigned id() const { return id_; }
-  /// Uniforms of the program, which need not be in use.  @throws InternalError for a name that the linked program does not have.
+  /// Uniforms of the program, which need not be in use.  @throws InternalError for a name that the linked
+  /// program does not have.
   void set(const std::string& name, int value);
   void set(const std::string& name, unsigned value);
   void set(const std::string& name, float value);

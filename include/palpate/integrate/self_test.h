@@ -2,11 +2,13 @@
 #include <string>
 #include <vector>
 
-/// Proof that the SUNDIALS inside this library is the one it was built with, whatever else the process has loaded.
+/// Proof that the SUNDIALS inside this library is the one it was built with, whatever else the process has
+/// loaded.
 namespace palpate::integrate::self_test {
 
-/// Each integrates y' = -y, y(0) = 1 to t with SUNDIALS' own vectors, dense matrices and Newton, at rtol 1e-10, atol 1e-12: y(t), exp(-t) to 1e-6.
-/// NaN when a call fails (as it does where another library's symbols of the same names were bound).
+/// Each integrates y' = -y, y(0) = 1 to t with SUNDIALS' own vectors, dense matrices and Newton, at rtol
+/// 1e-10, atol 1e-12: y(t), exp(-t) to 1e-6. NaN when a call fails (as it does where another library's
+/// symbols of the same names were bound).
 double cvode(double t);
 double arkode(double t);
 double ida(double t);
@@ -18,7 +20,8 @@ struct Answer {
 /// The three of them.
 std::vector<Answer> all(double t);
 
-/// What an error message calls the value that a call of SUNDIALS returned: "CV_CONV_FAILURE" for ("CVode", -4).
+/// What an error message calls the value that a call of SUNDIALS returned: "CV_CONV_FAILURE" for ("CVode",
+/// -4).
 std::string flag_name(const std::string& call, long flag);
 
 }  // namespace palpate::integrate::self_test

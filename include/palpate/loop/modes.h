@@ -6,7 +6,8 @@
 
 namespace palpate::loop {
 
-/// The lowest modes of a scene as it stands at its start: held nodes held, contact as it is there, damping left out.
+/// The lowest modes of a scene as it stands at its start: held nodes held, contact as it is there, damping
+/// left out.
 /// @throws Error where the scene has no soft bodies, or its tangent is unsymmetric (friction)
 integrate::Modes find_modes(World& world, int count);
 
@@ -16,8 +17,9 @@ inline constexpr double kModeAmplitude = 0.1;
 /// Nodes of one body displaced by a mode, world [m].
 Points displaced(const World& world, const Body& body, const integrate::Modes& modes, int mode);
 
-/// Writes the modes as a run (VTKHDF, store/run_file.h): step j is mode j at time j (its number, from 1), points displaced by kModeAmplitude,
-/// `velocity` that with which they swing through rest [m/s], `stress` that of the displaced shape [Pa].
+/// Writes the modes as a run (VTKHDF, store/run_file.h): step j is mode j at time j (its number, from 1),
+/// points displaced by kModeAmplitude, `velocity` that with which they swing through rest [m/s], `stress`
+/// that of the displaced shape [Pa].
 void write_modes(World& world, const integrate::Modes& modes, const std::string& path);
 
 }  // namespace palpate::loop

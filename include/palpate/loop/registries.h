@@ -20,7 +20,8 @@ struct ChoiceList {
 };
 std::vector<ChoiceList> registries();
 
-/// The integrators of soft bodies with what theory knows of each: what comparisons and stability studies run over.
+/// The integrators of soft bodies with what theory knows of each: what comparisons and stability studies run
+/// over.
 const dynamics::StepperRegistry& steppers();
 /// Those of the tool's own ticks; empty where tools were not compiled in.
 std::vector<Choice> tool_steppers();

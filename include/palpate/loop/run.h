@@ -9,12 +9,13 @@ namespace palpate::loop {
 
 /// One haptic tick as it happened.
 struct TickRecord {
-  double time = 0.0;           ///< at the tick's end [s]
+  double time = 0.0;  ///< at the tick's end [s]
   Pose handle, tool;
   Twist tool_twist;
-  Wrench contact;              ///< on the tool: from the linearised contact, or, monolithic, from the contact itself
-  Wrench wanted;               ///< on the hand, before the limit
-  Wrench device;               ///< on the hand, as sent to the motors
+  /// on the tool: from the linearised contact, or, monolithic, from the contact itself
+  Wrench contact;
+  Wrench wanted;  ///< on the hand, before the limit
+  Wrench device;  ///< on the hand, as sent to the motors
 };
 
 /// Sees a run from outside; whatever wants to keep something implements this.
@@ -27,14 +28,14 @@ class Observer {
 };
 
 struct RunOptions {
-  double duration_s = 0.0;                          ///< 0: the scene's
+  double duration_s = 0.0;  ///< 0: the scene's
   std::vector<Observer*> observers;
-  std::function<void(double fraction)> progress;    ///< called after every period
-  const std::atomic<bool>* stop = nullptr;          ///< set from outside: the run ends after the current step
+  std::function<void(double fraction)> progress;  ///< called after every period
+  const std::atomic<bool>* stop = nullptr;        ///< set from outside: the run ends after the current step
 };
 
 struct RunResult {
-  dynamics::StepResult status;       ///< not ok: the integrator gave up; what was recorded stands
+  dynamics::StepResult status;  ///< not ok: the integrator gave up; what was recorded stands
   bool stopped = false;
   double time = 0.0;                 ///< reached [s]
   double cpu_s = 0.0, wall_s = 0.0;  ///< of the loop, assembly left out
@@ -42,15 +43,17 @@ struct RunResult {
   double linearise_s = 0.0;          ///< wall time in linearising contact for the tool
   double tool_s = 0.0;               ///< wall time in the tool's ticks
   long periods = 0, ticks = 0, contact_queries = 0, limited_ticks = 0;
-  std::vector<long> tunnelled;       ///< vertices that went through unseen, for each [[contact]]
-  long frozen_fallbacks = 0;         ///< condensed linearisations that had no factor and were frozen instead
+  std::vector<long> tunnelled;  ///< vertices that went through unseen, for each [[contact]]
+  long frozen_fallbacks = 0;    ///< condensed linearisations that had no factor and were frozen instead
   dynamics::StepperCounters counters;
 };
 
-/// Virtual time: one exchange period after the other, ticks interleaved (DESIGN 1); monolithic, one refresh after the other, ticks from dense output.  A scene without a tool has periods but no ticks.
+/// Virtual time: one exchange period after the other, ticks interleaved (DESIGN 1); monolithic, one refresh
+/// after the other, ticks from dense output.  A scene without a tool has periods but no ticks.
 RunResult run(World& world, const RunOptions& options);
 
-/// The length of the loop's period for a scene [s]: the exchange period where there is an exchange, else the contact refresh, else the record's.
+/// The length of the loop's period for a scene [s]: the exchange period where there is an exchange, else the
+/// contact refresh, else the record's.
 double period_of(const scene::Description& description);
 
 }  // namespace palpate::loop

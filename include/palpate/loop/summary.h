@@ -8,7 +8,8 @@ namespace palpate::loop {
 /// scene::needs() with the linear solver that the scene's integrator comes to.
 std::vector<scene::Need> needs(const scene::Description& description);
 
-/// What a run was and what it cost: options, sizes, counts, timings, constructions.  The caller adds the command line and writes it.
+/// What a run was and what it cost: options, sizes, counts, timings, constructions.  The caller adds the
+/// command line and writes it.
 store::Summary summarise(const World& world, const RunResult& result, double assemble_s);
 
 }  // namespace palpate::loop

@@ -22,13 +22,13 @@
 namespace palpate::tool {
 class BoneTree;
 class Tool;
-}
+}  // namespace palpate::tool
 
 namespace palpate::loop {
 
 /// A detailed surface that hangs on a body's tetrahedra.
 struct Skin {
-  TriMesh rest;               ///< in the body's own axes
+  TriMesh rest;  ///< in the body's own axes
   mesh::Embedding embedding;
   std::shared_ptr<proxy::ProxySet> proxies;  ///< null where the scene does not ask for them
 };
@@ -36,10 +36,11 @@ struct Skin {
 /// Elements of a body that the mesh file or the scene gives a name.
 struct Region {
   std::string name;
-  std::vector<int> tets;         ///< ascending; no element in two regions
-  int material = 0;              ///< in the list of the body's term; 0: the body's own, as the scene says nothing of the region
-  double volume = 0.0;           ///< [m^3]
-  double stiffness_factor = 1.0; ///< of its Young's modulus over the body's, where it has none of its own
+  std::vector<int> tets;  ///< ascending; no element in two regions
+  /// in the list of the body's term; 0: the body's own, as the scene says nothing of the region
+  int material = 0;
+  double volume = 0.0;            ///< [m^3]
+  double stiffness_factor = 1.0;  ///< of its Young's modulus over the body's, where it has none of its own
   bool own_stiffness = false;
 };
 
@@ -47,17 +48,20 @@ struct Region {
 struct Body {
   std::string name;
   int block_id = -1;
-  TetMesh rest;               ///< rest positions in the body's own axes; its nodes are numbered by place (mesh/place_order.h), not as in the mesh's file
-  std::vector<int> file_node; ///< the number of each node in that file, from zero
-  Points placed;              ///< the same placed in the world: what the simulation starts from
-  mesh::Boundary boundary;    ///< surface; made for every body
-  std::optional<Skin> skin;   ///< where the scene asks for it
-  Skeleton skeleton;          ///< of the model file, placed in the world as at the start, where the scene asks for it; else empty
+  /// rest positions in the body's own axes; its nodes are numbered by place (mesh/place_order.h), not as in
+  /// the mesh's file
+  TetMesh rest;
+  std::vector<int> file_node;  ///< the number of each node in that file, from zero
+  Points placed;               ///< the same placed in the world: what the simulation starts from
+  mesh::Boundary boundary;     ///< surface; made for every body
+  std::optional<Skin> skin;    ///< where the scene asks for it
+  /// of the model file, placed in the world as at the start, where the scene asks for it; else empty
+  Skeleton skeleton;
   std::vector<int> bone_of_node;  ///< which of them carries the node, -1: none
   mesh::MeshReport report;
   std::vector<Region> regions;
   std::vector<int> material_of_element;  ///< in the list of `term`; empty: all are of the body's own material
-  VecX masses;                ///< lumped, one a node [kg]
+  VecX masses;                           ///< lumped, one a node [kg]
   std::shared_ptr<fem::SoftBody> term;
   std::shared_ptr<fem::NodalDilatation> dilatation;  ///< null where the body's volume is the elements' alone
 
@@ -66,22 +70,25 @@ struct Body {
   /// Its vertices, and a value at each, from positions [m] and values of the nodes.
   Points surface_points(const Points& nodes) const;
   VecX surface_values(const VecX& at_nodes) const;
-  /// What leaves the program goes by the numbers of the file: the tetrahedra, and what every node has, into out(Eigen::all, file_node).
+  /// What leaves the program goes by the numbers of the file: the tetrahedra, and what every node has, into
+  /// out(Eigen::all, file_node).
   Tets file_tets() const;
-  VecX nodal_stress(const dynamics::StateView& state) const { return dilatation ? dilatation->nodal_stress(state) : term->nodal_stress(state); }
+  VecX nodal_stress(const dynamics::StateView& state) const {
+    return dilatation ? dilatation->nodal_stress(state) : term->nodal_stress(state);
+  }
 };
 
 /// One bone as assembled: a rigid block of the State, a part of a tree on joints, or a function of time.
 struct Bone {
   std::string name;
-  int block_id = -1;          ///< of a free one, or of the tree; else -1
+  int block_id = -1;                           ///< of a free one, or of the tree; else -1
   std::shared_ptr<const tool::BoneTree> tree;  ///< of one on joints; else null
-  int tree_bone = -1;         ///< which of its bones
-  int body = -1;              ///< whose model file it stands in; -1: a [[bone]] of the scene
-  fem::Path path;             ///< of one that is fixed or has keyframes; else empty
-  double mass = 0.0;          ///< of a free one [kg]
-  std::vector<int> dofs;      ///< u-directions of the nodes that it carries, ascending
-  TriMesh surface;            ///< in its own axes; empty without a shape
+  int tree_bone = -1;                          ///< which of its bones
+  int body = -1;                               ///< whose model file it stands in; -1: a [[bone]] of the scene
+  fem::Path path;                              ///< of one that is fixed or has keyframes; else empty
+  double mass = 0.0;                           ///< of a free one [kg]
+  std::vector<int> dofs;                       ///< u-directions of the nodes that it carries, ascending
+  TriMesh surface;                             ///< in its own axes; empty without a shape
 };
 
 /// Everything that one scene names, and nothing else.  What is absent is null or empty.
@@ -93,39 +100,49 @@ struct World {
   World& operator=(const World&) = delete;
 
   scene::Description description;
-  std::string folder;                                   ///< of the scene file
+  std::string folder;  ///< of the scene file
   dynamics::State state;
   dynamics::System system;
   std::vector<Body> bodies;
   std::vector<Bone> bones;
-  std::shared_ptr<contact::ContactForce> contact;       ///< null without [[contact]]
-  std::unique_ptr<dynamics::Stepper> stepper;           ///< null without bodies
-  std::unique_ptr<tool::Tool> tool;                     ///< the tool with ticks of its own; null without [tool], and where the scheme is monolithic
-  int tool_block_id = -1;                               ///< monolithic: the tool's block of the State; else -1
+  std::shared_ptr<contact::ContactForce> contact;  ///< null without [[contact]]
+  std::unique_ptr<dynamics::Stepper> stepper;      ///< null without bodies
+  /// the tool with ticks of its own; null without [tool], and where the scheme is monolithic
+  std::unique_ptr<tool::Tool> tool;
+  /// monolithic: the tool's block of the State; else -1
+  int tool_block_id = -1;
   std::unique_ptr<device::Handle> handle;
-  device::HandleSample handle_now;                      ///< at the last tick
+  device::HandleSample handle_now;  ///< at the last tick
   std::unique_ptr<device::WrenchLimiter> limiter;
-  std::shared_ptr<contact::MovingFrame> tool_motion;    ///< the tool's frame in contact; null where no contact names the tool
-  std::shared_ptr<contact::TrajectoryFrame> tool_frame; ///< the same where the scheme is partitioned: what the ticks write; else null
-  std::shared_ptr<proxy::ProxySet> tool_proxies;        ///< null where the tool meets no body with proxies
-  int tool_frame_index = -1;                            ///< of the tool in `contact`, -1 where no contact names it
-  std::unique_ptr<dynamics::LinearSolver> condenser;    ///< factors the step matrix for the condensed linearisation; null where not used
-  std::unique_ptr<dynamics::LinearSolver> condenser_lu; ///< made at the first step matrix without a Cholesky factor
+  /// the tool's frame in contact; null where no contact names the tool
+  std::shared_ptr<contact::MovingFrame> tool_motion;
+  /// the same where the scheme is partitioned: what the ticks write; else null
+  std::shared_ptr<contact::TrajectoryFrame> tool_frame;
+  std::shared_ptr<proxy::ProxySet> tool_proxies;  ///< null where the tool meets no body with proxies
+  /// of the tool in `contact`, -1 where no contact names it
+  int tool_frame_index = -1;
+  /// factors the step matrix for the condensed linearisation; null where not used
+  std::unique_ptr<dynamics::LinearSolver> condenser;
+  /// made at the first step matrix without a Cholesky factor
+  std::unique_ptr<dynamics::LinearSolver> condenser_lu;
   dynamics::BorderedMatrix condensed_matrix;
 
   const Body* find_body(const std::string& name) const;
-  /// Makes a body stiffer or softer from the next step on; its damping goes along (mu_d = beta mu), and so do regions without a Young's modulus of their own.
-  /// @param region  that region alone, which the scene gives a material  @throws Error for a modulus that is not positive, for a region that is not there
+  /// Makes a body stiffer or softer from the next step on; its damping goes along (mu_d = beta mu), and so do
+  /// regions without a Young's modulus of their own.
+  /// @param region  that region alone, which the scene gives a material  @throws Error for a modulus that
+  ///   is not positive, for a region that is not there
   void set_youngs_modulus(Body& body, double youngs_modulus_pa, const std::string& region = {});
-  Points positions(const Body& body) const;             ///< now, world [m]
+  Points positions(const Body& body) const;  ///< now, world [m]
   Pose bone_pose(const Bone& bone) const;
   Twist bone_twist(const Bone& bone) const;
   /// What the flesh exerts on each bone, moment about its origin: minus what holds the nodes that it carries.
   std::vector<Wrench> wrenches_on_bones();
   bool monolithic() const { return tool_block_id >= 0; }
-  Pose tool_pose() const;                               ///< @pre there is a tool
+  Pose tool_pose() const;  ///< @pre there is a tool
   Twist tool_twist() const;
-  double mechanical_energy();                           ///< kinetic and potential energy of bodies, contact, tool and coupling [J]
+  /// kinetic and potential energy of bodies, contact, tool and coupling [J]
+  double mechanical_energy();
 };
 
 /// Builds a World: the one place that names concrete parts.

@@ -9,23 +9,26 @@
 
 namespace palpate {
 
-/// One convex proxy at rest (DESIGN 3.2): it stands for the skin vertices `members`.  A vertex may belong to several, and belongs to at least one.
+/// One convex proxy at rest (DESIGN 3.2): it stands for the skin vertices `members`.  A vertex may belong to
+/// several, and belongs to at least one.
 struct ProxyHull {
-  Points corners;             ///< 3 x at most 32, in convex position, at rest [m]
-  std::vector<int> members;   ///< skin vertices, ascending
-  int bone = -1;              ///< the bone that it goes with; -1: the mean motion of its nodes
-  double outside = 0.0;       ///< how far beyond the hull lies what it stands for besides its members, the inside of a rigid solid [m]
+  Points corners;            ///< 3 x at most 32, in convex position, at rest [m]
+  std::vector<int> members;  ///< skin vertices, ascending
+  int bone = -1;             ///< the bone that it goes with; -1: the mean motion of its nodes
+  /// how far beyond the hull lies what it stands for besides its members, the inside of a rigid solid [m]
+  double outside = 0.0;
 };
 
 /// The three levels of a soft object, as one asset file holds them.  What is empty is not there.
 struct LayeredModel {
   std::string name;
   TetMesh tets;
-  TriMesh skin;                     ///< closed, outwards, at rest
-  mesh::Embedding embedding;        ///< of skin.vertices in tets
+  TriMesh skin;               ///< closed, outwards, at rest
+  mesh::Embedding embedding;  ///< of skin.vertices in tets
   std::vector<ProxyHull> proxies;
   Skeleton skeleton;
-  std::vector<int> bone_of_node;    ///< the bone that carries the node, -1 for flesh; empty without a skeleton
+  /// the bone that carries the node, -1 for flesh; empty without a skeleton
+  std::vector<int> bone_of_node;
   std::vector<MaterialRegion> regions;
 };
 

@@ -4,7 +4,8 @@
 #include "palpate/mesh/checks.h"
 #include "palpate/mesh/regions.h"
 
-/// File formats.  Each reader gives indices within range and finite coordinates, or throws Error `FILE:LINE: ...`; it judges no geometry.
+/// File formats.  Each reader gives indices within range and finite coordinates, or throws Error `FILE:LINE:
+/// ...`; it judges no geometry.
 namespace palpate::mesh {
 
 struct TetFile {
@@ -12,10 +13,12 @@ struct TetFile {
   Provenance from;
   std::vector<MaterialRegion> regions;
 };
-/// .msh, ASCII, versions 2.0 to 2.2 and 4.1; tetrahedra only, other elements are passed over.  Regions: physical volumes, the first of an element that is in
-/// several; where the file has none, the model's volumes, if there are several.
+/// .msh, ASCII, versions 2.0 to 2.2 and 4.1; tetrahedra only, other elements are passed over.  Regions:
+/// physical volumes, the first of an element that is in several; where the file has none, the model's
+/// volumes, if there are several.
 TetFile read_gmsh(const std::string& path);
-/// .node and .ele of the same stem; `path` names either.  Regions: the attribute of the tetrahedra, where it has several values.
+/// .node and .ele of the same stem; `path` names either.  Regions: the attribute of the tetrahedra, where it
+/// has several values.
 TetFile read_tetgen(const std::string& path);
 
 struct SurfaceFile {

@@ -10,17 +10,19 @@ namespace palpate::mesh {
 /// What checking a mesh changed or found.
 struct MeshReport {
   int nodes = 0, elements = 0;
-  int flipped = 0;               ///< elements whose orientation was mended
-  double volume = 0.0;           ///< [m^3]
+  int flipped = 0;      ///< elements whose orientation was mended
+  double volume = 0.0;  ///< [m^3]
   double smallest_dihedral_deg = 180.0;
   double largest_edge = 0.0, smallest_edge = 0.0;  ///< [m]
 };
 
-/// Reads or generates the tetrahedra of a spec, checked: volumes positive (orientation mended and reported), no degenerate, duplicate,
-/// unreferenced or non-finite entries (refused, with file, element and value).
-/// `folder`: where a relative file starts.  Formats by ending: .msh (Gmsh 2.2, 4.1 ASCII), .node/.ele (TetGen); .h5 is read by store/mesh_file.h.
+/// Reads or generates the tetrahedra of a spec, checked: volumes positive (orientation mended and reported),
+/// no degenerate, duplicate, unreferenced or non-finite entries (refused, with file, element and value).
+/// `folder`: where a relative file starts.  Formats by ending: .msh (Gmsh 2.2, 4.1 ASCII), .node/.ele
+/// (TetGen); .h5 is read by store/mesh_file.h.
 /// @param regions  of the file, if wanted; a generator has none
-TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr, std::vector<MaterialRegion>* regions = nullptr);
+TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr,
+                 std::vector<MaterialRegion>* regions = nullptr);
 
 /// The same for a surface: .obj, or a generator ("ball", "box", "cylinder"), closed and oriented outwards.
 TriMesh surface(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr);

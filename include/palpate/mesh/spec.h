@@ -7,8 +7,8 @@ namespace palpate {
 
 /// Where a body's tetrahedra or a tool's surface come from: a file, or a generator by name.  Plain data.
 struct MeshSpec {
-  std::string file;       ///< path, relative to the scene file; empty: use the generator
-  std::string generator;  ///< "box", "ball", "cylinder", "tet"
+  std::string file;                   ///< path, relative to the scene file; empty: use the generator
+  std::string generator;              ///< "box", "ball", "cylinder", "tet"
   Vec3 size_m = Vec3::Constant(1.0);  ///< box: edge lengths
   double radius_m = 1.0;              ///< ball, cylinder
   double length_m = 1.0;              ///< cylinder, along z

@@ -15,16 +15,16 @@ namespace palpate::model {
 
 /// What is to become a model.
 struct Input {
-  std::string name;            ///< of the model
-  std::string source;          ///< file without its folder, or the name of a shape: stands in the record
+  std::string name;    ///< of the model
+  std::string source;  ///< file without its folder, or the name of a shape: stands in the record
   std::string source_hash;
   std::string format;
   mesh::Provenance from;
-  TriMesh surface;             ///< is mended, then filled; empty where there are tetrahedra
-  TetMesh tets;                ///< taken as they are, unless remesh
+  TriMesh surface;                      ///< is mended, then filled; empty where there are tetrahedra
+  TetMesh tets;                         ///< taken as they are, unless remesh
   std::vector<MaterialRegion> regions;  ///< of the tetrahedra
-  bool sound = false;          ///< the surface is known to bound a body: it is not mended
-  TriMesh skin;                ///< the surface that is seen; empty: the mended one
+  bool sound = false;                   ///< the surface is known to bound a body: it is not mended
+  TriMesh skin;                         ///< the surface that is seen; empty: the mended one
   std::vector<Polyline> creases;
   Skeleton skeleton;
 };
@@ -33,15 +33,16 @@ Input input_of_file(const std::string& path);
 enum class Creases { kAuto, kNone, kAngle };
 
 struct Options {
-  double scale = 1.0;                     ///< on every coordinate, first
+  double scale = 1.0;  ///< on every coordinate, first
   RepairOptions repair;
   TetrahedraOptions tetrahedra;
   Creases creases = Creases::kAuto;
-  double crease_deg = 0.0;                ///< of kAngle
-  bool remesh = false;                    ///< tetrahedra of a file: keep their boundary only, and fill it anew
-  std::vector<RegionSource> regions;      ///< beside those of a file of tetrahedra
-  int proxies = 60;                       ///< convex hulls wanted; 0: none
-  double bone_margin_m = 0.0;             ///< nodes nearer to a bone than this belong to it
+  double crease_deg = 0.0;  ///< of kAngle
+  /// tetrahedra of a file: keep their boundary only, and fill it anew
+  bool remesh = false;
+  std::vector<RegionSource> regions;                 ///< beside those of a file of tetrahedra
+  int proxies = 60;                                  ///< convex hulls wanted; 0: none
+  double bone_margin_m = 0.0;                        ///< nodes nearer to a bone than this belong to it
   std::optional<double> smallest_dihedral_deg = {};  ///< of the gate; nothing: 8, or 4 where creases are kept
 };
 
@@ -67,8 +68,9 @@ struct Made {
   std::vector<Step> steps;
 };
 
-/// A layered model of a surface, step by step: mend, fill with tetrahedra, check, name regions, embed the skin, bind the skeleton, cut into convex proxies.
-/// The same input and options give the same model, to the last bit.
+/// A layered model of a surface, step by step: mend, fill with tetrahedra, check, name regions, embed the
+/// skin, bind the skeleton, cut into convex proxies. The same input and options give the same model, to the
+/// last bit.
 /// @throws Error where a step cannot do its work, or the tetrahedra do not pass the gate
 Made make_model(Input input, const Options& options, Watcher& watcher);
 

@@ -9,12 +9,13 @@ namespace palpate::model {
 struct TetQuality {
   int nodes = 0, tetrahedra = 0;
   double smallest_dihedral_deg = 180.0, largest_dihedral_deg = 0.0;
-  int worst_tet = -1;            ///< with the smallest dihedral angle
-  double worst_aspect = 1.0;     ///< longest edge / (2 sqrt(6) x radius of the inscribed ball): 1 for the regular tetrahedron
-  double volume = 0.0;           ///< [m^3]
-  double surface_volume = 0.0;   ///< enclosed by the surface that was meshed [m^3]
-  double volume_error = 0.0;     ///< |volume / surface_volume - 1|
-  double mean_edge = 0.0;        ///< [m]
+  int worst_tet = -1;  ///< with the smallest dihedral angle
+  /// longest edge / (2 sqrt(6) x radius of the inscribed ball): 1 for the regular tetrahedron
+  double worst_aspect = 1.0;
+  double volume = 0.0;          ///< [m^3]
+  double surface_volume = 0.0;  ///< enclosed by the surface that was meshed [m^3]
+  double volume_error = 0.0;    ///< |volume / surface_volume - 1|
+  double mean_edge = 0.0;       ///< [m]
 };
 TetQuality measure_quality(const TetMesh& mesh, double surface_volume);
 
@@ -26,6 +27,7 @@ inline constexpr double kSharpDihedralDeg = 4.0;  ///< where creases are kept: t
 
 /// Refuses a bad mesh, with the element, its place, and what to do.
 /// @throws Error
-void pass_gate(const TetMesh& mesh, const TetQuality& quality, const QualityGate& gate, const std::string& source);
+void pass_gate(const TetMesh& mesh, const TetQuality& quality, const QualityGate& gate,
+               const std::string& source);
 
 }  // namespace palpate::model

@@ -20,21 +20,29 @@ struct RegionSource {
 struct RegionFigures {
   std::string name;
   int tetrahedra = 0;
-  double volume = 0.0;          ///< of its tetrahedra [m^3]
-  double surface_volume = 0.0;  ///< enclosed by the surface that it was asked to fill [m^3]; 0: it comes from a file of tetrahedra, or from bones
+  double volume = 0.0;  ///< of its tetrahedra [m^3]
+  /// enclosed by the surface that it was asked to fill [m^3]; 0: it comes from a file of tetrahedra, or from
+  /// bones
+  double surface_volume = 0.0;
 };
 
 /// For each point whether a closed surface that does not meet itself holds it.
 std::vector<char> inside_of(const TriMesh& surface, const Points& points);
 
-/// The tetrahedra whose middle lies in what each source asks for, beside the regions that are there already; one that lies in several belongs to the last.
-/// The border of a region runs along faces of tetrahedra, so that its shape is right to an element: the finer, the better.
+/// The tetrahedra whose middle lies in what each source asks for, beside the regions that are there already;
+/// one that lies in several belongs to the last. The border of a region runs along faces of tetrahedra, so
+/// that its shape is right to an element: the finer, the better.
 /// @param surface_volumes  of each source, 0 for bones
-/// @throws Error for a source that holds the middle of none, for a name twice, for a surface that cannot be mended
-std::vector<MaterialRegion> add_regions(const TetMesh& tets, const Skeleton& skeleton, std::vector<MaterialRegion> regions, const std::vector<RegionSource>& sources,
+/// @throws Error for a source that holds the middle of none, for a name twice, for a surface that cannot be
+///   mended
+std::vector<MaterialRegion> add_regions(const TetMesh& tets, const Skeleton& skeleton,
+                                        std::vector<MaterialRegion> regions,
+                                        const std::vector<RegionSource>& sources,
                                         std::vector<double>& surface_volumes);
 
-/// Regions of tetrahedra that are filled anew: each new one takes the region of the old one that holds its middle.
-std::vector<MaterialRegion> carried_over(const TetMesh& old, const std::vector<MaterialRegion>& regions, const TetMesh& tets);
+/// Regions of tetrahedra that are filled anew: each new one takes the region of the old one that holds its
+/// middle.
+std::vector<MaterialRegion> carried_over(const TetMesh& old, const std::vector<MaterialRegion>& regions,
+                                         const TetMesh& tets);
 
 }  // namespace palpate::model

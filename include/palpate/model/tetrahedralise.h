@@ -11,29 +11,37 @@ namespace palpate::model {
 using Polyline = std::vector<Vec3>;
 
 struct TetrahedraOptions {
-  int tetrahedra = 10000;        ///< wanted number, met within 3 %
-  int nodes = 0;                 ///< and this many nodes, within 3 %, by finer or coarser boundary faces; 0: as they come, faces as large as cells
-  double element_size_m = 0.0;   ///< instead of a number: the wanted mean edge length, met within 3 %; 0: the number counts
-  bool at_least = false;         ///< where creases need more than the wanted number, more are taken instead of refusing
+  int tetrahedra = 10000;  ///< wanted number, met within 3 %
+  /// and this many nodes, within 3 %, by finer or coarser boundary faces; 0: as they come, faces as large as
+  /// cells
+  int nodes = 0;
+  /// instead of a number: the wanted mean edge length, met within 3 %; 0: the number counts
+  double element_size_m = 0.0;
+  /// where creases need more than the wanted number, more are taken instead of refusing
+  bool at_least = false;
   std::optional<double> crease_deg = {};  ///< edges of the surface that turn by more than this are kept sharp
-  std::vector<Polyline> creases = {};     ///< and these lines, which lie on the surface, closed where first and last point agree
+  /// and these lines, which lie on the surface, closed where first and last point agree
+  std::vector<Polyline> creases = {};
 };
 
 /// Tetrahedra, and how they were found.
 struct Tetrahedra {
   TetMesh mesh;
-  double cell_size = 0.0;   ///< the bound on circumradii that gave the wanted number [m]
-  int attempts = 0;         ///< meshes made to find it
+  double cell_size = 0.0;  ///< the bound on circumradii that gave the wanted number [m]
+  int attempts = 0;        ///< meshes made to find it
 };
 
-/// Fills a closed surface: Delaunay refinement (Boissonnat and Oudot 2005; Jamin, Alliez, Yvinec and Boissonnat 2015) with a uniform bound on circumradii, which is
-/// searched for the wanted number; then vertices are moved for the smallest dihedral angles (Tournois, Srinivasan and Alliez 2009) and slivers exuded by weights
-/// (Cheng et al. 2000).  One thread and fixed seeds: the same surface gives the same bits.
+/// Fills a closed surface: Delaunay refinement (Boissonnat and Oudot 2005; Jamin, Alliez, Yvinec and
+/// Boissonnat 2015) with a uniform bound on circumradii, which is searched for the wanted number; then
+/// vertices are moved for the smallest dihedral angles (Tournois, Srinivasan and Alliez 2009) and slivers
+/// exuded by weights (Cheng et al. 2000).  One thread and fixed seeds: the same surface gives the same bits.
 /// @param surface  closed, outwards, without self-intersections (repair.h)
-Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& options, const Progress& progress = {});
+Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& options,
+                          const Progress& progress = {});
 
 /// The same for the inside of an implicit surface, { p : f(p) < 0 }.
 /// @param centre, radius  a ball that holds the inside, its centre inside [m]
-Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec3& centre, double radius, const TetrahedraOptions& options, const Progress& progress = {});
+Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec3& centre, double radius,
+                          const TetrahedraOptions& options, const Progress& progress = {});
 
 }  // namespace palpate::model

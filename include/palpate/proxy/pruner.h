@@ -10,42 +10,54 @@
 namespace palpate::proxy {
 
 struct PruneOptions {
-  double merge_angle_rad = 1.05;  ///< neighbouring contacts whose skins face each other along directions nearer than this share a plane
-  bool between_bones = false;    ///< both sets are one body's: only pairs of different bones that are not grown together, each once, that of the lower bone as a's
+  /// neighbouring contacts whose skins face each other along directions nearer than this share a plane
+  double merge_angle_rad = 1.05;
+  /// both sets are one body's: only pairs of different bones that are not grown together, each once, that of
+  /// the lower bone as a's
+  bool between_bones = false;
 };
 
-/// One contact region of two bodies: the plane that its image is taken along, and the skin that may take part.
+/// One contact region of two bodies: the plane that its image is taken along, and the skin that may take
+/// part.
 struct ContactRegion {
-  Region region;                           ///< normal from b to a, plane D
-  Mat3 axes = Mat3::Identity();            ///< columns u, v, normal
-  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< extent in these axes about region.origin: (u, v) where both sides have skin, w of all of it [m]
-  Vec3 facing = Vec3::Zero();              ///< the direction that its skins face each other along, from b to a; 2 long where both are flat, 0 where one is swallowed
+  Region region;                 ///< normal from b to a, plane D
+  Mat3 axes = Mat3::Identity();  ///< columns u, v, normal
+  /// extent in these axes about region.origin: (u, v) where both sides have skin, w of all of it [m]
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  /// the direction that its skins face each other along, from b to a; 2 long where both are flat, 0 where one
+  /// is swallowed
+  Vec3 facing = Vec3::Zero();
   std::vector<std::pair<int, int>> pairs;  ///< proxies of a and b
   std::vector<int> faces_a, faces_b;       ///< faces of the skins, patch by patch
-  double turned = 0.0;                     ///< largest angle between its normal and what any of its proxies of a had at the last query; 0 for new ones [rad]
+  /// largest angle between its normal and what any of its proxies of a had at the last query; 0 for new ones
+  /// [rad]
+  double turned = 0.0;
 };
 
 /// What was looked at and left, since the pruner was made.
 struct PruneCounts {
   long queries = 0;
-  long pairs = 0;             ///< of proxies, all that are allowed
-  long boxes_tested = 0;      ///< pairs of branches
-  long after_boxes = 0;       ///< pairs of proxies whose boxes meet
-  long apart_by_memory = 0;   ///< of those, proven apart by the direction that did it last time
-  long apart_by_search = 0;   ///< proven apart by a new direction
-  long after_hulls = 0;       ///< pairs of proxies that were not proven apart
+  long pairs = 0;            ///< of proxies, all that are allowed
+  long boxes_tested = 0;     ///< pairs of branches
+  long after_boxes = 0;      ///< pairs of proxies whose boxes meet
+  long apart_by_memory = 0;  ///< of those, proven apart by the direction that did it last time
+  long apart_by_search = 0;  ///< proven apart by a new direction
+  long after_hulls = 0;      ///< pairs of proxies that were not proven apart
   long patches_tested = 0, patches_kept = 0;  ///< balls of patches against hulls
   long regions = 0;
-  long regions_apart = 0;     ///< proven apart as a whole, and left out
-  long normals_by_areas = 0, normals_kept = 0, normals_by_hulls = 0;  ///< regions by where their normal came from: the skins, the last query, libccd
+  long regions_apart = 0;  ///< proven apart as a whole, and left out
+  /// regions by where their normal came from: the skins, the last query, libccd
+  long normals_by_areas = 0, normals_kept = 0, normals_by_hulls = 0;
   long faces_a = 0, faces_b = 0;  ///< handed on, over all queries and regions
-  double largest_turn = 0.0;  ///< [rad]
+  double largest_turn = 0.0;      ///< [rad]
 };
 
-/// Which skin of two bodies may be in contact, and in which regions.  How it decides, and why nothing is lost or counted twice, stands in pruner.cpp.
+/// Which skin of two bodies may be in contact, and in which regions.  How it decides, and why nothing is lost
+/// or counted twice, stands in pruner.cpp.
 ///
-/// Every face of a of which a point is nearer than `gap` to body b, or inside, is in exactly one region; every such face of b in each region that holds a face
-/// of a which its pair of proxies lets it meet.  Directions and normals of the last query are kept, so the answer depends on the past where a normal is not
+/// Every face of a of which a point is nearer than `gap` to body b, or inside, is in exactly one region;
+/// every such face of b in each region that holds a face of a which its pair of proxies lets it meet.
+/// Directions and normals of the last query are kept, so the answer depends on the past where a normal is not
 /// unique (deep overlap); the faces do not.
 class Pruner {
  public:
@@ -54,7 +66,8 @@ class Pruner {
   ~Pruner();
   Pruner(Pruner&&) noexcept;
 
-  /// The regions at the present state of both sets.  @param gap  distance between skins that still counts [m], not negative
+  /// The regions at the present state of both sets.  @param gap  distance between skins that still counts
+  /// [m], not negative
   std::span<const ContactRegion> query(double gap);
   /// Whether proxy p of a is looked at with q of b.
   bool is_pair(int p, int q) const;

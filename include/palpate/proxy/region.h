@@ -5,34 +5,40 @@
 
 namespace palpate::proxy {
 
-/// Where a region's normal came from: libccd's two algorithms, the last query, the distance algorithm, the line of centroids, or (Pruner) the skin's area vectors.
+/// Where a region's normal came from: libccd's two algorithms, the last query, the distance algorithm, the
+/// line of centroids, or (Pruner) the skin's area vectors.
 enum class RegionMethod { kMpr, kEpa, kLastNormal, kDistance, kCentroids, kAreas };
 
 /// A contact region of two convex hulls A and B: the plane D that the image of the contact is taken along.
 struct Region {
-  bool found = false;             ///< the hulls overlap, or are apart by less than the margin
-  Vec3 normal = Vec3::UnitZ();    ///< unit, from B to A
-  Vec3 origin = Vec3::Zero();     ///< a point of D, halfway between A's lowest and B's highest point along the normal [m]
-  double depth = 0.0;             ///< max_B n.x - min_A n.x, along the normal found; negative: apart by at least that much [m]
+  bool found = false;           ///< the hulls overlap, or are apart by less than the margin
+  Vec3 normal = Vec3::UnitZ();  ///< unit, from B to A
+  /// a point of D, halfway between A's lowest and B's highest point along the normal [m]
+  Vec3 origin = Vec3::Zero();
+  /// max_B n.x - min_A n.x, along the normal found; negative: apart by at least that much [m]
+  double depth = 0.0;
   RegionMethod method = RegionMethod::kCentroids;
 };
 
 /// How often each safeguard acted.
 struct RegionCounts {
   long queries = 0, overlapping = 0, apart = 0;
-  long mpr = 0, epa = 0;           ///< calls of libccd's algorithms
-  long not_finite = 0;             ///< answers with a NaN or zero direction
-  long mismatch = 0;               ///< answers whose own depth is not the depth along their direction
+  long mpr = 0, epa = 0;  ///< calls of libccd's algorithms
+  long not_finite = 0;    ///< answers with a NaN or zero direction
+  long mismatch = 0;      ///< answers whose own depth is not the depth along their direction
   long last_normal = 0, distance = 0, centroids = 0;  ///< queries that ended with that normal
 };
 
-/// Finds the region of two point sets, each standing for its convex hull (support mapping over the points), by libccd.
+/// Finds the region of two point sets, each standing for its convex hull (support mapping over the points),
+/// by libccd.
 ///
-/// libccd is not taken at its word (touching and flat shapes give NaN directions, depths are sometimes wrong, small scales miss overlaps):
-/// the pair is scaled to unit size around its own origin, and every direction, from whatever algorithm, is judged by the depth that two
-/// support calls give along it.  That depth bounds the penetration depth from above, so the direction with the least depth wins; the last
-/// query's normal is always among the candidates.
-/// Hulls that are apart have no answer from libccd; the distance algorithm of Gilbert, Johnson and Keerthi (1988) gives the direction then.
+/// libccd is not taken at its word (touching and flat shapes give NaN directions, depths are sometimes wrong,
+/// small scales miss overlaps):
+/// the pair is scaled to unit size around its own origin, and every direction, from whatever algorithm, is
+/// judged by the depth that two support calls give along it.  That depth bounds the penetration depth from
+/// above, so the direction with the least depth wins; the last query's normal is always among the candidates.
+/// Hulls that are apart have no answer from libccd; the distance algorithm of Gilbert, Johnson and Keerthi
+/// (1988) gives the direction then.
 class RegionFinder {
  public:
   RegionFinder();

@@ -8,9 +8,11 @@ struct Camera {
   Vec3 eye = Vec3(0, -1, 0), target = Vec3::Zero();  ///< world [m]
   Vec3 up = Vec3::UnitZ();
   bool perspective = true;
-  double half_height = 0.25;                         ///< of the image: tangent of half its angle, or [m] when orthographic
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();   ///< where the target falls, in halves of the image from its centre
-  double near = 0.01, far = 10.0;                    ///< along the line of sight [m]
+  /// of the image: tangent of half its angle, or [m] when orthographic
+  double half_height = 0.25;
+  /// where the target falls, in halves of the image from its centre
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+  double near = 0.01, far = 10.0;  ///< along the line of sight [m]
 };
 
 /// Where a camera stands that frames a scene by itself.
@@ -18,7 +20,7 @@ struct View {
   double azimuth_deg = -60.0;   ///< of the eye about z, from +x
   double elevation_deg = 22.0;  ///< of the eye above the horizon; less than 90
   bool perspective = true;
-  double angle_deg = 26.0;      ///< of the image's height, in perspective
+  double angle_deg = 26.0;  ///< of the image's height, in perspective
 };
 
 /// Parts of the image, as fractions of its size, that stay free of the scene.

@@ -7,8 +7,8 @@
 
 namespace palpate::render {
 
-/// Viridis (Smith and van der Walt 2015), from dark violet at 0 to yellow at 1: even steps of value are even steps of lightness, for
-/// readers with colour deficiencies and on grey paper too.  `t` is clamped to [0, 1].
+/// Viridis (Smith and van der Walt 2015), from dark violet at 0 to yellow at 1: even steps of value are even
+/// steps of lightness, for readers with colour deficiencies and on grey paper too.  `t` is clamped to [0, 1].
 Rgb viridis(double t);
 
 /// How values become colours, and what the scale beside the picture says.

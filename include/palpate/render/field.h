@@ -10,11 +10,12 @@ namespace palpate::render {
 /// Values on a regular grid: a map of penetration depth.
 struct Field {
   int width = 0, height = 0;
-  std::vector<double> values;  ///< width x height, rows from below as OpenGL reads them; NaN: no value, drawn pale
+  /// width x height, rows from below as OpenGL reads them; NaN: no value, drawn pale
+  std::vector<double> values;
 };
 
-/// A picture of a field, each value a square of `magnify` pixels (0: chosen so that the longer side is about 800), with its colour scale and a title.  No GPU is used.
-/// Counts "render.picture".
+/// A picture of a field, each value a square of `magnify` pixels (0: chosen so that the longer side is about
+/// 800), with its colour scale and a title.  No GPU is used. Counts "render.picture".
 Picture draw_field(const Field& field, const ColourScale& scale, const std::string& title, int magnify = 0);
 
 }  // namespace palpate::render

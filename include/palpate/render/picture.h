@@ -17,11 +17,17 @@ struct Picture {
 
   Picture() = default;
   Picture(int w, int h, Rgb fill);
-  const std::uint8_t* pixel(int x, int y) const { return &rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x))]; }
-  std::uint8_t* pixel(int x, int y) { return const_cast<std::uint8_t*>(static_cast<const Picture&>(*this).pixel(x, y)); }
+  const std::uint8_t* pixel(int x, int y) const {
+    return &rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x))];
+  }
+  std::uint8_t* pixel(int x, int y) {
+    return const_cast<std::uint8_t*>(static_cast<const Picture&>(*this).pixel(x, y));
+  }
 };
 
-/// Writes a PNG file.  The same picture gives the same bytes.  Throws Error with the path when it cannot be written.
+/// Writes a PNG file.  The same picture gives the same bytes.  Throws Error with the path when it cannot be
+/// written.
 void save_png(const Picture& picture, const std::filesystem::path& path);
 
 }  // namespace palpate::render

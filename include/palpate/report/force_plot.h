@@ -4,7 +4,8 @@
 
 namespace palpate::report {
 
-/// Device force over time from force.csv: three components and the magnitude; a dashed line at the device's limit where `limit_n` > 0.
+/// Device force over time from force.csv: three components and the magnitude; a dashed line at the device's
+/// limit where `limit_n` > 0.
 Plot force_plot(const Table& force, double limit_n);
 
 /// Device torque over time, likewise.

@@ -9,14 +9,17 @@ enum class Mark { kLine, kPoints, kLinePoints, kDashed };
 
 /// One curve.  Points that are not finite (or not positive on a logarithmic axis) are left out.
 struct Series {
-  std::string name;                 ///< in the key; empty: not in the key
+  std::string name;  ///< in the key; empty: not in the key
   std::vector<double> x, y;
   Mark mark = Mark::kLine;
   std::vector<std::string> labels = {};  ///< text beside each point; empty: none
-  bool labels_below = false;             ///< labels stand to the left of and below their points, not to the right and above
-  std::vector<bool> hollow = {};         ///< points drawn as rings (too near the reference's own error); empty: none
-  std::string colour = {};               ///< "#rrggbb", or "ink" for the text's colour; empty: the next of the palette
-  double width = 0.0;                    ///< of the line; 0: the mark's own
+  /// labels stand to the left of and below their points, not to the right and above
+  bool labels_below = false;
+  /// points drawn as rings (too near the reference's own error); empty: none
+  std::vector<bool> hollow = {};
+  /// "#rrggbb", or "ink" for the text's colour; empty: the next of the palette
+  std::string colour = {};
+  double width = 0.0;  ///< of the line; 0: the mark's own
 };
 
 /// A horizontal line with its name: a force limit, a bar.
@@ -30,13 +33,15 @@ struct Plot {
   bool log_x = false, log_y = false;
   std::vector<Series> series;
   std::vector<Level> levels = {};
-  double floor_y = std::numeric_limits<double>::quiet_NaN();  ///< everything below is shaded: the reference's own error
+  /// everything below is shaded: the reference's own error
+  double floor_y = std::numeric_limits<double>::quiet_NaN();
   std::string floor_label = {};
   int width = 760, height = 400;
 };
 
-/// The plot as one SVG document, drawn by gnuplot.  Long curves are thinned to what the width can show; peaks are kept.
-/// Throws Error when there is nothing to draw, when gnuplot is not installed (naming the package), or with gnuplot's own message.
+/// The plot as one SVG document, drawn by gnuplot.  Long curves are thinned to what the width can show; peaks
+/// are kept. Throws Error when there is nothing to draw, when gnuplot is not installed (naming the package),
+/// or with gnuplot's own message.
 std::string plot_svg(const Plot& plot);
 
 }  // namespace palpate::report

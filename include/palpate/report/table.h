@@ -6,7 +6,8 @@
 
 namespace palpate::report {
 
-/// Text cells under named columns: one CSV file, or one table of the page.  Every row has as many cells as there are headers.
+/// Text cells under named columns: one CSV file, or one table of the page.  Every row has as many cells as
+/// there are headers.
 struct Table {
   std::vector<std::string> headers = {};
   std::vector<std::vector<std::string>> rows = {};
@@ -19,8 +20,8 @@ struct Table {
   std::vector<double> numbers(std::string_view header) const;
 };
 
-/// Reads a CSV file that store wrote, or one like it.  Throws Error with file and row for a row that is longer or shorter than the header,
-/// and for a quote that is never closed.
+/// Reads a CSV file that store wrote, or one like it.  Throws Error with file and row for a row that is
+/// longer or shorter than the header, and for a quote that is never closed.
 Table read_csv(const std::filesystem::path& path);
 
 /// The number in a cell, locale-free; NaN when the cell is not exactly one number.
@@ -29,11 +30,14 @@ double to_number(std::string_view cell);
 /// At most three significant digits, as short as they come: 0.0123, 12.3, 4.56e-07; "-" for NaN.
 std::string short_number(double value);
 
-/// Aligned text for the terminal: two blanks between columns, a rule under the headers, numbers to the right, words to the left.
-/// Width is counted in code points, so that Greek letters and dashes do not shift the columns.
-std::string format_table(const std::vector<std::string>& headers, const std::vector<std::vector<std::string>>& rows);
+/// Aligned text for the terminal: two blanks between columns, a rule under the headers, numbers to the right,
+/// words to the left. Width is counted in code points, so that Greek letters and dashes do not shift the
+/// columns.
+std::string format_table(const std::vector<std::string>& headers,
+                         const std::vector<std::vector<std::string>>& rows);
 
-/// True when every cell that is neither empty nor "-" is a number, and there is at least one: such a column is set to the right.
+/// True when every cell that is neither empty nor "-" is a number, and there is at least one: such a column
+/// is set to the right.
 bool is_numeric_column(const std::vector<std::vector<std::string>>& rows, std::size_t column);
 
 }  // namespace palpate::report

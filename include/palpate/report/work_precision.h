@@ -6,7 +6,8 @@
 #include "palpate/report/plot.h"
 #include "palpate/report/table.h"
 
-/// What a work-precision comparison says, read from compare.csv (columns: store::compare_columns()).  All functions take the lines of one scene.
+/// What a work-precision comparison says, read from compare.csv (columns: store::compare_columns()).  All
+/// functions take the lines of one scene.
 namespace palpate::report {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -25,8 +26,8 @@ struct ReferenceError {
   double force_error_rms_n = kUnknown;
   double torque_error_rms_n_m = kUnknown;
   std::string description;
-  std::string trouble = {};              ///< what is missing of it, and why
-  std::vector<std::string> notes = {};   ///< charts that could not be made
+  std::string trouble = {};             ///< what is missing of it, and why
+  std::vector<std::string> notes = {};  ///< charts that could not be made
 };
 
 /// The lines whose cell in `column` is `value`; all of them where there is no such column.
@@ -41,12 +42,13 @@ struct LadderPoint {
 };
 struct Ladder {
   std::string label, integrator, family, stability, setting_name;
-  int order = 0;                                                 ///< in theory
-  std::vector<LadderPoint> points;                               ///< those with status ok and a finite error
+  int order = 0;                    ///< in theory
+  std::vector<LadderPoint> points;  ///< those with status ok and a finite error
   std::vector<std::pair<std::string, std::string>> failures = {};  ///< status and reason of the others
   std::vector<double> failed_settings = {};
 };
-std::vector<Ladder> ladders(const Table& compare, const std::string& error_column, const std::string& cost_column);
+std::vector<Ladder> ladders(const Table& compare, const std::string& error_column,
+                            const std::string& cost_column);
 
 /// Least-squares slope of log(error) against log(setting) of one ladder.
 struct FittedOrder {
@@ -56,8 +58,9 @@ struct FittedOrder {
 };
 std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& error_column);
 
-/// What an error costs on one ladder.  Between two neighbouring rungs that have it between them, log(cost) is taken as linear in log(error); the cheapest
-/// such pair counts.  Nothing is extrapolated: where even the coarsest usable rung is better, its own cost is what is known (`at_most`).
+/// What an error costs on one ladder.  Between two neighbouring rungs that have it between them, log(cost) is
+/// taken as linear in log(error); the cheapest such pair counts.  Nothing is extrapolated: where even the
+/// coarsest usable rung is better, its own cost is what is known (`at_most`).
 /// An error below the reference's own counts as that.
 struct Cost {
   double value = kUnknown;  ///< NaN: not reached
@@ -75,25 +78,32 @@ struct Winner {
   double runner_up_ratio = kUnknown;  ///< its cost over the winner's
   double baseline_ratio = kUnknown;   ///< the same of kBaseline; NaN where it does not get there
 };
-std::vector<Winner> winners(const Table& compare, const std::string& error_column, const std::string& cost_column, const std::vector<double>& targets,
+std::vector<Winner> winners(const Table& compare, const std::string& error_column,
+                            const std::string& cost_column, const std::vector<double>& targets,
                             double reference_error = kUnknown);
 
-/// What the numbers say, in sentences: who wins where, who failed and why, which explicit methods stand at their stability limit, and whether the
-/// reference bears it.  Paragraphs are separate lines.
+/// What the numbers say, in sentences: who wins where, who failed and why, which explicit methods stand at
+/// their stability limit, and whether the reference bears it.  Paragraphs are separate lines.
 std::string in_words(const Table& compare, double reference_error);
 
-/// Error against a cost, log-log: one line a ladder, coloured by family; the best envelope is drawn over them.
-Plot work_precision_plot(const Table& compare, const std::string& error_column, const std::string& error_label, double reference_error,
-                         const std::string& cost_column = "cpu_s_median", const std::string& cost_label = "CPU time [s]");
+/// Error against a cost, log-log: one line a ladder, coloured by family; the best envelope is drawn over
+/// them.
+Plot work_precision_plot(const Table& compare, const std::string& error_column,
+                         const std::string& error_label, double reference_error,
+                         const std::string& cost_column = "cpu_s_median",
+                         const std::string& cost_label = "CPU time [s]");
 
 /// The same, one small plot a family: its ladders in colour with their names, all others faint behind.
-std::vector<Plot> family_plots(const Table& compare, const std::string& error_column, const std::string& error_label, double reference_error,
-                               const std::string& cost_column = "cpu_s_median", const std::string& cost_label = "CPU time [s]");
+std::vector<Plot> family_plots(const Table& compare, const std::string& error_column,
+                               const std::string& error_label, double reference_error,
+                               const std::string& cost_column = "cpu_s_median",
+                               const std::string& cost_label = "CPU time [s]");
 
 /// Error against the exchange period, log-log, with the fitted slope drawn beside it.
 Plot exchange_plot(const Table& exchange, const std::string& error_column, const std::string& error_label);
 
-/// Of restarts.csv: `count_column` per simulated second against the restarts per simulated second; multistep methods in colour, one-step ones grey.
+/// Of restarts.csv: `count_column` per simulated second against the restarts per simulated second; multistep
+/// methods in colour, one-step ones grey.
 Plot restart_plot(const Table& restarts, const std::string& count_column, const std::string& count_label);
 
 /// "rtol 1e-04", "step 2 ms": a ladder point's setting for people.

@@ -15,10 +15,11 @@ namespace palpate::scene {
 /// One point of a work-precision ladder is an integrator with its tolerances or steps.
 struct LadderSpec {
   std::string integrator;
-  std::string setting = "rtol";  ///< which setting `values` are: "rtol" of adaptive methods, "step_s" of fixed-step ones
-  std::vector<double> values;    ///< descending
-  std::string label{};            ///< what reports call it; empty: the integrator's name
-  std::vector<std::string> set{}; ///< what else is changed in the scene for it: KEY=VALUE, as for `--set`
+  /// which setting `values` are: "rtol" of adaptive methods, "step_s" of fixed-step ones
+  std::string setting = "rtol";
+  std::vector<double> values;      ///< descending
+  std::string label{};             ///< what reports call it; empty: the integrator's name
+  std::vector<std::string> set{};  ///< what else is changed in the scene for it: KEY=VALUE, as for `--set`
 };
 
 /// What `palpate compare` does with this scene.
@@ -29,24 +30,28 @@ struct CompareSpec {
   double reference_rtol = 1e-9;            ///< of the reference
   std::string reference_check = "ark-erk-5";  ///< the integrator of another family that checks the reference
   double reference_check_rtol = 1e-8;
-  std::vector<std::string> contact_methods;   ///< ways to find the tool's contact, compared with the first; empty: none
-  std::vector<double> refresh_periods_s;   ///< contact refreshes at which the price of re-initialisation is counted; empty: none
-  double duration_s = 0.0;                 ///< 0: the scene's
+  /// ways to find the tool's contact, compared with the first; empty: none
+  std::vector<std::string> contact_methods;
+  /// contact refreshes at which the price of re-initialisation is counted; empty: none
+  std::vector<double> refresh_periods_s;
+  double duration_s = 0.0;  ///< 0: the scene's
 };
 
 /// How tool and bodies are coupled.
 struct CouplingSpec {
-  std::string scheme = "partitioned";       ///< or "monolithic": tool and bodies in one state of one integrator, nothing exchanged
+  /// or "monolithic": tool and bodies in one state of one integrator, nothing exchanged
+  std::string scheme = "partitioned";
   std::string linearisation = "condensed";  ///< or "frozen"
   double exchange_period_s = 0.01;
-  double contact_refresh_s = 0.01;          ///< a whole fraction of the exchange period
+  double contact_refresh_s = 0.01;  ///< a whole fraction of the exchange period
 };
 
-/// A scene file as plain data: everything a run needs, nothing computed.  A part that is absent here is not built.
+/// A scene file as plain data: everything a run needs, nothing computed.  A part that is absent here is not
+/// built.
 struct Description {
   std::string name;
-  std::string path;       ///< the file it came from; relative mesh paths start at its folder
-  std::string source;     ///< the file's text with overrides applied, kept with every result
+  std::string path;    ///< the file it came from; relative mesh paths start at its folder
+  std::string source;  ///< the file's text with overrides applied, kept with every result
   double duration_s = 1.0;
   Vec3 gravity_m_s2 = Vec3::Zero();
   std::vector<SoftBodySpec> bodies;

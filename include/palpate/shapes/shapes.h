@@ -7,8 +7,8 @@
 #include "palpate/mesh/mesh.h"
 #include "palpate/mesh/skeleton.h"
 
-/// The soft objects of Galoppo, Tekin, Otaduy, Gross and Lin (2007), made from formulas at any resolution, deterministic to the bit.
-/// x points to the left of a figure, -y is where it looks, z is up; metres.
+/// The soft objects of Galoppo, Tekin, Otaduy, Gross and Lin (2007), made from formulas at any resolution,
+/// deterministic to the bit. x points to the left of a figure, -y is where it looks, z is up; metres.
 namespace palpate::shapes {
 
 /// A body as a function of a place: negative inside, and near its surface about the signed distance [m].
@@ -18,12 +18,15 @@ using Implicit = std::function<double(const Vec3&)>;
 struct Shape {
   std::string name;
   TriMesh base;  ///< smooth, closed, outwards: bounds the tetrahedra
-  TriMesh skin;  ///< closed, outwards, with its relief; stays within a fraction of a tetrahedron's edge of the base
-  std::vector<std::vector<Vec3>> creases;  ///< polylines of sharp edges of the base, through its vertices [m]; a closed one ends where it began
-  Skeleton skeleton;                       ///< bones inside the body; empty: none
-  int tetrahedra = 0;                      ///< how many elements the paper's object has, at least
-  int nodes = 0;                           ///< how many nodes; 0: as they come
-  Implicit inside;                         ///< what `base` approximates; empty for the gear, whose base and creases say it all
+  /// closed, outwards, with its relief; stays within a fraction of a tetrahedron's edge of the base
+  TriMesh skin;
+  /// polylines of sharp edges of the base, through its vertices [m]; a closed one ends where it began
+  std::vector<std::vector<Vec3>> creases;
+  Skeleton skeleton;   ///< bones inside the body; empty: none
+  int tetrahedra = 0;  ///< how many elements the paper's object has, at least
+  int nodes = 0;       ///< how many nodes; 0: as they come
+  /// what `base` approximates; empty for the gear, whose base and creases say it all
+  Implicit inside;
 };
 
 /// How fine; 0: the shape's own default.

@@ -4,12 +4,13 @@
 
 namespace palpate::store {
 
-/// Names content by 128 bits (FNV-1a): equal content, equal name, on every machine.  It keeps results apart; it keeps no enemy out.
+/// Names content by 128 bits (FNV-1a): equal content, equal name, on every machine.  It keeps results apart;
+/// it keeps no enemy out.
 class ContentHash {
  public:
-  ContentHash& add(std::string_view text);        ///< its length counts too: "ab" + "c" is not "a" + "bc"
-  ContentHash& add_file(const std::string& path); ///< its bytes; a file that is not there counts as that
-  std::string hex() const;                        ///< 32 digits
+  ContentHash& add(std::string_view text);         ///< its length counts too: "ab" + "c" is not "a" + "bc"
+  ContentHash& add_file(const std::string& path);  ///< its bytes; a file that is not there counts as that
+  std::string hex() const;                         ///< 32 digits
 
  private:
   void mix(std::string_view bytes);

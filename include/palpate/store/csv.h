@@ -9,7 +9,8 @@ namespace palpate::store {
 
 using CsvCell = std::variant<double, std::string>;
 
-/// Comma-separated values with one line of headers; headers carry units (`force_x_n`).  Numbers are written so that they read back exactly; NaN is `nan`.
+/// Comma-separated values with one line of headers; headers carry units (`force_x_n`).  Numbers are written
+/// so that they read back exactly; NaN is `nan`.
 class CsvWriter {
  public:
   CsvWriter(const std::string& path, std::vector<std::string> headers);
@@ -31,8 +32,10 @@ class CsvWriter {
 struct CsvTable {
   std::vector<std::string> headers;
   std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> column(const std::string& header) const;   ///< @throws Error with the nearest header
-  std::vector<double> numbers(const std::string& header) const;       ///< @throws Error for a cell that is no number
+  /// @throws Error with the nearest header
+  std::vector<std::string> column(const std::string& header) const;
+  /// @throws Error for a cell that is no number
+  std::vector<double> numbers(const std::string& header) const;
 };
 CsvTable read_csv(const std::string& path);
 

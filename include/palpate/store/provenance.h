@@ -7,15 +7,15 @@ namespace palpate::store {
 
 /// What made a result: enough to make it again.
 struct Provenance {
-  std::string version;     ///< of palpate
-  std::string commit;      ///< with `-dirty` where sources were changed; "unknown" outside a checkout
+  std::string version;  ///< of palpate
+  std::string commit;   ///< with `-dirty` where sources were changed; "unknown" outside a checkout
   std::string compiler;
   std::string build_type;
   std::vector<std::pair<std::string, std::string>> libraries;  ///< name, version; a caller may add its own
   std::string cpu;
   int cores = 0;
-  std::string system;      ///< kernel
-  std::string started_utc; ///< 2007-03-22T10:00:00Z
+  std::string system;       ///< kernel
+  std::string started_utc;  ///< 2007-03-22T10:00:00Z
 };
 Provenance provenance();
 

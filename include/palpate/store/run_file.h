@@ -5,8 +5,9 @@
 
 #include "palpate/core/types.h"
 
-/// A run on disk: one HDF5 file in VTKHDF form, version 2.0, UnstructuredGrid with a temporal Steps group.  ParaView (5.12 or newer) opens it
-/// as a time series; h5py reads it.  The topology stands once, the points and their data once a step.
+/// A run on disk: one HDF5 file in VTKHDF form, version 2.0, UnstructuredGrid with a temporal Steps group.
+/// ParaView (5.12 or newer) opens it as a time series; h5py reads it.  The topology stands once, the points
+/// and their data once a step.
 namespace palpate::store {
 
 /// One thing of a run: a soft body by its tetrahedra, or a tool by its triangles.
@@ -21,12 +22,15 @@ struct RunInfo {
   std::string scene_name;
   std::string scene_source;  ///< the effective TOML
   std::string version;       ///< of palpate, with its commit
-  int expected_steps = 100;  ///< room made beforehand: count them from duration and period.  More are welcome, but a kill in the very moment
-                             ///< when the file grows (at each doubling) can damage it
+  /// room made beforehand: count them from duration and period.  More are welcome, but a kill in the very
+  /// moment
+  int expected_steps = 100;
+  ///< when the file grows (at each doubling) can damage it
 };
 
-/// Writes a run.  A step is committed by one number, the attribute NSteps, after all else of it is in the file, and the room for the
-/// expected steps is made beforehand; so a process killed while it writes them leaves a readable file with every committed step.
+/// Writes a run.  A step is committed by one number, the attribute NSteps, after all else of it is in the
+/// file, and the room for the expected steps is made beforehand; so a process killed while it writes them
+/// leaves a readable file with every committed step.
 class RunFile {
  public:
   /// @param parts  their points follow one another in this order  @throws Error when the file cannot be made
@@ -34,7 +38,8 @@ class RunFile {
   ~RunFile();
   RunFile(RunFile&&) noexcept;
 
-  /// Appends one instant.  @param points, velocity 3 x point_count [m], [m/s]  @param stress point_count, von Mises [Pa]; all finite
+  /// Appends one instant.  @param points, velocity 3 x point_count [m], [m/s]  @param stress point_count, von
+  /// Mises [Pa]; all finite
   /// @throws Error when the disk refuses; the steps before stay readable
   void append(double time_s, const Points& points, const Points& velocity, const VecX& stress);
   int steps() const;

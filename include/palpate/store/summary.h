@@ -19,14 +19,14 @@ struct SummarySection {
 
 /// summary.json: what ran, on what, and what came out.
 struct Summary {
-  std::string command;                  ///< as a person would type it again
+  std::string command;  ///< as a person would type it again
   std::string scene;
   std::string scene_source;
   std::vector<std::string> overrides;
-  std::string outcome = "finished";     ///< "finished", "interrupted", "failed"
-  std::string message;                  ///< why not finished
+  std::string outcome = "finished";  ///< "finished", "interrupted", "failed"
+  std::string message;               ///< why not finished
   Provenance provenance;
-  std::vector<SummarySection> sections; ///< options, counts, timings, errors, ...
+  std::vector<SummarySection> sections;  ///< options, counts, timings, errors, ...
 
   SummarySection& section(const std::string& name);  ///< made on first use
 };

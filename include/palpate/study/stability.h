@@ -7,11 +7,13 @@
 
 #include "palpate/dynamics/stepper.h"
 
-/// The stability matrix (VALIDATION, section F): stiff and extreme cases against every integrator.  What each cell must show is written
-/// down from theory, as a function of what the registry says of the method; the cell is then run and held against it.
+/// The stability matrix (VALIDATION, section F): stiff and extreme cases against every integrator.  What each
+/// cell must show is written down from theory, as a function of what the registry says of the method; the
+/// cell is then run and held against it.
 namespace palpate::study {
 
-/// How a cell ended, best first.  The first four are honest ends; the others never are, whatever theory allows.
+/// How a cell ended, best first.  The first four are honest ends; the others never are, whatever theory
+/// allows.
 enum class Verdict {
   kAccurate,   ///< within the error that theory allows of an exact answer
   kStable,     ///< not that near to it, but it never had more energy (or motion) than was put in
@@ -45,11 +47,13 @@ struct StabilityCell {
   std::string row, sub_case, integrator;
   Verdict verdict = Verdict::kSilent;
   Verdicts expected;
-  std::string figure;   ///< what was measured, in words: "energy +3e-07, error 2e-4 of 5e-3"
-  double gain = std::numeric_limits<double>::quiet_NaN();   ///< largest rise of the energy over what was available, relative; NaN: not a measure here
-  double error = std::numeric_limits<double>::quiet_NaN();  ///< against an exact answer, relative; NaN: there is none
-  std::string reason;   ///< why it ended, or why the verdict is not a better one
-  long steps = 0;       ///< of the integrator
+  std::string figure;  ///< what was measured, in words: "energy +3e-07, error 2e-4 of 5e-3"
+  /// largest rise of the energy over what was available, relative; NaN: not a measure here
+  double gain = std::numeric_limits<double>::quiet_NaN();
+  /// against an exact answer, relative; NaN: there is none
+  double error = std::numeric_limits<double>::quiet_NaN();
+  std::string reason;  ///< why it ended, or why the verdict is not a better one
+  long steps = 0;      ///< of the integrator
   double cpu_s = 0.0;
   bool as_expected() const { return expected.has(verdict); }
 };
@@ -57,7 +61,7 @@ struct StabilityCell {
 struct StabilityRow {
   std::string name, summary;
   std::vector<std::string> sub_cases;
-  bool slow = false;    ///< minutes: only on request
+  bool slow = false;  ///< minutes: only on request
 };
 /// Rows in the order of the matrix.
 std::vector<StabilityRow> stability_rows();
@@ -65,19 +69,20 @@ std::vector<StabilityRow> stability_rows();
 constexpr double kLongerInSlowRows = 10.0;
 
 struct StabilityOptions {
-  std::vector<std::string> rows;           ///< empty: all that are not slow
-  std::vector<std::string> integrators;    ///< by the registry's name; empty: all
-  bool slow = false;                       ///< the slow rows too
-  int seeds = 10;                          ///< random starts of a cell that has them
-  int jobs = 1;                            ///< processes
-  double limit_s = 20.0;                   ///< CPU time of a cell; of a slow row's, kLongerInSlowRows times that
+  std::vector<std::string> rows;         ///< empty: all that are not slow
+  std::vector<std::string> integrators;  ///< by the registry's name; empty: all
+  bool slow = false;                     ///< the slow rows too
+  int seeds = 10;                        ///< random starts of a cell that has them
+  int jobs = 1;                          ///< processes
+  /// CPU time of a cell; of a slow row's, kLongerInSlowRows times that
+  double limit_s = 20.0;
   const dynamics::StepperRegistry* registry = nullptr;  ///< null: integrate::stepper_registry()
   std::function<void(double fraction, const std::string& what)> progress;
-  const std::atomic<bool>* stop = nullptr; ///< set from outside: no new cell begins
+  const std::atomic<bool>* stop = nullptr;  ///< set from outside: no new cell begins
 };
 
 struct StabilityMatrix {
-  std::vector<StabilityCell> cells;        ///< rows in order, then sub-cases, then integrators
+  std::vector<StabilityCell> cells;  ///< rows in order, then sub-cases, then integrators
   bool stopped = false;
   double wall_s = 0.0;
   long unexpected() const;
@@ -85,7 +90,8 @@ struct StabilityMatrix {
 /// @throws Error for a row or an integrator that does not exist, with the nearest name
 StabilityMatrix stability(const StabilityOptions& options);
 
-/// stability.csv, stability.json, and summary.json (what made them) in `folder`.  @param command  as a person would type it again
+/// stability.csv, stability.json, and summary.json (what made them) in `folder`.  @param command  as a person
+/// would type it again
 void write(const StabilityMatrix& matrix, const std::string& folder, const std::string& command);
 
 }  // namespace palpate::study

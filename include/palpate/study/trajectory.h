@@ -7,13 +7,14 @@ namespace palpate::study {
 
 /// What a run is compared by: node positions after every period, and the device wrench at every tick.
 struct Trajectory {
-  std::vector<double> period_times;   ///< [s]
-  std::vector<VecX> positions;        ///< all node blocks (without a body: the tool's origin), one vector a period [m]
-  std::vector<double> energies;       ///< of the bodies [J]
-  std::vector<double> tick_times;     ///< [s]
-  std::vector<Wrench> device;         ///< on the hand
-  VecX node_weights;                  ///< mass of the node of each entry [kg]
-  VecX start;                         ///< positions at the start [m]
+  std::vector<double> period_times;  ///< [s]
+  /// all node blocks (without a body: the tool's origin), one vector a period [m]
+  std::vector<VecX> positions;
+  std::vector<double> energies;    ///< of the bodies [J]
+  std::vector<double> tick_times;  ///< [s]
+  std::vector<Wrench> device;      ///< on the hand
+  VecX node_weights;               ///< mass of the node of each entry [kg]
+  VecX start;                      ///< positions at the start [m]
 };
 
 /// Collects a Trajectory while a run goes on.
@@ -30,14 +31,16 @@ class TrajectoryRecorder : public loop::Observer {
 
 /// Distance of a trajectory from a reference at their common times.
 struct TrajectoryError {
-  double position_rel_l2 = 0.0;   ///< mass-weighted L2 over nodes and times, relative to that of the reference's displacement
+  /// mass-weighted L2 over nodes and times, relative to that of the reference's displacement
+  double position_rel_l2 = 0.0;
   double position_max_m = 0.0;
   double force_rms_n = 0.0, force_max_n = 0.0;
   double torque_rms_n_m = 0.0, torque_max_n_m = 0.0;
-  double energy_j = 0.0;          ///< largest difference of mechanical energy
+  double energy_j = 0.0;  ///< largest difference of mechanical energy
 };
 TrajectoryError distance(const Trajectory& computed, const Trajectory& reference);
-/// That of a run that did not reach its end, where the common times would show only its good part: NaN throughout.
+/// That of a run that did not reach its end, where the common times would show only its good part: NaN
+/// throughout.
 TrajectoryError no_distance();
 
 /// Assembles and runs one description; times the loop without assembly.
@@ -45,6 +48,7 @@ struct Run {
   Trajectory trajectory;
   loop::RunResult result;
 };
-Run run_once(const scene::Description& description, double duration_s, const std::atomic<bool>* stop = nullptr);
+Run run_once(const scene::Description& description, double duration_s,
+             const std::atomic<bool>* stop = nullptr);
 
 }  // namespace palpate::study

@@ -3,11 +3,13 @@
 
 namespace palpate::tool {
 
-/// The scene's tool as a block of the State, its right-hand side by Simbody: what monolithic coupling steps beside the bodies.
-/// One Simbody System stands behind both terms.
+/// The scene's tool as a block of the State, its right-hand side by Simbody: what monolithic coupling steps
+/// beside the bodies. One Simbody System stands behind both terms.
 struct SimbodyTerms {
   std::shared_ptr<dynamics::InertiaTerm> inertia;  ///< M(q) by Simbody's calcM
-  std::shared_ptr<dynamics::ForceTerm> force;      ///< gyroscopic forces and weight, by Simbody's inverse dynamics at u' = 0; with its exact, unsymmetric tangent
+  /// gyroscopic forces and weight, by Simbody's inverse dynamics at u' = 0; with its exact, unsymmetric
+  /// tangent
+  std::shared_ptr<dynamics::ForceTerm> force;
 };
 
 /// @param block_id  a rigid_block of the State
@@ -15,8 +17,8 @@ struct SimbodyTerms {
 /// @throws Error for numbers that no tool can have, naming the key
 SimbodyTerms make_simbody_terms(int block_id, const ToolSpec& spec, const Vec3& gravity);
 
-/// The block that such a tool needs, its scales in the coupling's own units: the radius (of a mesh: of the solid sphere with its inertia),
-/// and that radius a time of the coupling's oscillation, 2 pi left out.
+/// The block that such a tool needs, its scales in the coupling's own units: the radius (of a mesh: of the
+/// solid sphere with its inertia), and that radius a time of the coupling's oscillation, 2 pi left out.
 dynamics::BlockSpec tool_block(const ToolSpec& spec);
 
 }  // namespace palpate::tool

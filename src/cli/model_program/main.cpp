@@ -40,7 +40,8 @@ int model_command(int argc, char** argv) {
   if (!arguments.picture.empty()) check_pictures(arguments.picture);
   model::Input input = input_of(arguments);
   if (arguments.output.empty()) arguments.output = input.name + ".h5";
-  if (std::error_code none; std::filesystem::equivalent(arguments.source, arguments.output, none)) fail("-o {}: is the source itself; choose another name", arguments.output);
+  if (std::error_code none; std::filesystem::equivalent(arguments.source, arguments.output, none))
+    fail("-o {}: is the source itself; choose another name", arguments.output);
   Bars bars(arguments.verbose);
   model::Made made = model::make_model(std::move(input), arguments.options, bars);
   made.file.record.options = arguments.as_given;
@@ -64,7 +65,10 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "palpate: error: not enough memory; fewer tetrahedra need less\n");
     return cli::kExitError;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "palpate: internal error: {}\nThis is a mistake in palpate, not in your input: please report it with the surface and this message.\n", e.what());
+    fmt::print(stderr,
+               "palpate: internal error: {}\nThis is a mistake in palpate, not in your input: please report "
+               "it with the surface and this message.\n",
+               e.what());
     return cli::kExitInternalError;
   }
 }

@@ -15,8 +15,10 @@ namespace palpate::cli {
 namespace {
 
 constexpr const char* kDescription =
-    "palpate model: a layered model of a closed surface, for a scene's mesh = {file = \"MODEL.h5\"}.  The surface is mended, filled with tetrahedra, tied to them as the skin,\n"
-    "and cut into convex proxies; each step's quality is measured, and a bad mesh is refused.  The same input gives the same file, byte for byte.";
+    "palpate model: a layered model of a closed surface, for a scene's mesh = {file = \"MODEL.h5\"}.  The "
+    "surface is mended, filled with tetrahedra, tied to them as the skin,\n"
+    "and cut into convex proxies; each step's quality is measured, and a bad mesh is refused.  The same "
+    "input gives the same file, byte for byte.";
 
 constexpr const char* kExamples = R"(Examples:
   palpate model liver.obj -o liver.h5                         about 10,000 tetrahedra
@@ -43,12 +45,14 @@ const CLI::Validator positive(
 void set_creases(const std::string& text, model::Options& options) {
   if (text == "auto") return;
   options.creases = text == "none" ? model::Creases::kNone : model::Creases::kAngle;
-  if (text != "none" && !CLI::detail::lexical_cast(text, options.crease_deg)) fail("--creases {}: must be auto, none, or an angle in degrees; see `palpate model --help`", text);
+  if (text != "none" && !CLI::detail::lexical_cast(text, options.crease_deg))
+    fail("--creases {}: must be auto, none, or an angle in degrees; see `palpate model --help`", text);
 }
 
 std::string source_help() {
   const std::string shapes = shape_names();
-  return fmt::format("a file ({}){}", model::known_endings(), shapes.empty() ? "" : ", or a shape of the paper: " + shapes);
+  return fmt::format("a file ({}){}", model::known_endings(),
+                     shapes.empty() ? "" : ", or a shape of the paper: " + shapes);
 }
 
 /// NAME=FILE without the folder of the file: no machine stands in a record.
@@ -60,7 +64,10 @@ std::string without_folder(const std::string& region) {
 /// NAME=FILE or NAME=skeleton.
 model::RegionSource region_of(const std::string& text) {
   const std::size_t at = text.find('=');
-  if (at == std::string::npos || at == 0 || at + 1 == text.size()) fail("--region {}: must be NAME=FILE, a closed surface around the region, or NAME=skeleton, for the bones", text);
+  if (at == std::string::npos || at == 0 || at + 1 == text.size())
+    fail(
+        "--region {}: must be NAME=FILE, a closed surface around the region, or NAME=skeleton, for the bones",
+        text);
   model::RegionSource out;
   out.name = text.substr(0, at);
   if (const std::string what = text.substr(at + 1); what == "skeleton") {
@@ -76,10 +83,12 @@ model::RegionSource region_of(const std::string& text) {
 /// The options that shape the model, in one order and one spelling.
 std::string canonical(const CLI::App& app) {
   std::string out;
-  for (const char* name : {"--tetrahedra", "--element-size-m", "--scale", "--creases", "--proxies", "--bone-margin-m", "--region", "--remesh", "--largest-shell", "--no-wrap"})
+  for (const char* name : {"--tetrahedra", "--element-size-m", "--scale", "--creases", "--proxies",
+                           "--bone-margin-m", "--region", "--remesh", "--largest-shell", "--no-wrap"})
     if (const CLI::Option* option = app.get_option(name); option->count() > 0) {
       if (std::string_view(name) == "--region") {
-        for (const std::string& given : option->results()) out += fmt::format("{}--region {}", out.empty() ? "" : " ", without_folder(given));
+        for (const std::string& given : option->results())
+          out += fmt::format("{}--region {}", out.empty() ? "" : " ", without_folder(given));
         continue;
       }
       out += fmt::format("{}{}", out.empty() ? "" : " ", name);
@@ -97,22 +106,50 @@ ModelArguments parse_model(int argc, char** argv) {
   CLI::App app(kDescription, "palpate model");
   app.get_formatter()->column_width(34);
   app.footer(kExamples);
-  app.set_version_flag("--version", [] { return fmt::format("palpate model {}", store::provenance().version); });
+  app.set_version_flag("--version",
+                       [] { return fmt::format("palpate model {}", store::provenance().version); });
   model::Options& options = out.options;
   app.add_option("SURFACE", out.source, source_help())->required();
   app.add_option("-o,--output", out.output, "the model file; default NAME.h5 here")->type_name("FILE.h5");
-  CLI::Option* count = app.add_option("--tetrahedra", options.tetrahedra.tetrahedra, "wanted number, met within 3 %")->type_name("N")->capture_default_str();
-  app.add_option("--element-size-m", options.tetrahedra.element_size_m, "instead: wanted mean edge length [m], met within 3 %")->type_name("M")->check(positive)->excludes(count);
-  app.add_option("--scale", options.scale, "multiplies every coordinate: 0.001 for a file in millimetres")->type_name("S")->check(positive)->capture_default_str();
-  app.add_option("--creases", creases, "edges to keep sharp: auto, none, or those that turn by more than this angle [degrees]")->type_name("WHICH")->capture_default_str();
-  app.add_option("--proxies", options.proxies, "convex hulls wanted; 0: none")->type_name("N")->check(CLI::Range(0, 10000))->capture_default_str();
-  app.add_option("--bone-margin-m", options.bone_margin_m, "nodes nearer to a bone than this belong to it, beside those inside [m]")->type_name("M")->check(CLI::NonNegativeNumber);
-  app.add_option("--region", regions, "tetrahedra with their middle inside the closed surface FILE become the region NAME; skeleton in its place: inside the bones.  May stand several times; the last counts")
-      ->type_name("NAME=FILE")->allow_extra_args(false);
-  app.add_flag("--remesh", options.remesh, "tetrahedra of a file: fill their boundary anew instead of taking them");
-  app.add_flag("--largest-shell", options.repair.largest_shell, "several bodies in one file: keep the largest");
-  app.add_flag_callback("--no-wrap", [&options] { options.repair.wrap = false; }, "refuse what cannot be mended locally, instead of wrapping it");
-  app.add_option("--picture", out.picture, "draw the steps: surface, tetrahedra cut open, skin, proxies")->type_name("FILE.png");
+  CLI::Option* count =
+      app.add_option("--tetrahedra", options.tetrahedra.tetrahedra, "wanted number, met within 3 %")
+          ->type_name("N")
+          ->capture_default_str();
+  app.add_option("--element-size-m", options.tetrahedra.element_size_m,
+                 "instead: wanted mean edge length [m], met within 3 %")
+      ->type_name("M")
+      ->check(positive)
+      ->excludes(count);
+  app.add_option("--scale", options.scale, "multiplies every coordinate: 0.001 for a file in millimetres")
+      ->type_name("S")
+      ->check(positive)
+      ->capture_default_str();
+  app.add_option("--creases", creases,
+                 "edges to keep sharp: auto, none, or those that turn by more than this angle [degrees]")
+      ->type_name("WHICH")
+      ->capture_default_str();
+  app.add_option("--proxies", options.proxies, "convex hulls wanted; 0: none")
+      ->type_name("N")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  app.add_option("--bone-margin-m", options.bone_margin_m,
+                 "nodes nearer to a bone than this belong to it, beside those inside [m]")
+      ->type_name("M")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--region", regions,
+                 "tetrahedra with their middle inside the closed surface FILE become the region NAME; "
+                 "skeleton in its place: inside the bones.  May stand several times; the last counts")
+      ->type_name("NAME=FILE")
+      ->allow_extra_args(false);
+  app.add_flag("--remesh", options.remesh,
+               "tetrahedra of a file: fill their boundary anew instead of taking them");
+  app.add_flag("--largest-shell", options.repair.largest_shell,
+               "several bodies in one file: keep the largest");
+  app.add_flag_callback(
+      "--no-wrap", [&options] { options.repair.wrap = false; },
+      "refuse what cannot be mended locally, instead of wrapping it");
+  app.add_option("--picture", out.picture, "draw the steps: surface, tetrahedra cut open, skin, proxies")
+      ->type_name("FILE.png");
   app.add_flag("-q,--quiet", out.quiet, "only errors");
   app.add_flag("-v,--verbose", out.verbose, "details, too");
   if (argc == 1) {

@@ -7,14 +7,14 @@ namespace palpate::cli {
 
 /// What `palpate model` was asked for.
 struct ModelArguments {
-  bool given = false;       ///< false: help was asked for and given
-  std::string source;       ///< a file, or the name of a shape
-  std::string output;       ///< empty: NAME.h5
-  std::string picture;      ///< PNG file; empty: none
+  bool given = false;   ///< false: help was asked for and given
+  std::string source;   ///< a file, or the name of a shape
+  std::string output;   ///< empty: NAME.h5
+  std::string picture;  ///< PNG file; empty: none
   bool quiet = false, verbose = false;
-  bool counted = false;     ///< --tetrahedra was given
+  bool counted = false;  ///< --tetrahedra was given
   model::Options options;
-  std::string as_given;     ///< the options that shape the model, for its record
+  std::string as_given;  ///< the options that shape the model, for its record
 };
 
 /// @throws Error for a line that makes no sense

@@ -28,7 +28,8 @@ Rows figures(const model::Made& made) {
   add("volume [m^3]", fmt::format("{:.6g}", q.volume));
   add("volume error [%]", fmt::format("{:.4f}", 100 * q.volume_error));
   for (const auto& [name, value] : made.file.record.figures) {
-    if (name == "skin_vertices_outside") add("skin vertices outside the tetrahedra", fmt::format("{:.0f}", value));
+    if (name == "skin_vertices_outside")
+      add("skin vertices outside the tetrahedra", fmt::format("{:.0f}", value));
     if (name == "farthest_outside_m") add("the farthest of them [m]", fmt::format("{:.3g}", value));
     if (name == "nodes_on_bones") add("nodes on bones", fmt::format("{:.0f}", value));
   }
@@ -45,8 +46,10 @@ void print_outcome(const model::Made& made, const std::string& path) {
   if (!made.regions.empty()) {
     Rows regions;
     for (const model::RegionFigures& r : made.regions)
-      regions.push_back({r.name, fmt::format("{}", r.tetrahedra), fmt::format("{:.6g}", r.volume), r.surface_volume > 0 ? fmt::format("{:.6g}", r.surface_volume) : "-"});
-    fmt::print("{}\n", report::format_table({"region", "tetrahedra", "volume [m^3]", "of its surface"}, regions));
+      regions.push_back({r.name, fmt::format("{}", r.tetrahedra), fmt::format("{:.6g}", r.volume),
+                         r.surface_volume > 0 ? fmt::format("{:.6g}", r.surface_volume) : "-"});
+    fmt::print("{}\n",
+               report::format_table({"region", "tetrahedra", "volume [m^3]", "of its surface"}, regions));
   }
   Rows rows;
   double sum = 0;
@@ -55,7 +58,8 @@ void print_outcome(const model::Made& made, const std::string& path) {
     sum += step.seconds;
   }
   rows.push_back({"all", fmt::format("{:.2f}", sum)});
-  fmt::print("{}\npeak memory: {:.0f} MiB\nwritten: {}\n", report::format_table({"step", "seconds"}, rows), peak_memory_mib(), path);
+  fmt::print("{}\npeak memory: {:.0f} MiB\nwritten: {}\n", report::format_table({"step", "seconds"}, rows),
+             peak_memory_mib(), path);
 }
 
 }  // namespace palpate::cli

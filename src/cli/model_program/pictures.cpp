@@ -20,8 +20,8 @@ namespace {
 
 constexpr int kWidth = 900, kHeight = 720;
 
-/// The half of the tetrahedra behind the upright plane through the middle of the box that faces the eye: those that `keep` holds for; each face alone, so that it can
-/// be shaded by its element.
+/// The half of the tetrahedra behind the upright plane through the middle of the box that faces the eye:
+/// those that `keep` holds for; each face alone, so that it can be shaded by its element.
 template <class Keep>
 render::Surface cut_open(const TetMesh& tets, const Keep& keep) {
   const Vec3 middle = (tets.nodes.rowwise().minCoeff() + tets.nodes.rowwise().maxCoeff()) / 2;
@@ -60,32 +60,40 @@ Faces hull_faces(const Points& corners) {
   for (int a = 0; a < n; ++a)
     for (int b = a + 1; b < n; ++b)
       for (int c = b + 1; c < n; ++c) {
-        const Vec3 normal = (corners.col(b) - corners.col(a)).cross(corners.col(c) - corners.col(a)).normalized();
+        const Vec3 normal =
+            (corners.col(b) - corners.col(a)).cross(corners.col(c) - corners.col(a)).normalized();
         double above = 0, below = 0;
         for (int i = 0; i < n; ++i) {
           const double d = normal.dot(corners.col(i) - corners.col(a));
           above = std::max(above, d);
           below = std::max(below, -d);
         }
-        if (above <= 1e-9 * size) found.push_back({a, b, c});
-        else if (below <= 1e-9 * size) found.push_back({a, c, b});
+        if (above <= 1e-9 * size)
+          found.push_back({a, b, c});
+        else if (below <= 1e-9 * size)
+          found.push_back({a, c, b});
       }
   Faces out(3, static_cast<Eigen::Index>(found.size()));
-  for (std::size_t f = 0; f < found.size(); ++f) out.col(static_cast<Eigen::Index>(f)) << found[f][0], found[f][1], found[f][2];
+  for (std::size_t f = 0; f < found.size(); ++f)
+    out.col(static_cast<Eigen::Index>(f)) << found[f][0], found[f][1], found[f][2];
   return out;
 }
 
 render::Rgb hue(std::size_t i) {
   const double turn = std::numbers::phi * static_cast<double>(i);
-  const auto channel = [&](double shift) { return static_cast<float>(0.62 + 0.28 * std::cos(2 * std::numbers::pi * (turn + shift))); };
+  const auto channel = [&](double shift) {
+    return static_cast<float>(0.62 + 0.28 * std::cos(2 * std::numbers::pi * (turn + shift)));
+  };
   return {channel(0), channel(1.0 / 3), channel(2.0 / 3)};
 }
 
 /// A surface for each region, and one for what is in none.
 void add_regions(const LayeredModel& model, render::Scene& scene) {
-  const std::vector<int> owner = mesh::region_of_element(model.regions, static_cast<int>(model.tets.tets.cols()));
+  const std::vector<int> owner =
+      mesh::region_of_element(model.regions, static_cast<int>(model.tets.tets.cols()));
   for (int r = -1; r < static_cast<int>(model.regions.size()); ++r) {
-    render::Surface surface = cut_open(model.tets, [&](Eigen::Index t) { return owner[static_cast<std::size_t>(t)] == r; });
+    render::Surface surface =
+        cut_open(model.tets, [&](Eigen::Index t) { return owner[static_cast<std::size_t>(t)] == r; });
     if (surface.faces.cols() == 0) continue;
     surface.values.resize(0);
     surface.crease_deg = 1.0;
@@ -96,7 +104,8 @@ void add_regions(const LayeredModel& model, render::Scene& scene) {
 
 std::string region_names(const LayeredModel& model) {
   std::string out;
-  for (const MaterialRegion& region : model.regions) out += (out.empty() ? "; regions: " : ", ") + region.name;
+  for (const MaterialRegion& region : model.regions)
+    out += (out.empty() ? "; regions: " : ", ") + region.name;
   return out;
 }
 
@@ -132,7 +141,8 @@ void draw_model(const LayeredModel& model, const std::string& path) {
   std::vector<render::Picture> panels;
   render::Scene skin, cut, over, hulls;
   skin.surfaces.push_back({"", model.skin.vertices, model.skin.faces});
-  panels.push_back(panel(skin, model.name + ": the skin", fmt::format("{} vertices", model.skin.vertices.cols())));
+  panels.push_back(
+      panel(skin, model.name + ": the skin", fmt::format("{} vertices", model.skin.vertices.cols())));
 
   if (model.regions.empty()) {
     cut.surfaces.push_back(cut_open(model.tets, [](Eigen::Index) { return true; }));
@@ -141,7 +151,9 @@ void draw_model(const LayeredModel& model, const std::string& path) {
   } else {
     add_regions(model, cut);
   }
-  panels.push_back(panel(cut, "the tetrahedra, cut open", fmt::format("{} of {} nodes{}", model.tets.tets.cols(), model.tets.nodes.cols(), region_names(model))));
+  panels.push_back(panel(
+      cut, "the tetrahedra, cut open",
+      fmt::format("{} of {} nodes{}", model.tets.tets.cols(), model.tets.nodes.cols(), region_names(model))));
 
   const TriMesh boundary = mesh::boundary(model.tets).surface;
   over.surfaces.push_back({"tetrahedra", boundary.vertices, boundary.faces});
@@ -161,16 +173,23 @@ void draw_model(const LayeredModel& model, const std::string& path) {
   }
   add_bones(model.skeleton, hulls);
   if (hulls.surfaces.empty()) hulls = skin;
-  panels.push_back(panel(hulls, model.proxies.empty() ? "no proxies" : fmt::format("{} convex proxies", model.proxies.size()), model.skeleton.bones.empty() ? "" : fmt::format("{} bones", model.skeleton.bones.size())));
+  panels.push_back(panel(
+      hulls, model.proxies.empty() ? "no proxies" : fmt::format("{} convex proxies", model.proxies.size()),
+      model.skeleton.bones.empty() ? "" : fmt::format("{} bones", model.skeleton.bones.size())));
 
   render::Picture sheet(2 * kWidth, 2 * kHeight, render::Options{}.background);
   for (int i = 0; i < 4; ++i)
     for (int y = 0; y < kHeight; ++y)
-      std::copy_n(panels[static_cast<std::size_t>(i)].pixel(0, y), 4 * kWidth, sheet.pixel(i % 2 * kWidth, i / 2 * kHeight + y));
+      std::copy_n(panels[static_cast<std::size_t>(i)].pixel(0, y), 4 * kWidth,
+                  sheet.pixel(i % 2 * kWidth, i / 2 * kHeight + y));
   render::save_png(sheet, path);
 }
 #else
-void check_pictures(const std::string&) { fail("--picture: this build draws no pictures; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev)"); }
+void check_pictures(const std::string&) {
+  fail(
+      "--picture: this build draws no pictures; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, "
+      "libepoxy-dev)");
+}
 void draw_model(const LayeredModel&, const std::string&) {}
 #endif
 

@@ -13,7 +13,10 @@ namespace palpate::cli {
 #ifdef PALPATE_HAS_SHAPES
 namespace {
 
-std::string_view bytes_of(const Points& points) { return {reinterpret_cast<const char*>(points.data()), static_cast<std::size_t>(points.size()) * sizeof(double)}; }
+std::string_view bytes_of(const Points& points) {
+  return {reinterpret_cast<const char*>(points.data()),
+          static_cast<std::size_t>(points.size()) * sizeof(double)};
+}
 
 model::Input input_of_shape(ModelArguments& arguments) {
   shapes::Shape shape = shapes::make(arguments.source);
@@ -28,8 +31,10 @@ model::Input input_of_shape(ModelArguments& arguments) {
   out.creases = std::move(shape.creases);
   out.skeleton = std::move(shape.skeleton);
   out.sound = true;
-  if (model::TetrahedraOptions& wanted = arguments.options.tetrahedra; !arguments.counted && wanted.element_size_m == 0) {
-    constexpr double kAtLeast = 1.03;  // the number is met within 3 %, and those of the paper's objects without a number of nodes are "at least"
+  if (model::TetrahedraOptions& wanted = arguments.options.tetrahedra;
+      !arguments.counted && wanted.element_size_m == 0) {
+    // the number is met within 3 %, and those of the paper's objects without a number of nodes are "at least"
+    constexpr double kAtLeast = 1.03;
     wanted.tetrahedra = static_cast<int>(shape.tetrahedra * (shape.nodes > 0 ? 1.0 : kAtLeast));
     wanted.nodes = shape.nodes;
     wanted.at_least = shape.nodes == 0;
@@ -50,7 +55,8 @@ std::string shape_names() { return {}; }
 
 model::Input input_of(ModelArguments& arguments) {
   const std::string& source = arguments.source;
-  if (std::filesystem::exists(source) || source.find_first_of("./") != std::string::npos) return model::input_of_file(source);
+  if (std::filesystem::exists(source) || source.find_first_of("./") != std::string::npos)
+    return model::input_of_file(source);
 #ifdef PALPATE_HAS_SHAPES
   return input_of_shape(arguments);
 #else

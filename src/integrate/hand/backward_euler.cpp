@@ -11,12 +11,15 @@ using namespace dynamics;
 /// In the unknown a = (u1 - u0)/h a Stage with u1 = u0 + h a, theta = h u0 + h^2 a; matrix M + h D + h^2 K.
 ///
 /// Order 1: the leading error of a mode w is a damping ratio of w h/2 that is not there.
-/// Stability: a linear mode q'' + 2 z w q' + w^2 q = 0 goes with [q; u] <- 1/(1 + 2 z W + W^2) [1 + 2 z W, h; -w^2 h, 1], W = w h:
+/// Stability: a linear mode q'' + 2 z w q' + w^2 q = 0 goes with [q; u] <- 1/(1 + 2 z W + W^2) [1 + 2 z W, h;
+/// -w^2 h, 1], W = w h:
 /// determinant 1/(1 + 2 z W + W^2) < 1 at any step (A-stable), and 0 in the limit (L-stable).
-/// Stiff order 1: on u' = -l (u - g) + g' the error obeys e1 = (e0 + h^2 g''/2)/(1 + h l): no reduction (h g''/(2 l) where l h >> 1).
+/// Stiff order 1: on u' = -l (u - g) + g' the error obeys e1 = (e0 + h^2 g''/2)/(1 + h l): no reduction (h
+/// g''/(2 l) where l h >> 1).
 class BackwardEuler final : public ImplicitStep {
  public:
-  BackwardEuler(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
+  BackwardEuler(System& system, State& state, const IntegratorSpec& spec,
+                std::unique_ptr<LinearSolver> solver)
       : ImplicitStep("backward-euler", 1, Between::kLinear, system, state, spec, std::move(solver)) {}
 
  private:
@@ -33,7 +36,8 @@ class BackwardEuler final : public ImplicitStep {
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_backward_euler(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver) {
+std::unique_ptr<Stepper> make_backward_euler(System& system, State& state, const IntegratorSpec& spec,
+                                             std::unique_ptr<LinearSolver> solver) {
   return std::make_unique<BackwardEuler>(system, state, spec, std::move(solver));
 }
 

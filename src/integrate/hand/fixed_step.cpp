@@ -17,8 +17,8 @@ using dynamics::StepStatus;
 
 namespace {
 
-constexpr int kHalvings = 6;            // 2^6 = 64 parts
-constexpr double kRoundingOfH = 1e-9;   // a step that is longer than another by less is as long
+constexpr int kHalvings = 6;           // 2^6 = 64 parts
+constexpr double kRoundingOfH = 1e-9;  // a step that is longer than another by less is as long
 
 StepAttempt::Outcome outcome_of(StepStatus status) {
   switch (status) {
@@ -30,7 +30,8 @@ StepAttempt::Outcome outcome_of(StepStatus status) {
 
 }  // namespace
 
-FixedStep::FixedStep(std::string name, int order, Between between, dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec)
+FixedStep::FixedStep(std::string name, int order, Between between, dynamics::System& system,
+                     dynamics::State& state, const IntegratorSpec& spec)
     : system_(system), state_(state), spec_(spec), name_(std::move(name)), order_(order), between_(between) {
   check_fixed_step(spec_);
   counters::count("integrate." + name_);
@@ -46,7 +47,8 @@ StepResult FixedStep::advance_to(double t_end) {
     return result;
   }
   taken_ = 0;
-  const double count = std::max(1.0, std::ceil((t_end - start) / spec_.step_s * (1.0 - kRoundingOfH))), h = (t_end - start) / count;
+  const double count = std::max(1.0, std::ceil((t_end - start) / spec_.step_s * (1.0 - kRoundingOfH))),
+               h = (t_end - start) / count;
   for (double k = 1.0; state_.time() < t_end; ++k) {
     result = cover(k < count ? start + k * h : t_end, h, t_end);
     if (!result.ok()) return result;
@@ -59,7 +61,9 @@ StepResult FixedStep::advance_to(double t_end) {
 StepResult FixedStep::cover(double t1, double h, double t_end) {
   int halvings = 0;
   for (double part = h;;) {
-    if (taken_ == spec_.max_steps) return failure(StepStatus::kTooManySteps, part, 0, fmt::format("{} steps before t_end = {}", taken_, t_end));
+    if (taken_ == spec_.max_steps)
+      return failure(StepStatus::kTooManySteps, part, 0,
+                     fmt::format("{} steps before t_end = {}", taken_, t_end));
     const bool last = halvings == 0 || t1 - state_.time() <= part * (1.0 + kRoundingOfH);
     const double to = last ? t1 : state_.time() + part, length = halvings == 0 ? h : to - state_.time();
     q1_.resize(layout().q_size);
@@ -73,7 +77,9 @@ StepResult FixedStep::cover(double t1, double h, double t_end) {
       ++counters_.rejected;
       if (tried.status == StepStatus::kNewtonFailed) ++counters_.newton_failures;
       if (!tried.curable) return failure(tried.status, length, tried.iterations, tried.what);
-      if (++halvings > kHalvings) return failure(tried.status, length, tried.iterations, fmt::format("{}, not even at h/{}", tried.what, 1 << kHalvings));
+      if (++halvings > kHalvings)
+        return failure(tried.status, length, tried.iterations,
+                       fmt::format("{}, not even at h/{}", tried.what, 1 << kHalvings));
       part /= 2.0;
       continue;
     }
@@ -137,8 +143,8 @@ bool FixedStep::acceleration(double t, const double* q, const double* u, VecX& a
   return all_finite(a);
 }
 
-// With s = (t - t0)/h: Hermite's cubic p = (1 - s)^2 (1 + 2s) x0 + s^2 (3 - 2s) x1 + h s (1 - s) ((1 - s) x0' - s x1'),
-// and its rate p' = 6 s (1 - s) (x1 - x0)/h + (1 - s)(1 - 3s) x0' + s (3s - 2) x1'.
+// With s = (t - t0)/h: Hermite's cubic p = (1 - s)^2 (1 + 2s) x0 + s^2 (3 - 2s) x1 + h s (1 - s) ((1 - s) x0'
+// - s x1'), and its rate p' = 6 s (1 - s) (x1 - x0)/h + (1 - s)(1 - 3s) x0' + s (3s - 2) x1'.
 bool FixedStep::dense_output(double t, VecX& q, VecX& u) const {
   const dynamics::Layout& l = layout();
   if (q0_.size() != l.q_size || t < t0_ || t > t1_ || !(t1_ > t0_)) return false;
@@ -160,7 +166,8 @@ bool FixedStep::dense_output(double t, VecX& q, VecX& u) const {
       u.resize(l.u_size);
       for (const dynamics::Block& b : l.blocks) {
         if (b.kinematics)
-          b.kinematics->u_of_q_dot(q.segment(b.q_offset, b.q_size), rate_.segment(b.q_offset, b.q_size), u.segment(b.u_offset, b.u_size));
+          b.kinematics->u_of_q_dot(q.segment(b.q_offset, b.q_size), rate_.segment(b.q_offset, b.q_size),
+                                   u.segment(b.u_offset, b.u_size));
         else
           u.segment(b.u_offset, b.u_size) = rate_.segment(b.q_offset, b.q_size);
       }

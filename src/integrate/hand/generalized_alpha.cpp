@@ -12,19 +12,23 @@ using namespace dynamics;
 /// Generalized-alpha (Chung and Hulbert 1993), r = spectral_radius the spectral radius at infinite frequency:
 ///     am = (2 r - 1)/(r + 1),  af = r/(r + 1),  gamma = 1/2 - am + af,  beta = (1 - am + af)^2/4
 ///     u1 = u0 + h ((1 - gamma) a0 + gamma a1),     q1 = q0 (+) [h u0 + h^2 ((1/2 - beta) a0 + beta a1)]
-///     M ((1 - am) a1 + am a0) = f at q = (1 - af) q1 + af q0,  u and t alike   (the generalized midpoint of Kuhl and Crisfield 1999).
+///     M ((1 - am) a1 + am a0) = f at q = (1 - af) q1 + af q0,  u and t alike   (the generalized midpoint of
+///     Kuhl and Crisfield 1999).
 /// A Stage in the unknown a1, weight 1 - af; matrix (1 - am) M + (1 - af) gamma h D + (1 - af) beta h^2 K.
 ///
-/// Order 2 for any r in [0, 1] (gamma is chosen so).  a is an auxiliary: a0 = u'(t0 + (am - af) h) + O(h^2) (Arnold and Bruels 2007), so where h changes
-/// it is shifted along its last difference by (am - af) times the change (no further than four old steps).  At a start it is M^-1 f0, shifted
-/// in the same way where a difference is known: of a restart because the force changed (a contact refreshed), not the state.  Without
+/// Order 2 for any r in [0, 1] (gamma is chosen so).  a is an auxiliary: a0 = u'(t0 + (am - af) h) + O(h^2)
+/// (Arnold and Bruels 2007), so where h changes it is shifted along its last difference by (am - af) times
+/// the change (no further than four old steps).  At a start it is M^-1 f0, shifted in the same way where a
+/// difference is known: of a restart because the force changed (a contact refreshed), not the state.  Without
 /// these shifts uneven steps and restarts every few steps would leave order 1.
-/// Stability: A-stable.  At infinite frequency all three roots are -r: high frequencies fall by r a step, r = 1 keeps them (no damping), r = 0
-/// removes them in three steps; damping at low frequencies is the least for that r.
-/// Stiff order 2: e1 = R e0 + O(h^2) with |R| -> r; the defect is smooth and (I - R) invertible there, so it does not accumulate.
+/// Stability: A-stable.  At infinite frequency all three roots are -r: high frequencies fall by r a step, r =
+/// 1 keeps them (no damping), r = 0 removes them in three steps; damping at low frequencies is the least for
+/// that r. Stiff order 2: e1 = R e0 + O(h^2) with |R| -> r; the defect is smooth and (I - R) invertible
+/// there, so it does not accumulate.
 class GeneralizedAlpha final : public ImplicitStep {
  public:
-  GeneralizedAlpha(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
+  GeneralizedAlpha(System& system, State& state, const IntegratorSpec& spec,
+                   std::unique_ptr<LinearSolver> solver)
       : ImplicitStep("generalized-alpha", 2, Between::kCubic, system, state, spec, std::move(solver)) {
     check_spectral_radius(spec_);
     const double r = spec_.spectral_radius;
@@ -69,7 +73,8 @@ class GeneralizedAlpha final : public ImplicitStep {
   void forget(ReinitReason reason) override {
     ImplicitStep::forget(reason);
     end_a_.resize(0);
-    if (reason == ReinitReason::kStateChanged || reason == ReinitReason::kLayoutChanged) difference_.resize(0);
+    if (reason == ReinitReason::kStateChanged || reason == ReinitReason::kLayoutChanged)
+      difference_.resize(0);
   }
 
   static constexpr double kFarthest = 4.0;
@@ -81,7 +86,8 @@ class GeneralizedAlpha final : public ImplicitStep {
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_generalized_alpha(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver) {
+std::unique_ptr<Stepper> make_generalized_alpha(System& system, State& state, const IntegratorSpec& spec,
+                                                std::unique_ptr<LinearSolver> solver) {
   return std::make_unique<GeneralizedAlpha>(system, state, spec, std::move(solver));
 }
 

@@ -4,9 +4,11 @@
 
 namespace palpate::integrate {
 
-ImplicitStep::ImplicitStep(std::string name, int order, Between between, dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+ImplicitStep::ImplicitStep(std::string name, int order, Between between, dynamics::System& system,
+                           dynamics::State& state, const IntegratorSpec& spec,
                            std::unique_ptr<dynamics::LinearSolver> solver)
-    : FixedStep(std::move(name), order, between, system, state, spec), newton_(system, spec, std::move(solver)) {
+    : FixedStep(std::move(name), order, between, system, state, spec),
+      newton_(system, spec, std::move(solver)) {
   check_newton(spec_);
 }
 
@@ -40,8 +42,6 @@ void ImplicitStep::forget(dynamics::ReinitReason) {
   newton_.forget();
 }
 
-void ImplicitStep::collect(dynamics::StepperCounters& counters) const {
-  newton_.solver().report(counters);
-}
+void ImplicitStep::collect(dynamics::StepperCounters& counters) const { newton_.solver().report(counters); }
 
 }  // namespace palpate::integrate

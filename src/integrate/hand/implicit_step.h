@@ -4,13 +4,15 @@
 
 namespace palpate::integrate {
 
-/// A hand-written method whose steps are implicit stages: a FixedStep with a StageNewton and the last accepted acceleration as its first guess.
+/// A hand-written method whose steps are implicit stages: a FixedStep with a StageNewton and the last
+/// accepted acceleration as its first guess.
 class ImplicitStep : public FixedStep {
  protected:
-  ImplicitStep(std::string name, int order, Between between, dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
-               std::unique_ptr<dynamics::LinearSolver> solver);
+  ImplicitStep(std::string name, int order, Between between, dynamics::System& system, dynamics::State& state,
+               const IntegratorSpec& spec, std::unique_ptr<dynamics::LinearSolver> solver);
 
-  /// Solves stage_ from the State; its end goes to q1_ and u1_, its unknown to a_.  Adds to what a stage before it in the same step took.
+  /// Solves stage_ from the State; its end goes to q1_ and u1_, its unknown to a_.  Adds to what a stage
+  /// before it in the same step took.
   Attempt solve_stage(const Attempt& before = {});
   /// u' at the State without its driven entries (no stage reads them); false where it is not finite.
   bool start_acceleration(VecX& a);

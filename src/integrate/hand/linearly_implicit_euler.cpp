@@ -13,26 +13,34 @@ using namespace dynamics;
 
 constexpr double kSameStep = 1e-6;  // relative: steps that differ by rounding
 
-/// Baraff and Witkin (1998), the step of Galoppo et al. (2007).  M (u1 - u0) = h f(q1, u1), q1 = q0 + h N u1, with the
-/// force made linear about (q0, u0) at the time t1 = t0 + h of the implicit rule, f1 = f - K h u1 - D (u1 - u0):
+/// Baraff and Witkin (1998), the step of Galoppo et al. (2007).  M (u1 - u0) = h f(q1, u1), q1 = q0 + h N u1,
+/// with the force made linear about (q0, u0) at the time t1 = t0 + h of the implicit rule, f1 = f - K h u1 -
+/// D (u1 - u0):
 ///     free directions:  (M + h D + h^2 K) du = h (f - h K u0)
-/// Driven directions go to x(t1), v(t1) exactly.  Their displacement dx and velocity change dv enter the free rows as what they are,
-///     (M + h D + h^2 K) du = h (f - K s - D dv) - M dv,   s = h u0 on free directions, dx on driven ones;  dv = 0 on free ones,
-/// so a body that moves rigidly with its drive feels no force.  Order 1; L-stable on linear problems with M, D, K positive.
-/// A value that is not finite ends the step as data; an indefinite matrix is met as StepSolver says.  With a projected one, K_p, the right-hand side takes K_p as well, so that the step is
+/// Driven directions go to x(t1), v(t1) exactly.  Their displacement dx and velocity change dv enter the free
+/// rows as what they are,
+///     (M + h D + h^2 K) du = h (f - K s - D dv) - M dv,   s = h u0 on free directions, dx on driven ones;
+///     dv = 0 on free ones,
+/// so a body that moves rigidly with its drive feels no force.  Order 1; L-stable on linear problems with M,
+/// D, K positive. A value that is not finite ends the step as data; an indefinite matrix is met as StepSolver
+/// says.  With a projected one, K_p, the right-hand side takes K_p as well, so that the step is
 ///     (M + h D + h^2 K_p) u1 = M u0 + h f + ...,
-/// that of a force model without negative curvature: it may not gain energy.  K itself there, h^2 (K_p - K) u0 more, pushes a moving body along that curvature, which where
-/// elements are flat has no bound.  Where h is small enough for the order to show, matrices are definite.
-/// A body that moves little in a step leaves its matrix nearly as it was: the solver then takes the one that it has, and looks at what the true K and D leave,
-/// without their matrix (LinearSolver::solve_near).
+/// that of a force model without negative curvature: it may not gain energy.  K itself there, h^2 (K_p - K)
+/// u0 more, pushes a moving body along that curvature, which where elements are flat has no bound.  Where h
+/// is small enough for the order to show, matrices are definite.
+/// A body that moves little in a step leaves its matrix nearly as it was: the solver then takes the one that
+/// it has, and looks at what the true K and D leave, without their matrix (LinearSolver::solve_near).
 /// Dense output is linear within the last step, which has the method's order.
 class LinearlyImplicitEuler final : public FixedStep {
  public:
-  LinearlyImplicitEuler(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
-      : FixedStep("linearly-implicit-euler", 1, Between::kLinear, system, state, spec), solver_(std::move(solver), spec) {}
+  LinearlyImplicitEuler(System& system, State& state, const IntegratorSpec& spec,
+                        std::unique_ptr<LinearSolver> solver)
+      : FixedStep("linearly-implicit-euler", 1, Between::kLinear, system, state, spec),
+        solver_(std::move(solver), spec) {}
 
  private:
-  /// s, dv of the derivation above.  A direction carried by a master moves with the master's explicit prediction.
+  /// s, dv of the derivation above.  A direction carried by a master moves with the master's explicit
+  /// prediction.
   void predict_drives(double t1, double h) {
     shift_ = h * state_.u();
     if (drives_speed_up_ || change_.size() != layout().u_size) change_.setZero(layout().u_size);
@@ -106,13 +114,16 @@ class LinearlyImplicitEuler final : public FixedStep {
 
   /// By the matrix of an earlier step, where that serves.
   bool solve_near(const StateView& at, double h) {
-    if (!(std::abs(h - kept_h_) <= kSameStep * h) || !system_.balanced(at) || system_.pattern().pattern_version() != kept_pattern_) return false;
+    if (!(std::abs(h - kept_h_) <= kSameStep * h) || !system_.balanced(at) ||
+        system_.pattern().pattern_version() != kept_pattern_)
+      return false;
     Left left(*this, at, h);
     return solver_.solve_near(left, du_) == SolveStatus::kOk;
   }
 
-  /// Force, product and matrix in one pass over the bodies, and its solution.  kIndefinite: the matrix is.  Anything else but kOk: terms or solver do not
-  /// take part in that, or the solver fails; the general way then tells why, or does better.
+  /// Force, product and matrix in one pass over the bodies, and its solution.  kIndefinite: the matrix is.
+  /// Anything else but kOk: terms or solver do not take part in that, or the solver fails; the general way
+  /// then tells why, or does better.
   SolveStatus solve_balanced(const StateView& at, double h) {
     if (!system_.balanced(at)) return SolveStatus::kNotConverged;
     BalancedMatrix* A = solver_.balanced(system_.pattern());
@@ -136,7 +147,8 @@ class LinearlyImplicitEuler final : public FixedStep {
     } else if (status == SolveStatus::kOk) {
       status = solver_.solve(rhs_, du_);
     }
-    if (status == SolveStatus::kIndefinite && !rounded && solver_.projects()) return solve_definite(at, h, *A);
+    if (status == SolveStatus::kIndefinite && !rounded && solver_.projects())
+      return solve_definite(at, h, *A);
     if (status != SolveStatus::kOk) return status;
     kept_h_ = h;
     kept_pattern_ = system_.pattern().pattern_version();
@@ -186,7 +198,8 @@ class LinearlyImplicitEuler final : public FixedStep {
       return rhs_;
     };
     if (status == SolveStatus::kOk) status = solver_.solve(system_, assemble, of_the_matrix, du_);
-    if (status != SolveStatus::kOk) return {.status = StepStatus::kSolverFailed, .what = "the step matrix is singular or not finite"};
+    if (status != SolveStatus::kOk)
+      return {.status = StepStatus::kSolverFailed, .what = "the step matrix is singular or not finite"};
     return {};
   }
 
@@ -211,28 +224,30 @@ class LinearlyImplicitEuler final : public FixedStep {
     const StateView at = state_.view(t1, state_.q().data(), state_.u().data());
     if (!solve_near(at, h))
       if (const SolveStatus status = solve_balanced(at, h); status != SolveStatus::kOk)
-        if (const Attempt solved = solve(at, h, status == SolveStatus::kIndefinite); solved.status != StepStatus::kOk) return solved;
+        if (const Attempt solved = solve(at, h, status == SolveStatus::kIndefinite);
+            solved.status != StepStatus::kOk)
+          return solved;
     if (!all_finite(du_)) return {.status = StepStatus::kNotFinite, .what = "the velocity is not finite"};
     move(h);
     system_.impose(layout(), t1, q1_.data(), u1_.data());
     return {.iterations = 1};
   }
   void forget(ReinitReason) override { kept_h_ = 0.0; }
-  void collect(StepperCounters& counters) const override {
-    solver_.report(counters);
-  }
+  void collect(StepperCounters& counters) const override { solver_.report(counters); }
 
   StepSolver solver_;
   BorderedMatrix A_;
   VecX shift_, change_, rhs_, product_, du_, shift_of_x_, change_of_x_;
-  bool drives_speed_up_ = false;     ///< change_ is not zero
-  double kept_h_ = 0.0;              ///< step of the balanced matrix that the solver has; 0: none
+  bool drives_speed_up_ = false;  ///< change_ is not zero
+  double kept_h_ = 0.0;           ///< step of the balanced matrix that the solver has; 0: none
   std::uint64_t kept_pattern_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<Stepper> make_linearly_implicit_euler(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver) {
+std::unique_ptr<Stepper> make_linearly_implicit_euler(System& system, State& state,
+                                                      const IntegratorSpec& spec,
+                                                      std::unique_ptr<LinearSolver> solver) {
   return std::make_unique<LinearlyImplicitEuler>(system, state, spec, std::move(solver));
 }
 

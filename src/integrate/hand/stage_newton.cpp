@@ -20,12 +20,17 @@ constexpr double kOtherCoefficients = 0.1;
 
 }  // namespace
 
-StageNewton::StageNewton(dynamics::System& system, const IntegratorSpec& spec, std::unique_ptr<dynamics::LinearSolver> solver)
-    : system_(system), tolerance_(spec), kept_steps_(spec.factor_kept_steps), solver_(std::move(solver), spec) {
+StageNewton::StageNewton(dynamics::System& system, const IntegratorSpec& spec,
+                         std::unique_ptr<dynamics::LinearSolver> solver)
+    : system_(system),
+      tolerance_(spec),
+      kept_steps_(spec.factor_kept_steps),
+      solver_(std::move(solver), spec) {
   tolerance_.rtol = spec.newton_rtol;
 }
 
-NewtonResult StageNewton::solve(const Stage& stage, const StateView& from, VecX& a, VecX& q1, VecX& u1, dynamics::StepperCounters& counters) {
+NewtonResult StageNewton::solve(const Stage& stage, const StateView& from, VecX& a, VecX& q1, VecX& u1,
+                                dynamics::StepperCounters& counters) {
   stage_ = &stage;
   from_ = &from;
   counters_ = &counters;
@@ -81,13 +86,16 @@ bool StageNewton::evaluate(const VecX& a) {
 StateView StageNewton::at() const {
   const double w = stage_->weight;
   if (w == 1.0) return dynamics::make_view(*from_->layout, stage_->t1, q1_->data(), u1_->data());
-  return dynamics::make_view(*from_->layout, w * stage_->t1 + (1.0 - w) * from_->time, q_s_.data(), u_s_.data());
+  return dynamics::make_view(*from_->layout, w * stage_->t1 + (1.0 - w) * from_->time, q_s_.data(),
+                             u_s_.data());
 }
 
 bool StageNewton::usable() const {
-  const auto near = [](double now, double then) { return std::abs(now - then) <= kOtherCoefficients * std::abs(then); };
-  return have_factor_ && age_ < kept_steps_ && near(stage_->c_a, m_scale_) && near(stage_->weight * stage_->c_u, d_scale_) &&
-         near(stage_->weight * stage_->c_theta, k_scale_);
+  const auto near = [](double now, double then) {
+    return std::abs(now - then) <= kOtherCoefficients * std::abs(then);
+  };
+  return have_factor_ && age_ < kept_steps_ && near(stage_->c_a, m_scale_) &&
+         near(stage_->weight * stage_->c_u, d_scale_) && near(stage_->weight * stage_->c_theta, k_scale_);
 }
 
 /// At the iterate last evaluated.
@@ -120,16 +128,22 @@ double StageNewton::norm(const VecX& d) {
 
 bool StageNewton::correct(VecX& d, double& size) {
   const auto right_hand_side = [this]() -> const VecX& { return residual_; };
-  if (solver_.solve(system_, [this] { assemble(); }, right_hand_side, d) != SolveStatus::kOk || !all_finite(d)) return false;
+  if (solver_.solve(
+          system_, [this] { assemble(); }, right_hand_side, d) != SolveStatus::kOk ||
+      !all_finite(d))
+    return false;
   d = -d;
   size = norm(d);
   return std::isfinite(size);
 }
 
 NewtonResult StageNewton::iterate(int limit, bool full) {
-  NewtonResult result = newton_.solve(*this, *a_, limit, full ? DampedNewton::Way::kFresh : DampedNewton::Way::kKeptMatrix, usable());
+  NewtonResult result = newton_.solve(
+      *this, *a_, limit, full ? DampedNewton::Way::kFresh : DampedNewton::Way::kKeptMatrix, usable());
   if (result.status != StepStatus::kOk) return result;
-  if (!place(*a_)) return {StepStatus::kNotFinite, result.iterations, result.correction, "the position or the velocity is not finite"};
+  if (!place(*a_))
+    return {StepStatus::kNotFinite, result.iterations, result.correction,
+            "the position or the velocity is not finite"};
   dynamics::project(*from_->layout, q1_->data());
   system_.impose(*from_->layout, stage_->t1, q1_->data(), u1_->data());
   return result;

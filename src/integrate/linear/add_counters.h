@@ -3,7 +3,8 @@
 
 namespace palpate::integrate {
 
-/// Adds what another solver did to the sum of one that hands matrices on to it.  The ordering stays the sum's own.
+/// Adds what another solver did to the sum of one that hands matrices on to it.  The ordering stays the sum's
+/// own.
 inline void add_counters(const dynamics::SolverCounters& other, dynamics::SolverCounters& sum) {
   sum.symbolic += other.symbolic;
   sum.orderings += other.orderings;

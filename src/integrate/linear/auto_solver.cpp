@@ -26,25 +26,29 @@ constexpr Measured kMeasured[] = {
 #include "integrate/linear/auto_table.inc"
 };
 
-/// A choice is kept until the matrix has become so many times stiffer or softer: each solver would start without a past.
+/// A choice is kept until the matrix has become so many times stiffer or softer: each solver would start
+/// without a past.
 constexpr double kKept = 4.0;
 constexpr int kSampledRows = 512, kSampledRowsOfBalanced = 128;
 
 }  // namespace
 
-// What decides how many iterations a step takes is how far stiffness outweighs mass in A = M + h^2 K.  A rigid translation takes no strain, so block row i of A
-// sums to that of M, and
+// What decides how many iterations a step takes is how far stiffness outweighs mass in A = M + h^2 K.  A
+// rigid translation takes no strain, so block row i of A sums to that of M, and
 //     s = sum_i tr(A_ii) / sum_i tr(sum_j A_ij) = 1 + h^2 tr K / tr M,
-// the squared number of grid lengths, times a constant, that a sound wave passes in a step: a pure number that holds step, stiffness, density and mesh size together.
-// Rows of held nodes, and of their neighbours, which miss the held ones' columns, are left out.  Of a large matrix some hundred rows tell it well enough for a
-// choice between factors of four, and looking at every row at every step would cost a reading of the matrix.
+// the squared number of grid lengths, times a constant, that a sound wave passes in a step: a pure number
+// that holds step, stiffness, density and mesh size together. Rows of held nodes, and of their neighbours,
+// which miss the held ones' columns, are left out.  Of a large matrix some hundred rows tell it well enough
+// for a choice between factors of four, and looking at every row at every step would cost a reading of the
+// matrix.
 double stiffness_number(const dynamics::BlockSparse& A) {
   double own = 0.0, all = 0.0;
   const int stride = (A.block_rows() / kSampledRows) | 1;  // odd: does not keep in step with a grid's rows
   for (int i = 0; i < A.block_rows(); i += stride) {
     double row = 0.0, diagonal = 0.0;
     bool beside_held = false;
-    for (int s = A.row_start()[static_cast<std::size_t>(i)]; s < A.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+    for (int s = A.row_start()[static_cast<std::size_t>(i)];
+         s < A.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
       const double* block = A.block(s);
       const double trace = block[0] + block[4] + block[8];
       row += trace;
@@ -65,7 +69,8 @@ const char* measured_choice(double nodes, double stiffness, double rtol) {
   double least = HUGE_VAL;
   const auto apart = [](double a, double b) { return std::log(a / b) * std::log(a / b); };
   for (const Measured& m : kMeasured) {
-    const double distance = apart(m.nodes, std::max(1.0, nodes)) + apart(m.stiffness, stiffness) + apart(m.rtol, rtol);
+    const double distance =
+        apart(m.nodes, std::max(1.0, nodes)) + apart(m.stiffness, stiffness) + apart(m.rtol, rtol);
     if (distance >= least) continue;
     least = distance;
     nearest = &m;
@@ -79,9 +84,11 @@ static double stiffness_number(const dynamics::BalancedMatrix& A) {
   const int rows = A.pattern->block_rows(), stride = (rows / kSampledRowsOfBalanced) | 1;
   for (int i = 0; i < rows; i += stride) {
     mass += A.diagonal.segment<3>(3 * i).sum();
-    for (int s = A.pattern->row_start()[static_cast<std::size_t>(i)]; s < A.pattern->row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+    for (int s = A.pattern->row_start()[static_cast<std::size_t>(i)];
+         s < A.pattern->row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
       if (A.pattern->columns()[static_cast<std::size_t>(s)] == i) continue;
-      const float* block = A.values.data() + 9 * static_cast<std::size_t>(A.place[static_cast<std::size_t>(s)]);
+      const float* block =
+          A.values.data() + 9 * static_cast<std::size_t>(A.place[static_cast<std::size_t>(s)]);
       stiffness -= block[0] + block[4] + block[8];
     }
   }
@@ -90,9 +97,10 @@ static double stiffness_number(const dynamics::BalancedMatrix& A) {
 
 namespace {
 
-/// The solver that was the fastest in what the table holds nearest to this matrix: nodes, stiffness number and linear_rtol, in logarithms.
-/// A whole matrix is looked at before a solver takes it.  A balanced one is written in a solver's own order, so the first goes to kProvisional, which serves stiff and soft ones; what was seen
-/// of one decides who has the next.
+/// The solver that was the fastest in what the table holds nearest to this matrix: nodes, stiffness number
+/// and linear_rtol, in logarithms. A whole matrix is looked at before a solver takes it.  A balanced one is
+/// written in a solver's own order, so the first goes to kProvisional, which serves stiff and soft ones; what
+/// was seen of one decides who has the next.
 class AutoSolver final : public dynamics::LinearSolver {
  public:
   explicit AutoSolver(const IntegratorSpec& spec) : spec_(spec) { counters::count("integrate.solver.auto"); }
@@ -122,7 +130,9 @@ class AutoSolver final : public dynamics::LinearSolver {
     values_version_ = 0;
     return active_->factor_balanced();
   }
-  SolveStatus solve_near(dynamics::Residual& left, VecX& x) override { return active_ ? active_->solve_near(left, x) : SolveStatus::kNotConverged; }
+  SolveStatus solve_near(dynamics::Residual& left, VecX& x) override {
+    return active_ ? active_->solve_near(left, x) : SolveStatus::kNotConverged;
+  }
   SolveStatus solve(const MatX& B, MatX& X) override { return chosen().solve(B, X); }
   SolveStatus solve(const VecX& b, VecX& x) override { return chosen().solve(b, x); }
 
@@ -154,7 +164,9 @@ class AutoSolver final : public dynamics::LinearSolver {
     if (active_ && nodes == nodes_ && (near || !std::isfinite(stiffness))) return;
     nodes_ = nodes;
     stiffness_ = std::isfinite(stiffness) ? stiffness : 1.0;
-    const auto* const name = std::find(kNames.begin(), kNames.end(), std::string_view(measured_choice(nodes_, stiffness_, spec_.linear_rtol)));
+    const auto* const name =
+        std::find(kNames.begin(), kNames.end(),
+                  std::string_view(measured_choice(nodes_, stiffness_, spec_.linear_rtol)));
     PALPATE_CHECK(name != kNames.end(), "auto_table.inc names a solver that auto does not know");
     active_ = &made(static_cast<std::size_t>(name - kNames.begin()));
     if (provisional_ && active_ != made_[kProvisional].get()) {
@@ -170,10 +182,10 @@ class AutoSolver final : public dynamics::LinearSolver {
   dynamics::BalancedMatrix* room_ = nullptr;  ///< of active_
   std::uint64_t values_version_ = 0;
   int nodes_ = -1;
-  bool provisional_ = false;                  ///< active_ was not chosen yet
-  double stiffness_ = 0.0;                    ///< that it was chosen by
-  double seen_ = 0.0;                         ///< of the last matrix, where that was a balanced one
-  dynamics::SolverCounters retired_;          ///< of the provisional one, where another was chosen
+  bool provisional_ = false;          ///< active_ was not chosen yet
+  double stiffness_ = 0.0;            ///< that it was chosen by
+  double seen_ = 0.0;                 ///< of the last matrix, where that was a balanced one
+  dynamics::SolverCounters retired_;  ///< of the provisional one, where another was chosen
   mutable dynamics::SolverCounters sum_;
 };
 

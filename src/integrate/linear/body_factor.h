@@ -7,10 +7,12 @@ namespace palpate::integrate {
 
 using ConstColumns = Eigen::Map<const MatX, 0, Eigen::OuterStride<>>;
 
-/// An LU factor of a matrix with scaled rows whose smallest pivot is below this share of the largest is rounding, not a pivot: singular.
+/// An LU factor of a matrix with scaled rows whose smallest pivot is below this share of the largest is
+/// rounding, not a pivot: singular.
 constexpr double kSmallestPivotRatio = 1e-14;
 
-/// A factor of the sparse body part alone: what a direct solver's library gives.  DirectSolver adds versions, border and counters.
+/// A factor of the sparse body part alone: what a direct solver's library gives.  DirectSolver adds versions,
+/// border and counters.
 class BodyFactor {
  public:
   virtual ~BodyFactor() = default;

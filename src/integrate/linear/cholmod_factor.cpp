@@ -12,13 +12,15 @@ namespace {
 using dynamics::BlockSparse;
 using dynamics::SolveStatus;
 
-// Which ordering?  Minimum degree (AMD) works from one elimination to the next; nested dissection (METIS) cuts the mesh in halves, costs
-// two to three analyses by AMD, and wins where separators are small against what they separate: large and compact meshes.  Each
-// predicts its flops exactly before any number is touched, so both are tried once a pattern, and the cheaper is kept.  METIS
-// sees the graph of the nodes, not of their directions: the same quality for two thirds of its time.  Measured on M + h^2 K of box
-// meshes (five tetrahedra a cell, one thread, median of 7; times as ratios within one run):
+// Which ordering?  Minimum degree (AMD) works from one elimination to the next; nested dissection (METIS)
+// cuts the mesh in halves, costs two to three analyses by AMD, and wins where separators are small against
+// what they separate: large and compact meshes.  Each predicts its flops exactly before any number is
+// touched, so both are tried once a pattern, and the cheaper is kept.  METIS sees the graph of the nodes, not
+// of their directions: the same quality for two thirds of its time.  Measured on M + h^2 K of box meshes
+// (five tetrahedra a cell, one thread, median of 7; times as ratios within one run):
 //
-//   body                       nodes   AMD flops / nnz(A)   flops METIS/AMD   factor METIS/AMD   ordering by METIS / factor by AMD
+//   body                       nodes   AMD flops / nnz(A)   flops METIS/AMD   factor METIS/AMD   ordering by
+//   METIS / factor by AMD
 //   beam 1 x 0.25 x 0.25 m      325          150               1.5                0.8-1.0                0.9
 //                             1,225          525               1.7                1.1                    1.0
 //                             3,700        2,700               1.2                1.0-1.1                0.7
@@ -29,17 +31,20 @@ using dynamics::SolveStatus;
 //                             4,096        7,610               0.48               0.65                   0.4
 //                             9,261       21,250               0.42               0.57                   0.26
 //
-// So METIS is tried from kMetisFrom flops an entry on: there its ordering costs less than one factorisation by AMD.  Time falls less
-// than flops (AMD's large supernodes run faster): METIS is taken where it saves a tenth of the flops.
+// So METIS is tried from kMetisFrom flops an entry on: there its ordering costs less than one factorisation
+// by AMD.  Time falls less than flops (AMD's large supernodes run faster): METIS is taken where it saves a
+// tenth of the flops.
 constexpr double kMetisFrom = 2000.0;
 constexpr double kMetisTaken = 0.9;
 
-// Where contact between bodies comes, goes and rolls on, the pattern changes by a few pairs among many.  The ordering found before is then as good as a new one but for
-// some fill, and costs a fraction of it: it is kept while the factor's flops stay below kStillGood of what they were when it was found.
+// Where contact between bodies comes, goes and rolls on, the pattern changes by a few pairs among many.  The
+// ordering found before is then as good as a new one but for some fill, and costs a fraction of it: it is
+// kept while the factor's flops stay below kStillGood of what they were when it was found.
 constexpr double kStillGood = 1.25;
 
-/// Supernodal L L^T (Chen, Davis, Hager, Rajamanickam 2008), ordered by AMD or METIS, whichever is cheaper for the mesh.
-/// Column j of the lower triangle is row j of a symmetric matrix from the diagonal on: the blocks of BlockSparse are read in their own order.
+/// Supernodal L L^T (Chen, Davis, Hager, Rajamanickam 2008), ordered by AMD or METIS, whichever is cheaper
+/// for the mesh. Column j of the lower triangle is row j of a symmetric matrix from the diagonal on: the
+/// blocks of BlockSparse are read in their own order.
 class CholmodFactor final : public BodyFactor {
  public:
   CholmodFactor() {
@@ -112,7 +117,8 @@ class CholmodFactor final : public BodyFactor {
     source_.clear();
     for (int i = 0; i < A.block_rows(); ++i)
       for (int r = 0; r < 3; ++r) {
-        for (int s = A.row_start()[static_cast<std::size_t>(i)]; s < A.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+        for (int s = A.row_start()[static_cast<std::size_t>(i)];
+             s < A.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
           const int j = A.columns()[static_cast<std::size_t>(s)];
           for (int c = j == i ? r : 0; j >= i && c < 3; ++c) {
             rows_.push_back(3 * j + c);
@@ -136,7 +142,8 @@ class CholmodFactor final : public BodyFactor {
   void try_metis(const BlockSparse& A, cholmod_sparse& lower) {
     std::vector<int> start(1, 0), neighbours;
     for (int i = 0; i < A.block_rows(); ++i) {
-      for (int s = A.row_start()[static_cast<std::size_t>(i)]; s < A.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
+      for (int s = A.row_start()[static_cast<std::size_t>(i)];
+           s < A.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
         if (const int j = A.columns()[static_cast<std::size_t>(s)]; j >= i) neighbours.push_back(j);
       start.push_back(static_cast<int>(neighbours.size()));
     }

@@ -9,7 +9,9 @@ void ClusterTeam::share(const NodeOrder& order, const std::vector<int>& row_star
   int part = 0;
   for (int t = 1; t <= threads; ++t) {
     const long goal = static_cast<long>(row_start.back()) * t / threads;
-    while (part < order.parts() && row_start[static_cast<std::size_t>(order.first_node(static_cast<std::size_t>(part) + 1))] <= goal) ++part;
+    while (part < order.parts() &&
+           row_start[static_cast<std::size_t>(order.first_node(static_cast<std::size_t>(part) + 1))] <= goal)
+      ++part;
     mine_[static_cast<std::size_t>(t)] = t == threads ? order.parts() : part;
   }
 }

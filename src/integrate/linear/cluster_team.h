@@ -6,7 +6,8 @@
 
 namespace palpate::integrate {
 
-/// Threads that work on the parts of an order, each on its own ones.  Sums go over parts or clusters, in their order: results do not depend on the number of threads.
+/// Threads that work on the parts of an order, each on its own ones.  Sums go over parts or clusters, in
+/// their order: results do not depend on the number of threads.
 class ClusterTeam {
  public:
   explicit ClusterTeam(int threads) : team_(threads) {}
@@ -16,19 +17,26 @@ class ClusterTeam {
   void share(const NodeOrder& order, const std::vector<int>& row_start);
   /// work(thread) on each thread.
   template <class Work>
-  void run(Work&& work) { team_.run(work); }
+  void run(Work&& work) {
+    team_.run(work);
+  }
   void barrier() { team_.barrier(); }
   /// Inside run: work(part, first node, last node) over the parts of a thread.
   template <class Work>
   void over(int thread, Work&& work) const {
-    for (auto p = static_cast<std::size_t>(mine_[static_cast<std::size_t>(thread)]); p < static_cast<std::size_t>(mine_[static_cast<std::size_t>(thread) + 1]); ++p)
+    for (auto p = static_cast<std::size_t>(mine_[static_cast<std::size_t>(thread)]);
+         p < static_cast<std::size_t>(mine_[static_cast<std::size_t>(thread) + 1]); ++p)
       work(p, order_->first_node(p), order_->first_node(p + 1));
   }
   /// Inside run: work(cluster, first node, last node) over the clusters of these parts.
   template <class Work>
   void over_clusters(int thread, Work&& work) const {
-    const auto cluster = [&](int t) { return static_cast<std::size_t>(order_->part[static_cast<std::size_t>(mine_[static_cast<std::size_t>(t)])]); };
-    for (std::size_t c = cluster(thread); c < cluster(thread + 1); ++c) work(c, order_->start[c], order_->start[c + 1]);
+    const auto cluster = [&](int t) {
+      return static_cast<std::size_t>(
+          order_->part[static_cast<std::size_t>(mine_[static_cast<std::size_t>(t)])]);
+    };
+    for (std::size_t c = cluster(thread); c < cluster(thread + 1); ++c)
+      work(c, order_->start[c], order_->start[c + 1]);
   }
   /// All parts, on all threads.
   template <class Work>

@@ -16,14 +16,16 @@ DirectSolver::DirectSolver(std::string name, bool unsymmetric, std::unique_ptr<B
 }
 
 bool DirectSolver::same_pattern(const BorderedMatrix& A) const {
-  return A.body.pattern_version() == pattern_version_ && A.nodal_size() == nodal_ && A.border_size() == border_;
+  return A.body.pattern_version() == pattern_version_ && A.nodal_size() == nodal_ &&
+         A.border_size() == border_;
 }
 
 SolveStatus DirectSolver::factor(const BorderedMatrix& A) {
   PALPATE_CHECK(A.symmetric || unsymmetric_, "solver {} was given an unsymmetric matrix", name_);
   const bool same = same_pattern(A);
   if (same && A.values_version != 0 && A.values_version == values_version_) return status_;
-  if (!same && A.nodal_size() > 0 && (A.body.pattern_version() != pattern_version_ || A.nodal_size() != nodal_)) {
+  if (!same && A.nodal_size() > 0 &&
+      (A.body.pattern_version() != pattern_version_ || A.nodal_size() != nodal_)) {
     const ScopedTimer timer(counters_.symbolic_s);
     body_->analyse(A.body);
     ++counters_.symbolic;
@@ -42,7 +44,8 @@ SolveStatus DirectSolver::factor(const BorderedMatrix& A) {
 SolveStatus DirectSolver::factor_values(const BorderedMatrix& A) {
   const auto& values = A.body.values();
   const Eigen::Map<const VecX> body(values.data(), static_cast<Eigen::Index>(values.size()));
-  if (!all_finite(body) || !all_finite(A.right) || !all_finite(A.bottom) || !all_finite(A.corner)) return SolveStatus::kSingular;
+  if (!all_finite(body) || !all_finite(A.right) || !all_finite(A.bottom) || !all_finite(A.corner))
+    return SolveStatus::kSingular;
   if (nodal_ > 0)
     if (const SolveStatus status = body_->factor(A.body); status != SolveStatus::kOk) return status;
   return border_ > 0 ? factor_border(A) : SolveStatus::kOk;
@@ -88,14 +91,16 @@ void DirectSolver::solve_columns(const double* b, double* x, Eigen::Index count)
 }
 
 SolveStatus DirectSolver::solve(const MatX& B, MatX& X) {
-  PALPATE_CHECK(B.rows() == nodal_ + border_, "right-hand side has {} rows, the matrix {}", B.rows(), nodal_ + border_);
+  PALPATE_CHECK(B.rows() == nodal_ + border_, "right-hand side has {} rows, the matrix {}", B.rows(),
+                nodal_ + border_);
   X.resize(B.rows(), B.cols());
   solve_columns(B.data(), X.data(), B.cols());
   return SolveStatus::kOk;
 }
 
 SolveStatus DirectSolver::solve(const VecX& b, VecX& x) {
-  PALPATE_CHECK(b.size() == nodal_ + border_, "right-hand side has {} rows, the matrix {}", b.size(), nodal_ + border_);
+  PALPATE_CHECK(b.size() == nodal_ + border_, "right-hand side has {} rows, the matrix {}", b.size(),
+                nodal_ + border_);
   x.resize(b.size());
   solve_columns(b.data(), x.data(), 1);
   return SolveStatus::kOk;

@@ -10,8 +10,8 @@ namespace palpate::integrate {
 ///     [A R] [x]   [b]      W = A^-1 R,  S = C - B W  (once a factor)
 ///     [B C] [y] = [c]      z = A^-1 b,  y = S^-1 (c - B z),  x = z - W y  (once a right-hand side)
 /// so the fill of the sparse factor does not depend on how many nodes the tool touches.
-/// A matrix is refused as kSingular when a value is not finite or, by LU, a pivot is zero to rounding; also when its body alone is singular,
-/// even where the border would make the whole regular.
+/// A matrix is refused as kSingular when a value is not finite or, by LU, a pivot is zero to rounding; also
+/// when its body alone is singular, even where the border would make the whole regular.
 class DirectSolver final : public dynamics::LinearSolver {
  public:
   DirectSolver(std::string name, bool unsymmetric, std::unique_ptr<BodyFactor> body);
@@ -36,10 +36,10 @@ class DirectSolver final : public dynamics::LinearSolver {
   std::uint64_t pattern_version_ = 0, values_version_ = 0;
   Eigen::Index nodal_ = -1, border_ = 0;
   dynamics::SolveStatus status_ = dynamics::SolveStatus::kSingular;
-  MatX bottom_, W_, S_;         ///< border: B, A^-1 R, C - B W
-  Eigen::LLT<MatX> llt_;        ///< of S, symmetric
+  MatX bottom_, W_, S_;   ///< border: B, A^-1 R, C - B W
+  Eigen::LLT<MatX> llt_;  ///< of S, symmetric
   Eigen::PartialPivLU<MatX> lu_;
-  MatX z_, y_;                  ///< scratch of a solve
+  MatX z_, y_;  ///< scratch of a solve
 };
 
 }  // namespace palpate::integrate

@@ -3,18 +3,24 @@
 
 namespace palpate::integrate {
 
-// The error of conjugate gradients in the energy norm, from its own coefficients.  The method is the Gauss rule of a Stieltjes integral whose value is
+// The error of conjugate gradients in the energy norm, from its own coefficients.  The method is the Gauss
+// rule of a Stieltjes integral whose value is
 // |x - x_0|_A^2 (Golub and Meurant 1994): with the step lengths alpha_k and rho_k = r_k . P^-1 r_k,
-//     |x - x_0|_A^2 = sum_{j<k} alpha_j rho_j + |x - x_k|_A^2,                                   all terms positive.
-// The Gauss-Radau rule with a node mu below every eigenvalue of P^-1 A bounds what is left (Meurant and Tichy 2013, section 3):
-//     |x - x_k|_A^2 <= g_k rho_k,    g_0 = 1/mu,    g_{k+1} = (g_k - alpha_k) / (mu (g_k - alpha_k) + rho_{k+1}/rho_k).
-// mu: the rule itself tells when it lies above the smallest Ritz value (g_k <= alpha_k): mu is then halved and the recurrence run again.  The bound is
-// taken with half of that, as eigenvalues may lie below the Ritz values; from one solve to the next mu is kept, and rises by a tenth, as matrices change slowly.
+//     |x - x_0|_A^2 = sum_{j<k} alpha_j rho_j + |x - x_k|_A^2,                                   all terms
+//     positive.
+// The Gauss-Radau rule with a node mu below every eigenvalue of P^-1 A bounds what is left (Meurant and Tichy
+// 2013, section 3):
+//     |x - x_k|_A^2 <= g_k rho_k,    g_0 = 1/mu,    g_{k+1} = (g_k - alpha_k) / (mu (g_k - alpha_k) +
+//     rho_{k+1}/rho_k).
+// mu: the rule itself tells when it lies above the smallest Ritz value (g_k <= alpha_k): mu is then halved
+// and the recurrence run again.  The bound is taken with half of that, as eigenvalues may lie below the Ritz
+// values; from one solve to the next mu is kept, and rises by a tenth, as matrices change slowly.
 
 /// Bounds the energy-norm error of one solve; mu outlives it.
 class EnergyBound {
  public:
-  /// @param start  |x_0|_A^2 with x - x_0 orthogonal to x_0 in A's scalar product; where they are not, |x - x_0|_A^2 is far below it
+  /// @param start  |x_0|_A^2 with x - x_0 orthogonal to x_0 in A's scalar product; where they are not, |x -
+  ///   x_0|_A^2 is far below it
   void begin(double start);
   /// After a step of length alpha from rho to rho_next.
   void step(double alpha, double rho, double rho_next);

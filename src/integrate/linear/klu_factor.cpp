@@ -11,13 +11,16 @@ namespace {
 using dynamics::BlockSparse;
 using dynamics::SolveStatus;
 
-/// A pivot order is kept for new values while its growth stays within this factor of what it was when the order was chosen.
+/// A pivot order is kept for new values while its growth stays within this factor of what it was when the
+/// order was chosen.
 constexpr double kGrowthKept = 0.1;
 
-/// Left-looking sparse LU with partial pivoting inside the blocks of a triangular form (Davis and Palamadai Natarajan 2010), ordered by AMD; rows scaled by their largest entry.
-/// New values go through the pivot order of the last full factorisation: no search, no graph traversal.  What an order of other values
-/// can do wrong is growth, so the reciprocal pivot growth  min_j max_i |a_ij| / max_i |u_ij|  is looked at after each; where it
-/// has fallen by ten (a digit of the answer is gone), or a pivot is zero, pivots are chosen afresh.
+/// Left-looking sparse LU with partial pivoting inside the blocks of a triangular form (Davis and Palamadai
+/// Natarajan 2010), ordered by AMD; rows scaled by their largest entry.
+/// New values go through the pivot order of the last full factorisation: no search, no graph traversal.  What
+/// an order of other values can do wrong is growth, so the reciprocal pivot growth  min_j max_i |a_ij| /
+/// max_i |u_ij|  is looked at after each; where it has fallen by ten (a digit of the answer is gone), or a
+/// pivot is zero, pivots are chosen afresh.
 class KluFactor final : public BodyFactor {
  public:
   KluFactor() { klu_defaults(&common_); }
@@ -36,7 +39,8 @@ class KluFactor final : public BodyFactor {
     columns_.fill(A);
     if (numeric_ && refactor()) return SolveStatus::kOk;
     klu_free_numeric(&numeric_, &common_);
-    numeric_ = klu_factor(columns_.start.data(), columns_.rows.data(), columns_.values.data(), symbolic_, &common_);
+    numeric_ =
+        klu_factor(columns_.start.data(), columns_.rows.data(), columns_.values.data(), symbolic_, &common_);
     require("klu_factor");
     if (!numeric_ || common_.status == KLU_SINGULAR) return forget();
     chosen_growth_ = growth();
@@ -45,18 +49,21 @@ class KluFactor final : public BodyFactor {
 
   void solve(const ConstColumns& B, MatX& X) override {
     X = B;
-    klu_tsolve(symbolic_, numeric_, static_cast<int>(X.rows()), static_cast<int>(X.cols()), X.data(), &common_);
+    klu_tsolve(symbolic_, numeric_, static_cast<int>(X.rows()), static_cast<int>(X.cols()), X.data(),
+               &common_);
     require("klu_tsolve");
   }
 
  private:
   bool refactor() {
-    klu_refactor(columns_.start.data(), columns_.rows.data(), columns_.values.data(), symbolic_, numeric_, &common_);
+    klu_refactor(columns_.start.data(), columns_.rows.data(), columns_.values.data(), symbolic_, numeric_,
+                 &common_);
     require("klu_refactor");
     return common_.status == KLU_OK && growth() >= kGrowthKept * chosen_growth_ && regular();
   }
   double growth() {
-    klu_rgrowth(columns_.start.data(), columns_.rows.data(), columns_.values.data(), symbolic_, numeric_, &common_);
+    klu_rgrowth(columns_.start.data(), columns_.rows.data(), columns_.values.data(), symbolic_, numeric_,
+                &common_);
     return common_.rgrowth;
   }
   bool regular() {

@@ -87,9 +87,15 @@ KrylovStart::Start KrylovStart::choose() {
   return {scale_ * energy, scale_ * std::max(0.0, change), left == 0.0 ? 1.0 : left};
 }
 
-void KrylovStart::solution(double* x, int first, int last) const { kernels_.combine(used_, of_V_, at_V_, x, first, last); }
-void KrylovStart::product(double* Ax, int first, int last) const { kernels_.combine(used_, of_AV_, at_AV_, Ax, first, last); }
-void KrylovStart::residual(double by, const double* b, float* r, int first, int last) const { kernels_.leave(used_, of_AV_, by, at_AV_, b, r, first, last); }
+void KrylovStart::solution(double* x, int first, int last) const {
+  kernels_.combine(used_, of_V_, at_V_, x, first, last);
+}
+void KrylovStart::product(double* Ax, int first, int last) const {
+  kernels_.combine(used_, of_AV_, at_AV_, Ax, first, last);
+}
+void KrylovStart::residual(double by, const double* b, float* r, int first, int last) const {
+  kernels_.leave(used_, of_AV_, by, at_AV_, b, r, first, last);
+}
 
 void KrylovStart::begin_to_keep(double scale, bool with_products) {
   scale_ = scale;

@@ -11,7 +11,9 @@ bool MatrixAge::serves() {
   return true;
 }
 
-bool MatrixAge::sure(double correction) const { return since_seen_ < kTrusted && correction <= kSameSize * seen_size_ && small_enough(age_, correction); }
+bool MatrixAge::sure(double correction) const {
+  return since_seen_ < kTrusted && correction <= kSameSize * seen_size_ && small_enough(age_, correction);
+}
 
 void MatrixAge::seen(double error, double correction) {
   if (age_ == 0 || !(correction > 0.0)) return;

@@ -57,10 +57,12 @@ SolveStatus NearSolve::approach(dynamics::Residual& left, VecX& x) {
   if (!std::isfinite(size_)) return SolveStatus::kNotConverged;
   const double by_copy = (1.0 - MatrixAge::kUnseen) * rtol_;
   double open = 0.0, energy = start.energy, change = start.change;
-  SolveStatus status = descend(energy, by_copy, open, [&](int first, int last) { set_residual(first, last); });
+  SolveStatus status =
+      descend(energy, by_copy, open, [&](int first, int last) { set_residual(first, last); });
   for (;;) {
     if (status != SolveStatus::kOk) return status;
-    const double solution = iteration_.solution(), correction = std::sqrt((change + solution - energy) / solution);
+    const double solution = iteration_.solution(),
+                 correction = std::sqrt((change + solution - energy) / solution);
     if (residuals == 1) correction_ = correction;
     if (open <= by_copy && !rounded_ && age_.sure(correction)) break;
     if (residuals == kMostResiduals) return SolveStatus::kNotConverged;
@@ -103,9 +105,11 @@ KrylovStart::Start NearSolve::begin_where_it_leaves() {
   return choose();
 }
 
-/// Takes off what the copy's age left.  A leaves `left` of x, of which the iteration left size_ r open; the rest is (Ao - A) (the last correction), of which a rough solution tells the
-/// size and most of itself.  The iteration's residual is then what both left open.
-/// @param stale  its size over the solution's  @param open  in: what the iteration left open; out: with what is left of this
+/// Takes off what the copy's age left.  A leaves `left` of x, of which the iteration left size_ r open; the
+/// rest is (Ao - A) (the last correction), of which a rough solution tells the size and most of itself.  The
+/// iteration's residual is then what both left open.
+/// @param stale  its size over the solution's  @param open  in: what the iteration left open; out: with
+///   what is left of this
 SolveStatus NearSolve::mend(double solution, double& stale, double& open) {
   const int* node = copy_.order().node.data();
   float* r = iteration_.residual().data();
@@ -114,7 +118,8 @@ SolveStatus NearSolve::mend(double solution, double& stale, double& open) {
     for (int k = first; k < last; ++k)
       for (int axis = 0; axis < 3; ++axis) {
         const std::size_t at = 4 * static_cast<std::size_t>(k) + static_cast<std::size_t>(axis);
-        const double by_age = residual_[3 * static_cast<std::ptrdiff_t>(node[k]) + axis] - size_ * static_cast<double>(r[at]);
+        const double by_age =
+            residual_[3 * static_cast<std::ptrdiff_t>(node[k]) + axis] - size_ * static_cast<double>(r[at]);
         open_[at] = r[at];
         b_[at] += by_age;
         r[at] = static_cast<float>(by_age / size_);
@@ -128,7 +133,8 @@ SolveStatus NearSolve::mend(double solution, double& stale, double& open) {
   return SolveStatus::kOk;
 }
 
-/// Iterates from the residual that is set, until the error is below rtol of the solution, or single precision has no more to say.
+/// Iterates from the residual that is set, until the error is below rtol of the solution, or single precision
+/// has no more to say.
 /// @param start  as EnergyBound::begin  @param open  the error then, over the solution
 template <class Set>
 SolveStatus NearSolve::descend(double start, double rtol, double& open, Set&& set_residual) {
@@ -141,7 +147,8 @@ SolveStatus NearSolve::descend(double start, double rtol, double& open, Set&& se
   if (!std::isfinite(rho)) return SolveStatus::kNotConverged;
   if (!iteration_.reached(rho * unit(), rtol)) {
     int steps = 0;
-    const SolveStatus status = iteration_.reduce(rho, 0.0, kReductionInSingle * kReductionInSingle * rho, unit(), rtol, kIterationLimit, steps);
+    const SolveStatus status = iteration_.reduce(rho, 0.0, kReductionInSingle * kReductionInSingle * rho,
+                                                 unit(), rtol, kIterationLimit, steps);
     counters_.iterations += steps;
     if (status != SolveStatus::kOk) return status;
   }

@@ -41,7 +41,8 @@ void multiply_double(const DoubleBlocks& A, const double* v, double* Av, int fir
         copy[9] = 0.0;
         block = copy;
       }
-      const FourDouble x = *reinterpret_cast<const FourDoubleAnywhere*>(v + 4 * static_cast<std::int64_t>(A.column[s]));
+      const FourDouble x =
+          *reinterpret_cast<const FourDoubleAnywhere*>(v + 4 * static_cast<std::int64_t>(A.column[s]));
       for (int r = 0; r < 3; ++r) total[r] += *reinterpret_cast<const FourDoubleAnywhere*>(block + 3 * r) * x;
     }
     double* y = Av + 4 * static_cast<std::int64_t>(i);
@@ -61,12 +62,17 @@ struct Half3 {
 };
 #if PALPATE_LANES == 16
 PALPATE_INLINE Half beside(const double* front, const double* back) {
-  return __builtin_shufflevector(FourDouble(*reinterpret_cast<const FourDoubleAnywhere*>(front)), FourDouble(*reinterpret_cast<const FourDoubleAnywhere*>(back)), 0, 1, 2, 3, 4, 5, 6, 7);
+  return __builtin_shufflevector(FourDouble(*reinterpret_cast<const FourDoubleAnywhere*>(front)),
+                                 FourDouble(*reinterpret_cast<const FourDoubleAnywhere*>(back)), 0, 1, 2, 3,
+                                 4, 5, 6, 7);
 }
 PALPATE_INLINE void gather(const double* field, const int* at, Half3& v) {
-  const Half a = beside(field + at[0], field + at[4]), b = beside(field + at[1], field + at[5]), c = beside(field + at[2], field + at[6]), d = beside(field + at[3], field + at[7]);
-  const Half ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14), cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
-  const Half ab_y = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15), cd_y = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Half a = beside(field + at[0], field + at[4]), b = beside(field + at[1], field + at[5]),
+             c = beside(field + at[2], field + at[6]), d = beside(field + at[3], field + at[7]);
+  const Half ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14),
+             cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Half ab_y = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15),
+             cd_y = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
   v.x = __builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13);
   v.y = __builtin_shufflevector(ab_y, cd_y, 0, 1, 8, 9, 4, 5, 12, 13);
   v.z = __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15);
@@ -75,8 +81,10 @@ PALPATE_INLINE void gather(const double* field, const int* at, Half3& v) {
 PALPATE_INLINE void gather(const double* field, const int* at, Half3& v) {
   Half n[4];
   for (int l = 0; l < 4; ++l) n[l] = *reinterpret_cast<const FourDoubleAnywhere*>(field + at[l]);
-  const Half ab = __builtin_shufflevector(n[0], n[1], 0, 4, 2, 6), cd = __builtin_shufflevector(n[2], n[3], 0, 4, 2, 6);
-  const Half ab_y = __builtin_shufflevector(n[0], n[1], 1, 5, 3, 7), cd_y = __builtin_shufflevector(n[2], n[3], 1, 5, 3, 7);
+  const Half ab = __builtin_shufflevector(n[0], n[1], 0, 4, 2, 6),
+             cd = __builtin_shufflevector(n[2], n[3], 0, 4, 2, 6);
+  const Half ab_y = __builtin_shufflevector(n[0], n[1], 1, 5, 3, 7),
+             cd_y = __builtin_shufflevector(n[2], n[3], 1, 5, 3, 7);
   v.x = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
   v.y = __builtin_shufflevector(ab_y, cd_y, 0, 1, 4, 5);
   v.z = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
@@ -90,14 +98,20 @@ PALPATE_INLINE void gather(const double* field, const int* at, Half3& v) {
 }
 #endif
 
-PALPATE_INLINE void subtract_four(double* p, const FourDouble& v) { *reinterpret_cast<FourDoubleAnywhere*>(p) = *reinterpret_cast<const FourDoubleAnywhere*>(p) - v; }
+PALPATE_INLINE void subtract_four(double* p, const FourDouble& v) {
+  *reinterpret_cast<FourDoubleAnywhere*>(p) = *reinterpret_cast<const FourDoubleAnywhere*>(p) - v;
+}
 #if PALPATE_LANES == 16
 PALPATE_INLINE void scatter_subtract(double* field, const int* at, const Half3& v) {
   const Half none{};
-  const Half xy = __builtin_shufflevector(v.x, v.y, 0, 8, 2, 10, 4, 12, 6, 14), z = __builtin_shufflevector(v.z, none, 0, 8, 2, 10, 4, 12, 6, 14);
-  const Half xy_odd = __builtin_shufflevector(v.x, v.y, 1, 9, 3, 11, 5, 13, 7, 15), z_odd = __builtin_shufflevector(v.z, none, 1, 9, 3, 11, 5, 13, 7, 15);
-  const Half rows[4] = {__builtin_shufflevector(xy, z, 0, 1, 8, 9, 4, 5, 12, 13), __builtin_shufflevector(xy_odd, z_odd, 0, 1, 8, 9, 4, 5, 12, 13),
-                        __builtin_shufflevector(xy, z, 2, 3, 10, 11, 6, 7, 14, 15), __builtin_shufflevector(xy_odd, z_odd, 2, 3, 10, 11, 6, 7, 14, 15)};
+  const Half xy = __builtin_shufflevector(v.x, v.y, 0, 8, 2, 10, 4, 12, 6, 14),
+             z = __builtin_shufflevector(v.z, none, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Half xy_odd = __builtin_shufflevector(v.x, v.y, 1, 9, 3, 11, 5, 13, 7, 15),
+             z_odd = __builtin_shufflevector(v.z, none, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Half rows[4] = {__builtin_shufflevector(xy, z, 0, 1, 8, 9, 4, 5, 12, 13),
+                        __builtin_shufflevector(xy_odd, z_odd, 0, 1, 8, 9, 4, 5, 12, 13),
+                        __builtin_shufflevector(xy, z, 2, 3, 10, 11, 6, 7, 14, 15),
+                        __builtin_shufflevector(xy_odd, z_odd, 2, 3, 10, 11, 6, 7, 14, 15)};
   for (int l = 0; l < 4; ++l) {
     subtract_four(field + at[l], __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3));
     subtract_four(field + at[l + 4], __builtin_shufflevector(rows[l], rows[l], 4, 5, 6, 7));
@@ -106,8 +120,10 @@ PALPATE_INLINE void scatter_subtract(double* field, const int* at, const Half3& 
 #elif PALPATE_LANES == 8
 PALPATE_INLINE void scatter_subtract(double* field, const int* at, const Half3& v) {
   const Half none{};
-  const Half xy = __builtin_shufflevector(v.x, v.y, 0, 4, 2, 6), z = __builtin_shufflevector(v.z, none, 0, 4, 2, 6);
-  const Half xy_odd = __builtin_shufflevector(v.x, v.y, 1, 5, 3, 7), z_odd = __builtin_shufflevector(v.z, none, 1, 5, 3, 7);
+  const Half xy = __builtin_shufflevector(v.x, v.y, 0, 4, 2, 6),
+             z = __builtin_shufflevector(v.z, none, 0, 4, 2, 6);
+  const Half xy_odd = __builtin_shufflevector(v.x, v.y, 1, 5, 3, 7),
+             z_odd = __builtin_shufflevector(v.z, none, 1, 5, 3, 7);
   subtract_four(field + at[0], __builtin_shufflevector(xy, z, 0, 1, 4, 5));
   subtract_four(field + at[1], __builtin_shufflevector(xy_odd, z_odd, 0, 1, 4, 5));
   subtract_four(field + at[2], __builtin_shufflevector(xy, z, 2, 3, 6, 7));
@@ -125,7 +141,8 @@ PALPATE_INLINE void scatter_subtract(double* field, const int* at, const Half3& 
 #endif
 
 void multiply_balanced(const PackedRows& A, const double* mass, double unit, const double* v, double* Av) {
-  const std::int64_t begin = 4 * static_cast<std::int64_t>(A.first_node), end = 4 * static_cast<std::int64_t>(A.last_node);
+  const std::int64_t begin = 4 * static_cast<std::int64_t>(A.first_node),
+                     end = 4 * static_cast<std::int64_t>(A.last_node);
   for (std::int64_t k = begin; k < end; ++k) Av[k] = 0.0;
   for (int g = A.first_group; g < A.last_group; ++g)
     for (int part = 0; part < 2 * kParts; ++part) {
@@ -136,14 +153,22 @@ void multiply_balanced(const PackedRows& A, const double* mass, double unit, con
         const float* values = A.values + kNumbersOfStep * s + kHalf * part;
         const int* column = A.column + kLanesOfGroup * s + kHalf * part;
         if (part == 0)
-          for (int line = 0; line < kNumbersOfStep; line += 16) __builtin_prefetch(values + kFloatsAhead + line);
+          for (int line = 0; line < kNumbersOfStep; line += 16)
+            __builtin_prefetch(values + kFloatsAhead + line);
         Half block[9];
-        for (int k = 0; k < 9; ++k) block[k] = __builtin_convertvector(*reinterpret_cast<const HalfSingle*>(values + kLanesOfGroup * k), Half);
+        for (int k = 0; k < 9; ++k)
+          block[k] =
+              __builtin_convertvector(*reinterpret_cast<const HalfSingle*>(values + kLanesOfGroup * k), Half);
         gather(v, column, other);
         const Half x = other.x - own.x, y = other.y - own.y, z = other.z - own.z;
-        sum = {sum.x - block[0] * x - block[3] * y - block[6] * z, sum.y - block[1] * x - block[4] * y - block[7] * z, sum.z - block[2] * x - block[5] * y - block[8] * z};
+        sum = {sum.x - block[0] * x - block[3] * y - block[6] * z,
+               sum.y - block[1] * x - block[4] * y - block[7] * z,
+               sum.z - block[2] * x - block[5] * y - block[8] * z};
         if (s < A.single_start[g])
-          scatter_subtract(Av, column, {block[0] * x + block[1] * y + block[2] * z, block[3] * x + block[4] * y + block[5] * z, block[6] * x + block[7] * y + block[8] * z});
+          scatter_subtract(
+              Av, column,
+              {block[0] * x + block[1] * y + block[2] * z, block[3] * x + block[4] * y + block[5] * z,
+               block[6] * x + block[7] * y + block[8] * z});
       }
       scatter_subtract(Av, row, sum);
     }
@@ -151,7 +176,8 @@ void multiply_balanced(const PackedRows& A, const double* mass, double unit, con
 }
 
 // By cofactors, eight nodes in lanes.  Positive definite exactly when the leading minors are (Sylvester).
-bool invert_diagonal(const double* values, const int* slot, double scale, float* inverse, int first, int last) {
+bool invert_diagonal(const double* values, const int* slot, double scale, float* inverse, int first,
+                     int last) {
   bool definite = true;
   for (int from = first; from < last; from += 8) {
     const int count = last - from < 8 ? last - from : 8;
@@ -168,8 +194,10 @@ bool invert_diagonal(const double* values, const int* slot, double scale, float*
       zz[l] = b[8];
     }
     for (int l = 0; l < 8; ++l) {
-      const double a = yy[l] * zz[l] - yz[l] * yz[l], b = xz[l] * yz[l] - xy[l] * zz[l], c = xy[l] * yz[l] - xz[l] * yy[l];
-      const double minor = xx[l] * yy[l] - xy[l] * xy[l], det = xx[l] * a + xy[l] * b + xz[l] * c, by = 1.0 / (scale * det);
+      const double a = yy[l] * zz[l] - yz[l] * yz[l], b = xz[l] * yz[l] - xy[l] * zz[l],
+                   c = xy[l] * yz[l] - xz[l] * yy[l];
+      const double minor = xx[l] * yy[l] - xy[l] * xy[l], det = xx[l] * a + xy[l] * b + xz[l] * c,
+                   by = 1.0 / (scale * det);
       good[l] = xx[l] > 0.0 && minor > 0.0 && det > 0.0;
       out[0][l] = a * by;
       out[1][l] = b * by;

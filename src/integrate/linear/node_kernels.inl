@@ -1,5 +1,6 @@
-// The kernels of node_kernels.h for one instruction set: PALPATE_SET names it, PALPATE_LANES is its width in floats (4, 8, 16).
-// Nothing here calls a function of a library: an inline one, compiled for this set, could be linked into code for another.
+// The kernels of node_kernels.h for one instruction set: PALPATE_SET names it, PALPATE_LANES is its width in
+// floats (4, 8, 16). Nothing here calls a function of a library: an inline one, compiled for this set, could
+// be linked into code for another.
 
 #include "integrate/linear/node_kernels.h"
 
@@ -10,10 +11,10 @@ namespace PALPATE_SET {
 #define PALPATE_INLINE [[gnu::always_inline]] static inline
 #define PALPATE_INLINE_MEMBER [[gnu::always_inline]] inline
 
+#include "integrate/linear/node_doubles.inl"
+#include "integrate/linear/node_iteration.inl"
 #include "integrate/linear/node_lanes.inl"
 #include "integrate/linear/node_products.inl"
-#include "integrate/linear/node_iteration.inl"
-#include "integrate/linear/node_doubles.inl"
 #include "integrate/linear/node_starts.inl"
 
 #undef PALPATE_INLINE
@@ -23,7 +24,10 @@ namespace PALPATE_SET {
 }  // namespace
 }  // namespace palpate::integrate
 
-#define PALPATE_KERNELS_OF(set)                                                                                                              \
-  {#set, set::product, set::pack, set::balance, set::multiply, set::multiply_balanced, set::update, set::jacobi, set::gather_rigid, set::direction, set::first_direction, set::dense, \
-   set::invert, set::convert, set::multiply_double, set::gram, set::combine, set::leave, set::difference, set::residual, set::image, set::correct, set::put_nodes, set::add_nodes, \
-   set::invert_diagonal}
+#define PALPATE_KERNELS_OF(set)                                                                        \
+  {                                                                                                    \
+#set, set::product, set::pack, set::balance, set::multiply, set::multiply_balanced, set::update,   \
+        set::jacobi, set::gather_rigid, set::direction, set::first_direction, set::dense, set::invert, \
+        set::convert, set::multiply_double, set::gram, set::combine, set::leave, set::difference,      \
+        set::residual, set::image, set::correct, set::put_nodes, set::add_nodes, set::invert_diagonal  \
+  }

@@ -7,7 +7,8 @@ namespace {
 
 class Bisection {
  public:
-  Bisection(const dynamics::BlockSparse& A, NodeOrder& order) : A_(A), order_(order), part_(order.node.size(), 0) {}
+  Bisection(const dynamics::BlockSparse& A, NodeOrder& order)
+      : A_(A), order_(order), part_(order.node.size(), 0) {}
 
   /// Cuts nodes [first, last) of the order into `count` and appends their ends.
   void cut(int first, int last, int count, std::vector<int>& ends) {
@@ -16,8 +17,10 @@ class Bisection {
       return;
     }
     breadth_first(first, last, order_.node[static_cast<std::size_t>(first)]);
-    breadth_first(first, last, order_.node[static_cast<std::size_t>(last) - 1]);  // the last reached lies at an end
-    const int left = count / 2, middle = first + static_cast<int>(static_cast<long>(last - first) * left / count);
+    // the last reached lies at an end
+    breadth_first(first, last, order_.node[static_cast<std::size_t>(last) - 1]);
+    const int left = count / 2,
+              middle = first + static_cast<int>(static_cast<long>(last - first) * left / count);
     ++parts_;
     for (int k = first; k < middle; ++k) part_[node(k)] = parts_;
     ++parts_;
@@ -29,7 +32,8 @@ class Bisection {
  private:
   std::size_t node(int k) const { return static_cast<std::size_t>(order_.node[static_cast<std::size_t>(k)]); }
 
-  /// Puts [first, last) in the order in which a search from `root` inside this part reaches them; what hangs apart follows from its own first node.
+  /// Puts [first, last) in the order in which a search from `root` inside this part reaches them; what hangs
+  /// apart follows from its own first node.
   void breadth_first(int first, int last, int root) {
     queue_.assign(1, root);
     const int part = part_[static_cast<std::size_t>(root)], seen = -1 - part;
@@ -75,8 +79,11 @@ NodeOrder cluster_nodes(const dynamics::BlockSparse& A, int clusters, int parts,
   Bisection bisection(A, order);
   std::vector<int> part_start(1, 0);
   bisection.cut(0, n, parts, part_start);
-  const auto cut_each = [&](const std::vector<int>& of, int count, std::vector<int>& start, std::vector<int>& first) {
-    const auto share = [&](std::size_t k) { return static_cast<int>(static_cast<std::size_t>(count) * k / (of.size() - 1)); };
+  const auto cut_each = [&](const std::vector<int>& of, int count, std::vector<int>& start,
+                            std::vector<int>& first) {
+    const auto share = [&](std::size_t k) {
+      return static_cast<int>(static_cast<std::size_t>(count) * k / (of.size() - 1));
+    };
     for (std::size_t p = 0; p + 1 < of.size(); ++p) {
       bisection.cut(of[p], of[p + 1], std::min(share(p + 1) - share(p), of[p + 1] - of[p]), start);
       first.push_back(static_cast<int>(start.size()) - 1);

@@ -1,27 +1,36 @@
 // A part of node_kernels.inl: what works on packed rows in single precision, products and what fills them.
 
-PALPATE_INLINE Wide number(const float* values, int k) { return *reinterpret_cast<const WideInMemory*>(values + kLanesOfGroup * k); }
+PALPATE_INLINE Wide number(const float* values, int k) {
+  return *reinterpret_cast<const WideInMemory*>(values + kLanesOfGroup * k);
+}
 
 /// B v and B^T v of the blocks at `values`.
 PALPATE_INLINE Lanes3 times(const float* values, const Lanes3& v) {
-  return {number(values, 0) * v.x + number(values, 3) * v.y + number(values, 6) * v.z, number(values, 1) * v.x + number(values, 4) * v.y + number(values, 7) * v.z,
+  return {number(values, 0) * v.x + number(values, 3) * v.y + number(values, 6) * v.z,
+          number(values, 1) * v.x + number(values, 4) * v.y + number(values, 7) * v.z,
           number(values, 2) * v.x + number(values, 5) * v.y + number(values, 8) * v.z};
 }
 PALPATE_INLINE Lanes3 turned_times(const float* values, const Lanes3& v) {
-  return {number(values, 0) * v.x + number(values, 1) * v.y + number(values, 2) * v.z, number(values, 3) * v.x + number(values, 4) * v.y + number(values, 5) * v.z,
+  return {number(values, 0) * v.x + number(values, 1) * v.y + number(values, 2) * v.z,
+          number(values, 3) * v.x + number(values, 4) * v.y + number(values, 5) * v.z,
           number(values, 6) * v.x + number(values, 7) * v.y + number(values, 8) * v.z};
 }
 
 /// Q += A P for N vectors by one part of a group; of a balanced matrix without the mass.
 template <bool kWhole, int N>
-PALPATE_INLINE void add_group(const PackedRows& A, const float* const* P, float* const* Q, int group, int part) {
-  const int *row = A.row + kLanesOfGroup * group + kLanes * part, single = A.single_start[group], end = A.step_start[group + 1];
-  const int* column = A.column + kLanesOfGroup * static_cast<std::int64_t>(A.step_start[group]) + kLanes * part;
-  const float* values = A.values + kNumbersOfStep * static_cast<std::int64_t>(A.step_start[group]) + kLanes * part;
+PALPATE_INLINE void add_group(const PackedRows& A, const float* const* P, float* const* Q, int group,
+                              int part) {
+  const int *row = A.row + kLanesOfGroup * group + kLanes * part, single = A.single_start[group],
+            end = A.step_start[group + 1];
+  const int* column =
+      A.column + kLanesOfGroup * static_cast<std::int64_t>(A.step_start[group]) + kLanes * part;
+  const float* values =
+      A.values + kNumbersOfStep * static_cast<std::int64_t>(A.step_start[group]) + kLanes * part;
   Lanes3 own[N], sum[N], v;
   for (int n = 0; n < N; ++n) {
     gather(P[n], row, own[n]);
-    sum[n] = kWhole ? times(A.own + kNumbersOfStep * static_cast<std::int64_t>(group) + kLanes * part, own[n]) : Lanes3{};
+    sum[n] = kWhole ? times(A.own + kNumbersOfStep * static_cast<std::int64_t>(group) + kLanes * part, own[n])
+                    : Lanes3{};
   }
   int s = A.step_start[group];
   const auto next = [&]() __attribute__((always_inline)) {
@@ -103,7 +112,8 @@ PALPATE_INLINE auto by_count(int count, Work&& work) {
 template <int N>
 PALPATE_INLINE void add_mass(const PackedRows& A, const float* const* V, float* const* AV) {
   for (int i = A.first_node; i < A.last_node; ++i)
-    for (int n = 0; n < N; ++n) store(AV[n] + 4 * i, load(AV[n] + 4 * i) + load(A.mass + 4 * i) * load(V[n] + 4 * i));
+    for (int n = 0; n < N; ++n)
+      store(AV[n] + 4 * i, load(AV[n] + 4 * i) + load(A.mass + 4 * i) * load(V[n] + 4 * i));
 }
 template <int N>
 PALPATE_INLINE void multiply_columns(const PackedRows& A, const float* const* V, float* const* AV) {
@@ -113,7 +123,8 @@ PALPATE_INLINE void multiply_columns(const PackedRows& A, const float* const* V,
   }
 }
 void multiply(const PackedRows& A, int count, const float* const* V, float* const* AV) {
-  by_count(count, [&](auto n) __attribute__((always_inline)) { multiply_columns<decltype(n)::value>(A, V, AV); });
+  by_count(
+      count, [&](auto n) __attribute__((always_inline)) { multiply_columns<decltype(n)::value>(A, V, AV); });
 }
 
 /// Asks for the blocks of a later place in `offset`.
@@ -143,7 +154,9 @@ PALPATE_INLINE void take_blocks(const BlockSource& from, std::int64_t at, int pa
     }
 }
 PALPATE_INLINE void put_blocks(float* values, std::int64_t step, int part, const Wide* block) {
-  for (int k = 0; k < 9; ++k) *reinterpret_cast<WideInMemory*>(values + kNumbersOfStep * step + kLanes * part + kLanesOfGroup * k) = block[k];
+  for (int k = 0; k < 9; ++k)
+    *reinterpret_cast<WideInMemory*>(values + kNumbersOfStep * step + kLanes * part + kLanesOfGroup * k) =
+        block[k];
 }
 
 void pack(const PackedRows& A, const BlockSource& from) {
@@ -156,7 +169,8 @@ void pack(const PackedRows& A, const BlockSource& from) {
     }
   };
   for (std::int64_t g = A.first_group; g < A.last_group; ++g) move(g, A.own, g);
-  for (std::int64_t s = A.step_start[A.first_group]; s < A.step_start[A.last_group]; ++s) move(A.groups + s, A.values, s);
+  for (std::int64_t s = A.step_start[A.first_group]; s < A.step_start[A.last_group]; ++s)
+    move(A.groups + s, A.values, s);
 }
 
 /// xx, yy, zz and yz, xz, xy of symmetric blocks.
@@ -164,18 +178,24 @@ struct Symmetric {
   Lanes3 diagonal, off;
 };
 PALPATE_INLINE Symmetric symmetric_part(const Wide* block) {
-  return {{block[0], block[4], block[8]}, {0.5f * (block[7] + block[5]), 0.5f * (block[6] + block[2]), 0.5f * (block[3] + block[1])}};
+  return {{block[0], block[4], block[8]},
+          {0.5f * (block[7] + block[5]), 0.5f * (block[6] + block[2]), 0.5f * (block[3] + block[1])}};
 }
 
-/// By cofactors of the block over its trace.  Positive definite exactly when the leading minors are (Sylvester).
+/// By cofactors of the block over its trace.  Positive definite exactly when the leading minors are
+/// (Sylvester).
 PALPATE_INLINE WideIndex invert_own(const Symmetric& own, float* inverse, const int* row) {
   const Wide trace = own.diagonal.x + own.diagonal.y + own.diagonal.z, by = 1.0f / trace;
-  const Wide xx = by * own.diagonal.x, yy = by * own.diagonal.y, zz = by * own.diagonal.z, yz = by * own.off.x, xz = by * own.off.y, xy = by * own.off.z;
+  const Wide xx = by * own.diagonal.x, yy = by * own.diagonal.y, zz = by * own.diagonal.z,
+             yz = by * own.off.x, xz = by * own.off.y, xy = by * own.off.z;
   const Wide a = yy * zz - yz * yz, b = xz * yz - xy * zz, c = xy * yz - xz * yy;
   const Wide minor = xx * yy - xy * xy, det = xx * a + xy * b + xz * c, scale = by / det;
   const Wide d = (xx * zz - xz * xz) * scale, e = (xy * xz - xx * yz) * scale;
   const auto put = [&](int to, const Lanes3& three) __attribute__((always_inline)) {
-    each_lane(three, [&](int lane, const Four& numbers) __attribute__((always_inline)) { store(inverse + inverse_place(row[lane] / 4) + to, numbers); });
+    each_lane(
+        three, [&](int lane, const Four& numbers) __attribute__((always_inline)) {
+          store(inverse + inverse_place(row[lane] / 4) + to, numbers);
+        });
   };
   put(0, {a * scale, d, minor * scale});
   put(kToOffDiagonal, {e, c * scale, b * scale});
@@ -183,7 +203,9 @@ PALPATE_INLINE WideIndex invert_own(const Symmetric& own, float* inverse, const 
 }
 
 template <int N>
-PALPATE_INLINE Balanced balance_columns(const PackedRows& A, const BlockSource& from, float* sums, float* inverse, double* trace, const float* const* V, float* const* AV) {
+PALPATE_INLINE Balanced balance_columns(const PackedRows& A, const BlockSource& from, float* sums,
+                                        float* inverse, double* trace, const float* const* V,
+                                        float* const* AV) {
   set_zero<N>(A, AV);
   float* off = sums + 4;  // eight numbers a node
   for (int i = A.first_node; i < A.last_node; ++i) {
@@ -191,8 +213,14 @@ PALPATE_INLINE Balanced balance_columns(const PackedRows& A, const BlockSource& 
     store(off + 8 * i, Four{});
   }
   const auto add = [&](const int* at, const Symmetric& part) __attribute__((always_inline)) {
-    each_lane(part.diagonal, [&](int lane, const Four& three) __attribute__((always_inline)) { store(sums + 2 * at[lane], load(sums + 2 * at[lane]) + three); });
-    each_lane(part.off, [&](int lane, const Four& three) __attribute__((always_inline)) { store(off + 2 * at[lane], load(off + 2 * at[lane]) + three); });
+    each_lane(
+        part.diagonal, [&](int lane, const Four& three) __attribute__((always_inline)) {
+          store(sums + 2 * at[lane], load(sums + 2 * at[lane]) + three);
+        });
+    each_lane(
+        part.off, [&](int lane, const Four& three) __attribute__((always_inline)) {
+          store(off + 2 * at[lane], load(off + 2 * at[lane]) + three);
+        });
   };
   for (int g = A.first_group; g < A.last_group; ++g)
     for (int part = 0; part < kParts; ++part) {
@@ -224,7 +252,8 @@ PALPATE_INLINE Balanced balance_columns(const PackedRows& A, const BlockSource& 
       gather(off, twice, own.off);
       probe += (own.diagonal.x + own.diagonal.y + own.diagonal.z + own.off.x + own.off.y + own.off.z) * 0.0f;
       own = {m - own.diagonal, Lanes3{} - own.off};
-      const Wide block[9] = {own.diagonal.x, own.off.z, own.off.y, own.off.z, own.diagonal.y, own.off.x, own.off.y, own.off.x, own.diagonal.z};
+      const Wide block[9] = {own.diagonal.x, own.off.z, own.off.y, own.off.z,     own.diagonal.y,
+                             own.off.x,      own.off.y, own.off.x, own.diagonal.z};
       put_blocks(A.own, g, part, block);
       definite &= invert_own(own, inverse, row);
     }
@@ -238,6 +267,10 @@ PALPATE_INLINE Balanced balance_columns(const PackedRows& A, const BlockSource& 
     if (!definite[l]) return Balanced::kNotDefinite;
   return Balanced::kOk;
 }
-Balanced balance(const PackedRows& A, const BlockSource& from, float* sums, float* inverse, double* trace, int count, const float* const* V, float* const* AV) {
-  return by_count(count, [&](auto n) __attribute__((always_inline)) { return balance_columns<decltype(n)::value>(A, from, sums, inverse, trace, V, AV); });
+Balanced balance(const PackedRows& A, const BlockSource& from, float* sums, float* inverse, double* trace,
+                 int count, const float* const* V, float* const* AV) {
+  return by_count(
+      count, [&](auto n) __attribute__((always_inline)) {
+        return balance_columns<decltype(n)::value>(A, from, sums, inverse, trace, V, AV);
+      });
 }

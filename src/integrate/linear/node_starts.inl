@@ -1,13 +1,21 @@
-// A part of node_kernels.inl: starts from earlier solutions, and the way between an iteration in single precision and its problem in double.
+// A part of node_kernels.inl: starts from earlier solutions, and the way between an iteration in single
+// precision and its problem in double.
 
-PALPATE_INLINE void take(const float* p, FourDouble& out) { out = __builtin_convertvector(load(p), FourDouble); }
-PALPATE_INLINE void take(const double* p, FourDouble& out) { out = *reinterpret_cast<const FourDoubleAnywhere*>(p); }
+PALPATE_INLINE void take(const float* p, FourDouble& out) {
+  out = __builtin_convertvector(load(p), FourDouble);
+}
+PALPATE_INLINE void take(const double* p, FourDouble& out) {
+  out = *reinterpret_cast<const FourDoubleAnywhere*>(p);
+}
 PALPATE_INLINE void put(double* p, const FourDouble& v) { *reinterpret_cast<FourDoubleAnywhere*>(p) = v; }
 
 template <int N>
-[[gnu::always_inline]] static inline void gram_of(const double* y, const float* const* V, const float* const* AV, const double* b, int first, int last, double* out) {
+[[gnu::always_inline]] static inline void gram_of(const double* y, const float* const* V,
+                                                  const float* const* AV, const double* b, int first,
+                                                  int last, double* out) {
   FourDouble sum[kMostSums] = {}, square{};
-  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last);
+       k += 4) {
     FourDouble v[N + 1], Av[N + 1], right;
     for (int n = 0; n < N; ++n) {
       take(V[n] + k, v[n]);
@@ -25,14 +33,20 @@ template <int N>
   for (int at = 0; at < kSums; ++at) out[at] = sum3(sum[at]);
   out[kSums] = sum3(square);
 }
-void gram(int count, const double* y, const float* const* V, const float* const* AV, const double* b, int first, int last, double* out) {
-  by_count(count, [&](auto n) __attribute__((always_inline)) { gram_of<decltype(n)::value>(y, V, AV, b, first, last, out); });
+void gram(int count, const double* y, const float* const* V, const float* const* AV, const double* b,
+          int first, int last, double* out) {
+  by_count(
+      count, [&](auto n) __attribute__((always_inline)) {
+        gram_of<decltype(n)::value>(y, V, AV, b, first, last, out);
+      });
 }
 
 template <int N>
-[[gnu::always_inline]] static inline void combine_of(const double* y, const float* const* V, double* x, int first, int last) {
+[[gnu::always_inline]] static inline void combine_of(const double* y, const float* const* V, double* x,
+                                                     int first, int last) {
   double* to = x;
-  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4, to += 4) {
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last);
+       k += 4, to += 4) {
     FourDouble sum{}, v;
     for (int n = 0; n < N; ++n) {
       take(V[n] + k, v);
@@ -42,12 +56,16 @@ template <int N>
   }
 }
 void combine(int count, const double* y, const float* const* V, double* x, int first, int last) {
-  by_count(count, [&](auto n) __attribute__((always_inline)) { combine_of<decltype(n)::value>(y, V, x, first, last); });
+  by_count(
+      count, [&](auto n)
+                 __attribute__((always_inline)) { combine_of<decltype(n)::value>(y, V, x, first, last); });
 }
 
 template <int N>
-[[gnu::always_inline]] static inline void leave_of(const double* y, double by, const float* const* AV, const double* b, float* r, int first, int last) {
-  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
+[[gnu::always_inline]] static inline void leave_of(const double* y, double by, const float* const* AV,
+                                                   const double* b, float* r, int first, int last) {
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last);
+       k += 4) {
     FourDouble left, image;
     take(b + k, left);
     for (int n = 0; n < N; ++n) {
@@ -57,14 +75,20 @@ template <int N>
     store(r + k, __builtin_convertvector(by * left, Four));
   }
 }
-void leave(int count, const double* y, double by, const float* const* AV, const double* b, float* r, int first, int last) {
-  by_count(count, [&](auto n) __attribute__((always_inline)) { leave_of<decltype(n)::value>(y, by, AV, b, r, first, last); });
+void leave(int count, const double* y, double by, const float* const* AV, const double* b, float* r,
+           int first, int last) {
+  by_count(
+      count, [&](auto n) __attribute__((always_inline)) {
+        leave_of<decltype(n)::value>(y, by, AV, b, r, first, last);
+      });
 }
 
 template <int N>
-[[gnu::always_inline]] static inline void difference_of(double by, double change, const double* x, float* const* V, int first, int last) {
+[[gnu::always_inline]] static inline void difference_of(double by, double change, const double* x,
+                                                        float* const* V, int first, int last) {
   const double* from = x;
-  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4, from += 4) {
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last);
+       k += 4, from += 4) {
     FourDouble value, old;
     take(from, value);
     value *= by;
@@ -76,11 +100,15 @@ template <int N>
   }
 }
 void difference(int count, double by, double change, const double* x, float* const* V, int first, int last) {
-  by_count(count, [&](auto n) __attribute__((always_inline)) { difference_of<decltype(n)::value>(by, change, x, V, first, last); });
+  by_count(
+      count, [&](auto n) __attribute__((always_inline)) {
+        difference_of<decltype(n)::value>(by, change, x, V, first, last);
+      });
 }
 
 void residual(double by, const double* b, const double* Ax, float* r, int first, int last) {
-  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4) {
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last);
+       k += 4) {
     FourDouble right, image;
     take(b + k, right);
     take(Ax + k, image);
@@ -90,7 +118,8 @@ void residual(double by, const double* b, const double* Ax, float* r, int first,
 
 void image(double by, const double* b, const float* r, double* Ax, int first, int last) {
   double* to = Ax;
-  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4, to += 4) {
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last);
+       k += 4, to += 4) {
     FourDouble right, left = __builtin_convertvector(load(r + k), FourDouble);
     take(b + k, right);
     put(to, right - by * left);
@@ -99,7 +128,8 @@ void image(double by, const double* b, const float* r, double* Ax, int first, in
 
 void correct(double by, const float* d, float a, const float* p, double* x, int first, int last) {
   double* to = x;
-  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last); k += 4, to += 4) {
+  for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last);
+       k += 4, to += 4) {
     FourDouble point, change = __builtin_convertvector(load(d + k) + a * load(p + k), FourDouble);
     take(to, point);
     put(to, point + by * change);

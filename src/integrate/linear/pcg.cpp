@@ -13,10 +13,11 @@ namespace {
 using dynamics::BorderedMatrix;
 using dynamics::SolveStatus;
 
-/// A fresh factor by CHOLMOD and its solve cost as much as some 400 products (measured in one run each at 3,700 and 11,172 nodes of a beam): far
-/// beyond that an iteration is lost.
+/// A fresh factor by CHOLMOD and its solve cost as much as some 400 products (measured in one run each at
+/// 3,700 and 11,172 nodes of a beam): far beyond that an iteration is lost.
 constexpr int kIterationLimit = 1000;
-/// The recurrence of the residual drifts from b - A x by rounding; so often is it set right before the tolerance counts as out of reach.
+/// The recurrence of the residual drifts from b - A x by rounding; so often is it set right before the
+/// tolerance counts as out of reach.
 constexpr int kResidualReplacements = 3;
 /// The nodes' answer to the border, for the preconditioner: relative residual, and most products a column.
 constexpr double kCoarseTolerance = 0.1;
@@ -25,25 +26,30 @@ constexpr int kCoarseLimit = 10;
 /// Conjugate gradients (Hestenes and Stiefel 1952).  The preconditioner of
 ///     A = [ B  R ]   nodes                    P^-1 = [ J^-1  0 ] + Z E^-1 Z^T,     Z = [ W ],   E = Z^T A Z
 ///         [ R' C ]   border (a tool)                 [ 0     0 ]                       [ I ]
-/// is block Jacobi on the nodes, J the 3x3 blocks of B, and a coarse space: each direction of the border with the displacement W that the nodes
-/// answer it with.  With W = -B^-1 R, E is the border's Schur complement, and P^-1 A has the spectrum of J^-1 B and ones: a tool, however
-/// stiff its contacts, costs no iteration.  With the corner C alone (W = 0) the soft directions in which nodes and tool move together would be taken
-/// for as stiff as the contact.  So W is found by conjugate gradients on B, from the last W on, to a tenth only: Galerkin's E is positive definite
-/// at any W where A is.
+/// is block Jacobi on the nodes, J the 3x3 blocks of B, and a coarse space: each direction of the border with
+/// the displacement W that the nodes answer it with.  With W = -B^-1 R, E is the border's Schur complement,
+/// and P^-1 A has the spectrum of J^-1 B and ones: a tool, however stiff its contacts, costs no iteration.
+/// With the corner C alone (W = 0) the soft directions in which nodes and tool move together would be taken
+/// for as stiff as the contact.  So W is found by conjugate gradients on B, from the last W on, to a tenth
+/// only: Galerkin's E is positive definite at any W where A is.
 ///
-/// Warm start: x0 = a y with y the last solution of the same column, and a = (y . b) / (y . A y) the minimum of the error's A-norm along y; never worse than zero.
+/// Warm start: x0 = a y with y the last solution of the same column, and a = (y . b) / (y . A y) the minimum
+/// of the error's A-norm along y; never worse than zero.
 ///
-/// The end: |r| <= rtol |b| in the Euclidean norm, and |r|_{P^-1} <= rtol |b|_{P^-1}, which no choice of units changes (forces and moments stand in one
-/// vector).  Both are looked at once more with b - A x itself.  From the second follows for the error e and the condition kappa of P^-1 A
+/// The end: |r| <= rtol |b| in the Euclidean norm, and |r|_{P^-1} <= rtol |b|_{P^-1}, which no choice of
+/// units changes (forces and moments stand in one vector).  Both are looked at once more with b - A x itself.
+/// From the second follows for the error e and the condition kappa of P^-1 A
 ///     |e|_A <= rtol sqrt(kappa) |x|_A.
 /// Where rounding alone is larger, eps |A| |x| > rtol |b|, no solver reaches that: kNotConverged.
 ///
-/// Under SUNDIALS this is a direct solver: Newton's corrections d are taken as exact, and its rate of convergence is estimated from their norms, with a
-/// failure at a rate of 2, and a correction of 0.1 of the error test's tolerance accepted at once.  An error of rtol sqrt(kappa) |d| adds at most that much to the rate.  With
-/// kappa < 1e10 the default of 1e-8 keeps it below 1e-3: SUNDIALS cannot tell the difference.
+/// Under SUNDIALS this is a direct solver: Newton's corrections d are taken as exact, and its rate of
+/// convergence is estimated from their norms, with a failure at a rate of 2, and a correction of 0.1 of the
+/// error test's tolerance accepted at once.  An error of rtol sqrt(kappa) |d| adds at most that much to the
+/// rate.  With kappa < 1e10 the default of 1e-8 keeps it below 1e-3: SUNDIALS cannot tell the difference.
 ///
-/// A direction of negative curvature, p . A p <= 0, proves A indefinite: in factor() from a block, in solve() from a search direction.
-/// Counted: a preconditioner as a factorisation; every product with A as an iteration, those of the coarse space and the check at the end included.
+/// A direction of negative curvature, p . A p <= 0, proves A indefinite: in factor() from a block, in solve()
+/// from a search direction. Counted: a preconditioner as a factorisation; every product with A as an
+/// iteration, those of the coarse space and the check at the end included.
 class Pcg final : public dynamics::LinearSolver {
  public:
   explicit Pcg(double rtol) : rtol_(rtol) { counters::count("integrate.solver.pcg"); }
@@ -54,8 +60,10 @@ class Pcg final : public dynamics::LinearSolver {
 
   SolveStatus factor(const BorderedMatrix& A) override {
     PALPATE_CHECK(A.symmetric, "solver pcg was given an unsymmetric matrix");
-    const bool same_pattern = matrix_ && A.body.pattern_version() == pattern_version_ && A.nodal_size() == nodal_;
-    const bool same_values = same_pattern && A.values_version != 0 && A.values_version == values_version_ && A.border_size() == border_;
+    const bool same_pattern =
+        matrix_ && A.body.pattern_version() == pattern_version_ && A.nodal_size() == nodal_;
+    const bool same_values = same_pattern && A.values_version != 0 && A.values_version == values_version_ &&
+                             A.border_size() == border_;
     matrix_ = &A;
     if (same_values) return status_;
     if (!same_pattern) find_diagonal(A);
@@ -82,12 +90,15 @@ class Pcg final : public dynamics::LinearSolver {
     X.resize(B.rows(), B.cols());
     remember(B.cols());
     for (Eigen::Index c = 0; c < B.cols(); ++c)
-      if (const SolveStatus status = solve_column(B.col(c).data(), X.col(c).data(), c); status != SolveStatus::kOk) return status;
+      if (const SolveStatus status = solve_column(B.col(c).data(), X.col(c).data(), c);
+          status != SolveStatus::kOk)
+        return status;
     return SolveStatus::kOk;
   }
 
  private:
-  // --- preconditioner -----------------------------------------------------------------------------------------------
+  // --- preconditioner
+  // -----------------------------------------------------------------------------------------------
   void find_diagonal(const BorderedMatrix& A) {
     const ScopedTimer timer(counters_.symbolic_s);
     ++counters_.symbolic;
@@ -99,10 +110,12 @@ class Pcg final : public dynamics::LinearSolver {
   SolveStatus make_preconditioner(const BorderedMatrix& A) {
     const auto& values = A.body.values();
     const Eigen::Map<const VecX> body(values.data(), static_cast<Eigen::Index>(values.size()));
-    if (!all_finite(body) || !all_finite(A.right) || !all_finite(A.bottom) || !all_finite(A.corner)) return SolveStatus::kSingular;
+    if (!all_finite(body) || !all_finite(A.right) || !all_finite(A.bottom) || !all_finite(A.corner))
+      return SolveStatus::kSingular;
     Eigen::LLT<Mat3> block;
     for (std::size_t i = 0; i < diagonal_.size(); ++i) {
-      block.compute(Eigen::Map<const Mat3>(A.body.block(diagonal_[i])));  // symmetric: the order of storage does not matter
+      // symmetric: the order of storage does not matter
+      block.compute(Eigen::Map<const Mat3>(A.body.block(diagonal_[i])));
       if (block.info() != Eigen::Success) return SolveStatus::kIndefinite;
       inverse_[i] = block.solve(Mat3::Identity());
     }
@@ -184,11 +197,14 @@ class Pcg final : public dynamics::LinearSolver {
     z.tail(border_) = y_;
   }
 
-  // --- iteration ----------------------------------------------------------------------------------------------------
+  // --- iteration
+  // ----------------------------------------------------------------------------------------------------
   void check_right_hand_side(Eigen::Index rows) const {
     PALPATE_CHECK(status_ == SolveStatus::kOk, "solver pcg: solve without a factor");
-    PALPATE_CHECK(matrix_->values_version == values_version_, "solver pcg: the matrix changed between factor and solve");
-    PALPATE_CHECK(rows == nodal_ + border_, "right-hand side has {} rows, the matrix {}", rows, nodal_ + border_);
+    PALPATE_CHECK(matrix_->values_version == values_version_,
+                  "solver pcg: the matrix changed between factor and solve");
+    PALPATE_CHECK(rows == nodal_ + border_, "right-hand side has {} rows, the matrix {}", rows,
+                  nodal_ + border_);
   }
 
   /// Room for the solutions of `count` columns; forgets those of another size.
@@ -207,7 +223,8 @@ class Pcg final : public dynamics::LinearSolver {
 
   SolveStatus solve_column(const double* right_hand_side, double* solution, Eigen::Index column) {
     ++counters_.solves;
-    b_ = Eigen::Map<const VecX>(right_hand_side, nodal_ + border_);  // a copy: the solution may stand in its place
+    // a copy: the solution may stand in its place
+    b_ = Eigen::Map<const VecX>(right_hand_side, nodal_ + border_);
     x_.setZero(b_.size());
     const SolveStatus status = b_.isZero(0.0) ? SolveStatus::kOk : iterate(last_.col(column));
     if (status != SolveStatus::kOk) return status;
@@ -271,9 +288,9 @@ class Pcg final : public dynamics::LinearSolver {
   SolveStatus status_ = SolveStatus::kSingular;
   std::vector<int> diagonal_;  ///< slot of each node's own block
   std::vector<Mat3> inverse_;
-  MatX W_, AZ_, E_;            ///< coarse space: the nodes' answer to the border; nodes' rows of A Z; Z^T A Z
-  Eigen::LLT<MatX> coarse_;    ///< of E
-  MatX last_;                  ///< last solution of each column
+  MatX W_, AZ_, E_;          ///< coarse space: the nodes' answer to the border; nodes' rows of A Z; Z^T A Z
+  Eigen::LLT<MatX> coarse_;  ///< of E
+  MatX last_;                ///< last solution of each column
   VecX b_, x_, r_, z_, p_, Ap_, y_;
 };
 

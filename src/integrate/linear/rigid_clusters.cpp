@@ -12,7 +12,8 @@ namespace {
 /// The numbers of the runs that a list of starts makes, for each of their members.
 std::vector<int> run_of_each(const std::vector<int>& start) {
   std::vector<int> run(static_cast<std::size_t>(start.back()));
-  for (std::size_t k = 0; k + 1 < start.size(); ++k) std::fill(run.begin() + start[k], run.begin() + start[k + 1], static_cast<int>(k));
+  for (std::size_t k = 0; k + 1 < start.size(); ++k)
+    std::fill(run.begin() + start[k], run.begin() + start[k + 1], static_cast<int>(k));
   return run;
 }
 
@@ -27,8 +28,8 @@ Eigen::Matrix3f skew(const Eigen::Vector3f& a) {
   return m;
 }
 
-/// A direction that no node moves in (a cluster held whole, a turn without arms) stands alone; a tiny share of the diagonal covers rounding in the turn of a
-/// cluster whose nodes lie on a line.
+/// A direction that no node moves in (a cluster held whole, a turn without arms) stands alone; a tiny share
+/// of the diagonal covers rounding in the turn of a cluster whose nodes lie on a line.
 float regular(float own) { return own > 0.0f ? own * (1.0f + 1e-5f) : 1.0f; }
 
 }  // namespace
@@ -45,10 +46,14 @@ void RigidClusters::prepare(const NodeOrder& order) {
   E_.assign(static_cast<std::size_t>(size_) * static_cast<std::size_t>(stride_), 0.0f);
 }
 
-/// In units of the piece's mean radius, and pieces in those of the cluster's, so that rows of forces and of moments are of one size.
+/// In units of the piece's mean radius, and pieces in those of the cluster's, so that rows of forces and of
+/// moments are of one size.
 void RigidClusters::place_arms(const NodeOrder& order, const double* positions) {
   const auto position = [&](int k) -> Vec3 {
-    return positions ? Vec3(Eigen::Map<const Vec3>(positions + 3 * static_cast<std::ptrdiff_t>(order.node[static_cast<std::size_t>(k)]))) : Vec3::Zero();
+    return positions
+               ? Vec3(Eigen::Map<const Vec3>(
+                     positions + 3 * static_cast<std::ptrdiff_t>(order.node[static_cast<std::size_t>(k)])))
+               : Vec3::Zero();
   };
   const auto around = [&](int first, int last) {
     MeanBall ball;
@@ -60,10 +65,12 @@ void RigidClusters::place_arms(const NodeOrder& order, const double* positions) 
   };
   for (std::size_t c = 0; c + 1 < order.start.size(); ++c) {
     const MeanBall cluster = around(order.start[c], order.start[c + 1]);
-    for (auto p = static_cast<std::size_t>(order.piece[c]); p < static_cast<std::size_t>(order.piece[c + 1]); ++p) {
+    for (auto p = static_cast<std::size_t>(order.piece[c]); p < static_cast<std::size_t>(order.piece[c + 1]);
+         ++p) {
       const int first = order.piece_start[p], last = order.piece_start[p + 1];
       const MeanBall piece = finer_ ? around(first, last) : cluster;
-      const double by = piece.radius > 0.0 ? 1.0 / piece.radius : 0.0, in_cluster = cluster.radius > 0.0 ? 1.0 / cluster.radius : 0.0;
+      const double by = piece.radius > 0.0 ? 1.0 / piece.radius : 0.0,
+                   in_cluster = cluster.radius > 0.0 ? 1.0 / cluster.radius : 0.0;
       pieces_[p].offset = (in_cluster * (piece.centre - cluster.centre)).cast<float>();
       pieces_[p].radius = static_cast<float>(in_cluster * piece.radius);
       for (int k = first; k < last; ++k) {
@@ -81,20 +88,25 @@ Eigen::Vector3f RigidClusters::arm_in_cluster(std::size_t node) const {
   return piece.offset + piece.radius * Eigen::Map<const Eigen::Vector3f>(arm_.data() + 4 * node);
 }
 
-/// A held direction's row is that of the identity: a node that hangs on nothing along some axis moves with no cluster.
+/// A held direction's row is that of the identity: a node that hangs on nothing along some axis moves with no
+/// cluster.
 void RigidClusters::leave_out_held(const SingleMatrix& A) {
-  const auto leave_out = [&](std::size_t node) { std::fill_n(arm_.begin() + 4 * static_cast<std::ptrdiff_t>(node), 4, 0.0f); };
+  const auto leave_out = [&](std::size_t node) {
+    std::fill_n(arm_.begin() + 4 * static_cast<std::ptrdiff_t>(node), 4, 0.0f);
+  };
   for (const std::size_t entry : A.held()) leave_out(entry / 4);
   for (std::size_t i = 0; i < cluster_.size(); ++i) {
     std::array<float, 3> coupling{};
     for (int s = A.row_start()[i] + 1; s < A.row_start()[i + 1]; ++s)
-      for (int k = 0; k < 9; ++k) coupling[static_cast<std::size_t>(k % 3)] += std::abs(A.packing().entry(static_cast<std::size_t>(s), k % 3, k / 3));
+      for (int k = 0; k < 9; ++k)
+        coupling[static_cast<std::size_t>(k % 3)] +=
+            std::abs(A.packing().entry(static_cast<std::size_t>(s), k % 3, k / 3));
     if (*std::min_element(coupling.begin(), coupling.end()) == 0.0f) leave_out(i);
   }
 }
 
-/// E_IJ = sum over i in I, j in J of T_i^T A_ij T_j with T_i = [I, -[arm_i]x]: for each row first G = sum_j A_ij T_j, then T_i^T G.  Likewise the blocks of D,
-/// with arms in pieces.
+/// E_IJ = sum over i in I, j in J of T_i^T A_ij T_j with T_i = [I, -[arm_i]x]: for each row first G = sum_j
+/// A_ij T_j, then T_i^T G.  Likewise the blocks of D, with arms in pieces.
 void RigidClusters::assemble(const SingleMatrix& A) {
   const std::vector<int>&row_start = A.row_start(), &column = A.column();
   using Single3 = Eigen::Matrix3f;
@@ -113,11 +125,14 @@ void RigidClusters::assemble(const SingleMatrix& A) {
     for (int s = row_start[i]; s < row_start[i + 1];) {
       const int J = cluster_[static_cast<std::size_t>(column[static_cast<std::size_t>(s)])];
       Single3 force = Single3::Zero(), moment = Single3::Zero();
-      for (; s < row_start[i + 1] && cluster_[static_cast<std::size_t>(column[static_cast<std::size_t>(s)])] == J; ++s) {
+      for (; s < row_start[i + 1] &&
+             cluster_[static_cast<std::size_t>(column[static_cast<std::size_t>(s)])] == J;
+           ++s) {
         const auto j = static_cast<std::size_t>(column[static_cast<std::size_t>(s)]);
         if (arm_[4 * j + 3] == 0.0f) continue;
         Single3 block;
-        for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = A.packing().entry(static_cast<std::size_t>(s), k % 3, k / 3);
+        for (int k = 0; k < 9; ++k)
+          block(k % 3, k / 3) = A.packing().entry(static_cast<std::size_t>(s), k % 3, k / 3);
         force += block;
         moment.noalias() -= block * skew(arm_in_cluster(j));
         if (!finer_ || piece_[j] != piece_[i]) continue;
@@ -127,12 +142,17 @@ void RigidClusters::assemble(const SingleMatrix& A) {
       if (J < I) continue;  // the other triangle follows
       add(skew(arm_in_cluster(i)), force, moment,
           Eigen::Map<Eigen::Matrix<float, 6, 6, Eigen::RowMajor>, 0, Eigen::OuterStride<>>(
-              E_.data() + static_cast<std::size_t>(6 * I) * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(6 * J), Eigen::OuterStride<>(stride_)));
+              E_.data() + static_cast<std::size_t>(6 * I) * static_cast<std::size_t>(stride_) +
+                  static_cast<std::size_t>(6 * J),
+              Eigen::OuterStride<>(stride_)));
     }
-    if (finer_) add(skew(Eigen::Map<const Eigen::Vector3f>(arm_.data() + 4 * i)), own_force, own_moment, pieces_[static_cast<std::size_t>(piece_[i])].inverse);
+    if (finer_)
+      add(skew(Eigen::Map<const Eigen::Vector3f>(arm_.data() + 4 * i)), own_force, own_moment,
+          pieces_[static_cast<std::size_t>(piece_[i])].inverse);
   }
   for (std::size_t r = 0; r < static_cast<std::size_t>(size_); ++r)
-    for (std::size_t c = r / 6 * 6 + 6; c < static_cast<std::size_t>(size_); ++c) E_[c * static_cast<std::size_t>(stride_) + r] = E_[r * static_cast<std::size_t>(stride_) + c];
+    for (std::size_t c = r / 6 * 6 + 6; c < static_cast<std::size_t>(size_); ++c)
+      E_[c * static_cast<std::size_t>(stride_) + r] = E_[r * static_cast<std::size_t>(stride_) + c];
 }
 
 void RigidClusters::invert_pieces() {
@@ -169,11 +189,13 @@ void RigidClusters::serve(double scale) {
   scale_ = scale;
 }
 
-double RigidClusters::gather(std::size_t cluster, const NodeOrder& order, const NodeKernels& kernels, const float* r, float* of_pieces, float* of_cluster) const {
+double RigidClusters::gather(std::size_t cluster, const NodeOrder& order, const NodeKernels& kernels,
+                             const float* r, float* of_pieces, float* of_cluster) const {
   Eigen::Map<Six> sum(of_cluster);
   sum.setZero();
   double share = 0.0;
-  for (auto p = static_cast<std::size_t>(order.piece[cluster]); p < static_cast<std::size_t>(order.piece[cluster + 1]); ++p) {
+  for (auto p = static_cast<std::size_t>(order.piece[cluster]);
+       p < static_cast<std::size_t>(order.piece[cluster + 1]); ++p) {
     const Piece& piece = pieces_[p];
     Eigen::Map<Six> own(of_pieces + 6 * p);
     kernels.gather_rigid(r, arm(), own.data(), order.piece_start[p], order.piece_start[p + 1]);

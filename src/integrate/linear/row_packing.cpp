@@ -40,7 +40,8 @@ void RowPacking::add_group(const Row* rows, int count) {
     ++steps_;
   };
   for (int l = 0; l < kLanesOfGroup; ++l) row_.push_back(4 * rows[l < count ? l : 0].node);
-  for (int l = 0; l < count; ++l) own_place_[static_cast<std::size_t>(rows[l].node)] = kLanesOfGroup * groups_ + l;
+  for (int l = 0; l < count; ++l)
+    own_place_[static_cast<std::size_t>(rows[l].node)] = kLanesOfGroup * groups_ + l;
   ++groups_;
   step_start_.push_back(steps_);
   for (std::size_t k = 0, most = longest(&Row::shared); k < most; ++k) add_step(&Row::shared, k);
@@ -48,7 +49,8 @@ void RowPacking::add_group(const Row* rows, int count) {
   for (std::size_t k = 0, most = longest(&Row::single); k < most; ++k) add_step(&Row::single, k);
 }
 
-void RowPacking::analyse(const NodeOrder& order, const std::vector<int>& row_start, const std::vector<int>& column) {
+void RowPacking::analyse(const NodeOrder& order, const std::vector<int>& row_start,
+                         const std::vector<int>& column) {
   for (auto* v : {&group_start_, &step_start_, &single_start_, &row_, &column_}) v->clear();
   place_.assign(column.size(), -1);
   own_place_.assign(order.node.size(), -1);
@@ -76,30 +78,39 @@ void RowPacking::analyse(const NodeOrder& order, const std::vector<int>& row_sta
           row.single.push_back({j, s});
         } else if (j > i) {
           const auto from = column.begin() + row_start[static_cast<std::size_t>(j)];
-          pairs.push_back({i, j, s, static_cast<int>(std::lower_bound(from + 1, column.begin() + row_start[static_cast<std::size_t>(j) + 1], i) - column.begin())});
+          pairs.push_back({i, j, s,
+                           static_cast<int>(
+                               std::lower_bound(
+                                   from + 1, column.begin() + row_start[static_cast<std::size_t>(j) + 1], i) -
+                               column.begin())});
           ++taken[static_cast<std::size_t>(i)];
         }
       }
     }
     for (int round = 0; round < kRounds; ++round)
       for (Pair& pair : pairs) {
-        int &mine = taken[static_cast<std::size_t>(pair.low)], &other = taken[static_cast<std::size_t>(pair.high)];
+        int &mine = taken[static_cast<std::size_t>(pair.low)],
+            &other = taken[static_cast<std::size_t>(pair.high)];
         if (mine <= other + 1) continue;
         --mine;
         ++other;
         std::swap(pair.low, pair.high);
         std::swap(pair.block, pair.mirror);
       }
-    for (const Pair& pair : pairs) rows[static_cast<std::size_t>(pair.low - first)].shared.push_back({pair.high, pair.block, pair.mirror});
+    for (const Pair& pair : pairs)
+      rows[static_cast<std::size_t>(pair.low - first)].shared.push_back({pair.high, pair.block, pair.mirror});
     std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) {
-      return a.single.size() != b.single.size() ? a.single.size() < b.single.size() : a.shared.size() < b.shared.size();
+      return a.single.size() != b.single.size() ? a.single.size() < b.single.size()
+                                                : a.shared.size() < b.shared.size();
     });
-    for (std::size_t k = 0; k < rows.size(); k += kLanesOfGroup) add_group(rows.data() + k, static_cast<int>(std::min<std::size_t>(kLanesOfGroup, rows.size() - k)));
+    for (std::size_t k = 0; k < rows.size(); k += kLanesOfGroup)
+      add_group(rows.data() + k, static_cast<int>(std::min<std::size_t>(kLanesOfGroup, rows.size() - k)));
     group_start_.push_back(static_cast<int>(single_start_.size()));
   }
   step_start_.push_back(steps_);
   for (int& place : place_) place += 2 * kLanesOfGroup * groups_;
-  for (std::size_t i = 0; i < own_place_.size(); ++i) place_[static_cast<std::size_t>(row_start[i])] = 2 * own_place_[i];
+  for (std::size_t i = 0; i < own_place_.size(); ++i)
+    place_[static_cast<std::size_t>(row_start[i])] = 2 * own_place_[i];
   constexpr int kReadAhead = 72;  // lines that a product asks for before it gets there
   own_.assign(9 * static_cast<std::size_t>(groups_), {});
   values_.assign(9 * static_cast<std::size_t>(steps_) + kReadAhead, {});
@@ -108,9 +119,18 @@ void RowPacking::analyse(const NodeOrder& order, const std::vector<int>& row_sta
 }
 
 PackedRows RowPacking::rows(std::size_t part, const float* mass) {
-  return {.groups = groups_, .first_group = group_start_[part], .last_group = group_start_[part + 1], .first_node = node_start_[part], .last_node = node_start_[part + 1],
-          .step_start = step_start_.data(), .single_start = single_start_.data(), .row = row_.data(), .column = column_.data(), .own = own_.front().number,
-          .values = values_.front().number, .mass = mass};
+  return {.groups = groups_,
+          .first_group = group_start_[part],
+          .last_group = group_start_[part + 1],
+          .first_node = node_start_[part],
+          .last_node = node_start_[part + 1],
+          .step_start = step_start_.data(),
+          .single_start = single_start_.data(),
+          .row = row_.data(),
+          .column = column_.data(),
+          .own = own_.front().number,
+          .values = values_.front().number,
+          .mass = mass};
 }
 
 }  // namespace palpate::integrate

@@ -16,7 +16,8 @@ double sum_of(const std::vector<double>& parts) {
 }  // namespace
 
 void SingleIteration::prepare() {
-  for (Singles* v : {&d_, &r_, &z_, &p_, &q_}) v->assign(4 * static_cast<std::size_t>(matrix_.nodes()) + kVectorTail, 0.0f);
+  for (Singles* v : {&d_, &r_, &z_, &p_, &q_})
+    v->assign(4 * static_cast<std::size_t>(matrix_.nodes()) + kVectorTail, 0.0f);
   bounds_.assign(static_cast<std::size_t>(team_.size()), {});
   partial_.assign(static_cast<std::size_t>(matrix_.order().clusters()), 0.0);
   partial_pq_.assign(static_cast<std::size_t>(matrix_.order().parts()), 0.0);
@@ -50,13 +51,16 @@ void SingleIteration::precondition(std::size_t cluster, int first, int last) {
 
 /// Forces on a cluster and motions of its pieces; returns these pieces' share of r . P^-1 r.
 double SingleIteration::gather(std::size_t cluster) {
-  return coarse_on() ? clusters_.gather(cluster, matrix_.order(), kernels_, r_.data(), pieces_.data(), y_.data() + 6 * cluster) : 0.0;
+  return coarse_on() ? clusters_.gather(cluster, matrix_.order(), kernels_, r_.data(), pieces_.data(),
+                                        y_.data() + 6 * cluster)
+                     : 0.0;
 }
 
 void SingleIteration::coarse(int thread) {
   if (!coarse_on()) return;
   const int size = clusters_.size(), threads = team_.size();
-  kernels_.dense(clusters_.inverse(), clusters_.stride(), y_.data(), w_.data(), size * thread / threads, size * (thread + 1) / threads);
+  kernels_.dense(clusters_.inverse(), clusters_.stride(), y_.data(), w_.data(), size * thread / threads,
+                 size * (thread + 1) / threads);
 }
 
 /// r . P^-1 r
@@ -67,12 +71,14 @@ double SingleIteration::squared_residual() const {
   return sum_of(partial_) + coarse;
 }
 
-/// follow(arms, motion, first, last) on the nodes [first, last) of a cluster: of each piece, its rigid motion; null where there are none.
+/// follow(arms, motion, first, last) on the nodes [first, last) of a cluster: of each piece, its rigid
+/// motion; null where there are none.
 template <class Follow>
 void SingleIteration::over_motions(std::size_t cluster, int first, int last, Follow&& follow) const {
   if (!coarse_on()) return follow(nullptr, nullptr, first, last);
   const NodeOrder& order = matrix_.order();
-  for (auto k = static_cast<std::size_t>(order.piece[cluster]); k < static_cast<std::size_t>(order.piece[cluster + 1]); ++k) {
+  for (auto k = static_cast<std::size_t>(order.piece[cluster]);
+       k < static_cast<std::size_t>(order.piece[cluster + 1]); ++k) {
     const RigidClusters::Six motion = clusters_.motion(k, pieces_.data() + 6 * k, w_.data() + 6 * cluster);
     follow(clusters_.arm(), motion.data(), order.piece_start[k], order.piece_start[k + 1]);
   }
@@ -96,13 +102,18 @@ double SingleIteration::orthogonal_to_last() {
   const NodeOrder& order = matrix_.order();
   for (std::size_t c = 0; c < static_cast<std::size_t>(order.clusters()); ++c)
     if (coarse_on())
-      over_motions(c, order.start[c], order.start[c + 1], [&](const float* arm, const float* motion, int first, int last) { kernels_.direction(0.0f, 0.0f, z_.data(), arm, motion, d_.data(), z_.data(), first, last); });
+      over_motions(c, order.start[c], order.start[c + 1],
+                   [&](const float* arm, const float* motion, int first, int last) {
+                     kernels_.direction(0.0f, 0.0f, z_.data(), arm, motion, d_.data(), z_.data(), first,
+                                        last);
+                   });
   for (std::size_t i = 0; i < 4 * order.node.size(); ++i) zq += static_cast<double>(z_[i]) * q_[i];
   for (Singles* v : {&w_, &pieces_}) std::fill(v->begin(), v->end(), 0.0f);  // are in z now
   return pq_ > 0.0 ? -zq / pq_ : 0.0;
 }
 
-SolveStatus SingleIteration::reduce(double& rho_in_out, double beta, double spent, double unit, double rtol, int left, int& steps) {
+SolveStatus SingleIteration::reduce(double& rho_in_out, double beta, double spent, double unit, double rtol,
+                                    int left, int& steps) {
   SolveStatus status = SolveStatus::kOk;
   const double rho_start = rho_in_out;
   const bool follows = pq_ > 0.0;  // a direction that was taken before
@@ -122,14 +133,17 @@ SolveStatus SingleIteration::reduce(double& rho_in_out, double beta, double spen
         });
       });
       team_.barrier();
-      team_.over(t, [&](std::size_t part, int, int) { partial_pq_[part] = matrix_.product(part, p_.data(), q_.data()); });
+      team_.over(t, [&](std::size_t part, int, int) {
+        partial_pq_[part] = matrix_.product(part, p_.data(), q_.data());
+      });
       team_.barrier();
       const double pq = sum_of(partial_pq_);
       const bool bad = !(pq > 0.0) || !std::isfinite(pq);
       if (!bad) {
         a = static_cast<float>(rho / pq);
         team_.over_clusters(t, [&](std::size_t c, int first, int last) {
-          partial_[c] = kernels_.update(a, q_.data(), matrix_.inverse(), r_.data(), z_.data(), first, last) + gather(c);
+          partial_[c] =
+              kernels_.update(a, q_.data(), matrix_.inverse(), r_.data(), z_.data(), first, last) + gather(c);
         });
         team_.barrier();
         coarse(t);
@@ -139,7 +153,8 @@ SolveStatus SingleIteration::reduce(double& rho_in_out, double beta, double spen
         b = next / rho;
         rho = next;
       }
-      const bool end = bad || !std::isfinite(rho) || reached(bound, rho * unit, rtol) || rho <= spent || k >= left;
+      const bool end =
+          bad || !std::isfinite(rho) || reached(bound, rho * unit, rtol) || rho <= spent || k >= left;
       if (!end) continue;
       if (t == 0) {
         steps = k;

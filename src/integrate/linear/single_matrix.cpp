@@ -35,7 +35,8 @@ void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters, i
   order_ = cluster_nodes(pattern, clusters, part_count, pieces);
   const std::size_t n = order_.node.size();
   place_of_node_.resize(n);
-  for (std::size_t k = 0; k < n; ++k) place_of_node_[static_cast<std::size_t>(order_.node[k])] = static_cast<int>(k);
+  for (std::size_t k = 0; k < n; ++k)
+    place_of_node_[static_cast<std::size_t>(order_.node[k])] = static_cast<int>(k);
   row_start_.assign(1, 0);
   column_.clear();
   source_.clear();
@@ -45,9 +46,11 @@ void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters, i
     const auto i = static_cast<std::size_t>(order_.node[k]);
     row.clear();
     for (int s = pattern.row_start()[i]; s < pattern.row_start()[i + 1]; ++s)
-      row.emplace_back(place_of_node_[static_cast<std::size_t>(pattern.columns()[static_cast<std::size_t>(s)])], s);
+      row.emplace_back(
+          place_of_node_[static_cast<std::size_t>(pattern.columns()[static_cast<std::size_t>(s)])], s);
     std::sort(row.begin(), row.end());
-    const auto own = std::find_if(row.begin(), row.end(), [&](const auto& block) { return block.first == static_cast<int>(k); });
+    const auto own = std::find_if(row.begin(), row.end(),
+                                  [&](const auto& block) { return block.first == static_cast<int>(k); });
     diagonal_slot_[k] = own->second;
     std::rotate(row.begin(), own, own + 1);
     for (const auto& [column, slot] : row) {
@@ -89,18 +92,23 @@ SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Sin
   if (!(mean > 0.0)) return SolveStatus::kIndefinite;
   written_.scale = std::ldexp(1.0, -std::ilogb(mean));
   const DoubleBlocks whole{row_start_.data(), column_.data(), source_.data(), values, block_count() - 1};
-  team_.for_each([&](std::size_t c, int first, int last) { good_[c] = kernels_.convert(whole, written_.scale, copy_.data(), first, last); });
+  team_.for_each([&](std::size_t c, int first, int last) {
+    good_[c] = kernels_.convert(whole, written_.scale, copy_.data(), first, last);
+  });
   if (std::find(good_.begin(), good_.end(), char{0}) != good_.end()) return SolveStatus::kSingular;
   team_.for_each([&](std::size_t c, int first, int last) {
     kernels_.pack(rows(c), {copy_.data(), copy_offset_.data(), nullptr});
-    good_[c] = kernels_.invert_diagonal(values, diagonal_slot_.data(), written_.scale, inverse_.data(), first, last);
+    good_[c] =
+        kernels_.invert_diagonal(values, diagonal_slot_.data(), written_.scale, inverse_.data(), first, last);
     multiply(c, count, from, to);
   });
-  return std::find(good_.begin(), good_.end(), char{0}) == good_.end() ? SolveStatus::kOk : SolveStatus::kIndefinite;
+  return std::find(good_.begin(), good_.end(), char{0}) == good_.end() ? SolveStatus::kOk
+                                                                       : SolveStatus::kIndefinite;
 }
 
-/// Each pair of nodes has one block there: part by part and row by row, the rows in the order of their nodes.  Elements that lie together then write what lies together, and packing
-/// meets the blocks of sixteen rows one after the other in each.
+/// Each pair of nodes has one block there: part by part and row by row, the rows in the order of their nodes.
+/// Elements that lie together then write what lies together, and packing meets the blocks of sixteen rows one
+/// after the other in each.
 dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& pattern) {
   static std::atomic<std::uint64_t> version{0};
   written_.pattern = &pattern;
@@ -117,17 +125,23 @@ dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& patter
   std::vector<int> rows(n);
   std::iota(rows.begin(), rows.end(), 0);
   for (std::size_t p = 0; p + 1 < order_.part.size(); ++p)
-    std::sort(rows.begin() + order_.first_node(p), rows.begin() + order_.first_node(p + 1), [&](int a, int b) { return order_.node[static_cast<std::size_t>(a)] < order_.node[static_cast<std::size_t>(b)]; });
+    std::sort(rows.begin() + order_.first_node(p), rows.begin() + order_.first_node(p + 1),
+              [&](int a, int b) {
+                return order_.node[static_cast<std::size_t>(a)] < order_.node[static_cast<std::size_t>(b)];
+              });
   int next = 0;
   for (const int row : rows)
-    for (auto s = static_cast<std::size_t>(row_start_[static_cast<std::size_t>(row)]) + 1; s < static_cast<std::size_t>(row_start_[static_cast<std::size_t>(row) + 1]); ++s) {
+    for (auto s = static_cast<std::size_t>(row_start_[static_cast<std::size_t>(row)]) + 1;
+         s < static_cast<std::size_t>(row_start_[static_cast<std::size_t>(row) + 1]); ++s) {
       if (packing_.turned(s)) continue;
-      const int i = order_.node[static_cast<std::size_t>(row)], j = order_.node[static_cast<std::size_t>(column_[s])];
+      const int i = order_.node[static_cast<std::size_t>(row)],
+                j = order_.node[static_cast<std::size_t>(column_[s])];
       const std::size_t at = packing_.place(s), step = at / kLanesOfGroup;
       int& number = written_.place[static_cast<std::size_t>(source_[s])];
       if (number < 0) written_.place[static_cast<std::size_t>(pattern.slot(j, i))] = number = next++;
       written_offset_[at] = 9 * number;
-      if (i < j) turned_[step] = static_cast<std::uint16_t>(turned_[step] | (1u << at % kLanesOfGroup));  // row by row is the transposed one, column by column
+      // row by row is the transposed one, column by column
+      if (i < j) turned_[step] = static_cast<std::uint16_t>(turned_[step] | (1u << at % kLanesOfGroup));
     }
   written_.places_version = ++version;
   prefer_huge_pages(written_.values);
@@ -138,7 +152,8 @@ dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& patter
 SolveStatus SingleMatrix::take_balanced(int count, Singles* from, Singles* to) {
   original_ = nullptr;
   const std::size_t n = order_.node.size();
-  PALPATE_CHECK(written_.diagonal.size() == static_cast<Eigen::Index>(3 * n), "a balanced matrix of {} nodes with {} masses", n, written_.diagonal.size());
+  PALPATE_CHECK(written_.diagonal.size() == static_cast<Eigen::Index>(3 * n),
+                "a balanced matrix of {} nodes with {} masses", n, written_.diagonal.size());
   find_held();
   for (int k = 0; k < count; ++k)
     for (const std::size_t entry : held_) from[k][entry] = 0.0f;
@@ -154,13 +169,17 @@ SolveStatus SingleMatrix::take_balanced(int count, Singles* from, Singles* to) {
     }
     mass_trace_[c] = sum;
     const Columns columns(count, from, to);
-    balanced_[c] = kernels_.balance(rows(c), {written_.values.data(), written_offset_.data(), turned_.data()}, sums_.data(), inverse_.data(), &trace_[c], count, columns.V, columns.AV);
+    balanced_[c] = kernels_.balance(rows(c), {written_.values.data(), written_offset_.data(), turned_.data()},
+                                    sums_.data(), inverse_.data(), &trace_[c], count, columns.V, columns.AV);
     for (int k = 0; k < count; ++k) zero_held(c, columns.AV[k]);
     hold(c);
   });
-  const auto any = [&](Balanced what) { return std::find(balanced_.begin(), balanced_.end(), what) != balanced_.end(); };
+  const auto any = [&](Balanced what) {
+    return std::find(balanced_.begin(), balanced_.end(), what) != balanced_.end();
+  };
   if (any(Balanced::kNotFinite)) return SolveStatus::kSingular;
-  stiffness_ = std::accumulate(trace_.begin(), trace_.end(), 0.0) / std::accumulate(mass_trace_.begin(), mass_trace_.end(), 0.0);
+  stiffness_ = std::accumulate(trace_.begin(), trace_.end(), 0.0) /
+               std::accumulate(mass_trace_.begin(), mass_trace_.end(), 0.0);
   return any(Balanced::kNotDefinite) ? SolveStatus::kIndefinite : SolveStatus::kOk;
 }
 
@@ -176,8 +195,11 @@ void SingleMatrix::multiply(int count, const Singles* from, Singles* to) {
 
 void SingleMatrix::multiply(const Doubles& x, Doubles& Ax) {
   if (original_) {
-    const DoubleBlocks A{row_start_.data(), column_.data(), source_.data(), original_->body.values().data(), block_count() - 1};
-    return team_.for_each([&](std::size_t, int first, int last) { kernels_.multiply_double(A, x.data(), Ax.data(), first, last); });
+    const DoubleBlocks A{row_start_.data(), column_.data(), source_.data(), original_->body.values().data(),
+                         block_count() - 1};
+    return team_.for_each([&](std::size_t, int first, int last) {
+      kernels_.multiply_double(A, x.data(), Ax.data(), first, last);
+    });
   }
   team_.for_each([&](std::size_t c, int, int) {
     kernels_.multiply_balanced(rows(c), mass_.data(), 1.0 / written_.scale, x.data(), Ax.data());
@@ -191,19 +213,23 @@ double SingleMatrix::product(std::size_t part, const float* p, float* q) const {
   return pq;
 }
 
-// Rows and columns of held directions are the identity's: there, vectors are zero and stay so, and products are made zero.  What columns carry is in the diagonal blocks of
-// the neighbours already, as it must be.
+// Rows and columns of held directions are the identity's: there, vectors are zero and stay so, and products
+// are made zero.  What columns carry is in the diagonal blocks of the neighbours already, as it must be.
 
 void SingleMatrix::find_held() {
   held_.clear();
   if (written_.held)
     for (const dynamics::HeldNode& held : *written_.held)
       for (std::size_t axis = 0; axis < 3; ++axis)
-        if (held.axes[axis]) held_.push_back(4 * static_cast<std::size_t>(place_of_node_[static_cast<std::size_t>(held.node)]) + axis);
+        if (held.axes[axis])
+          held_.push_back(4 * static_cast<std::size_t>(place_of_node_[static_cast<std::size_t>(held.node)]) +
+                          axis);
   std::sort(held_.begin(), held_.end());
   held_start_.resize(order_.part.size());
   for (std::size_t p = 0; p < held_start_.size(); ++p)
-    held_start_[p] = static_cast<std::size_t>(std::lower_bound(held_.begin(), held_.end(), 4 * static_cast<std::size_t>(order_.first_node(p))) - held_.begin());
+    held_start_[p] = static_cast<std::size_t>(
+        std::lower_bound(held_.begin(), held_.end(), 4 * static_cast<std::size_t>(order_.first_node(p))) -
+        held_.begin());
 }
 
 template <class Real>
@@ -214,7 +240,8 @@ void SingleMatrix::zero_held(std::size_t part, Real* v) const {
 
 void SingleMatrix::take_held(std::size_t part, double* v, double* values) const {
   if (held_.empty()) return;
-  for (std::size_t h = held_start_[part]; h < held_start_[part + 1]; ++h) values[h] = std::exchange(v[held_[h]], 0.0);
+  for (std::size_t h = held_start_[part]; h < held_start_[part + 1]; ++h)
+    values[h] = std::exchange(v[held_[h]], 0.0);
 }
 
 /// Own blocks of held nodes and their inverses.

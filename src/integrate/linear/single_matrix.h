@@ -12,15 +12,18 @@ namespace palpate::integrate {
 using Singles = std::vector<float>;
 using Doubles = std::vector<double>;
 
-/// A symmetric step matrix in single precision with the inverses of its diagonal blocks, nodes in clusters, and its product in double precision beside it.  Made
-/// from a matrix in double, which stays where it is and is read by those products; or written by its makers as a BalancedMatrix, and then no other is needed.
+/// A symmetric step matrix in single precision with the inverses of its diagonal blocks, nodes in clusters,
+/// and its product in double precision beside it.  Made from a matrix in double, which stays where it is and
+/// is read by those products; or written by its makers as a BalancedMatrix, and then no other is needed.
 class SingleMatrix {
  public:
   SingleMatrix(const NodeKernels& kernels, ClusterTeam& team) : kernels_(kernels), team_(team) {}
 
   /// Order, rows and memory for a pattern.
   void analyse(const dynamics::BlockSparse& pattern, int clusters, int parts, int pieces);
-  bool analysed(const dynamics::BlockSparse& pattern) const { return pattern_version_ != 0 && pattern_version_ == pattern.pattern_version(); }
+  bool analysed(const dynamics::BlockSparse& pattern) const {
+    return pattern_version_ != 0 && pattern_version_ == pattern.pattern_version();
+  }
 
   /// The copy, and to[k] = scale A from[k] for `count` columns, in single precision.
   dynamics::SolveStatus take(const dynamics::BorderedMatrix& A, int count, Singles* from, Singles* to);
@@ -46,13 +49,16 @@ class SingleMatrix {
   double scale() const { return written_.scale; }  ///< a power of two: the copy is scale A
   /// 1 + h^2 tr K / tr M of a balanced matrix: mean stiffness of a node, over its mass.
   double stiffness() const { return stiffness_; }
-  /// Entries of vectors, four a node, of which a balanced matrix says that each stands alone; none of a whole one.
+  /// Entries of vectors, four a node, of which a balanced matrix says that each stands alone; none of a whole
+  /// one.
   const std::vector<std::size_t>& held() const { return held_; }
   /// Of those in a part: values[h] is what stood at held()[h] of v, where zero stands then.
   void take_held(std::size_t part, double* v, double* values) const;
 
  private:
-  PackedRows rows(std::size_t part) const { return packing_.rows(part, original_ ? nullptr : mass_single_.data()); }
+  PackedRows rows(std::size_t part) const {
+    return packing_.rows(part, original_ ? nullptr : mass_single_.data());
+  }
   void multiply(std::size_t part, int count, const Singles* from, Singles* to);
   template <class Real>
   void zero_held(std::size_t part, Real* v) const;
@@ -67,7 +73,7 @@ class SingleMatrix {
   std::vector<int> source_, diagonal_slot_;  ///< slots of the original
   mutable RowPacking packing_;
   const dynamics::BorderedMatrix* original_ = nullptr;  ///< null: balanced
-  Singles copy_;                             ///< of a whole matrix, on the way to its packing
+  Singles copy_;                                        ///< of a whole matrix, on the way to its packing
   std::vector<int> copy_offset_;
   dynamics::BalancedMatrix written_;
   std::vector<int> written_offset_;

@@ -5,7 +5,8 @@
 
 namespace palpate::integrate {
 
-/// Scalar rows of a BlockSparse read as compressed columns: those of A^T.  An LU library that takes columns factors A^T, and solves A x = b as its transposed system.
+/// Scalar rows of a BlockSparse read as compressed columns: those of A^T.  An LU library that takes columns
+/// factors A^T, and solves A x = b as its transposed system.
 struct TransposedColumns {
   int n = 0;
   std::vector<int> start, rows, source;  ///< source: which value of the block matrix each entry is
@@ -17,7 +18,8 @@ struct TransposedColumns {
     rows.reserve(A.values().size());
     source.reserve(A.values().size());
     for (int row = 0; row < n; ++row) {
-      for (int s = A.row_start()[static_cast<std::size_t>(row / 3)]; s < A.row_start()[static_cast<std::size_t>(row / 3) + 1]; ++s)
+      for (int s = A.row_start()[static_cast<std::size_t>(row / 3)];
+           s < A.row_start()[static_cast<std::size_t>(row / 3) + 1]; ++s)
         for (int c = 0; c < 3; ++c) {
           rows.push_back(3 * A.columns()[static_cast<std::size_t>(s)] + c);
           source.push_back(9 * s + 3 * (row % 3) + c);

@@ -11,7 +11,8 @@ namespace {
 using dynamics::BlockSparse;
 using dynamics::SolveStatus;
 
-/// Multifrontal LU with threshold pivoting (Davis 2004), symmetric strategy: the pattern is symmetric and the diagonal strong.
+/// Multifrontal LU with threshold pivoting (Davis 2004), symmetric strategy: the pattern is symmetric and the
+/// diagonal strong.
 class UmfpackFactor final : public BodyFactor {
  public:
   UmfpackFactor() {
@@ -31,30 +32,36 @@ class UmfpackFactor final : public BodyFactor {
     real_work_.resize(5 * static_cast<std::size_t>(columns_.n));
     umfpack_di_free_numeric(&numeric_);
     umfpack_di_free_symbolic(&symbolic_);
-    require(umfpack_di_symbolic(columns_.n, columns_.n, columns_.start.data(), columns_.rows.data(), nullptr, &symbolic_, control_, info_),
+    require(umfpack_di_symbolic(columns_.n, columns_.n, columns_.start.data(), columns_.rows.data(), nullptr,
+                                &symbolic_, control_, info_),
             "umfpack_di_symbolic");
   }
 
   SolveStatus factor(const BlockSparse& A) override {
     columns_.fill(A);
     umfpack_di_free_numeric(&numeric_);
-    const int status =
-        umfpack_di_numeric(columns_.start.data(), columns_.rows.data(), columns_.values.data(), symbolic_, &numeric_, control_, info_);
+    const int status = umfpack_di_numeric(columns_.start.data(), columns_.rows.data(), columns_.values.data(),
+                                          symbolic_, &numeric_, control_, info_);
     require(status, "umfpack_di_numeric");
-    return status == UMFPACK_WARNING_singular_matrix || info_[UMFPACK_RCOND] < kSmallestPivotRatio ? SolveStatus::kSingular : SolveStatus::kOk;
+    return status == UMFPACK_WARNING_singular_matrix || info_[UMFPACK_RCOND] < kSmallestPivotRatio
+               ? SolveStatus::kSingular
+               : SolveStatus::kOk;
   }
 
   void solve(const ConstColumns& B, MatX& X) override {
     X.resize(B.rows(), B.cols());
     for (Eigen::Index c = 0; c < B.cols(); ++c)
-      require(umfpack_di_wsolve(UMFPACK_At, columns_.start.data(), columns_.rows.data(), columns_.values.data(), X.col(c).data(), B.col(c).data(),
-                                numeric_, control_, info_, integer_work_.data(), real_work_.data()), "umfpack_di_wsolve");
+      require(umfpack_di_wsolve(UMFPACK_At, columns_.start.data(), columns_.rows.data(),
+                                columns_.values.data(), X.col(c).data(), B.col(c).data(), numeric_, control_,
+                                info_, integer_work_.data(), real_work_.data()),
+              "umfpack_di_wsolve");
   }
 
  private:
   void require(int status, const char* call) const {
     if (status >= UMFPACK_OK) return;
-    if (status == UMFPACK_ERROR_out_of_memory) fail("{}: no memory for the factor of {} unknowns; use a coarser mesh", call, columns_.n);
+    if (status == UMFPACK_ERROR_out_of_memory)
+      fail("{}: no memory for the factor of {} unknowns; use a coarser mesh", call, columns_.n);
     PALPATE_CHECK(false, "{} returned status {}", call, status);
   }
 

@@ -23,18 +23,23 @@ using dynamics::StepStatus;
 // The same numbers in CVODE, ARKODE and IDA.
 constexpr int kReachedStop = 1, kReachedRoot = 2;
 
-/// A step that collapses to this ends the call with an error: before a force that is not finite from some time on,
-/// steps would shrink towards that time without end.  Far below any physical time scale, above the rounding of t.
-double smallest_step(double t, double t_end) { return std::max(1e-14 * (t_end - t), 1e-15 * std::max(std::abs(t), std::abs(t_end))); }
+/// A step that collapses to this ends the call with an error: before a force that is not finite from some
+/// time on, steps would shrink towards that time without end.  Far below any physical time scale, above the
+/// rounding of t.
+double smallest_step(double t, double t_end) {
+  return std::max(1e-14 * (t_end - t), 1e-15 * std::max(std::abs(t), std::abs(t_end)));
+}
 
 }  // namespace
 
-Adapter::Adapter(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : problem_(std::move(problem)), spec_(spec) {
+Adapter::Adapter(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec)
+    : problem_(std::move(problem)), spec_(spec) {
   counters::count("integrate." + spec_.name);
 }
 Adapter::~Adapter() { release(); }
 
-// --- memory -----------------------------------------------------------------------------------------------------------
+// --- memory
+// -----------------------------------------------------------------------------------------------------------
 
 void Adapter::allocate() {
   check(SUNContext_Create(nullptr, &context_), "SUNContext_Create", problem_->time(), 0.0);
@@ -58,7 +63,8 @@ void Adapter::release() {
 }
 
 void Adapter::start() {
-  if (running_ && finds_roots() && roots_version_ != problem_->events_version()) {  // between two calls: y_ is the present
+  // between two calls: y_ is the present
+  if (running_ && finds_roots() && roots_version_ != problem_->events_version()) {
     running_ = false;
     keep_step_ = true;
   }
@@ -85,7 +91,8 @@ void Adapter::start() {
   keep_step_ = false;
 }
 
-// --- stepping ---------------------------------------------------------------------------------------------------------
+// --- stepping
+// ---------------------------------------------------------------------------------------------------------
 
 StepResult Adapter::advance_to(double t_end) {
   PALPATE_CHECK(t_end > problem_->time(), "t_end = {} is not after t = {}", t_end, problem_->time());
@@ -113,7 +120,8 @@ StepResult Adapter::advance_to(double t_end) {
     flag = one_step(t_end, reached);
     if (flag >= 0) t = reached;  // after a failure the time may be that of a stage
     if (trace() && flag >= 0) accept_attempt(before, t, flag == kReachedRoot);
-    if (trace() && flag < 0 && attempt_open_) close_attempt(attempt_finite_ ? StepAttempt::Outcome::kNewton : StepAttempt::Outcome::kNotFinite);
+    if (trace() && flag < 0 && attempt_open_)
+      close_attempt(attempt_finite_ ? StepAttempt::Outcome::kNewton : StepAttempt::Outcome::kNotFinite);
     if (follower_ && flag >= 0 && t > before) {
       problem_->store(flag == kReachedStop ? t_end : t, NV_DATA_S(y_));
       collect();
@@ -135,7 +143,7 @@ StepResult Adapter::advance_to(double t_end) {
   problem_->store(landed ? t_end : t, NV_DATA_S(y_));
   collect();
   if (landed) return result(StepStatus::kOk);
-  running_ = false;  // the next call starts from the State
+  running_ = false;                            // the next call starts from the State
   if (interrupted() && n < spec_.max_steps) {  // between two steps, or within one that noticed
     StepResult stopped = result(StepStatus::kInterrupted);
     stopped.message = fmt::format("{}: interrupted at t = {}, h = {}", name(), t, stopped.h);
@@ -146,9 +154,12 @@ StepResult Adapter::advance_to(double t_end) {
 
 StepResult Adapter::failure(int flag, double t, double t_end) {
   StepResult failed = result(flag >= 0 ? StepStatus::kTooManySteps : status_of(flag));
-  if (!finite_ && failed.status == StepStatus::kNewtonFailed) failed.status = StepStatus::kNotFinite;  // why the iteration could not converge
+  // why the iteration could not converge
+  if (!finite_ && failed.status == StepStatus::kNewtonFailed) failed.status = StepStatus::kNotFinite;
   if (flag >= 0) message_ = fmt::format("{} steps before t_end = {}", spec_.max_steps, t_end);
-  failed.message = fmt::format("{}: {} at t = {}, h = {:.9g}: {}", name(), flag >= 0 ? "TOO_MUCH_WORK" : flag_name(flag), t, failed.h, message_ + remedy(flag));
+  failed.message =
+      fmt::format("{}: {} at t = {}, h = {:.9g}: {}", name(), flag >= 0 ? "TOO_MUCH_WORK" : flag_name(flag),
+                  t, failed.h, message_ + remedy(flag));
   return failed;
 }
 
@@ -186,7 +197,8 @@ void Adapter::collect() {
   dynamics::StepperCounters& c = problem_->counters();
   c.steps += now.steps - counted_.steps;
   c.error_test_failures += now.error_test_failures - counted_.error_test_failures;
-  c.rejected += now.error_test_failures + now.solve_failures - counted_.error_test_failures - counted_.solve_failures;
+  c.rejected +=
+      now.error_test_failures + now.solve_failures - counted_.error_test_failures - counted_.solve_failures;
   c.newton_iterations += now.newton_iterations - counted_.newton_iterations;
   c.newton_failures += now.newton_failures - counted_.newton_failures;
   counted_ = now;
@@ -200,10 +212,11 @@ void Adapter::fill_weights(N_Vector y, N_Vector w) const {
 void Adapter::keep_state() { kept_ = Eigen::Map<const VecX>(NV_DATA_S(y_), NV_LENGTH_S(y_)); }
 void Adapter::restore_state() { Eigen::Map<VecX>(NV_DATA_S(y_), NV_LENGTH_S(y_)) = kept_; }
 
-// --- Newton -----------------------------------------------------------------------------------------------------------
+// --- Newton
+// -----------------------------------------------------------------------------------------------------------
 
-// The tangent is taken afresh at every factorisation: it costs a fifteenth of one, and spares a failed Newton solve.
-// Where the library would accept an old tangent and gamma is unchanged, the old factor is kept.
+// The tangent is taken afresh at every factorisation: it costs a fifteenth of one, and spares a failed Newton
+// solve. Where the library would accept an old tangent and gamma is unchanged, the old factor is kept.
 bool Adapter::prepare_matrix(double t, N_Vector y, bool reuse, double gamma, OdeProblem::Side side) {
   wanted_gamma_ = gamma;
   const bool fresh = !(reuse && gamma == problem_->gamma());
@@ -216,12 +229,14 @@ int Adapter::setup() {
   return problem_->factor(wanted_gamma_) == SolveStatus::kOk ? 0 : kRecoverable;
 }
 
-// Newton's test of convergence.  With corrections d_0, d_1, .. that contract by rho, what is left after d_m is about rho d_m.  SUNDIALS learns rho
-// as max(0.3 rho, d_m / d_(m-1)) and remembers it until the next factorisation.  On an (almost) linear force the first solves after a fresh factor
-// converge at once, rho falls to nothing, and when gamma then changes by up to 20 or 30 % with the factor kept, a first correction that is wrong by
-// that much is taken for exact: global errors of 1e-3 at rtol 1e-7.  So rho is bounded from below by what the old gamma alone makes of it:
-// on a mode lambda, (1 - g' lambda)^-1 stands for (1 - g lambda)^-1, whose relative error is at most |g / g' - 1| on either end of the spectrum;
-// and by a constant, for a tangent that has aged.
+// Newton's test of convergence.  With corrections d_0, d_1, .. that contract by rho, what is left after d_m
+// is about rho d_m.  SUNDIALS learns rho as max(0.3 rho, d_m / d_(m-1)) and remembers it until the next
+// factorisation.  On an (almost) linear force the first solves after a fresh factor converge at once, rho
+// falls to nothing, and when gamma then changes by up to 20 or 30 % with the factor kept, a first correction
+// that is wrong by that much is taken for exact: global errors of 1e-3 at rtol 1e-7.  So rho is bounded from
+// below by what the old gamma alone makes of it:
+// on a mode lambda, (1 - g' lambda)^-1 stands for (1 - g lambda)^-1, whose relative error is at most |g / g'
+// - 1| on either end of the spectrum; and by a constant, for a tangent that has aged.
 int Adapter::test_convergence(int iteration, double correction, double tolerance) {
   constexpr double kOldTangent = 0.05, kForget = 0.3, kDiverging = 2.0;
   const double stale = std::abs(current_gamma() / problem_->gamma() - 1.0);
@@ -244,7 +259,8 @@ SUNNonlinearSolver Adapter::make_newton() {
 SUNNonlinearSolver Adapter::make_fixed_step_newton() { return newton_ = fixed_step_newton_.make(context_); }
 
 void Adapter::use_own_test() {
-  const auto test = [](SUNNonlinearSolver solver, N_Vector, N_Vector correction, realtype tolerance, N_Vector w, void* data) {
+  const auto test = [](SUNNonlinearSolver solver, N_Vector, N_Vector correction, realtype tolerance,
+                       N_Vector w, void* data) {
     int iteration = 0;
     SUNNonlinSolGetCurIter(solver, &iteration);
     return static_cast<Adapter*>(data)->test_convergence(iteration, N_VWrmsNorm(correction, w), tolerance);
@@ -252,7 +268,9 @@ void Adapter::use_own_test() {
   check(SUNNonlinSolSetConvTestFn(newton_, test, this), "SUNNonlinSolSetConvTestFn", problem_->time(), 0.0);
 }
 
-SolveStatus Adapter::solve_newton(const double* y, const double* r, double* d) { return problem_->solve(y, r, d); }
+SolveStatus Adapter::solve_newton(const double* y, const double* r, double* d) {
+  return problem_->solve(y, r, d);
+}
 
 int Adapter::solve(N_Vector x, N_Vector b) {
   const SolveStatus status = solve_newton(NV_DATA_S(newton_state()), NV_DATA_S(b), NV_DATA_S(x));
@@ -263,7 +281,8 @@ int Adapter::solve(N_Vector x, N_Vector b) {
   return std::isfinite(last_correction_) ? 0 : kRecoverable;
 }
 
-// --- callbacks --------------------------------------------------------------------------------------------------------
+// --- callbacks
+// --------------------------------------------------------------------------------------------------------
 
 namespace {
 Adapter& self(void* data) { return *static_cast<Adapter*>(data); }

@@ -13,8 +13,9 @@ namespace palpate::integrate::sun {
 
 using dynamics::StepAttempt;
 
-// Inside one call of the library several attempts may fail.  Between two of them its counters of failures grow, which shows at the
-// next evaluation; how far an attempt reached is the latest time that it evaluated at.
+// Inside one call of the library several attempts may fail.  Between two of them its counters of failures
+// grow, which shows at the next evaluation; how far an attempt reached is the latest time that it evaluated
+// at.
 void Adapter::see_evaluation(double t, N_Vector y, bool finite) {
   finite_ = finite;
   if (!trace()) return;

@@ -25,19 +25,24 @@ using Side = OdeProblem::Side;
 /// ARKODE's own 3 fail about once a step on soft bodies.
 constexpr int kNewtonIterations = 8;
 constexpr int kInterpolantDegree = 3;  ///< cubic Hermite: no evaluation of its own
-constexpr int kRootDegree = 5;         ///< a root's state is where the next step starts from: worth two evaluations
-/// Newton ends at this share of the tolerance, not at ARKODE's tenth: what it leaves has one sign from step to step while an old factor
-/// is kept, and a method of order 2 takes thousands of steps.  Where the pair's tolerance T is above rtol (tolerance_of), the share is of rtol: the solution
-/// carried on is better than T says, and must not be spoilt by its stages.
+/// a root's state is where the next step starts from: worth two evaluations
+constexpr int kRootDegree = 5;
+/// Newton ends at this share of the tolerance, not at ARKODE's tenth: what it leaves has one sign from step
+/// to step while an old factor is kept, and a method of order 2 takes thousands of steps.  Where the pair's
+/// tolerance T is above rtol (tolerance_of), the share is of rtol: the solution carried on is better than T
+/// says, and must not be spoilt by its stages.
 constexpr double kNewtonCoefficient = 0.01;
 
-/// Runge-Kutta methods of SUNDIALS ARKODE (Reynolds et al. 2023): explicit, diagonally implicit, or additive (what is stiff implicit, the rest explicit),
-/// by the tables of ark_methods.cpp; step by error control, or step_s with fixed_step.
-/// One-step: a change from outside restarts it without loss, with the step that it had.
+/// Runge-Kutta methods of SUNDIALS ARKODE (Reynolds et al. 2023): explicit, diagonally implicit, or additive
+/// (what is stiff implicit, the rest explicit), by the tables of ark_methods.cpp; step by error control, or
+/// step_s with fixed_step. One-step: a change from outside restarts it without loss, with the step that it
+/// had.
 class Ark final : public Adapter {
  public:
   Ark(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec)
-      : Adapter(std::move(problem), spec), method_(ark_method(spec.name)), implicit_side_(method_.explicit_table >= 0 ? Side::kImplicit : Side::kAll) {
+      : Adapter(std::move(problem), spec),
+        method_(ark_method(spec.name)),
+        implicit_side_(method_.explicit_table >= 0 ? Side::kImplicit : Side::kAll) {
     if (spec.fixed_step)
       check_fixed_step(spec);
     else
@@ -47,39 +52,51 @@ class Ark final : public Adapter {
   ~Ark() override { Ark::destroy(); }
 
  private:
-  /// The error estimate of a pair p (p^) is O(h^(m+1)), m = min(p, p^), so a step that meets a tolerance T has h ~ T^(1/(m+1)), and the solution an
-  /// error ~ h^p = T^(p/(m+1)).  For the usual p^ = p - 1 that is T.  For the others the tolerance is taken to the power (m+1)/p, so that with every
-  /// method a tenth of rtol buys a tenth of the error.
-  /// Three pairs have m = p on linear motions and p - 1 on others.  Half-way between, m = p - 1/2, the error falls as T^((p+1/2)/(p+1)) on the former and
-  /// T^((p+1/2)/p) on the latter: 0.90 and 1.13 for p = 4, 0.92 and 1.10 for p = 5.
-  /// With a fixed step what the weights serve is Newton alone, and newton_rtol takes the place of rtol.
+  /// The error estimate of a pair p (p^) is O(h^(m+1)), m = min(p, p^), so a step that meets a tolerance T
+  /// has h ~ T^(1/(m+1)), and the solution an error ~ h^p = T^(p/(m+1)).  For the usual p^ = p - 1 that is T.
+  /// For the others the tolerance is taken to the power (m+1)/p, so that with every method a tenth of rtol
+  /// buys a tenth of the error. Three pairs have m = p on linear motions and p - 1 on others.  Half-way
+  /// between, m = p - 1/2, the error falls as T^((p+1/2)/(p+1)) on the former and T^((p+1/2)/p) on the
+  /// latter: 0.90 and 1.13 for p = 4, 0.92 and 1.10 for p = 5. With a fixed step what the weights serve is
+  /// Newton alone, and newton_rtol takes the place of rtol.
   static double tolerance_of(const IntegratorSpec& spec, const ArkMethod& method) {
-    const double p = method.traits.order, m = std::min<double>(p, method.embedded_order) + (method.sharper_on_linear_motion ? 0.5 : 0.0);
+    const double p = method.traits.order, m = std::min<double>(p, method.embedded_order) +
+                                              (method.sharper_on_linear_motion ? 0.5 : 0.0);
     return spec.fixed_step ? spec.newton_rtol : std::pow(spec.rtol, (m + 1.0) / p);
   }
 
   bool has_implicit() const { return method_.implicit_table >= 0; }
   bool has_explicit() const { return method_.explicit_table >= 0; }
-  ARKRhsFn explicit_function() const { return !has_explicit() ? nullptr : has_implicit() ? explicit_side : whole; }
-  ARKRhsFn implicit_function() const { return !has_implicit() ? nullptr : has_explicit() ? implicit_side : whole; }
+  ARKRhsFn explicit_function() const {
+    return !has_explicit() ? nullptr : has_implicit() ? explicit_side : whole;
+  }
+  ARKRhsFn implicit_function() const {
+    return !has_implicit() ? nullptr : has_explicit() ? implicit_side : whole;
+  }
 
   void create() override {
     const double t = problem().time();
     memory_ = ARKStepCreate(explicit_function(), implicit_function(), t, y(), context());
     check(memory_, "ARKStepCreate");
-    check(ARKStepSetErrHandlerFn(memory_, on_error, this), "ARKStepSetErrHandlerFn", t, 0.0);  // first: nothing is ever printed
+    // first: nothing is ever printed
+    check(ARKStepSetErrHandlerFn(memory_, on_error, this), "ARKStepSetErrHandlerFn", t, 0.0);
     check(ARKStepSetUserData(memory_, static_cast<Adapter*>(this)), "ARKStepSetUserData", t, 0.0);
     check(ARKStepWFtolerances(memory_, weights), "ARKStepWFtolerances", t, 0.0);
-    check(ARKStepSetTableNum(memory_, static_cast<ARKODE_DIRKTableID>(method_.implicit_table), static_cast<ARKODE_ERKTableID>(method_.explicit_table)),
+    check(ARKStepSetTableNum(memory_, static_cast<ARKODE_DIRKTableID>(method_.implicit_table),
+                             static_cast<ARKODE_ERKTableID>(method_.explicit_table)),
           "ARKStepSetTableNum", t, 0.0);
-    check(ARKStepSetInterpolantDegree(memory_, spec().events == "root-finding" ? kRootDegree : kInterpolantDegree), "ARKStepSetInterpolantDegree", t, 0.0);
+    check(ARKStepSetInterpolantDegree(memory_,
+                                      spec().events == "root-finding" ? kRootDegree : kInterpolantDegree),
+          "ARKStepSetInterpolantDegree", t, 0.0);
     check(ARKStepSetMaxErrTestFails(memory_, kErrorTestFailures), "ARKStepSetMaxErrTestFails", t, 0.0);
-    if (problem().has_manifold()) check(ARKStepSetPostprocessStepFn(memory_, project_step), "ARKStepSetPostprocessStepFn", t, 0.0);
+    if (problem().has_manifold())
+      check(ARKStepSetPostprocessStepFn(memory_, project_step), "ARKStepSetPostprocessStepFn", t, 0.0);
     if (has_implicit()) use_newton(t);
   }
 
   void use_newton(double t) {
-    check(ARKStepSetNonlinearSolver(memory_, spec().fixed_step ? make_fixed_step_newton() : make_newton()), "ARKStepSetNonlinearSolver", t, 0.0);
+    check(ARKStepSetNonlinearSolver(memory_, spec().fixed_step ? make_fixed_step_newton() : make_newton()),
+          "ARKStepSetNonlinearSolver", t, 0.0);
     if (!spec().fixed_step) use_own_test();
     linear_solver_ = make_linear_solver(*this, context());
     matrix_ = make_matrix(context());
@@ -87,8 +104,11 @@ class Ark final : public Adapter {
     check(ARKStepSetLinSysFn(memory_, linear_system), "ARKStepSetLinSysFn", t, 0.0);
     check(ARKStepSetMaxNonlinIters(memory_, kNewtonIterations), "ARKStepSetMaxNonlinIters", t, 0.0);
     const double aim = spec().fixed_step ? spec().newton_rtol : spec().rtol;
-    check(ARKStepSetNonlinConvCoef(memory_, kNewtonCoefficient * std::min(1.0, aim / tolerance_of(spec(), method_))), "ARKStepSetNonlinConvCoef", t, 0.0);
-    check(ARKStepSetDeduceImplicitRhs(memory_, SUNTRUE), "ARKStepSetDeduceImplicitRhs", t, 0.0);  // f of a stage from its equation: spares evaluations
+    check(ARKStepSetNonlinConvCoef(memory_,
+                                   kNewtonCoefficient * std::min(1.0, aim / tolerance_of(spec(), method_))),
+          "ARKStepSetNonlinConvCoef", t, 0.0);
+    // f of a stage from its equation: spares evaluations
+    check(ARKStepSetDeduceImplicitRhs(memory_, SUNTRUE), "ARKStepSetDeduceImplicitRhs", t, 0.0);
   }
 
   void destroy() override {
@@ -101,7 +121,9 @@ class Ark final : public Adapter {
 
   void restart(bool keep_step) override {
     const double t = problem().time();
-    if (!keep_step) return check(ARKStepReInit(memory_, explicit_function(), implicit_function(), t, y()), "ARKStepReInit", t, 0.0);
+    if (!keep_step)
+      return check(ARKStepReInit(memory_, explicit_function(), implicit_function(), t, y()), "ARKStepReInit",
+                   t, 0.0);
     check(ARKStepReset(memory_, t, y()), "ARKStepReset", t, 0.0);
   }
   void find_roots(int count) override {
@@ -110,7 +132,8 @@ class Ark final : public Adapter {
   }
   void aim(double t_end, double smallest_step) override {
     check(ARKStepSetStopTime(memory_, t_end), "ARKStepSetStopTime", problem().time(), 0.0);
-    if (!spec().fixed_step) check(ARKStepSetMinStep(memory_, smallest_step), "ARKStepSetMinStep", problem().time(), 0.0);
+    if (!spec().fixed_step)
+      check(ARKStepSetMinStep(memory_, smallest_step), "ARKStepSetMinStep", problem().time(), 0.0);
     now_ = problem().time();
     parts_.begin();
   }
@@ -137,8 +160,9 @@ class Ark final : public Adapter {
     }
   }
 
-  /// Where one step and a part of one are left, two equal ones are made.  A tiny last step would spoil the next: f of its last stage is
-  /// deduced from (z - known) / (h a_ii), with an error of rounding / h, and multiplied by the whole h of the step that follows.
+  /// Where one step and a part of one are left, two equal ones are made.  A tiny last step would spoil the
+  /// next: f of its last stage is deduced from (z - known) / (h a_ii), with an error of rounding / h, and
+  /// multiplied by the whole h of the step that follows.
   bool aim_halfway(double t_end) {
     double next = 0.0;
     check(ARKStepGetCurrentStep(memory_, &next), "ARKStepGetCurrentStep", now_, 0.0);
@@ -152,18 +176,25 @@ class Ark final : public Adapter {
   std::string flag_name(int flag) const override { return sun::flag_name("ARKStep", flag); }
   /// With a fixed step no accuracy was asked for: what is out of proportion to the weights is the solution.
   std::string remedy(int flag) const override {
-    if (flag == ARK_CONV_FAILURE && spec().fixed_step) return fmt::format("  Not even at h/{}: a smaller step_s, or error control", 1 << StepInParts::kHalvings);
+    if (flag == ARK_CONV_FAILURE && spec().fixed_step)
+      return fmt::format("  Not even at h/{}: a smaller step_s, or error control",
+                         1 << StepInParts::kHalvings);
     if (flag != ARK_TOO_MUCH_ACC || !spec().fixed_step) return {};
-    return has_implicit() ? "  The solution has grown out of bounds at this fixed step: a smaller step_s, or error control"
-                          : "  The solution has grown out of bounds: an explicit step_s must stay below its stability limit";
+    return has_implicit() ? "  The solution has grown out of bounds at this fixed step: a smaller step_s, or "
+                            "error control"
+                          : "  The solution has grown out of bounds: an explicit step_s must stay below its "
+                            "stability limit";
   }
-  bool interpolate(double t, N_Vector out) const override { return ARKStepGetDky(memory_, t, 0, out) == ARK_SUCCESS; }
+  bool interpolate(double t, N_Vector out) const override {
+    return ARKStepGetDky(memory_, t, 0, out) == ARK_SUCCESS;
+  }
 
   Counts counts() const override {
     Counts c;
     check(ARKStepGetNumSteps(memory_, &c.steps), "ARKStepGetNumSteps", 0.0, 0.0);
     check(ARKStepGetNumErrTestFails(memory_, &c.error_test_failures), "ARKStepGetNumErrTestFails", 0.0, 0.0);
-    check(ARKStepGetNonlinSolvStats(memory_, &c.newton_iterations, &c.newton_failures), "ARKStepGetNonlinSolvStats", 0.0, 0.0);
+    check(ARKStepGetNonlinSolvStats(memory_, &c.newton_iterations, &c.newton_failures),
+          "ARKStepGetNonlinSolvStats", 0.0, 0.0);
     check(ARKStepGetNumStepSolveFails(memory_, &c.solve_failures), "ARKStepGetNumStepSolveFails", 0.0, 0.0);
     return c;
   }
@@ -173,7 +204,9 @@ class Ark final : public Adapter {
     return h;
   }
   int last_order() const override { return method_.traits.order; }
-  bool local_errors(N_Vector estimate) const override { return !spec().fixed_step && ARKStepGetEstLocalErrors(memory_, estimate) == ARK_SUCCESS; }
+  bool local_errors(N_Vector estimate) const override {
+    return !spec().fixed_step && ARKStepGetEstLocalErrors(memory_, estimate) == ARK_SUCCESS;
+  }
   N_Vector newton_state() const override {
     N_Vector state = nullptr;
     check(ARKStepGetCurrentState(memory_, &state), "ARKStepGetCurrentState", 0.0, 0.0);
@@ -194,11 +227,17 @@ class Ark final : public Adapter {
     me.see_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
-  static int whole(realtype t, N_Vector y, N_Vector y_dot, void* data) { return evaluate<Side::kAll>(t, y, y_dot, data); }
-  static int implicit_side(realtype t, N_Vector y, N_Vector y_dot, void* data) { return evaluate<Side::kImplicit>(t, y, y_dot, data); }
-  static int explicit_side(realtype t, N_Vector y, N_Vector y_dot, void* data) { return evaluate<Side::kExplicit>(t, y, y_dot, data); }
-  static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, booleantype reuse, booleantype* fresh, realtype gamma, void* data,
-                           N_Vector, N_Vector, N_Vector) {
+  static int whole(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+    return evaluate<Side::kAll>(t, y, y_dot, data);
+  }
+  static int implicit_side(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+    return evaluate<Side::kImplicit>(t, y, y_dot, data);
+  }
+  static int explicit_side(realtype t, N_Vector y, N_Vector y_dot, void* data) {
+    return evaluate<Side::kExplicit>(t, y, y_dot, data);
+  }
+  static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, booleantype reuse,
+                           booleantype* fresh, realtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
     Ark& me = self(data);
     *fresh = me.prepare_matrix(t, y, reuse, gamma, me.implicit_side_);
     return 0;
@@ -221,7 +260,8 @@ std::unique_ptr<dynamics::Stepper> make_ark(std::unique_ptr<OdeProblem> problem,
 
 }  // namespace sun
 
-std::unique_ptr<dynamics::Stepper> make_ark(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+std::unique_ptr<dynamics::Stepper> make_ark(dynamics::System& system, dynamics::State& state,
+                                            const IntegratorSpec& spec,
                                             std::unique_ptr<dynamics::LinearSolver> solver) {
   return sun::make_ark(std::make_unique<MechanicalProblem>(system, state, spec, std::move(solver)), spec);
 }

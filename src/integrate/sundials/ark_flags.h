@@ -4,8 +4,8 @@
 namespace palpate::integrate {
 namespace sun __attribute__((visibility("hidden"))) {
 
-/// Return values of ARKStep and MRIStep, which are the same numbers.
-dynamics::StepStatus ark_status(int flag);
+  /// Return values of ARKStep and MRIStep, which are the same numbers.
+  dynamics::StepStatus ark_status(int flag);
 
-}  // namespace sun
+}  // namespace )
 }  // namespace palpate::integrate

@@ -18,7 +18,10 @@ namespace {
 
 using Namer = char* (*)(long);
 /// `name` of a library's own return values, `linear_name` of its linear solver interface's.
-struct Library { std::string_view prefix; Namer name, linear_name; };
+struct Library {
+  std::string_view prefix;
+  Namer name, linear_name;
+};
 constexpr Library kLibraries[] = {{"CVode", CVodeGetReturnFlagName, CVodeGetLinReturnFlagName},
                                   {"ARKStep", ARKStepGetReturnFlagName, ARKStepGetLinReturnFlagName},
                                   {"MRIStep", MRIStepGetReturnFlagName, MRIStepGetLinReturnFlagName},
@@ -26,7 +29,9 @@ constexpr Library kLibraries[] = {{"CVode", CVodeGetReturnFlagName, CVodeGetLinR
                                   {"KIN", KINGetReturnFlagName, KINGetLinReturnFlagName}};
 
 /// CVodeSetLinearSolver, IDASetJacFn and their like; not CVodeSetNonlinearSolver.
-bool is_of_linear_solver(std::string_view call) { return call.find("Lin") != call.npos || call.find("Jac") != call.npos; }
+bool is_of_linear_solver(std::string_view call) {
+  return call.find("Lin") != call.npos || call.find("Jac") != call.npos;
+}
 
 }  // namespace
 

@@ -21,15 +21,20 @@ using Side = OdeProblem::Side;
 constexpr int kHighestBdf = 5, kHighestAdams = 12;
 constexpr int kNewtonIterations = 4;  ///< one more than CVODE's 3: our test seldom takes the first correction
 
-/// Linear multistep methods of variable order and step by SUNDIALS CVODE (Hindmarsh et al. 2005, Gardner et al. 2022), in the fixed-leading-coefficient form
+/// Linear multistep methods of variable order and step by SUNDIALS CVODE (Hindmarsh et al. 2005, Gardner et
+/// al. 2022), in the fixed-leading-coefficient form
 ///     sum_i alpha_i y_{n-i} + h beta_0 f(t_n, y_n) + h sum_i beta_i f_{n-i} = 0.
-/// BDF: i = 0..k, k <= 5; A-stable for k <= 2, A(alpha) above: undamped modes that h does not resolve can grow from order 3 on (cap: max_order = 2).  Newton by the condensed matrix.
-/// Adams-Moulton: k <= 12, solved by fixed-point iteration: no tangent; steps bounded by about 1 / (largest rate).
+/// BDF: i = 0..k, k <= 5; A-stable for k <= 2, A(alpha) above: undamped modes that h does not resolve can
+/// grow from order 3 on (cap: max_order = 2).  Newton by the condensed matrix.
+/// Adams-Moulton: k <= 12, solved by fixed-point iteration: no tangent; steps bounded by about 1 / (largest
+/// rate).
 class Cvode final : public Adapter {
  public:
-  Cvode(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec, int method) : Adapter(std::move(problem), spec), method_(method) {
+  Cvode(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec, int method)
+      : Adapter(std::move(problem), spec), method_(method) {
     check_adaptive(spec, method == CV_BDF ? kHighestBdf : kHighestAdams);
-    if (method == CV_BDF) use_tolerance_of_bdf(kHighestBdf);  // the order of Adams-Moulton rises with the tolerance up to 12: its error falls as rtol by itself
+    // the order of Adams-Moulton rises with the tolerance up to 12: its error falls as rtol by itself
+    if (method == CV_BDF) use_tolerance_of_bdf(kHighestBdf);
   }
   ~Cvode() override { Cvode::destroy(); }
 
@@ -38,7 +43,8 @@ class Cvode final : public Adapter {
     const double t = problem().time();
     memory_ = CVodeCreate(method_, context());
     check(memory_, "CVodeCreate");
-    check(CVodeSetErrHandlerFn(memory_, on_error, this), "CVodeSetErrHandlerFn", t, 0.0);  // first: nothing is ever printed
+    // first: nothing is ever printed
+    check(CVodeSetErrHandlerFn(memory_, on_error, this), "CVodeSetErrHandlerFn", t, 0.0);
     check(CVodeInit(memory_, right_hand_side, t, y()), "CVodeInit", t, 0.0);
     check(CVodeSetUserData(memory_, static_cast<Adapter*>(this)), "CVodeSetUserData", t, 0.0);
     check(CVodeWFtolerances(memory_, weights), "CVodeWFtolerances", t, 0.0);
@@ -80,7 +86,9 @@ class Cvode final : public Adapter {
     matrix_ = nullptr;
   }
 
-  void restart(bool) override { check(CVodeReInit(memory_, problem().time(), y()), "CVodeReInit", problem().time(), 0.0); }
+  void restart(bool) override {
+    check(CVodeReInit(memory_, problem().time(), y()), "CVodeReInit", problem().time(), 0.0);
+  }
   void find_roots(int count) override {
     check(CVodeRootInit(memory_, count, roots), "CVodeRootInit", problem().time(), 0.0);
     CVodeSetNoInactiveRootWarn(memory_);
@@ -106,13 +114,16 @@ class Cvode final : public Adapter {
     }
   }
   std::string flag_name(int flag) const override { return sun::flag_name("CVode", flag); }
-  bool interpolate(double t, N_Vector out) const override { return CVodeGetDky(memory_, t, 0, out) == CV_SUCCESS; }
+  bool interpolate(double t, N_Vector out) const override {
+    return CVodeGetDky(memory_, t, 0, out) == CV_SUCCESS;
+  }
 
   Counts counts() const override {
     Counts c;
     check(CVodeGetNumSteps(memory_, &c.steps), "CVodeGetNumSteps", 0.0, 0.0);
     check(CVodeGetNumErrTestFails(memory_, &c.error_test_failures), "CVodeGetNumErrTestFails", 0.0, 0.0);
-    check(CVodeGetNonlinSolvStats(memory_, &c.newton_iterations, &c.newton_failures), "CVodeGetNonlinSolvStats", 0.0, 0.0);
+    check(CVodeGetNonlinSolvStats(memory_, &c.newton_iterations, &c.newton_failures),
+          "CVodeGetNonlinSolvStats", 0.0, 0.0);
     check(CVodeGetNumStepSolveFails(memory_, &c.solve_failures), "CVodeGetNumStepSolveFails", 0.0, 0.0);
     return c;
   }
@@ -126,7 +137,9 @@ class Cvode final : public Adapter {
     check(CVodeGetLastOrder(memory_, &order), "CVodeGetLastOrder", 0.0, 0.0);
     return order;
   }
-  bool local_errors(N_Vector estimate) const override { return CVodeGetEstLocalErrors(memory_, estimate) == CV_SUCCESS; }
+  bool local_errors(N_Vector estimate) const override {
+    return CVodeGetEstLocalErrors(memory_, estimate) == CV_SUCCESS;
+  }
   N_Vector newton_state() const override {
     N_Vector state = nullptr;
     check(CVodeGetCurrentState(memory_, &state), "CVodeGetCurrentState", 0.0, 0.0);
@@ -146,8 +159,8 @@ class Cvode final : public Adapter {
     me.see_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
-  static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, booleantype reuse, booleantype* fresh, realtype gamma, void* data, N_Vector,
-                           N_Vector, N_Vector) {
+  static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, booleantype reuse, booleantype* fresh,
+                           realtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
     *fresh = self(data).prepare_matrix(t, y, reuse, gamma, Side::kAll);
     return 0;
   }
@@ -167,13 +180,15 @@ class Cvode final : public Adapter {
 
 }  // namespace
 
-std::unique_ptr<dynamics::Stepper> make_cvode(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) {
+std::unique_ptr<dynamics::Stepper> make_cvode(std::unique_ptr<OdeProblem> problem,
+                                              const IntegratorSpec& spec) {
   return std::make_unique<Cvode>(std::move(problem), spec, spec.name == "cvode-adams" ? CV_ADAMS : CV_BDF);
 }
 
 }  // namespace sun
 
-std::unique_ptr<dynamics::Stepper> make_cvode(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+std::unique_ptr<dynamics::Stepper> make_cvode(dynamics::System& system, dynamics::State& state,
+                                              const IntegratorSpec& spec,
                                               std::unique_ptr<dynamics::LinearSolver> solver) {
   return sun::make_cvode(std::make_unique<MechanicalProblem>(system, state, spec, std::move(solver)), spec);
 }

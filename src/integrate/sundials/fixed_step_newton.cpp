@@ -23,10 +23,13 @@ Eigen::Map<VecX> entries(N_Vector v) { return {NV_DATA_S(v), NV_LENGTH_S(v)}; }
 
 /// SUNNonlinearSolver's table of functions.
 struct Operations {
-  static FixedStepNewton& of(SUNNonlinearSolver solver) { return *static_cast<FixedStepNewton*>(solver->content); }
+  static FixedStepNewton& of(SUNNonlinearSolver solver) {
+    return *static_cast<FixedStepNewton*>(solver->content);
+  }
   static SUNNonlinearSolver_Type type(SUNNonlinearSolver) { return SUNNONLINEARSOLVER_ROOTFIND; }
   static int ready(SUNNonlinearSolver) { return SUN_NLS_SUCCESS; }
-  static int solve(SUNNonlinearSolver s, N_Vector, N_Vector correction, N_Vector weights, realtype tolerance, booleantype set_up, void* memory) {
+  static int solve(SUNNonlinearSolver s, N_Vector, N_Vector correction, N_Vector weights, realtype tolerance,
+                   booleantype set_up, void* memory) {
     return of(s).solve(correction, weights, tolerance, set_up, memory);
   }
   static int set_system(SUNNonlinearSolver s, SUNNonlinSolSysFn f) {
@@ -41,7 +44,8 @@ struct Operations {
     of(s).solve_ = f;
     return SUN_NLS_SUCCESS;
   }
-  static int no_test(SUNNonlinearSolver, SUNNonlinSolConvTestFn, void*) { return SUN_NLS_SUCCESS; }  // the test is Deuflhard's
+  // the test is Deuflhard's
+  static int no_test(SUNNonlinearSolver, SUNNonlinSolConvTestFn, void*) { return SUN_NLS_SUCCESS; }
   static int no_limit(SUNNonlinearSolver, int) { return SUN_NLS_SUCCESS; }
   // Of the last solve: the library adds them up.
   template <class Count>
@@ -89,7 +93,8 @@ void FixedStepNewton::release() {
   }
 }
 
-int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double tolerance, bool set_up, void* memory) {
+int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double tolerance, bool set_up,
+                           void* memory) {
   for (N_Vector* v : {&x_, &residual_, &step_})
     if (!*v) *v = N_VClone(correction);
   weights_ = weights;

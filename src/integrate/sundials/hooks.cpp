@@ -24,7 +24,9 @@ SUNLinearSolver make_linear_solver(NewtonHook& hook, SUNContext context) {
   solver->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_DIRECT; };
   solver->ops->getid = [](SUNLinearSolver) { return SUNLINEARSOLVER_CUSTOM; };
   solver->ops->setup = [](SUNLinearSolver s, SUNMatrix) { return hook_of(s).setup(); };
-  solver->ops->solve = [](SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, realtype) { return hook_of(s).solve(x, b); };
+  solver->ops->solve = [](SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, realtype) {
+    return hook_of(s).solve(x, b);
+  };
   solver->ops->free = free_solver;
   return solver;
 }

@@ -4,19 +4,22 @@
 namespace palpate::integrate {
 namespace sun __attribute__((visibility("hidden"))) {
 
-/// What stands behind a SUNLinearSolver of ours.  Return values are SUNDIALS': 0 well, > 0 try a smaller step, < 0 give up.
-class NewtonHook {
- public:
-  virtual ~NewtonHook() = default;
-  virtual int setup() = 0;
-  virtual int solve(N_Vector x, N_Vector b) = 0;  ///< (I - gamma J) x = b
-  virtual N_Vector iterate() const { return nullptr; }  ///< y where the nonlinear residual was last evaluated; null: unknown
-  virtual void set_definite(bool) {}              ///< from the next setup on: positive semi-definite tangents
-};
+  /// What stands behind a SUNLinearSolver of ours.  Return values are SUNDIALS': 0 well, > 0 try a smaller
+  /// step, < 0 give up.
+  class NewtonHook {
+   public:
+    virtual ~NewtonHook() = default;
+    virtual int setup() = 0;
+    virtual int solve(N_Vector x, N_Vector b) = 0;  ///< (I - gamma J) x = b
+    /// y where the nonlinear residual was last evaluated; null: unknown
+    virtual N_Vector iterate() const { return nullptr; }
+    virtual void set_definite(bool) {}  ///< from the next setup on: positive semi-definite tangents
+  };
 
-/// A direct linear solver and a matrix with nothing in it: SUNDIALS passes both around, the work is the hook's.
-SUNLinearSolver make_linear_solver(NewtonHook& hook, SUNContext context);
-SUNMatrix make_matrix(SUNContext context);
+  /// A direct linear solver and a matrix with nothing in it: SUNDIALS passes both around, the work is the
+  /// hook's.
+  SUNLinearSolver make_linear_solver(NewtonHook & hook, SUNContext context);
+  SUNMatrix make_matrix(SUNContext context);
 
-}  // namespace sun
+}  // namespace )
 }  // namespace palpate::integrate

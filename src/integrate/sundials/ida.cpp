@@ -19,10 +19,11 @@ using Side = OdeProblem::Side;
 
 constexpr int kHighestOrder = 5;
 
-/// Backward differences of variable order and step on the residual form by SUNDIALS IDA (Hindmarsh et al. 2005), fixed leading coefficient:
+/// Backward differences of variable order and step on the residual form by SUNDIALS IDA (Hindmarsh et al.
+/// 2005), fixed leading coefficient:
 ///     F(t_n, y_n, y'_n) = 0,  y'_n = c_j y_n + (what is known),   F = [q' - N(q) u;  M u' - f(q, u, t)].
-/// No mass is inverted on the way, so a consistent one costs nothing extra (the start alone needs y' and solves with M once).
-/// Newton's matrix dF/dy + c_j dF/dy' is the condensed one with gamma = 1/c_j.
+/// No mass is inverted on the way, so a consistent one costs nothing extra (the start alone needs y' and
+/// solves with M once). Newton's matrix dF/dy + c_j dF/dy' is the condensed one with gamma = 1/c_j.
 class Ida final : public Adapter {
  public:
   Ida(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : Adapter(std::move(problem), spec) {
@@ -38,7 +39,8 @@ class Ida final : public Adapter {
     start_rate_of_change();
     memory_ = IDACreate(context());
     check(memory_, "IDACreate");
-    check(IDASetErrHandlerFn(memory_, on_error, this), "IDASetErrHandlerFn", t, 0.0);  // first: nothing is ever printed
+    // first: nothing is ever printed
+    check(IDASetErrHandlerFn(memory_, on_error, this), "IDASetErrHandlerFn", t, 0.0);
     check(IDAInit(memory_, residual, t, y(), y_dot_), "IDAInit", t, 0.0);
     check(IDASetUserData(memory_, static_cast<Adapter*>(this)), "IDASetUserData", t, 0.0);
     check(IDAWFtolerances(memory_, weights), "IDAWFtolerances", t, 0.0);
@@ -54,7 +56,8 @@ class Ida final : public Adapter {
 
   /// y' = f(t, y), so that F = 0 at the start.  Where f is not finite the first step says so.
   void start_rate_of_change() {
-    if (!problem().derivative(problem().time(), NV_DATA_S(y()), NV_DATA_S(y_dot_), Side::kAll)) N_VConst(0.0, y_dot_);
+    if (!problem().derivative(problem().time(), NV_DATA_S(y()), NV_DATA_S(y_dot_), Side::kAll))
+      N_VConst(0.0, y_dot_);
   }
 
   void destroy() override {
@@ -79,7 +82,9 @@ class Ida final : public Adapter {
     check(IDASetStopTime(memory_, t_end), "IDASetStopTime", problem().time(), 0.0);
     check(IDASetMinStep(memory_, smallest_step), "IDASetMinStep", problem().time(), 0.0);
   }
-  int one_step(double t_end, double& t) override { return IDASolve(memory_, t_end, &t, y(), y_dot_, IDA_ONE_STEP); }
+  int one_step(double t_end, double& t) override {
+    return IDASolve(memory_, t_end, &t, y(), y_dot_, IDA_ONE_STEP);
+  }
 
   StepStatus status_of(int flag) const override {
     switch (flag) {
@@ -94,13 +99,16 @@ class Ida final : public Adapter {
     }
   }
   std::string flag_name(int flag) const override { return sun::flag_name("IDA", flag); }
-  bool interpolate(double t, N_Vector out) const override { return IDAGetDky(memory_, t, 0, out) == IDA_SUCCESS; }
+  bool interpolate(double t, N_Vector out) const override {
+    return IDAGetDky(memory_, t, 0, out) == IDA_SUCCESS;
+  }
 
   Counts counts() const override {
     Counts c;
     check(IDAGetNumSteps(memory_, &c.steps), "IDAGetNumSteps", 0.0, 0.0);
     check(IDAGetNumErrTestFails(memory_, &c.error_test_failures), "IDAGetNumErrTestFails", 0.0, 0.0);
-    check(IDAGetNonlinSolvStats(memory_, &c.newton_iterations, &c.newton_failures), "IDAGetNonlinSolvStats", 0.0, 0.0);
+    check(IDAGetNonlinSolvStats(memory_, &c.newton_iterations, &c.newton_failures), "IDAGetNonlinSolvStats",
+          0.0, 0.0);
     check(IDAGetNumStepSolveFails(memory_, &c.solve_failures), "IDAGetNumStepSolveFails", 0.0, 0.0);
     return c;
   }
@@ -114,13 +122,17 @@ class Ida final : public Adapter {
     check(IDAGetLastOrder(memory_, &order), "IDAGetLastOrder", 0.0, 0.0);
     return order;
   }
-  bool local_errors(N_Vector estimate) const override { return IDAGetEstLocalErrors(memory_, estimate) == IDA_SUCCESS; }
+  bool local_errors(N_Vector estimate) const override {
+    return IDAGetEstLocalErrors(memory_, estimate) == IDA_SUCCESS;
+  }
   N_Vector newton_state() const override {
     N_Vector state = nullptr;
     check(IDAGetCurrentY(memory_, &state), "IDAGetCurrentY", 0.0, 0.0);
     return state;
   }
-  SolveStatus solve_newton(const double* y, const double* r, double* d) override { return problem().solve_residual(y, r, d); }
+  SolveStatus solve_newton(const double* y, const double* r, double* d) override {
+    return problem().solve_residual(y, r, d);
+  }
 
   double current_gamma() const override {
     double c_j = 1.0;
@@ -135,11 +147,14 @@ class Ida final : public Adapter {
     me.see_evaluation(t, y, finite);
     return finite ? 0 : kRecoverable;
   }
-  static int jacobian(realtype t, realtype c_j, N_Vector y, N_Vector, N_Vector, SUNMatrix, void* data, N_Vector, N_Vector, N_Vector) {
+  static int jacobian(realtype t, realtype c_j, N_Vector y, N_Vector, N_Vector, SUNMatrix, void* data,
+                      N_Vector, N_Vector, N_Vector) {
     self(data).prepare_matrix(t, y, false, 1.0 / c_j, Side::kAll);
     return 0;
   }
-  static int event_functions(realtype t, N_Vector y, N_Vector, realtype* g, void* data) { return roots(t, y, g, data); }
+  static int event_functions(realtype t, N_Vector y, N_Vector, realtype* g, void* data) {
+    return roots(t, y, g, data);
+  }
 
   void* memory_ = nullptr;
   N_Vector y_dot_ = nullptr;
@@ -155,7 +170,8 @@ std::unique_ptr<dynamics::Stepper> make_ida(std::unique_ptr<OdeProblem> problem,
 
 }  // namespace sun
 
-std::unique_ptr<dynamics::Stepper> make_ida(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+std::unique_ptr<dynamics::Stepper> make_ida(dynamics::System& system, dynamics::State& state,
+                                            const IntegratorSpec& spec,
                                             std::unique_ptr<dynamics::LinearSolver> solver) {
   return sun::make_ida(std::make_unique<MechanicalProblem>(system, state, spec, std::move(solver)), spec);
 }

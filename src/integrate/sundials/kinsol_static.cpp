@@ -26,17 +26,23 @@ constexpr long kNewtonIterations = 25;
 constexpr double kShortestRung = 1.0 / 64.0;
 constexpr int kProximalSteps = 200;
 
-/// Quasi-static equilibrium, f(q, 0, t) = 0, by Newton's method of SUNDIALS KINSOL with the exact tangent at every iteration.
-/// The State at t_end is the equilibrium that belongs to t_end, reached from the one before; velocities are zero.
+/// Quasi-static equilibrium, f(q, 0, t) = 0, by Newton's method of SUNDIALS KINSOL with the exact tangent at
+/// every iteration. The State at t_end is the equilibrium that belongs to t_end, reached from the one before;
+/// velocities are zero.
 ///
-/// Load ladder.  From q0 at t0, which need not be in equilibrium, to t1, the unbalanced force is let go by rungs s in (0, 1],
+/// Load ladder.  From q0 at t0, which need not be in equilibrium, to t1, the unbalanced force is let go by
+/// rungs s in (0, 1],
 ///     G(q, s) = f(q, 0, t0 + s (t1 - t0)) - (1 - s) f(q0, 0, t0) = 0,
-/// where s = 0 is solved by q0: loads, drives and what was left over of earlier outputs all grow with s.  A rung that Newton does not climb is halved.
+/// where s = 0 is solved by q0: loads, drives and what was left over of earlier outputs all grow with s.  A
+/// rung that Newton does not climb is halved.
 ///
-/// Proximal steps.  Where even a 64th is too much (a strut that buckles, a body that lies on nothing but its contact) the rung is climbed by
-///     G(q, s) - sigma M (q - q_k) = 0,      sigma falling by ten after a success, rising by ten after a failure:
-/// steps of backward Euler without inertia, which go downhill in energy, have a definite matrix for sigma large enough, and end at a stable equilibrium.
-/// (KINSOL's own line search stalls here: the norm of the force is no merit function when an element turns.)
+/// Proximal steps.  Where even a 64th is too much (a strut that buckles, a body that lies on nothing but its
+/// contact) the rung is climbed by
+///     G(q, s) - sigma M (q - q_k) = 0,      sigma falling by ten after a success, rising by ten after a
+///     failure:
+/// steps of backward Euler without inertia, which go downhill in energy, have a definite matrix for sigma
+/// large enough, and end at a stable equilibrium. (KINSOL's own line search stalls here: the norm of the
+/// force is no merit function when an element turns.)
 class KinsolStatic final : public Stepper, private NewtonHook {
  public:
   KinsolStatic(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
@@ -61,7 +67,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     q_start_ = state_.q();
     u_start_ = state_.u();
     state_.u().setZero();
-    if (!force(t0_, state_.q(), unbalanced_)) return failure(StepStatus::kNotFinite, "the force is not finite");
+    if (!force(t0_, state_.q(), unbalanced_))
+      return failure(StepStatus::kNotFinite, "the force is not finite");
     force_scale_ = std::max(scale_of_forces(t0_), scale_of_forces(t1_));
     const StepResult result = climb();
     if (!result.ok()) {
@@ -72,7 +79,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   }
 
   bool dense_output(double t, VecX& q, VecX& u) const override {
-    if (q_start_.size() != state_.layout().q_size || t < t0_ || t > state_.time() || !(state_.time() > t0_)) return false;
+    if (q_start_.size() != state_.layout().q_size || t < t0_ || t > state_.time() || !(state_.time() > t0_))
+      return false;
     const double s = (t - t0_) / (state_.time() - t0_);
     q = (1.0 - s) * q_start_ + s * state_.q();
     u = VecX::Zero(state_.layout().u_size);
@@ -87,7 +95,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   }
 
  private:
-  // --- the ladder -------------------------------------------------------------------------------------------------
+  // --- the ladder
+  // -------------------------------------------------------------------------------------------------
   StepResult climb() {
     double s = 0.0, rung = 1.0;
     int flag = KIN_SUCCESS;
@@ -161,7 +170,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     return flag == KIN_STEP_LT_STPTOL ? KIN_MAXITER_REACHED : flag;
   }
 
-  // --- the equations ----------------------------------------------------------------------------------------------
+  // --- the equations
+  // ----------------------------------------------------------------------------------------------
   /// q = base_q_ moved by the displacement x along u-directions; drives where they are at time t.
   void place(const double* x, double t, VecX& q) {
     q_dot(state_.layout(), base_q_.data(), x, rate_.data());
@@ -213,11 +223,13 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     const StateView at = state_.view(rung_time(), base_q_.data(), velocity_.data());
     system_.step_matrix(at, 0.0, 0.0, 1.0, A_);
     double stiffness = 0.0;
-    for (int i = 0; i < A_.body.block_rows(); ++i) stiffness = std::max(stiffness, std::abs(A_.body.block(A_.body.diagonal(i))[0]));
+    for (int i = 0; i < A_.body.block_rows(); ++i)
+      stiffness = std::max(stiffness, std::abs(A_.body.block(A_.body.diagonal(i))[0]));
     if (A_.border_size() > 0) stiffness = std::max(stiffness, A_.corner.cwiseAbs().maxCoeff());
     system_.step_matrix(at, 1.0, 0.0, 0.0, A_);
     double mass = 0.0;
-    for (int i = 0; i < A_.body.block_rows(); ++i) mass = std::max(mass, A_.body.block(A_.body.diagonal(i))[0]);
+    for (int i = 0; i < A_.body.block_rows(); ++i)
+      mass = std::max(mass, A_.body.block(A_.body.diagonal(i))[0]);
     if (A_.border_size() > 0) mass = std::max(mass, A_.corner.cwiseAbs().maxCoeff());
     return std::max(stiffness, 1.0) / std::max(mass, 1e-30);
   }
@@ -238,18 +250,26 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     me.assemble();
     return 0;
   }
-  void assemble() { system_.step_matrix(state_.view(rung_time(), q_.data(), velocity_.data()), sigma_, 0.0, 1.0, A_); }
-  int setup() override { return solver_.factor(A_, system_, [this] { assemble(); }) == SolveStatus::kOk ? 0 : kRecoverable; }
+  void assemble() {
+    system_.step_matrix(state_.view(rung_time(), q_.data(), velocity_.data()), sigma_, 0.0, 1.0, A_);
+  }
+  int setup() override {
+    return solver_.factor(A_, system_, [this] { assemble(); }) == SolveStatus::kOk ? 0 : kRecoverable;
+  }
   int solve(N_Vector x, N_Vector b) override {
     rhs_ = Eigen::Map<const VecX>(NV_DATA_S(b), NV_LENGTH_S(b));
     for (int dof : system_.driven_dofs()) rhs_[dof] = 0.0;
     const auto right_hand_side = [this]() -> const VecX& { return rhs_; };
-    if (solver_.solve(system_, [this] { assemble(); }, right_hand_side, step_) != SolveStatus::kOk || !all_finite(step_)) return kRecoverable;
+    if (solver_.solve(
+            system_, [this] { assemble(); }, right_hand_side, step_) != SolveStatus::kOk ||
+        !all_finite(step_))
+      return kRecoverable;
     Eigen::Map<VecX>(NV_DATA_S(x), step_.size()) = step_;
     return 0;
   }
 
-  // --- KINSOL -----------------------------------------------------------------------------------------------------
+  // --- KINSOL
+  // -----------------------------------------------------------------------------------------------------
   N_Vector zero_displacement() {
     N_VConst(0.0, x_);
     return x_;
@@ -269,14 +289,16 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     N_VConst(1.0, ones_);
     kinsol_ = KINCreate(context_);
     check(kinsol_, "KINCreate");
-    check(KINSetErrHandlerFn(kinsol_, on_error, this), "KINSetErrHandlerFn", t, 0.0);  // first: nothing is ever printed
+    // first: nothing is ever printed
+    check(KINSetErrHandlerFn(kinsol_, on_error, this), "KINSetErrHandlerFn", t, 0.0);
     check(KINInit(kinsol_, equations, x_), "KINInit", t, 0.0);
     check(KINSetUserData(kinsol_, this), "KINSetUserData", t, 0.0);
     linear_solver_ = make_linear_solver(*this, context_);
     matrix_ = make_matrix(context_);
     check(KINSetLinearSolver(kinsol_, linear_solver_, matrix_), "KINSetLinearSolver", t, 0.0);
     check(KINSetJacFn(kinsol_, jacobian), "KINSetJacFn", t, 0.0);
-    check(KINSetMaxSetupCalls(kinsol_, 1), "KINSetMaxSetupCalls", t, 0.0);  // a tangent an iteration: with an old one Newton leaves soft bodies
+    // a tangent an iteration: with an old one Newton leaves soft bodies
+    check(KINSetMaxSetupCalls(kinsol_, 1), "KINSetMaxSetupCalls", t, 0.0);
     check(KINSetNumMaxIters(kinsol_, kNewtonIterations), "KINSetNumMaxIters", t, 0.0);
     check(KINSetMaxNewtonStep(kinsol_, 1e30), "KINSetMaxNewtonStep", t, 0.0);  // the ladder keeps steps short
     check(KINSetScaledStepTol(kinsol_, 1e-30), "KINSetScaledStepTol", t, 0.0);  // the force decides
@@ -297,15 +319,22 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     context_ = nullptr;
   }
 
-  static void on_error(int, const char*, const char* function, char* text, void* data) { self(data).message_ = fmt::format("{}: {}", function, text); }
+  static void on_error(int, const char*, const char* function, char* text, void* data) {
+    self(data).message_ = fmt::format("{}: {}", function, text);
+  }
 
-  // --- what is told -----------------------------------------------------------------------------------------------
+  // --- what is told
+  // -----------------------------------------------------------------------------------------------
   StepStatus status_of(int flag) const {
     if (!finite_) return StepStatus::kNotFinite;
-    return flag == KIN_LSETUP_FAIL || flag == KIN_LSOLVE_FAIL || flag == KIN_LINSOLV_NO_RECOVERY ? StepStatus::kSolverFailed : StepStatus::kNewtonFailed;
+    return flag == KIN_LSETUP_FAIL || flag == KIN_LSOLVE_FAIL || flag == KIN_LINSOLV_NO_RECOVERY
+               ? StepStatus::kSolverFailed
+               : StepStatus::kNewtonFailed;
   }
   std::string describe(int flag) const {
-    return fmt::format("{} at load {:.3g} of 1: no equilibrium found ({}); is the body held, and the load bearable?", flag_name("KINSol", flag), s_, message_);
+    return fmt::format(
+        "{} at load {:.3g} of 1: no equilibrium found ({}); is the body held, and the load bearable?",
+        flag_name("KINSol", flag), s_, message_);
   }
   StepResult failure(StepStatus status, const std::string& what) const {
     StepResult r;
@@ -346,7 +375,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
 }  // namespace
 }  // namespace sun
 
-std::unique_ptr<dynamics::Stepper> make_kinsol_static(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+std::unique_ptr<dynamics::Stepper> make_kinsol_static(dynamics::System& system, dynamics::State& state,
+                                                      const IntegratorSpec& spec,
                                                       std::unique_ptr<dynamics::LinearSolver> solver) {
   return std::make_unique<sun::KinsolStatic>(system, state, spec, std::move(solver));
 }

@@ -5,11 +5,15 @@
 namespace palpate::integrate {
 namespace sun __attribute__((visibility("hidden"))) {
 
-/// The adapters over any OdeProblem; spec.name picks the method.
-std::unique_ptr<dynamics::Stepper> make_cvode(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);
-std::unique_ptr<dynamics::Stepper> make_ark(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);
-std::unique_ptr<dynamics::Stepper> make_mri(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);
-std::unique_ptr<dynamics::Stepper> make_ida(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);
+  /// The adapters over any OdeProblem; spec.name picks the method.
+  std::unique_ptr<dynamics::Stepper> make_cvode(std::unique_ptr<OdeProblem> problem,
+                                                const IntegratorSpec& spec);
+  std::unique_ptr<dynamics::Stepper> make_ark(std::unique_ptr<OdeProblem> problem,
+                                              const IntegratorSpec& spec);
+  std::unique_ptr<dynamics::Stepper> make_mri(std::unique_ptr<OdeProblem> problem,
+                                              const IntegratorSpec& spec);
+  std::unique_ptr<dynamics::Stepper> make_ida(std::unique_ptr<OdeProblem> problem,
+                                              const IntegratorSpec& spec);
 
-}  // namespace sun
+}  // namespace )
 }  // namespace palpate::integrate

@@ -4,7 +4,8 @@
 
 namespace palpate::integrate {
 
-std::unique_ptr<dynamics::Stepper> make_ode_stepper(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) {
+std::unique_ptr<dynamics::Stepper> make_ode_stepper(std::unique_ptr<OdeProblem> problem,
+                                                    const IntegratorSpec& spec) {
   if (spec.name == "ida") return sun::make_ida(std::move(problem), spec);
   if (spec.name.starts_with("cvode-")) return sun::make_cvode(std::move(problem), spec);
   if (spec.name.starts_with("ark-mri-")) return sun::make_mri(std::move(problem), spec);

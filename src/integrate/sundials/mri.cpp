@@ -27,18 +27,22 @@ constexpr double kNewtonCoefficient = 0.01;
 constexpr double kFastShare = 1e-3;
 constexpr int kLeastFastSteps = 1000;  ///< a small max_steps is meant for the slow ones
 
-/// Multi-rate infinitesimal methods of Sandu (2019) by SUNDIALS ARKODE's MRIStep: y' = f_S + f_F, the bodies slow and implicit, tool and contact fast.
-/// Between two slow stages, c_i and c_(i+1), the fast side is integrated with the slow one as a polynomial forcing,
+/// Multi-rate infinitesimal methods of Sandu (2019) by SUNDIALS ARKODE's MRIStep: y' = f_S + f_F, the bodies
+/// slow and implicit, tool and contact fast. Between two slow stages, c_i and c_(i+1), the fast side is
+/// integrated with the slow one as a polynomial forcing,
 ///     v' = f_F(t, v) + sum_j gamma_ij(t) f_S(z_j),     z_(i+1) = v(t_n + c_(i+1) H),
-/// or, where c_i = c_(i+1), an implicit stage z_(i+1) = z_i + H sum_j gbar_ij f_S(z_j) is solved by Newton with the slow tangent alone.
-/// The slow step is fixed (step_s); the fast side takes the explicit steps of Bogacki and Shampine under error control: cheap, because no element is
-/// evaluated in them, and bounded by the contact's and the coupling's own rates.  Where a scene has neither, f_F = 0 and the method is an implicit
-/// Runge-Kutta one with needless bookkeeping.
-/// Stable for each side alone.  Where both are stiff in each other (a hard contact on hard flesh, at a step of several of either's periods) the two together need not be:
+/// or, where c_i = c_(i+1), an implicit stage z_(i+1) = z_i + H sum_j gbar_ij f_S(z_j) is solved by Newton
+/// with the slow tangent alone. The slow step is fixed (step_s); the fast side takes the explicit steps of
+/// Bogacki and Shampine under error control: cheap, because no element is evaluated in them, and bounded by
+/// the contact's and the coupling's own rates.  Where a scene has neither, f_F = 0 and the method is an
+/// implicit Runge-Kutta one with needless bookkeeping.
+/// Stable for each side alone.  Where both are stiff in each other (a hard contact on hard flesh, at a step
+/// of several of either's periods) the two together need not be:
 /// multirate_amplification (multirate.h) tells.
 class Mri final : public Adapter {
  public:
-  Mri(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec) : Adapter(std::move(problem), spec), method_(multirate_method(spec.name)) {
+  Mri(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec)
+      : Adapter(std::move(problem), spec), method_(multirate_method(spec.name)) {
     check_fixed_step(spec);
     use_tolerance(spec.newton_rtol);
   }
@@ -50,7 +54,8 @@ class Mri final : public Adapter {
     create_fast(t);
     slow_ = MRIStepCreate(nullptr, slow_side, t, y(), inner_, context());
     check(slow_, "MRIStepCreate");
-    check(MRIStepSetErrHandlerFn(slow_, on_error, this), "MRIStepSetErrHandlerFn", t, 0.0);  // first: nothing is ever printed
+    // first: nothing is ever printed
+    check(MRIStepSetErrHandlerFn(slow_, on_error, this), "MRIStepSetErrHandlerFn", t, 0.0);
     check(MRIStepSetUserData(slow_, static_cast<Adapter*>(this)), "MRIStepSetUserData", t, 0.0);
     check(MRIStepWFtolerances(slow_, weights), "MRIStepWFtolerances", t, 0.0);
     MRIStepCoupling coupling = MRIStepCoupling_LoadTable(method_.table);
@@ -64,7 +69,8 @@ class Mri final : public Adapter {
     check(MRIStepSetLinearSolver(slow_, linear_solver_, matrix_), "MRIStepSetLinearSolver", t, 0.0);
     check(MRIStepSetLinSysFn(slow_, linear_system), "MRIStepSetLinSysFn", t, 0.0);
     check(MRIStepSetNonlinConvCoef(slow_, kNewtonCoefficient), "MRIStepSetNonlinConvCoef", t, 0.0);
-    if (problem().has_manifold()) check(MRIStepSetPostprocessStepFn(slow_, project_step), "MRIStepSetPostprocessStepFn", t, 0.0);
+    if (problem().has_manifold())
+      check(MRIStepSetPostprocessStepFn(slow_, project_step), "MRIStepSetPostprocessStepFn", t, 0.0);
   }
 
   void create_fast(double t) {
@@ -73,8 +79,11 @@ class Mri final : public Adapter {
     check(ARKStepSetErrHandlerFn(fast_, on_error, this), "ARKStepSetErrHandlerFn", t, 0.0);
     check(ARKStepSetUserData(fast_, static_cast<Adapter*>(this)), "ARKStepSetUserData", t, 0.0);
     check(ARKStepWFtolerances(fast_, fast_weights), "ARKStepWFtolerances", t, 0.0);
-    check(ARKStepSetTableNum(fast_, ARKODE_DIRK_NONE, ARKODE_BOGACKI_SHAMPINE_4_2_3), "ARKStepSetTableNum", t, 0.0);
-    check(ARKStepSetMaxNumSteps(fast_, std::max(kLeastFastSteps, spec().max_steps)), "ARKStepSetMaxNumSteps", t, 0.0);  // between two slow stages
+    check(ARKStepSetTableNum(fast_, ARKODE_DIRK_NONE, ARKODE_BOGACKI_SHAMPINE_4_2_3), "ARKStepSetTableNum", t,
+          0.0);
+    // between two slow stages
+    check(ARKStepSetMaxNumSteps(fast_, std::max(kLeastFastSteps, spec().max_steps)), "ARKStepSetMaxNumSteps",
+          t, 0.0);
     check(ARKStepSetMaxErrTestFails(fast_, kErrorTestFailures), "ARKStepSetMaxErrTestFails", t, 0.0);
     check(ARKStepCreateMRIStepInnerStepper(fast_, &inner_), "ARKStepCreateMRIStepInnerStepper", t, 0.0);
   }
@@ -121,17 +130,24 @@ class Mri final : public Adapter {
     }
   }
 
-  StepStatus status_of(int flag) const override { return flag == ARK_INNERSTEP_FAIL ? StepStatus::kErrorTestFailed : ark_status(flag); }
+  StepStatus status_of(int flag) const override {
+    return flag == ARK_INNERSTEP_FAIL ? StepStatus::kErrorTestFailed : ark_status(flag);
+  }
   std::string flag_name(int flag) const override { return sun::flag_name("MRIStep", flag); }
   std::string remedy(int flag) const override {
-    return flag == ARK_CONV_FAILURE ? fmt::format("  Not even at h/{}: a smaller step_s", 1 << StepInParts::kHalvings) : std::string();
+    return flag == ARK_CONV_FAILURE
+               ? fmt::format("  Not even at h/{}: a smaller step_s", 1 << StepInParts::kHalvings)
+               : std::string();
   }
-  bool interpolate(double t, N_Vector out) const override { return MRIStepGetDky(slow_, t, 0, out) == ARK_SUCCESS; }
+  bool interpolate(double t, N_Vector out) const override {
+    return MRIStepGetDky(slow_, t, 0, out) == ARK_SUCCESS;
+  }
 
   Counts counts() const override {
     Counts c;
     check(MRIStepGetNumSteps(slow_, &c.steps), "MRIStepGetNumSteps", 0.0, 0.0);
-    check(MRIStepGetNonlinSolvStats(slow_, &c.newton_iterations, &c.newton_failures), "MRIStepGetNonlinSolvStats", 0.0, 0.0);
+    check(MRIStepGetNonlinSolvStats(slow_, &c.newton_iterations, &c.newton_failures),
+          "MRIStepGetNonlinSolvStats", 0.0, 0.0);
     c.solve_failures = failures_;
     return c;
   }
@@ -171,8 +187,8 @@ class Mri final : public Adapter {
     N_VScale(1.0 / kFastShare, w, w);
     return 0;
   }
-  static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, booleantype reuse, booleantype* fresh, realtype gamma, void* data,
-                           N_Vector, N_Vector, N_Vector) {
+  static int linear_system(realtype t, N_Vector y, N_Vector, SUNMatrix, SUNMatrix, booleantype reuse,
+                           booleantype* fresh, realtype gamma, void* data, N_Vector, N_Vector, N_Vector) {
     *fresh = self(data).prepare_matrix(t, y, reuse, gamma, Side::kSlow);
     return 0;
   }
@@ -195,7 +211,8 @@ std::unique_ptr<dynamics::Stepper> make_mri(std::unique_ptr<OdeProblem> problem,
 
 }  // namespace sun
 
-std::unique_ptr<dynamics::Stepper> make_mri(dynamics::System& system, dynamics::State& state, const IntegratorSpec& spec,
+std::unique_ptr<dynamics::Stepper> make_mri(dynamics::System& system, dynamics::State& state,
+                                            const IntegratorSpec& spec,
                                             std::unique_ptr<dynamics::LinearSolver> solver) {
   return sun::make_mri(std::make_unique<MechanicalProblem>(system, state, spec, std::move(solver)), spec);
 }

@@ -9,13 +9,16 @@
 #include "palpate/core/error.h"
 #include "palpate/integrate/multirate.h"
 
-// One step H of a multi-rate infinitesimal method (Sandu 2019) from z_1 = y_n, with its abscissae c_i and coupling coefficients
-// g_ij(tau) = sum_k G^k_ij tau^k, takes for each stage
-//     c_i > c_(i-1), T = (c_i - c_(i-1)) H:   v' = F v + H/T sum_j g_ij(s/T) S z_j  from  v(0) = z_(i-1),    z_i = v(T)
-//     c_i = c_(i-1):                          z_i = z_(i-1) + H sum_j gbar_ij S z_j,    gbar_ij = sum_k G^k_ij/(k + 1)
+// One step H of a multi-rate infinitesimal method (Sandu 2019) from z_1 = y_n, with its abscissae c_i and
+// coupling coefficients g_ij(tau) = sum_k G^k_ij tau^k, takes for each stage
+//     c_i > c_(i-1), T = (c_i - c_(i-1)) H:   v' = F v + H/T sum_j g_ij(s/T) S z_j  from  v(0) = z_(i-1),
+//     z_i = v(T)
+//     c_i = c_(i-1):                          z_i = z_(i-1) + H sum_j gbar_ij S z_j,    gbar_ij = sum_k
+//     G^k_ij/(k + 1)
 // and the last z is y_(n+1).  With  integral_0^T e^(F (T - s)) (s/T)^k ds = T k! phi_(k+1)(T F),
 //     z_i = e^(T F) z_(i-1) + H sum_jk G^k_ij k! phi_(k+1)(T F) S z_j.
-// phi_1 .. phi_m of X stand in the first row of blocks of exp of the block matrix with X, 1, 0, .. in its first row and ones above its diagonal (Saad 1992):
+// phi_1 .. phi_m of X stand in the first row of blocks of exp of the block matrix with X, 1, 0, .. in its
+// first row and ones above its diagonal (Saad 1992):
 //     exp [X 1 0; 0 0 1; 0 0 0] = [e^X phi_1 phi_2; ..].
 // Every z_i = Z_i y_n, and the last Z is the step's matrix.
 
@@ -23,8 +26,9 @@ namespace palpate::integrate {
 namespace sun {
 namespace {
 
-constexpr MultirateMethod kMethods[] = {
-    {"ark-mri-2", ARKODE_MRI_GARK_IRK21a, 2}, {"ark-mri-3", ARKODE_MRI_GARK_ESDIRK34a, 3}, {"ark-mri-4", ARKODE_MRI_GARK_ESDIRK46a, 4}};
+constexpr MultirateMethod kMethods[] = {{"ark-mri-2", ARKODE_MRI_GARK_IRK21a, 2},
+                                        {"ark-mri-3", ARKODE_MRI_GARK_ESDIRK34a, 3},
+                                        {"ark-mri-4", ARKODE_MRI_GARK_ESDIRK46a, 4}};
 
 /// c and G^k of a table, which is freed.
 struct Coupling {
@@ -69,14 +73,16 @@ MatX step_matrix(const Coupling& coupling, const MatX& slow, const MatX& fast, d
       for (std::size_t k = 0; k < coupling.G.size(); ++k) {
         if (k > 0) factorial *= static_cast<double>(k);
         MatX sum = MatX::Zero(n, n);
-        for (std::size_t j = 0; j < f.size(); ++j) sum += coupling.G[k](i, static_cast<Eigen::Index>(j)) * f[j];
+        for (std::size_t j = 0; j < f.size(); ++j)
+          sum += coupling.G[k](i, static_cast<Eigen::Index>(j)) * f[j];
         z += H * factorial * (phi[k + 1] * sum);
       }
     } else {
       double own = 0.0;
       for (std::size_t k = 0; k < coupling.G.size(); ++k) {
         const double weight = 1.0 / (static_cast<double>(k) + 1.0);
-        for (std::size_t j = 0; j < f.size(); ++j) z += H * weight * coupling.G[k](i, static_cast<Eigen::Index>(j)) * f[j];
+        for (std::size_t j = 0; j < f.size(); ++j)
+          z += H * weight * coupling.G[k](i, static_cast<Eigen::Index>(j)) * f[j];
         own += weight * coupling.G[k](i, i);
       }
       z = (MatX::Identity(n, n) - H * own * slow).lu().solve(z).eval();
@@ -90,7 +96,8 @@ MatX step_matrix(const Coupling& coupling, const MatX& slow, const MatX& fast, d
 }  // namespace
 
 const MultirateMethod& multirate_method(std::string_view name) {
-  const auto* m = std::find_if(std::begin(kMethods), std::end(kMethods), [&](const MultirateMethod& x) { return name == x.name; });
+  const auto* m = std::find_if(std::begin(kMethods), std::end(kMethods),
+                               [&](const MultirateMethod& x) { return name == x.name; });
   if (m == std::end(kMethods)) fail("\"{}\" is no multi-rate method", name);
   return *m;
 }
@@ -99,8 +106,12 @@ const MultirateMethod& multirate_method(std::string_view name) {
 
 double multirate_amplification(std::string_view method, const MatX& slow, const MatX& fast, double step_s) {
   if (slow.rows() != slow.cols() || fast.rows() != slow.rows() || fast.cols() != slow.cols())
-    fail("the slow side is {} x {} and the fast one {} x {}: both must be square, of one size", slow.rows(), slow.cols(), fast.rows(), fast.cols());
-  return sun::step_matrix(sun::Coupling(sun::multirate_method(method)), slow, fast, step_s).eigenvalues().cwiseAbs().maxCoeff();
+    fail("the slow side is {} x {} and the fast one {} x {}: both must be square, of one size", slow.rows(),
+         slow.cols(), fast.rows(), fast.cols());
+  return sun::step_matrix(sun::Coupling(sun::multirate_method(method)), slow, fast, step_s)
+      .eigenvalues()
+      .cwiseAbs()
+      .maxCoeff();
 }
 
 }  // namespace palpate::integrate

@@ -6,13 +6,13 @@
 namespace palpate::integrate {
 namespace sun __attribute__((visibility("hidden"))) {
 
-struct MultirateMethod {
-  const char* name;
-  ARKODE_MRITableID table;
-  int order;
-};
-/// @throws Error for another name
-const MultirateMethod& multirate_method(std::string_view name);
+  struct MultirateMethod {
+    const char* name;
+    ARKODE_MRITableID table;
+    int order;
+  };
+  /// @throws Error for another name
+  const MultirateMethod& multirate_method(std::string_view name);
 
-}  // namespace sun
+}  // namespace )
 }  // namespace palpate::integrate

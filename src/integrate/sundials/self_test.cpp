@@ -74,8 +74,10 @@ double arkode(double t) {
   if (!memory) return kFailed;
   ARKStepSetErrHandlerFn(memory, silent, nullptr);
   double reached = 0.0;
-  const bool ok = ARKStepSStolerances(memory, kRtol, kAtol) == 0 && ARKStepSetLinearSolver(memory, s.solver, s.matrix) == 0 &&
-                  ARKStepSetStopTime(memory, t) == 0 && ARKStepEvolve(memory, t, s.y, &reached, ARK_NORMAL) >= 0;
+  const bool ok = ARKStepSStolerances(memory, kRtol, kAtol) == 0 &&
+                  ARKStepSetLinearSolver(memory, s.solver, s.matrix) == 0 &&
+                  ARKStepSetStopTime(memory, t) == 0 &&
+                  ARKStepEvolve(memory, t, s.y, &reached, ARK_NORMAL) >= 0;
   ARKStepFree(&memory);
   return ok ? s.value() : kFailed;
 }
@@ -88,7 +90,8 @@ double ida(double t) {
   void* memory = IDACreate(s.context);
   if (memory) IDASetErrHandlerFn(memory, silent, nullptr);
   double reached = 0.0;
-  const bool ok = memory && IDAInit(memory, decay_residual, 0.0, s.y, y_dot) == 0 && IDASStolerances(memory, kRtol, kAtol) == 0 &&
+  const bool ok = memory && IDAInit(memory, decay_residual, 0.0, s.y, y_dot) == 0 &&
+                  IDASStolerances(memory, kRtol, kAtol) == 0 &&
                   IDASetLinearSolver(memory, s.solver, s.matrix) == 0 && IDASetStopTime(memory, t) == 0 &&
                   IDASolve(memory, t, &reached, s.y, y_dot, IDA_NORMAL) >= 0;
   if (memory) IDAFree(&memory);

@@ -18,7 +18,9 @@ realtype weighted_rms_norm(N_Vector x, N_Vector w) {
 }
 
 // Every operation is entry by entry, so z may be x or y.
-void linear_sum(realtype a, N_Vector x, realtype b, N_Vector y, N_Vector z) { array(z) = a * array(x) + b * array(y); }
+void linear_sum(realtype a, N_Vector x, realtype b, N_Vector y, N_Vector z) {
+  array(z) = a * array(x) + b * array(y);
+}
 
 void scale(realtype c, N_Vector x, N_Vector z) { array(z) = c * array(x); }
 

@@ -16,7 +16,8 @@ constexpr double kDensity = 1000.0, kTurning = 3.0, kStart = 0.1, kFallsBelow = 
 fem::PathPoint turning(double t) {
   const double rate = kTurning / kStart, s = std::min(t, kStart);
   fem::PathPoint p;
-  p.pose = {Quat(Eigen::AngleAxisd(0.5 * rate * s * s + kTurning * (t - s), Vec3::UnitY())), Vec3(-0.5, 0, 0)};
+  p.pose = {Quat(Eigen::AngleAxisd(0.5 * rate * s * s + kTurning * (t - s), Vec3::UnitY())),
+            Vec3(-0.5, 0, 0)};
   p.twist.angular = Vec3(0, rate * s, 0);
   p.acceleration.angular = Vec3(0, t < kStart ? rate : 0.0, 0);
   return p;
@@ -35,13 +36,18 @@ Beam::Beam(int along, int across, double youngs_modulus_pa) {
   tetrahedra = static_cast<int>(mesh.tets.cols());
   rest = mesh.nodes.reshaped();
   masses = fem::lumped_masses(mesh, kDensity);
-  const int id = state.insert({.name = "beam", .q_size = static_cast<int>(rest.size()), .u_size = static_cast<int>(rest.size())}, rest, VecX::Zero(rest.size()));
-  const fem::Material material{.youngs_modulus = youngs_modulus_pa, .poissons_ratio = 0.4, .density = kDensity};
-  body_ = std::make_shared<fem::SoftBody>("beam", mesh, material, fem::SoftBodyOptions{.tangent = fem::Tangent::kWarped}, id);
+  const int id = state.insert(
+      {.name = "beam", .q_size = static_cast<int>(rest.size()), .u_size = static_cast<int>(rest.size())},
+      rest, VecX::Zero(rest.size()));
+  const fem::Material material{
+      .youngs_modulus = youngs_modulus_pa, .poissons_ratio = 0.4, .density = kDensity};
+  body_ = std::make_shared<fem::SoftBody>("beam", mesh, material,
+                                          fem::SoftBodyOptions{.tangent = fem::Tangent::kWarped}, id);
   system.add(std::static_pointer_cast<dynamics::ForceTerm>(body_));
   system.add(fem::make_gravity(masses, Vec3(0, 0, -9.81), id));
   system.add(fem::make_lumped_mass(mesh, kDensity, id));
-  const std::vector<int> held = fem::dofs_of_nodes(fem::nodes_in_box(mesh.nodes, Vec3(-0.5 - 1e-9, -1, -1), Vec3(-0.5 + 1e-9, 1, 1)), 0, "xyz");
+  const std::vector<int> held = fem::dofs_of_nodes(
+      fem::nodes_in_box(mesh.nodes, Vec3(-0.5 - 1e-9, -1, -1), Vec3(-0.5 + 1e-9, 1, 1)), 0, "xyz");
   const auto count = static_cast<Eigen::Index>(held.size());
   VecX x0(count);
   Points local(3, count);

@@ -33,9 +33,12 @@ struct Bent {
       x[i + 2] = radius * std::cos(turn);
     }
     shift.resize(x.size());
-    for (Eigen::Index i = 0; i < x.size(); ++i) shift[i] = 1e-3 * std::sin(3.0 * x[i] + static_cast<double>(i % 3));
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      shift[i] = 1e-3 * std::sin(3.0 * x[i] + static_cast<double>(i % 3));
     force.setZero(x.size());
-    id = state.insert(BlockSpec{.name = "beam", .q_size = static_cast<int>(x.size()), .u_size = static_cast<int>(x.size())}, x, shift);
+    id = state.insert(
+        BlockSpec{.name = "beam", .q_size = static_cast<int>(x.size()), .u_size = static_cast<int>(x.size())},
+        x, shift);
   }
   fem::SoftBody body(fem::Tangent tangent, double damping) const {
     fem::Material material{.youngs_modulus = 1e6, .poissons_ratio = 0.4, .density = 1000.0};
@@ -52,14 +55,20 @@ std::vector<ElementTiming> time_elements(const BeamSize& size, double time_s) {
   const auto time = [&](const std::string& stage, auto&& run) {
     run();  // maps and memory
     std::vector<double> ms;
-    for (const double start = wall_seconds(); static_cast<int>(ms.size()) < kFewestRuns || wall_seconds() - start < time_s;) {
+    for (const double start = wall_seconds();
+         static_cast<int>(ms.size()) < kFewestRuns || wall_seconds() - start < time_s;) {
       const double before = wall_seconds();
       run();
       ms.push_back(1e3 * (wall_seconds() - before));
     }
     std::sort(ms.begin(), ms.end());
-    out.push_back({.size = size.name, .stage = stage, .nodes = static_cast<int>(beam.mesh.nodes.cols()), .tetrahedra = static_cast<int>(beam.mesh.tets.cols()),
-                   .runs = static_cast<int>(ms.size()), .least_ms = ms.front(), .median_ms = ms[ms.size() / 2]});
+    out.push_back({.size = size.name,
+                   .stage = stage,
+                   .nodes = static_cast<int>(beam.mesh.nodes.cols()),
+                   .tetrahedra = static_cast<int>(beam.mesh.tets.cols()),
+                   .runs = static_cast<int>(ms.size()),
+                   .least_ms = ms.front(),
+                   .median_ms = ms[ms.size() / 2]});
   };
   const StateView at = beam.state.view();
   {

@@ -31,7 +31,8 @@ double fastest_gb_s(Team& team, double bytes, double measure_for, Pass&& pass) {
 /// Bounds of thread k's share of `count` numbers, in whole lines.
 std::pair<std::size_t, std::size_t> share(std::size_t count, int k, int threads) {
   const std::size_t lines = count / 8, parts = static_cast<std::size_t>(threads);
-  return {8 * (lines * static_cast<std::size_t>(k) / parts), 8 * (lines * (static_cast<std::size_t>(k) + 1) / parts)};
+  return {8 * (lines * static_cast<std::size_t>(k) / parts),
+          8 * (lines * (static_cast<std::size_t>(k) + 1) / parts)};
 }
 
 typedef double Line __attribute__((vector_size(64)));
@@ -40,7 +41,8 @@ typedef double LineInMemory __attribute__((vector_size(64), may_alias, aligned(8
 #if defined(__x86_64__) && defined(__GNUC__)
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #endif
-double read_all(const double* from, std::size_t count) {
+double
+read_all(const double* from, std::size_t count) {
   Line sum[4] = {};
   for (std::size_t i = 0; i + 32 <= count; i += 32)
     for (std::size_t k = 0; k < 4; ++k) sum[k] += *reinterpret_cast<const LineInMemory*>(from + i + 8 * k);
@@ -74,7 +76,8 @@ template <class Pack, int kWidth>
   Pack sum[kChains];
   for (int c = 0; c < kChains; ++c)
     for (int l = 0; l < kWidth; ++l) sum[c][l] = static_cast<decltype(sum[c][l] + 0)>(seed + c + l);
-  const Pack a = sum[0] * 0 + static_cast<decltype(sum[0][0] + 0)>(0.9999), b = sum[0] * 0 + static_cast<decltype(sum[0][0] + 0)>(1e-3);
+  const Pack a = sum[0] * 0 + static_cast<decltype(sum[0][0] + 0)>(0.9999),
+             b = sum[0] * 0 + static_cast<decltype(sum[0][0] + 0)>(1e-3);
   for (int r = 0; r < rounds; ++r)
     for (int c = 0; c < kChains; ++c) sum[c] = sum[c] * a + b;
   double total = 0.0;
@@ -88,13 +91,15 @@ typedef float Floats __attribute__((vector_size(64)));
 #if defined(__x86_64__) && defined(__GNUC__)
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #endif
-double multiply_add_floats(double seed) {
+double
+multiply_add_floats(double seed) {
   return multiply_add<Floats, 16>(seed, kRounds);
 }
 #if defined(__x86_64__) && defined(__GNUC__)
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #endif
-double multiply_add_doubles(double seed) {
+double
+multiply_add_doubles(double seed) {
   return multiply_add<Line, 8>(seed, kRounds);
 }
 
@@ -115,7 +120,8 @@ double at_size(const std::vector<Bandwidth>& measured, double bytes, double Band
   if (bytes <= measured.front().bytes) return measured.front().*kind;
   for (std::size_t i = 1; i < measured.size(); ++i) {
     if (bytes > measured[i].bytes) continue;
-    const double part = std::log(bytes / measured[i - 1].bytes) / std::log(measured[i].bytes / measured[i - 1].bytes);
+    const double part =
+        std::log(bytes / measured[i - 1].bytes) / std::log(measured[i].bytes / measured[i - 1].bytes);
     return (1.0 - part) * (measured[i - 1].*kind) + part * (measured[i].*kind);
   }
   return measured.back().*kind;
@@ -123,8 +129,12 @@ double at_size(const std::vector<Bandwidth>& measured, double bytes, double Band
 
 }  // namespace
 
-double MachineLimits::read_gb_s(double working_set) const { return at_size(bandwidths, working_set, &Bandwidth::read_gb_s); }
-double MachineLimits::write_gb_s(double working_set) const { return at_size(bandwidths, working_set, &Bandwidth::write_gb_s); }
+double MachineLimits::read_gb_s(double working_set) const {
+  return at_size(bandwidths, working_set, &Bandwidth::read_gb_s);
+}
+double MachineLimits::write_gb_s(double working_set) const {
+  return at_size(bandwidths, working_set, &Bandwidth::write_gb_s);
+}
 
 MachineLimits measure_limits(int threads) {
   Team team(threads);

@@ -2,7 +2,8 @@
 
 namespace palpate::study {
 
-/// Most memory [bytes] that the process held since this was made, above what it held then; NaN where the system does not tell.
+/// Most memory [bytes] that the process held since this was made, above what it held then; NaN where the
+/// system does not tell.
 class PeakMemory {
  public:
   PeakMemory();

@@ -6,7 +6,8 @@
 namespace palpate::study {
 
 const std::vector<BeamSize>& beam_sizes() {
-  static const std::vector<BeamSize> sizes = {{"XS", 16, 4}, {"S", 36, 9}, {"M", 56, 13}, {"L", 80, 19}, {"XL", 117, 28}};
+  static const std::vector<BeamSize> sizes = {
+      {"XS", 16, 4}, {"S", 36, 9}, {"M", 56, 13}, {"L", 80, 19}, {"XL", 117, 28}};
   return sizes;
 }
 
@@ -16,7 +17,8 @@ const BeamSize& size_named(const std::string& name) {
   fail("bench fem: there is no size \"{}\"; XS, S, M, L and XL are", name);
 }
 
-// Measured once, with the settings that each program's own users take, on the machine whose bandwidth is below; not measured again here.
+// Measured once, with the settings that each program's own users take, on the machine whose bandwidth is
+// below; not measured again here.
 const std::vector<PeerFigure>& peer_figures() {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   static const std::vector<PeerFigure> figures = {
@@ -40,10 +42,12 @@ const std::vector<PeerFigure>& peer_figures() {
   return figures;
 }
 
-// FastCorotatedFEM (Kugelstadt, Koschier, Bender 2018, the code published with it), this beam, a fall along its gravity, one thread: run time the least of three
-// runs on a machine that copies 28 GB/s (on the reference machine 1.4 ms a step), error against the exact motion of run_accuracy.  As published it adds up a
-// node's mass over again for each of its tetrahedra; the second row has that one line mended.  Smaller steps do not help: one pass does not converge.
-// SOFA and Vega take the same linearly implicit step to the same tolerance, so that its error, measured here, is theirs; run times on the reference machine.
+// FastCorotatedFEM (Kugelstadt, Koschier, Bender 2018, the code published with it), this beam, a fall along
+// its gravity, one thread: run time the least of three runs on a machine that copies 28 GB/s (on the
+// reference machine 1.4 ms a step), error against the exact motion of run_accuracy.  As published it adds up
+// a node's mass over again for each of its tetrahedra; the second row has that one line mended.  Smaller
+// steps do not help: one pass does not converge. SOFA and Vega take the same linearly implicit step to the
+// same tolerance, so that its error, measured here, is theirs; run times on the reference machine.
 std::vector<AccuracyPoint> peer_accuracy(const std::string& size) {
   if (size != "S") return {};
   constexpr double ten = 1e-2, five = 5e-3, one = 1e-3;

@@ -21,12 +21,15 @@ using namespace dynamics;
 
 constexpr int kDirectNodes = 12000;  ///< above: the direct factor costs seconds and gigabytes
 constexpr double kTight = 1e-10;
-constexpr double kWarmTo = 0.2, kWarmStep = 1e-2;  ///< the motion before the timed steps: large rotation is there
+/// the motion before the timed steps: large rotation is there
+constexpr double kWarmTo = 0.2, kWarmStep = 1e-2;
 
-/// The solver that is timed, and now and then a direct one behind it, of the step's matrix assembled anew in double, that tells the error of its answer.
+/// The solver that is timed, and now and then a direct one behind it, of the step's matrix assembled anew in
+/// double, that tells the error of its answer.
 class CheckedSolver final : public LinearSolver {
  public:
-  CheckedSolver(std::unique_ptr<LinearSolver> solver, Beam& beam, const IntegratorSpec& spec) : solver_(std::move(solver)), beam_(beam), spec_(spec) {}
+  CheckedSolver(std::unique_ptr<LinearSolver> solver, Beam& beam, const IntegratorSpec& spec)
+      : solver_(std::move(solver)), beam_(beam), spec_(spec) {}
   std::string name() const override { return solver_->name(); }
   bool supports_unsymmetric() const override { return solver_->supports_unsymmetric(); }
   SolveStatus factor(const BorderedMatrix& A) override {
@@ -71,7 +74,8 @@ class CheckedSolver final : public LinearSolver {
   /// Of the step that begins now.
   const BorderedMatrix& matrix() {
     const double h = spec_.step_s, t1 = beam_.state.time() + h;
-    beam_.system.step_matrix(beam_.state.view(t1, beam_.state.q().data(), beam_.state.u().data()), 1.0, h, h * h, matrix_);
+    beam_.system.step_matrix(beam_.state.view(t1, beam_.state.q().data(), beam_.state.u().data()), 1.0, h,
+                             h * h, matrix_);
     return matrix_;
   }
 
@@ -92,7 +96,8 @@ class CheckedSolver final : public LinearSolver {
       direct_ = integrate::make_linear_solver(A.body.block_rows() <= kDirectNodes ? "cholmod" : "pcg", tight);
     }
     VecX exact, product;
-    if (direct_->factor(A) != SolveStatus::kOk || direct_->solve(b, exact) != SolveStatus::kOk) fail("bench fem: the step has no direct solution to compare with");
+    if (direct_->factor(A) != SolveStatus::kOk || direct_->solve(b, exact) != SolveStatus::kOk)
+      fail("bench fem: the step has no direct solution to compare with");
     const VecX wrong = x - exact;
     const auto energy = [&](const VecX& v) {
       A.multiply(v, product);
@@ -134,7 +139,8 @@ double stiffness_of(const BlockSparse& A, const VecX& masses) {
 
 struct Times {
   std::array<double, 4> at{};
-  explicit Times(const StepperCounters& c) : at{c.force_s, c.tangent_s, c.solver.factor_s + c.solver.symbolic_s, c.solver.solve_s} {}
+  explicit Times(const StepperCounters& c)
+      : at{c.force_s, c.tangent_s, c.solver.factor_s + c.solver.symbolic_s, c.solver.solve_s} {}
 };
 
 /// The beam where the timed steps begin; the same for every kind of step of one beam.
@@ -144,10 +150,12 @@ struct Warm {
 
 /// The same motion, whatever the step.
 int timed_steps(const FemBenchOptions& options, double h) {
-  return options.same_motion ? static_cast<int>(std::lround(options.steps * std::max(1.0, kWarmStep / h))) : options.steps;
+  return options.same_motion ? static_cast<int>(std::lround(options.steps * std::max(1.0, kWarmStep / h)))
+                             : options.steps;
 }
 
-FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double youngs_modulus, const FemBenchOptions& options, Warm& start_from) {
+FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double youngs_modulus,
+                       const FemBenchOptions& options, Warm& start_from) {
   const PeakMemory memory;
   Beam beam(size.along, size.across, youngs_modulus);
   if (start_from.q.size() == beam.rest.size()) {
@@ -155,14 +163,19 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
     beam.state.u() = start_from.u;
     beam.state.set_time(kWarmTo);
   } else {
-    IntegratorSpec warm{.name = "linearly-implicit-euler", .step_s = kWarmStep, .linear_solver = "pcg-two-level", .linear_rtol = 1e-4};
+    IntegratorSpec warm{.name = "linearly-implicit-euler",
+                        .step_s = kWarmStep,
+                        .linear_solver = "pcg-two-level",
+                        .linear_rtol = 1e-4};
     const auto stepper = integrate::make_stepper(beam.system, beam.state, warm);
     if (const StepResult r = stepper->advance_to(kWarmTo); !r.ok()) fail("bench fem: {}", r.message);
     start_from = {beam.state.q(), beam.state.u()};
   }
-  auto checked = std::make_unique<CheckedSolver>(integrate::make_linear_solver(spec.linear_solver, spec), beam, spec);
+  auto checked =
+      std::make_unique<CheckedSolver>(integrate::make_linear_solver(spec.linear_solver, spec), beam, spec);
   CheckedSolver& solver = *checked;
-  const auto stepper = find(integrate::stepper_registry(), spec.name, "integrator").make(beam.system, beam.state, spec, std::move(checked));
+  const auto stepper = find(integrate::stepper_registry(), spec.name, "integrator")
+                           .make(beam.system, beam.state, spec, std::move(checked));
   constexpr int kUntimed = 4;  // symbolic analysis, and the solutions that a start is made of
   std::array<std::vector<double>, 7> ms;
   long iterations = 0;
@@ -171,12 +184,17 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
   long near = 0;
   for (int k = 0; k < kUntimed + steps; ++k) {
     if (k == kUntimed) peak = memory.bytes();  // before the first check, which holds a factor
-    solver.check_next = options.checks > 0 && k >= kUntimed && (k - kUntimed) % std::max(1, steps / options.checks) == 0 && solver.checks < options.checks;
-    const double checking = solver.checking_s, checking_cpu = solver.checking_cpu_s, solver_cpu = solver.cpu_s;
+    solver.check_next = options.checks > 0 && k >= kUntimed &&
+                        (k - kUntimed) % std::max(1, steps / options.checks) == 0 &&
+                        solver.checks < options.checks;
+    const double checking = solver.checking_s, checking_cpu = solver.checking_cpu_s,
+                 solver_cpu = solver.cpu_s;
     const Times before(stepper->counters());
-    const long iterations_before = stepper->counters().solver.iterations, near_before = stepper->counters().solver.near;
+    const long iterations_before = stepper->counters().solver.iterations,
+               near_before = stepper->counters().solver.near;
     const double start = wall_seconds(), start_cpu = thread_cpu_seconds();
-    if (const StepResult r = stepper->advance_to(beam.state.time() + spec.step_s); !r.ok()) fail("bench fem: {}", r.message);
+    if (const StepResult r = stepper->advance_to(beam.state.time() + spec.step_s); !r.ok())
+      fail("bench fem: {}", r.message);
     const double wall = wall_seconds() - start - (solver.checking_s - checking);
     const double cpu = thread_cpu_seconds() - start_cpu - (solver.checking_cpu_s - checking_cpu);
     if (k < kUntimed) continue;
@@ -222,7 +240,13 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
 }
 
 void set_limits(FemBenchRow& row, const MachineLimits& limits) {
-  const StepCounts counts{static_cast<double>(row.nodes), static_cast<double>(row.tetrahedra), static_cast<double>(row.blocks), row.iterations, row.linear_rtol < 1e-4 ? 5.0 : 3.0, row.one_pass, row.near > 0.5};
+  const StepCounts counts{static_cast<double>(row.nodes),
+                          static_cast<double>(row.tetrahedra),
+                          static_cast<double>(row.blocks),
+                          row.iterations,
+                          row.linear_rtol < 1e-4 ? 5.0 : 3.0,
+                          row.one_pass,
+                          row.near > 0.5};
   const StepWork work = work_of(counts);
   row.scaled_ms = row.step_ms * limits.large_copy_gb_s / reference_bandwidth_gb_s(limits.threads);
   row.force_limit_ms = work.force.limit_ms(limits, work.working_set);
@@ -259,7 +283,11 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
             for (std::size_t t = 0; t < options.threads.size(); ++t) {
               if (stop && stop()) break;
               const WorkerCount workers_too(options.threads[t]);
-              const IntegratorSpec spec{.name = "linearly-implicit-euler", .step_s = h, .linear_solver = solver, .linear_rtol = rtol, .threads = options.threads[t]};
+              const IntegratorSpec spec{.name = "linearly-implicit-euler",
+                                        .step_s = h,
+                                        .linear_solver = solver,
+                                        .linear_rtol = rtol,
+                                        .threads = options.threads[t]};
               report.rows.push_back(time_steps(size_named(size), spec, E, options, warm));
             }
     }
@@ -279,15 +307,19 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
   for (ElementTiming& timing : report.elements)
     for (const FemBenchRow& row : report.rows) {
       if (row.size != timing.size) continue;
-      const StepCounts counts{.nodes = static_cast<double>(row.nodes), .tetrahedra = static_cast<double>(row.tetrahedra), .blocks = static_cast<double>(row.blocks)};
+      const StepCounts counts{.nodes = static_cast<double>(row.nodes),
+                              .tetrahedra = static_cast<double>(row.tetrahedra),
+                              .blocks = static_cast<double>(row.blocks)};
       const StageWork work = element_work(timing.stage, counts);
       for (const MachineLimits& limits : report.limits)
-        if (limits.threads == timing.threads) timing.limit_ms = work.limit_ms(limits, work.read_bytes + work.written_bytes);
+        if (limits.threads == timing.threads)
+          timing.limit_ms = work.limit_ms(limits, work.read_bytes + work.written_bytes);
     }
   return report;
 }
 
-double scaling_exponent(const std::vector<const FemBenchRow*>& rows, const std::function<double(const FemBenchRow&)>& figure) {
+double scaling_exponent(const std::vector<const FemBenchRow*>& rows,
+                        const std::function<double(const FemBenchRow&)>& figure) {
   std::vector<std::pair<double, double>> points;
   for (const FemBenchRow* row : rows) points.emplace_back(row->nodes, figure(*row));
   return scaling_exponent(points);
@@ -314,7 +346,8 @@ void calibrate_auto(const std::function<void(const std::string&)>& row_measured,
   options.checks = 0;
   options.same_motion = false;
   for (const BeamSize& size : sizes)
-    for (const auto& [E, h] : {std::pair{1e5, 1e-3}, {1e5, 3e-3}, {1e5, 1e-2}, {1e6, 1e-2}, {1e7, 1e-2}, {1e8, 1e-2}}) {
+    for (const auto& [E, h] :
+         {std::pair{1e5, 1e-3}, {1e5, 3e-3}, {1e5, 1e-2}, {1e6, 1e-2}, {1e7, 1e-2}, {1e8, 1e-2}}) {
       Warm warm;
       double direct = 0.0;  // knows no tolerance
       for (const double rtol : {1e-3, 1e-6, 1e-9}) {
@@ -324,8 +357,15 @@ void calibrate_auto(const std::function<void(const std::string&)>& row_measured,
         for (const char* solver : {"pcg-single", "pcg-two-level", "cholmod"}) {
           if (stop && stop()) return;
           const bool known = std::string(solver) == "cholmod" && direct > 0.0;
-          options.steps = std::string(solver) == "cholmod" ? 3 : 7;  // a direct solve takes as long every time
-          if (!known) row = time_steps(size, {.name = "linearly-implicit-euler", .step_s = h, .linear_solver = solver, .linear_rtol = rtol}, E, options, warm);
+          // a direct solve takes as long every time
+          options.steps = std::string(solver) == "cholmod" ? 3 : 7;
+          if (!known)
+            row = time_steps(size,
+                             {.name = "linearly-implicit-euler",
+                              .step_s = h,
+                              .linear_solver = solver,
+                              .linear_rtol = rtol},
+                             E, options, warm);
           const double ms = known ? direct : row.solver_cpu_ms;
           if (std::string(solver) == "cholmod") direct = ms;
           times += fmt::format(" {} {:.3g}", solver, ms);
@@ -333,7 +373,8 @@ void calibrate_auto(const std::function<void(const std::string&)>& row_measured,
           least = ms;
           fastest = solver;
         }
-        row_measured(fmt::format("{{{}, {:.3g}, {:g}, \"{}\"}},  // ms:{}\n", row.nodes, row.stiffness, rtol, fastest, times));
+        row_measured(fmt::format("{{{}, {:.3g}, {:g}, \"{}\"}},  // ms:{}\n", row.nodes, row.stiffness, rtol,
+                                 fastest, times));
       }
     }
 }

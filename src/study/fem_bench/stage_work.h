@@ -12,7 +12,8 @@ struct StepCounts {
   bool near = false;        ///< by the matrix of an earlier step
 };
 
-/// The least that each stage of a linearly implicit step (warped tangent, no damping, solved by conjugate gradients in single precision) must do.
+/// The least that each stage of a linearly implicit step (warped tangent, no damping, solved by conjugate
+/// gradients in single precision) must do.
 struct StepWork {
   StageWork force, matrix, factor, solve;
   double working_set = 0.0;        ///< bytes that a step comes by again one step later
@@ -20,10 +21,12 @@ struct StepWork {
 };
 StepWork work_of(const StepCounts& counts);
 
-/// The least that one evaluation over the elements must do.  @param stage  as ElementTiming names them  @throws InternalError for another
+/// The least that one evaluation over the elements must do.  @param stage  as ElementTiming names them
+/// @throws InternalError for another
 StageWork element_work(const std::string& stage, const StepCounts& counts);
 
-/// What must be stored for such steps [bytes]: elements, pattern, matrix and its copy in single precision, vectors.
+/// What must be stored for such steps [bytes]: elements, pattern, matrix and its copy in single precision,
+/// vectors.
 double bytes_to_store(const StepCounts& counts);
 
 }  // namespace palpate::study

@@ -5,8 +5,12 @@
 namespace palpate::study {
 namespace {
 
-nlohmann::ordered_json number(double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr); }
-double number_of(const nlohmann::json& value) { return value.is_number() ? value.get<double>() : std::nan(""); }
+nlohmann::ordered_json number(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+double number_of(const nlohmann::json& value) {
+  return value.is_number() ? value.get<double>() : std::nan("");
+}
 
 nlohmann::ordered_json names_of(const Verdicts& verdicts) {
   auto list = nlohmann::ordered_json::array();

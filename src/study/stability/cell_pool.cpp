@@ -32,13 +32,18 @@ std::vector<StabilityCell> run_cells(const std::vector<Task>& tasks, const Stabi
   const auto start = [&](std::size_t index) {
     const Task& task = tasks[index];
     const double limit_s = (task.row->slow ? kLongerInSlowRows : 1.0) * options.limit_s;
-    pool.start([&task, &options, limit_s](const std::atomic<bool>& expired) { return cell_to_json(run_cell(task, options.seeds, limit_s, expired)).dump(); },
-               limit_s, [&, index](const ProcessPool::Outcome& outcome) {
-                 cells[index] = cell_of(tasks[index], outcome);
-                 ++done;
-                 if (options.progress)
-                   options.progress(static_cast<double>(done) / static_cast<double>(tasks.size()), fmt::format("{}, {}", cells[index]->row, cells[index]->integrator));
-               });
+    pool.start(
+        [&task, &options, limit_s](const std::atomic<bool>& expired) {
+          return cell_to_json(run_cell(task, options.seeds, limit_s, expired)).dump();
+        },
+        limit_s,
+        [&, index](const ProcessPool::Outcome& outcome) {
+          cells[index] = cell_of(tasks[index], outcome);
+          ++done;
+          if (options.progress)
+            options.progress(static_cast<double>(done) / static_cast<double>(tasks.size()),
+                             fmt::format("{}, {}", cells[index]->row, cells[index]->integrator));
+        });
   };
   while (true) {
     while (next < tasks.size() && pool.has_room() && !stopped()) start(next++);

@@ -32,7 +32,8 @@ StabilityCell run_cell(const Task& task, int seeds, double limit_s, const std::a
   cell.sub_case = task.sub_case->name;
   cell.integrator = task.column->label;
   cell.cpu_s = cpu_seconds() - start;
-  if (cell.verdict == Verdict::kTooSlow && cell.reason.empty()) cell.reason = fmt::format("cut off after {:g} s of CPU time", limit_s);
+  if (cell.verdict == Verdict::kTooSlow && cell.reason.empty())
+    cell.reason = fmt::format("cut off after {:g} s of CPU time", limit_s);
   return cell;
 }
 

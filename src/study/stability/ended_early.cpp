@@ -3,7 +3,8 @@
 
 namespace palpate::study {
 
-bool ended_early(const Column& column, const dynamics::StepResult& result, bool finite, bool interrupted, bool grown, StabilityCell& cell) {
+bool ended_early(const Column& column, const dynamics::StepResult& result, bool finite, bool interrupted,
+                 bool grown, StabilityCell& cell) {
   if (interrupted || result.status == dynamics::StepStatus::kInterrupted) {
     cell.verdict = Verdict::kTooSlow;
   } else if (result.ok() && finite) {

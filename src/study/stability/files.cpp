@@ -30,7 +30,8 @@ store::Summary summarise(const StabilityMatrix& matrix, const std::string& comma
   summary.provenance = made_by();
   double cpu = 0.0;
   for (const StabilityCell& cell : matrix.cells) cpu += cell.cpu_s;
-  summary.section("counts").values = {{"cells", static_cast<long long>(matrix.cells.size())}, {"unexpected", static_cast<long long>(matrix.unexpected())}};
+  summary.section("counts").values = {{"cells", static_cast<long long>(matrix.cells.size())},
+                                      {"unexpected", static_cast<long long>(matrix.unexpected())}};
   summary.section("timings").values = {{"wall_s", matrix.wall_s}, {"cells_cpu_s", cpu}};
   return summary;
 }
@@ -41,17 +42,24 @@ void write(const StabilityMatrix& matrix, const std::string& folder, const std::
   const std::filesystem::path dir(folder);
   store::write_summary((dir / "summary.json").string(), summarise(matrix, command));
   store::CsvWriter csv((dir / "stability.csv").string(),
-                       {"row", "sub_case", "integrator", "verdict", "expected", "as_expected", "figure", "energy_gain", "error", "reason", "steps", "cpu_s"});
+                       {"row", "sub_case", "integrator", "verdict", "expected", "as_expected", "figure",
+                        "energy_gain", "error", "reason", "steps", "cpu_s"});
   auto cells = nlohmann::ordered_json::array();
   for (const StabilityCell& cell : matrix.cells) {
-    csv.row({cell.row, cell.sub_case, cell.integrator, std::string(to_string(cell.verdict)), cell.expected.text(), std::string(cell.as_expected() ? "yes" : "no"),
-             cell.figure, cell.gain, cell.error, cell.reason, static_cast<double>(cell.steps), cell.cpu_s});
+    csv.row({cell.row, cell.sub_case, cell.integrator, std::string(to_string(cell.verdict)),
+             cell.expected.text(), std::string(cell.as_expected() ? "yes" : "no"), cell.figure, cell.gain,
+             cell.error, cell.reason, static_cast<double>(cell.steps), cell.cpu_s});
     cells.push_back(cell_to_json(cell));
   }
   csv.close();
   auto rows = nlohmann::ordered_json::array();
-  for (const StabilityRow& row : stability_rows()) rows.push_back({{"name", row.name}, {"summary", row.summary}});
-  const nlohmann::ordered_json all = {{"unexpected", matrix.unexpected()}, {"stopped", matrix.stopped}, {"wall_s", matrix.wall_s}, {"rows", rows}, {"cells", cells}};
+  for (const StabilityRow& row : stability_rows())
+    rows.push_back({{"name", row.name}, {"summary", row.summary}});
+  const nlohmann::ordered_json all = {{"unexpected", matrix.unexpected()},
+                                      {"stopped", matrix.stopped},
+                                      {"wall_s", matrix.wall_s},
+                                      {"rows", rows},
+                                      {"cells", cells}};
   store::write_atomically((dir / "stability.json").string(), all.dump(1) + "\n");
 }
 

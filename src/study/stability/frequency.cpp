@@ -11,7 +11,10 @@ double largest_frequency(dynamics::System& system, const dynamics::StateView& st
     system.step_matrix(state, mass, 0.0, stiffness, A);
     return A.to_dense();
   };
-  return std::sqrt(Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(matrix(0.0, 1.0), matrix(1.0, 0.0), Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
+  return std::sqrt(Eigen::GeneralizedSelfAdjointEigenSolver<MatX>(matrix(0.0, 1.0), matrix(1.0, 0.0),
+                                                                  Eigen::EigenvaluesOnly)
+                       .eigenvalues()
+                       .maxCoeff());
 }
 
 }  // namespace palpate::study

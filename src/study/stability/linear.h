@@ -4,11 +4,12 @@
 
 namespace palpate::study {
 
-inline constexpr int kLinearPeriods = 40;   ///< of H each
-inline constexpr double kLinearRtol = 1e-6; ///< of the columns under error control
-inline constexpr double kAccurate = 0.05;   ///< error of a fixed step that counts as accurate
+inline constexpr int kLinearPeriods = 40;    ///< of H each
+inline constexpr double kLinearRtol = 1e-6;  ///< of the columns under error control
+inline constexpr double kAccurate = 0.05;    ///< error of a fixed step that counts as accurate
 
-/// What theory says of a column on a linear problem with periods (and fixed steps) of `H`; derivation in linear_theory.cpp.
+/// What theory says of a column on a linear problem with periods (and fixed steps) of `H`; derivation in
+/// linear_theory.cpp.
 Verdicts expect_linear(const Lab& lab, const LinearProblem& problem, double H);
 
 /// Largest gain of energy of a method that is bounded, by the same theory.

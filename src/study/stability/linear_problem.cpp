@@ -29,8 +29,9 @@ MatX rest_stiffness(const TetMesh& rest, const fem::Material& material, const st
 
 using Complex = std::complex<double>;
 
-/// a(t), a'(t) of a'' + 2 z w a' + w^2 a = 0, a(0) = a0, a'(0) = 0, by the two roots s of s^2 + 2 z w s + w^2.  Where they nearly meet they are
-/// moved apart by a relative 1e-6, an error of about 1e-12.  The small root of an overdamped mode is w^2 over the large one: no cancellation.
+/// a(t), a'(t) of a'' + 2 z w a' + w^2 a = 0, a(0) = a0, a'(0) = 0, by the two roots s of s^2 + 2 z w s +
+/// w^2.  Where they nearly meet they are moved apart by a relative 1e-6, an error of about 1e-12.  The small
+/// root of an overdamped mode is w^2 over the large one: no cancellation.
 std::pair<double, double> oscillator(double w, double z, double a0, double t) {
   if (std::abs(z - 1.0) < 1e-12) z = 1.0 + 1e-12;
   const Complex root = std::sqrt(Complex(z * z - 1.0));
@@ -41,7 +42,8 @@ std::pair<double, double> oscillator(double w, double z, double a0, double t) {
 
 }  // namespace
 
-LinearProblem::LinearProblem(const TetMesh& rest, const fem::Material& material, double damping_ratio, double clamp_below) {
+LinearProblem::LinearProblem(const TetMesh& rest, const fem::Material& material, double damping_ratio,
+                             double clamp_below) {
   std::vector<int> free;
   const VecX node_mass = fem::lumped_masses(rest, material.density);
   std::vector<double> mass;
@@ -62,11 +64,13 @@ LinearProblem::LinearProblem(double omega, double damping_ratio)
   find_modes();
 }
 
-// M^-1/2 K M^-1/2 in extended precision: of a mesh with slivers the squares of the frequencies span 1e13, and the lowest must not drown in the
-// rounding of the highest.  Amplitude 1/w_j with alternating signs: each mode holds 1/2 J.
+// M^-1/2 K M^-1/2 in extended precision: of a mesh with slivers the squares of the frequencies span 1e13, and
+// the lowest must not drown in the rounding of the highest.  Amplitude 1/w_j with alternating signs: each
+// mode holds 1/2 J.
 void LinearProblem::find_modes() {
   using MatL = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
-  const Eigen::Matrix<long double, Eigen::Dynamic, 1> root = mass_.cast<long double>().cwiseSqrt().cwiseInverse();
+  const Eigen::Matrix<long double, Eigen::Dynamic, 1> root =
+      mass_.cast<long double>().cwiseSqrt().cwiseInverse();
   const MatL symmetric = (0.5L * (K_ + K_.transpose()).cast<long double>()).eval();
   const Eigen::SelfAdjointEigenSolver<MatL> solver(root.asDiagonal() * symmetric * root.asDiagonal());
   PALPATE_CHECK(solver.info() == Eigen::Success && solver.eigenvalues()[0] > 0.0L, "no modes");
@@ -105,32 +109,42 @@ std::unique_ptr<LinearProblem::Instance> LinearProblem::start() const {
   return out;
 }
 
-// In modal coordinates, where it is a sum of squares: of a stiff K, q.K q would lose its small modes to rounding.
+// In modal coordinates, where it is a sum of squares: of a stiff K, q.K q would lose its small modes to
+// rounding.
 double LinearProblem::energy_of(const VecX& q, const VecX& u) const {
   const VecX a = phi_.transpose() * mass_.cwiseProduct(q);
   return 0.5 * (u.dot(mass_.cwiseProduct(u)) + omega_.cwiseProduct(a).squaredNorm());
 }
 
-double LinearProblem::energy(const dynamics::State& state) const { return energy_of(state.q(), state.u()) / start_energy_; }
+double LinearProblem::energy(const dynamics::State& state) const {
+  return energy_of(state.q(), state.u()) / start_energy_;
+}
 
 double LinearProblem::error(const dynamics::State& state, double t) const {
   VecX a(a0_.size()), b(a0_.size());
-  for (Eigen::Index j = 0; j < a0_.size(); ++j) std::tie(a[j], b[j]) = oscillator(omega_[j], damping_ratio(j), a0_[j], t);
+  for (Eigen::Index j = 0; j < a0_.size(); ++j)
+    std::tie(a[j], b[j]) = oscillator(omega_[j], damping_ratio(j), a0_[j], t);
   return std::sqrt(energy_of(state.q() - phi_ * a, state.u() - phi_ * b) / start_energy_);
 }
 
 double LinearProblem::from_rest(const dynamics::State& state) const { return std::sqrt(energy(state)); }
 
-double LinearProblem::speed_rms(const dynamics::State& state) const { return state.u().norm() / std::sqrt(static_cast<double>(mass_.size())); }
+double LinearProblem::speed_rms(const dynamics::State& state) const {
+  return state.u().norm() / std::sqrt(static_cast<double>(mass_.size()));
+}
 
-double LinearProblem::largest_speed_rms() const { return std::sqrt(2.0 * start_energy_ / (mass_.minCoeff() * static_cast<double>(mass_.size()))); }
+double LinearProblem::largest_speed_rms() const {
+  return std::sqrt(2.0 * start_energy_ / (mass_.minCoeff() * static_cast<double>(mass_.size())));
+}
 
-// WRMS <= 1 over 2n entries with the weights of error_weights.h:  |dq| <= sqrt(2n) rtol atol_q q_scale,  |du| <= sqrt(2n) rtol (atol_u u_scale + rms u);
-// and 2E = du.M du + dq.K dq <= m_max |du|^2 + w_max^2 m_max |dq|^2.  (The sum of both bounds, where only one of them can be reached, is up to 1.4 too much.)
+// WRMS <= 1 over 2n entries with the weights of error_weights.h:  |dq| <= sqrt(2n) rtol atol_q q_scale,  |du|
+// <= sqrt(2n) rtol (atol_u u_scale + rms u); and 2E = du.M du + dq.K dq <= m_max |du|^2 + w_max^2 m_max
+// |dq|^2.  (The sum of both bounds, where only one of them can be reached, is up to 1.4 too much.)
 double LinearProblem::tolerance(const IntegratorSpec& spec, double speed) const {
   const double heaviest = mass_.maxCoeff(), count = 2.0 * static_cast<double>(mass_.size());
   const double dq = spec.atol_q * q_scale_, du = spec.atol_u * u_scale_ + speed;
-  return spec.rtol * std::sqrt(count * heaviest * (du * du + std::pow(omega_[omega_.size() - 1] * dq, 2)) / (2.0 * start_energy_));
+  return spec.rtol * std::sqrt(count * heaviest * (du * du + std::pow(omega_[omega_.size() - 1] * dq, 2)) /
+                               (2.0 * start_energy_));
 }
 
 }  // namespace palpate::study

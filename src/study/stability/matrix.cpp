@@ -12,16 +12,19 @@ bool chosen(const std::string& name, const std::vector<std::string>& wanted) {
   return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
-void check_names(const std::vector<std::string>& wanted, const std::vector<std::string>& known, const char* what) {
+void check_names(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
+                 const char* what) {
   for (const std::string& name : wanted)
-    if (std::find(known.begin(), known.end(), name) == known.end()) fail("unknown {} \"{}\"{}", what, name, suggestion(name, known));
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      fail("unknown {} \"{}\"{}", what, name, suggestion(name, known));
 }
 
 }  // namespace
 
 StabilityMatrix stability(const StabilityOptions& options) {
   const double start = wall_seconds();
-  const dynamics::StepperRegistry& registry = options.registry ? *options.registry : integrate::stepper_registry();
+  const dynamics::StepperRegistry& registry =
+      options.registry ? *options.registry : integrate::stepper_registry();
   const std::vector<Row> rows = all_rows();
   const std::vector<Column> steppers = stepper_columns(registry), tools = tool_columns();
   check_names(options.rows, names(rows), "row");

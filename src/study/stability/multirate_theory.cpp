@@ -4,8 +4,10 @@
 
 #include "palpate/integrate/multirate.h"
 
-// Multi-rate methods are A-stable for each side alone.  For two sides that are stiff in each other no theorem is known, so the matrix of their step is made from the
-// coupling tables (integrate::multirate_amplification): with y = [q; u] and K, D of the terms of each side (contact and what calls itself fast on the fast one),
+// Multi-rate methods are A-stable for each side alone.  For two sides that are stiff in each other no theorem
+// is known, so the matrix of their step is made from the coupling tables
+// (integrate::multirate_amplification): with y = [q; u] and K, D of the terms of each side (contact and what
+// calls itself fast on the fast one),
 //     S = [0 1; -M^-1 K_S  -M^-1 D_S],    F = [0 0; -M^-1 K_F  -M^-1 D_F].
 
 namespace palpate::study {
@@ -32,11 +34,13 @@ MatX linearised(loop::World& world, bool fast) {
 
 }  // namespace
 
-double multirate_amplification_at(const Column& column, loop::World& world, const VecX& q, const VecX& u, double step_s) {
+double multirate_amplification_at(const Column& column, loop::World& world, const VecX& q, const VecX& u,
+                                  double step_s) {
   world.state.q() = q;
   world.state.u() = u;
   if (world.contact) world.contact->refresh(world.state.view());
-  return integrate::multirate_amplification(column.name, linearised(world, false), linearised(world, true), step_s);
+  return integrate::multirate_amplification(column.name, linearised(world, false), linearised(world, true),
+                                            step_s);
 }
 
 }  // namespace palpate::study

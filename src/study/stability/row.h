@@ -18,13 +18,15 @@ struct Lab {
 };
 
 /// Why a run did not come to its end: too slow, not finite, grown, error, silent.  False where it did.
-/// An implicit method that grows beyond every bound has not ended clearly when it fails of it: only an explicit one may end so.
+/// An implicit method that grows beyond every bound has not ended clearly when it fails of it: only an
+/// explicit one may end so.
 /// @param grown  the bound on energy or motion was passed
-bool ended_early(const Column& column, const dynamics::StepResult& result, bool finite, bool interrupted, bool grown, StabilityCell& cell);
+bool ended_early(const Column& column, const dynamics::StepResult& result, bool finite, bool interrupted,
+                 bool grown, StabilityCell& cell);
 
 struct SubCase {
   std::string name;
-  std::function<Verdicts(const Lab&)> expect;    ///< from theory, before anything of the case has run
+  std::function<Verdicts(const Lab&)> expect;  ///< from theory, before anything of the case has run
   /// Runs it: verdict and figures.  May throw Error (a refusal: that is a clear end).
   std::function<StabilityCell(const Lab&)> run;
 };
@@ -32,7 +34,8 @@ struct SubCase {
 /// Which columns a row has.
 enum class RowColumns { kSteppers, kTools };
 
-/// One row of section F.  Each stands in a file of its own, with the theory that its expectations follow from on top.
+/// One row of section F.  Each stands in a file of its own, with the theory that its expectations follow from
+/// on top.
 struct Row {
   std::string name, summary;
   RowColumns columns = RowColumns::kSteppers;

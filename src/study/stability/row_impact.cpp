@@ -2,12 +2,16 @@
 
 #include "throw.h"
 
-// A slab of 5 mm, E = 1e6 Pa, at up to three times the speed of its own waves.  Its energy is judged as that of any throw.
-// On a plane: what is behind it is inside, nothing can be missed.
-// On a rigid plate as thin as itself, k = 1e7 Pa/m: a vertex that is above at one query and below at the next was never seen inside, and the contact must have counted
-//   it.  At 100 m/s a period is 200 mm long; the spring alone would stop the slab after v sqrt(m/(k A)) = 70 mm and throw it out of the half-space that it takes
-//   the plate for within 2.2 ms: after one period of 2 ms it is through.  The count is taken here once more, from the nodes' places alone (a plate that reaches to where
-//   nothing arrives is crossed exactly where z changes from above to below or back), and must be the contact's own at every query.
+// A slab of 5 mm, E = 1e6 Pa, at up to three times the speed of its own waves.  Its energy is judged as that
+// of any throw. On a plane: what is behind it is inside, nothing can be missed.
+// On a rigid plate as thin as itself, k = 1e7 Pa/m: a vertex that is above at one query and below at the next
+// was never seen inside, and the contact must have counted
+//   it.  At 100 m/s a period is 200 mm long; the spring alone would stop the slab after v sqrt(m/(k A)) = 70
+//   mm and throw it out of the half-space that it takes
+//   the plate for within 2.2 ms: after one period of 2 ms it is through.  The count is taken here once more,
+//   from the nodes' places alone (a plate that reaches to where
+//   nothing arrives is crossed exactly where z changes from above to below or back), and must be the
+//   contact's own at every query.
 
 namespace palpate::study {
 namespace {
@@ -39,14 +43,19 @@ class Crossings {
  public:
   void look(const loop::World& world) {
     if (!misses_.empty()) return;
-    if (!world.contact->tunnelled().empty()) reported_ = world.contact->tunnelled()[0];  // up to the last query, one look ago
-    if (reported_ != counted_) misses_ = fmt::format("{} vertices went through the plate unseen, {} were reported", counted_, reported_);
+    // up to the last query, one look ago
+    if (!world.contact->tunnelled().empty()) reported_ = world.contact->tunnelled()[0];
+    if (reported_ != counted_)
+      misses_ =
+          fmt::format("{} vertices went through the plate unseen, {} were reported", counted_, reported_);
     const loop::Body& slab = world.bodies[0];
     const Points x = world.positions(slab);
-    if (x.cwiseAbs().maxCoeff() > 0.5 * kHalfWidth) gone_ = true;  // an explicit method on its way to overflow
+    // an explicit method on its way to overflow
+    if (x.cwiseAbs().maxCoeff() > 0.5 * kHalfWidth) gone_ = true;
     if (gone_) return;
     Points now(3, slab.boundary.surface.vertices.cols());
-    for (Eigen::Index v = 0; v < now.cols(); ++v) now.col(v) = x.col(slab.boundary.node_of_vertex[static_cast<std::size_t>(v)]);
+    for (Eigen::Index v = 0; v < now.cols(); ++v)
+      now.col(v) = x.col(slab.boundary.node_of_vertex[static_cast<std::size_t>(v)]);
     for (Eigen::Index v = 0; v < before_.cols(); ++v)
       if (side(now(2, v)) * side(before_(2, v)) < 0) ++counted_;
     before_ = now;
@@ -74,7 +83,9 @@ StabilityCell run_on_plane(const Lab& lab, const scene::Description& d) {
 
 StabilityCell run_on_plate(const Lab& lab, const scene::Description& d) {
   Crossings crossings;
-  const SceneCourse course = run_scene(lab, d, kThrowRtol, 0.0, [&](loop::World& world, double) { if (!crossings.gone()) crossings.look(world); });
+  const SceneCourse course = run_scene(lab, d, kThrowRtol, 0.0, [&](loop::World& world, double) {
+    if (!crossings.gone()) crossings.look(world);
+  });
   StabilityCell cell;
   judge(lab, course, throw_bars(lab.column, d), cell);
   cell.figure += fmt::format(", {} vertices through the plate", crossings.counted());
@@ -88,12 +99,18 @@ StabilityCell run_on_plate(const Lab& lab, const scene::Description& d) {
 }  // namespace
 
 Row impact_row() {
-  Row row{"impact", "a thin slab thrown at 0.1 to 100 m/s (three times the speed of its own waves) on a plane, and on a plate as thin as itself: what goes through is counted"};
-  const auto add = [&row](std::string name, const scene::Description& thrown, StabilityCell (*run)(const Lab&, const scene::Description&)) {
-    row.cases.push_back({std::move(name), [thrown](const Lab& lab) { return expect_thrown(lab, thrown); }, [thrown, run](const Lab& lab) { return run(lab, thrown); }});
+  Row row{"impact",
+          "a thin slab thrown at 0.1 to 100 m/s (three times the speed of its own waves) on a plane, and on "
+          "a plate as thin as itself: what goes through is counted"};
+  const auto add = [&row](std::string name, const scene::Description& thrown,
+                          StabilityCell (*run)(const Lab&, const scene::Description&)) {
+    row.cases.push_back({std::move(name), [thrown](const Lab& lab) { return expect_thrown(lab, thrown); },
+                         [thrown, run](const Lab& lab) { return run(lab, thrown); }});
   };
-  for (const double speed : {0.1, 1.0, 10.0, 100.0}) add(fmt::format("{:g} m/s", speed), on_plane(speed), run_on_plane);
-  for (const double speed : {0.1, 1.0, 10.0, 100.0}) add(fmt::format("{:g} m/s on a thin plate", speed), on_plate(speed), run_on_plate);
+  for (const double speed : {0.1, 1.0, 10.0, 100.0})
+    add(fmt::format("{:g} m/s", speed), on_plane(speed), run_on_plane);
+  for (const double speed : {0.1, 1.0, 10.0, 100.0})
+    add(fmt::format("{:g} m/s on a thin plate", speed), on_plate(speed), run_on_plate);
   return row;
 }
 

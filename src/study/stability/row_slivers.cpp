@@ -4,10 +4,13 @@
 #include "palpate/mesh/generators.h"
 
 // The same clamped block with elements that no mesher should make.
-//   dihedral 0.1 degree: an apex so low over a face of the cube that the three angles at that face's edges are 0.1 degree.
-//   volume ratio 1e6:    the corner of a corner tetrahedron cut off at a hundredth of its edges; the frustum below is three tetrahedra.
-// Both are linear: modes, and so expectations, are those of linear_theory.cpp.  A sliver of height e makes frequencies of about c/e and a
-// condition of 1e8: that is what the matrices, and the explicit limits, have to bear.
+//   dihedral 0.1 degree: an apex so low over a face of the cube that the three angles at that face's edges
+//   are 0.1 degree.
+//   volume ratio 1e6:    the corner of a corner tetrahedron cut off at a hundredth of its edges; the frustum
+//   below is three tetrahedra.
+// Both are linear: modes, and so expectations, are those of linear_theory.cpp.  A sliver of height e makes
+// frequencies of about c/e and a condition of 1e8: that is what the matrices, and the explicit limits, have
+// to bear.
 
 namespace palpate::study {
 namespace {
@@ -49,7 +52,8 @@ TetMesh mesh_with_flat_element() {
     if (mesh.nodes(2, mesh.tets(k, tet)) > 0.0 && count < 3) top[count++] = mesh.tets(k, tet);
   const Vec3 a = mesh.nodes.col(top[0]), b = mesh.nodes.col(top[1]), c = mesh.nodes.col(top[2]);
   const double la = (b - c).norm(), lb = (c - a).norm(), lc = (a - b).norm();
-  const double inradius = (b - a).cross(c - a).norm() / (la + lb + lc);  // over the incentre the three angles are equal
+  // over the incentre the three angles are equal
+  const double inradius = (b - a).cross(c - a).norm() / (la + lb + lc);
   const Vec3 incentre = (la * a + lb * b + lc * c) / (la + lb + lc);
   append_node(mesh, incentre + Vec3::UnitZ() * inradius * std::tan(0.1 * M_PI / 180.0));
   append_tet(mesh, top[0], top[1], top[2], static_cast<int>(mesh.nodes.cols()) - 1);
@@ -84,8 +88,12 @@ Row sliver_row() {
       return LinearProblem(make(), material, kDampingRatio, -0.4);
     };
   };
-  return {"slivers", "degenerate elements in the same block, H = 10 ms", RowColumns::kSteppers, false,
-          {linear_case("dihedral 0.1 degree", problem_of(mesh_with_flat_element), kH), linear_case("volume ratio 1e6", problem_of(mesh_with_tiny_element), kH)}};
+  return {"slivers",
+          "degenerate elements in the same block, H = 10 ms",
+          RowColumns::kSteppers,
+          false,
+          {linear_case("dihedral 0.1 degree", problem_of(mesh_with_flat_element), kH),
+           linear_case("volume ratio 1e6", problem_of(mesh_with_tiny_element), kH)}};
 }
 
 }  // namespace palpate::study

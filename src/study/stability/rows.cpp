@@ -3,9 +3,10 @@
 namespace palpate::study {
 
 std::vector<Row> all_rows() {
-  return {youngs_modulus_row(), undamped_row(),      poissons_ratio_row(),  step_row(), sliver_row(),        squashed_row(),
-          density_ratio_row(),  contact_stiffness_row(), impact_row(),        swallowed_tool_row(), thrown_handle_row(), rest_row(),
-          size_row(),           million_ticks_row(), million_tool_ticks_row()};
+  return {youngs_modulus_row(), undamped_row(),       poissons_ratio_row(),    step_row(),
+          sliver_row(),         squashed_row(),       density_ratio_row(),     contact_stiffness_row(),
+          impact_row(),         swallowed_tool_row(), thrown_handle_row(),     rest_row(),
+          size_row(),           million_ticks_row(),  million_tool_ticks_row()};
 }
 
 std::vector<StabilityRow> stability_rows() {

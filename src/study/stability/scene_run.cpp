@@ -17,12 +17,14 @@ class Watch : public loop::Observer {
   void period(loop::World& world, double t) override {
     const double energy = world.mechanical_energy();
     if (t == 0.0) course_.available = energy + put_in_;
-    course_.finite = course_.finite && std::isfinite(energy) && world.state.q().allFinite() && world.state.u().allFinite();
+    course_.finite =
+        course_.finite && std::isfinite(energy) && world.state.q().allFinite() && world.state.u().allFinite();
     course_.highest = std::max(course_.highest, energy);
     course_.last = energy;
     course_.interrupted = lab_.time_is_up();
     if (look_) look_(world, t);
-    const bool growing = lab_.column.entry && lab_.column.fixed && is_explicit(lab_.column) && course_.highest > kGrown * course_.available;
+    const bool growing = lab_.column.entry && lab_.column.fixed && is_explicit(lab_.column) &&
+                         course_.highest > kGrown * course_.available;
     if (course_.interrupted || !course_.finite || (t >= duration_ * (1.0 - 1e-9) && !growing)) stop_ = true;
   }
   const std::atomic<bool>* stop() const { return &stop_; }
@@ -48,10 +50,12 @@ Settled settle(const scene::Description& description, double duration_s) {
   return {world->state.q(), world->state.u()};
 }
 
-SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in, const Look& look, const Settled* start) {
+SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in,
+                      const Look& look, const Settled* start) {
   scene::Description d = description;
   d.integrator = {};
-  d.integrator.name = "linearly-implicit-euler";  // assembled with, and replaced: a column need not be in the registry
+  // assembled with, and replaced: a column need not be in the registry
+  d.integrator.name = "linearly-implicit-euler";
   const auto world = loop::assemble(d);
   if (start) {
     world->state.q() = start->q;
@@ -79,8 +83,12 @@ void judge(const Lab& lab, const SceneCourse& course, const GainBars& bars, Stab
   cell.steps = course.steps;
   cell.gain = course.gain();
   cell.figure = fmt::format("energy {:+.1e}", cell.gain);
-  if (ended_early(lab.column, course.result, course.finite, course.interrupted, cell.gain > bars.bounded, cell)) return;
-  cell.verdict = cell.gain <= bars.stable ? Verdict::kStable : cell.gain <= bars.bounded ? Verdict::kBounded : Verdict::kGrew;
+  if (ended_early(lab.column, course.result, course.finite, course.interrupted, cell.gain > bars.bounded,
+                  cell))
+    return;
+  cell.verdict = cell.gain <= bars.stable    ? Verdict::kStable
+                 : cell.gain <= bars.bounded ? Verdict::kBounded
+                                             : Verdict::kGrew;
 }
 
 scene::Description soft_cube() {

@@ -4,10 +4,12 @@
 namespace palpate::study {
 
 /// A body thrown at something, and nothing else: the contact rows.  Theory in throw.cpp.
-inline constexpr double kThrowPeriod = 2e-3, kThrowDuration = 0.1, kThrowRtol = 1e-4, kThrowHeight = 1e-3;  ///< [s], [s], 1, [m]
+/// [s], [s], 1, [m]
+inline constexpr double kThrowPeriod = 2e-3, kThrowDuration = 0.1, kThrowRtol = 1e-4, kThrowHeight = 1e-3;
 
 /// `d`'s body at `speed` [m/s] downwards from kThrowHeight above z = 0, against `obstacle`.
-scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle, double speed, double stiffness_pa_m);
+scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle, double speed,
+                             double stiffness_pa_m);
 
 Verdicts expect_thrown(const Lab& lab, const scene::Description& thrown);
 

@@ -1,5 +1,5 @@
-// Uses the installed parts as a simulator would: SUNDIALS inside palpate::integrate and CPodes inside Simbody, in one process, in the order
-// that the argument names; a soft body's mass; one tick of a tool.
+// Uses the installed parts as a simulator would: SUNDIALS inside palpate::integrate and CPodes inside
+// Simbody, in one process, in the order that the argument names; a soft body's mass; one tick of a tool.
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -23,7 +23,8 @@ void expect_near(const char* what, double computed, double exact, double bar) {
 void cpodes() { expect_near("CPodes", cpodes_decay(1.0), std::exp(-1.0), 1e-6); }
 
 void sundials() {
-  for (const auto& answer : palpate::integrate::self_test::all(1.0)) expect_near(answer.library.c_str(), answer.y, std::exp(-1.0), 1e-6);
+  for (const auto& answer : palpate::integrate::self_test::all(1.0))
+    expect_near(answer.library.c_str(), answer.y, std::exp(-1.0), 1e-6);
 }
 
 /// Volume 1/6 m^3 at 1200 kg/m^3.
