@@ -11,9 +11,9 @@
 #include <memory>
 #include <string>
 
+#include "bench/fem/beam.h"
 #include "palpate/core/clock.h"
 #include "palpate/integrate/integrators.h"
-#include "study/fem_bench/beam.h"
 
 namespace {
 
@@ -67,7 +67,7 @@ class Patch final : public dynamics::ForceTerm {
 double still_s = 0.0;
 
 void Step(benchmark::State& state, int along, int across, const std::string& linear_solver, bool moves) {
-  study::Beam beam(along, across, 1e5);
+  bench::Beam beam(along, across, 1e5);
   auto patch = std::make_shared<Patch>(UpperFace(beam.rest, along, across), moves);
   beam.system.add(std::static_pointer_cast<dynamics::ForceTerm>(patch));
   beam.system.prepare(beam.state.view());

@@ -170,7 +170,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
     m.exact = exact;
     m.error = error.back();
     m.bar = 1e-4;
-    m.order = study::fitted_order(h, error);
+    m.order = validation::fitted_order(h, error);
     m.order_low = 1.9;
     m.order_high = 3.5;
     m.note = "order in pixel size over 64 to 512";
@@ -196,7 +196,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
     m.exact = exact;
     m.error = error.back();
     m.bar = 5e-3;
-    m.order = study::fitted_order(h, error);
+    m.order = validation::fitted_order(h, error);
     m.order_low = 1.9;
     m.order_high = 2.1;
     m.note = "order in facet size over 12 to 48 subdivisions of the icosahedron";

@@ -171,7 +171,7 @@ Measurement order_in_contact(const std::string& sabotage) {
   Measurement m =
       against("linearly-implicit-euler in contact, 800 steps a quarter period: depth w/v0 and speed/v0",
               1.0 + error.back(), 1.0, 5e-3);
-  m.order = study::fitted_order(h, error);
+  m.order = validation::fitted_order(h, error);
   m.order_low = 0.9;
   m.order_high = 1.1;
   return m;
@@ -209,7 +209,7 @@ Measurement order_through_touch(double zeta, double e, const std::string& sabota
           zeta),
       last, e, 1e-2);
   m.error = error.back();
-  m.order = study::fitted_order(h, error);
+  m.order = validation::fitted_order(h, error);
   m.order_low = 0.9;
   m.order_high = 1.1;
   return m;

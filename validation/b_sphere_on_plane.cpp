@@ -126,7 +126,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
 #endif
   Measurement sphere = against("force on the true sphere, vertex samples, mean of 6 orientations [N]", finest,
                                kStiffness * cap, 1e-3);
-  sphere.order = study::fitted_order(h, error);
+  sphere.order = validation::fitted_order(h, error);
   sphere.order_low = 1.9;
   sphere.order_high = 2.1;
   sphere.note = "order in facet size over 16 to 64 subdivisions of the icosahedron";

@@ -50,7 +50,7 @@ Measurement taylor(const std::string& quantity, double step, const std::function
     h.push_back(step / std::pow(2.0, k));
     r.push_back(remainder(h.back()));
   }
-  const double order = study::fitted_order(h, r);
+  const double order = validation::fitted_order(h, r);
   return {.quantity = quantity,
           .computed = order,
           .exact = 2.0,

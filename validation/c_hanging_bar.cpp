@@ -74,7 +74,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
            .exact = last.exact_energy,
            .error = last.energy,
            .bar = 1e-2,
-           .order = study::fitted_order(h, energy),
+           .order = validation::fitted_order(h, energy),
            .order_low = 1.8,
            .order_high = 2.1},
           {.quantity = "RMS error of the nodes / RMS displacement, 32 cells along",
@@ -82,7 +82,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
            .exact = 0.0,
            .error = last.rms,
            .bar = 1e-2,
-           .order = study::fitted_order(h, rms),
+           .order = validation::fitted_order(h, rms),
            .order_low = 1.8,
            .order_high = 2.1}};
 }

@@ -153,7 +153,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
                  .exact = 0.0,
                  .error = error.back(),
                  .bar = 0.05,
-                 .order = study::fitted_order(h, error),
+                 .order = validation::fitted_order(h, error),
                  .order_low = 1.7,
                  .order_high = 2.3,
                  .note = "8, 12, 16 cells over the height"});

@@ -72,7 +72,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
            .exact = exact,
            .error = error[2],
            .bar = 0.05,
-           .order = study::fitted_order(h, error),
+           .order = validation::fitted_order(h, error),
            .order_low = 1.8,
            .order_high = 2.2,
            .note = "4, 8, 16 elements across"},

@@ -1,11 +1,8 @@
 #pragma once
-#include "palpate/study/validation.h"
+#include "palpate/validation/validation.h"
 
 /// One function a case, one file a function; registry.cpp puts them in order.
 namespace palpate::validation {
-
-using study::Measurement;
-using study::ValidationCase;
 
 ValidationCase overlap_volume();
 ValidationCase sphere_on_plane();

@@ -35,7 +35,7 @@ std::vector<double> frequencies(int cells_along, const std::string& sabotage) {
     bar.hold("y", [](const Vec3& X) { return X.y() < 1e-9; });
     bar.hold("z", [](const Vec3& X) { return X.z() < 1e-9; });
   }
-  const integrate::Modes modes = bar.lowest(6);
+  const modes::Modes modes = bar.lowest(6);
   std::vector<double> out;
   for (int n = 1; n <= kModes; ++n) {
     const double k = (2 * n - 1) * M_PI / (2.0 * kLength);
@@ -66,7 +66,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
                    .exact = exact,
                    .error = error.back(),
                    .bar = 5e-3,
-                   .order = study::fitted_order(h, error),
+                   .order = validation::fitted_order(h, error),
                    .order_low = 1.8,
                    .order_high = 2.1,
                    .note = "16, 24, 32, 48 cells along"});

@@ -53,7 +53,7 @@ double frequency(int cells, double b, const std::string& sabotage) {
   bar.hold("y", [](const Vec3& X) { return X.y() < 1e-9 && X.x() > 1e-9; });
   bar.hold("z", [](const Vec3& X) { return X.z() < 1e-9 && X.x() > 1e-9; });
   const double k = root(b, 1) / kLength;
-  const integrate::Modes modes = bar.lowest(8);
+  const modes::Modes modes = bar.lowest(8);
   const Match match = best_match(
       bar, modes, bar.field([k](const Vec3& X) { return Vec3(std::cos(k * (kLength - X.x())), 0.0, 0.0); }));
   return match.overlap > 0.95 ? match.omega / (2.0 * M_PI) : std::nan("");
@@ -78,7 +78,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
                    .exact = exact,
                    .error = error.back(),
                    .bar = 5e-3,
-                   .order = study::fitted_order(h, error),
+                   .order = validation::fitted_order(h, error),
                    .order_low = 1.8,
                    .order_high = 2.1,
                    .note = "16, 24, 32, 48 cells along"});

@@ -57,7 +57,7 @@ void add(double slenderness, double timoshenko, const std::vector<int>& across, 
                  .exact = exact,
                  .error = error.back(),
                  .bar = 0.05,
-                 .order = study::fitted_order(h, error),
+                 .order = validation::fitted_order(h, error),
                  .order_low = 1.8,
                  .order_high = 2.2,
                  .note = fmt::format("{} elements across", fmt::join(across, ", "))});

@@ -6,8 +6,9 @@
 #include "palpate/fem/attachments.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/integrate/integrators.h"
-#include "palpate/integrate/modes.h"
+#include "palpate/linear/solvers.h"
 #include "palpate/mesh/generators.h"
+#include "palpate/modes/modes.h"
 
 // Symplectic Euler on one mode q'' + 2 z w q' + w^2 q = 0, W = w h, velocity first and then q1 = q0 + h u1:
 //   damping at the old velocity   u1 = u0 - h (w^2 q0 + 2 z w u0):  characteristic polynomial  r^2 - (2 - W^2
@@ -86,7 +87,7 @@ bool grows(double h, double beta, Damping damping, const VecX& shape, const std:
   spec.name = sabotage == "implicit" ? "backward-euler" : "symplectic-euler";
   spec.step_s = h;
   const auto stepper = integrate::make_stepper(bar.system, bar.state, spec);
-  const auto solver = integrate::make_linear_solver("cholmod");
+  const auto solver = linear::make_linear_solver("cholmod");
   for (int i = 1; i <= kSteps; ++i) {
     if (damping == Damping::kNew)
       step_damped_at_new(bar, h, *solver);
@@ -112,8 +113,8 @@ double found_limit(double expected, double beta, Damping damping, const VecX& sh
 
 std::vector<Measurement> run(const std::string& sabotage) {
   Bar bar(0.0, "");
-  const integrate::Modes modes =
-      integrate::find_modes(bar.system, bar.state.view(), {1, integrate::ModesOptions::End::kHighest});
+  const modes::Modes modes =
+      modes::find_modes(bar.system, bar.state.view(), {1, modes::ModesOptions::End::kHighest});
   const double w = modes.omega(0), z = kDampingRatio, beta = 2.0 * z / w, root = std::sqrt(1.0 + z * z);
   const VecX shape = modes.shapes.col(0);
   std::vector<Measurement> out;

@@ -55,7 +55,7 @@ Measurement order_of_steps(const VibratingBar& bar, const dynamics::StepperEntry
       .computed = errors.back(),
       .error = errors.back(),
       .bar = 0.05,
-      .order = study::fitted_order(steps, errors),
+      .order = validation::fitted_order(steps, errors),
       .order_low = order - 0.1,
       .order_high = order + 0.1,
       .note = fmt::format("order in the step, 4 steps from {:.2g} to {:.2g} s", steps.front(), steps.back())};

@@ -27,7 +27,7 @@ Match lame(double poisson, int cells, const std::string& sabotage) {
   if (sabotage == "double-density") block.material.density *= 2.0;
   block.rest = mesh::box(Vec3(kSide, kSide, kThickness), {cells, cells, cells * 2 / 5});
   if (sabotage == "held-side") block.hold("x", [](const Vec3& X) { return X.x() < -0.5 * kSide + 1e-9; });
-  const integrate::Modes modes = block.lowest(kSought);
+  const modes::Modes modes = block.lowest(kSought);
   return best_match(block, modes, block.field([](const Vec3& X) {
     const double x = M_PI * (X.x() / kSide + 0.5), y = M_PI * (X.y() / kSide + 0.5);
     return Vec3(std::cos(x) * std::sin(y), -std::sin(x) * std::cos(y), 0.0);
@@ -53,7 +53,7 @@ void add(double poisson, const std::string& sabotage, std::vector<Measurement>& 
                  .exact = exact,
                  .error = error.back(),
                  .bar = 5e-3,
-                 .order = study::fitted_order(h, error),
+                 .order = validation::fitted_order(h, error),
                  .order_low = 1.8,
                  .order_high = 2.1,
                  .note = "15, 20, 25 cells a side"});

@@ -69,7 +69,7 @@ std::vector<double> found_omegas(int cells_along, bool consistent, const std::st
   // a quarter of the section: axial-vibration says why
   bar.hold("y", [](const Vec3& X) { return X.y() < 1e-9; });
   bar.hold("z", [](const Vec3& X) { return X.z() < 1e-9; });
-  const integrate::Modes modes = bar.lowest(6);
+  const modes::Modes modes = bar.lowest(6);
   std::vector<double> out;
   for (const double w : exact_omegas()) {
     const double k1 = w / kFirst.speed(), k2 = w / kSecond.speed(),
@@ -102,7 +102,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
                      .exact = exact[n],
                      .error = error.back(),
                      .bar = 5e-3,
-                     .order = study::fitted_order(h, error),
+                     .order = validation::fitted_order(h, error),
                      .order_low = 1.8,
                      .order_high = 2.1,
                      .note = "16, 24, 32, 48 cells along"});

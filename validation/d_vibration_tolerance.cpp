@@ -72,7 +72,7 @@ Measurement slope(const VibratingBar& bar, const dynamics::StepperEntry& entry, 
           .computed = errors.back(),
           .error = errors.back(),
           .bar = std::pow(10.0, 2 - range.tightest),
-          .order = study::fitted_order(tolerances, errors),
+          .order = validation::fitted_order(tolerances, errors),
           .order_low = 0.8,
           .order_high = 1.2,
           .note = fmt::format("slope of the error against rtol, 1e-{} to 1e-{}:{}", range.loosest,
@@ -93,7 +93,7 @@ Measurement full_spectrum(const VibratingBar& bar, const dynamics::StepperEntry&
           .computed = errors.back(),
           .error = errors.back(),
           .bar = std::numeric_limits<double>::infinity(),
-          .order = study::fitted_order(tolerances, errors),
+          .order = validation::fitted_order(tolerances, errors),
           .note = "reported, not barred: slope of the error against rtol, 1e-2 to 1e-5"};
 }
 

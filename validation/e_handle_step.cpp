@@ -92,7 +92,7 @@ void measure_fixed(const std::string& scheme, const std::string& sabotage, std::
                    .computed = e.back(),
                    .error = e.back(),
                    .bar = 1e-2,
-                   .order = study::fitted_order(ticks, e),
+                   .order = validation::fitted_order(ticks, e),
                    .order_low = 0.9,
                    .order_high = 1.1,
                    .note = "ticks 200 to 25 us"});

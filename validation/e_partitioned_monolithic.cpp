@@ -1,6 +1,6 @@
 #include "cases.h"
+#include "palpate/compare/exchange.h"
 #include "palpate/core/error.h"
-#include "palpate/study/exchange.h"
 
 // A round tool presses a soft block, the handle on a path with two continuous derivatives.  Tool and block as
 // one system of one integrator know of no exchange.  The partitioned scheme holds over each exchange period H
@@ -65,11 +65,11 @@ std::vector<Measurement> run(const std::string& sabotage) {
   if (sabotage == "late-handle")
     for (KeyframeSpec& key : parts.device->keyframes) key.time_s += 0.004;
   if (sabotage == "heavy-tool") parts.tool->mass_kg *= 2.0;
-  study::ExchangeOptions options;
+  compare::ExchangeOptions options;
   options.truth = &whole;
   std::vector<double> periods, force, torque, position;
   std::string table;
-  for (const study::ExchangePoint& point : study::compare_exchange(parts, options)) {
+  for (const compare::ExchangePoint& point : compare::compare_exchange(parts, options)) {
     periods.push_back(point.exchange_period_s);
     force.push_back(point.error.force_rms_n);
     torque.push_back(point.error.torque_rms_n_m);
@@ -83,7 +83,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
                    .computed = errors.back(),
                    .error = errors.back(),
                    .bar = bar,
-                   .order = study::fitted_order(periods, errors),
+                   .order = validation::fitted_order(periods, errors),
                    .order_low = 0.85,
                    .order_high = 2.2,
                    .note = table});

@@ -7,6 +7,7 @@
 #include "palpate/dynamics/system.h"
 #include "palpate/fem/attachments.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/linear/solvers.h"
 
 namespace palpate::validation {
 
@@ -31,7 +32,7 @@ void add_bone(const ModalBody& body, dynamics::State& state, dynamics::System& s
 
 }  // namespace
 
-integrate::Modes ModalBody::lowest(int count) const {
+modes::Modes ModalBody::lowest(int count) const {
   dynamics::State state;
   dynamics::System system;
   dynamics::BlockSpec spec;
@@ -42,14 +43,14 @@ integrate::Modes ModalBody::lowest(int count) const {
   system.add(std::make_shared<fem::SoftBody>("body", rest, materials(), fem::SoftBodyOptions{}, id));
   system.add(consistent_mass ? fem::make_consistent_mass(rest, materials(), id)
                              : fem::make_lumped_mass(rest, materials(), id));
-  if (consistent_mass) system.set_mass_solver(integrate::make_linear_solver("cholmod"));
+  if (consistent_mass) system.set_mass_solver(linear::make_linear_solver("cholmod"));
   std::vector<int> dofs = held;
   std::sort(dofs.begin(), dofs.end());
   dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
   if (!dofs.empty()) system.add(fem::make_fixed(dofs, q0(dofs)));
   if (!carried.empty()) add_bone(*this, state, system);
   system.prepare(state.view());
-  integrate::Modes modes = integrate::find_modes(system, state.view(), {count});
+  modes::Modes modes = modes::find_modes(system, state.view(), {count});
   if (!modes.converged) fail("the modes of {} nodes did not converge", rest.nodes.cols());
   return modes;
 }
@@ -66,7 +67,7 @@ VecX ModalBody::field(const std::function<Vec3(const Vec3&)>& displacement) cons
   return out;
 }
 
-Match best_match(const ModalBody& body, const integrate::Modes& modes, const VecX& shape) {
+Match best_match(const ModalBody& body, const modes::Modes& modes, const VecX& shape) {
   Match best;
   for (int j = 0; j < modes.count(); ++j)
     if (const double overlap = body.overlap(modes.shapes.col(j).head(shape.size()), shape);

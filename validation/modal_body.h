@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "palpate/fem/soft_body.h"
-#include "palpate/integrate/modes.h"
+#include "palpate/modes/modes.h"
 
 namespace palpate::validation {
 
@@ -21,7 +21,7 @@ struct ModalBody {
   /// Holds the axes ("x", "yz") of every node for which `where` holds.
   void hold(const std::string& axes, const std::function<bool(const Vec3&)>& where);
   /// The lowest modes.  @throws Error where they do not converge
-  integrate::Modes lowest(int count) const;
+  modes::Modes lowest(int count) const;
   /// Mass-weighted overlap (f M g)^2 / ((f M f)(g M g)) of two fields, lumped; held directions count as they
   /// stand, a bone does not.
   double overlap(const VecX& f, const VecX& g) const;
@@ -34,6 +34,6 @@ struct Match {
   int mode = -1;
   double overlap = 0.0, omega = 0.0;  ///< [rad/s]
 };
-Match best_match(const ModalBody& body, const integrate::Modes& modes, const VecX& shape);
+Match best_match(const ModalBody& body, const modes::Modes& modes, const VecX& shape);
 
 }  // namespace palpate::validation

@@ -1,46 +1,46 @@
 #include "cases.h"
 
-namespace palpate::study {
+namespace palpate::validation {
 
 const std::vector<ValidationCase>& validation_cases() {
   static const std::vector<ValidationCase> cases = {
 #ifdef PALPATE_HAS_gl
-      validation::overlap_volume(),
+      overlap_volume(),
 #endif
-      validation::sphere_on_plane(),
-      validation::punch_bounce(),
-      validation::punch_bounce_damped(),
-      validation::punch_bounce_hunt_crossley(),
-      validation::patch_test(),
-      validation::rigid_motion(),
-      validation::gradient_and_tangent(),
-      validation::uniaxial_and_shear(),
-      validation::hanging_bar(),
-      validation::layered_bar(),
-      validation::cantilever(),
-      validation::large_deflection(),
-      validation::torsion(),
-      validation::newton_convergence(),
-      validation::locking(),
-      validation::free_vibration(),
-      validation::vibration_tolerance(),
-      validation::axial_vibration(),
-      validation::two_material_bar(),
-      validation::bar_on_bone(),
-      validation::lame_mode(),
-      validation::bending_vibration(),
-      validation::spinning_body(),
-      validation::explicit_limit(),
-      validation::dropped_ball(),
+      sphere_on_plane(),
+      punch_bounce(),
+      punch_bounce_damped(),
+      punch_bounce_hunt_crossley(),
+      patch_test(),
+      rigid_motion(),
+      gradient_and_tangent(),
+      uniaxial_and_shear(),
+      hanging_bar(),
+      layered_bar(),
+      cantilever(),
+      large_deflection(),
+      torsion(),
+      newton_convergence(),
+      locking(),
+      free_vibration(),
+      vibration_tolerance(),
+      axial_vibration(),
+      two_material_bar(),
+      bar_on_bone(),
+      lame_mode(),
+      bending_vibration(),
+      spinning_body(),
+      explicit_limit(),
+      dropped_ball(),
 #ifdef PALPATE_HAS_tool
-      validation::handle_step(),
-      validation::handle_below_wall(),
-      validation::coupling_limit(),
-      validation::partitioned_monolithic(),
+      handle_step(),
+      handle_below_wall(),
+      coupling_limit(),
+      partitioned_monolithic(),
 #endif
-      validation::device_limits(),
+      device_limits(),
   };
   return cases;
 }
 
-}  // namespace palpate::study
+}  // namespace palpate::validation

@@ -1,4 +1,4 @@
-#include "palpate/study/bench.h"
+#include "palpate/bench/bench.h"
 
 #include <fmt/format.h>
 
@@ -15,8 +15,8 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 void bench_fem(const BenchArguments& arguments) {
-  const study::FemBench b =
-      study::bench_fem(arguments.cells, arguments.step_s, arguments.steps, arguments.linear_solvers.front());
+  const bench::FemBench b =
+      bench::bench_fem(arguments.cells, arguments.step_s, arguments.steps, arguments.linear_solvers.front());
   fmt::print("one step of {} of {:g} ms: {} nodes, {} tetrahedra, {}; median of {} steps\n\n", b.integrator,
              1e3 * b.step_s, b.nodes, b.tetrahedra, arguments.linear_solvers.front(), b.steps);
   Rows rows;
@@ -36,7 +36,7 @@ void bench_fem(const BenchArguments& arguments) {
 void bench_leave_out(const std::string& scene, int repeats) {
   const scene::Description description = scene_of({scene, {}, ""});
   Rows rows;
-  for (const study::LeaveOutRow& r : study::bench_leave_out(description, repeats))
+  for (const bench::LeaveOutRow& r : bench::bench_leave_out(description, repeats))
     rows.push_back({r.variant, fmt::format("{:.1f}", r.startup_ms), fmt::format("{:.1f}", r.memory_mib),
                     fmt::format("{:.4g}", r.step_ms), fmt::format("{:.3f}", r.ratio)});
   fmt::print("{}, median of {} runs, each in a process of its own\n{}\n", short_name(description), repeats,

@@ -7,28 +7,28 @@
 #include <map>
 #include <set>
 
+#include "palpate/bench/fem.h"
 #include "palpate/core/error.h"
 #include "palpate/report/plot.h"
 #include "palpate/report/table.h"
 #include "palpate/store/atomic_file.h"
-#include "palpate/study/fem_bench.h"
 #include "stop.h"
 
 namespace palpate::cli {
 namespace {
 
-using study::FemBenchReport;
-using study::FemBenchRow;
+using bench::FemBenchReport;
+using bench::FemBenchRow;
 using Rows = std::vector<std::vector<std::string>>;
 
 std::string ms(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-"; }
 
 void print_limits(const FemBenchReport& report) {
   Rows rows;
-  for (const study::MachineLimits& l : report.limits)
+  for (const bench::MachineLimits& l : report.limits)
     rows.push_back({fmt::format("{}", l.threads), fmt::format("{:.1f}", l.small_copy_gb_s),
                     fmt::format("{:.1f}", l.large_copy_gb_s),
-                    fmt::format("{:.1f}", study::reference_bandwidth_gb_s(l.threads)),
+                    fmt::format("{:.1f}", bench::reference_bandwidth_gb_s(l.threads)),
                     fmt::format("{:.0f}", l.gflop_s), fmt::format("{:.0f}", l.double_gflop_s)});
   fmt::print("what this machine can do, measured now\n{}\n",
              report::format_table(
@@ -36,8 +36,8 @@ void print_limits(const FemBenchReport& report) {
                   "float multiply-adds [GFLOP/s]", "double [GFLOP/s]"},
                  rows));
   Rows sizes;
-  for (const study::MachineLimits& l : report.limits)
-    for (const study::Bandwidth& b : l.bandwidths)
+  for (const bench::MachineLimits& l : report.limits)
+    for (const bench::Bandwidth& b : l.bandwidths)
       sizes.push_back({fmt::format("{}", l.threads), fmt::format("{:.3g}", b.bytes / 1048576.0),
                        fmt::format("{:.1f}", b.read_gb_s), fmt::format("{:.1f}", b.write_gb_s)});
   fmt::print("passes over one working set, again and again\n{}\n",
@@ -106,8 +106,8 @@ void print_shares(const FemBenchReport& report) {
 
 void print_elements(const FemBenchReport& report) {
   Rows rows;
-  std::map<std::pair<std::string, int>, std::vector<const study::ElementTiming*>> kinds;
-  for (const study::ElementTiming& t : report.elements) {
+  std::map<std::pair<std::string, int>, std::vector<const bench::ElementTiming*>> kinds;
+  for (const bench::ElementTiming& t : report.elements) {
     rows.push_back({t.size, fmt::format("{}", t.threads), t.stage, ms(t.least_ms), ms(t.median_ms),
                     fmt::format("{:.1f}", 1e6 * t.least_ms / t.tetrahedra), share(t.limit_ms, t.least_ms),
                     fmt::format("{}", t.runs)});
@@ -123,18 +123,18 @@ void print_elements(const FemBenchReport& report) {
           rows));
   Rows growth;
   for (const auto& [kind, timings] : kinds) {
-    const auto exponent = [&](auto size, double study::ElementTiming::*figure) {
+    const auto exponent = [&](auto size, double bench::ElementTiming::*figure) {
       std::vector<std::pair<double, double>> points;
-      for (const study::ElementTiming* t : timings) points.emplace_back(t->*size, t->*figure);
-      return study::scaling_exponent(points);
+      for (const bench::ElementTiming* t : timings) points.emplace_back(t->*size, t->*figure);
+      return bench::scaling_exponent(points);
     };
-    const double grows = exponent(&study::ElementTiming::tetrahedra, &study::ElementTiming::least_ms);
+    const double grows = exponent(&bench::ElementTiming::tetrahedra, &bench::ElementTiming::least_ms);
     if (std::isfinite(grows))
       growth.push_back(
           {kind.first, fmt::format("{}", kind.second), fmt::format("{:.3f}", grows),
-           fmt::format("{:.3f}", exponent(&study::ElementTiming::nodes, &study::ElementTiming::least_ms)),
+           fmt::format("{:.3f}", exponent(&bench::ElementTiming::nodes, &bench::ElementTiming::least_ms)),
            fmt::format("{:.3f}",
-                       exponent(&study::ElementTiming::tetrahedra, &study::ElementTiming::limit_ms))});
+                       exponent(&bench::ElementTiming::tetrahedra, &bench::ElementTiming::limit_ms))});
   }
   if (!growth.empty())
     fmt::print(
@@ -184,13 +184,13 @@ void print_exponents(const FemBenchReport& report) {
   double tetrahedra = 0.0, blocks = 0.0;
   for (const auto& [kind, members] : by_kind(report)) {
     if (members.size() < 2) continue;
-    tetrahedra = study::scaling_exponent(members, [](const FemBenchRow& r) { return r.tetrahedra; });
-    blocks = study::scaling_exponent(members, [](const FemBenchRow& r) { return r.blocks; });
+    tetrahedra = bench::scaling_exponent(members, [](const FemBenchRow& r) { return r.tetrahedra; });
+    blocks = bench::scaling_exponent(members, [](const FemBenchRow& r) { return r.blocks; });
     std::vector<std::string> row{kind};
     for (const Stage& stage : kStages) {
-      const double grows = study::scaling_exponent(members, stage.time);
+      const double grows = bench::scaling_exponent(members, stage.time);
       row.push_back(std::isfinite(grows)
-                        ? fmt::format("{:.2f} ({:.2f})", grows, study::scaling_exponent(members, stage.limit))
+                        ? fmt::format("{:.2f} ({:.2f})", grows, bench::scaling_exponent(members, stage.limit))
                         : "-");
     }
     rows.push_back(row);
@@ -207,7 +207,7 @@ void print_peers(const FemBenchReport& report) {
   std::set<std::string> sizes;
   for (const FemBenchRow& r : report.rows) sizes.insert(r.size);
   Rows rows;
-  for (const study::PeerFigure& p : study::peer_figures())
+  for (const bench::PeerFigure& p : bench::peer_figures())
     if (sizes.contains(p.size)) rows.push_back({p.program, p.size, ms(p.ten_ms), ms(p.one_ms), p.tolerance});
   if (!rows.empty())
     fmt::print(
@@ -216,7 +216,7 @@ void print_peers(const FemBenchReport& report) {
         report::format_table({"program", "size", "10 ms step [ms]", "1 ms step [ms]", "tolerance"}, rows));
 }
 
-void write_accuracy(const std::vector<study::AccuracyPoint>& points, const std::filesystem::path& folder) {
+void write_accuracy(const std::vector<bench::AccuracyPoint>& points, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   report::Plot plot;
   plot.title = "Fall of the beam: error against run time";
@@ -224,7 +224,7 @@ void write_accuracy(const std::vector<study::AccuracyPoint>& points, const std::
   plot.y_label = "error of the end";
   plot.log_x = plot.log_y = true;
   std::map<std::string, report::Series> kinds;
-  for (const study::AccuracyPoint& p : points) {
+  for (const bench::AccuracyPoint& p : points) {
     report::Series& series =
         kinds[p.step_s > 0.0 && !p.quoted ? fmt::format("{}, {:g} ms", p.program, 1e3 * p.step_s)
                                           : p.program + (p.quoted ? " (quoted)" : "")];
@@ -236,7 +236,7 @@ void write_accuracy(const std::vector<study::AccuracyPoint>& points, const std::
     series.name = name;
     plot.series.push_back(series);
   }
-  store::write_atomically(folder / "bench-fem-accuracy.json", study::to_json(points));
+  store::write_atomically(folder / "bench-fem-accuracy.json", bench::to_json(points));
   store::write_atomically(folder / "bench-fem-accuracy.svg", report::plot_svg(plot));
   fmt::print("written: {} and {}\n", (folder / "bench-fem-accuracy.json").string(),
              (folder / "bench-fem-accuracy.svg").string());
@@ -244,10 +244,10 @@ void write_accuracy(const std::vector<study::AccuracyPoint>& points, const std::
 
 void bench_accuracy(const BenchArguments& arguments) {
   const std::string size = arguments.sizes.empty() ? "S" : arguments.sizes.front();
-  const std::vector<study::AccuracyPoint> points =
-      study::run_accuracy(size, [] { return static_cast<bool>(stop_flag()); });
+  const std::vector<bench::AccuracyPoint> points =
+      bench::run_accuracy(size, [] { return static_cast<bool>(stop_flag()); });
   Rows rows;
-  for (const study::AccuracyPoint& p : points)
+  for (const bench::AccuracyPoint& p : points)
     rows.push_back({p.program, p.step_s > 0.0 ? fmt::format("{:g}", 1e3 * p.step_s) : "-",
                     p.tolerance > 0.0 ? fmt::format("{:g}", p.tolerance) : "-",
                     fmt::format("{:.3g}", p.ms_of_ten_ms), fmt::format("{:.2e}", p.error),
@@ -264,7 +264,7 @@ void bench_accuracy(const BenchArguments& arguments) {
 
 void write_files(const FemBenchReport& report, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
-  store::write_atomically(folder / "bench-fem.json", study::to_json(report));
+  store::write_atomically(folder / "bench-fem.json", bench::to_json(report));
   report::Plot plot;
   plot.title = "One linearly implicit step";
   plot.x_label = "nodes";
@@ -290,7 +290,7 @@ void write_files(const FemBenchReport& report, const std::filesystem::path& fold
 void bench_fem_sizes(const BenchArguments& arguments) {
   if (!arguments.calibrate.empty()) {
     std::string table;
-    study::calibrate_auto(
+    bench::calibrate_auto(
         [&](const std::string& row) {
           table += row;
           fmt::print("{}", row);
@@ -300,14 +300,14 @@ void bench_fem_sizes(const BenchArguments& arguments) {
     return;
   }
   if (arguments.accuracy) return bench_accuracy(arguments);
-  study::FemBenchOptions options;
+  bench::FemBenchOptions options;
   if (!arguments.sizes.empty()) options.sizes = arguments.sizes;
   if (!arguments.threads.empty()) options.threads = arguments.threads;
   if (!arguments.linear_rtols.empty()) options.linear_rtols = arguments.linear_rtols;
   if (!arguments.youngs_moduli_pa.empty()) options.youngs_moduli_pa = arguments.youngs_moduli_pa;
   options.linear_solvers = arguments.linear_solvers;
   options.steps = arguments.steps;
-  const FemBenchReport report = study::run_fem_bench(options, [] { return static_cast<bool>(stop_flag()); });
+  const FemBenchReport report = bench::run_fem_bench(options, [] { return static_cast<bool>(stop_flag()); });
   print_limits(report);
   print_steps(report);
   print_shares(report);

@@ -1,4 +1,4 @@
-#include "palpate/study/compare.h"
+#include "palpate/compare/compare.h"
 
 #include <fmt/format.h>
 
@@ -43,10 +43,10 @@ std::string default_name(const std::vector<scene::Description>& scenes) {
   return out;
 }
 
-study::Comparison compare_watched(const std::vector<scene::Description>& scenes,
-                                  const CompareArguments& arguments, const std::string& folder) {
+compare::Comparison compare_watched(const std::vector<scene::Description>& scenes,
+                                    const CompareArguments& arguments, const std::string& folder) {
   Progress progress("reference runs");
-  study::CompareOptions options;
+  compare::CompareOptions options;
   options.repeats = arguments.repeats;
   options.limit_s = arguments.limit_s;
   options.reference_limit_s = arguments.reference_limit_s;
@@ -57,7 +57,7 @@ study::Comparison compare_watched(const std::vector<scene::Description>& scenes,
   options.progress = [&progress](double fraction, const std::string& what) { progress(fraction, what); };
   options.stop = &stop_flag();
   if (arguments.fresh) fs::remove(options.database);
-  return study::compare(scenes, options);
+  return compare::run(scenes, options);
 }
 
 }  // namespace
@@ -68,14 +68,14 @@ int compare(const CompareArguments& arguments) {
       arguments.folder.empty() ? default_folder(default_name(scenes)) : arguments.folder;
   make_folder(folder);
 
-  const study::Comparison comparison = compare_watched(scenes, arguments, folder);
-  study::write(comparison, folder);
+  const compare::Comparison comparison = compare_watched(scenes, arguments, folder);
+  compare::write(comparison, folder);
   if (comparison.reused > 0)
     fmt::print("{} runs were done before, and were not done again (--fresh starts anew)\n\n",
                comparison.reused);
   const fs::path points = fs::path(folder) / "compare.csv";
   const report::Table table = fs::exists(points) ? report::read_csv(points) : report::Table{};
-  for (const study::SceneComparison& scene : comparison.scenes) {
+  for (const compare::SceneComparison& scene : comparison.scenes) {
     print_reference(scene);
     const report::Table own = report::rows_where(table, "scene", scene.scene);
     if (own.rows.empty()) continue;

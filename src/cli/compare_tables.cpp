@@ -15,16 +15,16 @@ using Rows = std::vector<std::vector<std::string>>;
 constexpr std::size_t kPointsOnScreen = 80;
 constexpr std::size_t kReasonLength = 90;
 
-std::string outcome_text(const study::ComparePoint& p) {
-  if (p.status == study::PointStatus::kOk) return p.unresolved ? "not told from the reference" : "";
+std::string outcome_text(const compare::ComparePoint& p) {
+  if (p.status == compare::PointStatus::kOk) return p.unresolved ? "not told from the reference" : "";
   const std::string line = p.reason.substr(0, p.reason.find('\n'));
   return line.size() <= kReasonLength ? line : line.substr(0, line.find_last_of(' ', kReasonLength)) + " ...";
 }
 
 /// The end of a run of neighbouring rungs that failed alike: one line tells them all.
-std::size_t end_of_failures(const std::vector<study::ComparePoint>& points, std::size_t first) {
+std::size_t end_of_failures(const std::vector<compare::ComparePoint>& points, std::size_t first) {
   std::size_t end = first + 1;
-  while (points[first].status != study::PointStatus::kOk && end < points.size() &&
+  while (points[first].status != compare::PointStatus::kOk && end < points.size() &&
          points[end].label == points[first].label && points[end].status == points[first].status)
     ++end;
   return end;
@@ -32,16 +32,16 @@ std::size_t end_of_failures(const std::vector<study::ComparePoint>& points, std:
 
 }  // namespace
 
-void print_points(const study::SceneComparison& scene) {
+void print_points(const compare::SceneComparison& scene) {
   std::vector<std::string> headers = {"integrator", "setting",     "position error", "CPU [s]",
                                       "steps",      "force evals", "factors",        ""};
   if (scene.tool) headers.insert(headers.begin() + 3, {"force error [N]", "torque error [N m]"});
   Rows rows;
   for (std::size_t i = 0; i < scene.points.size(); i = end_of_failures(scene.points, i)) {
-    const study::ComparePoint& p = scene.points[i];
-    if (p.status == study::PointStatus::kMissing) continue;  // stopped before it
+    const compare::ComparePoint& p = scene.points[i];
+    if (p.status == compare::PointStatus::kMissing) continue;  // stopped before it
     const dynamics::StepperCounters& c = p.result.counters;
-    const bool ran = p.status == study::PointStatus::kOk;
+    const bool ran = p.status == compare::PointStatus::kOk;
     const auto count = [&](long n) { return ran ? std::to_string(n) : std::string("-"); };
     std::string setting = report::setting_text(p.setting_name, p.setting);
     if (const std::size_t end = end_of_failures(scene.points, i); end > i + 1)
@@ -91,12 +91,12 @@ void print_prices(const report::Table& table, double reference_error) {
                  {"position error at most", "cheapest", "CPU [s]", "runner-up", report::kBaseline}, rows));
 }
 
-void print_restarts(const study::SceneComparison& scene) {
+void print_restarts(const compare::SceneComparison& scene) {
   Rows rows;
-  for (const study::ComparePoint& p : scene.restarts) {
-    if (p.status == study::PointStatus::kMissing) continue;
+  for (const compare::ComparePoint& p : scene.restarts) {
+    if (p.status == compare::PointStatus::kMissing) continue;
     const dynamics::StepperCounters& c = p.result.counters;
-    const bool ran = p.status == study::PointStatus::kOk;
+    const bool ran = p.status == compare::PointStatus::kOk;
     const auto rate = [&](long n) {
       return ran ? fmt::format("{:.0f}", static_cast<double>(n) / p.result.time) : std::string("-");
     };
@@ -110,10 +110,10 @@ void print_restarts(const study::SceneComparison& scene) {
                                           rows));
 }
 
-void print_exchange(const study::SceneComparison& scene) {
+void print_exchange(const compare::SceneComparison& scene) {
   if (scene.exchange.empty()) return;
   Rows rows;
-  for (const study::ExchangePoint& p : scene.exchange)
+  for (const compare::ExchangePoint& p : scene.exchange)
     rows.push_back({fmt::format("{:g}", 1e3 * p.exchange_period_s),
                     fmt::format("{:.2e}", p.error.position_rel_l2),
                     fmt::format("{:.2e}", p.error.force_rms_n), fmt::format("{:.2e}", p.error.torque_rms_n_m),
@@ -123,10 +123,10 @@ void print_exchange(const study::SceneComparison& scene) {
                                           rows));
 }
 
-void print_methods(const study::SceneComparison& scene) {
+void print_methods(const compare::SceneComparison& scene) {
   if (scene.methods.empty()) return;
   Rows rows;
-  for (const study::MethodPoint& p : scene.methods)
+  for (const compare::MethodPoint& p : scene.methods)
     rows.push_back({p.method, fmt::format("{:.2e}", p.difference.position_rel_l2),
                     fmt::format("{:.2e}", p.difference.force_rms_n), fmt::format("{:.4f}", p.peak_force_n),
                     std::to_string(p.most_samples), fmt::format("{:.3f}", p.query_s),
@@ -136,8 +136,8 @@ void print_methods(const study::SceneComparison& scene) {
                                           rows));
 }
 
-void print_reference(const study::SceneComparison& scene) {
-  const study::Reference& r = scene.reference;
+void print_reference(const compare::SceneComparison& scene) {
+  const compare::Reference& r = scene.reference;
   fmt::print("{}: reference {}; its own error: position {}{}\n", scene.scene, r.description,
              std::isfinite(r.own_error.position_rel_l2) ? fmt::format("{:.1e}", r.own_error.position_rel_l2)
                                                         : "unknown",

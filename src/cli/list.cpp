@@ -7,7 +7,7 @@
 #include "palpate/core/error.h"
 #include "palpate/loop/registries.h"
 #include "palpate/report/table.h"
-#include "palpate/study/validation.h"
+#include "palpate/validation/validation.h"
 #include "places.h"
 
 namespace palpate::cli {
@@ -15,7 +15,7 @@ namespace {
 
 loop::ChoiceList case_choices() {
   loop::ChoiceList out{"cases", "with a known answer: palpate validate", {}};
-  for (const study::ValidationCase& one : study::validation_cases())
+  for (const validation::ValidationCase& one : validation::validation_cases())
     out.choices.push_back({one.name, one.summary + (one.slow ? " (slow)" : "")});
   return out;
 }

@@ -17,7 +17,7 @@
 namespace palpate::cli {
 namespace {
 
-void print_modes(const integrate::Modes& modes) {
+void print_modes(const modes::Modes& modes) {
   std::vector<std::vector<std::string>> rows;
   for (int j = 0; j < modes.count(); ++j)
     rows.push_back({std::to_string(j + 1), fmt::format("{:.6g}", modes.frequency_hz(j)),
@@ -29,7 +29,7 @@ void print_modes(const integrate::Modes& modes) {
   fmt::print("{}", report::format_table({"mode", "frequency [Hz]", "omega [rad/s]", "residual", ""}, rows));
 }
 
-void write_table(const integrate::Modes& modes, const std::string& path) {
+void write_table(const modes::Modes& modes, const std::string& path) {
   store::CsvWriter csv(path, {"mode", "frequency_hz", "omega_rad_s", "omega_squared_1_s2", "residual"});
   for (int j = 0; j < modes.count(); ++j)
     csv.row(std::vector<double>{j + 1.0, modes.frequency_hz(j), modes.omega(j), modes.omega_squared[j],
@@ -41,7 +41,7 @@ void write_table(const integrate::Modes& modes, const std::string& path) {
 constexpr int kColumns = 3, kPictured = 6;
 
 /// The first elastic modes side by side, each coloured by its displacement.
-void draw_modes(const loop::World& world, const integrate::Modes& modes, const std::string& path) {
+void draw_modes(const loop::World& world, const modes::Modes& modes, const std::string& path) {
   std::vector<int> pictured;
   for (int j = 0; j < modes.count() && pictured.size() < kPictured; ++j)
     if (modes.omega_squared[j] != 0.0) pictured.push_back(j);
@@ -88,7 +88,7 @@ int modes(const ModesArguments& arguments) {
 #endif
   const scene::Description description = scene_of(arguments.scene);
   const std::unique_ptr<loop::World> world = loop::assemble(description);
-  const integrate::Modes found = loop::find_modes(*world, arguments.count);
+  const modes::Modes found = loop::find_modes(*world, arguments.count);
   print_modes(found);
   const std::string folder =
       arguments.folder.empty() ? default_folder("modes-" + short_name(description)) : arguments.folder;

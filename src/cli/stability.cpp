@@ -1,4 +1,4 @@
-#include "palpate/study/stability.h"
+#include "palpate/stability/stability.h"
 
 #include <fmt/format.h>
 
@@ -16,14 +16,14 @@
 namespace palpate::cli {
 namespace {
 
-using study::StabilityCell;
-using study::Verdict;
+using stability::StabilityCell;
+using stability::Verdict;
 
 /// One letter a cell: the matrix fits a terminal.
 char letter(const StabilityCell& cell) { return "ASBEGNFT"[static_cast<std::size_t>(cell.verdict)]; }
 
 /// A row of letters a case, one column an integrator; a cell that is not what theory expects is marked.
-void print_matrix(const study::StabilityMatrix& matrix) {
+void print_matrix(const stability::StabilityMatrix& matrix) {
   std::vector<std::string> integrators;
   std::vector<std::pair<std::string, std::map<std::string, std::string>>> rows;
   for (const StabilityCell& cell : matrix.cells) {
@@ -50,11 +50,11 @@ void print_matrix(const study::StabilityMatrix& matrix) {
       "silence  T too slow  ! unexpected  . no such cell\n");
 }
 
-void print_cells(const study::StabilityMatrix& matrix, bool only_unexpected) {
+void print_cells(const stability::StabilityMatrix& matrix, bool only_unexpected) {
   std::vector<std::vector<std::string>> rows;
   for (const StabilityCell& c : matrix.cells)
     if (!only_unexpected || !c.as_expected())
-      rows.push_back({c.row, c.sub_case, c.integrator, study::to_string(c.verdict), c.expected.text(),
+      rows.push_back({c.row, c.sub_case, c.integrator, stability::to_string(c.verdict), c.expected.text(),
                       c.figure, fmt::format("{:.2f}", c.cpu_s), c.reason});
   if (!rows.empty())
     fmt::print("\n{}", report::format_table({"row", "case", "integrator", "verdict", "expected", "figure",
@@ -71,9 +71,9 @@ std::string command_of(const StabilityArguments& arguments) {
                                arguments.limit_s);
 }
 
-study::StabilityMatrix watched(const StabilityArguments& arguments) {
+stability::StabilityMatrix watched(const StabilityArguments& arguments) {
   Progress progress("stability");
-  study::StabilityOptions options;
+  stability::StabilityOptions options;
   options.rows = arguments.rows;
   options.integrators = arguments.integrators;
   options.slow = arguments.slow;
@@ -82,7 +82,7 @@ study::StabilityMatrix watched(const StabilityArguments& arguments) {
   options.limit_s = arguments.limit_s;
   options.progress = [&progress](double fraction, const std::string& what) { progress(fraction, what); };
   options.stop = &stop_flag();
-  return study::stability(options);
+  return stability::run(options);
 }
 
 }  // namespace
@@ -90,8 +90,8 @@ study::StabilityMatrix watched(const StabilityArguments& arguments) {
 int stability(const StabilityArguments& arguments) {
   const std::string folder = arguments.folder.empty() ? default_folder("stability") : arguments.folder;
   make_folder(folder);
-  const study::StabilityMatrix matrix = watched(arguments);
-  study::write(matrix, folder, command_of(arguments));
+  const stability::StabilityMatrix matrix = watched(arguments);
+  stability::write(matrix, folder, command_of(arguments));
   print_matrix(matrix);
   print_cells(matrix, !arguments.cells);
   const long unexpected = matrix.unexpected();

@@ -10,7 +10,7 @@
 #include "palpate/core/error.h"
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
-#include "palpate/study/validation.h"
+#include "palpate/validation/validation.h"
 #include "places.h"
 #include "progress.h"
 #include "stop.h"
@@ -19,21 +19,21 @@ namespace palpate::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using study::Measurement;
-using study::ValidationCase;
+using validation::Measurement;
+using validation::ValidationCase;
 
 std::vector<const ValidationCase*> chosen(const ValidateArguments& arguments) {
   std::vector<std::string> known;
-  for (const ValidationCase& one : study::validation_cases()) known.push_back(one.name);
+  for (const ValidationCase& one : validation::validation_cases()) known.push_back(one.name);
   std::vector<const ValidationCase*> out;
   for (const std::string& name : arguments.cases) {
     const auto at = std::find(known.begin(), known.end(), name);
     if (at == known.end())
       fail("there is no case \"{}\"{}; see `palpate list cases`", name, suggestion(name, known));
-    out.push_back(&study::validation_cases()[static_cast<std::size_t>(at - known.begin())]);
+    out.push_back(&validation::validation_cases()[static_cast<std::size_t>(at - known.begin())]);
   }
   if (arguments.cases.empty())
-    for (const ValidationCase& one : study::validation_cases())
+    for (const ValidationCase& one : validation::validation_cases())
       if (!one.slow || arguments.slow) out.push_back(&one);
   return out;
 }

@@ -38,11 +38,4 @@ std::unique_ptr<dynamics::Stepper> make_symplectic_euler(dynamics::System&, dyna
 std::unique_ptr<dynamics::Stepper> make_rk4(dynamics::System&, dynamics::State&, const IntegratorSpec&,
                                             std::unique_ptr<dynamics::LinearSolver>);
 
-std::unique_ptr<dynamics::LinearSolver> make_cholmod(const IntegratorSpec&);
-std::unique_ptr<dynamics::LinearSolver> make_umfpack(const IntegratorSpec&);
-std::unique_ptr<dynamics::LinearSolver> make_klu(const IntegratorSpec&);
-std::unique_ptr<dynamics::LinearSolver> make_pcg(const IntegratorSpec&);
-std::unique_ptr<dynamics::LinearSolver> make_pcg_single(const IntegratorSpec&);
-std::unique_ptr<dynamics::LinearSolver> make_pcg_two_level(const IntegratorSpec&);
-
 }  // namespace palpate::integrate

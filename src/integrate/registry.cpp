@@ -1,8 +1,8 @@
-#include "integrate/linear/auto_choice.h"
 #include "integrate/make.h"
 #include "integrate/step_solver.h"
 #include "integrate/sundials/ark_methods.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/linear/solvers.h"
 
 namespace palpate::integrate {
 
@@ -87,42 +87,14 @@ const dynamics::StepperRegistry& stepper_registry() {
   return registry;
 }
 
-const dynamics::LinearSolverRegistry& linear_solver_registry() {
-  static const dynamics::LinearSolverRegistry registry = {
-      {"cholmod",
-       "supernodal Cholesky of SuiteSparse, ordered by AMD or METIS; symmetric positive definite matrices", 0,
-       make_cholmod},
-      {"umfpack", "multifrontal LU of SuiteSparse; unsymmetric and indefinite matrices", 0, make_umfpack},
-      {"klu",
-       "left-looking LU of SuiteSparse, pivot order kept; unsymmetric and indefinite matrices, of small "
-       "bodies (3,700 nodes: many times umfpack's time)",
-       0, make_klu},
-      {"pcg",
-       "conjugate gradients, block-Jacobi, warm start, to linear_rtol; symmetric positive definite matrices",
-       0, make_pcg},
-      {"auto",
-       "the fastest of cholmod, pcg-single and pcg-two-level for the matrix's size and stiffness and for "
-       "linear_rtol, by measurements kept in the source",
-       0, make_auto},
-      {"pcg-single",
-       "conjugate gradients in single precision with residuals in double, block-Jacobi, start from three "
-       "solutions; linear_rtol bounds the error",
-       0, make_pcg_single},
-      {"pcg-two-level",
-       "pcg-single with rigid motions of node clusters, large and small, beside its blocks: for stiff "
-       "bodies, long steps and fine meshes",
-       0, make_pcg_two_level},
-  };
-  return registry;
-}
-
 std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynamics::State& state,
                                                 const IntegratorSpec& spec) {
   const auto& entry = find(stepper_registry(), spec.name, "integrator");
   // a wrong name is refused even where it would not be used
-  if (!spec.linear_solver.empty()) find(linear_solver_registry(), spec.linear_solver, "linear solver");
+  if (!spec.linear_solver.empty())
+    find(linear::linear_solver_registry(), spec.linear_solver, "linear solver");
   const std::string solver = linear_solver_of(spec);
-  return entry.make(system, state, spec, solver.empty() ? nullptr : make_linear_solver(solver, spec));
+  return entry.make(system, state, spec, solver.empty() ? nullptr : linear::make_linear_solver(solver, spec));
 }
 
 std::string linear_solver_of(const IntegratorSpec& spec) {
@@ -132,14 +104,9 @@ std::string linear_solver_of(const IntegratorSpec& spec) {
   return spec.factor_kept_steps > 1 ? "cholmod" : traits.linear_solver;
 }
 
-std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name,
-                                                           const IntegratorSpec& spec) {
-  return find(linear_solver_registry(), name, "linear solver").make(spec);
-}
-
 std::unique_ptr<dynamics::LinearSolver> make_robust_linear_solver(const std::string& name,
                                                                   const IntegratorSpec& spec) {
-  return std::make_unique<StepSolver>(make_linear_solver(name, spec), spec);
+  return std::make_unique<StepSolver>(linear::make_linear_solver(name, spec), spec);
 }
 
 }  // namespace palpate::integrate

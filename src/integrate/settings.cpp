@@ -59,14 +59,6 @@ void check_newton(const IntegratorSpec& spec) {
          spec.factor_kept_steps);
 }
 
-void check_linear_rtol(const char* solver, const IntegratorSpec& spec) {
-  if (!(spec.linear_rtol >= 1e-15 && spec.linear_rtol <= 0.1))
-    fail("linear solver \"{}\": linear_rtol = {} must lie in [1e-15, 0.1]; 1e-8 is usual", solver,
-         spec.linear_rtol);
-  if (spec.threads < 1 || spec.threads > 64)
-    fail("linear solver \"{}\": threads = {} must lie in [1, 64]", solver, spec.threads);
-}
-
 void check_spectral_radius(const IntegratorSpec& spec) {
   if (!(spec.spectral_radius >= 0.0 && spec.spectral_radius <= 1.0))
     fail("integrator \"{}\": spectral_radius = {} must lie in [0, 1]; 1 damps nothing, 0 the most", spec.name,

@@ -9,8 +9,6 @@ void check_fixed_step(const IntegratorSpec& spec);
 void check_static(const IntegratorSpec& spec);
 /// Of the hand-written implicit methods: what Newton reads.
 void check_newton(const IntegratorSpec& spec);
-/// Of iterative linear solvers.
-void check_linear_rtol(const char* solver, const IntegratorSpec& spec);
 void check_spectral_radius(const IntegratorSpec& spec);
 
 }  // namespace palpate::integrate

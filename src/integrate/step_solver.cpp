@@ -2,9 +2,8 @@
 
 #include <type_traits>
 
-#include "integrate/linear/add_counters.h"
-#include "integrate/make.h"
 #include "palpate/core/counters.h"
+#include "palpate/linear/solvers.h"
 
 namespace palpate::integrate {
 
@@ -16,13 +15,13 @@ StepSolver::StepSolver(std::unique_ptr<dynamics::LinearSolver> chosen, const Int
     : chosen_(std::move(chosen)), active_(chosen_.get()), project_(spec.indefinite == "project") {}
 
 SolveStatus StepSolver::factor_by_lu(const BorderedMatrix& A) {
-  if (!lu_) lu_ = make_umfpack({});
+  if (!lu_) lu_ = linear::make_linear_solver("umfpack");
   active_ = lu_.get();
   return lu_->factor(A);
 }
 
 SolveStatus StepSolver::factor_by_cholesky(const BorderedMatrix& A) {
-  if (!cholesky_) cholesky_ = make_cholmod({});
+  if (!cholesky_) cholesky_ = linear::make_linear_solver("cholmod");
   active_ = cholesky_.get();
   return cholesky_->factor(A);
 }
@@ -115,7 +114,7 @@ template SolveStatus StepSolver::solve_any(const MatX&, MatX&);
 const SolverCounters& StepSolver::counters() const {
   sum_ = chosen_->counters();
   for (const auto* behind : {cholesky_.get(), lu_.get()})
-    if (behind) add_counters(behind->counters(), sum_);
+    if (behind) sum_ += behind->counters();
   return sum_;
 }
 

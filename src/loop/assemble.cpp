@@ -6,6 +6,7 @@
 #include "palpate/core/error.h"
 #include "palpate/fem/load.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/linear/solvers.h"
 #include "palpate/mesh/checks.h"
 #include "palpate/mesh/place_order.h"
 #include "palpate/store/mesh_file.h"
@@ -165,7 +166,7 @@ void add_forces(World& world, Body& body, const SoftBodySpec& spec, const fem::M
          suggestion(spec.mass, {"lumped", "consistent"}));
   world.system.add(consistent ? fem::make_consistent_mass(body.rest, materials, body.block_id)
                               : fem::make_lumped_mass(body.rest, materials, body.block_id));
-  if (consistent) world.system.set_mass_solver(integrate::make_linear_solver("cholmod"));
+  if (consistent) world.system.set_mass_solver(linear::make_linear_solver("cholmod"));
   if (!world.description.gravity_m_s2.isZero())
     world.system.add(fem::make_gravity(body.masses, world.description.gravity_m_s2, body.block_id));
   for (const LoadSpec& load : spec.loads)

@@ -5,6 +5,7 @@
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/linear/solvers.h"
 #include "palpate/proxy/decompose_solid.h"
 
 namespace palpate::loop {
@@ -213,7 +214,7 @@ void assemble_contact(World& world) {
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
   if (!world.tool_frame || world.description.coupling.linearisation != "condensed") return;
   counters::count("loop.condenser");
-  world.condenser = integrate::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
+  world.condenser = linear::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
 }
 
 }  // namespace palpate::loop

@@ -6,6 +6,7 @@
 #include "palpate/core/finite.h"
 #include "palpate/integrate/integrators.h"
 #ifdef PALPATE_HAS_TOOL
+#include "palpate/linear/solvers.h"
 #include "palpate/tool/tool.h"
 #endif
 
@@ -91,7 +92,7 @@ dynamics::LinearSolver* factored(World& world) {
   if (status == dynamics::SolveStatus::kOk) return world.condenser.get();
   if (status != dynamics::SolveStatus::kIndefinite) return nullptr;
   counters::count("loop.condensed_by_lu");
-  if (!world.condenser_lu) world.condenser_lu = integrate::make_linear_solver("umfpack");
+  if (!world.condenser_lu) world.condenser_lu = linear::make_linear_solver("umfpack");
   return world.condenser_lu->factor(world.condensed_matrix) == dynamics::SolveStatus::kOk
              ? world.condenser_lu.get()
              : nullptr;

@@ -32,7 +32,7 @@ double scale_of(const World& world, const VecX& shape) {
 
 }  // namespace
 
-integrate::Modes find_modes(World& world, int count) {
+modes::Modes find_modes(World& world, int count) {
   if (world.bodies.empty())
     fail("{}: modes are of soft bodies, and the scene has no [[body]]", world.description.path);
 #ifdef PALPATE_HAS_TOOL
@@ -42,10 +42,10 @@ integrate::Modes find_modes(World& world, int count) {
   }
 #endif
   if (world.contact) world.contact->refresh(world.state.view());
-  return integrate::find_modes(world.system, world.state.view(), {count});
+  return modes::find_modes(world.system, world.state.view(), {count});
 }
 
-Points displaced(const World& world, const Body& body, const integrate::Modes& modes, int mode) {
+Points displaced(const World& world, const Body& body, const modes::Modes& modes, int mode) {
   const VecX shape = modes.shapes.col(mode);
   const dynamics::Block& block = *world.state.layout().find(body.block_id);
   return world.positions(body) +
@@ -53,7 +53,7 @@ Points displaced(const World& world, const Body& body, const integrate::Modes& m
              Eigen::Map<const Points>(shape.data() + block.u_offset, 3, body.placed.cols());
 }
 
-void write_modes(World& world, const integrate::Modes& modes, const std::string& path) {
+void write_modes(World& world, const modes::Modes& modes, const std::string& path) {
   std::vector<store::RunPart> parts;
   Eigen::Index count = 0;
   for (const Body& body : world.bodies) {

@@ -1,4 +1,5 @@
 #include "palpate/loop/registries.h"
+#include "palpate/linear/solvers.h"
 
 #include <fmt/format.h>
 
@@ -69,7 +70,7 @@ std::vector<Choice> tool_steppers() {
 std::vector<ChoiceList> registries() {
   return {{"integrators", "of soft bodies: [integrator] name, --integrator", stepper_choices()},
           {"linear-solvers", "of implicit integrators: [integrator] linear_solver",
-           choices(integrate::linear_solver_registry())},
+           choices(linear::linear_solver_registry())},
           {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_steppers()},
           {"devices", "what the hand holds: [device] type", choices(device::handle_registry())},
           {"parts", "optional parts of this build", part_choices()}};

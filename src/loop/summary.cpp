@@ -3,6 +3,7 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/linear/solvers.h"
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
 #endif
@@ -89,6 +90,7 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
 store::Provenance full_provenance() {
   store::Provenance p = store::provenance();
   for (const auto& library : integrate::library_versions()) p.libraries.push_back(library);
+  for (const auto& library : linear::library_versions()) p.libraries.push_back(library);
 #ifdef PALPATE_HAS_TOOL
   p.libraries.emplace_back("Simbody", tool::simbody_version());
 #endif

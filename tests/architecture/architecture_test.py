@@ -17,8 +17,8 @@ SOUND = {
     "include/palpate/fem/body.h": '#include "palpate/core/types.h"\n#include "palpate/fem/spec.h"\n',
     "include/palpate/gl/context.h": "#include <epoxy/gl.h>\n",
     "include/palpate/scene/description.h": '#include "palpate/fem/spec.h"\n',
-    "include/palpate/study/study.h": '#include "palpate/scene/description.h"\n',
-    "include/palpate/study/validation.h": '#include "palpate/fem/body.h"\n',
+    "include/palpate/compare/compare.h": '#include "palpate/scene/description.h"\n',
+    "include/palpate/validation/validation.h": '#include "palpate/fem/body.h"\n',
     "src/fem/body.cpp": '#include "palpate/fem/body.h"\n#include "element.h"\n#include <vector>\n',
     "src/fem/element.h": '#pragma once\n#include "../fem/shape.h"\n',
     "src/fem/shape.h": "#pragma once\n",
@@ -78,8 +78,8 @@ class Planted(unittest.TestCase):
     def test_plain_data_is_made_of_plain_data_only(self):
         self.expect({"include/palpate/mesh/spec.h": '#include "palpate/fem/body.h"\n'}, "mesh may not include fem")
 
-    def test_study_is_not_its_validation(self):
-        self.expect({"src/study/compare.cpp": '#include "palpate/fem/body.h"\n'}, "study may not include fem")
+    def test_comparison_sees_scenes_not_their_parts(self):
+        self.expect({"src/compare/compare.cpp": '#include "palpate/fem/body.h"\n'}, "compare may not include fem")
 
     def test_validation_does_not_know_the_command_line(self):
         self.expect({"include/palpate/cli/bad.h": "\n", "validation/bad.cpp": '#include "palpate/cli/bad.h"\n'},

@@ -9,7 +9,8 @@ import re
 import sys
 from pathlib import Path
 
-BELOW_LOOP = ["core", "mesh", "dynamics", "fem", "proxy", "gl", "contact", "tool", "device", "integrate", "store", "render", "scene"]
+BELOW_LOOP = ["core", "mesh", "dynamics", "fem", "proxy", "gl", "contact", "tool", "device", "linear", "modes",
+              "integrate", "store", "render", "scene"]
 
 ALLOWED = {
     "core": [],
@@ -22,19 +23,22 @@ ALLOWED = {
     "contact": ["core", "mesh", "proxy", "dynamics", "gl"],
     "tool": ["core", "dynamics"],
     "device": ["core"],
-    "integrate": ["core", "dynamics"],
+    "linear": ["core", "dynamics"],
+    "modes": ["core", "dynamics", "linear"],
+    "integrate": ["core", "dynamics", "linear"],
     "store": ["core", "mesh"],  # mesh: the native mesh file
     "render": ["core", "mesh", "gl"],
     "model": ["core", "mesh", "shapes", "proxy", "store"],
     "model_program": ["core", "mesh", "proxy", "store", "render", "report", "model", "shapes", "cli"],  # src/cli/model_program: the program behind `palpate model`
     "scene": ["core"],  # and the spec.h of every part: see is_allowed
     "loop": BELOW_LOOP,
-    "study": ["core", "scene", "loop", "store"],  # core and scene: what loop's own headers speak in
-    "fem_bench": ["core", "mesh", "dynamics", "fem", "integrate"],  # src/study/fem_bench: a beam made of the parts themselves, without a scene
-    "stability": BELOW_LOOP + ["loop", "study"],  # src/study/stability: builds its cases from the parts themselves, as validation does
+    "compare": ["core", "scene", "loop", "store"],  # core and scene: what loop's own headers speak in
+    "stability": BELOW_LOOP + ["loop"],  # builds its cases from the parts themselves, as validation does
+    "bench": BELOW_LOOP + ["loop"],  # bench/fem: a beam made of the parts themselves, without a scene
     "report": ["core", "store"],
-    "cli": ["core", "shapes", "scene", "store", "render", "loop", "study", "report", "stability", "fem_bench", "validation"],
-    "validation": BELOW_LOOP + ["loop", "study", "report"],  # the cases in validation/, and study/validation*
+    "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "stability", "bench", "report",
+            "validation"],
+    "validation": BELOW_LOOP + ["loop", "compare", "report"],  # the cases in validation/
 }
 
 # Headers of outside libraries, and the only folders that may include them.
@@ -44,8 +48,8 @@ OUTSIDE = [
     ("EGL and OpenGL", r"(EGL|GL|GLES\d?|KHR|epoxy)/", ["src/gl", "include/palpate/gl", "src/render", "tests/gl", "tests/render"]),
     ("libccd", r"ccd/", ["src/proxy", "tests/proxy"]),
     ("Qhull", r"libqhull", ["src/proxy"]),
-    ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/integrate"]),
-    ("Spectra", r"Spectra/", ["src/integrate"]),
+    ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/linear"]),
+    ("Spectra", r"Spectra/", ["src/modes"]),
     ("CLI11", r"CLI/", ["src/cli"]),
     ("toml++", r"toml\+\+/", ["src/scene"]),
     ("SQLite", r"sqlite3\.h", ["src/store"]),
@@ -71,12 +75,6 @@ def part_of(path):
         part = pieces[2]
     else:
         return None
-    if part == "study" and pieces[-1].startswith("validation"):
-        return "validation"
-    if part == "study" and "stability" in (pieces[-2], pieces[-1].split(".")[0]):
-        return "stability"
-    if part == "study" and "fem_bench" in (pieces[-2], pieces[-1].split(".")[0]):
-        return "fem_bench"
     if part == "cli" and pieces[2] == "model_program":
         return "model_program"
     return part
@@ -103,7 +101,7 @@ def is_spec(path):
 
 def is_allowed(source, target):
     own, other = part_of(source), part_of(target)
-    if own == other or {own, other} == {"study", "validation"}:
+    if own == other:
         return True
     if is_spec(target) and (is_spec(source) or own == "scene"):  # plain data may be made of plain data
         return True

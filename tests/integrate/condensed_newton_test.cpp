@@ -1,4 +1,5 @@
 #include "integrate/condensed_newton.h"
+#include "palpate/linear/solvers.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ using namespace fakes;
 TEST(CondensedNewton, SolvesTheResidualForm) {
   Chain chain(0.3);
   IntegratorSpec spec;
-  integrate::CondensedNewton newton(chain.system, integrate::make_linear_solver("cholmod"), spec);
+  integrate::CondensedNewton newton(chain.system, linear::make_linear_solver("cholmod"), spec);
   StepperCounters counters;
   newton.evaluate(chain.state.view(), counters);
   const Eigen::Index n = chain.state.layout().u_size;
@@ -32,7 +33,7 @@ TEST(CondensedNewton, SolvesTheResidualForm) {
 
 TEST(CondensedNewton, FactorsOnlyWhatChanged) {
   Chain chain;
-  integrate::CondensedNewton newton(chain.system, integrate::make_linear_solver("cholmod"), {});
+  integrate::CondensedNewton newton(chain.system, linear::make_linear_solver("cholmod"), {});
   StepperCounters counters;
   newton.evaluate(chain.state.view(), counters);
   for (const double gamma : {0.1, 0.1, 0.1, 0.2, 0.2}) ASSERT_EQ(newton.factor(gamma), SolveStatus::kOk);

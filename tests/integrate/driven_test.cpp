@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include "palpate/linear/solvers.h"
 
 #include <complex>
 
@@ -46,7 +47,7 @@ struct DrivenBar {
       v[0] = kA * kW * std::cos(kW * t);
       a[0] = -kA * kW * kW * std::sin(kW * t);
     }));
-    system.set_mass_solver(integrate::make_linear_solver("cholmod"));
+    system.set_mass_solver(linear::make_linear_solver("cholmod"));
     system.prepare(state.view());
     system.impose(state.layout(), 0.0, state.q().data(), state.u().data());
   }

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "integrate/bent_beam.h"
+#include "linear/bent_beam.h"
 #include "malloc_count.h"
 #include "palpate/integrate/integrators.h"
 

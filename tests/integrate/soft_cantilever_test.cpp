@@ -5,6 +5,7 @@
 #include "palpate/fem/attachments.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/linear/solvers.h"
 #include "palpate/mesh/generators.h"
 
 namespace palpate {
@@ -47,8 +48,8 @@ StepperCounters swing(Cantilever& beam, const std::string& linear_solver) {
 }
 
 class SoftCantilever : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Registry, SoftCantilever,
-                         testing::ValuesIn(names(integrate::linear_solver_registry())), registry_test_name);
+INSTANTIATE_TEST_SUITE_P(Registry, SoftCantilever, testing::ValuesIn(names(linear::linear_solver_registry())),
+                         registry_test_name);
 
 // Every linear solver is exact as far as CVODE can tell, so the steps are the same, and the trajectories
 // differ by less than CVODE's own tolerance.

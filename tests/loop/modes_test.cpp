@@ -16,7 +16,7 @@ TEST(ModesOfAScene, OfAHeldBlockScaleWithTheRootOfItsStiffness) {
   const auto soft = loop::assemble(d);
   d.bodies[0].youngs_modulus_pa *= 4.0;
   const auto stiff = loop::assemble(d);
-  const integrate::Modes one = loop::find_modes(*soft, 5), other = loop::find_modes(*stiff, 5);
+  const modes::Modes one = loop::find_modes(*soft, 5), other = loop::find_modes(*stiff, 5);
   EXPECT_TRUE(one.converged);
   for (int j = 0; j < 5; ++j) {
     EXPECT_GT(one.omega(j), 0.0);
@@ -33,7 +33,7 @@ TEST(ModesOfAScene, OfAFreeBlockBeginWithSixRigidMotionsWhereverItStandsAndLies)
     d.bodies[0].position_m = Vec3(3.0, -2.0, 1.0);
     d.bodies[0].rotation_vector_rad = Vec3(0.3, -0.5, 1.0);
     const auto there = loop::assemble(d);
-    const integrate::Modes one = loop::find_modes(*here, 9), other = loop::find_modes(*there, 9);
+    const modes::Modes one = loop::find_modes(*here, 9), other = loop::find_modes(*there, 9);
     for (int j = 0; j < 6; ++j) {
       EXPECT_EQ(one.omega_squared[j], 0.0) << mass << " " << j;
       EXPECT_EQ(other.omega_squared[j], 0.0) << mass << " " << j;
@@ -52,8 +52,8 @@ TEST(ModesOfAScene, NodalDilatationUnlocksThemAndAddsNoneOfZeroEnergy) {
   const auto nodal = loop::assemble(d);
   d.bodies[0].poissons_ratio = 0.499;
   const auto softer = loop::assemble(d);
-  const integrate::Modes one = loop::find_modes(*locked, 14), other = loop::find_modes(*nodal, 14),
-                         less = loop::find_modes(*softer, 14);
+  const modes::Modes one = loop::find_modes(*locked, 14), other = loop::find_modes(*nodal, 14),
+                     less = loop::find_modes(*softer, 14);
   EXPECT_TRUE(other.converged);
   EXPECT_FALSE(locked->bodies[0].dilatation);
   ASSERT_TRUE(nodal->bodies[0].dilatation);
@@ -81,7 +81,7 @@ TEST(ModesOfAScene, AToolThatPressesStiffensThem) {
 
 TEST(ModesOfAScene, AreWrittenOneAStep) {
   const auto world = loop::assemble(held_block());
-  const integrate::Modes modes = loop::find_modes(*world, 3);
+  const modes::Modes modes = loop::find_modes(*world, 3);
   const std::string path = testing::TempDir() + "palpate_modes.vtkhdf";
   loop::write_modes(*world, modes, path);
   const store::RunReader file(path);

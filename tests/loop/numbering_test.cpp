@@ -100,7 +100,7 @@ TEST_F(Numbering, ARunIsWrittenInTheOrderOfTheFile) {
 
 TEST_F(Numbering, ModesAreWrittenInTheOrderOfTheFile) {
   const auto world = loop::assemble(scene_);
-  const integrate::Modes modes = loop::find_modes(*world, 4);
+  const modes::Modes modes = loop::find_modes(*world, 4);
   loop::write_modes(*world, modes, (folder_ / "modes.vtkhdf").string());
   const store::RunReader file((folder_ / "modes.vtkhdf").string());
   EXPECT_EQ(file.parts()[1].tets, file_.tets);

@@ -12,6 +12,7 @@
 #include "loop/small_scenes.h"
 #include "palpate/core/counters.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/linear/solvers.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/summary.h"
 #include "palpate/loop/world.h"
@@ -235,7 +236,7 @@ TEST(OwnContactScene, EveryLinearSolverTakesIt) {
   d.integrator.linear_solver = "umfpack";
   const VecX exact = end_of(d);
   int solvers = 0;
-  for (const auto& entry : integrate::linear_solver_registry()) {
+  for (const auto& entry : linear::linear_solver_registry()) {
     d.integrator.linear_solver = entry.name;
     EXPECT_LT((end_of(d) - exact).norm(), 2e-4 * exact.norm()) << entry.name;
     ++solvers;

@@ -4,11 +4,11 @@
 #include <ostream>
 #include <set>
 
-#include "palpate/study/validation.h"
+#include "palpate/validation/validation.h"
 
-using palpate::study::Measurement;
-using palpate::study::validation_cases;
-using palpate::study::ValidationCase;
+using palpate::validation::Measurement;
+using palpate::validation::validation_cases;
+using palpate::validation::ValidationCase;
 
 namespace {
 
@@ -28,9 +28,9 @@ std::string text(const Measurement& m) {
 
 }  // namespace
 
-namespace palpate::study {
+namespace palpate::validation {
 void PrintTo(const ValidationCase& c, std::ostream* out) { *out << c.section << " " << c.name; }
-}  // namespace palpate::study
+}  // namespace palpate::validation
 
 namespace {
 
@@ -95,7 +95,7 @@ TEST(Measurement, PassesOnlyInsideItsBarAndBand) {
 }
 
 TEST(FittedOrder, IsTheSlopeOfAPowerLaw) {
-  EXPECT_NEAR(palpate::study::fitted_order({1, 0.5, 0.25}, {8, 1, 0.125}), 3.0, 1e-12);
+  EXPECT_NEAR(palpate::validation::fitted_order({1, 0.5, 0.25}, {8, 1, 0.125}), 3.0, 1e-12);
 }
 
 }  // namespace

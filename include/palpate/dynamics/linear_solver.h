@@ -25,6 +25,22 @@ struct SolverCounters {
   double symbolic_s = 0.0, factor_s = 0.0, solve_s = 0.0;  ///< wall time [s]
   /// fill-reducing ordering of the last analysis, where the solver chooses: "AMD", "METIS"
   std::string ordering;
+
+  /// What another solver counted is added; the ordering stays this one's own.
+  SolverCounters& operator+=(const SolverCounters& other) {
+    symbolic += other.symbolic;
+    orderings += other.orderings;
+    factorisations += other.factorisations;
+    solves += other.solves;
+    iterations += other.iterations;
+    near += other.near;
+    residuals += other.residuals;
+    refreshes += other.refreshes;
+    symbolic_s += other.symbolic_s;
+    factor_s += other.factor_s;
+    solve_s += other.solve_s;
+    return *this;
+  }
 };
 
 /// A system of equations that is known by what a vector leaves of it.

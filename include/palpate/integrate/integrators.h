@@ -9,8 +9,6 @@ namespace palpate::integrate {
 
 /// Every integrator of soft bodies, by the name used in scenes, on the command line and in reports.
 const dynamics::StepperRegistry& stepper_registry();
-/// Every linear solver by name.
-const dynamics::LinearSolverRegistry& linear_solver_registry();
 
 /// The integrator that the spec names, with linear_solver_of(spec).  @throws Error for unknown names and bad
 /// settings.
@@ -19,8 +17,6 @@ std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynami
 /// The linear solver that the spec names, or else the method's own, where factor_kept_steps > 1 cholmod;
 /// empty where the method is explicit.  @throws Error for an unknown integrator
 std::string linear_solver_of(const IntegratorSpec& spec);
-std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name,
-                                                           const IntegratorSpec& spec = {});
 /// The same with an LU behind it, for whom factors what is usually positive definite and has no step to
 /// shorten: takes unsymmetric and indefinite matrices too, and right-hand sides that an iteration does not
 /// answer.

@@ -1,25 +1,25 @@
 #pragma once
 #include <string>
 
-#include "palpate/integrate/modes.h"
 #include "palpate/loop/world.h"
+#include "palpate/modes/modes.h"
 
 namespace palpate::loop {
 
 /// The lowest modes of a scene as it stands at its start: held nodes held, contact as it is there, damping
 /// left out.
 /// @throws Error where the scene has no soft bodies, or its tangent is unsymmetric (friction)
-integrate::Modes find_modes(World& world, int count);
+modes::Modes find_modes(World& world, int count);
 
 /// How far a mode is drawn: its largest displacement is this part of the bodies' size.
 inline constexpr double kModeAmplitude = 0.1;
 
 /// Nodes of one body displaced by a mode, world [m].
-Points displaced(const World& world, const Body& body, const integrate::Modes& modes, int mode);
+Points displaced(const World& world, const Body& body, const modes::Modes& modes, int mode);
 
 /// Writes the modes as a run (VTKHDF, store/run_file.h): step j is mode j at time j (its number, from 1),
 /// points displaced by kModeAmplitude, `velocity` that with which they swing through rest [m/s], `stress`
 /// that of the displaced shape [Pa].
-void write_modes(World& world, const integrate::Modes& modes, const std::string& path);
+void write_modes(World& world, const modes::Modes& modes, const std::string& path);
 
 }  // namespace palpate::loop

@@ -1,18 +1,11 @@
-#include <cholmod.h>
-#include <fmt/format.h>
 #include <sundials/sundials_config.h>
-#include <umfpack.h>
 
 #include "palpate/integrate/integrators.h"
 
 namespace palpate::integrate {
 
 std::vector<std::pair<std::string, std::string>> library_versions() {
-  return {
-      {"SUNDIALS", SUNDIALS_VERSION},
-      {"CHOLMOD", fmt::format("{}.{}.{}", CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION)},
-      {"UMFPACK",
-       fmt::format("{}.{}.{}", UMFPACK_MAIN_VERSION, UMFPACK_SUB_VERSION, UMFPACK_SUBSUB_VERSION)}};
+  return {{"SUNDIALS", SUNDIALS_VERSION}};
 }
 
 }  // namespace palpate::integrate

@@ -1,0 +1,168 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate::bench {
+
+/// The beam of the soft-body benchmarks: 1.0 x 0.25 x 0.25 m, five tetrahedra a cell, one end held, nu = 0.4,
+/// density 1000 kg/m^3, lumped mass, warped tangent.
+struct BeamSize {
+  std::string name;
+  int along, across;  ///< cells
+};
+/// S 3,700 nodes, 14,580 tetrahedra; M 11,172, 47,320; L 32,400, 144,400; XL 99,238, 458,640.
+const std::vector<BeamSize>& beam_sizes();
+/// @throws Error where there is none of that name
+const BeamSize& size_named(const std::string& name);
+
+struct FemBenchOptions {
+  std::vector<std::string> sizes = {"S", "M"};
+  std::vector<double> youngs_moduli_pa = {1e5, 1e6};
+  std::vector<double> steps_s = {1e-2, 1e-3};
+  std::vector<double> linear_rtols = {1e-6, 1e-3};
+  std::vector<int> threads = {1, 2};
+  std::vector<std::string> linear_solvers = {"auto"};
+  int steps = 20;           ///< timed, of 10 ms each
+  bool same_motion = true;  ///< of shorter steps as many as take the same motion; false: no more of them
+  double element_s = 0.3;   ///< that each evaluation over the elements is timed for, by itself
+  /// of them, whose solution is compared with a direct one (or, above 12,000 nodes, with one of linear_rtol
+  /// 1e-10)
+  int checks = 3;
+};
+
+/// What passes over a working set of this size reach, again and again: caches hold the small ones.
+struct Bandwidth {
+  double bytes = 0.0, read_gb_s = 0.0, write_gb_s = 0.0;
+};
+
+/// What this machine can do, measured in the same run, for one number of threads.
+struct MachineLimits {
+  int threads = 1;
+  /// of arrays of 8 MB and of 67 MB, read and write counted [GB/s]
+  double small_copy_gb_s = 0.0, large_copy_gb_s = 0.0;
+  /// multiply-adds in registers, single and double precision, two operations each
+  double gflop_s = 0.0, double_gflop_s = 0.0;
+  std::vector<Bandwidth> bandwidths;           ///< ascending working sets
+  double read_gb_s(double working_set) const;  ///< between them
+  double write_gb_s(double working_set) const;
+};
+
+/// The least that a stage of one step can do: what it must read and write once, and its operations.
+struct StageWork {
+  double read_bytes = 0.0, written_bytes = 0.0;
+  double single_flops = 0.0, double_flops = 0.0;
+  /// max(time of the bytes at the bandwidth of this working set, time of the operations) [ms]
+  double limit_ms(const MachineLimits& limits, double working_set) const;
+};
+
+/// One kind of step: medians over a motion with large rotation [ms].
+struct FemBenchRow {
+  std::string size, linear_solver;
+  int nodes = 0, tetrahedra = 0, blocks = 0, threads = 1, steps = 0;
+  double youngs_modulus_pa = 0.0, step_s = 0.0, linear_rtol = 0.0;
+  /// forces, the product K u and the tangent come in one pass over the elements, timed as matrix_ms
+  bool one_pass = false;
+  /// forces and the product K u; in one pass, what else the right-hand side needs; where most steps are
+  /// `near`, the residual
+  double force_ms = 0.0;
+  double matrix_ms = 0.0;  ///< tangent, mass and held directions
+  double factor_ms = 0.0;  ///< factor or preconditioner, and the copy of the matrix
+  double solve_ms = 0.0;
+  double step_ms = 0.0;  ///< the whole step
+  double step_mean_ms = 0.0;
+  double near = 0.0;  ///< share of the steps that were solved by the matrix of an earlier one
+  /// of the timed steps, the shortest: what a machine that others use too would take alone
+  double step_least_ms = 0.0, solve_least_ms = 0.0;
+  /// median CPU time of the stepping thread; with several threads it holds what that thread spun while it
+  /// waited
+  double step_cpu_ms = 0.0;
+  double solver_cpu_ms = 0.0;  ///< of that, factor and solve
+  double iterations = 0.0;     ///< a step, mean
+  double stiffness = 0.0;      ///< 1 + h^2 tr K / tr M
+  double error = 0.0;          ///< largest of the checks: |du - du_direct| / |du_direct| in the energy norm
+  double mass_error = 0.0;     ///< the same in the norm of mass
+  double rotation_rad = 0.0;   ///< of the beam's end at the last step
+  /// what memory and arithmetic, measured in the same run, allow
+  double force_limit_ms = 0.0, matrix_limit_ms = 0.0, factor_limit_ms = 0.0, solve_limit_ms = 0.0;
+  double step_limit_ms = 0.0;  ///< their sum
+  /// step_ms x this machine's bandwidth / that of the machine that the figures of peers are from
+  double scaled_ms = 0.0;
+  double needed_bytes = 0.0;  ///< the sum of what must be stored
+  double body_bytes = 0.0;    ///< what the soft body holds of that: elements, maps, scratch
+  /// of the process above what it held before the beam was made, without what checks take; NaN: not known
+  double peak_bytes = 0.0;
+};
+
+/// One evaluation over the elements of the bent beam, by itself, again and again [ms].
+struct ElementTiming {
+  std::string size;
+  /// "force", "force, damped", "residual", "one pass", "matrix set to zero", "tangent, warped", "tangent,
+  /// exact"
+  std::string stage;
+  int nodes = 0, tetrahedra = 0, threads = 1, runs = 0;
+  double least_ms = 0.0;  ///< what a machine that others use too would take alone
+  double median_ms = 0.0;
+  double limit_ms = 0.0;  ///< what memory and arithmetic, measured in the same run, allow
+};
+
+struct FemBenchReport {
+  std::vector<MachineLimits> limits;
+  std::vector<FemBenchRow> rows;
+  std::vector<ElementTiming> elements;  ///< each stage at each size and number of threads
+};
+
+FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)() = nullptr);
+MachineLimits measure_limits(int threads);
+/// Force, residual, tangents and one pass of one beam, on as many workers as core has; limits are set by
+/// run_fem_bench().
+/// @param time_s  of each stage
+std::vector<ElementTiming> time_elements(const BeamSize& size, double time_s);
+
+/// Slope of ln y over ln x by least squares over pairs (x, y), those with y > 0; NaN for fewer than two.
+double scaling_exponent(const std::vector<std::pair<double, double>>& points);
+/// ln(a figure of a row) over ln(nodes), by least squares, of rows that differ in size alone; NaN for fewer
+/// than two.
+double scaling_exponent(const std::vector<const FemBenchRow*>& rows,
+                        const std::function<double(const FemBenchRow&)>& figure);
+
+/// What others took on the same beam (median ms of a step of 10 ms and of 1 ms; E = 1e5; quoted, of the
+/// machine below).
+struct PeerFigure {
+  std::string program, size;
+  double ten_ms, one_ms;  ///< NaN: not measured
+  std::string tolerance;
+};
+const std::vector<PeerFigure>& peer_figures();
+/// Copy bandwidth of the machine that the peers were measured on, 67 MB arrays [GB/s].
+double reference_bandwidth_gb_s(int threads);
+
+/// One way to compute a motion: what 10 ms of it cost, and how far its end is from the exact end of the same
+/// mesh and material.
+struct AccuracyPoint {
+  std::string program;
+  double step_s = 0.0, tolerance = 0.0;  ///< 0: the program has none
+  /// run time of 10 ms of the motion, one thread, without what is done once a mesh [ms]
+  double ms_of_ten_ms = 0.0;
+  double error = 0.0;   ///< |q - exact|_M / |exact - rest|_M
+  bool quoted = false;  ///< not measured in this run
+  /// run time of a first step: pattern, maps and orderings, done once a mesh; 0: not known
+  double setup_ms = 0.0;
+};
+/// The fall of the beam, E = 1e5, from rest for 0.2 s: measured here for steps and tolerances, and what is
+/// known of others.
+std::vector<AccuracyPoint> run_accuracy(const std::string& size, bool (*stop)() = nullptr);
+/// What others reach in that motion, measured once against the same exact end; run times of this or of the
+/// reference machine, as `program` says.
+std::vector<AccuracyPoint> peer_accuracy(const std::string& size);
+std::string to_json(const std::vector<AccuracyPoint>& points);
+
+std::string to_json(const FemBenchReport& report);
+
+/// Rows of src/integrate/linear/auto_table.inc: for sizes, stiffnesses and tolerances the solver that took
+/// the least CPU time for factor and solve of a step, one thread, here and now; each row is handed over as
+/// soon as it is measured.
+void calibrate_auto(const std::function<void(const std::string&)>& row_measured, bool (*stop)() = nullptr);
+
+}  // namespace palpate::bench

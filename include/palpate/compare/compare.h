@@ -1,0 +1,119 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "palpate/compare/exchange.h"
+#include "palpate/compare/trajectory.h"
+
+namespace palpate::compare {
+
+/// What became of a point.
+enum class PointStatus {
+  kOk,
+  kFailed,  ///< the integrator gave up
+  kOutOfTime,
+  kCrashed,   ///< its process ended by a signal
+  kRefused,   ///< the integrator cannot run this scene with these settings
+  kNotTried,  ///< a coarser rung ran out of time
+  kMissing,   ///< the study was stopped before it
+};
+const char* to_string(PointStatus status);
+
+/// One point of the work-precision chart: one integrator at one tolerance or step.
+struct ComparePoint {
+  std::string label;  ///< what reports call its ladder; unique in a scene
+  std::string integrator, family, stability;
+  int order = 0;  ///< in theory
+  bool multistep = false;
+  std::string setting_name;  ///< "rtol", "step_s" or "tick_s"
+  double setting = 0.0;
+  scene::Description description;  ///< the scene with everything set for this point
+  PointStatus status = PointStatus::kMissing;
+  std::string reason;  ///< where the status is not kOk
+  /// NaN throughout where the status is not kOk, or where there is no reference
+  TrajectoryError error;
+  loop::RunResult result;     ///< of the first repeat; counts are the same in all
+  std::vector<double> cpu_s;  ///< of each repeat
+  double cpu_median_s = 0.0, cpu_min_s = 0.0, cpu_max_s = 0.0;
+  /// its position error is less than kResolution times the reference's own: not to be trusted
+  bool unresolved = false;
+  bool force_unresolved = false, torque_unresolved = false;  ///< the same of the RMS on the hand
+};
+
+/// Of an error this many times the reference's own, the reference leaves a tenth in doubt; nearer ones are
+/// marked, and stand in no fit and no verdict.
+constexpr double kResolution = 10.0;
+
+/// The truth that the points are held against, and how far it can be trusted.
+struct Reference {
+  std::string description;  ///< what it was made by, and what checked it
+  std::string trouble;      ///< what is missing of the two, and why; empty: nothing
+  bool available = false;   ///< without one no point has an error
+  /// distance of two families at tight tolerance; NaN where there was no check
+  TrajectoryError own_error = no_distance();
+  double cpu_s = 0.0;
+};
+
+/// One way of finding the tool's contact, against the first of the scene's list: how far the choice of method
+/// moves the result.
+struct MethodPoint {
+  std::string method;
+  TrajectoryError difference;  ///< zero for the first
+  double peak_force_n = 0.0;   ///< on the hand
+  long most_samples = 0;       ///< contact samples at one time
+  double query_s = 0.0, cpu_s = 0.0;
+};
+
+/// All about one scene.
+struct SceneComparison {
+  std::string scene, path;
+  bool tool = false;
+  Reference reference;
+  std::vector<ComparePoint> points;
+  /// setting "contact_refresh_s": what re-initialisation costs; empty where the scene asks for none
+  std::vector<ComparePoint> restarts;
+  /// error of the exchange period itself; empty where the scene asks for none
+  std::vector<ExchangePoint> exchange;
+  std::vector<MethodPoint> methods;  ///< empty where the scene names none
+  std::vector<std::string> notes;    ///< charts that could not be made, and why
+};
+
+struct Comparison {
+  std::vector<SceneComparison> scenes;
+  std::string rules;  ///< how runs were repeated and limited, in words
+  long reused = 0;    ///< runs that an earlier, unfinished study had done
+  bool stopped = false;
+};
+
+struct CompareOptions {
+  /// at most; a point is repeated only while its runs together took less than a fifth of the limit
+  int repeats = 3;
+  double limit_s = 10.0;             ///< CPU seconds a point
+  double reference_limit_s = 120.0;  ///< CPU seconds of a reference, of its check, and of each further chart
+  int jobs = 0;                      ///< runs side by side; 0: the number of cores
+  /// names or labels; empty: the scene's ladders and all else that is not static
+  std::vector<std::string> integrators;
+  bool all = false;      ///< every integrator that is not static, beside those named
+  std::string database;  ///< file to keep results in and to go on from; empty: none
+  std::function<void(double fraction, const std::string& what)> progress;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// Runs every ladder of every scene at the scene's fixed exchange period against the scene's tight reference,
+/// each run in a process of its own; repeats are interleaved over all points, so that a noisy machine hurts
+/// all alike.  Call it without other threads.
+/// @param scenes  from scene::load or scene::parse: their text is what results are kept under
+/// @throws Error for ladders that make no sense
+Comparison run(const std::vector<scene::Description>& scenes, const CompareOptions& options);
+
+/// The scene with the tool's contact found by each method of `compare.contact_methods`, at the scene's own
+/// integrator settings.
+std::vector<MethodPoint> compare_contact_methods(const scene::Description& description,
+                                                 const std::atomic<bool>* stop = nullptr);
+
+/// compare.csv, restarts.csv, exchange.csv, methods.csv and reference.json in `folder`: what report reads its
+/// tables, fitted orders and plots from.
+void write(const Comparison& comparison, const std::string& folder);
+
+}  // namespace palpate::compare

@@ -1,0 +1,38 @@
+#pragma once
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "palpate/compare/trajectory.h"
+
+namespace palpate::compare {
+
+/// One exchange period of a scene with a tool, against the truth.
+struct ExchangePoint {
+  double exchange_period_s = 0.0;
+  TrajectoryError error;  ///< NaN throughout when the run, or the one it is held against, failed
+  double cpu_s = 0.0;
+};
+
+/// What to do while an exchange study goes on.
+struct ExchangeOptions {
+  std::function<void(const std::string& what)> done;  ///< after each run
+  const std::atomic<bool>* stop = nullptr;
+  /// the scene that the truth is made of; null: the same (another one shows that the study can fail)
+  const scene::Description* truth = nullptr;
+};
+
+/// Runs that compare_exchange makes of a scene: 0 without a tool or without `compare.exchange_periods_s`.
+int exchange_runs(const scene::Description& description);
+
+/// The exchange period's own error: the distance of the partitioned scheme at each of
+/// `compare.exchange_periods_s` from the monolithic one.  What else could differ does not: both are
+/// integrated by the same tight cvode-bdf, the contact is refreshed at one period for all, the longest that
+/// divides every exchange period, and the tool's tick is a tenth of the exchange period.  The scheme is of
+/// order 1 in the period where the handle is smooth. Empty where the scene asks for none; stops early on
+/// request.
+std::vector<ExchangePoint> compare_exchange(const scene::Description& description,
+                                            const ExchangeOptions& options);
+
+}  // namespace palpate::compare

@@ -1,0 +1,81 @@
+#pragma once
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "palpate/core/error.h"
+#include "palpate/core/types.h"
+
+/// Plain data as bytes and back, bit for bit: between a run's own process and the study, and into the study's
+/// database.
+namespace palpate {
+
+class ByteWriter {
+ public:
+  template <class T>
+  ByteWriter& put(const T& value) {
+    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
+    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    return *this;
+  }
+  ByteWriter& put(const std::string& text) {
+    put(text.size());
+    bytes_ += text;
+    return *this;
+  }
+  ByteWriter& put(const VecX& values) {
+    return put_range(values.data(), static_cast<std::size_t>(values.size()));
+  }
+  ByteWriter& put(const std::vector<double>& values) { return put_range(values.data(), values.size()); }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  ByteWriter& put_range(const double* data, std::size_t count) {
+    put(count);
+    bytes_.append(reinterpret_cast<const char*>(data), count * sizeof(double));
+    return *this;
+  }
+  std::string bytes_;
+};
+
+/// Reads in the order of writing.  @throws Error where the bytes end too soon
+class ByteReader {
+ public:
+  explicit ByteReader(const std::string& bytes) : bytes_(bytes) {}
+  template <class T>
+  T get() {
+    if constexpr (std::is_same_v<T, std::string>) {
+      const auto count = get<std::size_t>();
+      return std::string(take(count), count);
+    } else if constexpr (std::is_same_v<T, VecX>) {
+      const auto count = get<std::size_t>();
+      VecX out(static_cast<Eigen::Index>(count));
+      std::memcpy(out.data(), take(count * sizeof(double)), count * sizeof(double));
+      return out;
+    } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+      const auto count = get<std::size_t>();
+      std::vector<double> out(count);
+      std::memcpy(out.data(), take(count * sizeof(double)), count * sizeof(double));
+      return out;
+    } else {
+      T value;
+      std::memcpy(&value, take(sizeof value), sizeof value);
+      return value;
+    }
+  }
+  bool at_end() const { return at_ == bytes_.size(); }
+
+ private:
+  const char* take(std::size_t count) {
+    if (count > bytes_.size() - at_)
+      fail("a stored result ends too soon ({} of {} bytes)", at_, bytes_.size());
+    const char* out = bytes_.data() + at_;
+    at_ += count;
+    return out;
+  }
+  const std::string& bytes_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace palpate

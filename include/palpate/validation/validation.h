@@ -1,0 +1,42 @@
+#pragma once
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace palpate::validation {
+
+/// One measured quantity of a case, held against theory.  NaN: not applicable.
+struct Measurement {
+  std::string quantity;  ///< with its unit: "tip deflection [m]"
+  double computed = 0.0;
+  double exact = 0.0;
+  double error = 0.0;                                           ///< relative unless `quantity` says otherwise
+  double bar = 0.0;                                             ///< passes when error <= bar
+  double order = std::numeric_limits<double>::quiet_NaN();      ///< fitted over >= 3 refinements
+  double order_low = std::numeric_limits<double>::quiet_NaN();  ///< band of the fitted order
+  double order_high = std::numeric_limits<double>::quiet_NaN();
+  std::string note{};
+  /// error <= bar (a NaN error fails) and, where a band is given, order inside it
+  bool passed() const;
+};
+
+/// A case with a known answer.  Stands in validation/ as one file; `registry.cpp` lists it.
+struct ValidationCase {
+  std::string name;     ///< "patch-test"
+  std::string section;  ///< of VALIDATION: "C"
+  std::string summary;  ///< one line: what is measured
+  std::string why;      ///< why it matters, and the source of the exact answer
+  bool slow = false;    ///< minutes; ctest label `slow`
+  /// Runs it.  `sabotage` is empty, or one of `sabotages`: the physics broken on purpose, and then at least
+  /// one measurement must fail.
+  std::vector<Measurement> (*run)(const std::string& sabotage) = nullptr;
+  std::vector<std::string> sabotages;  ///< at least one
+};
+
+/// Observed order: least-squares slope of log(error) against log(h).
+double fitted_order(const std::vector<double>& h, const std::vector<double>& error);
+
+/// All cases, in the order of VALIDATION (defined in validation/registry.cpp).
+const std::vector<ValidationCase>& validation_cases();
+
+}  // namespace palpate::validation

@@ -1,0 +1,248 @@
+#include "codec.h"
+
+#include <array>
+
+#include "palpate/core/bytes.h"
+
+namespace palpate::compare {
+namespace {
+
+constexpr std::array<PointStatus, 7> kStatuses = {
+    PointStatus::kOk,      PointStatus::kFailed,   PointStatus::kOutOfTime, PointStatus::kCrashed,
+    PointStatus::kRefused, PointStatus::kNotTried, PointStatus::kMissing};
+
+// One list of the members of each record serves writing, reading and naming.
+template <class Error, class Visit>
+void visit_error(Error& e, Visit visit) {
+  visit("position_error_rel_l2", e.position_rel_l2);
+  visit("position_error_max_m", e.position_max_m);
+  visit("force_error_rms_n", e.force_rms_n);
+  visit("force_error_max_n", e.force_max_n);
+  visit("torque_error_rms_n_m", e.torque_rms_n_m);
+  visit("torque_error_max_n_m", e.torque_max_n_m);
+  visit("energy_error_j", e.energy_j);
+}
+
+template <class Result, class Visit>
+void visit_result(Result& r, Visit visit) {
+  visit("cpu_s", r.cpu_s);
+  visit("wall_s", r.wall_s);
+  visit("simulated_s", r.time);
+  visit("query_s", r.query_s);
+  visit("linearise_s", r.linearise_s);
+  visit("tool_s", r.tool_s);
+  visit("periods", r.periods);
+  visit("ticks", r.ticks);
+  visit("contact_queries", r.contact_queries);
+  visit("limited_ticks", r.limited_ticks);
+  visit("frozen_fallbacks", r.frozen_fallbacks);
+  auto& c = r.counters;
+  visit("steps", c.steps);
+  visit("rejected_steps", c.rejected);
+  visit("error_test_failures", c.error_test_failures);
+  visit("newton_failures", c.newton_failures);
+  visit("newton_iterations", c.newton_iterations);
+  visit("force_evaluations", c.force_evaluations);
+  visit("tangent_evaluations", c.tangent_evaluations);
+  visit("reinitialisations", c.reinits);
+  visit("indefinite_matrices", c.indefinite);
+  visit("force_s", c.force_s);
+  visit("tangent_s", c.tangent_s);
+  visit("factorisations", c.solver.factorisations);
+  visit("linear_solves", c.solver.solves);
+  visit("factor_s", c.solver.factor_s);
+  visit("solve_s", c.solver.solve_s);
+}
+
+template <class Record>
+auto writing(ByteWriter& out, const Record&) {
+  return [&out](const char*, const auto& value) { out.put(value); };
+}
+auto reading(ByteReader& in) {
+  return [&in](const char*, auto& value) { value = in.get<std::remove_reference_t<decltype(value)>>(); };
+}
+
+void put_status(ByteWriter& out, const dynamics::StepResult& s) {
+  out.put(s.status).put(s.t).put(s.h).put(s.order).put(s.iterations).put(s.residual).put(s.message);
+}
+
+dynamics::StepResult get_status(ByteReader& in) {
+  dynamics::StepResult s;
+  s.status = in.get<dynamics::StepStatus>();
+  s.t = in.get<double>();
+  s.h = in.get<double>();
+  s.order = in.get<int>();
+  s.iterations = in.get<int>();
+  s.residual = in.get<double>();
+  s.message = in.get<std::string>();
+  return s;
+}
+
+void put_result(ByteWriter& out, const loop::RunResult& r) {
+  put_status(out, r.status);
+  out.put(r.stopped);
+  visit_result(r, writing(out, r));
+}
+
+loop::RunResult get_result(ByteReader& in) {
+  loop::RunResult r;
+  r.status = get_status(in);
+  r.stopped = in.get<bool>();
+  visit_result(r, reading(in));
+  return r;
+}
+
+}  // namespace
+
+const char* to_string(PointStatus status) {
+  switch (status) {
+    case PointStatus::kOk: return "ok";
+    case PointStatus::kFailed: return "failed";
+    case PointStatus::kOutOfTime: return "out of time";
+    case PointStatus::kCrashed: return "crashed";
+    case PointStatus::kRefused: return "refused";
+    case PointStatus::kNotTried: return "not tried";
+    case PointStatus::kMissing: return "missing";
+  }
+  return "unknown";
+}
+
+std::string bytes_of(const Run& run) {
+  ByteWriter out;
+  const Trajectory& t = run.trajectory;
+  out.put(t.period_times).put(t.energies).put(t.tick_times).put(t.node_weights).put(t.start);
+  out.put(t.positions.size());
+  for (const VecX& x : t.positions) out.put(x);
+  out.put(t.device.size());
+  for (const Wrench& w : t.device)
+    for (int i = 0; i < 3; ++i) out.put(w.force[i]).put(w.moment[i]);
+  put_result(out, run.result);
+  return out.take();
+}
+
+Run run_of(const std::string& bytes) {
+  ByteReader in(bytes);
+  Run run;
+  Trajectory& t = run.trajectory;
+  t.period_times = in.get<std::vector<double>>();
+  t.energies = in.get<std::vector<double>>();
+  t.tick_times = in.get<std::vector<double>>();
+  t.node_weights = in.get<VecX>();
+  t.start = in.get<VecX>();
+  t.positions.resize(in.get<std::size_t>());
+  for (VecX& x : t.positions) x = in.get<VecX>();
+  t.device.resize(in.get<std::size_t>());
+  for (Wrench& w : t.device)
+    for (int i = 0; i < 3; ++i) {
+      w.force[i] = in.get<double>();
+      w.moment[i] = in.get<double>();
+    }
+  run.result = get_result(in);
+  return run;
+}
+
+std::string bytes_of(const PointRun& run) {
+  ByteWriter out;
+  out.put(run.reference).put(run.status).put(run.reason);
+  visit_error(run.error, writing(out, run));
+  put_result(out, run.result);
+  return out.take();
+}
+
+PointRun point_run_of(const std::string& bytes) {
+  ByteReader in(bytes);
+  PointRun run;
+  run.reference = in.get<ReferenceUsed>();
+  run.status = in.get<PointStatus>();
+  run.reason = in.get<std::string>();
+  visit_error(run.error, reading(in));
+  run.result = get_result(in);
+  return run;
+}
+
+const std::vector<std::string>& run_columns() {
+  static const std::vector<std::string> columns = [] {
+    std::vector<std::string> out = {"limit_s", "reference_used"};
+    PointRun none;
+    const auto name = [&](const char* column, auto&) { out.push_back(column); };
+    visit_error(none.error, name);
+    visit_result(none.result, name);
+    return out;
+  }();
+  return columns;
+}
+
+store::StudyRun row_of(const PointRun& run, double limit_s) {
+  store::StudyRun row;
+  row.status = to_string(run.status);
+  row.reason = run.reason;
+  row.numbers = {limit_s, static_cast<double>(run.reference)};
+  const auto add = [&](const char*, const auto& value) { row.numbers.push_back(static_cast<double>(value)); };
+  visit_error(run.error, add);
+  visit_result(run.result, add);
+  return row;
+}
+
+PointRun point_run_of(const store::StudyRun& row) {
+  PointRun run;
+  run.reason = row.reason;
+  for (PointStatus one : kStatuses)
+    if (row.status == to_string(one)) run.status = one;
+  run.reference = static_cast<ReferenceUsed>(static_cast<int>(row.numbers[1]));
+  std::size_t i = 2;
+  const auto take = [&](const char*, auto& value) {
+    value = static_cast<std::remove_reference_t<decltype(value)>>(row.numbers[i++]);
+  };
+  visit_error(run.error, take);
+  visit_result(run.result, take);
+  return run;
+}
+
+double limit_of(const store::StudyRun& row) { return row.numbers[0]; }
+
+std::string bytes_of(const std::vector<ExchangePoint>& points) {
+  ByteWriter out;
+  out.put(points.size());
+  for (const ExchangePoint& p : points) {
+    out.put(p.exchange_period_s).put(p.cpu_s);
+    visit_error(p.error, writing(out, p));
+  }
+  return out.take();
+}
+
+std::vector<ExchangePoint> exchange_of(const std::string& bytes) {
+  ByteReader in(bytes);
+  std::vector<ExchangePoint> points(in.get<std::size_t>());
+  for (ExchangePoint& p : points) {
+    p.exchange_period_s = in.get<double>();
+    p.cpu_s = in.get<double>();
+    visit_error(p.error, reading(in));
+  }
+  return points;
+}
+
+std::string bytes_of(const std::vector<MethodPoint>& points) {
+  ByteWriter out;
+  out.put(points.size());
+  for (const MethodPoint& p : points) {
+    out.put(p.method).put(p.peak_force_n).put(p.most_samples).put(p.query_s).put(p.cpu_s);
+    visit_error(p.difference, writing(out, p));
+  }
+  return out.take();
+}
+
+std::vector<MethodPoint> methods_of(const std::string& bytes) {
+  ByteReader in(bytes);
+  std::vector<MethodPoint> points(in.get<std::size_t>());
+  for (MethodPoint& p : points) {
+    p.method = in.get<std::string>();
+    p.peak_force_n = in.get<double>();
+    p.most_samples = in.get<long>();
+    p.query_s = in.get<double>();
+    p.cpu_s = in.get<double>();
+    visit_error(p.difference, reading(in));
+  }
+  return points;
+}
+
+}  // namespace palpate::compare

@@ -1,0 +1,36 @@
+#pragma once
+#include "palpate/compare/compare.h"
+#include "palpate/store/study_db.h"
+
+namespace palpate::compare {
+
+/// A run as bytes, trajectory and all, and back.
+std::string bytes_of(const Run& run);
+Run run_of(const std::string& bytes);
+
+/// What a point's error was measured against.
+enum class ReferenceUsed { kNone, kTruth, kCheck };
+
+/// What one run of a point gives, as it is kept.
+struct PointRun {
+  ReferenceUsed reference = ReferenceUsed::kNone;
+  PointStatus status = PointStatus::kMissing;
+  std::string reason;
+  TrajectoryError error = no_distance();
+  loop::RunResult result;
+};
+std::string bytes_of(const PointRun& run);
+PointRun point_run_of(const std::string& bytes);
+
+/// The same as a row of the study's database, under these columns.
+const std::vector<std::string>& run_columns();
+store::StudyRun row_of(const PointRun& run, double limit_s);
+PointRun point_run_of(const store::StudyRun& row);
+double limit_of(const store::StudyRun& row);  ///< that it ran under [s]
+
+std::string bytes_of(const std::vector<ExchangePoint>& points);
+std::vector<ExchangePoint> exchange_of(const std::string& bytes);
+std::string bytes_of(const std::vector<MethodPoint>& points);
+std::vector<MethodPoint> methods_of(const std::string& bytes);
+
+}  // namespace palpate::compare

@@ -1,0 +1,210 @@
+#include "palpate/compare/compare.h"
+
+#include <algorithm>
+#include <thread>
+
+#include "ledger.h"
+#include "palpate/core/error.h"
+#include "palpate/core/process_pool.h"
+
+namespace palpate::compare {
+namespace {
+
+using Outcome = ProcessPool::Outcome;
+
+PointStatus status_of(Outcome::End end) {
+  switch (end) {
+    case Outcome::End::kDone: return PointStatus::kOk;
+    case Outcome::End::kError: return PointStatus::kRefused;
+    case Outcome::End::kCrash: return PointStatus::kCrashed;
+    case Outcome::End::kOutOfTime: return PointStatus::kOutOfTime;
+  }
+  return PointStatus::kCrashed;
+}
+
+/// A study as it proceeds.  All results pass through the database's rows, whether they were made now or
+/// before: a study that was killed and started again gives the same table.
+class Study {
+ public:
+  Study(const std::vector<scene::Description>& scenes, const CompareOptions& options)
+      : options_(options),
+        jobs_(options.jobs > 0 ? options.jobs
+                               : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
+        database_(options.database.empty() ? ":memory:" : options.database, run_columns()),
+        ledger_(scenes, options) {}
+
+  Comparison run() {
+    ProcessPool pool(jobs_);
+    while (!stopped()) {
+      ledger_.settle_references();
+      bool open = false, moved = false;
+      for (Task& task : ledger_.tasks) {
+        if (!task.done) moved |= proceed(pool, task);
+        open |= !task.done;
+      }
+      if (!open) break;
+      if (moved) continue;  // what was settled makes others ready
+      PALPATE_CHECK(!pool.idle(), "nothing runs, and nothing can be started");
+      pool.wait(0.2);
+    }
+    ledger_.out.stopped = stopped();
+    ledger_.finish(jobs_);
+    return std::move(ledger_.out);
+  }
+
+ private:
+  bool stopped() const { return options_.stop && options_.stop->load(); }
+
+  /// Does what can be done for it now; true where that may let others proceed.
+  bool proceed(ProcessPool& pool, Task& task) {
+    if (task.started) return false;
+    if (ledger_.is_pointless(task)) return task.done = true;
+    if (!ledger_.is_ready(task)) return false;
+    if (!task.looked) {
+      task.looked = true;
+      resume(task);
+      if (task.done) return true;
+    }
+    if (!pool.has_room()) return false;
+    start(pool, task);
+    return true;
+  }
+
+  /// From an earlier study.
+  void resume(Task& task) {
+    if (!task.is_point()) {
+      const auto kept = database_.artefact(ledger_.artefact_key(task));
+      if (!kept || (kept->status == "out of time" && kept->cpu_s < ledger_.limit_of(task))) return;
+      reuse(task, *kept);
+      return;
+    }
+    for (const store::StudyRun& row : database_.runs(ledger_.key_of(task))) {
+      const bool wants_more_time = row.status == "out of time" && compare::limit_of(row) < options_.limit_s;
+      const bool other_reference = task.kind == Task::Kind::kPoint &&
+                                   point_run_of(row).reference != ledger_.work[task.scene].reference_used;
+      if (row.repeat == task.repeat && !wants_more_time && !other_reference) reuse(task, row);
+    }
+  }
+
+  template <typename Kept>
+  void reuse(Task& task, const Kept& kept) {
+    task.started = task.done = true;
+    ledger_.take(task, kept);
+    ++ledger_.out.reused;
+  }
+
+  void start(ProcessPool& pool, Task& task) {
+    task.started = true;
+    Task* at = &task;
+    pool.start([this, at](const std::atomic<bool>& late) { return work(*at, late); }, ledger_.limit_of(task),
+               [this, at](const Outcome& outcome) { done(*at, outcome); });
+  }
+
+  /// In the process of the run.
+  std::string work(const Task& task, const std::atomic<bool>& late) {
+    const SceneWork& scene = ledger_.work[task.scene];
+    const double duration = scene.description.compare.duration_s;
+    switch (task.kind) {
+      case Task::Kind::kTruth: return bytes_of(run_once(scene.planned.truth, duration, &late));
+      case Task::Kind::kCheck: return bytes_of(run_once(scene.planned.check, duration, &late));
+      case Task::Kind::kExchange: return bytes_of(compare_exchange(scene.description, {{}, &late}));
+      case Task::Kind::kMethods: return bytes_of(compare_contact_methods(scene.description, &late));
+      case Task::Kind::kPoint:
+      case Task::Kind::kRestart: break;
+    }
+    return bytes_of(run_point(ledger_.point_of(task).description, options_.limit_s,
+                              task.kind == Task::Kind::kPoint ? scene.reference : nullptr, &late));
+  }
+
+  /// In the study's own process: keeps the result, then uses it.
+  void done(Task& task, const Outcome& outcome) {
+    if (stopped()) return;  // it may have been cut short
+    task.done = true;
+    if (task.is_point())
+      keep(task, row_of(task, outcome));
+    else
+      keep(task, artefact_of(task, outcome));
+    report(task);
+  }
+
+  template <typename Kept>
+  void keep(const Task& task, const Kept& kept) {
+    database_.put(kept);
+    ledger_.take(task, kept);
+  }
+
+  store::StudyRun row_of(const Task& task, const Outcome& outcome) {
+    PointRun run;
+    if (outcome.end == Outcome::End::kDone)
+      run = point_run_of(outcome.bytes);
+    else
+      run.status = status_of(outcome.end), run.reason = outcome.bytes;
+    run.reference = ledger_.work[task.scene].reference_used;
+    store::StudyRun row = compare::row_of(run, options_.limit_s);
+    const ComparePoint& point = ledger_.point_of(task);
+    row.key = ledger_.key_of(task);
+    row.repeat = task.repeat;
+    row.scene = ledger_.out.scenes[task.scene].scene;
+    row.label = point.label;
+    row.integrator = point.integrator;
+    row.setting_name = point.setting_name;
+    row.setting = point.setting;
+    return row;
+  }
+
+  store::StudyArtefact artefact_of(const Task& task, const Outcome& outcome) const {
+    static const char* const kWhat[] = {"reference", "check", "point", "restart", "exchange", "methods"};
+    store::StudyArtefact kept{ledger_.artefact_key(task),
+                              kWhat[static_cast<int>(task.kind)],
+                              to_string(status_of(outcome.end)),
+                              "",
+                              0.0,
+                              ""};
+    if (outcome.end != Outcome::End::kDone) {
+      kept.reason = outcome.bytes;
+    } else {
+      kept.bytes = outcome.bytes;
+      if (task.is_reference()) {
+        const loop::RunResult result = run_of(outcome.bytes).result;
+        kept.cpu_s = result.cpu_s;
+        if (result.stopped) {
+          kept.status = to_string(PointStatus::kOutOfTime);
+          kept.reason =
+              fmt::format("out of time: {:g} s (at t = {:.4g} s)", options_.reference_limit_s, result.time);
+        } else if (!result.status.ok()) {
+          kept.status = to_string(PointStatus::kFailed);
+          kept.reason = result.status.message;
+        }
+      }
+    }
+    // a longer limit tries again
+    if (kept.status == to_string(PointStatus::kOutOfTime)) kept.cpu_s = options_.reference_limit_s;
+    return kept;
+  }
+
+  void report(const Task& task) {
+    if (!options_.progress) return;
+    const auto finished =
+        std::count_if(ledger_.tasks.begin(), ledger_.tasks.end(), [](const Task& t) { return t.done; });
+    const std::string& scene = ledger_.out.scenes[task.scene].scene;
+    std::string what = (task.is_reference() ? "reference of " : "charts of ") + scene;
+    if (task.is_point()) {
+      const ComparePoint& point = ledger_.point_of(task);
+      what = fmt::format("{}: {} {} = {:g}", scene, point.label, point.setting_name, point.setting);
+    }
+    options_.progress(static_cast<double>(finished) / static_cast<double>(ledger_.tasks.size()), what);
+  }
+
+  const CompareOptions& options_;
+  int jobs_;
+  store::StudyDb database_;
+  Ledger ledger_;
+};
+
+}  // namespace
+
+Comparison run(const std::vector<scene::Description>& scenes, const CompareOptions& options) {
+  return Study(scenes, options).run();
+}
+
+}  // namespace palpate::compare

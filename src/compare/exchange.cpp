@@ -1,0 +1,80 @@
+#include "palpate/compare/exchange.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "palpate/core/error.h"
+#include "palpate/core/log.h"
+
+namespace palpate::compare {
+namespace {
+
+constexpr double kRtol = 1e-6;
+constexpr int kTicks = 10;  ///< in an exchange period
+
+/// The longest time that every period is a multiple of: a whole fraction of the shortest.
+double common_refresh(const std::vector<double>& periods) {
+  const double shortest = *std::min_element(periods.begin(), periods.end());
+  for (int parts = 1; parts <= 1000; ++parts) {
+    const double refresh = shortest / parts;
+    if (std::all_of(periods.begin(), periods.end(),
+                    [&](double p) { return std::abs(p / refresh - std::round(p / refresh)) < 1e-6; }))
+      return refresh;
+  }
+  fail(
+      "compare: exchange_periods_s have no common divisor to refresh the contact at; use multiples of the "
+      "shortest, {} s",
+      shortest);
+}
+
+scene::Description with_scheme(scene::Description d, const std::string& scheme, double period,
+                               double refresh) {
+  d.coupling.scheme = scheme;
+  d.coupling.exchange_period_s = period;
+  d.coupling.contact_refresh_s = refresh;
+  d.tool->tick_s = period / kTicks;
+  d.integrator.name = "cvode-bdf";
+  d.integrator.rtol = kRtol;
+  return d;
+}
+
+}  // namespace
+
+int exchange_runs(const scene::Description& d) {
+  return d.tool && !d.compare.exchange_periods_s.empty()
+             ? static_cast<int>(d.compare.exchange_periods_s.size()) + 1
+             : 0;
+}
+
+std::vector<ExchangePoint> compare_exchange(const scene::Description& d, const ExchangeOptions& options) {
+  std::vector<ExchangePoint> out;
+  if (exchange_runs(d) == 0) return out;
+  const auto done = [&](const std::string& what) {
+    if (options.done) options.done(what);
+  };
+  const std::vector<double>& periods = d.compare.exchange_periods_s;
+  const double refresh = common_refresh(periods),
+               shortest = *std::min_element(periods.begin(), periods.end());
+  const scene::Description& whole = options.truth ? *options.truth : d;
+  const Run truth =
+      run_once(with_scheme(whole, "monolithic", shortest, refresh), d.compare.duration_s, options.stop);
+  if (truth.result.stopped) return out;
+  const bool comparable = truth.result.status.ok();
+  if (!comparable)
+    log::warn("the exchange period has no truth to be held against: the monolithic run failed: {}",
+              truth.result.status.message);
+  done("monolithic");
+  for (double period : periods) {
+    if (options.stop && options.stop->load()) return out;
+    const Run run =
+        run_once(with_scheme(d, "partitioned", period, refresh), d.compare.duration_s, options.stop);
+    done(fmt::format("exchange period {:g} s", period));
+    if (run.result.stopped) return out;
+    const bool ok = comparable && run.result.status.ok();
+    out.push_back(
+        {period, ok ? distance(run.trajectory, truth.trajectory) : no_distance(), run.result.cpu_s});
+  }
+  return out;
+}
+
+}  // namespace palpate::compare

@@ -1,0 +1,127 @@
+#include "ledger.h"
+
+#include <algorithm>
+
+#include "key.h"
+#include "palpate/core/error.h"
+
+namespace palpate::compare {
+
+Ledger::Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options)
+    : options_(options) {
+  for (const scene::Description& d : scenes) plan(d);
+  add_tasks();
+}
+
+void Ledger::plan(const scene::Description& d) {
+  SceneWork own;
+  own.description = with_overrides(d, {});  // the text alone decides
+  SceneComparison told;
+  told.scene = d.name;
+  told.path = d.path;
+  told.tool = d.tool.has_value();
+  told.points = plan_points(own.description, options_);
+  told.restarts = plan_restarts(own.description, options_);
+  own.planned = plan_reference(own.description, told.points);
+  own.truth_key = result_key(own.planned.truth, "reference");
+  own.check_key = result_key(own.planned.check, "reference");
+  for (const ComparePoint& p : told.points)
+    own.point_keys.push_back(result_key(p.description, "point " + own.truth_key + own.check_key));
+  for (const ComparePoint& p : told.restarts)
+    own.restart_keys.push_back(result_key(p.description, "restart"));
+  work.push_back(std::move(own));
+  out.scenes.push_back(std::move(told));
+}
+
+// References; the ladders' first rungs, then their second ones, over all scenes; further charts; repeats.
+void Ledger::add_tasks() {
+  std::size_t most = 0;
+  for (std::size_t s = 0; s < work.size(); ++s) {
+    tasks.push_back({Task::Kind::kTruth, s});
+    tasks.push_back({Task::Kind::kCheck, s});
+    for (std::size_t p = 0; p < out.scenes[s].points.size(); ++p) most = std::max(most, rung(s, p) + 1);
+  }
+  for (int repeat = 0; repeat < std::max(1, options_.repeats); ++repeat) {
+    for (std::size_t r = 0; r < most; ++r)
+      for (std::size_t s = 0; s < work.size(); ++s)
+        for (std::size_t p = 0; p < out.scenes[s].points.size(); ++p)
+          if (rung(s, p) == r) tasks.push_back({Task::Kind::kPoint, s, p, repeat});
+    if (repeat > 0) continue;
+    for (std::size_t s = 0; s < work.size(); ++s) {
+      for (std::size_t p = 0; p < out.scenes[s].restarts.size(); ++p)
+        tasks.push_back({Task::Kind::kRestart, s, p});
+      if (!work[s].description.compare.exchange_periods_s.empty())
+        tasks.push_back({Task::Kind::kExchange, s});
+      if (!work[s].description.compare.contact_methods.empty()) tasks.push_back({Task::Kind::kMethods, s});
+    }
+  }
+}
+
+std::size_t Ledger::rung(std::size_t s, std::size_t p) const {
+  const auto& points = out.scenes[s].points;
+  std::size_t n = 0;
+  while (p > 0 && points[p - 1].label == points[p].label) --p, ++n;
+  return n;
+}
+const ComparePoint* Ledger::coarser(const Task& task) const {
+  const auto& points = out.scenes[task.scene].points;
+  return task.point > 0 && points[task.point - 1].label == points[task.point].label ? &points[task.point - 1]
+                                                                                    : nullptr;
+}
+
+ComparePoint& Ledger::point_of(const Task& task) {
+  SceneComparison& scene = out.scenes[task.scene];
+  return task.kind == Task::Kind::kRestart ? scene.restarts[task.point] : scene.points[task.point];
+}
+
+const std::string& Ledger::key_of(const Task& task) const {
+  const SceneWork& own = work[task.scene];
+  return task.kind == Task::Kind::kRestart ? own.restart_keys[task.point] : own.point_keys[task.point];
+}
+
+std::string Ledger::artefact_key(const Task& task) const {
+  const SceneWork& own = work[task.scene];
+  const scene::CompareSpec& c = own.description.compare;
+  switch (task.kind) {
+    case Task::Kind::kTruth: return own.truth_key;
+    case Task::Kind::kCheck: return own.check_key;
+    case Task::Kind::kExchange:
+      return result_key(own.description, fmt::format("exchange {}", fmt::join(c.exchange_periods_s, " ")));
+    default: return result_key(own.description, fmt::format("methods {}", fmt::join(c.contact_methods, " ")));
+  }
+}
+
+// ---- which task may run, and which is not worth it ----
+
+bool Ledger::is_ready(const Task& task) {
+  if (task.kind != Task::Kind::kPoint) return true;
+  if (!work[task.scene].reference_settled) return false;
+  if (task.repeat > 0) return point_of(task).status != PointStatus::kMissing;
+  const ComparePoint* before = coarser(task);
+  return !before || before->status != PointStatus::kMissing;
+}
+
+bool Ledger::is_pointless(const Task& task) {
+  if (task.kind != Task::Kind::kPoint) return false;
+  ComparePoint& point = point_of(task);
+  if (task.repeat > 0) {
+    if (point.status == PointStatus::kMissing) return false;  // later
+    double spent = 0.0;
+    for (double s : point.cpu_s) spent += s;
+    return point.status != PointStatus::kOk || spent > 0.2 * options_.limit_s;
+  }
+  const ComparePoint* before = coarser(task);
+  if (!before || point.status != PointStatus::kMissing) return false;
+  const auto settle_untried = [&point](PointStatus status, const std::string& reason) {
+    point.status = status;
+    point.reason = reason;
+    point.error = no_distance();
+  };
+  if (before->status == PointStatus::kRefused)
+    settle_untried(PointStatus::kRefused, before->reason);
+  else if (before->status == PointStatus::kOutOfTime || before->status == PointStatus::kNotTried)
+    settle_untried(PointStatus::kNotTried, "not tried: a coarser rung ran out of time");
+  return point.status != PointStatus::kMissing;
+}
+
+}  // namespace palpate::compare

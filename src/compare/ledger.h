@@ -1,0 +1,74 @@
+#pragma once
+#include <deque>
+
+#include "codec.h"
+#include "plan.h"
+#include "run.h"
+
+namespace palpate::compare {
+
+/// One run that is to be made.
+struct Task {
+  enum class Kind { kTruth, kCheck, kPoint, kRestart, kExchange, kMethods };
+  Kind kind;
+  std::size_t scene, point = 0;
+  int repeat = 0;
+  bool looked = false, started = false, done = false;  ///< looked: into the database
+
+  bool is_point() const { return kind == Kind::kPoint || kind == Kind::kRestart; }
+  bool is_reference() const { return kind == Kind::kTruth || kind == Kind::kCheck; }
+};
+
+/// A scene on its way.
+struct SceneWork {
+  scene::Description description;
+  PlannedReference planned;
+  std::string truth_key, check_key;
+  ReferenceRun truth, check;
+  const Trajectory* reference = nullptr;  ///< what points are held against
+  ReferenceUsed reference_used = ReferenceUsed::kNone;
+  bool reference_settled = false;
+  std::vector<std::string> point_keys, restart_keys;
+};
+
+/// All runs of a study, and what has come of them so far.
+class Ledger {
+ public:
+  Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options);
+
+  std::deque<Task> tasks;       ///< in the order in which they are wanted; a task stays where it is
+  std::vector<SceneWork> work;  ///< of each scene
+  Comparison out;
+
+  const CompareOptions& options() const { return options_; }
+  ComparePoint& point_of(const Task& task);
+  const ComparePoint* coarser(const Task& task) const;  ///< the rung before it, or null
+  const std::string& key_of(const Task& task) const;    ///< of a point's runs in the database
+  std::string artefact_key(const Task& task) const;     ///< of all else
+  double limit_of(const Task& task) const {
+    return task.is_point() ? options_.limit_s : options_.reference_limit_s;
+  }
+
+  /// Whether what it needs is there: the reference, the rung before it, the first of its repeats.
+  bool is_ready(const Task& task);
+  /// Settles a point that needs no run of its own; true where the task is to be left out.
+  bool is_pointless(const Task& task);
+
+  /// A run's result, from the database or on its way there.
+  void take(const Task& task, const store::StudyRun& row);
+  void take(const Task& task, const store::StudyArtefact& kept);
+  /// Once a scene's two reference runs have ended: what is the truth, and how far can it be trusted?
+  void settle_references();
+  /// Medians, marks and words, once nothing is left to run.  @param jobs  that ran side by side
+  void finish(int jobs);
+
+ private:
+  void plan(const scene::Description& description);
+  void add_tasks();
+  /// how many rungs of the same ladder come before it
+  std::size_t rung(std::size_t scene, std::size_t point) const;
+  bool reference_tasks_done(std::size_t scene) const;
+  const CompareOptions& options_;
+};
+
+}  // namespace palpate::compare

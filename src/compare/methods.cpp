@@ -1,0 +1,67 @@
+#include <algorithm>
+
+#include "palpate/compare/compare.h"
+#include "palpate/core/error.h"
+#include "palpate/core/log.h"
+
+namespace palpate::compare {
+namespace {
+
+scene::Description with_method(scene::Description d, const std::string& method) {
+  for (ContactSpec& contact : d.contacts)
+    if (contact.second == "tool") contact.method = method;
+  return d;
+}
+
+/// The largest number of samples at one time.
+class SampleCount : public loop::Observer {
+ public:
+  void period(loop::World& world, double) override {
+    most = std::max(most, static_cast<long>(world.contact->samples().size()));
+  }
+  long most = 0;
+};
+
+/// One run with one method; false where it was stopped.  @throws Error where the method cannot be had or the
+/// run gives up
+bool run_method(const scene::Description& d, const std::string& method, const std::atomic<bool>* stop,
+                Trajectory& trajectory, MethodPoint& point) {
+  const auto world = loop::assemble(with_method(d, method));
+  if (world->tool_frame_index < 0) fail("there is no [[contact]] with \"tool\"");
+  TrajectoryRecorder recorder;
+  SampleCount samples;
+  loop::RunOptions options;
+  options.duration_s = d.compare.duration_s;
+  options.observers = {&recorder, &samples};
+  options.stop = stop;
+  const loop::RunResult result = loop::run(*world, options);
+  if (result.stopped) return false;
+  if (!result.status.ok()) fail("{}", result.status.message);
+  trajectory = recorder.trajectory();
+  point.method = method;
+  point.most_samples = samples.most;
+  point.query_s = result.query_s;
+  point.cpu_s = result.cpu_s;
+  for (const Wrench& w : trajectory.device) point.peak_force_n = std::max(point.peak_force_n, w.force.norm());
+  return true;
+}
+
+}  // namespace
+
+std::vector<MethodPoint> compare_contact_methods(const scene::Description& d, const std::atomic<bool>* stop) {
+  std::vector<MethodPoint> out;
+  Trajectory first;
+  for (const std::string& method : d.compare.contact_methods) try {
+      Trajectory trajectory;
+      MethodPoint point;
+      if (!run_method(d, method, stop, trajectory, point)) break;
+      if (out.empty()) first = trajectory;
+      point.difference = distance(trajectory, first);
+      out.push_back(point);
+    } catch (const Error& e) {  // what was compared before this stands
+      log::warn("{}: contact method \"{}\" is left out of the comparison: {}", d.name, method, e.what());
+    }
+  return out;
+}
+
+}  // namespace palpate::compare

@@ -1,0 +1,239 @@
+#include "plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "palpate/core/error.h"
+#include "palpate/loop/registries.h"
+#include "palpate/scene/load.h"
+
+namespace palpate::compare {
+namespace {
+
+using dynamics::Stability;
+using dynamics::StepControl;
+using dynamics::StepperEntry;
+
+const StepperEntry* find_stepper(const std::string& name) {
+  for (const StepperEntry& entry : loop::steppers())
+    if (entry.name == name) return &entry;
+  return nullptr;
+}
+
+std::string label_of(const scene::LadderSpec& ladder) {
+  return ladder.label.empty() ? ladder.integrator : ladder.label;
+}
+
+bool contains(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+/// Whether the user's list asks for a ladder: by its label, or by its integrator where no ladder has that
+/// name for a label.
+bool is_named(const std::vector<std::string>& wanted, const scene::LadderSpec& ladder,
+              const std::vector<scene::LadderSpec>& all) {
+  if (contains(wanted, label_of(ladder))) return true;
+  const auto has_that_label = [&](const scene::LadderSpec& other) {
+    return label_of(other) == ladder.integrator;
+  };
+  return contains(wanted, ladder.integrator) && std::none_of(all.begin(), all.end(), has_that_label);
+}
+
+/// rtol 1e-2 ... 1e-8 under error control; else halvings of the loop's period, or of 10 ms: an explicit
+/// method may need very short steps.
+scene::LadderSpec default_ladder(const scene::Description& d, const StepperEntry& entry) {
+  scene::LadderSpec ladder;
+  ladder.integrator = entry.name;
+  if (entry.traits.control != StepControl::kFixed) {
+    for (int k = 2; k <= 8; ++k) ladder.values.push_back(std::pow(10.0, -k));
+    return ladder;
+  }
+  ladder.setting = "step_s";
+  const double longest = std::min(0.01, loop::period_of(d));
+  const int rungs = entry.traits.stability == Stability::kExplicit ? 11 : 8;
+  for (int k = 0; k < rungs; ++k) ladder.values.push_back(std::ldexp(longest, -k));
+  return ladder;
+}
+
+/// Whole fractions of the exchange period.
+scene::LadderSpec tick_ladder(const scene::Description& d, const std::string& integrator) {
+  scene::LadderSpec ladder;
+  ladder.integrator = integrator;
+  ladder.setting = "tick_s";
+  for (int n = 5; n <= 160; n *= 2) ladder.values.push_back(d.coupling.exchange_period_s / n);
+  return ladder;
+}
+
+void check_ladder(const scene::Description& d, const scene::LadderSpec& ladder) {
+  const StepperEntry& entry = find(loop::steppers(), ladder.integrator,
+                                   fmt::format("integrator in [[compare.ladder]] of {}:", d.path).c_str());
+  const StepControl control = entry.traits.control;
+  if (control == StepControl::kAdaptive && ladder.setting != "rtol")
+    fail("{}: [[compare.ladder]] \"{}\": {} steps under error control; give rtol = [...] instead of {}",
+         d.path, label_of(ladder), entry.name, ladder.setting);
+  if (control == StepControl::kFixed && ladder.setting != "step_s")
+    fail("{}: [[compare.ladder]] \"{}\": {} takes fixed steps; give step_s = [...] instead of {}", d.path,
+         label_of(ladder), entry.name, ladder.setting);
+}
+
+/// The ladders that are wanted: the scene's own first, in its order.
+std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const CompareOptions& options) {
+  const std::vector<std::string>& wanted = options.integrators;
+  const bool everything = wanted.empty() || options.all, tool_only = d.bodies.empty();
+  std::vector<scene::LadderSpec> out;
+  std::set<std::string> labels, integrators, met;
+  if (!tool_only)
+    for (const scene::LadderSpec& ladder : d.compare.ladders) {
+      check_ladder(d, ladder);
+      const bool named = is_named(wanted, ladder, d.compare.ladders);
+      if (named) met.insert({ladder.integrator, label_of(ladder)});
+      if (!everything && !named) continue;
+      if (!labels.insert(label_of(ladder)).second)
+        fail("{}: two [[compare.ladder]] are called \"{}\"; give one of them a label", d.path,
+             label_of(ladder));
+      integrators.insert(ladder.integrator);
+      out.push_back(ladder);
+    }
+  std::vector<std::string> known;
+  const auto add = [&](const std::string& name, bool by_default, auto make) {
+    known.push_back(name);
+    const bool named = contains(wanted, name);
+    if (named) met.insert(name);
+    if (integrators.contains(name) || !(named || (everything && by_default))) return;
+    out.push_back(make());
+  };
+  if (tool_only) {
+    for (const loop::Choice& one : loop::tool_steppers())
+      add(one.name, true, [&] { return tick_ladder(d, one.name); });
+  } else {
+    for (const StepperEntry& entry : loop::steppers())
+      add(entry.name, entry.traits.stability != Stability::kStatic, [&] { return default_ladder(d, entry); });
+    for (const scene::LadderSpec& ladder : d.compare.ladders) known.push_back(label_of(ladder));
+  }
+  for (const std::string& name : wanted)
+    if (!met.contains(name))
+      fail("{}: no integrator and no [[compare.ladder]] is called \"{}\"{}", d.path, name,
+           suggestion(name, known));
+  return out;
+}
+
+/// A number so that it reads back exactly, and as a TOML float.
+std::string toml_number(double value) {
+  std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+/// What `--set` would say to have the integrator step by `value`.
+std::vector<std::string> overrides_of(const scene::LadderSpec& ladder, double value) {
+  std::vector<std::string> out = ladder.set;
+  if (ladder.setting == "tick_s") {
+    out.push_back("tool.integrator=\"" + ladder.integrator + "\"");
+    out.push_back("tool.tick_s=" + toml_number(value));
+    return out;
+  }
+  out.push_back("integrator.name=\"" + ladder.integrator + "\"");
+  out.push_back(fmt::format("integrator.{}={}", ladder.setting, toml_number(value)));
+  out.push_back(fmt::format("integrator.fixed_step={}", ladder.setting == "step_s"));
+  return out;
+}
+
+ComparePoint point_of(const scene::Description& d, const scene::LadderSpec& ladder) {
+  ComparePoint point;
+  point.label = label_of(ladder);
+  point.integrator = ladder.integrator;
+  if (const StepperEntry* entry = d.bodies.empty() ? nullptr : find_stepper(ladder.integrator)) {
+    point.family = entry->traits.family;
+    point.stability = dynamics::to_string(entry->traits.stability);
+    point.order = entry->traits.order;
+    point.multistep = entry->traits.multistep;
+    return point;
+  }
+  point.family = "tool";
+  for (const loop::Choice& one : loop::tool_steppers())
+    if (one.name == ladder.integrator) point.order = one.order;
+  return point;
+}
+
+}  // namespace
+
+scene::Description with_overrides(const scene::Description& d, const std::vector<std::string>& overrides) {
+  if (d.source.empty())
+    fail("scene \"{}\": has no text; a comparison needs scenes from scene::load or scene::parse", d.name);
+  return scene::parse(d.source, d.path, overrides);
+}
+
+std::vector<ComparePoint> plan_points(const scene::Description& d, const CompareOptions& options) {
+  std::vector<ComparePoint> points;
+  for (const scene::LadderSpec& ladder : ladders_of(d, options))
+    for (const double value : ladder.values) {
+      ComparePoint point = point_of(d, ladder);
+      point.setting_name = ladder.setting;
+      point.setting = value;
+      point.description = with_overrides(d, overrides_of(ladder, value));
+      points.push_back(std::move(point));
+    }
+  if (points.empty()) fail("scene \"{}\": nothing to compare", d.name);
+  return points;
+}
+
+std::vector<ComparePoint> plan_restarts(const scene::Description& d, const CompareOptions& options) {
+  std::vector<ComparePoint> points;
+  if (d.contacts.empty() || d.bodies.empty()) return points;
+  CompareOptions own = options;
+  for (const scene::LadderSpec& ladder : ladders_of(d, own)) {
+    const bool chosen = contains(options.integrators, ladder.integrator) ||
+                        contains(options.integrators, label_of(ladder)) ||
+                        std::any_of(d.compare.ladders.begin(), d.compare.ladders.end(),
+                                    [&](const auto& l) { return label_of(l) == label_of(ladder); });
+    if (!chosen) continue;
+    for (const double period : d.compare.refresh_periods_s) {
+      std::vector<std::string> overrides =
+          overrides_of(ladder, ladder.setting == "rtol" ? d.integrator.rtol : d.integrator.step_s);
+      overrides.push_back("exchange.contact_refresh_s=" + toml_number(period));
+      if (!d.tool) overrides.push_back("exchange.exchange_period_s=" + toml_number(period));
+      ComparePoint point = point_of(d, ladder);
+      point.setting_name = "contact_refresh_s";
+      point.setting = period;
+      point.description = with_overrides(d, overrides);
+      points.push_back(std::move(point));
+    }
+  }
+  return points;
+}
+
+PlannedReference plan_reference(const scene::Description& d, const std::vector<ComparePoint>& points) {
+  PlannedReference out;
+  if (d.bodies.empty()) {
+    double finest = d.tool->tick_s;
+    for (const ComparePoint& point : points) finest = std::min(finest, point.setting);
+    const auto made = [&](const std::string& integrator) {
+      return with_overrides(
+          d, {"tool.integrator=\"" + integrator + "\"", "tool.tick_s=" + toml_number(0.5 * finest)});
+    };
+    out.made_by = fmt::format("simbody-rkmerson at ticks of {:g} s", 0.5 * finest);
+    out.checked_by = "simbody-cpodes at the same";
+    out.truth = made("simbody-rkmerson");
+    out.check = made("simbody-cpodes");
+    return out;
+  }
+  const scene::CompareSpec& c = d.compare;
+  const auto made = [&](const std::string& integrator, double rtol) {
+    const StepperEntry& entry = find(loop::steppers(), integrator, "reference integrator");
+    if (entry.traits.control == StepControl::kFixed || entry.traits.stability == Stability::kStatic)
+      fail("{}: compare: {} cannot make a reference: it has no error control", d.path, integrator);
+    scene::LadderSpec ladder;
+    ladder.integrator = integrator;
+    return with_overrides(d, overrides_of(ladder, rtol));
+  };
+  out.truth = made(c.reference, c.reference_rtol);
+  out.check = made(c.reference_check, c.reference_check_rtol);
+  out.made_by = fmt::format("{} at rtol {:g}", c.reference, c.reference_rtol);
+  out.checked_by = fmt::format("{} at rtol {:g}", c.reference_check, c.reference_check_rtol);
+  if (c.reference != c.reference_check &&
+      find_stepper(c.reference)->traits.family == find_stepper(c.reference_check)->traits.family)
+    out.checked_by += " (of the same family)";
+  return out;
+}
+
+}  // namespace palpate::compare

@@ -1,0 +1,95 @@
+#include <algorithm>
+#include <set>
+
+#include "ledger.h"
+#include "palpate/core/error.h"
+
+namespace palpate::compare {
+namespace {
+
+ReferenceRun reference_run_of(const store::StudyArtefact& kept) {
+  if (kept.status != "ok") return {std::nullopt, kept.reason};
+  return {run_of(kept.bytes), ""};
+}
+
+void summarise(ComparePoint& point, const TrajectoryError& own) {
+  // NaN is never unresolved.
+  point.unresolved = point.error.position_rel_l2 < kResolution * own.position_rel_l2;
+  point.force_unresolved = point.error.force_rms_n < kResolution * own.force_rms_n;
+  point.torque_unresolved = point.error.torque_rms_n_m < kResolution * own.torque_rms_n_m;
+  if (point.cpu_s.empty()) return;
+  std::vector<double> sorted = point.cpu_s;
+  std::sort(sorted.begin(), sorted.end());
+  point.cpu_min_s = sorted.front();
+  point.cpu_max_s = sorted.back();
+  const std::size_t n = sorted.size();
+  point.cpu_median_s = 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+}
+
+}  // namespace
+
+void Ledger::take(const Task& task, const store::StudyRun& row) {
+  const PointRun run = point_run_of(row);
+  ComparePoint& point = point_of(task);
+  if (run.status == PointStatus::kOk) point.cpu_s.push_back(run.result.cpu_s);
+  if (task.repeat > 0) return;
+  point.status = run.status;
+  point.reason = run.reason;
+  point.error = run.error;
+  point.result = run.result;
+}
+
+void Ledger::take(const Task& task, const store::StudyArtefact& kept) {
+  SceneWork& own = work[task.scene];
+  SceneComparison& told = out.scenes[task.scene];
+  if (task.kind == Task::Kind::kTruth)
+    own.truth = reference_run_of(kept);
+  else if (task.kind == Task::Kind::kCheck)
+    own.check = reference_run_of(kept);
+  else if (kept.status != "ok")
+    told.notes.push_back(fmt::format(
+        "no chart of {}: {}",
+        task.kind == Task::Kind::kExchange ? "the exchange period" : "the contact methods", kept.reason));
+  else if (task.kind == Task::Kind::kExchange)
+    told.exchange = exchange_of(kept.bytes);
+  else
+    told.methods = methods_of(kept.bytes);
+}
+
+void Ledger::settle_references() {
+  for (std::size_t s = 0; s < work.size(); ++s) {
+    SceneWork& own = work[s];
+    if (own.reference_settled || !reference_tasks_done(s)) continue;
+    own.reference_settled = true;
+    out.scenes[s].reference = settle(own.planned, own.truth, own.check);
+    if (!out.scenes[s].reference.available) continue;
+    own.reference_used = own.truth.run ? ReferenceUsed::kTruth : ReferenceUsed::kCheck;
+    own.reference = own.truth.run ? &own.truth.run->trajectory : &own.check.run->trajectory;
+  }
+}
+
+bool Ledger::reference_tasks_done(std::size_t s) const {
+  return std::all_of(tasks.begin(), tasks.end(),
+                     [s](const Task& t) { return t.scene != s || !t.is_reference() || t.done; });
+}
+
+void Ledger::finish(int jobs) {
+  for (SceneComparison& scene : out.scenes) {
+    for (auto* points : {&scene.points, &scene.restarts})
+      for (ComparePoint& point : *points) summarise(point, scene.reference.own_error);
+    // A method that refuses the scene says so once.
+    std::set<std::string> refused;
+    std::erase_if(scene.points, [&](const ComparePoint& p) {
+      return p.status == PointStatus::kRefused && !refused.insert(p.label).second;
+    });
+    std::sort(scene.notes.begin(), scene.notes.end());
+  }
+  out.rules = fmt::format(
+      "Each run had a process of its own, {} at a time, and at most {:g} CPU seconds ({:g} for references "
+      "and further charts). A point was run "
+      "up to {} times, again only while its runs together took less than {:g} CPU seconds, the repeats "
+      "interleaved over all points; times are medians.",
+      jobs, options_.limit_s, options_.reference_limit_s, options_.repeats, 0.2 * options_.limit_s);
+}
+
+}  // namespace palpate::compare

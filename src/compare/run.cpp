@@ -1,0 +1,60 @@
+#include "run.h"
+
+#include <cmath>
+
+#include "palpate/core/error.h"
+
+namespace palpate::compare {
+
+PointRun run_point(const scene::Description& d, double limit_s, const Trajectory* reference,
+                   const std::atomic<bool>* late) {
+  const Run run = run_once(d, d.compare.duration_s, late);
+  const dynamics::StepResult& last = run.result.status;
+  PointRun out;
+  out.result = run.result;
+  if (run.result.stopped) {
+    out.status = PointStatus::kOutOfTime;
+    out.reason = fmt::format("out of time: {:g} s (at t = {:.4g} s)", limit_s, run.result.time);
+  } else if (!last.ok()) {
+    out.status =
+        last.status == dynamics::StepStatus::kBadSettings ? PointStatus::kRefused : PointStatus::kFailed;
+    out.reason = fmt::format("{}: {}", dynamics::to_string(last.status), last.message);
+  } else {
+    out.status = PointStatus::kOk;
+    if (reference) out.error = distance(run.trajectory, *reference);
+    if (reference && !std::isfinite(out.error.position_rel_l2)) {
+      out.status = PointStatus::kFailed;
+      out.reason = "not finite: the run reached its end without a usable state";
+      out.error = no_distance();
+    }
+  }
+  return out;
+}
+
+Reference settle(const PlannedReference& planned, const ReferenceRun& truth, const ReferenceRun& check) {
+  Reference out;
+  out.available = truth.run || check.run;
+  if (truth.run && check.run) {
+    out.description = fmt::format("{}, checked against {}", planned.made_by, planned.checked_by);
+    out.own_error = distance(check.run->trajectory, truth.run->trajectory);
+  } else if (truth.run) {
+    out.description = planned.made_by + ", not checked";
+    out.trouble = fmt::format("the check by {} failed ({}): the reference's own error is not known",
+                              planned.checked_by, check.trouble);
+  } else if (check.run) {
+    out.description = planned.checked_by + ", not checked";
+    out.trouble = fmt::format(
+        "the reference by {} failed ({}): what was to check it took its place, and its own error is not "
+        "known",
+        planned.made_by, truth.trouble);
+  } else {
+    out.description = "none";
+    out.trouble = fmt::format(
+        "there is no reference: {} failed ({}), and so did {} ({}); the points have costs, but no errors",
+        planned.made_by, truth.trouble, planned.checked_by, check.trouble);
+  }
+  if (out.available) out.cpu_s = (truth.run ? truth : check).run->result.cpu_s;
+  return out;
+}
+
+}  // namespace palpate::compare

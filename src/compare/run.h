@@ -1,0 +1,24 @@
+#pragma once
+#include <optional>
+
+#include "codec.h"
+#include "plan.h"
+
+namespace palpate::compare {
+
+/// Runs one point, in its own process.  @param reference  null: no error is measured  @param late  becomes
+/// true after `limit_s`
+PointRun run_point(const scene::Description& description, double limit_s, const Trajectory* reference,
+                   const std::atomic<bool>* late);
+
+/// One of the two runs of a reference: it, or why there is none.
+struct ReferenceRun {
+  std::optional<Run> run;  ///< only where it reached its end
+  std::string trouble;
+};
+
+/// What is the truth, and how far can it be trusted?  The run that was to check takes the place of one that
+/// failed.
+Reference settle(const PlannedReference& planned, const ReferenceRun& truth, const ReferenceRun& check);
+
+}  // namespace palpate::compare

@@ -1,0 +1,122 @@
+#include "palpate/compare/trajectory.h"
+
+#include <cmath>
+#include <limits>
+
+#include "palpate/core/error.h"
+
+namespace palpate::compare {
+namespace {
+
+VecX nodal_positions(const loop::World& world) {
+  return world.state.q().head(world.state.layout().nodal_size);
+}
+
+/// Nodes of all bodies; of a scene without any, the tool's origin.
+VecX positions_of(const loop::World& world, const Vec3& tool_origin) {
+  if (world.bodies.empty() && world.description.tool) return tool_origin;
+  return nodal_positions(world);
+}
+
+/// Times are multiples of the two runs' periods; equal to well within the shorter one's rounding.
+bool same_time(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(1.0, std::abs(a)); }
+
+/// The larger one; NaN stays, where std::max would drop it.
+double worse(double a, double b) { return b > a || std::isnan(b) ? b : a; }
+
+/// Calls visit(i, j) for every pair of equal times of two ascending lists; returns how many there were.
+template <class Visit>
+int for_common_times(const std::vector<double>& a, const std::vector<double>& b, Visit visit) {
+  std::size_t i = 0, j = 0;
+  int common = 0;
+  while (i < a.size() && j < b.size()) {
+    if (same_time(a[i], b[j])) {
+      visit(i++, j++);
+      ++common;
+    } else if (a[i] < b[j]) {
+      ++i;
+    } else {
+      ++j;
+    }
+  }
+  return common;
+}
+
+}  // namespace
+
+void TrajectoryRecorder::period(loop::World& world, double t) {
+  if (trajectory_.period_times.empty()) {
+    if (world.description.tool) tool_origin_ = world.description.tool->position_m;
+    trajectory_.start = positions_of(world, tool_origin_);
+    trajectory_.node_weights.setOnes(trajectory_.start.size());
+    for (const loop::Body& body : world.bodies) {
+      const int first = world.state.layout().find(body.block_id)->u_offset;
+      for (Eigen::Index i = 0; i < body.masses.size(); ++i)
+        trajectory_.node_weights.segment<3>(first + 3 * i).setConstant(body.masses[i]);
+    }
+  }
+  trajectory_.period_times.push_back(t);
+  trajectory_.positions.push_back(positions_of(world, tool_origin_));
+  trajectory_.energies.push_back(world.bodies.empty() ? 0.0 : world.mechanical_energy());
+}
+
+void TrajectoryRecorder::tick(const loop::TickRecord& tick) {
+  trajectory_.tick_times.push_back(tick.time);
+  trajectory_.device.push_back(tick.device);
+  tool_origin_ = tick.tool.translation;
+}
+
+TrajectoryError distance(const Trajectory& computed, const Trajectory& reference) {
+  TrajectoryError error;
+  double difference = 0.0, size = 0.0;
+  const int common =
+      for_common_times(computed.period_times, reference.period_times, [&](std::size_t i, std::size_t j) {
+        const VecX& x = computed.positions[i];
+        const VecX& y = reference.positions[j];
+        PALPATE_CHECK(x.size() == y.size(), "trajectories of {} and {} coordinates", x.size(), y.size());
+        if (x.size() > 0) {
+          difference += reference.node_weights.dot((x - y).cwiseAbs2());
+          size += reference.node_weights.dot((y - reference.start).cwiseAbs2());
+          for (Eigen::Index n = 0; n < x.size(); n += 3)
+            error.position_max_m = worse(error.position_max_m, (x.segment<3>(n) - y.segment<3>(n)).norm());
+        }
+        error.energy_j = worse(error.energy_j, std::abs(computed.energies[i] - reference.energies[j]));
+      });
+  PALPATE_CHECK(common > 0, "two trajectories without a common time");
+  error.position_rel_l2 = size > 0.0 ? std::sqrt(difference / size) : std::sqrt(difference);
+  double force2 = 0.0, torque2 = 0.0;
+  const int ticks =
+      for_common_times(computed.tick_times, reference.tick_times, [&](std::size_t i, std::size_t j) {
+        const double force = (computed.device[i].force - reference.device[j].force).norm();
+        const double torque = (computed.device[i].moment - reference.device[j].moment).norm();
+        force2 += force * force;
+        torque2 += torque * torque;
+        error.force_max_n = worse(error.force_max_n, force);
+        error.torque_max_n_m = worse(error.torque_max_n_m, torque);
+      });
+  if (ticks > 0) {
+    error.force_rms_n = std::sqrt(force2 / ticks);
+    error.torque_rms_n_m = std::sqrt(torque2 / ticks);
+  }
+  return error;
+}
+
+TrajectoryError no_distance() {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  return {none, none, none, none, none, none, none};
+}
+
+Run run_once(const scene::Description& description, double duration_s, const std::atomic<bool>* stop) {
+  const auto world = loop::assemble(description);
+  TrajectoryRecorder recorder;
+  loop::RunOptions options;
+  options.duration_s = duration_s;
+  options.observers = {&recorder};
+  options.stop = stop;
+  Run run;
+  run.result = loop::run(*world, options);
+  run.trajectory = recorder.trajectory();
+  return run;
+}
+
+}  // namespace palpate::compare

@@ -1,0 +1,94 @@
+#include <algorithm>
+
+#include "integrate/fixed_step/implicit_step.h"
+#include "integrate/make.h"
+#include "integrate/settings.h"
+
+namespace palpate::integrate {
+namespace {
+
+using namespace dynamics;
+
+/// Generalized-alpha (Chung and Hulbert 1993), r = spectral_radius the spectral radius at infinite frequency:
+///     am = (2 r - 1)/(r + 1),  af = r/(r + 1),  gamma = 1/2 - am + af,  beta = (1 - am + af)^2/4
+///     u1 = u0 + h ((1 - gamma) a0 + gamma a1),     q1 = q0 (+) [h u0 + h^2 ((1/2 - beta) a0 + beta a1)]
+///     M ((1 - am) a1 + am a0) = f at q = (1 - af) q1 + af q0,  u and t alike   (the generalized midpoint of
+///     Kuhl and Crisfield 1999).
+/// A Stage in the unknown a1, weight 1 - af; matrix (1 - am) M + (1 - af) gamma h D + (1 - af) beta h^2 K.
+///
+/// Order 2 for any r in [0, 1] (gamma is chosen so).  a is an auxiliary: a0 = u'(t0 + (am - af) h) + O(h^2)
+/// (Arnold and Bruels 2007), so where h changes it is shifted along its last difference by (am - af) times
+/// the change (no further than four old steps).  At a start it is M^-1 f0, shifted in the same way where a
+/// difference is known: of a restart because the force changed (a contact refreshed), not the state.  Without
+/// these shifts uneven steps and restarts every few steps would leave order 1.
+/// Stability: A-stable.  At infinite frequency all three roots are -r: high frequencies fall by r a step, r =
+/// 1 keeps them (no damping), r = 0 removes them in three steps; damping at low frequencies is the least for
+/// that r. Stiff order 2: e1 = R e0 + O(h^2) with |R| -> r; the defect is smooth and (I - R) invertible
+/// there, so it does not accumulate.
+class GeneralizedAlpha final : public ImplicitStep {
+ public:
+  GeneralizedAlpha(System& system, State& state, const IntegratorSpec& spec,
+                   std::unique_ptr<LinearSolver> solver)
+      : ImplicitStep("generalized-alpha", 2, Between::kCubic, system, state, spec, std::move(solver)) {
+    check_spectral_radius(spec_);
+    const double r = spec_.spectral_radius;
+    am_ = (2.0 * r - 1.0) / (r + 1.0);
+    af_ = r / (r + 1.0);
+    gamma_ = 0.5 - am_ + af_;
+    beta_ = 0.25 * (1.0 - am_ + af_) * (1.0 - am_ + af_);
+    stage_.weight = 1.0 - af_;
+    stage_.c_a = 1.0 - am_;
+  }
+
+ private:
+  Attempt attempt(double h, double t1) override {
+    if (end_a_.size() != layout().u_size) {
+      if (!start_acceleration(end_a_)) {
+        end_a_.resize(0);
+        return {.status = StepStatus::kNotFinite, .what = "the force is not finite"};
+      }
+      if (difference_.size() != layout().u_size) {
+        difference_.setZero(layout().u_size);
+        last_h_ = h;
+      }
+      offset_h_ = 0.0;  // u' at t0 itself
+    }
+    const double change = std::clamp((h - offset_h_) / last_h_, -kFarthest, kFarthest);
+    start_a_ = end_a_ + (am_ - af_) * change * difference_;
+    stage_.t1 = t1;
+    stage_.c_u = gamma_ * h;
+    stage_.c_theta = beta_ * h * h;
+    stage_.u = state_.u() + (1.0 - gamma_) * h * start_a_;
+    stage_.theta = h * state_.u() + (0.5 - beta_) * h * h * start_a_;
+    stage_.a_c = am_ * start_a_;
+    a_ = start_a_;
+    return solve_stage();
+  }
+  void accepted(double h) override {
+    ImplicitStep::accepted(h);
+    difference_ = a_ - start_a_;
+    end_a_ = a_;
+    last_h_ = offset_h_ = h;
+  }
+  void forget(ReinitReason reason) override {
+    ImplicitStep::forget(reason);
+    end_a_.resize(0);
+    if (reason == ReinitReason::kStateChanged || reason == ReinitReason::kLayoutChanged)
+      difference_.resize(0);
+  }
+
+  static constexpr double kFarthest = 4.0;
+  double am_, af_, gamma_, beta_;
+  double last_h_ = 0.0;                ///< that difference_ was taken over
+  double offset_h_ = 0.0;              ///< end_a_ is u' at t0 + (am - af) offset_h_
+  VecX start_a_, end_a_, difference_;  ///< a0 and a1 of the last step, a1 - a0
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_generalized_alpha(System& system, State& state, const IntegratorSpec& spec,
+                                                std::unique_ptr<LinearSolver> solver) {
+  return std::make_unique<GeneralizedAlpha>(system, state, spec, std::move(solver));
+}
+
+}  // namespace palpate::integrate

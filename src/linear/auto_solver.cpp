@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "linear/auto_choice.h"
+#include "linear/make.h"
+#include "linear/settings.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+#include "palpate/linear/solvers.h"
+
+namespace palpate::linear {
+namespace {
+
+using dynamics::BorderedMatrix;
+using dynamics::SolveStatus;
+
+/// One measurement: which solver did a step soonest, its factor or preconditioner included.
+struct Measured {
+  double nodes, stiffness, rtol;
+  const char* fastest;
+};
+constexpr Measured kMeasured[] = {
+#include "linear/auto_table.inc"
+};
+
+/// A choice is kept until the matrix has become so many times stiffer or softer: each solver would start
+/// without a past.
+constexpr double kKept = 4.0;
+constexpr int kSampledRows = 512, kSampledRowsOfBalanced = 128;
+
+}  // namespace
+
+// What decides how many iterations a step takes is how far stiffness outweighs mass in A = M + h^2 K.  A
+// rigid translation takes no strain, so block row i of A sums to that of M, and
+//     s = sum_i tr(A_ii) / sum_i tr(sum_j A_ij) = 1 + h^2 tr K / tr M,
+// the squared number of grid lengths, times a constant, that a sound wave passes in a step: a pure number
+// that holds step, stiffness, density and mesh size together. Rows of held nodes, and of their neighbours,
+// which miss the held ones' columns, are left out.  Of a large matrix some hundred rows tell it well enough
+// for a choice between factors of four, and looking at every row at every step would cost a reading of the
+// matrix.
+double stiffness_number(const dynamics::BlockSparse& A) {
+  double own = 0.0, all = 0.0;
+  const int stride = (A.block_rows() / kSampledRows) | 1;  // odd: does not keep in step with a grid's rows
+  for (int i = 0; i < A.block_rows(); i += stride) {
+    double row = 0.0, diagonal = 0.0;
+    bool beside_held = false;
+    for (int s = A.row_start()[static_cast<std::size_t>(i)];
+         s < A.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+      const double* block = A.block(s);
+      const double trace = block[0] + block[4] + block[8];
+      row += trace;
+      if (A.columns()[static_cast<std::size_t>(s)] == i)
+        diagonal = trace;
+      else
+        beside_held = beside_held || std::all_of(block, block + 9, [](double value) { return value == 0.0; });
+    }
+    if (beside_held || !(row > 0.0)) continue;
+    own += diagonal;
+    all += row;
+  }
+  return all > 0.0 ? own / all : 1.0;
+}
+
+const char* measured_choice(double nodes, double stiffness, double rtol) {
+  const Measured* nearest = nullptr;
+  double least = HUGE_VAL;
+  const auto apart = [](double a, double b) { return std::log(a / b) * std::log(a / b); };
+  for (const Measured& m : kMeasured) {
+    const double distance =
+        apart(m.nodes, std::max(1.0, nodes)) + apart(m.stiffness, stiffness) + apart(m.rtol, rtol);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = &m;
+  }
+  return nearest->fastest;
+}
+
+/// The same of a balanced matrix, which has its row sums at hand.
+static double stiffness_number(const dynamics::BalancedMatrix& A) {
+  double stiffness = 0.0, mass = 0.0;
+  const int rows = A.pattern->block_rows(), stride = (rows / kSampledRowsOfBalanced) | 1;
+  for (int i = 0; i < rows; i += stride) {
+    mass += A.diagonal.segment<3>(3 * i).sum();
+    for (int s = A.pattern->row_start()[static_cast<std::size_t>(i)];
+         s < A.pattern->row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+      if (A.pattern->columns()[static_cast<std::size_t>(s)] == i) continue;
+      const float* block =
+          A.values.data() + 9 * static_cast<std::size_t>(A.place[static_cast<std::size_t>(s)]);
+      stiffness -= block[0] + block[4] + block[8];
+    }
+  }
+  return 1.0 + stiffness / (A.scale * mass);
+}
+
+namespace {
+
+/// The solver that was the fastest in what the table holds nearest to this matrix: nodes, stiffness number
+/// and linear_rtol, in logarithms. A whole matrix is looked at before a solver takes it.  A balanced one is
+/// written in a solver's own order, so the first goes to kProvisional, which serves stiff and soft ones; what
+/// was seen of one decides who has the next.
+class AutoSolver final : public dynamics::LinearSolver {
+ public:
+  explicit AutoSolver(const IntegratorSpec& spec) : spec_(spec) { counters::count("integrate.solver.auto"); }
+  std::string name() const override { return "auto"; }
+  bool supports_unsymmetric() const override { return false; }
+
+  SolveStatus factor(const BorderedMatrix& A) override {
+    PALPATE_CHECK(A.symmetric, "solver auto was given an unsymmetric matrix");
+    const bool same = active_ && A.values_version != 0 && A.values_version == values_version_;
+    if (!same) choose(A.body.block_rows(), stiffness_number(A.body));
+    values_version_ = A.values_version;
+    seen_ = 0.0;
+    return active_->factor(A);
+  }
+  dynamics::BalancedMatrix* balanced(const dynamics::BlockSparse& pattern) override {
+    if (pattern.block_rows() != nodes_) {
+      provisional_ = true;
+      active_ = &made(kProvisional);
+      nodes_ = pattern.block_rows();
+    } else if (seen_ > 0.0) {
+      choose(nodes_, seen_);
+    }
+    return room_ = active_->balanced(pattern);
+  }
+  SolveStatus factor_balanced() override {
+    seen_ = stiffness_number(*room_);
+    values_version_ = 0;
+    return active_->factor_balanced();
+  }
+  SolveStatus solve_near(dynamics::Residual& left, VecX& x) override {
+    return active_ ? active_->solve_near(left, x) : SolveStatus::kNotConverged;
+  }
+  SolveStatus solve(const MatX& B, MatX& X) override { return chosen().solve(B, X); }
+  SolveStatus solve(const VecX& b, VecX& x) override { return chosen().solve(b, x); }
+
+  const dynamics::SolverCounters& counters() const override {
+    sum_ = retired_;
+    for (const auto& solver : made_) {
+      if (!solver) continue;
+      sum_ += solver->counters();
+    }
+    if (active_) sum_.ordering = active_->counters().ordering;
+    return sum_;
+  }
+
+ private:
+  static constexpr std::array kNames{"cholmod", "pcg-single", "pcg-two-level"};
+  static constexpr std::size_t kProvisional = 2;
+
+  dynamics::LinearSolver& chosen() {
+    PALPATE_CHECK(active_, "solver auto: solve without a factor");
+    return *active_;
+  }
+  dynamics::LinearSolver& made(std::size_t k) {
+    if (!made_[k]) made_[k] = make_linear_solver(kNames[k], spec_);
+    return *made_[k];
+  }
+
+  void choose(int nodes, double stiffness) {
+    const bool near = !provisional_ && stiffness < kKept * stiffness_ && kKept * stiffness > stiffness_;
+    if (active_ && nodes == nodes_ && (near || !std::isfinite(stiffness))) return;
+    nodes_ = nodes;
+    stiffness_ = std::isfinite(stiffness) ? stiffness : 1.0;
+    const auto* const name =
+        std::find(kNames.begin(), kNames.end(),
+                  std::string_view(measured_choice(nodes_, stiffness_, spec_.linear_rtol)));
+    PALPATE_CHECK(name != kNames.end(), "auto_table.inc names a solver that auto does not know");
+    active_ = &made(static_cast<std::size_t>(name - kNames.begin()));
+    if (provisional_ && active_ != made_[kProvisional].get()) {
+      retired_ += made_[kProvisional]->counters();
+      made_[kProvisional].reset();
+    }
+    provisional_ = false;
+  }
+
+  IntegratorSpec spec_;
+  std::array<std::unique_ptr<dynamics::LinearSolver>, kNames.size()> made_;
+  dynamics::LinearSolver* active_ = nullptr;
+  dynamics::BalancedMatrix* room_ = nullptr;  ///< of active_
+  std::uint64_t values_version_ = 0;
+  int nodes_ = -1;
+  bool provisional_ = false;          ///< active_ was not chosen yet
+  double stiffness_ = 0.0;            ///< that it was chosen by
+  double seen_ = 0.0;                 ///< of the last matrix, where that was a balanced one
+  dynamics::SolverCounters retired_;  ///< of the provisional one, where another was chosen
+  mutable dynamics::SolverCounters sum_;
+};
+
+}  // namespace
+
+std::unique_ptr<dynamics::LinearSolver> make_auto(const IntegratorSpec& spec) {
+  check_linear_rtol("auto", spec);
+  return std::make_unique<AutoSolver>(spec);
+}
+
+}  // namespace palpate::linear

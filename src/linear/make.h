@@ -1,0 +1,16 @@
+#pragma once
+#include <memory>
+
+#include "palpate/dynamics/linear_solver.h"
+
+/// The makers that registry.cpp lists.
+namespace palpate::linear {
+
+std::unique_ptr<dynamics::LinearSolver> make_cholmod(const IntegratorSpec&);
+std::unique_ptr<dynamics::LinearSolver> make_umfpack(const IntegratorSpec&);
+std::unique_ptr<dynamics::LinearSolver> make_klu(const IntegratorSpec&);
+std::unique_ptr<dynamics::LinearSolver> make_pcg(const IntegratorSpec&);
+std::unique_ptr<dynamics::LinearSolver> make_pcg_single(const IntegratorSpec&);
+std::unique_ptr<dynamics::LinearSolver> make_pcg_two_level(const IntegratorSpec&);
+
+}  // namespace palpate::linear

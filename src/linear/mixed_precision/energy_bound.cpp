@@ -1,0 +1,45 @@
+#include "linear/mixed_precision/energy_bound.h"
+
+#include <algorithm>
+
+namespace palpate::linear {
+namespace {
+constexpr double kBelowRitz = 0.5, kRise = 1.1;
+}
+
+void EnergyBound::begin(double start) {
+  start_ = start;
+  gained_ = 0.0;
+  alpha_.clear();
+  ratio_.clear();
+  if (!first_) mu_ = std::min(1.0, kRise * mu_);
+  restart();
+}
+
+void EnergyBound::restart() {
+  test_ = 1.0 / mu_;
+  bound_ = 1.0 / (kBelowRitz * mu_);
+}
+
+bool EnergyBound::advance(double alpha, double ratio) {
+  const double above = test_ - alpha, safe = bound_ - alpha;
+  if (!(above > 0.0)) return false;
+  test_ = above / (mu_ * above + ratio);
+  bound_ = safe / (kBelowRitz * mu_ * safe + ratio);
+  return true;
+}
+
+void EnergyBound::step(double alpha, double rho, double rho_next) {
+  gained_ += alpha * rho;
+  alpha_.push_back(alpha);
+  ratio_.push_back(rho_next / rho);
+  if (advance(alpha, ratio_.back())) return;
+  for (bool held = false; !held;) {
+    mu_ *= 0.5;
+    restart();
+    held = true;
+    for (std::size_t k = 0; k < alpha_.size() && held; ++k) held = advance(alpha_[k], ratio_[k]);
+  }
+}
+
+}  // namespace palpate::linear

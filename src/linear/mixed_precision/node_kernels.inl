@@ -1,0 +1,36 @@
+// The kernels of node_kernels.h for one instruction set: PALPATE_SET names it, PALPATE_LANES is its width in
+// floats (4, 8, 16). Nothing here calls a function of a library: an inline one, compiled for this set, could
+// be linked into code for another.
+
+#include "linear/mixed_precision/node_kernels.h"
+
+namespace palpate::linear {
+namespace {
+namespace PALPATE_SET {
+
+#define PALPATE_INLINE [[gnu::always_inline]] static inline
+#define PALPATE_INLINE_MEMBER [[gnu::always_inline]] inline
+
+// Each uses what stands above it.
+// clang-format off
+#include "linear/mixed_precision/node_lanes.inl"
+#include "linear/mixed_precision/node_products.inl"
+#include "linear/mixed_precision/node_iteration.inl"
+#include "linear/mixed_precision/node_doubles.inl"
+#include "linear/mixed_precision/node_starts.inl"
+// clang-format on
+
+#undef PALPATE_INLINE
+#undef PALPATE_INLINE_MEMBER
+
+}  // namespace PALPATE_SET
+}  // namespace
+}  // namespace palpate::linear
+
+// clang-format off
+#define PALPATE_KERNELS_OF(set)                                                                        \
+  {#set, set::product, set::pack, set::balance, set::multiply, set::multiply_balanced, set::update,    \
+   set::jacobi, set::gather_rigid, set::direction, set::first_direction, set::dense, set::invert,      \
+   set::convert, set::multiply_double, set::gram, set::combine, set::leave, set::difference,           \
+   set::residual, set::image, set::correct, set::put_nodes, set::add_nodes, set::invert_diagonal}
+// clang-format on

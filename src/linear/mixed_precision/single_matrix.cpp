@@ -1,0 +1,267 @@
+#include "linear/mixed_precision/single_matrix.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include "palpate/core/error.h"
+#include "palpate/core/huge_pages.h"
+
+namespace palpate::linear {
+
+using dynamics::SolveStatus;
+
+namespace {
+
+struct Columns {
+  const float* V[kMostColumns] = {};
+  float* AV[kMostColumns] = {};
+  Columns(int count, const Singles* from, Singles* to) {
+    for (int k = 0; k < count; ++k) {
+      V[k] = from[k].data();
+      AV[k] = to[k].data();
+    }
+  }
+};
+
+}  // namespace
+
+void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters, int part_count, int pieces) {
+  pattern_version_ = pattern.pattern_version();
+  order_ = cluster_nodes(pattern, clusters, part_count, pieces);
+  const std::size_t n = order_.node.size();
+  place_of_node_.resize(n);
+  for (std::size_t k = 0; k < n; ++k)
+    place_of_node_[static_cast<std::size_t>(order_.node[k])] = static_cast<int>(k);
+  row_start_.assign(1, 0);
+  column_.clear();
+  source_.clear();
+  diagonal_slot_.resize(n);
+  std::vector<std::pair<int, int>> row;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto i = static_cast<std::size_t>(order_.node[k]);
+    row.clear();
+    for (int s = pattern.row_start()[i]; s < pattern.row_start()[i + 1]; ++s)
+      row.emplace_back(
+          place_of_node_[static_cast<std::size_t>(pattern.columns()[static_cast<std::size_t>(s)])], s);
+    std::sort(row.begin(), row.end());
+    const auto own = std::find_if(row.begin(), row.end(),
+                                  [&](const auto& block) { return block.first == static_cast<int>(k); });
+    diagonal_slot_[k] = own->second;
+    std::rotate(row.begin(), own, own + 1);
+    for (const auto& [column, slot] : row) {
+      column_.push_back(column);
+      source_.push_back(slot);
+    }
+    row_start_.push_back(static_cast<int>(column_.size()));
+  }
+  packing_.analyse(order_, row_start_, column_);
+  written_ = {};
+  for (auto* v : {&copy_, &mass_single_}) v->clear();
+  prefer_huge_pages(source_);
+  inverse_.assign(static_cast<std::size_t>(inverse_place(static_cast<int>(n) + 3)) + kVectorTail, 0.0f);
+  const auto parts = static_cast<std::size_t>(order_.parts());
+  good_.assign(parts, 0);
+  balanced_.assign(parts, Balanced::kOk);
+  trace_.assign(parts, 0.0);
+  mass_trace_ = trace_;
+  held_.clear();
+  team_.share(order_, row_start_);
+}
+
+SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Singles* from, Singles* to) {
+  original_ = &A;
+  held_.clear();
+  if (copy_.empty()) {
+    copy_.assign(9 * static_cast<std::size_t>(block_count() + 1) + kBlockTail, 0.0f);  // and a block of zeros
+    copy_offset_.assign(packing_.places() + kLanesOfGroup * kStepsAhead, 9 * block_count());
+    for (std::size_t s = 0; s < column_.size(); ++s)
+      if (!packing_.turned(s)) copy_offset_[packing_.place(s)] = 9 * static_cast<int>(s);
+    prefer_huge_pages(copy_);
+    prefer_huge_pages(copy_offset_);
+  }
+  const double* values = A.body.values().data();
+  // A power of two near 1/(mean of the diagonal): single precision overflows where double does not.
+  double mean = 0.0;
+  for (const int slot : diagonal_slot_) mean += values[9 * static_cast<std::size_t>(slot)] / nodes();
+  if (!std::isfinite(mean)) return SolveStatus::kSingular;
+  if (!(mean > 0.0)) return SolveStatus::kIndefinite;
+  written_.scale = std::ldexp(1.0, -std::ilogb(mean));
+  const DoubleBlocks whole{row_start_.data(), column_.data(), source_.data(), values, block_count() - 1};
+  team_.for_each([&](std::size_t c, int first, int last) {
+    good_[c] = kernels_.convert(whole, written_.scale, copy_.data(), first, last);
+  });
+  if (std::find(good_.begin(), good_.end(), char{0}) != good_.end()) return SolveStatus::kSingular;
+  team_.for_each([&](std::size_t c, int first, int last) {
+    kernels_.pack(rows(c), {copy_.data(), copy_offset_.data(), nullptr});
+    good_[c] =
+        kernels_.invert_diagonal(values, diagonal_slot_.data(), written_.scale, inverse_.data(), first, last);
+    multiply(c, count, from, to);
+  });
+  return std::find(good_.begin(), good_.end(), char{0}) == good_.end() ? SolveStatus::kOk
+                                                                       : SolveStatus::kIndefinite;
+}
+
+/// Each pair of nodes has one block there: part by part and row by row, the rows in the order of their nodes.
+/// Elements that lie together then write what lies together, and packing meets the blocks of sixteen rows one
+/// after the other in each.
+dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& pattern) {
+  static std::atomic<std::uint64_t> version{0};
+  written_.pattern = &pattern;
+  if (!mass_single_.empty()) return written_;
+  const std::size_t n = order_.node.size();
+  mass_.assign(4 * n + kVectorTail, 0.0);
+  mass_single_.assign(4 * n + kVectorTail, 0.0f);
+  sums_.assign(8 * n + kVectorTail, 0.0f);
+  const int pairs = (block_count() - nodes()) / 2;
+  written_.values.assign(9 * static_cast<std::size_t>(pairs + 1) + kBlockTail, 0.0f);  // and a block of zeros
+  written_.place.assign(column_.size(), -1);
+  written_offset_.assign(packing_.places() + kLanesOfGroup * kStepsAhead, 9 * pairs);
+  turned_.assign(packing_.places() / kLanesOfGroup, 0);
+  std::vector<int> rows(n);
+  std::iota(rows.begin(), rows.end(), 0);
+  for (std::size_t p = 0; p + 1 < order_.part.size(); ++p)
+    std::sort(rows.begin() + order_.first_node(p), rows.begin() + order_.first_node(p + 1),
+              [&](int a, int b) {
+                return order_.node[static_cast<std::size_t>(a)] < order_.node[static_cast<std::size_t>(b)];
+              });
+  int next = 0;
+  for (const int row : rows)
+    for (auto s = static_cast<std::size_t>(row_start_[static_cast<std::size_t>(row)]) + 1;
+         s < static_cast<std::size_t>(row_start_[static_cast<std::size_t>(row) + 1]); ++s) {
+      if (packing_.turned(s)) continue;
+      const int i = order_.node[static_cast<std::size_t>(row)],
+                j = order_.node[static_cast<std::size_t>(column_[s])];
+      const std::size_t at = packing_.place(s), step = at / kLanesOfGroup;
+      int& number = written_.place[static_cast<std::size_t>(source_[s])];
+      if (number < 0) written_.place[static_cast<std::size_t>(pattern.slot(j, i))] = number = next++;
+      written_offset_[at] = 9 * number;
+      // row by row is the transposed one, column by column
+      if (i < j) turned_[step] = static_cast<std::uint16_t>(turned_[step] | (1u << at % kLanesOfGroup));
+    }
+  written_.places_version = ++version;
+  prefer_huge_pages(written_.values);
+  prefer_huge_pages(written_offset_);
+  return written_;
+}
+
+SolveStatus SingleMatrix::take_balanced(int count, Singles* from, Singles* to) {
+  original_ = nullptr;
+  const std::size_t n = order_.node.size();
+  PALPATE_CHECK(written_.diagonal.size() == static_cast<Eigen::Index>(3 * n),
+                "a balanced matrix of {} nodes with {} masses", n, written_.diagonal.size());
+  find_held();
+  for (int k = 0; k < count; ++k)
+    for (const std::size_t entry : held_) from[k][entry] = 0.0f;
+  team_.for_each([&](std::size_t c, int first, int last) {
+    double sum = 0.0;
+    for (auto k = static_cast<std::size_t>(first); k < static_cast<std::size_t>(last); ++k) {
+      const double* diagonal = written_.diagonal.data() + 3 * static_cast<std::size_t>(order_.node[k]);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double m = written_.scale * diagonal[axis];
+        sum += mass_[4 * k + axis] = m;
+        mass_single_[4 * k + axis] = static_cast<float>(m);
+      }
+    }
+    mass_trace_[c] = sum;
+    const Columns columns(count, from, to);
+    balanced_[c] = kernels_.balance(rows(c), {written_.values.data(), written_offset_.data(), turned_.data()},
+                                    sums_.data(), inverse_.data(), &trace_[c], count, columns.V, columns.AV);
+    for (int k = 0; k < count; ++k) zero_held(c, columns.AV[k]);
+    hold(c);
+  });
+  const auto any = [&](Balanced what) {
+    return std::find(balanced_.begin(), balanced_.end(), what) != balanced_.end();
+  };
+  if (any(Balanced::kNotFinite)) return SolveStatus::kSingular;
+  stiffness_ = std::accumulate(trace_.begin(), trace_.end(), 0.0) /
+               std::accumulate(mass_trace_.begin(), mass_trace_.end(), 0.0);
+  return any(Balanced::kNotDefinite) ? SolveStatus::kIndefinite : SolveStatus::kOk;
+}
+
+void SingleMatrix::multiply(std::size_t part, int count, const Singles* from, Singles* to) {
+  const Columns columns(count, from, to);
+  kernels_.multiply(rows(part), count, columns.V, columns.AV);
+  for (int k = 0; k < count; ++k) zero_held(part, columns.AV[k]);
+}
+
+void SingleMatrix::multiply(int count, const Singles* from, Singles* to) {
+  team_.for_each([&](std::size_t c, int, int) { multiply(c, count, from, to); });
+}
+
+void SingleMatrix::multiply(const Doubles& x, Doubles& Ax) {
+  if (original_) {
+    const DoubleBlocks A{row_start_.data(), column_.data(), source_.data(), original_->body.values().data(),
+                         block_count() - 1};
+    return team_.for_each([&](std::size_t, int first, int last) {
+      kernels_.multiply_double(A, x.data(), Ax.data(), first, last);
+    });
+  }
+  team_.for_each([&](std::size_t c, int, int) {
+    kernels_.multiply_balanced(rows(c), mass_.data(), 1.0 / written_.scale, x.data(), Ax.data());
+    zero_held(c, Ax.data());
+  });
+}
+
+double SingleMatrix::product(std::size_t part, const float* p, float* q) const {
+  const double pq = kernels_.product(rows(part), p, q);
+  zero_held(part, q);
+  return pq;
+}
+
+// Rows and columns of held directions are the identity's: there, vectors are zero and stay so, and products
+// are made zero.  What columns carry is in the diagonal blocks of the neighbours already, as it must be.
+
+void SingleMatrix::find_held() {
+  held_.clear();
+  if (written_.held)
+    for (const dynamics::HeldNode& held : *written_.held)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (held.axes[axis])
+          held_.push_back(4 * static_cast<std::size_t>(place_of_node_[static_cast<std::size_t>(held.node)]) +
+                          axis);
+  std::sort(held_.begin(), held_.end());
+  held_start_.resize(order_.part.size());
+  for (std::size_t p = 0; p < held_start_.size(); ++p)
+    held_start_[p] = static_cast<std::size_t>(
+        std::lower_bound(held_.begin(), held_.end(), 4 * static_cast<std::size_t>(order_.first_node(p))) -
+        held_.begin());
+}
+
+template <class Real>
+void SingleMatrix::zero_held(std::size_t part, Real* v) const {
+  if (held_.empty()) return;
+  for (std::size_t h = held_start_[part]; h < held_start_[part + 1]; ++h) v[held_[h]] = Real{0};
+}
+
+void SingleMatrix::take_held(std::size_t part, double* v, double* values) const {
+  if (held_.empty()) return;
+  for (std::size_t h = held_start_[part]; h < held_start_[part + 1]; ++h)
+    values[h] = std::exchange(v[held_[h]], 0.0);
+}
+
+/// Own blocks of held nodes and their inverses.
+void SingleMatrix::hold(std::size_t part) {
+  for (std::size_t h = held_start_[part]; h < held_start_[part + 1];) {
+    const std::size_t node = held_[h] / 4, own = static_cast<std::size_t>(row_start_[node]);
+    for (; h < held_start_[part + 1] && held_[h] / 4 == node; ++h) {
+      const int axis = static_cast<int>(held_[h] % 4);
+      for (int k = 0; k < 3; ++k) packing_.own_entry(own, k, axis) = packing_.own_entry(own, axis, k) = 0.0f;
+      packing_.own_entry(own, axis, axis) = 1.0f;
+    }
+    Eigen::Matrix3f block;
+    for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = packing_.entry(own, k % 3, k / 3);
+    const Eigen::Matrix3f inverse = block.inverse();
+    float* J = inverse_.data() + inverse_place(static_cast<int>(node));
+    for (int axis = 0; axis < 3; ++axis) {
+      J[axis] = inverse(axis, axis);
+      J[kToOffDiagonal + axis] = inverse((axis + 1) % 3, (axis + 2) % 3);
+    }
+  }
+}
+
+}  // namespace palpate::linear

@@ -1,0 +1,280 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "linear/make.h"
+#include "linear/mixed_precision/near_solve.h"
+#include "linear/settings.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+
+namespace palpate::linear {
+namespace {
+
+using dynamics::BalancedMatrix;
+using dynamics::BlockSparse;
+using dynamics::BorderedMatrix;
+using dynamics::SolveStatus;
+
+/// Tighter than rounding of the residual in double is not asked for.
+constexpr double kTightest = 1e-13;
+/// Nodes of a cluster, and most clusters: E^-1 is dense, (6 clusters)^2 numbers read in each iteration and (6
+/// clusters)^3 operations a refresh.
+constexpr int kNodesOfCluster = 150, kMostClusters = 48;
+/// Nodes of its pieces.  The count of iterations hardly changes from 16 to 64, and with pieces it is with 48
+/// clusters what it is with 96 (beams of 32,400 and 99,238 nodes).
+constexpr int kNodesOfPiece = 32;
+/// Of a number in single precision, relative; and how many tolerances the bound below may come to for a body
+/// one element thick.
+constexpr double kSingleRounding = 0x1p-24, kRoundingShare = 4.0;
+/// Nodes of a part, at most: its share of vectors and of the matrix fits a second-level cache, and few pairs
+/// of nodes are cut.  Parts come in fours, for threads to share; very small matrices have one.
+constexpr int kNodesOfPart = 3072, kNodesOfOnePart = 512;
+int parts_of(int nodes) {
+  return nodes <= kNodesOfOnePart ? 1 : 4 * ((nodes + 4 * kNodesOfPart - 1) / (4 * kNodesOfPart));
+}
+
+/// Conjugate gradients in single precision on a copy of the matrix (36 bytes a block where double takes 72:
+/// an iteration is one reading of it), right in double:
+///     r = b - A x            double, by the original matrix
+///     A d = r                single: the iteration
+///     x += d, and again      until the error is small enough
+/// The search goes on across a new residual (the direction is made orthogonal to the last, p . A p_last = 0),
+/// so that nothing is lost by it.  Where the tolerance is a modest reduction of what the start left (1e-3),
+/// the first r is the last.
+///
+/// A balanced matrix has no original: its off-diagonal blocks are in single precision from the start
+/// (single_matrix.h).  With A~ for A the solution is off by
+///     |x~ - x|_A <~ |A^-1/2 (A~ - A) A^-1/2| |x|_A.
+/// A~ - A is as indifferent to translations as K, so that of a wave of length l it takes e k (d/l)^2, e =
+/// 2^-24, with k the stiffness of a node against its neighbours at the distance d.  A itself takes m + h^2 k
+/// (d/l)^2 at least, but where the wave bends a body of thickness t, which to first order turns its parts, m
+/// + h^2 k (d/l)^4 (t/d)^2.  The ratio is greatest where both terms are equal, and then
+///     e sqrt(s) d/(2 t),   s = 1 + h^2 k/m the stiffness number (auto_solver.cpp);
+/// roundings of both signs take off more.  Bodies are several elements thick; where e sqrt(s) exceeds
+/// kRoundingShare tolerances, the matrix is not taken for A: what the equations leave of an approximation is
+/// looked at, as for the matrix of an earlier step (near_solve.h), and rounding then touches the corrections
+/// only.
+///
+/// Tolerance: linear_rtol bounds the error of the solution itself, |x - x*|_A <= linear_rtol |x*|_A, by
+/// energy_bound.h.  In a step A = M + h D + h^2 K, so the norm is that of the kinetic energy of the velocity
+/// change's error plus the elastic energy that its displacement takes; a residual, which peers stop by,
+/// bounds it up to the condition number only.
+///
+/// Start: krylov_start.h.  Preconditioner: inverse 3x3 blocks, in `two-level` with rigid clusters beside them
+/// (rigid_clusters.h).  Their E is made anew when what its age cost, in iterations above the fewest since it
+/// was made, has reached what a new one costs: counted in operations, not in seconds, so that results do not
+/// depend on the machine's mood.
+///
+/// Results do not depend on the number of threads, bit for bit (cluster_team.h).  They do on the instruction
+/// set, by rounding.
+///
+/// A border (a tool) changes the problem: such matrices are solved by "pcg", whose coarse space is the
+/// border.
+class SinglePcg final : public dynamics::LinearSolver {
+ public:
+  SinglePcg(std::string name, bool two_level, const IntegratorSpec& spec)
+      : name_(std::move(name)),
+        two_level_(two_level),
+        rtol_(std::max(spec.linear_rtol, kTightest)),
+        spec_(spec),
+        kernels_(node_kernels()),
+        team_(spec.threads),
+        copy_(kernels_, team_),
+        solve_(kernels_, team_, copy_, clusters_, rtol_, counters_) {
+    counters::count("integrate.solver." + name_);
+  }
+
+  std::string name() const override { return name_; }
+  bool supports_unsymmetric() const override { return false; }
+  const dynamics::SolverCounters& counters() const override {
+    if (!bordered_) return counters_;
+    sum_ = counters_;
+    sum_ += bordered_->counters();
+    return sum_;
+  }
+
+  SolveStatus factor(const BorderedMatrix& A) override {
+    PALPATE_CHECK(A.symmetric, "solver {} was given an unsymmetric matrix", name_);
+    delegated_ = A.border_size() > 0 || A.nodal_size() == 0;
+    if (delegated_) {
+      if (!bordered_) bordered_ = make_pcg(spec_);
+      return bordered_->factor(A);
+    }
+    const bool same_values =
+        matrix_ && copy_.analysed(A.body) && A.values_version != 0 && A.values_version == values_version_;
+    matrix_ = &A;
+    if (same_values) return status_;
+    analyse(A.body);
+    values_version_ = A.values_version;
+    const ScopedTimer timer(counters_.factor_s);
+    ++counters_.factorisations;
+    KrylovStart& start = solve_.start();
+    status_ = copy_.take(A, start.count(), start.solutions(), start.products());
+    return use_copy(A.positions.size() == A.nodal_size() ? A.positions.data() : nullptr);
+  }
+
+  BalancedMatrix* balanced(const BlockSparse& pattern) override {
+    if (pattern.block_rows() == 0) return nullptr;
+    const bool known = copy_.analysed(pattern);
+    if (known && refused_) return nullptr;
+    analyse(pattern);
+    delegated_ = false;
+    matrix_ = nullptr;
+    BalancedMatrix& room = copy_.room(pattern);
+    room_ = &room;
+    return &room;
+  }
+
+  SolveStatus factor_balanced() override {
+    const ScopedTimer timer(counters_.factor_s);
+    ++counters_.factorisations;
+    KrylovStart& start = solve_.start();
+    status_ = copy_.take_balanced(start.count(), start.solutions(), start.products());
+    const bool coarse = !(kSingleRounding * std::sqrt(copy_.stiffness()) <= kRoundingShare * rtol_);
+    use_copy(room_->positions, coarse);
+    if (status_ == SolveStatus::kOk && coarse)
+      status_ = solve_.can_correct() ? SolveStatus::kRounded : SolveStatus::kSingular;
+    return status_;
+  }
+
+  SolveStatus solve_near(dynamics::Residual& left, VecX& x) override {
+    const bool own = status_ == SolveStatus::kRounded;
+    if (delegated_ || matrix_ || !(own || status_ == SolveStatus::kOk)) return SolveStatus::kNotConverged;
+    const long before = counters_.iterations;
+    const SolveStatus status = solve_.solve_near(left, x);
+    if (!own) return status;
+    status_ = status;
+    if (status == SolveStatus::kNotConverged) refused_ = true;
+    if (status == SolveStatus::kOk) account(before);
+    return status;
+  }
+
+  SolveStatus solve(const VecX& b, VecX& x) override {
+    if (delegated_) return bordered_->solve(b, x);
+    check_right_hand_side(b.rows());
+    const ScopedTimer timer(counters_.solve_s);
+    x.resize(b.size());
+    return solve_column(b.data(), x.data(), true);
+  }
+
+  SolveStatus solve(const MatX& B, MatX& X) override {
+    if (delegated_) return bordered_->solve(B, X);
+    check_right_hand_side(B.rows());
+    const ScopedTimer timer(counters_.solve_s);
+    X.resize(B.rows(), B.cols());
+    for (Eigen::Index c = 0; c < B.cols(); ++c)
+      if (const SolveStatus status = solve_column(B.col(c).data(), X.col(c).data(), B.cols() == 1);
+          status != SolveStatus::kOk)
+        return status;
+    return SolveStatus::kOk;
+  }
+
+ private:
+  int nodes() const { return copy_.nodes(); }
+
+  // --- once a pattern
+  // -------------------------------------------------------------------------------------------------
+  void analyse(const BlockSparse& pattern) {
+    if (copy_.analysed(pattern)) return;
+    const ScopedTimer timer(counters_.symbolic_s);
+    ++counters_.symbolic;
+    const int n = pattern.block_rows(),
+              clusters = std::min((n + kNodesOfCluster - 1) / kNodesOfCluster, kMostClusters);
+    int parts = two_level_ ? std::min(parts_of(n), clusters) : parts_of(n);
+    // one or two in a part would differ in size by two
+    if (two_level_ && clusters == kMostClusters && parts < clusters && 2 * parts > clusters)
+      parts = clusters / 2;
+    copy_.analyse(pattern, two_level_ ? clusters : parts, parts, two_level_ ? n / kNodesOfPiece : 0);
+    if (two_level_) clusters_.prepare(copy_.order());
+    solve_.prepare();
+    refused_ = false;
+  }
+
+  // --- once a matrix
+  // --------------------------------------------------------------------------------------------------
+  SolveStatus use_copy(const double* positions, bool rounded = false) {
+    solve_.start().products_are_known(status_ == SolveStatus::kOk);
+    solve_.renew(rounded);
+    clusters_.serve(copy_.scale());
+    if (status_ == SolveStatus::kOk && two_level_ && lost_ >= price_of_clusters())
+      refresh_clusters(positions);
+    return status_;
+  }
+
+  /// Operations of a new E and D over those of an iteration.
+  double price_of_clusters() const {
+    if (!clusters_.ready()) return 0.0;
+    const double size = clusters_.size(), blocks = copy_.block_count();
+    return (size * size * size + 60.0 * blocks) / (9.0 * blocks + 50.0 * nodes() + size * size);
+  }
+
+  void refresh_clusters(const double* positions) {
+    clusters_.refresh(copy_, positions, kernels_);
+    ++counters_.refreshes;
+    lost_ = 0.0;
+    fewest_ = HUGE_VAL;
+  }
+
+  // --- one right-hand side
+  // --------------------------------------------------------------------------------------------
+  void check_right_hand_side(Eigen::Index rows) const {
+    PALPATE_CHECK(status_ == SolveStatus::kOk, "solver {}: solve without a factor", name_);
+    PALPATE_CHECK(!matrix_ || matrix_->values_version == values_version_,
+                  "solver {}: the matrix changed between factor and solve", name_);
+    PALPATE_CHECK(rows == 3 * nodes(), "right-hand side has {} rows, the matrix {}", rows, 3 * nodes());
+  }
+
+  SolveStatus solve_column(const double* b, double* x, bool remember) {
+    ++counters_.solves;
+    const long before = counters_.iterations;
+    const SolveStatus status = solve_.solve(b, x, remember);
+    if (status == SolveStatus::kOk) account(before);
+    return status;
+  }
+
+  /// What the age of E costs, for the decision in use_copy().
+  void account(long iterations_before) {
+    const auto iterations = static_cast<double>(counters_.iterations - iterations_before);
+    if (!two_level_ || iterations == 0.0) return;
+    fewest_ = std::min(fewest_, iterations);
+    lost_ += iterations - fewest_;
+  }
+
+  std::string name_;
+  bool two_level_;
+  double rtol_;
+  IntegratorSpec spec_;
+  const NodeKernels& kernels_;
+  ClusterTeam team_;
+  dynamics::SolverCounters counters_;
+  mutable dynamics::SolverCounters sum_;
+  std::unique_ptr<dynamics::LinearSolver> bordered_;  ///< made at the first matrix with a border
+  bool delegated_ = false;
+
+  const BorderedMatrix* matrix_ = nullptr;  ///< last given to factor(); null: a balanced one
+  const BalancedMatrix* room_ = nullptr;
+  /// a balanced matrix of this pattern was too coarse even for corrections
+  bool refused_ = false;
+  std::uint64_t values_version_ = 0;
+  SolveStatus status_ = SolveStatus::kSingular;
+  SingleMatrix copy_;
+  RigidClusters clusters_;                 ///< ready in `two-level` alone
+  double lost_ = 0.0, fewest_ = HUGE_VAL;  ///< since E was made: iterations above the fewest, and these
+  NearSolve solve_;
+};
+
+}  // namespace
+
+std::unique_ptr<dynamics::LinearSolver> make_pcg_single(const IntegratorSpec& spec) {
+  check_linear_rtol("pcg-single", spec);
+  return std::make_unique<SinglePcg>("pcg-single", false, spec);
+}
+
+std::unique_ptr<dynamics::LinearSolver> make_pcg_two_level(const IntegratorSpec& spec) {
+  check_linear_rtol("pcg-two-level", spec);
+  return std::make_unique<SinglePcg>("pcg-two-level", true, spec);
+}
+
+}  // namespace palpate::linear

@@ -1,0 +1,41 @@
+#include "linear/auto_choice.h"
+#include "linear/make.h"
+#include "palpate/linear/solvers.h"
+
+namespace palpate::linear {
+
+const dynamics::LinearSolverRegistry& linear_solver_registry() {
+  static const dynamics::LinearSolverRegistry registry = {
+      {"cholmod",
+       "supernodal Cholesky of SuiteSparse, ordered by AMD or METIS; symmetric positive definite matrices", 0,
+       make_cholmod},
+      {"umfpack", "multifrontal LU of SuiteSparse; unsymmetric and indefinite matrices", 0, make_umfpack},
+      {"klu",
+       "left-looking LU of SuiteSparse, pivot order kept; unsymmetric and indefinite matrices, of small "
+       "bodies (3,700 nodes: many times umfpack's time)",
+       0, make_klu},
+      {"pcg",
+       "conjugate gradients, block-Jacobi, warm start, to linear_rtol; symmetric positive definite matrices",
+       0, make_pcg},
+      {"auto",
+       "the fastest of cholmod, pcg-single and pcg-two-level for the matrix's size and stiffness and for "
+       "linear_rtol, by measurements kept in the source",
+       0, make_auto},
+      {"pcg-single",
+       "conjugate gradients in single precision with residuals in double, block-Jacobi, start from three "
+       "solutions; linear_rtol bounds the error",
+       0, make_pcg_single},
+      {"pcg-two-level",
+       "pcg-single with rigid motions of node clusters, large and small, beside its blocks: for stiff "
+       "bodies, long steps and fine meshes",
+       0, make_pcg_two_level},
+  };
+  return registry;
+}
+
+std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name,
+                                                           const IntegratorSpec& spec) {
+  return find(linear_solver_registry(), name, "linear solver").make(spec);
+}
+
+}  // namespace palpate::linear

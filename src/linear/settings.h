@@ -1,0 +1,9 @@
+#pragma once
+#include "palpate/dynamics/spec.h"
+
+namespace palpate::linear {
+
+/// Settings that iterative solvers read.  @throws Error naming the key, its value and the range
+void check_linear_rtol(const char* solver, const IntegratorSpec& spec);
+
+}  // namespace palpate::linear

@@ -1,0 +1,150 @@
+#include "linear_problem.h"
+
+#include <Eigen/Eigenvalues>
+#include <complex>
+
+#include "linear_term.h"
+#include "palpate/core/error.h"
+#include "palpate/fem/soft_body.h"
+
+namespace palpate::stability {
+namespace {
+
+/// The stiffness of a mesh at rest, free directions only.
+MatX rest_stiffness(const TetMesh& rest, const fem::Material& material, const std::vector<int>& free) {
+  dynamics::State state;
+  dynamics::BlockSpec spec;
+  spec.name = "body";
+  spec.q_size = spec.u_size = static_cast<int>(3 * rest.nodes.cols());
+  const int id = state.insert(spec, rest.nodes.reshaped(), VecX::Zero(spec.u_size));
+  fem::SoftBody body("body", rest, material, {}, id);
+  dynamics::PatternBuilder pattern(state.layout());
+  body.add_pattern(pattern);
+  dynamics::BorderedMatrix K;
+  K.body = pattern.build();
+  body.add_tangent(state.view(), 1.0, 0.0, K);
+  const MatX dense = K.to_dense();
+  return dense(free, free);
+}
+
+using Complex = std::complex<double>;
+
+/// a(t), a'(t) of a'' + 2 z w a' + w^2 a = 0, a(0) = a0, a'(0) = 0, by the two roots s of s^2 + 2 z w s +
+/// w^2.  Where they nearly meet they are moved apart by a relative 1e-6, an error of about 1e-12.  The small
+/// root of an overdamped mode is w^2 over the large one: no cancellation.
+std::pair<double, double> oscillator(double w, double z, double a0, double t) {
+  if (std::abs(z - 1.0) < 1e-12) z = 1.0 + 1e-12;
+  const Complex root = std::sqrt(Complex(z * z - 1.0));
+  const Complex s1 = -w * (z + root), s2 = z > 1.0 ? w * w / s1 : -w * (z - root);
+  const Complex e1 = std::exp(s1 * t), e2 = std::exp(s2 * t);
+  return {(a0 * (s1 * e2 - s2 * e1) / (s1 - s2)).real(), (a0 * s1 * s2 * (e2 - e1) / (s1 - s2)).real()};
+}
+
+}  // namespace
+
+LinearProblem::LinearProblem(const TetMesh& rest, const fem::Material& material, double damping_ratio,
+                             double clamp_below) {
+  std::vector<int> free;
+  const VecX node_mass = fem::lumped_masses(rest, material.density);
+  std::vector<double> mass;
+  for (Eigen::Index node = 0; node < rest.nodes.cols(); ++node)
+    for (int axis = 0; axis < 3; ++axis)
+      if (rest.nodes(2, node) >= clamp_below) {
+        free.push_back(static_cast<int>(3 * node) + axis);
+        mass.push_back(node_mass[node]);
+      }
+  mass_ = Eigen::Map<const VecX>(mass.data(), static_cast<Eigen::Index>(mass.size()));
+  K_ = rest_stiffness(rest, material, free);
+  find_modes();
+  beta_ = 2.0 * damping_ratio / omega_[0];
+}
+
+LinearProblem::LinearProblem(double omega, double damping_ratio)
+    : mass_(VecX::Ones(3)), K_(MatX::Identity(3, 3) * omega * omega), beta_(2.0 * damping_ratio / omega) {
+  find_modes();
+}
+
+// M^-1/2 K M^-1/2 in extended precision: of a mesh with slivers the squares of the frequencies span 1e13, and
+// the lowest must not drown in the rounding of the highest.  Amplitude 1/w_j with alternating signs: each
+// mode holds 1/2 J.
+void LinearProblem::find_modes() {
+  using MatL = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  const Eigen::Matrix<long double, Eigen::Dynamic, 1> root =
+      mass_.cast<long double>().cwiseSqrt().cwiseInverse();
+  const MatL symmetric = (0.5L * (K_ + K_.transpose()).cast<long double>()).eval();
+  const Eigen::SelfAdjointEigenSolver<MatL> solver(root.asDiagonal() * symmetric * root.asDiagonal());
+  PALPATE_CHECK(solver.info() == Eigen::Success && solver.eigenvalues()[0] > 0.0L, "no modes");
+  omega_ = solver.eigenvalues().cwiseSqrt().cast<double>();
+  phi_ = (root.asDiagonal() * solver.eigenvectors()).cast<double>();
+  a0_ = omega_.cwiseInverse();
+  for (Eigen::Index j = 1; j < a0_.size(); j += 2) a0_[j] *= -1.0;
+  start_energy_ = 0.5 * static_cast<double>(omega_.size());
+  const VecX q = phi_ * a0_;
+  q_scale_ = q.norm() / std::sqrt(static_cast<double>(q.size()));
+  u_scale_ = std::sqrt(2.0 * start_energy_ / mass_.sum());
+}
+
+double LinearProblem::fastest_rate() const {
+  double fastest = 0.0;
+  for (Eigen::Index j = 0; j < omega_.size(); ++j) {
+    const double z = std::max(1.0, damping_ratio(j));
+    fastest = std::max(fastest, omega_[j] * (z + std::sqrt(z * z - 1.0)));
+  }
+  return fastest;
+}
+
+double LinearProblem::condition() const { return std::pow(omega_[omega_.size() - 1] / omega_[0], 2); }
+
+std::unique_ptr<LinearProblem::Instance> LinearProblem::start() const {
+  auto out = std::make_unique<Instance>();
+  dynamics::BlockSpec spec;
+  spec.name = "linear body";
+  spec.q_size = spec.u_size = static_cast<int>(mass_.size());
+  spec.q_scale = q_scale_;
+  spec.u_scale = u_scale_;
+  const int id = out->state.insert(spec, phi_ * a0_, VecX::Zero(mass_.size()));
+  out->system.add(std::static_pointer_cast<dynamics::ForceTerm>(std::make_shared<LinearTerm>(K_, beta_)));
+  out->system.add(std::static_pointer_cast<dynamics::InertiaTerm>(std::make_shared<DiagonalMass>(id, mass_)));
+  out->system.prepare(out->state.view());
+  return out;
+}
+
+// In modal coordinates, where it is a sum of squares: of a stiff K, q.K q would lose its small modes to
+// rounding.
+double LinearProblem::energy_of(const VecX& q, const VecX& u) const {
+  const VecX a = phi_.transpose() * mass_.cwiseProduct(q);
+  return 0.5 * (u.dot(mass_.cwiseProduct(u)) + omega_.cwiseProduct(a).squaredNorm());
+}
+
+double LinearProblem::energy(const dynamics::State& state) const {
+  return energy_of(state.q(), state.u()) / start_energy_;
+}
+
+double LinearProblem::error(const dynamics::State& state, double t) const {
+  VecX a(a0_.size()), b(a0_.size());
+  for (Eigen::Index j = 0; j < a0_.size(); ++j)
+    std::tie(a[j], b[j]) = oscillator(omega_[j], damping_ratio(j), a0_[j], t);
+  return std::sqrt(energy_of(state.q() - phi_ * a, state.u() - phi_ * b) / start_energy_);
+}
+
+double LinearProblem::from_rest(const dynamics::State& state) const { return std::sqrt(energy(state)); }
+
+double LinearProblem::speed_rms(const dynamics::State& state) const {
+  return state.u().norm() / std::sqrt(static_cast<double>(mass_.size()));
+}
+
+double LinearProblem::largest_speed_rms() const {
+  return std::sqrt(2.0 * start_energy_ / (mass_.minCoeff() * static_cast<double>(mass_.size())));
+}
+
+// WRMS <= 1 over 2n entries with the weights of error_weights.h:  |dq| <= sqrt(2n) rtol atol_q q_scale,  |du|
+// <= sqrt(2n) rtol (atol_u u_scale + rms u); and 2E = du.M du + dq.K dq <= m_max |du|^2 + w_max^2 m_max
+// |dq|^2.  (The sum of both bounds, where only one of them can be reached, is up to 1.4 too much.)
+double LinearProblem::tolerance(const IntegratorSpec& spec, double speed) const {
+  const double heaviest = mass_.maxCoeff(), count = 2.0 * static_cast<double>(mass_.size());
+  const double dq = spec.atol_q * q_scale_, du = spec.atol_u * u_scale_ + speed;
+  return spec.rtol * std::sqrt(count * heaviest * (du * du + std::pow(omega_[omega_.size() - 1] * dq, 2)) /
+                               (2.0 * start_energy_));
+}
+
+}  // namespace palpate::stability

@@ -1,0 +1,60 @@
+#pragma once
+#include <memory>
+
+#include "palpate/dynamics/system.h"
+#include "palpate/fem/material.h"
+#include "palpate/mesh/mesh.h"
+
+namespace palpate::stability {
+
+/// A clamped elastic block at infinitesimal amplitude,  M q'' + beta K q' + K q = 0  in its displacements q,
+/// with the K of corotational tetrahedra at rest and lumped M: a direct sum of oscillators K phi_j = w_j^2 M
+/// phi_j, so its motion is known exactly, whatever the step:
+///     a_j'' + 2 z_j w_j a_j' + w_j^2 a_j = 0,   z_j = beta w_j/2,   q = sum a_j phi_j.
+/// It starts without speed and with the same energy in every mode, so that no mode can misbehave unseen.
+class LinearProblem {
+ public:
+  /// @param damping_ratio  z_1, of the lowest mode  @param clamp_below  nodes with a smaller z [m] are
+  ///   held, and left out
+  LinearProblem(const TetMesh& rest, const fem::Material& material, double damping_ratio, double clamp_below);
+  /// One oscillator of frequency `omega` [rad/s] in each of three directions, unit mass.
+  LinearProblem(double omega, double damping_ratio);
+
+  const VecX& omega() const { return omega_; }  ///< [rad/s], ascending
+  double damping_ratio(Eigen::Index mode) const { return 0.5 * beta_ * omega_[mode]; }
+  /// Largest modulus of an eigenvalue of y' = A y: w, or w (z + sqrt(z^2 - 1)) of an overdamped mode [1/s].
+  double fastest_rate() const;
+  double condition() const;  ///< of K against M: (w_max/w_1)^2
+
+  /// A copy of the system at its start.
+  struct Instance {
+    dynamics::System system;
+    dynamics::State state;
+  };
+  std::unique_ptr<Instance> start() const;
+
+  /// kinetic and elastic, relative to the start's
+  double energy(const dynamics::State& state) const;
+  double error(const dynamics::State& state, double t) const;  ///< sqrt(E(y - y_exact(t))/E(y_start))
+  double from_rest(const dynamics::State& state) const;        ///< sqrt(E(y)/E(y_start))
+  /// The same measure of the largest error that WRMS <= 1 lets pass, for weights of `rtol` and a root mean
+  /// square of u (see expectation.cpp).
+  double tolerance(const IntegratorSpec& spec, double speed_rms) const;
+  double speed_rms(const dynamics::State& state) const;  ///< root mean square of u [m/s]
+  double largest_speed_rms() const;                      ///< the largest that the start's energy allows
+
+ private:
+  void find_modes();
+  double energy_of(const VecX& q, const VecX& u) const;
+
+  VecX mass_;  ///< one a direction [kg]
+  MatX K_;
+  double beta_ = 0.0;
+  VecX omega_;
+  MatX phi_;  ///< phi^T M phi = 1
+  VecX a0_;   ///< modal amplitudes at the start
+  double start_energy_ = 0.0;
+  double q_scale_ = 1.0, u_scale_ = 1.0;
+};
+
+}  // namespace palpate::stability

@@ -1,0 +1,49 @@
+#include <algorithm>
+
+#include "cell_runner.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+#include "palpate/integrate/integrators.h"
+
+namespace palpate::stability {
+namespace {
+
+bool chosen(const std::string& name, const std::vector<std::string>& wanted) {
+  return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+}
+
+void check_names(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
+                 const char* what) {
+  for (const std::string& name : wanted)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      fail("unknown {} \"{}\"{}", what, name, suggestion(name, known));
+}
+
+}  // namespace
+
+StabilityMatrix run(const StabilityOptions& options) {
+  const double start = wall_seconds();
+  const dynamics::StepperRegistry& registry =
+      options.registry ? *options.registry : integrate::stepper_registry();
+  const std::vector<Row> rows = all_rows();
+  const std::vector<Column> steppers = stepper_columns(registry), tools = tool_columns();
+  check_names(options.rows, names(rows), "row");
+  std::vector<std::string> known = names(registry);
+  for (const Column& column : tools) known.push_back(column.name);
+  check_names(options.integrators, known, "integrator");
+
+  std::vector<Task> tasks;
+  for (const Row& row : rows) {
+    if (!chosen(row.name, options.rows) || (row.slow && !options.slow && options.rows.empty())) continue;
+    for (const SubCase& one : row.cases)
+      for (const Column& column : row.columns == RowColumns::kSteppers ? steppers : tools)
+        if (chosen(column.name, options.integrators)) tasks.push_back({&row, &one, &column});
+  }
+  StabilityMatrix matrix;
+  matrix.cells = run_cells(tasks, options);
+  matrix.stopped = matrix.cells.size() < tasks.size();
+  matrix.wall_s = wall_seconds() - start;
+  return matrix;
+}
+
+}  // namespace palpate::stability

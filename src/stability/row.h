@@ -1,0 +1,64 @@
+#pragma once
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "column.h"
+#include "palpate/stability/stability.h"
+
+namespace palpate::stability {
+
+/// What a case is given.
+struct Lab {
+  const Column& column;
+  int seeds = 10;
+  const std::atomic<bool>* expired = nullptr;  ///< the cell's time is up
+  bool time_is_up() const { return expired && expired->load(std::memory_order_relaxed); }
+};
+
+/// Why a run did not come to its end: too slow, not finite, grown, error, silent.  False where it did.
+/// An implicit method that grows beyond every bound has not ended clearly when it fails of it: only an
+/// explicit one may end so.
+/// @param grown  the bound on energy or motion was passed
+bool ended_early(const Column& column, const dynamics::StepResult& result, bool finite, bool interrupted,
+                 bool grown, StabilityCell& cell);
+
+struct SubCase {
+  std::string name;
+  std::function<Verdicts(const Lab&)> expect;  ///< from theory, before anything of the case has run
+  /// Runs it: verdict and figures.  May throw Error (a refusal: that is a clear end).
+  std::function<StabilityCell(const Lab&)> run;
+};
+
+/// Which columns a row has.
+enum class RowColumns { kSteppers, kTools };
+
+/// One row of section F.  Each stands in a file of its own, with the theory that its expectations follow from
+/// on top.
+struct Row {
+  std::string name, summary;
+  RowColumns columns = RowColumns::kSteppers;
+  bool slow = false;
+  std::vector<SubCase> cases{};
+};
+
+Row youngs_modulus_row();
+Row poissons_ratio_row();
+Row undamped_row();
+Row step_row();
+Row sliver_row();
+Row squashed_row();
+Row contact_stiffness_row();
+Row impact_row();
+Row density_ratio_row();
+Row swallowed_tool_row();
+Row thrown_handle_row();
+Row rest_row();
+Row size_row();
+Row million_ticks_row();
+Row million_tool_ticks_row();
+
+std::vector<Row> all_rows();
+
+}  // namespace palpate::stability

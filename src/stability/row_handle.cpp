@@ -1,0 +1,169 @@
+#include <cmath>
+
+#include "palpate/core/clock.h"
+#include "scene_run.h"
+#ifdef PALPATE_HAS_TOOL
+#include "palpate/tool/tool.h"
+#endif
+
+// The tool alone under its virtual coupling (m, I; k, b; k_r, b_r), against every integrator of its ticks of
+// h = 1 ms. Thrown: the handle jumps by d = 1 m at one tick and stays.  The coupling then stores 1/2 k d^2
+// and is passive: the tool is never farther from the handle than d, and
+//   slower than d sqrt(k/m).                                                       stable: within both, to 1
+//   %;  bounded: ten times
+// Spun: the handle turns at W = 1000 rad/s, a radian a tick, about one axis.  Moment <= k_r pi + b_r (W - w):
+// the tool is braked as soon as b_r (w - W) > k_r pi, so
+//   w <= W + k_r pi/b_r.                                                           stable: within it, to 1 %;
+//   bounded: ten times
+//   The ticks see the handle's angle modulo 2 pi only: which way round the spring pulls is chance, the bound
+//   does not care.
+// A scheme that is explicit has a limit, here kept (k h^2/m = 3e-3, b h/m = 0.02, k_r h^2/I = 0.08, b_r h/I =
+// 0.25, all well below 2).  So for all        -> stable, bounded A million ticks, the handle at rest and the
+// tool on it: the coupling's wrench is zero to rounding and its damper takes what rounding puts in; drift
+// below
+//   1e-12 m and rad, and memory does not grow.
+//   -> accurate
+//   The same with the tool pulled by a constant contact force F: it rests F/k away, and stays there to 1e-9
+//   F/k.                                           -> accurate
+
+namespace palpate::stability {
+
+#ifdef PALPATE_HAS_TOOL
+namespace {
+
+constexpr double kTick = 1e-3;
+
+ToolSpec tool_spec(const Lab& lab) {
+  ToolSpec spec;
+  spec.integrator = lab.column.name;
+  spec.coupling_rotational_damping_n_m_s_rad = 1e-3;
+  return spec;
+}
+
+struct Motion {
+  dynamics::StepResult result;
+  bool finite = true, interrupted = false;
+  double distance = 0.0, speed = 0.0, spin = 0.0;  ///< largest, from the handle's last place
+};
+
+/// `handle(i)`: pose and twist at the end of tick i.
+Motion move(const Lab& lab, tool::Tool& tool, int ticks,
+            const std::function<std::pair<Pose, Twist>(int)>& handle) {
+  Motion motion;
+  for (int i = 0; i < ticks; ++i) {
+    if (lab.time_is_up()) {
+      motion.interrupted = true;
+      break;
+    }
+    const auto [pose0, twist0] = handle(i);
+    const auto [pose1, twist1] = handle(i + 1);
+    motion.result = tool.advance(kTick, {pose0, pose1, twist0, twist1}, {});
+    if (!motion.result.ok()) break;
+    const Vec3 away = tool.pose().translation - pose1.translation;
+    motion.finite = away.allFinite() && tool.twist().angular.allFinite();
+    if (!motion.finite) break;
+    motion.distance = std::max(motion.distance, away.norm());
+    motion.speed = std::max(motion.speed, tool.twist().linear.norm());
+    motion.spin = std::max(motion.spin, tool.twist().angular.norm());
+  }
+  return motion;
+}
+
+StabilityCell judge_ratio(const Lab& lab, const Motion& motion, double ratio, const char* what) {
+  StabilityCell cell;
+  cell.gain = ratio - 1.0;
+  cell.figure = fmt::format("{} {:.3f} of what the coupling can give", what, ratio);
+  if (ended_early(lab.column, motion.result, motion.finite, motion.interrupted, ratio > 10.0, cell))
+    return cell;
+  cell.verdict = ratio <= 1.01 ? Verdict::kStable : ratio <= 10.0 ? Verdict::kBounded : Verdict::kGrew;
+  return cell;
+}
+
+StabilityCell thrown(const Lab& lab) {
+  const ToolSpec spec = tool_spec(lab);
+  tool::Tool tool(spec, Vec3::Zero());
+  const Motion motion = move(lab, tool, 300, [](int i) {
+    return std::pair{Pose{Quat::Identity(), i < 10 ? Vec3(0, 0, 0) : Vec3(1, 0, 0)}, Twist{}};
+  });
+  const double fastest = std::sqrt(spec.coupling_stiffness_n_m / spec.mass_kg);
+  return judge_ratio(lab, motion, std::max(motion.distance, motion.speed / fastest), "distance and speed");
+}
+
+StabilityCell spun(const Lab& lab, int ticks) {
+  constexpr double kSpin = 1000.0;
+  const ToolSpec spec = tool_spec(lab);
+  tool::Tool tool(spec, Vec3::Zero());
+  const Vec3 axis = Vec3(1, -2, 0.5).normalized();
+  const Motion motion = move(lab, tool, ticks, [&](int i) {
+    return std::pair{Pose{quaternion_of(std::remainder(kSpin * kTick * i, 2.0 * M_PI) * axis), Vec3::Zero()},
+                     Twist{kSpin * axis, Vec3::Zero()}};
+  });
+  const double most =
+      kSpin + spec.coupling_rotational_stiffness_n_m_rad * M_PI / spec.coupling_rotational_damping_n_m_s_rad;
+  return judge_ratio(lab, motion, motion.spin / most, "spin");
+}
+
+/// Largest distance from where it should rest, over a million ticks, after the first ten thousand.
+StabilityCell million(const Lab& lab, double force) {
+  constexpr int kTicks = 1000000, kSettling = 10000;
+  const ToolSpec spec = tool_spec(lab);
+  tool::Tool tool(spec, Vec3::Zero());
+  dynamics::LinearisedContact pull;
+  pull.version = 1;
+  pull.source = dynamics::LinearisedContact::Source::kFrozen;
+  pull.F0[3] = force;
+  const Vec3 rest(force / spec.coupling_stiffness_n_m, 0, 0);
+  StabilityCell cell;
+  dynamics::StepResult result;
+  double drift = 0.0, turned = 0.0, memory = 0.0;
+  bool interrupted = false;
+  for (int i = 0; i < kTicks && result.ok() && !interrupted; ++i) {
+    if (i == kSettling) memory = resident_memory_mib();
+    result = tool.advance(kTick, {}, pull);
+    interrupted = lab.time_is_up();
+    if (i < kSettling) continue;
+    drift = std::max(drift, (tool.pose().translation - rest).norm());
+    turned = std::max(turned, rotation_vector(tool.pose().rotation).norm());
+  }
+  const double grown = resident_memory_mib() - memory, bar = force > 0.0 ? 1e-9 * rest.norm() : 1e-12;
+  cell.steps = kTicks;
+  cell.error = drift;
+  cell.figure =
+      fmt::format("drift {:.1e} m of {:.0e}, {:.1e} rad, memory {:+.1f} MiB", drift, bar, turned, grown);
+  if (ended_early(lab.column, result, std::isfinite(drift + turned), interrupted, false, cell)) return cell;
+  cell.verdict = drift <= bar && turned <= 1e-12 && grown < 1.0 ? Verdict::kAccurate : Verdict::kGrew;
+  return cell;
+}
+
+Verdicts passive(const Lab&) { return {Verdict::kStable, Verdict::kBounded}; }
+Verdicts accurate(const Lab&) { return {Verdict::kAccurate}; }
+
+}  // namespace
+
+Row thrown_handle_row() {
+  return {"thrown-handle",
+          "a handle that jumps by 1 m, or spins at 1000 rad/s, and the tool's own ticks",
+          RowColumns::kTools,
+          false,
+          {{"jumps by 1 m", passive, thrown},
+           {"spins at 1000 rad/s", passive, [](const Lab& lab) { return spun(lab, 50); }}}};
+}
+
+Row million_tool_ticks_row() {
+  return {"million-tool-ticks",
+          "a million ticks of the tool alone",
+          RowColumns::kTools,
+          true,
+          {{"unloaded", accurate, [](const Lab& lab) { return million(lab, 0.0); }},
+           {"under a constant force", accurate, [](const Lab& lab) { return million(lab, 1.0); }}}};
+}
+#else
+Row thrown_handle_row() {
+  return {"thrown-handle", "needs tools, which were not compiled in", RowColumns::kTools};
+}
+Row million_tool_ticks_row() {
+  return {"million-tool-ticks", "needs tools, which were not compiled in", RowColumns::kTools, true};
+}
+#endif
+
+}  // namespace palpate::stability

@@ -1,0 +1,128 @@
+#include <cmath>
+#include <limits>
+
+#include "multirate_theory.h"
+#include "palpate/core/clock.h"
+#include "scene_run.h"
+
+// A million haptic ticks are 1000 s, a hundred thousand exchange periods of 10 ms, each with its own query of
+// the contact. Unloaded, the cube stays where it was put: rounding of eps a period, not summed but in the
+// worst case, 1e5 eps = 2e-11 of its size     -> accurate
+//   w H = 0.3 of its fastest mode, and light damping: within every explicit limit, that of the two-stage
+//   methods too, which have none on the imaginary axis but grow
+//   by y^4/8 a step, y = w H, less than the damping beta w^2 H/2 takes.
+// On an incline below the angle of friction it creeps, for regularised friction is a damper at small speeds:
+// mu p A v/v_r = weight along the plane
+//   gives v = v_r tan(a)/mu, a steady motion that every consistent method keeps, and that is subtracted; the
+//   rest stays below 1e-4 of the creep.
+//   The run starts from the settled creep, which linearly implicit Euler has found: contact is closed and
+//   stays so, the motion is linear but for what is left of settling,
+//   and stability is that of linear theory.  (How contact closes is another row's matter: only algebraically
+//   stable methods keep from making energy there.)
+//   A-stable, fixed or under error control
+//   -> accurate
+//   Explicit methods under error control stand at their stability limit, where the stiffest modes are kept
+//   alive at the size of the tolerance: d = rtol L in place, e = rtol c in
+//   speed (c the wave speed).  Friction is the product of pressure and speed, so that shifts the mean creep v
+//   by (d/p)(e/v) of itself at most, p = rho g L/k = 5e-5 m
+//   the depth of rest: rtol is 1e-5, which makes that 5e-5
+//   -> accurate
+//   Explicit methods at fixed steps: the floor, k = 1e7 Pa/m under a quarter of the face, and an eighth of
+//   the mass make w H = 6, beyond their imaginary limits (2 to 4) -> error
+//   Multi-rate: where the spectral radius of its step about the steady creep (multirate_theory.cpp) makes 1e3
+//   of rounding in the run  -> grew, error
+// (statics has no creep: nothing holds the cube along the plane; it must say so, or stay).
+// Memory must not grow: less than 2 MiB from the hundredth period to the last.
+
+namespace palpate::stability {
+namespace {
+
+constexpr double kPeriod = 0.01, kDuration = 1000.0, kRtol = 1e-5;
+constexpr double kSize = 0.05;  // of the cube [m]
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kFriction = 0.5, kSlope = 0.2, kRegularisation = 0.05;  // tan a, v_r [m/s]
+constexpr double kSettling = 2.0;                                        // [s]
+constexpr double kGrown = 1e3;                                           // of rounding, by instability
+
+scene::Description on_a_floor(double slope) {
+  scene::Description d = soft_cube();
+  d.duration_s = kDuration;
+  d.coupling.contact_refresh_s = kPeriod;
+  d.obstacles.push_back(floor_plane());
+  ContactSpec contact;
+  contact.first = "cube";
+  contact.second = "floor";
+  contact.stiffness_pa_m = slope > 0.0 ? 1e7 : 1e3;
+  d.bodies[0].youngs_modulus_pa = slope > 0.0 ? 1e5 : 1e2;
+  if (slope > 0.0) {
+    contact.friction = kFriction;
+    contact.friction_regularisation_m_s = kRegularisation;
+    contact.damping_pa_s_m = 1e5;
+    d.gravity_m_s2 = 9.81 / std::sqrt(1.0 + slope * slope) * Vec3(slope, 0, -1);
+  }
+  d.contacts.push_back(contact);
+  return d;
+}
+
+StabilityCell run(const Lab& lab, double slope) {
+  const double speed = kRegularisation * slope / kFriction;
+  Settled start;
+  if (slope > 0.0) start = settle(on_a_floor(slope), kSettling);
+  Vec3 first = Vec3::Zero();
+  double memory = 0.0, drift = 0.0;
+  const auto look = [&](loop::World& world, double t) {
+    const Vec3 now = (world.positions(world.bodies[0]) - world.bodies[0].placed).rowwise().mean();
+    if (t == 0.0 && slope > 0.0) first = now;
+    if (memory == 0.0 && t >= 1.0 - 1e-9) memory = resident_memory_mib();
+    drift = std::max(drift, (now - first - Vec3(speed * t, 0, 0)).norm());
+  };
+  const SceneCourse course =
+      run_scene(lab, on_a_floor(slope), kRtol, 10.0, look, slope > 0.0 ? &start : nullptr);
+  const double grown = resident_memory_mib() - memory,
+               bar = slope > 0.0 ? 1e-4 * speed * kDuration : kDuration / kPeriod * kEps * kSize;
+  StabilityCell cell;
+  cell.steps = course.steps;
+  cell.error = drift;
+  cell.figure = fmt::format("drift {:.1e} m of {:.0e} beside a creep of {:.1e} m, memory {:+.1f} MiB", drift,
+                            bar, speed * kDuration, grown);
+  if (ended_early(lab.column, course.result, course.finite, course.interrupted, drift > 1e3 * bar, cell))
+    return cell;
+  cell.verdict = drift <= bar && grown < 2.0 ? Verdict::kAccurate : Verdict::kGrew;
+  return cell;
+}
+
+Verdicts expect(const Lab& lab) {
+  if (is_static(lab.column)) return {Verdict::kAccurate, Verdict::kError};
+  return {Verdict::kAccurate};
+}
+
+/// Of one step of a multi-rate method, about the settled creep.
+double amplification_on_slope(const Column& column) {
+  scene::Description d = on_a_floor(kSlope);
+  d.integrator.name = "linearly-implicit-euler";
+  const auto world = loop::assemble(d);
+  const Settled settled = settle(d, kSettling);
+  return multirate_amplification_at(column, *world, settled.q, settled.u, kPeriod);
+}
+
+Verdicts expect_on_slope(const Lab& lab) {
+  if (is_explicit(lab.column) && lab.column.fixed) return {Verdict::kError};
+  if (is_multirate(lab.column) &&
+      kDuration / kPeriod * std::log(amplification_on_slope(lab.column)) > std::log(kGrown))
+    return {Verdict::kGrew, Verdict::kError};
+  return expect(lab);
+}
+
+}  // namespace
+
+Row million_ticks_row() {
+  return {"million-ticks",
+          "a cube on a floor for a million ticks (1000 s)",
+          RowColumns::kSteppers,
+          true,
+          {{"unloaded", expect, [](const Lab& lab) { return run(lab, 0.0); }},
+           {"on an incline, held by friction", expect_on_slope,
+            [](const Lab& lab) { return run(lab, kSlope); }}}};
+}
+
+}  // namespace palpate::stability

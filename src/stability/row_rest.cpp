@@ -1,0 +1,156 @@
+#include <cmath>
+
+#include "palpate/fem/soft_body.h"
+#include "palpate/mesh/generators.h"
+#include "scene_run.h"
+
+// At rest without load every right-hand side is zero but for rounding of the rotations, eps E x (face area) a
+// node, which moves nothing farther than eps times the body's size against its stiffness: a thousand times
+// that, 1e-12 of the size, is the bar, for every method                -> accurate (Soft enough, w H < 1, for
+// every explicit limit: beyond it rounding grows like anything else.) Explicit methods alone may let it grow
+// where a turned body makes rounding a force: under error control there is no error to see, so steps lengthen
+// past the stability limit until rounding has grown to the tolerance; and at a fixed step a Runge-Kutta
+// method of order 2 has |R(iy)|^2 = 1 + y^4/4 > 1 on every undamped mode, at any step
+// -> accurate, bounded Free fall of one tetrahedron from rest, z = -g t^2/2, an internal force that stays
+// zero:
+//   order 1 at a fixed step H (every one of them: the error per step is g H^2/2): relative error H/T exactly;
+//   order >= 2, one-step: exact for quadratics; multistep: its first step is of order 1, one error of g H^2/2
+//   carried on: at most H/T as well;
+//   error control: the sum of what its steps may err, taken as 100 rtol;
+//   statics: nothing holds the body, the matrix is singular: that must be said
+//   -> error
+// No body: time passes.
+
+namespace palpate::stability {
+namespace {
+
+constexpr double kRest = 1e-12, kRtol = 1e-6;
+constexpr double kSoft = 1e3;  // [Pa]
+
+double moved(const loop::World& world) {
+  double most = 0.0;
+  for (const loop::Body& body : world.bodies)
+    most = std::max(most, (world.positions(body) - body.placed).cwiseAbs().maxCoeff());
+  return most;
+}
+
+Verdicts expect_rest(const Lab& lab) {
+  // a free body: its matrix is singular
+  if (is_static(lab.column)) return {Verdict::kAccurate, Verdict::kError};
+  if (is_explicit(lab.column)) return {Verdict::kAccurate, Verdict::kBounded};
+  return {Verdict::kAccurate};
+}
+
+StabilityCell stays(const Lab& lab, const scene::Description& d) {
+  StabilityCell cell;
+  double most = 0.0;
+  const SceneCourse course =
+      run_scene(lab, d, kRtol, 1.0, [&](loop::World& world, double) { most = std::max(most, moved(world)); });
+  cell.steps = course.steps;
+  cell.error = most / d.bodies[0].mesh.size_m.norm();
+  cell.figure = fmt::format("moved {:.1e} of its size", cell.error);
+  if (ended_early(lab.column, course.result, course.finite, course.interrupted, cell.error > 0.1, cell))
+    return cell;
+  cell.verdict = cell.error <= kRest  ? Verdict::kAccurate
+                 : cell.error <= 1e-6 ? Verdict::kBounded
+                                      : Verdict::kGrew;
+  return cell;
+}
+
+scene::Description resting(bool turned, bool floor) {
+  scene::Description d = soft_cube();
+  d.duration_s = 10.0;
+  d.bodies[0].youngs_modulus_pa = kSoft;
+  d.coupling.contact_refresh_s = 0.01;
+  if (turned) d.bodies[0].rotation_vector_rad = Vec3(0.3, -0.7, 0.4);
+  if (!floor) return d;
+  d.obstacles.push_back(floor_plane());
+  ContactSpec contact;
+  contact.first = "cube";
+  contact.second = "floor";
+  contact.stiffness_pa_m = 1e4;
+  d.contacts.push_back(contact);
+  return d;
+}
+
+constexpr double kG = 9.81, kH = 0.01, kFall = 0.4;
+
+double bar_of_fall(const Column& column) {
+  if (!column.fixed) return 100.0 * kRtol;
+  return 1e-9 +
+         (column.entry->traits.order == 1 || column.entry->traits.multistep ? 1.0001 * kH / kFall : 0.0);
+}
+
+Verdicts expect_fall(const Lab& lab) {
+  if (is_static(lab.column)) return {Verdict::kError};
+  return {Verdict::kAccurate};
+}
+
+StabilityCell fall(const Lab& lab) {
+  scene::Description d;
+  d.duration_s = kFall;
+  d.gravity_m_s2 = Vec3(0, 0, -kG);
+  SoftBodySpec body;
+  body.name = "element";
+  body.mesh.generator = "tet";
+  body.mesh.size_m = Vec3(0.1, 0.1, 0.1);
+  body.youngs_modulus_pa = kSoft;
+  d.bodies.push_back(body);
+  d.record.emplace();
+  d.record->state_period_s = kH;
+  StabilityCell cell;
+  const SceneCourse course = run_scene(lab, d, kRtol, 1.0, [&](loop::World& world, double t) {
+    const Points shift = world.positions(world.bodies[0]) - world.bodies[0].placed;
+    cell.error = std::max(
+        std::isnan(cell.error) ? 0.0 : cell.error,
+        (shift.colwise() - Vec3(0, 0, -0.5 * kG * t * t)).cwiseAbs().maxCoeff() / (0.5 * kG * kFall * kFall));
+  });
+  cell.steps = course.steps;
+  const double bar = bar_of_fall(lab.column);
+  cell.figure = fmt::format("error of the path {:.1e} of {:.1e}", cell.error, bar);
+  if (ended_early(lab.column, course.result, course.finite, course.interrupted, cell.error > 0.1, cell))
+    return cell;
+  cell.verdict = cell.error <= bar   ? Verdict::kAccurate
+                 : cell.error <= 0.1 ? Verdict::kBounded
+                                     : Verdict::kGrew;
+  return cell;
+}
+
+StabilityCell nothing(const Lab& lab) {
+  StabilityCell cell;
+  dynamics::State state;
+  dynamics::System system;
+  system.prepare(state.view());
+  const auto stepper = make_stepper(lab.column, system, state, spec_of(lab.column, kRtol, kH));
+  const dynamics::StepResult result = stepper->advance_to(1.0);
+  cell.figure = fmt::format("time {:g} of 1 s", state.time());
+  if (ended_early(lab.column, result, std::isfinite(state.time()), false, false, cell)) return cell;
+  cell.error = std::abs(state.time() - 1.0);
+  cell.verdict = state.time() == 1.0 ? Verdict::kAccurate : Verdict::kGrew;
+  return cell;
+}
+
+}  // namespace
+
+Row rest_row() {
+  return {"rest",
+          "no gravity, everything at rest: it stays at rest to rounding",
+          RowColumns::kSteppers,
+          false,
+          {{"a free cube", expect_rest, [](const Lab& lab) { return stays(lab, resting(false, false)); }},
+           {"a cube that is turned", expect_rest,
+            [](const Lab& lab) { return stays(lab, resting(true, false)); }},
+           {"a cube that just touches a floor", expect_rest,
+            [](const Lab& lab) { return stays(lab, resting(false, true)); }}}};
+}
+
+Row size_row() {
+  return {"sizes",
+          "one element falling, no body at all",
+          RowColumns::kSteppers,
+          false,
+          {{"one element falls", expect_fall, fall},
+           {"no body", [](const Lab&) { return Verdicts{Verdict::kAccurate}; }, nothing}}};
+}
+
+}  // namespace palpate::stability

@@ -1,0 +1,179 @@
+#include <cmath>
+
+#include "scene_run.h"
+#ifdef PALPATE_HAS_TOOL
+#include "palpate/tool/tool.h"
+#endif
+
+// A rigid ball under a virtual coupling k, b, against a soft cube of edge L that is held below.  The hand is
+// the only source of energy.  With the handle's whole path d the coupling's spring can hold 1/2 k d^2, and a
+// cube squeezed by d over its whole face 1/2 E L d^2; the lesser of the two is more than the cube can be
+// given, E0.
+//   A coupled system in continuous time is passive; partitioned, the tool sees a contact that is linear over
+//   a period and the cube sees a tool that does not
+//   answer within it, and each exchange may create energy of the order of the work done in it.  No theorem
+//   bounds it for every stiffness: "bounded" means here that
+//   the cube never holds more than 100 E0 and the tool never strays from the handle's path by more than 10 d.
+//   More is a failure; so is an end without words.
+//   stable: not more than E0 and within 2 d (a spring let go from d swings to -d).
+// Statics follows the load from equilibrium to equilibrium; it may find none where the tool has come free,
+// and must then say so. Monolithic: cube and tool are one system, passive but for the hand's work.  Error
+// control keeps to that and finds its steps whatever the masses, if it is implicit -> stable.
+//   Explicit methods need steps of a few b^-1 m of the light tool, 1e-9 s and 1e6 a period and more, beyond
+//   the limit                        -> error (the light one)
+//   Fixed steps of a refresh, 10 ms, find the contact open or closed as in the contact rows: no theorem
+//   -> stable, bounded; error
+// Density ratio: the coupling follows the hand as fast for either mass (k = m (60 rad/s)^2, critically
+// damped) for the heavy one; the light one, 4e-9 kg, hangs on 300 N/m: a frequency of 3e5 rad/s against ticks
+// of 1 ms.
+
+namespace palpate::stability {
+
+#ifdef PALPATE_HAS_TOOL
+namespace {
+
+constexpr double kRtol = 1e-4, kCubeEdge = 0.05, kToolRadius = 0.01, kPeriod = 0.01;
+
+Verdicts expect(const Lab&) { return {Verdict::kStable, Verdict::kBounded, Verdict::kError}; }
+
+Verdicts expect_monolithic(const Lab& lab, double mass, double damping) {
+  if (is_explicit(lab.column) && damping / mass * kPeriod / 10.0 > kMaxSteps) return {Verdict::kError};
+  if (!is_explicit(lab.column) && !lab.column.fixed) return {Verdict::kStable};
+  return expect(lab);
+}
+
+scene::Description under_a_tool(const std::vector<std::pair<double, double>>& heights, double mass,
+                                double stiffness, double damping) {
+  scene::Description d = soft_cube();
+  d.bodies[0].mesh.element_size_m = 0.5 * kCubeEdge;
+  AttachmentSpec below;
+  below.box_min_m = Vec3(-1, -1, -1e-6);
+  below.box_max_m = Vec3(1, 1, 1e-6);
+  d.bodies[0].attachments.push_back(below);
+  d.tool.emplace();
+  d.tool->radius_m = kToolRadius;
+  d.tool->mass_kg = mass;
+  d.tool->position_m = Vec3(0.001, 0.002, heights.front().second);
+  d.tool->coupling_stiffness_n_m = stiffness;
+  d.tool->coupling_damping_n_s_m = damping;
+  d.device.emplace();
+  for (const auto& [time, z] : heights) {
+    KeyframeSpec frame;
+    frame.time_s = time;
+    frame.position_m = Vec3(0.001, 0.002, z);
+    d.device->keyframes.push_back(frame);
+  }
+  ContactSpec contact;
+  contact.first = "cube";
+  contact.second = "tool";
+  contact.stiffness_pa_m = 1e7;
+  d.contacts.push_back(contact);
+  d.coupling.exchange_period_s = d.coupling.contact_refresh_s = kPeriod;
+  d.duration_s = heights.back().first + 0.1;
+  return d;
+}
+
+/// The family of Newmark carries the acceleration along, and overshoots in its first step (linear_theory.cpp,
+/// 2): places by 1 + y/4 + min(r/4, 1/6) y^2, y = w H of the tool on its coupling, r = 2 z/y = b/(k H).  A
+/// light tool has y = 3e3.
+double overshoot(const Column& column, const scene::Description& d) {
+  if (d.coupling.scheme != "monolithic" || column.entry->traits.family != "Newmark") return 1.0;
+  const double y = kPeriod * std::sqrt(d.tool->coupling_stiffness_n_m / d.tool->mass_kg),
+               r = d.tool->coupling_damping_n_s_m / (d.tool->coupling_stiffness_n_m * kPeriod);
+  return 1.0 + 0.25 * y + std::min(0.25 * r, 1.0 / 6.0) * y * y;
+}
+
+/// Elastic and kinetic.
+double energy_of_cube(loop::World& world) {
+  const loop::Body& cube = world.bodies[0];
+  const dynamics::Block* block = world.state.layout().find(cube.block_id);
+  const Eigen::Map<const Points> v(world.state.u().data() + block->u_offset, 3, block->u_size / 3);
+  return cube.term->energy(world.state.view()) + 0.5 * v.colwise().squaredNorm().dot(cube.masses);
+}
+
+StabilityCell run(const Lab& lab, const scene::Description& d, bool must_touch = true) {
+  double path = 0.0, strayed = 0.0;
+  const auto& frames = d.device->keyframes;
+  for (std::size_t i = 1; i < frames.size(); ++i)
+    path += (frames[i].position_m - frames[i - 1].position_m).norm();
+  const double put_in =
+      0.5 * path * path * std::min(d.tool->coupling_stiffness_n_m, d.bodies[0].youngs_modulus_pa * kCubeEdge);
+  double held = 0.0;  // by the cube, the most [J]
+  const SceneCourse course = run_scene(lab, d, kRtol, put_in, [&](loop::World& world, double) {
+    held = std::max(held, energy_of_cube(world));
+    for (const KeyframeSpec& frame : frames)
+      strayed = std::max(strayed, (world.tool_pose().translation - frame.position_m).norm() / path - 1.0);
+  });
+  const double over = overshoot(lab.column, d), most = 101.0 * over * over * put_in,
+               farthest = 10.0 * over - 1.0;
+  StabilityCell cell;
+  cell.steps = course.steps;
+  cell.gain = held / put_in - 1.0;
+  cell.figure =
+      fmt::format("cube held {:.1e} of {:.1e} J, tool strayed {:+.1e} paths", held, put_in, strayed);
+  if (ended_early(lab.column, course.result, course.finite && std::isfinite(strayed + held),
+                  course.interrupted, held > most || strayed > farthest, cell))
+    return cell;
+  if (must_touch && held < 1e-9 * put_in) {
+    cell.verdict = Verdict::kSilent;
+    cell.reason = "the tool never touched the cube: nothing was tried";
+    return cell;
+  }
+  cell.verdict = held <= put_in && strayed <= 1.0      ? Verdict::kStable
+                 : held <= most && strayed <= farthest ? Verdict::kBounded
+                                                       : Verdict::kGrew;
+  return cell;
+}
+
+double ball_mass(double density) { return density * 4.0 / 3.0 * M_PI * std::pow(kToolRadius, 3); }
+
+}  // namespace
+
+Row density_ratio_row() {
+  // rate [rad/s]
+  const double above = kCubeEdge + kToolRadius, heavy = ball_mass(1e9), light = ball_mass(1e-3), rate = 60.0;
+  const std::vector<std::pair<double, double>> press = {
+      {0.0, above}, {0.1, above - 0.005}, {0.2, above - 0.005}, {0.3, above + 0.005}};
+  constexpr double kLightDamping = 4.0;
+  const scene::Description with_heavy = under_a_tool(press, heavy, heavy * rate * rate, 2.0 * heavy * rate),
+                           with_light = under_a_tool(press, light, 300.0, kLightDamping);
+  const auto as_one = [](scene::Description d) {
+    d.coupling.scheme = "monolithic";
+    return d;
+  };
+  return {"density-ratio",
+          "a ball a million times as dense as the soft cube that it presses, or a millionth",
+          RowColumns::kSteppers,
+          false,
+          {{"tool 1e6 times as dense, partitioned", expect,
+            [with_heavy](const Lab& lab) { return run(lab, with_heavy); }},
+           {"tool 1e-6 times as dense, partitioned", expect,
+            [with_light](const Lab& lab) { return run(lab, with_light); }},
+           {"tool 1e6 times as dense, monolithic",
+            [=](const Lab& lab) { return expect_monolithic(lab, heavy, 2.0 * heavy * rate); },
+            [one = as_one(with_heavy)](const Lab& lab) { return run(lab, one); }},
+           {"tool 1e-6 times as dense, monolithic",
+            [=](const Lab& lab) { return expect_monolithic(lab, light, kLightDamping); },
+            [one = as_one(with_light)](const Lab& lab) { return run(lab, one); }}}};
+}
+
+Row swallowed_tool_row() {
+  const auto out_in = [](double duration) {
+    return under_a_tool({{0.0, 0.6 * kCubeEdge}, {duration, 2.0 * kCubeEdge}}, 0.05, 300.0, 4.0);
+  };
+  return {
+      "swallowed-tool",
+      "a ball that starts wholly inside the soft cube is pulled out",
+      RowColumns::kSteppers,
+      false,
+      {{"pulled out in 1 s", expect, [out_in](const Lab& lab) { return run(lab, out_in(1.0)); }},
+       {"pulled out in 0.1 s", expect, [out_in](const Lab& lab) { return run(lab, out_in(0.1), false); }},
+       // the fast ones may slip out between two exchanges
+       {"pulled out in 0.01 s", expect, [out_in](const Lab& lab) { return run(lab, out_in(0.01), false); }}}};
+}
+#else
+Row density_ratio_row() { return {"density-ratio", "needs tools, which were not compiled in"}; }
+Row swallowed_tool_row() { return {"swallowed-tool", "needs tools, which were not compiled in"}; }
+#endif
+
+}  // namespace palpate::stability

@@ -1,0 +1,118 @@
+#include "scene_run.h"
+
+#include <cmath>
+
+#include "palpate/core/error.h"
+
+namespace palpate::stability {
+namespace {
+
+constexpr double kGrown = 1e3, kFollow = 100.0;
+
+/// Keeps the course while the run goes on, and ends it.
+class Watch : public loop::Observer {
+ public:
+  Watch(const Lab& lab, SceneCourse& course, double duration, double put_in, const Look& look)
+      : lab_(lab), course_(course), duration_(duration), put_in_(put_in), look_(look) {}
+  void period(loop::World& world, double t) override {
+    const double energy = world.mechanical_energy();
+    if (t == 0.0) course_.available = energy + put_in_;
+    course_.finite =
+        course_.finite && std::isfinite(energy) && world.state.q().allFinite() && world.state.u().allFinite();
+    course_.highest = std::max(course_.highest, energy);
+    course_.last = energy;
+    course_.interrupted = lab_.time_is_up();
+    if (look_) look_(world, t);
+    const bool growing = lab_.column.entry && lab_.column.fixed && is_explicit(lab_.column) &&
+                         course_.highest > kGrown * course_.available;
+    if (course_.interrupted || !course_.finite || (t >= duration_ * (1.0 - 1e-9) && !growing)) stop_ = true;
+  }
+  const std::atomic<bool>* stop() const { return &stop_; }
+
+ private:
+  const Lab& lab_;
+  SceneCourse& course_;
+  double duration_, put_in_;
+  const Look& look_;
+  std::atomic<bool> stop_{false};
+};
+
+}  // namespace
+
+Settled settle(const scene::Description& description, double duration_s) {
+  scene::Description d = description;
+  d.duration_s = duration_s;
+  d.integrator = {};
+  d.integrator.name = "linearly-implicit-euler";
+  const auto world = loop::assemble(d);
+  const loop::RunResult run = loop::run(*world, {});
+  PALPATE_CHECK(run.status.ok(), "the scene did not settle: {}", run.status.message);
+  return {world->state.q(), world->state.u()};
+}
+
+SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in,
+                      const Look& look, const Settled* start) {
+  scene::Description d = description;
+  d.integrator = {};
+  // assembled with, and replaced: a column need not be in the registry
+  d.integrator.name = "linearly-implicit-euler";
+  const auto world = loop::assemble(d);
+  if (start) {
+    world->state.q() = start->q;
+    world->state.u() = start->u;
+  }
+  if (lab.column.entry && world->stepper) {
+    world->description.integrator = spec_of(lab.column, rtol, loop::period_of(d));
+    world->stepper = make_stepper(lab.column, world->system, world->state, world->description.integrator);
+    world->stepper->set_interrupt(lab.expired);
+  }
+  SceneCourse course;
+  Watch watch(lab, course, d.duration_s, put_in, look);
+  loop::RunOptions options;
+  options.duration_s = kFollow * d.duration_s;
+  options.observers = {&watch};
+  options.stop = watch.stop();
+  course.run = loop::run(*world, options);
+  course.result = course.run.status;
+  if (course.result.status == dynamics::StepStatus::kInterrupted) course.interrupted = true;
+  if (world->stepper) course.steps = world->stepper->counters().steps;
+  return course;
+}
+
+void judge(const Lab& lab, const SceneCourse& course, const GainBars& bars, StabilityCell& cell) {
+  cell.steps = course.steps;
+  cell.gain = course.gain();
+  cell.figure = fmt::format("energy {:+.1e}", cell.gain);
+  if (ended_early(lab.column, course.result, course.finite, course.interrupted, cell.gain > bars.bounded,
+                  cell))
+    return;
+  cell.verdict = cell.gain <= bars.stable    ? Verdict::kStable
+                 : cell.gain <= bars.bounded ? Verdict::kBounded
+                                             : Verdict::kGrew;
+}
+
+scene::Description soft_cube() {
+  scene::Description d;
+  d.name = "soft cube";
+  SoftBodySpec body;
+  body.name = "cube";
+  body.mesh.generator = "box";
+  body.mesh.size_m = Vec3::Constant(0.05);
+  body.mesh.element_size_m = 0.05;
+  body.position_m = Vec3(0, 0, 0.025);
+  body.youngs_modulus_pa = 1e5;
+  body.stiffness_damping_s = 1e-3;
+  d.bodies.push_back(body);
+  d.record.emplace();
+  d.record->state_period_s = 0.01;  // the loop's period where nothing else asks for one
+  return d;
+}
+
+ObstacleSpec floor_plane() {
+  ObstacleSpec floor;
+  floor.name = "floor";
+  floor.type = "plane";
+  return floor;
+}
+
+}  // namespace palpate::stability

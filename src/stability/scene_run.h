@@ -1,0 +1,52 @@
+#pragma once
+#include <functional>
+
+#include "palpate/loop/run.h"
+#include "row.h"
+
+namespace palpate::stability {
+
+/// What a run of a scene was, for a verdict.
+struct SceneCourse {
+  dynamics::StepResult result;
+  double available = 0.0;  ///< mechanical energy at the start, plus what is put in from outside [J]
+  double highest = 0.0;    ///< largest mechanical energy seen [J]
+  double last = 0.0;       ///< at the end [J]
+  bool finite = true;      ///< every state that was called good
+  bool interrupted = false;
+  long steps = 0;
+  loop::RunResult run;
+  double gain() const { return (highest - available) / available; }
+};
+
+struct Settled {
+  VecX q, u;
+};
+
+/// Sees the world after every period.
+using Look = std::function<void(loop::World&, double t)>;
+
+/// Runs a scene with the column's method, at the description's own periods; a fixed step is the period's.  A
+/// run at an explicit fixed step whose energy has passed `grown` times what was available is followed beyond
+/// its end, until it fails or has gone on a hundred times as long: what has begun to overflow must say so.
+/// @param put_in  work done from outside [J]
+/// @param start  where it starts from, at time 0; null: as described
+SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in,
+                      const Look& look = {}, const Settled* start = nullptr);
+
+/// Places and speeds of a scene after `duration_s` of linearly implicit Euler.
+Settled settle(const scene::Description& description, double duration_s);
+
+/// Largest energy gains that count as stable and as bounded.
+struct GainBars {
+  double stable, bounded;
+};
+
+/// The verdict on a course by its energy alone; fills the cell's figures.
+void judge(const Lab& lab, const SceneCourse& course, const GainBars& bars, StabilityCell& cell);
+
+/// A cube of 50 mm, soft (E = 1e5 Pa), a little damped, free, its lower side at z = 0; 8 nodes.
+scene::Description soft_cube();
+ObstacleSpec floor_plane();
+
+}  // namespace palpate::stability

@@ -1,9 +1,0 @@
-#pragma once
-#include "palpate/dynamics/system.h"
-
-namespace palpate::study {
-
-/// Largest w of K phi = w^2 M phi at a state [rad/s]; dense: small systems.
-double largest_frequency(dynamics::System& system, const dynamics::StateView& state);
-
-}  // namespace palpate::study

@@ -1,0 +1,408 @@
+#include "palpate/compare/compare.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "compare/scenes.h"
+#include "loop/small_scenes.h"
+#include "palpate/bench/bench.h"
+#include "palpate/core/error.h"
+#include "palpate/store/csv.h"
+#include "palpate/store/study_columns.h"
+#include "palpate/validation/validation.h"
+
+using namespace palpate;
+using compare::PointStatus;
+
+namespace {
+
+compare::CompareOptions quick() {
+  compare::CompareOptions options;
+  options.repeats = 1;
+  options.integrators = {"linearly-implicit-euler", "cvode-bdf"};
+  return options;
+}
+
+std::string message_of(const scene::Description& d, const compare::CompareOptions& options) {
+  try {
+    compare::run({d}, options);
+  } catch (const Error& e) { return e.what(); }
+  return "";
+}
+
+std::filesystem::path fresh_folder(const std::string& name) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("palpate-" + name + "-" + std::to_string(getpid()));
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+TEST(Compare, FindsTheOrderOfTheoryAgainstAReferenceOfAnotherFamily) {
+  compare::CompareOptions options = quick();
+  options.repeats = 2;
+  int calls = 0;
+  options.progress = [&](double fraction, const std::string& what) {
+    ++calls;
+    EXPECT_LE(fraction, 1.0);
+    EXPECT_FALSE(what.empty());
+  };
+  const compare::Comparison all = compare::run({compare_scenes::block(compare_scenes::kLadders)}, options);
+  ASSERT_EQ(all.scenes.size(), 1u);
+  const compare::SceneComparison& c = all.scenes[0];
+  EXPECT_LT(c.reference.own_error.position_rel_l2, 1e-6);
+  EXPECT_EQ(c.reference.trouble, "");
+  EXPECT_NE(c.reference.description.find("ark-erk-5"), std::string::npos);
+  ASSERT_EQ(c.points.size(), 6u);
+  EXPECT_EQ(calls, 2 + 2 * 6);
+  std::vector<double> h, e;
+  for (const compare::ComparePoint& p : c.points) {
+    EXPECT_EQ(p.cpu_s.size(), 2u);
+    EXPECT_LE(p.cpu_min_s, p.cpu_median_s);
+    EXPECT_EQ(p.status, PointStatus::kOk) << p.reason;
+    EXPECT_FALSE(p.family.empty());
+    if (p.integrator != "linearly-implicit-euler") continue;
+    h.push_back(p.setting);
+    e.push_back(p.error.position_rel_l2);
+  }
+  const double order = validation::fitted_order(h, e);
+  EXPECT_GT(order, 0.9);
+  EXPECT_LT(order, 1.1);
+  EXPECT_LT(c.points.back().error.position_rel_l2, 1e-4);
+}
+
+TEST(Compare, SeveralScenesEachAgainstItsOwnReference) {
+  compare::CompareOptions options = quick();
+  options.integrators = {"cvode-bdf"};
+  options.jobs = 2;
+  const auto soft = compare_scenes::block(compare_scenes::kLadders, "soft"),
+             stiff = compare_scenes::block(compare_scenes::kLadders, "stiff", 4e4);
+  const compare::Comparison all = compare::run({soft, stiff}, options);
+  ASSERT_EQ(all.scenes.size(), 2u);
+  EXPECT_EQ(all.scenes[1].scene, "stiff");
+  for (const compare::SceneComparison& c : all.scenes) {
+    ASSERT_EQ(c.points.size(), 3u);
+    EXPECT_LT(c.points[2].error.position_rel_l2, 1e-4);
+  }
+  EXPECT_NE(all.scenes[0].points[0].error.position_rel_l2, all.scenes[1].points[0].error.position_rel_l2);
+  const auto alone = compare::run({soft}, options);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(alone.scenes[0].points[i].error.position_rel_l2, all.scenes[0].points[i].error.position_rel_l2);
+}
+
+// Without a ladder in the scene, each integrator gets one by what steers its step; nobody has to list the
+// registry.
+TEST(Compare, ComparesWhatTheSceneDoesNotName) {
+  compare::CompareOptions options = quick();
+  options.limit_s = 1.0;
+  const compare::SceneComparison c = compare::run({compare_scenes::block("")}, options).scenes[0];
+  int rtol = 0, step = 0;
+  for (const compare::ComparePoint& p : c.points) {
+    rtol += p.integrator == "cvode-bdf" && p.setting_name == "rtol";
+    step += p.integrator == "linearly-implicit-euler" && p.setting_name == "step_s";
+  }
+  EXPECT_EQ(rtol, 7);
+  EXPECT_EQ(step, 8);
+  EXPECT_DOUBLE_EQ(c.points.front().setting, 1e-2);
+  for (std::size_t i = 1; i < c.points.size(); ++i) {
+    if (c.points[i].label != c.points[i - 1].label) continue;
+    EXPECT_NEAR(c.points[i].setting / c.points[i - 1].setting, c.points[i].setting_name == "rtol" ? 0.1 : 0.5,
+                1e-12);
+  }
+}
+
+TEST(Compare, LaddersOfOneIntegratorAreToldApartByTheirLabels) {
+  compare::CompareOptions options = quick();
+  options.integrators = {"capped at 2"};
+  const std::string labelled = compare_scenes::kLadders +
+                               "[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nlabel = \"capped at 2\"\nset "
+                               "= [\"integrator.max_order=2\"]\nrtol = [1e-4]\n";
+  compare::SceneComparison c = compare::run({compare_scenes::block(labelled)}, options).scenes[0];
+  ASSERT_EQ(c.points.size(), 1u);
+  EXPECT_EQ(c.points[0].label, "capped at 2");
+  EXPECT_EQ(c.points[0].description.integrator.max_order, 2);
+  const long capped = c.points[0].result.counters.steps;
+  options.integrators = {"cvode-bdf"};  // the ladder of that name, not those with a label of their own
+  c = compare::run({compare_scenes::block(labelled)}, options).scenes[0];
+  ASSERT_EQ(c.points.size(), 3u);
+  for (const auto& point : c.points) EXPECT_EQ(point.label, "cvode-bdf");
+  EXPECT_LT(c.points[1].result.counters.steps, capped) << "of order 5 it needs fewer steps at rtol 1e-4";
+}
+
+TEST(Compare, LaddersThatMakeNoSenseAreRefused) {
+  const auto with = [](const std::string& ladder) {
+    return compare_scenes::block("[[compare.ladder]]\n" + ladder);
+  };
+  compare::CompareOptions everything;
+  everything.repeats = 1;
+  EXPECT_NE(message_of(with("integrator = \"cvode-bdf\"\nstep_s = [0.01]\n"), everything)
+                .find("steps under error control"),
+            std::string::npos);
+  EXPECT_NE(message_of(with("integrator = \"linearly-implicit-euler\"\nrtol = [0.01]\n"), everything)
+                .find("takes fixed steps"),
+            std::string::npos);
+  EXPECT_NE(message_of(with("integrator = \"cvode-bfd\"\nrtol = [0.01]\n"), everything)
+                .find("did you mean \"cvode-bdf\"?"),
+            std::string::npos);
+  const std::string twice = "integrator = \"cvode-bdf\"\nrtol = [0.01]\n";
+  EXPECT_NE(
+      message_of(with(twice + "[[compare.ladder]]\n" + twice), everything).find("give one of them a label"),
+      std::string::npos);
+  compare::CompareOptions unknown = quick();
+  unknown.integrators = {"cvode-bfd"};
+  EXPECT_NE(message_of(compare_scenes::block(""), unknown).find("did you mean \"cvode-bdf\"?"),
+            std::string::npos);
+  scene::Description made_by_hand = small_scenes::held_block();
+  EXPECT_NE(message_of(made_by_hand, quick()).find("has no text"), std::string::npos);
+}
+
+// A run that gives up after a hundredth of the time is close to the truth for that long: no error is told for
+// it.
+TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
+  const std::string text =
+      "[integrator]\nmax_steps = 2000\n[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s "
+      "= [1e-3, 1e-6]\n";
+  compare::CompareOptions options = quick();
+  options.integrators = {"linearly-implicit-euler"};
+  const compare::Comparison all = compare::run({compare_scenes::block(text)}, options);
+  const compare::SceneComparison& c = all.scenes[0];
+  ASSERT_EQ(c.points.size(), 2u);
+  EXPECT_EQ(c.points[0].status, PointStatus::kOk);
+  EXPECT_EQ(c.points[1].status, PointStatus::kFailed);
+  EXPECT_NE(c.points[1].reason.find("steps before t_end"), std::string::npos) << c.points[1].reason;
+  const compare::TrajectoryError& e = c.points[1].error;
+  for (const double value :
+       {e.position_rel_l2, e.position_max_m, e.force_rms_n, e.torque_rms_n_m, e.energy_j})
+    EXPECT_TRUE(std::isnan(value));
+  EXPECT_FALSE(c.points[1].unresolved || c.points[1].force_unresolved || c.points[1].torque_unresolved);
+
+  const std::filesystem::path folder = fresh_folder("compare-write");
+  compare::write(all, folder.string());
+  const store::CsvTable table = store::read_csv((folder / "compare.csv").string());
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.headers, store::compare_columns());
+  EXPECT_EQ(table.column("status")[1], "failed");
+  EXPECT_EQ(table.column("reason")[1], c.points[1].reason);
+  EXPECT_TRUE(std::filesystem::exists(folder / "reference.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "exchange.csv")) << "no tool, no exchange";
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Compare, ALadderEndsWhereItRunsOutOfTime) {
+  const std::string text =
+      "[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s = [1e-3, 1e-7, 1e-8]\n";
+  compare::CompareOptions options = quick();
+  options.integrators = {"linearly-implicit-euler"};
+  options.limit_s = 0.3;
+  const auto d =
+      scene::parse(compare_scenes::block_text("[integrator]\nmax_steps = 1000000000\n" + text), "block.toml");
+  const compare::SceneComparison c = compare::run({d}, options).scenes[0];
+  ASSERT_EQ(c.points.size(), 3u);
+  EXPECT_EQ(c.points[0].status, PointStatus::kOk);
+  EXPECT_EQ(c.points[1].status, PointStatus::kOutOfTime);
+  EXPECT_NE(c.points[1].reason.find("out of time: 0.3 s"), std::string::npos) << c.points[1].reason;
+  EXPECT_EQ(c.points[2].status, PointStatus::kNotTried);
+  EXPECT_EQ(c.points[2].reason, "not tried: a coarser rung ran out of time");
+}
+
+TEST(Compare, WhatCannotRunTheSceneSaysSoOnce) {
+  const std::string text =
+      "[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nset = [\"integrator.linear_solver=nonsense\"]\nrtol = "
+      "[1e-2, 1e-3]\n";
+  compare::CompareOptions options = quick();
+  options.integrators = {"cvode-bdf"};
+  const compare::SceneComparison c = compare::run({compare_scenes::block(text)}, options).scenes[0];
+  ASSERT_EQ(c.points.size(), 1u);
+  EXPECT_EQ(c.points[0].status, PointStatus::kRefused);
+  EXPECT_NE(c.points[0].reason.find("unknown linear solver \"nonsense\""), std::string::npos)
+      << c.points[0].reason;
+}
+
+// The explicit check needs more steps than it may take on a stiff block; cvode-bdf does not.
+TEST(Compare, WithoutACheckTheReferencesOwnErrorIsNotKnown) {
+  const std::string text =
+      "[integrator]\nmax_steps = 400\n[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nrtol = "
+      "[1e-3]\n[compare]\nreference_rtol = 1e-6\n";
+  compare::CompareOptions options = quick();
+  options.integrators = {"cvode-bdf"};
+  const compare::SceneComparison c =
+      compare::run({compare_scenes::block(text, "stiff", 1e8)}, options).scenes[0];
+  EXPECT_TRUE(c.reference.available);
+  EXPECT_TRUE(std::isnan(c.reference.own_error.position_rel_l2));
+  EXPECT_NE(c.reference.trouble.find("the check by ark-erk-5"), std::string::npos) << c.reference.trouble;
+  ASSERT_EQ(c.points.size(), 1u);
+  EXPECT_EQ(c.points[0].status, PointStatus::kOk) << c.points[0].reason;
+  EXPECT_TRUE(c.points[0].error.position_rel_l2 > 0.0);
+  EXPECT_FALSE(c.points[0].unresolved);
+}
+
+TEST(Compare, WithoutAReferencePointsHaveCostsAndNoErrors) {
+  const std::string text =
+      "[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s = "
+      "[1e-3]\n[compare]\nreference_rtol = 1e-12\nreference_check_rtol = 1e-12\n";
+  compare::CompareOptions options = quick();
+  options.integrators = {"linearly-implicit-euler"};
+  options.reference_limit_s = 1e-6;  // less than any run takes
+  const compare::SceneComparison c = compare::run({compare_scenes::block(text)}, options).scenes[0];
+  EXPECT_FALSE(c.reference.available);
+  EXPECT_NE(c.reference.trouble.find("there is no reference"), std::string::npos) << c.reference.trouble;
+  ASSERT_EQ(c.points.size(), 1u);
+  EXPECT_EQ(c.points[0].status, PointStatus::kOk);
+  EXPECT_TRUE(std::isnan(c.points[0].error.position_rel_l2));
+  EXPECT_GT(c.points[0].result.counters.steps, 0);
+}
+
+TEST(Compare, StopsAtOnceWhenAsked) {
+  std::atomic<bool> stop{true};
+  compare::CompareOptions options = quick();
+  options.stop = &stop;
+  const compare::Comparison all = compare::run({compare_scenes::block(compare_scenes::kLadders)}, options);
+  EXPECT_TRUE(all.stopped);
+  for (const compare::ComparePoint& p : all.scenes[0].points) EXPECT_EQ(p.status, PointStatus::kMissing);
+}
+
+TEST(Compare, GoesOnFromItsDatabaseAndDoesNothingTwice) {
+  const std::filesystem::path folder = fresh_folder("compare-resume");
+  compare::CompareOptions options = quick();
+  options.repeats = 2;
+  options.database = (folder / "study.sqlite").string();
+  const auto d = compare_scenes::block(compare_scenes::kLadders);
+  const compare::Comparison first = compare::run({d}, options);
+  EXPECT_EQ(first.reused, 0);
+  int runs = 0;
+  options.progress = [&](double, const std::string&) { ++runs; };
+  const compare::Comparison again = compare::run({d}, options);
+  EXPECT_EQ(runs, 0);
+  EXPECT_EQ(again.reused, 2 + 2 * 6);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(again.scenes[0].points[i].cpu_s, first.scenes[0].points[i].cpu_s);
+    EXPECT_EQ(again.scenes[0].points[i].error.energy_j, first.scenes[0].points[i].error.energy_j);
+  }
+  // Another rung changes no other run; another scene changes all.
+  const auto longer = compare_scenes::block(
+      compare_scenes::kLadders +
+      "[[compare.ladder]]\nintegrator = \"cvode-bdf\"\nlabel = \"more\"\nrtol = [1e-5]\n");
+  options.integrators.push_back("more");
+  compare::run({longer}, options);
+  EXPECT_EQ(runs, 2);
+  options.integrators.pop_back();
+  compare::run({compare_scenes::block(compare_scenes::kLadders, "block", 1.1e4)}, options);
+  EXPECT_EQ(runs, 2 + 2 + 2 * 6);
+  std::filesystem::remove_all(folder);
+}
+
+// What ran out of time is tried again only where it is given more.
+TEST(Compare, MoreTimeTriesAgain) {
+  const std::filesystem::path folder = fresh_folder("compare-more-time");
+  compare::CompareOptions options = quick();
+  options.integrators = {"linearly-implicit-euler"};
+  options.database = (folder / "study.sqlite").string();
+  options.limit_s = 0.02;
+  const auto d = compare_scenes::block(
+      "[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s = [1e-5]\n");
+  EXPECT_EQ(compare::run({d}, options).scenes[0].points[0].status, PointStatus::kOutOfTime);
+  EXPECT_EQ(compare::run({d}, options).reused, 3);
+  options.limit_s = 60.0;
+  EXPECT_EQ(compare::run({d}, options).scenes[0].points[0].status, PointStatus::kOk);
+  std::filesystem::remove_all(folder);
+}
+
+#ifdef PALPATE_HAS_TOOL
+// Each of Simbody's schemes at its own order in the tick; the error-controlled ones see only the handle,
+// which is sampled by the tick.
+TEST(Compare, AToolWithoutABodyIsComparedByItsTicks) {
+  compare::CompareOptions options;
+  options.repeats = 1;
+  const compare::SceneComparison c = compare::run({compare_scenes::tool_only()}, options).scenes[0];
+  EXPECT_EQ(c.reference.trouble, "");
+  EXPECT_LT(c.reference.own_error.position_rel_l2, 1e-6);
+  std::vector<double> h, e;
+  int cpodes = 0;
+  for (const compare::ComparePoint& p : c.points) {
+    EXPECT_EQ(p.status, PointStatus::kOk) << p.label << ": " << p.reason;
+    EXPECT_EQ(p.setting_name, "tick_s");
+    cpodes += p.integrator == "simbody-cpodes";
+    if (p.integrator != "linearly-implicit-euler") continue;
+    h.push_back(p.setting);
+    e.push_back(p.error.position_rel_l2);
+  }
+  EXPECT_EQ(cpodes, 6);
+  ASSERT_EQ(h.size(), 6u);
+  const double order = validation::fitted_order({h.begin() + 2, h.end()}, {e.begin() + 2, e.end()});
+  EXPECT_GT(order, 0.9);
+  EXPECT_LT(order, 1.1);
+}
+
+// A multistep method begins anew at every refresh that changes the contact: it needs more steps the more
+// often that is; a one-step method's count stays.
+TEST(Compare, RestartsCostMultistepMethods) {
+  const std::string text = R"([scene]
+name = "falling block"
+duration_s = 0.04
+gravity_m_s2 = [0.0, 0.0, -9.81]
+[[body]]
+name = "block"
+position_m = [0.0, 0.0, 0.0101]
+velocity_m_s = [0.0, 0.0, -0.5]
+youngs_modulus_pa = 2e4
+stiffness_damping_s = 2e-3
+[body.mesh]
+generator = "box"
+size_m = [0.04, 0.04, 0.02]
+element_size_m = 0.01
+[[obstacle]]
+name = "floor"
+type = "plane"
+[[contact]]
+between = ["block", "floor"]
+stiffness_pa_m = 1e7
+[integrator]
+rtol = 1e-4
+step_s = 1e-3
+[compare]
+refresh_periods_s = [0.01, 0.001]
+reference_rtol = 1e-4
+reference_check = "cvode-bdf"
+reference_check_rtol = 1e-4
+[[compare.ladder]]
+integrator = "cvode-bdf"
+rtol = [1e-2]
+[[compare.ladder]]
+integrator = "linearly-implicit-euler"
+step_s = [1e-3]
+)";
+  const compare::SceneComparison c = compare::run({scene::parse(text, "falling.toml")}, quick()).scenes[0];
+  ASSERT_EQ(c.restarts.size(), 4u);
+  const auto& rare = c.restarts[0];
+  const auto& often = c.restarts[1];
+  ASSERT_EQ(rare.integrator, "cvode-bdf");
+  EXPECT_TRUE(rare.multistep);
+  EXPECT_DOUBLE_EQ(often.setting, 0.001);
+  EXPECT_GT(often.result.counters.reinits, rare.result.counters.reinits);
+  EXPECT_GT(often.result.counters.steps, rare.result.counters.steps);
+  EXPECT_FALSE(c.restarts[2].multistep);
+  EXPECT_EQ(c.restarts[2].result.counters.steps, 40);
+  EXPECT_EQ(c.restarts[3].result.counters.steps, 40);
+}
+#endif
+
+TEST(BenchFem, StagesAddUpToTheStep) {
+  const bench::FemBench b = bench::bench_fem(8, 0.01, 4, "cholmod");
+  EXPECT_EQ(b.nodes, 9 * 3 * 3);
+  EXPECT_EQ(b.tetrahedra, 5 * 8 * 2 * 2);
+  EXPECT_GT(b.force_ms, 0.0);
+  EXPECT_GT(b.tangent_ms, 0.0);
+  EXPECT_GT(b.factor_ms, 0.0);
+  EXPECT_GT(b.solve_ms, 0.0);
+  EXPECT_NEAR(b.force_ms + b.tangent_ms + b.factor_ms + b.solve_ms + b.other_ms, b.step_ms, 1e-12);
+  EXPECT_THROW(bench::bench_fem(2, 0.01, 4, "cholmod"), Error);
+}
+
+TEST(BenchLeaveOut, RefusesASceneThatLeavesNothingOut) {
+  EXPECT_THROW(bench::bench_leave_out(small_scenes::pressed_block(0.001), 1), Error);
+}
+
+}  // namespace

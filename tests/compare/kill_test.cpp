@@ -1,0 +1,112 @@
+// A study that is killed again and again, and started again, ends with the table of one that was left alone.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <random>
+
+#include "compare/codec.h"
+#include "compare/scenes.h"
+#include "palpate/compare/compare.h"
+#include "palpate/core/error.h"
+#include "palpate/store/study_db.h"
+
+using namespace palpate;
+namespace fs = std::filesystem;
+
+namespace {
+
+compare::CompareOptions options_of(const fs::path& database) {
+  compare::CompareOptions options;
+  options.repeats = 2;
+  options.jobs = 2;
+  options.integrators = {"linearly-implicit-euler", "cvode-bdf"};
+  options.database = database.string();
+  return options;
+}
+
+std::vector<scene::Description> scenes() {
+  const std::string ladders = R"([[compare.ladder]]
+integrator = "linearly-implicit-euler"
+step_s = [2e-4, 1e-4, 5e-5, 2.5e-5]
+[[compare.ladder]]
+integrator = "cvode-bdf"
+rtol = [1e-2, 1e-4, 1e-6, 1e-8]
+)";
+  return {compare_scenes::block(ladders, "one"), compare_scenes::block(ladders, "two", 3e4)};
+}
+
+long rows_in(const fs::path& database) {
+  if (!fs::exists(database)) return 0;
+  try {
+    return store::StudyDb(database.string(), compare::run_columns()).run_count();
+  } catch (const Error&) { return 0; }  // it is being made in this moment
+}
+
+/// A process that makes the study, killed when it has finished some more runs and a while later; true where
+/// it was still at work.
+bool study_killed_after(const fs::path& database, long rows, int more_us) {
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      compare::run(scenes(), options_of(database));
+    } catch (...) { _exit(1); }
+    _exit(0);
+  }
+  int status = 0;
+  while (rows_in(database) < rows && waitpid(child, &status, WNOHANG) == 0) usleep(2000);
+  usleep(static_cast<useconds_t>(more_us));
+  kill(child, SIGKILL);
+  return waitpid(child, &status, 0) == child && WIFSIGNALED(status);
+}
+
+TEST(CompareKill, TenKillsGiveTheTableOfAnUndisturbedRun) {
+  const fs::path folder = fs::temp_directory_path() / ("palpate-compare-kill-" + std::to_string(getpid()));
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  const compare::Comparison whole = compare::run(scenes(), options_of(folder / "whole.sqlite"));
+
+  std::mt19937 random(11);
+  int kills = 0, grew = 0;
+  long kept = 0;
+  for (int i = 0; i < 10; ++i) {
+    const long rows = kept + static_cast<long>(random() % 3);
+    kills += study_killed_after(folder / "killed.sqlite", rows, static_cast<int>(random() % 10000));
+    if (!fs::exists(folder / "killed.sqlite")) continue;  // killed before it was made
+    const store::StudyDb database((folder / "killed.sqlite").string(), compare::run_columns());
+    EXPECT_GE(database.run_count(), kept) << "kill " << i;
+    grew += database.run_count() > kept;
+    kept = database.run_count();
+  }
+  EXPECT_GE(kills, 8) << "they met it at work";
+  EXPECT_GE(grew, 2) << "they met it at different places";
+  const compare::Comparison last = compare::run(scenes(), options_of(folder / "killed.sqlite"));
+  EXPECT_GE(last.reused, kept) << "what was finished is not run again";
+
+  ASSERT_EQ(last.scenes.size(), whole.scenes.size());
+  for (std::size_t s = 0; s < whole.scenes.size(); ++s) {
+    const compare::SceneComparison& a = whole.scenes[s];
+    const compare::SceneComparison& b = last.scenes[s];
+    EXPECT_EQ(a.reference.own_error.position_rel_l2, b.reference.own_error.position_rel_l2);
+    EXPECT_EQ(a.reference.description, b.reference.description);
+    ASSERT_EQ(a.points.size(), b.points.size());
+    for (std::size_t p = 0; p < a.points.size(); ++p) {
+      const compare::ComparePoint& x = a.points[p];
+      const compare::ComparePoint& y = b.points[p];
+      EXPECT_EQ(x.label, y.label);
+      EXPECT_EQ(x.setting, y.setting);
+      EXPECT_EQ(x.status, y.status);
+      EXPECT_EQ(x.error.position_rel_l2, y.error.position_rel_l2);  // bit for bit
+      EXPECT_EQ(x.error.energy_j, y.error.energy_j);
+      EXPECT_EQ(x.result.counters.steps, y.result.counters.steps);
+      EXPECT_EQ(x.result.counters.force_evaluations, y.result.counters.force_evaluations);
+      EXPECT_EQ(x.result.counters.solver.factorisations, y.result.counters.solver.factorisations);
+      EXPECT_EQ(x.unresolved, y.unresolved);
+    }
+  }
+  fs::remove_all(folder);
+}
+
+}  // namespace

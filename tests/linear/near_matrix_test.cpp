@@ -1,0 +1,256 @@
+// Solves by the matrix of an earlier step: as accurate as with the step's own, and known to be so.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "linear/bent_beam.h"
+#include "palpate/integrate/integrators.h"
+#include "palpate/linear/solvers.h"
+
+namespace palpate {
+namespace {
+
+using namespace dynamics;
+
+VecX direct_solution(const BorderedMatrix& A, const VecX& b) {
+  const auto direct = linear::make_linear_solver("cholmod", {});
+  VecX x;
+  EXPECT_EQ(direct->factor(A), SolveStatus::kOk);
+  EXPECT_EQ(direct->solve(b, x), SolveStatus::kOk);
+  return x;
+}
+
+/// A solver that has its balanced matrix of a beam bent by `angle`, and solved with it for the loads of a
+/// bend that grows.
+std::unique_ptr<LinearSolver> solver_at(BentBeam& beam, const std::string& name, double angle, double h,
+                                        double rtol) {
+  auto solver = linear::make_linear_solver(name, {.linear_rtol = rtol});
+  VecX b, x;
+  for (int k = 3; k >= 0; --k) {
+    BalancedMatrix* room = solver->balanced(beam.pattern());
+    if (!room) throw std::runtime_error("no room");
+    beam.at(angle - 1e-3 * k, h, *room, b);
+    EXPECT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+    EXPECT_EQ(solver->solve(b, x), SolveStatus::kOk);
+  }
+  return solver;
+}
+
+TEST(NearMatrix, SolvesAsAccuratelyAsTheMatrixItself) {
+  for (const std::string name : {"pcg-single", "pcg-two-level"})
+    for (const double rtol : {1e-3, 1e-4, 1e-6}) {
+      BentBeam beam(16, 1e5);
+      const double h = 2e-3;
+      const auto solver = solver_at(beam, name, 0.5, h, rtol);
+      const long factors = solver->counters().factorisations;
+      BorderedMatrix A;
+      VecX b, x;
+      for (int k = 1; k <= 5; ++k) {
+        beam.at(0.5 + 1e-3 * k, h, A, b);
+        Known left(A, b);
+        if (solver->solve_near(left, x) != SolveStatus::kOk) {
+          EXPECT_GT(k, 1) << name << ", " << rtol << ": a matrix is tried at first";
+          break;
+        }
+        const VecX exact = direct_solution(A, b);
+        EXPECT_LE(energy_norm(A, x - exact), rtol * energy_norm(A, exact))
+            << name << ", " << rtol << ", step " << k;
+        EXPECT_GE(left.looks, k == 1 ? 2 : 1);
+      }
+      EXPECT_GE(solver->counters().near, rtol > 5e-4 ? 5 : 1) << name << ", " << rtol;
+      EXPECT_EQ(solver->counters().factorisations, factors);
+    }
+}
+
+// The same number of nodes, another body: nothing of it may come out as a solution.
+TEST(NearMatrix, SaysWhereItIsTooFar) {
+  for (const std::string name : {"pcg-single", "pcg-two-level"}) {
+    BentBeam beam(16, 1e6);
+    const auto solver = solver_at(beam, name, 0.2, 1e-2, 1e-6);
+    BorderedMatrix A;
+    VecX b, x;
+    beam.at(1.4, 1e-2, A, b);
+    Known left(A, b);
+    EXPECT_NE(solver->solve_near(left, x), SolveStatus::kOk) << name;
+    BalancedMatrix* room = solver->balanced(beam.pattern());
+    ASSERT_NE(room, nullptr);
+    beam.at(1.4, 1e-2, *room, b);
+    ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+    ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+    const VecX exact = direct_solution(A, b);
+    EXPECT_LE(energy_norm(A, x - exact), 1e-6 * energy_norm(A, exact))
+        << name << ": its own matrix is taken up as if nothing had been";
+  }
+}
+
+TEST(NearMatrix, NeedsABalancedMatrixAndASolution) {
+  BentBeam beam(8, 1e5);
+  BorderedMatrix A;
+  VecX b, x;
+  beam.at(0.3, 1e-3, A, b);
+  Known left(A, b);
+  const auto solver = linear::make_linear_solver("pcg-single", {.linear_rtol = 1e-4});
+  EXPECT_NE(solver->solve_near(left, x), SolveStatus::kOk);
+  ASSERT_EQ(solver->factor(A), SolveStatus::kOk);
+  ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+  EXPECT_NE(solver->solve_near(left, x), SolveStatus::kOk);
+  EXPECT_EQ(left.looks, 0);
+}
+
+/// Between a stepper and its solver: compares every solution of a step with a direct one of its matrix.
+class EverySolve final : public LinearSolver {
+ public:
+  EverySolve(std::unique_ptr<LinearSolver> solver, BentBeam& beam, double h)
+      : solver_(std::move(solver)), beam_(beam), h_(h) {}
+  std::string name() const override { return solver_->name(); }
+  bool supports_unsymmetric() const override { return false; }
+  SolveStatus factor(const BorderedMatrix& A) override { return solver_->factor(A); }
+  BalancedMatrix* balanced(const BlockSparse& pattern) override { return solver_->balanced(pattern); }
+  SolveStatus factor_balanced() override { return solver_->factor_balanced(); }
+  SolveStatus solve(const MatX& B, MatX& X) override { return solver_->solve(B, X); }
+  SolveStatus solve(const VecX& b, VecX& x) override {
+    const SolveStatus status = solver_->solve(b, x);
+    if (status == SolveStatus::kOk) compare(b, x, worst_own);
+    return status;
+  }
+  SolveStatus solve_near(Residual& left, VecX& x) override {
+    const SolveStatus status = solver_->solve_near(left, x);
+    if (status != SolveStatus::kOk) return status;
+    VecX b;
+    left.at(VecX::Zero(x.size()), b);
+    compare(b, x, worst_near);
+    return status;
+  }
+  const SolverCounters& counters() const override { return solver_->counters(); }
+  double worst_own = 0.0, worst_near = 0.0;
+
+ private:
+  void compare(const VecX& b, const VecX& x, double& worst) {
+    const double t1 = beam_.state.time() + h_;
+    beam_.system.step_matrix(beam_.state.view(t1, beam_.state.q().data(), beam_.state.u().data()), 1.0, h_,
+                             h_ * h_, A_);
+    const VecX exact = direct_solution(A_, b);
+    worst = std::max(worst, energy_norm(A_, x - exact) / energy_norm(A_, exact));
+  }
+  std::unique_ptr<LinearSolver> solver_;
+  BentBeam& beam_;
+  double h_;
+  BorderedMatrix A_;
+};
+
+struct Swing {
+  double worst_own = 0.0, worst_near = 0.0, moved = 0.0;
+  long near = 0, steps = 0, looks = 0;
+  VecX q;
+};
+/// Swings a beam; `blow` is a velocity that its end gets all of a sudden, half way.
+Swing swing(const std::string& name, double h, double rtol, int steps, double blow, int threads = 1,
+            const BentBeamOptions& options = {}) {
+  BentBeam beam(16, 1e5, 0, options);
+  const IntegratorSpec spec{.name = "linearly-implicit-euler",
+                            .step_s = h,
+                            .linear_solver = name,
+                            .linear_rtol = rtol,
+                            .threads = threads};
+  auto every = std::make_unique<EverySolve>(linear::make_linear_solver(name, spec), beam, h);
+  EverySolve& seen = *every;
+  const auto stepper = find(integrate::stepper_registry(), spec.name, "integrator")
+                           .make(beam.system, beam.state, spec, std::move(every));
+  for (int k = 0; k < steps; ++k) {
+    if (k == steps / 2)
+      for (Eigen::Index i = 0; i < beam.rest.size(); i += 3)
+        if (beam.rest[i] > 0.3) beam.state.u()[i + 2] += blow;  // the stepper is not told
+    const StepResult r = stepper->advance_to(beam.state.time() + h);
+    EXPECT_TRUE(r.ok()) << r.message;
+  }
+  const StepperCounters& c = stepper->counters();
+  return {seen.worst_own, seen.worst_near, (beam.state.q() - beam.rest).lpNorm<Eigen::Infinity>(),
+          c.solver.near,  c.steps,         c.solver.residuals,
+          beam.state.q()};
+}
+
+TEST(NearMatrix, EveryStepOfASwingHasItsTolerance) {
+  for (const std::string name : {"pcg-single", "pcg-two-level", "auto"})
+    for (const auto& [h, rtol] :
+         {std::pair{1e-3, 1e-3}, {1e-3, 1e-4}, {1e-3, 1e-6}, {4e-3, 1e-3}, {1e-2, 1e-3}}) {
+      if (name == "auto" && rtol != 1e-4) continue;
+      const int steps = static_cast<int>(std::lround(0.16 / h));
+      const Swing s = swing(name, h, rtol, steps, 0.0);
+      EXPECT_GT(s.moved, 0.05);
+      EXPECT_LE(s.worst_near, rtol) << name << ", h = " << h;
+      EXPECT_LE(s.worst_own, rtol) << name << ", h = " << h;
+      if (h == 1e-3 && rtol == 1e-3) {
+        EXPECT_GT(s.near, steps / 2) << name;
+        EXPECT_LT(s.looks, 5 * s.near / 4) << name << ": most are known to be good without a look";
+      }
+    }
+}
+
+// What no history foresees: the first steps after a blow.
+TEST(NearMatrix, ABlowIsSeen) {
+  for (const std::string name : {"pcg-single", "pcg-two-level"})
+    for (const double blow : {0.1, 1.0, 10.0}) {
+      const Swing s = swing(name, 1e-3, 1e-3, 120, blow);
+      EXPECT_GT(s.near, 30) << name << ", " << blow;
+      EXPECT_LE(s.worst_near, 1e-3) << name << ", " << blow;
+    }
+}
+
+// Damping of both kinds and an end that moves are in what a step leaves as they are in its matrix.
+TEST(NearMatrix, DampedAndDrivenItIsTheSameMotion) {
+  for (const BentBeamOptions& options :
+       {BentBeamOptions{.stiffness_damping = 0.01},
+        {.mass_damping = 20.0},
+        {.stiffness_damping = 0.003, .mass_damping = 5.0, .shake_m = 0.01}}) {
+    const Swing near = swing("pcg-single", 1e-3, 1e-3, 100, 0.0, 1, options),
+                direct = swing("cholmod", 1e-3, 1e-3, 100, 0.0, 1, options);
+    EXPECT_GT(near.near, 30);
+    EXPECT_EQ(direct.near, 0);
+    EXPECT_LE(near.worst_near, 1e-3);
+    EXPECT_LT((near.q - direct.q).lpNorm<Eigen::Infinity>(), 1e-3 * direct.moved);
+  }
+}
+
+TEST(NearMatrix, ThreadsDoNotChangeABit) {
+  const Swing one = swing("pcg-two-level", 1e-3, 1e-3, 60, 0.0, 1),
+              three = swing("pcg-two-level", 1e-3, 1e-3, 60, 0.0, 3);
+  EXPECT_GT(one.near, 20);
+  EXPECT_EQ(one.near, three.near);
+  EXPECT_EQ(one.q, three.q);
+}
+
+// Tolerances for which the copy in single precision is too coarse: its own steps are corrected by it, each of
+// them looked at, and so are those by an older one.
+TEST(NearMatrix, ARoundedMatrixKeepsTightTolerances) {
+  for (const std::string name : {"pcg-single", "pcg-two-level"})
+    for (const auto& [h, rtol] : {std::pair{1e-3, 1e-8}, {1e-3, 1e-10}, {1e-2, 1e-9}}) {
+      const int steps = static_cast<int>(std::lround(0.08 / h));
+      const Swing s = swing(name, h, rtol, steps, 1.0);
+      EXPECT_LE(s.worst_near, rtol) << name << ", h = " << h;
+      EXPECT_LE(s.worst_own, rtol) << name << ", h = " << h;
+      EXPECT_GE(s.looks, 2 * (steps - 1))
+          << name << ", h = " << h << ": the first step has nothing to begin with";
+    }
+}
+
+// A stepper that is told of a change takes no matrix from before it.
+TEST(NearMatrix, IsForgottenAtAReinitialisation) {
+  BentBeam beam(16, 1e5);
+  const auto stepper = integrate::make_stepper(beam.system, beam.state,
+                                               {.name = "linearly-implicit-euler",
+                                                .step_s = 1e-3,
+                                                .linear_solver = "pcg-single",
+                                                .linear_rtol = 1e-3});
+  int kept_steps = 0;
+  for (int k = 1; k <= 60; ++k) {
+    const long factors = stepper->counters().solver.factorisations, near = stepper->counters().solver.near;
+    if (k > 40) stepper->reinit(ReinitReason::kParametersChanged);
+    ASSERT_TRUE(stepper->advance_to(1e-3 * k).ok());
+    if (k > 40) { EXPECT_EQ(stepper->counters().solver.factorisations, factors + 1); }
+    kept_steps += static_cast<int>(stepper->counters().solver.near - near);
+  }
+  EXPECT_GT(kept_steps, 10);
+}
+
+}  // namespace
+}  // namespace palpate
