@@ -7,7 +7,7 @@
 
 // Fixed steps of every method that can take them: the observed order against the one that the registry
 // claims, on both sides.  (The motion and its exact answer: vibrating_bar.h.)  An order is seen only where
-// the method is in its asymptotic range for the modes that it carries (VALIDATION, D); the motion starts at
+// the method is in its asymptotic range for the modes that it carries; the motion starts at
 // rest in the three lowest, and runs for T, half a period of the first.  With w the third, the error of one
 // step relative to the mode is C (w H)^{p+1}, of the run C (w H)^p w T:
 //     order 1:      w^2 H T/2 <= 0.2      (the amplitude's damping e^{-w^2 H T/2})

@@ -14,7 +14,7 @@
 //     elastic force vanishes.
 // That is the rest shape in some place, or a true local minimum with an inverted element (it exists: an
 // element turned inside out through a vertex is held by the sign convention of its rotation); of random
-// starts at least 90 % must find the rest shape (VALIDATION, F).  For each start:
+// starts at least 90 % must find the rest shape.  For each start:
 //     at rest: elastic and kinetic energy below 1e-6 E0, no inverted element;  energy rise: the largest over
 //     any earlier value.
 // An element that is inverted (its volume is negative, found here from the nodes alone) must be reported by

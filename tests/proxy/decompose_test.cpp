@@ -111,8 +111,8 @@ TEST(Decompose, EveryVertexFaceAndTetrahedronHasAProxy) {
         outside = std::max(outside, hulls[p].beyond(model.skin.vertices.col(v)));
         EXPECT_LE(hulls[p].beyond(model.skin.vertices.col(v)), report.hulls[p].outside + 1e-12);
       }
-    // FACTS section 10: 0.01-0.02 R outside for 16 to 32 hulls of 32 vertices; one hull has to make do with
-    // 32 for the whole ball
+    // Clusters of skin vertices leave 0.01-0.02 R outside for 16 to 32 hulls of 32 vertices; one hull has to
+    // make do with 32 for the whole ball
     EXPECT_LT(outside, count == 1 ? 0.2 : count == 8 ? 0.06 : 0.02) << count;
     EXPECT_GT(report.hull_volume, 0.8 * report.skin_volume);
     // a wedge of diameter 0.46 takes whole elements of 0.2 in: (0.46 + 0.2)^2 / 0.46^2 = 2.06

@@ -48,7 +48,7 @@ struct RunResult {
   dynamics::StepperCounters counters;
 };
 
-/// Virtual time: one exchange period after the other, ticks interleaved (DESIGN 1); monolithic, one refresh
+/// Virtual time: one exchange period after the other, ticks interleaved (docs/design.md, 1); monolithic, one refresh
 /// after the other, ticks from dense output.  A scene without a tool has periods but no ticks.
 RunResult run(World& world, const RunOptions& options);
 

@@ -5,7 +5,7 @@
 
 namespace palpate::mesh {
 
-/// Points tied to tetrahedra by barycentric weights (DESIGN 3.2): x_i = sum over the 4 nodes of tet[i] of
+/// Points tied to tetrahedra by barycentric weights (docs/design.md, 4.2): x_i = sum over the 4 nodes of tet[i] of
 /// weights(k, i) * x_node.
 ///
 /// A point that no tetrahedron holds belongs to the nearest one, with that one's weights continued outside

@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// One convex proxy at rest (DESIGN 3.2): it stands for the skin vertices `members`.  A vertex may belong to
+/// One convex proxy at rest (docs/design.md, 4.2): it stands for the skin vertices `members`.  A vertex may belong to
 /// several, and belongs to at least one.
 struct ProxyHull {
   Points corners;            ///< 3 x at most 32, in convex position, at rest [m]

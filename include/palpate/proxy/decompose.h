@@ -32,7 +32,7 @@ struct DecomposeReport {
   double largest_outside = 0.0, largest_gap = 0.0;  ///< over all hulls [m]
 };
 
-/// Cuts a body into convex proxies (DESIGN 3.2): clusters of skin by bone, then by position and normal
+/// Cuts a body into convex proxies (docs/design.md, 4.2): clusters of skin by bone, then by position and normal
 /// (k-means); each cluster with the tetrahedra behind it; and of each the hull of at most `max_corners` of
 /// its points, taken one by one where the hull so far is missed by most.
 ///

@@ -58,7 +58,7 @@ struct ProxyBranch {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
 };
 
-/// The convex proxies of one body at its present positions (DESIGN 3.2).  The derivation of the bounds stands
+/// The convex proxies of one body at its present positions (docs/design.md, 4.2).  The derivation of the bounds stands
 /// in proxy_set.cpp.
 ///
 /// After update every vertex of the skin lies in the inflated hull of each proxy that it is a member of,

@@ -7,7 +7,7 @@
 
 #include "palpate/dynamics/stepper.h"
 
-/// The stability matrix (VALIDATION, section F): stiff and extreme cases against every integrator.  What each
+/// The stability matrix (docs/design.md, 5): stiff and extreme cases against every integrator.  What each
 /// cell must show is written down from theory, as a function of what the registry says of the method; the
 /// cell is then run and held against it.
 namespace palpate::stability {

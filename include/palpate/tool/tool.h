@@ -17,7 +17,7 @@ struct HandleMotion {
   Twist twist0, twist1;
 };
 
-/// A Simbody MobilizedBody::Free under a 6-DoF virtual coupling and a linearised contact (DESIGN 3.5).  The
+/// A Simbody MobilizedBody::Free under a 6-DoF virtual coupling and a linearised contact (docs/design.md, 4.5).  The
 /// Simbody System stays behind the pimpl.
 class Tool {
  public:

@@ -23,7 +23,7 @@ struct Measurement {
 /// A case with a known answer.  Stands in validation/ as one file; `registry.cpp` lists it.
 struct ValidationCase {
   std::string name;     ///< "patch-test"
-  std::string section;  ///< of VALIDATION: "C"
+  std::string section;  ///< of docs/design.md, 5: "C"
   std::string summary;  ///< one line: what is measured
   std::string why;      ///< why it matters, and the source of the exact answer
   bool slow = false;    ///< minutes; ctest label `slow`
@@ -36,7 +36,7 @@ struct ValidationCase {
 /// Observed order: least-squares slope of log(error) against log(h).
 double fitted_order(const std::vector<double>& h, const std::vector<double>& error);
 
-/// All cases, in the order of VALIDATION (defined in validation/registry.cpp).
+/// All cases, in the order of their sections (defined in validation/registry.cpp).
 const std::vector<ValidationCase>& validation_cases();
 
 }  // namespace palpate::validation
