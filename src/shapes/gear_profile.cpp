@@ -7,16 +7,18 @@
 
 // Half a tooth, from the middle of the tip clockwise seen from the tooth, that is with growing polar angle:
 //   tip arc   radius ra, from angle 0 to the flank's end
-//   involute  of the base circle rb: at roll t the radius is rb sqrt(1 + t^2) and the polar angle has turned
-//   by t - atan t = inv(alpha), alpha = atan t.  On the pitch
-//             circle half a tooth spans pi / (2 z), so the flank stands at angle  h(t) = pi / (2 z) +
-//             inv(alpha_0) - (t - atan t)
+//   involute  of the base circle rb: at roll t the radius is rb sqrt(1 + t^2) and the polar angle has
+//             advanced by t - atan t = inv(alpha), alpha = atan t.  On the pitch circle half a tooth spans
+//             pi / (2 z), so the polar angle of the flank is
+//               h(t) = pi / (2 z) + inv(alpha_0) - (t - atan t)
 //   line      radial, from the base circle in to the fillet
 //   fillet    a circle of radius f that touches the radial line and, from outside, the root circle
 //   root arc  to the middle of the gap at pi / z
-// Areas swept by the radius, 1/2 int r^2 dtheta = 1/2 int (x dy - y dx): an arc 1/2 r^2 dtheta; a radial line
-// nothing; the involute, with d(t - atan t) = t^2/(1 + t^2) dt, rb^2 t^3 / 6; the fillet about its centre c,
-// points c + f u(phi): 1/2 [f c x (u1 - u0) + f^2 (phi1 - phi0)].
+// Areas swept by the radius, 1/2 int r^2 dtheta = 1/2 int (x dy - y dx):
+//   arc          1/2 r^2 dtheta
+//   radial line  0
+//   involute     rb^2 t^3 / 6,   from d(t - atan t) = t^2/(1 + t^2) dt
+//   fillet       1/2 [f c x (u1 - u0) + f^2 (phi1 - phi0)],   its points c + f u(phi) about its centre c
 namespace palpate::shapes {
 namespace {
 

@@ -102,8 +102,8 @@ TEST(BoneTree, OneFreeBoneIsTheRigidBodyOfTheClosedForm) {
 // I about it, the Lagrangian gives
 //   M_aa = I1 + m1 d^2 + m2 L^2,  M_ab = m2 L d cos(a - b),  M_bb = I2 + m2 d^2,
 //   Q_a = -(m1 d + m2 L) g sin a - m2 L d sin(a - b) b'^2,   Q_b = -m2 d g sin b + m2 L d sin(a - b) a'^2.
-// The tree's second coordinate is b - a: u = (a', b' - a'), so M_tree = T^T M T and f_tree = T^T Q with (a',
-// b') = T u, T = [1 0; 1 1].
+// The tree's second coordinate is b - a, so u = (a', b' - a') and
+//   (a', b') = T u,   T = [1 0; 1 1],   M_tree = T^T M T,   f_tree = T^T Q.
 TEST(BoneTree, ADoublePendulumHasLagrangesEquations) {
   constexpr double kLength = 0.4, d = 0.25, g = 9.81;
   std::vector<TreeBone> rods(2);

@@ -87,16 +87,15 @@ class BoneTree {
   std::unique_ptr<Impl> impl_;
 };
 
-/// M of that block.
+/// The mass matrix of the tree's block.
 std::shared_ptr<dynamics::InertiaTerm> make_tree_inertia(int block_id, std::shared_ptr<const BoneTree> tree);
-/// All forces of that block but what nodes exert on it.
+/// All forces of the tree's block except those that nodes exert on it.
 std::shared_ptr<dynamics::ForceTerm> make_tree_force(int block_id, std::shared_ptr<const BoneTree> tree);
 
-/// Nodes that sit rigidly on one bone.  With its origin at p, r = R l, and the bone's velocity (w, v_c) = J
-/// u:
-///     x = p + r,   v = v_c + w x r,   a = v_c' + w' x r + w x (w x r);     G's row of axis k is e_k^T (J_v -
-///     [r]x J_w).
-/// @param local  3 x dofs: the node in the bone's own frame [m]
+/// Nodes that sit rigidly on one bone with origin p and velocity (w, v_c) = J u; with r = R l,
+///     x = p + r,   v = v_c + w x r,   a = v_c' + w' x r + w x (w x r);
+///     row of G for axis k:  e_k^T (J_v - [r]x J_w).
+/// @param local  3 x dofs: the node in the bone's frame [m]
 std::shared_ptr<dynamics::DrivenMotion> make_tree_carried(std::vector<int> dofs, Points local, int bone,
                                                           int block_id, std::shared_ptr<const BoneTree> tree);
 
