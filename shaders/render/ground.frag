@@ -15,9 +15,9 @@ layout(location = 0) out vec4 colour;
 
 float light_reached(vec3 p) {
   if (any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(1.0)))) return 1.0;
-  float sum = 0.0, turn = 6.28319 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float sum = 0.0, angle = 6.28319 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   for (int i = 0; i < 32; ++i) {
-    float r = sqrt((float(i) + 0.5) / 32.0), a = turn + 2.39996 * float(i);
+    float r = sqrt((float(i) + 0.5) / 32.0), a = angle + 2.39996 * float(i);
     sum += texture(shadow_map, p.xy + shadow_radius * r * vec2(cos(a), sin(a))).r + 0.002 < p.z ? 0.0 : 1.0;
   }
   return sum / 32.0;

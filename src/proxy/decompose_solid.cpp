@@ -55,9 +55,9 @@ std::vector<int> farthest_points(const Points& points, int count) {
   columns.append(points);
   std::vector<int> out;
   for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / count, turn = i * M_PI * (3.0 - std::sqrt(5.0)),
+    const double z = 1.0 - (2.0 * i + 1.0) / count, azimuth = i * M_PI * (3.0 - std::sqrt(5.0)),
                  r = std::sqrt(1.0 - z * z);
-    const Vec3 direction = Vec3(r * std::cos(turn), r * std::sin(turn), z).cwiseProduct(scale);
+    const Vec3 direction = Vec3(r * std::cos(azimuth), r * std::sin(azimuth), z).cwiseProduct(scale);
     const int at = farthest(columns.read(0), columns.size(), direction.data());
     out.push_back(at < points.cols() ? at : 0);
   }
@@ -141,8 +141,8 @@ std::vector<SolidPiece> best_cut(const Measured& from, const Solid& solid) {
   (high - low).maxCoeff(&longest);
   double best_at = 0.0, least = std::numeric_limits<double>::infinity();
   for (const bool at_deepest : {false, true})
-    for (int turn = 0; turn < 3; ++turn) {
-      const int axis = (longest + turn) % 3;
+    for (int k = 0; k < 3; ++k) {
+      const int axis = (longest + k) % 3;
       const double at = at_deepest ? from.hollow.deepest[axis] : 0.5 * (low[axis] + high[axis]),
                    margin = kMargin * (high[axis] - low[axis]);
       if (at < low[axis] + margin || at > high[axis] - margin) continue;

@@ -18,8 +18,8 @@ struct MutableColumns {
 void gather(Columns p, const int* index, int count, const double origin[3], MutableColumns out);
 
 /// Takes points that stand as x y z, `stride` apart, into columns (filled up with the first); returns the
-/// largest |p_i - offset - linear then_i|^2, NaN when one is not finite.  @pre the columns are padded(count)
-/// long
+/// largest |p_i - offset - linear then_i|^2, NaN when one is not finite.
+/// @pre the columns are padded(count) long
 double take(const double* points, int stride, int count, Columns then, const double linear[9],
             const double offset[3], MutableColumns out);
 

@@ -54,9 +54,9 @@
 namespace palpate::proxy {
 namespace {
 
-/// Spectral norm from the largest root of the characteristic polynomial of C = F^T F, with the trigonometric
-/// formula (Smith 1961): with m = tr C / 3, p^2 = |C - m I|_F^2 / 6 and r = det((C - m I) / p) / 2 it is m +
-/// 2 p cos(acos(r) / 3).
+/// Spectral norm from the largest root of the characteristic polynomial of C = F^T F, with the
+/// trigonometric formula (Smith 1961): with m = tr C / 3, p^2 = |C - m I|_F^2 / 6 and
+/// r = det((C - m I) / p) / 2 it is m + 2 p cos(acos(r) / 3).
 double spectral_norm(const Mat3& F) {
   const Mat3 C = F.transpose() * F;
   const double m = C.trace() / 3.0;

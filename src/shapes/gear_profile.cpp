@@ -80,8 +80,8 @@ GearProfile gear_profile(const GearSize& size, double spacing) {
     points.push_back(p), normals.push_back(n.normalized());
   };
   const auto on_flank = [&](double t) { return polar(h.rb * std::sqrt(1.0 + t * t), h.angle(t)); };
-  // The involute's normal touches the base circle: it points along the unwound string, at angle h(t) + pi/2 -
-  // atan t.
+  // The involute's normal touches the base circle:
+  // it points along the unwound string, at angle h(t) + pi/2 - atan t.
   const auto flank_normal = [&](double t) {
     return polar(1.0, h.angle(t) + 0.5 * std::numbers::pi - std::atan(t));
   };
@@ -118,11 +118,11 @@ GearProfile gear_profile(const GearSize& size, double spacing) {
   const int half = static_cast<int>(points.size()) - 1;  // the last point is the gap's middle
   GearProfile out;
   for (int tooth = 0; tooth < size.teeth; ++tooth) {
-    const Eigen::Rotation2Dd turned(2.0 * h.middle * tooth), other(2.0 * h.middle * (tooth + 1));
+    const Eigen::Rotation2Dd this_tooth(2.0 * h.middle * tooth), other(2.0 * h.middle * (tooth + 1));
     for (int i = 0; i <= half; ++i) {
       if (i == corner) out.corners.push_back(static_cast<int>(out.points.size()));
-      out.points.push_back(turned * points[i]);
-      out.normals.push_back(turned * normals[i]);
+      out.points.push_back(this_tooth * points[i]);
+      out.normals.push_back(this_tooth * normals[i]);
     }
     for (int i = half - 1; i >= 1; --i) {
       if (i == corner) out.corners.push_back(static_cast<int>(out.points.size()));

@@ -22,8 +22,8 @@ Vec6 applied_wrench(const TickInput& input, double t, const RigidMotion& tool);
 /// The same tick with the handle held at one end: what fixed-tick schemes see.
 TickInput with_handle_held(const TickInput& input, const Pose& pose, const Twist& twist);
 
-/// One tick is the other, later: the handle stands still in both, in one place, and contact and coupling are
-/// the same.
+/// One tick is the other, later: the handle stands still in both,
+/// in one place, and contact and coupling are the same.
 bool same_wrench(const TickInput& a, const TickInput& b);
 
 bool is_finite(const RigidMotion& motion);

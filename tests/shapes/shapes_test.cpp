@@ -109,8 +109,8 @@ TEST_P(EveryShape, IsSoundAtThePapersCounts) {
   EXPECT_EQ(shape.skeleton.bones.size(), GetParam() == "human" ? 19U : 0U);
 }
 
-// The base is a prism: its area in closed form times its width, but for the polygons that stand for arcs,
-// which miss O(edge^2).
+// The base is a prism: its area in closed form times its width,
+// but for the polygons that stand for arcs, which miss O(edge^2).
 TEST(Shapes, GearHasItsVolumeInClosedForm) {
   const shapes::GearSize size;
   const double exact = (shapes::gear_area(size) - std::numbers::pi * size.bore * size.bore) * size.width;

@@ -54,12 +54,12 @@ struct Place {
     std::mt19937 rng(seed);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     for (double& x : u) x = uniform(rng);
-    VecX turn = u;
-    for (double& x : turn) x = 0.8 * uniform(rng);
-    for (int i = 0; i < 20; ++i) q = moved(q, turn / 20.0);
+    VecX displacement = u;
+    for (double& x : displacement) x = 0.8 * uniform(rng);
+    for (int i = 0; i < 20; ++i) q = moved(q, displacement / 20.0);
   }
-  /// q a step of displacement d away: one step of the rule of Simpson's kind (midpoint), enough where d is
-  /// small.
+  /// q a step of displacement d away: one step of the rule
+  /// of Simpson's kind (midpoint), enough where d is small.
   VecX moved(const VecX& from, const VecX& d) const {
     VecX rate(q.size()), half = from, out = from;
     block.kinematics->q_dot(half, d, rate);

@@ -86,8 +86,8 @@ std::vector<Winner> winners(const Table& compare, const std::string& error_colum
 /// their stability limit, and whether the reference bears it.  Paragraphs are separate lines.
 std::string in_words(const Table& compare, double reference_error);
 
-/// Error against a cost, log-log: one line a ladder, coloured by family; the best envelope is drawn over
-/// them.
+/// Error against a cost, log-log: one line a ladder, coloured by family;
+/// the best envelope is drawn over them.
 Plot work_precision_plot(const Table& compare, const std::string& error_column,
                          const std::string& error_label, double reference_error,
                          const std::string& cost_column = "cpu_s_median",

@@ -21,8 +21,8 @@
 /// A missing group is an empty part of the model.
 namespace palpate::store {
 
-/// How a model came to be.  No time and no machine stand in it: the same input gives the same file, byte for
-/// byte.
+/// How a model came to be.  No time and no machine stand in it:
+/// the same input gives the same file, byte for byte.
 struct ModelRecord {
   std::string source;              ///< file name without its folder, or the name of a shape
   std::string source_hash;         ///< ContentHash of the file
@@ -45,8 +45,8 @@ void write_model(const std::string& path, const ModelFile& file);
 /// a proxy that names a vertex that is not there, a skin vertex in no proxy, a bone before its parent.
 ModelFile read_model(const std::string& path);
 
-/// The regions of a model file alone; none where the file is a plain mesh file.  @param tets  how many
-/// tetrahedra it has
+/// The regions of a model file alone; none where the file is a plain mesh file.
+/// @param tets  how many tetrahedra it has
 /// @throws Error as read_model
 std::vector<MaterialRegion> read_regions(const std::string& path, int tets);
 

@@ -12,15 +12,15 @@ namespace palpate::tool {
 
 enum class Joint {
   kWeld,   ///< none: goes with its parent
-  kHinge,  ///< turns about one axis: q = angle, u = its rate
-  /// turns about a point: q = quaternion, u = angular velocity, in the axes that the parent carries (the
+  kHinge,  ///< rotates about one axis: q = angle, u = its rate
+  /// rotates about a point: q = quaternion, u = angular velocity, in the axes that the parent carries (the
   /// world's at the start)
   kBall,
   kFree,  ///< of a root alone: q = (quaternion, position of its origin), u = (angular, linear), world axes
 };
 
-/// One bone as it stands at the start, in world axes.  Its own frame has the origin at its centre of mass and
-/// principal axes.
+/// One bone as it stands at the start, in world axes.
+/// Its own frame has the origin at its centre of mass and principal axes.
 struct TreeBone {
   std::string name;
   int parent = -1;  ///< a bone before this one; -1: the ground
@@ -57,8 +57,8 @@ class BoneTree {
   int q_size() const;
   int u_size() const;
   VecX start() const;  ///< q at the start
-  /// u of a motion of the whole, as one rigid body, about `centre`; what the joints cannot follow is left
-  /// out.
+  /// u of a motion of the whole, as one rigid body, about `centre`;
+  /// what the joints cannot follow is left out.
   VecX rigid_start(const Vec3& velocity, const Vec3& angular_velocity, const Vec3& centre) const;
   /// @param length, speed  sizes that matter to error control: an angle counts as `length`.  Entries of q
   ///   share one scale, so a length of less than a metre is asked
