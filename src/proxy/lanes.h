@@ -54,7 +54,8 @@ struct HullColumns {
 void balls_near(const HullColumns& hull, Columns centres, const double* radii, int count, int steps,
                 unsigned char* near);
 
-/// The same by one direction: ball i is left out where direction . centre - radius > limit.  Only takes from
+/// The test of balls_near for one direction:
+/// ball i is excluded where direction . centre - radius > limit.  Only takes from
 /// `near`.
 void balls_beyond(const double direction[3], double limit, Columns centres, const double* radii, int count,
                   unsigned char* near);

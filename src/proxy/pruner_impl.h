@@ -34,7 +34,7 @@ inline Vec3 facing(const Facing& a, const Facing& b) {
 inline constexpr double kClear = 1.0;
 inline constexpr double kClearOwn = 0.25;  ///< the same between the bones of one body: see pruner.cpp
 
-/// One body of the query: its patches as far as they were looked at.
+/// One body of the query: its patches as far as they were tested.
 struct Side {
   const ProxySet& set;
   std::span<const SkinPatch> patches;

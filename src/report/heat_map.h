@@ -8,7 +8,7 @@ namespace palpate::report {
 struct HeatCell {
   std::string letter;     ///< what is read without colour
   std::string css;        ///< class of its colour: "v0" ... "v7", or empty where there is no such cell
-  std::string title;      ///< what is told where the pointer rests on it
+  std::string title;      ///< tooltip
   bool outlined = false;  ///< not what was expected
 };
 

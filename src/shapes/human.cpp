@@ -26,7 +26,7 @@ double both(const Vec3& p, double k, Part&& part) {
   return join(part(p), part(mirrored(p)), k);
 }
 
-/// A lower bound of the distance outside a ball: what is far away is not looked at closely.
+/// A lower bound of the distance outside a ball: distant parts are not evaluated exactly.
 template <class Part>
 double when_near(const Vec3& p, const Vec3& centre, double radius, Part&& part) {
   const double away = (p - centre).norm() - radius;

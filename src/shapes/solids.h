@@ -38,7 +38,7 @@ inline double ellipsoid(const Vec3& p, const Vec3& centre, const Vec3& radii) {
   if (length < 1e-6) return -radii.minCoeff();
   return (length - 1.0) * length / q.cwiseQuotient(radii).norm();
 }
-/// The same about axes of its own, the columns of `axes`.
+/// An ellipsoid whose axes are the columns of `axes`.
 inline double ellipsoid(const Vec3& p, const Vec3& centre, const Vec3& radii, const Mat3& axes) {
   return ellipsoid(Vec3(axes.transpose() * (p - centre)), Vec3::Zero(), radii);
 }

@@ -92,8 +92,8 @@ TEST(Pruner, TheGapIsHonoured) {
   EXPECT_TRUE(pruner.query(0.0).empty() || handed(pruner.query(0.0)).a.size() < found.a.size());
 }
 
-// The same pose cut into 1, 8 and 64 proxies: the same faces in contact, each once; one region whose normal
-// is the line of centres.
+// One pose, the body cut into 1, 8 and 64 proxies:
+// the same faces in contact, each once; one region whose normal is the line of centres.
 TEST(Pruner, TheCutDoesNotChangeWhatTouches) {
   const LayeredModel whole = bumpy_ball(1.0, 0.2, 20, 0.0);
   const Vec3 axis = Vec3(1, 2, -2) / 3;

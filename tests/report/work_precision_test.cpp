@@ -189,7 +189,7 @@ TEST(WorkPrecisionPlot, HasOneLineALadderWithoutFailedPoints) {
     EXPECT_NE(svg.find(text), std::string::npos) << text;
 }
 
-// Forty lines are told apart by family; what none beats is joined by one dark line, and named.
+// Forty lines are distinguished by family; what none beats is joined by one dark line, and named.
 TEST(WorkPrecisionPlot, OfManyIsColouredByFamilyAndShowsTheEnvelope) {
   const report::Table two = compare_table();
   report::Table many = two;

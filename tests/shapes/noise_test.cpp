@@ -66,7 +66,7 @@ TEST(Solids, EllipsoidIsADistanceAtItsSurface) {
   }
 }
 
-// A limb swells by its belly where it is told to, and by nothing at its ends.
+// A limb swells by its belly where that is prescribed, and by nothing at its ends.
 TEST(Solids, LimbSwellsWhereItIsTold) {
   const Vec3 a(0, 0, 0), b(0, 0, 1);
   for (const double t : {0.0, 0.25, 1.0})

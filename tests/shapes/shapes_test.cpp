@@ -32,7 +32,7 @@ void expect_sound(TriMesh surface, int vertices, int euler, double angle_deg, co
   long looked_at = 0;
   EXPECT_EQ(self_intersections(surface, &looked_at), 0) << name;
   EXPECT_GT(looked_at, 2 * surface.faces.cols()) << name;
-  std::printf("%s: %d vertices, smallest angle %.1f degrees, %.5g m^3, %ld pairs of faces looked at\n",
+  std::printf("%s: %d vertices, smallest angle %.1f degrees, %.5g m^3, %ld pairs of faces tested\n",
               name.c_str(), static_cast<int>(surface.vertices.cols()), smallest_angle_deg(surface),
               report.volume, looked_at);
 }

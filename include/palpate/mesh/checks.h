@@ -35,7 +35,7 @@ inline constexpr double kDegenerateTriangle = 1e-9;
 /// @pre every index in mesh.tets lies in [0, number of nodes).
 MeshReport check_tets(TetMesh& mesh, const Provenance& from);
 
-/// The same for a surface that bounds a body: closed (each edge in exactly two faces), consistently oriented
+/// Checks a surface that bounds a body: closed (each edge in exactly two faces), consistently oriented
 /// (mended by walking from face to face), outwards (inwards around a cavity), without degenerate or duplicate
 /// faces or unreferenced vertices. Leaves MeshReport.smallest_dihedral_deg at its default.
 MeshReport check_surface(TriMesh& mesh, const Provenance& from);

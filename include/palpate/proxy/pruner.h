@@ -34,7 +34,7 @@ struct ContactRegion {
   double rotation = 0.0;
 };
 
-/// What was looked at and left, since the pruner was made.
+/// Counts of tested and excluded pairs since the pruner was made.
 struct PruneCounts {
   long queries = 0;
   long pairs = 0;            ///< of proxies, all that are allowed
@@ -69,7 +69,7 @@ class Pruner {
   /// The regions at the present state of both sets.
   /// @param gap  distance between skins that still counts [m], not negative
   std::span<const ContactRegion> query(double gap);
-  /// Whether proxy p of a is looked at with q of b.
+  /// Whether proxy p of a is tested against proxy q of b.
   bool is_pair(int p, int q) const;
   const PruneCounts& counts() const;
   const RegionCounts& region_counts() const;

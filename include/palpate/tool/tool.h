@@ -37,7 +37,7 @@ class Tool {
 
   /// Wrench that the coupling exerts on the tool about its origin, for a handle pose (before any limit).
   Wrench coupling_wrench(const Pose& handle, const Twist& handle_twist) const;
-  /// The same seen by the hand: force opposite, moment about the handle's origin.
+  /// The coupling wrench on the hand: force opposite, moment about the handle's origin.
   Wrench wrench_on_hand(const Pose& handle, const Twist& handle_twist) const;
 
   /// K = -dF/dx and B = -dF/dv of the coupling at the current pose (6x6, angular first): what `condensed`
