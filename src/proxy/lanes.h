@@ -55,8 +55,7 @@ void balls_near(const HullColumns& hull, Columns centres, const double* radii, i
                 unsigned char* near);
 
 /// The test of balls_near for one direction:
-/// ball i is excluded where direction . centre - radius > limit.  Only takes from
-/// `near`.
+/// ball i is excluded where direction . centre - radius > limit.  Only clears entries of `near`.
 void balls_beyond(const double direction[3], double limit, Columns centres, const double* radii, int count,
                   unsigned char* near);
 
