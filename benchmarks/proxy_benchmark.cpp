@@ -90,7 +90,7 @@ void report(benchmark::State& state, const proxy::PruneCounts& counts, const pro
   state.counters["regions"] = static_cast<double>(counts.regions) / queries;
   state.counters["faces_a_percent"] = 100.0 * static_cast<double>(counts.faces_a) / queries / a.face_count();
   state.counters["faces_b_percent"] = 100.0 * static_cast<double>(counts.faces_b) / queries / b.face_count();
-  state.counters["largest_turn"] = counts.largest_turn;
+  state.counters["largest_turn"] = counts.largest_rotation;
 }
 
 /// Updates of both bodies and the query.

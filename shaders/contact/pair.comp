@@ -1,13 +1,13 @@
 #version 430 core
-// Pixels where both surfaces are seen, as a compact list (pixel, triangle of a, triangle of b).  The order is whatever
-// the atomic counter gives: the reader sorts.
+// Pixels where both surfaces are visible, as a compact list (pixel, triangle of a, triangle of b).  The order
+// is that of the atomic counter: the reader sorts.
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(binding = 0) uniform usampler2D triangles_a;
 layout(binding = 1) uniform usampler2D triangles_b;
 layout(binding = 2) uniform sampler2D depth_a;
 layout(binding = 3) uniform sampler2D depth_b;
 uniform int width, height;   // the part of the images that is in use
-uniform float largest_gap;  // pixels farther apart than this are left out [depth units]
+uniform float largest_gap;  // pixels farther apart than this are excluded [depth units]
 
 layout(std430, binding = 0) buffer Count { uint count; };
 layout(std430, binding = 1) writeonly buffer Pairs { uint pairs[]; };

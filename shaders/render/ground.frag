@@ -15,9 +15,10 @@ layout(location = 0) out vec4 colour;
 
 float light_reached(vec3 p) {
   if (any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(1.0)))) return 1.0;
-  float sum = 0.0, turn = 6.28319 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float dither = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float sum = 0.0, start = 6.28319 * dither;
   for (int i = 0; i < 32; ++i) {
-    float r = sqrt((float(i) + 0.5) / 32.0), a = turn + 2.39996 * float(i);
+    float r = sqrt((float(i) + 0.5) / 32.0), a = start + 2.39996 * float(i);
     sum += texture(shadow_map, p.xy + shadow_radius * r * vec2(cos(a), sin(a))).r + 0.002 < p.z ? 0.0 : 1.0;
   }
   return sum / 32.0;
@@ -33,10 +34,10 @@ float lines(vec2 u) {
 
 void main() {
   vec2 p = world_position.xy;
-  float near = 1.0 - smoothstep(0.25, 1.0, length(p) / fade_radius);
+  float fade = 1.0 - smoothstep(0.25, 1.0, length(p) / fade_radius);
   vec2 u = (p - grid_origin) / spacing;
-  float ink = near * (0.075 * lines(u) + 0.075 * lines(u / 5.0));
-  float shadow = lit == 0 ? 0.0 : near * 0.24 * (1.0 - light_reached(light_position));
-  vec3 base = mix(background, background * vec3(0.965, 0.97, 0.978), near);
+  float ink = fade * (0.075 * lines(u) + 0.075 * lines(u / 5.0));
+  float shadow = lit == 0 ? 0.0 : fade * 0.24 * (1.0 - light_reached(light_position));
+  vec3 base = mix(background, background * vec3(0.965, 0.97, 0.978), fade);
   colour = vec4(base * (1.0 - ink) * (1.0 - shadow * vec3(1.0, 0.97, 0.92)), 1.0);
 }

@@ -1,5 +1,6 @@
 #version 430 core
-// Colours are screen colours (sRGB-encoded) throughout: shading in that space keeps the colour map's steps even to the eye.
+// Colours are screen colours (sRGB-encoded) throughout: shading in that space keeps the colour map's steps
+// even to the eye.
 in vec3 world_position;
 in vec3 world_normal;
 in vec3 light_position;
@@ -18,12 +19,14 @@ uniform float shadow_radius;
 
 layout(location = 0) out vec4 colour;
 
-// Sixteen taps on a golden-angle spiral, turned by a fixed pattern of the pixels (Jimenez 2014) so that no rings show; 1: in the light.
+// Sixteen taps on a golden-angle spiral, rotated by a fixed dither of the pixel (Jimenez 2014) so that no
+// rings show; 1: in the light.
 float light_reached(vec3 p, float bias) {
   if (any(lessThan(p, vec3(0.0))) || any(greaterThan(p, vec3(1.0)))) return 1.0;
-  float sum = 0.0, turn = 6.28319 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float dither = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  float sum = 0.0, start = 6.28319 * dither;
   for (int i = 0; i < 16; ++i) {
-    float r = sqrt((float(i) + 0.5) / 16.0), a = turn + 2.39996 * float(i);
+    float r = sqrt((float(i) + 0.5) / 16.0), a = start + 2.39996 * float(i);
     vec2 at = p.xy + shadow_radius * r * vec2(cos(a), sin(a));
     sum += texture(shadow_map, at).r + bias < p.z ? 0.0 : 1.0;
   }
@@ -31,7 +34,8 @@ float light_reached(vec3 p, float bias) {
 }
 
 void main() {
-  vec3 base = scaled_value < -1.0 ? plain_colour : texture(colour_map, vec2((clamp(scaled_value, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb;
+  float texel = (clamp(scaled_value, 0.0, 1.0) * 255.0 + 0.5) / 256.0;
+  vec3 base = scaled_value < -1.0 ? plain_colour : texture(colour_map, vec2(texel, 0.5)).rgb;
   if (lit == 0) {
     colour = vec4(base, opacity);
     return;
@@ -41,7 +45,8 @@ void main() {
   if (dot(n, to_eye) < 0.0) n = -n;
   float facing = dot(n, key_light);
   // A shadow on a body keeps half of the key light: colours under the tool are what the picture is about.
-  float key = max(facing, 0.0) * mix(0.5, 1.0, light_reached(light_position, 0.004 + 0.012 * (1.0 - max(facing, 0.0))));
+  float bias = 0.004 + 0.012 * (1.0 - max(facing, 0.0));
+  float key = max(facing, 0.0) * mix(0.5, 1.0, light_reached(light_position, bias));
   float fill = max(dot(n, fill_light), 0.0);
   float sky = 0.5 + 0.5 * n.z;
   float gloss = pow(max(dot(n, normalize(key_light + to_eye)), 0.0), 60.0) * min(key * 3.0, 1.0);

@@ -22,9 +22,9 @@ Mat3 cofactor(const Mat3& F) {
 
 /// Newton's method on X^T X = I from X0 = F, scaled after Higham (1986), "Computing the polar decomposition":
 ///   X <- (g X + X^-T / g) / 2,   g^2 = |X^-1|_F / |X|_F.
-/// Each singular value s of X goes to (g s + 1/(g s))/2 while the singular vectors stay, so the limit is R of
-/// F = R S. Quadratic: e <- e^2/2, so a step below 1e-8 means that the iterate it led to is orthogonal to
-/// rounding.
+/// Each singular value s of X goes to (g s + 1/(g s))/2 while the singular vectors stay,
+/// so the limit is R of F = R S. Quadratic: e <- e^2/2, so a step below 1e-8 means that
+/// the iterate it led to is orthogonal to rounding.
 std::optional<Mat3> newton_rotation(const Mat3& F) {
   constexpr int kMaxIterations = 12;
   constexpr double kStepSquared = 1e-16;
@@ -48,13 +48,13 @@ bool well_conditioned(const Mat3& F) {
   return F.squaredNorm() < kLargestNormSquared && F.determinant() > kSmallestDet;
 }
 
-/// One-sided Jacobi (Hestenes): turns pairs of columns of B = F V until all are orthogonal.  Works on F
+/// One-sided Jacobi (Hestenes): rotates pairs of columns of B = F V until all are orthogonal.  Works on F
 /// itself, never on F^T F, so that small singular values keep their digits.
 void orthogonalise_columns(Mat3& B, Mat3& V) {
   constexpr int kMaxSweeps = 30;  // quadratic: 4 to 6 are usual
   constexpr double kRelative = 4 * std::numeric_limits<double>::epsilon(), kAbsolute = 1e-80;
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    bool turned = false;
+    bool rotated = false;
     for (const auto& [p, q] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
       const double a = B.col(p).squaredNorm(), b = B.col(q).squaredNorm(), c = B.col(p).dot(B.col(q));
       if (std::abs(c) <= kRelative * std::sqrt(a * b) + kAbsolute) continue;
@@ -66,9 +66,9 @@ void orthogonalise_columns(Mat3& B, Mat3& V) {
         m->col(p) = cosine * old - sine * m->col(q);
         m->col(q) = sine * old + cosine * m->col(q);
       }
-      turned = true;
+      rotated = true;
     }
-    if (!turned) return;
+    if (!rotated) return;
   }
 }
 

@@ -1,6 +1,6 @@
 #include "palpate/core/team.h"
 
-#include "core/turn.h"
+#include "core/active_group.h"
 #include "palpate/core/error.h"
 
 namespace palpate {
@@ -14,9 +14,9 @@ void pause_briefly() {
 
 }  // namespace
 
-struct Team::Whose : Turn {};
+struct Team::Group : ActiveGroup {};
 
-Team::Team(int size) : size_(size), turn_(std::make_unique<Whose>()) {
+Team::Team(int size) : size_(size), group_(std::make_unique<Group>()) {
   PALPATE_CHECK(size >= 1, "a team of {}", size);
   for (int k = 1; k < size; ++k) workers_.emplace_back([this, k] { live(k); });
 }
@@ -30,7 +30,7 @@ Team::~Team() {
 }
 
 void Team::wait_while(const std::atomic<std::uint32_t>& value, std::uint32_t old) const {
-  for (int i = 0; i < Turn::kSpins && turn_->has(); ++i) {
+  for (int i = 0; i < ActiveGroup::kSpins && group_->is_active(); ++i) {
     if (value.load(std::memory_order_acquire) != old) return;
     pause_briefly();
   }
@@ -48,7 +48,7 @@ void Team::live(int k) {
 
 void Team::run_any(void (*call)(void*, int), void* work) {
   if (size_ == 1) return call(work, 0);
-  turn_->take();
+  group_->activate();
   call_ = call;
   work_ = work;
   round_.fetch_add(1, std::memory_order_release);

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/turn.h"
+#include "core/active_group.h"
 #include "palpate/core/error.h"
 
 namespace palpate::workers {
@@ -53,7 +53,7 @@ class Pool {
 
   void share(int tasks, Task task, void* context) {
     PALPATE_CHECK(static_cast<std::uint64_t>(tasks) <= kField, "{} tasks in one loop", tasks);
-    turn_.take();
+    group_.activate();
     task_.store(task, std::memory_order_relaxed);
     context_.store(context, std::memory_order_relaxed);
     done_.store(0, std::memory_order_relaxed);
@@ -64,7 +64,7 @@ class Pool {
     for (int spins = 0;; ++spins) {
       const int done = done_.load();
       if (done == tasks) return;
-      if (spins < Turn::kSpins)
+      if (spins < ActiveGroup::kSpins)
         pause();
       else
         done_.wait(done);
@@ -89,7 +89,8 @@ class Pool {
       const unsigned seen = wake_.load();
       if (stopping_.load()) return;
       take(worker);
-      for (int spins = 0; wake_.load() == seen && spins < Turn::kSpins && turn_.has(); ++spins) pause();
+      for (int spins = 0; wake_.load() == seen && spins < ActiveGroup::kSpins && group_.is_active(); ++spins)
+        pause();
       wake_.wait(seen);
     }
   }
@@ -103,7 +104,7 @@ class Pool {
     stopping_ = false;
   }
 
-  Turn turn_;
+  ActiveGroup group_;
   std::mutex busy_;
   std::vector<std::thread> threads_;
   std::atomic<int> count_{1};

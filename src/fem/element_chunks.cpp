@@ -11,7 +11,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/core/huge_pages.h"
-#include "palpate/mesh/place_order.h"
+#include "palpate/mesh/spatial_order.h"
 
 namespace palpate::fem {
 namespace {
@@ -149,7 +149,7 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements,
     return material_of_element.empty() ? 0 : material_of_element[static_cast<std::size_t>(e)];
   };
   for (std::size_t c = 0; c + 1 < starts.size(); ++c) {
-    mesh::order_by_place(centroids, order, starts[c], starts[c + 1]);
+    mesh::spatial_order(centroids, order, starts[c], starts[c + 1]);
     std::stable_sort(order.begin() + starts[c], order.begin() + starts[c + 1],
                      [&](int a, int b) { return material(a) < material(b); });
   }

@@ -60,8 +60,8 @@ std::vector<Candidate> candidates() {
   return hardware;
 }
 
-/// A core context of version 4.5, else of 4.3 (compute shaders and shader storage).  No surface:
-/// EGL_KHR_surfaceless_context.
+/// A core context of version 4.5, else of 4.3 (compute shaders and shader storage).
+/// No surface: EGL_KHR_surfaceless_context.
 EGLContext create_context(EGLDisplay display) {
   if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
   const EGLint config_wanted[] = {EGL_SURFACE_TYPE, EGL_DONT_CARE, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
@@ -106,8 +106,8 @@ struct Context::Handles {
   std::thread::id owner;
 };
 
-// libepoxy opens its libraries itself, but aborts the process where they are missing; so they are tried
-// first.
+// libepoxy opens its libraries itself,
+// but aborts the process where they are missing; so they are tried first.
 void require_library(const std::string& file, const std::string& package) {
   void* handle = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (!handle)
@@ -156,8 +156,8 @@ Context::Context() : handles_(std::make_unique<Handles>()) {
   counters::count("gl.context");
 }
 
-// A static object: it is constructed after EGL's libraries were loaded, so it is destroyed before their own
-// exit handlers run.
+// A static object: it is constructed after EGL's libraries were loaded,
+// so it is destroyed before their own exit handlers run.
 Context::~Context() {
   g_opened = false;
   if (handles_->context == EGL_NO_CONTEXT) return;

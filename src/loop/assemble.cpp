@@ -8,7 +8,7 @@
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/mesh/checks.h"
-#include "palpate/mesh/place_order.h"
+#include "palpate/mesh/spatial_order.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
 
@@ -38,9 +38,9 @@ fem::SoftBodyOptions options_of(const SoftBodySpec& spec, const fem::Materials& 
   return options;
 }
 
-/// The tetrahedra of a body, from here on numbered by place.
+/// The tetrahedra of a body, from here on numbered in spatial order.
 void take_tets(TetMesh tets, Body& body) {
-  body.file_node = mesh::order_by_place(tets.nodes);
+  body.file_node = mesh::spatial_order(tets.nodes);
   body.rest = std::move(tets);
   mesh::renumber_nodes(body.rest, body.file_node);
 }

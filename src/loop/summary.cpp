@@ -135,7 +135,7 @@ void add_pruning(store::Summary& summary, const World& world) {
             static_cast<double>(faces) /
                 (static_cast<double>(c.queries) * static_cast<double>(body->surface_faces().cols())));
     }
-    add("largest turn of a normal [rad]", c.largest_turn);
+    add("largest turn of a normal [rad]", c.largest_rotation);
   }
 }
 

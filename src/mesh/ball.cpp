@@ -20,8 +20,8 @@ struct Icosahedron {
   std::vector<Vec3> corners;
   std::vector<std::array<int, 3>> faces;  // outwards
 
-  /// Corners (0, +-1, +-phi) and their cyclic turns have edges of length 2; faces are the triples at that
-  /// distance.
+  /// Corners (0, +-1, +-phi) and their cyclic permutations have edges of length 2;
+  /// faces are the triples at that distance.
   Icosahedron() {
     const double phi = 0.5 * (1 + std::sqrt(5.0));
     for (int k = 0; k < 3; ++k)

@@ -4,7 +4,7 @@
 #include "palpate/mesh/generators.h"
 
 // A cube is five tetrahedra: one at each corner of even i + j + k, and the regular one between the four odd
-// corners.  Every diagonal of a face then joins two odd nodes, whichever cell looks at it: faces match.
+// corners.  Every diagonal of a face then joins two odd nodes, whichever cell it is seen from: faces match.
 namespace palpate::mesh {
 namespace {
 

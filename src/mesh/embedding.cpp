@@ -9,7 +9,7 @@ namespace {
 /// distances (of the mesh's size) and sums of weights that differ by less are equal: rounding decides nothing
 constexpr double kTie = 1e-9;
 
-/// Of the tetrahedra that are as near as any, the one that continues its weights least; the first of equals.
+/// Among equally near tetrahedra, the one with the least extrapolation of its weights; the first of equals.
 int least_extrapolating(const TetMesh& mesh, const std::vector<int>& tets, const Vec3& point,
                         Eigen::Vector4d& weights) {
   int best = -1;

@@ -24,7 +24,7 @@ void add_tet(TextFile& file, Content& content, long tag, long physical, long ent
   content.tets.push_back(nodes);
   content.tet_tags.push_back(tag);
   content.tet_lines.push_back(file.line());
-  // negative where the volume is turned round
+  // negative where the volume is flipped
   content.tet_physical.push_back(static_cast<double>(std::abs(physical)));
   content.tet_entity.push_back(static_cast<double>(entity));
 }

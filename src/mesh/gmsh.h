@@ -25,8 +25,8 @@ struct Content {
 
 constexpr long kTet4 = 4, kTet10 = 11;  // Gmsh's element types
 
-/// The three coordinates of node `tag`, which stands before them on the line (2.2) or on a line of its own
-/// (4.1).
+/// The three coordinates of node `tag`,
+/// which stands before them on the line (2.2) or on a line of its own (4.1).
 void add_node(TextFile& file, Content& content, long tag);
 /// The four nodes of tetrahedron `tag`, up to the end of the line.
 void add_tet(TextFile& file, Content& content, long tag, long physical, long entity);

@@ -2,8 +2,8 @@
 
 // Gmsh 2.x, ASCII (reference manual, "MSH file format version 2"):
 //   $Nodes: number-of-nodes, then  tag x y z  a line ($ParametricNodes: more entries follow on the line)
-//   $Elements: number-of-elements, then  tag type number-of-tags tag... node...  a line; the first two tags
-//   are the physical group (0: none) and the entity of the model
+//   $Elements: number-of-elements, then  tag type number-of-tags tag... node...  a line;
+//              the first two tags are the physical group (0: none) and the entity of the model
 namespace palpate::mesh::gmsh {
 
 void nodes_22(TextFile& file, Content& content) {

@@ -1,11 +1,12 @@
 #include "gmsh.h"
 
 // Gmsh 4.1, ASCII (reference manual, "MSH file format"):
-//   $Entities: points curves surfaces volumes, then a line each, in this order; a volume: tag, 6 numbers of
-//   its box, number of physical tags, these, ...
-//   $Nodes: blocks nodes min-tag max-tag; each block: dimension entity parametric n, n lines of tags, n lines
-//   x y z [u v w]
-//   $Elements: blocks elements min-tag max-tag; each block: dimension entity type n, n lines  tag node...
+//   $Entities: points curves surfaces volumes, then a line each, in this order;
+//              a volume: tag, 6 numbers of its box, number of physical tags, the tags, ...
+//   $Nodes:    blocks nodes min-tag max-tag;
+//              each block: dimension entity parametric n, n lines of tags, n lines  x y z [u v w]
+//   $Elements: blocks elements min-tag max-tag;
+//              each block: dimension entity type n, n lines  tag node...
 namespace palpate::mesh::gmsh {
 namespace {
 

@@ -5,8 +5,10 @@
 #include "palpate/mesh/readers.h"
 #include "text_file.h"
 
-// Wavefront OBJ:  v x y z [w | r g b]   and   f v v v ..., each v one of  7  7/1  7//3  7/1/3, counted from
-// 1, or from the end if negative. Texture coordinates, normals, groups and materials are passed over.
+// Wavefront OBJ:
+//   v x y z [w | r g b]
+//   f v v v ...          each v one of  7  7/1  7//3  7/1/3, counted from 1, or from the end if negative
+// Texture coordinates, normals, groups and materials are ignored.
 namespace palpate::mesh {
 namespace {
 

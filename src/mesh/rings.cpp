@@ -8,15 +8,15 @@
 namespace palpate::mesh {
 namespace {
 
-/// Elements may grow by this much per length on the way in: one layer of the surface's size is kept before
-/// the first doubling.
+/// Elements may grow by this much per length on the way in:
+/// one layer of the surface's size is kept before the first doubling.
 constexpr double kGrowth = 0.45;
-/// A stretch beyond these would flatten elements more than the grading is worth (where few layers leave no
-/// room to halve).
+/// A stretch beyond these would flatten elements more than the
+/// grading is worth (where few layers leave no room to halve).
 constexpr double kLeastStretch = 0.5, kMostStretch = 1.45;
 
-/// Elements double as soon as the wanted size, h (1 + kGrowth depth / h) and at most g h, is nearer to the
-/// double.
+/// Elements double as soon as the wanted size,
+/// h (1 + kGrowth depth / h) and at most g h, is nearer to the double.
 bool should_halve(const Ring& ring, const Ring& outermost, double grading) {
   const double size = ring.radius / ring.frequency, surface_size = outermost.radius / outermost.frequency;
   const double wanted =

@@ -11,8 +11,8 @@
 namespace palpate::mesh {
 namespace {
 
-/// An edge and one of its faces: nodes sorted; `forward` when the face runs from the smaller to the larger
-/// vertex.
+/// An edge and one of its faces: nodes sorted;
+/// `forward` when the face runs from the smaller to the larger vertex.
 struct EdgeOfFace {
   std::array<int, 2> nodes;
   int face;
@@ -32,8 +32,8 @@ std::vector<EdgeOfFace> sorted_edges(const Faces& faces) {
   return out;
 }
 
-/// The face across each of a face's edges, and whether both run along the edge the same way (then one of them
-/// is turned round).
+/// The face across each of a face's edges,
+/// and whether both run along the edge the same way (then one of them is flipped).
 struct Neighbour {
   int face;
   bool same_way;
@@ -68,10 +68,10 @@ Neighbours neighbours(const Faces& faces, const Provenance& from) {
 
 void flip(Faces& faces, int f) { std::swap(faces(1, f), faces(2, f)); }
 
-/// Walks from face to face within each connected shell and turns those that disagree with the shell's first.
-/// Returns the shell of each face; `turned` remembers what was done.
+/// Walks from face to face within each connected shell and flips those that disagree with the shell's first.
+/// Returns the shell of each face; `flipped` records which faces were flipped.
 std::vector<int> walk(Faces& faces, const Neighbours& across, const Provenance& from,
-                      std::vector<char>& turned) {
+                      std::vector<char>& flipped) {
   std::vector<int> shell(across.size(), -1), stack;
   int shells = 0;
   for (int seed = 0; seed < static_cast<int>(across.size()); ++seed) {
@@ -83,12 +83,12 @@ std::vector<int> walk(Faces& faces, const Neighbours& across, const Provenance& 
       stack.pop_back();
       for (const Neighbour& n : across[f]) {
         const auto g = static_cast<std::size_t>(n.face);
-        const bool turn = (turned[f] != 0) != n.same_way;
+        const bool needs_flip = (flipped[f] != 0) != n.same_way;
         if (shell[g] < 0) {
           shell[g] = shells;
-          turned[g] = turn;
+          flipped[g] = needs_flip;
           stack.push_back(n.face);
-        } else if ((turned[g] != 0) != turn) {
+        } else if ((flipped[g] != 0) != needs_flip) {
           fail("{}: the surface cannot be oriented (it is one-sided, like a Moebius strip); repair it",
                from.element(n.face));
         }
@@ -97,7 +97,7 @@ std::vector<int> walk(Faces& faces, const Neighbours& across, const Provenance& 
     ++shells;
   }
   for (int f = 0; f < static_cast<int>(across.size()); ++f)
-    if (turned[static_cast<std::size_t>(f)]) flip(faces, f);
+    if (flipped[static_cast<std::size_t>(f)]) flip(faces, f);
   return shell;
 }
 
@@ -115,8 +115,8 @@ std::pair<double, double> shell_volume(const TriMesh& mesh, const std::vector<in
 }
 
 /// Each shell outwards, or inwards where it lies within an odd number of others (it bounds a cavity then).
-void turn_shells_outwards(TriMesh& mesh, const std::vector<int>& shell_of_face, const Provenance& from,
-                          std::vector<char>& turned) {
+void orient_shells_outwards(TriMesh& mesh, const std::vector<int>& shell_of_face, const Provenance& from,
+                            std::vector<char>& flipped) {
   std::vector<std::vector<int>> shells;
   for (int f = 0; f < static_cast<int>(shell_of_face.size()); ++f) {
     const auto s = static_cast<std::size_t>(shell_of_face[static_cast<std::size_t>(f)]);
@@ -135,7 +135,7 @@ void turn_shells_outwards(TriMesh& mesh, const std::vector<int>& shell_of_face, 
     if ((volume > 0) == (depth % 2 == 0)) continue;
     for (const int f : shells[s]) {
       flip(mesh.faces, f);
-      turned[static_cast<std::size_t>(f)] ^= 1;
+      flipped[static_cast<std::size_t>(f)] ^= 1;
     }
   }
 }
@@ -167,13 +167,13 @@ MeshReport check_surface(TriMesh& mesh, const Provenance& from) {
   MeshReport report;
   measure_faces(mesh, from, report);
   const Neighbours across = neighbours(mesh.faces, from);
-  std::vector<char> turned(across.size(), 0);
-  const std::vector<int> shell_of_face = walk(mesh.faces, across, from, turned);
-  turn_shells_outwards(mesh, shell_of_face, from, turned);
+  std::vector<char> flipped(across.size(), 0);
+  const std::vector<int> shell_of_face = walk(mesh.faces, across, from, flipped);
+  orient_shells_outwards(mesh, shell_of_face, from, flipped);
   refuse_unreferenced(mesh.vertices.cols(), mesh.faces, from, "belongs to no face; delete such vertices");
   report.nodes = static_cast<int>(mesh.vertices.cols());
   report.elements = static_cast<int>(mesh.faces.cols());
-  report.flipped = static_cast<int>(std::count(turned.begin(), turned.end(), 1));
+  report.flipped = static_cast<int>(std::count(flipped.begin(), flipped.end(), 1));
   report.volume = enclosed_volume(mesh);
   return report;
 }

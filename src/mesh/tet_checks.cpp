@@ -18,15 +18,15 @@ double longest_edge(const TetMesh& mesh, int t) {
   return out;
 }
 
-/// What rounding of the coordinates alone gives a flat element as relative volume: edges carry an error of
-/// epsilon |x|.
+/// What rounding of the coordinates alone gives a flat element as relative volume:
+/// edges carry an error of epsilon |x|.
 double rounding_volume(const TetMesh& mesh, int t, double longest) {
   double far = 0;
   for (int k = 0; k < 4; ++k) far = std::max(far, mesh.nodes.col(mesh.tets(k, t)).cwiseAbs().maxCoeff());
   return 16 * std::numeric_limits<double>::epsilon() * far / longest;
 }
 
-/// Turns elements of negative volume; refuses degenerate ones.  Returns the number turned.
+/// Flips elements of negative volume; refuses degenerate ones.  Returns the number flipped.
 int orient(TetMesh& mesh, const Provenance& from) {
   int flipped = 0;
   for (int t = 0; t < static_cast<int>(mesh.tets.cols()); ++t) {

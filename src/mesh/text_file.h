@@ -6,9 +6,9 @@
 
 namespace palpate::mesh {
 
-/// A text file read line by line and word by word, whose every complaint carries FILE:LINE.  Holds the whole
-/// file in memory, so that a count in a header can be compared with what is really there before anything is
-/// allocated for it.
+/// A text file read line by line and word by word, whose every complaint carries FILE:LINE.
+/// Holds the whole file in memory, so that a count in a header can be compared with what is
+/// really there before anything is allocated for it.
 class TextFile {
  public:
   /// Throws Error when the file cannot be read.  From `comment` on, a line is ignored ('\0': no comments).
@@ -22,8 +22,8 @@ class TextFile {
 
   double real(std::string_view what);  ///< a finite number
   long integer(std::string_view what);
-  /// A count of entries that stand in the rest of this file, at least two bytes each: refused when they
-  /// cannot.
+  /// A count of entries that stand in the rest of this file, at least two bytes each:
+  /// refused when they cannot.
   int count(std::string_view what);
   void require_end_of_line();
 

@@ -5,8 +5,8 @@
 
 namespace palpate::proxy {
 
-/// How a body's nodes have moved since they were last kept: x = linear x_then + offset to within `residual`,
-/// for every node.
+/// How a body's nodes have moved since they were last stored:
+/// x = linear x_then + offset to within `residual`, for every node.
 ///
 /// Any affine map serves (the residual is measured against it, node by node); it is the one of least squares
 /// for a few nodes spread over the body, so that a body that moves as a whole, and stretches evenly, leaves

@@ -44,8 +44,8 @@ Span span(const Points& points) {
   return out;
 }
 
-/// What Qhull says of points in the plane or in space: facets (normal, offset), extreme points, volume or
-/// area.
+/// What Qhull says of points in the plane or in space:
+/// facets (normal, offset), extreme points, volume or area.
 struct Facets {
   std::vector<std::array<double, 4>> planes;  // inside is normal . x + offset <= 0
   std::vector<int> corners;

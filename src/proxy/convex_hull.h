@@ -14,8 +14,8 @@ struct ConvexHull {
   VecX offsets;         ///< [m]
   double volume = 0.0;  ///< [m^3]; 0 for flat ones
 
-  /// How far a point lies beyond the farthest of the planes; negative inside.  At most its distance from the
-  /// hull [m].
+  /// How far a point lies beyond the farthest of the planes; negative inside.
+  /// At most its distance from the hull [m].
   double beyond(const Vec3& point) const { return (normals.transpose() * point - offsets).maxCoeff(); }
 };
 /// @throws InternalError for no points, or points that are not finite

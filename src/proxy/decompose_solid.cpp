@@ -1,21 +1,21 @@
 // The solid B is cut by planes into B in C_1, B in C_2, ..., the cells C boxes that tile a box around it.
 // What one cell holds, P = closure(int B in int C), is in the hull of its extreme points (Krein and Milman
-// 1940), and there are few of them.  Where such a point e is inside B, P is near e what C is, so e is a
-// corner of C.  Where it is on the surface and a face of that goes on into the cell, e is in the part of the
-// face that lies in the cell.  Where none does, the cell near e is all solid, and e a corner of C again.  So
+// 1940), and there are few of these.  Where such a point e is inside B, P equals C in a neighbourhood of e,
+// so e is a corner of C.  Where e is on the surface and a face through it continues into the cell, e is in
+// the part of the face that lies in the cell.  Where no face does, a neighbourhood of e in the cell is solid,
+// and e is again a corner of C.  So
 //
-//   P is in the hull of { the corners of the faces' parts in C } and { the corners of C that are in B or on
-//   it },
+//   P is in the hull of { corners of the faces' parts in C } and { corners of C that are in B or on it }.
 //
-// and whether a corner is solid towards the cell is asked one small step into it: where the surface comes
-// nearer than that, the corner is missed by no more. A proxy's hull is that of these points and of the faces
-// that it owns, whole, or rather of a few of them that lie farthest out.  How far the others are outside is
-// what ProxyHull::outside says, and what ProxySet finds for the members.
+// Whether a corner is solid towards the cell is tested one small step into the cell: a surface that is closer
+// to the corner than the step makes an error no larger than the step.  A proxy's hull is that of these points
+// and of the whole faces that it owns, reduced to the few points that lie farthest out.  ProxyHull::outside
+// says how far the other points are outside, and ProxySet computes it for the members.
 //
-// Where to cut.  From a point of the surface along its normal the hull is left at once where the solid is
+// Where to cut.  A ray from a point of the surface along its normal exits the hull at once where the solid is
 // convex, and late where a hollow is in front: the gap of HullQuality, whose integral over the surface is
 // about the hollow's volume.  The piece with the largest hollow is cut across one of the three axes, in its
-// middle or, where that leaves clearly less of a hollow in the two together, at the point of the largest gap.
+// middle or, where the two parts then have clearly less hollow volume, at the point of the largest gap.
 #include "palpate/proxy/decompose_solid.h"
 
 #include <algorithm>
@@ -34,11 +34,11 @@
 namespace palpate::proxy {
 namespace {
 
-constexpr double kFlat = 1e-9;   // of the solid's size: in a plane
-constexpr double kStep = 1e-7;   // of the solid's size: into a cell
-constexpr int kLooks = 1000;     // polygons of a piece that say whether to cut it
-constexpr int kGlances = 600;    // and where
-constexpr int kDirections = 64;  // in which its farthest points stand for its hull
+constexpr double kFlat = 1e-9;     // of the solid's size: in a plane
+constexpr double kStep = 1e-7;     // of the solid's size: into a cell
+constexpr int kGapSamples = 1000;  // polygons of a piece that decide whether to cut it
+constexpr int kCutSamples = 600;   // polygons of a piece that decide where to cut it
+constexpr int kDirections = 64;    // in which its farthest points stand for its hull
 
 Points columns(const std::vector<Vec3>& points) {
   Points out(3, static_cast<Eigen::Index>(points.size()));
@@ -55,9 +55,9 @@ std::vector<int> farthest_points(const Points& points, int count) {
   columns.append(points);
   std::vector<int> out;
   for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / count, turn = i * M_PI * (3.0 - std::sqrt(5.0)),
+    const double z = 1.0 - (2.0 * i + 1.0) / count, azimuth = i * M_PI * (3.0 - std::sqrt(5.0)),
                  r = std::sqrt(1.0 - z * z);
-    const Vec3 direction = Vec3(r * std::cos(turn), r * std::sin(turn), z).cwiseProduct(scale);
+    const Vec3 direction = Vec3(r * std::cos(azimuth), r * std::sin(azimuth), z).cwiseProduct(scale);
     const int at = farthest(columns.read(0), columns.size(), direction.data());
     out.push_back(at < points.cols() ? at : 0);
   }
@@ -121,16 +121,16 @@ Hollow hollow_of(const SolidPiece& piece) {
 }
 
 Measured measured(SolidPiece piece) {
-  const SolidPiece some = thinned(piece, kLooks);
+  const SolidPiece some = thinned(piece, kGapSamples);
   Hollow hollow = hollow_of(some);
   hollow.volume *= static_cast<double>(piece.surface.size()) / static_cast<double>(some.surface.size());
   return {std::move(piece), hollow};
 }
 
-/// The two halves of the best cut; nothing where none leaves surface on both sides.
+/// The two halves of the best cut; nothing where no cut has surface on both sides.
 std::vector<SolidPiece> best_cut(const Measured& from, const Solid& solid) {
   constexpr double kMargin = 0.02, kClearlyLess = 0.9;
-  const SolidPiece some = thinned(from.piece, kGlances);
+  const SolidPiece some = thinned(from.piece, kCutSamples);
   Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const Polygon& polygon : some.surface)
     for (int k = 0; k < polygon.count; ++k) {
@@ -141,8 +141,8 @@ std::vector<SolidPiece> best_cut(const Measured& from, const Solid& solid) {
   (high - low).maxCoeff(&longest);
   double best_at = 0.0, least = std::numeric_limits<double>::infinity();
   for (const bool at_deepest : {false, true})
-    for (int turn = 0; turn < 3; ++turn) {
-      const int axis = (longest + turn) % 3;
+    for (int k = 0; k < 3; ++k) {
+      const int axis = (longest + k) % 3;
       const double at = at_deepest ? from.hollow.deepest[axis] : 0.5 * (low[axis] + high[axis]),
                    margin = kMargin * (high[axis] - low[axis]);
       if (at < low[axis] + margin || at > high[axis] - margin) continue;

@@ -79,9 +79,9 @@ void Hull::assign(const Eigen::Ref<const Points>& points, const Vec3& origin, do
   centre_ /= static_cast<double>(points.cols());
 }
 
-// v is a point of the convex set C = a - b, s = argmin over C of v.s; v.v - v.s bounds how much nearer the
-// origin another point can be. s joins the simplex that carries v, and the next v is the nearest point of
-// that.
+// v is a point of the convex set C = a - b, s = argmin over C of v.s.  The difference v.v - v.s bounds how
+// much nearer to the origin another point can be.  s joins the simplex that carries v, and the next v is the
+// point of that simplex nearest to the origin.
 Vec3 nearest_difference(const Hull& a, const Hull& b) {
   constexpr int kMaxSteps = 100;
   constexpr double kRelativeGap = 1e-9;

@@ -26,8 +26,8 @@ class Hull {
   Vec3 centre_ = Vec3::Zero();
 };
 
-/// Depth along a unit direction n from b to a: how far a must move along n to be clear of b; negative when it
-/// is.
+/// Depth along a unit direction n from b to a:
+/// how far a must move along n to be clear of b; negative when it is.
 struct DepthAlong {
   double depth;
   Vec3 lowest_a, highest_b;

@@ -196,9 +196,9 @@ PALPATE_CLONES void balls_beyond(const double d[3], double limit, Columns c, con
   }
 }
 
-// Lane by lane: v from a point w of the hull to the ball's centre, and the corner s farthest along v.  v.c -
-// v.s > reach |v| proves the ball apart; |v| <= reach that it is near; else w goes toward s as far as |v|
-// falls.
+// Lane by lane: v from a point w of the hull to the ball's centre, and the corner s
+// farthest along v.  v.c - v.s > reach |v| proves the ball apart; |v| <= reach that it is
+// near; else w goes toward s as far as |v| falls.
 PALPATE_CLONES void balls_near(const HullColumns& hull, Columns c, const double* radii, int count, int steps,
                                unsigned char* near) {
   const Pack zero = {}, one = zero + 1.0;

@@ -18,8 +18,8 @@ struct MutableColumns {
 void gather(Columns p, const int* index, int count, const double origin[3], MutableColumns out);
 
 /// Takes points that stand as x y z, `stride` apart, into columns (filled up with the first); returns the
-/// largest |p_i - offset - linear then_i|^2, NaN when one is not finite.  @pre the columns are padded(count)
-/// long
+/// largest |p_i - offset - linear then_i|^2, NaN when one is not finite.
+/// @pre the columns are padded(count) long
 double take(const double* points, int stride, int count, Columns then, const double linear[9],
             const double offset[3], MutableColumns out);
 
@@ -54,8 +54,8 @@ struct HullColumns {
 void balls_near(const HullColumns& hull, Columns centres, const double* radii, int count, int steps,
                 unsigned char* near);
 
-/// The same by one direction: ball i is left out where direction . centre - radius > limit.  Only takes from
-/// `near`.
+/// The test of balls_near for one direction:
+/// ball i is excluded where direction . centre - radius > limit.  Only clears entries of `near`.
 void balls_beyond(const double direction[3], double limit, Columns centres, const double* radii, int count,
                   unsigned char* near);
 

@@ -1,34 +1,45 @@
-// The bound.  A vertex of the skin at rest X = sum w_k X_k (weights of its tetrahedron, sum 1) is now at x =
-// sum w_k x_k.  Let the proxy move by g(X) = F X + t, any F and t, and let node k differ from that by d_k =
-// x_k - g(X_k).  Because g is affine and the weights sum to one,
+// The bound.  A vertex of the skin at rest,
 //
-//   x - g(X) = sum w_k (x_k - g(X_k)) = sum w_k d_k,      |x - g(X)| <= s D,   s = max over the skin of sum
-//   |w_k| (1 inside),   D = max over the nodes of |d_k|.
+//   X = sum w_k X_k    (weights of its tetrahedron, sum 1),    is now at    x = sum w_k x_k.
 //
-// The hull H has few corners, so at rest the vertex may lie outside of it by up to e: X = y + z, y in H, |z|
-// <= e.  Then g(y) lies in the moved hull F H + t (the image of a hull under an affine map is the hull of the
-// images, mirrored and flat ones too), and
+// Let the proxy move by g(X) = F X + t, with any F and t; node k differs from that motion by
+//
+//   d_k = x_k - g(X_k).
+//
+// Because g is affine and the weights sum to one,
+//
+//   x - g(X) = sum w_k (x_k - g(X_k)) = sum w_k d_k,      |x - g(X)| <= s D,
+//   s = max over the skin of sum |w_k| (1 inside),        D = max over the nodes of |d_k|.
+//
+// The hull H has few corners, so at rest the vertex may lie outside H by up to e: X = y + z with y in H and
+// |z| <= e.  Then g(y) lies in the moved hull F H + t (the image of a hull under an affine map is the hull of
+// the images, also of a mirrored or flat one), and
 //
 //   distance of x from F H + t  <=  |x - g(X)| + |g(X) - g(y)|  <=  s D + |F|_2 e  =  the inflation.
 //
-// A node of a tetrahedron that the proxy owns is within |d_k| + |F|_2 e of it, which is no more.  Nothing was
-// asked of F and t: what the nodes did (squashed, inverted, scattered) makes the inflation larger, never
-// wrong.  The best F and t make D small: those of least squares,
+// A node of a tetrahedron that the proxy owns is within |d_k| + |F|_2 e of the moved hull, which is no more.
+// The bound assumes nothing about F and t: any motion of the nodes (squashed, inverted, scattered) makes the
+// inflation larger, never wrong.  The best F and t make D small: those of least squares,
 //
 //   t = mean x - F mean X,   F = [sum x_k (X_k - mean X)^T] M^-1,   M = sum (X_k - mean X)(X_k - mean X)^T,
 //
-// where stretch, shear and flattening cost nothing and only what is curved within a proxy counts; or the mean
-// rotation, F = polar factor of the sum in brackets, where strain counts with the proxy's size.  With q_k =
-// M^-1 (X_k - mean X), which sum to zero, F = sum x_k q_k^T from any origin: one pass over the nodes.
+// which stretch, shear and flattening leave at D = 0, so that only curvature within a proxy counts; or the
+// mean rotation, F = polar factor of the sum in brackets, where strain counts with the proxy's size.  With
 //
-// Which are found.  That costs a pass over the nodes of each proxy, and most proxies are nowhere near
-// anything: their boxes say so.  A box that holds all points y of a proxy is kept from time to time, with the
-// positions of all nodes then.  Later x = G x_k,then + h + d_k for each node, G and h any one map for the
-// whole body (body_motion.h), and by the first line again each point of the proxy is at G y + h to within s
-// max |d_k|: it lies in the box around the moved box, of centre G c + h and half edges |G| e, grown by that.
-// The maximum is one pass over the nodes.  Nothing else depends on what was kept: a proxy whose box may meet
-// something is fitted to the nodes as they are.  Where the boxes have grown by a fifth all are fitted and
-// kept anew.
+//   q_k = M^-1 (X_k - mean X),   sum q_k = 0,   F = sum x_k q_k^T    from any origin:
+//
+// one pass over the nodes.
+//
+// Which proxies are fitted.  A fit costs a pass over the nodes of the proxy, and most proxies are far from
+// every other surface; bounding boxes prove that.  At a fit of all proxies the box of each proxy (all its
+// points y, centre c, half edges e) is stored, with the positions p_k of all nodes.  Later
+//
+//   x_k = G p_k + h + d_k,      G and h: one affine map for the whole body (body_motion.h),
+//
+// and by the first bound each point of the proxy is within s max |d_k| of G y + h: it lies in the box with
+// centre G c + h and half edges |G| e, grown by that.  The maximum takes one pass over the nodes.  Nothing
+// else depends on the stored boxes: a proxy whose box may meet something is fitted to the present nodes.
+// When the boxes have grown by a fifth, all proxies are fitted and stored again.
 #include "palpate/proxy/proxy_set.h"
 
 #include <Eigen/LU>
@@ -43,9 +54,9 @@
 namespace palpate::proxy {
 namespace {
 
-/// Spectral norm from the largest root of the characteristic polynomial of C = F^T F, with the trigonometric
-/// formula (Smith 1961): with m = tr C / 3, p^2 = |C - m I|_F^2 / 6 and r = det((C - m I) / p) / 2 it is m +
-/// 2 p cos(acos(r) / 3).
+/// Spectral norm from the largest root of the characteristic polynomial of C = F^T F, with the
+/// trigonometric formula (Smith 1961): with m = tr C / 3, p^2 = |C - m I|_F^2 / 6 and
+/// r = det((C - m I) / p) / 2 it is m + 2 p cos(acos(r) / 3).
 double spectral_norm(const Mat3& F) {
   const Mat3 C = F.transpose() * F;
   const double m = C.trace() / 3.0;

@@ -1,27 +1,27 @@
-// Nothing is lost.  The inflated hulls of each body cover its skin and its inside (proxy_set.cpp).  A point
+// Completeness.  The inflated hulls of each body cover its skin and its inside (proxy_set.cpp).  A point
 // of a's skin that is inside b, or nearer to it than the gap, lies in a face of one patch of one proxy i, and
 // within the gap of an inflated hull j of b.  So the boxes of i and j come within the gap, no direction
 // proves i and j farther apart than the sum of their inflations and the gap, and none proves the patch's ball
-// farther from j than that: (i, j) stays a pair and the patch stays.  Each step leaves out only what a
-// checked inequality says is far.  With a and b exchanged the same holds for b's skin.
+// farther from j than that: (i, j) stays a pair and the patch stays.  Each step excludes only what a checked
+// inequality proves to be far.  With a and b exchanged the same holds for b's skin.
 //
-// What faces it.  Seen along the normal a point of a inside b is paired with the point of b's skin above it.
-// If that is inside a, it stays by the rule above. If not, a has been swallowed there: the way up leaves a
-// before it leaves b, through skin of a that faces up inside b.  Under each kept patch of a that faces up,
-// b's patches that face up, and are above, are taken in too (`look_through`), and the mirror image for b.
-// Only where the kept skin of the side that is looked for faces no one way: where it does, the line comes in
-// through it, nobody is swallowed, and what lies beyond is the far side of a body that holds the other from
-// two sides; the line would be paired with its end there.
+// The opposite skin.  Along the normal a point of a inside b is paired with the point of b's skin above it.
+// If that point is inside a, its patch is kept by the rule above.  If not, a is enclosed by b there: the line
+// upwards exits a before it exits b, through skin of a that faces up inside b.  For each kept patch of a that
+// faces up, b's patches above it that face up are therefore added (`add_facing_patches`), and likewise with a
+// and b exchanged.  This is done only where the kept skin of the side to be added to has no common direction:
+// where it has one, the line enters through that skin, neither body is enclosed, and the skin beyond is the
+// far side of a body that holds the other from two sides; the line must not be paired with it.
 //
-// Nothing is counted twice.  Every face of a belongs to one patch, that to one proxy i, and all that is kept
+// No double counting.  Every face of a belongs to one patch, that to one proxy i, and all that is kept
 // of i goes into one region: the faces of a are divided among the regions.  The force is an integral over a's
-// skin (each point against what b shows it along its region's normal), so each point of a contributes once,
+// skin (each point against b's surface along its region's normal), so each point of a contributes once,
 // however b's side is shared, and however either body is cut into proxies.
 //
 // Jumps.  A patch that comes or goes is farther away than the gap: no force comes or goes with it.  What can
-// jump is a normal: when region i's changes by the angle phi, its force F_i keeps its size to first order and
-// turns, |dF_i| <= 2 sin(phi / 2) |F_i|.  Regions merge only when what their skins face differs by less than
-// the merge angle.  `turned` and `largest_turn` report phi.
+// jump is a normal: when that of region i rotates by the angle phi, its force F_i keeps its magnitude to
+// first order and rotates, |dF_i| <= 2 sin(phi / 2) |F_i|.  Regions merge only when the directions that their
+// skins face differ by less than the merge angle.  `rotation` and `largest_rotation` report phi.
 //
 // Which proxies share a plane.  The resultant of a uniform pressure on the part of a's skin inside b is minus
 // its area vector, which by the divergence theorem is the area vector of b's skin inside a: both say which
@@ -30,24 +30,24 @@
 // an integral over the skin, it does not know how the bodies are cut, and moves as they move, where the
 // normals of coarse hulls go from facet to facet; but where libccd's normal on the same side is better by
 // more than the hulls are inexact (their inflation: flat faces), that is taken.  Where there is no D (one
-// body's skin is far from the other's, or all around it: swallowed) the normal stays what it was at the last
+// body's skin is far from the other's, or encloses it) the normal stays what it was at the last
 // query, the side that the bodies came from; and where they never met before, it is libccd's for the hull of
 // all the region's proxies together, in which the walls between a body's own proxies are no surfaces.  A
 // region whose hulls are proven apart along its normal ends.
 //
 // Between the bones of one body.  Both sides are the same skin: a proxy may be on side a against one bone and
 // on side b against another, so each pair of proxies is allowed once, that of the lower bone as a's;
-// is_pair() tells whoever pairs triangles in a region's image which of them these are, since a region holds
-// all proxies of its pairs.  Proxies that are grown together are no pair: their hulls meet wherever the body
-// is, and what lies between them is its own flesh.  Skin of two others may still have nothing but flesh
-// between (hulls of a hollow shape reach across it): that is for the triangles to decide (own_flesh.h).
+// is_pair() gives the allowed pairs to the code that pairs triangles in a region's image, since a region
+// holds all proxies of its pairs.  Connected proxies are no pair: their hulls always overlap, and only the
+// body's tissue lies between them.  Two other proxies may also have nothing but tissue between their skins
+// (the hull of a concave shape extends across the cavity); the self-contact filter decides that by triangle.
 //
-// Limbs meet side by side and at narrow places, where skin that faces elsewhere is within the gap too, and D
-// is short of 2 without anybody being swallowed; its direction is still that of the contact, since what faces
-// elsewhere cancels.  The hulls know less: those of a region's proxies lie around joints, and the hull of all
-// of them fills the space that the contact is in.  So between bones a D of an eighth of its length is a
-// direction, and where two bodies would turn to their hulls or to the past, it is taken.  Where D is clear,
-// two parts of a body meet as two bodies do.
+// Limbs meet side by side and in narrow gaps, where skin that faces elsewhere is within the gap too, and |D|
+// is less than 2 although neither body is enclosed; its direction is still that of the contact, since the
+// contributions that face elsewhere cancel.  The hulls are less informative: those of a region's proxies lie
+// around joints, and their common hull fills the space of the contact.  So between bones a D of an eighth of
+// its full length counts as a direction, and is used where two bodies would use their hulls or the last
+// query.  Where D is clear, two parts of a body are treated like two bodies.
 #include "palpate/proxy/pruner.h"
 
 #include <algorithm>
@@ -114,7 +114,7 @@ void Pruner::Impl::keep_patches(Side& side, int own, const Side& other, int agai
   }
 }
 
-/// Pairs with skin to show, and what they make of each proxy of a.
+/// Pairs that have kept patches, and the result for each proxy of a.
 void Pruner::Impl::collect() {
   for (const Pair& pair : pairs) {
     const Vec3& direction = separating_of(pair.a, pair.b);

@@ -5,8 +5,8 @@
 
 #include "palpate/proxy/pruner.h"
 
-/// What pruner.cpp (pairs and patches) and pruner_regions.cpp (planes and faces) work on; the derivation
-/// stands in pruner.cpp.
+/// What pruner.cpp (pairs and patches) and pruner_regions.cpp (planes and faces) work on;
+/// the derivation stands in pruner.cpp.
 namespace palpate::proxy {
 
 /// Skin kept on one side: its area vector and area.
@@ -21,8 +21,8 @@ struct Facing {
     area += other.area;
     size += other.size;
   }
-  /// It faces one way, as skin in contact does; not skin of a swallowed body, which is kept all around, nor
-  /// none.
+  /// It faces one way, as skin in contact does;
+  /// not skin of a enclosed body, which is kept all around, nor none.
   bool directed() const { return area.norm() > 0.5 * size; }
 };
 
@@ -30,11 +30,11 @@ struct Facing {
 inline Vec3 facing(const Facing& a, const Facing& b) {
   return a.size > 0.0 && b.size > 0.0 ? Vec3(b.area / b.size - a.area / a.size) : Vec3(Vec3::Zero());
 }
-/// |D| of skins that face each other is 2, of swallowed skin 0; above this it is a direction
+/// |D| of skins that face each other is 2, of enclosed skin 0; above this it is a direction
 inline constexpr double kClear = 1.0;
 inline constexpr double kClearOwn = 0.25;  ///< the same between the bones of one body: see pruner.cpp
 
-/// One body of the query: its patches as far as they were looked at.
+/// One body of the query: its patches as far as they were tested.
 struct Side {
   const ProxySet& set;
   std::span<const SkinPatch> patches;
@@ -86,8 +86,8 @@ struct Pruner::Impl {
   Side a, b;
   double gap = 0.0;
   std::vector<char> may_touch;  // by pair, of one body's bones; else empty
-  // by pair: the last direction that its proxies were found apart along, or that the search ended with; zero
-  // for none
+  // by pair: the last direction that its proxies were found apart along,
+  // or that the search ended with; zero for none
   std::vector<Vec3> separating;
   std::vector<Vec3> last_normal;  // by proxy of a
   std::vector<long> last_query;
@@ -143,8 +143,8 @@ struct Pruner::Impl {
   void turn_to(Region& region, const Vec3& n, RegionMethod method) const;
   bool find_plane(int number, ContactRegion& region);
   template <class Take>
-  void look_through(Side& from, const std::vector<int>& from_patches, Side& to, const ContactRegion& region,
-                    double sign, Take take);
+  void add_facing_patches(Side& from, const std::vector<int>& from_patches, Side& to,
+                          const ContactRegion& region, double sign, Take take);
   void fill(ContactRegion& region);
   void remember(ContactRegion& region);
 };

@@ -129,8 +129,8 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
 /// Patches of `to` that `from` sees through itself: see above.  sign: +1 from a up to b, along the normal; -1
 /// from b down to a.  take(patch) says whether it is new.
 template <class Take>
-void Pruner::Impl::look_through(Side& from, const std::vector<int>& from_patches, Side& to,
-                                const ContactRegion& region, double sign, Take take) {
+void Pruner::Impl::add_facing_patches(Side& from, const std::vector<int>& from_patches, Side& to,
+                                      const ContactRegion& region, double sign, Take take) {
   constexpr double kFacesUp = 0.1;
   const Mat3 to_axes = region.axes.transpose();
   const Vec3 up = sign * region.region.normal, origin = region.region.origin;
@@ -185,12 +185,12 @@ void Pruner::Impl::fill(ContactRegion& region) {
       }
   const std::size_t kept_b = patches_b.size();
   if (!faces_b)
-    look_through(a, patches_a, b, region, 1.0, [&](int s) {
+    add_facing_patches(a, patches_a, b, region, 1.0, [&](int s) {
       if (std::exchange(in_region_b[static_cast<std::size_t>(s)], serial) != serial) patches_b.push_back(s);
     });
   if (!faces_a) {
     open.assign(patches_b.begin(), patches_b.begin() + static_cast<std::ptrdiff_t>(kept_b));
-    look_through(b, open, a, region, -1.0, [&](int s) {
+    add_facing_patches(b, open, a, region, -1.0, [&](int s) {
       const auto at = static_cast<std::size_t>(s);
       if (!a.kept[at] && std::exchange(claimed_a[at], counts.queries) != counts.queries)
         patches_a.push_back(s);
@@ -222,18 +222,19 @@ void Pruner::Impl::fill(ContactRegion& region) {
   counts.faces_b += static_cast<long>(region.faces_b.size());
 }
 
-/// Keeps the normal of the region's proxies, and how far it turned for those that had one at the last query.
+/// Keeps the normal of the region's proxies, and its rotation for those that had one at the last query.
 void Pruner::Impl::remember(ContactRegion& region) {
-  region.turned = 0.0;
+  region.rotation = 0.0;
   for (const int p : proxies_a) {
     const auto at = static_cast<std::size_t>(p);
     if (last_query[at] == counts.queries - 1)
-      region.turned = std::max(region.turned, std::atan2(last_normal[at].cross(region.region.normal).norm(),
-                                                         last_normal[at].dot(region.region.normal)));
+      region.rotation =
+          std::max(region.rotation, std::atan2(last_normal[at].cross(region.region.normal).norm(),
+                                               last_normal[at].dot(region.region.normal)));
     last_query[at] = counts.queries;
     last_normal[at] = region.region.normal;
   }
-  counts.largest_turn = std::max(counts.largest_turn, region.turned);
+  counts.largest_rotation = std::max(counts.largest_rotation, region.rotation);
 }
 
 }  // namespace palpate::proxy

@@ -104,8 +104,8 @@ std::array<SolidPiece, 2> cut(const SolidPiece& piece, const TriMesh& surface, i
   return out;
 }
 
-// The covariance of a triangle's points about its middle m is (sum over corners of (x - m)(x - m)^T) / 12,
-// times its area.
+// The covariance of a triangle's points about its middle m is
+// (sum over corners of (x - m)(x - m)^T) / 12, times its area.
 Mat3 principal_axes(const TriMesh& surface) {
   Mat3 second = Mat3::Zero();
   Vec3 first = Vec3::Zero();

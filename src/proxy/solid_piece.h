@@ -8,8 +8,8 @@
 /// A solid cut by planes along its axes: cells of a box, and the surface within each.
 namespace palpate::proxy {
 
-/// The part of a face that lies in a cell: convex, by its corners; at most 3 and one for each of the cell's
-/// sides.
+/// The part of a face that lies in a cell: convex, by its corners;
+/// at most 3 and one for each of the cell's sides.
 struct Polygon {
   int face = 0;
   bool is_cut = false;  ///< less than the face
@@ -28,8 +28,8 @@ struct SolidPiece {
 
 /// The solid as one piece.
 SolidPiece whole_piece(const TriMesh& surface);
-/// What lies below and above the plane x[axis] = at.  What is in it to within `flat` is where the solid is
-/// that it bounds.
+/// What lies below and above the plane x[axis] = at.
+/// What is in it to within `flat` is where the solid is that it bounds.
 std::array<SolidPiece, 2> cut(const SolidPiece& piece, const TriMesh& surface, int axis, double at,
                               double flat);
 

@@ -7,8 +7,8 @@
 
 namespace palpate::render {
 
-/// A picture under cairo's pen: drawing goes onto a copy, `result` gives it back.  Lengths are pixels, y
-/// downwards.
+/// A picture under cairo's pen: drawing goes onto a copy, `result` gives it back.
+/// Lengths are pixels, y downwards.
 class Canvas {
  public:
   explicit Canvas(const Picture& picture);

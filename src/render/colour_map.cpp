@@ -7,10 +7,10 @@
 namespace palpate::render {
 namespace {
 
-// Polynomials of degree 6 in t, one a channel: our least-squares fit, exact at both ends, to eleven of the
-// 256 published values of viridis (S. van der Walt, N. Smith, "A better default colormap for Matplotlib",
-// SciPy 2015; the values are in the public domain, CC0). They miss those eleven by at most 0.014 (red), 0.003
-// (green), 0.007 (blue).
+// Polynomials of degree 6 in t, one a channel: our least-squares fit, exact at both ends, to eleven of
+// the 256 published values of viridis (S. van der Walt, N. Smith, "A better default colormap for
+// Matplotlib", SciPy 2015; the values are in the public domain, CC0). They miss those eleven by at
+// most 0.014 (red), 0.003 (green), 0.007 (blue).
 constexpr std::array<std::array<double, 7>, 3> kViridis = {{
     {0.26700, 0.21199, -0.61084, -5.05401, 9.02738, 0.91960, -3.76787},
     {0.00487, 1.31431, 0.93427, -8.22793, 18.31198, -17.15534, 5.72399},

@@ -152,8 +152,8 @@ void Shader::draw_surface(const Drawable& drawable) {
   drawable.draw();
 }
 
-/// Depth first, then colour where depth is equal: only the layer nearest to the eye is blended, in whatever
-/// order triangles come.
+/// Depth first, then colour where depth is equal:
+/// only the layer nearest to the eye is blended, in whatever order triangles come.
 void Shader::draw_transparent(const Drawable& drawable) {
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   draw_surface(drawable);

@@ -12,8 +12,8 @@ struct Staging {
   double grid_spacing = 0;  ///< [m]; 0: no ground
 };
 
-/// The scene without any text, at width x height of the options: drawn `supersampling` times larger and
-/// averaged.
+/// The scene without any text, at width x height of the options:
+/// drawn `supersampling` times larger and averaged.
 Picture shade(const Scene& scene, const Staging& staging, const Options& options);
 
 }  // namespace palpate::render

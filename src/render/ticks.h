@@ -12,8 +12,8 @@ struct ScaledUnit {
   double factor = 1.0;  ///< a value in the plain unit times this is the number shown
   std::string name;
 };
-/// Only plain units that people prefix (m, m/s, Pa, N, J, N m, s, W); any other stays as it is, with factor
-/// 1.
+/// Only plain units that people prefix (m, m/s, Pa, N, J, N m, s, W);
+/// any other stays as it is, with factor 1.
 ScaledUnit scaled_unit(const std::string& unit, double largest);
 
 struct Tick {

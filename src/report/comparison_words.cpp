@@ -9,7 +9,7 @@ namespace palpate::report {
 namespace {
 
 constexpr const char* kError = "position_error_rel_l2";
-/// Best points must stand this far above the reference's own error to be told apart by it.
+/// Best points must be this far above the reference's error to be distinguished by it.
 constexpr double kMargin = 10.0;
 
 std::string list_of(const std::vector<std::string>& names) {
@@ -131,7 +131,7 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
       unresolved += p.unresolved;
       if (!p.unresolved && !(p.error >= best)) best = p.error;
     }
-  if (std::isnan(best)) return "No point has an error that could be told from the reference's.";
+  if (std::isnan(best)) return "No point has an error that can be distinguished from the reference's.";
   if (std::isnan(reference_error))
     return "The reference's own error is not known: read small errors with care.";
   if (best < kMargin * reference_error)

@@ -8,7 +8,7 @@ namespace palpate::report {
 struct HeatCell {
   std::string letter;     ///< what is read without colour
   std::string css;        ///< class of its colour: "v0" ... "v7", or empty where there is no such cell
-  std::string title;      ///< what is told where the pointer rests on it
+  std::string title;      ///< tooltip
   bool outlined = false;  ///< not what was expected
 };
 
@@ -19,8 +19,8 @@ struct HeatGroup {
   std::vector<std::vector<HeatCell>> cells;  ///< one vector a row, one cell a column
 };
 
-/// A table with a coloured letter in each cell and the columns' names upright; well-formed, everything
-/// escaped.
+/// A table with a coloured letter in each cell and the columns' names upright;
+/// well-formed, everything escaped.
 std::string heat_map_html(const std::vector<std::string>& columns, const std::vector<HeatGroup>& groups);
 /// What the letters mean: one line each.
 std::string heat_key_html(const std::vector<HeatCell>& cells);

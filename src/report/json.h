@@ -19,8 +19,8 @@ double number_at(const Json& object, const char* key);
 /// The text under a key; `otherwise` when absent or not text.
 std::string text_at(const Json& object, const char* key, const std::string& otherwise = "");
 
-/// A value for people: numbers short, lists joined by commas, "yes" and "no"; empty for null and for lists of
-/// objects.
+/// A value for people: numbers short, lists joined by commas, "yes" and "no";
+/// empty for null and for lists of objects.
 std::string value_text(const Json& value);
 
 /// "cpu_s" -> "cpu [s]", "max_force_n" -> "max force [N]": a key whose unit stands at its end, for people.

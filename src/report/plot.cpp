@@ -12,8 +12,8 @@
 namespace palpate::report {
 namespace {
 
-/// gnuplot reads single-quoted text literally (no back-quoted commands, no escapes): only the quote itself is
-/// doubled.
+/// gnuplot reads single-quoted text literally (no back-quoted commands, no escapes):
+/// only the quote itself is doubled.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) {

@@ -41,7 +41,7 @@ std::string sentence_case(std::string text) {
   return text;
 }
 
-/// The end of a caption: a limit is told here too, since one far above the curve is not drawn.
+/// The end of a caption: a limit is stated here too, since one far above the curve is not drawn.
 std::string limit_text(double limit, const char* unit) {
   return limit > 0.0 ? fmt::format("; the device can do at most {:g} {}.", limit, unit) : ".";
 }

@@ -8,8 +8,8 @@
 #include "palpate/report/table.h"
 #include "palpate/report/work_precision.h"
 
-/// The sections of a run's report, each from its own file or object.  A section with nothing to say adds
-/// nothing.
+/// The sections of a run's report, each from its own file or object.
+/// A section with nothing to say adds nothing.
 namespace palpate::report {
 
 /// The plot as a figure, or, when it cannot be drawn, a paragraph with the reason: a page without one figure

@@ -2,29 +2,35 @@
 
 namespace palpate::report {
 
-// The floor's fill and the rings' fill are told apart by the colours that the plots give them (see
+// The floor's fill and the rings' fill are distinguished by the colours that the plots give them (see
 // kFloorColour): a figure then follows the page into dark mode without being drawn twice.
 const char* const kStyleSheet = R"css(
-:root { color-scheme: light dark; --page: #ffffff; --ink: #1c2126; --quiet: #5c6670; --line: #d9dee3; --tint: #f4f6f8; --accent: #1f6fae;
+:root { color-scheme: light dark; --page: #ffffff; --ink: #1c2126; --quiet: #5c6670; --line: #d9dee3;
+  --tint: #f4f6f8; --accent: #1f6fae;
   --good: #1e7a46; --bad: #b3261e; --good-tint: #e9f5ee; --bad-tint: #fbeae9; }
-@media (prefers-color-scheme: dark) { :root { --page: #15191d; --ink: #e3e7eb; --quiet: #9aa5b0; --line: #353c44; --tint: #1d2329; --accent: #6fb1e6;
+@media (prefers-color-scheme: dark) { :root { --page: #15191d; --ink: #e3e7eb; --quiet: #9aa5b0;
+  --line: #353c44; --tint: #1d2329; --accent: #6fb1e6;
   --good: #6fcf97; --bad: #f28b82; --good-tint: #1a2b22; --bad-tint: #331f1f; } }
 * { box-sizing: border-box; }
-html { background: var(--page); color: var(--ink); font: 16px/1.55 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; }
+html { background: var(--page); color: var(--ink);
+  font: 16px/1.55 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; }
 body { max-width: 64rem; margin: 0 auto; padding: 2.5rem 1.5rem 4rem; }
 h1 { font-size: 1.9rem; line-height: 1.2; margin: 0 0 .5rem; letter-spacing: -.01em; }
-h2 { font-size: 1.25rem; margin: 2.75rem 0 .75rem; padding-bottom: .3rem; border-bottom: 1px solid var(--line); }
+h2 { font-size: 1.25rem; margin: 2.75rem 0 .75rem; padding-bottom: .3rem;
+  border-bottom: 1px solid var(--line); }
 h3 { font-size: 1rem; margin: 1.75rem 0 .5rem; }
 p { margin: .5rem 0 .9rem; max-width: 46rem; }
 figure { margin: 1.25rem 0; }
 figure img, figure svg { display: block; width: 100%; height: auto; }
 figure img { border: 1px solid var(--line); border-radius: 4px; }
 figure svg { max-width: 52rem; overflow: visible; }
-figcaption, caption { color: var(--quiet); font-size: .875rem; text-align: left; padding: .4rem 0; max-width: 46rem; }
+figcaption, caption { color: var(--quiet); font-size: .875rem; text-align: left; padding: .4rem 0;
+  max-width: 46rem; }
 caption { caption-side: top; }
 .scroll { overflow-x: auto; margin: .75rem 0 1.25rem; }
 table { border-collapse: collapse; font-size: .875rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .32rem .8rem .32rem 0; text-align: left; vertical-align: baseline; border-bottom: 1px solid var(--line); }
+th, td { padding: .32rem .8rem .32rem 0; text-align: left; vertical-align: baseline;
+  border-bottom: 1px solid var(--line); }
 th { font-weight: 600; color: var(--quiet); vertical-align: bottom; line-height: 1.3; }
 th:last-child, td:last-child { padding-right: .4rem; }
 th:first-child, td:first-child { padding-left: .4rem; }
@@ -42,31 +48,43 @@ tr.faint td { color: var(--quiet); }
 details { margin: 1rem 0; }
 summary { cursor: pointer; color: var(--accent); }
 table.facts th { font-weight: 400; padding-right: 2rem; white-space: nowrap; vertical-align: baseline; }
-pre { background: var(--tint); border: 1px solid var(--line); border-radius: 4px; padding: .9rem 1.1rem; overflow-x: auto; font: .8125rem/1.5 ui-monospace, "DejaVu Sans Mono", monospace; }
+pre { background: var(--tint); border: 1px solid var(--line); border-radius: 4px; padding: .9rem 1.1rem;
+  overflow-x: auto; font: .8125rem/1.5 ui-monospace, "DejaVu Sans Mono", monospace; }
 table.heat { font-size: .75rem; border-collapse: separate; border-spacing: 1px; }
 table.heat th, table.heat td { border: 0; padding: .1rem .25rem; vertical-align: middle; }
 table.heat th { font-weight: 400; color: var(--ink); text-align: left; white-space: nowrap; }
-table.heat tbody tr:not(.group) th { position: sticky; left: 0; background: var(--page); padding-left: .8rem; padding-right: .6rem; }
+table.heat tbody tr:not(.group) th { position: sticky; left: 0; background: var(--page);
+  padding-left: .8rem; padding-right: .6rem; }
 table.heat th.up { height: 11rem; vertical-align: bottom; padding: 0; }
-table.heat th.up span { display: block; width: 1.3rem; writing-mode: vertical-rl; transform: rotate(180deg); line-height: 1.3rem; }
+table.heat th.up span { display: block; width: 1.3rem; writing-mode: vertical-rl; transform: rotate(180deg);
+  line-height: 1.3rem; }
 table.heat tr.group th { padding-top: .9rem; color: var(--quiet); white-space: normal; }
 table.heat tr.group th span { display: block; width: 0; white-space: nowrap; position: sticky; left: .2rem; }
-.wide { width: max-content; min-width: 100%; max-width: calc(100vw - 4rem); position: relative; left: 50%; transform: translateX(-50%); }
+.wide { width: max-content; min-width: 100%; max-width: calc(100vw - 4rem); position: relative; left: 50%;
+  transform: translateX(-50%); }
 table.heat tr.group b { color: var(--ink); font-weight: 600; }
-table.heat td { width: 1.3rem; min-width: 1.3rem; height: 1.3rem; padding: 0; text-align: center; cursor: default; }
-.heatkey { list-style: none; margin: .5rem 0 1rem; padding: 0; font-size: .8125rem; columns: 2; max-width: 60rem; }
+table.heat td { width: 1.3rem; min-width: 1.3rem; height: 1.3rem; padding: 0; text-align: center;
+  cursor: default; }
+.heatkey { list-style: none; margin: .5rem 0 1rem; padding: 0; font-size: .8125rem; columns: 2;
+  max-width: 60rem; }
 .heatkey li { break-inside: avoid; padding: .12rem 0; }
-.heatkey span { display: inline-block; width: 1.45rem; text-align: center; margin-right: .4rem; font-size: .75rem; line-height: 1.35rem; }
-.v0 { background: #1b7f5c; color: #fff; } .v1 { background: #8ccbb0; color: #10241c; } .v2 { background: #dbe9c8; color: #20261a; }
-.v3 { background: #f3d27a; color: #2d2408; } .v4 { background: #e0803a; color: #1f1005; } .v5 { background: #b3261e; color: #fff; }
+.heatkey span { display: inline-block; width: 1.45rem; text-align: center; margin-right: .4rem;
+  font-size: .75rem; line-height: 1.35rem; }
+.v0 { background: #1b7f5c; color: #fff; } .v1 { background: #8ccbb0; color: #10241c; }
+.v2 { background: #dbe9c8; color: #20261a; }
+.v3 { background: #f3d27a; color: #2d2408; } .v4 { background: #e0803a; color: #1f1005; }
+.v5 { background: #b3261e; color: #fff; }
 .v6 { background: #6d1b7b; color: #fff; } .v7 { background: #8a9099; color: #101214; }
 .odd { outline: 3px solid #e5007d; outline-offset: -2px; font-weight: 700; }
 .plot .gridline { stroke: var(--line); }
 .plot [fill^="rgb(236, 239, 242)"] { fill: var(--tint); }
 .plot [color="rgb(255, 255, 255)"], .plot [color="white"] { color: var(--page); }
-@media print { .v0, .v1, .v2, .v3, .v4, .v5, .v6, .v7 { print-color-adjust: exact; } :root { color-scheme: light; --page: #ffffff; --ink: #000000; --quiet: #444444; --line: #bbbbbb; --tint: #f2f2f2; --good: #1e7a46; --bad: #b3261e; --bad-tint: #ffffff; }
+@media print { .v0, .v1, .v2, .v3, .v4, .v5, .v6, .v7 { print-color-adjust: exact; }
+  :root { color-scheme: light; --page: #ffffff; --ink: #000000; --quiet: #444444; --line: #bbbbbb;
+    --tint: #f2f2f2; --good: #1e7a46; --bad: #b3261e; --bad-tint: #ffffff; }
   html { font-size: 10.5pt; } body { max-width: none; padding: 0; }
-  h2, h3 { break-after: avoid; } figure, tr { break-inside: avoid; } pre { white-space: pre-wrap; } .scroll { overflow: visible; } table { font-size: 8pt; } }
+  h2, h3 { break-after: avoid; } figure, tr { break-inside: avoid; } pre { white-space: pre-wrap; }
+  .scroll { overflow: visible; } table { font-size: 8pt; } }
 )css";
 
 }  // namespace palpate::report

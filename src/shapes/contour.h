@@ -17,8 +17,8 @@ struct Blueprint {
   bool symmetric = false;
 };
 
-/// A closed surface of nearly equilateral triangles with `vertices` vertices (one more or less where it is
-/// symmetric).
+/// A closed surface of nearly equilateral triangles with
+/// `vertices` vertices (one more or less where it is symmetric).
 TriMesh contour(const Blueprint& blueprint, int vertices);
 
 /// The zero set by marching tetrahedra on the cubic lattice, each cube cut in six along its diagonal: closed

@@ -55,7 +55,7 @@ double with_nose(double head, const Vec3& p, bool fine) {
   // columella
   head = join(head, limb(p, {0, -104, -43}, {0, -98, -46}, 3.2, 3.5), 4.0);
   // nostril
-  head = carve(head, ellipsoid(p, {6.6, -102.5, -45.5}, {3.6, 6.0, 4.2}, turned(20, 0, -18)), 2.0);
+  head = carve(head, ellipsoid(p, {6.6, -102.5, -45.5}, {3.6, 6.0, 4.2}, rotation_xyz(20, 0, -18)), 2.0);
   const double crease = limb(p, {18.5, -94, -34}, {17.5, -90, -43}, 1.2, 1.2);
   return carve(head, crease, 2.5);
 }
@@ -109,8 +109,8 @@ double with_ear(double head, const Vec3& p, bool fine) {
   const double ridge_here = ramp(turn, -80.0, -45.0) * (1.0 - ramp(turn, 60.0, 95.0));
   const double ridge = std::hypot((rho - 0.60) * 16.0, q.z() - 2.6) - (4.1 * ridge_here - 1.5);
   ear = join(ear, ridge, 2.5);
-  ear = join(ear, ellipsoid(q, {-3, -27, 0.5}, {9.0, 11.0, 4.4}), 6.0);                     // lobe
-  ear = join(ear, ellipsoid(q, {-12.5, -9, 3.0}, {3.6, 6.0, 4.5}, turned(0, 0, 10)), 4.5);  // tragus
+  ear = join(ear, ellipsoid(q, {-3, -27, 0.5}, {9.0, 11.0, 4.4}), 6.0);                           // lobe
+  ear = join(ear, ellipsoid(q, {-12.5, -9, 3.0}, {3.6, 6.0, 4.5}, rotation_xyz(0, 0, 10)), 4.5);  // tragus
   return join(head, ear, 3.0);
 }
 

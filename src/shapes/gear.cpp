@@ -171,8 +171,8 @@ class Assembly {
   std::vector<Eigen::Vector3i> faces_;
 };
 
-/// Surface and, on request, where it is sharp (the base: the outline and the bore above and below, the tips'
-/// corners in between).
+/// Surface and, on request, where it is sharp (the base: the outline
+/// and the bore above and below, the tips' corners in between).
 TriMesh build(const GearSize& size, int vertices, bool fine, std::vector<std::vector<Vec3>>* creases) {
   double low = 1e-5, high = 0.02;
   for (int i = 0; i < 40; ++i) {  // the number falls as the spacing grows

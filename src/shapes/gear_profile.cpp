@@ -7,16 +7,18 @@
 
 // Half a tooth, from the middle of the tip clockwise seen from the tooth, that is with growing polar angle:
 //   tip arc   radius ra, from angle 0 to the flank's end
-//   involute  of the base circle rb: at roll t the radius is rb sqrt(1 + t^2) and the polar angle has turned
-//   by t - atan t = inv(alpha), alpha = atan t.  On the pitch
-//             circle half a tooth spans pi / (2 z), so the flank stands at angle  h(t) = pi / (2 z) +
-//             inv(alpha_0) - (t - atan t)
+//   involute  of the base circle rb: at roll t the radius is rb sqrt(1 + t^2) and the polar angle has
+//             advanced by t - atan t = inv(alpha), alpha = atan t.  On the pitch circle half a tooth spans
+//             pi / (2 z), so the polar angle of the flank is
+//               h(t) = pi / (2 z) + inv(alpha_0) - (t - atan t)
 //   line      radial, from the base circle in to the fillet
 //   fillet    a circle of radius f that touches the radial line and, from outside, the root circle
 //   root arc  to the middle of the gap at pi / z
-// Areas swept by the radius, 1/2 int r^2 dtheta = 1/2 int (x dy - y dx): an arc 1/2 r^2 dtheta; a radial line
-// nothing; the involute, with d(t - atan t) = t^2/(1 + t^2) dt, rb^2 t^3 / 6; the fillet about its centre c,
-// points c + f u(phi): 1/2 [f c x (u1 - u0) + f^2 (phi1 - phi0)].
+// Areas swept by the radius, 1/2 int r^2 dtheta = 1/2 int (x dy - y dx):
+//   arc          1/2 r^2 dtheta
+//   radial line  0
+//   involute     rb^2 t^3 / 6,   from d(t - atan t) = t^2/(1 + t^2) dt
+//   fillet       1/2 [f c x (u1 - u0) + f^2 (phi1 - phi0)],   its points c + f u(phi) about its centre c
 namespace palpate::shapes {
 namespace {
 
@@ -78,8 +80,8 @@ GearProfile gear_profile(const GearSize& size, double spacing) {
     points.push_back(p), normals.push_back(n.normalized());
   };
   const auto on_flank = [&](double t) { return polar(h.rb * std::sqrt(1.0 + t * t), h.angle(t)); };
-  // The involute's normal touches the base circle: it points along the unwound string, at angle h(t) + pi/2 -
-  // atan t.
+  // The involute's normal touches the base circle:
+  // it points along the unwound string, at angle h(t) + pi/2 - atan t.
   const auto flank_normal = [&](double t) {
     return polar(1.0, h.angle(t) + 0.5 * std::numbers::pi - std::atan(t));
   };
@@ -116,11 +118,11 @@ GearProfile gear_profile(const GearSize& size, double spacing) {
   const int half = static_cast<int>(points.size()) - 1;  // the last point is the gap's middle
   GearProfile out;
   for (int tooth = 0; tooth < size.teeth; ++tooth) {
-    const Eigen::Rotation2Dd turned(2.0 * h.middle * tooth), other(2.0 * h.middle * (tooth + 1));
+    const Eigen::Rotation2Dd this_tooth(2.0 * h.middle * tooth), other(2.0 * h.middle * (tooth + 1));
     for (int i = 0; i <= half; ++i) {
       if (i == corner) out.corners.push_back(static_cast<int>(out.points.size()));
-      out.points.push_back(turned * points[i]);
-      out.normals.push_back(turned * normals[i]);
+      out.points.push_back(this_tooth * points[i]);
+      out.normals.push_back(this_tooth * normals[i]);
     }
     for (int i = half - 1; i >= 1; --i) {
       if (i == corner) out.corners.push_back(static_cast<int>(out.points.size()));

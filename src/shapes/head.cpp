@@ -87,8 +87,8 @@ Shape make_head(const Resolution& resolution) {
   plan.lattice = 0.003;
   plan.symmetric = true;
   shape.base = contour(plan, resolution.base_vertices);
-  // The finest relief has four edges a wave; 0.19 m^2 of surface with half as many triangles' worth of
-  // refinement again.
+  // The finest relief has four edges a wave;
+  // 0.19 m^2 of surface with half as many triangles' worth of refinement again.
   const double edge_mm = std::sqrt(2.0 / std::sqrt(3.0) * 0.30 / resolution.skin_vertices) / kScale;
   plan.inside = body({true, true, 3.0 * edge_mm});
   plan.size = [](const Vec3& x) { return head_size_mm(x / kScale); };

@@ -26,7 +26,7 @@ double both(const Vec3& p, double k, Part&& part) {
   return join(part(p), part(mirrored(p)), k);
 }
 
-/// A lower bound of the distance outside a ball: what is far away is not looked at closely.
+/// A lower bound of the distance outside a ball: distant parts are not evaluated exactly.
 template <class Part>
 double when_near(const Vec3& p, const Vec3& centre, double radius, Part&& part) {
   const double away = (p - centre).norm() - radius;
@@ -65,11 +65,11 @@ double torso(const Vec3& p, bool fine) {
   d = join(d,
            both(p, 0.015,
                 [](const Vec3& q) {
-                  return ellipsoid(q, {0.073, 0.066, 0.918}, {0.076, 0.066, 0.086}, turned(-12, 0, 0));
+                  return ellipsoid(q, {0.073, 0.066, 0.918}, {0.076, 0.066, 0.086}, rotation_xyz(-12, 0, 0));
                 }),
            0.025);
   const double chest = both(p, 0.010, [](const Vec3& q) {
-    return ellipsoid(q, {0.074, -0.066, 1.318}, {0.080, 0.032, 0.056}, turned(8, 14, 14));
+    return ellipsoid(q, {0.074, -0.066, 1.318}, {0.080, 0.032, 0.056}, rotation_xyz(8, 14, 14));
   });
   d = join(d, chest, fine ? 0.034 : 0.05);
   if (!fine) return d;
@@ -112,9 +112,10 @@ double leg(const Vec3& p, bool fine) {
 double arm(const Vec3& p, bool fine) {
   double d = limb(p, kShoulder, kElbow, 0.049, 0.037);
   // deltoid
-  d = join(d, ellipsoid(p, kShoulder + Vec3(0.018, 0.0, -0.026), {0.047, 0.056, 0.078}, turned(0, -22, 0)),
+  d = join(d,
+           ellipsoid(p, kShoulder + Vec3(0.018, 0.0, -0.026), {0.047, 0.056, 0.078}, rotation_xyz(0, -22, 0)),
            0.03);
-  const Mat3 lean = turned(0, -28, 0);
+  const Mat3 lean = rotation_xyz(0, -28, 0);
   // biceps
   d = join(d,
            ellipsoid(p, kShoulder + 0.56 * (kElbow - kShoulder) + Vec3(0.0, -0.020, 0.0),
@@ -128,7 +129,7 @@ double arm(const Vec3& p, bool fine) {
   d = join(d, limb(p, kElbow, kWrist, 0.036, 0.0245, 0.006, 0.25), 0.02);
   d = join(d,
            ellipsoid(p, kElbow + 0.26 * (kWrist - kElbow) + Vec3(0.010, -0.008, 0.0), {0.034, 0.036, 0.075},
-                     turned(10, -25, 0)),
+                     rotation_xyz(10, -25, 0)),
            0.025);
   if (fine) d = join(d, ball(p, kElbow + Vec3(0.004, 0.030, 0.004), 0.012), 0.02);
   return join(d, when_near(p, kKnuckles, 0.14, [&] { return hand(p, fine); }), 0.015);

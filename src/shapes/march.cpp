@@ -6,12 +6,12 @@
 #include "contour.h"
 #include "palpate/core/error.h"
 
-// Each cube of the lattice is cut into six tetrahedra around its diagonal (Kuhn 1960): a tetrahedron goes
-// from the low corner to the high one along the three axes in one of their six orders.  The cut is the same
-// in every cube, so faces match, and a plane of the lattice is a union of faces: a symmetric body may be cut
-// there.  The surface crosses an edge where the function changes sign; a tetrahedron holds one triangle or
-// two. A block of cubes is skipped where |inside(centre)| exceeds the Lipschitz bound times its half
-// diagonal.
+// Each cube of the lattice is cut into six tetrahedra around its diagonal (Kuhn 1960): a
+// tetrahedron goes from the low corner to the high one along the three axes in one of their six
+// orders.  The cut is the same in every cube, so faces match, and a plane of the lattice is a union
+// of faces: a symmetric body may be cut there.  The surface crosses an edge where the function
+// changes sign; a tetrahedron holds one triangle or two. A block of cubes is skipped where
+// |inside(centre)| exceeds the Lipschitz bound times its half diagonal.
 namespace palpate::shapes {
 namespace {
 

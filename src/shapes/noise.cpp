@@ -6,8 +6,8 @@
 namespace palpate::shapes {
 namespace {
 
-/// Mixes all bits: multiplications by odd numbers and shifts are invertible, so no two inputs of one word
-/// share an output.
+/// Mixes all bits: multiplications by odd numbers and shifts are invertible,
+/// so no two inputs of one word share an output.
 std::uint32_t mix(std::uint32_t h) {
   h ^= h >> 16;
   h *= 0x7feb352dU;

@@ -39,7 +39,7 @@ double rib(const Vec3& p, int i, bool fine) {
   return ellipsoid(q, {0.073, 0, 0}, Vec3(fine ? 0.077 : 0.075, 0.037, 0.107) * own.grown);
 }
 
-double flesh(const Vec3& p, bool fine) {
+double ribs(const Vec3& p, bool fine) {
   const double place = std::atan2(p.y(), p.x()) * kRibs / (2.0 * std::numbers::pi);
   const int nearest = static_cast<int>(std::lround(place));
   double d = rib(p, nearest, fine);
@@ -75,7 +75,7 @@ double relief(const Vec3& p, double wavelength) {
 }
 
 double pumpkin(const Vec3& p, bool fine, double wavelength) {
-  double d = flesh(p, fine);
+  double d = ribs(p, fine);
   if (fine && std::abs(d) < 0.008) d -= relief(p, wavelength);
   return join(d, stem(p, fine), fine ? 0.006 : 0.012);
 }

@@ -169,8 +169,8 @@ void Remesher::collapse_short(double edge) {
     if (real(h) && relative(h) < kShortest * edge) try_collapse(h, kLongest * edge);
 }
 
-// Sum of |valence - 6| over the four vertices (4 on a rim, counting real neighbours), less after the flip
-// than before.
+// Sum of |valence - 6| over the four vertices (4 on a rim, counting real neighbours),
+// less after the flip than before.
 void Remesher::flip_by_valence() {
   std::vector<int> valence(x_.size(), 0);
   for (int v = 0; v < static_cast<int>(x_.size()); ++v)

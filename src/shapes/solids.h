@@ -9,10 +9,10 @@
 /// together.  Any unit of length, the same for all.
 namespace palpate::shapes {
 
-/// The larger part of a hull of two solids: min(a, b), rounded where they differ by less than k.  With h =
-/// max(k - |a - b|, 0) / k it is min(a, b) - k h^2 / 4:
-/// at a = b it lies k/4 below, and value and slope meet min(a, b) at |a - b| = k.  Symmetric in a and b to
-/// the bit.
+/// The larger part of a hull of two solids: min(a, b), rounded where they differ by less than k:
+///   min(a, b) - k h^2 / 4,   h = max(k - |a - b|, 0) / k.
+/// At a = b it lies k/4 below, and value and slope meet min(a, b) at |a - b| = k.
+/// Symmetric in a and b to the bit.
 inline double join(double a, double b, double k) {
   const double h = std::max(k - std::abs(a - b), 0.0) / k;
   return std::min(a, b) - 0.25 * k * h * h;
@@ -38,7 +38,7 @@ inline double ellipsoid(const Vec3& p, const Vec3& centre, const Vec3& radii) {
   if (length < 1e-6) return -radii.minCoeff();
   return (length - 1.0) * length / q.cwiseQuotient(radii).norm();
 }
-/// The same about axes of its own, the columns of `axes`.
+/// An ellipsoid whose axes are the columns of `axes`.
 inline double ellipsoid(const Vec3& p, const Vec3& centre, const Vec3& radii, const Mat3& axes) {
   return ellipsoid(Vec3(axes.transpose() * (p - centre)), Vec3::Zero(), radii);
 }
@@ -58,8 +58,8 @@ inline double limb(const Vec3& p, const Vec3& a, const Vec3& b, double ra, doubl
   return (p - a - t * along).norm() - radius;
 }
 
-/// Right-handed axes turned by angles about x, then y, then z [degrees].
-inline Mat3 turned(double about_x_deg, double about_y_deg, double about_z_deg) {
+/// Rotation matrix of right-handed rotations about x, then y, then z [degrees].
+inline Mat3 rotation_xyz(double about_x_deg, double about_y_deg, double about_z_deg) {
   const double degree = std::numbers::pi / 180.0;
   return (Eigen::AngleAxisd(about_z_deg * degree, Vec3::UnitZ()) *
           Eigen::AngleAxisd(about_y_deg * degree, Vec3::UnitY()) *

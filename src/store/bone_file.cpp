@@ -32,7 +32,7 @@ void BoneFile::append(const BoneRow& r) {
   std::array<double, 20> row{r.time_s, static_cast<double>(r.bone)};
   std::size_t at = 2;
   for (const Vec3& v : {r.pose.translation, rotation_vector(r.pose.rotation), r.twist.linear, r.twist.angular,
-                        r.from_flesh.force, r.from_flesh.moment})
+                        r.from_tissue.force, r.from_tissue.moment})
     for (int axis = 0; axis < 3; ++axis) row[at++] = v[axis];
   csv_.row(row);
 }

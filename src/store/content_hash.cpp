@@ -7,9 +7,10 @@
 
 namespace palpate::store {
 
-// FNV-1a of 128 bits (Fowler, Noll, Vo; RFC draft-eastlake-fnv): h = (h xor byte) * p mod 2^128, p = 2^88 +
-// 2^8 + 0x3b. With h = H 2^64 + L:  h p = h 0x13b + (L 2^24 mod 2^64) 2^64  (H 2^88 2^64 leaves the 128
-// bits).
+// FNV-1a of 128 bits (Fowler, Noll, Vo; RFC draft-eastlake-fnv):
+//   h = (h xor byte) * p mod 2^128,   p = 2^88 + 2^8 + 0x3b.
+// With h = H 2^64 + L, where H 2^88 2^64 is 0 modulo 2^128:
+//   h p = h 0x13b + (L 2^24 mod 2^64) 2^64.
 void ContentHash::mix(std::string_view bytes) {
   for (const char c : bytes) {
     low_ ^= static_cast<unsigned char>(c);

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-/// The little of HDF5 that palpate uses, with owners that close and errors that say which file and what
-/// failed.
+/// The little of HDF5 that palpate uses,
+/// with owners that close and errors that say which file and what failed.
 namespace palpate::store::h5 {
 
 /// Owns one HDF5 identifier.
@@ -31,8 +31,8 @@ class Id {
   Close close_ = nullptr;
 };
 
-/// HDF5 prints its errors on standard error by default; while one of these lives, it keeps quiet and we
-/// speak.
+/// HDF5 prints its errors on standard error by default;
+/// while one of these lives, it keeps quiet and we speak.
 class Quiet {
  public:
   Quiet();
@@ -52,8 +52,8 @@ hid_t check(hid_t id, const std::string& path, const std::string& what);
 
 Id create_file(const std::string& path);
 Id open_file(const std::string& path);  ///< for reading
-/// A file that lives in memory; `path` is what messages call it.  Its bytes, once all is written, are
-/// image().
+/// A file that lives in memory; `path` is what messages call it.
+/// Its bytes, once all is written, are image().
 Id create_in_memory(const std::string& path);
 std::string image(hid_t file, const std::string& path);
 Id create_group(hid_t parent, const std::string& name, const std::string& path);

@@ -8,14 +8,14 @@
 #include "store/series.h"
 
 // VTKHDF, UnstructuredGrid, temporal, as its reader takes it apart (offsets in rows):
-//   points of step s      Points[PointOffsets[s] ... + NumberOfPoints[PartOffsets[s]]]
-//   cells of step s       Offsets[CellOffsets[s] + PartOffsets[s] ... + NumberOfCells + 1],
-//   Connectivity[ConnectivityIdOffsets[s] ...]
-//   data of step s        PointData/NAME[PointDataOffsets/NAME[s] ...], CellData/NAME[CellDataOffsets/NAME[s]
-//   ...]
+//   points of step s   Points[PointOffsets[s] ... + NumberOfPoints[PartOffsets[s]]]
+//   cells of step s    Offsets[CellOffsets[s] + PartOffsets[s] ... + NumberOfCells + 1]
+//                      Connectivity[ConnectivityIdOffsets[s] ...]
+//   data of step s     PointData/NAME[PointDataOffsets/NAME[s] ...]
+//                      CellData/NAME[CellDataOffsets/NAME[s] ...]
 // One topology for all steps therefore means: one part, one entry in each NumberOf..., and PartOffsets,
-// CellOffsets, ConnectivityIdOffsets, CellDataOffsets all zero; only the offsets of points and of their data
-// move.
+// CellOffsets, ConnectivityIdOffsets, CellDataOffsets all zero.  Only the offsets of points and of their data
+// vary with the step.
 namespace palpate::store {
 namespace {
 constexpr std::uint8_t kVtkTriangle = 5, kVtkTetra = 10;

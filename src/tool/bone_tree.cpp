@@ -36,7 +36,7 @@ void check(const TreeBone& bone, int index) {
          bone.damping);
 }
 
-/// The frame of a joint at the start: a hinge turns about its z.
+/// The frame of a joint at the start: a hinge rotates about its z.
 Pose joint_frame(const TreeBone& bone) {
   if (bone.joint != Joint::kHinge) return {Quat::Identity(), bone.joint_position};
   return {Quat::FromTwoVectors(Vec3::UnitZ(), bone.axis.normalized()), bone.joint_position};
@@ -192,8 +192,8 @@ void BoneTree::Impl::need_bias() {
   matter.calcBiasForSystemJacobian(state, biases);
 }
 
-/// Rotation vector of a ball's turn from the start, in the parent's axes.
-Vec3 BoneTree::Impl::turn(const VecX& q, std::size_t bone) const {
+/// Rotation vector of a ball joint since the start, in the parent's axes.
+Vec3 BoneTree::Impl::ball_rotation(const VecX& q, std::size_t bone) const {
   const auto r = q.segment<4>(first_q[bone]);
   return rotation_vector(Quat(r[0], r[1], r[2], r[3]).normalized());
 }
@@ -278,8 +278,8 @@ const MatX& BoneTree::mass(const VecX& q) const {
   return i.M;
 }
 
-// Inverse dynamics gives the residual M u' + C(q, u) - f_applied; at u' = 0 the right-hand side is its
-// negative.
+// Inverse dynamics gives the residual M u' + C(q, u) - f_applied;
+// at u' = 0 the right-hand side is its negative.
 VecX BoneTree::force(const VecX& q, const VecX& u) const {
   Impl& i = *impl_;
   i.go_to(q, u);
@@ -297,7 +297,7 @@ VecX BoneTree::force(const VecX& q, const VecX& u) const {
     // The rotation vector is an eigenvector of its own Jacobian: the moment of the energy k |theta|^2 / 2 is
     // -k theta.
     if (bone.joint == Joint::kBall)
-      f.segment<3>(at) -= bone.stiffness * i.turn(q, b) + bone.damping * u.segment<3>(at);
+      f.segment<3>(at) -= bone.stiffness * i.ball_rotation(q, b) + bone.damping * u.segment<3>(at);
   }
   return f;
 }
@@ -316,7 +316,7 @@ void BoneTree::tangent(const VecX& q, double k_scale, double d_scale, MatX& A) c
     const auto at = i.first_u[b];
     if (bone.joint == Joint::kHinge) A(at, at) += k_scale * bone.stiffness + d_scale * bone.damping;
     if (bone.joint != Joint::kBall) continue;
-    const Mat3 J = left_jacobian_inverse(i.turn(q, b));  // theta' = J^-1 u
+    const Mat3 J = left_jacobian_inverse(i.ball_rotation(q, b));  // theta' = J^-1 u
     A.block<3, 3>(at, at) +=
         0.5 * k_scale * bone.stiffness * (J + J.transpose()) + d_scale * bone.damping * Mat3::Identity();
   }
@@ -330,7 +330,7 @@ double BoneTree::potential_energy(const VecX& q) const {
     const TreeBone& bone = i.bones[b];
     energy -= bone.mass * i.gravity.dot(i.poses[b].translation);
     if (bone.joint == Joint::kHinge) energy += 0.5 * bone.stiffness * q[i.first_q[b]] * q[i.first_q[b]];
-    if (bone.joint == Joint::kBall) energy += 0.5 * bone.stiffness * i.turn(q, b).squaredNorm();
+    if (bone.joint == Joint::kBall) energy += 0.5 * bone.stiffness * i.ball_rotation(q, b).squaredNorm();
   }
   return energy;
 }

@@ -4,34 +4,34 @@ namespace palpate::tool {
 namespace {
 
 /// sum (w x r) x f = S w - w tr S of S = sum r f^T, since (w x r) x f = r (w . f) - w (r . f).
-Vec3 turned_moment(const Mat3& S, const Vec3& w) { return S * w - w * S.trace(); }
+Vec3 rotated_moment(const Mat3& S, const Vec3& w) { return S * w - w * S.trace(); }
 
 /// sum r x f of S = sum r f^T.
 Vec3 moment(const Mat3& S) { return {S(1, 2) - S(2, 1), S(2, 0) - S(0, 2), S(0, 1) - S(1, 0)}; }
 
 }  // namespace
 
-// Generalised force of held forces f_k at points x_k along a direction i that turns what lies behind joint i
-// about an axis w_i through p_i:
-//     Q_i = w_i . m_i,   m_i = sum (x_k - p_i) x f_k over what i turns.
-// Along a direction j, a turn w_j about p_j:
-//   j is i's own joint, or lies before it: points and p_i turn together, and where it lies before it, w_i
-//   turns too:
-//     dQ_i = (w_j x w_i) . m_i + w_i . sum (w_j x (x_k - p_i)) x f_k;      of the same joint the axes stand
-//     in the parent: the first term is not there
-//   j lies behind i: of what i turns, only what j turns moves:
-//     dQ_i = w_i . sum (w_j x (x_k - p_j)) x f_k  over what j turns
-//   else, or where i or j shifts a free root: 0 (a shift moves x_k and p_i alike, and its own direction
-//   stands still).
-// K is symmetric between different joints; within a ball or a free root it is up to the cross matrix of m, as
-// for one rigid body.
+// Generalised force of constant forces f_k at points x_k, for a direction i that rotates the subtree of joint
+// i about an axis w_i through p_i:
+//     Q_i = w_i . m_i,   m_i = sum (x_k - p_i) x f_k over the subtree of i.
+// Its derivative along a direction j, a rotation w_j about p_j:
+//   j is an ancestor of i: points, p_i and w_i rotate together:
+//     dQ_i = (w_j x w_i) . m_i + w_i . sum (w_j x (x_k - p_i)) x f_k
+//   j belongs to the same joint as i: the axes are fixed in the parent, so the first term is absent:
+//     dQ_i = w_i . sum (w_j x (x_k - p_i)) x f_k
+//   j is a descendant of i: only the subtree of j moves:
+//     dQ_i = w_i . sum (w_j x (x_k - p_j)) x f_k over the subtree of j
+//   else, or where i or j translates a free root: 0 (a translation moves x_k and p_i alike, and its
+//   direction is constant).
+// K is symmetric between different joints.  Within a ball or a free root it is symmetric up to the cross
+// matrix of m, as for one rigid body.
 void BoneTree::add_geometric_stiffness(const VecX& q, const std::vector<HeldForce>& held, MatX& K) const {
   Impl& t = *impl_;
   t.go_to(q, t.at_u.size() == t.u_size ? t.at_u : VecX(VecX::Zero(t.u_size)));
   t.need_jacobian();
   const auto bone_count = t.bones.size();
 
-  // What each joint turns: sums about the origin of the first bone behind it, then about the joint.
+  // Sums over the subtree of each joint: about the origin of its first bone, then about the joint.
   std::vector<Mat3> S(bone_count);
   std::vector<Vec3> F(bone_count);
   for (std::size_t b = 0; b < bone_count; ++b) S[b] = held[b].moment, F[b] = held[b].force;
@@ -42,7 +42,7 @@ void BoneTree::add_geometric_stiffness(const VecX& q, const std::vector<HeldForc
     F[p] += F[b];
   }
   for (std::size_t b = 0; b < bone_count; ++b) {
-    if (t.bones[b].joint == Joint::kFree) continue;  // turns about its own origin
+    if (t.bones[b].joint == Joint::kFree) continue;  // rotates about the bone's origin
     const Vec3 joint = t.poses[b] * (t.bones[b].start.inverse() * t.bones[b].joint_position);
     S[b] += (t.poses[b].translation - joint) * F[b].transpose();
   }
@@ -69,10 +69,10 @@ void BoneTree::add_geometric_stiffness(const VecX& q, const std::vector<HeldForc
       const Vec3 wj = axis(j);
       if (before(bj, bi)) {
         const Mat3& Si = S[static_cast<std::size_t>(bi)];
-        K(i, j) -= wi.dot(turned_moment(Si, wj));
+        K(i, j) -= wi.dot(rotated_moment(Si, wj));
         if (bi != bj) K(i, j) -= wj.cross(wi).dot(moment(Si));
       } else if (before(bi, bj)) {
-        K(i, j) -= wi.dot(turned_moment(S[static_cast<std::size_t>(bj)], wj));
+        K(i, j) -= wi.dot(rotated_moment(S[static_cast<std::size_t>(bj)], wj));
       }
     }
   }

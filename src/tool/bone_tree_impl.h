@@ -10,7 +10,7 @@ struct BoneTree::Impl {
   void go_to(const VecX& q, const VecX& u);  ///< realises positions and velocities, unless it is there
   void need_jacobian();
   void need_bias();
-  Vec3 turn(const VecX& q, std::size_t bone) const;
+  Vec3 ball_rotation(const VecX& q, std::size_t bone) const;
 
   std::vector<TreeBone> bones;
   Vec3 gravity;

@@ -22,7 +22,7 @@ Wrench wrench_of(const Vec6& w);
 
 /// (moment about the tool's origin, force) that the coupling exerts on the tool [N m, N].  With d the
 /// rotation vector from tool to handle:
-/// moment = k_r d + b_r (omega_h - omega_t), force = k (x_h - x_t) + b (v_h - v_t).  d jumps at half a turn:
+/// moment = k_r d + b_r (omega_h - omega_t), force = k (x_h - x_t) + b (v_h - v_t).  d jumps at 180 degrees:
 /// there the moment is bounded, but changes its side.
 Vec6 coupling_wrench(const CouplingGains& gains, const RigidMotion& tool, const RigidMotion& handle);
 

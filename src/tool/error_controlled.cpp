@@ -12,15 +12,17 @@ constexpr double kAccuracy = 1e-10;
 constexpr int kMaxSteps = 100000;
 
 // Semi-explicit Euler, twice with h against once with 2 h:
-//   u1 = u0 + h u'(q0, u0),  q1 = q0 + h N(q0) u1,   and the same from (q1, u1);      ub = u0 + 2 h u'(q0,
-//   u0),  qb = q0 + 2 h N(q0) ub.
+//   u1 = u0 + h u'(q0, u0),     q1 = q0 + h N(q0) u1,     and again from (q1, u1), which gives y2;
+//   ub = u0 + 2 h u'(q0, u0),   qb = q0 + 2 h N(q0) ub,   which is yb.
 // y2 - yb = h^2 (u'', ..) + O(h^3) is the error of y2, which is kept (no extrapolation).  Simbody takes it
-// relative to a speed that is not small, and a coupling that swings at w has |u''| = w^2 |u|, so that a local
-// error T leaves steps 2 h ~ 2 sqrt(T)/w, and t/2h of them make a
+// relative to a speed that is not small, and a coupling that oscillates at w has |u''| = w^2 |u|.  A local
+// error T therefore permits steps 2 h ~ 2 sqrt(T)/w, and t/2h steps make a
 //   relative error ~ w t sqrt(T)/2     for     w/(2 sqrt(T)) steps a second.
-// w = 100/s, t = 0.1 s (what the damping remembers):  T = 1e-10: 5e-5 for 5,000 steps a tick of 1 ms;  T =
-// 1e-6: 5e-3 for 50.  (Measured: w = 2e4/s takes 9,000 a tick.) So 1e-6 it is: two to three digits, never the
-// eight of the other two.  A tick that swings faster than kFirstOrderMaxSteps can follow ends with an error.
+// For w = 100/s and t = 0.1 s (the damping time):
+//   T = 1e-10   relative error 5e-5   5,000 steps a tick of 1 ms
+//   T = 1e-6    relative error 5e-3      50 steps a tick of 1 ms     (measured at w = 2e4/s: 9,000 a tick)
+// Hence 1e-6: two to three digits, never the eight of the other two integrators.  A tick that oscillates
+// faster than kFirstOrderMaxSteps can follow ends with an error.
 constexpr double kFirstOrderAccuracy = 1e-6;
 constexpr int kFirstOrderMaxSteps = 20000;
 

@@ -6,7 +6,7 @@
 namespace palpate::tool {
 namespace {
 
-/// x1 = x0 + h u1: along a straight line, and turned by exp(h omega1), which for a fixed axis is exact.
+/// x1 = x0 + h u1: along a straight line, and rotated by exp(h omega1), which is exact for a fixed axis.
 void move(RigidMotion& motion, double h, const Vec6& u) {
   motion.twist = twist_of(u);
   motion.pose.rotation = (quaternion_of(h * motion.twist.angular) * motion.pose.rotation).normalized();
@@ -17,21 +17,20 @@ dynamics::StepResult done(const TickInput& input, double residual = 0.0) {
   return {dynamics::StepStatus::kOk, input.t0 + input.h, input.h, 1, 1, residual, {}};
 }
 
-// Gyroscopic term of both schemes, written in the body's axes (where I is constant) with L0 = I w0: f = -w x
-// I w is taken as -w1 x L0, so that
-//   I (w1 - w0) = -h w1 x L0  gives  w1 . I w1 = w1 . I w0 <= |w1|_I |w0|_I:  it never adds energy, at any
-//   spin and any tick
-// (taken explicitly it does, and blows up where a tick turns the tool by a radian).  As -w1 x L0 = L0 x w1,
-// its matrix G = -[L0] is skew: the symmetric part of M + h (B + G) + h^2 K stays positive definite wherever
-// those of K and B are semi-definite.  World components at the tick's start serve for body axes: exp(h w1)
-// leaves w1 itself unturned.
+// Gyroscopic term of both schemes, written in the body's axes (where I is constant) with L0 = I w0:
+// f = -w x I w is taken as -w1 x L0, so that
+//   I (w1 - w0) = -h w1 x L0   gives   w1 . I w1 = w1 . I w0 <= |w1|_I |w0|_I:
+// it never adds energy, at any spin and any tick.  Taken explicitly it does, and diverges where the tool
+// rotates by a radian in a tick.  As -w1 x L0 = L0 x w1, its matrix G = -[L0] is skew: the symmetric part of
+// M + h (B + G) + h^2 K stays positive definite wherever those of K and B are semi-definite.  The components
+// in the world axes of the tick's start serve for body axes: the rotation exp(h w1) does not change w1.
 Mat3 gyroscopic_matrix(const Mat6& M, const Twist& twist) {
   return -cross_matrix(M.topLeftCorner<3, 3>() * twist.angular);
 }
 
 // (M + h G) (u1 - u0) = h f(x0, u0, handle at the start),  x1 = x0 + h u1.
-// For one direction, x1 = z x0: z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0; |z| <= 1 until z = -1, that is
-// k = 4 m/h^2 - 2 b/h.
+// For one direction, x1 = z x0:
+//   z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0;   |z| <= 1 until z = -1, that is k = 4 m/h^2 - 2 b/h.
 class SemiImplicitEuler : public TickScheme {
  public:
   explicit SemiImplicitEuler(SimbodyBody& body) : body_(body) {}
@@ -50,8 +49,8 @@ class SemiImplicitEuler : public TickScheme {
   SimbodyBody& body_;
 };
 
-// Backward Euler, u1 = u0 + h M^-1 f(x1, u1, handle at the end), x1 = x0 + h u1, with f linearised about (x0,
-// u0):
+// Backward Euler with f linearised about (x0, u0):
+//   u1 = u0 + h M^-1 f(x1, u1, handle at the end),   x1 = x0 + h u1;
 //   (M + h (B + G) + h^2 K) (u1 - u0) = h (f0 - h K u0),   K = -df/dx, B = -df/du of coupling and contact.
 // In a translation, and in a rotation about a principal axis, f is linear and this is backward Euler itself:
 // no bound on k.
@@ -63,7 +62,7 @@ class LinearlyImplicitEuler : public TickScheme {
     const TickInput held = with_handle_held(input, input.handle.pose1, input.handle.twist1);
     const Vec6 u0 = stacked(motion.twist);
     const Mat6 M = body_.mass_matrix(motion.pose);
-    // the record's own time, too, is the tick's end
+    // the contact record is taken at the tick's end too
     const Vec6 f0 = M * body_.acceleration(input.t0 + h, motion, held);
 
     const Mat6 K = coupling_stiffness(input.gains, motion.pose, input.handle.pose1) +

@@ -25,19 +25,19 @@ bool all_finite(const Array& values) {
 
 }  // namespace
 
-// Rotation: theta(s) from 0 to d, the rotation vector of R1 R0^T, with R(s) = exp(theta) R0 and omega =
-// J(theta) theta'/h.  The slopes at the ends follow from the twists: h omega0 at s = 0 (J(0) = I) and h
-// J^-1(d) omega1 at s = 1.
+// Rotation: theta(s) from 0 to d, the rotation vector of R1 R0^T, with R(s) = exp(theta) R0 and
+// omega = J(theta) theta'/h.  The slopes at the ends follow from the twists: h omega0 at
+// s = 0 (J(0) = I) and h J^-1(d) omega1 at s = 1.
 RigidMotion handle_at(const TickInput& input, double t) {
   const HandleMotion& m = input.handle;
   const double s = std::clamp((t - input.t0) / input.h, 0.0, 1.0), h = input.h;
   const Vec6 d = pose_difference(m.pose0, m.pose1);
-  const Hermite turn = hermite(s, d.head<3>(), h * m.twist0.angular,
-                               h * left_jacobian_inverse(d.head<3>()) * m.twist1.angular);
+  const Hermite rotation = hermite(s, d.head<3>(), h * m.twist0.angular,
+                                   h * left_jacobian_inverse(d.head<3>()) * m.twist1.angular);
   const Hermite shift = hermite(s, d.tail<3>(), h * m.twist0.linear, h * m.twist1.linear);
   RigidMotion out;
-  out.pose = {quaternion_of(turn.value) * m.pose0.rotation, m.pose0.translation + shift.value};
-  out.twist = {left_jacobian(turn.value) * turn.slope / h, shift.slope / h};
+  out.pose = {quaternion_of(rotation.value) * m.pose0.rotation, m.pose0.translation + shift.value};
+  out.twist = {left_jacobian(rotation.value) * rotation.slope / h, shift.slope / h};
   return out;
 }
 

@@ -101,8 +101,8 @@ Mat6 SimbodyBody::calc_mass(const RigidMotion& motion) {
   return M;
 }
 
-// Inverse dynamics gives the residual r = M u' + C(q, u) - f_applied; at u' = 0 the right-hand side of M u' =
-// f is -r.
+// Inverse dynamics gives the residual r = M u' + C(q, u) - f_applied;
+// at u' = 0 the right-hand side of M u' = f is -r.
 Vec6 SimbodyBody::calc_force(double t, const RigidMotion& motion) {
   write(state_, t, motion);
   force_->set(state_, {});

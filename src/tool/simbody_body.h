@@ -24,8 +24,8 @@ class SimbodyBody {
   RigidMotion read(const SimTK::State& state) const;
   void set_input(SimTK::State& state, const TickInput& input) const;
 
-  /// u' at a time and motion under an input, by Simbody's forward dynamics (coupling, contact, gravity,
-  /// gyroscopic terms).
+  /// u' at a time and motion under an input,
+  /// by Simbody's forward dynamics (coupling, contact, gravity, gyroscopic terms).
   Vec6 acceleration(double t, const RigidMotion& motion, const TickInput& input);
   /// M of M u' = f at a pose, by Simbody's calcM.
   Mat6 calc_mass(const RigidMotion& motion);

@@ -5,8 +5,8 @@
 namespace palpate::tool {
 namespace {
 
-/// Below it the closed forms lose digits to cancellation, and the series, cut after a^8, are exact to
-/// rounding.
+/// Below it the closed forms lose digits to cancellation,
+/// and the series, cut after a^8, are exact to rounding.
 constexpr double kSeriesAngle = 0.25;
 
 }  // namespace
@@ -26,8 +26,8 @@ Mat3 left_jacobian(const Vec3& theta) {
   return Mat3::Identity() + first * w + second * w * w;
 }
 
-// With [theta]^3 = -a^2 [theta], J^-1 = I - 1/2 [theta] + c [theta]^2 solves J J^-1 = I for c = (1 - (a/2)
-// cot(a/2))/a^2.
+// With [theta]^3 = -a^2 [theta], J^-1 = I - 1/2 [theta] + c [theta]^2
+// solves J J^-1 = I for c = (1 - (a/2) cot(a/2))/a^2.
 Mat3 left_jacobian_inverse(const Vec3& theta) {
   const double a = theta.norm(), a2 = a * a;
   double c = 1.0 / 12 + a2 / 720 * (1.0 + a2 / 42 * (1.0 + a2 / 40 * (1.0 + a2 * 5.0 / 198)));

@@ -1,4 +1,5 @@
-// Inside, nodes are numbered by place; what leaves the program goes by the numbers of the mesh's file.
+// Inside, nodes are numbered in spatial order; what leaves the program goes by the numbers of the mesh's
+// file.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -13,7 +14,7 @@
 #include "palpate/loop/run.h"
 #include "palpate/loop/trace.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/mesh/place_order.h"
+#include "palpate/mesh/spatial_order.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/run_file.h"
 

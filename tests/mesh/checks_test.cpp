@@ -40,7 +40,7 @@ TriMesh both(const TriMesh& a, const TriMesh& b) {
   return out;
 }
 
-void turn(Faces& faces, int f) { std::swap(faces(0, f), faces(1, f)); }
+void flip(Faces& faces, int f) { std::swap(faces(0, f), faces(1, f)); }
 
 }  // namespace
 
@@ -93,8 +93,8 @@ TEST(TetChecks, KeepSliversAndRefuseOnlyWhatRoundingCannotTell) {
 TEST(SurfaceChecks, MendOneFaceAllFacesAndNone) {
   const TriMesh good = cube_surface(2, {5, 0, 0});
   TriMesh one = good, all = good;
-  turn(one.faces, 4);
-  for (int f = 0; f < 12; ++f) turn(all.faces, f);
+  flip(one.faces, 4);
+  for (int f = 0; f < 12; ++f) flip(all.faces, f);
   TriMesh same = good;
   EXPECT_EQ(check_surface(same, surface_provenance("here")).flipped, 0);
   EXPECT_EQ(same.faces, good.faces);
@@ -105,7 +105,7 @@ TEST(SurfaceChecks, MendOneFaceAllFacesAndNone) {
 
 TEST(SurfaceChecks, ShellsSideBySideAddAndNestedOnesAlternate) {
   TriMesh apart = both(cube_surface(1, {0, 0, 0}), cube_surface(2, {9, 0, 0}));
-  turn(apart.faces, 0);
+  flip(apart.faces, 0);
   EXPECT_NEAR(check_surface(apart, surface_provenance("here")).volume, 9.0, 1e-13);
 
   TriMesh cavity = both(cube_surface(1, {0.1, 0, 0}), cube_surface(3, {0, 0, 0}));

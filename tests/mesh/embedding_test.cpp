@@ -155,8 +155,8 @@ TEST(Embedding, ForcesKeepWorkResultantAndMoment) {
   EXPECT_LT(moment.norm(), 1e-11);
 }
 
-// A point on a common face, edge or node has several tetrahedra; the first is taken, whatever stood before it
-// in the list.
+// A point on a common face, edge or node has several tetrahedra;
+// the first is taken, whatever stood before it in the list.
 TEST(Embedding, TiesGoToTheFirstInAnyOrder) {
   const TetMesh mesh = mesh::box(Vec3(1, 1, 1), {3, 3, 3});
   std::vector<Vec3> shared;
@@ -230,8 +230,8 @@ TEST(Embedding, NormalsAndAreas) {
     EXPECT_LT((vectors.col(v).normalized() - normals.col(v)).norm(), 1e-12);
     EXPECT_LE(vectors.col(v).norm(), areas[v] * (1 + 1e-12));
   }
-  // divergence theorem: sum of x . a over the vertices is three times the enclosed volume, up to the faces'
-  // own spread
+  // divergence theorem: sum of x . a over the vertices is three times the enclosed volume,
+  // up to the faces' own spread
   EXPECT_NEAR(sphere.vertices.cwiseProduct(vectors).sum() / 3.0, mesh::enclosed_volume(sphere), 1e-10);
 
   TriMesh folded;  // two faces back to back: their normals cancel, their areas do not

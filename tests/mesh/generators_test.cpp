@@ -128,8 +128,8 @@ TEST(Generators, GradedCellsGrowTowardsTheMiddleByTheGrading) {
   const TetMesh graded = box({1, 1, 1}, {40, 1, 1}, 4.0);
   const double end = graded.nodes(0, 1) - graded.nodes(0, 0),
                middle = graded.nodes(0, 20) - graded.nodes(0, 19);
-  // A cell is the mean of 1 + 3 (1 - s^2) over its width of 0.05: 4 - 0.0025 in the middle, 1 + 3 (0.05 -
-  // 0.05^2 / 3) at the end.
+  // A cell is the mean of 1 + 3 (1 - s^2) over its width of 0.05: 4 - 0.0025 in the middle,
+  // 1 + 3 (0.05 - 0.05^2 / 3) at the end.
   EXPECT_NEAR(middle / end, (4 - 0.0025) / (1 + 3 * (0.05 - 0.0025 / 3)), 1e-12);
 }
 

@@ -10,8 +10,8 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/source.h"
 
-/// A folder of this test's own, gone with it; in memory where that is possible, because the fuzz test writes
-/// thousands of files.
+/// A folder of this test's own, gone with it;
+/// in memory where that is possible, because the fuzz test writes thousands of files.
 class TempFolder {
  public:
   TempFolder() {

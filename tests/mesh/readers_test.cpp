@@ -8,8 +8,8 @@ using namespace palpate::mesh;
 
 namespace {
 
-// Two tetrahedra on the faces of the triangle (1,0,0), (0,1,0), (0,0,1): the unit corner, 1/6, and its mirror
-// point (1,1,1), 1/3.
+// Two tetrahedra on the faces of the triangle (1,0,0), (0,1,0), (0,0,1):
+// the unit corner, 1/6, and its mirror point (1,1,1), 1/3.
 constexpr const char* kGmsh22 = R"($Comments
  any text, $Nodes too
 $EndComments

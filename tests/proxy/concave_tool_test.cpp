@@ -13,8 +13,8 @@ using namespace pruning;
 
 namespace {
 
-/// A torus about a unit ball that is wider than its hole by 2 kPress, each point of the ring's inside
-/// pressing alike.
+/// A torus about a unit ball that is wider than its hole by 2 kPress,
+/// each point of the ring's inside pressing alike.
 constexpr double kTube = 0.5, kPress = 0.05, kRing = 1.0 + kTube - kPress, kGap = 0.02;
 const TriMesh& ring() {
   static const TriMesh surface = tools::torus(kRing, kTube, 120, 60);
@@ -97,14 +97,14 @@ TEST(ConcaveTool, ATorusAroundABallTouchesAllAround) {
   EXPECT_GE(tool.size(), 6);
   proxy::Pruner pruner(body.set, tool);
   // both, so that nothing is aligned
-  const Pose turned{Quat(0.9, 0.1, -0.3, 0.2).normalized(), Vec3(0.3, 2.0, -1.0)};
-  body.place(turned, 0.0, 0);
-  tool.update(turned);
+  const Pose pose{Quat(0.9, 0.1, -0.3, 0.2).normalized(), Vec3(0.3, 2.0, -1.0)};
+  body.place(pose, 0.0, 0);
+  tool.update(pose);
   const auto regions = pruner.query(kGap);
   const Handed found = handed(regions);
   EXPECT_FALSE(found.a_twice);
 
-  const Pose back = turned.inverse();
+  const Pose back = pose.inverse();
   const auto from_ring = [&](const Vec3& world) {
     const Vec3 x = back * world;
     return std::hypot(std::hypot(x.x(), x.y()) - kRing, x.z()) - kTube;
@@ -127,7 +127,7 @@ TEST(ConcaveTool, ATorusAroundABallTouchesAllAround) {
     double steepest = 1.0;
     for (const int f : region.faces_a) {
       if (!touching.contains(f)) continue;
-      const Vec3 radius = (middle_of(model.skin, body.skin, f) - turned.translation).normalized();
+      const Vec3 radius = (middle_of(model.skin, body.skin, f) - pose.translation).normalized();
       outward += radius;
       steepest = std::min(steepest, -radius.dot(region.region.normal));
       ++seen;
@@ -140,7 +140,7 @@ TEST(ConcaveTool, ATorusAroundABallTouchesAllAround) {
   RecordProperty("regions", static_cast<int>(regions.size()));
 
   proxy::ProxySet one = proxy::rigid_proxies(ring(), {.count = 1});
-  one.update(turned);
+  one.update(pose);
   proxy::Pruner of_one(body.set, one);
   const Handed all = handed(of_one.query(kGap));
   EXPECT_TRUE(holds(all.a, near_a));
@@ -167,7 +167,7 @@ TEST(ConcaveTool, AForkStandsOnItsProngs) {
 }
 
 // A narrow block in the gap: pressed against the bridge it is seen from above; against a prong, from that
-// side.  As one hull the fork has swallowed it, and all of its skin is handed on.
+// side.  As one hull the fork encloses it, and all of its skin is a candidate.
 TEST(ConcaveTool, BetweenTheProngsEachWallIsItsOwn) {
   const Vec3 size(0.8, 2.0, 1.6);
   Forked parts(size, {}), one(size, {.count = 1});

@@ -20,7 +20,7 @@ namespace {
 
 const Quat kTurn = Quat(0.8, -0.3, 0.4, 0.3).normalized();
 
-TriMesh turned(TriMesh surface) {
+TriMesh rotated(TriMesh surface) {
   surface.vertices = (kTurn.toRotationMatrix() * surface.vertices).colwise() + Vec3(3, -1, 2);
   return surface;
 }
@@ -50,8 +50,8 @@ bool is_inside(const TriMesh& surface, const Vec3& p) {
   return mesh::winding_number(surface, all, p) > 0.5;
 }
 
-/// Distance of a point from the nearest of the hulls, each inflated as the set says; not positive in one of
-/// them.
+/// Distance of a point from the nearest of the hulls, each inflated as the set says;
+/// not positive in one of them.
 double outside_all(const proxy::ProxySet& set, const std::vector<ProxyHull>& hulls, const Vec3& p) {
   double nearest = 1e300;
   for (int i = 0; i < set.size(); ++i) {
@@ -81,8 +81,8 @@ std::string error_of(const TriMesh& surface, const proxy::SolidOptions& options)
 // surface, lie in an inflated hull, however many hulls.
 TEST(DecomposeSolid, CoversTheInside) {
   std::mt19937 random(3);
-  const TriMesh solids[] = {turned(torus(1.0, 0.3, 40, 20)), turned(fork(4)), slotted_cube(),
-                            turned(slotted_cube()), hollow_ball()};
+  const TriMesh solids[] = {rotated(torus(1.0, 0.3, 40, 20)), rotated(fork(4)), slotted_cube(),
+                            rotated(slotted_cube()), hollow_ball()};
   for (const TriMesh& solid : solids) {
     const Vec3 low = solid.vertices.rowwise().minCoeff(), high = solid.vertices.rowwise().maxCoeff();
     std::vector<Vec3> points;
@@ -109,7 +109,7 @@ TEST(DecomposeSolid, CoversTheInside) {
 // it as a cut halves t.  The hole is left open.
 TEST(DecomposeSolid, ATorusBecomesARing) {
   constexpr double R = 1.0, r = 0.3, tolerance = 0.02;
-  const TriMesh ring = turned(torus(R, r, 96, 32));
+  const TriMesh ring = rotated(torus(R, r, 96, 32));
   proxy::DecomposeReport report;
   const auto hulls = decompose_solid(ring, {.tolerance = tolerance}, &report);
   const double size = report.skin_size, most = 2 * std::acos(1.0 - tolerance * size / (R - r)),
@@ -130,9 +130,9 @@ TEST(DecomposeSolid, ATorusBecomesARing) {
 }
 
 // Planes through the fork's own corners: its parts are convex, so the hulls have its volume, 7, whichever way
-// it is turned; the gap between the prongs is open.
+// it is rotated; the gap between the prongs is open.
 TEST(DecomposeSolid, AForkBecomesItsParts) {
-  for (const TriMesh& tool : {fork(8), turned(fork(8))}) {
+  for (const TriMesh& tool : {fork(8), rotated(fork(8))}) {
     proxy::DecomposeReport report;
     const auto hulls = decompose_solid(tool, {}, &report);
     EXPECT_GE(hulls.size(), 3u);
@@ -150,7 +150,7 @@ TEST(DecomposeSolid, AForkBecomesItsParts) {
 TEST(DecomposeSolid, WhatIsConvexStaysWhole) {
   for (const TriMesh& solid :
        {mesh::sphere(0.02, 8), mesh::box_surface(Vec3(1, 2, 3), {1, 2, 3}),
-        mesh::cylinder_surface(0.1, 1.0, 0.05), turned(mesh::box_surface(Vec3(1, 1, 1), {5, 5, 5}))}) {
+        mesh::cylinder_surface(0.1, 1.0, 0.05), rotated(mesh::box_surface(Vec3(1, 1, 1), {5, 5, 5}))}) {
     const auto hulls = decompose_solid(solid);
     EXPECT_EQ(hulls.size(), 1u);
     EXPECT_LE(hulls[0].corners.cols(), 32);

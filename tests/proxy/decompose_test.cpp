@@ -24,8 +24,8 @@ std::string error_of(const LayeredModel& model, const proxy::DecomposeOptions& o
 
 }  // namespace
 
-// Hulls of the cube's corners with points inside, of a square, a line and a point: corners, planes and volume
-// are known.
+// Hulls of the cube's corners with points inside, of a square, a line and a point:
+// corners, planes and volume are known.
 TEST(ConvexHull, SetsOfEveryDimension) {
   Points cube(3, 10);
   for (int i = 0; i < 8; ++i)
@@ -60,8 +60,8 @@ TEST(ConvexHull, SetsOfEveryDimension) {
   EXPECT_THROW(proxy::convex_hull(Points(3, 0)), InternalError);
 }
 
-// With enough corners the hull is the whole one; with fewer it misses less and less, never by more than the
-// one before.
+// With enough corners the hull is the whole one;
+// with fewer it misses less and less, never by more than the one before.
 TEST(ConvexHull, GreedyCornersMissLessAndLess) {
   const Points points = mesh::sphere(1.0, 8).vertices;
   double before = 1.0;

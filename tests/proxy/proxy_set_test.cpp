@@ -128,9 +128,9 @@ TEST(ProxySet, WhatFollowsExactlyInflatesNoMore) {
   std::vector<double> rest;
   for (int p = 0; p < affine.size(); ++p) rest.push_back(affine.state(p).inflation);
   const Mat3 R = Eigen::AngleAxisd(2.0, Vec3(1, 2, 3).normalized()).toRotationMatrix();
-  const Points turned = (R * model.tets.nodes).colwise() + Vec3(3, -1, 2);
-  affine.update(turned);
-  rigid.update(turned);
+  const Points rotated = (R * model.tets.nodes).colwise() + Vec3(3, -1, 2);
+  affine.update(rotated);
+  rigid.update(rotated);
   for (int p = 0; p < affine.size(); ++p) {
     EXPECT_LT((affine.state(p).linear - R).norm(), 1e-11);
     EXPECT_LT((rigid.state(p).linear - R).norm(), 1e-11);
@@ -153,9 +153,9 @@ TEST(ProxySet, WhatFollowsExactlyInflatesNoMore) {
 }
 
 // A bend, strains up to a half: the bound against what it bounds, the largest distance of a member from where
-// the hull's motion takes it.  The map's second derivative is at most 1.25 (3/4 along x twice, 1/2 along x
-// and y), so over a proxy of diameter L an affine map comes within 1.25 L^2 / 8 of it (Taylor, from the
-// middle); a rotation also pays for the strain.
+// the hull's motion takes it.  The map's second derivative is at most 1.25 (3/4 along x twice, 1/2
+// along x and y), so over a proxy of diameter L an affine map comes within 1.25 L^2 / 8 of it (Taylor, from
+// the middle); a rotation also pays for the strain.
 TEST(ProxySet, BoundsAreTightForModerateDeformations) {
   const LayeredModel model = decomposed(bumpy_ball(1.0, 0.2, 24), 60);
   ProxySet affine(model), rigid(model, {.follow = Follow::kRigid});
@@ -201,7 +201,7 @@ TEST(ProxySet, BoundsAreTightForModerateDeformations) {
   EXPECT_EQ(checked, 120);
 }
 
-// A proxy of a bone goes with the nodes that the bone carries, wherever the flesh is.
+// A proxy of a bone moves with the nodes that the bone carries, wherever the tissue is.
 TEST(ProxySet, ABonesProxiesFollowItsNodes) {
   LayeredModel model = bar_on_bones({8, 3, 2});
   for (Eigen::Index n = 0; n < model.tets.nodes.cols(); ++n) {

@@ -32,7 +32,7 @@ Pose random_pose(std::mt19937& random, double distance) {
 }  // namespace
 
 // The reference: all vertices of each body against all faces of the other.  Random poses from apart to
-// swallowed, waves through both bodies: no face with a vertex inside the other body is missing, every face of
+// enclosed, waves through both bodies: no face with a vertex inside the other body is missing, every face of
 // a is there once.
 TEST(Pruner, NothingTrulyOverlappingIsMissed) {
   const LayeredModel ball = cut(bumpy_ball(1.0, 0.3, 9), 20),
@@ -40,7 +40,7 @@ TEST(Pruner, NothingTrulyOverlappingIsMissed) {
   Placed a(ball), b(small);
   Pruner pruner(a.set, b.set);
   std::mt19937 random(5);
-  int overlapping = 0, apart = 0, swallowed = 0, regions_seen = 0;
+  int overlapping = 0, apart = 0, enclosed = 0, regions_seen = 0;
   for (unsigned i = 0; i < 40; ++i) {
     a.place(random_pose(random, 0.0), i % 3 * 0.05, 2 * i);
     b.place(random_pose(random, 0.1 + 0.045 * i), i % 2 * 0.04, 2 * i + 1);
@@ -62,11 +62,11 @@ TEST(Pruner, NothingTrulyOverlappingIsMissed) {
       }
     }
     const bool all_in = std::count(b_in_a.begin(), b_in_a.end(), 1) == static_cast<long>(b_in_a.size());
-    ++(faces_a.empty() && faces_b.empty() ? apart : all_in ? swallowed : overlapping);
+    ++(faces_a.empty() && faces_b.empty() ? apart : all_in ? enclosed : overlapping);
   }
   EXPECT_GT(overlapping, 8);
   EXPECT_GT(apart, 4);
-  EXPECT_GT(swallowed, 4);
+  EXPECT_GT(enclosed, 4);
   EXPECT_GT(regions_seen, 20);
   EXPECT_EQ(pruner.counts().queries, 40);
   EXPECT_EQ(pruner.counts().after_boxes,
@@ -92,8 +92,8 @@ TEST(Pruner, TheGapIsHonoured) {
   EXPECT_TRUE(pruner.query(0.0).empty() || handed(pruner.query(0.0)).a.size() < found.a.size());
 }
 
-// The same pose cut into 1, 8 and 64 proxies: the same faces in contact, each once; one region whose normal
-// is the line of centres.
+// One pose, the body cut into 1, 8 and 64 proxies:
+// the same faces in contact, each once; one region whose normal is the line of centres.
 TEST(Pruner, TheCutDoesNotChangeWhatTouches) {
   const LayeredModel whole = bumpy_ball(1.0, 0.2, 20, 0.0);
   const Vec3 axis = Vec3(1, 2, -2) / 3;
@@ -140,8 +140,8 @@ TEST(Pruner, HandsOnLittleMoreThanThePatch) {
   EXPECT_GE(checked, 3);
 }
 
-// A block pressed into the inner corner of two walls meets each along its own normal: two regions; against
-// one wall, one.
+// A block pressed into the inner corner of two walls meets each along its own normal:
+// two regions; against one wall, one.
 TEST(Pruner, WallsThatFaceDifferentWaysAreDifferentRegions) {
   LayeredModel wall;  // rigid: two thick slabs that make an L
   const auto slab = [](const Vec3& centre, const Vec3& size) {
@@ -181,10 +181,10 @@ TEST(Pruner, WallsThatFaceDifferentWaysAreDifferentRegions) {
   ASSERT_EQ(regions.size(), 1u);
   EXPECT_GT(regions[0].region.normal.z(), 0.999);
   EXPECT_NEAR(regions[0].region.depth, 0.02, 1e-6);
-  EXPECT_EQ(regions[0].turned, 0.0);
+  EXPECT_EQ(regions[0].rotation, 0.0);
   regions = place(Vec3(0.1, 0, 0.49));
   ASSERT_EQ(regions.size(), 1u);
-  EXPECT_LT(regions[0].turned, 1e-6);
+  EXPECT_LT(regions[0].rotation, 1e-6);
   regions = place(Vec3(-1.52, 0, 1.5));
   ASSERT_EQ(regions.size(), 1u);
   EXPECT_GT(regions[0].region.normal.x(), 0.999);
@@ -202,7 +202,7 @@ TEST(Pruner, WallsThatFaceDifferentWaysAreDifferentRegions) {
 
 // One ball slides around the other, a hundredth of a radian a step, over the borders of many proxies: the
 // normal follows the line of centres, and the jumps that patches make as they come and go stay small.  What
-// turns is what was recorded: the largest `turned` of a region is `largest_turn`.
+// turns is what was recorded: the largest `rotation` of a region is `largest_rotation`.
 TEST(Pruner, SlidingOverProxiesTurnsTheNormalSmoothly) {
   const LayeredModel ball = cut(bumpy_ball(1.0, 0.25, 24, 0.0), 60);
   Placed a(ball), b(ball);
@@ -215,19 +215,19 @@ TEST(Pruner, SlidingOverProxiesTurnsTheNormalSmoothly) {
     b.place({Quat::Identity(), -1.95 * axis}, 0.0, 0);
     const auto regions = pruner.query(0.0);
     ASSERT_EQ(regions.size(), 1u) << i;
-    largest = std::max(largest, regions[0].turned);
+    largest = std::max(largest, regions[0].rotation);
     off = std::max(off, std::acos(std::min(1.0, regions[0].region.normal.dot(axis))));
     for (const auto& pair : regions[0].pairs) proxies.insert(pair.first);
   }
   EXPECT_GT(proxies.size(), 4u);
-  EXPECT_EQ(largest, pruner.counts().largest_turn);
+  EXPECT_EQ(largest, pruner.counts().largest_rotation);
   EXPECT_LT(off, 0.05);
   EXPECT_LT(largest, 0.05);  // 0.01 is the motion's own
   RecordProperty("largest_turn_mrad", static_cast<int>(1e3 * largest));
   RecordProperty("off_mrad", static_cast<int>(1e3 * off));
 }
 
-// A ball swallowed by a bigger one still meets the skin that is above it: what it was pushed through.
+// A ball enclosed by a bigger one still meets the skin that is above it: what it was pushed through.
 TEST(Pruner, SwallowedSkinLooksThroughItself) {
   const LayeredModel big = cut(bumpy_ball(1.0, 0.25, 16, 0.0), 30),
                      small = cut(bumpy_ball(0.15, 0.08, 6, 0.0), 6);

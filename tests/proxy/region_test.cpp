@@ -37,8 +37,8 @@ double brute_depth(const Points& a, const Points& b, const Vec3& n) {
 
 }  // namespace
 
-// Box a stands 0.1 deep in box b, by its face along +z: the least way out, at any scale and far from the
-// origin.
+// Box a stands 0.1 deep in box b, by its face along +z:
+// the least way out, at any scale and far from the origin.
 TEST(Region, BoxesAtEveryScale) {
   for (const double scale : {1e-3, 1.0, 1e3}) {
     const Vec3 far = scale * Vec3(100, -50, 20);

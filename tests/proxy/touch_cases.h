@@ -11,9 +11,9 @@
 #include "palpate/store/model_file.h"
 #include "proxy/pruning.h"
 
-/// The paper's models touched as in its figures: two pumpkins in contact, the head by a sphere at the bridge
-/// of the nose, the human at the leg. A touch goes in and out once in `kPhases` queries, and dents what it
-/// touches.
+/// The paper's models touched as in its figures: two pumpkins in contact, the head by a
+/// sphere at the bridge of the nose, the human at the leg. A touch goes in and out once in
+/// `kPhases` queries, and dents what it touches.
 namespace touch {
 
 using namespace palpate;
@@ -61,8 +61,8 @@ inline double mean_edge(const TriMesh& skin) {
   return sum / static_cast<double>(3 * skin.faces.cols());
 }
 
-/// A rigid ball that touches a's skin from in front (along y) where a line through (x, z) meets it first;
-/// depth 0.
+/// A rigid ball that touches a's skin from in front (along y),
+/// where a line through (x, z) meets it first; depth 0.
 inline void add_ball(Case& out, double radius, double x, double z) {
   const double gap = mean_edge(out.a.skin);
   Eigen::Index nearest = -1;
@@ -108,8 +108,8 @@ inline Case human(const std::string& folder) {
   return out;
 }
 
-/// Side by side: the second is the first turned by half a turn about z, so that their farthest points along x
-/// meet.
+/// Side by side: the second is the first rotated by 180 degrees about z,
+/// so that their farthest points along x meet.
 inline Case pumpkins(const std::string& folder) {
   Case out;
   out.a = store::read_model(folder + "/pumpkin.h5").model;
@@ -119,13 +119,13 @@ inline Case pumpkins(const std::string& folder) {
   out.inward = -Vec3::UnitX();
   out.b = out.a;
   const Vec3 shift(2 * out.place.x(), 2 * out.place.y(), 0.0);
-  const auto turn = [&](Points& points) {
+  const auto rotate = [&](Points& points) {
     points.topRows<2>() *= -1.0;
     points.colwise() += shift;
   };
-  turn(out.b.tets.nodes);
-  turn(out.b.skin.vertices);
-  for (ProxyHull& hull : out.b.proxies) turn(hull.corners);
+  rotate(out.b.tets.nodes);
+  rotate(out.b.skin.vertices);
+  for (ProxyHull& hull : out.b.proxies) rotate(hull.corners);
   out.size = 0.04;
   out.least = 0.001;
   out.most = 0.008;

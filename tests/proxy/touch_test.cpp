@@ -1,5 +1,5 @@
-// The bars on the paper's models as `palpate model` makes them; their files come from the fixture in
-// CMakeLists.txt.
+// The bars on the paper's models as `palpate model` makes them;
+// their files come from the fixture in CMakeLists.txt.
 #include <gtest/gtest.h>
 
 #include "malloc_count.h"

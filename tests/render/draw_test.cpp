@@ -163,8 +163,8 @@ TEST(Draw, IsTheSameTwiceToTheByteOnDisk) {
 }
 
 TEST(Draw, FramesFarFromTheOriginWithoutLosingPrecision) {
-  // Floats at 1 km resolve 0.06 mm: the ball's 40 mm would be rough if positions were not taken relative to
-  // the scene.
+  // Floats at 1 km resolve 0.06 mm: the ball's 40 mm would be
+  // rough if positions were not taken relative to the scene.
   const render::Options options = [] {
     render::Options o;
     o.width = o.height = kPixels;

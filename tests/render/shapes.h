@@ -4,8 +4,8 @@
 
 #include "palpate/render/scene.h"
 
-/// A ball of `n` bands from pole to pole: its silhouette is a polygon within r (1 - cos(pi / 2n)) of the
-/// circle.
+/// A ball of `n` bands from pole to pole:
+/// its silhouette is a polygon within r (1 - cos(pi / 2n)) of the circle.
 inline palpate::render::Surface ball_surface(const palpate::Vec3& centre, double radius, int n) {
   using std::numbers::pi;
   palpate::render::Surface surface;

@@ -39,8 +39,10 @@ std::string joined(const std::vector<std::string>& cells) {
 fs::path full_dir() {
   const fs::path dir = fresh_dir("full_report");
   put(dir / "summary.json",
-      R"({"command": "palpate run press-ball", "scene": "press <ball>", "outcome": "finished", "message": "", "overrides": ["a=1"],
-      "figures": {"options": {"integrator": "cvode-bdf", "max_force_n": 2.5}, "counts": {"steps": 812}, "in_use": {"fem": "a soft body"},
+      R"({"command": "palpate run press-ball", "scene": "press <ball>", "outcome": "finished",
+        "message": "", "overrides": ["a=1"],
+      "figures": {"options": {"integrator": "cvode-bdf", "max_force_n": 2.5}, "counts": {"steps": 812},
+        "in_use": {"fem": "a soft body"},
       "left_out": {"proxy": "one body"}, "pictures": {"picture-of-it.png": "The ball & its dent"}},
       "provenance": {"version": "0.1.0", "commit": "abc", "libraries": {"Eigen": "3.4.0"}}})");
   put(dir / "scene.toml", "name = \"press <ball>\" # a & b\n");
@@ -55,7 +57,8 @@ fs::path full_dir() {
   }
   put(dir / "compare.csv", compare);
   put(dir / "reference.json",
-      R"({"rules": "one run a point", "scenes": [{"scene": "press", "position_error_rel_l2": 1e-6, "force_error_rms_n": null, "torque_error_rms_n_m": null,
+      R"({"rules": "one run a point", "scenes": [{"scene": "press", "position_error_rel_l2": 1e-6,
+        "force_error_rms_n": null, "torque_error_rms_n_m": null,
       "description": "cvode-bdf at 1e-9", "trouble": "", "notes": []}]})");
   put(dir / "restarts.csv", joined(store::restart_columns()) +
                                 "press,cvode_<bdf>,cvode-bdf,yes,0.01,0.5,3,100,120,20,0.1,ok,\npress,cvode_<"
@@ -63,8 +66,10 @@ fs::path full_dir() {
   put(dir / "exchange.csv",
       joined(report::exchange_columns()) + "0.02,2e-2,,,1\n0.01,1e-2,,,2\n0.005,5e-3,,,4\n");
   put(dir / "validation.json", R"({"cases": [{"name": "patch-test", "measurements": [
-      {"quantity": "stress [Pa]", "computed": 1, "exact": 1, "error": 0, "bar": 1e-6, "order": null, "passed": true},
-      {"quantity": "broken [m]", "computed": 2, "exact": 1, "error": 1, "bar": 1e-6, "order": null, "passed": false}]}]})");
+      {"quantity": "stress [Pa]", "computed": 1, "exact": 1, "error": 0, "bar": 1e-6, "order": null,
+        "passed": true},
+      {"quantity": "broken [m]", "computed": 2, "exact": 1, "error": 1, "bar": 1e-6, "order": null,
+        "passed": false}]}]})");
   put(dir / "picture-of-it.png", "\x89PNG\r\n\x1a\n");
   return dir;
 }

@@ -15,13 +15,18 @@ namespace {
 constexpr const char* kStability = R"({"unexpected": 1, "stopped": false, "wall_s": 3.0,
   "rows": [{"name": "modulus", "summary": "E & H, <stiff>"}, {"name": "thrown", "summary": "a handle"}],
   "cells": [
-    {"row": "modulus", "sub_case": "E = 1e3", "integrator": "a<b>", "verdict": "accurate", "expected": ["accurate", "stable"], "as_expected": true,
+    {"row": "modulus", "sub_case": "E = 1e3", "integrator": "a<b>", "verdict": "accurate",
+     "expected": ["accurate", "stable"], "as_expected": true,
      "figure": "energy +1e-07", "energy_gain": 1e-7, "error": null, "reason": "", "steps": 12, "cpu_s": 0.01},
-    {"row": "modulus", "sub_case": "E = 1e3", "integrator": "second", "verdict": "grew", "expected": ["accurate"], "as_expected": false,
+    {"row": "modulus", "sub_case": "E = 1e3", "integrator": "second", "verdict": "grew",
+     "expected": ["accurate"], "as_expected": false,
      "figure": "energy +9e+99", "energy_gain": 9e99, "error": null, "reason": "", "steps": 12, "cpu_s": 0.01},
-    {"row": "modulus", "sub_case": "E = 1e4", "integrator": "second", "verdict": "error", "expected": ["error"], "as_expected": true,
-     "figure": "", "energy_gain": null, "error": null, "reason": "second: \"too\" <much> work", "steps": 12, "cpu_s": 0.01},
-    {"row": "thrown", "sub_case": "jumps", "integrator": "tool: x", "verdict": "stable", "expected": ["stable"], "as_expected": true,
+    {"row": "modulus", "sub_case": "E = 1e4", "integrator": "second", "verdict": "error",
+     "expected": ["error"], "as_expected": true,
+     "figure": "", "energy_gain": null, "error": null, "reason": "second: \"too\" <much> work", "steps": 12,
+     "cpu_s": 0.01},
+    {"row": "thrown", "sub_case": "jumps", "integrator": "tool: x", "verdict": "stable",
+     "expected": ["stable"], "as_expected": true,
      "figure": "", "energy_gain": null, "error": null, "reason": "", "steps": 0, "cpu_s": 0.01}]})";
 
 std::string page_of(const std::string& json) {

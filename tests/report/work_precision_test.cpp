@@ -11,8 +11,8 @@ using namespace palpate;
 
 namespace {
 
-/// A table with the columns of compare.csv; `fast` is of order 1 at 1/h seconds, `good` of order 2 at 3/h
-/// seconds.
+/// A table with the columns of compare.csv;
+/// `fast` is of order 1 at 1/h seconds, `good` of order 2 at 3/h seconds.
 report::Table compare_table() {
   report::Table table;
   table.headers = store::compare_columns();
@@ -70,9 +70,9 @@ TEST(FittedOrders, OnePointHasNone) {
   EXPECT_TRUE(std::isnan(orders[0].order));
 }
 
-// Errors of `fast`: 0.05 0.025 0.0125 0.00625 at 10 20 40 80 s, so that error x cost = 0.5; of `good`: 0.02
-// 0.005 0.00125 0.0003125 at 30 60 120 240 s, so that error x cost^2 = 18.  Both are straight in log-log:
-// interpolation is exact.
+// Errors of `fast`: 0.05 0.025 0.0125 0.00625 at 10 20 40 80 s, so that error x cost = 0.5; of
+// `good`: 0.02 0.005 0.00125 0.0003125 at 30 60 120 240 s, so that error x cost^2 = 18.  Both
+// are straight in log-log: interpolation is exact.
 TEST(CostAt, IsExactOnPowerLaws) {
   const auto all = report::ladders(compare_table(), "position_error_rel_l2", "cpu_s_median");
   ASSERT_EQ(all.size(), 2u);
@@ -189,7 +189,7 @@ TEST(WorkPrecisionPlot, HasOneLineALadderWithoutFailedPoints) {
     EXPECT_NE(svg.find(text), std::string::npos) << text;
 }
 
-// Forty lines are told apart by family; what none beats is joined by one dark line, and named.
+// Forty lines are distinguished by family; what none beats is joined by one dark line, and named.
 TEST(WorkPrecisionPlot, OfManyIsColouredByFamilyAndShowsTheEnvelope) {
   const report::Table two = compare_table();
   report::Table many = two;

@@ -32,7 +32,7 @@ void expect_sound(TriMesh surface, int vertices, int euler, double angle_deg, co
   long looked_at = 0;
   EXPECT_EQ(self_intersections(surface, &looked_at), 0) << name;
   EXPECT_GT(looked_at, 2 * surface.faces.cols()) << name;
-  std::printf("%s: %d vertices, smallest angle %.1f degrees, %.5g m^3, %ld pairs of faces looked at\n",
+  std::printf("%s: %d vertices, smallest angle %.1f degrees, %.5g m^3, %ld pairs of faces tested\n",
               name.c_str(), static_cast<int>(surface.vertices.cols()), smallest_angle_deg(surface),
               report.volume, looked_at);
 }
@@ -109,8 +109,8 @@ TEST_P(EveryShape, IsSoundAtThePapersCounts) {
   EXPECT_EQ(shape.skeleton.bones.size(), GetParam() == "human" ? 19U : 0U);
 }
 
-// The base is a prism: its area in closed form times its width, but for the polygons that stand for arcs,
-// which miss O(edge^2).
+// The base is a prism: its area in closed form times its width,
+// but for the polygons that stand for arcs, which miss O(edge^2).
 TEST(Shapes, GearHasItsVolumeInClosedForm) {
   const shapes::GearSize size;
   const double exact = (shapes::gear_area(size) - std::numbers::pi * size.bore * size.bore) * size.width;

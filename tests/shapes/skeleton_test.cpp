@@ -59,10 +59,10 @@ std::vector<Vec3> surface_points(const Bone& bone) {
     for (int j = 0; j < 10; ++j)
       for (int k = 0; k < 16; ++k) {
         const double t = i / 12.0, polar = std::numbers::pi * (j + 0.5) / 10.0,
-                     turn = 2.0 * std::numbers::pi * k / 16.0;
+                     azimuth = 2.0 * std::numbers::pi * k / 16.0;
         const double radius = bone.head_radius + t * (bone.tail_radius - bone.head_radius);
         out.push_back(bone.head + t * along +
-                      radius * Vec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn),
+                      radius * Vec3(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
                                     std::cos(polar)));
       }
   return out;

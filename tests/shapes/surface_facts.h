@@ -45,9 +45,9 @@ inline int pieces(const TriMesh& m) {
   return n;
 }
 
-/// The segment pq crosses the triangle abc, at a point inside both (five signs of volumes).  An end within
-/// 1e-9 of the triangle's size of its plane does not count: there, on a gear's flat faces, signs are
-/// rounding.
+/// The segment pq crosses the triangle abc, at a point inside both (five signs of
+/// volumes).  An end within 1e-9 of the triangle's size of its plane does not count:
+/// there, on a gear's flat faces, signs are rounding.
 inline bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double before = normal.dot(p - a), after = normal.dot(q - a),

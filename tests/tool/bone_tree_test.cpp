@@ -54,12 +54,12 @@ struct Place {
     std::mt19937 rng(seed);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     for (double& x : u) x = uniform(rng);
-    VecX turn = u;
-    for (double& x : turn) x = 0.8 * uniform(rng);
-    for (int i = 0; i < 20; ++i) q = moved(q, turn / 20.0);
+    VecX displacement = u;
+    for (double& x : displacement) x = 0.8 * uniform(rng);
+    for (int i = 0; i < 20; ++i) q = moved(q, displacement / 20.0);
   }
-  /// q a step of displacement d away: one step of the rule of Simpson's kind (midpoint), enough where d is
-  /// small.
+  /// q a step of displacement d away: one step of the rule
+  /// of Simpson's kind (midpoint), enough where d is small.
   VecX moved(const VecX& from, const VecX& d) const {
     VecX rate(q.size()), half = from, out = from;
     block.kinematics->q_dot(half, d, rate);
@@ -102,8 +102,8 @@ TEST(BoneTree, OneFreeBoneIsTheRigidBodyOfTheClosedForm) {
 // I about it, the Lagrangian gives
 //   M_aa = I1 + m1 d^2 + m2 L^2,  M_ab = m2 L d cos(a - b),  M_bb = I2 + m2 d^2,
 //   Q_a = -(m1 d + m2 L) g sin a - m2 L d sin(a - b) b'^2,   Q_b = -m2 d g sin b + m2 L d sin(a - b) a'^2.
-// The tree's second coordinate is b - a: u = (a', b' - a'), so M_tree = T^T M T and f_tree = T^T Q with (a',
-// b') = T u, T = [1 0; 1 1].
+// The tree's second coordinate is b - a, so u = (a', b' - a') and
+//   (a', b') = T u,   T = [1 0; 1 1],   M_tree = T^T M T,   f_tree = T^T Q.
 TEST(BoneTree, ADoublePendulumHasLagrangesEquations) {
   constexpr double kLength = 0.4, d = 0.25, g = 9.81;
   std::vector<TreeBone> rods(2);

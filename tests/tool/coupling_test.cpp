@@ -59,8 +59,8 @@ TEST_F(So3, jacobians_are_inverse_and_derivatives) {
   }
 }
 
-// F(x exp(h d)) = F(x) - h K d + O(h^2): the remainder falls by 4 as h halves, at random poses and near half
-// a turn.
+// F(x exp(h d)) = F(x) - h K d + O(h^2):
+// the remainder falls by 4 as h halves, at random poses and near half a turn.
 TEST_F(Coupling, tangent_by_taylor) {
   for (int run = 0; run < 8; ++run) {
     const RigidMotion tool{random_pose(), twist_of(random_vec6())};
@@ -147,19 +147,19 @@ TEST_F(Coupling, does_not_see_where_the_world_stands) {
     const RigidMotion tool{random_pose(), twist_of(random_vec6())},
         handle{random_pose(), twist_of(random_vec6())};
     const Pose world = random_pose();
-    const auto turned = [&](const RigidMotion& m) {
+    const auto rotated = [&](const RigidMotion& m) {
       return RigidMotion{world * m.pose, {world.rotation * m.twist.angular, world.rotation * m.twist.linear}};
     };
     const Vec6 F = coupling_wrench(kGains, tool, handle),
-               G = coupling_wrench(kGains, turned(tool), turned(handle));
+               G = coupling_wrench(kGains, rotated(tool), rotated(handle));
     EXPECT_LT((world.rotation * Vec3(F.head<3>()) - G.head<3>()).norm() +
                   (world.rotation * Vec3(F.tail<3>()) - G.tail<3>()).norm(),
               1e-11);
   }
 }
 
-// The path within a tick: ends met in pose and twist, twist the derivative of pose, and fourth order for a
-// smooth handle.
+// The path within a tick: ends met in pose and twist,
+// twist the derivative of pose, and fourth order for a smooth handle.
 TEST_F(HandlePath, hermite_in_pose_and_twist) {
   const auto hand = [](double t) {
     const Vec3 theta = Vec3(std::sin(t), t * t, std::cos(2 * t)),

@@ -13,9 +13,9 @@ const std::vector<std::string> kErrorControlled = {"simbody-rkmerson", "simbody-
 constexpr double kShift = 0.01, kTurn = 2.5;  // [m], [rad]
 
 /// The handle has jumped by (kShift along `axis`, kTurn about it) and rests: the tool's distance from it
-/// after each tick, (turn, shift).
+/// after each tick, (rotation, shift).
 struct Trace {
-  std::vector<double> turn, shift;
+  std::vector<double> rotation, shift;
 };
 Trace step_response(const ToolSpec& spec, int axis, double h, int ticks) {
   const Vec3 e = Vec3::Unit(axis);
@@ -26,7 +26,7 @@ Trace step_response(const ToolSpec& spec, int axis, double h, int ticks) {
     const auto result = tool.advance(h, handle, {});
     EXPECT_TRUE(result.ok()) << result.message;
     const Vec6 d = pose_difference(handle.pose1, tool.pose());
-    out.turn.push_back(d.head<3>().dot(e));
+    out.rotation.push_back(d.head<3>().dot(e));
     out.shift.push_back(d.tail<3>().dot(e));
   }
   return out;
@@ -35,7 +35,7 @@ Trace step_response(const ToolSpec& spec, int axis, double h, int ticks) {
 Oscillator shifting(const ToolSpec& s) {
   return {s.mass_kg, s.coupling_damping_n_s_m, s.coupling_stiffness_n_m};
 }
-Oscillator turning(const ToolSpec& s, int axis) {
+Oscillator rotational(const ToolSpec& s, int axis) {
   return {s.inertia_kg_m2[axis], s.coupling_rotational_damping_n_m_s_rad,
           s.coupling_rotational_stiffness_n_m_rad};
 }
@@ -50,16 +50,16 @@ TEST(HandleStep, error_controlled_schemes_follow_the_damped_oscillator) {
     for (int i = 0; i < 100; ++i) {
       const double t = 1e-3 * (i + 1);
       worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).at_time(-kShift, t)) / kShift);
-      worst = std::max(worst, std::abs(trace.turn[i] - turning(spec, 1).at_time(-kTurn, t)) / kTurn);
+      worst = std::max(worst, std::abs(trace.rotation[i] - rotational(spec, 1).at_time(-kTurn, t)) / kTurn);
     }
     EXPECT_LT(worst, 1e-6) << name;
     RecordProperty(name, std::to_string(worst));
   }
 }
 
-// A first-order method that keeps its local error at 1e-6.  By the estimate in error_controlled.cpp a turn at
-// 87/s is off by 4e-3 of itself after 0.1 s at the most, damping left out; not less than a thousandth of that
-// either, or it would not be the method that it says.
+// A first-order method that keeps its local error at 1e-6.  By the estimate in error_controlled.cpp a
+// rotation at 87/s is off by 4e-3 of itself after 0.1 s at the most, damping left out; not less than a
+// thousandth of that either, or it would not be the method that it says.
 TEST(HandleStep, first_order_error_control_follows_the_damped_oscillator_to_two_digits_and_more) {
   const ToolSpec spec = spec_for("simbody-semi-explicit-euler2");
   const Trace trace = step_response(spec, 1, 1e-3, 100);
@@ -67,15 +67,15 @@ TEST(HandleStep, first_order_error_control_follows_the_damped_oscillator_to_two_
   for (int i = 0; i < 100; ++i) {
     const double t = 1e-3 * (i + 1);
     worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).at_time(-kShift, t)) / kShift);
-    worst = std::max(worst, std::abs(trace.turn[i] - turning(spec, 1).at_time(-kTurn, t)) / kTurn);
+    worst = std::max(worst, std::abs(trace.rotation[i] - rotational(spec, 1).at_time(-kTurn, t)) / kTurn);
   }
   RecordProperty("worst", std::to_string(worst));
   EXPECT_LT(worst, 4e-3);
   EXPECT_GT(worst, 4e-6);
 }
 
-// A coupling of 2e6 N m/rad swings the tool at 2e5/s: by the same estimate 500 w = 1e8 steps a second, 1e5 a
-// tick.
+// A coupling of 2e6 N m/rad swings the tool at 2e5/s:
+// by the same estimate 500 w = 1e8 steps a second, 1e5 a tick.
 TEST(HandleStep, first_order_error_control_ends_in_words_where_a_tick_asks_for_too_many_steps) {
   ToolSpec spec = spec_for("simbody-semi-explicit-euler2");
   spec.coupling_rotational_stiffness_n_m_rad = 2e6;
@@ -102,9 +102,9 @@ TEST(HandleStep, fixed_ticks_follow_their_own_discrete_closed_form) {
         worst = std::max(
             worst,
             std::abs(trace.shift[i] - shifting(spec).after_ticks(name, -kShift, 1e-3, i + 1)) / kShift);
-        worst = std::max(
-            worst,
-            std::abs(trace.turn[i] - turning(spec, axis).after_ticks(name, -kTurn, 1e-3, i + 1)) / kTurn);
+        worst = std::max(worst, std::abs(trace.rotation[i] -
+                                         rotational(spec, axis).after_ticks(name, -kTurn, 1e-3, i + 1)) /
+                                    kTurn);
       }
       EXPECT_LT(worst, 1e-10) << name << " axis " << axis;
     }
@@ -115,17 +115,17 @@ TEST(HandleStep, fixed_ticks_are_of_first_order) {
   for (const auto& info : tool_integrators()) {
     if (std::find(kFixed.begin(), kFixed.end(), info.name) == kFixed.end()) continue;
     ++listed;
-    std::vector<double> ticks, shift, turn;
+    std::vector<double> ticks, shift, rotation;
     const ToolSpec spec = spec_for(info.name);
     for (double h : {5e-4, 2.5e-4, 1.25e-4, 6.25e-5}) {
       const int n = static_cast<int>(std::lround(0.02 / h));
       const Trace trace = step_response(spec, 2, h, n);
       ticks.push_back(h);
       shift.push_back(std::abs(trace.shift.back() - shifting(spec).at_time(-kShift, 0.02)));
-      turn.push_back(std::abs(trace.turn.back() - turning(spec, 2).at_time(-kTurn, 0.02)));
+      rotation.push_back(std::abs(trace.rotation.back() - rotational(spec, 2).at_time(-kTurn, 0.02)));
     }
     EXPECT_NEAR(slope(ticks, shift), info.order, 0.15) << info.name;
-    EXPECT_NEAR(slope(ticks, turn), info.order, 0.15) << info.name;
+    EXPECT_NEAR(slope(ticks, rotation), info.order, 0.15) << info.name;
   }
   EXPECT_EQ(listed, 2);
 }

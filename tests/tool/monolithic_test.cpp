@@ -54,14 +54,14 @@ TEST(Monolithic, cvode_follows_the_damped_oscillator) {
     m.system.add(make_gyroscopic(m.id, spec.inertia_kg_m2, !symmetric));
     m.system.add(make_coupling_term(m.id, spec, still(handle), symmetric));
     m.start("cvode-bdf", 1e-9);
-    const Oscillator turning{spec.inertia_kg_m2.y(), spec.coupling_rotational_damping_n_m_s_rad,
-                             spec.coupling_rotational_stiffness_n_m_rad};
+    const Oscillator rotational{spec.inertia_kg_m2.y(), spec.coupling_rotational_damping_n_m_s_rad,
+                                spec.coupling_rotational_stiffness_n_m_rad};
     const Oscillator shifting{spec.mass_kg, spec.coupling_damping_n_s_m, spec.coupling_stiffness_n_m};
     for (int i = 1; i <= 10; ++i) {
       const auto result = m.stepper->advance_to(0.01 * i);
       ASSERT_TRUE(result.ok()) << result.message;
       const Vec6 d = pose_difference(handle, m.pose());
-      EXPECT_NEAR(d[1], turning.at_time(-2.5, 0.01 * i), 1e-6 * 2.5) << "symmetric " << symmetric;
+      EXPECT_NEAR(d[1], rotational.at_time(-2.5, 0.01 * i), 1e-6 * 2.5) << "symmetric " << symmetric;
       EXPECT_NEAR(d[4], shifting.at_time(-0.01, 0.01 * i), 1e-6 * 0.01);
     }
   }

@@ -117,7 +117,7 @@ TEST(RigidBlock, symmetric_coupling_is_symmetric) {
   EXPECT_LT((A - A.transpose()).norm(), 1e-14 * A.norm());
 }
 
-// The same body in Simbody and in the System: one right-hand side seen through a tick of vanishing length.
+// One body in Simbody and in the System: one right-hand side seen through a tick of vanishing length.
 TEST(RigidBlock, accelerates_as_the_simbody_tool_does) {
   std::mt19937 rng(8);
   for (int run = 0; run < 10; ++run) {

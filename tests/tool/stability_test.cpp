@@ -71,8 +71,8 @@ TEST(ToolStability, linearly_implicit_euler_settles_from_anywhere) {
   }
 }
 
-// w1 . I w1 = w1 . I w0: the gyroscopic step never adds energy, at 1 rad a tick and far beyond; an explicit
-// one blows up.
+// w1 . I w1 = w1 . I w0: the gyroscopic step never adds energy, at 1 rad a tick and far beyond;
+// an explicit one blows up.
 class FreeSpin : public ::testing::TestWithParam<const char*> {};
 TEST_P(FreeSpin, never_gains_energy) {
   std::mt19937 rng(5);

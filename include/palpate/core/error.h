@@ -30,8 +30,8 @@ namespace detail {
 [[noreturn]] void check_failed(const char* file, int line, const char* condition, const std::string& message);
 }  // namespace detail
 
-/// The candidate with the smallest edit distance to `name`; empty when none is close (distance > half its
-/// length).
+/// The candidate with the smallest edit distance to `name`;
+/// empty when none is close (distance > half its length).
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
 /// ` (did you mean "x"?)` or, when none is near, ` (known: a, b, c)`; for the end of an error message.

@@ -41,8 +41,8 @@ Vec3 rotation_vector(const Quat& q);
 /// The unit quaternion of a rotation vector [rad].
 Quat quaternion_of(const Vec3& rotation_vector);
 
-/// The 6-vector (angular, linear) [rad, m] that carries `from` to `to`: rotation vector of to.rotation *
-/// from.rotation^-1 (world axes) and to.translation - from.translation.
+/// The 6-vector (angular, linear) [rad, m] that carries `from` to `to`: rotation vector of
+/// to.rotation * from.rotation^-1 (world axes) and to.translation - from.translation.
 Vec6 pose_difference(const Pose& from, const Pose& to);
 
 }  // namespace palpate

@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// One line of a registry: a name in a scene becomes a part.  `order` is the theoretical order where there is
-/// one, else 0.
+/// One line of a registry: a name in a scene becomes a part.
+/// `order` is the theoretical order where there is one, else 0.
 template <class Make>
 struct RegistryEntry {
   std::string name;

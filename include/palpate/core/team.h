@@ -35,9 +35,9 @@ class Team {
   void live(int k);
   void wait_while(const std::atomic<std::uint32_t>& value, std::uint32_t old) const;
 
-  struct Whose;
+  struct Group;
   int size_;
-  std::unique_ptr<Whose> turn_;
+  std::unique_ptr<Group> group_;
   std::vector<std::thread> workers_;
   void (*call_)(void*, int) = nullptr;
   void* work_ = nullptr;

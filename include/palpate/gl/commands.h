@@ -14,8 +14,8 @@ enum class Keep { kAll, kLeastDepth, kGreatestDepth };
 /// depth range [0, 1], viewport (0, 0, width, height).
 void set_plain_state(int width, int height, Keep keep);
 
-/// Draws index_count / 3 triangles of a vertex array that has indices, with the program in use, into the
-/// bound framebuffer.
+/// Draws index_count / 3 triangles of a vertex array that has indices,
+/// with the program in use, into the bound framebuffer.
 void draw_triangles(const VertexArray& vertices, std::size_t index_count);
 
 /// Runs a compute program over groups; buffers that it wrote may be read or drawn from afterwards.  Textures

@@ -37,8 +37,8 @@ class Context {
   ContextInfo info_;
 };
 
-/// The libraries that a context needs, by file name.  @throws Error with the Debian package of the first that
-/// cannot be loaded.
+/// The libraries that a context needs, by file name.
+/// @throws Error with the Debian package of the first that cannot be loaded.
 void require_library(const std::string& file, const std::string& package);
 
 /// Throws InternalError when GL recorded an error since the last call; `what` names the work.

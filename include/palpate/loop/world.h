@@ -48,8 +48,8 @@ struct Region {
 struct Body {
   std::string name;
   int block_id = -1;
-  /// rest positions in the body's own axes; its nodes are numbered by place (mesh/place_order.h), not as in
-  /// the mesh's file
+  /// rest positions in the body's own axes; its nodes are numbered in spatial order (mesh/spatial_order.h),
+  /// not as in the mesh's file
   TetMesh rest;
   std::vector<int> file_node;  ///< the number of each node in that file, from zero
   Points placed;               ///< the same placed in the world: what the simulation starts from

@@ -7,9 +7,8 @@
 
 namespace palpate::mesh {
 
-/// Where the entries of a mesh came from, so that a message can say `liver.msh:812: element 305`.
-/// The lists are as long as the mesh, or empty (a generator, a binary file): then entries are numbered from
-/// zero.
+/// Where the entries of a mesh came from, so that a message can say `liver.msh:812: element 305`. The lists
+/// are as long as the mesh, or empty (a generator, a binary file): then entries are numbered from zero.
 struct Provenance {
   std::string source;       ///< file name, or `generator "ball"`
   std::string node_source;  ///< where nodes have a file of their own (TetGen)
@@ -30,13 +29,13 @@ inline constexpr double kDegenerateTet = 1e-9;
 /// A triangle is degenerate when 2 |A| / (longest edge)^2 is not above this bound.
 inline constexpr double kDegenerateTriangle = 1e-9;
 
-/// Turns elements of negative volume round, and refuses (palpate::Error) what no simulation can use: no
-/// elements, non-finite coordinates, degenerate or duplicate elements, three elements on one face,
-/// unreferenced nodes.
+/// Turns elements of negative volume round, and refuses (palpate::Error) what no
+/// simulation can use: no elements, non-finite coordinates, degenerate or duplicate
+/// elements, three elements on one face, unreferenced nodes.
 /// @pre every index in mesh.tets lies in [0, number of nodes).
 MeshReport check_tets(TetMesh& mesh, const Provenance& from);
 
-/// The same for a surface that bounds a body: closed (each edge in exactly two faces), consistently oriented
+/// Checks a surface that bounds a body: closed (each edge in exactly two faces), consistently oriented
 /// (mended by walking from face to face), outwards (inwards around a cavity), without degenerate or duplicate
 /// faces or unreferenced vertices. Leaves MeshReport.smallest_dihedral_deg at its default.
 MeshReport check_surface(TriMesh& mesh, const Provenance& from);

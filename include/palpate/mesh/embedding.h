@@ -5,8 +5,8 @@
 
 namespace palpate::mesh {
 
-/// Points tied to tetrahedra by barycentric weights (docs/design.md, 4.2): x_i = sum over the 4 nodes of tet[i] of
-/// weights(k, i) * x_node.
+/// Points tied to tetrahedra by barycentric weights (docs/design.md, 4.2): x_i = sum over the 4 nodes of
+/// tet[i] of weights(k, i) * x_node.
 ///
 /// A point that no tetrahedron holds belongs to the nearest one, with that one's weights continued outside
 /// (some of them negative; they still sum to one). So the offset to the tetrahedron is kept, the map from
@@ -40,8 +40,8 @@ struct EmbeddingReport {
 ///   index, place and distance
 Embedding embed(const TetMesh& mesh, const Points& points, EmbeddingReport* report = nullptr);
 
-/// The points at the positions `nodes` of the mesh's nodes [m].  Allocates only when `points` has another
-/// size.
+/// The points at the positions `nodes` of the mesh's nodes [m].
+/// Allocates only when `points` has another size.
 void evaluate(const Embedding& embedding, const Tets& tets, const Points& nodes, Points& points);
 
 /// The transposed map, f_node += w f_point [N]: the virtual work, the resultant and (since sum w x_node is
@@ -49,8 +49,8 @@ void evaluate(const Embedding& embedding, const Tets& tets, const Points& nodes,
 void add_to_nodes(const Embedding& embedding, const Tets& tets, const Points& point_forces,
                   Points& node_forces);
 
-/// One third of the area vectors of the adjacent faces [m^2], outward; their sum over a closed surface is
-/// zero.
+/// One third of the area vectors of the adjacent faces [m^2], outward;
+/// their sum over a closed surface is zero.
 void vertex_area_vectors(const Faces& faces, const Points& vertices, Points& area_vectors);
 
 /// Unit normals (of the area vectors; zero where those cancel) and areas of the vertices: one third of the

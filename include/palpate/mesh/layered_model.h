@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// One convex proxy at rest (docs/design.md, 4.2): it stands for the skin vertices `members`.  A vertex may belong to
-/// several, and belongs to at least one.
+/// One convex proxy at rest (docs/design.md, 4.2): it stands for the skin vertices `members`.  A vertex may
+/// belong to several, and belongs to at least one.
 struct ProxyHull {
   Points corners;            ///< 3 x at most 32, in convex position, at rest [m]
   std::vector<int> members;  ///< skin vertices, ascending
@@ -27,7 +27,7 @@ struct LayeredModel {
   mesh::Embedding embedding;  ///< of skin.vertices in tets
   std::vector<ProxyHull> proxies;
   Skeleton skeleton;
-  /// the bone that carries the node, -1 for flesh; empty without a skeleton
+  /// the bone that carries the node, -1 for tissue; empty without a skeleton
   std::vector<int> bone_of_node;
   std::vector<MaterialRegion> regions;
 };

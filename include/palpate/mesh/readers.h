@@ -17,8 +17,8 @@ struct TetFile {
 /// physical volumes, the first of an element that is in several; where the file has none, the model's
 /// volumes, if there are several.
 TetFile read_gmsh(const std::string& path);
-/// .node and .ele of the same stem; `path` names either.  Regions: the attribute of the tetrahedra, where it
-/// has several values.
+/// .node and .ele of the same stem; `path` names either.
+/// Regions: the attribute of the tetrahedra, where it has several values.
 TetFile read_tetgen(const std::string& path);
 
 struct SurfaceFile {

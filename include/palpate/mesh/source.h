@@ -24,7 +24,8 @@ struct MeshReport {
 TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr,
                  std::vector<MaterialRegion>* regions = nullptr);
 
-/// The same for a surface: .obj, or a generator ("ball", "box", "cylinder"), closed and oriented outwards.
+/// Reads or generates a surface: .obj,
+/// or a generator ("ball", "box", "cylinder"), closed and oriented outwards.
 TriMesh surface(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr);
 
 }  // namespace palpate::mesh

@@ -8,8 +8,8 @@ namespace palpate::proxy {
 struct DecomposeOptions {
   int count = 60;        ///< hulls wanted; with a skeleton at least one for each bone that has skin
   int max_corners = 32;  ///< of a hull, at least 4
-  /// how much clusters keep apart what faces apart: opposite normals count as this many cluster sizes; 0:
-  /// position alone
+  /// how much clusters keep apart what faces apart:
+  /// opposite normals count as this many cluster sizes; 0: position alone
   double normal_weight = 0.5;
   /// a hull takes no more corners when its points lie outside by less than this, of the skin's size
   double tolerance = 1e-4;
@@ -32,9 +32,9 @@ struct DecomposeReport {
   double largest_outside = 0.0, largest_gap = 0.0;  ///< over all hulls [m]
 };
 
-/// Cuts a body into convex proxies (docs/design.md, 4.2): clusters of skin by bone, then by position and normal
-/// (k-means); each cluster with the tetrahedra behind it; and of each the hull of at most `max_corners` of
-/// its points, taken one by one where the hull so far is missed by most.
+/// Cuts a body into convex proxies (docs/design.md, 4.2): clusters of skin by bone, then by position and
+/// normal (k-means); each cluster with the tetrahedra behind it; and of each the hull of at most
+/// `max_corners` of its points, taken one by one where the hull so far is missed by most.
 ///
 /// Every face of the skin has its three vertices among the members of one proxy, and every tetrahedron
 /// belongs to one whose hull was made for its nodes too:

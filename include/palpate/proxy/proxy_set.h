@@ -11,8 +11,8 @@ namespace palpate::proxy {
 /// How a hull goes with its nodes.
 enum class Follow {
   kAffine,  ///< by the affine map that fits them best (least squares): the tightest bound
-  /// by their mean rotation (polar factor of the covariance); with a bone, by that of the nodes which the
-  /// bone carries
+  /// by their mean rotation (polar factor of the covariance);
+  /// with a bone, by that of the nodes which the bone carries
   kRigid,
 };
 
@@ -58,8 +58,8 @@ struct ProxyBranch {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
 };
 
-/// The convex proxies of one body at its present positions (docs/design.md, 4.2).  The derivation of the bounds stands
-/// in proxy_set.cpp.
+/// The convex proxies of one body at its present positions (docs/design.md, 4.2).
+/// The derivation of the bounds stands in proxy_set.cpp.
 ///
 /// After update every vertex of the skin lies in the inflated hull of each proxy that it is a member of,
 /// whatever the nodes did, and so do its faces (hulls are convex) and the tetrahedra that the proxy owns:

@@ -17,24 +17,24 @@ struct PruneOptions {
   bool between_bones = false;
 };
 
-/// One contact region of two bodies: the plane that its image is taken along, and the skin that may take
-/// part.
+/// One contact region of two bodies: the plane that its image is taken along,
+/// and the skin that may take part.
 struct ContactRegion {
   Region region;                 ///< normal from b to a, plane D
   Mat3 axes = Mat3::Identity();  ///< columns u, v, normal
   /// extent in these axes about region.origin: (u, v) where both sides have skin, w of all of it [m]
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
-  /// the direction that its skins face each other along, from b to a; 2 long where both are flat, 0 where one
-  /// is swallowed
+  /// the direction that its skins face each other along, from b to a;
+  /// 2 long where both are flat, 0 where one is enclosed
   Vec3 facing = Vec3::Zero();
   std::vector<std::pair<int, int>> pairs;  ///< proxies of a and b
   std::vector<int> faces_a, faces_b;       ///< faces of the skins, patch by patch
-  /// largest angle between its normal and what any of its proxies of a had at the last query; 0 for new ones
-  /// [rad]
-  double turned = 0.0;
+  /// largest angle between its normal and what any of its
+  /// proxies of a had at the last query; 0 for new ones [rad]
+  double rotation = 0.0;
 };
 
-/// What was looked at and left, since the pruner was made.
+/// Counts of tested and excluded pairs since the pruner was made.
 struct PruneCounts {
   long queries = 0;
   long pairs = 0;            ///< of proxies, all that are allowed
@@ -49,7 +49,7 @@ struct PruneCounts {
   /// regions by where their normal came from: the skins, the last query, libccd
   long normals_by_areas = 0, normals_kept = 0, normals_by_hulls = 0;
   long faces_a = 0, faces_b = 0;  ///< handed on, over all queries and regions
-  double largest_turn = 0.0;      ///< [rad]
+  double largest_rotation = 0.0;  ///< [rad]
 };
 
 /// Which skin of two bodies may be in contact, and in which regions.  How it decides, and why nothing is lost
@@ -66,10 +66,10 @@ class Pruner {
   ~Pruner();
   Pruner(Pruner&&) noexcept;
 
-  /// The regions at the present state of both sets.  @param gap  distance between skins that still counts
-  /// [m], not negative
+  /// The regions at the present state of both sets.
+  /// @param gap  distance between skins that still counts [m], not negative
   std::span<const ContactRegion> query(double gap);
-  /// Whether proxy p of a is looked at with q of b.
+  /// Whether proxy p of a is tested against proxy q of b.
   bool is_pair(int p, int q) const;
   const PruneCounts& counts() const;
   const RegionCounts& region_counts() const;

@@ -29,8 +29,8 @@ struct RegionCounts {
   long last_normal = 0, distance = 0, centroids = 0;  ///< queries that ended with that normal
 };
 
-/// Finds the region of two point sets, each standing for its convex hull (support mapping over the points),
-/// by libccd.
+/// Finds the region of two point sets,
+/// each standing for its convex hull (support mapping over the points), by libccd.
 ///
 /// libccd is not taken at its word (touching and flat shapes give NaN directions, depths are sometimes wrong,
 /// small scales miss overlaps):

@@ -26,8 +26,8 @@ struct Picture {
   }
 };
 
-/// Writes a PNG file.  The same picture gives the same bytes.  Throws Error with the path when it cannot be
-/// written.
+/// Writes a PNG file.  The same picture gives the same bytes.
+/// Throws Error with the path when it cannot be written.
 void save_png(const Picture& picture, const std::filesystem::path& path);
 
 }  // namespace palpate::render

@@ -8,8 +8,8 @@ namespace palpate::report {
 
 enum class RowMark { kNone, kGood, kBad, kFaint };
 
-/// One self-contained HTML page: no script, no external file.  It is well-formed XML too.  All text given is
-/// escaped here.
+/// One self-contained HTML page: no script, no external file.
+/// It is well-formed XML too.  All text given is escaped here.
 class Page {
  public:
   explicit Page(std::string title);

@@ -4,7 +4,8 @@
 
 namespace palpate::report {
 
-/// Of trace.csv: step size over time, logarithmic; rejected attempts as points, coloured by their reason.
+/// Plot of trace.csv: step size over time, logarithmic;
+/// rejected attempts as points, coloured by their reason.
 Plot step_plot(const Table& trace);
 
 }  // namespace palpate::report

@@ -14,7 +14,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// The errors that every comparison is asked for.
 inline const std::vector<double> kTargets = {1e-2, 1e-3, 1e-4, 1e-6};
-/// What is slower than this is told how much: the interactive method of the field.
+/// For anything slower than this the factor is reported: the interactive method of the field.
 inline const std::string kBaseline = "linearly-implicit-euler";
 
 /// Columns of exchange.csv, in order (a `scene` may stand before them).
@@ -86,8 +86,8 @@ std::vector<Winner> winners(const Table& compare, const std::string& error_colum
 /// their stability limit, and whether the reference bears it.  Paragraphs are separate lines.
 std::string in_words(const Table& compare, double reference_error);
 
-/// Error against a cost, log-log: one line a ladder, coloured by family; the best envelope is drawn over
-/// them.
+/// Error against a cost, log-log: one line a ladder, coloured by family;
+/// the best envelope is drawn over them.
 Plot work_precision_plot(const Table& compare, const std::string& error_column,
                          const std::string& error_label, double reference_error,
                          const std::string& cost_column = "cpu_s_median",
@@ -102,8 +102,8 @@ std::vector<Plot> family_plots(const Table& compare, const std::string& error_co
 /// Error against the exchange period, log-log, with the fitted slope drawn beside it.
 Plot exchange_plot(const Table& exchange, const std::string& error_column, const std::string& error_label);
 
-/// Of restarts.csv: `count_column` per simulated second against the restarts per simulated second; multistep
-/// methods in colour, one-step ones grey.
+/// Plot of restarts.csv: `count_column` per simulated second against the restarts per simulated second;
+/// multistep methods in colour, one-step ones grey.
 Plot restart_plot(const Table& restarts, const std::string& count_column, const std::string& count_label);
 
 /// "rtol 1e-04", "step 2 ms": a ladder point's setting for people.

@@ -7,13 +7,13 @@
 
 namespace palpate::store {
 
-/// One bone at one recorded instant: where it is, and what the flesh exerts on it.
+/// One bone at one recorded instant: where it is, and what the tissue exerts on it.
 struct BoneRow {
   double time_s = 0.0;
   int bone = 0;  ///< in the order of the scene, from 0
   Pose pose;
   Twist twist;
-  Wrench from_flesh;  ///< moment about the bone's origin
+  Wrench from_tissue;  ///< moment about the bone's origin
 };
 
 /// Headers of bones.csv, units included.

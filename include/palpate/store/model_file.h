@@ -8,21 +8,21 @@
 /// The model file (.h5): a layered model, its figures, and how it was made.  `nodes` and `tets` stand where
 /// the native mesh file has them, so that read_mesh() reads a model file too.
 ///
-///   nodes n x 3 [m]   tets m x 4                                     the tetrahedra
-///   skin/      vertices, faces                                       the surface that is seen and touched
-///   embedding/ tet, weights (4 a vertex)                             of the skin's vertices in the
-///   tetrahedra
-///   proxies/   corners, corner_offsets, members, member_offsets, bone    hull p: corners[corner_offsets[p]
-///   ... corner_offsets[p + 1])
-///   skeleton/  names (one a line), parent, head, tail, head_radius, tail_radius, bone_of_node
-///   regions/   names (one a line), tets, offsets, youngs_modulus_factor, density_factor      region r:
-///   tets[offsets[r] ... offsets[r + 1]), ascending, none in two
-///   made/      source, source_hash, options, version, notes (one a line), figure_names (one a line), figures
-/// A group that is not there is an empty part of the model.
+///   nodes n x 3 [m], tets m x 4: the tetrahedra
+///   skin/       vertices, faces: the surface that is seen and touched
+///   embedding/  tet, weights (4 a vertex): the skin's vertices in the tetrahedra
+///   proxies/    corners, corner_offsets, members, member_offsets, bone
+///               hull p: corners[corner_offsets[p] ... corner_offsets[p + 1])
+///   skeleton/   names (one a line), parent, head, tail, head_radius, tail_radius, bone_of_node
+///   regions/    names (one a line), tets, offsets, youngs_modulus_factor, density_factor
+///               region r: tets[offsets[r] ... offsets[r + 1]), ascending; no tetrahedron is in two regions
+///   made/       source, source_hash, options, version, notes (one a line),
+///               figure_names (one a line), figures
+/// A missing group is an empty part of the model.
 namespace palpate::store {
 
-/// How a model came to be.  No time and no machine stand in it: the same input gives the same file, byte for
-/// byte.
+/// How a model came to be.  No time and no machine stand in it:
+/// the same input gives the same file, byte for byte.
 struct ModelRecord {
   std::string source;              ///< file name without its folder, or the name of a shape
   std::string source_hash;         ///< ContentHash of the file
@@ -45,8 +45,8 @@ void write_model(const std::string& path, const ModelFile& file);
 /// a proxy that names a vertex that is not there, a skin vertex in no proxy, a bone before its parent.
 ModelFile read_model(const std::string& path);
 
-/// The regions of a model file alone; none where the file is a plain mesh file.  @param tets  how many
-/// tetrahedra it has
+/// The regions of a model file alone; none where the file is a plain mesh file.
+/// @param tets  how many tetrahedra it has
 /// @throws Error as read_model
 std::vector<MaterialRegion> read_regions(const std::string& path, int tets);
 

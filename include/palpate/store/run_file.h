@@ -22,8 +22,8 @@ struct RunInfo {
   std::string scene_name;
   std::string scene_source;  ///< the effective TOML
   std::string version;       ///< of palpate, with its commit
-  /// room made beforehand: count them from duration and period.  More are welcome, but a kill in the very
-  /// moment
+  /// room made beforehand: count them from duration and period.
+  /// More are welcome, but a kill in the very moment
   int expected_steps = 100;
   ///< when the file grows (at each doubling) can damage it
 };

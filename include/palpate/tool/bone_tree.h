@@ -12,15 +12,15 @@ namespace palpate::tool {
 
 enum class Joint {
   kWeld,   ///< none: goes with its parent
-  kHinge,  ///< turns about one axis: q = angle, u = its rate
-  /// turns about a point: q = quaternion, u = angular velocity, in the axes that the parent carries (the
+  kHinge,  ///< rotates about one axis: q = angle, u = its rate
+  /// rotates about a point: q = quaternion, u = angular velocity, in the axes that the parent carries (the
   /// world's at the start)
   kBall,
   kFree,  ///< of a root alone: q = (quaternion, position of its origin), u = (angular, linear), world axes
 };
 
-/// One bone as it stands at the start, in world axes.  Its own frame has the origin at its centre of mass and
-/// principal axes.
+/// One bone as it stands at the start, in world axes.
+/// Its own frame has the origin at its centre of mass and principal axes.
 struct TreeBone {
   std::string name;
   int parent = -1;  ///< a bone before this one; -1: the ground
@@ -57,8 +57,8 @@ class BoneTree {
   int q_size() const;
   int u_size() const;
   VecX start() const;  ///< q at the start
-  /// u of a motion of the whole, as one rigid body, about `centre`; what the joints cannot follow is left
-  /// out.
+  /// u of a motion of the whole, as one rigid body, about `centre`;
+  /// what the joints cannot follow is left out.
   VecX rigid_start(const Vec3& velocity, const Vec3& angular_velocity, const Vec3& centre) const;
   /// @param length, speed  sizes that matter to error control: an angle counts as `length`.  Entries of q
   ///   share one scale, so a length of less than a metre is asked
@@ -87,16 +87,15 @@ class BoneTree {
   std::unique_ptr<Impl> impl_;
 };
 
-/// M of that block.
+/// The mass matrix of the tree's block.
 std::shared_ptr<dynamics::InertiaTerm> make_tree_inertia(int block_id, std::shared_ptr<const BoneTree> tree);
-/// All forces of that block but what nodes exert on it.
+/// All forces of the tree's block except those that nodes exert on it.
 std::shared_ptr<dynamics::ForceTerm> make_tree_force(int block_id, std::shared_ptr<const BoneTree> tree);
 
-/// Nodes that sit rigidly on one bone.  With its origin at p, r = R l, and the bone's velocity (w, v_c) = J
-/// u:
-///     x = p + r,   v = v_c + w x r,   a = v_c' + w' x r + w x (w x r);     G's row of axis k is e_k^T (J_v -
-///     [r]x J_w).
-/// @param local  3 x dofs: the node in the bone's own frame [m]
+/// Nodes that sit rigidly on one bone with origin p and velocity (w, v_c) = J u; with r = R l,
+///     x = p + r,   v = v_c + w x r,   a = v_c' + w' x r + w x (w x r);
+///     row of G for axis k:  e_k^T (J_v - [r]x J_w).
+/// @param local  3 x dofs: the node in the bone's frame [m]
 std::shared_ptr<dynamics::DrivenMotion> make_tree_carried(std::vector<int> dofs, Points local, int bone,
                                                           int block_id, std::shared_ptr<const BoneTree> tree);
 

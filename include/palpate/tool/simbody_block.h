@@ -7,8 +7,8 @@ namespace palpate::tool {
 /// beside the bodies. One Simbody System stands behind both terms.
 struct SimbodyTerms {
   std::shared_ptr<dynamics::InertiaTerm> inertia;  ///< M(q) by Simbody's calcM
-  /// gyroscopic forces and weight, by Simbody's inverse dynamics at u' = 0; with its exact, unsymmetric
-  /// tangent
+  /// gyroscopic forces and weight, by Simbody's inverse dynamics at u' = 0;
+  /// with its exact, unsymmetric tangent
   std::shared_ptr<dynamics::ForceTerm> force;
 };
 

@@ -10,15 +10,15 @@
 
 namespace palpate::tool {
 
-/// The handle's motion over one tick, as the coupling sees it: pose and twist at the tick's end (implicit
-/// schemes) and start.
+/// The handle's motion over one tick, as the coupling sees it:
+/// pose and twist at the tick's end (implicit schemes) and start.
 struct HandleMotion {
   Pose pose0, pose1;
   Twist twist0, twist1;
 };
 
-/// A Simbody MobilizedBody::Free under a 6-DoF virtual coupling and a linearised contact (docs/design.md, 4.5).  The
-/// Simbody System stays behind the pimpl.
+/// A Simbody MobilizedBody::Free under a 6-DoF virtual coupling and a linearised contact (docs/design.md,
+/// 4.5).  The Simbody System stays behind the pimpl.
 class Tool {
  public:
   Tool(const ToolSpec& spec, const Vec3& gravity);
@@ -30,14 +30,14 @@ class Tool {
   Twist twist() const;
   void set_state(double t, const Pose& pose, const Twist& twist);
 
-  /// One tick of `h` seconds with the contact linear about its record.  The scheme is the one that the spec
-  /// names.
+  /// One tick of `h` seconds with the contact linear about its record.
+  /// The scheme is the one that the spec names.
   dynamics::StepResult advance(double h, const HandleMotion& handle,
                                const dynamics::LinearisedContact& contact);
 
   /// Wrench that the coupling exerts on the tool about its origin, for a handle pose (before any limit).
   Wrench coupling_wrench(const Pose& handle, const Twist& handle_twist) const;
-  /// The same seen by the hand: force opposite, moment about the handle's origin.
+  /// The coupling wrench on the hand: force opposite, moment about the handle's origin.
   Wrench wrench_on_hand(const Pose& handle, const Twist& handle_twist) const;
 
   /// K = -dF/dx and B = -dF/dv of the coupling at the current pose (6x6, angular first): what `condensed`

@@ -5,7 +5,7 @@
 #include "palpate/fem/attachments.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/generators.h"
-#include "palpate/mesh/place_order.h"
+#include "palpate/mesh/spatial_order.h"
 
 namespace palpate::bench {
 namespace {
@@ -27,7 +27,7 @@ fem::PathPoint turning(double t) {
 
 TetMesh beam_mesh(int along, int across) {
   TetMesh beam = mesh::box(Vec3(1.0, 0.25, 0.25), {along, across, across});
-  mesh::renumber_nodes(beam, mesh::order_by_place(beam.nodes));  // as a body of a scene has it
+  mesh::renumber_nodes(beam, mesh::spatial_order(beam.nodes));  // as a body of a scene has it
   return beam;
 }
 

@@ -1,4 +1,4 @@
-#include "palpate/mesh/place_order.h"
+#include "palpate/mesh/spatial_order.h"
 
 #include <gtest/gtest.h>
 
@@ -19,34 +19,34 @@ std::vector<int> shuffled(int count, unsigned seed) {
   return order;
 }
 
-TEST(PlaceOrder, HoldsEachPointOnce) {
+TEST(SpatialOrder, HoldsEachPointOnce) {
   const Points points = Points::Random(3, 1001);
-  std::vector<int> order = mesh::order_by_place(points);
+  std::vector<int> order = mesh::spatial_order(points);
   std::sort(order.begin(), order.end());
   for (int k = 0; k < 1001; ++k) ASSERT_EQ(order[static_cast<std::size_t>(k)], k);
-  EXPECT_TRUE(mesh::order_by_place(Points(3, 0)).empty());
+  EXPECT_TRUE(mesh::spatial_order(Points(3, 0)).empty());
 }
 
-TEST(PlaceOrder, PutsTheSamePointsInTheSameOrder) {
+TEST(SpatialOrder, PutsTheSamePointsInTheSameOrder) {
   const TetMesh box = mesh::box(Vec3::Constant(1.0), {7, 7, 7});  // many in one plane
   const auto count = static_cast<int>(box.nodes.cols());
   std::vector<int> order = shuffled(count, 3);
-  mesh::order_by_place(box.nodes, order, 0, count);
-  EXPECT_EQ(order, mesh::order_by_place(box.nodes));
+  mesh::spatial_order(box.nodes, order, 0, count);
+  EXPECT_EQ(order, mesh::spatial_order(box.nodes));
 }
 
-TEST(PlaceOrder, KeepsTheRestOfTheList) {
+TEST(SpatialOrder, KeepsTheRestOfTheList) {
   const Points points = Points::Random(3, 100);
   std::vector<int> order = shuffled(100, 1);
   const std::vector<int> before = order;
-  mesh::order_by_place(points, order, 30, 70);
+  mesh::spatial_order(points, order, 30, 70);
   EXPECT_TRUE(std::equal(order.begin(), order.begin() + 30, before.begin()));
   EXPECT_TRUE(std::equal(order.begin() + 70, order.end(), before.begin() + 70));
   EXPECT_TRUE(std::is_permutation(order.begin() + 30, order.begin() + 70, before.begin() + 30));
   EXPECT_FALSE(std::equal(order.begin(), order.end(), before.begin()));
 }
 
-TEST(PlaceOrder, CutsAcrossTheLongestSide) {
+TEST(SpatialOrder, CutsAcrossTheLongestSide) {
   const Points points = Vec3(1.0, 3.0, 2.0).asDiagonal() * Points::Random(3, 200);
   std::vector<int> order = shuffled(200, 2);
   mesh::cut_across_longest(points, order, 0, 200, 80);
@@ -61,10 +61,10 @@ TEST(PlaceOrder, CutsAcrossTheLongestSide) {
   EXPECT_LT(below, above);
 }
 
-TEST(PlaceOrder, RenumberedMeshIsTheSameMesh) {
+TEST(SpatialOrder, RenumberedMeshIsTheSameMesh) {
   const TetMesh before = mesh::perturbed(mesh::box(Vec3(1.0, 0.5, 0.25), {6, 3, 2}), 0.1, 5);
   TetMesh after = before;
-  const std::vector<int> order = mesh::order_by_place(before.nodes);
+  const std::vector<int> order = mesh::spatial_order(before.nodes);
   mesh::renumber_nodes(after, order);
   ASSERT_EQ(after.nodes.cols(), before.nodes.cols());
   for (std::size_t k = 0; k < order.size(); ++k)
@@ -89,15 +89,15 @@ int runs_in_ball(const Points& points, const std::vector<int>& order, double rad
   return runs;
 }
 
-// Of n points of a compact part those at its surface, some 4 n^(2/3) of them in a ball, may each begin a run
-// of their own; in the order of a mesher nearly every point does.
-TEST(PlaceOrder, ACompactPartLiesInRunsThatNumberLikeItsSurface) {
+// Only the points at the surface of a compact part, some 4 n^(2/3) of n in a ball, can begin a run of
+// consecutive numbers; in the order of a mesher nearly every point does.
+TEST(SpatialOrder, ACompactPartLiesInRunsThatNumberLikeItsSurface) {
   const Points points = Points::Random(3, 200000);
-  const std::vector<int> mesher = shuffled(200000, 7), placed = mesh::order_by_place(points);
+  const std::vector<int> mesher = shuffled(200000, 7), spatial = mesh::spatial_order(points);
   std::vector<double> size, count;
   for (const double radius : {0.15, 0.3, 0.6}) {
     int n = 0;
-    const int runs = runs_in_ball(points, placed, radius, &n),
+    const int runs = runs_in_ball(points, spatial, radius, &n),
               scattered = runs_in_ball(points, mesher, radius, &n);
     EXPECT_LT(runs, 2.0 * std::pow(n, 2.0 / 3.0)) << n << " points";
     EXPECT_GT(scattered, 0.8 * n);

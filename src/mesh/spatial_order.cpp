@@ -1,4 +1,4 @@
-#include "palpate/mesh/place_order.h"
+#include "palpate/mesh/spatial_order.h"
 
 #include <algorithm>
 #include <numeric>
@@ -26,21 +26,21 @@ void cut_across_longest(const Points& points, std::vector<int>& order, int begin
   });
 }
 
-void order_by_place(const Points& points, std::vector<int>& order, int begin, int end) {
+void spatial_order(const Points& points, std::vector<int>& order, int begin, int end) {
   if (end - begin <= kFew) {
     std::sort(order.begin() + begin, order.begin() + end);
     return;
   }
   const int middle = begin + (end - begin) / 2;
   cut_across_longest(points, order, begin, end, middle);
-  order_by_place(points, order, begin, middle);
-  order_by_place(points, order, middle, end);
+  spatial_order(points, order, begin, middle);
+  spatial_order(points, order, middle, end);
 }
 
-std::vector<int> order_by_place(const Points& points) {
+std::vector<int> spatial_order(const Points& points) {
   std::vector<int> order(static_cast<std::size_t>(points.cols()));
   std::iota(order.begin(), order.end(), 0);
-  order_by_place(points, order, 0, static_cast<int>(order.size()));
+  spatial_order(points, order, 0, static_cast<int>(order.size()));
   return order;
 }
 
