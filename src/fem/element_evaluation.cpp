@@ -4,39 +4,18 @@
 #include <cstring>
 #include <numeric>
 
-#include "corotated.h"
 #include "palpate/core/error.h"
 #include "palpate/core/huge_pages.h"
-#include "palpate/core/polar.h"
 #include "palpate/core/workers.h"
 
 namespace palpate::fem {
 namespace {
 
 using Chunk = ElementChunks::Chunk;
-using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 constexpr int kSumsInTask = 512;
 // of a matrix that caches hold: to fill them with two chunks at a time costs more than waiting for it
 constexpr int kFewChunks = 16;
 constexpr int kSumsAhead = 6, kNodesAhead = 24;  // how long before they are used memory is asked for
-
-void rotation_by_scalar(const double* F, double* R) {
-  Eigen::Map<RowMajor> out(R);
-  out = polar_decomposition(Eigen::Map<const RowMajor>(F)).R;
-}
-
-bool coupling_by_scalar(const ElementModel& model, const double* F, const double* R, double* C) {
-  bool clamped = false;
-  const Tangent tangent = model.warped      ? Tangent::kWarped
-                          : model.projected ? Tangent::kProjected
-                                            : Tangent::kExact;
-  Eigen::Map<RowMajor> out(C);
-  out = rotation_coupling(tangent, Eigen::Map<const RowMajor>(F), Eigen::Map<const RowMajor>(R),
-                          {model.mu, model.lambda}, clamped);
-  return clamped;
-}
-
-constexpr ScalarPath kScalarPath{rotation_by_scalar, coupling_by_scalar};
 
 double* numbers(auto& lines) { return lines.empty() ? nullptr : lines.front().value; }
 
@@ -97,8 +76,13 @@ void keep_blocks(const ChunkBlocks& blocks, int begin, int end, double* to) {
 }  // namespace
 
 ElementEvaluation::ElementEvaluation(const TetMesh& rest, const RestElements& elements,
-                                     const std::vector<int>& material_of_element, bool with_lower)
-    : chunks_(rest, elements, material_of_element), kernels_(&best_kernels()), with_lower_(with_lower) {
+                                     const std::vector<int>& material_of_element, const LaneKernels& kernels,
+                                     std::size_t law, bool with_lower)
+    : chunks_(rest, elements, material_of_element),
+      kernels_(&kernels),
+      law_(kernels.laws[law]),
+      scalar_(law_registry()[law].make->scalar),
+      with_lower_(with_lower) {
   chunk_sums_.resize(chunks_.chunks.size());
   fit_scratch();
 }
@@ -239,7 +223,7 @@ LaneCounts ElementEvaluation::add_nodal(NodalKernel kernel, const ElementModels&
     double* sum = numbers(scratch.sum);
     std::fill_n(sum, 4 * (chunk.nodes + 4), 0.0);
     for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) {
-      kernel(groups, count, model, kScalarPath, fields, sum, scratch.counts);
+      kernel(groups, count, model, scalar_, fields, sum, scratch.counts);
     });
     flush_nodal(chunk, sum, out);
   });
@@ -281,13 +265,13 @@ void ElementEvaluation::add_late_nodes(double* out) const {
 }
 
 LaneCounts ElementEvaluation::add_force(const ElementModels& models, const BodyFields& at, double* f) {
-  return add_nodal(kernels_->force, models, at, f);
+  return add_nodal(law_->force, models, at, f);
 }
 LaneCounts ElementEvaluation::add_step_force(const ElementModels& models, const BodyFields& at, double* f) {
-  return add_nodal(kernels_->step_force, models, at, f);
+  return add_nodal(law_->step_force, models, at, f);
 }
 LaneCounts ElementEvaluation::apply_tangent(const ElementModels& models, const BodyFields& at, double* y) {
-  return add_nodal(kernels_->apply, models, at, y);
+  return add_nodal(law_->apply, models, at, y);
 }
 
 LaneCounts ElementEvaluation::store_tangent(const ElementModels& models, const BodyFields& at, int first_node,
@@ -317,7 +301,7 @@ LaneCounts ElementEvaluation::tangent(const ElementModels& models, const BodyFie
     for_each_run_with_edges(
         chunk, models,
         [&](const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model) {
-          kernels_->tangent(groups, edges, count, model, kScalarPath, fields, upper, lower, scratch.counts);
+          law_->tangent(groups, edges, count, model, scalar_, fields, upper, lower, scratch.counts);
         });
     const BlockTargets targets{chunk.nodes,
                                chunk.own_nodes,
@@ -328,7 +312,7 @@ LaneCounts ElementEvaluation::tangent(const ElementModels& models, const BodyFie
                                chunk_diagonal_.data() + chunk.first_node,
                                in_order(),
                                stored};
-    kernels_->flush(targets, upper, lower, symmetric, diagonal, A.values().data());
+    kernels_->shared->flush(targets, upper, lower, symmetric, diagonal, A.values().data());
     if (in_order()) return;
     const auto edge_place = 9 * static_cast<std::size_t>(chunk.first_late_edge);
     keep_blocks(upper, chunk.own_edges, chunk.edges, late_upper_.data() + edge_place);
@@ -378,11 +362,10 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
     for_each_run_with_edges(
         chunk, models,
         [&](const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model) {
-          kernels_->step(groups, edges, count, model, kScalarPath, fields, sum, upper, before,
-                         scratch.counts);
+          law_->step(groups, edges, count, model, scalar_, fields, sum, upper, before, scratch.counts);
         });
     flush_nodal(chunk, sum, f);
-    kernels_->leave(before, before.count);
+    kernels_->shared->leave(before, before.count);
     before = {
         upper,
         leaving_edges_.data() + chunk.first_edge,
@@ -392,12 +375,12 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
         chunk.own_edges,
         chunk.edges};
     if (turns() == 1 || c + workers::count() >= chunks)  // likely this thread's last
-      kernels_->leave(before, before.count);
+      kernels_->shared->leave(before, before.count);
     else
       scratch.turn = 1 - scratch.turn;
   });
   for (Scratch& scratch : scratch_) {
-    kernels_->leave(scratch.before, scratch.before.count);
+    kernels_->shared->leave(scratch.before, scratch.before.count);
     scratch.before = {};
   }
   add_late_nodes(f);
@@ -428,7 +411,7 @@ double ElementEvaluation::energy(const ElementModels& models, const BodyFields& 
     Line sums{};
     const ChunkFields fields = load(c, at, scratch);
     for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) {
-      kernels_->energy(groups, count, model, kScalarPath, fields, sums.value, scratch.counts);
+      law_->energy(groups, count, model, scalar_, fields, sums.value, scratch.counts);
     });
     chunk_sums_[static_cast<std::size_t>(c)] = std::accumulate(sums.value, sums.value + 8, 0.0);
   });
@@ -444,7 +427,7 @@ double ElementEvaluation::dissipated_power(const ElementModels& models, const Bo
     Line sums{};
     const ChunkFields fields = load(c, at, scratch);
     for_each_run(chunk, models, [&](const ElementGroup* groups, int count, const ElementModel& model) {
-      kernels_->power(groups, count, model, fields, sums.value);
+      kernels_->shared->power(groups, count, model, fields, sums.value);
     });
     chunk_sums_[static_cast<std::size_t>(c)] = std::accumulate(sums.value, sums.value + 8, 0.0);
   });

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "element_chunks.h"
+#include "law.h"
 #include "palpate/dynamics/balanced_matrix.h"
 
 namespace palpate::fem {
@@ -23,14 +24,14 @@ using ElementModels = std::vector<ElementModel>;
 /// Memory is set aside when something is first asked for, and when workers or pattern change.
 class ElementEvaluation {
  public:
-  /// @param material_of_element  numbers in the ElementModels; empty: all 0  @param with_lower  room for
-  ///   unsymmetric tangents
+  /// @param material_of_element  numbers in the ElementModels; empty: all 0
+  /// @param law  place in law_registry()  @param with_lower  room for unsymmetric tangents
   ElementEvaluation(const TetMesh& rest, const RestElements& elements,
-                    const std::vector<int>& material_of_element, bool with_lower);
+                    const std::vector<int>& material_of_element, const LaneKernels& kernels, std::size_t law,
+                    bool with_lower);
 
   const ElementChunks& chunks() const { return chunks_; }
   const LaneKernels& kernels() const { return *kernels_; }
-  void use(const LaneKernels& kernels) { kernels_ = &kernels; }
 
   LaneCounts add_force(const ElementModels& models, const BodyFields& at, double* f);
   /// f += forces - stiffness times w.
@@ -93,7 +94,7 @@ class ElementEvaluation {
   void for_each_run(const ElementChunks::Chunk& chunk, const ElementModels& models, F&& f) const;
   template <class F>
   void for_each_run_with_edges(const ElementChunks::Chunk& chunk, const ElementModels& models, F&& f) const;
-  using NodalKernel = decltype(LaneKernels::force);
+  using NodalKernel = decltype(LawKernels::force);
 
   int turns() const;
   void fit_scratch();
@@ -116,6 +117,8 @@ class ElementEvaluation {
 
   ElementChunks chunks_;
   const LaneKernels* kernels_;
+  const LawKernels* law_;
+  ScalarPath scalar_;
   bool with_lower_;
   std::vector<Scratch> scratch_;                 ///< one a thread
   std::vector<Line> late_nodes_;                 ///< half a line a contribution

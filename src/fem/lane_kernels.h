@@ -2,9 +2,10 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The element kernels as plain functions on plain data.  One source (lane_kernels.inl) is compiled for
-/// several instruction sets, so this header may hold no inline function and no template: the linker would
-/// keep one copy of it, made for whichever set it met first.
+/// The element kernels as plain functions on plain data.  Their sources (lanes_*.cpp, one for each
+/// constitutive law and one for what does not depend on it) are compiled for several instruction sets, so
+/// this header may hold no inline function and no template: the linker would keep one copy of it, made for
+/// whichever set it met first.
 namespace palpate::fem {
 
 /// Eight tetrahedra side by side, one lane each.  Nodes and edges are numbered within a chunk of elements
@@ -83,7 +84,7 @@ struct LeavingBlocks {
 struct ElementModel {
   double mu = 0.0, lambda = 0.0;                  ///< elastic [Pa]
   double damping_mu = 0.0, damping_lambda = 0.0;  ///< [Pa s]; 0: none
-  bool warped = false, projected = false;         ///< neither: exact
+  bool warped = false, projected = false;         ///< the tangent; neither: exact
   /// the damping's derivative by position too, which is unsymmetric
   bool by_position = false;
   double k_scale = 0.0, d_scale = 0.0;  ///< of stiffness and damping in a tangent
@@ -92,15 +93,18 @@ struct ElementModel {
 /// Counts of lanes.
 struct LaneCounts {
   long inverted = 0;   ///< det F <= 0
-  long clamped = 0;    ///< coupling matrices that were bounded (corotated.h)
+  long clamped = 0;    ///< exact tangents that were bounded at a singularity of the law
   long by_scalar = 0;  ///< lanes finished one by one, by the functions below
 };
 
-/// For lanes near the singular set; matrices row by row.
+/// What a law leaves to scalar code, one element at a time: lanes near a singularity, and lanes that need
+/// eigenvalues.  Matrices row by row; the numbers that come back are those that the law's vector code asks
+/// for (law.h, lanes_*.cpp).  A law that needs no such function has a null pointer.
 struct ScalarPath {
-  void (*rotation)(const double* F, double* R);
-  /// C of the tangent, times one [Pa]; true where clamped.
-  bool (*coupling)(const ElementModel& model, const double* F, const double* R, double* C);
+  /// What of F itself the vector code could not find.
+  void (*state)(const double* F, double* state);
+  /// What of the tangent it could not find, per unit of k_scale and volume; an integer for the vector code.
+  int (*tangent)(const ElementModel& model, const double* F, const double* state, double* tangent);
 };
 
 /// Where the blocks of one chunk go in a matrix: row by row, one row a node, since the matrix is far larger
@@ -121,8 +125,8 @@ struct BlockTargets {
   bool stored = false;
 };
 
-struct LaneKernels {
-  const char* name;
+/// The kernels of one constitutive law.
+struct LawKernels {
   /// f += nodal forces of the groups, four doubles a node.
   void (*force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
                 const ChunkFields&, double* f, LaneCounts&);
@@ -133,11 +137,6 @@ struct LaneKernels {
   void (*tangent)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&,
                   const ScalarPath&, const ChunkFields&, const ChunkBlocks& upper, const ChunkBlocks& lower,
                   LaneCounts&);
-  /// Adds the chunk's own blocks to the matrix (nine doubles a slot), or stores them there, and leaves the
-  /// diagonal blocks of nodes that are not its own in `diagonal`; in order, adds what is not its own to the
-  /// matrix as well.
-  void (*flush)(const BlockTargets&, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric,
-                const ChunkBlocks& diagonal, double* values);
   /// f += nodal forces - stiffness times w.
   void (*step_force)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
                      const ChunkFields&, double* f, LaneCounts&);
@@ -147,13 +146,30 @@ struct LaneKernels {
   void (*step)(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel&,
                const ScalarPath&, const ChunkFields&, double* f, const ChunkBlocks& upper,
                LeavingBlocks& before, LaneCounts&);
-  /// Sends up to `count` more on their way.
-  void (*leave)(LeavingBlocks&, int count);
-  /// Elastic energies [J], and powers of the damping [W], summed by lane.
+  /// Elastic energies [J], summed by lane.
   void (*energy)(const ElementGroup* groups, int count, const ElementModel&, const ScalarPath&,
                  const ChunkFields&, double sums[8], LaneCounts&);
+};
+
+/// The kernels that every law shares.
+struct SharedKernels {
+  /// Adds the chunk's own blocks to the matrix (nine doubles a slot), or stores them there, and leaves the
+  /// diagonal blocks of nodes that are not its own in `diagonal`; in order, adds what is not its own to the
+  /// matrix as well.
+  void (*flush)(const BlockTargets&, const ChunkBlocks& upper, const ChunkBlocks& lower, bool symmetric,
+                const ChunkBlocks& diagonal, double* values);
+  /// Sends up to `count` more on their way.
+  void (*leave)(LeavingBlocks&, int count);
+  /// Powers of the damping [W], summed by lane.
   void (*power)(const ElementGroup* groups, int count, const ElementModel&, const ChunkFields&,
                 double sums[8]);
+};
+
+/// The kernels of one instruction set.
+struct LaneKernels {
+  const char* name;
+  const SharedKernels* shared;
+  const LawKernels* const* laws;  ///< in the order of law_registry()
 };
 
 /// @param name  "baseline", "avx2" or "avx512"; nullptr where the build or the processor lacks it

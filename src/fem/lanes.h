@@ -1,7 +1,8 @@
 #pragma once
-// Elements in the lanes of a vector, by the compiler's own vector types.  Included by lane_kernels.inl alone,
-// inside the namespace of one instruction set; everything here is static and inlined, so that no copy for one
-// set is linked into another.
+// Elements in the lanes of a vector, by the compiler's own vector types.  This header and the other lane_*.h
+// but lane_kernels.h are included by lanes_*.cpp alone, inside the namespace of one instruction set,
+// PALPATE_KERNELS, whose vectors have PALPATE_WIDTH doubles; everything in them is static and inlined, so
+// that no copy for one set is linked into another.
 
 #define PALPATE_INLINE [[gnu::always_inline]] static inline
 #define PALPATE_INLINE_MEMBER [[gnu::always_inline]]
@@ -73,6 +74,27 @@ PALPATE_INLINE Pack double_dot(const Matrix& A, const Matrix& B) {
   return dot(A.row[0], B.row[0]) + dot(A.row[1], B.row[1]) + dot(A.row[2], B.row[2]);
 }
 
+/// cof F = det(F) F^-T, for singular F as well.
+PALPATE_INLINE Matrix cofactors(const Matrix& F) {
+  return {{cross(F.row[1], F.row[2]), cross(F.row[2], F.row[0]), cross(F.row[0], F.row[1])}};
+}
+
+/// One lane of a matrix, row by row.
+PALPATE_INLINE void take_lane(const Matrix& A, int l, double* a) {
+  for (int r = 0; r < 3; ++r) {
+    a[3 * r] = A.row[r].x[l];
+    a[3 * r + 1] = A.row[r].y[l];
+    a[3 * r + 2] = A.row[r].z[l];
+  }
+}
+PALPATE_INLINE void put_lane(const double* a, int l, Matrix& A) {
+  for (int r = 0; r < 3; ++r) {
+    A.row[r].x[l] = a[3 * r];
+    A.row[r].y[l] = a[3 * r + 1];
+    A.row[r].z[l] = a[3 * r + 2];
+  }
+}
+
 /// A symmetric matrix: xx, yy, zz, yz, xz, xy.
 struct Symmetric {
   Pack xx, yy, zz, yz, xz, xy;
@@ -90,6 +112,18 @@ PALPATE_INLINE Symmetric gram_of_columns(const Matrix& A) {
 PALPATE_INLINE Symmetric gram_of_rows(const Matrix& A) {
   return {dot(A.row[0], A.row[0]), dot(A.row[1], A.row[1]), dot(A.row[2], A.row[2]),
           dot(A.row[1], A.row[2]), dot(A.row[0], A.row[2]), dot(A.row[0], A.row[1])};
+}
+
+/// block += a b^T
+PALPATE_INLINE void add_outer(Matrix& block, const Vector& a, const Vector& b) {
+  block.row[0] = block.row[0] + a.x * b;
+  block.row[1] = block.row[1] + a.y * b;
+  block.row[2] = block.row[2] + a.z * b;
+}
+PALPATE_INLINE void add_diagonal(Matrix& block, Pack s) {
+  block.row[0].x += s;
+  block.row[1].y += s;
+  block.row[2].z += s;
 }
 
 /// Unsigned, as wide as an address: what is multiplied needs no widening.

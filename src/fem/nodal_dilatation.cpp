@@ -6,22 +6,23 @@
 
 #include <Eigen/LU>
 
-#include "corotated.h"
+#include "corotational.h"
 #include "node_block.h"
 #include "node_rings.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/core/polar.h"
+#include "palpate/fem/laws.h"
 #include "stress.h"
 
 // A linear tetrahedron has one constraint of volume as lambda -> inf; a mesh has five to six times as many
 // tetrahedra as nodes, more constraints than the three directions a node has: it locks.  Averages at the
-// nodes are one constraint a node.  With theta_e = tr(R^T F) - 3 (corotated.h),
+// nodes are one constraint a node.  With theta_e = tr(R^T F) - 3 (corotational.h),
 //
 //   theta_n = (1/V_n) sum_{e at n} (V_e/4) theta_e,   V_n = sum_{e at n} V_e/4,      E = (kappa/2) sum_n V_n
 //   theta_n^2,
 //
-// kappa = (1 - share) lambda.  As d theta_e = R : dF (corotated.h: dR drops out),
+// kappa = (1 - share) lambda.  As d theta_e = R : dF (corotational.h: dR drops out),
 //
 //   dE = kappa sum_n theta_n sum_{e at n} (V_e/4) R : dF = sum_e V_e P_e : dF,   P_e = kappa theta*_e R,
 //   theta*_e = mean of theta_n over the four nodes:
@@ -40,13 +41,13 @@
 // that
 //
 //   K_ij = sum_n (kappa/V_n) b_ni b_nj^T + sum_{e at i and j} V_e [h_i]x C [h_j]x,   C = -kappa theta*_e G,
-//   h = R g, G = d axl / dR of corotated.h.
+//   h = R g, G = d axl / dR of corotational.h.
 //
 // The first sum is positive semi-definite, of rank one a node.  The second, kappa theta* dR, adds to
 // SoftBody's -c dR and is exact with it; its twists have the eigenvalues 2 kappa theta*/(s_i + s_j):
 // projected takes C only where theta* > 0; warped leaves it out, as there C = mu I is that of theta = 0.
 //
-// Damping (corotated.h) alike, with tau_e = tr E' = F : F' in place of theta_e:
+// Damping (corotational.h) alike, with tau_e = tr E' = F : F' in place of theta_e:
 //
 //   P_d = kappa_d tau*_e F,   D_ij = sum_n (kappa_d/V_n) d_ni d_nj^T,   d_nj = sum (V_e/4) F g_j,   power =
 //   kappa_d sum_n V_n tau_n^2 >= 0,
@@ -135,6 +136,7 @@ struct NodalDilatation::Impl {
         material_of_element(materials.of_element),
         sites(elements, materials),
         rings(elements, sites.of_corner(elements), sites.count(elements)) {
+    check_law(options.law, options.tangent, true, fmt::format("body \"{}\"", name));
     check(materials, elements.count(), fmt::format("body \"{}\"", name).c_str());
     PALPATE_CHECK(
         options.volumetric_shares.empty() || options.volumetric_shares.size() == materials.list.size(),
@@ -423,7 +425,9 @@ VecX NodalDilatation::nodal_stress(const StateView& state) {
   m.deform(m.place(state).x);
   m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
   m.to_sites([&](std::size_t e) {
-    return von_mises(m.F[e], m.of_element(e).kept, m.of_element(e).kappa * m.star(m.element, e));
+    const Mat3 P = elastic_stress(m.F[e], m.R[e], m.of_element(e).kept) +
+                   m.of_element(e).kappa * m.star(m.element, e) * m.R[e];
+    return von_mises(P, m.F[e]);
   });
   return m.at_nodes();
 }

@@ -16,10 +16,34 @@ namespace palpate::fem {
 using dynamics::BorderedMatrix;
 using dynamics::StateView;
 
+namespace {
+
+const LaneKernels& kernels_of(const SoftBodyOptions& options, const std::string& where) {
+  if (options.instructions.empty()) return best_kernels();
+  const LaneKernels* kernels = find_kernels(options.instructions.c_str());
+  if (kernels == nullptr)
+    fail("{}: this build or this processor has no instructions \"{}\"; baseline, avx2 and avx512 exist",
+         where, options.instructions);
+  return *kernels;
+}
+
+std::size_t law_of(const SoftBodyOptions& options, const std::string& where) {
+  const bool split = options.volumetric_share != 1.0 ||
+                     std::any_of(options.volumetric_shares.begin(), options.volumetric_shares.end(),
+                                 [](double share) { return share != 1.0; });
+  check_law(options.law, options.tangent, split, where);
+  return find_law(options.law, where);
+}
+
+std::string where(const std::string& name) { return fmt::format("body \"{}\"", name); }
+
+}  // namespace
+
 struct SoftBody::Impl {
   std::string name;
   SoftBodyOptions options;
   int block_id;
+  std::size_t law;  ///< place in law_registry()
   ElementEvaluation elements;
   std::vector<Material> materials;
   ElementModels models;  ///< of the materials, for the evaluation at hand
@@ -31,9 +55,10 @@ struct SoftBody::Impl {
       : name(std::move(body)),
         options(opts),
         block_id(block),
-        elements(rest, make_rest_elements(rest, fmt::format("body \"{}\"", name)), from.of_element,
-                 opts.full_damping_tangent) {
-    check(from, elements.chunks().element_count(), fmt::format("body \"{}\"", name).c_str());
+        law(law_of(opts, where(name))),
+        elements(rest, make_rest_elements(rest, where(name)), from.of_element, kernels_of(opts, where(name)),
+                 law, opts.full_damping_tangent) {
+    check(from, elements.chunks().element_count(), where(name).c_str());
     PALPATE_CHECK(options.volumetric_shares.empty() || options.volumetric_shares.size() == from.list.size(),
                   "{} shares of {} materials", options.volumetric_shares.size(), from.list.size());
     set(from.list);
@@ -115,15 +140,6 @@ SoftBody::SoftBody(std::string name, const TetMesh& rest, const Materials& mater
                    const SoftBodyOptions& options, int block_id)
     : impl_(std::make_unique<Impl>(std::move(name), rest, materials, options, block_id)) {
   counters::count("fem.soft_body");
-  if (!options.instructions.empty()) {
-    const LaneKernels* kernels = find_kernels(options.instructions.c_str());
-    if (kernels == nullptr)
-      fail(
-          "body \"{}\": this build or this processor has no instructions \"{}\"; baseline, avx2 and avx512 "
-          "exist",
-          impl_->name, options.instructions);
-    impl_->elements.use(*kernels);
-  }
 }
 SoftBody::~SoftBody() = default;
 
@@ -134,7 +150,7 @@ const std::vector<Material>& SoftBody::materials() const { return impl_->materia
 void SoftBody::set_materials(const std::vector<Material>& materials) {
   PALPATE_CHECK(materials.size() == impl_->materials.size(), "{} materials in the place of {}",
                 materials.size(), impl_->materials.size());
-  for (const Material& material : materials) check(material, fmt::format("body \"{}\"", impl_->name).c_str());
+  for (const Material& material : materials) check(material, where(impl_->name).c_str());
   impl_->set(materials);
 }
 int SoftBody::node_count() const { return impl_->node_count(); }
@@ -261,7 +277,8 @@ double SoftBody::dissipated_power(const StateView& state) {
 }
 
 VecX SoftBody::nodal_stress(const StateView& state) const {
-  return nodal_von_mises(impl_->elements.chunks(), impl_->place(state).x, impl_->models_of(0.0, 0.0));
+  return nodal_von_mises(impl_->elements.chunks(), impl_->place(state).x, *law_registry()[impl_->law].make,
+                         impl_->models_of(0.0, 0.0));
 }
 
 }  // namespace palpate::fem

@@ -124,11 +124,12 @@ struct SoftBodySpec {
   double youngs_modulus_pa = 1e4;
   double poissons_ratio = 0.3;
   double density_kg_m3 = 1000.0;
-  double mass_damping_per_s = 0.0;   ///< alpha
-  double stiffness_damping_s = 0.0;  ///< beta: (mu_d, lambda_d) = beta (mu, lambda)
-  std::string mass = "lumped";       ///< or "consistent"
-  std::string tangent = "exact";     ///< "exact", "projected", "warped"
-  /// resistance to change of volume: "element", or "nodal" averages (no locking for nu -> 0.5)
+  double mass_damping_per_s = 0.0;        ///< alpha
+  double stiffness_damping_s = 0.0;       ///< beta: (mu_d, lambda_d) = beta (mu, lambda)
+  std::string mass = "lumped";            ///< or "consistent"
+  std::string material = "corotational";  ///< constitutive law, a name of fem::law_registry()
+  std::string tangent = "exact";          ///< "exact", "projected", of some laws "warped"
+  /// resistance to change of volume: "element", or of some laws "nodal" averages (no locking for nu -> 0.5)
   std::string volumetric = "element";
   /// keep the unsymmetric part of the damping's derivative by position
   bool full_damping_tangent = false;
