@@ -99,7 +99,7 @@ PALPATE_INLINE void set_position(BlockParts<Law>& e, const ElementModel& model, 
 
 template <class Law, Blocks kBlocks, bool kDamped, bool kByPosition>
 PALPATE_INLINE void edge_blocks(const GroupEdges& edges, int first, const BlockParts<Law>& e,
-                                ComingRows* rows, const ChunkBlocks& upper, const ChunkBlocks& lower) {
+                                RowPrefetch* rows, const ChunkBlocks& upper, const ChunkBlocks& lower) {
   const auto at_edge = [&](int number, int a, int b) __attribute__((always_inline)) {
     edge_block<Law, kBlocks, kDamped, kByPosition>(edges.edge[number] + first, e, a, b, upper, lower);
     if (rows) fetch_rows(*rows);
@@ -127,7 +127,7 @@ PALPATE_INLINE void set_rates(BlockParts<Law>& e, const Lanes& at, const Element
 template <class Law, Blocks kBlocks, bool kDamped, bool kByPosition, bool kStep>
 static void blocks_of(const ElementGroup* groups, const GroupEdges* edges, int count,
                       const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields,
-                      double* f, const ChunkBlocks& upper, const ChunkBlocks& lower, LeavingBlocks* before,
+                      double* f, const ChunkBlocks& upper, const ChunkBlocks& lower, DeferredBlocks* before,
                       LaneCounts& counts) {
   for_each_element<Law>(
       groups, count, fields, scalar,
@@ -147,10 +147,10 @@ static void blocks_of(const ElementGroup* groups, const GroupEdges* edges, int c
         Law::template set_parts<kBlocks == Blocks::kWarped>(e.elastic, model, F, state, tangent, G, volume);
         set_rates<Law, kDamped, kByPosition>(e, at, model, F, G, volume, fields);
         edge_blocks<Law, kBlocks, kDamped, kByPosition>(edges[at.number], at.first, e,
-                                                        kStep ? nullptr : fields.rows, upper, lower);
+                                                        kStep ? nullptr : fields.next_rows, upper, lower);
         Law::add_modes(tangent, edges[at.number], at, model.k_scale, upper, kByPosition ? &lower : nullptr);
         if constexpr (kStep)
-          if (at.first == 0) leave(*before, before->at_a_time);
+          if (at.first == 0) scatter(*before, before->batch);
       });
 }
 
@@ -165,7 +165,7 @@ static void damping_blocks(const ElementGroup* groups, const GroupEdges* edges, 
       const Gradients G = gradients(at);
       BlockParts<Law> e;
       set_rates<Law, true, false>(e, at, model, gradient_of(at, G, fields.x), G, at.volume(), fields);
-      edge_blocks<Law, Blocks::kDampingOnly, true, false>(edges[g], part, e, fields.rows, upper, {});
+      edge_blocks<Law, Blocks::kDampingOnly, true, false>(edges[g], part, e, fields.next_rows, upper, {});
     }
   }
 }
@@ -198,7 +198,7 @@ static void tangent(const ElementGroup* groups, const GroupEdges* edges, int cou
 template <class Law>
 static void step(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model,
                  const ScalarPath& scalar, const ChunkFields& fields, double* f, const ChunkBlocks& upper,
-                 LeavingBlocks& before, LaneCounts& counts) {
+                 DeferredBlocks& before, LaneCounts& counts) {
   const bool damped = model.damping_mu > 0.0;
   const auto run = [&](auto* blocks) {
     blocks(groups, edges, count, model, scalar, fields, f, upper, {}, &before, counts);

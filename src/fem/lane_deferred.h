@@ -22,28 +22,28 @@ PALPATE_INLINE void add_single(const double* first, double last, float* to) {
   to[8] += static_cast<float>(last);
 }
 
-/// What leaves the time after next is asked for, a little each time: stores then find their lines near, and
-/// do not hold up those of the elements behind them.
-PALPATE_INLINE void fetch_places(const LeavingBlocks& blocks, int begin, int end) {
-  const int last = blocks.late ? blocks.own : blocks.count;
+/// What the batch after next writes is prefetched: stores then find their lines in the cache, and do not hold
+/// up those of the elements behind them.
+PALPATE_INLINE void fetch_slots(const DeferredBlocks& blocks, int begin, int end) {
+  const int last = blocks.shared ? blocks.owned : blocks.count;
   for (int k = begin; k < end && k < last; ++k)
-    fetch<2>(blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]) + 8, 64);
+    fetch<2>(blocks.values + 9 * static_cast<std::int64_t>(blocks.slots[k]) + 8, 64);
 }
 
-static void leave(LeavingBlocks& blocks, int count) {
-  const int end = blocks.count - blocks.gone < count ? blocks.count : blocks.gone + count;
-  for (int k = blocks.gone; k < end; ++k) {
+static void scatter(DeferredBlocks& blocks, int count) {
+  const int end = blocks.count - blocks.done < count ? blocks.count : blocks.done + count;
+  for (int k = blocks.done; k < end; ++k) {
     const std::uint16_t edge = blocks.edges[k];
     double *first = blocks.upper.first + 8 * edge, &last = blocks.upper.last[edge];
-    if (k < blocks.own)
-      store_single(first, last, blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]));
-    else if (blocks.late)
-      store_single(first, last, blocks.late + 9 * static_cast<std::int64_t>(k - blocks.own));
+    if (k < blocks.owned)
+      store_single(first, last, blocks.values + 9 * static_cast<std::int64_t>(blocks.slots[k]));
+    else if (blocks.shared)
+      store_single(first, last, blocks.shared + 9 * static_cast<std::int64_t>(k - blocks.owned));
     else
-      add_single(first, last, blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]));
+      add_single(first, last, blocks.values + 9 * static_cast<std::int64_t>(blocks.slots[k]));
     for (int part = 0; part < 8; part += kWidth) *reinterpret_cast<PackInMemory*>(first + part) = Pack{};
     last = 0.0;
   }
-  blocks.gone = end;
-  fetch_places(blocks, end + count, end + 2 * count);
+  blocks.done = end;
+  fetch_slots(blocks, end + count, end + 2 * count);
 }

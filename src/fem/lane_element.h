@@ -20,22 +20,21 @@ PALPATE_INLINE void fetch_ahead(const Record* records, int g, int share = 0, int
     __builtin_prefetch(first + 64 * line, 0, 2);
 }
 
-PALPATE_INLINE void fetch_nodes(ComingNodes& coming) {
-  const int end =
-      coming.count - coming.asked < coming.at_a_time ? coming.count : coming.asked + coming.at_a_time;
-  for (int k = coming.asked; k < end; ++k)
-    for (int f = 0; f < coming.field_count; ++f)
-      fetch<2>(coming.fields[f] + 3 * static_cast<std::int64_t>(coming.nodes[k]), 24);
-  coming.asked = end;
+PALPATE_INLINE void fetch_nodes(NodePrefetch& next) {
+  const int end = next.count - next.done < next.batch ? next.count : next.done + next.batch;
+  for (int k = next.done; k < end; ++k)
+    for (int f = 0; f < next.field_count; ++f)
+      fetch<2>(next.fields[f] + 3 * static_cast<std::int64_t>(next.nodes[k]), 24);
+  next.done = end;
 }
 
-/// A few lines of the rows to come, asked for with each edge of a group: all that a chunk writes, or most of
-/// it, is then on its way while there is arithmetic to do.
-PALPATE_INLINE void fetch_rows(ComingRows& rows) {
+/// A few lines of the rows that the chunk will write, prefetched with each edge of a group: all that a chunk
+/// writes, or most of it, is then on its way while there is arithmetic to do.
+PALPATE_INLINE void fetch_rows(RowPrefetch& rows) {
   constexpr int kLines = 5;
   if (rows.next >= rows.end) {
-    if (rows.asked == rows.count) return;
-    const int node = rows.nodes[rows.asked++];
+    if (rows.done == rows.count) return;
+    const int node = rows.nodes[rows.done++];
     rows.next =
         reinterpret_cast<const char*>(rows.values + 9 * static_cast<std::int64_t>(rows.row_start[node]));
     rows.end =

@@ -70,7 +70,7 @@ constexpr int kRowsAhead = 6;
 PALPATE_INLINE void fetch_row(const BlockTargets& targets, int n, const double* values) {
   if (n >= targets.nodes) return;
   const int begin = targets.row_start[n],
-            end = targets.in_order ? targets.row_start[n + 1] : begin + targets.row_own[n];
+            end = targets.in_order ? targets.row_start[n + 1] : begin + targets.row_owned[n];
   // mostly side by side
   if (begin < end) fetch<3>(values + 9 * static_cast<std::int64_t>(targets.slots[begin]), 72 * (end - begin));
 }
@@ -96,15 +96,16 @@ static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, co
       sum.subtract(block);
       return block;
     };
-    const int begin = targets.row_start[n], end = targets.row_start[n + 1], own = begin + targets.row_own[n];
-    for (int p = begin; p < own; ++p) put(take(p), at(targets.slots[p]));
-    for (int p = own; p < end; ++p) {
+    const int begin = targets.row_start[n], end = targets.row_start[n + 1],
+              owned = begin + targets.row_owned[n];
+    for (int p = begin; p < owned; ++p) put(take(p), at(targets.slots[p]));
+    for (int p = owned; p < end; ++p) {
       const BlockSum block = take(p);
       if (targets.in_order) block.add_to(at(targets.slots[p]));
     }
     // to the last bit: the two sides of an edge's block were summed in different orders
     if (kSymmetric) sum.symmetrise();
-    if (n < targets.own_nodes)
+    if (n < targets.owned_nodes)
       put(sum, at(targets.diagonal[n]));
     else if (targets.in_order)
       sum.add_to(at(targets.diagonal[n]));

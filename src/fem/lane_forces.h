@@ -38,7 +38,7 @@ PALPATE_INLINE void for_each_element(const ElementGroup* groups, int count, cons
       for (int n = 0; n < here; ++n) {
         if (part == 0) {
           fetch_ahead(groups, g + n, 1, 2);
-          if (fields.coming) fetch_nodes(*fields.coming);
+          if (fields.next_nodes) fetch_nodes(*fields.next_nodes);
         }
         work(Lanes{groups[g + n], part, g + n}, F[n], state[n]);
       }

@@ -29,6 +29,6 @@ static void power(const ElementGroup* groups, int count, const ElementModel& mod
 }  // namespace
 
 extern const SharedKernels shared;
-const SharedKernels shared{flush, leave, power};
+const SharedKernels shared{flush, scatter, power};
 
 }  // namespace palpate::fem::PALPATE_KERNELS

@@ -65,7 +65,7 @@ struct SoftBody::Impl {
   }
 
   int node_count() const { return elements.chunks().node_count(); }
-  NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, node_count()); }
+  NodeBlock block(const StateView& state) const { return NodeBlock(state, block_id, node_count()); }
   /// Whether any material has stiffness damping.
   bool damped() const {
     return std::any_of(materials.begin(), materials.end(),
@@ -99,7 +99,7 @@ struct SoftBody::Impl {
 
   /// The body's rows of A += or, `stored`, = k_scale K + d_scale D.
   void tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A, bool stored) {
-    const NodeBlock at = place(state);
+    const NodeBlock at = block(state);
     if (acts(k_scale, d_scale)) {
       const BodyFields fields{at.x, by_position() && k_scale != 0.0 ? at.v : nullptr};
       const ElementModels& scaled = models_of(k_scale, d_scale);
@@ -173,7 +173,7 @@ dynamics::TermTraits SoftBody::traits() const {
 void SoftBody::set_definite(bool definite) { impl_->definite = definite; }
 
 dynamics::Finding SoftBody::inspect(const StateView& state) const {
-  const NodeBlock at = impl_->place(state);
+  const NodeBlock at = impl_->block(state);
   dynamics::Finding worst;
   impl_->elements.chunks().for_each([&](const ElementChunks::Element& e) {
     const double volume_ratio = (e.edges(at.x) * e.gradients).determinant();
@@ -195,7 +195,7 @@ std::uint64_t SoftBody::pattern_version() const { return 1; }  // rest connectiv
 
 void SoftBody::add_force(const StateView& state, VecX& f) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   double* force = f.data() + at.u_offset;
   const LaneCounts met =
       m.elements.add_force(m.models_of(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr}, force);
@@ -215,7 +215,7 @@ void SoftBody::store_tangent(const StateView& state, double k_scale, double d_sc
 
 void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   const double* direction = x.data() + at.u_offset;
   double* out = y.data() + at.u_offset;
   if (m.acts(k_scale, d_scale)) {
@@ -232,7 +232,7 @@ void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_sc
 
 void SoftBody::add_step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   double* force = f.data() + at.u_offset;
   const double* more = change.data() + at.u_offset;
   const LaneCounts met = m.elements.add_step_force(
@@ -249,7 +249,7 @@ void SoftBody::add_step_force(const StateView& state, const VecX& shift, const V
 void SoftBody::add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
                         dynamics::BalancedMatrix& A) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   double* force = f.data() + at.u_offset;
   const LaneCounts met = m.elements.add_step(m.models_of(A.scale * k_scale, A.scale * d_scale),
                                              {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset},
@@ -264,12 +264,12 @@ void SoftBody::add_step(const StateView& state, const VecX& shift, double k_scal
 }
 
 double SoftBody::energy(const StateView& state) {
-  return impl_->elements.energy(impl_->models_of(0.0, 0.0), {impl_->place(state).x});
+  return impl_->elements.energy(impl_->models_of(0.0, 0.0), {impl_->block(state).x});
 }
 
 double SoftBody::dissipated_power(const StateView& state) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   double sum = m.damped() ? m.elements.dissipated_power(m.models_of(0.0, 0.0), {at.x, at.v}) : 0.0;
   for (int i = 0; m.dragged() && i < node_count(); ++i)
     sum += m.drag[i] * Eigen::Map<const Vec3>(at.v + 3 * i).squaredNorm();
@@ -277,7 +277,7 @@ double SoftBody::dissipated_power(const StateView& state) {
 }
 
 VecX SoftBody::nodal_stress(const StateView& state) const {
-  return nodal_von_mises(impl_->elements.chunks(), impl_->place(state).x, *law_registry()[impl_->law].make,
+  return nodal_von_mises(impl_->elements.chunks(), impl_->block(state).x, *law_registry()[impl_->law].make,
                          impl_->models_of(0.0, 0.0));
 }
 

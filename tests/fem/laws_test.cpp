@@ -295,6 +295,24 @@ TEST_P(Laws, FusedStepIsForceProductAndTangent) {
   workers::set_count(1);
 }
 
+TEST_P(Laws, ABodyAskedForADefiniteTangentGivesTheProjectedOne) {
+  const Shaken m(2, 0.2, 33);
+  SoftBody exact("b", m.rest, damped_material(), with(Tangent::kExact, true), 0),
+      projected("b", m.rest, damped_material(), with(Tangent::kProjected), 0);
+  const auto product = [&](SoftBody& body) {
+    OneBody at(m.x, m.v);
+    VecX y = VecX::Zero(m.x.size());
+    body.apply_tangent(at.state.view(), 1.0, 0.5, m.w, y);
+    return y;
+  };
+  const VecX before = product(exact);
+  exact.set_definite(true);
+  EXPECT_EQ(product(exact), product(projected));
+  EXPECT_GT(apart(product(exact), before), 1e-3);
+  exact.set_definite(false);
+  EXPECT_EQ(product(exact), before);
+}
+
 TEST_P(Laws, StressOfAPictureIsThatOfTheLaw) {
   const TetMesh rest = jittered_cube(2, 0.1, 34);
   const Material m = soft_material();

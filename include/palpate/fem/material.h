@@ -38,7 +38,7 @@ struct Materials {
 
 /// @throws Error naming the value out of range; `where` begins the message.
 void check(const Material& material, const char* where);
-/// The same for each of a list, and for numbers that fit it and a mesh of so many elements.
+/// Checks each material of a list, and that the numbers of the elements, one each, are in the list.
 void check(const Materials& materials, int elements, const char* where);
 
 }  // namespace palpate::fem

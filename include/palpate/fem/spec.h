@@ -46,7 +46,7 @@ struct BoneSpec {
   Vec3 angular_velocity_rad_s = Vec3::Zero();
   bool gravity = true;  ///< false: the bone itself has no weight
   bool fixed = false;   ///< stays where it is placed
-  /// moves from where it is placed: by these positions, and by these turns about its own origin
+  /// moves from where it is placed: by these positions, and by these rotations about its own origin
   std::vector<KeyframeSpec> keyframes;
 };
 
@@ -58,7 +58,7 @@ struct JointSpec {
   Vec3 axis = Vec3::Zero();         ///< of a hinge, in the body's own axes
   double stiffness_n_m_rad = -1.0;  ///< negative: the skeleton's
   double damping_n_m_s_rad = -1.0;  ///< negative: the skeleton's
-  /// turns about the joint, and shifts, against its parent, in the body's own axes; then it has no type
+  /// rotations about the joint, and shifts, against its parent, in the body's own axes; then it has no type
   std::vector<KeyframeSpec> keyframes;
 };
 
@@ -68,7 +68,7 @@ struct SkeletonSpec {
   /// how bones without a parent hang on the world: "weld", "ball" or "free"
   std::string root = "weld";
   std::string others = "weld";  ///< how the others hang on their parents: "weld" or "ball"
-  /// of bones that move freely, on top of the flesh that their nodes weigh
+  /// of bones that move freely, on top of the tissue that their nodes weigh
   double density_kg_m3 = 0.0;
   double stiffness_n_m_rad = 0.0;  ///< of hinges and balls, towards the start
   double damping_n_m_s_rad = 0.0;
