@@ -19,8 +19,10 @@ const Registry<const Law*>& law_registry() {
 }
 
 std::size_t find_law(const std::string& name, std::string_view where) {
-  const auto& entry = find(law_registry(), name, fmt::format("{}: material", where));
-  return static_cast<std::size_t>(&entry - law_registry().data());
+  const auto& registry = law_registry();
+  for (std::size_t i = 0; i < registry.size(); ++i)
+    if (registry[i].name == name) return i;
+  fail("{}: unknown material \"{}\"{}", where, name, suggestion(name, names(registry)));
 }
 
 void check_law(const std::string& name, Tangent tangent, bool nodal_dilatation, const std::string& where) {

@@ -373,7 +373,8 @@ TEST(LawRegistry, NamesTheLawsAndRefusesOthersByTheNearest) {
   const auto make = [&](const std::string& name) {
     return message_of([&] { SoftBody("liver", one_tet(), soft_material(), {.law = name}, 0); });
   };
-  expect_contains(make("stable-neo-hookean"),
-                  "body \"liver\": material \"stable-neo-hookean\" (did you mean \"stable_neo_hookean\"?)");
+  expect_contains(
+      make("stable-neo-hookean"),
+      "body \"liver\": unknown material \"stable-neo-hookean\" (did you mean \"stable_neo_hookean\"?)");
   expect_contains(make("ogden"), "(known: corotational, stable_neo_hookean)");
 }
