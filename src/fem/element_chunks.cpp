@@ -49,14 +49,14 @@ void bisect(const Points& centroids, std::vector<int>& order, int begin, int end
   bisect(centroids, order, middle, end, chunks - left, starts);
 }
 
-/// What is used in a chunk (nodes, or pairs of nodes), with own ones first, and the sums over chunks of what
-/// is late.
+/// What is used in a chunk (nodes, or pairs of nodes), with owned ones first, and the sums over chunks of
+/// what is shared.
 struct Uses {
-  /// ascending, then rearranged: own ascending, late ascending
+  /// ascending, then rearranged: owned ascending, shared ascending
   std::vector<std::vector<std::uint64_t>> by_chunk;
-  std::vector<int> own;
-  std::vector<int> first_late;
-  std::vector<std::uint64_t> late;  ///< ascending, each once
+  std::vector<int> owned;
+  std::vector<int> first_shared;
+  std::vector<std::uint64_t> shared;  ///< ascending, each once
   std::vector<int> start{0}, entries;
 
   explicit Uses(std::vector<std::vector<std::uint64_t>> used) : by_chunk(std::move(used)) {
@@ -68,21 +68,21 @@ struct Uses {
     }
     std::sort(all.begin(), all.end());
     for (std::size_t k = 0; k + 1 < all.size(); ++k)
-      if (all[k] == all[k + 1] && (late.empty() || late.back() != all[k])) late.push_back(all[k]);
-    std::vector<std::vector<int>> contributions(late.size());
-    std::vector<char> met(late.size(), 0);
+      if (all[k] == all[k + 1] && (shared.empty() || shared.back() != all[k])) shared.push_back(all[k]);
+    std::vector<std::vector<int>> contributions(shared.size());
+    std::vector<char> met(shared.size(), 0);
     int place = 0;
     for (auto& keys : by_chunk) {
       const auto middle = std::stable_partition(keys.begin(), keys.end(), [&](std::uint64_t key) {
-        const auto it = std::lower_bound(late.begin(), late.end(), key);
-        return it == late.end() || *it != key ||
-               !std::exchange(met[static_cast<std::size_t>(it - late.begin())], 1);
+        const auto it = std::lower_bound(shared.begin(), shared.end(), key);
+        return it == shared.end() || *it != key ||
+               !std::exchange(met[static_cast<std::size_t>(it - shared.begin())], 1);
       });
-      own.push_back(static_cast<int>(middle - keys.begin()));
-      first_late.push_back(place);
+      owned.push_back(static_cast<int>(middle - keys.begin()));
+      first_shared.push_back(place);
       for (auto it = middle; it != keys.end(); ++it)
-        contributions[static_cast<std::size_t>(std::lower_bound(late.begin(), late.end(), *it) -
-                                               late.begin())]
+        contributions[static_cast<std::size_t>(std::lower_bound(shared.begin(), shared.end(), *it) -
+                                               shared.begin())]
             .push_back(place++);
     }
     for (const auto& places : contributions) {
@@ -93,7 +93,7 @@ struct Uses {
   /// Number of a key within a chunk.
   int find(std::size_t chunk, std::uint64_t key) const {
     const auto& keys = by_chunk[chunk];
-    const auto middle = keys.begin() + own[chunk];
+    const auto middle = keys.begin() + owned[chunk];
     auto it = std::lower_bound(keys.begin(), middle, key);
     if (it == middle || *it != key) it = std::lower_bound(middle, keys.end(), key);
     PALPATE_CHECK(it != keys.end() && *it == key, "key {} is not in chunk {}", key, chunk);
@@ -178,12 +178,12 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements,
     chunk.first_run = static_cast<int>(runs.size());
     chunk.first_node = static_cast<int>(nodes.size());
     chunk.nodes = static_cast<int>(node_uses.by_chunk[c].size());
-    chunk.own_nodes = node_uses.own[c];
-    chunk.first_late_node = node_uses.first_late[c];
+    chunk.owned_nodes = node_uses.owned[c];
+    chunk.first_shared_node = node_uses.first_shared[c];
     chunk.first_edge = static_cast<int>(ends.size() / 2);
     chunk.edges = static_cast<int>(edge_uses.by_chunk[c].size());
-    chunk.own_edges = edge_uses.own[c];
-    chunk.first_late_edge = edge_uses.first_late[c];
+    chunk.owned_edges = edge_uses.owned[c];
+    chunk.first_shared_edge = edge_uses.first_shared[c];
     for (std::uint64_t key : node_uses.by_chunk[c]) nodes.push_back(static_cast<int>(key));
     for (std::uint64_t key : edge_uses.by_chunk[c])
       for (std::uint64_t end : {key >> 32, key & 0xffffffffu})
@@ -233,28 +233,28 @@ ElementChunks::ElementChunks(const TetMesh& rest, const RestElements& elements,
   }
   PALPATE_CHECK(most_nodes + 4 < 65536 && most_edges + 1 < 65536, "a chunk has {} nodes and {} edges",
                 most_nodes, most_edges);
-  for (std::uint64_t key : node_uses.late) late_nodes.first.push_back(static_cast<int>(key));
-  for (std::uint64_t key : edge_uses.late) {
-    late_edges.first.push_back(static_cast<int>(key >> 32));
-    late_edges.second.push_back(static_cast<int>(key & 0xffffffffu));
+  for (std::uint64_t key : node_uses.shared) shared_nodes.first.push_back(static_cast<int>(key));
+  for (std::uint64_t key : edge_uses.shared) {
+    shared_edges.first.push_back(static_cast<int>(key >> 32));
+    shared_edges.second.push_back(static_cast<int>(key & 0xffffffffu));
   }
-  late_nodes.start = node_uses.start;
-  late_nodes.entries = node_uses.entries;
-  late_edges.start = edge_uses.start;
-  late_edges.entries = edge_uses.entries;
+  shared_nodes.start = node_uses.start;
+  shared_nodes.entries = node_uses.entries;
+  shared_edges.start = edge_uses.start;
+  shared_edges.entries = edge_uses.entries;
   const auto fit = [](auto&... grown) { (grown.shrink_to_fit(), ...); };
-  fit(groups, edges, numbers_, runs, chunks, nodes, ends, row_start, row_own, row_edges, late_nodes.first,
-      late_edges.first, late_edges.second);
+  fit(groups, edges, numbers_, runs, chunks, nodes, ends, row_start, row_owned, row_edges, shared_nodes.first,
+      shared_edges.first, shared_edges.second);
   prefer_huge_pages(groups);
   prefer_huge_pages(edges);
   prefer_huge_pages(row_edges);
 }
 
-/// The edges at each node of a chunk: its own, by the node at the other end, that is in the order of the
-/// matrix's columns; then the late ones.
+/// The edges at each node of a chunk: the owned ones, by the node at the other end, that is in the order of
+/// the matrix's columns; then the shared ones.
 void ElementChunks::make_rows(const Chunk& chunk) {
   struct Entry {
-    bool late;
+    bool shared;
     int other;
     std::uint32_t edge;
   };
@@ -265,14 +265,15 @@ void ElementChunks::make_rows(const Chunk& chunk) {
       return nodes[static_cast<std::size_t>(chunk.first_node + end)];
     };
     const auto edge = 2 * static_cast<std::uint32_t>(k);
-    rows[ends[at]].push_back({k >= chunk.own_edges, global(ends[at + 1]), edge});
-    rows[ends[at + 1]].push_back({k >= chunk.own_edges, global(ends[at]), edge + 1});
+    rows[ends[at]].push_back({k >= chunk.owned_edges, global(ends[at + 1]), edge});
+    rows[ends[at + 1]].push_back({k >= chunk.owned_edges, global(ends[at]), edge + 1});
   }
   for (auto& row : rows) {
-    std::sort(row.begin(), row.end(),
-              [](const Entry& a, const Entry& b) { return a.late != b.late ? b.late : a.other < b.other; });
-    row_own.push_back(static_cast<std::int32_t>(
-        std::count_if(row.begin(), row.end(), [](const Entry& e) { return !e.late; })));
+    std::sort(row.begin(), row.end(), [](const Entry& a, const Entry& b) {
+      return a.shared != b.shared ? b.shared : a.other < b.other;
+    });
+    row_owned.push_back(static_cast<std::int32_t>(
+        std::count_if(row.begin(), row.end(), [](const Entry& e) { return !e.shared; })));
     for (const Entry& e : row) row_edges.push_back(e.edge);
     row_start.push_back(static_cast<std::int32_t>(row_edges.size()));
   }
@@ -303,11 +304,12 @@ ElementChunks::Element ElementChunks::element(const Chunk& chunk, const Run& run
 
 std::size_t ElementChunks::bytes() const {
   const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  const auto sums = [&](const LateSums& s) {
+  const auto sums = [&](const SharedSums& s) {
     return of(s.first) + of(s.second) + of(s.start) + of(s.entries);
   };
   return of(groups) + of(edges) + of(numbers_) + of(runs) + of(chunks) + of(nodes) + of(ends) +
-         of(row_start) + of(row_own) + of(row_edges) + of(nodal_volume) + sums(late_nodes) + sums(late_edges);
+         of(row_start) + of(row_owned) + of(row_edges) + of(nodal_volume) + sums(shared_nodes) +
+         sums(shared_edges);
 }
 
 }  // namespace palpate::fem

@@ -8,9 +8,9 @@
 
 namespace palpate::fem {
 
-/// What chunks add to nodes or edges that an earlier chunk has: entry k gathers the contributions
-/// entries[start[k]] to entries[start[k + 1]], places in a buffer, in the order of the chunks.
-struct LateSums {
+/// What chunks add to nodes or edges that an earlier chunk owns: entry k gathers the contributions
+/// entries[start[k]] to entries[start[k + 1]], indices in a buffer, in the order of the chunks.
+struct SharedSums {
   std::vector<int> first, second;  ///< the node of the body; for edges the two nodes, ascending
   std::vector<int> start{0}, entries;
   int count() const { return static_cast<int>(first.size()); }
@@ -20,10 +20,10 @@ struct LateSums {
 /// The tetrahedra of a body in compact chunks, eight side by side.
 ///
 /// A chunk sums forces and matrix blocks over its own elements in memory of its own, that fits the cache;
-/// nodes and edges that no earlier chunk has ("own") go from there straight into the result, the others
-/// ("late") are put aside and added afterwards, in the order of the chunks; or at once, where one thread does
-/// the chunks in their order.  Chunks depend on the mesh alone, so that the sums are the same to the last bit
-/// whoever computes which chunk.
+/// nodes and edges that no earlier chunk has are "owned" and go from there straight into the result, the
+/// others are "shared" with an earlier chunk: their contributions are put aside and added afterwards, in the
+/// order of the chunks; or at once, where one thread does the chunks in their order.  Chunks depend on the
+/// mesh alone, so that the sums are the same to the last bit whoever computes which chunk.
 ///
 /// A body of several materials has its elements ordered by material within each chunk, and each material
 /// begins a group of its own: the kernels run over the groups of one material at a time and read nothing more
@@ -32,11 +32,11 @@ struct LateSums {
 class ElementChunks {
  public:
   struct Chunk {
-    int first_run = 0, runs = 0;                   ///< in runs()
-    int first_node = 0, nodes = 0, own_nodes = 0;  ///< in node(); own ones first
-    int first_edge = 0, edges = 0, own_edges = 0;  ///< in ends(); own ones first
-    /// place of the others in the buffers of late contributions
-    int first_late_node = 0, first_late_edge = 0;
+    int first_run = 0, runs = 0;                     ///< in runs()
+    int first_node = 0, nodes = 0, owned_nodes = 0;  ///< in node(); owned ones first
+    int first_edge = 0, edges = 0, owned_edges = 0;  ///< in ends(); owned ones first
+    /// first of the shared ones in the buffers of contributions
+    int first_shared_node = 0, first_shared_edge = 0;
   };
 
   /// Groups of one material, within one chunk.
@@ -60,14 +60,14 @@ class ElementChunks {
   std::vector<std::uint16_t> ends;  ///< two nodes of the chunk for each edge of each chunk
   /// the edges at node n of nodes(): row_edges[row_start[n]] to [row_start[n + 1]]
   std::vector<std::int32_t> row_start;
-  std::vector<std::int32_t> row_own;     ///< how many of them are the chunk's own; these come first
+  std::vector<std::int32_t> row_owned;   ///< how many of them are owned edges; these come first
   std::vector<std::uint32_t> row_edges;  ///< 2 edge, plus one where the node is its second
-  LateSums late_nodes, late_edges;
+  SharedSums shared_nodes, shared_edges;
   std::vector<double> nodal_volume;    ///< a quarter of each adjacent tetrahedron [m^3]
   int most_nodes = 0, most_edges = 0;  ///< in a chunk
 
   /// One element: its number in the mesh, that of its material, its nodes in the body, ascending, the
-  /// gradients g_1 to g_3 as rows, turned as in ElementGroup, its volume.
+  /// gradients g_1 to g_3 as rows, in the rotated rest frame of ElementGroup, its volume.
   struct Element {
     int number;
     int material;

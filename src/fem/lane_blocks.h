@@ -3,58 +3,31 @@
 // the element changes nothing, so that the blocks of each row sum to zero and a diagonal block is minus the
 // sum of the others of its row, taken once for the whole chunk (lane_flush.h) or by who reads the matrix.
 
-/// What the blocks of an element are made of; h_0 = -(h_1 + h_2 + h_3), and k, l likewise.
+/// What the blocks of an element are made of beside the law's own: F g_a = k_a and F' g_a = l_a, whose sums
+/// over the four nodes are zero.
+template <class Law>
 struct BlockParts {
   Pack gg[4][4];  ///< g_a . g_b of a != b
-  Vector h[4], k[4], l[4];
-  Matrix hC[3];      ///< [h_a]x C, scaled
-  Pack mu2, lambda;  ///< 2 mu, lambda of stiffness, scaled
-  Symmetric B2;      ///< mu_d F F^T of the damping, scaled
+  typename Law::BlockParts elastic;
+  Vector k[4], l[4];
+  Symmetric B2;  ///< mu_d F F^T of the damping, scaled
   Pack damping_mu, damping_lambda;
   Matrix FFdot;  ///< of the damping's derivative by position
   Pack g_Sigma_g[4][4];
   Pack position_mu, position_lambda, position;
 };
 
-/// block += a b^T
-PALPATE_INLINE void add_outer(Matrix& block, const Vector& a, const Vector& b) {
-  block.row[0] = block.row[0] + a.x * b;
-  block.row[1] = block.row[1] + a.y * b;
-  block.row[2] = block.row[2] + a.z * b;
-}
-PALPATE_INLINE void add_diagonal(Matrix& block, Pack s) {
-  block.row[0].x += s;
-  block.row[1].y += s;
-  block.row[2].z += s;
-}
-
-/// lambda h_a h_b^T + [h_a]x C [h_b]x + 2 mu (g_a . g_b) I.  A row m^T of [h_a]x C gives (m x h_b)^T.
-PALPATE_INLINE Matrix coupled_block(const BlockParts& e, int a, int b) {
-  Matrix block;
-  for (int r = 0; r < 3; ++r) block.row[r] = cross(e.hC[a].row[r], e.h[b]);
-  add_outer(block, e.lambda * e.h[a], e.h[b]);
-  add_diagonal(block, e.mu2 * e.gg[a][b]);
-  return block;
-}
-
-/// The same with C = mu I: lambda h_a h_b^T + mu h_b h_a^T + mu (g_a . g_b) I.
-PALPATE_INLINE Matrix warped_block(const BlockParts& e, int a, int b) {
-  const Vector p = e.lambda * e.h[a], q = (0.5 * e.mu2) * e.h[a];
-  Matrix block{{p.x * e.h[b], p.y * e.h[b], p.z * e.h[b]}};
-  add_outer(block, e.h[b], q);
-  add_diagonal(block, (0.5 * e.mu2) * e.gg[a][b]);
-  return block;
-}
-
 /// mu_d ((g_a . g_b) B2 + k_b k_a^T) + lambda_d k_a k_b^T
-PALPATE_INLINE void add_damping_block(Matrix& block, const BlockParts& e, int a, int b) {
+template <class Law>
+PALPATE_INLINE void add_damping_block(Matrix& block, const BlockParts<Law>& e, int a, int b) {
   block = block + e.gg[a][b] * full(e.B2);
   add_outer(block, e.damping_mu * e.k[b], e.k[a]);
   add_outer(block, e.damping_lambda * e.k[a], e.k[b]);
 }
 
 /// (g_a . Sigma g_b) I + mu_d ((g_a . g_b) F F'^T + k_b l_a^T) + lambda_d k_a l_b^T
-PALPATE_INLINE void add_position_block(Matrix& block, const BlockParts& e, int a, int b) {
+template <class Law>
+PALPATE_INLINE void add_position_block(Matrix& block, const BlockParts<Law>& e, int a, int b) {
   block = block + (e.position_mu * e.gg[a][b]) * e.FFdot;
   add_outer(block, e.position_mu * e.k[b], e.l[a]);
   add_outer(block, e.position_lambda * e.k[a], e.l[b]);
@@ -68,14 +41,14 @@ PALPATE_INLINE void scatter_block(const ChunkBlocks& blocks, const std::uint16_t
   for (int l = 0; l < kWidth; ++l) blocks.last[edge[l]] += block.row[2].z[l];
 }
 
-enum class Blocks { kDampingOnly, kWarped, kCoupled };
+enum class Blocks { kDampingOnly, kWarped, kElastic };
 
-template <Blocks kBlocks, bool kDamped, bool kByPosition>
-PALPATE_INLINE void edge_block(const std::uint16_t* edge, const BlockParts& e, int a, int b,
+template <class Law, Blocks kBlocks, bool kDamped, bool kByPosition>
+PALPATE_INLINE void edge_block(const std::uint16_t* edge, const BlockParts<Law>& e, int a, int b,
                                const ChunkBlocks& upper, const ChunkBlocks& lower) {
   Matrix block{};
-  if constexpr (kBlocks == Blocks::kWarped) block = warped_block(e, a, b);
-  if constexpr (kBlocks == Blocks::kCoupled) block = coupled_block(e, a, b);
+  if constexpr (kBlocks != Blocks::kDampingOnly)
+    block = Law::template block<kBlocks == Blocks::kWarped>(e.elastic, e.gg[a][b], a, b);
   if constexpr (kDamped) add_damping_block(block, e, a, b);
   if constexpr (kByPosition) {
     Matrix below{{{block.row[0].x, block.row[1].x, block.row[2].x},
@@ -86,23 +59,6 @@ PALPATE_INLINE void edge_block(const std::uint16_t* edge, const BlockParts& e, i
     add_position_block(block, e, a, b);
   }
   scatter_block(upper, edge, block);
-}
-
-/// h, and [h_a]x C of a coupled block.
-template <Blocks kBlocks>
-PALPATE_INLINE void set_elastic(BlockParts& e, const ElementModel& model, const Matrix& R, const Symmetric& C,
-                                const Gradients& G, Pack volume) {
-  const Pack k = model.k_scale * volume;
-  e.mu2 = (2.0 * model.mu) * k;
-  e.lambda = model.lambda * k;
-  spread(R, G, e.h);
-  if constexpr (kBlocks != Blocks::kCoupled) return;
-  const Matrix kC = k * full(C);
-  for (int a = 0; a < 3; ++a) {
-    const Vector& h = e.h[a];
-    e.hC[a] = {{h.y * kC.row[2] - h.z * kC.row[1], h.z * kC.row[0] - h.x * kC.row[2],
-                h.x * kC.row[1] - h.y * kC.row[0]}};
-  }
 }
 
 /// g_a . v_b for a != b, of v_b = S g_b with a symmetric S: both ways round the same, and each row of the
@@ -118,7 +74,8 @@ PALPATE_INLINE void products_with_gradients(const Gradients& G, const Vector* v,
   p[0][3] = p[3][0] = -(p[1][3] + p[2][3] + p33);
 }
 
-PALPATE_INLINE void set_damping(BlockParts& e, const ElementModel& model, const Matrix& F, Pack volume) {
+template <class Law>
+PALPATE_INLINE void set_damping(BlockParts<Law>& e, const ElementModel& model, const Matrix& F, Pack volume) {
   const Pack d = model.d_scale * volume;
   e.damping_mu = model.damping_mu * d;
   e.damping_lambda = model.damping_lambda * d;
@@ -127,7 +84,8 @@ PALPATE_INLINE void set_damping(BlockParts& e, const ElementModel& model, const 
           e.damping_mu * FFt.yz, e.damping_mu * FFt.xz, e.damping_mu * FFt.xy};
 }
 
-PALPATE_INLINE void set_position(BlockParts& e, const ElementModel& model, const Matrix& F,
+template <class Law>
+PALPATE_INLINE void set_position(BlockParts<Law>& e, const ElementModel& model, const Matrix& F,
                                  const Matrix& F_dot, const Gradients& G, Pack volume) {
   spread(F_dot, G, e.l);
   Vector Sigma_g[4];
@@ -139,11 +97,11 @@ PALPATE_INLINE void set_position(BlockParts& e, const ElementModel& model, const
   e.position_lambda = model.damping_lambda * e.position;
 }
 
-template <Blocks kBlocks, bool kDamped, bool kByPosition>
-PALPATE_INLINE void edge_blocks(const GroupEdges& edges, int first, const BlockParts& e, ComingRows* rows,
-                                const ChunkBlocks& upper, const ChunkBlocks& lower) {
+template <class Law, Blocks kBlocks, bool kDamped, bool kByPosition>
+PALPATE_INLINE void edge_blocks(const GroupEdges& edges, int first, const BlockParts<Law>& e,
+                                RowPrefetch* rows, const ChunkBlocks& upper, const ChunkBlocks& lower) {
   const auto at_edge = [&](int number, int a, int b) __attribute__((always_inline)) {
-    edge_block<kBlocks, kDamped, kByPosition>(edges.edge[number] + first, e, a, b, upper, lower);
+    edge_block<Law, kBlocks, kDamped, kByPosition>(edges.edge[number] + first, e, a, b, upper, lower);
     if (rows) fetch_rows(*rows);
   };
   at_edge(0, 0, 1);
@@ -154,8 +112,8 @@ PALPATE_INLINE void edge_blocks(const GroupEdges& edges, int first, const BlockP
   at_edge(5, 2, 3);
 }
 
-template <bool kDamped, bool kByPosition>
-PALPATE_INLINE void set_rates(BlockParts& e, const Lanes& at, const ElementModel& model, const Matrix& F,
+template <class Law, bool kDamped, bool kByPosition>
+PALPATE_INLINE void set_rates(BlockParts<Law>& e, const Lanes& at, const ElementModel& model, const Matrix& F,
                               const Gradients& G, Pack volume, const ChunkFields& fields) {
   const Vector g[4] = {{}, {G.xx, G.xy, G.xz}, {Pack{}, G.yy, G.yz}, {Pack{}, Pack{}, G.zz}};
   products_with_gradients(G, g, e.gg);
@@ -164,35 +122,39 @@ PALPATE_INLINE void set_rates(BlockParts& e, const Lanes& at, const ElementModel
   if constexpr (kByPosition) set_position(e, model, F, gradient_of(at, G, fields.v), G, volume);
 }
 
-/// Deformation gradient and rotation of an element serve all that is asked for: the blocks, and in a linearly
+/// What the law finds of an element serves all that is asked for: the blocks, and in a linearly
 /// implicit step (kStep) the forces less the stiffness times w.
-template <Blocks kBlocks, bool kDamped, bool kByPosition, bool kStep>
+template <class Law, Blocks kBlocks, bool kDamped, bool kByPosition, bool kStep>
 static void blocks_of(const ElementGroup* groups, const GroupEdges* edges, int count,
                       const ElementModel& model, const ScalarPath& scalar, const ChunkFields& fields,
-                      double* f, const ChunkBlocks& upper, const ChunkBlocks& lower, LeavingBlocks* before,
+                      double* f, const ChunkBlocks& upper, const ChunkBlocks& lower, DeferredBlocks* before,
                       LaneCounts& counts) {
-  for_each_rotated(
-      groups, count, fields, scalar, counts,
-      [&](const Lanes& at, const Matrix& F, const Matrix& R, const Pack& det) __attribute__((always_inline)) {
+  for_each_element<Law>(
+      groups, count, fields, scalar,
+      counts, [&](const Lanes& at, const Matrix& F, const State<Law>& state) __attribute__((always_inline)) {
         const Gradients G = gradients(at);
         const Pack volume = at.volume();
         if (at.first == 0) fetch_ahead(edges, at.number);
-        Symmetric C{};
-        if constexpr (kBlocks == Blocks::kCoupled || kStep) C = coupling(model, F, R, scalar, counts);
+        typename Law::ScalarModes modes;
+        typename Law::Tangent tangent{};
+        if constexpr (kBlocks == Blocks::kElastic || kStep)
+          tangent = Law::tangent(model, F, state, scalar, modes, counts);
         if constexpr (kStep) {
-          count_inverted(det, counts);
-          add_forces(at, G, step_stress<kDamped>(at, G, F, R, C, model, fields), -volume, f);
+          count_inverted(state.det, counts);
+          add_forces(at, G, step_stress<Law, kDamped>(at, G, F, state, tangent, model, fields), -volume, f);
         }
-        BlockParts e;
-        set_elastic<kBlocks>(e, model, R, C, G, volume);
-        set_rates<kDamped, kByPosition>(e, at, model, F, G, volume, fields);
-        edge_blocks<kBlocks, kDamped, kByPosition>(edges[at.number], at.first, e,
-                                                   kStep ? nullptr : fields.rows, upper, lower);
+        BlockParts<Law> e;
+        Law::template set_parts<kBlocks == Blocks::kWarped>(e.elastic, model, F, state, tangent, G, volume);
+        set_rates<Law, kDamped, kByPosition>(e, at, model, F, G, volume, fields);
+        edge_blocks<Law, kBlocks, kDamped, kByPosition>(edges[at.number], at.first, e,
+                                                        kStep ? nullptr : fields.next_rows, upper, lower);
+        Law::add_modes(tangent, edges[at.number], at, model.k_scale, upper, kByPosition ? &lower : nullptr);
         if constexpr (kStep)
-          if (at.first == 0) leave(*before, before->at_a_time);
+          if (at.first == 0) scatter(*before, before->batch);
       });
 }
 
+template <class Law>
 static void damping_blocks(const ElementGroup* groups, const GroupEdges* edges, int count,
                            const ElementModel& model, const ChunkFields& fields, const ChunkBlocks& upper) {
   for (int g = 0; g < count; ++g) {
@@ -201,13 +163,14 @@ static void damping_blocks(const ElementGroup* groups, const GroupEdges* edges, 
     for (int part = 0; part < 8; part += kWidth) {
       const Lanes at{groups[g], part, g};
       const Gradients G = gradients(at);
-      BlockParts e;
-      set_rates<true, false>(e, at, model, gradient_of(at, G, fields.x), G, at.volume(), fields);
-      edge_blocks<Blocks::kDampingOnly, true, false>(edges[g], part, e, fields.rows, upper, {});
+      BlockParts<Law> e;
+      set_rates<Law, true, false>(e, at, model, gradient_of(at, G, fields.x), G, at.volume(), fields);
+      edge_blocks<Law, Blocks::kDampingOnly, true, false>(edges[g], part, e, fields.next_rows, upper, {});
     }
   }
 }
 
+template <class Law>
 static void tangent(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model,
                     const ScalarPath& scalar, const ChunkFields& fields, const ChunkBlocks& upper,
                     const ChunkBlocks& lower, LaneCounts& counts) {
@@ -216,31 +179,38 @@ static void tangent(const ElementGroup* groups, const GroupEdges* edges, int cou
   const auto run = [&](auto* blocks) {
     blocks(groups, edges, count, model, scalar, fields, nullptr, upper, lower, nullptr, counts);
   };
-  if (!elastic) return damping_blocks(groups, edges, count, model, fields, upper);
-  if (model.warped) {
-    if (by_position)
-      return run(damped ? blocks_of<Blocks::kWarped, true, true, false>
-                        : blocks_of<Blocks::kWarped, false, true, false>);
-    return run(damped ? blocks_of<Blocks::kWarped, true, false, false>
-                      : blocks_of<Blocks::kWarped, false, false, false>);
-  }
+  if (!elastic) return damping_blocks<Law>(groups, edges, count, model, fields, upper);
+  if constexpr (Law::kHasWarped)
+    if (model.warped) {
+      if (by_position)
+        return run(damped ? blocks_of<Law, Blocks::kWarped, true, true, false>
+                          : blocks_of<Law, Blocks::kWarped, false, true, false>);
+      return run(damped ? blocks_of<Law, Blocks::kWarped, true, false, false>
+                        : blocks_of<Law, Blocks::kWarped, false, false, false>);
+    }
   if (by_position)
-    return run(damped ? blocks_of<Blocks::kCoupled, true, true, false>
-                      : blocks_of<Blocks::kCoupled, false, true, false>);
-  return run(damped ? blocks_of<Blocks::kCoupled, true, false, false>
-                    : blocks_of<Blocks::kCoupled, false, false, false>);
+    return run(damped ? blocks_of<Law, Blocks::kElastic, true, true, false>
+                      : blocks_of<Law, Blocks::kElastic, false, true, false>);
+  return run(damped ? blocks_of<Law, Blocks::kElastic, true, false, false>
+                    : blocks_of<Law, Blocks::kElastic, false, false, false>);
 }
 
+template <class Law>
 static void step(const ElementGroup* groups, const GroupEdges* edges, int count, const ElementModel& model,
                  const ScalarPath& scalar, const ChunkFields& fields, double* f, const ChunkBlocks& upper,
-                 LeavingBlocks& before, LaneCounts& counts) {
+                 DeferredBlocks& before, LaneCounts& counts) {
   const bool damped = model.damping_mu > 0.0;
   const auto run = [&](auto* blocks) {
     blocks(groups, edges, count, model, scalar, fields, f, upper, {}, &before, counts);
   };
-  if (model.warped)
-    return run(damped ? blocks_of<Blocks::kWarped, true, false, true>
-                      : blocks_of<Blocks::kWarped, false, false, true>);
-  run(damped ? blocks_of<Blocks::kCoupled, true, false, true>
-             : blocks_of<Blocks::kCoupled, false, false, true>);
+  if constexpr (Law::kHasWarped)
+    if (model.warped)
+      return run(damped ? blocks_of<Law, Blocks::kWarped, true, false, true>
+                        : blocks_of<Law, Blocks::kWarped, false, false, true>);
+  run(damped ? blocks_of<Law, Blocks::kElastic, true, false, true>
+             : blocks_of<Law, Blocks::kElastic, false, false, true>);
 }
+
+template <class Law>
+constexpr LawKernels kernels_of{force<Law>,      apply_tangent<Law>, tangent<Law>,
+                                step_force<Law>, step<Law>,          energy<Law>};

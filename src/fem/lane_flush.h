@@ -70,7 +70,7 @@ constexpr int kRowsAhead = 6;
 PALPATE_INLINE void fetch_row(const BlockTargets& targets, int n, const double* values) {
   if (n >= targets.nodes) return;
   const int begin = targets.row_start[n],
-            end = targets.in_order ? targets.row_start[n + 1] : begin + targets.row_own[n];
+            end = targets.in_order ? targets.row_start[n + 1] : begin + targets.row_owned[n];
   // mostly side by side
   if (begin < end) fetch<3>(values + 9 * static_cast<std::int64_t>(targets.slots[begin]), 72 * (end - begin));
 }
@@ -96,15 +96,16 @@ static void flush_rows(const BlockTargets& targets, const ChunkBlocks& upper, co
       sum.subtract(block);
       return block;
     };
-    const int begin = targets.row_start[n], end = targets.row_start[n + 1], own = begin + targets.row_own[n];
-    for (int p = begin; p < own; ++p) put(take(p), at(targets.slots[p]));
-    for (int p = own; p < end; ++p) {
+    const int begin = targets.row_start[n], end = targets.row_start[n + 1],
+              owned = begin + targets.row_owned[n];
+    for (int p = begin; p < owned; ++p) put(take(p), at(targets.slots[p]));
+    for (int p = owned; p < end; ++p) {
       const BlockSum block = take(p);
       if (targets.in_order) block.add_to(at(targets.slots[p]));
     }
     // to the last bit: the two sides of an edge's block were summed in different orders
     if (kSymmetric) sum.symmetrise();
-    if (n < targets.own_nodes)
+    if (n < targets.owned_nodes)
       put(sum, at(targets.diagonal[n]));
     else if (targets.in_order)
       sum.add_to(at(targets.diagonal[n]));
@@ -120,53 +121,4 @@ static void flush(const BlockTargets& targets, const ChunkBlocks& upper, const C
     run(targets.stored ? flush_rows<true, true> : flush_rows<true, false>);
   else
     run(targets.stored ? flush_rows<false, true> : flush_rows<false, false>);
-}
-
-// A matrix in single precision takes each block as it is.
-
-#if PALPATE_WIDTH == 8
-PALPATE_INLINE void store_single(const double* first, double last, float* to) {
-  typedef double Row __attribute__((vector_size(64), may_alias));
-  typedef float Singles __attribute__((vector_size(32)));
-  typedef float SinglesInMemory __attribute__((vector_size(32), may_alias, aligned(4)));
-  *reinterpret_cast<SinglesInMemory*>(to) =
-      __builtin_convertvector(*reinterpret_cast<const Row*>(first), Singles);
-  to[8] = static_cast<float>(last);
-}
-#else
-PALPATE_INLINE void store_single(const double* first, double last, float* to) {
-  for (int c = 0; c < 8; ++c) to[c] = static_cast<float>(first[c]);
-  to[8] = static_cast<float>(last);
-}
-#endif
-
-PALPATE_INLINE void add_single(const double* first, double last, float* to) {
-  for (int c = 0; c < 8; ++c) to[c] += static_cast<float>(first[c]);
-  to[8] += static_cast<float>(last);
-}
-
-/// What leaves the time after next is asked for, a little each time: stores then find their lines near, and
-/// do not hold up those of the elements behind them.
-PALPATE_INLINE void fetch_places(const LeavingBlocks& blocks, int begin, int end) {
-  const int last = blocks.late ? blocks.own : blocks.count;
-  for (int k = begin; k < end && k < last; ++k)
-    fetch<2>(blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]) + 8, 64);
-}
-
-static void leave(LeavingBlocks& blocks, int count) {
-  const int end = blocks.count - blocks.gone < count ? blocks.count : blocks.gone + count;
-  for (int k = blocks.gone; k < end; ++k) {
-    const std::uint16_t edge = blocks.edges[k];
-    double *first = blocks.upper.first + 8 * edge, &last = blocks.upper.last[edge];
-    if (k < blocks.own)
-      store_single(first, last, blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]));
-    else if (blocks.late)
-      store_single(first, last, blocks.late + 9 * static_cast<std::int64_t>(k - blocks.own));
-    else
-      add_single(first, last, blocks.values + 9 * static_cast<std::int64_t>(blocks.places[k]));
-    for (int part = 0; part < 8; part += kWidth) *reinterpret_cast<PackInMemory*>(first + part) = Pack{};
-    last = 0.0;
-  }
-  blocks.gone = end;
-  fetch_places(blocks, end + count, end + 2 * count);
 }

@@ -26,26 +26,21 @@
 // lanes where z < |F|^3 / 100 (flat to a line, or s1 + s2 near 0 where R jumps) and lanes that are not finite
 // are left to the scalar path.
 
-PALPATE_INLINE Matrix cofactors(const Matrix& F) {
-  return {{cross(F.row[1], F.row[2]), cross(F.row[2], F.row[0]), cross(F.row[0], F.row[1])}};
-}
-
 /// Half of the relative error that Newton may leave in l; in the stretches it is up to |F|^3 / z, a hundred,
 /// times as large.
 constexpr double kLeft = 2e-10;
 
-/// Elements go together, kTogether in each lane: while one waits for its divisions, the other goes on.
-constexpr int kTogether = 2;
-
+/// Rotations R and det F of kTogether deformation gradients.
 /// @param right  lanes where R is right
-PALPATE_INLINE void find_rotations(const Matrix* F, Matrix* R, Pack* det, Mask* right) {
+template <class State>
+PALPATE_INLINE void find_rotations(const Matrix* F, State* states, Mask* right) {
   Pack f[kTogether], q[kTogether], d[kTogether], l[kTogether];
   for (int n = 0; n < kTogether; ++n) {
     const Matrix cof = cofactors(F[n]);
-    det[n] = dot(F[n].row[0], cof.row[0]);
+    states[n].det = dot(F[n].row[0], cof.row[0]);
     f[n] = double_dot(F[n], F[n]);
     q[n] = 4.0 * double_dot(cof, cof);
-    d[n] = 8.0 * det[n];
+    d[n] = 8.0 * states[n].det;
     l[n] = 1.5 + 0.5 * f[n];
   }
   Mask open[kTogether];
@@ -62,7 +57,7 @@ PALPATE_INLINE void find_rotations(const Matrix* F, Matrix* R, Pack* det, Mask* 
     if (!any(in_any)) break;
   }
   for (int n = 0; n < kTogether; ++n) {
-    const Pack k = 0.5 * (l[n] * l[n] - f[n]), z = k * l[n] - det[n];
+    const Pack k = 0.5 * (l[n] * l[n] - f[n]), z = k * l[n] - states[n].det;
     right[n] = (z > 0.0) & (z * z > 1e-4 * (f[n] * f[n] * f[n])) & ~open[n];
     const Pack inverse = 1.0 / z;
     const Matrix FFtF = F[n] * full(gram_of_columns(F[n]));
@@ -70,22 +65,7 @@ PALPATE_INLINE void find_rotations(const Matrix* F, Matrix* R, Pack* det, Mask* 
     const Symmetric Q = gram_of_columns(X);
     const Symmetric correction{1.5 - 0.5 * Q.xx, 1.5 - 0.5 * Q.yy, 1.5 - 0.5 * Q.zz,
                                -0.5 * Q.yz,      -0.5 * Q.xz,      -0.5 * Q.xy};
-    R[n] = X * full(correction);
-  }
-}
-
-PALPATE_INLINE void take_lane(const Matrix& A, int l, double* a) {
-  for (int r = 0; r < 3; ++r) {
-    a[3 * r] = A.row[r].x[l];
-    a[3 * r + 1] = A.row[r].y[l];
-    a[3 * r + 2] = A.row[r].z[l];
-  }
-}
-PALPATE_INLINE void put_lane(const double* a, int l, Matrix& A) {
-  for (int r = 0; r < 3; ++r) {
-    A.row[r].x[l] = a[3 * r];
-    A.row[r].y[l] = a[3 * r + 1];
-    A.row[r].z[l] = a[3 * r + 2];
+    states[n].R = X * full(correction);
   }
 }
 
@@ -97,23 +77,24 @@ PALPATE_INLINE void put_lane(const double* a, int l, Matrix& A) {
     if ((*right)[l] != 0) continue;
     double one_F[9], one_R[9];
     take_lane(*F, l, one_F);
-    scalar.rotation(one_F, one_R);
+    scalar.state(one_F, one_R);
     put_lane(one_R, l, *R);
     ++counts.by_scalar;
   }
 }
 
 /// The rotations of the first `count` of kTogether deformation gradients.
-PALPATE_INLINE void rotations(const Matrix* F, int count, const ScalarPath& scalar, Matrix* R, Pack* det,
+template <class State>
+PALPATE_INLINE void rotations(const Matrix* F, int count, const ScalarPath& scalar, State* states,
                               LaneCounts& counts) {
   Mask right[kTogether];
-  find_rotations(F, R, det, right);
+  find_rotations(F, states, right);
   for (int n = 0; n < kTogether; ++n) {
     if (n >= count || !any(~right[n])) [[likely]]
       continue;
-    Matrix copy_F = F[n], copy_R = R[n];
+    Matrix copy_F = F[n], copy_R = states[n].R;
     Mask copy_right = right[n];
     rotate_by_scalar(&copy_F, &copy_R, &copy_right, scalar, counts);
-    R[n] = copy_R;
+    states[n].R = copy_R;
   }
 }

@@ -1,7 +1,8 @@
 #pragma once
-// Elements in the lanes of a vector, by the compiler's own vector types.  Included by lane_kernels.inl alone,
-// inside the namespace of one instruction set; everything here is static and inlined, so that no copy for one
-// set is linked into another.
+// Elements in the lanes of a vector, by the compiler's own vector types.  This header and the other lane_*.h
+// but lane_kernels.h are included by lanes_*.cpp alone, inside the namespace of one instruction set,
+// PALPATE_KERNELS, whose vectors have PALPATE_WIDTH doubles; everything in them is static and inlined, so
+// that no copy for one set is linked into another.
 
 #define PALPATE_INLINE [[gnu::always_inline]] static inline
 #define PALPATE_INLINE_MEMBER [[gnu::always_inline]]
@@ -73,6 +74,27 @@ PALPATE_INLINE Pack double_dot(const Matrix& A, const Matrix& B) {
   return dot(A.row[0], B.row[0]) + dot(A.row[1], B.row[1]) + dot(A.row[2], B.row[2]);
 }
 
+/// cof F = det(F) F^-T, for singular F as well.
+PALPATE_INLINE Matrix cofactors(const Matrix& F) {
+  return {{cross(F.row[1], F.row[2]), cross(F.row[2], F.row[0]), cross(F.row[0], F.row[1])}};
+}
+
+/// One lane of a matrix, row by row.
+PALPATE_INLINE void take_lane(const Matrix& A, int l, double* a) {
+  for (int r = 0; r < 3; ++r) {
+    a[3 * r] = A.row[r].x[l];
+    a[3 * r + 1] = A.row[r].y[l];
+    a[3 * r + 2] = A.row[r].z[l];
+  }
+}
+PALPATE_INLINE void put_lane(const double* a, int l, Matrix& A) {
+  for (int r = 0; r < 3; ++r) {
+    A.row[r].x[l] = a[3 * r];
+    A.row[r].y[l] = a[3 * r + 1];
+    A.row[r].z[l] = a[3 * r + 2];
+  }
+}
+
 /// A symmetric matrix: xx, yy, zz, yz, xz, xy.
 struct Symmetric {
   Pack xx, yy, zz, yz, xz, xy;
@@ -92,8 +114,20 @@ PALPATE_INLINE Symmetric gram_of_rows(const Matrix& A) {
           dot(A.row[1], A.row[2]), dot(A.row[0], A.row[2]), dot(A.row[0], A.row[1])};
 }
 
+/// block += a b^T
+PALPATE_INLINE void add_outer(Matrix& block, const Vector& a, const Vector& b) {
+  block.row[0] = block.row[0] + a.x * b;
+  block.row[1] = block.row[1] + a.y * b;
+  block.row[2] = block.row[2] + a.z * b;
+}
+PALPATE_INLINE void add_diagonal(Matrix& block, Pack s) {
+  block.row[0].x += s;
+  block.row[1].y += s;
+  block.row[2].z += s;
+}
+
 /// Unsigned, as wide as an address: what is multiplied needs no widening.
-PALPATE_INLINE std::size_t place(std::uint16_t number) { return number; }
+PALPATE_INLINE std::size_t index_of(std::uint16_t number) { return number; }
 
 // Transposes between lanes (one number of several elements) and rows (several numbers of one element).
 
@@ -101,12 +135,12 @@ PALPATE_INLINE std::size_t place(std::uint16_t number) { return number; }
 
 /// Loads of a nodal field with four doubles a node.
 PALPATE_INLINE Vector gather(const double* field, const std::uint16_t* node) {
-  const double *p = field + 4 * place(node[0]), *q = field + 4 * place(node[1]);
+  const double *p = field + 4 * index_of(node[0]), *q = field + 4 * index_of(node[1]);
   return {Pack{p[0], q[0]}, Pack{p[1], q[1]}, Pack{p[2], q[2]}};
 }
 PALPATE_INLINE void scatter_add(double* field, const std::uint16_t* node, const Vector& f) {
   for (int l = 0; l < 2; ++l) {
-    double* p = field + 4 * place(node[l]);
+    double* p = field + 4 * index_of(node[l]);
     p[0] += f.x[l];
     p[1] += f.y[l];
     p[2] += f.z[l];
@@ -114,8 +148,8 @@ PALPATE_INLINE void scatter_add(double* field, const std::uint16_t* node, const 
 }
 /// Adds entries 0 to 7 of a block to the row of eight of its edge.
 PALPATE_INLINE void scatter_rows(double* rows, const std::uint16_t* edge, const Pack* k) {
-  PackInMemory *first = reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[0])),
-               *second = reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[1]));
+  PackInMemory *first = reinterpret_cast<PackInMemory*>(rows + 8 * index_of(edge[0])),
+               *second = reinterpret_cast<PackInMemory*>(rows + 8 * index_of(edge[1]));
   for (int c = 0; c < 4; ++c) first[c] += __builtin_shufflevector(k[2 * c], k[2 * c + 1], 0, 2);
   for (int c = 0; c < 4; ++c) second[c] += __builtin_shufflevector(k[2 * c], k[2 * c + 1], 1, 3);
 }
@@ -123,8 +157,8 @@ PALPATE_INLINE void scatter_rows(double* rows, const std::uint16_t* edge, const 
 #elif PALPATE_WIDTH == 4
 
 PALPATE_INLINE Vector gather(const double* field, const std::uint16_t* node) {
-  const Pack a = load(field + 4 * place(node[0])), b = load(field + 4 * place(node[1])),
-             c = load(field + 4 * place(node[2])), d = load(field + 4 * place(node[3]));
+  const Pack a = load(field + 4 * index_of(node[0])), b = load(field + 4 * index_of(node[1])),
+             c = load(field + 4 * index_of(node[2])), d = load(field + 4 * index_of(node[3]));
   const Pack ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
   const Pack ab_y = __builtin_shufflevector(a, b, 1, 5, 3, 7),
              cd_y = __builtin_shufflevector(c, d, 1, 5, 3, 7);
@@ -146,14 +180,14 @@ PALPATE_INLINE void scatter_add(double* field, const std::uint16_t* node, const 
   const Pack k[4] = {f.x, f.y, f.z, Pack{}};
   Pack row[4];
   transpose(k, row);
-  for (int l = 0; l < 4; ++l) *reinterpret_cast<PackInMemory*>(field + 4 * place(node[l])) += row[l];
+  for (int l = 0; l < 4; ++l) *reinterpret_cast<PackInMemory*>(field + 4 * index_of(node[l])) += row[l];
 }
 PALPATE_INLINE void scatter_rows(double* rows, const std::uint16_t* edge, const Pack* k) {
   Pack low[4], high[4];
   transpose(k, low);
   transpose(k + 4, high);
   for (int l = 0; l < 4; ++l) {
-    PackInMemory* row = reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[l]));
+    PackInMemory* row = reinterpret_cast<PackInMemory*>(rows + 8 * index_of(edge[l]));
     row[0] += low[l];
     row[1] += high[l];
   }
@@ -177,10 +211,10 @@ PALPATE_INLINE Pack high_pairs(Pack a, Pack b) {
 }
 
 PALPATE_INLINE Vector gather(const double* field, const std::uint16_t* node) {
-  const Pack a = pair(field + 4 * place(node[0]), field + 4 * place(node[4])),
-             b = pair(field + 4 * place(node[1]), field + 4 * place(node[5]));
-  const Pack c = pair(field + 4 * place(node[2]), field + 4 * place(node[6])),
-             d = pair(field + 4 * place(node[3]), field + 4 * place(node[7]));
+  const Pack a = pair(field + 4 * index_of(node[0]), field + 4 * index_of(node[4])),
+             b = pair(field + 4 * index_of(node[1]), field + 4 * index_of(node[5]));
+  const Pack c = pair(field + 4 * index_of(node[2]), field + 4 * index_of(node[6])),
+             d = pair(field + 4 * index_of(node[3]), field + 4 * index_of(node[7]));
   const Pack ab = even(a, b), cd = even(c, d);
   return {low_pairs(ab, cd), low_pairs(odd(a, b), odd(c, d)), high_pairs(ab, cd)};
 }
@@ -190,8 +224,8 @@ PALPATE_INLINE void scatter_add(double* field, const std::uint16_t* node, const 
   const Pack rows[4] = {low_pairs(xy, z), low_pairs(xy_odd, z_odd), high_pairs(xy, z),
                         high_pairs(xy_odd, z_odd)};
   for (int l = 0; l < 4; ++l) {
-    add_quad(field + 4 * place(node[l]), __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3));
-    add_quad(field + 4 * place(node[l + 4]), __builtin_shufflevector(rows[l], rows[l], 4, 5, 6, 7));
+    add_quad(field + 4 * index_of(node[l]), __builtin_shufflevector(rows[l], rows[l], 0, 1, 2, 3));
+    add_quad(field + 4 * index_of(node[l + 4]), __builtin_shufflevector(rows[l], rows[l], 4, 5, 6, 7));
   }
 }
 PALPATE_INLINE void scatter_rows(double* rows, const std::uint16_t* edge, const Pack* k) {
@@ -201,9 +235,9 @@ PALPATE_INLINE void scatter_rows(double* rows, const std::uint16_t* edge, const 
   const Pack low[4] = {low_pairs(a0, b0), low_pairs(a1, b1), high_pairs(a0, b0), high_pairs(a1, b1)};
   const Pack high[4] = {low_pairs(c0, d0), low_pairs(c1, d1), high_pairs(c0, d0), high_pairs(c1, d1)};
   for (int l = 0; l < 4; ++l) {
-    *reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[l])) +=
+    *reinterpret_cast<PackInMemory*>(rows + 8 * index_of(edge[l])) +=
         __builtin_shufflevector(low[l], high[l], 0, 1, 2, 3, 8, 9, 10, 11);
-    *reinterpret_cast<PackInMemory*>(rows + 8 * place(edge[l + 4])) +=
+    *reinterpret_cast<PackInMemory*>(rows + 8 * index_of(edge[l + 4])) +=
         __builtin_shufflevector(low[l], high[l], 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }

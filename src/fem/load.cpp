@@ -26,16 +26,16 @@ class DeadLoad final : public dynamics::ForceTerm {
             .balanced = true};
   }
   void add_force(const StateView& state, VecX& f) override {
-    f.segment(place(state).u_offset, forces_.size()) += forces_;
+    f.segment(block(state).u_offset, forces_.size()) += forces_;
   }
   void add_tangent(const StateView&, double, double, dynamics::BorderedMatrix&) override {}
   void apply_tangent(const StateView&, double, double, const VecX&, VecX&) override {}
   double energy(const StateView& state) override {
-    return -forces_.dot(Eigen::Map<const VecX>(place(state).x, forces_.size()));
+    return -forces_.dot(Eigen::Map<const VecX>(block(state).x, forces_.size()));
   }
 
  private:
-  NodeBlock place(const StateView& state) const {
+  NodeBlock block(const StateView& state) const {
     return NodeBlock(state, block_id_, static_cast<int>(forces_.size() / 3));
   }
   std::string name_;

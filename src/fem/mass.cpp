@@ -29,20 +29,20 @@ class LumpedMass final : public dynamics::InertiaTerm {
   bool diagonal() const override { return true; }
 
   void add_mass(const StateView& state, double scale, BorderedMatrix& A) const override {
-    const int first = place(state).first_node;
+    const int first = block(state).first_node;
     for (int i = 0; i < masses_.size(); ++i) {
       double* block = A.body.block(A.body.diagonal(first + i));
       for (int axis = 0; axis < 3; ++axis) block[4 * axis] += scale * masses_[i];
     }
   }
   void apply(const StateView& state, const VecX& x, VecX& y) const override {
-    const int offset = place(state).u_offset;
+    const int offset = block(state).u_offset;
     for (int i = 0; i < masses_.size(); ++i)
       y.segment<3>(offset + 3 * i) += masses_[i] * x.segment<3>(offset + 3 * i);
   }
 
  private:
-  NodeBlock place(const StateView& state) const {
+  NodeBlock block(const StateView& state) const {
     return NodeBlock(state, block_id_, static_cast<int>(masses_.size()));
   }
   VecX masses_;
@@ -63,14 +63,14 @@ class ConsistentMass final : public dynamics::InertiaTerm {
   }
 
   void add_mass(const StateView& state, double scale, BorderedMatrix& A) const override {
-    scatter_.prepare(elements_, place(state).first_node, A.body);
+    scatter_.prepare(elements_, block(state).first_node, A.body);
     for (std::size_t e = 0; e < masses_.size(); ++e)
       for (int a = 0; a < 4; ++a)
         for (int b = 0; b < 4; ++b)
           A.body.add(scatter_.slot(e, a, b), scale * entry(e, a == b) * Mat3::Identity());
   }
   void apply(const StateView& state, const VecX& x, VecX& y) const override {
-    const int offset = place(state).u_offset;
+    const int offset = block(state).u_offset;
     for (std::size_t e = 0; e < masses_.size(); ++e) {
       Vec3 sum = Vec3::Zero();
       for (const auto& node : elements_.node) sum += x.segment<3>(offset + 3 * node[e]);
@@ -81,7 +81,7 @@ class ConsistentMass final : public dynamics::InertiaTerm {
 
  private:
   double entry(std::size_t e, bool diagonal) const { return masses_[e] / 20.0 * (diagonal ? 2.0 : 1.0); }
-  NodeBlock place(const StateView& state) const {
+  NodeBlock block(const StateView& state) const {
     return NodeBlock(state, block_id_, elements_.node_count());
   }
   RestElements elements_;

@@ -6,22 +6,23 @@
 
 #include <Eigen/LU>
 
-#include "corotated.h"
+#include "corotational.h"
 #include "node_block.h"
 #include "node_rings.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/core/polar.h"
+#include "palpate/fem/laws.h"
 #include "stress.h"
 
 // A linear tetrahedron has one constraint of volume as lambda -> inf; a mesh has five to six times as many
 // tetrahedra as nodes, more constraints than the three directions a node has: it locks.  Averages at the
-// nodes are one constraint a node.  With theta_e = tr(R^T F) - 3 (corotated.h),
+// nodes are one constraint a node.  With theta_e = tr(R^T F) - 3 (corotational.h),
 //
 //   theta_n = (1/V_n) sum_{e at n} (V_e/4) theta_e,   V_n = sum_{e at n} V_e/4,      E = (kappa/2) sum_n V_n
 //   theta_n^2,
 //
-// kappa = (1 - share) lambda.  As d theta_e = R : dF (corotated.h: dR drops out),
+// kappa = (1 - share) lambda.  As d theta_e = R : dF (corotational.h: dR drops out),
 //
 //   dE = kappa sum_n theta_n sum_{e at n} (V_e/4) R : dF = sum_e V_e P_e : dF,   P_e = kappa theta*_e R,
 //   theta*_e = mean of theta_n over the four nodes:
@@ -30,23 +31,23 @@
 // theta: the patch test holds; P_e F^T is symmetric: no moment; a tetrahedron alone has theta* = theta_e: it
 // is the element.
 //
-// Of several materials the averages are taken within each: theta jumps where lambda does (the pressure across
-// the border is what agrees), and an average over both sides would hold the soft side to what the stiff one
-// does.  So n runs over sites, the pairs of a node and a material at it, V_n and kappa_n are the site's own,
-// and theta*_e is the mean over the four sites that e has corners at.  All of the above holds as it stands:
-// each element's corners still have weights that sum to one over its own material.
+// Where a body has several materials, averages are taken within each: theta jumps where lambda does (the
+// pressure across the border is what agrees), and an average over both sides would hold the soft side to what
+// the stiff one does.  So n runs over sites, the pairs of a node and a material at it, V_n and kappa_n are
+// the site's own, and theta*_e is the mean over the four sites that e has corners at.  All of the above holds
+// as it stands: each element's corners still have weights that sum to one over its own material.
 //
 // Tangent.  V_n d theta_n = sum_j b_nj . dx_j over the ring of n, b_nj = sum_{e at n and j} (V_e/4) R g_j; so
 // that
 //
 //   K_ij = sum_n (kappa/V_n) b_ni b_nj^T + sum_{e at i and j} V_e [h_i]x C [h_j]x,   C = -kappa theta*_e G,
-//   h = R g, G = d axl / dR of corotated.h.
+//   h = R g, G = d axl / dR of corotational.h.
 //
 // The first sum is positive semi-definite, of rank one a node.  The second, kappa theta* dR, adds to
 // SoftBody's -c dR and is exact with it; its twists have the eigenvalues 2 kappa theta*/(s_i + s_j):
 // projected takes C only where theta* > 0; warped leaves it out, as there C = mu I is that of theta = 0.
 //
-// Damping (corotated.h) alike, with tau_e = tr E' = F : F' in place of theta_e:
+// Damping (corotational.h) alike, with tau_e = tr E' = F : F' in place of theta_e:
 //
 //   P_d = kappa_d tau*_e F,   D_ij = sum_n (kappa_d/V_n) d_ni d_nj^T,   d_nj = sum (V_e/4) F g_j,   power =
 //   kappa_d sum_n V_n tau_n^2 >= 0,
@@ -125,7 +126,7 @@ struct NodalDilatation::Impl {
   bool definite = false;
   std::vector<Mat3> F, R;    ///< of each element at the state last deformed to
   VecX element, site, rate;  ///< element values and averages at the sites; averages of the rate
-  std::vector<Vec3> turned, deformed, moving;  ///< ring rows b, d, l of the tangents
+  std::vector<Vec3> rotated, deformed, moving;  ///< ring rows b, d, l of the tangents
 
   Impl(std::string n, const TetMesh& rest, const Materials& materials, const SoftBodyOptions& o, int id)
       : name(std::move(n)),
@@ -135,6 +136,7 @@ struct NodalDilatation::Impl {
         material_of_element(materials.of_element),
         sites(elements, materials),
         rings(elements, sites.of_corner(elements), sites.count(elements)) {
+    check_law(options.law, options.tangent, true, fmt::format("body \"{}\"", name));
     check(materials, elements.count(), fmt::format("body \"{}\"", name).c_str());
     PALPATE_CHECK(
         options.volumetric_shares.empty() || options.volumetric_shares.size() == materials.list.size(),
@@ -144,8 +146,8 @@ struct NodalDilatation::Impl {
     R.resize(count());
     element = rate = VecX::Zero(elements.count());
     site = VecX::Zero(rings.site_count());
-    turned.resize(static_cast<std::size_t>(rings.entry_count()));
-    deformed = moving = turned;
+    rotated.resize(static_cast<std::size_t>(rings.entry_count()));
+    deformed = moving = rotated;
   }
 
   void set(const std::vector<Material>& list) {
@@ -168,7 +170,7 @@ struct NodalDilatation::Impl {
   }
   const std::array<std::vector<int>, 4>& corners() const { return sites.of_corner(elements); }
   double site_volume(int s) const { return sites.volume_of(elements, s); }
-  NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, elements.node_count()); }
+  NodeBlock block(const StateView& state) const { return NodeBlock(state, block_id, elements.node_count()); }
   bool damped() const {
     return std::any_of(constants.begin(), constants.end(),
                        [](const Constants& c) { return c.kappa_d != 0.0; });
@@ -320,7 +322,7 @@ void NodalDilatation::add_pattern(dynamics::PatternBuilder& pattern) const {
 
 void NodalDilatation::add_force(const StateView& state, VecX& f) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   double* force = f.data() + at.u_offset;
   m.deform(at.x);
   m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
@@ -335,15 +337,15 @@ void NodalDilatation::add_force(const StateView& state, VecX& f) {
 
 void NodalDilatation::add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   m.rings.prepare(at.first_node, A.body);
   m.deform(at.x);
   if (m.damped()) m.fill_rows([&](std::size_t e) { return m.F[e]; }, m.deformed);
   if (d_scale != 0.0 && m.damped())
     m.add_products(d_scale, &Impl::Constants::kappa_d, m.deformed, m.deformed, A.body);
   if (k_scale == 0.0) return;
-  m.fill_rows([&](std::size_t e) { return m.R[e]; }, m.turned);
-  m.add_products(k_scale, &Impl::Constants::kappa, m.turned, m.turned, A.body);
+  m.fill_rows([&](std::size_t e) { return m.R[e]; }, m.rotated);
+  m.add_products(k_scale, &Impl::Constants::kappa, m.rotated, m.rotated, A.body);
   m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
   for (std::size_t e = 0; e < m.count(); ++e) {
     const Gradients h = m.R[e] * m.gradients(e);
@@ -366,7 +368,7 @@ void NodalDilatation::add_tangent(const StateView& state, double k_scale, double
 void NodalDilatation::apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x,
                                     VecX& y) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   const double* direction = x.data() + at.u_offset;
   double* out = y.data() + at.u_offset;
   m.deform(at.x);
@@ -397,7 +399,7 @@ void NodalDilatation::apply_tangent(const StateView& state, double k_scale, doub
 
 double NodalDilatation::energy(const StateView& state) {
   Impl& m = *impl_;
-  m.deform(m.place(state).x);
+  m.deform(m.block(state).x);
   m.to_sites([&](std::size_t e) { return m.dilatation(e); });
   return 0.5 * m.weighted_square(&Impl::Constants::kappa);
 }
@@ -405,7 +407,7 @@ double NodalDilatation::energy(const StateView& state) {
 double NodalDilatation::dissipated_power(const StateView& state) {
   Impl& m = *impl_;
   if (!m.damped()) return 0.0;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   m.deform(at.x, false);
   m.to_sites([&](std::size_t e) { return m.strain_rate_trace(e, at.v); });
   return m.weighted_square(&Impl::Constants::kappa_d);
@@ -413,17 +415,19 @@ double NodalDilatation::dissipated_power(const StateView& state) {
 
 VecX NodalDilatation::dilatations(const StateView& state) {
   Impl& m = *impl_;
-  m.deform(m.place(state).x);
+  m.deform(m.block(state).x);
   m.to_sites([&](std::size_t e) { return m.dilatation(e); });
   return m.at_nodes();
 }
 
 VecX NodalDilatation::nodal_stress(const StateView& state) {
   Impl& m = *impl_;
-  m.deform(m.place(state).x);
+  m.deform(m.block(state).x);
   m.average([&](std::size_t e) { return m.dilatation(e); }, m.element);
   m.to_sites([&](std::size_t e) {
-    return von_mises(m.F[e], m.of_element(e).kept, m.of_element(e).kappa * m.star(m.element, e));
+    const Mat3 P = elastic_stress(m.F[e], m.R[e], m.of_element(e).kept) +
+                   m.of_element(e).kappa * m.star(m.element, e) * m.R[e];
+    return von_mises(P, m.F[e]);
   });
   return m.at_nodes();
 }

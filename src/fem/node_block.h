@@ -4,7 +4,7 @@
 
 namespace palpate::fem {
 
-/// Where one body's nodes stand in a state: looked up anew at each evaluation, since blocks move when others
+/// Where one body's nodes are in a state: looked up anew at each evaluation, since blocks move when others
 /// come and go.
 struct NodeBlock {
   const double* x;  ///< positions [m], three a node

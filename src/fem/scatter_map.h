@@ -7,7 +7,7 @@
 
 namespace palpate::fem {
 
-/// Where the 16 blocks of each element matrix stand in an assembled matrix.  Made once a pattern.
+/// Slot map of the 16 blocks of each element matrix in an assembled matrix.  Made once a pattern.
 class ScatterMap {
  public:
   /// Makes the map for A's pattern and the body's first node, unless it is the one at hand.

@@ -16,10 +16,34 @@ namespace palpate::fem {
 using dynamics::BorderedMatrix;
 using dynamics::StateView;
 
+namespace {
+
+const LaneKernels& kernels_of(const SoftBodyOptions& options, const std::string& where) {
+  if (options.instructions.empty()) return best_kernels();
+  const LaneKernels* kernels = find_kernels(options.instructions.c_str());
+  if (kernels == nullptr)
+    fail("{}: this build or this processor has no instructions \"{}\"; baseline, avx2 and avx512 exist",
+         where, options.instructions);
+  return *kernels;
+}
+
+std::size_t law_of(const SoftBodyOptions& options, const std::string& where) {
+  const bool split = options.volumetric_share != 1.0 ||
+                     std::any_of(options.volumetric_shares.begin(), options.volumetric_shares.end(),
+                                 [](double share) { return share != 1.0; });
+  check_law(options.law, options.tangent, split, where);
+  return find_law(options.law, where);
+}
+
+std::string where(const std::string& name) { return fmt::format("body \"{}\"", name); }
+
+}  // namespace
+
 struct SoftBody::Impl {
   std::string name;
   SoftBodyOptions options;
   int block_id;
+  std::size_t law;  ///< place in law_registry()
   ElementEvaluation elements;
   std::vector<Material> materials;
   ElementModels models;  ///< of the materials, for the evaluation at hand
@@ -31,16 +55,17 @@ struct SoftBody::Impl {
       : name(std::move(body)),
         options(opts),
         block_id(block),
-        elements(rest, make_rest_elements(rest, fmt::format("body \"{}\"", name)), from.of_element,
-                 opts.full_damping_tangent) {
-    check(from, elements.chunks().element_count(), fmt::format("body \"{}\"", name).c_str());
+        law(law_of(opts, where(name))),
+        elements(rest, make_rest_elements(rest, where(name)), from.of_element, kernels_of(opts, where(name)),
+                 law, opts.full_damping_tangent) {
+    check(from, elements.chunks().element_count(), where(name).c_str());
     PALPATE_CHECK(options.volumetric_shares.empty() || options.volumetric_shares.size() == from.list.size(),
                   "{} shares of {} materials", options.volumetric_shares.size(), from.list.size());
     set(from.list);
   }
 
   int node_count() const { return elements.chunks().node_count(); }
-  NodeBlock place(const StateView& state) const { return NodeBlock(state, block_id, node_count()); }
+  NodeBlock block(const StateView& state) const { return NodeBlock(state, block_id, node_count()); }
   /// Whether any material has stiffness damping.
   bool damped() const {
     return std::any_of(materials.begin(), materials.end(),
@@ -74,7 +99,7 @@ struct SoftBody::Impl {
 
   /// The body's rows of A += or, `stored`, = k_scale K + d_scale D.
   void tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A, bool stored) {
-    const NodeBlock at = place(state);
+    const NodeBlock at = block(state);
     if (acts(k_scale, d_scale)) {
       const BodyFields fields{at.x, by_position() && k_scale != 0.0 ? at.v : nullptr};
       const ElementModels& scaled = models_of(k_scale, d_scale);
@@ -115,15 +140,6 @@ SoftBody::SoftBody(std::string name, const TetMesh& rest, const Materials& mater
                    const SoftBodyOptions& options, int block_id)
     : impl_(std::make_unique<Impl>(std::move(name), rest, materials, options, block_id)) {
   counters::count("fem.soft_body");
-  if (!options.instructions.empty()) {
-    const LaneKernels* kernels = find_kernels(options.instructions.c_str());
-    if (kernels == nullptr)
-      fail(
-          "body \"{}\": this build or this processor has no instructions \"{}\"; baseline, avx2 and avx512 "
-          "exist",
-          impl_->name, options.instructions);
-    impl_->elements.use(*kernels);
-  }
 }
 SoftBody::~SoftBody() = default;
 
@@ -134,7 +150,7 @@ const std::vector<Material>& SoftBody::materials() const { return impl_->materia
 void SoftBody::set_materials(const std::vector<Material>& materials) {
   PALPATE_CHECK(materials.size() == impl_->materials.size(), "{} materials in the place of {}",
                 materials.size(), impl_->materials.size());
-  for (const Material& material : materials) check(material, fmt::format("body \"{}\"", impl_->name).c_str());
+  for (const Material& material : materials) check(material, where(impl_->name).c_str());
   impl_->set(materials);
 }
 int SoftBody::node_count() const { return impl_->node_count(); }
@@ -157,7 +173,7 @@ dynamics::TermTraits SoftBody::traits() const {
 void SoftBody::set_definite(bool definite) { impl_->definite = definite; }
 
 dynamics::Finding SoftBody::inspect(const StateView& state) const {
-  const NodeBlock at = impl_->place(state);
+  const NodeBlock at = impl_->block(state);
   dynamics::Finding worst;
   impl_->elements.chunks().for_each([&](const ElementChunks::Element& e) {
     const double volume_ratio = (e.edges(at.x) * e.gradients).determinant();
@@ -179,7 +195,7 @@ std::uint64_t SoftBody::pattern_version() const { return 1; }  // rest connectiv
 
 void SoftBody::add_force(const StateView& state, VecX& f) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   double* force = f.data() + at.u_offset;
   const LaneCounts met =
       m.elements.add_force(m.models_of(0.0, 0.0), {at.x, m.damped() ? at.v : nullptr}, force);
@@ -199,7 +215,7 @@ void SoftBody::store_tangent(const StateView& state, double k_scale, double d_sc
 
 void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x, VecX& y) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   const double* direction = x.data() + at.u_offset;
   double* out = y.data() + at.u_offset;
   if (m.acts(k_scale, d_scale)) {
@@ -216,7 +232,7 @@ void SoftBody::apply_tangent(const StateView& state, double k_scale, double d_sc
 
 void SoftBody::add_step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   double* force = f.data() + at.u_offset;
   const double* more = change.data() + at.u_offset;
   const LaneCounts met = m.elements.add_step_force(
@@ -233,7 +249,7 @@ void SoftBody::add_step_force(const StateView& state, const VecX& shift, const V
 void SoftBody::add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
                         dynamics::BalancedMatrix& A) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   double* force = f.data() + at.u_offset;
   const LaneCounts met = m.elements.add_step(m.models_of(A.scale * k_scale, A.scale * d_scale),
                                              {at.x, m.damped() ? at.v : nullptr, shift.data() + at.u_offset},
@@ -248,12 +264,12 @@ void SoftBody::add_step(const StateView& state, const VecX& shift, double k_scal
 }
 
 double SoftBody::energy(const StateView& state) {
-  return impl_->elements.energy(impl_->models_of(0.0, 0.0), {impl_->place(state).x});
+  return impl_->elements.energy(impl_->models_of(0.0, 0.0), {impl_->block(state).x});
 }
 
 double SoftBody::dissipated_power(const StateView& state) {
   Impl& m = *impl_;
-  const NodeBlock at = m.place(state);
+  const NodeBlock at = m.block(state);
   double sum = m.damped() ? m.elements.dissipated_power(m.models_of(0.0, 0.0), {at.x, at.v}) : 0.0;
   for (int i = 0; m.dragged() && i < node_count(); ++i)
     sum += m.drag[i] * Eigen::Map<const Vec3>(at.v + 3 * i).squaredNorm();
@@ -261,7 +277,8 @@ double SoftBody::dissipated_power(const StateView& state) {
 }
 
 VecX SoftBody::nodal_stress(const StateView& state) const {
-  return nodal_von_mises(impl_->elements.chunks(), impl_->place(state).x, impl_->models_of(0.0, 0.0));
+  return nodal_von_mises(impl_->elements.chunks(), impl_->block(state).x, *law_registry()[impl_->law].make,
+                         impl_->models_of(0.0, 0.0));
 }
 
 }  // namespace palpate::fem

@@ -4,6 +4,7 @@
 #include "assemble_parts.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/fem/laws.h"
 #include "palpate/fem/load.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
@@ -17,6 +18,7 @@ namespace {
 
 fem::SoftBodyOptions options_of(const SoftBodySpec& spec, const fem::Materials& materials) {
   fem::SoftBodyOptions options;
+  options.law = spec.material;
   if (spec.tangent == "exact")
     options.tangent = fem::Tangent::kExact;
   else if (spec.tangent == "projected")
@@ -26,6 +28,8 @@ fem::SoftBodyOptions options_of(const SoftBodySpec& spec, const fem::Materials& 
   else
     fail("body \"{}\": unknown tangent \"{}\"{}", spec.name, spec.tangent,
          suggestion(spec.tangent, {"exact", "projected", "warped"}));
+  fem::check_law(spec.material, options.tangent, spec.volumetric == "nodal",
+                 fmt::format("body \"{}\"", spec.name));
   options.full_damping_tangent = spec.full_damping_tangent;
   if (spec.volumetric == "nodal") {
     for (const fem::Material& material : materials.list)

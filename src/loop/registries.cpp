@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "palpate/device/handle.h"
+#include "palpate/fem/laws.h"
 #include "palpate/integrate/integrators.h"
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
@@ -48,7 +49,7 @@ std::vector<Choice> part_choices() {
   const std::string gl =
       "not compiled in; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev, libccd-dev)";
 #endif
-  return {{"bodies", "soft bodies of corotational tetrahedra: always there"},
+  return {{"bodies", "soft bodies of linear tetrahedra: always there"},
           {"contact", "penalty contact with analytic obstacles: always there"},
           {"tool", "rigid tool under a virtual coupling (Simbody): " + tool},
           {"gl", "contact in image space, and pictures (EGL, OpenGL): " + gl}};
@@ -71,6 +72,7 @@ std::vector<ChoiceList> registries() {
   return {{"integrators", "of soft bodies: [integrator] name, --integrator", stepper_choices()},
           {"linear-solvers", "of implicit integrators: [integrator] linear_solver",
            choices(linear::linear_solver_registry())},
+          {"materials", "constitutive laws: [[body]] material", choices(fem::law_registry())},
           {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_steppers()},
           {"devices", "what the hand holds: [device] type", choices(device::handle_registry())},
           {"parts", "optional parts of this build", part_choices()}};

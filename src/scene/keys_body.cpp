@@ -124,6 +124,7 @@ const KeyTable<SoftBodySpec>& body_keys() {
       number("mass_damping_per_s", &SoftBodySpec::mass_damping_per_s, at_least(0.0)),
       number("stiffness_damping_s", &SoftBodySpec::stiffness_damping_s, at_least(0.0, kDamping)),
       text("mass", &SoftBodySpec::mass, {"lumped", "consistent"}),
+      text("material", &SoftBodySpec::material),
       text("tangent", &SoftBodySpec::tangent, {"exact", "projected", "warped"}),
       text("volumetric", &SoftBodySpec::volumetric, {"element", "nodal"}),
       boolean("full_damping_tangent", &SoftBodySpec::full_damping_tangent),

@@ -240,7 +240,9 @@ class Results(Cli):
 
     def test_lists(self):
         everything = self.good("list")
-        for what, member in {"integrators": "cvode-bdf", "linear-solvers": "cholmod", "tool-integrators": "simbody-cpodes", "devices": "script",
+        for what, member in {"integrators": "cvode-bdf", "linear-solvers": "cholmod",
+                             "materials": "stable_neo_hookean", "tool-integrators": "simbody-cpodes",
+                             "devices": "script",
                              "cases": "patch-test", "parts": "contact", "scenes": "press-ball"}.items():
             with self.subTest(what=what):
                 one = self.good("list", what)

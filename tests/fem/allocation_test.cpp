@@ -26,8 +26,17 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
   const long before_all = malloc_calls;
   const auto mass = make_consistent_mass(rest, materials, at.id);
   EXPECT_GT(malloc_calls, before_all);  // the counter counts
-  for (Tangent tangent : {Tangent::kExact, Tangent::kProjected, Tangent::kWarped}) {
-    SoftBody body("b", rest, materials, {.tangent = tangent, .full_damping_tangent = true}, at.id);
+  struct Choice {
+    Tangent tangent;
+    const char* law;
+  };
+  for (const auto& [tangent, law] : {Choice{Tangent::kExact, "corotational"},
+                                     {Tangent::kProjected, "corotational"},
+                                     {Tangent::kWarped, "corotational"},
+                                     {Tangent::kExact, "stable_neo_hookean"},
+                                     {Tangent::kProjected, "stable_neo_hookean"}}) {
+    SoftBody body("b", rest, materials, {.tangent = tangent, .full_damping_tangent = true, .law = law},
+                  at.id);
     NodalDilatation dilatation("b", rest, materials,
                                {.tangent = tangent, .full_damping_tangent = true, .volumetric_share = 0.5},
                                at.id);
@@ -36,7 +45,7 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
     dynamics::BorderedMatrix A;
     A.body = builder.build();
     VecX f = VecX::Zero(x.size()), y = f;
-    SoftBody symmetric("b", rest, materials, {.tangent = tangent}, at.id);
+    SoftBody symmetric("b", rest, materials, {.tangent = tangent, .law = law}, at.id);
     dynamics::BalancedMatrix balanced;
     balanced.pattern = &A.body;
     for (int s = 0; s < A.body.slot_count(); ++s) balanced.place.push_back(s);  // more room than it needs

@@ -8,7 +8,7 @@ using namespace palpate::fem::testing;
 
 namespace {
 
-/// A frame that turns about a fixed tilted axis with angle(t) = a t^2 + b t and whose origin moves on a
+/// A frame that rotates about a fixed tilted axis with angle(t) = a t^2 + b t and whose origin moves on a
 /// parabola.
 PathPoint turning(double t) {
   const Vec3 axis = Vec3(1, 2, -1).normalized();

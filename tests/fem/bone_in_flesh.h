@@ -8,7 +8,7 @@ namespace palpate::fem::testing {
 
 struct BoneOptions {
   int cells = 3;             ///< of the cube's edge, 0.1 m
-  double mass_ratio = 1e-3;  ///< bone to flesh
+  double mass_ratio = 1e-3;  ///< bone to tissue
   /// of the bone's origin, from the middle of the cube: off its carried nodes' centroid [m]
   Vec3 centre{0.005, -0.01, 0.015};
   double radius = 0.03;         ///< nodes nearer to the middle than this are carried [m]
@@ -20,7 +20,7 @@ struct BoneOptions {
   bool turning = true;  ///< false: without the geometric stiffness of carried nodes
 };
 
-/// The same motion, its geometric stiffness left out of every matrix: what it is there for shows against
+/// A carried motion, its geometric stiffness left out of every matrix: what it is there for shows against
 /// this.
 struct WithoutTurning final : dynamics::DrivenMotion {
   std::shared_ptr<dynamics::DrivenMotion> whole;
@@ -33,7 +33,7 @@ struct WithoutTurning final : dynamics::DrivenMotion {
   void jacobian(const dynamics::StateView& s, MatX& G) const override { whole->jacobian(s, G); }
 };
 
-/// A cube of flesh, 0.1 m and 1 kg, around a free rigid bone that carries its inner nodes.
+/// A cube of tissue, 0.1 m and 1 kg, around a free rigid bone that carries its inner nodes.
 struct BoneInFlesh {
   dynamics::State state;
   dynamics::System system;
@@ -42,7 +42,7 @@ struct BoneInFlesh {
   VecX masses;  ///< of the nodes [kg]
   double bone_mass = 0.0;
   Vec3 inertia = Vec3::Zero();
-  int flesh = -1, bone = -1;
+  int tissue = -1, bone = -1;
   std::vector<int> carried;  ///< nodes
   Points local;              ///< of the carried nodes, in the bone's axes
 
@@ -57,21 +57,21 @@ struct BoneInFlesh {
     masses = lumped_masses(rest, m.density);
     carried = nodes_in_sphere(rest.nodes, Vec3::Zero(), o.radius);
     const int n = static_cast<int>(rest.nodes.cols());
-    flesh = state.insert({.name = "flesh",
-                          .q_size = 3 * n,
-                          .u_size = 3 * n,
-                          .q_scale = 0.1,
-                          .u_scale = std::sqrt(o.youngs_modulus / m.density)},
-                         flat(rest.nodes), VecX::Zero(3 * n));
+    tissue = state.insert({.name = "tissue",
+                           .q_size = 3 * n,
+                           .u_size = 3 * n,
+                           .q_scale = 0.1,
+                           .u_scale = std::sqrt(o.youngs_modulus / m.density)},
+                          flat(rest.nodes), VecX::Zero(3 * n));
     const Quat r = quaternion_of(Vec3(0.3, -0.5, 0.8));
     VecX q(7);
     q << r.w(), r.vec(), o.centre;
     bone = state.insert(dynamics::rigid_block("bone", 0.1, std::sqrt(o.youngs_modulus / m.density)), q,
                         VecX::Zero(6));
-    term = std::make_shared<SoftBody>("flesh", rest, m, SoftBodyOptions{}, flesh);
+    term = std::make_shared<SoftBody>("tissue", rest, m, SoftBodyOptions{}, tissue);
     system.add(std::static_pointer_cast<dynamics::ForceTerm>(term));
-    system.add(o.consistent ? make_consistent_mass(rest, m.density, flesh)
-                            : make_lumped_mass(rest, m.density, flesh));
+    system.add(o.consistent ? make_consistent_mass(rest, m.density, tissue)
+                            : make_lumped_mass(rest, m.density, tissue));
     bone_mass = o.mass_ratio * masses.sum();
     inertia = bone_mass * Vec3(1e-4, 1.5e-4, 2e-4);
     system.add(dynamics::make_rigid_inertia(bone, bone_mass, inertia));

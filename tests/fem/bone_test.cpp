@@ -26,19 +26,19 @@ std::vector<BoneSpec> shapes() {
 
 }  // namespace
 
-// Volume and second moments by the midpoint rule over what inside_bone says is inside, on a grid turned
+// Volume and second moments by the midpoint rule over what inside_bone says is inside, on a grid rotated
 // against the shape, so that no face runs along it.
 TEST(Bone, MassAndInertiaAreThoseOfItsInside) {
   for (BoneSpec spec : shapes()) {
     spec.density_kg_m3 = 1800.0;
     const double cell = 0.001;
-    const Mat3 turn = quaternion_of(Vec3(0.4, -0.7, 0.9)).toRotationMatrix();
+    const Mat3 rotation = quaternion_of(Vec3(0.4, -0.7, 0.9)).toRotationMatrix();
     double volume = 0.0;
     Vec3 moments = Vec3::Zero();
     for (double x = -0.06 + cell / 2; x < 0.06; x += cell)
       for (double y = -0.06 + cell / 2; y < 0.06; y += cell)
         for (double z = -0.06 + cell / 2; z < 0.06; z += cell) {
-          const Vec3 p = turn * Vec3(x, y, z);
+          const Vec3 p = rotation * Vec3(x, y, z);
           if (!inside_bone(spec, p)) continue;
           volume += cell * cell * cell;
           moments += cell * cell * cell * (p.squaredNorm() - p.array().square()).matrix();

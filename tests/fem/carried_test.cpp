@@ -1,4 +1,4 @@
-// Nodes on a bone: their motion and its derivatives, and the laws that flesh and bone obey at one instant.
+// Nodes on a bone: their motion and its derivatives, and the laws that tissue and bone obey at one instant.
 #include <Eigen/Cholesky>
 
 #include "fem/bone_in_flesh.h"
@@ -78,9 +78,9 @@ TEST(Carried, JacobianAndGammaAreDerivatives) {
   expect_slope_two([&](double h) { return evaluate(h, v); }, change, 0.05, "velocities");
 }
 
-// The step matrix's K, rows of the bone: what its turn makes of the force and moment that the nodes press on
-// it with, those held that are of the nodes' own. K is symmetrised; what is lost is half the cross matrix of
-// the moment out of balance.
+// The step matrix's K, rows of the bone: what its rotation makes of the force and moment that the nodes press
+// on it with, those held that are of the nodes' own. K is symmetrised; what is lost is half the cross matrix
+// of the moment out of balance.
 TEST(Carried, TangentIsTheDerivativeOfTheReducedForce) {
   BoneInFlesh b = disturbed({.damping = 0.0});
   b.state.u().setZero();
@@ -114,16 +114,16 @@ TEST(Carried, TangentIsTheDerivativeOfTheReducedForce) {
   K.topLeftCorner<3, 3>() += 0.5 * cross_matrix(moment);
   expect_slope_two(pressed, VecX(-K * test_twist()), 2e-3, "reduced force");
   // And it matters: without it the derivative is wrong in its first term.
-  VecX turned = VecX::Zero(layout.u_size), x = VecX::Zero(layout.u_size);
+  VecX rotated = VecX::Zero(layout.u_size), x = VecX::Zero(layout.u_size);
   x.segment<6>(at) = test_twist();
-  b.system.apply_carried_stiffness(b.state.view(), x, turned);
+  b.system.apply_carried_stiffness(b.state.view(), x, rotated);
   const double h = 1e-6;
   const VecX remainder = pressed(h) - pressed(0.0) + h * K * test_twist();
-  EXPECT_LT(remainder.norm(), 0.1 * h * turned.norm());
-  EXPECT_EQ(turned.head(layout.nodal_size).norm(), 0.0);
+  EXPECT_LT(remainder.norm(), 0.1 * h * rotated.norm());
+  EXPECT_EQ(rotated.head(layout.nodal_size).norm(), 0.0);
 }
 
-// Newton's and Euler's laws for flesh and bone together, any state, any bone: no force from outside, no
+// Newton's and Euler's laws for tissue and bone together, any state, any bone: no force from outside, no
 // change of momentum.
 TEST(Carried, FleshAndBoneKeepTheirMomentumAtEveryInstant) {
   for (const double ratio : {1.0, 1e-3, 1e-6}) {
@@ -201,6 +201,6 @@ TEST(Carried, BadInputIsRefused) {
   expect_contains(message_of([] { nodes_in_sphere(Points::Zero(3, 1), Vec3::Zero(), 0.0); }),
                   "radius_m = 0 must be positive");
   BoneInFlesh b;
-  b.system.add(make_carried({0}, Points::Zero(3, 1), b.flesh));
+  b.system.add(make_carried({0}, Points::Zero(3, 1), b.tissue));
   expect_contains(message_of([&] { b.prepare(); }), "which is no rigid block");
 }

@@ -24,48 +24,48 @@ Mat3 rest_edges(const TetMesh& mesh, const ElementChunks::Element& e) {
 
 using Key = std::pair<int, int>;
 
-/// Which chunk has each node or edge as its own, and which have it late, in their order; `keys(chunk)` lists
-/// its own ones, then the late ones.
+/// Which chunk owns each node or edge, and which share it, in their order; `keys(chunk)` lists the owned ones
+/// of a chunk, then the shared ones.
 struct Holders {
-  std::map<Key, int> own;
-  std::map<Key, std::vector<std::pair<int, int>>> late;  ///< chunk, place of the contribution
+  std::map<Key, int> owned;
+  std::map<Key, std::vector<std::pair<int, int>>> shared;  ///< chunk, place of the contribution
 };
 
 template <class Keys>
-Holders holders(const ElementChunks& chunks, int ElementChunks::Chunk::*own,
-                int ElementChunks::Chunk::*first_late, Keys&& keys) {
+Holders holders(const ElementChunks& chunks, int ElementChunks::Chunk::*owned,
+                int ElementChunks::Chunk::*first_shared, Keys&& keys) {
   Holders out;
   for (std::size_t c = 0; c < chunks.chunks.size(); ++c) {
     const ElementChunks::Chunk& chunk = chunks.chunks[c];
     const std::vector<Key> all = keys(chunk);
     for (std::size_t k = 0; k < all.size(); ++k) {
-      if (static_cast<int>(k) < chunk.*own)
-        EXPECT_TRUE(out.own.emplace(all[k], static_cast<int>(c)).second) << "own of two chunks";
+      if (static_cast<int>(k) < chunk.*owned)
+        EXPECT_TRUE(out.owned.emplace(all[k], static_cast<int>(c)).second) << "owned by two chunks";
       else
-        out.late[all[k]].emplace_back(static_cast<int>(c),
-                                      chunk.*first_late + static_cast<int>(k) - chunk.*own);
+        out.shared[all[k]].emplace_back(static_cast<int>(c),
+                                        chunk.*first_shared + static_cast<int>(k) - chunk.*owned);
     }
   }
   return out;
 }
 
-/// Each is own of the first chunk that has it, and the sums gather what each later one puts aside, in the
+/// Each is owned by the first chunk that has it, and the sums gather what each later one puts aside, in the
 /// order of the chunks, once.
-void expect_sums(const Holders& found, const LateSums& sums, bool edges) {
-  ASSERT_EQ(static_cast<std::size_t>(sums.count()), found.late.size());
+void expect_sums(const Holders& found, const SharedSums& sums, bool edges) {
+  ASSERT_EQ(static_cast<std::size_t>(sums.count()), found.shared.size());
   std::set<int> places;
   std::size_t most = 0;
-  for (std::size_t k = 0; k < found.late.size(); ++k) {
+  for (std::size_t k = 0; k < found.shared.size(); ++k) {
     const Key key{sums.first[k], edges ? sums.second[k] : 0};
-    ASSERT_TRUE(found.late.count(key) == 1 && found.own.count(key) == 1);
-    const auto& late = found.late.at(key);
-    ASSERT_EQ(static_cast<std::size_t>(sums.start[k + 1] - sums.start[k]), late.size());
-    for (std::size_t p = 0; p < late.size(); ++p) {
-      EXPECT_EQ(sums.entries[static_cast<std::size_t>(sums.start[k]) + p], late[p].second);
-      EXPECT_GT(late[p].first, p == 0 ? found.own.at(key) : late[p - 1].first);
-      EXPECT_TRUE(places.insert(late[p].second).second);
+    ASSERT_TRUE(found.shared.count(key) == 1 && found.owned.count(key) == 1);
+    const auto& shared = found.shared.at(key);
+    ASSERT_EQ(static_cast<std::size_t>(sums.start[k + 1] - sums.start[k]), shared.size());
+    for (std::size_t p = 0; p < shared.size(); ++p) {
+      EXPECT_EQ(sums.entries[static_cast<std::size_t>(sums.start[k]) + p], shared[p].second);
+      EXPECT_GT(shared[p].first, p == 0 ? found.owned.at(key) : shared[p - 1].first);
+      EXPECT_TRUE(places.insert(shared[p].second).second);
     }
-    most = std::max(most, late.size());
+    most = std::max(most, shared.size());
   }
   EXPECT_EQ(static_cast<int>(places.size()), sums.contributions());
   EXPECT_GE(most, 2u) << "the mesh has nothing that three chunks share";
@@ -119,16 +119,16 @@ TEST(ElementChunks, ShareNodesAndEdgesThatTheFirstOneOwns) {
     return chunks.nodes[static_cast<std::size_t>(chunk.first_node + k)];
   };
   const Holders nodes =
-      holders(chunks, &ElementChunks::Chunk::own_nodes, &ElementChunks::Chunk::first_late_node,
+      holders(chunks, &ElementChunks::Chunk::owned_nodes, &ElementChunks::Chunk::first_shared_node,
               [&](const ElementChunks::Chunk& chunk) {
                 std::vector<Key> keys;
                 for (int k = 0; k < chunk.nodes; ++k) keys.emplace_back(node(chunk, k), 0);
                 return keys;
               });
-  EXPECT_EQ(static_cast<Eigen::Index>(nodes.own.size()), rest.nodes.cols());
-  expect_sums(nodes, chunks.late_nodes, false);
+  EXPECT_EQ(static_cast<Eigen::Index>(nodes.owned.size()), rest.nodes.cols());
+  expect_sums(nodes, chunks.shared_nodes, false);
   const Holders edges = holders(
-      chunks, &ElementChunks::Chunk::own_edges, &ElementChunks::Chunk::first_late_edge,
+      chunks, &ElementChunks::Chunk::owned_edges, &ElementChunks::Chunk::first_shared_edge,
       [&](const ElementChunks::Chunk& chunk) {
         std::vector<Key> keys;
         for (int k = 0; k < chunk.edges; ++k) {
@@ -142,9 +142,9 @@ TEST(ElementChunks, ShareNodesAndEdgesThatTheFirstOneOwns) {
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b < 4; ++b)
         if (rest.tets(a, e) < rest.tets(b, e)) expected.emplace(rest.tets(a, e), rest.tets(b, e));
-  EXPECT_EQ(edges.own.size(), expected.size());
-  for (const Key& key : expected) EXPECT_EQ(edges.own.count(key), 1u);
-  expect_sums(edges, chunks.late_edges, true);
+  EXPECT_EQ(edges.owned.size(), expected.size());
+  for (const Key& key : expected) EXPECT_EQ(edges.owned.count(key), 1u);
+  expect_sums(edges, chunks.shared_edges, true);
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 #include <cstdlib>
 
-#include "../../src/fem/corotated.h"
-#include "fem_fixture.h"
-#include "palpate/core/polar.h"
+#include "law_reference.h"
 #include "palpate/core/workers.h"
 
 using namespace palpate;
@@ -10,123 +8,6 @@ using namespace palpate::fem;
 using namespace palpate::fem::testing;
 
 namespace {
-
-/// The instruction sets of this build that this processor has; baseline always.
-std::vector<std::string> instruction_sets() {
-  std::vector<std::string> out;
-  for (const char* name : {"baseline", "avx2", "avx512"})
-    if (message_of([&] { SoftBody("b", one_tet(), soft_material(), {.instructions = name}, 0); }).empty())
-      out.emplace_back(name);
-  return out;
-}
-
-Material damped_material() {
-  Material m = soft_material();
-  m.stiffness_damping = 0.4;
-  m.mass_damping = 0.3;
-  return m;
-}
-
-SoftBodyOptions options(Tangent tangent, bool full, const std::string& instructions) {
-  SoftBodyOptions out;
-  out.tangent = tangent;
-  out.full_damping_tangent = full;
-  out.instructions = instructions;
-  return out;
-}
-
-struct Evaluation {
-  VecX f, y;
-  MatX A;
-  std::vector<double> values;
-  double energy = 0.0, power = 0.0;
-  ElementCounts counts;
-};
-
-Evaluation evaluate(const TetMesh& rest, const Material& material, const SoftBodyOptions& options,
-                    const VecX& x, const VecX& v, const VecX& w, bool dense) {
-  OneBody at(x, v);
-  SoftBody body("b", rest, material, options, at.id);
-  dynamics::PatternBuilder builder(at.state.layout());
-  body.add_pattern(builder);
-  dynamics::BorderedMatrix A;
-  A.body = builder.build();
-  Evaluation out;
-  out.f = out.y = VecX::Zero(x.size());
-  body.add_force(at.state.view(), out.f);
-  body.add_tangent(at.state.view(), 0.7, 1.9, A);
-  out.counts = body.counts();
-  body.apply_tangent(at.state.view(), 0.7, 1.9, w, out.y);
-  out.energy = body.energy(at.state.view());
-  out.power = body.dissipated_power(at.state.view());
-  out.values = A.body.values();
-  if (dense) out.A = A.to_dense();
-  return out;
-}
-
-/// The same, element by element, by the formulas of corotated.h.
-struct Reference {
-  VecX f, y;
-  double energy = 0.0, power = 0.0;
-};
-Reference reference(const TetMesh& rest, const Material& material, Tangent tangent, bool by_position,
-                    const VecX& x, const VecX& v, const VecX& w) {
-  const Lame elastic{material.mu(), material.lambda()};
-  const Lame damping{material.stiffness_damping * material.mu(),
-                     material.stiffness_damping * material.lambda()};
-  Reference out;
-  out.f = out.y = VecX::Zero(x.size());
-  for (Eigen::Index e = 0; e < rest.tets.cols(); ++e) {
-    const auto tet = rest.tets.col(e);
-    const auto edges = [&](const VecX& field) {
-      Mat3 m;
-      for (int a = 0; a < 3; ++a) m.col(a) = field.segment<3>(3 * tet[a + 1]) - field.segment<3>(3 * tet[0]);
-      return m;
-    };
-    const Mat3 Dm = edges(flat(rest.nodes)), gradients = Dm.inverse();
-    const double V = Dm.determinant() / 6.0;
-    const Mat3 F = edges(x) * gradients, F_dot = edges(v) * gradients, dF = edges(w) * gradients,
-               R = polar_decomposition(F).R;
-    bool clamped = false;
-    const Mat3 C = rotation_coupling(tangent, F, R, elastic, clamped);
-    const Mat3 P = elastic_stress(F, R, elastic) + F * damping_stress(strain_rate(F, F_dot), damping);
-    Mat3 dP = 0.7 * elastic_stress_change(dF, R, C, elastic) +
-              1.9 * F * damping_stress(strain_rate(F, dF), damping);
-    if (by_position)
-      dP += 0.7 * (dF * damping_stress(strain_rate(F, F_dot), damping) +
-                   F * damping_stress(strain_rate(dF, F_dot), damping));
-    for (int a = 0; a < 4; ++a) {
-      const Vec3 g =
-          a == 0 ? Vec3(-gradients.colwise().sum().transpose()) : Vec3(gradients.row(a - 1).transpose());
-      const double mass_damping = material.mass_damping * material.density * 0.25 * V;
-      out.f.segment<3>(3 * tet[a]) -= V * P * g + mass_damping * v.segment<3>(3 * tet[a]);
-      out.y.segment<3>(3 * tet[a]) += V * dP * g + 1.9 * mass_damping * w.segment<3>(3 * tet[a]);
-      out.power += mass_damping * v.segment<3>(3 * tet[a]).squaredNorm();
-    }
-    out.energy += V * elastic_energy_density(F, R, elastic);
-    out.power += V * strain_rate(F, F_dot).cwiseProduct(damping_stress(strain_rate(F, F_dot), damping)).sum();
-  }
-  return out;
-}
-
-/// Tetrahedra apart from each other, each with its own deformation.
-struct Apart {
-  TetMesh rest;
-  VecX x, v, w;
-  Apart(const std::vector<Mat3>& deformations, Random& random) {
-    const auto count = static_cast<Eigen::Index>(deformations.size());
-    rest.nodes.resize(3, 4 * count);
-    rest.tets.resize(4, count);
-    x.resize(12 * count);
-    for (Eigen::Index e = 0; e < count; ++e) {
-      rest.nodes.middleCols(4 * e, 4) = one_tet().nodes;
-      for (int a = 0; a < 4; ++a) rest.tets(a, e) = static_cast<int>(4 * e) + a;
-      x.segment<12>(12 * e) = flat(deformations[static_cast<std::size_t>(e)] * one_tet().nodes);
-    }
-    v = random.vector(x.size());
-    w = random.vector(x.size());
-  }
-};
 
 struct Shaken {
   TetMesh rest;
@@ -138,8 +19,6 @@ struct Shaken {
     w = random.vector(x.size());
   }
 };
-
-double apart(const VecX& a, const VecX& b) { return (a - b).norm() / b.norm(); }
 
 }  // namespace
 
@@ -167,7 +46,8 @@ TEST(Lanes, EveryShapeGetsWhatTheScalarFormulasGive) {
       for (bool full : {false, true}) {
         const Evaluation found =
             evaluate(m.rest, damped_material(), options(tangent, full, instructions), m.x, m.v, m.w, false);
-        const Reference expected = reference(m.rest, damped_material(), tangent, full, m.x, m.v, m.w);
+        const Reference expected =
+            reference(law_called("corotational"), m.rest, damped_material(), tangent, full, m.x, m.v, m.w);
         for (std::size_t e = 0; e < sums.size(); ++e) {
           const auto at = static_cast<Eigen::Index>(12 * e);
           const double close = std::min(1.0, sums[e]);
@@ -193,7 +73,8 @@ TEST(Lanes, ChunksAddUpToTheScalarSum) {
     for (bool full : {false, true}) {
       const Evaluation found = evaluate(m.rest, damped_material(),
                                         options(Tangent::kExact, full, instructions), m.x, m.v, m.w, false);
-      const Reference expected = reference(m.rest, damped_material(), Tangent::kExact, full, m.x, m.v, m.w);
+      const Reference expected = reference(law_called("corotational"), m.rest, damped_material(),
+                                           Tangent::kExact, full, m.x, m.v, m.w);
       EXPECT_LT(apart(found.f, expected.f), 1e-13) << instructions;
       EXPECT_LT(apart(found.y, expected.y), 1e-12) << instructions;
       EXPECT_NEAR(found.energy, expected.energy, 1e-13 * expected.energy);

@@ -22,7 +22,7 @@ SoftBodyOptions nodal(const Material& m, Tangent tangent = Tangent::kExact, bool
   return {.tangent = tangent, .full_damping_tangent = full, .volumetric_share = kept_volumetric_share(m)};
 }
 
-/// Sheared, turned, every node shaken; a large shake turns elements inside out.
+/// Sheared and rotated, every node shaken; a large shake inverts elements.
 struct Shaken {
   TetMesh rest;
   VecX x, v;

@@ -76,13 +76,13 @@ std::vector<std::string> instruction_sets() {
 
 }  // namespace
 
-// One pass gives what three give: force less stiffness times the shift, and the blocks off the diagonal to
-// single precision, every one of them.
+// Fused assembly gives what three evaluations give: force less stiffness times the shift, and the blocks off
+// the diagonal to single precision, every one of them.
 TEST(Step, IsForceProductAndTangentInOne) {
   int compared = 0;
   for (const std::string& set : instruction_sets())
     for (const Tangent tangent : {Tangent::kExact, Tangent::kProjected, Tangent::kWarped})
-      for (const double shake : {0.01, 0.12})  // the second turns elements inside out
+      for (const double shake : {0.01, 0.12})  // the second inverts elements
         for (const Material& material : {material_with(0.0, 0.0), material_with(0.4, 0.3)}) {
           const Case c(shake);
           OneBody at(c.x, c.v);

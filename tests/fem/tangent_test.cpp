@@ -8,7 +8,7 @@ using namespace palpate::fem::testing;
 
 namespace {
 
-/// A body sheared, turned and moving, every node shaken; a large shake turns elements inside out.
+/// A body sheared, rotated and moving, every node shaken; a large shake inverts elements.
 struct Moving {
   TetMesh rest;
   VecX x, v;
@@ -168,7 +168,7 @@ TEST(Tangent, ClampingIsCounted) {
 }
 
 TEST(Tangent, ScatterMapFollowsAChangedPattern) {
-  // The same body's matrix in a larger pattern, and back: the cached slots must not be stale.
+  // A body's matrix in a larger pattern, and back: the cached slots must not be stale.
   const TetMesh rest = jittered_cube(1, 0.1, 10);
   const VecX x = flat(rest.nodes);
   SoftBody body("b", rest, soft_material(), {}, 0);

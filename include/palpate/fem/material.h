@@ -4,7 +4,13 @@
 
 namespace palpate::fem {
 
-/// Isotropic linear material of the corotated energy, and its damping.
+/// Lame's constants [Pa].
+struct Lame {
+  double mu = 0.0, lambda = 0.0;
+};
+
+/// Isotropic material by its behaviour at small strain, and its damping; what it does at large strain is the
+/// constitutive law's (laws.h).
 struct Material {
   double youngs_modulus = 1e4;     ///< E [Pa] > 0
   double poissons_ratio = 0.3;     ///< nu in (-1, 0.5)
@@ -32,7 +38,7 @@ struct Materials {
 
 /// @throws Error naming the value out of range; `where` begins the message.
 void check(const Material& material, const char* where);
-/// The same for each of a list, and for numbers that fit it and a mesh of so many elements.
+/// Checks each material of a list, and that the numbers of the elements, one each, are in the list.
 void check(const Materials& materials, int elements, const char* where);
 
 }  // namespace palpate::fem

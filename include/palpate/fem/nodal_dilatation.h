@@ -18,8 +18,8 @@ double kept_volumetric_share(const Material& material);
 /// lambda_d and their tangents.  Couples nodes that share a neighbour:
 /// about four times the blocks of the element's pattern, and a factor that costs accordingly.
 ///
-/// Of several materials the averages are taken within each, so that a soft one is not held by a stiff one
-/// beside it.
+/// Where a body has several materials, averages are taken within each, so that a soft one is not held by a
+/// stiff one beside it.
 ///
 /// Goes with a SoftBody of the same mesh, materials, options and block: together they are the body.
 /// Limits: displacements converge for nu -> 0.5, pressures of single nodes may alternate around the true one

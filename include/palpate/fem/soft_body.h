@@ -7,27 +7,10 @@
 #include "palpate/dynamics/force_term.h"
 #include "palpate/dynamics/inertia_term.h"
 #include "palpate/fem/material.h"
+#include "palpate/fem/options.h"
 #include "palpate/mesh/mesh.h"
 
 namespace palpate::fem {
-
-enum class Tangent { kExact, kProjected, kWarped };
-
-struct SoftBodyOptions {
-  Tangent tangent = Tangent::kExact;
-  bool full_damping_tangent = false;  ///< keep the unsymmetric part of the damping's derivative by position
-  /// of lambda (and of lambda_d), acting element by element; the rest belongs to another term
-  double volumetric_share = 1.0;
-  /// "baseline", "avx2" or "avx512"; empty: the widest that the processor has, or what the environment
-  /// variable PALPATE_INSTRUCTIONS names.
-  std::string instructions = {};
-  /// of each material, where they differ; empty: volumetric_share of all
-  std::vector<double> volumetric_shares = {};
-
-  double share_of(std::size_t material) const {
-    return volumetric_shares.empty() ? volumetric_share : volumetric_shares[material];
-  }
-};
 
 /// What one evaluation met, for reports: counts since the last reset.
 struct ElementCounts {
@@ -45,9 +28,9 @@ struct MemoryUse {
   std::size_t scratch = 0;   ///< of all threads, and sums that chunks share
 };
 
-/// Corotational tetrahedra as one force term over one node block (DESIGN 3.1): elastic force, objective
-/// stiffness damping, their tangents, energy. Mass-proportional damping acts here too (it needs the lumped
-/// masses): f = -alpha M v; of several materials f_i = -c_i v_i, c_i = sum (alpha rho V / 4) over the
+/// Linear tetrahedra of one constitutive law (laws.h) as one force term over one node block: elastic force,
+/// objective stiffness damping, their tangents, energy. Mass-proportional damping acts here too (it needs the
+/// lumped masses): f = -alpha M v; of several materials f_i = -c_i v_i, c_i = sum (alpha rho V / 4) over the
 /// elements at node i. Materials belong to elements: where two meet, they share nodes and displacements, and
 /// the traction is continuous as far as the mesh resolves it. Elements are worked through in the lanes of
 /// vectors and on core's workers (core/workers.h); results do not depend on the number of threads.

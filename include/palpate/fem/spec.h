@@ -46,7 +46,7 @@ struct BoneSpec {
   Vec3 angular_velocity_rad_s = Vec3::Zero();
   bool gravity = true;  ///< false: the bone itself has no weight
   bool fixed = false;   ///< stays where it is placed
-  /// moves from where it is placed: by these positions, and by these turns about its own origin
+  /// moves from where it is placed: by these positions, and by these rotations about its own origin
   std::vector<KeyframeSpec> keyframes;
 };
 
@@ -58,7 +58,7 @@ struct JointSpec {
   Vec3 axis = Vec3::Zero();         ///< of a hinge, in the body's own axes
   double stiffness_n_m_rad = -1.0;  ///< negative: the skeleton's
   double damping_n_m_s_rad = -1.0;  ///< negative: the skeleton's
-  /// turns about the joint, and shifts, against its parent, in the body's own axes; then it has no type
+  /// rotations about the joint, and shifts, against its parent, in the body's own axes; then it has no type
   std::vector<KeyframeSpec> keyframes;
 };
 
@@ -68,7 +68,7 @@ struct SkeletonSpec {
   /// how bones without a parent hang on the world: "weld", "ball" or "free"
   std::string root = "weld";
   std::string others = "weld";  ///< how the others hang on their parents: "weld" or "ball"
-  /// of bones that move freely, on top of the flesh that their nodes weigh
+  /// of bones that move freely, on top of the tissue that their nodes weigh
   double density_kg_m3 = 0.0;
   double stiffness_n_m_rad = 0.0;  ///< of hinges and balls, towards the start
   double damping_n_m_s_rad = 0.0;
@@ -124,11 +124,12 @@ struct SoftBodySpec {
   double youngs_modulus_pa = 1e4;
   double poissons_ratio = 0.3;
   double density_kg_m3 = 1000.0;
-  double mass_damping_per_s = 0.0;   ///< alpha
-  double stiffness_damping_s = 0.0;  ///< beta: (mu_d, lambda_d) = beta (mu, lambda)
-  std::string mass = "lumped";       ///< or "consistent"
-  std::string tangent = "exact";     ///< "exact", "projected", "warped"
-  /// resistance to change of volume: "element", or "nodal" averages (no locking for nu -> 0.5)
+  double mass_damping_per_s = 0.0;        ///< alpha
+  double stiffness_damping_s = 0.0;       ///< beta: (mu_d, lambda_d) = beta (mu, lambda)
+  std::string mass = "lumped";            ///< or "consistent"
+  std::string material = "corotational";  ///< constitutive law, a name of fem::law_registry()
+  std::string tangent = "exact";          ///< "exact", "projected", of some laws "warped"
+  /// resistance to change of volume: "element", or of some laws "nodal" averages (no locking for nu -> 0.5)
   std::string volumetric = "element";
   /// keep the unsymmetric part of the damping's derivative by position
   bool full_damping_tangent = false;

@@ -13,7 +13,7 @@ struct Choice {
 };
 
 /// Every registry of every part that was compiled in, under the name that `palpate list` knows it by:
-/// "integrators", "linear-solvers", "tool-integrators", "devices", "parts".
+/// "integrators", "linear-solvers", "materials", "tool-integrators", "devices", "parts".
 struct ChoiceList {
   std::string what, summary;
   std::vector<Choice> choices;

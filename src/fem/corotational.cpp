@@ -1,10 +1,13 @@
-#include "corotated.h"
+#include "corotational.h"
 
 #include <algorithm>
 #include <limits>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+
+#include "law.h"
+#include "palpate/core/polar.h"
 
 namespace palpate::fem {
 namespace {
@@ -83,45 +86,51 @@ Mat3 elastic_stress_change(const Mat3& dF, const Mat3& R, const Mat3& C, const L
   return 2.0 * lame.mu * dF + lame.lambda * M.trace() * R - cross_matrix(C * axial) * R;
 }
 
-Mat3 strain_rate(const Mat3& F, const Mat3& F_dot) {
-  const Mat3 M = F.transpose() * F_dot;
-  return 0.5 * (M + M.transpose());
+namespace {
+
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+Mat3 rotation_of(const Mat3& F) { return polar_decomposition(F).R; }
+
+double energy_density(const Mat3& F, const Lame& lame) {
+  return elastic_energy_density(F, rotation_of(F), lame);
+}
+Mat3 stress(const Mat3& F, const Lame& lame) { return elastic_stress(F, rotation_of(F), lame); }
+Mat3 stress_change(Tangent tangent, const Mat3& F, const Mat3& dF, const Lame& lame) {
+  const Mat3 R = rotation_of(F);
+  bool clamped = false;
+  return elastic_stress_change(dF, R, rotation_coupling(tangent, F, R, lame, clamped), lame);
 }
 
-Mat3 damping_stress(const Mat3& rate, const Lame& damping) {
-  Mat3 sigma = 2.0 * damping.mu * rate;
-  sigma.diagonal().array() += damping.lambda * rate.trace();
-  return sigma;
+void rotation_by_scalar(const double* F, double* R) {
+  Eigen::Map<RowMajor> out(R);
+  out = rotation_of(Eigen::Map<const RowMajor>(F));
 }
 
-void add_damping_blocks(const Mat3& gradients, const Mat3& F, const Lame& damping, double scale,
-                        ElementBlocks& D) {
-  const Mat3 k = F * gradients.transpose();  // columns k_a
-  const Mat3 gram = gradients * gradients.transpose();
-  const Mat3 B2 = F * F.transpose();
-  for (int a = 0; a < 3; ++a)
-    for (int b = a; b < 3; ++b) {
-      const Mat3 outer = k.col(a) * k.col(b).transpose();
-      const Mat3 block = damping.mu * (gram(a, b) * B2 + outer.transpose()) + damping.lambda * outer;
-      D[static_cast<std::size_t>(3 * a + b)] += scale * block;
-      if (b > a) D[static_cast<std::size_t>(3 * b + a)] += scale * block.transpose();
-    }
+/// C; 1 where it was clamped.
+int coupling_by_scalar(const ElementModel& model, const double* F, const double* R, double* C) {
+  bool clamped = false;
+  const Tangent tangent = model.warped      ? Tangent::kWarped
+                          : model.projected ? Tangent::kProjected
+                                            : Tangent::kExact;
+  Eigen::Map<RowMajor> out(C);
+  out = rotation_coupling(tangent, Eigen::Map<const RowMajor>(F), Eigen::Map<const RowMajor>(R),
+                          {model.mu, model.lambda}, clamped);
+  return clamped ? 1 : 0;
 }
 
-void add_damping_position_blocks(const Mat3& gradients, const Mat3& F, const Mat3& F_dot, const Lame& damping,
-                                 double scale, ElementBlocks& K) {
-  const Mat3 k = F * gradients.transpose(), l = F_dot * gradients.transpose();
-  const Mat3 gram = gradients * gradients.transpose();
-  // g_a . Sigma g_b
-  const Mat3 geometric = gradients * damping_stress(strain_rate(F, F_dot), damping) * gradients.transpose();
-  const Mat3 FFdot = F * F_dot.transpose();
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) {
-      Mat3 block = damping.mu * (gram(a, b) * FFdot + k.col(b) * l.col(a).transpose()) +
-                   damping.lambda * k.col(a) * l.col(b).transpose();
-      block.diagonal().array() += geometric(a, b);
-      K[static_cast<std::size_t>(3 * a + b)] += scale * block;
-    }
-}
+}  // namespace
+
+namespace laws {
+extern const Law corotational;
+const Law corotational{
+    .summary = "linear elasticity in axes that rotate with each element (Mueller and Gross 2004)",
+    .warped = true,
+    .nodal_dilatation = true,
+    .energy_density = energy_density,
+    .stress = stress,
+    .stress_change = stress_change,
+    .scalar = {rotation_by_scalar, coupling_by_scalar}};
+}  // namespace laws
 
 }  // namespace palpate::fem

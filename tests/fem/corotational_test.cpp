@@ -1,4 +1,5 @@
-#include "../../src/fem/corotated.h"
+#include "../../src/fem/corotational.h"
+#include "../../src/fem/objective_damping.h"
 
 #include <Eigen/Eigenvalues>
 

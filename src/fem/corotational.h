@@ -1,23 +1,13 @@
 #pragma once
-#include <array>
-
+#include "element_blocks.h"
 #include "palpate/core/types.h"
-#include "palpate/fem/soft_body.h"
+#include "palpate/fem/material.h"
+#include "palpate/fem/options.h"
 
 namespace palpate::fem {
 
-/// Lame's constants [Pa].
-struct Lame {
-  double mu = 0.0, lambda = 0.0;
-};
-
-/// The nine 3x3 blocks of an element matrix that belong to nodes 1, 2, 3 (index 3 (a-1) + (b-1)).  Those of
-/// node 0 follow:
-/// a translation of the whole element changes nothing, so that the blocks of each row and of each column sum
-/// to zero.
-using ElementBlocks = std::array<Mat3, 9>;
-
-// The corotated energy of one element, F = R S with R a proper rotation (DESIGN 3.1):
+// The corotated energy of one element, F = R S with R a proper rotation (Mueller and Gross 2004; with this R
+// also for flat and inverted elements, Irving, Teran and Fedkiw 2004):
 //
 //   psi = mu |F - R|^2 + lambda/2 (tr S - 3)^2,      P = dpsi/dF = 2 mu (F - R) + lambda (tr S - 3) R,
 //
@@ -69,23 +59,5 @@ void add_elastic_blocks(const Mat3& gradients, const Mat3& R, const Mat3& C, con
 
 /// dP of a direction dF, with the tangent that C stands for.
 Mat3 elastic_stress_change(const Mat3& dF, const Mat3& R, const Mat3& C, const Lame& lame);
-
-// Objective damping (DESIGN 3.1), with F' = sum_a v_a g_a^T:
-//
-//   P_d = F Sigma,   Sigma = 2 mu_d E' + lambda_d tr(E') I,   E' = sym(F^T F').
-//
-// F Sigma F^T is symmetric: no moment.  F' = [w]x F gives E' = 0: a spin is not braked.  Power F' : P_d = E'
-// : Sigma >= 0. By velocity (dF' = dv_b g_b^T, k = F g, B2 = F F^T), symmetric:
-//   D_ab = V ( mu_d ((g_a . g_b) B2 + k_b k_a^T) + lambda_d k_a k_b^T ).
-// By position (dF = dx_b g_b^T, l = F' g), unsymmetric:
-//   K_ab = V ( (g_a . Sigma g_b) I + mu_d ((g_a . g_b) F F'^T + k_b l_a^T) + lambda_d k_a l_b^T ).
-
-/// Strain rate E' [1/s] and the damping stress Sigma [Pa].
-Mat3 strain_rate(const Mat3& F, const Mat3& F_dot);
-Mat3 damping_stress(const Mat3& rate, const Lame& damping);
-void add_damping_blocks(const Mat3& gradients, const Mat3& F, const Lame& damping, double scale,
-                        ElementBlocks& D);
-void add_damping_position_blocks(const Mat3& gradients, const Mat3& F, const Mat3& F_dot, const Lame& damping,
-                                 double scale, ElementBlocks& K);
 
 }  // namespace palpate::fem

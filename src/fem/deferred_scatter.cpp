@@ -1,0 +1,128 @@
+#include "deferred_scatter.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "nodal_reduction.h"
+#include "palpate/core/error.h"
+#include "shared_blocks.h"
+
+namespace palpate::fem {
+namespace {
+
+using Chunk = ElementChunks::Chunk;
+// A matrix of so few chunks is held by the caches: to fill them with the blocks of two chunks at a time costs
+// more than waiting for it.
+constexpr int kFewChunks = 16;
+
+}  // namespace
+
+int DeferredScatter::buffers(const ElementChunks& chunks) {
+  return static_cast<int>(chunks.chunks.size()) <= kFewChunks ? 1 : 2;
+}
+
+/// Ascending in the matrix, so that its memory is written in order.
+void DeferredScatter::prepare(const ElementChunks& chunks, int first_node,
+                              const dynamics::BalancedMatrix& A) {
+  if (A.places_version == version_ && first_node == first_node_) return;
+  const auto slot = [&](int i, int j) {
+    const int found = A.pattern->slot(first_node + i, first_node + j);
+    PALPATE_CHECK(found >= 0, "nodes {} and {} are not in the pattern", first_node + i, first_node + j);
+    return A.place[static_cast<std::size_t>(found)];
+  };
+  const auto slot_of = [&](const Chunk& chunk, int edge) {
+    const std::uint16_t* ends = chunks.ends.data() + 2 * static_cast<std::size_t>(chunk.first_edge + edge);
+    return slot(chunks.nodes[static_cast<std::size_t>(chunk.first_node + ends[0])],
+                chunks.nodes[static_cast<std::size_t>(chunk.first_node + ends[1])]);
+  };
+  slots_.assign(chunks.ends.size() / 2, -1);
+  edges_.assign(slots_.size(), 0);
+  std::vector<std::pair<std::int32_t, std::uint16_t>> owned;
+  for (const Chunk& chunk : chunks.chunks) {
+    owned.clear();
+    for (int k = 0; k < chunk.owned_edges; ++k) owned.emplace_back(slot_of(chunk, k), k);
+    std::sort(owned.begin(), owned.end());
+    for (std::size_t k = 0; k < owned.size(); ++k) {
+      slots_[static_cast<std::size_t>(chunk.first_edge) + k] = owned[k].first;
+      edges_[static_cast<std::size_t>(chunk.first_edge) + k] = owned[k].second;
+    }
+    for (int k = chunk.owned_edges; k < chunk.edges; ++k) {
+      slots_[static_cast<std::size_t>(chunk.first_edge + k)] = slot_of(chunk, k);
+      edges_[static_cast<std::size_t>(chunk.first_edge + k)] = static_cast<std::uint16_t>(k);
+    }
+  }
+  shared_slots_.clear();
+  for (int k = 0; k < chunks.shared_edges.count(); ++k)
+    shared_slots_.push_back({slot(chunks.shared_edges.first[static_cast<std::size_t>(k)],
+                                  chunks.shared_edges.second[static_cast<std::size_t>(k)]),
+                             k});
+  std::sort(shared_slots_.begin(), shared_slots_.end(),
+            [](const SharedSlot& a, const SharedSlot& b) { return a.slot < b.slot; });
+  prefer_huge_pages(slots_);
+  version_ = A.places_version;
+  first_node_ = first_node;
+}
+
+void DeferredScatter::fit(const ElementChunks& chunks, int threads) {
+  if (static_cast<int>(buffers_.size()) < threads) buffers_.resize(static_cast<std::size_t>(threads));
+  for (Buffers& b : buffers_)
+    for (int k = 0; k < buffers(chunks); ++k)
+      b.blocks[k].resize(static_cast<std::size_t>(chunks.most_edges) + 1);
+  if (!in_order()) fit_contributions(shared_, static_cast<std::size_t>(chunks.shared_edges.contributions()));
+}
+
+DeferredScatter::Work DeferredScatter::begin(int thread, int groups) {
+  Buffers& b = buffers_[static_cast<std::size_t>(thread)];
+  b.before.batch = b.before.count / std::max(1, groups) + 1;
+  return {b.blocks[b.current].blocks(), &b.before};
+}
+
+void DeferredScatter::end(const ElementChunks& chunks, int c, int thread, bool last,
+                          const SharedKernels& kernels, dynamics::BalancedMatrix& A) {
+  const Chunk& chunk = chunks.chunks[static_cast<std::size_t>(c)];
+  Buffers& b = buffers_[static_cast<std::size_t>(thread)];
+  kernels.scatter(b.before, b.before.count);
+  b.before = {b.blocks[b.current].blocks(),
+              edges_.data() + chunk.first_edge,
+              slots_.data() + chunk.first_edge,
+              A.values.data(),
+              in_order() ? nullptr : shared_.data() + 9 * static_cast<std::size_t>(chunk.first_shared_edge),
+              chunk.owned_edges,
+              chunk.edges};
+  if (buffers(chunks) == 1 || last)
+    kernels.scatter(b.before, b.before.count);
+  else
+    b.current = 1 - b.current;
+}
+
+void DeferredScatter::finish(const ElementChunks& chunks, const SharedKernels& kernels,
+                             dynamics::BalancedMatrix& A) {
+  for (Buffers& b : buffers_) {
+    kernels.scatter(b.before, b.before.count);
+    b.before = {};
+  }
+  if (in_order()) return;
+  const SharedSums& shared = chunks.shared_edges;
+  const int edges = shared.count();
+  for_each_sum(edges, [&](int k) {
+    if (k + kSumsAhead < edges) {
+      const SharedSlot& next = shared_slots_[static_cast<std::size_t>(k + kSumsAhead)];
+      prefetch_contributions(shared, next.edge, shared_.data());
+      prefetch_block(A.values.data() + 9 * static_cast<std::size_t>(next.slot));
+    }
+    const auto [slot, edge] = shared_slots_[static_cast<std::size_t>(k)];
+    add_contributions(shared, edge, shared_, A.values.data() + 9 * static_cast<std::size_t>(slot));
+  });
+}
+
+std::size_t DeferredScatter::map_bytes() const {
+  return bytes_of(slots_) + bytes_of(edges_) + bytes_of(shared_slots_);
+}
+
+std::size_t DeferredScatter::scratch_bytes() const {
+  std::size_t sum = bytes_of(shared_);
+  for (const Buffers& b : buffers_) sum += b.blocks[0].bytes() + b.blocks[1].bytes();
+  return sum;
+}
+
+}  // namespace palpate::fem

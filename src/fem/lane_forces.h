@@ -1,0 +1,158 @@
+#pragma once
+// Force, energy and the product with the tangent for any law, eight elements at a time.  A law is a struct of
+// static functions over packs of elements:
+//
+//   State                                what forces and tangents need of F, with the member det = det F
+//   find_states(F, count, scalar, state, counts)         the first `count` of kTogether elements
+//   stress(model, F, state)              first Piola-Kirchhoff stress P
+//   energy_density(model, F, state)
+//   Tangent, ScalarModes                 dP/dF of one of the tangents; memory for lanes that scalar code
+//                                        finished, empty where there is none
+//   tangent(model, F, state, scalar, modes, counts)
+//   change(model, F, state, tangent, dF)                 dP
+//   BlockParts                           what the blocks of the element matrix have in common, scaled
+//   set_parts<kWarped>(parts, model, F, state, tangent, G, volume)
+//   block<kWarped>(parts, g_a . g_b, a, b)               K_ab, a < b
+//   add_modes(tangent, edges, at, scale, upper, lower)  what scalar code adds to the blocks
+//   kHasWarped                           whether kWarped is ever asked for
+
+template <class Law>
+using State = typename Law::State;
+
+/// work(lanes, F, state) for each element of the groups, with what the law has found of F.
+template <class Law, class Work>
+PALPATE_INLINE void for_each_element(const ElementGroup* groups, int count, const ChunkFields& fields,
+                                     const ScalarPath& scalar, LaneCounts& counts, Work&& work) {
+  for (int g = 0; g < count; g += kTogether) {
+    const int here = count - g < kTogether ? count - g : kTogether;
+    for (int part = 0; part < 8; part += kWidth) {
+      Matrix F[kTogether];
+      typename Law::State state[kTogether];
+      for (int n = 0; n < kTogether; ++n) {
+        if (part == 0) fetch_ahead(groups, g + n, 0, 2);
+        const Lanes at{groups[g + (n < here ? n : 0)], part, g + n};
+        F[n] = gradient_of(at, gradients(at), fields.x);
+      }
+      Law::find_states(F, here, scalar, state, counts);
+#pragma GCC unroll 1
+      for (int n = 0; n < here; ++n) {
+        if (part == 0) {
+          fetch_ahead(groups, g + n, 1, 2);
+          if (fields.next_nodes) fetch_nodes(*fields.next_nodes);
+        }
+        work(Lanes{groups[g + n], part, g + n}, F[n], state[n]);
+      }
+    }
+  }
+}
+
+template <class Law, bool kDamped>
+static void forces(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar,
+                   const ChunkFields& fields, double* f, LaneCounts& counts) {
+  for_each_element<Law>(
+      groups, count, fields, scalar,
+      counts, [&](const Lanes& at, const Matrix& F, const State<Law>& state) __attribute__((always_inline)) {
+        const Gradients G = gradients(at);
+        count_inverted(state.det, counts);
+        Matrix P = Law::stress(model, F, state);
+        if constexpr (kDamped)
+          P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
+        add_forces(at, G, P, -at.volume(), f);
+      });
+}
+
+template <class Law>
+static void force(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar,
+                  const ChunkFields& fields, double* f, LaneCounts& counts) {
+  if (model.damping_mu > 0.0)
+    forces<Law, true>(groups, count, model, scalar, fields, f, counts);
+  else
+    forces<Law, false>(groups, count, model, scalar, fields, f, counts);
+}
+
+template <class Law>
+static void energy(const ElementGroup* groups, int count, const ElementModel& model, const ScalarPath& scalar,
+                   const ChunkFields& fields, double sums[8], LaneCounts& counts) {
+  for_each_element<Law>(
+      groups, count, fields, scalar,
+      counts, [&](const Lanes& at, const Matrix& F, const State<Law>& state) __attribute__((always_inline)) {
+        const Pack density = Law::energy_density(model, F, state);
+        *reinterpret_cast<PackInMemory*>(sums + at.first) += at.volume() * density;
+      });
+}
+
+/// The stress of a linearly implicit step: that of the state and its elastic change by w, and, of what is
+/// damped, that of the rate v.
+template <class Law, bool kDamped>
+PALPATE_INLINE Matrix step_stress(const Lanes& at, const Gradients& G, const Matrix& F,
+                                  const State<Law>& state, const typename Law::Tangent& tangent,
+                                  const ElementModel& model, const ChunkFields& fields) {
+  Matrix P =
+      Law::stress(model, F, state) + Law::change(model, F, state, tangent, gradient_of(at, G, fields.w));
+  if constexpr (kDamped)
+    P = P + F * full(damping_stress(symmetric_product(F, gradient_of(at, G, fields.v)), model));
+  return P;
+}
+
+template <class Law, bool kDamped>
+static void step_forces(const ElementGroup* groups, int count, const ElementModel& model,
+                        const ScalarPath& scalar, const ChunkFields& fields, double* f, LaneCounts& counts) {
+  for_each_element<Law>(
+      groups, count, fields, scalar,
+      counts, [&](const Lanes& at, const Matrix& F, const State<Law>& state) __attribute__((always_inline)) {
+        const Gradients G = gradients(at);
+        count_inverted(state.det, counts);
+        typename Law::ScalarModes modes;
+        const typename Law::Tangent tangent = Law::tangent(model, F, state, scalar, modes, counts);
+        add_forces(at, G, step_stress<Law, kDamped>(at, G, F, state, tangent, model, fields), -at.volume(),
+                   f);
+      });
+}
+
+template <class Law>
+static void step_force(const ElementGroup* groups, int count, const ElementModel& model,
+                       const ScalarPath& scalar, const ChunkFields& fields, double* f, LaneCounts& counts) {
+  if (model.damping_mu > 0.0)
+    step_forces<Law, true>(groups, count, model, scalar, fields, f, counts);
+  else
+    step_forces<Law, false>(groups, count, model, scalar, fields, f, counts);
+}
+
+template <class Law>
+static void apply_tangent(const ElementGroup* groups, int count, const ElementModel& model,
+                          const ScalarPath& scalar, const ChunkFields& fields, double* y,
+                          LaneCounts& counts) {
+  const bool damped = model.damping_mu > 0.0 && model.d_scale != 0.0;
+  const auto damping = [&](const Matrix& F, const Matrix& dF) __attribute__((always_inline)) {
+    return (Pack{} + model.d_scale) * (F * full(damping_stress(symmetric_product(F, dF), model)));
+  };
+  if (model.k_scale == 0.0) {
+    for (int g = 0; g < count; ++g) {
+      fetch_ahead(groups, g);
+      for (int part = 0; part < 8; part += kWidth) {
+        const Lanes at{groups[g], part, g};
+        const Gradients G = gradients(at);
+        if (damped)
+          add_forces(at, G, damping(gradient_of(at, G, fields.x), gradient_of(at, G, fields.w)), at.volume(),
+                     y);
+      }
+    }
+    return;
+  }
+  for_each_element<Law>(
+      groups, count, fields, scalar,
+      counts, [&](const Lanes& at, const Matrix& F, const State<Law>& state) __attribute__((always_inline)) {
+        const Gradients G = gradients(at);
+        const Matrix dF = gradient_of(at, G, fields.w);
+        typename Law::ScalarModes modes;
+        Matrix dP = Law::change(model, F, state, Law::tangent(model, F, state, scalar, modes, counts), dF);
+        if (model.by_position) {
+          const Matrix F_dot = gradient_of(at, G, fields.v);
+          dP = dP + dF * full(damping_stress(symmetric_product(F, F_dot), model)) +
+               F * full(damping_stress(symmetric_product(dF, F_dot), model));
+        }
+        dP = (Pack{} + model.k_scale) * dP;
+        if (damped) dP = dP + damping(F, dF);
+        add_forces(at, G, dP, at.volume(), y);
+      });
+}

@@ -1,0 +1,39 @@
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "chunk_memory.h"
+#include "palpate/core/workers.h"
+
+namespace palpate::fem {
+
+/// Whether chunks come one after the other, so that a contribution to a shared node or edge is added at once.
+/// Several threads put such contributions aside and add them afterwards, in the order of the chunks: the same
+/// sums to the last bit.
+inline bool in_order() { return workers::count() == 1; }
+
+/// Runs f(k) for k in [0, count) on all workers, in tasks of many.
+template <class F>
+void for_each_sum(int count, F&& f) {
+  constexpr int kSumsInTask = 512;
+  workers::for_each((count + kSumsInTask - 1) / kSumsInTask, [&](int task, int) {
+    for (int k = task * kSumsInTask; k < std::min(count, (task + 1) * kSumsInTask); ++k) f(k);
+  });
+}
+
+/// Reduces the nodal sums of chunks to a nodal vector of the body.
+class NodalReduction {
+ public:
+  void fit(const ElementChunks& chunks);
+  /// Adds the sums of a chunk's nodes, four doubles a node, to `out`; those of shared nodes at once only in
+  /// order.  Chunks may come from several threads.
+  void add(const ElementChunks& chunks, const ElementChunks::Chunk& chunk, const double* sum, double* out);
+  /// Adds what was put aside; after all chunks.
+  void finish(const ElementChunks& chunks, double* out) const;
+  std::size_t bytes() const { return bytes_of(shared_); }
+
+ private:
+  std::vector<Line> shared_;  ///< half a line a contribution
+};
+
+}  // namespace palpate::fem
