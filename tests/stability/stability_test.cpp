@@ -21,10 +21,10 @@ using spoilt::Spoil;
 
 namespace {
 
-StabilityMatrix matrix_of(const dynamics::StepperRegistry& registry, const std::vector<std::string>& rows,
+StabilityMatrix matrix_of(spoilt::Registry registry, const std::vector<std::string>& rows,
                           double limit_s = 20.0, int jobs = 1) {
   StabilityOptions options;
-  options.registry = &registry;
+  options.registry = registry;
   options.rows = rows;
   options.seeds = 2;
   options.limit_s = limit_s;
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Rows, EveryIntegrator,
                            return name;
                          });
 TEST_P(EveryIntegrator, DoesWhatTheoryExpects) {
-  const StabilityMatrix matrix = matrix_of(integrate::stepper_registry(), {GetParam()});
+  const StabilityMatrix matrix = matrix_of(integrate::stepper_registry, {GetParam()});
   EXPECT_EQ(unexpected_of(matrix), "");
   EXPECT_GE(matrix.cells.size(), integrate::stepper_registry().size());
   for (const StabilityCell& cell : matrix.cells) EXPECT_FALSE(cell.expected.empty()) << cell.integrator;
@@ -138,7 +138,7 @@ TEST(Stability, WhatGoesThroughAThinPlateIsCounted) {
 
 TEST(Stability, ACrashIsACell) {
   StabilityOptions options;
-  options.registry = &spoilt::registry(Spoil::kCrashes);
+  options.registry = spoilt::registry(Spoil::kCrashes);
   options.rows = {"sizes", "poissons-ratio"};
   options.jobs = 2;
   const StabilityMatrix matrix = run(options);
@@ -151,7 +151,7 @@ TEST(Stability, ACrashIsACell) {
 }
 
 TEST(Stability, DoesNotDependOnTheNumberOfProcesses) {
-  const auto& registry = spoilt::registry(Spoil::kNothing);
+  const auto registry = spoilt::registry(Spoil::kNothing);
   const StabilityMatrix one = matrix_of(registry, {"youngs-modulus", "squashed"}, 20.0, 1),
                         three = matrix_of(registry, {"youngs-modulus", "squashed"}, 20.0, 3);
   ASSERT_EQ(one.cells.size(), three.cells.size());
@@ -166,7 +166,7 @@ TEST(Stability, DoesNotDependOnTheNumberOfProcesses) {
 TEST(Stability, StopsBetweenCells) {
   std::atomic<bool> stop{false};
   StabilityOptions options;
-  options.registry = &spoilt::registry(Spoil::kNothing);
+  options.registry = spoilt::registry(Spoil::kNothing);
   options.rows = {"step"};
   options.stop = &stop;
   int calls = 0;
