@@ -146,6 +146,7 @@ nothing: the same line goes on where it stopped.  Writes compare.csv, reference.
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return compare(*arguments); };
     invocation.factorises = true;
+    invocation.starts_processes = true;
   });
 }
 
@@ -230,6 +231,7 @@ Writes stability.csv, stability.json and report.html with the heat map.  Exit st
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return stability(*arguments); };
     invocation.factorises = true;
+    invocation.starts_processes = true;
   });
 }
 
@@ -329,6 +331,7 @@ void add_demo(CLI::App& app, Invocation& invocation) {
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return demo(*arguments); };
     invocation.factorises = true;
+    invocation.starts_processes = true;
   });
 }
 

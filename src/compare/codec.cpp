@@ -223,7 +223,7 @@ std::string bytes_of(const std::vector<ExchangePoint>& points) {
   ByteWriter out;
   out.put(points.size());
   for (const ExchangePoint& p : points) {
-    out.put(p.exchange_period_s).put(p.cpu_s);
+    out.put(p.exchange_period_s).put(p.cpu_s).put(p.trouble);
     visit_error(p.error, writing(out, p));
   }
   return out.take();
@@ -235,6 +235,7 @@ std::vector<ExchangePoint> exchange_of(const std::string& bytes) {
   for (ExchangePoint& p : points) {
     p.exchange_period_s = in.get<double>();
     p.cpu_s = in.get<double>();
+    p.trouble = in.get<std::string>();
     visit_error(p.error, reading(in));
   }
   return points;
@@ -244,7 +245,7 @@ std::string bytes_of(const std::vector<MethodPoint>& points) {
   ByteWriter out;
   out.put(points.size());
   for (const MethodPoint& p : points) {
-    out.put(p.method).put(p.peak_force_n).put(p.most_samples).put(p.query_s).put(p.cpu_s);
+    out.put(p.method).put(p.peak_force_n).put(p.most_samples).put(p.query_s).put(p.cpu_s).put(p.trouble);
     visit_error(p.difference, writing(out, p));
   }
   return out.take();
@@ -259,6 +260,7 @@ std::vector<MethodPoint> methods_of(const std::string& bytes) {
     p.most_samples = in.get<long>();
     p.query_s = in.get<double>();
     p.cpu_s = in.get<double>();
+    p.trouble = in.get<std::string>();
     visit_error(p.difference, reading(in));
   }
   return points;

@@ -76,6 +76,7 @@ class Study {
     if (!task.is_point()) {
       const auto kept = database_.artefact(ledger_.artefact_key(task));
       if (!kept || (kept->status == "out of time" && kept->cpu_s < ledger_.limit_of(task))) return;
+      if (!Ledger::is_whole(task, *kept)) return;
       reuse(task, *kept);
       return;
     }

@@ -251,9 +251,17 @@ TEST(ProcessPool, AHelperThatDiedIsAClearError) {
   if (parent == 0) {
     close(ends[0]);
     std::string said;
+    int go[2];
+    if (pipe(go) != 0) _exit(1);
     ProcessPool pool(1);
-    pool.start([](const auto&, const auto&) -> std::string { return kill(getppid(), SIGKILL), pause(), ""; },
-               "", 60.0, [&](const ProcessPool::Outcome& o) { said = o.bytes; });
+    pool.start(
+        [](const std::string& bytes, const auto&) -> std::string {
+          char byte;
+          if (read(std::stoi(bytes), &byte, 1) == 1) kill(getppid(), SIGKILL);  // the server
+          for (;;) pause();
+        },
+        std::to_string(go[0]), 60.0, [&](const ProcessPool::Outcome& o) { said = o.bytes; });
+    if (write(go[1], "x", 1) != 1) _exit(1);
     while (!pool.idle()) pool.wait(1.0);
     try {
       pool.start([](const auto&, const auto&) { return std::string(); }, "", 60.0, [](const auto&) {});

@@ -72,7 +72,7 @@ fs::path full_dir() {
 }  // namespace
 
 TEST(RunReport, HoldsEverySectionAndNothingFromOutside) {
-  const std::string html = read(report::write_run_report(full_dir()));
+  const std::string html = read(report::write_run_report(full_dir()).page);
   EXPECT_EQ(well_formed_problem(html), "");
   for (const char* text : {"palpate: press &lt;ball&gt;",
                            "The ball &amp; its dent",
@@ -113,7 +113,7 @@ TEST(RunReport, HoldsEverySectionAndNothingFromOutside) {
 TEST(RunReport, LeavesOutSectionsWithoutAFile) {
   const fs::path dir = fresh_dir("thin_report");
   put(dir / "summary.json", R"({"scene": "one-tet"})");
-  const std::string html = read(report::write_run_report(dir));
+  const std::string html = read(report::write_run_report(dir).page);
   EXPECT_NE(html.find("palpate: one-tet"), std::string::npos);
   for (const char* text : {"Force on the hand", "Error against run time", "Validation", "Provenance"})
     EXPECT_EQ(html.find(text), std::string::npos) << text;
@@ -122,7 +122,7 @@ TEST(RunReport, LeavesOutSectionsWithoutAFile) {
 TEST(RunReport, GivesTheReasonInPlaceOfAFigureThatCannotBeDrawn) {
   const fs::path dir = fresh_dir("no_figure_report");
   put(dir / "force.csv", "time_s,force_x_n,force_y_n,force_z_n\n");
-  EXPECT_NE(read(report::write_run_report(dir)).find("Figure not drawn"), std::string::npos);
+  EXPECT_NE(read(report::write_run_report(dir).page).find("Figure not drawn"), std::string::npos);
 }
 
 TEST(RunReport, RefusesADirectoryWithoutResults) {

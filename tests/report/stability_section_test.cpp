@@ -29,7 +29,7 @@ std::string page_of(const std::string& json) {
   fs::remove_all(dir);
   fs::create_directories(dir);
   std::ofstream(dir / "stability.json") << json;
-  std::ifstream in(report::write_run_report(dir));
+  std::ifstream in(report::write_run_report(dir).page);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
