@@ -1,7 +1,6 @@
 #include "palpate/stability/stability.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "palpate/integrate/integrators.h"
 #include "palpate/store/csv.h"
 #include "stability/spoilt_stepper.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 using namespace palpate::stability;
@@ -195,8 +195,7 @@ TEST(Stability, RefusesNamesThatItDoesNotKnow) {
 }
 
 TEST(Stability, WritesWhatItFound) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / fmt::format("stability-{}", ::getpid());
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   const StabilityMatrix matrix = matrix_of(spoilt::registry(Spoil::kGainsEnergy), {"youngs-modulus"});
   write(matrix, folder.string(), "palpate stability");
   const store::CsvTable csv = store::read_csv((folder / "stability.csv").string());
@@ -205,7 +204,6 @@ TEST(Stability, WritesWhatItFound) {
   EXPECT_EQ(csv.column("expected")[0], matrix.cells[0].expected.text());
   EXPECT_EQ(csv.column("as_expected")[0], matrix.cells[0].as_expected() ? "yes" : "no");
   EXPECT_TRUE(std::filesystem::exists(folder / "stability.json"));
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
