@@ -23,7 +23,8 @@ with h5py.File(sys.argv[1], "r") as file:
     root = file["VTKHDF"]
     demand(list(root.attrs["Version"]) == [2, 0], "Version")
     kind = root.attrs.get_id("Type")
-    demand(kind.dtype.kind == "S" and not h5py.check_string_dtype(kind.dtype).length is None, "Type must be a string of fixed length")
+    demand(kind.dtype.kind == "S" and not h5py.check_string_dtype(kind.dtype).length is None,
+           "Type must be a string of fixed length")
     demand(root.attrs["Type"] == b"UnstructuredGrid", "Type")
     steps = root["Steps"]
     count = int(steps.attrs["NSteps"])
@@ -35,7 +36,8 @@ with h5py.File(sys.argv[1], "r") as file:
     for s in range(count):
         demand(steps["NumberOfParts"][s] == 1, "NumberOfParts")
         part, first = int(steps["PartOffsets"][s]), int(steps["CellOffsets"][s])
-        n, cells, ids = (int(root[name][part]) for name in ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"))
+        sizes = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
+        n, cells, ids = (int(root[name][part]) for name in sizes)
         offsets = root["Offsets"][first + part:][:cells + 1]
         start = int(steps["ConnectivityIdOffsets"][s])
         step = {
