@@ -29,7 +29,10 @@ constexpr const char* kExamples = R"(Examples:
   palpate validate                               every case with a known answer
   palpate list integrators                       the names that scenes and --integrator know
 
-`palpate COMMAND --help` tells more about each.)";
+`palpate COMMAND --help` tells more about each.
+
+Exit status: 0 when all that the command promises was done; 1 on an error; 3 when something of it is missing, which the
+last line names; 130 after Ctrl-C.)";
 
 constexpr const char* kSceneHelp =
     "a scene file (.toml), or the name of one that comes with palpate (`palpate list scenes`)";

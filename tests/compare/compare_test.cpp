@@ -255,6 +255,22 @@ TEST(Compare, StopsAtOnceWhenAsked) {
   for (const compare::ComparePoint& p : all.scenes[0].points) EXPECT_EQ(p.status, PointStatus::kMissing);
 }
 
+// A run's process gets the scene as its text: nothing may be lost on the way, to the last bit.
+TEST(Compare, TheTextOfASceneIsAllOfIt) {
+  const scene::Description d =
+      scene::parse(compare_scenes::block_text(compare_scenes::kLadders), "block.toml",
+                   {"body.0.youngs_modulus_pa=12345.678901234567", "integrator.rtol=1.2345678901234567e-7",
+                    "scene.gravity_m_s2=[0.1, 1e-300, -0.30000000000000004]", "integrator.name=cvode-bdf",
+                    "integrator.max_order=2"});
+  const scene::Description again = scene::parse(d.source, d.path);
+  EXPECT_EQ(again.source, d.source);
+  EXPECT_EQ(again.bodies[0].youngs_modulus_pa, 12345.678901234567);
+  EXPECT_EQ(again.integrator.rtol, 1.2345678901234567e-7);
+  EXPECT_EQ(again.integrator.max_order, 2);
+  EXPECT_EQ(again.gravity_m_s2, Vec3(0.1, 1e-300, -0.30000000000000004));
+  EXPECT_EQ(again.compare.ladders[1].values, d.compare.ladders[1].values);
+}
+
 TEST(Compare, GoesOnFromItsDatabaseAndDoesNothingTwice) {
   const TemporaryFolder folder;
   compare::CompareOptions options = quick();

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 #include <ostream>
+#include <set>
 
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
@@ -178,6 +179,16 @@ TEST(Stability, StopsBetweenCells) {
   const StabilityMatrix matrix = run(options);
   EXPECT_TRUE(matrix.stopped);
   EXPECT_EQ(matrix.cells.size(), 2u);
+}
+
+// A cell's process finds it by these names.
+TEST(Stability, CasesOfARowHaveNamesOfTheirOwn) {
+  std::set<std::string> rows;
+  for (const StabilityRow& row : stability_rows()) {
+    EXPECT_TRUE(rows.insert(row.name).second) << row.name;
+    const std::set<std::string> cases(row.sub_cases.begin(), row.sub_cases.end());
+    EXPECT_EQ(cases.size(), row.sub_cases.size()) << row.name;
+  }
 }
 
 TEST(Stability, RefusesNamesThatItDoesNotKnow) {
