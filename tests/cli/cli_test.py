@@ -324,23 +324,6 @@ class Incomplete(Cli):
         self.assertIn("checked reference of cantilever", last)
 
 
-class Demo(Cli):
-    def test_all_charts_after_a_picture(self):
-        """Its picture is drawn first: the processes of the charts must not inherit what that has opened."""
-        self.good("demo", "-o", "demo")
-        methods = (self.folder / "demo/methods.csv").read_text().splitlines()
-        self.assertGreaterEqual(len(methods), 1 + 2, methods)
-        self.assertTrue((self.folder / "demo/exchange.csv").exists())
-        self.assertTrue((self.folder / "demo/picture.png").exists())
-
-    def test_what_is_missing_stands_in_the_last_line(self):
-        done = self.call("demo", "-o", "demo", **NO_EGL)
-        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
-        last = done.stderr.splitlines()[-1]
-        for part in ("palpate: incomplete: ", "picture demo/picture.png", 'contact method "gpu"'):
-            self.assertIn(part, last)
-
-
 class LeftOut(Cli):
     """What a scene does not name is not there: by the loader's own account, and by the counters."""
 
