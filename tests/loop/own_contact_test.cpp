@@ -2,7 +2,6 @@
 // by any integrator and linear solver.
 #include <gtest/gtest.h>
 
-
 #include <filesystem>
 
 #include "contact/bent_bar.h"

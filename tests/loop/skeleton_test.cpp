@@ -1,7 +1,6 @@
 // Bones of a model file in scenes: welded, by a script, and on joints.
 #include <gtest/gtest.h>
 
-
 #include <filesystem>
 
 #include "loop/bone_paths.h"
