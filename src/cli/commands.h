@@ -7,6 +7,8 @@
 /// at fault.
 namespace palpate::cli {
 
+class Undelivered;
+
 /// Which scene, and what is changed in it.
 struct SceneArguments {
   std::string scene;                   ///< path or name
@@ -22,6 +24,8 @@ struct RunArguments {
   std::string shade = "displacement";  ///< of the picture; or "stress"
 };
 int run(const RunArguments& arguments);
+/// As a part of another command, which closes what is missing.
+int run(const RunArguments& arguments, Undelivered& missing);
 
 struct CompareArguments {
   std::vector<std::string> scenes;
@@ -35,6 +39,7 @@ struct CompareArguments {
   bool fresh = false;  ///< forget what an earlier study left in the folder
 };
 int compare(const CompareArguments& arguments);
+int compare(const CompareArguments& arguments, Undelivered& missing);
 
 struct ValidateArguments {
   std::vector<std::string> cases;  ///< empty: all
@@ -101,8 +106,9 @@ int demo(const DemoArguments& arguments);
 
 /// What the command line asks for.
 struct Invocation {
-  std::function<int()> action;  ///< empty: help was asked for and given
-  bool factorises = false;      ///< worth restarting with tuned linear algebra
+  std::function<int()> action;    ///< empty: help was asked for and given
+  bool factorises = false;        ///< worth restarting with tuned linear algebra
+  bool starts_processes = false;  ///< core's ProcessPool is made ready before anything is opened
   bool quiet = false, verbose = false;
 };
 /// @throws Error for a line that makes no sense

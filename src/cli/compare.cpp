@@ -15,6 +15,7 @@
 #include "progress.h"
 #include "scene_of.h"
 #include "stop.h"
+#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {
@@ -60,9 +61,24 @@ compare::Comparison compare_watched(const std::vector<scene::Description>& scene
   return compare::run(scenes, options);
 }
 
+/// What a finished comparison does not hold.
+void add_missing(const compare::Comparison& comparison, Undelivered& missing) {
+  for (const compare::SceneComparison& scene : comparison.scenes) {
+    if (!scene.reference.trouble.empty())
+      missing.add("checked reference of " + scene.scene, scene.reference.trouble);
+    for (const compare::MissingChart& chart : scene.missing_charts)
+      missing.add(fmt::format("chart of {} of {}", chart.of, scene.scene), chart.why);
+  }
+}
+
 }  // namespace
 
 int compare(const CompareArguments& arguments) {
+  Undelivered missing;
+  return missing.close(compare(arguments, missing));
+}
+
+int compare(const CompareArguments& arguments, Undelivered& missing) {
   const std::vector<scene::Description> scenes = scenes_of(arguments);
   const std::string folder =
       arguments.folder.empty() ? default_folder(default_name(scenes)) : arguments.folder;
@@ -87,8 +103,15 @@ int compare(const CompareArguments& arguments) {
     fmt::print("{}\n\n", report::in_words(own, scene.reference.own_error.position_rel_l2));
   }
   fmt::print("{}\n", comparison.rules);
-  if (!table.rows.empty()) fmt::print("written: {}\n", report::write_run_report(folder).string());
-  if (!comparison.stopped) return 0;
+  if (!table.rows.empty()) {
+    const report::RunReport written = report::write_run_report(folder);
+    fmt::print("written: {}\n", written.page.string());
+    missing.add(written);
+  }
+  if (!comparison.stopped) {
+    add_missing(comparison, missing);
+    return 0;
+  }
   fmt::print(stderr, "palpate: stopped; the same command goes on from {}\n", folder);
   return kExitStopped;
 }

@@ -146,7 +146,8 @@ void print_reference(const compare::SceneComparison& scene) {
                                r.own_error.torque_rms_n_m)
                  : "");
   if (!r.trouble.empty()) fmt::print("{}: {}\n", scene.scene, r.trouble);
-  for (const std::string& note : scene.notes) fmt::print("{}: {}\n", scene.scene, note);
+  for (const compare::MissingChart& chart : scene.missing_charts)
+    fmt::print("{}: {}\n", scene.scene, chart.text());
   fmt::print("\n");
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "commands.h"
+#include "undelivered.h"
 
 namespace palpate::cli {
 
@@ -10,7 +11,8 @@ int demo(const DemoArguments& arguments) {
   touch.scene.scene = "press-ball";
   touch.folder = arguments.folder;
   touch.picture = true;
-  if (const int status = run(touch); status != 0) return status;
+  Undelivered missing;
+  if (const int status = run(touch, missing); status != 0) return missing.close(status);
 
   fmt::print("\nThe same touch by each integrator: how far from the truth, at what price?\n\n");
   CompareArguments price;
@@ -20,7 +22,7 @@ int demo(const DemoArguments& arguments) {
   price.repeats = 1;
   // a thousand times below what these two reach, in a third of the time
   price.overrides = {"compare.reference_rtol=1e-9", "compare.reference_check_rtol=1e-8"};
-  return compare(price);
+  return missing.close(compare(price, missing));
 }
 
 }  // namespace palpate::cli

@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
+#include "palpate/core/process_pool.h"
 #include "stop.h"
 #include "tune.h"
 
@@ -45,6 +46,13 @@ int main(int argc, char** argv) {
   });
   if (!invocation.action) return parsed;
   if (invocation.factorises) restart_tuned(argv);
+  if (invocation.starts_processes) {
+    const int prepared = guarded([] {
+      palpate::ProcessPool::prepare();
+      return 0;
+    });
+    if (prepared != 0) return prepared;
+  }
   palpate::log::configure(invocation.quiet, invocation.verbose);
   catch_stop_signals();
   return guarded(invocation.action);

@@ -10,6 +10,7 @@
 #include "palpate/store/csv.h"
 #include "places.h"
 #include "scene_of.h"
+#include "undelivered.h"
 #ifdef PALPATE_HAS_RENDER
 #include "palpate/render/scene.h"
 #endif
@@ -94,17 +95,25 @@ int modes(const ModesArguments& arguments) {
       arguments.folder.empty() ? default_folder("modes-" + short_name(description)) : arguments.folder;
   make_folder(folder);
   const std::filesystem::path base(folder);
+  Undelivered missing;
   write_table(found, (base / "modes.csv").string());
   loop::write_modes(*world, found, (base / "modes.vtkhdf").string());
 #ifdef PALPATE_HAS_RENDER
-  if (arguments.picture) draw_modes(*world, found, (base / "modes.png").string());
+  if (arguments.picture) {
+    std::error_code none;
+    std::filesystem::remove(base / "modes.png", none);  // one of an earlier run would pass for this one's
+    try {
+      draw_modes(*world, found, (base / "modes.png").string());
+    } catch (const Error& e) { missing.add("picture " + (base / "modes.png").string(), e.what()); }
+  }
 #endif
-  fmt::print("in {}: modes.csv, modes.vtkhdf{}\n", folder, arguments.picture ? ", modes.png" : "");
+  fmt::print("in {}: modes.csv, modes.vtkhdf{}\n", folder,
+             arguments.picture && missing.empty() ? ", modes.png" : "");
   if (!found.converged)
     fail(
         "the modes did not converge: see their residuals; a mesh with better elements, or fewer modes "
         "(--count), may help");
-  return 0;
+  return missing.close(0);
 }
 
 }  // namespace palpate::cli

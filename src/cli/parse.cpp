@@ -29,7 +29,10 @@ constexpr const char* kExamples = R"(Examples:
   palpate validate                               every case with a known answer
   palpate list integrators                       the names that scenes and --integrator know
 
-`palpate COMMAND --help` tells more about each.)";
+`palpate COMMAND --help` tells more about each.
+
+Exit status: 0 when all that the command promises was done; 1 on an error; 3 when something of it is missing, which the
+last line names; 130 after Ctrl-C.)";
 
 constexpr const char* kSceneHelp =
     "a scene file (.toml), or the name of one that comes with palpate (`palpate list scenes`)";
@@ -146,6 +149,7 @@ nothing: the same line goes on where it stopped.  Writes compare.csv, reference.
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return compare(*arguments); };
     invocation.factorises = true;
+    invocation.starts_processes = true;
   });
 }
 
@@ -230,6 +234,7 @@ Writes stability.csv, stability.json and report.html with the heat map.  Exit st
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return stability(*arguments); };
     invocation.factorises = true;
+    invocation.starts_processes = true;
   });
 }
 
@@ -329,6 +334,7 @@ void add_demo(CLI::App& app, Invocation& invocation) {
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return demo(*arguments); };
     invocation.factorises = true;
+    invocation.starts_processes = true;
   });
 }
 

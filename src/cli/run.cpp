@@ -16,6 +16,7 @@
 #include "progress.h"
 #include "scene_of.h"
 #include "stop.h"
+#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {
@@ -79,6 +80,16 @@ void keep_summary(const loop::World& world, const loop::RunResult& result, doubl
   store::write_atomically((std::filesystem::path(folder) / "scene.toml").string(), world.description.source);
 }
 
+void keep_picture(const loop::World& world, const Snapshot& snapshot, const std::string& folder,
+                  Undelivered& missing) {
+  const std::string path = (std::filesystem::path(folder) / "picture.png").string();
+  std::error_code none;
+  std::filesystem::remove(path, none);  // one of an earlier run would pass for this one's
+  try {
+    snapshot.save(world, path);
+  } catch (const Error& e) { missing.add("picture " + path, e.what()); }
+}
+
 /// What stands in the folder now, for the person to open.
 void print_files(const std::string& folder) {
   std::vector<std::string> names;
@@ -102,6 +113,11 @@ loop::RunResult run_watched(loop::World& world, const RunArguments& arguments,
 }  // namespace
 
 int run(const RunArguments& arguments) {
+  Undelivered missing;
+  return missing.close(run(arguments, missing));
+}
+
+int run(const RunArguments& arguments, Undelivered& missing) {
   const scene::Description description = scene_of(arguments.scene);
   if (arguments.picture) check_picture(arguments.shade);
   const double start = wall_seconds();
@@ -133,8 +149,8 @@ int run(const RunArguments& arguments) {
   print_outcome(*world, result, peak, assemble_s);
   if (keep) {
     keep_summary(*world, result, assemble_s, arguments, folder);
-    if (arguments.picture) snapshot.save(*world, (std::filesystem::path(folder) / "picture.png").string());
-    if (arguments.report) report::write_run_report(folder);
+    if (arguments.picture) keep_picture(*world, snapshot, folder, missing);
+    if (arguments.report) missing.add(report::write_run_report(folder));
     print_files(folder);
   }
   if (!result.status.ok())

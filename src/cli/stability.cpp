@@ -12,6 +12,7 @@
 #include "places.h"
 #include "progress.h"
 #include "stop.h"
+#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {
@@ -95,14 +96,17 @@ int stability(const StabilityArguments& arguments) {
   print_matrix(matrix);
   print_cells(matrix, !arguments.cells);
   const long unexpected = matrix.unexpected();
-  fmt::print("\n{} of {} cells as theory expects, in {:.0f} s\n",
+  const report::RunReport written = report::write_run_report(folder);
+  fmt::print("\nwritten: {}\n", written.page.string());
+  fmt::print("{} of {} cells as theory expects, in {:.0f} s\n",
              static_cast<long>(matrix.cells.size()) - unexpected, matrix.cells.size(), matrix.wall_s);
-  fmt::print("written: {}\n", report::write_run_report(folder).string());
   if (matrix.stopped) {
     fmt::print(stderr, "palpate: stopped; the cells that were finished are in {}\n", folder);
     return kExitStopped;
   }
-  return unexpected > 0 ? kExitError : 0;
+  Undelivered missing;
+  missing.add(written);
+  return missing.close(unexpected > 0 ? kExitError : 0);
 }
 
 }  // namespace palpate::cli

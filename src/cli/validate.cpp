@@ -14,6 +14,7 @@
 #include "places.h"
 #include "progress.h"
 #include "stop.h"
+#include "undelivered.h"
 
 namespace palpate::cli {
 namespace {
@@ -105,11 +106,13 @@ void run_sabotaged(const ValidationCase& one, Run& out) {
   }
 }
 
-void write_results(const Run& run, const std::string& folder) {
+void write_results(const Run& run, const std::string& folder, Undelivered& missing) {
   make_folder(folder);
   const std::string path = (std::filesystem::path(folder) / "validation.json").string();
   std::ofstream(path) << Json{{"cases", run.cases}}.dump(2) << "\n";
-  fmt::print("written: {}, {}\n", path, report::write_run_report(folder).string());
+  const report::RunReport written = report::write_run_report(folder);
+  fmt::print("written: {}, {}\n", path, written.page.string());
+  missing.add(written);
 }
 
 }  // namespace
@@ -132,11 +135,12 @@ int validate(const ValidateArguments& arguments) {
                                                            : Headers{"case", "quantity", "computed", "exact",
                                                                      "error", "bar", "order", "verdict"},
                                         out.rows));
+  Undelivered missing;
+  if (!arguments.folder.empty() && !arguments.sabotage) write_results(out, arguments.folder, missing);
   fmt::print("{} of {} cases {}{}\n", done - static_cast<std::size_t>(out.failed), done,
              arguments.sabotage ? "fail when broken on purpose" : "keep their bars",
              done < cases.size() ? fmt::format("; stopped before the other {}", cases.size() - done) : "");
-  if (!arguments.folder.empty() && !arguments.sabotage) write_results(out, arguments.folder);
-  return out.failed > 0 ? kExitError : 0;
+  return missing.close(out.failed > 0 ? kExitError : 0);
 }
 
 }  // namespace palpate::cli

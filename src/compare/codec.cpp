@@ -92,6 +92,33 @@ loop::RunResult get_result(ByteReader& in) {
   return r;
 }
 
+void put_trajectory(ByteWriter& out, const Trajectory& t) {
+  out.put(t.period_times).put(t.energies).put(t.tick_times).put(t.node_weights).put(t.start);
+  out.put(t.positions.size());
+  for (const VecX& x : t.positions) out.put(x);
+  out.put(t.device.size());
+  for (const Wrench& w : t.device)
+    for (int i = 0; i < 3; ++i) out.put(w.force[i]).put(w.moment[i]);
+}
+
+Trajectory get_trajectory(ByteReader& in) {
+  Trajectory t;
+  t.period_times = in.get<std::vector<double>>();
+  t.energies = in.get<std::vector<double>>();
+  t.tick_times = in.get<std::vector<double>>();
+  t.node_weights = in.get<VecX>();
+  t.start = in.get<VecX>();
+  t.positions.resize(in.get<std::size_t>());
+  for (VecX& x : t.positions) x = in.get<VecX>();
+  t.device.resize(in.get<std::size_t>());
+  for (Wrench& w : t.device)
+    for (int i = 0; i < 3; ++i) {
+      w.force[i] = in.get<double>();
+      w.moment[i] = in.get<double>();
+    }
+  return t;
+}
+
 }  // namespace
 
 const char* to_string(PointStatus status) {
@@ -109,13 +136,7 @@ const char* to_string(PointStatus status) {
 
 std::string bytes_of(const Run& run) {
   ByteWriter out;
-  const Trajectory& t = run.trajectory;
-  out.put(t.period_times).put(t.energies).put(t.tick_times).put(t.node_weights).put(t.start);
-  out.put(t.positions.size());
-  for (const VecX& x : t.positions) out.put(x);
-  out.put(t.device.size());
-  for (const Wrench& w : t.device)
-    for (int i = 0; i < 3; ++i) out.put(w.force[i]).put(w.moment[i]);
+  put_trajectory(out, run.trajectory);
   put_result(out, run.result);
   return out.take();
 }
@@ -123,22 +144,20 @@ std::string bytes_of(const Run& run) {
 Run run_of(const std::string& bytes) {
   ByteReader in(bytes);
   Run run;
-  Trajectory& t = run.trajectory;
-  t.period_times = in.get<std::vector<double>>();
-  t.energies = in.get<std::vector<double>>();
-  t.tick_times = in.get<std::vector<double>>();
-  t.node_weights = in.get<VecX>();
-  t.start = in.get<VecX>();
-  t.positions.resize(in.get<std::size_t>());
-  for (VecX& x : t.positions) x = in.get<VecX>();
-  t.device.resize(in.get<std::size_t>());
-  for (Wrench& w : t.device)
-    for (int i = 0; i < 3; ++i) {
-      w.force[i] = in.get<double>();
-      w.moment[i] = in.get<double>();
-    }
+  run.trajectory = get_trajectory(in);
   run.result = get_result(in);
   return run;
+}
+
+std::string bytes_of(const Trajectory& trajectory) {
+  ByteWriter out;
+  put_trajectory(out, trajectory);
+  return out.take();
+}
+
+Trajectory trajectory_of(const std::string& bytes) {
+  ByteReader in(bytes);
+  return get_trajectory(in);
 }
 
 std::string bytes_of(const PointRun& run) {
@@ -204,7 +223,7 @@ std::string bytes_of(const std::vector<ExchangePoint>& points) {
   ByteWriter out;
   out.put(points.size());
   for (const ExchangePoint& p : points) {
-    out.put(p.exchange_period_s).put(p.cpu_s);
+    out.put(p.exchange_period_s).put(p.cpu_s).put(p.trouble);
     visit_error(p.error, writing(out, p));
   }
   return out.take();
@@ -216,6 +235,7 @@ std::vector<ExchangePoint> exchange_of(const std::string& bytes) {
   for (ExchangePoint& p : points) {
     p.exchange_period_s = in.get<double>();
     p.cpu_s = in.get<double>();
+    p.trouble = in.get<std::string>();
     visit_error(p.error, reading(in));
   }
   return points;
@@ -225,7 +245,7 @@ std::string bytes_of(const std::vector<MethodPoint>& points) {
   ByteWriter out;
   out.put(points.size());
   for (const MethodPoint& p : points) {
-    out.put(p.method).put(p.peak_force_n).put(p.most_samples).put(p.query_s).put(p.cpu_s);
+    out.put(p.method).put(p.peak_force_n).put(p.most_samples).put(p.query_s).put(p.cpu_s).put(p.trouble);
     visit_error(p.difference, writing(out, p));
   }
   return out.take();
@@ -240,6 +260,7 @@ std::vector<MethodPoint> methods_of(const std::string& bytes) {
     p.most_samples = in.get<long>();
     p.query_s = in.get<double>();
     p.cpu_s = in.get<double>();
+    p.trouble = in.get<std::string>();
     visit_error(p.difference, reading(in));
   }
   return points;

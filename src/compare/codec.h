@@ -8,6 +8,9 @@ namespace palpate::compare {
 std::string bytes_of(const Run& run);
 Run run_of(const std::string& bytes);
 
+std::string bytes_of(const Trajectory& trajectory);
+Trajectory trajectory_of(const std::string& bytes);
+
 /// What a point's error was measured against.
 enum class ReferenceUsed { kNone, kTruth, kCheck };
 

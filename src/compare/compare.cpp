@@ -6,6 +6,7 @@
 #include "ledger.h"
 #include "palpate/core/error.h"
 #include "palpate/core/process_pool.h"
+#include "work.h"
 
 namespace palpate::compare {
 namespace {
@@ -30,22 +31,22 @@ class Study {
       : options_(options),
         jobs_(options.jobs > 0 ? options.jobs
                                : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
+        pool_(jobs_),
         database_(options.database.empty() ? ":memory:" : options.database, run_columns()),
         ledger_(scenes, options) {}
 
   Comparison run() {
-    ProcessPool pool(jobs_);
     while (!stopped()) {
       ledger_.settle_references();
       bool open = false, moved = false;
       for (Task& task : ledger_.tasks) {
-        if (!task.done) moved |= proceed(pool, task);
+        if (!task.done) moved |= proceed(task);
         open |= !task.done;
       }
       if (!open) break;
       if (moved) continue;  // what was settled makes others ready
-      PALPATE_CHECK(!pool.idle(), "nothing runs, and nothing can be started");
-      pool.wait(0.2);
+      PALPATE_CHECK(!pool_.idle(), "nothing runs, and nothing can be started");
+      pool_.wait(0.2);
     }
     ledger_.out.stopped = stopped();
     ledger_.finish(jobs_);
@@ -56,7 +57,7 @@ class Study {
   bool stopped() const { return options_.stop && options_.stop->load(); }
 
   /// Does what can be done for it now; true where that may let others proceed.
-  bool proceed(ProcessPool& pool, Task& task) {
+  bool proceed(Task& task) {
     if (task.started) return false;
     if (ledger_.is_pointless(task)) return task.done = true;
     if (!ledger_.is_ready(task)) return false;
@@ -65,8 +66,8 @@ class Study {
       resume(task);
       if (task.done) return true;
     }
-    if (!pool.has_room()) return false;
-    start(pool, task);
+    if (!pool_.has_room()) return false;
+    start(task);
     return true;
   }
 
@@ -75,6 +76,7 @@ class Study {
     if (!task.is_point()) {
       const auto kept = database_.artefact(ledger_.artefact_key(task));
       if (!kept || (kept->status == "out of time" && kept->cpu_s < ledger_.limit_of(task))) return;
+      if (!Ledger::is_whole(task, *kept)) return;
       reuse(task, *kept);
       return;
     }
@@ -93,27 +95,27 @@ class Study {
     ++ledger_.out.reused;
   }
 
-  void start(ProcessPool& pool, Task& task) {
+  void start(Task& task) {
     task.started = true;
     Task* at = &task;
-    pool.start([this, at](const std::atomic<bool>& late) { return work(*at, late); }, ledger_.limit_of(task),
-               [this, at](const Outcome& outcome) { done(*at, outcome); });
+    pool_.start(do_order, order(task), ledger_.limit_of(task),
+                [this, at](const Outcome& outcome) { done(*at, outcome); });
   }
 
-  /// In the process of the run.
-  std::string work(const Task& task, const std::atomic<bool>& late) {
+  /// What the process of the run is to do.
+  std::string order(const Task& task) {
     const SceneWork& scene = ledger_.work[task.scene];
-    const double duration = scene.description.compare.duration_s;
+    const double limit_s = ledger_.limit_of(task);
     switch (task.kind) {
-      case Task::Kind::kTruth: return bytes_of(run_once(scene.planned.truth, duration, &late));
-      case Task::Kind::kCheck: return bytes_of(run_once(scene.planned.check, duration, &late));
-      case Task::Kind::kExchange: return bytes_of(compare_exchange(scene.description, {{}, &late}));
-      case Task::Kind::kMethods: return bytes_of(compare_contact_methods(scene.description, &late));
+      case Task::Kind::kTruth: return order_of(WorkKind::kReference, scene.planned.truth, limit_s, nullptr);
+      case Task::Kind::kCheck: return order_of(WorkKind::kReference, scene.planned.check, limit_s, nullptr);
+      case Task::Kind::kExchange: return order_of(WorkKind::kExchange, scene.description, limit_s, nullptr);
+      case Task::Kind::kMethods: return order_of(WorkKind::kMethods, scene.description, limit_s, nullptr);
       case Task::Kind::kPoint:
       case Task::Kind::kRestart: break;
     }
-    return bytes_of(run_point(ledger_.point_of(task).description, options_.limit_s,
-                              task.kind == Task::Kind::kPoint ? scene.reference : nullptr, &late));
+    return order_of(WorkKind::kPoint, ledger_.point_of(task).description, limit_s,
+                    task.kind == Task::Kind::kPoint ? scene.reference : nullptr);
   }
 
   /// In the study's own process: keeps the result, then uses it.
@@ -197,6 +199,7 @@ class Study {
 
   const CompareOptions& options_;
   int jobs_;
+  ProcessPool pool_;  ///< first: where it cannot be had, nothing was opened
   store::StudyDb database_;
   Ledger ledger_;
 };

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
-#include "palpate/core/log.h"
 
 namespace palpate::compare {
 namespace {
@@ -60,9 +59,6 @@ std::vector<ExchangePoint> compare_exchange(const scene::Description& d, const E
       run_once(with_scheme(whole, "monolithic", shortest, refresh), d.compare.duration_s, options.stop);
   if (truth.result.stopped) return out;
   const bool comparable = truth.result.status.ok();
-  if (!comparable)
-    log::warn("the exchange period has no truth to be held against: the monolithic run failed: {}",
-              truth.result.status.message);
   done("monolithic");
   for (double period : periods) {
     if (options.stop && options.stop->load()) return out;
@@ -70,9 +66,13 @@ std::vector<ExchangePoint> compare_exchange(const scene::Description& d, const E
         run_once(with_scheme(d, "partitioned", period, refresh), d.compare.duration_s, options.stop);
     done(fmt::format("exchange period {:g} s", period));
     if (run.result.stopped) return out;
-    const bool ok = comparable && run.result.status.ok();
-    out.push_back(
-        {period, ok ? distance(run.trajectory, truth.trajectory) : no_distance(), run.result.cpu_s});
+    std::string trouble;
+    if (!comparable)
+      trouble = "the monolithic run failed: " + truth.result.status.message;
+    else if (!run.result.status.ok())
+      trouble = run.result.status.message.empty() ? "the run failed" : run.result.status.message;
+    out.push_back({period, trouble.empty() ? distance(run.trajectory, truth.trajectory) : no_distance(),
+                   run.result.cpu_s, trouble});
   }
   return out;
 }

@@ -132,6 +132,8 @@ void write_table(const Comparison& comparison, const fs::path& path, const std::
 
 nlohmann::ordered_json reference_of(const SceneComparison& scene) {
   const TrajectoryError& own = scene.reference.own_error;
+  nlohmann::ordered_json notes = nlohmann::ordered_json::array();
+  for (const MissingChart& chart : scene.missing_charts) notes.push_back(chart.text());
   return {{"scene", scene.scene},
           {"path", scene.path},
           {"description", scene.reference.description},
@@ -140,7 +142,7 @@ nlohmann::ordered_json reference_of(const SceneComparison& scene) {
           {"force_error_rms_n", own.force_rms_n},
           {"torque_error_rms_n_m", own.torque_rms_n_m},
           {"cpu_s", scene.reference.cpu_s},
-          {"notes", scene.notes}};
+          {"notes", notes}};
 }
 
 }  // namespace

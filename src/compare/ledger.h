@@ -57,6 +57,9 @@ class Ledger {
   /// A run's result, from the database or on its way there.
   void take(const Task& task, const store::StudyRun& row);
   void take(const Task& task, const store::StudyArtefact& kept);
+  /// False of a chart that lacks something: what was missing (a library, a display) may be there today, and
+  /// it is made again.
+  static bool is_whole(const Task& task, const store::StudyArtefact& kept);
   /// Once a scene's two reference runs have ended: what is the truth, and how far can it be trusted?
   void settle_references();
   /// Medians, marks and words, once nothing is left to run.  @param jobs  that ran side by side
@@ -65,6 +68,7 @@ class Ledger {
  private:
   void plan(const scene::Description& description);
   void add_tasks();
+  void take_chart(const Task& task, const store::StudyArtefact& kept);
   /// how many rungs of the same ladder come before it
   std::size_t rung(std::size_t scene, std::size_t point) const;
   bool reference_tasks_done(std::size_t scene) const;

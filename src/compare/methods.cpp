@@ -2,7 +2,6 @@
 
 #include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
-#include "palpate/core/log.h"
 
 namespace palpate::compare {
 namespace {
@@ -55,11 +54,14 @@ std::vector<MethodPoint> compare_contact_methods(const scene::Description& d, co
       Trajectory trajectory;
       MethodPoint point;
       if (!run_method(d, method, stop, trajectory, point)) break;
-      if (out.empty()) first = trajectory;
+      if (first.period_times.empty()) first = trajectory;
       point.difference = distance(trajectory, first);
       out.push_back(point);
     } catch (const Error& e) {  // what was compared before this stands
-      log::warn("{}: contact method \"{}\" is left out of the comparison: {}", d.name, method, e.what());
+      MethodPoint point;
+      point.method = method;
+      point.trouble = e.what();
+      out.push_back(point);
     }
   return out;
 }

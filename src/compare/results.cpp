@@ -41,19 +41,45 @@ void Ledger::take(const Task& task, const store::StudyRun& row) {
 
 void Ledger::take(const Task& task, const store::StudyArtefact& kept) {
   SceneWork& own = work[task.scene];
-  SceneComparison& told = out.scenes[task.scene];
   if (task.kind == Task::Kind::kTruth)
     own.truth = reference_run_of(kept);
   else if (task.kind == Task::Kind::kCheck)
     own.check = reference_run_of(kept);
-  else if (kept.status != "ok")
-    told.notes.push_back(fmt::format(
-        "no chart of {}: {}",
-        task.kind == Task::Kind::kExchange ? "the exchange period" : "the contact methods", kept.reason));
-  else if (task.kind == Task::Kind::kExchange)
-    told.exchange = exchange_of(kept.bytes);
   else
+    take_chart(task, kept);
+}
+
+void Ledger::take_chart(const Task& task, const store::StudyArtefact& kept) {
+  SceneComparison& told = out.scenes[task.scene];
+  const bool exchange = task.kind == Task::Kind::kExchange;
+  const auto note = [&](const std::string& of, const std::string& why) {
+    told.missing_charts.push_back({of, why});
+  };
+  if (kept.status != "ok") {
+    note(exchange ? "the exchange period" : "the contact methods", kept.reason);
+  } else if (exchange) {
+    told.exchange = exchange_of(kept.bytes);
+    for (const ExchangePoint& point : told.exchange)
+      if (!point.trouble.empty())
+        note(fmt::format("the exchange period at {:g} s", point.exchange_period_s), point.trouble);
+  } else {
     told.methods = methods_of(kept.bytes);
+    for (const MethodPoint& point : told.methods)
+      if (!point.trouble.empty()) note(fmt::format("the contact method \"{}\"", point.method), point.trouble);
+    std::erase_if(told.methods, [](const MethodPoint& point) { return !point.trouble.empty(); });
+  }
+}
+
+bool Ledger::is_whole(const Task& task, const store::StudyArtefact& kept) {
+  if (task.is_reference()) return true;
+  if (kept.status != "ok") return false;
+  const auto good = [](const auto& point) { return point.trouble.empty(); };
+  if (task.kind == Task::Kind::kExchange) {
+    const std::vector<ExchangePoint> points = exchange_of(kept.bytes);
+    return std::all_of(points.begin(), points.end(), good);
+  }
+  const std::vector<MethodPoint> points = methods_of(kept.bytes);
+  return std::all_of(points.begin(), points.end(), good);
 }
 
 void Ledger::settle_references() {
@@ -82,7 +108,8 @@ void Ledger::finish(int jobs) {
     std::erase_if(scene.points, [&](const ComparePoint& p) {
       return p.status == PointStatus::kRefused && !refused.insert(p.label).second;
     });
-    std::sort(scene.notes.begin(), scene.notes.end());
+    std::sort(scene.missing_charts.begin(), scene.missing_charts.end(),
+              [](const MissingChart& a, const MissingChart& b) { return a.of < b.of; });
   }
   out.rules = fmt::format(
       "Each run had a process of its own, {} at a time, and at most {:g} CPU seconds ({:g} for references "

@@ -2,105 +2,85 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <signal.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/time.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <vector>
 
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
+#include "work_server.h"
 
 namespace palpate {
-namespace {
 
-constexpr char kGood = 'g', kBad = 'b';  ///< first byte of what a child sends
-constexpr double kGraceSeconds = 2.0;
+using work_server::Notice;
+using work_server::Request;
 
-std::atomic<bool> out_of_time{false};
-void on_limit(int) { out_of_time = true; }
+void ProcessPool::prepare() { work_server::prepare(); }
 
-/// The flag after `limit_s` of CPU time; a signal that ends the process some time after.
-void limit_cpu(double limit_s) {
-  struct sigaction action = {};
-  action.sa_handler = on_limit;
-  action.sa_flags = SA_RESTART;
-  sigaction(SIGPROF, &action, nullptr);
-  const double whole = std::floor(limit_s);
-  const itimerval timer{
-      {0, 0}, {static_cast<time_t>(whole), static_cast<suseconds_t>(std::max(1.0, 1e6 * (limit_s - whole)))}};
-  setitimer(ITIMER_PROF, &timer, nullptr);
-  const auto last = static_cast<rlim_t>(std::ceil(cpu_seconds() + limit_s + kGraceSeconds));
-  const rlimit seconds{last, last + 5}, none{0, 0};
-  setrlimit(RLIMIT_CPU, &seconds);
-  setrlimit(RLIMIT_CORE, &none);
-}
-
-/// The terminal's Ctrl-C is the parent's to heed; what libraries print belongs to no table.
-void detach(pid_t parent) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // it died before that
-  signal(SIGINT, SIG_IGN);
-  for (int one : {SIGTERM, SIGXCPU, SIGPIPE, SIGSEGV, SIGABRT}) signal(one, SIG_DFL);
-  const int nowhere = open("/dev/null", O_RDWR);
-  for (int fd : {0, 1, 2}) dup2(nowhere, fd);
-}
-
-void send(int fd, const std::string& bytes) {
-  for (std::size_t at = 0; at < bytes.size();) {
-    const ssize_t n = write(fd, bytes.data() + at, bytes.size() - at);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) _exit(1);
-    at += static_cast<std::size_t>(n);
-  }
-}
-
-[[noreturn]] void run_child(const ProcessPool::Work& work, double limit_s, pid_t parent, int fd) {
-  detach(parent);
-  limit_cpu(limit_s);
-  std::string answer;
-  try {
-    answer = kGood + work(out_of_time);
-  } catch (const std::exception& e) { answer = kBad + std::string(e.what()); }
-  const itimerval off{};
-  setitimer(ITIMER_PROF, &off, nullptr);
-  send(fd, answer);
-  _exit(0);  // no destructor of the parent's runs here
-}
-
-}  // namespace
-
-ProcessPool::ProcessPool(int jobs) : jobs_(std::max(1, jobs)) {}
+ProcessPool::ProcessPool(int jobs) : jobs_(std::max(1, jobs)), server_(work_server::connect()) {}
 
 ProcessPool::~ProcessPool() {
-  for (const Child& child : children_) kill(child.pid, SIGKILL);
-  for (const Child& child : children_) {
-    while (waitpid(child.pid, nullptr, 0) < 0 && errno == EINTR) {}
-    close(child.pipe);
-  }
+  shutdown(server_, SHUT_WR);  // the server ends, and all that it has started; then its side closes
+  Notice notice;
+  while (work_server::receive_bytes(server_, &notice, sizeof notice)) {}
+  close(server_);
+  for (const Child& child : children_) close(child.pipe);
 }
 
-void ProcessPool::start(Work work, double limit_s, Done done) {
+void ProcessPool::start(Work work, const std::string& bytes, double limit_s, Done done) {
   PALPATE_CHECK(has_room(), "{} pieces of work run already", children_.size());
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) fail("no pipe can be made: {}", std::strerror(errno));
-  const pid_t parent = getpid(), pid = fork();
-  if (pid < 0) fail("no process can be started: {}", std::strerror(errno));
-  if (pid == 0) {
-    close(ends[0]);
-    for (const Child& other : children_) close(other.pipe);
-    run_child(work, limit_s, parent, ends[1]);
-  }
+  const std::uint64_t id = next_id_++;
+  const std::string folder = std::filesystem::current_path().string();
+  const Request request{Request::Kind::kStart, id, work, limit_s, folder.size(), bytes.size()};
+  const bool sent = work_server::send_with_file(server_, &request, sizeof request, ends[1]) &&
+                    work_server::send_bytes(server_, folder.data(), folder.size()) &&
+                    work_server::send_bytes(server_, bytes.data(), bytes.size());
   close(ends[1]);
   fcntl(ends[0], F_SETFL, O_NONBLOCK);
-  children_.push_back({pid, ends[0], limit_s, 0.0, wall_seconds(), {}, false, std::move(done)});
+  children_.push_back(
+      {id, 0, ends[0], limit_s, 0.0, wall_seconds(), {}, false, false, false, 0, std::move(done)});
+  const auto child = std::prev(children_.end());
+  while (sent && child->pid == 0 && take_notice()) {}
+  if (child->pid > 0) return;
+  const bool lost = !sent || child->lost;
+  const int why = child->status;
+  close(child->pipe);
+  children_.erase(child);
+  if (lost) fail("no process can be started: the server of this pool has died");
+  if (why != 0) fail("no process can be started: {}", std::strerror(why));
+  fail(
+      "the work is a function of a library that was loaded after the helper process was made: load it, then "
+      "call palpate::ProcessPool::prepare()");
+}
+
+bool ProcessPool::take_notice() {
+  Notice notice;
+  if (!work_server::receive_bytes(server_, &notice, sizeof notice)) {
+    for (Child& child : children_) child.lost = child.ended = true;
+    return false;
+  }
+  for (Child& child : children_) {
+    if (child.id != notice.id) continue;
+    if (notice.kind == Notice::Kind::kStarted) {
+      child.pid = notice.value;
+    } else if (notice.kind == Notice::Kind::kEnded) {
+      child.ended = true;
+      child.status = notice.value;
+    } else {
+      child.pid = -1;
+      child.status = notice.value;
+    }
+  }
+  return true;
 }
 
 bool ProcessPool::is_asleep(Child& child) {
@@ -118,11 +98,12 @@ void ProcessPool::finish(std::list<Child>::iterator at) {
   Child child = std::move(*at);
   children_.erase(at);
   close(child.pipe);
-  int status = 0;
-  while (waitpid(child.pid, &status, 0) < 0 && errno == EINTR) {}
+  const int status = child.status;
   Outcome outcome;
   const bool late = child.killed || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU);
-  if (late) {
+  if (child.lost) {
+    outcome = {Outcome::End::kCrash, "lost: the process that had started it has died"};
+  } else if (late) {
     outcome = {Outcome::End::kOutOfTime, fmt::format("out of time: {:g} s", child.limit_s)};
   } else if (WIFSIGNALED(status)) {
     outcome = {Outcome::End::kCrash,
@@ -131,7 +112,8 @@ void ProcessPool::finish(std::list<Child>::iterator at) {
     outcome = {Outcome::End::kCrash,
                fmt::format("ended with exit status {} and no result", WEXITSTATUS(status))};
   } else {
-    outcome = {child.bytes[0] == kGood ? Outcome::End::kDone : Outcome::End::kError, child.bytes.substr(1)};
+    outcome = {child.bytes[0] == work_server::kGood ? Outcome::End::kDone : Outcome::End::kError,
+               child.bytes.substr(1)};
   }
   child.done(outcome);
 }
@@ -139,24 +121,27 @@ void ProcessPool::finish(std::list<Child>::iterator at) {
 void ProcessPool::wait(double most_s) {
   const double end = wall_seconds() + most_s;
   while (!children_.empty()) {
-    std::vector<pollfd> polled;
+    std::vector<pollfd> polled = {{server_, POLLIN, 0}};
     for (const Child& child : children_) polled.push_back({child.pipe, POLLIN, 0});
     const double left = end - wall_seconds();
-    if (poll(polled.data(), polled.size(), static_cast<int>(1e3 * std::clamp(left, 0.0, 0.2))) < 0 &&
-        errno != EINTR)
-      fail("waiting for a run failed: {}", std::strerror(errno));
+    if (poll(polled.data(), polled.size(), static_cast<int>(1e3 * std::clamp(left, 0.0, 0.2))) < 0) {
+      if (errno != EINTR) fail("waiting for a run failed: {}", std::strerror(errno));
+      for (pollfd& one : polled) one.revents = 0;
+    }
+    if (polled[0].revents != 0) take_notice();
     bool any = false;
     for (auto child = children_.begin(); child != children_.end();) {
       const auto current = child++;
+      // All that a process has written stands in the pipe once it has ended.
       char block[1 << 16];
-      ssize_t n;
-      while ((n = read(current->pipe, block, sizeof block)) > 0)
+      for (ssize_t n; (n = read(current->pipe, block, sizeof block)) > 0;)
         current->bytes.append(block, static_cast<std::size_t>(n));
-      if (n == 0) {
+      if (current->ended) {
         finish(current);
         any = true;
       } else if (!current->killed && is_asleep(*current)) {
-        kill(current->pid, SIGKILL);
+        const Request request{Request::Kind::kKill, current->id, nullptr, 0.0, 0, 0};
+        work_server::send_bytes(server_, &request, sizeof request);
         current->killed = true;
       }
     }

@@ -152,6 +152,11 @@ Page& Page::add_png(const fs::path& png, const std::string& caption) {
   return *this;
 }
 
+Page& Page::add_missing_figure(const std::string& caption, const std::string& why) {
+  missing_figures_.push_back({caption, why});
+  return add_paragraph("Figure not drawn (" + caption + "): " + why);
+}
+
 Page& Page::add_fragment(const std::string& html) {
   body_ += html;
   return *this;

@@ -45,7 +45,7 @@ bool holds_results(const fs::path& dir) {
 
 }  // namespace
 
-fs::path write_run_report(const fs::path& dir) {
+RunReport write_run_report(const fs::path& dir) {
   if (!fs::is_directory(dir)) fail("{}: is not a directory; give the one that a run wrote", dir.string());
   if (!holds_results(dir))
     fail(
@@ -74,7 +74,7 @@ fs::path write_run_report(const fs::path& dir) {
     page.add_heading("The scene").add_code(source);
   const fs::path path = dir / "report.html";
   write(page, path);
-  return path;
+  return {path, page.missing_figures()};
 }
 
 }  // namespace palpate::report

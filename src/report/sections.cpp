@@ -51,7 +51,7 @@ std::string limit_text(double limit, const char* unit) {
 void add_plot(Page& page, const Plot& plot, const std::string& caption) {
   try {
     page.add_svg(plot_svg(plot), caption);
-  } catch (const Error& e) { page.add_paragraph("Figure not drawn (" + caption + "): " + e.what()); }
+  } catch (const Error& e) { page.add_missing_figure(caption, e.what()); }
 }
 
 void add_head(Page& page, const Json& summary) {

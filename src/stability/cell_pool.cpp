@@ -3,8 +3,10 @@
 
 #include "cell_json.h"
 #include "cell_runner.h"
+#include "palpate/core/bytes.h"
 #include "palpate/core/error.h"
 #include "palpate/core/process_pool.h"
+#include "palpate/integrate/integrators.h"
 
 namespace palpate::stability {
 namespace {
@@ -22,6 +24,38 @@ StabilityCell cell_of(const Task& task, const ProcessPool::Outcome& outcome) {
   return cell;
 }
 
+/// A cell as bytes, for a process that knows nothing of this matrix but the rows, which are always the same.
+std::string order_of(const Task& task, const StabilityOptions& options, double limit_s) {
+  const auto registry = options.registry ? options.registry : &integrate::stepper_registry;
+  ByteWriter out;
+  out.put(task.row->name).put(task.sub_case->name).put(task.column->label);
+  out.put(options.seeds).put(limit_s).put(reinterpret_cast<std::uintptr_t>(registry));
+  return out.take();
+}
+
+template <typename Named>
+const Named& named(const std::vector<Named>& all, std::string Named::*name, const std::string& wanted) {
+  for (const Named& one : all)
+    if (one.*name == wanted) return one;
+  fail("the process of a cell does not know \"{}\"", wanted);
+}
+
+/// A ProcessPool::Work: runs the cell that order_of() said.
+std::string do_order(const std::string& order, const std::atomic<bool>& expired) {
+  ByteReader in(order);
+  const auto row_name = in.get<std::string>(), case_name = in.get<std::string>(),
+             label = in.get<std::string>();
+  const int seeds = in.get<int>();
+  const double limit_s = in.get<double>();
+  const auto registry = reinterpret_cast<const dynamics::StepperRegistry& (*)()>(in.get<std::uintptr_t>());
+  const std::vector<Row> rows = all_rows();
+  const Row& row = named(rows, &Row::name, row_name);
+  const std::vector<Column> columns =
+      row.columns == RowColumns::kSteppers ? stepper_columns(registry()) : tool_columns();
+  const Task task{&row, &named(row.cases, &SubCase::name, case_name), &named(columns, &Column::label, label)};
+  return cell_to_json(run_cell(task, seeds, limit_s, expired)).dump();
+}
+
 }  // namespace
 
 std::vector<StabilityCell> run_cells(const std::vector<Task>& tasks, const StabilityOptions& options) {
@@ -32,18 +66,14 @@ std::vector<StabilityCell> run_cells(const std::vector<Task>& tasks, const Stabi
   const auto start = [&](std::size_t index) {
     const Task& task = tasks[index];
     const double limit_s = (task.row->slow ? kLongerInSlowRows : 1.0) * options.limit_s;
-    pool.start(
-        [&task, &options, limit_s](const std::atomic<bool>& expired) {
-          return cell_to_json(run_cell(task, options.seeds, limit_s, expired)).dump();
-        },
-        limit_s,
-        [&, index](const ProcessPool::Outcome& outcome) {
-          cells[index] = cell_of(tasks[index], outcome);
-          ++done;
-          if (options.progress)
-            options.progress(static_cast<double>(done) / static_cast<double>(tasks.size()),
-                             fmt::format("{}, {}", cells[index]->row, cells[index]->integrator));
-        });
+    pool.start(do_order, order_of(task, options, limit_s), limit_s,
+               [&, index](const ProcessPool::Outcome& outcome) {
+                 cells[index] = cell_of(tasks[index], outcome);
+                 ++done;
+                 if (options.progress)
+                   options.progress(static_cast<double>(done) / static_cast<double>(tasks.size()),
+                                    fmt::format("{}, {}", cells[index]->row, cells[index]->integrator));
+               });
   };
   while (true) {
     while (next < tasks.size() && pool.has_room() && !stopped()) start(next++);

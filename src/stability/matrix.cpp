@@ -24,7 +24,7 @@ void check_names(const std::vector<std::string>& wanted, const std::vector<std::
 StabilityMatrix run(const StabilityOptions& options) {
   const double start = wall_seconds();
   const dynamics::StepperRegistry& registry =
-      options.registry ? *options.registry : integrate::stepper_registry();
+      options.registry ? options.registry() : integrate::stepper_registry();
   const std::vector<Row> rows = all_rows();
   const std::vector<Column> steppers = stepper_columns(registry), tools = tool_columns();
   check_names(options.rows, names(rows), "row");

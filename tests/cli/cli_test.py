@@ -37,8 +37,8 @@ class Cli(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def call(self, *arguments, **environment):
-        done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, cwd=self.folder, timeout=300,
-                              env=dict(os.environ, **environment), stdin=subprocess.DEVNULL)
+        done = subprocess.run([str(PROGRAM), *arguments], capture_output=True, text=True, cwd=self.folder,
+                              timeout=300, env=dict(os.environ, **environment), stdin=subprocess.DEVNULL)
         self.assertNotIn("\033", done.stdout + done.stderr)  # no terminal, no control codes
         return done
 
@@ -71,7 +71,7 @@ class Help(Cli):
         seen = 0
         for command in [[]] + [[name] for name in COMMANDS]:
             for line in re.findall(r"^  palpate (.+?)(?:   .*)?$", self.good(*command, "--help"), re.M):
-                # An option that does not exist is refused before --help is heeded; the command itself is not run.
+                # An option that does not exist is refused before --help is heeded; the command is not run.
                 known = self.good(line.split()[0], "--help")
                 for option in re.findall(r"(?<= )--?[a-z][a-z-]*", line):
                     self.assertRegex(known, rf"(^|[ ,]){option}\b", line)
@@ -97,7 +97,8 @@ class Refusals(Cli):
         def limit():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writes then fail, as on a full disk
             resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
-        done = subprocess.run([PROGRAM, "run", "press-ball", "--duration-s", "0.02", "-o", self.folder / "full"], preexec_fn=limit, capture_output=True, text=True)
+        command = [PROGRAM, "run", "press-ball", "--duration-s", "0.02", "-o", self.folder / "full"]
+        done = subprocess.run(command, preexec_fn=limit, capture_output=True, text=True)
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("palpate: error: ", done.stderr)
         self.assertIn("File too large", done.stderr)
@@ -133,13 +134,15 @@ class Refusals(Cli):
 
 class Results(Cli):
     def test_run_writes_what_the_scene_records(self):
-        text = self.good("run", "one-tet", "-o", "here", "--duration-s", "0.1", "--set", "body.0.youngs_modulus_pa=2e5", "--report")
+        text = self.good("run", "one-tet", "-o", "here", "--duration-s", "0.1",
+                         "--set", "body.0.youngs_modulus_pa=2e5", "--report")
         self.assertIn("0.1 s simulated", text)
         names = {path.name for path in (self.folder / "here").iterdir()}
         self.assertEqual(names, {"run.vtkhdf", "summary.json", "scene.toml", "report.html"})
         summary = json.loads((self.folder / "here/summary.json").read_text())
         self.assertEqual(summary["outcome"], "finished")
-        self.assertEqual(summary["command"], "palpate run one-tet --set body.0.youngs_modulus_pa=2e5 --duration-s 0.1 --report -o here")
+        self.assertEqual(summary["command"], "palpate run one-tet --set body.0.youngs_modulus_pa=2e5 "
+                                             "--duration-s 0.1 --report -o here")
         self.assertEqual(summary["overrides"], ["body.0.youngs_modulus_pa=2e5"])
         with h5py.File(self.folder / "here/run.vtkhdf") as file:
             steps = file["VTKHDF/Steps"]
@@ -152,7 +155,8 @@ class Results(Cli):
         text = self.good("run", "one-tet", "-o", "traced", "--duration-s", "0.1", "--trace", "--report")
         self.assertRegex(text, r"trace: \d+ attempted steps, \d+ rejected")
         lines = (self.folder / "traced/trace.csv").read_text().splitlines()
-        self.assertTrue(lines[0].startswith("time_s,step_s,order,error,newton_iterations,outcome,worst_body,"))
+        columns = "time_s,step_s,order,error,newton_iterations,outcome,worst_body,"
+        self.assertTrue(lines[0].startswith(columns))
         self.assertEqual(len(lines) - 1, int(re.search(r"trace: (\d+)", text).group(1)))
         self.assertIn("why they were rejected", (self.folder / "traced/report.html").read_text())
 
@@ -191,20 +195,23 @@ class Results(Cli):
         return PROGRAM.parent.parent / "share/palpate/scenes" / f"{name}.toml"
 
     def test_integrator_option_is_the_one_that_runs(self):
-        text = self.good("run", "one-tet", "--duration-s", "0.1", "--integrator", "linearly-implicit-euler", "--set", "integrator.step_s=0.01")
+        text = self.good("run", "one-tet", "--duration-s", "0.1", "--integrator", "linearly-implicit-euler",
+                         "--set", "integrator.step_s=0.01")
         self.assertIn("linearly-implicit-euler: 10 steps", text)
 
     QUICK = ["--duration-s", "0.05", "--repeats", "1", "--set", "body.0.mesh.element_size_m=0.05"]
 
     def test_compare_prints_orders_and_writes_the_table(self):
-        text = self.good("compare", "cantilever", *self.QUICK, "-o", "cmp", "--integrator", "cvode-bdf", "--integrator", "linearly-implicit-euler")
+        text = self.good("compare", "cantilever", *self.QUICK, "-o", "cmp", "--integrator", "cvode-bdf",
+                         "--integrator", "linearly-implicit-euler")
         for words in ("fitted order", "its own error", "is the cheapest", "interleaved"):
             self.assertIn(words, text)
         names = {path.name for path in (self.folder / "cmp").iterdir()}
         self.assertEqual({"compare.csv", "reference.json", "report.html", "study.sqlite"}, names)
 
     def test_compare_takes_several_scenes_and_any_integrator(self):
-        arguments = ["compare", "cantilever", "one-tet", *self.QUICK[:-2], "--integrator", "ark-erk-5", "-o", "two", "--limit-s", "0.5"]
+        arguments = ["compare", "cantilever", "one-tet", *self.QUICK[:-2], "--integrator", "ark-erk-5",
+                     "-o", "two", "--limit-s", "0.5"]
         self.good(*arguments)
         table = (self.folder / "two/compare.csv").read_text().splitlines()
         self.assertEqual({line.split(",")[0] for line in table[1:]}, {"cantilever", "one-tet"})
@@ -218,8 +225,10 @@ class Results(Cli):
         self.assertNotIn("were done before", self.good(*arguments, "--fresh"))
 
     def test_compare_goes_on_after_a_kill(self):
-        arguments = [str(PROGRAM), "compare", "cantilever", *self.QUICK, "-o", "cut", "--integrator", "linearly-implicit-euler", "--integrator", "cvode-bdf", "--jobs", "1"]
-        process = subprocess.Popen(arguments, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        arguments = [str(PROGRAM), "compare", "cantilever", *self.QUICK, "-o", "cut",
+                     "--integrator", "linearly-implicit-euler", "--integrator", "cvode-bdf", "--jobs", "1"]
+        process = subprocess.Popen(arguments, cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL)
         database = self.folder / "cut/study.sqlite"
         end = time.monotonic() + 120
         while self.rows(database) < 3 and process.poll() is None and time.monotonic() < end:
@@ -265,6 +274,57 @@ class Results(Cli):
         self.assertIn("fails, as it must", self.good("validate", "rigid-motion", "--sabotage"))
 
 
+NO_EGL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nowhere.json"}  # libglvnd then finds no driver
+NO_GNUPLOT = {"PATH": "/nowhere"}
+
+
+class Incomplete(Cli):
+    """A command that cannot deliver all that it promises says so in its last line, and ends with 3."""
+
+    def incomplete(self, *arguments, **environment):
+        done = self.call(*arguments, **environment)
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        last = done.stderr.splitlines()[-1]
+        self.assertTrue(last.startswith("palpate: incomplete: there is no "), done.stderr)
+        return last
+
+    QUICK = ["--duration-s", "0.02", "--repeats", "1", "--integrator", "linearly-implicit-euler",
+             "--set", "compare.exchange_periods_s=[0.01]", "--set", "compare.reference_rtol=1e-4",
+             "--set", "compare.reference_check_rtol=1e-4"]
+
+    def test_picture_that_cannot_be_drawn(self):
+        run = ["run", "one-tet", "--duration-s", "0.02", "--picture", "--report", "-o", "here"]
+        self.good(*run)
+        last = self.incomplete(*run, **NO_EGL)
+        self.assertIn("picture here/picture.png (", last)
+        self.assertFalse((self.folder / "here/picture.png").exists(), "that of an earlier run")
+        self.assertTrue((self.folder / "here/report.html").exists(), "all else is there")
+        last = self.incomplete("modes", "cantilever", "--count", "3", "--picture", **NO_EGL)
+        self.assertIn("picture out/modes-cantilever/modes.png (", last)
+
+    def test_figures_that_cannot_be_drawn(self):
+        last = self.incomplete("run", "press-ball", "--duration-s", "0.02", "--report", "-o", "here",
+                               **NO_GNUPLOT)
+        self.assertIn("gnuplot was not found", last)
+        self.assertIn("here/report.html", last)
+        last = self.incomplete("compare", "cantilever", *Results.QUICK, "-o", "cmp",
+                               "--integrator", "linearly-implicit-euler", **NO_GNUPLOT)
+        self.assertIn("figures in cmp/report.html (gnuplot was not found", last)
+
+    def test_chart_that_cannot_be_made_and_is_made_again_where_it_can(self):
+        compare = ["compare", "press-ball", *self.QUICK, "-o", "cmp"]
+        last = self.incomplete(*compare, **NO_EGL)
+        self.assertIn('chart of the contact method "gpu" of press-ball (', last)
+        text = self.good(*compare)
+        self.assertIn("contact found by", text)
+        self.assertRegex(text, r"(?m)^gpu ")
+
+    def test_reference_that_cannot_be_checked(self):
+        last = self.incomplete("compare", "cantilever", *Results.QUICK, "--reference-limit-s", "0.001",
+                               "--integrator", "linearly-implicit-euler")
+        self.assertIn("checked reference of cantilever", last)
+
+
 class LeftOut(Cli):
     """What a scene does not name is not there: by the loader's own account, and by the counters."""
 
@@ -277,10 +337,14 @@ class LeftOut(Cli):
         for scene in ("falling-ball", "cantilever"):
             with self.subTest(scene=scene):
                 names = self.loaded("run", scene, "--duration-s", "0.01", "-o", scene)
-                self.assertTrue(any(name.startswith("libpalpate_core") for name in names), "LD_DEBUG did not work")
-                self.assertFalse([name for name in names if re.match(r"lib(EGL|GL|GLX|GLdispatch|OpenGL|gallium|LLVM)[._-]", name)])
-                made = json.loads((self.folder / scene / "summary.json").read_text())["figures"]["constructions"]
-                self.assertFalse([name for name in made if name.startswith(("gl.", "tool.", "render.", "proxy."))], made)
+                self.assertTrue(any(name.startswith("libpalpate_core") for name in names),
+                                "LD_DEBUG did not work")
+                graphics = r"lib(EGL|GL|GLX|GLdispatch|OpenGL|gallium|LLVM)[._-]"
+                self.assertFalse([name for name in names if re.match(graphics, name)])
+                summary = json.loads((self.folder / scene / "summary.json").read_text())
+                made = summary["figures"]["constructions"]
+                left_out = ("gl.", "tool.", "render.", "proxy.")
+                self.assertFalse([name for name in made if name.startswith(left_out)], made)
 
     def test_the_same_look_finds_graphics_where_a_picture_is_asked_for(self):
         names = self.loaded("run", "one-tet", "--duration-s", "0.01", "--picture", "-o", "pic")
@@ -308,8 +372,8 @@ class Interrupt(Cli):
     def test_what_was_recorded_is_a_valid_file(self):
         for stop in (signal.SIGINT, signal.SIGTERM):
             with self.subTest(signal=stop):
-                process = subprocess.Popen([str(PROGRAM), *LONG, "-o", f"cut-{stop}"], cwd=self.folder, text=True, stdout=subprocess.PIPE,
-                                           stderr=subprocess.PIPE)
+                process = subprocess.Popen([str(PROGRAM), *LONG, "-o", f"cut-{stop}"], cwd=self.folder,
+                                           text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
                 path = self.folder / f"cut-{stop}/run.vtkhdf"
                 self.wait_for(lambda: recorded_steps(path) > 2, process)
                 process.send_signal(stop)
@@ -323,10 +387,13 @@ class Interrupt(Cli):
                     self.assertGreaterEqual(len(file["VTKHDF/Points"]), 4 * count)
                     times = file["VTKHDF/Steps/Values"][:count]
                     self.assertTrue(all(b > a for a, b in zip(times, times[1:])))
-                self.assertEqual(json.loads((path.parent / "summary.json").read_text())["outcome"], "interrupted")
+                summary = json.loads((path.parent / "summary.json").read_text())
+                self.assertEqual(summary["outcome"], "interrupted")
 
     def test_compare_ends_and_says_how_to_go_on(self):
-        process = subprocess.Popen([str(PROGRAM), "compare", "cantilever", "--integrator", "ark-erk-5", "--integrator", "linearly-implicit-euler", "--limit-s", "300", "-o", "cut"],
+        process = subprocess.Popen([str(PROGRAM), "compare", "cantilever", "--integrator", "ark-erk-5",
+                                    "--integrator", "linearly-implicit-euler", "--limit-s", "300",
+                                    "-o", "cut"],
                                    cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.wait_for(lambda: (self.folder / "cut/study.sqlite").exists(), process)
         start = time.monotonic()
@@ -338,8 +405,9 @@ class Interrupt(Cli):
 
     def test_progress_bar_on_a_terminal_with_time_left(self):
         terminal, end = pty.openpty()
-        process = subprocess.Popen([str(PROGRAM), "run", "one-tet", "--duration-s", "2000", "-o", "tty"], cwd=self.folder,
-                                   stdout=subprocess.DEVNULL, stderr=end, env=dict(os.environ, TERM="xterm"))
+        process = subprocess.Popen([str(PROGRAM), "run", "one-tet", "--duration-s", "2000", "-o", "tty"],
+                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=end,
+                                   env=dict(os.environ, TERM="xterm"))
         os.close(end)
         seen = b""
         try:

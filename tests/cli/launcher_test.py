@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The launcher ./palpate, with dpkg, apt, cmake, ninja and ctest replaced by small fakes that write down how they were called."""
+"""The launcher ./palpate, with dpkg, apt, cmake, ninja and ctest replaced by small fakes that write down how
+they were called."""
 import os
 import shutil
 import stat
@@ -13,15 +14,83 @@ TREE = Path(__file__).resolve().parents[2]
 
 FAKES = {
     # Says that every package is installed but those named in the file `missing`.
-    "dpkg-query": 'printf "%s\\n" "dpkg-query $*" >>"$CALLS"; shift 2; for p; do grep -qx "$p" "$FAKE/missing" || echo "$p installed"; done',
-    "apt-get": 'echo "apt-get $*" >>"$CALLS"; case "$*" in *--simulate*) [ ! -e "$FAKE/no-lists" ];; *update*) rm -f "$FAKE/no-lists";; '
-               '*"install --yes"*) [ -e "$FAKE/apt-fails" ] && { echo "E: broken" >&2; exit 100; }; : >"$FAKE/missing";; esac',
-    "sudo": 'echo "sudo $*" >>"$CALLS"; while [ "$1" = -n ]; do shift; done; exec "$@"',
-    "cmake": 'echo "cmake $*" >>"$CALLS"; mkdir -p build/release/bin; touch build/release/build.ninja',
-    "ninja": 'echo "ninja $*" >>"$CALLS"; [ ! -e "$FAKE/build-fails" ] || { echo "[1/2] Building"; echo "a.cpp:1: error: no"; exit 1; }; '
-             'echo "[1/1 1s] Linking"; printf \'#!/bin/sh\\nfor a; do echo "[$a]"; done\\nexit 7\\n\' >"$2/bin/palpate"; chmod +x "$2/bin/palpate"',
-    "ctest": 'echo "ctest $*" >>"$CALLS"',
+    "dpkg-query": r"""
+printf "%s\n" "dpkg-query $*" >>"$CALLS"
+shift 2
+for p; do grep -qx "$p" "$FAKE/missing" || echo "$p installed"; done
+""",
+    "apt-get": r"""
+echo "apt-get $*" >>"$CALLS"
+case "$*" in
+  *--simulate*) [ ! -e "$FAKE/no-lists" ] ;;
+  *update*) rm -f "$FAKE/no-lists" ;;
+  *"install --yes"*) [ -e "$FAKE/apt-fails" ] && { echo "E: broken" >&2; exit 100; }; : >"$FAKE/missing" ;;
+esac
+""",
+    "sudo": r"""
+echo "sudo $*" >>"$CALLS"
+while [ "$1" = -n ]; do shift; done
+exec "$@"
+""",
+    "cmake": r"""
+echo "cmake $*" >>"$CALLS"
+mkdir -p build/release/bin
+touch build/release/build.ninja
+""",
+    "ninja": r"""
+echo "ninja $*" >>"$CALLS"
+[ ! -e "$FAKE/build-fails" ] || { echo "[1/2] Building"; echo "a.cpp:1: error: no"; exit 1; }
+echo "[1/1 1s] Linking"
+printf '#!/bin/sh\nfor a; do echo "[$a]"; done\nexit 7\n' >"$2/bin/palpate"
+chmod +x "$2/bin/palpate"
+""",
+    # Copies the file `results`, if there is one, to where it was told; ends as `ctest-status` says.
+    "ctest": r"""
+echo "ctest $*" >>"$CALLS"
+echo "what ctest prints"
+while [ $# -gt 0 ]; do
+  if [ "$1" = --output-junit ] && [ -e "$FAKE/results" ]; then cat "$FAKE/results" >"$2"; fi
+  shift
+done
+[ ! -e "$FAKE/ctest-status" ] || exit "$(cat "$FAKE/ctest-status")"
+""",
 }
+
+# As ctest 3.25 writes it, of one test each: good, failing, skipped by itself, without its program, too slow,
+# disabled.
+RESULTS = """<?xml version="1.0" encoding="UTF-8"?>
+<testsuite name="(empty)"
+\ttests="6"
+\tfailures="2"
+\tdisabled="1"
+\tskipped="2"
+\t>
+\t<testcase name="good" classname="good" time="0.008" status="run">
+\t\t<system-out>&lt;testcase status="run"&gt;
+</system-out>
+\t</testcase>
+\t<testcase name="bad" classname="bad" time="0.05" status="fail">
+\t\t<failure message=""/>
+\t\t<system-out></system-out>
+\t</testcase>
+\t<testcase name="skip" classname="skip" time="0.001" status="notrun">
+\t\t<skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"/>
+\t\t<system-out>[  SKIPPED ]
+</system-out>
+\t</testcase>
+\t<testcase name="missing" classname="missing" time="0" status="notrun">
+\t\t<skipped message="Unable to find executable"/>
+\t\t<system-out>Unable to find executable: /nowhere/at/all</system-out>
+\t</testcase>
+\t<testcase name="late" classname="late" time="1.01" status="fail">
+\t\t<failure message=""/>
+\t\t<system-out></system-out>
+\t</testcase>
+\t<testcase name="off" classname="off" time="0" status="disabled">
+\t\t<system-out>Disabled</system-out>
+\t</testcase>
+</testsuite>
+"""
 
 
 class Launcher(unittest.TestCase):
@@ -46,12 +115,14 @@ class Launcher(unittest.TestCase):
 
     def launch(self, *arguments, path=None, as_root=True):
         self.calls_file.write_text("")
-        environment = dict(os.environ, PATH=path or f"{self.fake}:/usr/bin:/bin", CALLS=str(self.calls_file), FAKE=str(self.fake))
+        environment = dict(os.environ, PATH=path or f"{self.fake}:/usr/bin:/bin", CALLS=str(self.calls_file),
+                           FAKE=str(self.fake))
         nobody = {} if as_root or os.geteuid() != 0 else {"user": 65534}
         if nobody:
             subprocess.run(["chmod", "-R", "a+rwX", str(self.folder)], check=True)
-        done = subprocess.run([str(self.tree / "palpate"), *arguments], capture_output=True, text=True, env=environment, stdin=subprocess.DEVNULL,
-                              cwd=self.folder, timeout=60, **nobody)
+        done = subprocess.run([str(self.tree / "palpate"), *arguments], capture_output=True, text=True,
+                              env=environment, stdin=subprocess.DEVNULL, cwd=self.folder, timeout=60,
+                              **nobody)
         self.calls = self.calls_file.read_text().splitlines()
         return done
 
@@ -95,7 +166,8 @@ class Launcher(unittest.TestCase):
         self.assertEqual(done.returncode, 7, done.stderr)
         self.assertIn("libccd-dev", done.stderr)
         self.assertFalse([call for call in self.called("apt-get") if "update" in call])
-        self.assertTrue(any("install --yes --no-install-recommends libccd-dev" in call for call in self.called("apt-get")), self.calls)
+        install = "install --yes --no-install-recommends libccd-dev"
+        self.assertTrue(any(install in call for call in self.called("apt-get")), self.calls)
 
         (self.fake / "missing").write_text("libccd-dev\n")
         (self.fake / "no-lists").write_text("")
@@ -108,7 +180,8 @@ class Launcher(unittest.TestCase):
         done = self.launch("list", as_root=False)
         self.assertEqual(done.returncode, 7, done.stderr)
         self.assertIn("sudo apt-get install --yes --no-install-recommends libccd-dev\n", done.stderr)
-        self.assertTrue(all(call.startswith("sudo -n env DEBIAN_FRONTEND=noninteractive apt-get ") for call in self.called("sudo")), self.calls)
+        start = "sudo -n env DEBIAN_FRONTEND=noninteractive apt-get "
+        self.assertTrue(all(call.startswith(start) for call in self.called("sudo")), self.calls)
         self.assertEqual(len(self.called("sudo")), len(self.called("apt-get")))
 
     def test_without_sudo_the_command_for_root_is_given(self):
@@ -118,7 +191,8 @@ class Launcher(unittest.TestCase):
             self.skipTest("this system has sudo beside the fake one")
         done = self.launch("list", as_root=False)
         self.assertEqual(done.returncode, 1)
-        self.assertIn("as root, run:\n  apt-get update && apt-get install --yes --no-install-recommends libccd-dev\n", done.stderr)
+        self.assertIn("as root, run:\n  apt-get update && apt-get install --yes --no-install-recommends "
+                      "libccd-dev\n", done.stderr)
         self.assertFalse(self.called("apt-get"))
 
     def test_failing_installation_shows_why(self):
@@ -132,7 +206,8 @@ class Launcher(unittest.TestCase):
     def test_other_system_is_told_what_is_needed(self):
         bare = self.folder / "bare"
         bare.mkdir()
-        for name in ("bash", "env", "readlink", "cat", "mkdir", "cp", "nproc", "flock", "rm", "sh", "tail", "grep", "touch", "chmod", "printf"):
+        for name in ("bash", "env", "readlink", "cat", "mkdir", "cp", "nproc", "flock", "rm", "sh", "tail",
+                     "grep", "touch", "chmod", "printf"):
             found = shutil.which(name, path="/usr/bin:/bin")
             if found:
                 (bare / name).symlink_to(found)
@@ -160,6 +235,38 @@ class Launcher(unittest.TestCase):
         self.assertIn("--output-on-failure", self.called("ctest")[0])
         self.launch("test", "--slow")
         self.assertNotIn("slow", self.called("ctest")[0])
+
+    def test_test_counts_in_its_last_line_and_keeps_the_status(self):
+        (self.fake / "results").write_text(RESULTS)
+        (self.fake / "ctest-status").write_text("8")
+        done = self.launch("test")
+        self.assertEqual(done.returncode, 8, done.stderr)
+        self.assertEqual(done.stdout, "what ctest prints\n1 passed, 3 failed, 2 skipped\n")
+        (self.fake / "results").write_text(RESULTS.replace('status="fail"', 'status="run"'))
+        (self.fake / "ctest-status").unlink()
+        done = self.launch("test", "-R", "fem")
+        self.assertEqual(done.returncode, 0)
+        self.assertEqual(done.stdout.splitlines()[-1], "3 passed, 1 failed, 2 skipped")
+
+    def test_test_counts_what_its_user_wants_kept_and_nothing_where_nothing_ran(self):
+        (self.fake / "results").write_text(RESULTS)
+        done = self.launch("test", "--output-junit", "mine.xml")
+        self.assertEqual(done.stdout.splitlines()[-1], "1 passed, 3 failed, 2 skipped")
+        self.assertEqual((self.folder / "mine.xml").read_text(), RESULTS)
+        self.assertEqual(self.launch("test", "-N").stdout, "what ctest prints\n")
+        (self.fake / "results").unlink()
+        self.assertEqual(self.launch("test").stdout, "what ctest prints\n", "no count of an earlier call")
+
+    def test_help_of_test_and_build_builds_nothing(self):
+        (self.fake / "missing").write_text("libccd-dev\n")  # and installs nothing
+        for command, word in {"test": "--slow", "build": "[target...]"}.items():
+            for option in "--help", "-h":
+                done = self.launch(command, "-R", "fem", option)
+                self.assertEqual((done.returncode, done.stderr, self.calls), (0, "", []), command)
+                self.assertIn(word, done.stdout)
+                self.assertIn(f"./palpate {command} ", done.stdout)
+                self.assertTrue(all(len(line) < 100 for line in done.stdout.splitlines()))
+        self.assertIn("ctest options", self.launch("test", "--help").stdout)
 
 
 if __name__ == "__main__":

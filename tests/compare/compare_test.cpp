@@ -1,7 +1,6 @@
 #include "palpate/compare/compare.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "palpate/store/csv.h"
 #include "palpate/store/study_columns.h"
 #include "palpate/validation/validation.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 using compare::PointStatus;
@@ -31,14 +31,6 @@ std::string message_of(const scene::Description& d, const compare::CompareOption
     compare::run({d}, options);
   } catch (const Error& e) { return e.what(); }
   return "";
-}
-
-std::filesystem::path fresh_folder(const std::string& name) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("palpate-" + name + "-" + std::to_string(getpid()));
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
 }
 
 TEST(Compare, FindsTheOrderOfTheoryAgainstAReferenceOfAnotherFamily) {
@@ -179,7 +171,7 @@ TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
     EXPECT_TRUE(std::isnan(value));
   EXPECT_FALSE(c.points[1].unresolved || c.points[1].force_unresolved || c.points[1].torque_unresolved);
 
-  const std::filesystem::path folder = fresh_folder("compare-write");
+  const TemporaryFolder folder;
   compare::write(all, folder.string());
   const store::CsvTable table = store::read_csv((folder / "compare.csv").string());
   ASSERT_EQ(table.rows.size(), 2u);
@@ -188,7 +180,6 @@ TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
   EXPECT_EQ(table.column("reason")[1], c.points[1].reason);
   EXPECT_TRUE(std::filesystem::exists(folder / "reference.json"));
   EXPECT_FALSE(std::filesystem::exists(folder / "exchange.csv")) << "no tool, no exchange";
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Compare, ALadderEndsWhereItRunsOutOfTime) {
@@ -264,8 +255,24 @@ TEST(Compare, StopsAtOnceWhenAsked) {
   for (const compare::ComparePoint& p : all.scenes[0].points) EXPECT_EQ(p.status, PointStatus::kMissing);
 }
 
+// A run's process gets the scene as its text: nothing may be lost on the way, to the last bit.
+TEST(Compare, TheTextOfASceneIsAllOfIt) {
+  const scene::Description d =
+      scene::parse(compare_scenes::block_text(compare_scenes::kLadders), "block.toml",
+                   {"body.0.youngs_modulus_pa=12345.678901234567", "integrator.rtol=1.2345678901234567e-7",
+                    "scene.gravity_m_s2=[0.1, 1e-300, -0.30000000000000004]", "integrator.name=cvode-bdf",
+                    "integrator.max_order=2"});
+  const scene::Description again = scene::parse(d.source, d.path);
+  EXPECT_EQ(again.source, d.source);
+  EXPECT_EQ(again.bodies[0].youngs_modulus_pa, 12345.678901234567);
+  EXPECT_EQ(again.integrator.rtol, 1.2345678901234567e-7);
+  EXPECT_EQ(again.integrator.max_order, 2);
+  EXPECT_EQ(again.gravity_m_s2, Vec3(0.1, 1e-300, -0.30000000000000004));
+  EXPECT_EQ(again.compare.ladders[1].values, d.compare.ladders[1].values);
+}
+
 TEST(Compare, GoesOnFromItsDatabaseAndDoesNothingTwice) {
-  const std::filesystem::path folder = fresh_folder("compare-resume");
+  const TemporaryFolder folder;
   compare::CompareOptions options = quick();
   options.repeats = 2;
   options.database = (folder / "study.sqlite").string();
@@ -291,12 +298,11 @@ TEST(Compare, GoesOnFromItsDatabaseAndDoesNothingTwice) {
   options.integrators.pop_back();
   compare::run({compare_scenes::block(compare_scenes::kLadders, "block", 1.1e4)}, options);
   EXPECT_EQ(runs, 2 + 2 + 2 * 6);
-  std::filesystem::remove_all(folder);
 }
 
 // What ran out of time is tried again only where it is given more.
 TEST(Compare, MoreTimeTriesAgain) {
-  const std::filesystem::path folder = fresh_folder("compare-more-time");
+  const TemporaryFolder folder;
   compare::CompareOptions options = quick();
   options.integrators = {"linearly-implicit-euler"};
   options.database = (folder / "study.sqlite").string();
@@ -307,7 +313,6 @@ TEST(Compare, MoreTimeTriesAgain) {
   EXPECT_EQ(compare::run({d}, options).reused, 3);
   options.limit_s = 60.0;
   EXPECT_EQ(compare::run({d}, options).scenes[0].points[0].status, PointStatus::kOk);
-  std::filesystem::remove_all(folder);
 }
 
 #ifdef PALPATE_HAS_TOOL

@@ -1,12 +1,12 @@
 #include "compare/key.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "compare/scenes.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 
@@ -33,8 +33,7 @@ TEST(CompareKey, FollowsTheScenesTextAndNotItsLadders) {
 }
 
 TEST(CompareKey, FollowsTheBytesOfMeshFiles) {
-  const auto folder = std::filesystem::temp_directory_path() / ("palpate-key-" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   auto d = compare_scenes::block("");
   d.path = (folder / "scene.toml").string();
   d.bodies[0].mesh.file = "body.node";
@@ -45,7 +44,6 @@ TEST(CompareKey, FollowsTheBytesOfMeshFiles) {
   EXPECT_EQ(one, compare::result_key(d, ""));
   put("body.ele", "2");
   EXPECT_NE(one, compare::result_key(d, ""));
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <random>
@@ -12,6 +11,7 @@
 #include "palpate/compare/compare.h"
 #include "palpate/core/error.h"
 #include "palpate/store/study_db.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 namespace fs = std::filesystem;
@@ -63,9 +63,7 @@ bool study_killed_after(const fs::path& database, long rows, int more_us) {
 }
 
 TEST(CompareKill, TenKillsGiveTheTableOfAnUndisturbedRun) {
-  const fs::path folder = fs::temp_directory_path() / ("palpate-compare-kill-" + std::to_string(getpid()));
-  fs::remove_all(folder);
-  fs::create_directories(folder);
+  const TemporaryFolder folder;
   const compare::Comparison whole = compare::run(scenes(), options_of(folder / "whole.sqlite"));
 
   std::mt19937 random(11);
@@ -106,7 +104,6 @@ TEST(CompareKill, TenKillsGiveTheTableOfAnUndisturbedRun) {
       EXPECT_EQ(x.unresolved, y.unresolved);
     }
   }
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -22,6 +22,31 @@ class Steppers : public testing::TestWithParam<std::string> {
 
 INSTANTIATE_TEST_SUITE_P(Registry, Steppers, testing::ValuesIn(stepper_modes()), registry_test_name);
 
+/// The methods of the registry that a case applies to.
+template <class Applies>
+std::vector<std::string> modes_where(Applies applies) {
+  std::vector<std::string> out = stepper_modes();
+  std::erase_if(out, [&](const std::string& mode) { return !applies(mode); });
+  return out;
+}
+
+/// Methods that a step makes accurate.
+class FixedSteppers : public Steppers {};
+INSTANTIATE_TEST_SUITE_P(Registry, FixedSteppers, testing::ValuesIn(modes_where(steps_are_fixed)),
+                         registry_test_name);
+
+/// Methods that a tolerance makes accurate.
+class AdaptiveSteppers : public Steppers {};
+INSTANTIATE_TEST_SUITE_P(Registry, AdaptiveSteppers,
+                         testing::ValuesIn(modes_where([](const auto& m) { return !steps_are_fixed(m); })),
+                         registry_test_name);
+
+/// Methods with a tangent to factor.
+class ImplicitSteppers : public Steppers {};
+INSTANTIATE_TEST_SUITE_P(Registry, ImplicitSteppers,
+                         testing::ValuesIn(modes_where([](const auto& m) { return !is_explicit(m); })),
+                         registry_test_name);
+
 TEST_P(Steppers, LandExactly) {
   Chain chain;
   chain.start_in_mode(0.1);
@@ -38,9 +63,7 @@ TEST_P(Steppers, LandExactly) {
   EXPECT_THROW(stepper->advance_to(0.5), InternalError) << "no way back";
 }
 
-TEST_P(Steppers, ConvergeToTheModeAtTheirOrder) {
-  if (!steps_are_fixed(GetParam()))
-    GTEST_SKIP() << GetParam() << " chooses its steps: see FollowTheirToleranceOverTwoPeriods";
+TEST_P(FixedSteppers, ConvergeToTheModeAtTheirOrder) {
   std::vector<double> values, errors;
   const Ladder l = ladder(GetParam(), Chain().omega(), 0.5);
   const double amplitude = 10.0;  // far above the rest positions' rounding
@@ -73,8 +96,7 @@ double error_after_two_periods(const IntegratorSpec& spec) {
 }
 
 // Error control is worth its name where a tenth of the tolerance buys a tenth of the error.
-TEST_P(Steppers, FollowTheirToleranceOverTwoPeriods) {
-  if (steps_are_fixed(GetParam())) GTEST_SKIP() << GetParam() << " has no tolerance";
+TEST_P(AdaptiveSteppers, FollowTheirToleranceOverTwoPeriods) {
   std::vector<double> tolerances, errors;
   for (int k = 3; k <= 8; ++k) {
     IntegratorSpec s = spec();
@@ -243,8 +265,7 @@ TEST_P(Steppers, StopAtTheStepLimit) {
   EXPECT_GT(chain.state.time(), 0.0);
 }
 
-TEST_P(Steppers, TakeAnUnsymmetricTangentByLu) {
-  if (is_explicit(GetParam())) GTEST_SKIP() << GetParam() << " is explicit: it has no tangent to factor";
+TEST_P(ImplicitSteppers, TakeAnUnsymmetricTangentByLu) {
   Chain chain;
   chain.start_in_mode(0.1);
   chain.term->K(0, 3) += 20.0;  // circulatory

@@ -11,6 +11,7 @@
 #include "palpate/loop/run.h"
 #include "palpate/store/bone_file.h"
 #include "palpate/store/run_file.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 using namespace palpate::small_scenes;
@@ -154,8 +155,8 @@ TEST(Bones, TheWrenchOnABoneBalances) {
 }
 
 TEST(Bones, AreRecordedWithTheirPoses) {
-  const std::string folder = (std::filesystem::temp_directory_path() / "palpate-bones-test").string();
-  std::filesystem::remove_all(folder);
+  const TemporaryFolder own;
+  const std::string folder = own.string();
   scene::Description d = limb();
   d.record.emplace();
   d.record->state_period_s = 0.05;
@@ -181,7 +182,6 @@ TEST(Bones, AreRecordedWithTheirPoses) {
   const auto first = run.first_point(1);
   for (Eigen::Index i = 0; i < world->bones[0].surface.vertices.cols(); ++i)
     ASSERT_LT((surface.col(first + i) - now * Vec3(world->bones[0].surface.vertices.col(i))).norm(), 1e-12);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Bones, NodesThatNoBoneHoldsAreRefused) {

@@ -5,6 +5,7 @@
 #include "loop/small_scenes.h"
 #include "palpate/core/error.h"
 #include "palpate/store/run_file.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 using namespace palpate::small_scenes;
@@ -82,7 +83,8 @@ TEST(ModesOfAScene, AToolThatPressesStiffensThem) {
 TEST(ModesOfAScene, AreWrittenOneAStep) {
   const auto world = loop::assemble(held_block());
   const modes::Modes modes = loop::find_modes(*world, 3);
-  const std::string path = testing::TempDir() + "palpate_modes.vtkhdf";
+  const TemporaryFolder folder;
+  const std::string path = (folder / "modes.vtkhdf").string();
   loop::write_modes(*world, modes, path);
   const store::RunReader file(path);
   ASSERT_EQ(file.steps(), 3);

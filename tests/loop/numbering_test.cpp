@@ -1,7 +1,6 @@
 // Inside, nodes are numbered in spatial order; what leaves the program goes by the numbers of the mesh's
 // file.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -17,6 +16,7 @@
 #include "palpate/mesh/spatial_order.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/run_file.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 
@@ -25,9 +25,7 @@ namespace {
 /// Two blocks, the second from a file whose nodes stand in no order; it swings.
 class Numbering : public testing::Test {
  protected:
-  Numbering()
-      : folder_(std::filesystem::temp_directory_path() / ("palpate-numbering-" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(folder_);
+  Numbering() {
     file_ = mesh::box(Vec3(0.04, 0.04, 0.02), {5, 4, 3});
     std::vector<int> order(static_cast<std::size_t>(file_.nodes.cols()));
     std::iota(order.begin(), order.end(), 0);
@@ -46,7 +44,6 @@ class Numbering : public testing::Test {
     scene_.record.emplace();
     scene_.record->state_period_s = 0.02;
   }
-  ~Numbering() override { std::filesystem::remove_all(folder_); }
 
   /// What part 1 of a run file must hold where the state of `world` is `q`.
   void expect_part(const store::RunReader& file, int step, const loop::World& world, const VecX& q) const {
@@ -64,7 +61,7 @@ class Numbering : public testing::Test {
     EXPECT_LT(moved, 2e-3);
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   TetMesh file_;
   const Vec3 shift_{0.1, 0.0, 0.01};
   scene::Description scene_;

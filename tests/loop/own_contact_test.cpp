@@ -2,8 +2,6 @@
 // by any integrator and linear solver.
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <filesystem>
 
 #include "contact/bent_bar.h"
@@ -17,6 +15,7 @@
 #include "palpate/loop/summary.h"
 #include "palpate/loop/world.h"
 #include "palpate/store/model_file.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 using scene_checks::refusal;
@@ -25,14 +24,11 @@ namespace {
 
 /// A model file that is there as long as the test runs.
 struct ModelOnDisk {
+  TemporaryFolder folder;
   std::string path;
-  ModelOnDisk(const LayeredModel& model, const std::string& name)
-      : path((std::filesystem::temp_directory_path() /
-              ("palpate_own_contact_test_" + std::to_string(getpid()) + "_" + name))
-                 .string()) {
+  ModelOnDisk(const LayeredModel& model, const std::string& name) : path((folder / name).string()) {
     store::write_model(path, {model, {}});
   }
-  ~ModelOnDisk() { std::filesystem::remove(path); }
 };
 
 // height of the upper block's middle [m]: its lowest corner 0.2 mm above the lower block

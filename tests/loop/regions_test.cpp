@@ -1,7 +1,6 @@
 // Regions of a body with materials of their own: by box and sphere, by the names of a mesh file and of a
 // model file.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -14,6 +13,7 @@
 #include "palpate/mesh/quality.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 using namespace palpate::small_scenes;
@@ -22,13 +22,8 @@ namespace {
 
 class Regions : public testing::Test {
  protected:
-  Regions()
-      : folder_(std::filesystem::temp_directory_path() / ("palpate-regions-" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~Regions() override { std::filesystem::remove_all(folder_); }
   std::string at(const std::string& name) const { return (folder_ / name).string(); }
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 /// The upper half of the held block, with what is set on it.

@@ -1,8 +1,6 @@
 // Bones of a model file in scenes: welded, by a script, and on joints.
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <filesystem>
 
 #include "loop/bone_paths.h"
@@ -17,17 +15,12 @@
 #include "palpate/mesh/generators.h"
 #include "palpate/store/bone_file.h"
 #include "palpate/store/model_file.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 using namespace palpate::scene_checks;
 
 namespace {
-
-std::string temporary(const std::string& name) {
-  return (std::filesystem::temp_directory_path() /
-          ("palpate_skeleton_test_" + std::to_string(getpid()) + "_" + name))
-      .string();
-}
 
 /// A limb along x, 24 cm long, around a chain of three bones of 6 cm; nodes on its axis within a bone are the
 /// bone's.
@@ -61,9 +54,9 @@ LayeredModel limb_model() {
 
 /// The file is there as long as the test runs.
 struct ModelOnDisk {
-  std::string path = temporary("limb.h5");
+  TemporaryFolder folder;
+  std::string path = (folder / "limb.h5").string();
   ModelOnDisk() { store::write_model(path, {limb_model(), {}}); }
-  ~ModelOnDisk() { std::filesystem::remove(path); }
 };
 
 scene::Description limb(const ModelOnDisk& file) {
@@ -286,7 +279,7 @@ TEST(Skeleton, IsRecordedBoneByBone) {
   d.record.emplace();
   d.record->state_period_s = 0.01;
   const auto world = loop::assemble(d);
-  const std::string folder = temporary("out");
+  const std::string folder = (file.folder / "out").string();
   {
     loop::Recorder recorder(*world, folder);
     loop::RunOptions options;
@@ -297,7 +290,6 @@ TEST(Skeleton, IsRecordedBoneByBone) {
   EXPECT_EQ(rows.size() % 3, 0u);
   ASSERT_GE(rows.size(), 6u);
   EXPECT_GT(rows.back().twist.angular.norm(), 0.0);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Skeleton, RefusesWhatCannotHang) {

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <filesystem>
 
 #include "loop/small_scenes.h"
@@ -13,18 +11,13 @@
 #include "palpate/mesh/generators.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
+#include "temporary_folder.h"
 
 /// A body whose mesh file is a model: contact takes its skin where the scene says so, and only there.
 namespace {
 
 using namespace palpate;
 using small_scenes::held_block;
-
-std::string temporary(const std::string& name) {
-  return (std::filesystem::temp_directory_path() /
-          ("palpate_skin_test_" + std::to_string(getpid()) + "_" + name))
-      .string();
-}
 
 /// The block of small_scenes.h as a model, with its own boundary as its skin, cut finer: the same shape with
 /// many more points.
@@ -39,12 +32,12 @@ LayeredModel block_model(bool with_skin) {
 }
 
 struct ModelOnDisk {
+  TemporaryFolder folder;
   std::string path;
   explicit ModelOnDisk(const LayeredModel& model, const std::string& name = "block.h5")
-      : path(temporary(name)) {
+      : path((folder / name).string()) {
     store::write_model(path, {model, {}});
   }
-  ~ModelOnDisk() { std::filesystem::remove(path); }
 };
 
 scene::Description block_from(const std::string& path, bool skin) {

@@ -2,7 +2,6 @@
 #include "palpate/loop/trace.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
 #include "palpate/store/csv.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 using dynamics::StepAttempt;
@@ -63,8 +63,8 @@ std::unique_ptr<loop::World> faked(std::atomic<bool>* raise = nullptr, int raise
 }
 
 TEST(Trace, WritesEveryAttemptWithItsReasonAndPlace) {
-  const auto path =
-      std::filesystem::temp_directory_path() / ("palpate-trace-" + std::to_string(getpid()) + ".csv");
+  const TemporaryFolder folder;
+  const auto path = folder / "trace.csv";
   const auto world = faked();
   {
     loop::TraceRecorder trace(*world, path.string());
@@ -86,7 +86,6 @@ TEST(Trace, WritesEveryAttemptWithItsReasonAndPlace) {
                                       std::to_string(file_node[kWorstNode]), "y", "block", "4"}));
   EXPECT_EQ(table.rows[1], (std::vector<std::string>{"0", "0.001", "3", "0.5", "2", "accepted", "block",
                                                      std::to_string(file_node[0]), "x", "", ""}));
-  std::filesystem::remove(path);
 }
 
 TEST(Trace, NamesDirectionsOfBodiesAndTools) {

@@ -1,38 +1,26 @@
 #pragma once
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 
 #include "palpate/core/error.h"
 #include "palpate/mesh/source.h"
+#include "temporary_folder.h"
 
-/// A folder of this test's own, gone with it;
-/// in memory where that is possible, because the fuzz test writes thousands of files.
+/// A folder of this test's own; in memory where that is possible, because the fuzz test writes thousands of
+/// files.
 class TempFolder {
  public:
-  TempFolder() {
-    const std::string name = "palpate_mesh_" + std::to_string(getpid());
-    std::error_code failed;
-    path_ = std::filesystem::path("/dev/shm") / name;
-    if (std::filesystem::create_directories(path_, failed); !failed) return;
-    path_ = std::filesystem::path(testing::TempDir()) / name;
-    std::filesystem::create_directories(path_);
-  }
-  ~TempFolder() { std::filesystem::remove_all(path_); }
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  void write(const std::string& name, std::string_view text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-  }
-  std::string path() const { return path_.string(); }
+  void write(const std::string& name, std::string_view text) const { folder_.write(name, text); }
+  std::string path() const { return folder_.string(); }
 
  private:
-  std::filesystem::path path_;
+  static std::filesystem::path place() {
+    return access("/dev/shm", W_OK) == 0 ? "/dev/shm" : std::filesystem::temp_directory_path();
+  }
+  palpate::TemporaryFolder folder_{place()};
 };
 
 inline palpate::MeshSpec file_spec(const std::string& name) {

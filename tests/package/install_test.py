@@ -16,11 +16,13 @@ HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]
 BUILD = Path(sys.argv[1]).resolve()
 COMPILER = sys.argv[2] if len(sys.argv) > 2 else "c++"
-CLEAN = {key: value for key, value in os.environ.items() if key not in ("LD_LIBRARY_PATH", "CMAKE_PREFIX_PATH", "palpate_DIR")}
+CLEAN = {key: value for key, value in os.environ.items()
+         if key not in ("LD_LIBRARY_PATH", "CMAKE_PREFIX_PATH", "palpate_DIR")}
 
 
 def call(*command, **options):
-    done = subprocess.run([str(piece) for piece in command], capture_output=True, text=True, env=CLEAN, **options)
+    done = subprocess.run([str(piece) for piece in command], capture_output=True, text=True, env=CLEAN,
+                          **options)
     return done.returncode, done.stdout + done.stderr
 
 
@@ -37,7 +39,8 @@ class Package(unittest.TestCase):
         first.rename(cls.prefix)
 
     def configure(self, source, build):
-        return call("cmake", "-S", source, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_CXX_COMPILER={COMPILER}",
+        return call("cmake", "-S", source, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                    f"-DCMAKE_CXX_COMPILER={COMPILER}",
                     f"-DCMAKE_PREFIX_PATH={self.prefix}")
 
     def test_nothing_installed_names_the_source_or_the_build(self):
@@ -67,7 +70,8 @@ class Package(unittest.TestCase):
         readme = (SOURCE / "README.md").read_text()
         source = self.folder / "mine"
         source.mkdir()
-        blocks = {language: text for language, text in re.findall(r"^```(cmake|cpp|toml)\n(.*?)^```$", readme, re.M | re.S)}
+        fences = re.findall(r"^```(cmake|cpp|toml)\n(.*?)^```$", readme, re.M | re.S)
+        blocks = {language: text for language, text in fences}
         for language, name in {"cmake": "CMakeLists.txt", "cpp": "main.cpp", "toml": "my.toml"}.items():
             (source / name).write_text(blocks[language])
         status, text = self.configure(source, self.folder / "mine-build")

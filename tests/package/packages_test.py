@@ -52,7 +52,8 @@ class Packages(unittest.TestCase):
                 self.assertNotEqual(policies[entry], "(none)")
 
     def test_the_list_installs_on_a_system_with_nothing_installed(self):
-        done = output("apt-get", "-o", "Dir::State::status=/dev/null", "install", "--simulate", "--no-install-recommends", *entries())
+        done = output("apt-get", "-o", "Dir::State::status=/dev/null", "install", "--simulate",
+                      "--no-install-recommends", *entries())
         self.assertEqual(done.returncode, 0, done.stderr)
         installed = {line.split()[1] for line in done.stdout.splitlines() if line.startswith("Inst ")}
         self.assertEqual(set(entries()) - installed, set())

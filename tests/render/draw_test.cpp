@@ -8,6 +8,7 @@
 #include "palpate/core/counters.h"
 #include "palpate/render/scene.h"
 #include "render/shapes.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 using render::Picture;
@@ -148,7 +149,7 @@ TEST(Draw, IsTheSameTwiceToTheByteOnDisk) {
   render::Options options;
   options.width = 480;
   options.height = 360;
-  const auto folder = std::filesystem::path(testing::TempDir());
+  const TemporaryFolder folder;
   const long before = counters::counter("render.picture");
   for (const char* name : {"one.png", "two.png"})
     render::save_png(render::draw(scene, options), folder / name);

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "palpate/core/error.h"
+#include "temporary_folder.h"
 #include "well_formed.h"
 
 using namespace palpate;
@@ -67,7 +68,8 @@ TEST(Page, MakesIdsUniqueAndTakesBlackFromThePage) {
 }
 
 TEST(Page, EmbedsAPngAndRefusesWhatIsNone) {
-  const auto png = std::filesystem::path(testing::TempDir()) / "tiny.png";
+  const TemporaryFolder folder;
+  const auto png = folder / "tiny.png";
   std::ofstream(png, std::ios::binary) << "\x89PNG\r\n\x1a\n";
   report::Page page("t");
   page.add_png(png, "a picture");
@@ -79,7 +81,8 @@ TEST(Page, EmbedsAPngAndRefusesWhatIsNone) {
 }
 
 TEST(Page, SaysWhereItCannotBeWritten) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "page.html";
+  const TemporaryFolder folder;
+  const auto path = folder / "page.html";
   report::write(report::Page("t"), path);
   EXPECT_TRUE(std::filesystem::exists(path));
   try {

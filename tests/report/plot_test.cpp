@@ -12,6 +12,7 @@
 #include "palpate/report/force_plot.h"
 #include "palpate/report/page.h"
 #include "report/thin.h"
+#include "temporary_folder.h"
 #include "well_formed.h"
 
 using namespace palpate;
@@ -65,8 +66,8 @@ TEST(Plot, ShowsNamesLabelsAndLevels) {
 }
 
 TEST(Plot, RunsNoCommandHiddenInAName) {
-  const auto trace = std::filesystem::path(testing::TempDir()) / "must_not_exist";
-  std::filesystem::remove(trace);
+  const TemporaryFolder folder;
+  const auto trace = folder / "must_not_exist";
   report::Plot plot = small_plot();
   const std::string command = "`touch " + trace.string() + "` '; system 'touch " + trace.string() + "'";
   plot.title = plot.x_label = plot.series[0].name = plot.series[0].labels[0] = plot.levels[0].label = command;

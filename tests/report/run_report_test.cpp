@@ -8,19 +8,13 @@
 #include "palpate/core/error.h"
 #include "palpate/report/work_precision.h"
 #include "palpate/store/study_columns.h"
+#include "temporary_folder.h"
 #include "well_formed.h"
 
 using namespace palpate;
 namespace fs = std::filesystem;
 
 namespace {
-
-fs::path fresh_dir(const std::string& name) {
-  const fs::path dir = fs::path(testing::TempDir()) / name;
-  fs::remove_all(dir);
-  fs::create_directories(dir);
-  return dir;
-}
 
 void put(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
@@ -36,8 +30,7 @@ std::string joined(const std::vector<std::string>& cells) {
 }
 
 /// Every file that a report is made from, small.
-fs::path full_dir() {
-  const fs::path dir = fresh_dir("full_report");
+void fill(const TemporaryFolder& dir) {
   put(dir / "summary.json",
       R"({"command": "palpate run press-ball", "scene": "press <ball>", "outcome": "finished",
         "message": "", "overrides": ["a=1"],
@@ -71,13 +64,16 @@ fs::path full_dir() {
       {"quantity": "broken [m]", "computed": 2, "exact": 1, "error": 1, "bar": 1e-6, "order": null,
         "passed": false}]}]})");
   put(dir / "picture-of-it.png", "\x89PNG\r\n\x1a\n");
-  return dir;
 }
 
 }  // namespace
 
 TEST(RunReport, HoldsEverySectionAndNothingFromOutside) {
-  const std::string html = read(report::write_run_report(full_dir()));
+  const TemporaryFolder dir;
+  fill(dir);
+  const report::RunReport report = report::write_run_report(dir.path());
+  EXPECT_TRUE(report.missing_figures.empty());
+  const std::string html = read(report.page);
   EXPECT_EQ(well_formed_problem(html), "");
   for (const char* text : {"palpate: press &lt;ball&gt;",
                            "The ball &amp; its dent",
@@ -116,23 +112,27 @@ TEST(RunReport, HoldsEverySectionAndNothingFromOutside) {
 }
 
 TEST(RunReport, LeavesOutSectionsWithoutAFile) {
-  const fs::path dir = fresh_dir("thin_report");
+  const TemporaryFolder dir;
   put(dir / "summary.json", R"({"scene": "one-tet"})");
-  const std::string html = read(report::write_run_report(dir));
+  const std::string html = read(report::write_run_report(dir.path()).page);
   EXPECT_NE(html.find("palpate: one-tet"), std::string::npos);
   for (const char* text : {"Force on the hand", "Error against run time", "Validation", "Provenance"})
     EXPECT_EQ(html.find(text), std::string::npos) << text;
 }
 
 TEST(RunReport, GivesTheReasonInPlaceOfAFigureThatCannotBeDrawn) {
-  const fs::path dir = fresh_dir("no_figure_report");
+  const TemporaryFolder dir;
   put(dir / "force.csv", "time_s,force_x_n,force_y_n,force_z_n\n");
-  EXPECT_NE(read(report::write_run_report(dir)).find("Figure not drawn"), std::string::npos);
+  const report::RunReport report = report::write_run_report(dir.path());
+  EXPECT_NE(read(report.page).find("Figure not drawn"), std::string::npos);
+  ASSERT_FALSE(report.missing_figures.empty()) << "whoever prints the last line must know";
+  EXPECT_NE(report.missing_figures[0].why.find("nothing to draw"), std::string::npos)
+      << report.missing_figures[0].why;
 }
 
 TEST(RunReport, RefusesADirectoryWithoutResults) {
   try {
-    report::write_run_report(fresh_dir("empty_report"));
+    report::write_run_report(TemporaryFolder().path());
     FAIL() << "an empty directory was accepted";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("holds no results to report"), std::string::npos);
@@ -141,10 +141,10 @@ TEST(RunReport, RefusesADirectoryWithoutResults) {
 }
 
 TEST(RunReport, NamesAFileThatIsBroken) {
-  const fs::path dir = fresh_dir("broken_report");
+  const TemporaryFolder dir;
   put(dir / "summary.json", "{\"scene\": ");
   try {
-    report::write_run_report(dir);
+    report::write_run_report(dir.path());
     FAIL() << "broken JSON was accepted";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("summary.json: is not valid JSON"), std::string::npos);

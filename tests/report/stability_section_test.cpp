@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "palpate/report/run_report.h"
+#include "temporary_folder.h"
 #include "well_formed.h"
 
 using namespace palpate;
@@ -30,11 +31,9 @@ constexpr const char* kStability = R"({"unexpected": 1, "stopped": false, "wall_
      "figure": "", "energy_gain": null, "error": null, "reason": "", "steps": 0, "cpu_s": 0.01}]})";
 
 std::string page_of(const std::string& json) {
-  const fs::path dir = fs::path(testing::TempDir()) / "stability_section";
-  fs::remove_all(dir);
-  fs::create_directories(dir);
-  std::ofstream(dir / "stability.json") << json;
-  std::ifstream in(report::write_run_report(dir));
+  const TemporaryFolder dir;
+  dir.write("stability.json", json);
+  std::ifstream in(report::write_run_report(dir.path()).page);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 

@@ -7,16 +7,11 @@
 #include <fstream>
 
 #include "palpate/core/error.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 
 namespace {
-
-std::filesystem::path file_with(const std::string& name, const std::string& text) {
-  const auto path = std::filesystem::path(testing::TempDir()) / name;
-  std::ofstream(path, std::ios::binary) << text;
-  return path;
-}
 
 std::string message_of(const std::filesystem::path& path) {
   try {
@@ -53,7 +48,9 @@ TEST(FormatTable, RefusesARaggedRow) {
 }
 
 TEST(ReadCsv, KeepsCellsAsTextAndGivesColumnsAsNumbers) {
-  const report::Table table = report::read_csv(file_with("good.csv", "a,b\n1.5,\"x, \"\"y\"\"\"\nnan,z\n"));
+  const TemporaryFolder folder;
+  const report::Table table =
+      report::read_csv(folder.write("good.csv", "a,b\n1.5,\"x, \"\"y\"\"\"\nnan,z\n"));
   EXPECT_EQ(table.headers, (std::vector<std::string>{"a", "b"}));
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_EQ(table.rows[0][1], "x, \"y\"");
@@ -63,8 +60,9 @@ TEST(ReadCsv, KeepsCellsAsTextAndGivesColumnsAsNumbers) {
 }
 
 TEST(ReadCsv, NamesTheFileThatIsWrong) {
+  const TemporaryFolder folder;
   for (const char* text : {"a,b\n1,2\n3\n", "a,b\n1,\"2\n", ""})
-    EXPECT_NE(message_of(file_with("bad.csv", text)).find("bad.csv:"), std::string::npos) << text;
+    EXPECT_NE(message_of(folder.write("bad.csv", text)).find("bad.csv:"), std::string::npos) << text;
   EXPECT_NE(message_of("/nowhere/at/all.csv").find("/nowhere/at/all.csv"), std::string::npos);
 }
 

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "palpate/report/run_report.h"
+#include "temporary_folder.h"
 #include "well_formed.h"
 
 using namespace palpate;
@@ -38,11 +39,9 @@ TEST(StepPlot, ShowsAcceptedStepsAsALineAndRejectedOnesByReason) {
 }
 
 TEST(RunReport, ShowsATrace) {
-  const std::filesystem::path dir = std::filesystem::path(testing::TempDir()) / "trace_report";
-  std::filesystem::remove_all(dir);
-  std::filesystem::create_directories(dir);
-  std::ofstream(dir / "trace.csv") << kText;
-  report::write_run_report(dir);
+  const TemporaryFolder dir;
+  dir.write("trace.csv", kText);
+  report::write_run_report(dir.path());
   std::ifstream in(dir / "report.html", std::ios::binary);
   const std::string html{std::istreambuf_iterator<char>(in), {}};
   EXPECT_EQ(well_formed_problem(html), "");

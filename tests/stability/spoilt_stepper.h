@@ -79,19 +79,21 @@ const dynamics::StepperRegistry& registry_of() {
   return registry;
 }
 
-inline const dynamics::StepperRegistry& registry(Spoil spoil) {
+/// Makes the registry with this fault: StabilityOptions::registry.
+using Registry = const dynamics::StepperRegistry& (*)();
+inline Registry registry(Spoil spoil) {
   switch (spoil) {
-    case Spoil::kNothing: return registry_of<Spoil::kNothing>();
-    case Spoil::kNotANumber: return registry_of<Spoil::kNotANumber>();
-    case Spoil::kGainsEnergy: return registry_of<Spoil::kGainsEnergy>();
-    case Spoil::kGainsALittle: return registry_of<Spoil::kGainsALittle>();
-    case Spoil::kFailsInSilence: return registry_of<Spoil::kFailsInSilence>();
-    case Spoil::kThrows: return registry_of<Spoil::kThrows>();
-    case Spoil::kNeverEnds: return registry_of<Spoil::kNeverEnds>();
-    case Spoil::kCrashes: return registry_of<Spoil::kCrashes>();
-    case Spoil::kClaimsErrorControl: return registry_of<Spoil::kClaimsErrorControl>();
-    case Spoil::kClaimsToBeExplicit: return registry_of<Spoil::kClaimsToBeExplicit>();
-    case Spoil::kFallsUpward: return registry_of<Spoil::kFallsUpward>();
+    case Spoil::kNothing: return registry_of<Spoil::kNothing>;
+    case Spoil::kNotANumber: return registry_of<Spoil::kNotANumber>;
+    case Spoil::kGainsEnergy: return registry_of<Spoil::kGainsEnergy>;
+    case Spoil::kGainsALittle: return registry_of<Spoil::kGainsALittle>;
+    case Spoil::kFailsInSilence: return registry_of<Spoil::kFailsInSilence>;
+    case Spoil::kThrows: return registry_of<Spoil::kThrows>;
+    case Spoil::kNeverEnds: return registry_of<Spoil::kNeverEnds>;
+    case Spoil::kCrashes: return registry_of<Spoil::kCrashes>;
+    case Spoil::kClaimsErrorControl: return registry_of<Spoil::kClaimsErrorControl>;
+    case Spoil::kClaimsToBeExplicit: return registry_of<Spoil::kClaimsToBeExplicit>;
+    case Spoil::kFallsUpward: return registry_of<Spoil::kFallsUpward>;
   }
   fail("no such fault");
 }

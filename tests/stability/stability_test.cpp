@@ -1,7 +1,6 @@
 #include "palpate/stability/stability.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +8,13 @@
 #include <filesystem>
 #include <limits>
 #include <ostream>
+#include <set>
 
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/store/csv.h"
 #include "stability/spoilt_stepper.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 using namespace palpate::stability;
@@ -21,10 +22,10 @@ using spoilt::Spoil;
 
 namespace {
 
-StabilityMatrix matrix_of(const dynamics::StepperRegistry& registry, const std::vector<std::string>& rows,
+StabilityMatrix matrix_of(spoilt::Registry registry, const std::vector<std::string>& rows,
                           double limit_s = 20.0, int jobs = 1) {
   StabilityOptions options;
-  options.registry = &registry;
+  options.registry = registry;
   options.rows = rows;
   options.seeds = 2;
   options.limit_s = limit_s;
@@ -67,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(Rows, EveryIntegrator,
                            return name;
                          });
 TEST_P(EveryIntegrator, DoesWhatTheoryExpects) {
-  const StabilityMatrix matrix = matrix_of(integrate::stepper_registry(), {GetParam()});
+  const StabilityMatrix matrix = matrix_of(integrate::stepper_registry, {GetParam()});
   EXPECT_EQ(unexpected_of(matrix), "");
   EXPECT_GE(matrix.cells.size(), integrate::stepper_registry().size());
   for (const StabilityCell& cell : matrix.cells) EXPECT_FALSE(cell.expected.empty()) << cell.integrator;
@@ -138,7 +139,7 @@ TEST(Stability, WhatGoesThroughAThinPlateIsCounted) {
 
 TEST(Stability, ACrashIsACell) {
   StabilityOptions options;
-  options.registry = &spoilt::registry(Spoil::kCrashes);
+  options.registry = spoilt::registry(Spoil::kCrashes);
   options.rows = {"sizes", "poissons-ratio"};
   options.jobs = 2;
   const StabilityMatrix matrix = run(options);
@@ -151,7 +152,7 @@ TEST(Stability, ACrashIsACell) {
 }
 
 TEST(Stability, DoesNotDependOnTheNumberOfProcesses) {
-  const auto& registry = spoilt::registry(Spoil::kNothing);
+  const auto registry = spoilt::registry(Spoil::kNothing);
   const StabilityMatrix one = matrix_of(registry, {"youngs-modulus", "squashed"}, 20.0, 1),
                         three = matrix_of(registry, {"youngs-modulus", "squashed"}, 20.0, 3);
   ASSERT_EQ(one.cells.size(), three.cells.size());
@@ -166,7 +167,7 @@ TEST(Stability, DoesNotDependOnTheNumberOfProcesses) {
 TEST(Stability, StopsBetweenCells) {
   std::atomic<bool> stop{false};
   StabilityOptions options;
-  options.registry = &spoilt::registry(Spoil::kNothing);
+  options.registry = spoilt::registry(Spoil::kNothing);
   options.rows = {"step"};
   options.stop = &stop;
   int calls = 0;
@@ -178,6 +179,16 @@ TEST(Stability, StopsBetweenCells) {
   const StabilityMatrix matrix = run(options);
   EXPECT_TRUE(matrix.stopped);
   EXPECT_EQ(matrix.cells.size(), 2u);
+}
+
+// A cell's process finds it by these names.
+TEST(Stability, CasesOfARowHaveNamesOfTheirOwn) {
+  std::set<std::string> rows;
+  for (const StabilityRow& row : stability_rows()) {
+    EXPECT_TRUE(rows.insert(row.name).second) << row.name;
+    const std::set<std::string> cases(row.sub_cases.begin(), row.sub_cases.end());
+    EXPECT_EQ(cases.size(), row.sub_cases.size()) << row.name;
+  }
 }
 
 TEST(Stability, RefusesNamesThatItDoesNotKnow) {
@@ -195,8 +206,7 @@ TEST(Stability, RefusesNamesThatItDoesNotKnow) {
 }
 
 TEST(Stability, WritesWhatItFound) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / fmt::format("stability-{}", ::getpid());
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   const StabilityMatrix matrix = matrix_of(spoilt::registry(Spoil::kGainsEnergy), {"youngs-modulus"});
   write(matrix, folder.string(), "palpate stability");
   const store::CsvTable csv = store::read_csv((folder / "stability.csv").string());
@@ -205,7 +215,6 @@ TEST(Stability, WritesWhatItFound) {
   EXPECT_EQ(csv.column("expected")[0], matrix.cells[0].expected.text());
   EXPECT_EQ(csv.column("as_expected")[0], matrix.cells[0].as_expected() ? "yes" : "no");
   EXPECT_TRUE(std::filesystem::exists(folder / "stability.json"));
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ with h5py.File(sys.argv[1], "r") as file:
     for s in range(count):
         demand(steps["NumberOfParts"][s] == 1, "NumberOfParts")
         part, first = int(steps["PartOffsets"][s]), int(steps["CellOffsets"][s])
-        n, cells, ids = (int(root[name][part])
-                         for name in ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"))
+        sizes = ("NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds")
+        n, cells, ids = (int(root[name][part]) for name in sizes)
         offsets = root["Offsets"][first + part:][:cells + 1]
         start = int(steps["ConnectivityIdOffsets"][s])
         step = {

@@ -1,10 +1,10 @@
 #pragma once
-#include <unistd.h>
 
 #include <filesystem>
 #include <string>
 
 #include "palpate/store/run_file.h"
+#include "temporary_folder.h"
 
 /// A small made-up run whose every number follows from its step:
 /// what a file holds can be checked without a second copy.
@@ -15,15 +15,10 @@ using namespace palpate;
 /// A folder that goes away with its owner.
 class Folder {
  public:
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "palpate-store-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+  std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
 
  private:
-  std::string path_;
+  TemporaryFolder folder_;
 };
 
 /// Two tetrahedra of five nodes, and a triangle tool.

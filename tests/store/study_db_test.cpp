@@ -1,7 +1,6 @@
 #include "palpate/store/study_db.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -9,6 +8,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/store/content_hash.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 namespace fs = std::filesystem;
@@ -17,10 +17,9 @@ namespace {
 
 class StudyDbTest : public testing::Test {
  protected:
-  fs::path folder_ = fs::temp_directory_path() / ("palpate-study-db-" + std::to_string(getpid()));
+  const TemporaryFolder own_;
+  fs::path folder_ = own_.path();
   std::string path_ = (folder_ / "study.sqlite").string();
-  void SetUp() override { fs::remove_all(folder_), fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
 };
 
 store::StudyRun sample(const std::string& key, int repeat) {

@@ -63,6 +63,14 @@ struct MethodPoint {
   double peak_force_n = 0.0;   ///< on the hand
   long most_samples = 0;       ///< contact samples at one time
   double query_s = 0.0, cpu_s = 0.0;
+  std::string trouble{};  ///< why the scene could not be run with it; empty: it was
+};
+
+/// A chart, or a part of one, that could not be made.
+struct MissingChart {
+  std::string of;  ///< "the contact methods", "the contact method \"gpu\""
+  std::string why;
+  std::string text() const { return "no chart of " + of + ": " + why; }
 };
 
 /// All about one scene.
@@ -75,8 +83,8 @@ struct SceneComparison {
   std::vector<ComparePoint> restarts;
   /// error of the exchange period itself; empty where the scene asks for none
   std::vector<ExchangePoint> exchange;
-  std::vector<MethodPoint> methods;  ///< empty where the scene names none
-  std::vector<std::string> notes;    ///< charts that could not be made, and why
+  std::vector<MethodPoint> methods;  ///< those that could be run; empty where the scene names none
+  std::vector<MissingChart> missing_charts;
 };
 
 struct Comparison {
@@ -102,13 +110,14 @@ struct CompareOptions {
 
 /// Runs every ladder of every scene at the scene's fixed exchange period against the scene's tight reference,
 /// each run in a process of its own; repeats are interleaved over all points, so that a noisy machine hurts
-/// all alike.  Call it without other threads.
+/// all alike.  The processes come from core's ProcessPool: a program that has started threads or drawn a
+/// picture by now must have called ProcessPool::prepare() before.
 /// @param scenes  from scene::load or scene::parse: their text is what results are kept under
 /// @throws Error for ladders that make no sense
 Comparison run(const std::vector<scene::Description>& scenes, const CompareOptions& options);
 
 /// The scene with the tool's contact found by each method of `compare.contact_methods`, at the scene's own
-/// integrator settings.
+/// integrator settings.  A method that cannot be had, or whose run gives up, is a point with its trouble.
 std::vector<MethodPoint> compare_contact_methods(const scene::Description& description,
                                                  const std::atomic<bool>* stop = nullptr);
 

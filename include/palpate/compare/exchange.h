@@ -13,6 +13,7 @@ struct ExchangePoint {
   double exchange_period_s = 0.0;
   TrajectoryError error;  ///< NaN throughout when the run, or the one it is held against, failed
   double cpu_s = 0.0;
+  std::string trouble{};  ///< why there is no error; empty: there is one
 };
 
 /// What to do while an exchange study goes on.

@@ -28,6 +28,8 @@ class Page {
   Page& add_svg(const std::string& svg, const std::string& caption);
   /// A PNG file, embedded.  Throws Error when it cannot be read or is not a PNG.
   Page& add_png(const std::filesystem::path& png, const std::string& caption);
+  /// In the place of a figure that could not be drawn: why.
+  Page& add_missing_figure(const std::string& caption, const std::string& why);
   /// Ready HTML, well-formed and escaped by who made it.
   Page& add_fragment(const std::string& html);
   Page& add_code(const std::string& text);
@@ -40,11 +42,16 @@ class Page {
   Page& end_details();
 
   std::string html() const;
+  struct MissingFigure {
+    std::string caption, why;
+  };
+  const std::vector<MissingFigure>& missing_figures() const { return missing_figures_; }
 
  private:
   std::string title_;
   std::string body_;
   int figures_ = 0;
+  std::vector<MissingFigure> missing_figures_;
 };
 
 /// Writes the page whole or not at all.

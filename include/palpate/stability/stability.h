@@ -76,7 +76,8 @@ struct StabilityOptions {
   int jobs = 1;                          ///< processes
   /// CPU time of a cell; of a slow row's, kLongerInSlowRows times that
   double limit_s = 20.0;
-  const dynamics::StepperRegistry* registry = nullptr;  ///< null: integrate::stepper_registry()
+  /// Called in the process of each cell as well; null: integrate::stepper_registry
+  const dynamics::StepperRegistry& (*registry)() = nullptr;
   std::function<void(double fraction, const std::string& what)> progress;
   const std::atomic<bool>* stop = nullptr;  ///< set from outside: no new cell begins
 };
@@ -87,6 +88,8 @@ struct StabilityMatrix {
   double wall_s = 0.0;
   long unexpected() const;
 };
+/// Each cell runs in a process of its own, from core's ProcessPool: a program that has started threads or
+/// drawn a picture by now must have called ProcessPool::prepare() before.
 /// @throws Error for a row or an integrator that does not exist, with the nearest name
 StabilityMatrix run(const StabilityOptions& options);
 
