@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "palpate/dynamics/system.h"
 #include "palpate/fem/attachments.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/mesh/boundary.h"

@@ -139,6 +139,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   /// Proximal steps to the rung s_.  @param flag KINSOL's last
   bool go_downhill(int& flag, long& iterations) {
     sigma_ = stiffness_over_mass();
+    if (!(sigma_ > 0.0)) return false;
     const double largest = 1e6 * sigma_;
     for (int k = 0; k < kProximalSteps && !interrupted(); ++k) {
       flag = solve(iterations);
