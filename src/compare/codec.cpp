@@ -46,6 +46,7 @@ void visit_result(Result& r, Visit visit) {
   visit("tangent_evaluations", c.tangent_evaluations);
   visit("reinitialisations", c.reinits);
   visit("indefinite_matrices", c.indefinite);
+  visit("rounding_limited_equilibria", c.rounding_limited);
   visit("force_s", c.force_s);
   visit("tangent_s", c.tangent_s);
   visit("factorisations", c.solver.factorisations);

@@ -79,16 +79,15 @@ Pressure pressure(const PressureLaw& law, double gap, double gap_rate) {
 
 // p > 0 where delta > 0 and
 //   kelvin_voigt   k delta + d delta' > 0         that is  gap + (d/k) rate < 0
-//   hunt_crossley  1 + 3/2 c delta' > 0           that is  3/2 c rate - 1 < 0, times any length to stand
-//   beside a gap
+//   hunt_crossley  1 + 3/2 c delta' > 0           that is  3/2 c rate - 1 < 0, times the gap's size to
+//   stand beside it
 // so the larger of gap and that is negative exactly there.  (For laws without an onset: with one the force
 // has no kink to find.)
 double pressing(const PressureLaw& law, double gap, double gap_rate) {
   if (law.d == 0.0) return gap;
-  constexpr double kLength = 1e-3;  // [m]
   return std::max(gap, law.kind == PressureLaw::Kind::kKelvinVoigt
                            ? gap + law.d / law.k * gap_rate
-                           : kLength * (1.5 * law.d * gap_rate - 1.0));
+                           : std::abs(gap) * (1.5 * law.d * gap_rate - 1.0));
 }
 
 Pressure pressure(const ContactSpec& law, double gap, double gap_rate) {

@@ -136,8 +136,10 @@ void Recorder::period(World& world, double t) {
 
 void Recorder::tick(const TickRecord& tick) {
   if (!impl_->forces) return;
-  const bool limited = (tick.device.force - tick.wanted.force).norm() > 1e-12 ||
-                       (tick.device.moment - tick.wanted.moment).norm() > 1e-12;
+  constexpr double kRounding = 1e-12;
+  const Wrench &sent = tick.device, &wanted = tick.wanted;
+  const bool limited = (sent.force - wanted.force).norm() > kRounding * wanted.force.norm() ||
+                       (sent.moment - wanted.moment).norm() > kRounding * wanted.moment.norm();
   impl_->forces->append({tick.time, tick.handle, tick.tool, tick.device, limited});
 }
 

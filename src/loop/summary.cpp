@@ -34,6 +34,7 @@ void add_counts(store::SummarySection& s, const RunResult& r) {
   add("indefinite_matrices", c.indefinite);
   add("projected_matrices", c.projected);
   add("unconverged_linear_solves", c.unconverged);
+  add("rounding_limited_equilibria", c.rounding_limited);
   add("reinitialisations", c.reinits);
   add("events", c.events);
   add("contact_queries", r.contact_queries);

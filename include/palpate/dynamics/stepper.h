@@ -46,7 +46,9 @@ struct StepperCounters {
   long events = 0;  ///< roots that a step was cut short at
   /// matrices that had no Cholesky factor: answered by definite tangents (projected) or, the rest, by LU
   long indefinite = 0;
-  long projected = 0;    ///< of those, answered by definite tangents
+  long projected = 0;  ///< of those, answered by definite tangents
+  /// equilibria whose residual is the rounding of forces that cancel, above the tolerance asked for
+  long rounding_limited = 0;
   long unconverged = 0;  ///< solves that an iterative linear solver gave up, for a factor to answer
   double force_s = 0.0, tangent_s = 0.0;  ///< wall time [s]
   SolverCounters solver;
