@@ -8,6 +8,7 @@
 #include "monolithic_ticks.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
+#include "palpate/core/workers.h"
 #ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/rigid_block.h"
 #include "palpate/tool/tool.h"
@@ -206,6 +207,9 @@ double period_of(const scene::Description& d) {
   return d.record ? d.record->state_period_s : d.duration_s;
 }
 
-RunResult run(World& world, const RunOptions& options) { return Loop(world, options).run(); }
+RunResult run(World& world, const RunOptions& options) {
+  const workers::Count threads(world.description.integrator.threads);
+  return Loop(world, options).run();
+}
 
 }  // namespace palpate::loop

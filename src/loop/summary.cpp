@@ -73,6 +73,7 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
   s.values.emplace_back("rtol", d.integrator.rtol);
   s.values.emplace_back("step_s", d.integrator.step_s);
   s.values.emplace_back("linear_solver", integrate::linear_solver_of(d.integrator));
+  s.values.emplace_back("threads", static_cast<long long>(d.integrator.threads));
   if (!d.tool) return;
   const bool monolithic = d.coupling.scheme == "monolithic";
   s.values.emplace_back("exchange_scheme", d.coupling.scheme);

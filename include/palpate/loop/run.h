@@ -48,8 +48,9 @@ struct RunResult {
   dynamics::StepperCounters counters;
 };
 
-/// Virtual time: one exchange period after the other, ticks interleaved (docs/design.md, 1); monolithic, one refresh
-/// after the other, ticks from dense output.  A scene without a tool has periods but no ticks.
+/// Virtual time: one exchange period after the other, ticks interleaved (docs/design.md, 1); monolithic, one
+/// refresh after the other, ticks from dense output.  A scene without a tool has periods but no ticks. It
+/// works on the World's own number of threads (integrator.threads), whatever other Worlds have.
 RunResult run(World& world, const RunOptions& options);
 
 /// The length of the loop's period for a scene [s]: the exchange period where there is an exchange, else the

@@ -145,7 +145,9 @@ struct World {
   double mechanical_energy();
 };
 
-/// Builds a World: the one place that names concrete parts.
+/// Builds a World: the one place that names concrete parts.  From here on the process works on its number of
+/// threads (core/workers.h): the World assembled last decides for who steps Worlds by hand; run() keeps to
+/// each World's own.
 /// @throws Error for names that no registry knows, parts not compiled in, meshes refused
 std::unique_ptr<World> assemble(const scene::Description& description);
 

@@ -258,18 +258,6 @@ void set_limits(FemBenchRow& row, const MachineLimits& limits) {
   row.needed_bytes = bytes_to_store(counts);
 }
 
-/// As many workers for the element kernels as threads for the linear solver, while it lives.
-class WorkerCount {
- public:
-  explicit WorkerCount(int count) : before_(workers::count()) { workers::set_count(count); }
-  ~WorkerCount() { workers::set_count(before_); }
-  WorkerCount(const WorkerCount&) = delete;
-  WorkerCount& operator=(const WorkerCount&) = delete;
-
- private:
-  int before_;
-};
-
 }  // namespace
 
 FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
@@ -283,7 +271,7 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
           for (const std::string& solver : options.linear_solvers)
             for (std::size_t t = 0; t < options.threads.size(); ++t) {
               if (stop && stop()) break;
-              const WorkerCount workers_too(options.threads[t]);
+              const workers::Count elements_too(options.threads[t]);
               const IntegratorSpec spec{.name = "linearly-implicit-euler",
                                         .step_s = h,
                                         .linear_solver = solver,
@@ -295,7 +283,7 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
   for (const std::string& size : options.sizes)  // now, so that their memory is not in the peaks
     for (const int threads : options.threads) {
       if (stop && stop()) break;
-      const WorkerCount workers(threads);
+      const workers::Count count(threads);
       for (ElementTiming& timing : time_elements(size_named(size), options.element_s)) {
         timing.threads = threads;
         report.elements.push_back(timing);
