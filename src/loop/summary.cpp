@@ -4,9 +4,7 @@
 #include "palpate/core/counters.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
-#ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
-#endif
 
 namespace palpate::loop {
 namespace {
@@ -58,9 +56,7 @@ store::Provenance full_provenance() {
   store::Provenance p = store::provenance();
   for (const auto& library : integrate::library_versions()) p.libraries.push_back(library);
   for (const auto& library : linear::library_versions()) p.libraries.push_back(library);
-#ifdef PALPATE_HAS_TOOL
-  p.libraries.emplace_back("Simbody", tool::simbody_version());
-#endif
+  if (tool::available()) p.libraries.emplace_back("Simbody", tool::simbody_version());
   return p;
 }
 
