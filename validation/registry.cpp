@@ -1,45 +1,46 @@
 #include "cases.h"
+#include "palpate/contact/gpu_available.h"
+#include "palpate/tool/tool.h"
 
 namespace palpate::validation {
 
 const std::vector<ValidationCase>& validation_cases() {
-  static const std::vector<ValidationCase> cases = {
-#ifdef PALPATE_HAS_gl
-      overlap_volume(),
-#endif
-      sphere_on_plane(),
-      punch_bounce(),
-      punch_bounce_damped(),
-      punch_bounce_hunt_crossley(),
-      patch_test(),
-      rigid_motion(),
-      gradient_and_tangent(),
-      uniaxial_and_shear(),
-      hanging_bar(),
-      layered_bar(),
-      cantilever(),
-      large_deflection(),
-      torsion(),
-      newton_convergence(),
-      locking(),
-      free_vibration(),
-      vibration_tolerance(),
-      axial_vibration(),
-      two_material_bar(),
-      bar_on_bone(),
-      lame_mode(),
-      bending_vibration(),
-      spinning_body(),
-      explicit_limit(),
-      dropped_ball(),
-#ifdef PALPATE_HAS_tool
-      handle_step(),
-      handle_below_wall(),
-      coupling_limit(),
-      partitioned_monolithic(),
-#endif
-      device_limits(),
-  };
+  static const std::vector<ValidationCase> cases = [] {
+    std::vector<ValidationCase> out;
+    const auto add = [&out](std::vector<ValidationCase> some) {
+      out.insert(out.end(), some.begin(), some.end());
+    };
+    if (contact::gpu_available()) add({overlap_volume()});
+    add({sphere_on_plane(),
+         punch_bounce(),
+         punch_bounce_damped(),
+         punch_bounce_hunt_crossley(),
+         patch_test(),
+         rigid_motion(),
+         gradient_and_tangent(),
+         uniaxial_and_shear(),
+         hanging_bar(),
+         layered_bar(),
+         cantilever(),
+         large_deflection(),
+         torsion(),
+         newton_convergence(),
+         locking(),
+         free_vibration(),
+         vibration_tolerance(),
+         axial_vibration(),
+         two_material_bar(),
+         bar_on_bone(),
+         lame_mode(),
+         bending_vibration(),
+         spinning_body(),
+         explicit_limit(),
+         dropped_ball()});
+    if (tool::available())
+      add({handle_step(), handle_below_wall(), coupling_limit(), partitioned_monolithic()});
+    add({device_limits()});
+    return out;
+  }();
   return cases;
 }
 

@@ -6,10 +6,12 @@
 #include <functional>
 
 #include "palpate/bench/bench.h"
+#include "palpate/contact/gpu_available.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
+#include "palpate/tool/tool.h"
 
 namespace palpate::bench {
 namespace {
@@ -141,14 +143,12 @@ std::vector<Variant> variants_of(const scene::Description& d) {
   out.push_back({"... and recording", [recorded] { return palpate_loop(recorded, true); }});
   out.push_back({"... and a plane out of reach",
                  [quiet] { return palpate_loop(with_plane_out_of_reach(quiet), false); }});
-#ifdef PALPATE_HAS_TOOL
+  if (!tool::available()) return out;
   out.push_back({"... and a tool out of reach",
                  [quiet] { return palpate_loop(with_tool_out_of_reach(quiet), false); }});
-#ifdef PALPATE_HAS_GL
-  out.push_back({"... with contact in image space",
-                 [quiet] { return palpate_loop(with_image_contact_out_of_reach(quiet), false); }});
-#endif
-#endif
+  if (contact::gpu_available())
+    out.push_back({"... with contact in image space",
+                   [quiet] { return palpate_loop(with_image_contact_out_of_reach(quiet), false); }});
   return out;
 }
 

@@ -6,14 +6,13 @@
 
 #include "commands.h"
 #include "palpate/core/error.h"
+#include "palpate/render/available.h"
+#include "palpate/render/scene.h"
 #include "palpate/report/table.h"
 #include "palpate/store/csv.h"
 #include "places.h"
 #include "scene_of.h"
 #include "undelivered.h"
-#ifdef PALPATE_HAS_RENDER
-#include "palpate/render/scene.h"
-#endif
 
 namespace palpate::cli {
 namespace {
@@ -38,7 +37,6 @@ void write_table(const modes::Modes& modes, const std::string& path) {
   csv.close();
 }
 
-#ifdef PALPATE_HAS_RENDER
 constexpr int kColumns = 3, kPictured = 6;
 
 /// The first elastic modes side by side, each coloured by its displacement.
@@ -76,17 +74,11 @@ void draw_modes(const loop::World& world, const modes::Modes& modes, const std::
   options.width = 1600;
   render::save_png(render::draw(scene, options), path);
 }
-#endif
 
 }  // namespace
 
 int modes(const ModesArguments& arguments) {
-#ifndef PALPATE_HAS_RENDER
-  if (arguments.picture)
-    fail(
-        "--picture: this build draws no pictures; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, "
-        "libepoxy-dev)");
-#endif
+  if (arguments.picture) render::check_available();
   const scene::Description description = scene_of(arguments.scene);
   const std::unique_ptr<loop::World> world = loop::assemble(description);
   const modes::Modes found = loop::find_modes(*world, arguments.count);
@@ -98,7 +90,6 @@ int modes(const ModesArguments& arguments) {
   Undelivered missing;
   write_table(found, (base / "modes.csv").string());
   loop::write_modes(*world, found, (base / "modes.vtkhdf").string());
-#ifdef PALPATE_HAS_RENDER
   if (arguments.picture) {
     std::error_code none;
     std::filesystem::remove(base / "modes.png", none);  // one of an earlier run would pass for this one's
@@ -106,7 +97,6 @@ int modes(const ModesArguments& arguments) {
       draw_modes(*world, found, (base / "modes.png").string());
     } catch (const Error& e) { missing.add("picture " + (base / "modes.png").string(), e.what()); }
   }
-#endif
   fmt::print("in {}: modes.csv, modes.vtkhdf{}\n", folder,
              arguments.picture && missing.empty() ? ", modes.png" : "");
   if (!found.converged)

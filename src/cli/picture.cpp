@@ -1,9 +1,8 @@
 #include "picture.h"
 
 #include "palpate/core/error.h"
-#ifdef PALPATE_HAS_RENDER
+#include "palpate/render/available.h"
 #include "palpate/render/scene.h"
-#endif
 
 namespace palpate::cli {
 namespace {
@@ -16,11 +15,7 @@ VecX shading(loop::World& world, const loop::Body& body, const Points& now, cons
 }  // namespace
 
 void check_picture(const std::string& shade) {
-#ifndef PALPATE_HAS_RENDER
-  fail(
-      "--picture: this build draws no pictures; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, "
-      "libepoxy-dev)");
-#endif
+  render::check_available();
   const std::vector<std::string> known = {"displacement", "stress"};
   if (shade != known[0] && shade != known[1])
     fail("--shade: unknown \"{}\"{}", shade, suggestion(shade, known));
@@ -34,7 +29,7 @@ void Snapshot::tick(const loop::TickRecord& tick) {
 void Snapshot::period(loop::World& world, double t) {
   const double felt = newest_force_n_;
   newest_force_n_ = 0.0;
-  if (world.tool && felt <= force_n_) return;
+  if (world.has_tool_of_ticks() && felt <= force_n_) return;
   force_n_ = felt;
   time_ = t;
   tool_ = newest_tool_;
@@ -48,7 +43,6 @@ void Snapshot::period(loop::World& world, double t) {
   }
 }
 
-#ifdef PALPATE_HAS_RENDER
 void Snapshot::save(const loop::World& world, const std::string& path) const {
   render::Scene scene;
   for (std::size_t i = 0; i < bodies_.size(); ++i)
@@ -86,11 +80,8 @@ void Snapshot::save(const loop::World& world, const std::string& path) const {
   scene.scale.label = shade_ == "stress" ? "von Mises stress" : "displacement";
   scene.scale.unit = shade_ == "stress" ? "Pa" : "m";
   scene.title = fmt::format("{}, t = {:g} s", world.description.name, time_);
-  if (world.tool) scene.subtitle = fmt::format("the hand feels {:.3g} N", force_n_);
+  if (world.has_tool_of_ticks()) scene.subtitle = fmt::format("the hand feels {:.3g} N", force_n_);
   render::save_png(render::draw(scene), path);
 }
-#else
-void Snapshot::save(const loop::World&, const std::string&) const {}
-#endif
 
 }  // namespace palpate::cli

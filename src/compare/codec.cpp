@@ -23,37 +23,12 @@ void visit_error(Error& e, Visit visit) {
   visit("energy_error_j", e.energy_j);
 }
 
-template <class Result, class Visit>
-void visit_result(Result& r, Visit visit) {
-  visit("cpu_s", r.cpu_s);
-  visit("wall_s", r.wall_s);
-  visit("simulated_s", r.time);
-  visit("query_s", r.query_s);
-  visit("linearise_s", r.linearise_s);
-  visit("tool_s", r.tool_s);
-  visit("periods", r.periods);
-  visit("ticks", r.ticks);
-  visit("contact_queries", r.contact_queries);
-  visit("limited_ticks", r.limited_ticks);
-  visit("frozen_fallbacks", r.frozen_fallbacks);
-  auto& c = r.counters;
-  visit("steps", c.steps);
-  visit("rejected_steps", c.rejected);
-  visit("error_test_failures", c.error_test_failures);
-  visit("newton_failures", c.newton_failures);
-  visit("newton_iterations", c.newton_iterations);
-  visit("force_evaluations", c.force_evaluations);
-  visit("tangent_evaluations", c.tangent_evaluations);
-  visit("reinitialisations", c.reinits);
-  visit("indefinite_matrices", c.indefinite);
-  visit("rounding_limited_equilibria", c.rounding_limited);
-  visit("force_s", c.force_s);
-  visit("tangent_s", c.tangent_s);
-  visit("factorisations", c.solver.factorisations);
-  visit("linear_solves", c.solver.solves);
-  visit("factor_s", c.solver.factor_s);
-  visit("solve_s", c.solver.solve_s);
-}
+// Beside its numbers a RunResult holds a status, a flag (padded to a word), and what put_result writes by
+// hand.
+static_assert(dynamics::bytes_of_counters<loop::RunResult>() + sizeof(dynamics::StepResult) + sizeof(double) +
+                      sizeof(std::vector<long>) + sizeof(std::string) ==
+                  sizeof(loop::RunResult),
+              "the codec leaves out a member of RunResult");
 
 template <class Record>
 auto writing(ByteWriter& out, const Record&) {
@@ -82,14 +57,20 @@ dynamics::StepResult get_status(ByteReader& in) {
 void put_result(ByteWriter& out, const loop::RunResult& r) {
   put_status(out, r.status);
   out.put(r.stopped);
-  visit_result(r, writing(out, r));
+  loop::visit_counters(writing(out, r), r);
+  out.put(r.counters.solver.ordering);
+  out.put(r.tunnelled.size());
+  for (const long vertices : r.tunnelled) out.put(vertices);
 }
 
 loop::RunResult get_result(ByteReader& in) {
   loop::RunResult r;
   r.status = get_status(in);
   r.stopped = in.get<bool>();
-  visit_result(r, reading(in));
+  loop::visit_counters(reading(in), r);
+  r.counters.solver.ordering = in.get<std::string>();
+  r.tunnelled.resize(in.get<std::size_t>());
+  for (long& vertices : r.tunnelled) vertices = in.get<long>();
   return r;
 }
 
@@ -184,9 +165,9 @@ const std::vector<std::string>& run_columns() {
   static const std::vector<std::string> columns = [] {
     std::vector<std::string> out = {"limit_s", "reference_used"};
     PointRun none;
-    const auto name = [&](const char* column, auto&) { out.push_back(column); };
+    const auto name = [&](const char* column, const auto&) { out.push_back(column); };
     visit_error(none.error, name);
-    visit_result(none.result, name);
+    loop::visit_counters(name, none.result);
     return out;
   }();
   return columns;
@@ -199,7 +180,7 @@ store::StudyRun row_of(const PointRun& run, double limit_s) {
   row.numbers = {limit_s, static_cast<double>(run.reference)};
   const auto add = [&](const char*, const auto& value) { row.numbers.push_back(static_cast<double>(value)); };
   visit_error(run.error, add);
-  visit_result(run.result, add);
+  loop::visit_counters(add, run.result);
   return row;
 }
 
@@ -214,7 +195,7 @@ PointRun point_run_of(const store::StudyRun& row) {
     value = static_cast<std::remove_reference_t<decltype(value)>>(row.numbers[i++]);
   };
   visit_error(run.error, take);
-  visit_result(run.result, take);
+  loop::visit_counters(take, run.result);
   return run;
 }
 

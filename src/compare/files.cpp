@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -36,71 +38,82 @@ const std::vector<std::string> kMethodColumns = {"scene",
 CsvCell number(long n) { return static_cast<double>(n); }
 CsvCell yes_no(bool yes) { return std::string(yes ? "yes" : "no"); }
 
-Row row_of(const std::string& scene, const ComparePoint& p) {
+/// The columns that reports know, then every further number of a run.
+std::vector<std::string> with_every_number(std::vector<std::string> columns) {
+  const loop::RunResult none;
+  loop::visit_counters(
+      [&columns](const char* name, const auto&) {
+        if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.emplace_back(name);
+      },
+      none);
+  return columns;
+}
+
+/// A run's numbers and the cells given, in the order of the columns.
+Row in_order(const std::vector<std::string>& columns, const loop::RunResult& result,
+             std::map<std::string, CsvCell> cells) {
+  loop::visit_counters(
+      [&cells](const char* name, const auto& value) { cells.emplace(name, static_cast<double>(value)); },
+      result);
+  Row row;
+  for (const std::string& column : columns) {
+    const auto cell = cells.find(column);
+    PALPATE_CHECK(cell != cells.end(), "no cell for the column {}", column);
+    row.push_back(cell->second);
+  }
+  return row;
+}
+
+Row row_of(const std::vector<std::string>& columns, const std::string& scene, const ComparePoint& p) {
   const TrajectoryError& e = p.error;
-  const loop::RunResult& r = p.result;
-  const dynamics::StepperCounters& c = r.counters;
   const bool timed = !p.cpu_s.empty();
   const auto time = [&](double s) { return CsvCell(timed ? s : std::numeric_limits<double>::quiet_NaN()); };
-  return {scene,
-          p.label,
-          p.integrator,
-          p.family,
-          number(p.order),
-          p.stability,
-          yes_no(p.multistep),
-          p.setting_name,
-          p.setting,
-          e.position_rel_l2,
-          e.position_max_m,
-          e.force_rms_n,
-          e.force_max_n,
-          e.torque_rms_n_m,
-          e.torque_max_n_m,
-          e.energy_j,
-          time(p.cpu_median_s),
-          time(p.cpu_min_s),
-          time(p.cpu_max_s),
-          number(static_cast<long>(p.cpu_s.size())),
-          number(c.force_evaluations),
-          number(c.tangent_evaluations),
-          number(c.solver.factorisations),
-          number(c.solver.solves),
-          number(c.newton_iterations),
-          number(r.contact_queries),
-          number(c.steps),
-          number(c.rejected),
-          number(c.reinits),
-          std::string(to_string(p.status)),
-          p.reason,
-          yes_no(p.unresolved),
-          yes_no(p.force_unresolved),
-          yes_no(p.torque_unresolved)};
+  return in_order(columns, p.result,
+                  {{"scene", scene},
+                   {"label", p.label},
+                   {"integrator", p.integrator},
+                   {"family", p.family},
+                   {"order", number(p.order)},
+                   {"stability", p.stability},
+                   {"multistep", yes_no(p.multistep)},
+                   {"setting_name", p.setting_name},
+                   {"setting", p.setting},
+                   {"position_error_rel_l2", e.position_rel_l2},
+                   {"position_error_max_m", e.position_max_m},
+                   {"force_error_rms_n", e.force_rms_n},
+                   {"force_error_max_n", e.force_max_n},
+                   {"torque_error_rms_n_m", e.torque_rms_n_m},
+                   {"torque_error_max_n_m", e.torque_max_n_m},
+                   {"energy_error_j", e.energy_j},
+                   {"cpu_s_median", time(p.cpu_median_s)},
+                   {"cpu_s_min", time(p.cpu_min_s)},
+                   {"cpu_s_max", time(p.cpu_max_s)},
+                   {"repeats", number(static_cast<long>(p.cpu_s.size()))},
+                   {"status", std::string(to_string(p.status))},
+                   {"reason", p.reason},
+                   {"unresolved", yes_no(p.unresolved)},
+                   {"force_unresolved", yes_no(p.force_unresolved)},
+                   {"torque_unresolved", yes_no(p.torque_unresolved)}});
 }
 
-Row restart_row(const std::string& scene, const ComparePoint& p) {
-  const dynamics::StepperCounters& c = p.result.counters;
-  return {scene,
-          p.label,
-          p.integrator,
-          yes_no(p.multistep),
-          p.setting,
-          p.result.time,
-          number(c.reinits),
-          number(c.steps),
-          number(c.force_evaluations),
-          number(c.solver.factorisations),
-          p.result.cpu_s,
-          std::string(to_string(p.status)),
-          p.reason};
+Row restart_row(const std::vector<std::string>& columns, const std::string& scene, const ComparePoint& p) {
+  return in_order(columns, p.result,
+                  {{"scene", scene},
+                   {"label", p.label},
+                   {"integrator", p.integrator},
+                   {"multistep", yes_no(p.multistep)},
+                   {"contact_refresh_s", p.setting},
+                   {"cpu_s", p.result.cpu_s},
+                   {"status", std::string(to_string(p.status))},
+                   {"reason", p.reason}});
 }
 
-Row exchange_row(const std::string& scene, const ExchangePoint& p) {
+Row exchange_row(const std::vector<std::string>&, const std::string& scene, const ExchangePoint& p) {
   return {scene,  p.exchange_period_s, p.error.position_rel_l2, p.error.force_rms_n, p.error.torque_rms_n_m,
           p.cpu_s};
 }
 
-Row method_row(const std::string& scene, const MethodPoint& p) {
+Row method_row(const std::vector<std::string>&, const std::string& scene, const MethodPoint& p) {
   return {scene,
           p.method,
           p.difference.position_rel_l2,
@@ -125,7 +138,7 @@ void write_table(const Comparison& comparison, const fs::path& path, const std::
       if constexpr (std::is_same_v<Point, ComparePoint>)
         if (point.status == PointStatus::kMissing) continue;  // stopped before it
       if (!csv) csv.emplace(path.string(), columns);
-      csv->row(to_row(scene.scene, point));
+      csv->row(to_row(columns, scene.scene, point));
     }
   if (csv) csv->close();
 }
@@ -152,9 +165,10 @@ void write(const Comparison& comparison, const std::string& folder) {
   fs::create_directories(folder, failed);
   if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
   const fs::path base(folder);
-  write_table(comparison, base / "compare.csv", store::compare_columns(), &SceneComparison::points, row_of);
-  write_table(comparison, base / "restarts.csv", store::restart_columns(), &SceneComparison::restarts,
-              restart_row);
+  write_table(comparison, base / "compare.csv", with_every_number(store::compare_columns()),
+              &SceneComparison::points, row_of);
+  write_table(comparison, base / "restarts.csv", with_every_number(store::restart_columns()),
+              &SceneComparison::restarts, restart_row);
   write_table(comparison, base / "exchange.csv", kExchangeColumns, &SceneComparison::exchange, exchange_row);
   write_table(comparison, base / "methods.csv", kMethodColumns, &SceneComparison::methods, method_row);
   nlohmann::ordered_json references = {{"rules", comparison.rules},

@@ -26,7 +26,7 @@ class SampleCount : public loop::Observer {
 bool run_method(const scene::Description& d, const std::string& method, const std::atomic<bool>* stop,
                 Trajectory& trajectory, MethodPoint& point) {
   const auto world = loop::assemble(with_method(d, method));
-  if (world->tool_frame_index < 0) fail("there is no [[contact]] with \"tool\"");
+  if (world->tool_frame_index() < 0) fail("there is no [[contact]] with \"tool\"");
   TrajectoryRecorder recorder;
   SampleCount samples;
   loop::RunOptions options;

@@ -1,3 +1,4 @@
+#include "palpate/contact/gpu_available.h"
 #include "palpate/contact/sources.h"
 #include "palpate/core/error.h"
 
@@ -12,6 +13,8 @@ namespace {
 }
 
 }  // namespace
+
+bool gpu_available() { return false; }
 
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface, TriMesh, int, std::shared_ptr<MovingFrame>,
                                               const GpuOptions&) {

@@ -1,10 +1,13 @@
 #include "contact/gpu_source.h"
 
+#include "palpate/contact/gpu_available.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/proxy/region.h"
 
 namespace palpate::contact {
+
+bool gpu_available() { return true; }
 
 ImageSource::ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b,
                          const GpuOptions& options)

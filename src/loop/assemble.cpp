@@ -4,6 +4,7 @@
 #include "assemble_parts.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/core/workers.h"
 #include "palpate/fem/laws.h"
 #include "palpate/fem/load.h"
 #include "palpate/integrate/integrators.h"
@@ -201,6 +202,7 @@ void assemble_bodies(World& world) {
 std::unique_ptr<World> assemble(const scene::Description& description) {
   auto world = std::make_unique<World>();
   world->description = description;
+  workers::set_count(description.integrator.threads);
   world->folder = std::filesystem::path(description.path).parent_path().string();
   assemble_bodies(*world);
   if (!description.bones.empty()) assemble_bones(*world);

@@ -4,6 +4,7 @@
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/fem/bone.h"
+#include "tool_side.h"
 
 namespace palpate::loop {
 namespace {
@@ -77,7 +78,7 @@ Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {
   if (spec.to != "tool" || !world.monolithic())
     fail("body \"{}\": attachment to = \"{}\" is neither a bone nor the tool of a monolithic scheme",
          body.name, spec.to);
-  return {world.tool_block_id, {}, world.tool_pose(), nullptr};
+  return {ToolSide::of(world).block_id, {}, world.tool_pose(), nullptr};
 }
 
 void attach(World& world, const Body& body, const AttachmentSpec& spec) {

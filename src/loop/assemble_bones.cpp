@@ -2,6 +2,7 @@
 
 #include "assemble_parts.h"
 #include "palpate/core/error.h"
+#include "palpate/device/handle.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/fem/bone.h"
 

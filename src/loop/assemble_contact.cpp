@@ -7,6 +7,7 @@
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/proxy/decompose_solid.h"
+#include "tool_side.h"
 
 namespace palpate::loop {
 namespace {
@@ -41,12 +42,6 @@ Pair pair_of(const World& world, const ContactSpec& spec, const std::string& nam
   return {spec, {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces}, gap};
 }
 
-[[maybe_unused]] [[noreturn]] void refuse_gpu() {
-  fail(
-      "contact: method \"gpu\": this palpate was built without OpenGL; configure with -DPALPATE_WITH_GL=ON "
-      "(packages libepoxy-dev, libegl-dev)");
-}
-
 /// Two soft bodies.
 std::unique_ptr<contact::SampleSource> gpu_source(Pair a, Pair b) {
   if (a.spec.method != "gpu")
@@ -55,15 +50,11 @@ std::unique_ptr<contact::SampleSource> gpu_source(Pair a, Pair b) {
   if (!a.proxies != !b.proxies)
     fail("contact {} - {}: proxies on one side alone; both need them, or neither", a.spec.first,
          a.spec.second);
-#ifdef PALPATE_HAS_GL
   const contact::GpuOptions options{a.spec.pixels, a.candidate_gap};
   if (a.proxies)
     return contact::make_gpu_source(std::move(a.surface), std::move(a.proxies), std::move(b.surface),
                                     std::move(b.proxies), options);
   return contact::make_gpu_source(std::move(a.surface), std::move(b.surface), options);
-#else
-  refuse_gpu();
-#endif
 }
 
 /// One soft body, its bones' regions against each other.
@@ -83,22 +74,16 @@ std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair)
         "{}: the skin of one bone against that of another may touch, but the body's model has {}; `palpate "
         "model human` writes one with 19 bones",
         who, set.bone(0) < 0 ? "none: its proxies go with no bone" : "one bone alone");
-#ifdef PALPATE_HAS_GL
   const contact::GpuOptions options{pair.spec.pixels, pair.candidate_gap};
   return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies),
                                   world.find_body(pair.spec.first)->rest.nodes, options);
-#else
-  static_cast<void>(world);
-  refuse_gpu();
-#endif
 }
 
 /// A rigid surface in a frame.
 /// @param rigid_proxies  of it: made where the body has proxies and nobody made them yet
-[[maybe_unused]] std::unique_ptr<contact::SampleSource> gpu_source(
-    Pair pair, TriMesh rigid, std::shared_ptr<proxy::ProxySet>& rigid_proxies, int frame,
-    std::shared_ptr<contact::MovingFrame> motion) {
-#ifdef PALPATE_HAS_GL
+std::unique_ptr<contact::SampleSource> gpu_source(Pair pair, TriMesh rigid,
+                                                  std::shared_ptr<proxy::ProxySet>& rigid_proxies, int frame,
+                                                  std::shared_ptr<contact::MovingFrame> motion) {
   const contact::GpuOptions options{pair.spec.pixels, pair.candidate_gap};
   if (!pair.proxies)
     return contact::make_gpu_source(std::move(pair.surface), std::move(rigid), frame, std::move(motion),
@@ -106,11 +91,6 @@ std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair)
   if (!rigid_proxies) rigid_proxies = std::make_shared<proxy::ProxySet>(proxy::rigid_proxies(rigid));
   return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies), std::move(rigid),
                                   rigid_proxies, frame, std::move(motion), options);
-#else
-  static_cast<void>(pair), static_cast<void>(rigid), static_cast<void>(rigid_proxies),
-      static_cast<void>(frame), static_cast<void>(motion);
-  refuse_gpu();
-#endif
 }
 
 void check_method(const ContactSpec& spec) {
@@ -127,27 +107,29 @@ void check_method(const ContactSpec& spec) {
 
 /// The tool's frame in contact: its block of the State, or its motion over one exchange period.
 std::shared_ptr<contact::MovingFrame> tool_motion(World& world) {
-  if (world.tool_motion) return world.tool_motion;
+  ToolSide& side = ToolSide::of(world);
+  if (side.motion) return side.motion;
   if (world.monolithic())
-    world.tool_motion = contact::block_frame(world.tool_block_id);
+    side.motion = contact::block_frame(side.block_id);
   else
-    world.tool_motion = world.tool_frame = std::make_shared<contact::TrajectoryFrame>();
-  world.tool_frame_index = world.contact->add_frame(world.tool_motion);
-  return world.tool_motion;
+    side.motion = side.trajectory = std::make_shared<contact::TrajectoryFrame>();
+  side.frame_index = world.contact->add_frame(side.motion);
+  return side.motion;
 }
 
 std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
   const ToolSpec& tool = *world.description.tool;
   const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world);
+  ToolSide& side = ToolSide::of(world);
   if (pair.spec.method == "gpu")
-    return gpu_source(std::move(pair), tool_surface(tool, world.folder), world.tool_proxies,
-                      world.tool_frame_index, motion);
+    return gpu_source(std::move(pair), tool_surface(tool, world.folder), side.proxies, side.frame_index,
+                      motion);
   if (tool.shape != "sphere")
     fail(
         "contact {} - tool: method \"analytic\" needs shape = \"sphere\", the tool's is \"{}\"; use method = "
         "\"gpu\"",
         pair.spec.first, tool.shape);
-  return contact::make_sphere_source(std::move(pair.surface), world.tool_frame_index, motion, Vec3::Zero(),
+  return contact::make_sphere_source(std::move(pair.surface), side.frame_index, motion, Vec3::Zero(),
                                      tool.radius_m, pair.candidate_gap,
                                      world.description.coupling.contact_refresh_s);
 }
@@ -212,9 +194,10 @@ void assemble_contact(World& world) {
            spec.first, spec.second);
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
-  if (!world.tool_frame || world.description.coupling.linearisation != "condensed") return;
+  ToolSide& side = ToolSide::of(world);
+  if (!side.trajectory || world.description.coupling.linearisation != "condensed") return;
   counters::count("loop.condenser");
-  world.condenser = linear::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
+  side.condenser = linear::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
 }
 
 }  // namespace palpate::loop

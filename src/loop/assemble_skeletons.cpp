@@ -5,9 +5,7 @@
 #include "palpate/core/error.h"
 #include "palpate/fem/bone.h"
 
-#ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/bone_tree.h"
-#endif
 
 // Bones of a model file.  Each hangs on its parent by a joint at its head, a root on the world.  A bone is
 // told how to move where everything from it up to the world is welded or has keyframes: then it is a function
@@ -90,7 +88,6 @@ Load load_of(const World& world, const Body& body, int bone, const Pose& start) 
   return out;
 }
 
-#ifdef PALPATE_HAS_TOOL
 tool::TreeBone tree_bone(const Entry& entry, const SoftBodySpec& spec, const std::vector<Entry>& all) {
   const SkeletonSpec& skeleton = *spec.skeleton;
   tool::TreeBone bone;
@@ -144,7 +141,6 @@ std::pair<int, std::shared_ptr<const tool::BoneTree>> add_tree(World& world, con
   world.system.add(tool::make_tree_force(id, tree));
   return {id, tree};
 }
-#endif
 
 void assemble_skeleton(World& world, int index) {
   const Body& body = world.bodies[static_cast<std::size_t>(index)];
@@ -158,14 +154,7 @@ void assemble_skeleton(World& world, int index) {
                             entry.own ? entry.own->keyframes : std::vector<KeyframeSpec>{}},
                            parent ? parent->path : fem::Path{}, parent ? parent->start : Pose{});
   }
-#ifdef PALPATE_HAS_TOOL
   const auto [block_id, tree] = add_tree(world, body, spec, entries);
-#else
-  for (const Entry& entry : entries)
-    if (!entry.told)
-      fail("body \"{}\": \"{}\" hangs on a joint, which needs the part \"tool\": not in this build",
-           spec.name, entry.bone->name);
-#endif
   for (std::size_t b = 0; b < entries.size(); ++b) {
     const Entry& entry = entries[b];
     Load load = load_of(world, body, static_cast<int>(b), entry.start);
@@ -175,23 +164,19 @@ void assemble_skeleton(World& world, int index) {
     bone.surface = fem::tapered_bone_surface(*entry.bone);
     bone.dofs = load.dofs;
     bone.path = entry.path;
-#ifdef PALPATE_HAS_TOOL
     if (!entry.told) {
       bone.block_id = block_id;
       bone.tree = tree;
       bone.tree_bone = entry.in_tree;
       bone.mass = tree->bone(entry.in_tree).mass;
     }
-#endif
     if (!load.dofs.empty()) {
       if (entry.told && !entry.moves)
         world.system.add(fem::make_fixed(load.dofs, load.x0));
       else if (entry.told)
         world.system.add(fem::make_driven(load.dofs, load.local, entry.path));
-#ifdef PALPATE_HAS_TOOL
       else
         world.system.add(tool::make_tree_carried(load.dofs, load.local, entry.in_tree, block_id, tree));
-#endif
     }
     world.bones.push_back(std::move(bone));
   }

@@ -1,14 +1,12 @@
 #include "assemble_parts.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
-#ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/simbody_block.h"
 #include "palpate/tool/tool.h"
-#endif
+#include "tool_side.h"
 
 namespace palpate::loop {
 
-#ifdef PALPATE_HAS_TOOL
 namespace {
 
 /// The handle as a function of time, which one integrator of tool and bodies needs: it looks ahead of the
@@ -32,34 +30,29 @@ void assemble_block(World& world) {
   const Quat r = quaternion_of(spec.rotation_vector_rad);
   VecX q(7);
   q << r.w(), r.vec(), spec.position_m;
-  world.tool_block_id = world.state.insert(tool::tool_block(spec), q, VecX::Zero(6));
-  const tool::SimbodyTerms terms = tool::make_simbody_terms(world.tool_block_id, spec, d.gravity_m_s2);
+  const int block_id = ToolSide::of(world).block_id =
+      world.state.insert(tool::tool_block(spec), q, VecX::Zero(6));
+  const tool::SimbodyTerms terms = tool::make_simbody_terms(block_id, spec, d.gravity_m_s2);
   world.system.add(terms.inertia);
   world.system.add(terms.force);
-  world.system.add(tool::make_coupling_term(world.tool_block_id, spec, path_of(*d.device)));
+  world.system.add(tool::make_coupling_term(block_id, spec, path_of(*d.device)));
 }
 
 }  // namespace
-#endif
 
-void assemble_tool([[maybe_unused]] World& world) {
-#ifdef PALPATE_HAS_TOOL
+void assemble_tool(World& world) {
   const scene::Description& d = world.description;
-  world.handle = device::make_handle(*d.device);
-  world.limiter = std::make_unique<device::WrenchLimiter>(d.device->max_force_n, d.device->max_torque_n_m,
-                                                          d.device->ramp_s);
+  ToolSide& side = ToolSide::of(world);
+  side.handle = device::make_handle(*d.device);
+  side.limiter = std::make_unique<device::WrenchLimiter>(d.device->max_force_n, d.device->max_torque_n_m,
+                                                         d.device->ramp_s);
   if (d.coupling.scheme == "monolithic")
     assemble_block(world);
   else if (d.coupling.scheme == "partitioned")
-    world.tool = std::make_unique<tool::Tool>(*d.tool, d.tool->gravity ? d.gravity_m_s2 : Vec3(Vec3::Zero()));
+    side.tool = std::make_unique<tool::Tool>(*d.tool, d.tool->gravity ? d.gravity_m_s2 : Vec3(Vec3::Zero()));
   else
     fail("exchange: unknown scheme \"{}\"{}", d.coupling.scheme,
          suggestion(d.coupling.scheme, {"partitioned", "monolithic"}));
-#else
-  fail(
-      "[tool]: this palpate was built without rigid tools; configure with -DPALPATE_WITH_TOOL=ON (package "
-      "libsimbody-dev)");
-#endif
 }
 
 TriMesh tool_surface(const ToolSpec& spec, const std::string& folder) {

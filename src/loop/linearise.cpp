@@ -5,14 +5,12 @@
 #include "palpate/core/error.h"
 #include "palpate/core/finite.h"
 #include "palpate/integrate/integrators.h"
-#ifdef PALPATE_HAS_TOOL
 #include "palpate/linear/solvers.h"
 #include "palpate/tool/tool.h"
-#endif
+#include "tool_side.h"
 
 namespace palpate::loop {
 
-#ifdef PALPATE_HAS_TOOL
 namespace {
 
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
@@ -87,21 +85,21 @@ VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w) {
 
 /// A factor of the step matrix: by LU where it is indefinite (an inverted element, a compressed strut), null
 /// where it has none at all.
-dynamics::LinearSolver* factored(World& world) {
-  const dynamics::SolveStatus status = world.condenser->factor(world.condensed_matrix);
-  if (status == dynamics::SolveStatus::kOk) return world.condenser.get();
+dynamics::LinearSolver* factored(ToolSide& side) {
+  const dynamics::SolveStatus status = side.condenser->factor(side.condensed_matrix);
+  if (status == dynamics::SolveStatus::kOk) return side.condenser.get();
   if (status != dynamics::SolveStatus::kIndefinite) return nullptr;
   counters::count("loop.condensed_by_lu");
-  if (!world.condenser_lu) world.condenser_lu = linear::make_linear_solver("umfpack");
-  return world.condenser_lu->factor(world.condensed_matrix) == dynamics::SolveStatus::kOk
-             ? world.condenser_lu.get()
+  if (!side.condenser_lu) side.condenser_lu = linear::make_linear_solver("umfpack");
+  return side.condenser_lu->factor(side.condensed_matrix) == dynamics::SolveStatus::kOk
+             ? side.condenser_lu.get()
              : nullptr;
 }
 
 /// False where the step matrix has no factor.
 bool answer_after(World& world, double H, const contact::FrameLinearisation& c, Answer& out) {
-  world.system.step_matrix(world.state.view(), 1.0, H, H * H, world.condensed_matrix);
-  dynamics::LinearSolver* solver = factored(world);
+  world.system.step_matrix(world.state.view(), 1.0, H, H * H, ToolSide::of(world).condensed_matrix);
+  dynamics::LinearSolver* solver = factored(ToolSide::of(world));
   if (!solver) return false;
   VecX s, w;
   known_motion(world, H, s, w);
@@ -133,8 +131,8 @@ bool answer_after(World& world, double H, const contact::FrameLinearisation& c, 
   VecX q = moved(world, s + H * g), u = world.state.u() + w + g;
   world.system.impose(world.state.layout(), world.state.time() + H, q.data(), u.data());
   contact::FrameLinearisation after;
-  world.contact->linearise(world.state.view(world.state.time(), q.data(), u.data()), world.tool_frame_index,
-                           after);
+  world.contact->linearise(world.state.view(world.state.time(), q.data(), u.data()),
+                           ToolSide::of(world).frame_index, after);
   out.J.topLeftCorner<3, 3>() += after.geometric - c.geometric;
   return true;
 }
@@ -156,7 +154,7 @@ bool condense(World& world, double period, const contact::FrameLinearisation& c,
   Vec6 F0 = last.wrench, F1 = Vec6::Zero();
   if (tick < period * (1.0 - 1e-9)) {
     if (!answer_after(world, tick, c, first)) return false;
-    const Twist twist = world.tool->twist();
+    const Twist twist = ToolSide::of(world).tool->twist();
     Vec6 v0;
     v0 << twist.angular, twist.linear;
     const Vec6 after_tick = first.wrench + tick * (first.J * v0),
@@ -178,15 +176,16 @@ bool condense(World& world, double period, const contact::FrameLinearisation& c,
 dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t version, double period_s,
                                               long& frozen_fallbacks) {
   counters::count("loop.exchange_record");
+  const ToolSide& side = ToolSide::of(world);
   dynamics::LinearisedContact record;
   record.version = version;
   record.time = world.state.time();
-  if (!world.tool_frame) return record;
+  if (!side.trajectory) return record;
   contact::FrameLinearisation c;
-  world.contact->linearise(world.state.view(), world.tool_frame_index, c);
+  world.contact->linearise(world.state.view(), side.frame_index, c);
   record.samples = c.active;
-  const Pose x0 = world.tool->pose();
-  const Twist v0 = world.tool->twist();
+  const Pose x0 = side.tool->pose();
+  const Twist v0 = side.tool->twist();
   record.x0 = {x0.rotation.w(),    x0.rotation.x(),    x0.rotation.y(),   x0.rotation.z(),
                x0.translation.x(), x0.translation.y(), x0.translation.z()};
   Eigen::Map<Vec6>(record.v0.data()) << v0.angular, v0.linear;
@@ -194,11 +193,8 @@ dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t versio
   Eigen::Map<RowMajor6>(record.J.data()) = -c.K;
   Eigen::Map<RowMajor6>(record.B.data()) = -c.B;
   record.source = dynamics::LinearisedContact::Source::kFrozen;
-  if (world.condenser && c.active > 0 && !condense(world, period_s, c, record)) ++frozen_fallbacks;
+  if (side.condenser && c.active > 0 && !condense(world, period_s, c, record)) ++frozen_fallbacks;
   return record;
 }
-#else
-dynamics::LinearisedContact linearise_contact(World&, std::uint64_t, double, long&) { return {}; }
-#endif
 
 }  // namespace palpate::loop

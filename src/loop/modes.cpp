@@ -1,11 +1,10 @@
 #include "palpate/loop/modes.h"
+#include "tool_side.h"
 
 #include "palpate/core/error.h"
 #include "palpate/store/provenance.h"
 #include "palpate/store/run_file.h"
-#ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
-#endif
 
 namespace palpate::loop {
 namespace {
@@ -35,12 +34,11 @@ double scale_of(const World& world, const VecX& shape) {
 modes::Modes find_modes(World& world, int count) {
   if (world.bodies.empty())
     fail("{}: modes are of soft bodies, and the scene has no [[body]]", world.description.path);
-#ifdef PALPATE_HAS_TOOL
-  if (world.tool_frame) {  // contact with the tool: as it stands at the start
-    world.tool_frame->clear();
-    world.tool_frame->append(world.tool->time(), world.tool->pose(), world.tool->twist());
+  const ToolSide& side = ToolSide::of(world);
+  if (side.trajectory) {  // contact with the tool: as it stands at the start
+    side.trajectory->clear();
+    side.trajectory->append(side.tool->time(), side.tool->pose(), side.tool->twist());
   }
-#endif
   if (world.contact) world.contact->refresh(world.state.view());
   return modes::find_modes(world.system, world.state.view(), {count});
 }

@@ -1,6 +1,7 @@
 #include "monolithic_ticks.h"
 
 #include "palpate/core/error.h"
+#include "tool_side.h"
 
 namespace palpate::loop {
 namespace {
@@ -10,14 +11,15 @@ namespace {
 constexpr double kSame = 1e-6;
 
 TickRecord tick_of(const World& world, double t, const dynamics::StateView& state) {
-  const dynamics::Block& block = *state.layout->find(world.tool_block_id);
+  const dynamics::Block& block = *state.layout->find(ToolSide::of(world).block_id);
   const auto q = state.q.segment<7>(block.q_offset);
   const auto u = state.u.segment<6>(block.u_offset);
   TickRecord tick;
   tick.time = t;
   tick.tool = {Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
   tick.tool_twist = {u.head<3>(), u.tail<3>()};
-  if (world.tool_frame_index >= 0) tick.contact = world.contact->frame_wrench(state, world.tool_frame_index);
+  if (ToolSide::of(world).frame_index >= 0)
+    tick.contact = world.contact->frame_wrench(state, ToolSide::of(world).frame_index);
   return tick;
 }
 

@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "palpate/contact/gpu_available.h"
 #include "palpate/device/handle.h"
 #include "palpate/fem/laws.h"
 #include "palpate/integrate/integrators.h"
-#ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
-#endif
 
 namespace palpate::loop {
 namespace {
@@ -38,17 +37,13 @@ std::vector<Choice> stepper_choices() {
 }
 
 std::vector<Choice> part_choices() {
-#ifdef PALPATE_HAS_TOOL
-  const std::string tool = "compiled in";
-#else
-  const std::string tool = "not compiled in; configure with -DPALPATE_WITH_TOOL=ON (package libsimbody-dev)";
-#endif
-#ifdef PALPATE_HAS_GL
-  const std::string gl = "compiled in";
-#else
+  const std::string tool =
+      tool::available() ? "compiled in"
+                        : "not compiled in; configure with -DPALPATE_WITH_TOOL=ON (package libsimbody-dev)";
   const std::string gl =
-      "not compiled in; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev, libccd-dev)";
-#endif
+      contact::gpu_available()
+          ? "compiled in"
+          : "not compiled in; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev)";
   return {{"bodies", "soft bodies of linear tetrahedra: always there"},
           {"contact", "penalty contact with analytic obstacles: always there"},
           {"tool", "rigid tool under a virtual coupling (Simbody): " + tool},
@@ -61,10 +56,8 @@ const dynamics::StepperRegistry& steppers() { return integrate::stepper_registry
 
 std::vector<Choice> tool_steppers() {
   std::vector<Choice> out;
-#ifdef PALPATE_HAS_TOOL
   for (const tool::ToolIntegratorInfo& info : tool::tool_integrators())
     out.push_back({info.name, info.summary, info.order});
-#endif
   return out;
 }
 

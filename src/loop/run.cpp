@@ -1,4 +1,5 @@
 #include "palpate/loop/run.h"
+#include "tool_side.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +9,9 @@
 #include "monolithic_ticks.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
-#ifdef PALPATE_HAS_TOOL
+#include "palpate/core/workers.h"
 #include "palpate/tool/rigid_block.h"
 #include "palpate/tool/tool.h"
-#endif
 
 namespace palpate::loop {
 namespace {
@@ -21,7 +21,8 @@ int whole_number(double ratio) { return std::max(1, static_cast<int>(std::lround
 /// One run: the State of the loop itself.
 class Loop {
  public:
-  Loop(World& world, const RunOptions& options) : world_(world), options_(options) {}
+  Loop(World& world, const RunOptions& options)
+      : world_(world), side_(ToolSide::of(world)), options_(options) {}
 
   RunResult run() {
     const scene::Description& d = world_.description;
@@ -64,7 +65,7 @@ class Loop {
  private:
   void one_period(double t0, double t1) {
     refresh_contact();
-    if (world_.tool) tick_tool(t0, t1);
+    if (side_.tool) tick_tool(t0, t1);
     if (result_.status.ok() && world_.stepper) advance_state(t0, t1);
   }
 
@@ -118,10 +119,9 @@ class Loop {
           world_.set_youngs_modulus(world_.bodies[i], change.youngs_modulus_pa, change.region);
   }
 
-#ifdef PALPATE_HAS_TOOL
   void start_tool() {
     if (!world_.description.tool) return;
-    world_.handle_now = world_.handle->sample(0.0);
+    side_.handle_now = side_.handle->sample(0.0);
     if (world_.monolithic())
       ticks_.emplace(world_, [this](const TickRecord& tick) { feel(tick); });
     else
@@ -129,9 +129,9 @@ class Loop {
   }
 
   void set_trajectory_start() {
-    if (!world_.tool_frame) return;
-    world_.tool_frame->clear();
-    world_.tool_frame->append(world_.tool->time(), world_.tool->pose(), world_.tool->twist());
+    if (!side_.trajectory) return;
+    side_.trajectory->clear();
+    side_.trajectory->append(side_.tool->time(), side_.tool->pose(), side_.tool->twist());
   }
 
   void tick_tool(double t0, double t1) {
@@ -147,34 +147,30 @@ class Loop {
   }
 
   void tick(double t, double h) {
-    const device::HandleSample before = world_.handle_now, now = world_.handle->sample(t);
-    result_.status = world_.tool->advance(h, {before.pose, now.pose, before.twist, now.twist}, record_);
+    const device::HandleSample before = side_.handle_now, now = side_.handle->sample(t);
+    result_.status = side_.tool->advance(h, {before.pose, now.pose, before.twist, now.twist}, record_);
     if (!result_.status.ok()) return;
     TickRecord tick;
     tick.time = t;
-    tick.tool = world_.tool->pose();
-    tick.tool_twist = world_.tool->twist();
+    tick.tool = side_.tool->pose();
+    tick.tool_twist = side_.tool->twist();
     const Vec6 contact = dynamics::contact_wrench(record_, t, tick.tool, tick.tool_twist);
     tick.contact = {contact.head<3>(), contact.tail<3>()};
-    if (world_.tool_frame) world_.tool_frame->append(t, tick.tool, tick.tool_twist);
+    if (side_.trajectory) side_.trajectory->append(t, tick.tool, tick.tool_twist);
     feel(tick);
   }
 
   /// What the hand feels of a tool at a tick.
   void feel(TickRecord tick) {
-    const device::HandleSample& handle = world_.handle_now = world_.handle->sample(tick.time);
+    const device::HandleSample& handle = side_.handle_now = side_.handle->sample(tick.time);
     tick.handle = handle.pose;
     tick.wanted = tool::coupling_on_hand(*world_.description.tool, {tick.tool, tick.tool_twist},
                                          {handle.pose, handle.twist});
-    tick.device = world_.limiter->limit(tick.time, tick.wanted, handle.valid);
-    world_.handle->feedback(tick.time, tick.device);
+    tick.device = side_.limiter->limit(tick.time, tick.wanted, handle.valid);
+    side_.handle->feedback(tick.time, tick.device);
     ++result_.ticks;
     for (Observer* observer : options_.observers) observer->tick(tick);
   }
-#else
-  void start_tool() {}
-  void tick_tool(double, double) {}
-#endif
 
   void notify_period(double t) {
     for (Observer* observer : options_.observers) observer->period(world_, t);
@@ -187,10 +183,11 @@ class Loop {
       result_.contact_queries = world_.contact->queries();
       result_.tunnelled = world_.contact->tunnelled();
     }
-    if (world_.limiter) result_.limited_ticks = world_.limiter->limited_ticks();
+    if (side_.limiter) result_.limited_ticks = side_.limiter->limited_ticks();
   }
 
   World& world_;
+  ToolSide& side_;
   const RunOptions& options_;
   RunResult result_;
   dynamics::LinearisedContact record_;
@@ -206,6 +203,9 @@ double period_of(const scene::Description& d) {
   return d.record ? d.record->state_period_s : d.duration_s;
 }
 
-RunResult run(World& world, const RunOptions& options) { return Loop(world, options).run(); }
+RunResult run(World& world, const RunOptions& options) {
+  const workers::Count threads(world.description.integrator.threads);
+  return Loop(world, options).run();
+}
 
 }  // namespace palpate::loop

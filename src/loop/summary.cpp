@@ -4,57 +4,20 @@
 #include "palpate/core/counters.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
-#ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
-#endif
 
 namespace palpate::loop {
 namespace {
 
-void add_counts(store::SummarySection& s, const RunResult& r) {
-  const dynamics::StepperCounters& c = r.counters;
-  const auto add = [&](const char* name, long value) {
-    s.values.emplace_back(name, static_cast<long long>(value));
+/// Every number of a run: what counts, or what was timed.
+template <class Number>
+void add_numbers(store::SummarySection& s, const RunResult& result) {
+  const auto add = [&s]<class T>(const char* name, const T& value) {
+    if constexpr (std::is_same_v<T, Number>)
+      s.values.emplace_back(name,
+                            static_cast<std::conditional_t<std::is_integral_v<T>, long long, T>>(value));
   };
-  add("periods", r.periods);
-  add("ticks", r.ticks);
-  add("limited_ticks", r.limited_ticks);
-  add("steps", c.steps);
-  add("rejected_steps", c.rejected);
-  add("newton_iterations", c.newton_iterations);
-  add("newton_failures", c.newton_failures);
-  add("error_test_failures", c.error_test_failures);
-  add("force_evaluations", c.force_evaluations);
-  add("tangent_evaluations", c.tangent_evaluations);
-  add("symbolic_analyses", c.solver.symbolic);
-  add("factorisations", c.solver.factorisations);
-  add("linear_solves", c.solver.solves);
-  add("linear_iterations", c.solver.iterations);
-  add("near_linear_solves", c.solver.near);
-  add("indefinite_matrices", c.indefinite);
-  add("projected_matrices", c.projected);
-  add("unconverged_linear_solves", c.unconverged);
-  add("rounding_limited_equilibria", c.rounding_limited);
-  add("reinitialisations", c.reinits);
-  add("events", c.events);
-  add("contact_queries", r.contact_queries);
-  add("frozen_fallbacks", r.frozen_fallbacks);
-}
-
-void add_timings(store::SummarySection& s, const RunResult& r, double assemble_s) {
-  const auto add = [&](const char* name, double value) { s.values.emplace_back(name, value); };
-  add("assemble_s", assemble_s);
-  add("loop_wall_s", r.wall_s);
-  add("loop_cpu_s", r.cpu_s);
-  add("force_s", r.counters.force_s);
-  add("tangent_s", r.counters.tangent_s);
-  add("symbolic_s", r.counters.solver.symbolic_s);
-  add("factor_s", r.counters.solver.factor_s);
-  add("solve_s", r.counters.solver.solve_s);
-  add("contact_query_s", r.query_s);
-  add("linearise_s", r.linearise_s);
-  add("tool_ticks_s", r.tool_s);
-  add("simulated_s", r.time);
+  visit_counters(add, result);
 }
 
 void add_sizes(store::SummarySection& s, const World& world) {
@@ -74,6 +37,7 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
   s.values.emplace_back("rtol", d.integrator.rtol);
   s.values.emplace_back("step_s", d.integrator.step_s);
   s.values.emplace_back("linear_solver", integrate::linear_solver_of(d.integrator));
+  s.values.emplace_back("threads", static_cast<long long>(d.integrator.threads));
   if (!d.tool) return;
   const bool monolithic = d.coupling.scheme == "monolithic";
   s.values.emplace_back("exchange_scheme", d.coupling.scheme);
@@ -92,9 +56,7 @@ store::Provenance full_provenance() {
   store::Provenance p = store::provenance();
   for (const auto& library : integrate::library_versions()) p.libraries.push_back(library);
   for (const auto& library : linear::library_versions()) p.libraries.push_back(library);
-#ifdef PALPATE_HAS_TOOL
-  p.libraries.emplace_back("Simbody", tool::simbody_version());
-#endif
+  if (tool::available()) p.libraries.emplace_back("Simbody", tool::simbody_version());
   return p;
 }
 
@@ -157,8 +119,9 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   if (const std::string& ordering = result.counters.solver.ordering; !ordering.empty())
     summary.section("options").values.emplace_back("ordering", ordering);
   add_sizes(summary.section("sizes"), world);
-  add_counts(summary.section("counts"), result);
-  add_timings(summary.section("timings"), result, assemble_s);
+  add_numbers<long>(summary.section("counts"), result);
+  summary.section("timings").values.emplace_back("assemble_s", assemble_s);
+  add_numbers<double>(summary.section("timings"), result);
   // vertices that went through unseen, for each [[contact]]
   for (std::size_t i = 0; i < result.tunnelled.size(); ++i) {
     const ContactSpec& contact = world.description.contacts[i];

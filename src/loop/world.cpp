@@ -5,19 +5,12 @@
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
 
-#ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/bone_tree.h"
-#include "palpate/tool/tool.h"
-#else
-namespace palpate::tool {
-class BoneTree {};
-class Tool {};
-}  // namespace palpate::tool
-#endif
+#include "tool_side.h"
 
 namespace palpate::loop {
 
-World::World() = default;
+World::World() : tool_side_(std::make_unique<ToolSide>()) {}
 World::~World() = default;
 
 Points Body::surface_points(const Points& nodes) const {
@@ -87,13 +80,11 @@ dynamics::RigidMotion motion_of(const World& world, const Bone& bone) {
     return {at.pose, at.twist};
   }
   const dynamics::StateView view = world.state.view();
-#ifdef PALPATE_HAS_TOOL
   if (bone.tree) {
     const dynamics::Block& block = *view.layout->find(bone.block_id);
     return bone.tree->motion(view.q.segment(block.q_offset, block.q_size),
                              view.u.segment(block.u_offset, block.u_size), bone.tree_bone);
   }
-#endif
   return dynamics::motion_of(view, dynamics::rigid_block_of(view, bone.block_id));
 }
 
@@ -121,27 +112,25 @@ std::vector<Wrench> World::wrenches_on_bones() {
 double World::mechanical_energy() {
   const dynamics::StateView view = state.view();
   double energy = system.kinetic_energy(view) + system.potential_energy(view);
-#ifdef PALPATE_HAS_TOOL
-  if (tool) energy += tool->kinetic_energy() + tool->potential_energy(handle_now.pose);
-#endif
+  if (const ToolSide& side = *tool_side_; side.tool)
+    energy += side.tool->kinetic_energy() + side.tool->potential_energy(side.handle_now.pose);
   return energy;
 }
 
-#ifdef PALPATE_HAS_TOOL
+bool World::monolithic() const { return tool_side_->block_id >= 0; }
+bool World::has_tool_of_ticks() const { return tool_side_->tool != nullptr; }
+int World::tool_frame_index() const { return tool_side_->frame_index; }
+
 Pose World::tool_pose() const {
-  if (!monolithic()) return tool->pose();
-  const auto q = state.q().segment<7>(state.layout().find(tool_block_id)->q_offset);
+  if (!monolithic()) return tool_side_->tool->pose();
+  const auto q = state.q().segment<7>(state.layout().find(tool_side_->block_id)->q_offset);
   return {Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
 }
 
 Twist World::tool_twist() const {
-  if (!monolithic()) return tool->twist();
-  const auto u = state.u().segment<6>(state.layout().find(tool_block_id)->u_offset);
+  if (!monolithic()) return tool_side_->tool->twist();
+  const auto u = state.u().segment<6>(state.layout().find(tool_side_->block_id)->u_offset);
   return {u.head<3>(), u.tail<3>()};
 }
-#else
-Pose World::tool_pose() const { return {}; }
-Twist World::tool_twist() const { return {}; }
-#endif
 
 }  // namespace palpate::loop

@@ -4,6 +4,7 @@
 
 #include "comparison_cells.h"
 #include "palpate/core/error.h"
+#include "palpate/store/study_columns.h"
 #include "sections.h"
 
 namespace palpate::report {
@@ -55,18 +56,33 @@ void add_columns_table(Page& page, const Table& compare,
   page.add_table(headers, rows, caption);
 }
 
+/// The counts that follow the known columns of compare.csv, where any point has one that is not zero.
+std::vector<std::pair<std::string, std::string>> further_counts(const Table& compare) {
+  const std::vector<std::string>& known = store::compare_columns();
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const std::string& column : compare.headers) {
+    if (column.ends_with("_s") || std::find(known.begin(), known.end(), column) != known.end()) continue;
+    const std::vector<double> counts = compare.numbers(column);
+    if (std::none_of(counts.begin(), counts.end(), [](double count) { return count > 0.0; })) continue;
+    std::string words = column;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    out.emplace_back(column, words);
+  }
+  return out;
+}
+
 void add_counts_and_maxima(Page& page, const Table& compare) {
-  add_columns_table(page, compare,
-                    {{"steps", "steps"},
-                     {"force_evaluations", "force evaluations"},
-                     {"tangent_evaluations", "tangent evaluations"},
-                     {"factorisations", "factorisations"},
-                     {"linear_solves", "linear solves"},
-                     {"newton_iterations", "Newton iterations"},
-                     {"rejected_steps", "rejected steps"},
-                     {"reinitialisations", "restarts"},
-                     {"contact_queries", "contact queries"}},
-                    "Counts, which no noise of the machine touches.");
+  std::vector<std::pair<std::string, std::string>> counts = {{"steps", "steps"},
+                                                             {"force_evaluations", "force evaluations"},
+                                                             {"tangent_evaluations", "tangent evaluations"},
+                                                             {"factorisations", "factorisations"},
+                                                             {"linear_solves", "linear solves"},
+                                                             {"newton_iterations", "Newton iterations"},
+                                                             {"rejected_steps", "rejected steps"},
+                                                             {"reinitialisations", "restarts"},
+                                                             {"contact_queries", "contact queries"}};
+  for (auto& further : further_counts(compare)) counts.push_back(std::move(further));
+  add_columns_table(page, compare, counts, "Counts, which no noise of the machine touches.");
   add_columns_table(page, compare,
                     {{"position_error_max_m", "position error [m]"},
                      {"force_error_max_n", "force error [N]"},

@@ -120,7 +120,8 @@ const KeyTable<IntegratorSpec>& integrator_keys() {
       integer("max_steps", &IntegratorSpec::max_steps, at_least(1)),
       text("linear_solver", &IntegratorSpec::linear_solver),
       integer("threads", &IntegratorSpec::threads,
-              closed(1, 64, "of linear solvers that can share their work; results do not depend on it")),
+              closed(1, 64,
+                     "of elements and of linear solvers that share their work; results do not depend on it")),
   };
   return keys;
 }

@@ -3,10 +3,8 @@
 #include <algorithm>
 
 #include "palpate/integrate/integrators.h"
-#ifdef PALPATE_HAS_TOOL
 #include "palpate/linear/solvers.h"
 #include "palpate/tool/tool.h"
-#endif
 
 namespace palpate::stability {
 
@@ -27,10 +25,8 @@ std::vector<Column> stepper_columns(const dynamics::StepperRegistry& registry) {
 
 std::vector<Column> tool_columns() {
   std::vector<Column> columns;
-#ifdef PALPATE_HAS_TOOL
   for (const auto& info : tool::tool_integrators())
     columns.push_back({"tool: " + info.name, info.name, nullptr, false});
-#endif
   return columns;
 }
 

@@ -6,9 +6,7 @@
 #include "palpate/store/atomic_file.h"
 #include "palpate/store/csv.h"
 #include "palpate/store/summary.h"
-#ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
-#endif
 
 namespace palpate::stability {
 
@@ -18,9 +16,7 @@ store::Provenance made_by() {
   store::Provenance p = store::provenance();
   for (const auto& library : integrate::library_versions()) p.libraries.push_back(library);
   for (const auto& library : linear::library_versions()) p.libraries.push_back(library);
-#ifdef PALPATE_HAS_TOOL
-  p.libraries.emplace_back("Simbody", tool::simbody_version());
-#endif
+  if (tool::available()) p.libraries.emplace_back("Simbody", tool::simbody_version());
   return p;
 }
 

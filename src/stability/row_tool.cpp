@@ -1,9 +1,7 @@
 #include <cmath>
 
-#include "scene_run.h"
-#ifdef PALPATE_HAS_TOOL
 #include "palpate/tool/tool.h"
-#endif
+#include "scene_run.h"
 
 // A rigid ball under a virtual coupling k, b, against a soft cube of edge L that is held below.  The hand is
 // the only source of energy.  With the handle's whole path d the coupling's spring can hold 1/2 k d^2, and a
@@ -29,7 +27,6 @@
 
 namespace palpate::stability {
 
-#ifdef PALPATE_HAS_TOOL
 namespace {
 
 constexpr double kRtol = 1e-4, kCubeEdge = 0.05, kToolRadius = 0.01, kPeriod = 0.01;
@@ -130,6 +127,7 @@ double ball_mass(double density) { return density * 4.0 / 3.0 * M_PI * std::pow(
 }  // namespace
 
 Row density_ratio_row() {
+  if (!tool::available()) return {"density-ratio", "needs tools, which were not compiled in"};
   // rate [rad/s]
   const double above = kCubeEdge + kToolRadius, heavy = ball_mass(1e9), light = ball_mass(1e-3), rate = 60.0;
   const std::vector<std::pair<double, double>> press = {
@@ -158,6 +156,7 @@ Row density_ratio_row() {
 }
 
 Row swallowed_tool_row() {
+  if (!tool::available()) return {"swallowed-tool", "needs tools, which were not compiled in"};
   const auto out_in = [](double duration) {
     return under_a_tool({{0.0, 0.6 * kCubeEdge}, {duration, 2.0 * kCubeEdge}}, 0.05, 300.0, 4.0);
   };
@@ -171,9 +170,5 @@ Row swallowed_tool_row() {
        // the fast ones may slip out between two exchanges
        {"pulled out in 0.01 s", expect, [out_in](const Lab& lab) { return run(lab, out_in(0.01), false); }}}};
 }
-#else
-Row density_ratio_row() { return {"density-ratio", "needs tools, which were not compiled in"}; }
-Row swallowed_tool_row() { return {"swallowed-tool", "needs tools, which were not compiled in"}; }
-#endif
 
 }  // namespace palpate::stability

@@ -20,6 +20,8 @@ const Registry<MakeTickScheme>& tick_scheme_registry() {
   return registry;
 }
 
+bool available() { return true; }
+
 const std::vector<ToolIntegratorInfo>& tool_integrators() {
   static const std::vector<ToolIntegratorInfo> infos = [] {
     std::vector<ToolIntegratorInfo> out;

@@ -175,7 +175,9 @@ TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
   compare::write(all, folder.string());
   const store::CsvTable table = store::read_csv((folder / "compare.csv").string());
   ASSERT_EQ(table.rows.size(), 2u);
-  EXPECT_EQ(table.headers, store::compare_columns());
+  const std::vector<std::string>& known = store::compare_columns();
+  ASSERT_GT(table.headers.size(), known.size()) << "what reports know, then every further number of a run";
+  EXPECT_TRUE(std::equal(known.begin(), known.end(), table.headers.begin()));
   EXPECT_EQ(table.column("status")[1], "failed");
   EXPECT_EQ(table.column("reason")[1], c.points[1].reason);
   EXPECT_TRUE(std::filesystem::exists(folder / "reference.json"));

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
 #include <vector>
 
 #include "palpate/core/error.h"
@@ -22,6 +24,29 @@ TEST(Team, WorksTogetherAgainAndAgain) {
     for (const long sum : sums) EXPECT_EQ(sum, 200 * 201 / 2 * size * (size + 1) / 2);
   }
   EXPECT_THROW(Team(0), InternalError);
+}
+
+// Two callers, and loops beside them: one pool serves all, each in its turn.
+TEST(Team, TeamsOfSeveralThreadsShareThePool) {
+  const auto work = [](int size, long& total) {
+    const workers::Count count(size);
+    Team team(size);
+    std::atomic<long> sum{0};
+    for (int round = 0; round < 200; ++round) {
+      team.run([&](int k) {
+        sum += k + 1;
+        team.barrier();
+      });
+      workers::for_each(size, [&](int, int) { ++sum; });
+    }
+    total = sum;
+  };
+  long of_two = 0, of_four = 0;
+  std::thread other([&] { work(2, of_two); });
+  work(4, of_four);
+  other.join();
+  EXPECT_EQ(of_two, 200 * (3 + 2));
+  EXPECT_EQ(of_four, 200 * (10 + 4));
 }
 
 }  // namespace

@@ -1,12 +1,18 @@
 #include "palpate/core/workers.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <array>
 #include <atomic>
+#include <cstdlib>
+#include <set>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
+#include "palpate/core/team.h"
 
 using namespace palpate;
 
@@ -60,6 +66,71 @@ TEST(Workers, LoopsOfTwoThreadsDoNotMix) {
   many();
   other.join();
   workers::set_count(1);
+}
+
+TEST(Workers, ACountHoldsForItsOwnThreadAlone) {
+  workers::set_count(2);
+  {
+    const workers::Count three(3);
+    EXPECT_EQ(workers::count(), 3);
+    std::thread([] { EXPECT_EQ(workers::count(), 2); }).join();
+    const workers::Count one(1);
+    EXPECT_EQ(workers::count(), 1);
+    std::set<int> seen;
+    workers::for_each(50, [&](int, int worker) { seen.insert(worker); });
+    EXPECT_EQ(seen, std::set<int>{0});
+  }
+  EXPECT_EQ(workers::count(), 2);
+  EXPECT_THROW(workers::Count(0), Error);
+  EXPECT_EQ(workers::count(), 2);
+  workers::set_count(1);
+}
+
+// After a loop of seven threads, one of two is for two.
+TEST(Workers, ALoopTakesNoMoreThreadsThanItMay) {
+  for (const int threads : {7, 2}) {
+    const workers::Count count(threads);
+    std::atomic<int> strangers{0}, others{0};
+    for (int repeat = 0; repeat < 200; ++repeat)
+      workers::for_each(60, [&](int, int worker) {
+        if (worker >= threads) ++strangers;
+        if (workers::count() != threads) ++others;
+      });
+    EXPECT_EQ(strangers, 0);
+    EXPECT_EQ(others, 0) << "inside a task the count is its loop's";
+  }
+}
+
+TEST(Workers, CountsTheTasksOfEachThread) {
+  const workers::Count two(2);
+  const long before = workers::tasks_of(0) + workers::tasks_of(1);
+  workers::for_each(40, [](int, int) {});
+  EXPECT_EQ(workers::tasks_of(0) + workers::tasks_of(1), before + 40);
+}
+
+/// What a forked child finds of the pool: 0 where loops and teams work there.
+int pool_in_child() {
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(60);
+    std::atomic<int> sum{0};
+    workers::for_each(100, [&](int task, int) { sum += task; });
+    Team team(3);
+    team.run([&](int k) {
+      sum += 10000 * (k + 1);
+      team.barrier();
+    });
+    std::exit(sum == 4950 + 60000 ? 0 : 1);  // destructors of statics run as well
+  }
+  int status = -1;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+TEST(Workers, AForkedChildHasAPoolOfItsOwn) {
+  const workers::Count three(3);
+  workers::for_each(100, [](int, int) {});
+  EXPECT_EQ(pool_in_child(), 0);
 }
 
 TEST(Workers, RefusesAnImpossibleNumber) {

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "loop/small_scenes.h"
+#include "loop/tool_side.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
@@ -16,13 +17,15 @@ using namespace palpate::small_scenes;
 
 namespace {
 
+loop::ToolSide& side_of(loop::World& world) { return loop::ToolSide::of(world); }
+
 constexpr double kDepth = 0.002;
 
 std::unique_ptr<loop::World> touching(const std::string& linearisation) {
   scene::Description d = pressed_block(kDepth);
   d.coupling.linearisation = linearisation;
   auto world = loop::assemble(d);
-  world->tool_frame->append(0.0, world->tool->pose(), {});
+  side_of(*world).trajectory->append(0.0, side_of(*world).tool->pose(), {});
   world->contact->refresh(world->state.view());
   return world;
 }
@@ -34,12 +37,12 @@ Mat6 stiffness(const dynamics::LinearisedContact& record) {
 /// The wrench on the tool after one linearly implicit step of H with the tool displaced by `dx` at its end.
 Vec6 wrench_after_step(double H, const Vec3& dx) {
   const auto world = touching("frozen");
-  Pose moved = world->tool->pose();
+  Pose moved = side_of(*world).tool->pose();
   moved.translation += dx;
-  world->tool_frame->clear();  // it stands there from now on
-  world->tool_frame->append(0.0, moved, {});
+  side_of(*world).trajectory->clear();  // it stands there from now on
+  side_of(*world).trajectory->append(0.0, moved, {});
   EXPECT_TRUE(world->stepper->advance_to(H).ok());
-  const Wrench w = world->contact->frame_wrench(world->state.view(), world->tool_frame_index);
+  const Wrench w = world->contact->frame_wrench(world->state.view(), world->tool_frame_index());
   Vec6 out;
   out << w.moment, w.force;
   return out;
@@ -85,8 +88,9 @@ TEST(Linearise, FrozenRecordRepeatsTheContactAtItsOwnPose) {
   const auto world = touching("frozen");
   const dynamics::LinearisedContact record = loop::linearise_contact(*world, 7, 0.01, fallbacks);
   EXPECT_EQ(record.version, 7u);
-  const Vec6 w = dynamics::contact_wrench(record, record.time, world->tool->pose(), world->tool->twist());
-  const Wrench exact = world->contact->frame_wrench(world->state.view(), world->tool_frame_index);
+  const Vec6 w = dynamics::contact_wrench(record, record.time, side_of(*world).tool->pose(),
+                                          side_of(*world).tool->twist());
+  const Wrench exact = world->contact->frame_wrench(world->state.view(), world->tool_frame_index());
   EXPECT_LT((w.tail<3>() - exact.force).norm(), 1e-14 * exact.force.norm());
   EXPECT_GT(exact.force.z(), 0.0) << "the block pushes the tool up";
 }
@@ -112,7 +116,7 @@ struct Struck {
     loop::RunOptions options;
     options.duration_s = 1.5;
     EXPECT_TRUE(loop::run(*world, options).status.ok());
-    x0 = world->tool->pose();
+    x0 = side_of(*world).tool->pose();
     t0 = world->state.time();
     hold(x0, {}, t0);
     world->contact->refresh(world->state.view());
@@ -123,19 +127,19 @@ struct Struck {
     back();
   }
   void hold(const Pose& pose, const Twist& twist, double t) {
-    world->tool_frame->clear();
-    world->tool_frame->append(t, pose, twist);
+    side_of(*world).trajectory->clear();
+    side_of(*world).trajectory->append(t, pose, twist);
   }
   void back() {
     hold(x0, {}, t0);
-    world->tool->set_state(t0, x0, {});
+    side_of(*world).tool->set_state(t0, x0, {});
     world->state.set_time(t0);
     world->state.q() = q;
     world->state.u() = u;
     world->stepper->reinit(dynamics::ReinitReason::kStateChanged);
   }
   Vec6 wrench() const {
-    const Wrench w = world->contact->frame_wrench(world->state.view(), world->tool_frame_index);
+    const Wrench w = world->contact->frame_wrench(world->state.view(), world->tool_frame_index());
     Vec6 out;
     out << w.moment, w.force;
     return out;
@@ -193,7 +197,7 @@ TEST(Linearise, CondensedRecordFollowsTheToolsDisplacementAndTwist) {
 TEST(Linearise, AnIndefiniteStepMatrixIsFactoredByLu) {
   scene::Description d = pressed_block(kDepth);
   auto world = loop::assemble(d);
-  world->tool_frame->append(0.0, world->tool->pose(), {});
+  side_of(*world).trajectory->append(0.0, side_of(*world).tool->pose(), {});
   Eigen::Map<Points> x(world->state.q().data(), 3, world->state.q().size() / 3);
   x.row(2) *= 0.2;  // squashed flat: compressed struts
   x.row(2).array() += 0.8 * 0.02 - 1e-4;

@@ -145,7 +145,7 @@ TEST(Run, HeldHandleComesToRestInBalanceWithTheBlock) {
   ASSERT_TRUE(loop::run(*world, options).status.ok());
   const loop::TickRecord& last = log.ticks.back();
   const Vec3 spring = d.tool->coupling_stiffness_n_m * (last.handle.translation - last.tool.translation);
-  const Wrench contact = world->contact->frame_wrench(world->state.view(), world->tool_frame_index);
+  const Wrench contact = world->contact->frame_wrench(world->state.view(), world->tool_frame_index());
   ASSERT_GT(contact.force.z(), 0.05);
   EXPECT_LT((spring + contact.force).norm(), 1e-6 * contact.force.norm());
   EXPECT_LT((last.device.force + spring).norm(), 1e-2 * spring.norm())

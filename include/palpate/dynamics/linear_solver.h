@@ -1,6 +1,9 @@
 #pragma once
+#include <concepts>
+#include <cstddef>
 #include <memory>
 #include <string>
+#include <type_traits>
 
 #include "palpate/core/registry.h"
 #include "palpate/dynamics/balanced_matrix.h"
@@ -27,21 +30,43 @@ struct SolverCounters {
   std::string ordering;
 
   /// What another solver counted is added; the ordering stays this one's own.
-  SolverCounters& operator+=(const SolverCounters& other) {
-    symbolic += other.symbolic;
-    orderings += other.orderings;
-    factorisations += other.factorisations;
-    solves += other.solves;
-    iterations += other.iterations;
-    near += other.near;
-    residuals += other.residuals;
-    refreshes += other.refreshes;
-    symbolic_s += other.symbolic_s;
-    factor_s += other.factor_s;
-    solve_s += other.solve_s;
-    return *this;
-  }
+  SolverCounters& operator+=(const SolverCounters& other);
 };
+
+/// Calls f(name, members...) for every number of these counters, all of the same member of each; the type
+/// tells the unit: long counts, double is wall time [s].  The names are those of summary.json, of a study's
+/// database and of compare.csv.
+template <class F, class... Counters>
+requires(std::same_as<std::remove_const_t<Counters>, SolverCounters>&&...) constexpr void visit_counters(
+    F&& f, Counters&... c) {
+  f("symbolic_analyses", c.symbolic...);
+  f("orderings", c.orderings...);
+  f("factorisations", c.factorisations...);
+  f("linear_solves", c.solves...);
+  f("linear_iterations", c.iterations...);
+  f("near_linear_solves", c.near...);
+  f("near_residuals", c.residuals...);
+  f("coarse_space_refreshes", c.refreshes...);
+  f("symbolic_s", c.symbolic_s...);
+  f("factor_s", c.factor_s...);
+  f("solve_s", c.solve_s...);
+}
+
+/// Bytes of the numbers that visit_counters() visits: with those of what is no number they are the struct's.
+template <class Counters>
+constexpr std::size_t bytes_of_counters() {
+  std::size_t bytes = 0;
+  const Counters zero;
+  visit_counters([&bytes](const char*, const auto& value) { bytes += sizeof value; }, zero);
+  return bytes;
+}
+static_assert(bytes_of_counters<SolverCounters>() + sizeof(std::string) == sizeof(SolverCounters),
+              "visit_counters() leaves out a member of SolverCounters");
+
+inline SolverCounters& SolverCounters::operator+=(const SolverCounters& other) {
+  visit_counters([](const char*, auto& mine, const auto& theirs) { mine += theirs; }, *this, other);
+  return *this;
+}
 
 /// A system of equations that is known by what a vector leaves of it.
 class Residual {

@@ -30,7 +30,8 @@ struct IntegratorSpec {
   std::string linear_solver = {};  ///< empty: the method's own (StepperTraits::linear_solver)
   /// iterative linear solvers: relative residual of "pcg"; relative error, in the energy norm, of the others
   double linear_rtol = 1e-8;
-  /// linear solvers that can share their work; results do not depend on it
+  /// of the whole run, the caller's included: elements, and linear solvers that can share their work; results
+  /// do not depend on it
   int threads = 1;
 };
 

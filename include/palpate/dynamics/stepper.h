@@ -54,6 +54,38 @@ struct StepperCounters {
   SolverCounters solver;
 };
 
+/// As of SolverCounters (linear_solver.h), which it visits too.
+template <class F, class... Counters>
+requires(std::same_as<std::remove_const_t<Counters>, StepperCounters>&&...) constexpr void visit_counters(
+    F&& f, Counters&... c) {
+  f("steps", c.steps...);
+  f("rejected_steps", c.rejected...);
+  f("error_test_failures", c.error_test_failures...);
+  f("newton_failures", c.newton_failures...);
+  f("newton_iterations", c.newton_iterations...);
+  f("force_evaluations", c.force_evaluations...);
+  f("tangent_evaluations", c.tangent_evaluations...);
+  f("reinitialisations", c.reinits...);
+  f("events", c.events...);
+  f("indefinite_matrices", c.indefinite...);
+  f("projected_matrices", c.projected...);
+  f("unconverged_linear_solves", c.unconverged...);
+  f("rounding_limited_equilibria", c.rounding_limited...);
+  f("force_s", c.force_s...);
+  f("tangent_s", c.tangent_s...);
+  visit_counters(f, c.solver...);
+}
+static_assert(bytes_of_counters<StepperCounters>() - bytes_of_counters<SolverCounters>() +
+                      sizeof(SolverCounters) ==
+                  sizeof(StepperCounters),
+              "visit_counters() leaves out a member of StepperCounters");
+
+/// What was counted between two looks at one stepper's counters.
+inline StepperCounters operator-(StepperCounters later, const StepperCounters& earlier) {
+  visit_counters([](const char*, auto& value, const auto& before) { value -= before; }, later, earlier);
+  return later;
+}
+
 /// One attempted step, accepted or not: what `--trace` keeps.
 struct StepAttempt {
   /// kEvent: cut short at a root, then restarted

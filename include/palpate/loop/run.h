@@ -48,8 +48,27 @@ struct RunResult {
   dynamics::StepperCounters counters;
 };
 
-/// Virtual time: one exchange period after the other, ticks interleaved (docs/design.md, 1); monolithic, one refresh
-/// after the other, ticks from dense output.  A scene without a tool has periods but no ticks.
+/// As of StepperCounters (dynamics/stepper.h), which it visits too: every number of a run.
+template <class F, class... Result>
+requires(std::same_as<std::remove_const_t<Result>, RunResult>&&...) constexpr void visit_counters(
+    F&& f, Result&... r) {
+  f("simulated_s", r.time...);
+  f("loop_cpu_s", r.cpu_s...);
+  f("loop_wall_s", r.wall_s...);
+  f("contact_query_s", r.query_s...);
+  f("linearise_s", r.linearise_s...);
+  f("tool_ticks_s", r.tool_s...);
+  f("periods", r.periods...);
+  f("ticks", r.ticks...);
+  f("contact_queries", r.contact_queries...);
+  f("limited_ticks", r.limited_ticks...);
+  f("frozen_fallbacks", r.frozen_fallbacks...);
+  dynamics::visit_counters(f, r.counters...);
+}
+
+/// Virtual time: one exchange period after the other, ticks interleaved (docs/design.md, 1); monolithic, one
+/// refresh after the other, ticks from dense output.  A scene without a tool has periods but no ticks.
+/// It works on the World's own number of threads (integrator.threads), whatever other Worlds have.
 RunResult run(World& world, const RunOptions& options);
 
 /// The length of the loop's period for a scene [s]: the exchange period where there is an exchange, else the

@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "palpate/contact/contact_force.h"
-#include "palpate/device/handle.h"
-#include "palpate/device/limiter.h"
 #include "palpate/dynamics/stepper.h"
 #include "palpate/dynamics/system.h"
 #include "palpate/fem/attachments.h"
@@ -21,10 +19,11 @@
 
 namespace palpate::tool {
 class BoneTree;
-class Tool;
 }  // namespace palpate::tool
 
 namespace palpate::loop {
+
+struct ToolSide;
 
 /// A detailed surface that hangs on a body's tetrahedra.
 struct Skin {
@@ -92,7 +91,8 @@ struct Bone {
 };
 
 /// Everything that one scene names, and nothing else.  What is absent is null or empty.
-/// The stepper refers to `state` and `system`: a World does not move.
+/// `description` and `folder` are what it was made of; the rest is what run() or who steps it by hand moves,
+/// and what comes out. The stepper refers to `state` and `system`: a World does not move.
 struct World {
   World();
   ~World();
@@ -107,25 +107,6 @@ struct World {
   std::vector<Bone> bones;
   std::shared_ptr<contact::ContactForce> contact;  ///< null without [[contact]]
   std::unique_ptr<dynamics::Stepper> stepper;      ///< null without bodies
-  /// the tool with ticks of its own; null without [tool], and where the scheme is monolithic
-  std::unique_ptr<tool::Tool> tool;
-  /// monolithic: the tool's block of the State; else -1
-  int tool_block_id = -1;
-  std::unique_ptr<device::Handle> handle;
-  device::HandleSample handle_now;  ///< at the last tick
-  std::unique_ptr<device::WrenchLimiter> limiter;
-  /// the tool's frame in contact; null where no contact names the tool
-  std::shared_ptr<contact::MovingFrame> tool_motion;
-  /// the same where the scheme is partitioned: what the ticks write; else null
-  std::shared_ptr<contact::TrajectoryFrame> tool_frame;
-  std::shared_ptr<proxy::ProxySet> tool_proxies;  ///< null where the tool meets no body with proxies
-  /// of the tool in `contact`, -1 where no contact names it
-  int tool_frame_index = -1;
-  /// factors the step matrix for the condensed linearisation; null where not used
-  std::unique_ptr<dynamics::LinearSolver> condenser;
-  /// made at the first step matrix without a Cholesky factor
-  std::unique_ptr<dynamics::LinearSolver> condenser_lu;
-  dynamics::BorderedMatrix condensed_matrix;
 
   const Body* find_body(const std::string& name) const;
   /// Makes a body stiffer or softer from the next step on; its damping goes along (mu_d = beta mu), and so do
@@ -138,14 +119,23 @@ struct World {
   Twist bone_twist(const Bone& bone) const;
   /// What the flesh exerts on each bone, moment about its origin: minus what holds the nodes that it carries.
   std::vector<Wrench> wrenches_on_bones();
-  bool monolithic() const { return tool_block_id >= 0; }
+  bool monolithic() const;         ///< the tool is a block of the State
+  bool has_tool_of_ticks() const;  ///< there is a tool, and it has ticks of its own
+  /// of the tool in `contact`; -1 where no contact names it
+  int tool_frame_index() const;
   Pose tool_pose() const;  ///< @pre there is a tool
   Twist tool_twist() const;
   /// kinetic and potential energy of bodies, contact, tool and coupling [J]
   double mechanical_energy();
+
+ private:
+  friend struct ToolSide;
+  std::unique_ptr<ToolSide> tool_side_;  ///< never null
 };
 
-/// Builds a World: the one place that names concrete parts.
+/// Builds a World: the one place that names concrete parts.  From here on the process works on its number of
+/// threads (core/workers.h): the World assembled last decides for who steps Worlds by hand; run() keeps to
+/// each World's own.
 /// @throws Error for names that no registry knows, parts not compiled in, meshes refused
 std::unique_ptr<World> assemble(const scene::Description& description);
 

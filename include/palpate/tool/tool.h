@@ -17,8 +17,8 @@ struct HandleMotion {
   Twist twist0, twist1;
 };
 
-/// A Simbody MobilizedBody::Free under a 6-DoF virtual coupling and a linearised contact (docs/design.md,
-/// 4.5).  The Simbody System stays behind the pimpl.
+/// A Simbody MobilizedBody::Free under a 6-DoF virtual coupling and a linearised contact
+/// (docs/design.md, 4.5).  The Simbody System stays behind the pimpl.
 class Tool {
  public:
   Tool(const ToolSpec& spec, const Vec3& gravity);
@@ -59,7 +59,9 @@ struct ToolIntegratorInfo {
 };
 const std::vector<ToolIntegratorInfo>& tool_integrators();
 
-/// Version of the Simbody that this was built with.
+/// Whether this was built with Simbody: without it there are no tools and no bones on joints.
+bool available();
+/// Version of the Simbody that this was built with; empty without it.
 std::string simbody_version();
 
 }  // namespace palpate::tool

@@ -138,12 +138,6 @@ double stiffness_of(const BlockSparse& A, const VecX& masses) {
   return own / mass;
 }
 
-struct Times {
-  std::array<double, 4> at{};
-  explicit Times(const StepperCounters& c)
-      : at{c.force_s, c.tangent_s, c.solver.factor_s + c.solver.symbolic_s, c.solver.solve_s} {}
-};
-
 /// The beam where the timed steps begin; the same for every kind of step of one beam.
 struct Warm {
   VecX q, u;
@@ -190,22 +184,24 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
                         solver.checks < options.checks;
     const double checking = solver.checking_s, checking_cpu = solver.checking_cpu_s,
                  solver_cpu = solver.cpu_s;
-    const Times before(stepper->counters());
-    const long iterations_before = stepper->counters().solver.iterations,
-               near_before = stepper->counters().solver.near;
+    const StepperCounters before = stepper->counters();
     const double start = wall_seconds(), start_cpu = thread_cpu_seconds();
     if (const StepResult r = stepper->advance_to(beam.state.time() + spec.step_s); !r.ok())
       fail("bench fem: {}", r.message);
     const double wall = wall_seconds() - start - (solver.checking_s - checking);
     const double cpu = thread_cpu_seconds() - start_cpu - (solver.checking_cpu_s - checking_cpu);
     if (k < kUntimed) continue;
-    const Times after(stepper->counters());
-    for (std::size_t i = 0; i < 4; ++i) ms[i].push_back(1e3 * (after.at[i] - before.at[i]));
+    const StepperCounters step = stepper->counters() - before;
+    const SolverCounters& solved = step.solver;
+    ms[0].push_back(1e3 * step.force_s);
+    ms[1].push_back(1e3 * step.tangent_s);
+    ms[2].push_back(1e3 * (solved.factor_s + solved.symbolic_s));
+    ms[3].push_back(1e3 * solved.solve_s);
     ms[4].push_back(1e3 * wall);
     ms[5].push_back(1e3 * cpu);
     ms[6].push_back(1e3 * (solver.cpu_s - solver_cpu));
-    iterations += stepper->counters().solver.iterations - iterations_before;
-    near += stepper->counters().solver.near - near_before;
+    iterations += solved.iterations;
+    near += solved.near;
   }
   FemBenchRow row;
   row.size = size.name;
@@ -258,18 +254,6 @@ void set_limits(FemBenchRow& row, const MachineLimits& limits) {
   row.needed_bytes = bytes_to_store(counts);
 }
 
-/// As many workers for the element kernels as threads for the linear solver, while it lives.
-class WorkerCount {
- public:
-  explicit WorkerCount(int count) : before_(workers::count()) { workers::set_count(count); }
-  ~WorkerCount() { workers::set_count(before_); }
-  WorkerCount(const WorkerCount&) = delete;
-  WorkerCount& operator=(const WorkerCount&) = delete;
-
- private:
-  int before_;
-};
-
 }  // namespace
 
 FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
@@ -283,7 +267,7 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
           for (const std::string& solver : options.linear_solvers)
             for (std::size_t t = 0; t < options.threads.size(); ++t) {
               if (stop && stop()) break;
-              const WorkerCount workers_too(options.threads[t]);
+              const workers::Count elements_too(options.threads[t]);
               const IntegratorSpec spec{.name = "linearly-implicit-euler",
                                         .step_s = h,
                                         .linear_solver = solver,
@@ -295,7 +279,7 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
   for (const std::string& size : options.sizes)  // now, so that their memory is not in the peaks
     for (const int threads : options.threads) {
       if (stop && stop()) break;
-      const WorkerCount workers(threads);
+      const workers::Count count(threads);
       for (ElementTiming& timing : time_elements(size_named(size), options.element_s)) {
         timing.threads = threads;
         report.elements.push_back(timing);

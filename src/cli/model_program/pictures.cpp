@@ -1,21 +1,19 @@
 #include "pictures.h"
 
-#include "palpate/core/error.h"
-#ifdef PALPATE_HAS_RENDER
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <numbers>
+#include "palpate/core/error.h"
 
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/generators.h"
 #include "palpate/mesh/quality.h"
+#include "palpate/render/available.h"
 #include "palpate/render/scene.h"
-#endif
 
 namespace palpate::cli {
 
-#ifdef PALPATE_HAS_RENDER
 namespace {
 
 constexpr int kWidth = 900, kHeight = 720;
@@ -134,6 +132,7 @@ render::Picture panel(render::Scene scene, const std::string& title, const std::
 }  // namespace
 
 void check_pictures(const std::string& path) {
+  render::check_available();
   if (!path.ends_with(".png")) fail("--picture {}: pictures are PNG files; end the name in .png", path);
 }
 
@@ -184,13 +183,5 @@ void draw_model(const LayeredModel& model, const std::string& path) {
                   sheet.pixel(i % 2 * kWidth, i / 2 * kHeight + y));
   render::save_png(sheet, path);
 }
-#else
-void check_pictures(const std::string&) {
-  fail(
-      "--picture: this build draws no pictures; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, "
-      "libepoxy-dev)");
-}
-void draw_model(const LayeredModel&, const std::string&) {}
-#endif
 
 }  // namespace palpate::cli

@@ -3,14 +3,11 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
-#ifdef PALPATE_HAS_SHAPES
 #include "palpate/shapes/shapes.h"
 #include "palpate/store/content_hash.h"
-#endif
 
 namespace palpate::cli {
 
-#ifdef PALPATE_HAS_SHAPES
 namespace {
 
 std::string_view bytes_of(const Points& points) {
@@ -49,19 +46,12 @@ std::string shape_names() {
   for (const shapes::ShapeEntry& shape : shapes::shapes()) out += (out.empty() ? "" : ", ") + shape.name;
   return out;
 }
-#else
-std::string shape_names() { return {}; }
-#endif
 
 model::Input input_of(ModelArguments& arguments) {
   const std::string& source = arguments.source;
   if (std::filesystem::exists(source) || source.find_first_of("./") != std::string::npos)
     return model::input_of_file(source);
-#ifdef PALPATE_HAS_SHAPES
   return input_of_shape(arguments);
-#else
-  fail("{}: no such file", source);
-#endif
 }
 
 }  // namespace palpate::cli

@@ -1,0 +1,20 @@
+#pragma once
+#if !defined(__x86_64__)
+#include <thread>
+#endif
+
+namespace palpate {
+
+/// Looks while a thread waits for what follows, some 50 us on a core of 3 GHz: longer than most serial work
+/// between two loops, far shorter than a time slice.
+constexpr int kSpins = 4000;
+
+inline void spin_once() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#else
+  std::this_thread::yield();
+#endif
+}
+
+}  // namespace palpate

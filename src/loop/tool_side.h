@@ -1,0 +1,35 @@
+#pragma once
+#include "palpate/device/handle.h"
+#include "palpate/device/limiter.h"
+#include "palpate/loop/world.h"
+#include "palpate/tool/tool.h"
+
+namespace palpate::loop {
+
+/// What a World has of a tool: the tool itself, the hand's side of it, and its contact.  All empty without
+/// [tool].
+struct ToolSide {
+  /// with ticks of its own; null where the scheme is monolithic
+  std::unique_ptr<tool::Tool> tool;
+  /// monolithic: its block of the State; else -1
+  int block_id = -1;
+  std::unique_ptr<device::Handle> handle;
+  device::HandleSample handle_now;  ///< at the last tick
+  std::unique_ptr<device::WrenchLimiter> limiter;
+  /// its frame in contact; null where no contact names the tool
+  std::shared_ptr<contact::MovingFrame> motion;
+  /// the same where the scheme is partitioned: what the ticks write; else null
+  std::shared_ptr<contact::TrajectoryFrame> trajectory;
+  std::shared_ptr<proxy::ProxySet> proxies;  ///< null where it meets no body with proxies
+  int frame_index = -1;                      ///< of it in the contact, -1 where no contact names it
+  /// factors the step matrix for the condensed linearisation; null where not used
+  std::unique_ptr<dynamics::LinearSolver> condenser;
+  /// made at the first step matrix without a Cholesky factor
+  std::unique_ptr<dynamics::LinearSolver> condenser_lu;
+  dynamics::BorderedMatrix condensed_matrix;
+
+  static ToolSide& of(World& world) { return *world.tool_side_; }
+  static const ToolSide& of(const World& world) { return *world.tool_side_; }
+};
+
+}  // namespace palpate::loop

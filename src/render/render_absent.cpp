@@ -1,0 +1,24 @@
+#include "palpate/core/error.h"
+#include "palpate/render/available.h"
+#include "palpate/render/scene.h"
+
+// What stands in for pictures in a build without OpenGL.
+
+namespace palpate::render {
+
+bool available() { return false; }
+
+void check_available() {
+  fail(
+      "this build draws no pictures; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, "
+      "libepoxy-dev)");
+}
+
+Picture::Picture(int, int, Rgb) { check_available(); }
+Picture draw(const Scene&, const Options&) {
+  check_available();
+  return {};
+}
+void save_png(const Picture&, const std::filesystem::path&) { check_available(); }
+
+}  // namespace palpate::render

@@ -1,0 +1,8 @@
+#include "palpate/render/available.h"
+
+namespace palpate::render {
+
+bool available() { return true; }
+void check_available() {}
+
+}  // namespace palpate::render

@@ -1,0 +1,158 @@
+#include "compare/codec.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <type_traits>
+
+#include "palpate/loop/summary.h"
+#include "palpate/store/csv.h"
+#include "palpate/store/study_columns.h"
+
+using namespace palpate;
+
+namespace {
+
+/// Every number of a run another one: counts are whole, times are not.
+compare::PointRun distinct() {
+  compare::PointRun run;
+  run.status = compare::PointStatus::kOk;
+  run.reference = compare::ReferenceUsed::kTruth;
+  int next = 1000;
+  loop::visit_counters(
+      [&next]<class T>(const char*, T& value) {
+        value = static_cast<T>(next++) + (std::is_integral_v<T> ? T(0) : T(0.125));
+      },
+      run.result);
+  return run;
+}
+
+std::map<std::string, double> numbers_of(const loop::RunResult& result) {
+  std::map<std::string, double> out;
+  loop::visit_counters(
+      [&out](const char* name, const auto& value) {
+        EXPECT_TRUE(out.emplace(name, static_cast<double>(value)).second) << name << " twice";
+      },
+      result);
+  return out;
+}
+
+class Folder {
+ public:
+  Folder() : path(std::filesystem::temp_directory_path() / ("palpate-codec-" + std::to_string(getpid()))) {
+    std::filesystem::remove_all(path);
+    std::filesystem::create_directories(path);
+  }
+  ~Folder() { std::filesystem::remove_all(path); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::filesystem::path path;
+};
+
+// The names of the struct's members, written out once more: what a run counts must all be visited.
+TEST(Codec, VisitsEveryMember) {
+  const compare::PointRun run = distinct();
+  const dynamics::StepperCounters& c = run.result.counters;
+  const dynamics::SolverCounters& s = c.solver;
+  std::set<double> values;
+  for (const long count : {c.steps,
+                           c.rejected,
+                           c.error_test_failures,
+                           c.newton_failures,
+                           c.newton_iterations,
+                           c.force_evaluations,
+                           c.tangent_evaluations,
+                           c.reinits,
+                           c.events,
+                           c.indefinite,
+                           c.projected,
+                           c.unconverged,
+                           s.symbolic,
+                           s.orderings,
+                           s.factorisations,
+                           s.solves,
+                           s.iterations,
+                           s.near,
+                           s.residuals,
+                           s.refreshes,
+                           run.result.periods,
+                           run.result.ticks,
+                           run.result.contact_queries,
+                           run.result.limited_ticks,
+                           run.result.frozen_fallbacks})
+    values.insert(static_cast<double>(count));
+  for (const double time :
+       {c.force_s, c.tangent_s, s.symbolic_s, s.factor_s, s.solve_s, run.result.time, run.result.cpu_s,
+        run.result.wall_s, run.result.query_s, run.result.linearise_s, run.result.tool_s})
+    values.insert(time);
+  EXPECT_EQ(values.size(), 36u);
+  EXPECT_EQ(numbers_of(run.result).size(), values.size());
+  EXPECT_GE(*values.begin(), 1000.0) << "a member that is not visited";
+}
+
+TEST(Codec, NothingIsLostFromTheRunToTheTable) {
+  const Folder folder;
+  compare::PointRun run = distinct();
+  run.result.counters.solver.ordering = "METIS";
+  run.result.tunnelled = {3, 0, 7};
+  const std::map<std::string, double> all = numbers_of(run.result);
+
+  const compare::PointRun sent = compare::point_run_of(compare::bytes_of(run));
+  EXPECT_EQ(numbers_of(sent.result), all);
+  EXPECT_EQ(sent.result.counters.solver.ordering, "METIS");
+  EXPECT_EQ(sent.result.tunnelled, run.result.tunnelled);
+
+  const std::string database = (folder.path / "study.sqlite").string();
+  {
+    store::StudyRun row = compare::row_of(sent, 5.0);
+    row.key = "k";
+    store::StudyDb(database, compare::run_columns()).put(row);
+  }
+  const compare::PointRun kept =
+      compare::point_run_of(store::StudyDb(database, compare::run_columns()).runs("k").at(0));
+  EXPECT_EQ(numbers_of(kept.result), all);
+
+  compare::ComparePoint point;
+  point.status = kept.status;
+  point.result = kept.result;
+  compare::Comparison comparison;
+  comparison.scenes.emplace_back().points.push_back(point);
+  comparison.scenes[0].restarts.push_back(point);
+  compare::write(comparison, folder.path.string());
+  for (const char* file : {"compare.csv", "restarts.csv"}) {
+    const store::CsvTable table = store::read_csv((folder.path / file).string());
+    ASSERT_EQ(table.rows.size(), 1u) << file;
+    for (const auto& [name, value] : all) EXPECT_EQ(table.numbers(name).at(0), value) << file << ": " << name;
+  }
+}
+
+TEST(Codec, ASummaryHoldsEveryNumberOfARun) {
+  const loop::World world;
+  const compare::PointRun run = distinct();
+  const store::Summary summary = loop::summarise(world, run.result, 0.0);
+  std::map<std::string, double> found;
+  for (const store::SummarySection& section : summary.sections)
+    if (section.name == "counts" || section.name == "timings")
+      for (const auto& [name, value] : section.values)
+        found[name] = std::holds_alternative<long long>(value)
+                          ? static_cast<double>(std::get<long long>(value))
+                          : std::get<double>(value);
+  EXPECT_EQ(found.erase("assemble_s"), 1u);
+  EXPECT_EQ(found, numbers_of(run.result));
+}
+
+TEST(Codec, SumsAndDifferencesHaveEveryCounter) {
+  const dynamics::StepperCounters c = distinct().result.counters;
+  dynamics::SolverCounters twice = c.solver;
+  twice += c.solver;
+  dynamics::visit_counters(
+      [](const char* name, const auto& two, const auto& one) { EXPECT_EQ(two, 2 * one) << name; }, twice,
+      c.solver);
+  const dynamics::StepperCounters none = c - c;
+  dynamics::visit_counters([](const char* name, const auto& value) { EXPECT_EQ(value, 0) << name; }, none);
+}
+
+}  // namespace
