@@ -42,7 +42,7 @@ class OdeProblem {
   virtual double gamma() const = 0;  ///< of the factor; 0 without one
   /// Asks for a positive semi-definite tangent from now on, where there is one (true), or for the true one
   /// (false).
-  virtual void set_definite(bool) {}
+  virtual void project_to_psd(bool) {}
   /// (I - gamma J) d = r.  d may not be r.
   virtual dynamics::SolveStatus solve(const double* y, const double* r, double* d) = 0;
 

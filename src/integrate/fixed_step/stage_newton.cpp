@@ -49,7 +49,7 @@ NewtonResult StageNewton::solve(const Stage& stage, const StateView& from, VecX&
   for (int dof : system_.driven_dofs()) a[dof] = 0.0;
   NewtonResult second;
   {
-    const DefiniteTangents definite(system_);
+    const ProjectedTangents projected(system_);
     second = iterate(kDefiniteIterations, true);
   }
   forget();  // the next step wants the true tangent

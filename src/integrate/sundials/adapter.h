@@ -96,7 +96,7 @@ namespace sun __attribute__((visibility("hidden"))) {
     int setup() override;
     int solve(N_Vector x, N_Vector b) override;
     N_Vector iterate() const override { return newton_state(); }
-    void set_definite(bool on) override { problem_->set_definite(on); }
+    void project_to_psd(bool on) override { problem_->project_to_psd(on); }
     virtual dynamics::SolveStatus solve_newton(const double* y, const double* r, double* d);
     /// Newton's iteration with our own test of convergence; made with the memory, freed by the base.
     SUNNonlinearSolver make_newton();

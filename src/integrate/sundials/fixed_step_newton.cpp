@@ -108,9 +108,9 @@ int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double toleran
   iterations_ = result.iterations;
   if (result.status != StepStatus::kOk && flag_ >= 0) {
     x = first;
-    hook_.set_definite(true);
+    hook_.project_to_psd(true);
     result = newton_.solve(*this, x, kDefiniteIterations, DampedNewton::Way::kFresh, false);
-    hook_.set_definite(false);
+    hook_.project_to_psd(false);
     usable_ = false;  // the next solve wants the true tangent
     iterations_ += result.iterations;
   }

@@ -22,7 +22,7 @@ class RowPacking {
   /// Where the k-th block of all rows, one after the other, has its place; and whether it is the transposed
   /// one that is there.
   std::size_t place(std::size_t block) const { return static_cast<std::size_t>(place_[block]) / 2; }
-  bool turned(std::size_t block) const { return place_[block] % 2 != 0; }
+  bool transposed(std::size_t block) const { return place_[block] % 2 != 0; }
   /// Entry (r, c) of it.
   float entry(std::size_t block, int r, int c) const {
     const std::size_t at = place(block) / kLanesOfGroup, own = static_cast<std::size_t>(groups_);
@@ -39,7 +39,7 @@ class RowPacking {
     float number[kLanesOfGroup];
   };
   std::size_t line(std::size_t step, std::size_t block, int r, int c) const {
-    return 9 * step + static_cast<std::size_t>(turned(block) ? 3 * r + c : 3 * c + r);
+    return 9 * step + static_cast<std::size_t>(transposed(block) ? 3 * r + c : 3 * c + r);
   }
   struct Row;
   void add_group(const Row* rows, int count);

@@ -6,8 +6,8 @@ namespace palpate::linear {
 ///
 /// A correction d = Ao^-1 r by the matrix Ao of an earlier step, where A would be right, leaves
 ///     r - A d = (Ao - A) d,   an error e = A^-1 (Ao - A) d,   |e|_A = rho |d|_A.
-/// Ao - A grows with what bodies turned and strained since, and rho with it: a step of the matrix's age adds
-/// to it what the one before did, for a motion that goes on as it is (1e-3 to 6e-3 in steps of 1 ms on a
+/// Ao - A grows with what bodies transposed and strained since, and rho with it: a step of the matrix's age
+/// adds to it what the one before did, for a motion that goes on as it is (1e-3 to 6e-3 in steps of 1 ms on a
 /// swinging beam of 3,700 nodes, E = 1 MPa, 5e-2 in steps of 10 ms).  d is what the solutions before did not
 /// foresee, 1e-2 or less of the solution where a motion is smooth.  So e is often far below what is asked.
 ///
@@ -16,12 +16,12 @@ namespace palpate::linear {
 /// while corrections are of the size that they were of; in every other case it is looked at again, and what
 /// is seen of it is taken off. A step for which it would be too large has a matrix of its own.  All this is
 /// counted in steps and residuals, not in seconds: results do not depend on the machine's mood.
-class MatrixAge {
+class LaggedMatrixPolicy {
  public:
   /// Part of a tolerance that may be left to an error which is estimated and not seen.
   static constexpr double kUnseen = 0.25;
 
-  explicit MatrixAge(double rtol) : rtol_(rtol) {}
+  explicit LaggedMatrixPolicy(double rtol) : rtol_(rtol) {}
 
   /// Whether a next step needs no matrix of its own, as far as is known; where nothing is, it is worth a try.
   /// Begins that step.
