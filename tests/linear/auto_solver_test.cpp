@@ -31,7 +31,7 @@ TEST(Auto, ReadsTheStiffnessNumberFromTheMatrix) {
       own += block[0] + block[4] + block[8];
       mass += 3.0 * beam.masses[i];
     }
-    EXPECT_NEAR(integrate::squared_courant_number(A.body), own / mass, 0.1 * own / mass);
+    EXPECT_NEAR(linear::squared_courant_number(A.body), own / mass, 0.1 * own / mass);
   }
 }
 
@@ -66,8 +66,8 @@ class AutoOnZeroRowSum : public testing::Test {
     BorderedMatrix A;
     VecX b;
     of.at(0.4, h, A, b);
-    return integrate::measured_choice(static_cast<double>(of.masses.size()),
-                                      integrate::squared_courant_number(A.body), kRtol);
+    return linear::measured_choice(static_cast<double>(of.masses.size()),
+                                      linear::squared_courant_number(A.body), kRtol);
   }
   void solve(double h) { solve(beam, h); }
   void solve(BentBeam& of, double h) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 #include "bench/fem/beam.h"
 #include "bench/fem/peak_memory.h"
@@ -89,7 +90,7 @@ class CheckedSolver final : public LinearSolver, public MixedPrecisionSolver {
 
  private:
   template <class Work>
-  auto timed(Work&& work) {
+  std::invoke_result_t<Work> timed(Work&& work) {
     const double start = thread_cpu_seconds();
     const auto status = work();
     cpu_s += thread_cpu_seconds() - start;
@@ -257,7 +258,7 @@ void set_limits(FemBenchRow& row, const MachineLimits& limits) {
                           row.one_pass,
                           row.near > 0.5};
   const StepWork work = work_of(counts);
-  row.scaled_ms = row.step_ms * limits.large_copy_gb_s / reference_bandwidth_gb_s(limits.threads);
+  row.scaled_ms = row.step_ms * limits.large_copy_gb_s / limits.reference_copy_gb_s;
   row.force_limit_ms = work.force.limit_ms(limits, work.working_set);
   row.matrix_limit_ms = work.matrix.limit_ms(limits, work.working_set);
   row.factor_limit_ms = work.factor.limit_ms(limits, work.working_set);
@@ -309,7 +310,10 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
         report.elements.push_back(timing);
       }
     }
-  for (const int threads : options.threads) report.limits.push_back(measure_limits(threads));
+  for (const int threads : options.threads) {
+    report.limits.push_back(measure_limits(threads));
+    report.limits.back().reference_copy_gb_s = options.published.reference_bandwidth_gb_s(threads);
+  }
   for (FemBenchRow& row : report.rows)
     for (const MachineLimits& limits : report.limits)
       if (limits.threads == row.threads) set_limits(row, limits);

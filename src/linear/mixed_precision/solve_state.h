@@ -7,8 +7,8 @@
 
 namespace palpate::linear {
 
-/// One right-hand side of the matrix that a SingleMatrix holds, on its way to a solution: the right-hand side,
-/// the initial guess, the iteration's correction and their sum, in the copy's order.  SingleSolve and
+/// One right-hand side of the matrix that a SingleMatrix holds, on its way to a solution: the right-hand
+/// side, the initial guess, the iteration's correction and their sum, in the copy's order.  SingleSolve and
 /// Refinement drive it.
 class SolveState {
  public:
@@ -47,9 +47,9 @@ class SolveState {
   dynamics::SolverCounters& counters;
   ProjectedGuess guess;
   SingleIteration iteration;
-  Doubles b, x;               ///< x: where it is `accumulated`; else guess and correction make the solution
+  Doubles b, x;  ///< x: where it is `accumulated`; else guess and correction make the solution
   bool accumulated = false;
-  double size = 0.0;          ///< the iteration's residual times this is b - A x
+  double size = 0.0;  ///< the iteration's residual times this is b - A x
   /// Of the last solution that is remembered, the part that the guess did not foresee, over the whole, in the
   /// energy norm.
   double correction = 0.0;
