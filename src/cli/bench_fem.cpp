@@ -77,14 +77,14 @@ void print_steps(const FemBenchReport& report) {
       "one linearly implicit step, median over a motion with large rotation\n"
       "  *: one pass over the elements for forces, product and matrix; scaled: step x measured copy "
       "bandwidth / that of the reference machine;\n"
-      "  near: steps solved by the matrix of an earlier one, and by what that leaves of their own equations, "
-      "which is timed as force;\n"
+      "  lagged: steps solved with the matrix of an earlier one, by iterative refinement; the residuals of "
+      "their own equations are timed as force;\n"
       "  error: of the velocity change against a direct solution, largest of the checks, in the norms of "
       "energy and of mass\n\n{}\n",
       report::format_table(
-          {"size",   "nodes",    "E [Pa]", "h [ms]",    "rtol", "solver",    "thr", "force",
-           "matrix", "factor",   "solve",  "step [ms]", "mean", "least",     "CPU", "its solver",
-           "scaled", "near [%]", "iter",   "error",     "mass", "turn [rad]"},
+          {"size",   "nodes",      "E [Pa]", "h [ms]",    "rtol", "solver",        "thr", "force",
+           "matrix", "factor",     "solve",  "step [ms]", "mean", "least",         "CPU", "its solver",
+           "scaled", "lagged [%]", "iter",   "error",     "mass", "rotation [rad]"},
           rows));
 }
 

@@ -16,7 +16,7 @@ TEST(EnergyBound, LiesAboveTheErrorAndCloseToIt) {
   VecX lambda(n);
   for (int i = 0; i < n; ++i) lambda[i] = std::pow(10.0, -2.0 + 2.0 * i / (n - 1));  // 0.01 to 1
   const VecX exact = VecX::LinSpaced(n, 1.0, 2.0), b = lambda.cwiseProduct(exact);
-  integrate::EnergyBound bound;
+  linear::EnergyBound bound;
   int above = 0, checked = 0;
   double worst = 0.0;
   for (int solve = 0; solve < 3; ++solve) {  // the first teaches it the spectrum

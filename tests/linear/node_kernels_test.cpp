@@ -33,29 +33,29 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   std::vector<int> column;
   for (const int slot : source) column.push_back(A.body.columns()[static_cast<std::size_t>(slot)]);
   std::vector<int> row_start(A.body.row_start().begin(), A.body.row_start().end());
-  integrate::NodeOrder order = integrate::cluster_nodes(A.body, 3, 3);
+  linear::NodeOrder order = linear::cluster_nodes(A.body, 3, 3);
   // parts of nodes as they come: many blocks between parts
   for (std::size_t i = 0; i < n; ++i) order.node[i] = static_cast<int>(i);
-  integrate::RowPacking packing;
+  linear::RowPacking packing;
   packing.analyse(order, row_start, column);
-  std::vector<double> v(4 * n + integrate::kVectorTail), Av(v);
+  std::vector<double> v(4 * n + linear::kVectorTail), Av(v);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t a = 0; a < 3; ++a) v[4 * i + a] = b[static_cast<Eigen::Index>(3 * i + a)];
   VecX exact;
   A.multiply(b, exact);
   for (int limit = 0; limit <= 2; ++limit) {
-    const integrate::NodeKernels& k = integrate::node_kernels(limit);
-    std::vector<float> values(9 * (source.size() + 1) + integrate::kBlockTail),
-        p(4 * n + integrate::kVectorTail), q(p),
-        inverse(static_cast<std::size_t>(integrate::inverse_place(static_cast<int>(n) + 3)));
-    const integrate::DoubleBlocks D{row_start.data(), column.data(), source.data(), A.body.values().data(),
+    const linear::NodeKernels& k = linear::node_kernels(limit);
+    std::vector<float> values(9 * (source.size() + 1) + linear::kBlockTail),
+        p(4 * n + linear::kVectorTail), q(p),
+        inverse(static_cast<std::size_t>(linear::inverse_place(static_cast<int>(n) + 3)));
+    const linear::DoubleBlocks D{row_start.data(), column.data(), source.data(), A.body.values().data(),
                                     A.body.slot_count() - 1};
     ASSERT_TRUE(k.convert(D, 1.0, values.data(), 0, static_cast<int>(n)));
     k.multiply_double(D, v.data(), Av.data(), 0, static_cast<int>(n));
     for (std::size_t i = 0; i < v.size(); ++i) p[i] = static_cast<float>(v[i]);
-    std::vector<int> offset(packing.places() + integrate::kLanesOfGroup * integrate::kStepsAhead,
+    std::vector<int> offset(packing.places() + linear::kLanesOfGroup * linear::kStepsAhead,
                             9 * static_cast<int>(source.size()));
-    std::vector<std::uint16_t> transposed(packing.places() / integrate::kLanesOfGroup, 0);
+    std::vector<std::uint16_t> transposed(packing.places() / linear::kLanesOfGroup, 0);
     for (std::size_t s = 0; s < source.size(); ++s)
       if (!packing.transposed(s)) offset[packing.place(s)] = 9 * static_cast<int>(s);
     double pq = 0.0;
@@ -76,8 +76,8 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
         Mat3 J;
         for (int c = 0; c < 3; ++c)
           for (int r = 0; r < 3; ++r)
-            J(r, c) = inverse[static_cast<std::size_t>(integrate::inverse_place(static_cast<int>(i)) +
-                                                       (r == c ? r : integrate::kToOffDiagonal + 3 - r - c))];
+            J(r, c) = inverse[static_cast<std::size_t>(linear::inverse_place(static_cast<int>(i)) +
+                                                       (r == c ? r : linear::kToOffDiagonal + 3 - r - c))];
         most = std::max(most, (own * J - Mat3::Identity()).norm());
       }
       return most;
@@ -95,7 +95,7 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     EXPECT_LT(off_identity(false), 1e-5) << k.name;
 
     // Zero row sums: what is missing in a row's sum is its mass.  Blocks come transposed and as they are.
-    std::vector<double> mass(4 * n + integrate::kVectorTail);
+    std::vector<double> mass(4 * n + linear::kVectorTail);
     std::vector<float> mass_single(mass.size());
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t a = 0; a < 3; ++a) {
@@ -116,10 +116,10 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
                   1)
         continue;
       Eigen::Map<Eigen::Matrix3f>(values.data() + 9 * s).transposeInPlace();
-      transposed[at / integrate::kLanesOfGroup] = static_cast<std::uint16_t>(
-          transposed[at / integrate::kLanesOfGroup] | 1u << at % integrate::kLanesOfGroup);
+      transposed[at / linear::kLanesOfGroup] = static_cast<std::uint16_t>(
+          transposed[at / linear::kLanesOfGroup] | 1u << at % linear::kLanesOfGroup);
     }
-    std::vector<float> sums(8 * n + integrate::kVectorTail), Vs[5], AVs[5];
+    std::vector<float> sums(8 * n + linear::kVectorTail), Vs[5], AVs[5];
     const float* V[5] = {};
     float* AV[5] = {};
     for (int c = 0; c < 5; ++c) {
@@ -133,15 +133,15 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     std::fill(Av.begin(), Av.end(), 0.0);
     double trace = 0.0, all_traces = 0.0;
     for (std::size_t part = 0; part < 3; ++part) {
-      const integrate::PackedRows rows = packing.rows(part, mass_single.data());
+      const linear::PackedRows rows = packing.rows(part, mass_single.data());
       ASSERT_EQ(k.complete(rows, {values.data(), offset.data(), transposed.data()}, sums.data(),
                            inverse.data(), &trace, static_cast<int>(part) + 3, V, AV),
-                integrate::RowStatus::kOk);
+                linear::RowStatus::kOk);
       all_traces += trace;
     }
     pq = 0.0;
     for (std::size_t part = 0; part < 3; ++part) {
-      const integrate::PackedRows rows = packing.rows(part, mass_single.data());
+      const linear::PackedRows rows = packing.rows(part, mass_single.data());
       k.multiply_zero_row_sum(rows, mass.data(), 1.0, v.data(), Av.data());
       pq += k.product(rows, p.data(), q.data());
     }
@@ -186,7 +186,7 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
 // loops.
 TEST(NodeKernels, VectorsOfAStartAreThoseOfPlainSums) {
   constexpr int kNodes = 37, kFirst = 3, kLast = 36, kCount = 3,
-                kNumbers = 4 * kNodes + integrate::kVectorTail;
+                kNumbers = 4 * kNodes + linear::kVectorTail;
   std::mt19937 random(7);
   std::uniform_real_distribution<float> number(-1.0f, 1.0f);
   const auto field = [&](auto zero) {
@@ -209,9 +209,9 @@ TEST(NodeKernels, VectorsOfAStartAreThoseOfPlainSums) {
   for (int k = 0; k < kNodes; ++k) node[static_cast<std::size_t>(k)] = (5 * k + 2) % kNodes;
   constexpr std::size_t kBegin = 4 * kFirst, kEnd = 4 * kLast;
   for (int limit = 0; limit <= 2; ++limit) {
-    const integrate::NodeKernels& k = integrate::node_kernels(limit);
+    const linear::NodeKernels& k = linear::node_kernels(limit);
     SCOPED_TRACE(k.name);
-    double sums[integrate::kMostSums] = {}, want[10] = {};
+    double sums[linear::kMostSums] = {}, want[10] = {};
     k.gram(kCount, y, at_V, at_AV, b.data(), kFirst, kLast, sums);
     for (std::size_t i = kBegin; i < kEnd; ++i) {
       int at = 0;

@@ -20,7 +20,7 @@ TEST(NodeOrder, CutsAGraphIntoEqualPartsThatHangTogether) {
   beam.at(0.0, 1e-2, A, b);
   const int n = A.body.block_rows();
   for (const int clusters : {1, 2, 7, 20}) {
-    const integrate::NodeOrder order = integrate::cluster_nodes(A.body, clusters);
+    const linear::NodeOrder order = linear::cluster_nodes(A.body, clusters);
     ASSERT_EQ(order.clusters(), clusters);
     std::vector<int> seen(static_cast<std::size_t>(n), 0);
     for (const int i : order.node) ++seen[static_cast<std::size_t>(i)];
@@ -29,14 +29,14 @@ TEST(NodeOrder, CutsAGraphIntoEqualPartsThatHangTogether) {
       EXPECT_NEAR(order.start[static_cast<std::size_t>(c) + 1] - order.start[static_cast<std::size_t>(c)],
                   n / clusters, 5);
     EXPECT_EQ(order.parts(), 1);
-    const integrate::NodeOrder parted = integrate::cluster_nodes(A.body, clusters, 4);
+    const linear::NodeOrder parted = linear::cluster_nodes(A.body, clusters, 4);
     EXPECT_EQ(parted.clusters(), clusters);
     EXPECT_EQ(parted.parts(), std::min(clusters, 4));
     EXPECT_EQ(parted.first_node(static_cast<std::size_t>(parted.parts())), n);
     for (std::size_t p = 0; p < static_cast<std::size_t>(parted.parts()); ++p)
       EXPECT_NEAR(parted.first_node(p + 1) - parted.first_node(p), n / parted.parts(), 2);
   }
-  EXPECT_EQ(integrate::cluster_nodes(A.body, 10 * n).clusters(), n) << "no more clusters than nodes";
+  EXPECT_EQ(linear::cluster_nodes(A.body, 10 * n).clusters(), n) << "no more clusters than nodes";
 }
 
 // Every block has a place of its own, or shares its mirror image's where both nodes are of one part; little
@@ -46,7 +46,7 @@ TEST(RowPacking, TakesEveryBlockOnce) {
   const BlockSparse& pattern = beam.pattern();
   const std::size_t n = static_cast<std::size_t>(pattern.block_rows());
   for (const int parts : {1, 2, 5}) {
-    const integrate::NodeOrder order = integrate::cluster_nodes(pattern, parts, parts);
+    const linear::NodeOrder order = linear::cluster_nodes(pattern, parts, parts);
     std::vector<int> place(n), row_start(1, 0), column, part(n);
     for (std::size_t k = 0; k < n; ++k) place[static_cast<std::size_t>(order.node[k])] = static_cast<int>(k);
     for (std::size_t p = 0; p < static_cast<std::size_t>(parts); ++p)
@@ -62,7 +62,7 @@ TEST(RowPacking, TakesEveryBlockOnce) {
       std::sort(column.begin() + static_cast<std::ptrdiff_t>(first), column.end());
       row_start.push_back(static_cast<int>(column.size()));
     }
-    integrate::RowPacking packing;
+    linear::RowPacking packing;
     packing.analyse(order, row_start, column);
     std::vector<int> taken(packing.places(), 0);
     std::size_t blocks = 0;
@@ -70,9 +70,9 @@ TEST(RowPacking, TakesEveryBlockOnce) {
       for (auto s = static_cast<std::size_t>(row_start[i]); s < static_cast<std::size_t>(row_start[i + 1]);
            ++s) {
         const auto j = static_cast<std::size_t>(column[s]);
-        const integrate::PackedRows rows =
+        const linear::PackedRows rows =
             packing.rows(static_cast<std::size_t>(part[packing.transposed(s) ? j : i]), nullptr);
-        const std::size_t own = integrate::kLanesOfGroup * static_cast<std::size_t>(rows.groups);
+        const std::size_t own = linear::kLanesOfGroup * static_cast<std::size_t>(rows.groups);
         EXPECT_EQ(packing.place(s) < own, i == j) << "own blocks first";
         EXPECT_EQ(i == j ? rows.row[packing.place(s)] : rows.column[packing.place(s) - own],
                   static_cast<int>(4 * (packing.transposed(s) ? i : j)));

@@ -65,11 +65,11 @@ struct SpringBlock {
 
 /// The solver's parts around one matrix.
 struct Preconditioner {
-  const integrate::NodeKernels& kernels = integrate::node_kernels();
-  integrate::ClusterTeam team;
-  integrate::SingleMatrix matrix{kernels, team};
-  integrate::RigidModeCoarseSpace clusters;
-  integrate::SingleIteration iteration{kernels, team, matrix, clusters};
+  const linear::NodeKernels& kernels = linear::node_kernels();
+  linear::ClusterTeam team;
+  linear::SingleMatrix matrix{kernels, team};
+  linear::RigidModeCoarseSpace clusters;
+  linear::SingleIteration iteration{kernels, team, matrix, clusters};
 
   Preconditioner(const SpringBlock& block, int count, int parts, int pieces, int threads = 1,
                  bool with_positions = true)
@@ -92,7 +92,7 @@ struct Preconditioner {
 
 /// Rigid motions of runs of nodes, a unit of length as the scale of turns: a space has the same projection in
 /// any units.
-MatX rigid_motions(const SpringBlock& block, const integrate::NodeOrder& order,
+MatX rigid_motions(const SpringBlock& block, const linear::NodeOrder& order,
                    const std::vector<int>& start) {
   MatX Z = MatX::Zero(3 * block.nodes(), 6 * static_cast<Eigen::Index>(start.size() - 1));
   for (std::size_t c = 0; c + 1 < start.size(); ++c)
@@ -109,7 +109,7 @@ MatX rigid_motions(const SpringBlock& block, const integrate::NodeOrder& order,
 }
 
 /// J^-1 + Y D^-1 Y^T + Z E^-1 Z^T, as rigid_mode_coarse_space.h writes it.
-MatX by_definition(const SpringBlock& block, const integrate::NodeOrder& order, bool with_pieces) {
+MatX by_definition(const SpringBlock& block, const linear::NodeOrder& order, bool with_pieces) {
   const MatX A = block.dense(), Z = rigid_motions(block, order, order.start),
              Y = rigid_motions(block, order, order.piece_start);
   MatX P = Z * (Z.transpose() * A * Z).inverse() * Z.transpose();
@@ -185,7 +185,7 @@ TEST(RigidModeCoarseSpace, PiecesBoundTheConditionWhereClustersAreLarge) {
 TEST(NodeOrder, CutsClustersIntoPieces) {
   const SpringBlock block(15, 4, 1.0);
   for (const auto& [clusters, parts, pieces] : {std::tuple{7, 3, 20}, {4, 4, 4}, {5, 1, 0}}) {
-    const integrate::NodeOrder order = integrate::cluster_nodes(block.A.body, clusters, parts, pieces);
+    const linear::NodeOrder order = linear::cluster_nodes(block.A.body, clusters, parts, pieces);
     EXPECT_EQ(order.clusters(), clusters);
     EXPECT_EQ(order.pieces(), std::clamp(pieces, clusters, block.nodes()));
     ASSERT_EQ(order.piece.size(), static_cast<std::size_t>(clusters) + 1);
@@ -203,7 +203,7 @@ TEST(NodeOrder, CutsClustersIntoPieces) {
     for (int i = 0; i < block.nodes(); ++i) ASSERT_EQ(seen[static_cast<std::size_t>(i)], i);
   }
   // a cluster has no more pieces than nodes
-  const integrate::NodeOrder finest = integrate::cluster_nodes(block.A.body, 3, 2, 10 * block.nodes());
+  const linear::NodeOrder finest = linear::cluster_nodes(block.A.body, 3, 2, 10 * block.nodes());
   EXPECT_LE(finest.pieces(), block.nodes());
   for (std::size_t p = 0; p + 1 < finest.piece_start.size(); ++p)
     EXPECT_LT(finest.piece_start[p], finest.piece_start[p + 1]) << "none is empty";

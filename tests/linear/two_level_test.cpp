@@ -58,10 +58,10 @@ TEST(TwoLevel, ServesWholeAndZeroRowSumMatricesInTurn) {
       beam.at(0.5, h, A, b);
       EXPECT_EQ(solver.factor(A), SolveStatus::kOk);
     } else {
-      ZeroRowSumMatrix* room = solver.step_matrix(beam.pattern());
+      ZeroRowSumMatrix* room = mixed(solver).step_matrix(beam.pattern());
       if (!room) throw std::runtime_error("no room");
       beam.at(0.5, h, *room, b);
-      EXPECT_EQ(solver.factor_step_matrix(), StepMatrixUse::kSolve);
+      EXPECT_EQ(mixed(solver).factor_step_matrix(), StepMatrixUse::kSolve);
     }
     MatX B = MatX::Zero(b.size(), 2), X;  // several columns start from nothing
     B.col(0) = b;
