@@ -9,8 +9,7 @@ void StepAssembly::find_parts() {
   parts_.clear();
   all_can_ = true;
   for (const auto& term : system_.terms()) {
-    FusedStepTerm* fused =
-        term->traits().zero_tangent ? nullptr : dynamic_cast<FusedStepTerm*>(term.get());
+    FusedStepTerm* fused = term->traits().zero_tangent ? nullptr : dynamic_cast<FusedStepTerm*>(term.get());
     all_can_ = all_can_ && (fused || term->traits().zero_tangent);
     parts_.push_back({term.get(), fused});
   }
@@ -22,9 +21,9 @@ bool StepAssembly::pairs_are_disjoint() const {
   std::size_t pairs = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const NodePairs& own = system_.node_pairs(i);
-    pairs += own.size() - static_cast<std::size_t>(std::count_if(own.begin(), own.end(), [](const auto& pair) {
-               return pair.first == pair.second;
-             }));
+    pairs +=
+        own.size() - static_cast<std::size_t>(std::count_if(
+                         own.begin(), own.end(), [](const auto& pair) { return pair.first == pair.second; }));
   }
   // fewer in all: some are shared; more: a mass has some
   const BlockSparse& pattern = system_.pattern();

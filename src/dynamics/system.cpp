@@ -179,7 +179,7 @@ void System::solve_mass(const StateView& state, VecX& r, VecX& a) {
     a = inverse_nodal_mass_.cwiseProduct(r);
     return;
   }
-  if (m > 0) assemble_mass(state, mass_);  // a rigid block's mass turns with it
+  if (m > 0) assemble_mass(state, mass_);  // a rigid block's mass rotates with it
   if (nodal_mass_diagonal_) {
     a.head(n) = inverse_nodal_mass_.cwiseProduct(r.head(n));
     a.tail(m) = mass_.corner.ldlt().solve(r.tail(m));

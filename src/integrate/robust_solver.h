@@ -3,8 +3,8 @@
 
 namespace palpate::integrate {
 
-/// A linear solver that solves every matrix that has an inverse: what the chosen solver does not take, because
-/// the matrix is unsymmetric or indefinite or its iteration does not converge, is solved directly.
+/// A linear solver that solves every matrix that has an inverse: what the chosen solver does not take,
+/// because the matrix is unsymmetric or indefinite or its iteration does not converge, is solved directly.
 class RobustSolver final : public dynamics::LinearSolver {
  public:
   explicit RobustSolver(std::unique_ptr<dynamics::LinearSolver> chosen) : solvers_(std::move(chosen)) {}

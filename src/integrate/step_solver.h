@@ -99,6 +99,8 @@ class StepSolver {
   /// solved with.
   void count_indefinite() { ++indefinite_count_; }
   void count_projected() { ++projected_count_; }
+  /// Sum over the solvers.
+  const dynamics::SolverCounters& counters() const { return solvers_.counters(); }
   /// Writes what it counted, the solvers' own counts included.
   void report(dynamics::StepperCounters& counters) const;
 

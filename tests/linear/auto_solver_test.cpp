@@ -67,7 +67,7 @@ class AutoOnZeroRowSum : public testing::Test {
     VecX b;
     of.at(0.4, h, A, b);
     return linear::measured_choice(static_cast<double>(of.masses.size()),
-                                      linear::squared_courant_number(A.body), kRtol);
+                                   linear::squared_courant_number(A.body), kRtol);
   }
   void solve(double h) { solve(beam, h); }
   void solve(BentBeam& of, double h) {

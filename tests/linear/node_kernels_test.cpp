@@ -45,11 +45,10 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
   A.multiply(b, exact);
   for (int limit = 0; limit <= 2; ++limit) {
     const linear::NodeKernels& k = linear::node_kernels(limit);
-    std::vector<float> values(9 * (source.size() + 1) + linear::kBlockTail),
-        p(4 * n + linear::kVectorTail), q(p),
-        inverse(static_cast<std::size_t>(linear::inverse_place(static_cast<int>(n) + 3)));
+    std::vector<float> values(9 * (source.size() + 1) + linear::kBlockTail), p(4 * n + linear::kVectorTail),
+        q(p), inverse(static_cast<std::size_t>(linear::inverse_place(static_cast<int>(n) + 3)));
     const linear::DoubleBlocks D{row_start.data(), column.data(), source.data(), A.body.values().data(),
-                                    A.body.slot_count() - 1};
+                                 A.body.slot_count() - 1};
     ASSERT_TRUE(k.convert(D, 1.0, values.data(), 0, static_cast<int>(n)));
     k.multiply_double(D, v.data(), Av.data(), 0, static_cast<int>(n));
     for (std::size_t i = 0; i < v.size(); ++i) p[i] = static_cast<float>(v[i]);
@@ -185,8 +184,7 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
 // Against plain sums in double, on ranges that begin and end anywhere, of what has each instruction set's own
 // loops.
 TEST(NodeKernels, VectorsOfAStartAreThoseOfPlainSums) {
-  constexpr int kNodes = 37, kFirst = 3, kLast = 36, kCount = 3,
-                kNumbers = 4 * kNodes + linear::kVectorTail;
+  constexpr int kNodes = 37, kFirst = 3, kLast = 36, kCount = 3, kNumbers = 4 * kNodes + linear::kVectorTail;
   std::mt19937 random(7);
   std::uniform_real_distribution<float> number(-1.0f, 1.0f);
   const auto field = [&](auto zero) {

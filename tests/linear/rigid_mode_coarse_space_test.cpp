@@ -92,8 +92,7 @@ struct Preconditioner {
 
 /// Rigid motions of runs of nodes, a unit of length as the scale of turns: a space has the same projection in
 /// any units.
-MatX rigid_motions(const SpringBlock& block, const linear::NodeOrder& order,
-                   const std::vector<int>& start) {
+MatX rigid_motions(const SpringBlock& block, const linear::NodeOrder& order, const std::vector<int>& start) {
   MatX Z = MatX::Zero(3 * block.nodes(), 6 * static_cast<Eigen::Index>(start.size() - 1));
   for (std::size_t c = 0; c + 1 < start.size(); ++c)
     for (int k = start[c]; k < start[c + 1]; ++k) {

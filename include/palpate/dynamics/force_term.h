@@ -20,7 +20,7 @@ struct TermTraits {
   bool zero_tangent = false;  ///< its tangent is zero: a dead load
 };
 
-/// What a term has to say about a state that a step failed at: an element turned inside out.
+/// A term's diagnosis of a state that a step failed at: an inverted element.
 struct Finding {
   int element = -1;      ///< in the term's own numbering; -1: nothing found
   double measure = 0.0;  ///< det F of an element
@@ -62,7 +62,7 @@ class ForceTerm {
 
   /// Root functions for event location: g changes sign at an event (a gap closing).
   virtual int event_count() const { return 0; }
-  /// Grows whenever event_count() or what one of the functions stands for changed: a root finder then
+  /// Grows whenever event_count() or the meaning of one of the functions changed: a root finder then
   /// compares no old value with a new one.
   virtual std::uint64_t events_version() const { return 0; }
   virtual void events(const StateView&, double* /*g*/) {}

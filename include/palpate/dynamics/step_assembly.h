@@ -29,8 +29,8 @@ class StepAssembly {
  public:
   explicit StepAssembly(System& system) : system_(system) {}
 
-  /// Whether this state's step can be assembled so: every term takes part, no two of them couple the same pair
-  /// of nodes, the mass is lumped, no block is rigid.  Brings the system's pattern up to date.
+  /// Whether this state's step can be assembled so: every term takes part, no two of them couple the same
+  /// pair of nodes, the mass is lumped, no block is rigid.  Brings the system's pattern up to date.
   bool applies(const StateView& state);
   const BlockSparse& pattern() const { return system_.pattern(); }
   /// f = sum of force - K shift, and A = m_scale M + d_scale D + k_scale K with the driven directions held.

@@ -33,7 +33,7 @@ StepStatus LinearizedStep::solve(const Equations& e, VecX& du, dynamics::Stepper
   return solve_whole(e, du);
 }
 
-/// Of the equations, as a function of du.
+/// The residual of the equations as a function of du.
 class LinearizedStep::Residual final : public dynamics::ResidualFunction {
  public:
   Residual(LinearizedStep& of, const Equations& e) : of_(of), e_(e) {}

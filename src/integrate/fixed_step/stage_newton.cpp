@@ -116,7 +116,7 @@ SolveStatus StageNewton::refresh() {
   return status;
 }
 
-/// Of the increments of q and u that an increment d of the unknown makes.
+/// Weighted norm of the increments of q and u that an increment d of the unknown makes.
 double StageNewton::norm(const VecX& d) {
   const dynamics::Layout& layout = *from_->layout;
   dq_.resize(layout.q_size);

@@ -134,7 +134,7 @@ namespace sun __attribute__((visibility("hidden"))) {
     void fill_weights(N_Vector y, N_Vector w) const;
     bool finds_roots() const { return spec_.events == "root-finding"; }
     double weight_scale_ = 1.0;
-    Counts counted_;  ///< at the last look
+    Counts counted_;  ///< when they were last read
     long newton_before_ = 0;
     double last_correction_ = 0.0;  ///< weighted norm of the last Newton correction
     dynamics::StepFollower* follower_ = nullptr;

@@ -4,7 +4,7 @@
 namespace palpate::integrate {
 namespace sun __attribute__((visibility("hidden"))) {
 
-  /// What stands behind a SUNLinearSolver of ours.  Return values are SUNDIALS': 0 well, > 0 try a smaller
+  /// The functions behind a SUNLinearSolver of ours.  Return values are SUNDIALS': 0 well, > 0 try a smaller
   /// step, < 0 give up.
   class NewtonHook {
    public:

@@ -140,7 +140,8 @@ PALPATE_INLINE void scatter_subtract(double* field, const int* at, const Half3& 
 }
 #endif
 
-void multiply_zero_row_sum(const PackedRows& A, const double* mass, double unit, const double* v, double* Av) {
+void multiply_zero_row_sum(const PackedRows& A, const double* mass, double unit, const double* v,
+                           double* Av) {
   const std::int64_t begin = 4 * static_cast<std::int64_t>(A.first_node),
                      end = 4 * static_cast<std::int64_t>(A.last_node);
   for (std::int64_t k = begin; k < end; ++k) Av[k] = 0.0;

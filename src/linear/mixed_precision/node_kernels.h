@@ -68,7 +68,7 @@ struct NodeKernels {
   double (*product)(const PackedRows& A, const float* p, float* q);
   /// Brings blocks into their lanes
   void (*pack)(const PackedRows& A, const BlockSource& from);
-  /// The same of a zero-row-sum matrix, of which the diagonal blocks m - sum_j A_ij and their inverses are
+  /// Packs a zero-row-sum matrix, of which the diagonal blocks m - sum_j A_ij and their inverses are
   /// made. And AV = A V for `count` columns. sums: room for eight numbers a node.  trace: of all the diagonal
   /// blocks
   RowStatus (*complete)(const PackedRows& A, const BlockSource& from, float* sums, float* inverse,
@@ -89,7 +89,7 @@ struct NodeKernels {
   /// = z + b p
   void (*direction)(float a, float b, const float* z, const float* arm, const float* motion, float* d,
                     float* p, int first, int last);
-  /// The same where there is no direction yet: d = 0, p = z + (w + turn x arm)
+  /// The first direction, where there is none yet: d = 0, p = z + (w + turn x arm)
   void (*first_direction)(const float* z, const float* arm, const float* motion, float* d, float* p,
                           int first, int last);
   /// Rows [first, last) of w = E y; rows and y padded by zeros to `stride`, a multiple of 16

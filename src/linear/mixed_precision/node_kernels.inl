@@ -11,7 +11,7 @@ namespace PALPATE_SET {
 #define PALPATE_INLINE [[gnu::always_inline]] static inline
 #define PALPATE_INLINE_MEMBER [[gnu::always_inline]] inline
 
-// Each uses what stands above it.
+// Each uses those before it.
 // clang-format off
 #include "linear/mixed_precision/node_lanes.inl"
 #include "linear/mixed_precision/node_products.inl"

@@ -86,7 +86,7 @@ void Refinement::evaluate_residual(dynamics::ResidualFunction& equations, VecX& 
   residuals_s_ += wall_seconds() - start;
 }
 
-/// s_.b = what A leaves of x, and Ao x: the copy's own right-hand side.
+/// b = (b - A x) + Ao x: the right-hand side of the copy's system.
 ProjectedGuess::Start Refinement::begin_with_residual() {
   const int* node = s_.copy.order().node.data();
   s_.team.for_each([&](std::size_t part, int first, int last) {
@@ -101,8 +101,8 @@ ProjectedGuess::Start Refinement::begin_with_residual() {
 /// Corrects the error that comes of Ao not being A.  The residual with A is residual_, of which size r is
 /// what the iteration did not solve; the rest is (Ao - A) times the last correction.  A rough solve for that
 /// rest gives its size and most of itself.  The iteration's residual is then what both solves left.
-/// @param stale  its size over the solution's  @param open  in: what the iteration left open; out: with
-///   what is left of this
+/// @param stale  its size over the solution's  @param open  in: relative error that the iteration ended
+///   with; out: with the part of this that remains
 SolveStatus Refinement::correct_lag(double solution, double& stale, double& open) {
   const int* node = s_.copy.order().node.data();
   float* r = s_.iteration.residual().data();

@@ -28,8 +28,8 @@ Eigen::Matrix3f skew(const Eigen::Vector3f& a) {
   return m;
 }
 
-/// A direction that no node moves in (a cluster held whole, a turn without arms) stands alone; a tiny share
-/// of the diagonal covers rounding in the turn of a cluster whose nodes lie on a line.
+/// A direction that no node moves in (a cluster held whole, a rotation without arms) stands alone; a tiny
+/// share of the diagonal covers rounding in the rotation of a cluster whose nodes lie on a line.
 float regular(float own) { return own > 0.0f ? own * (1.0f + 1e-5f) : 1.0f; }
 
 }  // namespace

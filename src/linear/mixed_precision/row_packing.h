@@ -15,7 +15,7 @@ class RowPacking {
   /// @param row_start, column  of the matrix in the order of its nodes, each row's own block first
   void analyse(const NodeOrder& order, const std::vector<int>& row_start, const std::vector<int>& column);
 
-  /// Of one part.
+  /// The rows of one part.
   PackedRows rows(std::size_t part, const float* mass);
   /// Blocks that have room, those that fill up included.
   std::size_t places() const { return kLanesOfGroup * static_cast<std::size_t>(groups_ + steps_); }
@@ -29,7 +29,7 @@ class RowPacking {
     return (at < own ? own_[line(at, block, r, c)] : values_[line(at - own, block, r, c)])
         .number[place(block) % kLanesOfGroup];
   }
-  /// Of a row's own block.
+  /// The place of a row's own block.
   float& own_entry(std::size_t block, int r, int c) {
     return own_[line(place(block) / kLanesOfGroup, block, r, c)].number[place(block) % kLanesOfGroup];
   }

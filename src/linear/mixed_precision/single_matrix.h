@@ -30,7 +30,7 @@ class SingleMatrix {
   dynamics::SolveStatus take(const dynamics::BorderedMatrix& A, int count, Singles* from, Singles* to);
   /// Room for a zero-row-sum matrix of the pattern.  Its memory is set aside at the first call.
   dynamics::ZeroRowSumMatrix& room(const dynamics::BlockSparse& pattern);
-  /// The same of the matrix that was written there.  Held entries of `from` become zero.
+  /// take() of the matrix that was written there.  Held entries of `from` become zero.
   dynamics::SolveStatus take_step_matrix(int count, Singles* from, Singles* to);
   /// to[k] = scale A from[k], in single precision.
   void multiply(int count, const Singles* from, Singles* to);
@@ -53,7 +53,7 @@ class SingleMatrix {
   /// Entries of vectors, four a node, of which a zero-row-sum matrix says that each stands alone; none of a
   /// whole one.
   const std::vector<std::size_t>& held() const { return held_; }
-  /// Of those in a part: values[h] is what stood at held()[h] of v, where zero stands then.
+  /// Moves held entries of a part: values[h] becomes the entry held()[h] of v, and that entry zero.
   void take_held(std::size_t part, double* v, double* values) const;
 
  private:

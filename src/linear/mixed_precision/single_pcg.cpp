@@ -28,8 +28,8 @@ constexpr int kNodesOfCluster = 150, kMostClusters = 48;
 /// Nodes of its pieces.  The count of iterations hardly changes from 16 to 64, and with pieces it is with 48
 /// clusters what it is with 96 (beams of 32,400 and 99,238 nodes).
 constexpr int kNodesOfPiece = 32;
-/// Of a number in single precision, relative; and how many tolerances the bound below may come to for a body
-/// one element thick.
+/// Rounding of a number in single precision, relative; and how many tolerances the bound below may come to
+/// for a body one element thick.
 constexpr double kSingleRounding = 0x1p-24, kRoundingShare = 4.0;
 /// Nodes of a part, at most: its share of vectors and of the matrix fits a second-level cache, and few pairs
 /// of nodes are cut.  Parts come in fours, for threads to share; very small matrices have one.
@@ -44,7 +44,7 @@ int parts_of(int nodes) {
 ///     A d = r                single: the iteration
 ///     x += d, and again      until the error is small enough
 /// The search goes on across a new residual (the direction is made orthogonal to the last, p . A p_last = 0),
-/// so that nothing is lost by it.  Where the tolerance is a modest reduction of what the start left (1e-3),
+/// so that nothing is lost by it.  Where the tolerance is a modest reduction of the initial residual (1e-3),
 /// the first r is the last.
 ///
 /// A zero-row-sum matrix has no original: its off-diagonal blocks are in single precision from the start
@@ -52,7 +52,8 @@ int parts_of(int nodes) {
 ///     |x~ - x|_A <~ |A^-1/2 (A~ - A) A^-1/2| |x|_A.
 /// A~ - A is as indifferent to translations as K, so that of a wave of length l it takes e k (d/l)^2, e =
 /// 2^-24, with k the stiffness of a node against its neighbours at the distance d.  A itself takes m + h^2 k
-/// (d/l)^2 at least, but where the wave bends a body of thickness t, which to first order turns its parts, m
+/// (d/l)^2 at least, but where the wave bends a body of thickness t, which to first order rotates its parts,
+/// m
 /// + h^2 k (d/l)^4 (t/d)^2.  The ratio is greatest where both terms are equal, and then
 ///     e sqrt(s) d/(2 t),   s = 1 + h^2 k/m the squared Courant-type number (auto_solver.cpp);
 /// roundings of both signs take off more.  Bodies are several elements thick; where e sqrt(s) exceeds

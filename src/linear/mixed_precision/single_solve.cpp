@@ -9,9 +9,9 @@ namespace palpate::linear {
 using dynamics::SolveStatus;
 
 namespace {
-/// A solve that asks for no more than this reduction needs no look at the residual in double at its end.
+/// A solve that asks for no more than this reduction needs no residual check in double at its end.
 constexpr double kReductionUnchecked = 1e-3;
-/// Products of the start are in single precision: what rounding leaves of them, some 1e-7 of the solution in
+/// Products of the start are in single precision: their rounding error, some 1e-7 of the solution in
 /// the energy norm, is far below such a tolerance.
 constexpr double kTrustsSingleStart = 1e-5;
 constexpr int kResidualReplacements = 40;
@@ -68,7 +68,7 @@ SolveStatus SingleSolve::iterate() {
 
 SolveStatus SingleSolve::refine() {
   double rho = s_.iteration.precondition([&](int first, int last) { s_.set_residual(first, last); });
-  // Of a first solve the spectrum is not known: the residual's own norm goes ten times below what is asked.
+  // At a first solve the spectrum is not known: the residual's own norm goes ten times below what is asked.
   s_.iteration.set_floor(s_.iteration.first() ? 0.01 * s_.rtol * s_.rtol * rho * s_.unit() : HUGE_VAL);
   const double unchecked =
       s_.iteration.first() ? HUGE_VAL : kReductionUnchecked * kReductionUnchecked * rho * s_.unit();
@@ -100,7 +100,7 @@ SolveStatus SingleSolve::refine() {
   return SolveStatus::kNotConverged;
 }
 
-/// Of b - A x in double, at a price of about an iteration.
+/// The residual becomes b - A x in double, at the price of about an iteration.
 void SingleSolve::renew_residual() {
   s_.add_correction();
   s_.copy.multiply(s_.x, Ax_);
@@ -114,7 +114,7 @@ void SingleSolve::renew_residual() {
   });
 }
 
-/// No digit more can be had: the residual is what rounding of its own terms leaves.
+/// No further digit is possible: the residual is the rounding error of its own terms.
 bool SingleSolve::at_rounding() const {
   const auto norm = [](const Doubles& v) {
     return Eigen::Map<const VecX>(v.data(), static_cast<Eigen::Index>(v.size())).norm();

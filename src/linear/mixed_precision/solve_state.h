@@ -50,8 +50,8 @@ class SolveState {
   Doubles b, x;  ///< x: where it is `accumulated`; else guess and correction make the solution
   bool accumulated = false;
   double size = 0.0;  ///< the iteration's residual times this is b - A x
-  /// Of the last solution that is remembered, the part that the guess did not foresee, over the whole, in the
-  /// energy norm.
+  /// The part of the last remembered solution that the guess did not foresee, over the whole, in the energy
+  /// norm.
   double correction = 0.0;
   std::vector<double> largest;  ///< one a part
 
