@@ -12,6 +12,7 @@
 #include "palpate/report/plot.h"
 #include "palpate/report/table.h"
 #include "palpate/store/atomic_file.h"
+#include "places.h"
 #include "stop.h"
 
 namespace palpate::cli {
@@ -21,14 +22,17 @@ using bench::FemBenchReport;
 using bench::FemBenchRow;
 using Rows = std::vector<std::vector<std::string>>;
 
+bench::PublishedTimings published_timings() {
+  return bench::read_published_timings(shipped_file("published_timings.json"));
+}
+
 std::string ms(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-"; }
 
 void print_limits(const FemBenchReport& report) {
   Rows rows;
   for (const bench::MachineLimits& l : report.limits)
     rows.push_back({fmt::format("{}", l.threads), fmt::format("{:.1f}", l.small_copy_gb_s),
-                    fmt::format("{:.1f}", l.large_copy_gb_s),
-                    fmt::format("{:.1f}", bench::reference_bandwidth_gb_s(l.threads)),
+                    fmt::format("{:.1f}", l.large_copy_gb_s), ms(l.reference_copy_gb_s),
                     fmt::format("{:.0f}", l.gflop_s), fmt::format("{:.0f}", l.double_gflop_s)});
   fmt::print("what this machine can do, measured now\n{}\n",
              report::format_table(
@@ -73,14 +77,14 @@ void print_steps(const FemBenchReport& report) {
       "one linearly implicit step, median over a motion with large rotation\n"
       "  *: one pass over the elements for forces, product and matrix; scaled: step x measured copy "
       "bandwidth / that of the reference machine;\n"
-      "  near: steps solved by the matrix of an earlier one, and by what that leaves of their own equations, "
-      "which is timed as force;\n"
+      "  lagged: steps solved with the matrix of an earlier one, by iterative refinement; the residuals of "
+      "their own equations are timed as force;\n"
       "  error: of the velocity change against a direct solution, largest of the checks, in the norms of "
       "energy and of mass\n\n{}\n",
       report::format_table(
-          {"size",   "nodes",    "E [Pa]", "h [ms]",    "rtol", "solver",    "thr", "force",
-           "matrix", "factor",   "solve",  "step [ms]", "mean", "least",     "CPU", "its solver",
-           "scaled", "near [%]", "iter",   "error",     "mass", "turn [rad]"},
+          {"size",   "nodes",      "E [Pa]", "h [ms]",    "rtol", "solver",        "thr", "force",
+           "matrix", "factor",     "solve",  "step [ms]", "mean", "least",         "CPU", "its solver",
+           "scaled", "lagged [%]", "iter",   "error",     "mass", "rotation [rad]"},
           rows));
 }
 
@@ -203,11 +207,11 @@ void print_exponents(const FemBenchReport& report) {
       report::format_table({"kind", "force", "matrix", "factor", "solve", "step"}, rows), tetrahedra, blocks);
 }
 
-void print_peers(const FemBenchReport& report) {
+void print_published(const FemBenchReport& report, const bench::PublishedTimings& published) {
   std::set<std::string> sizes;
   for (const FemBenchRow& r : report.rows) sizes.insert(r.size);
   Rows rows;
-  for (const bench::PeerFigure& p : bench::peer_figures())
+  for (const bench::PublishedStepTime& p : published.step_times)
     if (sizes.contains(p.size)) rows.push_back({p.program, p.size, ms(p.ten_ms), ms(p.one_ms), p.tolerance});
   if (!rows.empty())
     fmt::print(
@@ -244,8 +248,11 @@ void write_accuracy(const std::vector<bench::AccuracyPoint>& points, const std::
 
 void bench_accuracy(const BenchArguments& arguments) {
   const std::string size = arguments.sizes.empty() ? "S" : arguments.sizes.front();
-  const std::vector<bench::AccuracyPoint> points =
+  const bench::PublishedTimings published = published_timings();
+  std::vector<bench::AccuracyPoint> points =
       bench::run_accuracy(size, [] { return static_cast<bool>(stop_flag()); });
+  for (const auto& [of_size, point] : published.accuracy)
+    if (of_size == size) points.push_back(point);
   Rows rows;
   for (const bench::AccuracyPoint& p : points)
     rows.push_back({p.program, p.step_s > 0.0 ? fmt::format("{:g}", 1e3 * p.step_s) : "-",
@@ -307,6 +314,7 @@ void bench_fem_sizes(const BenchArguments& arguments) {
   if (!arguments.youngs_moduli_pa.empty()) options.youngs_moduli_pa = arguments.youngs_moduli_pa;
   options.linear_solvers = arguments.linear_solvers;
   options.steps = arguments.steps;
+  options.published = published_timings();
   const FemBenchReport report = bench::run_fem_bench(options, [] { return static_cast<bool>(stop_flag()); });
   print_limits(report);
   print_steps(report);
@@ -314,7 +322,7 @@ void bench_fem_sizes(const BenchArguments& arguments) {
   print_elements(report);
   print_exponents(report);
   print_memory(report);
-  print_peers(report);
+  print_published(report, options.published);
   if (!arguments.folder.empty() && !report.rows.empty()) write_files(report, arguments.folder);
 }
 

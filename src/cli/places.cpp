@@ -11,8 +11,8 @@ namespace palpate::cli {
 namespace fs = std::filesystem;
 namespace {
 
-fs::path scene_folder() {
-  return fs::canonical("/proc/self/exe").parent_path().parent_path() / "share" / "palpate" / "scenes";
+fs::path share_folder() {
+  return fs::canonical("/proc/self/exe").parent_path().parent_path() / "share" / "palpate";
 }
 
 }  // namespace
@@ -20,11 +20,13 @@ fs::path scene_folder() {
 std::vector<std::string> shipped_scenes() {
   std::vector<std::string> out;
   std::error_code none;
-  for (const fs::directory_entry& entry : fs::directory_iterator(scene_folder(), none))
+  for (const fs::directory_entry& entry : fs::directory_iterator(share_folder() / "scenes", none))
     if (entry.path().extension() == ".toml") out.push_back(entry.path().string());
   std::sort(out.begin(), out.end());
   return out;
 }
+
+std::string shipped_file(const std::string& name) { return (share_folder() / name).string(); }
 
 std::string find_scene(const std::string& name_or_path) {
   if (fs::is_regular_file(name_or_path)) return name_or_path;

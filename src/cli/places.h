@@ -7,6 +7,9 @@ namespace palpate::cli {
 /// The scene files that come with the program, sorted: PREFIX/share/palpate/scenes beside PREFIX/bin/palpate.
 std::vector<std::string> shipped_scenes();
 
+/// A data file that comes with the program: PREFIX/share/palpate/NAME.  It need not exist.
+std::string shipped_file(const std::string& name);
+
 /// A scene by path, or by the name of one that comes with the program ("press-ball").
 /// @throws Error with the nearest known name
 std::string find_scene(const std::string& name_or_path);

@@ -21,8 +21,8 @@ Mat3 world_inertia(const Pose& pose, const Vec3& inertia) {
   return R * inertia.asDiagonal() * R.transpose();
 }
 
-// f = -w x I w with I = R I0 R^T.  By velocity: D = -df/dw = [w] I - [I w].  A turn e of the body takes I to
-// I + [e] I - I [e], so d(I w) = e x I w - I (e x w) = (I [w] - [I w]) e, and K = -df/de = [w] (I [w] - [I
+// f = -w x I w with I = R I0 R^T.  By velocity: D = -df/dw = [w] I - [I w].  A rotation e of the body takes I
+// to I + [e] I - I [e], so d(I w) = e x I w - I (e x w) = (I [w] - [I w]) e, and K = -df/de = [w] (I [w] - [I
 // w]).
 Mat6 gyroscopic_tangent(const RigidMotion& m, const Vec3& inertia, double k_scale, double d_scale) {
   Mat6 A = Mat6::Zero();

@@ -8,7 +8,11 @@
 
 namespace palpate::dynamics {
 
-void System::add(std::shared_ptr<ForceTerm> term) { terms_.push_back(std::move(term)); }
+void System::add(std::shared_ptr<ForceTerm> term) {
+  stored_tangents_.push_back(dynamic_cast<StoredTangentTerm*>(term.get()));
+  if (auto* projected = dynamic_cast<PsdProjectedTerm*>(term.get())) projected_terms_.push_back(projected);
+  terms_.push_back(std::move(term));
+}
 void System::add(std::shared_ptr<InertiaTerm> inertia) { inertias_.push_back(std::move(inertia)); }
 void System::add(std::shared_ptr<DrivenMotion> motion) {
   driven_.push_back({std::move(motion), -1, 0, {}, {}, {}, {}, {}, {}});
@@ -20,9 +24,9 @@ bool System::symmetric() const {
                      [](const auto& t) { return t->traits().symmetric_tangent; });
 }
 
-void System::set_definite(bool definite) {
-  definite_ = definite;
-  for (const auto& term : terms_) term->set_definite(definite);
+void System::project_to_psd(bool on) {
+  projects_to_psd_ = on;
+  for (PsdProjectedTerm* term : projected_terms_) term->project_to_psd(on);
 }
 
 int System::event_count() const {
@@ -91,8 +95,8 @@ void System::prepare(const StateView& state) {
     if (block->kind == BlockKind::kNodes && !inertia->diagonal()) nodal_mass_diagonal_ = false;
   }
   assemble_mass(state, mass_);
-  nodal_mass_.resize(layout.nodal_size);
-  inverse_nodal_mass_.resize(layout.nodal_size);
+  nodal_mass_.resize(nodal_mass_diagonal_ ? layout.nodal_size : 0);
+  inverse_nodal_mass_.resize(nodal_mass_.size());
   if (nodal_mass_diagonal_) {
     for (int i = 0; i < layout.nodal_size; ++i) {
       const double m = mass_.body.block(mass_.body.diagonal(i / 3))[4 * (i % 3)];
@@ -100,7 +104,7 @@ void System::prepare(const StateView& state) {
       nodal_mass_[i] = m;
       inverse_nodal_mass_[i] = 1.0 / m;
     }
-    if (layout.nodal_size > 0) mass_scale_ = std::ldexp(1.0, -std::ilogb(nodal_mass_.mean()));
+    if (layout.nodal_size > 0) mean_nodal_mass_ = nodal_mass_.mean();
   } else {
     PALPATE_CHECK(mass_solver_, "a consistent mass needs a mass solver");
     const SolveStatus status = mass_solver_->factor(mass_);
@@ -175,7 +179,7 @@ void System::solve_mass(const StateView& state, VecX& r, VecX& a) {
     a = inverse_nodal_mass_.cwiseProduct(r);
     return;
   }
-  if (m > 0) assemble_mass(state, mass_);  // a rigid block's mass turns with it
+  if (m > 0) assemble_mass(state, mass_);  // a rigid block's mass rotates with it
   if (nodal_mass_diagonal_) {
     a.head(n) = inverse_nodal_mass_.cwiseProduct(r.head(n));
     a.tail(m) = mass_.corner.ldlt().solve(r.tail(m));
@@ -187,39 +191,25 @@ void System::solve_mass(const StateView& state, VecX& r, VecX& a) {
                 static_cast<int>(status));
 }
 
-void System::balanced_step(const StateView& state, const VecX& shift, double m_scale, double d_scale,
-                           double k_scale, VecX& f, BalancedMatrix& A) {
-  f.setZero(state.layout->u_size);
-  A.scale = mass_scale_;
-  A.diagonal = m_scale * nodal_mass_;
-  A.positions = state.q.data();  // node blocks come first, with q' = u
-  A.held = &driven_nodes_;
-  for (const auto& term : terms_) term->add_step(state, shift, k_scale, d_scale, f, A);
-}
-
-void System::step_left(const StateView& state, const VecX& shift, const VecX& change, double h, VecX& r) {
-  r.setZero(state.layout->u_size);
-  for (const auto& term : terms_) term->add_step_force(state, shift, change, r);
-  r = h * r - nodal_mass_.cwiseProduct(change);
-  for (int dof : driven_dofs_) r[dof] = 0.0;
-}
-
 /// k_scale K + d_scale D of what the filter lets pass.  Where a term writes the rows of a node block whole,
 /// that is the first that happens to them.
 void System::assemble_tangents(const StateView& state, double d_scale, double k_scale, BorderedMatrix& A,
                                const TermFilter& filter) {
   const bool any = d_scale != 0.0 || k_scale != 0.0;
   term_is_in_.assign(terms_.size(), 0);
-  const auto is_left = [&](std::size_t i) {
+  const auto is_missing = [&](std::size_t i) {
     return any && !term_is_in_[i] && terms_[i]->traits().has_tangent &&
            (!filter || filter(terms_[i]->traits()));
   };
   for (const Block& block : state.layout->blocks) {
     if (block.kind != BlockKind::kNodes) continue;
     std::size_t i = 0;
-    while (i < terms_.size() && !(is_left(i) && terms_[i]->stored_block() == block.id)) ++i;
+    const auto stores = [&](std::size_t term) {
+      return stored_tangents_[term] && stored_tangents_[term]->stored_block() == block.id && is_missing(term);
+    };
+    while (i < terms_.size() && !stores(i)) ++i;
     if (i < terms_.size()) {
-      terms_[i]->store_tangent(state, k_scale, d_scale, A);
+      stored_tangents_[i]->store_tangent(state, k_scale, d_scale, A);
       term_is_in_[i] = 1;
     } else {
       A.body.set_zero(block.u_offset / 3, block.u_size / 3);
@@ -227,7 +217,7 @@ void System::assemble_tangents(const StateView& state, double d_scale, double k_
   }
   for (MatX* border : {&A.right, &A.bottom, &A.corner}) border->setZero();
   for (std::size_t i = 0; i < terms_.size(); ++i)
-    if (is_left(i)) terms_[i]->add_tangent(state, k_scale, d_scale, A);
+    if (is_missing(i)) terms_[i]->add_tangent(state, k_scale, d_scale, A);
 }
 
 void System::step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale,

@@ -31,7 +31,7 @@ void System::impose(const Layout& layout, double t, double* q, double* u) const 
   }
 }
 
-// What carried nodes press on their master with, c = f - M u', turns with it.  It is taken with u' of the
+// The force of carried nodes on their master, c = f - M u', rotates with it.  It is taken with u' of the
 // present state: a body that falls freely presses with nothing, and of a light master the forces and moments
 // c are in balance, which makes K symmetric.
 void System::evaluate_carried_stiffness(const StateView& state, const TermFilter& filter) {

@@ -43,19 +43,6 @@ void System::update_pattern(const StateView& state) {
   }
   pattern_ = pattern_of(layout.node_count(), lists);
   pattern_key_ = key.value;
-  share_no_pair_ = tangents_share_no_pair(layout);
-}
-
-bool System::tangents_share_no_pair(const Layout& layout) const {
-  if (!std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().balanced; }))
-    return false;
-  std::size_t pairs = 0;
-  for (const TermPairs& kept : term_pairs_)
-    pairs += kept.pairs.size() - static_cast<std::size_t>(std::count_if(
-                                     kept.pairs.begin(), kept.pairs.end(),
-                                     [](const auto& pair) { return pair.first == pair.second; }));
-  // fewer in all: some are shared; more: a mass has some
-  return pairs == static_cast<std::size_t>(pattern_.slot_count() - layout.node_count());
 }
 
 void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
@@ -68,15 +55,9 @@ void System::ensure_pattern(const StateView& state, BorderedMatrix& A) {
   resize_border(A, layout.nodal_size, layout.border_size());
 }
 
-bool System::balanced(const StateView& state) {
-  const Layout& layout = *state.layout;
-  if (!nodal_mass_diagonal_ || layout.border_size() > 0 || layout.nodal_size == 0 ||
-      nodal_mass_.size() != layout.nodal_size)
-    return false;
-  if (!std::all_of(terms_.begin(), terms_.end(), [](const auto& t) { return t->traits().balanced; }))
-    return false;
+const BlockSparse& System::updated_pattern(const StateView& state) {
   update_pattern(state);
-  return share_no_pair_;
+  return pattern_;
 }
 
 }  // namespace palpate::dynamics

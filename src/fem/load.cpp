@@ -23,7 +23,7 @@ class DeadLoad final : public dynamics::ForceTerm {
             .symmetric_tangent = true,
             .has_tangent = true,
             .conservative = true,
-            .balanced = true};
+            .zero_tangent = true};
   }
   void add_force(const StateView& state, VecX& f) override {
     f.segment(block(state).u_offset, forces_.size()) += forces_;

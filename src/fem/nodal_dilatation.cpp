@@ -306,7 +306,7 @@ void NodalDilatation::set_materials(const std::vector<Material>& materials) {
 NodalDilatation::~NodalDilatation() = default;
 
 std::string_view NodalDilatation::name() const { return impl_->name; }
-void NodalDilatation::set_definite(bool definite) { impl_->definite = definite; }
+void NodalDilatation::project_to_psd(bool on) { impl_->definite = on; }
 
 dynamics::TermTraits NodalDilatation::traits() const {
   return {.stiff = true,

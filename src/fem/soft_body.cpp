@@ -161,16 +161,15 @@ MemoryUse SoftBody::memory() const {
 }
 
 dynamics::TermTraits SoftBody::traits() const {
-  const bool symmetric = !impl_->by_position();
   return {.stiff = true,
           .fast = false,
-          .symmetric_tangent = symmetric,
+          .symmetric_tangent = !impl_->by_position(),
           .has_tangent = true,
-          .conservative = true,
-          .balanced = symmetric};
+          .conservative = true};
 }
 
-void SoftBody::set_definite(bool definite) { impl_->definite = definite; }
+void SoftBody::project_to_psd(bool on) { impl_->definite = on; }
+bool SoftBody::fuses_step() const { return !impl_->by_position(); }
 
 dynamics::Finding SoftBody::inspect(const StateView& state) const {
   const NodeBlock at = impl_->block(state);
@@ -247,7 +246,7 @@ void SoftBody::add_step_force(const StateView& state, const VecX& shift, const V
 }
 
 void SoftBody::add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
-                        dynamics::BalancedMatrix& A) {
+                        dynamics::ZeroRowSumMatrix& A) {
   Impl& m = *impl_;
   const NodeBlock at = m.block(state);
   double* force = f.data() + at.u_offset;

@@ -38,7 +38,7 @@ class CondensedNewton {
   ///   r1 there
   dynamics::SolveStatus solve(const dynamics::Layout& layout, const double* q, const double* r1,
                               const double* r2, double* dq, double* du, bool nodes_only = false);
-  /// The same of the residual form.
+  /// Solves for (dq, du), residual form.
   dynamics::SolveStatus solve_residual_form(const dynamics::Layout& layout, const double* q, const double* r1,
                                             const double* r2, double* dq, double* du);
   double gamma() const { return gamma_; }  ///< of the last factor; 0 when there is none

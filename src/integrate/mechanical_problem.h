@@ -35,7 +35,7 @@ class MechanicalProblem final : public OdeProblem {
   void evaluate_tangent(double t, const double* y, Side side) override;
   dynamics::SolveStatus factor(double gamma) override { return newton_->factor(gamma); }
   double gamma() const override { return newton_->gamma(); }
-  void set_definite(bool on) override { system_.set_definite(on); }
+  void project_to_psd(bool on) override { system_.project_to_psd(on); }
   dynamics::SolveStatus solve(const double* y, const double* r, double* d) override;
   bool residual(double t, const double* y, const double* y_dot, double* r) override;
   dynamics::SolveStatus solve_residual(const double* y, const double* r, double* d) override;

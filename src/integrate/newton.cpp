@@ -10,7 +10,7 @@ namespace {
 constexpr double kSlow = 0.5;  // contraction above which an old matrix is renewed
 constexpr double kSmallestDamping = 1.0 / 64.0;
 
-/// Bound of what is left after a correction of this size at this contraction (geometric series), at least the
+/// Bound of the error after a correction of this size at this contraction (geometric series), at least the
 /// correction itself.
 double left_over(double correction, double contraction) {
   return correction * std::max(1.0, contraction < 0.95 ? contraction / (1.0 - contraction) : 20.0);

@@ -31,7 +31,7 @@ struct NewtonResult {
 /// Newton's method after Deuflhard (2004, sections 2.1 and 3.3): affine invariant, so neither units nor the
 /// stiffness enter. With the factored matrix A of the iterate x_k, d = -A^-1 r(x_k) is the correction and,
 /// after it, the simplified correction e = -A^-1 r(x_k + d), which costs a residual and a solve and no
-/// factor, tells both how well it went and what is left:
+/// factor, tells both how well it went and the remaining error:
 ///     contraction kappa = |e|/|d|;   converged where |e| max(1, kappa/(1 - kappa)) <= 1, and e is then added
 ///     too.
 /// kappa > 1 - lambda/4 refuses the correction lambda d: with a fresh matrix lambda is halved (down to 1/64),

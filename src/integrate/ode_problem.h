@@ -37,12 +37,12 @@ class OdeProblem {
   virtual bool derivative(double t, const double* y, double* y_dot, Side side) = 0;
   /// Evaluates J = df/dy of one side at (t, y); no factor yet.
   virtual void evaluate_tangent(double t, const double* y, Side side) = 0;
-  /// Factor of I - gamma J; nothing is done where it stands already.
+  /// Factor of I - gamma J; nothing is done where there is one already.
   virtual dynamics::SolveStatus factor(double gamma) = 0;
   virtual double gamma() const = 0;  ///< of the factor; 0 without one
   /// Asks for a positive semi-definite tangent from now on, where there is one (true), or for the true one
   /// (false).
-  virtual void set_definite(bool) {}
+  virtual void project_to_psd(bool) {}
   /// (I - gamma J) d = r.  d may not be r.
   virtual dynamics::SolveStatus solve(const double* y, const double* r, double* d) = 0;
 

@@ -1,5 +1,5 @@
 #include "integrate/make.h"
-#include "integrate/step_solver.h"
+#include "integrate/robust_solver.h"
 #include "integrate/sundials/ark_methods.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
@@ -106,7 +106,7 @@ std::string linear_solver_of(const IntegratorSpec& spec) {
 
 std::unique_ptr<dynamics::LinearSolver> make_robust_linear_solver(const std::string& name,
                                                                   const IntegratorSpec& spec) {
-  return std::make_unique<StepSolver>(linear::make_linear_solver(name, spec), spec);
+  return std::make_unique<RobustSolver>(linear::make_linear_solver(name, spec));
 }
 
 }  // namespace palpate::integrate

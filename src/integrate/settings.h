@@ -7,7 +7,7 @@ namespace palpate::integrate {
 void check_adaptive(const IntegratorSpec& spec, int highest_order);
 void check_fixed_step(const IntegratorSpec& spec);
 void check_static(const IntegratorSpec& spec);
-/// Of the hand-written implicit methods: what Newton reads.
+/// Checks the settings that Newton's method of the fixed-step implicit methods reads.
 void check_newton(const IntegratorSpec& spec);
 void check_spectral_radius(const IntegratorSpec& spec);
 

@@ -8,6 +8,7 @@
 #include "linear/settings.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/dynamics/mixed_precision_step.h"
 #include "palpate/linear/solvers.h"
 
 namespace palpate::linear {
@@ -28,7 +29,7 @@ constexpr Measured kMeasured[] = {
 /// A choice is kept until the matrix has become so many times stiffer or softer: each solver would start
 /// without a past.
 constexpr double kKept = 4.0;
-constexpr int kSampledRows = 512, kSampledRowsOfBalanced = 128;
+constexpr int kSampledRows = 512, kSampledRowsOfStepMatrix = 128;
 
 }  // namespace
 
@@ -40,7 +41,7 @@ constexpr int kSampledRows = 512, kSampledRowsOfBalanced = 128;
 // which miss the held ones' columns, are left out.  Of a large matrix some hundred rows tell it well enough
 // for a choice between factors of four, and looking at every row at every step would cost a reading of the
 // matrix.
-double stiffness_number(const dynamics::BlockSparse& A) {
+double squared_courant_number(const dynamics::BlockSparse& A) {
   double own = 0.0, all = 0.0;
   const int stride = (A.block_rows() / kSampledRows) | 1;  // odd: does not keep in step with a grid's rows
   for (int i = 0; i < A.block_rows(); i += stride) {
@@ -77,10 +78,10 @@ const char* measured_choice(double nodes, double stiffness, double rtol) {
   return nearest->fastest;
 }
 
-/// The same of a balanced matrix, which has its row sums at hand.
-static double stiffness_number(const dynamics::BalancedMatrix& A) {
+/// squared_courant_number() of a zero-row-sum matrix, which has its row sums at hand.
+static double squared_courant_number(const dynamics::ZeroRowSumMatrix& A) {
   double stiffness = 0.0, mass = 0.0;
-  const int rows = A.pattern->block_rows(), stride = (rows / kSampledRowsOfBalanced) | 1;
+  const int rows = A.pattern->block_rows(), stride = (rows / kSampledRowsOfStepMatrix) | 1;
   for (int i = 0; i < rows; i += stride) {
     mass += A.diagonal.segment<3>(3 * i).sum();
     for (int s = A.pattern->row_start()[static_cast<std::size_t>(i)];
@@ -96,11 +97,11 @@ static double stiffness_number(const dynamics::BalancedMatrix& A) {
 
 namespace {
 
-/// The solver that was the fastest in what the table holds nearest to this matrix: nodes, stiffness number
-/// and linear_rtol, in logarithms. A whole matrix is looked at before a solver takes it.  A balanced one is
-/// written in a solver's own order, so the first goes to kProvisional, which serves stiff and soft ones; what
-/// was seen of one decides who has the next.
-class AutoSolver final : public dynamics::LinearSolver {
+/// The solver that was the fastest in what the table holds nearest to this matrix: nodes, squared
+/// Courant-type number and linear_rtol, in logarithms.  The number of a whole matrix is computed before a
+/// solver takes it.  A zero-row-sum matrix is written in the order of a solver, so the first goes to
+/// kProvisional, which serves stiff and soft ones; the number of one decides which solver has the next.
+class AutoSolver final : public dynamics::LinearSolver, public dynamics::MixedPrecisionSolver {
  public:
   explicit AutoSolver(const IntegratorSpec& spec) : spec_(spec) { counters::count("integrate.solver.auto"); }
   std::string name() const override { return "auto"; }
@@ -109,28 +110,29 @@ class AutoSolver final : public dynamics::LinearSolver {
   SolveStatus factor(const BorderedMatrix& A) override {
     PALPATE_CHECK(A.symmetric, "solver auto was given an unsymmetric matrix");
     const bool same = active_ && A.values_version != 0 && A.values_version == values_version_;
-    if (!same) choose(A.body.block_rows(), stiffness_number(A.body));
+    if (!same) choose(A.body.block_rows(), squared_courant_number(A.body));
     values_version_ = A.values_version;
     seen_ = 0.0;
     return active_->factor(A);
   }
-  dynamics::BalancedMatrix* balanced(const dynamics::BlockSparse& pattern) override {
+  dynamics::ZeroRowSumMatrix* step_matrix(const dynamics::BlockSparse& pattern) override {
     if (pattern.block_rows() != nodes_) {
       provisional_ = true;
-      active_ = &made(kProvisional);
+      activate(kProvisional);
       nodes_ = pattern.block_rows();
     } else if (seen_ > 0.0) {
       choose(nodes_, seen_);
     }
-    return room_ = active_->balanced(pattern);
+    return room_ = mixed_ ? mixed_->step_matrix(pattern) : nullptr;
   }
-  SolveStatus factor_balanced() override {
-    seen_ = stiffness_number(*room_);
+  dynamics::StepMatrixUse factor_step_matrix() override {
+    PALPATE_CHECK(room_, "solver auto: there is no step matrix");
+    seen_ = squared_courant_number(*room_);
     values_version_ = 0;
-    return active_->factor_balanced();
+    return mixed_->factor_step_matrix();
   }
-  SolveStatus solve_near(dynamics::Residual& left, VecX& x) override {
-    return active_ ? active_->solve_near(left, x) : SolveStatus::kNotConverged;
+  std::optional<SolveStatus> solve_by_refinement(dynamics::ResidualFunction& residual, VecX& x) override {
+    return mixed_ ? mixed_->solve_by_refinement(residual, x) : std::nullopt;
   }
   SolveStatus solve(const MatX& B, MatX& X) override { return chosen().solve(B, X); }
   SolveStatus solve(const VecX& b, VecX& x) override { return chosen().solve(b, x); }
@@ -157,6 +159,10 @@ class AutoSolver final : public dynamics::LinearSolver {
     if (!made_[k]) made_[k] = make_linear_solver(kNames[k], spec_);
     return *made_[k];
   }
+  void activate(std::size_t k) {
+    active_ = &made(k);
+    mixed_ = dynamic_cast<dynamics::MixedPrecisionSolver*>(active_);
+  }
 
   void choose(int nodes, double stiffness) {
     const bool near = !provisional_ && stiffness < kKept * stiffness_ && kKept * stiffness > stiffness_;
@@ -167,7 +173,7 @@ class AutoSolver final : public dynamics::LinearSolver {
         std::find(kNames.begin(), kNames.end(),
                   std::string_view(measured_choice(nodes_, stiffness_, spec_.linear_rtol)));
     PALPATE_CHECK(name != kNames.end(), "auto_table.inc names a solver that auto does not know");
-    active_ = &made(static_cast<std::size_t>(name - kNames.begin()));
+    activate(static_cast<std::size_t>(name - kNames.begin()));
     if (provisional_ && active_ != made_[kProvisional].get()) {
       retired_ += made_[kProvisional]->counters();
       made_[kProvisional].reset();
@@ -178,12 +184,13 @@ class AutoSolver final : public dynamics::LinearSolver {
   IntegratorSpec spec_;
   std::array<std::unique_ptr<dynamics::LinearSolver>, kNames.size()> made_;
   dynamics::LinearSolver* active_ = nullptr;
-  dynamics::BalancedMatrix* room_ = nullptr;  ///< of active_
+  dynamics::MixedPrecisionSolver* mixed_ = nullptr;  ///< capability of active_
+  dynamics::ZeroRowSumMatrix* room_ = nullptr;       ///< of active_
   std::uint64_t values_version_ = 0;
   int nodes_ = -1;
   bool provisional_ = false;          ///< active_ was not chosen yet
   double stiffness_ = 0.0;            ///< that it was chosen by
-  double seen_ = 0.0;                 ///< of the last matrix, where that was a balanced one
+  double seen_ = 0.0;                 ///< of the last matrix, where that was a zero-row-sum one
   dynamics::SolverCounters retired_;  ///< of the provisional one, where another was chosen
   mutable dynamics::SolverCounters sum_;
 };

@@ -37,7 +37,7 @@ constexpr int kCoarseLimit = 10;
 /// of the error's A-norm along y; never worse than zero.
 ///
 /// The end: |r| <= rtol |b| in the Euclidean norm, and |r|_{P^-1} <= rtol |b|_{P^-1}, which no choice of
-/// units changes (forces and moments stand in one vector).  Both are looked at once more with b - A x itself.
+/// units changes (forces and moments stand in one vector).  Both are checked once more with b - A x itself.
 /// From the second follows for the error e and the condition kappa of P^-1 A
 ///     |e|_A <= rtol sqrt(kappa) |x|_A.
 /// Where rounding alone is larger, eps |A| |x| > rtol |b|, no solver reaches that: kNotConverged.

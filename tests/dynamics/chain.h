@@ -8,27 +8,32 @@
 #include <vector>
 
 #include "palpate/core/pose.h"
+#include "palpate/dynamics/step_assembly.h"
 #include "palpate/dynamics/system.h"
 
 namespace palpate::dynamics {
 
 /// Springs along a chain of nodes, linear in all three directions: f_i = k (x_{i+1} - x_i - L) and its
 /// opposite.
-class ChainSprings : public ForceTerm {
+class ChainSprings : public ForceTerm, public FusedStepTerm {
  public:
-  ChainSprings(int nodes, double k, bool balanced = true) : nodes_(nodes), k_(k), balanced_(balanced) {}
+  ChainSprings(int nodes, double k, bool fuses = true) : nodes_(nodes), k_(k), fuses_(fuses) {}
   std::string_view name() const override { return "springs"; }
-  TermTraits traits() const override { return {.balanced = balanced_}; }
+  TermTraits traits() const override { return {}; }
+  bool fuses_step() const override { return fuses_; }
   void add_step(const StateView& s, const VecX& shift, double k_scale, double, VecX& f,
-                BalancedMatrix& A) override {
-    add_force(s, f);
-    VecX product = VecX::Zero(f.size());
-    apply_tangent(s, 1.0, 0.0, shift, product);
-    f -= product;
+                ZeroRowSumMatrix& A) override {
+    add_step_force(s, shift, shift, f);
     for (int i = 0; i + 1 < nodes_; ++i)
       Eigen::Map<Eigen::Matrix3f>(A.values.data() +
                                   9 * A.place[static_cast<std::size_t>(A.pattern->slot(i, i + 1))]) =
           static_cast<float>(-A.scale * k_scale * k_) * Eigen::Matrix3f::Identity();
+  }
+  void add_step_force(const StateView& s, const VecX& shift, const VecX&, VecX& f) override {
+    add_force(s, f);
+    VecX product = VecX::Zero(f.size());
+    apply_tangent(s, 1.0, 0.0, shift, product);
+    f -= product;
   }
   void add_pattern(PatternBuilder& pattern) const override {
     for (int i = 0; i + 1 < nodes_; ++i) pattern.add_pair(i, i + 1);
@@ -58,7 +63,7 @@ class ChainSprings : public ForceTerm {
  private:
   int nodes_;
   double k_;
-  bool balanced_;
+  bool fuses_;
 };
 
 /// Mass m on every node; with `coupling` > 0 neighbours share inertia (a consistent mass).

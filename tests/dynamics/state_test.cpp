@@ -93,12 +93,12 @@ TEST(FreeBodyKinematics, RateIsTheDerivativeOfARotationAboutAWorldAxis) {
   const Vec3 w(0.4, -1.2, 0.7);
   const Quat start(Eigen::AngleAxisd(0.9, Vec3(1, 2, -1).normalized()));
   const double h = 1e-5;
-  const auto turned = [&](double t) { return Quat(quaternion_of(t * w) * start); };
+  const auto transposed = [&](double t) { return Quat(quaternion_of(t * w) * start); };
   VecX q(7), u(6), rate(7);
   q << start.w(), start.x(), start.y(), start.z(), 0, 0, 0;
   u << w, 0, 0, 0;
   free_body_kinematics()->q_dot(q, u, rate);
-  const Eigen::Vector4d numeric = (turned(h).coeffs() - turned(-h).coeffs()) / (2 * h);
+  const Eigen::Vector4d numeric = (transposed(h).coeffs() - transposed(-h).coeffs()) / (2 * h);
   EXPECT_NEAR(rate[0], numeric[3], 1e-9);
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(rate[1 + i], numeric[i], 1e-9);
 }

@@ -164,7 +164,7 @@ TEST(System, FiltersTermsByWhatTheyAre) {
 }
 
 /// Springs that write the rows of their block whole.
-class StoredSprings final : public ChainSprings {
+class StoredSprings final : public ChainSprings, public StoredTangentTerm {
  public:
   StoredSprings(int block, int nodes, double k) : ChainSprings(nodes, k), block_(block), count_(nodes) {}
   int stored_block() const override { return block_; }
@@ -218,22 +218,4 @@ TEST(System, TermsThatStoreTheirRowsComeFirstAndOnlyOnceABlock) {
   c.system.step_matrix(c.state.view(), 1.0, 0.0, 0.1, A, [](const TermTraits& t) { return t.contact; });
   EXPECT_NEAR(A.to_dense().norm(), std::sqrt(9 * 4.0 + 6.0), 1e-13) << "a filter that lets no term pass";
   EXPECT_EQ(first->stored, 2);
-}
-
-TEST(System, ATermThatNamesABlockToStoreMustStoreIt) {
-  struct Forgetful final : ChainSprings {
-    using ChainSprings::ChainSprings;
-    int block = -1;
-    int stored_block() const override { return block; }
-  };
-  Chain c(3);
-  const auto term = std::make_shared<Forgetful>(3, 1.0);
-  c.system.add(term);
-  c.system.add(std::make_shared<ChainMass>(c.block, 3, 2.0));
-  c.system.prepare(c.state.view());
-  BorderedMatrix A;
-  EXPECT_NO_THROW(c.system.step_matrix(c.state.view(), 1.0, 0.0, 0.1, A));
-  term->block = c.block;
-  EXPECT_THROW(c.system.step_matrix(c.state.view(), 1.0, 0.0, 0.1, A), InternalError)
-      << "it would add to what stood there";
 }

@@ -152,7 +152,7 @@ TEST(NodalDilatation, AppliedEqualsAssembled) {
     for (bool full : {false, true})
       for (bool definite : {false, true}) {
         NodalDilatation term("b", s.rest, m, nodal(m, tangent, full), 0);
-        term.set_definite(definite);
+        term.project_to_psd(definite);
         const VecX expected = assembled(term, s.x, s.v, 0.7, 1.9) * w;
         EXPECT_LT((apply(term, s.x, s.v, 0.7, 1.9, w) - expected).norm(), 1e-13 * expected.norm());
         ++compared;
@@ -166,7 +166,7 @@ TEST(NodalDilatation, SymmetricAndPositiveSemiDefiniteWhereAsked) {
   const Material m = nearly_incompressible();
   const auto smallest = [&](Tangent tangent, bool definite) {
     NodalDilatation term("b", s.rest, m, nodal(m, tangent), 0);
-    term.set_definite(definite);
+    term.project_to_psd(definite);
     const MatX A = assembled(term, s.x, s.v, 1, 0);
     EXPECT_LT((A - A.transpose()).norm(), 1e-14 * A.norm());
     return Eigen::SelfAdjointEigenSolver<MatX>(A).eigenvalues()[0] / A.norm();

@@ -87,7 +87,7 @@ TEST(Step, IsForceProductAndTangentInOne) {
           const Case c(shake);
           OneBody at(c.x, c.v);
           SoftBody body("b", c.rest, material, {.tangent = tangent, .instructions = set}, at.id);
-          ASSERT_TRUE(body.traits().balanced);
+          ASSERT_TRUE(body.fuses_step());
           Room room(body, at.state);
           VecX f = VecX::Zero(c.x.size()), product = f, want = f;
           body.add_step(at.state.view(), c.w, kK, kD, f, room.A);
@@ -184,5 +184,5 @@ TEST(Step, AnUnsymmetricTangentIsNotBalanced) {
   const Case c(0.01);
   OneBody at(c.x, c.v);
   const SoftBody body("b", c.rest, material_with(0.4, 0.0), {.full_damping_tangent = true}, at.id);
-  EXPECT_FALSE(body.traits().balanced);
+  EXPECT_FALSE(body.fuses_step());
 }

@@ -9,14 +9,14 @@ namespace {
 using namespace fakes;
 
 /// f = -K (q - q0), with a definite stand-in for K where there is one.
-struct Buckling final : ForceTerm {
+struct Buckling final : ForceTerm, public PsdProjectedTerm {
   MatX K, definite_K;
   bool definite = false;
   long definite_tangents = 0;
   Buckling(MatX k, MatX stand_in) : K(std::move(k)), definite_K(std::move(stand_in)) {}
   std::string_view name() const override { return "buckling"; }
   TermTraits traits() const override { return {}; }
-  void set_definite(bool on) override { definite = on; }
+  void project_to_psd(bool on) override { definite = on; }
   void add_force(const StateView& s, VecX& f) override { f -= K * s.q; }
   void add_tangent(const StateView&, double k, double, BorderedMatrix& A) override {
     if (definite && k != 0.0) ++definite_tangents;
@@ -113,7 +113,7 @@ TEST_P(Indefinite, TakesLuAtOnceWhereAsked) {
 /// Such a one comes with a push at kPushed.
 constexpr double kPushed = 500.0;
 struct Toppling {
-  struct Push final : ForceTerm {
+  struct Push final : ForceTerm, PsdProjectedTerm {
     LinearTerm leaning;
     MatX definite_K;
     bool on = false;
@@ -128,7 +128,7 @@ struct Toppling {
     std::string_view name() const override { return "toppling"; }
     TermTraits traits() const override { return {}; }
     void add_pattern(PatternBuilder& pattern) const override { leaning.add_pattern(pattern); }
-    void set_definite(bool definite) override { on = definite; }
+    void project_to_psd(bool definite) override { on = definite; }
     void add_force(const StateView& s, VecX& f) override {
       leaning.add_force(s, f);
       if (s.time >= kPushed) f[0] += 1e-3, f[3] += 1e-3;

@@ -31,7 +31,7 @@ TEST(Auto, ReadsTheStiffnessNumberFromTheMatrix) {
       own += block[0] + block[4] + block[8];
       mass += 3.0 * beam.masses[i];
     }
-    EXPECT_NEAR(linear::stiffness_number(A.body), own / mass, 0.1 * own / mass);
+    EXPECT_NEAR(linear::squared_courant_number(A.body), own / mass, 0.1 * own / mass);
   }
 }
 
@@ -54,9 +54,9 @@ TEST(Auto, AnswersWhateverTheTableChooses) {
   EXPECT_EQ(checked, 4);
 }
 
-/// One after the other: balanced matrices of the beam at these steps, solved as accurately as the tolerance
-/// says; who had solved how many by then.
-class AutoOnBalanced : public testing::Test {
+/// One after the other: zero-row-sum matrices of the beam at these steps, solved as accurately as the
+/// tolerance says; who had solved how many by then.
+class AutoOnZeroRowSum : public testing::Test {
  protected:
   static constexpr double kRtol = 1e-3;
   BentBeam beam{24, 1e5};
@@ -66,18 +66,18 @@ class AutoOnBalanced : public testing::Test {
     BorderedMatrix A;
     VecX b;
     of.at(0.4, h, A, b);
-    return linear::measured_choice(static_cast<double>(of.masses.size()), linear::stiffness_number(A.body),
-                                   kRtol);
+    return linear::measured_choice(static_cast<double>(of.masses.size()),
+                                   linear::squared_courant_number(A.body), kRtol);
   }
   void solve(double h) { solve(beam, h); }
   void solve(BentBeam& of, double h) {
     BorderedMatrix whole;
     VecX b, x, exact;
     of.at(0.4, h, whole, b);
-    BalancedMatrix* A = solver->balanced(of.pattern());
+    ZeroRowSumMatrix* A = mixed(*solver).step_matrix(of.pattern());
     ASSERT_NE(A, nullptr);
     of.at(0.4, h, *A, b);
-    ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+    ASSERT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kSolve);
     ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
     const auto direct = linear::make_linear_solver("cholmod");
     ASSERT_EQ(direct->factor(whole), SolveStatus::kOk);
@@ -87,7 +87,7 @@ class AutoOnBalanced : public testing::Test {
   static long made(const std::string& name) { return counters::snapshot()["integrate.solver." + name]; }
 };
 
-TEST_F(AutoOnBalanced, ChoosesByWhatItSawOfTheFirst) {
+TEST_F(AutoOnZeroRowSum, ChoosesByWhatItSawOfTheFirst) {
   constexpr double kSoft = 1e-4, kStiff = 0.1;
   ASSERT_EQ(expected(kSoft), "pcg-single");
   ASSERT_EQ(expected(kStiff), "pcg-two-level");
@@ -107,14 +107,14 @@ TEST_F(AutoOnBalanced, ChoosesByWhatItSawOfTheFirst) {
   EXPECT_EQ(solver->counters().solves, 4);
 }
 
-TEST_F(AutoOnBalanced, KeepsItsChoiceWhileItServes) {
+TEST_F(AutoOnZeroRowSum, KeepsItsChoiceWhileItServes) {
   const long before = made("pcg-single") + made("pcg-two-level");
   for (const double h : {0.05, 0.06, 0.08, 0.05}) solve(h);
   EXPECT_EQ(made("pcg-single") + made("pcg-two-level"), before + 1);
   EXPECT_EQ(solver->counters().symbolic, 1);
 }
 
-TEST_F(AutoOnBalanced, ChoosesAnewForAnotherBody) {
+TEST_F(AutoOnZeroRowSum, ChoosesAnewForAnotherBody) {
   BentBeam small(8, 1e5);
   ASSERT_EQ(expected(0.1), "pcg-two-level");
   ASSERT_EQ(expected(small, 1e-4), "pcg-single");
@@ -128,8 +128,8 @@ TEST_F(AutoOnBalanced, ChoosesAnewForAnotherBody) {
   EXPECT_EQ(solver->counters().solves, 4);
 }
 
-// What was seen of a balanced matrix says nothing once a whole one came after it.
-TEST_F(AutoOnBalanced, ForgetsWhatItSawWhenAWholeMatrixComes) {
+// What was seen of a zero-row-sum matrix says nothing once a whole one came after it.
+TEST_F(AutoOnZeroRowSum, ForgetsWhatItSawWhenAWholeMatrixComes) {
   solve(1e-4);
   BorderedMatrix whole;
   VecX b, x;

@@ -6,7 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "palpate/dynamics/system.h"
+#include "palpate/dynamics/mixed_precision_step.h"
+#include "palpate/dynamics/step_assembly.h"
 #include "palpate/fem/attachments.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/mesh/generators.h"
@@ -22,6 +23,7 @@ struct BentBeamOptions {
 struct BentBeam {
   dynamics::State state;
   dynamics::System system;
+  dynamics::StepAssembly assembly{system};
   VecX rest, masses;
   explicit BentBeam(int cells_along, double youngs_modulus, int cells_across = 0,
                     const BentBeamOptions& options = {}) {
@@ -69,16 +71,16 @@ struct BentBeam {
     system.force(state.view(), b);
     load(angle, h, b);
   }
-  /// The same of a balanced matrix.
-  void at(double angle, double h, dynamics::BalancedMatrix& A, VecX& b) {
+  /// The step matrix as a zero-row-sum one, with that right-hand side.
+  void at(double angle, double h, dynamics::ZeroRowSumMatrix& A, VecX& b) {
     bend(angle);
-    ASSERT_TRUE(system.balanced(state.view()));
-    system.balanced_step(state.view(), VecX::Zero(rest.size()), 1.0, h, h * h, b, A);
+    ASSERT_TRUE(assembly.applies(state.view()));
+    assembly.assemble(state.view(), VecX::Zero(rest.size()), 1.0, h, h * h, b, A);
     load(angle, h, b);
   }
   const dynamics::BlockSparse& pattern() {
-    EXPECT_TRUE(system.balanced(state.view()));
-    return system.pattern();
+    EXPECT_TRUE(assembly.applies(state.view()));
+    return assembly.pattern();
   }
 
  private:
@@ -100,21 +102,26 @@ struct BentBeam {
   }
 };
 
-/// A system whose matrix is at hand.
-class Known final : public dynamics::Residual {
+/// The residuals of a system whose matrix is at hand; `evaluated` counts them.
+class Known final : public dynamics::ResidualFunction {
  public:
   Known(const dynamics::BorderedMatrix& A, const VecX& b) : A_(A), b_(b) {}
   void at(const VecX& x, VecX& r) override {
-    ++looks;
+    ++evaluated;
     A_.multiply(x, r);
     r = b_ - r;
   }
-  int looks = 0;
+  int evaluated = 0;
 
  private:
   const dynamics::BorderedMatrix& A_;
   const VecX& b_;
 };
+
+/// The capability, which the solver is expected to have.
+inline dynamics::MixedPrecisionSolver& mixed(dynamics::LinearSolver& solver) {
+  return dynamic_cast<dynamics::MixedPrecisionSolver&>(solver);
+}
 
 inline double energy_norm(const dynamics::BorderedMatrix& A, const VecX& x) {
   VecX Ax;

@@ -17,7 +17,7 @@ using namespace dynamics;
 enum class Kind { kSpd, kUnsymmetric, kIndefinite };
 
 /// Random bordered matrix with a dominant diagonal: positive definite; symmetric with every third node's and
-/// the corner's sign turned; or (values of the two triangles drawn apart) unsymmetric.
+/// the corner's sign reversed; or (values of the two triangles drawn apart) unsymmetric.
 BorderedMatrix random_matrix(int nodes, int border, Kind kind, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> value(-1.0, 1.0);

@@ -54,9 +54,9 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     for (std::size_t i = 0; i < v.size(); ++i) p[i] = static_cast<float>(v[i]);
     std::vector<int> offset(packing.places() + linear::kLanesOfGroup * linear::kStepsAhead,
                             9 * static_cast<int>(source.size()));
-    std::vector<std::uint16_t> turned(packing.places() / linear::kLanesOfGroup, 0);
+    std::vector<std::uint16_t> transposed(packing.places() / linear::kLanesOfGroup, 0);
     for (std::size_t s = 0; s < source.size(); ++s)
-      if (!packing.turned(s)) offset[packing.place(s)] = 9 * static_cast<int>(s);
+      if (!packing.transposed(s)) offset[packing.place(s)] = 9 * static_cast<int>(s);
     double pq = 0.0;
     for (std::size_t part = 0; part < 3; ++part)
       k.pack(packing.rows(part, nullptr), {values.data(), offset.data(), nullptr});
@@ -67,10 +67,10 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     const auto lacks_held_columns = [&](std::size_t i) {
       return beam.rest[static_cast<Eigen::Index>(3 * i)] < -0.5 + 0.2;
     };
-    const auto off_identity = [&](bool balanced) {
+    const auto off_identity = [&](bool zero_row_sum) {
       double most = 0.0;
       for (std::size_t i = 0; i < n; ++i) {
-        if (balanced && lacks_held_columns(i)) continue;
+        if (zero_row_sum && lacks_held_columns(i)) continue;
         const Mat3 own = Eigen::Map<const Mat3>(A.body.block(diagonal[i]));
         Mat3 J;
         for (int c = 0; c < 3; ++c)
@@ -93,7 +93,7 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     EXPECT_NEAR(pq, b.dot(exact), 1e-5 * std::abs(b.dot(exact))) << k.name;
     EXPECT_LT(off_identity(false), 1e-5) << k.name;
 
-    // Balanced: what is missing in a row's sum is its mass.  Blocks come turned and unturned.
+    // Zero row sums: what is missing in a row's sum is its mass.  Blocks come transposed and as they are.
     std::vector<double> mass(4 * n + linear::kVectorTail);
     std::vector<float> mass_single(mass.size());
     for (std::size_t i = 0; i < n; ++i)
@@ -108,15 +108,15 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
       }
     for (std::size_t s = 0; s < source.size(); ++s) {
       const std::size_t at = packing.place(s);
-      if (packing.turned(s) || at % 3 != 0 ||
+      if (packing.transposed(s) || at % 3 != 0 ||
           column[s] ==
               static_cast<int>(std::upper_bound(row_start.begin(), row_start.end(), static_cast<int>(s)) -
                                row_start.begin()) -
                   1)
         continue;
       Eigen::Map<Eigen::Matrix3f>(values.data() + 9 * s).transposeInPlace();
-      turned[at / linear::kLanesOfGroup] =
-          static_cast<std::uint16_t>(turned[at / linear::kLanesOfGroup] | 1u << at % linear::kLanesOfGroup);
+      transposed[at / linear::kLanesOfGroup] = static_cast<std::uint16_t>(
+          transposed[at / linear::kLanesOfGroup] | 1u << at % linear::kLanesOfGroup);
     }
     std::vector<float> sums(8 * n + linear::kVectorTail), Vs[5], AVs[5];
     const float* V[5] = {};
@@ -133,21 +133,21 @@ TEST(NodeKernels, EverySetGivesTheSameButForRounding) {
     double trace = 0.0, all_traces = 0.0;
     for (std::size_t part = 0; part < 3; ++part) {
       const linear::PackedRows rows = packing.rows(part, mass_single.data());
-      ASSERT_EQ(k.balance(rows, {values.data(), offset.data(), turned.data()}, sums.data(), inverse.data(),
-                          &trace, static_cast<int>(part) + 3, V, AV),
-                linear::Balanced::kOk);
+      ASSERT_EQ(k.complete(rows, {values.data(), offset.data(), transposed.data()}, sums.data(),
+                           inverse.data(), &trace, static_cast<int>(part) + 3, V, AV),
+                linear::RowStatus::kOk);
       all_traces += trace;
     }
     pq = 0.0;
     for (std::size_t part = 0; part < 3; ++part) {
       const linear::PackedRows rows = packing.rows(part, mass_single.data());
-      k.multiply_balanced(rows, mass.data(), 1.0, v.data(), Av.data());
+      k.multiply_zero_row_sum(rows, mass.data(), 1.0, v.data(), Av.data());
       pq += k.product(rows, p.data(), q.data());
     }
     double off = 0.0, off_single = 0.0, off_columns = 0.0, traces = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       traces += Eigen::Map<const Mat3>(A.body.block(diagonal[i])).trace();
-      if (lacks_held_columns(i)) continue;  // such rows are not balanced
+      if (lacks_held_columns(i)) continue;  // such rows do not sum to their mass
       for (std::size_t a = 0; a < 3; ++a) {
         const double want = exact[static_cast<Eigen::Index>(3 * i + a)];
         off = std::max(off, std::abs(Av[4 * i + a] - want));

@@ -71,12 +71,12 @@ TEST(RowPacking, TakesEveryBlockOnce) {
            ++s) {
         const auto j = static_cast<std::size_t>(column[s]);
         const linear::PackedRows rows =
-            packing.rows(static_cast<std::size_t>(part[packing.turned(s) ? j : i]), nullptr);
+            packing.rows(static_cast<std::size_t>(part[packing.transposed(s) ? j : i]), nullptr);
         const std::size_t own = linear::kLanesOfGroup * static_cast<std::size_t>(rows.groups);
         EXPECT_EQ(packing.place(s) < own, i == j) << "own blocks first";
         EXPECT_EQ(i == j ? rows.row[packing.place(s)] : rows.column[packing.place(s) - own],
-                  static_cast<int>(4 * (packing.turned(s) ? i : j)));
-        if (packing.turned(s)) {
+                  static_cast<int>(4 * (packing.transposed(s) ? i : j)));
+        if (packing.transposed(s)) {
           EXPECT_EQ(part[i], part[j]);
           continue;
         }

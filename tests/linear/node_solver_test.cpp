@@ -51,12 +51,12 @@ TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSays) {
   EXPECT_EQ(checked, 96);
 }
 
-// A balanced matrix, off-diagonal blocks in single precision, is held to the same promise: against a direct
-// solve of the whole matrix in double.  Across from four elements to one, where rounding of the blocks tells
-// most; from matrices that are nearly mass to those that are nearly stiffness.  Where it is too coarse for
-// the tolerance, the solver says so, and corrects by it what the equations leave, once it has a solution to
-// begin with.
-TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSaysOfABalancedMatrix) {
+// A zero-row-sum matrix, off-diagonal blocks in single precision, is held to the same promise: against a
+// direct solve of the whole matrix in double.  Across from four elements to one, where rounding of the blocks
+// tells most; from matrices that are nearly mass to those that are nearly stiffness.  Where it is too coarse
+// for the tolerance, the solver says so, and corrects by it what the equations leave, once it has a solution
+// to begin with.
+TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSaysOfAZeroRowSumMatrix) {
   int checked = 0, rounded = 0;
   for (const int across : {4, 1})
     for (const double E : {1e4, 1e5, 1e6})
@@ -71,19 +71,19 @@ TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSaysOfABalancedMatrix) {
           beam.at(0.2 * k, h, whole, b);
           ASSERT_EQ(direct->factor(whole), SolveStatus::kOk);
           ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
-          BalancedMatrix* A = solver->balanced(beam.pattern());
+          ZeroRowSumMatrix* A = mixed(*solver).step_matrix(beam.pattern());
           ASSERT_NE(A, nullptr);
           beam.at(0.2 * k, h, *A, b);
-          const SolveStatus status = solver->factor_balanced();
-          if (status == SolveStatus::kSingular) {
+          const StepMatrixUse use = mixed(*solver).factor_step_matrix();
+          if (use == StepMatrixUse::kNone) {
             EXPECT_EQ(k, 0) << "it has nothing to begin with";
             ASSERT_EQ(solver->factor(whole), SolveStatus::kOk);
           }
-          if (status == SolveStatus::kRounded) {
+          if (use == StepMatrixUse::kRefine) {
             Known left(whole, b);
-            ASSERT_EQ(solver->solve_near(left, x), SolveStatus::kOk)
+            ASSERT_EQ(mixed(*solver).solve_by_refinement(left, x), SolveStatus::kOk)
                 << across << " across, E " << E << ", rtol " << rtol << ", step " << k;
-            EXPECT_GE(left.looks, 2) << "none is believed unseen";
+            EXPECT_GE(left.evaluated, 2) << "none is believed unseen";
             ++rounded;
           } else
             ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk)
@@ -100,8 +100,8 @@ TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSaysOfABalancedMatrix) {
   EXPECT_GE(rounded, 40);
 }
 
-// Whole and balanced matrices of one pattern in turn: one analysis, and what is remembered serves both.
-TEST_P(NodeSolvers, TakeWholeAndBalancedMatricesInTurn) {
+// Whole and zero-row-sum matrices of one pattern in turn: one analysis, and what is remembered serves both.
+TEST_P(NodeSolvers, TakeWholeAndZeroRowSumMatricesInTurn) {
   BentBeam beam(16, 1e5);
   const auto solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});
   BorderedMatrix whole;
@@ -110,10 +110,10 @@ TEST_P(NodeSolvers, TakeWholeAndBalancedMatricesInTurn) {
   ASSERT_EQ(solver->factor(whole), SolveStatus::kOk);
   ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
   const long cold = solver->counters().iterations;
-  BalancedMatrix* A = solver->balanced(beam.pattern());
+  ZeroRowSumMatrix* A = mixed(*solver).step_matrix(beam.pattern());
   ASSERT_NE(A, nullptr);
   beam.at(0.5, 1e-2, *A, b);
-  ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+  ASSERT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kSolve);
   ASSERT_EQ(solver->solve(b, y), SolveStatus::kOk);
   EXPECT_LE(solver->counters().iterations - cold, cold / 4);
   EXPECT_LE(energy_norm(whole, x - y), 2e-4 * energy_norm(whole, x));
@@ -125,24 +125,24 @@ TEST_P(NodeSolvers, TakeWholeAndBalancedMatricesInTurn) {
   EXPECT_EQ(solver->counters().symbolic, 1);
 }
 
-TEST_P(NodeSolvers, SayWhatTheyCannotDoWithABalancedMatrix) {
+TEST_P(NodeSolvers, SayWhatTheyCannotDoWithAZeroRowSumMatrix) {
   BentBeam beam(8, 1e5);
   const auto solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});
-  BalancedMatrix* A = solver->balanced(beam.pattern());
+  ZeroRowSumMatrix* A = mixed(*solver).step_matrix(beam.pattern());
   ASSERT_NE(A, nullptr);
   VecX b;
   beam.at(0.5, 1e-2, *A, b);
   A->values[9 * static_cast<std::size_t>(A->place[1]) + 4] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(solver->factor_balanced(), SolveStatus::kSingular);
+  EXPECT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kNone);
   beam.at(0.5, 1e-2, *A, b);
   A->diagonal *= -1e6;
-  EXPECT_EQ(solver->factor_balanced(), SolveStatus::kIndefinite);
+  EXPECT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kIndefinite);
   beam.at(0.5, 1e-2, *A, b);
-  EXPECT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+  EXPECT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kSolve);
 }
 
-// A system that is not the matrix's is no rounding: it is said, and balanced matrices of this pattern are not
-// taken again.
+// A system that is not the matrix's is no rounding: it is said, and zero-row-sum matrices of this pattern are
+// not taken again.
 TEST_P(NodeSolvers, RefuseARoundedMatrixThatCorrectsNothing) {
   BentBeam beam(8, 1e6);
   const auto solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-9});
@@ -151,16 +151,16 @@ TEST_P(NodeSolvers, RefuseARoundedMatrixThatCorrectsNothing) {
   beam.at(0.5, 1e-2, whole, b);
   ASSERT_EQ(solver->factor(whole), SolveStatus::kOk);
   ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
-  BalancedMatrix* A = solver->balanced(beam.pattern());
+  ZeroRowSumMatrix* A = mixed(*solver).step_matrix(beam.pattern());
   ASSERT_NE(A, nullptr);
   beam.at(1.5, 1e-2, *A, b);
-  ASSERT_EQ(solver->factor_balanced(), SolveStatus::kRounded);
+  ASSERT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kRefine);
   EXPECT_THROW(solver->solve(b, x), InternalError) << "a solution is not what it is good for";
   Known left(whole, b);
-  EXPECT_EQ(solver->solve_near(left, x), SolveStatus::kNotConverged);
-  EXPECT_EQ(solver->solve_near(left, x), SolveStatus::kNotConverged) << "nor is it near anything now";
-  EXPECT_EQ(left.looks, 2);
-  EXPECT_EQ(solver->balanced(beam.pattern()), nullptr);
+  EXPECT_EQ(mixed(*solver).solve_by_refinement(left, x), SolveStatus::kNotConverged);
+  EXPECT_EQ(mixed(*solver).solve_by_refinement(left, x), std::nullopt) << "it refines nothing any more";
+  EXPECT_EQ(left.evaluated, 2);
+  EXPECT_EQ(mixed(*solver).step_matrix(beam.pattern()), nullptr);
   EXPECT_EQ(solver->counters().near, 0);
 }
 
@@ -169,11 +169,11 @@ TEST_P(NodeSolvers, RefuseARoundedMatrixThatCorrectsNothing) {
 TEST_P(NodeSolvers, HeldRowsStandAlone) {
   BentBeam beam(8, 1e5);
   const auto solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-6});
-  BalancedMatrix* A = solver->balanced(beam.pattern());
+  ZeroRowSumMatrix* A = mixed(*solver).step_matrix(beam.pattern());
   ASSERT_NE(A, nullptr);
   VecX b, x;
   beam.at(0.5, 1e-2, *A, b);
-  ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+  ASSERT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kSolve);
   ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
   ASSERT_FALSE(A->held->empty());
   VecX y = b;
@@ -202,10 +202,10 @@ TEST_P(NodeSolvers, ThreadsDoNotChangeABit) {
       ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
       all.conservativeResize(all.size() + 2 * x.size());
       all.tail(x.size()) = x;
-      BalancedMatrix* balanced = solver->balanced(beam.pattern());
-      ASSERT_NE(balanced, nullptr);
-      beam.at(0.3 * k, 1e-2, *balanced, b);
-      ASSERT_EQ(solver->factor_balanced(), SolveStatus::kOk);
+      ZeroRowSumMatrix* step = mixed(*solver).step_matrix(beam.pattern());
+      ASSERT_NE(step, nullptr);
+      beam.at(0.3 * k, 1e-2, *step, b);
+      ASSERT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kSolve);
       ASSERT_EQ(solver->solve(VecX(b.reverse().cwiseProduct((b.array() != 0.0).cast<double>().matrix())), x),
                 SolveStatus::kOk);
       all.segment(all.size() - 2 * x.size(), x.size()) = x;

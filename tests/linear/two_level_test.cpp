@@ -12,8 +12,8 @@ namespace {
 
 using namespace dynamics;
 
-// Twice the stiffness number is 1.4 times the iterations of block Jacobi; rigid clusters take the long waves,
-// so that the count hardly grows.
+// Twice the squared Courant-type number is 1.4 times the iterations of block Jacobi; rigid clusters take the
+// long waves, so that the count hardly grows.
 TEST(TwoLevel, StiffnessHardlyShowsInTheCount) {
   std::vector<long> two_level, single;
   for (const double E : {1e5, 1e7}) {
@@ -45,9 +45,9 @@ TEST(TwoLevel, KeepsItsClustersWhileTheyServe) {
   EXPECT_EQ(solver->counters().refreshes, 1);
 }
 
-// A whole matrix and a balanced one are copied in units of their own, by powers of two: clusters made of one
-// serve the other.
-TEST(TwoLevel, ServesWholeAndBalancedMatricesInTurn) {
+// A whole matrix and a zero-row-sum one are copied in units of their own, by powers of two: clusters made of
+// one serve the other.
+TEST(TwoLevel, ServesWholeAndZeroRowSumMatricesInTurn) {
   BentBeam beam(16, 1e6);
   const double h = 1e-2;
   BorderedMatrix A;
@@ -58,10 +58,10 @@ TEST(TwoLevel, ServesWholeAndBalancedMatricesInTurn) {
       beam.at(0.5, h, A, b);
       EXPECT_EQ(solver.factor(A), SolveStatus::kOk);
     } else {
-      BalancedMatrix* room = solver.balanced(beam.pattern());
+      ZeroRowSumMatrix* room = mixed(solver).step_matrix(beam.pattern());
       if (!room) throw std::runtime_error("no room");
       beam.at(0.5, h, *room, b);
-      EXPECT_EQ(solver.factor_balanced(), SolveStatus::kOk);
+      EXPECT_EQ(mixed(solver).factor_step_matrix(), StepMatrixUse::kSolve);
     }
     MatX B = MatX::Zero(b.size(), 2), X;  // several columns start from nothing
     B.col(0) = b;

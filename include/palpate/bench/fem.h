@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,38 @@ const std::vector<BeamSize>& beam_sizes();
 /// @throws Error where there is none of that name
 const BeamSize& size_named(const std::string& name);
 
+/// One way to compute a motion: what 10 ms of it cost, and how far its end is from the exact end of the same
+/// mesh and material.
+struct AccuracyPoint {
+  std::string program;
+  double step_s = 0.0, tolerance = 0.0;  ///< 0: the program has none
+  /// run time of 10 ms of the motion, one thread, without what is done once a mesh [ms]
+  double ms_of_ten_ms = 0.0;
+  double error = 0.0;   ///< |q - exact|_M / |exact - rest|_M
+  bool quoted = false;  ///< not measured in this run
+  /// run time of a first step: pattern, maps and orderings, done once a mesh; 0: not known
+  double setup_ms = 0.0;
+};
+/// Median ms of another program's step of 10 ms and of 1 ms on the beam, E = 1e5.
+struct PublishedStepTime {
+  std::string program, size;
+  double ten_ms, one_ms;  ///< NaN: not measured
+  std::string tolerance;
+};
+
+/// Timings of other programs, from a data file that names the source of each; quoted, never measured here.
+struct PublishedTimings {
+  /// copy bandwidth of the machine that they were measured on, by number of threads, ascending: arrays of
+  /// 67 MB [GB/s]
+  std::vector<std::pair<int, double>> reference_copy_gb_s;
+  std::vector<PublishedStepTime> step_times;
+  std::vector<std::pair<std::string, AccuracyPoint>> accuracy;  ///< with the beam's size
+  /// That of the most threads that are no more than these; NaN where there is none.
+  double reference_bandwidth_gb_s(int threads) const;
+};
+/// @throws Error when the file is missing or is no such file
+PublishedTimings read_published_timings(const std::string& path);
+
 struct FemBenchOptions {
   std::vector<std::string> sizes = {"S", "M"};
   std::vector<double> youngs_moduli_pa = {1e5, 1e6};
@@ -30,6 +63,7 @@ struct FemBenchOptions {
   /// of them, whose solution is compared with a direct one (or, above 12,000 nodes, with one of linear_rtol
   /// 1e-10)
   int checks = 3;
+  PublishedTimings published = {};  ///< for `scaled_ms`
 };
 
 /// What passes over a working set of this size reach, again and again: caches hold the small ones.
@@ -44,6 +78,8 @@ struct MachineLimits {
   double small_copy_gb_s = 0.0, large_copy_gb_s = 0.0;
   /// multiply-adds in registers, single and double precision, two operations each
   double gflop_s = 0.0, double_gflop_s = 0.0;
+  /// large_copy_gb_s of the machine that published timings are from; NaN: not known
+  double reference_copy_gb_s = std::numeric_limits<double>::quiet_NaN();
   std::vector<Bandwidth> bandwidths;           ///< ascending working sets
   double read_gb_s(double working_set) const;  ///< between them
   double write_gb_s(double working_set) const;
@@ -87,7 +123,8 @@ struct FemBenchRow {
   /// what memory and arithmetic, measured in the same run, allow
   double force_limit_ms = 0.0, matrix_limit_ms = 0.0, factor_limit_ms = 0.0, solve_limit_ms = 0.0;
   double step_limit_ms = 0.0;  ///< their sum
-  /// step_ms x this machine's bandwidth / that of the machine that the figures of peers are from
+  /// step_ms x this machine's bandwidth / that of the machine that published timings are from; NaN: not
+  /// known
   double scaled_ms = 0.0;
   double needed_bytes = 0.0;  ///< the sum of what must be stored
   double body_bytes = 0.0;    ///< what the soft body holds of that: elements, maps, scratch
@@ -127,35 +164,8 @@ double scaling_exponent(const std::vector<std::pair<double, double>>& points);
 double scaling_exponent(const std::vector<const FemBenchRow*>& rows,
                         const std::function<double(const FemBenchRow&)>& figure);
 
-/// What others took on the same beam (median ms of a step of 10 ms and of 1 ms; E = 1e5; quoted, of the
-/// machine below).
-struct PeerFigure {
-  std::string program, size;
-  double ten_ms, one_ms;  ///< NaN: not measured
-  std::string tolerance;
-};
-const std::vector<PeerFigure>& peer_figures();
-/// Copy bandwidth of the machine that the peers were measured on, 67 MB arrays [GB/s].
-double reference_bandwidth_gb_s(int threads);
-
-/// One way to compute a motion: what 10 ms of it cost, and how far its end is from the exact end of the same
-/// mesh and material.
-struct AccuracyPoint {
-  std::string program;
-  double step_s = 0.0, tolerance = 0.0;  ///< 0: the program has none
-  /// run time of 10 ms of the motion, one thread, without what is done once a mesh [ms]
-  double ms_of_ten_ms = 0.0;
-  double error = 0.0;   ///< |q - exact|_M / |exact - rest|_M
-  bool quoted = false;  ///< not measured in this run
-  /// run time of a first step: pattern, maps and orderings, done once a mesh; 0: not known
-  double setup_ms = 0.0;
-};
-/// The fall of the beam, E = 1e5, from rest for 0.2 s: measured here for steps and tolerances, and what is
-/// known of others.
+/// The fall of the beam, E = 1e5, from rest for 0.2 s, for steps and tolerances.
 std::vector<AccuracyPoint> run_accuracy(const std::string& size, bool (*stop)() = nullptr);
-/// What others reach in that motion, measured once against the same exact end; run times of this or of the
-/// reference machine, as `program` says.
-std::vector<AccuracyPoint> peer_accuracy(const std::string& size);
 std::string to_json(const std::vector<AccuracyPoint>& points);
 
 std::string to_json(const FemBenchReport& report);

@@ -1,36 +1,8 @@
 #pragma once
-#include <array>
-#include <cstdint>
-#include <vector>
-
-#include "palpate/dynamics/matrix.h"
+#include "palpate/dynamics/zero_row_sum_matrix.h"
 
 namespace palpate::dynamics {
 
-/// A node that is held along some axes: those rows and columns are the identity's.
-struct HeldNode {
-  int node;
-  std::array<bool, 3> axes;
-};
-
-/// A step matrix in half the memory and one pass less:
-///     A = diag(m) + L,   A_ij = L_ij,   A_ii = diag(m_i) - sum_j L_ij   (j != i).
-/// L, stiffness and damping of soft bodies, takes no energy from a rigid translation: its block rows sum to
-/// zero, and its off-diagonal blocks say all of it. They are kept in single precision, written straight to
-/// where the solver that owns this reads them; m is kept in double.  Rounding an L_ij then acts on the
-/// difference of two nodes' motions, never on a translation, however much stiffer than heavy a node is.
-struct BalancedMatrix {
-  const BlockSparse* pattern = nullptr;  ///< of whose values nothing is read
-  /// of slots (i, j) and (j, i) of the pattern alike: their block is at values[9 place]; -1 for i = j
-  std::vector<int> place;
-  /// blocks A_ij, i < j, times `scale`, each row by row; every one is written anew for each matrix
-  std::vector<float> values;
-  double scale = 1.0;  ///< a power of two, so that nothing is lost by it
-  VecX diagonal;       ///< m, of u-directions
-  /// of the nodes [m], as in BorderedMatrix; valid until factor_balanced() returns
-  const double* positions = nullptr;
-  const std::vector<HeldNode>* held = nullptr;
-  std::uint64_t places_version = 0;  ///< grows with every change of `place`
-};
+using BalancedMatrix = ZeroRowSumMatrix;
 
 }  // namespace palpate::dynamics

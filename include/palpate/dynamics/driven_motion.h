@@ -21,7 +21,7 @@ class DrivenMotion {
   /// G = dv_driven / du_master, dofs().size() x u_size of the master.
   virtual void jacobian(const StateView&, MatX& /*G*/) const {}
   /// K += -d(G^T f)/d(master) along the master's u-directions, with `f` held [N], one entry a direction of
-  /// dofs(): G turns with its master.
+  /// dofs(): G rotates with its master.
   virtual void add_geometric_stiffness(const StateView&, const VecX& /*f*/, MatX& /*K*/) const {}
 };
 

@@ -10,8 +10,8 @@
 namespace palpate::dynamics {
 
 /// Contact seen from the tool, linear in time and about one pose: F = F0 + (t - time) F1 + J dx + B (v - v0),
-/// dx = pose_difference(x0, x). F1 is what the bodies' own motion makes of the wrench while the tool stands.
-/// Wrenches and 6-vectors: (moment about the tool's origin, force) and (angular, linear), world axes.
+/// dx = pose_difference(x0, x). F1 is the rate of the wrench by the bodies' own motion while the tool is at
+/// rest. Wrenches and 6-vectors: (moment about the tool's origin, force) and (angular, linear), world axes.
 struct LinearisedContact {
   std::uint64_t version = 0;                      ///< grows with each record; 0: none yet
   double time = 0.0;                              ///< of x0 [s]

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "palpate/dynamics/balanced_matrix.h"
+#include "palpate/dynamics/matrix.h"
 #include "palpate/dynamics/state.h"
 
 namespace palpate::dynamics {
@@ -17,10 +17,10 @@ struct TermTraits {
   bool conservative = false;  ///< energy() is its potential
   /// kinked where it opens and closes; an ImEx split may put it on the explicit side
   bool contact = false;
-  bool balanced = false;  ///< its tangent is that of a BalancedMatrix, written by add_step(); or zero
+  bool zero_tangent = false;  ///< its tangent is zero: a dead load
 };
 
-/// What a term has to say about a state that a step failed at: an element turned inside out.
+/// A term's diagnosis of a state that a step failed at: an inverted element.
 struct Finding {
   int element = -1;      ///< in the term's own numbering; -1: nothing found
   double measure = 0.0;  ///< det F of an element
@@ -29,7 +29,8 @@ struct Finding {
 /// One sum in M u' = sum of f.  Force, tangent and energy of a soft body, of contact, of gravity.
 /// Sizes: f and u are layout.u_size; K = -df/dq N(q) (derivative along u-directions) and D = -df/du, both
 /// u_size x u_size. Evaluation is const on the model: scratch memory belongs to the object, so one object is
-/// not called from two threads at once.
+/// not called from two threads at once.  What only some terms can do is a capability that a term derives from
+/// beside this class: stored_tangent.h, psd_projection.h, step_assembly.h.
 class ForceTerm {
  public:
   virtual ~ForceTerm() = default;
@@ -44,28 +45,9 @@ class ForceTerm {
   virtual void add_force(const StateView& state, VecX& f) = 0;
   /// A += k_scale K + d_scale D, added into body, right, bottom and corner.
   virtual void add_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A) = 0;
-  /// The node block whose rows of the body part store_tangent() writes; -1: there is none.
-  virtual int stored_block() const { return -1; }
-  /// The rows of stored_block() become k_scale K + d_scale D, whatever stood in them: a matrix that need not
-  /// be set to zero first, nor be read.  Of terms that have such a block alone.  @throws InternalError from
-  /// this default
-  virtual void store_tangent(const StateView& state, double k_scale, double d_scale, BorderedMatrix& A);
   /// y += (k_scale K + d_scale D) x without assembling; x and y of u_size.
   virtual void apply_tangent(const StateView& state, double k_scale, double d_scale, const VecX& x,
                              VecX& y) = 0;
-  /// f += force - K shift - D change: a linearly implicit step's share in what it leaves, without the matrix.
-  /// Of balanced terms alone; this default is for a zero tangent.
-  virtual void add_step_force(const StateView& state, const VecX& /*shift*/, const VecX& /*change*/,
-                              VecX& f) {
-    add_force(state, f);
-  }
-  /// f += force - K shift and A += k_scale K + d_scale D: a linearly implicit step's share in one pass over
-  /// what force and tangent have in common.  Off-diagonal blocks are stored, not added: System sees to it
-  /// that no two terms write the same.  Of balanced terms alone; this default is for a zero tangent.
-  virtual void add_step(const StateView& state, const VecX& /*shift*/, double /*k_scale*/, double /*d_scale*/,
-                        VecX& f, BalancedMatrix& /*A*/) {
-    add_force(state, f);
-  }
   /// Potential energy [J]; zero where there is none.
   virtual double energy(const StateView&) { return 0.0; }
   /// Power taken out by damping and friction, >= 0 [W]; zero where there is none.
@@ -75,15 +57,12 @@ class ForceTerm {
   /// returns true when the force changed by it (multistep methods then restart).
   virtual bool refresh(const StateView&) { return false; }
 
-  /// Asks for a positive semi-definite tangent from now on (true), or for the one that was chosen by name
-  /// (false).  A term that has only one ignores it.
-  virtual void set_definite(bool) {}
   /// The worst of what can go wrong in this term at a state; for traces, not for the step.
   virtual Finding inspect(const StateView&) const { return {}; }
 
   /// Root functions for event location: g changes sign at an event (a gap closing).
   virtual int event_count() const { return 0; }
-  /// Grows whenever event_count() or what one of the functions stands for changed: a root finder then
+  /// Grows whenever event_count() or the meaning of one of the functions changed: a root finder then
   /// compares no old value with a new one.
   virtual std::uint64_t events_version() const { return 0; }
   virtual void events(const StateView&, double* /*g*/) {}

@@ -6,13 +6,12 @@
 #include <type_traits>
 
 #include "palpate/core/registry.h"
-#include "palpate/dynamics/balanced_matrix.h"
+#include "palpate/dynamics/matrix.h"
 #include "palpate/dynamics/spec.h"
 
 namespace palpate::dynamics {
 
-/// kRounded: of factor_balanced() alone.
-enum class SolveStatus { kOk, kIndefinite, kSingular, kNotConverged, kRounded };
+enum class SolveStatus { kOk, kIndefinite, kSingular, kNotConverged };
 
 struct SolverCounters {
   long symbolic = 0;  ///< symbolic analyses (once a pattern)
@@ -68,16 +67,9 @@ inline SolverCounters& SolverCounters::operator+=(const SolverCounters& other) {
   return *this;
 }
 
-/// A system of equations that is known by what a vector leaves of it.
-class Residual {
- public:
-  virtual ~Residual() = default;
-  /// r = b - A x; zero along held directions.
-  virtual void at(const VecX& x, VecX& r) = 0;
-};
-
 /// Solves A X = B for a bordered matrix.  Symbolic analysis once per pattern version; numeric work only when
-/// the values' version changed.
+/// the values' version changed.  What only some solvers can do is a capability that a solver derives from
+/// beside this class: mixed_precision_step.h.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
@@ -91,18 +83,6 @@ class LinearSolver {
   virtual SolveStatus solve(const MatX& B, MatX& X) = 0;
   virtual SolveStatus solve(const VecX& b, VecX& x) = 0;
   virtual const SolverCounters& counters() const = 0;
-
-  /// Room for a matrix of this pattern in the solver's own order and precision, to be written and then
-  /// prepared by factor_balanced(); null where it takes none. The pattern stays where it is until the next
-  /// call.
-  virtual BalancedMatrix* balanced(const BlockSparse& /*pattern*/) { return nullptr; }
-  /// factor() of what was written there.  Right-hand sides are zero along held directions.  kRounded: the
-  /// solver's precision is too coarse for a solution of this matrix as it stands there, and solve_near() is
-  /// to solve it.  Anything else but kOk: it wants the whole matrix in double.
-  virtual SolveStatus factor_balanced() { return SolveStatus::kSingular; }
-  /// Solves A x = b by the balanced matrix last factored, to which A is near, as accurately as a solve with A
-  /// itself.  Anything but kOk: A's own matrix is wanted; the whole one, where that was it.
-  virtual SolveStatus solve_near(Residual& /*left*/, VecX& /*x*/) { return SolveStatus::kNotConverged; }
 };
 
 using MakeLinearSolver = std::unique_ptr<LinearSolver> (*)(const IntegratorSpec&);

@@ -71,8 +71,8 @@ class PatternBuilder {
   NodePairs pairs_;  ///< as they came
 };
 
-/// The pattern of some lists together, and of the diagonal: what a PatternBuilder builds that was told all of
-/// them, without sorting them anew.
+/// The pattern of some lists together, and of the diagonal: what a PatternBuilder builds that was given all
+/// of them, without sorting them anew.
 BlockSparse pattern_of(int node_count, const std::vector<const NodePairs*>& lists);
 
 /// The matrix of one implicit step in u-space: a sparse body part over the nodes, bordered by dense rows and

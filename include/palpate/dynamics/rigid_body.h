@@ -15,7 +15,7 @@ namespace palpate::dynamics {
 /// angle counts as length/`length`).
 BlockSpec rigid_block(std::string name, double length, double speed);
 
-/// M = diag(R I R^T, m): turns with the body.  @param inertia principal moments [kg m^2]  @throws Error for
+/// M = diag(R I R^T, m): rotates with the body.  @param inertia principal moments [kg m^2]  @throws Error for
 /// moments that are no body's
 std::shared_ptr<InertiaTerm> make_rigid_inertia(int block_id, double mass, const Vec3& inertia);
 

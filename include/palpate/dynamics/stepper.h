@@ -114,8 +114,9 @@ class StepTrace {
 
 class Stepper;
 
-/// Told of every accepted step while its interpolant stands: dense_output then answers for times in [t0, t1],
-/// and the State is at t1. What a loop needs that wants the solution at more times than it lands on.
+/// Called after every accepted step while its interpolant is valid: dense_output then answers for times in
+/// [t0, t1], and the State is at t1. What a loop needs that wants the solution at more times than it lands
+/// on.
 class StepFollower {
  public:
   virtual ~StepFollower() = default;

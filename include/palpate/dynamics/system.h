@@ -8,6 +8,9 @@
 #include "palpate/dynamics/force_term.h"
 #include "palpate/dynamics/inertia_term.h"
 #include "palpate/dynamics/linear_solver.h"
+#include "palpate/dynamics/psd_projection.h"
+#include "palpate/dynamics/stored_tangent.h"
+#include "palpate/dynamics/zero_row_sum_matrix.h"
 
 namespace palpate::dynamics {
 
@@ -17,8 +20,9 @@ namespace palpate::dynamics {
 /// Driven directions stay in q and u (no renumbering), but not among the unknowns: their rows and columns of
 /// every matrix made here are those of the identity, their right-hand sides are zero, and `impose` writes
 /// their known values. A direction with a master block is reduced by the congruence T = [I; G]: its force and
-/// tangent enter the master's rows, and with the tangent comes what the turning of G makes of the force held:
-/// K of the master gets -d(G^T c)/dq, c = f - M u' what the nodes press on it with.
+/// tangent enter the master's rows, and with the tangent comes the geometric stiffness of the constraint: as
+/// G rotates with the master, K of the master gets -d(G^T c)/dq, where c = f - M u' is the force that the
+/// nodes exert on it.
 class System {
  public:
   void add(std::shared_ptr<ForceTerm> term);
@@ -36,9 +40,9 @@ class System {
   const std::vector<int>& driven_dofs() const { return driven_dofs_; }
   bool any_driven() const { return !driven_dofs_.empty(); }
   bool symmetric() const;  ///< all terms' tangents are
-  /// ForceTerm::set_definite of every term.
-  void set_definite(bool definite);
-  bool definite() const { return definite_; }
+  /// Projects the tangents of all terms that can be (PsdProjectedTerm), or no longer.
+  void project_to_psd(bool on);
+  bool projects_to_psd() const { return projects_to_psd_; }
   /// Root functions of all terms, one after the other (event location).
   int event_count() const;
   std::uint64_t events_version() const;
@@ -60,18 +64,17 @@ class System {
   /// masters where they have one).  Rebuilds the pattern when a term's version grew.
   void step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A,
                    const TermFilter& filter = {});
-  /// Whether balanced_step() serves: all tangents are balanced and share no pair of nodes, the mass is
-  /// lumped, no block is rigid.
-  bool balanced(const StateView& state);
-  /// Of all force terms and masses, at the last balanced() or step_matrix().
+  /// Of all force terms and masses, as they are now: the pattern of step_matrix().
+  const BlockSparse& updated_pattern(const StateView& state);
+  /// As it was at the last updated_pattern() or step_matrix().
   const BlockSparse& pattern() const { return pattern_; }
-  /// f = sum of force - K shift, and A = m_scale M + d_scale D + k_scale K with the driven directions held,
-  /// in one pass.
-  void balanced_step(const StateView& state, const VecX& shift, double m_scale, double d_scale,
-                     double k_scale, VecX& f, BalancedMatrix& A);
-  /// r = h (sum of force - K shift - D change) - M change, zero along driven directions, where balanced() is
-  /// true; in one pass, without a matrix.
-  void step_left(const StateView& state, const VecX& shift, const VecX& change, double h, VecX& r);
+  /// Pairs of nodes that a term couples, a node with itself included, in that pattern.
+  const NodePairs& node_pairs(std::size_t term) const { return term_pairs_[term].pairs; }
+  /// Masses of the nodal u-directions where they are lumped [kg]; empty where they are not.
+  const VecX& nodal_mass() const { return nodal_mass_; }
+  double mean_nodal_mass() const { return mean_nodal_mass_; }
+  /// Nodes with driven directions.
+  const std::vector<HeldNode>& driven_nodes() const { return driven_nodes_; }
   /// y = M x, all directions
   void apply_mass(const StateView& state, const VecX& x, VecX& y) const;
   /// Zeroes the driven entries of a residual, after adding their reduction to the masters' rows.
@@ -79,8 +82,8 @@ class System {
   /// The other way: the driven entries of a velocity change follow those of their masters (G x_master), or
   /// are zero.
   void expand(const StateView& state, VecX& x) const;
-  /// y += K x on masters' rows, K what the turning of G adds to the tangent (step_matrix has it in); nothing
-  /// without masters.
+  /// y += K x on masters' rows, K the geometric stiffness of the constraints (step_matrix includes it);
+  /// nothing without masters.
   void apply_carried_stiffness(const StateView& state, const VecX& x, VecX& y, const TermFilter& filter = {});
   /// r = M u' - f on free directions for a given u' (driven entries of which are replaced by what drives
   /// them), 0 on driven ones.
@@ -97,11 +100,10 @@ class System {
     std::shared_ptr<DrivenMotion> motion;
     int master_offset = -1;  ///< of the master's u, -1 without one
     int master_size = 0;
-    VecX x, v, a, c;  ///< c: what the carried directions press on their master with [N]
-    MatX G, K;        ///< K: its turning stiffness under c, at the last evaluate_carried_stiffness
+    VecX x, v, a, c;  ///< c: force of the carried directions on their master [N]
+    MatX G, K;        ///< K: geometric stiffness under c, at the last evaluate_carried_stiffness
   };
   void update_pattern(const StateView& state);
-  bool tangents_share_no_pair(const Layout& layout) const;
   void ensure_pattern(const StateView& state, BorderedMatrix& A);
   void evaluate_driven(const StateView& state) const;
   void reduce_to_masters(const StateView& state, BorderedMatrix& A) const;
@@ -114,6 +116,8 @@ class System {
   void assemble_mass(const StateView& state, BorderedMatrix& A);
 
   std::vector<std::shared_ptr<ForceTerm>> terms_;
+  std::vector<StoredTangentTerm*> stored_tangents_;  ///< of each term; null where it lacks the capability
+  std::vector<PsdProjectedTerm*> projected_terms_;   ///< those that have it
   std::vector<std::shared_ptr<InertiaTerm>> inertias_;
   mutable std::vector<Driven> driven_;
   std::unique_ptr<LinearSolver> mass_solver_;
@@ -121,9 +125,9 @@ class System {
   std::uint64_t mass_layout_ = 0;  ///< layout version that the pattern of `mass_` was built for
   bool nodal_mass_diagonal_ = true;
   bool any_master_ = false;
-  bool definite_ = false;
+  bool projects_to_psd_ = false;
   VecX nodal_mass_, inverse_nodal_mass_;
-  double mass_scale_ = 1.0;  ///< a power of two near 1 over the mean nodal mass
+  double mean_nodal_mass_ = 0.0;
   /// of each term, whether its tangent is in the matrix that is being assembled
   std::vector<char> term_is_in_;
   std::vector<char> driven_mask_;
@@ -142,8 +146,7 @@ class System {
   };
   std::vector<TermPairs> term_pairs_;  ///< of each term, at its version
   NodePairs mass_pairs_;
-  std::uint64_t pairs_layout_ = 0;  ///< layout version that they were told for
-  bool share_no_pair_ = false;      ///< balanced tangents of `pattern_`
+  std::uint64_t pairs_layout_ = 0;  ///< layout version that they were found for
   mutable VecX scratch_, known_;
   VecX force_scratch_, held_scratch_, acceleration_scratch_;
 };

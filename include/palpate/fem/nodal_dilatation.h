@@ -25,7 +25,7 @@ double kept_volumetric_share(const Material& material);
 /// Limits: displacements converge for nu -> 0.5, pressures of single nodes may alternate around the true one
 /// (equal orders of displacement and pressure): average them before reading.  Boundary nodes average over the
 /// inside alone.
-class NodalDilatation : public dynamics::ForceTerm {
+class NodalDilatation : public dynamics::ForceTerm, public dynamics::PsdProjectedTerm {
  public:
   /// @param options  of the SoftBody: 1 - share_of(material) of lambda acts here; both tangent settings act
   ///   as there
@@ -34,7 +34,7 @@ class NodalDilatation : public dynamics::ForceTerm {
   ~NodalDilatation() override;
 
   std::string_view name() const override;
-  void set_definite(bool definite) override;
+  void project_to_psd(bool on) override;
   dynamics::TermTraits traits() const override;
   void add_pattern(dynamics::PatternBuilder& pattern) const override;
   void add_force(const dynamics::StateView& state, VecX& f) override;

@@ -6,6 +6,9 @@
 
 #include "palpate/dynamics/force_term.h"
 #include "palpate/dynamics/inertia_term.h"
+#include "palpate/dynamics/psd_projection.h"
+#include "palpate/dynamics/step_assembly.h"
+#include "palpate/dynamics/stored_tangent.h"
 #include "palpate/fem/material.h"
 #include "palpate/fem/options.h"
 #include "palpate/mesh/mesh.h"
@@ -34,7 +37,10 @@ struct MemoryUse {
 /// elements at node i. Materials belong to elements: where two meet, they share nodes and displacements, and
 /// the traction is continuous as far as the mesh resolves it. Elements are worked through in the lanes of
 /// vectors and on core's workers (core/workers.h); results do not depend on the number of threads.
-class SoftBody : public dynamics::ForceTerm {
+class SoftBody : public dynamics::ForceTerm,
+                 public dynamics::StoredTangentTerm,
+                 public dynamics::FusedStepTerm,
+                 public dynamics::PsdProjectedTerm {
  public:
   /// @param rest  rest positions and tetrahedra, volumes positive  @param block_id  the node block in the
   ///   State
@@ -44,7 +50,7 @@ class SoftBody : public dynamics::ForceTerm {
 
   std::string_view name() const override;
   /// The projected tangent (symmetric, positive semi-definite) in place of the one that the options name.
-  void set_definite(bool definite) override;
+  void project_to_psd(bool on) override;
   /// The element with the smallest det F <= 0.
   dynamics::Finding inspect(const dynamics::StateView& state) const override;
   dynamics::TermTraits traits() const override;
@@ -58,10 +64,11 @@ class SoftBody : public dynamics::ForceTerm {
                      dynamics::BorderedMatrix& A) override;
   void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x,
                      VecX& y) override;
+  bool fuses_step() const override;
   void add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change,
                       VecX& f) override;
   void add_step(const dynamics::StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
-                dynamics::BalancedMatrix& A) override;
+                dynamics::ZeroRowSumMatrix& A) override;
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;
 

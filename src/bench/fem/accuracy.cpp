@@ -101,7 +101,6 @@ std::vector<AccuracyPoint> run_accuracy(const std::string& size_name, bool (*sto
   for (const double h : {1e-3, 5e-4, 2e-4}) measure({.name = "symplectic-euler", .step_s = h});
   for (const double rtol : {1e-1, 1e-2, 1e-3, 1e-4})
     measure({.name = "cvode-bdf", .rtol = rtol, .linear_solver = "auto", .linear_rtol = 1e-3});
-  for (const AccuracyPoint& p : peer_accuracy(size.name)) points.push_back(p);
   return points;
 }
 

@@ -5,6 +5,7 @@
 #include "palpate/bench/fem.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
+#include "palpate/dynamics/mixed_precision_step.h"
 #include "palpate/dynamics/state.h"
 #include "palpate/fem/soft_body.h"
 #include "palpate/integrate/integrators.h"
@@ -85,8 +86,9 @@ std::vector<ElementTiming> time_elements(const BeamSize& size, double time_s) {
   A.body = pattern.build();
   {
     const auto solver = linear::make_linear_solver("pcg-single", {.linear_rtol = 1e-3});
-    BalancedMatrix* room = solver->balanced(A.body);
-    PALPATE_CHECK(room, "pcg-single takes balanced matrices");
+    auto& mixed = dynamic_cast<MixedPrecisionSolver&>(*solver);
+    ZeroRowSumMatrix* room = mixed.step_matrix(A.body);
+    PALPATE_CHECK(room, "pcg-single has no room for a step matrix");
     room->diagonal = VecX::Constant(beam.force.size(), kMass);
     time("one pass", [&] { body.add_step(at, beam.shift, kStiffness, kRate, beam.force, *room); });
   }

@@ -5,6 +5,11 @@
 #include "palpate/bench/fem.h"
 
 namespace palpate::bench {
+namespace {
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "null"; }
+
+}  // namespace
 
 std::string to_json(const FemBenchReport& report) {
   std::string out = "{\n  \"limits\": [";
@@ -14,7 +19,7 @@ std::string to_json(const FemBenchReport& report) {
         "{}\n    {{\"threads\": {}, \"copy_8mb_gb_s\": {:.4g}, \"copy_67mb_gb_s\": {:.4g}, \"gflop_s\": "
         "{:.4g}, \"double_gflop_s\": {:.4g}, \"reference_copy_67mb_gb_s\": {}, \"bandwidths\": [",
         i ? "," : "", l.threads, l.small_copy_gb_s, l.large_copy_gb_s, l.gflop_s, l.double_gflop_s,
-        reference_bandwidth_gb_s(l.threads));
+        number(l.reference_copy_gb_s));
     for (std::size_t k = 0; k < l.bandwidths.size(); ++k)
       out +=
           fmt::format("{}{{\"bytes\": {:.0f}, \"read_gb_s\": {:.4g}, \"write_gb_s\": {:.4g}}}", k ? ", " : "",
@@ -29,7 +34,7 @@ std::string to_json(const FemBenchReport& report) {
         "\"step_s\": {:g}, \"linear_rtol\": {:g}, \"linear_solver\": \"{}\", "
         "\"threads\": {}, \"one_pass\": {}, \"force_ms\": {:.4g}, \"matrix_ms\": {:.4g}, \"factor_ms\": "
         "{:.4g}, \"solve_ms\": {:.4g}, \"step_ms\": {:.4g}, \"mean_step_ms\": {:.4g}, \"near\": {:.3g}, "
-        "\"scaled_step_ms\": {:.4g}, \"least_step_ms\": {:.4g}, \"least_solve_ms\": {:.4g}, \"step_cpu_ms\": "
+        "\"scaled_step_ms\": {}, \"least_step_ms\": {:.4g}, \"least_solve_ms\": {:.4g}, \"step_cpu_ms\": "
         "{:.4g}, \"solver_cpu_ms\": {:.4g}, "
         "\"iterations\": {:.4g}, \"stiffness_number\": {:.4g}, \"energy_error\": {:.3g}, \"mass_error\": "
         "{:.3g}, \"end_rotation_rad\": {:.3g}, \"force_limit_ms\": {:.4g}, \"matrix_limit_ms\": {:.4g}, "
@@ -37,7 +42,7 @@ std::string to_json(const FemBenchReport& report) {
         "\"needed_bytes\": {:.0f}, \"body_bytes\": {:.0f}, \"peak_bytes\": {:.0f}}}",
         i ? "," : "", r.size, r.nodes, r.tetrahedra, r.youngs_modulus_pa, r.step_s, r.linear_rtol,
         r.linear_solver, r.threads, r.one_pass, r.force_ms, r.matrix_ms, r.factor_ms, r.solve_ms, r.step_ms,
-        r.step_mean_ms, r.near, r.scaled_ms, r.step_least_ms, r.solve_least_ms, r.step_cpu_ms,
+        r.step_mean_ms, r.near, number(r.scaled_ms), r.step_least_ms, r.solve_least_ms, r.step_cpu_ms,
         r.solver_cpu_ms, r.iterations, r.stiffness, r.error, r.mass_error, r.rotation_rad, r.force_limit_ms,
         r.matrix_limit_ms, r.factor_limit_ms, r.solve_limit_ms, r.needed_bytes, r.body_bytes,
         std::isfinite(r.peak_bytes) ? r.peak_bytes : 0.0);

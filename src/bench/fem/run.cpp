@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 
 #include "bench/fem/beam.h"
 #include "bench/fem/peak_memory.h"
@@ -12,6 +13,7 @@
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/core/workers.h"
+#include "palpate/dynamics/mixed_precision_step.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 
@@ -27,29 +29,35 @@ constexpr double kWarmTo = 0.2, kWarmStep = 1e-2;
 
 /// The solver that is timed, and now and then a direct one behind it, of the step's matrix assembled anew in
 /// double, that tells the error of its answer.
-class CheckedSolver final : public LinearSolver {
+class CheckedSolver final : public LinearSolver, public MixedPrecisionSolver {
  public:
   CheckedSolver(std::unique_ptr<LinearSolver> solver, Beam& beam, const IntegratorSpec& spec)
-      : solver_(std::move(solver)), beam_(beam), spec_(spec) {}
+      : solver_(std::move(solver)),
+        mixed_(dynamic_cast<MixedPrecisionSolver*>(solver_.get())),
+        beam_(beam),
+        spec_(spec) {}
   std::string name() const override { return solver_->name(); }
   bool supports_unsymmetric() const override { return solver_->supports_unsymmetric(); }
   SolveStatus factor(const BorderedMatrix& A) override {
     return timed([&] { return solver_->factor(A); });
   }
-  BalancedMatrix* balanced(const BlockSparse& pattern) override { return solver_->balanced(pattern); }
-  SolveStatus factor_balanced() override {
-    ++balanced_matrices;
-    return timed([&] { return solver_->factor_balanced(); });
+  ZeroRowSumMatrix* step_matrix(const BlockSparse& pattern) override {
+    return mixed_ ? mixed_->step_matrix(pattern) : nullptr;
   }
-  SolveStatus solve_near(Residual& left, VecX& x) override {
+  StepMatrixUse factor_step_matrix() override {
+    ++step_matrices;
+    return timed([&] { return mixed_->factor_step_matrix(); });
+  }
+  std::optional<SolveStatus> solve_by_refinement(ResidualFunction& residual, VecX& x) override {
+    if (!mixed_) return {};
     const long before = solver_->counters().near;
-    const SolveStatus status = timed([&] { return solver_->solve_near(left, x); });
+    const std::optional<SolveStatus> status = timed([&] { return mixed_->solve_by_refinement(residual, x); });
     if (status != SolveStatus::kOk) return status;
-    near += static_cast<int>(solver_->counters().near - before);
+    lagged += static_cast<int>(solver_->counters().near - before);
     if (!check_next) return status;
     const double start = wall_seconds(), start_cpu = thread_cpu_seconds();
     VecX rhs;
-    left.at(VecX::Zero(x.size()), rhs);
+    residual.at(VecX::Zero(x.size()), rhs);
     check(rhs, x);
     checking_s += wall_seconds() - start;
     checking_cpu_s += thread_cpu_seconds() - start_cpu;
@@ -71,7 +79,7 @@ class CheckedSolver final : public LinearSolver {
 
   bool check_next = false;
   double cpu_s = 0.0, checking_s = 0.0, checking_cpu_s = 0.0, error = 0.0, mass_error = 0.0;
-  int checks = 0, balanced_matrices = 0, near = 0;
+  int checks = 0, step_matrices = 0, lagged = 0;
   /// Of the step that begins now.
   const BorderedMatrix& matrix() {
     const double h = spec_.step_s, t1 = beam_.state.time() + h;
@@ -82,9 +90,9 @@ class CheckedSolver final : public LinearSolver {
 
  private:
   template <class Work>
-  SolveStatus timed(Work&& work) {
+  std::invoke_result_t<Work> timed(Work&& work) {
     const double start = thread_cpu_seconds();
-    const SolveStatus status = work();
+    const auto status = work();
     cpu_s += thread_cpu_seconds() - start;
     return status;
   }
@@ -115,6 +123,7 @@ class CheckedSolver final : public LinearSolver {
   }
 
   std::unique_ptr<LinearSolver> solver_, direct_;
+  MixedPrecisionSolver* mixed_;  ///< capability of solver_; null: it lacks it
   Beam& beam_;
   IntegratorSpec spec_;
   BorderedMatrix matrix_;
@@ -214,7 +223,7 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
   row.youngs_modulus_pa = youngs_modulus;
   row.step_s = spec.step_s;
   row.linear_rtol = spec.linear_rtol;
-  row.one_pass = solver.balanced_matrices + solver.near >= steps;
+  row.one_pass = solver.step_matrices + solver.lagged >= steps;
   row.force_ms = median(ms[0]);
   row.matrix_ms = median(ms[1]);
   row.factor_ms = median(ms[2]);
@@ -245,7 +254,7 @@ void set_limits(FemBenchRow& row, const MachineLimits& limits) {
                           row.one_pass,
                           row.near > 0.5};
   const StepWork work = work_of(counts);
-  row.scaled_ms = row.step_ms * limits.large_copy_gb_s / reference_bandwidth_gb_s(limits.threads);
+  row.scaled_ms = row.step_ms * limits.large_copy_gb_s / limits.reference_copy_gb_s;
   row.force_limit_ms = work.force.limit_ms(limits, work.working_set);
   row.matrix_limit_ms = work.matrix.limit_ms(limits, work.working_set);
   row.factor_limit_ms = work.factor.limit_ms(limits, work.working_set);
@@ -285,7 +294,10 @@ FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)()) {
         report.elements.push_back(timing);
       }
     }
-  for (const int threads : options.threads) report.limits.push_back(measure_limits(threads));
+  for (const int threads : options.threads) {
+    report.limits.push_back(measure_limits(threads));
+    report.limits.back().reference_copy_gb_s = options.published.reference_bandwidth_gb_s(threads);
+  }
   for (FemBenchRow& row : report.rows)
     for (const MachineLimits& limits : report.limits)
       if (limits.threads == row.threads) set_limits(row, limits);

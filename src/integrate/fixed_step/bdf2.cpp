@@ -14,8 +14,8 @@ using namespace dynamics;
 ///     u1],
 /// theta_before the displacement of the last step (q0 = q_before (+) theta_before).  At r = 1: c = 1/3, g =
 /// 2h/3. A Stage in the unknown a with theta = c theta_before + g (u0 + c (u0 - u_before)) + g^2 a; matrix M
-/// + g D + g^2 K. The displacements of a rigid body are turns seen from q0; their rate differs from w by
-/// O(h^2): order 2 there as well.
+/// + g D + g^2 K. The displacements of a rigid body are rotations relative to q0; their rate differs from w
+/// by O(h^2): order 2 there as well.
 ///
 /// Start, after re-initialisation, and where r > 1 + sqrt(2) (beyond which steps that keep growing are not
 /// zero-stable): one step of the L-stable SDIRK of order 2 (Alexander 1977), s = 1 - 1/sqrt(2),

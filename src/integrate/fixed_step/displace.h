@@ -4,15 +4,15 @@
 namespace palpate::integrate {
 
 /// q1 = q0 (+) theta: the configuration that a displacement theta along u-directions leads to, [m] of nodes
-/// and [rad] of a turn in world axes:
+/// and [rad] of a rotation in world axes:
 ///     q1 = q0 + N((q0 + q1)/2) theta.
 /// On nodes that is the sum.  On a rigid body q' = N(q) u is linear in the quaternion, so the rule is
-/// Cayley's map, a turn by 4 atan(|theta|/4)
+/// Cayley's map, a rotation by 4 atan(|theta|/4)
 /// = |theta| + O(|theta|^3) that keeps the quaternion's length: of order 2 where theta is the integral of the
 /// angular velocity over a step,
 /// and exactly the implicit midpoint rule where theta = h u_mid.
 /// Solved to rounding by fixed-point iteration, which contracts by |theta|/4.
-/// @param scratch  sized here  @return false where it does not converge (a turn of more than a half in one
+/// @param scratch  sized here  @return false where it does not converge (more than half a revolution in one
 ///   step) or is not finite
 bool displace(const dynamics::Layout& layout, const double* q0, const double* theta, double* q1,
               VecX& scratch);

@@ -49,7 +49,7 @@ NewtonResult StageNewton::solve(const Stage& stage, const StateView& from, VecX&
   for (int dof : system_.driven_dofs()) a[dof] = 0.0;
   NewtonResult second;
   {
-    const DefiniteTangents definite(system_);
+    const ProjectedTangents projected(system_);
     second = iterate(kDefiniteIterations, true);
   }
   forget();  // the next step wants the true tangent
@@ -116,7 +116,7 @@ SolveStatus StageNewton::refresh() {
   return status;
 }
 
-/// Of the increments of q and u that an increment d of the unknown makes.
+/// Weighted norm of the increments of q and u that an increment d of the unknown makes.
 double StageNewton::norm(const VecX& d) {
   const dynamics::Layout& layout = *from_->layout;
   dq_.resize(layout.q_size);

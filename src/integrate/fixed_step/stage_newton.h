@@ -33,7 +33,7 @@ struct Stage {
 ///   the tolerance.
 /// Where this fails (no convergence in 20 iterations, no descent, a trial that is not finite) it is tried
 /// once more from the start configuration (theta = 0: no element is worse there than it was), fresh and with
-/// a definite tangent (System::set_definite), in 60 iterations.
+/// projected tangents (System::project_to_psd), in 60 iterations.
 class StageNewton : private NewtonEquation {
  public:
   StageNewton(dynamics::System& system, const IntegratorSpec& spec,

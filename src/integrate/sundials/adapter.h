@@ -96,7 +96,7 @@ namespace sun __attribute__((visibility("hidden"))) {
     int setup() override;
     int solve(N_Vector x, N_Vector b) override;
     N_Vector iterate() const override { return newton_state(); }
-    void set_definite(bool on) override { problem_->set_definite(on); }
+    void project_to_psd(bool on) override { problem_->project_to_psd(on); }
     virtual dynamics::SolveStatus solve_newton(const double* y, const double* r, double* d);
     /// Newton's iteration with our own test of convergence; made with the memory, freed by the base.
     SUNNonlinearSolver make_newton();
@@ -134,7 +134,7 @@ namespace sun __attribute__((visibility("hidden"))) {
     void fill_weights(N_Vector y, N_Vector w) const;
     bool finds_roots() const { return spec_.events == "root-finding"; }
     double weight_scale_ = 1.0;
-    Counts counted_;  ///< at the last look
+    Counts counted_;  ///< when they were last read
     long newton_before_ = 0;
     double last_correction_ = 0.0;  ///< weighted norm of the last Newton correction
     dynamics::StepFollower* follower_ = nullptr;

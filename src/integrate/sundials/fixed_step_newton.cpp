@@ -47,7 +47,7 @@ struct Operations {
   // the test is Deuflhard's
   static int no_test(SUNNonlinearSolver, SUNNonlinSolConvTestFn, void*) { return SUN_NLS_SUCCESS; }
   static int no_limit(SUNNonlinearSolver, int) { return SUN_NLS_SUCCESS; }
-  // Of the last solve: the library adds them up.
+  // Iterations of the last solve: the library sums them.
   template <class Count>
   static int iterations(SUNNonlinearSolver s, Count* n) {
     *n = of(s).iterations_;
@@ -108,9 +108,9 @@ int FixedStepNewton::solve(N_Vector correction, N_Vector weights, double toleran
   iterations_ = result.iterations;
   if (result.status != StepStatus::kOk && flag_ >= 0) {
     x = first;
-    hook_.set_definite(true);
+    hook_.project_to_psd(true);
     result = newton_.solve(*this, x, kDefiniteIterations, DampedNewton::Way::kFresh, false);
-    hook_.set_definite(false);
+    hook_.project_to_psd(false);
     usable_ = false;  // the next solve wants the true tangent
     iterations_ += result.iterations;
   }
@@ -134,7 +134,7 @@ bool FixedStepNewton::evaluate(const VecX& x) {
 
 bool FixedStepNewton::solved() const { return (entries(residual_).array() == 0.0).all(); }
 
-/// Of the stage: what is solved for is a correction to a prediction of it.
+/// The value of the stage: the unknown is a correction to a prediction of it.
 double FixedStepNewton::rounding(const VecX&) {
   const N_Vector stage = hook_.iterate();
   return stage ? kRounding * N_VWrmsNorm(stage, weights_) / tolerance_ : 0.0;

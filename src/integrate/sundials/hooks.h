@@ -4,7 +4,7 @@
 namespace palpate::integrate {
 namespace sun __attribute__((visibility("hidden"))) {
 
-  /// What stands behind a SUNLinearSolver of ours.  Return values are SUNDIALS': 0 well, > 0 try a smaller
+  /// The functions behind a SUNLinearSolver of ours.  Return values are SUNDIALS': 0 well, > 0 try a smaller
   /// step, < 0 give up.
   class NewtonHook {
    public:
@@ -13,7 +13,7 @@ namespace sun __attribute__((visibility("hidden"))) {
     virtual int solve(N_Vector x, N_Vector b) = 0;  ///< (I - gamma J) x = b
     /// y where the nonlinear residual was last evaluated; null: unknown
     virtual N_Vector iterate() const { return nullptr; }
-    virtual void set_definite(bool) {}  ///< from the next setup on: positive semi-definite tangents
+    virtual void project_to_psd(bool) {}  ///< from the next setup on: positive semi-definite tangents
   };
 
   /// A direct linear solver and a matrix with nothing in it: SUNDIALS passes both around, the work is the

@@ -20,7 +20,7 @@ class BodyFactor {
   virtual void analyse(const dynamics::BlockSparse& A) = 0;
   /// The fill-reducing ordering that the analysis took, where there is a choice.
   virtual std::string ordering() const { return {}; }
-  /// How many analyses looked for an ordering.
+  /// How many analyses computed an ordering.
   virtual long orderings() const { return 0; }
   /// Numeric factor of A, whose pattern was analysed.
   virtual dynamics::SolveStatus factor(const dynamics::BlockSparse& A) = 0;

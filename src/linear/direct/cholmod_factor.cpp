@@ -198,7 +198,7 @@ class CholmodFactor final : public BodyFactor {
   cholmod_factor* L_ = nullptr;
   cholmod_dense *X_ = nullptr, *Y_ = nullptr, *E_ = nullptr;  // kept: a warm solve allocates nothing
   std::string ordering_;
-  std::vector<int> order_;  ///< as it was last looked for
+  std::vector<int> order_;  ///< as it was last computed
   double flops_ = 0.0;      ///< of the factor then
   long orderings_ = 0;
   std::size_t n_ = 0;

@@ -19,7 +19,7 @@ constexpr double kGrowthKept = 0.1;
 /// Natarajan 2010), ordered by AMD; rows scaled by their largest entry.
 /// New values go through the pivot order of the last full factorisation: no search, no graph traversal.  What
 /// an order of other values can do wrong is growth, so the reciprocal pivot growth  min_j max_i |a_ij| /
-/// max_i |u_ij|  is looked at after each; where it has fallen by ten (a digit of the answer is gone), or a
+/// max_i |u_ij|  is computed after each; where it has fallen by ten (a digit of the answer is gone), or a
 /// pivot is zero, pivots are chosen afresh.
 class KluFactor final : public BodyFactor {
  public:

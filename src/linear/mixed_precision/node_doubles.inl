@@ -51,7 +51,7 @@ void multiply_double(const DoubleBlocks& A, const double* v, double* Av, int fir
   }
 }
 
-// Products of a balanced matrix in double, half as many rows at a time.
+// Products of a zero-row-sum matrix in double, half as many rows at a time.
 
 constexpr int kHalf = PALPATE_LANES / 2;
 typedef double Half __attribute__((vector_size(8 * kHalf)));
@@ -140,7 +140,8 @@ PALPATE_INLINE void scatter_subtract(double* field, const int* at, const Half3& 
 }
 #endif
 
-void multiply_balanced(const PackedRows& A, const double* mass, double unit, const double* v, double* Av) {
+void multiply_zero_row_sum(const PackedRows& A, const double* mass, double unit, const double* v,
+                           double* Av) {
   const std::int64_t begin = 4 * static_cast<std::int64_t>(A.first_node),
                      end = 4 * static_cast<std::int64_t>(A.last_node);
   for (std::int64_t k = begin; k < end; ++k) Av[k] = 0.0;

@@ -21,7 +21,7 @@ struct PackedRows {
   float* own;               ///< own blocks of group g, as those of a step
   /// entry (r, c) of the blocks of step s at [kNumbersOfStep s + kLanesOfGroup (3 c + r)], 64-byte aligned
   float* values;
-  /// of a balanced matrix m, four numbers a node: row i is m_i p_i + sum_j A_ij (p_j - p_i), of which own
+  /// of a zero-row-sum matrix m, four numbers a node: row i is m_i p_i + sum_j A_ij (p_j - p_i), of which own
   /// blocks are no part; null: a whole matrix
   const float* mass;
 };
@@ -33,7 +33,7 @@ struct BlockSource {
   /// kStepsAhead more steps are readable behind the last
   const int* offset;
   /// a bit for each lane, of groups and then of steps: the block is the transposed one; null: none is
-  const std::uint16_t* turned;
+  const std::uint16_t* transposed;
 };
 constexpr int kBlockTail = 16, kVectorTail = 16, kStepsAhead = 4;
 /// Vectors over the nodes hold four numbers a node, the last of them zero, and kVectorTail zeros behind the
@@ -57,7 +57,7 @@ struct DoubleBlocks {
   int last_slot;         ///< nothing is read behind it
 };
 
-enum class Balanced { kOk, kNotFinite, kNotDefinite };
+enum class RowStatus { kOk, kNotFinite, kNotDefinite };
 
 /// The inner loops over nodes [first, last), one set of them for each instruction set: one source
 /// (node_kernels.inl), compiled for each and chosen when the program runs.  Sums go over a chunk in a fixed
@@ -68,16 +68,16 @@ struct NodeKernels {
   double (*product)(const PackedRows& A, const float* p, float* q);
   /// Brings blocks into their lanes
   void (*pack)(const PackedRows& A, const BlockSource& from);
-  /// The same of a balanced matrix, of which the diagonal blocks m - sum_j A_ij and their inverses are made.
-  /// And AV = A V for `count` columns. sums: room for eight numbers a node.  trace: of all the diagonal
+  /// Packs a zero-row-sum matrix, of which the diagonal blocks m - sum_j A_ij and their inverses are
+  /// made. And AV = A V for `count` columns. sums: room for eight numbers a node.  trace: of all the diagonal
   /// blocks
-  Balanced (*balance)(const PackedRows& A, const BlockSource& from, float* sums, float* inverse,
-                      double* trace, int count, const float* const* V, float* const* AV);
+  RowStatus (*complete)(const PackedRows& A, const BlockSource& from, float* sums, float* inverse,
+                        double* trace, int count, const float* const* V, float* const* AV);
   /// AV = A V on these rows for `count` columns
   void (*multiply)(const PackedRows& A, int count, const float* const* V, float* const* AV);
-  /// Av = A v times `unit` of a balanced matrix on these rows, in double; mass: four numbers a node
-  void (*multiply_balanced)(const PackedRows& A, const double* mass, double unit, const double* v,
-                            double* Av);
+  /// Av = A v times `unit` of a zero-row-sum matrix on these rows, in double; mass: four numbers a node
+  void (*multiply_zero_row_sum)(const PackedRows& A, const double* mass, double unit, const double* v,
+                                double* Av);
   /// r -= a q, z = J r; returns r . z
   double (*update)(float a, const float* q, const float* inverse, float* r, float* z, int first, int last);
   /// z = J r; returns r . z
@@ -89,7 +89,7 @@ struct NodeKernels {
   /// = z + b p
   void (*direction)(float a, float b, const float* z, const float* arm, const float* motion, float* d,
                     float* p, int first, int last);
-  /// The same where there is no direction yet: d = 0, p = z + (w + turn x arm)
+  /// The first direction, where there is none yet: d = 0, p = z + (w + turn x arm)
   void (*first_direction)(const float* z, const float* arm, const float* motion, float* d, float* p,
                           int first, int last);
   /// Rows [first, last) of w = E y; rows and y padded by zeros to `stride`, a multiple of 16

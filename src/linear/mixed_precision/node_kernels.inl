@@ -11,7 +11,7 @@ namespace PALPATE_SET {
 #define PALPATE_INLINE [[gnu::always_inline]] static inline
 #define PALPATE_INLINE_MEMBER [[gnu::always_inline]] inline
 
-// Each uses what stands above it.
+// Each uses those before it.
 // clang-format off
 #include "linear/mixed_precision/node_lanes.inl"
 #include "linear/mixed_precision/node_products.inl"
@@ -29,7 +29,7 @@ namespace PALPATE_SET {
 
 // clang-format off
 #define PALPATE_KERNELS_OF(set)                                                                        \
-  {#set, set::product, set::pack, set::balance, set::multiply, set::multiply_balanced, set::update,    \
+  {#set, set::product, set::pack, set::complete, set::multiply, set::multiply_zero_row_sum, set::update,    \
    set::jacobi, set::gather_rigid, set::direction, set::first_direction, set::dense, set::invert,      \
    set::convert, set::multiply_double, set::gram, set::combine, set::leave, set::difference,           \
    set::residual, set::image, set::correct, set::put_nodes, set::add_nodes, set::invert_diagonal}

@@ -10,13 +10,13 @@ PALPATE_INLINE Lanes3 times(const float* values, const Lanes3& v) {
           number(values, 1) * v.x + number(values, 4) * v.y + number(values, 7) * v.z,
           number(values, 2) * v.x + number(values, 5) * v.y + number(values, 8) * v.z};
 }
-PALPATE_INLINE Lanes3 turned_times(const float* values, const Lanes3& v) {
+PALPATE_INLINE Lanes3 transposed_times(const float* values, const Lanes3& v) {
   return {number(values, 0) * v.x + number(values, 1) * v.y + number(values, 2) * v.z,
           number(values, 3) * v.x + number(values, 4) * v.y + number(values, 5) * v.z,
           number(values, 6) * v.x + number(values, 7) * v.y + number(values, 8) * v.z};
 }
 
-/// Q += A P for N vectors by one part of a group; of a balanced matrix without the mass.
+/// Q += A P for N vectors by one part of a group; of a zero-row-sum matrix without the mass.
 template <bool kWhole, int N>
 PALPATE_INLINE void add_group(const PackedRows& A, const float* const* P, float* const* Q, int group,
                               int part) {
@@ -46,9 +46,9 @@ PALPATE_INLINE void add_group(const PackedRows& A, const float* const* P, float*
       if constexpr (!kWhole) v = v - own[n];
       sum[n] = sum[n] + times(values, v);
       if constexpr (kWhole)
-        scatter_add(Q[n], column, turned_times(values, own[n]));
+        scatter_add(Q[n], column, transposed_times(values, own[n]));
       else
-        scatter_subtract(Q[n], column, turned_times(values, v));
+        scatter_subtract(Q[n], column, transposed_times(values, v));
     }
   for (; s < end; next())
     for (int n = 0; n < N; ++n) {
@@ -142,15 +142,15 @@ PALPATE_INLINE void take_blocks(const BlockSource& from, std::int64_t at, int pa
     block[3 * c + 1] = column.y;
     block[3 * c + 2] = column.z;
   }
-  if (!from.turned) return;
-  WideIndex turned;
-  for (int l = 0; l < kLanes; ++l) turned[l] = 1 << l;
-  turned = (turned & (from.turned[at] >> (kLanes * part))) != 0;
+  if (!from.transposed) return;
+  WideIndex transposed;
+  for (int l = 0; l < kLanes; ++l) transposed[l] = 1 << l;
+  transposed = (transposed & (from.transposed[at] >> (kLanes * part))) != 0;
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < c; ++r) {
       const Wide above = block[3 * c + r], below = block[3 * r + c];
-      block[3 * c + r] = turned ? below : above;
-      block[3 * r + c] = turned ? above : below;
+      block[3 * c + r] = transposed ? below : above;
+      block[3 * r + c] = transposed ? above : below;
     }
 }
 PALPATE_INLINE void put_blocks(float* values, std::int64_t step, int part, const Wide* block) {
@@ -203,7 +203,7 @@ PALPATE_INLINE WideIndex invert_own(const Symmetric& own, float* inverse, const 
 }
 
 template <int N>
-PALPATE_INLINE Balanced balance_columns(const PackedRows& A, const BlockSource& from, float* sums,
+PALPATE_INLINE RowStatus complete_columns(const PackedRows& A, const BlockSource& from, float* sums,
                                         float* inverse, double* trace, const float* const* V,
                                         float* const* AV) {
   set_zero<N>(A, AV);
@@ -262,15 +262,15 @@ PALPATE_INLINE Balanced balance_columns(const PackedRows& A, const BlockSource& 
     for (int axis = 0; axis < 3; ++axis) traces += A.mass[4 * i + axis] - sums[8 * i + axis];
   *trace = traces;
   for (int l = 0; l < kLanes; ++l)
-    if (!(probe[l] == 0.0f)) return Balanced::kNotFinite;
+    if (!(probe[l] == 0.0f)) return RowStatus::kNotFinite;
   for (int l = 0; l < kLanes; ++l)
-    if (!definite[l]) return Balanced::kNotDefinite;
-  return Balanced::kOk;
+    if (!definite[l]) return RowStatus::kNotDefinite;
+  return RowStatus::kOk;
 }
-Balanced balance(const PackedRows& A, const BlockSource& from, float* sums, float* inverse, double* trace,
+RowStatus complete(const PackedRows& A, const BlockSource& from, float* sums, float* inverse, double* trace,
                  int count, const float* const* V, float* const* AV) {
   return by_count(
       count, [&](auto n) __attribute__((always_inline)) {
-        return balance_columns<decltype(n)::value>(A, from, sums, inverse, trace, V, AV);
+        return complete_columns<decltype(n)::value>(A, from, sums, inverse, trace, V, AV);
       });
 }

@@ -15,21 +15,21 @@ class RowPacking {
   /// @param row_start, column  of the matrix in the order of its nodes, each row's own block first
   void analyse(const NodeOrder& order, const std::vector<int>& row_start, const std::vector<int>& column);
 
-  /// Of one part.
+  /// The rows of one part.
   PackedRows rows(std::size_t part, const float* mass);
   /// Blocks that have room, those that fill up included.
   std::size_t places() const { return kLanesOfGroup * static_cast<std::size_t>(groups_ + steps_); }
   /// Where the k-th block of all rows, one after the other, has its place; and whether it is the transposed
   /// one that is there.
   std::size_t place(std::size_t block) const { return static_cast<std::size_t>(place_[block]) / 2; }
-  bool turned(std::size_t block) const { return place_[block] % 2 != 0; }
+  bool transposed(std::size_t block) const { return place_[block] % 2 != 0; }
   /// Entry (r, c) of it.
   float entry(std::size_t block, int r, int c) const {
     const std::size_t at = place(block) / kLanesOfGroup, own = static_cast<std::size_t>(groups_);
     return (at < own ? own_[line(at, block, r, c)] : values_[line(at - own, block, r, c)])
         .number[place(block) % kLanesOfGroup];
   }
-  /// Of a row's own block.
+  /// The place of a row's own block.
   float& own_entry(std::size_t block, int r, int c) {
     return own_[line(place(block) / kLanesOfGroup, block, r, c)].number[place(block) % kLanesOfGroup];
   }
@@ -39,7 +39,7 @@ class RowPacking {
     float number[kLanesOfGroup];
   };
   std::size_t line(std::size_t step, std::size_t block, int r, int c) const {
-    return 9 * step + static_cast<std::size_t>(turned(block) ? 3 * r + c : 3 * c + r);
+    return 9 * step + static_cast<std::size_t>(transposed(block) ? 3 * r + c : 3 * c + r);
   }
   struct Row;
   void add_group(const Row* rows, int count);

@@ -79,7 +79,8 @@ void SingleIteration::over_motions(std::size_t cluster, int first, int last, Fol
   const NodeOrder& order = matrix_.order();
   for (auto k = static_cast<std::size_t>(order.piece[cluster]);
        k < static_cast<std::size_t>(order.piece[cluster + 1]); ++k) {
-    const RigidClusters::Six motion = clusters_.motion(k, pieces_.data() + 6 * k, w_.data() + 6 * cluster);
+    const RigidModeCoarseSpace::Six motion =
+        clusters_.motion(k, pieces_.data() + 6 * k, w_.data() + 6 * cluster);
     follow(clusters_.arm(), motion.data(), order.piece_start[k], order.piece_start[k + 1]);
   }
 }

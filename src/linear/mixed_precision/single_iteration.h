@@ -1,6 +1,6 @@
 #pragma once
 #include "linear/mixed_precision/energy_bound.h"
-#include "linear/mixed_precision/rigid_clusters.h"
+#include "linear/mixed_precision/rigid_mode_coarse_space.h"
 #include "linear/mixed_precision/single_matrix.h"
 
 namespace palpate::linear {
@@ -11,7 +11,7 @@ namespace palpate::linear {
 class SingleIteration {
  public:
   SingleIteration(const NodeKernels& kernels, ClusterTeam& team, const SingleMatrix& matrix,
-                  const RigidClusters& clusters)
+                  const RigidModeCoarseSpace& clusters)
       : kernels_(kernels), team_(team), matrix_(matrix), clusters_(clusters) {}
 
   void prepare();
@@ -82,7 +82,7 @@ class SingleIteration {
   const NodeKernels& kernels_;
   ClusterTeam& team_;
   const SingleMatrix& matrix_;
-  const RigidClusters& clusters_;
+  const RigidModeCoarseSpace& clusters_;
   Singles d_, r_, z_, p_, q_;
   Singles y_, w_;   ///< of the clusters: force and moment, and their motion
   Singles pieces_;  ///< motion of their pieces

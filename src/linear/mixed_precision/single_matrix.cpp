@@ -66,7 +66,7 @@ void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters, i
   inverse_.assign(static_cast<std::size_t>(inverse_place(static_cast<int>(n) + 3)) + kVectorTail, 0.0f);
   const auto parts = static_cast<std::size_t>(order_.parts());
   good_.assign(parts, 0);
-  balanced_.assign(parts, Balanced::kOk);
+  row_status_.assign(parts, RowStatus::kOk);
   trace_.assign(parts, 0.0);
   mass_trace_ = trace_;
   held_.clear();
@@ -80,7 +80,7 @@ SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Sin
     copy_.assign(9 * static_cast<std::size_t>(block_count() + 1) + kBlockTail, 0.0f);  // and a block of zeros
     copy_offset_.assign(packing_.places() + kLanesOfGroup * kStepsAhead, 9 * block_count());
     for (std::size_t s = 0; s < column_.size(); ++s)
-      if (!packing_.turned(s)) copy_offset_[packing_.place(s)] = 9 * static_cast<int>(s);
+      if (!packing_.transposed(s)) copy_offset_[packing_.place(s)] = 9 * static_cast<int>(s);
     prefer_huge_pages(copy_);
     prefer_huge_pages(copy_offset_);
   }
@@ -109,7 +109,7 @@ SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Sin
 /// Each pair of nodes has one block there: part by part and row by row, the rows in the order of their nodes.
 /// Elements that lie together then write what lies together, and packing meets the blocks of sixteen rows one
 /// after the other in each.
-dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& pattern) {
+dynamics::ZeroRowSumMatrix& SingleMatrix::room(const dynamics::BlockSparse& pattern) {
   static std::atomic<std::uint64_t> version{0};
   written_.pattern = &pattern;
   if (!mass_single_.empty()) return written_;
@@ -121,7 +121,7 @@ dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& patter
   written_.values.assign(9 * static_cast<std::size_t>(pairs + 1) + kBlockTail, 0.0f);  // and a block of zeros
   written_.place.assign(column_.size(), -1);
   written_offset_.assign(packing_.places() + kLanesOfGroup * kStepsAhead, 9 * pairs);
-  turned_.assign(packing_.places() / kLanesOfGroup, 0);
+  transposed_.assign(packing_.places() / kLanesOfGroup, 0);
   std::vector<int> rows(n);
   std::iota(rows.begin(), rows.end(), 0);
   for (std::size_t p = 0; p + 1 < order_.part.size(); ++p)
@@ -133,7 +133,7 @@ dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& patter
   for (const int row : rows)
     for (auto s = static_cast<std::size_t>(row_start_[static_cast<std::size_t>(row)]) + 1;
          s < static_cast<std::size_t>(row_start_[static_cast<std::size_t>(row) + 1]); ++s) {
-      if (packing_.turned(s)) continue;
+      if (packing_.transposed(s)) continue;
       const int i = order_.node[static_cast<std::size_t>(row)],
                 j = order_.node[static_cast<std::size_t>(column_[s])];
       const std::size_t at = packing_.place(s), step = at / kLanesOfGroup;
@@ -141,7 +141,8 @@ dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& patter
       if (number < 0) written_.place[static_cast<std::size_t>(pattern.slot(j, i))] = number = next++;
       written_offset_[at] = 9 * number;
       // row by row is the transposed one, column by column
-      if (i < j) turned_[step] = static_cast<std::uint16_t>(turned_[step] | (1u << at % kLanesOfGroup));
+      if (i < j)
+        transposed_[step] = static_cast<std::uint16_t>(transposed_[step] | (1u << at % kLanesOfGroup));
     }
   written_.places_version = ++version;
   prefer_huge_pages(written_.values);
@@ -149,11 +150,11 @@ dynamics::BalancedMatrix& SingleMatrix::room(const dynamics::BlockSparse& patter
   return written_;
 }
 
-SolveStatus SingleMatrix::take_balanced(int count, Singles* from, Singles* to) {
+SolveStatus SingleMatrix::take_step_matrix(int count, Singles* from, Singles* to) {
   original_ = nullptr;
   const std::size_t n = order_.node.size();
   PALPATE_CHECK(written_.diagonal.size() == static_cast<Eigen::Index>(3 * n),
-                "a balanced matrix of {} nodes with {} masses", n, written_.diagonal.size());
+                "a zero-row-sum matrix of {} nodes with {} masses", n, written_.diagonal.size());
   find_held();
   for (int k = 0; k < count; ++k)
     for (const std::size_t entry : held_) from[k][entry] = 0.0f;
@@ -169,18 +170,19 @@ SolveStatus SingleMatrix::take_balanced(int count, Singles* from, Singles* to) {
     }
     mass_trace_[c] = sum;
     const Columns columns(count, from, to);
-    balanced_[c] = kernels_.balance(rows(c), {written_.values.data(), written_offset_.data(), turned_.data()},
-                                    sums_.data(), inverse_.data(), &trace_[c], count, columns.V, columns.AV);
+    row_status_[c] =
+        kernels_.complete(rows(c), {written_.values.data(), written_offset_.data(), transposed_.data()},
+                          sums_.data(), inverse_.data(), &trace_[c], count, columns.V, columns.AV);
     for (int k = 0; k < count; ++k) zero_held(c, columns.AV[k]);
     hold(c);
   });
-  const auto any = [&](Balanced what) {
-    return std::find(balanced_.begin(), balanced_.end(), what) != balanced_.end();
+  const auto any = [&](RowStatus what) {
+    return std::find(row_status_.begin(), row_status_.end(), what) != row_status_.end();
   };
-  if (any(Balanced::kNotFinite)) return SolveStatus::kSingular;
+  if (any(RowStatus::kNotFinite)) return SolveStatus::kSingular;
   stiffness_ = std::accumulate(trace_.begin(), trace_.end(), 0.0) /
                std::accumulate(mass_trace_.begin(), mass_trace_.end(), 0.0);
-  return any(Balanced::kNotDefinite) ? SolveStatus::kIndefinite : SolveStatus::kOk;
+  return any(RowStatus::kNotDefinite) ? SolveStatus::kIndefinite : SolveStatus::kOk;
 }
 
 void SingleMatrix::multiply(std::size_t part, int count, const Singles* from, Singles* to) {
@@ -202,7 +204,7 @@ void SingleMatrix::multiply(const Doubles& x, Doubles& Ax) {
     });
   }
   team_.for_each([&](std::size_t c, int, int) {
-    kernels_.multiply_balanced(rows(c), mass_.data(), 1.0 / written_.scale, x.data(), Ax.data());
+    kernels_.multiply_zero_row_sum(rows(c), mass_.data(), 1.0 / written_.scale, x.data(), Ax.data());
     zero_held(c, Ax.data());
   });
 }

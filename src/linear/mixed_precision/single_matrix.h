@@ -5,6 +5,7 @@
 #include "linear/mixed_precision/node_kernels.h"
 #include "linear/mixed_precision/row_packing.h"
 #include "palpate/dynamics/linear_solver.h"
+#include "palpate/dynamics/zero_row_sum_matrix.h"
 
 namespace palpate::linear {
 
@@ -14,7 +15,7 @@ using Doubles = std::vector<double>;
 
 /// A symmetric step matrix in single precision with the inverses of its diagonal blocks, nodes in clusters,
 /// and its product in double precision beside it.  Made from a matrix in double, which stays where it is and
-/// is read by those products; or written by its makers as a BalancedMatrix, and then no other is needed.
+/// is read by those products; or written by its makers as a ZeroRowSumMatrix, and then no other is needed.
 class SingleMatrix {
  public:
   SingleMatrix(const NodeKernels& kernels, ClusterTeam& team) : kernels_(kernels), team_(team) {}
@@ -27,10 +28,10 @@ class SingleMatrix {
 
   /// The copy, and to[k] = scale A from[k] for `count` columns, in single precision.
   dynamics::SolveStatus take(const dynamics::BorderedMatrix& A, int count, Singles* from, Singles* to);
-  /// Room for a balanced matrix of the pattern.  Its memory is set aside at the first call.
-  dynamics::BalancedMatrix& room(const dynamics::BlockSparse& pattern);
-  /// The same of the matrix that was written there.  Held entries of `from` become zero.
-  dynamics::SolveStatus take_balanced(int count, Singles* from, Singles* to);
+  /// Room for a zero-row-sum matrix of the pattern.  Its memory is set aside at the first call.
+  dynamics::ZeroRowSumMatrix& room(const dynamics::BlockSparse& pattern);
+  /// take() of the matrix that was written there.  Held entries of `from` become zero.
+  dynamics::SolveStatus take_step_matrix(int count, Singles* from, Singles* to);
   /// to[k] = scale A from[k], in single precision.
   void multiply(int count, const Singles* from, Singles* to);
   /// Ax = A x, in double.
@@ -45,14 +46,14 @@ class SingleMatrix {
   const std::vector<int>& column() const { return column_; }
   int block_count() const { return static_cast<int>(column_.size()); }
   const float* inverse() const { return inverse_.data(); }
-  bool balanced() const { return !original_; }
+  bool zero_row_sum() const { return !original_; }
   double scale() const { return written_.scale; }  ///< a power of two: the copy is scale A
-  /// 1 + h^2 tr K / tr M of a balanced matrix: mean stiffness of a node, over its mass.
+  /// 1 + h^2 tr K / tr M of a zero-row-sum matrix: mean stiffness of a node, over its mass.
   double stiffness() const { return stiffness_; }
-  /// Entries of vectors, four a node, of which a balanced matrix says that each stands alone; none of a whole
-  /// one.
+  /// Entries of vectors, four a node, of which a zero-row-sum matrix says that each stands alone; none of a
+  /// whole one.
   const std::vector<std::size_t>& held() const { return held_; }
-  /// Of those in a part: values[h] is what stood at held()[h] of v, where zero stands then.
+  /// Moves held entries of a part: values[h] becomes the entry held()[h] of v, and that entry zero.
   void take_held(std::size_t part, double* v, double* values) const;
 
  private:
@@ -75,15 +76,15 @@ class SingleMatrix {
   const dynamics::BorderedMatrix* original_ = nullptr;  ///< null: balanced
   Singles copy_;                                        ///< of a whole matrix, on the way to its packing
   std::vector<int> copy_offset_;
-  dynamics::BalancedMatrix written_;
+  dynamics::ZeroRowSumMatrix written_;
   std::vector<int> written_offset_;
-  std::vector<std::uint16_t> turned_;
+  std::vector<std::uint16_t> transposed_;
   std::vector<std::size_t> held_, held_start_;  ///< by part
   Doubles mass_;
   Singles mass_single_, sums_, inverse_;
   double stiffness_ = 1.0;
   std::vector<char> good_;
-  std::vector<Balanced> balanced_;
+  std::vector<RowStatus> row_status_;
   std::vector<double> trace_, mass_trace_;
 };
 

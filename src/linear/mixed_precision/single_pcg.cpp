@@ -3,19 +3,22 @@
 #include <utility>
 
 #include "linear/make.h"
-#include "linear/mixed_precision/near_solve.h"
+#include "linear/mixed_precision/refinement.h"
+#include "linear/mixed_precision/single_solve.h"
 #include "linear/settings.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
+#include "palpate/dynamics/mixed_precision_step.h"
 
 namespace palpate::linear {
 namespace {
 
-using dynamics::BalancedMatrix;
 using dynamics::BlockSparse;
 using dynamics::BorderedMatrix;
 using dynamics::SolveStatus;
+using dynamics::StepMatrixUse;
+using dynamics::ZeroRowSumMatrix;
 
 /// Tighter than rounding of the residual in double is not asked for.
 constexpr double kTightest = 1e-13;
@@ -25,8 +28,8 @@ constexpr int kNodesOfCluster = 150, kMostClusters = 48;
 /// Nodes of its pieces.  The count of iterations hardly changes from 16 to 64, and with pieces it is with 48
 /// clusters what it is with 96 (beams of 32,400 and 99,238 nodes).
 constexpr int kNodesOfPiece = 32;
-/// Of a number in single precision, relative; and how many tolerances the bound below may come to for a body
-/// one element thick.
+/// Rounding of a number in single precision, relative; and how many tolerances the bound below may come to
+/// for a body one element thick.
 constexpr double kSingleRounding = 0x1p-24, kRoundingShare = 4.0;
 /// Nodes of a part, at most: its share of vectors and of the matrix fits a second-level cache, and few pairs
 /// of nodes are cut.  Parts come in fours, for threads to share; very small matrices have one.
@@ -41,20 +44,21 @@ int parts_of(int nodes) {
 ///     A d = r                single: the iteration
 ///     x += d, and again      until the error is small enough
 /// The search goes on across a new residual (the direction is made orthogonal to the last, p . A p_last = 0),
-/// so that nothing is lost by it.  Where the tolerance is a modest reduction of what the start left (1e-3),
+/// so that nothing is lost by it.  Where the tolerance is a modest reduction of the initial residual (1e-3),
 /// the first r is the last.
 ///
-/// A balanced matrix has no original: its off-diagonal blocks are in single precision from the start
+/// A zero-row-sum matrix has no original: its off-diagonal blocks are in single precision from the start
 /// (single_matrix.h).  With A~ for A the solution is off by
 ///     |x~ - x|_A <~ |A^-1/2 (A~ - A) A^-1/2| |x|_A.
 /// A~ - A is as indifferent to translations as K, so that of a wave of length l it takes e k (d/l)^2, e =
 /// 2^-24, with k the stiffness of a node against its neighbours at the distance d.  A itself takes m + h^2 k
-/// (d/l)^2 at least, but where the wave bends a body of thickness t, which to first order turns its parts, m
+/// (d/l)^2 at least, but where the wave bends a body of thickness t, which to first order rotates its parts,
+/// m
 /// + h^2 k (d/l)^4 (t/d)^2.  The ratio is greatest where both terms are equal, and then
-///     e sqrt(s) d/(2 t),   s = 1 + h^2 k/m the stiffness number (auto_solver.cpp);
+///     e sqrt(s) d/(2 t),   s = 1 + h^2 k/m the squared Courant-type number (auto_solver.cpp);
 /// roundings of both signs take off more.  Bodies are several elements thick; where e sqrt(s) exceeds
 /// kRoundingShare tolerances, the matrix is not taken for A: what the equations leave of an approximation is
-/// looked at, as for the matrix of an earlier step (near_solve.h), and rounding then touches the corrections
+/// looked at, as for the matrix of an earlier step (refinement.h), and rounding then touches the corrections
 /// only.
 ///
 /// Tolerance: linear_rtol bounds the error of the solution itself, |x - x*|_A <= linear_rtol |x*|_A, by
@@ -62,17 +66,17 @@ int parts_of(int nodes) {
 /// change's error plus the elastic energy that its displacement takes; a residual, which peers stop by,
 /// bounds it up to the condition number only.
 ///
-/// Start: krylov_start.h.  Preconditioner: inverse 3x3 blocks, in `two-level` with rigid clusters beside them
-/// (rigid_clusters.h).  Their E is made anew when what its age cost, in iterations above the fewest since it
-/// was made, has reached what a new one costs: counted in operations, not in seconds, so that results do not
-/// depend on the machine's mood.
+/// Start: projected_guess.h.  Preconditioner: inverse 3x3 blocks, in `two-level` with rigid clusters beside
+/// them (rigid_mode_coarse_space.h).  Their E is made anew when what its age cost, in iterations above the
+/// fewest since it was made, has reached what a new one costs: counted in operations, not in seconds, so that
+/// results do not depend on the machine's mood.
 ///
 /// Results do not depend on the number of threads, bit for bit (cluster_team.h).  They do on the instruction
 /// set, by rounding.
 ///
 /// A border (a tool) changes the problem: such matrices are solved by "pcg", whose coarse space is the
 /// border.
-class SinglePcg final : public dynamics::LinearSolver {
+class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPrecisionSolver {
  public:
   SinglePcg(std::string name, bool two_level, const IntegratorSpec& spec)
       : name_(std::move(name)),
@@ -82,7 +86,9 @@ class SinglePcg final : public dynamics::LinearSolver {
         kernels_(node_kernels()),
         team_(spec.threads),
         copy_(kernels_, team_),
-        solve_(kernels_, team_, copy_, clusters_, rtol_, counters_) {
+        state_(kernels_, team_, copy_, coarse_space_, rtol_, counters_),
+        solve_(state_),
+        refinement_(state_) {
     counters::count("integrate.solver." + name_);
   }
 
@@ -110,42 +116,41 @@ class SinglePcg final : public dynamics::LinearSolver {
     values_version_ = A.values_version;
     const ScopedTimer timer(counters_.factor_s);
     ++counters_.factorisations;
-    KrylovStart& start = solve_.start();
-    status_ = copy_.take(A, start.count(), start.solutions(), start.products());
+    ProjectedGuess& guess = state_.guess;
+    status_ = copy_.take(A, guess.count(), guess.solutions(), guess.products());
     return use_copy(A.positions.size() == A.nodal_size() ? A.positions.data() : nullptr);
   }
 
-  BalancedMatrix* balanced(const BlockSparse& pattern) override {
+  ZeroRowSumMatrix* step_matrix(const BlockSparse& pattern) override {
     if (pattern.block_rows() == 0) return nullptr;
     const bool known = copy_.analysed(pattern);
     if (known && refused_) return nullptr;
     analyse(pattern);
     delegated_ = false;
     matrix_ = nullptr;
-    BalancedMatrix& room = copy_.room(pattern);
+    use_ = StepMatrixUse::kNone;
+    ZeroRowSumMatrix& room = copy_.room(pattern);
     room_ = &room;
     return &room;
   }
 
-  SolveStatus factor_balanced() override {
+  StepMatrixUse factor_step_matrix() override {
     const ScopedTimer timer(counters_.factor_s);
     ++counters_.factorisations;
-    KrylovStart& start = solve_.start();
-    status_ = copy_.take_balanced(start.count(), start.solutions(), start.products());
+    ProjectedGuess& guess = state_.guess;
+    status_ = copy_.take_step_matrix(guess.count(), guess.solutions(), guess.products());
     const bool coarse = !(kSingleRounding * std::sqrt(copy_.stiffness()) <= kRoundingShare * rtol_);
-    use_copy(room_->positions, coarse);
-    if (status_ == SolveStatus::kOk && coarse)
-      status_ = solve_.can_correct() ? SolveStatus::kRounded : SolveStatus::kSingular;
-    return status_;
+    use_ = use_of(use_copy(room_->positions, coarse), coarse);
+    return use_;
   }
 
-  SolveStatus solve_near(dynamics::Residual& left, VecX& x) override {
-    const bool own = status_ == SolveStatus::kRounded;
-    if (delegated_ || matrix_ || !(own || status_ == SolveStatus::kOk)) return SolveStatus::kNotConverged;
+  std::optional<SolveStatus> solve_by_refinement(dynamics::ResidualFunction& residual, VecX& x) override {
+    if (delegated_ || matrix_ || (use_ != StepMatrixUse::kRefine && use_ != StepMatrixUse::kSolve)) return {};
     const long before = counters_.iterations;
-    const SolveStatus status = solve_.solve_near(left, x);
-    if (!own) return status;
-    status_ = status;
+    const std::optional<SolveStatus> status = refinement_.solve(residual, x);
+    if (use_ != StepMatrixUse::kRefine || refined_) return status;
+    refined_ = true;
+    if (status != SolveStatus::kOk) use_ = StepMatrixUse::kNone;
     if (status == SolveStatus::kNotConverged) refused_ = true;
     if (status == SolveStatus::kOk) account(before);
     return status;
@@ -187,31 +192,41 @@ class SinglePcg final : public dynamics::LinearSolver {
     if (two_level_ && clusters == kMostClusters && parts < clusters && 2 * parts > clusters)
       parts = clusters / 2;
     copy_.analyse(pattern, two_level_ ? clusters : parts, parts, two_level_ ? n / kNodesOfPiece : 0);
-    if (two_level_) clusters_.prepare(copy_.order());
+    if (two_level_) coarse_space_.prepare(copy_.order());
+    state_.prepare();
     solve_.prepare();
+    refinement_.prepare();
     refused_ = false;
   }
 
   // --- once a matrix
   // --------------------------------------------------------------------------------------------------
   SolveStatus use_copy(const double* positions, bool rounded = false) {
-    solve_.start().products_are_known(status_ == SolveStatus::kOk);
-    solve_.renew(rounded);
-    clusters_.serve(copy_.scale());
+    state_.guess.products_are_known(status_ == SolveStatus::kOk);
+    refinement_.renew(rounded);
+    refined_ = false;
+    coarse_space_.serve(copy_.scale());
     if (status_ == SolveStatus::kOk && two_level_ && lost_ >= price_of_clusters())
       refresh_clusters(positions);
     return status_;
   }
 
+  StepMatrixUse use_of(SolveStatus copied, bool coarse) const {
+    if (copied == SolveStatus::kIndefinite) return StepMatrixUse::kIndefinite;
+    if (copied != SolveStatus::kOk) return StepMatrixUse::kNone;
+    if (!coarse) return StepMatrixUse::kSolve;
+    return refinement_.can_correct() ? StepMatrixUse::kRefine : StepMatrixUse::kNone;
+  }
+
   /// Operations of a new E and D over those of an iteration.
   double price_of_clusters() const {
-    if (!clusters_.ready()) return 0.0;
-    const double size = clusters_.size(), blocks = copy_.block_count();
+    if (!coarse_space_.ready()) return 0.0;
+    const double size = coarse_space_.size(), blocks = copy_.block_count();
     return (size * size * size + 60.0 * blocks) / (9.0 * blocks + 50.0 * nodes() + size * size);
   }
 
   void refresh_clusters(const double* positions) {
-    clusters_.refresh(copy_, positions, kernels_);
+    coarse_space_.refresh(copy_, positions, kernels_);
     ++counters_.refreshes;
     lost_ = 0.0;
     fewest_ = HUGE_VAL;
@@ -220,7 +235,8 @@ class SinglePcg final : public dynamics::LinearSolver {
   // --- one right-hand side
   // --------------------------------------------------------------------------------------------
   void check_right_hand_side(Eigen::Index rows) const {
-    PALPATE_CHECK(status_ == SolveStatus::kOk, "solver {}: solve without a factor", name_);
+    PALPATE_CHECK(status_ == SolveStatus::kOk && (matrix_ || use_ == StepMatrixUse::kSolve),
+                  "solver {}: solve without a factor", name_);
     PALPATE_CHECK(!matrix_ || matrix_->values_version == values_version_,
                   "solver {}: the matrix changed between factor and solve", name_);
     PALPATE_CHECK(rows == 3 * nodes(), "right-hand side has {} rows, the matrix {}", rows, 3 * nodes());
@@ -230,7 +246,9 @@ class SinglePcg final : public dynamics::LinearSolver {
     ++counters_.solves;
     const long before = counters_.iterations;
     const SolveStatus status = solve_.solve(b, x, remember);
-    if (status == SolveStatus::kOk) account(before);
+    if (status != SolveStatus::kOk) return status;
+    if (remember) refinement_.solved(state_.correction);
+    account(before);
     return status;
   }
 
@@ -253,16 +271,20 @@ class SinglePcg final : public dynamics::LinearSolver {
   std::unique_ptr<dynamics::LinearSolver> bordered_;  ///< made at the first matrix with a border
   bool delegated_ = false;
 
-  const BorderedMatrix* matrix_ = nullptr;  ///< last given to factor(); null: a balanced one
-  const BalancedMatrix* room_ = nullptr;
-  /// a balanced matrix of this pattern was too coarse even for corrections
+  const BorderedMatrix* matrix_ = nullptr;  ///< last given to factor(); null: a zero-row-sum one
+  const ZeroRowSumMatrix* room_ = nullptr;
+  /// a zero-row-sum matrix of this pattern was too coarse even for corrections
   bool refused_ = false;
   std::uint64_t values_version_ = 0;
-  SolveStatus status_ = SolveStatus::kSingular;
+  SolveStatus status_ = SolveStatus::kSingular;  ///< of the copy
+  StepMatrixUse use_ = StepMatrixUse::kNone;     ///< of the zero-row-sum matrix
+  bool refined_ = false;                         ///< the equations of a coarse one were solved
   SingleMatrix copy_;
-  RigidClusters clusters_;                 ///< ready in `two-level` alone
+  RigidModeCoarseSpace coarse_space_;      ///< ready in `two-level` alone
   double lost_ = 0.0, fewest_ = HUGE_VAL;  ///< since E was made: iterations above the fewest, and these
-  NearSolve solve_;
+  SolveState state_;
+  SingleSolve solve_;
+  Refinement refinement_;
 };
 
 }  // namespace

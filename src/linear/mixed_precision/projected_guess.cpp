@@ -1,4 +1,4 @@
-#include "linear/mixed_precision/krylov_start.h"
+#include "linear/mixed_precision/projected_guess.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 constexpr int kMostOrders = 60;
 }  // namespace
 
-void KrylovStart::prepare(const NodeOrder& order) {
+void ProjectedGuess::prepare(const NodeOrder& order) {
   for (int k = 0; k < most_; ++k) {
     for (Singles* v : {&V_[k], &AV_[k]}) v->assign(4 * order.node.size() + kVectorTail, 0.0f);
     at_V_[k] = V_[k].data();
@@ -20,7 +20,7 @@ void KrylovStart::prepare(const NodeOrder& order) {
   forget();
 }
 
-void KrylovStart::begin(bool warm, double scale) {
+void ProjectedGuess::begin(bool warm, double scale) {
   scale_ = scale;
   used_ = warm ? count_ : 0;
   for (int j = 0; j < used_; ++j) {
@@ -29,12 +29,12 @@ void KrylovStart::begin(bool warm, double scale) {
   }
 }
 
-void KrylovStart::add_up(std::size_t part, const double* b, int first, int last) {
+void ProjectedGuess::add_up(std::size_t part, const double* b, int first, int last) {
   kernels_.gram(used_, of_AV_, at_V_, at_AV_, b, first, last, partial_[part].data());
 }
 
 /// By Cholesky, column by column.  @return y . V^T b for y = of_AV_
-double KrylovStart::solve() {
+double ProjectedGuess::solve() {
   double* y = of_AV_;
   double L[kMostColumns][kMostColumns] = {}, c[kMostColumns] = {};
   bool used[kMostColumns] = {};
@@ -66,7 +66,7 @@ double KrylovStart::solve() {
   return energy;
 }
 
-KrylovStart::Start KrylovStart::choose() {
+ProjectedGuess::Start ProjectedGuess::choose() {
   std::array<double, kMostSums> sums{};
   for (const auto& part : partial_)
     for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += part[k];
@@ -87,17 +87,17 @@ KrylovStart::Start KrylovStart::choose() {
   return {scale_ * energy, scale_ * std::max(0.0, change), left == 0.0 ? 1.0 : left};
 }
 
-void KrylovStart::solution(double* x, int first, int last) const {
+void ProjectedGuess::solution(double* x, int first, int last) const {
   kernels_.combine(used_, of_V_, at_V_, x, first, last);
 }
-void KrylovStart::product(double* Ax, int first, int last) const {
+void ProjectedGuess::product(double* Ax, int first, int last) const {
   kernels_.combine(used_, of_AV_, at_AV_, Ax, first, last);
 }
-void KrylovStart::residual(double by, const double* b, float* r, int first, int last) const {
+void ProjectedGuess::residual(double by, const double* b, float* r, int first, int last) const {
   kernels_.leave(used_, of_AV_, by, at_AV_, b, r, first, last);
 }
 
-void KrylovStart::begin_to_keep(double scale, bool with_products) {
+void ProjectedGuess::begin_to_keep(double scale, bool with_products) {
   scale_ = scale;
   count_ = std::min(count_ + 1, most_);
   known_ = false;
@@ -107,19 +107,19 @@ void KrylovStart::begin_to_keep(double scale, bool with_products) {
   unit_ = next_unit_;
 }
 
-void KrylovStart::keep(const double* x, const double* Ax, int first, int last) {
+void ProjectedGuess::keep(const double* x, const double* Ax, int first, int last) {
   kernels_.difference(count_, by_, change_, x, at_V_, first, last);
   if (followed_) kernels_.difference(count_, scale_ * by_, change_, Ax, at_AV_, first, last);
 }
 
 /// The unit is that of the solution before: one pass over x is enough.
-void KrylovStart::end_to_keep(double largest) {
+void ProjectedGuess::end_to_keep(double largest) {
   if (!(largest > 0.0) || !std::isfinite(largest)) return forget();
   next_unit_ = std::ldexp(1.0, std::ilogb(largest));
   if (std::abs(std::ilogb(largest) - std::ilogb(unit_)) > kMostOrders) forget();
 }
 
-void KrylovStart::forget() {
+void ProjectedGuess::forget() {
   count_ = 0;
   known_ = followed_ = false;
   std::fill_n(share_, kMostColumns, 1.0);

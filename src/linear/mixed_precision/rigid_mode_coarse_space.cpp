@@ -1,4 +1,4 @@
-#include "linear/mixed_precision/rigid_clusters.h"
+#include "linear/mixed_precision/rigid_mode_coarse_space.h"
 
 #include <algorithm>
 #include <array>
@@ -28,13 +28,13 @@ Eigen::Matrix3f skew(const Eigen::Vector3f& a) {
   return m;
 }
 
-/// A direction that no node moves in (a cluster held whole, a turn without arms) stands alone; a tiny share
-/// of the diagonal covers rounding in the turn of a cluster whose nodes lie on a line.
+/// A direction that no node moves in (a cluster held whole, a rotation without arms) stands alone; a tiny
+/// share of the diagonal covers rounding in the rotation of a cluster whose nodes lie on a line.
 float regular(float own) { return own > 0.0f ? own * (1.0f + 1e-5f) : 1.0f; }
 
 }  // namespace
 
-void RigidClusters::prepare(const NodeOrder& order) {
+void RigidModeCoarseSpace::prepare(const NodeOrder& order) {
   ready_ = false;
   finer_ = order.pieces() > order.clusters();
   size_ = 6 * order.clusters();
@@ -48,7 +48,7 @@ void RigidClusters::prepare(const NodeOrder& order) {
 
 /// In units of the piece's mean radius, and pieces in those of the cluster's, so that rows of forces and of
 /// moments are of one size.
-void RigidClusters::place_arms(const NodeOrder& order, const double* positions) {
+void RigidModeCoarseSpace::place_arms(const NodeOrder& order, const double* positions) {
   const auto position = [&](int k) -> Vec3 {
     return positions
                ? Vec3(Eigen::Map<const Vec3>(
@@ -83,14 +83,14 @@ void RigidClusters::place_arms(const NodeOrder& order, const double* positions) 
   }
 }
 
-Eigen::Vector3f RigidClusters::arm_in_cluster(std::size_t node) const {
+Eigen::Vector3f RigidModeCoarseSpace::arm_in_cluster(std::size_t node) const {
   const Piece& piece = pieces_[static_cast<std::size_t>(piece_[node])];
   return piece.offset + piece.radius * Eigen::Map<const Eigen::Vector3f>(arm_.data() + 4 * node);
 }
 
 /// A held direction's row is that of the identity: a node that hangs on nothing along some axis moves with no
 /// cluster.
-void RigidClusters::leave_out_held(const SingleMatrix& A) {
+void RigidModeCoarseSpace::leave_out_held(const SingleMatrix& A) {
   const auto leave_out = [&](std::size_t node) {
     std::fill_n(arm_.begin() + 4 * static_cast<std::ptrdiff_t>(node), 4, 0.0f);
   };
@@ -107,7 +107,7 @@ void RigidClusters::leave_out_held(const SingleMatrix& A) {
 
 /// E_IJ = sum over i in I, j in J of T_i^T A_ij T_j with T_i = [I, -[arm_i]x]: for each row first G = sum_j
 /// A_ij T_j, then T_i^T G.  Likewise the blocks of D, with arms in pieces.
-void RigidClusters::assemble(const SingleMatrix& A) {
+void RigidModeCoarseSpace::assemble(const SingleMatrix& A) {
   const std::vector<int>&row_start = A.row_start(), &column = A.column();
   using Single3 = Eigen::Matrix3f;
   const auto add = [](const Single3& turn, const Single3& force, const Single3& moment, auto&& sum) {
@@ -155,7 +155,7 @@ void RigidClusters::assemble(const SingleMatrix& A) {
       E_[c * static_cast<std::size_t>(stride_) + r] = E_[r * static_cast<std::size_t>(stride_) + c];
 }
 
-void RigidClusters::invert_pieces() {
+void RigidModeCoarseSpace::invert_pieces() {
   for (Piece& piece : pieces_) {
     Eigen::Matrix<double, 6, 6> D = piece.inverse.cast<double>();
     for (int k = 0; k < 6; ++k) D(k, k) = regular(piece.inverse(k, k));
@@ -168,7 +168,8 @@ void RigidClusters::invert_pieces() {
   }
 }
 
-bool RigidClusters::refresh(const SingleMatrix& A, const double* positions, const NodeKernels& kernels) {
+bool RigidModeCoarseSpace::refresh(const SingleMatrix& A, const double* positions,
+                                   const NodeKernels& kernels) {
   place_arms(A.order(), positions);
   leave_out_held(A);
   assemble(A);
@@ -181,7 +182,7 @@ bool RigidClusters::refresh(const SingleMatrix& A, const double* positions, cons
   return ready_ = kernels.invert(E_.data(), size_, stride_);
 }
 
-void RigidClusters::serve(double scale) {
+void RigidModeCoarseSpace::serve(double scale) {
   if (!ready_ || scale == scale_) return;
   const auto by = static_cast<float>(scale_ / scale);  // a power of two
   for (float& value : E_) value *= by;
@@ -189,8 +190,8 @@ void RigidClusters::serve(double scale) {
   scale_ = scale;
 }
 
-double RigidClusters::gather(std::size_t cluster, const NodeOrder& order, const NodeKernels& kernels,
-                             const float* r, float* of_pieces, float* of_cluster) const {
+double RigidModeCoarseSpace::gather(std::size_t cluster, const NodeOrder& order, const NodeKernels& kernels,
+                                    const float* r, float* of_pieces, float* of_cluster) const {
   Eigen::Map<Six> sum(of_cluster);
   sum.setZero();
   double share = 0.0;
@@ -210,7 +211,8 @@ double RigidClusters::gather(std::size_t cluster, const NodeOrder& order, const 
   return share;
 }
 
-RigidClusters::Six RigidClusters::motion(std::size_t p, const float* own, const float* of_cluster) const {
+RigidModeCoarseSpace::Six RigidModeCoarseSpace::motion(std::size_t p, const float* own,
+                                                       const float* of_cluster) const {
   const Piece& piece = pieces_[p];
   const Eigen::Map<const Six> cluster(of_cluster);
   Six motion;

@@ -1,4 +1,4 @@
-#include "linear/mixed_precision/rigid_clusters.h"
+#include "linear/mixed_precision/rigid_mode_coarse_space.h"
 
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ struct Preconditioner {
   const linear::NodeKernels& kernels = linear::node_kernels();
   linear::ClusterTeam team;
   linear::SingleMatrix matrix{kernels, team};
-  linear::RigidClusters clusters;
+  linear::RigidModeCoarseSpace clusters;
   linear::SingleIteration iteration{kernels, team, matrix, clusters};
 
   Preconditioner(const SpringBlock& block, int count, int parts, int pieces, int threads = 1,
@@ -107,7 +107,7 @@ MatX rigid_motions(const SpringBlock& block, const linear::NodeOrder& order, con
   return Z;
 }
 
-/// J^-1 + Y D^-1 Y^T + Z E^-1 Z^T, as rigid_clusters.h writes it.
+/// J^-1 + Y D^-1 Y^T + Z E^-1 Z^T, as rigid_mode_coarse_space.h writes it.
 MatX by_definition(const SpringBlock& block, const linear::NodeOrder& order, bool with_pieces) {
   const MatX A = block.dense(), Z = rigid_motions(block, order, order.start),
              Y = rigid_motions(block, order, order.piece_start);
@@ -130,7 +130,7 @@ VecX noise(int size, int seed) {
   return v;
 }
 
-TEST(RigidClusters, PreconditionByBlocksPiecesAndClustersAsDefined) {
+TEST(RigidModeCoarseSpace, PreconditionByBlocksPiecesAndClustersAsDefined) {
   const SpringBlock block(11, 3, 0.05);
   for (const auto& [count, pieces] : {std::pair{3, 12}, {2, 5}, {4, 0}}) {
     Preconditioner by(block, count, 1, pieces);
@@ -148,7 +148,7 @@ TEST(RigidClusters, PreconditionByBlocksPiecesAndClustersAsDefined) {
   }
 }
 
-TEST(RigidClusters, WithoutPositionsTheyTranslate) {
+TEST(RigidModeCoarseSpace, WithoutPositionsTheyTranslate) {
   const SpringBlock block(5, 2, 0.05);
   Preconditioner by(block, 2, 1, 6, 1, false);
   const VecX r = noise(3 * block.nodes(), 1);
@@ -158,7 +158,7 @@ TEST(RigidClusters, WithoutPositionsTheyTranslate) {
   EXPECT_LT(translated, turning.form(r)) << "fewer directions take less";
 }
 
-TEST(RigidClusters, GiveTheSameOnOneAndTwoThreads) {
+TEST(RigidModeCoarseSpace, GiveTheSameOnOneAndTwoThreads) {
   const SpringBlock block(12, 3, 0.05);
   const VecX r = noise(3 * block.nodes(), 3);
   Preconditioner one(block, 8, 4, 20), two(block, 8, 4, 20, 2);
@@ -169,7 +169,7 @@ TEST(RigidClusters, GiveTheSameOnOneAndTwoThreads) {
 // cluster with a condition of order l^2.  Pieces of p cells see a chain of l/p, and a smooth motion in steps
 // of theirs, which takes p times its energy (all of it in one cell of p): p (l/p)^2, a p-th of that.  The
 // largest eigenvalue is at most the number of levels: three for two.
-TEST(RigidClusters, PiecesBoundTheConditionWhereClustersAreLarge) {
+TEST(RigidModeCoarseSpace, PiecesBoundTheConditionWhereClustersAreLarge) {
   const SpringBlock block(63, 1, 1e-6);
   const auto condition = [&](int pieces) {
     Preconditioner by(block, 2, 1, pieces);

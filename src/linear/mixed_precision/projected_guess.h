@@ -15,10 +15,10 @@ namespace palpate::linear {
 /// differences between neighbours, and is off by some roundings in the energy norm.  x is its combination of
 /// V to the last digit, a start like any other; the residual is as wrong as A V (kTrustsSingleStart,
 /// single_solve.cpp).
-class KrylovStart {
+class ProjectedGuess {
  public:
   /// @param most  solutions that are kept, up to kMostColumns
-  KrylovStart(const NodeKernels& kernels, int most) : kernels_(kernels), most_(most) {}
+  ProjectedGuess(const NodeKernels& kernels, int most) : kernels_(kernels), most_(most) {}
 
   /// Forgets; vectors over the nodes of this order.
   void prepare(const NodeOrder& order);

@@ -1,21 +1,21 @@
-#include "linear/mixed_precision/matrix_age.h"
+#include "linear/mixed_precision/lagged_matrix_policy.h"
 
 #include <algorithm>
 
 namespace palpate::linear {
 
-bool MatrixAge::serves() {
+bool LaggedMatrixPolicy::serves() {
   since_seen_ = std::min(since_seen_ + 1, kForgotten);
   if (since_seen_ < kForgotten && !small_enough(age_ + 1, size_)) return false;
   ++age_;
   return true;
 }
 
-bool MatrixAge::sure(double correction) const {
+bool LaggedMatrixPolicy::sure(double correction) const {
   return since_seen_ < kTrusted && correction <= kSameSize * seen_size_ && small_enough(age_, correction);
 }
 
-void MatrixAge::seen(double error, double correction) {
+void LaggedMatrixPolicy::seen(double error, double correction) {
   if (age_ == 0 || !(correction > 0.0)) return;
   const bool again = since_seen_ == 0;  // in one step
   rate_ = std::max(again ? rate_ : 0.0, error / (correction * age_));
@@ -23,7 +23,7 @@ void MatrixAge::seen(double error, double correction) {
   since_seen_ = 0;
 }
 
-void MatrixAge::failed() {
+void LaggedMatrixPolicy::failed() {
   rate_ = std::max(rate_, kSlow);
   since_seen_ = 0;
 }

@@ -25,7 +25,7 @@ namespace palpate::linear {
 /// for both, by way of the pieces. Any Y, Z and any positive definite D, E make P positive definite: all may
 /// be those of an earlier matrix, and single precision is enough.
 /// Without positions (arm = 0) clusters and pieces only translate.
-class RigidClusters {
+class RigidModeCoarseSpace {
  public:
   using Six = Eigen::Matrix<float, 6, 1>;
   /// New clusters; forgets E and D.

@@ -1,15 +1,15 @@
-#include "linear/mixed_precision/matrix_age.h"
+#include "linear/mixed_precision/lagged_matrix_policy.h"
 
 #include <gtest/gtest.h>
 
-using palpate::linear::MatrixAge;
+using palpate::linear::LaggedMatrixPolicy;
 
 namespace {
 // twice rho of one step of age, times the correction, is a sixth of what may go unseen
 constexpr double kRtol = 1e-3, kSize = 1e-2, kRho = 2e-3;
 
 /// Takes steps while the matrix serves, as a solver would; returns how many.
-int steps(MatrixAge& age, double size, int most, int* looks = nullptr) {
+int steps(LaggedMatrixPolicy& age, double size, int most, int* looks = nullptr) {
   int taken = 0;
   for (; taken < most && age.serves(); ++taken) {
     if (!age.sure(size)) {
@@ -22,16 +22,16 @@ int steps(MatrixAge& age, double size, int most, int* looks = nullptr) {
 }
 }  // namespace
 
-TEST(MatrixAge, TriesWhereNothingIsKnownAndLooks) {
-  MatrixAge age(kRtol);
+TEST(LaggedMatrixPolicy, TriesWhereNothingIsKnownAndLooks) {
+  LaggedMatrixPolicy age(kRtol);
   age.solved(0.5);  // however large
   EXPECT_TRUE(age.serves());
   EXPECT_FALSE(age.sure(1e-9));
 }
 
 // 2 rho n d <= rtol / 4: six steps by one matrix, and looks no more often than the first and by plan.
-TEST(MatrixAge, ServesUntilItWouldLeaveTooMuch) {
-  MatrixAge age(kRtol);
+TEST(LaggedMatrixPolicy, ServesUntilItWouldLeaveTooMuch) {
+  LaggedMatrixPolicy age(kRtol);
   int looks = 0;
   EXPECT_EQ(steps(age, kSize, 100, &looks), 6);
   EXPECT_EQ(looks, 1);
@@ -43,8 +43,8 @@ TEST(MatrixAge, ServesUntilItWouldLeaveTooMuch) {
   EXPECT_EQ(looks, 2) << "sixteen steps after the first";
 }
 
-TEST(MatrixAge, LooksWhenCorrectionsGrow) {
-  MatrixAge age(kRtol);
+TEST(LaggedMatrixPolicy, LooksWhenCorrectionsGrow) {
+  LaggedMatrixPolicy age(kRtol);
   ASSERT_EQ(steps(age, 1e-3, 3), 3);
   ASSERT_TRUE(age.serves());
   EXPECT_TRUE(age.sure(2e-3));
@@ -52,8 +52,8 @@ TEST(MatrixAge, LooksWhenCorrectionsGrow) {
   EXPECT_FALSE(age.sure(1.0));
 }
 
-TEST(MatrixAge, DoesNotServeWhereOneStepIsTooMuch) {
-  MatrixAge age(kRtol);
+TEST(LaggedMatrixPolicy, DoesNotServeWhereOneStepIsTooMuch) {
+  LaggedMatrixPolicy age(kRtol);
   ASSERT_TRUE(age.serves());
   age.seen(0.05 * kSize, kSize);
   age.solved(kSize);
@@ -67,8 +67,8 @@ TEST(MatrixAge, DoesNotServeWhereOneStepIsTooMuch) {
   EXPECT_FALSE(age.sure(1e-12));
 }
 
-TEST(MatrixAge, ServesAgainWhenCorrectionsBecomeSmall) {
-  MatrixAge age(kRtol);
+TEST(LaggedMatrixPolicy, ServesAgainWhenCorrectionsBecomeSmall) {
+  LaggedMatrixPolicy age(kRtol);
   ASSERT_TRUE(age.serves());
   age.seen(0.05 * kSize, kSize);
   age.solved(kSize);
@@ -78,8 +78,8 @@ TEST(MatrixAge, ServesAgainWhenCorrectionsBecomeSmall) {
   EXPECT_TRUE(age.serves());
 }
 
-TEST(MatrixAge, RestsAfterAFailure) {
-  MatrixAge age(kRtol);
+TEST(LaggedMatrixPolicy, RestsAfterAFailure) {
+  LaggedMatrixPolicy age(kRtol);
   ASSERT_TRUE(age.serves());
   age.failed();
   age.renew();
@@ -87,8 +87,8 @@ TEST(MatrixAge, RestsAfterAFailure) {
   EXPECT_FALSE(age.serves());
 }
 
-TEST(MatrixAge, RoundingOfAStepsOwnMatrixSaysNothingOfItsAge) {
-  MatrixAge age(kRtol);
+TEST(LaggedMatrixPolicy, RoundingOfAStepsOwnMatrixSaysNothingOfItsAge) {
+  LaggedMatrixPolicy age(kRtol);
   ASSERT_TRUE(age.serves());
   age.seen(0.05 * kSize, kSize);
   age.solved(kSize);
@@ -99,8 +99,8 @@ TEST(MatrixAge, RoundingOfAStepsOwnMatrixSaysNothingOfItsAge) {
 }
 
 // Two looks in one step: the worse counts.
-TEST(MatrixAge, KeepsTheWorstOfAStep) {
-  MatrixAge age(kRtol);
+TEST(LaggedMatrixPolicy, KeepsTheWorstOfAStep) {
+  LaggedMatrixPolicy age(kRtol);
   ASSERT_TRUE(age.serves());
   age.seen(4e-3 * kSize, kSize);
   age.seen(1e-3 * 1e-4, 1e-4);

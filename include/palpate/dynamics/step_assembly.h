@@ -1,0 +1,56 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "palpate/dynamics/system.h"
+#include "palpate/dynamics/zero_row_sum_matrix.h"
+
+namespace palpate::dynamics {
+
+/// Optional capability of a ForceTerm: fused assembly of a linearly implicit step.  Force, product and
+/// tangent come from one pass over what they have in common, and the tangent has zero row sums
+/// (ZeroRowSumMatrix).  A class derives from it beside ForceTerm.
+class FusedStepTerm {
+ public:
+  virtual ~FusedStepTerm() = default;
+  /// Whether the tangent that the term has at present is symmetric with zero row sums.
+  virtual bool fuses_step() const { return true; }
+  /// f += force - K shift and A += k_scale K + d_scale D.  Off-diagonal blocks are stored, not added:
+  /// StepAssembly is used only where no two terms write the same block.
+  virtual void add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
+                        ZeroRowSumMatrix& A) = 0;
+  /// f += force - K shift - D change, without the matrix: the term's share of a step's residual.
+  virtual void add_step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) = 0;
+};
+
+/// Fused assembly of the linearly implicit steps of a system, from its terms' FusedStepTerm capabilities.
+/// Terms without a tangent matrix (TermTraits::zero_tangent) add their force alone.
+class StepAssembly {
+ public:
+  explicit StepAssembly(System& system) : system_(system) {}
+
+  /// Whether this state's step can be assembled so: every term takes part, no two of them couple the same
+  /// pair of nodes, the mass is lumped, no block is rigid.  Brings the system's pattern up to date.
+  bool applies(const StateView& state);
+  const BlockSparse& pattern() const { return system_.pattern(); }
+  /// f = sum of force - K shift, and A = m_scale M + d_scale D + k_scale K with the driven directions held.
+  void assemble(const StateView& state, const VecX& shift, double m_scale, double d_scale, double k_scale,
+                VecX& f, ZeroRowSumMatrix& A);
+  /// r = h (sum of force - K shift - D change) - M change, zero along driven directions; without a matrix.
+  void residual(const StateView& state, const VecX& shift, const VecX& change, double h, VecX& r);
+
+ private:
+  struct Part {
+    ForceTerm* term;
+    FusedStepTerm* fused;  ///< null: of zero tangent, or it takes no part
+  };
+  void find_parts();
+  bool pairs_are_disjoint() const;
+
+  System& system_;
+  std::vector<Part> parts_;
+  bool all_can_ = false, disjoint_ = false;
+  std::uint64_t pattern_version_ = 0;  ///< that disjoint_ was found for
+};
+
+}  // namespace palpate::dynamics

@@ -1,0 +1,37 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "palpate/dynamics/matrix.h"
+
+namespace palpate::dynamics {
+
+/// A node that is held along some axes: those rows and columns are the identity's.
+struct HeldNode {
+  int node;
+  std::array<bool, 3> axes;
+};
+
+/// A mixed-precision step matrix, in half the memory of one in double and assembled in one pass less:
+///     A = diag(m) + L,   A_ij = L_ij,   A_ii = diag(m_i) - sum_j L_ij   (j != i).
+/// L, stiffness and damping of soft bodies, takes no energy from a rigid translation: its block rows sum to
+/// zero, and its off-diagonal blocks determine it. They are kept in single precision, written straight to
+/// where the solver that owns this reads them; m is kept in double.  Rounding an L_ij then acts on the
+/// difference of two nodes' motions, never on a translation, however much stiffer than heavy a node is.
+struct ZeroRowSumMatrix {
+  const BlockSparse* pattern = nullptr;  ///< of whose values nothing is read
+  /// the slot map: the block of the pattern's slots (i, j) and (j, i) alike is at values[9 place]; -1 for
+  /// i = j
+  std::vector<int> place;
+  /// blocks A_ij, i < j, times `scale`, each row by row; every one is written anew for each matrix
+  std::vector<float> values;
+  double scale = 1.0;  ///< a power of two, so that nothing is lost by it
+  VecX diagonal;       ///< m, of u-directions
+  /// of the nodes [m], as in BorderedMatrix; valid until MixedPrecisionSolver::factor_step_matrix() returns
+  const double* positions = nullptr;
+  const std::vector<HeldNode>* held = nullptr;
+  std::uint64_t places_version = 0;  ///< grows with every change of `place`
+};
+
+}  // namespace palpate::dynamics

@@ -1,0 +1,50 @@
+#include "integrate/direct_fallback.h"
+
+#include <utility>
+
+#include "palpate/core/counters.h"
+#include "palpate/linear/solvers.h"
+
+namespace palpate::integrate {
+
+using dynamics::BorderedMatrix;
+using dynamics::SolveStatus;
+
+DirectFallback::DirectFallback(std::unique_ptr<dynamics::LinearSolver> chosen)
+    : chosen_(std::move(chosen)), active_(chosen_.get()) {}
+
+SolveStatus DirectFallback::factor(const BorderedMatrix& A) {
+  if (!A.symmetric && !chosen_->supports_unsymmetric()) {
+    counters::count("integrate.unsymmetric");
+    return factor_by_lu(A);
+  }
+  active_ = chosen_.get();
+  return chosen_->factor(A);
+}
+
+SolveStatus DirectFallback::factor_by_lu(const BorderedMatrix& A) {
+  if (!lu_) lu_ = linear::make_linear_solver("umfpack");
+  active_ = lu_.get();
+  return lu_->factor(A);
+}
+
+SolveStatus DirectFallback::factor_by_cholesky(const BorderedMatrix& A) {
+  if (!cholesky_) cholesky_ = linear::make_linear_solver("cholmod");
+  active_ = cholesky_.get();
+  return cholesky_->factor(A);
+}
+
+SolveStatus DirectFallback::factor_direct(const BorderedMatrix& A) {
+  if (A.symmetric && chosen_->name() != "cholmod")
+    if (const SolveStatus status = factor_by_cholesky(A); status != SolveStatus::kIndefinite) return status;
+  return factor_by_lu(A);
+}
+
+const dynamics::SolverCounters& DirectFallback::counters() const {
+  sum_ = chosen_->counters();
+  for (const auto* behind : {cholesky_.get(), lu_.get()})
+    if (behind) sum_ += behind->counters();
+  return sum_;
+}
+
+}  // namespace palpate::integrate

@@ -1,0 +1,180 @@
+#include "integrate/fixed_step/linearized_step.h"
+
+#include <cmath>
+#include <utility>
+
+#include "palpate/core/clock.h"
+#include "palpate/core/finite.h"
+
+namespace palpate::integrate {
+
+using dynamics::SolveStatus;
+using dynamics::StepMatrixUse;
+using dynamics::StepStatus;
+
+namespace {
+
+constexpr double kSameStep = 1e-6;  // relative: steps that differ by rounding
+
+}  // namespace
+
+LinearizedStep::LinearizedStep(dynamics::System& system, std::unique_ptr<dynamics::LinearSolver> solver,
+                               const IntegratorSpec& spec)
+    : system_(system),
+      solver_(std::move(solver), spec),
+      mixed_(dynamic_cast<dynamics::MixedPrecisionSolver*>(&solver_.chosen())),
+      fused_(system) {}
+
+StepStatus LinearizedStep::solve(const Equations& e, VecX& du, dynamics::StepperCounters& counters) {
+  counters_ = &counters;
+  known_indefinite_ = false;
+  if (mixed_ && fused_.applies(e.at) && (solve_by_lagged_matrix(e, du) || solve_fused(e, du)))
+    return StepStatus::kOk;
+  return solve_whole(e, du);
+}
+
+/// The residual of the equations as a function of du.
+class LinearizedStep::Residual final : public dynamics::ResidualFunction {
+ public:
+  Residual(LinearizedStep& of, const Equations& e) : of_(of), e_(e) {}
+  void at(const VecX& x, VecX& r) override { of_.evaluate_residual(e_, x, r); }
+
+ private:
+  LinearizedStep& of_;
+  const Equations& e_;
+};
+
+/// r = h (f - K (s + h du) - D (dv + du)) - M (dv + du) on free directions.
+void LinearizedStep::evaluate_residual(const Equations& e, const VecX& du, VecX& r) {
+  const ScopedTimer timer(counters_->force_s);
+  ++counters_->force_evaluations;
+  s_of_x_ = e.s + e.h * du;
+  if (!e.dv_is_zero) dv_of_x_ = e.dv + du;
+  fused_.residual(e.at, s_of_x_, e.dv_is_zero ? du : dv_of_x_, e.h, r);
+}
+
+bool LinearizedStep::solve_by_lagged_matrix(const Equations& e, VecX& du) {
+  if (!(std::abs(e.h - lagged_h_) <= kSameStep * e.h) ||
+      fused_.pattern().pattern_version() != lagged_pattern_)
+    return false;
+  Residual residual(*this, e);
+  return mixed_->solve_by_refinement(residual, du) == SolveStatus::kOk;
+}
+
+/// Force, product and matrix; false where the right-hand side is not finite.
+bool LinearizedStep::assemble_fused(const Equations& e, dynamics::ZeroRowSumMatrix& A) {
+  {
+    const ScopedTimer timer(counters_->tangent_s);
+    ++counters_->tangent_evaluations;
+    fused_.assemble(e.at, e.s, 1.0, e.h, e.h * e.h, rhs_, A);
+  }
+  const ScopedTimer timer(counters_->force_s);
+  return complete_right_hand_side(e);
+}
+
+bool LinearizedStep::solve_fused(const Equations& e, VecX& du) {
+  dynamics::ZeroRowSumMatrix* A = mixed_->step_matrix(fused_.pattern());
+  if (!A) return false;
+  forget();
+  ++counters_->force_evaluations;
+  if (!assemble_fused(e, *A)) return false;
+  SolveStatus status = SolveStatus::kSingular;
+  const StepMatrixUse use = mixed_->factor_step_matrix();
+  switch (use) {
+    case StepMatrixUse::kSolve: status = solver_.chosen().solve(rhs_, du); break;
+    case StepMatrixUse::kRefine: {
+      Residual residual(*this, e);
+      status = mixed_->solve_by_refinement(residual, du).value_or(SolveStatus::kNotConverged);
+      break;
+    }
+    case StepMatrixUse::kIndefinite: status = SolveStatus::kIndefinite; break;
+    case StepMatrixUse::kNone: break;
+  }
+  if (status == SolveStatus::kIndefinite) {
+    known_indefinite_ = true;
+    solver_.count_indefinite();
+    return use != StepMatrixUse::kRefine && solver_.projects() && solve_fused_projected(e, du, *A);
+  }
+  if (status != SolveStatus::kOk) return false;
+  lagged_h_ = e.h;
+  lagged_pattern_ = fused_.pattern().pattern_version();
+  return true;
+}
+
+/// Its matrix is no lagged matrix for later steps.
+bool LinearizedStep::solve_fused_projected(const Equations& e, VecX& du, dynamics::ZeroRowSumMatrix& A) {
+  {
+    const ProjectedTangents projected(system_);
+    if (!assemble_fused(e, A)) return false;
+  }
+  if (mixed_->factor_step_matrix() != StepMatrixUse::kSolve) return false;
+  solver_.count_projected();
+  return solver_.chosen().solve(rhs_, du) == SolveStatus::kOk;
+}
+
+StepStatus LinearizedStep::solve_whole(const Equations& e, VecX& du) {
+  forget();
+  if (!evaluate_right_hand_side(e)) return StepStatus::kNotFinite;
+  const auto assemble = [&] {
+    const ScopedTimer timer(counters_->tangent_s);
+    ++counters_->tangent_evaluations;
+    system_.step_matrix(e.at, 1.0, e.h, e.h * e.h, A_);
+  };
+  SolveStatus status;
+  if (known_indefinite_) {
+    status = solver_.factor_indefinite(A_, system_, assemble);
+  } else {
+    assemble();
+    status = solver_.factor(A_, system_, assemble);
+  }
+  bool rhs_projected = false;
+  const auto right_hand_side = [&]() -> const VecX& {
+    if (rhs_projected == solver_.projected()) return rhs_;
+    rhs_projected = solver_.projected();
+    if (rhs_projected) {
+      const ProjectedTangents projected(system_);
+      evaluate_right_hand_side(e);
+    } else {
+      evaluate_right_hand_side(e);
+    }
+    return rhs_;
+  };
+  if (status == SolveStatus::kOk) status = solver_.solve(system_, assemble, right_hand_side, du);
+  return status == SolveStatus::kOk ? StepStatus::kOk : StepStatus::kSolverFailed;
+}
+
+/// False where it is not finite.
+bool LinearizedStep::evaluate_right_hand_side(const Equations& e) {
+  const ScopedTimer timer(counters_->force_s);
+  ++counters_->force_evaluations;
+  system_.force(e.at, rhs_);
+  product_.setZero(rhs_.size());
+  for (const auto& term : system_.terms())
+    if (term->traits().has_tangent) term->apply_tangent(e.at, 1.0, 0.0, e.s, product_);
+  rhs_ -= product_;
+  return complete_right_hand_side(e);
+}
+
+/// From f - K s to the whole right-hand side; false where it is not finite.
+bool LinearizedStep::complete_right_hand_side(const Equations& e) {
+  if (!e.dv_is_zero) {
+    product_.setZero(rhs_.size());
+    for (const auto& term : system_.terms())
+      if (term->traits().has_tangent) term->apply_tangent(e.at, 0.0, 1.0, e.dv, product_);
+    rhs_ -= product_;
+  }
+  rhs_ *= e.h;
+  if (!e.dv_is_zero) {
+    system_.apply_mass(e.at, e.dv, product_);
+    rhs_ -= product_;
+  }
+  system_.reduce(e.at, rhs_);
+  if (system_.any_driven()) {  // geometric stiffness of the nodes that rigid blocks carry
+    product_.setZero(rhs_.size());
+    system_.apply_carried_stiffness(e.at, e.s, product_);
+    rhs_ -= e.h * product_;
+  }
+  return all_finite(rhs_);
+}
+
+}  // namespace palpate::integrate

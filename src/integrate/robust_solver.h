@@ -1,0 +1,30 @@
+#pragma once
+#include "integrate/direct_fallback.h"
+
+namespace palpate::integrate {
+
+/// A linear solver that solves every matrix that has an inverse: what the chosen solver does not take,
+/// because the matrix is unsymmetric or indefinite or its iteration does not converge, is solved directly.
+class RobustSolver final : public dynamics::LinearSolver {
+ public:
+  explicit RobustSolver(std::unique_ptr<dynamics::LinearSolver> chosen) : solvers_(std::move(chosen)) {}
+
+  std::string name() const override { return solvers_.chosen().name(); }
+  bool supports_unsymmetric() const override { return true; }
+  dynamics::SolveStatus factor(const dynamics::BorderedMatrix& A) override;
+  dynamics::SolveStatus solve(const MatX& B, MatX& X) override { return solve_columns(B, X, kept_columns_); }
+  dynamics::SolveStatus solve(const VecX& b, VecX& x) override { return solve_columns(b, x, kept_column_); }
+  const dynamics::SolverCounters& counters() const override { return solvers_.counters(); }
+
+ private:
+  template <class Columns>
+  dynamics::SolveStatus solve_columns(const Columns& b, Columns& x, Columns& kept);
+
+  DirectFallback solvers_;
+  const dynamics::BorderedMatrix* matrix_ = nullptr;  ///< last factored
+  /// right-hand sides of a solve in place, in case it has to be done again
+  MatX kept_columns_;
+  VecX kept_column_;
+};
+
+}  // namespace palpate::integrate

@@ -1,0 +1,153 @@
+#include "linear/mixed_precision/refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "palpate/core/clock.h"
+
+namespace palpate::linear {
+
+using dynamics::SolveStatus;
+
+namespace {
+/// Relative tolerance of the solve for the error that comes of the matrix being a lagged one.
+constexpr double kRoughly = 0.5;
+/// Residuals that are evaluated in one solve, at most.
+constexpr int kMostResiduals = 4;
+}  // namespace
+
+void Refinement::prepare() {
+  open_.assign(s_.b.size(), 0.0f);
+  lag_ = LaggedMatrixPolicy(s_.rtol);
+}
+
+std::optional<SolveStatus> Refinement::solve(dynamics::ResidualFunction& equations, VecX& x) {
+  if (!can_correct() || !s_.guess.products_followed()) return {};
+  const bool own = std::exchange(own_, false);
+  if (!own && !lag_.serves()) return {};
+  const double start = wall_seconds();
+  residuals_s_ = 0.0;
+  x.resize(3 * s_.nodes());
+  const SolveStatus status = approach(equations, x);
+  s_.counters.solve_s += wall_seconds() - start - residuals_s_;
+  if (status != SolveStatus::kOk) {
+    if (!own) lag_.failed();
+    return status;
+  }
+  lag_.solved(s_.correction);
+  ++s_.counters.solves;
+  if (!own) ++s_.counters.near;
+  return status;
+}
+
+SolveStatus Refinement::approach(dynamics::ResidualFunction& equations, VecX& x) {
+  s_.begin(true);
+  s_.put_solution(x.data());
+  evaluate_residual(equations, x);
+  int residuals = 1;
+  const ProjectedGuess::Start start = begin_with_residual();
+  if (!std::isfinite(s_.size)) return SolveStatus::kNotConverged;
+  const double by_copy = (1.0 - LaggedMatrixPolicy::kUnseen) * s_.rtol;
+  double open = 0.0, energy = start.energy, change = start.change;
+  SolveStatus status =
+      descend(energy, by_copy, open, [&](int first, int last) { s_.set_residual(first, last); });
+  for (;;) {
+    if (status != SolveStatus::kOk) return status;
+    const double solution = s_.iteration.solution(),
+                 correction = std::sqrt((change + solution - energy) / solution);
+    if (residuals == 1) s_.correction = correction;
+    if (open <= by_copy && !rounded_ && lag_.sure(correction)) break;
+    if (residuals == kMostResiduals) return SolveStatus::kNotConverged;
+    s_.add_correction();
+    s_.put_solution(x.data());
+    evaluate_residual(equations, x);
+    ++residuals;
+    double stale = 0.0;
+    if (status = correct_lag(solution, stale, open); status != SolveStatus::kOk) return status;
+    lag_.seen(stale, correction);
+    if (open <= s_.rtol) break;
+    if (!LaggedMatrixPolicy::converges(stale, correction)) return SolveStatus::kNotConverged;
+    s_.add_correction();
+    energy = solution;
+    change = stale * stale * solution;
+    status = descend(energy, by_copy, open, [](int, int) {});
+  }
+  s_.iteration.end();
+  s_.put_solution(x.data(), true, true);
+  s_.counters.residuals += residuals;
+  return SolveStatus::kOk;
+}
+
+/// b - A x, into residual_.
+void Refinement::evaluate_residual(dynamics::ResidualFunction& equations, VecX& x) {
+  const double start = wall_seconds();
+  equations.at(x, residual_);
+  residuals_s_ += wall_seconds() - start;
+}
+
+/// b = (b - A x) + Ao x: the right-hand side of the copy's system.
+ProjectedGuess::Start Refinement::begin_with_residual() {
+  const int* node = s_.copy.order().node.data();
+  s_.team.for_each([&](std::size_t part, int first, int last) {
+    double* b = s_.b.data() + 4 * static_cast<std::ptrdiff_t>(first);
+    s_.guess.product(b, first, last);
+    s_.kernels.add_nodes(node, residual_.data(), b, first, last);
+    s_.guess.add_up(part, s_.b.data(), first, last);
+  });
+  return s_.choose();
+}
+
+/// Corrects the error that comes of Ao not being A.  The residual with A is residual_, of which size r is
+/// what the iteration did not solve; the rest is (Ao - A) times the last correction.  A rough solve for that
+/// rest gives its size and most of itself.  The iteration's residual is then what both solves left.
+/// @param stale  its size over the solution's  @param open  in: relative error that the iteration ended
+///   with; out: with the part of this that remains
+SolveStatus Refinement::correct_lag(double solution, double& stale, double& open) {
+  const int* node = s_.copy.order().node.data();
+  float* r = s_.iteration.residual().data();
+  double rest = 0.0;
+  const SolveStatus status = descend(0.0, kRoughly, rest, [&](int first, int last) {
+    for (int k = first; k < last; ++k)
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t at = 4 * static_cast<std::size_t>(k) + static_cast<std::size_t>(axis);
+        const double by_lag =
+            residual_[3 * static_cast<std::ptrdiff_t>(node[k]) + axis] - s_.size * static_cast<double>(r[at]);
+        open_[at] = r[at];
+        s_.b[at] += by_lag;
+        r[at] = static_cast<float>(by_lag / s_.size);
+      }
+  });
+  if (status != SolveStatus::kOk) return status;
+  const double found = s_.iteration.solution();
+  stale = std::sqrt(found * (1.0 + rest * rest) / solution);
+  open += rest * std::sqrt(found / solution);
+  for (std::size_t i = 0; i < open_.size(); ++i) r[i] += open_[i];
+  return SolveStatus::kOk;
+}
+
+/// Iterates from the residual that is set, until the error is below rtol of the solution, or single precision
+/// has no more to say.
+/// @param start  as EnergyBound::begin  @param open  the error then, over the solution
+template <class Set>
+SolveStatus Refinement::descend(double start, double rtol, double& open, Set&& set_residual) {
+  s_.iteration.begin(start);
+  s_.iteration.set_floor(HUGE_VAL);
+  s_.iteration.restart();
+  double rho = s_.iteration.precondition(set_residual);
+  open = 0.0;
+  if (rho == 0.0) return SolveStatus::kOk;
+  if (!std::isfinite(rho)) return SolveStatus::kNotConverged;
+  if (!s_.iteration.reached(rho * s_.unit(), rtol)) {
+    int steps = 0;
+    const SolveStatus status =
+        s_.iteration.reduce(rho, 0.0, SolveState::kReductionInSingle * SolveState::kReductionInSingle * rho,
+                            s_.unit(), rtol, SolveState::kIterationLimit, steps);
+    s_.counters.iterations += steps;
+    if (status != SolveStatus::kOk) return status;
+  }
+  open = std::sqrt(s_.iteration.error(rho * s_.unit()) / s_.iteration.solution());
+  return SolveStatus::kOk;
+}
+
+}  // namespace palpate::linear

@@ -1,0 +1,152 @@
+#include "palpate/dynamics/step_assembly.h"
+
+#include <gtest/gtest.h>
+
+#include "dynamics/chain.h"
+
+using namespace palpate;
+using namespace palpate::dynamics;
+
+namespace {
+
+/// Room for a zero-row-sum matrix, in the order of the pattern's upper triangle.
+ZeroRowSumMatrix room_for(const BlockSparse& pattern) {
+  ZeroRowSumMatrix A;
+  A.pattern = &pattern;
+  A.place.assign(static_cast<std::size_t>(pattern.slot_count()), -1);
+  int pairs = 0;
+  for (int i = 0; i < pattern.block_rows(); ++i)
+    for (int s = pattern.row_start()[static_cast<std::size_t>(i)];
+         s < pattern.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+      const int j = pattern.columns()[static_cast<std::size_t>(s)];
+      if (j > i)
+        A.place[static_cast<std::size_t>(s)] = A.place[static_cast<std::size_t>(pattern.slot(j, i))] =
+            pairs++;
+    }
+  A.values.assign(9 * static_cast<std::size_t>(pairs), 0.0f);
+  A.places_version = 1;
+  return A;
+}
+
+}  // namespace
+
+// The zero-row-sum matrix is that of step_matrix: its off-diagonal blocks, and on the diagonal m less the
+// row's sum; held rows apart.
+TEST(StepAssembly, MakesTheStepOfTheSystem) {
+  Chain c(5);
+  c.system.add(std::make_shared<ChainMass>(c.block, 5, 2.0));
+  c.system.add(std::make_shared<Held>(std::vector<int>{0, 2}, VecX::Zero(2), 0.0));
+  c.system.prepare(c.state.view());
+  const StateView at = c.state.view();
+  StepAssembly assembly(c.system);
+  ASSERT_TRUE(assembly.applies(at));
+  ZeroRowSumMatrix A = room_for(c.system.pattern());
+  const VecX shift = VecX::LinSpaced(15, -1.0, 2.0);
+  VecX f, want, product = VecX::Zero(15);
+  assembly.assemble(at, shift, 1.0, 0.1, 0.01, f, A);
+  c.system.force(at, want);
+  c.system.terms()[0]->apply_tangent(at, 1.0, 0.0, shift, product);
+  EXPECT_LT((f - (want - product)).norm(), 1e-12 * want.norm());
+  EXPECT_EQ(A.positions, at.q.data());
+  ASSERT_EQ(A.held->size(), 1u);
+  EXPECT_EQ((*A.held)[0].node, 0);
+  EXPECT_EQ((*A.held)[0].axes, (std::array<bool, 3>{true, false, true}));
+  EXPECT_EQ(std::exp2(std::round(std::log2(A.scale))), A.scale) << "a power of two";
+
+  BorderedMatrix whole;
+  c.system.step_matrix(at, 1.0, 0.1, 0.01, whole);
+  const MatX dense = whole.to_dense();
+  for (int i = 0; i < 5; ++i) {
+    Mat3 own = A.diagonal.segment<3>(3 * i).asDiagonal();
+    for (int s = c.system.pattern().row_start()[static_cast<std::size_t>(i)];
+         s < c.system.pattern().row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+      const int j = c.system.pattern().columns()[static_cast<std::size_t>(s)];
+      if (j == i) continue;
+      const Mat3 block =
+          Eigen::Map<const Eigen::Matrix3f>(A.values.data() + 9 * A.place[static_cast<std::size_t>(s)])
+              .cast<double>() /
+          A.scale;
+      own -= block;
+      if (i == 0 || j == 0) continue;
+      EXPECT_LT((block - dense.block<3, 3>(3 * i, 3 * j)).norm(), 1e-7);
+    }
+    if (i > 0) { EXPECT_LT((own - dense.block<3, 3>(3 * i, 3 * i)).norm(), 1e-6) << "node " << i; }
+  }
+}
+
+TEST(StepAssembly, AppliesOnlyWhereEveryTermTakesPart) {
+  const auto applies = [](auto&& change) {
+    Chain c(4);
+    change(c);
+    c.system.set_mass_solver(std::make_unique<DenseSolver>());
+    c.system.prepare(c.state.view());
+    return StepAssembly(c.system).applies(c.state.view());
+  };
+  const auto lumped = [](Chain& c) { c.system.add(std::make_shared<ChainMass>(c.block, 4, 2.0)); };
+  EXPECT_TRUE(applies(lumped));
+  EXPECT_FALSE(applies([](Chain& c) { c.system.add(std::make_shared<ChainMass>(c.block, 4, 2.0, 0.5)); }))
+      << "a consistent mass";
+  EXPECT_FALSE(applies([&](Chain& c) {
+    lumped(c);
+    c.system.add(std::make_shared<ChainSprings>(2, 1.0, false));
+  })) << "a term that does not take part";
+  EXPECT_FALSE(applies([&](Chain& c) {
+    lumped(c);
+    c.system.add(std::make_shared<ChainSprings>(2, 1.0));
+  })) << "two terms on one pair of nodes";
+}
+
+// The residual of the step is that of its matrix and right-hand side, and zero along held directions.
+TEST(StepAssembly, TheResidualIsThatOfTheMatrix) {
+  Chain c(5);
+  c.system.add(std::make_shared<ChainMass>(c.block, 5, 2.0));
+  c.system.add(std::make_shared<Held>(std::vector<int>{0, 2}, VecX::Zero(2), 0.0));
+  c.system.prepare(c.state.view());
+  const StateView at = c.state.view();
+  StepAssembly assembly(c.system);
+  ASSERT_TRUE(assembly.applies(at));
+  const double h = 0.1;
+  const VecX shift = VecX::LinSpaced(15, -1.0, 2.0);
+  VecX change = VecX::LinSpaced(15, 3.0, -1.0), want, product = VecX::Zero(15), r;
+  change[0] = change[2] = 0.0;
+  BorderedMatrix A;
+  c.system.step_matrix(at, 1.0, h, h * h, A);
+  c.system.force(at, want);
+  c.system.terms()[0]->apply_tangent(at, 1.0, 0.0, shift, product);
+  want = h * (want - product);
+  A.multiply(change, product);
+  want -= product;
+  want[0] = want[2] = 0.0;
+  assembly.residual(at, shift + h * change, change, h, r);
+  EXPECT_LT((r - want).norm(), 1e-12 * want.norm());
+  EXPECT_EQ(r[0], 0.0);
+  EXPECT_EQ(r[2], 0.0);
+}
+
+// A term without the capability: its steps are assembled the general way, unless its tangent is zero.
+TEST(StepAssembly, FindsTheCapabilityOfATermThatIsAddedLater) {
+  struct Load final : ForceTerm {
+    explicit Load(bool is_zero) : zero(is_zero) {}
+    std::string_view name() const override { return "load"; }
+    TermTraits traits() const override { return {.zero_tangent = zero}; }
+    void add_force(const StateView&, VecX& f) override { f.array() += 1.0; }
+    void add_tangent(const StateView&, double, double, BorderedMatrix&) override {}
+    void apply_tangent(const StateView&, double, double, const VecX&, VecX&) override {}
+    bool zero;
+  };
+  for (const bool zero : {true, false}) {
+    Chain c(4);
+    c.system.add(std::make_shared<ChainMass>(c.block, 4, 2.0));
+    c.system.prepare(c.state.view());
+    StepAssembly assembly(c.system);
+    ASSERT_TRUE(assembly.applies(c.state.view()));
+    c.system.add(std::shared_ptr<ForceTerm>(std::make_shared<Load>(zero)));
+    ASSERT_EQ(assembly.applies(c.state.view()), zero);
+    if (!zero) continue;
+    ZeroRowSumMatrix A = room_for(assembly.pattern());
+    VecX f, want;
+    assembly.assemble(c.state.view(), VecX::Zero(12), 1.0, 0.1, 0.01, f, A);
+    c.system.force(c.state.view(), want);
+    EXPECT_EQ(f, want);
+  }
+}
