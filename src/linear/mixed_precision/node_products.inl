@@ -204,8 +204,8 @@ PALPATE_INLINE WideIndex invert_own(const Symmetric& own, float* inverse, const 
 
 template <int N>
 PALPATE_INLINE RowStatus complete_columns(const PackedRows& A, const BlockSource& from, float* sums,
-                                        float* inverse, double* trace, const float* const* V,
-                                        float* const* AV) {
+                                          float* inverse, double* trace, const float* const* V,
+                                          float* const* AV) {
   set_zero<N>(A, AV);
   float* off = sums + 4;  // eight numbers a node
   for (int i = A.first_node; i < A.last_node; ++i) {
@@ -268,7 +268,7 @@ PALPATE_INLINE RowStatus complete_columns(const PackedRows& A, const BlockSource
   return RowStatus::kOk;
 }
 RowStatus complete(const PackedRows& A, const BlockSource& from, float* sums, float* inverse, double* trace,
-                 int count, const float* const* V, float* const* AV) {
+                   int count, const float* const* V, float* const* AV) {
   return by_count(
       count, [&](auto n) __attribute__((always_inline)) {
         return complete_columns<decltype(n)::value>(A, from, sums, inverse, trace, V, AV);
