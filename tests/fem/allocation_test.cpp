@@ -3,6 +3,7 @@
 #include "fem_fixture.h"
 #include "malloc_count.h"
 #include "palpate/core/workers.h"
+#include "palpate/dynamics/zero_row_sum_matrix.h"
 #include "palpate/fem/nodal_dilatation.h"
 
 using namespace palpate;
@@ -46,7 +47,7 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
     A.body = builder.build();
     VecX f = VecX::Zero(x.size()), y = f;
     SoftBody symmetric("b", rest, materials, {.tangent = tangent, .law = law}, at.id);
-    dynamics::BalancedMatrix balanced;
+    dynamics::ZeroRowSumMatrix balanced;
     balanced.pattern = &A.body;
     for (int s = 0; s < A.body.slot_count(); ++s) balanced.place.push_back(s);  // more room than it needs
     balanced.values.resize(9 * balanced.place.size());

@@ -4,6 +4,7 @@
 
 #include "law_reference.h"
 #include "palpate/core/workers.h"
+#include "palpate/dynamics/zero_row_sum_matrix.h"
 #include "palpate/fem/nodal_dilatation.h"
 
 // What every constitutive law must do, over the whole registry: a new law is tested by being listed.
@@ -250,7 +251,7 @@ TEST_P(Laws, FusedStepIsForceProductAndTangent) {
       body.add_pattern(builder);
       dynamics::BorderedMatrix whole;
       whole.body = builder.build();
-      dynamics::BalancedMatrix A;
+      dynamics::ZeroRowSumMatrix A;
       A.pattern = &whole.body;
       A.place.assign(static_cast<std::size_t>(whole.body.slot_count()), -1);
       int pairs = 0;

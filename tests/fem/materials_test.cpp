@@ -1,5 +1,6 @@
 #include "fem_fixture.h"
 #include "palpate/core/workers.h"
+#include "palpate/dynamics/zero_row_sum_matrix.h"
 #include "palpate/fem/nodal_dilatation.h"
 
 // Bodies of several materials.  Everything but the shared nodes is a sum over elements, so that a body of two
@@ -187,7 +188,7 @@ TEST(Materials, OneStepIsForceProductAndTangentInOne) {
     body.add_pattern(builder);
     dynamics::BorderedMatrix whole;
     whole.body = builder.build();
-    dynamics::BalancedMatrix A;
+    dynamics::ZeroRowSumMatrix A;
     A.pattern = &whole.body;
     A.place.assign(static_cast<std::size_t>(whole.body.slot_count()), -1);
     int pairs = 0;

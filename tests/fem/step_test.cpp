@@ -1,5 +1,6 @@
 #include "fem_fixture.h"
 #include "palpate/core/workers.h"
+#include "palpate/dynamics/zero_row_sum_matrix.h"
 
 using namespace palpate;
 using namespace palpate::fem;
@@ -12,7 +13,7 @@ constexpr double kK = 0.37, kD = 0.6, kScale = 8.0;
 /// Room for a balanced matrix in an order of its own: blocks backwards.
 struct Room {
   dynamics::BlockSparse pattern;
-  dynamics::BalancedMatrix A;
+  dynamics::ZeroRowSumMatrix A;
   explicit Room(const SoftBody& body, const dynamics::State& state) {
     dynamics::PatternBuilder builder(state.layout());
     body.add_pattern(builder);
