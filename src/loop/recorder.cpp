@@ -30,6 +30,8 @@ struct Recorder::Impl {
   TriMesh tool;   ///< in its own axes; empty without a tool
   int every = 1;  ///< periods
   long seen = 0;  ///< periods
+  /// [N] and [N m]: a larger difference between what is wanted and what is sent is a limit
+  double force_rounding = 0.0, torque_rounding = 0.0;
   Pose tool_pose;
   Twist tool_twist;
   Points points, velocity;
@@ -117,8 +119,15 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
   if (d.record->states && !world.bodies.empty()) impl_->open_states(world, (base / kRunFile).string());
   if (d.record->states && !world.bones.empty())
     impl_->bones = std::make_unique<store::BoneFile>((base / kBoneFile).string());
-  if (d.record->forces && d.tool)
+  if (d.record->forces && d.tool) {
+    // below this share of the device's maximum a difference is the limiter's smoothness, not a limit
+    constexpr double kUnlimited = 3e-13;
+    if (d.device) {
+      impl_->force_rounding = kUnlimited * d.device->max_force_n;
+      impl_->torque_rounding = kUnlimited * d.device->max_torque_n_m;
+    }
     impl_->forces = std::make_unique<store::ForceFile>((base / kForceFile).string());
+  }
 }
 
 Recorder::~Recorder() = default;
@@ -136,10 +145,9 @@ void Recorder::period(World& world, double t) {
 
 void Recorder::tick(const TickRecord& tick) {
   if (!impl_->forces) return;
-  constexpr double kRounding = 1e-12;
   const Wrench &sent = tick.device, &wanted = tick.wanted;
-  const bool limited = (sent.force - wanted.force).norm() > kRounding * wanted.force.norm() ||
-                       (sent.moment - wanted.moment).norm() > kRounding * wanted.moment.norm();
+  const bool limited = (sent.force - wanted.force).norm() > impl_->force_rounding ||
+                       (sent.moment - wanted.moment).norm() > impl_->torque_rounding;
   impl_->forces->append({tick.time, tick.handle, tick.tool, tick.device, limited});
 }
 

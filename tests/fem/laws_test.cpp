@@ -307,10 +307,10 @@ TEST_P(Laws, ABodyAskedForADefiniteTangentGivesTheProjectedOne) {
     return y;
   };
   const VecX before = product(exact);
-  exact.set_definite(true);
+  exact.project_to_psd(true);
   EXPECT_EQ(product(exact), product(projected));
   EXPECT_GT(apart(product(exact), before), 1e-3);
-  exact.set_definite(false);
+  exact.project_to_psd(false);
   EXPECT_EQ(product(exact), before);
 }
 
