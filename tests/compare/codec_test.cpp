@@ -70,6 +70,7 @@ TEST(Codec, VisitsEveryMember) {
                            c.indefinite,
                            c.projected,
                            c.unconverged,
+                           c.rounding_limited,
                            s.symbolic,
                            s.orderings,
                            s.factorisations,
@@ -88,7 +89,7 @@ TEST(Codec, VisitsEveryMember) {
        {c.force_s, c.tangent_s, s.symbolic_s, s.factor_s, s.solve_s, run.result.time, run.result.cpu_s,
         run.result.wall_s, run.result.query_s, run.result.linearise_s, run.result.tool_s})
     values.insert(time);
-  EXPECT_EQ(values.size(), 36u);
+  EXPECT_EQ(values.size(), 37u);
   EXPECT_EQ(numbers_of(run.result).size(), values.size());
   EXPECT_GE(*values.begin(), 1000.0) << "a member that is not visited";
 }
