@@ -6,6 +6,10 @@ namespace palpate::device {
 /// Time within which the wrench falls to zero after the last valid pose [s].
 inline constexpr double kFallTime = 0.020;
 
+/// Maxima a second [1/s]: thirty of them in a tick of 1 ms, which it never slows.  Relative to the device's
+/// maxima, so that it suits any device and any units.
+inline constexpr double kDefaultSlew = 3e4;
+
 /// The last thing before the motors: never lets a wrench above the device's maximum out (smoothly: |f| ->
 /// fmax tanh-like, C1, identity to within 1 % below half the maximum), ramps in, bounds the slew, and falls
 /// to zero within 20 ms after the last valid pose.
@@ -18,8 +22,12 @@ class WrenchLimiter {
  public:
   /// @throws Error for a maximum that is not positive, a negative ramp, or a slew too small to reach zero
   ///   in time (1.5 maximum / 20 ms)
-  WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s, double max_force_slew_n_s = 1e5,
-                double max_torque_slew_n_m_s = 1e4);
+  WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s, double max_force_slew_n_s,
+                double max_torque_slew_n_m_s);
+  /// Slews of kDefaultSlew maxima a second.
+  WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s)
+      : WrenchLimiter(max_force_n, max_torque_n_m, ramp_s, kDefaultSlew * max_force_n,
+                      kDefaultSlew * max_torque_n_m) {}
   /// @param t [s], increasing  @param valid  whether the handle's pose of this tick is valid
   Wrench limit(double t, const Wrench& wanted, bool valid);
   /// valid ticks whose wanted force or torque was above its maximum
