@@ -26,7 +26,7 @@ Wrench steady(double force, double max) {
 
 std::string message(double force, double torque, double ramp, double slew) {
   try {
-    WrenchLimiter(force, torque, ramp, slew);
+    WrenchLimiter(force, torque, ramp, slew, kDefaultSlew * torque);
   } catch (const Error& e) { return e.what(); }
   return "";
 }
