@@ -13,20 +13,21 @@ void spin(double s) {
   while (thread_cpu_seconds() - start < s) {}
 }
 
-// With the process's own clock most of these runs take 0 s, some a whole tick.
+// With the process's own clock most of these runs take 0 s, some a whole tick.  The thread's clock is not
+// read in between: it would bring that of the process up to date.
 TEST(CpuTime, IsExactWhileATimerCountsIt) {
   const itimerval far{{0, 0}, {100000, 0}}, off{};
   ASSERT_EQ(setitimer(ITIMER_PROF, &far, nullptr), 0);
   int runs = 0;
-  for (; runs < 50; ++runs) {
-    const double outside = thread_cpu_seconds(), start = cpu_seconds(), inside = thread_cpu_seconds();
-    spin(2e-4);
-    const double least = thread_cpu_seconds() - inside, found = cpu_seconds() - start;
-    EXPECT_GE(found, least);
-    EXPECT_LE(found, thread_cpu_seconds() - outside);
+  for (; runs < 20; ++runs) {
+    const double outside = thread_cpu_seconds(), start = cpu_seconds(), until = wall_seconds() + 1e-3;
+    while (wall_seconds() < until) {}
+    const double found = cpu_seconds() - start, most = thread_cpu_seconds() - outside;
+    EXPECT_GE(found, 0.5 * most);
+    EXPECT_LE(found, most);
   }
   setitimer(ITIMER_PROF, &off, nullptr);
-  EXPECT_EQ(runs, 50);
+  EXPECT_EQ(runs, 20);
 }
 
 TEST(CpuTime, IsThatOfAllThreads) {
