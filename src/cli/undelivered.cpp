@@ -24,7 +24,7 @@ void Undelivered::add(const report::RunReport& report) {
   for (const auto& figure : report.missing_figures)
     captions[first_line(figure.why)].push_back(first_line(figure.caption));
   for (const auto& [why, figures] : captions)
-    add(figures.size() == 1 ? fmt::format("the figure \"{}\" in {}", figures[0], report.page.string())
+    add(figures.size() == 1 ? fmt::format("figure \"{}\" in {}", figures[0], report.page.string())
                             : fmt::format("{} figures in {}", figures.size(), report.page.string()),
         why);
 }

@@ -23,7 +23,7 @@ int DeferredScatter::buffers(const ElementChunks& chunks) {
 
 /// Ascending in the matrix, so that its memory is written in order.
 void DeferredScatter::prepare(const ElementChunks& chunks, int first_node,
-                              const dynamics::BalancedMatrix& A) {
+                              const dynamics::ZeroRowSumMatrix& A) {
   if (A.places_version == version_ && first_node == first_node_) return;
   const auto slot = [&](int i, int j) {
     const int found = A.pattern->slot(first_node + i, first_node + j);
@@ -78,7 +78,7 @@ DeferredScatter::Work DeferredScatter::begin(int thread, int groups) {
 }
 
 void DeferredScatter::end(const ElementChunks& chunks, int c, int thread, bool last,
-                          const SharedKernels& kernels, dynamics::BalancedMatrix& A) {
+                          const SharedKernels& kernels, dynamics::ZeroRowSumMatrix& A) {
   const Chunk& chunk = chunks.chunks[static_cast<std::size_t>(c)];
   Buffers& b = buffers_[static_cast<std::size_t>(thread)];
   kernels.scatter(b.before, b.before.count);
@@ -96,7 +96,7 @@ void DeferredScatter::end(const ElementChunks& chunks, int c, int thread, bool l
 }
 
 void DeferredScatter::finish(const ElementChunks& chunks, const SharedKernels& kernels,
-                             dynamics::BalancedMatrix& A) {
+                             dynamics::ZeroRowSumMatrix& A) {
   for (Buffers& b : buffers_) {
     kernels.scatter(b.before, b.before.count);
     b.before = {};

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "chunk_memory.h"
-#include "palpate/dynamics/balanced_matrix.h"
+#include "palpate/dynamics/zero_row_sum_matrix.h"
 
 namespace palpate::fem {
 
@@ -13,7 +13,7 @@ namespace palpate::fem {
 class DeferredScatter {
  public:
   /// Makes the map into A's slots, unless it is the one at hand.
-  void prepare(const ElementChunks& chunks, int first_node, const dynamics::BalancedMatrix& A);
+  void prepare(const ElementChunks& chunks, int first_node, const dynamics::ZeroRowSumMatrix& A);
   void fit(const ElementChunks& chunks, int threads);
   /// Where a thread sums the blocks of its next chunk, and those of its last one, of which the kernel
   /// scatters a batch with each of `groups` groups of elements.
@@ -24,9 +24,9 @@ class DeferredScatter {
   Work begin(int thread, int groups);
   /// Defers the blocks of chunk c, the thread's current one; `last` where none is likely to follow.
   void end(const ElementChunks& chunks, int c, int thread, bool last, const SharedKernels& kernels,
-           dynamics::BalancedMatrix& A);
+           dynamics::ZeroRowSumMatrix& A);
   /// Scatters what is still deferred and adds what was put aside; after all chunks.
-  void finish(const ElementChunks& chunks, const SharedKernels& kernels, dynamics::BalancedMatrix& A);
+  void finish(const ElementChunks& chunks, const SharedKernels& kernels, dynamics::ZeroRowSumMatrix& A);
   std::size_t map_bytes() const;
   std::size_t scratch_bytes() const;
 

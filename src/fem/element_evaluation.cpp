@@ -133,7 +133,7 @@ LaneCounts ElementEvaluation::tangent(const ElementModels& models, const BodyFie
 }
 
 LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFields& at, int first_node,
-                                       double* f, dynamics::BalancedMatrix& A) {
+                                       double* f, dynamics::ZeroRowSumMatrix& A) {
   fit();
   deferred_.fit(chunks_, workers::count());
   deferred_.prepare(chunks_, first_node, A);

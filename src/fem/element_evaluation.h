@@ -43,7 +43,7 @@ class ElementEvaluation {
   /// Fused assembly: f += forces - stiffness times w, and the off-diagonal blocks of k_scale K + d_scale D,
   /// times A.scale, stored in A.
   LaneCounts add_step(const ElementModels& models, const BodyFields& at, int first_node, double* f,
-                      dynamics::BalancedMatrix& A);
+                      dynamics::ZeroRowSumMatrix& A);
   double energy(const ElementModels& models, const BodyFields& at);
   double dissipated_power(const ElementModels& models, const BodyFields& at);
 

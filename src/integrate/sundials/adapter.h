@@ -8,153 +8,154 @@
 
 #include "integrate/ode_problem.h"
 #include "integrate/sundials/fixed_step_newton.h"
+#include "integrate/sundials/hidden.h"
 #include "integrate/sundials/hooks.h"
 #include "palpate/dynamics/spec.h"
 
 namespace palpate::integrate {
-namespace sun __attribute__((visibility("hidden"))) {
+namespace PALPATE_HIDDEN sun {
 
-  constexpr int kRecoverable = 1;
-  constexpr int kUnrecoverable = -1;
-  /// A force that jumps (a damper at first touch) makes the step shrink by ten a failure, down to where the
-  /// jump is below the tolerance; the libraries' own limit of 7 gives up at rtol 1e-8.  A smallest step
-  /// bounds it in any case.
-  constexpr int kErrorTestFailures = 30;
+constexpr int kRecoverable = 1;
+constexpr int kUnrecoverable = -1;
+/// A force that jumps (a damper at first touch) makes the step shrink by ten a failure, down to where the
+/// jump is below the tolerance; the libraries' own limit of 7 gives up at rtol 1e-8.  A smallest step
+/// bounds it in any case.
+constexpr int kErrorTestFailures = 30;
 
-  /// What CVODE, ARKODE and IDA have in common, seen as a Stepper: memory made once a layout, restarts,
-  /// landing on the output time, root finding with a restart at the root, counters across restarts, the
-  /// trace, errors with the flag's name, time and step. A derived class knows one library's calls.
-  class Adapter : public dynamics::Stepper, protected NewtonHook {
-   public:
-    Adapter(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);
-    ~Adapter() override;  // derived classes free their memory in their own destructor, before the vectors go
-    Adapter(const Adapter&) = delete;
-    Adapter& operator=(const Adapter&) = delete;
+/// What CVODE, ARKODE and IDA have in common, seen as a Stepper: memory made once a layout, restarts,
+/// landing on the output time, root finding with a restart at the root, counters across restarts, the
+/// trace, errors with the flag's name, time and step. A derived class knows one library's calls.
+class Adapter : public dynamics::Stepper, protected NewtonHook {
+ public:
+  Adapter(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);
+  ~Adapter() override;  // derived classes free their memory in their own destructor, before the vectors go
+  Adapter(const Adapter&) = delete;
+  Adapter& operator=(const Adapter&) = delete;
 
-    std::string name() const override { return spec_.name; }
-    dynamics::StepResult advance_to(double t_end) final;
-    bool dense_output(double t, VecX& q, VecX& u) const final;
-    void reinit(dynamics::ReinitReason reason) final;
-    bool follow(dynamics::StepFollower* follower) final {
-      follower_ = follower;
-      return true;
-    }
-    const dynamics::StepperCounters& counters() const final;
+  std::string name() const override { return spec_.name; }
+  dynamics::StepResult advance_to(double t_end) final;
+  bool dense_output(double t, VecX& q, VecX& u) const final;
+  void reinit(dynamics::ReinitReason reason) final;
+  bool follow(dynamics::StepFollower* follower) final {
+    follower_ = follower;
+    return true;
+  }
+  const dynamics::StepperCounters& counters() const final;
 
-   protected:
-    /// A library's own counts since its last start.
-    struct Counts {
-      long steps = 0, error_test_failures = 0, newton_iterations = 0, newton_failures = 0, solve_failures = 0;
-    };
-
-    // --- what one library does
-    // --------------------------------------------------------------------------------------
-    virtual void create() = 0;   ///< its memory, for y() at problem().time()
-    virtual void destroy() = 0;  ///< frees it; harmless when there is none
-    /// goes on from y() at problem().time(), history forgotten; a one-step method may keep its step size
-    virtual void restart(bool keep_step) = 0;
-    virtual void find_roots(int count) = 0;
-    virtual void aim(double t_end, double smallest_step) = 0;
-    virtual int one_step(double t_end, double& t) = 0;  ///< the library's flag; y() becomes the solution at t
-    virtual dynamics::StepStatus status_of(int flag) const = 0;
-    virtual std::string flag_name(int flag) const = 0;
-    /// what to do, where the library's words mislead
-    virtual std::string remedy(int /*flag*/) const { return {}; }
-    virtual bool interpolate(double t, N_Vector out) const = 0;
-    virtual Counts counts() const = 0;
-    virtual double last_step() const = 0;
-    virtual int last_order() const = 0;
-    /// of the last accepted step; false where it has none
-    virtual bool local_errors(N_Vector /*estimate*/) const { return false; }
-    /// y at the current Newton iterate
-    virtual N_Vector newton_state() const = 0;
-    /// of the step being taken, the factor may have another
-    virtual double current_gamma() const = 0;
-
-    // --- what it works with
-    // -----------------------------------------------------------------------------------------
-    OdeProblem& problem() const { return *problem_; }
-    const IntegratorSpec& spec() const { return spec_; }
-    SUNContext context() const { return context_; }
-    N_Vector y() const { return y_; }
-    /// Takes `rtol` in the place of the spec's.
-    void use_tolerance(double rtol) { weight_scale_ = spec_.rtol / rtol; }
-    /// For backward differences up to order k.  Their error test holds C h^(k+1) at a tolerance T, so h ~
-    /// T^(1/(k+1)), and the error over a given time ~ h^k = T^(k/(k+1)): T is rtol^((k+1)/k), so that a tenth
-    /// of rtol buys a tenth of the error; but not below kTightest, where rounding shows.
-    void use_tolerance_of_bdf(int highest_order) {
-      const double k = spec_.max_order > 0 ? spec_.max_order : highest_order;
-      constexpr double kTightest = 1e-12;
-      use_tolerance(std::max(std::pow(spec_.rtol, (k + 1.0) / k), std::min(spec_.rtol, kTightest)));
-    }
-    void keep_state();  ///< y(), at the start of a step that may be tried again
-    void restore_state();
-    /// To be called at every evaluation of the right-hand side: tells attempted steps apart while they are
-    /// traced.
-    void see_evaluation(double t, N_Vector y, bool finite);
-
-    int setup() override;
-    int solve(N_Vector x, N_Vector b) override;
-    N_Vector iterate() const override { return newton_state(); }
-    void project_to_psd(bool on) override { problem_->project_to_psd(on); }
-    virtual dynamics::SolveStatus solve_newton(const double* y, const double* r, double* d);
-    /// Newton's iteration with our own test of convergence; made with the memory, freed by the base.
-    SUNNonlinearSolver make_newton();
-    SUNNonlinearSolver make_fixed_step_newton();  ///< in its place where steps cannot be shortened
-    void allow_leaps(bool on) { fixed_step_newton_.allow_leaps(on); }
-    void use_own_test();  ///< after it was handed to the library, which sets its own
-
-    /// Re-evaluates the tangent unless the factor can be kept; to be called by the library's matrix callback.
-    bool prepare_matrix(double t, N_Vector y, bool reuse, double gamma, OdeProblem::Side side);
-
-    static void on_error(int, const char*, const char* function, char* text, void* data);
-    static int weights(N_Vector y, N_Vector w, void* data);
-    static int project_step(realtype t, N_Vector y, void* data);  ///< ARKODE's post-process function
-    static int roots(realtype t, N_Vector y, realtype* g, void* data);
-
-   private:
-    void start();
-    void allocate();
-    void release();
-    void collect();
-    dynamics::StepAttempt attempt(double t0, double t1, dynamics::StepAttempt::Outcome outcome) const;
-    void close_attempt(dynamics::StepAttempt::Outcome outcome);
-    void accept_attempt(double t0, double t1, bool event);
-    dynamics::StepResult result(dynamics::StepStatus status) const;
-    dynamics::StepResult failure(int flag, double t, double t_end);
-    int test_convergence(int iteration, double correction, double tolerance);
-
-    std::unique_ptr<OdeProblem> problem_;
-    IntegratorSpec spec_;
-    SUNContext context_ = nullptr;
-    N_Vector y_ = nullptr, scratch_ = nullptr, weights_ = nullptr;
-    SUNNonlinearSolver newton_ = nullptr;
-    FixedStepNewton fixed_step_newton_{*this};
-    double rate_ = 1.0, previous_correction_ = 0.0;  ///< contraction of Newton's iteration
-    void fill_weights(N_Vector y, N_Vector w) const;
-    bool finds_roots() const { return spec_.events == "root-finding"; }
-    double weight_scale_ = 1.0;
-    Counts counted_;  ///< when they were last read
-    long newton_before_ = 0;
-    double last_correction_ = 0.0;  ///< weighted norm of the last Newton correction
-    dynamics::StepFollower* follower_ = nullptr;
-    bool made_ = false, running_ = false, keep_step_ = false;
-    bool finite_ = true;  ///< the last evaluation was
-    std::uint64_t version_ = 0;
-    int root_count_ = 0;
-    std::uint64_t roots_version_ = 0;  ///< of the event functions that the library has values of
-    double wanted_gamma_ = 0.0;
-    std::string message_;
-
-    // the attempt being traced
-    Counts attempt_counts_;
-    double attempt_start_ = 0.0, attempt_reach_ = 0.0;
-    int attempt_worst_ = -1;
-    bool attempt_finite_ = true, attempt_open_ = false;
-    VecX attempt_y_;
-
-    VecX kept_;
+ protected:
+  /// A library's own counts since its last start.
+  struct Counts {
+    long steps = 0, error_test_failures = 0, newton_iterations = 0, newton_failures = 0, solve_failures = 0;
   };
 
-}  // namespace )
+  // --- what one library does
+  // --------------------------------------------------------------------------------------
+  virtual void create() = 0;   ///< its memory, for y() at problem().time()
+  virtual void destroy() = 0;  ///< frees it; harmless when there is none
+  /// goes on from y() at problem().time(), history forgotten; a one-step method may keep its step size
+  virtual void restart(bool keep_step) = 0;
+  virtual void find_roots(int count) = 0;
+  virtual void aim(double t_end, double smallest_step) = 0;
+  virtual int one_step(double t_end, double& t) = 0;  ///< the library's flag; y() becomes the solution at t
+  virtual dynamics::StepStatus status_of(int flag) const = 0;
+  virtual std::string flag_name(int flag) const = 0;
+  /// what to do, where the library's words mislead
+  virtual std::string remedy(int /*flag*/) const { return {}; }
+  virtual bool interpolate(double t, N_Vector out) const = 0;
+  virtual Counts counts() const = 0;
+  virtual double last_step() const = 0;
+  virtual int last_order() const = 0;
+  /// of the last accepted step; false where it has none
+  virtual bool local_errors(N_Vector /*estimate*/) const { return false; }
+  /// y at the current Newton iterate
+  virtual N_Vector newton_state() const = 0;
+  /// of the step being taken, the factor may have another
+  virtual double current_gamma() const = 0;
+
+  // --- what it works with
+  // -----------------------------------------------------------------------------------------
+  OdeProblem& problem() const { return *problem_; }
+  const IntegratorSpec& spec() const { return spec_; }
+  SUNContext context() const { return context_; }
+  N_Vector y() const { return y_; }
+  /// Takes `rtol` in the place of the spec's.
+  void use_tolerance(double rtol) { weight_scale_ = spec_.rtol / rtol; }
+  /// For backward differences up to order k.  Their error test holds C h^(k+1) at a tolerance T, so h ~
+  /// T^(1/(k+1)), and the error over a given time ~ h^k = T^(k/(k+1)): T is rtol^((k+1)/k), so that a tenth
+  /// of rtol buys a tenth of the error; but not below kTightest, where rounding shows.
+  void use_tolerance_of_bdf(int highest_order) {
+    const double k = spec_.max_order > 0 ? spec_.max_order : highest_order;
+    constexpr double kTightest = 1e-12;
+    use_tolerance(std::max(std::pow(spec_.rtol, (k + 1.0) / k), std::min(spec_.rtol, kTightest)));
+  }
+  void keep_state();  ///< y(), at the start of a step that may be tried again
+  void restore_state();
+  /// To be called at every evaluation of the right-hand side: tells attempted steps apart while they are
+  /// traced.
+  void see_evaluation(double t, N_Vector y, bool finite);
+
+  int setup() override;
+  int solve(N_Vector x, N_Vector b) override;
+  N_Vector iterate() const override { return newton_state(); }
+  void project_to_psd(bool on) override { problem_->project_to_psd(on); }
+  virtual dynamics::SolveStatus solve_newton(const double* y, const double* r, double* d);
+  /// Newton's iteration with our own test of convergence; made with the memory, freed by the base.
+  SUNNonlinearSolver make_newton();
+  SUNNonlinearSolver make_fixed_step_newton();  ///< in its place where steps cannot be shortened
+  void allow_leaps(bool on) { fixed_step_newton_.allow_leaps(on); }
+  void use_own_test();  ///< after it was handed to the library, which sets its own
+
+  /// Re-evaluates the tangent unless the factor can be kept; to be called by the library's matrix callback.
+  bool prepare_matrix(double t, N_Vector y, bool reuse, double gamma, OdeProblem::Side side);
+
+  static void on_error(int, const char*, const char* function, char* text, void* data);
+  static int weights(N_Vector y, N_Vector w, void* data);
+  static int project_step(realtype t, N_Vector y, void* data);  ///< ARKODE's post-process function
+  static int roots(realtype t, N_Vector y, realtype* g, void* data);
+
+ private:
+  void start();
+  void allocate();
+  void release();
+  void collect();
+  dynamics::StepAttempt attempt(double t0, double t1, dynamics::StepAttempt::Outcome outcome) const;
+  void close_attempt(dynamics::StepAttempt::Outcome outcome);
+  void accept_attempt(double t0, double t1, bool event);
+  dynamics::StepResult result(dynamics::StepStatus status) const;
+  dynamics::StepResult failure(int flag, double t, double t_end);
+  int test_convergence(int iteration, double correction, double tolerance);
+
+  std::unique_ptr<OdeProblem> problem_;
+  IntegratorSpec spec_;
+  SUNContext context_ = nullptr;
+  N_Vector y_ = nullptr, scratch_ = nullptr, weights_ = nullptr;
+  SUNNonlinearSolver newton_ = nullptr;
+  FixedStepNewton fixed_step_newton_{*this};
+  double rate_ = 1.0, previous_correction_ = 0.0;  ///< contraction of Newton's iteration
+  void fill_weights(N_Vector y, N_Vector w) const;
+  bool finds_roots() const { return spec_.events == "root-finding"; }
+  double weight_scale_ = 1.0;
+  Counts counted_;  ///< when they were last read
+  long newton_before_ = 0;
+  double last_correction_ = 0.0;  ///< weighted norm of the last Newton correction
+  dynamics::StepFollower* follower_ = nullptr;
+  bool made_ = false, running_ = false, keep_step_ = false;
+  bool finite_ = true;  ///< the last evaluation was
+  std::uint64_t version_ = 0;
+  int root_count_ = 0;
+  std::uint64_t roots_version_ = 0;  ///< of the event functions that the library has values of
+  double wanted_gamma_ = 0.0;
+  std::string message_;
+
+  // the attempt being traced
+  Counts attempt_counts_;
+  double attempt_start_ = 0.0, attempt_reach_ = 0.0;
+  int attempt_worst_ = -1;
+  bool attempt_finite_ = true, attempt_open_ = false;
+  VecX attempt_y_;
+
+  VecX kept_;
+};
+
+}  // namespace sun
 }  // namespace palpate::integrate

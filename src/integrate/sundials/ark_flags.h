@@ -1,11 +1,12 @@
 #pragma once
+#include "integrate/sundials/hidden.h"
 #include "palpate/dynamics/stepper.h"
 
 namespace palpate::integrate {
-namespace sun __attribute__((visibility("hidden"))) {
+namespace PALPATE_HIDDEN sun {
 
-  /// Return values of ARKStep and MRIStep, which are the same numbers.
-  dynamics::StepStatus ark_status(int flag);
+/// Return values of ARKStep and MRIStep, which are the same numbers.
+dynamics::StepStatus ark_status(int flag);
 
-}  // namespace )
+}  // namespace sun
 }  // namespace palpate::integrate

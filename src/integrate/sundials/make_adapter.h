@@ -1,19 +1,17 @@
 #pragma once
 #include "integrate/ode_problem.h"
+#include "integrate/sundials/hidden.h"
 #include "palpate/dynamics/spec.h"
 
 namespace palpate::integrate {
-namespace sun __attribute__((visibility("hidden"))) {
+namespace PALPATE_HIDDEN sun {
 
-  /// The adapters over any OdeProblem; spec.name picks the method.
-  std::unique_ptr<dynamics::Stepper> make_cvode(std::unique_ptr<OdeProblem> problem,
-                                                const IntegratorSpec& spec);
-  std::unique_ptr<dynamics::Stepper> make_ark(std::unique_ptr<OdeProblem> problem,
+/// The adapters over any OdeProblem; spec.name picks the method.
+std::unique_ptr<dynamics::Stepper> make_cvode(std::unique_ptr<OdeProblem> problem,
                                               const IntegratorSpec& spec);
-  std::unique_ptr<dynamics::Stepper> make_mri(std::unique_ptr<OdeProblem> problem,
-                                              const IntegratorSpec& spec);
-  std::unique_ptr<dynamics::Stepper> make_ida(std::unique_ptr<OdeProblem> problem,
-                                              const IntegratorSpec& spec);
+std::unique_ptr<dynamics::Stepper> make_ark(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);
+std::unique_ptr<dynamics::Stepper> make_mri(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);
+std::unique_ptr<dynamics::Stepper> make_ida(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec);
 
-}  // namespace )
+}  // namespace sun
 }  // namespace palpate::integrate

@@ -3,16 +3,18 @@
 
 #include <string_view>
 
+#include "integrate/sundials/hidden.h"
+
 namespace palpate::integrate {
-namespace sun __attribute__((visibility("hidden"))) {
+namespace PALPATE_HIDDEN sun {
 
-  struct MultirateMethod {
-    const char* name;
-    ARKODE_MRITableID table;
-    int order;
-  };
-  /// @throws Error for another name
-  const MultirateMethod& multirate_method(std::string_view name);
+struct MultirateMethod {
+  const char* name;
+  ARKODE_MRITableID table;
+  int order;
+};
+/// @throws Error for another name
+const MultirateMethod& multirate_method(std::string_view name);
 
-}  // namespace )
+}  // namespace sun
 }  // namespace palpate::integrate

@@ -1,15 +1,17 @@
 #pragma once
 #include <sundials/sundials_nvector.h>
 
+#include "integrate/sundials/hidden.h"
+
 namespace palpate::integrate {
-namespace sun __attribute__((visibility("hidden"))) {
+namespace PALPATE_HIDDEN sun {
 
-  /// Replaces the operations that dominate a large serial vector's cost; clones inherit them.
-  /// (Debian's build takes 116 us for a weighted norm of 21,600 doubles; these vectorise.)
-  void use_fast_operations(N_Vector v);
+/// Replaces the operations that dominate a large serial vector's cost; clones inherit them.
+/// (Debian's build takes 116 us for a weighted norm of 21,600 doubles; these vectorise.)
+void use_fast_operations(N_Vector v);
 
-  /// Entry with the largest |w_i v_i|; -1 where all are zero.
-  int index_of_largest(N_Vector v, N_Vector w);
+/// Entry with the largest |w_i v_i|; -1 where all are zero.
+int index_of_largest(N_Vector v, N_Vector w);
 
-}  // namespace )
+}  // namespace sun
 }  // namespace palpate::integrate
