@@ -47,7 +47,7 @@ double deflection(int across, const std::string& sabotage) {
   }
   const VecX carried = end_loads(rest, kLength, traction);
   for (int i = 0; i < rest.nodes.cols(); ++i) body.load(i, Vec3(0, carried[i], 0));
-  if (!body.solve_linear()) return std::nan("");
+  if (!body.solve()) return std::nan("");
   double work = 0.0;
   for (int i = 0; i < rest.nodes.cols(); ++i) work += carried[i] * body.displacement(i).y();
   return work / (0.25 * kLoad);

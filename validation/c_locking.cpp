@@ -114,7 +114,7 @@ Found bend(double nu, int cells, bool nodal, const std::string& sabotage) {
   }
   const VecX loads = end_loads(body.rest(), kLength, [&](double y) { return exact.traction(y); });
   for (int i = 0; i < loads.size(); ++i) body.load(i, Vec3(0, loads[i], 0));
-  if (!body.solve_linear()) return {std::nan(""), std::nan("")};
+  if (!body.solve()) return {std::nan(""), std::nan("")};
   double sum = 0.0, of = 0.0;
   Found out{};
   for (int i = 0; i < rest.nodes.cols(); ++i) {

@@ -44,7 +44,7 @@ double torque(int across, const std::string& sabotage) {
       axis_held = true;
     }
   }
-  if (!axis_held || !body.solve_linear()) return std::nan("");
+  if (!axis_held || !body.solve()) return std::nan("");
   const Points f = body.internal_forces();
   double moment = 0.0;
   for (int i = 0; i < X.cols(); ++i)

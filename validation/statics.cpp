@@ -1,25 +1,25 @@
 #include "statics.h"
 
-#include <cmath>
-#include <limits>
-
 #include <Eigen/LU>
 
+#include "palpate/dynamics/system.h"
+#include "palpate/fem/attachments.h"
+#include "palpate/integrate/integrators.h"
 #include "palpate/mesh/boundary.h"
 
 namespace palpate::validation {
 
 StaticBody::StaticBody(const TetMesh& rest, const fem::Materials& materials,
                        const fem::SoftBodyOptions& options)
-    : rest_(rest), state_(static_cast<int>(rest.nodes.size()), static_cast<int>(rest.nodes.size())) {
-  x_ = rest.nodes.reshaped();
-  v_ = VecX::Zero(x_.size());
+    : rest_(rest),
+      materials_(materials),
+      state_(static_cast<int>(rest.nodes.size()), static_cast<int>(rest.nodes.size())) {
   external_ = Points::Zero(3, rest.nodes.cols());
-  held_.assign(static_cast<std::size_t>(x_.size()), 0);
+  held_.assign(static_cast<std::size_t>(rest.nodes.size()), 0);
   dynamics::BlockSpec spec;
   spec.name = "body";
-  spec.q_size = spec.u_size = static_cast<int>(x_.size());
-  block_ = state_.insert(spec, x_, v_);
+  spec.q_size = spec.u_size = static_cast<int>(rest.nodes.size());
+  block_ = state_.insert(spec, rest.nodes.reshaped(), VecX::Zero(rest.nodes.size()));
   body_ = std::make_shared<fem::SoftBody>("body", rest, materials, options, block_);
   terms_ = {body_};
   if (options.volumetric_share < 1.0)
@@ -32,110 +32,46 @@ void StaticBody::add(const std::function<std::shared_ptr<dynamics::ForceTerm>(in
 
 void StaticBody::hold(int node, int axis, double position) {
   held_[static_cast<std::size_t>(3 * node + axis)] = 1;
-  x_[3 * node + axis] = position;
+  state_.q()[3 * node + axis] = position;
 }
 
 void StaticBody::hold(int node, const Vec3& position) {
   for (int axis = 0; axis < 3; ++axis) hold(node, axis, position[axis]);
 }
 
-void StaticBody::internal_force(VecX& f) {
-  f.setZero(x_.size());
-  for (const auto& term : terms_) term->add_force(view(), f);
+bool StaticBody::solve() {
+  dynamics::System system;
+  for (const auto& term : terms_) system.add(term);
+  if (!external_.isZero(0.0)) system.add(fem::make_dead_load("loads", external_, block_));
+  system.add(fem::make_lumped_mass(rest_, materials_, block_));
+  std::vector<int> dofs;
+  for (std::size_t i = 0; i < held_.size(); ++i)
+    if (held_[i]) dofs.push_back(static_cast<int>(i));
+  if (!dofs.empty()) system.add(fem::make_fixed(dofs, VecX(state_.q()(dofs))));
+  system.prepare(state_.view());
+  IntegratorSpec spec;
+  spec.name = "kinsol-static";
+  spec.newton_rtol = 1e-12;
+  return integrate::make_stepper(system, state_, spec)->advance_to(state_.time() + 1.0).ok();
 }
 
-bool StaticBody::newton_step(const VecX& residual) {
-  const bool same_pattern = terms_in_pattern_ == terms_.size();
-  if (!same_pattern) {
-    dynamics::PatternBuilder builder(state_.layout());
-    for (const auto& term : terms_) term->add_pattern(builder);
-    K_.body = builder.build();
-    terms_in_pattern_ = terms_.size();
-  }
-  K_.set_zero();
-  for (const auto& term : terms_) term->add_tangent(view(), 1.0, 0.0, K_);
-  std::vector<int> number(held_.size(), -1);
-  int free = 0;
-  for (std::size_t i = 0; i < held_.size(); ++i)
-    if (!held_[i]) number[i] = free++;
-
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(K_.body.slot_count()) * 5);
-  for (int i = 0; i < K_.body.block_rows(); ++i)
-    for (int s = K_.body.row_start()[static_cast<std::size_t>(i)];
-         s < K_.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) {
-          const int row = number[static_cast<std::size_t>(3 * i + r)];
-          const int column =
-              number[static_cast<std::size_t>(3 * K_.body.columns()[static_cast<std::size_t>(s)] + c)];
-          if (row >= 0 && column >= 0 && column <= row)
-            entries.emplace_back(row, column, K_.body.block(s)[3 * r + c]);
-        }
-  Eigen::SparseMatrix<double> A(free, free);
-  A.setFromTriplets(entries.begin(), entries.end());
-  VecX b(free);
-  for (std::size_t i = 0; i < held_.size(); ++i)
-    if (number[i] >= 0) b[number[i]] = residual[static_cast<Eigen::Index>(i)];
-
-  if (!same_pattern || held_in_factor_ != held_) {
-    factor_.analyzePattern(A);
-    held_in_factor_ = held_;
-  }
-  factor_.factorize(A);
-  if (factor_.info() != Eigen::Success) return false;
-  const VecX dx = factor_.solve(b);
-  if (!dx.allFinite()) return false;
-  for (std::size_t i = 0; i < held_.size(); ++i)
-    if (number[i] >= 0) x_[static_cast<Eigen::Index>(i)] += dx[number[i]];
-  return true;
-}
-
-bool StaticBody::solve(double good_enough) {
-  constexpr int kMaxIterations = 50;
-  double best = std::numeric_limits<double>::infinity();
-  VecX f;
-  for (int i = 0; i < kMaxIterations; ++i) {
-    internal_force(f);
-    VecX residual = f + external_.reshaped();
-    const double scale = residual.norm() + external_.norm();  // reactions included
-    for (std::size_t k = 0; k < held_.size(); ++k)
-      if (held_[k]) residual[static_cast<Eigen::Index>(k)] = 0.0;
-    const double relative = scale > 0.0 ? residual.norm() / scale : 0.0;
-    if (!std::isfinite(relative)) return false;
-    if (relative == 0.0 || (relative < good_enough && relative > 0.3 * best)) return true;
-    best = std::min(best, relative);
-    if (!newton_step(residual)) return false;
-  }
-  return false;
-}
-
-bool StaticBody::solve_linear() {
-  VecX residual;
-  internal_force(residual);
-  residual += external_.reshaped();
-  return newton_step(residual);
+VecX StaticBody::internal_force() {
+  VecX f = VecX::Zero(state_.layout().u_size);
+  for (const auto& term : terms_) term->add_force(state_.view(), f);
+  return f;
 }
 
 double StaticBody::elastic_energy() {
   double sum = 0.0;
-  for (const auto& term : terms_) sum += term->energy(view());
+  for (const auto& term : terms_) sum += term->energy(state_.view());
   return sum;
 }
 
-Points StaticBody::internal_forces() {
-  VecX f;
-  internal_force(f);
-  return f.reshaped(3, rest_.nodes.cols());
-}
+Points StaticBody::internal_forces() { return internal_force().reshaped(3, rest_.nodes.cols()); }
 
 // Balance div P = -b, so the integral of P is that of traction X^T and body force X^T: nodal forces times
 // rest positions. In equilibrium those are minus the internal ones.
-Mat3 StaticBody::mean_stress() {
-  VecX f;
-  internal_force(f);
-  return -Points(f.reshaped(3, rest_.nodes.cols())) * rest_.nodes.transpose() / volume(rest_);
-}
+Mat3 StaticBody::mean_stress() { return -internal_forces() * rest_.nodes.transpose() / volume(rest_); }
 
 double volume(const TetMesh& mesh) {
   double sum = 0.0;

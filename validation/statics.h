@@ -3,16 +3,12 @@
 #include <memory>
 #include <vector>
 
-#include <Eigen/SparseCholesky>
-
-#include "palpate/dynamics/matrix.h"
 #include "palpate/dynamics/state.h"
 #include "palpate/fem/nodal_dilatation.h"
 
 namespace palpate::validation {
 
-/// Equilibrium of one soft body by Newton's method with the exact tangent and a plain LDL^T of Eigen: nothing
-/// of the integrators is in it.
+/// Equilibrium of one soft body by the integrator "kinsol-static", as a scene would have it.
 class StaticBody {
  public:
   /// A volumetric share below 1 brings the rest of lambda by fem::NodalDilatation.
@@ -28,16 +24,13 @@ class StaticBody {
   /// A dead force [N] on a node, added to what it carries.
   void load(int node, const Vec3& force) { external_.col(node) += force; }
   void remove_loads() { external_.setZero(); }
-  void place(int node, const Vec3& position) { x_.segment<3>(3 * node) = position; }
+  void place(int node, const Vec3& position) { state_.q().segment<3>(3 * node) = position; }
 
-  /// Newton from the present positions, until the residual is at rounding.  False when it does not get there.
-  /// @param good_enough  residual, over the forces that act, that counts as rounding; iterations go on
-  ///   while they still help
-  bool solve(double good_enough = 1e-11);
-  /// One linear step from the present positions: the small-displacement solution.
-  bool solve_linear();
+  /// The equilibrium that Newton's method finds from the present positions, to rounding.  False when it finds
+  /// none.
+  bool solve();
 
-  Vec3 position(int node) const { return x_.segment<3>(3 * node); }
+  Vec3 position(int node) const { return state_.q().segment<3>(3 * node); }
   Vec3 displacement(int node) const { return position(node) - rest_.nodes.col(node); }
   double elastic_energy();
   /// Forces [N] of the body on its nodes.
@@ -47,20 +40,14 @@ class StaticBody {
   Mat3 mean_stress();
 
  private:
-  void internal_force(VecX& f);
-  dynamics::StateView view() { return state_.view(0.0, x_.data(), v_.data()); }
-  bool newton_step(const VecX& residual);
+  VecX internal_force();
 
   TetMesh rest_;
+  fem::Materials materials_;
   dynamics::State state_;
   int block_ = -1;
   std::shared_ptr<fem::SoftBody> body_;
   std::vector<std::shared_ptr<dynamics::ForceTerm>> terms_;
-  dynamics::BorderedMatrix K_;
-  std::size_t terms_in_pattern_ = 0;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
-  std::vector<char> held_in_factor_;  ///< what the symbolic analysis was made for
-  VecX x_, v_;
   Points external_;
   std::vector<char> held_;
 };

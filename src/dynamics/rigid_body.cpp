@@ -94,7 +94,8 @@ void check_inertia(double mass, const Vec3& inertia, const char* where) {
 BlockSpec rigid_block(std::string name, double length, double speed) {
   PALPATE_CHECK(length > 0.0 && speed > 0.0, "scales of rigid block \"{}\": {} m, {} m/s", name, length,
                 speed);
-  return {std::move(name), BlockKind::kRigidBody, 7, 6, length, speed, free_body_kinematics()};
+  return {std::move(name),       BlockKind::kRigidBody, 7, 6, length, speed, free_body_kinematics(),
+          {1, 1, 1, 1, 0, 0, 0}, {1, 1, 1, 0, 0, 0}};
 }
 
 std::shared_ptr<InertiaTerm> make_rigid_inertia(int block_id, double mass, const Vec3& inertia) {

@@ -6,25 +6,43 @@ namespace palpate::integrate {
 namespace {
 
 using dynamics::Block;
-using dynamics::BlockKind;
 
 /// Not zero: CVODE inverts the weights when it looks for a first step.
 constexpr double kNoWeight = 1e-30;
 
-void fill_u(const IntegratorSpec& spec, const double* u, double* w, int count, double scale) {
+bool marked(const std::vector<char>& mask, int i) {
+  return !mask.empty() && mask[static_cast<std::size_t>(i)] != 0;
+}
+
+/// The weights of the velocities of a block that are angular, or of those that are not.
+void fill_u(const IntegratorSpec& spec, const Block& b, bool angular, const double* u, double* w) {
+  const auto weight = [&](double norm, int count, double scale) {
+    return 1.0 / (spec.rtol * (spec.atol_u * scale + norm / std::sqrt(static_cast<double>(count))));
+  };
+  if (b.angles_u.empty()) {  // nodes: many
+    if (!angular && b.u_size > 0)
+      Eigen::Map<VecX>(w, b.u_size)
+          .setConstant(weight(Eigen::Map<const VecX>(u, b.u_size).norm(), b.u_size, b.u_scale));
+    return;
+  }
+  double sum = 0.0;
+  int count = 0;
+  for (int i = 0; i < b.u_size; ++i)
+    if (marked(b.angles_u, i) == angular) {
+      sum += u[i] * u[i];
+      ++count;
+    }
   if (count == 0) return;
-  const double rms = Eigen::Map<const VecX>(u, count).norm() / std::sqrt(static_cast<double>(count));
-  Eigen::Map<VecX>(w, count).setConstant(1.0 / (spec.rtol * (spec.atol_u * scale + rms)));
+  const double one = weight(std::sqrt(sum), count, angular ? b.u_scale / b.q_scale : b.u_scale);
+  for (int i = 0; i < b.u_size; ++i)
+    if (marked(b.angles_u, i) == angular) w[i] = one;
 }
 
 void fill_block(const IntegratorSpec& spec, const Block& b, const double* u, double* wq, double* wu) {
   const double q_weight = 1.0 / (spec.rtol * spec.atol_q);
-  Eigen::Map<VecX>(wq, b.q_size).setConstant(q_weight / b.q_scale);
-  if (b.kind != BlockKind::kRigidBody || b.q_size != 7 || b.u_size != 6)
-    return fill_u(spec, u, wu, b.u_size, b.u_scale);
-  Eigen::Map<VecX>(wq, 4).setConstant(q_weight);
-  fill_u(spec, u, wu, 3, b.u_scale / b.q_scale);
-  fill_u(spec, u + 3, wu + 3, 3, b.u_scale);
+  for (int i = 0; i < b.q_size; ++i) wq[i] = marked(b.angles_q, i) ? q_weight : q_weight / b.q_scale;
+  fill_u(spec, b, false, u, wu);
+  fill_u(spec, b, true, u, wu);
 }
 
 }  // namespace

@@ -8,12 +8,12 @@ namespace palpate::integrate {
 
 /// Weights w of the norm sqrt(mean (w_i e_i)^2) in which an adaptive method measures its error, for y = [q;
 /// u].
-///     q:  1 / (rtol atol_q q_scale)                          u:  1 / (rtol (atol_u u_scale + rms of u over
-///     the block))
+///     q:  1 / (rtol atol_q q_scale)
+///     u:  1 / (rtol (atol_u u_scale + rms of u over the block))
 /// No part of q's tolerance grows with q: a body far from the origin is integrated like one that is there.
-/// The part that grows with u is one number a block, so the norm does not depend on the axes.  Of a rigid
-/// body, the quaternion has scale 1 and the angular velocity u_scale / q_scale.  Driven directions have no
-/// error: their weights vanish, and the mean is over the others.
+/// The part that grows with u is one number a block, so the norm does not depend on the axes.  Angles and
+/// quaternions (Block::angles_q) have scale 1, angular velocities u_scale / q_scale and an rms of their own.
+/// Driven directions have no error: their weights vanish, and the mean is over the others.
 /// @param u       velocities now   @param driven one entry a u-direction   @param w  q_size + u_size entries
 void error_weights(const dynamics::Layout& layout, const IntegratorSpec& spec,
                    const std::vector<char>& driven, const double* u, double* w);

@@ -229,19 +229,21 @@ VecX BoneTree::rigid_start(const Vec3& velocity, const Vec3& angular_velocity, c
 }
 
 dynamics::BlockSpec BoneTree::block(std::string name, double length, double speed) const {
-  const bool free = std::any_of(impl_->bones.begin(), impl_->bones.end(),
-                                [](const TreeBone& b) { return b.joint == Joint::kFree; });
   dynamics::BlockSpec spec{std::move(name),
                            dynamics::BlockKind::kArticulated,
                            q_size(),
                            u_size(),
-                           1.0,
-                           speed / length,
+                           length,
+                           speed,
                            std::make_shared<TreeKinematics>(impl_->bones)};
-  if (free) {
-    spec.q_scale = std::min(1.0, length);
-    spec.u_scale = std::min(speed, speed / length);
-  }
+  // all turns, but for the position of a free root
+  spec.angles_q.assign(static_cast<std::size_t>(q_size()), 1);
+  spec.angles_u.assign(static_cast<std::size_t>(u_size()), 1);
+  for (std::size_t b = 0; b < impl_->bones.size(); ++b)
+    if (impl_->bones[b].joint == Joint::kFree)
+      for (int k = 0; k < 3; ++k)
+        spec.angles_q[static_cast<std::size_t>(impl_->first_q[b] + 4 + k)] =
+            spec.angles_u[static_cast<std::size_t>(impl_->first_u[b] + 3 + k)] = 0;
   return spec;
 }
 

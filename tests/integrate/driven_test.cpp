@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include "palpate/dynamics/rigid_body.h"
 #include "palpate/linear/solvers.h"
 
 #include <complex>
@@ -167,13 +168,7 @@ TEST_P(Driven, NodesCarriedByABodyLoadIt) {
     q[3] = 0.1;
     const int nodes =
         state.insert(BlockSpec{.name = "flesh", .q_size = 6, .u_size = 6, .q_scale = 0.1}, q, VecX::Zero(6));
-    const int bone = state.insert(BlockSpec{.name = "bone",
-                                            .kind = BlockKind::kRigidBody,
-                                            .q_size = 7,
-                                            .u_size = 6,
-                                            .q_scale = 0.1,
-                                            .kinematics = free_body_kinematics()},
-                                  pose, VecX::Zero(6));
+    const int bone = state.insert(rigid_block("bone", 0.1, 1.0), pose, VecX::Zero(6));
     system.add(std::make_shared<LinearTerm>(K, 0.0 * K, VecX::Zero(6)));
     system.add(std::make_shared<NodalMass>(nodes, M));
     system.add(std::make_shared<BallMass>(bone));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "palpate/dynamics/rigid_body.h"
 #include "palpate/dynamics/state.h"
 
 namespace palpate {
@@ -14,15 +15,8 @@ struct TwoBlocks {
   State state;
   TwoBlocks() {
     BlockSpec nodes{.name = "n", .q_size = 6, .u_size = 6, .q_scale = 0.1, .u_scale = 2.0};
-    BlockSpec body{.name = "b",
-                   .kind = BlockKind::kRigidBody,
-                   .q_size = 7,
-                   .u_size = 6,
-                   .q_scale = 0.5,
-                   .u_scale = 3.0,
-                   .kinematics = free_body_kinematics()};
     state.insert(nodes, VecX::Zero(6), VecX::Constant(6, 4.0));
-    state.insert(body, VecX::Unit(7, 0), VecX::Zero(6));
+    state.insert(rigid_block("b", 0.5, 3.0), VecX::Unit(7, 0), VecX::Zero(6));
   }
 };
 

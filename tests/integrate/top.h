@@ -1,6 +1,7 @@
 #pragma once
 #include "integrate/fakes.h"
 #include "palpate/core/pose.h"
+#include "palpate/dynamics/rigid_body.h"
 
 /// A rigid body with a known motion, beside a node.
 namespace palpate::fakes {
@@ -79,12 +80,7 @@ struct Top {
     state.insert(BlockSpec{.name = "node", .q_size = 3, .u_size = 3}, node0, VecX::Zero(3));
     VecX q = VecX::Unit(7, 0), u = VecX::Zero(6);
     u.head<3>() = w0;
-    const int id = state.insert(BlockSpec{.name = "top",
-                                          .kind = BlockKind::kRigidBody,
-                                          .q_size = 7,
-                                          .u_size = 6,
-                                          .kinematics = free_body_kinematics()},
-                                q, u);
+    const int id = state.insert(rigid_block("top", 1.0, 1.0), q, u);
     L = Vec3(kI1, kI1, kI3).cwiseProduct(w0);
     system.add(std::make_shared<TopForces>(id));
     system.add(std::make_shared<TopInertia>(id));

@@ -266,6 +266,18 @@ TEST(BoneTree, ItsKinematicsHaveALeftInverse) {
   EXPECT_LT((u - at.u).norm(), 1e-14);
 }
 
+// Tolerances in other units: those of the position of a root scale with the length, those of angles do not.
+TEST(BoneTree, KnowsItsAnglesFromItsLengths) {
+  std::vector<TreeBone> bones{bone_at("root", -1, Joint::kFree, Vec3::Zero(), Vec3::Zero()),
+                              bone_at("hinge", 0, Joint::kHinge, Vec3(0.1, 0.0, 0.0), Vec3(0.2, 0.0, 0.0)),
+                              bone_at("ball", 1, Joint::kBall, Vec3(0.3, 0.0, 0.0), Vec3(0.4, 0.0, 0.0))};
+  const dynamics::BlockSpec block = BoneTree(bones, kGravity).block("limb", 300.0, 5.0);
+  EXPECT_EQ(block.q_scale, 300.0);
+  EXPECT_EQ(block.u_scale, 5.0);
+  EXPECT_EQ(block.angles_q, (std::vector<char>{1, 1, 1, 1, 0, 0, 0, 1, 1, 1, 1, 1}));
+  EXPECT_EQ(block.angles_u, (std::vector<char>{1, 1, 1, 0, 0, 0, 1, 1, 1, 1}));
+}
+
 TEST(BoneTree, RefusesWhatIsNoTree) {
   const auto message = [](std::vector<TreeBone> bones) -> std::string {
     try {

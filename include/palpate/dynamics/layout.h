@@ -37,6 +37,9 @@ struct BlockSpec {
   double q_scale = 1.0;
   double u_scale = 1.0;                                 ///< size of a u that matters [m/s]
   std::shared_ptr<const BlockKinematics> kinematics{};  ///< null: q' = u
+  /// One entry a q and a u: whether it is an angle (or belongs to a quaternion), whose scale is 1, or an
+  /// angular rate, whose scale is u_scale / q_scale.  Empty: none.
+  std::vector<char> angles_q{}, angles_u{};
 };
 
 /// One block's place in q and u.

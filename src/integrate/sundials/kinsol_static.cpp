@@ -3,6 +3,7 @@
 #include <nvector/nvector_serial.h>
 
 #include <cmath>
+#include <limits>
 
 #include "integrate/make.h"
 #include "integrate/settings.h"
@@ -25,6 +26,11 @@ constexpr int kRecoverable = 1;
 constexpr long kNewtonIterations = 25;
 constexpr double kShortestRung = 1.0 / 64.0;
 constexpr int kProximalSteps = 200;
+constexpr double kRounding = 1e-14;  // of the forces that cancel in a balance: less is no error
+constexpr double kSmallest =         // positions and forces below it have lost digits to underflow
+    std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+constexpr int kRefinements = 3;
+constexpr double kHelps = 0.5;  // a correction that lowers the residual by less is lost in rounding
 
 /// Quasi-static equilibrium, f(q, 0, t) = 0, by Newton's method of SUNDIALS KINSOL with the exact tangent at
 /// every iteration. The State at t_end is the equilibrium that belongs to t_end, reached from the one before;
@@ -43,6 +49,16 @@ constexpr int kProximalSteps = 200;
 /// steps of backward Euler without inertia, which go downhill in energy, have a definite matrix for sigma
 /// large enough, and end at a stable equilibrium. (KINSOL's own line search stalls here: the norm of the
 /// force is no merit function when an element turns.)
+///
+/// When a residual is zero.  Forces are measured by the largest one that any term puts on a free direction,
+/// moments by the largest moment, or that force at the end of an arm as long as what is simulated.  Newton's
+/// method ends at a residual of newton_rtol of that, or at what rounding leaves of it, if that is more: a
+/// position is known to eps of its size, so that the force on direction i is known to
+///     rounding_i = 1e-14 sum_j |K_ij| X_j,      X_j the largest coordinate of any node; 1 for angles.
+/// Small loads meet the second bound.  Such an equilibrium is counted as limited by rounding; corrections
+/// with the last factor then go on while they lower the residual.  No bound knows a unit; the one absolute
+/// figure is where doubles lose digits to underflow, 1e-292 (a State of displacements that is asked for its
+/// equilibrium again and again divides them by 1e16 each time, and gets there).
 class KinsolStatic final : public Stepper, private NewtonHook {
  public:
   KinsolStatic(System& system, State& state, const IntegratorSpec& spec, std::unique_ptr<LinearSolver> solver)
@@ -69,7 +85,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     state_.u().setZero();
     if (!force(t0_, state_.q(), unbalanced_))
       return failure(StepStatus::kNotFinite, "the force is not finite");
-    force_scale_ = std::max(scale_of_forces(t0_), scale_of_forces(t1_));
+    measure();
+    measure_rounding();
     const StepResult result = climb();
     if (!result.ok()) {
       state_.q() = q_start_;
@@ -96,12 +113,10 @@ class KinsolStatic final : public Stepper, private NewtonHook {
 
  private:
   // --- the ladder
-  // -------------------------------------------------------------------------------------------------
   StepResult climb() {
     double s = 0.0, rung = 1.0;
     int flag = KIN_SUCCESS;
     long iterations = 0;
-    base_q_ = state_.q();
     while (s < 1.0) {
       if (interrupted()) return failure(StepStatus::kInterrupted, "interrupted");
       s_ = std::min(1.0, s + rung);
@@ -126,6 +141,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   /// Proximal steps to the rung s_.  @param flag KINSOL's last
   bool go_downhill(int& flag, long& iterations) {
     sigma_ = stiffness_over_mass();
+    if (!(sigma_ > 0.0)) return false;
     const double largest = 1e6 * sigma_;
     for (int k = 0; k < kProximalSteps && !interrupted(); ++k) {
       flag = solve(iterations);
@@ -138,7 +154,10 @@ class KinsolStatic final : public Stepper, private NewtonHook {
       accept_rung();
       VecX left;
       if (!residual(NV_DATA_S(zero_displacement()), 0.0, left)) return false;
-      if (left.cwiseAbs().maxCoeff() <= tolerance()) return true;
+      if (size_of(left) <= tolerance_) {
+        if (size_of(left) > spec_.newton_rtol) ++counters_.rounding_limited;
+        return true;
+      }
       sigma_ *= 0.1;
     }
     flag = KIN_MAXITER_REACHED;
@@ -153,25 +172,57 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   }
 
   double rung_time() const { return t0_ + s_ * (t1_ - t0_); }
-  double tolerance() const { return spec_.newton_rtol * force_scale_; }
 
   /// One Newton solve for the displacement x_ from base_q_.
   int solve(long& iterations) {
     N_VConst(0.0, x_);
     message_.clear();
     finite_ = true;
-    check(KINSetFuncNormTol(kinsol_, tolerance()), "KINSetFuncNormTol", state_.time(), 0.0);
-    const int flag = KINSol(kinsol_, x_, KIN_NONE, ones_, ones_);
+    set_tolerance(start_tolerance_);
+    // Of an equilibrium, a step that moves no position is the last; of a proximal step it may be the whole.
+    check(KINSetScaledStepTol(kinsol_, sigma_ == 0.0 ? std::numeric_limits<double>::epsilon() : kSmallest),
+          "KINSetScaledStepTol", state_.time(), 0.0);
+    int flag = KINSol(kinsol_, x_, KIN_NONE, displacement_scale_, force_scale_);
     long now = 0;
     check(KINGetNumNonlinSolvIters(kinsol_, &now), "KINGetNumNonlinSolvIters", state_.time(), 0.0);
     iterations += now;
     counters_.newton_iterations += now;
+    if (flag == KIN_STEP_LT_STPTOL) flag = ends_at_rounding() ? KIN_SUCCESS : KIN_MAXITER_REACHED;
+    if (flag >= 0 && sigma_ == 0.0 && tolerance_ > spec_.newton_rtol && !refine()) flag = KIN_MAXITER_REACHED;
     if (flag < 0) ++counters_.newton_failures;
-    return flag == KIN_STEP_LT_STPTOL ? KIN_MAXITER_REACHED : flag;
+    return flag;
+  }
+
+  /// Positions do not move any more: whether what is left of the forces is rounding.
+  bool ends_at_rounding() { return residual(NV_DATA_S(x_), sigma_, g_) && size_of(g_) <= tolerance_; }
+
+  /// Where Newton's method ended at rounding: whether it is so by the matrix there (the one that it ended
+  /// with may have stood elsewhere), and corrections by it while they lower the residual.
+  bool refine() {
+    Eigen::Map<VecX> x(NV_DATA_S(x_), g_.size());
+    if (!residual(x.data(), sigma_, g_)) return false;
+    double size = size_of(g_);
+    if (size <= spec_.newton_rtol) return true;
+    assemble();
+    if (size > rounding()) return false;
+    ++counters_.rounding_limited;
+    if (setup() != 0) return true;  // a free body that rests
+    for (int k = 0; k < kRefinements && size > spec_.newton_rtol; ++k) {
+      rhs_ = g_;
+      if (solve_for_step() != 0) break;
+      kept_ = x;
+      x += step_;
+      const double before = size;
+      if (!residual(x.data(), sigma_, g_) || !((size = size_of(g_)) < before)) {
+        x = kept_;
+        break;
+      }
+      if (size > kHelps * before) break;
+    }
+    return true;
   }
 
   // --- the equations
-  // ----------------------------------------------------------------------------------------------
   /// q = base_q_ moved by the displacement x along u-directions; drives where they are at time t.
   void place(const double* x, double t, VecX& q) {
     q_dot(state_.layout(), base_q_.data(), x, rate_.data());
@@ -203,35 +254,121 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     return all_finite(g);
   }
 
-  /// The largest force that any one term puts on a free direction: what "balanced" is measured by.
-  double scale_of_forces(double t) {
+  // --- the measures
+  /// Whether a direction of u turns something.
+  static bool is_angle(const Block& b, int i) {
+    return !b.angles_u.empty() && b.angles_u[static_cast<std::size_t>(i)] != 0;
+  }
+
+  /// Units of displacements and forces, by direction.
+  void measure() {
+    const Layout& layout = state_.layout();
+    VecX largest = VecX::Zero(layout.u_size);
+    for (const double t : {t0_, t1_}) add_forces(t, largest);
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    double far = 0.0;
+    const auto reach = [&](const Vec3& x) {
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+      far = std::max(far, x.cwiseAbs().maxCoeff());
+    };
+    for (int i = 0; i < layout.node_count(); ++i) reach(state_.q().segment<3>(3 * i));
+    for (const Block& b : layout.blocks)
+      if (b.kind == BlockKind::kRigidBody && b.q_size == 7) reach(state_.q().segment<3>(b.q_offset + 4));
+    const double arm = far > 0.0 ? (high - low).norm() : 0.0;
+    VecX is_moment = VecX::Zero(layout.u_size);
+    for (const Block& b : layout.blocks)
+      for (int i = 0; b.kind != BlockKind::kNodes && i < b.u_size; ++i)
+        is_moment[b.u_offset + i] = is_angle(b, i) ? 1.0 : 0.0;
+    // where all are zero any unit serves
+    const auto positive = [](double x) { return x > 0.0 ? std::max(x, kSmallest) : 1.0; };
+    const double force = (largest.array() * (1.0 - is_moment.array())).maxCoeff(),
+                 moment = std::max((largest.array() * is_moment.array()).maxCoeff(), force * arm);
+    far_ = far > 0.0 ? std::max(far, kSmallest) : 0.0;
+    force_ = force;
+    coordinate_.resize(layout.u_size);
+    for (int i = 0; i < layout.u_size; ++i) {
+      const bool angle = is_moment[i] != 0.0;
+      coordinate_[i] = angle ? 1.0 : far_;
+      NV_DATA_S(displacement_scale_)[i] = 1.0 / (angle ? 1.0 : positive(far_));
+      NV_DATA_S(force_scale_)[i] = 1.0 / positive(angle ? moment : force);
+    }
+  }
+
+  /// The largest force of any one term on each free direction.
+  void add_forces(double t, VecX& largest) {
     VecX f, q = state_.q();
     system_.impose(state_.layout(), t, q.data(), velocity_.data());
     velocity_.setZero();
     const StateView at = state_.view(t, q.data(), velocity_.data());
-    double largest = 1e-12;
     for (const auto& term : system_.terms()) {
       f.setZero(state_.layout().u_size);
       term->add_force(at, f);
       system_.reduce(at, f);
-      if (all_finite(f)) largest = std::max(largest, f.cwiseAbs().maxCoeff());
+      if (all_finite(f)) largest = largest.cwiseMax(f.cwiseAbs());
     }
-    return largest;
   }
 
+  double size_of(const VecX& g) const {
+    return (g.array() * Eigen::Map<const VecX>(NV_DATA_S(force_scale_), g.size()).array()).abs().maxCoeff();
+  }
+
+  void set_tolerance(double tolerance) {
+    tolerance_ = tolerance;
+    check(KINSetFuncNormTol(kinsol_, tolerance), "KINSetFuncNormTol", state_.time(), 0.0);
+  }
+
+  /// What a residual is worth at q0; jacobian() adapts the tolerance to where Newton's method goes.
+  void measure_rounding() {
+    const ScopedTimer timer(counters_.tangent_s);
+    ++counters_.tangent_evaluations;
+    base_q_ = q_ = state_.q();
+    s_ = sigma_ = 0.0;
+    assemble();
+    start_tolerance_ = std::max(spec_.newton_rtol, rounding());
+  }
+
+  /// What rounding leaves of the residual, by the matrix that stands in A_. Rows of K sum to what driven
+  /// directions would bring, which are not in A_.
+  double rounding() {
+    absolute_ = A_;
+    for (double& v : absolute_.body.values()) v = std::abs(v);
+    absolute_.right = A_.right.cwiseAbs();
+    absolute_.bottom = A_.bottom.cwiseAbs();
+    absolute_.corner = A_.corner.cwiseAbs();
+    absolute_.multiply(coordinate_, summands_);
+    for (int dof : system_.driven_dofs()) summands_[dof] = 0.0;
+    return kRounding * size_of(summands_);
+  }
+
+  /// What proximal steps begin with [1/s^2]: the largest stiffness of a node over the largest mass of one,
+  /// and of what is no node, the largest ratio of one direction.
   double stiffness_over_mass() {
     const StateView at = state_.view(rung_time(), base_q_.data(), velocity_.data());
     system_.step_matrix(at, 0.0, 0.0, 1.0, A_);
-    double stiffness = 0.0;
-    for (int i = 0; i < A_.body.block_rows(); ++i)
-      stiffness = std::max(stiffness, std::abs(A_.body.block(A_.body.diagonal(i))[0]));
-    if (A_.border_size() > 0) stiffness = std::max(stiffness, A_.corner.cwiseAbs().maxCoeff());
+    const VecX stiffness = diagonal();
     system_.step_matrix(at, 1.0, 0.0, 0.0, A_);
-    double mass = 0.0;
+    const VecX mass = diagonal();
+    double stiffest = 0.0, heaviest = 0.0, largest = 0.0;
+    for (int i = 0; i < mass.size(); ++i) {
+      if (system_.driven_mask()[static_cast<std::size_t>(i)] || !(mass[i] > 0.0)) continue;
+      if (i < A_.nodal_size()) {
+        stiffest = std::max(stiffest, stiffness[i]);
+        heaviest = std::max(heaviest, mass[i]);
+      } else {
+        largest = std::max(largest, stiffness[i] / mass[i]);
+      }
+    }
+    if (heaviest > 0.0) largest = std::max(largest, stiffest / heaviest);
+    // nothing but loads: what would hold them within the distances that there are
+    return largest > 0.0 || !(heaviest * far_ > 0.0) ? largest : force_ / (heaviest * far_);
+  }
+  VecX diagonal() const {
+    VecX d(A_.size());
     for (int i = 0; i < A_.body.block_rows(); ++i)
-      mass = std::max(mass, A_.body.block(A_.body.diagonal(i))[0]);
-    if (A_.border_size() > 0) mass = std::max(mass, A_.corner.cwiseAbs().maxCoeff());
-    return std::max(stiffness, 1.0) / std::max(mass, 1e-30);
+      for (int k = 0; k < 3; ++k) d[3 * i + k] = std::abs(A_.body.block(A_.body.diagonal(i))[4 * k]);
+    if (A_.border_size() > 0) d.tail(A_.border_size()) = A_.corner.diagonal().cwiseAbs();
+    return d;
   }
 
   static KinsolStatic& self(void* data) { return *static_cast<KinsolStatic*>(data); }
@@ -248,6 +385,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     ++me.counters_.tangent_evaluations;
     me.place(NV_DATA_S(x), me.rung_time(), me.q_);
     me.assemble();
+    if (me.sigma_ == 0.0) me.set_tolerance(std::max(me.spec_.newton_rtol, me.rounding()));
     return 0;
   }
   void assemble() {
@@ -258,18 +396,21 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   }
   int solve(N_Vector x, N_Vector b) override {
     rhs_ = Eigen::Map<const VecX>(NV_DATA_S(b), NV_LENGTH_S(b));
+    if (const int failed = solve_for_step(); failed != 0) return failed;
+    Eigen::Map<VecX>(NV_DATA_S(x), step_.size()) = step_;
+    return 0;
+  }
+  int solve_for_step() {
     for (int dof : system_.driven_dofs()) rhs_[dof] = 0.0;
     const auto right_hand_side = [this]() -> const VecX& { return rhs_; };
     if (solver_.solve(
             system_, [this] { assemble(); }, right_hand_side, step_) != SolveStatus::kOk ||
         !all_finite(step_))
       return kRecoverable;
-    Eigen::Map<VecX>(NV_DATA_S(x), step_.size()) = step_;
     return 0;
   }
 
   // --- KINSOL
-  // -----------------------------------------------------------------------------------------------------
   N_Vector zero_displacement() {
     N_VConst(0.0, x_);
     return x_;
@@ -285,8 +426,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     x_ = N_VNew_Serial(state_.layout().u_size, context_);
     check(x_, "N_VNew_Serial");
     use_fast_operations(x_);
-    ones_ = N_VClone(x_);
-    N_VConst(1.0, ones_);
+    displacement_scale_ = N_VClone(x_);
+    force_scale_ = N_VClone(x_);
     kinsol_ = KINCreate(context_);
     check(kinsol_, "KINCreate");
     // first: nothing is ever printed
@@ -301,7 +442,6 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     check(KINSetMaxSetupCalls(kinsol_, 1), "KINSetMaxSetupCalls", t, 0.0);
     check(KINSetNumMaxIters(kinsol_, kNewtonIterations), "KINSetNumMaxIters", t, 0.0);
     check(KINSetMaxNewtonStep(kinsol_, 1e30), "KINSetMaxNewtonStep", t, 0.0);  // the ladder keeps steps short
-    check(KINSetScaledStepTol(kinsol_, 1e-30), "KINSetScaledStepTol", t, 0.0);  // the force decides
     layout_version_ = state_.layout().version;
   }
 
@@ -309,7 +449,7 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     if (kinsol_) KINFree(&kinsol_);
     if (linear_solver_) SUNLinSolFree(linear_solver_);
     if (matrix_) SUNMatDestroy(matrix_);
-    for (N_Vector* v : {&x_, &ones_}) {
+    for (N_Vector* v : {&x_, &displacement_scale_, &force_scale_}) {
       if (*v) N_VDestroy(*v);
       *v = nullptr;
     }
@@ -324,7 +464,6 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   }
 
   // --- what is told
-  // -----------------------------------------------------------------------------------------------
   StepStatus status_of(int flag) const {
     if (!finite_) return StepStatus::kNotFinite;
     return flag == KIN_LSETUP_FAIL || flag == KIN_LSOLVE_FAIL || flag == KIN_LINSOLV_NO_RECOVERY
@@ -359,14 +498,16 @@ class KinsolStatic final : public Stepper, private NewtonHook {
   IntegratorSpec spec_;
   StepSolver solver_;
   mutable StepperCounters counters_;
-  BorderedMatrix A_;
-  VecX q_start_, u_start_, base_q_, q_, rate_, velocity_, unbalanced_, g_, inertia_, rhs_, step_;
-  double t0_ = 0.0, t1_ = 0.0, s_ = 1.0, sigma_ = 0.0, force_scale_ = 1.0;
+  BorderedMatrix A_, absolute_;
+  VecX q_start_, u_start_, base_q_, q_, rate_, velocity_, unbalanced_, g_, inertia_, rhs_, step_, kept_,
+      coordinate_, summands_;
+  double t0_ = 0.0, t1_ = 0.0, s_ = 1.0, sigma_ = 0.0, start_tolerance_ = 0.0, tolerance_ = 0.0, far_ = 0.0,
+         force_ = 0.0;
   bool finite_ = true;
   std::string message_;
   std::uint64_t layout_version_ = 0;
   SUNContext context_ = nullptr;
-  N_Vector x_ = nullptr, ones_ = nullptr;
+  N_Vector x_ = nullptr, displacement_scale_ = nullptr, force_scale_ = nullptr;
   SUNLinearSolver linear_solver_ = nullptr;
   SUNMatrix matrix_ = nullptr;
   void* kinsol_ = nullptr;
