@@ -103,7 +103,8 @@ PALPATE_INLINE Mask surely_definite(Pack a, Pack b, Pack d, double l, const Matr
         const double *a = v[kEnds[k][0]], *b = v[kEnds[k][1]];
         const auto edge = index_of(edges.edge[k][lane]);
         const auto add = [&](const ChunkBlocks& blocks, const double* row, const double* column) {
-          for (int c = 0; c < 8; ++c) blocks.first[8 * edge + c] += scale * row[c / 3] * column[c % 3];
+          for (std::size_t c = 0; c < 8; ++c)
+            blocks.first[8 * edge + c] += scale * row[c / 3] * column[c % 3];
           blocks.last[edge] += scale * row[2] * column[2];
         };
         add(upper, a, b);

@@ -8,9 +8,9 @@
 namespace palpate::gl {
 
 void set_plain_state(int width, int height, Keep keep) {
-  for (const GLenum feature : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST,
-                               GL_POLYGON_OFFSET_FILL, GL_DEPTH_CLAMP, GL_MULTISAMPLE})
-    glDisable(feature);
+  for (const int feature : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL,
+                            GL_DEPTH_CLAMP, GL_MULTISAMPLE})
+    glDisable(static_cast<GLenum>(feature));
   glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);

@@ -32,10 +32,10 @@ void refuse_repeated_nodes(const Eigen::Matrix<int, Corners, Eigen::Dynamic>& el
 
 template <int Corners>
 void refuse_duplicates(const Eigen::Matrix<int, Corners, Eigen::Dynamic>& elements, const Provenance& from) {
-  std::vector<std::pair<std::array<int, Corners>, int>> sets;
+  std::vector<std::pair<std::array<int, static_cast<std::size_t>(Corners)>, int>> sets;
   sets.reserve(static_cast<std::size_t>(elements.cols()));
   for (int e = 0; e < static_cast<int>(elements.cols()); ++e) {
-    std::array<int, Corners> nodes;
+    std::array<int, static_cast<std::size_t>(Corners)> nodes;
     for (int i = 0; i < Corners; ++i) nodes[static_cast<std::size_t>(i)] = elements(i, e);
     std::sort(nodes.begin(), nodes.end());
     sets.emplace_back(nodes, e);

@@ -168,8 +168,8 @@ void Shader::draw_transparent(const Drawable& drawable) {
 
 /// Whoever drew before in this context may have left anything.
 void set_state() {
-  for (const GLenum off : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL})
-    glDisable(off);
+  for (const int off : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL})
+    glDisable(static_cast<GLenum>(off));
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDepthMask(GL_TRUE);

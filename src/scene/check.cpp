@@ -14,8 +14,9 @@ std::string at(const char* list, std::size_t i, const std::string& rest = "") {
 
 /// Names become file names, column headers and keys of reports.
 void check_name(const Document& doc, const std::string& where, const std::string& name) {
-  for (const unsigned char c : name)
-    if (c < 0x20 || c == 0x7f || c == '/' || c == '\\' || c == '"')
+  for (const char letter : name)
+    if (const auto c = static_cast<unsigned char>(letter);
+        c < 0x20 || c == 0x7f || c == '/' || c == '\\' || c == '"')
       refuse(place(doc, where), "",
              fmt::format("the name \"{}\" must not contain slashes, quotes or control characters", name));
 }

@@ -26,7 +26,8 @@ PALPATE_INLINE void add_group(const PackedRows& A, const float* const* P, float*
       A.column + kLanesOfGroup * static_cast<std::int64_t>(A.step_start[group]) + kLanes * part;
   const float* values =
       A.values + kNumbersOfStep * static_cast<std::int64_t>(A.step_start[group]) + kLanes * part;
-  Lanes3 own[N], sum[N], v;
+  constexpr auto kVectors = static_cast<std::size_t>(N);
+  Lanes3 own[kVectors], sum[kVectors], v;
   for (int n = 0; n < N; ++n) {
     gather(P[n], row, own[n]);
     sum[n] = kWhole ? times(A.own + kNumbersOfStep * static_cast<std::int64_t>(group) + kLanes * part, own[n])

@@ -13,10 +13,11 @@ template <int N>
 [[gnu::always_inline]] static inline void gram_of(const double* y, const float* const* V,
                                                   const float* const* AV, const double* b, int first,
                                                   int last, double* out) {
+  constexpr auto kVectors = static_cast<std::size_t>(N + 1);
   FourDouble sum[kMostSums] = {}, square{};
   for (std::int64_t k = 4 * static_cast<std::int64_t>(first); k < 4 * static_cast<std::int64_t>(last);
        k += 4) {
-    FourDouble v[N + 1], Av[N + 1], right;
+    FourDouble v[kVectors], Av[kVectors], right;
     for (int n = 0; n < N; ++n) {
       take(V[n] + k, v[n]);
       take(AV[n] + k, Av[n]);
