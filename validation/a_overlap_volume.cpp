@@ -121,14 +121,14 @@ double facet_overlap(const Spheres& spheres) {
   return sum;
 }
 
-/// Sum of depth x dA through the gpu path.  Sabotages: areas measured on the skin instead of projected; gaps
+/// Sum of depth x dA through the gpu path.  Faults: areas measured on the skin instead of projected; gaps
 /// counted as negative depths.
 double sampled_overlap(const Spheres& spheres, int pixels, double shift_u, double shift_v,
-                       const std::string& sabotage) {
+                       const std::string& fault) {
   SurfaceBody body(spheres.upper);
   contact::GpuOptions options;
   options.pixels = pixels;
-  options.candidate_gap = sabotage == "gaps-pull" ? 0.05 : 1e-3;
+  options.candidate_gap = fault == "gaps-pull" ? 0.05 : 1e-3;
   options.shift_u = shift_u;
   options.shift_v = shift_v;
   const auto source =
@@ -138,14 +138,14 @@ double sampled_overlap(const Spheres& spheres, int pixels, double shift_u, doubl
   double sum = 0.0;
   for (const auto& s : samples) {
     double depth = std::max(0.0, -s.gap), area = s.area;
-    if (sabotage == "gaps-pull") depth = -s.gap;
-    if (sabotage == "skin-area") area /= std::max(0.1, s.b.offset.z() / kR2);
+    if (fault == "gaps-pull") depth = -s.gap;
+    if (fault == "skin-area") area /= std::max(0.1, s.b.offset.z() / kR2);
     sum += depth * area;
   }
   return sum;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
   {
     const Spheres spheres(24, 0);
@@ -158,7 +158,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
       // a lattice of shifts without structure (the golden ratios of two dimensions)
       for (int i = 0; i < kShifts; ++i) {
         const double u = std::fmod(0.754877666 * (i + 1), 1.0), v = std::fmod(0.569840291 * (i + 1), 1.0);
-        last = sampled_overlap(spheres, pixels, u, v, sabotage);
+        last = sampled_overlap(spheres, pixels, u, v, fault);
         squares += std::pow(last / exact - 1.0, 2) / kShifts;
       }
       h.push_back(1.0 / pixels);
@@ -186,7 +186,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
     for (const int subdivisions : {12, 17, 24, 34, 48}) {
       mean = 0.0;
       for (int i = 0; i < kOrientations; ++i)
-        mean += sampled_overlap(Spheres(subdivisions, i), 512, 0.0, 0.0, sabotage) / kOrientations;
+        mean += sampled_overlap(Spheres(subdivisions, i), 512, 0.0, 0.0, fault) / kOrientations;
       h.push_back(1.0 / subdivisions);
       error.push_back(std::abs(mean / exact - 1.0));
     }

@@ -36,7 +36,7 @@ struct Bounce {
   std::shared_ptr<contact::ContactForce> term = std::make_shared<contact::ContactForce>();
   std::unique_ptr<dynamics::Stepper> stepper;
 
-  Bounce(double height, double zeta, const IntegratorSpec& integrator, const std::string& sabotage) {
+  Bounce(double height, double zeta, const IntegratorSpec& integrator, const std::string& fault) {
     dynamics::BlockSpec node;
     node.name = "punch";
     node.q_size = node.u_size = 3;
@@ -47,12 +47,12 @@ struct Bounce {
     ContactSpec law;
     law.stiffness_pa_m = kStiffness;
     law.damping_pa_s_m =
-        2.0 * zeta * std::sqrt(kStiffness * kArea * kMass) / kArea * (sabotage == "half-damping" ? 0.5 : 1.0);
-    if (sabotage == "hunt-crossley") {
+        2.0 * zeta * std::sqrt(kStiffness * kArea * kMass) / kArea * (fault == "half-damping" ? 0.5 : 1.0);
+    if (fault == "hunt-crossley") {
       law.law = "hunt_crossley";
       law.hunt_crossley_s_m = 2.0 * zeta / kSpeed;  // a v0 = 3 zeta
     }
-    term->add_pair(make_punch_source(0, sabotage == "half-area" ? 0.5 * kArea : kArea, 4, 0), law);
+    term->add_pair(make_punch_source(0, fault == "half-area" ? 0.5 * kArea : kArea, 4, 0), law);
     system.add(term);
     system.add(std::make_shared<PointMass>(id, kMass));
     term->refresh(state.view());
@@ -143,8 +143,8 @@ struct Outcome {
   double depth_left;   ///< when the force ended [m]
 };
 
-Outcome bounce(double zeta, double rtol, const std::string& sabotage) {
-  Bounce b(kHeight, zeta, cvode(rtol), sabotage);
+Outcome bounce(double zeta, double rtol, const std::string& fault) {
+  Bounce b(kHeight, zeta, cvode(rtol), fault);
   const double dt = 0.02 / kOmega;
   const double touch = b.advance_to_root(dt, [](const VecX& q, const VecX&) { return q[2]; });
   b.advance(touch + dt);  // into the contact
@@ -157,11 +157,11 @@ Outcome bounce(double zeta, double rtol, const std::string& sabotage) {
 
 /// Order of a fixed-step method in smooth contact: depth and speed after a quarter period against the
 /// harmonic motion.
-Measurement order_in_contact(const std::string& sabotage) {
+Measurement order_in_contact(const std::string& fault) {
   std::vector<double> h, error;
   const double end = 0.5 * kPi / kOmega;
   for (const int steps : {100, 200, 400, 800}) {
-    Bounce b(0.0, 0.0, fixed_step(end / steps), sabotage);
+    Bounce b(0.0, 0.0, fixed_step(end / steps), fault);
     b.state.q()[2] = -1e-12;  // in contact from the start
     b.advance(end);
     h.push_back(end / steps);
@@ -178,8 +178,8 @@ Measurement order_in_contact(const std::string& sabotage) {
 }
 
 /// In free flight x' is constant: every consistent method is exact, whatever its step.
-Measurement free_flight(const std::string& sabotage) {
-  Bounce b(1.0, 0.0, fixed_step(1e-3), sabotage);
+Measurement free_flight(const std::string& fault) {
+  Bounce b(1.0, 0.0, fixed_step(1e-3), fault);
   b.advance(0.1);
   return against("linearly-implicit-euler in free flight, height after 100 steps [m]", b.height(),
                  1.0 - 0.1 * kSpeed, 1e-12);
@@ -187,7 +187,7 @@ Measurement free_flight(const std::string& sabotage) {
 
 /// Order of a fixed-step method through a damped bounce: the force jumps at touch, somewhere inside a step,
 /// so order 1 whatever the method. Where in the step is chance: RMS over starting heights.
-Measurement order_through_touch(double zeta, double e, const std::string& sabotage) {
+Measurement order_through_touch(double zeta, double e, const std::string& fault) {
   constexpr int kHeights = 32;
   std::vector<double> h, error;
   double last = 0.0;
@@ -195,7 +195,7 @@ Measurement order_through_touch(double zeta, double e, const std::string& sabota
     const double step = kPi / kOmega / steps;
     double squares = 0.0;
     for (int i = 0; i < kHeights; ++i) {
-      Bounce b(step * kSpeed * (10.0 + (i + 0.5) / kHeights), zeta, fixed_step(step), sabotage);
+      Bounce b(step * kSpeed * (10.0 + (i + 0.5) / kHeights), zeta, fixed_step(step), fault);
       b.advance(step * (steps + 20));  // touches after 10 to 11 steps, and has left by then
       last = b.velocity() / kSpeed;
       squares += std::pow(last / e - 1.0, 2) / kHeights;
@@ -215,22 +215,22 @@ Measurement order_through_touch(double zeta, double e, const std::string& sabota
   return m;
 }
 
-std::vector<Measurement> run_undamped(const std::string& sabotage) {
-  const Outcome o = bounce(0.0, sabotage == "loose-tolerance" ? 1e-3 : 1e-8, sabotage);
+std::vector<Measurement> run_undamped(const std::string& fault) {
+  const Outcome o = bounce(0.0, fault == "loose-tolerance" ? 1e-3 : 1e-8, fault);
   return {against("contact duration, cvode-bdf, rtol 1e-8 [s]", o.duration, kPi / kOmega, 1e-6),
           against("speed after over speed before", o.restitution, 1.0, 1e-6),
           against("energy after over energy before", o.restitution * o.restitution, 1.0, 1e-6),
-          order_in_contact(sabotage), free_flight(sabotage)};
+          order_in_contact(fault), free_flight(fault)};
 }
 
-std::vector<Measurement> run_damped(const std::string& sabotage) {
+std::vector<Measurement> run_damped(const std::string& fault) {
   std::vector<Measurement> out;
   for (const double zeta : {0.1, 0.3, 0.5, 1.0}) {
     const double s = std::sqrt(1.0 - zeta * zeta);
     const double angle = kPi - std::atan2(2.0 * zeta * s, 1.0 - 2.0 * zeta * zeta);
     const double e = zeta < 1.0 ? std::exp(-zeta / s * angle) : std::exp(-2.0);
     const double duration = zeta < 1.0 ? angle / (kOmega * s) : 2.0 / kOmega;
-    const Outcome o = bounce(zeta, 1e-8, sabotage);
+    const Outcome o = bounce(zeta, 1e-8, fault);
     out.push_back(
         against(fmt::format("coefficient of restitution, zeta = {}", zeta), o.restitution, e, 1e-5));
     out.push_back(against(fmt::format("contact duration, zeta = {} [s]", zeta), o.duration, duration, 1e-5));
@@ -243,7 +243,7 @@ std::vector<Measurement> run_damped(const std::string& sabotage) {
     left.error = o.depth_left > 0.0 ? std::abs(left.computed / left.exact - 1.0) : 1.0;
     left.bar = 1e-5;
     out.push_back(left);
-    if (zeta == 0.3) out.push_back(order_through_touch(zeta, e, sabotage));
+    if (zeta == 0.3) out.push_back(order_through_touch(zeta, e, fault));
   }
   return out;
 }
@@ -259,10 +259,10 @@ double hunt_crossley_restitution(double u) {
   return low;
 }
 
-std::vector<Measurement> run_hunt_crossley(const std::string& sabotage) {
+std::vector<Measurement> run_hunt_crossley(const std::string& fault) {
   std::vector<Measurement> out;
   for (const double u : {0.3, 1.0}) {  // a v0 = 3/2 c v0
-    const Outcome o = bounce(u / 3.0, 1e-8, sabotage.empty() ? "hunt-crossley" : sabotage);
+    const Outcome o = bounce(u / 3.0, 1e-8, fault.empty() ? "hunt-crossley" : fault);
     out.push_back(against(fmt::format("coefficient of restitution, 3/2 c v0 = {}", u), o.restitution,
                           hunt_crossley_restitution(u), 1e-5));
   }

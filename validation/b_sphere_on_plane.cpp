@@ -49,22 +49,22 @@ double volume_below(const TriMesh& mesh) {
 
 /// Force of the samples of one source on the body, along z [N].
 double held_force(SurfaceBody& body, std::unique_ptr<contact::SampleSource> source,
-                  const std::shared_ptr<contact::MovingFrame>& frame, const std::string& sabotage) {
+                  const std::shared_ptr<contact::MovingFrame>& frame, const std::string& fault) {
   contact::ContactForce term;
   term.add_frame(frame);
   ContactSpec law;
-  law.stiffness_pa_m = sabotage == "half-stiffness" ? 0.5 * kStiffness : kStiffness;
+  law.stiffness_pa_m = fault == "half-stiffness" ? 0.5 * kStiffness : kStiffness;
   term.add_pair(std::move(source), law);
   term.refresh(body.state.view());
   return -term.frame_wrench(body.state.view(), 0).force.z();
 }
 
-double vertex_force(const TriMesh& mesh, const std::string& sabotage) {
+double vertex_force(const TriMesh& mesh, const std::string& fault) {
   SurfaceBody body(mesh);
   const auto frame = contact::fixed_frame();
   // "surface-area": the area on the sphere instead of its projection, what an elastic foundation normal to
   // the skin would use
-  if (sabotage == "surface-area") {
+  if (fault == "surface-area") {
     double sum = 0.0;
     std::vector<contact::ContactSample> samples;
     contact::make_plane_source(body.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 1e-6)
@@ -77,10 +77,10 @@ double vertex_force(const TriMesh& mesh, const std::string& sabotage) {
   }
   return held_force(body,
                     contact::make_plane_source(body.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 1e-6),
-                    frame, sabotage);
+                    frame, fault);
 }
 
-double pixel_force(const TriMesh& mesh, const std::string& sabotage) {
+double pixel_force(const TriMesh& mesh, const std::string& fault) {
   SurfaceBody body(mesh);
   const auto frame = contact::fixed_frame();
   TriMesh slab = mesh::box_surface(Vec3(6 * kRadius, 6 * kRadius, kRadius), {6, 6, 1});
@@ -88,7 +88,7 @@ double pixel_force(const TriMesh& mesh, const std::string& sabotage) {
   contact::GpuOptions options;
   options.pixels = 256;
   options.candidate_gap = 1e-6;
-  return held_force(body, contact::make_gpu_source(body.surface, slab, 0, frame, options), frame, sabotage);
+  return held_force(body, contact::make_gpu_source(body.surface, slab, 0, frame, options), frame, fault);
 }
 
 Measurement against(const std::string& quantity, double computed, double exact, double bar) {
@@ -101,7 +101,7 @@ Measurement against(const std::string& quantity, double computed, double exact, 
   return m;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   constexpr int kOrientations = 6;
   const double cap = kPi * kDepth * kDepth * (3 * kRadius - kDepth) / 3.0;
   const std::vector<int> ladder = {16, 24, 32, 48, 64};
@@ -109,8 +109,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
   double finest = 0.0;
   for (const int n : ladder) {
     double mean = 0.0;
-    for (int i = 0; i < kOrientations; ++i)
-      mean += vertex_force(placed_sphere(n, i), sabotage) / kOrientations;
+    for (int i = 0; i < kOrientations; ++i) mean += vertex_force(placed_sphere(n, i), fault) / kOrientations;
     h.push_back(1.0 / n);
     error.push_back(std::abs(mean / (kStiffness * cap) - 1.0));
     finest = mean;
@@ -118,11 +117,9 @@ std::vector<Measurement> run(const std::string& sabotage) {
   const TriMesh mesh = placed_sphere(ladder.back(), 0);
   const double facets = kStiffness * volume_below(mesh);
   std::vector<Measurement> out;
-  out.push_back(
-      against("force on the facets, vertex samples [N]", vertex_force(mesh, sabotage), facets, 1e-3));
+  out.push_back(against("force on the facets, vertex samples [N]", vertex_force(mesh, fault), facets, 1e-3));
   if (contact::gpu_available())
-    out.push_back(
-        against("force on the facets, pixel samples [N]", pixel_force(mesh, sabotage), facets, 1e-3));
+    out.push_back(against("force on the facets, pixel samples [N]", pixel_force(mesh, fault), facets, 1e-3));
   Measurement sphere = against("force on the true sphere, vertex samples, mean of 6 orientations [N]", finest,
                                kStiffness * cap, 1e-3);
   sphere.order = validation::fitted_order(h, error);

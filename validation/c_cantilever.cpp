@@ -26,16 +26,16 @@ double traction(double y) {
 }
 
 /// Deflection [m] conjugate to the load, with `across` elements over the whole height.
-double deflection(int across, const std::string& sabotage) {
+double deflection(int across, const std::string& fault) {
   fem::Material m;
-  m.youngs_modulus = sabotage == "half-stiffness" ? 0.5 * kYoung : kYoung;
+  m.youngs_modulus = fault == "half-stiffness" ? 0.5 * kYoung : kYoung;
   m.poissons_ratio = 0.0;
   TetMesh rest =
       mesh::box(Vec3(kLength, 0.5 * kHeight, 0.5 * kHeight), {10 * across, across / 2, across / 2});
   const Vec3 corner = rest.nodes.rowwise().minCoeff();
   rest.nodes.colwise() -= corner;
   StaticBody body(rest, m);
-  const double clamp = sabotage == "clamp-too-long" ? 0.01 * kLength : 1e-9;
+  const double clamp = fault == "clamp-too-long" ? 0.01 * kLength : 1e-9;
   for (int i = 0; i < rest.nodes.cols(); ++i) {
     const Vec3 X = rest.nodes.col(i);
     if (X.x() < clamp) body.hold(i, X);
@@ -53,13 +53,13 @@ double deflection(int across, const std::string& sabotage) {
   return work / (0.25 * kLoad);
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   const double inertia = std::pow(kHeight, 4) / 12.0, area = kHeight * kHeight, shear = 0.5 * kYoung;
   const double exact =
       kLoad * std::pow(kLength, 3) / (3.0 * kYoung * inertia) + kLoad * kLength / (5.0 / 6.0 * shear * area);
   std::vector<double> h, error, tip;
   for (int across : {8, 12, 16}) {
-    tip.push_back(deflection(across, sabotage));
+    tip.push_back(deflection(across, fault));
     h.push_back(kHeight / across);
     error.push_back(std::abs(tip.back() / exact - 1.0));
   }
@@ -94,7 +94,7 @@ ValidationCase cantilever() {
               "bending is where linear tetrahedra are poor: says how many elements a thickness needs; "
               "Timoshenko 1921, shear factor of Cowper 1966",
           .run = run,
-          .sabotages = {"half-stiffness", "clamp-too-long"}};
+          .faults = {"half-stiffness", "clamp-too-long"}};
 }
 
 }  // namespace palpate::validation

@@ -80,9 +80,9 @@ struct Beam {
 };
 
 /// Drop and shortening, over L, under each of the loads in turn; NaN where Newton fails.
-std::vector<Bend> bend(int across, const std::vector<double>& loads, const std::string& sabotage) {
+std::vector<Bend> bend(int across, const std::vector<double>& loads, const std::string& fault) {
   fem::Material m;
-  m.youngs_modulus = sabotage == "half-stiffness" ? 0.5 * kYoung : kYoung;
+  m.youngs_modulus = fault == "half-stiffness" ? 0.5 * kYoung : kYoung;
   m.poissons_ratio = 0.0;
   const double width = kHeight / across;
   TetMesh rest = mesh::box(Vec3(kLength, kHeight, width), {20 * across, across, 1});
@@ -98,7 +98,7 @@ std::vector<Bend> bend(int across, const std::vector<double>& loads, const std::
       const double P = beam.force_of(before + (a - before) * k / parts);
       beam.load(Vec3(0, -P, 0));
       solved = beam.body.solve();
-      if (sabotage == "load-turns-with-the-end")
+      if (fault == "load-turns-with-the-end")
         for (int i = 0; i < 5 && solved; ++i) {
           const double angle = beam.end_angle();
           beam.load(P * Vec3(-std::sin(angle), -std::cos(angle), 0));
@@ -112,11 +112,11 @@ std::vector<Bend> bend(int across, const std::vector<double>& loads, const std::
   return out;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   const std::vector<double> loads =
-      sabotage.empty() ? std::vector<double>{1, 2, 3, 5, 10} : std::vector<double>{1};
+      fault.empty() ? std::vector<double>{1, 2, 3, 5, 10} : std::vector<double>{1};
   constexpr int kCoarse = 6, kFine = 8;
-  const std::vector<Bend> coarse = bend(kCoarse, loads, sabotage), fine = bend(kFine, loads, sabotage);
+  const std::vector<Bend> coarse = bend(kCoarse, loads, fault), fine = bend(kFine, loads, fault);
   const double ratio = std::pow(static_cast<double>(kFine) / kCoarse, 2);
   // order 2 removed
   const auto limit = [&](double on_coarse, double on_fine) {
@@ -153,7 +153,7 @@ ValidationCase large_deflection() {
           "slender cantilever under an end load that bends it by up to 75 degrees, against the elastica",
       .why = "large rotation with small strain is what corotated elements are for; Bisshopp and Drucker 1945",
       .run = run,
-      .sabotages = {"half-stiffness", "load-turns-with-the-end"}};
+      .faults = {"half-stiffness", "load-turns-with-the-end"}};
 }
 
 }  // namespace palpate::validation

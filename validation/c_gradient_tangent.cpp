@@ -62,7 +62,7 @@ Measurement taylor(const std::string& quantity, double step, const std::function
           .note = "error is of the order, absolute"};
 }
 
-void measure(const Shape& shape, const std::string& sabotage, std::vector<Measurement>& out) {
+void measure(const Shape& shape, const std::string& fault, std::vector<Measurement>& out) {
   fem::Material material;
   material.youngs_modulus = 3.0;
   material.poissons_ratio = 0.35;
@@ -73,9 +73,9 @@ void measure(const Shape& shape, const std::string& sabotage, std::vector<Measur
   const VecX zero = VecX::Zero(n);
   const int id = state.insert(spec, shape.x, zero);
   fem::SoftBodyOptions options;
-  if (sabotage == "no-rotation-derivative") options.tangent = fem::Tangent::kWarped;
+  if (fault == "no-rotation-derivative") options.tangent = fem::Tangent::kWarped;
   fem::SoftBody body("body", shape.rest, material, options, id);
-  const double sign = sabotage == "wrong-sign" ? -1.0 : sabotage == "half-force" ? 0.5 : 1.0;
+  const double sign = fault == "wrong-sign" ? -1.0 : fault == "half-force" ? 0.5 : 1.0;
 
   const auto force = [&](const VecX& x) {
     VecX f = VecX::Zero(n);
@@ -106,9 +106,9 @@ void measure(const Shape& shape, const std::string& sabotage, std::vector<Measur
                  .bar = 1e-14});
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
-  for (const Shape& shape : shapes()) measure(shape, sabotage, out);
+  for (const Shape& shape : shapes()) measure(shape, fault, out);
   return out;
 }
 
@@ -124,7 +124,7 @@ ValidationCase gradient_and_tangent() {
               "energy is kept and Newton converges only if both hold; finite differences know nothing of the "
               "derivation",
           .run = run,
-          .sabotages = {"wrong-sign", "half-force", "no-rotation-derivative"}};
+          .faults = {"wrong-sign", "half-force", "no-rotation-derivative"}};
 }
 
 }  // namespace palpate::validation

@@ -18,18 +18,18 @@ struct Errors {
   double h, energy, rms, computed_energy, exact_energy, computed_rms;
 };
 
-Errors bar(int cells_along, const std::string& sabotage) {
+Errors bar(int cells_along, const std::string& fault) {
   fem::Material m;
   m.youngs_modulus = 1e6;
   m.poissons_ratio = 0.0;
   const double e = m.youngs_modulus, weight = m.density * kGravity;
-  if (sabotage == "half-stiffness") m.youngs_modulus *= 0.5;
+  if (fault == "half-stiffness") m.youngs_modulus *= 0.5;
   TetMesh rest = mesh::box(Vec3(kLength, kWidth, kWidth), {cells_along, cells_along / 4, cells_along / 4});
   const Vec3 corner = rest.nodes.rowwise().minCoeff();
   rest.nodes.colwise() -= corner;
   StaticBody body(rest, m);
   // a first-order rule: each element's weight on its node nearest to the holder
-  if (sabotage == "one-point-weight") {
+  if (fault == "one-point-weight") {
     const TetMesh& mesh = body.rest();
     for (const auto& tet : mesh.tets.colwise()) {
       int nearest = tet[0];
@@ -60,11 +60,11 @@ Errors bar(int cells_along, const std::string& sabotage) {
   return out;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   std::vector<double> h, energy, rms;
   Errors last{};
   for (int cells : {8, 16, 32}) {
-    last = bar(cells, sabotage);
+    last = bar(cells, fault);
     h.push_back(last.h);
     energy.push_back(last.energy);
     rms.push_back(last.rms);
@@ -99,7 +99,7 @@ ValidationCase hanging_bar() {
               "the simplest non-uniform stress: shows that weight, stiffness and mesh refinement fit "
               "together; one-dimensional theory",
           .run = run,
-          .sabotages = {"half-stiffness", "one-point-weight"}};
+          .faults = {"half-stiffness", "one-point-weight"}};
 }
 
 }  // namespace palpate::validation

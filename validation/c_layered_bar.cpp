@@ -21,15 +21,15 @@ namespace {
 constexpr double kLength = 1.0, kWidth = 0.3, kTraction = 2e3, kStretch = 1.1;
 constexpr double kYoung[2] = {1e4, 3e5};
 
-fem::Materials layers(const TetMesh& rest, int axis, const std::string& sabotage) {
+fem::Materials layers(const TetMesh& rest, int axis, const std::string& fault) {
   fem::Material soft, stiff;
   soft.youngs_modulus = kYoung[0];
-  stiff.youngs_modulus = sabotage == "one-material" ? kYoung[0] : kYoung[1];
+  stiff.youngs_modulus = fault == "one-material" ? kYoung[0] : kYoung[1];
   soft.poissons_ratio = stiff.poissons_ratio = 0.0;
   fem::Materials out({soft, stiff}, {});
   for (const auto& tet : rest.tets.colwise()) {
     const double at = rest.nodes(axis, tet).mean();
-    out.of_element.push_back(sabotage == "turned-round" ? at < 0.0 : at > 0.0);
+    out.of_element.push_back(fault == "turned-round" ? at < 0.0 : at > 0.0);
   }
   return out;
 }
@@ -47,9 +47,9 @@ TetMesh bar(int axis) {
   return rest;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   const TetMesh rest = bar(0);
-  StaticBody series(rest, layers(rest, 0, sabotage));
+  StaticBody series(rest, layers(rest, 0, fault));
   const double a = kLength / 2, ends = kTraction * (a / kYoung[0] + a / kYoung[1]),
                middle = kTraction * a / kYoung[0];
   const mesh::Boundary boundary = mesh::boundary(rest);
@@ -75,7 +75,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
   const double energy = series.elastic_energy(), exact_energy = 0.5 * kWidth * kWidth * kTraction * ends;
 
   const TetMesh side = bar(2);
-  StaticBody parallel(side, layers(side, 2, sabotage));
+  StaticBody parallel(side, layers(side, 2, fault));
   for (int i = 0; i < side.nodes.cols(); ++i)
     if (std::abs(side.nodes(0, i)) > a - 1e-9) parallel.hold(i, 0, kStretch * side.nodes(0, i));
   for (int i = 0; i < side.nodes.cols(); ++i) {
@@ -127,7 +127,7 @@ ValidationCase layered_bar() {
           "shows that each element has its own material, on the right side of the border, and that the two "
           "share its nodes; exact for nu = 0",
       .run = run,
-      .sabotages = {"one-material", "turned-round"}};
+      .faults = {"one-material", "turned-round"}};
 }
 
 }  // namespace palpate::validation

@@ -88,15 +88,15 @@ struct Found {
   double error;  ///< RMS of the nodes' errors over RMS of their displacements
 };
 
-Found bend(double nu, int cells, bool nodal, const std::string& sabotage) {
+Found bend(double nu, int cells, bool nodal, const std::string& fault) {
   const Exact exact(nu);
   fem::Material m;
   m.youngs_modulus = kYoung;
   m.poissons_ratio = nu;
   fem::SoftBodyOptions options;
-  if (nodal && sabotage != "plain-elements") options.volumetric_share = fem::kept_volumetric_share(m);
+  if (nodal && fault != "plain-elements") options.volumetric_share = fem::kept_volumetric_share(m);
   const TetMesh rest = irregular({8 * cells, cells, std::max(1, cells / 2)});
-  if (sabotage == "lambda-lost" && nodal) {  // the kept share alone
+  if (fault == "lambda-lost" && nodal) {  // the kept share alone
     const double lambda = options.volumetric_share * m.lambda(), mu = m.mu();
     m.poissons_ratio = 0.5 * lambda / (lambda + mu);
     m.youngs_modulus = 2.0 * mu * (1.0 + m.poissons_ratio);
@@ -127,14 +127,14 @@ Found bend(double nu, int cells, bool nodal, const std::string& sabotage) {
   return out;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   constexpr double kWorst = 0.4999;
   constexpr int kFine = 8;
   std::vector<Measurement> out;
   Found plain{}, nodal{}, easy{};
   for (double nu : {0.3, 0.45, 0.49, 0.499, kWorst}) {
-    plain = bend(nu, kFine, false, sabotage);
-    nodal = bend(nu, kFine, true, sabotage);
+    plain = bend(nu, kFine, false, fault);
+    nodal = bend(nu, kFine, true, fault);
     if (nu == 0.3) easy = nodal;
     out.push_back({.quantity = fmt::format("tip deflection / exact at nu = {}, nodal dilatation", nu),
                    .computed = nodal.tip,
@@ -146,7 +146,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
   std::vector<double> h, error;
   for (int cells : {4, 6, kFine}) {
     h.push_back(0.5 * kHeight / cells);
-    error.push_back(bend(kWorst, cells, true, sabotage).error);
+    error.push_back(bend(kWorst, cells, true, fault).error);
   }
   out.push_back({.quantity = "nodal dilatation at nu = 0.4999: RMS error of the nodes",
                  .computed = error.back(),
@@ -189,7 +189,7 @@ ValidationCase locking() {
           "soft tissue is nearly incompressible; exact field of Timoshenko and Goodier, locking as in "
           "Babuska and Suri 1992",
       .run = run,
-      .sabotages = {"plain-elements", "lambda-lost"}};
+      .faults = {"plain-elements", "lambda-lost"}};
 }
 
 }  // namespace palpate::validation

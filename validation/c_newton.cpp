@@ -44,14 +44,14 @@ std::vector<double> newton(const Problem& p, VecX z, bool keep_matrix, int steps
 
 /// Starts around the solution at halved distances; the slope within each generation (first pair, second pair,
 /// ...), pooled: each has a constant of its own.
-double exponent(const Problem& p, const std::string& sabotage) {
+double exponent(const Problem& p, const std::string& fault) {
   constexpr int kStarts = 6, kSteps = 8;
   std::mt19937 engine(71);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const VecX w = VecX::NullaryExpr(p.solution.size(), [&] { return uniform(engine); });
   std::vector<std::vector<double>> runs;
   for (int k = 0; k < kStarts; ++k)
-    runs.push_back(newton(p, p.solution + p.size * std::pow(0.5, k) * w, sabotage == "matrix-kept", kSteps));
+    runs.push_back(newton(p, p.solution + p.size * std::pow(0.5, k) * w, fault == "matrix-kept", kSteps));
   const double rounding = 100.0 * p.residual(p.solution).norm();
   double xy = 0.0, xx = 0.0;
   for (std::size_t generation = 0; generation + 1 < kSteps; ++generation) {
@@ -210,7 +210,7 @@ struct Row {
   double expected;
 };
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   using fem::Tangent;
   const Row rows[] = {
       {"bent beam, exact tangent", bent_beam, 0.4, 0.0, Tangent::kExact, false, false, 2.0},
@@ -239,7 +239,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
     VecX z = exact.solution;
     const bool solved = converge(exact, z);
     p.solution = z;
-    const double found = solved ? exponent(p, sabotage) : std::nan("");
+    const double found = solved ? exponent(p, fault) : std::nan("");
     out.push_back({.quantity = std::string("exponent of the residuals: ") + row.name,
                    .computed = found,
                    .exact = row.expected,
@@ -260,7 +260,7 @@ ValidationCase newton_convergence() {
               "Euler, damping too; 1 with inexact ones",
           .why = "quadratic convergence shows that force and tangent belong together, where it counts",
           .run = run,
-          .sabotages = {"matrix-kept"}};
+          .faults = {"matrix-kept"}};
 }
 
 }  // namespace palpate::validation

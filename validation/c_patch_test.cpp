@@ -47,7 +47,7 @@ Eigen::Vector4i inner_element(const TetMesh& mesh, const std::vector<char>& boun
   fail("the mesh has no inner element");
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   fem::Material material;
   material.youngs_modulus = 2e4;
   material.poissons_ratio = 0.3;
@@ -57,7 +57,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
   std::vector<Measurement> out;
   for (const Field& field : fields()) {
     StaticBody body(rest, material);
-    if (sabotage == "one-element-counted-twice")
+    if (fault == "one-element-counted-twice")
       body.add([&](int id) {
         const TetMesh one{rest.nodes, inner_element(rest, boundary)};
         return std::make_shared<fem::SoftBody>("again", one, material, fem::SoftBodyOptions{}, id);
@@ -104,7 +104,7 @@ ValidationCase patch_test() {
               "an element that fails it does not converge on irregular meshes (Irons 1966); exact by theory, "
               "on any mesh",
           .run = run,
-          .sabotages = {"one-element-counted-twice"}};
+          .faults = {"one-element-counted-twice"}};
 }
 
 }  // namespace palpate::validation

@@ -11,7 +11,7 @@
 namespace palpate::validation {
 namespace {
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   constexpr double kSize = 0.1;
   constexpr int kCells = 4;
   const TetMesh rest = mesh::perturbed(mesh::box(Vec3::Constant(kSize), {kCells, kCells, kCells}), 0.2, 11);
@@ -40,7 +40,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
     const VecX v = ((cross_matrix(w) * Q * rest.nodes).colwise() + v0).reshaped();
     VecX f = VecX::Zero(3 * n), fv = f;
     const VecX zero = VecX::Zero(3 * n);
-    if (sabotage == "small-strain") {  // the law without R: f = -K (x - X)
+    if (fault == "small-strain") {  // the law without R: f = -K (x - X)
       const VecX u = x - X;
       body.apply_tangent(state.view(0.0, X.data(), zero.data()), -1.0, 0.0, u, f);
       fv = f;
@@ -73,7 +73,7 @@ ValidationCase rigid_motion() {
       .why =
           "small-strain elasticity fails it by design: a turned body swells; the corotated energy must not",
       .run = run,
-      .sabotages = {"small-strain"}};
+      .faults = {"small-strain"}};
 }
 
 }  // namespace palpate::validation

@@ -23,9 +23,9 @@ double torsion_constant() {
   return std::pow(kSide, 4) * (1.0 / 3.0 - 64.0 / std::pow(EIGEN_PI, 5) * sum);
 }
 
-double torque(int across, const std::string& sabotage) {
+double torque(int across, const std::string& fault) {
   fem::Material m;
-  m.youngs_modulus = sabotage == "half-stiffness" ? 0.5 * kYoung : kYoung;
+  m.youngs_modulus = fault == "half-stiffness" ? 0.5 * kYoung : kYoung;
   m.poissons_ratio = kPoisson;
   StaticBody body(mesh::box(Vec3(kSide, kSide, kLength), {across, across, across / 2}), m);
   const Points& X = body.rest().nodes;
@@ -36,7 +36,7 @@ double torque(int across, const std::string& sabotage) {
       const double turn = X(2, i) > 0.0 ? 0.5 * kAngle : -0.5 * kAngle;
       body.hold(i, 0, X(0, i) - turn * X(1, i));
       body.hold(i, 1, X(1, i) + turn * X(0, i));
-      if (sabotage == "warping-hindered") body.hold(i, 2, X(2, i));
+      if (fault == "warping-hindered") body.hold(i, 2, X(2, i));
     }
     // no warping on the axis: one node of it stops the bar from drifting along
     if (!axis_held && X.col(i).head<2>().norm() < 1e-9) {
@@ -52,12 +52,12 @@ double torque(int across, const std::string& sabotage) {
   return moment;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   const double exact = 0.5 * kYoung / (1.0 + kPoisson) * torsion_constant() * kAngle / kLength;
   std::vector<double> h, error, found;
   for (int across : {4, 8, 16}) {
     h.push_back(kSide / across);
-    found.push_back(torque(across, sabotage));
+    found.push_back(torque(across, fault));
     error.push_back(std::abs(found.back() / exact - 1.0));
   }
   const double extrapolated = found[2] + (found[2] - found[1]) / 3.0;  // order 2 removed
@@ -94,7 +94,7 @@ ValidationCase torsion() {
               "shear stress that varies over the section, and warping; Timoshenko and Goodier, Theory of "
               "Elasticity",
           .run = run,
-          .sabotages = {"half-stiffness", "warping-hindered"}};
+          .faults = {"half-stiffness", "warping-hindered"}};
 }
 
 }  // namespace palpate::validation

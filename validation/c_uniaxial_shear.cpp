@@ -27,10 +27,10 @@ namespace {
 
 constexpr double kBar = 1e-10, kTiny = 1e-9;
 
-fem::Material material_for(const std::string& sabotage) {
+fem::Material material_for(const std::string& fault) {
   fem::Material m;
-  m.youngs_modulus = sabotage == "half-stiffness" ? 5e3 : 1e4;
-  m.poissons_ratio = sabotage == "no-lateral-coupling" ? 0.0 : 0.3;
+  m.youngs_modulus = fault == "half-stiffness" ? 5e3 : 1e4;
+  m.poissons_ratio = fault == "no-lateral-coupling" ? 0.0 : 0.3;
   return m;
 }
 
@@ -65,11 +65,11 @@ struct Law {
 };
 constexpr Law kLaws[] = {{"corotational", corotational}, {"stable_neo_hookean", stable_neo_hookean}};
 
-void stretch(const Law& law, double l, const std::string& sabotage, std::vector<Measurement>& out) {
+void stretch(const Law& law, double l, const std::string& fault, std::vector<Measurement>& out) {
   const auto number = &law - kLaws;
   fem::SoftBodyOptions options;
-  options.law = kLaws[sabotage == "other-law" ? 1 - number : number].name;
-  StaticBody body(block(), material_for(sabotage), options);
+  options.law = kLaws[fault == "other-law" ? 1 - number : number].name;
+  StaticBody body(block(), material_for(fault), options);
   // Ends held along x, the block's rigid motion by three planes through a corner; the sides are free.
   const Vec3 low = body.rest().nodes.rowwise().minCoeff(), high = body.rest().nodes.rowwise().maxCoeff();
   for (int i = 0; i < body.rest().nodes.cols(); ++i) {
@@ -105,9 +105,9 @@ void stretch(const Law& law, double l, const std::string& sabotage, std::vector<
                  .bar = kBar});
 }
 
-void shear(double g, const std::string& sabotage, std::vector<Measurement>& out) {
+void shear(double g, const std::string& fault, std::vector<Measurement>& out) {
   const fem::Material m = material_for("");
-  StaticBody body(block(), material_for(sabotage));
+  StaticBody body(block(), material_for(fault));
   const std::vector<char> boundary = boundary_nodes(body.rest());
   for (int i = 0; i < body.rest().nodes.cols(); ++i) {
     const Vec3 X = body.rest().nodes.col(i), x(X.x() + g * X.y(), X.y(), X.z());
@@ -138,11 +138,11 @@ void shear(double g, const std::string& sabotage, std::vector<Measurement>& out)
                  .bar = kBar});
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
   for (const Law& law : kLaws)
-    for (double l : {0.7, 1.1, 1.5, 3.0}) stretch(law, l, sabotage, out);
-  for (double g : {0.01, 0.5, 1.5}) shear(g, sabotage, out);
+    for (double l : {0.7, 1.1, 1.5, 3.0}) stretch(law, l, fault, out);
+  for (double g : {0.01, 0.5, 1.5}) shear(g, fault, out);
   return out;
 }
 
@@ -158,7 +158,7 @@ ValidationCase uniaxial_and_shear() {
           "in "
           "the file)",
       .run = run,
-      .sabotages = {"half-stiffness", "no-lateral-coupling", "other-law"}};
+      .faults = {"half-stiffness", "no-lateral-coupling", "other-law"}};
 }
 
 }  // namespace palpate::validation

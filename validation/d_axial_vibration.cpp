@@ -19,17 +19,17 @@ constexpr double kLength = 1.0, kHalfWidth = 0.125, kYoung = 1e6;
 constexpr int kModes = 3;
 
 /// Frequencies [Hz] of the first three axial modes; NaN where none overlaps by more than 0.95.
-std::vector<double> frequencies(int cells_along, const std::string& sabotage) {
+std::vector<double> frequencies(int cells_along, const std::string& fault) {
   ModalBody bar;
-  bar.material.youngs_modulus = sabotage == "half-stiffness" ? 0.5 * kYoung : kYoung;
-  bar.material.poissons_ratio = sabotage == "lateral-strain" ? 0.4 : 0.0;
+  bar.material.youngs_modulus = fault == "half-stiffness" ? 0.5 * kYoung : kYoung;
+  bar.material.poissons_ratio = fault == "lateral-strain" ? 0.4 : 0.0;
   bar.rest =
       mesh::box(Vec3(kLength, kHalfWidth, kHalfWidth), {cells_along, cells_along / 8, cells_along / 8});
   const Vec3 corner = bar.rest.nodes.rowwise().minCoeff();
   bar.rest.nodes.colwise() -= corner;
-  const double clamp = sabotage == "clamp-too-long" ? 0.04 * kLength : 1e-9;
+  const double clamp = fault == "clamp-too-long" ? 0.04 * kLength : 1e-9;
   bar.hold("xyz", [&](const Vec3& X) { return X.x() < clamp; });
-  if (sabotage == "held-sides") {
+  if (fault == "held-sides") {
     bar.hold("x", [](const Vec3& X) { return X.y() < 1e-9; });
   } else {
     bar.hold("y", [](const Vec3& X) { return X.y() < 1e-9; });
@@ -46,13 +46,13 @@ std::vector<double> frequencies(int cells_along, const std::string& sabotage) {
   return out;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   const std::vector<int> cells = {16, 24, 32, 48};
   std::vector<double> h;
   std::vector<std::vector<double>> found;
   for (int n : cells) {
     h.push_back(kLength / n);
-    found.push_back(frequencies(n, sabotage));
+    found.push_back(frequencies(n, fault));
   }
   const double c = std::sqrt(kYoung / fem::Material{}.density);
   std::vector<Measurement> out;
@@ -86,7 +86,7 @@ ValidationCase axial_vibration() {
               "stiffness and mass together against the wave equation, whose solution is exact for nu = 0 "
               "(Rayleigh 1877)",
           .run = run,
-          .sabotages = {"half-stiffness", "clamp-too-long", "lateral-strain", "held-sides"}};
+          .faults = {"half-stiffness", "clamp-too-long", "lateral-strain", "held-sides"}};
 }
 
 }  // namespace palpate::validation

@@ -33,9 +33,9 @@ double root(double b, int n) {
 }
 
 /// Frequency [Hz] of the first axial vibration; NaN where no mode overlaps by more than 0.95.
-double frequency(int cells, double b, const std::string& sabotage) {
+double frequency(int cells, double b, const std::string& fault) {
   ModalBody bar;
-  bar.material.youngs_modulus = sabotage == "half-stiffness" ? 0.5 * kYoung : kYoung;
+  bar.material.youngs_modulus = fault == "half-stiffness" ? 0.5 * kYoung : kYoung;
   bar.material.poissons_ratio = 0.0;
   bar.rest = mesh::box(Vec3(kLength, kHalfWidth, kHalfWidth), {cells, cells / 8, cells / 8});
   const Vec3 corner = bar.rest.nodes.rowwise().minCoeff();
@@ -43,10 +43,10 @@ double frequency(int cells, double b, const std::string& sabotage) {
   const double mass = bar.material.density * kLength * kHalfWidth * kHalfWidth;
   for (int i = 0; i < bar.rest.nodes.cols(); ++i)
     if (bar.rest.nodes(0, i) < 1e-9) bar.carried.push_back(i);
-  bar.bone_mass = (sabotage == "light-bone" ? 0.5 : 1.0) * b * mass;
+  bar.bone_mass = (fault == "light-bone" ? 0.5 : 1.0) * b * mass;
   bar.bone_inertia.setConstant(bar.bone_mass * kHalfWidth * kHalfWidth / 6.0);
   bar.bone_centre = Vec3(0.0, 0.5 * kHalfWidth, 0.5 * kHalfWidth);
-  if (sabotage == "no-bone") {
+  if (fault == "no-bone") {
     bar.carried.clear();
     bar.hold("xyz", [](const Vec3& X) { return X.x() < 1e-9; });
   }
@@ -59,7 +59,7 @@ double frequency(int cells, double b, const std::string& sabotage) {
   return match.overlap > 0.95 ? match.omega / (2.0 * M_PI) : std::nan("");
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   const std::vector<int> cells = {16, 24, 32, 48};
   const double c = std::sqrt(kYoung / fem::Material{}.density);
   std::vector<Measurement> out;
@@ -69,7 +69,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
     double found = 0.0;
     for (int n : cells) {
       h.push_back(kLength / n);
-      found = frequency(n, b, sabotage);
+      found = frequency(n, b, fault);
       error.push_back(std::abs(found / exact - 1.0));
     }
     out.push_back({.quantity = fmt::format("frequency [Hz], bone of {:g} of the bar's mass, {} cells along",
@@ -98,7 +98,7 @@ ValidationCase bar_on_bone() {
               "momentum goes from flesh to bone and back at the right rate, also where the bone is a "
               "thousandth of the flesh (Timoshenko 1937)",
           .run = run,
-          .sabotages = {"half-stiffness", "light-bone", "no-bone"}};
+          .faults = {"half-stiffness", "light-bone", "no-bone"}};
 }
 
 }  // namespace palpate::validation

@@ -21,23 +21,23 @@ namespace {
 
 constexpr double kHeight = 0.1, kYoung = 1e6;
 
-double frequency(double slenderness, int across, const std::string& sabotage) {
+double frequency(double slenderness, int across, const std::string& fault) {
   const double length = slenderness * kHeight;
   ModalBody beam;
-  beam.material.youngs_modulus = sabotage == "half-stiffness" ? 0.5 * kYoung : kYoung;
+  beam.material.youngs_modulus = fault == "half-stiffness" ? 0.5 * kYoung : kYoung;
   beam.material.poissons_ratio = 0.0;
   beam.rest = mesh::box(Vec3(length, 0.5 * kHeight, 0.5 * kHeight),
                         {static_cast<int>(slenderness) * across, across / 2, across / 2});
   const Vec3 corner = beam.rest.nodes.rowwise().minCoeff();
   beam.rest.nodes.colwise() -= corner;
-  const double clamp = sabotage == "clamp-too-long" ? 0.02 * length : 1e-9;
+  const double clamp = fault == "clamp-too-long" ? 0.02 * length : 1e-9;
   beam.hold("xyz", [&](const Vec3& X) { return X.x() < clamp; });
   beam.hold("xz", [](const Vec3& X) { return X.y() < 1e-9; });
   beam.hold("z", [&](const Vec3& X) { return X.z() < 1e-9; });
   return beam.lowest(1).frequency_hz(0);
 }
 
-void add(double slenderness, double timoshenko, const std::vector<int>& across, const std::string& sabotage,
+void add(double slenderness, double timoshenko, const std::vector<int>& across, const std::string& fault,
          std::vector<Measurement>& out) {
   const double length = slenderness * kHeight, density = fem::Material{}.density;
   const double exact = timoshenko * std::pow(1.875104, 2) / (2.0 * M_PI) *
@@ -45,7 +45,7 @@ void add(double slenderness, double timoshenko, const std::vector<int>& across, 
   std::vector<double> h, found, error;
   for (int n : across) {
     h.push_back(kHeight / n);
-    found.push_back(frequency(slenderness, n, sabotage));
+    found.push_back(frequency(slenderness, n, fault));
     error.push_back(std::abs(found.back() / exact - 1.0));
   }
   const std::size_t last = h.size() - 1;
@@ -69,10 +69,10 @@ void add(double slenderness, double timoshenko, const std::vector<int>& across, 
                  .note = "order 2 removed from the last two"});
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
-  add(10.0, 0.99350, {4, 6, 8}, sabotage, out);
-  add(20.0, 0.99836, {4, 6, 8}, sabotage, out);
+  add(10.0, 0.99350, {4, 6, 8}, fault, out);
+  add(20.0, 0.99836, {4, 6, 8}, fault, out);
   return out;
 }
 
@@ -88,7 +88,7 @@ ValidationCase bending_vibration() {
               "the lowest mode of most soft bodies is bending, and linear tetrahedra are stiff in it; "
               "Timoshenko 1921",
           .run = run,
-          .sabotages = {"half-stiffness", "clamp-too-long"}};
+          .faults = {"half-stiffness", "clamp-too-long"}};
 }
 
 }  // namespace palpate::validation

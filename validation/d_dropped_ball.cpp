@@ -41,8 +41,8 @@ constexpr double kRefresh = 1e-3, kEnd = 0.4;  // [s]: four bounces
 /// The vertices of a sphere carried by one node, over the plane z = 0 of frame 0.
 class BallSource final : public contact::SampleSource {
  public:
-  BallSource(int node, const std::string& sabotage)
-      : node_(node), sphere_(mesh::sphere(kRadius, 12)), sabotage_(sabotage) {
+  BallSource(int node, const std::string& fault)
+      : node_(node), sphere_(mesh::sphere(kRadius, 12)), fault_(fault) {
     areas_.setZero(sphere_.vertices.cols());
     for (const auto& face : sphere_.faces.colwise()) {
       const Vec3 a = sphere_.vertices.col(face[0]), b = sphere_.vertices.col(face[1]),
@@ -55,7 +55,7 @@ class BallSource final : public contact::SampleSource {
   void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& samples) override {
     const Vec3 x = state.position(node_);
     const double look_ahead =
-        sabotage_ == "no-look-ahead" ? 0.0 : 2.0 * kRefresh * std::max(0.0, -state.velocity(node_).z());
+        fault_ == "no-look-ahead" ? 0.0 : 2.0 * kRefresh * std::max(0.0, -state.velocity(node_).z());
     for (Eigen::Index i = 0; i < areas_.size(); ++i) {
       const Vec3 arm = sphere_.vertices.col(i);
       const double gap = x.z() + arm.z();
@@ -77,7 +77,7 @@ class BallSource final : public contact::SampleSource {
   int node_;
   TriMesh sphere_;
   VecX areas_;
-  std::string sabotage_;
+  std::string fault_;
 };
 
 /// A State, a System and the contact with the plane; `make` fills the rest.
@@ -124,7 +124,7 @@ struct Fall {
   }
 };
 
-Fall::Outcome drop_rigid(const IntegratorSpec& spec, double damping, const std::string& sabotage) {
+Fall::Outcome drop_rigid(const IntegratorSpec& spec, double damping, const std::string& fault) {
   Fall fall(damping);
   dynamics::BlockSpec node;
   node.name = "ball";
@@ -132,7 +132,7 @@ Fall::Outcome drop_rigid(const IntegratorSpec& spec, double damping, const std::
   node.q_scale = 1e-3;
   node.u_scale = std::sqrt(2.0 * kGravity * kDrop);
   const int id = fall.state.insert(node, Vec3(0.0, 0.0, kRadius + kDrop), Vec3::Zero());
-  fall.contact->add_pair(std::make_unique<BallSource>(0, sabotage), fall.law);
+  fall.contact->add_pair(std::make_unique<BallSource>(0, fault), fall.law);
   fall.system.add(std::static_pointer_cast<dynamics::ForceTerm>(fall.contact));
   fall.system.add(fem::make_gravity(VecX::Constant(1, kMass), Vec3(0, 0, -kGravity), id));
   fall.system.add(std::make_shared<PointMass>(id, kMass));
@@ -167,7 +167,7 @@ Fall::Outcome drop_soft(const IntegratorSpec& spec, double& mass) {
   return fall.run(spec, mass * kGravity * kDrop);
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   using dynamics::StepControl;
   std::vector<Measurement> out;
   IntegratorSpec spec;
@@ -177,9 +177,9 @@ std::vector<Measurement> run(const std::string& sabotage) {
     if (entry.traits.order <= 2) continue;  // a gain below 1e-6 would take them millions of steps
     spec.name = entry.name;
     spec.events = entry.traits.family == "ImEx Runge-Kutta" ? "root-finding" : "error-control";
-    spec.rtol = sabotage == "loose-tolerance" ? 1e-2 : 1e-10;
+    spec.rtol = fault == "loose-tolerance" ? 1e-2 : 1e-10;
     for (const double damping : {0.0, 2e6}) {
-      const Fall::Outcome fall = drop_rigid(spec, damping, sabotage);
+      const Fall::Outcome fall = drop_rigid(spec, damping, fault);
       const bool bounced = fall.deepest < kRadius - 1e-4;
       out.push_back({.quantity = fmt::format("rigid ball, {}, {}: energy gained / m g h",
                                              damping > 0.0 ? "damped" : "undamped", entry.name),
@@ -190,7 +190,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
                                          1e3 * (kRadius - fall.deepest), fall.queries)});
     }
   }
-  if (!sabotage.empty()) return out;
+  if (!fault.empty()) return out;
   spec.name = "cvode-bdf";
   spec.rtol = 1e-6;
   double mass = 0.0;
@@ -214,7 +214,7 @@ ValidationCase dropped_ball() {
               "control, additive pairs with root finding; a soft ball beside it",
           .why = "energy from nowhere at contact is what makes a haptic device kick; conservation of energy",
           .run = run,
-          .sabotages = {"no-look-ahead", "loose-tolerance"}};
+          .faults = {"no-look-ahead", "loose-tolerance"}};
 }
 
 }  // namespace palpate::validation

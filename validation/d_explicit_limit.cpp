@@ -38,8 +38,8 @@ struct Bar {
   dynamics::System system;
   VecX q0;
 
-  Bar(double beta, const std::string& sabotage) {
-    material.youngs_modulus = sabotage == "stiffer" ? 1.1e5 : 1e5;
+  Bar(double beta, const std::string& fault) {
+    material.youngs_modulus = fault == "stiffer" ? 1.1e5 : 1e5;
     material.stiffness_damping = beta;
     q0 = rest.nodes.reshaped();
     dynamics::BlockSpec spec;
@@ -48,7 +48,7 @@ struct Bar {
     spec.q_scale = kAmplitude;
     const int id = state.insert(spec, q0, VecX::Zero(q0.size()));
     system.add(std::make_shared<fem::SoftBody>("bar", rest, material, fem::SoftBodyOptions{}, id));
-    system.add(fem::make_lumped_mass(rest, material.density * (sabotage == "lighter" ? 0.9 : 1.0), id));
+    system.add(fem::make_lumped_mass(rest, material.density * (fault == "lighter" ? 0.9 : 1.0), id));
     std::vector<int> clamped;
     for (int i = 0; i < rest.nodes.cols(); ++i)
       for (int axis = 0; axis < 3 && rest.nodes(0, i) < -0.05 + 1e-9; ++axis) clamped.push_back(3 * i + axis);
@@ -79,12 +79,12 @@ void step_damped_at_new(Bar& bar, double h, dynamics::LinearSolver& solver) {
 }
 
 /// True when the mode has grown a thousandfold within 300 steps.
-bool grows(double h, double beta, Damping damping, const VecX& shape, const std::string& sabotage) {
+bool grows(double h, double beta, Damping damping, const VecX& shape, const std::string& fault) {
   constexpr int kSteps = 300;
-  Bar bar(beta, sabotage);
+  Bar bar(beta, fault);
   bar.excite(shape);
   IntegratorSpec spec;
-  spec.name = sabotage == "implicit" ? "backward-euler" : "symplectic-euler";
+  spec.name = fault == "implicit" ? "backward-euler" : "symplectic-euler";
   spec.step_s = h;
   const auto stepper = integrate::make_stepper(bar.system, bar.state, spec);
   const auto solver = linear::make_linear_solver("cholmod");
@@ -100,18 +100,18 @@ bool grows(double h, double beta, Damping damping, const VecX& shape, const std:
 
 /// Largest stable step [s] between half and twice the expected one.
 double found_limit(double expected, double beta, Damping damping, const VecX& shape,
-                   const std::string& sabotage) {
+                   const std::string& fault) {
   double low = 0.5 * expected, high = 2.0 * expected;
-  if (grows(low, beta, damping, shape, sabotage)) return low;
-  if (!grows(high, beta, damping, shape, sabotage)) return high;
+  if (grows(low, beta, damping, shape, fault)) return low;
+  if (!grows(high, beta, damping, shape, fault)) return high;
   while (high - low > 1e-3 * expected) {
     const double middle = 0.5 * (low + high);
-    (grows(middle, beta, damping, shape, sabotage) ? high : low) = middle;
+    (grows(middle, beta, damping, shape, fault) ? high : low) = middle;
   }
   return 0.5 * (low + high);
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   Bar bar(0.0, "");
   const modes::Modes modes =
       modes::find_modes(bar.system, bar.state.view(), {1, modes::ModesOptions::End::kHighest});
@@ -119,7 +119,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
   const VecX shape = modes.shapes.col(0);
   std::vector<Measurement> out;
   const auto add = [&](const std::string& what, double exact, double damping, Damping kind) {
-    const double found = found_limit(exact, sabotage == "no-damping" ? 0.0 : damping, kind, shape, sabotage);
+    const double found = found_limit(exact, fault == "no-damping" ? 0.0 : damping, kind, shape, fault);
     out.push_back({.quantity = "largest stable step [s], " + what,
                    .computed = found,
                    .exact = exact,
@@ -144,7 +144,7 @@ ValidationCase explicit_limit() {
               "what an explicit method costs on a stiff body is set by one number, the highest frequency; "
               "linear stability theory",
           .run = run,
-          .sabotages = {"stiffer", "lighter", "no-damping", "implicit"}};
+          .faults = {"stiffer", "lighter", "no-damping", "implicit"}};
 }
 
 }  // namespace palpate::validation

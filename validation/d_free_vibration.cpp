@@ -37,7 +37,7 @@ double coarsest_step(const dynamics::StepperTraits& traits, const VibratingBar& 
 }
 
 Measurement order_of_steps(const VibratingBar& bar, const dynamics::StepperEntry& entry,
-                           const std::string& sabotage) {
+                           const std::string& fault) {
   const double T = 0.5 * bar.period(), ratio = entry.traits.order <= 2 ? 2.0 : 1.5;
   IntegratorSpec spec;
   spec.name = entry.name;
@@ -47,7 +47,7 @@ Measurement order_of_steps(const VibratingBar& bar, const dynamics::StepperEntry
   for (int k = 0; k < 4; ++k) {
     spec.step_s = coarsest_step(entry.traits, bar, T) / std::pow(ratio, k);
     steps.push_back(spec.step_s);
-    errors.push_back(vibration_error(bar, spec, {.T = T}, sabotage));
+    errors.push_back(vibration_error(bar, spec, {.T = T}, fault));
   }
   const double order = entry.traits.order;
   return {
@@ -61,17 +61,17 @@ Measurement order_of_steps(const VibratingBar& bar, const dynamics::StepperEntry
       .note = fmt::format("order in the step, 4 steps from {:.2g} to {:.2g} s", steps.front(), steps.back())};
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   using dynamics::StepControl;
   const VibratingBar bar;
   std::vector<Measurement> out;
   for (const auto& entry : integrate::stepper_registry())
     if (entry.traits.stability != dynamics::Stability::kStatic &&
         entry.traits.control != StepControl::kAdaptive)
-      out.push_back(order_of_steps(bar, entry, sabotage));
+      out.push_back(order_of_steps(bar, entry, fault));
   IntegratorSpec spec;
   spec.rtol = 1e-4;
-  const double e = vibration_error(bar, spec, {.T = 0.5 * bar.period(), .amplitude = 1e-5}, sabotage);
+  const double e = vibration_error(bar, spec, {.T = 0.5 * bar.period(), .amplitude = 1e-5}, fault);
   out.push_back({.quantity = "corotational body at amplitude 1e-5 m, cvode-bdf: error",
                  .computed = e,
                  .error = e,
@@ -92,7 +92,7 @@ ValidationCase free_vibration() {
               "exact in time, so each integrator's error is its own; eigenvectors by a dense solver that no "
               "integrator uses",
           .run = run,
-          .sabotages = {"half-stiffness", "one-percent"}};
+          .faults = {"half-stiffness", "one-percent"}};
 }
 
 }  // namespace palpate::validation

@@ -20,13 +20,13 @@ namespace {
 constexpr double kSide = 0.1, kThickness = 0.04, kYoung = 5e4;
 constexpr int kSought = 30;  // modes, six rigid ones among them
 
-Match lame(double poisson, int cells, const std::string& sabotage) {
+Match lame(double poisson, int cells, const std::string& fault) {
   ModalBody block;
   block.material.youngs_modulus = kYoung;
-  block.material.poissons_ratio = sabotage == "other-poisson" ? poisson - 0.05 : poisson;
-  if (sabotage == "double-density") block.material.density *= 2.0;
+  block.material.poissons_ratio = fault == "other-poisson" ? poisson - 0.05 : poisson;
+  if (fault == "double-density") block.material.density *= 2.0;
   block.rest = mesh::box(Vec3(kSide, kSide, kThickness), {cells, cells, cells * 2 / 5});
-  if (sabotage == "held-side") block.hold("x", [](const Vec3& X) { return X.x() < -0.5 * kSide + 1e-9; });
+  if (fault == "held-side") block.hold("x", [](const Vec3& X) { return X.x() < -0.5 * kSide + 1e-9; });
   const modes::Modes modes = block.lowest(kSought);
   return best_match(block, modes, block.field([](const Vec3& X) {
     const double x = M_PI * (X.x() / kSide + 0.5), y = M_PI * (X.y() / kSide + 0.5);
@@ -34,7 +34,7 @@ Match lame(double poisson, int cells, const std::string& sabotage) {
   }));
 }
 
-void add(double poisson, const std::string& sabotage, std::vector<Measurement>& out) {
+void add(double poisson, const std::string& fault, std::vector<Measurement>& out) {
   fem::Material m;
   m.youngs_modulus = kYoung;
   m.poissons_ratio = poisson;
@@ -42,7 +42,7 @@ void add(double poisson, const std::string& sabotage, std::vector<Measurement>& 
   std::vector<double> h, error;
   double overlap = 1.0, frequency = 0.0;
   for (int cells : {15, 20, 25}) {
-    const Match match = lame(poisson, cells, sabotage);
+    const Match match = lame(poisson, cells, fault);
     frequency = match.omega / (2.0 * M_PI);
     h.push_back(kSide / cells);
     error.push_back(std::abs(frequency / exact - 1.0));
@@ -64,9 +64,9 @@ void add(double poisson, const std::string& sabotage, std::vector<Measurement>& 
                  .note = "the worst of three meshes"});
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
-  for (const double poisson : {0.3, 0.45}) add(poisson, sabotage, out);
+  for (const double poisson : {0.3, 0.45}) add(poisson, fault, out);
   return out;
 }
 
@@ -82,7 +82,7 @@ ValidationCase lame_mode() {
               "the only mode of a three-dimensional free body in closed form; G alone is in it, so a wrong "
               "lambda shows; rigid motions must not disturb it",
           .run = run,
-          .sabotages = {"double-density", "other-poisson", "held-side"}};
+          .faults = {"double-density", "other-poisson", "held-side"}};
 }
 
 }  // namespace palpate::validation

@@ -72,12 +72,12 @@ struct Spinner {
   dynamics::System system;
   std::shared_ptr<fem::SoftBody> body;
 
-  explicit Spinner(const std::string& sabotage) {
+  explicit Spinner(const std::string& fault) {
     fem::Material m;
     m.youngs_modulus = 5e4;
     m.poissons_ratio = 0.4;
     m.stiffness_damping = kBeta;
-    if (sabotage == "mass-damping") m.mass_damping = 0.1;
+    if (fault == "mass-damping") m.mass_damping = 0.1;
     const VecX masses = fem::lumped_masses(rest, m.density);
     rest.nodes.colwise() -= Vec3(rest.nodes * masses / masses.sum());
     mass = masses.transpose().replicate(3, 1).reshaped();
@@ -89,7 +89,7 @@ struct Spinner {
     const int id = state.insert(spec, rest.nodes.reshaped(), VecX::Zero(mass.size()));
     body = std::make_shared<fem::SoftBody>("spinner", rest, m, fem::SoftBodyOptions{}, id);
     system.add(std::static_pointer_cast<dynamics::ForceTerm>(body));
-    if (sabotage == "rayleigh-damping")
+    if (fault == "rayleigh-damping")
       system.add(std::make_shared<RayleighDamping>(body, rest.nodes.reshaped(), kBeta));
     system.add(fem::make_lumped_mass(rest, m.density, id));
     system.prepare(state.view());
@@ -165,11 +165,11 @@ Drift drift(Spinner& s, const IntegratorSpec& spec, int turns) {
   return out;
 }
 
-void add_drifts(const std::string& sabotage, std::vector<Measurement>& out) {
+void add_drifts(const std::string& fault, std::vector<Measurement>& out) {
   const auto add = [&](const IntegratorSpec& spec, const std::string& note, bool midpoint) {
-    Spinner s(sabotage);
-    const bool found = sabotage == "rest-shape" || s.find_equilibrium();
-    if (midpoint && sabotage != "continuous-shape") place_for_midpoint(s, spec.step_s);
+    Spinner s(fault);
+    const bool found = fault == "rest-shape" || s.find_equilibrium();
+    if (midpoint && fault != "continuous-shape") place_for_midpoint(s, spec.step_s);
     Drift d = drift(s, spec, 2);
     if (!found) d = {std::nan(""), std::nan("")};
     out.push_back({.quantity = "drift of angular momentum, 2 turns, " + spec.name,
@@ -188,14 +188,14 @@ void add_drifts(const std::string& sabotage, std::vector<Measurement>& out) {
   add(spec, "rtol 1e-12, stiffness damping on", false);
   spec.name = "implicit-midpoint";
   spec.step_s = 2.0 * M_PI / (32 * kSpin.norm());
-  spec.newton_rtol = sabotage == "loose-newton" ? 1e-4 : 1e-11;
+  spec.newton_rtol = fault == "loose-newton" ? 1e-4 : 1e-11;
   add(spec, "32 steps a turn, newton_rtol 1e-11, stiffness damping on", true);
 }
 
 /// Over random states: moment of all internal forces, and power of damping under a rigid spin, against what
 /// the same speeds cost in shear.
-void add_instantaneous(const std::string& sabotage, std::vector<Measurement>& out) {
-  Spinner s(sabotage);
+void add_instantaneous(const std::string& fault, std::vector<Measurement>& out) {
+  Spinner s(fault);
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto random = [&](Eigen::Index n) {
@@ -232,10 +232,10 @@ void add_instantaneous(const std::string& sabotage, std::vector<Measurement>& ou
                  .bar = 1e-12});
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
-  add_drifts(sabotage, out);
-  add_instantaneous(sabotage, out);
+  add_drifts(fault, out);
+  add_instantaneous(fault, out);
   return out;
 }
 
@@ -252,7 +252,7 @@ ValidationCase spinning_body() {
           "damping that is not objective brakes every turning body; relative equilibrium by Newton (Simo, "
           "Posbergh, Marsden 1990)",
       .run = run,
-      .sabotages = {"mass-damping", "rayleigh-damping", "rest-shape", "loose-newton", "continuous-shape"}};
+      .faults = {"mass-damping", "rayleigh-damping", "rest-shape", "loose-newton", "continuous-shape"}};
 }
 
 }  // namespace palpate::validation

@@ -49,7 +49,7 @@ std::vector<double> exact_omegas() {
 }
 
 /// Frequencies [rad/s] of the axial modes; NaN where none overlaps by more than 0.95.
-std::vector<double> found_omegas(int cells_along, bool consistent, const std::string& sabotage) {
+std::vector<double> found_omegas(int cells_along, bool consistent, const std::string& fault) {
   ModalBody bar;
   bar.rest =
       mesh::box(Vec3(kLength, kHalfWidth, kHalfWidth), {cells_along, cells_along / 8, cells_along / 8});
@@ -58,9 +58,9 @@ std::vector<double> found_omegas(int cells_along, bool consistent, const std::st
   fem::Material first, second;
   first.poissons_ratio = second.poissons_ratio = 0.0;
   first.youngs_modulus = kFirst.youngs_modulus;
-  second.youngs_modulus = sabotage == "one-stiffness" ? kFirst.youngs_modulus : kSecond.youngs_modulus;
+  second.youngs_modulus = fault == "one-stiffness" ? kFirst.youngs_modulus : kSecond.youngs_modulus;
   first.density = kFirst.density;
-  second.density = sabotage == "one-density" ? kFirst.density : kSecond.density;
+  second.density = fault == "one-density" ? kFirst.density : kSecond.density;
   bar.layers = fem::Materials({first, second}, {});
   for (const auto& tet : bar.rest.tets.colwise())
     bar.layers->of_element.push_back(bar.rest.nodes(0, tet).mean() > kBorder);
@@ -82,7 +82,7 @@ std::vector<double> found_omegas(int cells_along, bool consistent, const std::st
   return out;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   const std::vector<int> cells = {16, 24, 32, 48};  // the border lies between cells
   const std::vector<double> exact = exact_omegas();
   std::vector<Measurement> out;
@@ -91,7 +91,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
     std::vector<std::vector<double>> found;
     for (int n : cells) {
       h.push_back(kLength / n);
-      found.push_back(found_omegas(n, consistent, sabotage));
+      found.push_back(found_omegas(n, consistent, fault));
     }
     for (std::size_t n = 0; n < exact.size(); ++n) {
       std::vector<double> error;
@@ -123,7 +123,7 @@ ValidationCase two_material_bar() {
               "stiffness and mass of both materials, and what passes between them, against one-dimensional "
               "waves, whose solution is exact for nu = 0",
           .run = run,
-          .sabotages = {"one-stiffness", "one-density"}};
+          .faults = {"one-stiffness", "one-density"}};
 }
 
 }  // namespace palpate::validation

@@ -52,7 +52,7 @@ Decades decades(const dynamics::StepperTraits& traits, bool damped) {
 }
 
 Measurement slope(const VibratingBar& bar, const dynamics::StepperEntry& entry, bool damped,
-                  const std::string& sabotage) {
+                  const std::string& fault) {
   const VibrationTrial trial{
       .T = 2.0 * bar.period(), .looks = 8, .beta = damped ? 2.0 * kDampingRatio / bar.omega[0] : 0.0};
   const Decades range = decades(entry.traits, damped);
@@ -63,8 +63,8 @@ Measurement slope(const VibratingBar& bar, const dynamics::StepperEntry& entry, 
   for (int k = range.loosest; k <= range.tightest; ++k) {
     spec.rtol = std::pow(10.0, -k);
     tolerances.push_back(spec.rtol);
-    if (sabotage == "tolerance-ignored") spec.rtol = std::pow(10.0, -range.loosest);
-    errors.push_back(vibration_error(bar, spec, trial, sabotage));
+    if (fault == "tolerance-ignored") spec.rtol = std::pow(10.0, -range.loosest);
+    errors.push_back(vibration_error(bar, spec, trial, fault));
     table += fmt::format(" {:.1e}", errors.back());
   }
   return {.quantity = fmt::format("{}, {}: error at rtol 1e-{}", entry.name, damped ? "damped" : "undamped",
@@ -97,16 +97,16 @@ Measurement full_spectrum(const VibratingBar& bar, const dynamics::StepperEntry&
           .note = "reported, not barred: slope of the error against rtol, 1e-2 to 1e-5"};
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   using dynamics::Stability;
   using dynamics::StepControl;
   const VibratingBar bar, full(true);
   std::vector<Measurement> out;
   for (const auto& entry : integrate::stepper_registry()) {
     if (entry.traits.stability == Stability::kStatic || entry.traits.control == StepControl::kFixed) continue;
-    if (entry.traits.stability != Stability::kExplicit) out.push_back(slope(bar, entry, true, sabotage));
-    out.push_back(slope(bar, entry, false, sabotage));
-    if (sabotage.empty()) out.push_back(full_spectrum(full, entry));
+    if (entry.traits.stability != Stability::kExplicit) out.push_back(slope(bar, entry, true, fault));
+    out.push_back(slope(bar, entry, false, fault));
+    if (fault.empty()) out.push_back(full_spectrum(full, entry));
   }
   return out;
 }
@@ -124,7 +124,7 @@ ValidationCase vibration_tolerance() {
               "reference run",
           .slow = true,
           .run = run,
-          .sabotages = {"half-stiffness", "one-percent", "tolerance-ignored"}};
+          .faults = {"half-stiffness", "one-percent", "tolerance-ignored"}};
 }
 
 }  // namespace palpate::validation

@@ -32,12 +32,12 @@ double largest_stable(const std::string& scheme, double b) {
   return low;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
   const double m = desktop_tool("semi-implicit-euler").mass_kg;
   for (double b : {0.0, 40.0}) {
     const double exact = 4 * m / (kTick * kTick) - 2 * b / kTick;
-    const double found = largest_stable("semi-implicit-euler", sabotage == "forgotten-damping" ? 0.0 : b);
+    const double found = largest_stable("semi-implicit-euler", fault == "forgotten-damping" ? 0.0 : b);
     out.push_back({.quantity = fmt::format("semi-implicit-euler: largest stable k, b = {} N s/m [N/m]", b),
                    .computed = found,
                    .exact = exact,
@@ -45,7 +45,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
                    .bar = 0.02});
   }
   const std::string scheme =
-      sabotage == "explicit-as-implicit" ? "semi-implicit-euler" : "linearly-implicit-euler";
+      fault == "explicit-as-implicit" ? "semi-implicit-euler" : "linearly-implicit-euler";
   double unstable = 0;
   for (double k : {1e2, 1e4, 1e6, 1e8, 1e10, 1e12}) unstable += !bounded(scheme, k, 0.0);
   out.push_back({.quantity = "linearly-implicit-euler: unstable among k = 1e2 .. 1e12 N/m, b = 0 [count]",
@@ -67,7 +67,7 @@ ValidationCase coupling_limit() {
           "the stiffness of a virtual wall is bounded by the coupling's; which scheme bounds it, and where, "
           "must be known beforehand",
       .run = run,
-      .sabotages = {"forgotten-damping", "explicit-as-implicit"}};
+      .faults = {"forgotten-damping", "explicit-as-implicit"}};
 }
 
 }  // namespace palpate::validation

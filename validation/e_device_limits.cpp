@@ -20,7 +20,7 @@ Wrench careless(const Wrench& wanted, bool clip) {
               : wanted;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   std::mt19937 rng(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto vec = [&](double size) {
@@ -36,13 +36,13 @@ std::vector<Measurement> run(const std::string& sabotage) {
     Wrench wanted{vec(kTorque * std::pow(10.0, 6 * uniform(rng))),
                   vec(kForce * std::pow(10.0, 6 * uniform(rng)))};
     const bool valid = (i / 50) % 3 != 0;
-    if (uniform(rng) > 0.98 && sabotage != "componentwise-clip")
+    if (uniform(rng) > 0.98 && fault != "componentwise-clip")
       wanted.force.x() = std::numeric_limits<double>::quiet_NaN();
     if (valid && wanted.force.allFinite()) last_valid = t;
-    const Wrench out = sabotage == "no-limiter" ? careless(wanted, false)
-                       : sabotage == "componentwise-clip"
+    const Wrench out = fault == "no-limiter" ? careless(wanted, false)
+                       : fault == "componentwise-clip"
                            ? careless(wanted, true)
-                           : limiter.limit(t, wanted, valid || sabotage == "no-timeout");
+                           : limiter.limit(t, wanted, valid || fault == "no-timeout");
     not_finite += !(out.force.allFinite() && out.moment.allFinite());
     force = std::max({force, out.force.norm() / kForce, out.moment.norm() / kTorque});
     slew = std::max({slew, (out.force - before.force).norm() / (kForceSlew * dt),
@@ -84,7 +84,7 @@ ValidationCase device_limits() {
               "last valid pose",
           .why = "the last thing before motors that a person holds",
           .run = run,
-          .sabotages = {"no-limiter", "componentwise-clip", "no-timeout"}};
+          .faults = {"no-limiter", "componentwise-clip", "no-timeout"}};
 }
 
 }  // namespace palpate::validation

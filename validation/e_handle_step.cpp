@@ -19,25 +19,24 @@ struct Deviation {
 };
 
 template <class Exact>
-Deviation deviation(const std::string& scheme, const std::string& sabotage, int axis, double h, int ticks,
+Deviation deviation(const std::string& scheme, const std::string& fault, int axis, double h, int ticks,
                     Exact exact) {
   const ToolSpec spec = desktop_tool(scheme);
   const Oscillator turning{spec.inertia_kg_m2[axis], spec.coupling_rotational_damping_n_m_s_rad,
                            spec.coupling_rotational_stiffness_n_m_rad};
   const Oscillator shifting{spec.mass_kg, spec.coupling_damping_n_s_m, spec.coupling_stiffness_n_m};
   ToolSpec broken = spec;
-  if (sabotage == "half-stiffness")
+  if (fault == "half-stiffness")
     broken.coupling_stiffness_n_m *= 0.5, broken.coupling_rotational_stiffness_n_m_rad *= 0.5;
-  if (sabotage == "wrong-inertia-axis")
+  if (fault == "wrong-inertia-axis")
     broken.inertia_kg_m2 = Vec3(spec.inertia_kg_m2.z(), spec.inertia_kg_m2.x(), spec.inertia_kg_m2.y());
   const Vec3 e = Vec3::Unit(axis);
   const Pose there{quaternion_of(kTurn * e), kShift * e};
   tool::Tool body(broken, Vec3::Zero());
   Deviation out;
   for (int i = 1; i <= ticks; ++i) {
-    const Pose before = sabotage == "late-handle" && i == 1 ? Pose{} : there;
-    const Pose end =
-        sabotage == "late-handle" && i == 1 && scheme == "linearly-implicit-euler" ? Pose{} : there;
+    const Pose before = fault == "late-handle" && i == 1 ? Pose{} : there;
+    const Pose end = fault == "late-handle" && i == 1 && scheme == "linearly-implicit-euler" ? Pose{} : there;
     if (!body.advance(h, {before, end, {}, {}}, {}).ok()) return {NAN, NAN, NAN, NAN};
     const Vec6 d = pose_difference(there, body.pose());
     out.last_turn = std::abs(d.head<3>().dot(e) - exact(turning, -kTurn, i)) / kTurn;
@@ -48,10 +47,10 @@ Deviation deviation(const std::string& scheme, const std::string& sabotage, int 
   return out;
 }
 
-void measure_error_controlled(const std::string& scheme, const std::string& sabotage,
+void measure_error_controlled(const std::string& scheme, const std::string& fault,
                               std::vector<Measurement>& out) {
   constexpr double h = 1e-3;
-  const auto d = deviation(scheme, sabotage, 1, h, 100,
+  const auto d = deviation(scheme, fault, 1, h, 100,
                            [](const Oscillator& o, double y0, int i) { return o.at_time(y0, h * i); });
   out.push_back({.quantity = scheme + ": shift against the closed form, / shift",
                  .computed = d.shift,
@@ -63,10 +62,10 @@ void measure_error_controlled(const std::string& scheme, const std::string& sabo
                  .bar = 1e-6});
 }
 
-void measure_fixed(const std::string& scheme, const std::string& sabotage, std::vector<Measurement>& out) {
+void measure_fixed(const std::string& scheme, const std::string& fault, std::vector<Measurement>& out) {
   double turn = 0, shift = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto d = deviation(scheme, sabotage, axis, 1e-3, 200, [&](const Oscillator& o, double y0, int i) {
+    const auto d = deviation(scheme, fault, axis, 1e-3, 200, [&](const Oscillator& o, double y0, int i) {
       return o.after_ticks(scheme, y0, 1e-3, i);
     });
     turn = std::max(turn, d.turn), shift = std::max(shift, d.shift);
@@ -83,7 +82,7 @@ void measure_fixed(const std::string& scheme, const std::string& sabotage, std::
   constexpr double kEnd = 0.02;
   std::vector<double> ticks, turns, shifts;
   for (double h : {2e-4, 1e-4, 5e-5, 2.5e-5}) {
-    const auto d = deviation(scheme, sabotage, 2, h, static_cast<int>(std::lround(kEnd / h)),
+    const auto d = deviation(scheme, fault, 2, h, static_cast<int>(std::lround(kEnd / h)),
                              [&](const Oscillator& o, double y0, int i) { return o.at_time(y0, h * i); });
     ticks.push_back(h), turns.push_back(d.last_turn), shifts.push_back(d.last_shift);
   }
@@ -101,12 +100,12 @@ void measure_fixed(const std::string& scheme, const std::string& sabotage, std::
   first_order("turn", turns);
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
   for (const char* scheme : {"simbody-rkmerson", "simbody-cpodes"})
-    measure_error_controlled(scheme, sabotage, out);
+    measure_error_controlled(scheme, fault, out);
   for (const char* scheme : {"linearly-implicit-euler", "semi-implicit-euler"})
-    measure_fixed(scheme, sabotage, out);
+    measure_fixed(scheme, fault, out);
   return out;
 }
 
@@ -120,7 +119,7 @@ ValidationCase handle_step() {
               "what a user feels of the coupling is this response; a fixed tick must be off by its own "
               "closed form and by nothing else",
           .run = run,
-          .sabotages = {"half-stiffness", "wrong-inertia-axis", "late-handle"}};
+          .faults = {"half-stiffness", "wrong-inertia-axis", "late-handle"}};
 }
 
 }  // namespace palpate::validation

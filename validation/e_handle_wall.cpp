@@ -18,10 +18,8 @@ dynamics::LinearisedContact wall(double stiffness) {
   return record;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
-  const double stiffness = sabotage == "half-wall"      ? 0.5 * kWall
-                           : sabotage == "pulling-wall" ? -kWall
-                                                        : kWall;
+std::vector<Measurement> run(const std::string& fault) {
+  const double stiffness = fault == "half-wall" ? 0.5 * kWall : fault == "pulling-wall" ? -kWall : kWall;
   std::vector<Measurement> out;
   for (const auto& info : tool::tool_integrators()) {
     ToolSpec spec = desktop_tool(info.name);
@@ -31,7 +29,7 @@ std::vector<Measurement> run(const std::string& sabotage) {
     const Pose below{Quat::Identity(), Vec3(0, 0, -kDepth)};
     bool ok = true;
     for (int i = 0; ok && i < 300; ++i) ok = body.advance(1e-3, {below, below, {}, {}}, wall(stiffness)).ok();
-    const Pose felt = sabotage == "tool-as-proxy"
+    const Pose felt = fault == "tool-as-proxy"
                           ? Pose{Quat::Identity(), Vec3(0, 0, -kDepth) - body.pose().translation}
                           : below;
     const double force = ok ? body.wrench_on_hand(felt, {}).force.z() : NAN;
@@ -53,7 +51,7 @@ ValidationCase handle_below_wall() {
       .summary = "steady force of a handle held below a linear wall: coupling and wall in series",
       .why = "the force that a device renders is the wall's softened by the coupling, by exactly k K/(k + K)",
       .run = run,
-      .sabotages = {"half-wall", "pulling-wall", "tool-as-proxy"}};
+      .faults = {"half-wall", "pulling-wall", "tool-as-proxy"}};
 }
 
 }  // namespace palpate::validation

@@ -58,13 +58,13 @@ scene::Description press_block() {
   return d;
 }
 
-std::vector<Measurement> run(const std::string& sabotage) {
+std::vector<Measurement> run(const std::string& fault) {
   const scene::Description whole = press_block();
   scene::Description parts = whole;
-  if (sabotage == "half-contact-stiffness") parts.contacts[0].stiffness_pa_m *= 0.5;
-  if (sabotage == "late-handle")
+  if (fault == "half-contact-stiffness") parts.contacts[0].stiffness_pa_m *= 0.5;
+  if (fault == "late-handle")
     for (KeyframeSpec& key : parts.device->keyframes) key.time_s += 0.004;
-  if (sabotage == "heavy-tool") parts.tool->mass_kg *= 2.0;
+  if (fault == "heavy-tool") parts.tool->mass_kg *= 2.0;
   compare::ExchangeOptions options;
   options.truth = &whole;
   std::vector<double> periods, force, torque, position;
@@ -105,7 +105,7 @@ ValidationCase partitioned_monolithic() {
               "an exchange that lacks a part of the bodies' answer stays away from the truth at any period; "
               "the device force is only as good as this distance",
           .run = run,
-          .sabotages = {"half-contact-stiffness", "late-handle", "heavy-tool"}};
+          .faults = {"half-contact-stiffness", "late-handle", "heavy-tool"}};
 }
 
 }  // namespace palpate::validation

@@ -102,7 +102,7 @@ VecX VibratingBar::displacement(double t, double beta) const {
 double VibratingBar::norm(const VecX& d) const { return std::sqrt(d.dot(mass.cwiseProduct(d))); }
 
 double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, const VibrationTrial& trial,
-                       const std::string& sabotage) {
+                       const std::string& fault) {
   dynamics::State state;
   const double a = trial.amplitude > 0.0 ? trial.amplitude : 1.0;
   const int id = bar.insert(state, a);
@@ -112,9 +112,9 @@ double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, cons
     system.add(std::make_shared<fem::SoftBody>("bar", bar.rest, bar.material, fem::SoftBodyOptions{}, id));
   else
     system.add(std::make_shared<LinearBody>(bar.K, bar.q0, trial.beta,
-                                            sabotage == "half-stiffness" ? 0.5
-                                            : sabotage == "one-percent"  ? 1.01
-                                                                         : 1.0));
+                                            fault == "half-stiffness" ? 0.5
+                                            : fault == "one-percent"  ? 1.01
+                                                                      : 1.0));
   system.add(fem::make_lumped_mass(bar.rest, bar.material.density, id));
   system.add(fem::make_fixed(bar.clamped, bar.q0(bar.clamped)));
   system.prepare(state.view());

@@ -46,9 +46,9 @@ struct VibrationTrial {
   double amplitude = 0.0;
 };
 
-/// Mass-weighted relative error of q, RMS over the looks; NaN where the integrator gives up.  `sabotage`:
+/// Mass-weighted relative error of q, RMS over the looks; NaN where the integrator gives up.  `fault`:
 /// "half-stiffness", "one-percent".
 double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, const VibrationTrial& trial,
-                       const std::string& sabotage);
+                       const std::string& fault);
 
 }  // namespace palpate::validation

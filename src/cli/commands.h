@@ -44,7 +44,7 @@ int compare(const CompareArguments& arguments, Undelivered& missing);
 struct ValidateArguments {
   std::vector<std::string> cases;  ///< empty: all
   bool slow = false;               ///< the slow ones too, where no case is named
-  bool sabotage = false;           ///< break the physics of each case on purpose: every one must then fail
+  bool inject_faults = false;      ///< break the physics of each case on purpose: every one must then fail
   std::string folder;              ///< validation.json and report.html go here; empty: nowhere
 };
 int validate(const ValidateArguments& arguments);

@@ -158,14 +158,15 @@ void add_validate(CLI::App& app, Invocation& invocation) {
   auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("CASE", arguments->cases, "only these; see `palpate list cases`");
   command->add_flag("--slow", arguments->slow, "also the cases that take minutes");
-  command->add_flag("--sabotage", arguments->sabotage,
+  command->add_flag("--inject-faults", arguments->inject_faults,
                     "break the physics of each case on purpose: every one must then fail");
+  command->add_flag("--sabotage", arguments->inject_faults)->group("");  // its name before 0.1, not shown
   command->add_option("-o,--output", arguments->folder, "also write validation.json and report.html here")
       ->type_name("DIR");
   command->footer(R"(Examples:
   palpate validate
   palpate validate patch-test cantilever -o out/validation
-  palpate validate --sabotage                    shows that the cases can fail
+  palpate validate --inject-faults               shows that the cases can fail
 
 Exit status 0 when every measurement keeps its bar, else 1.)");
   command->callback([arguments, &invocation] {

@@ -98,10 +98,10 @@ void run_one(const ValidationCase& one, Run& out) {
 }
 
 /// A case that still passes with its physics broken is worthless.
-void run_sabotaged(const ValidationCase& one, Run& out) {
-  for (const std::string& sabotage : one.sabotages) {
-    const bool caught = !all_pass(one.run(sabotage));
-    out.rows.push_back({one.name, sabotage, caught ? "fails, as it must" : "STILL PASSES"});
+void run_with_faults(const ValidationCase& one, Run& out) {
+  for (const std::string& fault : one.faults) {
+    const bool caught = !all_pass(one.run(fault));
+    out.rows.push_back({one.name, fault, caught ? "fails, as it must" : "STILL PASSES"});
     if (!caught) ++out.failed;
   }
 }
@@ -126,19 +126,20 @@ int validate(const ValidateArguments& arguments) {
     for (const ValidationCase* one : cases) {
       if (stop_flag()) break;
       progress(static_cast<double>(done) / static_cast<double>(cases.size()), one->name);
-      arguments.sabotage ? run_sabotaged(*one, out) : run_one(*one, out);
+      arguments.inject_faults ? run_with_faults(*one, out) : run_one(*one, out);
       ++done;
     }
   }
   using Headers = std::vector<std::string>;
-  fmt::print("{}", report::format_table(arguments.sabotage ? Headers{"case", "sabotage", "outcome"}
-                                                           : Headers{"case", "quantity", "computed", "exact",
-                                                                     "error", "bar", "order", "verdict"},
-                                        out.rows));
+  fmt::print("{}",
+             report::format_table(arguments.inject_faults ? Headers{"case", "fault", "outcome"}
+                                                          : Headers{"case", "quantity", "computed", "exact",
+                                                                    "error", "bar", "order", "verdict"},
+                                  out.rows));
   Undelivered missing;
-  if (!arguments.folder.empty() && !arguments.sabotage) write_results(out, arguments.folder, missing);
+  if (!arguments.folder.empty() && !arguments.inject_faults) write_results(out, arguments.folder, missing);
   fmt::print("{} of {} cases {}{}\n", done - static_cast<std::size_t>(out.failed), done,
-             arguments.sabotage ? "fail when broken on purpose" : "keep their bars",
+             arguments.inject_faults ? "fail when broken on purpose" : "keep their bars",
              done < cases.size() ? fmt::format("; stopped before the other {}", cases.size() - done) : "");
   return missing.close(out.failed > 0 ? kExitError : 0);
 }

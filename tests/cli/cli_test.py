@@ -271,7 +271,7 @@ class Results(Cli):
         cases = json.loads((self.folder / "val/validation.json").read_text())["cases"]
         self.assertEqual([case["name"] for case in cases], ["rigid-motion"])
         self.assertTrue(all(m["passed"] for m in cases[0]["measurements"]))
-        self.assertIn("fails, as it must", self.good("validate", "rigid-motion", "--sabotage"))
+        self.assertIn("fails, as it must", self.good("validate", "rigid-motion", "--inject-faults"))
 
 
 NO_EGL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nowhere.json"}  # libglvnd then finds no driver

@@ -43,12 +43,12 @@ TEST_P(Case, MeetsItsBars) {
 }
 
 TEST_P(Case, FailsWhenItsPhysicsIsBroken) {
-  ASSERT_FALSE(GetParam().sabotages.empty()) << "a case that cannot fail is worthless";
-  for (const std::string& sabotage : GetParam().sabotages) {
-    const std::vector<Measurement> measurements = GetParam().run(sabotage);
+  ASSERT_FALSE(GetParam().faults.empty()) << "a case that cannot fail is worthless";
+  for (const std::string& fault : GetParam().faults) {
+    const std::vector<Measurement> measurements = GetParam().run(fault);
     EXPECT_TRUE(std::any_of(measurements.begin(), measurements.end(),
                             [](const Measurement& m) { return !m.passed(); }))
-        << "still passes with " << sabotage
+        << "still passes with " << fault
         << (measurements.empty() ? "" : "; first: " + text(measurements.front()));
   }
 }

@@ -27,10 +27,10 @@ struct ValidationCase {
   std::string summary;  ///< one line: what is measured
   std::string why;      ///< why it matters, and the source of the exact answer
   bool slow = false;    ///< minutes; ctest label `slow`
-  /// Runs it.  `sabotage` is empty, or one of `sabotages`: the physics broken on purpose, and then at least
+  /// Runs it.  `fault` is empty, or one of `faults`: the physics broken on purpose, and then at least
   /// one measurement must fail.
-  std::vector<Measurement> (*run)(const std::string& sabotage) = nullptr;
-  std::vector<std::string> sabotages;  ///< at least one
+  std::vector<Measurement> (*run)(const std::string& fault) = nullptr;
+  std::vector<std::string> faults;  ///< at least one
 };
 
 /// Observed order: least-squares slope of log(error) against log(h).
