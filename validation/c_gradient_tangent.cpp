@@ -20,7 +20,7 @@ struct Shape {
   double step;  ///< largest h; smaller where the mesh is fine
 };
 
-Mat3 turned(const Vec3& stretches) {
+Mat3 rotated(const Vec3& stretches) {
   return quaternion_of(Vec3(0.4, -1.1, 0.7)).toRotationMatrix() * stretches.asDiagonal() *
          quaternion_of(Vec3(-0.8, 0.3, 1.2)).toRotationMatrix();
 }
@@ -32,12 +32,12 @@ std::vector<Shape> shapes() {
                                                 {"one element, flat", {1.1, 0.8, 0.0}},
                                                 {"one element, inverted", {1.3, 0.9, -0.4}}};
   for (const auto& [name, stretches] : kinds)
-    out.push_back({name, tet, (turned(stretches) * tet.nodes).reshaped(), 1e-2});
+    out.push_back({name, tet, (rotated(stretches) * tet.nodes).reshaped(), 1e-2});
   const TetMesh cube = mesh::perturbed(mesh::box(Vec3::Ones(), {3, 3, 3}), 0.2, 13);
   std::mt19937 engine(14);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  VecX x = (turned({1.1, 1.0, 0.9}) * cube.nodes).reshaped();
-  out.push_back({"mesh, sheared and turned", cube, x, 2e-3});
+  VecX x = (rotated({1.1, 1.0, 0.9}) * cube.nodes).reshaped();
+  out.push_back({"mesh, sheared and rotated", cube, x, 2e-3});
   for (auto& value : x) value += 0.15 * uniform(engine);
   out.push_back({"mesh, nodes scattered, elements inverted", cube, x, 1e-4});
   return out;

@@ -71,7 +71,7 @@ ValidationCase rigid_motion() {
       .section = "C",
       .summary = "any rotation and translation: no force, no energy, no damping",
       .why =
-          "small-strain elasticity fails it by design: a turned body swells; the corotated energy must not",
+          "small-strain elasticity fails it by design: a rotated body swells; the corotated energy must not",
       .run = run,
       .faults = {"small-strain"}};
 }

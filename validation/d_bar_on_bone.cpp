@@ -95,8 +95,8 @@ ValidationCase bar_on_bone() {
               "a bar vibrates along its axis against a free bone at its end: frequency against tan(kL) = "
               "-(m_b/m) kL, order in the element size",
           .why =
-              "momentum goes from flesh to bone and back at the right rate, also where the bone is a "
-              "thousandth of the flesh (Timoshenko 1937)",
+              "momentum goes from tissue to bone and back at the right rate, also where the bone is a "
+              "thousandth of the tissue (Timoshenko 1937)",
           .run = run,
           .faults = {"half-stiffness", "light-bone", "no-bone"}};
 }

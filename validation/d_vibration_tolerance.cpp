@@ -54,7 +54,7 @@ Decades decades(const dynamics::StepperTraits& traits, bool damped) {
 Measurement slope(const VibratingBar& bar, const dynamics::StepperEntry& entry, bool damped,
                   const std::string& fault) {
   const VibrationTrial trial{
-      .T = 2.0 * bar.period(), .looks = 8, .beta = damped ? 2.0 * kDampingRatio / bar.omega[0] : 0.0};
+      .T = 2.0 * bar.period(), .samples = 8, .beta = damped ? 2.0 * kDampingRatio / bar.omega[0] : 0.0};
   const Decades range = decades(entry.traits, damped);
   IntegratorSpec spec;
   spec.name = entry.name;
@@ -87,7 +87,7 @@ Measurement full_spectrum(const VibratingBar& bar, const dynamics::StepperEntry&
   for (int k = 2; k <= 5; ++k) {
     spec.rtol = std::pow(10.0, -k);
     tolerances.push_back(spec.rtol);
-    errors.push_back(vibration_error(bar, spec, {.T = 2.0 * bar.period(), .looks = 8}, ""));
+    errors.push_back(vibration_error(bar, spec, {.T = 2.0 * bar.period(), .samples = 8}, ""));
   }
   return {.quantity = entry.name + ", undamped full spectrum: error at rtol 1e-5",
           .computed = errors.back(),

@@ -66,7 +66,7 @@ std::vector<Measurement> run(const std::string& fault) {
     for (KeyframeSpec& key : parts.device->keyframes) key.time_s += 0.004;
   if (fault == "heavy-tool") parts.tool->mass_kg *= 2.0;
   compare::ExchangeOptions options;
-  options.truth = &whole;
+  options.reference = &whole;
   std::vector<double> periods, force, torque, position;
   std::string table;
   for (const compare::ExchangePoint& point : compare::compare_exchange(parts, options)) {
@@ -97,15 +97,16 @@ std::vector<Measurement> run(const std::string& fault) {
 }  // namespace
 
 ValidationCase partitioned_monolithic() {
-  return {.name = "partitioned-monolithic",
-          .section = "E",
-          .summary =
-              "a block pressed in two rates tends to the same as one system as the exchange period shrinks",
-          .why =
-              "an exchange that lacks a part of the bodies' answer stays away from the truth at any period; "
-              "the device force is only as good as this distance",
-          .run = run,
-          .faults = {"half-contact-stiffness", "late-handle", "heavy-tool"}};
+  return {
+      .name = "partitioned-monolithic",
+      .section = "E",
+      .summary =
+          "a block pressed in two rates tends to the same as one system as the exchange period shrinks",
+      .why =
+          "an exchange that lacks a part of the bodies' answer stays away from the reference at any period; "
+          "the device force is only as good as this distance",
+      .run = run,
+      .faults = {"half-contact-stiffness", "late-handle", "heavy-tool"}};
 }
 
 }  // namespace palpate::validation

@@ -120,14 +120,14 @@ double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, cons
   system.prepare(state.view());
   const auto stepper = integrate::make_stepper(system, state, spec);
   double sum = 0.0;
-  for (int i = 1; i <= trial.looks; ++i) {
-    const double t = trial.T * i / trial.looks;
+  for (int i = 1; i <= trial.samples; ++i) {
+    const double t = trial.T * i / trial.samples;
     if (!stepper->advance_to(t).ok()) return std::nan("");
     sum += std::pow(bar.norm((state.q() - bar.q0) / a - bar.displacement(t, trial.beta)) /
                         bar.norm(bar.displacement(0.0, 0.0)),
                     2);
   }
-  return std::sqrt(sum / trial.looks);
+  return std::sqrt(sum / trial.samples);
 }
 
 }  // namespace palpate::validation

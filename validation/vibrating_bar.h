@@ -39,14 +39,14 @@ struct VibratingBar {
 
 struct VibrationTrial {
   double T = 0.0;     ///< [s]
-  int looks = 1;      ///< times at which the error is taken, the last at T
+  int samples = 1;    ///< times at which the error is taken, the last at T
   double beta = 0.0;  ///< stiffness damping [s]
   /// 0: the linear body at amplitude 1, so that no rounding hides a small error; else the corotational one
   /// [m]
   double amplitude = 0.0;
 };
 
-/// Mass-weighted relative error of q, RMS over the looks; NaN where the integrator gives up.  `fault`:
+/// Mass-weighted relative error of q, RMS over the samples; NaN where the integrator gives up.  `fault`:
 /// "half-stiffness", "one-percent".
 double vibration_error(const VibratingBar& bar, const IntegratorSpec& spec, const VibrationTrial& trial,
                        const std::string& fault);

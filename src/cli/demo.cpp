@@ -14,7 +14,7 @@ int demo(const DemoArguments& arguments) {
   Undelivered missing;
   if (const int status = run(touch, missing); status != 0) return missing.close(status);
 
-  fmt::print("\nThe same touch by each integrator: how far from the truth, at what price?\n\n");
+  fmt::print("\nThe same touch by each integrator: how far from the reference, at what price?\n\n");
   CompareArguments price;
   price.scenes = {touch.scene.scene};
   price.folder = arguments.folder;

@@ -49,7 +49,7 @@ void Snapshot::save(const loop::World& world, const std::string& path) const {
     scene.surfaces.push_back(
         {world.bodies[i].name, bodies_[i].points, world.bodies[i].surface_faces(), bodies_[i].values});
   if (!bones_.empty())
-    for (render::Surface& flesh : scene.surfaces) flesh.opacity = 0.55;
+    for (render::Surface& tissue : scene.surfaces) tissue.opacity = 0.55;
   for (std::size_t i = 0; i < bones_.size(); ++i) {
     const TriMesh& shape = world.bones[i].surface;
     if (shape.vertices.cols() == 0) continue;

@@ -107,7 +107,8 @@ class Study {
     const SceneWork& scene = ledger_.work[task.scene];
     const double limit_s = ledger_.limit_of(task);
     switch (task.kind) {
-      case Task::Kind::kTruth: return order_of(WorkKind::kReference, scene.planned.truth, limit_s, nullptr);
+      case Task::Kind::kPrimary:
+        return order_of(WorkKind::kReference, scene.planned.primary, limit_s, nullptr);
       case Task::Kind::kCheck: return order_of(WorkKind::kReference, scene.planned.check, limit_s, nullptr);
       case Task::Kind::kExchange: return order_of(WorkKind::kExchange, scene.description, limit_s, nullptr);
       case Task::Kind::kMethods: return order_of(WorkKind::kMethods, scene.description, limit_s, nullptr);

@@ -54,11 +54,11 @@ std::vector<ExchangePoint> compare_exchange(const scene::Description& d, const E
   const std::vector<double>& periods = d.compare.exchange_periods_s;
   const double refresh = common_refresh(periods),
                shortest = *std::min_element(periods.begin(), periods.end());
-  const scene::Description& whole = options.truth ? *options.truth : d;
-  const Run truth =
+  const scene::Description& whole = options.reference ? *options.reference : d;
+  const Run reference =
       run_once(with_scheme(whole, "monolithic", shortest, refresh), d.compare.duration_s, options.stop);
-  if (truth.result.stopped) return out;
-  const bool comparable = truth.result.status.ok();
+  if (reference.result.stopped) return out;
+  const bool comparable = reference.result.status.ok();
   done("monolithic");
   for (double period : periods) {
     if (options.stop && options.stop->load()) return out;
@@ -68,10 +68,10 @@ std::vector<ExchangePoint> compare_exchange(const scene::Description& d, const E
     if (run.result.stopped) return out;
     std::string trouble;
     if (!comparable)
-      trouble = "the monolithic run failed: " + truth.result.status.message;
+      trouble = "the monolithic run failed: " + reference.result.status.message;
     else if (!run.result.status.ok())
       trouble = run.result.status.message.empty() ? "the run failed" : run.result.status.message;
-    out.push_back({period, trouble.empty() ? distance(run.trajectory, truth.trajectory) : no_distance(),
+    out.push_back({period, trouble.empty() ? distance(run.trajectory, reference.trajectory) : no_distance(),
                    run.result.cpu_s, trouble});
   }
   return out;

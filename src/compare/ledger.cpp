@@ -16,28 +16,28 @@ Ledger::Ledger(const std::vector<scene::Description>& scenes, const CompareOptio
 void Ledger::plan(const scene::Description& d) {
   SceneWork own;
   own.description = with_overrides(d, {});  // the text alone decides
-  SceneComparison told;
-  told.scene = d.name;
-  told.path = d.path;
-  told.tool = d.tool.has_value();
-  told.points = plan_points(own.description, options_);
-  told.restarts = plan_restarts(own.description, options_);
-  own.planned = plan_reference(own.description, told.points);
-  own.truth_key = result_key(own.planned.truth, "reference");
+  SceneComparison comparison;
+  comparison.scene = d.name;
+  comparison.path = d.path;
+  comparison.tool = d.tool.has_value();
+  comparison.points = plan_points(own.description, options_);
+  comparison.restarts = plan_restarts(own.description, options_);
+  own.planned = plan_reference(own.description, comparison.points);
+  own.primary_key = result_key(own.planned.primary, "reference");
   own.check_key = result_key(own.planned.check, "reference");
-  for (const ComparePoint& p : told.points)
-    own.point_keys.push_back(result_key(p.description, "point " + own.truth_key + own.check_key));
-  for (const ComparePoint& p : told.restarts)
+  for (const ComparePoint& p : comparison.points)
+    own.point_keys.push_back(result_key(p.description, "point " + own.primary_key + own.check_key));
+  for (const ComparePoint& p : comparison.restarts)
     own.restart_keys.push_back(result_key(p.description, "restart"));
   work.push_back(std::move(own));
-  out.scenes.push_back(std::move(told));
+  out.scenes.push_back(std::move(comparison));
 }
 
 // References; the ladders' first rungs, then their second ones, over all scenes; further charts; repeats.
 void Ledger::add_tasks() {
   std::size_t most = 0;
   for (std::size_t s = 0; s < work.size(); ++s) {
-    tasks.push_back({Task::Kind::kTruth, s});
+    tasks.push_back({Task::Kind::kPrimary, s});
     tasks.push_back({Task::Kind::kCheck, s});
     for (std::size_t p = 0; p < out.scenes[s].points.size(); ++p) most = std::max(most, rung(s, p) + 1);
   }
@@ -83,7 +83,7 @@ std::string Ledger::artefact_key(const Task& task) const {
   const SceneWork& own = work[task.scene];
   const scene::CompareSpec& c = own.description.compare;
   switch (task.kind) {
-    case Task::Kind::kTruth: return own.truth_key;
+    case Task::Kind::kPrimary: return own.primary_key;
     case Task::Kind::kCheck: return own.check_key;
     case Task::Kind::kExchange:
       return result_key(own.description, fmt::format("exchange {}", fmt::join(c.exchange_periods_s, " ")));

@@ -9,22 +9,22 @@ namespace palpate::compare {
 
 /// One run that is to be made.
 struct Task {
-  enum class Kind { kTruth, kCheck, kPoint, kRestart, kExchange, kMethods };
+  enum class Kind { kPrimary, kCheck, kPoint, kRestart, kExchange, kMethods };
   Kind kind;
   std::size_t scene, point = 0;
   int repeat = 0;
   bool looked = false, started = false, done = false;  ///< looked: into the database
 
   bool is_point() const { return kind == Kind::kPoint || kind == Kind::kRestart; }
-  bool is_reference() const { return kind == Kind::kTruth || kind == Kind::kCheck; }
+  bool is_reference() const { return kind == Kind::kPrimary || kind == Kind::kCheck; }
 };
 
 /// A scene on its way.
 struct SceneWork {
   scene::Description description;
   PlannedReference planned;
-  std::string truth_key, check_key;
-  ReferenceRun truth, check;
+  std::string primary_key, check_key;
+  ReferenceRun primary, check;
   const Trajectory* reference = nullptr;  ///< what points are held against
   ReferenceUsed reference_used = ReferenceUsed::kNone;
   bool reference_settled = false;
@@ -60,7 +60,7 @@ class Ledger {
   /// False of a chart that lacks something: what was missing (a library, a display) may be there today, and
   /// it is made again.
   static bool is_whole(const Task& task, const store::StudyArtefact& kept);
-  /// Once a scene's two reference runs have ended: what is the truth, and how far can it be trusted?
+  /// Once a scene's two reference runs have ended: which is the reference, and how far can it be trusted?
   void settle_references();
   /// Medians, marks and words, once nothing is left to run.  @param jobs  that ran side by side
   void finish(int jobs);

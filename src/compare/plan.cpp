@@ -213,7 +213,7 @@ PlannedReference plan_reference(const scene::Description& d, const std::vector<C
     };
     out.made_by = fmt::format("simbody-rkmerson at ticks of {:g} s", 0.5 * finest);
     out.checked_by = "simbody-cpodes at the same";
-    out.truth = made("simbody-rkmerson");
+    out.primary = made("simbody-rkmerson");
     out.check = made("simbody-cpodes");
     return out;
   }
@@ -226,7 +226,7 @@ PlannedReference plan_reference(const scene::Description& d, const std::vector<C
     ladder.integrator = integrator;
     return with_overrides(d, overrides_of(ladder, rtol));
   };
-  out.truth = made(c.reference, c.reference_rtol);
+  out.primary = made(c.reference, c.reference_rtol);
   out.check = made(c.reference_check, c.reference_check_rtol);
   out.made_by = fmt::format("{} at rtol {:g}", c.reference, c.reference_rtol);
   out.checked_by = fmt::format("{} at rtol {:g}", c.reference_check, c.reference_check_rtol);

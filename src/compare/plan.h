@@ -20,7 +20,7 @@ std::vector<ComparePoint> plan_restarts(const scene::Description& description, c
 /// integrators, at a tick finer than any rung.
 struct PlannedReference {
   std::string made_by, checked_by;  ///< with tolerance, in words
-  scene::Description truth, check;
+  scene::Description primary, check;
 };
 PlannedReference plan_reference(const scene::Description& description,
                                 const std::vector<ComparePoint>& points);

@@ -41,8 +41,8 @@ void Ledger::take(const Task& task, const store::StudyRun& row) {
 
 void Ledger::take(const Task& task, const store::StudyArtefact& kept) {
   SceneWork& own = work[task.scene];
-  if (task.kind == Task::Kind::kTruth)
-    own.truth = reference_run_of(kept);
+  if (task.kind == Task::Kind::kPrimary)
+    own.primary = reference_run_of(kept);
   else if (task.kind == Task::Kind::kCheck)
     own.check = reference_run_of(kept);
   else
@@ -50,23 +50,23 @@ void Ledger::take(const Task& task, const store::StudyArtefact& kept) {
 }
 
 void Ledger::take_chart(const Task& task, const store::StudyArtefact& kept) {
-  SceneComparison& told = out.scenes[task.scene];
+  SceneComparison& comparison = out.scenes[task.scene];
   const bool exchange = task.kind == Task::Kind::kExchange;
   const auto note = [&](const std::string& of, const std::string& why) {
-    told.missing_charts.push_back({of, why});
+    comparison.missing_charts.push_back({of, why});
   };
   if (kept.status != "ok") {
     note(exchange ? "the exchange period" : "the contact methods", kept.reason);
   } else if (exchange) {
-    told.exchange = exchange_of(kept.bytes);
-    for (const ExchangePoint& point : told.exchange)
+    comparison.exchange = exchange_of(kept.bytes);
+    for (const ExchangePoint& point : comparison.exchange)
       if (!point.trouble.empty())
         note(fmt::format("the exchange period at {:g} s", point.exchange_period_s), point.trouble);
   } else {
-    told.methods = methods_of(kept.bytes);
-    for (const MethodPoint& point : told.methods)
+    comparison.methods = methods_of(kept.bytes);
+    for (const MethodPoint& point : comparison.methods)
       if (!point.trouble.empty()) note(fmt::format("the contact method \"{}\"", point.method), point.trouble);
-    std::erase_if(told.methods, [](const MethodPoint& point) { return !point.trouble.empty(); });
+    std::erase_if(comparison.methods, [](const MethodPoint& point) { return !point.trouble.empty(); });
   }
 }
 
@@ -87,10 +87,10 @@ void Ledger::settle_references() {
     SceneWork& own = work[s];
     if (own.reference_settled || !reference_tasks_done(s)) continue;
     own.reference_settled = true;
-    out.scenes[s].reference = settle(own.planned, own.truth, own.check);
+    out.scenes[s].reference = settle(own.planned, own.primary, own.check);
     if (!out.scenes[s].reference.available) continue;
-    own.reference_used = own.truth.run ? ReferenceUsed::kTruth : ReferenceUsed::kCheck;
-    own.reference = own.truth.run ? &own.truth.run->trajectory : &own.check.run->trajectory;
+    own.reference_used = own.primary.run ? ReferenceUsed::kPrimary : ReferenceUsed::kCheck;
+    own.reference = own.primary.run ? &own.primary.run->trajectory : &own.check.run->trajectory;
   }
 }
 

@@ -31,13 +31,13 @@ PointRun run_point(const scene::Description& d, double limit_s, const Trajectory
   return out;
 }
 
-Reference settle(const PlannedReference& planned, const ReferenceRun& truth, const ReferenceRun& check) {
+Reference settle(const PlannedReference& planned, const ReferenceRun& primary, const ReferenceRun& check) {
   Reference out;
-  out.available = truth.run || check.run;
-  if (truth.run && check.run) {
+  out.available = primary.run || check.run;
+  if (primary.run && check.run) {
     out.description = fmt::format("{}, checked against {}", planned.made_by, planned.checked_by);
-    out.own_error = distance(check.run->trajectory, truth.run->trajectory);
-  } else if (truth.run) {
+    out.own_error = distance(check.run->trajectory, primary.run->trajectory);
+  } else if (primary.run) {
     out.description = planned.made_by + ", not checked";
     out.trouble = fmt::format("the check by {} failed ({}): the reference's own error is not known",
                               planned.checked_by, check.trouble);
@@ -46,14 +46,14 @@ Reference settle(const PlannedReference& planned, const ReferenceRun& truth, con
     out.trouble = fmt::format(
         "the reference by {} failed ({}): what was to check it took its place, and its own error is not "
         "known",
-        planned.made_by, truth.trouble);
+        planned.made_by, primary.trouble);
   } else {
     out.description = "none";
     out.trouble = fmt::format(
         "there is no reference: {} failed ({}), and so did {} ({}); the points have costs, but no errors",
-        planned.made_by, truth.trouble, planned.checked_by, check.trouble);
+        planned.made_by, primary.trouble, planned.checked_by, check.trouble);
   }
-  if (out.available) out.cpu_s = (truth.run ? truth : check).run->result.cpu_s;
+  if (out.available) out.cpu_s = (primary.run ? primary : check).run->result.cpu_s;
   return out;
 }
 

@@ -17,8 +17,8 @@ struct ReferenceRun {
   std::string trouble;
 };
 
-/// What is the truth, and how far can it be trusted?  The run that was to check takes the place of one that
-/// failed.
-Reference settle(const PlannedReference& planned, const ReferenceRun& truth, const ReferenceRun& check);
+/// Which run is the reference, and how far can it be trusted?  The run that was to check takes the place of
+/// one that failed.
+Reference settle(const PlannedReference& planned, const ReferenceRun& primary, const ReferenceRun& check);
 
 }  // namespace palpate::compare

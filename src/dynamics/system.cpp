@@ -48,9 +48,9 @@ void System::events(const StateView& state, double* g) const {
   }
 }
 
-std::pair<Finding, std::string> System::inspect(const StateView& state) const {
+std::pair<Diagnostic, std::string> System::inspect(const StateView& state) const {
   for (const auto& term : terms_)
-    if (const Finding found = term->inspect(state); found.element >= 0)
+    if (const Diagnostic found = term->inspect(state); found.element >= 0)
       return {found, std::string(term->name())};
   return {};
 }

@@ -171,9 +171,9 @@ dynamics::TermTraits SoftBody::traits() const {
 void SoftBody::project_to_psd(bool on) { impl_->definite = on; }
 bool SoftBody::fuses_step() const { return !impl_->by_position(); }
 
-dynamics::Finding SoftBody::inspect(const StateView& state) const {
+dynamics::Diagnostic SoftBody::inspect(const StateView& state) const {
   const NodeBlock at = impl_->block(state);
-  dynamics::Finding worst;
+  dynamics::Diagnostic worst;
   impl_->elements.chunks().for_each([&](const ElementChunks::Element& e) {
     const double volume_ratio = (e.edges(at.x) * e.gradients).determinant();
     if (volume_ratio < worst.measure || (volume_ratio == worst.measure && e.number > worst.element))

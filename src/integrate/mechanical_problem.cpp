@@ -128,7 +128,7 @@ int MechanicalProblem::dof_of(int i) const {
   return -1;
 }
 
-std::pair<dynamics::Finding, std::string> MechanicalProblem::inspect(double t, const double* y) {
+std::pair<dynamics::Diagnostic, std::string> MechanicalProblem::inspect(double t, const double* y) {
   return system_.inspect(view(t, y));
 }
 

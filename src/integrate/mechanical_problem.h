@@ -43,7 +43,7 @@ class MechanicalProblem final : public OdeProblem {
   std::uint64_t events_version() const override { return system_.events_version(); }
   void events(double t, const double* y, double* g) override;
   int dof_of(int i) const override;
-  std::pair<dynamics::Finding, std::string> inspect(double t, const double* y) override;
+  std::pair<dynamics::Diagnostic, std::string> inspect(double t, const double* y) override;
   dynamics::StepperCounters& counters() override { return counters_; }
   void collect_solver_counters() override;
 

@@ -59,7 +59,9 @@ class OdeProblem {
 
   /// For traces: the entry of u that entry i of y belongs to (-1: none), and what is inside out at y.
   virtual int dof_of(int /*i*/) const { return -1; }
-  virtual std::pair<dynamics::Finding, std::string> inspect(double /*t*/, const double* /*y*/) { return {}; }
+  virtual std::pair<dynamics::Diagnostic, std::string> inspect(double /*t*/, const double* /*y*/) {
+    return {};
+  }
 
   virtual dynamics::StepperCounters& counters() = 0;
   /// Brings the linear solver's counts into counters().

@@ -21,16 +21,16 @@ fem::Path path_of(const BoneSpec& spec) {
   };
 }
 
-/// Errors are asked for in the units of the flesh that it carries: an error in its turn counts as that of a
+/// Errors are asked for in the units of the tissue that it carries: an error in its turn counts as that of a
 /// node a body's size away.
 dynamics::BlockSpec block_of(const World& world, const BoneSpec& spec) {
   double length = 0.0, speed = 0.0;
   for (std::size_t i = 0; i < world.bodies.size(); ++i)
     for (const AttachmentSpec& attachment : world.description.bodies[i].attachments) {
       if (attachment.to != spec.name) continue;
-      const dynamics::Block& flesh = *world.state.layout().find(world.bodies[i].block_id);
-      length = std::max(length, flesh.q_scale);
-      speed = std::max(speed, flesh.u_scale);
+      const dynamics::Block& tissue = *world.state.layout().find(world.bodies[i].block_id);
+      length = std::max(length, tissue.q_scale);
+      speed = std::max(speed, tissue.u_scale);
     }
   if (length == 0.0) fail("bone \"{}\": carries nothing: give a body an attachment to it", spec.name);
   return dynamics::rigid_block(spec.name, length, speed);

@@ -7,9 +7,9 @@
 
 #include "palpate/tool/bone_tree.h"
 
-// Bones of a model file.  Each hangs on its parent by a joint at its head, a root on the world.  A bone is
-// told how to move where everything from it up to the world is welded or has keyframes: then it is a function
-// of time, and costs no unknown.  All others of a body are one tree in reduced coordinates.
+// Bones of a model file.  Each hangs on its parent by a joint at its head, a root on the world.  A bone
+// has a prescribed motion where everything from it up to the world is welded or has keyframes: then it is a
+// function of time, and costs no unknown.  All others of a body are one tree in reduced coordinates.
 
 namespace palpate::loop {
 namespace {
@@ -20,8 +20,8 @@ struct Entry {
   const JointSpec* own = nullptr;  ///< the scene's table about its joint; null: none
   std::string type;                ///< of its joint
   fem::TaperedBone shape;
-  Pose start;                        ///< of its own frame
-  bool told = false, moves = false;  ///< a function of time; and not a constant one
+  Pose start;                              ///< of its own frame
+  bool prescribed = false, moves = false;  ///< a function of time; and not a constant one
   fem::Path path;
   int in_tree = -1;
 };
@@ -47,15 +47,15 @@ std::vector<Entry> entries_of(const Body& body, const SoftBodySpec& spec) {
     entry.start = entry.shape.frame;
     const bool scripted = entry.own && !entry.own->keyframes.empty();
     const Entry* parent = bone.parent < 0 ? nullptr : &out[static_cast<std::size_t>(bone.parent)];
-    entry.told = (scripted || entry.type == "weld") && (!parent || parent->told);
-    entry.moves = entry.told && (scripted || (parent && parent->moves));
+    entry.prescribed = (scripted || entry.type == "weld") && (!parent || parent->prescribed);
+    entry.moves = entry.prescribed && (scripted || (parent && parent->moves));
     const std::string where = fmt::format("body \"{}\": joint of \"{}\"", spec.name, bone.name);
-    if (scripted && !entry.told)
+    if (scripted && !entry.prescribed)
       fail(
           "{}: it has keyframes, but \"{}\", which it hangs on, moves freely; give keyframes or weld all the "
           "way up to the root",
           where, parent->bone->name);
-    if (!entry.told && parent && parent->moves)
+    if (!entry.prescribed && parent && parent->moves)
       fail(
           "{}: a bone that moves freely cannot hang on \"{}\", which moves by keyframes; weld one of the two",
           where, parent->bone->name);
@@ -92,7 +92,7 @@ tool::TreeBone tree_bone(const Entry& entry, const SoftBodySpec& spec, const std
   const SkeletonSpec& skeleton = *spec.skeleton;
   tool::TreeBone bone;
   bone.name = entry.bone->name;
-  // -1 where that is told, and stands still
+  // -1 where that has a prescribed motion, and stands still
   if (entry.bone->parent >= 0) bone.parent = all[static_cast<std::size_t>(entry.bone->parent)].in_tree;
   bone.joint = entry.type == "hinge"  ? tool::Joint::kHinge
                : entry.type == "ball" ? tool::Joint::kBall
@@ -110,13 +110,13 @@ tool::TreeBone tree_bone(const Entry& entry, const SoftBodySpec& spec, const std
   return bone;
 }
 
-/// The tree of all that is not told; -1 and null where everything is.
+/// The tree of all that is not prescribed; -1 and null where everything is.
 std::pair<int, std::shared_ptr<const tool::BoneTree>> add_tree(World& world, const Body& body,
                                                                const SoftBodySpec& spec,
                                                                std::vector<Entry>& entries) {
   std::vector<tool::TreeBone> bones;
   for (Entry& entry : entries) {
-    if (entry.told) continue;
+    if (entry.prescribed) continue;
     entry.in_tree = static_cast<int>(bones.size());
     if (entry.type == "free" && entry.bone->parent >= 0)
       fail(
@@ -126,17 +126,17 @@ std::pair<int, std::shared_ptr<const tool::BoneTree>> add_tree(World& world, con
     if (!(spec.skeleton->density_kg_m3 > 0.0))
       fail(
           "body \"{}\": skeleton: density_kg_m3 is missing: \"{}\" moves freely; bone has about 800 kg/m^3 "
-          "more than the flesh that its nodes weigh",
+          "more than the tissue that its nodes weigh",
           spec.name, entry.bone->name);
     bones.push_back(tree_bone(entry, spec, entries));
   }
   if (bones.empty()) return {-1, nullptr};
   const auto tree = std::make_shared<const tool::BoneTree>(std::move(bones), world.description.gravity_m_s2);
-  const dynamics::Block flesh = *world.state.layout().find(body.block_id);
+  const dynamics::Block tissue = *world.state.layout().find(body.block_id);
   const Vec3 centre = body.placed * body.masses / body.masses.sum();
-  const int id =
-      world.state.insert(tree->block("skeleton of " + spec.name, flesh.q_scale, flesh.u_scale), tree->start(),
-                         tree->rigid_start(spec.velocity_m_s, spec.angular_velocity_rad_s, centre));
+  const int id = world.state.insert(
+      tree->block("skeleton of " + spec.name, tissue.q_scale, tissue.u_scale), tree->start(),
+      tree->rigid_start(spec.velocity_m_s, spec.angular_velocity_rad_s, centre));
   world.system.add(tool::make_tree_inertia(id, tree));
   world.system.add(tool::make_tree_force(id, tree));
   return {id, tree};
@@ -147,7 +147,7 @@ void assemble_skeleton(World& world, int index) {
   const SoftBodySpec& spec = world.description.bodies[static_cast<std::size_t>(index)];
   std::vector<Entry> entries = entries_of(body, spec);
   for (Entry& entry : entries) {
-    if (!entry.told) continue;
+    if (!entry.prescribed) continue;
     const Entry* parent =
         entry.bone->parent < 0 ? nullptr : &entries[static_cast<std::size_t>(entry.bone->parent)];
     entry.path = told_path({entry.start, entry.bone->head, quaternion_of(spec.rotation_vector_rad),
@@ -164,16 +164,16 @@ void assemble_skeleton(World& world, int index) {
     bone.surface = fem::tapered_bone_surface(*entry.bone);
     bone.dofs = load.dofs;
     bone.path = entry.path;
-    if (!entry.told) {
+    if (!entry.prescribed) {
       bone.block_id = block_id;
       bone.tree = tree;
       bone.tree_bone = entry.in_tree;
       bone.mass = tree->bone(entry.in_tree).mass;
     }
     if (!load.dofs.empty()) {
-      if (entry.told && !entry.moves)
+      if (entry.prescribed && !entry.moves)
         world.system.add(fem::make_fixed(load.dofs, load.x0));
-      else if (entry.told)
+      else if (entry.prescribed)
         world.system.add(fem::make_driven(load.dofs, load.local, entry.path));
       else
         world.system.add(tool::make_tree_carried(load.dofs, load.local, entry.in_tree, block_id, tree));

@@ -4,7 +4,7 @@
 
 namespace palpate::loop {
 
-/// A bone that moves by a script against its parent, which is told how to move as well, or stands still.
+/// A bone that moves by a script against its parent, which has a prescribed motion as well, or stands still.
 struct ToldJoint {
   Pose start;                           ///< of the bone's own frame, in the world
   Vec3 position = Vec3::Zero();         ///< of the joint at the start [m]

@@ -52,7 +52,7 @@ StabilityCell linear_cell(const Lab& lab, const LinearProblem& problem, double H
   const Course course = follow(lab, problem, *run, *stepper, H);
   cell.steps = stepper->counters().steps;
 
-  // Between two looks the speed is at most what the whole energy makes of it.
+  // Between two samples the speed is at most what the whole energy makes of it.
   const double speed =
       std::max(course.speed, std::sqrt(std::min(course.highest, 1e300)) * problem.largest_speed_rms());
   const double kept = kRounding * std::sqrt(problem.condition()) +

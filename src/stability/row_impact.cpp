@@ -38,12 +38,12 @@ ObstacleSpec thin_plate() {
   return plate;
 }
 
-/// Vertices that went through the plate between two looks, which are the times of the queries.
+/// Vertices that went through the plate between two probes, which are the times of the queries.
 class Crossings {
  public:
-  void look(const loop::World& world) {
+  void probe(const loop::World& world) {
     if (!misses_.empty()) return;
-    // up to the last query, one look ago
+    // up to the last query, one probe ago
     if (!world.contact->tunnelled().empty()) reported_ = world.contact->tunnelled()[0];
     if (reported_ != counted_)
       misses_ =
@@ -84,7 +84,7 @@ StabilityCell run_on_plane(const Lab& lab, const scene::Description& d) {
 StabilityCell run_on_plate(const Lab& lab, const scene::Description& d) {
   Crossings crossings;
   const SceneCourse course = run_scene(lab, d, kThrowRtol, 0.0, [&](loop::World& world, double) {
-    if (!crossings.gone()) crossings.look(world);
+    if (!crossings.gone()) crossings.probe(world);
   });
   StabilityCell cell;
   judge(lab, course, throw_bars(lab.column, d), cell);

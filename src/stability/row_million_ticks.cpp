@@ -70,14 +70,14 @@ StabilityCell run(const Lab& lab, double slope) {
   if (slope > 0.0) start = settle(on_a_floor(slope), kSettling);
   Vec3 first = Vec3::Zero();
   double memory = 0.0, drift = 0.0;
-  const auto look = [&](loop::World& world, double t) {
+  const auto probe = [&](loop::World& world, double t) {
     const Vec3 now = (world.positions(world.bodies[0]) - world.bodies[0].placed).rowwise().mean();
     if (t == 0.0 && slope > 0.0) first = now;
     if (memory == 0.0 && t >= 1.0 - 1e-9) memory = resident_memory_mib();
     drift = std::max(drift, (now - first - Vec3(speed * t, 0, 0)).norm());
   };
   const SceneCourse course =
-      run_scene(lab, on_a_floor(slope), kRtol, 10.0, look, slope > 0.0 ? &start : nullptr);
+      run_scene(lab, on_a_floor(slope), kRtol, 10.0, probe, slope > 0.0 ? &start : nullptr);
   const double grown = resident_memory_mib() - memory,
                bar = slope > 0.0 ? 1e-4 * speed * kDuration : kDuration / kPeriod * kEps * kSize;
   StabilityCell cell;

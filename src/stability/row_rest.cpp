@@ -8,9 +8,9 @@
 // node, which moves nothing farther than eps times the body's size against its stiffness: a thousand times
 // that, 1e-12 of the size, is the bar, for every method                -> accurate (Soft enough, w H < 1, for
 // every explicit limit: beyond it rounding grows like anything else.) Explicit methods alone may let it grow
-// where a turned body makes rounding a force: under error control there is no error to see, so steps lengthen
-// past the stability limit until rounding has grown to the tolerance; and at a fixed step a Runge-Kutta
-// method of order 2 has |R(iy)|^2 = 1 + y^4/4 > 1 on every undamped mode, at any step
+// where a rotated body makes rounding a force: under error control there is no error to see, so steps
+// lengthen past the stability limit until rounding has grown to the tolerance; and at a fixed step a
+// Runge-Kutta method of order 2 has |R(iy)|^2 = 1 + y^4/4 > 1 on every undamped mode, at any step
 // -> accurate, bounded Free fall of one tetrahedron from rest, z = -g t^2/2, an internal force that stays
 // zero:
 //   order 1 at a fixed step H (every one of them: the error per step is g H^2/2): relative error H/T exactly;
@@ -57,12 +57,12 @@ StabilityCell stays(const Lab& lab, const scene::Description& d) {
   return cell;
 }
 
-scene::Description resting(bool turned, bool floor) {
+scene::Description resting(bool rotated, bool floor) {
   scene::Description d = soft_cube();
   d.duration_s = 10.0;
   d.bodies[0].youngs_modulus_pa = kSoft;
   d.coupling.contact_refresh_s = 0.01;
-  if (turned) d.bodies[0].rotation_vector_rad = Vec3(0.3, -0.7, 0.4);
+  if (rotated) d.bodies[0].rotation_vector_rad = Vec3(0.3, -0.7, 0.4);
   if (!floor) return d;
   d.obstacles.push_back(floor_plane());
   ContactSpec contact;
@@ -138,7 +138,7 @@ Row rest_row() {
           RowColumns::kSteppers,
           false,
           {{"a free cube", expect_rest, [](const Lab& lab) { return stays(lab, resting(false, false)); }},
-           {"a cube that is turned", expect_rest,
+           {"a cube that is rotated", expect_rest,
             [](const Lab& lab) { return stays(lab, resting(true, false)); }},
            {"a cube that just touches a floor", expect_rest,
             [](const Lab& lab) { return stays(lab, resting(false, true)); }}}};

@@ -12,8 +12,8 @@ constexpr double kGrown = 1e3, kFollow = 100.0;
 /// Keeps the course while the run goes on, and ends it.
 class Watch : public loop::Observer {
  public:
-  Watch(const Lab& lab, SceneCourse& course, double duration, double put_in, const Look& look)
-      : lab_(lab), course_(course), duration_(duration), put_in_(put_in), look_(look) {}
+  Watch(const Lab& lab, SceneCourse& course, double duration, double put_in, const Probe& probe)
+      : lab_(lab), course_(course), duration_(duration), put_in_(put_in), probe_(probe) {}
   void period(loop::World& world, double t) override {
     const double energy = world.mechanical_energy();
     if (t == 0.0) course_.available = energy + put_in_;
@@ -22,7 +22,7 @@ class Watch : public loop::Observer {
     course_.highest = std::max(course_.highest, energy);
     course_.last = energy;
     course_.interrupted = lab_.time_is_up();
-    if (look_) look_(world, t);
+    if (probe_) probe_(world, t);
     const bool growing = lab_.column.entry && lab_.column.fixed && is_explicit(lab_.column) &&
                          course_.highest > kGrown * course_.available;
     if (course_.interrupted || !course_.finite || (t >= duration_ * (1.0 - 1e-9) && !growing)) stop_ = true;
@@ -33,7 +33,7 @@ class Watch : public loop::Observer {
   const Lab& lab_;
   SceneCourse& course_;
   double duration_, put_in_;
-  const Look& look_;
+  const Probe& probe_;
   std::atomic<bool> stop_{false};
 };
 
@@ -51,7 +51,7 @@ Settled settle(const scene::Description& description, double duration_s) {
 }
 
 SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in,
-                      const Look& look, const Settled* start) {
+                      const Probe& probe, const Settled* start) {
   scene::Description d = description;
   d.integrator = {};
   // assembled with, and replaced: a column need not be in the registry
@@ -67,7 +67,7 @@ SceneCourse run_scene(const Lab& lab, const scene::Description& description, dou
     world->stepper->set_interrupt(lab.expired);
   }
   SceneCourse course;
-  Watch watch(lab, course, d.duration_s, put_in, look);
+  Watch watch(lab, course, d.duration_s, put_in, probe);
   loop::RunOptions options;
   options.duration_s = kFollow * d.duration_s;
   options.observers = {&watch};

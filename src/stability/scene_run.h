@@ -24,7 +24,7 @@ struct Settled {
 };
 
 /// Sees the world after every period.
-using Look = std::function<void(loop::World&, double t)>;
+using Probe = std::function<void(loop::World&, double t)>;
 
 /// Runs a scene with the column's method, at the description's own periods; a fixed step is the period's.  A
 /// run at an explicit fixed step whose energy has passed `grown` times what was available is followed beyond
@@ -32,7 +32,7 @@ using Look = std::function<void(loop::World&, double t)>;
 /// @param put_in  work done from outside [J]
 /// @param start  where it starts from, at time 0; null: as described
 SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in,
-                      const Look& look = {}, const Settled* start = nullptr);
+                      const Probe& probe = {}, const Settled* start = nullptr);
 
 /// Places and speeds of a scene after `duration_s` of linearly implicit Euler.
 Settled settle(const scene::Description& description, double duration_s);

@@ -151,8 +151,8 @@ TEST(Compare, LaddersThatMakeNoSenseAreRefused) {
   EXPECT_NE(message_of(made_by_hand, quick()).find("has no text"), std::string::npos);
 }
 
-// A run that gives up after a hundredth of the time is close to the truth for that long: no error is told for
-// it.
+// A run that gives up after a hundredth of the time is close to the reference for that long: no error is told
+// for it.
 TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
   const std::string text =
       "[integrator]\nmax_steps = 2000\n[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s "

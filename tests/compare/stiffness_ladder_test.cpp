@@ -56,11 +56,11 @@ INSTANTIATE_TEST_SUITE_P(Pascal, StiffnessLadder, testing::Values(1e4, 1e5, 1e6,
 // Every implicit method of SUNDIALS with error control, at one tolerance for all of E: 1e-7, and 1e-5 for
 // those of order 2.
 TEST_P(StiffnessLadder, EveryImplicitMethodOfSundialsReaches1eMinus5) {
-  const compare::Run truth = run(GetParam(), {.name = "cvode-bdf", .rtol = 1e-9});
-  ASSERT_TRUE(truth.result.status.ok()) << truth.result.status.message;
+  const compare::Run reference = run(GetParam(), {.name = "cvode-bdf", .rtol = 1e-9});
+  ASSERT_TRUE(reference.result.status.ok()) << reference.result.status.message;
   const compare::Run check = run(GetParam(), {.name = "ark-dirk-kvaerno745", .rtol = 1e-9});
   ASSERT_TRUE(check.result.status.ok()) << check.result.status.message;
-  const double own = compare::distance(check.trajectory, truth.trajectory).position_rel_l2;
+  const double own = compare::distance(check.trajectory, reference.trajectory).position_rel_l2;
   EXPECT_LT(own, 1e-6) << "two families agree";
   int methods = 0;
   for (const auto& entry : integrate::stepper_registry()) {
@@ -69,7 +69,7 @@ TEST_P(StiffnessLadder, EveryImplicitMethodOfSundialsReaches1eMinus5) {
         run(GetParam(),
             {.name = entry.name, .rtol = entry.traits.order <= 2 ? 1e-5 : 1e-7, .max_steps = 1000000});
     ASSERT_TRUE(r.result.status.ok()) << entry.name << ": " << r.result.status.message;
-    const double error = compare::distance(r.trajectory, truth.trajectory).position_rel_l2;
+    const double error = compare::distance(r.trajectory, reference.trajectory).position_rel_l2;
     EXPECT_LT(error, 1e-5) << entry.name;
     std::printf("E = %g  %-24s error %.1e  steps %6ld  cpu %.2f s\n", GetParam(), entry.name.c_str(), error,
                 r.result.counters.steps, r.result.cpu_s);

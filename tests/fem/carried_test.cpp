@@ -1,7 +1,7 @@
 // Nodes on a bone: their motion and its derivatives, and the laws that tissue and bone obey at one instant.
 #include <Eigen/Cholesky>
 
-#include "fem/bone_in_flesh.h"
+#include "fem/bone_in_tissue.h"
 
 using namespace palpate;
 using namespace palpate::fem;
@@ -10,7 +10,7 @@ using namespace palpate::fem::testing;
 namespace {
 
 /// The bone's pose moved by h times a twist, angular part first; nodes follow.
-void move_bone(BoneInFlesh& b, const VecX& q0, const Vec6& twist, double h) {
+void move_bone(BoneInTissue& b, const VecX& q0, const Vec6& twist, double h) {
   b.state.q() = q0;
   const auto& block = *b.state.layout().find(b.bone);
   auto q = b.state.q(block);
@@ -20,8 +20,8 @@ void move_bone(BoneInFlesh& b, const VecX& q0, const Vec6& twist, double h) {
   b.impose();
 }
 
-BoneInFlesh disturbed(BoneOptions options = {}, unsigned seed = 3) {
-  BoneInFlesh b(options);
+BoneInTissue disturbed(BoneOptions options = {}, unsigned seed = 3) {
+  BoneInTissue b(options);
   b.prepare();
   b.disturb(0.004, 1.0, seed);
   return b;
@@ -32,7 +32,7 @@ Vec6 test_twist() { return (Vec6() << 0.7, -1.1, 0.4, 0.3, 0.2, -0.5).finished()
 }  // namespace
 
 TEST(Carried, StandsWhereTheFormulaSays) {
-  BoneInFlesh b = disturbed();
+  BoneInTissue b = disturbed();
   const auto& block = *b.state.layout().find(b.bone);
   const Quat r(b.state.q(block)[0], b.state.q(block)[1], b.state.q(block)[2], b.state.q(block)[3]);
   ASSERT_GE(b.carried.size(), 4u);
@@ -47,7 +47,7 @@ TEST(Carried, StandsWhereTheFormulaSays) {
 
 // G is the derivative of the positions, and G u' + gamma that of the velocities.
 TEST(Carried, JacobianAndGammaAreDerivatives) {
-  BoneInFlesh b = disturbed();
+  BoneInTissue b = disturbed();
   const VecX q0 = b.state.q();
   const int at = b.state.layout().find(b.bone)->u_offset;
   const Vec6 u = b.state.u().segment<6>(at), rate = test_twist();
@@ -82,7 +82,7 @@ TEST(Carried, JacobianAndGammaAreDerivatives) {
 // on it with, those held that are of the nodes' own. K is symmetrised; what is lost is half the cross matrix
 // of the moment out of balance.
 TEST(Carried, TangentIsTheDerivativeOfTheReducedForce) {
-  BoneInFlesh b = disturbed({.damping = 0.0});
+  BoneInTissue b = disturbed({.damping = 0.0});
   b.state.u().setZero();
   b.impose();
   const VecX q0 = b.state.q();
@@ -125,9 +125,9 @@ TEST(Carried, TangentIsTheDerivativeOfTheReducedForce) {
 
 // Newton's and Euler's laws for tissue and bone together, any state, any bone: no force from outside, no
 // change of momentum.
-TEST(Carried, FleshAndBoneKeepTheirMomentumAtEveryInstant) {
+TEST(Carried, TissueAndBoneKeepTheirMomentumAtEveryInstant) {
   for (const double ratio : {1.0, 1e-3, 1e-6}) {
-    BoneInFlesh b = disturbed({.mass_ratio = ratio, .damping = 1e-2});
+    BoneInTissue b = disturbed({.mass_ratio = ratio, .damping = 1e-2});
     VecX a, f;
     b.system.force(b.state.view(), f);
     b.system.acceleration(b.state.view(), a);
@@ -154,7 +154,7 @@ TEST(Carried, AccelerationIsThatOfTheReducedEquationsAndHasALimitWithoutABone) {
   std::vector<std::pair<double, VecX>> along;
   int counted = 0;
   for (const double ratio : {1e-3, 1e-4, 1e-5, 1e-6, 0.0}) {
-    BoneInFlesh b = disturbed({.mass_ratio = ratio > 0.0 ? ratio : 1e-3});
+    BoneInTissue b = disturbed({.mass_ratio = ratio > 0.0 ? ratio : 1e-3});
     const int n = b.state.layout().nodal_size, at = n;
     VecX f, gamma = VecX::Zero(n + 6), a;
     b.system.force(b.state.view(), f);
@@ -200,7 +200,7 @@ TEST(Carried, BadInputIsRefused) {
   expect_contains(message_of([] { make_carried({0}, Points::Zero(3, 1), -1); }), "need a rigid block");
   expect_contains(message_of([] { nodes_in_sphere(Points::Zero(3, 1), Vec3::Zero(), 0.0); }),
                   "radius_m = 0 must be positive");
-  BoneInFlesh b;
+  BoneInTissue b;
   b.system.add(make_carried({0}, Points::Zero(3, 1), b.tissue));
   expect_contains(message_of([&] { b.prepare(); }), "which is no rigid block");
 }

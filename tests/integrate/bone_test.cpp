@@ -1,8 +1,8 @@
-// Flesh around a free bone of a thousandth of its mass, under the integrators of the registry: what of its
+// Tissue around a free bone of a thousandth of its mass, under the integrators of the registry: what of its
 // momentum is kept, and whether it is stable.
 #include <gtest/gtest.h>
 
-#include "fem/bone_in_flesh.h"
+#include "fem/bone_in_tissue.h"
 #include "integrate/fakes.h"
 
 namespace palpate {
@@ -18,16 +18,16 @@ IntegratorSpec spec_of(const std::string& name, double step_s, double rtol = 1e-
   return s;
 }
 
-void advance(BoneInFlesh& b, const IntegratorSpec& spec, double t_end) {
+void advance(BoneInTissue& b, const IntegratorSpec& spec, double t_end) {
   const auto stepper = integrate::make_stepper(b.system, b.state, spec);
   const dynamics::StepResult result = stepper->advance_to(t_end);
   ASSERT_TRUE(result.ok()) << spec.name << ": " << result.message;
   ASSERT_TRUE(b.state.q().allFinite() && b.state.u().allFinite()) << spec.name;
 }
 
-/// Thrown and spinning, flesh and bone as one: relative changes of angular and linear momentum over 0.2 s.
+/// Thrown and spinning, tissue and bone as one: relative changes of angular and linear momentum over 0.2 s.
 std::pair<double, double> drift(const IntegratorSpec& spec) {
-  BoneInFlesh b({.damping = 1e-3});
+  BoneInTissue b({.damping = 1e-3});
   b.prepare();
   b.throw_rigidly(Vec3(0.3, 0.2, -0.1), Vec3(1.5, -4.0, 3.0));
   const Vec6 before = b.momentum();
@@ -43,7 +43,7 @@ TEST(Bone, FixedStepsKeepMomentumToTheirOrder) {
   for (const char* name : {"linearly-implicit-euler", "backward-euler", "implicit-midpoint", "bdf2",
                            "newmark", "generalized-alpha"}) {
     const int order = find(integrate::stepper_registry(), name, "integrator").traits.order;
-    // 10 ms does not resolve the flesh's own modes
+    // 10 ms does not resolve the tissue's own modes
     std::vector<double> steps = {0.005, 0.0025, 0.00125}, angular, linear;
     for (const double h : steps) {
       const auto [dL, dP] = drift(spec_of(name, h));
@@ -66,13 +66,13 @@ TEST(Bone, ErrorControlKeepsMomentumToTheTolerance) {
   }
 }
 
-// A bone that presses its flesh together, let go at rest: forces of the flesh on its nodes are in balance,
+// A bone that presses its tissue together, let go at rest: forces of the tissue on its nodes are in balance,
 // and stay so when it turns, for they turn with it. A step that holds them while the arms turn sees a moment
-// that is not there: with compressed flesh it grows, and spins the whole up out of nothing.
+// that is not there: with compressed tissue it grows, and spins the whole up out of nothing.
 TEST(Bone, ALightBoneUnderPrestressDoesNotSpinUp) {
   double spin[2] = {0.0, 0.0};
   for (const bool turning : {true, false}) {
-    BoneInFlesh b({.damping = 1e-3, .spread = 0.7, .turning = turning});
+    BoneInTissue b({.damping = 1e-3, .spread = 0.7, .turning = turning});
     b.prepare();
     b.throw_rigidly(Vec3(0.1, 0.2, -0.1), Vec3::Zero());
     const double before = b.momentum().head<3>().norm();
@@ -88,7 +88,7 @@ TEST(Bone, ALightBoneUnderPrestressDoesNotSpinUp) {
 TEST(Bone, ItsMassMayGoToNothing) {
   Vec6 last = Vec6::Zero();
   for (const double ratio : {1e-3, 1e-6, 1e-9}) {
-    BoneInFlesh b({.mass_ratio = ratio, .damping = 1e-3});
+    BoneInTissue b({.mass_ratio = ratio, .damping = 1e-3});
     b.prepare();
     b.disturb(0.002, 0.5, 5);
     advance(b, spec_of("linearly-implicit-euler", 0.01), 0.5);
@@ -100,10 +100,10 @@ TEST(Bone, ItsMassMayGoToNothing) {
   }
 }
 
-// Flesh so stiff that flesh and bone are one rigid body: they tumble as Euler's top with the moments of all
+// Tissue so stiff that tissue and bone are one rigid body: they tumble as Euler's top with the moments of all
 // masses together.
-TEST(Bone, StiffFleshAndItsBoneTumbleAsOneRigidBody) {
-  BoneInFlesh b({.mass_ratio = 0.3, .youngs_modulus = 1e8, .damping = 1e-5});
+TEST(Bone, StiffTissueAndItsBoneTumbleAsOneRigidBody) {
+  BoneInTissue b({.mass_ratio = 0.3, .youngs_modulus = 1e8, .damping = 1e-5});
   b.inertia = b.bone_mass * Vec3(1e-4, 1.5e-4, 2e-4);
   b.prepare();
   const auto& block = *b.state.layout().find(b.bone);
@@ -142,7 +142,7 @@ TEST(Bone, StiffFleshAndItsBoneTumbleAsOneRigidBody) {
                           k4 = rate(r + h * k3);
     r = (r + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)).normalized();
   }
-  // tolerances are in units of the flesh's wave speed, 316 m/s
+  // tolerances are in units of the tissue's wave speed, 316 m/s
   advance(b, spec_of("cvode-bdf", 0.01, 1e-8), T);
   const Quat now(b.state.q(block)[0], b.state.q(block)[1], b.state.q(block)[2], b.state.q(block)[3]);
   const double off = rotation_vector(now * (Quat(r[0], r[1], r[2], r[3]) * start).conjugate()).norm();

@@ -149,7 +149,7 @@ struct BallMass final : InertiaTerm {
   }
 };
 
-// Light bone (1 kg), heavy flesh: node 0 (3 kg) is carried, node 1 (2 kg) hangs on it by k = 50.  Two masses
+// Light bone (1 kg), heavy tissue: node 0 (3 kg) is carried, node 1 (2 kg) hangs on it by k = 50.  Two masses
 // 4 and 2 on one spring:
 // omega^2 = k (1/4 + 1/2).  The carried node's mass and stiffness must enter the bone's equations, or both
 // are wrong.
@@ -167,7 +167,7 @@ TEST_P(Driven, NodesCarriedByABodyLoadIt) {
     VecX q = VecX::Zero(6), pose = VecX::Unit(7, 0);
     q[3] = 0.1;
     const int nodes =
-        state.insert(BlockSpec{.name = "flesh", .q_size = 6, .u_size = 6, .q_scale = 0.1}, q, VecX::Zero(6));
+        state.insert(BlockSpec{.name = "tissue", .q_size = 6, .u_size = 6, .q_scale = 0.1}, q, VecX::Zero(6));
     const int bone = state.insert(rigid_block("bone", 0.1, 1.0), pose, VecX::Zero(6));
     system.add(std::make_shared<LinearTerm>(K, 0.0 * K, VecX::Zero(6)));
     system.add(std::make_shared<NodalMass>(nodes, M));

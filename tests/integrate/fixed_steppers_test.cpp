@@ -145,7 +145,7 @@ struct Liar final : ForceTerm {
   void apply_tangent(const StateView&, double a, double, const VecX& x, VecX& y) override {
     y += a * share * k * x;
   }
-  Finding inspect(const StateView&) const override { return {7, -0.5}; }
+  Diagnostic inspect(const StateView&) const override { return {7, -0.5}; }
 };
 
 struct Lied {

@@ -20,14 +20,14 @@ using namespace palpate::scene_checks;
 
 namespace {
 
-/// A block of flesh, 4 x 4 x 8 cm and 0.128 kg, around a capsule of a thousandth of its mass; nothing holds
+/// A block of tissue, 4 x 4 x 8 cm and 0.128 kg, around a capsule of a thousandth of its mass; nothing holds
 /// it.
 scene::Description limb() {
   scene::Description d;
   d.name = "limb";
   d.duration_s = 0.1;
   SoftBodySpec body;
-  body.name = "flesh";
+  body.name = "tissue";
   body.mesh.generator = "box";
   body.mesh.size_m = Vec3(0.04, 0.04, 0.08);
   body.mesh.element_size_m = 0.01;
@@ -73,7 +73,7 @@ TEST(Bones, ASceneWithoutOneHasNoRigidBlock) {
   EXPECT_EQ(counters::snapshot()["tool.simbody_system"], simbody) << "and one with a bone needs no Simbody";
 }
 
-TEST(Bones, FleshAndBoneTumbleFreelyWithoutLoss) {
+TEST(Bones, TissueAndBoneTumbleFreelyWithoutLoss) {
   for (const char* name : {"linearly-implicit-euler", "backward-euler", "implicit-midpoint", "cvode-bdf"}) {
     scene::Description d = limb();
     d.integrator.name = name;
@@ -132,8 +132,8 @@ TEST(Bones, KeyframesMoveOneFromWhereItIsPlaced) {
   }
 }
 
-// A hanging limb at rest: what the flesh exerts on the bone that holds it is its weight, and with a free bone
-// nothing but the bone's own inertia.
+// A hanging limb at rest: what the tissue exerts on the bone that holds it is its weight, and with a free
+// bone nothing but the bone's own inertia.
 TEST(Bones, TheWrenchOnABoneBalances) {
   scene::Description d = limb();
   d.bodies[0].angular_velocity_rad_s.setZero();
@@ -188,7 +188,7 @@ TEST(Bones, AreRecordedWithTheirPoses) {
 TEST(Bones, NodesThatNoBoneHoldsAreRefused) {
   scene::Description d = limb();
   d.bones[0].position_m = Vec3(1, 0, 0);
-  EXPECT_NE(refusal(d).find("body \"flesh\": attachment: no node lies inside \"bone\""), std::string::npos)
+  EXPECT_NE(refusal(d).find("body \"tissue\": attachment: no node lies inside \"bone\""), std::string::npos)
       << refusal(d);
   d = limb();
   d.bodies[0].attachments[0].to = "tool";
@@ -202,7 +202,7 @@ TEST(Bones, NodesThatNoBoneHoldsAreRefused) {
 }
 
 #ifdef PALPATE_HAS_TOOL
-// The tool of a monolithic scheme carries flesh like a bone: the only force from outside is the coupling's.
+// The tool of a monolithic scheme carries tissue like a bone: the only force from outside is the coupling's.
 TEST(Bones, TheToolOfAMonolithicSceneCarriesNodes) {
   scene::Description d = pressed_block(0.0);
   d.contacts.clear();
@@ -227,12 +227,12 @@ TEST(Bones, TheToolOfAMonolithicSceneCarriesNodes) {
   for (int i = 0; i < world->bodies[0].masses.size(); ++i)
     change += world->bodies[0].masses[i] * a.segment<3>(3 * i);
   EXPECT_LT((change - f.segment<3>(tool.u_offset + 3)).norm(), 1e-12 * f.lpNorm<1>())
-      << "Newton's law for tool and flesh together";
+      << "Newton's law for tool and tissue together";
   EXPECT_GT(f.segment<3>(tool.u_offset + 3).norm(), 1e-3);
 }
 
-// Partitioned: the bone's block stands beside the flesh in the step matrix that is condensed onto the tool.
-TEST(Bones, AToolMayTouchFleshThatSitsOnAFreeBone) {
+// Partitioned: the bone's block stands beside the tissue in the step matrix that is condensed onto the tool.
+TEST(Bones, AToolMayTouchTissueThatSitsOnAFreeBone) {
   scene::Description d = pressed_block(1e-3);
   d.bodies[0].attachments[0].to = "bone";
   BoneSpec bone;

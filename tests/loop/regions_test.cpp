@@ -156,7 +156,7 @@ TEST_F(Regions, ChangeAlongWithTheBodyOrAlone) {
 TEST_F(Regions, OfAMeshFileGoByName) {
   // Two tetrahedra on one face: volumes 1/6 and 1/3.
   const std::string msh =
-      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"flesh\"\n3 2 "
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"tissue\"\n3 2 "
       "\"bone\"\n$EndPhysicalNames\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n"
       "$EndNodes\n$Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 2 2 2 3 4 5\n$EndElements\n";
   std::ofstream(at("two.msh")) << msh;

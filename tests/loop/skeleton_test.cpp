@@ -123,15 +123,15 @@ TEST(Skeleton, WeldedBonesHoldTheirNodes) {
   ASSERT_TRUE(loop::run(*world, {}).status.ok());
   const Points after = world->positions(world->bodies[0]);
   const std::vector<int> owner = limb_model().bone_of_node;
-  double flesh = 0.0;
+  double tissue = 0.0;
   for (Eigen::Index n = 0; n < after.cols(); ++n) {
     const double moved = (after.col(n) - before.col(n)).norm();
     if (owner[static_cast<std::size_t>(world->bodies[0].file_node[static_cast<std::size_t>(n)])] >= 0)
       EXPECT_LT(moved, 1e-15);
     else
-      flesh = std::max(flesh, moved);
+      tissue = std::max(tissue, moved);
   }
-  EXPECT_GT(flesh, 1e-4) << "and the flesh sags on them";
+  EXPECT_GT(tissue, 1e-4) << "and the tissue sags on them";
 }
 
 // Path, twist and acceleration of a chain of scripts are derivatives of one another; the joint stays
@@ -170,12 +170,12 @@ TEST(Skeleton, AChainOfScriptsMovesAsItsDerivativesSay) {
             1e-14);
 }
 
-TEST(Skeleton, AScriptTakesTheFleshAlong) {
+TEST(Skeleton, AScriptTakesTheTissueAlong) {
   const ModelOnDisk file;
   scene::Description d = limb(file);
   d.bodies[0].skeleton->joints.push_back(scripted("lower", Vec3(0, 0, 0.5)));
   const auto world = loop::assemble(d);
-  EXPECT_EQ(world->state.layout().border_size(), 0) << "told, all of it";
+  EXPECT_EQ(world->state.layout().border_size(), 0) << "prescribed, all of it";
   const Vec3 before = world->bone_pose(world->bones[2]).translation;
   ASSERT_TRUE(loop::run(*world, {}).status.ok());
   const Vec3 after = world->bone_pose(world->bones[2]).translation;

@@ -18,7 +18,7 @@ $MeshFormat
 $EndMeshFormat
 $PhysicalNames
 1
-3 1 "flesh"
+3 1 "tissue"
 $EndPhysicalNames
 $Nodes
 5
@@ -184,13 +184,13 @@ TEST(Readers, PhysicalVolumesAreRegions) {
   const std::string first = "\n3 4 2 0 1 10 7 300 2000000000", second = "\n9 4 0 7";
   EXPECT_EQ(regions_of("a.msh", kGmsh22), "region-0: 1; region-1: 0; ")
       << "no physical group: the volumes of the model, none is 0";
-  const std::string flesh = replaced(kGmsh22, first, "\n3 4 2 1 5 10 7 300 2000000000");
-  EXPECT_EQ(regions_of("a.msh", flesh), "flesh: 0; ");
-  EXPECT_EQ(regions_of("a.msh", replaced(flesh, second, "\n9 4 3 -12 5 0 7")), "flesh: 0; region-12: 1; ");
-  EXPECT_EQ(regions_of("a.msh", replaced(flesh, second, "\n9 4 2 1 7 7")), "flesh: 0 1; ")
+  const std::string tissue = replaced(kGmsh22, first, "\n3 4 2 1 5 10 7 300 2000000000");
+  EXPECT_EQ(regions_of("a.msh", tissue), "tissue: 0; ");
+  EXPECT_EQ(regions_of("a.msh", replaced(tissue, second, "\n9 4 3 -12 5 0 7")), "tissue: 0; region-12: 1; ");
+  EXPECT_EQ(regions_of("a.msh", replaced(tissue, second, "\n9 4 2 1 7 7")), "tissue: 0 1; ")
       << "one named region of all is one";
-  EXPECT_EQ(regions_of("a.msh",
-                       replaced(replaced(flesh, second, "\n9 4 2 1 7 7"), "3 1 \"flesh\"", "2 1 \"flesh\"")),
+  EXPECT_EQ(regions_of("a.msh", replaced(replaced(tissue, second, "\n9 4 2 1 7 7"), "3 1 \"tissue\"",
+                                         "2 1 \"tissue\"")),
             "")
       << "that is the name of a surface";
 

@@ -173,7 +173,7 @@ std::string msh_of_two(const std::string& names, const std::array<int, 2>& physi
 }
 
 TEST_F(ForeignFiles, RegionsOfEveryFormatOfGmsh) {
-  const std::string names = "$PhysicalNames\n2\n3 7 \"hard bone\"\n3 9 \"flesh\"\n$EndPhysicalNames\n";
+  const std::string names = "$PhysicalNames\n2\n3 7 \"hard bone\"\n3 9 \"tissue\"\n$EndPhysicalNames\n";
   put("named.msh", msh_of_two(names, {7, 9}));
   put("plain.msh", msh_of_two("", {0, 0}));
   put("half.msh", msh_of_two(names, {0, 9}));
@@ -197,7 +197,7 @@ TEST_F(ForeignFiles, RegionsOfEveryFormatOfGmsh) {
   };
   for (const double binary : {0.0, 1.0})
     for (const double version : {2.2, 4.1}) {
-      expect("named.msh", "a.msh", version, binary, "hard bone: 40; flesh: 40; ");
+      expect("named.msh", "a.msh", version, binary, "hard bone: 40; tissue: 40; ");
       expect("plain.msh", "b.msh", version, binary, "region-2: 40; region-5: 40; ");
     }
   expect("plain.msh", "a.mesh", 4.1, 0, "region-2: 40; region-5: 40; ");
@@ -211,7 +211,7 @@ TEST_F(ForeignFiles, RegionsOfEveryFormatOfGmsh) {
     gmshOptionSetNumber("Mesh.Binary", binary, &error);
     gmshWrite(at("c.msh").c_str(), &error);
     gmshFinalize(&error);
-    EXPECT_EQ(regions_of(model::read_source(at("c.msh"))), "flesh: 40; ");
+    EXPECT_EQ(regions_of(model::read_source(at("c.msh"))), "tissue: 40; ");
   }
 }
 

@@ -68,7 +68,7 @@ std::vector<Vec3> surface_points(const Bone& bone) {
   return out;
 }
 
-TEST(HumanSkeleton, LiesInsideTheFlesh) {
+TEST(HumanSkeleton, LiesInsideTheTissue) {
   for (const bool fine : {false, true})
     for (const Bone& bone : bones()) {
       double worst = -1.0;

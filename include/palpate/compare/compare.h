@@ -45,7 +45,7 @@ struct ComparePoint {
 /// marked, and stand in no fit and no verdict.
 constexpr double kResolution = 10.0;
 
-/// The truth that the points are held against, and how far it can be trusted.
+/// The reference that the points are held against, and how far it can be trusted.
 struct Reference {
   std::string description;  ///< what it was made by, and what checked it
   std::string trouble;      ///< what is missing of the two, and why; empty: nothing

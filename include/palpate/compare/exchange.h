@@ -8,7 +8,7 @@
 
 namespace palpate::compare {
 
-/// One exchange period of a scene with a tool, against the truth.
+/// One exchange period of a scene with a tool, against the monolithic reference.
 struct ExchangePoint {
   double exchange_period_s = 0.0;
   TrajectoryError error;  ///< NaN throughout when the run, or the one it is held against, failed
@@ -20,8 +20,8 @@ struct ExchangePoint {
 struct ExchangeOptions {
   std::function<void(const std::string& what)> done;  ///< after each run
   const std::atomic<bool>* stop = nullptr;
-  /// the scene that the truth is made of; null: the same (another one shows that the study can fail)
-  const scene::Description* truth = nullptr;
+  /// the scene that the reference is made of; null: the same (another one shows that the study can fail)
+  const scene::Description* reference = nullptr;
 };
 
 /// Runs that compare_exchange makes of a scene: 0 without a tool or without `compare.exchange_periods_s`.

@@ -21,7 +21,7 @@ struct TermTraits {
 };
 
 /// A term's diagnosis of a state that a step failed at: an inverted element.
-struct Finding {
+struct Diagnostic {
   int element = -1;      ///< in the term's own numbering; -1: nothing found
   double measure = 0.0;  ///< det F of an element
 };
@@ -58,7 +58,7 @@ class ForceTerm {
   virtual bool refresh(const StateView&) { return false; }
 
   /// The worst of what can go wrong in this term at a state; for traces, not for the step.
-  virtual Finding inspect(const StateView&) const { return {}; }
+  virtual Diagnostic inspect(const StateView&) const { return {}; }
 
   /// Root functions for event location: g changes sign at an event (a gap closing).
   virtual int event_count() const { return 0; }

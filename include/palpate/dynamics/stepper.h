@@ -80,7 +80,7 @@ static_assert(bytes_of_counters<StepperCounters>() - bytes_of_counters<SolverCou
                   sizeof(StepperCounters),
               "visit_counters() leaves out a member of StepperCounters");
 
-/// What was counted between two looks at one stepper's counters.
+/// What was counted between two samples at one stepper's counters.
 inline StepperCounters operator-(StepperCounters later, const StepperCounters& earlier) {
   visit_counters([](const char*, auto& value, const auto& before) { value -= before; }, later, earlier);
   return later;

@@ -47,8 +47,8 @@ class System {
   int event_count() const;
   std::uint64_t events_version() const;
   void events(const StateView& state, double* g) const;
-  /// The first term's finding that names an element, with the term's name; element -1 where none does.
-  std::pair<Finding, std::string> inspect(const StateView& state) const;
+  /// The first term's diagnostic that names an element, with the term's name; element -1 where none does.
+  std::pair<Diagnostic, std::string> inspect(const StateView& state) const;
 
   using TermFilter = std::function<bool(const TermTraits&)>;
 

@@ -52,7 +52,7 @@ class SoftBody : public dynamics::ForceTerm,
   /// The projected tangent (symmetric, positive semi-definite) in place of the one that the options name.
   void project_to_psd(bool on) override;
   /// The element with the smallest det F <= 0.
-  dynamics::Finding inspect(const dynamics::StateView& state) const override;
+  dynamics::Diagnostic inspect(const dynamics::StateView& state) const override;
   dynamics::TermTraits traits() const override;
   void add_pattern(dynamics::PatternBuilder& pattern) const override;
   std::uint64_t pattern_version() const override;

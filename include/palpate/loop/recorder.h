@@ -7,7 +7,7 @@
 namespace palpate::loop {
 
 /// Keeps what the scene's [record] table asks for, in one folder: run.vtkhdf (VTKHDF time series of all
-/// bodies, bones and the tool), bones.csv (where each bone is and what the flesh exerts on it, a line a bone
+/// bodies, bones and the tool), bones.csv (where each bone is and what the tissue exerts on it, a line a bone
 /// and recorded instant), force.csv (a line a tick). Every period on disk is complete: an interrupted run
 /// leaves valid files.  A scene without [record] gets none of it.
 class Recorder : public Observer {

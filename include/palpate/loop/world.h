@@ -117,7 +117,8 @@ struct World {
   Points positions(const Body& body) const;  ///< now, world [m]
   Pose bone_pose(const Bone& bone) const;
   Twist bone_twist(const Bone& bone) const;
-  /// What the flesh exerts on each bone, moment about its origin: minus what holds the nodes that it carries.
+  /// What the tissue exerts on each bone, moment about its origin: minus what holds the nodes that it
+  /// carries.
   std::vector<Wrench> wrenches_on_bones();
   bool monolithic() const;         ///< the tool is a block of the State
   bool has_tool_of_ticks() const;  ///< there is a tool, and it has ticks of its own

@@ -12,8 +12,8 @@ namespace palpate::model {
 double distance_to_bone(const Bone& bone, const Vec3& p);
 
 /// The bone that carries each node: the nearest one of those that hold it, or, where `margin` allows, are
-/// nearer than that; -1: flesh. A bone too thin for the mesh, with no node inside or within the margin, takes
-/// the node nearest to it, so that none hangs loose.
+/// nearer than that; -1: tissue. A bone too thin for the mesh, with no node inside or within the margin,
+/// takes the node nearest to it, so that none hangs loose.
 /// @param margin  [m], not negative
 std::vector<int> bind_nodes(const Points& nodes, const Skeleton& skeleton, double margin = 0.0);
 

@@ -110,19 +110,19 @@ void FixedStep::accept(double h, double t1) {
 }
 
 void FixedStep::tell(const Attempt& attempt, double h, double t1) const {
-  StepAttempt told;
-  told.t = state_.time();
-  told.h = h;
-  told.order = order_;
-  told.error = std::numeric_limits<double>::quiet_NaN();
-  told.newton_iterations = attempt.iterations;
-  told.outcome = outcome_of(attempt.status);
+  StepAttempt record;
+  record.t = state_.time();
+  record.h = h;
+  record.order = order_;
+  record.error = std::numeric_limits<double>::quiet_NaN();
+  record.newton_iterations = attempt.iterations;
+  record.outcome = outcome_of(attempt.status);
   if (attempt.status != StepStatus::kOk && all_finite(q1_) && all_finite(u1_)) {
-    const auto [finding, term] = system_.inspect(state_.view(t1, q1_.data(), u1_.data()));
-    told.inverted_element = finding.element;
-    told.inverted_in = term;
+    const auto [diagnostic, term] = system_.inspect(state_.view(t1, q1_.data(), u1_.data()));
+    record.inverted_element = diagnostic.element;
+    record.inverted_in = term;
   }
-  trace()->attempt(told);
+  trace()->attempt(record);
 }
 
 StepResult FixedStep::failure(StepStatus status, double h, int iterations, const std::string& what) const {

@@ -45,8 +45,8 @@ void Adapter::close_attempt(StepAttempt::Outcome outcome) {
   StepAttempt a = attempt(attempt_start_, attempt_reach_, outcome);
   a.worst_dof = attempt_worst_ >= 0 ? problem_->dof_of(attempt_worst_) : -1;
   if (all_finite(attempt_y_)) {
-    const auto [finding, term] = problem_->inspect(attempt_reach_, attempt_y_.data());
-    a.inverted_element = finding.element;
+    const auto [diagnostic, term] = problem_->inspect(attempt_reach_, attempt_y_.data());
+    a.inverted_element = diagnostic.element;
     a.inverted_in = term;
   }
   trace()->attempt(a);
@@ -64,8 +64,8 @@ void Adapter::accept_attempt(double t0, double t1, bool event) {
     const int worst = index_of_largest(scratch_, weights_);
     a.worst_dof = worst >= 0 ? problem_->dof_of(worst) : -1;
   }
-  const auto [finding, term] = problem_->inspect(t1, NV_DATA_S(y_));
-  a.inverted_element = finding.element;
+  const auto [diagnostic, term] = problem_->inspect(t1, NV_DATA_S(y_));
+  a.inverted_element = diagnostic.element;
   a.inverted_in = term;
   trace()->attempt(a);
   attempt_open_ = false;

@@ -36,7 +36,7 @@ constexpr int kLeastFastSteps = 1000;  ///< a small max_steps is meant for the s
 /// Bogacki and Shampine under error control: cheap, because no element is evaluated in them, and bounded by
 /// the contact's and the coupling's own rates.  Where a scene has neither, f_F = 0 and the method is an
 /// implicit Runge-Kutta one with needless bookkeeping.
-/// Stable for each side alone.  Where both are stiff in each other (a hard contact on hard flesh, at a step
+/// Stable for each side alone.  Where both are stiff in each other (a hard contact on hard tissue, at a step
 /// of several of either's periods) the two together need not be:
 /// multirate_amplification (multirate.h) tells.
 class Mri final : public Adapter {

@@ -34,7 +34,7 @@ struct WithoutTurning final : dynamics::DrivenMotion {
 };
 
 /// A cube of tissue, 0.1 m and 1 kg, around a free rigid bone that carries its inner nodes.
-struct BoneInFlesh {
+struct BoneInTissue {
   dynamics::State state;
   dynamics::System system;
   std::shared_ptr<SoftBody> term;
@@ -46,7 +46,7 @@ struct BoneInFlesh {
   std::vector<int> carried;  ///< nodes
   Points local;              ///< of the carried nodes, in the bone's axes
 
-  explicit BoneInFlesh(const BoneOptions& o = {}) {
+  explicit BoneInTissue(const BoneOptions& o = {}) {
     rest = jittered_cube(o.cells, 0.05, 7);
     rest.nodes = 0.1 * (rest.nodes.array() - 0.5).matrix();
     Material m;
