@@ -17,11 +17,11 @@ using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 // What the bodies make of the contact over a time H, by one linearly implicit Euler step of theirs from (x0,
 // u0), while the tool is displaced by dx and its twist changed by dv.  n all nodes, f free, t tool; c =
-// -df/d(tool), -dF/d(node) as ContactForce::linearise gives them, M, D, K with contact in them.
-// Driven nodes go to x(t0 + H), v(t0 + H), carried ones with their bone (rows and columns reduced onto it by
-// System): s and w are the displacements and velocity changes that are known beforehand,
-//     s = H u0 on free directions, x(t0 + H) - x0 on driven ones;      w = 0 on free directions, v(t0 + H) -
-//     u0 on driven ones.
+// -df/d(tool), -dF/d(node) as ContactForce::linearise gives them, M, D, K with contact in them.  Driven nodes
+// go to x(t0 + H), v(t0 + H), carried ones with their bone (rows and columns reduced onto it by System): s
+// and w are the displacements and velocity changes that are known beforehand,
+//     s = H u0 on free directions,  x(t0 + H) - x0 on driven ones,
+//     w = 0    on free directions,  v(t0 + H) - u0 on driven ones.
 // With u1 = u0 + w + du, du = 0 on driven directions, nodes end at x0 + s + H du, and the force there is, to
 // first order,
 //     f1 = f_n - K_nn (s + H du) - D_nn (w + du) - K_nt dx - B_nt dv.
@@ -29,16 +29,18 @@ using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 //     A du = H (f_n - K_nn s - D_nn w) - M w - H (K_nt dx + B_nt dv),      A = M + H D + H^2 K,
 // and the tool feels, linearised about the same state,
 //     F = F_t - K_tt dx - B_tt dv - K_tn (s + H du) - B_tn (w + du)
-//       = [F_t - K_tn s - B_tn w - C g] + J dx + B dv,      C = H K_tn + B_tn,  A g = H (f_n - K_nn s - D_nn
-//       w) - M w,
-//     J = -K_tt + H C A^-1 K_nt,  B = -B_tt + H C A^-1 B_nt:      the Schur complement of the step matrix
-//     onto the tool.
-// One part of K_tt is no stiffness of the contact but of its force: the arms that turn under it.  It is taken
-// of the forces after the step, at x0 + s + H g, u0 + w + g; to first order that is the same.  But where the
-// forces are out of balance it is not: a depth that came about unseen may press with 1e4 N now and with 0.1 N
-// after the step, and a tool that turned under the first would spin up without end.
-// H -> 0 gives `frozen`, H -> infinity the quasi-static answer K_tt - K_tn K^-1 K_nt.  (Forces that depend on
-// time alone are taken at t0.)
+//       = [F_t - K_tn s - B_tn w - C g] + J dx + B dv,
+//     C = H K_tn + B_tn,  A g = H (f_n - K_nn s - D_nn w) - M w,
+//     J = -K_tt + H C A^-1 K_nt,  B = -B_tt + H C A^-1 B_nt,
+// the Schur complement of the step matrix onto the tool.  One part of K_tt is no stiffness of the contact but
+// of its force: the arms that rotate under it.  It is taken of the forces after the step, at x0 + s + H g, u0
+// + w + g; to first order that is the same.  But where the forces are out of balance it is not: a depth that
+// came about unseen may press with 1e4 N now and with 0.1 N after the step, and a tool that rotated under the
+// first would spin up without end.
+//
+// H -> 0 gives `frozen`, H
+//   -> infinity the quasi-static answer K_tt - K_tn K^-1 K_nt.  (Forces that depend on time alone are taken
+//   at t0.)
 struct Answer {
   Vec6 wrench;  ///< [F_t - K_tn s - B_tn w - C g]
   Mat6 J, B;

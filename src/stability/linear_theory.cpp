@@ -7,72 +7,69 @@
 // 0.
 //
 // 1. A-stable one-step methods, any step.  y1 = R(H A) y0 with |R| <= 1 in the left half plane, and by von
-// Neumann's theorem (Hairer and Wanner,
-//    Solving ODEs II, thm IV.11.2) the norm of R(H A) is at most sup |R| over Re z <= 0, that is 1: the
-//    energy never rises.    -> accurate, stable
+//    Neumann's theorem (Hairer and Wanner, Solving ODEs II, thm IV.11.2) the norm of R(H A) is at most sup
+//    |R| over Re z <= 0, that is 1: the energy never rises.
+//      -> accurate, stable
 // 2. A-stable multistep methods, any step.  They are power bounded (and G-stable: Dahlquist 1978), in a norm
-// that weighs the last steps together; the
-//    energy itself may rise by a constant factor, never again and again.
-//    -> accurate, stable, bounded
+//    that weighs the last steps together; the energy itself may rise by a constant factor, never again and
+//    again.
+//      -> accurate, stable, bounded
 //    Methods of the family of Newmark with dissipation (generalised-alpha) carry the acceleration along, and
-//    overshoot in the first step (Hilber and Hughes
-//    1978; "U0-V1" in Zhou and Tamma 2004).  From d0 at rest, a0 = -w^2 d0, with y = w H large, r = 2 z/y
-//    (the same for all modes), b and c Newmark's beta and gamma:
+//    overshoot in the first step (Hilber and Hughes 1978; "U0-V1" in Zhou and Tamma 2004).  From d0 at rest,
+//    a0 = -w^2 d0, with y = w H large, r = 2 z/y (the same for all modes), b and c Newmark's beta and gamma:
 //    the equation of the step leaves H^2 a1 = ((1 - c) r + 1/2 - b)/(c r + b) y^2 d0 to leading order, and so
 //        v1/(w d0) = (c/2 - b)/(c r + b) y,     d1/d0 = (b - c/2) r/(c r + b) y^2.
 //    For every spectral radius |b - c/2| <= b/4 and <= c/6 (0 of Newmark's average acceleration): speeds to
-//    y/4, places to min(r/4, 1/6) y^2 times what was
-//    there, damped from then on.  Energy: at most (1 + y/4 + min(r/4, 1/6) y^2)^2
-//    -> accurate, stable, bounded
+//    y/4, positions to min(r/4, 1/6) y^2 times what was there, damped from then on.  Energy: at most (1 + y/4
+//    + min(r/4, 1/6) y^2)^2.
+//      -> accurate, stable, bounded
 // 3. L-stable methods where every mode has y = w H >= 100: |R(iy)| falls like C/y, and in the 20 steps before
-// the error is looked at a mode falls by
-//    (C/y)^20, below the bar for every C <= 86; the exact motion of these modes, damped by e^{-z_1 w_1 t},
-//    has come to rest as well.    -> accurate
+//    the error is sampled a mode falls by (C/y)^20, below the bar for every C <= 86; the exact motion of
+//    these modes, damped by e^{-z_1 w_1 t}, has come to rest as well.
+//      -> accurate
 // 4. Any stable method where every mode is resolved.  The local error of order p is at most |z|^{p+1}, z = w
-// H (its constant is below 1 for all
-//    methods in use: 1/2 for Euler's, 1/12 for the trapezoidal rule); the errors add up and are damped:
-//        error <= max_t (w t) (w H)^p e^{-z w t} = (w H)^p/(e z), and (w T) (w H)^p where that is less (no
+//    H (its constant is below 1 for all methods in use: 1/2 for Euler's, 1/12 for the trapezoidal rule); the
+//    errors add up and are damped:
+//        error <= max_t (w t) (w H)^p e^{-z w t} = (w H)^p/(e z),  and (w T) (w H)^p where that is less (no
 //        damping).
-//    Where that is below the bar for every mode
-//    -> accurate
+//    Where that is below the bar for every mode:
+//      -> accurate
 //    For a method whose energy is bounded by its amplification alone, 4 applies within the limit of 5 only.
 // 5. Explicit methods at a fixed step.  The system is a direct sum of its modes, and a linear method acts on
-// each alone: it is stable on the
-//    system exactly if it is on every (w_j, z_j), one oscillator each.  That amplification r is found by
-//    running the method on the oscillator.
-//    r > 1 makes the energy r^(2 n).  Beyond 1e3 in the row's periods, the run is followed to its end:
-//    overflow, a force that is not finite,
-//    and that must be said
-//    -> error
-//    Less, and it ends where it ends
-//    -> bounded, grew, error
-//    The modes hold 1/n of the energy each: growing amplitudes alone are an error of sqrt(sum_j (r_j^n -
-//    1)^2/n).  Where the bar hides that -> accurate, stable as well
-//    Within (r <= 1, to what shows in the row's periods)
-//    -> accurate, stable, bounded
+//    each alone: it is stable on the system exactly if it is on every (w_j, z_j), one oscillator each.  That
+//    amplification r is found by running the method on the oscillator.
+//    - r > 1 makes the energy r^(2 n).  Beyond 1e3 in the row's periods, the run is followed to its end:
+//      overflow, a force that is not finite, and that must be said.
+//        -> error
+//    - Less, and it ends where it ends.
+//        -> bounded, grew, error
+//    - The modes hold 1/n of the energy each: growing amplitudes alone are an error of sqrt(sum_j (r_j^n -
+//      1)^2/n).  Where the bar hides that, also:
+//        -> accurate, stable
+//    - Within (r <= 1, to what shows in the row's periods):
+//        -> accurate, stable, bounded
 //    A bound that no run can talk away: with s force evaluations a step no explicit method is stable on the
-//    imaginary axis beyond w H = 2 s
-//    (s - 1 of Runge-Kutta methods, Vichnevetsky 1983; 2 s of methods that alternate positions and speeds,
-//    Chawla and Sharma 1981; damping that is
-//    taken implicitly stretches it by sqrt(1 + z^2) + z).  Beyond it nothing but an error will do.
+//    imaginary axis beyond w H = 2 s (s - 1 of Runge-Kutta methods, Vichnevetsky 1983; 2 s of methods that
+//    alternate positions and speeds, Chawla and Sharma 1981; damping that is taken implicitly stretches it by
+//    sqrt(1 + z^2) + z).  Beyond it nothing but an error will do.
 // 6. Error control.  The flow never expands the energy's norm, so local errors add up at most: error <=
-// (number of steps) x (what a step may err).
-//    The second factor is WRMS <= 1 in the weights of the method, turned into the energy's norm
-//    (LinearProblem::tolerance).  Of a multistep method the
-//    norm is another one (2); a factor of 10 covers the norms' ratio and that its estimate is of the leading
-//    term alone.  The bound takes the worst of
-//    every step in the stiffest mode; where that makes it useless, 1e4 rtol is asked for.
-//    -> accurate
+//    (number of steps) x (what a step may err).  The second factor is WRMS <= 1 in the weights of the method,
+//    converted to the energy's norm (LinearProblem::tolerance).  Of a multistep method the norm is another
+//    one (2); a factor of 10 covers the norms' ratio and that its estimate is of the leading term alone.  The
+//    bound takes the worst of every step in the stiffest mode; where that makes it useless, 1e4 rtol is asked
+//    for.
+//      -> accurate
 //    Explicit ones need steps below about 10/(fastest rate) (no method here has a stability region that
-//    reaches farther), and take them where
-//    that makes fewer than the limit of steps a period; beyond that they must say so
-//    -> accurate; error
+//    reaches farther), and take them where that makes fewer than the limit of steps a period; beyond that
+//    they must say so.
+//      -> accurate; error
 //    A pair of order p estimates the error of order p - 1, (w h)^p in q's weight rtol atol_q: h w = (rtol
-//    atol_q)^(1/p) at the least while the stiffest mode
-//    is alive, y (rtol atol_q)^(-1/p) steps a period.  Where that passes the limit of steps, it may say so
-//    instead                  -> accurate, error
+//    atol_q)^(1/p) at the least while the stiffest mode is alive, y (rtol atol_q)^(-1/p) steps a period.
+//    Where that passes the limit of steps, it may say so instead.
+//      -> accurate, error
 // 7. Statics has no motion to be right about: it finds the equilibrium that the motion ends in.
-// -> accurate
+//      -> accurate
+//
 // Rounding: K x is right to eps w_max^2, and the slowest mode feels it by eps (w_max/w_1)^2, added to every
 // bar.
 

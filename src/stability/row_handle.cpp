@@ -5,24 +5,27 @@
 #include "scene_run.h"
 
 // The tool alone under its virtual coupling (m, I; k, b; k_r, b_r), against every integrator of its ticks of
-// h = 1 ms. Thrown: the handle jumps by d = 1 m at one tick and stays.  The coupling then stores 1/2 k d^2
-// and is passive: the tool is never farther from the handle than d, and
-//   slower than d sqrt(k/m).                                                       stable: within both, to 1
-//   %;  bounded: ten times
-// Spun: the handle turns at W = 1000 rad/s, a radian a tick, about one axis.  Moment <= k_r pi + b_r (W - w):
-// the tool is braked as soon as b_r (w - W) > k_r pi, so
-//   w <= W + k_r pi/b_r.                                                           stable: within it, to 1 %;
-//   bounded: ten times
-//   The ticks see the handle's angle modulo 2 pi only: which way round the spring pulls is chance, the bound
-//   does not care.
+// h = 1 ms.
+//
+// Thrown: the handle jumps by d = 1 m at one tick and stays.  The coupling then stores 1/2 k d^2 and is
+// passive: the tool is never farther from the handle than d, and slower than d sqrt(k/m).  Stable: within
+// both, to 1 %.  Bounded: ten times.
+//
+// Spun: the handle rotates at W = 1000 rad/s, a radian a tick, about one axis.  Moment <= k_r pi + b_r (W -
+// w): the tool is braked as soon as b_r (w - W) > k_r pi, so w <= W + k_r pi/b_r.  Stable: within it, to 1 %.
+// Bounded: ten times.  The ticks see the handle's angle modulo 2 pi only: which way round the spring pulls is
+// chance, the bound does not care.
+//
 // A scheme that is explicit has a limit, here kept (k h^2/m = 3e-3, b h/m = 0.02, k_r h^2/I = 0.08, b_r h/I =
-// 0.25, all well below 2).  So for all        -> stable, bounded A million ticks, the handle at rest and the
-// tool on it: the coupling's wrench is zero to rounding and its damper takes what rounding puts in; drift
-// below
-//   1e-12 m and rad, and memory does not grow.
+// 0.25, all well below 2).  So for all:
+//   -> stable, bounded
+//
+// A million ticks, the handle at rest and the tool on it: the coupling's wrench is zero to rounding and its
+// damper takes what rounding puts in; drift below 1e-12 m and rad, and memory does not grow.
 //   -> accurate
-//   The same with the tool pulled by a constant contact force F: it rests F/k away, and stays there to 1e-9
-//   F/k.                                           -> accurate
+// The same with the tool pulled by a constant contact force F: it rests F/k away, and stays there to 1e-9
+// F/k.
+//   -> accurate
 
 namespace palpate::stability {
 

@@ -6,32 +6,36 @@
 #include "scene_run.h"
 
 // A million haptic ticks are 1000 s, a hundred thousand exchange periods of 10 ms, each with its own query of
-// the contact. Unloaded, the cube stays where it was put: rounding of eps a period, not summed but in the
-// worst case, 1e5 eps = 2e-11 of its size     -> accurate
+// the contact.
+//
+// Unloaded, the cube stays where it was put: rounding of eps a period, not summed but in the worst case, 1e5
+// eps = 2e-11 of its size.
+//   -> accurate
 //   w H = 0.3 of its fastest mode, and light damping: within every explicit limit, that of the two-stage
-//   methods too, which have none on the imaginary axis but grow
-//   by y^4/8 a step, y = w H, less than the damping beta w^2 H/2 takes.
+//   methods too, which have none on the imaginary axis but grow by y^4/8 a step, y = w H, less than the
+//   damping beta w^2 H/2 takes.
+//
 // On an incline below the angle of friction it creeps, for regularised friction is a damper at small speeds:
-// mu p A v/v_r = weight along the plane
-//   gives v = v_r tan(a)/mu, a steady motion that every consistent method keeps, and that is subtracted; the
-//   rest stays below 1e-4 of the creep.
-//   The run starts from the settled creep, which linearly implicit Euler has found: contact is closed and
-//   stays so, the motion is linear but for what is left of settling,
-//   and stability is that of linear theory.  (How contact closes is another row's matter: only algebraically
-//   stable methods keep from making energy there.)
-//   A-stable, fixed or under error control
-//   -> accurate
-//   Explicit methods under error control stand at their stability limit, where the stiffest modes are kept
-//   alive at the size of the tolerance: d = rtol L in place, e = rtol c in
-//   speed (c the wave speed).  Friction is the product of pressure and speed, so that shifts the mean creep v
-//   by (d/p)(e/v) of itself at most, p = rho g L/k = 5e-5 m
-//   the depth of rest: rtol is 1e-5, which makes that 5e-5
-//   -> accurate
-//   Explicit methods at fixed steps: the floor, k = 1e7 Pa/m under a quarter of the face, and an eighth of
-//   the mass make w H = 6, beyond their imaginary limits (2 to 4) -> error
-//   Multi-rate: where the spectral radius of its step about the steady creep (multirate_theory.cpp) makes 1e3
-//   of rounding in the run  -> grew, error
-// (statics has no creep: nothing holds the cube along the plane; it must say so, or stay).
+// mu p A v/v_r = weight along the plane gives v = v_r tan(a)/mu, a steady motion that every consistent method
+// keeps, and that is subtracted; the rest stays below 1e-4 of the creep.  The run starts from the settled
+// creep, which linearly implicit Euler has found: contact is closed and stays so, the motion is linear but
+// for what is left of settling, and stability is that of linear theory.  (How contact closes is another row's
+// matter: only algebraically stable methods keep from making energy there.)
+// - A-stable, fixed or under error control.
+//     -> accurate
+// - Explicit methods under error control stand at their stability limit, where the stiffest modes are kept
+//   alive at the size of the tolerance: d = rtol L in position, e = rtol c in speed (c the wave speed).
+//   Friction is the product of pressure and speed, so that shifts the mean creep v by (d/p)(e/v) of itself at
+//   most, p = rho g L/k = 5e-5 m the depth of rest: rtol is 1e-5, which makes that 5e-5.
+//     -> accurate
+// - Explicit methods at fixed steps: the floor, k = 1e7 Pa/m under a quarter of the face, and an eighth of
+//   the mass make w H = 6, beyond their imaginary limits (2 to 4).
+//     -> error
+// - Multi-rate: where the spectral radius of its step about the steady creep (multirate_theory.cpp) makes 1e3
+//   of rounding in the run:
+//     -> grew, error
+// - Statics has no creep: nothing holds the cube along the plane; it must say so, or stay.
+//
 // Memory must not grow: less than 2 MiB from the hundredth period to the last.
 
 namespace palpate::stability {

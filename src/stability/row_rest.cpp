@@ -6,19 +6,23 @@
 
 // At rest without load every right-hand side is zero but for rounding of the rotations, eps E x (face area) a
 // node, which moves nothing farther than eps times the body's size against its stiffness: a thousand times
-// that, 1e-12 of the size, is the bar, for every method                -> accurate (Soft enough, w H < 1, for
-// every explicit limit: beyond it rounding grows like anything else.) Explicit methods alone may let it grow
-// where a rotated body makes rounding a force: under error control there is no error to see, so steps
-// lengthen past the stability limit until rounding has grown to the tolerance; and at a fixed step a
-// Runge-Kutta method of order 2 has |R(iy)|^2 = 1 + y^4/4 > 1 on every undamped mode, at any step
-// -> accurate, bounded Free fall of one tetrahedron from rest, z = -g t^2/2, an internal force that stays
-// zero:
-//   order 1 at a fixed step H (every one of them: the error per step is g H^2/2): relative error H/T exactly;
-//   order >= 2, one-step: exact for quadratics; multistep: its first step is of order 1, one error of g H^2/2
+// that, 1e-12 of the size, is the bar, for every method.
+//   -> accurate
+// (Soft enough, w H < 1, for every explicit limit: beyond it rounding grows like anything else.)
+// Explicit methods alone may let it grow where a rotated body makes rounding a force: under error control
+// there is no error to see, so steps lengthen past the stability limit until rounding has grown to the
+// tolerance; and at a fixed step a Runge-Kutta method of order 2 has |R(iy)|^2 = 1 + y^4/4 > 1 on every
+// undamped mode, at any step.
+//   -> accurate, bounded
+//
+// Free fall of one tetrahedron from rest, z = -g t^2/2, an internal force that stays zero:
+// - order 1 at a fixed step H (every one of them: the error per step is g H^2/2): relative error H/T exactly;
+// - order >= 2, one-step: exact for quadratics; multistep: its first step is of order 1, one error of g H^2/2
 //   carried on: at most H/T as well;
-//   error control: the sum of what its steps may err, taken as 100 rtol;
-//   statics: nothing holds the body, the matrix is singular: that must be said
-//   -> error
+// - error control: the sum of what its steps may err, taken as 100 rtol;
+// - statics: nothing holds the body, the matrix is singular: that must be said.
+//     -> error
+//
 // No body: time passes.
 
 namespace palpate::stability {

@@ -7,41 +7,36 @@
 #include "multirate_theory.h"
 
 // Thrown at an obstacle.  No gravity: what is available is the energy of the throw, E0 = 1/2 m v^2; the
-// mechanical energy counts body and contact spring.
-//   In continuous time it never rises: damping takes, the gap of a face with a fixed normal is conservative,
-//   and a vertex that is seen nearer to another face, or
-//   no longer inside, leaves the spring less.
-//   - Error control keeps to that within its tolerance, summed over the steps.  A step may err by rtol
-//     (atol_u c + rms u) in speed, c = sqrt(E/rho) the scale of speeds
-//     (error_weights.h): of a body at speed v a relative rtol max(1, atol_u c/v), and its energy by twice
-//     that at most; with some hundred steps of relevance
-//     1e-2 E0, and more of a body that is slower than a tenth of its own waves
+// mechanical energy counts body and contact spring.  In continuous time it never rises: damping takes, the
+// gap of a face with a fixed normal is conservative, and a vertex that is seen nearer to another face, or no
+// longer inside, leaves the spring less.
+// - Error control keeps to that within its tolerance, summed over the steps.  A step may err by rtol (atol_u
+//   c + rms u) in speed, c = sqrt(E/rho) the scale of speeds (error_weights.h): of a body at speed v a
+//   relative rtol max(1, atol_u c/v), and its energy by twice that at most; with some hundred steps of
+//   relevance 1e-2 E0, and more of a body that is slower than a tenth of its own waves.
 //     -> stable; error
-//   - A fixed step H has no theorem for it.  Where the tangent is taken at the step's start, the contact is
-//     open there: the body flies on by v H into the plane, and
-//     the spring then holds 1/2 k A (v H)^2, that is k A H^2/m times E0: 8e-8 k m/Pa E0 and so, at k = 1e12
-//     Pa/m, far more than there was, to be given back as speed
-//     or damped away, as the method does it.  Twice that and E0 once more (a second touch, a bending body) is
-//     the bound; more has no such reason.  Methods that
-//     solve for the contact at the step's end do not need it.
+// - A fixed step H has no theorem for it.  Where the tangent is taken at the step's start, the contact is
+//   open there: the body flies on by v H into the plane, and the spring then holds 1/2 k A (v H)^2, that is k
+//   A H^2/m times E0: 8e-8 k m/Pa E0 and so, at k = 1e12 Pa/m, far more than there was, to be given back as
+//   speed or damped away, as the method does it.  Twice that and E0 once more (a second touch, a bending
+//   body) is the bound; more has no such reason.  Methods that solve for the contact at the step's end do not
+//   need it.
 //     -> stable, bounded; error
-//   - A multi-rate step has the same reason on its other side: within it the contact throws nodes about
-//     while the elastic force is a given polynomial of time.  Nodes
-//     that go their way for v H unanswered load the springs between them by up to (w H)^2 E0, w the body's
-//     largest frequency.  Twice that as well; but where the
-//     step's matrix with all of the lower side in contact has a spectral radius r above 1
-//     (multirate_theory.cpp) each of the n steps of a touch multiplies what is there:
-//     where r^(2 n) > 2, n the steps of the row, that is no bound
+// - A multi-rate step has the same reason on its other side: within it the contact throws nodes about while
+//   the elastic force is a given polynomial of time.  Nodes that go their way for v H unanswered load the
+//   springs between them by up to (w H)^2 E0, w the body's largest frequency.  Twice that as well; but where
+//   the step's matrix with all of the lower side in contact has a spectral radius r above 1
+//   (multirate_theory.cpp) each of the n steps of a touch multiplies what is there: where r^(2 n) > 2, n the
+//   steps of the row, that is no bound.
 //     -> stable, bounded, grew; error
-//   - Explicit fixed steps: a node on the contact alone is an oscillator of w_c^2 = k A_n/m_n, y = w_c H;
-//     one step of s stages takes position times w_c and speed to at
-//     most P = 1 + y + ... + y^s/s! times themselves (the majorant of its polynomial), their energy to P^2.
-//     A touch is at most half a swing long, pi/y steps and one
-//     that it begins in: P^(2n), n = 1 + ceil(pi/y), is the bound where it is more than the one above: an
-//     explicit method may throw the body back so fast, and the body is
-//     then free.  What goes beyond a thousand times E0 is followed until it overflows, and must say so
+// - Explicit fixed steps: a node on the contact alone is an oscillator of w_c^2 = k A_n/m_n, y = w_c H; one
+//   step of s stages takes position times w_c and speed to at most P = 1 + y + ... + y^s/s! times themselves
+//   (the majorant of its polynomial), their energy to P^2.  A touch is at most half a swing long, pi/y steps
+//   and one that it begins in: P^(2n), n = 1 + ceil(pi/y), is the bound where it is more than the one above:
+//   an explicit method may throw the body back so fast, and the body is then free.  What goes beyond a
+//   thousand times E0 is followed until it overflows, and must say so.
 //     -> the same set
-// Statics: a free body has no equilibrium that the throw would end in: anything clear.
+// - Statics: a free body has no equilibrium that the throw would end in: anything clear.
 
 namespace palpate::stability {
 namespace {
