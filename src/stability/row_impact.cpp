@@ -3,15 +3,14 @@
 #include "throw.h"
 
 // A slab of 5 mm, E = 1e6 Pa, at up to three times the speed of its own waves.  Its energy is judged as that
-// of any throw. On a plane: what is behind it is inside, nothing can be missed.
-// On a rigid plate as thin as itself, k = 1e7 Pa/m: a vertex that is above at one query and below at the next
-// was never seen inside, and the contact must have counted
-//   it.  At 100 m/s a period is 200 mm long; the spring alone would stop the slab after v sqrt(m/(k A)) = 70
-//   mm and throw it out of the half-space that it takes
-//   the plate for within 2.2 ms: after one period of 2 ms it is through.  The count is taken here once more,
-//   from the nodes' places alone (a plate that reaches to where
-//   nothing arrives is crossed exactly where z changes from above to below or back), and must be the
-//   contact's own at every query.
+// of any throw.
+// - On a plane: what is behind it is inside, nothing can be missed.
+// - On a rigid plate as thin as itself, k = 1e7 Pa/m: a vertex that is above at one query and below at the
+//   next was never seen inside, and the contact must have counted it.  At 100 m/s a period is 200 mm long;
+//   the spring alone would stop the slab after v sqrt(m/(k A)) = 70 mm and throw it out of the half-space
+//   that it takes the plate for within 2.2 ms: after one period of 2 ms it is through.  The count is taken
+//   here once more, from the nodes' positions alone (a plate that reaches to where nothing arrives is crossed
+//   exactly where z changes from above to below or back), and must be the contact's own at every query.
 
 namespace palpate::stability {
 namespace {

@@ -7,20 +7,26 @@
 // the only source of energy.  With the handle's whole path d the coupling's spring can hold 1/2 k d^2, and a
 // cube squeezed by d over its whole face 1/2 E L d^2; the lesser of the two is more than the cube can be
 // given, E0.
-//   A coupled system in continuous time is passive; partitioned, the tool sees a contact that is linear over
-//   a period and the cube sees a tool that does not
-//   answer within it, and each exchange may create energy of the order of the work done in it.  No theorem
-//   bounds it for every stiffness: "bounded" means here that
-//   the cube never holds more than 100 E0 and the tool never strays from the handle's path by more than 10 d.
-//   More is a failure; so is an end without words.
-//   stable: not more than E0 and within 2 d (a spring let go from d swings to -d).
+//
+// A coupled system in continuous time is passive; partitioned, the tool sees a contact that is linear over a
+// period and the cube sees a tool that does not answer within it, and each exchange may create energy of the
+// order of the work done in it.  No theorem bounds it for every stiffness: "bounded" means here that the cube
+// never holds more than 100 E0 and the tool never strays from the handle's path by more than 10 d.  More is a
+// failure; so is an end without words.  Stable: not more than E0 and within 2 d (a spring let go from d
+// swings to -d).
+//
 // Statics follows the load from equilibrium to equilibrium; it may find none where the tool has come free,
-// and must then say so. Monolithic: cube and tool are one system, passive but for the hand's work.  Error
-// control keeps to that and finds its steps whatever the masses, if it is implicit -> stable.
-//   Explicit methods need steps of a few b^-1 m of the light tool, 1e-9 s and 1e6 a period and more, beyond
-//   the limit                        -> error (the light one)
-//   Fixed steps of a refresh, 10 ms, find the contact open or closed as in the contact rows: no theorem
-//   -> stable, bounded; error
+// and must then say so.
+//
+// Monolithic: cube and tool are one system, passive but for the hand's work.
+// - Error control keeps to that and finds its steps whatever the masses, if it is implicit.
+//     -> stable
+// - Explicit methods need steps of a few b^-1 m of the light tool, 1e-9 s and 1e6 a period and more, beyond
+//   the limit.
+//     -> error (the light one)
+// - Fixed steps of a refresh, 10 ms, find the contact open or closed as in the contact rows: no theorem.
+//     -> stable, bounded; error
+//
 // Density ratio: the coupling follows the hand as fast for either mass (k = m (60 rad/s)^2, critically
 // damped) for the heavy one; the light one, 4e-9 kg, hangs on 300 N/m: a frequency of 3e5 rad/s against ticks
 // of 1 ms.
