@@ -31,8 +31,8 @@ constexpr const char* kExamples = R"(Examples:
 
 `palpate COMMAND --help` tells more about each.
 
-Exit status: 0 when all that the command promises was done; 1 on an error; 3 when something of it is missing, which the
-last line names; 130 after Ctrl-C.)";
+Exit status: 0 when all that the command promises was done; 1 on an error; 3 when something of it is
+missing, which the last line names; 130 after Ctrl-C.)";
 
 constexpr const char* kSceneHelp =
     "a scene file (.toml), or the name of one that comes with palpate (`palpate list scenes`)";
@@ -85,8 +85,9 @@ void add_run(CLI::App& app, Invocation& invocation) {
   palpate run press-ball --set body.0.youngs_modulus_pa=2e4 --picture --report -o out/softer
   palpate run falling-ball --trace --report      which steps were rejected, why, and where
 
-Writes into the output folder: run.vtkhdf (states as a time series: ParaView, h5py), force.csv (force and torque on the hand),
-summary.json (versions, options, counts, timings).  Ctrl-C ends the run; what was recorded by then is whole.)");
+Writes into the output folder: run.vtkhdf (states as a time series: ParaView, h5py), force.csv (force and
+torque on the hand), summary.json (versions, options, counts, timings).  Ctrl-C ends the run; what was
+recorded by then is whole.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return run(*arguments); };
     invocation.factorises = true;
@@ -143,9 +144,11 @@ void add_compare(CLI::App& app, Invocation& invocation) {
   palpate compare cantilever press-ball --limit-s 5 -o out/both
   palpate compare press-ball --repeats 1 --integrator cvode-bdf --integrator linearly-implicit-euler
 
-Each point is one integrator at one tolerance or step, at the scene's fixed exchange period, in a process of its own, against a tight reference
-whose own error is printed.  The ladders are the scene's [[compare.ladder]], and a default one for every other integrator.  Ctrl-C or a crash loses
-nothing: the same line goes on where it stopped.  Writes compare.csv, reference.json, study.sqlite (one row a run) and report.html.)");
+Each point is one integrator at one tolerance or step, at the scene's fixed exchange period, in a process of
+its own, against a tight reference whose own error is printed.  The ladders are the scene's
+[[compare.ladder]], and a default one for every other integrator.  Ctrl-C or a crash loses nothing: the same
+line goes on where it stopped.  Writes compare.csv, reference.json, study.sqlite (one row a run) and
+report.html.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return compare(*arguments); };
     invocation.factorises = true;
@@ -191,8 +194,9 @@ void add_modes(CLI::App& app, Invocation& invocation) {
   palpate modes cantilever --count 20 --picture -o out/modes
   palpate modes press-ball --set body.0.youngs_modulus_pa=2e4
 
-Solves K phi = w^2 M phi at the scene's start, damping left out; a free body begins with six rigid motions, 0 Hz.  Writes modes.csv, and
-modes.vtkhdf: ParaView opens it as a time series in which time is the mode's number, step by step the displaced shapes.)");
+Solves K phi = w^2 M phi at the scene's start, damping left out; a free body begins with six rigid motions,
+0 Hz.  Writes modes.csv, and modes.vtkhdf: ParaView opens it as a time series in which time is the mode's
+number, step by step the displaced shapes.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return modes(*arguments); };
     invocation.factorises = true;
@@ -231,7 +235,8 @@ void add_stability(CLI::App& app, Invocation& invocation) {
   palpate stability --row youngs-modulus --integrator cvode-bdf --cells
   palpate stability --slow --seeds 100 -o out/stability
 
-Writes stability.csv, stability.json and report.html with the heat map.  Exit status 0 when every cell is as theory expects, else 1.)");
+Writes stability.csv, stability.json and report.html with the heat map.  Exit status 0 when every cell is as
+theory expects, else 1.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return stability(*arguments); };
     invocation.factorises = true;

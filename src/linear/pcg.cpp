@@ -98,7 +98,6 @@ class Pcg final : public dynamics::LinearSolver {
 
  private:
   // --- preconditioner
-  // -----------------------------------------------------------------------------------------------
   void find_diagonal(const BorderedMatrix& A) {
     const ScopedTimer timer(counters_.symbolic_s);
     ++counters_.symbolic;
@@ -198,7 +197,6 @@ class Pcg final : public dynamics::LinearSolver {
   }
 
   // --- iteration
-  // ----------------------------------------------------------------------------------------------------
   void check_right_hand_side(Eigen::Index rows) const {
     PALPATE_CHECK(status_ == SolveStatus::kOk, "solver pcg: solve without a factor");
     PALPATE_CHECK(matrix_->values_version == values_version_,

@@ -64,32 +64,40 @@ class Planted(unittest.TestCase):
         self.assertEqual(breaches_of({}), ([], []))
 
     def test_arrow_upwards(self):
-        self.expect({"src/core/bad.cpp": '\n#include "palpate/fem/body.h"\n'}, "src/core/bad.cpp:2:", "core may not include fem")
+        self.expect({"src/core/bad.cpp": '\n#include "palpate/fem/body.h"\n'},
+                    "src/core/bad.cpp:2:", "core may not include fem")
 
     def test_arrow_in_a_public_header_with_angle_brackets(self):
-        self.expect({"include/palpate/device/bad.h": "#include <palpate/fem/body.h>\n"}, "device may not include fem")
+        self.expect({"include/palpate/device/bad.h": "#include <palpate/fem/body.h>\n"},
+                    "device may not include fem")
 
     def test_arrow_through_a_relative_path(self):
-        self.expect({"src/core/bad.cpp": '#include "../../include/palpate/fem/body.h"\n'}, "core may not include fem")
+        self.expect({"src/core/bad.cpp": '#include "../../include/palpate/fem/body.h"\n'},
+                    "core may not include fem")
 
     def test_scene_knows_only_plain_data(self):
         self.expect({"src/scene/load.cpp": '#include "palpate/fem/body.h"\n'}, "scene may not include fem")
 
     def test_plain_data_is_made_of_plain_data_only(self):
-        self.expect({"include/palpate/mesh/spec.h": '#include "palpate/fem/body.h"\n'}, "mesh may not include fem")
+        self.expect({"include/palpate/mesh/spec.h": '#include "palpate/fem/body.h"\n'},
+                    "mesh may not include fem")
 
     def test_comparison_sees_scenes_not_their_parts(self):
-        self.expect({"src/compare/compare.cpp": '#include "palpate/fem/body.h"\n'}, "compare may not include fem")
+        self.expect({"src/compare/compare.cpp": '#include "palpate/fem/body.h"\n'},
+                    "compare may not include fem")
 
     def test_validation_does_not_know_the_command_line(self):
-        self.expect({"include/palpate/cli/bad.h": "\n", "validation/bad.cpp": '#include "palpate/cli/bad.h"\n'},
+        self.expect({"include/palpate/cli/bad.h": "\n",
+                     "validation/bad.cpp": '#include "palpate/cli/bad.h"\n'},
                     "validation may not include cli")
 
     def test_private_header_of_another_part(self):
-        self.expect({"src/contact/a.h": "\n", "src/loop/bad.cpp": '#include "contact/a.h"\n'}, "contact/a.h is private to contact")
+        self.expect({"src/contact/a.h": "\n", "src/loop/bad.cpp": '#include "contact/a.h"\n'},
+                    "contact/a.h is private to contact")
 
     def test_public_header_includes_a_private_one(self):
-        self.expect({"include/palpate/fem/bad.h": '#include "fem/element.h"\n'}, "public header includes the private")
+        self.expect({"include/palpate/fem/bad.h": '#include "fem/element.h"\n'},
+                    "public header includes the private")
 
     def test_unknown_part(self):
         self.expect({"src/magic/wand.cpp": "\n"}, "not in the table")
@@ -98,19 +106,27 @@ class Planted(unittest.TestCase):
         self.expect({"src/fem/bad.cpp": '#include "palpate/fem/gone.h"\n'}, "does not exist")
 
     def test_cycle_of_files_in_one_part(self):
-        self.expect({"src/fem/shape.h": '#include "element.h"\n'}, "include cycle", "src/fem/element.h", "src/fem/shape.h")
+        self.expect({"src/fem/shape.h": '#include "element.h"\n'},
+                    "include cycle", "src/fem/element.h", "src/fem/shape.h")
 
     def test_outside_libraries_stay_where_they_belong(self):
-        planted = {"cvode/cvode.h": "SUNDIALS", "nvector/nvector_serial.h": "SUNDIALS", "Simbody.h": "Simbody", "SimTKmath.h": "Simbody",
-                   "EGL/egl.h": "EGL", "epoxy/gl.h": "EGL", "ccd/ccd.h": "libccd", "libqhull_r/qhull_ra.h": "Qhull", "suitesparse/cholmod.h": "SuiteSparse",
-                   "cholmod.h": "SuiteSparse", "CLI/CLI.hpp": "CLI11", "toml++/toml.h": "toml++", "hdf5.h": "HDF5"}
+        planted = {"cvode/cvode.h": "SUNDIALS", "nvector/nvector_serial.h": "SUNDIALS",
+                   "Simbody.h": "Simbody",
+                   "SimTKmath.h": "Simbody",
+                   "EGL/egl.h": "EGL", "epoxy/gl.h": "EGL", "ccd/ccd.h": "libccd",
+                   "libqhull_r/qhull_ra.h": "Qhull",
+                   "suitesparse/cholmod.h": "SuiteSparse",
+                   "cholmod.h": "SuiteSparse", "CLI/CLI.hpp": "CLI11",
+                   "toml++/toml.h": "toml++", "hdf5.h": "HDF5"}
         for header, library in planted.items():
             for folder in ("src/fem", "tests/fem", "validation"):
                 with self.subTest(header=header, folder=folder):
-                    self.expect({f"{folder}/bad.cpp": f"# include <{header}>\n"}, library, f"{folder}/bad.cpp:1:")
+                    self.expect({f"{folder}/bad.cpp": f"# include <{header}>\n"},
+                                library, f"{folder}/bad.cpp:1:")
 
     def test_links(self):
-        self.expect({"src/core/CMakeLists.txt": "palpate_part(core\n  PUBLIC palpate::fem)\n"}, "src/core/CMakeLists.txt:2:",
+        self.expect({"src/core/CMakeLists.txt": "palpate_part(core\n  PUBLIC palpate::fem)\n"},
+                    "src/core/CMakeLists.txt:2:",
                     "core may not link palpate::fem")
 
     def test_long_file_is_reported_not_refused(self):

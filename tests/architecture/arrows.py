@@ -3,14 +3,15 @@
 
     arrows.py [TREE]      prints each breach as FILE:LINE: what, and exits 1 when there is one
 
-ALLOWED is the table of the parts: what a part may include besides itself.  Everything here is data; the check is below it.
+ALLOWED is the table of the parts: what a part may include besides itself.  Everything here is data; the check
+is below it.
 """
 import re
 import sys
 from pathlib import Path
 
-BELOW_LOOP = ["core", "mesh", "dynamics", "fem", "proxy", "gl", "contact", "tool", "device", "linear", "modes",
-              "integrate", "store", "render", "scene"]
+BELOW_LOOP = ["core", "mesh", "dynamics", "fem", "proxy", "gl", "contact", "tool", "device", "linear",
+              "modes", "integrate", "store", "render", "scene"]
 
 ALLOWED = {
     "core": [],
@@ -29,7 +30,8 @@ ALLOWED = {
     "store": ["core", "mesh"],  # mesh: the native mesh file
     "render": ["core", "mesh", "gl"],
     "model": ["core", "mesh", "shapes", "proxy", "store"],
-    "model_program": ["core", "mesh", "proxy", "store", "render", "report", "model", "shapes", "cli"],  # src/cli/model_program: the program behind `palpate model`
+    # src/cli/model_program: the program behind `palpate model`
+    "model_program": ["core", "mesh", "proxy", "store", "render", "report", "model", "shapes", "cli"],
     "scene": ["core"],  # and the spec.h of every part: see is_allowed
     "loop": BELOW_LOOP,
     "compare": ["core", "scene", "loop", "store"],  # core and scene: what loop's own headers speak in
@@ -43,9 +45,12 @@ ALLOWED = {
 
 # Headers of outside libraries, and the only folders that may include them.
 OUTSIDE = [
-    ("SUNDIALS", r"(sundials|cvode|cvodes|arkode|ida|idas|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol|sunmemory)/", ["src/integrate", "tests/integrate"]),
+    ("SUNDIALS",
+     r"(sundials|cvode|cvodes|arkode|ida|idas|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol|sunmemory)/",
+     ["src/integrate", "tests/integrate"]),
     ("Simbody", r"(Simbody|SimTK\w*|simbody|simmath)(\.h$|/)", ["src/tool", "tests/isolation"]),
-    ("EGL and OpenGL", r"(EGL|GL|GLES\d?|KHR|epoxy)/", ["src/gl", "include/palpate/gl", "src/render", "tests/gl", "tests/render"]),
+    ("EGL and OpenGL", r"(EGL|GL|GLES\d?|KHR|epoxy)/",
+     ["src/gl", "include/palpate/gl", "src/render", "tests/gl", "tests/render"]),
     ("libccd", r"ccd/", ["src/proxy", "tests/proxy"]),
     ("Qhull", r"libqhull", ["src/proxy"]),
     ("SuiteSparse", r"(suitesparse/)?(cholmod|umfpack|klu|amd|SuiteSparse)\w*\.h", ["src/linear"]),
@@ -109,7 +114,8 @@ def is_allowed(source, target):
 
 
 def includes(tree, path):
-    for number, line in enumerate((tree / path).read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+    text = (tree / path).read_text(encoding="utf-8", errors="replace")
+    for number, line in enumerate(text.splitlines(), 1):
         match = INCLUDE.match(line)
         if match:
             yield number, match.group(1) == '"', match.group(2)
@@ -139,7 +145,8 @@ def find_cycle(graph):
 
 
 def source_files(tree, folders):
-    return sorted(path.relative_to(tree).as_posix() for folder in folders for path in (tree / folder).rglob("*")
+    return sorted(path.relative_to(tree).as_posix()
+                  for folder in folders for path in (tree / folder).rglob("*")
                   if path.suffix in SUFFIXES)
 
 
@@ -166,7 +173,8 @@ def check(tree):
                 continue
             if not is_allowed(path, target):
                 breaches.append(f"{path}:{number}: {own} may not include {part_of(target)} ({name})")
-            elif own != part_of(target) and target.startswith("src/") and not path.startswith(Path(target).parent.as_posix() + "/"):
+            elif (own != part_of(target) and target.startswith("src/")
+                  and not path.startswith(Path(target).parent.as_posix() + "/")):
                 breaches.append(f"{path}:{number}: {name} is private to {part_of(target)}")
             elif path.startswith("include/") and not target.startswith("include/"):
                 breaches.append(f"{path}:{number}: a public header includes the private {name}")
@@ -175,7 +183,8 @@ def check(tree):
         for number, _, name in includes(tree, path):
             for library, pattern, folders in OUTSIDE:
                 if re.match(pattern, name) and not any(path.startswith(folder + "/") for folder in folders):
-                    breaches.append(f"{path}:{number}: {library} ({name}) belongs in {', '.join(folders)} only")
+                    breaches.append(
+                        f"{path}:{number}: {library} ({name}) belongs in {', '.join(folders)} only")
         lines = (tree / path).read_text(encoding="utf-8", errors="replace").count("\n")
         if lines > LONG_FILE:
             remarks.append(f"{path}: {lines} lines, more than {LONG_FILE}: wants a reason")

@@ -182,7 +182,6 @@ TEST(GpuSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
 }
 
 // --- proxies
-// ------------------------------------------------------------------------------------------------------------
 
 // The same pose cut into 1, 8 and 64 cells: force and moment within 1 % (DESIGN 3.3: a surface point
 // contributes once), and the force as large as the uncut surface's, whose plane is the hulls' and tilted by

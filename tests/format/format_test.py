@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Every C++ source is as clang-format writes it (.clang-format: 110 columns); the check itself can fail."""
+"""Every C++ source is as clang-format writes it (.clang-format: 110 columns), and no line of any other text is
+longer; the checks themselves can fail."""
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,9 @@ from pathlib import Path
 
 TREE = Path(__file__).resolve().parents[2]
 FOLDERS = ("include", "src", "tests", "validation", "benchmarks")
+COLUMNS = 110
+NAMES = (".h", ".cpp", ".inl", ".py", ".toml", ".cmake", ".in", "CMakeLists.txt", ".md", "palpate", ".ci/run",
+         ".vert", ".frag", ".comp", ".glsl")
 
 
 def misformatted(files):
@@ -21,7 +25,26 @@ def misformatted(files):
     return sorted(set(lines))
 
 
+def too_long(text, markdown=False):
+    """Numbers of the lines that are too long: but for rows of a table, links and addresses in Markdown."""
+    return [number for number, line in enumerate(text.splitlines(), 1) if len(line) > COLUMNS
+            and not (markdown and (line.startswith(("|", "!", "<")) or "](" in line or "://" in line))]
+
+
 class Format(unittest.TestCase):
+    def test_lines(self):
+        files = [path for top in (".", "docs", "scenes", "shaders", ".ci", *FOLDERS)
+                 for path in ((TREE / top).glob("*") if top == "." else (TREE / top).rglob("*"))
+                 if path.is_file() and path.as_posix().endswith(NAMES)]
+        self.assertGreater(len(files), 600)
+        self.assertEqual([f"{path.relative_to(TREE)}:{number}" for path in sorted(files)
+                          for number in too_long(path.read_text(encoding="utf-8"), path.suffix == ".md")], [])
+
+    def test_a_long_line_is_found(self):
+        long = 111 * "x"
+        self.assertEqual(too_long(f"{long}\n{long[1:]}\n"), [1])
+        self.assertEqual(too_long(f"| {long}\n[a]({long})\n{long}\n", markdown=True), [3])
+
     def test_tree(self):
         files = sorted(path for folder in FOLDERS for path in (TREE / folder).rglob("*")
                        if path.suffix in (".h", ".cpp", ".inl"))

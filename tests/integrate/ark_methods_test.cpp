@@ -174,7 +174,6 @@ TEST(ArkMethods, NoStableTableOfTheInstalledVersionIsMissing) {
 }
 
 // --- Order on a stiff mode
-// ---------------------------------------------------------------------------------------------------------------
 //
 // Prothero and Robinson's problem in mechanical form: a stiff spring and damper that follow a smooth motion
 // g(t),

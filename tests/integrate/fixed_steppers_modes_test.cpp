@@ -11,7 +11,6 @@ using Mat2 = Eigen::Matrix2d;
 using Vec2 = Eigen::Vector2d;
 
 // --- Amplification of a mode: y = (q, u/w), y' = w G y, so that W = w h is all that enters a step.
-// -----------------------------------
 
 Mat2 generator(double z) { return (Mat2() << 0, 1, -1, -2 * z).finished(); }
 Mat2 matrix_of(const std::string& name, double W, double z) {
@@ -139,7 +138,6 @@ TEST(GeneralizedAlpha, HasItsSpectralRadiusAtInfinity) {
 }
 
 // --- What is kept, what is bounded
-// -----------------------------------------------------------------------------------------------------
 
 TEST(HandSteppers, KeepTheEnergyOfALinearSystemWhereTheoryDoes) {
   for (const std::string name : {"implicit-midpoint", "newmark"}) {

@@ -9,7 +9,6 @@ using namespace fakes;
 using namespace hand_steppers;
 
 // --- Orders in special circumstances
-// ---------------------------------------------------------------------------------------------------
 
 /// Error at 1.2 s of the oscillator, with outputs at uneven times, so that neighbouring intervals have other
 /// steps.
@@ -111,7 +110,6 @@ TEST(HandSteppers, InterpolateAtTheirOrder) {
 }
 
 // --- Newton
-// ----------------------------------------------------------------------------------------------------------------------------
 
 TEST(HandSteppers, TakeOneFactorForALinearStepAndOneForManyWhereItIsKept) {
   for (const std::string& name : kNewton) {

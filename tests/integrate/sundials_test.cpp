@@ -180,7 +180,6 @@ TEST(FixedStep, ABlowUpIsCalledByItsName) {
 }
 
 // --- many fast steps in a slow one
-// -------------------------------------------------------------------------------------
 
 /// A fast damper of 1e6/s: the explicit fast side needs some 4e4 steps for 0.1 s.  Raises a flag at a given
 /// evaluation.
@@ -219,7 +218,6 @@ TEST(MultiRate, FastStepsAreLimitedAndInterrupted) {
 }
 
 // --- statics
-// ----------------------------------------------------------------------------------------------------------
 
 const IntegratorSpec kStatic{.name = "kinsol-static"};
 

@@ -238,7 +238,6 @@ TEST_P(LinearSolvers, RobustOnesTakeAnyMatrix) {
 }
 
 // --- conjugate gradients
-// ---------------------------------------------------------------------------------------------
 
 /// A cantilever of springs: nodes in a row, the first held; condition of the order of the number squared.
 BorderedMatrix row_of_springs(int nodes, double mass, int border = 0) {

@@ -58,7 +58,6 @@ TEST(Verdicts, AreSets) {
 }
 
 // --- every integrator of the registry, on the rows that take seconds
-// ---------------------------------------------------------------------
 class EveryIntegrator : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Rows, EveryIntegrator,
                          testing::Values("youngs-modulus", "poissons-ratio", "step", "rest", "sizes"),
@@ -85,7 +84,6 @@ TEST(Stability, EndsWithTheMethodThatTheoryNames) {
 }
 
 // --- steppers that are broken on purpose: each must make cells fail, with the verdict that names its fault
-// -----------------------------------
 struct Fault {
   Spoil spoil;
   std::string row, sub_case;

@@ -39,7 +39,6 @@ Adapter::Adapter(std::unique_ptr<OdeProblem> problem, const IntegratorSpec& spec
 Adapter::~Adapter() { release(); }
 
 // --- memory
-// -----------------------------------------------------------------------------------------------------------
 
 void Adapter::allocate() {
   check(SUNContext_Create(nullptr, &context_), "SUNContext_Create", problem_->time(), 0.0);
@@ -92,7 +91,6 @@ void Adapter::start() {
 }
 
 // --- stepping
-// ---------------------------------------------------------------------------------------------------------
 
 StepResult Adapter::advance_to(double t_end) {
   PALPATE_CHECK(t_end > problem_->time(), "t_end = {} is not after t = {}", t_end, problem_->time());
@@ -213,7 +211,6 @@ void Adapter::keep_state() { kept_ = Eigen::Map<const VecX>(NV_DATA_S(y_), NV_LE
 void Adapter::restore_state() { Eigen::Map<VecX>(NV_DATA_S(y_), NV_LENGTH_S(y_)) = kept_; }
 
 // --- Newton
-// -----------------------------------------------------------------------------------------------------------
 
 // The tangent is taken afresh at every factorisation: it costs a fifteenth of one, and spares a failed Newton
 // solve. Where the library would accept an old tangent and gamma is unchanged, the old factor is kept.
@@ -282,7 +279,6 @@ int Adapter::solve(N_Vector x, N_Vector b) {
 }
 
 // --- callbacks
-// --------------------------------------------------------------------------------------------------------
 
 namespace {
 Adapter& self(void* data) { return *static_cast<Adapter*>(data); }

@@ -49,7 +49,6 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   };
 
   // --- what one library does
-  // --------------------------------------------------------------------------------------
   virtual void create() = 0;   ///< its memory, for y() at problem().time()
   virtual void destroy() = 0;  ///< frees it; harmless when there is none
   /// goes on from y() at problem().time(), history forgotten; a one-step method may keep its step size
@@ -73,7 +72,6 @@ class Adapter : public dynamics::Stepper, protected NewtonHook {
   virtual double current_gamma() const = 0;
 
   // --- what it works with
-  // -----------------------------------------------------------------------------------------
   OdeProblem& problem() const { return *problem_; }
   const IntegratorSpec& spec() const { return spec_; }
   SUNContext context() const { return context_; }

@@ -180,7 +180,6 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
   int nodes() const { return copy_.nodes(); }
 
   // --- once a pattern
-  // -------------------------------------------------------------------------------------------------
   void analyse(const BlockSparse& pattern) {
     if (copy_.analysed(pattern)) return;
     const ScopedTimer timer(counters_.symbolic_s);
@@ -200,7 +199,6 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
   }
 
   // --- once a matrix
-  // --------------------------------------------------------------------------------------------------
   SolveStatus use_copy(const double* positions, bool rounded = false) {
     state_.guess.products_are_known(status_ == SolveStatus::kOk);
     refinement_.renew(rounded);
@@ -233,7 +231,6 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
   }
 
   // --- one right-hand side
-  // --------------------------------------------------------------------------------------------
   void check_right_hand_side(Eigen::Index rows) const {
     PALPATE_CHECK(status_ == SolveStatus::kOk && (matrix_ || use_ == StepMatrixUse::kSolve),
                   "solver {}: solve without a factor", name_);
