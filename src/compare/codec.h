@@ -12,7 +12,7 @@ std::string bytes_of(const Trajectory& trajectory);
 Trajectory trajectory_of(const std::string& bytes);
 
 /// What a point's error was measured against.
-enum class ReferenceUsed { kNone, kTruth, kCheck };
+enum class ReferenceUsed { kNone, kPrimary, kCheck };
 
 /// What one run of a point gives, as it is kept.
 struct PointRun {

@@ -20,7 +20,7 @@ namespace {
 compare::PointRun distinct() {
   compare::PointRun run;
   run.status = compare::PointStatus::kOk;
-  run.reference = compare::ReferenceUsed::kTruth;
+  run.reference = compare::ReferenceUsed::kPrimary;
   int next = 1000;
   loop::visit_counters(
       [&next]<class T>(const char*, T& value) {
