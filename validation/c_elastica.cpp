@@ -27,7 +27,7 @@ struct Bend {
 Bend elastica(double a) {
   const auto modulus = [](double theta0) { return std::sqrt(0.5 * (1.0 + std::sin(theta0))); };
   const auto phi = [](double p) { return std::asin(1.0 / (std::sqrt(2.0) * p)); };
-  double low = 1e-9, high = 0.5 * EIGEN_PI - 1e-9;
+  double low = 1e-9, high = 0.5 * M_PI - 1e-9;
   for (int i = 0; i < 200; ++i) {
     const double middle = 0.5 * (low + high), p = modulus(middle);
     (std::comp_ellint_1(p) - std::ellint_1(p, phi(p)) < std::sqrt(a) ? low : high) = middle;

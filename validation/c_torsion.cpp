@@ -19,8 +19,8 @@ constexpr double kSide = 0.1, kLength = 0.05, kAngle = 1e-6, kYoung = 1e6, kPois
 
 double torsion_constant() {
   double sum = 0.0;
-  for (int n = 1; n < 200; n += 2) sum += std::tanh(0.5 * n * EIGEN_PI) / std::pow(n, 5);
-  return std::pow(kSide, 4) * (1.0 / 3.0 - 64.0 / std::pow(EIGEN_PI, 5) * sum);
+  for (int n = 1; n < 200; n += 2) sum += std::tanh(0.5 * n * M_PI) / std::pow(n, 5);
+  return std::pow(kSide, 4) * (1.0 / 3.0 - 64.0 / std::pow(M_PI, 5) * sum);
 }
 
 double torque(int across, const std::string& fault) {

@@ -15,7 +15,7 @@ namespace palpate::cli {
 namespace {
 
 constexpr double kQuietSeconds = 1.0, kBetweenSeconds = 0.1;
-constexpr int kBarWidth = 24;
+constexpr std::size_t kBarWidth = 24;
 
 int terminal_width() {
   winsize size{};
@@ -43,7 +43,7 @@ void Progress::operator()(double fraction, const std::string& text) {
   if (!terminal_ || now - start_ < kQuietSeconds || now - last_ < kBetweenSeconds) return;
   last_ = now;
   fraction = std::clamp(fraction, 0.0, 1.0);
-  const int filled = static_cast<int>(fraction * kBarWidth);
+  const auto filled = static_cast<std::size_t>(fraction * static_cast<double>(kBarWidth));
   std::string line = fmt::format("[{}{}] {:3.0f} %", std::string(filled, '#'),
                                  std::string(kBarWidth - filled, '-'), 100.0 * fraction);
   if (fraction > 0.02)

@@ -17,7 +17,8 @@ const std::atomic<bool>& stop_flag() { return stop; }
 void catch_stop_signals() {
   struct sigaction action = {};
   action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART | SA_RESETHAND;  // the second signal finds the default action again
+  action.sa_flags =
+      SA_RESTART | static_cast<int>(SA_RESETHAND);  // the second signal finds the default action again
   sigemptyset(&action.sa_mask);
   for (int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
 }

@@ -15,7 +15,8 @@ int add_block(dynamics::State& state, const Points& positions, double phase) {
   nodes.name = "nodes";
   nodes.q_size = nodes.u_size = static_cast<int>(positions.size());
   VecX speeds(nodes.u_size);
-  for (Eigen::Index i = 0; i < speeds.size(); ++i) speeds[i] = 0.1 * std::sin(1.0 + i + phase);
+  for (Eigen::Index i = 0; i < speeds.size(); ++i)
+    speeds[i] = 0.1 * std::sin(1.0 + static_cast<double>(i) + phase);
   return state.insert(nodes, Eigen::Map<const VecX>(positions.data(), nodes.q_size), speeds);
 }
 

@@ -34,7 +34,8 @@ struct TwoBalls {
     nodes.name = "ball";
     nodes.q_size = nodes.u_size = static_cast<int>(out.model.tets.nodes.size());
     VecX speeds(nodes.u_size);
-    for (Eigen::Index i = 0; i < speeds.size(); ++i) speeds[i] = 0.1 * std::sin(1.0 + i + scale);
+    for (Eigen::Index i = 0; i < speeds.size(); ++i)
+      speeds[i] = 0.1 * std::sin(1.0 + static_cast<double>(i) + scale);
     out.surface.block_id =
         state.insert(nodes, Eigen::Map<const VecX>(out.model.tets.nodes.data(), nodes.q_size), speeds);
     return out;

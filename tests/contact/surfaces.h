@@ -80,7 +80,7 @@ struct SkinWorld {
     nodes.name = "ball";
     nodes.q_size = nodes.u_size = static_cast<int>(bent.size());
     VecX speeds(bent.size());
-    for (Eigen::Index i = 0; i < speeds.size(); ++i) speeds[i] = std::sin(1.0 + i);
+    for (Eigen::Index i = 0; i < speeds.size(); ++i) speeds[i] = std::sin(1.0 + static_cast<double>(i));
     surface.block_id = state.insert(nodes, Eigen::Map<const VecX>(bent.data(), bent.size()), speeds);
     surface.faces = skin.faces;
     surface.embedding = mesh::embed(ball, skin.vertices);

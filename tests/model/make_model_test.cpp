@@ -38,7 +38,7 @@ TEST(MakeModel, HasEveryLevel) {
                          {"tip", 0, {0, 0, 0}, {0, 0, 0.5}, 0.3, 0.2}};
   const model::Made result = made(std::move(from));
   const LayeredModel& m = result.file.model;
-  EXPECT_NEAR(m.tets.tets.cols(), 1000, 30);
+  EXPECT_NEAR(static_cast<double>(m.tets.tets.cols()), 1000, 30);
   EXPECT_EQ(m.skin.vertices, ball(1.02, 20).vertices);
   Points again;
   mesh::evaluate(m.embedding, m.tets.tets, m.tets.nodes, again);
@@ -64,7 +64,7 @@ TEST(MakeModel, TakesTetrahedraAsTheyAre) {
   EXPECT_EQ(taken.file.model.tets.tets, from.tets.tets);
   model::Options options = small();
   options.remesh = true;
-  EXPECT_NEAR(made(from, options).file.model.tets.tets.cols(), 1000, 30);
+  EXPECT_NEAR(static_cast<double>(made(from, options).file.model.tets.tets.cols()), 1000, 30);
 }
 
 TEST(MakeModel, RefusesBadTetrahedraOfAPerson) {

@@ -120,7 +120,7 @@ TEST(Pruner, TheCutDoesNotChangeWhatTouches) {
   }
 }
 
-// Issue figure: handed on <= 2 x the true patch's share + 3 % of the skin, at 60 proxies a body.
+// Handed on <= 2 x the true patch's share + 3 % of the skin, at 60 proxies a body.
 TEST(Pruner, HandsOnLittleMoreThanThePatch) {
   const LayeredModel pumpkin = cut(bumpy_ball(1.0, 0.2, 20, 0.05, 8), 60);
   Placed a(pumpkin), b(pumpkin);
@@ -130,13 +130,13 @@ TEST(Pruner, HandsOnLittleMoreThanThePatch) {
     b.place({Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX())), distance * Vec3(1, 0.3, 0.2).normalized()}, 0.03,
             1);
     const Handed found = handed(pruner.query(0.0));
-    const double all = static_cast<double>(pumpkin.skin.faces.cols());
-    const double reference_a =
-        true_patch(pumpkin.skin.faces, a.skin, pumpkin.skin.faces, b.skin).size() / all;
-    const double reference_b =
-        true_patch(pumpkin.skin.faces, b.skin, pumpkin.skin.faces, a.skin).size() / all;
-    EXPECT_LE(found.a.size() / all, 2 * reference_a + 0.03) << distance;
-    EXPECT_LE(found.b.size() / all, 2 * reference_b + 0.03) << distance;
+    const auto share = [&](const auto& faces) {
+      return static_cast<double>(faces.size()) / static_cast<double>(pumpkin.skin.faces.cols());
+    };
+    const double reference_a = share(true_patch(pumpkin.skin.faces, a.skin, pumpkin.skin.faces, b.skin));
+    const double reference_b = share(true_patch(pumpkin.skin.faces, b.skin, pumpkin.skin.faces, a.skin));
+    EXPECT_LE(share(found.a), 2 * reference_a + 0.03) << distance;
+    EXPECT_LE(share(found.b), 2 * reference_b + 0.03) << distance;
     checked += reference_a > 0.0;
   }
   EXPECT_GE(checked, 3);
