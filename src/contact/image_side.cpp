@@ -12,7 +12,7 @@ class SoftSide final : public ImageSide {
   const Faces& faces() const override { return state_.faces(); }
   const Points& positions() override { return state_.positions(); }
   Vec3 vertex(int vertex) const override { return state_.positions().col(vertex); }
-  void place(proxy::ProxySet& proxies) const override { proxies.update(state_.nodes()); }
+  void update(proxy::ProxySet& proxies) const override { proxies.update(state_.nodes()); }
   SurfacePoint point(int face, const Vec3& weights, const Vec3&) const override {
     return state_.face_point(face, weights);
   }
@@ -40,7 +40,7 @@ class RigidSide final : public ImageSide {
     return world_;
   }
   Vec3 vertex(int vertex) const override { return turn_ * surface_.vertices.col(vertex) + pose_.translation; }
-  void place(proxy::ProxySet& proxies) const override { proxies.update(pose_); }
+  void update(proxy::ProxySet& proxies) const override { proxies.update(pose_); }
   SurfacePoint point(int, const Vec3&, const Vec3& world) const override {
     return frame_point(frame_, inverse_, world);
   }

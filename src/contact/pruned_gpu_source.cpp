@@ -1,13 +1,13 @@
 #include <algorithm>
 
 #include "contact/gpu_source.h"
-#include "contact/own_flesh.h"
+#include "contact/self_contact_filter.h"
 #include "palpate/proxy/pruner.h"
 
 namespace palpate::contact {
 namespace {
 
-/// The image of gpu_source.cpp, once for each region that the proxies leave.
+/// The image of gpu_source.cpp, once for each region where proxies come near.
 class PrunedSource final : public ImageSource {
  public:
   PrunedSource(std::shared_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a,
@@ -17,11 +17,11 @@ class PrunedSource final : public ImageSource {
         proxies_a_(std::move(proxies_a)),
         proxies_b_(std::move(proxies_b)),
         pruner_(*proxies_a_, *proxies_b_, {.between_bones = of_one_body()}) {}
-  /// One body's bones.
+  /// A body with itself: the skin of its bones.
   PrunedSource(std::shared_ptr<ImageSide> side, std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes,
                const GpuOptions& options)
       : PrunedSource(side, proxies, side, proxies, options) {
-    flesh_.emplace(*a_->soft(), std::move(rest_nodes));
+    self_contact_.emplace(*a_->soft(), std::move(rest_nodes));
     proxy_of_face_.resize(static_cast<std::size_t>(proxies_a_->face_count()));
     for (const proxy::SkinPatch& patch : proxies_a_->patches())
       for (const int face : proxies_a_->faces(patch))
@@ -32,12 +32,12 @@ class PrunedSource final : public ImageSource {
 
  protected:
   void look(std::vector<ContactSample>& samples) override {
-    a_->place(*proxies_a_);
-    if (!of_one_body()) b_->place(*proxies_b_);
+    a_->update(*proxies_a_);
+    if (!of_one_body()) b_->update(*proxies_b_);
     for (const proxy::ContactRegion& region : pruner_.query(options_.candidate_gap)) {
       ContactAxes axes(region.region.origin, region.region.normal);
       ContactCamera camera = look_along(region, axes);
-      for (int turn = 0; turn < kTurns && turn_to_overlap(axes); ++turn) camera = look_along(region, axes);
+      for (int i = 0; i < kAlignments && align_with_overlap(axes); ++i) camera = look_along(region, axes);
       for (const FacingFaces& at : facings_)
         samples.push_back(sample_of(at.facing, *a_, piece_a_.face_of[static_cast<std::size_t>(at.face_a)],
                                     *b_, piece_b_.face_of[static_cast<std::size_t>(at.face_b)], camera,
@@ -54,10 +54,10 @@ class PrunedSource final : public ImageSource {
     std::vector<int> local;  ///< of the surface's vertices, -1: not taken
     std::vector<int> taken;
 
-    /// Those whose normal has the sign `side` along the plane's: what is turned away lies behind skin of its
+    /// Those whose normal has the sign `side` along the plane's: what faces away lies behind skin of its
     /// own body, which may be in another region.
-    template <class Place>
-    void take(const Faces& all, const std::vector<int>& wanted, double side, const Place& place) {
+    template <class InAxes>
+    void take(const Faces& all, const std::vector<int>& wanted, double side, const InAxes& in_axes) {
       for (const int vertex : taken) local[static_cast<std::size_t>(vertex)] = -1;
       taken.clear();
       if (local.empty()) local.assign(static_cast<std::size_t>(all.maxCoeff()) + 1, -1);
@@ -69,7 +69,7 @@ class PrunedSource final : public ImageSource {
           }
       patch.uvw.resize(3, static_cast<Eigen::Index>(taken.size()));
       for (std::size_t i = 0; i < taken.size(); ++i)
-        patch.uvw.col(static_cast<Eigen::Index>(i)) = place(taken[i]);
+        patch.uvw.col(static_cast<Eigen::Index>(i)) = in_axes(taken[i]);
       face_of.clear();
       faces.resize(3, static_cast<Eigen::Index>(wanted.size()));
       for (const int face : wanted) {
@@ -108,13 +108,14 @@ class PrunedSource final : public ImageSource {
       const int face_a = a.visible[pair.a], face_b = b.visible[pair.b];
       const std::optional<Facing> facing = facing_at(pair, camera, a, face_a, b, face_b);
       if (facing && facing->gap() < options_.candidate_gap &&
-          (!flesh_ || may_touch(*facing, face_a, face_b, axes)))
+          (!self_contact_ || may_touch(*facing, face_a, face_b, axes)))
         facings_.push_back({*facing, face_a, face_b});
     }
     return camera;
   }
 
-  /// Of one body: a pair of proxies, each of which is looked at once, and no back of its own flesh.
+  /// For contact of a body with itself: a pair of proxies, each of which is looked at once, and not the far
+  /// side of its own tissue.
   bool may_touch(const Facing& at, int face_a, int face_b, const ContactAxes& axes) const {
     const int a = piece_a_.face_of[static_cast<std::size_t>(face_a)],
               b = piece_b_.face_of[static_cast<std::size_t>(face_b)];
@@ -122,17 +123,18 @@ class PrunedSource final : public ImageSource {
                          proxy_of_face_[static_cast<std::size_t>(b)]))
       return false;
     return at.gap() >= 0.0 ||
-           flesh_->in_contact(flesh_->point(a, at.weights_a, axes.world(Vec3(at.u, at.v, at.w_a))),
-                              flesh_->point(b, at.weights_b, axes.world(Vec3(at.u, at.v, at.w_b))));
+           self_contact_->in_contact(
+               self_contact_->point(a, at.weights_a, axes.world(Vec3(at.u, at.v, at.w_a))),
+               self_contact_->point(b, at.weights_b, axes.world(Vec3(at.u, at.v, at.w_b))));
   }
 
   // The region's normal came from patches, which reach beyond the overlap, more or less as the body is cut.
   // The overlap itself has one: its boundary is closed, so the area vectors of a's skin in b and of b's in a
   // are opposite, and their common direction pushes the bodies apart.  Seen along n, a pixel of area dA shows
-  // (s, 1) dA of each, s the slope of -a's or of b's skin: n turns by the mean slope of both, and stays where
-  // that is zero.  It depends on the pose alone.
-  static constexpr int kTurns = 3;
-  bool turn_to_overlap(ContactAxes& axes) const {
+  // (s, 1) dA of each, s the slope of -a's or of b's skin: n is tilted by the mean slope of both, and kept
+  // where that is zero.  It depends on the pose alone.
+  static constexpr int kAlignments = 3;
+  bool align_with_overlap(ContactAxes& axes) const {
     constexpr double kAligned = 1e-3, kSteepest = 10.0;  // [rad]; a wall's slope is no direction
     const auto slope = [&](const Piece& piece, int face) -> Eigen::Vector2d {
       const auto at = [&](int k) { return piece.patch.uvw.col(piece.faces(k, face)); };
@@ -157,7 +159,7 @@ class PrunedSource final : public ImageSource {
   std::shared_ptr<proxy::ProxySet> proxies_a_, proxies_b_;
   proxy::Pruner pruner_;
   Piece piece_a_, piece_b_;
-  std::optional<OwnFlesh> flesh_;  ///< of one body
+  std::optional<SelfContactFilter> self_contact_;  ///< of a body with itself, else empty
   std::vector<int> proxy_of_face_;
   std::vector<FacingFaces> facings_;
 };

@@ -15,8 +15,8 @@ PointMotion point_motion(const SurfacePoint& point, const dynamics::StateView& s
                          const std::vector<FrameState>& frames) {
   if (point.frame >= 0) {
     const FrameState& frame = frames[static_cast<std::size_t>(point.frame)];
-    const Vec3 turning = frame.R * point.offset, arm = turning + point.slide;
-    return {frame.pose.translation + arm, frame.twist.at(arm), arm, turning};
+    const Vec3 rotating = frame.R * point.offset, arm = rotating + point.slide;
+    return {frame.pose.translation + arm, frame.twist.at(arm), arm, rotating};
   }
   PointMotion motion{point.offset, Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   for (int i = 0; i < point.count; ++i) {

@@ -17,9 +17,9 @@ struct FrameState {
 
 /// Where one side's point is and how it moves.
 struct PointMotion {
-  Vec3 x, v;     ///< position [m], velocity of the material there [m/s]
-  Vec3 arm;      ///< frames: from the frame's origin [m], world axes
-  Vec3 turning;  ///< the part of it that turns with the frame, arm - slide
+  Vec3 x, v;      ///< position [m], velocity of the material there [m/s]
+  Vec3 arm;       ///< frames: from the frame's origin [m], world axes
+  Vec3 rotating;  ///< the part of it that rotates with the frame, arm - slide
 };
 
 /// Both points of a sample, their gap and its rate.

@@ -64,7 +64,7 @@ SurfacePoint SurfaceState::vertex_point(int vertex) const {
   return point;
 }
 
-// Of a skin, the corners of a face may hang on three tetrahedra, twelve nodes in all; a contact point has
+// The corners of a face of a skin may hang on three tetrahedra, twelve nodes in all; a contact point has
 // four.  It is tied to the tetrahedron of the corner nearest to it, by its barycentric coordinates there as
 // it stands now: so it lies where it is seen, and a force at it keeps its moment.  Between two queries it
 // moves with that one tetrahedron, and leaves the face by a part of the difference of the tetrahedra's
@@ -88,7 +88,7 @@ SurfacePoint SurfaceState::face_point(int face, const Vec3& weights) const {
 }
 
 /// By its barycentric coordinates; on a tetrahedron too flat to have them, by the corner's own weights and an
-/// offset that does not turn.
+/// offset that does not rotate.
 SurfacePoint SurfaceState::point_of_tet(int tet, const Vec3& x, const Eigen::Vector4d& of_corner) const {
   constexpr double kFlat = 1e-6;  // volume over the cube of the longest edge
   const auto at = [&](int k) -> Vec3 { return nodes_.col(surface_.tets(k, tet)); };

@@ -8,14 +8,14 @@ namespace palpate::contact {
 // -dF/dx_rel, D = -dF/dv_rel, and each side's map B (w_i I or Z), the generalised force on side p is  s_p
 // B_p^T F.  Its derivatives, negated:
 //
-//   by side q's position   s_p s_q B_p^T (K B_q + D V_q)      V_q: a frame's twist, held, moves the turned
+//   by side q's position   s_p s_q B_p^T (K B_q + D V_q)      V_q: a frame's twist, held, moves the rotated
 //   arm otherwise
 //   by side q's velocity   s_p s_q B_p^T  D B_q
 //   geometric (p = q)      a frame's moment s_p (r x F) changes with its own arm, dr = dtheta x R o:
 //                          d(r x F) = (dtheta x R o) x F = F x (R o x dtheta) = [F]x [R o]x dtheta = G
 //                          dtheta,  so K_theta,theta += -s_p G
 //
-// The slide s does not turn, so positions move with R o and velocities, w x r, with r = R o + s; but s is
+// The slide s does not rotate, so positions move with R o and velocities, w x r, with r = R o + s; but s is
 // parallel to n, and K acts on n . dx alone:
 // K (dtheta x s) = 0, and Z serves for both.
 //
@@ -26,10 +26,10 @@ Side::Side(const SurfacePoint& surface_point, const PointMotion& motion,
     : point(surface_point), frame(nullptr), sign(side_sign), arm(motion.arm) {
   if (point.frame < 0) return;
   frame = &frames[static_cast<std::size_t>(point.frame)];
-  const Mat3 turning = cross_matrix(motion.turning);
+  const Mat3 rotating = cross_matrix(motion.rotating);
   Z << -cross_matrix(arm), Mat3::Identity();
-  V.noalias() = -cross_matrix(frame->twist.angular) * turning;
-  G.noalias() = cross_matrix(force_on_a) * turning;
+  V.noalias() = -cross_matrix(frame->twist.angular) * rotating;
+  G.noalias() = cross_matrix(force_on_a) * rotating;
 }
 
 namespace {
@@ -94,7 +94,7 @@ void add_sample_tangent(const Side& a, const Side& b, const SampleForce& s, doub
 
 void apply_sample_tangent(const Side& a, const Side& b, const SampleForce& s, double k_scale, double d_scale,
                           const VecX& x, VecX& y) {
-  Vec3 dx = Vec3::Zero(), dv = Vec3::Zero();  // of x_rel by u-directions, and of v_rel by the turning arms
+  Vec3 dx = Vec3::Zero(), dv = Vec3::Zero();  // of x_rel by u-directions, and of v_rel by the rotating arms
   for (const Side* q : {&a, &b}) {
     if (q->is_nodes()) {
       for (int j = 0; j < q->point.count; ++j) {

@@ -19,7 +19,7 @@ struct Side {
   Vec3 arm;  ///< frames: r
   Mat36 Z;   ///< frames only
   /// frames only: the point's velocity v = v0 + w x r changes by w x (dtheta x R o) = V dtheta, V = -[w]x [R
-  /// o]x, when the frame turns with its twist held
+  /// o]x, when the frame rotates with its twist held
   Mat3 V;
   Mat3 G;  ///< frames only: [F]x [R o]x, F the force on a: see `geometric` in tangent.cpp
 

@@ -87,12 +87,12 @@ void check_keyframes(const std::vector<KeyframeSpec>& keyframes, const std::stri
           where, i, key.time_s, before.time_s);
     // exp is a contraction from rotation vectors to rotations, so a difference of at most pi can never hide a
     // longer way round.
-    const double turn = (key.rotation_vector_rad - before.rotation_vector_rad).norm();
-    if (turn > std::numbers::pi * (1.0 + 1e-12))
+    const double angle = (key.rotation_vector_rad - before.rotation_vector_rad).norm();
+    if (angle > std::numbers::pi * (1.0 + 1e-12))
       fail(
           "{}: keyframes[{}]: rotation_vector_rad is {:.6g} rad from the one before; more than half a turn "
           "is ambiguous, put a keyframe between",
-          where, i, turn);
+          where, i, angle);
   }
 }
 

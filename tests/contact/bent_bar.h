@@ -49,8 +49,8 @@ inline LayeredModel model(int count = 24, double rest_angle = 0.0) {
   const Vec3 size(kLength, kWidth, kHeight);
   bar.tets = mesh::box(size, {18, 2, 2});
   bar.skin = mesh::box_surface(size, {54, 9, 9});
-  // of its joints
-  const double ends[] = {-kMiddle, kMiddle, -kMiddle, -0.5 * kLength, kMiddle, 0.5 * kLength}, flesh = 0.15;
+  // joints of the bar
+  const double ends[] = {-kMiddle, kMiddle, -kMiddle, -0.5 * kLength, kMiddle, 0.5 * kLength}, tissue = 0.15;
   const char* names[] = {"middle", "left", "right"};
   const auto on_axis = [&](double x) { return bend(Vec3(x, 0, 0), rest_angle); };
   for (std::size_t i = 0; i < 3; ++i)
@@ -58,7 +58,7 @@ inline LayeredModel model(int count = 24, double rest_angle = 0.0) {
         {names[i], i == 0 ? -1 : 0, on_axis(ends[2 * i]), on_axis(ends[2 * i + 1]), 0.05, 0.05});
   for (Eigen::Index n = 0; n < bar.tets.nodes.cols(); ++n) {
     const Vec3 x = bar.tets.nodes.col(n);
-    const bool bone = x.tail<2>().norm() < 1e-9 && std::abs(std::abs(x.x()) - kMiddle) > flesh - 1e-9;
+    const bool bone = x.tail<2>().norm() < 1e-9 && std::abs(std::abs(x.x()) - kMiddle) > tissue - 1e-9;
     bar.bone_of_node.push_back(!bone ? -1 : x.x() < -kMiddle ? 1 : x.x() > kMiddle ? 2 : 0);
   }
   bar.tets.nodes = bend(bar.tets.nodes, rest_angle);

@@ -38,7 +38,8 @@ struct Seen {
   double share_a = 0.0, share_b = 0.0;  ///< of the faces, handed on
 };
 
-/// The ball at a point of the tool's frame, which is itself turned and moved; force and moment in that frame.
+/// The ball at a point of the tool's frame, which is itself rotated and moved; force and moment in that
+/// frame.
 Seen seen(const TriMesh& tool, const Vec3& ball_in_tool, const proxy::SolidOptions& cut) {
   const Pose frame{Quat(0.8, 0.2, -0.5, 0.3).normalized(), Vec3(0.4, -2.0, 1.0)};
   const BallWorld world({Quat(0.6, -0.2, 0.1, 0.7).normalized(), frame * ball_in_tool});

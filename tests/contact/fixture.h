@@ -83,8 +83,8 @@ struct World {
         continue;
       }
       const Quat old(q[b.q_offset], q[b.q_offset + 1], q[b.q_offset + 2], q[b.q_offset + 3]);
-      const Quat turned = quaternion_of(h * d.head<3>()) * old;
-      q.segment(b.q_offset, 4) << turned.w(), turned.x(), turned.y(), turned.z();
+      const Quat rotated = quaternion_of(h * d.head<3>()) * old;
+      q.segment(b.q_offset, 4) << rotated.w(), rotated.x(), rotated.y(), rotated.z();
       q.segment<3>(b.q_offset + 4) += h * d.tail<3>();
     }
     return out;

@@ -49,7 +49,7 @@ inline std::shared_ptr<proxy::ProxySet> proxies_of(const TetMesh& tets, const Tr
   return std::make_shared<proxy::ProxySet>(model);
 }
 
-/// Of a rigid surface.
+/// Proxies of a rigid surface.
 inline std::shared_ptr<proxy::ProxySet> proxies_of(const TriMesh& rigid,
                                                    const proxy::SolidOptions& options = {}) {
   return std::make_shared<proxy::ProxySet>(proxy::rigid_proxies(rigid, options));

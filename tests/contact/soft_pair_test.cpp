@@ -6,8 +6,8 @@ using namespace contact_tests;
 
 namespace {
 
-/// A ball of tetrahedra, and above it the same, turned, larger and pressed into it; both under fine skins,
-/// with velocities.
+/// A ball of tetrahedra, and above it another one, rotated, larger and pressed into it; both under fine
+/// skins, with velocities.
 struct TwoBalls {
   struct Body {
     LayeredModel model;

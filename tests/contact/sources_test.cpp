@@ -47,7 +47,7 @@ TEST(PlaneSource, CandidateGapComesFromTheMeshWhenNoneIsGiven) {
   for (const auto& s : samples) EXPECT_GT(s.gap, 0.0);
 }
 
-TEST(PlaneSource, VerticesTurnedAwayDoNotPull) {
+TEST(PlaneSource, VerticesThatFaceAwayDoNotPull) {
   SurfaceWorld world(sphere(Vec3(0, 0, -3), 1.0, 12));  // wholly below the plane
   auto source =
       contact::make_plane_source(world.surface, 0, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.1);
@@ -59,7 +59,7 @@ TEST(PlaneSource, VerticesTurnedAwayDoNotPull) {
 }
 
 TEST(SphereSource, GapsNormalsAndAreas) {
-  // A big soft sphere pressed by a small rigid one from above, whose frame is turned and moved.
+  // A big soft sphere pressed by a small rigid one from above, whose frame is rotated and moved.
   SurfaceWorld world(sphere(Vec3::Zero(), 1.0, 60));
   const Pose pose{quaternion_of(Vec3(1, 0.2, -0.4)), Vec3(0.2, 0.1, 0.4)};
   const Vec3 centre = pose.inverse() * Vec3(0.0, 0.0, 1.25);
@@ -199,9 +199,9 @@ TEST(CylinderSource, GapsAreDistances) {
   EXPECT_GT(seen, 200);
 }
 
-// A round surface that turns about its own centre or axis stays where it is: neither force nor gap may change
-// between two queries, and no moment may come of it.
-TEST(RoundSources, TurningAboutTheCentreChangesNothing) {
+// A round surface that rotates about its own centre or axis stays where it is: neither force nor gap may
+// change between two queries, and no moment may come of it.
+TEST(RoundSources, RotationAboutTheCentreChangesNothing) {
   const Pose start{quaternion_of(Vec3(0.4, -0.3, 0.8)), Vec3(0.3, -0.2, 0.5)};
   const Vec3 axis = start.rotation * Vec3::UnitZ();
   const auto above = scattered(60, 0.3, Vec3::UnitX());

@@ -12,7 +12,8 @@ struct Law {
 /// Deep enough contacts of every kind: nodes on a given frame, nodes on a body of the State, nodes on nodes,
 /// body on a given frame. Depths of 0.4 at speeds of order 1 keep every sample pressed along a Taylor test.
 struct Scene {
-  /// The same point on a round surface, its centre 0.6 within: half of its arm does not turn with the frame.
+  /// The point of a sample on a round surface, whose centre lies 0.6 within: half of its arm does not rotate
+  /// with the frame.
   static contact::ContactSample rounded(contact::ContactSample s, const Pose& frame) {
     s.b.slide = 0.6 * s.normal;
     s.b.offset -= frame.rotation.conjugate() * s.b.slide;

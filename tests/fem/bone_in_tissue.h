@@ -17,7 +17,7 @@ struct BoneOptions {
   /// the bone holds its nodes this much farther apart than they stand at rest
   double spread = 1.0;
   bool consistent = false;
-  bool turning = true;  ///< false: without the geometric stiffness of carried nodes
+  bool geometric_stiffness = true;  ///< false: without the geometric stiffness of carried nodes
 };
 
 /// A carried motion, its geometric stiffness left out of every matrix: what it is there for shows against
@@ -86,7 +86,7 @@ struct BoneInTissue {
         per_dof.col(static_cast<Eigen::Index>(3 * i) + k) = local.col(static_cast<Eigen::Index>(i));
     }
     const auto motion = make_carried(dofs, per_dof, bone);
-    if (o.turning)
+    if (o.geometric_stiffness)
       system.add(motion);
     else
       system.add(std::make_shared<WithoutTurning>(motion));

@@ -71,13 +71,13 @@ TEST(Bone, ErrorControlKeepsMomentumToTheTolerance) {
 // that is not there: with compressed tissue it grows, and spins the whole up out of nothing.
 TEST(Bone, ALightBoneUnderPrestressDoesNotSpinUp) {
   double spin[2] = {0.0, 0.0};
-  for (const bool turning : {true, false}) {
-    BoneInTissue b({.damping = 1e-3, .spread = 0.7, .turning = turning});
+  for (const bool included : {true, false}) {
+    BoneInTissue b({.damping = 1e-3, .spread = 0.7, .geometric_stiffness = included});
     b.prepare();
     b.throw_rigidly(Vec3(0.1, 0.2, -0.1), Vec3::Zero());
     const double before = b.momentum().head<3>().norm();
     for (int i = 1; i <= 100; ++i) advance(b, spec_of("linearly-implicit-euler", 0.01), 0.01 * i);
-    spin[turning] = (b.momentum().head<3>().norm() - before);
+    spin[included] = (b.momentum().head<3>().norm() - before);
   }
   EXPECT_LT(std::abs(spin[true]), 2e-4) << "kg m^2/s; the cube's inertia is 1.7e-3 kg m^2";
   EXPECT_GT(spin[false], 1e-2) << "what the geometric stiffness is there for";

@@ -14,7 +14,7 @@ namespace palpate::contact {
 
 /// A surface that nodes of the State carry.  Its vertices are nodes themselves: vertex i is node
 /// `node_of_vertex[i]` counted inside the block; or points of a skin: vertex i hangs on the tetrahedron
-/// `tets.col(embedding.tet[i])` by four weights (DESIGN 3.2).
+/// `tets.col(embedding.tet[i])` by four weights (docs/design.md 4.2).
 struct NodeSurface {
   int block_id = -1;
   std::vector<int> node_of_vertex;  ///< empty of a skin
@@ -58,14 +58,14 @@ Pressure pressure(const ContactSpec& law, double gap, double gap_rate);
 struct FrameLinearisation {
   Wrench wrench;  ///< on the frame
   Mat6 K, B;      ///< -dF/dx, -dF/dv of the frame, bodies held
-  /// the part of -K that is the turning arms' under the forces as they are (rows and columns of rotation)
+  /// the part of -K that is the rotating arms' under the forces as they are (rows and columns of rotation)
   Mat3 geometric;
   MatX K_body, B_body;    ///< nodal_size x 6: -df_nodes/dx_frame, -df_nodes/dv_frame
   MatX K_frame, B_frame;  ///< 6 x nodal_size: -dF_frame/dx_nodes, -dF_frame/dv_nodes
   int active = 0;         ///< samples with pressure
 };
 
-/// All contacts of a scene as one force term (DESIGN 3.4).
+/// All contacts of a scene as one force term (docs/design.md 4.4).
 class ContactForce : public dynamics::ForceTerm {
  public:
   ContactForce();
@@ -105,7 +105,7 @@ class ContactForce : public dynamics::ForceTerm {
   double largest_force() const;
   /// Vertices of each pair, in their order, that went through unseen so far (SampleSource::tunnelled).
   std::vector<long> tunnelled() const;
-  /// Of each pair, in their order; null of one without proxies.
+  /// What the proxies of each pair left out, in the pairs' order; null for a pair without proxies.
   std::vector<const proxy::PruneCounts*> pruning() const;
   long queries() const;
   double query_seconds() const;

@@ -29,7 +29,7 @@ std::shared_ptr<MovingFrame> block_frame(int block_id);
 /// the origin's position and of the rotation vector from each tick's orientation.  Poses and twists at the
 /// ticks are met exactly; between them the pose is of order 4 in the tick and the twist of order 3.  Before
 /// the first knot and behind the last the motion goes on with that knot's twist (an integrator may look a
-/// little ahead).  Each tick turns by less than half a turn.
+/// little ahead).  Each tick rotates by less than half a turn.
 class TrajectoryFrame : public MovingFrame {
  public:
   void clear();

@@ -14,8 +14,8 @@ struct SurfacePoint {
   /// nodes: world offset added to the weighted position; frame: a point in the frame's axes [m]
   Vec3 offset = Vec3::Zero();
   /// Frames: from there to the surface point, along the sample's normal, in the world's axes: it does not
-  /// turn with the frame [m].  On a round surface `offset` is the centre of curvature: the surface that turns
-  /// about it stays where it was, and so do the point, its gap and its force.
+  /// rotate with the frame [m].  On a round surface `offset` is the centre of curvature: the surface that
+  /// rotates about it stays where it was, and so do the point, its gap and its force.
   Vec3 slide = Vec3::Zero();
 };
 

@@ -10,7 +10,7 @@ namespace palpate::contact {
 /// Vertices of a soft surface against an exact shape in a frame.  One sample a vertex: gap = signed distance,
 /// normal = the shape's outward normal at the closest point, area = the vertex's area vector projected on
 /// that normal (one third of each adjacent triangle, deformed).
-/// Vertices turned away from the shape (where pressure would pull) make no sample.
+/// Vertices that face away from the shape (where pressure would pull) make no sample.
 /// @param candidate_gap  vertices nearer than this are kept as candidates [m]; 0: the surface's mean edge
 ///   at the first query
 /// @param look_ahead     [s] to the next query: vertices that come nearer than candidate_gap in this time,
@@ -25,15 +25,15 @@ std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame,
                                                  std::shared_ptr<MovingFrame> motion, const Vec3& centre,
                                                  double radius, double candidate_gap,
                                                  double look_ahead = 0.0);
-/// A box with the given edges, and a cylinder along its own z between flat ends; both centred in `place`, a
-/// pose in the frame. Outside, the nearest point of the surface and the way from it (at edges and corners a
+/// A box with the given edges, and a cylinder along its own z between flat ends; both centred at `pose`
+/// in the frame. Outside, the nearest point of the surface and the way from it (at edges and corners a
 /// direction between the faces'); inside, the nearest face.
 std::unique_ptr<SampleSource> make_box_source(NodeSurface surface, int frame,
-                                              std::shared_ptr<MovingFrame> motion, const Pose& place,
+                                              std::shared_ptr<MovingFrame> motion, const Pose& pose,
                                               const Vec3& size, double candidate_gap,
                                               double look_ahead = 0.0);
 std::unique_ptr<SampleSource> make_cylinder_source(NodeSurface surface, int frame,
-                                                   std::shared_ptr<MovingFrame> motion, const Pose& place,
+                                                   std::shared_ptr<MovingFrame> motion, const Pose& pose,
                                                    double radius, double length, double candidate_gap,
                                                    double look_ahead = 0.0);
 
@@ -45,16 +45,16 @@ struct GpuOptions {
   double shift_v = 0.0;
 };
 
-/// Image space on the GPU (DESIGN 3.3): one region with its plane from libccd, both surfaces rasterised along
-/// its normal, one `pixel` sample for each pixel where both are covered; the gap in double on the two
-/// triangles that the image paired. The GL context is opened at the first query.  @throws Error when no EGL
-/// device can be opened, with the package that brings it.
+/// Image space on the GPU (docs/design.md 4.3): one region with its plane from libccd, both surfaces
+/// rasterised along its normal, one `pixel` sample for each pixel where both are covered; the gap in double
+/// on the two triangles that the image paired. The GL context is opened at the first query.  @throws Error
+/// when no EGL device can be opened, with the package that brings it.
 std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid, int frame,
                                               std::shared_ptr<MovingFrame> motion, const GpuOptions& options);
 
-/// The same with proxies of both sides (DESIGN 3.2, 3.3): only skin that may be near is looked at, in regions
-/// that have each its own plane and image, so that bodies which are no height field as a whole are seen from
-/// all sides that they are touched on.  Each face of the skin is in one region at most.
+/// Image space with convex proxies of both sides (docs/design.md 4.2, 4.3): only skin that may be near is
+/// looked at, in regions that have each its own plane and image, so that bodies which are no height field as
+/// a whole are seen from all sides that they are touched on.  Each face of the skin is in one region at most.
 /// @param proxies  of `surface`, a skin: the set's faces are the surface's; it may serve several sources
 /// @param proxies_rigid  of `rigid`, in its frame, as proxy::rigid_proxies makes them; it may serve several
 ///   sources
@@ -72,7 +72,7 @@ std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, std::shared_ptr<pro
                                               const GpuOptions& options);
 
 /// One soft body against itself: the skin of each bone's proxies against that of every other bone's, but for
-/// proxies that are grown together (they share skin or nodes), so that a limb's flesh may slide into itself
+/// proxies that are grown together (they share skin or nodes), so that a limb's tissue may slide into itself
 /// where it is creased, next to the joint.  What overlaps because the body is thick there is no contact, at
 /// rest nothing is.  Parts that are both thinner than they overlap are not seen.
 /// @param rest_nodes  of the surface's tetrahedra [m], in any axes

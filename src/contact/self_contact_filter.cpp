@@ -1,28 +1,26 @@
 // Seen along the normal n, from b to a, a's skin faces down and b's faces up; they overlap where x_b lies
 // above x_a.  Three things look like that:
-//   contact         a's flesh begins at x_a and b's ends at x_b: between them is flesh of both, twice in one
-//   place;
-//   own thickness   b's skin is the back of the flesh that begins at x_a: between them is flesh once;
-//   passed by       the flesh that begins at x_a ends below the flesh that ends at x_b, air between: b's
-//   flesh is above a's, and they do not touch here.
+//   contact         a's tissue begins at x_a and b's ends at x_b: between them both are there;
+//   own thickness   b's skin is the back of the tissue that begins at x_a: between them is tissue once;
+//   passed by       the tissue that begins at x_a ends below the tissue that ends at x_b, air between: b's
+//                   tissue is above a's, and they do not touch here.
 // What they differ in is where the straight way from x_a to x_b ends if it is walked through the tetrahedra,
-// from one to its neighbour across a face.  It ends in contact somewhere inside a's flesh, at a point Y of
+// from one to its neighbour across a face.  It ends in contact somewhere inside a's tissue, at a point Y of
 // the body at rest; in own thickness at X_b, the very point of the skin; passing by, it comes out before.
-// The same is asked of the way from b, and one such answer is enough: a thin part that has been swallowed by
-// a thick one ends the one way and not the other.  Where both are thinner than the overlap is deep, no way
-// stays inside and nothing is said to touch.
+// The way from b is walked as well, and one way that ends inside is enough: a thin part that has been
+// swallowed by a thick one ends the one way and not the other.  Where both are thinner than the overlap is
+// deep, no way stays inside and nothing is said to touch.
 //
 // Y and X_b are compared by their distance from the way's begin.  In own thickness |Y - X_b| is rounding, and
 // the skin's distance from the tetrahedra where these do not fill it.  In contact Y lies below the skin at
-// X_a and X_b lies on the skin, so while |Y - X_a| is less than half of the flesh's thickness, |Y - X_b| is
-// not less than Y's depth,
-// |Y - X_a| cos(tilt of the skin against n).  Half of |Y - X_a| parts the two.  At rest every overlap of a
-// skin that does not cut itself is own thickness, with Y = X_b: the body at
-// rest feels nothing, whatever the gap that is looked into.
+// X_a and X_b lies on the skin, so while |Y - X_a| is less than half of the tissue's thickness, |Y - X_b| is
+// not less than Y's depth, |Y - X_a| cos(tilt of the skin against n).  Half of |Y - X_a| parts the two.  At
+// rest every overlap of a skin that does not cut itself is own thickness, with Y = X_b: the body at rest
+// feels nothing, whatever the gap that is looked into.
 //
 // The way may end outside of the tetrahedra by as much as the skin does; there the last tetrahedron is
 // continued.  One that is too flat to have weights ends the way: no force comes from nowhere.
-#include "contact/own_flesh.h"
+#include "contact/self_contact_filter.h"
 
 #include <Eigen/LU>
 
@@ -59,7 +57,7 @@ Tets neighbours(const Tets& tets) {
   return across;
 }
 
-/// The map from a place, relative to the first corner, to the weights of the other three; false where the
+/// The map from a position, relative to the first corner, to the weights of the other three; false where the
 /// tetrahedron is flat.
 bool weights_of(const Tets& tets, const Points& nodes, int tet, Mat3& map) {
   constexpr double kFlat = 1e-6;  // volume over the cube of the longest edge
@@ -73,9 +71,9 @@ bool weights_of(const Tets& tets, const Points& nodes, int tet, Mat3& map) {
 
 }  // namespace
 
-OwnFlesh::OwnFlesh(const SurfaceState& skin, Points rest_nodes)
+SelfContactFilter::SelfContactFilter(const SurfaceState& skin, Points rest_nodes)
     : skin_(skin), rest_nodes_(std::move(rest_nodes)) {
-  counters::count("contact.own_flesh");
+  counters::count("contact.self_contact_filter");
   const NodeSurface& surface = skin.surface();
   PALPATE_CHECK(surface.node_of_vertex.empty() && surface.tets.cols() > 0,
                 "contact of a body with itself needs a skin on tetrahedra");
@@ -95,11 +93,11 @@ OwnFlesh::OwnFlesh(const SurfaceState& skin, Points rest_nodes)
       const double gradient = k == 0 ? map.colwise().sum().norm() : map.row(k - 1).norm();
       off += std::max(0.0, -surface.embedding.weights(k, v)) / gradient;
     }
-    stands_off_ = std::max(stands_off_, off);
+    skin_distance_ = std::max(skin_distance_, off);
   }
 }
 
-SkinPoint OwnFlesh::point(int face, const Vec3& weights, const Vec3& world) const {
+SkinPoint SelfContactFilter::point(int face, const Vec3& weights, const Vec3& world) const {
   const NodeSurface& surface = skin_.surface();
   const auto corner = surface.faces.col(face);
   Eigen::Index nearest = 0;
@@ -109,7 +107,7 @@ SkinPoint OwnFlesh::point(int face, const Vec3& weights, const Vec3& world) cons
   return out;
 }
 
-OwnFlesh::Way OwnFlesh::walk(int tet, const Vec3& from, const Vec3& to) const {
+SelfContactFilter::Way SelfContactFilter::walk(int tet, const Vec3& from, const Vec3& to) const {
   constexpr int kMostSteps = 1000;
   constexpr double kGrazing = 1e-12;  // a weight that falls by less over the whole way is rounding
   const Tets& tets = skin_.surface().tets;
@@ -137,11 +135,11 @@ OwnFlesh::Way OwnFlesh::walk(int tet, const Vec3& from, const Vec3& to) const {
   return way;
 }
 
-bool OwnFlesh::ends_elsewhere(const SkinPoint& from, const SkinPoint& to) const {
+bool SelfContactFilter::ends_elsewhere(const SkinPoint& from, const SkinPoint& to) const {
   constexpr double kRounding = 1e-6;
   const Way way = walk(from.tet, from.now, to.now);
   const double length = (to.now - from.now).norm();
-  if ((1.0 - way.inside) * length > 2.0 * stands_off_ + kRounding * length) return false;
+  if ((1.0 - way.inside) * length > 2.0 * skin_distance_ + kRounding * length) return false;
   Vec3 end = Vec3::Zero();
   for (int k = 0; k < 4; ++k) end += way.end[k] * rest_nodes_.col(skin_.surface().tets(k, way.tet));
   return (end - to.rest).norm() > 0.5 * (end - from.rest).norm();

@@ -12,16 +12,17 @@ struct SkinPoint {
   Vec3 rest, now;
 };
 
-/// Tells contact of a body with itself from the body's own thickness; the derivation stands in own_flesh.cpp.
-class OwnFlesh {
+/// Tells contact of a body with itself from the body's own thickness; the derivation is in
+/// self_contact_filter.cpp.
+class SelfContactFilter {
  public:
   /// @param skin        lives longer
   /// @param rest_nodes  of its tetrahedra [m]
-  OwnFlesh(const SurfaceState& skin, Points rest_nodes);
+  SelfContactFilter(const SurfaceState& skin, Points rest_nodes);
 
   /// The point of a face with these weights of its corners, which is now at `world`.
   SkinPoint point(int face, const Vec3& weights, const Vec3& world) const;
-  /// Whether skin at a and at b, each behind the other, overlap because one has come into the other's flesh,
+  /// Whether skin at a and at b, each behind the other, overlap because one has come into the other's tissue,
   /// at the skin's last update.
   bool in_contact(const SkinPoint& a, const SkinPoint& b) const {
     return ends_elsewhere(a, b) || ends_elsewhere(b, a);
@@ -40,8 +41,8 @@ class OwnFlesh {
 
   const SurfaceState& skin_;
   Points rest_nodes_, rest_vertices_;
-  Tets across_;            ///< the tetrahedron beyond the face opposite to each corner; -1: none
-  double stands_off_ = 0;  ///< how far skin may lie outside of the tetrahedra at rest [m]
+  Tets across_;               ///< the tetrahedron beyond the face opposite to each corner; -1: none
+  double skin_distance_ = 0;  ///< how far skin may lie outside of the tetrahedra at rest [m]
 };
 
 }  // namespace palpate::contact

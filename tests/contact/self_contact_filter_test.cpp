@@ -1,6 +1,6 @@
 // What two overlapping points of one skin are: contact, the body's own thickness, or parts that passed each
 // other by.
-#include "contact/own_flesh.h"
+#include "contact/self_contact_filter.h"
 
 #include "bent_bar.h"
 #include "fixture.h"
@@ -14,10 +14,10 @@ struct Bar {
   LayeredModel model = bent_bar::model(3);
   dynamics::State state;
   contact::SurfaceState skin;
-  contact::OwnFlesh flesh;
+  contact::SelfContactFilter filter;
   int block_id;
 
-  Bar() : skin(surface()), flesh(skin, model.tets.nodes) { bend(0.0); }
+  Bar() : skin(surface()), filter(skin, model.tets.nodes) { bend(0.0); }
 
   contact::NodeSurface surface() {
     dynamics::BlockSpec nodes;
@@ -48,7 +48,7 @@ struct Bar {
     };
     for (int f = 0; f < skin.face_count(); ++f)
       if (const double d = (middle(model.skin.vertices, f) - x).norm(); d < least) best = f, least = d;
-    return flesh.point(best, Vec3::Constant(1.0 / 3.0), middle(skin.positions(), best));
+    return filter.point(best, Vec3::Constant(1.0 / 3.0), middle(skin.positions(), best));
   }
 };
 
@@ -56,8 +56,8 @@ constexpr double kUp = 0.5 * bent_bar::kHeight;
 
 }  // namespace
 
-// However the bar is bent, what lies between its two sides is its own flesh.
-TEST(OwnFlesh, ThicknessIsNoContact) {
+// However the bar is bent, what lies between its two sides is its own tissue.
+TEST(SelfContactFilter, ThicknessIsNoContact) {
   Bar bar;
   int looked = 0;
   for (const double angle : {0.0, 0.7, 2.0, 3.3}) {
@@ -66,46 +66,46 @@ TEST(OwnFlesh, ThicknessIsNoContact) {
       for (const double shift : {-0.06, 0.0, 0.06}) {
         const contact::SkinPoint above = bar.at(Vec3(x, 0.07, kUp)),
                                  below = bar.at(Vec3(x + shift, -0.02, -kUp));
-        EXPECT_FALSE(bar.flesh.in_contact(above, below)) << angle << ", " << x << ", " << shift;
-        EXPECT_FALSE(bar.flesh.in_contact(below, above)) << angle << ", " << x << ", " << shift;
+        EXPECT_FALSE(bar.filter.in_contact(above, below)) << angle << ", " << x << ", " << shift;
+        EXPECT_FALSE(bar.filter.in_contact(below, above)) << angle << ", " << x << ", " << shift;
         ++looked;
       }
   }
   EXPECT_EQ(looked, 4 * 18 * 3);
 }
 
-// Two arms that overlap by less than they are thick: each inner side lies in the other's flesh.
-TEST(OwnFlesh, ArmsThatOverlapAreInContact) {
+// Two arms that overlap by less than they are thick: each inner side lies in the other's tissue.
+TEST(SelfContactFilter, ArmsThatOverlapAreInContact) {
   Bar bar;
   for (const double depth : {0.015, 0.03, 0.06, 0.1}) {
     bar.bend(bent_bar::closing_angle(depth));
     const contact::SkinPoint left = bar.at(Vec3(-0.885, 0.02, kUp)), right = bar.at(Vec3(0.885, 0.02, kUp));
     ASSERT_GT(left.now.x(), right.now.x() + 1e-3) << "they overlap";
-    EXPECT_TRUE(bar.flesh.in_contact(left, right)) << depth;
-    EXPECT_TRUE(bar.flesh.in_contact(right, left)) << depth;
+    EXPECT_TRUE(bar.filter.in_contact(left, right)) << depth;
+    EXPECT_TRUE(bar.filter.in_contact(right, left)) << depth;
   }
 }
 
-// The outer sides of two arms with air between them: both ways come out of the flesh.
-TEST(OwnFlesh, WhatPassedByIsNoContact) {
+// The outer sides of two arms with air between them: both ways come out of the tissue.
+TEST(SelfContactFilter, WhatPassedByIsNoContact) {
   Bar bar;
   bar.bend(3.3);
   const contact::SkinPoint left = bar.at(Vec3(-0.85, 0, -kUp)), right = bar.at(Vec3(0.85, 0, -kUp));
   ASSERT_GT((right.now - left.now).norm(), 2.0 * bent_bar::kHeight);
-  EXPECT_FALSE(bar.flesh.in_contact(left, right));
+  EXPECT_FALSE(bar.filter.in_contact(left, right));
   const contact::SkinPoint inner_left = bar.at(Vec3(-0.85, 0, kUp)), inner_right = bar.at(Vec3(0.85, 0, kUp));
-  EXPECT_FALSE(bar.flesh.in_contact(left, inner_right)) << "flesh, then air";
-  EXPECT_FALSE(bar.flesh.in_contact(inner_left, inner_right)) << "air alone";
+  EXPECT_FALSE(bar.filter.in_contact(left, inner_right)) << "tissue, then air";
+  EXPECT_FALSE(bar.filter.in_contact(inner_left, inner_right)) << "air alone";
 }
 
 // A node pulled through its tetrahedra: a way ends, whatever stands in it.
-TEST(OwnFlesh, FlatAndInvertedTetrahedraEndTheWay) {
+TEST(SelfContactFilter, FlatAndInvertedTetrahedraEndTheWay) {
   Bar bar;
   for (const double squash : {0.0, -0.5}) {
     Points nodes = bar.model.tets.nodes;
     nodes.row(2) *= squash;
     bar.state.q() = Eigen::Map<const VecX>(nodes.data(), nodes.size());
     bar.skin.update(bar.state.view());
-    EXPECT_FALSE(bar.flesh.in_contact(bar.at(Vec3(0.3, 0, kUp)), bar.at(Vec3(0.3, 0, -kUp)))) << squash;
+    EXPECT_FALSE(bar.filter.in_contact(bar.at(Vec3(0.3, 0, kUp)), bar.at(Vec3(0.3, 0, -kUp)))) << squash;
   }
 }
