@@ -12,8 +12,8 @@ constexpr double kTick = 1e-3;
 
 bool bounded(const std::string& scheme, double k, double b) {
   ToolSpec spec = desktop_tool(scheme);
-  spec.coupling_stiffness_n_m = k;
-  spec.coupling_damping_n_s_m = b;
+  spec.coupling.stiffness_n_m = k;
+  spec.coupling.damping_n_s_m = b;
   tool::Tool body(spec, Vec3::Zero());
   body.set_state(0.0, {Quat::Identity(), Vec3(1e-6, 0, 0)}, {});
   for (int i = 0; i < 3000; ++i) {

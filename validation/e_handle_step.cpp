@@ -22,12 +22,12 @@ template <class Exact>
 Deviation deviation(const std::string& scheme, const std::string& fault, int axis, double h, int ticks,
                     Exact exact) {
   const ToolSpec spec = desktop_tool(scheme);
-  const Oscillator turning{spec.inertia_kg_m2[axis], spec.coupling_rotational_damping_n_m_s_rad,
-                           spec.coupling_rotational_stiffness_n_m_rad};
-  const Oscillator shifting{spec.mass_kg, spec.coupling_damping_n_s_m, spec.coupling_stiffness_n_m};
+  const Oscillator turning{spec.inertia_kg_m2[axis], spec.coupling.rotational_damping_n_m_s_rad,
+                           spec.coupling.rotational_stiffness_n_m_rad};
+  const Oscillator shifting{spec.mass_kg, spec.coupling.damping_n_s_m, spec.coupling.stiffness_n_m};
   ToolSpec broken = spec;
   if (fault == "half-stiffness")
-    broken.coupling_stiffness_n_m *= 0.5, broken.coupling_rotational_stiffness_n_m_rad *= 0.5;
+    broken.coupling.stiffness_n_m *= 0.5, broken.coupling.rotational_stiffness_n_m_rad *= 0.5;
   if (fault == "wrong-inertia-axis")
     broken.inertia_kg_m2 = Vec3(spec.inertia_kg_m2.z(), spec.inertia_kg_m2.x(), spec.inertia_kg_m2.y());
   const Vec3 e = Vec3::Unit(axis);

@@ -23,8 +23,8 @@ std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
   for (const auto& info : tool::tool_integrators()) {
     ToolSpec spec = desktop_tool(info.name);
-    spec.coupling_damping_n_s_m = 20.0;  // e^{-b t/2m} = 1e-13 at the end
-    const double k = spec.coupling_stiffness_n_m, exact = k * kWall / (k + kWall) * kDepth;
+    spec.coupling.damping_n_s_m = 20.0;  // e^{-b t/2m} = 1e-13 at the end
+    const double k = spec.coupling.stiffness_n_m, exact = k * kWall / (k + kWall) * kDepth;
     tool::Tool body(spec, Vec3::Zero());
     const Pose below{Quat::Identity(), Vec3(0, 0, -kDepth)};
     bool ok = true;

@@ -44,10 +44,10 @@ inline ToolSpec desktop_tool(const std::string& integrator) {
   spec.integrator = integrator;
   spec.mass_kg = 0.1;
   spec.inertia_kg_m2 = Vec3(3e-5, 4e-5, 5e-5);
-  spec.coupling_stiffness_n_m = 300.0;
-  spec.coupling_damping_n_s_m = 2.0;
-  spec.coupling_rotational_stiffness_n_m_rad = 0.3;
-  spec.coupling_rotational_damping_n_m_s_rad = 1e-3;
+  spec.coupling.stiffness_n_m = 300.0;
+  spec.coupling.damping_n_s_m = 2.0;
+  spec.coupling.rotational_stiffness_n_m_rad = 0.3;
+  spec.coupling.rotational_damping_n_m_s_rad = 1e-3;
   return spec;
 }
 

@@ -42,10 +42,10 @@ scene::Description press_block() {
   d.tool->radius_m = 0.015;
   d.tool->mass_kg = 0.05;
   d.tool->position_m = Vec3(0.001, 0.002, 0.035);
-  d.tool->coupling_stiffness_n_m = 300;
-  d.tool->coupling_damping_n_s_m = 4;
-  d.tool->coupling_rotational_stiffness_n_m_rad = 0.02;  // swings at 67/s: inertia 2/5 m r^2 = 4.5e-6 kg m^2
-  d.tool->coupling_rotational_damping_n_m_s_rad = 3e-4;
+  d.tool->coupling.stiffness_n_m = 300;
+  d.tool->coupling.damping_n_s_m = 4;
+  d.tool->coupling.rotational_stiffness_n_m_rad = 0.02;  // swings at 67/s: inertia 2/5 m r^2 = 4.5e-6 kg m^2
+  d.tool->coupling.rotational_damping_n_m_s_rad = 3e-4;
   d.device.emplace();
   KeyframeSpec touch, deep;
   touch.position_m = d.tool->position_m;

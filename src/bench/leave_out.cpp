@@ -112,7 +112,7 @@ scene::Description with_plane_out_of_reach(scene::Description d) {
   ObstacleSpec plane;
   plane.name = "far below";
   plane.type = "plane";
-  plane.position_m = Vec3(0, 0, -100);
+  plane.shape["position_m"] = Vec3(0, 0, -100);
   d.obstacles.push_back(plane);
   ContactSpec contact;
   contact.first = d.bodies.front().name;

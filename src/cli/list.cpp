@@ -1,10 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 
 #include "commands.h"
 #include "palpate/core/error.h"
+#include "palpate/loop/load.h"
 #include "palpate/loop/registries.h"
 #include "palpate/report/table.h"
 #include "palpate/validation/validation.h"
@@ -12,6 +14,8 @@
 
 namespace palpate::cli {
 namespace {
+
+const char* const kKeys = "keys";
 
 loop::ChoiceList case_choices() {
   loop::ChoiceList out{"cases", "with a known answer: palpate validate", {}};
@@ -51,14 +55,45 @@ void print(const loop::ChoiceList& list) {
   fmt::print("{}\n", report::format_table(headers, rows));
 }
 
+std::string in_short(std::vector<std::string> users) {
+  constexpr std::size_t kMost = 4;
+  if (users.size() > kMost) {
+    const std::string rest = fmt::format("{} more", users.size() - kMost + 1);
+    users.resize(kMost - 1);
+    users.push_back(rest);
+  }
+  return fmt::format("{}", fmt::join(users, ", "));
+}
+
+/// The table that a person reads: what may stand in a scene, key by key.
+void print_keys() {
+  std::string table = "\n";
+  std::vector<std::vector<std::string>> rows;
+  const auto flush = [&] {
+    if (rows.empty()) return;
+    fmt::print("[{}]\n{}\n", table,
+               report::format_table({"key", "type", "unit", "range", "default", "meaning", "used by"}, rows));
+    rows.clear();
+  };
+  for (const scene::KeyRow& row : scene::key_rows(loop::kinds())) {
+    if (row.table.empty()) continue;  // the tables themselves
+    if (row.table != table) flush();
+    table = row.table;
+    rows.push_back({row.name, row.type, row.unit, row.range, row.required ? "required" : row.fallback,
+                    row.meaning, in_short(row.users)});
+  }
+  flush();
+}
+
 }  // namespace
 
 int list(const ListArguments& arguments) {
   std::vector<loop::ChoiceList> lists = loop::registries();
   lists.push_back(case_choices());
   lists.push_back(scene_choices());
-  std::vector<std::string> known;
-  bool found = false;
+  std::vector<std::string> known = {kKeys};
+  bool found = arguments.what == kKeys;
+  if (found) print_keys();
   for (const loop::ChoiceList& one : lists) {
     known.push_back(one.what);
     if (!arguments.what.empty() && arguments.what != one.what) continue;

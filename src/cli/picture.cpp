@@ -12,6 +12,14 @@ VecX shading(loop::World& world, const loop::Body& body, const Points& now, cons
   return (now - body.placed).colwise().norm().transpose();
 }
 
+/// The box around all surfaces: how much of an obstacle without an end is worth drawing.
+contact::View view_of(const render::Scene& scene) {
+  Eigen::AlignedBox3d box;
+  for (const render::Surface& surface : scene.surfaces)
+    for (Eigen::Index i = 0; i < surface.points.cols(); ++i) box.extend(Vec3(surface.points.col(i)));
+  return box.isEmpty() ? contact::View{} : contact::View{box.center(), 2.0 * box.diagonal().norm()};
+}
+
 }  // namespace
 
 void check_picture(const std::string& shade) {
@@ -74,9 +82,19 @@ void Snapshot::save(const loop::World& world, const std::string& path) const {
     surface.opacity = 0.45;  // the dent lies under it
     scene.surfaces.push_back(surface);
   }
-  for (const ObstacleSpec& obstacle : world.description.obstacles)
-    if (obstacle.type == "plane" && obstacle.normal.normalized().z() > 0.999)
-      scene.ground = render::Ground{obstacle.position_m.z()};
+  const contact::View view = view_of(scene);
+  for (const ObstacleSpec& obstacle : world.description.obstacles) {
+    contact::ObstaclePicture picture = loop::obstacle_picture(obstacle, view);
+    if (picture.ground_m) {
+      scene.ground = render::Ground{*picture.ground_m};
+      continue;
+    }
+    render::Surface surface{obstacle.name, std::move(picture.surface.vertices),
+                            std::move(picture.surface.faces)};
+    surface.colour = {0.55f, 0.60f, 0.66f};
+    surface.opacity = 0.45;  // what touches it may lie behind
+    scene.surfaces.push_back(std::move(surface));
+  }
   scene.scale.label = shade_ == "stress" ? "von Mises stress" : "displacement";
   scene.scale.unit = shade_ == "stress" ? "Pa" : "m";
   scene.title = fmt::format("{}, t = {:g} s", world.description.name, time_);

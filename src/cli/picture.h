@@ -17,8 +17,8 @@ class Snapshot : public loop::Observer {
   explicit Snapshot(std::string shade) : shade_(std::move(shade)) {}
   void period(loop::World& world, double t) override;
   void tick(const loop::TickRecord& tick) override;
-  /// Surfaces shaded by displacement [m] or von Mises stress [Pa], the tool, bones seen through the tissue, a
-  /// floor where the scene has one.
+  /// Surfaces shaded by displacement [m] or von Mises stress [Pa], the tool, bones seen through the tissue,
+  /// and the obstacles.
   void save(const loop::World& world, const std::string& path) const;
 
  private:

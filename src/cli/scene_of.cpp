@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "palpate/scene/load.h"
+#include "palpate/loop/load.h"
 #include "places.h"
 
 namespace palpate::cli {
@@ -13,7 +13,12 @@ scene::Description scene_of(const SceneArguments& arguments) {
   std::vector<std::string> overrides = arguments.overrides;
   if (!arguments.integrator.empty())
     overrides.push_back(fmt::format("integrator.name=\"{}\"", arguments.integrator));
-  return scene::load(find_scene(arguments.scene), overrides);
+  scene::Description description = loop::load(find_scene(arguments.scene), overrides);
+  for (const std::string& key : description.not_carried_over)
+    fmt::print(stderr,
+               "palpate: {} of the scene is left out: what --integrator or --set names has no use for it\n",
+               key);
+  return description;
 }
 
 std::string short_name(const scene::Description& description) {

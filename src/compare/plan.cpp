@@ -5,8 +5,8 @@
 #include <set>
 
 #include "palpate/core/error.h"
+#include "palpate/loop/load.h"
 #include "palpate/loop/registries.h"
-#include "palpate/scene/load.h"
 
 namespace palpate::compare {
 namespace {
@@ -133,8 +133,14 @@ std::vector<std::string> overrides_of(const scene::LadderSpec& ladder, double va
     return out;
   }
   out.push_back("integrator.name=\"" + ladder.integrator + "\"");
-  out.push_back(fmt::format("integrator.{}={}", ladder.setting, toml_number(value)));
-  out.push_back(fmt::format("integrator.fixed_step={}", ladder.setting == "step_s"));
+  const StepperEntry* entry = find_stepper(ladder.integrator);
+  const auto uses = [&](const std::string& name) {
+    return entry && std::any_of(entry->keys.begin(), entry->keys.end(),
+                                [&](const PartKey& key) { return key.name == name; });
+  };
+  if (uses(ladder.setting))
+    out.push_back(fmt::format("integrator.{}={}", ladder.setting, toml_number(value)));
+  if (uses("fixed_step")) out.push_back(fmt::format("integrator.fixed_step={}", ladder.setting == "step_s"));
   return out;
 }
 
@@ -159,8 +165,8 @@ ComparePoint point_of(const scene::Description& d, const scene::LadderSpec& ladd
 
 scene::Description with_overrides(const scene::Description& d, const std::vector<std::string>& overrides) {
   if (d.source.empty())
-    fail("scene \"{}\": has no text; a comparison needs scenes from scene::load or scene::parse", d.name);
-  return scene::parse(d.source, d.path, overrides);
+    fail("scene \"{}\": has no text; a comparison needs scenes from loop::load or loop::parse", d.name);
+  return loop::parse(d.source, d.path, overrides);
 }
 
 std::vector<ComparePoint> plan_points(const scene::Description& d, const CompareOptions& options) {

@@ -4,7 +4,7 @@
 
 #include "codec.h"
 #include "palpate/core/bytes.h"
-#include "palpate/scene/load.h"
+#include "palpate/loop/load.h"
 #include "run.h"
 
 namespace palpate::compare {
@@ -23,7 +23,7 @@ std::string do_order(const std::string& order, const std::atomic<bool>& out_of_t
   const auto source = in.get<std::string>(), path = in.get<std::string>();
   const auto limit_s = in.get<double>();
   const auto reference_bytes = in.get<std::string>();
-  const scene::Description description = scene::parse(source, path);
+  const scene::Description description = loop::parse(source, path);
   switch (kind) {
     case WorkKind::kReference:
       return bytes_of(run_once(description, description.compare.duration_s, &out_of_time));

@@ -81,8 +81,8 @@ class WholeSource final : public ImageSource {
 };
 
 void check_arguments(const NodeSurface& surface, Eigen::Index other_faces, const GpuOptions& options) {
-  if (options.pixels < 2 || options.pixels > 8192)
-    fail("gpu contact: pixels = {} must lie between 2 and 8192", options.pixels);
+  if (!ContactRanges::pixels.holds(options.pixels))
+    fail("gpu contact: pixels = {} {}", options.pixels, ContactRanges::pixels.demand());
   if (!(options.candidate_gap >= 0.0))
     fail("gpu contact: candidate gap = {} must not be negative", options.candidate_gap);
   for (const double shift : {options.shift_u, options.shift_v})

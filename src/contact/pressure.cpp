@@ -3,31 +3,37 @@
 #include <algorithm>
 #include <cmath>
 
+#include "palpate/contact/methods.h"
 #include "palpate/core/error.h"
+#include "palpate/core/registry.h"
 
 namespace palpate::contact {
 namespace {
 
-void require(const ContactSpec& spec, bool ok, const char* key, double value, const char* remedy) {
-  if (!ok) fail("contact \"{}\" with \"{}\": {} = {} {}", spec.first, spec.second, key, value, remedy);
+void require(const ContactSpec& spec, const char* key, double value, const Range& range) {
+  if (!range.holds(value))
+    fail("contact \"{}\" with \"{}\": {} = {} {}", spec.first, spec.second, key, value, range.demand());
 }
 
 }  // namespace
 
+const std::vector<LawEntry>& law_registry() {
+  static const std::vector<LawEntry> registry = {
+      {"kelvin_voigt", "spring and damper side by side", part_keys({"damping_pa_s_m"})},
+      {"hunt_crossley", "damping in proportion to the spring's pressure", part_keys({"hunt_crossley_s_m"})},
+  };
+  return registry;
+}
+
 PressureLaw pressure_law(const ContactSpec& spec) {
-  require(spec, spec.stiffness_pa_m > 0 && std::isfinite(spec.stiffness_pa_m), "stiffness_pa_m",
-          spec.stiffness_pa_m, "must be positive");
-  require(spec, spec.damping_pa_s_m >= 0 && std::isfinite(spec.damping_pa_s_m), "damping_pa_s_m",
-          spec.damping_pa_s_m, "must not be negative");
-  require(spec, spec.hunt_crossley_s_m >= 0 && std::isfinite(spec.hunt_crossley_s_m), "hunt_crossley_s_m",
-          spec.hunt_crossley_s_m, "must not be negative");
-  require(spec, spec.friction >= 0 && std::isfinite(spec.friction), "friction", spec.friction,
-          "must not be negative");
-  require(spec, spec.friction_regularisation_m_s > 0 && std::isfinite(spec.friction_regularisation_m_s),
-          "friction_regularisation_m_s", spec.friction_regularisation_m_s,
-          "must be positive: below this sliding speed friction is viscous");
-  require(spec, spec.onset_width_m >= 0 && std::isfinite(spec.onset_width_m), "onset_width_m",
-          spec.onset_width_m, "must not be negative; 0 lets the pressure set in at once");
+  using Ranges = ContactRanges;
+  require(spec, "stiffness_pa_m", spec.stiffness_pa_m, Ranges::stiffness_pa_m);
+  require(spec, "damping_pa_s_m", spec.damping_pa_s_m, Ranges::damping_pa_s_m);
+  require(spec, "hunt_crossley_s_m", spec.hunt_crossley_s_m, Ranges::hunt_crossley_s_m);
+  require(spec, "friction", spec.friction, Ranges::friction);
+  require(spec, "friction_regularisation_m_s", spec.friction_regularisation_m_s,
+          Ranges::friction_regularisation_m_s);
+  require(spec, "onset_width_m", spec.onset_width_m, Ranges::onset_width_m);
   PressureLaw law{PressureLaw::Kind::kKelvinVoigt,
                   spec.stiffness_pa_m,
                   spec.damping_pa_s_m,
@@ -37,7 +43,7 @@ PressureLaw pressure_law(const ContactSpec& spec) {
   if (spec.law == "kelvin_voigt") return law;
   if (spec.law != "hunt_crossley")
     fail("contact \"{}\" with \"{}\": unknown law \"{}\"{}", spec.first, spec.second, spec.law,
-         suggestion(spec.law, {"kelvin_voigt", "hunt_crossley"}));
+         suggestion(spec.law, names(law_registry())));
   law.kind = PressureLaw::Kind::kHuntCrossley;
   law.d = spec.hunt_crossley_s_m;
   return law;

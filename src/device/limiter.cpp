@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "palpate/core/error.h"
+#include "palpate/device/spec.h"
 
 namespace palpate::device {
 namespace {
@@ -47,6 +48,10 @@ void check_slew(double slew, double max, const char* what) {
          max, least);
 }
 
+void check_range(const char* key, double value, const Range& range) {
+  if (!range.holds(value)) fail("device: {} = {} {}", key, value, range.demand());
+}
+
 }  // namespace
 
 WrenchLimiter::WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s,
@@ -56,11 +61,9 @@ WrenchLimiter::WrenchLimiter(double max_force_n, double max_torque_n_m, double r
       ramp_(ramp_s),
       force_slew_(max_force_slew_n_s),
       torque_slew_(max_torque_slew_n_m_s) {
-  if (!(max_force_ > 0.0) || !std::isfinite(max_force_))
-    fail("device: max_force_n = {} must be positive", max_force_);
-  if (!(max_torque_ > 0.0) || !std::isfinite(max_torque_))
-    fail("device: max_torque_n_m = {} must be positive", max_torque_);
-  if (!(ramp_ >= 0.0) || !std::isfinite(ramp_)) fail("device: ramp_s = {} must not be negative", ramp_);
+  check_range("max_force_n", max_force_, DeviceRanges::max_force_n);
+  check_range("max_torque_n_m", max_torque_, DeviceRanges::max_torque_n_m);
+  check_range("ramp_s", ramp_, DeviceRanges::ramp_s);
   check_slew(force_slew_, max_force_, "max_force_slew_n_s");
   check_slew(torque_slew_, max_torque_, "max_torque_slew_n_m_s");
 }

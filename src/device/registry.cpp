@@ -19,10 +19,11 @@ class ScriptHandle : public Handle {
 
 const Registry<MakeHandle>& handle_registry() {
   static const Registry<MakeHandle> registry = {
-      {"script", "follows the keyframes of the scene", 0,
-       [](const DeviceSpec& spec) -> std::unique_ptr<Handle> {
-         return std::make_unique<ScriptHandle>(spec);
-       }},
+      {"script",
+       "follows the keyframes of the scene",
+       0,
+       [](const DeviceSpec& spec) -> std::unique_ptr<Handle> { return std::make_unique<ScriptHandle>(spec); },
+       {{.name = "keyframe", .required = true}}},
   };
   return registry;
 }

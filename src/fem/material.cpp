@@ -3,23 +3,27 @@
 #include <cmath>
 
 #include "palpate/core/error.h"
+#include "palpate/fem/spec.h"
 
 namespace palpate::fem {
 
+namespace {
+
+void check_range(const char* where, const char* key, double value, const Range& range) {
+  if (range.holds(value)) return;
+  fail("{}: {} = {} {}", where, key, value, std::isinf(value) ? "must be a finite number" : range.demand());
+}
+
+}  // namespace
+
 // The names are the scene's keys, so that a person finds the line.
 void check(const Material& m, const char* where) {
-  if (!(std::isfinite(m.youngs_modulus) && m.youngs_modulus > 0.0))
-    fail("{}: youngs_modulus_pa = {} must be positive and finite; soft tissue has 1e3 to 1e5 Pa", where,
-         m.youngs_modulus);
-  if (!(m.poissons_ratio > -1.0 && m.poissons_ratio < 0.5))
-    fail("{}: poissons_ratio = {} must lie in (-1, 0.5); use 0.49 for nearly incompressible tissue", where,
-         m.poissons_ratio);
-  if (!(std::isfinite(m.density) && m.density > 0.0))
-    fail("{}: density_kg_m3 = {} must be positive and finite; water has 1000 kg/m^3", where, m.density);
-  if (!(std::isfinite(m.mass_damping) && m.mass_damping >= 0.0))
-    fail("{}: mass_damping_per_s = {} must not be negative; use 0 for none", where, m.mass_damping);
-  if (!(std::isfinite(m.stiffness_damping) && m.stiffness_damping >= 0.0))
-    fail("{}: stiffness_damping_s = {} must not be negative; use 0 for none", where, m.stiffness_damping);
+  using Ranges = MaterialRanges;
+  check_range(where, "youngs_modulus_pa", m.youngs_modulus, Ranges::youngs_modulus_pa);
+  check_range(where, "poissons_ratio", m.poissons_ratio, Ranges::poissons_ratio);
+  check_range(where, "density_kg_m3", m.density, Ranges::density_kg_m3);
+  check_range(where, "mass_damping_per_s", m.mass_damping, Ranges::mass_damping_per_s);
+  check_range(where, "stiffness_damping_s", m.stiffness_damping, Ranges::stiffness_damping_s);
 }
 
 void check(const Materials& materials, int elements, const char* where) {

@@ -1,5 +1,6 @@
 #include "integrate/make.h"
 #include "integrate/robust_solver.h"
+#include "integrate/settings.h"
 #include "integrate/sundials/ark_methods.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
@@ -11,72 +12,117 @@ using dynamics::StepControl;
 
 namespace {
 
+using Keys = std::vector<std::string>;
+
+/// What implicit methods use beside their own; make_registry() adds `threads`, which serves any method.
+const Keys kImplicit = {"linear_solver", "indefinite"};
+const Keys kFixed = {"step_s", "max_steps"};
+
+Keys together(Keys keys, const Keys& more) {
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
+}
+std::vector<PartKey> with(const Keys& keys, const Keys& more) { return part_keys(together(keys, more)); }
+
+std::vector<PartKey> adaptive_keys(int highest_order, bool implicit) {
+  std::vector<PartKey> keys =
+      with({"rtol", "atol_q", "atol_u", "max_steps", "events"}, implicit ? kImplicit : Keys{});
+  keys.push_back({.name = "max_order", .range = order_range(highest_order)});
+  return keys;
+}
+
+/// By error control, or with fixed steps, where newton_rtol takes the place of rtol.
+std::vector<PartKey> ark_keys(const dynamics::StepperTraits& traits) {
+  Keys keys = {"rtol", "atol_q", "atol_u", "max_steps", "events", "fixed_step", "step_s"};
+  if (traits.implicit) keys = together(together(keys, kImplicit), {"newton_rtol"});
+  if (traits.family == "ImEx Runge-Kutta") keys.push_back("explicit_side");
+  return part_keys(keys);
+}
+
 /// In the order in which they are listed and compared: by SUNDIALS, then by hand.
 dynamics::StepperRegistry make_registry() {
   dynamics::StepperRegistry all = {
       {"cvode-bdf",
        "backward differences of SUNDIALS CVODE, order 1 to 5 (max_order)",
        {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"},
-       make_cvode},
+       make_cvode,
+       adaptive_keys(5, true)},
       {"cvode-adams",
        "Adams-Moulton of SUNDIALS CVODE, order 1 to 12 (max_order), fixed-point iteration",
        {"Adams", 12, 0, StepControl::kAdaptive, Stability::kExplicit, false, true, "force"},
-       make_cvode},
+       make_cvode,
+       adaptive_keys(12, false)},
       {"ida",
        "backward differences of SUNDIALS IDA on the residual M u' - f, order 1 to 5 (max_order)",
        {"BDF", 5, 5, StepControl::kAdaptive, Stability::kAlpha, true, true, "force, tangent"},
-       make_ida},
+       make_ida,
+       adaptive_keys(5, true)},
   };
-  for (const ArkMethod& m : ark_methods()) all.push_back({m.name, m.summary, m.traits, make_ark});
+  for (const ArkMethod& m : ark_methods())
+    all.push_back({m.name, m.summary, m.traits, make_ark, ark_keys(m.traits)});
   const auto multi_rate = [](int order, int stiff_order) {
     return dynamics::StepperTraits{
         "multi-rate",  order, stiff_order, StepControl::kFixed,
         Stability::kA, true,  false,       "force, tangent; contact and tool as the fast side"};
   };
+  const std::vector<PartKey> mri_keys =
+      with({"step_s", "max_steps", "rtol", "newton_rtol", "atol_q", "atol_u", "events"}, kImplicit);
   all.push_back({"ark-mri-2",
                  "multi-rate IRK21a of Sandu 2019: bodies by an implicit slow step, contact and tool fast",
-                 multi_rate(2, 2), make_mri});
-  all.push_back({"ark-mri-3", "multi-rate ESDIRK34a of Sandu 2019", multi_rate(3, 2), make_mri});
-  all.push_back({"ark-mri-4", "multi-rate ESDIRK46a of Sandu 2019", multi_rate(4, 2), make_mri});
+                 multi_rate(2, 2), make_mri, mri_keys});
+  all.push_back({"ark-mri-3", "multi-rate ESDIRK34a of Sandu 2019", multi_rate(3, 2), make_mri, mri_keys});
+  all.push_back({"ark-mri-4", "multi-rate ESDIRK46a of Sandu 2019", multi_rate(4, 2), make_mri, mri_keys});
   all.push_back({"kinsol-static",
                  "quasi-static equilibrium of SUNDIALS KINSOL: no inertia, no velocity",
                  {"statics", 1, 1, StepControl::kFixed, Stability::kStatic, true, false, "force, tangent"},
-                 make_kinsol_static});
+                 make_kinsol_static,
+                 with({"newton_rtol"}, kImplicit)});
+  const Keys newton_keys =
+      together(together(kFixed, kImplicit), {"newton_rtol", "atol_q", "atol_u", "factor_kept_steps"});
   const dynamics::StepperRegistry by_hand = {
       {"linearly-implicit-euler",
        "one linear solve a step; the interactive method of Galoppo et al. 2007",
        {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"},
-       make_linearly_implicit_euler},
+       make_linearly_implicit_euler,
+       with(kFixed, kImplicit)},
       {"backward-euler",
        "backward Euler, Newton to its end; full, or a factor kept over factor_kept_steps",
        {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"},
-       make_backward_euler},
+       make_backward_euler,
+       part_keys(newton_keys)},
       {"implicit-midpoint",
        "implicit midpoint rule, Newton to its end; keeps quadratic invariants; no numerical damping",
        {"Gauss", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"},
-       make_implicit_midpoint},
+       make_implicit_midpoint,
+       part_keys(newton_keys)},
       {"bdf2",
        "backward differences of order 2 with variable steps; starts by an L-stable SDIRK step of order 2",
        {"BDF", 2, 2, StepControl::kFixed, Stability::kL, true, true, "force, tangent", "auto"},
-       make_bdf2},
+       make_bdf2,
+       part_keys(newton_keys)},
       {"newmark",
        "Newmark 1959, average acceleration (beta = 1/4, gamma = 1/2); no numerical damping",
        {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"},
-       make_newmark},
+       make_newmark,
+       part_keys(newton_keys)},
       {"generalized-alpha",
        "Chung and Hulbert 1993; damps high frequencies by spectral_radius a step",
        {"Newmark", 2, 2, StepControl::kFixed, Stability::kA, true, false, "force, tangent", "auto"},
-       make_generalized_alpha},
+       make_generalized_alpha,
+       with(newton_keys, {"spectral_radius"})},
       {"symplectic-euler",
        "velocity first, then position; one force a step, stable below 2/w_max",
        {"explicit Euler", 1, 0, StepControl::kFixed, Stability::kExplicit, false, false, "force"},
-       make_symplectic_euler},
+       make_symplectic_euler,
+       part_keys(kFixed)},
       {"rk4",
        "the classical Runge-Kutta method of order 4; four forces a step, stable below 2.8/w_max",
        {"explicit Runge-Kutta", 4, 0, StepControl::kFixed, Stability::kExplicit, false, false, "force"},
-       make_rk4},
+       make_rk4,
+       part_keys(kFixed)},
   };
   all.insert(all.end(), by_hand.begin(), by_hand.end());
+  for (dynamics::StepperEntry& entry : all) entry.keys.push_back({.name = "threads"});
   return all;
 }
 

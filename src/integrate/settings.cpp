@@ -1,37 +1,30 @@
 #include "integrate/settings.h"
 
-#include <cmath>
-
 #include "palpate/core/error.h"
 
 namespace palpate::integrate {
 namespace {
 
-void check_positive(const IntegratorSpec& spec, const char* key, double value, const char* remedy) {
-  if (!(value > 0.0) || !std::isfinite(value))
-    fail("integrator \"{}\": {} = {} must be positive and finite; {}", spec.name, key, value, remedy);
+using Ranges = IntegratorRanges;
+
+void check(const IntegratorSpec& spec, const char* key, double value, const Range& range) {
+  if (!range.holds(value)) fail("integrator \"{}\": {} = {} {}", spec.name, key, value, range.demand());
 }
 
-void check_max_steps(const IntegratorSpec& spec) {
-  if (spec.max_steps < 1)
-    fail(
-        "integrator \"{}\": max_steps = {} must be at least 1; it bounds the internal steps between two "
-        "outputs",
-        spec.name, spec.max_steps);
+void check_atol(const IntegratorSpec& spec) {
+  check(spec, "atol_q", spec.atol_q, Ranges::atol_q);
+  check(spec, "atol_u", spec.atol_u, Ranges::atol_u);
 }
 
 }  // namespace
 
+Range order_range(int highest_order) { return Range::closed(0, highest_order, Ranges::max_order.remedy); }
+
 void check_adaptive(const IntegratorSpec& spec, int highest_order) {
-  check_positive(spec, "rtol", spec.rtol, "1e-3 is usual");
-  if (spec.rtol > 0.1)
-    fail("integrator \"{}\": rtol = {} must be at most 0.1; 1e-3 is usual", spec.name, spec.rtol);
-  check_positive(spec, "atol_q", spec.atol_q, "0.01 is usual");
-  check_positive(spec, "atol_u", spec.atol_u, "0.1 is usual");
-  if (spec.max_order < 0 || spec.max_order > highest_order)
-    fail("integrator \"{}\": max_order = {} must lie in [0, {}]; 0 leaves it to the method", spec.name,
-         spec.max_order, highest_order);
-  check_max_steps(spec);
+  check(spec, "rtol", spec.rtol, Ranges::rtol);
+  check_atol(spec);
+  check(spec, "max_order", spec.max_order, order_range(highest_order));
+  check(spec, "max_steps", spec.max_steps, Ranges::max_steps);
   if (spec.fixed_step)
     fail(
         "integrator \"{}\": fixed_step = true, but this method chooses its steps by error control; leave it "
@@ -40,29 +33,22 @@ void check_adaptive(const IntegratorSpec& spec, int highest_order) {
 }
 
 void check_fixed_step(const IntegratorSpec& spec) {
-  check_positive(spec, "step_s", spec.step_s, "1e-3 is usual");
-  check_max_steps(spec);
+  check(spec, "step_s", spec.step_s, Ranges::step_s);
+  check(spec, "max_steps", spec.max_steps, Ranges::max_steps);
 }
 
 void check_static(const IntegratorSpec& spec) {
-  check_positive(spec, "newton_rtol", spec.newton_rtol, "1e-8 is usual");
+  check(spec, "newton_rtol", spec.newton_rtol, Ranges::newton_rtol);
 }
 
 void check_newton(const IntegratorSpec& spec) {
-  if (!(spec.newton_rtol >= 1e-14 && spec.newton_rtol <= 0.1))
-    fail("integrator \"{}\": newton_rtol = {} must lie in [1e-14, 0.1]; 1e-8 is usual", spec.name,
-         spec.newton_rtol);
-  check_positive(spec, "atol_q", spec.atol_q, "0.01 is usual");
-  check_positive(spec, "atol_u", spec.atol_u, "0.1 is usual");
-  if (spec.factor_kept_steps < 1)
-    fail("integrator \"{}\": factor_kept_steps = {} must be at least 1; 1 is full Newton", spec.name,
-         spec.factor_kept_steps);
+  check(spec, "newton_rtol", spec.newton_rtol, Ranges::newton_rtol);
+  check_atol(spec);
+  check(spec, "factor_kept_steps", spec.factor_kept_steps, Ranges::factor_kept_steps);
 }
 
 void check_spectral_radius(const IntegratorSpec& spec) {
-  if (!(spec.spectral_radius >= 0.0 && spec.spectral_radius <= 1.0))
-    fail("integrator \"{}\": spectral_radius = {} must lie in [0, 1]; 1 damps nothing, 0 the most", spec.name,
-         spec.spectral_radius);
+  check(spec, "spectral_radius", spec.spectral_radius, Ranges::spectral_radius);
 }
 
 }  // namespace palpate::integrate

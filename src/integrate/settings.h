@@ -5,6 +5,7 @@ namespace palpate::integrate {
 
 /// @throws Error naming the key of the `[integrator]` table, its value and what to write instead.
 void check_adaptive(const IntegratorSpec& spec, int highest_order);
+Range order_range(int highest_order);  ///< of max_order
 void check_fixed_step(const IntegratorSpec& spec);
 void check_static(const IntegratorSpec& spec);
 /// Checks the settings that Newton's method of the fixed-step implicit methods reads.

@@ -16,19 +16,19 @@ const dynamics::LinearSolverRegistry& linear_solver_registry() {
        0, make_klu},
       {"pcg",
        "conjugate gradients, block-Jacobi, warm start, to linear_rtol; symmetric positive definite matrices",
-       0, make_pcg},
+       0, make_pcg, part_keys({"linear_rtol"})},
       {"auto",
        "the fastest of cholmod, pcg-single and pcg-two-level for the matrix's size and stiffness and for "
        "linear_rtol, by measurements kept in the source",
-       0, make_auto},
+       0, make_auto, part_keys({"linear_rtol"})},
       {"pcg-single",
        "conjugate gradients in single precision with residuals in double, block-Jacobi, start from three "
        "solutions; linear_rtol bounds the error",
-       0, make_pcg_single},
+       0, make_pcg_single, part_keys({"linear_rtol"})},
       {"pcg-two-level",
        "pcg-single with rigid motions of node clusters, large and small, beside its blocks: for stiff "
        "bodies, long steps and fine meshes",
-       0, make_pcg_two_level},
+       0, make_pcg_two_level, part_keys({"linear_rtol"})},
   };
   return registry;
 }

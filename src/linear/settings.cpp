@@ -5,11 +5,11 @@
 namespace palpate::linear {
 
 void check_linear_rtol(const char* solver, const IntegratorSpec& spec) {
-  if (!(spec.linear_rtol >= 1e-15 && spec.linear_rtol <= 0.1))
-    fail("linear solver \"{}\": linear_rtol = {} must lie in [1e-15, 0.1]; 1e-8 is usual", solver,
-         spec.linear_rtol);
-  if (spec.threads < 1 || spec.threads > 64)
-    fail("linear solver \"{}\": threads = {} must lie in [1, 64]", solver, spec.threads);
+  if (!IntegratorRanges::linear_rtol.holds(spec.linear_rtol))
+    fail("linear solver \"{}\": linear_rtol = {} {}", solver, spec.linear_rtol,
+         IntegratorRanges::linear_rtol.demand());
+  if (!IntegratorRanges::threads.holds(spec.threads))
+    fail("linear solver \"{}\": threads = {} {}", solver, spec.threads, IntegratorRanges::threads.demand());
 }
 
 }  // namespace palpate::linear

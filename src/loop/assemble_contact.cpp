@@ -1,6 +1,8 @@
 #include <algorithm>
 
 #include "assemble_parts.h"
+#include "palpate/contact/methods.h"
+#include "palpate/contact/obstacle.h"
 #include "palpate/contact/sources.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -93,18 +95,6 @@ std::unique_ptr<contact::SampleSource> gpu_source(Pair pair, TriMesh rigid,
                                   rigid_proxies, frame, std::move(motion), options);
 }
 
-void check_method(const ContactSpec& spec) {
-  if (spec.method == "vertex" || spec.method == "pixel")
-    fail(
-        "contact {} - {}: method = \"{}\": the method says how gaps are found, and with it where: "
-        "\"analytic\" at each vertex (obstacles, tools of shape \"sphere\"), \"gpu\" at "
-        "each pixel of an image (tools of any shape, other soft bodies); take method = \"{}\"",
-        spec.first, spec.second, spec.method, spec.method == "vertex" ? "analytic" : "gpu");
-  if (spec.method != "analytic" && spec.method != "gpu")
-    fail("contact {} - {}: unknown method \"{}\"{}", spec.first, spec.second, spec.method,
-         suggestion(spec.method, {"analytic", "gpu"}));
-}
-
 /// The tool's frame in contact: its block of the State, or its motion over one exchange period.
 std::shared_ptr<contact::MovingFrame> tool_motion(World& world) {
   ToolSide& side = ToolSide::of(world);
@@ -136,39 +126,15 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
 
 std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
                                                        const ObstacleSpec& obstacle) {
-  auto motion = contact::fixed_frame();
-  const int frame = world.contact->add_frame(motion);
-  if (obstacle.type == "plane") {
-    if (pair.spec.method == "gpu")
-      fail("contact {} - {}: a plane has exact gaps and needs no image; use method = \"analytic\"",
-           pair.spec.first, obstacle.name);
-    return contact::make_plane_source(std::move(pair.surface), frame, motion, obstacle.position_m,
-                                      obstacle.normal, pair.candidate_gap,
-                                      world.description.coupling.contact_refresh_s);
-  }
-  const double ahead = world.description.coupling.contact_refresh_s;
-  const Pose place{quaternion_of(obstacle.rotation_vector_rad), obstacle.position_m};
-  if (obstacle.type != "sphere" && obstacle.type != "box" && obstacle.type != "cylinder")
-    fail("obstacle \"{}\": unknown type \"{}\"{}", obstacle.name, obstacle.type,
-         suggestion(obstacle.type, {"plane", "sphere", "box", "cylinder"}));
-  if (obstacle.type != "sphere" && pair.spec.method == "gpu")
+  if (pair.spec.method != "analytic")
     fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"analytic\"",
          pair.spec.first, obstacle.name, obstacle.type);
-  if (obstacle.type == "box")
-    return contact::make_box_source(std::move(pair.surface), frame, motion, place, obstacle.size_m,
-                                    pair.candidate_gap, ahead);
-  if (obstacle.type == "cylinder")
-    return contact::make_cylinder_source(std::move(pair.surface), frame, motion, place, obstacle.radius_m,
-                                         obstacle.length_m, pair.candidate_gap, ahead);
-  if (pair.spec.method == "analytic")
-    return contact::make_sphere_source(std::move(pair.surface), frame, motion, obstacle.position_m,
-                                       obstacle.radius_m, pair.candidate_gap, ahead);
-  ToolSpec ball;
-  ball.radius_m = obstacle.radius_m;
-  TriMesh surface = tool_surface(ball, world.folder);
-  surface.vertices.colwise() += obstacle.position_m;
-  std::shared_ptr<proxy::ProxySet> proxies;
-  return gpu_source(std::move(pair), std::move(surface), proxies, frame, motion);
+  const contact::ObstacleEntry& entry = contact::obstacle_entry(obstacle);
+  auto motion = contact::fixed_frame();
+  const int frame = world.contact->add_frame(motion);
+  return entry.make_source(std::move(pair.surface), frame, std::move(motion),
+                           contact::obstacle_shape(obstacle), pair.candidate_gap,
+                           world.description.coupling.contact_refresh_s);
 }
 
 }  // namespace
@@ -176,7 +142,7 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
 void assemble_contact(World& world) {
   world.contact = std::make_shared<contact::ContactForce>();
   for (const ContactSpec& spec : world.description.contacts) {
-    check_method(spec);
+    contact::check_method(spec.method, fmt::format("contact {} - {}", spec.first, spec.second));
     const auto& obstacles = world.description.obstacles;
     const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(),
                                        [&](const ObstacleSpec& o) { return o.name == spec.second; });
@@ -198,6 +164,10 @@ void assemble_contact(World& world) {
   if (!side.trajectory || world.description.coupling.linearisation != "condensed") return;
   counters::count("loop.condenser");
   side.condenser = linear::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
+}
+
+contact::ObstaclePicture obstacle_picture(const ObstacleSpec& spec, const contact::View& view) {
+  return contact::obstacle_entry(spec).picture(contact::obstacle_shape(spec), view);
 }
 
 }  // namespace palpate::loop

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include "palpate/contact/gpu_available.h"
+#include "palpate/contact/methods.h"
+#include "palpate/contact/obstacle.h"
 #include "palpate/device/handle.h"
 #include "palpate/fem/laws.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/mesh/generators.h"
 #include "palpate/tool/tool.h"
 
 namespace palpate::loop {
@@ -16,6 +19,13 @@ template <class Make>
 std::vector<Choice> choices(const Registry<Make>& registry) {
   std::vector<Choice> out;
   for (const auto& entry : registry) out.push_back({entry.name, entry.summary, entry.order});
+  return out;
+}
+
+template <class Entry>
+std::vector<Choice> named(const std::vector<Entry>& registry) {
+  std::vector<Choice> out;
+  for (const auto& entry : registry) out.push_back({entry.name, entry.summary});
   return out;
 }
 
@@ -46,6 +56,7 @@ std::vector<Choice> part_choices() {
           : "not compiled in; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev)";
   return {{"bodies", "soft bodies of linear tetrahedra: always there"},
           {"contact", "penalty contact with analytic obstacles: always there"},
+          {"proxies", "convex proxies of skins, broad and narrow phase (libccd): always there"},
           {"tool", "rigid tool under a virtual coupling (Simbody): " + tool},
           {"gl", "contact in image space, and pictures (EGL, OpenGL): " + gl}};
 }
@@ -67,6 +78,9 @@ std::vector<ChoiceList> registries() {
            choices(linear::linear_solver_registry())},
           {"materials", "constitutive laws: [[body]] material", choices(fem::law_registry())},
           {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_steppers()},
+          {"obstacles", "rigid shapes in the world: [[obstacle]] type", named(contact::obstacle_registry())},
+          {"contact-methods", "how gaps are found: [[contact]] method", named(contact::method_registry())},
+          {"generators", "of meshes: [body.mesh] generator", choices(mesh::tet_generators())},
           {"devices", "what the hand holds: [device] type", choices(device::handle_registry())},
           {"parts", "optional parts of this build", part_choices()}};
 }

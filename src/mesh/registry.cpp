@@ -8,8 +8,8 @@ namespace {
 constexpr double kMaxElements = 2e7;
 
 void require_length(const MeshSpec& spec, std::string_view key, double value) {
-  if (!(value > 0 && value < 1e6))
-    fail("generator \"{}\": {} = {} must lie in (0, 1e6) m", spec.generator, key, value);
+  if (!MeshRanges::length.holds(value))
+    fail("generator \"{}\": {} = {} {}", spec.generator, key, value, MeshRanges::length.demand());
 }
 
 /// The edges of a box around the body bound the number of elements before any is made;
@@ -17,8 +17,8 @@ void require_length(const MeshSpec& spec, std::string_view key, double value) {
 void require_sizes(const MeshSpec& spec, const Vec3& edges) {
   const double h = spec.element_size_m;
   require_length(spec, "element_size_m", h);
-  if (!(spec.grading >= 0.5 && spec.grading <= 32))
-    fail("generator \"{}\": grading = {} must lie in [0.5, 32]; 1 is uniform", spec.generator, spec.grading);
+  if (!MeshRanges::grading.holds(spec.grading))
+    fail("generator \"{}\": grading = {} {}", spec.generator, spec.grading, MeshRanges::grading.demand());
   const double elements = 5 * (edges / h).cwiseMax(1.0).prod();
   if (elements > kMaxElements)
     fail(
@@ -67,23 +67,41 @@ TriMesh make_cylinder_surface(const MeshSpec& s) {
   return check_cylinder(s), cylinder_surface(s.radius_m, s.length_m, s.element_size_m, s.grading);
 }
 
+/// What a generator must be told, and what it may be.
+std::vector<PartKey> generator_keys(const std::vector<std::string>& needed,
+                                    const std::vector<std::string>& taken) {
+  std::vector<PartKey> keys = part_keys(needed);
+  for (PartKey& key : keys) key.required = true;
+  for (PartKey& key : part_keys(taken)) keys.push_back(std::move(key));
+  return keys;
+}
+std::vector<PartKey> box_keys() { return generator_keys({"size_m", "element_size_m"}, {"grading"}); }
+std::vector<PartKey> cylinder_keys() {
+  return generator_keys({"radius_m", "length_m", "element_size_m"}, {"grading"});
+}
+
 }  // namespace
 
 const Registry<MakeTets>& tet_generators() {
   static const Registry<MakeTets> out = {
-      {"box", "box of size_m around the origin, five tetrahedra a cell", 0, make_box},
-      {"ball", "ball of radius_m around the origin, icosahedral shells", 0, make_ball},
-      {"cylinder", "cylinder of radius_m and length_m around z, centred", 0, make_cylinder},
-      {"tet", "one tetrahedron with a corner at the origin and legs size_m", 0, make_tet},
+      {"box", "box of size_m around the origin, five tetrahedra a cell", 0, make_box, box_keys()},
+      {"ball", "ball of radius_m around the origin, icosahedral shells", 0, make_ball,
+       generator_keys({"radius_m", "element_size_m"}, {"grading"})},
+      {"cylinder", "cylinder of radius_m and length_m around z, centred", 0, make_cylinder, cylinder_keys()},
+      {"tet", "one tetrahedron with a corner at the origin and legs size_m", 0, make_tet,
+       generator_keys({"size_m"}, {})},
   };
   return out;
 }
 
+std::vector<PartKey> file_keys() { return part_keys({"scale"}); }
+
 const Registry<MakeSurface>& surface_generators() {
   static const Registry<MakeSurface> out = {
-      {"box", "surface of the box of tetrahedra", 0, make_box_surface},
-      {"ball", "sphere of triangles, an icosahedron subdivided", 0, make_ball_surface},
-      {"cylinder", "surface of the cylinder of tetrahedra", 0, make_cylinder_surface},
+      {"box", "surface of the box of tetrahedra", 0, make_box_surface, box_keys()},
+      {"ball", "sphere of triangles, an icosahedron subdivided", 0, make_ball_surface,
+       generator_keys({"radius_m", "element_size_m"}, {})},
+      {"cylinder", "surface of the cylinder of tetrahedra", 0, make_cylinder_surface, cylinder_keys()},
   };
   return out;
 }

@@ -17,8 +17,8 @@ bool is_file(const MeshSpec& spec) {
          spec.generator);
   if (spec.file.empty() && spec.generator.empty())
     fail("mesh: neither file nor generator is given; give one (generators: box, ball, cylinder, tet)");
-  if (!(spec.scale > 0 && std::isfinite(spec.scale)))
-    fail("mesh: scale = {} must be positive; it multiplies the file's coordinates", spec.scale);
+  if (!MeshRanges::scale.holds(spec.scale))
+    fail("mesh: scale = {} {}", spec.scale, MeshRanges::scale.demand());
   return !spec.file.empty();
 }
 

@@ -17,7 +17,7 @@ void check_name(const Document& doc, const std::string& where, const std::string
   for (const char letter : name)
     if (const auto c = static_cast<unsigned char>(letter);
         c < 0x20 || c == 0x7f || c == '/' || c == '\\' || c == '"')
-      refuse(place(doc, where), "",
+      refuse(location(doc, where), "",
              fmt::format("the name \"{}\" must not contain slashes, quotes or control characters", name));
 }
 
@@ -28,9 +28,10 @@ void check_names(const Document& doc, const Description& d) {
     const std::string key = at(kind, i, "name");
     const std::string where = fmt::format("{} \"{}\"", kind, name);
     check_name(doc, key, name);
-    if (name == "tool") refuse(place(doc, key), where, "name \"tool\" is kept for the tool; choose another");
+    if (name == "tool")
+      refuse(location(doc, key), where, "name \"tool\" is kept for the tool; choose another");
     if (!seen.insert(name).second)
-      refuse(place(doc, key), where,
+      refuse(location(doc, key), where,
              fmt::format("name \"{}\" is taken; bodies, bones and obstacles need names of their own", name));
   };
   for (std::size_t i = 0; i < d.bodies.size(); ++i) check_one("body", i, d.bodies[i].name);
@@ -49,22 +50,20 @@ void check_loads(const Document& doc, const Description& d) {
 
 void check_tool(const Document& doc, const Description& d) {
   if (d.tool && !d.device)
-    refuse(place(doc, "tool"), "tool", "a tool needs a hand: add [device] with [[device.keyframe]]");
+    refuse(location(doc, "tool"), "tool", "a tool needs a hand: add [device] with [[device.keyframe]]");
   if (d.device && !d.tool)
-    refuse(place(doc, "device"), "device",
+    refuse(location(doc, "device"), "device",
            "a device needs something to move: add [tool], or remove [device]");
-  if (d.device && d.device->type == "script" && d.device->keyframes.empty())
-    refuse(place(doc, "device"), "device", "a scripted handle needs at least one [[device.keyframe]]");
   if (d.device) check_keyframes(doc, "device.keyframe", "device", d.device->keyframes);
   if (!d.tool) return;
 
   const Vec3& inertia = d.tool->inertia_kg_m2;
   if (d.tool->shape == "mesh" && inertia.isZero(0.0))
-    refuse(place(doc, "tool.inertia_kg_m2"), "tool",
+    refuse(location(doc, "tool.inertia_kg_m2"), "tool",
            "inertia_kg_m2 is missing: shape = \"mesh\" has no inertia of its own");
   const double largest = inertia.maxCoeff();
   if (!inertia.isZero(0.0) && (inertia.minCoeff() <= 0.0 || 2.0 * largest > inertia.sum() * (1.0 + 1e-9)))
-    refuse(place(doc, "tool.inertia_kg_m2"), "tool",
+    refuse(location(doc, "tool.inertia_kg_m2"), "tool",
            fmt::format("inertia_kg_m2 = [{}, {}, {}] belongs to no rigid body: all must be positive and none "
                        "larger than the other two together",
                        inertia[0], inertia[1], inertia[2]));
@@ -80,13 +79,13 @@ void check_period(const Document& doc, const std::string& key, const std::string
                   double tick) {
   const double most = 1e6;
   if (period / tick > most)
-    refuse(place(doc, "tool.tick_s"), where,
+    refuse(location(doc, "tool.tick_s"), where,
            fmt::format("tick_s = {} of the tool makes {:.3g} ticks of one exchange period of {} s, at most "
                        "{:g} are possible; a haptic device asks for 0.001",
                        tick, period / tick, period, most));
   if (is_multiple(period, tick)) return;
   const double below = std::floor(period / tick), n = std::max(1.0, below);
-  refuse(place(doc, key), where,
+  refuse(location(doc, key), where,
          fmt::format("{} = {} must be a whole number of the tool's ticks of {} s; use {:.9g} or {:.9g}",
                      where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, tick, n * tick,
                      (n + 1.0) * tick));
@@ -103,20 +102,20 @@ void check_changes(const Document& doc, const Description& d) {
                                                                       : d.coupling.exchange_period_s;
       const std::string key = at("body", i, at("change", j, "time_s"));
       if (j > 0 && time < d.bodies[i].changes[j - 1].time_s)
-        refuse(place(doc, key), where,
+        refuse(location(doc, key), where,
                fmt::format("time_s = {} must be greater than the one before ({})", time,
                            d.bodies[i].changes[j - 1].time_s));
       for (std::size_t k = 0; k < j; ++k)
         if (d.bodies[i].changes[k].time_s == time &&
             d.bodies[i].changes[k].region == d.bodies[i].changes[j].region)
-          refuse(place(doc, key), where,
+          refuse(location(doc, key), where,
                  fmt::format("time_s = {} must be greater than the one before ({}): both change the same",
                              time, time));
       if (time >= d.duration_s)
-        refuse(place(doc, key), where,
+        refuse(location(doc, key), where,
                fmt::format("time_s = {} is not before the end of the run, {} s", time, d.duration_s));
       if (d.tool && !is_multiple(time, period))
-        refuse(place(doc, key), where,
+        refuse(location(doc, key), where,
                fmt::format("time_s = {} must be a whole number of {} of {} s: between them the tool feels "
                            "the body as it was",
                            time, d.coupling.scheme == "monolithic" ? "contact refreshes" : "exchange periods",
@@ -129,14 +128,14 @@ void check_changes(const Document& doc, const Description& d) {
 void check_length(const Document& doc, const std::string& key, const std::string& where, double period,
                   double duration) {
   if (period <= duration * (1.0 + 1e-9)) return;
-  refuse(place(doc, key), where,
+  refuse(location(doc, key), where,
          fmt::format(
              "{} = {} is longer than the whole run of {} s; use at most {}, a tenth of it or less is usual",
              where == "exchange" ? "exchange_period_s" : "exchange_periods_s", period, duration, duration));
 }
 
 void check_periods(const Document& doc, const Description& d) {
-  const CouplingSpec& c = d.coupling;
+  const CosimulationSpec& c = d.coupling;
   const bool own = given(doc, "exchange.exchange_period_s");
   const double compared = d.compare.duration_s > 0.0 ? d.compare.duration_s : d.duration_s;
   if (c.scheme != "monolithic") {
@@ -152,20 +151,20 @@ void check_periods(const Document& doc, const Description& d) {
 }
 
 void check_exchange(const Document& doc, Description& d) {
-  CouplingSpec& c = d.coupling;
+  CosimulationSpec& c = d.coupling;
   if (!given(doc, "exchange.contact_refresh_s")) c.contact_refresh_s = c.exchange_period_s;
   if (d.tool)
     check_periods(doc, d);
   else if (c.scheme == "monolithic")
-    refuse(place(doc, "exchange.scheme"), "exchange",
+    refuse(location(doc, "exchange.scheme"), "exchange",
            "scheme = \"monolithic\" needs a tool: there is nothing to couple without one");
   else if (!d.compare.exchange_periods_s.empty())
-    refuse(place(doc, "compare.exchange_periods_s"), "compare",
+    refuse(location(doc, "compare.exchange_periods_s"), "compare",
            "exchange_periods_s needs a tool: nothing is exchanged without one");
   if (c.scheme == "monolithic") return;  // contact is refreshed at a period of its own
   if (!is_multiple(c.exchange_period_s, c.contact_refresh_s))
     refuse(
-        place(doc, "exchange.contact_refresh_s"), "exchange",
+        location(doc, "exchange.contact_refresh_s"), "exchange",
         fmt::format("contact_refresh_s = {} must be a whole fraction of exchange_period_s = {}; use {:.9g}",
                     c.contact_refresh_s, c.exchange_period_s,
                     c.exchange_period_s /
@@ -175,7 +174,7 @@ void check_exchange(const Document& doc, Description& d) {
 void check_compare(const Document& doc, const Description& d) {
   for (std::size_t i = 0; i < d.compare.ladders.size(); ++i)
     if (d.compare.ladders[i].values.empty())
-      refuse(place(doc, fmt::format("compare.ladder[{}]", i)), fmt::format("compare: ladder[{}]", i),
+      refuse(location(doc, fmt::format("compare.ladder[{}]", i)), fmt::format("compare: ladder[{}]", i),
              "needs rungs: rtol = [...] or step_s = [...]");
 }
 
@@ -185,7 +184,7 @@ void check_keyframes(const Document& doc, const std::string& key, const std::str
                      const std::vector<KeyframeSpec>& frames) {
   for (std::size_t i = 1; i < frames.size(); ++i)
     if (frames[i].time_s <= frames[i - 1].time_s)
-      refuse(place(doc, fmt::format("{}[{}].time_s", key, i)), fmt::format("{}: keyframe[{}]", where, i),
+      refuse(location(doc, fmt::format("{}[{}].time_s", key, i)), fmt::format("{}: keyframe[{}]", where, i),
              fmt::format(
                  "time_s = {} must come after {}, the keyframe before; put keyframes in the order of time",
                  frames[i].time_s, frames[i - 1].time_s));
@@ -195,14 +194,14 @@ void check_box(const Document& doc, const std::string& key, const std::string& w
                const Vec3& high) {
   for (int axis = 0; axis < 3; ++axis)
     if (low[axis] > high[axis])
-      refuse(place(doc, key + ".box_max_m"), where,
+      refuse(location(doc, key + ".box_max_m"), where,
              fmt::format("box_max_m = {} must not be below box_min_m = {} along {}", high[axis], low[axis],
                          "xyz"[axis]));
 }
 
 void check(const Document& doc, Description& d) {
   if (d.bodies.empty() && !d.tool)
-    refuse(place(doc, "scene"), "",
+    refuse(location(doc, "scene"), "",
            "there is nothing to simulate: add a [[body]], or a [tool] with a [device]");
   check_names(doc, d);
   check_meshes(doc, d);

@@ -3,7 +3,7 @@
 #include "scene/document.h"
 
 /// What one key alone cannot tell: names that refer to one another, keys that exclude or need one another,
-/// times that must divide. Each throws Error with the place of the key at fault.
+/// times that must divide. Each throws Error with the location of the key at fault.
 namespace palpate::scene {
 
 void check(const Document& document, Description& description);

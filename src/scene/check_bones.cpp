@@ -21,24 +21,26 @@ void check_shape(const Document& doc, const std::string& key, const std::string&
     const bool has = given(doc, key + "." + word),
                fits = !bone.shape.empty() && shapes.find(bone.shape) != std::string_view::npos;
     if (has && !fits)
-      refuse(place(doc, key + "." + word), where,
+      refuse(location(doc, key + "." + word), where,
              bone.shape.empty()
                  ? fmt::format("{} means nothing without a shape; add shape = \"capsule\" (sphere, box, "
                                "cylinder, capsule)",
                                word)
                  : fmt::format("{} means nothing to shape = \"{}\"; remove it", word, bone.shape));
     if (fits && !has)
-      refuse(place(doc, key), where, fmt::format("{} is missing: shape = \"{}\" needs it", word, bone.shape));
+      refuse(location(doc, key), where,
+             fmt::format("{} is missing: shape = \"{}\" needs it", word, bone.shape));
   }
 }
 
-/// A bone that moves as it is told has no use for what only a free one has.
-void check_told(const Document& doc, const std::string& key, const std::string& where, const BoneSpec& bone) {
+/// A bone whose motion is prescribed has no use for what only a free one has.
+void check_prescribed(const Document& doc, const std::string& key, const std::string& where,
+                      const BoneSpec& bone) {
   const char* kind = bone.fixed ? "a fixed bone" : "a bone with keyframes";
   for (const char* word :
        {"mass_kg", "density_kg_m3", "inertia_kg_m2", "velocity_m_s", "angular_velocity_rad_s", "gravity"})
     if (given(doc, key + "." + word))
-      refuse(place(doc, key + "." + word), where,
+      refuse(location(doc, key + "." + word), where,
              fmt::format("{} means nothing to {}; remove it", word, kind));
 }
 
@@ -46,21 +48,21 @@ void check_free(const Document& doc, const std::string& key, const std::string& 
   const bool mass = given(doc, key + ".mass_kg"), density = given(doc, key + ".density_kg_m3"),
              inertia = given(doc, key + ".inertia_kg_m2");
   if (mass && density)
-    refuse(place(doc, key + ".density_kg_m3"), where,
+    refuse(location(doc, key + ".density_kg_m3"), where,
            "mass_kg and density_kg_m3 exclude each other; remove one");
   if (density && bone.shape.empty())
-    refuse(place(doc, key + ".density_kg_m3"), where,
+    refuse(location(doc, key + ".density_kg_m3"), where,
            "density_kg_m3 needs a shape; give mass_kg and inertia_kg_m2 instead");
   if (!mass && !density)
-    refuse(place(doc, key), where,
+    refuse(location(doc, key), where,
            "mass_kg (or density_kg_m3 of its shape) is missing; a bone that shall not move needs fixed = "
            "true or a [[bone.keyframe]]");
   if (bone.shape.empty() && !inertia)
-    refuse(place(doc, key), where,
+    refuse(location(doc, key), where,
            "inertia_kg_m2 is missing: without a shape a bone has no inertia of its own");
   const Vec3& I = bone.inertia_kg_m2;
   if (inertia && 2.0 * I.maxCoeff() > I.sum() * (1.0 + 1e-9))
-    refuse(place(doc, key + ".inertia_kg_m2"), where,
+    refuse(location(doc, key + ".inertia_kg_m2"), where,
            fmt::format("inertia_kg_m2 = [{}, {}, {}] belongs to no rigid body: none may be larger than the "
                        "other two together",
                        I[0], I[1], I[2]));
@@ -75,7 +77,7 @@ bool carries(const Description& d, const std::string& name) {
 
 void check_target(const Document& doc, const std::string& key, const std::string& where, const Description& d,
                   const AttachmentSpec& a) {
-  const std::string at = place(doc, key + ".to");
+  const std::string at = location(doc, key + ".to");
   if (a.to == "tool") {
     if (!d.tool) refuse(at, where, "to = \"tool\", but the scene has no [tool]");
     if (d.coupling.scheme != "monolithic")
@@ -91,10 +93,10 @@ void check_target(const Document& doc, const std::string& key, const std::string
     if (!known) refuse(at, where, fmt::format("no bone is called \"{}\"{}", a.to, suggestion(a.to, names)));
   }
   if (given(doc, key + ".axes"))
-    refuse(place(doc, key + ".axes"), where,
+    refuse(location(doc, key + ".axes"), where,
            "axes means nothing with to: what goes with a bone is held in all directions; remove it");
   if (!a.keyframes.empty())
-    refuse(place(doc, key + ".keyframe"), where,
+    refuse(location(doc, key + ".keyframe"), where,
            fmt::format("keyframes mean nothing with to: nodes go with \"{}\"; give them to it", a.to));
 }
 
@@ -103,12 +105,12 @@ std::string region_of(const Document& doc, const std::string& key, const std::st
                       const Description& d, const AttachmentSpec& a) {
   if (std::string shape = box_or_sphere(doc, key, where); !shape.empty()) return shape;
   if (a.to.empty())
-    refuse(place(doc, key), where,
+    refuse(location(doc, key), where,
            "box_min_m is missing: say which nodes, by box_min_m and box_max_m, or by centre_m and radius_m");
   const auto bone =
       std::find_if(d.bones.begin(), d.bones.end(), [&](const BoneSpec& b) { return b.name == a.to; });
   if (bone != d.bones.end() ? bone->shape.empty() : d.tool->shape != "sphere")
-    refuse(place(doc, key), where,
+    refuse(location(doc, key), where,
            fmt::format("say which nodes, by box_min_m and box_max_m, or by centre_m and radius_m: \"{}\" has "
                        "no shape to take those inside of",
                        a.to));
@@ -123,14 +125,15 @@ void check_bones(const Document& doc, const Description& d) {
     const std::string key = fmt::format("bone[{}]", i), where = fmt::format("bone \"{}\"", bone.name);
     check_shape(doc, key, where, bone);
     if (bone.fixed && !bone.keyframes.empty())
-      refuse(place(doc, key + ".fixed"), where, "fixed = true and keyframes exclude each other; remove one");
+      refuse(location(doc, key + ".fixed"), where,
+             "fixed = true and keyframes exclude each other; remove one");
     if (bone.fixed || !bone.keyframes.empty())
-      check_told(doc, key, where, bone);
+      check_prescribed(doc, key, where, bone);
     else
       check_free(doc, key, where, bone);
     check_keyframes(doc, key + ".keyframe", where, bone.keyframes);
     if (!carries(d, bone.name))
-      refuse(place(doc, key), where,
+      refuse(location(doc, key), where,
              fmt::format("carries nothing: give a body a [[body.attachment]] with to = \"{}\"", bone.name));
   }
 }

@@ -35,12 +35,12 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
                  ContactSpec& c) {
   int side = 0;
   for (const std::string& name : {c.first, c.second}) {
-    const std::string at = place(doc, fmt::format("{}.between[{}]", key, side++));
+    const std::string at = location(doc, fmt::format("{}.between[{}]", key, side++));
     if (sides.known(name)) continue;
     if (name == "tool") refuse(at, where, "\"tool\" is named, but the scene has no [tool]");
     refuse(at, where, fmt::format("nothing is called \"{}\"{}", name, suggestion(name, sides.all())));
   }
-  const std::string at = place(doc, key + ".between");
+  const std::string at = location(doc, key + ".between");
   if (c.first == c.second && !sides.is_body(c.first))
     refuse(at, where, "only a soft body may touch itself; name two");
   if (!sides.is_body(c.first)) std::swap(c.first, c.second);
@@ -53,11 +53,11 @@ void check_own_contact(const Document& doc, const std::string& key, const std::s
   const auto body =
       std::find_if(d.bodies.begin(), d.bodies.end(), [&](const auto& b) { return b.name == c.first; });
   if (!body->proxies)
-    refuse(place(doc, key + ".between"), where,
+    refuse(location(doc, key + ".between"), where,
            "a body touches itself with the skin of one bone against that of another, by its proxies: give it "
            "skin = true and proxies = true, or name two things");
   if (c.method != "gpu")
-    refuse(place(doc, key + (given(doc, key + ".method") ? ".method" : "")), where,
+    refuse(location(doc, key + (given(doc, key + ".method") ? ".method" : "")), where,
            "a body meets itself in image space: write method = \"gpu\"");
 }
 
@@ -65,13 +65,13 @@ void check_method(const Document& doc, const std::string& key, const std::string
                   const Description& d, const ContactSpec& c) {
   const bool obstacle = sides.is_obstacle(c.second);
   if (c.method == "gpu" && obstacle)
-    refuse(place(doc, key + ".method"), where,
+    refuse(location(doc, key + ".method"), where,
            "method = \"gpu\" is for the tool: an obstacle has exact gaps; use \"analytic\"");
   if (c.first == c.second)
     check_own_contact(doc, key, where, d, c);
   else if (sides.is_body(c.second)) {
     if (c.method != "gpu")
-      refuse(place(doc, key + (given(doc, key + ".method") ? ".method" : "")), where,
+      refuse(location(doc, key + (given(doc, key + ".method") ? ".method" : "")), where,
              "two soft bodies meet in image space: write method = \"gpu\"");
     const auto proxies = [&](const std::string& name) {
       for (const auto& body : d.bodies)
@@ -79,57 +79,17 @@ void check_method(const Document& doc, const std::string& key, const std::string
       return false;
     };
     if (proxies(c.first) != proxies(c.second))
-      refuse(place(doc, key + ".between"), where,
+      refuse(location(doc, key + ".between"), where,
              fmt::format("proxies = true stands in \"{}\" alone; both need it, or neither",
                          proxies(c.first) ? c.first : c.second));
   } else if (c.method == "analytic" && !obstacle && d.tool->shape != "sphere")
-    refuse(place(doc, key + (given(doc, key + ".method") ? ".method" : "")), where,
+    refuse(location(doc, key + (given(doc, key + ".method") ? ".method" : "")), where,
            "method = \"analytic\" needs a tool with shape = \"sphere\"; use method = \"gpu\" for a mesh");
-  if (c.method != "gpu" && given(doc, key + ".pixels"))
-    refuse(place(doc, key + ".pixels"), where, "pixels means nothing to method = \"analytic\"; remove it");
-  if (c.law == "kelvin_voigt" && given(doc, key + ".hunt_crossley_s_m"))
-    refuse(place(doc, key + ".hunt_crossley_s_m"), where,
-           "hunt_crossley_s_m means nothing to law = \"kelvin_voigt\"; write law = \"hunt_crossley\"");
-  if (c.law == "hunt_crossley" && given(doc, key + ".damping_pa_s_m"))
-    refuse(place(doc, key + ".damping_pa_s_m"), where,
-           "damping_pa_s_m means nothing to law = \"hunt_crossley\"; use hunt_crossley_s_m");
-}
-
-/// Keys of an obstacle, the types that know them, and whether those must have them.
-struct ShapeKey {
-  const char* word;
-  std::string_view types;
-  bool needed;
-};
-constexpr ShapeKey kShapeKeys[] = {{"normal", "plane", false},
-                                   {"radius_m", "sphere cylinder", true},
-                                   {"length_m", "cylinder", true},
-                                   {"size_m", "box", true},
-                                   {"rotation_vector_rad", "box cylinder", false}};
-
-void check_obstacles(const Document& doc, Description& d) {
-  for (std::size_t i = 0; i < d.obstacles.size(); ++i) {
-    ObstacleSpec& o = d.obstacles[i];
-    const std::string key = fmt::format("obstacle[{}]", i), where = fmt::format("obstacle \"{}\"", o.name);
-    const bool plane = o.type == "plane";
-    for (const auto& [word, types, needed] : kShapeKeys) {
-      const bool has = given(doc, key + "." + word), fits = types.find(o.type) != std::string_view::npos;
-      if (has && !fits)
-        refuse(place(doc, key + "." + word), where,
-               fmt::format("{} means nothing to type = \"{}\"; remove it", word, o.type));
-      if (!has && fits && needed)
-        refuse(place(doc, key), where, fmt::format("{} is missing: type = \"{}\" needs it", word, o.type));
-    }
-    if (plane && o.normal.norm() < 1e-12)
-      refuse(place(doc, key + ".normal"), where, "normal = [0, 0, 0] has no direction; [0, 0, 1] is up");
-    if (plane) o.normal.normalize();
-  }
 }
 
 }  // namespace
 
 void check_contacts(const Document& doc, Description& d) {
-  check_obstacles(doc, d);
   Sides sides;
   for (const auto& body : d.bodies) sides.bodies.push_back(body.name);
   for (const auto& obstacle : d.obstacles) sides.obstacles.push_back(obstacle.name);
@@ -146,7 +106,7 @@ void check_contacts(const Document& doc, Description& d) {
         seen.contains({c.first, c.second}) || (sides.is_body(c.second) && seen.contains({c.second, c.first}));
     seen.emplace(c.first, c.second);
     if (twice)
-      refuse(place(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
+      refuse(location(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
   }
 }
 

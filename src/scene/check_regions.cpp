@@ -11,7 +11,7 @@ std::string chosen_by(const Document& doc, const std::string& key, const std::st
                       const SoftBodySpec& body) {
   const std::string shape = box_or_sphere(doc, key, where);
   if (shape.empty() && body.mesh.file.empty())
-    refuse(place(doc, key), where,
+    refuse(location(doc, key), where,
            fmt::format("box_min_m is missing: generator = \"{}\" makes no regions; say which elements, by "
                        "box_min_m and box_max_m, or by centre_m and radius_m",
                        body.mesh.generator));
@@ -32,13 +32,13 @@ void check_regions(const Document& doc, Description& d) {
       region.region = chosen_by(doc, key, where, body);
       check_box(doc, key, where, region.box_min_m, region.box_max_m);
       if (std::find(names.begin(), names.end(), region.name) != names.end())
-        refuse(place(doc, key + ".name"), where, "this is its second table; one says all");
+        refuse(location(doc, key + ".name"), where, "this is its second table; one says all");
       names.push_back(region.name);
       if (!region.youngs_modulus_pa && !region.poissons_ratio && !region.density_kg_m3 &&
           !region.mass_damping_per_s && !region.stiffness_damping_s &&
           std::none_of(body.changes.begin(), body.changes.end(),
                        [&](const MaterialChangeSpec& c) { return c.region == region.name; }))
-        refuse(place(doc, key), where,
+        refuse(location(doc, key), where,
                "says nothing of its material: give youngs_modulus_pa, poissons_ratio, density_kg_m3, "
                "mass_damping_per_s or stiffness_damping_s, or remove it");
     }
@@ -48,9 +48,9 @@ void check_regions(const Document& doc, Description& d) {
       const std::string key = fmt::format("body[{}].change[{}].region", i, j),
                         where = fmt::format("body \"{}\": change", body.name);
       if (names.empty())
-        refuse(place(doc, key), where,
+        refuse(location(doc, key), where,
                fmt::format("region = \"{}\", but the body has no [[body.region]]", region));
-      refuse(place(doc, key), where,
+      refuse(location(doc, key), where,
              fmt::format("no [[body.region]] is called \"{}\"{}", region, suggestion(region, names)));
     }
   }

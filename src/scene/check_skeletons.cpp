@@ -13,16 +13,16 @@ void check_joint(const Document& doc, const std::string& key, const std::string&
   if (!joint.keyframes.empty())
     for (const char* word : {"type", "axis", "stiffness_n_m_rad", "damping_n_m_s_rad"})
       if (has(word))
-        refuse(place(doc, key + "." + word), where,
+        refuse(location(doc, key + "." + word), where,
                fmt::format("{} means nothing to a joint with keyframes; remove it", word));
   if (joint.type == "hinge" && !(joint.axis.norm() > 0.0))
-    refuse(place(doc, key), where,
-           "axis is missing: a hinge turns about one, in the body's own axes, for example [1.0, 0.0, 0.0]");
+    refuse(location(doc, key), where,
+           "axis is missing: a hinge rotates about one, in the body's own axes, for example [1.0, 0.0, 0.0]");
   if (has("axis") && joint.type != "hinge")
-    refuse(place(doc, key + ".axis"), where, "axis means nothing but to type = \"hinge\"; remove it");
+    refuse(location(doc, key + ".axis"), where, "axis means nothing but to type = \"hinge\"; remove it");
   for (const char* word : {"stiffness_n_m_rad", "damping_n_m_s_rad"})
     if (has(word) && (joint.type == "weld" || joint.type == "free"))
-      refuse(place(doc, key + "." + word), where,
+      refuse(location(doc, key + "." + word), where,
              fmt::format("{} means nothing to type = \"{}\"; remove it", word, joint.type));
 }
 
@@ -36,7 +36,7 @@ void check_skeletons(const Document& doc, const Description& d) {
     const std::string key = fmt::format("body[{}].skeleton", i),
                       where = fmt::format("body \"{}\": skeleton", body.name);
     if (!body.mesh.file.ends_with(".h5"))
-      refuse(place(doc, key), where,
+      refuse(location(doc, key), where,
              "needs mesh = { file = \"MODEL.h5\" }, a model file with bones; `palpate model human -o "
              "human.h5` makes one");
     std::set<std::string> seen;
@@ -45,7 +45,7 @@ void check_skeletons(const Document& doc, const Description& d) {
       const std::string at = fmt::format("{}.joint[{}]", key, j),
                         of = fmt::format("body \"{}\": joint of \"{}\"", body.name, joint.bone);
       if (!seen.insert(joint.bone).second)
-        refuse(place(doc, at + ".bone"), of,
+        refuse(location(doc, at + ".bone"), of,
                "a bone hangs on its parent by one joint; this is its second table");
       check_joint(doc, at, of, joint);
     }

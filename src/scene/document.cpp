@@ -25,21 +25,32 @@ Document parse_document(const std::string& text, const std::string& path,
   document.path = path.empty() ? "scene" : path;
   try {
     document.root = toml::parse(text, document.path);
-  } catch (const toml::parse_error& e) { fail("{}: not valid TOML: {}", place(e.source()), e.description()); }
+  } catch (const toml::parse_error& e) {
+    fail("{}: not valid TOML: {}", location(e.source()), e.description());
+  }
+  document.overrides = overrides;
+  if (!overrides.empty()) document.original = document.root;
   for (const std::string& one : overrides) apply_override(document.root, one);
   document.source = effective_source(document.root, text, overrides);
   return document;
 }
 
-std::string place(const toml::source_region& region) {
+void leave_out(Document& document, const std::string& table, const std::string& key) {
+  const auto found = toml::at_path(document.root, table);
+  PALPATE_CHECK(found && found.is_table(), "{} is no table", table);
+  found.as_table()->erase(key);
+  document.source = effective_source(document.root, "", document.overrides);
+}
+
+std::string location(const toml::source_region& region) {
   const std::string path = region.path ? *region.path : "scene";
   if (path.starts_with(kOverride) || !region.begin) return path;
   return fmt::format("{}:{}:{}", path, region.begin.line, region.begin.column);
 }
 
-std::string place(const Document& document, std::string at) {
+std::string location(const Document& document, std::string at) {
   for (;;) {
-    if (const auto found = toml::at_path(document.root, at)) return place(found.node()->source());
+    if (const auto found = toml::at_path(document.root, at)) return location(found.node()->source());
     const std::size_t cut = at.find_last_of(".[");
     if (cut == std::string::npos) return document.path;
     at.resize(cut);

@@ -11,19 +11,24 @@ namespace palpate::scene {
 /// override.
 struct Document {
   toml::table root;
-  std::string path;    ///< as messages show it
-  std::string source;  ///< TOML that parses to `root` again
+  toml::table original;  ///< before overrides, without locations
+  std::string path;      ///< as messages show it
+  std::string source;    ///< TOML that parses to `root` again
+  std::vector<std::string> overrides;
 };
 
-/// Parses `text` and applies the overrides.  @throws Error with the place, for bad TOML and bad overrides
+/// Parses `text` and applies the overrides.  @throws Error with the location, for bad TOML and bad overrides
 Document parse_document(const std::string& text, const std::string& path,
                         const std::vector<std::string>& overrides);
 
-/// `FILE:LINE:COLUMN`, or `--set PATH=VALUE` for what an override brought.
-std::string place(const toml::source_region& region);
+/// Takes a key out of a table, "contact[1]", and out of the source.
+void leave_out(Document& document, const std::string& table, const std::string& key);
 
-/// The place of the deepest part of `at` that exists: `body[1].mesh.radius_m`, else `body[1].mesh`, ...
-std::string place(const Document& document, std::string at);
+/// `FILE:LINE:COLUMN`, or `--set PATH=VALUE` for what an override brought.
+std::string location(const toml::source_region& region);
+
+/// The location of the deepest part of `at` that exists: `body[1].mesh.radius_m`, else `body[1].mesh`, ...
+std::string location(const Document& document, std::string at);
 
 /// Whether the scene gives this key.
 bool given(const Document& document, std::string_view at);

@@ -6,6 +6,7 @@
 
 #include "palpate/core/error.h"
 #include "scene/check.h"
+#include "scene/check_kinds.h"
 #include "scene/keys.h"
 
 namespace palpate::scene {
@@ -30,21 +31,38 @@ std::string read_text_file(const std::string& path) {
 }
 }  // namespace
 
-Description parse(const std::string& text, const std::string& path,
-                  const std::vector<std::string>& overrides) {
-  const Document document = parse_document(text, path, overrides);
+Description parse(const std::string& text, const std::string& path, const std::vector<std::string>& overrides,
+                  const Kinds& kinds) {
+  Document document = parse_document(text, path, overrides);
   Description description;
   read_table(document.root, "", description_keys(), description);
+  std::vector<std::string> not_carried_over;
+  for (;;) {  // a key that is left out may have named a kind
+    const std::vector<LeftKey> left = check_kinds(document, description, kinds);
+    if (left.empty()) break;
+    for (const LeftKey& one : left) {
+      leave_out(document, one.table, one.key);
+      not_carried_over.push_back(one.table + "." + one.key);
+    }
+    description = {};
+    read_table(document.root, "", description_keys(), description);
+  }
+  description.not_carried_over = std::move(not_carried_over);
   check(document, description);
   description.path = path;
   description.source = document.source;
   return description;
 }
 
-Description load(const std::string& path, const std::vector<std::string>& overrides) {
-  return parse(read_text_file(path), path, overrides);
+Description load(const std::string& path, const std::vector<std::string>& overrides, const Kinds& kinds) {
+  return parse(read_text_file(path), path, overrides, kinds);
 }
 
-std::vector<std::string> known_keys() { return dotted_names(description_keys()); }
+std::vector<std::string> known_keys(const Kinds& kinds) {
+  std::vector<std::string> out;
+  for (const KeyRow& row : key_rows(kinds))
+    out.push_back(row.table.empty() ? row.name : row.table + "." + row.name);
+  return out;
+}
 
 }  // namespace palpate::scene

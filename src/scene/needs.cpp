@@ -45,15 +45,15 @@ void add_body_needs(const Description& d, const std::string& linear_solver, std:
   out.push_back({"driven nodes", driven > 0,
                  driven > 0 ? fmt::format("{} [[body.attachment]] with keyframes", driven)
                             : "no [[body.attachment.keyframe]]"});
-  const int told = count_if(d.bones, [](const auto&b) { return b.fixed || !b.keyframes.empty(); }),
-            free = static_cast<int>(d.bones.size()) - told;
+  const int prescribed = count_if(d.bones, [](const auto&b) { return b.fixed || !b.keyframes.empty(); }),
+            free = static_cast<int>(d.bones.size()) - prescribed;
   out.push_back({"carried nodes", carried > 0,
                  carried > 0 ? fmt::format("{} [[body.attachment]] to a bone or the tool", carried)
                              : "no [[body.attachment]] with to"});
   out.push_back({"rigid bones", free > 0,
-                 free > 0   ? fmt::format("{} free [[bone]]: rigid blocks beside the nodes", free)
-                 : told > 0 ? "every [[bone]] is fixed or has keyframes: a function of time"
-                            : "no [[bone]]"});
+                 free > 0         ? fmt::format("{} free [[bone]]: rigid blocks beside the nodes", free)
+                 : prescribed > 0 ? "every [[bone]] is fixed or has keyframes: a function of time"
+                                  : "no [[bone]]"});
   const int skeletons = count_if(d.bodies, [](const auto& b) { return b.skeleton.has_value(); });
   out.push_back(
       {"skeleton", skeletons > 0,
@@ -126,7 +126,8 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
                  : monolithic ? one_system
                  : !touched   ? "no contact with a tool"
                               : "linearisation \"frozen\""});
-  out.push_back({"exchange thread", false, "time is virtual: everything takes turns in one thread"});
+  out.push_back(
+      {"exchange thread", false, "time is virtual: everything runs one after the other in one thread"});
 }
 
 void add_output_needs(const Description& d, std::vector<Need>& out) {

@@ -77,7 +77,7 @@ toml::node& descend(toml::node& node, const std::string& part, const std::string
 }
 
 void assign(toml::node& node, const std::string& part, toml::node& value, const toml::source_region& region) {
-  value.visit([&](auto& typed) {  // moved, not copied: only a moved node keeps its place
+  value.visit([&](auto& typed) {  // moved, not copied: only a moved node keeps its location
     if (toml::array* array = node.as_array()) {
       const std::size_t index = array_index(*array, part, *region.path);
       array->erase(array->cbegin() + static_cast<std::ptrdiff_t>(index));

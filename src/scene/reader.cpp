@@ -5,7 +5,25 @@
 namespace palpate::scene {
 namespace {
 
-/// A node as messages show it, near to how a person wrote it.
+/// `part` is the value itself, or the element of it that is at fault: the message shows the whole value, at
+/// the location of the part.
+[[noreturn]] void refuse_value(const Value& v, const std::string& must, const toml::node* part = nullptr) {
+  refuse(location((part ? *part : v.node).source()), v.where,
+         fmt::format("{} = {} {}", v.key, shown(v.node), must));
+}
+
+/// One finite number within a range.  Whole numbers are numbers too; NaN and infinity, which TOML can spell,
+/// are not.
+double number_in(const Value& v, const toml::node& node, const Range& range) {
+  if (!node.is_number()) refuse_value(v, "must be a number", &node);
+  const double x = *node.value<double>();
+  if (!std::isfinite(x)) refuse_value(v, "must be a finite number", &node);
+  if (!range.holds(x)) refuse_value(v, range.demand(), &node);
+  return x;
+}
+
+}  // namespace
+
 std::string shown(const toml::node& node) {
   if (const auto* text = node.as_string())
     return text->get().size() <= 60 ? '"' + text->get() + '"' : "a longer string";
@@ -21,51 +39,60 @@ std::string shown(const toml::node& node) {
   return "[" + text + "]";
 }
 
-/// `part` is the value itself, or the element of it that is at fault: the message shows the whole value, at
-/// the part's place.
-[[noreturn]] void refuse_value(const Value& v, const std::string& must, const toml::node* part = nullptr) {
-  refuse(place((part ? *part : v.node).source()), v.where,
-         fmt::format("{} = {} {}", v.key, shown(v.node), must));
+void refuse(const std::string& location, const std::string& where, const std::string& what) {
+  fail("{}: {}{}{}", location, where, where.empty() ? "" : ": ", what);
 }
 
-std::string bounds(const Range& r) {
-  if (std::isinf(r.high)) {
-    if (r.low == 0.0 && r.low_open) return "must be positive";
-    return r.low == 0.0 ? "must not be negative" : fmt::format("must be at least {}", r.low);
+std::optional<Setting> setting_of(const toml::node& node) {
+  if (const auto* flag = node.as_boolean()) return flag->get();
+  if (node.is_number()) return *node.value<double>();
+  if (const auto* text = node.as_string()) return text->get();
+  const toml::array* array = node.as_array();
+  if (!array || array->size() != 3) return {};
+  Vec3 out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!array->get(i)->is_number()) return {};
+    out[static_cast<Eigen::Index>(i)] = *array->get(i)->value<double>();
   }
-  return fmt::format("must lie in {}{}, {}{}", r.low_open ? '(' : '[', r.low, r.high,
-                     r.high_open ? ')' : ']');
+  return Setting(out);
 }
 
-bool inside(double x, const Range& r) {
-  return (r.low_open ? x > r.low : x >= r.low) && (r.high_open ? x < r.high : x <= r.high);
+std::string unit_of(const std::string& key) {
+  // the longest ending counts
+  static const std::vector<std::pair<std::string, std::string>> units = {{"_n_m_s_rad", "N m s/rad"},
+                                                                         {"_n_m_rad", "N m/rad"},
+                                                                         {"_pa_s_m", "Pa s/m"},
+                                                                         {"_pa_m", "Pa/m"},
+                                                                         {"_kg_m3", "kg/m^3"},
+                                                                         {"_kg_m2", "kg m^2"},
+                                                                         {"_rad_s", "rad/s"},
+                                                                         {"_n_s_m", "N s/m"},
+                                                                         {"_n_m", "N/m"},
+                                                                         {"_m_s2", "m/s^2"},
+                                                                         {"_m_s", "m/s"},
+                                                                         {"_per_s", "1/s"},
+                                                                         {"_s_m", "s/m"},
+                                                                         {"_kg", "kg"},
+                                                                         {"_pa", "Pa"},
+                                                                         {"_rad", "rad"},
+                                                                         {"_n", "N"},
+                                                                         {"_m", "m"},
+                                                                         {"_s", "s"}};
+  for (const auto& [ending, unit] : units)
+    if (key.ends_with(ending)) return unit;
+  return "";
 }
 
-/// One finite number within a range.  Whole numbers are numbers too; NaN and infinity, which TOML can spell,
-/// are not.
-double number_in(const Value& v, const toml::node& node, const Range& range) {
-  if (!node.is_number()) refuse_value(v, "must be a number", &node);
-  const double x = *node.value<double>();
-  if (!std::isfinite(x)) refuse_value(v, "must be a finite number", &node);
-  if (!inside(x, range))
-    refuse_value(v, bounds(range) + (range.remedy.empty() ? "" : "; " + range.remedy), &node);
-  return x;
+std::string choices(const Names& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "\"" : ", \"") + name + '"';
+  return out;
 }
 
-}  // namespace
-
-void refuse(const std::string& place, const std::string& where, const std::string& what) {
-  fail("{}: {}{}{}", place, where, where.empty() ? "" : ": ", what);
-}
-
-Range any() { return {}; }
-Range positive(std::string remedy) { return {.low = 0.0, .low_open = true, .remedy = std::move(remedy)}; }
-Range at_least(double low, std::string remedy) { return {.low = low, .remedy = std::move(remedy)}; }
-Range closed(double low, double high, std::string remedy) {
-  return {.low = low, .high = high, .remedy = std::move(remedy)};
-}
-Range open(double low, double high, std::string remedy) {
-  return {.low = low, .high = high, .low_open = true, .high_open = true, .remedy = std::move(remedy)};
+void with_value(const std::string& toml, const std::string& key,
+                const std::function<void(const Value&)>& use) {
+  const toml::table parsed = toml::parse(key + " = " + toml, std::string("default"));
+  use(Value{*parsed.get(key), "", key});
 }
 
 double read_number(const Value& v, const Range& range) { return number_in(v, v.node, range); }
@@ -120,14 +147,14 @@ std::vector<std::string> read_texts(const Value& v) {
 const toml::table& read_table_node(const Value& v) {
   if (const toml::table* found = v.node.as_table()) return *found;
   const bool many = v.node.is_array_of_tables();
-  refuse(place(v.node.source()), v.where,
+  refuse(location(v.node.source()), v.where,
          fmt::format("{} must be one table: write [{}]{}", v.key, v.key,
                      many ? " once, with single brackets" : ""));
 }
 
 std::vector<const toml::table*> read_table_array(const Value& v) {
   if (!v.node.is_array_of_tables())
-    refuse(place(v.node.source()), v.where,
+    refuse(location(v.node.source()), v.where,
            fmt::format("{} must be a list of tables: write [[{}]] with double brackets", v.key, v.key));
   std::vector<const toml::table*> out;
   for (const toml::node& node : *v.node.as_array()) out.push_back(node.as_table());
@@ -154,13 +181,13 @@ void refuse_unknown(const toml::table& table, const std::string& where, const Na
     bool found = false;
     for (const std::string& name : known) found = found || name == key.str();
     if (!found)
-      refuse(place(key.source()), where,
+      refuse(location(key.source()), where,
              fmt::format("unknown key \"{}\"{}", key.str(), suggestion(key.str(), known)));
   }
 }
 
 void refuse_missing(const toml::table& table, const std::string& where, const std::string& key) {
-  refuse(place(table.source()), where, fmt::format("{} is missing and has no default", key));
+  refuse(location(table.source()), where, fmt::format("{} is missing and has no default", key));
 }
 
 }  // namespace palpate::scene

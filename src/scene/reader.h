@@ -2,18 +2,18 @@
 #include <toml++/toml.h>
 
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "palpate/core/error.h"
-#include "palpate/core/types.h"
+#include "palpate/core/keys.h"
+#include "palpate/scene/kinds.h"
 #include "scene/document.h"
 
 /// Reads TOML tables into plain specs by tables of keys.  A key table says everything about a scene table:
-/// the names that may stand in it, their types, ranges and whether they must be there; what is not in it is
-/// refused with the nearest name that is.
+/// the names that may stand in it, their types, units, ranges, defaults and meaning, and whether they must be
+/// there; what is not in it is refused with the nearest name that is.  `palpate list keys` prints it.
 namespace palpate::scene {
 
 /// A value on its way into a spec, and how messages speak of it.
@@ -23,21 +23,24 @@ struct Value {
   std::string key;    ///< `radius_m`
 };
 
-/// throw Error `PLACE: where: what`.
-[[noreturn]] void refuse(const std::string& place, const std::string& where, const std::string& what);
+/// A node as messages show it, near to how a person wrote it.
+std::string shown(const toml::node& node);
 
-/// Values that a number may take, and what to do about one outside.
-struct Range {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool low_open = false, high_open = false;
-  std::string remedy;
-};
-Range any();
-Range positive(std::string remedy = "");
-Range at_least(double low, std::string remedy = "");
-Range closed(double low, double high, std::string remedy = "");
-Range open(double low, double high, std::string remedy = "");
+/// A TOML value as a Setting; empty where it is of another type.
+std::optional<Setting> setting_of(const toml::node& node);
+
+/// throw Error `LOCATION: where: what`.
+[[noreturn]] void refuse(const std::string& location, const std::string& where, const std::string& what);
+
+inline Range any() { return {}; }
+inline Range positive(std::string_view remedy = {}) { return Range::positive(remedy); }
+inline Range at_least(double low, std::string_view remedy = {}) { return Range::at_least(low, remedy); }
+inline Range closed(double low, double high, std::string_view remedy = {}) {
+  return Range::closed(low, high, remedy);
+}
+inline Range open(double low, double high, std::string_view remedy = {}) {
+  return Range::open(low, high, remedy);
+}
 
 using Names = std::vector<std::string>;
 
@@ -58,11 +61,31 @@ std::string label(const std::string& where, const std::string& key, const toml::
 void refuse_unknown(const toml::table& table, const std::string& where, const Names& known);
 void refuse_missing(const toml::table& table, const std::string& where, const std::string& key);
 
+/// What a spec holds, as TOML; empty: nothing that a scene could say.
+inline std::string to_toml(double value) { return palpate::to_toml(value); }
+inline std::string to_toml(int value) { return fmt::format("{}", value); }
+inline std::string to_toml(bool value) { return value ? "true" : "false"; }
+inline std::string to_toml(const Vec3& value) { return palpate::to_toml(Setting(value)); }
+inline std::string to_toml(const std::string& value) { return value.empty() ? "" : '"' + value + '"'; }
+inline std::string to_toml(const std::optional<double>& value) { return value ? to_toml(*value) : ""; }
+template <class Item>
+std::string to_toml(const std::vector<Item>& values) {
+  std::string out;
+  for (const Item& one : values) out += (out.empty() ? "" : ", ") + to_toml(one);
+  return out.empty() ? "" : "[" + out + "]";
+}
+
+/// Pa of "_pa", Pa s/m of "_pa_s_m", ...; empty where the name ends in no unit.
+std::string unit_of(const std::string& key);
+std::string choices(const Names& names);  ///< "a", "b"
+
+/// One row of a key table: everything that is said of a key, once.
 template <class Spec>
 struct Key {
   std::string name;
   std::function<void(const Value&, Spec&)> read;
-  Names children = {};  ///< dotted names of the keys inside a table
+  KeyRow row;                         ///< but for the name of the table
+  std::vector<KeyRow> children = {};  ///< of a table: the keys in it, their tables dotted from here
   bool required = false;
 };
 
@@ -76,15 +99,65 @@ Names names_of(const KeyTable<Spec>& keys) {
   return names;
 }
 
-/// All names, those inside tables included: `mesh`, `mesh.file`, ...
+/// Rows of a table and of the tables in it, dotted from `table`.
 template <class Spec>
-Names dotted_names(const KeyTable<Spec>& keys) {
-  Names names;
+std::vector<KeyRow> rows_of(const std::string& table, const KeyTable<Spec>& keys) {
+  std::vector<KeyRow> rows;
+  const auto add = [&](KeyRow row) {
+    row.table = row.table.empty() || table.empty() ? table + row.table : table + "." + row.table;
+    rows.push_back(std::move(row));
+  };
   for (const auto& key : keys) {
-    names.push_back(key.name);
-    for (const auto& child : key.children) names.push_back(key.name + "." + child);
+    KeyRow row = key.row;
+    row.required = key.required;
+    if (key.required) row.fallback.clear(), row.is_value = false;
+    add(std::move(row));
   }
-  return names;
+  for (const auto& key : keys)
+    for (const KeyRow& child : key.children) add(child);
+  return rows;
+}
+
+/// TOML text as one value; `use` sees it while it stands.
+void with_value(const std::string& toml, const std::string& key,
+                const std::function<void(const Value&)>& use);
+
+/// A key whose value goes into one member; its default is the member's own.
+template <class Spec, class Member>
+Key<Spec> member_key(const char* name, Member Spec::*member, std::function<Member(const Value&)> read,
+                     const char* type, std::string range, const char* meaning) {
+  Key<Spec> key{name, [=](const Value& v, Spec& spec) { spec.*member = read(v); }, {}};
+  key.row = {.table = "",
+             .name = name,
+             .type = type,
+             .unit = unit_of(name),
+             .range = std::move(range),
+             .fallback = to_toml(Spec{}.*member),
+             .meaning = meaning,
+             .users = {}};
+  key.row.is_value = !key.row.fallback.empty();
+  key.row.read_back = [=, read = key.read](const std::string& toml) {
+    Spec spec{};
+    with_value(toml, name, [&](const Value& v) { read(v, spec); });
+    return to_toml(spec.*member);
+  };
+  return key;
+}
+
+/// Without a member of its own: what it means, and what holds where it is not given, in words.
+template <class Spec>
+Key<Spec> own_key(const char* name, std::function<void(const Value&, Spec&)> read, const char* type,
+                  const char* fallback, const char* meaning) {
+  Key<Spec> key{name, std::move(read), {}};
+  key.row = {.table = "",
+             .name = name,
+             .type = type,
+             .unit = unit_of(name),
+             .range = "",
+             .fallback = fallback,
+             .meaning = meaning,
+             .users = {}};
+  return key;
 }
 
 /// A misspelt key is reported before the key that it leaves missing.
@@ -102,81 +175,116 @@ Key<Spec> required(Key<Spec> key) {
   key.required = true;
   return key;
 }
-
+/// A default in words: what holds depends on other keys.
 template <class Spec>
-Key<Spec> number(const char* name, double Spec::*member, Range range = any()) {
-  return {name, [=](const Value& v, Spec& spec) { spec.*member = read_number(v, range); }};
+Key<Spec> unless(const char* words, Key<Spec> key) {
+  key.row.fallback = words;
+  key.row.is_value = false;
+  return key;
 }
+/// A unit that the name does not tell.
 template <class Spec>
-Key<Spec> number(const char* name, std::optional<double> Spec::*member, Range range = any()) {
-  return {name, [=](const Value& v, Spec& spec) { spec.*member = read_number(v, range); }};
-}
-template <class Spec>
-Key<Spec> integer(const char* name, int Spec::*member, Range range = any()) {
-  return {name, [=](const Value& v, Spec& spec) { spec.*member = read_integer(v, range); }};
-}
-template <class Spec>
-Key<Spec> boolean(const char* name, bool Spec::*member) {
-  return {name, [=](const Value& v, Spec& spec) { spec.*member = read_bool(v); }};
-}
-template <class Spec>
-Key<Spec> text(const char* name, std::string Spec::*member, Names allowed = {}) {
-  return {name, [=](const Value& v, Spec& spec) { spec.*member = read_text(v, allowed); }};
-}
-template <class Spec>
-Key<Spec> vec3(const char* name, Vec3 Spec::*member, Range each = any()) {
-  return {name, [=](const Value& v, Spec& spec) { spec.*member = read_vec3(v, each); }};
-}
-template <class Spec>
-Key<Spec> numbers(const char* name, std::vector<double> Spec::*member, Range each = any()) {
-  return {name, [=](const Value& v, Spec& spec) { spec.*member = read_numbers(v, each); }};
+Key<Spec> in_unit(const char* unit, Key<Spec> key) {
+  key.row.unit = unit;
+  return key;
 }
 
 template <class Spec>
-Key<Spec> texts(const char* name, std::vector<std::string> Spec::*member) {
-  return {name, [=](const Value& v, Spec& spec) { spec.*member = read_texts(v); }};
+Key<Spec> number(const char* name, double Spec::*member, Range range, const char* meaning) {
+  return member_key<Spec, double>(
+      name, member, [=](const Value& v) { return read_number(v, range); }, "number", range.text(), meaning);
+}
+template <class Spec>
+Key<Spec> number(const char* name, std::optional<double> Spec::*member, Range range, const char* meaning) {
+  return member_key<Spec, std::optional<double>>(
+      name, member, [=](const Value& v) { return read_number(v, range); }, "number", range.text(), meaning);
+}
+template <class Spec>
+Key<Spec> integer(const char* name, int Spec::*member, Range range, const char* meaning) {
+  return member_key<Spec, int>(
+      name, member, [=](const Value& v) { return read_integer(v, range); }, "whole number", range.text(),
+      meaning);
+}
+template <class Spec>
+Key<Spec> boolean(const char* name, bool Spec::*member, const char* meaning) {
+  return member_key<Spec, bool>(name, member, read_bool, "true or false", "", meaning);
+}
+template <class Spec>
+Key<Spec> text(const char* name, std::string Spec::*member, Names allowed, const char* meaning) {
+  return member_key<Spec, std::string>(
+      name, member, [=](const Value& v) { return read_text(v, allowed); }, "text", choices(allowed), meaning);
+}
+template <class Spec>
+Key<Spec> vec3(const char* name, Vec3 Spec::*member, Range each, const char* meaning) {
+  return member_key<Spec, Vec3>(
+      name, member, [=](const Value& v) { return read_vec3(v, each); }, "three numbers", each.text(),
+      meaning);
+}
+template <class Spec>
+Key<Spec> numbers(const char* name, std::vector<double> Spec::*member, Range each, const char* meaning) {
+  return member_key<Spec, std::vector<double>>(
+      name, member, [=](const Value& v) { return read_numbers(v, each); }, "list of numbers", each.text(),
+      meaning);
+}
+template <class Spec>
+Key<Spec> texts(const char* name, std::vector<std::string> Spec::*member, const char* meaning) {
+  return member_key<Spec, std::vector<std::string>>(name, member, read_texts, "list of texts", "", meaning);
 }
 
 /// [name] whose keys go into a spec of its own.
 template <class Spec, class Sub>
-Key<Spec> table(const char* name, Sub Spec::*member, const KeyTable<Sub>& keys) {
-  return {name,
-          [member, &keys](const Value& v, Spec& spec) {
-            read_table(read_table_node(v), label(v.where, v.key, read_table_node(v), {}), keys, spec.*member);
-          },
-          dotted_names(keys)};
+Key<Spec> table(const char* name, Sub Spec::*member, const KeyTable<Sub>& keys, const char* meaning) {
+  Key<Spec> key = own_key<Spec>(
+      name,
+      [member, &keys](const Value& v, Spec& spec) {
+        read_table(read_table_node(v), label(v.where, v.key, read_table_node(v), {}), keys, spec.*member);
+      },
+      "table", "", meaning);
+  key.children = rows_of(name, keys);
+  return key;
 }
 template <class Spec, class Sub>
-Key<Spec> table(const char* name, std::optional<Sub> Spec::*member, const KeyTable<Sub>& keys) {
-  return {name,
-          [member, &keys](const Value& v, Spec& spec) {
-            read_table(read_table_node(v), label(v.where, v.key, read_table_node(v), {}), keys,
-                       (spec.*member).emplace());
-          },
-          dotted_names(keys)};
+Key<Spec> table(const char* name, std::optional<Sub> Spec::*member, const KeyTable<Sub>& keys,
+                const char* meaning) {
+  Key<Spec> key = own_key<Spec>(
+      name,
+      [member, &keys](const Value& v, Spec& spec) {
+        read_table(read_table_node(v), label(v.where, v.key, read_table_node(v), {}), keys,
+                   (spec.*member).emplace());
+      },
+      "table", "", meaning);
+  key.children = rows_of(name, keys);
+  return key;
 }
 
 /// [name] whose keys go into the enclosing spec.
 template <class Spec>
-Key<Spec> group(const char* name, const KeyTable<Spec>& keys) {
-  return {name,
-          [&keys](const Value& v, Spec& spec) {
-            read_table(read_table_node(v), label(v.where, v.key, read_table_node(v), {}), keys, spec);
-          },
-          dotted_names(keys)};
+Key<Spec> group(const char* name, const KeyTable<Spec>& keys, const char* meaning) {
+  Key<Spec> key = own_key<Spec>(
+      name,
+      [&keys](const Value& v, Spec& spec) {
+        read_table(read_table_node(v), label(v.where, v.key, read_table_node(v), {}), keys, spec);
+      },
+      "table", "", meaning);
+  key.children = rows_of(name, keys);
+  return key;
 }
 
 /// [[name]], one spec a table.
 template <class Spec, class Sub>
-Key<Spec> tables(const char* name, std::vector<Sub> Spec::*member, const KeyTable<Sub>& keys) {
-  return {name,
-          [member, &keys](const Value& v, Spec& spec) {
-            for (const toml::table* one : read_table_array(v)) {
-              Sub& sub = (spec.*member).emplace_back();
-              read_table(*one, label(v.where, v.key, *one, (spec.*member).size() - 1), keys, sub);
-            }
-          },
-          dotted_names(keys)};
+Key<Spec> tables(const char* name, std::vector<Sub> Spec::*member, const KeyTable<Sub>& keys,
+                 const char* meaning) {
+  Key<Spec> key = own_key<Spec>(
+      name,
+      [member, &keys](const Value& v, Spec& spec) {
+        for (const toml::table* one : read_table_array(v)) {
+          Sub& sub = (spec.*member).emplace_back();
+          read_table(*one, label(v.where, v.key, *one, (spec.*member).size() - 1), keys, sub);
+        }
+      },
+      "tables", "", meaning);
+  key.children = rows_of(name, keys);
+  return key;
 }
 
 }  // namespace palpate::scene

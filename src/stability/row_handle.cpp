@@ -36,7 +36,7 @@ constexpr double kTick = 1e-3;
 ToolSpec tool_spec(const Lab& lab) {
   ToolSpec spec;
   spec.integrator = lab.column.name;
-  spec.coupling_rotational_damping_n_m_s_rad = 1e-3;
+  spec.coupling.rotational_damping_n_m_s_rad = 1e-3;
   return spec;
 }
 
@@ -85,7 +85,7 @@ StabilityCell thrown(const Lab& lab) {
   const Motion motion = move(lab, tool, 300, [](int i) {
     return std::pair{Pose{Quat::Identity(), i < 10 ? Vec3(0, 0, 0) : Vec3(1, 0, 0)}, Twist{}};
   });
-  const double fastest = std::sqrt(spec.coupling_stiffness_n_m / spec.mass_kg);
+  const double fastest = std::sqrt(spec.coupling.stiffness_n_m / spec.mass_kg);
   return judge_ratio(lab, motion, std::max(motion.distance, motion.speed / fastest), "distance and speed");
 }
 
@@ -99,7 +99,7 @@ StabilityCell spun(const Lab& lab, int ticks) {
                      Twist{kSpin * axis, Vec3::Zero()}};
   });
   const double most =
-      kSpin + spec.coupling_rotational_stiffness_n_m_rad * M_PI / spec.coupling_rotational_damping_n_m_s_rad;
+      kSpin + spec.coupling.rotational_stiffness_n_m_rad * M_PI / spec.coupling.rotational_damping_n_m_s_rad;
   return judge_ratio(lab, motion, motion.spin / most, "spin");
 }
 
@@ -112,7 +112,7 @@ StabilityCell million(const Lab& lab, double force) {
   pull.version = 1;
   pull.source = dynamics::LinearisedContact::Source::kFrozen;
   pull.F0[3] = force;
-  const Vec3 rest(force / spec.coupling_stiffness_n_m, 0, 0);
+  const Vec3 rest(force / spec.coupling.stiffness_n_m, 0, 0);
   StabilityCell cell;
   dynamics::StepResult result;
   double drift = 0.0, turned = 0.0, memory = 0.0;

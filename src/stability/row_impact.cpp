@@ -32,8 +32,8 @@ ObstacleSpec thin_plate() {
   ObstacleSpec plate;
   plate.name = "plate";
   plate.type = "box";
-  plate.size_m = Vec3(2.0 * kHalfWidth, 2.0 * kHalfWidth, kThickness);
-  plate.position_m = Vec3(0, 0, -0.5 * kThickness);
+  plate.shape["size_m"] = Vec3(2.0 * kHalfWidth, 2.0 * kHalfWidth, kThickness);
+  plate.shape["position_m"] = Vec3(0, 0, -0.5 * kThickness);
   return plate;
 }
 

@@ -57,8 +57,8 @@ scene::Description under_a_tool(const std::vector<std::pair<double, double>>& he
   d.tool->radius_m = kToolRadius;
   d.tool->mass_kg = mass;
   d.tool->position_m = Vec3(0.001, 0.002, heights.front().second);
-  d.tool->coupling_stiffness_n_m = stiffness;
-  d.tool->coupling_damping_n_s_m = damping;
+  d.tool->coupling.stiffness_n_m = stiffness;
+  d.tool->coupling.damping_n_s_m = damping;
   d.device.emplace();
   for (const auto& [time, z] : heights) {
     KeyframeSpec frame;
@@ -81,8 +81,8 @@ scene::Description under_a_tool(const std::vector<std::pair<double, double>>& he
 /// light tool has y = 3e3.
 double overshoot(const Column& column, const scene::Description& d) {
   if (d.coupling.scheme != "monolithic" || column.entry->traits.family != "Newmark") return 1.0;
-  const double y = kPeriod * std::sqrt(d.tool->coupling_stiffness_n_m / d.tool->mass_kg),
-               r = d.tool->coupling_damping_n_s_m / (d.tool->coupling_stiffness_n_m * kPeriod);
+  const double y = kPeriod * std::sqrt(d.tool->coupling.stiffness_n_m / d.tool->mass_kg),
+               r = d.tool->coupling.damping_n_s_m / (d.tool->coupling.stiffness_n_m * kPeriod);
   return 1.0 + 0.25 * y + std::min(0.25 * r, 1.0 / 6.0) * y * y;
 }
 
@@ -100,7 +100,7 @@ StabilityCell run(const Lab& lab, const scene::Description& d, bool must_touch =
   for (std::size_t i = 1; i < frames.size(); ++i)
     path += (frames[i].position_m - frames[i - 1].position_m).norm();
   const double put_in =
-      0.5 * path * path * std::min(d.tool->coupling_stiffness_n_m, d.bodies[0].youngs_modulus_pa * kCubeEdge);
+      0.5 * path * path * std::min(d.tool->coupling.stiffness_n_m, d.bodies[0].youngs_modulus_pa * kCubeEdge);
   double held = 0.0;  // by the cube, the most [J]
   const SceneCourse course = run_scene(lab, d, kRtol, put_in, [&](loop::World& world, double) {
     held = std::max(held, energy_of_cube(world));

@@ -14,8 +14,8 @@ bool is_none(const dynamics::LinearisedContact& record) {
 }  // namespace
 
 CouplingGains coupling_gains(const ToolSpec& spec) {
-  return {spec.coupling_stiffness_n_m, spec.coupling_damping_n_s_m,
-          spec.coupling_rotational_stiffness_n_m_rad, spec.coupling_rotational_damping_n_m_s_rad};
+  return {spec.coupling.stiffness_n_m, spec.coupling.damping_n_s_m,
+          spec.coupling.rotational_stiffness_n_m_rad, spec.coupling.rotational_damping_n_m_s_rad};
 }
 
 Vec6 stacked(const Twist& twist) {

@@ -69,7 +69,7 @@ dynamics::BlockSpec tool_block(const ToolSpec& spec) {
   const RigidParameters p = rigid_parameters(spec, Vec3::Zero());
   const double length = spec.shape == "sphere" ? spec.radius_m : std::sqrt(2.5 * p.inertia.mean() / p.mass);
   const double rate =
-      spec.coupling_stiffness_n_m > 0.0 ? std::sqrt(spec.coupling_stiffness_n_m / p.mass) : 1.0;
+      spec.coupling.stiffness_n_m > 0.0 ? std::sqrt(spec.coupling.stiffness_n_m / p.mass) : 1.0;
   return rigid_block("tool", length, length * rate);
 }
 

@@ -251,12 +251,38 @@ class Results(Cli):
         everything = self.good("list")
         for what, member in {"integrators": "cvode-bdf", "linear-solvers": "cholmod",
                              "materials": "stable_neo_hookean", "tool-integrators": "simbody-cpodes",
+                             "obstacles": "cylinder", "contact-methods": "gpu", "generators": "tet",
                              "devices": "script",
                              "cases": "patch-test", "parts": "contact", "scenes": "press-ball"}.items():
             with self.subTest(what=what):
                 one = self.good("list", what)
                 self.assertRegex(one, rf"(?m)^{member} ")
                 self.assertIn(one, everything)
+
+    def test_keys_are_listed_with_unit_range_default_and_meaning(self):
+        text = self.good("list", "keys")
+        tables = re.findall(r"(?m)^\[([a-z.]+)\]$", text)
+        self.assertEqual(len(tables), len(set(tables)))
+        for table in ("scene", "body", "body.mesh", "obstacle", "contact", "tool.coupling", "device",
+                      "exchange", "integrator", "record", "compare.ladder"):
+            self.assertIn(table, tables)
+        self.assertRegex(text, r"(?m)^spectral_radius +number +\[0, 1\] +0\.8 +.* generalized-alpha$")
+        self.assertRegex(text, r"(?m)^youngs_modulus_pa +number +Pa +> 0 +required +Young's modulus$")
+
+    def test_another_method_says_what_it_leaves_out(self):
+        done = self.call("run", "one-tet", "--integrator", "rk4", "--duration-s", "0.001")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("palpate: integrator.rtol of the scene is left out: what --integrator or --set names has "
+                      "no use for it\n", done.stderr)
+        self.assertEqual(self.call("run", "one-tet", "--duration-s", "0.001").stderr, "")
+
+    def test_keys_of_another_method_are_refused(self):
+        text = self.refused("run", "one-tet", "--integrator", "rk4",
+                            "--set", "integrator.spectral_radius=0.5")
+        self.assertIn("spectral_radius means nothing to integrator \"rk4\", which takes step_s, max_steps, "
+                      "threads; remove it (used by generalized-alpha)", text)
+        self.assertIn("is not there yet; take method = \"analytic\"",
+                      self.refused("inspect", "press-ball", "--set", "contact.1.method=vertex"))
 
     def test_inspect_says_what_is_left_out(self):
         text = self.good("inspect", "falling-ball")

@@ -4,7 +4,7 @@
 #include "palpate/compare/compare.h"
 #include "palpate/core/process_pool.h"
 #include "palpate/gl/context.h"
-#include "palpate/scene/load.h"
+#include "palpate/loop/load.h"
 
 using namespace palpate;
 
@@ -59,7 +59,7 @@ TEST(Compare, ProcessesDrawAfterAPictureWasDrawn) {
   compare::CompareOptions options;
   options.repeats = 1;
   options.integrators = {"linearly-implicit-euler"};
-  const compare::SceneComparison c = compare::run({scene::parse(kTouch, "touch.toml")}, options).scenes[0];
+  const compare::SceneComparison c = compare::run({loop::parse(kTouch, "touch.toml")}, options).scenes[0];
   for (const compare::MissingChart& chart : c.missing_charts) ADD_FAILURE() << chart.text();
   ASSERT_EQ(c.methods.size(), 2u);
   EXPECT_EQ(c.methods[1].method, "gpu");

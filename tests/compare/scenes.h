@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "palpate/scene/load.h"
+#include "palpate/loop/load.h"
 
 namespace palpate::compare_scenes {
 
@@ -32,7 +32,7 @@ state_period_s = 0.01
 
 inline scene::Description block(const std::string& more, const std::string& name = "block",
                                 double youngs_modulus_pa = 1e4) {
-  return scene::parse(block_text(more, name, youngs_modulus_pa), name + ".toml");
+  return loop::parse(block_text(more, name, youngs_modulus_pa), name + ".toml");
 }
 
 inline const std::string kLadders = R"([[compare.ladder]]
@@ -45,7 +45,7 @@ rtol = [1e-2, 1e-4, 1e-6]
 
 /// A tool on its spring, pulled aside and let go by the hand; no body.
 inline scene::Description tool_only() {
-  return scene::parse(R"([scene]
+  return loop::parse(R"([scene]
 name = "tool alone"
 duration_s = 0.04
 [tool]
@@ -66,7 +66,7 @@ position_m = [0.01, 0.0, 0.04]
 [exchange]
 exchange_period_s = 0.01
 )",
-                      "tool.toml");
+                     "tool.toml");
 }
 
 }  // namespace palpate::compare_scenes

@@ -2,7 +2,7 @@
 
 #include "palpate/compare/trajectory.h"
 #include "palpate/integrate/integrators.h"
-#include "palpate/scene/load.h"
+#include "palpate/loop/load.h"
 
 /// One setting for a material from jelly to plastic: the same bar, loaded at its end by P L^2 / (E I) = 1
 /// from t = 0 on, to the same end time.
@@ -42,7 +42,7 @@ state_period_s = 0.02
 }
 
 compare::Run run(double youngs_modulus, const IntegratorSpec& spec) {
-  scene::Description d = scene::parse(bar(youngs_modulus), "stiffness-ladder.toml");
+  scene::Description d = loop::parse(bar(youngs_modulus), "stiffness-ladder.toml");
   d.integrator = spec;
   return compare::run_once(d, 0.0);
 }

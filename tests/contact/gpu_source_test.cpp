@@ -15,7 +15,7 @@ contact::GpuOptions options(int pixels, double candidate_gap) {
   return out;
 }
 
-/// A soft unit sphere above a rigid one of radius 0.8, in a turned and moved frame; the line of centres is
+/// A soft unit sphere above a rigid one of radius 0.8, in a rotated and moved frame; the line of centres is
 /// oblique.
 struct Pair {
   Vec3 axis = Vec3(0.3, -0.5, 0.8).normalized();
@@ -183,7 +183,7 @@ TEST(GpuSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
 
 // --- proxies
 
-// The same pose cut into 1, 8 and 64 cells: force and moment within 1 % (DESIGN 3.3: a surface point
+// One pose, its skin cut into 1, 8 and 64 cells: force and moment within 1 % (each surface point
 // contributes once), and the force as large as the uncut surface's, whose plane is the hulls' and tilted by
 // some degrees.
 TEST(PrunedGpuSource, ForceDoesNotDependOnTheCut) {
@@ -293,7 +293,7 @@ TEST(GpuSource, RefusesBadOptions) {
     } catch (const std::exception& e) { return std::string(e.what()); }
     return std::string();
   };
-  EXPECT_NE(message(pair.rigid, options(0, 0.1)).find("pixels = 0 must lie between 2 and 8192"),
+  EXPECT_NE(message(pair.rigid, options(0, 0.1)).find("pixels = 0 must lie in [16, 4096]"),
             std::string::npos);
   EXPECT_NE(message(pair.rigid, options(64, -0.1)).find("candidate gap = -0.1"), std::string::npos);
   EXPECT_NE(message(TriMesh{}, options(64, 0.1)).find("two surfaces with faces"), std::string::npos);

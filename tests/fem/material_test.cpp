@@ -25,7 +25,7 @@ TEST(Material, EveryValueOutOfRangeIsNamed) {
   const Bad cases[] = {
       {&Material::youngs_modulus, 0.0, "youngs_modulus_pa = 0 must be positive"},
       {&Material::youngs_modulus, nan, "youngs_modulus_pa = nan must be positive"},
-      {&Material::youngs_modulus, inf, "youngs_modulus_pa = inf must be positive and finite"},
+      {&Material::youngs_modulus, inf, "youngs_modulus_pa = inf must be a finite number"},
       {&Material::poissons_ratio, 0.5,
        "poissons_ratio = 0.5 must lie in (-1, 0.5); use 0.49 for nearly incompressible tissue"},
       {&Material::poissons_ratio, -1.0, "poissons_ratio = -1 must lie in (-1, 0.5)"},

@@ -371,11 +371,11 @@ TEST_P(Steppers, RefuseBadSettings) {
     return;
   }
   expect_refused(
-      spec(), [](S& s) { s.rtol = 0.0; }, "rtol = 0 must be positive");
+      spec(), [](S& s) { s.rtol = 0.0; }, "rtol = 0 must lie in (0, 0.1]; 1e-3 is usual");
   expect_refused(
-      spec(), [](S& s) { s.rtol = std::nan(""); }, "rtol = nan must be positive");
+      spec(), [](S& s) { s.rtol = std::nan(""); }, "rtol = nan must lie in (0, 0.1]; 1e-3 is usual");
   expect_refused(
-      spec(), [](S& s) { s.rtol = 0.5; }, "rtol = 0.5 must be at most 0.1");
+      spec(), [](S& s) { s.rtol = 0.5; }, "rtol = 0.5 must lie in (0, 0.1]; 1e-3 is usual");
   expect_refused(
       spec(), [](S& s) { s.atol_q = 0.0; }, "atol_q = 0 must be positive");
   expect_refused(

@@ -59,7 +59,7 @@ TEST(Impact, AFastBlockThatGoesThroughAThinPlateIsCounted) {
   const auto through_plate = [](double speed, double stiffness) {
     scene::Description d = thrown_block(speed, 0.005);
     d.obstacles[0].type = "box";
-    d.obstacles[0].size_m = Vec3(0.2, 0.2, 0.001);
+    d.obstacles[0].shape["size_m"] = Vec3(0.2, 0.2, 0.001);
     d.contacts[0].stiffness_pa_m = stiffness;
     d.duration_s = 0.03;
     return d;

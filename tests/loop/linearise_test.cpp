@@ -246,7 +246,7 @@ TEST(Linearise, AStiffContactDoesNotThrowTheToolAway) {
     EXPECT_TRUE(result.status.ok()) << result.status.message;
     EXPECT_LT(bounds.away, 0.01) << "at " << stiffness << " Pa/m";
     // the hand never did more work
-    EXPECT_LT(bounds.energy, 0.5 * d.tool->coupling_stiffness_n_m * 0.01 * 0.01)
+    EXPECT_LT(bounds.energy, 0.5 * d.tool->coupling.stiffness_n_m * 0.01 * 0.01)
         << "at " << stiffness << " Pa/m";
     EXPECT_LT(bounds.turned, 1e-9) << "at " << stiffness << " Pa/m: without friction nothing turns a sphere";
   }

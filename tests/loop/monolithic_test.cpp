@@ -128,7 +128,7 @@ TEST(Monolithic, RestsWhereThePartitionedSchemeRests) {
   ASSERT_TRUE(whole.result.status.ok() && parts.result.status.ok());
   const loop::TickRecord &a = whole.log.ticks.back(), &b = parts.log.ticks.back();
   ASSERT_GT(a.contact.force.z(), 0.05);
-  const Vec3 spring = d.tool->coupling_stiffness_n_m * (a.handle.translation - a.tool.translation);
+  const Vec3 spring = d.tool->coupling.stiffness_n_m * (a.handle.translation - a.tool.translation);
   EXPECT_LT((spring + a.contact.force).norm(), 1e-5 * a.contact.force.norm());
   EXPECT_LT((a.tool.translation - b.tool.translation).norm(), 1e-3 * 0.003);
   EXPECT_LT((a.device.force - b.device.force).norm(), 1e-3 * b.device.force.norm());
@@ -142,7 +142,7 @@ TEST(Monolithic, ToolAndBodiesKeepTheirEnergyTogether) {
   d.coupling.contact_refresh_s = 0.002;
   d.record.emplace();
   d.bodies[0].stiffness_damping_s = 0.0;
-  d.tool->coupling_damping_n_s_m = d.tool->coupling_rotational_damping_n_m_s_rad = 0.0;
+  d.tool->coupling.damping_n_s_m = d.tool->coupling.rotational_damping_n_m_s_rad = 0.0;
   d.integrator.name = "cvode-bdf";
   d.integrator.rtol = 1e-8;
   d.duration_s = 0.002;  // to the next query

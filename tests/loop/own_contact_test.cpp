@@ -141,14 +141,14 @@ TEST(OwnContactScene, OnlyASceneThatNamesItHasIt) {
   const Fork fork;
   counters::reset();
   loop::assemble(fork.scene("linearly-implicit-euler", false));
-  EXPECT_EQ(counters::counter("contact.own_tissue"), 0);
+  EXPECT_EQ(counters::counter("contact.self_contact_filter"), 0);
   EXPECT_EQ(counters::counter("proxy.pruner"), 0);
   const Blocks blocks;
 #ifdef PALPATE_HAS_GL
   loop::assemble(blocks.scene(false));
-  EXPECT_EQ(counters::counter("contact.own_tissue"), 0) << "two bodies";
+  EXPECT_EQ(counters::counter("contact.self_contact_filter"), 0) << "two bodies";
   loop::assemble(fork.scene("linearly-implicit-euler"));
-  EXPECT_EQ(counters::counter("contact.own_tissue"), 1);
+  EXPECT_EQ(counters::counter("contact.self_contact_filter"), 1);
 #endif
 }
 

@@ -144,7 +144,7 @@ TEST(Run, HeldHandleComesToRestInBalanceWithTheBlock) {
   options.duration_s = 1.5;
   ASSERT_TRUE(loop::run(*world, options).status.ok());
   const loop::TickRecord& last = log.ticks.back();
-  const Vec3 spring = d.tool->coupling_stiffness_n_m * (last.handle.translation - last.tool.translation);
+  const Vec3 spring = d.tool->coupling.stiffness_n_m * (last.handle.translation - last.tool.translation);
   const Wrench contact = world->contact->frame_wrench(world->state.view(), world->tool_frame_index());
   ASSERT_GT(contact.force.z(), 0.05);
   EXPECT_LT((spring + contact.force).norm(), 1e-6 * contact.force.norm());

@@ -53,8 +53,8 @@ scene::Description under_a_ball(scene::Description d, double depth) {
   ObstacleSpec ball;
   ball.name = "ball";
   ball.type = "sphere";
-  ball.radius_m = 0.015;
-  ball.position_m = Vec3(0.001, 0.002, 0.02 + 0.015 - depth);
+  ball.shape["radius_m"] = 0.015;
+  ball.shape["position_m"] = Vec3(0.001, 0.002, 0.02 + 0.015 - depth);
   d.obstacles.push_back(ball);
   ContactSpec contact;
   contact.first = "block";

@@ -43,8 +43,8 @@ inline scene::Description pressed_block(double depth) {
   d.tool->radius_m = 0.015;
   d.tool->mass_kg = 0.05;
   d.tool->position_m = Vec3(0.001, 0.002, 0.02 + 0.015 - depth);
-  d.tool->coupling_stiffness_n_m = 300;
-  d.tool->coupling_damping_n_s_m = 4;
+  d.tool->coupling.stiffness_n_m = 300;
+  d.tool->coupling.damping_n_s_m = 4;
   d.device.emplace();
   KeyframeSpec hold;
   hold.position_m = d.tool->position_m;

@@ -229,7 +229,8 @@ TEST(Generators, BadSpecsAreRefusedWithKeyAndValue) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   refused([](MeshSpec& s) { s.generator = "bal"; },
           "unknown mesh generator \"bal\" (did you mean \"ball\"?)");
-  refused([](MeshSpec& s) { s.radius_m = -1; }, "generator \"ball\": radius_m = -1 must lie in (0, 1e6) m");
+  refused([](MeshSpec& s) { s.radius_m = -1; },
+          "generator \"ball\": radius_m = -1 must lie in (0, 1000000); lengths are in metres");
   refused([](MeshSpec& s) { s.radius_m = kNan; }, "radius_m = nan");
   refused([](MeshSpec& s) { s.element_size_m = 0; }, "element_size_m = 0 must lie in");
   refused([](MeshSpec& s) { s.element_size_m = 1e-9; }, "element_size_m = 1e-09 would make about");

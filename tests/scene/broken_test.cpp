@@ -1,15 +1,15 @@
-// Each broken scene is refused at its place, with the value and what to do.
+// Each broken scene is refused at its location, with the value and what to do.
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
-#include "palpate/scene/load.h"
+#include "palpate/loop/load.h"
 #include "scene/scene_texts.h"
 
 namespace {
 
 struct Broken {
   const char* file;
-  const char* place;  ///< LINE:COLUMN
+  const char* location;  ///< LINE:COLUMN
   const char* message;
 };
 
@@ -40,7 +40,7 @@ const Broken kCases[] = {
      "bone \"femur\": mass_kg (or density_kg_m3 of its shape) is missing; a bone that shall not move needs "
      "fixed = true or a [[bone.keyframe]]"},
     {"skeleton-hinge", "8:1",
-     "body \"limb\": joint of \"hand\": axis is missing: a hinge turns about one, in the body's own axes, "
+     "body \"limb\": joint of \"hand\": axis is missing: a hinge rotates about one, in the body's own axes, "
      "for example [1.0, 0.0, 0.0]"},
     {"skeleton-scripted-type", "10:8",
      "body \"limb\": joint of \"hand\": type means nothing to a joint with keyframes; remove it"},
@@ -61,7 +61,9 @@ const Broken kCases[] = {
     {"exchange-period", "9:21",
      "exchange: exchange_period_s = 0.0105 must be a whole number of the tool's ticks of 0.001 s; use 0.01 "
      "or 0.011"},
-    {"idle-key", "11:10", "body \"ball\": mesh: size_m means nothing to generator = \"ball\"; remove it"},
+    {"idle-key", "11:10",
+     "body \"ball\": mesh: size_m means nothing to generator = \"ball\", which takes radius_m, "
+     "element_size_m, grading; remove it (used by box, tet)"},
     {"inertia", "5:17",
      "tool: inertia_kg_m2 = [1e-06, 1e-06, 3e-06] belongs to no rigid body: all must be positive and none "
      "larger than the other two together"},
@@ -95,15 +97,15 @@ const Broken kCases[] = {
 
 std::string message_of(const std::string& path) {
   try {
-    palpate::scene::load(path);
+    palpate::loop::load(path);
   } catch (const palpate::Error& e) { return e.what(); }
   return "no error";
 }
 
-TEST(BrokenScene, IsRefusedAtItsPlace) {
+TEST(BrokenScene, IsRefusedAtItsLocation) {
   for (const Broken& one : kCases) {
     const std::string path = scene_texts::kBroken + "/" + one.file + ".toml";
-    const std::string expected = path + ":" + one.place + ": " + one.message, message = message_of(path);
+    const std::string expected = path + ":" + one.location + ": " + one.message, message = message_of(path);
     if (std::string(one.file) == "syntax")
       EXPECT_TRUE(message.starts_with(expected)) << message;
     else

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "palpate/core/error.h"
-#include "palpate/scene/load.h"
+#include "palpate/loop/load.h"
 #include "scene/scene_texts.h"
 
 namespace {
@@ -46,10 +46,10 @@ std::string damaged(std::string text, std::mt19937& random) {
   return text;
 }
 
-/// How a text fares: read, or refused with a message that has a place.
+/// How a text fares: read, or refused with a message that has a location.
 bool is_read(const std::string& text, const std::vector<std::string>& overrides = {}) {
   try {
-    palpate::scene::parse(text, "fuzz.toml", overrides);
+    palpate::loop::parse(text, "fuzz.toml", overrides);
     return true;
   } catch (const palpate::Error& e) {
     const std::string message = e.what();

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "palpate/scene/load.h"
+#include "palpate/loop/load.h"
 #include "scene/scene_texts.h"
 
 namespace {
@@ -13,7 +13,7 @@ std::map<std::string, bool> used(const std::string& scene, const std::vector<std
                                  const std::string& linear_solver = "cholmod") {
   std::map<std::string, bool> out;
   for (const auto& need : palpate::scene::needs(
-           palpate::scene::load(scene_texts::kScenes + "/" + scene + ".toml", overrides), linear_solver)) {
+           palpate::loop::load(scene_texts::kScenes + "/" + scene + ".toml", overrides), linear_solver)) {
     EXPECT_FALSE(need.why.empty()) << need.part;
     EXPECT_TRUE(out.emplace(need.part, need.used).second) << need.part << " is listed twice";
   }

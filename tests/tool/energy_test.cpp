@@ -23,7 +23,7 @@ double stored(const ToolSpec& spec, const Tool& tool) {
 TEST(ToolEnergy, undamped_coupling_keeps_it) {
   for (const std::string name : {"simbody-rkmerson", "simbody-cpodes"}) {
     ToolSpec spec = spec_for(name);
-    spec.coupling_damping_n_s_m = spec.coupling_rotational_damping_n_m_s_rad = 0.0;
+    spec.coupling.damping_n_s_m = spec.coupling.rotational_damping_n_m_s_rad = 0.0;
     Tool tool(spec, Vec3::Zero());
     tool.set_state(0.0, kStart, kThrown);
     const double before = stored(spec, tool);
@@ -58,7 +58,7 @@ TEST(ToolEnergy, the_damper_accounts_for_the_loss) {
 
 TEST(ToolEnergy, a_free_top_keeps_energy_and_angular_momentum) {
   ToolSpec spec = spec_for("simbody-rkmerson");
-  spec.coupling_rotational_stiffness_n_m_rad = spec.coupling_rotational_damping_n_m_s_rad = 0.0;
+  spec.coupling.rotational_stiffness_n_m_rad = spec.coupling.rotational_damping_n_m_s_rad = 0.0;
   Tool tool(spec, Vec3::Zero());
   tool.set_state(0.0, kStart, {Vec3(2, 30, 1), Vec3::Zero()});
   const auto momentum = [&] { return Vec3(tool.mass_matrix().topLeftCorner<3, 3>() * tool.twist().angular); };
@@ -75,7 +75,7 @@ TEST(ToolEnergy, weight_only_where_asked) {
     for (bool on : {false, true}) {
       ToolSpec spec = spec_for(info.name);
       spec.gravity = on;
-      spec.coupling_stiffness_n_m = spec.coupling_damping_n_s_m = 0.0;
+      spec.coupling.stiffness_n_m = spec.coupling.damping_n_s_m = 0.0;
       Tool tool(spec, Vec3(0, 0, -9.81));
       for (int i = 0; i < 10; ++i) ASSERT_TRUE(tool.advance(1e-3, held({}), {}).ok());
       // v = g t is exact in all of them

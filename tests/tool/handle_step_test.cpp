@@ -33,11 +33,11 @@ Trace step_response(const ToolSpec& spec, int axis, double h, int ticks) {
 }
 
 Oscillator shifting(const ToolSpec& s) {
-  return {s.mass_kg, s.coupling_damping_n_s_m, s.coupling_stiffness_n_m};
+  return {s.mass_kg, s.coupling.damping_n_s_m, s.coupling.stiffness_n_m};
 }
 Oscillator rotational(const ToolSpec& s, int axis) {
-  return {s.inertia_kg_m2[axis], s.coupling_rotational_damping_n_m_s_rad,
-          s.coupling_rotational_stiffness_n_m_rad};
+  return {s.inertia_kg_m2[axis], s.coupling.rotational_damping_n_m_s_rad,
+          s.coupling.rotational_stiffness_n_m_rad};
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ TEST(HandleStep, first_order_error_control_follows_the_damped_oscillator_to_two_
 // by the same estimate 500 w = 1e8 steps a second, 1e5 a tick.
 TEST(HandleStep, first_order_error_control_ends_in_words_where_a_tick_asks_for_too_many_steps) {
   ToolSpec spec = spec_for("simbody-semi-explicit-euler2");
-  spec.coupling_rotational_stiffness_n_m_rad = 2e6;
+  spec.coupling.rotational_stiffness_n_m_rad = 2e6;
   Tool tool(spec, Vec3::Zero());
   const Pose there{quaternion_of(kTurn * Vec3::UnitY()), Vec3::Zero()};
   const auto result = tool.advance(1e-3, held(there), {});
@@ -135,8 +135,8 @@ TEST(HandleStep, fixed_ticks_are_of_first_order) {
 TEST(HandleStep, held_below_a_wall) {
   for (const auto& info : tool_integrators()) {
     ToolSpec spec = spec_for(info.name);
-    spec.coupling_damping_n_s_m = 20.0;  // e^{-b t/2m} = 1e-11 at the end
-    const double k = spec.coupling_stiffness_n_m, K = 1700.0, depth = 0.004;
+    spec.coupling.damping_n_s_m = 20.0;  // e^{-b t/2m} = 1e-11 at the end
+    const double k = spec.coupling.stiffness_n_m, K = 1700.0, depth = 0.004;
     Tool tool(spec, Vec3::Zero());
     const Pose below{Quat::Identity(), Vec3(0, 0, -depth)};
     for (int i = 0; i < 250; ++i) ASSERT_TRUE(tool.advance(1e-3, held(below), wall(K)).ok());
@@ -182,7 +182,7 @@ TEST(HandleStep, WhatChangesAfterRestIsSeen) {
   constexpr double kForce = 0.3;
   for (const std::string name : {"simbody-rkmerson", "simbody-cpodes"}) {
     const ToolSpec spec = spec_for(name);
-    const double there = kForce / spec.coupling_stiffness_n_m;
+    const double there = kForce / spec.coupling.stiffness_n_m;
     Tool tool(spec, Vec3::Zero());
     dynamics::LinearisedContact record;
     const auto rest = [&](const Vec3& handle) {

@@ -54,9 +54,9 @@ TEST(Monolithic, cvode_follows_the_damped_oscillator) {
     m.system.add(make_gyroscopic(m.id, spec.inertia_kg_m2, !symmetric));
     m.system.add(make_coupling_term(m.id, spec, still(handle), symmetric));
     m.start("cvode-bdf", 1e-9);
-    const Oscillator rotational{spec.inertia_kg_m2.y(), spec.coupling_rotational_damping_n_m_s_rad,
-                                spec.coupling_rotational_stiffness_n_m_rad};
-    const Oscillator shifting{spec.mass_kg, spec.coupling_damping_n_s_m, spec.coupling_stiffness_n_m};
+    const Oscillator rotational{spec.inertia_kg_m2.y(), spec.coupling.rotational_damping_n_m_s_rad,
+                                spec.coupling.rotational_stiffness_n_m_rad};
+    const Oscillator shifting{spec.mass_kg, spec.coupling.damping_n_s_m, spec.coupling.stiffness_n_m};
     for (int i = 1; i <= 10; ++i) {
       const auto result = m.stepper->advance_to(0.01 * i);
       ASSERT_TRUE(result.ok()) << result.message;

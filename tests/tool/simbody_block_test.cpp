@@ -145,7 +145,7 @@ TEST(SimbodyBlock, scales_are_the_couplings_own) {
   const dynamics::BlockSpec block = tool_block(spec);
   EXPECT_DOUBLE_EQ(block.q_scale, 0.02);
   EXPECT_NEAR(block.u_scale, 0.02 * std::sqrt(300.0 / 0.1), 1e-12);
-  spec.coupling_stiffness_n_m = 0.0;
+  spec.coupling.stiffness_n_m = 0.0;
   EXPECT_DOUBLE_EQ(tool_block(spec).u_scale, 0.02) << "nothing pulls: one radius a second";
 }
 

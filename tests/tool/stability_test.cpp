@@ -15,8 +15,8 @@ constexpr double kTick = 1e-3;
 /// Does a small distance from a resting handle stay small?
 bool stays_bounded(const std::string& scheme, double k, double b) {
   ToolSpec spec = spec_for(scheme);
-  spec.coupling_stiffness_n_m = k;
-  spec.coupling_damping_n_s_m = b;
+  spec.coupling.stiffness_n_m = k;
+  spec.coupling.damping_n_s_m = b;
   Tool tool(spec, Vec3::Zero());
   tool.set_state(0.0, {Quat::Identity(), Vec3(1e-6, 0, 0)}, {});
   for (int i = 0; i < 3000; ++i) {
@@ -58,10 +58,10 @@ TEST(ToolStability, linearly_implicit_euler_settles_from_anywhere) {
   for (int run = 0; run < 40; ++run) {
     ToolSpec spec = spec_for("linearly-implicit-euler");
     const double h = std::pow(10.0, -3 + uniform(rng));
-    spec.coupling_stiffness_n_m = wh_squared() * spec.mass_kg / (h * h);
-    spec.coupling_rotational_stiffness_n_m_rad = wh_squared() * spec.inertia_kg_m2.maxCoeff() / (h * h);
-    spec.coupling_damping_n_s_m = run % 2 ? 0.0 : 1.0;
-    spec.coupling_rotational_damping_n_m_s_rad = run % 2 ? 0.0 : 1e-4;
+    spec.coupling.stiffness_n_m = wh_squared() * spec.mass_kg / (h * h);
+    spec.coupling.rotational_stiffness_n_m_rad = wh_squared() * spec.inertia_kg_m2.maxCoeff() / (h * h);
+    spec.coupling.damping_n_s_m = run % 2 ? 0.0 : 1.0;
+    spec.coupling.rotational_damping_n_m_s_rad = run % 2 ? 0.0 : 1e-4;
     Tool tool(spec, Vec3::Zero());
     tool.set_state(0.0, {quaternion_of(3.0 * std::abs(uniform(rng)) * vec().normalized()), vec()},
                    {100.0 * vec(), 10.0 * vec()});
@@ -80,7 +80,7 @@ TEST_P(FreeSpin, never_gains_energy) {
   for (double spin : {1.0, 100.0, 1000.0, 1e4}) {
     ToolSpec spec = spec_for(GetParam());
     spec.inertia_kg_m2 = Vec3(1e-5, 4e-5, 4.9e-5);
-    spec.coupling_rotational_stiffness_n_m_rad = spec.coupling_rotational_damping_n_m_s_rad = 0.0;
+    spec.coupling.rotational_stiffness_n_m_rad = spec.coupling.rotational_damping_n_m_s_rad = 0.0;
     Tool tool(spec, Vec3::Zero());
     tool.set_state(0.0, {},
                    {spin * Vec3(uniform(rng), uniform(rng), uniform(rng)).normalized(), Vec3::Zero()});

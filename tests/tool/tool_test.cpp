@@ -148,11 +148,12 @@ TEST(Tool, bad_settings_are_refused) {
       has(message_with([](ToolSpec& s) { s.inertia_kg_m2 = Vec3(1, 0, 1); }), "three positive entries"));
   EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.inertia_kg_m2.setZero(), s.radius_m = 0; }),
                   "radius_m = 0 must be positive"));
-  EXPECT_TRUE(
-      has(message_with([](ToolSpec& s) { s.coupling_stiffness_n_m = -1; }), "coupling_stiffness_n_m = -1"));
-  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.coupling_rotational_damping_n_m_s_rad = kNaN; }),
-                  "coupling_rotational_damping_n_m_s_rad = nan"));
-  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.tick_s = 0; }), "tick_s = 0 must be positive"));
+  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.coupling.stiffness_n_m = -1; }),
+                  "tool.coupling: stiffness_n_m = -1 must not be negative"));
+  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.coupling.rotational_damping_n_m_s_rad = kNaN; }),
+                  "tool.coupling: rotational_damping_n_m_s_rad = nan"));
+  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.tick_s = 0; }), "tick_s = 0 must lie in (0, 0.1)"));
+  EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.tick_s = 0.1; }), "tick_s = 0.1 must lie in (0, 0.1)"));
   EXPECT_TRUE(has(message_with([](ToolSpec& s) { s.position_m.x() = kNaN; }), "position_m"));
   Tool tool(spec_for("linearly-implicit-euler"), Vec3::Zero());
   EXPECT_THROW(tool.advance(0.0, held({}), {}), InternalError);

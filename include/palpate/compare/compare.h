@@ -112,7 +112,7 @@ struct CompareOptions {
 /// each run in a process of its own; repeats are interleaved over all points, so that a noisy machine hurts
 /// all alike.  The processes come from core's ProcessPool: a program that has started threads or drawn a
 /// picture by now must have called ProcessPool::prepare() before.
-/// @param scenes  from scene::load or scene::parse: their text is what results are kept under
+/// @param scenes  from loop::load or loop::parse: their text is what results are kept under
 /// @throws Error for ladders that make no sense
 Comparison run(const std::vector<scene::Description>& scenes, const CompareOptions& options);
 

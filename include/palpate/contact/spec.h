@@ -2,20 +2,16 @@
 #include <string>
 #include <vector>
 
-#include "palpate/core/types.h"
+#include "palpate/core/keys.h"
 
 namespace palpate {
 
 /// A rigid shape fixed in the world, with exact gaps.  The `[[obstacle]]` tables of a scene.
 struct ObstacleSpec {
   std::string name;
-  std::string type;                         ///< "plane", "sphere", "box", "cylinder"
-  Vec3 position_m = Vec3::Zero();           ///< a point of the plane; the centre of the others
-  Vec3 normal = Vec3::UnitZ();              ///< plane: outward
-  Vec3 rotation_vector_rad = Vec3::Zero();  ///< box, cylinder: from the axes of the world to its own
-  Vec3 size_m = Vec3::Ones();               ///< box: its three edges
-  double radius_m = 1.0;                    ///< sphere, cylinder
-  double length_m = 1.0;                    ///< cylinder: along its own z, between flat ends
+  std::string type;  ///< of contact::obstacle_registry(), which says what its shape is made of
+  /// all other keys: `shape["radius_m"] = 0.1`; what is not given has the default of the registry
+  Settings shape = {};
 };
 
 /// One pair that may touch.  The `[[contact]]` tables of a scene.
@@ -37,6 +33,21 @@ struct ContactSpec {
   /// samples with a smaller positive gap are kept too; 0: chosen from the mesh
   double candidate_gap_m = 0.0;
   int pixels = 256;  ///< gpu: the image's edge
+};
+
+/// What they may be: checked by the loader of scenes and by the pressure law.
+struct ContactRanges {
+  static constexpr Range stiffness_pa_m =
+      Range::positive("10 x Young's modulus / the size of the dent is a start");
+  static constexpr Range damping_pa_s_m = Range::at_least(0.0);
+  static constexpr Range hunt_crossley_s_m = Range::at_least(0.0);
+  static constexpr Range onset_width_m =
+      Range::at_least(0.0, "0 lets the pressure set in at once; a tenth of the depth is a smooth onset");
+  static constexpr Range friction = Range::at_least(0.0);
+  static constexpr Range friction_regularisation_m_s =
+      Range::positive("below this sliding speed friction is viscous");
+  static constexpr Range candidate_gap_m = Range::at_least(0.0, "0 lets the mesh choose");
+  static constexpr Range pixels = Range::closed(16, 4096);
 };
 
 }  // namespace palpate

@@ -1,20 +1,31 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "palpate/core/error.h"
+#include "palpate/core/keys.h"
 
 namespace palpate {
 
-/// One line of a registry: a name in a scene becomes a part.
-/// `order` is the theoretical order where there is one, else 0.
+/// One line of a registry: a name in a scene becomes a part.  `order` is the theoretical order where there is
+/// one, else 0.  `keys` are those of the scene's table that this entry uses and that not every entry of the
+/// registry does.
 template <class Make>
 struct RegistryEntry {
+  RegistryEntry(std::string its_name, std::string its_summary, int its_order, Make its_make,
+                std::vector<PartKey> its_keys = {})
+      : name(std::move(its_name)),
+        summary(std::move(its_summary)),
+        order(its_order),
+        make(std::move(its_make)),
+        keys(std::move(its_keys)) {}
   std::string name;
   std::string summary;
-  int order = 0;
+  int order;
   Make make;
+  std::vector<PartKey> keys;
 };
 
 template <class Make>

@@ -38,7 +38,7 @@ std::unique_ptr<Handle> make_handle(const DeviceSpec& spec);
 HandleSample sample_keyframes(const std::vector<KeyframeSpec>& keyframes, double t);
 
 /// Checks a path: at least one keyframe, all finite, times strictly ascending, known interpolations, and
-/// turns of at most half a turn from one keyframe to the next (beyond that the way round is ambiguous).
+/// rotations of at most half a turn from one keyframe to the next (beyond that the way round is ambiguous).
 /// @throws Error beginning with `where`, e.g. "device"
 void check_keyframes(const std::vector<KeyframeSpec>& keyframes, const std::string& where);
 

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/core/keys.h"
 #include "palpate/core/types.h"
 
 namespace palpate {
@@ -21,6 +22,13 @@ struct DeviceSpec {
   double max_force_n = 3.3;  ///< of a common desktop device
   double max_torque_n_m = 0.2;
   double ramp_s = 0.0;  ///< force ramps in from zero over this time at the start
+};
+
+/// What they may be: checked by the loader of scenes and by the limiter.
+struct DeviceRanges {
+  static constexpr Range max_force_n = Range::positive("a desktop device gives 3.3");
+  static constexpr Range max_torque_n_m = Range::positive("a desktop device gives 0.2");
+  static constexpr Range ramp_s = Range::at_least(0.0, "0 is no ramp");
 };
 
 }  // namespace palpate

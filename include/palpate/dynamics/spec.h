@@ -1,11 +1,13 @@
 #pragma once
 #include <string>
 
+#include "palpate/core/keys.h"
+
 namespace palpate {
 
 /// Integrator by name and its settings.  Plain data, the `[integrator]` table of a scene.
-/// What a method has no use for it ignores (a step_s under error control); what it cannot do it refuses (a
-/// fixed step by CVODE).
+/// A scene that sets what its method has no use for is refused (the registries say which keys an entry uses);
+/// here, where every field has a value, a method ignores the others.
 struct IntegratorSpec {
   std::string name = "cvode-bdf";
   double rtol = 1e-3;       ///< adaptive methods: relative tolerance
@@ -33,6 +35,22 @@ struct IntegratorSpec {
   /// of the whole run, the caller's included: elements, and linear solvers that can share their work; results
   /// do not depend on it
   int threads = 1;
+};
+
+/// What the settings may be: checked by the loader of scenes, and by the methods that use them.
+struct IntegratorRanges {
+  static constexpr Range rtol{.low = 0.0, .high = 0.1, .low_open = true, .remedy = "1e-3 is usual"};
+  static constexpr Range atol_q = Range::positive("0.01 is usual");
+  static constexpr Range atol_u = Range::positive("0.1 is usual");
+  static constexpr Range step_s = Range::positive("1e-3 is usual");
+  static constexpr Range max_order = Range::closed(0, 12, "0 leaves the order to the method");
+  static constexpr Range max_steps = Range::at_least(1, "it bounds the internal steps between two outputs");
+  static constexpr Range factor_kept_steps = Range::at_least(1, "1 is full Newton");
+  static constexpr Range newton_rtol = Range::closed(1e-14, 0.1, "1e-8 is usual");
+  static constexpr Range spectral_radius =
+      Range::closed(0.0, 1.0, "0 damps what the step cannot resolve at once, 1 not at all");
+  static constexpr Range linear_rtol = Range::closed(1e-15, 0.1, "1e-8 is usual");
+  static constexpr Range threads = Range::closed(1, 64, "results do not depend on it");
 };
 
 }  // namespace palpate

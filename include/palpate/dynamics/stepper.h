@@ -192,7 +192,8 @@ struct StepperEntry {
   std::string name;
   std::string summary;
   StepperTraits traits;
-  MakeStepper make;  ///< of an explicit method the linear solver is null
+  MakeStepper make;                ///< of an explicit method the linear solver is null
+  std::vector<PartKey> keys = {};  ///< of [integrator] that the method uses
 };
 using StepperRegistry = std::vector<StepperEntry>;
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/core/keys.h"
 #include "palpate/core/types.h"
 #include "palpate/device/spec.h"
 #include "palpate/mesh/spec.h"
@@ -139,6 +140,15 @@ struct SoftBodySpec {
   std::vector<LoadSpec> loads;
   /// times ascend, or stay for another region; each acts from the step that begins then
   std::vector<MaterialChangeSpec> changes;
+};
+
+/// What a material's numbers may be, a body's and a region's: checked by the loader of scenes and by fem.
+struct MaterialRanges {
+  static constexpr Range youngs_modulus_pa = Range::positive("soft tissue has 1e3 to 1e5");
+  static constexpr Range poissons_ratio = Range::open(-1.0, 0.5, "use 0.49 for nearly incompressible tissue");
+  static constexpr Range density_kg_m3 = Range::positive("water and soft tissue have about 1000");
+  static constexpr Range mass_damping_per_s = Range::at_least(0.0, "0 is none");
+  static constexpr Range stiffness_damping_s = Range::at_least(0.0, "1e-3 damps lightly, 1e-2 strongly");
 };
 
 }  // namespace palpate

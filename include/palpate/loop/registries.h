@@ -13,7 +13,8 @@ struct Choice {
 };
 
 /// Every registry of every part that was compiled in, under the name that `palpate list` knows it by:
-/// "integrators", "linear-solvers", "materials", "tool-integrators", "devices", "parts".
+/// "integrators", "linear-solvers", "materials", "tool-integrators", "obstacles", "contact-methods",
+/// "generators", "devices", "parts".
 struct ChoiceList {
   std::string what, summary;
   std::vector<Choice> choices;

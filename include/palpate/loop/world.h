@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "palpate/contact/contact_force.h"
+#include "palpate/contact/obstacle.h"
 #include "palpate/dynamics/stepper.h"
 #include "palpate/dynamics/system.h"
 #include "palpate/fem/attachments.h"
@@ -142,5 +143,7 @@ std::unique_ptr<World> assemble(const scene::Description& description);
 
 /// The surface of the scene's tool in its own axes, for pictures and records: its mesh, or a sphere.
 TriMesh tool_surface(const ToolSpec& spec, const std::string& folder);
+/// An obstacle, for pictures.
+contact::ObstaclePicture obstacle_picture(const ObstacleSpec& spec, const contact::View& view);
 
 }  // namespace palpate::loop

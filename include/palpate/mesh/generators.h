@@ -46,5 +46,7 @@ using MakeTets = TetMesh (*)(const MeshSpec&);
 using MakeSurface = TriMesh (*)(const MeshSpec&);
 const Registry<MakeTets>& tet_generators();
 const Registry<MakeSurface>& surface_generators();
+/// Keys of a mesh that comes from a file.
+std::vector<PartKey> file_keys();
 
 }  // namespace palpate::mesh

@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 
+#include "palpate/core/keys.h"
 #include "palpate/core/types.h"
 
 namespace palpate {
@@ -15,6 +16,14 @@ struct MeshSpec {
   double element_size_m = 0.25;       ///< wanted edge length
   double grading = 1.0;               ///< element size in the middle / at the surface; 1 is uniform
   double scale = 1.0;                 ///< applied to a file's coordinates
+};
+
+/// What they may be: checked by the loader of scenes, by the readers and by the generators.
+struct MeshRanges {
+  static constexpr Range length = Range::open(0.0, 1e6, "lengths are in metres");
+  static constexpr Range grading = Range::closed(
+      0.5, 32.0, "1 is uniform, 2 makes elements in the middle twice as large as at the surface");
+  static constexpr Range scale = Range::positive("0.001 turns a file in millimetres into metres");
 };
 
 }  // namespace palpate

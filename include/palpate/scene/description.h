@@ -37,8 +37,9 @@ struct CompareSpec {
   double duration_s = 0.0;  ///< 0: the scene's
 };
 
-/// How tool and bodies are coupled.
-struct CouplingSpec {
+/// How tool and bodies are simulated together: the `[exchange]` table.  The spring between hand and tool is
+/// another thing, ToolSpec's virtual coupling.
+struct CosimulationSpec {
   /// or "monolithic": tool and bodies in one state of one integrator, nothing exchanged
   std::string scheme = "partitioned";
   std::string linearisation = "condensed";  ///< or "frozen"
@@ -60,10 +61,13 @@ struct Description {
   std::vector<ContactSpec> contacts;
   std::optional<ToolSpec> tool;
   std::optional<DeviceSpec> device;
-  CouplingSpec coupling;
+  CosimulationSpec coupling;
   IntegratorSpec integrator;
   std::optional<RecordSpec> record;
   CompareSpec compare;
+  /// keys of the file's own integrator (obstacle, method, ...) that the one which an override named has no
+  /// use for: "integrator.rtol"; they are not in `source`
+  std::vector<std::string> not_carried_over;
 };
 
 }  // namespace palpate::scene

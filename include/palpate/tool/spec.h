@@ -6,6 +6,15 @@
 
 namespace palpate {
 
+/// The virtual coupling between handle and tool, a spring and a damper in six directions: the
+/// `[tool.coupling]` table of a scene.
+struct VirtualCouplingSpec {
+  double stiffness_n_m = 300.0;
+  double damping_n_s_m = 2.0;
+  double rotational_stiffness_n_m_rad = 0.3;
+  double rotational_damping_n_m_s_rad = 1e-3;
+};
+
 /// The `[tool]` table of a scene: a rigid body pulled after the handle by a 6-DoF spring-damper.
 struct ToolSpec {
   std::string shape = "sphere";  ///< "sphere" (analytic), or "mesh" (any closed surface)
@@ -16,13 +25,17 @@ struct ToolSpec {
   Vec3 position_m = Vec3::Zero();
   Vec3 rotation_vector_rad = Vec3::Zero();
   bool gravity = false;  ///< off: a device holds its own weight
-  double coupling_stiffness_n_m = 300.0;
-  double coupling_damping_n_s_m = 2.0;
-  double coupling_rotational_stiffness_n_m_rad = 0.3;
-  double coupling_rotational_damping_n_m_s_rad = 1e-3;
+  VirtualCouplingSpec coupling = {};
   double tick_s = 1e-3;
   /// of the tool's own ticks: see `palpate list tool-integrators`
   std::string integrator = "linearly-implicit-euler";
+};
+
+/// What they may be: checked by the loader of scenes and by the tool.
+struct ToolRanges {
+  static constexpr Range radius_m = Range::positive();
+  static constexpr Range coupling = Range::at_least(0.0);  ///< each of its four numbers
+  static constexpr Range tick_s = Range::open(0.0, 0.1, "a haptic device asks for 0.001");
 };
 
 }  // namespace palpate

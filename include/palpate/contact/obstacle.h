@@ -1,0 +1,57 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "palpate/contact/contact_force.h"
+#include "palpate/contact/spec.h"
+#include "palpate/core/registry.h"
+#include "palpate/mesh/mesh.h"
+
+/// Rigid shapes with exact gaps, fixed in the world.  Each is one file in src/contact/obstacles: its gap, its
+/// keys, its picture.  Another one is its file there, its line in obstacle_registry() and in CMakeLists.txt;
+/// tests/contact/obstacle_conformance_test.cpp runs over all of them.
+namespace palpate::contact {
+
+/// The point of a shape's surface nearest to a point x.
+struct Nearest {
+  double gap;   ///< signed distance from the surface, negative inside [m]
+  Vec3 normal;  ///< outward, unit: the gradient of the gap; world axes
+  /// radius of curvature there of a sphere or a cylinder, whose centre lies that far within [m]; 0 of faces
+  /// and edges, which rotate with the shape
+  double radius = 0.0;
+};
+
+/// What a picture is of: its middle and its size.
+struct View {
+  Vec3 centre = Vec3::Zero();
+  double extent = 1.0;  ///< [m]
+};
+
+struct ObstaclePicture {
+  TriMesh surface;  ///< in the world
+  /// of a horizontal surface without an end that looks up: its height, for a picture that can draw a ground
+  std::optional<double> ground_m = {};
+};
+
+using MakeObstacleSource = std::unique_ptr<SampleSource> (*)(NodeSurface surface, int frame,
+                                                             std::shared_ptr<MovingFrame> motion,
+                                                             const Settings& shape, double candidate_gap,
+                                                             double look_ahead);
+/// One obstacle.  `shape` is complete: every key of the entry has a value (complete() of core/keys.h).
+struct ObstacleEntry {
+  std::string name, summary;
+  std::vector<PartKey> keys;
+  MakeObstacleSource make_source;
+  Nearest (*nearest)(const Settings& shape, const Vec3& x);
+  ObstaclePicture (*picture)(const Settings& shape, const View& view);
+};
+const std::vector<ObstacleEntry>& obstacle_registry();
+
+/// The entry that the spec names.  @throws Error for an unknown type
+const ObstacleEntry& obstacle_entry(const ObstacleSpec& spec);
+/// Its shape with defaults.  @throws Error for unknown, missing and bad keys
+Settings obstacle_shape(const ObstacleSpec& spec);
+
+}  // namespace palpate::contact

@@ -1,0 +1,124 @@
+#pragma once
+#include <algorithm>
+
+#include "contact/surface_state.h"
+#include "palpate/contact/obstacle.h"
+#include "palpate/contact/sources.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+#include "palpate/core/log.h"
+
+namespace palpate::contact {
+
+/// Vertices of a surface against an exact shape.  A Shape has
+///   kName                    for messages and counters
+///   move_to(pose of its frame), before each query
+///   Nearest at(x)            x and the answer in world axes
+///   is_crossed(a, b)         whether the way from a to b, in the frame, passes through it from outside to
+///   outside
+template <class Shape>
+class AnalyticSource final : public SampleSource {
+ public:
+  AnalyticSource(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, Shape shape,
+                 double candidate_gap, double look_ahead)
+      : surface_(std::move(surface)),
+        frame_(frame),
+        motion_(std::move(motion)),
+        shape_(shape),
+        candidate_gap_(candidate_gap),
+        look_ahead_(look_ahead) {
+    PALPATE_CHECK(motion_, "a {} source needs a frame", Shape::kName);
+    PALPATE_CHECK(candidate_gap >= 0.0, "candidate gap {} must not be negative", candidate_gap);
+    PALPATE_CHECK(look_ahead >= 0.0, "look-ahead {} must not be negative", look_ahead);
+    counters::count(std::string("contact.") + Shape::kName + "_source");
+  }
+
+  std::string_view name() const override { return Shape::kName; }
+  long tunnelled() const override { return tunnelled_; }
+  void add_pattern(dynamics::PatternBuilder& pattern) const override { surface_.add_vertex_pattern(pattern); }
+  std::uint64_t pattern_version() const override { return surface_.vertex_pattern_version(); }
+
+  void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
+    surface_.update(state);
+    if (candidate_gap_ == 0.0) candidate_gap_ = surface_.mean_edge();
+    const Pose pose = motion_->pose(state), inverse = pose.inverse();
+    shape_.move_to(pose);
+    find_tunnelled(inverse, state.time);
+    if (!find_candidates(state, pose)) return;
+    surface_.area_vectors(wanted_, areas_);
+    for (int v = 0; v < surface_.vertex_count(); ++v) {
+      if (!wanted_[static_cast<std::size_t>(v)]) continue;
+      const Vec3 x = surface_.positions().col(v);
+      const Nearest nearest = shape_.at(x);
+      const double area = -nearest.normal.dot(areas_.col(v));
+      if (area <= 0.0) continue;  // faces away: pressure there would pull
+      ContactSample sample;
+      sample.a = surface_.vertex_point(v);
+      sample.b = frame_point(frame_, inverse, x - (nearest.gap + nearest.radius) * nearest.normal);
+      sample.b.slide = nearest.radius * nearest.normal;
+      sample.normal = nearest.normal;
+      sample.area = area;
+      sample.gap = nearest.gap;
+      samples.push_back(sample);
+    }
+  }
+
+ private:
+  /// Near, or near at the next query: gap + look_ahead gap' < candidate_gap, with the frame's own motion in
+  /// gap'.
+  bool find_candidates(const dynamics::StateView& state, const Pose& pose) {
+    bool any = false;
+    const Twist twist = motion_->twist(state);
+    wanted_.assign(static_cast<std::size_t>(surface_.vertex_count()), 0);
+    for (int v = 0; v < surface_.vertex_count(); ++v) {
+      const Vec3 x = surface_.positions().col(v);
+      const Nearest nearest = shape_.at(x);
+      const double rate = nearest.normal.dot(surface_.velocity(v, state) -
+                                             twist.at(x - nearest.gap * nearest.normal - pose.translation));
+      if (nearest.gap + look_ahead_ * std::min(rate, 0.0) < candidate_gap_) {
+        wanted_[static_cast<std::size_t>(v)] = 1;
+        any = true;
+      }
+    }
+    return any;
+  }
+
+  /// A vertex's way since the last query, seen from the frame, as a straight line: outside at both ends, but
+  /// through the shape in between. Nothing pushed it back; it is on the wrong side, or inside a body that is.
+  void find_tunnelled(const Pose& inverse, double t) {
+    const Points& world = surface_.positions();
+    seen_.resize(3, world.cols());
+    for (Eigen::Index v = 0; v < world.cols(); ++v) {
+      const Vec3 now = inverse * Vec3(world.col(v));
+      if (seen_before_ && shape_.is_crossed(seen_.col(v), now)) ++tunnelled_;
+      seen_.col(v) = now;
+    }
+    seen_before_ = true;
+    if (tunnelled_ == 0 || warned_) return;
+    warned_ = true;
+    log::warn(
+        "contact at t = {:.6g} s: {} vertices went through the {} between two queries, unseen; refresh "
+        "contact more often (contact_refresh_s), make the contact stiffer, or the {} thicker",
+        t, tunnelled_, Shape::kName, Shape::kName);
+  }
+
+  SurfaceState surface_;
+  int frame_;
+  std::shared_ptr<MovingFrame> motion_;
+  Shape shape_;
+  double candidate_gap_, look_ahead_;
+  std::vector<char> wanted_;
+  Points areas_;
+  Points seen_;  ///< vertices at the last query, in the frame
+  bool seen_before_ = false, warned_ = false;
+  long tunnelled_ = 0;
+};
+
+/// What an obstacle's registry entry needs of its Shape: a gap to look at without a source.
+template <class Shape>
+Nearest nearest_to(Shape shape, const Vec3& x) {
+  shape.move_to(Pose{});
+  return shape.at(x);
+}
+
+}  // namespace palpate::contact

@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <cmath>
+
+#include "contact/analytic_source.h"
+#include "contact/obstacles/keys.h"
+#include "contact/segment_part.h"
+#include "palpate/mesh/generators.h"
+
+namespace palpate::contact {
+namespace {
+
+/// |x_i| <= h_i in its own axes.  Outside, e_i = max(|x_i| - h_i, 0) is the way from the nearest point, signs
+/// left out.
+class Box {
+ public:
+  static constexpr const char* kName = "box";
+  Box(const Pose& pose_in_frame, const Vec3& size)
+      : in_frame_(pose_in_frame), inverse_(pose_in_frame.inverse()), half_(0.5 * size) {}
+  void move_to(const Pose& pose) { world_ = pose * in_frame_; }
+  Nearest at(const Vec3& world) const {
+    const Vec3 x = world_.inverse() * world, beyond = x.cwiseAbs() - half_, out = beyond.cwiseMax(0.0);
+    const double distance = out.norm();
+    Vec3 normal;
+    if (distance > 0.0) {
+      normal = out / distance;
+    } else {
+      Eigen::Index face;
+      beyond.maxCoeff(&face);
+      normal = Vec3::Unit(face);
+    }
+    for (int i = 0; i < 3; ++i)
+      if (x[i] < 0.0) normal[i] = -normal[i];
+    return {distance > 0.0 ? distance : beyond.maxCoeff(), world_.rotation * normal};
+  }
+  bool is_crossed(const Vec3& a_frame, const Vec3& b_frame) const {
+    const Vec3 a = inverse_ * a_frame, b = inverse_ * b_frame;
+    if (!outside(a) || !outside(b)) return false;
+    Part part;
+    for (int i = 0; i < 3; ++i) part.cut(a[i], b[i] - a[i], -half_[i], half_[i]);
+    return part.s0 < part.s1;
+  }
+
+ private:
+  bool outside(const Vec3& x) const { return ((x.cwiseAbs() - half_).array() > 0.0).any(); }
+  Pose in_frame_, inverse_;
+  Vec3 half_;
+  Pose world_;
+};
+
+Vec3 size_of(const Settings& shape) { return std::get<Vec3>(shape.at("size_m")); }
+
+ObstaclePicture picture(const Settings& shape, const View&) {
+  return {placed(mesh::box_surface(size_of(shape), {1, 1, 1}), shape), {}};
+}
+
+}  // namespace
+
+std::unique_ptr<SampleSource> make_box_source(NodeSurface surface, int frame,
+                                              std::shared_ptr<MovingFrame> motion, const Pose& pose_in_frame,
+                                              const Vec3& size, double candidate_gap, double look_ahead) {
+  if (!(size.minCoeff() > 0.0) || !size.allFinite())
+    fail("box: size = ({}, {}, {}) must be positive", size.x(), size.y(), size.z());
+  return std::make_unique<AnalyticSource<Box>>(std::move(surface), frame, std::move(motion),
+                                               Box(pose_in_frame, size), candidate_gap, look_ahead);
+}
+
+const ObstacleEntry& box_obstacle() {
+  static const ObstacleEntry entry = {
+      "box",
+      "box with the edges size_m, centred at position_m",
+      {position_key("the centre"),
+       rotation_key(),
+       {.name = "size_m",
+        .range = MeshRanges::length,
+        .required = true,
+        .fallback = Vec3(Vec3::Ones()),
+        .meaning = "the three edges"}},
+      [](NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape,
+         double gap, double look_ahead) {
+        return make_box_source(std::move(surface), frame, std::move(motion), pose_of(shape), size_of(shape),
+                               gap, look_ahead);
+      },
+      [](const Settings& shape, const Vec3& x) { return nearest_to(Box(pose_of(shape), size_of(shape)), x); },
+      picture,
+  };
+  return entry;
+}
+
+}  // namespace palpate::contact

@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <cmath>
+
+#include "contact/analytic_source.h"
+#include "contact/obstacles/keys.h"
+#include "contact/segment_part.h"
+#include "palpate/mesh/generators.h"
+
+namespace palpate::contact {
+namespace {
+
+/// x^2 + y^2 <= r^2, |z| <= h in its own axes: in the plane of (radius, |z|) a box of two directions.
+class Cylinder {
+ public:
+  static constexpr const char* kName = "cylinder";
+  Cylinder(const Pose& pose_in_frame, double radius, double length)
+      : in_frame_(pose_in_frame), inverse_(pose_in_frame.inverse()), radius_(radius), half_(0.5 * length) {}
+  void move_to(const Pose& pose) { world_ = pose * in_frame_; }
+  // On the axis every radial direction is as near; one is taken.
+  Nearest at(const Vec3& world) const {
+    const Vec3 x = world_.inverse() * world;
+    const double r = std::hypot(x.x(), x.y()), side = r - radius_, end = std::abs(x.z()) - half_;
+    const Vec3 radial = r > 0.0 ? Vec3(x.x() / r, x.y() / r, 0.0) : Vec3(Vec3::UnitX()),
+               axial = std::copysign(1.0, x.z()) * Vec3::UnitZ();
+    const double out_side = std::max(side, 0.0), out_end = std::max(end, 0.0),
+                 distance = std::hypot(out_side, out_end);
+    if (out_end == 0.0 && (side > 0.0 || side > end)) return {side, world_.rotation * radial, radius_};
+    if (distance > 0.0)
+      return {distance, world_.rotation * Vec3((out_side * radial + out_end * axial) / distance)};
+    return {end, world_.rotation * axial};
+  }
+  // |a + s d|^2 = r^2 in x and y: A s^2 + 2 B s + C = 0.
+  bool is_crossed(const Vec3& a_frame, const Vec3& b_frame) const {
+    const Vec3 a = inverse_ * a_frame, b = inverse_ * b_frame, d = b - a;
+    if (!outside(a) || !outside(b)) return false;
+    Part part;
+    part.cut(a.z(), d.z(), -half_, half_);
+    const double A = d.head<2>().squaredNorm(), B = a.head<2>().dot(d.head<2>()),
+                 C = a.head<2>().squaredNorm() - radius_ * radius_;
+    if (A == 0.0) return C < 0.0 && part.s0 < part.s1;
+    const double root2 = B * B - A * C;
+    if (root2 <= 0.0) return false;
+    const double root = std::sqrt(root2);
+    part.s0 = std::max(part.s0, (-B - root) / A);
+    part.s1 = std::min(part.s1, (-B + root) / A);
+    return part.s0 < part.s1;
+  }
+
+ private:
+  bool outside(const Vec3& x) const {
+    return std::abs(x.z()) > half_ || x.head<2>().squaredNorm() > radius_ * radius_;
+  }
+  Pose in_frame_, inverse_;
+  double radius_, half_;
+  Pose world_;
+};
+
+double length_of(const Settings& shape) { return std::get<double>(shape.at("length_m")); }
+
+ObstaclePicture picture(const Settings& shape, const View&) {
+  const double radius = radius_of(shape), length = length_of(shape);
+  // as many triangles around, however long or short it is
+  TriMesh surface = mesh::cylinder_surface(radius, radius, radius / 8.0);
+  surface.vertices.row(2) *= length / radius;
+  return {placed(std::move(surface), shape), {}};
+}
+
+}  // namespace
+
+std::unique_ptr<SampleSource> make_cylinder_source(NodeSurface surface, int frame,
+                                                   std::shared_ptr<MovingFrame> motion,
+                                                   const Pose& pose_in_frame, double radius, double length,
+                                                   double candidate_gap, double look_ahead) {
+  if (!(radius > 0.0) || !std::isfinite(radius)) fail("cylinder: radius = {} must be positive", radius);
+  if (!(length > 0.0) || !std::isfinite(length)) fail("cylinder: length = {} must be positive", length);
+  return std::make_unique<AnalyticSource<Cylinder>>(std::move(surface), frame, std::move(motion),
+                                                    Cylinder(pose_in_frame, radius, length), candidate_gap,
+                                                    look_ahead);
+}
+
+const ObstacleEntry& cylinder_obstacle() {
+  static const ObstacleEntry entry = {
+      "cylinder",
+      "cylinder along its own z between flat ends, centred at position_m",
+      {position_key("the centre"), rotation_key(), length_key("radius_m", "radius of the round side"),
+       length_key("length_m", "from one end to the other")},
+      [](NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape,
+         double gap, double look_ahead) {
+        return make_cylinder_source(std::move(surface), frame, std::move(motion), pose_of(shape),
+                                    radius_of(shape), length_of(shape), gap, look_ahead);
+      },
+      [](const Settings& shape, const Vec3& x) {
+        return nearest_to(Cylinder(pose_of(shape), radius_of(shape), length_of(shape)), x);
+      },
+      picture,
+  };
+  return entry;
+}
+
+}  // namespace palpate::contact

@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <cmath>
+
+#include "contact/analytic_source.h"
+#include "contact/obstacles/keys.h"
+
+namespace palpate::contact {
+namespace {
+
+class Plane {
+ public:
+  static constexpr const char* kName = "plane";
+  Plane(const Vec3& point, const Vec3& normal) : point_(point), normal_(normal.normalized()) {}
+  void move_to(const Pose& pose) {
+    world_normal_ = pose.rotation * normal_;
+    world_point_ = pose * point_;
+  }
+  Nearest at(const Vec3& x) const { return {world_normal_.dot(x - world_point_), world_normal_}; }
+  bool is_crossed(const Vec3&, const Vec3&) const { return false; }  // whatever is through is inside
+
+ private:
+  Vec3 point_, normal_;
+  Vec3 world_point_ = Vec3::Zero(), world_normal_ = Vec3::UnitZ();
+};
+
+Vec3 normal_of(const Settings& shape) { return std::get<Vec3>(shape.at("normal")); }
+
+std::string fault_of_normal(const Setting& value) {
+  return std::get<Vec3>(value).norm() < 1e-12 ? "has no direction; [0, 0, 1] is up" : "";
+}
+
+/// A square that is centred at the point of the plane nearest to what is looked at.
+ObstaclePicture picture(const Settings& shape, const View& view) {
+  const Vec3 normal = normal_of(shape).normalized();
+  ObstaclePicture out;
+  if (normal.z() > 0.999) out.ground_m = position_of(shape).z();
+  const Vec3 middle = view.centre - normal * normal.dot(view.centre - position_of(shape)),
+             along = normal.unitOrthogonal(), across = normal.cross(along);
+  out.surface.vertices.resize(3, 4);
+  for (int i = 0; i < 4; ++i)
+    out.surface.vertices.col(i) =
+        middle +
+        0.5 * view.extent * ((i == 0 || i == 3 ? -1.0 : 1.0) * along + (i < 2 ? -1.0 : 1.0) * across);
+  out.surface.faces.resize(3, 2);
+  out.surface.faces << 0, 0, 1, 2, 2, 3;
+  return out;
+}
+
+}  // namespace
+
+std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame,
+                                                std::shared_ptr<MovingFrame> motion, const Vec3& point,
+                                                const Vec3& normal, double candidate_gap, double look_ahead) {
+  if (!(normal.norm() > 0.0) || !normal.allFinite())
+    fail("plane: normal = ({}, {}, {}) has no direction", normal.x(), normal.y(), normal.z());
+  return std::make_unique<AnalyticSource<Plane>>(std::move(surface), frame, std::move(motion),
+                                                 Plane(point, normal), candidate_gap, look_ahead);
+}
+
+const ObstacleEntry& plane_obstacle() {
+  static const ObstacleEntry entry = {
+      "plane",
+      "everything below a plane through position_m",
+      {position_key("a point of the plane"),
+       {.name = "normal",
+        .fallback = Vec3(Vec3::UnitZ()),
+        .meaning = "direction out of the plane; of any length",
+        .fault = fault_of_normal}},
+      [](NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape,
+         double gap, double look_ahead) {
+        return make_plane_source(std::move(surface), frame, std::move(motion), position_of(shape),
+                                 normal_of(shape), gap, look_ahead);
+      },
+      [](const Settings& shape, const Vec3& x) {
+        return nearest_to(Plane(position_of(shape), normal_of(shape)), x);
+      },
+      picture,
+  };
+  return entry;
+}
+
+}  // namespace palpate::contact

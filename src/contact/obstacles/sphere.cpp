@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <cmath>
+
+#include "contact/analytic_source.h"
+#include "contact/obstacles/keys.h"
+#include "palpate/mesh/generators.h"
+
+namespace palpate::contact {
+namespace {
+
+class Sphere {
+ public:
+  static constexpr const char* kName = "sphere";
+  Sphere(const Vec3& centre, double radius) : centre_(centre), radius_(radius) {}
+  void move_to(const Pose& pose) { world_centre_ = pose * centre_; }
+  // At the centre itself every direction is as near; one is taken.
+  Nearest at(const Vec3& x) const {
+    const Vec3 from_centre = x - world_centre_;
+    const double distance = from_centre.norm();
+    return {distance - radius_, distance > 0.0 ? Vec3(from_centre / distance) : Vec3(Vec3::UnitZ()), radius_};
+  }
+  // The point of the segment nearest to the centre.
+  bool is_crossed(const Vec3& a, const Vec3& b) const {
+    const Vec3 d = b - a, from_a = centre_ - a;
+    const double length2 = d.squaredNorm(),
+                 s = length2 > 0.0 ? std::clamp(from_a.dot(d) / length2, 0.0, 1.0) : 0.0;
+    const double r2 = radius_ * radius_;
+    return from_a.squaredNorm() > r2 && (centre_ - b).squaredNorm() > r2 &&
+           (from_a - s * d).squaredNorm() < r2;
+  }
+
+ private:
+  Vec3 centre_;
+  double radius_;
+  Vec3 world_centre_ = Vec3::Zero();
+};
+
+ObstaclePicture picture(const Settings& shape, const View&) {
+  TriMesh ball = mesh::sphere(radius_of(shape), 24);
+  ball.vertices.colwise() += position_of(shape);
+  return {std::move(ball), {}};
+}
+
+}  // namespace
+
+std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame,
+                                                 std::shared_ptr<MovingFrame> motion, const Vec3& centre,
+                                                 double radius, double candidate_gap, double look_ahead) {
+  if (!(radius > 0.0) || !std::isfinite(radius)) fail("sphere: radius = {} must be positive", radius);
+  return std::make_unique<AnalyticSource<Sphere>>(std::move(surface), frame, std::move(motion),
+                                                  Sphere(centre, radius), candidate_gap, look_ahead);
+}
+
+const ObstacleEntry& sphere_obstacle() {
+  static const ObstacleEntry entry = {
+      "sphere",
+      "ball of radius_m around position_m",
+      {position_key("the centre"), length_key("radius_m", "radius of the ball")},
+      [](NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape,
+         double gap, double look_ahead) {
+        return make_sphere_source(std::move(surface), frame, std::move(motion), position_of(shape),
+                                  radius_of(shape), gap, look_ahead);
+      },
+      [](const Settings& shape, const Vec3& x) {
+        return nearest_to(Sphere(position_of(shape), radius_of(shape)), x);
+      },
+      picture,
+  };
+  return entry;
+}
+
+}  // namespace palpate::contact

@@ -1,0 +1,102 @@
+#include "palpate/contact/methods.h"
+#include "palpate/contact/obstacle.h"
+#include "palpate/device/handle.h"
+#include "palpate/fem/laws.h"
+#include "palpate/integrate/integrators.h"
+#include "palpate/linear/solvers.h"
+#include "palpate/loop/load.h"
+#include "palpate/loop/registries.h"
+#include "palpate/mesh/generators.h"
+#include "palpate/tool/tool.h"
+
+namespace palpate::loop {
+namespace {
+
+using scene::Description;
+using scene::Kind;
+using scene::KindTable;
+
+template <class Registry>
+std::vector<Kind> kinds_of(const Registry& registry) {
+  std::vector<Kind> out;
+  for (const auto& entry : registry) out.push_back({entry.name, entry.keys});
+  return out;
+}
+
+KindTable mesh_kinds(const char* table, std::vector<Kind> generators) {
+  generators.push_back({"file", mesh::file_keys()});
+  return {.table = table, .selector = "generator", .kinds = std::move(generators), .alternative = "file"};
+}
+
+scene::Kinds make_kinds() {
+  scene::Kinds out;
+  out.push_back({.table = "integrator",
+                 .selector = "name",
+                 .what = "integrator",
+                 .kinds = kinds_of(integrate::stepper_registry()),
+                 .unsaid = [](const Description& d) { return d.integrator.name; }});
+  out.push_back({.table = "integrator",
+                 .selector = "linear_solver",
+                 .what = "linear solver",
+                 .kinds = kinds_of(linear::linear_solver_registry()),
+                 .unsaid = [](const Description& d) { return integrate::linear_solver_of(d.integrator); }});
+  out.push_back({.table = "body",
+                 .selector = "material",
+                 .kinds = kinds_of(fem::law_registry()),
+                 .unsaid = [](const Description&) { return SoftBodySpec{}.material; }});
+  out.push_back(mesh_kinds("body.mesh", kinds_of(mesh::tet_generators())));
+  out.push_back(mesh_kinds("tool.mesh", kinds_of(mesh::surface_generators())));
+  out.push_back({.table = "obstacle",
+                 .selector = "type",
+                 .kinds = kinds_of(contact::obstacle_registry()),
+                 .open = true});
+  KindTable methods{.table = "contact",
+                    .selector = "method",
+                    .kinds = kinds_of(contact::method_registry()),
+                    .unsaid = [](const Description&) { return ContactSpec{}.method; },
+                    .lists = {"compare.contact_methods"}};
+  for (const contact::AbsentMethod& one : contact::absent_methods())
+    methods.absent.push_back({one.name, one.answer});
+  out.push_back(std::move(methods));
+  out.push_back({.table = "contact",
+                 .selector = "law",
+                 .kinds = kinds_of(contact::law_registry()),
+                 .unsaid = [](const Description&) { return ContactSpec{}.law; }});
+  out.push_back({.table = "exchange",
+                 .selector = "scheme",
+                 .kinds = {{"partitioned", part_keys({"linearisation"})}, {"monolithic"}},
+                 .unsaid = [](const Description&) { return scene::CosimulationSpec{}.scheme; }});
+  KindTable tool_integrators{.table = "tool",
+                             .selector = "integrator",
+                             .what = "tool integrator",
+                             .kinds = {},
+                             .unsaid = [](const Description&) { return ToolSpec{}.integrator; }};
+  for (const tool::ToolIntegratorInfo& info : tool::tool_integrators())
+    tool_integrators.kinds.push_back({info.name});
+  // without Simbody there are none: assemble says which package brings the tool
+  if (!tool_integrators.kinds.empty()) out.push_back(std::move(tool_integrators));
+  out.push_back({.table = "device",
+                 .selector = "type",
+                 .what = "device type",
+                 .kinds = kinds_of(device::handle_registry()),
+                 .unsaid = [](const Description&) { return DeviceSpec{}.type; }});
+  return out;
+}
+
+}  // namespace
+
+const scene::Kinds& kinds() {
+  static const scene::Kinds kinds = make_kinds();
+  return kinds;
+}
+
+scene::Description load(const std::string& path, const std::vector<std::string>& overrides) {
+  return scene::load(path, overrides, kinds());
+}
+
+scene::Description parse(const std::string& text, const std::string& path,
+                         const std::vector<std::string>& overrides) {
+  return scene::parse(text, path, overrides, kinds());
+}
+
+}  // namespace palpate::loop

@@ -1,0 +1,273 @@
+// Keys that a method, an obstacle, a generator or a device does not use are refused, by the registries.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "palpate/core/error.h"
+#include "palpate/loop/load.h"
+#include "palpate/loop/registries.h"
+#include "scene/scene_texts.h"
+
+using palpate::loop::parse;
+using palpate::scene::Description;
+
+namespace {
+
+using Overrides = std::vector<std::string>;
+
+const std::string kBlock = R"([scene]
+name = "block"
+duration_s = 0.1
+[[body]]
+name = "block"
+youngs_modulus_pa = 1e4
+mesh = { generator = "box", size_m = [0.1, 0.1, 0.1], element_size_m = 0.1 }
+)";
+
+std::string with_integrator(const std::string& keys) { return kBlock + "[integrator]\n" + keys; }
+
+std::string refusal(const std::string& text, const Overrides& overrides = {}) {
+  try {
+    parse(text, "s.toml", overrides);
+  } catch (const palpate::Error& e) { return e.what(); }
+  return "accepted";
+}
+
+TEST(Kinds, AKeyThatTheIntegratorDoesNotUseIsRefusedAtItsLocation) {
+  EXPECT_EQ(refusal(with_integrator("name = \"rk4\"\nstep_s = 1e-4\nspectral_radius = 0.5\n")),
+            "s.toml:11:19: integrator: spectral_radius means nothing to integrator \"rk4\", which takes "
+            "step_s, max_steps, threads; remove it (used by generalized-alpha)");
+  EXPECT_EQ(refusal(kBlock, {"integrator.name=rk4", "integrator.spectral_radius=0.5"}),
+            "--set integrator.spectral_radius=0.5: integrator: spectral_radius means nothing to integrator "
+            "\"rk4\", which takes step_s, max_steps, threads; remove it (used by generalized-alpha)");
+  EXPECT_EQ(refusal(kBlock, {"integrator.spectral_radius=0.5", "integrator.name=generalized-alpha"}),
+            "accepted");
+  const std::pair<const char*, const char*> unused[] = {
+      {"name = \"cvode-bdf\"\nstep_s = 1e-3", "step_s means nothing to integrator \"cvode-bdf\""},
+      {"step_s = 1e-3", "step_s means nothing to integrator \"cvode-bdf\""},
+      {"name = \"rk4\"\nrtol = 1e-3", "rtol means nothing to integrator \"rk4\""},
+      {"name = \"rk4\"\nlinear_solver = \"cholmod\"", "linear_solver means nothing to integrator \"rk4\""},
+      {"name = \"rk4\"\nlinear_rtol = 1e-6", "linear_rtol means nothing to a method without a linear solver"},
+      {"name = \"cvode-bdf\"\nlinear_rtol = 1e-6", "linear_rtol means nothing to linear solver \"cholmod\""},
+      {"name = \"linearly-implicit-euler\"\nnewton_rtol = 1e-6", "newton_rtol means nothing to"},
+      {"name = \"linearly-implicit-euler\"\nfixed_step = true", "fixed_step means nothing to"},
+      {"name = \"ark-dirk-esdirk547\"\nexplicit_side = \"contact\"", "explicit_side means nothing to"},
+      {"name = \"ark-dirk-esdirk547\"\nmax_order = 3", "max_order means nothing to"},
+  };
+  for (const auto& [keys, expected] : unused) {
+    const std::string message = refusal(with_integrator(keys));
+    EXPECT_NE(message.find(expected), std::string::npos) << keys << "\n" << message;
+    EXPECT_TRUE(message.starts_with("s.toml:")) << message;
+  }
+  for (const char* used :
+       {"name = \"linearly-implicit-euler\"\nlinear_rtol = 1e-6", "name = \"rk4\"\nthreads = 2",
+        "name = \"cvode-bdf\"\nlinear_solver = \"pcg\"\nlinear_rtol = 1e-6",
+        "name = \"backward-euler\"\nfactor_kept_steps = 3\nnewton_rtol = 1e-9"})
+    EXPECT_EQ(refusal(with_integrator(used)), "accepted") << used;
+}
+
+// The registry's list is what counts, for each method: a key of [integrator] is either in it or refused.
+TEST(Kinds, EveryIntegratorRefusesEveryKeyThatItDoesNotList) {
+  const auto rows = palpate::scene::key_rows(palpate::loop::kinds());
+  int refused = 0, taken = 0;
+  for (const auto& entry : palpate::loop::steppers())
+    for (const auto& row : rows) {
+      if (row.table != "integrator" || row.name == "name" || row.name == "linear_rtol") continue;
+      const std::string value = row.is_value ? row.fallback : "\"cholmod\"",
+                        message = refusal(with_integrator("name = \"" + entry.name + "\"\n" + row.name +
+                                                          " = " + value + "\n"));
+      const bool listed = std::any_of(entry.keys.begin(), entry.keys.end(),
+                                      [&](const auto& key) { return key.name == row.name; });
+      if (listed)
+        EXPECT_EQ(message, "accepted") << entry.name << ", " << row.name;
+      else
+        EXPECT_NE(message.find(row.name + " means nothing to integrator \"" + entry.name + "\", which takes"),
+                  std::string::npos)
+            << entry.name << ", " << row.name << ": " << message;
+      ++(listed ? taken : refused);
+    }
+  EXPECT_GT(refused, 100);
+  EXPECT_GT(taken, 100);
+}
+
+TEST(Kinds, RangesAreThoseOfTheMethod) {
+  EXPECT_EQ(refusal(with_integrator("name = \"linearly-implicit-euler\"\nlinear_rtol = 0.5\n")),
+            "s.toml:10:15: integrator: linear_rtol = 0.5 must lie in [1e-15, 0.1]; 1e-8 is usual");
+  EXPECT_EQ(refusal(with_integrator("max_order = 6\n")),
+            "s.toml:9:13: integrator: max_order = 6 must lie in [0, 5]; 0 leaves the order to the method");
+  EXPECT_EQ(refusal(with_integrator("name = \"cvode-adams\"\nmax_order = 6\n")), "accepted");
+  EXPECT_NE(refusal(with_integrator("rtol = 0.5\n")).find("rtol = 0.5 must lie in (0, 0.1]; 1e-3 is usual"),
+            std::string::npos);
+}
+
+TEST(Kinds, UnknownNamesAreRefusedAtTheirLocation) {
+  EXPECT_EQ(refusal(with_integrator("name = \"rk5\"\n")),
+            "s.toml:9:8: integrator: name = \"rk5\" is not known (did you mean \"rk4\"?)");
+  EXPECT_NE(
+      refusal(with_integrator("linear_solver = \"pgc\"\n")).find("linear_solver = \"pgc\" is not known"),
+      std::string::npos);
+  EXPECT_NE(refusal(kBlock, {"body.0.material=steel"}).find("material = \"steel\" is not known"),
+            std::string::npos);
+  EXPECT_NE(refusal(scene_texts::kWhole, {"device.type=scirpt"}).find("did you mean \"script\"?"),
+            std::string::npos);
+}
+
+// What the file says for its own method stays behind when another one is named in its place.
+TEST(Kinds, AnotherMethodTakesOnlyTheKeysThatItUses) {
+  const std::string own = with_integrator(
+      "name = \"generalized-alpha\"\nstep_s = 2e-3\nspectral_radius = 0.5\nlinear_solver = \"pcg\"\n"
+      "linear_rtol = 1e-6\n");
+  EXPECT_TRUE(parse(own, "s.toml").not_carried_over.empty());
+  const Description rk4 = parse(own, "s.toml", {"integrator.name=\"rk4\""});
+  EXPECT_EQ(rk4.not_carried_over,
+            (std::vector<std::string>{"integrator.linear_solver", "integrator.spectral_radius",
+                                      "integrator.linear_rtol"}));
+  EXPECT_EQ(rk4.integrator.step_s, 2e-3) << "used by both";
+  EXPECT_EQ(rk4.integrator.spectral_radius, palpate::IntegratorSpec{}.spectral_radius);
+  EXPECT_EQ(rk4.source.find("spectral_radius"), std::string::npos);
+  EXPECT_EQ(refusal(rk4.source), "accepted") << "the source that is kept is a scene";
+  EXPECT_EQ(parse(own, "s.toml", {"integrator.linear_solver=cholmod"}).not_carried_over,
+            std::vector<std::string>{"integrator.linear_rtol"});
+  EXPECT_NE(
+      refusal(own, {"integrator.name=rk4", "integrator.max_order=2"}).find("max_order means nothing to"),
+      std::string::npos)
+      << "what is said for the new one counts";
+  EXPECT_NE(
+      refusal(own + "max_order = 2\n", {"integrator.name=generalized-alpha"}).find("max_order means nothing"),
+      std::string::npos)
+      << "the same method";
+}
+
+TEST(Kinds, EveryIntegratorTakesEverySceneThatComesWithPalpate) {
+  int loaded = 0;
+  for (const std::string& path : scene_texts::in_folder(scene_texts::kScenes))
+    for (const auto& entry : palpate::loop::steppers()) {
+      const Description d = palpate::loop::load(path, {"integrator.name=\"" + entry.name + "\""});
+      EXPECT_EQ(d.integrator.name, entry.name);
+      EXPECT_EQ(refusal(d.source), "accepted") << path << ", " << entry.name;
+      ++loaded;
+    }
+  EXPECT_GT(loaded, 100);
+}
+
+TEST(Kinds, Obstacles) {
+  const auto with = [](const std::string& keys) {
+    return refusal(kBlock + "[[obstacle]]\nname = \"thing\"\n" + keys);
+  };
+  EXPECT_EQ(
+      with("type = \"sphere\"\nradius_m = 0.1\nsize_m = [1, 1, 1]\n"),
+      "s.toml:12:10: obstacle \"thing\": size_m means nothing to type = \"sphere\", which takes position_m, "
+      "radius_m; remove it (used by box)");
+  EXPECT_EQ(with("type = \"sphere\"\n"),
+            "s.toml:8:1: obstacle \"thing\": radius_m is missing: type = \"sphere\" needs it");
+  EXPECT_EQ(with("type = \"sphere\"\nradius = 0.1\n"),
+            "s.toml:11:1: obstacle \"thing\": unknown key \"radius\" (did you mean \"radius_m\"?)");
+  EXPECT_EQ(
+      with("type = \"sphere\"\nradius_m = -0.1\n"),
+      "s.toml:11:12: obstacle \"thing\": radius_m = -0.1 must lie in (0, 1000000); lengths are in metres");
+  EXPECT_EQ(with("type = \"sphere\"\nradius_m = [1, 2, 3]\n"),
+            "s.toml:11:12: obstacle \"thing\": radius_m = [1, 2, 3] must be a number");
+  EXPECT_EQ(with("type = \"box\"\nsize_m = [[1], 2, 3]\n"),
+            "s.toml:11:10: obstacle \"thing\": size_m = [[...], 2, 3] must be three numbers, [x, y, z]");
+  EXPECT_EQ(with("type = \"plane\"\nnormal = [0, 0, 0]\n"),
+            "s.toml:11:10: obstacle \"thing\": normal = [0, 0, 0] has no direction; [0, 0, 1] is up");
+  EXPECT_EQ(with("type = \"spere\"\n"),
+            "s.toml:10:8: obstacle \"thing\": type = \"spere\" is not known (did you mean \"sphere\"?)");
+  EXPECT_EQ(with(""), "s.toml:8:1: obstacle \"thing\": type is missing and has no default");
+  EXPECT_EQ(with("type = \"cylinder\"\nradius_m = 0.1\nlength_m = 1\nrotation_vector_rad = [0, 1, 0]\n"),
+            "accepted");
+}
+
+TEST(Kinds, ContactMethods) {
+  const auto with = [](const Overrides& overrides) { return refusal(scene_texts::kWhole, overrides); };
+  EXPECT_EQ(
+      with({"contact.1.pixels=128"}),
+      "--set contact.1.pixels=128: contact between \"ball\" and \"tool\": pixels means nothing to method = "
+      "\"analytic\"; remove it (used by gpu)");
+  EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=gpu"}), "accepted");
+  for (const std::string planned : {"vertex", "cpu", "exact"}) {
+    const std::string message = with({"contact.1.method=" + planned}),
+                      expected = "--set contact.1.method=" + planned +
+                                 ": contact between \"ball\" and \"tool\": method = \"" + planned +
+                                 "\" is not there yet; take method = \"";
+    EXPECT_TRUE(message.starts_with(expected)) << message;
+    EXPECT_TRUE(message.ends_with("(known: analytic, gpu)")) << message;
+  }
+  EXPECT_NE(with({"contact.1.method=pixel"}).find("is not known; take method = \"gpu\""), std::string::npos);
+  EXPECT_NE(
+      with({"contact.1.method=spheres"}).find("method = \"spheres\" is not known (known: analytic, gpu)"),
+      std::string::npos);
+  EXPECT_NE(with({"compare.contact_methods=[\"analytic\", \"vertex\"]"})
+                .find("compare: contact_methods = \"vertex\" is not there yet; take method = \"analytic\""),
+            std::string::npos);
+}
+
+TEST(Kinds, ToolDeviceAndExchange) {
+  const auto with = [](const Overrides& overrides) { return refusal(scene_texts::kWhole, overrides); };
+  EXPECT_EQ(with({"exchange.linearisation=frozen"}), "accepted");
+  EXPECT_EQ(with({"exchange.scheme=monolithic", "exchange.linearisation=frozen"}),
+            "--set exchange.linearisation=frozen: exchange: linearisation means nothing to scheme = "
+            "\"monolithic\"; remove it (used by partitioned)");
+  if (!palpate::loop::tool_steppers().empty()) {
+    EXPECT_NE(with({"tool.integrator=linearly-implicit-eular"})
+                  .find("tool: integrator = \"linearly-implicit-eular\" is not known (did you mean "
+                        "\"linearly-implicit-euler\"?)"),
+              std::string::npos)
+        << with({"tool.integrator=linearly-implicit-eular"});
+  }
+  EXPECT_EQ(refusal(kBlock + "[tool]\n[device]\nmax_force_n = 1.0\n"),
+            "s.toml:9:1: device: keyframe is missing: device type \"script\" needs it");
+  EXPECT_NE(
+      with({"device.max_force_n=-1"}).find("max_force_n = -1 must be positive; a desktop device gives 3.3"),
+      std::string::npos);
+}
+
+TEST(Kinds, Meshes) {
+  const auto with = [](const Overrides& overrides) { return refusal(scene_texts::kWhole, overrides); };
+  EXPECT_NE(
+      with({"body.0.mesh.length_m=1.0"})
+          .find("mesh: length_m means nothing to generator = \"ball\", which takes radius_m, element_size_m, "
+                "grading; remove it (used by cylinder)"),
+      std::string::npos);
+  EXPECT_NE(with({"body.0.mesh.generator=bal"}).find("did you mean \"ball\"?"), std::string::npos);
+  EXPECT_NE(with({"body.0.mesh.generator=file"})
+                .find("generator = \"file\" is not known (known: box, ball, cylinder, tet)"),
+            std::string::npos)
+      << "a file is named by its own key";
+  const Overrides tool = {"tool.shape=mesh", "tool.inertia_kg_m2=[1,1,1]", "contact.1.method=gpu"};
+  const auto tool_with = [&](const std::string& mesh) {
+    Overrides all = tool;
+    all.push_back("tool.mesh={" + mesh + "}");
+    return with(all);
+  };
+  EXPECT_EQ(tool_with("generator = \"ball\", radius_m = 0.01, element_size_m = 0.005"), "accepted");
+  EXPECT_NE(
+      tool_with("generator = \"ball\", radius_m = 0.01, element_size_m = 0.005, grading = 2.0")
+          .find("grading means nothing to generator = \"ball\", which takes radius_m, element_size_m; remove "
+                "it (used by box, cylinder)"),
+      std::string::npos)
+      << "a sphere of triangles has no inside to grade";
+  EXPECT_NE(tool_with("generator = \"tet\", size_m = [1, 1, 1]").find("generator = \"tet\" is not known"),
+            std::string::npos);
+  EXPECT_NE(
+      tool_with("file = \"a.obj\", radius_m = 1.0").find("radius_m means nothing to a mesh from a file"),
+      std::string::npos);
+}
+
+/// A registry that lists a key which no table has would refuse nothing, and describe nothing.
+TEST(Kinds, ListOnlyKeysThatThereAre) {
+  const auto rows = palpate::scene::key_rows(palpate::loop::kinds());
+  int keys = 0;
+  for (const auto& table : palpate::loop::kinds())
+    for (const auto& kind : table.kinds)
+      for (const auto& key : kind.keys) {
+        ++keys;
+        EXPECT_TRUE(
+            std::any_of(rows.begin(), rows.end(),
+                        [&](const auto& row) { return row.table == table.table && row.name == key.name; }))
+            << table.table << ", " << kind.name << ": " << key.name;
+      }
+  EXPECT_GT(keys, 100);
+}
+
+}  // namespace
