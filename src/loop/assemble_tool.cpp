@@ -11,14 +11,15 @@ namespace {
 
 /// The handle as a function of time, which one integrator of tool and bodies needs: it looks ahead of the
 /// tick, and back.
-tool::HandlePath path_of(const DeviceSpec& spec) {
-  if (spec.type != "script")
+tool::HandlePath path_of(const device::Handle& handle, const DeviceSpec& spec) {
+  auto path = handle.path();
+  if (!path)
     fail(
-        "exchange: scheme = \"monolithic\" needs a handle whose path is known beforehand, type = \"script\"; "
-        "that of type = \"{}\" is not",
+        "exchange: scheme = \"monolithic\" needs a handle whose path is known beforehand; that of [device] "
+        "type = \"{}\" is not; take scheme = \"partitioned\"",
         spec.type);
-  return [keyframes = spec.keyframes](double t) {
-    const device::HandleSample s = device::sample_keyframes(keyframes, t);
+  return [path = std::move(path)](double t) {
+    const device::HandleSample s = path(t);
     return tool::HandleState{s.pose, s.twist};
   };
 }
@@ -35,7 +36,7 @@ void assemble_block(World& world) {
   const tool::SimbodyTerms terms = tool::make_simbody_terms(block_id, spec, d.gravity_m_s2);
   world.system.add(terms.inertia);
   world.system.add(terms.force);
-  world.system.add(tool::make_coupling_term(block_id, spec, path_of(*d.device)));
+  world.system.add(tool::make_coupling_term(block_id, spec, path_of(*ToolSide::of(world).handle, *d.device)));
 }
 
 }  // namespace

@@ -144,6 +144,7 @@ TEST(Keyframes, bad_paths_are_refused) {
 TEST(Handles, every_listed_handle_samples) {
   DeviceSpec spec;
   spec.keyframes = random_path("minimum_jerk");
+  int paths = 0;
   for (const auto& entry : handle_registry()) {
     spec.type = entry.name;
     const auto handle = make_handle(spec);
@@ -153,6 +154,15 @@ TEST(Handles, every_listed_handle_samples) {
       EXPECT_NEAR(s.pose.rotation.norm(), 1.0, 1e-14) << entry.name;
       handle->feedback(t, {});
     }
+    const auto path = handle->path();
+    if (!path) continue;
+    for (const double t : {-0.5, 0.0, 0.3, 0.9, 2.0}) {  // at any time, in any order
+      const HandleSample s = make_handle(spec)->sample(t), p = path(t);
+      EXPECT_EQ(p.pose.translation, s.pose.translation) << entry.name;
+      EXPECT_EQ(p.twist.angular, s.twist.angular) << entry.name;
+    }
+    ++paths;
   }
   EXPECT_GE(handle_registry().size(), 1u);
+  EXPECT_GE(paths, 1) << "a script's path is known beforehand";
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,8 +25,13 @@ class Handle {
   virtual ~Handle() = default;
   virtual HandleSample sample(double t) = 0;
   virtual void feedback(double /*t*/, const Wrench& /*on_hand*/) {}
+  /// Its motion as a function of time, valid at any time, where that is known beforehand; empty where a hand
+  /// decides as it goes.  One integrator of tool and bodies needs it.
+  virtual std::function<HandleSample(double t)> path() const { return {}; }
 };
 
+/// A device is one file in src/device and one entry here, with the keys of `[device]` that it alone uses;
+/// what limits its force serves every device.
 using MakeHandle = std::unique_ptr<Handle> (*)(const DeviceSpec&);
 const Registry<MakeHandle>& handle_registry();
 std::unique_ptr<Handle> make_handle(const DeviceSpec& spec);
