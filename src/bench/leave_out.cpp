@@ -93,7 +93,7 @@ scene::Description with_tool_out_of_reach(scene::Description d) {
   d.tool->tick_s = period / 10;
   d.device.emplace();
   d.device->keyframes.push_back({0.0, Vec3(0, 0, 100), Vec3::Zero(), "step"});
-  d.coupling.exchange_period_s = d.coupling.contact_refresh_s = period;
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = period;
   return d;
 }
 
@@ -118,7 +118,7 @@ scene::Description with_plane_out_of_reach(scene::Description d) {
   contact.first = d.bodies.front().name;
   contact.second = plane.name;
   d.contacts.push_back(contact);
-  d.coupling.contact_refresh_s = period;
+  d.exchange.contact_refresh_s = period;
   return d;
 }
 
@@ -134,7 +134,7 @@ struct Variant {
 
 std::vector<Variant> variants_of(const scene::Description& d) {
   scene::Description quiet = d;
-  quiet.coupling.contact_refresh_s = quiet.coupling.exchange_period_s = loop::period_of(d);
+  quiet.exchange.contact_refresh_s = quiet.exchange.exchange_period_s = loop::period_of(d);
   scene::Description recorded = quiet;
   if (!recorded.record) recorded.record.emplace();
   std::vector<Variant> out;

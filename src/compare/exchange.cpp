@@ -28,9 +28,9 @@ double common_refresh(const std::vector<double>& periods) {
 
 scene::Description with_scheme(scene::Description d, const std::string& scheme, double period,
                                double refresh) {
-  d.coupling.scheme = scheme;
-  d.coupling.exchange_period_s = period;
-  d.coupling.contact_refresh_s = refresh;
+  d.exchange.scheme = scheme;
+  d.exchange.exchange_period_s = period;
+  d.exchange.contact_refresh_s = refresh;
   d.tool->tick_s = period / kTicks;
   d.integrator.name = "cvode-bdf";
   d.integrator.rtol = kRtol;

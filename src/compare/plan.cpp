@@ -61,7 +61,7 @@ scene::LadderSpec tick_ladder(const scene::Description& d, const std::string& in
   scene::LadderSpec ladder;
   ladder.integrator = integrator;
   ladder.setting = "tick_s";
-  for (int n = 5; n <= 160; n *= 2) ladder.values.push_back(d.coupling.exchange_period_s / n);
+  for (int n = 5; n <= 160; n *= 2) ladder.values.push_back(d.exchange.exchange_period_s / n);
   return ladder;
 }
 

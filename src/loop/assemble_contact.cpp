@@ -121,7 +121,7 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
         pair.spec.first, tool.shape);
   return contact::make_sphere_source(std::move(pair.surface), side.frame_index, motion, Vec3::Zero(),
                                      tool.radius_m, pair.candidate_gap,
-                                     world.description.coupling.contact_refresh_s);
+                                     world.description.exchange.contact_refresh_s);
 }
 
 std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
@@ -134,7 +134,7 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
   const int frame = world.contact->add_frame(motion);
   return entry.make_source(std::move(pair.surface), frame, std::move(motion),
                            contact::obstacle_shape(obstacle), pair.candidate_gap,
-                           world.description.coupling.contact_refresh_s);
+                           world.description.exchange.contact_refresh_s);
 }
 
 }  // namespace
@@ -161,7 +161,7 @@ void assemble_contact(World& world) {
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
   ToolSide& side = ToolSide::of(world);
-  if (!side.trajectory || world.description.coupling.linearisation != "condensed") return;
+  if (!side.trajectory || world.description.exchange.linearisation != "condensed") return;
   counters::count("loop.condenser");
   side.condenser = linear::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
 }

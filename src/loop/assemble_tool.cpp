@@ -47,13 +47,13 @@ void assemble_tool(World& world) {
   side.handle = device::make_handle(*d.device);
   side.limiter = std::make_unique<device::WrenchLimiter>(d.device->max_force_n, d.device->max_torque_n_m,
                                                          d.device->ramp_s);
-  if (d.coupling.scheme == "monolithic")
+  if (d.exchange.scheme == "monolithic")
     assemble_block(world);
-  else if (d.coupling.scheme == "partitioned")
+  else if (d.exchange.scheme == "partitioned")
     side.tool = std::make_unique<tool::Tool>(*d.tool, d.tool->gravity ? d.gravity_m_s2 : Vec3(Vec3::Zero()));
   else
-    fail("exchange: unknown scheme \"{}\"{}", d.coupling.scheme,
-         suggestion(d.coupling.scheme, {"partitioned", "monolithic"}));
+    fail("exchange: unknown scheme \"{}\"{}", d.exchange.scheme,
+         suggestion(d.exchange.scheme, {"partitioned", "monolithic"}));
 }
 
 TriMesh tool_surface(const ToolSpec& spec, const std::string& folder) {

@@ -80,7 +80,7 @@ class Loop {
   /// Bodies follow over the same period, with the tool's motion known or, monolithic, beside them: refreshes
   /// of the contact inside it are whole fractions.
   void advance_state(double t0, double t1) {
-    const double refresh = world_.contact ? world_.description.coupling.contact_refresh_s : t1 - t0;
+    const double refresh = world_.contact ? world_.description.exchange.contact_refresh_s : t1 - t0;
     const int parts = whole_number((t1 - t0) / refresh);
     for (int i = 0; i < parts; ++i) {
       if (i > 0) refresh_contact();
@@ -198,8 +198,8 @@ class Loop {
 }  // namespace
 
 double period_of(const scene::Description& d) {
-  if (d.tool && d.coupling.scheme != "monolithic") return d.coupling.exchange_period_s;
-  if (!d.contacts.empty()) return d.coupling.contact_refresh_s;
+  if (d.tool && d.exchange.scheme != "monolithic") return d.exchange.exchange_period_s;
+  if (!d.contacts.empty()) return d.exchange.contact_refresh_s;
   return d.record ? d.record->state_period_s : d.duration_s;
 }
 

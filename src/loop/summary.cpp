@@ -39,12 +39,12 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
   s.values.emplace_back("linear_solver", integrate::linear_solver_of(d.integrator));
   s.values.emplace_back("threads", static_cast<long long>(d.integrator.threads));
   if (!d.tool) return;
-  const bool monolithic = d.coupling.scheme == "monolithic";
-  s.values.emplace_back("exchange_scheme", d.coupling.scheme);
-  s.values.emplace_back("contact_refresh_s", d.coupling.contact_refresh_s);
+  const bool monolithic = d.exchange.scheme == "monolithic";
+  s.values.emplace_back("exchange_scheme", d.exchange.scheme);
+  s.values.emplace_back("contact_refresh_s", d.exchange.contact_refresh_s);
   if (!monolithic) {
-    s.values.emplace_back("exchange_period_s", d.coupling.exchange_period_s);
-    s.values.emplace_back("linearisation", d.coupling.linearisation);
+    s.values.emplace_back("exchange_period_s", d.exchange.exchange_period_s);
+    s.values.emplace_back("linearisation", d.exchange.linearisation);
   }
   s.values.emplace_back("tool_integrator", monolithic ? d.integrator.name : d.tool->integrator);
   s.values.emplace_back("max_force_n", d.device->max_force_n);

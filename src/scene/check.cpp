@@ -97,9 +97,9 @@ void check_changes(const Document& doc, const Description& d) {
   for (std::size_t i = 0; i < d.bodies.size(); ++i) {
     const std::string where = fmt::format("body \"{}\": change", d.bodies[i].name);
     for (std::size_t j = 0; j < d.bodies[i].changes.size(); ++j) {
-      const double time = d.bodies[i].changes[j].time_s, period = d.coupling.scheme == "monolithic"
-                                                                      ? d.coupling.contact_refresh_s
-                                                                      : d.coupling.exchange_period_s;
+      const double time = d.bodies[i].changes[j].time_s, period = d.exchange.scheme == "monolithic"
+                                                                      ? d.exchange.contact_refresh_s
+                                                                      : d.exchange.exchange_period_s;
       const std::string key = at("body", i, at("change", j, "time_s"));
       if (j > 0 && time < d.bodies[i].changes[j - 1].time_s)
         refuse(location(doc, key), where,
@@ -118,7 +118,7 @@ void check_changes(const Document& doc, const Description& d) {
         refuse(location(doc, key), where,
                fmt::format("time_s = {} must be a whole number of {} of {} s: between them the tool feels "
                            "the body as it was",
-                           time, d.coupling.scheme == "monolithic" ? "contact refreshes" : "exchange periods",
+                           time, d.exchange.scheme == "monolithic" ? "contact refreshes" : "exchange periods",
                            period));
     }
   }
@@ -135,7 +135,7 @@ void check_length(const Document& doc, const std::string& key, const std::string
 }
 
 void check_periods(const Document& doc, const Description& d) {
-  const CosimulationSpec& c = d.coupling;
+  const CosimulationSpec& c = d.exchange;
   const bool own = given(doc, "exchange.exchange_period_s");
   const double compared = d.compare.duration_s > 0.0 ? d.compare.duration_s : d.duration_s;
   if (c.scheme != "monolithic") {
@@ -151,7 +151,7 @@ void check_periods(const Document& doc, const Description& d) {
 }
 
 void check_exchange(const Document& doc, Description& d) {
-  CosimulationSpec& c = d.coupling;
+  CosimulationSpec& c = d.exchange;
   if (!given(doc, "exchange.contact_refresh_s")) c.contact_refresh_s = c.exchange_period_s;
   if (d.tool)
     check_periods(doc, d);

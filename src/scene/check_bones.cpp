@@ -80,7 +80,7 @@ void check_target(const Document& doc, const std::string& key, const std::string
   const std::string at = location(doc, key + ".to");
   if (a.to == "tool") {
     if (!d.tool) refuse(at, where, "to = \"tool\", but the scene has no [tool]");
-    if (d.coupling.scheme != "monolithic")
+    if (d.exchange.scheme != "monolithic")
       refuse(at, where,
              "to = \"tool\" needs [exchange] scheme = \"monolithic\": a tool with ticks of its own cannot "
              "carry nodes of a body that steps later");

@@ -267,7 +267,7 @@ const KeyTable<Description>& description_keys() {
       tables("contact", &Description::contacts, contact_keys(), "a pair that may touch"),
       table("tool", &Description::tool, tool_keys(), "a rigid tool that the hand moves"),
       table("device", &Description::device, device_keys(), "the haptic device in the hand"),
-      table("exchange", &Description::coupling, exchange_keys(),
+      table("exchange", &Description::exchange, exchange_keys(),
             "how tool and bodies are simulated together"),
       table("integrator", &Description::integrator, integrator_keys(), "how the bodies step in time"),
       table("record", &Description::record, record_keys(), "what is kept of a run; without it nothing is"),

@@ -106,20 +106,20 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
   const bool tool = d.tool.has_value();
   out.push_back(
       {"tool", tool,
-       tool ? fmt::format("[tool], {} under a virtual coupling, {}", d.tool->shape, d.coupling.scheme)
+       tool ? fmt::format("[tool], {} under a virtual coupling, {}", d.tool->shape, d.exchange.scheme)
             : "no [tool]"});
   out.push_back({"device", d.device.has_value(),
                  d.device ? fmt::format("[device], type \"{}\"", d.device->type) : "no [device]"});
-  const bool monolithic = tool && d.coupling.scheme == "monolithic",
+  const bool monolithic = tool && d.exchange.scheme == "monolithic",
              two_rates = tool && !monolithic && !d.bodies.empty();
   const std::string one_system = "scheme \"monolithic\": tool and bodies are one system of one integrator";
   out.push_back({"exchange", two_rates,
                  two_rates    ? fmt::format("tool ticks every {} s, exchange every {} s", d.tool->tick_s,
-                                            d.coupling.exchange_period_s)
+                                            d.exchange.exchange_period_s)
                  : monolithic ? one_system
                               : "one rate only"});
   const bool touched = count_if(d.contacts, [](const auto& c) { return c.second == "tool"; }) > 0;
-  const bool condensed = two_rates && touched && d.coupling.linearisation == "condensed";
+  const bool condensed = two_rates && touched && d.exchange.linearisation == "condensed";
   out.push_back({"condenser", condensed,
                  condensed
                      ? "linearisation \"condensed\": the bodies' step matrix is factored once an exchange"

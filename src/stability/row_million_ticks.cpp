@@ -51,7 +51,7 @@ constexpr double kGrown = 1e3;                                           // of r
 scene::Description on_a_floor(double slope) {
   scene::Description d = soft_cube();
   d.duration_s = kDuration;
-  d.coupling.contact_refresh_s = kPeriod;
+  d.exchange.contact_refresh_s = kPeriod;
   d.obstacles.push_back(floor_plane());
   ContactSpec contact;
   contact.first = "cube";

@@ -65,7 +65,7 @@ scene::Description resting(bool rotated, bool floor) {
   scene::Description d = soft_cube();
   d.duration_s = 10.0;
   d.bodies[0].youngs_modulus_pa = kSoft;
-  d.coupling.contact_refresh_s = 0.01;
+  d.exchange.contact_refresh_s = 0.01;
   if (rotated) d.bodies[0].rotation_vector_rad = Vec3(0.3, -0.7, 0.4);
   if (!floor) return d;
   d.obstacles.push_back(floor_plane());

@@ -71,7 +71,7 @@ scene::Description under_a_tool(const std::vector<std::pair<double, double>>& he
   contact.second = "tool";
   contact.stiffness_pa_m = 1e7;
   d.contacts.push_back(contact);
-  d.coupling.exchange_period_s = d.coupling.contact_refresh_s = kPeriod;
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = kPeriod;
   d.duration_s = heights.back().first + 0.1;
   return d;
 }
@@ -80,7 +80,7 @@ scene::Description under_a_tool(const std::vector<std::pair<double, double>>& he
 /// 2): places by 1 + y/4 + min(r/4, 1/6) y^2, y = w H of the tool on its coupling, r = 2 z/y = b/(k H).  A
 /// light tool has y = 3e3.
 double overshoot(const Column& column, const scene::Description& d) {
-  if (d.coupling.scheme != "monolithic" || column.entry->traits.family != "Newmark") return 1.0;
+  if (d.exchange.scheme != "monolithic" || column.entry->traits.family != "Newmark") return 1.0;
   const double y = kPeriod * std::sqrt(d.tool->coupling.stiffness_n_m / d.tool->mass_kg),
                r = d.tool->coupling.damping_n_s_m / (d.tool->coupling.stiffness_n_m * kPeriod);
   return 1.0 + 0.25 * y + std::min(0.25 * r, 1.0 / 6.0) * y * y;
@@ -142,7 +142,7 @@ Row density_ratio_row() {
   const scene::Description with_heavy = under_a_tool(press, heavy, heavy * rate * rate, 2.0 * heavy * rate),
                            with_light = under_a_tool(press, light, 300.0, kLightDamping);
   const auto as_one = [](scene::Description d) {
-    d.coupling.scheme = "monolithic";
+    d.exchange.scheme = "monolithic";
     return d;
   };
   return {"density-ratio",

@@ -87,7 +87,7 @@ scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle,
   contact.second = obstacle.name;
   contact.stiffness_pa_m = stiffness_pa_m;
   d.contacts.push_back(contact);
-  d.coupling.contact_refresh_s = kThrowPeriod;
+  d.exchange.contact_refresh_s = kThrowPeriod;
   return d;
 }
 

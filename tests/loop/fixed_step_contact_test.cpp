@@ -34,7 +34,7 @@ scene::Description on_an_incline(const std::string& integrator) {
   contact.friction = 0.5;
   contact.friction_regularisation_m_s = 0.05;
   small_scenes::add_floor(d, contact);
-  d.coupling.contact_refresh_s = 0.01;
+  d.exchange.contact_refresh_s = 0.01;
   d.integrator.name = integrator;
   d.integrator.fixed_step = true;
   d.integrator.step_s = 0.01;

@@ -20,7 +20,7 @@ scene::Description thrown_block(double speed, double height) {
   contact.first = "block";
   contact.stiffness_pa_m = 1e7;
   small_scenes::add_floor(d, contact);
-  d.coupling.contact_refresh_s = 0.01;
+  d.exchange.contact_refresh_s = 0.01;
   d.integrator.name = "cvode-bdf";
   d.integrator.rtol = 1e-4;
   d.duration_s = 0.06;
@@ -88,8 +88,8 @@ TEST(Impact, RootsAreFoundWhileTheListOfCandidatesChanges) {
   const auto landed = [](const std::string& integrator, const std::string& events) {
     scene::Description d = thrown_block(0.5, 0.0125);
     d.bodies[0].angular_velocity_rad_s = Vec3(9.0, 4.0, 0.0);
-    d.coupling.contact_refresh_s = 0.002;
-    d.coupling.exchange_period_s = 0.002;
+    d.exchange.contact_refresh_s = 0.002;
+    d.exchange.exchange_period_s = 0.002;
     d.integrator.name = integrator;
     d.integrator.rtol = 1e-6;
     d.integrator.events = events;

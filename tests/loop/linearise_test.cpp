@@ -23,7 +23,7 @@ constexpr double kDepth = 0.002;
 
 std::unique_ptr<loop::World> touching(const std::string& linearisation) {
   scene::Description d = pressed_block(kDepth);
-  d.coupling.linearisation = linearisation;
+  d.exchange.linearisation = linearisation;
   auto world = loop::assemble(d);
   side_of(*world).trajectory->append(0.0, side_of(*world).tool->pose(), {});
   world->contact->refresh(world->state.view());

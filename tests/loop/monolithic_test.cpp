@@ -18,7 +18,7 @@ namespace {
 /// The handle goes from first touch to `depth` below it and rests there; tool and block are one system.
 scene::Description monolithic_press(double depth) {
   scene::Description d = pressed_block(0.0);
-  d.coupling.scheme = "monolithic";
+  d.exchange.scheme = "monolithic";
   KeyframeSpec end = d.device->keyframes.front();
   end.time_s = 0.03;
   end.position_m.z() -= depth;
@@ -66,7 +66,7 @@ TEST(Monolithic, NothingIsExchangedAndNothingCondensed) {
   EXPECT_EQ(out.result.tool_s, 0.0);
   counters::reset();
   scene::Description partitioned = monolithic_press(0.002);
-  partitioned.coupling.scheme = "partitioned";
+  partitioned.exchange.scheme = "partitioned";
   ASSERT_TRUE(run(partitioned).result.status.ok());
   EXPECT_EQ(counters::counter("loop.exchange_record"), 4) << "the counters count";
   EXPECT_EQ(counters::counter("loop.condenser"), 1);
@@ -89,7 +89,7 @@ TEST(Monolithic, SummaryNamesTheSchemeAndNoExchange) {
 TEST(Monolithic, TicksComeInTheirOrderAndNumberWhateverTheRefresh) {
   for (const double refresh : {0.01, 0.0025, 0.04}) {  // 0.0025: a refresh between two ticks
     scene::Description d = monolithic_press(0.002);
-    d.coupling.contact_refresh_s = refresh;
+    d.exchange.contact_refresh_s = refresh;
     const Outcome out = run(d);
     ASSERT_TRUE(out.result.status.ok()) << out.result.status.message;
     EXPECT_EQ(out.result.ticks, 40);
@@ -123,7 +123,7 @@ TEST(Monolithic, SummaryCountsTheRootsThatStepsWereCutShortAt) {
 TEST(Monolithic, RestsWhereThePartitionedSchemeRests) {
   scene::Description d = monolithic_press(0.003);
   const Outcome whole = run(d, 1.5);
-  d.coupling.scheme = "partitioned";
+  d.exchange.scheme = "partitioned";
   const Outcome parts = run(d, 1.5);
   ASSERT_TRUE(whole.result.status.ok() && parts.result.status.ok());
   const loop::TickRecord &a = whole.log.ticks.back(), &b = parts.log.ticks.back();
@@ -138,8 +138,8 @@ TEST(Monolithic, RestsWhereThePartitionedSchemeRests) {
 // together are kept, and far more than the tolerance passes between tool and block.
 TEST(Monolithic, ToolAndBodiesKeepTheirEnergyTogether) {
   scene::Description d = pressed_block(0.003);
-  d.coupling.scheme = "monolithic";
-  d.coupling.contact_refresh_s = 0.002;
+  d.exchange.scheme = "monolithic";
+  d.exchange.contact_refresh_s = 0.002;
   d.record.emplace();
   d.bodies[0].stiffness_damping_s = 0.0;
   d.tool->coupling.damping_n_s_m = d.tool->coupling.rotational_damping_n_m_s_rad = 0.0;
@@ -168,7 +168,7 @@ TEST(Monolithic, AToolAloneMovesAsInASystemOfItsOwn) {
   d.device->keyframes.back().rotation_vector_rad = Vec3(0.3, 0.5, -0.2);
   d.integrator.rtol = 1e-9;
   const Outcome whole = run(d);
-  d.coupling.scheme = "partitioned";
+  d.exchange.scheme = "partitioned";
   d.tool->integrator = "simbody-rkmerson";
   const Outcome parts = run(d);
   ASSERT_TRUE(whole.result.status.ok()) << whole.result.status.message;

@@ -90,7 +90,7 @@ struct Blocks {
     d.integrator.name = "linearly-implicit-euler";
     d.integrator.step_s = 0.002;
     d.integrator.linear_solver = "umfpack";
-    d.coupling.exchange_period_s = d.coupling.contact_refresh_s = 0.004;
+    d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.004;
     return d;
   }
 };
@@ -130,7 +130,7 @@ struct Fork {
     d.integrator.name = integrator;
     d.integrator.step_s = 1e-3;
     d.integrator.rtol = 1e-5;
-    d.coupling.exchange_period_s = d.coupling.contact_refresh_s = 0.01;
+    d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
     return d;
   }
 };

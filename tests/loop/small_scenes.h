@@ -54,7 +54,7 @@ inline scene::Description pressed_block(double depth) {
   contact.second = "tool";
   contact.stiffness_pa_m = 1e7;
   d.contacts.push_back(contact);
-  d.coupling.exchange_period_s = d.coupling.contact_refresh_s = 0.01;
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
   return d;
 }
 

@@ -27,7 +27,7 @@ scene::Description two_blocks(double gap) {
   contact.stiffness_pa_m = kStiffness;
   d.contacts.push_back(contact);
   d.gravity_m_s2 = Vec3::Zero();
-  d.coupling.exchange_period_s = d.coupling.contact_refresh_s = 0.01;
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
   return d;
 }
 
@@ -75,7 +75,7 @@ TEST(SoftPair, ACollisionKeepsMomentum) {
   for (auto& body : d.bodies) body.attachments.clear();
   d.bodies[1].velocity_m_s = Vec3(0, 0, -0.3);
   d.duration_s = 0.05;
-  d.coupling.exchange_period_s = d.coupling.contact_refresh_s = 0.001;
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.001;
   d.integrator.step_s = 0.001;
   const auto world = loop::assemble(d);
   const auto momentum = [&](std::size_t body) {

@@ -95,7 +95,7 @@ TEST(Load, DefaultsAndNormalOrder) {
   EXPECT_EQ(d.gravity_m_s2, Vec3(0, 0, -9.81)) << "whole numbers are numbers";
   EXPECT_TRUE(d.record->states) << "an empty table is a table";
   const Description e = parse(scene_texts::kWhole, "whole.toml", {"exchange.exchange_period_s=0.02"});
-  EXPECT_EQ(e.coupling.contact_refresh_s, 0.02) << "follows the exchange period where it is not given";
+  EXPECT_EQ(e.exchange.contact_refresh_s, 0.02) << "follows the exchange period where it is not given";
   const Description f = parse(scene_texts::kWhole, "whole.toml", {"obstacle.0.normal=[0, 3, 4]"});
   EXPECT_EQ(std::get<Vec3>(f.obstacles[0].shape.at("normal")), Vec3(0, 3, 4)) << "as given; of any length";
 }

@@ -61,7 +61,7 @@ struct Description {
   std::vector<ContactSpec> contacts;
   std::optional<ToolSpec> tool;
   std::optional<DeviceSpec> device;
-  CosimulationSpec coupling;
+  CosimulationSpec exchange;
   IntegratorSpec integrator;
   std::optional<RecordSpec> record;
   CompareSpec compare;
