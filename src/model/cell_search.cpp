@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "manifold.h"
 #include "palpate/core/error.h"
 #include "palpate/mesh/boundary.h"
 #include "palpate/mesh/quality.h"
@@ -74,6 +75,7 @@ struct Sizes {
 };
 
 void check(const TetrahedraOptions& options, double volume) {
+  constexpr double kPointsPerCell = 0.2;
   if (options.element_size_m != 0 && !(options.element_size_m > 0 && std::isfinite(options.element_size_m)))
     fail("--element-size-m {} must be positive", options.element_size_m);
   if (options.element_size_m == 0 && (options.tetrahedra < 20 || options.tetrahedra > kLargestNumber))
@@ -85,9 +87,45 @@ void check(const TetrahedraOptions& options, double volume) {
           "--element-size-m {} would make about {:.2g} tetrahedra of {:.4g} m^3, must make between 20 and "
           "{}; is the unit right? --scale changes it",
           options.element_size_m, number, volume, kLargestNumber);
+  const double wanted = options.element_size_m > 0
+                            ? kCellsPerVolume * volume / std::pow(options.element_size_m / kEdgePerCell, 3)
+                            : options.tetrahedra;
+  if (kPointsPerCell * wanted > options.limits.points)
+    fail("{:.3g} tetrahedra have about {:.3g} points, more than the {} of the budget: raise it with --points",
+         wanted, kPointsPerCell * wanted, options.limits.points);
+}
+
+/// Takes away where the boundary touches itself, and says so.
+void part(FittedMesh& made, double volume, std::vector<std::string>& notes) {
+  constexpr double kLargestShare = 0.02;
+  const ManifoldReport report = make_boundary_manifold(made);
+  if (report.taken == 0) return;
+  const std::string what = fmt::format(
+      "{} tetrahedra, {:.2g} % of the volume, were taken away where the boundary touched itself, first at "
+      "({:.4g}, {:.4g}, {:.4g}) m",
+      report.taken, 100 * report.volume / volume, report.place.x(), report.place.y(), report.place.z());
+  if (report.volume > kLargestShare * volume)
+    fail("the body is thinner than its elements: {}; ask for more with --tetrahedra, or thicken it there",
+         what);
+  notes.push_back(what);
 }
 
 }  // namespace
+
+// A sheet of thickness t has the area 2 V / t on both its sides.  A tetrahedron with an angle of 8 degrees or
+// more between its faces along the sheet has edges up to about t / tan(8 degrees) = 7 t, and a triangle of
+// these, 0.43 (7 t)^2 large, stands for three tetrahedra through the sheet.
+void refuse_too_thin(const BodySize& size, const Vec3& place, const TetrahedraOptions& options) {
+  constexpr double kLongestEdge = 7.0, kTriangle = 0.43, kThrough = 3.0, kTooMany = 2.0;
+  if (options.element_size_m > 0 || options.tetrahedra <= 0 || !(size.area > 0)) return;
+  const double thickness = 2 * size.volume / size.area,
+               least = kThrough * size.area / 2 / (kTriangle * std::pow(kLongestEdge * thickness, 2));
+  if (least <= kTooMany * options.tetrahedra) return;
+  fail(
+      "the body is about {:.2g} m thick, with a surface of {:.3g} m^2, at ({:.4g}, {:.4g}, {:.4g}) m and "
+      "elsewhere: it takes about {:.2g} tetrahedra; ask for that many with --tetrahedra, or thicken it",
+      thickness, size.area, place.x(), place.y(), place.z(), least);
+}
 
 Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const TetrahedraOptions& options,
                         const Progress& progress) {
@@ -117,9 +155,11 @@ Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const Tet
   };
   for (int round = 0; round < kRounds; ++round, begun += 0.9 * left_of_bar, left_of_bar *= 0.1) {
     for (int attempt = 0;; ++attempt) {
-      last = mesher.refine(sizes.cell, sizes.facet);
+      const double from = 0.4 * (1 - 1.0 / (1 + attempt)), to = 0.4 * (1 - 1.0 / (2 + attempt));
+      last = mesher.refine(sizes.cell, sizes.facet,
+                           [&](double fraction) { tell(from + (to - from) * fraction); });
       ++out.attempts;
-      tell(0.4 * (1 - 1.0 / (2 + attempt)));
+      tell(to);
       if ((aim.error(last, aim.left) < kClose && sizes.node_error(last) < kClose) || enough(last, aim.left) ||
           attempt + 1 == attempts)
         break;
@@ -127,12 +167,15 @@ Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const Tet
     }
     mesher.optimise([&](double fraction) { tell(0.4 + 0.5 * fraction); });
     FittedMesh made = mesher.take();
+    std::vector<std::string> notes;
+    part(made, volume, notes);
     const CellCount left = count_of(made.mesh);
     const bool met = aim.error(left, 1.0) < 0.8 * kTolerance && sizes.node_error(left) < 0.8 * kTolerance;
     if (met || enough(left, 1.0) || round + 1 == kRounds) {
       if (left.tetrahedra > 0)
         fit_volume(made, mesher, sizes.facet, exact ? std::optional(volume) : std::nullopt);
       out.mesh = std::move(made.mesh);
+      out.notes = std::move(notes);
       out.cell_size = sizes.cell;
       last = left;
       break;
@@ -140,6 +183,7 @@ Tetrahedra search_cells(CellMesher& mesher, double volume, bool exact, const Tet
     if (!aim.by_size()) aim.left = static_cast<double>(left.tetrahedra) / std::max(last.tetrahedra, 1);
     sizes.correct(aim, left, 1.0);
   }
+  if (const std::string note = mesher.note(); !note.empty()) out.notes.insert(out.notes.begin(), note);
   if (aim.error(last, 1.0) > kTolerance && !enough(last, 1.0)) {
     if (aim.by_size())
       fail("no mesh with edges of {} m within 3 % was found, the nearest has {:.4g} m; ask for another size",

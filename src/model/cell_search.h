@@ -16,10 +16,26 @@ struct CellCount {
 class CellMesher : public SurfaceQuery {
  public:
   /// bounds on circumradii, in the body and on its surface [m]
-  virtual CellCount refine(double cell_size, double facet_size) = 0;
+  virtual CellCount refine(double cell_size, double facet_size, const Progress& progress) = 0;
   virtual void optimise(const Progress& progress) = 0;
   virtual FittedMesh take() = 0;
+  virtual std::string note() const { return {}; }  ///< what had to be given up, for the outcome
 };
+
+/// What is filled, for guesses of what a size of elements makes of it.
+struct BodySize {
+  double volume = 0.0, area = 0.0;  ///< [m^3], [m^2]; about
+  /// Vertices by bounds on circumradii [m]: some five cells a cube of that size and five cells a vertex, and
+  /// a vertex for each half of a square of the facets'.
+  double points(double cell_size, double facet_size) const {
+    return volume / (cell_size * cell_size * cell_size) + 2.0 * area / (facet_size * facet_size);
+  }
+};
+
+/// Refuses a sheet that is so thin for its extent that tetrahedra of bearable angles must be many more than
+/// are wanted: refinement would go on until the budget is spent.
+/// @throws Error with about the number that it takes
+void refuse_too_thin(const BodySize& size, const Vec3& place, const TetrahedraOptions& options);
 
 /// Searches the cell size for the wanted number or edge length (and the facets' size for the wanted number of
 /// nodes), optimises, and fits the boundary.

@@ -2,6 +2,8 @@
 #include <CGAL/Labeled_mesh_domain_3.h>
 #include <CGAL/Mesh_domain_with_polyline_features_3.h>
 
+#include <numbers>
+
 #include "mesher.h"
 #include "palpate/core/error.h"
 #include "palpate/model/tetrahedralise.h"
@@ -47,8 +49,11 @@ Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec
       for (const Vec3& p : line) lines.back().emplace_back(p.x(), p.y(), p.z());
     }
     if (!lines.empty()) domain.add_features(lines.begin(), lines.end());
-    Mesher<Domain> mesher(domain, !lines.empty(), {});
-    return search_cells(mesher, lattice_volume(f, centre, radius), false, options, progress);
+    Meter meter(options.limits);
+    const double volume = lattice_volume(f, centre, radius);
+    Mesher<Domain> mesher(domain, !lines.empty(), {}, {volume, 4 * std::numbers::pi * radius * radius},
+                          meter);
+    return search_cells(mesher, volume, false, options, progress);
   } catch (const CGAL::Failure_exception& e) {
     fail("the inside of the implicit surface cannot be filled with tetrahedra: CGAL says {} ({})",
          e.message(), e.expression());

@@ -17,15 +17,31 @@
 namespace palpate::model {
 namespace {
 
-/// Runs a step under its name, and keeps how long it took.
-template <class Work>
-void step(const char* name, Watcher& watcher, Made& made, Work work) {
-  watcher.begin(name);
-  const double start = wall_seconds();
-  work();
-  made.steps.push_back({name, wall_seconds() - start});
-  watcher.end(made.steps.back());
-}
+/// Runs steps under their names, keeps how long each took, and begins none when the time is over.
+class Steps {
+ public:
+  Steps(Watcher& watcher, Made& made, const std::string& source, double limit)
+      : watcher_(watcher), made_(made), source_(source), limit_(limit) {}
+
+  template <class Work>
+  void operator()(const char* name, Work work) {
+    if (left() <= 0)
+      fail("{}: no model within {:.3g} s: \"{}\" was still to do; give more with --limit-s", source_, limit_,
+           name);
+    watcher_.begin(name);
+    const double start = wall_seconds();
+    work();
+    made_.steps.push_back({name, wall_seconds() - start});
+    watcher_.end(made_.steps.back());
+  }
+  double left() const { return limit_ - (wall_seconds() - start_); }
+
+ private:
+  Watcher& watcher_;
+  Made& made_;
+  const std::string& source_;
+  double limit_, start_ = wall_seconds();
+};
 
 void scale(Input& input, double by) {
   if (!(by > 0 && std::isfinite(by))) fail("--scale {} must be positive; it multiplies the coordinates", by);
@@ -42,22 +58,33 @@ void scale(Input& input, double by) {
   }
 }
 
-/// Tetrahedra that a person brought: sound as they are, or refused.  Returns the boundary.
-TriMesh take_tets(Input& input, std::vector<std::string>& notes) {
-  const mesh::MeshReport report = mesh::check_tets(input.tets, input.from);
-  if (report.flipped > 0) notes.push_back(fmt::format("{} tetrahedra were turned round", report.flipped));
-  return mesh::boundary(input.tets).surface;
-}
-
 TriMesh mended(Input& input, const Options& options, std::vector<std::string>& notes,
-               const Progress& progress) {
+               const Progress& progress, Watcher& watcher) {
   if (input.sound) {
     mesh::check_surface(input.surface, input.from);
     return input.surface;
   }
-  RepairedSurface repaired = repair(input.surface, input.from, options.repair, progress);
+  RepairOptions wanted = options.repair;
+  wanted.place = [&](const std::string& where) { watcher.place(where); };
+  RepairedSurface repaired = repair(input.surface, input.from, wanted, progress);
   notes.insert(notes.end(), repaired.notes.begin(), repaired.notes.end());
   return std::move(repaired.surface);
+}
+
+/// Tetrahedra that a person brought: sound as they are, or refused.  Returns the boundary; mended as any
+/// other surface where it is to be filled anew.
+TriMesh take_tets(Input& input, const Options& options, std::vector<std::string>& notes,
+                  const Progress& progress, Watcher& watcher) {
+  const mesh::MeshReport report = mesh::check_tets(input.tets, input.from);
+  if (report.flipped > 0) notes.push_back(fmt::format("{} tetrahedra were turned round", report.flipped));
+  if (!options.remesh) {
+    check_sides(input.tets, input.source);
+    return mesh::boundary(input.tets).surface;
+  }
+  Input outside;
+  outside.surface = mesh::boundary(input.tets).surface;
+  outside.from = mesh::surface_provenance(input.from.source + ": boundary");
+  return mended(outside, options, notes, progress, watcher);
 }
 
 std::optional<double> crease_angle_of(const TriMesh& surface, const Input& input, const Options& options) {
@@ -141,6 +168,64 @@ Input input_of_file(const std::string& path) {
   return out;
 }
 
+namespace {
+
+/// What is filled, how, and what may be said of it.
+struct Filling {
+  const TriMesh& surface;
+  const Input& input;
+  const Options& options;
+};
+
+QualityGate gate_of(const Options& options, bool creased, bool given) {
+  QualityGate out;
+  out.smallest_dihedral_deg =
+      options.smallest_dihedral_deg.value_or(creased ? kSharpDihedralDeg : out.smallest_dihedral_deg);
+  out.given = given;
+  return out;
+}
+
+Tetrahedra filled(const Filling& filling, std::optional<double> crease_deg, double seconds,
+                  const Progress& progress) {
+  TetrahedraOptions wanted = filling.options.tetrahedra;
+  wanted.limits.seconds = std::max(seconds, 1e-3);
+  wanted.crease_deg = crease_deg;
+  if (filling.options.creases != Creases::kNone) wanted.creases = filling.input.creases;
+  Tetrahedra out = tetrahedralise(filling.surface, wanted, progress);
+  const TetQuality quality = measure_quality(out.mesh, mesh::enclosed_volume(filling.surface));
+  pass_gate(out.mesh, quality, gate_of(filling.options, crease_deg || !wanted.creases.empty(), false),
+            filling.input.source, filling.surface);
+  return out;
+}
+
+/// Fills the surface; creases that no one asked for are given up where they cannot be kept.
+TetMesh fill(const Filling& filling, const Steps& steps, const Progress& progress, Made& made) {
+  std::vector<std::string>& notes = made.file.record.notes;
+  const bool automatic = filling.options.creases == Creases::kAuto;
+  const std::optional<double> crease_deg = crease_angle_of(filling.surface, filling.input, filling.options);
+  const bool lines = filling.options.creases != Creases::kNone && !filling.input.creases.empty();
+  made.creased = crease_deg || lines;
+  Tetrahedra out;
+  try {
+    out = filled(filling, crease_deg, steps.left(), progress);
+    if (crease_deg && automatic)
+      notes.push_back(
+          fmt::format("edges that turn by more than {:g} degrees are kept as creases", *crease_deg));
+  } catch (const Error& e) {
+    if (!crease_deg || !automatic || steps.left() <= 0) throw;
+    made.creased = lines;
+    out = filled(filling, std::nullopt, steps.left(), progress);
+    notes.push_back(
+        fmt::format("edges that turn by more than {:g} degrees could not be kept as creases ({}); "
+                    "they are rounded by half an element",
+                    *crease_deg, e.what()));
+  }
+  notes.insert(notes.end(), out.notes.begin(), out.notes.end());
+  return std::move(out.mesh);
+}
+
+}  // namespace
+
 Made make_model(Input input, const Options& options, Watcher& watcher) {
   Made made;
   LayeredModel& model = made.file.model;
@@ -151,34 +236,32 @@ Made make_model(Input input, const Options& options, Watcher& watcher) {
   record.version = store::provenance().version;
   model.name = input.name;
   scale(input, options.scale);
+  Steps step(watcher, made, record.source, options.tetrahedra.limits.seconds);
 
   TriMesh surface;
   const bool given = input.tets.tets.cols() > 0;
-  step(given ? "check the tetrahedra" : "mend the surface", watcher, made, [&] {
-    surface = given ? take_tets(input, record.notes) : mended(input, options, record.notes, progress);
+  step(given ? "check the tetrahedra" : "mend the surface", [&] {
+    surface = given ? take_tets(input, options, record.notes, progress, watcher)
+                    : mended(input, options, record.notes, progress, watcher);
   });
 
   const TetMesh old = given && options.remesh && !input.regions.empty() ? input.tets : TetMesh{};
-  if (given && !options.remesh) {
+  const bool as_given = given && !options.remesh;
+  if (as_given) {
     model.tets = std::move(input.tets);
   } else {
-    step("fill with tetrahedra", watcher, made, [&] {
-      TetrahedraOptions wanted = options.tetrahedra;
-      wanted.crease_deg = crease_angle_of(surface, input, options);
-      wanted.creases = options.creases == Creases::kNone ? std::vector<Polyline>{} : input.creases;
-      made.creased = wanted.crease_deg || !wanted.creases.empty();
-      if (wanted.crease_deg && options.creases == Creases::kAuto)
-        record.notes.push_back(
-            fmt::format("edges that turn by more than {:g} degrees are kept as creases", *wanted.crease_deg));
-      model.tets = tetrahedralise(surface, wanted, progress).mesh;
-    });
+    step("fill with tetrahedra", [&] { model.tets = fill({surface, input, options}, step, progress, made); });
   }
-  step("check the quality", watcher, made, [&] {
+  step("check the quality", [&] {
     made.quality = measure_quality(model.tets, mesh::enclosed_volume(surface));
-    QualityGate gate;
-    gate.smallest_dihedral_deg =
-        options.smallest_dihedral_deg.value_or(made.creased ? kSharpDihedralDeg : gate.smallest_dihedral_deg);
-    pass_gate(model.tets, made.quality, gate, input.source);
+    QualityGate gate = gate_of(options, made.creased, as_given);
+    if (as_given && options.accept_angles &&
+        made.quality.smallest_dihedral_deg < gate.smallest_dihedral_deg) {
+      made.angle_price = price_of_angles(model.tets, gate.smallest_dihedral_deg);
+      gate.smallest_dihedral_deg = 0.0;
+      record.notes.push_back(text(*made.angle_price));
+    }
+    pass_gate(model.tets, made.quality, gate, input.source, surface);
     mesh::Provenance own;
     own.source = "tetrahedra of " + input.source;
     mesh::check_tets(model.tets, own);
@@ -186,24 +269,27 @@ Made make_model(Input input, const Options& options, Watcher& watcher) {
 
   model.skeleton = std::move(input.skeleton);
   if (!input.regions.empty() || !options.regions.empty())
-    step("name regions", watcher, made,
-         [&] { find_regions(input, options, old.tets.cols() > 0 ? &old : nullptr, made); });
+    step("name regions", [&] { find_regions(input, options, old.tets.cols() > 0 ? &old : nullptr, made); });
   mesh::EmbeddingReport embedding;
-  step("embed the skin", watcher, made, [&] {
+  step("embed the skin", [&] {
     model.skin = input.skin.vertices.cols() > 0 ? std::move(input.skin) : std::move(surface);
     model.embedding = mesh::embed(model.tets, model.skin.vertices, &embedding);
   });
   if (!model.skeleton.bones.empty())
-    step("bind the skeleton", watcher, made,
+    step("bind the skeleton",
          [&] { model.bone_of_node = bind_nodes(model.tets.nodes, model.skeleton, options.bone_margin_m); });
   proxy::DecomposeReport hulls;
   if (options.proxies > 0)
-    step("cut into convex proxies", watcher, made, [&] {
+    step("cut into convex proxies", [&] {
       proxy::DecomposeOptions wanted;
       wanted.count = options.proxies;
       model.proxies = proxy::decompose(model, wanted, &hulls);
     });
   record.figures = figures(model, made.quality, embedding, hulls);
+  if (made.angle_price) {
+    record.figures.emplace_back("explicit_step_s", made.angle_price->explicit_step_s);
+    record.figures.emplace_back("condition_number", made.angle_price->condition);
+  }
   for (const RegionFigures& region : made.regions)
     record.figures.emplace_back(fmt::format("volume_of_region_{}_m3", region.name), region.volume);
   return made;

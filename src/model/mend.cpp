@@ -141,7 +141,8 @@ int turn(Soup& soup) {
   return count;
 }
 
-Mended mend_unguarded(const Soup& soup, double largest_hole) {
+Mended mend_unguarded(const Soup& soup, double largest_hole,
+                      const std::function<void(const std::string&)>& place) {
   Mended out;
   out.soup.from = soup.from;
   CgalSurface mesh = cgal_of(soup);
@@ -154,8 +155,9 @@ Mended mend_unguarded(const Soup& soup, double largest_hole) {
   for (const std::vector<int>& shell : shells_of(closed.surface())) {
     CgalSurface one = shell_mesh(closed, shell);
     Soup sound = soup_of(one, *soup.from);
-    if (const auto crossing = static_cast<int>(crossing_faces(sound).size()); crossing > 0) {
-      out.crossings += crossing;
+    if (const std::vector<int> crossing = crossing_faces(sound); !crossing.empty()) {
+      out.crossings += static_cast<int>(crossing.size());
+      if (place) place(sound.face_name(crossing[0]));
       CgalSurface repaired = one;
       const bool gone =
           PMP::experimental::remove_self_intersections(repaired, CGAL::parameters::preserve_genus(false));
@@ -173,8 +175,8 @@ int turn_to_agree(Soup& soup) {
   return guarded(soup, [&] { return turn(soup); });
 }
 
-Mended mend(const Soup& soup, double largest_hole) {
-  return guarded(soup, [&] { return mend_unguarded(soup, largest_hole); });
+Mended mend(const Soup& soup, double largest_hole, const std::function<void(const std::string&)>& place) {
+  return guarded(soup, [&] { return mend_unguarded(soup, largest_hole, place); });
 }
 
 }  // namespace palpate::model

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,9 @@ struct Mended {
 };
 
 /// Closes holes, collapses needles and flat faces, and cuts out faces that cross.
-/// @param largest_hole  share of the surface
+/// @param largest_hole  share of the surface  @param place  is told where it works for long; may be empty
 /// @throws Error with the place of a hole that is too large, or of a flat face that cannot be collapsed
-Mended mend(const Soup& soup, double largest_hole);
+Mended mend(const Soup& soup, double largest_hole,
+            const std::function<void(const std::string& where)>& place = {});
 
 }  // namespace palpate::model

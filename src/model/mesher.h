@@ -7,12 +7,15 @@
 #include <CGAL/make_mesh_3.h>
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <vector>
 
 #include "cell_search.h"
 #include "fit_volume.h"
+#include "metered_criteria.h"
+#include "palpate/core/error.h"
 #include "palpate/mesh/mesh.h"
 
 namespace palpate::model {
@@ -27,34 +30,41 @@ class Mesher : public CellMesher {
       typename CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
   using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, typename Domain::Corner_index,
                                                           typename Domain::Curve_index>;
-  using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
+  using Criteria = MeteredCriteria<Triangulation>;
   using Segment = typename Domain::Segment_3;
   using Point = typename Domain::Point_3;
 
-  Mesher(const Domain& domain, bool creased, std::vector<Seed> seeds)
-      : domain_(domain), creased_(creased), seeds_(std::move(seeds)) {}
+  Mesher(const Domain& domain, bool creased, std::vector<Seed> seeds, const BodySize& size, Meter& meter)
+      : domain_(domain), creased_(creased), seeds_(std::move(seeds)), size_(size), meter_(meter) {}
 
-  CellCount refine(double cell_size, double facet_size) override {
-    namespace P = CGAL::parameters;
-    // Angles of at least 25 degrees on the surface end provably (up to 30); a facet may leave the surface by
-    // a tenth of its size, what is left of that in volume fit_volume() takes away.  Edges of creases are as
-    // long as those beside them.
-    const Criteria criteria(P::edge_size = facet_size, P::facet_angle = 25.0, P::facet_size = facet_size,
-                            P::facet_distance = 0.1 * facet_size, P::cell_radius_edge_ratio = 2.0,
-                            P::cell_size = cell_size);
-    CGAL::get_default_random() = CGAL::Random(0);
-    complex_ = Complex();
-    CGAL::Mesh_3::internal::C3t3_initializer<Complex, Domain, Criteria, true>()(complex_, domain_, criteria,
-                                                                                creased_);
-    sow();
-    CGAL::refine_mesh_3(complex_, domain_, criteria, P::no_perturb(), P::no_exude(), P::no_odt(),
-                        P::no_lloyd(), P::no_reset_c3t3(), P::manifold());
-    CellCount out;
-    out.tetrahedra = static_cast<int>(complex_.number_of_cells_in_complex());
-    // a few of them may belong to no tetrahedron
-    out.nodes = static_cast<int>(complex_.triangulation().number_of_vertices());
-    out.mean_edge = mean_edge();
-    return out;
+  // A boundary that nowhere touches itself cannot be had by refinement at an edge that is much sharper than a
+  // right angle and not protected as a crease: however small the facets are there, both sides meet in some of
+  // them, and they are split without end.  Where facets vanish or points run away so, refinement begins anew
+  // without that condition and with a least size of facets and cells, below which none is split.  Each point
+  // is then at least a fixed distance from all others, so that their number is bounded; what still touches
+  // itself is taken away afterwards (manifold.h).
+  CellCount refine(double cell_size, double facet_size, const Progress& progress) override {
+    const double expected = size_.points(cell_size, facet_size);
+    meter_.begin(expected, progress);
+    if (!least_size_) {
+      const std::optional<Runaway> runaway =
+          refined(cell_size, facet_size, kRunawayAlways + kRunawayFactor * expected, true);
+      if (!runaway) return counted();
+      least_size_ = true;
+      const Vec3& at = runaway->place;
+      note_ = fmt::format(
+          "at ({:.4g}, {:.4g}, {:.4g}) m the surface is too sharp or too thin for boundary faces of {:.2g} "
+          "m: they had shrunk to {:.2g} m; refinement began anew with none below {:.0f} % of the wanted size",
+          at.x(), at.y(), at.z(), facet_size, runaway->size, 100 * kLeastSize);
+    }
+    if (const std::optional<Runaway> runaway = refined(cell_size, facet_size, meter_.points(), false)) {
+      const Vec3& at = runaway->place;
+      fail(
+          "the tetrahedra need more than {} points, the most of them around ({:.4g}, {:.4g}, {:.4g}) m, "
+          "where edges are as short as {:.3g} m: take larger elements, or give more with --points",
+          meter_.points(), at.x(), at.y(), at.z(), runaway->size);
+    }
+    return counted();
   }
 
   void optimise(const Progress& progress) override {
@@ -65,8 +75,11 @@ class Mesher : public CellMesher {
     Perturber perturber(complex_, domain_, sliver);
     for (auto* perturbation : CGAL::default_perturbation_vector(complex_, domain_, sliver))
       perturber.add_perturbation(perturbation);
+    perturber.set_time_limit(meter_.seconds_left());
     perturber(Told{&progress, kWantedDeg});
-    CGAL::exude_mesh_3(complex_);
+    meter_.check("while vertices were moved for larger angles");
+    CGAL::exude_mesh_3(complex_, CGAL::parameters::time_limit = meter_.seconds_left());
+    meter_.check("while slivers were exuded");
     if (progress) progress(1.0);
   }
 
@@ -95,6 +108,8 @@ class Mesher : public CellMesher {
     return out;
   }
 
+  std::string note() const override { return note_; }
+
   /// Where the line from a to b meets the surface.
   std::optional<Vec3> crossing(const Vec3& a, const Vec3& b) const override {
     const Segment line(point(a), point(b));
@@ -105,6 +120,72 @@ class Mesher : public CellMesher {
   }
 
  private:
+  /// Points beyond a share of those expected (creases and thin places ask for more) tell a runaway.
+  static constexpr double kRunawayAlways = 20'000, kRunawayFactor = 6.0;
+  static constexpr double kVanishing = 1e-3;  ///< so do facets of this share of the wanted size
+  static constexpr double kLeastSize = 0.1;   ///< of cells and facets that are split, of the wanted one
+
+  /// One refinement from nothing, or where it ran away.
+  std::optional<Runaway> refined(double cell_size, double facet_size, double largest, bool manifold) {
+    namespace P = CGAL::parameters;
+    // Angles of at least 25 degrees on the surface end provably (up to 30); a facet may leave the surface by
+    // a tenth of its size, what is left of that in volume fit_volume() takes away.  Edges of creases are as
+    // long as those beside them.
+    const double least = manifold ? 0.0 : kLeastSize, vanishing = manifold && !creased_ ? kVanishing : 0.0;
+    const Criteria criteria(MeteredEdges<Triangulation>(facet_size, meter_),
+                            MeteredFacets<Triangulation>({25.0, facet_size, 0.1 * facet_size},
+                                                         least * facet_size, vanishing * facet_size, meter_),
+                            MeteredCells<Triangulation>({2.0, cell_size}, least * cell_size, meter_));
+    CGAL::get_default_random() = CGAL::Random(0);
+    complex_ = Complex();
+    CGAL::Mesh_error_code error = CGAL::CGAL_MESH_3_NO_ERROR;
+    const auto bounded = [&](double points) {
+      return P::mesh_3_options(P::maximal_number_of_vertices = static_cast<std::size_t>(points),
+                               P::pointer_to_error_code = &error);
+    };
+    try {
+      CGAL::Mesh_3::internal::C3t3_initializer<Complex, Domain, Criteria, true>()(
+          complex_, domain_, criteria, creased_, bounded(meter_.points()));
+      if (error != CGAL::CGAL_MESH_3_NO_ERROR) refuse_creases();
+      sow();
+      const auto topology = manifold ? P::manifold() : P::non_manifold();
+      CGAL::refine_mesh_3(complex_, domain_, criteria, P::no_perturb(), P::no_exude(), P::no_odt(),
+                          P::no_lloyd(), P::no_reset_c3t3(), topology,
+                          bounded(std::min<double>(largest, meter_.points())));
+    } catch (const Runaway& runaway) { return runaway; }
+    if (error != CGAL::CGAL_MESH_3_NO_ERROR) return crowded();
+    return std::nullopt;
+  }
+
+  [[noreturn]] void refuse_creases() const {
+    const Runaway at = crowded();
+    fail(
+        "the creases ask for more than {} points, the most of them around ({:.4g}, {:.4g}, {:.4g}) m, where "
+        "they are as short as {:.3g} m: keep fewer with --creases, or give more with --points",
+        meter_.points(), at.place.x(), at.place.y(), at.place.z(), at.size);
+  }
+
+  CellCount counted() const {
+    CellCount out;
+    out.tetrahedra = static_cast<int>(complex_.number_of_cells_in_complex());
+    // a few of them may belong to no tetrahedron
+    out.nodes = static_cast<int>(complex_.triangulation().number_of_vertices());
+    out.mean_edge = mean_edge();
+    return out;
+  }
+
+  /// The middle of the shortest edge, and its length.
+  Runaway crowded() const {
+    const Triangulation& all = complex_.triangulation();
+    Runaway out{Vec3::Zero(), std::numeric_limits<double>::infinity()};
+    for (auto edge = all.finite_edges_begin(); edge != all.finite_edges_end(); ++edge) {
+      const Vec3 a = at(edge->first->vertex(edge->second)->point().point()),
+                 b = at(edge->first->vertex(edge->third)->point().point());
+      if ((a - b).norm() < out.size) out = {(a + b) / 2, (a - b).norm()};
+    }
+    return out;
+  }
+
   /// Hears from the perturber when a bound was reached [degrees].
   struct Told {
     const Progress* progress = nullptr;
@@ -145,6 +226,10 @@ class Mesher : public CellMesher {
   const Domain& domain_;
   bool creased_;
   std::vector<Seed> seeds_;
+  BodySize size_;
+  Meter& meter_;
+  bool least_size_ = false;  ///< facets or points ran away before
+  std::string note_;
   Complex complex_;
 };
 

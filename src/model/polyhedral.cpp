@@ -32,6 +32,15 @@ Polyhedron polyhedron_of(const TriMesh& surface) {
   return out;
 }
 
+double area(const TriMesh& surface) {
+  double out = 0;
+  for (Eigen::Index f = 0; f < surface.faces.cols(); ++f) {
+    const auto corner = [&](int k) -> Vec3 { return surface.vertices.col(surface.faces(k, f)); };
+    out += (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 2;
+  }
+  return out;
+}
+
 /// Lines through the faces of each shell, spread over it: refinement finds a shell only where it starts on
 /// it.
 std::vector<Seed> seeds_of(const TriMesh& surface) {
@@ -53,6 +62,8 @@ std::vector<Seed> seeds_of(const TriMesh& surface) {
 
 Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& options,
                           const Progress& progress) {
+  const BodySize size{mesh::enclosed_volume(surface), area(surface)};
+  refuse_too_thin(size, surface.vertices.col(0), options);
   try {
     Domain domain(polyhedron_of(surface));
     if (options.crease_deg) domain.detect_features(*options.crease_deg);
@@ -64,8 +75,10 @@ Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& optio
       }
       domain.add_features(lines.begin(), lines.end());
     }
-    Mesher<Domain> mesher(domain, options.crease_deg || !options.creases.empty(), seeds_of(surface));
-    return search_cells(mesher, mesh::enclosed_volume(surface), true, options, progress);
+    Meter meter(options.limits);
+    Mesher<Domain> mesher(domain, options.crease_deg || !options.creases.empty(), seeds_of(surface), size,
+                          meter);
+    return search_cells(mesher, size.volume, true, options, progress);
   } catch (const CGAL::Failure_exception& e) {
     fail("the surface cannot be filled with tetrahedra: CGAL says {} ({})", e.message(), e.expression());
   }

@@ -1,7 +1,9 @@
 #include "palpate/model/quality_gate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "palpate/core/error.h"
@@ -32,6 +34,20 @@ Vec3 middle(const TetMesh& mesh, int tet) {
   return sum / 4;
 }
 
+/// The vertex of a surface that is farthest from all nodes.
+Vec3 farthest_vertex(const TriMesh& surface, const TetMesh& mesh) {
+  Vec3 out = Vec3::Zero();
+  double most = -1;
+  for (const auto& p : surface.vertices.colwise()) {
+    const double d =
+        mesh.nodes.cols() > 0 ? (mesh.nodes.colwise() - p).colwise().squaredNorm().minCoeff() : 0;
+    if (d <= most) continue;
+    most = d;
+    out = p;
+  }
+  return out;
+}
+
 }  // namespace
 
 TetQuality measure_quality(const TetMesh& mesh, double surface_volume) {
@@ -59,26 +75,61 @@ TetQuality measure_quality(const TetMesh& mesh, double surface_volume) {
 }
 
 void pass_gate(const TetMesh& mesh, const TetQuality& quality, const QualityGate& gate,
-               const std::string& source) {
-  if (quality.tetrahedra == 0)
+               const std::string& source, const TriMesh& surface) {
+  if (quality.tetrahedra == 0) {
+    const Vec3 at = farthest_vertex(surface, mesh);
     fail(
-        "{}: no tetrahedron was made; the surface is too thin for this element size, ask for more with "
-        "--tetrahedra",
-        source);
+        "{}: no tetrahedron was made; the surface is too thin for this element size, at ({:.4g}, {:.4g}, "
+        "{:.4g}) m and everywhere: ask for more with --tetrahedra",
+        source, at.x(), at.y(), at.z());
+  }
   if (!(quality.smallest_dihedral_deg >= gate.smallest_dihedral_deg)) {
     const Vec3 at = middle(mesh, quality.worst_tet);
     fail(
         "{}: tetrahedron {} at ({:.4g}, {:.4g}, {:.4g}) m has a dihedral angle of {:.2f} degrees, must have "
-        "{:g}: the mesh is refused; ask for another number with "
-        "--tetrahedra, or smooth the surface there",
+        "{:g}: the mesh is refused; {}",
         source, quality.worst_tet, at.x(), at.y(), at.z(), quality.smallest_dihedral_deg,
-        gate.smallest_dihedral_deg);
+        gate.smallest_dihedral_deg,
+        gate.given ? "fill its boundary anew with --remesh, or take the tetrahedra as they are, at a price "
+                     "that is printed, with --accept-angles"
+                   : "ask for another number with --tetrahedra, or smooth the surface there");
   }
-  if (!(quality.volume_error <= gate.volume_error))
+  if (!(quality.volume_error <= gate.volume_error)) {
+    const Vec3 at = farthest_vertex(surface, mesh);
     fail(
         "{}: the tetrahedra fill {:.6g} m^3 of the surface's {:.6g} m^3, {:.2f} % off, must lie within {:g} "
-        "%: the mesh is refused; ask for more with --tetrahedra",
-        source, quality.volume, quality.surface_volume, 100 * quality.volume_error, 100 * gate.volume_error);
+        "%: the mesh is refused; ask for more with --tetrahedra: what they miss most is at ({:.4g}, {:.4g}, "
+        "{:.4g}) m",
+        source, quality.volume, quality.surface_volume, 100 * quality.volume_error, 100 * gate.volume_error,
+        at.x(), at.y(), at.z());
+  }
+}
+
+// Both tetrahedra are positive, so that each sees the shared face from its own side when it lists it
+// outwards: two on different sides list it in opposite senses.
+void check_sides(const TetMesh& mesh, const std::string& source) {
+  struct Seen {
+    int tet;
+    bool even;
+  };
+  std::map<std::array<int, 3>, Seen> seen;
+  for (int t = 0; t < static_cast<int>(mesh.tets.cols()); ++t)
+    for (const auto& face : mesh::kTetFaces) {
+      std::array<int, 3> nodes{mesh.tets(face[0], t), mesh.tets(face[1], t), mesh.tets(face[2], t)};
+      bool even = true;
+      for (const auto& [i, j] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 1)})
+        if (nodes[static_cast<std::size_t>(i)] > nodes[static_cast<std::size_t>(j)]) {
+          std::swap(nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)]);
+          even = !even;
+        }
+      const auto [old, fresh] = seen.emplace(nodes, Seen{t, even});
+      if (fresh || old->second.even != even) continue;
+      const Vec3 at = middle(mesh, t);
+      fail(
+          "{}: tetrahedra {} and {} lie on the same side of the face that they share, at ({:.4g}, {:.4g}, "
+          "{:.4g}) m: one of them is inverted; mend the file, or fill its boundary anew with --remesh",
+          source, old->second.tet, t, at.x(), at.y(), at.z());
+    }
 }
 
 }  // namespace palpate::model

@@ -60,6 +60,7 @@ Soup wrap(const Soup& soup, const std::vector<int>& crossing, const RepairOption
         "{}: this face and {} others go through each other, and cutting them out did not help; mend the "
         "surface there, or leave --no-wrap out",
         soup.face_name(crossing[0]), crossing.size() - 1);
+  if (options.place) options.place(soup.face_name(crossing[0]));
   const double diagonal = soup.diagonal(), before = absolute_volume(soup);
   Soup out = wrapped(soup, kWrapAlpha * diagonal, kWrapOffset * diagonal);
   if (out.faces.empty())
@@ -91,7 +92,7 @@ RepairedSurface repair(const TriMesh& faces, const mesh::Provenance& from, const
   tell(0.2);
   note(out.notes, turn_to_agree(soup), "faces were turned to agree with their neighbours");
   const double meant = absolute_volume(soup);
-  Mended mended = mend(soup, options.largest_hole);
+  Mended mended = mend(soup, options.largest_hole, options.place);
   if (mended.holes > 0)
     out.notes.push_back(fmt::format("{} holes were closed by {} faces", mended.holes, mended.hole_faces));
   note(out.notes, mended.removed, "needles and flat faces were collapsed");

@@ -21,7 +21,7 @@ struct FickleMesher final : model::CellMesher {
 
   explicit FickleMesher(std::vector<double> left) : shares(std::move(left)) {}
   std::optional<Vec3> crossing(const Vec3&, const Vec3&) const override { return std::nullopt; }
-  model::CellCount refine(double cell, double) override {
+  model::CellCount refine(double cell, double, const model::Progress&) override {
     found = static_cast<int>(std::lround(5.0 / (cell * cell * cell)));
     return {found, found / 4, 1.3 * cell};
   }

@@ -15,6 +15,7 @@ extern "C" {
 
 #include "palpate/mesh/checks.h"
 #include "surfaces.h"
+#include "temporary_folder.h"
 
 using namespace palpate;
 using namespace surfaces;
@@ -23,17 +24,12 @@ namespace {
 
 class ForeignFiles : public testing::Test {
  protected:
-  ForeignFiles()
-      : folder_(std::filesystem::temp_directory_path() / ("palpate-model-" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(folder_);
-  }
-  ~ForeignFiles() override { std::filesystem::remove_all(folder_); }
   std::string at(const std::string& name) const { return (folder_ / name).string(); }
   std::string put(const std::string& name, const std::string& text) const {
     std::ofstream(at(name), std::ios::binary) << text;
     return at(name);
   }
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 std::string words(const TriMesh& mesh, const std::string& before_point, const std::string& before_face,

@@ -1,5 +1,11 @@
 #!/usr/bin/env python3
-"""`palpate model` as a person meets it: outcome, messages, the same bytes again; and palpate itself links none of it."""
+"""`palpate model` as a person meets it: outcome, messages, questions, Ctrl-C, the budget, the same bytes
+again; and palpate itself links none of it.
+"""
+import os
+import pty
+import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -7,6 +13,8 @@ import unittest
 from pathlib import Path
 
 PALPATE = sys.argv.pop(1)
+DATA = os.environ.get("PALPATE_TEST_DATA")
+DOCUMENT = Path(__file__).parents[2] / "docs" / "models.md"
 
 
 def run(*words, cwd=None):
@@ -18,8 +26,64 @@ def octahedron(folder, name="body.obj", faces=None):
     faces = faces or [(1, 2, 5), (2, 3, 5), (3, 4, 5), (4, 1, 5), (2, 1, 6), (3, 2, 6), (4, 3, 6), (1, 4, 6)]
     points = [(1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
     path = Path(folder) / name
-    path.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in points) + "".join(f"f {a} {b} {c}\n" for a, b, c in faces))
+    path.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in points)
+                    + "".join(f"f {a} {b} {c}\n" for a, b, c in faces))
     return path
+
+
+def scaled(source, name, factor):
+    """A copy of a file of octahedron(), its coordinates multiplied."""
+    out = source.parent / name
+    out.write_text("".join(
+        f"v {' '.join(str(factor * float(x)) for x in line.split()[1:])}\n" if line.startswith("v")
+        else line + "\n" for line in source.read_text().splitlines()))
+    return out
+
+
+def flat_tetrahedra(folder):
+    """The octahedron of four tetrahedra around its axis, and a fifth, flat one beside them."""
+    path = Path(folder) / "flat.msh"
+    points = [(1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1), (0.36, 0.36, 0.36)]
+    tets = [(5, 6, 1, 2), (5, 6, 2, 3), (5, 6, 3, 4), (5, 6, 4, 1), (1, 2, 5, 7)]
+    path.write_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n7\n"
+                    + "".join(f"{i + 1} {x} {y} {z}\n" for i, (x, y, z) in enumerate(points))
+                    + "$EndNodes\n$Elements\n5\n"
+                    + "".join(f"{i + 1} 4 2 1 1 {a} {b} {c} {d}\n" for i, (a, b, c, d) in enumerate(tets))
+                    + "$EndElements\n")
+    return path
+
+
+class Terminal:
+    """The program with a terminal for its input and its messages."""
+
+    def __init__(self, *words):
+        self.leader, follower = pty.openpty()
+        environment = dict(os.environ, TERM="xterm")
+        self.process = subprocess.Popen([PALPATE, *map(str, words)], stdin=follower, stderr=follower,
+                                        stdout=subprocess.DEVNULL, env=environment)
+        os.close(follower)
+        self.text = ""
+
+    def read_until(self, pattern):
+        """Waits until what was printed matches, or the program has ended."""
+        while not re.search(pattern, self.text):
+            try:
+                more = os.read(self.leader, 4096)
+            except OSError:  # all who could write have ended
+                more = b""
+            if not more:
+                return False
+            self.text += more.decode()
+        return True
+
+    def type(self, text):
+        os.write(self.leader, text.encode())
+
+    def end(self):
+        self.read_until(r"\Z.\A")  # all of it
+        status = self.process.wait(timeout=60)
+        os.close(self.leader)
+        return status
 
 
 def scene_of(model, more=""):
@@ -51,18 +115,21 @@ class Program(unittest.TestCase):
         options = ["--tetrahedra", "600", "--proxies", "8"]
         done = run("model", source, "-o", self.path / "a.h5", *options)
         self.assertEqual(done.returncode, 0, done.stderr)
-        for word in ("smallest dihedral angle [deg]", "volume error [%]", "worst aspect ratio", "fill with tetrahedra", "peak memory", "written:"):
+        for word in ("body: at most 600 s and 1000000 points", "smallest dihedral angle [deg]",
+                     "volume error [%]", "worst aspect ratio", "fill with tetrahedra", "peak memory",
+                     "written:"):
             self.assertIn(word, done.stdout)
         self.assertEqual(done.stderr, "")  # no terminal: no bar
         again = run("model", source, "-o", self.path / "b.h5", *options)
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertEqual((self.path / "a.h5").read_bytes(), (self.path / "b.h5").read_bytes())
-        count = int(next(line for line in done.stdout.splitlines() if line.startswith("tetrahedra")).split()[-1])
-        self.assertAlmostEqual(count, 600, delta=18)
+        count = next(line for line in done.stdout.splitlines() if line.startswith("tetrahedra")).split()[-1]
+        self.assertAlmostEqual(int(count), 600, delta=18)
 
     def test_a_scene_takes_the_model(self):
         source = octahedron(self.path)
-        self.assertEqual(run("model", source, "-o", self.path / "body.h5", "--tetrahedra", "600", "-q").returncode, 0)
+        done = run("model", source, "-o", self.path / "body.h5", "--tetrahedra", "600", "-q")
+        self.assertEqual(done.returncode, 0, done.stderr)
         (self.path / "scene.toml").write_text(scene_of("body.h5"))
         done = run("inspect", self.path / "scene.toml")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -91,8 +158,7 @@ class Program(unittest.TestCase):
 
     def test_regions_from_the_surface_to_the_scene(self):
         source = octahedron(self.path)
-        core = octahedron(self.path, "core.obj")
-        core.write_text("".join(f"v {' '.join(str(0.5 * float(x)) for x in line.split()[1:])}\n" if line.startswith("v") else line + "\n" for line in core.read_text().splitlines()))
+        core = scaled(source, "core.obj", 0.5)
         options = ["--tetrahedra", "3000", "--proxies", "0", "--region", f"core={core}"]
         done = run("model", source, "-o", self.path / "a.h5", *options)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -102,7 +168,8 @@ class Program(unittest.TestCase):
         self.assertLess(abs(volume / wanted - 1), 0.1)
         self.assertEqual(run("model", source, "-o", self.path / "b.h5", *options, "-q").returncode, 0)
         self.assertEqual((self.path / "a.h5").read_bytes(), (self.path / "b.h5").read_bytes())
-        (self.path / "named.toml").write_text(scene_of("a.h5", '[[body.region]]\nname = "core"\nyoungs_modulus_pa = 1e7\ndensity_kg_m3 = 3000.0'))
+        own = '[[body.region]]\nname = "core"\nyoungs_modulus_pa = 1e7\ndensity_kg_m3 = 3000.0'
+        (self.path / "named.toml").write_text(scene_of("a.h5", own))
         (self.path / "silent.toml").write_text(scene_of("a.h5"))
         named = run("inspect", self.path / "named.toml")
         self.assertEqual(named.returncode, 0, named.stderr)
@@ -112,11 +179,118 @@ class Program(unittest.TestCase):
         silent = run("inspect", self.path / "silent.toml")
         self.assertIn("the body's", next(line for line in silent.stdout.splitlines() if " core " in line))
         self.assertIn("does not name it: core of a.h5", silent.stderr + silent.stdout)
-        for words, expected in [((source, "--region", "core"), "--region core: must be NAME=FILE"), ((source, "--region", "core=none.obj"), "none.obj: no such file"),
+        for words, expected in [((source, "--region", "core"), "--region core: must be NAME=FILE"),
+                                ((source, "--region", "core=none.obj"), "none.obj: no such file"),
                                 ((source, "--region", "bone=skeleton"), "the model has no bones")]:
             done = run("model", *words, "-o", self.path / "out.h5", "--tetrahedra", "600")
             self.assertEqual(done.returncode, 1, done.stdout)
             self.assertIn(expected, done.stderr)
+
+    def test_ctrl_c_ends_it_at_once_and_leaves_nothing(self):
+        source = octahedron(self.path)
+        before = sorted(self.path.iterdir())
+        model = Terminal("model", source, "-o", self.path / "a.h5", "--tetrahedra", "3000000")
+        self.assertTrue(model.read_until("fill with tetrahedra"), model.text)  # its bar: it is in the middle
+        model.process.send_signal(signal.SIGINT)
+        self.assertEqual(model.end(), 130)
+        self.assertIn("palpate: stopped, no model was written", model.text)
+        self.assertEqual(sorted(self.path.iterdir()), before)
+
+    def test_progress_is_shown_on_a_terminal_and_grows(self):
+        source = octahedron(self.path)
+        model = Terminal("model", source, "-o", self.path / "a.h5", "--tetrahedra", "3000000")
+        # the bar of one refinement, told from within: nothing was finished yet
+        self.assertTrue(model.read_until(r"\] +[2-9] %[^\r]*fill with tetrahedra"), model.text)
+        model.process.send_signal(signal.SIGTERM)
+        self.assertEqual(model.end(), 130)
+        shares = [int(x) for x in re.findall(r"\] +(\d+) %[^\r]*fill with tetrahedra", model.text)]
+        self.assertEqual(shares, sorted(shares))
+        self.assertGreater(len(set(shares)), 1)
+
+    def test_the_budget_ends_it(self):
+        source = octahedron(self.path)
+        for words, expected in [
+            (("--limit-s", "1"), r"within 1 s: .*at \(.*--limit-s"),
+            (("--points", "1000"), r"about 6e\+05 points, more than the 1000 of the budget.*--points"),
+        ]:
+            done = run("model", source, "-o", self.path / "a.h5", "--tetrahedra", "3000000", *words)
+            self.assertEqual(done.returncode, 1, done.stdout)
+            self.assertRegex(done.stderr, expected)
+            self.assertFalse((self.path / "a.h5").exists())
+
+    def test_steps_that_cannot_be_interrupted_end_as_well(self):
+        # a thousand tents through each other: what CGAL does with them takes far longer than a second
+        with open(self.path / "tangle.obj", "w", encoding="ascii") as file:
+            for i in range(400):
+                for x, y, z in [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]:
+                    file.write(f"v {x + i % 20 * 0.11} {y + i // 20 * 0.13} {z + i * 0.001}\n")
+                a = 4 * i + 1
+                for f in [(a, a + 2, a + 1), (a, a + 1, a + 3), (a + 1, a + 2, a + 3), (a, a + 3, a + 2)]:
+                    file.write("f {} {} {}\n".format(*f))
+        done = run("model", self.path / "tangle.obj", "-o", self.path / "a.h5", "--limit-s", "0.001")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertRegex(done.stderr, r"tangle.obj.*--limit-s")
+        self.assertFalse((self.path / "a.h5").exists())
+
+    def test_a_size_that_cannot_be_meant_is_asked_about(self):
+        large = scaled(octahedron(self.path), "large.obj", 15)
+        make = ["model", large, "-o", self.path / "a.h5", "--tetrahedra", "600", "--proxies", "0"]
+        done = run(*make)
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stderr, "palpate: error: large.obj: the body is 30 m large: is that meant? "
+                                      "Then say --scale 1; a file in millimetres takes --scale 0.001\n")
+        for answer, status in [("y\n", 0), ("n\n", 1), ("\n", 1)]:
+            asked = Terminal(*make)
+            self.assertTrue(asked.read_until(r"large.obj: the body is 30 m large: is that meant\? \[y/N\]"))
+            asked.type(answer)
+            self.assertEqual(asked.end(), status, asked.text)
+            self.assertEqual((self.path / "a.h5").exists(), status == 0)
+            (self.path / "a.h5").unlink(missing_ok=True)
+        for scale in ("1", "0.001"):
+            self.assertEqual(run(*make, "--scale", scale).returncode, 0)
+        small = scaled(octahedron(self.path), "small.obj", 1e-5)
+        self.assertIn("the body is 2e-05 m large: is that meant?", run("model", small).stderr)
+
+    def test_flat_tetrahedra_are_refused_filled_anew_or_taken_at_a_price(self):
+        flat = flat_tetrahedra(self.path)
+        make = ["model", flat, "-o", self.path / "a.h5", "--proxies", "0"]
+        done = run(*make)
+        self.assertEqual(done.returncode, 1)
+        for word in ("dihedral angle", "--remesh", "--accept-angles", "tetrahedron 4 at ("):
+            self.assertIn(word, done.stderr)
+        done = run(*make, "--accept-angles")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"1 of 5 tetrahedra have angles below 8 degrees.*stable up to steps of "
+                                      r"[0-9.e-]+ s.*condition number")
+        (self.path / "scene.toml").write_text(scene_of("a.h5"))
+        done = run("inspect", self.path / "scene.toml")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("leave one out", run(*make, "--accept-angles", "--remesh").stderr)
+
+    @unittest.skipUnless(DATA, "PALPATE_TEST_DATA is not set: real tetrahedra are not tested")
+    def test_real_tetrahedra_with_sharp_relief_are_filled_anew(self):
+        done = run("model", Path(DATA) / "cow_head.msh", "--remesh", "--proxies", "0", "-o",
+                   self.path / "a.h5")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"at \(.*\) m the surface is too sharp or too thin")
+
+    @unittest.skipUnless(DATA, "PALPATE_TEST_DATA is not set: real tetrahedra are not tested")
+    def test_real_tetrahedra_are_taken_as_they_are(self):
+        for name in ("cow_head.msh", "bar-2523.msh", "sphere1K.msh", "dolphin5K.msh"):
+            make = ["model", Path(DATA) / name, "--scale", "1", "--proxies", "0", "-o", self.path / "a.h5"]
+            self.assertIn("--remesh", run(*make).stderr)
+            done = run(*make, "--accept-angles")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("times as many", done.stdout)
+
+    def test_the_documented_counts_are_those_made(self):
+        text = DOCUMENT.read_text(encoding="utf-8")
+        tetrahedra, nodes = re.search(r"`human`.*\| ([0-9,]+) with ([0-9,]+) nodes", text).groups()
+        done = run("model", "human", "-o", self.path / "human.h5", "--proxies", "0")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        made = dict(line.rsplit(maxsplit=1) for line in done.stdout.splitlines() if len(line.split()) == 2)
+        self.assertEqual((tetrahedra.replace(",", ""), nodes.replace(",", "")),
+                         (made["tetrahedra"], made["nodes"]))
 
     def test_help(self):
         self.assertIn("--tetrahedra", run("model", "--help").stdout)
@@ -124,13 +298,16 @@ class Program(unittest.TestCase):
 
     def test_palpate_links_and_loads_nothing_of_it(self):
         linked = subprocess.run(["ldd", PALPATE], capture_output=True, text=True).stdout.lower()
-        symbols = subprocess.run(["nm", "-DC", "--undefined-only", PALPATE], capture_output=True, text=True).stdout
+        symbols = subprocess.run(["nm", "-DC", "--undefined-only", PALPATE], capture_output=True,
+                                 text=True).stdout
         for library in ("cgal", "gmsh", "mpfr", "pugixml", "qhull"):
             self.assertNotIn(library, linked)
         symbols += subprocess.run(["nm", "-C", PALPATE], capture_output=True, text=True).stdout
         self.assertIn("palpate::", symbols)
-        self.assertEqual([line for line in symbols.splitlines() if any(word in line for word in ("CGAL::", "gmshOpen", "gmshInitialize", "mpfr_"))], [])
-        own = subprocess.run(["ldd", str(Path(PALPATE).parent / "palpate-model")], capture_output=True, text=True).stdout.lower()
+        foreign = ("CGAL::", "gmshOpen", "gmshInitialize", "mpfr_")
+        self.assertEqual([line for line in symbols.splitlines() if any(word in line for word in foreign)], [])
+        own = subprocess.run(["ldd", str(Path(PALPATE).parent / "palpate-model")], capture_output=True,
+                             text=True).stdout.lower()
         self.assertNotIn("gmsh", own)  # opened when a file needs it
         self.assertIn("gmp", own)
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "palpate/mesh/quality.h"
 #include "surfaces.h"
 
 using namespace palpate;
@@ -68,6 +69,45 @@ TEST(QualityGate, RefusesAVolumeThatIsOff) {
                                "a.obj");
             }),
             "accepted");
+}
+
+TEST(QualityGate, SaysHowToTakeTetrahedraOfAFile) {
+  TetMesh flat = regular();
+  flat.nodes.row(2) *= 0.05;
+  const model::TetQuality q =
+      model::measure_quality(flat, mesh::enclosed_volume(mesh::boundary(flat).surface));
+  model::QualityGate gate;
+  gate.given = true;
+  const std::string message = refusal([&] { model::pass_gate(flat, q, gate, "a.msh"); });
+  EXPECT_NE(message.find("--remesh"), std::string::npos) << message;
+  EXPECT_NE(message.find("--accept-angles"), std::string::npos) << message;
+}
+
+TEST(QualityGate, AWrongVolumeIsToldWithItsPlace) {
+  TriMesh surface = mesh::boundary(regular()).surface;
+  surface.vertices.conservativeResize(3, 5);
+  surface.vertices.col(4) = Vec3(7, 8, 9);  // far from all nodes
+  const std::string message = refusal(
+      [&] { model::pass_gate(regular(), model::measure_quality(regular(), 1.0), {}, "a.obj", surface); });
+  EXPECT_NE(message.find("at (7, 8, 9) m"), std::string::npos) << message;
+}
+
+TEST(QualityGate, TetrahedraOnOneSideOfTheirFaceAreRefused) {
+  TetMesh two = mesh::corner_tet(Vec3::Ones());
+  two.nodes.conservativeResize(3, 5);
+  two.tets.conservativeResize(4, 2);
+  // Beyond the slanted face x + y + z = 1, seen from there: sound.
+  two.nodes.col(4) = Vec3(1, 1, 1);
+  two.tets.col(1) << 1, 2, 3, 4;
+  ASSERT_GT(mesh::tet_volume(two, 1), 0);
+  EXPECT_EQ(refusal([&] { model::check_sides(two, "a.msh"); }), "accepted");
+  // On the first one's own side, its nodes in the order that makes its volume positive.
+  two.nodes.col(4) = Vec3(0.1, 0.1, 0.1);
+  two.tets.col(1) << 2, 1, 3, 4;
+  ASSERT_GT(mesh::tet_volume(two, 1), 0);
+  EXPECT_NE(
+      refusal([&] { model::check_sides(two, "a.msh"); }).find("tetrahedra 0 and 1 lie on the same side"),
+      std::string::npos);
 }
 
 }  // namespace

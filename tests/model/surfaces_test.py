@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Surfaces that nobody here made, and the paper's own, become models with no option given, within the bars of quality, and the same bytes again.
+"""Surfaces that nobody here made, and the paper's own, become models with no option given, within the bars of
+quality, and the same bytes again.
 
     surfaces_test.py PROGRAM [Class.test ...]      the real ones are skipped, aloud, without PALPATE_TEST_DATA
 """
@@ -30,7 +31,8 @@ class Models(unittest.TestCase):
             files = []
             for name in ("a.h5", "b.h5"):
                 start = time.monotonic()
-                done = subprocess.run([PALPATE, "model", source, "-o", f"{folder}/{name}"], capture_output=True, text=True, timeout=600)
+                done = subprocess.run([PALPATE, "model", source, "-o", f"{folder}/{name}"],
+                                      capture_output=True, text=True, timeout=600)
                 print(f"{source}: {time.monotonic() - start:.1f} s")
                 self.assertEqual(done.returncode, 0, done.stderr)
                 files.append(Path(folder, name).read_bytes())

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "palpate/mesh/skeleton.h"
+#include "palpate/model/angle_price.h"
 #include "palpate/model/foreign_files.h"
 #include "palpate/model/quality_gate.h"
 #include "palpate/model/regions.h"
@@ -40,6 +41,8 @@ struct Options {
   double crease_deg = 0.0;  ///< of kAngle
   /// tetrahedra of a file: keep their boundary only, and fill it anew
   bool remesh = false;
+  /// tetrahedra of a file: take them whatever their angles, with the price in Made::angle_price
+  bool accept_angles = false;
   std::vector<RegionSource> regions;                 ///< beside those of a file of tetrahedra
   int proxies = 60;                                  ///< convex hulls wanted; 0: none
   double bone_margin_m = 0.0;                        ///< nodes nearer to a bone than this belong to it
@@ -56,7 +59,8 @@ class Watcher {
  public:
   virtual ~Watcher() = default;
   virtual void begin(const std::string& /*step*/) {}
-  virtual void progress(double /*fraction*/) {}  ///< of the step
+  virtual void progress(double /*fraction*/) {}        ///< of the step
+  virtual void place(const std::string& /*where*/) {}  ///< that a long piece of the step works at
   virtual void end(const Step& /*step*/) {}
 };
 
@@ -65,12 +69,15 @@ struct Made {
   TetQuality quality;
   std::vector<RegionFigures> regions;
   bool creased = false;
+  std::optional<AnglePrice> angle_price;  ///< where accept_angles took a mesh that the gate refuses
   std::vector<Step> steps;
 };
 
 /// A layered model of a surface, step by step: mend, fill with tetrahedra, check, name regions, embed the
 /// skin, bind the skeleton, cut into convex proxies. The same input and options give the same model, to the
-/// last bit.
+/// last bit. options.tetrahedra.limits bounds the time of all steps together: it is looked at between steps
+/// and while the surface is filled. Mending cannot be interrupted; `palpate model` ends its own process when
+/// the time is over.
 /// @throws Error where a step cannot do its work, or the tetrahedra do not pass the gate
 Made make_model(Input input, const Options& options, Watcher& watcher);
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@ struct RepairOptions {
   double largest_hole = 0.15;  ///< a hole is closed when that adds no more than this share of the surface
   bool largest_shell = false;  ///< several bodies in one file: keep the largest instead of refusing
   bool wrap = true;            ///< what cannot be mended locally is wrapped, and said so
+  /// is told where a piece of work begins that may take long; may be empty
+  std::function<void(const std::string& where)> place = {};
 };
 
 /// A surface that bounds one body: closed, oriented outwards, no face through another; and what had to be

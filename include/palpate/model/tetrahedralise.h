@@ -1,9 +1,11 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "palpate/mesh/mesh.h"
+#include "palpate/model/limits.h"
 #include "palpate/model/progress.h"
 
 namespace palpate::model {
@@ -22,20 +24,25 @@ struct TetrahedraOptions {
   std::optional<double> crease_deg = {};  ///< edges of the surface that turn by more than this are kept sharp
   /// and these lines, which lie on the surface, closed where first and last point agree
   std::vector<Polyline> creases = {};
+  Limits limits = {};
 };
 
 /// Tetrahedra, and how they were found.
 struct Tetrahedra {
   TetMesh mesh;
-  double cell_size = 0.0;  ///< the bound on circumradii that gave the wanted number [m]
-  int attempts = 0;        ///< meshes made to find it
+  double cell_size = 0.0;               ///< the bound on circumradii that gave the wanted number [m]
+  int attempts = 0;                     ///< meshes made to find it
+  std::vector<std::string> notes = {};  ///< where the surface was too sharp or thin to be followed
 };
 
 /// Fills a closed surface: Delaunay refinement (Boissonnat and Oudot 2005; Jamin, Alliez, Yvinec and
 /// Boissonnat 2015) with a uniform bound on circumradii, which is searched for the wanted number; then
 /// vertices are moved for the smallest dihedral angles (Tournois, Srinivasan and Alliez 2009) and slivers
 /// exuded by weights (Cheng et al. 2000).  One thread and fixed seeds: the same surface gives the same bits.
+/// Where the surface is too sharp or too thin for that, smallest elements are bounded, what then touches
+/// itself is taken away, and a note says so: it ends for every surface.
 /// @param surface  closed, outwards, without self-intersections (repair.h)
+/// @throws Error for a number that cannot be met, and beyond the limits
 Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& options,
                           const Progress& progress = {});
 

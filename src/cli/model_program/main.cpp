@@ -5,31 +5,50 @@
 #include <memory>
 #include <new>
 
+#include "guard.h"
 #include "options.h"
 #include "outcome.h"
 #include "palpate/core/error.h"
 #include "palpate/core/log.h"
 #include "pictures.h"
 #include "progress.h"
+#include "size_question.h"
 #include "sources.h"
 #include "stop.h"
 
 namespace palpate::cli {
 namespace {
 
-/// A bar a step.
+/// A bar a step, and what the guard says where the step does not end.
 class Bars : public model::Watcher {
  public:
-  explicit Bars(bool verbose) : verbose_(verbose) {}
-  void begin(const std::string& step) override { bar_ = std::make_unique<Progress>(step); }
+  explicit Bars(const ModelArguments& arguments) : arguments_(arguments) {
+    refuse(fmt::format("{}: no model", arguments_.source), "");
+  }
+  void begin(const std::string& step) override {
+    step_ = step;
+    refuse(fmt::format("{}: \"{}\" did not end", arguments_.source, step_), "");
+    bar_ = std::make_unique<Progress>(step);
+    (*bar_)(0.0);
+  }
   void progress(double fraction) override { (*bar_)(fraction); }
+  void place(const std::string& where) override {
+    refuse(fmt::format("{}: \"{}\" did not end", where, step_),
+           ", or mend the surface there with a program for that");
+  }
   void end(const model::Step& step) override {
     bar_.reset();
-    if (verbose_) fmt::print(stderr, "palpate: {}: {:.2f} s\n", step.name, step.seconds);
+    if (arguments_.verbose) fmt::print(stderr, "palpate: {}: {:.2f} s\n", step.name, step.seconds);
   }
 
  private:
-  bool verbose_;
+  void refuse(const std::string& what, const char* way_out) const {
+    set_refusal(fmt::format("palpate: error: {} within {:.3g} s; give more with --limit-s{}", what,
+                            arguments_.options.tetrahedra.limits.seconds, way_out));
+  }
+
+  const ModelArguments& arguments_;
+  std::string step_;
   std::unique_ptr<Progress> bar_;
 };
 
@@ -38,14 +57,28 @@ int model_command(int argc, char** argv) {
   if (!arguments.given) return 0;
   log::configure(arguments.quiet, arguments.verbose);
   if (!arguments.picture.empty()) check_pictures(arguments.picture);
+  catch_stop();
   model::Input input = input_of(arguments);
   if (arguments.output.empty()) arguments.output = input.name + ".h5";
   if (std::error_code none; std::filesystem::equivalent(arguments.source, arguments.output, none))
     fail("-o {}: is the source itself; choose another name", arguments.output);
-  Bars bars(arguments.verbose);
+  ask_about_size(arguments, input);
+  const model::Limits& limits = arguments.options.tetrahedra.limits;
+  if (!arguments.quiet) {
+    fmt::print("{}: at most {:g} s and {} points (--limit-s, --points)\n", input.name, limits.seconds,
+               limits.points);
+    std::fflush(stdout);
+  }
+  Bars bars(arguments);
+  constexpr double kGrace = 1.0;  // where a step notices by itself, its own message says more
+  catch_time(limits.seconds + kGrace);
   model::Made made = model::make_model(std::move(input), arguments.options, bars);
   made.file.record.options = arguments.as_given;
-  store::write_model(arguments.output, made.file);
+  {
+    SignalsHeld whole_file;
+    store::write_model(arguments.output, made.file);
+    whole_file.written();
+  }
   if (!arguments.picture.empty()) draw_model(made.file.model, arguments.picture);
   if (!arguments.quiet) print_outcome(made, arguments.output);
   return 0;

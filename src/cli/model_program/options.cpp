@@ -23,16 +23,24 @@ constexpr const char* kDescription =
 constexpr const char* kExamples = R"(Examples:
   palpate model liver.obj -o liver.h5                         about 10,000 tetrahedra
   palpate model scan.stl --scale 0.001 -o scan.h5             a file in millimetres
-  palpate model part.ply --tetrahedra 30000 --creases 40      edges that turn by more than 40 degrees stay sharp
+  palpate model part.ply --tetrahedra 30000 --creases 40      edges that turn by more than 40 degrees stay
+                                                              sharp
   palpate model liver.msh --remesh --element-size-m 0.01      the boundary of tetrahedra, filled anew
+  palpate model liver.msh --accept-angles                     tetrahedra as they are, however flat
   palpate model liver.obj --picture liver.png                 surface, tetrahedra cut open, skin and proxies
-  palpate model leg.obj --region bone=femur.obj -o leg.h5     tetrahedra inside of femur.obj become the region "bone"
+  palpate model leg.obj --region bone=femur.obj -o leg.h5     tetrahedra inside of femur.obj become the region
+                                                              "bone"
   palpate model human --region bone=skeleton -o human.h5      those inside of the bones
 
-A scene gives a region its own material: [[body.region]] with name = "bone" and youngs_modulus_pa, ...  Regions of a file of tetrahedra are kept.
+A scene gives a region its own material: [[body.region]] with name = "bone" and youngs_modulus_pa, ...
+Regions of a file of tetrahedra are kept.
 
-The outcome is printed: counts, smallest dihedral angle (at least 8 degrees, 4 where creases are kept), volume error (at most 1 %), worst aspect ratio,
-seconds a step, peak memory.  Exit status 0, or 1 where the surface or the mesh was refused; the message says where and why.)";
+The budget is printed first: a model is made within --limit-s seconds and --points points, or refused.
+A body larger than 10 m or smaller than 1 mm is asked about; --scale 1 says that it is meant.
+The outcome is printed: counts, smallest dihedral angle (at least 8 degrees, 4 where creases are kept), volume
+error (at most 1 %), worst aspect ratio, seconds a step, peak memory.  Exit status 0, or 1 where the surface
+or the mesh was refused; the message says where, why, and what to do.  Ctrl-C ends it at once, with 130, and
+writes nothing.)";
 
 const CLI::Validator positive(
     [](const std::string& text) {
@@ -83,8 +91,9 @@ model::RegionSource region_of(const std::string& text) {
 /// The options that shape the model, in one order and one spelling.
 std::string canonical(const CLI::App& app) {
   std::string out;
-  for (const char* name : {"--tetrahedra", "--element-size-m", "--scale", "--creases", "--proxies",
-                           "--bone-margin-m", "--region", "--remesh", "--largest-shell", "--no-wrap"})
+  for (const char* name :
+       {"--tetrahedra", "--element-size-m", "--scale", "--creases", "--proxies", "--bone-margin-m",
+        "--region", "--remesh", "--accept-angles", "--largest-shell", "--no-wrap"})
     if (const CLI::Option* option = app.get_option(name); option->count() > 0) {
       if (std::string_view(name) == "--region") {
         for (const std::string& given : option->results())
@@ -120,10 +129,11 @@ ModelArguments parse_model(int argc, char** argv) {
       ->type_name("M")
       ->check(positive)
       ->excludes(count);
-  app.add_option("--scale", options.scale, "multiplies every coordinate: 0.001 for a file in millimetres")
-      ->type_name("S")
-      ->check(positive)
-      ->capture_default_str();
+  CLI::Option* scale =
+      app.add_option("--scale", options.scale, "multiplies every coordinate: 0.001 for a file in millimetres")
+          ->type_name("S")
+          ->check(positive)
+          ->capture_default_str();
   app.add_option("--creases", creases,
                  "edges to keep sharp: auto, none, or those that turn by more than this angle [degrees]")
       ->type_name("WHICH")
@@ -143,11 +153,21 @@ ModelArguments parse_model(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_flag("--remesh", options.remesh,
                "tetrahedra of a file: fill their boundary anew instead of taking them");
+  app.add_flag("--accept-angles", options.accept_angles,
+               "tetrahedra of a file: take them whatever their angles, and print what that costs");
   app.add_flag("--largest-shell", options.repair.largest_shell,
                "several bodies in one file: keep the largest");
   app.add_flag_callback(
       "--no-wrap", [&options] { options.repair.wrap = false; },
       "refuse what cannot be mended locally, instead of wrapping it");
+  app.add_option("--limit-s", options.tetrahedra.limits.seconds, "time that all steps may take [s]")
+      ->type_name("S")
+      ->check(positive)
+      ->capture_default_str();
+  app.add_option("--points", options.tetrahedra.limits.points, "points that refinement may make")
+      ->type_name("N")
+      ->check(CLI::Range(100, 100'000'000))
+      ->capture_default_str();
   app.add_option("--picture", out.picture, "draw the steps: surface, tetrahedra cut open, skin, proxies")
       ->type_name("FILE.png");
   app.add_flag("-q,--quiet", out.quiet, "only errors");
@@ -165,7 +185,12 @@ ModelArguments parse_model(int argc, char** argv) {
   set_creases(creases, options);
   for (const std::string& region : regions) options.regions.push_back(region_of(region));
   out.counted = count->count() > 0;
+  out.scaled = scale->count() > 0;
   if (out.counted || options.tetrahedra.element_size_m > 0) options.remesh = true;
+  if (options.remesh && options.accept_angles)
+    fail(
+        "--accept-angles takes the tetrahedra of the file; --remesh (and --tetrahedra, --element-size-m) "
+        "makes others: leave one out");
   options.tetrahedra.at_least = !out.counted;
   out.as_given = canonical(app);
   out.given = true;

@@ -13,6 +13,7 @@ struct ModelArguments {
   std::string picture;  ///< PNG file; empty: none
   bool quiet = false, verbose = false;
   bool counted = false;  ///< --tetrahedra was given
+  bool scaled = false;   ///< --scale was given
   model::Options options;
   std::string as_given;  ///< the options that shape the model, for its record
 };

@@ -1,0 +1,43 @@
+#include "meter.h"
+
+#include <algorithm>
+
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+
+namespace palpate::model {
+
+Meter::Meter(const Limits& limits) : limits_(limits), start_(wall_seconds()) {}
+
+void Meter::begin(double expected_points, Progress progress) {
+  progress_ = std::move(progress);
+  expected_ = std::max(expected_points, 1.0);
+  reported_ = 0.0;
+}
+
+double Meter::seconds_left() const { return std::max(limits_.seconds - (wall_seconds() - start_), 1e-3); }
+
+void Meter::check(const char* what) const {
+  if (wall_seconds() - start_ < limits_.seconds) return;
+  fail(
+      "the surface was not filled with tetrahedra within {:.3g} s: the time was over {}; give more with "
+      "--limit-s, or ask for fewer with --tetrahedra",
+      limits_.seconds, what);
+}
+
+void Meter::look(std::size_t points, const Vec3& place) {
+  if (wall_seconds() - start_ >= limits_.seconds)
+    fail(
+        "the surface was not filled with tetrahedra within {:.3g} s: refinement stood at ({:.4g}, {:.4g}, "
+        "{:.4g}) m, with {} points; give more with --limit-s, ask for fewer with --tetrahedra, or smooth the "
+        "surface there",
+        limits_.seconds, place.x(), place.y(), place.z(), points);
+  if (!progress_) return;
+  // Half of it where all expected points are there, the rest for those beyond; it never runs back where
+  // refinement begins anew.
+  const double done = static_cast<double>(points) / expected_;
+  reported_ = std::max(reported_, done / (1.0 + done));
+  progress_(reported_);
+}
+
+}  // namespace palpate::model

@@ -1,0 +1,57 @@
+#include "palpate/model/angle_price.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "palpate/mesh/generators.h"
+
+using namespace palpate;
+using model::AnglePrice;
+
+namespace {
+
+constexpr double kMu = AnglePrice::kYoungsModulus / (2 * (1 + AnglePrice::kPoissonsRatio)),
+                 kLambda = AnglePrice::kYoungsModulus * AnglePrice::kPoissonsRatio /
+                           ((1 + AnglePrice::kPoissonsRatio) * (1 - 2 * AnglePrice::kPoissonsRatio));
+
+// The regular tetrahedron with corners at (1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1): g_a = x_a / 4, so
+// that a displacement u_a = F x_a has the gradient F and the nodal forces V P g_a = V P x_a / 4.  With the
+// mass rho V / 4 of a node, P = 2 mu F for a symmetric F without trace and P = (3 lambda + 2 mu) F for F = I:
+// the eigenvalues are 2 mu / rho and (3 lambda + 2 mu) / rho.
+TEST(AnglePrice, RegularTetrahedronByHand) {
+  TetMesh mesh;
+  mesh.nodes = (Points(3, 4) << 1, 1, -1, -1, 1, -1, 1, -1, 1, -1, -1, 1).finished();
+  mesh.tets = (Tets(4, 1) << 0, 1, 3, 2).finished();
+  const Vec3 a = mesh.nodes.col(0), b = mesh.nodes.col(mesh.tets(1, 0)), c = mesh.nodes.col(mesh.tets(2, 0)),
+             d = mesh.nodes.col(mesh.tets(3, 0));
+  if ((b - a).cross(c - a).dot(d - a) < 0) mesh.tets.col(0) << 0, 1, 2, 3;
+  const double exact = (3 * kLambda + 2 * kMu) / AnglePrice::kDensity;
+  EXPECT_NEAR(model::largest_eigenvalue(mesh), exact, 1e-9 * exact);
+}
+
+TEST(AnglePrice, ScalesWithTheSizeAndGrowsWithFlatness) {
+  const TetMesh mesh = mesh::ball(1.0, 0.4);
+  TetMesh large = mesh, flat = mesh;
+  large.nodes *= 10;
+  // K goes with the size, M with its cube.
+  EXPECT_NEAR(model::largest_eigenvalue(large) * 100, model::largest_eigenvalue(mesh),
+              1e-6 * model::largest_eigenvalue(mesh));
+  flat.nodes.row(2) *= 0.01;
+  const AnglePrice price = model::price_of_angles(flat, 8.0);
+  EXPECT_GT(price.bad, 0);
+  EXPECT_EQ(price.all, mesh.tets.cols());
+  EXPECT_GT(price.good_explicit_step_s, 5 * price.explicit_step_s);
+  EXPECT_GT(price.condition, price.good_condition);
+  EXPECT_NEAR(price.condition, 1 + 4 * std::pow(AnglePrice::kImplicitStep / price.explicit_step_s, 2),
+              1e-9 * price.condition);
+}
+
+TEST(AnglePrice, OfTheGoodMeshItselfIsNothing) {
+  const AnglePrice price = model::price_of_angles(mesh::box(Vec3::Constant(1.6), {8, 8, 8}), 8.0);
+  EXPECT_EQ(price.bad, 0);
+  EXPECT_NEAR(price.explicit_step_s, price.good_explicit_step_s, 1e-6 * price.good_explicit_step_s);
+}
+
+}  // namespace

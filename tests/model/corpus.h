@@ -1,0 +1,59 @@
+#pragma once
+// Whatever the surface, it ends within its budget: as a model, or as a refusal that says where and what to
+// do.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "broken_surfaces.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+#include "palpate/mesh/boundary.h"
+
+namespace broken {
+
+struct Share {
+  int all = 0, models = 0, meant_to_be = 0;
+};
+
+/// What a model must be, however its surface was: passed by the gate, and bounded by a closed surface.
+inline void expect_sound(const model::Made& made) {
+  mesh::Provenance from;
+  from.source = "boundary of the model";
+  TriMesh skin = mesh::boundary(made.file.model.tets).surface;
+  EXPECT_NO_THROW(mesh::check_surface(skin, from));
+  EXPECT_LE(made.quality.volume_error, 0.01);
+  if (!made.angle_price) { EXPECT_GE(made.quality.smallest_dihedral_deg, made.creased ? 4.0 : 8.0); }
+}
+
+inline Share make_all(const std::function<bool(const broken::Entry&)>& wanted) {
+  Share share;
+  for (const broken::Entry& entry : broken::entries()) {
+    if (!wanted(entry)) continue;
+    SCOPED_TRACE(entry.name);
+    model::Options options = entry.options;
+    options.tetrahedra.tetrahedra = 1500;
+    options.tetrahedra.at_least = true;
+    options.proxies = 0;
+    model::Watcher silent;
+    const double start = wall_seconds();
+    std::string outcome = "model";
+    try {
+      expect_sound(model::make_model(entry.make(), options, silent));
+    } catch (const Error& e) { outcome = e.what(); }
+    ++share.all;
+    share.models += outcome == "model";
+    share.meant_to_be += entry.expected == "model";
+    fmt::print("  {:44} {:5.1f} s  {}\n", entry.name, wall_seconds() - start, outcome);
+    if (entry.expected == "model") {
+      EXPECT_EQ(outcome, "model");
+    } else {
+      EXPECT_NE(outcome, "model");
+      EXPECT_NE(outcome.find(entry.expected), std::string::npos) << outcome;
+    }
+  }
+  fmt::print("{} of {} surfaces became models, {} were meant to\n", share.models, share.all,
+             share.meant_to_be);
+  return share;
+}
+
+}  // namespace broken
