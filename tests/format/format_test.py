@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Every C++ source is as clang-format writes it (.clang-format: 110 columns), and no line of any other text is
-longer; the checks themselves can fail."""
+"""Every C++ source is as clang-format writes it (.clang-format: 110 columns), and no line of any other text
+is longer; the checks themselves can fail."""
 import shutil
 import subprocess
 import sys
