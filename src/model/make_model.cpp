@@ -103,7 +103,7 @@ void find_regions(Input& input, const Options& options, const TetMesh* old, Made
   std::vector<MaterialRegion> regions =
       old ? carried_over(*old, input.regions, model.tets) : std::move(input.regions);
   if (old && !regions.empty())
-    made.file.record.notes.push_back(
+    made.file.record.notes.emplace_back(
         "the regions of the file are carried over to the new tetrahedra by their middles");
   std::vector<RegionSource> sources = options.regions;
   for (RegionSource& source : sources) source.surface.vertices *= options.scale;

@@ -196,7 +196,7 @@ TEST(Units, EquilibriaFollowTheLoadOverTwelveDecades) {
       ASSERT_EQ(found.error, "");
       EXPECT_LE(found.counters.solver.factorisations, 10);
       EXPECT_EQ(found.counters.newton_failures, 0);
-      if (decade >= 5) EXPECT_GT(found.counters.rounding_limited, 0);
+      if (decade >= 5) { EXPECT_GT(found.counters.rounding_limited, 0); }
       const VecX linear = linear_response(s, units);
       // the part that is not linear falls with the load: 1e-3 of the displacement at the first
       const double bent = linear.cwiseAbs().maxCoeff() / s.size.x();
@@ -307,11 +307,11 @@ INSTANTIATE_TEST_SUITE_P(Units, OnAPlane,
                          testing::Values(Contact{"linearly-implicit-euler", "kelvin_voigt"},
                                          Contact{"linearly-implicit-euler", "hunt_crossley"},
                                          Contact{"rk4", "hunt_crossley"}),
-                         [](const auto& info) { return fmt::format("Row{}", info.index); });
+                         [](const auto& row) { return fmt::format("Row{}", row.index); });
 INSTANTIATE_TEST_SUITE_P(UnderErrorControl, OnAPlane,
                          testing::Values(Contact{"cvode-bdf", "kelvin_voigt"},
                                          Contact{"cvode-bdf", "hunt_crossley", "root-finding"}),
-                         [](const auto& info) { return fmt::format("Row{}", info.index); });
+                         [](const auto& row) { return fmt::format("Row{}", row.index); });
 
 // The gap within which candidates are kept, the mesh chooses; nothing slides.
 TEST(Units, RestOnAPlane) {
@@ -382,7 +382,7 @@ INSTANTIATE_TEST_SUITE_P(Units, PressedByATool,
                                          Coupling{"linearly-implicit-euler", "partitioned", "frozen"},
                                          Coupling{"linearly-implicit-euler", "monolithic", ""},
                                          Coupling{"cvode-bdf", "monolithic", ""}),
-                         [](const auto& info) { return fmt::format("Row{}", info.index); });
+                         [](const auto& row) { return fmt::format("Row{}", row.index); });
 #endif
 
 // --- modes
@@ -403,7 +403,9 @@ TEST(Units, FrequenciesAndShapesOfModes) {
         EXPECT_NEAR(found.omega_squared[j], first.omega_squared[j], kRelative * first.omega_squared[j]) << j;
       // M-orthonormal: x M x = 1; the square section has pairs of modes, of which any turn is as good
       const double size = first.shapes.leftCols(2).norm();
-      if (held) EXPECT_NEAR(std::sqrt(units.mass) * found.shapes.leftCols(2).norm(), size, kRelative * size);
+      if (held) {
+        EXPECT_NEAR(std::sqrt(units.mass) * found.shapes.leftCols(2).norm(), size, kRelative * size);
+      }
     }
   }
 }

@@ -208,12 +208,13 @@ TEST(Kinds, ToolDeviceAndExchange) {
   EXPECT_EQ(with({"exchange.scheme=monolithic", "exchange.linearisation=frozen"}),
             "--set exchange.linearisation=frozen: exchange: linearisation means nothing to scheme = "
             "\"monolithic\"; remove it (used by partitioned)");
-  if (!palpate::loop::tool_steppers().empty())
+  if (!palpate::loop::tool_steppers().empty()) {
     EXPECT_NE(with({"tool.integrator=linearly-implicit-eular"})
                   .find("tool: integrator = \"linearly-implicit-eular\" is not known (did you mean "
                         "\"linearly-implicit-euler\"?)"),
               std::string::npos)
         << with({"tool.integrator=linearly-implicit-eular"});
+  }
   EXPECT_EQ(refusal(kBlock + "[tool]\n[device]\nmax_force_n = 1.0\n"),
             "s.toml:9:1: device: keyframe is missing: device type \"script\" needs it");
   EXPECT_NE(
