@@ -11,6 +11,7 @@
 #include "temporary_folder.h"
 
 using namespace palpate;
+using namespace std::string_literals;
 namespace fs = std::filesystem;
 
 namespace {
@@ -60,7 +61,8 @@ TEST_F(StudyDbTest, KeepsRowsToTheBit) {
 }
 
 TEST_F(StudyDbTest, KeepsBytes) {
-  const std::string bytes("\0\1\xff with a zero \0 inside", 26);
+  const std::string bytes = "\0\1\xff with a zero \0 inside"s;
+  ASSERT_EQ(bytes.size(), 24u);
   store::StudyDb db(path_, kColumns);
   EXPECT_FALSE(db.artefact("r"));
   db.put(store::StudyArtefact{"r", "reference", "ok", "", 1.5, bytes});
