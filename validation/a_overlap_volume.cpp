@@ -7,13 +7,14 @@
 #include "palpate/mesh/generators.h"
 
 // Overlap volume of two spheres, centres d apart, d^2 >= |R1^2 - R2^2| (the lens lies between the two
-// equators, a height field along the line of centres):  V = pi (R1 + R2 - d)^2 (d^2 + 2 d (R1 + R2) - 3 (R1 -
-// R2)^2) / (12 d). The sum of depth x dA over the `pixel` samples of the gpu path is a midpoint rule for it,
-// on the facets: against their exact overlap only the pixels err (order above 2 as RMS over shifts of the
-// grid: the midpoint rule, and a border where the depth has a kink but no jump); against the true spheres the
-// inscribed facets do, with order 2. Exact overlap of the facets: each pair of facing triangles, projected
-// along the line of centres, is intersected; there the depth is linear, so its positive part is a polygon cut
-// by one more line, integrated exactly.
+// equators, a height field along the line of centres):
+//     V = pi (R1 + R2 - d)^2 (d^2 + 2 d (R1 + R2) - 3 (R1 - R2)^2) / (12 d).
+// The sum of depth x dA over the `pixel` samples of the gpu path is a midpoint rule for it, on the facets.
+// Against the facets' exact overlap only the pixels err (order above 2 as RMS over shifts of the grid: the
+// midpoint rule, and a border where the depth has a kink but no jump); against the true spheres the inscribed
+// facets do, with order 2.  Exact overlap of the facets: each pair of facing triangles, projected along the
+// line of centres, is intersected; there the depth is linear, so its positive part is a polygon cut by one
+// more line, integrated exactly.
 
 namespace palpate::validation {
 namespace {
@@ -22,17 +23,17 @@ using Vec2 = Eigen::Vector2d;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kR1 = 1.0, kR2 = 0.8, kDistance = 1.5;
 
-/// Both surfaces; z is the line of centres, the first sphere (soft) above.  `orientation` turns them against
-/// each other and the axes.
+/// Both surfaces; z is the line of centres, the first sphere (soft) above.  `orientation` rotates them
+/// against each other and the axes.
 struct Spheres {
   TriMesh upper, lower;
   Spheres(int subdivisions, int orientation)
       : upper(mesh::sphere(kR1, subdivisions)), lower(mesh::sphere(kR2, subdivisions)) {
-    const auto turn = [](TriMesh& mesh, double angle, const Vec3& axis) {
+    const auto rotate = [](TriMesh& mesh, double angle, const Vec3& axis) {
       mesh.vertices = (Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix() * mesh.vertices).eval();
     };
-    turn(upper, 0.4 + 0.9 * orientation, Vec3(1, 2, 3 - orientation));
-    turn(lower, 1.3 - 0.7 * orientation, Vec3(2 + orientation, -1, 1));
+    rotate(upper, 0.4 + 0.9 * orientation, Vec3(1, 2, 3 - orientation));
+    rotate(lower, 1.3 - 0.7 * orientation, Vec3(2 + orientation, -1, 1));
     upper.vertices.row(2).array() += kDistance;
   }
 };

@@ -32,7 +32,7 @@ class PointMass final : public dynamics::InertiaTerm {
 
 /// A flat punch under one node: a square of `area` in the plane through the node, `across` x `across` equal
 /// samples, over the plane z = 0 of a frame.  Their gaps are the node's height; their arms lie in world axes,
-/// so the punch never turns.
+/// so the punch never rotates.
 std::unique_ptr<contact::SampleSource> make_punch_source(int node, double area, int across, int frame);
 
 }  // namespace palpate::validation

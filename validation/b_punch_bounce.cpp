@@ -9,17 +9,21 @@
 
 // A flat punch of area A and mass m meets a plane at speed v0, without gravity.  The contact is one spring K
 // = k A with damper c = d A:
-//   m x'' + c x' + K x = 0,   x(0) = 0, x'(0) = v0 (depth),   w = sqrt(K/m), zeta = c/(2 sqrt(K m)).
-// No damping: x = v0/w sin(w t); contact lasts pi/w, and the speed comes back whole.
-// Kelvin-Voigt without adhesion, zeta < 1, s = sqrt(1 - zeta^2), b = zeta/s: x = v0/(w s) exp(-zeta w t)
-// sin(w s t). The contact force K x + c x' is zero when  tan(w s t) = -2 zeta s/(1 - 2 zeta^2), first at
-//   w s t1 = pi - atan2(2 zeta s, 1 - 2 zeta^2),   with depth still > 0;
-// from there it would pull, so the punch leaves with x'(t1):  e = -x'(t1)/v0 = exp(-b (pi - atan2(2 zeta s, 1
-// - 2 zeta^2))). zeta = 1 is the limit: w t1 = 2, e = exp(-2).
-// zeta = 0.1, 0.3, 0.5 give e = 0.744079, 0.450975, 0.298436.
-// Hunt-Crossley (1975), a = 3 c/2:  m v v'(x) = -K x (1 + a v)  separates,  m v dv/(1 + a v) = -K x dx, and x
-// vanishes at both ends, so the integral of v/(1 + a v) from -e v0 to v0 is zero:  G(a v0) = G(-e a v0), G(u)
-// = u - ln(1 + u).  Any shape, as only p(x) (1 + a v) was used.
+//     m x'' + c x' + K x = 0,   x(0) = 0, x'(0) = v0 (depth),   w = sqrt(K/m), zeta = c/(2 sqrt(K m)).
+// - No damping: x = v0/w sin(w t); contact lasts pi/w, and the speed is restored fully.
+// - Kelvin-Voigt without adhesion, zeta < 1, s = sqrt(1 - zeta^2), b = zeta/s:
+//       x = v0/(w s) exp(-zeta w t) sin(w s t).
+//   The contact force K x + c x' is zero when tan(w s t) = -2 zeta s/(1 - 2 zeta^2), first at
+//       w s t1 = pi - atan2(2 zeta s, 1 - 2 zeta^2),
+//   with depth still > 0; from there it would pull, so the punch separates with x'(t1):
+//       e = -x'(t1)/v0 = exp(-b (pi - atan2(2 zeta s, 1 - 2 zeta^2))).
+//   zeta = 1 is the limit: w t1 = 2, e = exp(-2).  zeta = 0.1, 0.3, 0.5 give e = 0.744079, 0.450975,
+//   0.298436.
+// - Hunt-Crossley (1975), a = 3 c/2: the equation m v v'(x) = -K x (1 + a v) separates into
+//       m v dv/(1 + a v) = -K x dx,
+//   and x vanishes at both ends, so the integral of v/(1 + a v) from -e v0 to v0 is zero:
+//       G(a v0) = G(-e a v0),   G(u) = u - ln(1 + u).
+//   It holds for any shape, as only p(x) (1 + a v) was used.
 
 namespace palpate::validation {
 namespace {
@@ -186,7 +190,8 @@ Measurement free_flight(const std::string& fault) {
 }
 
 /// Order of a fixed-step method through a damped bounce: the force jumps at touch, somewhere inside a step,
-/// so order 1 whatever the method. Where in the step is chance: RMS over starting heights.
+/// so order 1 whatever the method.  The position of the jump within the step is random: RMS over starting
+/// heights.
 Measurement order_through_touch(double zeta, double e, const std::string& fault) {
   constexpr int kHeights = 32;
   std::vector<double> h, error;
@@ -282,14 +287,15 @@ ValidationCase punch_bounce() {
 }
 
 ValidationCase punch_bounce_damped() {
-  return {"punch-bounce-damped",
-          "B",
-          "Bounce of a flat punch with Kelvin-Voigt damping and no adhesion, zeta = 0.1, 0.3, 0.5, 1",
-          "The pressure is cut where it would pull, so the punch leaves before the depth is gone: the closed "
-          "form of exactly that.",
-          false,
-          run_damped,
-          {"half-damping", "hunt-crossley"}};
+  return {
+      "punch-bounce-damped",
+      "B",
+      "Bounce of a flat punch with Kelvin-Voigt damping and no adhesion, zeta = 0.1, 0.3, 0.5, 1",
+      "The pressure is cut where it would pull, so the punch separates before the depth is gone: the closed "
+      "form of exactly that.",
+      false,
+      run_damped,
+      {"half-damping", "hunt-crossley"}};
 }
 
 ValidationCase punch_bounce_hunt_crossley() {

@@ -8,11 +8,11 @@
 // A rigid sphere of radius R held with its lowest point delta0 below a plane.  Pressure is k times the depth
 // along the plane's normal, over the area projected on the plane, so the force is k times the volume below
 // the plane: a spherical cap,
-//   F = k pi delta0^2 (3 R - delta0)/3.
+//     F = k pi delta0^2 (3 R - delta0)/3.
 // `vertex` sampling: each vertex carries a third of the projected areas around it, so the sum is the integral
 // of the depth interpolated over the facets, cut to zero at the vertices instead of along the waterline.
-// Both that and the inscribed facets cost h^2. The facets' own volume is exact: each triangle is clipped at
-// the plane, and the depth, linear on it, is integrated over what is left.
+// Both that and the inscribed facets cost h^2.  The facets' own volume is exact: each triangle is clipped at
+// the plane, and the depth, linear on it, is integrated over the rest.
 
 namespace palpate::validation {
 namespace {
@@ -23,9 +23,10 @@ constexpr double kRadius = 0.02, kDepth = 0.004, kStiffness = 5e7;
 /// A position off every symmetry of the mesh, lowest point of the true sphere at -kDepth.
 TriMesh placed_sphere(int subdivisions, int orientation) {
   TriMesh mesh = mesh::sphere(kRadius, subdivisions);
-  const Quat turn =
+  const Quat rotation =
       Quat(Eigen::AngleAxisd(0.37 + 1.1 * orientation, Vec3(1, 2 - orientation, 3).normalized()));
-  mesh.vertices = (turn.toRotationMatrix() * mesh.vertices).colwise() + Vec3(0.011, -0.007, kRadius - kDepth);
+  mesh.vertices =
+      (rotation.toRotationMatrix() * mesh.vertices).colwise() + Vec3(0.011, -0.007, kRadius - kDepth);
   return mesh;
 }
 
@@ -104,17 +105,17 @@ Measurement against(const std::string& quantity, double computed, double exact, 
 std::vector<Measurement> run(const std::string& fault) {
   constexpr int kOrientations = 6;
   const double cap = kPi * kDepth * kDepth * (3 * kRadius - kDepth) / 3.0;
-  const std::vector<int> ladder = {16, 24, 32, 48, 64};
+  const std::vector<int> subdivisions = {16, 24, 32, 48, 64};
   std::vector<double> h, error;
   double finest = 0.0;
-  for (const int n : ladder) {
+  for (const int n : subdivisions) {
     double mean = 0.0;
     for (int i = 0; i < kOrientations; ++i) mean += vertex_force(placed_sphere(n, i), fault) / kOrientations;
     h.push_back(1.0 / n);
     error.push_back(std::abs(mean / (kStiffness * cap) - 1.0));
     finest = mean;
   }
-  const TriMesh mesh = placed_sphere(ladder.back(), 0);
+  const TriMesh mesh = placed_sphere(subdivisions.back(), 0);
   const double facets = kStiffness * volume_below(mesh);
   std::vector<Measurement> out;
   out.push_back(against("force on the facets, vertex samples [N]", vertex_force(mesh, fault), facets, 1e-3));

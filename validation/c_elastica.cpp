@@ -4,15 +4,16 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Slender cantilever under an end load P that keeps its direction, large deflection: the elastica E I theta''
-// = -P cos(theta) (Bisshopp and Drucker 1945). With the slope theta0 at the end, p^2 = (1 + sin theta0)/2 and
-// sin phi = 1/(sqrt(2) p),
-//
-//   sqrt(a) = K(p) - F(phi, p),   drop/L = 1 - 2 (E(p) - E(phi, p))/sqrt(a),   1 - shortening/L = sqrt(2
-//   sin(theta0)/a),   a = P L^2/(E I).
+// Slender cantilever under an end load P that keeps its direction, large deflection: the elastica
+//     E I theta'' = -P cos(theta)
+// (Bisshopp and Drucker 1945).  With a = P L^2/(E I), the slope theta0 at the end, p^2 = (1 + sin theta0)/2
+// and sin phi = 1/(sqrt(2) p),
+//     sqrt(a) = K(p) - F(phi, p),
+//     drop/L = 1 - 2 (E(p) - E(phi, p))/sqrt(a),
+//     1 - shortening/L = sqrt(2 sin(theta0)/a).
 //
 // nu = 0 and uniaxial strain: psi = E (l - 1)^2/2, so that the moment is E I times the curvature at any
-// strain.  Left out by the elastica: shear and extension of the axis, both below 0.2 % at L/h = 20.  Nothing
+// strain. The elastica neglects shear and extension of the axis, both below 0.2 % at L/h = 20.  Nothing
 // depends on z (nu = 0): one layer of cells between two planes z = const is the whole beam.
 
 namespace palpate::validation {
@@ -67,7 +68,7 @@ struct Beam {
     for (const auto& [node, share] : end) sum += share * body.displacement(node);
     return sum;
   }
-  /// Angle by which the end face has turned.
+  /// Angle by which the end face has rotated.
   double end_angle() const {
     Vec3 along = Vec3::Zero();
     for (const auto& [node, share] : end)
@@ -79,7 +80,7 @@ struct Beam {
   }
 };
 
-/// Drop and shortening, over L, under each of the loads in turn; NaN where Newton fails.
+/// Drop and shortening, over L, under each of the loads one after the other; NaN where Newton fails.
 std::vector<Bend> bend(int across, const std::vector<double>& loads, const std::string& fault) {
   fem::Material m;
   m.youngs_modulus = fault == "half-stiffness" ? 0.5 * kYoung : kYoung;
@@ -98,7 +99,7 @@ std::vector<Bend> bend(int across, const std::vector<double>& loads, const std::
       const double P = beam.force_of(before + (a - before) * k / parts);
       beam.load(Vec3(0, -P, 0));
       solved = beam.body.solve();
-      if (fault == "load-turns-with-the-end")
+      if (fault == "follower-load")
         for (int i = 0; i < 5 && solved; ++i) {
           const double angle = beam.end_angle();
           beam.load(P * Vec3(-std::sin(angle), -std::cos(angle), 0));
@@ -153,7 +154,7 @@ ValidationCase large_deflection() {
           "slender cantilever under an end load that bends it by up to 75 degrees, against the elastica",
       .why = "large rotation with small strain is what corotated elements are for; Bisshopp and Drucker 1945",
       .run = run,
-      .faults = {"half-stiffness", "load-turns-with-the-end"}};
+      .faults = {"half-stiffness", "follower-load"}};
 }
 
 }  // namespace palpate::validation

@@ -6,8 +6,8 @@
 
 // Bar held at x = 0, weight along +x, nu = 0: the stress is rho g (L - x), u(x) = rho g (L x - x^2/2)/E, and
 // the elastic energy is the integral of A sigma^2/(2 E) = A (rho g)^2 L^3/(6 E).  With nu = 0 and tension R =
-// I: the nonlinear law has the same solution. Linear elements: energy and nodes converge with order 2 (the
-// mean of the tip is superconvergent: not a measure).
+// I: the nonlinear law has the same solution.  Linear elements: energy and nodes converge with order 2 (the
+// mean displacement of the tip is superconvergent, so it is not measured).
 
 namespace palpate::validation {
 namespace {

@@ -12,8 +12,8 @@
 // Linear elements hold this field, and their faces follow the border between the layers: exact to rounding on
 // any mesh of that kind.
 //
-// Layers side by side, pulled to the same stretch l, are springs in parallel: force = (l - 1) (A_1 E_1 + A_2
-// E_2).
+// Layers side by side, pulled to the same stretch l, are springs in parallel:
+//     force = (l - 1) (A_1 E_1 + A_2 E_2).
 
 namespace palpate::validation {
 namespace {
@@ -29,7 +29,7 @@ fem::Materials layers(const TetMesh& rest, int axis, const std::string& fault) {
   fem::Materials out({soft, stiff}, {});
   for (const auto& tet : rest.tets.colwise()) {
     const double at = rest.nodes(axis, tet).mean();
-    out.of_element.push_back(fault == "turned-round" ? at < 0.0 : at > 0.0);
+    out.of_element.push_back(fault == "layers-swapped" ? at < 0.0 : at > 0.0);
   }
   return out;
 }
@@ -127,7 +127,7 @@ ValidationCase layered_bar() {
           "shows that each element has its own material, on the right side of the border, and that the two "
           "share its nodes; exact for nu = 0",
       .run = run,
-      .faults = {"one-material", "turned-round"}};
+      .faults = {"one-material", "layers-swapped"}};
 }
 
 }  // namespace palpate::validation

@@ -8,10 +8,11 @@
 #include "statics.h"
 
 // Volumetric locking.  Cantilever in plane strain, height D, 0 <= x <= L, bent by the parabolic shear stress
-// tau = -(P/(2I)) (D^2/4 - y^2) on its end (per unit width, I = D^3/12).  With E' = E/(1 - nu^2) and nu' =
-// nu/(1 - nu) the exact field, for every nu up to 1/2 (Timoshenko and Goodier, Theory of Elasticity, 21; the
-// displacements as in Augarde and Deeks 2008, checked here by differentiation: sigma_xx = P (L-x) y/I,
-// sigma_yy = 0, tau above), is
+//     tau = -(P/(2I)) (D^2/4 - y^2)
+// on its end (per unit width, I = D^3/12).  With E' = E/(1 - nu^2) and nu' = nu/(1 - nu) the exact field, for
+// every nu up to 1/2, is given below (Timoshenko and Goodier, Theory of Elasticity, 21; the displacements as
+// in Augarde and Deeks 2008, checked here by differentiation: sigma_xx = P (L-x) y/I, sigma_yy = 0, tau
+// above):
 //
 //   u_x =  P y/(6 E'I) [(6L - 3x) x + (2 + nu') (y^2 - D^2/4)],
 //   u_y = -P/(6 E'I) [3 nu' y^2 (L - x) + (4 + 5 nu') D^2 x/4 + (3L - x) x^2].
@@ -45,8 +46,8 @@ struct Exact {
 
 /// The half beam in cells of six tetrahedra around a diagonal, every node moved at random by up to 0.15 cells
 /// along the axes on whose end faces it does not lie.  (The mirrored five-tetrahedra cells of mesh::box
-/// depend on each other in their constraints, like crossed triangles in the plane, and hardly lock: no model
-/// of the meshes that people bring.)
+/// depend on each other in their constraints, like crossed triangles in the plane, and hardly lock: they do
+/// not represent the meshes of users.)
 TetMesh irregular(const std::array<int, 3>& cells) {
   const Vec3 size(kLength, 0.5 * kHeight, kWidth);
   const auto node = [&](const std::array<int, 3>& at) {
@@ -96,7 +97,7 @@ Found bend(double nu, int cells, bool nodal, const std::string& fault) {
   fem::SoftBodyOptions options;
   if (nodal && fault != "plain-elements") options.volumetric_share = fem::kept_volumetric_share(m);
   const TetMesh rest = irregular({8 * cells, cells, std::max(1, cells / 2)});
-  if (fault == "lambda-lost" && nodal) {  // the kept share alone
+  if (fault == "lambda-lost" && nodal) {  // only the share that the elements keep
     const double lambda = options.volumetric_share * m.lambda(), mu = m.mu();
     m.poissons_ratio = 0.5 * lambda / (lambda + mu);
     m.youngs_modulus = 2.0 * mu * (1.0 + m.poissons_ratio);

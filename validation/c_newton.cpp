@@ -145,11 +145,11 @@ Problem bent_beam(std::shared_ptr<Body> body) {
     K.diagonal() += VecX::Ones(free.size()) - free;
     return K;
   };
-  constexpr double kTurn = 1.2;  // a circular arc to begin with [rad]
+  constexpr double kArc = 1.2;  // a circular arc to begin with [rad]
   Points arc(3, X.cols());
   for (int i = 0; i < X.cols(); ++i) {
-    const double angle = kTurn * X(0, i);
-    arc.col(i) = Vec3(std::sin(angle), std::cos(angle) - 1.0, 0.0) / kTurn +
+    const double angle = kArc * X(0, i);
+    arc.col(i) = Vec3(std::sin(angle), std::cos(angle) - 1.0, 0.0) / kArc +
                  Vec3(X(1, i) * std::sin(angle), X(1, i) * std::cos(angle), X(2, i));
     if (X(0, i) < 1e-9) arc.col(i) = X.col(i);
   }
@@ -157,8 +157,8 @@ Problem bent_beam(std::shared_ptr<Body> body) {
   return p;
 }
 
-/// One step of backward Euler of the free body, turning by one radian a step, stretched by a tenth.  Unknown:
-/// v.
+/// One step of backward Euler of the free body, which rotates by one radian a step and is stretched by a
+/// tenth. Unknown: v.
 Problem spinning_step(std::shared_ptr<Body> body) {
   constexpr double kStep = 0.02;
   const Points& X = body->rest().nodes;

@@ -9,8 +9,8 @@
 
 // Patch test (Irons 1966): boundary nodes are put to x = A X + t, interior nodes are free.  A linear
 // tetrahedron holds every affine field, so the field is reproduced inside, with the stress P(A) everywhere,
-// on any mesh: exact, no order involved. With A = R S, P = 2 mu (A - R) + lambda tr(S - I) R
-// (docs/design.md, 4.1).
+// on any mesh: exact, no order involved.  With A = R S (docs/design.md, 4.1)
+//     P = 2 mu (A - R) + lambda tr(S - I) R.
 
 namespace palpate::validation {
 namespace {
@@ -32,7 +32,7 @@ std::vector<Field> fields() {
   }
   Mat3 S;
   S << 1.3, 0.1, 0.05, 0.1, 0.9, -0.08, 0.05, -0.08, 1.1;
-  out.push_back({"large strain, turned by 2 rad",
+  out.push_back({"large strain, rotated by 2 rad",
                  quaternion_of(2.0 * Vec3(1, -2, 0.5).normalized()).toRotationMatrix() * S});
   return out;
 }

@@ -4,7 +4,7 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Square bar a x a between two ends that turn against each other by a small theta, rotated in their plane and
+// Square bar a x a between two ends that are rotated against each other by a small theta, in their plane and
 // free along the axis: Saint-Venant's torsion in the whole bar, however short, since the ends hinder no
 // warping.  Torque G J theta/L with (Timoshenko and Goodier, Theory of Elasticity, 109)
 //
@@ -33,9 +33,9 @@ double torque(int across, const std::string& fault) {
   for (int i = 0; i < X.cols(); ++i) {
     const bool end = std::abs(std::abs(X(2, i)) - 0.5 * kLength) < 1e-9;
     if (end) {
-      const double turn = X(2, i) > 0.0 ? 0.5 * kAngle : -0.5 * kAngle;
-      body.hold(i, 0, X(0, i) - turn * X(1, i));
-      body.hold(i, 1, X(1, i) + turn * X(0, i));
+      const double angle = X(2, i) > 0.0 ? 0.5 * kAngle : -0.5 * kAngle;
+      body.hold(i, 0, X(0, i) - angle * X(1, i));
+      body.hold(i, 1, X(1, i) + angle * X(0, i));
       if (fault == "warping-hindered") body.hold(i, 2, X(2, i));
     }
     // no warping on the axis: one node of it stops the bar from drifting along

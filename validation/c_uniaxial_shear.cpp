@@ -5,21 +5,23 @@
 #include "palpate/mesh/generators.h"
 #include "statics.h"
 
-// Uniaxial stretch l, sides free: R = I, S = diag(l, s, s); no lateral stress 2 mu (s - 1) + lambda (l + 2 s
-// - 3) = 0 gives
-//   s = 1 - nu (l - 1),   P = 2 mu (l - 1) + lambda (l + 2 s - 3) = E (l - 1)
+// Uniaxial stretch l, sides free: R = I, S = diag(l, s, s); no lateral stress,
+//     2 mu (s - 1) + lambda (l + 2 s - 3) = 0,
+// gives
+//     s = 1 - nu (l - 1),   P = 2 mu (l - 1) + lambda (l + 2 s - 3) = E (l - 1)
 // (nominal stress; linear in l for this energy, at any l > 0).
 //
-// Simple shear F = I + g e1 e2^T: R turns by the angle with cos = 2/r, sin = g/r, r = sqrt(4 + g^2), and tr S
-// = r + 1.  With s = g/r
-//   P12 = 2 mu (g - s) + lambda (r - 2) s,   P21 = 2 mu s - lambda (r - 2) s,   P11 = P22 = 2 mu (1 - 2/r) +
-//   lambda (r - 2) 2/r,
-//   P33 = lambda (r - 2).
+// Simple shear F = I + g e1 e2^T: R rotates by the angle with cos = 2/r, sin = g/r, r = sqrt(4 + g^2), and tr
+// S = r + 1.  With s = g/r
+//     P12 = 2 mu (g - s) + lambda (r - 2) s,
+//     P21 = 2 mu s - lambda (r - 2) s,
+//     P11 = P22 = 2 mu (1 - 2/r) + lambda (r - 2) 2/r,
+//     P33 = lambda (r - 2).
 //
 // Stable neo-Hookean (Smith, de Goes and Kim 2018, eq. 14), in the stretches of the same uniaxial state: with
 // m = 4/3 mu, L = lambda + 5/6 mu, alpha = 1 + 3 m/(4 L), I = l^2 + 2 s^2, J = l s^2,
-//   lateral stress  m s (1 - 1/(I + 1)) + L (J - alpha) l s = 0,   P = m l (1 - 1/(I + 1)) + L (J - alpha)
-//   s^2.
+//     lateral stress  m s (1 - 1/(I + 1)) + L (J - alpha) l s = 0,
+//     P = m l (1 - 1/(I + 1)) + L (J - alpha) s^2.
 // The lateral stress over s grows with s, so that s is found by halving an interval.
 
 namespace palpate::validation {

@@ -8,13 +8,14 @@
 // Bar of length L, section A, nu = 0, with its face x = 0 on a free rigid bone of mass m_b, its other end
 // free: u_tt = c^2 u_xx, c = sqrt(E/rho), and
 //     m_b u_tt(0) = E A u_x(0),   u_x(L) = 0.
-// u = cos(k (L - x)) cos(c k t) gives  tan(kL) = -b kL,  b = m_b / (rho A L): one root in each ((n - 1/2) pi,
-// n pi) (Timoshenko, Vibration Problems in Engineering, 1937, section 52: a bar with a mass at its end).  A
-// bone without mass leaves a free bar, kL = n pi; one that is heavy holds it.
-// The bone's own equation is all inertia that it has: where the face's reaction, or the inertia of the nodes
-// on it, did not reach it, both frequencies would be wrong. A quarter of the square section stands for the
-// bar, as in the case without a bone: planes of symmetry shut out bending and torsion.  The bone sits in the
-// middle of the quarter's face, so that axial motion does not turn it.
+// u = cos(k (L - x)) cos(c k t) gives
+//     tan(kL) = -b kL,   b = m_b / (rho A L):
+// one root in each ((n - 1/2) pi, n pi) (Timoshenko, Vibration Problems in Engineering, 1937, section 52: a
+// bar with a mass at its end).  With a massless bone the bar is free, kL = n pi; a heavy bone holds it.
+// The bone's equation holds its inertia and the face's reaction alone: if that reaction, or the inertia of
+// the nodes on the face, did not reach it, both frequencies would be wrong.  A quarter of the square section
+// stands for the bar, as in the case without a bone: planes of symmetry shut out bending and torsion.  The
+// bone sits in the middle of the quarter's face, so that axial motion does not rotate it.
 
 namespace palpate::validation {
 namespace {

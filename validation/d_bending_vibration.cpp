@@ -7,14 +7,13 @@
 // Slender cantilever, square section h x h, nu = 0.  Euler and Bernoulli: cos(bL) cosh(bL) = -1, b1 L =
 // 1.875104,
 //     f1 = (b1 L)^2/(2 pi) sqrt(E I/(rho A L^4)),   I/A = h^2/12,
-// times what shear and rotary inertia take (Timoshenko 1921, shear factor 5/6, G = E/2, solved for the first
-// root):
-// 0.99350 at L/h = 10 and 0.99836 at L/h = 20.
+// times the factor of shear and rotary inertia (Timoshenko 1921, shear factor 5/6, G = E/2, solved for the
+// first root): 0.99350 at L/h = 10 and 0.99836 at L/h = 20.
 //
 // A quarter of the section stands for the beam that bends along y, as in the static case: u is symmetric in z
-// (u_z = 0 on z = 0) and antisymmetric in y (u_x = u_z = 0 on y = 0).  Bending along z and torsion are shut
-// out by that; the lowest mode is the one. Elements h/n: order 2 in 1/n, the error of linear tetrahedra in
-// bending being of the size (h/n)^2 / (h^2/12); Richardson's value is held to the bar.
+// (u_z = 0 on z = 0) and antisymmetric in y (u_x = u_z = 0 on y = 0).  That shuts out bending along z and
+// torsion, so the lowest mode is the one sought.  Elements h/n: order 2 in 1/n, the error of linear
+// tetrahedra in bending being of the size (h/n)^2 / (h^2/12); Richardson's value is compared with the bar.
 
 namespace palpate::validation {
 namespace {

@@ -14,21 +14,21 @@
 // max(0, -gap) n is the gradient of k A gap^2/2, A its projected area: undamped, kinetic energy + weight +
 // contact is constant, damped it falls.  It must never rise.
 // - Rigid: a point mass that carries the vertices of a sphere as arms (a sphere on a plane has no reason to
-//   rotate): areas are constant, and what energy is gained is the integrator's.  Sampled every millisecond,
-//   where the contact is queried anew, as in a scene.
+//   rotate): areas are constant, and any energy gained is the integrator's.  Sampled every millisecond, where
+//   the contact is queried anew, as in a scene.
 // - Soft: a ball of tetrahedra: the projected areas of its vertices change with its shape, and are held
-//   between two queries.  The energy gained at each query is the price of the slow query: reported, with no
+//   between two queries.  The energy gained at each query is the cost of the slow query: reported, with no
 //   bar.
 // Gains are relative to the energy of the fall, m g h.
 //
-// Why additive pairs look for the kinks.  A vertex that touches at the part theta of a step changes its force
-// by J: y'' = J (t - theta h)+.  The step's error in the velocity is then J h^2 |sum b_i (c_i - theta)+ - (1
-// - theta)^2/2|, and what its estimate sees of that J h^2 |sum (b_i - b^_i) (c_i - theta)+|.  The error is 3
-// times the estimate in the middle of all theta with Cash and Karp's pair and more than 100 times in 0.7 % of
-// them; 35 times and in 18 % with ark-imex-4b, 20 times and in 18 % (more than 860 times in a tenth) with
-// ark-imex-5b.  So a tolerance of 1e-10 lets kinks through, and ark-imex-5b gains 3e-6 by error control
-// alone, at rtol 1e-9 and 1e-10 alike.  With the kinks found as roots the steps on both sides are smooth, and
-// it keeps the bar.
+// Why additive pairs need the kinks as roots.  A vertex that touches at the part theta of a step changes its
+// force by J: y'' = J (t - theta h)+.  The step's error in the velocity and its estimate are then
+//     J h^2 |sum b_i (c_i - theta)+ - (1 - theta)^2/2|   and   J h^2 |sum (b_i - b^_i) (c_i - theta)+|.
+// The error is 3 times the estimate in the middle of all theta with Cash and Karp's pair and more than 100
+// times in 0.7 % of them; 35 times and in 18 % with ark-imex-4b, 20 times and in 18 % (more than 860 times in
+// a tenth) with ark-imex-5b.  So a tolerance of 1e-10 misses kinks, and ark-imex-5b gains 3e-6 by error
+// control alone, at rtol 1e-9 and 1e-10 alike.  With the kinks found as roots the steps on both sides are
+// smooth, and it meets the bar.
 
 namespace palpate::validation {
 namespace {

@@ -11,13 +11,14 @@
 #include "palpate/modes/modes.h"
 
 // Symplectic Euler on one mode q'' + 2 z w q' + w^2 q = 0, W = w h, velocity first and then q1 = q0 + h u1:
-//   damping at the old velocity   u1 = u0 - h (w^2 q0 + 2 z w u0)
-//     characteristic polynomial   r^2 - (2 - W^2 - 2 z W) r + (1 - 2 z W)
-//     roots inside the circle while 1 + trace + determinant > 0, 4 - W^2 - 4 z W > 0:  W < 2 (sqrt(1 + z^2) -
-//     z)
-//   damping at the new velocity   u1 = u0 - h (w^2 q0 + 2 z w u1)
-//     characteristic polynomial   (1 + 2 z W) r^2 - (2 + 2 z W - W^2) r + 1
-//     4 + 4 z W - W^2 > 0:  W < 2 (sqrt(1 + z^2) + z)
+// - damping at the old velocity, u1 = u0 - h (w^2 q0 + 2 z w u0), characteristic polynomial
+//       r^2 - (2 - W^2 - 2 z W) r + (1 - 2 z W);
+//   roots inside the circle while 1 + trace + determinant > 0, 4 - W^2 - 4 z W > 0:
+//       W < 2 (sqrt(1 + z^2) - z);
+// - damping at the new velocity, u1 = u0 - h (w^2 q0 + 2 z w u1), characteristic polynomial
+//       (1 + 2 z W) r^2 - (2 + 2 z W - W^2) r + 1;
+//   4 + 4 z W - W^2 > 0:
+//       W < 2 (sqrt(1 + z^2) + z).
 // Undamped both are W < 2.  With stiffness damping z = beta w/2 both limits fall with w: the highest mode has
 // the smallest, and it is excited.  Above the limit its amplitude grows by a factor a step, so that a limit
 // is found by bisection on whether it has grown a thousandfold.  The implicit variant is no integrator of the

@@ -6,13 +6,13 @@
 
 // Free block a x a x b.  The field (Lame 1852; Mindlin 1956)
 //     u = cos(pi x/a) sin(pi y/a),   v = -sin(pi x/a) cos(pi y/a),   w = 0      (x, y in [0, a])
-// has no divergence, so lambda is out of it: rho u_tt = mu laplace u gives w^2 = 2 mu (pi/a)^2/rho.  Its
-// stresses  s_xx = -s_yy = -2 mu (pi/a) sin sin vanish on all four sides, and so do s_xy = mu (u_y + v_x) = 0
+// has no divergence, so lambda does not enter: rho u_tt = mu laplace u gives w^2 = 2 mu (pi/a)^2/rho.  Its
+// stresses s_xx = -s_yy = -2 mu (pi/a) sin sin vanish on all four sides, and so do s_xy = mu (u_y + v_x) = 0
 // everywhere and all stresses on z = 0, b: it is a mode of the free block,
 //     omega = sqrt(2) pi sqrt(mu/rho)/a,
-// for any Poisson's ratio and thickness.  b differs from a, so that the same mode in other planes has no such
-// frequency to mix with. The mode is found by its overlap (mass-weighted; modal assurance criterion, Allemang
-// and Brown 1982) > 0.95.
+// for any Poisson's ratio and thickness.  b differs from a, so that no mode in another plane has that
+// frequency and mixes with it.  The mode is found by its overlap (mass-weighted; modal assurance criterion,
+// Allemang and Brown 1982) > 0.95.
 
 namespace palpate::validation {
 namespace {

@@ -10,22 +10,23 @@
 
 // Relative equilibrium of a free body that spins with w: v = w x x and, at every node, f(x) = m w x (w x x).
 // The solution of
-//     r(x) = f(x) - M W x = 0,  W x = w x (w x x),  by Newton with the exact tangent K + M W (derivative of
-//     -r),
-// turns rigidly for ever.  E' = sym(F^T F') = 0 in it, so an objective stiffness damping takes nothing, and
-// angular momentum H = sum m x x v and energy T + U stay what they are.  The motion along w and the turn
-// about w are free: the least-norm step leaves them.
+//     r(x) = f(x) - M W x = 0,   W x = w x (w x x),
+// by Newton with the exact tangent K + M W (derivative of -r), rotates rigidly for ever.  E' = sym(F^T F') =
+// 0 in it, so an objective stiffness damping dissipates nothing, and angular momentum H = sum m x x v and
+// energy T + U are constant.  Translation along w and rotation about w are free: the least-norm step leaves
+// them.
 //
-// The implicit midpoint rule has relative equilibria of its own, at any step h.  Let the shape S be one of
-// the continuous body at spin w (about z), tan(th/2) = w h/2, and let q_n = R(n th) q, u_n = w x q_n with q =
-// S with its part across the axis enlarged by 1/cos(th/2), turned by -th/2.
-// Then q_m = (q_0 + q_1)/2 = S and u_m = w x S: (q_1 - q_0)/h = (2/h) tan(th/2) e_z x S = u_m, and M (u_1 -
-// u_0)/h = M w x (w x S) = f(S), while damping sees a rigid spin.  So the rule turns this body rigidly for
-// ever too, at every step size, and energy and momentum are kept to Newton's tolerance:
-// a residual r of a step adds h sum x_m x r to H and h u_m . r to the energy.  A correction left at
-// newton_rtol (relative to the speeds) may add up over the steps: 2 turns of 32 steps are safe at newton_rtol
-// = 1e-9/64, about 1e-11.  Measured, since Newton converges quadratically and ends below its tolerance: drift
-// 4e-9 at newton_rtol = 1e-4, 1e-11 at 1e-6, 6e-13 at 1e-8, rounding at 1e-11.
+// The implicit midpoint rule has relative equilibria of its own, at any step h.  Let the shape S be that of
+// the continuous body at spin w (about z), tan(th/2) = w h/2, and let q_n = R(n th) q, u_n = w x q_n, where q
+// is S with its part across the axis enlarged by 1/cos(th/2), rotated by -th/2.  Then q_m = (q_0 + q_1)/2 =
+// S, u_m = w x S, and
+//     (q_1 - q_0)/h = (2/h) tan(th/2) e_z x S = u_m,   M (u_1 - u_0)/h = M w x (w x S) = f(S),
+// while damping sees a rigid spin.  So the rule rotates this body rigidly for ever too, at every step size,
+// and energy and momentum are kept to Newton's tolerance: a residual r of a step adds h sum x_m x r to H and
+// h u_m . r to the energy.  A correction left at newton_rtol (relative to the speeds) may add up over the
+// steps: 2 revolutions of 32 steps are safe at newton_rtol = 1e-9/64, about 1e-11.  Measured, since Newton
+// converges quadratically and ends below its tolerance: drift 4e-9 at newton_rtol = 1e-4, 1e-11 at 1e-6,
+// 6e-13 at 1e-8, rounding at 1e-11.
 // Started in the continuous equilibrium instead, the shape rings, and the energy, which the rule keeps only
 // of quadratic systems, swings by about (w h)^2/8 (4e-3 here), while H stays.
 //
@@ -139,7 +140,7 @@ void place_for_midpoint(Spinner& s, double h) {
   const double t = 0.5 * kSpin.z() * h;  // tan(th/2)
   for (Eigen::Index i = 0; i < s.state.q().size(); i += 3) {
     const Vec3 S = s.state.q().segment<3>(i);
-    // turned by -half, across the axis over cos(half)
+    // rotated by -half, across the axis over cos(half)
     s.state.q().segment<3>(i) = Vec3(S.x() + t * S.y(), S.y() - t * S.x(), S.z());
   }
 }
@@ -148,16 +149,16 @@ struct Drift {
   double momentum = 0.0, energy = 0.0;  ///< relative, largest
 };
 
-/// Largest drift of angular momentum and energy over `turns` turns, looked at 8 times a turn.
-Drift drift(Spinner& s, const IntegratorSpec& spec, int turns) {
-  constexpr int kLooks = 8;
+/// Largest drift of angular momentum and energy over `revolutions`, sampled 8 times each.
+Drift drift(Spinner& s, const IntegratorSpec& spec, int revolutions) {
+  constexpr int kSamples = 8;
   s.state.u() = Spinner::spin(kSpin, s.state.q());
   const Vec3 H0 = s.angular_momentum();
   const double E0 = s.energy();
   const auto stepper = integrate::make_stepper(s.system, s.state, spec);
   Drift out;
-  for (int i = 1; i <= turns * kLooks; ++i) {
-    if (!stepper->advance_to(i * 2.0 * M_PI / (kLooks * kSpin.norm())).ok())
+  for (int i = 1; i <= revolutions * kSamples; ++i) {
+    if (!stepper->advance_to(i * 2.0 * M_PI / (kSamples * kSpin.norm())).ok())
       return {std::nan(""), std::nan("")};
     out.momentum = std::max(out.momentum, (s.angular_momentum() - H0).norm() / H0.norm());
     out.energy = std::max(out.energy, std::abs(s.energy() - E0) / E0);
@@ -172,12 +173,12 @@ void add_drifts(const std::string& fault, std::vector<Measurement>& out) {
     if (midpoint && fault != "continuous-shape") place_for_midpoint(s, spec.step_s);
     Drift d = drift(s, spec, 2);
     if (!found) d = {std::nan(""), std::nan("")};
-    out.push_back({.quantity = "drift of angular momentum, 2 turns, " + spec.name,
+    out.push_back({.quantity = "drift of angular momentum, 2 revolutions, " + spec.name,
                    .computed = d.momentum,
                    .error = d.momentum,
                    .bar = 1e-9,
                    .note = note});
-    out.push_back({.quantity = "drift of energy, 2 turns, " + spec.name,
+    out.push_back({.quantity = "drift of energy, 2 revolutions, " + spec.name,
                    .computed = d.energy,
                    .error = d.energy,
                    .bar = 1e-9,
@@ -189,7 +190,7 @@ void add_drifts(const std::string& fault, std::vector<Measurement>& out) {
   spec.name = "implicit-midpoint";
   spec.step_s = 2.0 * M_PI / (32 * kSpin.norm());
   spec.newton_rtol = fault == "loose-newton" ? 1e-4 : 1e-11;
-  add(spec, "32 steps a turn, newton_rtol 1e-11, stiffness damping on", true);
+  add(spec, "32 steps a revolution, newton_rtol 1e-11, stiffness damping on", true);
 }
 
 /// Over random states: moment of all internal forces, and power of damping under a rigid spin, against what
@@ -249,7 +250,7 @@ ValidationCase spinning_body() {
           "free soft body spinning in relative equilibrium, stiffness damping on: angular momentum and "
           "energy kept",
       .why =
-          "damping that is not objective brakes every turning body; relative equilibrium by Newton (Simo, "
+          "damping that is not objective brakes every rotating body; relative equilibrium by Newton (Simo, "
           "Posbergh, Marsden 1990)",
       .run = run,
       .faults = {"mass-damping", "rayleigh-damping", "rest-shape", "loose-newton", "continuous-shape"}};

@@ -1,8 +1,10 @@
 #include "cases.h"
 #include "e_oscillator.h"
 
-// Semi-implicit Euler on m x'' = -k x - b x': z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0 leaves the unit
-// circle at z = -1, where k = 4 m/h^2 - 2 b/h.  Backward Euler: (m + h b + h^2 k) z^2 - (2 m + h b) z + m = 0
+// Semi-implicit Euler on m x'' = -k x - b x':
+//     z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0
+// has a root on the unit circle at z = -1, where k = 4 m/h^2 - 2 b/h.  Backward Euler:
+//     (m + h b + h^2 k) z^2 - (2 m + h b) z + m = 0
 // has both roots inside for every k > 0.
 
 namespace palpate::validation {

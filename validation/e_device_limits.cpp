@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kForce = 3.3, kTorque = 0.2, kForceSlew = 400.0, kTorqueSlew = 30.0;
 
-/// What a program without that care would send: the last finite wish, clipped by component.
+/// Output of a program without such limits: the last finite wrench that was wanted, clipped by component.
 Wrench careless(const Wrench& wanted, bool clip) {
   return clip ? Wrench{wanted.moment.cwiseMax(-kTorque).cwiseMin(kTorque),
                        wanted.force.cwiseMax(-kForce).cwiseMin(kForce)}
@@ -26,7 +26,7 @@ std::vector<Measurement> run(const std::string& fault) {
   const auto vec = [&](double size) {
     return Vec3(size * uniform(rng), size * uniform(rng), size * uniform(rng));
   };
-  double force = 0, slew = 0, late = 0, t = 0, last_valid = -1;
+  double force = 0, slew = 0, after_loss = 0, t = 0, last_valid = -1;
   long not_finite = 0, silent = 0;
   Wrench before;
   device::WrenchLimiter limiter(kForce, kTorque, 0.01, kForceSlew, kTorqueSlew);
@@ -48,7 +48,7 @@ std::vector<Measurement> run(const std::string& fault) {
     slew = std::max({slew, (out.force - before.force).norm() / (kForceSlew * dt),
                      (out.moment - before.moment).norm() / (kTorqueSlew * dt)});
     if (t - last_valid >= device::kFallTime) {
-      late = std::max(late, out.force.norm() + out.moment.norm());
+      after_loss = std::max(after_loss, out.force.norm() + out.moment.norm());
       ++silent;
     }
     before = out;
@@ -69,8 +69,8 @@ std::vector<Measurement> run(const std::string& fault) {
            .bar = 1e-9,
            .note = "the tick is known to rounding of t"},
           {.quantity = "force + torque 20 ms after the last valid tick [N, N m]",
-           .computed = late,
-           .error = silent > 1000 ? late : NAN,
+           .computed = after_loss,
+           .error = silent > 1000 ? after_loss : NAN,
            .bar = 0.0}};
 }
 

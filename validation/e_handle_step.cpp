@@ -3,35 +3,36 @@
 #include "cases.h"
 #include "e_oscillator.h"
 
-// The handle jumps by a shift along, and a turn below pi about, a principal axis of the tool, and rests.
-// Along and about that axis nothing couples:
-// the distance from the handle is m y'' + b y' + k y = 0 and I a'' + b_r a' + k_r a = 0, released at rest.
+// The handle jumps by a translation along, and a rotation below pi about, a principal axis of the tool, and
+// rests.  Along and about that axis nothing couples: the distance from the handle obeys
+//     m y'' + b y' + k y = 0,   I a'' + b_r a' + k_r a = 0,
+// released at rest.
 
 namespace palpate::validation {
 namespace {
 
-constexpr double kShift = 0.01, kTurn = 2.5;  // [m], [rad]
+constexpr double kTranslation = 0.01, kRotation = 2.5;  // [m], [rad]
 
-/// Largest relative deviation from `exact(oscillator, y0, tick number)` over the ticks: turn, shift, and both
-/// at the last tick.
+/// Largest relative deviation from `exact(oscillator, y0, tick number)` over the ticks, in rotation and in
+/// translation, and both at the last tick.
 struct Deviation {
-  double turn = 0, shift = 0, last_turn = 0, last_shift = 0;
+  double rotation = 0, translation = 0, last_rotation = 0, last_translation = 0;
 };
 
 template <class Exact>
 Deviation deviation(const std::string& scheme, const std::string& fault, int axis, double h, int ticks,
                     Exact exact) {
   const ToolSpec spec = desktop_tool(scheme);
-  const Oscillator turning{spec.inertia_kg_m2[axis], spec.coupling.rotational_damping_n_m_s_rad,
-                           spec.coupling.rotational_stiffness_n_m_rad};
-  const Oscillator shifting{spec.mass_kg, spec.coupling.damping_n_s_m, spec.coupling.stiffness_n_m};
+  const Oscillator rotational{spec.inertia_kg_m2[axis], spec.coupling.rotational_damping_n_m_s_rad,
+                              spec.coupling.rotational_stiffness_n_m_rad};
+  const Oscillator translational{spec.mass_kg, spec.coupling.damping_n_s_m, spec.coupling.stiffness_n_m};
   ToolSpec broken = spec;
   if (fault == "half-stiffness")
     broken.coupling.stiffness_n_m *= 0.5, broken.coupling.rotational_stiffness_n_m_rad *= 0.5;
   if (fault == "wrong-inertia-axis")
     broken.inertia_kg_m2 = Vec3(spec.inertia_kg_m2.z(), spec.inertia_kg_m2.x(), spec.inertia_kg_m2.y());
   const Vec3 e = Vec3::Unit(axis);
-  const Pose there{quaternion_of(kTurn * e), kShift * e};
+  const Pose there{quaternion_of(kRotation * e), kTranslation * e};
   tool::Tool body(broken, Vec3::Zero());
   Deviation out;
   for (int i = 1; i <= ticks; ++i) {
@@ -39,10 +40,11 @@ Deviation deviation(const std::string& scheme, const std::string& fault, int axi
     const Pose end = fault == "late-handle" && i == 1 && scheme == "linearly-implicit-euler" ? Pose{} : there;
     if (!body.advance(h, {before, end, {}, {}}, {}).ok()) return {NAN, NAN, NAN, NAN};
     const Vec6 d = pose_difference(there, body.pose());
-    out.last_turn = std::abs(d.head<3>().dot(e) - exact(turning, -kTurn, i)) / kTurn;
-    out.last_shift = std::abs(d.tail<3>().dot(e) - exact(shifting, -kShift, i)) / kShift;
-    out.turn = std::max(out.turn, out.last_turn);
-    out.shift = std::max(out.shift, out.last_shift);
+    out.last_rotation = std::abs(d.head<3>().dot(e) - exact(rotational, -kRotation, i)) / kRotation;
+    out.last_translation =
+        std::abs(d.tail<3>().dot(e) - exact(translational, -kTranslation, i)) / kTranslation;
+    out.rotation = std::max(out.rotation, out.last_rotation);
+    out.translation = std::max(out.translation, out.last_translation);
   }
   return out;
 }
@@ -52,39 +54,39 @@ void measure_error_controlled(const std::string& scheme, const std::string& faul
   constexpr double h = 1e-3;
   const auto d = deviation(scheme, fault, 1, h, 100,
                            [](const Oscillator& o, double y0, int i) { return o.at_time(y0, h * i); });
-  out.push_back({.quantity = scheme + ": shift against the closed form, / shift",
-                 .computed = d.shift,
-                 .error = d.shift,
+  out.push_back({.quantity = scheme + ": translation against the closed form, / translation",
+                 .computed = d.translation,
+                 .error = d.translation,
                  .bar = 1e-6});
-  out.push_back({.quantity = scheme + ": turn about the middle axis, / turn",
-                 .computed = d.turn,
-                 .error = d.turn,
+  out.push_back({.quantity = scheme + ": rotation about the middle axis, / rotation",
+                 .computed = d.rotation,
+                 .error = d.rotation,
                  .bar = 1e-6});
 }
 
 void measure_fixed(const std::string& scheme, const std::string& fault, std::vector<Measurement>& out) {
-  double turn = 0, shift = 0;
+  double rotation = 0, translation = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const auto d = deviation(scheme, fault, axis, 1e-3, 200, [&](const Oscillator& o, double y0, int i) {
       return o.after_ticks(scheme, y0, 1e-3, i);
     });
-    turn = std::max(turn, d.turn), shift = std::max(shift, d.shift);
+    rotation = std::max(rotation, d.rotation), translation = std::max(translation, d.translation);
   }
-  out.push_back({.quantity = scheme + ": shift against its discrete closed form",
-                 .computed = shift,
-                 .error = shift,
+  out.push_back({.quantity = scheme + ": translation against its discrete closed form",
+                 .computed = translation,
+                 .error = translation,
                  .bar = 1e-10});
-  out.push_back({.quantity = scheme + ": turn against its discrete closed form",
-                 .computed = turn,
-                 .error = turn,
+  out.push_back({.quantity = scheme + ": rotation against its discrete closed form",
+                 .computed = rotation,
+                 .error = rotation,
                  .bar = 1e-10});
 
   constexpr double kEnd = 0.02;
-  std::vector<double> ticks, turns, shifts;
+  std::vector<double> ticks, rotations, translations;
   for (double h : {2e-4, 1e-4, 5e-5, 2.5e-5}) {
     const auto d = deviation(scheme, fault, 2, h, static_cast<int>(std::lround(kEnd / h)),
                              [&](const Oscillator& o, double y0, int i) { return o.at_time(y0, h * i); });
-    ticks.push_back(h), turns.push_back(d.last_turn), shifts.push_back(d.last_shift);
+    ticks.push_back(h), rotations.push_back(d.last_rotation), translations.push_back(d.last_translation);
   }
   const auto first_order = [&](const std::string& what, const std::vector<double>& e) {
     out.push_back({.quantity = scheme + ": " + what + " at 20 ms, finest tick",
@@ -96,8 +98,8 @@ void measure_fixed(const std::string& scheme, const std::string& fault, std::vec
                    .order_high = 1.1,
                    .note = "ticks 200 to 25 us"});
   };
-  first_order("shift", shifts);
-  first_order("turn", turns);
+  first_order("translation", translations);
+  first_order("rotation", rotations);
 }
 
 std::vector<Measurement> run(const std::string& fault) {

@@ -2,8 +2,9 @@
 #include "e_oscillator.h"
 
 // A wall that pushes with K times the depth of the tool, the handle held a depth D below its surface: the two
-// springs stand in series, k (D - z) = K z, so the tool stays at z = k D/(k + K) and the hand feels F = k
-// K/(k + K) D.  A device never renders more than its coupling.
+// springs are in series, k (D - z) = K z, so the tool stays at z = k D/(k + K) and the hand feels
+//     F = k K/(k + K) D.
+// A device never renders a stiffness above that of its coupling.
 
 namespace palpate::validation {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "palpate/tool/tool.h"
 
-/// The damped oscillator m y'' + b y' + k y = 0 released at rest from y0: what one direction of a virtual
-/// coupling is, in time and in ticks.
+/// The damped oscillator m y'' + b y' + k y = 0 released at rest from y0: one direction of a virtual
+/// coupling, in time and in ticks.
 namespace palpate::validation {
 
 struct Oscillator {
@@ -18,12 +18,12 @@ struct Oscillator {
     return y0 * std::exp(-g * t) * (std::cos(w * t) + g / w * std::sin(w * t));
   }
 
-  // With u = differences of y over h, eliminate u from y_{n+1} = y_n + h u_{n+1} and
-  //   backward Euler       m (u_{n+1} - u_n) = -h (b u_{n+1} + k y_{n+1}):  (m + hb + h^2 k) y_{n+1} - (2m +
-  //   hb) y_n + m y_{n-1} = 0
-  //   semi-implicit Euler  m (u_{n+1} - u_n) = -h (b u_n + k y_n):          m y_{n+1} - (2m - hb - h^2 k) y_n
-  //   + (m - hb) y_{n-1} = 0
-  // and start with u_0 = 0.  The solution is A z1^n + B z2^n over the roots of the recurrence.
+  // With u = differences of y over h, eliminate u from y_{n+1} = y_n + h u_{n+1} and the scheme:
+  // - backward Euler, m (u_{n+1} - u_n) = -h (b u_{n+1} + k y_{n+1}), gives
+  //       (m + hb + h^2 k) y_{n+1} - (2m + hb) y_n + m y_{n-1} = 0;
+  // - semi-implicit Euler, m (u_{n+1} - u_n) = -h (b u_n + k y_n), gives
+  //       m y_{n+1} - (2m - hb - h^2 k) y_n + (m - hb) y_{n-1} = 0.
+  // The start is u_0 = 0.  The solution is A z1^n + B z2^n over the roots of the recurrence.
   double after_ticks(const std::string& scheme, double y0, double h, int n) const {
     const double hb = h * b, hhk = h * h * k;
     const bool implicit = scheme == "linearly-implicit-euler";

@@ -3,13 +3,13 @@
 #include "palpate/core/error.h"
 
 // A round tool presses a soft block, the handle on a path with two continuous derivatives.  Tool and block as
-// one system of one integrator know of no exchange.  The partitioned scheme holds over each exchange period H
-// a contact that is linear in time and in the tool's motion, and steps the tool by a first-order tick of
-// H/10: both errors are O(H), so that
+// one system of one integrator have no exchange.  The partitioned scheme holds over each exchange period H a
+// contact that is linear in time and in the tool's motion, and steps the tool by a first-order tick of H/10:
+// both errors are O(H), so that
 //     |F_partitioned - F_monolithic| = C H + O(H^2)
 // for force and torque on the hand and for the block's nodes.  The contact is refreshed at the same times for
-// all. The coupling swings at w = sqrt(300 / 0.05) = 77/s: H w from 0.096 to 0.012.  The handle turns as
-// well, so that the coupling's torque is none of zero; a round tool without friction feels no moment of the
+// all.  The coupling oscillates at w = sqrt(300 / 0.05) = 77/s: H w from 0.096 to 0.012.  The handle rotates
+// as well, so that the coupling's torque is not zero; a round tool without friction feels no moment of the
 // block, so the torque's distance is that of the ticks.
 
 namespace palpate::validation {

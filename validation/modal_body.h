@@ -7,18 +7,18 @@
 
 namespace palpate::validation {
 
-/// One soft body at rest and its modes: what the cases of section D on frequencies share.
+/// One soft body at rest and its modes, for the cases of section D on frequencies.
 struct ModalBody {
   TetMesh rest;
   fem::Material material;
-  std::optional<fem::Materials> layers;  ///< in its place
+  std::optional<fem::Materials> layers;  ///< instead of `material`
   bool consistent_mass = false;
   std::vector<int> held;     ///< directions of u, any order
   std::vector<int> carried;  ///< nodes that sit on a free rigid bone, ascending; empty: there is none
   double bone_mass = 0.0;    ///< [kg]
   Vec3 bone_inertia = Vec3::Zero(), bone_centre = Vec3::Zero();
 
-  /// Holds the axes ("x", "yz") of every node for which `where` holds.
+  /// Holds the axes ("x", "yz") of every node that `where` is true for.
   void hold(const std::string& axes, const std::function<bool(const Vec3&)>& where);
   /// The lowest modes.  @throws Error where they do not converge
   modes::Modes lowest(int count) const;

@@ -11,10 +11,10 @@ class State;
 namespace palpate::validation {
 
 /// A clamped bar of corotational tetrahedra at rest, its K and M, and some of its modes from a dense solver
-/// of Eigen that no integrator uses. M q'' + D q' + K (q - q0) = 0 with K phi_j = w_j^2 M phi_j and D = beta
+/// of Eigen that no integrator uses.  M q'' + D q' + K (q - q0) = 0 with K phi_j = w_j^2 M phi_j and D = beta
 /// K: every mode is an oscillator of its own,
-///     q(t) = q0 + sum_j phi_j e^{-g_j t} (cos v_j t + (g_j/v_j) sin v_j t),   g_j = beta w_j^2/2,  v_j^2 =
-///     w_j^2 - g_j^2,
+///     q(t) = q0 + sum_j phi_j e^{-g_j t} (cos v_j t + (g_j/v_j) sin v_j t),
+///     g_j = beta w_j^2/2,   v_j^2 = w_j^2 - g_j^2,
 /// exact in time, so no reference run is needed.
 struct VibratingBar {
   static constexpr int kModes = 3;
@@ -41,8 +41,8 @@ struct VibrationTrial {
   double T = 0.0;     ///< [s]
   int samples = 1;    ///< times at which the error is taken, the last at T
   double beta = 0.0;  ///< stiffness damping [s]
-  /// 0: the linear body at amplitude 1, so that no rounding hides a small error; else the corotational one
-  /// [m]
+  /// amplitude [m] of the corotational body; 0: the linear body at amplitude 1, so that no rounding hides a
+  /// small error
   double amplitude = 0.0;
 };
 

@@ -12,7 +12,7 @@
 #include "palpate/report/plot.h"
 #include "palpate/report/table.h"
 #include "palpate/store/atomic_file.h"
-#include "places.h"
+#include "paths.h"
 #include "stop.h"
 
 namespace palpate::cli {
@@ -59,7 +59,7 @@ void print_steps(const FemBenchReport& report) {
                     r.linear_solver,
                     fmt::format("{}", r.threads),
                     ms(r.force_ms),
-                    ms(r.matrix_ms) + (r.one_pass ? "*" : ""),
+                    ms(r.matrix_ms) + (r.fused_assembly ? "*" : ""),
                     ms(r.factor_ms),
                     ms(r.solve_ms),
                     ms(r.step_ms),
@@ -68,14 +68,14 @@ void print_steps(const FemBenchReport& report) {
                     ms(r.step_cpu_ms),
                     ms(r.solver_cpu_ms),
                     ms(r.scaled_ms),
-                    fmt::format("{:.0f}", 100.0 * r.near),
+                    fmt::format("{:.0f}", 100.0 * r.lagged_share),
                     fmt::format("{:.1f}", r.iterations),
                     r.error > 0.0 ? fmt::format("{:.1e}", r.error) : "-",
                     r.mass_error > 0.0 ? fmt::format("{:.1e}", r.mass_error) : "-",
                     fmt::format("{:.1f}", r.rotation_rad)});
   fmt::print(
       "one linearly implicit step, median over a motion with large rotation\n"
-      "  *: one pass over the elements for forces, product and matrix; scaled: step x measured copy "
+      "  *: fused assembly of forces, product and matrix; scaled: step x measured copy "
       "bandwidth / that of the reference machine;\n"
       "  lagged: steps solved with the matrix of an earlier one, by iterative refinement; the residuals of "
       "their own equations are timed as force;\n"
@@ -120,8 +120,9 @@ void print_elements(const FemBenchReport& report) {
   fmt::print(
       "one evaluation over the elements by itself, again and again: bent beam, E = 1e6; share of what its "
       "bytes and operations take at the bandwidth of just these bytes\n"
-      "  residual: forces less K w; one pass: that and the warped matrix in single precision; tangents are "
-      "stored in a matrix in double, whatever stood there\n\n{}\n",
+      "  residual: forces less K w; fused assembly: that and the warped matrix in single precision; tangents "
+      "are "
+      "stored in a matrix in double, whatever it held before\n\n{}\n",
       report::format_table(
           {"size", "thr", "stage", "least [ms]", "median [ms]", "least [ns/tet]", "limit [%]", "runs"},
           rows));
@@ -164,7 +165,7 @@ void print_memory(const FemBenchReport& report) {
           {"size", "solver", "tetrahedra", "must be stored", "soft body", "peak", "peak [MiB]"}, rows));
 }
 
-/// Rows that differ in size alone, together.
+/// Groups of rows that differ in size alone.
 std::map<std::string, std::vector<const FemBenchRow*>> by_kind(const FemBenchReport& report) {
   std::map<std::string, std::vector<const FemBenchRow*>> kinds;
   for (const FemBenchRow& r : report.rows)

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-/// One function a command, one file a function.  Each returns the exit status; Error means that the input is
-/// at fault.
+/// The commands: one function each, one file each.  Each returns the exit status; Error means that the input
+/// is at fault.
 namespace palpate::cli {
 
 class Undelivered;
@@ -24,7 +24,7 @@ struct RunArguments {
   std::string shade = "displacement";  ///< of the picture; or "stress"
 };
 int run(const RunArguments& arguments);
-/// As a part of another command, which closes what is missing.
+/// Runs as a part of another command, which prints and closes what is missing.
 int run(const RunArguments& arguments, Undelivered& missing);
 
 struct CompareArguments {
@@ -32,8 +32,8 @@ struct CompareArguments {
   std::vector<std::string> overrides;  ///< of every scene
   std::string folder;
   std::vector<std::string> integrators;  ///< names, or labels of ladders; empty: every one
-  bool all = false;                      ///< every one beside those named
-  int repeats = 3, jobs = 0;             ///< no jobs: as many as there are cores
+  bool all = false;                      ///< all others beside those named
+  int repeats = 3, jobs = 0;             ///< jobs = 0: as many as there are cores
   double limit_s = 10.0, reference_limit_s = 120.0;
   double duration_s = 0.0;
   bool fresh = false;  ///< forget what an earlier study left in the folder
@@ -43,7 +43,7 @@ int compare(const CompareArguments& arguments, Undelivered& missing);
 
 struct ValidateArguments {
   std::vector<std::string> cases;  ///< empty: all
-  bool slow = false;               ///< the slow ones too, where no case is named
+  bool slow = false;               ///< also the slow cases, where no case is named
   bool inject_faults = false;      ///< break the physics of each case on purpose: every one must then fail
   std::string folder;              ///< validation.json and report.html go here; empty: nowhere
 };
@@ -57,8 +57,9 @@ struct ModesArguments {
 };
 int modes(const ModesArguments& arguments);
 
-/// Becomes the program palpate-model, which takes these words.  @throws Error where this build has none;
-/// returns never else
+/// Replaces this process by the program palpate-model, with these words as its arguments; returns only by
+/// throwing.
+/// @throws Error where this build has no such program
 int model(const std::vector<std::string>& arguments);
 
 struct StabilityArguments {
@@ -104,7 +105,7 @@ struct DemoArguments {
 };
 int demo(const DemoArguments& arguments);
 
-/// What the command line asks for.
+/// The parsed command line.
 struct Invocation {
   std::function<int()> action;    ///< empty: help was asked for and given
   bool factorises = false;        ///< worth restarting with tuned linear algebra

@@ -11,7 +11,7 @@
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
 #include "palpate/report/work_precision.h"
-#include "places.h"
+#include "paths.h"
 #include "progress.h"
 #include "scene_of.h"
 #include "stop.h"
@@ -61,7 +61,7 @@ compare::Comparison compare_watched(const std::vector<scene::Description>& scene
   return compare::run(scenes, options);
 }
 
-/// What a finished comparison does not hold.
+/// Adds to `missing` what a finished comparison lacks.
 void add_missing(const compare::Comparison& comparison, Undelivered& missing) {
   for (const compare::SceneComparison& scene : comparison.scenes) {
     if (!scene.reference.trouble.empty())

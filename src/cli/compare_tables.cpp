@@ -16,12 +16,13 @@ constexpr std::size_t kPointsOnScreen = 80;
 constexpr std::size_t kReasonLength = 90;
 
 std::string outcome_text(const compare::ComparePoint& p) {
-  if (p.status == compare::PointStatus::kOk) return p.unresolved ? "not told from the reference" : "";
+  if (p.status == compare::PointStatus::kOk)
+    return p.unresolved ? "not distinguishable from the reference" : "";
   const std::string line = p.reason.substr(0, p.reason.find('\n'));
   return line.size() <= kReasonLength ? line : line.substr(0, line.find_last_of(' ', kReasonLength)) + " ...";
 }
 
-/// The end of a run of neighbouring rungs that failed alike: one line tells them all.
+/// The end of a sequence of neighbouring rungs that failed alike: one line stands for all of them.
 std::size_t end_of_failures(const std::vector<compare::ComparePoint>& points, std::size_t first) {
   std::size_t end = first + 1;
   while (points[first].status != compare::PointStatus::kOk && end < points.size() &&

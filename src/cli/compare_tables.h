@@ -2,15 +2,16 @@
 #include "palpate/compare/compare.h"
 #include "palpate/report/table.h"
 
-/// What `palpate compare` prints of one scene.
+/// Output of `palpate compare` for one scene.
 namespace palpate::cli {
 
-/// How it was made, and how far it can be trusted.
+/// How the comparison was made, and how far its reference can be trusted.
 void print_reference(const compare::SceneComparison& scene);
-/// A line a point, neighbouring rungs that failed alike in one; only their number where a screen cannot hold
-/// them.
+/// A line a point; neighbouring rungs that failed alike share a line.  Above the number that a screen can
+/// hold, their number alone.
 void print_points(const compare::SceneComparison& scene);
-/// A line a ladder: fitted order, best error, what each of report::kTargets costs.  Then who is cheapest.
+/// A line a ladder: fitted order, best error, the cost of each of report::kTargets; then the cheapest at
+/// each.
 /// @param table  the scene's lines of compare.csv
 void print_prices(const report::Table& table, double reference_error);
 void print_restarts(const compare::SceneComparison& scene);

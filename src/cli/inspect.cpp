@@ -34,7 +34,7 @@ void print_bodies(const loop::World& world) {
                                             rows));
 }
 
-/// The regions of each body with their materials, and what is in none.
+/// The regions of each body with their materials, and the elements in no region.
 void print_regions(const loop::World& world) {
   Rows rows;
   for (const loop::Body& body : world.bodies) {
@@ -67,7 +67,7 @@ void print_bones(const loop::World& world) {
   Rows rows;
   for (const loop::Bone& bone : world.bones) {
     const Pose pose = world.bone_pose(bone);
-    const Vec3 turn = rotation_vector(pose.rotation);
+    const Vec3 rotation = rotation_vector(pose.rotation);
     rows.push_back({bone.name,
                     bone.path   ? "a function of time"
                     : bone.tree ? "on a joint"
@@ -75,7 +75,7 @@ void print_bones(const loop::World& world) {
                     bone.path ? "-" : fmt::format("{:.3g}", bone.mass), std::to_string(bone.dofs.size() / 3),
                     fmt::format("{:.3g} {:.3g} {:.3g}", pose.translation.x(), pose.translation.y(),
                                 pose.translation.z()),
-                    fmt::format("{:.3g} {:.3g} {:.3g}", turn.x(), turn.y(), turn.z())});
+                    fmt::format("{:.3g} {:.3g} {:.3g}", rotation.x(), rotation.y(), rotation.z())});
   }
   if (!rows.empty())
     fmt::print("{}\n",

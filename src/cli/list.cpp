@@ -10,7 +10,7 @@
 #include "palpate/loop/registries.h"
 #include "palpate/report/table.h"
 #include "palpate/validation/validation.h"
-#include "places.h"
+#include "paths.h"
 
 namespace palpate::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include "palpate/render/scene.h"
 #include "palpate/report/table.h"
 #include "palpate/store/csv.h"
-#include "places.h"
+#include "paths.h"
 #include "scene_of.h"
 #include "undelivered.h"
 
@@ -53,15 +53,15 @@ void draw_modes(const loop::World& world, const modes::Modes& modes, const std::
   render::Scene scene;
   std::vector<std::string> frequencies;
   for (std::size_t i = 0; i < pictured.size(); ++i) {
-    const Vec3 place(static_cast<double>(i % kColumns) * room.x(), 0.0,
-                     -static_cast<double>(i / kColumns) * room.z());
+    const Vec3 offset(static_cast<double>(i % kColumns) * room.x(), 0.0,
+                      -static_cast<double>(i / kColumns) * room.z());
     for (const loop::Body& body : world.bodies) {
       const Points now = displaced(world, body, modes, pictured[i]), rest = world.positions(body);
       const VecX moved =
           (now - rest).colwise().norm().transpose() / (loop::kModeAmplitude * box.sizes().maxCoeff());
       render::Surface surface{body.name, body.surface_points(now), body.surface_faces(),
                               body.surface_values(moved)};
-      surface.points.colwise() += place;
+      surface.points.colwise() += offset;
       scene.surfaces.push_back(surface);
     }
     frequencies.push_back(fmt::format("{}: {:.3g} Hz", pictured[i] + 1, modes.frequency_hz(pictured[i])));
@@ -92,7 +92,8 @@ int modes(const ModesArguments& arguments) {
   loop::write_modes(*world, found, (base / "modes.vtkhdf").string());
   if (arguments.picture) {
     std::error_code none;
-    std::filesystem::remove(base / "modes.png", none);  // one of an earlier run would pass for this one's
+    std::filesystem::remove(base / "modes.png",
+                            none);  // a file of an earlier run would pass for one of this run
     try {
       draw_modes(*world, found, (base / "modes.png").string());
     } catch (const Error& e) { missing.add("picture " + (base / "modes.png").string(), e.what()); }

@@ -132,8 +132,7 @@ void add_compare(CLI::App& app, Invocation& invocation) {
       ->capture_default_str();
   command->add_option("--jobs", arguments->jobs, "runs side by side; default: the number of cores")
       ->check(CLI::Range(1, 1024));
-  command->add_flag("--fresh", arguments->fresh,
-                    "start anew instead of going on from what stands in the folder");
+  command->add_flag("--fresh", arguments->fresh, "start anew instead of continuing the study in the folder");
   command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scenes' [s]")
       ->type_name("SECONDS")
       ->check(duration);
@@ -205,7 +204,7 @@ number, step by step the displaced shapes.)");
 
 void add_stability(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand(
-      "stability", "stiff and extreme cases against every integrator, each held against theory");
+      "stability", "stiff and extreme cases against every integrator, each compared with theory");
   auto arguments = std::make_shared<StabilityArguments>();
   command->add_option("--row", arguments->rows, "only this row; may be given more than once")
       ->type_name("NAME")
@@ -346,7 +345,7 @@ void add_demo(CLI::App& app, Invocation& invocation) {
   });
 }
 
-/// Its own program parses what follows: here stands only what `palpate --help` says of it.
+/// Line of `palpate --help` about `palpate model`; a program of its own parses the arguments.
 void add_model(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("model", "a layered model of a closed surface: tetrahedra, skin, proxies");
@@ -356,7 +355,7 @@ void add_model(CLI::App& app, Invocation& invocation) {
   });
 }
 
-/// What is wrong with the line, and where help is: CLI11's own messages name the option.
+/// Error of the line with the command whose help to read: CLI11's own messages name the option.
 void refuse(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   std::string command = "palpate", message = error.what();
   for (const CLI::App* used : app.get_subcommands()) command += " " + used->get_name();

@@ -6,7 +6,8 @@
 
 namespace palpate::cli {
 
-/// Refuses at the start what could not be drawn at the end.  @param shade  "displacement" or "stress"
+/// Refuses at the start what could not be drawn at the end.
+/// @param shade  "displacement" or "stress"
 /// @throws Error where pictures were not compiled in, or for another name
 void check_picture(const std::string& shade);
 

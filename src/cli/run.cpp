@@ -11,8 +11,8 @@
 #include "palpate/loop/trace.h"
 #include "palpate/report/run_report.h"
 #include "palpate/store/atomic_file.h"
+#include "paths.h"
 #include "picture.h"
-#include "places.h"
 #include "progress.h"
 #include "scene_of.h"
 #include "stop.h"
@@ -59,7 +59,7 @@ std::string quoted(const std::string& word) {
   return out + "'";
 }
 
-/// The command line that does this again.
+/// The command line that repeats this run.
 std::string command_of(const RunArguments& a) {
   std::string out = "palpate run " + quoted(a.scene.scene);
   for (const std::string& change : a.scene.overrides) out += " --set " + quoted(change);
@@ -84,13 +84,13 @@ void keep_picture(const loop::World& world, const Snapshot& snapshot, const std:
                   Undelivered& missing) {
   const std::string path = (std::filesystem::path(folder) / "picture.png").string();
   std::error_code none;
-  std::filesystem::remove(path, none);  // one of an earlier run would pass for this one's
+  std::filesystem::remove(path, none);  // a file of an earlier run would pass for one of this run
   try {
     snapshot.save(world, path);
   } catch (const Error& e) { missing.add("picture " + path, e.what()); }
 }
 
-/// What stands in the folder now, for the person to open.
+/// Prints which files are now in the folder.
 void print_files(const std::string& folder) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder))

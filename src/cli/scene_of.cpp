@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "palpate/loop/load.h"
-#include "places.h"
+#include "paths.h"
 
 namespace palpate::cli {
 

@@ -9,7 +9,7 @@
 #include "commands.h"
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
-#include "places.h"
+#include "paths.h"
 #include "progress.h"
 #include "stop.h"
 #include "undelivered.h"
@@ -23,7 +23,7 @@ using stability::Verdict;
 /// One letter a cell: the matrix fits a terminal.
 char letter(const StabilityCell& cell) { return "ASBEGNFT"[static_cast<std::size_t>(cell.verdict)]; }
 
-/// A row of letters a case, one column an integrator; a cell that is not what theory expects is marked.
+/// A row of letters a case, one column an integrator; a cell that differs from what theory expects is marked.
 void print_matrix(const stability::StabilityMatrix& matrix) {
   std::vector<std::string> integrators;
   std::vector<std::pair<std::string, std::map<std::string, std::string>>> rows;

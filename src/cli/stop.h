@@ -10,8 +10,8 @@ void catch_stop_signals();
 
 /// the input is at fault, the integrator gave up, or a case with a known answer failed
 inline constexpr int kExitError = 1;
-inline constexpr int kExitInternalError = 2;  ///< a mistake of ours
-/// all else was done, but something that the command promises is missing: the last line says what
+inline constexpr int kExitInternalError = 2;  ///< a defect of palpate
+/// something that the command promises is missing, all else was done: the last line says what
 inline constexpr int kExitIncomplete = 3;
 inline constexpr int kExitStopped = 130;  ///< Ctrl-C, as shells report it
 

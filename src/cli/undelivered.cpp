@@ -20,7 +20,7 @@ void Undelivered::add(const std::string& what, const std::string& why) {
 }
 
 void Undelivered::add(const report::RunReport& report) {
-  std::map<std::string, std::vector<std::string>> captions;  // by reason: one is often that of all
+  std::map<std::string, std::vector<std::string>> captions;  // by reason: often one for all
   for (const auto& figure : report.missing_figures)
     captions[first_line(figure.why)].push_back(first_line(figure.caption));
   for (const auto& [why, figures] : captions)

@@ -6,15 +6,15 @@
 
 namespace palpate::cli {
 
-/// What a command's help promises and this call could not do, while all else was done: told in the last line,
-/// and by the exit status.
+/// Collects what a command's help promises and this call could not deliver, while all else was done.  The
+/// last line names it, and so does the exit status.
 class Undelivered {
  public:
   void add(const std::string& what, const std::string& why);
-  /// The figures that a page lacks.
+  /// Adds the figures that a page lacks.
   void add(const report::RunReport& report);
   bool empty() const { return things_.empty(); }
-  /// Prints the last line where something is missing.  @return `status`, or kExitIncomplete in the place of 0
+  /// Prints the last line where something is missing.  @return `status`, or kExitIncomplete instead of 0
   int close(int status) const;
 
  private:

@@ -11,7 +11,7 @@
 #include "palpate/report/run_report.h"
 #include "palpate/report/table.h"
 #include "palpate/validation/validation.h"
-#include "places.h"
+#include "paths.h"
 #include "progress.h"
 #include "stop.h"
 #include "undelivered.h"
@@ -56,7 +56,7 @@ std::vector<std::string> row(const ValidationCase& one, const Measurement& m) {
           m.passed() ? "pass" : "FAIL"};
 }
 
-/// NaN is no JSON: what does not apply is null.
+/// JSON has no NaN: what does not apply is null.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json to_json(const ValidationCase& one, const std::vector<Measurement>& measurements, double seconds) {
@@ -97,7 +97,7 @@ void run_one(const ValidationCase& one, Run& out) {
   if (!all_pass(measurements)) ++out.failed;
 }
 
-/// A case that still passes with its physics broken is worthless.
+/// Runs a case with each of its faults: a case that still passes with its physics broken is worthless.
 void run_with_faults(const ValidationCase& one, Run& out) {
   for (const std::string& fault : one.faults) {
     const bool caught = !all_pass(one.run(fault));

@@ -11,10 +11,10 @@ Run run_of(const std::string& bytes);
 std::string bytes_of(const Trajectory& trajectory);
 Trajectory trajectory_of(const std::string& bytes);
 
-/// What a point's error was measured against.
+/// The reference that a point's error was measured against.
 enum class ReferenceUsed { kNone, kPrimary, kCheck };
 
-/// What one run of a point gives, as it is kept.
+/// Result of one run of a point, as it is stored.
 struct PointRun {
   ReferenceUsed reference = ReferenceUsed::kNone;
   PointStatus status = PointStatus::kMissing;
@@ -25,11 +25,11 @@ struct PointRun {
 std::string bytes_of(const PointRun& run);
 PointRun point_run_of(const std::string& bytes);
 
-/// The same as a row of the study's database, under these columns.
+/// A PointRun as a row of the study's database, under the columns run_columns().
 const std::vector<std::string>& run_columns();
 store::StudyRun row_of(const PointRun& run, double limit_s);
 PointRun point_run_of(const store::StudyRun& row);
-double limit_of(const store::StudyRun& row);  ///< that it ran under [s]
+double limit_of(const store::StudyRun& row);  ///< CPU limit that the run had [s]
 
 std::string bytes_of(const std::vector<ExchangePoint>& points);
 std::vector<ExchangePoint> exchange_of(const std::string& bytes);

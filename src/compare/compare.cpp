@@ -56,13 +56,13 @@ class Study {
  private:
   bool stopped() const { return options_.stop && options_.stop->load(); }
 
-  /// Does what can be done for it now; true where that may let others proceed.
+  /// Advances one task as far as possible now; true where that may let others proceed.
   bool proceed(Task& task) {
     if (task.started) return false;
     if (ledger_.is_pointless(task)) return task.done = true;
     if (!ledger_.is_ready(task)) return false;
-    if (!task.looked) {
-      task.looked = true;
+    if (!task.looked_up) {
+      task.looked_up = true;
       resume(task);
       if (task.done) return true;
     }
@@ -71,7 +71,7 @@ class Study {
     return true;
   }
 
-  /// From an earlier study.
+  /// Takes the result of an earlier study.
   void resume(Task& task) {
     if (!task.is_point()) {
       const auto kept = database_.artefact(ledger_.artefact_key(task));
@@ -102,7 +102,7 @@ class Study {
                 [this, at](const Outcome& outcome) { done(*at, outcome); });
   }
 
-  /// What the process of the run is to do.
+  /// Input of the process of the run.
   std::string order(const Task& task) {
     const SceneWork& scene = ledger_.work[task.scene];
     const double limit_s = ledger_.limit_of(task);
@@ -119,7 +119,7 @@ class Study {
                     task.kind == Task::Kind::kPoint ? scene.reference : nullptr);
   }
 
-  /// In the study's own process: keeps the result, then uses it.
+  /// Called in the study's own process: keeps the result, then uses it.
   void done(Task& task, const Outcome& outcome) {
     if (stopped()) return;  // it may have been cut short
     task.done = true;

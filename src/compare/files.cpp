@@ -38,7 +38,7 @@ const std::vector<std::string> kMethodColumns = {"scene",
 CsvCell number(long n) { return static_cast<double>(n); }
 CsvCell yes_no(bool yes) { return std::string(yes ? "yes" : "no"); }
 
-/// The columns that reports know, then every further number of a run.
+/// The columns that reports know, then every other number of a run.
 std::vector<std::string> with_every_number(std::vector<std::string> columns) {
   const loop::RunResult none;
   loop::visit_counters(

@@ -13,13 +13,13 @@ struct Task {
   Kind kind;
   std::size_t scene, point = 0;
   int repeat = 0;
-  bool looked = false, started = false, done = false;  ///< looked: into the database
+  bool looked_up = false, started = false, done = false;  ///< looked_up: in the database
 
   bool is_point() const { return kind == Kind::kPoint || kind == Kind::kRestart; }
   bool is_reference() const { return kind == Kind::kPrimary || kind == Kind::kCheck; }
 };
 
-/// A scene on its way.
+/// State of one scene within a study.
 struct SceneWork {
   scene::Description description;
   PlannedReference planned;
@@ -31,7 +31,7 @@ struct SceneWork {
   std::vector<std::string> point_keys, restart_keys;
 };
 
-/// All runs of a study, and what has come of them so far.
+/// All runs of a study, and their results so far.
 class Ledger {
  public:
   Ledger(const std::vector<scene::Description>& scenes, const CompareOptions& options);
@@ -49,20 +49,22 @@ class Ledger {
     return task.is_point() ? options_.limit_s : options_.reference_limit_s;
   }
 
-  /// Whether what it needs is there: the reference, the rung before it, the first of its repeats.
+  /// Whether all that the task needs is there: the reference, the rung before it, the first of its repeats.
   bool is_ready(const Task& task);
   /// Settles a point that needs no run of its own; true where the task is to be left out.
   bool is_pointless(const Task& task);
 
-  /// A run's result, from the database or on its way there.
+  /// Takes a run's result, from the database or on its way there.
   void take(const Task& task, const store::StudyRun& row);
   void take(const Task& task, const store::StudyArtefact& kept);
-  /// False of a chart that lacks something: what was missing (a library, a display) may be there today, and
-  /// it is made again.
+  /// False for a chart that lacks something: what was missing (a library, a display) may be there today, so
+  /// the chart is made again.
   static bool is_whole(const Task& task, const store::StudyArtefact& kept);
-  /// Once a scene's two reference runs have ended: which is the reference, and how far can it be trusted?
+  /// Once a scene's two reference runs have ended, decides which is the reference and how far it can be
+  /// trusted.
   void settle_references();
-  /// Medians, marks and words, once nothing is left to run.  @param jobs  that ran side by side
+  /// Computes medians, marks and texts, once nothing is left to run.  @param jobs  number of runs side by
+  /// side
   void finish(int jobs);
 
  private:

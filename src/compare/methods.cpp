@@ -21,8 +21,8 @@ class SampleCount : public loop::Observer {
   long most = 0;
 };
 
-/// One run with one method; false where it was stopped.  @throws Error where the method cannot be had or the
-/// run gives up
+/// One run with one method; false where it was stopped.
+/// @throws Error where the method is not available or the run gives up
 bool run_method(const scene::Description& d, const std::string& method, const std::atomic<bool>* stop,
                 Trajectory& trajectory, MethodPoint& point) {
   const auto world = loop::assemble(with_method(d, method));

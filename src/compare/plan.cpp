@@ -40,8 +40,8 @@ bool is_named(const std::vector<std::string>& wanted, const scene::LadderSpec& l
   return contains(wanted, ladder.integrator) && std::none_of(all.begin(), all.end(), has_that_label);
 }
 
-/// rtol 1e-2 ... 1e-8 under error control; else halvings of the loop's period, or of 10 ms: an explicit
-/// method may need very short steps.
+/// Default ladder: rtol 1e-2 ... 1e-8 under error control; else halvings of the loop's period, or of 10 ms,
+/// because an explicit method may need very short steps.
 scene::LadderSpec default_ladder(const scene::Description& d, const StepperEntry& entry) {
   scene::LadderSpec ladder;
   ladder.integrator = entry.name;
@@ -56,7 +56,7 @@ scene::LadderSpec default_ladder(const scene::Description& d, const StepperEntry
   return ladder;
 }
 
-/// Whole fractions of the exchange period.
+/// Ladder of ticks: whole fractions of the exchange period.
 scene::LadderSpec tick_ladder(const scene::Description& d, const std::string& integrator) {
   scene::LadderSpec ladder;
   ladder.integrator = integrator;
@@ -124,7 +124,7 @@ std::string toml_number(double value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-/// What `--set` would say to have the integrator step by `value`.
+/// Arguments of `--set` that make the integrator step by `value`.
 std::vector<std::string> overrides_of(const scene::LadderSpec& ladder, double value) {
   std::vector<std::string> out = ladder.set;
   if (ladder.setting == "tick_s") {

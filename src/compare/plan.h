@@ -3,7 +3,7 @@
 
 namespace palpate::compare {
 
-/// The scene as its text says, changed as `--set` does.
+/// The scene parsed anew from its text, changed as `--set` does.
 scene::Description with_overrides(const scene::Description& description,
                                   const std::vector<std::string>& overrides);
 
@@ -12,11 +12,11 @@ scene::Description with_overrides(const scene::Description& description,
 /// @throws Error for names that nobody knows, and for a setting that an integrator does not step by
 std::vector<ComparePoint> plan_points(const scene::Description& description, const CompareOptions& options);
 
-/// The runs that show what re-initialisation costs: each ladder of the scene at the scene's own tolerance or
+/// The runs that show the cost of re-initialisation: each ladder of the scene at the scene's own tolerance or
 /// step, at each refresh period.
 std::vector<ComparePoint> plan_restarts(const scene::Description& description, const CompareOptions& options);
 
-/// The reference, and what checks it.  Of a scene without bodies: the tool by Simbody's two error-controlled
+/// The reference and its check.  A scene without bodies takes the tool by Simbody's two error-controlled
 /// integrators, at a tick finer than any rung.
 struct PlannedReference {
   std::string made_by, checked_by;  ///< with tolerance, in words

@@ -7,8 +7,8 @@
 namespace palpate::compare {
 
 PointRun run_point(const scene::Description& d, double limit_s, const Trajectory* reference,
-                   const std::atomic<bool>* late) {
-  const Run run = run_once(d, d.compare.duration_s, late);
+                   const std::atomic<bool>* out_of_time) {
+  const Run run = run_once(d, d.compare.duration_s, out_of_time);
   const dynamics::StepResult& last = run.result.status;
   PointRun out;
   out.result = run.result;
@@ -43,10 +43,9 @@ Reference settle(const PlannedReference& planned, const ReferenceRun& primary, c
                               planned.checked_by, check.trouble);
   } else if (check.run) {
     out.description = planned.checked_by + ", not checked";
-    out.trouble = fmt::format(
-        "the reference by {} failed ({}): what was to check it took its place, and its own error is not "
-        "known",
-        planned.made_by, primary.trouble);
+    out.trouble =
+        fmt::format("the reference by {} failed ({}): the check replaces it, and its own error is not known",
+                    planned.made_by, primary.trouble);
   } else {
     out.description = "none";
     out.trouble = fmt::format(

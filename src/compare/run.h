@@ -6,10 +6,11 @@
 
 namespace palpate::compare {
 
-/// Runs one point, in its own process.  @param reference  null: no error is measured  @param late  becomes
-/// true after `limit_s`
+/// Runs one point, in its own process.
+/// @param reference  null: no error is measured
+/// @param out_of_time  becomes true after `limit_s`
 PointRun run_point(const scene::Description& description, double limit_s, const Trajectory* reference,
-                   const std::atomic<bool>* late);
+                   const std::atomic<bool>* out_of_time);
 
 /// One of the two runs of a reference: it, or why there is none.
 struct ReferenceRun {
@@ -17,8 +18,8 @@ struct ReferenceRun {
   std::string trouble;
 };
 
-/// Which run is the reference, and how far can it be trusted?  The run that was to check takes the place of
-/// one that failed.
+/// Decides which run is the reference, and how far it can be trusted.  The check replaces a reference that
+/// failed.
 Reference settle(const PlannedReference& planned, const ReferenceRun& primary, const ReferenceRun& check);
 
 }  // namespace palpate::compare

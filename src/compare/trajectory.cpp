@@ -18,10 +18,11 @@ VecX positions_of(const loop::World& world, const Vec3& tool_origin) {
   return nodal_positions(world);
 }
 
-/// Times are multiples of the two runs' periods; equal to well within the shorter one's rounding.
+/// Whether two times are equal.  They are multiples of the two runs' periods: equal to well within the
+/// shorter one's rounding.
 bool same_time(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(1.0, std::abs(a)); }
 
-/// The larger one; NaN stays, where std::max would drop it.
+/// The larger of two numbers; NaN stays, where std::max would drop it.
 double worse(double a, double b) { return b > a || std::isnan(b) ? b : a; }
 
 /// Calls visit(i, j) for every pair of equal times of two ascending lists; returns how many there were.

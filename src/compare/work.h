@@ -5,13 +5,13 @@
 
 namespace palpate::compare {
 
-/// What a process of its own can do for a study.
+/// Kinds of work that a process of its own does for a study.
 enum class WorkKind { kReference, kPoint, kExchange, kMethods };
 
 /// One piece of work as bytes.  The scene goes as its text, for the process knows nothing of the study: the
-/// text is all that a scene is made of, and its mesh files are found from the same folder.
+/// scene is made of its text alone, and its mesh files are found from the same folder.
 /// @param limit_s  CPU seconds that the process will have, for its message
-/// @param reference  what a point's error is measured against; null: none is measured
+/// @param reference  reference for a point's error; null: no error is measured
 std::string order_of(WorkKind kind, const scene::Description& description, double limit_s,
                      const Trajectory* reference);
 

@@ -22,9 +22,9 @@ Mat3 cofactor(const Mat3& F) {
 
 /// Newton's method on X^T X = I from X0 = F, scaled after Higham (1986), "Computing the polar decomposition":
 ///   X <- (g X + X^-T / g) / 2,   g^2 = |X^-1|_F / |X|_F.
-/// Each singular value s of X goes to (g s + 1/(g s))/2 while the singular vectors stay,
-/// so the limit is R of F = R S. Quadratic: e <- e^2/2, so a step below 1e-8 means that
-/// the iterate it led to is orthogonal to rounding.
+/// Each singular value s of X goes to (g s + 1/(g s))/2 while the singular vectors stay, so the limit is R of
+/// F = R S.  Quadratic: e <- e^2/2, so a step below 1e-8 means that the iterate it led to is orthogonal to
+/// rounding.
 std::optional<Mat3> newton_rotation(const Mat3& F) {
   constexpr int kMaxIterations = 12;
   constexpr double kStepSquared = 1e-16;

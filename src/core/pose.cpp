@@ -8,8 +8,8 @@ namespace {
 /// Below this angle the series' first term is exact to rounding, and the square of a component may underflow.
 constexpr double kTinyAngle = 1e-8;
 
-/// Whether q is the representative of {q, -q}: the one with w > 0; at w = 0 (180 degrees)
-/// the one whose first non-zero component is positive.
+/// Whether q is the representative of {q, -q}: the one with w > 0; at w = 0 (180 degrees) the one whose first
+/// non-zero component is positive.
 bool is_canonical(const Quat& q) {
   if (q.w() != 0.0) return q.w() > 0.0;
   for (int i = 0; i < 3; ++i)

@@ -100,10 +100,10 @@ void ProcessPool::finish(std::list<Child>::iterator at) {
   close(child.pipe);
   const int status = child.status;
   Outcome outcome;
-  const bool late = child.killed || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU);
+  const bool timed_out = child.killed || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU);
   if (child.lost) {
     outcome = {Outcome::End::kCrash, "lost: the process that had started it has died"};
-  } else if (late) {
+  } else if (timed_out) {
     outcome = {Outcome::End::kOutOfTime, fmt::format("out of time: {:g} s", child.limit_s)};
   } else if (WIFSIGNALED(status)) {
     outcome = {Outcome::End::kCrash,

@@ -5,7 +5,7 @@
 
 namespace palpate {
 
-/// Looks while a thread waits for what follows, some 50 us on a core of 3 GHz: longer than most serial work
+/// Polls of a waiting thread before it sleeps, some 50 us on a core of 3 GHz: longer than most serial work
 /// between two loops, far shorter than a time slice.
 constexpr int kSpins = 4000;
 

@@ -74,7 +74,7 @@ void leave_terminal() {
   if (nowhere > 2) close(nowhere);
 }
 
-// --- a pool's server
+// --- server of a pool
 
 class Server {
  public:
@@ -117,7 +117,7 @@ class Server {
   }
 
   bool start(const Request& request, const std::string& folder, const std::string& input, int pipe) {
-    // Code that was loaded after the helper was made is not there to be called.
+    // Code that was loaded after the helper was made does not exist in this process.
     Dl_info found;
     if (dladdr(reinterpret_cast<const void*>(request.work), &found) == 0)
       return say(Notice::Kind::kNotStarted, request.id, 0);
@@ -147,7 +147,7 @@ class Server {
   std::map<pid_t, std::uint64_t> running_;
 };
 
-// --- the helper
+// --- helper
 
 [[noreturn]] void run_helper(int socket, pid_t caller) {
   leave_terminal();
@@ -171,7 +171,7 @@ class Server {
   _exit(0);  // the servers notice
 }
 
-// --- the caller's side
+// --- caller's side
 
 /// This process's helper; of a process that was forked from one that has a helper: not yet its own.
 struct Helper {

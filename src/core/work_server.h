@@ -12,22 +12,23 @@
 ///                    --(socket)--> server          one a pool; forks a process a piece of work
 ///                    <--(pipe)---  process         what the work returned
 ///
-/// A server of its own makes a pool independent of all others, whichever threads they are used from.  Each of
-/// these processes ends when its socket closes or its parent dies, and takes what it has started along.
+/// Each pool has a server of its own, which makes it independent of all others, whichever threads they are
+/// used from.  Each of these processes ends when its socket closes or its parent dies, and ends those that it
+/// has started.
 namespace palpate::work_server {
 
-/// What a pool asks of its server.
+/// Request of a pool to its server.
 struct Request {
   enum class Kind : std::uint32_t { kStart, kKill };
   Kind kind;
   std::uint64_t id;
-  // Of kStart alone; the folder's and the input's bytes follow, the pipe's end comes along.
+  // For kStart alone; the bytes of folder and input follow, and the pipe's end is sent along.
   ProcessPool::Work work;
   double limit_s;
   std::uint64_t folder_size, input_size;
 };
 
-/// What a server says.
+/// Message of a server to its pool.
 struct Notice {
   enum class Kind : std::uint32_t { kStarted, kNotStarted, kEnded };
   Kind kind;
@@ -44,7 +45,7 @@ int connect();
 
 bool send_bytes(int socket, const void* data, std::size_t size);
 bool receive_bytes(int socket, void* data, std::size_t size);
-/// `size` > 0 bytes and an open file.
+/// Sends `size` > 0 bytes and an open file.
 bool send_with_file(int socket, const void* data, std::size_t size, int file);
 /// @param file  the open file that came along, or -1
 bool receive_with_file(int socket, void* data, std::size_t size, int& file);

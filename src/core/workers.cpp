@@ -18,12 +18,12 @@ namespace {
 constexpr int kMost = 256;  ///< threads
 
 thread_local int t_count = 0;         ///< of the innermost Count, or of the loop that runs here; 0: neither
-thread_local bool t_in_loop = false;  ///< this thread is at a task
+thread_local bool t_in_loop = false;  ///< this thread runs a task
 
 // One word, `ticket_`, holds the loop's number (24 bits), its tasks and the next of them (20 bits each).  A
-// thread that takes a task swaps the word for its successor: when that succeeds, the loop was open all the
-// while between the two looks at the word, and with it what was read of the loop in between.  So the caller
-// need not wait for threads that slept through the loop, only for the tasks.
+// thread that takes a task replaces the word by its successor (compare and exchange): when that succeeds, the
+// loop was open from the load to the exchange, and what was read of the loop in between is valid.  So the
+// caller need not wait for threads that slept through the loop, only for the tasks.
 class Pool {
  public:
   ~Pool() { stop(); }
@@ -80,7 +80,7 @@ class Pool {
     }
   }
 
-  /// Takes tasks until none is left; none where the loop is for fewer threads.
+  /// Takes tasks until none is left; takes none where the loop is for fewer threads.
   void take(int worker) {
     std::uint64_t ticket = ticket_.load();
     const int count_outside = t_count;

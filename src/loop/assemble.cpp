@@ -43,14 +43,14 @@ fem::SoftBodyOptions options_of(const SoftBodySpec& spec, const fem::Materials& 
   return options;
 }
 
-/// The tetrahedra of a body, from here on numbered in spatial order.
+/// Takes the tetrahedra of a body, from here on numbered in spatial order.
 void take_tets(TetMesh tets, Body& body) {
   body.file_node = mesh::spatial_order(tets.nodes);
   body.rest = std::move(tets);
   mesh::renumber_nodes(body.rest, body.file_node);
 }
 
-/// Those of a native mesh file or of a model, checked.
+/// Takes the tetrahedra of a native mesh file or of a model, checked.
 void take_file(TetMesh tets, const std::string& path, double scale, Body& body) {
   tets.nodes *= scale;
   mesh::Provenance from;
@@ -59,7 +59,7 @@ void take_file(TetMesh tets, const std::string& path, double scale, Body& body) 
   take_tets(std::move(tets), body);
 }
 
-/// Those of a model, and whatever stands by its nodes.
+/// Takes the tetrahedra of a model, and its data at the nodes.
 void take_model(LayeredModel& model, const std::string& path, double scale, Body& body) {
   take_file(std::move(model.tets), path, scale, body);
   if (model.bone_of_node.empty()) return;
@@ -69,7 +69,7 @@ void take_model(LayeredModel& model, const std::string& path, double scale, Body
   model.bone_of_node = std::move(bone_of_node);
 }
 
-/// The bones, in the body's own axes as yet.
+/// Takes the bones, in the body's own axes as yet.
 void take_skeleton(const SoftBodySpec& spec, const std::string& path, const LayeredModel& model, Body& body) {
   if (model.skeleton.bones.empty())
     fail("body \"{}\": [body.skeleton], but {} has no bones; `palpate model human` writes a file that has",
@@ -83,9 +83,9 @@ void take_skeleton(const SoftBodySpec& spec, const std::string& path, const Laye
   }
 }
 
-/// A body's tetrahedra, and the skin and proxies that the scene names.  Returns the regions of its file.  Of
-/// a model file the tetrahedra alone are read where it names neither; else the file is read and checked as a
-/// whole, and what is not named is let go.
+/// Loads a body's tetrahedra, and the skin and proxies that the scene names; returns the regions of its file.
+/// From a model file the tetrahedra alone are read where the scene names neither; else the file is read and
+/// checked as a whole, and what is not named is dropped.
 std::vector<MaterialRegion> load_mesh(const SoftBodySpec& spec, const std::string& folder, Body& body) {
   const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
   if (spec.skin || spec.skeleton) {
@@ -210,7 +210,7 @@ std::unique_ptr<World> assemble(const scene::Description& description) {
   if (description.tool) assemble_tool(*world);
   assemble_attachments(*world);
   if (!description.contacts.empty()) assemble_contact(*world);
-  if (world->state.layout().blocks.empty()) return world;  // a tool of its own rate, alone
+  if (world->state.layout().blocks.empty()) return world;  // a tool with its own ticks, alone
   world->system.prepare(world->state.view());
   world->system.impose(world->state.layout(), 0.0, world->state.q().data(), world->state.u().data());
   world->stepper = integrate::make_stepper(world->system, world->state, description.integrator);

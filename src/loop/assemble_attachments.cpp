@@ -45,7 +45,7 @@ void check_nodes(const Body& body, const AttachmentSpec& spec, const std::vector
       where, spec.to);
 }
 
-/// Which way the nodes of an attachment go, and the frame that they are fixed in at the start.
+/// Motion of the nodes of an attachment, and the frame that they are fixed in at the start.
 struct Carrier {
   int block_id = -1;  ///< a rigid block, or
   fem::Path path;     ///< a function of time; neither: they stay

@@ -21,8 +21,8 @@ fem::Path path_of(const BoneSpec& spec) {
   };
 }
 
-/// Errors are asked for in the units of the tissue that it carries: an error in its turn counts as that of a
-/// node a body's size away.
+/// The block of a free bone, with error scales in the units of the tissue that it carries: an error of its
+/// rotation counts as that of a node a body's size away.
 dynamics::BlockSpec block_of(const World& world, const BoneSpec& spec) {
   double length = 0.0, speed = 0.0;
   for (std::size_t i = 0; i < world.bodies.size(); ++i)

@@ -44,7 +44,7 @@ Pair pair_of(const World& world, const ContactSpec& spec, const std::string& nam
   return {spec, {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces}, gap};
 }
 
-/// Two soft bodies.
+/// Contact of two soft bodies.
 std::unique_ptr<contact::SampleSource> gpu_source(Pair a, Pair b) {
   if (a.spec.method != "gpu")
     fail("contact {} - {}: two soft bodies meet in image space; use method = \"gpu\"", a.spec.first,
@@ -59,7 +59,7 @@ std::unique_ptr<contact::SampleSource> gpu_source(Pair a, Pair b) {
   return contact::make_gpu_source(std::move(a.surface), std::move(b.surface), options);
 }
 
-/// One soft body, its bones' regions against each other.
+/// Contact of one soft body with itself: its bones' regions against each other.
 std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair) {
   const std::string who = fmt::format("contact {} - {}", pair.spec.first, pair.spec.second);
   if (pair.spec.method != "gpu") fail("{}: a body meets itself in image space; use method = \"gpu\"", who);
@@ -81,8 +81,8 @@ std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair)
                                   world.find_body(pair.spec.first)->rest.nodes, options);
 }
 
-/// A rigid surface in a frame.
-/// @param rigid_proxies  of it: made where the body has proxies and nobody made them yet
+/// Contact of a soft body with a rigid surface in a frame.
+/// @param rigid_proxies  proxies of the surface: made where the body has proxies and these do not exist yet
 std::unique_ptr<contact::SampleSource> gpu_source(Pair pair, TriMesh rigid,
                                                   std::shared_ptr<proxy::ProxySet>& rigid_proxies, int frame,
                                                   std::shared_ptr<contact::MovingFrame> motion) {

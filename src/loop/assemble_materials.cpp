@@ -9,7 +9,7 @@
 namespace palpate::loop {
 namespace {
 
-/// The body's own.
+/// The body's own material.
 fem::Material material_of(const SoftBodySpec& spec) {
   return {spec.youngs_modulus_pa, spec.poissons_ratio, spec.density_kg_m3, spec.mass_damping_per_s,
           spec.stiffness_damping_s};
@@ -21,20 +21,20 @@ std::vector<std::string> names_of(const std::vector<Region>& regions) {
   return out;
 }
 
-/// Elements whose middle lies in the box or the sphere.
+/// Elements whose centroid lies in the box or the sphere.
 std::vector<int> elements_in(const RegionSpec& spec, const Points& placed, const Tets& tets) {
   std::vector<int> out;
   for (Eigen::Index t = 0; t < tets.cols(); ++t) {
-    const Vec3 middle = placed(Eigen::all, tets.col(t)).rowwise().mean();
-    const bool inside = spec.region == "box" ? (middle.array() >= spec.box_min_m.array()).all() &&
-                                                   (middle.array() <= spec.box_max_m.array()).all()
-                                             : (middle - spec.centre_m).norm() <= spec.radius_m;
+    const Vec3 centroid = placed(Eigen::all, tets.col(t)).rowwise().mean();
+    const bool inside = spec.region == "box" ? (centroid.array() >= spec.box_min_m.array()).all() &&
+                                                   (centroid.array() <= spec.box_max_m.array()).all()
+                                             : (centroid - spec.centre_m).norm() <= spec.radius_m;
     if (inside) out.push_back(static_cast<int>(t));
   }
   return out;
 }
 
-/// The region that a table of the scene speaks of: one of the file, or a new one.
+/// The region that a table of the scene names: one of the file, or a new one.
 Region& region_for(const SoftBodySpec& spec, const RegionSpec& wanted, std::vector<Region>& regions,
                    const Body& body) {
   const auto found =
@@ -56,7 +56,8 @@ Region& region_for(const SoftBodySpec& spec, const RegionSpec& wanted, std::vect
   return regions.back();
 }
 
-/// What the scene says, and for the rest the body's, times the factors of a model file.
+/// Material of a region: the keys that the scene sets, else those of `base`, the body's times the factors of
+/// a model file.
 fem::Material material_of(const RegionSpec& wanted, const fem::Material& base) {
   fem::Material out = base;
   if (wanted.youngs_modulus_pa) out.youngs_modulus = *wanted.youngs_modulus_pa;
@@ -67,7 +68,7 @@ fem::Material material_of(const RegionSpec& wanted, const fem::Material& base) {
   return out;
 }
 
-/// Leaves each element to the last of its regions by material, then to the one of the file.
+/// Assigns each element to the last of its regions that has a material, else to the region of the file.
 void settle(Body& body) {
   std::vector<int> owner(static_cast<std::size_t>(body.rest.tets.cols()), -1);
   std::vector<std::size_t> order(body.regions.size());
@@ -124,7 +125,8 @@ fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<Material
   for (const Region& region : body.regions)
     if (region.tets.empty())
       fail(
-          "{}: region \"{}\" holds no tetrahedron; a box or a sphere takes those whose middle it holds, and "
+          "{}: region \"{}\" holds no tetrahedron; a box or a sphere takes those whose centroid it holds, "
+          "and "
           "the last region that holds one has it",
           where, region.name);
   if (out.list.size() == 1) return out;

@@ -7,7 +7,7 @@ namespace palpate::loop {
 void assemble_bodies(World& world);
 /// The regions of a body and the number of each element's material; then the list of materials, the body's
 /// own first.
-/// @param in_file  of its mesh file  @pre body.placed
+/// @param in_file  regions of its mesh file  @pre body.placed
 fem::Materials assemble_materials(const SoftBodySpec& spec, std::vector<MaterialRegion> in_file, Body& body);
 void assemble_bones(World& world);        ///< only with [[bone]]
 void assemble_skeletons(World& world);    ///< bones of model files, where a [body.skeleton] asks for them

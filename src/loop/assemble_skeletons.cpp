@@ -14,14 +14,14 @@
 namespace palpate::loop {
 namespace {
 
-/// One bone of the file on its way into the World.
+/// One bone of the file while it is assembled.
 struct Entry {
   const palpate::Bone* bone = nullptr;
   const JointSpec* own = nullptr;  ///< the scene's table about its joint; null: none
   std::string type;                ///< of its joint
   fem::TaperedBone shape;
   Pose start;                              ///< of its own frame
-  bool prescribed = false, moves = false;  ///< a function of time; and not a constant one
+  bool prescribed = false, moves = false;  ///< motion is a function of time; and not constant
   fem::Path path;
   int in_tree = -1;
 };
@@ -92,7 +92,7 @@ tool::TreeBone tree_bone(const Entry& entry, const SoftBodySpec& spec, const std
   const SkeletonSpec& skeleton = *spec.skeleton;
   tool::TreeBone bone;
   bone.name = entry.bone->name;
-  // -1 where that has a prescribed motion, and stands still
+  // -1 where the parent has a prescribed motion, and stands still
   if (entry.bone->parent >= 0) bone.parent = all[static_cast<std::size_t>(entry.bone->parent)].in_tree;
   bone.joint = entry.type == "hinge"  ? tool::Joint::kHinge
                : entry.type == "ball" ? tool::Joint::kBall
@@ -110,7 +110,7 @@ tool::TreeBone tree_bone(const Entry& entry, const SoftBodySpec& spec, const std
   return bone;
 }
 
-/// The tree of all that is not prescribed; -1 and null where everything is.
+/// The tree of all bones that are not prescribed; -1 and null where all are prescribed.
 std::pair<int, std::shared_ptr<const tool::BoneTree>> add_tree(World& world, const Body& body,
                                                                const SoftBodySpec& spec,
                                                                std::vector<Entry>& entries) {
@@ -150,9 +150,9 @@ void assemble_skeleton(World& world, int index) {
     if (!entry.prescribed) continue;
     const Entry* parent =
         entry.bone->parent < 0 ? nullptr : &entries[static_cast<std::size_t>(entry.bone->parent)];
-    entry.path = told_path({entry.start, entry.bone->head, quaternion_of(spec.rotation_vector_rad),
-                            entry.own ? entry.own->keyframes : std::vector<KeyframeSpec>{}},
-                           parent ? parent->path : fem::Path{}, parent ? parent->start : Pose{});
+    entry.path = prescribed_path({entry.start, entry.bone->head, quaternion_of(spec.rotation_vector_rad),
+                                  entry.own ? entry.own->keyframes : std::vector<KeyframeSpec>{}},
+                                 parent ? parent->path : fem::Path{}, parent ? parent->start : Pose{});
   }
   const auto [block_id, tree] = add_tree(world, body, spec, entries);
   for (std::size_t b = 0; b < entries.size(); ++b) {

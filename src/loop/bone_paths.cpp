@@ -2,14 +2,14 @@
 
 namespace palpate::loop {
 
-// Keyframes give a turn Q(t), with rate w and its rate a, and a shift d(t), as if the parent stood where it
-// was at the start.  Then the bone's origin o is at
-//     y = j + d + r,  y' = d' + w x r,  y'' = d'' + a x r + w x (w x r),      r = Q (o - j),  j the joint.
+// Keyframes give a rotation Q(t), with rate w and its rate a, and a translation d(t), as if the parent stood
+// where it was at the start.  With j the joint and r = Q (o - j), the bone's origin o is at
+//     y = j + d + r,   y' = d' + w x r,   y'' = d'' + a x r + w x (w x r).
 // The parent has moved since from (R0, p0) to (R, p), with twist (W, V) and its rate (A, V').  With T = R
 // R0^T and s = T (y - p0):
 //     x = p + s,   v = V + W x s + T y',   x'' = V' + A x s + W x (W x s) + 2 W x T y' + T y'',
 //     rotation T Q,   angular velocity W + T w,   its rate A + T a + W x T w.
-fem::Path told_path(const ToldJoint& joint, fem::Path parent, const Pose& parent_start) {
+fem::Path prescribed_path(const PrescribedJoint& joint, fem::Path parent, const Pose& parent_start) {
   return [joint, parent = std::move(parent), parent_start](double t) {
     device::HandleSample s;
     if (!joint.keyframes.empty()) s = device::sample_keyframes(joint.keyframes, t);

@@ -15,11 +15,11 @@ namespace {
 
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
-// What the bodies make of the contact over a time H, by one linearly implicit Euler step of theirs from (x0,
-// u0), while the tool is displaced by dx and its twist changed by dv.  n all nodes, f free, t tool; c =
-// -df/d(tool), -dF/d(node) as ContactForce::linearise gives them, M, D, K with contact in them.  Driven nodes
-// go to x(t0 + H), v(t0 + H), carried ones with their bone (rows and columns reduced onto it by System): s
-// and w are the displacements and velocity changes that are known beforehand,
+// The contact's wrench on the tool after a time H, with the bodies moved by one linearly implicit Euler step
+// from (x0, u0), while the tool is displaced by dx and its twist changed by dv.  Indices: n all nodes, f
+// free, t tool; c = -df/d(tool), -dF/d(node) as ContactForce::linearise gives them; M, D, K include the
+// contact.  Driven nodes go to x(t0 + H), v(t0 + H), carried ones with their bone (rows and columns reduced
+// onto it by System): s and w are the displacements and velocity changes that are known beforehand,
 //     s = H u0 on free directions,  x(t0 + H) - x0 on driven ones,
 //     w = 0    on free directions,  v(t0 + H) - u0 on driven ones.
 // With u1 = u0 + w + du, du = 0 on driven directions, nodes end at x0 + s + H du, and the force there is, to
@@ -32,15 +32,14 @@ using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 //       = [F_t - K_tn s - B_tn w - C g] + J dx + B dv,
 //     C = H K_tn + B_tn,  A g = H (f_n - K_nn s - D_nn w) - M w,
 //     J = -K_tt + H C A^-1 K_nt,  B = -B_tt + H C A^-1 B_nt,
-// the Schur complement of the step matrix onto the tool.  One part of K_tt is no stiffness of the contact but
-// of its force: the arms that rotate under it.  It is taken of the forces after the step, at x0 + s + H g, u0
-// + w + g; to first order that is the same.  But where the forces are out of balance it is not: a depth that
-// came about unseen may press with 1e4 N now and with 0.1 N after the step, and a tool that rotated under the
-// first would spin up without end.
+// which is the Schur complement of the step matrix onto the tool.  One part of K_tt belongs to the contact's
+// force, not to its stiffness: the arms that rotate under it.  It is taken from the forces after the step, at
+// x0 + s + H g, u0 + w + g; to first order that is equal.  It is not where the forces are out of balance: a
+// depth that came about unseen may press with 1e4 N now and with 0.1 N after the step, and a tool that
+// rotated under the first would spin up without end.
 //
-// H -> 0 gives `frozen`, H
-//   -> infinity the quasi-static answer K_tt - K_tn K^-1 K_nt.  (Forces that depend on time alone are taken
-//   at t0.)
+// H -> 0 gives `frozen`, H -> infinity the quasi-static answer K_tt - K_tn K^-1 K_nt.  (Forces that depend on
+// time alone are taken at t0.)
 struct Answer {
   Vec6 wrench;  ///< [F_t - K_tn s - B_tn w - C g]
   Mat6 J, B;
@@ -55,7 +54,7 @@ VecX moved(const World& world, const VecX& displacement) {
   return q;
 }
 
-/// s and w of the derivation.
+/// s and w of the derivation above.
 void known_motion(World& world, double H, VecX& s, VecX& w) {
   const VecX q0 = world.state.q(), u0 = world.state.u();
   VecX q = moved(world, H * u0), u = u0;
@@ -86,7 +85,7 @@ VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w) {
 }
 
 /// A factor of the step matrix: by LU where it is indefinite (an inverted element, a compressed strut), null
-/// where it has none at all.
+/// where it is singular.
 dynamics::LinearSolver* factored(ToolSide& side) {
   const dynamics::SolveStatus status = side.condenser->factor(side.condensed_matrix);
   if (status == dynamics::SolveStatus::kOk) return side.condenser.get();
@@ -139,10 +138,12 @@ bool answer_after(World& world, double H, const contact::FrameLinearisation& c, 
   return true;
 }
 
-// What the tool feels over the period while it goes on with the velocity v0 that it has, as the line through
-// what one implicit step makes of that wrench after one tick and after the period; J and B of the period for
-// what it does otherwise.  After a time s the one is w(s) + s J(s) v0 (s = tick or period),
-//     line(s) = W0 + s S,      F = line + J (dx - s v0) + B (v - v0) = W0 + s (S - J v0) + J dx + B (v - v0).
+// The wrench on the tool over the period has two parts.  While the tool goes on with its velocity v0, the
+// wrench is a line through the results of one implicit step after one tick and after the period; J and B of
+// the period give the response to any deviation from that motion.  After a time s (tick or period) the first
+// part is w(s) + s J(s) v0:
+//     line(s) = W0 + s S,
+//     F = line + J (dx - s v0) + B (v - v0) = W0 + s (S - J v0) + J dx + B (v - v0).
 // A contact whose nodes move within a tick answers it more stiffly than it answers the period, and the tool's
 // own way is where that shows: with J of the period for all of dx, the error stood still between periods of 5
 // and 2.5 ms. A stiff contact that the last period has left out of balance is relaxed within the first tick,

@@ -17,7 +17,7 @@ double size_of(const World& world) {
   return box.sizes().maxCoeff();
 }
 
-/// What a shape is multiplied by to be seen.
+/// Factor that makes a shape visible.
 double scale_of(const World& world, const VecX& shape) {
   double largest = 0.0;
   for (const Body& body : world.bodies) {

@@ -6,8 +6,8 @@
 namespace palpate::loop {
 namespace {
 
-/// Ticks and output times are multiples of different decimal numbers: what is nearer than this part of a tick
-/// is the same time.
+/// Ticks and output times are multiples of different decimal numbers: times that differ by less than this
+/// part of a tick are equal.
 constexpr double kSame = 1e-6;
 
 TickRecord tick_of(const World& world, double t, const dynamics::StateView& state) {

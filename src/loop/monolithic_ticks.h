@@ -6,7 +6,7 @@
 namespace palpate::loop {
 
 /// The haptic ticks of a monolithic scene: the integrator steps tool and bodies as it likes, and the tool at
-/// each tick is read from its dense output. An integrator that does not tell of its steps is made to land on
+/// each tick is read from its dense output.  An integrator that does not report its steps is made to land on
 /// every tick instead.
 class MonolithicTicks : private dynamics::StepFollower {
  public:

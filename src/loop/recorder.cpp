@@ -28,9 +28,10 @@ struct Recorder::Impl {
   std::unique_ptr<store::ForceFile> forces;
   std::unique_ptr<store::BoneFile> bones;
   TriMesh tool;   ///< in its own axes; empty without a tool
-  int every = 1;  ///< periods
-  long seen = 0;  ///< periods
-  /// [N] and [N m]: a larger difference between what is wanted and what is sent is a limit
+  int every = 1;  ///< periods between two recorded states
+  long seen = 0;  ///< periods so far
+  /// [N] and [N m]: a larger difference between the wrench wanted and the wrench sent means that it was
+  /// limited
   double force_rounding = 0.0, torque_rounding = 0.0;
   Pose tool_pose;
   Twist tool_twist;

@@ -45,7 +45,7 @@ class Loop {
       }
       const double t1 = i + 1 == periods ? duration : (i + 1) * period;
       one_period(i * period, t1);
-      // within the period: nothing of it is kept
+      // ended within the period: nothing of it is kept
       if (result_.status.status == dynamics::StepStatus::kInterrupted) {
         result_.status = {};
         result_.stopped = true;
@@ -77,8 +77,8 @@ class Loop {
       world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
   }
 
-  /// Bodies follow over the same period, with the tool's motion known or, monolithic, beside them: refreshes
-  /// of the contact inside it are whole fractions.
+  /// Bodies follow over the period, with the tool's motion known or, if monolithic, integrated with them; the
+  /// contact is refreshed inside the period at whole fractions of it.
   void advance_state(double t0, double t1) {
     const double refresh = world_.contact ? world_.description.exchange.contact_refresh_s : t1 - t0;
     const int parts = whole_number((t1 - t0) / refresh);
@@ -90,7 +90,7 @@ class Loop {
     }
   }
 
-  /// To t, stopping where a body's material changes.
+  /// Advances to t, stopping where a body's material changes.
   void advance_over_changes(double t) {
     for (;;) {
       const double stop = next_change();
@@ -160,7 +160,7 @@ class Loop {
     feel(tick);
   }
 
-  /// What the hand feels of a tool at a tick.
+  /// The wrench on the hand at a tick.
   void feel(TickRecord tick) {
     const device::HandleSample& handle = side_.handle_now = side_.handle->sample(tick.time);
     tick.handle = handle.pose;
@@ -191,7 +191,7 @@ class Loop {
   const RunOptions& options_;
   RunResult result_;
   dynamics::LinearisedContact record_;
-  double changed_ = 0.0;                  ///< time of the last change of a material
+  double changed_ = 0.0;                  ///< time of the last material change [s]
   std::optional<MonolithicTicks> ticks_;  ///< where tool and bodies are one system
 };
 

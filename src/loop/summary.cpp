@@ -9,7 +9,7 @@
 namespace palpate::loop {
 namespace {
 
-/// Every number of a run: what counts, or what was timed.
+/// Adds every number of a run of this type: counts, or times.
 template <class Number>
 void add_numbers(store::SummarySection& s, const RunResult& result) {
   const auto add = [&s]<class T>(const char* name, const T& value) {
@@ -51,7 +51,7 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
   s.values.emplace_back("max_torque_n_m", d.device->max_torque_n_m);
 }
 
-/// What store knows, and the libraries that only the parts know.
+/// Provenance as store collects it, and the libraries that only the parts know.
 store::Provenance full_provenance() {
   store::Provenance p = store::provenance();
   for (const auto& library : integrate::library_versions()) p.libraries.push_back(library);
@@ -60,8 +60,8 @@ store::Provenance full_provenance() {
   return p;
 }
 
-/// What queries did to the forces: between two of them contact goes on with the pairs and normals of the last
-/// one.
+/// Effect of queries on the forces: between two queries contact goes on with the pairs and normals of the
+/// last.
 void add_jumps(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   store::SummarySection& s = summary.section("contact");
@@ -69,7 +69,7 @@ void add_jumps(store::Summary& summary, const World& world) {
   s.values.emplace_back("largest_force_after_a_query_n", world.contact->largest_force());
 }
 
-/// What the proxies of a contact left out before the image, over all its queries.
+/// Work that the proxies of a contact saved the image, over all its queries.
 void add_pruning(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   const auto counts = world.contact->pruning();
@@ -98,7 +98,7 @@ void add_pruning(store::Summary& summary, const World& world) {
             static_cast<double>(faces) /
                 (static_cast<double>(c.queries) * static_cast<double>(body->surface_faces().cols())));
     }
-    add("largest turn of a normal [rad]", c.largest_rotation);
+    add("largest rotation of a normal [rad]", c.largest_rotation);
   }
 }
 

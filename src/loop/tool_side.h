@@ -6,22 +6,21 @@
 
 namespace palpate::loop {
 
-/// What a World has of a tool: the tool itself, the hand's side of it, and its contact.  All empty without
-/// [tool].
+/// A World's tool: the tool itself, the hand's side of it, and its contact.  All empty without [tool].
 struct ToolSide {
-  /// with ticks of its own; null where the scheme is monolithic
+  /// the tool with ticks of its own; null where the scheme is monolithic
   std::unique_ptr<tool::Tool> tool;
   /// monolithic: its block of the State; else -1
   int block_id = -1;
   std::unique_ptr<device::Handle> handle;
   device::HandleSample handle_now;  ///< at the last tick
   std::unique_ptr<device::WrenchLimiter> limiter;
-  /// its frame in contact; null where no contact names the tool
+  /// the tool's frame in contact; null where no contact names the tool
   std::shared_ptr<contact::MovingFrame> motion;
-  /// the same where the scheme is partitioned: what the ticks write; else null
+  /// `motion` where the scheme is partitioned: written by the ticks; else null
   std::shared_ptr<contact::TrajectoryFrame> trajectory;
   std::shared_ptr<proxy::ProxySet> proxies;  ///< null where it meets no body with proxies
-  int frame_index = -1;                      ///< of it in the contact, -1 where no contact names it
+  int frame_index = -1;                      ///< of that frame in the contact, -1 where no contact names it
   /// factors the step matrix for the condensed linearisation; null where not used
   std::unique_ptr<dynamics::LinearSolver> condenser;
   /// made at the first step matrix without a Cholesky factor

@@ -108,7 +108,7 @@ std::vector<Wrench> World::wrenches_on_bones() {
   return out;
 }
 
-// Of a monolithic tool, mass, weight and coupling are terms of the System.
+// For a monolithic tool, kinetic energy, weight and coupling are terms of the System.
 double World::mechanical_energy() {
   const dynamics::StateView view = state.view();
   double energy = system.kinetic_energy(view) + system.potential_energy(view);

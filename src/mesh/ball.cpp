@@ -9,7 +9,7 @@
 
 // The ball is cut into 20 sectors over the faces of an icosahedron; a sector is nearly a regular tetrahedron
 // (edges 1 and 1.05), so shells of it cut like a tetrahedral lattice give nearly regular elements everywhere.
-// A place on a shell of frequency m is given by the weights (i, j, k), i + j + k = m, of the sector's three
+// A point on a shell of frequency m is given by the weights (i, j, k), i + j + k = m, of the sector's three
 // corner directions, and lies at the shell's radius.
 namespace palpate::mesh {
 namespace {
@@ -20,8 +20,8 @@ struct Icosahedron {
   std::vector<Vec3> corners;
   std::vector<std::array<int, 3>> faces;  // outwards
 
-  /// Corners (0, +-1, +-phi) and their cyclic permutations have edges of length 2;
-  /// faces are the triples at that distance.
+  /// Corners (0, +-1, +-phi) and their cyclic permutations have edges of length 2; faces are the triples at
+  /// that distance.
   Icosahedron() {
     const double phi = 0.5 * (1 + std::sqrt(5.0));
     for (int k = 0; k < 3; ++k)
@@ -47,8 +47,8 @@ const Icosahedron& icosahedron() {
   return out;
 }
 
-/// The nodes of one shell.  Places on an edge or corner of a sector are shared: they are known by corners and
-/// weights, zeros left out.
+/// The nodes of one shell.  Points on an edge or corner of a sector are shared: they are identified by
+/// corners and weights, zeros left out.
 class Shell {
  public:
   Shell(const Ring& ring, Builder& builder) : ring_(ring) {
@@ -107,7 +107,7 @@ void add_octahedron(Builder& builder, const std::array<std::array<int, 2>, 3>& p
     builder.add_tet(pairs[axis][0], pairs[axis][1], p, q);
 }
 
-/// Between frequency m and m - 1: the layer of a tetrahedral lattice.
+/// Elements between frequency m and m - 1: the layer of a tetrahedral lattice.
 void add_layer(Builder& builder, std::size_t s, const Shell& outer, const Shell& inner) {
   const auto P = [&](const Weights& w) { return outer.node(s, w); };
   const auto Q = [&](const Weights& w) { return inner.node(s, w); };
@@ -122,8 +122,8 @@ void add_layer(Builder& builder, std::size_t s, const Shell& outer, const Shell&
   });
 }
 
-/// Between frequency m and m / 2: over each inner triangle (a, b, c) four outer ones, with corners at 2a, 2b,
-/// 2c and a+b, b+c, c+a.
+/// Elements between frequency m and m / 2: over each inner triangle (a, b, c) four outer ones, with corners
+/// at 2a, 2b, 2c and a+b, b+c, c+a.
 void add_halving_layer(Builder& builder, std::size_t s, const Shell& outer, const Shell& inner) {
   const auto P = [&](const Weights& w) { return outer.node(s, w); };
   const auto Q = [&](const Weights& w) { return inner.node(s, w); };

@@ -33,19 +33,19 @@ struct Builder {
 
   /// The faces, and of the points only those that they use, in their order.
   TriMesh tri_mesh() const {
-    std::vector<int> place(points.size(), -1);
+    std::vector<int> new_index(points.size(), -1);
     for (const auto& face : faces)
-      for (const int v : face) place[static_cast<std::size_t>(v)] = 0;
+      for (const int v : face) new_index[static_cast<std::size_t>(v)] = 0;
     std::vector<Vec3> used;
     for (std::size_t v = 0; v < points.size(); ++v)
-      if (place[v] == 0) {
-        place[v] = static_cast<int>(used.size());
+      if (new_index[v] == 0) {
+        new_index[v] = static_cast<int>(used.size());
         used.push_back(points[v]);
       }
     TriMesh out{gathered(used), Faces(3, static_cast<Eigen::Index>(faces.size()))};
     for (std::size_t f = 0; f < faces.size(); ++f)
       for (int k = 0; k < 3; ++k)
-        out.faces(k, static_cast<Eigen::Index>(f)) = place[static_cast<std::size_t>(faces[f][k])];
+        out.faces(k, static_cast<Eigen::Index>(f)) = new_index[static_cast<std::size_t>(faces[f][k])];
     return out;
   }
 

@@ -7,7 +7,7 @@
 #include "palpate/core/error.h"
 #include "palpate/mesh/checks.h"
 
-/// What tetrahedra and triangles are refused for alike.  Elements: Corners x n, one a column.
+/// Checks that tetrahedra and triangles share.  Elements: Corners x n, one a column.
 namespace palpate::mesh {
 
 inline void refuse_non_finite(const Points& points, const Provenance& from) {

@@ -26,7 +26,7 @@ struct RingPoints {
   int operator()(int i) const { return frequency == 0 ? first : first + i % (6 * frequency); }
 };
 
-/// Between frequency m and m - 1.
+/// Triangles between frequency m and m - 1.
 void add_ring(Disc& disc, const RingPoints& P, const RingPoints& Q) {
   const int m = P.frequency;
   for (int s = 0; s < 6; ++s)
@@ -37,7 +37,7 @@ void add_ring(Disc& disc, const RingPoints& P, const RingPoints& Q) {
     }
 }
 
-/// Between frequency m and m / 2: three triangles on each inner part.
+/// Triangles between frequency m and m / 2: three on each inner part.
 void add_halving_ring(Disc& disc, const RingPoints& P, const RingPoints& Q) {
   for (int i = 0; i < 6 * Q.frequency; ++i) {
     disc.triangles.push_back({Q(i), P(2 * i), P(2 * i + 1)});

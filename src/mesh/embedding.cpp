@@ -26,7 +26,7 @@ int least_extrapolating(const TetMesh& mesh, const std::vector<int>& tets, const
 }
 
 /// Above this sum |w| the nearest tetrahedron is a poor one to continue (a flat one, seen along its thin
-/// direction), and others nearly as near are asked as well.
+/// direction), and others at nearly that distance are tried as well.
 constexpr double kPoor = 3.0;
 constexpr double kNearly = 0.25;  ///< of the distance
 constexpr double kBetter = 0.9;   ///< of the sum: what it takes to prefer one that is farther

@@ -37,7 +37,7 @@ void physical_names(TextFile& file, Content& content) {
     const long dimension = file.integer("dimension"), tag = file.integer("physical tag");
     const std::string_view quoted = file.rest();
     if (quoted.size() < 2 || quoted.front() != '"' || quoted.back() != '"')
-      file.fail("a name in double quotes is expected, here stands {}", printable(quoted));
+      file.fail("a name in double quotes is expected, found {}", printable(quoted));
     if (dimension == 3)
       content.volume_names[static_cast<double>(tag)] = std::string(quoted.substr(1, quoted.size() - 2));
   }
@@ -59,7 +59,7 @@ int major_version(TextFile& file) {
   }
   if (section == "$NOD") file.fail("this is Gmsh format 1 ($NOD), which palpate does not read; {}", convert);
   if (section != "$MeshFormat")
-    file.fail("a Gmsh mesh starts with $MeshFormat, here stands \"{}\"; is this a .msh of Gmsh?",
+    file.fail("a Gmsh mesh starts with $MeshFormat, found \"{}\"; is this a .msh of Gmsh?",
               printable(section));
   file.require_line("the format's version");
   const double version = file.real("version");
@@ -70,7 +70,7 @@ int major_version(TextFile& file) {
   if (!is_2 && !is_41) file.fail("Gmsh format {} is not read, only 2.2 and 4.1; {}", version, convert);
   file.require_line("$EndMeshFormat");
   if (const auto end = file.word(); end != "$EndMeshFormat")
-    file.fail("$EndMeshFormat is expected, here stands \"{}\"", printable(end));
+    file.fail("$EndMeshFormat is expected, found \"{}\"", printable(end));
   return is_2 ? 2 : 4;
 }
 
@@ -85,7 +85,7 @@ Content read(TextFile& file) {
   while (file.next_line()) {
     const std::string_view name = file.word();
     if (!name.starts_with('$'))
-      file.fail("a section ($...) is expected, here stands \"{}\"; a count before it may be too small",
+      file.fail("a section ($...) is expected, found \"{}\"; a count before it may be too small",
                 printable(name));
     const std::string end = fmt::format("$End{}", name.substr(1));
     if (name == "$PhysicalNames" || (name == "$Entities" && !is_2)) {
@@ -102,8 +102,7 @@ Content read(TextFile& file) {
     if (elements) is_2 ? elements_22(file, content) : elements_41(file, content);
     file.require_line(end);
     if (const auto word = file.word(); word != end)
-      file.fail("{} is expected, here stands \"{}\"; the count of its entries is wrong", end,
-                printable(word));
+      file.fail("{} is expected, found \"{}\"; the count of its entries is wrong", end, printable(word));
   }
   return content;
 }
@@ -115,13 +114,14 @@ std::vector<MaterialRegion> regions(const Content& content) {
   return regions_of_labels(content.tet_entity);
 }
 
-/// Tags may be sparse and in any order: they become places in the list of nodes.
-std::unordered_map<long, int> places_of_tags(const std::string& path, const Content& content) {
+/// Index in the list of nodes by tag; tags may be sparse and in any order.
+std::unordered_map<long, int> index_of_tags(const std::string& path, const Content& content) {
   std::unordered_map<long, int> out;
   for (std::size_t i = 0; i < content.nodes.size(); ++i)
     if (const auto [it, is_new] = out.emplace(content.node_tags[i], static_cast<int>(i)); !is_new)
-      fail("{}:{}: node {} stands here and in line {}; node numbers must differ", path, content.node_lines[i],
-           content.node_tags[i], content.node_lines[static_cast<std::size_t>(it->second)]);
+      fail("{}:{}: node {} is defined here and in line {}; node numbers must differ", path,
+           content.node_lines[i], content.node_tags[i],
+           content.node_lines[static_cast<std::size_t>(it->second)]);
   return out;
 }
 
@@ -137,7 +137,7 @@ TetFile read_gmsh(const std::string& path) {
         "Mesh.ElementOrder = 1",
         path, content.second_order_tets);
 
-  const auto places = gmsh::places_of_tags(path, content);
+  const auto indices = gmsh::index_of_tags(path, content);
   TetFile out;
   out.mesh.nodes.resize(3, static_cast<Eigen::Index>(content.nodes.size()));
   for (std::size_t i = 0; i < content.nodes.size(); ++i)
@@ -146,11 +146,11 @@ TetFile read_gmsh(const std::string& path) {
   for (std::size_t t = 0; t < content.tets.size(); ++t)
     for (int k = 0; k < 4; ++k) {
       const long tag = content.tets[t][static_cast<std::size_t>(k)];
-      const auto place = places.find(tag);
-      if (place == places.end())
+      const auto found = indices.find(tag);
+      if (found == indices.end())
         fail("{}:{}: element {}: node {} is not in the file; it has {} nodes", path, content.tet_lines[t],
              content.tet_tags[t], tag, content.nodes.size());
-      out.mesh.tets(k, static_cast<Eigen::Index>(t)) = place->second;
+      out.mesh.tets(k, static_cast<Eigen::Index>(t)) = found->second;
     }
   out.from = {.source = path,
               .node_source = "",

@@ -9,7 +9,7 @@
 
 namespace palpate::mesh::gmsh {
 
-/// What the sections of a .msh file said, in the file's own numbering.
+/// Content of the sections of a .msh file, in the file's own numbering.
 struct Content {
   std::vector<Vec3> nodes;
   std::vector<long> node_tags;
@@ -25,13 +25,13 @@ struct Content {
 
 constexpr long kTet4 = 4, kTet10 = 11;  // Gmsh's element types
 
-/// The three coordinates of node `tag`,
-/// which stands before them on the line (2.2) or on a line of its own (4.1).
+/// The three coordinates of node `tag`, which stands before them on the line (2.2) or on a line of its own
+/// (4.1).
 void add_node(TextFile& file, Content& content, long tag);
 /// The four nodes of tetrahedron `tag`, up to the end of the line.
 void add_tet(TextFile& file, Content& content, long tag, long physical, long entity);
 
-/// Both versions have this one: dimension, number and "name" a line.
+/// Section $PhysicalNames, alike in both versions: dimension, number and "name" a line.
 void physical_names(TextFile& file, Content& content);
 
 /// Each starts on the line after the section's name and ends before the line `$End...`.

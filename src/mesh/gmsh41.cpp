@@ -12,7 +12,7 @@ namespace {
 
 void require_total(const TextFile& file, std::string_view what, long announced, long found) {
   if (announced != found)
-    file.fail("{} {} stand in the blocks, but the section announces {}; one of the counts is wrong", found,
+    file.fail("{} {} are in the blocks, but the section announces {}; one of the counts is wrong", found,
               what, announced);
 }
 

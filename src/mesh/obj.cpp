@@ -21,10 +21,10 @@ int corner(TextFile& file, std::string_view word, std::size_t vertices) {
   if (code != std::errc() || end != digits.data() + digits.size())
     file.fail("corner \"{}\" has no vertex number", printable(word));
   if (value == 0) file.fail("corner \"{}\": vertices are counted from 1", printable(word));
-  const long place = value > 0 ? value - 1 : static_cast<long>(vertices) + value;
-  if (place < 0 || place > std::numeric_limits<int>::max())
-    file.fail("corner \"{}\" is out of range; {} vertices stand above this line", printable(word), vertices);
-  return static_cast<int>(place);
+  const long index = value > 0 ? value - 1 : static_cast<long>(vertices) + value;
+  if (index < 0 || index > std::numeric_limits<int>::max())
+    file.fail("corner \"{}\" is out of range; {} vertices precede this line", printable(word), vertices);
+  return static_cast<int>(index);
 }
 
 void read_face(TextFile& file, std::size_t vertices, std::vector<Eigen::Vector3i>& faces, Provenance& from,

@@ -44,7 +44,7 @@ TetMesh perturbed(TetMesh mesh, double amplitude, unsigned seed) {
   }
   for (int t = 0; t < static_cast<int>(mesh.tets.cols()); ++t)
     if (!(tet_volume(mesh, t) > 0))
-      fail("perturbed mesh: amplitude = {} turns element {} inside out; use a smaller one", amplitude, t);
+      fail("perturbed mesh: amplitude = {} inverts element {}; use a smaller one", amplitude, t);
   return mesh;
 }
 

@@ -12,8 +12,8 @@ void require_length(const MeshSpec& spec, std::string_view key, double value) {
     fail("generator \"{}\": {} = {} {}", spec.generator, key, value, MeshRanges::length.demand());
 }
 
-/// The edges of a box around the body bound the number of elements before any is made;
-/// each direction has one at least.
+/// The edges of a box around the body bound the number of elements before any is made; each direction has at
+/// least one.
 void require_sizes(const MeshSpec& spec, const Vec3& edges) {
   const double h = spec.element_size_m;
   require_length(spec, "element_size_m", h);

@@ -8,15 +8,15 @@
 namespace palpate::mesh {
 namespace {
 
-/// Elements may grow by this much per length on the way in:
-/// one layer of the surface's size is kept before the first doubling.
+/// Elements may grow by this much per length on the way in: one layer of the surface's size is kept before
+/// the first doubling.
 constexpr double kGrowth = 0.45;
-/// A stretch beyond these would flatten elements more than the
-/// grading is worth (where few layers leave no room to halve).
+/// A stretch beyond these would flatten elements more than the grading is worth (where few layers leave no
+/// room to halve).
 constexpr double kLeastStretch = 0.5, kMostStretch = 1.45;
 
-/// Elements double as soon as the wanted size,
-/// h (1 + kGrowth depth / h) and at most g h, is nearer to the double.
+/// Elements double as soon as the wanted size, h (1 + kGrowth depth / h) and at most g h, is closer to the
+/// double.
 bool should_halve(const Ring& ring, const Ring& outermost, double grading) {
   const double size = ring.radius / ring.frequency, surface_size = outermost.radius / outermost.frequency;
   const double wanted =
@@ -27,7 +27,7 @@ bool should_halve(const Ring& ring, const Ring& outermost, double grading) {
 }  // namespace
 
 // A layer of elements of size s = r/m is s thick: r - r/m = r (m-1)/m, so s stays when m falls by one, and r
-// is 0 when m is. Between s and 2 s, 1.5 s.
+// is 0 when m is.  Between s and 2 s the layer is 1.5 s thick.
 std::vector<Ring> rings(double radius, int frequency, double grading) {
   std::vector<Ring> out = {{frequency, radius}};
   while (out.back().frequency > 1) {

@@ -11,8 +11,8 @@
 namespace palpate::mesh {
 namespace {
 
-/// An edge and one of its faces: nodes sorted;
-/// `forward` when the face runs from the smaller to the larger vertex.
+/// An edge and one of its faces: nodes sorted; `forward` when the face runs from the smaller to the larger
+/// vertex.
 struct EdgeOfFace {
   std::array<int, 2> nodes;
   int face;
@@ -32,8 +32,8 @@ std::vector<EdgeOfFace> sorted_edges(const Faces& faces) {
   return out;
 }
 
-/// The face across each of a face's edges,
-/// and whether both run along the edge the same way (then one of them is flipped).
+/// The face across each of a face's edges, and whether both run along the edge in the same direction (then
+/// one of them is flipped).
 struct Neighbour {
   int face;
   bool same_way;
@@ -101,7 +101,7 @@ std::vector<int> walk(Faces& faces, const Neighbours& across, const Provenance& 
   return shell;
 }
 
-/// Signed volume of a shell (as enclosed_volume), and the size of what rounding makes of a flat one.
+/// Signed volume of a shell (as enclosed_volume), and the size of the rounding error for a flat shell.
 std::pair<double, double> shell_volume(const TriMesh& mesh, const std::vector<int>& faces) {
   const Vec3 o = mesh.vertices.col(mesh.faces(0, faces[0]));
   double volume = 0, terms = 0;
@@ -114,7 +114,8 @@ std::pair<double, double> shell_volume(const TriMesh& mesh, const std::vector<in
   return {volume, 16 * std::numeric_limits<double>::epsilon() * terms};
 }
 
-/// Each shell outwards, or inwards where it lies within an odd number of others (it bounds a cavity then).
+/// Orients each shell outwards, or inwards where it lies within an odd number of others (it bounds a cavity
+/// then).
 void orient_shells_outwards(TriMesh& mesh, const std::vector<int>& shell_of_face, const Provenance& from,
                             std::vector<char>& flipped) {
   std::vector<std::vector<int>> shells;

@@ -18,8 +18,8 @@ double longest_edge(const TetMesh& mesh, int t) {
   return out;
 }
 
-/// What rounding of the coordinates alone gives a flat element as relative volume:
-/// edges carry an error of epsilon |x|.
+/// Relative volume that rounding of the coordinates alone gives a flat element: edges carry an error of
+/// epsilon |x|.
 double rounding_volume(const TetMesh& mesh, int t, double longest) {
   double far = 0;
   for (int k = 0; k < 4; ++k) far = std::max(far, mesh.nodes.col(mesh.tets(k, t)).cwiseAbs().maxCoeff());

@@ -15,9 +15,9 @@ double tet_distance(const TetMesh& mesh, int tet, const Vec3& point);
 class TetTree {
  public:
   explicit TetTree(const TetMesh& mesh);
-  /// All tetrahedra whose distance to `point` is at most the least one + `tolerance`, ascending;
-  /// returns the least distance [m].
-  /// @param guess  a tetrahedron that is likely to be near; changes the time, not the answer
+  /// All tetrahedra whose distance to `point` is at most the least one + `tolerance`, ascending; returns the
+  /// least distance [m].
+  /// @param guess  a tetrahedron that is probably close; changes the time, not the answer
   double nearest(const Vec3& point, double tolerance, int guess, std::vector<int>& tets);
 
  private:

@@ -6,9 +6,9 @@
 
 namespace palpate::mesh {
 
-/// A text file read line by line and word by word, whose every complaint carries FILE:LINE.
-/// Holds the whole file in memory, so that a count in a header can be compared with what is
-/// really there before anything is allocated for it.
+/// A text file read line by line and word by word; every error message carries FILE:LINE.  Holds the whole
+/// file in memory, so that a count in a header can be compared with what is really there before anything is
+/// allocated for it.
 class TextFile {
  public:
   /// Throws Error when the file cannot be read.  From `comment` on, a line is ignored ('\0': no comments).
@@ -22,12 +22,12 @@ class TextFile {
 
   double real(std::string_view what);  ///< a finite number
   long integer(std::string_view what);
-  /// A count of entries that stand in the rest of this file, at least two bytes each:
-  /// refused when they cannot.
+  /// A count of entries that stand in the rest of this file, at least two bytes each: refused when they
+  /// cannot.
   int count(std::string_view what);
   void require_end_of_line();
 
-  /// Until the next line, complaints say whom they are about: `FILE:LINE: node 12: ...`.
+  /// Until the next line, error messages name their subject: `FILE:LINE: node 12: ...`.
   void about(std::string_view noun, long number) { noun_ = noun, number_ = number; }
 
   const std::string& path() const { return path_; }
@@ -35,8 +35,9 @@ class TextFile {
 
   template <class... Args>
   [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
-    const std::string whom = noun_.empty() ? "" : fmt::format("{} {}: ", noun_, number_);
-    palpate::fail("{}:{}: {}{}", path_, line_number_, whom, fmt::format(format, std::forward<Args>(args)...));
+    const std::string subject = noun_.empty() ? "" : fmt::format("{} {}: ", noun_, number_);
+    palpate::fail("{}:{}: {}{}", path_, line_number_, subject,
+                  fmt::format(format, std::forward<Args>(args)...));
   }
 
  private:

@@ -13,17 +13,17 @@ struct Quantity {
   double reference;
 };
 
-/// Errors that are nowhere larger than this are rounding, and get no plot:
-/// a scene without torque has no error of it.
+/// Errors that are nowhere larger than this are rounding, and get no plot: a scene without torque has no
+/// error of it.
 constexpr double kRounding = 1e-15;
 
-/// Those that the table holds.
+/// The comparison errors that the table holds.
 std::vector<Quantity> quantities_of(const Table& table, const ReferenceError& reference);
 
 std::string capitalised(std::string text);
 
-/// The cell of a column as a short number; integers and words stay as they are;
-/// "-" where the column is missing or empty.
+/// The cell of a column as a short number; integers and words stay as they are; "-" where the column is
+/// missing or empty.
 std::string cell_text(const Table& table, std::size_t row, const std::string& column);
 
 }  // namespace palpate::report

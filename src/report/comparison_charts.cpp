@@ -4,7 +4,7 @@
 #include "palpate/core/error.h"
 #include "sections.h"
 
-/// What a comparison shows beside its ladders: restarts, exchange periods, ways to find the contact.
+/// Charts of a comparison beside its ladders: restarts, exchange periods, methods to find the contact.
 namespace palpate::report {
 
 void add_restarts(Page& page, const Table& restarts) {

@@ -90,7 +90,7 @@ void add_counts_and_maxima(Page& page, const Table& compare) {
                     "The largest errors over all nodes and times.");
 }
 
-/// The error that decides.
+/// The error column that decides: positions, or else forces.
 constexpr const char* kPosition = "position_error_rel_l2";
 
 std::string order_text(const FittedOrder& fitted) {
@@ -117,7 +117,7 @@ void add_orders_table(Page& page, const Table& compare, const std::vector<Quanti
                  "follows the tolerance). Points within 10 times of the reference's own error are left out.");
 }
 
-/// Who wins at each wanted error, by a cost.
+/// The winner at each target error, by a cost.
 void add_winners_table(Page& page, const Table& compare, const std::string& cost_column,
                        const std::string& cost_label, double reference_error) {
   std::vector<std::vector<std::string>> rows;
@@ -141,7 +141,7 @@ void add_winners_table(Page& page, const Table& compare, const std::string& cost
       "extrapolated. “<=”: the coarsest usable rung is better than asked for, and costs this much.");
 }
 
-/// What each integrator costs at each wanted error, with its fitted order.
+/// The cost of each integrator at each target error, with its fitted order.
 void add_costs_table(Page& page, const Table& compare, double reference_error) {
   const std::vector<Ladder> all = ladders(compare, kPosition, "cpu_s_median");
   const std::vector<FittedOrder> orders = fitted_orders(compare, kPosition);
@@ -197,7 +197,7 @@ void add_work_precision(Page& page, const Table& compare, const Quantity& q) {
   }
 }
 
-/// All about one scene.
+/// Everything about one scene.
 void add_scene_comparison(Page& page, const Table& compare, const ReferenceError& reference) {
   if (!reference.description.empty())
     page.add_paragraph("Reference: " + reference.description +

@@ -67,8 +67,8 @@ std::string families_in_words(const std::vector<Ladder>& all, double target) {
                      families.size() == 1 ? "family" : "families", list_of(families));
 }
 
-/// What kind of failure it was, "Newton did not converge" of "Newton did not converge: ark-mri-2: ...": what
-/// many ladders may share.
+/// The kind of failure, which many ladders may share: "Newton did not converge" of the reason "Newton did not
+/// converge: ark-mri-2: ...".
 std::string kind_of(const std::pair<std::string, std::string>& failure) {
   if (failure.first == "out of time" || failure.first == "not tried") return "out of time";
   if (failure.second.empty()) return failure.first;
@@ -91,8 +91,8 @@ std::string failures_in_words(const std::vector<Ladder>& all) {
   return out;
 }
 
-/// An explicit method is held by stability, not accuracy, where a tolerance ten times tighter hardly costs
-/// more force evaluations, and where a longer fixed step fails or blows up.
+/// Whether stability, not accuracy, limits an explicit method: a tolerance ten times tighter hardly costs
+/// more force evaluations, or a longer fixed step fails or blows up.
 std::string explicit_in_words(const Table& compare) {
   std::vector<std::string> by_tolerance, by_step;
   for (const Ladder& ladder : ladders(compare, kError, "force_evaluations")) {
@@ -136,7 +136,8 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
     return "The reference's own error is not known: read small errors with care.";
   if (best < kMargin * reference_error)
     return fmt::format(
-        "The reference's own error is {}: errors below {} are not told apart by it (the best point shows "
+        "The reference's own error is {}: errors below {} cannot be distinguished by it (the best point "
+        "shows "
         "{}).",
         short_number(reference_error), short_number(kMargin * reference_error), short_number(best));
   std::string out = fmt::format(
@@ -145,7 +146,7 @@ std::string reference_in_words(const std::vector<Ladder>& all, double reference_
       short_number(reference_error), times(best / reference_error), short_number(best),
       unresolved ? " but the marked ones" : "");
   if (unresolved)
-    out += fmt::format(" {} within {:g} times of it, {}: errors below {} are not told apart.",
+    out += fmt::format(" {} within {:g} times of it, {}: errors below {} cannot be distinguished.",
                        unresolved == 1 ? "1 point lies" : fmt::format("{} points lie", unresolved), kMargin,
                        unresolved == 1 ? "is marked, and counts nowhere" : "are marked, and count nowhere",
                        short_number(kMargin * reference_error));

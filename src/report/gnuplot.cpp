@@ -74,7 +74,7 @@ std::string run_gnuplot(const std::string& script) {
   std::ofstream(dir.path() / "plot.gp", std::ios::binary) << script;
   const int status = spawn_gnuplot(dir.path(), dir.path() / "log");
   const std::string svg = text_of(dir.path() / "plot.svg");
-  // gnuplot ends with 0 after some failures (a full disk), so the document's end is looked for too.
+  // gnuplot ends with 0 after some failures (a full disk), so the document's end is checked too.
   if (status != 0 || svg.find("</svg>") == std::string::npos)
     fail("gnuplot drew no plot (exit status {}): {}", status, text_of(dir.path() / "log"));
   return svg;

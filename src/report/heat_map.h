@@ -6,7 +6,7 @@ namespace palpate::report {
 
 /// One cell of a heat map.
 struct HeatCell {
-  std::string letter;     ///< what is read without colour
+  std::string letter;     ///< readable without colour
   std::string css;        ///< class of its colour: "v0" ... "v7", or empty where there is no such cell
   std::string title;      ///< tooltip
   bool outlined = false;  ///< not what was expected
@@ -19,10 +19,9 @@ struct HeatGroup {
   std::vector<std::vector<HeatCell>> cells;  ///< one vector a row, one cell a column
 };
 
-/// A table with a coloured letter in each cell and the columns' names upright;
-/// well-formed, everything escaped.
+/// A table with a coloured letter in each cell and upright column names; well-formed, everything escaped.
 std::string heat_map_html(const std::vector<std::string>& columns, const std::vector<HeatGroup>& groups);
-/// What the letters mean: one line each.
+/// The meaning of the letters, a line each.
 std::string heat_key_html(const std::vector<HeatCell>& cells);
 
 }  // namespace palpate::report

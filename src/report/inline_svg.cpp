@@ -39,9 +39,9 @@ std::string inline_svg(const std::string& document, const std::string& id_prefix
     replace_all(svg, fmt::format("{}=\"black\"", attribute), fmt::format("{}=\"currentColor\"", attribute));
     replace_all(svg, fmt::format("{}='black'", attribute), fmt::format("{}='currentColor'", attribute));
   }
-  // as gnuplot writes a colour that was asked for
+  // the form in which gnuplot writes a requested colour
   for (const char* black : {"rgb(  0,   0,   0)", "rgb(0,0,0)"}) replace_all(svg, black, "currentColor");
-  // color="currentColor" inherits, which is what is meant.
+  // color="currentColor" inherits, as intended.
   replace_all(svg, "<svg", "<svg class=\"plot\" role=\"img\"");
   return svg;
 }

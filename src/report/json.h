@@ -7,7 +7,7 @@
 
 namespace palpate::report {
 
-/// Keeps the order of the file: what its writer put first is read first.
+/// Keeps the order of the file: its writer put the important things first.
 using Json = nlohmann::ordered_json;
 
 /// Throws Error with the file and the parser's message (which has line and column).
@@ -19,8 +19,8 @@ double number_at(const Json& object, const char* key);
 /// The text under a key; `otherwise` when absent or not text.
 std::string text_at(const Json& object, const char* key, const std::string& otherwise = "");
 
-/// A value for people: numbers short, lists joined by commas, "yes" and "no";
-/// empty for null and for lists of objects.
+/// A value for people: numbers short, lists joined by commas, "yes" and "no"; empty for null and for lists of
+/// objects.
 std::string value_text(const Json& value);
 
 /// "cpu_s" -> "cpu [s]", "max_force_n" -> "max force [N]": a key whose unit stands at its end, for people.

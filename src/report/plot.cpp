@@ -12,8 +12,8 @@
 namespace palpate::report {
 namespace {
 
-/// gnuplot reads single-quoted text literally (no back-quoted commands, no escapes):
-/// only the quote itself is doubled.
+/// gnuplot reads single-quoted text literally (no back-quoted commands, no escapes): only the quote itself is
+/// doubled.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) {
@@ -72,7 +72,7 @@ std::string data_block(std::size_t index, const Series& series) {
   return block + "EOD\n";
 }
 
-/// What `plot` says about one series: the line, rings over their points, labels.
+/// The clauses of `plot` for one series: the line, rings over its points, labels.
 std::string plot_items(std::size_t index, const Series& series, const std::string& colour) {
   const std::string data = fmt::format("$d{}", index);
   const std::string title =
@@ -94,7 +94,7 @@ std::string plot_items(std::size_t index, const Series& series, const std::strin
   return items;
 }
 
-/// Ranges over what is drawn, the levels and the floor.
+/// Ranges over all that is drawn, the levels and the floor.
 Axis x_axis(const Plot& plot, const std::vector<Series>& series) {
   std::vector<double> values;
   for (const Series& s : series) values.insert(values.end(), s.x.begin(), s.x.end());
@@ -106,8 +106,8 @@ Axis x_axis(const Plot& plot, const std::vector<Series>& series) {
   return make_axis(values, true, below ? 0.3 : 0.06, labelled ? 0.16 : 0.06);
 }
 
-/// What stands far from the data would squash them: a level is drawn up to three times the largest value, a
-/// floor down to a thirtieth of the least.
+/// Levels and floors far from the data would compress the data: a level is drawn up to three times the
+/// largest value, a floor down to a thirtieth of the least.
 Axis y_axis(const Plot& plot, const std::vector<Series>& series) {
   std::vector<double> values;
   for (const Series& s : series) values.insert(values.end(), s.y.begin(), s.y.end());

@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// By scene.
+/// References by scene.
 std::map<std::string, ReferenceError> read_references(const Json& json) {
   std::map<std::string, ReferenceError> out;
   if (!json.contains("scenes")) return out;

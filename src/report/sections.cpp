@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Groups of figures that stand under headings of their own.
+/// Groups of figures that have headings of their own.
 const std::set<std::string> kElsewhere = {"in_use", "left_out", "pictures"};
 
 /// A group of figures that summary.json holds, else an empty object.
@@ -105,7 +105,7 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
     const std::vector<double> values = force.numbers(h);
     return std::any_of(values.begin(), values.end(), [](double v) { return !(std::abs(v) <= kRounding); });
   });
-  if (!has_torque) page.add_paragraph("No torque: nothing in this scene turns the tool.");
+  if (!has_torque) page.add_paragraph("No torque: no moment acts on the tool in this scene.");
   if (has_torque)
     add_plot(page, torque_plot(force, max_torque), "Torque, likewise" + limit_text(max_torque, "N m"));
 }

@@ -63,8 +63,8 @@ void append_padded(std::string& line, const std::string& cell, std::size_t width
   line += to_the_right ? blanks + cell : cell + blanks;
 }
 
-/// A line never ends in blanks: a terminal that is one column
-/// too narrow would otherwise show an empty line after each.
+/// Removes blanks at the end of a line: a terminal that is one column too narrow would otherwise show an
+/// empty line after each.
 std::string without_trailing_blanks(std::string line) {
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";

@@ -11,7 +11,7 @@
 namespace palpate::report {
 namespace {
 
-/// An error far above the motion itself says only that it is wrong; drawing it would squash the rest.
+/// An error far above the motion itself says only that the run is wrong; drawing it would compress the rest.
 constexpr double kLargestDrawn = 3.0;
 /// Up to this many ladders each point carries its setting.
 constexpr std::size_t kFewLadders = 3;

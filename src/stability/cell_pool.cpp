@@ -11,7 +11,7 @@
 namespace palpate::stability {
 namespace {
 
-/// The cell that a process sent, or what its end says of it.
+/// The cell that a process sent, or one made of the way the process ended.
 StabilityCell cell_of(const Task& task, const ProcessPool::Outcome& outcome) {
   using End = ProcessPool::Outcome::End;
   if (outcome.end == End::kDone) return cell_from_json(nlohmann::json::parse(outcome.bytes));

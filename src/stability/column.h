@@ -11,8 +11,8 @@ namespace palpate::stability {
 /// One way of integrating: a registry entry, under error control or at a fixed step.  A method that can do
 /// both makes two columns, for its stability function shows only at a step that it does not choose.
 struct Column {
-  std::string label;                              ///< "ark-dirk-...", or with ", fixed step"
-  std::string name;                               ///< the registry's
+  std::string label;                              ///< "ark-dirk-...", or that and ", fixed step"
+  std::string name;                               ///< in the registry
   const dynamics::StepperEntry* entry = nullptr;  ///< null: an integrator of the tool's own ticks
   bool fixed = false;
 };

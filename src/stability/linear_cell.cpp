@@ -14,7 +14,7 @@ constexpr double kMultistepNorm = 10.0, kUseful = 1e4 * kLinearRtol;
 struct Course {
   dynamics::StepResult result;
   double highest = 1.0;  ///< energy over that of the start
-  double error = 0.0;    ///< largest; of fixed steps and statics over the second half
+  double error = 0.0;    ///< largest; for fixed steps and statics over the second half
   double speed = 0.0;    ///< largest root mean square of u seen [m/s]
   bool finite = true, interrupted = false;
 };
@@ -52,7 +52,7 @@ StabilityCell linear_cell(const Lab& lab, const LinearProblem& problem, double H
   const Course course = follow(lab, problem, *run, *stepper, H);
   cell.steps = stepper->counters().steps;
 
-  // Between two samples the speed is at most what the whole energy makes of it.
+  // Between two samples the speed is at most that of the whole energy as kinetic energy.
   const double speed =
       std::max(course.speed, std::sqrt(std::min(course.highest, 1e300)) * problem.largest_speed_rms());
   const double kept = kRounding * std::sqrt(problem.condition()) +

@@ -29,9 +29,10 @@ MatX rest_stiffness(const TetMesh& rest, const fem::Material& material, const st
 
 using Complex = std::complex<double>;
 
-/// a(t), a'(t) of a'' + 2 z w a' + w^2 a = 0, a(0) = a0, a'(0) = 0, by the two roots s of s^2 + 2 z w s +
-/// w^2.  Where they nearly meet they are moved apart by a relative 1e-6, an error of about 1e-12.  The small
-/// root of an overdamped mode is w^2 over the large one: no cancellation.
+/// a(t) and a'(t) of a'' + 2 z w a' + w^2 a = 0 with a(0) = a0, a'(0) = 0, by the two roots s of
+///     s^2 + 2 z w s + w^2.
+/// Where the roots nearly coincide they are moved apart by a relative 1e-6, an error of about 1e-12.  The
+/// small root of an overdamped mode is w^2 over the large one: no cancellation.
 std::pair<double, double> oscillator(double w, double z, double a0, double t) {
   if (std::abs(z - 1.0) < 1e-12) z = 1.0 + 1e-12;
   const Complex root = std::sqrt(Complex(z * z - 1.0));
@@ -109,8 +110,8 @@ std::unique_ptr<LinearProblem::Instance> LinearProblem::start() const {
   return out;
 }
 
-// In modal coordinates, where it is a sum of squares: of a stiff K, q.K q would lose its small modes to
-// rounding.
+// The energy is evaluated in modal coordinates, where it is a sum of squares: with a stiff K, q.K q would
+// lose its small modes to rounding.
 double LinearProblem::energy_of(const VecX& q, const VecX& u) const {
   const VecX a = phi_.transpose() * mass_.cwiseProduct(q);
   return 0.5 * (u.dot(mass_.cwiseProduct(u)) + omega_.cwiseProduct(a).squaredNorm());
@@ -137,9 +138,11 @@ double LinearProblem::largest_speed_rms() const {
   return std::sqrt(2.0 * start_energy_ / (mass_.minCoeff() * static_cast<double>(mass_.size())));
 }
 
-// WRMS <= 1 over 2n entries with the weights of error_weights.h:  |dq| <= sqrt(2n) rtol atol_q q_scale,  |du|
-// <= sqrt(2n) rtol (atol_u u_scale + rms u); and 2E = du.M du + dq.K dq <= m_max |du|^2 + w_max^2 m_max
-// |dq|^2.  (The sum of both bounds, where only one of them can be reached, is up to 1.4 too much.)
+// WRMS <= 1 over 2n entries with the weights of error_weights.h allows
+//     |dq| <= sqrt(2n) rtol atol_q q_scale,   |du| <= sqrt(2n) rtol (atol_u u_scale + rms u),
+// and the energy of such an error is
+//     2E = du.M du + dq.K dq <= m_max |du|^2 + w_max^2 m_max |dq|^2.
+// (The sum of both bounds, where only one of them can be reached, is up to 1.4 too much.)
 double LinearProblem::tolerance(const IntegratorSpec& spec, double speed) const {
   const double heaviest = mass_.maxCoeff(), count = 2.0 * static_cast<double>(mass_.size());
   const double dq = spec.atol_q * q_scale_, du = spec.atol_u * u_scale_ + speed;

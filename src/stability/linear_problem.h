@@ -7,11 +7,12 @@
 
 namespace palpate::stability {
 
-/// A clamped elastic block at infinitesimal amplitude,  M q'' + beta K q' + K q = 0  in its displacements q,
-/// with the K of corotational tetrahedra at rest and lumped M: a direct sum of oscillators K phi_j = w_j^2 M
-/// phi_j, so its motion is known exactly, whatever the step:
+/// A clamped elastic block at infinitesimal amplitude,
+///     M q'' + beta K q' + K q = 0
+/// in its displacements q, with the K of corotational tetrahedra at rest and lumped M.  It is a direct sum of
+/// oscillators K phi_j = w_j^2 M phi_j, so its motion is known exactly, whatever the step:
 ///     a_j'' + 2 z_j w_j a_j' + w_j^2 a_j = 0,   z_j = beta w_j/2,   q = sum a_j phi_j.
-/// It starts without speed and with the same energy in every mode, so that no mode can misbehave unseen.
+/// It starts at zero velocity with the same energy in every mode, so that no mode can misbehave unseen.
 class LinearProblem {
  public:
   /// @param damping_ratio  z_1, of the lowest mode  @param clamp_below  nodes with a smaller z [m] are
@@ -26,22 +27,22 @@ class LinearProblem {
   double fastest_rate() const;
   double condition() const;  ///< of K against M: (w_max/w_1)^2
 
-  /// A copy of the system at its start.
+  /// A copy of the System and of its State at the start.
   struct Instance {
     dynamics::System system;
     dynamics::State state;
   };
   std::unique_ptr<Instance> start() const;
 
-  /// kinetic and elastic, relative to the start's
+  /// kinetic and elastic energy over that of the start
   double energy(const dynamics::State& state) const;
   double error(const dynamics::State& state, double t) const;  ///< sqrt(E(y - y_exact(t))/E(y_start))
   double from_rest(const dynamics::State& state) const;        ///< sqrt(E(y)/E(y_start))
-  /// The same measure of the largest error that WRMS <= 1 lets pass, for weights of `rtol` and a root mean
-  /// square of u (see expectation.cpp).
+  /// Largest error, measured as error() does, that WRMS <= 1 admits for weights of `rtol` and a root mean
+  /// square `speed_rms` of u; derived in linear_problem.cpp.
   double tolerance(const IntegratorSpec& spec, double speed_rms) const;
   double speed_rms(const dynamics::State& state) const;  ///< root mean square of u [m/s]
-  double largest_speed_rms() const;                      ///< the largest that the start's energy allows
+  double largest_speed_rms() const;                      ///< largest that the energy of the start allows
 
  private:
   void find_modes();

@@ -2,7 +2,7 @@
 
 #include "linear.h"
 
-// What the linear, contact-free rows must show, from theory alone.  The problem is M q'' + D q' + K q = 0, D
+// Expectations of the linear, contact-free rows, from theory alone.  The problem is M q'' + D q' + K q = 0, D
 // and K positive, in first order form y' = A y.  In the inner product of the energy, Re<y, A y> = -u.D u <=
 // 0.
 //
@@ -30,8 +30,8 @@
 // 4. Any stable method where every mode is resolved.  The local error of order p is at most |z|^{p+1}, z = w
 //    H (its constant is below 1 for all methods in use: 1/2 for Euler's, 1/12 for the trapezoidal rule); the
 //    errors add up and are damped:
-//        error <= max_t (w t) (w H)^p e^{-z w t} = (w H)^p/(e z),  and (w T) (w H)^p where that is less (no
-//        damping).
+//        error <= max_t (w t) (w H)^p e^{-z w t} = (w H)^p/(e z),
+//        and (w T) (w H)^p where that is less (no damping).
 //    Where that is below the bar for every mode:
 //      -> accurate
 //    For a method whose energy is bounded by its amplification alone, 4 applies within the limit of 5 only.
@@ -43,8 +43,9 @@
 //        -> error
 //    - Less, and it ends where it ends.
 //        -> bounded, grew, error
-//    - The modes hold 1/n of the energy each: growing amplitudes alone are an error of sqrt(sum_j (r_j^n -
-//      1)^2/n).  Where the bar hides that, also:
+//    - The modes hold 1/n of the energy each: growing amplitudes alone are an error of
+//           sqrt(sum_j (r_j^n - 1)^2/n).
+//      Where the bar hides that, also:
 //        -> accurate, stable
 //    - Within (r <= 1, to what shows in the row's periods):
 //        -> accurate, stable, bounded
@@ -63,9 +64,9 @@
 //    reaches farther), and take them where that makes fewer than the limit of steps a period; beyond that
 //    they must say so.
 //      -> accurate; error
-//    A pair of order p estimates the error of order p - 1, (w h)^p in q's weight rtol atol_q: h w = (rtol
-//    atol_q)^(1/p) at the least while the stiffest mode is alive, y (rtol atol_q)^(-1/p) steps a period.
-//    Where that passes the limit of steps, it may say so instead.
+//    A pair of order p estimates the error of order p - 1, (w h)^p in q's weight rtol atol_q.  So h w is at
+//    least (rtol atol_q)^(1/p) while the stiffest mode is alive, which makes y (rtol atol_q)^(-1/p) steps a
+//    period.  Where that passes the limit of steps, it may say so instead.
 //      -> accurate, error
 // 7. Statics has no motion to be right about: it finds the equilibrium that the motion ends in.
 //      -> accurate
@@ -78,7 +79,7 @@ namespace {
 
 using dynamics::Stability;
 
-/// 2 n ln r: growth of the energy over the row's periods.
+/// Thresholds on 2 n ln r, the logarithm of the energy's growth over the row's periods.
 constexpr double kFollowed = 6.9;  // ln 1e3
 constexpr double kUnseen = 0.1;
 

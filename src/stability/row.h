@@ -9,7 +9,7 @@
 
 namespace palpate::stability {
 
-/// What a case is given.
+/// Input of a case.
 struct Lab {
   const Column& column;
   int seeds = 10;
@@ -17,17 +17,17 @@ struct Lab {
   bool time_is_up() const { return expired && expired->load(std::memory_order_relaxed); }
 };
 
-/// Why a run did not come to its end: too slow, not finite, grown, error, silent.  False where it did.
-/// An implicit method that grows beyond every bound has not ended clearly when it fails of it: only an
-/// explicit one may end so.
-/// @param grown  the bound on energy or motion was passed
+/// Decides whether a run ended before its time, and sets the verdict of `cell`: too slow, not finite, grown,
+/// error, silent.  False where it reached its end.  An implicit method that first grows beyond every bound
+/// and then fails has no acceptable end: only an explicit one may end so.
+/// @param grown  whether the bound on energy or motion was passed
 bool ended_early(const Column& column, const dynamics::StepResult& result, bool finite, bool interrupted,
                  bool grown, StabilityCell& cell);
 
 struct SubCase {
   std::string name;
   std::function<Verdicts(const Lab&)> expect;  ///< from theory, before anything of the case has run
-  /// Runs it: verdict and figures.  May throw Error (a refusal: that is a clear end).
+  /// Runs it: verdict and figures.  May throw Error (a refusal: that is an acceptable end).
   std::function<StabilityCell(const Lab&)> run;
 };
 

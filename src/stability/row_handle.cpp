@@ -11,20 +11,20 @@
 // passive: the tool is never farther from the handle than d, and slower than d sqrt(k/m).  Stable: within
 // both, to 1 %.  Bounded: ten times.
 //
-// Spun: the handle rotates at W = 1000 rad/s, a radian a tick, about one axis.  Moment <= k_r pi + b_r (W -
-// w): the tool is braked as soon as b_r (w - W) > k_r pi, so w <= W + k_r pi/b_r.  Stable: within it, to 1 %.
+// Spun: the handle rotates at W = 1000 rad/s, a radian a tick, about one axis.  The moment is at most
+//     k_r pi + b_r (W - w):
+// the tool is braked as soon as b_r (w - W) > k_r pi, so w <= W + k_r pi/b_r.  Stable: within it, to 1 %.
 // Bounded: ten times.  The ticks see the handle's angle modulo 2 pi only: which way round the spring pulls is
 // chance, the bound does not care.
 //
-// A scheme that is explicit has a limit, here kept (k h^2/m = 3e-3, b h/m = 0.02, k_r h^2/I = 0.08, b_r h/I =
-// 0.25, all well below 2).  So for all:
+// An explicit scheme has a limit, which is kept here (k h^2/m = 3e-3, b h/m = 0.02, k_r h^2/I = 0.08, b_r h/I
+// = 0.25, all well below 2).  So for all schemes:
 //   -> stable, bounded
 //
 // A million ticks, the handle at rest and the tool on it: the coupling's wrench is zero to rounding and its
 // damper takes what rounding puts in; drift below 1e-12 m and rad, and memory does not grow.
 //   -> accurate
-// The same with the tool pulled by a constant contact force F: it rests F/k away, and stays there to 1e-9
-// F/k.
+// With the tool also pulled by a constant contact force F, it rests F/k away, and stays there to 1e-9 F/k.
 //   -> accurate
 
 namespace palpate::stability {
@@ -43,7 +43,7 @@ ToolSpec tool_spec(const Lab& lab) {
 struct Motion {
   dynamics::StepResult result;
   bool finite = true, interrupted = false;
-  double distance = 0.0, speed = 0.0, spin = 0.0;  ///< largest, from the handle's last place
+  double distance = 0.0, speed = 0.0, spin = 0.0;  ///< largest, from the handle's last position
 };
 
 /// `handle(i)`: pose and twist at the end of tick i.
@@ -115,7 +115,7 @@ StabilityCell million(const Lab& lab, double force) {
   const Vec3 rest(force / spec.coupling.stiffness_n_m, 0, 0);
   StabilityCell cell;
   dynamics::StepResult result;
-  double drift = 0.0, turned = 0.0, memory = 0.0;
+  double drift = 0.0, rotation = 0.0, memory = 0.0;
   bool interrupted = false;
   for (int i = 0; i < kTicks && result.ok() && !interrupted; ++i) {
     if (i == kSettling) memory = resident_memory_mib();
@@ -123,15 +123,15 @@ StabilityCell million(const Lab& lab, double force) {
     interrupted = lab.time_is_up();
     if (i < kSettling) continue;
     drift = std::max(drift, (tool.pose().translation - rest).norm());
-    turned = std::max(turned, rotation_vector(tool.pose().rotation).norm());
+    rotation = std::max(rotation, rotation_vector(tool.pose().rotation).norm());
   }
   const double grown = resident_memory_mib() - memory, bar = force > 0.0 ? 1e-9 * rest.norm() : 1e-12;
   cell.steps = kTicks;
   cell.error = drift;
   cell.figure =
-      fmt::format("drift {:.1e} m of {:.0e}, {:.1e} rad, memory {:+.1f} MiB", drift, bar, turned, grown);
-  if (ended_early(lab.column, result, std::isfinite(drift + turned), interrupted, false, cell)) return cell;
-  cell.verdict = drift <= bar && turned <= 1e-12 && grown < 1.0 ? Verdict::kAccurate : Verdict::kGrew;
+      fmt::format("drift {:.1e} m of {:.0e}, {:.1e} rad, memory {:+.1f} MiB", drift, bar, rotation, grown);
+  if (ended_early(lab.column, result, std::isfinite(drift + rotation), interrupted, false, cell)) return cell;
+  cell.verdict = drift <= bar && rotation <= 1e-12 && grown < 1.0 ? Verdict::kAccurate : Verdict::kGrew;
   return cell;
 }
 

@@ -2,8 +2,8 @@
 
 #include "throw.h"
 
-// A slab of 5 mm, E = 1e6 Pa, at up to three times the speed of its own waves.  Its energy is judged as that
-// of any throw.
+// A slab of 5 mm, E = 1e6 Pa, at up to three times the speed of its own waves.  Its energy is bounded as in
+// throw.cpp.
 // - On a plane: what is behind it is inside, nothing can be missed.
 // - On a rigid plate as thin as itself, k = 1e7 Pa/m: a vertex that is above at one query and below at the
 //   next was never seen inside, and the contact must have counted it.  At 100 m/s a period is 200 mm long;

@@ -100,7 +100,7 @@ Verdicts expect(const Lab& lab) {
   return {Verdict::kAccurate};
 }
 
-/// Of one step of a multi-rate method, about the settled creep.
+/// Spectral radius of one step of a multi-rate method, linearised about the settled creep.
 double amplification_on_slope(const Column& column) {
   scene::Description d = on_a_floor(kSlope);
   d.integrator.name = "linearly-implicit-euler";

@@ -3,11 +3,11 @@
 #include "linear.h"
 #include "palpate/mesh/generators.h"
 
-// The same clamped block with elements that no mesher should make.
-//   dihedral 0.1 degree: an apex so low over a face of the cube that the three angles at that face's edges
-//   are 0.1 degree.
-//   volume ratio 1e6:    the corner of a corner tetrahedron cut off at a hundredth of its edges; the frustum
-//   below is three tetrahedra.
+// A clamped block (row_material.cpp) with elements that no mesher should make.
+// - Dihedral angle of 0.1 degree: an apex so low over a face of the cube that the three angles at that face's
+//   edges are 0.1 degree.
+// - Volume ratio of 1e6: the corner of a corner tetrahedron is cut off at a hundredth of its edges; the
+//   frustum below is three tetrahedra.
 // Both are linear: modes, and so expectations, are those of linear_theory.cpp.  A sliver of height e makes
 // frequencies of about c/e and a condition of 1e8: that is what the matrices, and the explicit limits, have
 // to bear.

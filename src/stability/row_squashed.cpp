@@ -12,33 +12,34 @@
 // energy is then elastic, E0, and
 //     d(kinetic + elastic)/dt = -(damping power) <= 0:
 // it never rises, and the body comes to rest where the elastic force vanishes.  That is the rest shape in
-// some place, or a true local minimum with an inverted element (it exists: an element turned inside out
-// through a vertex is held by the sign convention of its rotation); of random starts at least 90 % must find
-// the rest shape.  For each start:
+// some position, or a true local minimum with an inverted element (it exists: an element inverted through a
+// vertex is held by the sign convention of its rotation); at least 90 % of random starts must find the rest
+// shape.  For each start:
 // - at rest: elastic and kinetic energy below 1e-6 E0, no inverted element;
 // - energy rise: the largest over any earlier value;
 // - an element that is inverted (its volume is negative, found here from the nodes alone) must be reported by
 //   the body.
 //
 // Accurate: >= 90 % at rest and no rise beyond the tolerance.  Stable: no rise beyond it.  Bounded: a rise of
-// at most E0, of a fixed step the bound below.
+// at most E0, for a fixed step the bound below.
 //
 // Error control follows the exact flow within its tolerance, through the corners of the rotation field as
 // well (R jumps where two signed singular values cancel, the energy does not): rise <= (steps) x rtol, taken
 // as 100 rtol.
 //   -> accurate
-// A flow has no say in which of the two ends a start finds, so of a random start the count is the problem's,
-// not the method's.
+// A flow has no say in which of the two ends a start finds, so the count over random starts belongs to the
+// problem, not to the method.
 //
-// Fixed steps of H = 5 ms (y = w H up to 2): no theorem for a potential that is not convex: anything clear.
-// What one linearised step from a state of energy E0 = T0 + V0 may do is known: (M + ...) u1 = M u0 + H f
-// with a positive semi-definite remainder, and f.M^-1 f <= 2 w^2 V0 of an energy that is quadratic for a
+// Fixed steps of H = 5 ms (y = w H up to 2): no theorem for a potential that is not convex, so any end with a
+// message is accepted.  The effect of one linearised step from a state of energy E0 = T0 + V0 is known:
+//     (M + ...) u1 = M u0 + H f
+// with a positive semi-definite remainder, and f.M^-1 f <= 2 w^2 V0 for an energy that is quadratic at a
 // given rotation, so
 //     sqrt T1 <= sqrt T0 + y sqrt V0,    sqrt V1 <= sqrt V0 + y sqrt T1
 // (V1 with the old rotation; the new one takes the least of the shear part).  The matrix [1 y; y 1+y^2] of
 // this majorant has the norm g = 1 + y^2/2 + y sqrt(1 + y^2/4): rise <= (g^2 - 1) E0.
 //
-// Statics looks for a stationary point, a saddle is one: anything clear.
+// Statics looks for a stationary point, and a saddle is one: any end with a message is accepted.
 
 namespace palpate::stability {
 namespace {
@@ -93,10 +94,10 @@ double bound_of_a_step() {
   return g * g - 1.0;
 }
 
-/// What became of all the starts of a cell.
+/// Outcome of all the starts of a cell.
 struct Tally {
   int starts = 0, at_rest = 0, elsewhere = 0, moving = 0, failed = 0;
-  double rise = 0.0, bound = 1.0;  ///< of the energy, over E0
+  double rise = 0.0, bound = 1.0;  ///< of the energy, relative to E0
   bool unreported = false, finite = true, interrupted = false;
   dynamics::StepResult failure;
   long steps = 0;

@@ -12,7 +12,7 @@
 // period and the cube sees a tool that does not answer within it, and each exchange may create energy of the
 // order of the work done in it.  No theorem bounds it for every stiffness: "bounded" means here that the cube
 // never holds more than 100 E0 and the tool never strays from the handle's path by more than 10 d.  More is a
-// failure; so is an end without words.  Stable: not more than E0 and within 2 d (a spring let go from d
+// failure; so is an end without a message.  Stable: not more than E0 and within 2 d (a spring let go from d
 // swings to -d).
 //
 // Statics follows the load from equilibrium to equilibrium; it may find none where the tool has come free,
@@ -27,9 +27,8 @@
 // - Fixed steps of a refresh, 10 ms, find the contact open or closed as in the contact rows: no theorem.
 //     -> stable, bounded; error
 //
-// Density ratio: the coupling follows the hand as fast for either mass (k = m (60 rad/s)^2, critically
-// damped) for the heavy one; the light one, 4e-9 kg, hangs on 300 N/m: a frequency of 3e5 rad/s against ticks
-// of 1 ms.
+// Density ratio: the coupling of the heavy tool has k = m (60 rad/s)^2 and is critically damped; the light
+// tool, 4e-9 kg, hangs on 300 N/m: a frequency of 3e5 rad/s against ticks of 1 ms.
 
 namespace palpate::stability {
 
@@ -76,9 +75,9 @@ scene::Description under_a_tool(const std::vector<std::pair<double, double>>& he
   return d;
 }
 
-/// The family of Newmark carries the acceleration along, and overshoots in its first step (linear_theory.cpp,
-/// 2): places by 1 + y/4 + min(r/4, 1/6) y^2, y = w H of the tool on its coupling, r = 2 z/y = b/(k H).  A
-/// light tool has y = 3e3.
+/// Overshoot of positions in the first step.  The family of Newmark carries the acceleration along
+/// (linear_theory.cpp, 2): a factor of 1 + y/4 + min(r/4, 1/6) y^2, y = w H of the tool on its coupling, r =
+/// 2 z/y = b/(k H).  A light tool has y = 3e3.
 double overshoot(const Column& column, const scene::Description& d) {
   if (d.exchange.scheme != "monolithic" || column.entry->traits.family != "Newmark") return 1.0;
   const double y = kPeriod * std::sqrt(d.tool->coupling.stiffness_n_m / d.tool->mass_kg),
@@ -86,7 +85,7 @@ double overshoot(const Column& column, const scene::Description& d) {
   return 1.0 + 0.25 * y + std::min(0.25 * r, 1.0 / 6.0) * y * y;
 }
 
-/// Elastic and kinetic.
+/// Elastic and kinetic energy of the cube [J].
 double energy_of_cube(loop::World& world) {
   const loop::Body& cube = world.bodies[0];
   const dynamics::Block* block = world.state.layout().find(cube.block_id);
@@ -173,7 +172,7 @@ Row swallowed_tool_row() {
       false,
       {{"pulled out in 1 s", expect, [out_in](const Lab& lab) { return run(lab, out_in(1.0)); }},
        {"pulled out in 0.1 s", expect, [out_in](const Lab& lab) { return run(lab, out_in(0.1), false); }},
-       // the fast ones may slip out between two exchanges
+       // so fast, the tool may slip out between two exchanges
        {"pulled out in 0.01 s", expect, [out_in](const Lab& lab) { return run(lab, out_in(0.01), false); }}}};
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kGrown = 1e3, kFollow = 100.0;
 
-/// Keeps the course while the run goes on, and ends it.
+/// Follows the energy while the run goes on, and ends the run.
 class Watch : public loop::Observer {
  public:
   Watch(const Lab& lab, SceneCourse& course, double duration, double put_in, const Probe& probe)

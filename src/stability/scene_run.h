@@ -6,13 +6,13 @@
 
 namespace palpate::stability {
 
-/// What a run of a scene was, for a verdict.
+/// Summary of a scene's run, on which a verdict is based.
 struct SceneCourse {
   dynamics::StepResult result;
   double available = 0.0;  ///< mechanical energy at the start, plus what is put in from outside [J]
   double highest = 0.0;    ///< largest mechanical energy seen [J]
   double last = 0.0;       ///< at the end [J]
-  bool finite = true;      ///< every state that was called good
+  bool finite = true;      ///< every state that the stepper reported as good
   bool interrupted = false;
   long steps = 0;
   loop::RunResult run;
@@ -23,18 +23,19 @@ struct Settled {
   VecX q, u;
 };
 
-/// Sees the world after every period.
+/// Called with the world after every period.
 using Probe = std::function<void(loop::World&, double t)>;
 
-/// Runs a scene with the column's method, at the description's own periods; a fixed step is the period's.  A
-/// run at an explicit fixed step whose energy has passed `grown` times what was available is followed beyond
-/// its end, until it fails or has gone on a hundred times as long: what has begun to overflow must say so.
+/// Runs a scene with the column's method, at the description's own periods; a fixed step is as long as the
+/// period.  A run at an explicit fixed step whose energy has passed `grown` times the available energy is
+/// followed beyond its end, until it fails or has gone on a hundred times as long: a run that has begun to
+/// overflow must report it.
 /// @param put_in  work done from outside [J]
 /// @param start  where it starts from, at time 0; null: as described
 SceneCourse run_scene(const Lab& lab, const scene::Description& description, double rtol, double put_in,
                       const Probe& probe = {}, const Settled* start = nullptr);
 
-/// Places and speeds of a scene after `duration_s` of linearly implicit Euler.
+/// Positions and velocities of a scene after `duration_s` of linearly implicit Euler.
 Settled settle(const scene::Description& description, double duration_s);
 
 /// Largest energy gains that count as stable and as bounded.
@@ -42,7 +43,7 @@ struct GainBars {
   double stable, bounded;
 };
 
-/// The verdict on a course by its energy alone; fills the cell's figures.
+/// The verdict on a run by its energy alone; fills the cell's figures.
 void judge(const Lab& lab, const SceneCourse& course, const GainBars& bars, StabilityCell& cell);
 
 /// A cube of 50 mm, soft (E = 1e5 Pa), a little damped, free, its lower side at z = 0; 8 nodes.

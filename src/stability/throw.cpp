@@ -16,17 +16,17 @@
 //   relevance 1e-2 E0, and more of a body that is slower than a tenth of its own waves.
 //     -> stable; error
 // - A fixed step H has no theorem for it.  Where the tangent is taken at the step's start, the contact is
-//   open there: the body flies on by v H into the plane, and the spring then holds 1/2 k A (v H)^2, that is k
-//   A H^2/m times E0: 8e-8 k m/Pa E0 and so, at k = 1e12 Pa/m, far more than there was, to be given back as
-//   speed or damped away, as the method does it.  Twice that and E0 once more (a second touch, a bending
-//   body) is the bound; more has no such reason.  Methods that solve for the contact at the step's end do not
-//   need it.
+//   open there: the body flies on by v H into the plane, and the spring then holds
+//       1/2 k A (v H)^2 = (k A H^2/m) E0 = (8e-8 k m/Pa) E0,
+//   so at k = 1e12 Pa/m far more than there was, to be given back as velocity or damped away, depending on
+//   the method.  Twice that and E0 once more (a second touch, a bending body) is the bound; there is no such
+//   reason for more.  Methods that solve for the contact at the step's end do not need it.
 //     -> stable, bounded; error
-// - A multi-rate step has the same reason on its other side: within it the contact throws nodes about while
-//   the elastic force is a given polynomial of time.  Nodes that go their way for v H unanswered load the
-//   springs between them by up to (w H)^2 E0, w the body's largest frequency.  Twice that as well; but where
-//   the step's matrix with all of the lower side in contact has a spectral radius r above 1
-//   (multirate_theory.cpp) each of the n steps of a touch multiplies what is there: where r^(2 n) > 2, n the
+// - A multi-rate step has this flaw on its other side: within it the contact throws nodes about while the
+//   elastic force is a given polynomial of time.  Nodes that move on by v H without an elastic reaction load
+//   the springs between them by up to (w H)^2 E0, w the body's largest frequency.  Twice that is added to the
+//   bound; but where the step's matrix with all of the lower side in contact has a spectral radius r above 1
+//   (multirate_theory.cpp), each of the n steps of a touch multiplies the energy: where r^(2 n) > 2, n the
 //   steps of the row, that is no bound.
 //     -> stable, bounded, grew; error
 // - Explicit fixed steps: a node on the contact alone is an oscillator of w_c^2 = k A_n/m_n, y = w_c H; one
@@ -35,8 +35,8 @@
 //   and one that it begins in: P^(2n), n = 1 + ceil(pi/y), is the bound where it is more than the one above:
 //   an explicit method may throw the body back so fast, and the body is then free.  What goes beyond a
 //   thousand times E0 is followed until it overflows, and must say so.
-//     -> the same set
-// - Statics: a free body has no equilibrium that the throw would end in: anything clear.
+//     -> stable, bounded; error
+// - Statics: a free body has no equilibrium that the throw would end in: any end with a message is accepted.
 
 namespace palpate::stability {
 namespace {

@@ -3,8 +3,9 @@
 
 namespace palpate::stability {
 
-/// A body thrown at something, and nothing else: the contact rows.  Theory in throw.cpp.
-/// [s], [s], 1, [m]
+/// Contact rows: a body thrown at an obstacle, and nothing else.  Theory in throw.cpp.
+///
+/// Period and duration [s], relative tolerance, height of the start [m].
 inline constexpr double kThrowPeriod = 2e-3, kThrowDuration = 0.1, kThrowRtol = 1e-4, kThrowHeight = 1e-3;
 
 /// `d`'s body at `speed` [m/s] downwards from kThrowHeight above z = 0, against `obstacle`.
@@ -13,7 +14,7 @@ scene::Description thrown_at(scene::Description d, const ObstacleSpec& obstacle,
 
 Verdicts expect_thrown(const Lab& lab, const scene::Description& thrown);
 
-/// What the energy may gain under a column.
+/// Energy gains that theory allows a column.
 GainBars throw_bars(const Column& column, const scene::Description& d);
 
 }  // namespace palpate::stability

@@ -16,7 +16,7 @@ herr_t take_description(unsigned n, const H5E_error2_t* error, void* out) {
   return 0;
 }
 
-/// What HDF5 says happened nearest to the cause.
+/// HDF5's error message nearest to the cause.
 std::string reason() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_description, &text);

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-/// The little of HDF5 that palpate uses,
-/// with owners that close and errors that say which file and what failed.
+/// The few functions of HDF5 that palpate uses, with owners that close and errors that say which file and
+/// what failed.
 namespace palpate::store::h5 {
 
 /// Owns one HDF5 identifier.
@@ -31,8 +31,8 @@ class Id {
   Close close_ = nullptr;
 };
 
-/// HDF5 prints its errors on standard error by default;
-/// while one of these lives, it keeps quiet and we speak.
+/// HDF5 prints its errors on standard error by default; while an object of this class lives, it does not, and
+/// palpate reports them.
 class Quiet {
  public:
   Quiet();
@@ -52,8 +52,7 @@ hid_t check(hid_t id, const std::string& path, const std::string& what);
 
 Id create_file(const std::string& path);
 Id open_file(const std::string& path);  ///< for reading
-/// A file that lives in memory; `path` is what messages call it.
-/// Its bytes, once all is written, are image().
+/// A file that lives in memory; `path` is its name in messages.  Its bytes, once all is written, are image().
 Id create_in_memory(const std::string& path);
 std::string image(hid_t file, const std::string& path);
 Id create_group(hid_t parent, const std::string& name, const std::string& path);
@@ -67,7 +66,7 @@ void write_attribute(hid_t object, const std::string& name, hid_t type, const st
 void write_attribute_text(hid_t object, const std::string& name, const std::string& text,
                           const std::string& path);
 
-/// A data set opened for reading, checked: of this class of type and this many dimensions.
+/// A data set opened for reading, checked for its class of type and number of dimensions.
 struct Opened {
   Id id;
   std::vector<hsize_t> shape;

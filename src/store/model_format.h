@@ -2,7 +2,7 @@
 
 namespace palpate::store {
 
-/// What the attribute `format` says at the root of each kind of file.
+/// Value of the attribute `format` at the root of each kind of file.
 inline constexpr const char* kMeshFormat = "palpate tetrahedra 1";
 inline constexpr const char* kModelFormat = "palpate model 1";
 

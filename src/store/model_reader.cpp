@@ -13,7 +13,7 @@
 namespace palpate::store {
 namespace {
 
-/// One group of the file, whose every complaint names `FILE: "GROUP/NAME"`.
+/// One group of the file; every error message names `FILE: "GROUP/NAME"`.
 class Group {
  public:
   Group(hid_t file, const char* name, const std::string& path) : name_(name), path_(path) {
@@ -60,7 +60,7 @@ class Group {
     }
     return out;
   }
-  /// Offsets that cut `total` entries into `parts`.
+  /// Offsets that divide `total` entries into `parts`.
   std::vector<int> offsets(const char* name, Eigen::Index parts, Eigen::Index total) const {
     const std::vector<int> out = column<int>(name, parts + 1);
     if (out.front() != 0 || out.back() != total || !std::is_sorted(out.begin(), out.end()))
@@ -175,7 +175,7 @@ std::vector<MaterialRegion> regions_in(hid_t file, const std::string& path, Eige
   for (const int tet : tets) {
     group.within("tets", tet, 0, count_of_tets);
     if (std::exchange(taken[static_cast<std::size_t>(tet)], 1))
-      fail("{}: tetrahedron {} stands in it twice; it belongs to one region", group.full("tets"), tet);
+      fail("{}: tetrahedron {} is listed twice; it belongs to one region", group.full("tets"), tet);
   }
   std::vector<MaterialRegion> out;
   for (std::size_t r = 0; r < names.size(); ++r) {

@@ -51,7 +51,7 @@ struct RunFile::Impl {
   Points reference, displacement;
   hsize_t capacity = 1;
   std::int64_t steps = 0;
-  /// one row of time, of zeros, of offsets a step; rows of data a step
+  /// series with one row a step: time, zeros, offsets; and those with one row a point and step
   std::vector<Series> values, zeros, offsets, fields;
 
   void write_cells(const std::vector<RunPart>& parts);
@@ -86,8 +86,8 @@ void RunFile::Impl::write_cells(const std::vector<RunPart>& parts) {
   h5::write(data, "body", H5T_NATIVE_INT32, {cells.body.size()}, cells.body.data(), path);
 }
 
-/// What VTK need not know stands beside its group, where its format leaves room: the scene, and which points
-/// and cells are whose.
+/// Writes what VTK need not know beside its group, where its format leaves room: the scene, and which points
+/// and cells belong to which part.
 void RunFile::Impl::write_scene(const std::vector<RunPart>& parts, const RunInfo& info) {
   const h5::Id group = h5::create_group(file, "palpate", path);
   h5::write_attribute_text(group, "version", info.version, path);
@@ -192,7 +192,7 @@ void RunFile::append(double time_s, const Points& points, const Points& velocity
   d.fields[3].write(step, stress.data());
   h5::check(H5Fflush(d.file, H5F_SCOPE_LOCAL), d.path, "cannot be flushed; is the disk full?");
 
-  // the commit: until this number is in the file, the step is not there
+  // the commit: until this number is in the file, the step does not count
   const std::int64_t done = d.steps + 1;
   h5::check(H5Awrite(d.n_steps, H5T_NATIVE_INT64, &done), d.path, "cannot write NSteps");
   h5::check(H5Fflush(d.file, H5F_SCOPE_LOCAL), d.path, "cannot be flushed; is the disk full?");
@@ -217,7 +217,7 @@ RunFile::~RunFile() {
   if (!impl_) return;
   try {
     close();
-  } catch (const std::exception&) {  // what was committed is in the file; a destructor has nobody to tell
+  } catch (const std::exception&) {  // what was committed is in the file; a destructor cannot report errors
   }
 }
 

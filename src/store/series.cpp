@@ -44,7 +44,7 @@ void Series::write(hsize_t step, const void* data) {
   const h5::Id in_file{H5Dget_space(set_), H5Sclose};
   const h5::Id in_memory{H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose};
   h5::check(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, from.data(), nullptr, size.data(), nullptr), path_,
-            "cannot place a step of " + name_);
+            "cannot select a step of " + name_);
   h5::check(H5Dwrite(set_, type_, in_memory, in_file, H5P_DEFAULT, data), path_,
             "cannot write " + name_ + "; is the disk full?");
 }

@@ -7,8 +7,9 @@ namespace palpate::store {
 /// reserved, so that writing a step touches nothing but that step's own bytes.
 class Series {
  public:
-  /// @param rows  a step  @param width  columns; 0: the data set has one dimension  @param units
-  ///   attribute, may be empty
+  /// @param rows  a step
+  /// @param width  columns; 0: the data set has one dimension
+  /// @param units  attribute, may be empty
   Series(hid_t parent, const std::string& name, hid_t type, hsize_t rows, hsize_t width, hsize_t capacity,
          const std::string& units, const std::string& path);
   void write(hsize_t step, const void* data);  ///< rows x width values of the type; step < capacity

@@ -122,9 +122,9 @@ StudyDb::~StudyDb() = default;
 void StudyDb::put(const StudyRun& run) {
   PALPATE_CHECK(run.numbers.size() == impl_->numbers.size(), "{} numbers for {} columns", run.numbers.size(),
                 impl_->numbers.size());
-  std::string places = "?";
-  for (std::size_t i = 1; i < kTextColumns + run.numbers.size(); ++i) places += ",?";
-  Statement insert(impl_->db, impl_->path, "insert or replace into run values (" + places + ")");
+  std::string placeholders = "?";
+  for (std::size_t i = 1; i < kTextColumns + run.numbers.size(); ++i) placeholders += ",?";
+  Statement insert(impl_->db, impl_->path, "insert or replace into run values (" + placeholders + ")");
   insert.bind(1, run.key);
   insert.bind(2, run.repeat);
   insert.bind(3, run.scene);

@@ -62,7 +62,7 @@ constexpr int u_count(Joint joint) {
   return joint == Joint::kFree ? 6 : joint == Joint::kBall ? 3 : joint == Joint::kHinge ? 1 : 0;
 }
 
-/// q' = N u joint by joint: a quaternion's is that of a free body, the rest are rates.
+/// q' = N u joint by joint: the quaternion rate of a free body for quaternions, u itself for the rest.
 class TreeKinematics final : public dynamics::BlockKinematics {
  public:
   explicit TreeKinematics(const std::vector<TreeBone>& bones) {
@@ -236,7 +236,7 @@ dynamics::BlockSpec BoneTree::block(std::string name, double length, double spee
                            length,
                            speed,
                            std::make_shared<TreeKinematics>(impl_->bones)};
-  // all turns, but for the position of a free root
+  // all are angles, but for the position of a free root
   spec.angles_q.assign(static_cast<std::size_t>(q_size()), 1);
   spec.angles_u.assign(static_cast<std::size_t>(u_size()), 1);
   for (std::size_t b = 0; b < impl_->bones.size(); ++b)

@@ -91,7 +91,7 @@ class TreeCarried final : public dynamics::DrivenMotion {
         block_id_(block_id),
         tree_(std::move(tree)) {
     PALPATE_CHECK(static_cast<std::size_t>(local_.cols()) == dofs_.size() && local_.allFinite(),
-                  "{} places for {} directions", local_.cols(), dofs_.size());
+                  "{} positions for {} directions", local_.cols(), dofs_.size());
   }
   const std::vector<int>& dofs() const override { return dofs_; }
   int master_block() const override { return block_id_; }

@@ -33,10 +33,10 @@ Vec6 coupling_wrench(const CouplingGains& gains, const RigidMotion& tool, const 
   return wrench;
 }
 
-// Q = R_h R_t^T = exp(d).  A rotation of the tool, R_t -> exp(e) R_t, makes it Q exp(-e) = exp(d) exp(-e): a
-// disturbance from the right, so dd = -J_right^-1(d) e, and J_right^-1(d) = J_left^-1(-d).  Hence
-// -d(moment)/de = k_r J_left^-1(-d), whose unsymmetric part is [moment]/2:
-// world-axes increments are no coordinates.
+// Q = R_h R_t^T = exp(d).  A rotation of the tool, R_t -> exp(e) R_t, makes it Q exp(-e) = exp(d) exp(-e), a
+// perturbation from the right, so dd = -J_right^-1(d) e, and J_right^-1(d) = J_left^-1(-d).  Hence
+//     -d(moment)/de = k_r J_left^-1(-d),
+// whose unsymmetric part is [moment]/2, because increments in world axes are no coordinates.
 Mat6 coupling_stiffness(const CouplingGains& gains, const Pose& tool, const Pose& handle) {
   Mat6 K = Mat6::Zero();
   K.topLeftCorner<3, 3>() = gains.k_r * left_jacobian_inverse(-pose_difference(tool, handle).head<3>());

@@ -22,12 +22,12 @@ Wrench wrench_of(const Vec6& w);
 
 /// (moment about the tool's origin, force) that the coupling exerts on the tool [N m, N].  With d the
 /// rotation vector from tool to handle:
-/// moment = k_r d + b_r (omega_h - omega_t), force = k (x_h - x_t) + b (v_h - v_t).  d jumps at 180 degrees:
-/// there the moment is bounded, but changes its side.
+///     moment = k_r d + b_r (omega_h - omega_t),   force = k (x_h - x_t) + b (v_h - v_t).
+/// d jumps at 180 degrees: there the moment is bounded, but changes its side.
 Vec6 coupling_wrench(const CouplingGains& gains, const RigidMotion& tool, const RigidMotion& handle);
 
-/// K = -dF/dx along the tool's world-axes increments (angular, linear), exact; unsymmetric where the coupling
-/// is turned.  B = -dF/dv is diag(b_r, b).
+/// K = -dF/dx along the tool's world-axes increments (angular, linear), exact; unsymmetric where tool and
+/// handle are rotated against each other.  B = -dF/dv is diag(b_r, b).
 Mat6 coupling_stiffness(const CouplingGains& gains, const Pose& tool, const Pose& handle);
 Mat6 coupling_damping(const CouplingGains& gains);
 
@@ -39,7 +39,7 @@ double coupling_dissipation(const CouplingGains& gains, const Twist& tool, const
 /// K = -dF/dx of a contact record at a pose (the record is linear in the rotation vector from its own pose,
 /// so K follows that vector's derivative).
 Mat6 contact_stiffness(const dynamics::LinearisedContact& record, const Pose& tool);
-/// B = -dF/dv of it.
+/// B = -dF/dv of a contact record.
 Mat6 contact_damping(const dynamics::LinearisedContact& record);
 
 }  // namespace palpate::tool

@@ -19,11 +19,11 @@ RigidMotion handle_at(const TickInput& input, double t);
 /// Coupling and contact on the tool at time t (moment, force).
 Vec6 applied_wrench(const TickInput& input, double t, const RigidMotion& tool);
 
-/// The tick with the handle held at one of its ends: the input of fixed-tick schemes.
+/// A tick with the handle held at one of its ends: the input of fixed-tick schemes.
 TickInput with_handle_held(const TickInput& input, const Pose& pose, const Twist& twist);
 
-/// One tick is the other, later: the handle stands still in both,
-/// in one place, and contact and coupling are the same.
+/// Whether one tick is a later repetition of the other: the handle stands still in both, at the same pose,
+/// and contact and coupling are equal.
 bool same_wrench(const TickInput& a, const TickInput& b);
 
 bool is_finite(const RigidMotion& motion);

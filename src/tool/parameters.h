@@ -4,7 +4,7 @@
 
 namespace palpate::tool {
 
-/// What moves, checked: mass [kg] and principal moments about the centre of mass [kg m^2].
+/// The rigid body that moves, checked: mass [kg] and principal moments about the centre of mass [kg m^2].
 struct RigidParameters {
   double mass = 0.0;
   Vec3 inertia = Vec3::Zero();

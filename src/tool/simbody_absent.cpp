@@ -3,7 +3,7 @@
 #include "palpate/tool/simbody_block.h"
 #include "palpate/tool/tool.h"
 
-// What stands in for Simbody in a build without it: whatever would need it says so.
+// Replaces Simbody in a build without it: whatever would need Simbody throws Error.
 
 namespace palpate::tool {
 namespace {

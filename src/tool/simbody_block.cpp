@@ -13,8 +13,8 @@ using dynamics::rigid_block_of;
 using dynamics::RigidForce;
 using dynamics::StateView;
 
-/// M(q), rows and columns in the order of u:
-/// the mobilizer's (angular, linear) in world axes are the block's own.
+/// M(q), rows and columns in the order of u: the mobilizer's (angular, linear) in world axes are the block's
+/// own.
 class SimbodyInertia : public dynamics::InertiaTerm {
  public:
   SimbodyInertia(int block_id, std::shared_ptr<SimbodyBody> body)
@@ -36,9 +36,9 @@ class SimbodyInertia : public dynamics::InertiaTerm {
   std::shared_ptr<SimbodyBody> body_;
 };
 
-/// The right-hand side f of M u' = f by Simbody, without coupling and contact, which
-/// are separate force terms. Simbody gives no derivatives; the weight has none, and
-/// those of the gyroscopic force of one body are known.
+/// The right-hand side f of M u' = f by Simbody, without coupling and contact, which are separate force
+/// terms.  Simbody gives no derivatives; the weight has none, and those of the gyroscopic force of one body
+/// are known.
 class SimbodyForce : public RigidForce {
  public:
   SimbodyForce(int block_id, std::shared_ptr<SimbodyBody> body)

@@ -24,13 +24,13 @@ class SimbodyBody {
   RigidMotion read(const SimTK::State& state) const;
   void set_input(SimTK::State& state, const TickInput& input) const;
 
-  /// u' at a time and motion under an input,
-  /// by Simbody's forward dynamics (coupling, contact, gravity, gyroscopic terms).
+  /// u' at a time and motion under an input, by Simbody's forward dynamics (coupling, contact, gravity,
+  /// gyroscopic terms).
   Vec6 acceleration(double t, const RigidMotion& motion, const TickInput& input);
   /// M of M u' = f at a pose, by Simbody's calcM.
   Mat6 calc_mass(const RigidMotion& motion);
-  /// f without coupling and contact: gyroscopic forces and weight, minus what Simbody's inverse dynamics asks
-  /// for u' = 0.
+  /// f without coupling and contact: gyroscopic forces and weight, which Simbody's inverse dynamics at u' = 0
+  /// gives with the opposite sign.
   Vec6 calc_force(double t, const RigidMotion& motion);
   double calc_potential_energy(const RigidMotion& motion);  ///< of the weight [J]
   /// diag(R I R^T, m), world axes, angular first.

@@ -1,9 +1,9 @@
 #pragma once
 
-// Simbody's headers lay out classes by NDEBUG (CacheEntryInfo has members without it), and inline code of
-// theirs touches objects that the library made:
-// they must see the setting that the library was built with.  Debian's is built without NDEBUG; with it here,
-// realizeTopology crashes. CMake asks the library and says so by PALPATE_SIMBODY_NDEBUG.
+// Simbody's headers lay out classes by NDEBUG (CacheEntryInfo has members without it), and inline code in
+// them touches objects that the library made: they must see the setting that the library was built with.
+// Debian's is built without NDEBUG; with it here, realizeTopology crashes.  CMake asks the library and sets
+// PALPATE_SIMBODY_NDEBUG.
 #pragma push_macro("NDEBUG")
 #undef NDEBUG
 #ifdef PALPATE_SIMBODY_NDEBUG

@@ -7,8 +7,8 @@ namespace palpate::tool {
 /// omega = J(theta) theta'.
 Mat3 left_jacobian(const Vec3& theta);
 
-/// Its inverse, theta' = J^-1(theta) omega; |theta| < 2 pi.
-/// J^-1(-theta) is its transpose, and the right Jacobian's inverse.
+/// J^-1 of a rotation vector, theta' = J^-1(theta) omega; |theta| < 2 pi.  J^-1(-theta) is its transpose, and
+/// the right Jacobian's inverse.
 Mat3 left_jacobian_inverse(const Vec3& theta);
 
 }  // namespace palpate::tool

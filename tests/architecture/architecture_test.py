@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The tree keeps its arrows; and the check that says so is shown to fail on planted breaches."""
+"""The tree keeps the allowed dependencies between parts; the check is shown to fail on planted breaches."""
 import sys
 import tempfile
 import unittest

@@ -88,7 +88,7 @@ def part_of(path):
 def resolve(path, quoted, name, files):
     """The file of the tree that an include means, or None where it is the system's."""
     beside = (Path(path).parent / name).as_posix()
-    places = ["include/" + name, "src/" + name]
+    candidates = ["include/" + name, "src/" + name]
     if quoted:
         pieces = []
         for piece in beside.split("/"):
@@ -96,8 +96,8 @@ def resolve(path, quoted, name, files):
                 pieces = pieces[:-1]
             elif piece != ".":
                 pieces.append(piece)
-        places.insert(0, "/".join(pieces))
-    return next((place for place in places if place in files), None)
+        candidates.insert(0, "/".join(pieces))
+    return next((path for path in candidates if path in files), None)
 
 
 def is_spec(path):

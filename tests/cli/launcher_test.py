@@ -44,7 +44,7 @@ echo "[1/1 1s] Linking"
 printf '#!/bin/sh\nfor a; do echo "[$a]"; done\nexit 7\n' >"$2/bin/palpate"
 chmod +x "$2/bin/palpate"
 """,
-    # Copies the file `results`, if there is one, to where it was told; ends as `ctest-status` says.
+    # Copies the file `results`, if there is one, to the path that it is given; ends as `ctest-status` says.
     "ctest": r"""
 echo "ctest $*" >>"$CALLS"
 echo "what ctest prints"

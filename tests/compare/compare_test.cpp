@@ -85,7 +85,7 @@ TEST(Compare, SeveralScenesEachAgainstItsOwnReference) {
     EXPECT_EQ(alone.scenes[0].points[i].error.position_rel_l2, all.scenes[0].points[i].error.position_rel_l2);
 }
 
-// Without a ladder in the scene, each integrator gets one by what steers its step; nobody has to list the
+// Without a ladder in the scene, each integrator gets one by what controls its step; nobody has to list the
 // registry.
 TEST(Compare, ComparesWhatTheSceneDoesNotName) {
   compare::CompareOptions options = quick();
@@ -156,8 +156,7 @@ TEST(Compare, LaddersThatMakeNoSenseAreRefused) {
   EXPECT_NE(message_of(made_by_hand, quick()).find("has no text"), std::string::npos);
 }
 
-// A run that gives up after a hundredth of the time is close to the reference for that long: no error is told
-// for it.
+// A run that gives up after a hundredth of the time is close to the reference for that long: it has no error.
 TEST(Compare, ARunThatFailsIsARowWithItsReasonAndNoError) {
   const std::string text =
       "[integrator]\nmax_steps = 2000\n[[compare.ladder]]\nintegrator = \"linearly-implicit-euler\"\nstep_s "
@@ -307,7 +306,7 @@ TEST(Compare, GoesOnFromItsDatabaseAndDoesNothingTwice) {
   EXPECT_EQ(runs, 2 + 2 + 2 * 6);
 }
 
-// What ran out of time is tried again only where it is given more.
+// A point that ran out of time is tried again only where it is given more.
 TEST(Compare, MoreTimeTriesAgain) {
   const TemporaryFolder folder;
   compare::CompareOptions options = quick();

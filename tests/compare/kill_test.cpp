@@ -79,7 +79,7 @@ TEST(CompareKill, TenKillsGiveTheTableOfAnUndisturbedRun) {
     kept = database.run_count();
   }
   EXPECT_GE(kills, 8) << "they met it at work";
-  EXPECT_GE(grew, 2) << "they met it at different places";
+  EXPECT_GE(grew, 2) << "the kills hit different moments";
   const compare::Comparison last = compare::run(scenes(), options_of(folder / "killed.sqlite"));
   EXPECT_GE(last.reused, kept) << "what was finished is not run again";
 

@@ -54,7 +54,7 @@ step_s = [0.01]
 )";
 
 TEST(Compare, ProcessesDrawAfterAPictureWasDrawn) {
-  ProcessPool::prepare();  // what main() does first
+  ProcessPool::prepare();  // as main() does first
   gl::Context::shared();
   compare::CompareOptions options;
   options.repeats = 1;

@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Pascal, StiffnessLadder, testing::Values(1e4, 1e5, 1e6,
                          });
 
 // Every implicit method of SUNDIALS with error control, at one tolerance for all of E: 1e-7, and 1e-5 for
-// those of order 2.
+// methods of order 2.
 TEST_P(StiffnessLadder, EveryImplicitMethodOfSundialsReaches1eMinus5) {
   const compare::Run reference = run(GetParam(), {.name = "cvode-bdf", .rtol = 1e-9});
   ASSERT_TRUE(reference.result.status.ok()) << reference.result.status.message;

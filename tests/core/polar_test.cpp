@@ -99,8 +99,8 @@ TEST(Polar, FindsTheRotationThatTheMatrixWasMadeFrom) {
   }
 }
 
-// Newton serves det F > 0.05, the signed SVD the rest:
-// both must be the same function on either side of the switch.
+// Newton serves det F > 0.05, the signed SVD the rest: both must be the same function on either side of the
+// switch.
 TEST(Polar, NewtonAgreesWithSignedSvd) {
   std::mt19937 random(4);
   int checked = 0;

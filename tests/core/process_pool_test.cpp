@@ -1,4 +1,4 @@
-// Work in processes of its own: what a crash, an endless loop, an exception and a dying parent leave.
+// Work in processes of its own: effects of a crash, an endless loop, an exception and a dying parent.
 #include "palpate/core/process_pool.h"
 
 #include <gtest/gtest.h>
@@ -208,7 +208,7 @@ TEST(ProcessPool, PoolsSideBySideAndWithinWork) {
   EXPECT_EQ(got, (std::vector<std::string>{"2 inner outer", "1 inner outer"}));
 }
 
-/// What a process of its own says of making a pool while a second thread runs.
+/// Result of making a pool in a process while its second thread runs.
 std::string with_a_thread(bool prepared) {
   int ends[2];
   if (pipe(ends) != 0) return "no pipe";

@@ -26,7 +26,7 @@ TEST(Team, WorksTogetherAgainAndAgain) {
   EXPECT_THROW(Team(0), InternalError);
 }
 
-// Two callers, and loops beside them: one pool serves all, each in its turn.
+// Two callers, and loops beside them: one pool serves all, one after the other.
 TEST(Team, TeamsOfSeveralThreadsShareThePool) {
   const auto work = [](int size, long& total) {
     const workers::Count count(size);

@@ -108,7 +108,7 @@ TEST(Workers, CountsTheTasksOfEachThread) {
   EXPECT_EQ(workers::tasks_of(0) + workers::tasks_of(1), before + 40);
 }
 
-/// What a forked child finds of the pool: 0 where loops and teams work there.
+/// The state of the pool in a forked child: 0 where loops and teams work there.
 int pool_in_child() {
   const pid_t child = fork();
   if (child == 0) {

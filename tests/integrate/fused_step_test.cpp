@@ -30,7 +30,7 @@ TEST(LinearlyImplicitEuler, StepsTheSameInOnePass) {
     EXPECT_GT(moved.norm(), 1e-3);
     EXPECT_LT((fast.state.q() - direct.state.q()).norm(), 1e-5 * moved.norm()) << name;
     const StepperCounters& c = one_pass->counters();
-    EXPECT_EQ(c.tangent_evaluations + c.solver.near, 20);
+    EXPECT_EQ(c.tangent_evaluations + c.solver.lagged, 20);
     EXPECT_EQ(c.solver.factorisations, c.tangent_evaluations);
     EXPECT_GE(c.force_evaluations, 20);
     EXPECT_EQ(c.solver.solves, 20);

@@ -5,105 +5,105 @@
 using palpate::linear::LaggedMatrixPolicy;
 
 namespace {
-// twice rho of one step of age, times the correction, is a sixth of what may go unseen
+// twice rho of a lag of one step, times the correction, is a sixth of the error that may go unnoticed
 constexpr double kRtol = 1e-3, kSize = 1e-2, kRho = 2e-3;
 
 /// Takes steps while the matrix serves, as a solver would; returns how many.
-int steps(LaggedMatrixPolicy& age, double size, int most, int* looks = nullptr) {
+int steps(LaggedMatrixPolicy& policy, double size, int most, int* checks = nullptr) {
   int taken = 0;
-  for (; taken < most && age.serves(); ++taken) {
-    if (!age.sure(size)) {
-      if (looks) ++*looks;
-      age.seen(kRho * (taken + 1) * size, size);
+  for (; taken < most && policy.serves(); ++taken) {
+    if (!policy.sure(size)) {
+      if (checks) ++*checks;
+      policy.seen(kRho * (taken + 1) * size, size);
     }
-    age.solved(size);
+    policy.solved(size);
   }
   return taken;
 }
 }  // namespace
 
 TEST(LaggedMatrixPolicy, TriesWhereNothingIsKnownAndLooks) {
-  LaggedMatrixPolicy age(kRtol);
-  age.solved(0.5);  // however large
-  EXPECT_TRUE(age.serves());
-  EXPECT_FALSE(age.sure(1e-9));
+  LaggedMatrixPolicy policy(kRtol);
+  policy.solved(0.5);  // however large
+  EXPECT_TRUE(policy.serves());
+  EXPECT_FALSE(policy.sure(1e-9));
 }
 
-// 2 rho n d <= rtol / 4: six steps by one matrix, and looks no more often than the first and by plan.
+// 2 rho n d <= rtol / 4: six steps by one matrix, and checks no more often than the first and by plan.
 TEST(LaggedMatrixPolicy, ServesUntilItWouldLeaveTooMuch) {
-  LaggedMatrixPolicy age(kRtol);
-  int looks = 0;
-  EXPECT_EQ(steps(age, kSize, 100, &looks), 6);
-  EXPECT_EQ(looks, 1);
-  age.renew();
-  EXPECT_EQ(steps(age, kSize, 100, &looks), 6) << "what was seen of the last matrix holds for the next";
-  EXPECT_EQ(looks, 1);
-  age.renew();
-  EXPECT_EQ(steps(age, kSize, 100, &looks), 6);
-  EXPECT_EQ(looks, 2) << "sixteen steps after the first";
+  LaggedMatrixPolicy policy(kRtol);
+  int checks = 0;
+  EXPECT_EQ(steps(policy, kSize, 100, &checks), 6);
+  EXPECT_EQ(checks, 1);
+  policy.renew();
+  EXPECT_EQ(steps(policy, kSize, 100, &checks), 6) << "what was seen of the last matrix holds for the next";
+  EXPECT_EQ(checks, 1);
+  policy.renew();
+  EXPECT_EQ(steps(policy, kSize, 100, &checks), 6);
+  EXPECT_EQ(checks, 2) << "sixteen steps after the first";
 }
 
 TEST(LaggedMatrixPolicy, LooksWhenCorrectionsGrow) {
-  LaggedMatrixPolicy age(kRtol);
-  ASSERT_EQ(steps(age, 1e-3, 3), 3);
-  ASSERT_TRUE(age.serves());
-  EXPECT_TRUE(age.sure(2e-3));
-  EXPECT_FALSE(age.sure(2.1e-3)) << "it would be small enough, but they were never so large";
-  EXPECT_FALSE(age.sure(1.0));
+  LaggedMatrixPolicy policy(kRtol);
+  ASSERT_EQ(steps(policy, 1e-3, 3), 3);
+  ASSERT_TRUE(policy.serves());
+  EXPECT_TRUE(policy.sure(2e-3));
+  EXPECT_FALSE(policy.sure(2.1e-3)) << "it would be small enough, but they were never so large";
+  EXPECT_FALSE(policy.sure(1.0));
 }
 
 TEST(LaggedMatrixPolicy, DoesNotServeWhereOneStepIsTooMuch) {
-  LaggedMatrixPolicy age(kRtol);
-  ASSERT_TRUE(age.serves());
-  age.seen(0.05 * kSize, kSize);
-  age.solved(kSize);
-  age.renew();
+  LaggedMatrixPolicy policy(kRtol);
+  ASSERT_TRUE(policy.serves());
+  policy.seen(0.05 * kSize, kSize);
+  policy.solved(kSize);
+  policy.renew();
   int refused = 0;
-  for (; refused < 1000 && !age.serves(); ++refused) {
-    age.renew();
-    age.solved(kSize);
+  for (; refused < 1000 && !policy.serves(); ++refused) {
+    policy.renew();
+    policy.solved(kSize);
   }
   EXPECT_EQ(refused, 63) << "things change: it is tried again";
-  EXPECT_FALSE(age.sure(1e-12));
+  EXPECT_FALSE(policy.sure(1e-12));
 }
 
 TEST(LaggedMatrixPolicy, ServesAgainWhenCorrectionsBecomeSmall) {
-  LaggedMatrixPolicy age(kRtol);
-  ASSERT_TRUE(age.serves());
-  age.seen(0.05 * kSize, kSize);
-  age.solved(kSize);
-  age.renew();
-  EXPECT_FALSE(age.serves());
-  age.solved(1e-4);
-  EXPECT_TRUE(age.serves());
+  LaggedMatrixPolicy policy(kRtol);
+  ASSERT_TRUE(policy.serves());
+  policy.seen(0.05 * kSize, kSize);
+  policy.solved(kSize);
+  policy.renew();
+  EXPECT_FALSE(policy.serves());
+  policy.solved(1e-4);
+  EXPECT_TRUE(policy.serves());
 }
 
 TEST(LaggedMatrixPolicy, RestsAfterAFailure) {
-  LaggedMatrixPolicy age(kRtol);
-  ASSERT_TRUE(age.serves());
-  age.failed();
-  age.renew();
-  age.solved(kSize);
-  EXPECT_FALSE(age.serves());
+  LaggedMatrixPolicy policy(kRtol);
+  ASSERT_TRUE(policy.serves());
+  policy.failed();
+  policy.renew();
+  policy.solved(kSize);
+  EXPECT_FALSE(policy.serves());
 }
 
 TEST(LaggedMatrixPolicy, RoundingOfAStepsOwnMatrixSaysNothingOfItsAge) {
-  LaggedMatrixPolicy age(kRtol);
-  ASSERT_TRUE(age.serves());
-  age.seen(0.05 * kSize, kSize);
-  age.solved(kSize);
-  age.renew();
-  age.seen(1e-9 * kSize, kSize);
-  age.solved(kSize);
-  EXPECT_FALSE(age.serves()) << "what is known of age stays";
+  LaggedMatrixPolicy policy(kRtol);
+  ASSERT_TRUE(policy.serves());
+  policy.seen(0.05 * kSize, kSize);
+  policy.solved(kSize);
+  policy.renew();
+  policy.seen(1e-9 * kSize, kSize);
+  policy.solved(kSize);
+  EXPECT_FALSE(policy.serves()) << "what is known of the effect of lagging stays";
 }
 
-// Two looks in one step: the worse counts.
+// Two checks in one step: the worse counts.
 TEST(LaggedMatrixPolicy, KeepsTheWorstOfAStep) {
-  LaggedMatrixPolicy age(kRtol);
-  ASSERT_TRUE(age.serves());
-  age.seen(4e-3 * kSize, kSize);
-  age.seen(1e-3 * 1e-4, 1e-4);
-  age.solved(kSize);
-  EXPECT_EQ(steps(age, kSize, 100), 2) << "2 x 4e-3 x (1 + 2) x 1e-2 is just below rtol / 4";
+  LaggedMatrixPolicy policy(kRtol);
+  ASSERT_TRUE(policy.serves());
+  policy.seen(4e-3 * kSize, kSize);
+  policy.seen(1e-3 * 1e-4, 1e-4);
+  policy.solved(kSize);
+  EXPECT_EQ(steps(policy, kSize, 100), 2) << "2 x 4e-3 x (1 + 2) x 1e-2 is just below rtol / 4";
 }

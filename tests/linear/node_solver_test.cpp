@@ -94,7 +94,7 @@ TEST_P(NodeSolvers, TheErrorIsWhatTheToleranceSaysOfAZeroRowSumMatrix) {
           ++checked;
         }
         EXPECT_EQ(solver->counters().symbolic, 1);
-        EXPECT_EQ(solver->counters().near, 0) << "each had its own";
+        EXPECT_EQ(solver->counters().lagged, 0) << "each had its own";
       }
   EXPECT_EQ(checked, 144);
   EXPECT_GE(rounded, 40);
@@ -161,7 +161,7 @@ TEST_P(NodeSolvers, RefuseARoundedMatrixThatCorrectsNothing) {
   EXPECT_EQ(mixed(*solver).solve_by_refinement(left, x), std::nullopt) << "it refines nothing any more";
   EXPECT_EQ(left.evaluated, 2);
   EXPECT_EQ(mixed(*solver).step_matrix(beam.pattern()), nullptr);
-  EXPECT_EQ(solver->counters().near, 0);
+  EXPECT_EQ(solver->counters().lagged, 0);
 }
 
 // Rows of held directions are the identity's: what the right-hand side has there is the answer, and the rest

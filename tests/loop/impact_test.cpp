@@ -36,9 +36,9 @@ class Energies : public loop::Observer {
 
 }  // namespace
 
-// Between two queries, 10 ms apart, the block goes farther than the candidate gap (its mean edge, 11 mm): it
-// was found 5 to 25 mm deep in the plane and thrown back by a spring that nothing had pressed, with many
-// times its energy.  With the look-ahead it meets the plane where the plane is.
+// Between two queries, 10 ms apart, the block goes farther than the candidate gap (its mean edge, 11 mm).
+// Without the look-ahead it was found 5 to 25 mm deep in the plane and thrown back by a spring that nothing
+// had pressed, with many times its energy; with it, it meets the plane where the plane is.
 TEST(Impact, AFastBlockIsCaughtByThePlaneAndGainsNoEnergy) {
   for (const double speed : {0.5, 1.5, 3.0}) {
     const auto world = loop::assemble(thrown_block(speed, 0.0125));
@@ -81,8 +81,8 @@ TEST(Impact, AFastBlockThatGoesThroughAThinPlateIsCounted) {
   EXPECT_EQ(stopped.tunnelled, std::vector<long>{0});
 }
 
-// A tumbling block comes near the plane vertex by vertex: at a query the list of those that may touch changes
-// while nothing presses yet, and the force does not.  What a root finder keeps of the old list must go all
+// A tumbling block approaches the plane vertex by vertex: at a query the list of candidates changes while
+// nothing presses yet, and the force does not.  What a root finder keeps of the old list must be dropped all
 // the same.
 TEST(Impact, RootsAreFoundWhileTheListOfCandidatesChanges) {
   const auto landed = [](const std::string& integrator, const std::string& events) {

@@ -48,7 +48,7 @@ Vec6 wrench_after_step(double H, const Vec3& dx) {
   return out;
 }
 
-// What `condensed` claims: the change of the wrench when the bodies have answered the tool's displacement by
+// The claim of `condensed`: the change of the wrench when the bodies have answered the tool's displacement by
 // one linearly implicit step.
 TEST(Linearise, CondensedIsTheAnswerOfOneImplicitStep) {
   const double H = 0.01, e = 1e-7;
@@ -154,8 +154,8 @@ struct Struck {
   }
 };
 
-// The bodies' own motion, which the record lacked: velocities, forces out of balance, driven nodes and
-// damping, after a tick and after the period.
+// The bodies' own motion, after a tick and after the period: velocities, forces out of balance, driven nodes
+// and damping.
 TEST(Linearise, CondensedRecordIsTheWrenchAfterOneImplicitStepOfMovingBodies) {
   Struck s;
   const double H = 0.01, tick = s.world->description.tool->tick_s;
@@ -172,7 +172,7 @@ TEST(Linearise, CondensedRecordIsTheWrenchAfterOneImplicitStepOfMovingBodies) {
   }
 }
 
-// The same with the tool moved: one step of the coupled system, linear in where the tool ends.
+// The tool moves as well: one step of the coupled system, linear in where the tool ends.
 TEST(Linearise, CondensedRecordFollowsTheToolsDisplacementAndTwist) {
   Struck s;
   const double H = 0.01, e = 1e-8;
@@ -224,9 +224,9 @@ TEST(Linearise, AStiffContactDoesNotThrowTheToolAway) {
     }
     void tick(const loop::TickRecord& tick) override {
       away = std::max(away, (tick.tool.translation - tick.handle.translation).norm());
-      turned = std::max(turned, rotation_vector(tick.tool.rotation).norm());
+      rotation = std::max(rotation, rotation_vector(tick.tool.rotation).norm());
     }
-    double energy = 0.0, away = 0.0, turned = 0.0;
+    double energy = 0.0, away = 0.0, rotation = 0.0;
   };
   for (const double stiffness : {1e8, 1e9, 1e10, 1e11, 1e12}) {
     scene::Description d = pressed_block(-0.001);  // 1 mm above
@@ -248,7 +248,8 @@ TEST(Linearise, AStiffContactDoesNotThrowTheToolAway) {
     // the hand never did more work
     EXPECT_LT(bounds.energy, 0.5 * d.tool->coupling.stiffness_n_m * 0.01 * 0.01)
         << "at " << stiffness << " Pa/m";
-    EXPECT_LT(bounds.turned, 1e-9) << "at " << stiffness << " Pa/m: without friction nothing turns a sphere";
+    EXPECT_LT(bounds.rotation, 1e-9) << "at " << stiffness
+                                     << " Pa/m: without friction nothing rotates a sphere";
   }
 }
 

@@ -92,7 +92,7 @@ TEST(MaterialChange, RefusesWhatIsNoModulus) {
   EXPECT_DOUBLE_EQ(world->bodies[0].term->materials()[0].youngs_modulus, kBefore);
 }
 
-// The hand feels it: under a tool that holds its place, the force follows the modulus.
+// The hand feels the change: under a tool that keeps its position, the force follows the modulus.
 #ifdef PALPATE_HAS_TOOL
 TEST(MaterialChange, IsFeltByTheHand) {
   scene::Description d = pressed_block(0.003);

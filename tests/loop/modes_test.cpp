@@ -90,9 +90,10 @@ TEST(ModesOfAScene, AreWrittenOneAStep) {
   ASSERT_EQ(file.steps(), 3);
   EXPECT_EQ(file.times_s(), (std::vector<double>{1, 2, 3}));
   for (int j = 0; j < 3; ++j) {
-    const Points moved = file.displacement(j), by_place = modes.shapes.col(j).reshaped(3, file.point_count());
+    const Points moved = file.displacement(j),
+                 by_position = modes.shapes.col(j).reshaped(3, file.point_count());
     Points shape(3, file.point_count());
-    shape(Eigen::all, world->bodies[0].file_node) = by_place;
+    shape(Eigen::all, world->bodies[0].file_node) = by_position;
     EXPECT_NEAR(moved.colwise().norm().maxCoeff(), loop::kModeAmplitude * 0.04, 1e-12)
         << "a tenth of the longest edge";
     const double cosine = moved.reshaped().dot(shape.reshaped()) / (moved.norm() * shape.norm());

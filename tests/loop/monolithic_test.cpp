@@ -220,8 +220,8 @@ TEST_P(MonolithicRegistry, StepsToolAndBodiesAsOneSystem) {
     worst =
         std::max(worst, (out.log.ticks[i].tool.translation - reference.log.ticks[i].tool.translation).norm());
   RecordProperty("error", std::to_string(worst / moved));
-  // Of order 1: h times a rate, sqrt(k/m) = 77/s of the coupling, some times over.  Of a higher one, or under
-  // error control: the kink at the touch is left.
+  // Order 1: an error of h times a rate, sqrt(k/m) = 77/s of the coupling, some times over.  Higher order, or
+  // error control: the error of the kink at the touch.
   EXPECT_LT(worst, (fixed && traits.order == 1 ? 2e-2 : 1e-3) * moved);
   EXPECT_NEAR(out.q.tail<7>().head<4>().norm(), 1.0, 1e-12);
 }

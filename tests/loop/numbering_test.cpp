@@ -45,7 +45,7 @@ class Numbering : public testing::Test {
     scene_.record->state_period_s = 0.02;
   }
 
-  /// What part 1 of a run file must hold where the state of `world` is `q`.
+  /// Expected content of part 1 of a run file where the state of `world` is `q`.
   void expect_part(const store::RunReader& file, int step, const loop::World& world, const VecX& q) const {
     const dynamics::Block& block = *world.state.layout().find(world.bodies[1].block_id);
     const auto n = file_.nodes.cols();
@@ -57,7 +57,7 @@ class Numbering : public testing::Test {
       moved = std::max(moved, (points.col(written) - file_.nodes.col(written) - shift_).norm());
     }
     EXPECT_GT(moved, 1e-6);
-    // each stands near its place in the file: none is mistaken for another, 5 mm away
+    // each is near its position in the file: none is mistaken for another, 5 mm away
     EXPECT_LT(moved, 2e-3);
   }
 

@@ -95,7 +95,7 @@ struct Blocks {
   }
 };
 
-/// The bar, at rest a U, whose arms are turned towards each other by their bones until the tips meet.
+/// The bar, at rest a U, whose arms are rotated towards each other by their bones until the tips meet.
 struct Fork {
   ModelOnDisk file{bent_bar::model(24, M_PI), "fork.h5"};
 
@@ -110,12 +110,12 @@ struct Fork {
     body.youngs_modulus_pa = 2e4;
     body.stiffness_damping_s = 5e-3;
     body.skeleton.emplace();
-    for (const auto& [bone, turn] : {std::pair("left", 0.36), std::pair("right", -0.36)}) {
+    for (const auto& [bone, angle] : {std::pair("left", 0.36), std::pair("right", -0.36)}) {
       JointSpec joint;
       joint.bone = bone;
       joint.keyframes.resize(2);
       joint.keyframes[1].time_s = 0.08;
-      joint.keyframes[1].rotation_vector_rad = Vec3(0, turn, 0);
+      joint.keyframes[1].rotation_vector_rad = Vec3(0, angle, 0);
       body.skeleton->joints.push_back(joint);
     }
     d.bodies.push_back(body);
@@ -205,10 +205,10 @@ VecX end_of(const scene::Description& d, int* pressing = nullptr) {
 
 }  // namespace
 
-// The same nodes, masses, forces and contact: what falls on another body falls on a part of its own, to
-// rounding.  Later the blocks lie so flat on each other that skin which faces elsewhere is kept too: there
-// two bodies go by their hulls, the parts of one by its skin (pruner.cpp), and the same motion comes out to
-// less than a hundredth.
+// The same nodes, masses, forces and contact: a body that falls on another, or on a part of its own, moves
+// alike, to rounding.  Later the blocks lie so flat on each other that skin which faces elsewhere is kept
+// too: there two bodies are pruned by their hulls, the parts of one by its skin (pruner.cpp), and the motions
+// agree to less than a hundredth.
 TEST(OwnContactScene, TwoBlocksOfOneBodyMeetAsTwoBodies) {
   const Blocks blocks;
   scene::Description together = blocks.scene(true), apart = blocks.scene(false), without = blocks.scene(true);
@@ -263,8 +263,8 @@ TEST(OwnContactScene, ArmsCloseAlikeByThreeIntegrators) {
   EXPECT_LT(whole / half, 2.5);
 }
 
-// What is said of it: one skin, whose handed-on triangles are counted on both sides of the regions; of two
-// bodies each has its own share.
+// The summary of own contact: one skin, whose handed-on triangles are counted on both sides of the regions;
+// of two bodies each has its own share.
 TEST(OwnContactScene, TheSummarySpeaksOfOneSkin) {
   const auto pruning = [](const scene::Description& d) {
     const auto world = loop::assemble(d);

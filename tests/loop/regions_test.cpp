@@ -166,7 +166,7 @@ TEST_F(Regions, OfAMeshFileGoByName) {
   d.bodies[0].mesh.file = "two.msh";
   d.bodies[0].attachments.clear();
   {
-    // named by nobody: of the body's own material, and known to be there
+    // without a material in the scene: of the body's own material, and still known
     const auto world = loop::assemble(d);
     ASSERT_EQ(world->bodies[0].regions.size(), 2u);
     EXPECT_EQ(world->bodies[0].regions[1].material, 0);
@@ -191,7 +191,7 @@ TEST_F(Regions, OfAMeshFileGoByName) {
   d.bodies[0].regions[0].centre_m = Vec3::Constant(9);
   EXPECT_NE(refusal(d).find("region \"nothing\" holds no tetrahedron"), std::string::npos) << refusal(d);
 
-  // What belongs to two regions of the scene is of the last.
+  // An element in two regions of the scene belongs to the last.
   RegionSpec all = bone;
   all.name = "all";
   all.region = "sphere";

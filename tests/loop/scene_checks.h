@@ -7,7 +7,7 @@
 
 namespace palpate::scene_checks {
 
-/// Why a scene is not assembled.
+/// The message with which a scene is refused.
 inline std::string refusal(const scene::Description& d) {
   try {
     loop::assemble(d);
@@ -15,9 +15,8 @@ inline std::string refusal(const scene::Description& d) {
   return "not refused";
 }
 
-/// (angular about the origin, linear) of nodes and bones.
-/// @param inertia_of_bones  three moments about its own axes each [kg m^2]; none where they are too light
-///   to have any to speak of
+/// (angular about the origin, linear) momentum of nodes and bones.
+/// @param inertia_of_bones  three moments about its own axes each [kg m^2]; empty where they are negligible
 inline Vec6 momentum(const loop::World& world, const VecX& inertia_of_bones = {}) {
   Vec6 out = Vec6::Zero();
   const auto add = [&](double m, const Vec3& x, const Vec3& v) {

@@ -84,11 +84,11 @@ JointSpec joint_of(const std::string& bone, const std::string& type = "") {
   return joint;
 }
 
-JointSpec scripted(const std::string& bone, const Vec3& turn, const Vec3& shift = Vec3::Zero()) {
+JointSpec scripted(const std::string& bone, const Vec3& rotation, const Vec3& shift = Vec3::Zero()) {
   JointSpec joint = joint_of(bone);
   joint.keyframes.resize(2);
   joint.keyframes[1].time_s = 0.1;
-  joint.keyframes[1].rotation_vector_rad = turn;
+  joint.keyframes[1].rotation_vector_rad = rotation;
   joint.keyframes[1].position_m = shift;
   return joint;
 }
@@ -135,17 +135,18 @@ TEST(Skeleton, WeldedBonesHoldTheirNodes) {
 }
 
 // Path, twist and acceleration of a chain of scripts are derivatives of one another; the joint stays
-// together; turns are in the body's own axes.
+// together; rotations are in the body's own axes.
 TEST(Skeleton, AChainOfScriptsMovesAsItsDerivativesSay) {
-  loop::ToldJoint first{{quaternion_of(Vec3(0.1, 0.2, -0.3)), Vec3(0.3, 0.1, 0.2)},
-                        Vec3(0.25, 0.1, 0.2),
-                        quaternion_of(Vec3(0.4, 0.0, 0.2)),
-                        {}};
+  loop::PrescribedJoint first{{quaternion_of(Vec3(0.1, 0.2, -0.3)), Vec3(0.3, 0.1, 0.2)},
+                              Vec3(0.25, 0.1, 0.2),
+                              quaternion_of(Vec3(0.4, 0.0, 0.2)),
+                              {}};
   first.keyframes = scripted("a", Vec3(0.9, -0.5, 0.3), Vec3(0.02, 0.01, -0.03)).keyframes;
-  loop::ToldJoint second{
+  loop::PrescribedJoint second{
       {quaternion_of(Vec3(-0.3, 0.1, 0.2)), Vec3(0.5, 0.2, 0.1)}, Vec3(0.4, 0.15, 0.15), first.axes, {}};
   second.keyframes = scripted("b", Vec3(-0.4, 0.8, 0.6)).keyframes;
-  const fem::Path upper = loop::told_path(first, {}, {}), lower = loop::told_path(second, upper, first.start);
+  const fem::Path upper = loop::prescribed_path(first, {}, {}),
+                  lower = loop::prescribed_path(second, upper, first.start);
   EXPECT_LT(pose_difference(lower(0.0).pose, second.start).norm(), 1e-15);
   constexpr double e = 1e-5;
   for (const fem::Path& path : {upper, lower})
@@ -165,8 +166,8 @@ TEST(Skeleton, AChainOfScriptsMovesAsItsDerivativesSay) {
                 .norm(),
             1e-15)
       << "no shift: the joint holds";
-  const Quat turned = first.axes * quaternion_of(Vec3(0.9, -0.5, 0.3)) * first.axes.conjugate();
-  EXPECT_LT(rotation_vector(upper(0.1).pose.rotation * (turned * first.start.rotation).conjugate()).norm(),
+  const Quat rotation = first.axes * quaternion_of(Vec3(0.9, -0.5, 0.3)) * first.axes.conjugate();
+  EXPECT_LT(rotation_vector(upper(0.1).pose.rotation * (rotation * first.start.rotation).conjugate()).norm(),
             1e-14);
 }
 
@@ -265,9 +266,9 @@ TEST(Skeleton, AFreeLimbKeepsItsMomentum) {
     const Vec6 change = momentum(*world, inertia) - before;
     EXPECT_LT(change.head<3>().norm(), bar * before.head<3>().norm()) << name;
     EXPECT_LT(change.tail<3>().norm(), bar * before.tail<3>().norm()) << name;
-    const Quat turned =
+    const Quat rotation =
         world->bone_pose(world->bones[2]).rotation * world->bone_pose(world->bones[0]).rotation.conjugate();
-    EXPECT_GT(rotation_vector(turned).norm(), 5e-3) << "it bends while it tumbles: the joints take part";
+    EXPECT_GT(rotation_vector(rotation).norm(), 5e-3) << "it bends while it tumbles: the joints take part";
   }
 }
 

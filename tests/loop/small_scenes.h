@@ -36,7 +36,7 @@ inline void add_floor(scene::Description& d, const ContactSpec& law) {
   d.contacts.back().second = floor.name;
 }
 
-/// The same under a round tool whose handle stands `depth` below first touch.
+/// The held block under a round tool whose handle stands `depth` below first touch.
 inline scene::Description pressed_block(double depth) {
   scene::Description d = held_block();
   d.tool.emplace();

@@ -47,10 +47,10 @@ Vec3 force_on_first(const loop::World& world) {
   return sum;
 }
 
-// Outer faces held, pressed into each other by d: two bars of stiffness E A / L and the contact k A in a row
+// Outer faces held, pressed into each other by d: two bars of stiffness E A / L and the contact k A in series
 // (nu = 0: no lateral strain, so that the uniform stress of a bar solves the block),
 //   F = d / (2 L / (E A) + 1 / (k A)),
-// which is one block of length 2 L compressed by what the contact leaves of d.
+// which is one block of length 2 L compressed by the rest of d.
 TEST(SoftPair, PressedTogetherTheyAreOneBlock) {
   constexpr double d = 1e-3, area = kWidth * kWidth,
                    exact = d / (2 * kLength / (kYoung * area) + 1 / (kStiffness * area));
@@ -69,7 +69,7 @@ TEST(SoftPair, PressedTogetherTheyAreOneBlock) {
   EXPECT_NEAR(lower - upper, exact / (kStiffness * area), 0.01 * d);
 }
 
-// Free blocks, one thrown at the other: momentum stays, and what one had the other has more of.
+// Free blocks, one thrown at the other: momentum is conserved, and passes from one to the other.
 TEST(SoftPair, ACollisionKeepsMomentum) {
   scene::Description d = two_blocks(0.5e-3);
   for (auto& body : d.bodies) body.attachments.clear();

@@ -9,7 +9,7 @@ using namespace palpate::small_scenes;
 
 namespace {
 
-/// Some ten thousand elements, which make several chunks, let go under a force that no rest holds.
+/// Some ten thousand elements, which make several chunks, released from a state out of equilibrium.
 scene::Description falling_block(const std::string& integrator, int threads) {
   scene::Description d = held_block();
   d.bodies[0].mesh.element_size_m = 0.0025;

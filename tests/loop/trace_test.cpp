@@ -1,4 +1,4 @@
-// A stepper that does as it is told: what it tries is what the trace says; what interrupts it ends the run.
+// A scripted stepper: its attempts are those of the trace; an interruption ends the run.
 #include "palpate/loop/trace.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ std::unique_ptr<loop::World> faked(std::atomic<bool>* raise = nullptr, int raise
   return world;
 }
 
-TEST(Trace, WritesEveryAttemptWithItsReasonAndPlace) {
+TEST(Trace, WritesEveryAttemptWithItsReasonAndNode) {
   const TemporaryFolder folder;
   const auto path = folder / "trace.csv";
   const auto world = faked();
@@ -80,7 +80,8 @@ TEST(Trace, WritesEveryAttemptWithItsReasonAndPlace) {
   EXPECT_EQ(table.headers, loop::TraceRecorder::columns());
   ASSERT_EQ(table.rows.size(), 10u);
   const std::vector<int>& file_node = world->bodies[0].file_node;
-  EXPECT_NE(file_node[kWorstNode], kWorstNode);  // or it would not tell whose number is written
+  EXPECT_NE(file_node[kWorstNode],
+            kWorstNode);  // otherwise the test could not tell which numbering is written
   EXPECT_EQ(table.rows[0],
             (std::vector<std::string>{"0", "0.004", "3", "7.5", "2", "error test", "block",
                                       std::to_string(file_node[kWorstNode]), "y", "block", "4"}));

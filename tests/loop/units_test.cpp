@@ -21,7 +21,7 @@
 //   v_r L             E, nu:  M/L, 1   Hunt and Crossley's c        1/L      [s/m]
 //
 // and relative tolerances, angles, friction, times stay. Results are compared in the first units: every
-// number differs by the rounding of what it was computed from, and no more.
+// number differs only by the rounding of the numbers that it was computed from.
 //   millimetres, tonnes, seconds:       L = 1e3,  M = 1e-3  (stress in MPa)
 //   kilometres, tonnes, seconds:        L = 1e-3, M = 1e-3
 //   metres, a body 1000 times smaller:  L = 1e-3, M = 1e-9  (density as before)
@@ -53,7 +53,7 @@ std::string vec(double unit, const Vec3& x) {
   return fmt::format("[{}, {}, {}]", number(unit * x.x()), number(unit * x.y()), number(unit * x.z()));
 }
 
-/// What one scene is made of; numbers in metres, kilogrammes, seconds.
+/// Parameters of one scene; numbers in metres, kilogrammes, seconds.
 struct Scene {
   std::string integrator = "kinsol-static";
   std::string settings{};         ///< TOML; what the integrator does not use is left out
@@ -168,7 +168,7 @@ void expect_same_in_all_units(const Scene& s, const Units (&all)[4] = kUnits, bo
 
 // --- statics
 
-/// What the beam would do if it were linear: one solve with the tangent at the start.
+/// Displacement of the beam if it were linear: one solve with the tangent at the start.
 VecX linear_response(const Scene& s, const Units& units) {
   const auto world = loop::assemble(loop::parse(text_of(s, units), "units.toml"));
   VecX f, x;
@@ -401,7 +401,7 @@ TEST(Units, FrequenciesAndShapesOfModes) {
       ASSERT_EQ(found.count(), first.count());
       for (int j = 0; j < found.count(); ++j)
         EXPECT_NEAR(found.omega_squared[j], first.omega_squared[j], kRelative * first.omega_squared[j]) << j;
-      // M-orthonormal: x M x = 1; the square section has pairs of modes, of which any turn is as good
+      // M-orthonormal: x M x = 1; the square section has pairs of modes, of which any rotation is as good
       const double size = first.shapes.leftCols(2).norm();
       if (held) {
         EXPECT_NEAR(std::sqrt(units.mass) * found.shapes.leftCols(2).norm(), size, kRelative * size);

@@ -6,7 +6,7 @@
 
 namespace {
 
-/// A broken file and what its refusal must say: place, whom, value, remedy.
+/// A broken file and the content of its refusal: location, element, value, remedy.
 struct Broken {
   std::string file;
   std::vector<std::string> fragments;
@@ -22,7 +22,7 @@ const std::vector<Broken> kBroken = {
      {"huge_count.msh:5: ", "number of nodes = 99999999999, but only", "truncated, or the count is wrong"}},
     {"negative_count.msh", {"negative_count.msh:12: ", "number of elements = -1 is negative"}},
     {"small_count.msh",
-     {"small_count.msh:9: ", "$EndNodes is expected, here stands \"4\"", "count of its entries is wrong"}},
+     {"small_count.msh:9: ", "$EndNodes is expected, found \"4\"", "count of its entries is wrong"}},
     {"nan.msh", {"nan.msh:8: node 3: ", "y = nan is not finite", "write the mesh again"}},
     {"overflow.msh", {"overflow.msh:9: node 4: ", "z = 1e999 is not finite"}},
     {"word.msh", {"word.msh:7: node 2: ", "z = \"zero\" is not a number"}},
@@ -41,12 +41,12 @@ const std::vector<Broken> kBroken = {
     {"second_order.msh", {"second_order.msh: its 1 tetrahedra are of second order", "Mesh.ElementOrder = 1"}},
     {"huge_block.msh", {"huge_block.msh:6: ", "number of nodes in the block = 4000000000, but only"}},
     {"blocks_disagree.msh",
-     {"blocks_disagree.msh:14: ", "4 nodes stand in the blocks, but the section announces 5"}},
-    {"duplicate_tag.msh", {"duplicate_tag.msh:14: node 2 stands here and in line 12", "must differ"}},
-    {"missing_end.msh", {"missing_end.msh:15: ", "$EndNodes is expected, here stands \"$Elements\""}},
+     {"blocks_disagree.msh:14: ", "4 nodes are in the blocks, but the section announces 5"}},
+    {"duplicate_tag.msh", {"duplicate_tag.msh:14: node 2 is defined here and in line 12", "must differ"}},
+    {"missing_end.msh", {"missing_end.msh:15: ", "$EndNodes is expected, found \"$Elements\""}},
     {"flat_world.ele", {"flat_world.node:1: ", "dimension = 2 must be 3"}},
     {"out_of_range.ele", {"out_of_range.ele:2: element 1: ", "node 5 is outside 1 to 4"}},
-    {"gap.node", {"gap.node:4: ", "point 4 stands where 3 is expected", "without gaps"}},
+    {"gap.node", {"gap.node:4: ", "point 4 found where 3 is expected", "without gaps"}},
     {"no_elements.node", {"no_elements.ele: no such file"}},
     {"ten_nodes.ele", {"ten_nodes.ele:1: ", "10 nodes per tetrahedron", "without -o2"}},
     {"two_tets_announced.ele",
@@ -57,7 +57,7 @@ const std::vector<Broken> kBroken = {
     {"zero_index.obj", {"zero_index.obj:5: face 1: ", "corner \"0\": vertices are counted from 1"}},
     {"no_such_vertex.obj", {"no_such_vertex.obj:9: face 5: vertex 8 is not in the file; it has 4 vertices"}},
     {"before_the_first.obj",
-     {"before_the_first.obj:5: face 1: ", "corner \"-5\" is out of range; 4 vertices stand above"}},
+     {"before_the_first.obj:5: face 1: ", "corner \"-5\" is out of range; 4 vertices precede"}},
     {"two_corners.obj", {"two_corners.obj:5: face 1: it has 2 corners, a face has at least 3"}},
     {"not_a_number.obj", {"not_a_number.obj:1: vertex 1: ", "y = \"0,5\" is not a number"}},
     {"unreferenced_vertex.obj",

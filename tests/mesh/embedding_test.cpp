@@ -36,7 +36,7 @@ class Random {
 };
 
 /// Distance to the hull of four points by trying all 15 of its faces, edges, corners and itself: the nearest
-/// point of the affine space of one of them that lies inside it.  Another way than the code's.
+/// point of the affine space of one of them that lies inside it.  A method other than the code's.
 double brute_distance(const TetMesh& mesh, int tet, const Vec3& p) {
   double least = std::numeric_limits<double>::infinity();
   for (int mask = 1; mask < 16; ++mask) {
@@ -54,10 +54,10 @@ double brute_distance(const TetMesh& mesh, int tet, const Vec3& p) {
 
 /// Sum |w| of a point's barycentric coordinates.
 double weight_sum(const TetMesh& mesh, int tet, const Vec3& p) {
-  Eigen::Matrix4d places;
-  places.row(3).setOnes();
-  for (int k = 0; k < 4; ++k) places.col(k).head<3>() = mesh.nodes.col(mesh.tets(k, tet));
-  return Eigen::Vector4d(places.partialPivLu().solve(Eigen::Vector4d(p.x(), p.y(), p.z(), 1.0)))
+  Eigen::Matrix4d corners;
+  corners.row(3).setOnes();
+  for (int k = 0; k < 4; ++k) corners.col(k).head<3>() = mesh.nodes.col(mesh.tets(k, tet));
+  return Eigen::Vector4d(corners.partialPivLu().solve(Eigen::Vector4d(p.x(), p.y(), p.z(), 1.0)))
       .cwiseAbs()
       .sum();
 }
@@ -155,8 +155,8 @@ TEST(Embedding, ForcesKeepWorkResultantAndMoment) {
   EXPECT_LT(moment.norm(), 1e-11);
 }
 
-// A point on a common face, edge or node has several tetrahedra;
-// the first is taken, whatever stood before it in the list.
+// A point on a common face, edge or node has several tetrahedra; the first is taken, whatever stood before it
+// in the list.
 TEST(Embedding, TiesGoToTheFirstInAnyOrder) {
   const TetMesh mesh = mesh::box(Vec3(1, 1, 1), {3, 3, 3});
   std::vector<Vec3> shared;
@@ -230,8 +230,8 @@ TEST(Embedding, NormalsAndAreas) {
     EXPECT_LT((vectors.col(v).normalized() - normals.col(v)).norm(), 1e-12);
     EXPECT_LE(vectors.col(v).norm(), areas[v] * (1 + 1e-12));
   }
-  // divergence theorem: sum of x . a over the vertices is three times the enclosed volume,
-  // up to the faces' own spread
+  // divergence theorem: sum of x . a over the vertices is three times the enclosed volume, up to the faces'
+  // own spread
   EXPECT_NEAR(sphere.vertices.cwiseProduct(vectors).sum() / 3.0, mesh::enclosed_volume(sphere), 1e-10);
 
   TriMesh folded;  // two faces back to back: their normals cancel, their areas do not

@@ -31,15 +31,15 @@ const std::vector<Sample> kSamples = {
 
 /// Flips bytes, repeats or drops a piece, or cuts the end off.
 std::string mutated(std::string text, std::mt19937& random) {
-  const auto place = [&] { return text.empty() ? 0 : random() % text.size(); };
+  const auto position = [&] { return text.empty() ? 0 : random() % text.size(); };
   static const std::string kTelling = "0123456789-+.e \n$/#\0\xFF";
   for (unsigned i = 0, edits = 1 + random() % 4; i < edits && !text.empty(); ++i) {
-    const std::size_t at = place();
+    const std::size_t at = position();
     switch (random() % 6) {
       case 0: text[at] = static_cast<char>(text[at] ^ (1 << random() % 8)); break;
       case 1: text[at] = static_cast<char>(random() % 256); break;
       case 2: text[at] = kTelling[random() % kTelling.size()]; break;
-      case 3: text.insert(at, text.substr(place(), random() % 20)); break;
+      case 3: text.insert(at, text.substr(position(), random() % 20)); break;
       case 4: text.erase(at, random() % 20); break;
       case 5: text.resize(at); break;
     }

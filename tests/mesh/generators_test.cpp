@@ -190,7 +190,7 @@ TEST(Generators, CylinderVolumeConvergesWithOrderTwo) {
     EXPECT_EQ(mesh.nodes.row(2).maxCoeff(), 1.0);
   }
   EXPECT_NEAR(fitted_order(h, error), 2.0, 0.1);
-  // the same rim
+  // with an equal rim
   EXPECT_NEAR(measure(cylinder(0.5, 2.0, 0.1, 2.0)).volume, measure(cylinder(0.5, 2.0, 0.1)).volume, 1e-12);
 }
 
@@ -216,7 +216,7 @@ TEST(Generators, PerturbedMovesInteriorNodesOnly) {
   EXPECT_EQ(stayed, static_cast<int>(skin.node_of_vertex.size()));
   EXPECT_EQ(perturbed(mesh, 0.2, 7).nodes, moved.nodes);
   EXPECT_NE(perturbed(mesh, 0.2, 8).nodes, moved.nodes);
-  expect_contains(error_of([&] { perturbed(mesh, 0.99, 7); }), "amplitude = 0.99 turns element");
+  expect_contains(error_of([&] { perturbed(mesh, 0.99, 7); }), "amplitude = 0.99 inverts element");
   expect_contains(error_of([&] { perturbed(mesh, -1, 7); }), "amplitude = -1 must lie in [0, 1)");
 }
 

@@ -8,8 +8,8 @@ using namespace palpate::mesh;
 
 namespace {
 
-// Two tetrahedra on the faces of the triangle (1,0,0), (0,1,0), (0,0,1):
-// the unit corner, 1/6, and its mirror point (1,1,1), 1/3.
+// Two tetrahedra on the faces of the triangle (1,0,0), (0,1,0), (0,0,1): the unit corner, 1/6, and its mirror
+// point (1,1,1), 1/3.
 constexpr const char* kGmsh22 = R"($Comments
  any text, $Nodes too
 $EndComments
@@ -208,7 +208,7 @@ TEST(Readers, PhysicalVolumesAreRegions) {
   EXPECT_NE(error_of([&] {
               regions_of("b.msh", replaced(physical, "$Entities",
                                            "$PhysicalNames\n1\n3 7 bone\n$EndPhysicalNames\n$Entities"));
-            }).find("b.msh:6: a name in double quotes is expected, here stands bone"),
+            }).find("b.msh:6: a name in double quotes is expected, found bone"),
             std::string::npos);
 }
 

@@ -58,8 +58,8 @@ TEST_F(RealMeshes, SphereAndBarHaveTheVolumeOfTheirShape) {
   EXPECT_NEAR(r.volume, size.prod(), 1e-6 * size.prod());
 }
 
-// Its sixth element has volume -4.5: turned round.  All six are numbered 44, which nothing depends on.  The
-// sum of |V| was worked out by hand.
+// Its sixth element has volume -4.5 and is reordered.  All six are numbered 44, which nothing depends on.
+// The sum of |V| was worked out by hand.
 TEST_F(RealMeshes, BadSixTetsAreMended) {
   MeshReport r;
   tet_mesh(file_spec("bad-6-tets.msh"), folder_, &r);

@@ -13,16 +13,16 @@
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/store/csv.h"
-#include "stability/spoilt_stepper.h"
+#include "stability/faulty_stepper.h"
 #include "temporary_folder.h"
 
 using namespace palpate;
 using namespace palpate::stability;
-using spoilt::Spoil;
+using faulty::Defect;
 
 namespace {
 
-StabilityMatrix matrix_of(spoilt::Registry registry, const std::vector<std::string>& rows,
+StabilityMatrix matrix_of(faulty::Registry registry, const std::vector<std::string>& rows,
                           double limit_s = 20.0, int jobs = 1) {
   StabilityOptions options;
   options.registry = registry;
@@ -76,16 +76,16 @@ TEST_P(EveryIntegrator, DoesWhatTheoryExpects) {
 TEST(Stability, EndsWithTheMethodThatTheoryNames) {
   // Backward Euler by hand: order 1, L-stable.  Resolved at 1e3 Pa it is not yet accurate, in between it is
   // stable, and where every mode has w H > 100 it finds rest.
-  const StabilityMatrix matrix = matrix_of(spoilt::registry(Spoil::kNothing), {"youngs-modulus"});
+  const StabilityMatrix matrix = matrix_of(faulty::registry(Defect::kNothing), {"youngs-modulus"});
   EXPECT_EQ(unexpected_of(matrix), "");
   EXPECT_EQ(cell_of(matrix, "E = 1e6 Pa").verdict, Verdict::kStable);
   EXPECT_EQ(cell_of(matrix, "E = 1e11 Pa").verdict, Verdict::kAccurate);
   for (const StabilityCell& cell : matrix.cells) EXPECT_LE(cell.gain, 1e-6);
 }
 
-// --- steppers that are broken on purpose: each must make cells fail, with the verdict that names its fault
+// --- steppers with an injected defect: each must make cells fail, with the verdict that names its defect
 struct Fault {
-  Spoil spoil;
+  Defect defect;
   std::string row, sub_case;
   Verdict verdict;
   std::string reason;
@@ -96,25 +96,25 @@ void PrintTo(const Fault& fault, std::ostream* out) {
 class BrokenStepper : public testing::TestWithParam<Fault> {};
 INSTANTIATE_TEST_SUITE_P(
     Faults, BrokenStepper,
-    testing::Values(Fault{Spoil::kNotANumber, "youngs-modulus", "E = 1e5 Pa", Verdict::kNotFinite, ""},
-                    Fault{Spoil::kNotANumber, "rest", "a free cube", Verdict::kNotFinite, "not finite"},
-                    Fault{Spoil::kNotANumber, "contact-stiffness", "k = 1e6 Pa/m", Verdict::kNotFinite,
+    testing::Values(Fault{Defect::kNotANumber, "youngs-modulus", "E = 1e5 Pa", Verdict::kNotFinite, ""},
+                    Fault{Defect::kNotANumber, "rest", "a free cube", Verdict::kNotFinite, "not finite"},
+                    Fault{Defect::kNotANumber, "contact-stiffness", "k = 1e6 Pa/m", Verdict::kNotFinite,
                           "not finite"},
-                    Fault{Spoil::kNotANumber, "squashed", "mirror image", Verdict::kNotFinite, "not finite"},
-                    Fault{Spoil::kGainsEnergy, "youngs-modulus", "E = 1e5 Pa", Verdict::kGrew, ""},
-                    Fault{Spoil::kGainsEnergy, "contact-stiffness", "k = 1e2 Pa/m", Verdict::kGrew, "then:"},
-                    Fault{Spoil::kGainsALittle, "youngs-modulus", "E = 1e3 Pa", Verdict::kBounded, ""},
-                    Fault{Spoil::kFailsInSilence, "youngs-modulus", "E = 1e5 Pa", Verdict::kSilent, ""},
-                    Fault{Spoil::kFailsInSilence, "impact", "10 m/s", Verdict::kSilent, ""},
-                    Fault{Spoil::kThrows, "sizes", "no body", Verdict::kSilent, "internal error"},
-                    Fault{Spoil::kNeverEnds, "rest", "a free cube", Verdict::kTooSlow, "cut off"},
-                    Fault{Spoil::kClaimsErrorControl, "youngs-modulus", "E = 1e5 Pa", Verdict::kStable, ""},
-                    Fault{Spoil::kClaimsToBeExplicit, "youngs-modulus", "E = 1e7 Pa", Verdict::kStable, ""},
-                    Fault{Spoil::kFallsUpward, "sizes", "one element falls", Verdict::kGrew, ""}),
+                    Fault{Defect::kNotANumber, "squashed", "mirror image", Verdict::kNotFinite, "not finite"},
+                    Fault{Defect::kGainsEnergy, "youngs-modulus", "E = 1e5 Pa", Verdict::kGrew, ""},
+                    Fault{Defect::kGainsEnergy, "contact-stiffness", "k = 1e2 Pa/m", Verdict::kGrew, "then:"},
+                    Fault{Defect::kGainsALittle, "youngs-modulus", "E = 1e3 Pa", Verdict::kBounded, ""},
+                    Fault{Defect::kFailsInSilence, "youngs-modulus", "E = 1e5 Pa", Verdict::kSilent, ""},
+                    Fault{Defect::kFailsInSilence, "impact", "10 m/s", Verdict::kSilent, ""},
+                    Fault{Defect::kThrows, "sizes", "no body", Verdict::kSilent, "internal error"},
+                    Fault{Defect::kNeverEnds, "rest", "a free cube", Verdict::kTooSlow, "cut off"},
+                    Fault{Defect::kClaimsErrorControl, "youngs-modulus", "E = 1e5 Pa", Verdict::kStable, ""},
+                    Fault{Defect::kClaimsToBeExplicit, "youngs-modulus", "E = 1e7 Pa", Verdict::kStable, ""},
+                    Fault{Defect::kFallsUpward, "sizes", "one element falls", Verdict::kGrew, ""}),
     [](const auto& param) { return fmt::format("fault_{}", param.index); });
 TEST_P(BrokenStepper, MakesTheCellFail) {
   const Fault& fault = GetParam();
-  const StabilityMatrix matrix = matrix_of(spoilt::registry(fault.spoil), {fault.row}, 1.0);
+  const StabilityMatrix matrix = matrix_of(faulty::registry(fault.defect), {fault.row}, 1.0);
   const StabilityCell& cell = cell_of(matrix, fault.sub_case);
   EXPECT_EQ(to_string(cell.verdict), std::string(to_string(fault.verdict)))
       << cell.figure << "; " << cell.reason;
@@ -137,7 +137,7 @@ TEST(Stability, WhatGoesThroughAThinPlateIsCounted) {
 
 TEST(Stability, ACrashIsACell) {
   StabilityOptions options;
-  options.registry = spoilt::registry(Spoil::kCrashes);
+  options.registry = faulty::registry(Defect::kCrashes);
   options.rows = {"sizes", "poissons-ratio"};
   options.jobs = 2;
   const StabilityMatrix matrix = run(options);
@@ -150,7 +150,7 @@ TEST(Stability, ACrashIsACell) {
 }
 
 TEST(Stability, DoesNotDependOnTheNumberOfProcesses) {
-  const auto registry = spoilt::registry(Spoil::kNothing);
+  const auto registry = faulty::registry(Defect::kNothing);
   const StabilityMatrix one = matrix_of(registry, {"youngs-modulus", "squashed"}, 20.0, 1),
                         three = matrix_of(registry, {"youngs-modulus", "squashed"}, 20.0, 3);
   ASSERT_EQ(one.cells.size(), three.cells.size());
@@ -165,7 +165,7 @@ TEST(Stability, DoesNotDependOnTheNumberOfProcesses) {
 TEST(Stability, StopsBetweenCells) {
   std::atomic<bool> stop{false};
   StabilityOptions options;
-  options.registry = spoilt::registry(Spoil::kNothing);
+  options.registry = faulty::registry(Defect::kNothing);
   options.rows = {"step"};
   options.stop = &stop;
   int calls = 0;
@@ -179,7 +179,7 @@ TEST(Stability, StopsBetweenCells) {
   EXPECT_EQ(matrix.cells.size(), 2u);
 }
 
-// A cell's process finds it by these names.
+// Rows and integrators that a cell's process finds by name.
 TEST(Stability, CasesOfARowHaveNamesOfTheirOwn) {
   std::set<std::string> rows;
   for (const StabilityRow& row : stability_rows()) {
@@ -205,7 +205,7 @@ TEST(Stability, RefusesNamesThatItDoesNotKnow) {
 
 TEST(Stability, WritesWhatItFound) {
   const TemporaryFolder folder;
-  const StabilityMatrix matrix = matrix_of(spoilt::registry(Spoil::kGainsEnergy), {"youngs-modulus"});
+  const StabilityMatrix matrix = matrix_of(faulty::registry(Defect::kGainsEnergy), {"youngs-modulus"});
   write(matrix, folder.string(), "palpate stability");
   const store::CsvTable csv = store::read_csv((folder / "stability.csv").string());
   ASSERT_EQ(csv.rows.size(), matrix.cells.size());

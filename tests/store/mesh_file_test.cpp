@@ -24,7 +24,7 @@ TEST(MeshFile, RoundTrip) {
   EXPECT_EQ(again.tets, mesh.tets);
 }
 
-/// A data set made by other hands.
+/// A data set written without the library.
 void put(const std::string& path, bool first, const char* name, hid_t type, std::vector<hsize_t> shape,
          const void* data) {
   const hid_t file = first ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)

@@ -93,7 +93,7 @@ TEST(ModelFile, RegionsAreReadAlone) {
     } catch (const Error& e) { return e.what(); }
   };
   EXPECT_NE(
-      refusal({{"a", {0, 1}}, {"b", {1}}}).find("tetrahedron 1 stands in it twice; it belongs to one region"),
+      refusal({{"a", {0, 1}}, {"b", {1}}}).find("tetrahedron 1 is listed twice; it belongs to one region"),
       std::string::npos);
   EXPECT_NE(refusal({{"a", {0}}, {"a", {1}}}).find("\"a\" names two regions"), std::string::npos);
   EXPECT_NE(refusal({{"a", {1, 0}}}).find("those of region \"a\" must rise"), std::string::npos);
@@ -132,7 +132,7 @@ TEST(ModelFile, SameModelSameBytesAtAnotherTime) {
   EXPECT_EQ(store::read_file(folder / "one.h5"), store::read_file(folder / "two.h5"));
 }
 
-/// What is said of a model that was changed before it was written; `accepted` where nothing is.
+/// The message for a model that was changed before it was written; `accepted` where there is none.
 template <class Change>
 std::string refusal(Change change) {
   const sample_run::Folder folder;

@@ -66,7 +66,7 @@ TEST(RunFile, IsReadableWhileItIsWritten) {
   RunFile file(path, sample_run::parts(), sample_run::info(2));
   for (int s = 0; s < 5; ++s) {
     sample_run::append(file, s);
-    // what a crash now would leave
+    // the file as a crash now would leave it
     std::filesystem::copy_file(path, copy, std::filesystem::copy_options::overwrite_existing);
     expect_steps(copy, s + 1);
   }

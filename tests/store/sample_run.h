@@ -6,8 +6,8 @@
 #include "palpate/store/run_file.h"
 #include "temporary_folder.h"
 
-/// A small made-up run whose every number follows from its step:
-/// what a file holds can be checked without a second copy.
+/// A small made-up run whose every number follows from its step: a file's content can be checked without a
+/// second copy.
 namespace sample_run {
 
 using namespace palpate;

@@ -1,5 +1,5 @@
-// The file as a program that knows nothing of palpate sees it:
-// through h5py, with the arithmetic of VTK's reader.
+// The file as a program that knows nothing of palpate sees it: through h5py, with the arithmetic of VTK's
+// reader.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -44,12 +44,12 @@ std::vector<TreeBone> limbs() {
 }
 
 /// Coordinates at random, and steps along u from them.
-struct Place {
+struct Coordinates {
   const BoneTree& tree;
   dynamics::BlockSpec block;
   VecX q, u;
 
-  Place(const BoneTree& tree_in, unsigned seed)
+  Coordinates(const BoneTree& tree_in, unsigned seed)
       : tree(tree_in), block(tree_in.block("tree", 0.5, 2.0)), q(tree_in.start()), u(tree_in.u_size()) {
     std::mt19937 rng(seed);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -58,8 +58,8 @@ struct Place {
     for (double& x : displacement) x = 0.8 * uniform(rng);
     for (int i = 0; i < 20; ++i) q = moved(q, displacement / 20.0);
   }
-  /// q a step of displacement d away: one step of the rule
-  /// of Simpson's kind (midpoint), enough where d is small.
+  /// q a step of displacement d away: one step of the rule of Simpson's kind (midpoint), enough where d is
+  /// small.
   VecX moved(const VecX& from, const VecX& d) const {
     VecX rate(q.size()), half = from, out = from;
     block.kinematics->q_dot(half, d, rate);
@@ -73,7 +73,7 @@ struct Place {
 
 /// Central difference of g along a displacement d.
 template <class G>
-auto slope(const Place& at, const VecX& d, const G& g, double e = 1e-5) {
+auto slope(const Coordinates& at, const VecX& d, const G& g, double e = 1e-5) {
   return ((g(at.moved(at.q, e * d)) - g(at.moved(at.q, -e * d))) / (2.0 * e)).eval();
 }
 
@@ -81,7 +81,7 @@ auto slope(const Place& at, const VecX& d, const G& g, double e = 1e-5) {
 
 TEST(BoneTree, OneFreeBoneIsTheRigidBodyOfTheClosedForm) {
   const BoneTree tree({bone_at("one", -1, Joint::kFree, Vec3::Zero(), Vec3(0.1, 0.2, 0.3))}, kGravity);
-  const Place at(tree, 3);
+  const Coordinates at(tree, 3);
   ASSERT_EQ(tree.u_size(), 6);
   const TreeBone& b = tree.bone(0);
   const dynamics::RigidMotion m = tree.motion(at.q, at.u, 0);
@@ -112,7 +112,7 @@ TEST(BoneTree, ADoublePendulumHasLagrangesEquations) {
     rod.name = i == 0 ? "upper" : "lower";
     rod.parent = i - 1;
     rod.joint = Joint::kHinge;
-    rod.axis = -Vec3::UnitY();  // a positive turn takes -z towards +x
+    rod.axis = -Vec3::UnitY();  // a positive rotation takes -z towards +x
     rod.joint_position = Vec3(0.0, 0.0, -kLength * i);
     rod.start.translation = rod.joint_position - Vec3(0.0, 0.0, d);
     rod.mass = 0.5 + 0.3 * i;
@@ -142,7 +142,7 @@ TEST(BoneTree, VelocitiesAndAccelerationsAreTheDerivativesOfPositions) {
   const BoneTree tree(limbs(), kGravity);
   ASSERT_EQ(tree.u_size(), 13);
   ASSERT_EQ(tree.q_size(), 7 + 4 + 1 + 4);
-  const Place at(tree, 7);
+  const Coordinates at(tree, 7);
   const Vec3 arm(0.1, -0.05, 0.2);
   for (int b = 0; b < tree.size(); ++b) {
     const auto point = [&](const VecX& q) -> Vec3 { return tree.motion(q, at.u, b).pose * arm; };
@@ -162,7 +162,7 @@ TEST(BoneTree, VelocitiesAndAccelerationsAreTheDerivativesOfPositions) {
 
 TEST(BoneTree, ItsJointsNeverComeApart) {
   const BoneTree tree(limbs(), kGravity);
-  const Place at(tree, 9);
+  const Coordinates at(tree, 9);
   for (int b = 1; b < tree.size(); ++b) {
     const TreeBone &bone = tree.bone(b), &parent = tree.bone(bone.parent);
     const Vec3 on_bone = tree.motion(at.q, at.u, b).pose * (bone.start.inverse() * bone.joint_position);
@@ -181,7 +181,7 @@ TEST(BoneTree, ItsJointsNeverComeApart) {
 TEST(BoneTree, WhatItLosesIsWhatItsDampersTake) {
   const BoneTree tree(limbs(), kGravity);
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    const Place at(tree, seed);
+    const Coordinates at(tree, seed);
     const double power = at.u.dot(tree.force(at.q, at.u));
     const auto energy = [&](const VecX& q) {
       return Eigen::Matrix<double, 1, 1>(0.5 * at.u.dot(tree.mass(q) * at.u) + tree.potential_energy(q));
@@ -193,7 +193,7 @@ TEST(BoneTree, WhatItLosesIsWhatItsDampersTake) {
 
 TEST(BoneTree, HeldForcesStiffenItAsTheirDerivativeSays) {
   const BoneTree tree(limbs(), Vec3::Zero());
-  const Place at(tree, 21);
+  const Coordinates at(tree, 21);
   std::mt19937 rng(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const auto random = [&] { return Vec3(uniform(rng), uniform(rng), uniform(rng)); };
@@ -229,9 +229,9 @@ TEST(BoneTree, HeldForcesStiffenItAsTheirDerivativeSays) {
 
 TEST(BoneTree, TheTangentIsTheDerivativeAtRest) {
   std::vector<TreeBone> bones = limbs();
-  bones[1].joint = Joint::kHinge;  // a ball's spring has the symmetric part alone: see below
+  bones[1].joint = Joint::kHinge;  // a ball's spring enters by its symmetric part alone: see below
   const BoneTree tree(bones, kGravity);
-  const Place at(tree, 4);
+  const Coordinates at(tree, 4);
   const VecX still = VecX::Zero(tree.u_size());
   MatX K, D;
   tree.tangent(at.q, 1.0, 0.0, K);
@@ -245,7 +245,7 @@ TEST(BoneTree, TheTangentIsTheDerivativeAtRest) {
         << j;
   }
   const BoneTree balls(limbs(), Vec3::Zero());
-  const Place there(balls, 6);
+  const Coordinates there(balls, 6);
   balls.tangent(there.q, 1.0, 0.0, K);
   const Mat3 ball = K.block<3, 3>(6, 6);
   EXPECT_LT((ball - ball.transpose()).norm(), 1e-15);
@@ -259,7 +259,7 @@ TEST(BoneTree, TheTangentIsTheDerivativeAtRest) {
 
 TEST(BoneTree, ItsKinematicsHaveALeftInverse) {
   const BoneTree tree(limbs(), kGravity);
-  const Place at(tree, 12);
+  const Coordinates at(tree, 12);
   VecX rate(tree.q_size()), u(tree.u_size());
   at.block.kinematics->q_dot(at.q, at.u, rate);
   at.block.kinematics->u_of_q_dot(at.q, rate, u);

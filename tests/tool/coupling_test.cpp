@@ -47,7 +47,7 @@ TEST_F(So3, jacobians_are_inverse_and_derivatives) {
     EXPECT_LT((left_jacobian(theta) * left_jacobian_inverse(theta) - Mat3::Identity()).norm(), 2e-13)
         << angle;
     EXPECT_LT((left_jacobian_inverse(-theta) - left_jacobian_inverse(theta).transpose()).norm(), 1e-15);
-    EXPECT_LT((left_jacobian(theta) * theta - theta).norm(), 1e-14);  // the axis stands still
+    EXPECT_LT((left_jacobian(theta) * theta - theta).norm(), 1e-14);  // the axis is fixed
     if (angle < 0.1) continue;  // there the difference is exact to rounding, and has no order
     const Vec3 rate = random_vec();
     std::vector<double> e;
@@ -59,8 +59,8 @@ TEST_F(So3, jacobians_are_inverse_and_derivatives) {
   }
 }
 
-// F(x exp(h d)) = F(x) - h K d + O(h^2):
-// the remainder falls by 4 as h halves, at random poses and near half a turn.
+// F(x exp(h d)) = F(x) - h K d + O(h^2): the remainder falls by 4 as h halves, at random poses and near a
+// rotation by pi.
 TEST_F(Coupling, tangent_by_taylor) {
   for (int run = 0; run < 8; ++run) {
     const RigidMotion tool{random_pose(), twist_of(random_vec6())};
@@ -158,8 +158,8 @@ TEST_F(Coupling, does_not_see_where_the_world_stands) {
   }
 }
 
-// The path within a tick: ends met in pose and twist,
-// twist the derivative of pose, and fourth order for a smooth handle.
+// The path within a tick: ends met in pose and twist, twist the derivative of pose, and fourth order for a
+// smooth handle.
 TEST_F(HandlePath, hermite_in_pose_and_twist) {
   const auto hand = [](double t) {
     const Vec3 theta = Vec3(std::sin(t), t * t, std::cos(2 * t)),

@@ -10,9 +10,9 @@ namespace {
 
 const std::vector<std::string> kFixed = {"linearly-implicit-euler", "semi-implicit-euler"};
 const std::vector<std::string> kErrorControlled = {"simbody-rkmerson", "simbody-cpodes"};
-constexpr double kShift = 0.01, kTurn = 2.5;  // [m], [rad]
+constexpr double kShift = 0.01, kRotation = 2.5;  // [m], [rad]
 
-/// The handle has jumped by (kShift along `axis`, kTurn about it) and rests: the tool's distance from it
+/// The handle has jumped by (kShift along `axis`, kRotation about it) and rests: the tool's distance from it
 /// after each tick, (rotation, shift).
 struct Trace {
   std::vector<double> rotation, shift;
@@ -20,7 +20,7 @@ struct Trace {
 Trace step_response(const ToolSpec& spec, int axis, double h, int ticks) {
   const Vec3 e = Vec3::Unit(axis);
   Tool tool(spec, Vec3::Zero());
-  const HandleMotion handle = held({quaternion_of(kTurn * e), kShift * e});
+  const HandleMotion handle = held({quaternion_of(kRotation * e), kShift * e});
   Trace out;
   for (int i = 0; i < ticks; ++i) {
     const auto result = tool.advance(h, handle, {});
@@ -50,7 +50,8 @@ TEST(HandleStep, error_controlled_schemes_follow_the_damped_oscillator) {
     for (int i = 0; i < 100; ++i) {
       const double t = 1e-3 * (i + 1);
       worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).at_time(-kShift, t)) / kShift);
-      worst = std::max(worst, std::abs(trace.rotation[i] - rotational(spec, 1).at_time(-kTurn, t)) / kTurn);
+      worst = std::max(worst,
+                       std::abs(trace.rotation[i] - rotational(spec, 1).at_time(-kRotation, t)) / kRotation);
     }
     EXPECT_LT(worst, 1e-6) << name;
     RecordProperty(name, std::to_string(worst));
@@ -58,8 +59,8 @@ TEST(HandleStep, error_controlled_schemes_follow_the_damped_oscillator) {
 }
 
 // A first-order method that keeps its local error at 1e-6.  By the estimate in error_controlled.cpp a
-// rotation at 87/s is off by 4e-3 of itself after 0.1 s at the most, damping left out; not less than a
-// thousandth of that either, or it would not be the method that it says.
+// rotation at 87/s has a relative error of at most 4e-3 after 0.1 s, damping left out; and not below a
+// thousandth, or it would not be the method that it claims to be.
 TEST(HandleStep, first_order_error_control_follows_the_damped_oscillator_to_two_digits_and_more) {
   const ToolSpec spec = spec_for("simbody-semi-explicit-euler2");
   const Trace trace = step_response(spec, 1, 1e-3, 100);
@@ -67,20 +68,21 @@ TEST(HandleStep, first_order_error_control_follows_the_damped_oscillator_to_two_
   for (int i = 0; i < 100; ++i) {
     const double t = 1e-3 * (i + 1);
     worst = std::max(worst, std::abs(trace.shift[i] - shifting(spec).at_time(-kShift, t)) / kShift);
-    worst = std::max(worst, std::abs(trace.rotation[i] - rotational(spec, 1).at_time(-kTurn, t)) / kTurn);
+    worst =
+        std::max(worst, std::abs(trace.rotation[i] - rotational(spec, 1).at_time(-kRotation, t)) / kRotation);
   }
   RecordProperty("worst", std::to_string(worst));
   EXPECT_LT(worst, 4e-3);
   EXPECT_GT(worst, 4e-6);
 }
 
-// A coupling of 2e6 N m/rad swings the tool at 2e5/s:
-// by the same estimate 500 w = 1e8 steps a second, 1e5 a tick.
+// A coupling of 2e6 N m/rad makes the tool oscillate at 2e5/s: by the same estimate 500 w = 1e8 steps a
+// second, 1e5 a tick.
 TEST(HandleStep, first_order_error_control_ends_in_words_where_a_tick_asks_for_too_many_steps) {
   ToolSpec spec = spec_for("simbody-semi-explicit-euler2");
   spec.coupling.rotational_stiffness_n_m_rad = 2e6;
   Tool tool(spec, Vec3::Zero());
-  const Pose there{quaternion_of(kTurn * Vec3::UnitY()), Vec3::Zero()};
+  const Pose there{quaternion_of(kRotation * Vec3::UnitY()), Vec3::Zero()};
   const auto result = tool.advance(1e-3, held(there), {});
   EXPECT_EQ(result.status, dynamics::StepStatus::kTooManySteps) << result.message;
   EXPECT_NE(result.message.find("SemiExplicitEuler2"), std::string::npos) << result.message;
@@ -103,8 +105,8 @@ TEST(HandleStep, fixed_ticks_follow_their_own_discrete_closed_form) {
             worst,
             std::abs(trace.shift[i] - shifting(spec).after_ticks(name, -kShift, 1e-3, i + 1)) / kShift);
         worst = std::max(worst, std::abs(trace.rotation[i] -
-                                         rotational(spec, axis).after_ticks(name, -kTurn, 1e-3, i + 1)) /
-                                    kTurn);
+                                         rotational(spec, axis).after_ticks(name, -kRotation, 1e-3, i + 1)) /
+                                    kRotation);
       }
       EXPECT_LT(worst, 1e-10) << name << " axis " << axis;
     }
@@ -122,7 +124,7 @@ TEST(HandleStep, fixed_ticks_are_of_first_order) {
       const Trace trace = step_response(spec, 2, h, n);
       ticks.push_back(h);
       shift.push_back(std::abs(trace.shift.back() - shifting(spec).at_time(-kShift, 0.02)));
-      rotation.push_back(std::abs(trace.rotation.back() - rotational(spec, 2).at_time(-kTurn, 0.02)));
+      rotation.push_back(std::abs(trace.rotation.back() - rotational(spec, 2).at_time(-kRotation, 0.02)));
     }
     EXPECT_NEAR(slope(ticks, shift), info.order, 0.15) << info.name;
     EXPECT_NEAR(slope(ticks, rotation), info.order, 0.15) << info.name;
@@ -197,7 +199,7 @@ TEST(HandleStep, WhatChangesAfterRestIsSeen) {
     EXPECT_NEAR(tool.pose().translation.x(), there, 1e-6 * there) << name << ": a record";
     rest(Vec3(0, kShift, 0));
     EXPECT_NEAR(tool.pose().translation.y(), kShift, 1e-6 * kShift)
-        << name << ": another place of the handle";
+        << name << ": another position of the handle";
     EXPECT_NEAR(tool.pose().translation.x(), there, 1e-6 * there) << name;
     // from rest at kShift to rest at 0 within a tick: its ends are where it stood, the twists are not zero
     HandleMotion slide;

@@ -82,7 +82,7 @@ TEST(Monolithic, a_free_top_keeps_energy_and_angular_momentum) {
 }
 
 // Two implementations that share no integrator and no body: Simbody's Merson and CVODE on the block, a large
-// turn about no principal axis and a handle that moves.
+// rotation about no principal axis and a handle that moves.
 TEST(Monolithic, agrees_with_the_simbody_tool) {
   const ToolSpec spec = spec_for("simbody-rkmerson");
   const Vec3 axis = Vec3(1, 2, -1).normalized();

@@ -28,7 +28,7 @@ bool stays_bounded(const std::string& scheme, double k, double b) {
 
 }  // namespace
 
-// z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0 leaves the unit circle at z = -1: k = 4 m/h^2 - 2 b/h.
+// z^2 - (2 - (h^2 k + h b)/m) z + 1 - h b/m = 0 has a root on the unit circle at z = -1: k = 4 m/h^2 - 2 b/h.
 TEST(ToolStability, limit_of_semi_implicit_euler) {
   const double m = spec_for("semi-implicit-euler").mass_kg;
   for (double b : {0.0, 10.0, 40.0}) {
@@ -47,9 +47,9 @@ TEST(ToolStability, linearly_implicit_euler_has_no_limit) {
     for (double b : {0.0, 2.0}) EXPECT_TRUE(stays_bounded("linearly-implicit-euler", k, b)) << k;
 }
 
-// Any stiffness, tick and start, turned by up to nearly half a turn, with and without damping, against a
-// stiff wall: the tool ends at rest on its target.  Per tick the method takes out (w h)^2/2 of an oscillation
-// for small w h, and nearly all for large: 0.1 <= w h <= 1e4 here.
+// Any stiffness, tick and start, rotated by up to nearly pi, with and without damping, against a stiff wall:
+// the tool ends at rest on its target.  Per tick the method dissipates (w h)^2/2 of an oscillation for small
+// w h, and nearly all for large: 0.1 <= w h <= 1e4 here.
 TEST(ToolStability, linearly_implicit_euler_settles_from_anywhere) {
   std::mt19937 rng(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -71,8 +71,8 @@ TEST(ToolStability, linearly_implicit_euler_settles_from_anywhere) {
   }
 }
 
-// w1 . I w1 = w1 . I w0: the gyroscopic step never adds energy, at 1 rad a tick and far beyond;
-// an explicit one blows up.
+// w1 . I w1 = w1 . I w0: the gyroscopic step never adds energy, at 1 rad a tick and far beyond; an explicit
+// one diverges.
 class FreeSpin : public ::testing::TestWithParam<const char*> {};
 TEST_P(FreeSpin, never_gains_energy) {
   std::mt19937 rng(5);

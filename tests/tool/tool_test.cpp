@@ -48,9 +48,9 @@ TEST(Tool, an_inertia_left_out_is_the_solid_spheres) {
   EXPECT_LT((M - Mat6(diagonal.asDiagonal())).norm(), 1e-18);
 }
 
-TEST(Tool, mass_matrix_and_energy_turn_with_the_body) {
+TEST(Tool, mass_matrix_and_energy_rotate_with_the_body) {
   Tool tool(spec_for("linearly-implicit-euler"), Vec3::Zero());
-  // A quarter turn about z swaps x and y moments.
+  // A rotation by pi/2 about z swaps x and y moments.
   tool.set_state(1.0, {quaternion_of(Vec3(0, 0, M_PI / 2)), Vec3::Zero()}, {Vec3(2, 0, 0), Vec3(0, 3, 0)});
   EXPECT_NEAR(tool.mass_matrix()(0, 0), 4e-5, 1e-18);
   EXPECT_NEAR(tool.mass_matrix()(1, 1), 3e-5, 1e-18);
@@ -125,7 +125,7 @@ TEST(Tool, hand_feels_the_opposite) {
   Mat6 K, B;
   tool.coupling_tangent(handle, twist, K, B);
   EXPECT_NEAR(K(4, 4), 300.0, 1e-12);
-  EXPECT_NEAR(K(0, 0), 0.3, 1e-14);  // about the axis of the turn the spring is linear
+  EXPECT_NEAR(K(0, 0), 0.3, 1e-14);  // about the axis of rotation the spring is linear
   EXPECT_NEAR(B(5, 5), 2.0, 1e-15);
 }
 

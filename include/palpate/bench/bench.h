@@ -13,7 +13,7 @@ struct FemBench {
   double step_s = 0.0;
   int nodes = 0, tetrahedra = 0, steps = 0;
   double force_ms = 0.0, tangent_ms = 0.0, factor_ms = 0.0, solve_ms = 0.0;
-  double other_ms = 0.0;  ///< of the step, in none of the above
+  double other_ms = 0.0;  ///< rest of the step
   double step_ms = 0.0;
   double assemble_s = 0.0;  ///< scene to first step
   double peak_mib = 0.0;    ///< of the process
@@ -31,7 +31,7 @@ struct LeaveOutRow {
   double ratio = 1.0;
 };
 
-/// The price of what a scene leaves out and of what it could add: the bare loop over the scene's own parts,
+/// The cost of what a scene leaves out and of what it could add: the bare loop over the scene's own parts,
 /// palpate's loop, and that with recording, with a plane, with a tool, and with a tool whose contact is found
 /// in image space, each out of reach, where built in.
 std::vector<LeaveOutRow> bench_leave_out(const scene::Description& description, int repeats);

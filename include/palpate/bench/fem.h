@@ -27,7 +27,8 @@ struct AccuracyPoint {
   double ms_of_ten_ms = 0.0;
   double error = 0.0;   ///< |q - exact|_M / |exact - rest|_M
   bool quoted = false;  ///< not measured in this run
-  /// run time of a first step: pattern, maps and orderings, done once a mesh; 0: not known
+  /// run time of a first step, which includes what is done once a mesh (pattern, maps, orderings); 0: not
+  /// known
   double setup_ms = 0.0;
 };
 /// Median ms of another program's step of 10 ms and of 1 ms on the beam, E = 1e5.
@@ -44,7 +45,7 @@ struct PublishedTimings {
   std::vector<std::pair<int, double>> reference_copy_gb_s;
   std::vector<PublishedStepTime> step_times;
   std::vector<std::pair<std::string, AccuracyPoint>> accuracy;  ///< with the beam's size
-  /// That of the most threads that are no more than these; NaN where there is none.
+  /// Copy bandwidth measured with the largest number of threads up to `threads`; NaN where there is none.
   double reference_bandwidth_gb_s(int threads) const;
 };
 /// @throws Error when the file is missing or is no such file
@@ -60,21 +61,21 @@ struct FemBenchOptions {
   int steps = 20;           ///< timed, of 10 ms each
   bool same_motion = true;  ///< of shorter steps as many as take the same motion; false: no more of them
   double element_s = 0.3;   ///< that each evaluation over the elements is timed for, by itself
-  /// of them, whose solution is compared with a direct one (or, above 12,000 nodes, with one of linear_rtol
-  /// 1e-10)
+  /// number of timed steps whose solution is compared with a direct one (above 12,000 nodes with one of
+  /// linear_rtol 1e-10)
   int checks = 3;
   PublishedTimings published = {};  ///< for `scaled_ms`
 };
 
-/// What passes over a working set of this size reach, again and again: caches hold the small ones.
+/// Bandwidth of repeated passes over a working set of this size: caches hold the small ones.
 struct Bandwidth {
   double bytes = 0.0, read_gb_s = 0.0, write_gb_s = 0.0;
 };
 
-/// What this machine can do, measured in the same run, for one number of threads.
+/// Speed of this machine, measured in the same run, for one number of threads.
 struct MachineLimits {
   int threads = 1;
-  /// of arrays of 8 MB and of 67 MB, read and write counted [GB/s]
+  /// copy bandwidth of arrays of 8 MB and of 67 MB, read and write counted [GB/s]
   double small_copy_gb_s = 0.0, large_copy_gb_s = 0.0;
   /// multiply-adds in registers, single and double precision, two operations each
   double gflop_s = 0.0, double_gflop_s = 0.0;
@@ -98,29 +99,29 @@ struct FemBenchRow {
   std::string size, linear_solver;
   int nodes = 0, tetrahedra = 0, blocks = 0, threads = 1, steps = 0;
   double youngs_modulus_pa = 0.0, step_s = 0.0, linear_rtol = 0.0;
-  /// forces, the product K u and the tangent come in one pass over the elements, timed as matrix_ms
-  bool one_pass = false;
-  /// forces and the product K u; in one pass, what else the right-hand side needs; where most steps are
-  /// `near`, the residual
+  /// forces, the product K u and the tangent are assembled together (fused assembly), timed as matrix_ms
+  bool fused_assembly = false;
+  /// forces and the product K u; with fused assembly the rest of the right-hand side; where most steps use a
+  /// lagged matrix, the residual
   double force_ms = 0.0;
   double matrix_ms = 0.0;  ///< tangent, mass and held directions
   double factor_ms = 0.0;  ///< factor or preconditioner, and the copy of the matrix
   double solve_ms = 0.0;
   double step_ms = 0.0;  ///< the whole step
   double step_mean_ms = 0.0;
-  double near = 0.0;  ///< share of the steps that were solved by the matrix of an earlier one
-  /// of the timed steps, the shortest: what a machine that others use too would take alone
+  double lagged_share = 0.0;  ///< of the steps: solved by refinement with the matrix of an earlier one
+  /// the shortest of the timed steps: close to the time on an idle machine
   double step_least_ms = 0.0, solve_least_ms = 0.0;
   /// median CPU time of the stepping thread; with several threads it holds what that thread spun while it
   /// waited
   double step_cpu_ms = 0.0;
-  double solver_cpu_ms = 0.0;  ///< of that, factor and solve
-  double iterations = 0.0;     ///< a step, mean
-  double stiffness = 0.0;      ///< 1 + h^2 tr K / tr M
-  double error = 0.0;          ///< largest of the checks: |du - du_direct| / |du_direct| in the energy norm
-  double mass_error = 0.0;     ///< the same in the norm of mass
-  double rotation_rad = 0.0;   ///< of the beam's end at the last step
-  /// what memory and arithmetic, measured in the same run, allow
+  double solver_cpu_ms = 0.0;           ///< of that, factor and solve
+  double iterations = 0.0;              ///< a step, mean
+  double squared_courant_number = 0.0;  ///< 1 + h^2 tr K / tr M
+  double error = 0.0;         ///< largest of the checks: |du - du_direct| / |du_direct| in the energy norm
+  double mass_error = 0.0;    ///< largest of the checks, in the norm of mass
+  double rotation_rad = 0.0;  ///< of the beam's end at the last step
+  /// least time of each stage by memory and arithmetic, measured in the same run
   double force_limit_ms = 0.0, matrix_limit_ms = 0.0, factor_limit_ms = 0.0, solve_limit_ms = 0.0;
   double step_limit_ms = 0.0;  ///< their sum
   /// step_ms x this machine's bandwidth / that of the machine that published timings are from; NaN: not
@@ -128,20 +129,21 @@ struct FemBenchRow {
   double scaled_ms = 0.0;
   double needed_bytes = 0.0;  ///< the sum of what must be stored
   double body_bytes = 0.0;    ///< what the soft body holds of that: elements, maps, scratch
-  /// of the process above what it held before the beam was made, without what checks take; NaN: not known
+  /// peak memory of the process above what it held before the beam was made, without the checks; NaN: not
+  /// known
   double peak_bytes = 0.0;
 };
 
 /// One evaluation over the elements of the bent beam, by itself, again and again [ms].
 struct ElementTiming {
   std::string size;
-  /// "force", "force, damped", "residual", "one pass", "matrix set to zero", "tangent, warped", "tangent,
-  /// exact"
+  /// "force", "force, damped", "residual", "fused assembly", "matrix set to zero", "tangent, warped",
+  /// "tangent, exact"
   std::string stage;
   int nodes = 0, tetrahedra = 0, threads = 1, runs = 0;
-  double least_ms = 0.0;  ///< what a machine that others use too would take alone
+  double least_ms = 0.0;  ///< close to the time on an idle machine
   double median_ms = 0.0;
-  double limit_ms = 0.0;  ///< what memory and arithmetic, measured in the same run, allow
+  double limit_ms = 0.0;  ///< least time by memory and arithmetic, measured in the same run
 };
 
 struct FemBenchReport {
@@ -152,15 +154,15 @@ struct FemBenchReport {
 
 FemBenchReport run_fem_bench(const FemBenchOptions& options, bool (*stop)() = nullptr);
 MachineLimits measure_limits(int threads);
-/// Force, residual, tangents and one pass of one beam, on as many workers as core has; limits are set by
-/// run_fem_bench().
+/// Force, residual, tangents and fused assembly of one beam, on as many workers as core has; limits are set
+/// by run_fem_bench().
 /// @param time_s  of each stage
 std::vector<ElementTiming> time_elements(const BeamSize& size, double time_s);
 
 /// Slope of ln y over ln x by least squares over pairs (x, y), those with y > 0; NaN for fewer than two.
 double scaling_exponent(const std::vector<std::pair<double, double>>& points);
-/// ln(a figure of a row) over ln(nodes), by least squares, of rows that differ in size alone; NaN for fewer
-/// than two.
+/// Slope of ln(a figure of a row) over ln(nodes), by least squares, for rows that differ in size alone; NaN
+/// for fewer than two.
 double scaling_exponent(const std::vector<const FemBenchRow*>& rows,
                         const std::function<double(const FemBenchRow&)>& figure);
 

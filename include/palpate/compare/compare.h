@@ -8,7 +8,7 @@
 
 namespace palpate::compare {
 
-/// What became of a point.
+/// Outcome of a point.
 enum class PointStatus {
   kOk,
   kFailed,  ///< the integrator gave up
@@ -24,7 +24,7 @@ const char* to_string(PointStatus status);
 struct ComparePoint {
   std::string label;  ///< what reports call its ladder; unique in a scene
   std::string integrator, family, stability;
-  int order = 0;  ///< in theory
+  int order = 0;  ///< theoretical
   bool multistep = false;
   std::string setting_name;  ///< "rtol", "step_s" or "tick_s"
   double setting = 0.0;
@@ -36,18 +36,19 @@ struct ComparePoint {
   loop::RunResult result;     ///< of the first repeat; counts are the same in all
   std::vector<double> cpu_s;  ///< of each repeat
   double cpu_median_s = 0.0, cpu_min_s = 0.0, cpu_max_s = 0.0;
-  /// its position error is less than kResolution times the reference's own: not to be trusted
+  /// whether the position error is less than kResolution times the reference's own: not to be trusted
   bool unresolved = false;
-  bool force_unresolved = false, torque_unresolved = false;  ///< the same of the RMS on the hand
+  bool force_unresolved = false,
+       torque_unresolved = false;  ///< likewise for the RMS of force and torque on the hand
 };
 
-/// Of an error this many times the reference's own, the reference leaves a tenth in doubt; nearer ones are
-/// marked, and stand in no fit and no verdict.
+/// The reference leaves a tenth in doubt of an error this many times its own; points closer to it are marked,
+/// and enter no fit and no verdict.
 constexpr double kResolution = 10.0;
 
-/// The reference that the points are held against, and how far it can be trusted.
+/// The reference that the points are compared with, and how far it can be trusted.
 struct Reference {
-  std::string description;  ///< what it was made by, and what checked it
+  std::string description;  ///< integrators of the reference and of its check
   std::string trouble;      ///< what is missing of the two, and why; empty: nothing
   bool available = false;   ///< without one no point has an error
   /// distance of two families at tight tolerance; NaN where there was no check
@@ -55,8 +56,8 @@ struct Reference {
   double cpu_s = 0.0;
 };
 
-/// One way of finding the tool's contact, against the first of the scene's list: how far the choice of method
-/// moves the result.
+/// One method of finding the tool's contact, compared with the first of the scene's list: how far the choice
+/// of method moves the result.
 struct MethodPoint {
   std::string method;
   TrajectoryError difference;  ///< zero for the first
@@ -73,7 +74,7 @@ struct MissingChart {
   std::string text() const { return "no chart of " + of + ": " + why; }
 };
 
-/// All about one scene.
+/// Everything about one scene.
 struct SceneComparison {
   std::string scene, path;
   bool tool = false;
@@ -116,13 +117,14 @@ struct CompareOptions {
 /// @throws Error for ladders that make no sense
 Comparison run(const std::vector<scene::Description>& scenes, const CompareOptions& options);
 
-/// The scene with the tool's contact found by each method of `compare.contact_methods`, at the scene's own
-/// integrator settings.  A method that cannot be had, or whose run gives up, is a point with its trouble.
+/// Runs the scene with the tool's contact found by each method of `compare.contact_methods`, at the scene's
+/// own integrator settings.  A method that is not available, or whose run gives up, is a point with its
+/// trouble.
 std::vector<MethodPoint> compare_contact_methods(const scene::Description& description,
                                                  const std::atomic<bool>* stop = nullptr);
 
-/// compare.csv, restarts.csv, exchange.csv, methods.csv and reference.json in `folder`: what report reads its
-/// tables, fitted orders and plots from.
+/// Writes compare.csv, restarts.csv, exchange.csv, methods.csv and reference.json into `folder`: report reads
+/// its tables, fitted orders and plots from them.
 void write(const Comparison& comparison, const std::string& folder);
 
 }  // namespace palpate::compare

@@ -16,7 +16,7 @@ struct ExchangePoint {
   std::string trouble{};  ///< why there is no error; empty: there is one
 };
 
-/// What to do while an exchange study goes on.
+/// Options of an exchange study.
 struct ExchangeOptions {
   std::function<void(const std::string& what)> done;  ///< after each run
   const std::atomic<bool>* stop = nullptr;
@@ -27,11 +27,11 @@ struct ExchangeOptions {
 /// Runs that compare_exchange makes of a scene: 0 without a tool or without `compare.exchange_periods_s`.
 int exchange_runs(const scene::Description& description);
 
-/// The exchange period's own error: the distance of the partitioned scheme at each of
-/// `compare.exchange_periods_s` from the monolithic one.  What else could differ does not: both are
-/// integrated by the same tight cvode-bdf, the contact is refreshed at one period for all, the longest that
-/// divides every exchange period, and the tool's tick is a tenth of the exchange period.  The scheme is of
-/// order 1 in the period where the handle is smooth. Empty where the scene asks for none; stops early on
+/// The error that the exchange period makes by itself: the distance of the partitioned scheme at each of
+/// `compare.exchange_periods_s` from the monolithic one.  Everything else is alike in both: they are
+/// integrated by the same tight cvode-bdf, the contact is refreshed at one period for all (the longest that
+/// divides every exchange period), and the tool's tick is a tenth of the exchange period.  The scheme is of
+/// order 1 in the period where the handle is smooth.  Empty where the scene asks for none; stops early on
 /// request.
 std::vector<ExchangePoint> compare_exchange(const scene::Description& description,
                                             const ExchangeOptions& options);

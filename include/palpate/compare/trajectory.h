@@ -5,7 +5,7 @@
 
 namespace palpate::compare {
 
-/// What a run is compared by: node positions after every period, and the device wrench at every tick.
+/// Data that runs are compared by: node positions after every period, and the device wrench at every tick.
 struct Trajectory {
   std::vector<double> period_times;  ///< [s]
   /// all node blocks (without a body: the tool's origin), one vector a period [m]
@@ -39,7 +39,7 @@ struct TrajectoryError {
   double energy_j = 0.0;  ///< largest difference of mechanical energy
 };
 TrajectoryError distance(const Trajectory& computed, const Trajectory& reference);
-/// That of a run that did not reach its end, where the common times would show only its good part: NaN
+/// The error of a run that did not reach its end, where the common times would show only its good part: NaN
 /// throughout.
 TrajectoryError no_distance();
 

@@ -7,8 +7,8 @@
 #include "palpate/core/error.h"
 #include "palpate/core/types.h"
 
-/// Plain data as bytes and back, bit for bit:
-/// between a run's own process and the study, and into the study's database.
+/// Plain data as bytes and back, bit for bit: between a run's own process and the study, and into the study's
+/// database.
 namespace palpate {
 
 class ByteWriter {

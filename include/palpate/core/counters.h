@@ -4,9 +4,8 @@
 #include <string>
 #include <string_view>
 
-/// Process-wide counts of what was constructed or happened, by dotted name ("gl.context",
-/// "tool.simbody_system"). They prove what a scene leaves out: a test asserts that the counter of an unnamed
-/// part stays zero.
+/// Process-wide counts of constructions and events, by dotted name ("gl.context", "tool.simbody_system").
+/// They prove what a scene leaves out: a test asserts that the counter of an unnamed part stays zero.
 namespace palpate::counters {
 
 /// The counter of that name; the reference stays valid for the life of the process.  Thread-safe.

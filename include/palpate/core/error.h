@@ -14,7 +14,7 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A mistake of ours: a broken invariant.  Thrown by PALPATE_CHECK, never by bad input.
+/// A defect of palpate: a broken invariant.  Thrown by PALPATE_CHECK, never by bad input.
 class InternalError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
@@ -30,8 +30,8 @@ namespace detail {
 [[noreturn]] void check_failed(const char* file, int line, const char* condition, const std::string& message);
 }  // namespace detail
 
-/// The candidate with the smallest edit distance to `name`;
-/// empty when none is close (distance > half its length).
+/// The candidate with the smallest edit distance to `name`; empty when none is close (distance > half its
+/// length).
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
 /// ` (did you mean "x"?)` or, when none is near, ` (known: a, b, c)`; for the end of an error message.
@@ -39,7 +39,7 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
 
 }  // namespace palpate
 
-/// An invariant of ours, always on.  PALPATE_CHECK(n == m, "n = {}, m = {}", n, m)
+/// Checks an invariant, in every build.  PALPATE_CHECK(n == m, "n = {}, m = {}", n, m)
 #define PALPATE_CHECK(condition, ...)                                                            \
   do {                                                                                           \
     if (!(condition))                                                                            \

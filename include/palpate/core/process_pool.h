@@ -25,11 +25,11 @@ namespace palpate {
 /// later, therefore work is a plain function and its input is bytes; only the working folder is handed on.
 class ProcessPool {
  public:
-  /// What became of one piece of work.
+  /// Outcome of one piece of work.
   struct Outcome {
     enum class End { kDone, kError, kCrash, kOutOfTime };
     End end = End::kDone;
-    /// what the work returned; the message of its exception; "killed by signal 11"; "out of time: 10 s"
+    /// the result of the work; the message of its exception; "killed by signal 11"; "out of time: 10 s"
     std::string bytes;
   };
   /// Runs in the child, on the bytes that start() was given.  `out_of_time` becomes true after the limit [CPU
@@ -64,9 +64,9 @@ class ProcessPool {
     std::uint64_t id;
     pid_t pid;
     int pipe;
-    double limit_s, cpu_s, moved;  ///< CPU time when last looked at; when that last grew, by the wall clock
+    double limit_s, cpu_s, moved;  ///< CPU time at the last check; when that last grew, by the wall clock
     std::string bytes;
-    bool ended, lost, killed;  ///< lost: nobody can tell its exit status any more
+    bool ended, lost, killed;  ///< lost: its exit status can no longer be known
     int status;                ///< as waitpid() gives it, once it has ended
     Done done;
   };

@@ -9,9 +9,9 @@
 
 namespace palpate {
 
-/// One line of a registry: a name in a scene becomes a part.  `order` is the theoretical order where there is
-/// one, else 0.  `keys` are those of the scene's table that this entry uses and that not every entry of the
-/// registry does.
+/// One line of a registry, which maps a name in a scene to a part.  `order` is the theoretical order where
+/// there is one, else 0.  `keys` are those of the scene's table that this entry uses and that not every entry
+/// of the registry does.
 template <class Make>
 struct RegistryEntry {
   RegistryEntry(std::string its_name, std::string its_summary, int its_order, Make its_make,
@@ -31,7 +31,7 @@ struct RegistryEntry {
 template <class Make>
 using Registry = std::vector<RegistryEntry<Make>>;
 
-/// A registry is a vector of entries that have a `name`: RegistryEntry, or one with more to tell.
+/// A registry is a vector of entries that have a `name`: RegistryEntry, or a struct with more members.
 template <class Entry>
 std::vector<std::string> names(const std::vector<Entry>& registry) {
   std::vector<std::string> out;

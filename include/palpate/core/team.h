@@ -7,10 +7,10 @@
 
 namespace palpate {
 
-/// A few threads that work on one thing together, again and again: the caller and size() - 1 of the process's
-/// pool (workers.h). Who waits spins for some tens of microseconds and then sleeps: on a machine with fewer
-/// free cores than threads a spinning team costs seconds.
-/// One caller at a time.  What a worker throws ends the program: give it work that does not throw.
+/// A few threads that work together on one computation, repeatedly: the caller and size() - 1 of the
+/// process's pool (workers.h).  A waiting thread spins for some tens of microseconds and then sleeps: on a
+/// machine with fewer free cores than threads a spinning team costs seconds.  One caller at a time.  An
+/// exception of a worker ends the program: give it work that does not throw.
 class Team {
  public:
   explicit Team(int size);
@@ -28,7 +28,7 @@ class Team {
         size_, [](void* w, int k, int) { (*static_cast<W*>(w))(k); },
         const_cast<std::remove_const_t<W>*>(&work));
   }
-  /// Inside run: waits until every thread has come here.
+  /// Barrier, inside run: waits until every thread has reached it.
   void barrier();
 
  private:

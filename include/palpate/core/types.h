@@ -2,8 +2,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-/// Scalars and small fixed shapes that every part speaks in.
-/// SI units, double precision, world axes unless a name says otherwise.
+/// Scalars and small fixed shapes that every part uses.  SI units, double precision, world axes unless a name
+/// says otherwise.
 namespace palpate {
 
 using Vec3 = Eigen::Vector3d;

@@ -2,15 +2,16 @@
 #include <type_traits>
 
 /// The threads of the process: one pool, for loops whose tasks are shared (here) and for teams that work on
-/// one thing together (team.h).  It grows to the most that anyone asked for, and idle threads sleep. Who runs
-/// which task of a loop is left to chance: a loop whose tasks write apart from each other, and whose sums are
-/// formed task by task afterwards, gives the same numbers to the last bit with any number of threads.
+/// one computation together (team.h).  It grows to the largest number that anyone asked for, and idle threads
+/// sleep. Which thread runs which task of a loop is not determined: a loop whose tasks write to disjoint
+/// memory, and whose sums are formed task by task afterwards, gives the same numbers to the last bit with any
+/// number of threads.
 namespace palpate::workers {
 
 /// Threads that a loop may use, the caller's included, where no Count says otherwise; 1 at the start of the
 /// process.  @throws Error outside [1, 256]
 void set_count(int count);
-/// That the calling thread's next loop may use; inside a task, that of its loop.
+/// Number of threads that the calling thread's next loop may use; inside a task, that of its loop.
 int count();
 
 /// While it lives, loops of the thread that made it may use this many threads, the caller's included.
@@ -27,17 +28,17 @@ class Count {
 
 /// Runs task(context, t, w) for every t in [0, tasks), w in [0, count()) naming the thread; returns when all
 /// are done.  One thread takes them in their order.  Allocates nothing once the pool has its threads, which
-/// spin for some tens of microseconds after a loop, then sleep.  A loop inside a loop, or beside one in
-/// another thread, is run by its caller alone, as w = 0. Tasks must not throw.  @param tasks  at most 2^20 -
-/// 1
+/// spin for some tens of microseconds after a loop, then sleep.  A loop inside a loop, or concurrent with one
+/// of another thread, is run by its caller alone, as w = 0.  Tasks must not throw.
+/// @param tasks  at most 2^20 - 1
 using Task = void (*)(void* context, int task, int worker);
 void run(int tasks, Task task, void* context);
 
 /// Runs task(context, k, w) for every k in [0, threads), each on a thread of its own: they may wait for each
-/// other.  Waits for its turn where another thread has the pool.  Not inside a task.
+/// other.  Waits while another thread has the pool.  Not inside a task.
 void run_together(int threads, Task task, void* context);
 
-/// Tasks of shared loops that a thread has run since the process started; 0 is whoever called.
+/// Tasks of shared loops that a thread has run since the process started; 0 is the caller's thread.
 long tasks_of(int worker);
 
 template <class F>

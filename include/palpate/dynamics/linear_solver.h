@@ -18,12 +18,12 @@ struct SolverCounters {
   /// of them, those that looked for a fill-reducing ordering, where the solver keeps one from pattern to
   /// pattern
   long orderings = 0;
-  long factorisations = 0;  ///< numeric factorisations
-  long solves = 0;          ///< right-hand sides
-  long iterations = 0;      ///< of iterative methods
-  long near = 0;            ///< of the right-hand sides, those solved by the matrix of an earlier one
-  long residuals = 0;       ///< that these looked at
-  long refreshes = 0;       ///< coarse spaces made anew, where a method has one that it keeps
+  long factorisations = 0;   ///< numeric factorisations
+  long solves = 0;           ///< right-hand sides
+  long iterations = 0;       ///< of iterative methods
+  long lagged = 0;           ///< right-hand sides solved by refinement with the matrix of an earlier one
+  long residual_checks = 0;  ///< residuals evaluated for these
+  long refreshes = 0;        ///< coarse spaces made anew, where a method has one that it keeps
   double symbolic_s = 0.0, factor_s = 0.0, solve_s = 0.0;  ///< wall time [s]
   /// fill-reducing ordering of the last analysis, where the solver chooses: "AMD", "METIS"
   std::string ordering;
@@ -43,8 +43,8 @@ requires(std::same_as<std::remove_const_t<Counters>, SolverCounters>&&...) const
   f("factorisations", c.factorisations...);
   f("linear_solves", c.solves...);
   f("linear_iterations", c.iterations...);
-  f("near_linear_solves", c.near...);
-  f("near_residuals", c.residuals...);
+  f("lagged_matrix_solves", c.lagged...);
+  f("lagged_matrix_residual_checks", c.residual_checks...);
   f("coarse_space_refreshes", c.refreshes...);
   f("symbolic_s", c.symbolic_s...);
   f("factor_s", c.factor_s...);

@@ -21,10 +21,10 @@ struct ChoiceList {
 };
 std::vector<ChoiceList> registries();
 
-/// The integrators of soft bodies with what theory knows of each: what comparisons and stability studies run
-/// over.
+/// The integrators of soft bodies with their theoretical properties: comparisons and stability studies run
+/// over them.
 const dynamics::StepperRegistry& steppers();
-/// Those of the tool's own ticks; empty where tools were not compiled in.
+/// The integrators of the tool's own ticks; empty where tools were not compiled in.
 std::vector<Choice> tool_steppers();
 
 }  // namespace palpate::loop

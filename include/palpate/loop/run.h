@@ -18,7 +18,7 @@ struct TickRecord {
   Wrench device;  ///< on the hand, as sent to the motors
 };
 
-/// Sees a run from outside; whatever wants to keep something implements this.
+/// Observes a run from outside; whatever keeps something of it implements this.
 class Observer {
  public:
   virtual ~Observer() = default;
@@ -48,7 +48,7 @@ struct RunResult {
   dynamics::StepperCounters counters;
 };
 
-/// As of StepperCounters (dynamics/stepper.h), which it visits too: every number of a run.
+/// Visits every number of a run, as its overload for StepperCounters (dynamics/stepper.h), which it includes.
 template <class F, class... Result>
 requires(std::same_as<std::remove_const_t<Result>, RunResult>&&...) constexpr void visit_counters(
     F&& f, Result&... r) {
@@ -66,9 +66,9 @@ requires(std::same_as<std::remove_const_t<Result>, RunResult>&&...) constexpr vo
   dynamics::visit_counters(f, r.counters...);
 }
 
-/// Virtual time: one exchange period after the other, ticks interleaved (docs/design.md, 1); monolithic, one
-/// refresh after the other, ticks from dense output.  A scene without a tool has periods but no ticks.
-/// It works on the World's own number of threads (integrator.threads), whatever other Worlds have.
+/// Runs in virtual time: one exchange period after the other, ticks interleaved (docs/design.md, 1); if
+/// monolithic, one refresh after the other, ticks from dense output.  A scene without a tool has periods but
+/// no ticks.  It works on the World's own number of threads (integrator.threads), whatever other Worlds have.
 RunResult run(World& world, const RunOptions& options);
 
 /// The length of the loop's period for a scene [s]: the exchange period where there is an exchange, else the

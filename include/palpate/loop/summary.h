@@ -5,10 +5,10 @@
 
 namespace palpate::loop {
 
-/// scene::needs() with the linear solver that the scene's integrator comes to.
+/// scene::needs() with the linear solver that the scene's integrator will use.
 std::vector<scene::Need> needs(const scene::Description& description);
 
-/// What a run was and what it cost: options, sizes, counts, timings, constructions.  The caller adds the
+/// Summary of a run and its cost: options, sizes, counts, timings, constructions.  The caller adds the
 /// command line and writes it.
 store::Summary summarise(const World& world, const RunResult& result, double assemble_s);
 

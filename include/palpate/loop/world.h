@@ -37,7 +37,7 @@ struct Skin {
 struct Region {
   std::string name;
   std::vector<int> tets;  ///< ascending; no element in two regions
-  /// in the list of the body's term; 0: the body's own, as the scene says nothing of the region
+  /// number in the list of the body's term; 0: the body's own, as the scene does not set the region
   int material = 0;
   double volume = 0.0;            ///< [m^3]
   double stiffness_factor = 1.0;  ///< of its Young's modulus over the body's, where it has none of its own
@@ -52,12 +52,12 @@ struct Body {
   /// not as in the mesh's file
   TetMesh rest;
   std::vector<int> file_node;  ///< the number of each node in that file, from zero
-  Points placed;               ///< the same placed in the world: what the simulation starts from
+  Points placed;               ///< rest positions placed in the world: the start of the simulation
   mesh::Boundary boundary;     ///< surface; made for every body
   std::optional<Skin> skin;    ///< where the scene asks for it
-  /// of the model file, placed in the world as at the start, where the scene asks for it; else empty
+  /// bones of the model file, placed in the world as at the start, where the scene asks for them; else empty
   Skeleton skeleton;
-  std::vector<int> bone_of_node;  ///< which of them carries the node, -1: none
+  std::vector<int> bone_of_node;  ///< bone of `skeleton` that carries the node, -1: none
   mesh::MeshReport report;
   std::vector<Region> regions;
   std::vector<int> material_of_element;  ///< in the list of `term`; empty: all are of the body's own material
@@ -67,11 +67,11 @@ struct Body {
 
   /// The surface that is touched and drawn: the skin's, else the boundary's.
   const Faces& surface_faces() const { return skin ? skin->rest.faces : boundary.surface.faces; }
-  /// Its vertices, and a value at each, from positions [m] and values of the nodes.
+  /// Positions [m] or values at the vertices of that surface, from those of the nodes.
   Points surface_points(const Points& nodes) const;
   VecX surface_values(const VecX& at_nodes) const;
-  /// What leaves the program goes by the numbers of the file: the tetrahedra, and what every node has, into
-  /// out(Eigen::all, file_node).
+  /// The tetrahedra as numbered in the file.  Everything that leaves the program is numbered so; values of
+  /// the nodes go into out(Eigen::all, file_node).
   Tets file_tets() const;
   VecX nodal_stress(const dynamics::StateView& state) const {
     return dilatation ? dilatation->nodal_stress(state) : term->nodal_stress(state);
@@ -84,7 +84,7 @@ struct Bone {
   int block_id = -1;                           ///< of a free one, or of the tree; else -1
   std::shared_ptr<const tool::BoneTree> tree;  ///< of one on joints; else null
   int tree_bone = -1;                          ///< which of its bones
-  int body = -1;                               ///< whose model file it stands in; -1: a [[bone]] of the scene
+  int body = -1;                               ///< body whose model file has it; -1: a [[bone]] of the scene
   fem::Path path;                              ///< of one that is fixed or has keyframes; else empty
   double mass = 0.0;                           ///< of a free one [kg]
   std::vector<int> dofs;                       ///< u-directions of the nodes that it carries, ascending
@@ -92,8 +92,8 @@ struct Bone {
 };
 
 /// Everything that one scene names, and nothing else.  What is absent is null or empty.
-/// `description` and `folder` are what it was made of; the rest is what run() or who steps it by hand moves,
-/// and what comes out. The stepper refers to `state` and `system`: a World does not move.
+/// `description` and `folder` are what it was made of; the rest is changed by run(), or by a caller that
+/// steps it itself, and what comes out. The stepper refers to `state` and `system`: a World does not move.
 struct World {
   World();
   ~World();
@@ -118,12 +118,12 @@ struct World {
   Points positions(const Body& body) const;  ///< now, world [m]
   Pose bone_pose(const Bone& bone) const;
   Twist bone_twist(const Bone& bone) const;
-  /// What the tissue exerts on each bone, moment about its origin: minus what holds the nodes that it
+  /// Wrench of the tissue on each bone, moment about its origin: minus the forces that hold the nodes that it
   /// carries.
   std::vector<Wrench> wrenches_on_bones();
   bool monolithic() const;         ///< the tool is a block of the State
   bool has_tool_of_ticks() const;  ///< there is a tool, and it has ticks of its own
-  /// of the tool in `contact`; -1 where no contact names it
+  /// number of the tool's frame in `contact`; -1 where no contact names it
   int tool_frame_index() const;
   Pose tool_pose() const;  ///< @pre there is a tool
   Twist tool_twist() const;
@@ -135,9 +135,9 @@ struct World {
   std::unique_ptr<ToolSide> tool_side_;  ///< never null
 };
 
-/// Builds a World: the one place that names concrete parts.  From here on the process works on its number of
-/// threads (core/workers.h): the World assembled last decides for who steps Worlds by hand; run() keeps to
-/// each World's own.
+/// Builds a World: the only function that names concrete parts.  From here on the process works on its number
+/// of threads (core/workers.h): the World assembled last decides for callers that step Worlds themselves;
+/// run() keeps to each World's own.
 /// @throws Error for names that no registry knows, parts not compiled in, meshes refused
 std::unique_ptr<World> assemble(const scene::Description& description);
 

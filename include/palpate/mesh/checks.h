@@ -29,9 +29,9 @@ inline constexpr double kDegenerateTet = 1e-9;
 /// A triangle is degenerate when 2 |A| / (longest edge)^2 is not above this bound.
 inline constexpr double kDegenerateTriangle = 1e-9;
 
-/// Turns elements of negative volume round, and refuses (palpate::Error) what no
-/// simulation can use: no elements, non-finite coordinates, degenerate or duplicate
-/// elements, three elements on one face, unreferenced nodes.
+/// Reorders the nodes of elements of negative volume, and refuses (palpate::Error) meshes that no simulation
+/// can use: no elements, non-finite coordinates, degenerate or duplicate elements, three elements on one
+/// face, unreferenced nodes.
 /// @pre every index in mesh.tets lies in [0, number of nodes).
 MeshReport check_tets(TetMesh& mesh, const Provenance& from);
 

@@ -9,9 +9,9 @@
 /// of `corner_tet`. `grading` = element size in the middle / at the surface, in [0.5, 32]; 1 is uniform.
 namespace palpate::mesh {
 
-/// Box of edge lengths `size` [m], centred at the origin: five tetrahedra a cell, mirrored from
-/// cell to cell so that faces match. Graded: cells grow towards the middle along each axis.
-/// Smallest dihedral of cubic cells: 54.7 degrees.
+/// Box of edge lengths `size` [m], centred at the origin: five tetrahedra a cell, mirrored from cell to cell
+/// so that faces match.  Graded: cells grow towards the middle along each axis.  Smallest dihedral of cubic
+/// cells: 54.7 degrees.
 TetMesh box(const Vec3& size, const std::array<int, 3>& cells, double grading = 1.0);
 /// the boundary of box()
 TriMesh box_surface(const Vec3& size, const std::array<int, 3>& cells, double grading = 1.0);
@@ -22,8 +22,8 @@ TriMesh box_surface(const Vec3& size, const std::array<int, 3>& cells, double gr
 /// above 20 at any grading (tests/mesh/generators_test.cpp).
 TetMesh ball(double radius, double element_size, double grading = 1.0);
 
-/// Triangle sphere: each edge of an icosahedron cut into `subdivisions` parts,
-/// 20 n^2 faces, vertices on the sphere.
+/// Triangle sphere: each edge of an icosahedron cut into `subdivisions` parts, 20 n^2 faces, vertices on the
+/// sphere.
 TriMesh sphere(double radius, int subdivisions);
 int sphere_subdivisions(double radius, double element_size);  ///< what ball() uses at its surface
 
@@ -38,7 +38,7 @@ TriMesh cylinder_surface(double radius, double length, double element_size, doub
 TetMesh corner_tet(const Vec3& size);
 
 /// Moves each interior node at random by up to `amplitude` times its shortest edge (irregular meshes for
-/// patch tests); throws Error if an element would turn inside out.  0.2 is safe on the generators above.
+/// patch tests); throws Error if an element would be inverted.  0.2 is safe on the generators above.
 TetMesh perturbed(TetMesh mesh, double amplitude, unsigned seed);
 
 /// Generators by the name in a scene; the spec's sizes are checked first.

@@ -15,11 +15,11 @@ struct ProxyHull {
   Points corners;            ///< 3 x at most 32, in convex position, at rest [m]
   std::vector<int> members;  ///< skin vertices, ascending
   int bone = -1;             ///< the bone that it goes with; -1: the mean motion of its nodes
-  /// how far beyond the hull lies what it stands for besides its members, the inside of a rigid solid [m]
+  /// distance beyond the hull of what it stands for besides its members: the inside of a rigid solid [m]
   double outside = 0.0;
 };
 
-/// The three levels of a soft object, as one asset file holds them.  What is empty is not there.
+/// The three levels of a soft object, as one asset file holds them.  Absent parts are empty.
 struct LayeredModel {
   std::string name;
   TetMesh tets;

@@ -9,8 +9,8 @@ namespace palpate::mesh {
 double tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 double tet_volume(const TetMesh& mesh, int tet);
 
-/// The six angles between faces, inside a tetrahedron of positive volume [rad];
-/// entry e belongs to edge kTetEdges[e].
+/// The six angles between faces, inside a tetrahedron of positive volume [rad]; entry e belongs to edge
+/// kTetEdges[e].
 std::array<double, 6> dihedral_angles(const TetMesh& mesh, int tet);
 
 inline constexpr int kTetEdges[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};

@@ -24,7 +24,7 @@ std::vector<int> region_of_element(const std::vector<MaterialRegion>& regions, i
 
 /// Regions by the number that a file gives each tetrahedron, ascending by number.  A number without a name is
 /// called "region-NUMBER".  Where all have the same number, and it has no name, there are no regions: the
-/// file says nothing with it.
+/// file distinguishes nothing.
 /// @param none  a number that stands for no region, where there is such a one
 std::vector<MaterialRegion> regions_of_labels(const std::vector<double>& labels,
                                               const std::map<double, std::string>& names = {},

@@ -6,8 +6,8 @@
 
 namespace palpate {
 
-/// A bone at rest: the capsule with a radius at each end (a cone between two balls),
-/// in the axes of the model.
+/// A bone at rest: the capsule with a radius at each end (a cone between two balls), in the axes of the
+/// model.
 struct Bone {
   std::string name;
   int parent = -1;                              ///< index of a bone before this one; -1: a root

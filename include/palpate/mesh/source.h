@@ -7,7 +7,7 @@
 
 namespace palpate::mesh {
 
-/// What checking a mesh changed or found.
+/// Report of a mesh check: what it changed or found.
 struct MeshReport {
   int nodes = 0, elements = 0;
   int flipped = 0;      ///< elements whose orientation was mended
@@ -24,8 +24,8 @@ struct MeshReport {
 TetMesh tet_mesh(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr,
                  std::vector<MaterialRegion>* regions = nullptr);
 
-/// Reads or generates a surface: .obj,
-/// or a generator ("ball", "box", "cylinder"), closed and oriented outwards.
+/// Reads or generates a surface: .obj, or a generator ("ball", "box", "cylinder"), closed and oriented
+/// outwards.
 TriMesh surface(const MeshSpec& spec, const std::string& folder, MeshReport* report = nullptr);
 
 }  // namespace palpate::mesh

@@ -28,16 +28,16 @@ class Page {
   Page& add_svg(const std::string& svg, const std::string& caption);
   /// A PNG file, embedded.  Throws Error when it cannot be read or is not a PNG.
   Page& add_png(const std::filesystem::path& png, const std::string& caption);
-  /// In the place of a figure that could not be drawn: why.
+  /// A paragraph in place of a figure that could not be drawn, with the reason.
   Page& add_missing_figure(const std::string& caption, const std::string& why);
-  /// Ready HTML, well-formed and escaped by who made it.
+  /// Ready HTML, well-formed and escaped by the caller.
   Page& add_fragment(const std::string& html);
   Page& add_code(const std::string& text);
 
   /// Figures that are added between these two stand side by side where there is room.
   Page& begin_multiples();
   Page& end_multiples();
-  /// What is added between these two is folded away under a line of text until the reader opens it.
+  /// Content that is added between these two is folded away under a line of text until the reader opens it.
   Page& begin_details(const std::string& summary);
   Page& end_details();
 

@@ -15,7 +15,7 @@ struct Series {
   std::vector<std::string> labels = {};  ///< text beside each point; empty: none
   /// labels stand to the left of and below their points, not to the right and above
   bool labels_below = false;
-  /// points drawn as rings (too near the reference's own error); empty: none
+  /// points drawn as rings (not resolved by the reference); empty: none
   std::vector<bool> hollow = {};
   /// "#rrggbb", or "ink" for the text's colour; empty: the next of the palette
   std::string colour = {};
@@ -40,8 +40,9 @@ struct Plot {
 };
 
 /// The plot as one SVG document, drawn by gnuplot.  Long curves are thinned to what the width can show; peaks
-/// are kept. Throws Error when there is nothing to draw, when gnuplot is not installed (naming the package),
-/// or with gnuplot's own message.
+/// are kept.
+/// @throws Error when there is nothing to draw, when gnuplot is not installed (naming the package), or with
+///   gnuplot's own message
 std::string plot_svg(const Plot& plot);
 
 }  // namespace palpate::report

@@ -6,7 +6,7 @@
 
 namespace palpate::report {
 
-/// A page that was written, and what it should hold and does not.
+/// A page that was written, and the figures that it should hold and lacks.
 struct RunReport {
   std::filesystem::path page;
   std::vector<Page::MissingFigure> missing_figures;

@@ -30,9 +30,9 @@ double to_number(std::string_view cell);
 /// At most three significant digits, as short as they come: 0.0123, 12.3, 4.56e-07; "-" for NaN.
 std::string short_number(double value);
 
-/// Aligned text for the terminal: two blanks between columns, a rule under the headers,
-/// numbers to the right, words to the left. Width is counted in code points, so that
-/// Greek letters and dashes do not shift the columns.
+/// Aligned text for the terminal: two blanks between columns, a rule under the headers, numbers to the right,
+/// words to the left.  Width is counted in code points, so that Greek letters and dashes do not shift the
+/// columns.
 std::string format_table(const std::vector<std::string>& headers,
                          const std::vector<std::vector<std::string>>& rows);
 

@@ -6,15 +6,15 @@
 #include "palpate/report/plot.h"
 #include "palpate/report/table.h"
 
-/// What a work-precision comparison says, read from compare.csv (columns: store::compare_columns()).  All
+/// Evaluation of a work-precision comparison, read from compare.csv (columns: store::compare_columns()).  All
 /// functions take the lines of one scene.
 namespace palpate::report {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// The errors that every comparison is asked for.
+/// Target errors of every comparison.
 inline const std::vector<double> kTargets = {1e-2, 1e-3, 1e-4, 1e-6};
-/// For anything slower than this the factor is reported: the interactive method of the field.
+/// Baseline: the interactive method of the field; for anything slower than it the factor is reported.
 inline const std::string kBaseline = "linearly-implicit-euler";
 
 /// Columns of exchange.csv, in order (a `scene` may stand before them).
@@ -32,7 +32,7 @@ struct ReferenceError {
 
 /// The lines whose cell in `column` is `value`; all of them where there is no such column.
 Table rows_where(const Table& table, const std::string& column, const std::string& value);
-/// What stands in a column, each once, in the order of the lines.
+/// The distinct values of a column, in the order of the lines.
 std::vector<std::string> distinct(const Table& table, const std::string& column);
 
 /// One ladder: its usable points, from the coarsest rung to the finest.
@@ -42,7 +42,7 @@ struct LadderPoint {
 };
 struct Ladder {
   std::string label, integrator, family, stability, setting_name;
-  int order = 0;                    ///< in theory
+  int order = 0;                    ///< theoretical
   std::vector<LadderPoint> points;  ///< those with status ok and a finite error
   std::vector<std::pair<std::string, std::string>> failures = {};  ///< status and reason of the others
   std::vector<double> failed_settings = {};
@@ -58,10 +58,10 @@ struct FittedOrder {
 };
 std::vector<FittedOrder> fitted_orders(const Table& compare, const std::string& error_column);
 
-/// What an error costs on one ladder.  Between two neighbouring rungs that have it between them, log(cost) is
+/// Cost of an error on one ladder.  Between two neighbouring rungs whose errors enclose it, log(cost) is
 /// taken as linear in log(error); the cheapest such pair counts.  Nothing is extrapolated: where even the
-/// coarsest usable rung is better, its own cost is what is known (`at_most`).
-/// An error below the reference's own counts as that.
+/// coarsest usable rung is better, its own cost is an upper bound (`at_most`).  An error below the
+/// reference's own counts as that.
 struct Cost {
   double value = kUnknown;  ///< NaN: not reached
   bool at_most = false;
@@ -69,31 +69,33 @@ struct Cost {
 Cost cost_at(const Ladder& ladder, double target, double reference_error);
 std::string cost_text(const Cost& cost);  ///< "0.12", "<= 0.12", "-"
 
-/// Who reaches an error at the least cost.
+/// The ladder that reaches an error at the least cost.
 struct Winner {
   double target = 0.0;
   bool found = false;
   std::string label, runner_up;
   Cost cost;
   double runner_up_ratio = kUnknown;  ///< its cost over the winner's
-  double baseline_ratio = kUnknown;   ///< the same of kBaseline; NaN where it does not get there
+  double baseline_ratio =
+      kUnknown;  ///< cost of kBaseline over the winner's; NaN where it does not reach the error
 };
 std::vector<Winner> winners(const Table& compare, const std::string& error_column,
                             const std::string& cost_column, const std::vector<double>& targets,
                             double reference_error = kUnknown);
 
-/// What the numbers say, in sentences: who wins where, who failed and why, which explicit methods stand at
-/// their stability limit, and whether the reference bears it.  Paragraphs are separate lines.
+/// The numbers as sentences: which ladder wins where, which failed and why, which explicit methods are at
+/// their stability limit, and whether the reference is good enough.  Paragraphs are separate lines.
 std::string in_words(const Table& compare, double reference_error);
 
-/// Error against a cost, log-log: one line a ladder, coloured by family;
-/// the best envelope is drawn over them.
+/// Error against a cost, log-log: one line a ladder, coloured by family; the best envelope is drawn over
+/// them.
 Plot work_precision_plot(const Table& compare, const std::string& error_column,
                          const std::string& error_label, double reference_error,
                          const std::string& cost_column = "cpu_s_median",
                          const std::string& cost_label = "CPU time [s]");
 
-/// The same, one small plot a family: its ladders in colour with their names, all others faint behind.
+/// Error against a cost in one small plot a family: its ladders in colour with their names, all others faint
+/// behind.
 std::vector<Plot> family_plots(const Table& compare, const std::string& error_column,
                                const std::string& error_label, double reference_error,
                                const std::string& cost_column = "cpu_s_median",

@@ -12,11 +12,11 @@
 /// cell is then run and held against it.
 namespace palpate::stability {
 
-/// How a cell ended, best first.  The first four are honest ends; the others never are, whatever theory
-/// allows.
+/// How a cell ended, best first.  The first four are acceptable ends; the others are failures, whatever
+/// theory allows.
 enum class Verdict {
   kAccurate,   ///< within the error that theory allows of an exact answer
-  kStable,     ///< not that near to it, but it never had more energy (or motion) than was put in
+  kStable,     ///< less accurate, but its energy (or motion) never exceeded what was put in
   kBounded,    ///< more than was put in, within a bound
   kError,      ///< ended early, with a message that says why
   kGrew,       ///< went beyond every bound and called it success
@@ -48,9 +48,9 @@ struct StabilityCell {
   Verdict verdict = Verdict::kSilent;
   Verdicts expected;
   std::string figure;  ///< what was measured, in words: "energy +3e-07, error 2e-4 of 5e-3"
-  /// largest rise of the energy over what was available, relative; NaN: not a measure here
+  /// largest rise of the energy over what was available, relative; NaN: not measured in this case
   double gain = std::numeric_limits<double>::quiet_NaN();
-  /// against an exact answer, relative; NaN: there is none
+  /// error against an exact answer, relative; NaN: the case has none
   double error = std::numeric_limits<double>::quiet_NaN();
   std::string reason;  ///< why it ended, or why the verdict is not a better one
   long steps = 0;      ///< of the integrator
@@ -93,8 +93,8 @@ struct StabilityMatrix {
 /// @throws Error for a row or an integrator that does not exist, with the nearest name
 StabilityMatrix run(const StabilityOptions& options);
 
-/// stability.csv, stability.json, and summary.json (what made them) in `folder`.  @param command  as a person
-/// would type it again
+/// Writes stability.csv, stability.json, and summary.json (versions, machine, command) into `folder`.
+/// @param command  as a person would type it again
 void write(const StabilityMatrix& matrix, const std::string& folder, const std::string& command);
 
 }  // namespace palpate::stability

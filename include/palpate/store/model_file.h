@@ -21,8 +21,7 @@
 /// A missing group is an empty part of the model.
 namespace palpate::store {
 
-/// How a model came to be.  No time and no machine stand in it:
-/// the same input gives the same file, byte for byte.
+/// How a model was made.  It holds no time and no machine: the same input gives the same file, byte for byte.
 struct ModelRecord {
   std::string source;              ///< file name without its folder, or the name of a shape
   std::string source_hash;         ///< ContentHash of the file
@@ -41,8 +40,8 @@ struct ModelFile {
 void write_model(const std::string& path, const ModelFile& file);
 
 /// @throws Error with the file, the data set, and what was expected, also where the parts do not fit each
-///   other: an embedding of another skin,
-/// a proxy that names a vertex that is not there, a skin vertex in no proxy, a bone before its parent.
+///   other: an embedding of another skin, a proxy that names a vertex that is not there, a skin vertex in no
+///   proxy, a bone before its parent.
 ModelFile read_model(const std::string& path);
 
 /// The regions of a model file alone; none where the file is a plain mesh file.

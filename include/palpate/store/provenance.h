@@ -5,7 +5,7 @@
 
 namespace palpate::store {
 
-/// What made a result: enough to make it again.
+/// Versions, libraries and machine that made a result: enough to make it again.
 struct Provenance {
   std::string version;  ///< of palpate
   std::string commit;   ///< with `-dirty` where sources were changed; "unknown" outside a checkout

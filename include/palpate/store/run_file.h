@@ -10,10 +10,10 @@
 /// and their data once a step.
 namespace palpate::store {
 
-/// One thing of a run: a soft body by its tetrahedra, or a tool by its triangles.
+/// One object of a run: a soft body by its tetrahedra, or a tool by its triangles.
 struct RunPart {
   std::string name;
-  Points reference;  ///< positions that displacements are measured from [m]: where it stood at the start
+  Points reference;  ///< positions at the start, from which displacements are measured [m]
   Tets tets;         ///< of a body; indices into its own points
   Faces faces;       ///< of a tool
 };
@@ -22,10 +22,9 @@ struct RunInfo {
   std::string scene_name;
   std::string scene_source;  ///< the effective TOML
   std::string version;       ///< of palpate, with its commit
-  /// room made beforehand: count them from duration and period.
-  /// More are welcome, but a kill in the very moment
+  /// steps that the file has room for from the start: duration over period.  More can be appended, but a kill
+  /// at the very moment when the file grows (at each doubling) can damage it.
   int expected_steps = 100;
-  ///< when the file grows (at each doubling) can damage it
 };
 
 /// Writes a run.  A step is committed by one number, the attribute NSteps, after all else of it is in the
@@ -38,13 +37,14 @@ class RunFile {
   ~RunFile();
   RunFile(RunFile&&) noexcept;
 
-  /// Appends one instant.  @param points, velocity 3 x point_count [m], [m/s]  @param stress point_count, von
-  /// Mises [Pa]; all finite
+  /// Appends one instant.
+  /// @param points, velocity  3 x point_count [m], [m/s]
+  /// @param stress  point_count, von Mises [Pa]; all finite
   /// @throws Error when the disk refuses; the steps before stay readable
   void append(double time_s, const Points& points, const Points& velocity, const VecX& stress);
   int steps() const;
   int point_count() const;
-  /// Gives room that was not needed back.  Called by the destructor too, which swallows errors.
+  /// Releases room that was not needed.  Called by the destructor too, which swallows errors.
   void close();
 
  private:

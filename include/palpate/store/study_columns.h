@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-/// Columns of the tables that a comparison leaves in its folder, units in their names: compare writes them,
-/// and after them every further number of a run; report reads them.
+/// Columns of the tables that a comparison leaves in its folder, units in their names.  compare writes them,
+/// followed by every other number of a run; report reads them.
 namespace palpate::store {
 
 /// compare.csv: one line a point.

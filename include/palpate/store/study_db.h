@@ -24,8 +24,8 @@ struct StudyArtefact {
 };
 
 /// A study on disk: one SQLite file (`sqlite3 study.sqlite 'select * from run'`).  Every put is one
-/// transaction, on disk before it returns:
-/// a process killed at any moment leaves a readable file with all that was put before.
+/// transaction, on disk before it returns: a process killed at any moment leaves a readable file with all
+/// that was put before.
 class StudyDb {
  public:
   /// Opens or makes it.  @param numbers  names of the columns of StudyRun::numbers

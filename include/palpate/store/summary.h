@@ -17,7 +17,7 @@ struct SummarySection {
   std::vector<std::pair<std::string, SummaryValue>> values;
 };
 
-/// summary.json: what ran, on what, and what came out.
+/// summary.json: the command, scene, provenance and results of a run.
 struct Summary {
   std::string command;  ///< as a person would type it again
   std::string scene;

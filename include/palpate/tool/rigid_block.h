@@ -6,8 +6,8 @@
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/tool/spec.h"
 
-/// A tool as a rigid block of the State: what couples it monolithically to soft bodies, with any integrator
-/// of theirs.  No Simbody here: see simbody_block.h for the same from Simbody.
+/// A tool as a rigid block of the State: it couples monolithically to soft bodies, under any of their
+/// integrators.  No Simbody here: simbody_block.h has such a block by Simbody.
 namespace palpate::tool {
 
 using dynamics::make_gyroscopic;
@@ -22,7 +22,7 @@ struct HandleState {
 };
 using HandlePath = std::function<HandleState(double t)>;
 
-/// What the hand feels of the virtual coupling, before any limit: force opposite to that on the tool, moment
+/// Wrench of the virtual coupling on the hand, before any limit: force opposite to that on the tool, moment
 /// about the handle's origin.
 Wrench coupling_on_hand(const ToolSpec& spec, const HandleState& tool, const HandleState& handle);
 

@@ -3,12 +3,12 @@
 
 namespace palpate::tool {
 
-/// The scene's tool as a block of the State, its right-hand side by Simbody: what monolithic coupling steps
-/// beside the bodies. One Simbody System stands behind both terms.
+/// The scene's tool as a block of the State, its right-hand side by Simbody, for monolithic coupling beside
+/// the bodies.  One Simbody System stands behind both terms.
 struct SimbodyTerms {
   std::shared_ptr<dynamics::InertiaTerm> inertia;  ///< M(q) by Simbody's calcM
-  /// gyroscopic forces and weight, by Simbody's inverse dynamics at u' = 0;
-  /// with its exact, unsymmetric tangent
+  /// gyroscopic forces and weight, by Simbody's inverse dynamics at u' = 0; with its exact, unsymmetric
+  /// tangent
   std::shared_ptr<dynamics::ForceTerm> force;
 };
 

@@ -27,7 +27,7 @@ struct ToolSpec {
   bool gravity = false;  ///< off: a device holds its own weight
   VirtualCouplingSpec coupling = {};
   double tick_s = 1e-3;
-  /// of the tool's own ticks: see `palpate list tool-integrators`
+  /// integrator of the tool's own ticks: see `palpate list tool-integrators`
   std::string integrator = "linearly-implicit-euler";
 };
 

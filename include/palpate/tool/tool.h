@@ -10,8 +10,8 @@
 
 namespace palpate::tool {
 
-/// The handle's motion over one tick, as the coupling sees it:
-/// pose and twist at the tick's end (implicit schemes) and start.
+/// The handle's motion over one tick, as the coupling sees it: pose and twist at the tick's end (implicit
+/// schemes) and start.
 struct HandleMotion {
   Pose pose0, pose1;
   Twist twist0, twist1;
@@ -30,8 +30,7 @@ class Tool {
   Twist twist() const;
   void set_state(double t, const Pose& pose, const Twist& twist);
 
-  /// One tick of `h` seconds with the contact linear about its record.
-  /// The scheme is the one that the spec names.
+  /// One tick of `h` seconds with the contact linear about its record, by the scheme that the spec names.
   dynamics::StepResult advance(double h, const HandleMotion& handle,
                                const dynamics::LinearisedContact& contact);
 
@@ -40,8 +39,8 @@ class Tool {
   /// The coupling wrench on the hand: force opposite, moment about the handle's origin.
   Wrench wrench_on_hand(const Pose& handle, const Twist& handle_twist) const;
 
-  /// K = -dF/dx and B = -dF/dv of the coupling at the current pose (6x6, angular first): what `condensed`
-  /// linearisations and monolithic coupling add to the tool's rows.
+  /// K = -dF/dx and B = -dF/dv of the coupling at the current pose (6x6, angular first): added to the tool's
+  /// rows by `condensed` linearisations and monolithic coupling.
   void coupling_tangent(const Pose& handle, const Twist& handle_twist, Mat6& K, Mat6& B) const;
   Mat6 mass_matrix() const;  ///< at the current pose, world axes, about the origin
   double kinetic_energy() const;

@@ -11,8 +11,8 @@
 namespace palpate::bench {
 namespace {
 
-/// The fall of the softest beam from rest, up to here: its end has turned by half a radian, and no element
-/// has been turned inside out.
+/// End time: the softest beam falls from rest up to here; its end has rotated by half a radian, and no
+/// element is inverted.
 constexpr double kFallFor = 0.2, kYoungsModulus = 1e5;
 constexpr double kFirstStep = 1e-3, kShake = 1e-2;
 constexpr int kRepeats = 3;
@@ -22,9 +22,9 @@ struct Fall {
   double setup_s, seconds;
 };
 
-/// A first step from another state is not timed with the rest: it finds patterns, maps and orderings, which
-/// those who are compared with have at hand as well.  It shakes the nodes against each other, so that what a
-/// solver remembers of it is no help.
+/// Times the fall from rest.  A first step from another state is not timed with it: it finds patterns, maps
+/// and orderings, which the programs compared with also have beforehand.  It shakes the nodes against each
+/// other, so that a solver cannot reuse its solution.
 Fall fall(const BeamSize& size, const IntegratorSpec& spec) {
   Beam beam(size.along, size.across, kYoungsModulus);
   const VecX rest = beam.state.q();

@@ -10,14 +10,13 @@
 namespace palpate::bench {
 namespace {
 
-constexpr double kDensity = 1000.0, kTurning = 3.0, kStart = 0.1, kFallsBelow = 3e5;
+constexpr double kDensity = 1000.0, kSpin = 3.0, kStart = 0.1, kFallsBelow = 3e5;
 
 /// Angle and its derivatives: a constant angular acceleration over kStart, then constant speed.
-fem::PathPoint turning(double t) {
-  const double rate = kTurning / kStart, s = std::min(t, kStart);
+fem::PathPoint rotating_end(double t) {
+  const double rate = kSpin / kStart, s = std::min(t, kStart);
   fem::PathPoint p;
-  p.pose = {Quat(Eigen::AngleAxisd(0.5 * rate * s * s + kTurning * (t - s), Vec3::UnitY())),
-            Vec3(-0.5, 0, 0)};
+  p.pose = {Quat(Eigen::AngleAxisd(0.5 * rate * s * s + kSpin * (t - s), Vec3::UnitY())), Vec3(-0.5, 0, 0)};
   p.twist.angular = Vec3(0, rate * s, 0);
   p.acceleration.angular = Vec3(0, t < kStart ? rate : 0.0, 0);
   return p;
@@ -59,7 +58,7 @@ Beam::Beam(int along, int across, double youngs_modulus_pa) {
   if (youngs_modulus_pa < kFallsBelow)
     system.add(fem::make_fixed(held, x0));
   else
-    system.add(fem::make_driven(held, local, turning));
+    system.add(fem::make_driven(held, local, rotating_end));
   system.prepare(state.view());
 }
 

@@ -8,7 +8,7 @@ namespace palpate::bench {
 TetMesh beam_mesh(int along, int across);
 
 /// The beam in motion.  E = 1e5: it falls under its weight, hanging by its held end.  Stiffer ones would only
-/// tremble: their held end turns, at 3 rad/s after a start of 0.1 s, and bends them.
+/// tremble: their held end rotates, at 3 rad/s after a start of 0.1 s, and bends them.
 struct Beam {
   dynamics::State state;
   dynamics::System system;

@@ -30,9 +30,9 @@ struct Bent {
   explicit Bent(const BeamSize& size) : mesh(beam_mesh(size.along, size.across)) {
     VecX x = mesh.nodes.reshaped();
     for (Eigen::Index i = 0; i < x.size(); i += 3) {
-      const double turn = kBent * (x[i] + 0.5), radius = 1.0 / kBent + x[i + 2];
-      x[i] = radius * std::sin(turn);
-      x[i + 2] = radius * std::cos(turn);
+      const double angle = kBent * (x[i] + 0.5), radius = 1.0 / kBent + x[i + 2];
+      x[i] = radius * std::sin(angle);
+      x[i + 2] = radius * std::cos(angle);
     }
     shift.resize(x.size());
     for (Eigen::Index i = 0; i < x.size(); ++i)
@@ -90,7 +90,7 @@ std::vector<ElementTiming> time_elements(const BeamSize& size, double time_s) {
     ZeroRowSumMatrix* room = mixed.step_matrix(A.body);
     PALPATE_CHECK(room, "pcg-single has no room for a step matrix");
     room->diagonal = VecX::Constant(beam.force.size(), kMass);
-    time("one pass", [&] { body.add_step(at, beam.shift, kStiffness, kRate, beam.force, *room); });
+    time("fused assembly", [&] { body.add_step(at, beam.shift, kStiffness, kRate, beam.force, *room); });
   }
   time("tangent, warped", [&] { body.store_tangent(at, kStiffness, kRate, A); });
   fem::SoftBody exact = beam.body(fem::Tangent::kExact, 0.0);

@@ -32,20 +32,23 @@ std::string to_json(const FemBenchReport& report) {
     out += fmt::format(
         "{}\n    {{\"size\": \"{}\", \"nodes\": {}, \"tetrahedra\": {}, \"youngs_modulus_pa\": {:g}, "
         "\"step_s\": {:g}, \"linear_rtol\": {:g}, \"linear_solver\": \"{}\", "
-        "\"threads\": {}, \"one_pass\": {}, \"force_ms\": {:.4g}, \"matrix_ms\": {:.4g}, \"factor_ms\": "
-        "{:.4g}, \"solve_ms\": {:.4g}, \"step_ms\": {:.4g}, \"mean_step_ms\": {:.4g}, \"near\": {:.3g}, "
+        "\"threads\": {}, \"fused_assembly\": {}, \"force_ms\": {:.4g}, \"matrix_ms\": {:.4g}, "
+        "\"factor_ms\": "
+        "{:.4g}, \"solve_ms\": {:.4g}, \"step_ms\": {:.4g}, \"mean_step_ms\": {:.4g}, \"lagged_share\": "
+        "{:.3g}, "
         "\"scaled_step_ms\": {}, \"least_step_ms\": {:.4g}, \"least_solve_ms\": {:.4g}, \"step_cpu_ms\": "
         "{:.4g}, \"solver_cpu_ms\": {:.4g}, "
-        "\"iterations\": {:.4g}, \"stiffness_number\": {:.4g}, \"energy_error\": {:.3g}, \"mass_error\": "
+        "\"iterations\": {:.4g}, \"squared_courant_number\": {:.4g}, \"energy_error\": {:.3g}, "
+        "\"mass_error\": "
         "{:.3g}, \"end_rotation_rad\": {:.3g}, \"force_limit_ms\": {:.4g}, \"matrix_limit_ms\": {:.4g}, "
         "\"factor_limit_ms\": {:.4g}, \"solve_limit_ms\": {:.4g}, "
         "\"needed_bytes\": {:.0f}, \"body_bytes\": {:.0f}, \"peak_bytes\": {:.0f}}}",
         i ? "," : "", r.size, r.nodes, r.tetrahedra, r.youngs_modulus_pa, r.step_s, r.linear_rtol,
-        r.linear_solver, r.threads, r.one_pass, r.force_ms, r.matrix_ms, r.factor_ms, r.solve_ms, r.step_ms,
-        r.step_mean_ms, r.near, number(r.scaled_ms), r.step_least_ms, r.solve_least_ms, r.step_cpu_ms,
-        r.solver_cpu_ms, r.iterations, r.stiffness, r.error, r.mass_error, r.rotation_rad, r.force_limit_ms,
-        r.matrix_limit_ms, r.factor_limit_ms, r.solve_limit_ms, r.needed_bytes, r.body_bytes,
-        std::isfinite(r.peak_bytes) ? r.peak_bytes : 0.0);
+        r.linear_solver, r.threads, r.fused_assembly, r.force_ms, r.matrix_ms, r.factor_ms, r.solve_ms,
+        r.step_ms, r.step_mean_ms, r.lagged_share, number(r.scaled_ms), r.step_least_ms, r.solve_least_ms,
+        r.step_cpu_ms, r.solver_cpu_ms, r.iterations, r.squared_courant_number, r.error, r.mass_error,
+        r.rotation_rad, r.force_limit_ms, r.matrix_limit_ms, r.factor_limit_ms, r.solve_limit_ms,
+        r.needed_bytes, r.body_bytes, std::isfinite(r.peak_bytes) ? r.peak_bytes : 0.0);
   }
   out += "\n  ],\n  \"elements\": [";
   for (std::size_t i = 0; i < report.elements.size(); ++i) {

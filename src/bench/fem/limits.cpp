@@ -60,7 +60,7 @@ void write_all(double* to, std::size_t count, double value) {
   for (std::size_t i = 0; i + 8 <= count; i += 8) *reinterpret_cast<LineInMemory*>(to + i) = all;
 }
 
-/// Both halves of `memory`, copied one to the other; read and write counted.
+/// Bandwidth of copying one half of `memory` to the other; read and write counted.
 double copy_gb_s(Team& team, std::vector<double>& memory, std::size_t bytes, double measure_for) {
   const std::size_t half = bytes / sizeof(double) / 2;
   return fastest_gb_s(team, static_cast<double>(2 * half * sizeof(double)), measure_for, [&](int k) {

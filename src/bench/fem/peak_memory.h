@@ -2,8 +2,8 @@
 
 namespace palpate::bench {
 
-/// Most memory [bytes] that the process held since this was made, above what it held then; NaN where the
-/// system does not tell.
+/// Peak memory [bytes] of the process since this object was made, above what it held then; NaN where the
+/// system does not report it.
 class PeakMemory {
  public:
   PeakMemory();

@@ -27,8 +27,8 @@ constexpr double kTight = 1e-10;
 /// the motion before the timed steps: large rotation is there
 constexpr double kWarmTo = 0.2, kWarmStep = 1e-2;
 
-/// The solver that is timed, and now and then a direct one behind it, of the step's matrix assembled anew in
-/// double, that tells the error of its answer.
+/// The solver that is timed, and for the checked steps a direct one behind it, of the step's matrix assembled
+/// anew in double, which measures the error of the answer.
 class CheckedSolver final : public LinearSolver, public MixedPrecisionSolver {
  public:
   CheckedSolver(std::unique_ptr<LinearSolver> solver, Beam& beam, const IntegratorSpec& spec)
@@ -50,10 +50,10 @@ class CheckedSolver final : public LinearSolver, public MixedPrecisionSolver {
   }
   std::optional<SolveStatus> solve_by_refinement(ResidualFunction& residual, VecX& x) override {
     if (!mixed_) return {};
-    const long before = solver_->counters().near;
+    const long before = solver_->counters().lagged;
     const std::optional<SolveStatus> status = timed([&] { return mixed_->solve_by_refinement(residual, x); });
     if (status != SolveStatus::kOk) return status;
-    lagged += static_cast<int>(solver_->counters().near - before);
+    lagged += static_cast<int>(solver_->counters().lagged - before);
     if (!check_next) return status;
     const double start = wall_seconds(), start_cpu = thread_cpu_seconds();
     VecX rhs;
@@ -80,7 +80,7 @@ class CheckedSolver final : public LinearSolver, public MixedPrecisionSolver {
   bool check_next = false;
   double cpu_s = 0.0, checking_s = 0.0, checking_cpu_s = 0.0, error = 0.0, mass_error = 0.0;
   int checks = 0, step_matrices = 0, lagged = 0;
-  /// Of the step that begins now.
+  /// The matrix of the step that begins now.
   const BorderedMatrix& matrix() {
     const double h = spec_.step_s, t1 = beam_.state.time() + h;
     beam_.system.step_matrix(beam_.state.view(t1, beam_.state.q().data(), beam_.state.u().data()), 1.0, h,
@@ -135,8 +135,9 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// 1 + h^2 tr K / tr M, from the rows of the step matrix (a row sums to its mass).
-double stiffness_of(const BlockSparse& A, const VecX& masses) {
+/// Squared Courant-type number 1 + h^2 tr K / tr M, from the rows of the step matrix (a row sums to its
+/// mass).
+double squared_courant_number(const BlockSparse& A, const VecX& masses) {
   double own = 0.0, mass = 0.0;
   for (int i = 0; i < A.block_rows(); ++i) {
     const double* block = A.block(A.diagonal(i));
@@ -152,7 +153,7 @@ struct Warm {
   VecX q, u;
 };
 
-/// The same motion, whatever the step.
+/// Number of timed steps of length h: as many as take the same motion, or always as many.
 int timed_steps(const FemBenchOptions& options, double h) {
   return options.same_motion ? static_cast<int>(std::lround(options.steps * std::max(1.0, kWarmStep / h)))
                              : options.steps;
@@ -185,7 +186,7 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
   long iterations = 0;
   double peak = 0.0;
   const int steps = timed_steps(options, spec.step_s);
-  long near = 0;
+  long lagged = 0;
   for (int k = 0; k < kUntimed + steps; ++k) {
     if (k == kUntimed) peak = memory.bytes();  // before the first check, which holds a factor
     solver.check_next = options.checks > 0 && k >= kUntimed &&
@@ -210,7 +211,7 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
     ms[5].push_back(1e3 * cpu);
     ms[6].push_back(1e3 * (solver.cpu_s - solver_cpu));
     iterations += solved.iterations;
-    near += solved.near;
+    lagged += solved.lagged;
   }
   FemBenchRow row;
   row.size = size.name;
@@ -223,7 +224,7 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
   row.youngs_modulus_pa = youngs_modulus;
   row.step_s = spec.step_s;
   row.linear_rtol = spec.linear_rtol;
-  row.one_pass = solver.step_matrices + solver.lagged >= steps;
+  row.fused_assembly = solver.step_matrices + solver.lagged >= steps;
   row.force_ms = median(ms[0]);
   row.matrix_ms = median(ms[1]);
   row.factor_ms = median(ms[2]);
@@ -235,8 +236,8 @@ FemBenchRow time_steps(const BeamSize& size, const IntegratorSpec& spec, double 
   row.solve_least_ms = *std::min_element(ms[3].begin(), ms[3].end());
   row.step_mean_ms = std::accumulate(ms[4].begin(), ms[4].end(), 0.0) / steps;
   row.iterations = static_cast<double>(iterations) / steps;
-  row.near = static_cast<double>(near) / steps;
-  row.stiffness = stiffness_of(solver.matrix().body, beam.masses);
+  row.lagged_share = static_cast<double>(lagged) / steps;
+  row.squared_courant_number = squared_courant_number(solver.matrix().body, beam.masses);
   row.error = solver.error;
   row.mass_error = solver.mass_error;
   row.rotation_rad = beam.end_rotation();
@@ -251,8 +252,8 @@ void set_limits(FemBenchRow& row, const MachineLimits& limits) {
                           static_cast<double>(row.blocks),
                           row.iterations,
                           row.linear_rtol < 1e-4 ? 5.0 : 3.0,
-                          row.one_pass,
-                          row.near > 0.5};
+                          row.fused_assembly,
+                          row.lagged_share > 0.5};
   const StepWork work = work_of(counts);
   row.scaled_ms = row.step_ms * limits.large_copy_gb_s / limits.reference_copy_gb_s;
   row.force_limit_ms = work.force.limit_ms(limits, work.working_set);
@@ -370,8 +371,8 @@ void calibrate_auto(const std::function<void(const std::string&)>& row_measured,
           least = ms;
           fastest = solver;
         }
-        row_measured(fmt::format("{{{}, {:.3g}, {:g}, \"{}\"}},  // ms:{}\n", row.nodes, row.stiffness, rtol,
-                                 fastest, times));
+        row_measured(fmt::format("{{{}, {:.3g}, {:g}, \"{}\"}},  // ms:{}\n", row.nodes,
+                                 row.squared_courant_number, rtol, fastest, times));
       }
     }
 }

@@ -7,27 +7,29 @@
 namespace palpate::bench {
 namespace {
 
-// Bytes.  An element: six numbers of its rest shape and its volume, four node numbers of two bytes; for the
-// matrix six edge numbers more.  A block:
-// nine doubles; in the copy nine floats and a column; what leads from one to the other eight bytes.  A
-// vector: three doubles a node, in the solver four.
+// Bytes.
+// - An element: six numbers of its rest shape and its volume, four node numbers of two bytes each; for the
+//   matrix six edge numbers more.
+// - A block: nine doubles; in the single-precision copy nine floats and a column; eight bytes of map between
+//   the two.
+// - A vector: three doubles a node, in the solver four.
 constexpr double kElement = 64.0, kEdges = 12.0, kBlock = 72.0, kMap = 8.0, kCopy = 36.0, kColumn = 4.0;
-// In one pass: the place of a block above the diagonal in the copy, of which there is no other; masses are
-// beside it.
-constexpr double kPlace = 6.0;
+// Fused assembly: the slot of a block above the diagonal in the copy, which is the only matrix; masses are
+// stored beside it.
+constexpr double kSlot = 6.0;
 constexpr double kVector = 24.0, kSolverVector = 32.0, kSingleVector = 16.0, kInverse = 48.0;
 
 // Operations of an element, counted in the formulas of lane_element.h, lane_rotation.h and lane_blocks.h; a
 // division counts as one, Newton takes four steps.
 constexpr double kGradient = 36.0, kRotation = 334.0, kForceTail = 105.0, kProductTail = 196.0,
                  kBlocks = 383.0;
-// In one pass: both stresses, and one sum into the nodes.
+// Fused assembly: both stresses, and one sum into the nodes.
 constexpr double kStepTail = 244.0;
-// Of damping, in a force: the stress of the rate and its image.  Of the exact tangent: the coupling matrix,
-// [h_a]x C, and what six blocks have more.
+// Damping adds to a force the stress of the strain rate and its image.  The exact tangent adds the coupling
+// matrix, [h_a]x C, and its part of six blocks.
 constexpr double kDampingTail = 114.0, kCoupled = 276.0;
-// Of a block: scaling, or its part of the row's sum, and a product in double for each start; in an iteration
-// one product.  Of a node in an iteration: update, preconditioner, direction.
+// A block is scaled (or added to the row sum) and multiplied in double once for each start; an iteration
+// takes one product.  A node in an iteration: update, preconditioner, direction.
 constexpr double kFactorOfBlock = 9.0, kStartOfBlock = 18.0, kProductOfBlock = 18.0, kIterationOfNode = 50.0;
 
 }  // namespace
@@ -41,9 +43,9 @@ double StageWork::limit_ms(const MachineLimits& limits, double working_set) cons
 
 StepWork work_of(const StepCounts& c) {
   StepWork w;
-  const double pairs = 0.5 * (c.blocks - c.nodes), triangle = c.one_pass ? pairs : pairs + c.nodes;
-  // Forces, and the product of the tangent with the velocity: once x, once x and u are read, and both times a
-  // result is added to.
+  const double pairs = 0.5 * (c.blocks - c.nodes), triangle = c.fused ? pairs : pairs + c.nodes;
+  // forces, and the product of the tangent with the velocity: x is read once, x and u once, and both times a
+  // result is added to
   w.force = {.read_bytes = 2.0 * kElement * c.tetrahedra + 5.0 * kVector * c.nodes,
              .written_bytes = 2.0 * kVector * c.nodes,
              .double_flops = (3.0 * kGradient + 2.0 * kRotation + kForceTail + kProductTail) * c.tetrahedra};
@@ -57,8 +59,8 @@ StepWork work_of(const StepCounts& c) {
       .double_flops = kFactorOfBlock * c.blocks};
   // x, u, the shift and f once, singles out; the right-hand side is a few vectors; the preconditioner reads
   // what was written
-  if (c.one_pass) {
-    w.matrix = {.read_bytes = (kElement + kEdges) * c.tetrahedra + 4.0 * kVector * c.nodes + kPlace * pairs,
+  if (c.fused) {
+    w.matrix = {.read_bytes = (kElement + kEdges) * c.tetrahedra + 4.0 * kVector * c.nodes + kSlot * pairs,
                 .written_bytes = kVector * c.nodes + kCopy * pairs,
                 .double_flops = (2.0 * kGradient + kRotation + kStepTail + kBlocks) * c.tetrahedra};
     w.force = {.read_bytes = kVector * c.nodes, .written_bytes = kVector * c.nodes};
@@ -68,8 +70,8 @@ StepWork work_of(const StepCounts& c) {
                          (c.starts * kSingleVector + kInverse + kSolverVector + kSingleVector) * c.nodes,
         .single_flops = (kFactorOfBlock + c.starts * kStartOfBlock) * c.blocks};
   }
-  // the residual in one pass: x, u, the shift, the change and the masses once, f written; no matrix
-  if (c.near) {
+  // the residual: x, u, the shift, the change and the masses once, f written; no matrix
+  if (c.lagged) {
     w.force = {.read_bytes = kElement * c.tetrahedra + 6.0 * kVector * c.nodes,
                .written_bytes = kVector * c.nodes,
                .double_flops = (2.0 * kGradient + kRotation + kStepTail) * c.tetrahedra};
@@ -77,7 +79,7 @@ StepWork work_of(const StepCounts& c) {
   }
   // An iteration: direction (z, p to p), product (p to q, and the masses), update (p, q, d, r and the inverse
   // to d, r, z).
-  const double vectors = c.one_pass ? 8.0 : 7.0;
+  const double vectors = c.fused ? 8.0 : 7.0;
   w.solve = {.read_bytes = c.iterations *
                            ((kCopy + kColumn) * triangle + (vectors * kSingleVector + kInverse) * c.nodes),
              .written_bytes = c.iterations * 5.0 * kSingleVector * c.nodes,
@@ -88,11 +90,11 @@ StepWork work_of(const StepCounts& c) {
 }
 
 StageWork element_work(const std::string& stage, const StepCounts& c) {
-  StepCounts general = c, one_pass = c, near = c;
-  general.one_pass = general.near = false;
-  one_pass.one_pass = near.near = true;
-  if (stage == "one pass") return work_of(one_pass).matrix;
-  if (stage == "residual") return work_of(near).force;
+  StepCounts general = c, fused = c, lagged = c;
+  general.fused = general.lagged = false;
+  fused.fused = lagged.lagged = true;
+  if (stage == "fused assembly") return work_of(fused).matrix;
+  if (stage == "residual") return work_of(lagged).force;
   if (stage.starts_with("tangent")) {
     StageWork work = work_of(general).matrix;
     if (stage == "tangent, exact") work.double_flops += kCoupled * c.tetrahedra;
@@ -108,10 +110,10 @@ StageWork element_work(const std::string& stage, const StepCounts& c) {
 
 double bytes_to_store(const StepCounts& c) {
   const double pairs = 0.5 * (c.blocks - c.nodes), elements = (kElement + kEdges) * c.tetrahedra;
-  // and where it is filled from
-  const double packing = (kCopy + kColumn + kColumn) * (c.one_pass ? pairs : pairs + c.nodes);
-  const double matrix = c.one_pass ? kColumn * c.blocks + (kCopy + kPlace) * pairs
-                                   : (kBlock + kColumn + kMap + kCopy) * c.blocks;
+  // the copy, and the map that it is filled by
+  const double packing = (kCopy + kColumn + kColumn) * (c.fused ? pairs : pairs + c.nodes);
+  const double matrix =
+      c.fused ? kColumn * c.blocks + (kCopy + kSlot) * pairs : (kBlock + kColumn + kMap + kCopy) * c.blocks;
   // q, u, two of each attempt, force, product, right-hand side, change; in the solver b, x, A x, starts with
   // their products, and five single ones
   const double vectors =

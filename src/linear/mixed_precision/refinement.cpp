@@ -37,7 +37,7 @@ std::optional<SolveStatus> Refinement::solve(dynamics::ResidualFunction& equatio
   }
   lag_.solved(s_.correction);
   ++s_.counters.solves;
-  if (!own) ++s_.counters.near;
+  if (!own) ++s_.counters.lagged;
   return status;
 }
 
@@ -75,7 +75,7 @@ SolveStatus Refinement::approach(dynamics::ResidualFunction& equations, VecX& x)
   }
   s_.iteration.end();
   s_.put_solution(x.data(), true, true);
-  s_.counters.residuals += residuals;
+  s_.counters.residual_checks += residuals;
   return SolveStatus::kOk;
 }
 

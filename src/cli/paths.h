@@ -14,13 +14,13 @@ std::string shipped_file(const std::string& name);
 /// @throws Error with the nearest known name
 std::string find_scene(const std::string& name_or_path);
 
-/// Where results of that kind go unless the person says otherwise: out/NAME.
+/// Default folder for results of that kind: out/NAME.
 std::string default_folder(const std::string& name);
 
 /// The whole of a text file.  @throws Error when it cannot be read
 std::string read_text(const std::string& path);
 
-/// Makes the folder with its parents.  @throws Error when a file is in its place or it cannot be made
+/// Makes the folder with its parents.  @throws Error when a file has that name or it cannot be made
 void make_folder(const std::string& folder);
 
 }  // namespace palpate::cli

@@ -1,4 +1,4 @@
-#include "places.h"
+#include "paths.h"
 
 #include <algorithm>
 #include <filesystem>
