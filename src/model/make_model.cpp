@@ -224,6 +224,14 @@ TetMesh fill(const Filling& filling, const Steps& steps, const Progress& progres
   return std::move(out.mesh);
 }
 
+/// @throws Error where the tetrahedra are too coarse for the skin, with the way out
+mesh::Embedding embedded(const LayeredModel& model, const std::string& source,
+                         mesh::EmbeddingReport& report) {
+  try {
+    return mesh::embed(model.tets, model.skin.vertices, &report);
+  } catch (const Error& e) { fail("{}: {}; ask for more with --tetrahedra", source, e.what()); }
+}
+
 }  // namespace
 
 Made make_model(Input input, const Options& options, Watcher& watcher) {
@@ -273,7 +281,7 @@ Made make_model(Input input, const Options& options, Watcher& watcher) {
   mesh::EmbeddingReport embedding;
   step("embed the skin", [&] {
     model.skin = input.skin.vertices.cols() > 0 ? std::move(input.skin) : std::move(surface);
-    model.embedding = mesh::embed(model.tets, model.skin.vertices, &embedding);
+    model.embedding = embedded(model, input.source, embedding);
   });
   if (!model.skeleton.bones.empty())
     step("bind the skeleton",

@@ -156,6 +156,14 @@ TetMesh flattened(double by) {
 /// A node of the inside pulled through the face of a neighbour.
 TetMesh inverted() { return flattened(-0.2); }
 
+/// Twelve fins from pole to pole, which come together at the poles.
+TriMesh fins() {
+  constexpr double kFins = 12.0;
+  return mapped(ball(1.0, 16), [](const Vec3& p) -> Vec3 {
+    return p * (1 + 0.5 * std::pow(std::sin(kFins / 2 * std::atan2(p.y(), p.x())), 8));
+  });
+}
+
 model::Options options(const std::function<void(model::Options&)>& set) {
   model::Options out;
   set(out);
@@ -173,7 +181,11 @@ std::vector<Entry> entries() {
   const auto strict = options([](model::Options& o) { o.repair.wrap = false; });
   const auto hurried = options([](model::Options& o) { o.tetrahedra.limits.seconds = 1e-6; });
   const auto few_points = options([](model::Options& o) { o.tetrahedra.limits.points = 250; });
-  constexpr double kFingers = 12.0;
+  // enough for 1,500 tetrahedra, not for what the relief asks for
+  const auto too_few = options([](model::Options& o) {
+    o.tetrahedra.limits.points = 600;
+    o.creases = model::Creases::kNone;
+  });
   return {
       {"ball", [] { return surface(ball()); }, "model"},
       {"noise of a tenth of an edge", [] { return surface(noisy(ball(), 0.015)); }, "model"},
@@ -297,13 +309,8 @@ std::vector<Entry> entries() {
       {"far from the origin",
        [] { return surface(mapped(ball(), [](const Vec3& p) -> Vec3 { return p + Vec3(1e4, 0, 0); })); },
        "model"},
-      {"fingers",
-       [] {
-         return surface(mapped(ball(1.0, 16), [](const Vec3& p) -> Vec3 {
-           return p * (1 + 0.5 * std::pow(std::sin(kFingers / 2 * std::atan2(p.y(), p.x())), 8));
-         }));
-       },
-       "model", false},
+      {"fins that meet at poles", [] { return surface(fins()); }, "model", false, {}, 6000},
+      {"the same with too few tetrahedra", [] { return surface(fins()); }, "outside the tetrahedra", false},
       {"tetrahedra of others, flat", [] { return tetrahedra(flattened(0.05)); }, "--remesh"},
       {"flat tetrahedra, taken", [] { return tetrahedra(flattened(0.05)); }, "model", true, accept},
       {"flat tetrahedra, filled anew", [] { return tetrahedra(flattened(0.05)); }, "model", true, remesh},
@@ -311,7 +318,10 @@ std::vector<Entry> entries() {
       {"tetrahedra without volume", [] { return tetrahedra(flattened(0.0)); }, "test.msh", true, accept},
       {"inverted tetrahedra, filled anew", [] { return tetrahedra(inverted()); }, "model", true, remesh},
       {"no time", [] { return surface(ball()); }, "--limit-s", true, hurried},
-      {"few points", [] { return surface(ball()); }, "--points", true, few_points},
+      {"few points", [] { return surface(ball()); }, "have about 300 points, more than the 250", true,
+       few_points},
+      {"points run out", [] { return surface(stellated(ball(1.0, 2), 0.6)); },
+       "need more than 600 points, the most of them around", true, too_few},
   };
 }
 

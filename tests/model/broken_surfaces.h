@@ -17,6 +17,7 @@ struct Entry {
   std::string expected;
   bool quick = true;  ///< is in the subset that every run makes
   model::Options options = {};
+  int tetrahedra = 1500;  ///< at least
 };
 
 std::vector<Entry> entries();

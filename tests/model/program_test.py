@@ -219,17 +219,18 @@ class Program(unittest.TestCase):
             self.assertFalse((self.path / "a.h5").exists())
 
     def test_steps_that_cannot_be_interrupted_end_as_well(self):
-        # a thousand tents through each other: what CGAL does with them takes far longer than a second
+        # 1,600 tetrahedra through each other: CGAL works on their intersections for far longer than a second
         with open(self.path / "tangle.obj", "w", encoding="ascii") as file:
-            for i in range(400):
+            for i in range(1600):
                 for x, y, z in [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]:
-                    file.write(f"v {x + i % 20 * 0.11} {y + i // 20 * 0.13} {z + i * 0.001}\n")
+                    file.write(f"v {x + i % 40 * 0.11} {y + i // 40 * 0.13} {z + i * 0.001}\n")
                 a = 4 * i + 1
                 for f in [(a, a + 2, a + 1), (a, a + 1, a + 3), (a + 1, a + 2, a + 3), (a, a + 3, a + 2)]:
                     file.write("f {} {} {}\n".format(*f))
         done = run("model", self.path / "tangle.obj", "-o", self.path / "a.h5", "--limit-s", "0.001")
         self.assertEqual(done.returncode, 1, done.stdout)
-        self.assertRegex(done.stderr, r"tangle.obj.*--limit-s")
+        self.assertRegex(done.stderr, r'tangle.obj.*face \d+ at \(.*\) m: "mend the surface" did not end '
+                                      r"within 0.001 s.*--limit-s")
         self.assertFalse((self.path / "a.h5").exists())
 
     def test_a_size_that_cannot_be_meant_is_asked_about(self):
@@ -249,7 +250,8 @@ class Program(unittest.TestCase):
         for scale in ("1", "0.001"):
             self.assertEqual(run(*make, "--scale", scale).returncode, 0)
         small = scaled(octahedron(self.path), "small.obj", 1e-5)
-        self.assertIn("the body is 2e-05 m large: is that meant?", run("model", small).stderr)
+        self.assertIn("the body is 2e-05 m large: is that meant? Then say --scale 1; a file in kilometres",
+                      run("model", small).stderr)
 
     def test_flat_tetrahedra_are_refused_filled_anew_or_taken_at_a_price(self):
         flat = flat_tetrahedra(self.path)
