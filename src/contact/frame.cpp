@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "contact/rotation_path.h"
 #include "palpate/core/error.h"
+#include "palpate/dynamics/path.h"
 
 namespace palpate::contact {
 namespace {
@@ -50,27 +50,6 @@ Pose continued(const Pose& pose, const Twist& twist, double dt) {
           pose.translation + dt * twist.linear};
 }
 
-struct Sampled {
-  Pose pose;
-  Twist twist;
-};
-
-/// Between two knots, h apart, at s in [0, 1]: position p and rotation vector phi (world axes, from the first
-/// orientation) are cubics.
-///   R(t) = exp(phi(t)) R0,   w = J(phi) phi'    so    phi(0) = 0, phi'(0) = w0, phi(1) = log(R1 R0^-1),
-///   phi'(1) = J(phi1)^-1 w1.
-Sampled between(const Pose& pose0, const Twist& twist0, const Pose& pose1, const Twist& twist1, double h,
-                double s) {
-  const Vec3 phi1 = rotation_vector(pose1.rotation * pose0.rotation.conjugate());
-  const Cubic p = hermite(s, pose0.translation, h * twist0.linear, pose1.translation, h * twist1.linear);
-  const Cubic phi =
-      hermite(s, Vec3::Zero(), h * twist0.angular, phi1, h * (left_jacobian_inverse(phi1) * twist1.angular));
-  Sampled out;
-  out.pose = {(quaternion_of(phi.value) * pose0.rotation).normalized(), p.value};
-  out.twist = {left_jacobian(phi.value) * phi.slope / h, p.slope / h};
-  return out;
-}
-
 /// The knot at or before t (the first one where there is none).
 template <class Knots>
 std::size_t knot_before(const Knots& knots, double t) {
@@ -81,12 +60,13 @@ std::size_t knot_before(const Knots& knots, double t) {
 }
 
 template <class Knots>
-Sampled sample(const Knots& knots, double t) {
+dynamics::RigidMotion sample(const Knots& knots, double t) {
   const std::size_t i = knot_before(knots, t);
   const auto& a = knots[i];
   if (t <= a.t || i + 1 == knots.size()) return {continued(a.pose, a.twist, t - a.t), a.twist};
   const auto& b = knots[i + 1];
-  return between(a.pose, a.twist, b.pose, b.twist, b.t - a.t, (t - a.t) / (b.t - a.t));
+  const double h = b.t - a.t;
+  return dynamics::motion_between({a.pose, a.twist}, {b.pose, b.twist}, h, (t - a.t) / h);
 }
 
 }  // namespace

@@ -35,18 +35,18 @@ class Fixed final : public dynamics::DrivenMotion {
 /// Points of a frame that moves along a path.
 class Driven final : public dynamics::DrivenMotion {
  public:
-  Driven(std::vector<int> dofs, Points local, Path path)
+  Driven(std::vector<int> dofs, Points local, dynamics::Path path)
       : dofs_(std::move(dofs)), local_(std::move(local)), path_(std::move(path)) {}
   const std::vector<int>& dofs() const override { return dofs_; }
   void evaluate(const dynamics::StateView& state, VecX& x, VecX& v, VecX& a) const override {
-    const PathPoint now = path_(state.time);
+    const dynamics::PathPoint now = path_(state.time);
     dynamics::carry({now.pose, now.twist}, now.acceleration, dofs_, local_, x, v, a);
   }
 
  private:
   std::vector<int> dofs_;
   Points local_;
-  Path path_;
+  dynamics::Path path_;
 };
 
 /// See make_carried.  Its geometric stiffness: under a small rotation e of the body, dr = e x r, and with the
@@ -133,7 +133,7 @@ std::shared_ptr<dynamics::DrivenMotion> make_fixed(std::vector<int> dofs, VecX x
 }
 
 std::shared_ptr<dynamics::DrivenMotion> make_driven(std::vector<int> dofs, Points local_points_per_dof,
-                                                    Path path) {
+                                                    dynamics::Path path) {
   check_dofs(dofs, local_points_per_dof.cols());
   PALPATE_CHECK(path, "driven nodes need a path");
   return std::make_shared<Driven>(std::move(dofs), std::move(local_points_per_dof), std::move(path));

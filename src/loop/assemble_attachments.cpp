@@ -1,9 +1,9 @@
 #include <algorithm>
 
 #include "assemble_parts.h"
+#include "palpate/bones/shape.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
-#include "palpate/fem/bone.h"
 #include "tool_side.h"
 
 namespace palpate::loop {
@@ -25,7 +25,7 @@ std::vector<int> nodes_inside(const World& world, const Body& body, const Attach
   const Pose from_world = Pose{quaternion_of(bone->rotation_vector_rad), bone->position_m}.inverse();
   std::vector<int> out;
   for (int i = 0; i < body.placed.cols(); ++i)
-    if (fem::inside_bone(*bone, from_world * Vec3(body.placed.col(i)))) out.push_back(i);
+    if (bones::inside_bone(*bone, from_world * Vec3(body.placed.col(i)))) out.push_back(i);
   return out;
 }
 
@@ -47,8 +47,8 @@ void check_nodes(const Body& body, const AttachmentSpec& spec, const std::vector
 
 /// Motion of the nodes of an attachment, and the frame that they are fixed in at the start.
 struct Carrier {
-  int block_id = -1;  ///< a rigid block, or
-  fem::Path path;     ///< a function of time; neither: they stay
+  int block_id = -1;    ///< a rigid block, or
+  dynamics::Path path;  ///< a function of time; neither: they stay
   Pose start;
   std::vector<int>* dofs = nullptr;  ///< where a bone keeps a list of what it carries
 };
@@ -56,13 +56,14 @@ struct Carrier {
 /// Keyframes move the region about its own centre: x(t) = centre + position(t) + R(t) (x0 - centre).
 Carrier along_keyframes(const AttachmentSpec& spec) {
   const Vec3 centre = spec.region == "sphere" ? spec.centre_m : Vec3(0.5 * (spec.box_min_m + spec.box_max_m));
-  return {-1,
-          [keyframes = spec.keyframes, centre](double t) {
-            const device::HandleSample s = device::sample_keyframes(keyframes, t);
-            return fem::PathPoint{{s.pose.rotation, s.pose.translation + centre}, s.twist, s.acceleration};
-          },
-          {Quat::Identity(), centre},
-          nullptr};
+  return {
+      -1,
+      [keyframes = spec.keyframes, centre](double t) {
+        const device::HandleSample s = device::sample_keyframes(keyframes, t);
+        return dynamics::PathPoint{{s.pose.rotation, s.pose.translation + centre}, s.twist, s.acceleration};
+      },
+      {Quat::Identity(), centre},
+      nullptr};
 }
 
 Carrier carrier_of(World& world, const Body& body, const AttachmentSpec& spec) {

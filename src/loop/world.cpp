@@ -5,7 +5,7 @@
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
 
-#include "palpate/tool/bone_tree.h"
+#include "palpate/bones/tree.h"
 #include "tool_side.h"
 
 namespace palpate::loop {
@@ -76,7 +76,7 @@ namespace {
 
 dynamics::RigidMotion motion_of(const World& world, const Bone& bone) {
   if (bone.path) {
-    const fem::PathPoint at = bone.path(world.state.time());
+    const dynamics::PathPoint at = bone.path(world.state.time());
     return {at.pose, at.twist};
   }
   const dynamics::StateView view = world.state.view();

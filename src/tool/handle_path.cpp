@@ -3,20 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "so3.h"
+#include "palpate/dynamics/path.h"
 
 namespace palpate::tool {
 namespace {
-
-/// Cubic through 0 and `end` with slopes `m0`, `m1` by s: value and derivative at s in [0, 1].
-struct Hermite {
-  Vec3 value, slope;
-};
-Hermite hermite(double s, const Vec3& end, const Vec3& m0, const Vec3& m1) {
-  const double r = 1.0 - s;
-  return {s * s * (3.0 - 2.0 * s) * end + s * r * r * m0 - s * s * r * m1,
-          6.0 * s * r * end + r * (1.0 - 3.0 * s) * m0 + s * (3.0 * s - 2.0) * m1};
-}
 
 template <class Array>
 bool all_finite(const Array& values) {
@@ -25,20 +15,10 @@ bool all_finite(const Array& values) {
 
 }  // namespace
 
-// Rotation: theta(s) from 0 to d, the rotation vector of R1 R0^T, with R(s) = exp(theta) R0 and
-// omega = J(theta) theta'/h.  The slopes at the ends follow from the twists: h omega0 at
-// s = 0 (J(0) = I) and h J^-1(d) omega1 at s = 1.
 RigidMotion handle_at(const TickInput& input, double t) {
   const HandleMotion& m = input.handle;
-  const double s = std::clamp((t - input.t0) / input.h, 0.0, 1.0), h = input.h;
-  const Vec6 d = pose_difference(m.pose0, m.pose1);
-  const Hermite rotation = hermite(s, d.head<3>(), h * m.twist0.angular,
-                                   h * left_jacobian_inverse(d.head<3>()) * m.twist1.angular);
-  const Hermite shift = hermite(s, d.tail<3>(), h * m.twist0.linear, h * m.twist1.linear);
-  RigidMotion out;
-  out.pose = {quaternion_of(rotation.value) * m.pose0.rotation, m.pose0.translation + shift.value};
-  out.twist = {left_jacobian(rotation.value) * rotation.slope / h, shift.slope / h};
-  return out;
+  const double s = std::clamp((t - input.t0) / input.h, 0.0, 1.0);
+  return dynamics::motion_between({m.pose0, m.twist0}, {m.pose1, m.twist1}, input.h, s);
 }
 
 Vec6 applied_wrench(const TickInput& input, double t, const RigidMotion& tool) {

@@ -1,5 +1,5 @@
 #pragma once
-#include "simbody_headers.h"
+#include "simbody/headers.h"
 
 #include "handle_path.h"
 #include "parameters.h"

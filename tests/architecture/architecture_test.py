@@ -95,6 +95,13 @@ class Planted(unittest.TestCase):
         self.expect({"src/contact/a.h": "\n", "src/loop/bad.cpp": '#include "contact/a.h"\n'},
                     "contact/a.h is private to contact")
 
+    def test_wrapped_library_is_for_those_that_may_include_it(self):
+        wrapper = {"src/simbody/headers.h": "#include <SimTKsimbody.h>\n"}
+        self.assertEqual(breaches_of({**wrapper, "src/tool/body.h": '#include "simbody/headers.h"\n'}),
+                         ([], []))
+        breaches, _ = breaches_of({**wrapper, "src/fem/bad.cpp": '#include "simbody/headers.h"\n'})
+        self.assertTrue(any("fem may not include simbody" in breach for breach in breaches), breaches)
+
     def test_public_header_includes_a_private_one(self):
         self.expect({"include/palpate/fem/bad.h": '#include "fem/element.h"\n'},
                     "public header includes the private")

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
+#include "messages.h"
 #include "palpate/core/error.h"
 #include "palpate/core/pose.h"
 #include "palpate/dynamics/matrix.h"
@@ -15,6 +16,9 @@
 #include "palpate/fem/soft_body.h"
 
 namespace palpate::fem::testing {
+
+using palpate::testing::expect_contains;
+using palpate::testing::message_of;
 
 /// Uniform numbers in [-1, 1] with a fixed seed.
 class Random {
@@ -127,18 +131,6 @@ inline void expect_balanced(const Points& f, const Points& x) {
   EXPECT_GT(scale, 1.0);
   EXPECT_LT(f.rowwise().sum().norm(), 1e-14 * scale);
   EXPECT_LT(moment.norm(), 1e-12 * scale);
-}
-
-/// Message of the Error or InternalError that f throws; empty when it throws none.
-inline std::string message_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const std::exception& e) { return e.what(); }
-  return "";
-}
-
-inline void expect_contains(const std::string& text, const std::string& part) {
-  EXPECT_NE(text.find(part), std::string::npos) << "message: " << text;
 }
 
 /// A deformation with given signed stretches, rotated on both sides.

@@ -53,7 +53,7 @@ struct BentBeam {
     if (options.shake_m > 0.0)
       system.add(fem::make_driven(held, points, [a = options.shake_m](double t) {
         constexpr double kRate = 25.0;
-        fem::PathPoint p{};
+        dynamics::PathPoint p{};
         p.pose.translation = Vec3(0, 0, a * std::sin(kRate * t));
         p.twist.linear = Vec3(0, 0, a * kRate * std::cos(kRate * t));
         p.acceleration.linear = Vec3(0, 0, -a * kRate * kRate * std::sin(kRate * t));

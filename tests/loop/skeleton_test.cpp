@@ -3,12 +3,12 @@
 
 #include <filesystem>
 
-#include "loop/bone_paths.h"
 #include "loop/scene_checks.h"
+#include "palpate/bones/path.h"
+#include "palpate/bones/shape.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
-#include "palpate/fem/bone.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/world.h"
@@ -137,21 +137,21 @@ TEST(Skeleton, WeldedBonesHoldTheirNodes) {
 // Path, twist and acceleration of a chain of scripts are derivatives of one another; the joint stays
 // together; rotations are in the body's own axes.
 TEST(Skeleton, AChainOfScriptsMovesAsItsDerivativesSay) {
-  loop::PrescribedJoint first{{quaternion_of(Vec3(0.1, 0.2, -0.3)), Vec3(0.3, 0.1, 0.2)},
-                              Vec3(0.25, 0.1, 0.2),
-                              quaternion_of(Vec3(0.4, 0.0, 0.2)),
-                              {}};
+  bones::PrescribedJoint first{{quaternion_of(Vec3(0.1, 0.2, -0.3)), Vec3(0.3, 0.1, 0.2)},
+                               Vec3(0.25, 0.1, 0.2),
+                               quaternion_of(Vec3(0.4, 0.0, 0.2)),
+                               {}};
   first.keyframes = scripted("a", Vec3(0.9, -0.5, 0.3), Vec3(0.02, 0.01, -0.03)).keyframes;
-  loop::PrescribedJoint second{
+  bones::PrescribedJoint second{
       {quaternion_of(Vec3(-0.3, 0.1, 0.2)), Vec3(0.5, 0.2, 0.1)}, Vec3(0.4, 0.15, 0.15), first.axes, {}};
   second.keyframes = scripted("b", Vec3(-0.4, 0.8, 0.6)).keyframes;
-  const fem::Path upper = loop::prescribed_path(first, {}, {}),
-                  lower = loop::prescribed_path(second, upper, first.start);
+  const dynamics::Path upper = bones::prescribed_path(first, {}, {}),
+                       lower = bones::prescribed_path(second, upper, first.start);
   EXPECT_LT(pose_difference(lower(0.0).pose, second.start).norm(), 1e-15);
   constexpr double e = 1e-5;
-  for (const fem::Path& path : {upper, lower})
+  for (const dynamics::Path& path : {upper, lower})
     for (const double t : {0.02, 0.05, 0.081}) {
-      const fem::PathPoint at = path(t), before = path(t - e), after = path(t + e);
+      const dynamics::PathPoint at = path(t), before = path(t - e), after = path(t + e);
       const Vec6 rate = pose_difference(before.pose, after.pose) / (2.0 * e);
       EXPECT_LT((rate.head<3>() - at.twist.angular).norm() + (rate.tail<3>() - at.twist.linear).norm(), 3e-5);
       EXPECT_LT(((after.twist.angular - before.twist.angular) / (2.0 * e) - at.acceleration.angular).norm(),
@@ -160,7 +160,7 @@ TEST(Skeleton, AChainOfScriptsMovesAsItsDerivativesSay) {
                 3e-3);
       EXPECT_GT(at.acceleration.linear.norm(), 1.0);
     }
-  const fem::PathPoint u = upper(0.05), l = lower(0.05);
+  const dynamics::PathPoint u = upper(0.05), l = lower(0.05);
   EXPECT_LT(((u.pose * (first.start.inverse() * second.position)) -
              (l.pose * (second.start.inverse() * second.position)))
                 .norm(),
@@ -257,8 +257,8 @@ TEST(Skeleton, AFreeLimbKeepsItsMomentum) {
     const auto world = loop::assemble(d);
     VecX inertia(9);
     for (int b = 0; b < 3; ++b) {
-      const fem::TaperedBone shape =
-          fem::tapered_bone(world->bodies[0].skeleton.bones[static_cast<std::size_t>(b)]);
+      const bones::TaperedBone shape =
+          bones::tapered_bone(world->bodies[0].skeleton.bones[static_cast<std::size_t>(b)]);
       inertia.segment<3>(3 * b) = 800.0 * shape.volume * shape.unit_moments;
     }
     const Vec6 before = momentum(*world, inertia);

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "handle_path.h"
-#include "so3.h"
+#include "palpate/core/so3.h"
 #include "tool_fixtures.h"
 
 using namespace palpate;

@@ -1,11 +1,10 @@
 #pragma once
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "palpate/core/pose.h"
 #include "palpate/dynamics/driven_motion.h"
+#include "palpate/dynamics/path.h"
 #include "palpate/fem/spec.h"
 #include "palpate/mesh/mesh.h"
 
@@ -23,18 +22,10 @@ std::vector<int> dofs_of_nodes(const std::vector<int>& nodes, int first_node, co
 /// each.
 std::shared_ptr<dynamics::DrivenMotion> make_fixed(std::vector<int> dofs, VecX x0);
 
-/// Position and its first two derivatives of a point path; used for nodes driven by time.
-struct PathPoint {
-  Pose pose;
-  Twist twist;
-  Twist acceleration;
-};
-using Path = std::function<PathPoint(double t)>;
-
 /// Moves nodes rigidly with a path: x = path(t).pose * p, with p fixed in the path's frame, all three axes or
 /// the listed dofs of them.
 std::shared_ptr<dynamics::DrivenMotion> make_driven(std::vector<int> dofs, Points local_points_per_dof,
-                                                    Path path);
+                                                    dynamics::Path path);
 
 /// Nodes of `placed` inside the sphere, its surface included.  @throws Error for a radius that is not
 /// positive

@@ -18,9 +18,9 @@
 #include "palpate/proxy/proxy_set.h"
 #include "palpate/scene/description.h"
 
-namespace palpate::tool {
+namespace palpate::bones {
 class BoneTree;
-}  // namespace palpate::tool
+}  // namespace palpate::bones
 
 namespace palpate::loop {
 
@@ -81,14 +81,14 @@ struct Body {
 /// One bone as assembled: a rigid block of the State, a part of a tree on joints, or a function of time.
 struct Bone {
   std::string name;
-  int block_id = -1;                           ///< of a free one, or of the tree; else -1
-  std::shared_ptr<const tool::BoneTree> tree;  ///< of one on joints; else null
-  int tree_bone = -1;                          ///< which of its bones
-  int body = -1;                               ///< body whose model file has it; -1: a [[bone]] of the scene
-  fem::Path path;                              ///< of one that is fixed or has keyframes; else empty
-  double mass = 0.0;                           ///< of a free one [kg]
-  std::vector<int> dofs;                       ///< u-directions of the nodes that it carries, ascending
-  TriMesh surface;                             ///< in its own axes; empty without a shape
+  int block_id = -1;                            ///< of a free one, or of the tree; else -1
+  std::shared_ptr<const bones::BoneTree> tree;  ///< of one on joints; else null
+  int tree_bone = -1;                           ///< which of its bones
+  int body = -1;                                ///< body whose model file has it; -1: a [[bone]] of the scene
+  dynamics::Path path;                          ///< of one that is fixed or has keyframes; else empty
+  double mass = 0.0;                            ///< of a free one [kg]
+  std::vector<int> dofs;                        ///< u-directions of the nodes that it carries, ascending
+  TriMesh surface;                              ///< in its own axes; empty without a shape
 };
 
 /// Everything that one scene names, and nothing else.  What is absent is null or empty.

@@ -13,9 +13,9 @@ namespace {
 constexpr double kDensity = 1000.0, kSpin = 3.0, kStart = 0.1, kFallsBelow = 3e5;
 
 /// Angle and its derivatives: a constant angular acceleration over kStart, then constant speed.
-fem::PathPoint rotating_end(double t) {
+dynamics::PathPoint rotating_end(double t) {
   const double rate = kSpin / kStart, s = std::min(t, kStart);
-  fem::PathPoint p;
+  dynamics::PathPoint p;
   p.pose = {Quat(Eigen::AngleAxisd(0.5 * rate * s * s + kSpin * (t - s), Vec3::UnitY())), Vec3(-0.5, 0, 0)};
   p.twist.angular = Vec3(0, rate * s, 0);
   p.acceleration.angular = Vec3(0, t < kStart ? rate : 0.0, 0);

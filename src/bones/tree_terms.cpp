@@ -1,8 +1,8 @@
+#include "palpate/bones/tree.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/carried_motion.h"
-#include "palpate/tool/bone_tree.h"
 
-namespace palpate::tool {
+namespace palpate::bones {
 namespace {
 
 using dynamics::Block;
@@ -145,4 +145,4 @@ std::shared_ptr<dynamics::DrivenMotion> make_tree_carried(std::vector<int> dofs,
   return std::make_shared<TreeCarried>(std::move(dofs), std::move(local), bone, block_id, std::move(tree));
 }
 
-}  // namespace palpate::tool
+}  // namespace palpate::bones

@@ -1,6 +1,21 @@
-#include "bone_paths.h"
+#include "palpate/bones/path.h"
 
-namespace palpate::loop {
+#include <utility>
+
+#include "palpate/device/handle.h"
+
+namespace palpate::bones {
+
+dynamics::Path placed_path(const BoneSpec& spec) {
+  const Pose placed{quaternion_of(spec.rotation_vector_rad), spec.position_m};
+  if (spec.fixed) return [placed](double) { return dynamics::PathPoint{placed, {}, {}}; };
+  return [keyframes = spec.keyframes, placed](double t) {
+    const device::HandleSample s = device::sample_keyframes(keyframes, t);
+    return dynamics::PathPoint{{s.pose.rotation * placed.rotation, s.pose.translation + placed.translation},
+                               s.twist,
+                               s.acceleration};
+  };
+}
 
 // Keyframes give a rotation Q(t), with rate w and its rate a, and a translation d(t), as if the parent stood
 // where it was at the start.  With j the joint and r = Q (o - j), the bone's origin o is at
@@ -9,7 +24,8 @@ namespace palpate::loop {
 // R0^T and s = T (y - p0):
 //     x = p + s,   v = V + W x s + T y',   x'' = V' + A x s + W x (W x s) + 2 W x T y' + T y'',
 //     rotation T Q,   angular velocity W + T w,   its rate A + T a + W x T w.
-fem::Path prescribed_path(const PrescribedJoint& joint, fem::Path parent, const Pose& parent_start) {
+dynamics::Path prescribed_path(const PrescribedJoint& joint, dynamics::Path parent,
+                               const Pose& parent_start) {
   return [joint, parent = std::move(parent), parent_start](double t) {
     device::HandleSample s;
     if (!joint.keyframes.empty()) s = device::sample_keyframes(joint.keyframes, t);
@@ -19,12 +35,12 @@ fem::Path prescribed_path(const PrescribedJoint& joint, fem::Path parent, const 
     const Vec3 y = joint.position + joint.axes * s.pose.translation + r;
     const Vec3 y1 = joint.axes * s.twist.linear + w.cross(r),
                y2 = joint.axes * s.acceleration.linear + a.cross(r) + w.cross(w.cross(r));
-    if (!parent) return fem::PathPoint{{Q * joint.start.rotation, y}, {w, y1}, {a, y2}};
-    const fem::PathPoint at = parent(t);
+    if (!parent) return dynamics::PathPoint{{Q * joint.start.rotation, y}, {w, y1}, {a, y2}};
+    const dynamics::PathPoint at = parent(t);
     const Quat T = at.pose.rotation * parent_start.rotation.conjugate();
     const Vec3 from = T * (y - parent_start.translation), &W = at.twist.angular, &A = at.acceleration.angular,
                Tw = T * w, Ty1 = T * y1;
-    return fem::PathPoint{
+    return dynamics::PathPoint{
         {T * Q * joint.start.rotation, at.pose.translation + from},
         {W + Tw, at.twist.linear + W.cross(from) + Ty1},
         {A + T * a + W.cross(Tw),
@@ -32,4 +48,4 @@ fem::Path prescribed_path(const PrescribedJoint& joint, fem::Path parent, const 
   };
 }
 
-}  // namespace palpate::loop
+}  // namespace palpate::bones

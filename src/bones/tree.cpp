@@ -1,14 +1,14 @@
-#include "palpate/tool/bone_tree.h"
+#include "palpate/bones/tree.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "bone_tree_impl.h"
+#include "bones/tree_impl.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "so3.h"
+#include "palpate/core/so3.h"
 
-namespace palpate::tool {
+namespace palpate::bones {
 namespace {
 
 SimTK::Vec3 to(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -347,4 +347,4 @@ double BoneTree::dissipated_power(const VecX& u) const {
   return power;
 }
 
-}  // namespace palpate::tool
+}  // namespace palpate::bones

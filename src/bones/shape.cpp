@@ -1,15 +1,15 @@
-#include "palpate/fem/bone.h"
+#include "palpate/bones/shape.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "fem/revolved.h"
+#include "bones/revolved.h"
 #include "palpate/core/error.h"
 #include "palpate/dynamics/rigid_body.h"
 #include "palpate/mesh/generators.h"
 
-namespace palpate::fem {
+namespace palpate::bones {
 namespace {
 
 using std::numbers::pi;
@@ -100,4 +100,4 @@ TriMesh bone_surface(const BoneSpec& spec) {
   return spec.shape == "capsule" ? capsule_surface(spec.radius_m, spec.length_m) : TriMesh{};
 }
 
-}  // namespace palpate::fem
+}  // namespace palpate::bones

@@ -1,6 +1,6 @@
-#include "bone_tree_impl.h"
+#include "bones/tree_impl.h"
 
-namespace palpate::tool {
+namespace palpate::bones {
 namespace {
 
 /// sum (w x r) x f = S w - w tr S of S = sum r f^T, since (w x r) x f = r (w . f) - w (r . f).
@@ -78,4 +78,4 @@ void BoneTree::add_geometric_stiffness(const VecX& q, const std::vector<HeldForc
   }
 }
 
-}  // namespace palpate::tool
+}  // namespace palpate::bones

@@ -2,11 +2,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "fem/revolved.h"
+#include "bones/revolved.h"
+#include "palpate/bones/shape.h"
 #include "palpate/core/error.h"
-#include "palpate/fem/bone.h"
 
-namespace palpate::fem {
+namespace palpate::bones {
 namespace {
 
 using std::numbers::pi;
@@ -95,4 +95,4 @@ TriMesh tapered_bone_surface(const Bone& bone) {
   return revolved(profile);
 }
 
-}  // namespace palpate::fem
+}  // namespace palpate::bones

@@ -1,12 +1,12 @@
 #pragma once
+#include "palpate/bones/spec.h"
 #include "palpate/core/pose.h"
-#include "palpate/fem/spec.h"
 #include "palpate/mesh/mesh.h"
 #include "palpate/mesh/skeleton.h"
 
 /// What the shape of a bone says: its mass and inertia, what is inside, what it looks like.  In the bone's
 /// own axes, origin at the centre of mass.
-namespace palpate::fem {
+namespace palpate::bones {
 
 struct BoneInertia {
   double mass = 0.0;              ///< [kg]
@@ -38,4 +38,4 @@ bool inside_bone(const BoneSpec& spec, const Vec3& p);
 /// The shape's surface, for pictures and records; empty without one.
 TriMesh bone_surface(const BoneSpec& spec);
 
-}  // namespace palpate::fem
+}  // namespace palpate::bones

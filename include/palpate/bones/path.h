@@ -1,8 +1,15 @@
 #pragma once
-#include "palpate/device/handle.h"
-#include "palpate/fem/attachments.h"
+#include <vector>
 
-namespace palpate::loop {
+#include "palpate/bones/spec.h"
+#include "palpate/core/pose.h"
+#include "palpate/dynamics/path.h"
+
+/// Bones whose motion is known beforehand.
+namespace palpate::bones {
+
+/// A fixed bone stays where it is placed; keyframes move it from there: X(t) = (R(t) R0, p0 + p(t)).
+dynamics::Path placed_path(const BoneSpec& spec);
 
 /// A bone with keyframes relative to its parent, which has a prescribed motion as well, or stands still.
 struct PrescribedJoint {
@@ -15,6 +22,6 @@ struct PrescribedJoint {
 /// The bone's path.
 /// @param parent  its parent's path; an empty path: the world
 /// @param parent_start  the parent's pose at the start
-fem::Path prescribed_path(const PrescribedJoint& joint, fem::Path parent, const Pose& parent_start);
+dynamics::Path prescribed_path(const PrescribedJoint& joint, dynamics::Path parent, const Pose& parent_start);
 
-}  // namespace palpate::loop
+}  // namespace palpate::bones

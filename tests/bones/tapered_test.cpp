@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "palpate/bones/shape.h"
 #include "palpate/core/error.h"
-#include "palpate/fem/bone.h"
 #include "palpate/mesh/quality.h"
 
 using namespace palpate;
@@ -52,9 +52,9 @@ TEST(TaperedBone, OfOneRadiusIsTheCapsule) {
   capsule.radius_m = 0.02;
   capsule.length_m = 0.11;
   capsule.mass_kg = 1.0;
-  const fem::TaperedBone bone = fem::tapered_bone(bone_of(0.02, 0.02, 0.11));
-  EXPECT_NEAR(bone.volume, fem::bone_volume(capsule), 1e-15);
-  EXPECT_LT((bone.unit_moments - fem::bone_inertia(capsule).principal).norm(), 1e-15);
+  const bones::TaperedBone bone = bones::tapered_bone(bone_of(0.02, 0.02, 0.11));
+  EXPECT_NEAR(bone.volume, bones::bone_volume(capsule), 1e-15);
+  EXPECT_LT((bone.unit_moments - bones::bone_inertia(capsule).principal).norm(), 1e-15);
   EXPECT_LT((bone.frame.translation - (bone_of(0.02, 0.02, 0.11).head + 0.055 * Vec3(2, -1, 2) / 3.0)).norm(),
             1e-15);
   EXPECT_LT((bone.frame.rotation * Vec3::UnitZ() - Vec3(2, -1, 2) / 3.0).norm(), 1e-15);
@@ -63,7 +63,7 @@ TEST(TaperedBone, OfOneRadiusIsTheCapsule) {
 TEST(TaperedBone, WhoseBallHoldsTheOtherIsThatBall) {
   for (const bool tail : {false, true}) {
     const palpate::Bone b = tail ? bone_of(0.01, 0.05, 0.03) : bone_of(0.05, 0.01, 0.03);
-    const fem::TaperedBone bone = fem::tapered_bone(b);
+    const bones::TaperedBone bone = bones::tapered_bone(b);
     EXPECT_NEAR(bone.volume, 4.0 / 3.0 * pi * std::pow(0.05, 3), 1e-16);
     EXPECT_LT((bone.unit_moments - Vec3::Constant(0.4 * 0.05 * 0.05)).norm(), 1e-16);
     EXPECT_LT((bone.frame.translation - (tail ? b.tail : b.head)).norm(), 1e-15);
@@ -75,8 +75,8 @@ TEST(TaperedBone, WhoseBallHoldsTheOtherIsThatBall) {
 TEST(TaperedBone, HasTheMassOfItsSurface) {
   for (const auto& [r0, r1] : {std::pair{0.03, 0.015}, {0.01, 0.04}, {0.02, 0.02}}) {
     const palpate::Bone b = bone_of(r0, r1, 0.12);
-    const fem::TaperedBone bone = fem::tapered_bone(b);
-    const TriMesh surface = fem::tapered_bone_surface(b);
+    const bones::TaperedBone bone = bones::tapered_bone(b);
+    const TriMesh surface = bones::tapered_bone_surface(b);
     const Solid solid(surface);
     EXPECT_GT(solid.volume, 0.0) << "outwards";
     EXPECT_NEAR(solid.volume / bone.volume, 1.0, 0.03);
@@ -89,4 +89,4 @@ TEST(TaperedBone, HasTheMassOfItsSurface) {
   }
 }
 
-TEST(TaperedBone, NeedsRadii) { EXPECT_THROW(fem::tapered_bone(bone_of(0.0, 0.01, 0.1)), Error); }
+TEST(TaperedBone, NeedsRadii) { EXPECT_THROW(bones::tapered_bone(bone_of(0.0, 0.01, 0.1)), Error); }

@@ -1,9 +1,9 @@
-#include "fem/revolved.h"
+#include "bones/revolved.h"
 
 #include <cmath>
 #include <numbers>
 
-namespace palpate::fem {
+namespace palpate::bones {
 namespace {
 using std::numbers::pi;
 constexpr int kMeridians = 24;
@@ -36,4 +36,4 @@ TriMesh revolved(const std::vector<Eigen::Vector2d>& profile) {
   return out;
 }
 
-}  // namespace palpate::fem
+}  // namespace palpate::bones

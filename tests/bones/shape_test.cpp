@@ -1,12 +1,16 @@
-#include "palpate/fem/bone.h"
+#include "palpate/bones/shape.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
 #include <numbers>
 
-#include "fem/fem_fixture.h"
+#include "messages.h"
+#include "palpate/core/pose.h"
 
 using namespace palpate;
-using namespace palpate::fem;
-using namespace palpate::fem::testing;
+using namespace palpate::bones;
+using namespace palpate::testing;
 
 namespace {
 

@@ -1,9 +1,9 @@
 #pragma once
-#include "simbody_headers.h"
+#include "simbody/headers.h"
 
-#include "palpate/tool/bone_tree.h"
+#include "palpate/bones/tree.h"
 
-namespace palpate::tool {
+namespace palpate::bones {
 
 struct BoneTree::Impl {
   Impl(std::vector<TreeBone> bones, const Vec3& gravity);
@@ -35,4 +35,4 @@ struct BoneTree::Impl {
   SimTK::Vector zero, residual;
 };
 
-}  // namespace palpate::tool
+}  // namespace palpate::bones

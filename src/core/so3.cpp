@@ -1,8 +1,8 @@
-#include "so3.h"
+#include "palpate/core/so3.h"
 
 #include <cmath>
 
-namespace palpate::tool {
+namespace palpate {
 namespace {
 
 /// Below this angle the closed forms lose digits to cancellation, and the series, cut after a^8, are exact to
@@ -36,4 +36,4 @@ Mat3 left_jacobian_inverse(const Vec3& theta) {
   return Mat3::Identity() - 0.5 * w + c * w * w;
 }
 
-}  // namespace palpate::tool
+}  // namespace palpate

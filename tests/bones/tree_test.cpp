@@ -1,4 +1,4 @@
-#include "palpate/tool/bone_tree.h"
+#include "palpate/bones/tree.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "palpate/core/error.h"
 
 using namespace palpate;
-using namespace palpate::tool;
+using namespace palpate::bones;
 
 namespace {
 

@@ -8,7 +8,7 @@
 
 /// Bones on joints as one block of the State (kind kArticulated): reduced coordinates by Simbody, so that no
 /// joint ever comes apart.
-namespace palpate::tool {
+namespace palpate::bones {
 
 enum class Joint {
   kWeld,   ///< no joint: moves with its parent
@@ -76,7 +76,7 @@ class BoneTree {
   /// K of weight and joints at u = 0, and D of the joints' dampers; the derivative of gyroscopic forces is
   /// left out, and a ball's spring enters by its symmetric part.
   void tangent(const VecX& q, double k_scale, double d_scale, MatX& A) const;
-  /// K += -d(J^T f)/d(u-directions) of held forces, one a bone: see bone_tree_geometry.cpp.
+  /// K += -d(J^T f)/d(u-directions) of held forces, one a bone: see tree_geometry.cpp.
   void add_geometric_stiffness(const VecX& q, const std::vector<HeldForce>& held, MatX& K) const;
   double potential_energy(const VecX& q) const;  ///< of weight and joints [J]
   double dissipated_power(const VecX& u) const;  ///< by the joints' dampers [W]
@@ -98,4 +98,4 @@ std::shared_ptr<dynamics::ForceTerm> make_tree_force(int block_id, std::shared_p
 std::shared_ptr<dynamics::DrivenMotion> make_tree_carried(std::vector<int> dofs, Points local, int bone,
                                                           int block_id, std::shared_ptr<const BoneTree> tree);
 
-}  // namespace palpate::tool
+}  // namespace palpate::bones

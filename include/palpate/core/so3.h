@@ -1,7 +1,7 @@
 #pragma once
 #include "palpate/core/types.h"
 
-namespace palpate::tool {
+namespace palpate {
 
 /// J(theta) of a rotation vector theta [rad]: with R = exp(theta), the angular velocity in world axes is
 /// omega = J(theta) theta'.
@@ -11,4 +11,4 @@ Mat3 left_jacobian(const Vec3& theta);
 /// the right Jacobian's inverse.
 Mat3 left_jacobian_inverse(const Vec3& theta);
 
-}  // namespace palpate::tool
+}  // namespace palpate

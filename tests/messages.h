@@ -1,0 +1,23 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <exception>
+#include <functional>
+#include <string>
+
+/// What an error says.
+namespace palpate::testing {
+
+/// Message of the Error or InternalError that f throws; empty when it throws none.
+inline std::string message_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const std::exception& e) { return e.what(); }
+  return "";
+}
+
+inline void expect_contains(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << "message: " << text;
+}
+
+}  // namespace palpate::testing
