@@ -10,10 +10,10 @@ namespace {
 
 /// A frame that rotates about a fixed tilted axis with angle(t) = a t^2 + b t and whose origin moves on a
 /// parabola.
-PathPoint turning(double t) {
+dynamics::PathPoint turning(double t) {
   const Vec3 axis = Vec3(1, 2, -1).normalized();
   const double a = 0.7, b = 1.3;
-  PathPoint p;
+  dynamics::PathPoint p;
   p.pose.rotation = quaternion_of((a * t * t + b * t) * axis);
   p.pose.translation = Vec3(0.1 * t, 0.2 * t * t, 1.0);
   p.twist.angular = (2 * a * t + b) * axis;
@@ -83,5 +83,5 @@ TEST(Attachments, RefuseDisorderedDirectionsAndMissingPaths) {
   expect_contains(message_of([] { make_fixed({0}, VecX::Constant(1, std::nan(""))); }), "not finite");
   expect_contains(message_of([] { make_driven({0}, Points::Zero(3, 2), turning); }),
                   "1 directions and 2 values");
-  expect_contains(message_of([] { make_driven({0}, Points::Zero(3, 1), Path()); }), "need a path");
+  expect_contains(message_of([] { make_driven({0}, Points::Zero(3, 1), dynamics::Path()); }), "need a path");
 }
