@@ -6,7 +6,7 @@
 #include <string>
 
 /// What an error says.
-namespace palpate::testing {
+namespace palpate::expectations {
 
 /// Message of the Error or InternalError that f throws; empty when it throws none.
 inline std::string message_of(const std::function<void()>& f) {
@@ -20,4 +20,4 @@ inline void expect_contains(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << "message: " << text;
 }
 
-}  // namespace palpate::testing
+}  // namespace palpate::expectations

@@ -10,7 +10,7 @@
 
 using namespace palpate;
 using namespace palpate::bones;
-using namespace palpate::testing;
+using namespace palpate::expectations;
 
 namespace {
 

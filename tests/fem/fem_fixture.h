@@ -17,8 +17,8 @@
 
 namespace palpate::fem::testing {
 
-using palpate::testing::expect_contains;
-using palpate::testing::message_of;
+using palpate::expectations::expect_contains;
+using palpate::expectations::message_of;
 
 /// Uniform numbers in [-1, 1] with a fixed seed.
 class Random {
