@@ -1,9 +1,6 @@
-#include <cstdlib>
-#include <string_view>
-
 #include "fem/lane_kernels.h"
 #include "fem/law_list.h"
-#include "palpate/core/error.h"
+#include "palpate/core/instructions.h"
 
 namespace palpate::fem {
 
@@ -23,32 +20,25 @@ PALPATE_SET(avx2)
 PALPATE_SET(avx512)
 #endif
 
-const LaneKernels* find_kernels(const char* name) {
-  const std::string_view wanted(name);
+namespace {
+
+const LaneKernels* kernels_of(Instructions set) {
 #ifdef PALPATE_X86_KERNELS
-  __builtin_cpu_init();
-  if (wanted == "avx512" && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("fma"))
-    return &avx512::kKernels;
-  if (wanted == "avx2" && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    return &avx2::kKernels;
+  if (set == Instructions::kAvx512) return &avx512::kKernels;
+  if (set == Instructions::kAvx2) return &avx2::kKernels;
+#else
+  static_cast<void>(set);
 #endif
-  return wanted == "baseline" ? &baseline::kKernels : nullptr;
+  return &baseline::kKernels;
 }
 
-const LaneKernels& best_kernels() {
-  if (const char* wanted = std::getenv("PALPATE_INSTRUCTIONS"); wanted != nullptr && *wanted != '\0') {
-    const LaneKernels* kernels = find_kernels(wanted);
-    if (kernels == nullptr)
-      fail(
-          "PALPATE_INSTRUCTIONS = \"{}\": this build or this processor does not have it; baseline, avx2 and "
-          "avx512 exist",
-          wanted);
-    return *kernels;
-  }
-  for (const char* name : {"avx512", "avx2"})
-    if (const LaneKernels* kernels = find_kernels(name)) return *kernels;
-  return baseline::kKernels;
+}  // namespace
+
+const LaneKernels* find_kernels(const char* name) {
+  Instructions set;
+  return find_instructions(name, set) ? kernels_of(set) : nullptr;
 }
+
+const LaneKernels& best_kernels() { return *kernels_of(best_instructions()); }
 
 }  // namespace palpate::fem

@@ -1,0 +1,17 @@
+#pragma once
+#include <string_view>
+
+/// Instruction sets that kernels are compiled for; which one is used is chosen at run time.
+namespace palpate {
+
+enum class Instructions { kBaseline, kAvx2, kAvx512 };
+
+/// Whether this processor has it.
+bool has_instructions(Instructions set);
+/// @param name  "baseline", "avx2" or "avx512"  @return whether there is such a set and this processor has it
+bool find_instructions(std::string_view name, Instructions& set);
+/// The widest that this processor has; the environment variable PALPATE_INSTRUCTIONS may name another.
+/// @throws Error when that is not to be had.
+Instructions best_instructions();
+
+}  // namespace palpate
