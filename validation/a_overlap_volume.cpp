@@ -4,12 +4,13 @@
 
 #include "b_bodies.h"
 #include "cases.h"
+#include "palpate/contact/gpu_available.h"
 #include "palpate/mesh/generators.h"
 
 // Overlap volume of two spheres, centres d apart, d^2 >= |R1^2 - R2^2| (the lens lies between the two
 // equators, a height field along the line of centres):
 //     V = pi (R1 + R2 - d)^2 (d^2 + 2 d (R1 + R2) - 3 (R1 - R2)^2) / (12 d).
-// The sum of depth x dA over the `pixel` samples of the gpu path is a midpoint rule for it, on the facets.
+// The sum of depth x dA over the `pixel` samples is a midpoint rule for it, on the facets.
 // Against the facets' exact overlap only the pixels err (order above 2 as RMS over shifts of the grid: the
 // midpoint rule, and a border where the depth has a kink but no jump); against the true spheres the inscribed
 // facets do, with order 2.  Exact overlap of the facets: each pair of facing triangles, projected along the
@@ -122,18 +123,19 @@ double facet_overlap(const Spheres& spheres) {
   return sum;
 }
 
-/// Sum of depth x dA through the gpu path.  Faults: areas measured on the skin instead of projected; gaps
+/// Sum of depth x dA of the samples.  Faults: areas measured on the skin instead of projected; gaps
 /// counted as negative depths.
-double sampled_overlap(const Spheres& spheres, int pixels, double shift_u, double shift_v,
-                       const std::string& fault) {
+double sampled_overlap(contact::DepthBackend backend, const Spheres& spheres, int pixels, double shift_u,
+                       double shift_v, const std::string& fault) {
   SurfaceBody body(spheres.upper);
-  contact::GpuOptions options;
+  contact::ImageOptions options;
+  options.backend = backend;
   options.pixels = pixels;
   options.candidate_gap = fault == "gaps-pull" ? 0.05 : 1e-3;
   options.shift_u = shift_u;
   options.shift_v = shift_v;
   const auto source =
-      contact::make_gpu_source(body.surface, spheres.lower, 0, contact::fixed_frame(), options);
+      contact::make_image_source(body.surface, spheres.lower, 0, contact::fixed_frame(), options);
   std::vector<contact::ContactSample> samples;
   source->query(body.state.view(), samples);
   double sum = 0.0;
@@ -146,9 +148,15 @@ double sampled_overlap(const Spheres& spheres, int pixels, double shift_u, doubl
   return sum;
 }
 
+std::vector<contact::DepthBackend> backends() {
+  std::vector<contact::DepthBackend> out = {contact::DepthBackend::kCpu, contact::DepthBackend::kExact};
+  if (contact::gpu_available()) out.push_back(contact::DepthBackend::kGpu);
+  return out;
+}
+
 std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
-  {
+  for (const contact::DepthBackend backend : backends()) {
     const Spheres spheres(24, 0);
     const double exact = facet_overlap(spheres);
     std::vector<double> h, error;
@@ -159,14 +167,15 @@ std::vector<Measurement> run(const std::string& fault) {
       // a lattice of shifts without structure (the golden ratios of two dimensions)
       for (int i = 0; i < kShifts; ++i) {
         const double u = std::fmod(0.754877666 * (i + 1), 1.0), v = std::fmod(0.569840291 * (i + 1), 1.0);
-        last = sampled_overlap(spheres, pixels, u, v, fault);
+        last = sampled_overlap(backend, spheres, pixels, u, v, fault);
         squares += std::pow(last / exact - 1.0, 2) / kShifts;
       }
       h.push_back(1.0 / pixels);
       error.push_back(std::sqrt(squares));
     }
     Measurement m;
-    m.quantity = "sum of depth x dA against the facets' overlap at 512 pixels, RMS over 20 shifts [m^3]";
+    m.quantity = std::string(contact::backend_name(backend)) +
+                 ": sum of depth x dA against the facets' overlap at 512 pixels, RMS over 20 shifts [m^3]";
     m.computed = last;
     m.exact = exact;
     m.error = error.back();
@@ -187,7 +196,8 @@ std::vector<Measurement> run(const std::string& fault) {
     for (const int subdivisions : {12, 17, 24, 34, 48}) {
       mean = 0.0;
       for (int i = 0; i < kOrientations; ++i)
-        mean += sampled_overlap(Spheres(subdivisions, i), 512, 0.0, 0.0, fault) / kOrientations;
+        mean += sampled_overlap(contact::DepthBackend::kCpu, Spheres(subdivisions, i), 512, 0.0, 0.0, fault) /
+                kOrientations;
       h.push_back(1.0 / subdivisions);
       error.push_back(std::abs(mean / exact - 1.0));
     }
@@ -211,7 +221,7 @@ std::vector<Measurement> run(const std::string& fault) {
 ValidationCase overlap_volume() {
   return {"overlap-volume",
           "A",
-          "Overlap volume of two spheres through the gpu path: pixels against the facets, facets against the "
+          "Overlap volume of two spheres, each backend: pixels against the facets, facets against the "
           "spheres",
           "k times this volume is the penalty force; the image decides who faces whom, the rest is exact in "
           "double (closed form of the lens).",

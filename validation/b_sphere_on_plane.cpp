@@ -81,15 +81,16 @@ double vertex_force(const TriMesh& mesh, const std::string& fault) {
                     frame, fault);
 }
 
-double pixel_force(const TriMesh& mesh, const std::string& fault) {
+double pixel_force(contact::DepthBackend backend, const TriMesh& mesh, const std::string& fault) {
   SurfaceBody body(mesh);
   const auto frame = contact::fixed_frame();
   TriMesh slab = mesh::box_surface(Vec3(6 * kRadius, 6 * kRadius, kRadius), {6, 6, 1});
   slab.vertices.row(2).array() -= 0.5 * kRadius;  // its upper face is the plane
-  contact::GpuOptions options;
+  contact::ImageOptions options;
+  options.backend = backend;
   options.pixels = 256;
   options.candidate_gap = 1e-6;
-  return held_force(body, contact::make_gpu_source(body.surface, slab, 0, frame, options), frame, fault);
+  return held_force(body, contact::make_image_source(body.surface, slab, 0, frame, options), frame, fault);
 }
 
 Measurement against(const std::string& quantity, double computed, double exact, double bar) {
@@ -119,8 +120,12 @@ std::vector<Measurement> run(const std::string& fault) {
   const double facets = kStiffness * volume_below(mesh);
   std::vector<Measurement> out;
   out.push_back(against("force on the facets, vertex samples [N]", vertex_force(mesh, fault), facets, 1e-3));
-  if (contact::gpu_available())
-    out.push_back(against("force on the facets, pixel samples [N]", pixel_force(mesh, fault), facets, 1e-3));
+  std::vector<contact::DepthBackend> backends = {contact::DepthBackend::kCpu, contact::DepthBackend::kExact};
+  if (contact::gpu_available()) backends.push_back(contact::DepthBackend::kGpu);
+  for (const contact::DepthBackend backend : backends)
+    out.push_back(
+        against("force on the facets, pixel samples, " + std::string(contact::backend_name(backend)) + " [N]",
+                pixel_force(backend, mesh, fault), facets, 1e-3));
   Measurement sphere = against("force on the true sphere, vertex samples, mean of 6 orientations [N]", finest,
                                kStiffness * cap, 1e-3);
   sphere.order = validation::fitted_order(h, error);

@@ -1,5 +1,4 @@
 #include "cases.h"
-#include "palpate/contact/gpu_available.h"
 #include "palpate/tool/tool.h"
 
 namespace palpate::validation {
@@ -10,8 +9,8 @@ const std::vector<ValidationCase>& validation_cases() {
     const auto add = [&out](std::vector<ValidationCase> some) {
       out.insert(out.end(), some.begin(), some.end());
     };
-    if (contact::gpu_available()) add({overlap_volume()});
-    add({sphere_on_plane(),
+    add({overlap_volume(),
+         sphere_on_plane(),
          punch_bounce(),
          punch_bounce_damped(),
          punch_bounce_hunt_crossley(),

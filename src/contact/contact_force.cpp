@@ -44,8 +44,19 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
   ++queries;
   counters::count("contact.query");
   std::swap(samples, next_samples);
+  group_samples();
   if (!std::equal(samples.begin(), samples.end(), next_samples.begin(), next_samples.end(), is_same_pair))
     ++events_version;
+}
+
+void ContactForce::Impl::group_samples() {
+  groups.clear();
+  for (Pair& pair : pairs) {
+    const auto own = std::span(samples).subspan(pair.begin, pair.end - pair.begin);
+    pair.grouped = pair.law.friction == 0.0 &&
+                   std::all_of(own.begin(), own.end(), [](const ContactSample& s) { return s.a.frame < 0; });
+    if (pair.grouped) groups.append(own, pair.law);
+  }
 }
 
 void ContactForce::Impl::check_samples(const dynamics::StateView& state) const {
@@ -66,21 +77,31 @@ void ContactForce::Impl::add_force(const dynamics::StateView& state, VecX& f) {
   const auto row = [&](const SurfacePoint& p) {
     return p.frame >= 0 ? frame_states[static_cast<std::size_t>(p.frame)].u_offset : -1;
   };
-  for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+  place_frames(state);
+  frame_rows.clear();
+  for (const FrameState& frame : frame_states) frame_rows.push_back(frame.u_offset);
+  groups.add_force(state, frame_states, frame_rows, f);
+  const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const Vec3 force = sample_force(s, motion, law);
     add_point_force(s.a, motion.a.arm, force, row(s.a), f);
     add_point_force(s.b, motion.b.arm, -force, row(s.b), f);
-  });
+  };
+  visit_active(state, add, false);
 }
 
 void ContactForce::Impl::all_forces(const dynamics::StateView& state, VecX& f) {
   const int nodal = state.layout->nodal_size;
   f.setZero(nodal + 6 * static_cast<Eigen::Index>(frames.size()));
-  for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+  place_frames(state);
+  frame_rows.resize(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) frame_rows[i] = nodal + 6 * static_cast<int>(i);
+  groups.add_force(state, frame_states, frame_rows, f);
+  const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const Vec3 force = sample_force(s, motion, law);
     add_point_force(s.a, motion.a.arm, force, nodal + 6 * s.a.frame, f);
     add_point_force(s.b, motion.b.arm, -force, nodal + 6 * s.b.frame, f);
-  });
+  };
+  visit_active(state, add, false);
 }
 
 ContactForce::ContactForce() : impl_(std::make_unique<Impl>()) { counters::count("contact.force"); }
@@ -132,23 +153,29 @@ void ContactForce::add_force(const dynamics::StateView& state, VecX& f) { impl_-
 void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
                                dynamics::BorderedMatrix& A) {
   Impl& m = *impl_;
-  m.for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+  m.place_frames(state);
+  m.groups.add_tangent(state, m.frame_states, k_scale, d_scale, A);
+  const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const SampleForce force = sample_force_and_tangent(s, motion, law);
     add_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force),
                        Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale, d_scale,
                        state.layout->nodal_size, A);
-  });
+  };
+  m.visit_active(state, add, false);
 }
 
 void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
                                  const VecX& x, VecX& y) {
   Impl& m = *impl_;
-  m.for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+  m.place_frames(state);
+  m.groups.apply_tangent(state, m.frame_states, k_scale, d_scale, x, y);
+  const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const SampleForce force = sample_force_and_tangent(s, motion, law);
     apply_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force),
                          Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale, d_scale, x,
                          y);
-  });
+  };
+  m.visit_active(state, add, false);
 }
 
 double ContactForce::energy(const dynamics::StateView& state) {

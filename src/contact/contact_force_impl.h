@@ -1,4 +1,5 @@
 #pragma once
+#include "contact/sample_groups.h"
 #include "contact/sample_math.h"
 #include "contact/tangent.h"
 #include "palpate/contact/contact_force.h"
@@ -10,12 +11,15 @@ struct ContactForce::Impl {
     std::unique_ptr<SampleSource> source;
     PressureLaw law;
     std::size_t begin = 0, end = 0;  ///< its samples
+    bool grouped = false;            ///< they are in `groups`
   };
 
   std::vector<std::shared_ptr<MovingFrame>> frames;
   std::vector<Pair> pairs;
   std::vector<ContactSample> samples, next_samples;
+  SampleGroups groups;                   ///< of all pairs without friction
   std::vector<FrameState> frame_states;  ///< at the state of the evaluation under way
+  std::vector<int> frame_rows;           ///< scratch
   VecX force_before, force_after;        ///< scratch of refresh
   long queries = 0;
   std::uint64_t events_version = 1;  ///< grows when a query finds other samples than the one before
@@ -30,12 +34,19 @@ struct ContactForce::Impl {
   /// unseen.
   void all_forces(const dynamics::StateView& state, VecX& f);
 
+  void group_samples();
+
   /// visit(sample, motion, law) for each sample in penetration, in order.
   template <class Visit>
   void for_each_active(const dynamics::StateView& state, Visit visit) {
     place_frames(state);
+    visit_active(state, visit, true);
+  }
+  /// @param grouped  also those that are in `groups`  @pre frames are placed
+  template <class Visit>
+  void visit_active(const dynamics::StateView& state, const Visit& visit, bool grouped) {
     for (const Pair& pair : pairs)
-      for (std::size_t i = pair.begin; i < pair.end; ++i) {
+      for (std::size_t i = pair.begin; i < pair.end && (grouped || !pair.grouped); ++i) {
         const SampleMotion motion = sample_motion(samples[i], state, frame_states);
         if (motion.gap < 0.0) visit(samples[i], motion, pair.law);
       }

@@ -38,7 +38,7 @@ std::optional<Facing> facing_at(const PixelPair& pair, const ContactCamera& came
   at.v = camera.v(static_cast<int>(pair.pixel) / camera.width);
   if (!barycentric(a, face_a, at.u, at.v, at.weights_a) ||
       !barycentric(b, face_b, at.u, at.v, at.weights_b)) {
-    counters::count("contact.gpu_edge_on");
+    counters::count("contact.edge_on");
     return std::nullopt;
   }
   at.w_a = height(a, face_a, at.weights_a);

@@ -1,7 +1,7 @@
 #pragma once
 #include <optional>
 
-#include "contact/gpu_image.h"
+#include "contact/depth_image.h"
 #include "contact/image_side.h"
 
 namespace palpate::contact {

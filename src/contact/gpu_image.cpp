@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "palpate/contact/gpu_available.h"
 #include "palpate/core/error.h"
 #include "palpate/gl/commands.h"
 #include "palpate/gl/context.h"
@@ -97,5 +98,9 @@ void GpuImage::find_pairs(const Patch& a, const Patch& b, const ContactCamera& c
   std::sort(pairs.begin(), pairs.end(),
             [](const PixelPair& p, const PixelPair& q) { return p.pixel < q.pixel; });
 }
+
+bool gpu_available() { return true; }
+
+std::unique_ptr<DepthImage> make_gpu_image(int pixels) { return std::make_unique<GpuImage>(pixels); }
 
 }  // namespace palpate::contact

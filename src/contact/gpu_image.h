@@ -2,18 +2,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/contact_view.h"
+#include "contact/depth_image.h"
 #include "palpate/gl/buffer.h"
 #include "palpate/gl/framebuffer.h"
 #include "palpate/gl/program.h"
 
 namespace palpate::contact {
-
-/// Which triangles face each other at a pixel: indices into the patches' `visible`.
-struct PixelPair {
-  std::uint32_t pixel;  ///< row * width + column
-  std::uint32_t a, b;
-};
 
 /// The two images of a contact region on the GPU.
 ///
@@ -22,11 +16,11 @@ struct PixelPair {
 /// pixels where both are seen, nearer than the candidate gap, to a compact list; only that list comes back,
 /// sorted by pixel, so the order of atomic appends leaves no trace.
 /// Coordinates are single precision about the region's origin: they decide who faces whom, never how deep.
-class GpuImage {
+class GpuImage final : public DepthImage {
  public:
   explicit GpuImage(int pixels);  ///< opens the GL context; the images are square, `pixels` an edge
   void find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera, double candidate_gap,
-                  std::vector<PixelPair>& pairs);
+                  std::vector<PixelPair>& pairs) override;
 
  private:
   struct Surface {

@@ -26,7 +26,7 @@ class RigidSide final : public ImageSide {
  public:
   RigidSide(TriMesh surface, int frame, std::shared_ptr<MovingFrame> motion)
       : surface_(std::move(surface)), frame_(frame), motion_(std::move(motion)) {
-    PALPATE_CHECK(motion_, "a gpu source needs a frame");
+    PALPATE_CHECK(motion_, "an image source needs a frame");
   }
   void update(const dynamics::StateView& state) override {
     pose_ = motion_->pose(state);

@@ -60,7 +60,9 @@ void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameL
   PALPATE_CHECK(frame >= 0 && frame < static_cast<int>(m.frames.size()), "frame {} of {}", frame,
                 m.frames.size());
   reset(out, state.layout->nodal_size);
-  m.for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+  m.place_frames(state);
+  m.groups.linearise(state, m.frame_states, frame, out);
+  const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     if (s.a.frame != frame && s.b.frame != frame) return;
     PALPATE_CHECK(s.a.frame != s.b.frame, "a contact sample has frame {} on both sides", frame);
     const SampleForce force = sample_force_and_tangent(s, motion, law);
@@ -74,7 +76,8 @@ void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameL
     add_frame_block(mine, force, out);
     if (other.is_nodes()) add_node_coupling(mine, other, force, out);
     ++out.active;
-  });
+  };
+  m.visit_active(state, add, false);
 }
 
 }  // namespace palpate::contact

@@ -7,9 +7,18 @@ namespace palpate::contact {
 const std::vector<MethodEntry>& method_registry() {
   static const std::vector<MethodEntry> registry = {
       {"analytic", "exact gaps at the vertices: of obstacles, and of tools with shape = \"sphere\""},
-      {"gpu",
-       "image space: gaps at the pixels of an image; tools of any shape, other soft bodies, a body "
-       "against itself",
+      {"auto",
+       "exact gaps where there are any; else image space, on a GPU where the machine has one, else on the "
+       "processor",
+       part_keys({"pixels"})},
+      {"cpu",
+       "image space on the processor: gaps at the pixels of an image; tools of any shape, other soft bodies, "
+       "a "
+       "body against itself",
+       part_keys({"pixels"})},
+      {"gpu", "the same image by OpenGL, without a GPU by Mesa's software rasteriser", part_keys({"pixels"})},
+      {"exact",
+       "the same pixels without an image: a line through each, in double, and all layers that it meets; slow",
        part_keys({"pixels"})},
   };
   return registry;
@@ -19,14 +28,8 @@ const std::vector<AbsentMethod>& absent_methods() {
   static const std::vector<AbsentMethod> absent = {
       {"vertex",
        "is not there yet; take method = \"analytic\" for an obstacle or a sphere (it samples at the "
-       "vertices), \"gpu\" for a tool of another shape or a soft body"},
-      {"cpu",
-       "is not there yet; take method = \"gpu\", which runs on a processor as well, by Mesa's software "
-       "rasteriser"},
-      {"exact",
-       "is not there yet; take method = \"analytic\" for an obstacle or a sphere, whose gaps are "
-       "exact, \"gpu\" for a tool of another shape or a soft body"},
-      {"pixel", "is not known; take method = \"gpu\", which samples at the pixels of an image"},
+       "vertices), \"auto\" for a tool of another shape or a soft body"},
+      {"pixel", "is not known; take method = \"auto\", which samples at the pixels of an image"},
   };
   return absent;
 }

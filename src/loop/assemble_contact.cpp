@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "assemble_parts.h"
+#include "palpate/contact/gpu_available.h"
 #include "palpate/contact/methods.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/contact/sources.h"
@@ -44,25 +45,39 @@ Pair pair_of(const World& world, const ContactSpec& spec, const std::string& nam
   return {spec, {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces}, gap};
 }
 
+/// Which backend a method in image space is: "auto" takes a GPU where there is one.
+contact::ImageOptions options_of(const Pair& pair) {
+  const std::string& method = pair.spec.method;
+  const bool gpu = method == "gpu" || (method == "auto" && contact::has_gpu_hardware());
+  contact::ImageOptions out;
+  out.backend = gpu                 ? contact::DepthBackend::kGpu
+                : method == "exact" ? contact::DepthBackend::kExact
+                                    : contact::DepthBackend::kCpu;
+  out.pixels = pair.spec.pixels;
+  out.candidate_gap = pair.candidate_gap;
+  return out;
+}
+
 /// Contact of two soft bodies.
-std::unique_ptr<contact::SampleSource> gpu_source(Pair a, Pair b) {
-  if (a.spec.method != "gpu")
-    fail("contact {} - {}: two soft bodies meet in image space; use method = \"gpu\"", a.spec.first,
+std::unique_ptr<contact::SampleSource> image_source(Pair a, Pair b) {
+  if (a.spec.method == "analytic")
+    fail("contact {} - {}: two soft bodies meet in image space; use method = \"auto\"", a.spec.first,
          a.spec.second);
   if (!a.proxies != !b.proxies)
     fail("contact {} - {}: proxies on one side alone; both need them, or neither", a.spec.first,
          a.spec.second);
-  const contact::GpuOptions options{a.spec.pixels, a.candidate_gap};
+  const contact::ImageOptions options = options_of(a);
   if (a.proxies)
-    return contact::make_gpu_source(std::move(a.surface), std::move(a.proxies), std::move(b.surface),
-                                    std::move(b.proxies), options);
-  return contact::make_gpu_source(std::move(a.surface), std::move(b.surface), options);
+    return contact::make_image_source(std::move(a.surface), std::move(a.proxies), std::move(b.surface),
+                                      std::move(b.proxies), options);
+  return contact::make_image_source(std::move(a.surface), std::move(b.surface), options);
 }
 
 /// Contact of one soft body with itself: its bones' regions against each other.
 std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair) {
   const std::string who = fmt::format("contact {} - {}", pair.spec.first, pair.spec.second);
-  if (pair.spec.method != "gpu") fail("{}: a body meets itself in image space; use method = \"gpu\"", who);
+  if (pair.spec.method == "analytic")
+    fail("{}: a body meets itself in image space; use method = \"auto\"", who);
   if (!pair.proxies)
     fail(
         "{}: which of a body's skin may touch itself is known by its proxies; give the body skin = true and "
@@ -76,23 +91,23 @@ std::unique_ptr<contact::SampleSource> own_source(const World& world, Pair pair)
         "{}: the skin of one bone against that of another may touch, but the body's model has {}; `palpate "
         "model human` writes one with 19 bones",
         who, set.bone(0) < 0 ? "none: its proxies go with no bone" : "one bone alone");
-  const contact::GpuOptions options{pair.spec.pixels, pair.candidate_gap};
-  return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies),
-                                  world.find_body(pair.spec.first)->rest.nodes, options);
+  const contact::ImageOptions options = options_of(pair);
+  return contact::make_image_source(std::move(pair.surface), std::move(pair.proxies),
+                                    world.find_body(pair.spec.first)->rest.nodes, options);
 }
 
 /// Contact of a soft body with a rigid surface in a frame.
 /// @param rigid_proxies  proxies of the surface: made where the body has proxies and these do not exist yet
-std::unique_ptr<contact::SampleSource> gpu_source(Pair pair, TriMesh rigid,
-                                                  std::shared_ptr<proxy::ProxySet>& rigid_proxies, int frame,
-                                                  std::shared_ptr<contact::MovingFrame> motion) {
-  const contact::GpuOptions options{pair.spec.pixels, pair.candidate_gap};
+std::unique_ptr<contact::SampleSource> image_source(Pair pair, TriMesh rigid,
+                                                    std::shared_ptr<proxy::ProxySet>& rigid_proxies,
+                                                    int frame, std::shared_ptr<contact::MovingFrame> motion) {
+  const contact::ImageOptions options = options_of(pair);
   if (!pair.proxies)
-    return contact::make_gpu_source(std::move(pair.surface), std::move(rigid), frame, std::move(motion),
-                                    options);
+    return contact::make_image_source(std::move(pair.surface), std::move(rigid), frame, std::move(motion),
+                                      options);
   if (!rigid_proxies) rigid_proxies = std::make_shared<proxy::ProxySet>(proxy::rigid_proxies(rigid));
-  return contact::make_gpu_source(std::move(pair.surface), std::move(pair.proxies), std::move(rigid),
-                                  rigid_proxies, frame, std::move(motion), options);
+  return contact::make_image_source(std::move(pair.surface), std::move(pair.proxies), std::move(rigid),
+                                    rigid_proxies, frame, std::move(motion), options);
 }
 
 /// The tool's frame in contact: its block of the State, or its motion over one exchange period.
@@ -111,13 +126,14 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
   const ToolSpec& tool = *world.description.tool;
   const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world);
   ToolSide& side = ToolSide::of(world);
-  if (pair.spec.method == "gpu")
-    return gpu_source(std::move(pair), tool_surface(tool, world.folder), side.proxies, side.frame_index,
-                      motion);
-  if (tool.shape != "sphere")
+  const bool sphere = tool.shape == "sphere";
+  if (pair.spec.method != "analytic" && !(pair.spec.method == "auto" && sphere && !pair.proxies))
+    return image_source(std::move(pair), tool_surface(tool, world.folder), side.proxies, side.frame_index,
+                        motion);
+  if (!sphere)
     fail(
         "contact {} - tool: method \"analytic\" needs shape = \"sphere\", the tool's is \"{}\"; use method = "
-        "\"gpu\"",
+        "\"auto\"",
         pair.spec.first, tool.shape);
   return contact::make_sphere_source(std::move(pair.surface), side.frame_index, motion, Vec3::Zero(),
                                      tool.radius_m, pair.candidate_gap,
@@ -126,7 +142,7 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
 
 std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
                                                        const ObstacleSpec& obstacle) {
-  if (pair.spec.method != "analytic")
+  if (pair.spec.method != "analytic" && pair.spec.method != "auto")
     fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"analytic\"",
          pair.spec.first, obstacle.name, obstacle.type);
   const contact::ObstacleEntry& entry = contact::obstacle_entry(obstacle);
@@ -153,8 +169,8 @@ void assemble_contact(World& world) {
     else if (spec.second == spec.first && world.find_body(spec.first))
       world.contact->add_pair(own_source(world, pair_of(world, spec, spec.first)), spec);
     else if (world.find_body(spec.second))
-      world.contact->add_pair(gpu_source(pair_of(world, spec, spec.first), pair_of(world, spec, spec.second)),
-                              spec);
+      world.contact->add_pair(
+          image_source(pair_of(world, spec, spec.first), pair_of(world, spec, spec.second)), spec);
     else
       fail("contact {} - {}: the second partner must be one of the soft bodies, an obstacle or \"tool\"",
            spec.first, spec.second);

@@ -55,10 +55,11 @@ std::vector<Choice> part_choices() {
           ? "compiled in"
           : "not compiled in; configure with -DPALPATE_WITH_GL=ON (packages libegl-dev, libepoxy-dev)";
   return {{"bodies", "soft bodies of linear tetrahedra: always there"},
-          {"contact", "penalty contact with analytic obstacles: always there"},
+          {"contact",
+           "penalty contact with analytic obstacles, and in image space on the processor: always there"},
           {"proxies", "convex proxies of skins, broad and narrow phase (libccd): always there"},
           {"tool", "rigid tool under a virtual coupling (Simbody): " + tool},
-          {"gl", "contact in image space, and pictures (EGL, OpenGL): " + gl}};
+          {"gl", "contact images by OpenGL, and pictures (EGL): " + gl}};
 }
 
 }  // namespace

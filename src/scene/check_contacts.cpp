@@ -56,23 +56,36 @@ void check_own_contact(const Document& doc, const std::string& key, const std::s
     refuse(location(doc, key + ".between"), where,
            "a body touches itself with the skin of one bone against that of another, by its proxies: give it "
            "skin = true and proxies = true, or name two things");
-  if (c.method != "gpu")
-    refuse(location(doc, key + (given(doc, key + ".method") ? ".method" : "")), where,
-           "a body meets itself in image space: write method = \"gpu\"");
+  if (c.method == "analytic")
+    refuse(location(doc, key + ".method"), where,
+           "a body meets itself in image space: leave the method out, or write \"auto\"");
 }
 
 void check_method(const Document& doc, const std::string& key, const std::string& where, const Sides& sides,
-                  const Description& d, const ContactSpec& c) {
-  const bool obstacle = sides.is_obstacle(c.second);
-  if (c.method == "gpu" && obstacle)
+                  const Description& d, ContactSpec& c) {
+  const bool obstacle = sides.is_obstacle(c.second),
+             sphere_tool = c.second == "tool" && d.tool && d.tool->shape == "sphere",
+             proxies = std::any_of(d.bodies.begin(), d.bodies.end(),
+                                   [&](const auto&body) { return body.name == c.first && body.proxies; });
+  if (c.method == "auto" && (obstacle || (sphere_tool && !proxies))) {
+    if (given(doc, key + ".pixels"))
+      refuse(location(doc, key + ".pixels"), where,
+             fmt::format("pixels means nothing here: {} has exact gaps; remove it{}",
+                         obstacle ? "an obstacle" : "a sphere",
+                         obstacle ? "" : ", or write method = \"cpu\" to see it in an image"));
+    c.method = "analytic";
+  }
+  if (c.method != "analytic" && obstacle)
     refuse(location(doc, key + ".method"), where,
-           "method = \"gpu\" is for the tool: an obstacle has exact gaps; use \"analytic\"");
+           fmt::format("method = \"{}\" is for tools and soft bodies: an obstacle has exact gaps; use "
+                       "\"analytic\"",
+                       c.method));
   if (c.first == c.second)
     check_own_contact(doc, key, where, d, c);
   else if (sides.is_body(c.second)) {
-    if (c.method != "gpu")
-      refuse(location(doc, key + (given(doc, key + ".method") ? ".method" : "")), where,
-             "two soft bodies meet in image space: write method = \"gpu\"");
+    if (c.method == "analytic")
+      refuse(location(doc, key + ".method"), where,
+             "two soft bodies meet in image space: leave the method out, or write \"auto\"");
     const auto proxies = [&](const std::string& name) {
       for (const auto& body : d.bodies)
         if (body.name == name) return body.proxies;
@@ -82,9 +95,10 @@ void check_method(const Document& doc, const std::string& key, const std::string
       refuse(location(doc, key + ".between"), where,
              fmt::format("proxies = true stands in \"{}\" alone; both need it, or neither",
                          proxies(c.first) ? c.first : c.second));
-  } else if (c.method == "analytic" && !obstacle && d.tool->shape != "sphere")
-    refuse(location(doc, key + (given(doc, key + ".method") ? ".method" : "")), where,
-           "method = \"analytic\" needs a tool with shape = \"sphere\"; use method = \"gpu\" for a mesh");
+  } else if (c.method == "analytic" && !obstacle && !sphere_tool)
+    refuse(location(doc, key + ".method"), where,
+           "method = \"analytic\" needs a tool with shape = \"sphere\"; leave it out for a mesh, or write "
+           "\"auto\"");
 }
 
 }  // namespace

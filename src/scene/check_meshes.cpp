@@ -32,10 +32,10 @@ void check_meshes(const Document& doc, const Description& d) {
     if (!d.bodies[i].skin)
       refuse(at, where, "proxies = true needs skin = true: a proxy stands for a part of the skin");
     if (std::none_of(d.contacts.begin(), d.contacts.end(), [&](const ContactSpec& c) {
-          return (c.first == d.bodies[i].name || c.second == d.bodies[i].name) && c.method == "gpu";
+          return (c.first == d.bodies[i].name || c.second == d.bodies[i].name) && c.method != "analytic";
         }))
       refuse(at, where,
-             "proxies = true, but no [[contact]] of this body has method = \"gpu\", which alone uses them");
+             "proxies = true, but no [[contact]] of this body is in image space, which alone uses them");
   }
   if (!d.tool) return;
   if (given(doc, "tool.mesh"))

@@ -81,10 +81,12 @@ void add_body_needs(const Description& d, const std::string& linear_solver, std:
 
 void add_contact_needs(const Description& d, std::vector<Need>& out) {
   const bool any = !d.contacts.empty();
-  const int gpu = count_if(d.contacts, [](const auto& c) { return c.method == "gpu"; });
+  const int image = count_if(d.contacts, [](const auto&c) { return c.method != "analytic"; }),
+            gpu = count_if(d.contacts, [](const auto&c) { return c.method == "gpu"; }),
+            automatic = count_if(d.contacts, [](const auto&c) { return c.method == "auto"; });
   const int rubbing = count_if(d.contacts, [](const auto& c) { return c.friction > 0.0; });
   const int own = count_if(d.contacts, [](const auto& c) { return c.first == c.second; });
-  const std::string no_gpu = any ? "every contact has an analytic gap" : "no [[contact]]";
+  const std::string no_image = any ? "every contact has an analytic gap" : "no [[contact]]";
   out.push_back({"contact", any, any ? fmt::format("{} [[contact]]", d.contacts.size()) : "no [[contact]]"});
   out.push_back({"friction", rubbing > 0,
                  rubbing > 0 ? fmt::format("{} [[contact]] with friction > 0", rubbing)
@@ -93,13 +95,16 @@ void add_contact_needs(const Description& d, std::vector<Need>& out) {
                  own > 0 ? fmt::format("{} [[contact]] of a body with itself", own)
                  : any   ? "every [[contact]] names two"
                          : "no [[contact]]"});
-  out.push_back({"contact plane", gpu > 0,
-                 gpu > 0 ? fmt::format("{} contact with method \"gpu\" needs its plane", gpu) : no_gpu});
+  out.push_back({"contact plane", image > 0,
+                 image > 0 ? fmt::format("{} contact in image space needs its plane", image) : no_image});
   out.push_back(
-      {"broad phase", gpu > 1,
-       gpu > 1 ? fmt::format("{} pairs in image space", gpu) : "fewer than two pairs in image space"});
-  out.push_back(
-      {"gl", gpu > 0, gpu > 0 ? "method \"gpu\" rasterises" : no_gpu + "; pictures only on request"});
+      {"broad phase", image > 1,
+       image > 1 ? fmt::format("{} pairs in image space", image) : "fewer than two pairs in image space"});
+  out.push_back({"gl", gpu > 0,
+                 gpu > 0         ? "method \"gpu\" rasterises"
+                 : automatic > 0 ? "method \"auto\" takes it where the machine has a GPU"
+                                 : (image > 0 ? "no contact has method \"gpu\"" : no_image) +
+                                       "; pictures only on request"});
 }
 
 void add_haptic_needs(const Description& d, std::vector<Need>& out) {

@@ -1,5 +1,6 @@
 // A body against itself: what two of its parts feel is what two bodies of the same shape would, and at rest
 // it feels nothing.
+#include "backends.h"
 #include "bent_bar.h"
 #include "grid_proxies.h"
 #include "palpate/proxy/pruner.h"
@@ -41,12 +42,7 @@ LayeredModel ball(const Pose& pose, double scale) {
   return out;
 }
 
-contact::GpuOptions options(double gap, int pixels = 96) {
-  contact::GpuOptions out;
-  out.pixels = pixels;
-  out.candidate_gap = gap;
-  return out;
-}
+contact::ImageOptions options(double gap, int pixels = 96) { return image_options(pixels, gap); }
 
 /// The bar against itself.
 struct Bar {
@@ -64,7 +60,7 @@ struct Bar {
     state.q() = Eigen::Map<const VecX>(bent.data(), bent.size());
   }
   std::unique_ptr<contact::SampleSource> source(double gap, int pixels = 96) const {
-    return contact::make_gpu_source(surface, proxies, model.tets.nodes, options(gap, pixels));
+    return contact::make_image_source(surface, proxies, model.tets.nodes, options(gap, pixels));
   }
   bool is_left(int node) const { return model.tets.nodes(0, node) < 0.0; }
 };
@@ -95,9 +91,11 @@ Vec3 force_on_left(const Bar& bar, contact::ContactForce& term) {
 
 }  // namespace
 
+ON_EACH_BACKEND(OwnContact);
+
 // Two bodies, and one body of the same nodes in two shells: the same samples, forces and tangent, to
 // rounding.
-TEST(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
+TEST_P(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
   const LayeredModel a = ball(Pose{}, 1.0),
                      b = ball({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2),
                      both = together(a, b);
@@ -113,11 +111,11 @@ TEST(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
   with_all.friction = 0.4;
   contact::ContactForce between, within;
   between.add_pair(
-      contact::make_gpu_source(surface_of(a, block_a), std::make_shared<proxy::ProxySet>(a),
-                               surface_of(b, block_b), std::make_shared<proxy::ProxySet>(b), options(0.02)),
+      contact::make_image_source(surface_of(a, block_a), std::make_shared<proxy::ProxySet>(a),
+                                 surface_of(b, block_b), std::make_shared<proxy::ProxySet>(b), options(0.02)),
       with_all);
-  within.add_pair(contact::make_gpu_source(surface_of(both, block), std::make_shared<proxy::ProxySet>(both),
-                                           rest, options(0.02)),
+  within.add_pair(contact::make_image_source(surface_of(both, block), std::make_shared<proxy::ProxySet>(both),
+                                             rest, options(0.02)),
                   with_all);
   const int n = static_cast<int>(a.tets.nodes.size());
   for (const double shift : {0.0, 0.1, 0.1}) {  // and again, a rolling off: normals are remembered alike
@@ -156,7 +154,7 @@ TEST(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
 
 // The gap that is looked into is larger than the bar is thick, and its proxies are so few that their hulls
 // reach across each other.
-TEST(OwnContact, AtRestABodyFeelsNothing) {
+TEST_P(OwnContact, AtRestABodyFeelsNothing) {
   for (const int count : {3, 9, 24}) {
     Bar bar(count);
     contact::ContactForce term;
@@ -173,7 +171,7 @@ TEST(OwnContact, AtRestABodyFeelsNothing) {
 
 // Bones that lie across from themselves: bone 1 is the left arm's tip and the right arm's lower part, between
 // bone 0 and bone 2.  One region holds them all, bone 1 on both sides; in its image bone 1 faces itself.
-TEST(OwnContact, NoBoneMeetsItself) {
+TEST_P(OwnContact, NoBoneMeetsItself) {
   Bar bar(48);
   for (ProxyHull& hull : bar.model.proxies) {
     const double x = hull.corners.row(0).mean();
@@ -207,7 +205,7 @@ TEST(OwnContact, NoBoneMeetsItself) {
 
 // Arms pressed together: equal and opposite on both, along the line of the tips; none on the middle.  The
 // overlap is symmetric, so is the force.
-TEST(OwnContact, ArmsThatMeetPushEachOtherApart) {
+TEST_P(OwnContact, ArmsThatMeetPushEachOtherApart) {
   Bar bar;
   bar.bend(bent_bar::closing_angle(0.03));
   constexpr int kPixels = 512;
@@ -235,7 +233,7 @@ TEST(OwnContact, ArmsThatMeetPushEachOtherApart) {
 
 // Between two queries the force is minus the gradient of the contact's energy, and the tangent its
 // derivative: symmetric, with blocks between the arms.
-TEST(OwnContact, TheTangentCouplesTheBodysParts) {
+TEST_P(OwnContact, TheTangentCouplesTheBodysParts) {
   Bar bar;
   bar.bend(bent_bar::closing_angle(0.04));
   ContactSpec smooth = law();
@@ -275,7 +273,7 @@ TEST(OwnContact, TheTangentCouplesTheBodysParts) {
 }
 
 // k times the volume of the overlap as the arms close: no part of the force comes or goes at once.
-TEST(OwnContact, SetsInWithoutAJump) {
+TEST_P(OwnContact, SetsInWithoutAJump) {
   Bar bar;
   contact::ContactForce term;
   term.add_pair(bar.source(0.02), law());
@@ -294,11 +292,11 @@ TEST(OwnContact, SetsInWithoutAJump) {
   EXPECT_EQ(steps, 41);
 }
 
-TEST(OwnContact, RefusesWhatHasNoBones) {
+TEST_P(OwnContact, RefusesWhatHasNoBones) {
   Bar bar;
-  EXPECT_THROW(contact::make_gpu_source(bar.surface, nullptr, bar.model.tets.nodes, options(0.1)),
+  EXPECT_THROW(contact::make_image_source(bar.surface, nullptr, bar.model.tets.nodes, options(0.1)),
                InternalError);
-  EXPECT_THROW(contact::make_gpu_source(bar.surface, bar.proxies, Points(bar.model.tets.nodes.leftCols(3)),
-                                        options(0.1)),
+  EXPECT_THROW(contact::make_image_source(bar.surface, bar.proxies, Points(bar.model.tets.nodes.leftCols(3)),
+                                          options(0.1)),
                InternalError);
 }

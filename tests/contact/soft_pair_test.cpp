@@ -1,4 +1,5 @@
 // Two soft skins in image space: what one body feels the other gives, and the tangent couples them.
+#include "backends.h"
 #include "grid_proxies.h"
 #include "surfaces.h"
 
@@ -41,15 +42,10 @@ struct TwoBalls {
     return out;
   }
 
-  contact::GpuOptions options() const {
-    contact::GpuOptions out;
-    out.pixels = 96;
-    out.candidate_gap = 0.02;
-    return out;
-  }
+  contact::ImageOptions options() const { return image_options(96, 0.02); }
   std::unique_ptr<contact::SampleSource> source(bool pruned) const {
-    return pruned ? contact::make_gpu_source(a.surface, a.proxies, b.surface, b.proxies, options())
-                  : contact::make_gpu_source(a.surface, b.surface, options());
+    return pruned ? contact::make_image_source(a.surface, a.proxies, b.surface, b.proxies, options())
+                  : contact::make_image_source(a.surface, b.surface, options());
   }
   int nodes_of_a() const { return static_cast<int>(a.model.tets.nodes.cols()); }
 };
@@ -62,9 +58,11 @@ ContactSpec law() {
 
 }  // namespace
 
+ON_EACH_BACKEND(SoftPair);
+
 // Third law: resultant and moment of both bodies' forces vanish to rounding, each alone does not; the force
 // pushes a up, off b.
-TEST(SoftPair, ActionIsReaction) {
+TEST_P(SoftPair, ActionIsReaction) {
   TwoBalls balls;
   Vec3 whole = Vec3::Zero();
   for (const bool pruned : {false, true}) {
@@ -114,7 +112,7 @@ TEST(SoftPair, ActionIsReaction) {
 
 // With the smooth onset the force is C1, so that the Taylor residual falls with slope 2; the assembled
 // tangent is the applied one, and symmetric.
-TEST(SoftPair, TheTangentCouplesBothBodies) {
+TEST_P(SoftPair, TheTangentCouplesBothBodies) {
   TwoBalls balls;
   ContactSpec smooth = law();
   smooth.onset_width_m = 0.5;
@@ -160,7 +158,7 @@ TEST(SoftPair, TheTangentCouplesBothBodies) {
 
 // The pattern holds what the contact has met: it rests while nothing new is met, and grows when the contact
 // slides.
-TEST(SoftPair, ThePatternGrowsWithTheContact) {
+TEST_P(SoftPair, ThePatternGrowsWithTheContact) {
   TwoBalls balls;
   contact::ContactForce term;
   term.add_pair(balls.source(true), law());
@@ -181,10 +179,10 @@ TEST(SoftPair, ThePatternGrowsWithTheContact) {
   EXPECT_GT(changes, 2);
 }
 
-TEST(SoftPair, RefusesOneBodyTwice) {
+TEST_P(SoftPair, RefusesOneBodyTwice) {
   TwoBalls balls;
-  EXPECT_THROW(contact::make_gpu_source(balls.a.surface, balls.a.surface, balls.options()), InternalError);
+  EXPECT_THROW(contact::make_image_source(balls.a.surface, balls.a.surface, balls.options()), InternalError);
   EXPECT_THROW(
-      contact::make_gpu_source(balls.a.surface, balls.a.proxies, balls.b.surface, nullptr, balls.options()),
+      contact::make_image_source(balls.a.surface, balls.a.proxies, balls.b.surface, nullptr, balls.options()),
       InternalError);
 }

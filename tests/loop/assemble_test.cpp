@@ -97,21 +97,21 @@ TEST(Assemble, ContactsThatCannotBeMadeAreRefusedWithARemedy) {
   d.contacts[0].first = "blok";
   expect_refused(d, {"blok"});
   d = pressed_block(0.0);
-  d.contacts[0].method = "exact";
-  expect_refused(d, {"exact", "analytic"});
   d.contacts[0].method = "vertex";
   expect_refused(d, {"vertex", "take method = \"analytic\""});
   d.contacts[0].method = "pixel";
-  expect_refused(d, {"pixel", "take method = \"gpu\""});
+  expect_refused(d, {"pixel", "take method = \"auto\""});
   d = pressed_block(0.0);
   d.tool->shape = "mesh";
   d.tool->mesh.generator = "ball";
   d.tool->mesh.radius_m = 0.01;
   d.tool->inertia_kg_m2 = Vec3::Constant(1e-5);
-  expect_refused(d, {"shape", "gpu"});
+  d.contacts[0].method = "analytic";
+  expect_refused(d, {"shape", "auto"});
   d = pressed_block(0.0);
   d.contacts[0].second = "block";
-  expect_refused(d, {"a body meets itself", "use method = \"gpu\""});
+  d.contacts[0].method = "analytic";
+  expect_refused(d, {"a body meets itself", "use method = \"auto\""});
 }
 #endif
 

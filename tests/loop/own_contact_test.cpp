@@ -156,7 +156,7 @@ TEST(OwnContactScene, RefusesWhatCannotMeetItself) {
   const Fork fork;
   scene::Description d = fork.scene("linearly-implicit-euler");
   d.contacts[0].method = "analytic";
-  EXPECT_NE(refusal(d).find("a body meets itself in image space; use method = \"gpu\""), std::string::npos)
+  EXPECT_NE(refusal(d).find("a body meets itself in image space; use method = \"auto\""), std::string::npos)
       << refusal(d);
   d = fork.scene("linearly-implicit-euler");
   d.bodies[0].proxies = false;

@@ -181,22 +181,20 @@ TEST(Kinds, Obstacles) {
 TEST(Kinds, ContactMethods) {
   const auto with = [](const Overrides& overrides) { return refusal(scene_texts::kWhole, overrides); };
   EXPECT_EQ(
-      with({"contact.1.pixels=128"}),
+      with({"contact.1.pixels=128", "contact.1.method=analytic"}),
       "--set contact.1.pixels=128: contact between \"ball\" and \"tool\": pixels means nothing to method = "
-      "\"analytic\"; remove it (used by gpu)");
-  EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=gpu"}), "accepted");
-  for (const std::string planned : {"vertex", "cpu", "exact"}) {
-    const std::string message = with({"contact.1.method=" + planned}),
-                      expected = "--set contact.1.method=" + planned +
-                                 ": contact between \"ball\" and \"tool\": method = \"" + planned +
-                                 "\" is not there yet; take method = \"";
-    EXPECT_TRUE(message.starts_with(expected)) << message;
-    EXPECT_TRUE(message.ends_with("(known: analytic, gpu)")) << message;
-  }
-  EXPECT_NE(with({"contact.1.method=pixel"}).find("is not known; take method = \"gpu\""), std::string::npos);
-  EXPECT_NE(
-      with({"contact.1.method=spheres"}).find("method = \"spheres\" is not known (known: analytic, gpu)"),
-      std::string::npos);
+      "\"analytic\"; remove it (used by auto, cpu, gpu, exact)");
+  for (const std::string method : {"cpu", "gpu", "exact"})
+    EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=" + method}), "accepted");
+  EXPECT_EQ(
+      with({"contact.1.method=vertex"}),
+      "--set contact.1.method=vertex: contact between \"ball\" and \"tool\": method = \"vertex\" is not "
+      "there yet; take method = \"analytic\" for an obstacle or a sphere (it samples at the vertices), "
+      "\"auto\" for a tool of another shape or a soft body (known: analytic, auto, cpu, gpu, exact)");
+  EXPECT_NE(with({"contact.1.method=pixel"}).find("is not known; take method = \"auto\""), std::string::npos);
+  EXPECT_NE(with({"contact.1.method=spheres"})
+                .find("method = \"spheres\" is not known (known: analytic, auto, cpu, gpu, exact)"),
+            std::string::npos);
   EXPECT_NE(with({"compare.contact_methods=[\"analytic\", \"vertex\"]"})
                 .find("compare: contact_methods = \"vertex\" is not there yet; take method = \"analytic\""),
             std::string::npos);

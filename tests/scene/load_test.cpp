@@ -137,7 +137,9 @@ TEST(Load, TwoSoftBodiesMeetInImageSpace) {
   const std::string ball = "mesh = { generator = \"ball\", radius_m = 0.1, element_size_m = 0.05 }\n",
                     model = "mesh = { file = \"b.h5\" }\nskin = true\nproxies = true\n";
   EXPECT_EQ(refusal(ball, "method = \"gpu\"\n"), "accepted");
-  EXPECT_NE(refusal(ball, "").find("two soft bodies meet in image space: write method = \"gpu\""),
+  EXPECT_EQ(refusal(ball, ""), "accepted");
+  EXPECT_NE(refusal(ball, "method = \"analytic\"\n")
+                .find("two soft bodies meet in image space: leave the method out, or write \"auto\""),
             std::string::npos);
   EXPECT_NE(refusal(ball, "method = \"gpu\"\n[[contact]]\nbetween = [\"b\", \"a\"]\nmethod = \"gpu\"\n")
                 .find("this pair stands here twice"),
@@ -165,8 +167,9 @@ TEST(Load, ABodyMeetsItselfByItsBones) {
   const std::string proxies = "skin = true\nproxies = true\n", itself = "between = [\"hand\", \"hand\"]\n",
                     gpu = "method = \"gpu\"\n";
   EXPECT_EQ(refusal(proxies, itself + gpu), "accepted");
-  EXPECT_NE(refusal(proxies, itself)
-                .find("no [[contact]] of this body has method = \"gpu\", which alone uses them"),
+  EXPECT_EQ(refusal(proxies, itself), "accepted");
+  EXPECT_NE(refusal(proxies, itself + "method = \"analytic\"\n")
+                .find("a body meets itself in image space: leave the method out, or write \"auto\""),
             std::string::npos);
   EXPECT_NE(refusal("skin = true\n", itself + gpu)
                 .find("give it skin = true and proxies = true, or name two things"),
@@ -199,7 +202,8 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
       {{"obstacle.0.name=tool"}, "name \"tool\" is kept for the tool"},
       {{"body.0.name=\"a/b\""}, "must not contain slashes"},
       {{"contact.0.method=gpu"}, "an obstacle has exact gaps"},
-      {{"contact.1.pixels=128"}, "pixels means nothing to method = \"analytic\""},
+      {{"contact.1.pixels=128"}, "pixels means nothing here: a sphere has exact gaps; remove it, or write"},
+      {{"contact.0.pixels=128"}, "pixels means nothing here: an obstacle has exact gaps; remove it"},
       {{"contact.0.hunt_crossley_s_m=1.0"},
        "hunt_crossley_s_m means nothing to law = \"kelvin_voigt\", which takes damping_pa_s_m; remove it "
        "(used by hunt_crossley)"},

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <string_view>
 
 #include "palpate/contact/contact_force.h"
 #include "palpate/mesh/mesh.h"
@@ -37,7 +38,16 @@ std::unique_ptr<SampleSource> make_cylinder_source(NodeSurface surface, int fram
                                                    double radius, double length, double candidate_gap,
                                                    double look_ahead = 0.0);
 
-struct GpuOptions {
+/// What finds the triangles that face each other (docs/design.md 4.3).
+enum class DepthBackend {
+  kGpu,   ///< rasterised by OpenGL
+  kCpu,   ///< rasterised in the processor's vector lanes
+  kExact  ///< a line through each pixel's middle, in double, with every layer that it meets
+};
+std::string_view backend_name(DepthBackend backend);  ///< as scenes call it
+
+struct ImageOptions {
+  DepthBackend backend = DepthBackend::kCpu;
   int pixels = 256;            ///< longer edge of the image
   double candidate_gap = 0.0;  ///< [m]; 0: a quarter of the soft surface's mean edge
   /// the pixel grid moved by this part of a pixel, in [0, 1): for studies of the pixels' error
@@ -45,12 +55,14 @@ struct GpuOptions {
   double shift_v = 0.0;
 };
 
-/// Image space on the GPU (docs/design.md 4.3): one region with its plane from libccd, both surfaces
+/// Image space (docs/design.md 4.3): one region with its plane from libccd, both surfaces
 /// rasterised along its normal, one `pixel` sample for each pixel where both are covered; the gap in double
-/// on the two triangles that the image paired. The GL context is opened at the first query.  @throws Error
-/// when no EGL device can be opened, with the package that brings it.
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid, int frame,
-                                              std::shared_ptr<MovingFrame> motion, const GpuOptions& options);
+/// on the two triangles that the image paired.  The image is made when something is to be seen; on the GPU
+/// that opens the GL context.  @throws Error when no EGL device can be opened, with the package that brings
+/// it.
+std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, TriMesh rigid, int frame,
+                                                std::shared_ptr<MovingFrame> motion,
+                                                const ImageOptions& options);
 
 /// Image space with convex proxies of both sides (docs/design.md 4.2, 4.3): only skin that may be near is
 /// looked at, in regions that have each its own plane and image, so that bodies which are no height field as
@@ -58,25 +70,25 @@ std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid
 /// @param proxies  of `surface`, a skin: the set's faces are the surface's; it may serve several sources
 /// @param proxies_rigid  of `rigid`, in its frame, as proxy::rigid_proxies makes them; it may serve several
 ///   sources
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
-                                              TriMesh rigid, std::shared_ptr<proxy::ProxySet> proxies_rigid,
-                                              int frame, std::shared_ptr<MovingFrame> motion,
-                                              const GpuOptions& options);
+std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
+                                                TriMesh rigid, std::shared_ptr<proxy::ProxySet> proxies_rigid,
+                                                int frame, std::shared_ptr<MovingFrame> motion,
+                                                const ImageOptions& options);
 
 /// Two soft bodies: both points of a sample hang on nodes, so its force reaches both bodies, equal and
 /// opposite, and its tangent couples them.  The pattern has blocks between the two bodies' nodes where
 /// samples were found, and grows with the contact (pattern_version).
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, NodeSurface b, const GpuOptions& options);
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, std::shared_ptr<proxy::ProxySet> proxies_a,
-                                              NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
-                                              const GpuOptions& options);
+std::unique_ptr<SampleSource> make_image_source(NodeSurface a, NodeSurface b, const ImageOptions& options);
+std::unique_ptr<SampleSource> make_image_source(NodeSurface a, std::shared_ptr<proxy::ProxySet> proxies_a,
+                                                NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
+                                                const ImageOptions& options);
 
 /// One soft body against itself: the skin of each bone's proxies against that of every other bone's, but for
 /// proxies that are grown together (they share skin or nodes), so that a limb's tissue may slide into itself
 /// where it is creased, next to the joint.  What overlaps because the body is thick there is no contact, at
 /// rest nothing is.  Parts that are both thinner than they overlap are not seen.
 /// @param rest_nodes  of the surface's tetrahedra [m], in any axes
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
-                                              const Points& rest_nodes, const GpuOptions& options);
+std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
+                                                const Points& rest_nodes, const ImageOptions& options);
 
 }  // namespace palpate::contact

@@ -17,11 +17,12 @@ struct ObstacleSpec {
 /// One pair that may touch.  The `[[contact]]` tables of a scene.
 struct ContactSpec {
   std::string first;  ///< a body's name
-  /// an obstacle's name, "tool", another body's (method "gpu"), or the same again: its bones' regions against
-  /// each other (proxies)
+  /// an obstacle's name, "tool", another body's, or the same again: its bones' regions against each other
+  /// (proxies)
   std::string second;
-  /// "analytic" (obstacle or a sphere tool) or "gpu" (image space: a tool of any shape, another soft body)
-  std::string method = "analytic";
+  /// "analytic" (obstacle or a sphere tool), one of the methods in image space (a tool of any shape, another
+  /// soft body), or "auto": the first where it can be and the body has no proxies, else an image
+  std::string method = "auto";
   double stiffness_pa_m = 1e7;       ///< k: pressure per depth
   double damping_pa_s_m = 0.0;       ///< d (kelvin_voigt) [Pa s/m]
   double hunt_crossley_s_m = 0.0;    ///< c (hunt_crossley) [s/m]
@@ -32,7 +33,7 @@ struct ContactSpec {
   double friction_regularisation_m_s = 1e-3;  ///< v_r
   /// samples with a smaller positive gap are kept too; 0: chosen from the mesh
   double candidate_gap_m = 0.0;
-  int pixels = 256;  ///< gpu: the image's edge
+  int pixels = 256;  ///< in image space: the image's longer edge
 };
 
 /// What they may be: checked by the loader of scenes and by the pressure law.

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "backends.h"
 #include "grid_proxies.h"
 #include "palpate/core/counters.h"
 #include "surfaces.h"
@@ -7,13 +8,6 @@
 using namespace contact_tests;
 
 namespace {
-
-contact::GpuOptions options(int pixels, double candidate_gap) {
-  contact::GpuOptions out;
-  out.pixels = pixels;
-  out.candidate_gap = candidate_gap;
-  return out;
-}
 
 /// A soft unit sphere above a rigid one of radius 0.8, in a rotated and moved frame; the line of centres is
 /// oblique.
@@ -26,8 +20,8 @@ struct Pair {
   SurfaceWorld soft{sphere(rigid_centre + (1.8 - depth) * axis, 1.0, 50)};
 
   std::vector<contact::ContactSample> samples(int pixels, double candidate_gap) {
-    auto source = contact::make_gpu_source(soft.surface, rigid, 0, contact::fixed_frame(pose),
-                                           options(pixels, candidate_gap));
+    auto source = contact::make_image_source(soft.surface, rigid, 0, contact::fixed_frame(pose),
+                                             image_options(pixels, candidate_gap));
     std::vector<contact::ContactSample> out;
     source->query(soft.state.view(), out);
     return out;
@@ -61,7 +55,10 @@ TriMesh deformed(const SurfaceWorld& world) {
 
 }  // namespace
 
-TEST(GpuSource, OpensNoContextBeforeItSeesSomething) {
+ON_EACH_BACKEND(PrunedImageSource);
+ON_EACH_BACKEND(ImageSource);
+
+TEST_P(ImageSource, OpensNoContextBeforeItSeesSomething) {
   const long before = counters::counter("gl.context").load();
   Pair pair;
   pair.soft.state.q().tail(pair.soft.state.q().size() - 6).array() += 50.0;  // far away
@@ -70,7 +67,7 @@ TEST(GpuSource, OpensNoContextBeforeItSeesSomething) {
 }
 
 // Every gap against a ray through all the triangles in double; every weight and point consistent.
-TEST(GpuSource, GapsAreThoseOfTheFacets) {
+TEST_P(ImageSource, GapsAreThoseOfTheFacets) {
   Pair pair;
   const auto samples = pair.samples(128, 0.03);
   ASSERT_GT(samples.size(), 3000u);
@@ -94,7 +91,7 @@ TEST(GpuSource, GapsAreThoseOfTheFacets) {
   EXPECT_GT(samples[0].normal.dot(pair.axis), 0.99);  // from the rigid sphere to the soft one
 }
 
-TEST(GpuSource, SamplesDoNotDependOnTheOrderOfTriangles) {
+TEST_P(ImageSource, SamplesDoNotDependOnTheOrderOfTriangles) {
   Pair pair;
   const auto first = pair.samples(96, 0.02);
   EXPECT_GT(first.size(), 1000u);
@@ -116,14 +113,15 @@ TEST(GpuSource, SamplesDoNotDependOnTheOrderOfTriangles) {
 
 // Force and moment of real samples, oblique and far from the origin: about the tool's origin, over force x
 // body size.
-TEST(GpuSource, ForceAndMomentBalance) {
+TEST_P(ImageSource, ForceAndMomentBalance) {
   Pair pair;
   contact::ContactForce term;
   const auto frame = contact::fixed_frame(pair.pose);
   term.add_frame(frame);
   ContactSpec law;
   law.stiffness_pa_m = 1e6;
-  term.add_pair(contact::make_gpu_source(pair.soft.surface, pair.rigid, 0, frame, options(128, 0.02)), law);
+  term.add_pair(contact::make_image_source(pair.soft.surface, pair.rigid, 0, frame, image_options(128, 0.02)),
+                law);
   EXPECT_TRUE(term.refresh(pair.soft.state.view()));
   const VecX f = force(term, pair.soft.state);
   const Wrench w = term.frame_wrench(pair.soft.state.view(), 0);
@@ -141,13 +139,13 @@ TEST(GpuSource, ForceAndMomentBalance) {
 
 // A skin pressed by a ball: each sample lies where the image saw it, so that the contact is that of nodes in
 // the skin's places, and force and moment balance.
-TEST(GpuSource, ASkinIsSeenWhereItIs) {
+TEST_P(ImageSource, ASkinIsSeenWhereItIs) {
   SkinWorld skin;
   SurfaceWorld nodes({skin.vertices, skin.skin.faces});
   const TriMesh rigid = sphere(Vec3(0, 0, skin.vertices.row(2).maxCoeff() + 0.4), 0.5, 30);
   const auto query = [&](const contact::NodeSurface& surface, const dynamics::State& state) {
     std::vector<contact::ContactSample> out;
-    contact::make_gpu_source(surface, rigid, 0, contact::fixed_frame(), options(64, 0.02))
+    contact::make_image_source(surface, rigid, 0, contact::fixed_frame(), image_options(64, 0.02))
         ->query(state.view(), out);
     return out;
   };
@@ -166,13 +164,13 @@ TEST(GpuSource, ASkinIsSeenWhereItIs) {
 
 // Where the tetrahedron is squashed flat its barycentric coordinates say nothing: the corner's weights and an
 // offset place the sample.
-TEST(GpuSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
+TEST_P(ImageSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
   SkinWorld skin;
   // all nodes in the plane z = 0
   for (Eigen::Index i = 8; i < skin.state.q().size(); i += 3) skin.state.q()[i] = 0.0;
   std::vector<contact::ContactSample> samples;
-  contact::make_gpu_source(skin.surface, sphere(Vec3(0, 0, 0.45), 0.5, 30), 0, contact::fixed_frame(),
-                           options(64, 0.02))
+  contact::make_image_source(skin.surface, sphere(Vec3(0, 0, 0.45), 0.5, 30), 0, contact::fixed_frame(),
+                             image_options(64, 0.02))
       ->query(skin.state.view(), samples);
   EXPECT_GT(samples.size(), 50u);
   for (const auto& s : samples) {
@@ -186,20 +184,20 @@ TEST(GpuSource, ASkinOnFlatTetrahedraIsSeenWhereItIs) {
 // One pose, its skin cut into 1, 8 and 64 cells: force and moment within 1 % (each surface point
 // contributes once), and the force as large as the uncut surface's, whose plane is the hulls' and tilted by
 // some degrees.
-TEST(PrunedGpuSource, ForceDoesNotDependOnTheCut) {
+TEST_P(PrunedImageSource, ForceDoesNotDependOnTheCut) {
   SkinWorld skin;
   const TriMesh rigid = sphere(Vec3(0.1, 0.05, skin.vertices.row(2).maxCoeff() + 0.35), 0.5, 30);
   std::vector<contact::ContactSample> samples;
-  contact::make_gpu_source(skin.surface, rigid, 0, contact::fixed_frame(), options(256, 0.02))
+  contact::make_image_source(skin.surface, rigid, 0, contact::fixed_frame(), image_options(256, 0.02))
       ->query(skin.state.view(), samples);
   const Total whole = total(samples, skin.state.view());
   EXPECT_GT(whole.pressed, 1000);
   Total uncut;
   for (const int cells : {1, 2, 4}) {
     samples.clear();
-    const auto source = contact::make_gpu_source(
+    const auto source = contact::make_image_source(
         skin.surface, proxies_of(skin.ball, skin.skin, skin.surface.embedding, cells), rigid,
-        proxies_of(rigid), 0, contact::fixed_frame(), options(256, 0.02));
+        proxies_of(rigid), 0, contact::fixed_frame(), image_options(256, 0.02));
     source->query(skin.state.view(), samples);
     const Total cut = total(samples, skin.state.view());
     if (cells == 1) uncut = cut;
@@ -217,7 +215,7 @@ TEST(PrunedGpuSource, ForceDoesNotDependOnTheCut) {
 
 // Two balls of one body with a rigid ball between them: as a whole no height field from any side.  Each is
 // pressed away by its own overlap.
-TEST(PrunedGpuSource, FindsContactOnBothSides) {
+TEST_P(PrunedImageSource, FindsContactOnBothSides) {
   TetMesh tets = mesh::ball(1.0, 0.45);
   TriMesh skin = mesh::sphere(1.0, 16);
   const auto twice = [](auto& points, auto& cells) {
@@ -244,8 +242,8 @@ TEST(PrunedGpuSource, FindsContactOnBothSides) {
   std::vector<contact::ContactSample> samples;
   const TriMesh rigid = mesh::sphere(0.4, 20);
   const auto source =
-      contact::make_gpu_source(surface, proxies_of(tets, skin, surface.embedding, 4), rigid,
-                               proxies_of(rigid), 0, contact::fixed_frame(), options(128, 0.02));
+      contact::make_image_source(surface, proxies_of(tets, skin, surface.embedding, 4), rigid,
+                                 proxies_of(rigid), 0, contact::fixed_frame(), image_options(128, 0.02));
   source->query(state.view(), samples);
   Vec3 left = Vec3::Zero(), right = Vec3::Zero();
   for (const auto& s : samples) {
@@ -262,45 +260,45 @@ TEST(PrunedGpuSource, FindsContactOnBothSides) {
   EXPECT_GE(source->pruning()->regions, 2);
 }
 
-TEST(PrunedGpuSource, RefusesWhatDoesNotBelongTogether) {
+TEST_P(PrunedImageSource, RefusesWhatDoesNotBelongTogether) {
   SkinWorld skin;
   SurfaceWorld nodes({skin.vertices, skin.skin.faces});
   const auto proxies = proxies_of(skin.ball, skin.skin, skin.surface.embedding, 1);
   const TriMesh rigid = sphere(Vec3::Zero(), 0.5, 8);
   const auto of_rigid = proxies_of(rigid);
-  EXPECT_THROW(contact::make_gpu_source(nodes.surface, proxies, rigid, of_rigid, 0, contact::fixed_frame(),
-                                        options(64, 0.02)),
+  EXPECT_THROW(contact::make_image_source(nodes.surface, proxies, rigid, of_rigid, 0, contact::fixed_frame(),
+                                          image_options(64, 0.02)),
                InternalError)
       << "nodes have no embedding to follow";
-  EXPECT_THROW(contact::make_gpu_source(skin.surface, proxies, rigid, nullptr, 0, contact::fixed_frame(),
-                                        options(64, 0.02)),
+  EXPECT_THROW(contact::make_image_source(skin.surface, proxies, rigid, nullptr, 0, contact::fixed_frame(),
+                                          image_options(64, 0.02)),
                InternalError);
-  EXPECT_THROW(contact::make_gpu_source(skin.surface, proxies, sphere(Vec3::Zero(), 0.5, 9), of_rigid, 0,
-                                        contact::fixed_frame(), options(64, 0.02)),
+  EXPECT_THROW(contact::make_image_source(skin.surface, proxies, sphere(Vec3::Zero(), 0.5, 9), of_rigid, 0,
+                                          contact::fixed_frame(), image_options(64, 0.02)),
                InternalError);
   contact::NodeSurface fewer = skin.surface;
   fewer.faces.conservativeResize(3, fewer.faces.cols() - 1);
-  EXPECT_THROW(
-      contact::make_gpu_source(fewer, proxies, rigid, of_rigid, 0, contact::fixed_frame(), options(64, 0.02)),
-      InternalError);
+  EXPECT_THROW(contact::make_image_source(fewer, proxies, rigid, of_rigid, 0, contact::fixed_frame(),
+                                          image_options(64, 0.02)),
+               InternalError);
 }
 
-TEST(GpuSource, RefusesBadOptions) {
+TEST_P(ImageSource, RefusesBadOptions) {
   Pair pair;
-  const auto message = [&](TriMesh rigid, contact::GpuOptions with) {
+  const auto message = [&](TriMesh rigid, contact::ImageOptions with) {
     try {
-      contact::make_gpu_source(pair.soft.surface, std::move(rigid), 0, contact::fixed_frame(), with);
+      contact::make_image_source(pair.soft.surface, std::move(rigid), 0, contact::fixed_frame(), with);
     } catch (const std::exception& e) { return std::string(e.what()); }
     return std::string();
   };
-  EXPECT_NE(message(pair.rigid, options(0, 0.1)).find("pixels = 0 must lie in [16, 4096]"),
+  EXPECT_NE(message(pair.rigid, image_options(0, 0.1)).find("pixels = 0 must lie in [16, 4096]"),
             std::string::npos);
-  EXPECT_NE(message(pair.rigid, options(64, -0.1)).find("candidate gap = -0.1"), std::string::npos);
-  EXPECT_NE(message(TriMesh{}, options(64, 0.1)).find("two surfaces with faces"), std::string::npos);
-  contact::GpuOptions shifted = options(64, 0.1);
+  EXPECT_NE(message(pair.rigid, image_options(64, -0.1)).find("candidate gap = -0.1"), std::string::npos);
+  EXPECT_NE(message(TriMesh{}, image_options(64, 0.1)).find("two surfaces with faces"), std::string::npos);
+  contact::ImageOptions shifted = image_options(64, 0.1);
   shifted.shift_v = 1.0;
   EXPECT_NE(message(pair.rigid, shifted).find("grid shift = 1 must lie in [0, 1)"), std::string::npos);
   TriMesh bad = pair.rigid;
   bad.faces(2, 5) = 100000;
-  EXPECT_NE(message(bad, options(64, 0.1)).find("face 5 names a vertex"), std::string::npos);
+  EXPECT_NE(message(bad, image_options(64, 0.1)).find("face 5 names a vertex"), std::string::npos);
 }

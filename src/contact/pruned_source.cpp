@@ -1,25 +1,25 @@
 #include <algorithm>
 
-#include "contact/gpu_source.h"
+#include "contact/image_source.h"
 #include "contact/self_contact_filter.h"
 #include "palpate/proxy/pruner.h"
 
 namespace palpate::contact {
 namespace {
 
-/// The image of gpu_source.cpp, once for each region where proxies come near.
+/// The image of image_source.cpp, once for each region where proxies come near.
 class PrunedSource final : public ImageSource {
  public:
   PrunedSource(std::shared_ptr<ImageSide> a, std::shared_ptr<proxy::ProxySet> proxies_a,
                std::shared_ptr<ImageSide> b, std::shared_ptr<proxy::ProxySet> proxies_b,
-               const GpuOptions& options)
+               const ImageOptions& options)
       : ImageSource(std::move(a), std::move(b), options),
         proxies_a_(std::move(proxies_a)),
         proxies_b_(std::move(proxies_b)),
         pruner_(*proxies_a_, *proxies_b_, {.between_bones = of_one_body()}) {}
   /// A body with itself: the skin of its bones.
   PrunedSource(std::shared_ptr<ImageSide> side, std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes,
-               const GpuOptions& options)
+               const ImageOptions& options)
       : PrunedSource(side, proxies, side, proxies, options) {
     self_contact_.emplace(*a_->soft(), std::move(rest_nodes));
     proxy_of_face_.resize(static_cast<std::size_t>(proxies_a_->face_count()));
@@ -170,14 +170,14 @@ std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> a,
                                                  std::shared_ptr<proxy::ProxySet> proxies_a,
                                                  std::shared_ptr<ImageSide> b,
                                                  std::shared_ptr<proxy::ProxySet> proxies_b,
-                                                 const GpuOptions& options) {
+                                                 const ImageOptions& options) {
   return std::make_unique<PrunedSource>(std::move(a), std::move(proxies_a), std::move(b),
                                         std::move(proxies_b), options);
 }
 
 std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> side,
                                                  std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes,
-                                                 const GpuOptions& options) {
+                                                 const ImageOptions& options) {
   return std::make_unique<PrunedSource>(std::move(side), std::move(proxies), std::move(rest_nodes), options);
 }
 

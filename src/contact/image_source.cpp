@@ -1,22 +1,31 @@
-#include "contact/gpu_source.h"
+#include "contact/image_source.h"
 
-#include "palpate/contact/gpu_available.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/proxy/region.h"
 
 namespace palpate::contact {
 
-bool gpu_available() { return true; }
-
-ImageSource::ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b,
-                         const GpuOptions& options)
-    : a_(std::move(a)), b_(std::move(b)), options_(options) {
-  counters::count("contact.gpu_source");
+std::string_view backend_name(DepthBackend backend) {
+  switch (backend) {
+    case DepthBackend::kGpu: return "gpu";
+    case DepthBackend::kCpu: return "cpu";
+    case DepthBackend::kExact: return "exact";
+  }
+  return {};
 }
 
-GpuImage& ImageSource::image() {
-  if (!image_) image_.emplace(options_.pixels);
+ImageSource::ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b,
+                         const ImageOptions& options)
+    : a_(std::move(a)), b_(std::move(b)), options_(options) {
+  counters::count("contact.image_source");
+}
+
+DepthImage& ImageSource::image() {
+  if (!image_)
+    image_ = options_.backend == DepthBackend::kGpu   ? make_gpu_image(options_.pixels)
+             : options_.backend == DepthBackend::kCpu ? make_cpu_image()
+                                                      : make_exact_image();
   return *image_;
 }
 
@@ -80,18 +89,20 @@ class WholeSource final : public ImageSource {
   Patch patch_a_, patch_b_;
 };
 
-void check_arguments(const NodeSurface& surface, Eigen::Index other_faces, const GpuOptions& options) {
+void check_arguments(const NodeSurface& surface, Eigen::Index other_faces, const ImageOptions& options) {
   if (!ContactRanges::pixels.holds(options.pixels))
-    fail("gpu contact: pixels = {} {}", options.pixels, ContactRanges::pixels.demand());
+    fail("contact in image space: pixels = {} {}", options.pixels, ContactRanges::pixels.demand());
   if (!(options.candidate_gap >= 0.0))
-    fail("gpu contact: candidate gap = {} must not be negative", options.candidate_gap);
+    fail("contact in image space: candidate gap = {} must not be negative", options.candidate_gap);
   for (const double shift : {options.shift_u, options.shift_v})
-    if (!(shift >= 0.0 && shift < 1.0)) fail("gpu contact: grid shift = {} must lie in [0, 1)", shift);
+    if (!(shift >= 0.0 && shift < 1.0))
+      fail("contact in image space: grid shift = {} must lie in [0, 1)", shift);
   if (surface.faces.cols() == 0 || other_faces == 0)
-    fail("gpu contact needs two surfaces with faces, got {} and {}", surface.faces.cols(), other_faces);
+    fail("contact in image space needs two surfaces with faces, got {} and {}", surface.faces.cols(),
+         other_faces);
 }
 
-void check_arguments(const NodeSurface& surface, const TriMesh& rigid, const GpuOptions& options) {
+void check_arguments(const NodeSurface& surface, const TriMesh& rigid, const ImageOptions& options) {
   check_arguments(surface, rigid.faces.cols(), options);
   for (Eigen::Index f = 0; f < rigid.faces.cols(); ++f)
     PALPATE_CHECK(rigid.faces.col(f).minCoeff() >= 0 && rigid.faces.col(f).maxCoeff() < rigid.vertices.cols(),
@@ -99,30 +110,30 @@ void check_arguments(const NodeSurface& surface, const TriMesh& rigid, const Gpu
 }
 
 void check_proxies(const Faces& faces, const std::shared_ptr<proxy::ProxySet>& proxies) {
-  PALPATE_CHECK(proxies, "a pruned gpu source needs proxies on both sides");
+  PALPATE_CHECK(proxies, "a pruned image source needs proxies on both sides");
   PALPATE_CHECK(proxies->face_count() == faces.cols(), "proxies of {} faces for a surface of {}",
                 proxies->face_count(), faces.cols());
 }
 
 void check_proxies(const NodeSurface& surface, const std::shared_ptr<proxy::ProxySet>& proxies) {
-  PALPATE_CHECK(surface.node_of_vertex.empty(), "a pruned gpu source needs a skin");
+  PALPATE_CHECK(surface.node_of_vertex.empty(), "a pruned image source needs a skin");
   check_proxies(surface.faces, proxies);
 }
 
 }  // namespace
 
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, TriMesh rigid, int frame,
-                                              std::shared_ptr<MovingFrame> motion,
-                                              const GpuOptions& options) {
+std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, TriMesh rigid, int frame,
+                                                std::shared_ptr<MovingFrame> motion,
+                                                const ImageOptions& options) {
   check_arguments(surface, rigid, options);
   return std::make_unique<WholeSource>(soft_side(std::move(surface)),
                                        rigid_side(std::move(rigid), frame, std::move(motion)), options);
 }
 
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
-                                              TriMesh rigid, std::shared_ptr<proxy::ProxySet> proxies_rigid,
-                                              int frame, std::shared_ptr<MovingFrame> motion,
-                                              const GpuOptions& options) {
+std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
+                                                TriMesh rigid, std::shared_ptr<proxy::ProxySet> proxies_rigid,
+                                                int frame, std::shared_ptr<MovingFrame> motion,
+                                                const ImageOptions& options) {
   check_arguments(surface, rigid, options);
   check_proxies(surface, proxies);
   check_proxies(rigid.faces, proxies_rigid);
@@ -131,16 +142,16 @@ std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_p
                             options);
 }
 
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, NodeSurface b, const GpuOptions& options) {
+std::unique_ptr<SampleSource> make_image_source(NodeSurface a, NodeSurface b, const ImageOptions& options) {
   check_arguments(a, b.faces.cols(), options);
   PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies has block {} on both sides",
                 a.block_id);
   return std::make_unique<WholeSource>(soft_side(std::move(a)), soft_side(std::move(b)), options);
 }
 
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, std::shared_ptr<proxy::ProxySet> proxies_a,
-                                              NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
-                                              const GpuOptions& options) {
+std::unique_ptr<SampleSource> make_image_source(NodeSurface a, std::shared_ptr<proxy::ProxySet> proxies_a,
+                                                NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
+                                                const ImageOptions& options) {
   check_arguments(a, b.faces.cols(), options);
   PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies has block {} on both sides",
                 a.block_id);
@@ -150,8 +161,8 @@ std::unique_ptr<SampleSource> make_gpu_source(NodeSurface a, std::shared_ptr<pro
                             std::move(proxies_b), options);
 }
 
-std::unique_ptr<SampleSource> make_gpu_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
-                                              const Points& rest_nodes, const GpuOptions& options) {
+std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared_ptr<proxy::ProxySet> proxies,
+                                                const Points& rest_nodes, const ImageOptions& options) {
   check_arguments(surface, surface.faces.cols(), options);
   check_proxies(surface, proxies);
   return make_pruned_source(soft_side(std::move(surface)), std::move(proxies), rest_nodes, options);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "contact/coupled_nodes.h"
+#include "contact/depth_image.h"
 #include "contact/facing.h"
 #include "palpate/contact/sources.h"
 
@@ -13,23 +14,23 @@ namespace palpate::contact {
 /// couple.  Side a is soft; the normal points from b to a.
 class ImageSource : public SampleSource {
  public:
-  ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b, const GpuOptions& options);
-  std::string_view name() const override { return "gpu"; }
+  ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b, const ImageOptions& options);
+  std::string_view name() const override { return backend_name(options_.backend); }
   void add_pattern(dynamics::PatternBuilder& pattern) const override;
   std::uint64_t pattern_version() const override;
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) final;
 
  protected:
   virtual void look(std::vector<ContactSample>& samples) = 0;  ///< at the sides as they are
-  GpuImage& image();                                           ///< opened when something is to be seen
+  DepthImage& image();                                         ///< made when something is to be seen
   bool of_one_body() const { return a_ == b_; }
 
   std::shared_ptr<ImageSide> a_, b_;
-  GpuOptions options_;
+  ImageOptions options_;
   std::vector<PixelPair> pairs_;
 
  private:
-  std::optional<GpuImage> image_;
+  std::unique_ptr<DepthImage> image_;
   CoupledNodes coupled_;                // of two soft sides
   std::uint64_t sides_version() const;  // grows with what either side couples by itself
   std::uint64_t counted_ = 0;           // the one that `coupled_` was made for
@@ -39,10 +40,10 @@ std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> a,
                                                  std::shared_ptr<proxy::ProxySet> proxies_a,
                                                  std::shared_ptr<ImageSide> b,
                                                  std::shared_ptr<proxy::ProxySet> proxies_b,
-                                                 const GpuOptions& options);
+                                                 const ImageOptions& options);
 /// One side against itself, its bones' regions against each other.
 std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> side,
                                                  std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes,
-                                                 const GpuOptions& options);
+                                                 const ImageOptions& options);
 
 }  // namespace palpate::contact

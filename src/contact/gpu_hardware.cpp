@@ -1,0 +1,31 @@
+#include <filesystem>
+
+#include "palpate/contact/gpu_available.h"
+#include "palpate/core/error.h"
+#include "palpate/gl/context.h"
+
+namespace palpate::contact {
+namespace {
+
+/// Device files of Linux's graphics drivers, and of NVIDIA's own.
+bool shows_a_device() {
+  std::error_code ignored;
+  if (std::filesystem::exists("/dev/nvidiactl", ignored)) return true;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/dri", ignored))
+    if (entry.path().filename().string().starts_with("renderD")) return true;
+  return false;
+}
+
+}  // namespace
+
+bool has_gpu_hardware() {
+  static const bool found = [] {
+    if (!shows_a_device()) return false;
+    try {
+      return !gl::Context::shared().info().software;
+    } catch (const Error&) { return false; }
+  }();
+  return found;
+}
+
+}  // namespace palpate::contact

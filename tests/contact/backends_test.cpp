@@ -1,0 +1,171 @@
+// The images of a contact region: what a rasteriser sees is what lines in double precision meet.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <random>
+
+#include "backends.h"
+#include "contact/depth_image.h"
+#include "palpate/mesh/generators.h"
+
+using namespace palpate;
+using namespace palpate::contact;
+
+namespace {
+
+/// A bumpy sheet over [-1, 1]^2, its triangles' diagonals and the places of its vertices at random; `side`
+/// +1: it faces up.
+struct Sheet {
+  Points vertices;
+  Faces faces;
+  Patch patch;
+
+  Sheet(int n, double height, double side, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(-0.3, 0.3);
+    vertices.resize(3, (n + 1) * (n + 1));
+    faces.resize(3, 2 * n * n);
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= n; ++j) {
+        const bool inside = i > 0 && j > 0 && i < n && j < n;
+        const double x = -1.0 + 2.0 * (i + (inside ? uniform(random) : 0.0)) / n,
+                     y = -1.0 + 2.0 * (j + (inside ? uniform(random) : 0.0)) / n;
+        vertices.col(i * (n + 1) + j) =
+            Vec3(x, y, height + 0.1 * std::sin(3.0 * x + seed) * std::cos(4.0 * y));
+      }
+    Eigen::Index f = 0;
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j) {
+        const int a = i * (n + 1) + j, b = a + n + 1, c = b + 1, d = a + 1;
+        const bool flip = random() % 2 == 0;
+        faces.col(f++) = flip ? Eigen::Vector3i(a, b, c) : Eigen::Vector3i(a, b, d);
+        faces.col(f++) = flip ? Eigen::Vector3i(a, c, d) : Eigen::Vector3i(b, c, d);
+      }
+    if (side < 0.0) faces.row(1).swap(faces.row(2));
+    patch.uvw = vertices;
+  }
+  Patch& seen() {
+    patch.faces = &faces;
+    return patch;
+  }
+};
+
+std::vector<PixelPair> pairs_of(DepthImage& image, Patch& a, Patch& b, double gap, int pixels,
+                                ContactCamera* camera = nullptr) {
+  const ContactCamera at = fit_camera(a, b, gap, pixels, {0.0, 0.0});
+  std::vector<PixelPair> out;
+  image.find_pairs(a, b, at, gap, out);
+  if (camera) *camera = at;
+  return out;
+}
+
+std::unique_ptr<DepthImage> image_of(DepthBackend backend, int pixels) {
+  if (backend == DepthBackend::kGpu) return make_gpu_image(pixels);
+  return backend == DepthBackend::kCpu ? make_cpu_image() : make_exact_image();
+}
+
+}  // namespace
+
+ON_EACH_BACKEND(DepthImages);
+
+// Each pixel that both sheets cover is seen once, whatever the triangles: none is lost between two of them.
+TEST_P(DepthImages, NothingIsLostBetweenTriangles) {
+  for (const int n : {3, 17, 90}) {
+    Sheet a(n, 0.0, -1.0, 5), b(n + 4, 0.3, 1.0, 7);
+    ContactCamera camera;
+    const auto pairs = pairs_of(*image_of(GetParam(), 128), a.seen(), b.seen(), 0.05, 128, &camera);
+    std::vector<int> seen(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
+    for (const PixelPair& pair : pairs) ++seen[pair.pixel];
+    long covered = 0;
+    for (int row = 0; row < camera.height; ++row)
+      for (int column = 0; column < camera.width; ++column) {
+        const double u = std::abs(camera.u(column)), v = std::abs(camera.v(row));
+        if (std::max(u, v) < 1.0 - 1e-3 * camera.pixel) {
+          ++covered;
+          EXPECT_EQ(seen[static_cast<std::size_t>(row * camera.width + column)], 1) << n << " " << row;
+        }
+      }
+    EXPECT_GT(covered, 15000);
+  }
+}
+
+// The same triangles as the lines in double meet; where two triangles are equally near, within the rounding
+// of single precision, either may be seen.
+TEST_P(DepthImages, TheSameTrianglesAsLinesMeet) {
+  Sheet a(60, 0.02, -1.0, 1), b(47, 0.0, 1.0, 2);
+  const auto expected = pairs_of(*make_exact_image(), a.seen(), b.seen(), 0.03, 200),
+             pairs = pairs_of(*image_of(GetParam(), 200), a.seen(), b.seen(), 0.03, 200);
+  std::map<std::uint32_t, PixelPair> by_pixel;
+  for (const PixelPair& pair : expected) by_pixel[pair.pixel] = pair;
+  long same = 0, other = 0, missing = 0;
+  for (const PixelPair& pair : pairs) {
+    const auto at = by_pixel.find(pair.pixel);
+    if (at == by_pixel.end())
+      ++missing;
+    else
+      ++(at->second.a == pair.a && at->second.b == pair.b ? same : other);
+  }
+  ASSERT_GT(expected.size(), 20000u);
+  EXPECT_GE(pairs.size(), expected.size());  // some a little farther than the gap
+  EXPECT_LT(static_cast<double>(missing), 2e-3 * static_cast<double>(expected.size()));
+  EXPECT_LT(static_cast<double>(other), 2e-3 * static_cast<double>(expected.size()));
+  EXPECT_GT(static_cast<double>(same), 0.997 * static_cast<double>(expected.size()));
+}
+
+// A shelf of two boards over one of two: each overlap is seen where lines tell layers apart; an image sees
+// the lowest and the highest alone.
+TEST(ExactImage, SeesEveryLayer) {
+  // boards of b reach up to 0 and 1, those of a down to -0.1 and 0.95
+  const auto sheets = [](double low, double high, double side) {
+    Sheet first(2, low, side, 3), second(2, high, side, 3);
+    Sheet out = first;
+    for (Sheet* s : {&first, &second}) s->vertices.row(2).setConstant(s == &first ? low : high);
+    out.vertices.resize(3, first.vertices.cols() + second.vertices.cols());
+    out.vertices << first.vertices, second.vertices;
+    out.faces.resize(3, first.faces.cols() + second.faces.cols());
+    out.faces << first.faces, (second.faces.array() + static_cast<int>(first.vertices.cols())).matrix();
+    out.patch.uvw = out.vertices;
+    return out;
+  };
+  Sheet a = sheets(-0.1, 0.95, -1.0), b = sheets(0.0, 1.0, 1.0);
+  const auto depth_sum = [&](DepthImage& image, std::size_t* count) {
+    ContactCamera camera;
+    const auto pairs = pairs_of(image, a.seen(), b.seen(), 0.01, 32, &camera);
+    double sum = 0.0;
+    for (const PixelPair& pair : pairs)
+      sum += b.vertices(2, b.faces(0, b.patch.visible[pair.b])) -
+             a.vertices(2, a.faces(0, a.patch.visible[pair.a]));
+    *count = pairs.size();
+    return sum / (camera.width * camera.height);
+  };
+  std::size_t exact = 0, image = 0;
+  const auto lines = make_exact_image(), raster = make_cpu_image();
+  const double layers = depth_sum(*lines, &exact), one = depth_sum(*raster, &image);
+  EXPECT_EQ(exact, 2 * image);
+  EXPECT_NEAR(layers / one, (0.1 + 0.05) / 1.1, 1e-12);
+}
+
+// Every instruction set sees the same.
+TEST(CpuImage, DoesNotDependOnTheInstructions) {
+  Sheet a(60, 0.02, -1.0, 1), b(47, 0.0, 1.0, 2);
+  std::vector<std::vector<PixelPair>> seen;
+  for (const char* set : {"baseline", "avx2", "avx512"}) {
+    setenv("PALPATE_INSTRUCTIONS", set, 1);
+    try {
+      seen.push_back(pairs_of(*make_cpu_image(), a.seen(), b.seen(), 0.03, 200));
+    } catch (const std::exception&) {}  // this processor does not have it
+    unsetenv("PALPATE_INSTRUCTIONS");
+  }
+  ASSERT_FALSE(seen.empty());
+  for (const auto& pairs : seen) {
+    ASSERT_NEAR(static_cast<double>(pairs.size()), static_cast<double>(seen[0].size()), 20.0);
+    std::size_t other = 0;
+    for (std::size_t i = 0; i < std::min(pairs.size(), seen[0].size()); ++i)
+      other += pairs[i].a != seen[0][i].a || pairs[i].b != seen[0][i].b;
+    // contracted products round otherwise
+    if (pairs.size() == seen[0].size()) { EXPECT_LT(other, 40u); }
+  }
+}
