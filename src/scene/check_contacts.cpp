@@ -65,9 +65,9 @@ void check_method(const Document& doc, const std::string& key, const std::string
                   const Description& d, ContactSpec& c) {
   const bool obstacle = sides.is_obstacle(c.second),
              sphere_tool = c.second == "tool" && d.tool && d.tool->shape == "sphere",
-             proxies = std::any_of(d.bodies.begin(), d.bodies.end(),
-                                   [&](const auto&body) { return body.name == c.first && body.proxies; });
-  if (c.method == "auto" && (obstacle || (sphere_tool && !proxies))) {
+             pruned = std::any_of(d.bodies.begin(), d.bodies.end(),
+                                  [&](const auto&body) { return body.name == c.first && body.proxies; });
+  if (c.method == "auto" && (obstacle || (sphere_tool && !pruned))) {
     if (given(doc, key + ".pixels"))
       refuse(location(doc, key + ".pixels"), where,
              fmt::format("pixels means nothing here: {} has exact gaps; remove it{}",
