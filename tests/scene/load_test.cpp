@@ -168,9 +168,10 @@ TEST(Load, ABodyMeetsItselfByItsBones) {
                     gpu = "method = \"gpu\"\n";
   EXPECT_EQ(refusal(proxies, itself + gpu), "accepted");
   EXPECT_EQ(refusal(proxies, itself), "accepted");
-  EXPECT_NE(refusal(proxies, itself + "method = \"analytic\"\n")
-                .find("a body meets itself in image space: leave the method out, or write \"auto\""),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(proxies, itself + "method = \"analytic\"\n")
+          .find("proxies = true, but no [[contact]] of this body is in image space, which alone uses them"),
+      std::string::npos);
   EXPECT_NE(refusal("skin = true\n", itself + gpu)
                 .find("give it skin = true and proxies = true, or name two things"),
             std::string::npos);
@@ -216,7 +217,8 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
       {{"tool.shape=mesh"}, "needs a [tool.mesh]"},
       {{"tool.mesh.file=\"a.obj\""}, "mesh means nothing to shape = \"sphere\""},
       {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\""}, "inertia_kg_m2 is missing"},
-      {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\"", "tool.inertia_kg_m2=[1,1,1]"},
+      {{"tool.shape=mesh", "tool.mesh.file=\"a.obj\"", "tool.inertia_kg_m2=[1,1,1]",
+        "contact.1.method=analytic"},
        "needs a tool with shape = \"sphere\""},
       {{"device.keyframe=[]"}, "write [[keyframe]] with double brackets"},
       {{"compare.exchange_periods_s=[50.0, 0.01]"}, "exchange_periods_s = 50 is longer than the whole run"},
