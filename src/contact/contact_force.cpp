@@ -45,6 +45,13 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
   counters::count("contact.query");
   std::swap(samples, next_samples);
   group_samples();
+  if (events_to_compare) ++events_version;  // nobody asked between two queries: no comparison is needed
+  events_to_compare = true;
+}
+
+void ContactForce::Impl::compare_events() {
+  if (!events_to_compare) return;
+  events_to_compare = false;
   if (!std::equal(samples.begin(), samples.end(), next_samples.begin(), next_samples.end(), is_same_pair))
     ++events_version;
 }
@@ -213,7 +220,10 @@ int ContactForce::event_count() const {
   return count;
 }
 
-std::uint64_t ContactForce::events_version() const { return impl_->events_version; }
+std::uint64_t ContactForce::events_version() const {
+  impl_->compare_events();
+  return impl_->events_version;
+}
 
 // A candidate that is far apart is among them: it may close before the next query.  A sample whose gap is far
 // away costs a root finder an evaluation, no more.
@@ -238,6 +248,12 @@ std::vector<long> ContactForce::tunnelled() const {
 std::vector<const proxy::PruneCounts*> ContactForce::pruning() const {
   std::vector<const proxy::PruneCounts*> out;
   for (const auto& pair : impl_->pairs) out.push_back(pair.source->pruning());
+  return out;
+}
+
+std::vector<const QueryStages*> ContactForce::stages() const {
+  std::vector<const QueryStages*> out;
+  for (const auto& pair : impl_->pairs) out.push_back(pair.source->stages());
   return out;
 }
 

@@ -23,6 +23,9 @@ struct ContactForce::Impl {
   VecX force_before, force_after;        ///< scratch of refresh
   long queries = 0;
   std::uint64_t events_version = 1;  ///< grows when a query finds other samples than the one before
+  /// the last query's samples were not compared yet with those before, which are in next_samples
+  bool events_to_compare = false;
+  void compare_events();
   double query_seconds = 0.0;
   double refresh_force_jump = 0.0, largest_force_jump = 0.0, largest_force = 0.0;
 

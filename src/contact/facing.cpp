@@ -5,45 +5,50 @@
 #include "palpate/core/counters.h"
 
 namespace palpate::contact {
-namespace {
 
-/// Barycentric coordinates of (u, v) in the projected triangle: false when it is seen edge-on, or (u, v) lies
-/// outside by more than the rasteriser's sub-pixel grid explains (a quarter of the triangle), where the plane
-/// would be extrapolated too far.
-bool barycentric(const Patch& patch, int face, double u, double v, Vec3& weights) {
-  constexpr double kOutside = -0.25, kFlat = 1e-12;
-  const auto corner = [&](int k) { return patch.uvw.col((*patch.faces)(k, face)); };
-  const double ax = corner(0).x() - u, ay = corner(0).y() - v, bx = corner(1).x() - u, by = corner(1).y() - v,
-               cx = corner(2).x() - u, cy = corner(2).y() - v;
-  const Vec3 twice_areas(bx * cy - by * cx, cx * ay - cy * ax, ax * by - ay * bx);
-  const double sum = twice_areas.sum();
-  const double size = (corner(1) - corner(0)).squaredNorm() + (corner(2) - corner(0)).squaredNorm();
-  if (std::abs(sum) <= kFlat * size) return false;
-  weights = twice_areas / sum;
+void FacePlanes::start(const Patch& patch) {
+  patch_ = &patch;
+  planes_.resize(patch.visible.size());
+  for (Plane& plane : planes_) plane.state = Plane::kUnknown;
+}
+
+// With corners p0, p1, p2 seen along w and d_i = p_i - p0, the weights of corners 1 and 2 at p0 + d are
+// (d x d_2) / (d_1 x d_2) and (d_1 x d) / (d_1 x d_2).
+void FacePlanes::prepare(Plane& plane, int face) const {
+  constexpr double kFlat = 1e-12;
+  const auto corner = [&](int k) { return patch_->uvw.col((*patch_->faces)(k, face)); };
+  const Vec3 d1 = corner(1) - corner(0), d2 = corner(2) - corner(0);
+  const double area = d1.x() * d2.y() - d1.y() * d2.x();
+  if (std::abs(area) <= kFlat * (d1.squaredNorm() + d2.squaredNorm())) {
+    plane.state = Plane::kEdgeOn;
+    return;
+  }
+  const Vec3 p0 = corner(0);
+  plane = {p0.x(),        p0.y(), d2.y() / area, -d2.x() / area, -d1.y() / area,
+           d1.x() / area, p0.z(), d1.z(),        d2.z(),         Plane::kReady};
+}
+
+bool FacePlanes::at(int visible, double u, double v, Vec3& weights, double& w) {
+  constexpr double kOutside = -0.25;
+  Plane& plane = planes_[static_cast<std::size_t>(visible)];
+  if (plane.state == Plane::kUnknown) prepare(plane, patch_->visible[static_cast<std::size_t>(visible)]);
+  if (plane.state == Plane::kEdgeOn) return false;
+  const double du = u - plane.u0, dv = v - plane.v0;
+  const double first = plane.u1 * du + plane.v1 * dv, second = plane.u2 * du + plane.v2 * dv;
+  weights = Vec3(1.0 - first - second, first, second);
+  w = plane.w0 + first * plane.w1 + second * plane.w2;
   return weights.minCoeff() >= kOutside;
 }
 
-double height(const Patch& patch, int face, const Vec3& weights) {
-  double w = 0.0;
-  for (int k = 0; k < 3; ++k) w += weights[k] * patch.uvw(2, (*patch.faces)(k, face));
-  return w;
-}
-
-}  // namespace
-
-std::optional<Facing> facing_at(const PixelPair& pair, const ContactCamera& camera, const Patch& a,
-                                int face_a, const Patch& b, int face_b) {
-  Facing at;
-  at.u = camera.u(static_cast<int>(pair.pixel) % camera.width);
-  at.v = camera.v(static_cast<int>(pair.pixel) / camera.width);
-  if (!barycentric(a, face_a, at.u, at.v, at.weights_a) ||
-      !barycentric(b, face_b, at.u, at.v, at.weights_b)) {
-    counters::count("contact.edge_on");
-    return std::nullopt;
-  }
-  at.w_a = height(a, face_a, at.weights_a);
-  at.w_b = height(b, face_b, at.weights_b);
-  return at;
+bool facing_at(const PixelPair& pair, const ContactCamera& camera, FacePlanes& a, FacePlanes& b,
+               Facing& out) {
+  out.u = camera.u(static_cast<int>(pair.pixel) % camera.width);
+  out.v = camera.v(static_cast<int>(pair.pixel) / camera.width);
+  if (a.at(static_cast<int>(pair.a), out.u, out.v, out.weights_a, out.w_a) &&
+      b.at(static_cast<int>(pair.b), out.u, out.v, out.weights_b, out.w_b))
+    return true;
+  counters::count("contact.edge_on");
+  return false;
 }
 
 ContactSample sample_of(const Facing& at, const ImageSide& a, int face_a, const ImageSide& b, int face_b,

@@ -1,5 +1,5 @@
 #pragma once
-#include <optional>
+#include <vector>
 
 #include "contact/depth_image.h"
 #include "contact/image_side.h"
@@ -13,10 +13,31 @@ struct Facing {
   double gap() const { return w_a - w_b; }
 };
 
-/// The image said which triangles; the gap is theirs at the pixel's own (u, v), in double.  Nothing where one
+/// The triangles of a patch as functions of (u, v): each is prepared when a pixel first asks for it.
+class FacePlanes {
+ public:
+  void start(const Patch& patch);  ///< forgets what was prepared
+  /// Weights of the corners and height w of triangle `visible` at (u, v).  False where it is seen edge-on, or
+  /// where (u, v) lies outside by more than the rasteriser's sub-pixel grid explains (a quarter of the
+  /// triangle): the plane would be extrapolated too far.
+  bool at(int visible, double u, double v, Vec3& weights, double& w);
+
+ private:
+  struct Plane {
+    double u0, v0;          ///< corner 0
+    double u1, v1, u2, v2;  ///< gradients of the weights of corners 1 and 2
+    double w0, w1, w2;      ///< heights: of corner 0, of the others against it
+    enum : int { kUnknown, kEdgeOn, kReady } state;
+  };
+  void prepare(Plane& plane, int face) const;
+
+  const Patch* patch_ = nullptr;
+  std::vector<Plane> planes_;
+};
+
+/// The image said which triangles; the gap is theirs at the pixel's own (u, v), in double.  False where one
 /// of them is seen edge-on there.
-std::optional<Facing> facing_at(const PixelPair& pair, const ContactCamera& camera, const Patch& a,
-                                int face_a, const Patch& b, int face_b);
+bool facing_at(const PixelPair& pair, const ContactCamera& camera, FacePlanes& a, FacePlanes& b, Facing& out);
 
 /// The sample of a pixel; the faces are those of the whole sides.
 ContactSample sample_of(const Facing& at, const ImageSide& a, int face_a, const ImageSide& b, int face_b,

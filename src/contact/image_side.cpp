@@ -30,7 +30,6 @@ class RigidSide final : public ImageSide {
   }
   void update(const dynamics::StateView& state) override {
     pose_ = motion_->pose(state);
-    inverse_ = pose_.inverse();
     turn_ = pose_.rotation.toRotationMatrix();
   }
   const Faces& faces() const override { return surface_.faces; }
@@ -42,14 +41,17 @@ class RigidSide final : public ImageSide {
   Vec3 vertex(int vertex) const override { return turn_ * surface_.vertices.col(vertex) + pose_.translation; }
   void update(proxy::ProxySet& proxies) const override { proxies.update(pose_); }
   SurfacePoint point(int, const Vec3&, const Vec3& world) const override {
-    return frame_point(frame_, inverse_, world);
+    SurfacePoint point;
+    point.frame = frame_;
+    point.offset.noalias() = turn_.transpose() * (world - pose_.translation);
+    return point;
   }
 
  private:
   TriMesh surface_;
   int frame_;
   std::shared_ptr<MovingFrame> motion_;
-  Pose pose_, inverse_;
+  Pose pose_;
   Mat3 turn_ = Mat3::Identity();
   Points world_;
 };

@@ -1,5 +1,6 @@
 #include "contact/image_source.h"
 
+#include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/proxy/region.h"
@@ -21,12 +22,15 @@ ImageSource::ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide
   counters::count("contact.image_source");
 }
 
-DepthImage& ImageSource::image() {
+void ImageSource::find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera) {
+  const ScopedTimer timer(stages_.images_s);
   if (!image_)
     image_ = options_.backend == DepthBackend::kGpu   ? make_gpu_image(options_.pixels)
              : options_.backend == DepthBackend::kCpu ? make_cpu_image()
                                                       : make_exact_image();
-  return *image_;
+  image_->find_pairs(a, b, camera, options_.candidate_gap, pairs_);
+  ++stages_.images;
+  stages_.pairs += static_cast<long>(pairs_.size());
 }
 
 void ImageSource::add_pattern(dynamics::PatternBuilder& pattern) const {
@@ -42,17 +46,22 @@ std::uint64_t ImageSource::sides_version() const {
 std::uint64_t ImageSource::pattern_version() const { return sides_version() + coupled_.version(); }
 
 void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSample>& samples) {
-  a_->update(state);
-  if (!of_one_body()) b_->update(state);
+  {
+    const ScopedTimer timer(stages_.positions_s);
+    a_->update(state);
+    if (!of_one_body()) b_->update(state);
+  }
   if (options_.candidate_gap == 0.0) options_.candidate_gap = 0.25 * a_->soft()->mean_edge();
   const std::size_t first = samples.size();
   look(samples);
   if (!b_->soft()) return;
-  if (const std::uint64_t now = sides_version(); now != counted_) {
+  if (const std::uint64_t now = sides_version(); now != counted_ || neighbours_a_.empty()) {
     coupled_.forget();
+    neighbours_a_ = a_->soft()->neighbours();
+    neighbours_b_ = of_one_body() ? neighbours_a_ : b_->soft()->neighbours();
     counted_ = now;
   }
-  coupled_.take(std::span(samples).subspan(first));
+  coupled_.take(std::span(samples).subspan(first), neighbours_a_, neighbours_b_);
 }
 
 namespace {
@@ -65,28 +74,37 @@ class WholeSource final : public ImageSource {
  protected:
   void look(std::vector<ContactSample>& samples) override {
     const Points &above = a_->positions(), &below = b_->positions();
-    const proxy::Region region = regions_.find(above, below, options_.candidate_gap);
+    const auto region = [&] {
+      const ScopedTimer timer(stages_.regions_s);
+      return regions_.find(above, below, options_.candidate_gap);
+    }();
     if (!region.found) return;
     const ContactAxes axes(region.origin, region.normal);
-    axes.to_axes(above, patch_a_.uvw);
-    axes.to_axes(below, patch_b_.uvw);
-    patch_a_.faces = &a_->faces();
-    patch_b_.faces = &b_->faces();
-    const ContactCamera camera = fit_camera(patch_a_, patch_b_, options_.candidate_gap, options_.pixels,
-                                            {options_.shift_u, options_.shift_v});
+    const ContactCamera camera = [&] {
+      const ScopedTimer timer(stages_.patches_s);
+      axes.to_axes(above, patch_a_.uvw);
+      axes.to_axes(below, patch_b_.uvw);
+      patch_a_.faces = &a_->faces();
+      patch_b_.faces = &b_->faces();
+      return fit_camera(patch_a_, patch_b_, options_.candidate_gap, options_.pixels,
+                        {options_.shift_u, options_.shift_v});
+    }();
     if (!camera.sees_something()) return;
-    image().find_pairs(patch_a_, patch_b_, camera, options_.candidate_gap, pairs_);
-    for (const PixelPair& pair : pairs_) {
-      const int face_a = patch_a_.visible[pair.a], face_b = patch_b_.visible[pair.b];
-      const std::optional<Facing> facing = facing_at(pair, camera, patch_a_, face_a, patch_b_, face_b);
-      if (facing && facing->gap() < options_.candidate_gap)
-        samples.push_back(sample_of(*facing, *a_, face_a, *b_, face_b, camera, axes));
-    }
+    find_pairs(patch_a_, patch_b_, camera);
+    const ScopedTimer timer(stages_.gaps_s);
+    planes_a_.start(patch_a_);
+    planes_b_.start(patch_b_);
+    Facing facing;
+    for (const PixelPair& pair : pairs_)
+      if (facing_at(pair, camera, planes_a_, planes_b_, facing) && facing.gap() < options_.candidate_gap)
+        samples.push_back(
+            sample_of(facing, *a_, patch_a_.visible[pair.a], *b_, patch_b_.visible[pair.b], camera, axes));
   }
 
  private:
   proxy::RegionFinder regions_;
   Patch patch_a_, patch_b_;
+  FacePlanes planes_a_, planes_b_;
 };
 
 void check_arguments(const NodeSurface& surface, Eigen::Index other_faces, const ImageOptions& options) {

@@ -19,19 +19,23 @@ class ImageSource : public SampleSource {
   void add_pattern(dynamics::PatternBuilder& pattern) const override;
   std::uint64_t pattern_version() const override;
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) final;
+  const QueryStages* stages() const final { return &stages_; }
 
  protected:
   virtual void look(std::vector<ContactSample>& samples) = 0;  ///< at the sides as they are
-  DepthImage& image();                                         ///< made when something is to be seen
+  /// Fills `pairs_` by the image, which is made when something is to be seen.
+  void find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera);
   bool of_one_body() const { return a_ == b_; }
 
   std::shared_ptr<ImageSide> a_, b_;
   ImageOptions options_;
   std::vector<PixelPair> pairs_;
+  QueryStages stages_;
 
  private:
   std::unique_ptr<DepthImage> image_;
-  CoupledNodes coupled_;                // of two soft sides
+  CoupledNodes coupled_;  // of two soft sides
+  NodeNeighbours neighbours_a_, neighbours_b_;
   std::uint64_t sides_version() const;  // grows with what either side couples by itself
   std::uint64_t counted_ = 0;           // the one that `coupled_` was made for
 };

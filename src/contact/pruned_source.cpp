@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <span>
 
 #include "contact/image_source.h"
 #include "contact/self_contact_filter.h"
+#include "palpate/core/clock.h"
 #include "palpate/proxy/pruner.h"
 
 namespace palpate::contact {
@@ -32,20 +34,32 @@ class PrunedSource final : public ImageSource {
 
  protected:
   void look(std::vector<ContactSample>& samples) override {
-    a_->update(*proxies_a_);
-    if (!of_one_body()) b_->update(*proxies_b_);
-    for (const proxy::ContactRegion& region : pruner_.query(options_.candidate_gap)) {
+    for (const proxy::ContactRegion& region : regions()) {
       ContactAxes axes(region.region.origin, region.region.normal);
-      ContactCamera camera = look_along(region, axes);
-      for (int i = 0; i < kAlignments && align_with_overlap(axes); ++i) camera = look_along(region, axes);
-      for (const FacingFaces& at : facings_)
-        samples.push_back(sample_of(at.facing, *a_, piece_a_.face_of[static_cast<std::size_t>(at.face_a)],
-                                    *b_, piece_b_.face_of[static_cast<std::size_t>(at.face_b)], camera,
-                                    axes));
+      for (int i = 0; i < kAlignments; ++i) {
+        OverlapSlope slope;
+        scan(region, axes, coarse_pixels(),
+             [&](const Facing& at, int face_a, int face_b, const ContactCamera&) {
+               if (at.gap() < 0.0) slope.add(slope_of(piece_a_, face_a), slope_of(piece_b_, face_b));
+             });
+        if (!align_with_overlap(slope, axes)) break;
+      }
+      scan(region, axes, options_.pixels,
+           [&](const Facing& at, int face_a, int face_b, const ContactCamera& camera) {
+             samples.push_back(sample_of(at, *a_, piece_a_.face_of[static_cast<std::size_t>(face_a)], *b_,
+                                         piece_b_.face_of[static_cast<std::size_t>(face_b)], camera, axes));
+           });
     }
   }
 
  private:
+  std::span<const proxy::ContactRegion> regions() {
+    const ScopedTimer timer(stages_.regions_s);
+    a_->update(*proxies_a_);
+    if (!of_one_body()) b_->update(*proxies_b_);
+    return pruner_.query(options_.candidate_gap);
+  }
+
   /// The faces of a region with vertices of their own.
   struct Piece {
     Faces faces;
@@ -86,32 +100,35 @@ class PrunedSource final : public ImageSource {
     }
   };
 
-  struct FacingFaces {
+  /// visit(facing, face of a, face of b, camera) at each pixel of the region along these axes; the faces are
+  /// those of the pieces.
+  template <class Visit>
+  void scan(const proxy::ContactRegion& region, const ContactAxes& axes, int pixels, const Visit& visit) {
+    const ContactCamera camera = fit_pieces(region, axes, pixels);
+    if (!camera.sees_something()) return;
+    const Patch &a = piece_a_.patch, &b = piece_b_.patch;
+    find_pairs(a, b, camera);
+    const ScopedTimer timer(stages_.gaps_s);
+    planes_a_.start(a);
+    planes_b_.start(b);
     Facing facing;
-    int face_a, face_b;  ///< of the pieces
-  };
+    for (const PixelPair& pair : pairs_) {
+      const int face_a = a.visible[pair.a], face_b = b.visible[pair.b];
+      if (facing_at(pair, camera, planes_a_, planes_b_, facing) && facing.gap() < options_.candidate_gap &&
+          (!self_contact_ || may_touch(facing, face_a, face_b, axes)))
+        visit(facing, face_a, face_b, camera);
+    }
+  }
 
-  /// Fills `facings_` with what the region shows along these axes.
-  ContactCamera look_along(const proxy::ContactRegion& region, const ContactAxes& axes) {
-    facings_.clear();
+  ContactCamera fit_pieces(const proxy::ContactRegion& region, const ContactAxes& axes, int pixels) {
+    const ScopedTimer timer(stages_.patches_s);
     piece_a_.take(a_->faces(), region.faces_a, -1.0,
                   [&](int vertex) { return axes.in_axes(a_->vertex(vertex)); });
     piece_b_.take(b_->faces(), region.faces_b, 1.0,
                   [&](int vertex) { return axes.in_axes(b_->vertex(vertex)); });
     if (piece_a_.faces.cols() == 0 || piece_b_.faces.cols() == 0) return {};
-    Patch &a = piece_a_.patch, &b = piece_b_.patch;
-    const ContactCamera camera =
-        fit_camera(a, b, options_.candidate_gap, options_.pixels, {options_.shift_u, options_.shift_v});
-    if (!camera.sees_something()) return camera;
-    image().find_pairs(a, b, camera, options_.candidate_gap, pairs_);
-    for (const PixelPair& pair : pairs_) {
-      const int face_a = a.visible[pair.a], face_b = b.visible[pair.b];
-      const std::optional<Facing> facing = facing_at(pair, camera, a, face_a, b, face_b);
-      if (facing && facing->gap() < options_.candidate_gap &&
-          (!self_contact_ || may_touch(*facing, face_a, face_b, axes)))
-        facings_.push_back({*facing, face_a, face_b});
-    }
-    return camera;
+    return fit_camera(piece_a_.patch, piece_b_.patch, options_.candidate_gap, pixels,
+                      {options_.shift_u, options_.shift_v});
   }
 
   /// For contact of a body with itself: a pair of proxies, each of which is looked at once, and not the far
@@ -133,24 +150,30 @@ class PrunedSource final : public ImageSource {
   // are opposite, and their common direction pushes the bodies apart.  Seen along n, a pixel of area dA shows
   // (s, 1) dA of each, s the slope of -a's or of b's skin: n is tilted by the mean slope of both, and kept
   // where that is zero.  It depends on the pose alone.
+  // A mean over the overlap needs few pixels: a quarter of the image's edge.
   static constexpr int kAlignments = 3;
-  bool align_with_overlap(ContactAxes& axes) const {
-    constexpr double kAligned = 1e-3, kSteepest = 10.0;  // [rad]; a wall's slope is no direction
-    const auto slope = [&](const Piece& piece, int face) -> Eigen::Vector2d {
-      const auto at = [&](int k) { return piece.patch.uvw.col(piece.faces(k, face)); };
-      const Vec3 area = Vec3(at(1) - at(0)).cross(Vec3(at(2) - at(0)));
-      const Eigen::Vector2d s = area.head<2>() / area.z();
-      return s * std::min(1.0, kSteepest / std::max(s.norm(), 1e-300));
-    };
+  int coarse_pixels() const { return std::min(options_.pixels, std::max(64, options_.pixels / 4)); }
+
+  struct OverlapSlope {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     long pressed = 0;
-    for (const FacingFaces& at : facings_)
-      if (at.facing.gap() < 0.0) {
-        sum += 0.5 * (slope(piece_a_, at.face_a) + slope(piece_b_, at.face_b));
-        ++pressed;
-      }
-    if (pressed == 0) return false;
-    const Eigen::Vector2d mean = sum / static_cast<double>(pressed);
+    void add(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+      sum += 0.5 * (a + b);
+      ++pressed;
+    }
+  };
+  static Eigen::Vector2d slope_of(const Piece& piece, int face) {
+    constexpr double kSteepest = 10.0;  // a wall's slope is no direction
+    const auto at = [&](int k) { return piece.patch.uvw.col(piece.faces(k, face)); };
+    const Vec3 area = Vec3(at(1) - at(0)).cross(Vec3(at(2) - at(0)));
+    const Eigen::Vector2d s = area.head<2>() / area.z();
+    return s * std::min(1.0, kSteepest / std::max(s.norm(), 1e-300));
+  }
+  /// False where the axes are aligned already, or nothing overlaps.
+  static bool align_with_overlap(const OverlapSlope& slope, ContactAxes& axes) {
+    constexpr double kAligned = 1e-3;  // [rad]
+    if (slope.pressed == 0) return false;
+    const Eigen::Vector2d mean = slope.sum / static_cast<double>(slope.pressed);
     if (!(mean.norm() > kAligned)) return false;
     axes = ContactAxes(axes.origin, (axes.to_world * Vec3(mean.x(), mean.y(), 1.0)).normalized());
     return true;
@@ -161,7 +184,7 @@ class PrunedSource final : public ImageSource {
   Piece piece_a_, piece_b_;
   std::optional<SelfContactFilter> self_contact_;  ///< of a body with itself, else empty
   std::vector<int> proxy_of_face_;
-  std::vector<FacingFaces> facings_;
+  FacePlanes planes_a_, planes_b_;
 };
 
 }  // namespace

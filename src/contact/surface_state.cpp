@@ -36,6 +36,7 @@ void SurfaceState::update(const dynamics::StateView& state) {
     node_offset_ = offset;
     ++pattern_version_;
   }
+  ++updates_;
   if (is_skin()) {
     nodes_ = Eigen::Map<const Points>(state.q.data() + block->q_offset, 3, block->q_size / 3);
     mesh::evaluate(surface_.embedding, surface_.tets, nodes_, positions_);
@@ -87,17 +88,29 @@ SurfacePoint SurfaceState::face_point(int face, const Vec3& weights) const {
   return point_of_tet(tet_of(corner[nearest]), x, surface_.embedding.weights.col(corner[nearest]));
 }
 
+const SurfaceState::TetFrame& SurfaceState::frame_of(int tet) const {
+  constexpr double kFlat = 1e-6;  // volume over the cube of the longest edge
+  if (frames_.empty()) frames_.resize(static_cast<std::size_t>(surface_.tets.cols()));
+  TetFrame& frame = frames_[static_cast<std::size_t>(tet)];
+  if (frame.made == updates_) return frame;
+  Mat3 edges;
+  for (int k = 0; k < 3; ++k)
+    edges.col(k) = nodes_.col(surface_.tets(k + 1, tet)) - nodes_.col(surface_.tets(0, tet));
+  const double size = edges.colwise().norm().maxCoeff();
+  frame.flat = std::abs(edges.determinant()) <= kFlat * size * size * size;
+  if (!frame.flat) frame.inverse_edges = edges.inverse();
+  frame.made = updates_;
+  return frame;
+}
+
 /// By its barycentric coordinates; on a tetrahedron too flat to have them, by the corner's own weights and an
 /// offset that does not rotate.
 SurfacePoint SurfaceState::point_of_tet(int tet, const Vec3& x, const Eigen::Vector4d& of_corner) const {
-  constexpr double kFlat = 1e-6;  // volume over the cube of the longest edge
-  const auto at = [&](int k) -> Vec3 { return nodes_.col(surface_.tets(k, tet)); };
-  Mat3 edges;
-  for (int k = 0; k < 3; ++k) edges.col(k) = at(k + 1) - at(0);
-  const double size = edges.colwise().norm().maxCoeff();
+  const auto at = [&](int k) { return nodes_.col(surface_.tets(k, tet)); };
+  const TetFrame& frame = frame_of(tet);
   Eigen::Vector4d w = of_corner;
-  if (std::abs(edges.determinant()) > kFlat * size * size * size) {
-    w.tail<3>() = edges.inverse() * (x - at(0));
+  if (!frame.flat) {
+    w.tail<3>().noalias() = frame.inverse_edges * (x - at(0));
     w[0] = 1.0 - w.tail<3>().sum();
   }
   SurfacePoint point;
@@ -131,6 +144,15 @@ double SurfaceState::mean_edge() const {
     for (int k = 0; k < 3; ++k)
       sum += (positions_.col(surface_.faces(k, f)) - positions_.col(surface_.faces((k + 1) % 3, f))).norm();
   return face_count() > 0 ? sum / (3.0 * face_count()) : 0.0;
+}
+
+NodeNeighbours SurfaceState::neighbours() const {
+  if (is_skin()) return {surface_.tets, node_offset_};
+  Eigen::MatrixXi faces(3, face_count());
+  for (int f = 0; f < face_count(); ++f)
+    for (int k = 0; k < 3; ++k)
+      faces(k, f) = surface_.node_of_vertex[static_cast<std::size_t>(surface_.faces(k, f))];
+  return {faces, node_offset_};
 }
 
 void SurfaceState::add_vertex_pattern(dynamics::PatternBuilder& pattern) const {

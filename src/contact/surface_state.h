@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "contact/coupled_nodes.h"
 #include "palpate/contact/contact_force.h"
 
 namespace palpate::contact {
@@ -32,6 +33,8 @@ class SurfaceState {
   /// Mean length of the faces' edges at the last update [m].
   double mean_edge() const;
 
+  /// Nodes by the body's elements, of a skin, else by the faces; as they are counted now.
+  NodeNeighbours neighbours() const;
   /// What vertex points couple, and what face points couple.
   void add_vertex_pattern(dynamics::PatternBuilder& pattern) const;
   void add_face_pattern(dynamics::PatternBuilder& pattern) const;
@@ -46,6 +49,13 @@ class SurfaceState {
   int node(int vertex) const {
     return node_offset_ + surface_.node_of_vertex[static_cast<std::size_t>(vertex)];
   }
+  /// A tetrahedron of a skin as it stands: what gives a point its barycentric coordinates.
+  struct TetFrame {
+    Mat3 inverse_edges;
+    bool flat;
+    std::uint64_t made = 0;  ///< at which update
+  };
+  const TetFrame& frame_of(int tet) const;
   SurfacePoint point_of_tet(int tet, const Vec3& x, const Eigen::Vector4d& at_rest) const;
 
   NodeSurface surface_;
@@ -54,6 +64,8 @@ class SurfaceState {
   std::uint64_t pattern_version_ = 0;
   Points positions_;
   Points nodes_;
+  std::uint64_t updates_ = 1;
+  mutable std::vector<TetFrame> frames_;  ///< of each tetrahedron, made when a point asks for it
 };
 
 /// A point of a frame, given in the world.

@@ -6,6 +6,11 @@
 
 #include "palpate/contact/gpu_available.h"
 #include "palpate/contact/sources.h"
+#if defined(__SANITIZE_ADDRESS__) && defined(PALPATE_HAS_GL)
+#include <sanitizer/lsan_interface.h>
+
+#include "palpate/gl/context.h"
+#endif
 
 /// Tests of contact in image space run on every backend of this build.
 namespace contact_tests {
@@ -26,7 +31,15 @@ inline palpate::contact::ImageOptions image_options(int pixels, double candidate
 
 class OnEachBackend : public ::testing::TestWithParam<palpate::contact::DepthBackend> {
  protected:
-  void SetUp() override { backend() = GetParam(); }
+  void SetUp() override {
+    backend() = GetParam();
+#if defined(__SANITIZE_ADDRESS__) && defined(PALPATE_HAS_GL)
+    if (GetParam() == palpate::contact::DepthBackend::kGpu) {
+      const __lsan::ScopedDisabler mesa_leaks;  // when it is opened
+      palpate::gl::Context::shared();
+    }
+#endif
+  }
 };
 
 inline std::vector<palpate::contact::DepthBackend> backends() {

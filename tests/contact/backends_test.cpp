@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 #include <random>
 
 #include "backends.h"
@@ -90,6 +91,55 @@ TEST_P(DepthImages, NothingIsLostBetweenTriangles) {
       }
     EXPECT_GT(covered, 15000);
   }
+}
+
+// Edges that run through the middles of pixels: such a pixel belongs to one of both triangles, or to both.
+TEST_P(DepthImages, MiddlesOnEdgesAreSeen) {
+  // A fan of needles about a pixel's middle, to points on a wide circle on lines with small whole slopes:
+  // each edge runs through many middles, none of which single precision meets exactly.
+  constexpr int kPixels = 201, kMiddle = 100;
+  std::vector<Eigen::Vector2d> ends;
+  for (int p = -12; p <= 12; ++p)
+    for (int q = -12; q <= 12; ++q)
+      if (std::gcd(p, q) == 1) ends.emplace_back(p, q);
+  std::sort(ends.begin(), ends.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return std::atan2(a.y(), a.x()) < std::atan2(b.y(), b.x());
+  });
+  ContactCamera camera;
+  camera.pixel = 1.0 / 300.0;
+  camera.u0 = 0.123;
+  camera.v0 = -0.077;
+  camera.width = camera.height = kPixels;
+  camera.near = -1.0;
+  camera.far = 1.0;
+  const Vec3 middle(camera.u(kMiddle), camera.v(kMiddle), 0.0);
+  const auto count = static_cast<Eigen::Index>(ends.size());
+  Points vertices(3, count + 1);
+  Faces up(3, count), down(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Vector2d end = 90.37 * ends[static_cast<std::size_t>(i)].normalized();
+    vertices.col(i) = middle + camera.pixel * Vec3(end.x(), end.y(), 0.0);
+    up.col(i) =
+        Eigen::Vector3i(static_cast<int>(i), static_cast<int>((i + 1) % count), static_cast<int>(count));
+    down.col(i) = Eigen::Vector3i(up(1, i), up(0, i), up(2, i));
+  }
+  vertices.col(count) = middle;
+  Patch a, b;
+  a.uvw = b.uvw = vertices;
+  b.uvw.row(2).array() += 0.1;
+  a.faces = &down;
+  b.faces = &up;
+  for (int i = 0; i < count; ++i) a.visible.push_back(i), b.visible.push_back(i);
+  std::vector<PixelPair> pairs;
+  image_of(GetParam(), kPixels)->find_pairs(a, b, camera, 0.01, pairs);
+  std::vector<int> seen(static_cast<std::size_t>(kPixels * kPixels));
+  for (const PixelPair& pair : pairs) ++seen[pair.pixel];
+  int lost = 0;
+  for (int row = 0; row < kPixels; ++row)
+    for (int column = 0; column < kPixels; ++column)
+      if (std::hypot(row - kMiddle, column - kMiddle) < 85.0)
+        lost += seen[static_cast<std::size_t>(row * kPixels + column)] != 1;
+  EXPECT_EQ(lost, 0);
 }
 
 // The same triangles as the lines in double meet; where two triangles are equally near, within the rounding

@@ -283,6 +283,31 @@ TEST_P(PrunedImageSource, RefusesWhatDoesNotBelongTogether) {
                InternalError);
 }
 
+// A second query sees the body where it is then, not where it was.
+TEST_P(PrunedImageSource, FollowsTheBody) {
+  SkinWorld skin;
+  const TriMesh rigid = sphere(Vec3(0.1, 0.0, -1.6), 0.8, 20);
+  const auto source_of = [&] {
+    return contact::make_image_source(skin.surface,
+                                      proxies_of(skin.ball, skin.skin, skin.surface.embedding, 2), rigid,
+                                      proxies_of(rigid), 0, contact::fixed_frame(), image_options(96, 0.02));
+  };
+  const auto kept = source_of();
+  std::vector<contact::ContactSample> before, after, expected;
+  kept->query(skin.state.view(), before);
+  auto q = skin.state.q();
+  for (Eigen::Index i = 0; i + 2 < q.size(); i += 3) {  // stretched and shifted
+    q[i] = 1.1 * q[i] + 0.02;
+    q[i + 2] *= 0.97;
+  }
+  kept->query(skin.state.view(), after);
+  source_of()->query(skin.state.view(), expected);
+  ASSERT_GT(expected.size(), 500u);
+  ASSERT_EQ(after.size(), expected.size());
+  for (std::size_t i = 0; i < after.size(); i += 17)
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(after[i].a.weight[k], expected[i].a.weight[k], 1e-12);
+}
+
 TEST_P(ImageSource, RefusesBadOptions) {
   Pair pair;
   const auto message = [&](TriMesh rigid, contact::ImageOptions with) {

@@ -156,9 +156,10 @@ TEST_P(SoftPair, TheTangentCouplesBothBodies) {
   EXPECT_LT(shifted.norm(), 1e-11 * K.norm());
 }
 
-// The pattern holds what the contact has met: it rests while nothing new is met, and grows when the contact
-// slides.
-TEST_P(SoftPair, ThePatternGrowsWithTheContact) {
+// The pattern holds what the contact has met and may meet next: it rests while nothing new is met, and
+// announces all that the tangent couples as one ball rolls off the other (coupled_nodes_test.cpp has its
+// rules).
+TEST_P(SoftPair, ThePatternHoldsTheContact) {
   TwoBalls balls;
   contact::ContactForce term;
   term.add_pair(balls.source(true), law());
@@ -168,15 +169,12 @@ TEST_P(SoftPair, ThePatternGrowsWithTheContact) {
   EXPECT_GT(touched, before);
   term.refresh(balls.state.view());
   EXPECT_EQ(term.pattern_version(), touched);
-  int changes = 0;
   for (int i = 0; i < 8; ++i) {
     for (int n = 0; n < balls.nodes_of_a(); ++n) balls.state.q()[3 * n] += 0.1;  // a rolls off
-    const auto last = term.pattern_version();
     term.refresh(balls.state.view());
-    changes += term.pattern_version() != last;
     step_matrix(term, balls.state, 1.0, 0.0);  // aborts for a block that was not announced
   }
-  EXPECT_GT(changes, 2);
+  EXPECT_GE(term.pattern_version(), touched);
 }
 
 TEST_P(SoftPair, RefusesOneBodyTwice) {

@@ -81,7 +81,7 @@ struct Blocks {
     ContactSpec contact;
     contact.first = d.bodies.front().name;
     contact.second = d.bodies.back().name;
-    contact.method = "gpu";
+    contact.method = "cpu";
     contact.stiffness_pa_m = 1e7;
     contact.damping_pa_s_m = 1e3;
     contact.friction = 0.3;
@@ -121,7 +121,7 @@ struct Fork {
     d.bodies.push_back(body);
     ContactSpec contact;
     contact.first = contact.second = "fork";
-    contact.method = "gpu";
+    contact.method = "cpu";
     contact.stiffness_pa_m = 1e6;
     contact.onset_width_m = 5e-3;
     contact.candidate_gap_m = 0.03;

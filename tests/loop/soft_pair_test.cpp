@@ -23,7 +23,7 @@ scene::Description two_blocks(double gap) {
   ContactSpec contact;
   contact.first = "block";
   contact.second = "upper";
-  contact.method = "gpu";
+  contact.method = "cpu";
   contact.stiffness_pa_m = kStiffness;
   d.contacts.push_back(contact);
   d.gravity_m_s2 = Vec3::Zero();

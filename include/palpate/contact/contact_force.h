@@ -23,6 +23,16 @@ struct NodeSurface {
   Tets tets{};                      ///< of a skin: the body's tetrahedra, nodes counted inside the block
 };
 
+/// Wall time of the queries of a source in image space, by stage, since it was made [s].
+struct QueryStages {
+  double positions_s = 0.0;  ///< skins from nodes, rigid surfaces from frames
+  double regions_s = 0.0;    ///< which skin may touch, and along which normal
+  double patches_s = 0.0;    ///< faces of a region in its axes, and its camera
+  double images_s = 0.0;     ///< which triangles face each other
+  double gaps_s = 0.0;       ///< gaps in double, and samples
+  long images = 0, pairs = 0;
+};
+
 /// Makes the samples of one pair from the current state: the slow query between which gaps are linear.
 class SampleSource {
  public:
@@ -38,6 +48,8 @@ class SampleSource {
   virtual long tunnelled() const { return 0; }
   /// What was left out before the image, of a source that has proxies; else null.
   virtual const proxy::PruneCounts* pruning() const { return nullptr; }
+  /// Of a source in image space; else null.
+  virtual const QueryStages* stages() const { return nullptr; }
 };
 
 /// Pressure p(gap, gap_rate) [Pa] and its derivatives; p >= 0 always (never adhesive), zero for gap >= 0.
@@ -107,6 +119,8 @@ class ContactForce : public dynamics::ForceTerm {
   std::vector<long> tunnelled() const;
   /// What the proxies of each pair left out, in the pairs' order; null for a pair without proxies.
   std::vector<const proxy::PruneCounts*> pruning() const;
+  /// Where the time of each pair's queries went; null for a pair without an image.
+  std::vector<const QueryStages*> stages() const;
   long queries() const;
   double query_seconds() const;
 

@@ -1,0 +1,72 @@
+// Blocks between two bodies: they come with what is met, wait for what is near, and go when they are many.
+#include "contact/coupled_nodes.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+using namespace palpate;
+using namespace palpate::contact;
+
+namespace {
+
+constexpr int kNodes = 40, kFirst = 100;  // a chain of edges each; b's nodes are counted from kFirst
+
+NodeNeighbours chain(int first) {
+  Eigen::MatrixXi edges(2, kNodes - 1);
+  for (int i = 0; i + 1 < kNodes; ++i) edges.col(i) = Eigen::Vector2i(i, i + 1);
+  return {edges, first};
+}
+
+std::vector<ContactSample> samples_at(int node, int copies = 50) {
+  ContactSample s;
+  s.a.count = s.b.count = 1;
+  s.a.node[0] = node;
+  s.a.weight[0] = s.b.weight[0] = 1.0;
+  s.b.node[0] = kFirst + node;
+  return std::vector<ContactSample>(static_cast<std::size_t>(copies), s);
+}
+
+std::set<std::pair<int, int>> pairs_of(const CoupledNodes& coupled) {
+  dynamics::PatternBuilder pattern(kFirst + kNodes);
+  coupled.add_pattern(pattern);
+  std::set<std::pair<int, int>> out;
+  for (const auto& [i, j] : pattern.pairs())
+    if (i < kFirst && j >= kFirst) out.emplace(i, j - kFirst);
+  return out;
+}
+
+}  // namespace
+
+TEST(NodeNeighbours, AreThoseOfTheElements) {
+  const NodeNeighbours near = chain(7);
+  const auto of = [&](int node) { return std::vector<int>(near.of(node).begin(), near.of(node).end()); };
+  EXPECT_EQ(of(7), (std::vector<int>{7, 8}));
+  EXPECT_EQ(of(17), (std::vector<int>{16, 17, 18}));
+}
+
+TEST(CoupledNodes, WaitForContactThatSlidesByAnElement) {
+  const NodeNeighbours a = chain(0), b = chain(kFirst);
+  CoupledNodes coupled;
+  coupled.take(samples_at(10), a, b);
+  EXPECT_EQ(pairs_of(coupled).size(), 9u) << "each of three with each of three";
+  const auto version = coupled.version();
+  for (const int node : {9, 11, 10}) coupled.take(samples_at(node), a, b);
+  EXPECT_EQ(coupled.version(), version);
+  coupled.take(samples_at(12), a, b);
+  EXPECT_GT(coupled.version(), version);
+  EXPECT_TRUE(pairs_of(coupled).contains({9, 9})) << "what was met stays for a while";
+  EXPECT_TRUE(pairs_of(coupled).contains({13, 13}));
+  EXPECT_TRUE(pairs_of(coupled).contains({12, 12}));
+}
+
+TEST(CoupledNodes, StartAnewWhereMostIsPast) {
+  const NodeNeighbours a = chain(0), b = chain(kFirst);
+  CoupledNodes coupled;
+  for (int node = 2; node < 36; node += 3) coupled.take(samples_at(node), a, b);
+  EXPECT_LE(pairs_of(coupled).size(), 18u);
+  EXPECT_TRUE(pairs_of(coupled).contains({35, 35}));
+  EXPECT_FALSE(pairs_of(coupled).contains({2, 2}));
+  coupled.forget();
+  EXPECT_TRUE(pairs_of(coupled).empty());
+}
