@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "bench_contact.h"
 #include "bench_fem.h"
 #include "commands.h"
 #include "palpate/core/error.h"
@@ -51,8 +52,13 @@ int bench(const BenchArguments& arguments) {
     arguments.cells > 0 ? bench_fem(arguments) : bench_fem_sizes(arguments);
     return stop_flag() ? kExitStopped : 0;
   }
+  if (arguments.what == "contact") {
+    bench_contact(arguments);
+    return stop_flag() ? kExitStopped : 0;
+  }
   if (arguments.what != "leave-out")
-    fail("there is no benchmark \"{}\"{}", arguments.what, suggestion(arguments.what, {"fem", "leave-out"}));
+    fail("there is no benchmark \"{}\"{}", arguments.what,
+         suggestion(arguments.what, {"contact", "fem", "leave-out"}));
   const std::vector<std::string> scenes =
       arguments.scenes.empty() ? std::vector<std::string>{"falling-ball", "cantilever"} : arguments.scenes;
   for (const std::string& scene : scenes) {

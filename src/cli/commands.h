@@ -83,14 +83,17 @@ struct ListArguments {
 int list(const ListArguments& arguments);
 
 struct BenchArguments {
-  std::string what;                 ///< "fem" or "leave-out"
-  std::vector<std::string> scenes;  ///< of leave-out; empty: falling-ball and cantilever
-  int steps = 20;                   ///< of fem
-  int cells = 0;                    ///< of fem, along one beam by way of a scene; 0: the sizes below
-  double step_s = 0.01;             ///< of fem with cells
+  std::string what;  ///< "fem", "contact" or "leave-out"
+  /// of leave-out; empty: falling-ball and cantilever; of contact; empty: those of the paper
+  std::vector<std::string> scenes;
+  std::vector<std::string> methods = {"cpu"};  ///< of contact
+  std::vector<int> pixels;                     ///< of contact; empty: 256
+  int steps = 20;                              ///< of fem
+  int cells = 0;         ///< of fem, along one beam by way of a scene; 0: the sizes below
+  double step_s = 0.01;  ///< of fem with cells
   std::vector<std::string> linear_solvers = {"auto"};
   std::vector<std::string> sizes;        ///< of fem; empty: S and M
-  std::vector<int> threads;              ///< of fem; empty: 1 and 2
+  std::vector<int> threads;              ///< of fem and contact; empty: 1 and 2
   std::vector<double> linear_rtols;      ///< of fem; empty: 1e-6 and 1e-3
   std::vector<double> youngs_moduli_pa;  ///< of fem; empty: 1e5 and 1e6
   std::string folder;                    ///< of fem: where JSON and plot go; empty: nowhere

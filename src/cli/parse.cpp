@@ -276,16 +276,27 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   command
       ->add_option("WHAT", arguments->what,
                    "fem: one implicit step of a soft beam at several sizes, split into its stages; "
-                   "leave-out: what absent and present parts cost")
+                   "contact: one exchange period of the paper's scenes, split into its stages; leave-out: "
+                   "what absent and present parts cost")
       ->required();
-  command->add_option("SCENE", arguments->scenes, "of leave-out; default falling-ball and cantilever");
+  command->add_option(
+      "SCENE", arguments->scenes,
+      "of leave-out; default falling-ball and cantilever; of contact; default those of the paper");
   command
       ->add_option("--size", arguments->sizes,
                    "fem: XS, S, M, L, XL (1,425 to 100,000 nodes); default S and M")
       ->delimiter(',');
-  command->add_option("--threads", arguments->threads, "fem: numbers of threads; default 1,2")
+  command->add_option("--threads", arguments->threads, "fem, contact: numbers of threads; default 1,2")
       ->delimiter(',')
       ->check(CLI::Range(1, 64));
+  command
+      ->add_option("--method", arguments->methods, "contact: see `palpate list contact-methods`; default cpu")
+      ->type_name("NAME")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"cpu", "gpu", "exact"}));
+  command->add_option("--pixels", arguments->pixels, "contact: longer edge of the images; default 256")
+      ->delimiter(',')
+      ->check(CLI::Range(16, 4096));
   command->add_option("--linear-rtol", arguments->linear_rtols, "fem: tolerances; default 1e-6,1e-3")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
@@ -322,6 +333,7 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   palpate bench fem --size S,M,L --threads 1 -o out/bench
   palpate bench fem --accuracy -o out/bench
   palpate bench fem --cells 16 --step-s 0.001
+  palpate bench contact touch-head --method cpu,gpu --pixels 128,256,512
   palpate bench leave-out falling-ball --repeats 9)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return bench(*arguments); };

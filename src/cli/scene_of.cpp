@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "model_cache.h"
 #include "palpate/loop/load.h"
 #include "paths.h"
 
@@ -18,6 +19,7 @@ scene::Description scene_of(const SceneArguments& arguments) {
     fmt::print(stderr,
                "palpate: {} of the scene is left out: what --integrator or --set names has no use for it\n",
                key);
+  make_missing_models(description);
   return description;
 }
 

@@ -1,6 +1,9 @@
+#include <filesystem>
+
 #include "assemble_parts.h"
 #include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
+#include "palpate/store/model_file.h"
 #include "palpate/tool/simbody_block.h"
 #include "palpate/tool/tool.h"
 #include "tool_side.h"
@@ -57,6 +60,14 @@ void assemble_tool(World& world) {
 }
 
 TriMesh tool_surface(const ToolSpec& spec, const std::string& folder) {
+  if (spec.shape == "mesh" && spec.mesh.has_model()) {
+    const std::string path = (std::filesystem::path(folder) / spec.mesh.file).string();
+    TriMesh skin = store::read_model(path).model.skin;
+    if (skin.faces.cols() == 0)
+      fail("tool: mesh: {} has no skin; `palpate model` writes files that have one", path);
+    skin.vertices *= spec.mesh.scale;
+    return skin;
+  }
   if (spec.shape == "mesh") return mesh::surface(spec.mesh, folder);
   MeshSpec ball;
   ball.generator = "ball";

@@ -7,6 +7,7 @@
 #include "palpate/loop/load.h"
 #include "palpate/loop/registries.h"
 #include "palpate/mesh/generators.h"
+#include "palpate/store/model_cache.h"
 #include "palpate/tool/tool.h"
 
 namespace palpate::loop {
@@ -90,13 +91,28 @@ const scene::Kinds& kinds() {
   return kinds;
 }
 
+namespace {
+
+/// "model:NAME" becomes the file that keeps it.
+scene::Description with_models(scene::Description d) {
+  const auto take = [](MeshSpec& mesh) {
+    if (const std::string name = store::model_of(mesh.file); !name.empty())
+      mesh.file = store::cached_model(name);
+  };
+  for (SoftBodySpec& body : d.bodies) take(body.mesh);
+  if (d.tool) take(d.tool->mesh);
+  return d;
+}
+
+}  // namespace
+
 scene::Description load(const std::string& path, const std::vector<std::string>& overrides) {
-  return scene::load(path, overrides, kinds());
+  return with_models(scene::load(path, overrides, kinds()));
 }
 
 scene::Description parse(const std::string& text, const std::string& path,
                          const std::vector<std::string>& overrides) {
-  return scene::parse(text, path, overrides, kinds());
+  return with_models(scene::parse(text, path, overrides, kinds()));
 }
 
 }  // namespace palpate::loop

@@ -21,7 +21,7 @@ void check_meshes(const Document& doc, const Description& d) {
     check_mesh(doc, fmt::format("body[{}].mesh", i), fmt::format("body \"{}\": mesh", d.bodies[i].name),
                d.bodies[i].mesh);
   for (std::size_t i = 0; i < d.bodies.size(); ++i)
-    if (d.bodies[i].skin && !d.bodies[i].mesh.file.ends_with(".h5"))
+    if (d.bodies[i].skin && !d.bodies[i].mesh.has_model())
       refuse(location(doc, fmt::format("body[{}].skin", i)), fmt::format("body \"{}\"", d.bodies[i].name),
              "skin = true needs mesh = { file = \"MODEL.h5\" }, a model file; `palpate model SURFACE -o "
              "MODEL.h5` makes one");

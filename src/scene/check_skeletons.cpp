@@ -35,7 +35,7 @@ void check_skeletons(const Document& doc, const Description& d) {
     if (!body.skeleton) continue;
     const std::string key = fmt::format("body[{}].skeleton", i),
                       where = fmt::format("body \"{}\": skeleton", body.name);
-    if (!body.mesh.file.ends_with(".h5"))
+    if (!body.mesh.has_model())
       refuse(location(doc, key), where,
              "needs mesh = { file = \"MODEL.h5\" }, a model file with bones; `palpate model human -o "
              "human.h5` makes one");

@@ -106,7 +106,10 @@ const KeyTable<SkeletonSpec>& skeleton_keys() {
 
 const KeyTable<MeshSpec>& mesh_keys() {
   static const KeyTable<MeshSpec> keys = {
-      unless("none", text("file", &MeshSpec::file, {}, "a mesh file; its path starts at the scene's folder")),
+      unless("none",
+             text("file", &MeshSpec::file, {},
+                  "a mesh file; its path starts at the scene's folder; \"model:NAME\" is what `palpate "
+                  "model NAME` makes")),
       unless("none",
              text("generator", &MeshSpec::generator, {}, "a shape that palpate meshes, around the origin")),
       vec3("size_m", &MeshSpec::size_m, MeshRanges::length, "edges of a box, legs of a tetrahedron"),

@@ -37,6 +37,8 @@ std::string system_name() {
 
 }  // namespace
 
+std::string version() { return PALPATE_VERSION; }
+
 Provenance provenance() {
   Provenance out;
   out.version = PALPATE_VERSION;

@@ -259,6 +259,26 @@ class Results(Cli):
                 self.assertRegex(one, rf"(?m)^{member} ")
                 self.assertIn(one, everything)
 
+    def test_models_are_made_once_and_kept(self):
+        if not (PROGRAM.parent / "palpate-model").exists():
+            self.skipTest("this build makes no models")
+        models = str(self.folder / "models")
+        scene = ["run", "two-pumpkins", "--duration-s", "0.01"]
+        first = self.call(*scene, PALPATE_MODELS=models)
+        self.assertEqual(first.returncode, 0, first.stderr)
+        self.assertEqual(first.stderr.count('making the model "pumpkin", once; kept in '), 1, first.stderr)
+        kept = list(Path(models).glob("*/*"))
+        self.assertEqual([path.name for path in kept], ["pumpkin.h5"])
+        again = self.call(*scene, PALPATE_MODELS=models)
+        self.assertEqual((again.returncode, again.stderr), (0, ""))
+        self.assertIn('unknown model "heed" (did you mean "head"?)',
+                      self.refused("run", "two-pumpkins", "--set", 'body.0.mesh.file="model:heed"'))
+
+    def test_bench_contact_prints_its_stages(self):
+        text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64")
+        self.assertRegex(text, r"(?m)^cpu +64 +1 +[1-9]\d* ")
+        self.assertIn("nothing to see in an image", self.refused("bench", "contact", "falling-ball"))
+
     def test_keys_are_listed_with_unit_range_default_and_meaning(self):
         text = self.good("list", "keys")
         tables = re.findall(r"(?m)^\[([a-z.]+)\]$", text)

@@ -8,7 +8,9 @@ namespace palpate {
 
 /// Where a body's tetrahedra or a tool's surface come from: a file, or a generator by name.  Plain data.
 struct MeshSpec {
-  std::string file;                   ///< path, relative to the scene file; empty: use the generator
+  /// path, relative to the scene file, or "model:NAME": a model that `palpate model NAME` makes, kept in a
+  /// cache (store/model_cache.h); empty: use the generator
+  std::string file;
   std::string generator;              ///< "box", "ball", "cylinder", "tet"
   Vec3 size_m = Vec3::Constant(1.0);  ///< box: edge lengths
   double radius_m = 1.0;              ///< ball, cylinder
@@ -16,6 +18,8 @@ struct MeshSpec {
   double element_size_m = 0.25;       ///< wanted edge length
   double grading = 1.0;               ///< element size in the middle / at the surface; 1 is uniform
   double scale = 1.0;                 ///< applied to a file's coordinates
+
+  bool has_model() const { return file.ends_with(".h5") || file.starts_with("model:"); }
 };
 
 /// What they may be: checked by the loader of scenes, by the readers and by the generators.

@@ -18,5 +18,7 @@ struct Provenance {
   std::string started_utc;  ///< 2007-03-22T10:00:00Z
 };
 Provenance provenance();
+/// That of palpate alone.
+std::string version();
 
 }  // namespace palpate::store

@@ -1,0 +1,80 @@
+#include "model_cache.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+
+#include "palpate/core/error.h"
+#include "palpate/shapes/shapes.h"
+#include "palpate/store/model_cache.h"
+
+namespace palpate::cli {
+namespace fs = std::filesystem;
+namespace {
+
+/// Runs it to its end; what it prints beside errors is dropped.
+int run_program(const std::vector<std::string>& words) {
+  std::vector<std::string> copies = words;
+  std::vector<char*> pointers;
+  for (std::string& word : copies) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t child = 0;
+  const int error = posix_spawn(&child, pointers[0], &actions, nullptr, pointers.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) fail("{} cannot be started: {}", words[0], std::strerror(error));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  return status;
+}
+
+void make_model(const std::string& name, const fs::path& path) {
+  find(shapes::shapes(), name, "model");
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error)
+    fail("the model \"{}\" cannot be kept in {}: {}", name, path.parent_path().string(), error.message());
+  fmt::print(stderr, "palpate: making the model \"{}\", once; kept in {}\n", name, path.string());
+  // under another name until it is whole: two runs may make it at the same time
+  const fs::path draft = path.parent_path() / fmt::format("{}-{}.h5", name, ::getpid());
+  const int status = run_program({model_program(), name, "-o", draft.string()});
+  if (status != 0) {
+    fs::remove(draft, error);
+    fail("the model \"{}\" was not made; see above", name);
+  }
+  fs::rename(draft, path, error);
+  if (error) fail("{} cannot be written: {}", path.string(), error.message());
+}
+
+}  // namespace
+
+std::string model_program() {
+  const fs::path program = fs::canonical("/proc/self/exe").parent_path() / "palpate-model";
+  if (!fs::exists(program))
+    fail(
+        "model: {} is not there: this build makes no models; configure with -DPALPATE_WITH_MODEL=ON "
+        "(packages libcgal-dev, libgmsh-dev) and build the target palpate-model",
+        program.string());
+  return program.string();
+}
+
+void make_missing_models(const scene::Description& description) {
+  // for "model:NAME" the loader put a place in the cache; any other file is the user's
+  const auto make = [](const std::string& file) {
+    const fs::path path = file;
+    if (!path.is_absolute() || fs::exists(path)) return;
+    if (path.parent_path() == fs::path(store::cached_model("any")).parent_path())
+      make_model(path.stem().string(), path);
+  };
+  for (const SoftBodySpec& body : description.bodies) make(body.mesh.file);
+  if (description.tool) make(description.tool->mesh.file);
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,15 @@
+#pragma once
+#include "palpate/scene/description.h"
+
+namespace palpate::cli {
+
+/// Makes the models that a scene names by "model:NAME" and that are not kept yet, by the program behind
+/// `palpate model`; says which, and where they are kept.
+/// @throws Error where there is no such model, or this build makes none
+void make_missing_models(const scene::Description& description);
+
+/// Where the program behind `palpate model` is.
+/// @throws Error where this build has none
+std::string model_program();
+
+}  // namespace palpate::cli

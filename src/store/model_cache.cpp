@@ -1,0 +1,35 @@
+#include "palpate/store/model_cache.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <string_view>
+
+#include "palpate/core/error.h"
+#include "palpate/store/provenance.h"
+
+namespace palpate::store {
+namespace {
+
+std::filesystem::path cache_folder() {
+  const auto set = [](const char* name) -> const char* {
+    const char* value = std::getenv(name);
+    return value != nullptr && *value != '\0' ? value : nullptr;
+  };
+  if (const char* own = set("PALPATE_MODELS")) return std::filesystem::absolute(own);
+  if (const char* cache = set("XDG_CACHE_HOME")) return std::filesystem::path(cache) / "palpate";
+  if (const char* home = set("HOME")) return std::filesystem::path(home) / ".cache" / "palpate";
+  fail("there is no folder to keep models in: set PALPATE_MODELS, XDG_CACHE_HOME or HOME");
+}
+
+}  // namespace
+
+std::string model_of(const std::string& file) {
+  constexpr std::string_view kPrefix = "model:";
+  return file.starts_with(kPrefix) ? file.substr(kPrefix.size()) : std::string();
+}
+
+std::string cached_model(const std::string& name) {
+  return (cache_folder() / version() / (name + ".h5")).string();
+}
+
+}  // namespace palpate::store
