@@ -10,7 +10,6 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
-#include "palpate/shapes/shapes.h"
 #include "palpate/store/model_cache.h"
 
 namespace palpate::cli {
@@ -36,7 +35,6 @@ int run_program(const std::vector<std::string>& words) {
 }
 
 void make_model(const std::string& name, const fs::path& path) {
-  find(shapes::shapes(), name, "model");
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
   if (error)

@@ -271,8 +271,12 @@ class Results(Cli):
         self.assertEqual([path.name for path in kept], ["pumpkin.h5"])
         again = self.call(*scene, PALPATE_MODELS=models)
         self.assertEqual((again.returncode, again.stderr), (0, ""))
-        self.assertIn('unknown model "heed" (did you mean "head"?)',
-                      self.refused("run", "two-pumpkins", "--set", 'body.0.mesh.file="model:heed"'))
+        wrong = self.call("run", "two-pumpkins", "--set", 'body.0.mesh.file="model:heed"',
+                          PALPATE_MODELS=models)
+        self.assertEqual(wrong.returncode, 1, wrong.stderr)
+        self.assertIn('unknown shape "heed" (did you mean "head"?)', wrong.stderr)
+        self.assertTrue(wrong.stderr.endswith('palpate: error: the model "heed" was not made; see above\n'))
+        self.assertEqual(list(Path(models).glob("*/*")), kept)
 
     def test_bench_contact_prints_its_stages(self):
         text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64")

@@ -169,12 +169,14 @@ TEST_P(SoftPair, ThePatternHoldsTheContact) {
   EXPECT_GT(touched, before);
   term.refresh(balls.state.view());
   EXPECT_EQ(term.pattern_version(), touched);
+  int pressed = 0;
   for (int i = 0; i < 8; ++i) {
     for (int n = 0; n < balls.nodes_of_a(); ++n) balls.state.q()[3 * n] += 0.1;  // a rolls off
     term.refresh(balls.state.view());
-    step_matrix(term, balls.state, 1.0, 0.0);  // aborts for a block that was not announced
+    // throws for a block that was not announced
+    pressed += step_matrix(term, balls.state, 1.0, 0.0).to_dense().norm() > 0.0;
   }
-  EXPECT_GE(term.pattern_version(), touched);
+  EXPECT_GT(pressed, 2) << "or there is nothing to announce";
 }
 
 TEST_P(SoftPair, RefusesOneBodyTwice) {
