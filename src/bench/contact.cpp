@@ -112,7 +112,10 @@ ContactBenchRow bench_contact(scene::Description d, const ContactBenchVariant& v
                                       [&](const ObstacleSpec& o) { return o.name == contact.second; });
     if (obstacle) continue;
     contact.method = variant.method;
-    contact.pixels = variant.pixels;
+    if (variant.pixels > 0) {
+      contact.pixels = variant.pixels;
+      contact.quadrature_error = 0.0;
+    }
     any = true;
   }
   if (!any)

@@ -14,7 +14,7 @@ namespace {
 std::vector<std::string> row_of(const bench::ContactBenchRow& r) {
   const auto ms = [](double value) { return fmt::format("{:.2f}", value); };
   return {r.variant.method,
-          fmt::format("{}", r.variant.pixels),
+          r.variant.pixels > 0 ? fmt::format("{}", r.variant.pixels) : "wanted",
           fmt::format("{}", r.variant.threads),
           fmt::format("{}", r.samples),
           fmt::format("{:.2f} / {:.2f} / {:.2f}", r.query.least, r.query.median, r.query.p99),
@@ -39,7 +39,7 @@ void bench_contact(const BenchArguments& arguments) {
       arguments.scenes.empty() ? std::vector<std::string>{"touch-head", "touch-human", "two-pumpkins",
                                                           "two-heads", "scrape-pumpkin"}
                                : arguments.scenes;
-  const std::vector<int> pixels = arguments.pixels.empty() ? std::vector<int>{256} : arguments.pixels,
+  const std::vector<int> pixels = arguments.pixels.empty() ? std::vector<int>{0, 256} : arguments.pixels,
                          threads = arguments.threads.empty() ? std::vector<int>{1, 2} : arguments.threads;
   for (const std::string& scene : scenes) {
     const scene::Description description = scene_of({scene, {}, ""});

@@ -49,7 +49,7 @@ ContactAxes::ContactAxes(const Vec3& region_origin, const Vec3& normal) : origin
   to_world.col(1) = normal.cross(to_world.col(0));
 }
 
-ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels, const Eigen::Vector2d& shift) {
+ContactWindow fit_window(Patch& a, Patch& b, double candidate_gap) {
   constexpr int kCuts = 3;
   see_all(a);
   see_all(b);
@@ -67,23 +67,40 @@ ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels, c
     box_b = cut(b, window_b);
     if (a.visible.empty() || b.visible.empty()) return {};
   }
-  window.low = box_a.low.cwiseMax(box_b.low);
-  window.high = box_a.high.cwiseMin(box_b.high);
-  const double extent_u = window.high.x() - window.low.x(), extent_v = window.high.y() - window.low.y();
-  const double longer = std::max(extent_u, extent_v);
+  ContactWindow out;
+  out.low = box_a.low.cwiseMax(box_b.low).head<2>();
+  out.high = box_a.high.cwiseMin(box_b.high).head<2>();
+  out.near = box_a.low.z() - candidate_gap;
+  out.far = box_b.high.z() + candidate_gap;
+  const double room = 1e-3 * (out.far - out.near);  // nothing at the very ends of the depth range
+  out.near -= room;
+  out.far += room;
+  return out;
+}
+
+ContactCamera camera_of(const ContactWindow& window, double pixel, const Eigen::Vector2d& shift) {
   ContactCamera camera;
-  if (!(longer > 0.0) || !std::isfinite(longer)) return camera;
-  camera.pixel = longer / (pixels - 1);
-  camera.u0 = window.low.x() - shift.x() * camera.pixel;
-  camera.v0 = window.low.y() - shift.y() * camera.pixel;
-  camera.width = std::clamp(static_cast<int>(std::ceil(extent_u / camera.pixel)) + 1, 1, pixels);
-  camera.height = std::clamp(static_cast<int>(std::ceil(extent_v / camera.pixel)) + 1, 1, pixels);
-  camera.near = box_a.low.z() - candidate_gap;
-  camera.far = box_b.high.z() + candidate_gap;
-  const double room = 1e-3 * (camera.far - camera.near);  // nothing at the very ends of the depth range
-  camera.near -= room;
-  camera.far += room;
+  if (window.is_empty()) return camera;
+  const Eigen::Vector2d extent = window.high - window.low;
+  camera.pixel = pixel;
+  camera.u0 = window.low.x() - shift.x() * pixel;
+  camera.v0 = window.low.y() - shift.y() * pixel;
+  camera.width = std::max(1, static_cast<int>(std::ceil(extent.x() / pixel)) + 1);
+  camera.height = std::max(1, static_cast<int>(std::ceil(extent.y() / pixel)) + 1);
+  camera.near = window.near;
+  camera.far = window.far;
   return camera;
+}
+
+ContactCamera camera_of(const ContactWindow& window, int pixels, const Eigen::Vector2d& shift) {
+  ContactCamera camera = camera_of(window, window.longer_edge() / (pixels - 1), shift);
+  camera.width = std::min(camera.width, pixels);  // rounding of the edge
+  camera.height = std::min(camera.height, pixels);
+  return camera;
+}
+
+ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels, const Eigen::Vector2d& shift) {
+  return camera_of(fit_window(a, b, candidate_gap), pixels, shift);
 }
 
 }  // namespace palpate::contact

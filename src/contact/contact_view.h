@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <vector>
 
 #include "palpate/core/types.h"
@@ -40,15 +41,31 @@ struct Patch {
   std::vector<int> visible;  ///< faces
 };
 
-/// Fits the camera to the overlap of a (above) and b (below), and fills both patches' `visible`.
+/// A rectangle of the plane and a slab along the normal [m].
+struct ContactWindow {
+  Eigen::Vector2d low = Eigen::Vector2d::Zero(), high = Eigen::Vector2d::Zero();
+  double near = 0, far = 0;
+
+  double longer_edge() const { return (high - low).maxCoeff(); }
+  bool is_empty() const { return !(longer_edge() > 0.0) || !std::isfinite(longer_edge()); }
+};
+
+/// Fits a window to the overlap of a (above) and b (below), and fills both patches' `visible`.
 ///
 /// At a pixel the pair is a's lowest point against b's highest; it counts when that gap is under
 /// `candidate_gap`.  So a's faces wholly above max(w of b) + candidate_gap, and b's wholly below min(w of a)
 /// - candidate_gap, are of no interest; nor is anything outside the rectangle that both patches cover.
 ///   Leaving faces out shrinks the slab and that the rectangle, so the cut is repeated.
+ContactWindow fit_window(Patch& a, Patch& b, double candidate_gap);
+
+/// The camera of a window with pixels of the given edge [m]; sees nothing where the window is empty.
 ///
 /// The pixels span one more than the rectangle, so that the grid may be shifted by a part of a pixel
 /// (`shift`, in [0, 1)) and still cover it.
+ContactCamera camera_of(const ContactWindow& window, double pixel, const Eigen::Vector2d& shift);
+/// With this many pixels along the window's longer edge.
+ContactCamera camera_of(const ContactWindow& window, int pixels, const Eigen::Vector2d& shift);
+/// That of the window which fits a and b.
 ContactCamera fit_camera(Patch& a, Patch& b, double candidate_gap, int pixels, const Eigen::Vector2d& shift);
 
 }  // namespace palpate::contact

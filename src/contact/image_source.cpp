@@ -1,5 +1,8 @@
 #include "contact/image_source.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -22,15 +25,76 @@ ImageSource::ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide
   counters::count("contact.image_source");
 }
 
-void ImageSource::find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera) {
-  const ScopedTimer timer(stages_.images_s);
-  if (!image_)
-    image_ = options_.backend == DepthBackend::kGpu   ? make_gpu_image(options_.pixels)
-             : options_.backend == DepthBackend::kCpu ? make_cpu_image()
-                                                      : make_exact_image();
-  image_->find_pairs(a, b, camera, options_.candidate_gap, pairs_);
-  ++stages_.images;
-  stages_.pairs += static_cast<long>(pairs_.size());
+void ImageSource::see(const Patch& a, const Patch& b, const ContactCamera& camera) {
+  {
+    const ScopedTimer timer(stages_.images_s);
+    if (!image_)
+      image_ = options_.backend == DepthBackend::kGpu   ? make_gpu_image(options_.pixels)
+               : options_.backend == DepthBackend::kCpu ? make_cpu_image()
+                                                        : make_exact_image();
+    image_->find_pairs(a, b, camera, options_.candidate_gap, pairs_);
+    ++stages_.images;
+    stages_.pairs += static_cast<long>(pairs_.size());
+  }
+  const ScopedTimer timer(stages_.gaps_s);
+  seen_.clear();
+  planes_a_.start(a);
+  planes_b_.start(b);
+  Seen seen;
+  for (const PixelPair& pair : pairs_) {
+    if (!facing_at(pair, camera, planes_a_, planes_b_, seen.at) || !(seen.at.gap() < options_.candidate_gap))
+      continue;
+    seen.pixel = pair.pixel;
+    seen.face_a = a.visible[pair.a];
+    seen.face_b = b.visible[pair.b];
+    seen_.push_back(seen);
+  }
+}
+
+namespace {
+
+constexpr int kFirstPixels = 64;   // a first image tells normal, overlap and creases
+constexpr int kFewestPixels = 16;  // along the part where something was seen: moments need some, too
+
+QuadratureEstimate estimate_of(DepthGrid& grid, const ContactCamera& camera, const auto& seen) {
+  grid.start(camera);
+  for (const auto& s : seen) grid.add(s.pixel, s.at.gap());
+  return grid.estimate();
+}
+
+}  // namespace
+
+int ImageSource::first_pixels() const {
+  return options_.quadrature_error > 0.0 ? std::min(options_.pixels, kFirstPixels) : options_.pixels;
+}
+
+bool ImageSource::needs_finer(const ContactWindow& window, const ContactCamera& camera,
+                              ContactCamera& finer) const {
+  if (seen_.empty() || !(options_.quadrature_error > 0.0)) return false;
+  ContactWindow part = window;
+  Eigen::Vector2d low = window.high, high = window.low;
+  for (const Seen& seen : seen_) {
+    low = low.cwiseMin(Eigen::Vector2d(seen.at.u, seen.at.v));
+    high = high.cwiseMax(Eigen::Vector2d(seen.at.u, seen.at.v));
+  }
+  part.low = part.low.cwiseMax((low.array() - camera.pixel).matrix());
+  part.high = part.high.cwiseMin((high.array() + camera.pixel).matrix());
+  if (part.is_empty()) return false;
+  const double edge = part.longer_edge();
+  double pixel = estimate_of(grid_, camera, seen_).pixel_for(options_.quadrature_error);
+  pixel = std::min(pixel > 0.0 ? pixel : edge, edge / (kFewestPixels - 1));
+  if (camera.pixel <= pixel) return false;
+  finer = camera_of(part, std::max(pixel, edge / (options_.pixels - 1)), shift());
+  finer.width = std::min(finer.width, options_.pixels);  // rounding of the edge
+  finer.height = std::min(finer.height, options_.pixels);
+  return finer.pixel < camera.pixel;
+}
+
+void ImageSource::count_error(const ContactCamera& camera) {
+  const QuadratureEstimate estimate = estimate_of(grid_, camera, seen_);
+  const double error = estimate.standard_error(camera.pixel);
+  volume_ += estimate.volume;
+  variance_ += error * error;
 }
 
 void ImageSource::add_pattern(dynamics::PatternBuilder& pattern) const {
@@ -53,7 +117,12 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
   }
   if (options_.candidate_gap == 0.0) options_.candidate_gap = 0.25 * a_->soft()->mean_edge();
   const std::size_t first = samples.size();
+  volume_ = variance_ = 0.0;
   look(samples);
+  if (volume_ > 0.0) {
+    stages_.quadrature_error = std::sqrt(variance_) / volume_;
+    stages_.largest_quadrature_error = std::max(stages_.largest_quadrature_error, stages_.quadrature_error);
+  }
   if (!b_->soft()) return;
   if (const std::uint64_t now = sides_version(); now != counted_ || neighbours_a_.empty()) {
     coupled_.forget();
@@ -80,31 +149,27 @@ class WholeSource final : public ImageSource {
     }();
     if (!region.found) return;
     const ContactAxes axes(region.origin, region.normal);
-    const ContactCamera camera = [&] {
+    const ContactWindow window = [&] {
       const ScopedTimer timer(stages_.patches_s);
       axes.to_axes(above, patch_a_.uvw);
       axes.to_axes(below, patch_b_.uvw);
       patch_a_.faces = &a_->faces();
       patch_b_.faces = &b_->faces();
-      return fit_camera(patch_a_, patch_b_, options_.candidate_gap, options_.pixels,
-                        {options_.shift_u, options_.shift_v});
+      return fit_window(patch_a_, patch_b_, options_.candidate_gap);
     }();
+    ContactCamera camera = camera_of(window, first_pixels(), shift());
     if (!camera.sees_something()) return;
-    find_pairs(patch_a_, patch_b_, camera);
+    see(patch_a_, patch_b_, camera);
+    if (ContactCamera finer; needs_finer(window, camera, finer)) see(patch_a_, patch_b_, camera = finer);
+    count_error(camera);
     const ScopedTimer timer(stages_.gaps_s);
-    planes_a_.start(patch_a_);
-    planes_b_.start(patch_b_);
-    Facing facing;
-    for (const PixelPair& pair : pairs_)
-      if (facing_at(pair, camera, planes_a_, planes_b_, facing) && facing.gap() < options_.candidate_gap)
-        samples.push_back(
-            sample_of(facing, *a_, patch_a_.visible[pair.a], *b_, patch_b_.visible[pair.b], camera, axes));
+    for (const Seen& seen : seen_)
+      samples.push_back(sample_of(seen.at, *a_, seen.face_a, *b_, seen.face_b, camera, axes));
   }
 
  private:
   proxy::RegionFinder regions_;
   Patch patch_a_, patch_b_;
-  FacePlanes planes_a_, planes_b_;
 };
 
 void check_arguments(const NodeSurface& surface, Eigen::Index other_faces, const ImageOptions& options) {
@@ -112,6 +177,9 @@ void check_arguments(const NodeSurface& surface, Eigen::Index other_faces, const
     fail("contact in image space: pixels = {} {}", options.pixels, ContactRanges::pixels.demand());
   if (!(options.candidate_gap >= 0.0))
     fail("contact in image space: candidate gap = {} must not be negative", options.candidate_gap);
+  if (!ContactRanges::quadrature_error.holds(options.quadrature_error))
+    fail("contact in image space: quadrature error = {} {}", options.quadrature_error,
+         ContactRanges::quadrature_error.demand());
   for (const double shift : {options.shift_u, options.shift_v})
     if (!(shift >= 0.0 && shift < 1.0))
       fail("contact in image space: grid shift = {} must lie in [0, 1)", shift);

@@ -6,6 +6,7 @@
 #include "contact/coupled_nodes.h"
 #include "contact/depth_image.h"
 #include "contact/facing.h"
+#include "contact/quadrature.h"
 #include "palpate/contact/sources.h"
 
 namespace palpate::contact {
@@ -23,18 +24,38 @@ class ImageSource : public SampleSource {
 
  protected:
   virtual void look(std::vector<ContactSample>& samples) = 0;  ///< at the sides as they are
-  /// Fills `pairs_` by the image, which is made when something is to be seen.
-  void find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera);
+  /// Fills `seen_` by the image, which is made when something is to be seen: all that is nearer than the
+  /// candidate gap.
+  void see(const Patch& a, const Patch& b, const ContactCamera& camera);
+  /// Pixels of the first image of a region: all, or as many as tell which the wanted error needs.
+  int first_pixels() const;
+  /// After an image of `camera`: the camera that the wanted error needs, of the part of the window where
+  /// something was seen.  False where the image will do.
+  bool needs_finer(const ContactWindow& window, const ContactCamera& camera, ContactCamera& finer) const;
+  /// Adds the error that the region's pixels leave, as `seen_` tells it, to the query's.
+  void count_error(const ContactCamera& camera);
   bool of_one_body() const { return a_ == b_; }
+  Eigen::Vector2d shift() const { return {options_.shift_u, options_.shift_v}; }
+
+  /// Two faces at a pixel.
+  struct Seen {
+    Facing at;
+    std::uint32_t pixel;
+    int face_a, face_b;  ///< of the patches' faces
+  };
 
   std::shared_ptr<ImageSide> a_, b_;
   ImageOptions options_;
-  std::vector<PixelPair> pairs_;
+  std::vector<Seen> seen_;
   QueryStages stages_;
 
  private:
   std::unique_ptr<DepthImage> image_;
-  CoupledNodes coupled_;  // of two soft sides
+  std::vector<PixelPair> pairs_;
+  FacePlanes planes_a_, planes_b_;
+  mutable DepthGrid grid_;
+  double volume_ = 0.0, variance_ = 0.0;  ///< of the query's regions [m^3], [m^6]
+  CoupledNodes coupled_;                  // of two soft sides
   NodeNeighbours neighbours_a_, neighbours_b_;
   std::uint64_t sides_version() const;  // grows with what either side couples by itself
   std::uint64_t counted_ = 0;           // the one that `coupled_` was made for

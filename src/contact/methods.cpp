@@ -10,16 +10,17 @@ const std::vector<MethodEntry>& method_registry() {
       {"auto",
        "exact gaps where there are any; else image space, on a GPU where the machine has one, else on the "
        "processor",
-       part_keys({"pixels"})},
+       part_keys({"pixels", "quadrature_error"})},
       {"cpu",
        "image space on the processor: gaps at the pixels of an image; tools of any shape, other soft bodies, "
        "a "
        "body against itself",
-       part_keys({"pixels"})},
-      {"gpu", "the same image by OpenGL, without a GPU by Mesa's software rasteriser", part_keys({"pixels"})},
+       part_keys({"pixels", "quadrature_error"})},
+      {"gpu", "the same image by OpenGL, without a GPU by Mesa's software rasteriser",
+       part_keys({"pixels", "quadrature_error"})},
       {"exact",
        "the same pixels without an image: a line through each, in double, and all layers that it meets; slow",
-       part_keys({"pixels"})},
+       part_keys({"pixels", "quadrature_error"})},
   };
   return registry;
 }

@@ -36,19 +36,28 @@ class PrunedSource final : public ImageSource {
   void look(std::vector<ContactSample>& samples) override {
     for (const proxy::ContactRegion& region : regions()) {
       ContactAxes axes(region.region.origin, region.region.normal);
-      for (int i = 0; i < kAlignments; ++i) {
+      ContactWindow window;
+      ContactCamera camera;
+      bool aligned = false;
+      for (int i = 0; i < kAlignments && !aligned; ++i) {
+        window = fit_pieces(region, axes);
+        camera = camera_of(window, coarse_pixels(), shift());
+        if (!see_pieces(camera, axes)) break;
         OverlapSlope slope;
-        scan(region, axes, coarse_pixels(),
-             [&](const Facing& at, int face_a, int face_b, const ContactCamera&) {
-               if (at.gap() < 0.0) slope.add(slope_of(piece_a_, face_a), slope_of(piece_b_, face_b));
-             });
-        if (!align_with_overlap(slope, axes)) break;
+        for (const Seen& seen : seen_)
+          if (seen.at.gap() < 0.0)
+            slope.add(slope_of(piece_a_, seen.face_a), slope_of(piece_b_, seen.face_b));
+        aligned = !align_with_overlap(slope, axes);
       }
-      scan(region, axes, options_.pixels,
-           [&](const Facing& at, int face_a, int face_b, const ContactCamera& camera) {
-             samples.push_back(sample_of(at, *a_, piece_a_.face_of[static_cast<std::size_t>(face_a)], *b_,
-                                         piece_b_.face_of[static_cast<std::size_t>(face_b)], camera, axes));
-           });
+      if (!camera.sees_something()) continue;
+      if (!aligned) window = fit_pieces(region, axes);
+      if (!refine(window, axes, aligned, camera)) continue;
+      count_error(camera);
+      const ScopedTimer timer(stages_.gaps_s);
+      for (const Seen& seen : seen_)
+        samples.push_back(sample_of(seen.at, *a_, piece_a_.face_of[static_cast<std::size_t>(seen.face_a)],
+                                    *b_, piece_b_.face_of[static_cast<std::size_t>(seen.face_b)], camera,
+                                    axes));
     }
   }
 
@@ -100,35 +109,34 @@ class PrunedSource final : public ImageSource {
     }
   };
 
-  /// visit(facing, face of a, face of b, camera) at each pixel of the region along these axes; the faces are
-  /// those of the pieces.
-  template <class Visit>
-  void scan(const proxy::ContactRegion& region, const ContactAxes& axes, int pixels, const Visit& visit) {
-    const ContactCamera camera = fit_pieces(region, axes, pixels);
-    if (!camera.sees_something()) return;
-    const Patch &a = piece_a_.patch, &b = piece_b_.patch;
-    find_pairs(a, b, camera);
-    const ScopedTimer timer(stages_.gaps_s);
-    planes_a_.start(a);
-    planes_b_.start(b);
-    Facing facing;
-    for (const PixelPair& pair : pairs_) {
-      const int face_a = a.visible[pair.a], face_b = b.visible[pair.b];
-      if (facing_at(pair, camera, planes_a_, planes_b_, facing) && facing.gap() < options_.candidate_gap &&
-          (!self_contact_ || may_touch(facing, face_a, face_b, axes)))
-        visit(facing, face_a, face_b, camera);
-    }
-  }
-
-  ContactCamera fit_pieces(const proxy::ContactRegion& region, const ContactAxes& axes, int pixels) {
+  ContactWindow fit_pieces(const proxy::ContactRegion& region, const ContactAxes& axes) {
     const ScopedTimer timer(stages_.patches_s);
     piece_a_.take(a_->faces(), region.faces_a, -1.0,
                   [&](int vertex) { return axes.in_axes(a_->vertex(vertex)); });
     piece_b_.take(b_->faces(), region.faces_b, 1.0,
                   [&](int vertex) { return axes.in_axes(b_->vertex(vertex)); });
     if (piece_a_.faces.cols() == 0 || piece_b_.faces.cols() == 0) return {};
-    return fit_camera(piece_a_.patch, piece_b_.patch, options_.candidate_gap, pixels,
-                      {options_.shift_u, options_.shift_v});
+    return fit_window(piece_a_.patch, piece_b_.patch, options_.candidate_gap);
+  }
+
+  /// False where there is nothing to see; the faces of `seen_` are those of the pieces.
+  bool see_pieces(const ContactCamera& camera, const ContactAxes& axes) {
+    seen_.clear();
+    if (!camera.sees_something()) return false;
+    see(piece_a_.patch, piece_b_.patch, camera);
+    if (self_contact_)
+      std::erase_if(seen_, [&](const Seen& s) { return !may_touch(s.at, s.face_a, s.face_b, axes); });
+    return true;
+  }
+
+  /// The image that counts.  @param seen  there is one along these axes, by `camera`
+  bool refine(const ContactWindow& window, const ContactAxes& axes, bool seen, ContactCamera& camera) {
+    if (!seen || !(options_.quadrature_error > 0.0)) {
+      camera = camera_of(window, first_pixels(), shift());
+      if (!see_pieces(camera, axes)) return false;
+    }
+    if (ContactCamera finer; needs_finer(window, camera, finer)) see_pieces(camera = finer, axes);
+    return true;
   }
 
   /// For contact of a body with itself: a pair of proxies, each of which is looked at once, and not the far
@@ -150,9 +158,9 @@ class PrunedSource final : public ImageSource {
   // are opposite, and their common direction pushes the bodies apart.  Seen along n, a pixel of area dA shows
   // (s, 1) dA of each, s the slope of -a's or of b's skin: n is tilted by the mean slope of both, and kept
   // where that is zero.  It depends on the pose alone.
-  // A mean over the overlap needs few pixels: a quarter of the image's edge.
+  // A mean over the overlap needs few pixels: those of a first image, or a quarter of the image's edge.
   static constexpr int kAlignments = 3;
-  int coarse_pixels() const { return std::min(options_.pixels, std::max(64, options_.pixels / 4)); }
+  int coarse_pixels() const { return std::min(first_pixels(), std::max(64, options_.pixels / 4)); }
 
   struct OverlapSlope {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -184,7 +192,6 @@ class PrunedSource final : public ImageSource {
   Piece piece_a_, piece_b_;
   std::optional<SelfContactFilter> self_contact_;  ///< of a body with itself, else empty
   std::vector<int> proxy_of_face_;
-  FacePlanes planes_a_, planes_b_;
 };
 
 }  // namespace

@@ -54,6 +54,7 @@ contact::ImageOptions options_of(const Pair& pair) {
                 : method == "exact" ? contact::DepthBackend::kExact
                                     : contact::DepthBackend::kCpu;
   out.pixels = pair.spec.pixels;
+  out.quadrature_error = pair.spec.quadrature_error;
   out.candidate_gap = pair.candidate_gap;
   return out;
 }

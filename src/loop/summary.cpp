@@ -1,5 +1,7 @@
 #include "palpate/loop/summary.h"
 
+#include <algorithm>
+
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/integrate/integrators.h"
@@ -67,6 +69,14 @@ void add_jumps(store::Summary& summary, const World& world) {
   store::SummarySection& s = summary.section("contact");
   s.values.emplace_back("largest_force_jump_at_a_query_n", world.contact->largest_force_jump());
   s.values.emplace_back("largest_force_after_a_query_n", world.contact->largest_force());
+  double quadrature_error = 0.0;
+  bool images = false;
+  for (const contact::QueryStages* stages : world.contact->stages())
+    if (stages) {
+      images = true;
+      quadrature_error = std::max(quadrature_error, stages->largest_quadrature_error);
+    }
+  if (images) s.values.emplace_back("largest_quadrature_error", quadrature_error);
 }
 
 /// Work that the proxies of a contact saved the image, over all its queries.

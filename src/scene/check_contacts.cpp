@@ -68,11 +68,14 @@ void check_method(const Document& doc, const std::string& key, const std::string
              pruned = std::any_of(d.bodies.begin(), d.bodies.end(),
                                   [&](const auto&body) { return body.name == c.first && body.proxies; });
   if (c.method == "auto" && (obstacle || (sphere_tool && !pruned))) {
-    if (given(doc, key + ".pixels"))
-      refuse(location(doc, key + ".pixels"), where,
-             fmt::format("pixels means nothing here: {} has exact gaps; remove it{}",
-                         obstacle ? "an obstacle" : "a sphere",
-                         obstacle ? "" : ", or write method = \"cpu\" to see it in an image"));
+    for (const std::string_view image_key : {"pixels", "quadrature_error"}) {
+      const std::string given_key = fmt::format("{}.{}", key, image_key);
+      if (given(doc, given_key))
+        refuse(location(doc, given_key), where,
+               fmt::format("{} means nothing here: {} has exact gaps; remove it{}", image_key,
+                           obstacle ? "an obstacle" : "a sphere",
+                           obstacle ? "" : ", or write method = \"cpu\" to see it in an image"));
+    }
     c.method = "analytic";
   }
   if (c.method != "analytic" && obstacle)

@@ -63,7 +63,9 @@ const KeyTable<ContactSpec>& contact_keys() {
              Ranges::friction_regularisation_m_s, "sliding speed below which friction is viscous"),
       number("candidate_gap_m", &ContactSpec::candidate_gap_m, Ranges::candidate_gap_m,
              "samples with a smaller positive gap are kept as well; 0: chosen from the mesh"),
-      integer("pixels", &ContactSpec::pixels, Ranges::pixels, "longer edge of the image"),
+      integer("pixels", &ContactSpec::pixels, Ranges::pixels, "longer edge of the image, at most"),
+      number("quadrature_error", &ContactSpec::quadrature_error, Ranges::quadrature_error,
+             "what the image's pixels may err in a region's force, relative; 0: always as many as `pixels`"),
   };
   return keys;
 }

@@ -31,6 +31,9 @@ struct QueryStages {
   double images_s = 0.0;     ///< which triangles face each other
   double gaps_s = 0.0;       ///< gaps in double, and samples
   long images = 0, pairs = 0;
+  /// Standard error that the pixels left in the overlap volume, relative, as they estimate it themselves:
+  /// of the last query with an overlap, and the largest.
+  double quadrature_error = 0.0, largest_quadrature_error = 0.0;
 };
 
 /// Makes the samples of one pair from the current state: the slow query between which gaps are linear.

@@ -48,7 +48,10 @@ std::string_view backend_name(DepthBackend backend);  ///< as scenes call it
 
 struct ImageOptions {
   DepthBackend backend = DepthBackend::kCpu;
-  int pixels = 256;            ///< longer edge of the image
+  int pixels = 256;  ///< longer edge of the image, at most where an error is wanted
+  /// wanted standard error of a region's overlap volume, which its force is made of, relative: chooses the
+  /// pixels; 0: `pixels` always (docs/design.md 4.3)
+  double quadrature_error = 0.0;
   double candidate_gap = 0.0;  ///< [m]; 0: a quarter of the soft surface's mean edge
   /// the pixel grid moved by this part of a pixel, in [0, 1): for studies of the pixels' error
   double shift_u = 0.0;

@@ -33,7 +33,9 @@ struct ContactSpec {
   double friction_regularisation_m_s = 1e-3;  ///< v_r
   /// samples with a smaller positive gap are kept too; 0: chosen from the mesh
   double candidate_gap_m = 0.0;
-  int pixels = 256;  ///< in image space: the image's longer edge
+  int pixels = 256;  ///< in image space: the image's longer edge, at most
+  /// in image space: what the pixels may err in a region's force, relative; 0: `pixels` always
+  double quadrature_error = 1e-3;
 };
 
 /// What they may be: checked by the loader of scenes and by the pressure law.
@@ -49,6 +51,7 @@ struct ContactRanges {
       Range::positive("below this sliding speed friction is viscous");
   static constexpr Range candidate_gap_m = Range::at_least(0.0, "0 lets the mesh choose");
   static constexpr Range pixels = Range::closed(16, 4096);
+  static constexpr Range quadrature_error = Range::closed(0.0, 0.1, "0 takes all the pixels always");
 };
 
 }  // namespace palpate
