@@ -136,10 +136,13 @@ dynamics::TermTraits ContactForce::traits() const {
   const auto& pairs = impl_->pairs;
   const bool friction =
       std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return p.law.friction > 0.0; });
+  const bool unsymmetric = std::any_of(pairs.begin(), pairs.end(), [](const auto& p) {
+    return p.law.friction > 0.0 && !p.law.symmetric_tangent;
+  });
   const bool damping = std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return p.law.d > 0.0; });
   const bool frames =
       std::any_of(impl_->frames.begin(), impl_->frames.end(), [](const auto& f) { return f->in_state(); });
-  traits.symmetric_tangent = !friction && !frames;
+  traits.symmetric_tangent = !unsymmetric && !frames;
   traits.conservative = !friction && !damping;
   traits.contact = true;
   return traits;
@@ -162,8 +165,9 @@ void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale,
   Impl& m = *impl_;
   m.place_frames(state);
   m.groups.add_tangent(state, m.frame_states, k_scale, d_scale, A);
+  m.linearise_friction(state);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-    const SampleForce force = sample_force_and_tangent(s, motion, law);
+    const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
     add_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force),
                        Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale, d_scale,
                        state.layout->nodal_size, A);
@@ -177,7 +181,7 @@ void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scal
   m.place_frames(state);
   m.groups.apply_tangent(state, m.frame_states, k_scale, d_scale, x, y);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-    const SampleForce force = sample_force_and_tangent(s, motion, law);
+    const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
     apply_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force),
                          Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale, d_scale, x,
                          y);
@@ -201,8 +205,48 @@ double ContactForce::dissipated_power(const dynamics::StateView& state) {
   return sum;
 }
 
+// With a symmetric tangent the step goes on with the friction of the pressure p0 that it began with:
+//     F = F0 - mu p0 A ds/dv dv,   and leaves out   -mu s A (p - p0),
+// whose sum over a pair's samples is what is measured, at the pressure that the step has led to.
+void ContactForce::Impl::linearise_friction(const dynamics::StateView& state) {
+  measure_friction_lag(state);
+  linearised.clear();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Pair& pair = pairs[i];
+    if (!pair.law.symmetric_tangent || pair.law.friction == 0.0) continue;
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t s = pair.begin; s < pair.end; ++s) {
+      const SampleMotion motion = sample_motion(samples[s], state, frame_states);
+      if (motion.gap >= 0.0) continue;
+      linearised.push_back({s, i, pressure(pair.law, motion.gap, motion.rate).p,
+                            friction_per_pressure(samples[s], motion, pair.law)});
+      sum += linearised.back().pressure * linearised.back().per_pressure;
+    }
+    largest_friction = std::max(largest_friction, sum.norm());
+  }
+}
+
+void ContactForce::Impl::measure_friction_lag(const dynamics::StateView& state) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < linearised.size(); ++i) {
+    const Linearised& at = linearised[i];
+    const SampleMotion motion = sample_motion(samples[at.sample], state, frame_states);
+    const double now = motion.gap < 0.0 ? pressure(pairs[at.pair].law, motion.gap, motion.rate).p : 0.0;
+    sum += (now - at.pressure) * at.per_pressure;
+    if (i + 1 == linearised.size() || linearised[i + 1].pair != at.pair) {
+      largest_friction_lag = std::max(largest_friction_lag, sum.norm());
+      sum.setZero();
+    }
+  }
+}
+
 bool ContactForce::refresh(const dynamics::StateView& state) {
   Impl& m = *impl_;
+  if (!m.linearised.empty()) {
+    m.place_frames(state);
+    m.measure_friction_lag(state);
+    m.linearised.clear();
+  }
   m.all_forces(state, m.force_before);
   m.query(state);
   m.check_samples(state);
@@ -263,5 +307,7 @@ double ContactForce::query_seconds() const { return impl_->query_seconds; }
 double ContactForce::refresh_force_jump() const { return impl_->refresh_force_jump; }
 double ContactForce::largest_force_jump() const { return impl_->largest_force_jump; }
 double ContactForce::largest_force() const { return impl_->largest_force; }
+double ContactForce::largest_friction_lag() const { return impl_->largest_friction_lag; }
+double ContactForce::largest_lagged_friction() const { return impl_->largest_friction; }
 
 }  // namespace palpate::contact

@@ -29,6 +29,17 @@ struct ContactForce::Impl {
   double query_seconds = 0.0;
   double refresh_force_jump = 0.0, largest_force_jump = 0.0, largest_force = 0.0;
 
+  /// Friction of the samples that a symmetric tangent was made of: what it leaves out is how this follows the
+  /// pressure until the next.
+  struct Linearised {
+    std::size_t sample, pair;
+    double pressure;    ///< [Pa]
+    Vec3 per_pressure;  ///< [m^2]
+  };
+  std::vector<Linearised> linearised;
+  double largest_friction_lag = 0.0, largest_friction = 0.0;  ///< [N]
+  void linearise_friction(const dynamics::StateView& state);
+  void measure_friction_lag(const dynamics::StateView& state);
   void place_frames(const dynamics::StateView& state);
   void query(const dynamics::StateView& state);
   void check_samples(const dynamics::StateView& state) const;

@@ -39,7 +39,12 @@ PressureLaw pressure_law(const ContactSpec& spec) {
                   spec.damping_pa_s_m,
                   spec.onset_width_m,
                   spec.friction,
-                  spec.friction_regularisation_m_s};
+                  spec.friction_regularisation_m_s,
+                  spec.friction_tangent == "symmetric"};
+  if (spec.friction_tangent != "symmetric" && spec.friction_tangent != "full" &&
+      spec.friction_tangent != "auto")
+    fail("contact \"{}\" with \"{}\": unknown friction_tangent \"{}\"{}", spec.first, spec.second,
+         spec.friction_tangent, suggestion(spec.friction_tangent, {"auto", "full", "symmetric"}));
   if (spec.law == "kelvin_voigt") return law;
   if (spec.law != "hunt_crossley")
     fail("contact \"{}\" with \"{}\": unknown law \"{}\"{}", spec.first, spec.second, spec.law,

@@ -11,6 +11,8 @@ struct PressureLaw {
   double onset = 0.0;  ///< w [m]
   double friction = 0.0;
   double regularisation = 1e-3;  ///< v_r [m/s]
+  /// step matrices leave out how friction follows the pressure (sample_math.cpp)
+  bool symmetric_tangent = false;
 };
 
 /// @throws Error for a value that no contact can have, naming the pair and the key.

@@ -50,8 +50,11 @@ Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const
 //   dF/dv_rel = A (p_rate m n^T - mu p ds/dv_t P),   P = I - n n^T
 //   ds/dv_t   = I / v_r                        for |v_t| <= v_r
 //             = (I - t t^T) / |v_t|, t = s     beyond
+// Of these A p_gap mu s n^T and A p_rate mu s n^T, by which friction follows the pressure, have no transpose
+// partner.  Without them (`symmetric`) both matrices are symmetric and positive semi-definite: friction is
+// that of the pressure at which it was linearised, for one step.
 SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion,
-                                     const PressureLaw& law) {
+                                     const PressureLaw& law, bool symmetric) {
   const Pressure p = pressure(law, motion.gap, motion.rate);
   const Vec3& n = sample.normal;
   if (law.friction == 0.0) {
@@ -63,8 +66,13 @@ SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMo
   const Vec3 s = v_t / scale, m = n - law.friction * s;
   const Mat3 P = Mat3::Identity() - n * n.transpose();
   const Mat3 ds = speed <= law.regularisation ? Mat3(P / scale) : Mat3((P - s * s.transpose()) / scale);
-  const Mat3 mn = sample.area * m * n.transpose();
+  const Mat3 mn = sample.area * (symmetric ? n : m) * n.transpose();
   return {sample.area * p.p * m, -p.dp_dgap * mn, -p.dp_drate * mn + sample.area * law.friction * p.p * ds};
+}
+
+Vec3 friction_per_pressure(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
+  const Vec3 v_t = tangential(sample, motion);
+  return -sample.area * law.friction / std::max(v_t.norm(), law.regularisation) * v_t;
 }
 
 // The spring stores A k S, S' = s; the contact gives the power -A p delta' to the two surfaces.  What is

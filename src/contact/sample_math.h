@@ -40,8 +40,11 @@ SampleMotion sample_motion(const ContactSample& sample, const dynamics::StateVie
                            const std::vector<FrameState>& frames);
 
 Vec3 sample_force(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
+/// @param symmetric  K and D without the change of friction by pressure: symmetric, positive semi-definite
 SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMotion& motion,
-                                     const PressureLaw& law);
+                                     const PressureLaw& law, bool symmetric = false);
+/// The part of the force that friction is, over the pressure: -A mu s [m^2].
+Vec3 friction_per_pressure(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
 /// Power that damping and friction take out [W], >= 0.
 double sample_dissipation(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
 

@@ -82,7 +82,7 @@ dynamics::StepperRegistry make_registry() {
   const dynamics::StepperRegistry by_hand = {
       {"linearly-implicit-euler",
        "one linear solve a step; the interactive method of Galoppo et al. 2007",
-       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto"},
+       {"Euler", 1, 1, StepControl::kFixed, Stability::kL, true, false, "force, tangent", "auto", true},
        make_linearly_implicit_euler,
        with(kFixed, kImplicit)},
       {"backward-euler",

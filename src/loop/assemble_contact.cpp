@@ -141,6 +141,13 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
                                      world.description.exchange.contact_refresh_s);
 }
 
+bool has_linearised_steps(const World& world) {
+  const auto& registry = integrate::stepper_registry();
+  const auto entry = std::find_if(registry.begin(), registry.end(),
+                                  [&](const auto& e) { return e.name == world.description.integrator.name; });
+  return entry != registry.end() && entry->traits.linearised;
+}
+
 std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
                                                        const ObstacleSpec& obstacle) {
   if (pair.spec.method != "analytic" && pair.spec.method != "auto")
@@ -158,7 +165,9 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
 
 void assemble_contact(World& world) {
   world.contact = std::make_shared<contact::ContactForce>();
-  for (const ContactSpec& spec : world.description.contacts) {
+  for (ContactSpec spec : world.description.contacts) {
+    if (spec.friction_tangent == "auto")
+      spec.friction_tangent = has_linearised_steps(world) ? "symmetric" : "full";
     contact::check_method(spec.method, fmt::format("contact {} - {}", spec.first, spec.second));
     const auto& obstacles = world.description.obstacles;
     const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(),

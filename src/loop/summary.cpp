@@ -77,6 +77,10 @@ void add_jumps(store::Summary& summary, const World& world) {
       quadrature_error = std::max(quadrature_error, stages->largest_quadrature_error);
     }
   if (images) s.values.emplace_back("largest_quadrature_error", quadrature_error);
+  if (const double friction = world.contact->largest_lagged_friction(); friction > 0.0) {
+    s.values.emplace_back("largest_friction_n", friction);
+    s.values.emplace_back("largest_friction_left_out_of_a_step_n", world.contact->largest_friction_lag());
+  }
 }
 
 /// Work that the proxies of a contact saved the image, over all its queries.

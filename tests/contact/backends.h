@@ -6,11 +6,6 @@
 
 #include "palpate/contact/gpu_available.h"
 #include "palpate/contact/sources.h"
-#if defined(__SANITIZE_ADDRESS__) && defined(PALPATE_HAS_GL)
-#include <sanitizer/lsan_interface.h>
-
-#include "palpate/gl/context.h"
-#endif
 
 /// Tests of contact in image space run on every backend of this build.
 namespace contact_tests {
@@ -20,6 +15,9 @@ inline palpate::contact::DepthBackend& backend() {
   static auto now = palpate::contact::DepthBackend::kCpu;
   return now;
 }
+
+/// This program has opened OpenGL.
+bool& gpu_was_used();
 
 inline palpate::contact::ImageOptions image_options(int pixels, double candidate_gap) {
   palpate::contact::ImageOptions out;
@@ -33,12 +31,7 @@ class OnEachBackend : public ::testing::TestWithParam<palpate::contact::DepthBac
  protected:
   void SetUp() override {
     backend() = GetParam();
-#if defined(__SANITIZE_ADDRESS__) && defined(PALPATE_HAS_GL)
-    if (GetParam() == palpate::contact::DepthBackend::kGpu) {
-      const __lsan::ScopedDisabler mesa_leaks;  // when it is opened
-      palpate::gl::Context::shared();
-    }
-#endif
+    gpu_was_used() = gpu_was_used() || GetParam() == palpate::contact::DepthBackend::kGpu;
   }
 };
 

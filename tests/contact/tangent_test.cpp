@@ -1,3 +1,5 @@
+#include <Eigen/Eigenvalues>
+
 #include "fixture.h"
 
 using namespace contact_tests;
@@ -26,7 +28,7 @@ struct Scene {
   Twist given_twist{Vec3(0.4, 0.2, -0.7), Vec3(-0.3, 0.5, 0.1)};
   contact::ContactForce term;
 
-  explicit Scene(const Law& law, bool with_given = true) {
+  explicit Scene(const Law& law, bool with_given = true, const std::string& friction_tangent = "full") {
     given->append(0.0, given_pose, given_twist);
     const auto body = contact::block_frame(world.body_id);
     const int given_index = term.add_frame(given), body_index = term.add_frame(body);
@@ -61,6 +63,7 @@ struct Scene {
     spec.hunt_crossley_s_m = 0.05;
     spec.friction = law.friction;
     spec.friction_regularisation_m_s = law.regularisation;
+    spec.friction_tangent = friction_tangent;
     term.add_pair(std::make_unique<ListSource>(samples), spec);
     term.refresh(world.state.view());
   }
@@ -117,6 +120,61 @@ TEST(ContactTangent, NodePartIsSymmetricWithoutFriction) {
   const MatX A = step_matrix(scene.term, scene.world.state, 1.0, 0.5).to_dense().topLeftCorner(18, 18);
   EXPECT_GT(A.norm(), 1.0);
   EXPECT_LT((A - A.transpose()).norm(), 1e-14 * A.norm());
+}
+
+// Symmetric and positive semi-definite, far from the whole; assembled and applied alike; forces are whole.
+TEST(ContactTangent, SymmetricOneIsPositiveAndChangesNoForce) {
+  for (const Law& law : {kLaws[2], kLaws[3]}) {
+    Scene scene(law, true, "symmetric"), full(law);
+    const auto nodes = [](Scene& of, double k, double d) {
+      return MatX(step_matrix(of.term, of.world.state, k, d).to_dense().topLeftCorner(18, 18));
+    };
+    for (const auto& [k, d] : {std::pair{1.0, 0.0}, std::pair{0.0, 1.0}, std::pair{0.7, 0.3}}) {
+      const MatX A = nodes(scene, k, d), whole = nodes(full, k, d);
+      EXPECT_GT((whole - whole.transpose()).norm(), 1e-3 * whole.norm()) << law.name;
+      EXPECT_LT((A - A.transpose()).norm(), 1e-14 * A.norm()) << law.name;
+      const Eigen::SelfAdjointEigenSolver<MatX> eigen(A);
+      EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-13 * eigen.eigenvalues().maxCoeff()) << law.name;
+      EXPECT_GT((whole - A).norm(), 1e-3 * whole.norm()) << law.name;
+    }
+    const VecX x = direction(scene.world.state.layout().u_size, 5);
+    VecX y = VecX::Zero(x.size());
+    scene.term.apply_tangent(scene.world.state.view(), 0.7, 0.3, x, y);
+    EXPECT_LT((y - step_matrix(scene.term, scene.world.state, 0.7, 0.3).to_dense() * x).norm(),
+              1e-13 * y.norm())
+        << law.name;
+    EXPECT_EQ(force(scene.term, scene.world.state), force(full.term, full.world.state)) << "forces are whole";
+  }
+}
+
+// One node that slides is pressed deeper by e after the tangent was made: the friction that the step left out
+// is mu A k e, of mu A k depth.
+TEST(ContactTangent, TheFrictionLeftOutIsMeasured) {
+  World world(2, false, 3);
+  world.state.u().setZero();
+  world.state.u().head<3>() = Vec3(0.5, 0, 0);
+  contact::ContactForce term;
+  const int frame = term.add_frame(contact::fixed_frame());
+  ContactSpec spec;
+  spec.stiffness_pa_m = 2e3;
+  spec.friction = 0.3;
+  spec.friction_tangent = "symmetric";
+  constexpr double depth = 0.02, deeper = 0.005, area = 0.7;
+  term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{
+                    on_frame(node_point({0}, {1.0}), frame, Pose{}, {0, 0, 1}, depth, area, world.state)}),
+                spec);
+  term.refresh(world.state.view());
+  EXPECT_TRUE(term.traits().symmetric_tangent);
+  // the spring along z and friction's damper across the sliding, nothing that couples them
+  const MatX A = step_matrix(term, world.state, 1.0, 1.0).to_dense().topLeftCorner(3, 3);
+  const double pressing = area * 2e3 * depth;
+  EXPECT_LT((A - MatX(Vec3(0.0, 0.3 * pressing / 0.5, area * 2e3).asDiagonal())).norm(), 1e-12 * A.norm())
+      << A;
+  EXPECT_NEAR(term.largest_lagged_friction(), 0.3 * area * 2e3 * depth, 1e-12);
+  EXPECT_EQ(term.largest_friction_lag(), 0.0);
+  world.state.q()[2] -= deeper;
+  term.refresh(world.state.view());
+  EXPECT_NEAR(term.largest_friction_lag(), 0.3 * area * 2e3 * deeper, 1e-12);
 }
 
 TEST(ContactTangent, TraitsSayWhatItIs) {

@@ -118,6 +118,11 @@ class ContactForce : public dynamics::ForceTerm {
   /// The largest of them so far, and the largest norm of these forces after a refresh, to judge it by.
   double largest_force_jump() const;
   double largest_force() const;
+  /// Of the pairs whose tangent is symmetric ("friction_tangent"): the largest friction that a step left out,
+  /// for the pressure changed and the friction did not, and the largest friction, both as the norm of a
+  /// pair's sum [N].
+  double largest_friction_lag() const;
+  double largest_lagged_friction() const;
   /// Vertices of each pair, in their order, that went through unseen so far (SampleSource::tunnelled).
   std::vector<long> tunnelled() const;
   /// What the proxies of each pair left out, in the pairs' order; null for a pair without proxies.

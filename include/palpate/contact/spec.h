@@ -31,6 +31,9 @@ struct ContactSpec {
   double onset_width_m = 0.0;
   double friction = 0.0;                      ///< mu, regularised Coulomb
   double friction_regularisation_m_s = 1e-3;  ///< v_r
+  /// "full", or "symmetric": without the change of friction by pressure, which makes the step matrix
+  /// unsymmetric; "auto": symmetric where a step is one linear solve
+  std::string friction_tangent = "auto";
   /// samples with a smaller positive gap are kept too; 0: chosen from the mesh
   double candidate_gap_m = 0.0;
   int pixels = 256;  ///< in image space: the image's longer edge, at most

@@ -184,6 +184,9 @@ struct StepperTraits {
   /// where the spec names none: "auto" where a matrix serves a solve or two, as those did that it chooses by;
   /// a kept factor serves many
   std::string linear_solver = "cholmod";
+  /// one linear solve a step, no iteration: an approximate tangent is a choice of the method, and costs no
+  /// convergence
+  bool linearised = false;
 };
 
 using MakeStepper = std::unique_ptr<Stepper> (*)(System&, State&, const IntegratorSpec&,
