@@ -10,7 +10,7 @@ namespace palpate::bench {
 /// One way to find the gaps of a scene.
 struct ContactBenchVariant {
   std::string method;  ///< of all contacts but those with obstacles: "cpu", "gpu", "exact"
-  int pixels = 0;  ///< along the longer edge of each image; 0: as the scene wants them
+  int pixels = 0;      ///< along the longer edge of each image; 0: as the scene wants them
   int threads = 1;
 };
 
