@@ -294,9 +294,11 @@ void add_bench(CLI::App& app, Invocation& invocation) {
       ->type_name("NAME")
       ->delimiter(',')
       ->check(CLI::IsMember({"cpu", "gpu", "exact"}));
-  command->add_option("--pixels", arguments->pixels, "contact: longer edge of the images; default 256")
+  command
+      ->add_option("--pixels", arguments->pixels,
+                   "contact: longer edge of the images; 0: as the scene wants; default 0,256")
       ->delimiter(',')
-      ->check(CLI::Range(16, 4096));
+      ->check(CLI::Range(0, 4096));
   command->add_option("--linear-rtol", arguments->linear_rtols, "fem: tolerances; default 1e-6,1e-3")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);

@@ -20,25 +20,43 @@ Box face_box(const Patch& patch, int face) {
           corner(0).cwiseMax(corner(1)).cwiseMax(corner(2))};
 }
 
-/// Keeps the faces of `patch.visible` that reach into `window`; returns their bounds.
-Box cut(Patch& patch, const Box& window) {
+/// The faces that are left, with their boxes.
+struct Faced {
+  std::vector<int> faces;
+  std::vector<Box> boxes;
+};
+
+/// All of them; returns their bounds.
+Box see_all(const Patch& patch, Faced& out) {
+  const auto count = static_cast<std::size_t>(patch.faces->cols());
+  out.faces.resize(count);
+  out.boxes.resize(count);
+  Box bounds;
+  for (std::size_t f = 0; f < count; ++f) {
+    out.faces[f] = static_cast<int>(f);
+    out.boxes[f] = face_box(patch, static_cast<int>(f));
+    bounds.low = bounds.low.cwiseMin(out.boxes[f].low);
+    bounds.high = bounds.high.cwiseMax(out.boxes[f].high);
+  }
+  return bounds;
+}
+
+/// Keeps those that reach into `window`; returns their bounds.
+Box cut(Faced& seen, const Box& window) {
   Box bounds;
   std::size_t kept = 0;
-  for (const int face : patch.visible) {
-    const Box box = face_box(patch, face);
+  for (std::size_t i = 0; i < seen.faces.size(); ++i) {
+    const Box box = seen.boxes[i];
     if ((box.low.array() > window.high.array()).any() || (box.high.array() < window.low.array()).any())
       continue;
     bounds.low = bounds.low.cwiseMin(box.low);
     bounds.high = bounds.high.cwiseMax(box.high);
-    patch.visible[kept++] = face;
+    seen.boxes[kept] = box;
+    seen.faces[kept++] = seen.faces[i];
   }
-  patch.visible.resize(kept);
+  seen.faces.resize(kept);
+  seen.boxes.resize(kept);
   return bounds;
-}
-
-void see_all(Patch& patch) {
-  patch.visible.resize(static_cast<std::size_t>(patch.faces->cols()));
-  for (std::size_t f = 0; f < patch.visible.size(); ++f) patch.visible[f] = static_cast<int>(f);
 }
 
 }  // namespace
@@ -51,10 +69,9 @@ ContactAxes::ContactAxes(const Vec3& region_origin, const Vec3& normal) : origin
 
 ContactWindow fit_window(Patch& a, Patch& b, double candidate_gap) {
   constexpr int kCuts = 3;
-  see_all(a);
-  see_all(b);
-  Box window{Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)};
-  Box box_a = cut(a, window), box_b = cut(b, window);
+  thread_local Faced seen_a, seen_b;
+  Box window;
+  Box box_a = see_all(a, seen_a), box_b = see_all(b, seen_b);
   for (int i = 0; i < kCuts; ++i) {
     window.low = box_a.low.cwiseMax(box_b.low);
     window.high = box_a.high.cwiseMin(box_b.high);
@@ -63,10 +80,13 @@ ContactWindow fit_window(Patch& a, Patch& b, double candidate_gap) {
     window_a.high.z() = box_b.high.z() + candidate_gap;
     window_b.low.z() = box_a.low.z() - candidate_gap;
     window_b.high.z() = kInfinity;
-    box_a = cut(a, window_a);
-    box_b = cut(b, window_b);
-    if (a.visible.empty() || b.visible.empty()) return {};
+    box_a = cut(seen_a, window_a);
+    box_b = cut(seen_b, window_b);
+    if (seen_a.faces.empty() || seen_b.faces.empty()) break;
   }
+  a.visible = seen_a.faces;
+  b.visible = seen_b.faces;
+  if (a.visible.empty() || b.visible.empty()) return {};
   ContactWindow out;
   out.low = box_a.low.cwiseMax(box_b.low).head<2>();
   out.high = box_a.high.cwiseMin(box_b.high).head<2>();

@@ -30,7 +30,7 @@ NodeNeighbours::NodeNeighbours(const Eigen::Ref<const Eigen::MatrixXi>& cells, i
   for (Eigen::Index cell = 0; cell < cells.cols(); ++cell)
     for (Eigen::Index i = 0; i < cells.rows(); ++i)
       for (Eigen::Index j = 0; j < cells.rows(); ++j) pairs.emplace_back(cells(i, cell), cells(j, cell));
-  sort_unique(pairs);
+  dynamics::sort_unique(pairs, cells.size() > 0 ? cells.maxCoeff() + 1 : 0);
   start_.assign(pairs.empty() ? 1 : static_cast<std::size_t>(pairs.back().first) + 2, 0);
   nodes_.reserve(pairs.size());
   for (const auto& [i, j] : pairs) {

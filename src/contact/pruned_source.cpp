@@ -36,11 +36,12 @@ class PrunedSource final : public ImageSource {
   void look(std::vector<ContactSample>& samples) override {
     for (const proxy::ContactRegion& region : regions()) {
       ContactAxes axes(region.region.origin, region.region.normal);
+      take_pieces(region);
       ContactWindow window;
       ContactCamera camera;
       bool aligned = false;
       for (int i = 0; i < kAlignments && !aligned; ++i) {
-        window = fit_pieces(region, axes);
+        window = fit_pieces(axes);
         camera = camera_of(window, coarse_pixels(), shift());
         if (!see_pieces(camera, axes)) break;
         OverlapSlope slope;
@@ -50,7 +51,7 @@ class PrunedSource final : public ImageSource {
         aligned = !align_with_overlap(slope, axes);
       }
       if (!camera.sees_something()) continue;
-      if (!aligned) window = fit_pieces(region, axes);
+      if (!aligned) window = fit_pieces(axes);
       if (!refine(window, axes, aligned, camera)) continue;
       count_error(camera);
       const ScopedTimer timer(stages_.gaps_s);
@@ -74,47 +75,60 @@ class PrunedSource final : public ImageSource {
     Faces faces;
     std::vector<int> face_of;  ///< in the whole surface
     Patch patch;
-    std::vector<int> local;  ///< of the surface's vertices, -1: not taken
-    std::vector<int> taken;
 
-    /// Those whose normal has the sign `side` along the plane's: what faces away lies behind skin of its
-    /// own body, which may be in another region.
-    template <class InAxes>
-    void take(const Faces& all, const std::vector<int>& wanted, double side, const InAxes& in_axes) {
-      for (const int vertex : taken) local[static_cast<std::size_t>(vertex)] = -1;
-      taken.clear();
-      if (local.empty()) local.assign(static_cast<std::size_t>(all.maxCoeff()) + 1, -1);
-      for (const int face : wanted)
-        for (const int vertex : all.col(face))
-          if (int& at = local[static_cast<std::size_t>(vertex)]; at < 0) {
-            at = static_cast<int>(taken.size());
-            taken.push_back(vertex);
+    void take(const Faces& all, const std::vector<int>& wanted) {
+      for (const int vertex : taken_) local_[static_cast<std::size_t>(vertex)] = -1;
+      taken_.clear();
+      if (local_.empty()) local_.assign(static_cast<std::size_t>(all.maxCoeff()) + 1, -1);
+      wanted_ = wanted;
+      corners_.resize(3, static_cast<Eigen::Index>(wanted.size()));
+      for (std::size_t i = 0; i < wanted.size(); ++i)
+        for (int k = 0; k < 3; ++k) {
+          const int vertex = all(k, wanted[i]);
+          int& at = local_[static_cast<std::size_t>(vertex)];
+          if (at < 0) {
+            at = static_cast<int>(taken_.size());
+            taken_.push_back(vertex);
           }
-      patch.uvw.resize(3, static_cast<Eigen::Index>(taken.size()));
-      for (std::size_t i = 0; i < taken.size(); ++i)
-        patch.uvw.col(static_cast<Eigen::Index>(i)) = in_axes(taken[i]);
+          corners_(k, static_cast<Eigen::Index>(i)) = at;
+        }
+    }
+    /// Along these axes, those whose normal has the sign `side` along the plane's: what faces away lies
+    /// behind skin of its own body, which may be in another region.
+    void see(const ImageSide& whole, const ContactAxes& axes, double side) {
+      patch.uvw.resize(3, static_cast<Eigen::Index>(taken_.size()));
+      for (std::size_t i = 0; i < taken_.size(); ++i)
+        patch.uvw.col(static_cast<Eigen::Index>(i)) = axes.in_axes(whole.vertex(taken_[i]));
       face_of.clear();
-      faces.resize(3, static_cast<Eigen::Index>(wanted.size()));
-      for (const int face : wanted) {
-        Eigen::Vector3i corner;
-        for (int k = 0; k < 3; ++k) corner[k] = local[static_cast<std::size_t>(all(k, face))];
-        const auto at = [&](int k) { return patch.uvw.col(corner[k]).head<2>(); };
+      faces.resize(3, corners_.cols());
+      for (Eigen::Index i = 0; i < corners_.cols(); ++i) {
+        const auto at = [&](int k) { return patch.uvw.col(corners_(k, i)).head<2>(); };
         const Eigen::Vector2d e = at(1) - at(0), f = at(2) - at(0);
         if (side * (e.x() * f.y() - e.y() * f.x()) <= 0.0) continue;
-        faces.col(static_cast<Eigen::Index>(face_of.size())) = corner;
-        face_of.push_back(face);
+        faces.col(static_cast<Eigen::Index>(face_of.size())) = corners_.col(i);
+        face_of.push_back(wanted_[static_cast<std::size_t>(i)]);
       }
       faces.conservativeResize(3, static_cast<Eigen::Index>(face_of.size()));
       patch.faces = &faces;
     }
+
+   private:
+    std::vector<int> wanted_;
+    Faces corners_;
+    std::vector<int> local_;  ///< of the surface's vertices, -1: not taken
+    std::vector<int> taken_;
   };
 
-  ContactWindow fit_pieces(const proxy::ContactRegion& region, const ContactAxes& axes) {
+  void take_pieces(const proxy::ContactRegion& region) {
     const ScopedTimer timer(stages_.patches_s);
-    piece_a_.take(a_->faces(), region.faces_a, -1.0,
-                  [&](int vertex) { return axes.in_axes(a_->vertex(vertex)); });
-    piece_b_.take(b_->faces(), region.faces_b, 1.0,
-                  [&](int vertex) { return axes.in_axes(b_->vertex(vertex)); });
+    piece_a_.take(a_->faces(), region.faces_a);
+    piece_b_.take(b_->faces(), region.faces_b);
+  }
+
+  ContactWindow fit_pieces(const ContactAxes& axes) {
+    const ScopedTimer timer(stages_.patches_s);
+    piece_a_.see(*a_, axes, -1.0);
+    piece_b_.see(*b_, axes, 1.0);
     if (piece_a_.faces.cols() == 0 || piece_b_.faces.cols() == 0) return {};
     return fit_window(piece_a_.patch, piece_b_.patch, options_.candidate_gap);
   }

@@ -69,9 +69,26 @@ void PatternBuilder::add_clique(const int* nodes, int count) {
 
 NodePairs PatternBuilder::pairs() const {
   NodePairs sorted = pairs_;
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  sort_unique(sorted, node_count_);
   return sorted;
+}
+
+// By counting, then each node's own few.
+void sort_unique(NodePairs& pairs, int node_count) {
+  std::vector<std::size_t> start(static_cast<std::size_t>(node_count) + 2, 0);
+  for (const auto& pair : pairs) ++start[static_cast<std::size_t>(pair.first) + 2];
+  for (std::size_t i = 2; i < start.size(); ++i) start[i] += start[i - 1];
+  std::vector<int> second(pairs.size());
+  for (const auto& [i, j] : pairs) second[start[static_cast<std::size_t>(i) + 1]++] = j;
+  std::size_t kept = 0;
+  for (int i = 0; i < node_count; ++i) {
+    const auto first = second.begin() + static_cast<std::ptrdiff_t>(start[static_cast<std::size_t>(i)]),
+               last = second.begin() + static_cast<std::ptrdiff_t>(start[static_cast<std::size_t>(i) + 1]);
+    std::sort(first, last);
+    const auto end = std::unique(first, last);
+    for (auto j = first; j != end; ++j) pairs[kept++] = {i, *j};
+  }
+  pairs.resize(kept);
 }
 
 BlockSparse PatternBuilder::build() const {

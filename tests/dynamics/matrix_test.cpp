@@ -30,6 +30,23 @@ TEST(PatternBuilder, SortsDeduplicatesAndKeepsTheDiagonal) {
   EXPECT_THROW(builder.add_pair(0, 4), InternalError);
 }
 
+TEST(NodePairs, SortAsTheStandardLibraryDoes) {
+  std::mt19937 random(5);
+  for (const int nodes : {1, 2, 7, 200}) {
+    std::uniform_int_distribution<int> node(0, nodes - 1);
+    NodePairs pairs;
+    for (int i = 0; i < 500; ++i) pairs.emplace_back(node(random), node(random));
+    NodePairs expected = pairs;
+    std::sort(expected.begin(), expected.end());
+    expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+    sort_unique(pairs, nodes);
+    EXPECT_EQ(pairs, expected) << nodes << " nodes";
+  }
+  NodePairs none;
+  sort_unique(none, 0);
+  EXPECT_TRUE(none.empty());
+}
+
 TEST(PatternBuilder, ListsTogetherAreOneThatWasToldAll) {
   std::mt19937 random(2);
   std::uniform_int_distribution<int> node(0, 19);

@@ -51,6 +51,9 @@ class BlockSparse {
 
 /// Node pairs, both ways round, ascending, each once.
 using NodePairs = std::vector<std::pair<int, int>>;
+/// Into that order, duplicates removed.  Linear in their number, for pairs spread over the nodes.
+/// @pre 0 <= first < node_count of each
+void sort_unique(NodePairs& pairs, int node_count);
 
 /// Collects which node pairs interact; diagonal blocks are always in.
 class PatternBuilder {
