@@ -1,5 +1,7 @@
 #include "contact/image_side.h"
 
+#include <cmath>
+
 #include "palpate/core/error.h"
 
 namespace palpate::contact {
@@ -9,6 +11,11 @@ class SoftSide final : public ImageSide {
  public:
   explicit SoftSide(NodeSurface surface) : state_(std::move(surface)) {}
   void update(const dynamics::StateView& state) override { state_.update(state); }
+  SurfaceMotion motion(const dynamics::StateView& state) const override {
+    const auto v = state_.node_velocities(state);
+    const Vec3 mean = v.rowwise().mean();
+    return {mean, std::sqrt((v.colwise() - mean).colwise().squaredNorm().maxCoeff())};
+  }
   const Faces& faces() const override { return state_.faces(); }
   const Points& positions() override { return state_.positions(); }
   Vec3 vertex(int vertex) const override { return state_.positions().col(vertex); }
@@ -27,10 +34,18 @@ class RigidSide final : public ImageSide {
   RigidSide(TriMesh surface, int frame, std::shared_ptr<MovingFrame> motion)
       : surface_(std::move(surface)), frame_(frame), motion_(std::move(motion)) {
     PALPATE_CHECK(motion_, "an image source needs a frame");
+    const Points& x = surface_.vertices;
+    if (x.cols() == 0) return;
+    centre_ = 0.5 * (x.rowwise().minCoeff() + x.rowwise().maxCoeff());
+    reach_ = std::sqrt((x.colwise() - centre_).colwise().squaredNorm().maxCoeff());
   }
   void update(const dynamics::StateView& state) override {
     pose_ = motion_->pose(state);
     turn_ = pose_.rotation.toRotationMatrix();
+  }
+  SurfaceMotion motion(const dynamics::StateView& state) const override {
+    const Twist twist = motion_->twist(state);
+    return {twist.at(turn_ * centre_), twist.angular.norm() * reach_};
   }
   const Faces& faces() const override { return surface_.faces; }
   const Points& positions() override {
@@ -53,6 +68,8 @@ class RigidSide final : public ImageSide {
   std::shared_ptr<MovingFrame> motion_;
   Pose pose_;
   Mat3 turn_ = Mat3::Identity();
+  Vec3 centre_ = Vec3::Zero();  ///< of the surface's box, in the frame
+  double reach_ = 0.0;          ///< of a vertex from there
   Points world_;
 };
 

@@ -7,11 +7,18 @@
 
 namespace palpate::contact {
 
+/// Velocities of a surface: all of its points' lie within `spread` of `mean` [m/s].
+struct SurfaceMotion {
+  Vec3 mean = Vec3::Zero();
+  double spread = 0.0;
+};
+
 /// One of the two surfaces of an image: a soft body's, or a rigid one in a frame.
 class ImageSide {
  public:
   virtual ~ImageSide() = default;
   virtual void update(const dynamics::StateView& state) = 0;
+  virtual SurfaceMotion motion(const dynamics::StateView& state) const = 0;  ///< @pre updated
   virtual const Faces& faces() const = 0;
   virtual const Points& positions() = 0;                    ///< of all vertices [m], world
   virtual Vec3 vertex(int vertex) const = 0;                ///< of one

@@ -32,7 +32,7 @@ void ImageSource::see(const Patch& a, const Patch& b, const ContactCamera& camer
       image_ = options_.backend == DepthBackend::kGpu   ? make_gpu_image(options_.pixels)
                : options_.backend == DepthBackend::kCpu ? make_cpu_image()
                                                         : make_exact_image();
-    image_->find_pairs(a, b, camera, options_.candidate_gap, pairs_);
+    image_->find_pairs(a, b, camera, candidate_gap_, pairs_);
     ++stages_.images;
     stages_.pairs += static_cast<long>(pairs_.size());
   }
@@ -42,7 +42,7 @@ void ImageSource::see(const Patch& a, const Patch& b, const ContactCamera& camer
   planes_b_.start(b);
   Seen seen;
   for (const PixelPair& pair : pairs_) {
-    if (!facing_at(pair, camera, planes_a_, planes_b_, seen.at) || !(seen.at.gap() < options_.candidate_gap))
+    if (!facing_at(pair, camera, planes_a_, planes_b_, seen.at) || !(seen.at.gap() < candidate_gap_))
       continue;
     seen.pixel = pair.pixel;
     seen.face_a = a.visible[pair.a];
@@ -116,6 +116,11 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
     if (!of_one_body()) b_->update(state);
   }
   if (options_.candidate_gap == 0.0) options_.candidate_gap = 0.25 * a_->soft()->mean_edge();
+  candidate_gap_ = options_.candidate_gap;
+  if (options_.look_ahead > 0.0 && !of_one_body()) {
+    const SurfaceMotion a = a_->motion(state), b = b_->motion(state);
+    candidate_gap_ += options_.look_ahead * ((a.mean - b.mean).norm() + a.spread + b.spread);
+  }
   const std::size_t first = samples.size();
   volume_ = variance_ = 0.0;
   look(samples);
@@ -145,7 +150,7 @@ class WholeSource final : public ImageSource {
     const Points &above = a_->positions(), &below = b_->positions();
     const auto region = [&] {
       const ScopedTimer timer(stages_.regions_s);
-      return regions_.find(above, below, options_.candidate_gap);
+      return regions_.find(above, below, candidate_gap_);
     }();
     if (!region.found) return;
     const ContactAxes axes(region.origin, region.normal);
@@ -155,7 +160,7 @@ class WholeSource final : public ImageSource {
       axes.to_axes(below, patch_b_.uvw);
       patch_a_.faces = &a_->faces();
       patch_b_.faces = &b_->faces();
-      return fit_window(patch_a_, patch_b_, options_.candidate_gap);
+      return fit_window(patch_a_, patch_b_, candidate_gap_);
     }();
     ContactCamera camera = camera_of(window, first_pixels(), shift());
     if (!camera.sees_something()) return;
@@ -177,6 +182,8 @@ void check_arguments(const NodeSurface& surface, Eigen::Index other_faces, const
     fail("contact in image space: pixels = {} {}", options.pixels, ContactRanges::pixels.demand());
   if (!(options.candidate_gap >= 0.0))
     fail("contact in image space: candidate gap = {} must not be negative", options.candidate_gap);
+  if (!(options.look_ahead >= 0.0))
+    fail("contact in image space: look-ahead = {} must not be negative", options.look_ahead);
   if (!ContactRanges::quadrature_error.holds(options.quadrature_error))
     fail("contact in image space: quadrature error = {} {}", options.quadrature_error,
          ContactRanges::quadrature_error.demand());

@@ -46,6 +46,7 @@ class ImageSource : public SampleSource {
 
   std::shared_ptr<ImageSide> a_, b_;
   ImageOptions options_;
+  double candidate_gap_ = 0.0;  ///< of the query under way [m]
   std::vector<Seen> seen_;
   QueryStages stages_;
 

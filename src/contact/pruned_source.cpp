@@ -67,7 +67,7 @@ class PrunedSource final : public ImageSource {
     const ScopedTimer timer(stages_.regions_s);
     a_->update(*proxies_a_);
     if (!of_one_body()) b_->update(*proxies_b_);
-    return pruner_.query(options_.candidate_gap);
+    return pruner_.query(candidate_gap_);
   }
 
   /// The faces of a region with vertices of their own.
@@ -130,7 +130,7 @@ class PrunedSource final : public ImageSource {
     piece_a_.see(*a_, axes, -1.0);
     piece_b_.see(*b_, axes, 1.0);
     if (piece_a_.faces.cols() == 0 || piece_b_.faces.cols() == 0) return {};
-    return fit_window(piece_a_.patch, piece_b_.patch, options_.candidate_gap);
+    return fit_window(piece_a_.patch, piece_b_.patch, candidate_gap_);
   }
 
   /// False where there is nothing to see; the faces of `seen_` are those of the pieces.

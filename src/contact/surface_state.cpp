@@ -55,6 +55,11 @@ Vec3 SurfaceState::velocity(int vertex, const dynamics::StateView& state) const 
   return v;
 }
 
+Eigen::Map<const Points> SurfaceState::node_velocities(const dynamics::StateView& state) const {
+  const dynamics::Block* block = state.layout->find(surface_.block_id);
+  return {state.u.data() + block->u_offset, 3, block->u_size / 3};
+}
+
 SurfacePoint SurfaceState::vertex_point(int vertex) const {
   SurfacePoint point;
   point.count = is_skin() ? 4 : 1;

@@ -23,6 +23,9 @@ class SurfaceState {
   const Points& positions() const { return positions_; }
   const Points& nodes() const { return nodes_; }  ///< of the block, of a skin only
   Vec3 velocity(int vertex, const dynamics::StateView& state) const;
+  /// Of all nodes of the block: what a point of the surface moves with is a mean of some of them, but for the
+  /// rest offset of a skin.  @pre updated
+  Eigen::Map<const Points> node_velocities(const dynamics::StateView& state) const;
   /// One vertex as a contact point; its nodes are counted over all node blocks.
   SurfacePoint vertex_point(int vertex) const;
   /// The point of a face with these weights of its corners.

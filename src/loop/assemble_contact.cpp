@@ -27,7 +27,7 @@ double mean_edge(const TriMesh& surface) {
 struct Pair {
   const ContactSpec& spec;
   contact::NodeSurface surface;
-  double candidate_gap;
+  double candidate_gap, look_ahead;
   std::shared_ptr<proxy::ProxySet> proxies{};
 };
 
@@ -37,12 +37,15 @@ Pair pair_of(const World& world, const ContactSpec& spec, const std::string& nam
   const double gap = spec.candidate_gap_m > 0.0
                          ? spec.candidate_gap_m
                          : mean_edge(body->skin ? body->skin->rest : body->boundary.surface);
+  const double look_ahead = world.description.exchange.contact_refresh_s;
   if (body->skin)
     return {spec,
             {body->block_id, {}, body->skin->rest.faces, body->skin->embedding, body->rest.tets},
             gap,
+            look_ahead,
             body->skin->proxies};
-  return {spec, {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces}, gap};
+  return {
+      spec, {body->block_id, body->boundary.node_of_vertex, body->boundary.surface.faces}, gap, look_ahead};
 }
 
 /// Which backend a method in image space is: "auto" takes a GPU where there is one.
@@ -56,6 +59,7 @@ contact::ImageOptions options_of(const Pair& pair) {
   out.pixels = pair.spec.pixels;
   out.quadrature_error = pair.spec.quadrature_error;
   out.candidate_gap = pair.candidate_gap;
+  out.look_ahead = pair.look_ahead;
   return out;
 }
 
@@ -137,8 +141,7 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
         "\"auto\"",
         pair.spec.first, tool.shape);
   return contact::make_sphere_source(std::move(pair.surface), side.frame_index, motion, Vec3::Zero(),
-                                     tool.radius_m, pair.candidate_gap,
-                                     world.description.exchange.contact_refresh_s);
+                                     tool.radius_m, pair.candidate_gap, pair.look_ahead);
 }
 
 bool has_linearised_steps(const World& world) {
@@ -157,8 +160,7 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
   auto motion = contact::fixed_frame();
   const int frame = world.contact->add_frame(motion);
   return entry.make_source(std::move(pair.surface), frame, std::move(motion),
-                           contact::obstacle_shape(obstacle), pair.candidate_gap,
-                           world.description.exchange.contact_refresh_s);
+                           contact::obstacle_shape(obstacle), pair.candidate_gap, pair.look_ahead);
 }
 
 }  // namespace

@@ -213,6 +213,45 @@ TEST_P(PrunedImageSource, ForceDoesNotDependOnTheCut) {
   }
 }
 
+// --- what comes nearer until the next query
+
+// A ball rises towards the tool above it; between two queries it comes to touch.  What a query at the end finds pressed
+// was a candidate at the start, and pressed as hard; without looking ahead nothing was.
+TEST_P(PrunedImageSource, WhatComesNearerIsKept) {
+  constexpr double kApart = 0.05, kSpeed = 6.0, kTime = 0.01;  // a candidate gap is 0.02
+  for (const bool pruned : {false, true}) {
+    for (const bool looks : {false, true}) {
+      SkinWorld skin;
+      const double top = skin.vertices.row(2).maxCoeff();
+      const TriMesh rigid = sphere(Vec3(0.1, 0.05, top + kApart + 0.5), 0.5, 30);
+      for (Eigen::Index i = 2; i < skin.state.u().size(); i += 3) skin.state.u()[i] = kSpeed;
+      contact::ImageOptions options = image_options(128, 0.02);
+      options.look_ahead = looks ? kTime : 0.0;
+      const auto source = [&] {
+        return pruned ? contact::make_image_source(
+                            skin.surface, proxies_of(skin.ball, skin.skin, skin.surface.embedding, 2), rigid,
+                            proxies_of(rigid), 0, contact::fixed_frame(), options)
+                      : contact::make_image_source(skin.surface, rigid, 0, contact::fixed_frame(), options);
+      };
+      std::vector<contact::ContactSample> before, after;
+      source()->query(skin.state.view(), before);
+      for (Eigen::Index i = 2; i < skin.state.q().size(); i += 3) skin.state.q()[i] += kSpeed * kTime;
+      source()->query(skin.state.view(), after);
+      double volume_before = 0.0, volume_after = 0.0;  // at the end, of both lists
+      for (const auto* list : {&before, &after})
+        for (const auto& s : *list) {
+          const double gap = s.normal.dot(point_on_nodes(s.a, skin.state.view()) - s.b.offset);
+          (list == &before ? volume_before : volume_after) += s.area * std::max(0.0, -gap);
+        }
+      EXPECT_GT(volume_after, 0.0);
+      if (looks)
+        EXPECT_NEAR(volume_before / volume_after, 1.0, 0.05) << "pruned: " << pruned;
+      else
+        EXPECT_EQ(volume_before, 0.0) << "pruned: " << pruned;
+    }
+  }
+}
+
 // --- resolution by the wanted error
 
 struct Resolved {
@@ -377,6 +416,9 @@ TEST_P(ImageSource, RefusesBadOptions) {
   exact.quadrature_error = 0.5;
   EXPECT_NE(message(pair.rigid, exact).find("quadrature error = 0.5 must lie in [0, 0.1]"),
             std::string::npos);
+  contact::ImageOptions behind = image_options(64, 0.1);
+  behind.look_ahead = -1.0;
+  EXPECT_NE(message(pair.rigid, behind).find("look-ahead = -1 must not be negative"), std::string::npos);
   contact::ImageOptions shifted = image_options(64, 0.1);
   shifted.shift_v = 1.0;
   EXPECT_NE(message(pair.rigid, shifted).find("grid shift = 1 must lie in [0, 1)"), std::string::npos);
