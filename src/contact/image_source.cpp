@@ -119,7 +119,8 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
   candidate_gap_ = options_.candidate_gap;
   if (options_.look_ahead > 0.0 && !of_one_body()) {
     const SurfaceMotion a = a_->motion(state), b = b_->motion(state);
-    candidate_gap_ += options_.look_ahead * ((a.mean - b.mean).norm() + a.spread + b.spread);
+    const double approach = (a.mean - b.mean).norm() + a.spread + b.spread;  // no faster than that
+    candidate_gap_ = std::max(candidate_gap_, options_.look_ahead * approach);
   }
   const std::size_t first = samples.size();
   volume_ = variance_ = 0.0;

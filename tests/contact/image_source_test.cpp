@@ -215,8 +215,8 @@ TEST_P(PrunedImageSource, ForceDoesNotDependOnTheCut) {
 
 // --- what comes nearer until the next query
 
-// A ball rises towards the tool above it; between two queries it comes to touch.  What a query at the end finds pressed
-// was a candidate at the start, and pressed as hard; without looking ahead nothing was.
+// A ball rises towards the tool above it; between two queries it comes to touch.  What a query at the end
+// finds pressed was a candidate at the start, and pressed as hard; without looking ahead nothing was.
 TEST_P(PrunedImageSource, WhatComesNearerIsKept) {
   constexpr double kApart = 0.05, kSpeed = 6.0, kTime = 0.01;  // a candidate gap is 0.02
   for (const bool pruned : {false, true}) {

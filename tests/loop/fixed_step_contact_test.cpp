@@ -1,7 +1,10 @@
 // A contact that closes within a fixed step: Newton's iteration has no shorter step to fall back on.
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "loop/small_scenes.h"
+#include "palpate/core/error.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/loop/run.h"
 #include "palpate/loop/world.h"
@@ -65,4 +68,37 @@ TEST(FixedStepContact, EveryImplicitTableOfArkodeFindsIt) {
     ++tried;
   }
   EXPECT_EQ(tried, 28);
+}
+
+// Where a step is one linear solve, the step matrix leaves out how friction follows the pressure, unless the
+// scene asks for it: then it is unsymmetric, as for all other methods.  Either way the cube creeps as it
+// should, and what was left out is told.
+TEST(FixedStepContact, FrictionNeedsNoLuWhereAStepIsOneSolve) {
+  for (const auto& [integrator, tangent, symmetric] :
+       {std::tuple{"linearly-implicit-euler", "auto", true},
+        std::tuple{"linearly-implicit-euler", "full", false}, std::tuple{"backward-euler", "auto", false},
+        std::tuple{"backward-euler", "symmetric", true}}) {
+    scene::Description d = on_an_incline(integrator);
+    d.contacts[0].friction_tangent = tangent;
+    const auto world = loop::assemble(d);
+    EXPECT_EQ(world->system.symmetric(), symmetric) << integrator << ", " << tangent;
+    const loop::RunResult result = loop::run(*world, {});
+    ASSERT_TRUE(result.status.ok()) << integrator << ", " << tangent << ": " << result.status.message;
+    const Points v = Eigen::Map<const Points>(world->state.u().data(), 3, world->state.u().size() / 3);
+    EXPECT_NEAR(v.row(0).mean(), 0.02, 2e-4) << integrator << ", " << tangent;
+    const double friction = world->contact->largest_lagged_friction(),
+                 left_out = world->contact->largest_friction_lag();
+    EXPECT_EQ(friction > 0.0, symmetric) << integrator << ", " << tangent;
+    EXPECT_EQ(left_out > 0.0, symmetric) << integrator << ", " << tangent;
+  }
+  scene::Description d = on_an_incline("backward-euler");
+  d.contacts[0].friction_tangent = "symetric";
+  try {
+    loop::assemble(d);
+    FAIL() << "taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("unknown friction_tangent \"symetric\" (did you mean"),
+              std::string::npos)
+        << error.what();
+  }
 }

@@ -53,8 +53,8 @@ struct ImageOptions {
   /// pixels; 0: `pixels` always (docs/design.md 4.3)
   double quadrature_error = 0.0;
   double candidate_gap = 0.0;  ///< [m]; 0: a quarter of the soft surface's mean edge
-  /// [s] to the next query: the candidate gap grows by what the surfaces may come nearer in this time at their
-  /// present velocities, but not for a body against itself
+  /// [s] to the next query: the candidate gap is at least what the surfaces may come nearer in this time at
+  /// their present velocities, but for a body against itself
   double look_ahead = 0.0;
   /// the pixel grid moved by this part of a pixel, in [0, 1): for studies of the pixels' error
   double shift_u = 0.0;
