@@ -252,6 +252,29 @@ TEST_P(PrunedImageSource, WhatComesNearerIsKept) {
   }
 }
 
+// The middle of the tool stands still, its end swings towards the ball.
+TEST_P(ImageSource, TheEndOfARotatingToolIsLookedAheadFor) {
+  SkinWorld skin;
+  const Vec3 near(0.1, 0.05, skin.vertices.row(2).maxCoeff() + 0.55), middle = near + Vec3(2.0, 0, 0);
+  TriMesh tool = sphere(near, 0.5, 30);
+  const TriMesh far = sphere(near + Vec3(4.0, 0, 0), 0.5, 30);
+  const Eigen::Index vertices = tool.vertices.cols(), faces = tool.faces.cols();
+  tool.vertices.conservativeResize(3, 2 * vertices);
+  tool.vertices.rightCols(vertices) = far.vertices;
+  tool.faces.conservativeResize(3, 2 * faces);
+  tool.faces.rightCols(faces) = far.faces.array() + static_cast<int>(vertices);
+  const auto swinging = std::make_shared<contact::TrajectoryFrame>();
+  const Vec3 spin(0, -3.0, 0);  // the end at 6 m/s
+  swinging->append(0.0, Pose{}, Twist{spin, -spin.cross(middle)});
+  contact::ImageOptions options = image_options(128, 0.02);
+  std::vector<contact::ContactSample> samples;
+  contact::make_image_source(skin.surface, tool, 0, swinging, options)->query(skin.state.view(), samples);
+  EXPECT_TRUE(samples.empty()) << "it is 0.05 apart";
+  options.look_ahead = 0.01;
+  contact::make_image_source(skin.surface, tool, 0, swinging, options)->query(skin.state.view(), samples);
+  EXPECT_GT(samples.size(), 50u);
+}
+
 // --- resolution by the wanted error
 
 struct Resolved {
@@ -298,6 +321,7 @@ TEST_P(PrunedImageSource, PixelsFollowTheWantedError) {
       before = some.samples;
     }
     EXPECT_LT(look(1024, 1e-3).samples, all.samples / 100) << "pruned: " << pruned;
+    EXPECT_LT(before, all.samples / 40) << "no more than a hundred-thousandth needs, pruned: " << pruned;
     // pixels is the most that there may be; the error that is left is told
     const Resolved few = look(24, 1e-4);
     EXPECT_LT(few.samples, 24u * 24u);
