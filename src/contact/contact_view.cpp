@@ -9,10 +9,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Bounds of the faces that are left.
-struct Box {
-  Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
-};
+using Box = AxisBox;
 
 Box face_box(const Patch& patch, int face) {
   const auto corner = [&](int k) { return patch.uvw.col((*patch.faces)(k, face)); };
@@ -20,42 +17,36 @@ Box face_box(const Patch& patch, int face) {
           corner(0).cwiseMax(corner(1)).cwiseMax(corner(2))};
 }
 
-/// The faces that are left, with their boxes.
-struct Faced {
-  std::vector<int> faces;
-  std::vector<Box> boxes;
-};
-
-/// All of them; returns their bounds.
-Box see_all(const Patch& patch, Faced& out) {
+/// All faces; returns their bounds.
+Box see_all(Patch& patch) {
   const auto count = static_cast<std::size_t>(patch.faces->cols());
-  out.faces.resize(count);
-  out.boxes.resize(count);
+  patch.visible.resize(count);
+  patch.boxes.resize(count);
   Box bounds;
   for (std::size_t f = 0; f < count; ++f) {
-    out.faces[f] = static_cast<int>(f);
-    out.boxes[f] = face_box(patch, static_cast<int>(f));
-    bounds.low = bounds.low.cwiseMin(out.boxes[f].low);
-    bounds.high = bounds.high.cwiseMax(out.boxes[f].high);
+    patch.visible[f] = static_cast<int>(f);
+    patch.boxes[f] = face_box(patch, static_cast<int>(f));
+    bounds.low = bounds.low.cwiseMin(patch.boxes[f].low);
+    bounds.high = bounds.high.cwiseMax(patch.boxes[f].high);
   }
   return bounds;
 }
 
-/// Keeps those that reach into `window`; returns their bounds.
-Box cut(Faced& seen, const Box& window) {
+/// Keeps the faces of `patch.visible` that reach into `window`; returns their bounds.
+Box cut(Patch& patch, const Box& window) {
   Box bounds;
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < seen.faces.size(); ++i) {
-    const Box box = seen.boxes[i];
+  for (std::size_t i = 0; i < patch.visible.size(); ++i) {
+    const Box box = patch.boxes[i];
     if ((box.low.array() > window.high.array()).any() || (box.high.array() < window.low.array()).any())
       continue;
     bounds.low = bounds.low.cwiseMin(box.low);
     bounds.high = bounds.high.cwiseMax(box.high);
-    seen.boxes[kept] = box;
-    seen.faces[kept++] = seen.faces[i];
+    patch.boxes[kept] = box;
+    patch.visible[kept++] = patch.visible[i];
   }
-  seen.faces.resize(kept);
-  seen.boxes.resize(kept);
+  patch.visible.resize(kept);
+  patch.boxes.resize(kept);
   return bounds;
 }
 
@@ -69,9 +60,8 @@ ContactAxes::ContactAxes(const Vec3& region_origin, const Vec3& normal) : origin
 
 ContactWindow fit_window(Patch& a, Patch& b, double candidate_gap) {
   constexpr int kCuts = 3;
-  thread_local Faced seen_a, seen_b;
   Box window;
-  Box box_a = see_all(a, seen_a), box_b = see_all(b, seen_b);
+  Box box_a = see_all(a), box_b = see_all(b);
   for (int i = 0; i < kCuts; ++i) {
     window.low = box_a.low.cwiseMax(box_b.low);
     window.high = box_a.high.cwiseMin(box_b.high);
@@ -80,13 +70,10 @@ ContactWindow fit_window(Patch& a, Patch& b, double candidate_gap) {
     window_a.high.z() = box_b.high.z() + candidate_gap;
     window_b.low.z() = box_a.low.z() - candidate_gap;
     window_b.high.z() = kInfinity;
-    box_a = cut(seen_a, window_a);
-    box_b = cut(seen_b, window_b);
-    if (seen_a.faces.empty() || seen_b.faces.empty()) break;
+    box_a = cut(a, window_a);
+    box_b = cut(b, window_b);
+    if (a.visible.empty() || b.visible.empty()) return {};
   }
-  a.visible = seen_a.faces;
-  b.visible = seen_b.faces;
-  if (a.visible.empty() || b.visible.empty()) return {};
   ContactWindow out;
   out.low = box_a.low.cwiseMax(box_b.low).head<2>();
   out.high = box_a.high.cwiseMin(box_b.high).head<2>();

@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "palpate/core/types.h"
@@ -34,11 +35,18 @@ struct ContactCamera {
   double v(int row) const { return v0 + (row + 0.5) * pixel; }
 };
 
+/// Bounds in contact axes; empty as it is made.
+struct AxisBox {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 high = Vec3::Constant(-std::numeric_limits<double>::infinity());
+};
+
 /// One surface in contact axes, and which of its faces the camera may see.
 struct Patch {
   Points uvw;  ///< vertices
   const Faces* faces = nullptr;
-  std::vector<int> visible;  ///< faces
+  std::vector<int> visible;    ///< faces
+  std::vector<AxisBox> boxes;  ///< theirs
 };
 
 /// A rectangle of the plane and a slab along the normal [m].

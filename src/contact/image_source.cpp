@@ -38,6 +38,7 @@ void ImageSource::see(const Patch& a, const Patch& b, const ContactCamera& camer
   }
   const ScopedTimer timer(stages_.gaps_s);
   seen_.clear();
+  estimate_.reset();
   planes_a_.start(a);
   planes_b_.start(b);
   Seen seen;
@@ -56,20 +57,23 @@ namespace {
 constexpr int kFirstPixels = 64;   // a first image tells normal, overlap and creases
 constexpr int kFewestPixels = 16;  // along the part where something was seen: moments need some, too
 
-QuadratureEstimate estimate_of(DepthGrid& grid, const ContactCamera& camera, const auto& seen) {
-  grid.start(camera);
-  for (const auto& s : seen) grid.add(s.pixel, s.at.gap());
-  return grid.estimate();
-}
-
 }  // namespace
+
+const QuadratureEstimate& ImageSource::estimate_of(const ContactCamera& camera) {
+  if (!estimate_) {
+    grid_.start(camera);
+    for (const Seen& seen : seen_) grid_.add(seen.pixel, seen.at.gap());
+    estimate_ = grid_.estimate();
+  }
+  return *estimate_;
+}
 
 int ImageSource::first_pixels() const {
   return options_.quadrature_error > 0.0 ? std::min(options_.pixels, kFirstPixels) : options_.pixels;
 }
 
 bool ImageSource::needs_finer(const ContactWindow& window, const ContactCamera& camera,
-                              ContactCamera& finer) const {
+                              ContactCamera& finer) {
   if (seen_.empty() || !(options_.quadrature_error > 0.0)) return false;
   ContactWindow part = window;
   Eigen::Vector2d low = window.high, high = window.low;
@@ -81,7 +85,7 @@ bool ImageSource::needs_finer(const ContactWindow& window, const ContactCamera& 
   part.high = part.high.cwiseMin((high.array() + camera.pixel).matrix());
   if (part.is_empty()) return false;
   const double edge = part.longer_edge();
-  double pixel = estimate_of(grid_, camera, seen_).pixel_for(options_.quadrature_error);
+  double pixel = estimate_of(camera).pixel_for(options_.quadrature_error);
   pixel = std::min(pixel > 0.0 ? pixel : edge, edge / (kFewestPixels - 1));
   if (camera.pixel <= pixel) return false;
   finer = camera_of(part, std::max(pixel, edge / (options_.pixels - 1)), shift());
@@ -91,7 +95,7 @@ bool ImageSource::needs_finer(const ContactWindow& window, const ContactCamera& 
 }
 
 void ImageSource::count_error(const ContactCamera& camera) {
-  const QuadratureEstimate estimate = estimate_of(grid_, camera, seen_);
+  const QuadratureEstimate& estimate = estimate_of(camera);
   const double error = estimate.standard_error(camera.pixel);
   volume_ += estimate.volume;
   variance_ += error * error;

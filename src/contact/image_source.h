@@ -31,7 +31,7 @@ class ImageSource : public SampleSource {
   int first_pixels() const;
   /// After an image of `camera`: the camera that the wanted error needs, of the part of the window where
   /// something was seen.  False where the image will do.
-  bool needs_finer(const ContactWindow& window, const ContactCamera& camera, ContactCamera& finer) const;
+  bool needs_finer(const ContactWindow& window, const ContactCamera& camera, ContactCamera& finer);
   /// Adds the error that the region's pixels leave, as `seen_` tells it, to the query's.
   void count_error(const ContactCamera& camera);
   bool of_one_body() const { return a_ == b_; }
@@ -54,7 +54,9 @@ class ImageSource : public SampleSource {
   std::unique_ptr<DepthImage> image_;
   std::vector<PixelPair> pairs_;
   FacePlanes planes_a_, planes_b_;
-  mutable DepthGrid grid_;
+  const QuadratureEstimate& estimate_of(const ContactCamera& camera);  ///< of `seen_`, made once
+  DepthGrid grid_;
+  std::optional<QuadratureEstimate> estimate_;
   double volume_ = 0.0, variance_ = 0.0;  ///< of the query's regions [m^3], [m^6]
   CoupledNodes coupled_;                  // of two soft sides
   NodeNeighbours neighbours_a_, neighbours_b_;

@@ -144,7 +144,9 @@ std::unique_ptr<contact::SampleSource> tool_source(World& world, Pair pair) {
                                      tool.radius_m, pair.candidate_gap, pair.look_ahead);
 }
 
-bool has_linearised_steps(const World& world) {
+/// What is left out buys a symmetric matrix: not where the tool's own rows make it unsymmetric.
+bool leaves_out_friction(const World& world) {
+  if (world.description.tool && world.monolithic()) return false;
   const auto& registry = integrate::stepper_registry();
   const auto entry = std::find_if(registry.begin(), registry.end(),
                                   [&](const auto& e) { return e.name == world.description.integrator.name; });
@@ -169,7 +171,7 @@ void assemble_contact(World& world) {
   world.contact = std::make_shared<contact::ContactForce>();
   for (ContactSpec spec : world.description.contacts) {
     if (spec.friction_tangent == "auto")
-      spec.friction_tangent = has_linearised_steps(world) ? "symmetric" : "full";
+      spec.friction_tangent = leaves_out_friction(world) ? "symmetric" : "full";
     contact::check_method(spec.method, fmt::format("contact {} - {}", spec.first, spec.second));
     const auto& obstacles = world.description.obstacles;
     const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(),
