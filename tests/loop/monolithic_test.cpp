@@ -72,6 +72,21 @@ TEST(Monolithic, NothingIsExchangedAndNothingCondensed) {
   EXPECT_EQ(counters::counter("loop.condenser"), 1);
 }
 
+// The tool's own rows make the matrix unsymmetric in any case: friction's tangent stays whole.
+TEST(Monolithic, LeavesNothingOfFrictionOut) {
+  for (const bool monolithic : {false, true}) {
+    scene::Description d = monolithic_press(0.01);
+    d.exchange.scheme = monolithic ? "monolithic" : "partitioned";
+    d.integrator.name = "linearly-implicit-euler";
+    d.integrator.step_s = 1e-3;
+    d.contacts[0].friction = 0.3;
+    d.device->keyframes.back().position_m.x() += 0.01;  // it slides
+    const auto world = loop::assemble(d);
+    ASSERT_TRUE(loop::run(*world, {}).status.ok());
+    EXPECT_EQ(world->contact->largest_lagged_friction() > 0.0, !monolithic);
+  }
+}
+
 TEST(Monolithic, SummaryNamesTheSchemeAndNoExchange) {
   const scene::Description d = monolithic_press(0.002);
   const auto world = loop::assemble(d);
