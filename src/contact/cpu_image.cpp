@@ -57,8 +57,9 @@ class CpuImage final : public DepthImage {
   CpuImage() { counters::count("contact.cpu_image"); }
 
   void find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera, double candidate_gap,
-                  std::vector<PixelPair>& pairs) override {
+                  std::vector<FacePair>& pairs, std::vector<std::uint32_t>& layered) override {
     pairs.clear();
+    layered.clear();
     if (!camera.sees_something()) return;
     const RasterTarget above = draw(a_, a, camera, 1.0), below = draw(b_, b, camera, -1.0);
     const auto size = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
@@ -67,7 +68,10 @@ class CpuImage final : public DepthImage {
     const double slack = 1e-5 * (camera.far - camera.near);
     const int count = kernels_.pair(above, below, static_cast<float>(candidate_gap + slack), found_.data());
     pairs.resize(static_cast<std::size_t>(count));
-    for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = {found_[i].pixel, found_[i].a, found_[i].b};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      pairs[i] = {found_[i].pixel, found_[i].a, found_[i].b};
+      if (found_[i].layered) layered.push_back(found_[i].pixel);
+    }
   }
 
  private:
@@ -78,7 +82,10 @@ class CpuImage final : public DepthImage {
     std::vector<std::int32_t> corners;
   };
 
-  /// Draws with `side` w as depth, w counted from the middle of the slab.
+  // Of w in single precision, with slopes that are wild in slivers; a body is thicker than that.
+  static constexpr double kLayerGap = 1e-4;  // of the slab
+
+  /// Draws with `side` w as depth, w counted from the middle of the slab: a, which faces down, with 1.
   RasterTarget draw(Surface& surface, const Patch& patch, const ContactCamera& camera, double side) {
     RasterTarget target;
     target.width = camera.width;
@@ -103,6 +110,7 @@ class CpuImage final : public DepthImage {
       for (int k = 0; k < 3; ++k)
         surface.corners[3 * f + static_cast<std::size_t>(k)] = (*patch.faces)(k, patch.visible[f]);
     kernels_.draw(surface.vertices.data(), surface.corners.data(), static_cast<int>(patch.visible.size()),
+                  static_cast<float>(-side), static_cast<float>(kLayerGap * (camera.far - camera.near)),
                   target);
     return target;
   }

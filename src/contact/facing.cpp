@@ -28,10 +28,23 @@ void FacePlanes::prepare(Plane& plane, int face) const {
            d1.x() / area, p0.z(), d1.z(),        d2.z(),         Plane::kReady};
 }
 
-bool FacePlanes::at(int visible, double u, double v, Vec3& weights, double& w) {
-  constexpr double kOutside = -0.25;
+FacePlanes::Plane& FacePlanes::plane(int visible) {
   Plane& plane = planes_[static_cast<std::size_t>(visible)];
   if (plane.state == Plane::kUnknown) prepare(plane, patch_->visible[static_cast<std::size_t>(visible)]);
+  return plane;
+}
+
+bool FacePlanes::is_wall(int visible) {
+  constexpr double kSteep = 5.0;  // slope: 79 degrees
+  const Plane& p = plane(visible);
+  if (p.state == Plane::kEdgeOn) return true;
+  const double along_u = p.u1 * p.w1 + p.u2 * p.w2, along_v = p.v1 * p.w1 + p.v2 * p.w2;
+  return along_u * along_u + along_v * along_v > kSteep * kSteep;
+}
+
+bool FacePlanes::at(int visible, double u, double v, Vec3& weights, double& w) {
+  constexpr double kOutside = -0.25;
+  const Plane& plane = this->plane(visible);
   if (plane.state == Plane::kEdgeOn) return false;
   const double du = u - plane.u0, dv = v - plane.v0;
   const double first = plane.u1 * du + plane.v1 * dv, second = plane.u2 * du + plane.v2 * dv;
@@ -40,10 +53,7 @@ bool FacePlanes::at(int visible, double u, double v, Vec3& weights, double& w) {
   return weights.minCoeff() >= kOutside;
 }
 
-bool facing_at(const PixelPair& pair, const ContactCamera& camera, FacePlanes& a, FacePlanes& b,
-               Facing& out) {
-  out.u = camera.u(static_cast<int>(pair.pixel) % camera.width);
-  out.v = camera.v(static_cast<int>(pair.pixel) / camera.width);
+bool facing_at(const FacePair& pair, FacePlanes& a, FacePlanes& b, Facing& out) {
   if (a.at(static_cast<int>(pair.a), out.u, out.v, out.weights_a, out.w_a) &&
       b.at(static_cast<int>(pair.b), out.u, out.v, out.weights_b, out.w_b))
     return true;
@@ -51,13 +61,15 @@ bool facing_at(const PixelPair& pair, const ContactCamera& camera, FacePlanes& a
   return false;
 }
 
-ContactSample sample_of(const Facing& at, const ImageSide& a, int face_a, const ImageSide& b, int face_b,
-                        const ContactCamera& camera, const ContactAxes& axes) {
+ContactSample sample_of(const Facing& at, double area, const ImageSide& a, int face_a, const ImageSide& b,
+                        int face_b, const ContactAxes& axes) {
   ContactSample sample;
   sample.a = a.point(face_a, at.weights_a, axes.world(Vec3(at.u, at.v, at.w_a)));
   sample.b = b.point(face_b, at.weights_b, axes.world(Vec3(at.u, at.v, at.w_b)));
   sample.normal = axes.normal();
-  sample.area = camera.pixel * camera.pixel;
+  if (at.lift_a != 0.0 && sample.a.frame < 0) sample.a.offset += at.lift_a * sample.normal;
+  if (at.lift_b != 0.0 && sample.b.frame < 0) sample.b.offset += at.lift_b * sample.normal;
+  sample.area = area;
   sample.gap = at.gap();
   return sample;
 }

@@ -6,10 +6,12 @@
 
 namespace palpate::contact {
 
-/// Two triangles at a pixel.
+/// Two triangles on a line along the normal.
 struct Facing {
   double u, v, w_a, w_b;      ///< [m]
   Vec3 weights_a, weights_b;  ///< of their corners
+  /// by which w_a and w_b lie above the triangles: where a depth was read from an image [m]
+  double lift_a = 0.0, lift_b = 0.0;
   double gap() const { return w_a - w_b; }
 };
 
@@ -21,6 +23,8 @@ class FacePlanes {
   /// where (u, v) lies outside by more than the rasteriser's sub-pixel grid explains (a quarter of the
   /// triangle): the plane would be extrapolated too far.
   bool at(int visible, double u, double v, Vec3& weights, double& w);
+  /// So steep that single precision in (u, v) is not enough: a wall.
+  bool is_wall(int visible);
 
  private:
   struct Plane {
@@ -29,18 +33,19 @@ class FacePlanes {
     double w0, w1, w2;      ///< heights: of corner 0, of the others against it
     enum : int { kUnknown, kEdgeOn, kReady } state;
   };
+  Plane& plane(int visible);
   void prepare(Plane& plane, int face) const;
 
   const Patch* patch_ = nullptr;
   std::vector<Plane> planes_;
 };
 
-/// The image said which triangles; the gap is theirs at the pixel's own (u, v), in double.  False where one
-/// of them is seen edge-on there.
-bool facing_at(const PixelPair& pair, const ContactCamera& camera, FacePlanes& a, FacePlanes& b, Facing& out);
+/// The image said which triangles; the gap is theirs at (out.u, out.v), in double.  False where one of them
+/// is seen edge-on there.
+bool facing_at(const FacePair& pair, FacePlanes& a, FacePlanes& b, Facing& out);
 
-/// The sample of a pixel; the faces are those of the whole sides.
-ContactSample sample_of(const Facing& at, const ImageSide& a, int face_a, const ImageSide& b, int face_b,
-                        const ContactCamera& camera, const ContactAxes& axes);
+/// A sample that stands for `area`; the faces are those of the whole sides.
+ContactSample sample_of(const Facing& at, double area, const ImageSide& a, int face_a, const ImageSide& b,
+                        int face_b, const ContactAxes& axes);
 
 }  // namespace palpate::contact

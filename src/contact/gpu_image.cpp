@@ -17,7 +17,8 @@ int opened(int pixels) {
 
 }  // namespace
 
-GpuImage::Surface::Surface(int pixels) : target(pixels, pixels, {gl::Format::kR32ui}, true) {
+GpuImage::Surface::Surface(int pixels)
+    : target(pixels, pixels, {gl::Format::kR32ui}, gl::DepthBuffer::kDepthAndStencil) {
   vertices.upload(nullptr, 0);
   triangles.upload(nullptr, 0);
   layout.attribute(0, vertices, 3, 3 * sizeof(float));
@@ -30,7 +31,7 @@ GpuImage::GpuImage(int pixels)
       pair_("contact/pair.comp"),
       a_(pixels),
       b_(pixels) {
-  list_.reserve(sizeof(PixelPair) * static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
+  list_.reserve(sizeof(FacePair) * static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
   gl::check_errors("making the contact images");
 }
 
@@ -56,6 +57,7 @@ void GpuImage::draw(Surface& surface, const Patch& patch, const ContactCamera& c
   surface.target.bind();
   gl::set_plain_state(camera.width, camera.height,
                       keep_least ? gl::Keep::kLeastDepth : gl::Keep::kGreatestDepth);
+  gl::cull_and_count(keep_least);  // of a those that face up
   surface.target.clear(0, std::uint32_t{0});
   surface.target.clear_depth(keep_least ? 1.0f : 0.0f);
   draw_.use();
@@ -72,6 +74,8 @@ void GpuImage::append_pairs(const ContactCamera& camera, double candidate_gap) {
   b_.target.colour(0).bind_unit(1);
   a_.target.depth().bind_unit(2);
   b_.target.depth().bind_unit(3);
+  a_.target.stencil().bind_unit(4);
+  b_.target.stencil().bind_unit(5);
   count_.bind_storage(0);
   list_.bind_storage(1);
   pair_.set("width", camera.width);
@@ -81,8 +85,9 @@ void GpuImage::append_pairs(const ContactCamera& camera, double candidate_gap) {
 }
 
 void GpuImage::find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera, double candidate_gap,
-                          std::vector<PixelPair>& pairs) {
+                          std::vector<FacePair>& pairs, std::vector<std::uint32_t>& layered) {
   pairs.clear();
+  layered.clear();
   if (!camera.sees_something()) return;
   PALPATE_CHECK(camera.width <= pixels_ && camera.height <= pixels_, "contact image of {} x {} in one of {}",
                 camera.width, camera.height, pixels_);
@@ -93,10 +98,14 @@ void GpuImage::find_pairs(const Patch& a, const Patch& b, const ContactCamera& c
   std::uint32_t count = 0;
   count_.read(&count, sizeof count);
   pairs.resize(count);
-  if (count > 0) list_.read(pairs.data(), count * sizeof(PixelPair));
+  if (count > 0) list_.read(pairs.data(), count * sizeof(FacePair));
   gl::check_errors("the contact images");
-  std::sort(pairs.begin(), pairs.end(),
-            [](const PixelPair& p, const PixelPair& q) { return p.pixel < q.pixel; });
+  std::sort(pairs.begin(), pairs.end(), [](const FacePair& p, const FacePair& q) { return p.at < q.at; });
+  constexpr std::uint32_t kLayered = 1u << 31;  // as in pair.comp
+  for (FacePair& pair : pairs) {
+    if (pair.a & kLayered) layered.push_back(pair.at);
+    pair.a &= ~kLayered;
+  }
 }
 
 bool gpu_available() { return true; }

@@ -14,13 +14,14 @@ namespace palpate::contact {
 /// Each surface is drawn along the normal with its triangle numbers as colours: of a the least depth is kept,
 /// of b the greatest (an orthographic depth is linear in w).  A compute pass compares the two and appends the
 /// pixels where both are seen, nearer than the candidate gap, to a compact list; only that list comes back,
-/// sorted by pixel, so the order of atomic appends leaves no trace.
+/// sorted by pixel, so the order of atomic appends leaves no trace.  The stencil counts the layers of each
+/// pixel, kept or not; the rasteriser gives a pixel on a common edge to one triangle alone.
 /// Coordinates are single precision about the region's origin: they decide who faces whom, never how deep.
 class GpuImage final : public DepthImage {
  public:
   explicit GpuImage(int pixels);  ///< opens the GL context; the images are square, `pixels` an edge
   void find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera, double candidate_gap,
-                  std::vector<PixelPair>& pairs) override;
+                  std::vector<FacePair>& pairs, std::vector<std::uint32_t>& layered) override;
 
  private:
   struct Surface {

@@ -32,24 +32,81 @@ void ImageSource::see(const Patch& a, const Patch& b, const ContactCamera& camer
       image_ = options_.backend == DepthBackend::kGpu   ? make_gpu_image(options_.pixels)
                : options_.backend == DepthBackend::kCpu ? make_cpu_image()
                                                         : make_exact_image();
-    image_->find_pairs(a, b, camera, candidate_gap_, pairs_);
+    image_->find_pairs(a, b, camera, candidate_gap_, pairs_, layered_);
     ++stages_.images;
     stages_.pairs += static_cast<long>(pairs_.size());
   }
   const ScopedTimer timer(stages_.gaps_s);
-  seen_.clear();
+  hits_.clear();
   estimate_.reset();
   planes_a_.start(a);
   planes_b_.start(b);
-  Seen seen;
-  for (const PixelPair& pair : pairs_) {
-    if (!facing_at(pair, camera, planes_a_, planes_b_, seen.at) || !(seen.at.gap() < candidate_gap_))
-      continue;
-    seen.pixel = pair.pixel;
-    seen.face_a = a.visible[pair.a];
-    seen.face_b = b.visible[pair.b];
-    seen_.push_back(seen);
+  doubtful_.clear();
+  std::size_t next_layered = 0;
+  for (const FacePair& pair : pairs_) {
+    while (next_layered < layered_.size() && layered_[next_layered] < pair.at) ++next_layered;
+    const bool layers = next_layered < layered_.size() && layered_[next_layered] == pair.at;
+    if (!take_pair(pair, a, b, camera) || layers) doubtful_.push_back(pair.at);
   }
+}
+
+/// False where an image is not enough and exact lines have to tell: on walls, and where the pixel's middle
+/// lies outside of a triangle by the rounding of the image, so that its neighbour is the one.
+bool ImageSource::take_pair(const FacePair& pair, const Patch& a, const Patch& b,
+                            const ContactCamera& camera) {
+  constexpr double kOutside = -1e-7;
+  Hit hit;
+  hit.at.u = camera.u(static_cast<int>(pair.at) % camera.width);
+  hit.at.v = camera.v(static_cast<int>(pair.at) / camera.width);
+  if (!facing_at(pair, planes_a_, planes_b_, hit.at)) return false;
+  if (hit.at.gap() < candidate_gap_) {
+    hit.pixel = pair.at;
+    hit.face_a = a.visible[pair.a];
+    hit.face_b = b.visible[pair.b];
+    hit.area = camera.pixel * camera.pixel;
+    hits_.push_back(hit);
+  }
+  return std::min(hit.at.weights_a.minCoeff(), hit.at.weights_b.minCoeff()) >= kOutside &&
+         !planes_a_.is_wall(static_cast<int>(pair.a)) && !planes_b_.is_wall(static_cast<int>(pair.b));
+}
+
+void ImageSource::ask_lines(const Patch& a, const Patch& b, const ContactCamera& camera) {
+  middles_.clear();
+  for (const std::uint32_t pixel : doubtful_)
+    middles_.emplace_back(camera.u(static_cast<int>(pixel) % camera.width),
+                          camera.v(static_cast<int>(pixel) / camera.width));
+  lines_.through(middles_, a, b, camera, candidate_gap_, by_lines_);
+  stages_.lines += static_cast<long>(doubtful_.size());
+  estimate_.reset();
+  std::erase_if(hits_, [&](const Hit& hit) {
+    return std::binary_search(doubtful_.begin(), doubtful_.end(), hit.pixel);
+  });
+  const auto certain = static_cast<std::ptrdiff_t>(hits_.size());
+  for (FacePair pair : by_lines_) {
+    pair.at = doubtful_[pair.at];
+    take_pair(pair, a, b, camera);
+  }
+  std::inplace_merge(hits_.begin(), hits_.begin() + certain, hits_.end(),
+                     [](const Hit& p, const Hit& q) { return p.pixel < q.pixel; });
+}
+
+void ImageSource::finish(const Patch& a, const Patch& b, const ContactCamera& camera) {
+  if (options_.backend != DepthBackend::kExact && !doubtful_.empty()) {
+    const ScopedTimer timer(stages_.gaps_s);
+    ask_lines(a, b, camera);
+  }
+  if (!samples_vertices()) return count_error(camera);
+  const ScopedTimer timer(stages_.gaps_s);
+  const VertexRule::Region region{.a = a,
+                                  .b = b,
+                                  .camera = camera,
+                                  .planes_a = planes_a_,
+                                  .planes_b = planes_b_,
+                                  .candidate_gap = candidate_gap_,
+                                  .lines_only = options_.backend == DepthBackend::kExact,
+                                  .both_sides = b_->soft() != nullptr,
+                                  .depths = options_.depths};
+  vertices_.find(region, pairs_, doubtful_, hits_, lines_, hits_);
 }
 
 namespace {
@@ -57,12 +114,23 @@ namespace {
 constexpr int kFirstPixels = 64;   // a first image tells normal, overlap and creases
 constexpr int kFewestPixels = 16;  // along the part where something was seen: moments need some, too
 
+/// Mean edge of the squares that two triangles of a patch fill, seen along the normal [m].
+double mean_face_edge(const Patch& patch) {
+  double area = 0.0;
+  for (const int f : patch.visible) {
+    const auto p = [&](int k) { return patch.uvw.col((*patch.faces)(k, f)).head<2>(); };
+    const Eigen::Vector2d e = p(1) - p(0), g = p(2) - p(0);
+    area += std::abs(e.x() * g.y() - e.y() * g.x());
+  }
+  return patch.visible.empty() ? 0.0 : std::sqrt(area / static_cast<double>(patch.visible.size()));
+}
+
 }  // namespace
 
 const QuadratureEstimate& ImageSource::estimate_of(const ContactCamera& camera) {
   if (!estimate_) {
     grid_.start(camera);
-    for (const Seen& seen : seen_) grid_.add(seen.pixel, seen.at.gap());
+    for (const Hit& hit : hits_) grid_.add(hit.pixel, hit.at.gap());
     estimate_ = grid_.estimate();
   }
   return *estimate_;
@@ -72,21 +140,28 @@ int ImageSource::first_pixels() const {
   return options_.quadrature_error > 0.0 ? std::min(options_.pixels, kFirstPixels) : options_.pixels;
 }
 
-bool ImageSource::needs_finer(const ContactWindow& window, const ContactCamera& camera,
-                              ContactCamera& finer) {
-  if (seen_.empty() || !(options_.quadrature_error > 0.0)) return false;
+bool ImageSource::needs_finer(const Patch& a, const Patch& b, const ContactWindow& window,
+                              const ContactCamera& camera, ContactCamera& finer) {
+  if (hits_.empty() || !(options_.quadrature_error > 0.0)) return false;
   ContactWindow part = window;
   Eigen::Vector2d low = window.high, high = window.low;
-  for (const Seen& seen : seen_) {
-    low = low.cwiseMin(Eigen::Vector2d(seen.at.u, seen.at.v));
-    high = high.cwiseMax(Eigen::Vector2d(seen.at.u, seen.at.v));
+  for (const Hit& hit : hits_) {
+    low = low.cwiseMin(Eigen::Vector2d(hit.at.u, hit.at.v));
+    high = high.cwiseMax(Eigen::Vector2d(hit.at.u, hit.at.v));
   }
   part.low = part.low.cwiseMax((low.array() - camera.pixel).matrix());
   part.high = part.high.cwiseMin((high.array() + camera.pixel).matrix());
   if (part.is_empty()) return false;
   const double edge = part.longer_edge();
-  double pixel = estimate_of(camera).pixel_for(options_.quadrature_error);
-  pixel = std::min(pixel > 0.0 ? pixel : edge, edge / (kFewestPixels - 1));
+  double pixel;
+  if (options_.depths == DepthReading::kInterpolated) {
+    pixel = edge / (options_.pixels - 1);
+  } else if (samples_vertices()) {
+    pixel = 0.5 * std::min(mean_face_edge(a), mean_face_edge(b));
+  } else {
+    pixel = estimate_of(camera).pixel_for(options_.quadrature_error);
+    pixel = std::min(pixel > 0.0 ? pixel : edge, edge / (kFewestPixels - 1));
+  }
   if (camera.pixel <= pixel) return false;
   finer = camera_of(part, std::max(pixel, edge / (options_.pixels - 1)), shift());
   finer.width = std::min(finer.width, options_.pixels);  // rounding of the edge
@@ -170,11 +245,12 @@ class WholeSource final : public ImageSource {
     ContactCamera camera = camera_of(window, first_pixels(), shift());
     if (!camera.sees_something()) return;
     see(patch_a_, patch_b_, camera);
-    if (ContactCamera finer; needs_finer(window, camera, finer)) see(patch_a_, patch_b_, camera = finer);
-    count_error(camera);
+    if (ContactCamera finer; needs_finer(patch_a_, patch_b_, window, camera, finer))
+      see(patch_a_, patch_b_, camera = finer);
+    finish(patch_a_, patch_b_, camera);
     const ScopedTimer timer(stages_.gaps_s);
-    for (const Seen& seen : seen_)
-      samples.push_back(sample_of(seen.at, *a_, seen.face_a, *b_, seen.face_b, camera, axes));
+    for (const Hit& hit : hits_)
+      samples.push_back(sample_of(hit.at, hit.area, *a_, hit.face_a, *b_, hit.face_b, axes));
   }
 
  private:
@@ -192,6 +268,8 @@ void check_arguments(const NodeSurface& surface, Eigen::Index other_faces, const
   if (!ContactRanges::quadrature_error.holds(options.quadrature_error))
     fail("contact in image space: quadrature error = {} {}", options.quadrature_error,
          ContactRanges::quadrature_error.demand());
+  if (options.depths == DepthReading::kInterpolated && options.samples != SampleRule::kVertex)
+    fail("contact in image space: depths are interpolated at vertices alone; a pixel has its own");
   for (const double shift : {options.shift_u, options.shift_v})
     if (!(shift >= 0.0 && shift < 1.0))
       fail("contact in image space: grid shift = {} must lie in [0, 1)", shift);

@@ -7,6 +7,7 @@
 #include "contact/depth_image.h"
 #include "contact/facing.h"
 #include "contact/quadrature.h"
+#include "contact/vertex_rule.h"
 #include "palpate/contact/sources.h"
 
 namespace palpate::contact {
@@ -24,37 +25,42 @@ class ImageSource : public SampleSource {
 
  protected:
   virtual void look(std::vector<ContactSample>& samples) = 0;  ///< at the sides as they are
-  /// Fills `seen_` by the image, which is made when something is to be seen: all that is nearer than the
-  /// candidate gap.
+  /// Fills `hits_` at the pixels by the image, which is made when something is to be seen: all that is nearer
+  /// than the candidate gap.
   void see(const Patch& a, const Patch& b, const ContactCamera& camera);
+  /// After the image that counts: pixels with layers or walls, of which an image shows too little, by exact
+  /// lines; then what `samples` asks for in `hits_`, with what the pixels err counted.
+  void finish(const Patch& a, const Patch& b, const ContactCamera& camera);
   /// Pixels of the first image of a region: all, or as many as tell which the wanted error needs.
   int first_pixels() const;
-  /// After an image of `camera`: the camera that the wanted error needs, of the part of the window where
-  /// something was seen.  False where the image will do.
-  bool needs_finer(const ContactWindow& window, const ContactCamera& camera, ContactCamera& finer);
-  /// Adds the error that the region's pixels leave, as `seen_` tells it, to the query's.
-  void count_error(const ContactCamera& camera);
+  /// After an image of `camera`: the camera that the wanted error needs, or that shows triangles one by one
+  /// to the vertices, of the part of the window where something was seen.  False where the image will do.
+  bool needs_finer(const Patch& a, const Patch& b, const ContactWindow& window, const ContactCamera& camera,
+                   ContactCamera& finer);
   bool of_one_body() const { return a_ == b_; }
   Eigen::Vector2d shift() const { return {options_.shift_u, options_.shift_v}; }
-
-  /// Two faces at a pixel.
-  struct Seen {
-    Facing at;
-    std::uint32_t pixel;
-    int face_a, face_b;  ///< of the patches' faces
-  };
 
   std::shared_ptr<ImageSide> a_, b_;
   ImageOptions options_;
   double candidate_gap_ = 0.0;  ///< of the query under way [m]
-  std::vector<Seen> seen_;
+  std::vector<Hit> hits_;
   QueryStages stages_;
 
  private:
+  bool take_pair(const FacePair& pair, const Patch& a, const Patch& b, const ContactCamera& camera);
+  void ask_lines(const Patch& a, const Patch& b, const ContactCamera& camera);
+  bool samples_vertices() const { return options_.samples == SampleRule::kVertex; }
+  void count_error(const ContactCamera& camera);
+  const QuadratureEstimate& estimate_of(const ContactCamera& camera);  ///< of pixels in `hits_`, made once
+
   std::unique_ptr<DepthImage> image_;
-  std::vector<PixelPair> pairs_;
+  std::vector<FacePair> pairs_;
   FacePlanes planes_a_, planes_b_;
-  const QuadratureEstimate& estimate_of(const ContactCamera& camera);  ///< of `seen_`, made once
+  ExactLines lines_;
+  std::vector<std::uint32_t> layered_, doubtful_;  ///< pixels
+  std::vector<Eigen::Vector2d> middles_;           ///< of doubtful pixels
+  std::vector<FacePair> by_lines_;
+  VertexRule vertices_;
   DepthGrid grid_;
   std::optional<QuadratureEstimate> estimate_;
   double volume_ = 0.0, variance_ = 0.0;  ///< of the query's regions [m^3], [m^6]

@@ -4,23 +4,25 @@
 
 namespace palpate::contact {
 
+namespace {
+
+std::vector<PartKey> image_keys() { return part_keys({"pixels", "quadrature_error", "samples", "depths"}); }
+
+}  // namespace
+
 const std::vector<MethodEntry>& method_registry() {
   static const std::vector<MethodEntry> registry = {
       {"analytic", "exact gaps at the vertices: of obstacles, and of tools with shape = \"sphere\""},
       {"auto",
        "exact gaps where there are any; else image space, on a GPU where the machine has one, else on the "
        "processor",
-       part_keys({"pixels", "quadrature_error"})},
-      {"cpu",
-       "image space on the processor: gaps at the pixels of an image; tools of any shape, other soft bodies, "
-       "a "
-       "body against itself",
-       part_keys({"pixels", "quadrature_error"})},
-      {"gpu", "the same image by OpenGL, without a GPU by Mesa's software rasteriser",
-       part_keys({"pixels", "quadrature_error"})},
+       image_keys()},
+      {"cpu", "image space on the processor: tools of any shape, other soft bodies, a body against itself",
+       image_keys()},
+      {"gpu", "the same image by OpenGL, without a GPU by Mesa's software rasteriser", image_keys()},
       {"exact",
-       "the same pixels without an image: a line through each, in double, and all layers that it meets; slow",
-       part_keys({"pixels", "quadrature_error"})},
+       "no image: a line through each pixel or vertex, in double, and all layers that it meets; slow",
+       image_keys()},
   };
   return registry;
 }
@@ -28,9 +30,9 @@ const std::vector<MethodEntry>& method_registry() {
 const std::vector<AbsentMethod>& absent_methods() {
   static const std::vector<AbsentMethod> absent = {
       {"vertex",
-       "is not there yet; take method = \"analytic\" for an obstacle or a sphere (it samples at the "
-       "vertices), \"auto\" for a tool of another shape or a soft body"},
-      {"pixel", "is not known; take method = \"auto\", which samples at the pixels of an image"},
+       "is no method; obstacles and spheres are sampled at the vertices by method = \"analytic\", and for a "
+       "tool of another shape or a soft body write samples = \"vertex\""},
+      {"pixel", "is no method; write samples = \"pixel\", with any method in image space"},
   };
   return absent;
 }

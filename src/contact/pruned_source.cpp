@@ -45,20 +45,20 @@ class PrunedSource final : public ImageSource {
         camera = camera_of(window, coarse_pixels(), shift());
         if (!see_pieces(camera, axes)) break;
         OverlapSlope slope;
-        for (const Seen& seen : seen_)
-          if (seen.at.gap() < 0.0)
-            slope.add(slope_of(piece_a_, seen.face_a), slope_of(piece_b_, seen.face_b));
+        for (const Hit& hit : hits_)
+          if (hit.at.gap() < 0.0) slope.add(slope_of(piece_a_, hit.face_a), slope_of(piece_b_, hit.face_b));
         aligned = !align_with_overlap(slope, axes);
       }
       if (!camera.sees_something()) continue;
       if (!aligned) window = fit_pieces(axes);
       if (!refine(window, axes, aligned, camera)) continue;
-      count_error(camera);
+      finish(piece_a_.patch, piece_b_.patch, camera);
+      leave_own_tissue(axes);  // what finish() has found besides
       const ScopedTimer timer(stages_.gaps_s);
-      for (const Seen& seen : seen_)
-        samples.push_back(sample_of(seen.at, *a_, piece_a_.face_of[static_cast<std::size_t>(seen.face_a)],
-                                    *b_, piece_b_.face_of[static_cast<std::size_t>(seen.face_b)], camera,
-                                    axes));
+      for (const Hit& hit : hits_)
+        samples.push_back(sample_of(hit.at, hit.area, *a_,
+                                    piece_a_.face_of[static_cast<std::size_t>(hit.face_a)], *b_,
+                                    piece_b_.face_of[static_cast<std::size_t>(hit.face_b)], axes));
     }
   }
 
@@ -133,14 +133,18 @@ class PrunedSource final : public ImageSource {
     return fit_window(piece_a_.patch, piece_b_.patch, candidate_gap_);
   }
 
-  /// False where there is nothing to see; the faces of `seen_` are those of the pieces.
+  /// False where there is nothing to see; the faces of `hits_` are those of the pieces.
   bool see_pieces(const ContactCamera& camera, const ContactAxes& axes) {
-    seen_.clear();
+    hits_.clear();
     if (!camera.sees_something()) return false;
     see(piece_a_.patch, piece_b_.patch, camera);
-    if (self_contact_)
-      std::erase_if(seen_, [&](const Seen& s) { return !may_touch(s.at, s.face_a, s.face_b, axes); });
+    leave_own_tissue(axes);
     return true;
+  }
+
+  void leave_own_tissue(const ContactAxes& axes) {
+    if (self_contact_)
+      std::erase_if(hits_, [&](const Hit& h) { return !may_touch(h.at, h.face_a, h.face_b, axes); });
   }
 
   /// The image that counts.  @param seen  there is one along these axes, by `camera`
@@ -149,7 +153,8 @@ class PrunedSource final : public ImageSource {
       camera = camera_of(window, first_pixels(), shift());
       if (!see_pieces(camera, axes)) return false;
     }
-    if (ContactCamera finer; needs_finer(window, camera, finer)) see_pieces(camera = finer, axes);
+    if (ContactCamera finer; needs_finer(piece_a_.patch, piece_b_.patch, window, camera, finer))
+      see_pieces(camera = finer, axes);
     return true;
   }
 

@@ -6,6 +6,9 @@
 // is evaluated for p the corner with the lower number and multiplied by the sign of the turn: two triangles
 // that share an edge then get values that are equal but for the sign, so that no pixel between them is lost,
 // whatever the rounding.  A pixel on the edge belongs to both; its nearer depth stays.
+//
+// A pixel that is drawn again at another depth has layers: a height field has none.  The mark stands in the
+// triangle's number, so that it costs no memory of its own.
 #include <algorithm>
 #include <cmath>
 
@@ -54,7 +57,7 @@ PALPATE_INLINE Edge edge(const float* p, const float* q, bool swapped, float tur
 }
 
 PALPATE_INLINE void draw_one(const float* vertices, const std::int32_t* corner, std::int32_t number,
-                             Floats lane, const RasterTarget& target) {
+                             Floats lane, float side, float layer_gap, const RasterTarget& target) {
   const float *p0 = vertices + 3 * corner[0], *p1 = vertices + 3 * corner[1], *p2 = vertices + 3 * corner[2];
   const float low_x = std::min(p0[0], std::min(p1[0], p2[0])),
               high_x = std::max(p0[0], std::max(p1[0], p2[0])),
@@ -69,7 +72,7 @@ PALPATE_INLINE void draw_one(const float* vertices, const std::int32_t* corner, 
   const float ux = p1[0] - p0[0], uy = p1[1] - p0[1], uw = p1[2] - p0[2], vx = p2[0] - p0[0],
               vy = p2[1] - p0[1], vw = p2[2] - p0[2];
   const float area = ux * vy - vx * uy;
-  if (area == 0.0f) return;
+  if (!(side * area > 0.0f)) return;
   const float turn = area > 0.0f ? 1.0f : -1.0f;
   const Edge e0 = edge(p1, p2, corner[1] > corner[2], turn), e1 = edge(p2, p0, corner[2] > corner[0], turn),
              e2 = edge(p0, p1, corner[0] > corner[1], turn);
@@ -91,16 +94,21 @@ PALPATE_INLINE void draw_one(const float* vertices, const std::int32_t* corner, 
       w = w > high_w ? all(high_w) : w;
       float* depth = target.depth + static_cast<std::ptrdiff_t>(row) * target.stride + block;
       std::int32_t* triangle = target.triangle + static_cast<std::ptrdiff_t>(row) * target.stride + block;
-      const Ints nearer = (w0 >= 0.0f) & (w1 >= 0.0f) & (w2 >= 0.0f) & (w < floats(depth));
-      floats(depth) = nearer ? w : floats(depth);
-      ints(triangle) = nearer ? all(number) : ints(triangle);
+      const Floats before = floats(depth);
+      const Ints inside = (w0 >= 0.0f) & (w1 >= 0.0f) & (w2 >= 0.0f), nearer = inside & (w < before),
+                 old = ints(triangle), seen = old >= 0,
+                 apart = inside & ((w < before - layer_gap) | (w > before + layer_gap)),
+                 mark = seen & (old | apart) & all(kRasterLayered);
+      floats(depth) = nearer ? w : before;
+      ints(triangle) = (nearer ? all(number) : old) | mark;
     }
   }
 }
 
-void draw(const float* vertices, const std::int32_t* corners, int count, const RasterTarget& target) {
+void draw(const float* vertices, const std::int32_t* corners, int count, float side, float layer_gap,
+          const RasterTarget& target) {
   const Floats lane = middles();
-  for (int t = 0; t < count; ++t) draw_one(vertices, corners + 3 * t, t, lane, target);
+  for (int t = 0; t < count; ++t) draw_one(vertices, corners + 3 * t, t, lane, side, layer_gap, target);
 }
 
 int pair(const RasterTarget& a, const RasterTarget& b, float largest_gap, RasterPair* out) {
@@ -117,8 +125,10 @@ int pair(const RasterTarget& a, const RasterTarget& b, float largest_gap, Raster
       if (!any(both)) continue;
       for (int l = 0; l < kLanes; ++l)
         if (both[l])
-          *next++ = {static_cast<std::uint32_t>(row * a.width + block + l), static_cast<std::uint32_t>(ta[l]),
-                     static_cast<std::uint32_t>(tb[l])};
+          *next++ = {static_cast<std::uint32_t>(row * a.width + block + l),
+                     static_cast<std::uint32_t>(ta[l] & ~kRasterLayered),
+                     static_cast<std::uint32_t>(tb[l] & ~kRasterLayered),
+                     static_cast<std::uint32_t>((ta[l] | tb[l]) & kRasterLayered)};
     }
   }
   return static_cast<int>(next - out);

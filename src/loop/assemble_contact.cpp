@@ -58,6 +58,8 @@ contact::ImageOptions options_of(const Pair& pair) {
                                     : contact::DepthBackend::kCpu;
   out.pixels = pair.spec.pixels;
   out.quadrature_error = pair.spec.quadrature_error;
+  if (pair.spec.samples == "vertex") out.samples = contact::SampleRule::kVertex;
+  if (pair.spec.depths == "interpolated") out.depths = contact::DepthReading::kInterpolated;
   out.candidate_gap = pair.candidate_gap;
   out.look_ahead = pair.look_ahead;
   return out;

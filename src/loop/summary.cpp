@@ -70,13 +70,20 @@ void add_jumps(store::Summary& summary, const World& world) {
   s.values.emplace_back("largest_force_jump_at_a_query_n", world.contact->largest_force_jump());
   s.values.emplace_back("largest_force_after_a_query_n", world.contact->largest_force());
   double quadrature_error = 0.0;
+  long lines = 0, pairs = 0;
   bool images = false;
   for (const contact::QueryStages* stages : world.contact->stages())
     if (stages) {
       images = true;
       quadrature_error = std::max(quadrature_error, stages->largest_quadrature_error);
+      lines += stages->lines;
+      pairs += stages->pairs;
     }
-  if (images) s.values.emplace_back("largest_quadrature_error", quadrature_error);
+  if (images) {
+    if (quadrature_error > 0.0) s.values.emplace_back("largest_quadrature_error", quadrature_error);
+    s.values.emplace_back("pixels_seen", static_cast<long long>(pairs));
+    s.values.emplace_back("pixels_left_to_exact_lines", static_cast<long long>(lines));
+  }
   if (const double friction = world.contact->largest_lagged_friction(); friction > 0.0) {
     s.values.emplace_back("largest_friction_n", friction);
     s.values.emplace_back("largest_friction_left_out_of_a_step_n", world.contact->largest_friction_lag());

@@ -84,7 +84,7 @@ class Shader {
       ground_{"render/surface.vert", "render/ground.frag"},
       shadow_{"render/shadow.vert", "render/shadow.frag"};
   gl::Texture table_ = colour_table();
-  gl::Framebuffer shadow_map_{kShadowSize, kShadowSize, {}, true};
+  gl::Framebuffer shadow_map_{kShadowSize, kShadowSize, {}, gl::DepthBuffer::kDepth};
   std::vector<Drawable> drawables_;
 };
 
@@ -181,7 +181,7 @@ Picture Shader::run() {
   set_state();
   draw_shadows();
   gl::Framebuffer target(options_.width * options_.supersampling, options_.height * options_.supersampling,
-                         {gl::Format::kRgba8}, true);
+                         {gl::Format::kRgba8}, gl::DepthBuffer::kDepth);
   const float background[4] = {options_.background.r, options_.background.g, options_.background.b, 1.0f};
   target.bind();
   target.clear(0, background);

@@ -68,7 +68,7 @@ void check_method(const Document& doc, const std::string& key, const std::string
              pruned = std::any_of(d.bodies.begin(), d.bodies.end(),
                                   [&](const auto&body) { return body.name == c.first && body.proxies; });
   if (c.method == "auto" && (obstacle || (sphere_tool && !pruned))) {
-    for (const std::string_view image_key : {"pixels", "quadrature_error"}) {
+    for (const std::string_view image_key : {"pixels", "quadrature_error", "samples", "depths"}) {
       const std::string given_key = fmt::format("{}.{}", key, image_key);
       if (given(doc, given_key))
         refuse(location(doc, given_key), where,
@@ -78,6 +78,10 @@ void check_method(const Document& doc, const std::string& key, const std::string
     }
     c.method = "analytic";
   }
+  if (c.depths == "interpolated" && c.samples != "vertex")
+    refuse(location(doc, key + ".depths"), where,
+           "depths = \"interpolated\" is for vertices: a pixel has a depth of its own; write samples = "
+           "\"vertex\" as well, or remove it");
   if (c.method != "analytic" && obstacle)
     refuse(location(doc, key + ".method"), where,
            fmt::format("method = \"{}\" is for tools and soft bodies: an obstacle has exact gaps; use "

@@ -68,6 +68,10 @@ const KeyTable<ContactSpec>& contact_keys() {
       integer("pixels", &ContactSpec::pixels, Ranges::pixels, "longer edge of the image, at most"),
       number("quadrature_error", &ContactSpec::quadrature_error, Ranges::quadrature_error,
              "what the image's pixels may err in a region's force, relative; 0: always as many as `pixels`"),
+      text("samples", &ContactSpec::samples, {"pixel", "vertex"},
+           "in image space: one a pixel of the overlap, or one a vertex of the soft skins"),
+      text("depths", &ContactSpec::depths, {"triangles", "interpolated"},
+           "of vertex samples: to the triangle opposite, or read between the image's pixels"),
   };
   return keys;
 }

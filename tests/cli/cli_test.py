@@ -305,7 +305,7 @@ class Results(Cli):
                             "--set", "integrator.spectral_radius=0.5")
         self.assertIn("spectral_radius means nothing to integrator \"rk4\", which takes step_s, max_steps, "
                       "threads; remove it (used by generalized-alpha)", text)
-        self.assertIn("is not there yet; take method = \"analytic\"",
+        self.assertIn("method = \"vertex\" is no method; obstacles and spheres",
                       self.refused("inspect", "press-ball", "--set", "contact.1.method=vertex"))
 
     def test_inspect_says_what_is_left_out(self):

@@ -215,12 +215,12 @@ TEST(Methods, ThatAreNotThereSayWhatToTake) {
   for (const auto& method : contact::method_registry()) EXPECT_EQ(message(method.name), "accepted");
   EXPECT_EQ(
       message("vertex"),
-      "contact a - b: method = \"vertex\" is not there yet; take method = \"analytic\" for an obstacle or "
-      "a sphere (it samples at the vertices), \"auto\" for a tool of another shape or a soft body (known: "
-      "analytic, auto, cpu, gpu, exact)");
+      "contact a - b: method = \"vertex\" is no method; obstacles and spheres are sampled at the vertices by "
+      "method = \"analytic\", and for a tool of another shape or a soft body write samples = \"vertex\" "
+      "(known: analytic, auto, cpu, gpu, exact)");
   EXPECT_EQ(message("pixel"),
-            "contact a - b: method = \"pixel\" is not known; take method = \"auto\", which samples at the "
-            "pixels of an image (known: analytic, auto, cpu, gpu, exact)");
+            "contact a - b: method = \"pixel\" is no method; write samples = \"pixel\", with any method in "
+            "image space (known: analytic, auto, cpu, gpu, exact)");
   EXPECT_EQ(message("spheres"),
             "contact a - b: method = \"spheres\" is not known (known: analytic, auto, cpu, gpu, exact)");
 }

@@ -42,7 +42,17 @@ struct TwoBalls {
     return out;
   }
 
-  contact::ImageOptions options() const { return image_options(96, 0.02); }
+  contact::SampleRule samples = contact::SampleRule::kPixel;
+  contact::DepthReading depths = contact::DepthReading::kTriangles;
+  contact::ImageOptions options() const {
+    contact::ImageOptions out = image_options(96, 0.02);
+    out.samples = samples;
+    out.depths = depths;
+    return out;
+  }
+  std::unique_ptr<contact::SampleSource> swapped() const {
+    return contact::make_image_source(b.surface, b.proxies, a.surface, a.proxies, options());
+  }
   std::unique_ptr<contact::SampleSource> source(bool pruned) const {
     return pruned ? contact::make_image_source(a.surface, a.proxies, b.surface, b.proxies, options())
                   : contact::make_image_source(a.surface, b.surface, options());
@@ -59,6 +69,34 @@ ContactSpec law() {
 }  // namespace
 
 ON_EACH_BACKEND(SoftPair);
+
+// Vertices of both skins: a sample's gap is that between its two points, however its depth was read, and the
+// force does not depend on which body is named first.
+TEST_P(SoftPair, VerticesOfBothSkins) {
+  TwoBalls balls;
+  double force[2][2];
+  balls.samples = contact::SampleRule::kVertex;
+  for (const bool interpolated : {false, true}) {
+    balls.depths = interpolated ? contact::DepthReading::kInterpolated : contact::DepthReading::kTriangles;
+    for (const bool swapped : {false, true}) {
+      std::vector<contact::ContactSample> samples;
+      (swapped ? balls.swapped() : balls.source(true))->query(balls.state.view(), samples);
+      Vec3 sum = Vec3::Zero();
+      for (const auto& s : samples) {
+        const Vec3 xa = point_on_nodes(s.a, balls.state.view()), xb = point_on_nodes(s.b, balls.state.view());
+        EXPECT_NEAR(s.normal.dot(xa - xb), s.gap, 1e-12);
+        EXPECT_LT((xa - xb).cross(s.normal).norm(), 1e-12);
+        if (s.gap < 0.0) sum -= s.gap * s.area * s.normal;
+      }
+      EXPECT_GT(samples.size(), 40u);
+      force[interpolated][swapped] = sum.norm();
+    }
+    EXPECT_NEAR(force[interpolated][1], force[interpolated][0], 1e-3 * force[interpolated][0])
+        << interpolated;
+  }
+  EXPECT_NEAR(force[1][0], force[0][0], 0.05 * force[0][0]);
+  EXPECT_GT(std::abs(force[1][0] - force[0][0]), 1e-6 * force[0][0]);
+}
 
 // Third law: resultant and moment of both bodies' forces vanish to rounding, each alone does not; the force
 // pushes a up, off b.

@@ -72,7 +72,7 @@ TEST(GlProgram, UnknownShaderAndUniformAreNamed) {
 // on the edge may go either way.
 TEST(GlFramebuffer, DrawsIdsAndDepthWhereTheTriangleIs) {
   gl::Context::shared();
-  gl::Framebuffer target(4, 4, {gl::Format::kR32ui}, true);
+  gl::Framebuffer target(4, 4, {gl::Format::kR32ui}, gl::DepthBuffer::kDepth);
   gl::Program program("contact/patch.vert", "contact/patch.frag");
   program.set("scale", Eigen::Vector3f(1, 1, 1));
   program.set("shift", Eigen::Vector3f(0, 0, 0));
@@ -108,7 +108,7 @@ TEST(GlFramebuffer, DrawsIdsAndDepthWhereTheTriangleIs) {
 
 TEST(GlFramebuffer, ReadsBackColoursAndRefusesWrongFormatsAndSizes) {
   gl::Context::shared();
-  gl::Framebuffer target(3, 2, {gl::Format::kRgba8, gl::Format::kR32ui}, false);
+  gl::Framebuffer target(3, 2, {gl::Format::kRgba8, gl::Format::kR32ui}, gl::DepthBuffer::kNone);
   const float colour[4] = {1.0f, 0.0f, 0.2f, 1.0f};
   target.clear(0, colour);
   target.clear(1, 7u);

@@ -98,9 +98,9 @@ TEST(Assemble, ContactsThatCannotBeMadeAreRefusedWithARemedy) {
   expect_refused(d, {"blok"});
   d = pressed_block(0.0);
   d.contacts[0].method = "vertex";
-  expect_refused(d, {"vertex", "take method = \"analytic\""});
+  expect_refused(d, {"vertex", "method = \"analytic\", and for a tool"});
   d.contacts[0].method = "pixel";
-  expect_refused(d, {"pixel", "take method = \"auto\""});
+  expect_refused(d, {"pixel", "write samples = \"pixel\""});
   d = pressed_block(0.0);
   d.tool->shape = "mesh";
   d.tool->mesh.generator = "ball";

@@ -188,15 +188,22 @@ TEST(Kinds, ContactMethods) {
     EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=" + method}), "accepted");
   EXPECT_EQ(
       with({"contact.1.method=vertex"}),
-      "--set contact.1.method=vertex: contact between \"ball\" and \"tool\": method = \"vertex\" is not "
-      "there yet; take method = \"analytic\" for an obstacle or a sphere (it samples at the vertices), "
-      "\"auto\" for a tool of another shape or a soft body (known: analytic, auto, cpu, gpu, exact)");
-  EXPECT_NE(with({"contact.1.method=pixel"}).find("is not known; take method = \"auto\""), std::string::npos);
+      "--set contact.1.method=vertex: contact between \"ball\" and \"tool\": method = \"vertex\" is no "
+      "method; obstacles and spheres are sampled at the vertices by method = \"analytic\", and for a tool of "
+      "another shape or a soft body write samples = \"vertex\" (known: analytic, auto, cpu, gpu, exact)");
+  EXPECT_NE(with({"contact.1.method=pixel"}).find("is no method; write samples = \"pixel\""),
+            std::string::npos);
+  EXPECT_EQ(with({"contact.1.method=cpu", "contact.1.samples=vertex", "contact.1.depths=interpolated"}),
+            "accepted");
+  EXPECT_EQ(with({"contact.1.method=cpu", "contact.1.depths=interpolated"}),
+            "--set contact.1.depths=interpolated: contact between \"ball\" and \"tool\": depths = "
+            "\"interpolated\" is for vertices: a pixel has a depth of its own; write samples = \"vertex\" as "
+            "well, or remove it");
   EXPECT_NE(with({"contact.1.method=spheres"})
                 .find("method = \"spheres\" is not known (known: analytic, auto, cpu, gpu, exact)"),
             std::string::npos);
   EXPECT_NE(with({"compare.contact_methods=[\"analytic\", \"vertex\"]"})
-                .find("compare: contact_methods = \"vertex\" is not there yet; take method = \"analytic\""),
+                .find("compare: contact_methods = \"vertex\" is no method; obstacles"),
             std::string::npos);
 }
 

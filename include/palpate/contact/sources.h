@@ -41,10 +41,21 @@ std::unique_ptr<SampleSource> make_cylinder_source(NodeSurface surface, int fram
 /// What finds the triangles that face each other (docs/design.md 4.3).
 enum class DepthBackend {
   kGpu,   ///< rasterised by OpenGL
-  kCpu,   ///< rasterised in the processor's vector lanes
+  kCpu,   ///< rasterised in the processor's vector lanes; both images ask exact lines at walls and layers
   kExact  ///< a line through each pixel's middle, in double, with every layer that it meets
 };
 std::string_view backend_name(DepthBackend backend);  ///< as scenes call it
+
+/// What a region's samples stand at.
+enum class SampleRule {
+  kPixel,  ///< each pixel where both surfaces are seen: the sum of depth x area is the overlap volume
+  kVertex  ///< each vertex of the soft skins, for a third of its triangles' projected area (of two: for half)
+};
+/// How deep a vertex is.
+enum class DepthReading {
+  kTriangles,    ///< the gap to the opposite triangle, in double
+  kInterpolated  ///< between the depths of four pixels, as Galoppo et al. (2007) read their images
+};
 
 struct ImageOptions {
   DepthBackend backend = DepthBackend::kCpu;
@@ -52,7 +63,9 @@ struct ImageOptions {
   /// wanted standard error of a region's overlap volume, which its force is made of, relative: chooses the
   /// pixels; 0: `pixels` always (docs/design.md 4.3)
   double quadrature_error = 0.0;
-  double candidate_gap = 0.0;  ///< [m]; 0: a quarter of the soft surface's mean edge
+  SampleRule samples = SampleRule::kPixel;
+  DepthReading depths = DepthReading::kTriangles;  ///< of vertices
+  double candidate_gap = 0.0;                      ///< [m]; 0: a quarter of the soft surface's mean edge
   /// [s] to the next query: the candidate gap is at least what the surfaces may come nearer in this time at
   /// their present velocities, but for a body against itself
   double look_ahead = 0.0;

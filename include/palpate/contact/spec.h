@@ -39,6 +39,10 @@ struct ContactSpec {
   int pixels = 256;  ///< in image space: the image's longer edge, at most
   /// in image space: what the pixels may err in a region's force, relative; 0: `pixels` always
   double quadrature_error = 1e-3;
+  /// in image space: "pixel", or "vertex": at the soft skins' vertices
+  std::string samples = "pixel";
+  /// of vertices: "triangles", or "interpolated": between the image's pixels
+  std::string depths = "triangles";
 };
 
 /// What they may be: checked by the loader of scenes and by the pressure law.

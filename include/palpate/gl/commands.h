@@ -14,6 +14,10 @@ enum class Keep { kAll, kLeastDepth, kGreatestDepth };
 /// depth range [0, 1], viewport (0, 0, width, height).
 void set_plain_state(int width, int height, Keep keep);
 
+/// After set_plain_state: leaves out triangles whose corners run counter-clockwise on the screen (or
+/// clockwise), and counts in the stencil every fragment of the others, kept or not.
+void cull_and_count(bool leave_out_counter_clockwise);
+
 /// Draws index_count / 3 triangles of a vertex array that has indices,
 /// with the program in use, into the bound framebuffer.
 void draw_triangles(const VertexArray& vertices, std::size_t index_count);

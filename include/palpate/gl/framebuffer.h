@@ -4,12 +4,15 @@
 
 namespace palpate::gl {
 
-enum class Format { kRgba8, kR32ui, kR32f, kRgba32f, kDepth32f };
+enum class Format { kRgba8, kR32ui, kR32f, kRgba32f, kDepth32f, kDepth32fStencil8 };
 
 /// A 2-D texture with one level and nearest sampling.  Pixel (0, 0) is the lower left one.
 class Texture {
  public:
   Texture(int width, int height, Format format);
+  /// The stencil of a kDepth32fStencil8 texture as one of its own, for a sampler of unsigned integers; the
+  /// other goes on being its depth.
+  static Texture stencil_of(const Texture& depth_and_stencil);
   ~Texture();
   Texture(Texture&& other) noexcept;
   Texture& operator=(Texture&& other) noexcept;
@@ -23,15 +26,18 @@ class Texture {
   void set_linear(bool linear);         ///< linear filtering of floats and colours
 
  private:
+  Texture() = default;
   unsigned id_ = 0;
   int width_ = 0, height_ = 0;
-  Format format_;
+  Format format_ = Format::kRgba8;
 };
 
-/// Colour textures and, when asked, a depth texture to draw into.
+enum class DepthBuffer { kNone, kDepth, kDepthAndStencil };
+
+/// Colour textures and, when asked, a depth texture to draw into, with a stencil.
 class Framebuffer {
  public:
-  Framebuffer(int width, int height, const std::vector<Format>& colours, bool with_depth);
+  Framebuffer(int width, int height, const std::vector<Format>& colours, DepthBuffer depth);
   ~Framebuffer();
   Framebuffer(Framebuffer&& other) noexcept;
   Framebuffer& operator=(Framebuffer&& other) noexcept;
@@ -40,12 +46,13 @@ class Framebuffer {
   void bind() const;
   void clear(int attachment, const float rgba[4]);
   void clear(int attachment, std::uint32_t value);
-  void clear_depth(float depth);
+  void clear_depth(float depth);  ///< and the stencil, to 0
 
   int width() const { return width_; }
   int height() const { return height_; }
   const Texture& colour(int attachment) const { return colours_.at(static_cast<std::size_t>(attachment)); }
-  const Texture& depth() const;  ///< precondition: made with depth
+  const Texture& depth() const;    ///< precondition: made with depth
+  const Texture& stencil() const;  ///< precondition: made with a stencil
 
   /// Pixels of one attachment, rows from below.
   std::vector<std::uint8_t> read_rgba8(int attachment = 0) const;  ///< 4 bytes a pixel
@@ -58,7 +65,7 @@ class Framebuffer {
   unsigned id_ = 0;
   int width_ = 0, height_ = 0;
   std::vector<Texture> colours_;
-  std::vector<Texture> depth_;  // none or one
+  std::vector<Texture> depth_, stencil_;  // none or one
 };
 
 }  // namespace palpate::gl

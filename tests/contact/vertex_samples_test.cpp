@@ -1,0 +1,98 @@
+// Samples at vertices, from scenes' point of view: sources on whole bodies.
+#include "backends.h"
+#include "grid_proxies.h"
+#include "surfaces.h"
+
+using namespace contact_tests;
+
+namespace {
+
+/// A soft unit sphere pressed 0.1 into a rigid slab, in a rotated and moved frame.
+struct OnSlab {
+  Pose pose{quaternion_of(Vec3(0.5, 1.1, -0.4)), Vec3(2, -1, 5)};
+  TriMesh slab;
+  SurfaceWorld soft;
+
+  explicit OnSlab(int rings) : soft(sphere(pose * Vec3(0.1, -0.2, 0.9), 1.0, rings)) {
+    slab.vertices.resize(3, 8);
+    for (int i = 0; i < 8; ++i)
+      slab.vertices.col(i) = Vec3(i & 1 ? 4.0 : -4.0, i & 2 ? 4.0 : -4.0, i & 4 ? 0.0 : -3.0);
+    slab.faces.resize(3, 12);
+    slab.faces << 4, 4, 0, 0, 0, 0, 2, 2, 0, 0, 1, 1,  //
+        5, 7, 3, 2, 1, 5, 7, 3, 6, 2, 3, 7,            //
+        7, 6, 1, 3, 5, 4, 6, 7, 4, 6, 7, 5;
+  }
+  std::vector<contact::ContactSample> samples(int pixels, contact::SampleRule rule) {
+    contact::ImageOptions options = image_options(pixels, 0.02);
+    options.samples = rule;
+    const auto source =
+        contact::make_image_source(soft.surface, slab, 0, contact::fixed_frame(pose), options);
+    std::vector<contact::ContactSample> out;
+    source->query(soft.state.view(), out);
+    return out;
+  }
+};
+
+}  // namespace
+
+ON_EACH_BACKEND(VertexSamples);
+
+// Every vertex below the slab's face, none missed and none extra, each as deep as it is, for a third of its
+// triangles' projected area.
+TEST_P(VertexSamples, AreTheVerticesBelowAFace) {
+  OnSlab scene(40);
+  const Pose inverse = scene.pose.inverse();
+  for (const int pixels : {64, 256}) {
+    const auto samples = scene.samples(pixels, contact::SampleRule::kVertex);
+    ASSERT_FALSE(samples.empty());
+    const Vec3 n = samples[0].normal;
+    const auto view = scene.soft.state.view();
+    const int count = static_cast<int>(scene.soft.surface.node_of_vertex.size());
+    std::vector<double> area(static_cast<std::size_t>(count), 0.0);
+    for (const auto f : scene.soft.surface.faces.colwise()) {
+      const Vec3 p = view.position(2 + f[0]), q = view.position(2 + f[1]), r = view.position(2 + f[2]);
+      const double one = -0.5 * (q - p).cross(r - p).dot(n);
+      for (int k = 0; k < 3 && one > 0.0; ++k) area[static_cast<std::size_t>(f[k])] += one / 3.0;
+    }
+    std::vector<int> seen(static_cast<std::size_t>(count), 0);
+    for (const auto& s : samples) {
+      int heaviest = 0;
+      for (int k = 1; k < s.a.count; ++k)
+        if (s.a.weight[static_cast<std::size_t>(k)] > s.a.weight[static_cast<std::size_t>(heaviest)])
+          heaviest = k;
+      EXPECT_DOUBLE_EQ(s.a.weight[static_cast<std::size_t>(heaviest)], 1.0);
+      const int vertex = s.a.node[static_cast<std::size_t>(heaviest)] - 2;
+      ++seen[static_cast<std::size_t>(vertex)];
+      const Vec3 local = inverse * Vec3(view.position(vertex + 2));
+      EXPECT_NEAR(s.gap, local.z() / (inverse.rotation * n).z(), 1e-12);
+      EXPECT_NEAR(s.area, area[static_cast<std::size_t>(vertex)], 1e-12);
+    }
+    int below = 0;
+    for (int v = 0; v < count; ++v) {
+      const double z = (inverse * Vec3(view.position(v + 2))).z();
+      if (z < 0.0) {
+        ++below;
+        EXPECT_EQ(seen[static_cast<std::size_t>(v)], 1) << v << " at " << z;
+      } else if (z > 0.03) {
+        EXPECT_EQ(seen[static_cast<std::size_t>(v)], 0) << v << " at " << z;
+      }
+    }
+    EXPECT_GT(below, 100);
+  }
+}
+
+// The sum of depth x area tends to the overlap's volume, pi d^2 (3 - d)/3.
+TEST_P(VertexSamples, SumToTheOverlapVolume) {
+  const double volume = kPi * 0.01 * (3.0 - 0.1) / 3.0;
+  std::vector<double> errors;
+  for (const int rings : {20, 40, 80}) {
+    OnSlab scene(rings);
+    double sum = 0.0;
+    for (const auto& s : scene.samples(256, contact::SampleRule::kVertex))
+      sum -= std::min(s.gap, 0.0) * s.area;
+    errors.push_back(std::abs(sum / volume - 1.0));
+  }
+  EXPECT_LT(errors[0], 0.2);
+  EXPECT_LT(errors[2], 0.015);
+  EXPECT_LT(errors[2], 0.2 * errors[0]);
+}
