@@ -1,7 +1,7 @@
 #version 430 core
-// Pixels where both surfaces are visible, as a compact list (pixel, triangle of a, triangle of b); the highest
-// bit of a's tells that one of them has layers there.  The order is that of the atomic counter: the reader
-// sorts.
+// Pixels where both surfaces are visible, as a compact list (pixel, triangle of a, triangle of b); the
+// highest bit of a's tells that one of them has layers there.  The order is that of the atomic counter: the
+// reader sorts.
 layout(local_size_x = 16, local_size_y = 16) in;
 layout(binding = 0) uniform usampler2D triangles_a;
 layout(binding = 1) uniform usampler2D triangles_b;
