@@ -49,6 +49,7 @@ struct ContactForce::Impl {
   void all_forces(const dynamics::StateView& state, VecX& f);
 
   void group_samples();
+  VecX product;  ///< scratch of a step
 
   /// visit(sample, motion, law) for each sample in penetration, in order.
   template <class Visit>

@@ -305,6 +305,34 @@ void SampleGroups::add_tangent(const dynamics::StateView& state, const std::vect
   }
 }
 
+// With both sides' weights in one vector, w = (w_a, -w_b) or w_a alone, the group's share is
+// (sum (k_scale k + d_scale d) w w^T) x n n^T.
+void SampleGroups::add_stiffness(const dynamics::StateView& state, const std::vector<FrameState>& frames,
+                                 double k_scale, double d_scale, dynamics::PointStiffness& C) {
+  for (const Group& group : groups_) {
+    dynamics::PointStiffness::AlongNormal out;
+    dynamics::PointStiffness::Nodes& nodes = out.nodes;
+    const int count_b = group.frame < 0 ? group.count_b : 0;
+    nodes.count = group.count_a + count_b;
+    nodes.relative = count_b > 0;
+    for (int i = 0; i < nodes.count; ++i)
+      nodes.node[static_cast<std::size_t>(i)] = i < group.count_a
+                                                    ? group.a[static_cast<std::size_t>(i)]
+                                                    : group.b[static_cast<std::size_t>(i - group.count_a)];
+    bool any = false;
+    dynamics::PointStiffness::Weights w = dynamics::PointStiffness::Weights::Zero();
+    for_each_pressed(group, state, frames, [&](const Sample& s, const Response& r) {
+      any = true;
+      w.head(group.count_a) = s.a.head(group.count_a);
+      w.segment(group.count_a, count_b) = -s.b.head(count_b);
+      out.G.noalias() += (k_scale * r.k + d_scale * r.d) * w * w.transpose();
+    });
+    if (!any) continue;
+    out.normal = group.normal;
+    C.along.push_back(out);
+  }
+}
+
 void SampleGroups::apply_tangent(const dynamics::StateView& state, const std::vector<FrameState>& frames,
                                  double k_scale, double d_scale, const VecX& x, VecX& y) {
   for (const Group& group : groups_) {

@@ -7,6 +7,7 @@
 #include "contact/sample_math.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/dynamics/matrix.h"
+#include "palpate/dynamics/point_stiffness.h"
 
 namespace palpate::contact {
 
@@ -28,6 +29,9 @@ class SampleGroups {
                  const std::vector<int>& frame_row, VecX& f);
   void add_tangent(const dynamics::StateView& state, const std::vector<FrameState>& frames, double k_scale,
                    double d_scale, dynamics::BorderedMatrix& A);
+  /// k_scale K + d_scale D on nodes, of frames that are not in the State.
+  void add_stiffness(const dynamics::StateView& state, const std::vector<FrameState>& frames, double k_scale,
+                     double d_scale, dynamics::PointStiffness& C);
   void apply_tangent(const dynamics::StateView& state, const std::vector<FrameState>& frames, double k_scale,
                      double d_scale, const VecX& x, VecX& y);
   void linearise(const dynamics::StateView& state, const std::vector<FrameState>& frames, int frame,

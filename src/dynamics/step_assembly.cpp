@@ -8,26 +8,51 @@ namespace palpate::dynamics {
 void StepAssembly::find_parts() {
   parts_.clear();
   all_can_ = true;
+  any_beside_ = false;
   for (const auto& term : system_.terms()) {
-    FusedStepTerm* fused = term->traits().zero_tangent ? nullptr : dynamic_cast<FusedStepTerm*>(term.get());
-    all_can_ = all_can_ && (fused || term->traits().zero_tangent);
-    parts_.push_back({term.get(), fused});
+    const bool zero = term->traits().zero_tangent;
+    FusedStepTerm* fused = zero ? nullptr : dynamic_cast<FusedStepTerm*>(term.get());
+    PointStiffnessTerm* beside = zero || fused ? nullptr : dynamic_cast<PointStiffnessTerm*>(term.get());
+    all_can_ = all_can_ && (fused || beside || zero);
+    any_beside_ = any_beside_ || beside;
+    parts_.push_back({term.get(), fused, beside});
   }
+  made_of_.clear();
   pattern_version_ = 0;
 }
 
-/// Between different nodes no pair is in the pattern of two terms, nor in that of a mass.
-bool StepAssembly::pairs_are_disjoint() const {
+namespace {
+
+/// Whether, between different nodes, no pair is in two of these lists, nor in that of a mass: fewer in all,
+/// and some are shared; more, and a mass has some.
+bool are_disjoint(const std::vector<const NodePairs*>& lists, const BlockSparse& pattern) {
   std::size_t pairs = 0;
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const NodePairs& own = system_.node_pairs(i);
-    pairs +=
-        own.size() - static_cast<std::size_t>(std::count_if(
-                         own.begin(), own.end(), [](const auto& pair) { return pair.first == pair.second; }));
-  }
-  // fewer in all: some are shared; more: a mass has some
-  const BlockSparse& pattern = system_.pattern();
+  for (const NodePairs* own : lists)
+    pairs += own->size() - static_cast<std::size_t>(std::count_if(
+                               own->begin(), own->end(), [](const auto& p) { return p.first == p.second; }));
   return pairs == static_cast<std::size_t>(pattern.slot_count() - pattern.block_rows());
+}
+
+}  // namespace
+
+/// The pattern of the fused terms alone.
+void StepAssembly::update_own_pattern(const Layout& layout) {
+  versions_.assign(1, layout.version);
+  for (const Part& part : parts_)
+    if (part.fused) versions_.push_back(part.term->pattern_version());
+  if (versions_ == made_of_) return;
+  made_of_ = versions_;
+  std::vector<NodePairs> pairs;
+  for (const Part& part : parts_) {
+    if (!part.fused) continue;
+    PatternBuilder builder(layout);
+    part.term->add_pattern(builder);
+    pairs.push_back(builder.pairs());
+  }
+  std::vector<const NodePairs*> lists;
+  for (const NodePairs& own : pairs) lists.push_back(&own);
+  pattern_ = pattern_of(layout.node_count(), lists);
+  disjoint_ = are_disjoint(lists, pattern_);
 }
 
 bool StepAssembly::applies(const StateView& state) {
@@ -37,10 +62,15 @@ bool StepAssembly::applies(const StateView& state) {
   if (parts_.size() != system_.terms().size()) find_parts();
   if (!all_can_) return false;
   for (const Part& part : parts_)
-    if (part.fused && !part.fused->fuses_step()) return false;
-  if (const std::uint64_t version = system_.updated_pattern(state).pattern_version();
-      version != pattern_version_) {
-    disjoint_ = pairs_are_disjoint();
+    if ((part.fused && !part.fused->fuses_step()) || (part.beside && !part.beside->is_point_stiffness()))
+      return false;
+  if (any_beside_) {
+    update_own_pattern(layout);
+  } else if (const std::uint64_t version = system_.updated_pattern(state).pattern_version();
+             version != pattern_version_) {
+    std::vector<const NodePairs*> lists;
+    for (std::size_t i = 0; i < parts_.size(); ++i) lists.push_back(&system_.node_pairs(i));
+    disjoint_ = are_disjoint(lists, system_.pattern());
     pattern_version_ = version;
   }
   return disjoint_;
@@ -53,9 +83,12 @@ void StepAssembly::assemble(const StateView& state, const VecX& shift, double m_
   A.diagonal = m_scale * system_.nodal_mass();
   A.positions = state.q.data();  // node blocks come first, with q' = u
   A.held = &system_.driven_nodes();
+  A.points.clear();
   for (const Part& part : parts_) {
     if (part.fused)
       part.fused->add_step(state, shift, k_scale, d_scale, f, A);
+    else if (part.beside)
+      part.beside->add_step(state, shift, k_scale, d_scale, f, A.points);
     else
       part.term->add_force(state, f);
   }
@@ -67,6 +100,8 @@ void StepAssembly::residual(const StateView& state, const VecX& shift, const Vec
   for (const Part& part : parts_) {
     if (part.fused)
       part.fused->add_step_force(state, shift, change, r);
+    else if (part.beside)
+      part.beside->add_step_force(state, shift, change, r);
     else
       part.term->add_force(state, r);
   }

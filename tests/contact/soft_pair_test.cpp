@@ -194,6 +194,57 @@ TEST_P(SoftPair, TheTangentCouplesBothBodies) {
   EXPECT_LT(shifted.norm(), 1e-11 * K.norm());
 }
 
+// What a fused step adds beside its pattern is the assembled tangent, with and without friction; and its
+// force is that of the term, less what the tangent makes of the step's shift.
+TEST_P(SoftPair, PointStiffnessIsTheTangent) {
+  for (const double friction : {0.0, 0.4}) {
+    TwoBalls balls;
+    contact::ContactForce term;
+    ContactSpec with_all = law();
+    with_all.damping_pa_s_m = 1e5;
+    with_all.friction = friction;
+    with_all.friction_tangent = "full";
+    contact::ContactForce full;
+    full.add_pair(balls.source(true), with_all);
+    EXPECT_EQ(full.is_point_stiffness(), friction == 0.0);
+    with_all.friction_tangent = "symmetric";
+    term.add_pair(balls.source(true), with_all);
+    ASSERT_TRUE(term.is_point_stiffness());
+    term.refresh(balls.state.view());
+    const int size = 3 * balls.state.layout().node_count();
+    constexpr double kK = 0.3, kD = 0.7;
+    VecX shift(size), change(size);
+    for (int i = 0; i < size; ++i) shift[i] = 1e-3 * std::sin(3.0 * i), change[i] = std::cos(2.0 * i);
+    dynamics::PointStiffness C;
+    VecX f = VecX::Zero(size), g = VecX::Zero(size);
+    term.add_step(balls.state.view(), shift, kK, kD, f, C);
+    EXPECT_EQ(C.points.empty(), friction == 0.0);
+    EXPECT_EQ(C.along.empty(), friction > 0.0);
+    MatX dense = MatX::Zero(size, size);
+    const auto add = [&](const dynamics::PointStiffness::Nodes& nodes, auto block) {
+      EXPECT_TRUE(nodes.relative);
+      for (int i = 0; i < nodes.count; ++i)
+        for (int j = 0; j < nodes.count; ++j)
+          dense.block<3, 3>(3 * nodes.node[static_cast<std::size_t>(i)],
+                            3 * nodes.node[static_cast<std::size_t>(j)]) += block(i, j);
+    };
+    for (const auto& a : C.along)
+      add(a.nodes, [&](int i, int j) { return Mat3(a.G(i, j) * a.normal * a.normal.transpose()); });
+    for (const auto& a : C.points)
+      add(a.nodes, [&](int i, int j) { return Mat3(a.weight[i] * a.weight[j] * a.C); });
+    const MatX exact = step_matrix(term, balls.state, kK, kD).to_dense();
+    EXPECT_GT(exact.norm(), 1.0);
+    EXPECT_LT((dense - exact).norm(), 1e-12 * exact.norm()) << friction;
+    VecX K = VecX::Zero(size), D = VecX::Zero(size);
+    term.apply_tangent(balls.state.view(), 1.0, 0.0, shift, K);
+    term.apply_tangent(balls.state.view(), 0.0, 1.0, change, D);
+    const VecX at_rest = force(term, balls.state);
+    EXPECT_LT((f - (at_rest - K)).norm(), 1e-12 * at_rest.norm());
+    term.add_step_force(balls.state.view(), shift, change, g);
+    EXPECT_LT((g - (at_rest - K - D)).norm(), 1e-12 * (at_rest.norm() + D.norm()));
+  }
+}
+
 // The pattern holds what the contact has met and may meet next: it rests while nothing new is met, and
 // announces all that the tangent couples as one ball rolls off the other (coupled_nodes_test.cpp has its
 // rules).

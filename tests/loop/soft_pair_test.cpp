@@ -69,6 +69,73 @@ TEST(SoftPair, PressedTogetherTheyAreOneBlock) {
   EXPECT_NEAR(lower - upper, exact / (kStiffness * area), 0.01 * d);
 }
 
+struct Ran {
+  VecX moved;
+  dynamics::StepperCounters counters;
+};
+Ran run_by(const scene::Description& description, const std::string& solver, double duration_s = 0.1) {
+  scene::Description d = description;
+  d.integrator = {.name = "linearly-implicit-euler", .step_s = 0.005};
+  d.integrator.linear_solver = solver;
+  if (solver != "cholmod") d.integrator.linear_rtol = 1e-7;
+  d.duration_s = duration_s;
+  const auto world = loop::assemble(d);
+  const VecX before = world->state.q();
+  EXPECT_TRUE(loop::run(*world, {}).status.ok());
+  return {world->state.q() - before, world->stepper->counters()};
+}
+
+// Contact stands beside the pattern of a fused step: one analysis whatever opens and closes, no matrix in
+// double, and the motion of a direct solver.
+TEST(SoftPair, ContactJoinsTheFusedSteps) {
+  scene::Description d = two_blocks(-1e-3);
+  d.bodies[1].position_m.x() += 0.003;
+  const Ran direct = run_by(d, "cholmod");
+  for (const char* solver : {"pcg-single", "pcg-two-level"}) {
+    const Ran fused = run_by(d, solver);
+    const dynamics::StepperCounters& c = fused.counters;
+    EXPECT_EQ(c.solver.symbolic, 1) << solver;
+    EXPECT_EQ(c.tangent_evaluations + c.solver.lagged, 20) << solver;
+    EXPECT_EQ(c.solver.factorisations, c.tangent_evaluations) << "none was made in double";
+    EXPECT_EQ(c.unconverged, 0);
+    EXPECT_GT(direct.moved.norm(), 1e-4);
+    EXPECT_LT((fused.moved - direct.moved).norm(), 1e-4 * direct.moved.norm()) << solver;
+  }
+}
+
+// With friction as well, for two steps: where friction sticks, more of them depend on the last digit of each,
+// whichever way it is solved.
+TEST(SoftPair, FrictionJoinsTheFusedSteps) {
+  scene::Description d = two_blocks(-1e-3);
+  d.contacts[0].friction = 0.3;
+  d.contacts[0].friction_regularisation_m_s = 0.1;
+  for (auto& body : d.bodies) body.attachments.clear();
+  d.bodies[1].velocity_m_s = Vec3(0.2, 0.1, 0);
+  const Ran direct = run_by(d, "cholmod", 0.01);
+  d.contacts[0].friction = 0.0;
+  EXPECT_GT((run_by(d, "cholmod", 0.01).moved - direct.moved).norm(), 1e-3 * direct.moved.norm());
+  d.contacts[0].friction = 0.3;
+  for (const char* solver : {"pcg-single", "pcg-two-level"}) {
+    const Ran fused = run_by(d, solver, 0.01);
+    EXPECT_EQ(fused.counters.solver.symbolic, 1) << solver;
+    EXPECT_LT((fused.moved - direct.moved).norm(), 1e-6 * direct.moved.norm()) << solver;
+  }
+}
+
+// A contact that is named and never touches: the same fused steps, but for the rounding of their times.
+TEST(SoftPair, ContactThatNeverTouchesKeepsTheFusedSteps) {
+  scene::Description d = two_blocks(5e-3);
+  d.gravity_m_s2 = Vec3(0, 2, 0);
+  const Ran named = run_by(d, "pcg-two-level");
+  d.contacts.clear();
+  const Ran without = run_by(d, "pcg-two-level");
+  EXPECT_GT(without.moved.norm(), 1e-4);
+  EXPECT_LT((named.moved - without.moved).norm(), 1e-6 * without.moved.norm());
+  EXPECT_EQ(named.counters.solver.symbolic, without.counters.solver.symbolic);
+  EXPECT_EQ(named.counters.tangent_evaluations, without.counters.tangent_evaluations);
+  EXPECT_EQ(named.counters.solver.factorisations, without.counters.solver.factorisations);
+}
+
 // Free blocks, one thrown at the other: momentum is conserved, and passes from one to the other.
 TEST(SoftPair, ACollisionKeepsMomentum) {
   scene::Description d = two_blocks(0.5e-3);

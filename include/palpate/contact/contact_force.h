@@ -7,6 +7,7 @@
 #include "palpate/contact/sample.h"
 #include "palpate/contact/spec.h"
 #include "palpate/dynamics/force_term.h"
+#include "palpate/dynamics/step_assembly.h"
 #include "palpate/mesh/embedding.h"
 #include "palpate/proxy/pruner.h"
 
@@ -82,7 +83,7 @@ struct FrameLinearisation {
 };
 
 /// All contacts of a scene as one force term (docs/design.md 4.4).
-class ContactForce : public dynamics::ForceTerm {
+class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffnessTerm {
  public:
   ContactForce();
   ~ContactForce() override;
@@ -98,6 +99,11 @@ class ContactForce : public dynamics::ForceTerm {
                    dynamics::BorderedMatrix& A) override;
   void apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x,
                      VecX& y) override;
+  bool is_point_stiffness() const override;
+  void add_step(const dynamics::StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
+                dynamics::PointStiffness& C) override;
+  void add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change,
+                      VecX& f) override;
   double energy(const dynamics::StateView& state) override;
   double dissipated_power(const dynamics::StateView& state) override;
   bool refresh(const dynamics::StateView& state) override;

@@ -23,16 +23,33 @@ class FusedStepTerm {
   virtual void add_step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) = 0;
 };
 
-/// Fused assembly of the linearly implicit steps of a system, from its terms' FusedStepTerm capabilities.
-/// Terms without a tangent matrix (TermTraits::zero_tangent) add their force alone.
+/// Optional capability of a ForceTerm: its tangent is a PointStiffness, which stands beside the pattern of a
+/// step's matrix.  A class derives from it beside ForceTerm.
+class PointStiffnessTerm {
+ public:
+  virtual ~PointStiffnessTerm() = default;
+  /// Whether the tangent that the term has at present is such a sum: symmetric and on nodes alone.
+  virtual bool is_point_stiffness() const { return true; }
+  /// f += force - K shift and C += k_scale K + d_scale D.
+  virtual void add_step(const StateView& state, const VecX& shift, double k_scale, double d_scale, VecX& f,
+                        PointStiffness& C) = 0;
+  /// f += force - K shift - D change
+  virtual void add_step_force(const StateView& state, const VecX& shift, const VecX& change, VecX& f) = 0;
+};
+
+/// Fused assembly of the linearly implicit steps of a system, from its terms' FusedStepTerm and
+/// PointStiffnessTerm capabilities.  Terms without a tangent matrix (TermTraits::zero_tangent) add their
+/// force alone.
 class StepAssembly {
  public:
   explicit StepAssembly(System& system) : system_(system) {}
 
   /// Whether this state's step can be assembled so: every term takes part, no two of them couple the same
-  /// pair of nodes, the mass is lumped, no block is rigid.  Brings the system's pattern up to date.
+  /// pair of nodes, the mass is lumped, no block is rigid.  Brings the pattern up to date.
   bool applies(const StateView& state);
-  const BlockSparse& pattern() const { return system_.pattern(); }
+  /// What the fused terms couple: the system's pattern, or, with terms that stand beside it, one without
+  /// these.
+  const BlockSparse& pattern() const { return any_beside_ ? pattern_ : system_.pattern(); }
   /// f = sum of force - K shift, and A = m_scale M + d_scale D + k_scale K with the driven directions held.
   void assemble(const StateView& state, const VecX& shift, double m_scale, double d_scale, double k_scale,
                 VecX& f, ZeroRowSumMatrix& A);
@@ -42,15 +59,19 @@ class StepAssembly {
  private:
   struct Part {
     ForceTerm* term;
-    FusedStepTerm* fused;  ///< null: of zero tangent, or it takes no part
+    FusedStepTerm* fused;  ///< null: of zero tangent, beside the pattern, or it takes no part
+    PointStiffnessTerm* beside;
   };
   void find_parts();
-  bool pairs_are_disjoint() const;
+  void update_own_pattern(const Layout& layout);
 
   System& system_;
   std::vector<Part> parts_;
-  bool all_can_ = false, disjoint_ = false;
+  bool all_can_ = false, any_beside_ = false, disjoint_ = false;
   std::uint64_t pattern_version_ = 0;  ///< that disjoint_ was found for
+  BlockSparse pattern_;                ///< without the terms beside it
+  /// versions of the layout and of the terms that it was made of; scratch
+  std::vector<std::uint64_t> made_of_, versions_;
 };
 
 }  // namespace palpate::dynamics

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "palpate/dynamics/matrix.h"
+#include "palpate/dynamics/point_stiffness.h"
 
 namespace palpate::dynamics {
 
@@ -14,11 +15,12 @@ struct HeldNode {
 };
 
 /// A mixed-precision step matrix, in half the memory of one in double and assembled in one pass less:
-///     A = diag(m) + L,   A_ij = L_ij,   A_ii = diag(m_i) - sum_j L_ij   (j != i).
+///     A = diag(m) + L + C,   L_ii = -sum_j L_ij   (j != i).
 /// L, stiffness and damping of soft bodies, takes no energy from a rigid translation: its block rows sum to
 /// zero, and its off-diagonal blocks determine it. They are kept in single precision, written straight to
 /// where the solver that owns this reads them; m is kept in double.  Rounding an L_ij then acts on the
 /// difference of two nodes' motions, never on a translation, however much stiffer than heavy a node is.
+/// C is what stands beside the pattern (contact), in double.
 struct ZeroRowSumMatrix {
   const BlockSparse* pattern = nullptr;  ///< of whose values nothing is read
   /// the slot map: the block of the pattern's slots (i, j) and (j, i) alike is at values[9 place]; -1 for
@@ -26,8 +28,9 @@ struct ZeroRowSumMatrix {
   std::vector<int> place;
   /// blocks A_ij, i < j, times `scale`, each row by row; every one is written anew for each matrix
   std::vector<float> values;
-  double scale = 1.0;  ///< a power of two, so that nothing is lost by it
-  VecX diagonal;       ///< m, of u-directions
+  double scale = 1.0;     ///< a power of two, so that nothing is lost by it
+  VecX diagonal;          ///< m, of u-directions
+  PointStiffness points;  ///< C
   /// of the nodes [m], as in BorderedMatrix; valid until MixedPrecisionSolver::factor_step_matrix() returns
   const double* positions = nullptr;
   const std::vector<HeldNode>* held = nullptr;

@@ -150,9 +150,35 @@ void RigidModeCoarseSpace::assemble(const SingleMatrix& A) {
       add(skew(Eigen::Map<const Eigen::Vector3f>(arm_.data() + 4 * i)), own_force, own_moment,
           pieces_[static_cast<std::size_t>(piece_[i])].inverse);
   }
+  add_points(A.points());
   for (std::size_t r = 0; r < static_cast<std::size_t>(size_); ++r)
     for (std::size_t c = r / 6 * 6 + 6; c < static_cast<std::size_t>(size_); ++c)
       E_[c * static_cast<std::size_t>(stride_) + r] = E_[r * static_cast<std::size_t>(stride_) + c];
+}
+
+/// Contact resists how clusters and pieces move against each other: its blocks, as those of the matrix.
+void RigidModeCoarseSpace::add_points(const PointOperator& points) {
+  using Block = Eigen::Matrix<float, 6, 6>;
+  const auto block_of = [](const Eigen::Vector3f& arm_i, const Eigen::Matrix3f& C,
+                           const Eigen::Vector3f& arm_j) {
+    const Eigen::Matrix3f turn = skew(arm_i), moment = -C * skew(arm_j);
+    Block out;
+    out << C, moment, turn * C, turn * moment;
+    return out;
+  };
+  points.for_each_block([&](int place_i, int place_j, const Eigen::Matrix3f& C) {
+    const auto i = static_cast<std::size_t>(place_i), j = static_cast<std::size_t>(place_j);
+    if (arm_[4 * i + 3] == 0.0f || arm_[4 * j + 3] == 0.0f) return;
+    if (cluster_[j] >= cluster_[i])
+      Eigen::Map<Eigen::Matrix<float, 6, 6, Eigen::RowMajor>, 0, Eigen::OuterStride<>>(
+          E_.data() + static_cast<std::size_t>(6 * cluster_[i]) * static_cast<std::size_t>(stride_) +
+              static_cast<std::size_t>(6 * cluster_[j]),
+          Eigen::OuterStride<>(stride_)) += block_of(arm_in_cluster(i), C, arm_in_cluster(j));
+    if (finer_ && piece_[i] == piece_[j])
+      pieces_[static_cast<std::size_t>(piece_[i])].inverse +=
+          block_of(Eigen::Map<const Eigen::Vector3f>(arm_.data() + 4 * i), C,
+                   Eigen::Map<const Eigen::Vector3f>(arm_.data() + 4 * j));
+  });
 }
 
 void RigidModeCoarseSpace::invert_pieces() {

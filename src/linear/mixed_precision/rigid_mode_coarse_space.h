@@ -59,6 +59,7 @@ class RigidModeCoarseSpace {
   void place_arms(const NodeOrder& order, const double* positions);
   void leave_out_held(const SingleMatrix& A);
   void assemble(const SingleMatrix& A);
+  void add_points(const PointOperator& points);
   void invert_pieces();
   Eigen::Vector3f arm_in_cluster(std::size_t node) const;
 

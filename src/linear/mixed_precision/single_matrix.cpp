@@ -40,6 +40,7 @@ void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters, i
   row_start_.assign(1, 0);
   column_.clear();
   source_.clear();
+  points_.clear();
   diagonal_slot_.resize(n);
   std::vector<std::pair<int, int>> row;
   for (std::size_t k = 0; k < n; ++k) {
@@ -76,6 +77,7 @@ void SingleMatrix::analyse(const dynamics::BlockSparse& pattern, int clusters, i
 SolveStatus SingleMatrix::take(const dynamics::BorderedMatrix& A, int count, Singles* from, Singles* to) {
   original_ = &A;
   held_.clear();
+  points_.clear();
   if (copy_.empty()) {
     copy_.assign(9 * static_cast<std::size_t>(block_count() + 1) + kBlockTail, 0.0f);  // and a block of zeros
     copy_offset_.assign(packing_.places() + kLanesOfGroup * kStepsAhead, 9 * block_count());
@@ -156,6 +158,8 @@ SolveStatus SingleMatrix::take_step_matrix(int count, Singles* from, Singles* to
   PALPATE_CHECK(written_.diagonal.size() == static_cast<Eigen::Index>(3 * n),
                 "a zero-row-sum matrix of {} nodes with {} masses", n, written_.diagonal.size());
   find_held();
+  points_.take(written_.points, place_of_node_, order_, written_.scale);
+  point_stiffness_ = 0.0;
   for (int k = 0; k < count; ++k)
     for (const std::size_t entry : held_) from[k][entry] = 0.0f;
   team_.for_each([&](std::size_t c, int first, int last) {
@@ -173,9 +177,13 @@ SolveStatus SingleMatrix::take_step_matrix(int count, Singles* from, Singles* to
     row_status_[c] =
         kernels_.complete(rows(c), {written_.values.data(), written_offset_.data(), transposed_.data()},
                           sums_.data(), inverse_.data(), &trace_[c], count, columns.V, columns.AV);
-    for (int k = 0; k < count; ++k) zero_held(c, columns.AV[k]);
+    for (int k = 0; k < count; ++k) {
+      if (!points_.empty()) points_.product(c, columns.V[k], columns.AV[k]);
+      zero_held(c, columns.AV[k]);
+    }
     hold(c);
   });
+  add_points_to_inverse();
   const auto any = [&](RowStatus what) {
     return std::find(row_status_.begin(), row_status_.end(), what) != row_status_.end();
   };
@@ -188,7 +196,10 @@ SolveStatus SingleMatrix::take_step_matrix(int count, Singles* from, Singles* to
 void SingleMatrix::multiply(std::size_t part, int count, const Singles* from, Singles* to) {
   const Columns columns(count, from, to);
   kernels_.multiply(rows(part), count, columns.V, columns.AV);
-  for (int k = 0; k < count; ++k) zero_held(part, columns.AV[k]);
+  for (int k = 0; k < count; ++k) {
+    if (!points_.empty()) points_.product(part, columns.V[k], columns.AV[k]);
+    zero_held(part, columns.AV[k]);
+  }
 }
 
 void SingleMatrix::multiply(int count, const Singles* from, Singles* to) {
@@ -205,12 +216,14 @@ void SingleMatrix::multiply(const Doubles& x, Doubles& Ax) {
   }
   team_.for_each([&](std::size_t c, int, int) {
     kernels_.multiply_zero_row_sum(rows(c), mass_.data(), 1.0 / written_.scale, x.data(), Ax.data());
+    if (!points_.empty()) points_.product(c, x.data(), Ax.data());
     zero_held(c, Ax.data());
   });
 }
 
 double SingleMatrix::product(std::size_t part, const float* p, float* q) const {
-  const double pq = kernels_.product(rows(part), p, q);
+  double pq = kernels_.product(rows(part), p, q);
+  if (!points_.empty()) pq += points_.product(part, p, q);
   zero_held(part, q);
   return pq;
 }
@@ -257,12 +270,31 @@ void SingleMatrix::hold(std::size_t part) {
     }
     Eigen::Matrix3f block;
     for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = packing_.entry(own, k % 3, k / 3);
-    const Eigen::Matrix3f inverse = block.inverse();
-    float* J = inverse_.data() + inverse_place(static_cast<int>(node));
-    for (int axis = 0; axis < 3; ++axis) {
-      J[axis] = inverse(axis, axis);
-      J[kToOffDiagonal + axis] = inverse((axis + 1) % 3, (axis + 2) % 3);
-    }
+    store_inverse(node, block);
+  }
+}
+
+void SingleMatrix::store_inverse(std::size_t node, const Eigen::Matrix3f& block) {
+  const Eigen::Matrix3f inverse = block.inverse();
+  float* J = inverse_.data() + inverse_place(static_cast<int>(node));
+  for (int axis = 0; axis < 3; ++axis) {
+    J[axis] = inverse(axis, axis);
+    J[kToOffDiagonal + axis] = inverse((axis + 1) % 3, (axis + 2) % 3);
+  }
+}
+
+/// Inverses of the own blocks of nodes in contact.  The packed own block stays without the contact's share:
+/// products add that.
+void SingleMatrix::add_points_to_inverse() {
+  for (const PointOperator::Diagonal& at : points_.diagonal()) {
+    const auto node = static_cast<std::size_t>(at.node), own = static_cast<std::size_t>(row_start_[node]);
+    Eigen::Matrix3f block, added = at.block;
+    for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = packing_.entry(own, k % 3, k / 3);
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::binary_search(held_.begin(), held_.end(), 4 * node + static_cast<std::size_t>(axis)))
+        added.row(axis).setZero(), added.col(axis).setZero();
+    point_stiffness_ = std::max(point_stiffness_, static_cast<double>(added.trace() / block.trace()));
+    store_inverse(node, block + added);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "linear/mixed_precision/cluster_team.h"
 #include "linear/mixed_precision/node_kernels.h"
+#include "linear/mixed_precision/point_operator.h"
 #include "linear/mixed_precision/row_packing.h"
 #include "palpate/dynamics/linear_solver.h"
 #include "palpate/dynamics/zero_row_sum_matrix.h"
@@ -50,6 +51,10 @@ class SingleMatrix {
   double scale() const { return written_.scale; }  ///< a power of two: the copy is scale A
   /// 1 + h^2 tr K / tr M of a zero-row-sum matrix: mean stiffness of a node, over its mass.
   double stiffness() const { return stiffness_; }
+  /// What stands beside the pattern of a zero-row-sum matrix; empty of a whole one.
+  const PointOperator& points() const { return points_; }
+  /// The largest stiffness that a node has from there, over its own.
+  double point_stiffness() const { return point_stiffness_; }
   /// Entries of vectors, four a node, of which a zero-row-sum matrix says that each stands alone; none of a
   /// whole one.
   const std::vector<std::size_t>& held() const { return held_; }
@@ -65,6 +70,8 @@ class SingleMatrix {
   void zero_held(std::size_t part, Real* v) const;
   void find_held();
   void hold(std::size_t part);
+  void add_points_to_inverse();
+  void store_inverse(std::size_t node, const Eigen::Matrix3f& block);
 
   const NodeKernels& kernels_;
   ClusterTeam& team_;
@@ -82,7 +89,8 @@ class SingleMatrix {
   std::vector<std::size_t> held_, held_start_;  ///< by part
   Doubles mass_;
   Singles mass_single_, sums_, inverse_;
-  double stiffness_ = 1.0;
+  PointOperator points_;
+  double stiffness_ = 1.0, point_stiffness_ = 0.0;
   std::vector<char> good_;
   std::vector<RowStatus> row_status_;
   std::vector<double> trace_, mass_trace_;

@@ -139,7 +139,9 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
     ++counters_.factorisations;
     ProjectedGuess& guess = state_.guess;
     status_ = copy_.take_step_matrix(guess.count(), guess.solutions(), guess.products());
-    const bool coarse = !(kSingleRounding * std::sqrt(copy_.stiffness()) <= kRoundingShare * rtol_);
+    // Contact far stiffer than the nodes that it is between: rounding of its own reaches their motions too.
+    const bool coarse = !(kSingleRounding * std::sqrt(copy_.stiffness()) <= kRoundingShare * rtol_) ||
+                        !(kSingleRounding * copy_.point_stiffness() <= kRoundingShare * rtol_);
     use_ = use_of(use_copy(room_->positions, coarse), coarse);
     return use_;
   }

@@ -1,0 +1,47 @@
+#pragma once
+#include <array>
+#include <vector>
+
+#include "palpate/core/types.h"
+
+namespace palpate::dynamics {
+
+/// A symmetric, positive semi-definite matrix over the nodes, as a sum of small ones on up to eight nodes
+/// each: stiffness and damping of contact.  It has no pattern; what it couples may change with every matrix,
+/// and costs no symbolic analysis.
+///
+/// Points of two soft bodies feel their difference alone: `relative` sums have row sums of zero, and products
+/// with them take the nodes' motions against that of the first node, so that rounding acts on differences
+/// (as in zero_row_sum_matrix.h).
+struct PointStiffness {
+  static constexpr int kMostNodes = 8;
+  using Weights = Eigen::Matrix<double, kMostNodes, 1>;
+  struct Nodes {
+    int count = 0;
+    bool relative = false;
+    std::array<int, kMostNodes> node{};  ///< over all node blocks; one may stand there twice
+  };
+  /// The motions along one normal: block (i, j) is G_ij n n^T.
+  struct AlongNormal {
+    Nodes nodes;
+    Vec3 normal = Vec3::Zero();
+    /// zero beyond nodes.count
+    Eigen::Matrix<double, kMostNodes, kMostNodes> G = Eigen::Matrix<double, kMostNodes, kMostNodes>::Zero();
+  };
+  /// The motion of one point, sum w_i x_i: block (i, j) is w_i w_j C.
+  struct OfPoint {
+    Nodes nodes;
+    Weights weight = Weights::Zero();
+    Mat3 C = Mat3::Zero();
+  };
+  std::vector<AlongNormal> along;
+  std::vector<OfPoint> points;
+
+  bool empty() const { return along.empty() && points.empty(); }
+  void clear() {
+    along.clear();
+    points.clear();
+  }
+};
+
+}  // namespace palpate::dynamics

@@ -1,0 +1,50 @@
+#include "contact/contact_force_impl.h"
+
+namespace palpate::contact {
+
+using dynamics::PointStiffness;
+
+bool ContactForce::is_point_stiffness() const { return traits().symmetric_tangent; }
+
+// A sample with friction is one point, x_a - x_b: K and D are the derivatives of its force by that
+// (tangent.h).
+void ContactForce::add_step(const dynamics::StateView& state, const VecX& shift, double k_scale,
+                            double d_scale, VecX& f, PointStiffness& C) {
+  Impl& m = *impl_;
+  add_force(state, f);
+  m.product.setZero(f.size());
+  apply_tangent(state, 1.0, 0.0, shift, m.product);
+  f -= m.product;
+  m.groups.add_stiffness(state, m.frame_states, k_scale, d_scale, C);
+  m.linearise_friction(state);
+  const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+    const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
+    PointStiffness::OfPoint point;
+    const auto take = [&](const SurfacePoint& p, double sign) {
+      for (int i = 0; p.frame < 0 && i < p.count; ++i) {
+        const int at = point.nodes.count++;
+        point.nodes.node[static_cast<std::size_t>(at)] = p.node[static_cast<std::size_t>(i)];
+        point.weight[at] = sign * p.weight[static_cast<std::size_t>(i)];
+      }
+    };
+    take(s.a, 1.0);
+    take(s.b, -1.0);
+    point.nodes.relative = s.a.frame < 0 && s.b.frame < 0;
+    point.C = k_scale * force.K + d_scale * force.D;
+    if (point.nodes.count > 0) C.points.push_back(point);
+  };
+  m.visit_active(state, add, false);
+}
+
+void ContactForce::add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change,
+                                  VecX& f) {
+  Impl& m = *impl_;
+  add_force(state, f);
+  m.product.setZero(f.size());
+  apply_tangent(state, 1.0, 0.0, shift, m.product);
+  apply_tangent(state, 0.0, 1.0, change, m.product);
+  f -= m.product;
+  m.linearise_friction(state);
+}
+
+}  // namespace palpate::contact

@@ -1,0 +1,244 @@
+// Matrices with sums that stand beside their pattern, as contact does.
+#include "linear/mixed_precision/point_operator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "linear/bent_beam.h"
+#include "palpate/integrate/integrators.h"
+#include "palpate/linear/solvers.h"
+
+namespace palpate {
+namespace {
+
+using namespace dynamics;
+
+/// Sums of every kind between nodes that lie anywhere, of this size [kg].
+PointStiffness random_points(int nodes, int count, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::uniform_int_distribution<int> any(0, nodes - 1);
+  PointStiffness out;
+  for (int k = 0; k < count; ++k) {
+    PointStiffness::Nodes of;
+    of.relative = k % 2 == 0;
+    of.count = of.relative ? 8 : 3 + k % 2;
+    for (int i = 0; i < of.count; ++i) of.node[static_cast<std::size_t>(i)] = any(random);
+    const auto weights = [&] {  // a's sum to 1, b's to -1
+      PointStiffness::Weights w = PointStiffness::Weights::Zero();
+      for (int i = 0; i < of.count; ++i) w[i] = 0.3 + 0.2 * uniform(random);
+      const int a = of.relative ? 4 : of.count;
+      w.head(a) /= w.head(a).sum();
+      if (of.relative) w.tail(4) /= -w.tail(4).sum();
+      return w;
+    };
+    const Vec3 n = Vec3(uniform(random), uniform(random), uniform(random)).normalized();
+    if (k % 3 == 0) {
+      PointStiffness::OfPoint point{of, weights(), size * (n * n.transpose() + 0.1 * Mat3::Identity())};
+      out.points.push_back(point);
+    } else {
+      PointStiffness::AlongNormal along{of, n, {}};
+      along.G.setZero();
+      for (int s = 0; s < 5; ++s) {
+        const PointStiffness::Weights w = weights();
+        along.G += 0.2 * size * w * w.transpose();
+      }
+      out.along.push_back(along);
+    }
+  }
+  return out;
+}
+
+/// visit(i, j, block) of the definition.
+template <class Visit>
+void for_each_block(const PointStiffness& C, Visit visit) {
+  for (const auto& a : C.along)
+    for (int i = 0; i < a.nodes.count; ++i)
+      for (int j = 0; j < a.nodes.count; ++j)
+        visit(a.nodes.node[static_cast<std::size_t>(i)], a.nodes.node[static_cast<std::size_t>(j)],
+              Mat3(a.G(i, j) * a.normal * a.normal.transpose()));
+  for (const auto& a : C.points)
+    for (int i = 0; i < a.nodes.count; ++i)
+      for (int j = 0; j < a.nodes.count; ++j)
+        visit(a.nodes.node[static_cast<std::size_t>(i)], a.nodes.node[static_cast<std::size_t>(j)],
+              Mat3(a.weight[i] * a.weight[j] * a.C));
+}
+
+/// A + C in one pattern; nothing of C in held directions.
+BorderedMatrix with(const BorderedMatrix& A, const PointStiffness& C, const std::vector<HeldNode>& held) {
+  BorderedMatrix out = A;
+  PatternBuilder builder(A.body.block_rows());
+  const auto for_each_slot = [&](auto visit) {
+    for (int i = 0; i < A.body.block_rows(); ++i)
+      for (int s = A.body.row_start()[static_cast<std::size_t>(i)];
+           s < A.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s)
+        visit(i, A.body.columns()[static_cast<std::size_t>(s)], s);
+  };
+  for_each_slot([&](int i, int j, int) { builder.add_pair(i, j); });
+  for_each_block(C, [&](int i, int j, const Mat3&) { builder.add_pair(i, j); });
+  out.body = builder.build();
+  for_each_slot([&](int i, int j, int s) {
+    out.body.add(out.body.slot(i, j),
+                 Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(A.body.block(s)));
+  });
+  const auto is_held = [&](int node) {
+    return std::any_of(held.begin(), held.end(), [&](const HeldNode& h) { return h.node == node; });
+  };
+  for_each_block(C, [&](int i, int j, const Mat3& block) {
+    if (!is_held(i) && !is_held(j)) out.body.add(out.body.slot(i, j), block);
+  });
+  out.touch();
+  return out;
+}
+
+/// Two parts, and nodes in an order of their own.
+struct Order {
+  linear::NodeOrder order;
+  std::vector<int> place;
+  explicit Order(int nodes) : place(static_cast<std::size_t>(nodes)) {
+    for (int k = 0; k < nodes; ++k) {
+      order.node.push_back((7 * k + 3) % nodes);
+      place[static_cast<std::size_t>(order.node.back())] = k;
+    }
+    order.start = {0, nodes / 3, nodes};
+    order.part = {0, 1, 2};
+    order.piece_start = order.start;
+    order.piece = {0, 1, 2};
+  }
+};
+
+}  // namespace
+
+// Products with the sums are those with their blocks, part by part, and p . C p is what the parts add up.
+TEST(PointOperator, ProductsAreThoseOfItsBlocks) {
+  constexpr int kNodes = 50;
+  constexpr double kScale = 0.25;
+  const Order order(kNodes);
+  const PointStiffness C = random_points(kNodes, 40, 3.0, 1);
+  linear::PointOperator op;
+  op.take(C, order.place, order.order, kScale);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<double> x(4 * kNodes, 0.0), expected(4 * kNodes, 0.0), y(4 * kNodes, 0.0);
+  for (int k = 0; k < kNodes; ++k)
+    for (int axis = 0; axis < 3; ++axis) x[static_cast<std::size_t>(4 * k + axis)] = uniform(random);
+  const std::vector<float> p(x.begin(), x.end());
+  std::vector<float> q(4 * kNodes, 0.0f);
+  double energy = 0.0;
+  for_each_block(C, [&](int i, int j, const Mat3& block) {
+    const auto at = [&](std::vector<double>& v, int node) {
+      return Eigen::Map<Vec3>(v.data() + 4 * order.place[static_cast<std::size_t>(node)]);
+    };
+    at(expected, i) += block * at(x, j);
+    energy += at(x, i).dot(block * at(x, j));
+  });
+  double share = 0.0;
+  for (const std::size_t part : {0u, 1u}) {
+    op.product(part, x.data(), y.data());
+    share += op.product(part, p.data(), q.data());
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_NEAR(y[i], expected[i], 1e-13 * 3.0 * 40);
+    EXPECT_NEAR(q[i], kScale * expected[i], 2e-6 * 3.0 * 40);
+  }
+  EXPECT_NEAR(share, kScale * energy, 1e-5 * kScale * energy);
+  // the diagonal blocks, each node once
+  std::vector<Mat3> diagonal(kNodes, Mat3::Zero());
+  for_each_block(C, [&](int i, int j, const Mat3& block) {
+    if (i == j) diagonal[static_cast<std::size_t>(order.place[static_cast<std::size_t>(i)])] += block;
+  });
+  std::size_t touched = 0;
+  for (const Mat3& block : diagonal) touched += block.norm() > 0.0;
+  EXPECT_EQ(op.diagonal().size(), touched);
+  for (const auto& own : op.diagonal())
+    EXPECT_LT((own.block.cast<double>() - kScale * diagonal[static_cast<std::size_t>(own.node)]).norm(),
+              1e-5);
+}
+
+// A translation of all nodes costs a relative sum nothing, whatever the stiffness: not by rounding either.
+TEST(PointOperator, RelativeSumsFeelNoTranslation) {
+  constexpr int kNodes = 30;
+  const Order order(kNodes);
+  PointStiffness C = random_points(kNodes, 40, 1e12, 1);
+  std::erase_if(C.along, [](const auto& a) { return !a.nodes.relative; });
+  std::erase_if(C.points, [](const auto& a) { return !a.nodes.relative; });
+  ASSERT_GT(C.along.size(), 5u);
+  ASSERT_GT(C.points.size(), 5u);
+  linear::PointOperator op;
+  op.take(C, order.place, order.order, 1.0);
+  std::vector<float> p(4 * kNodes, 0.0f), q(4 * kNodes, 0.0f);
+  std::vector<double> y(4 * kNodes, 0.0);
+  for (int k = 0; k < kNodes; ++k)
+    for (int axis = 0; axis < 3; ++axis)
+      p[static_cast<std::size_t>(4 * k + axis)] = 0.1f * static_cast<float>(axis + 1);
+  const std::vector<double> x(p.begin(), p.end());
+  double share = 0.0;
+  for (const std::size_t part : {0u, 1u}) {
+    share += op.product(part, p.data(), q.data());
+    op.product(part, x.data(), y.data());
+  }
+  EXPECT_EQ(share, 0.0);
+  EXPECT_EQ(*std::max_element(q.begin(), q.end()), 0.0f);
+  EXPECT_EQ(*std::max_element(y.begin(), y.end()), 0.0);
+}
+
+class PointSolvers : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Registry, PointSolvers, testing::Values("pcg-single", "pcg-two-level"),
+                         [](const auto& p) {
+                           std::string name = p.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+// linear_rtol bounds the error of the solution in the energy norm of the whole matrix, the sums included,
+// against a direct solve; from sums that are softer than a node's own block to those that are 10^5 times
+// stiffer, over a motion, new ones at each step.  Stiff sums are outliers of the spectrum, as many as their
+// rank, 130 here.  Conjugate gradients take each in one iteration, or two by rounding; the blocks on the
+// diagonal keep the moderate ones among the others.
+TEST_P(PointSolvers, TheErrorIsWhatTheToleranceSays) {
+  constexpr double kStep = 1e-2;
+  long free_iterations = 0;
+  for (const double size : {0.0, 0.1, 1e3, 1e5})
+    for (const int threads : {1, 2}) {
+      BentBeam beam(16, 1e5);
+      IntegratorSpec spec{.step_s = kStep, .linear_rtol = 1e-4};
+      spec.threads = threads;
+      const auto solver = linear::make_linear_solver(GetParam(), spec);
+      const auto direct = linear::make_linear_solver("cholmod");
+      BorderedMatrix whole;
+      VecX b, x, exact;
+      int solved = 0;
+      for (int k = 0; k < 6; ++k) {
+        beam.at(0.2 * k, kStep, whole, b);
+        const PointStiffness C =
+            size > 0.0 ? random_points(whole.body.block_rows(), 30, size * 0.02, static_cast<unsigned>(k))
+                       : PointStiffness{};
+        const BorderedMatrix all = with(whole, C, beam.system.driven_nodes());
+        ASSERT_EQ(direct->factor(all), SolveStatus::kOk);
+        ZeroRowSumMatrix* A = mixed(*solver).step_matrix(beam.pattern());
+        ASSERT_NE(A, nullptr);
+        beam.at(0.2 * k, kStep, *A, b);
+        A->points = C;
+        ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
+        const StepMatrixUse use = mixed(*solver).factor_step_matrix();
+        if (use == StepMatrixUse::kRefine) {
+          Known left(all, b);
+          ASSERT_EQ(mixed(*solver).solve_by_refinement(left, x), SolveStatus::kOk) << size << " " << k;
+        } else {
+          ASSERT_EQ(use, StepMatrixUse::kSolve) << size << " " << k;
+          ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk) << size << " " << k;
+        }
+        EXPECT_LE(energy_norm(all, x - exact), 1e-4 * energy_norm(all, exact)) << size << " " << k;
+        ++solved;
+      }
+      EXPECT_EQ(solved, 6);
+      EXPECT_EQ(solver->counters().symbolic, 1) << "the sums have no pattern";
+      if (size == 0.0) free_iterations = solver->counters().iterations;
+      const long outliers = size > 1e4 ? 6 * 130 : 0;
+      EXPECT_LE(solver->counters().iterations, 5 * (free_iterations + outliers) / 2) << size;
+    }
+}
+
+}  // namespace palpate
