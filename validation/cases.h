@@ -9,6 +9,7 @@ ValidationCase sphere_on_plane();
 ValidationCase punch_bounce();
 ValidationCase punch_bounce_damped();
 ValidationCase punch_bounce_hunt_crossley();
+ValidationCase felt_detail();
 ValidationCase patch_test();
 ValidationCase rigid_motion();
 ValidationCase gradient_and_tangent();
