@@ -4,7 +4,12 @@
 /// One function a case, one file a function; registry.cpp puts them in order.
 namespace palpate::validation {
 
+ValidationCase spheres_field();
 ValidationCase overlap_volume();
+ValidationCase volume_on_plane();
+ValidationCase box_corner();
+ValidationCase corrugated_plates();
+ValidationCase order_independence();
 ValidationCase sphere_on_plane();
 ValidationCase punch_bounce();
 ValidationCase punch_bounce_damped();

@@ -9,7 +9,8 @@ const std::vector<ValidationCase>& validation_cases() {
     const auto add = [&out](std::vector<ValidationCase> some) {
       out.insert(out.end(), some.begin(), some.end());
     };
-    add({overlap_volume(), sphere_on_plane(), punch_bounce(), punch_bounce_damped(),
+    add({spheres_field(), overlap_volume(), volume_on_plane(), box_corner(), corrugated_plates(),
+         order_independence(), sphere_on_plane(), punch_bounce(), punch_bounce_damped(),
          punch_bounce_hunt_crossley()});
     if (tool::available()) add({felt_detail()});
     add({patch_test(),          rigid_motion(),     gradient_and_tangent(),
