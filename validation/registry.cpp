@@ -11,8 +11,9 @@ const std::vector<ValidationCase>& validation_cases() {
     };
     add({spheres_field(), overlap_volume(), volume_on_plane(), box_corner(), corrugated_plates(),
          order_independence(), sphere_on_plane(), punch_bounce(), punch_bounce_damped(),
-         punch_bounce_hunt_crossley()});
-    if (tool::available()) add({felt_detail()});
+         punch_bounce_hunt_crossley(), rocking_box(), balance(), closed_loop()});
+    if (tool::available())
+      add({elastic_foundation_peer(), resting_sphere(), block_on_incline(), rolling_sphere(), felt_detail()});
     add({patch_test(),          rigid_motion(),     gradient_and_tangent(),
          uniaxial_and_shear(),  hanging_bar(),      layered_bar(),
          cantilever(),          large_deflection(), torsion(),
