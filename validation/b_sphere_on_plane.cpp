@@ -2,7 +2,7 @@
 
 #include "b_bodies.h"
 #include "cases.h"
-#include "palpate/contact/gpu_available.h"
+#include "image_backends.h"
 #include "palpate/mesh/generators.h"
 
 // A rigid sphere of radius R held with its lowest point delta0 below a plane.  Pressure is k times the depth
@@ -120,9 +120,7 @@ std::vector<Measurement> run(const std::string& fault) {
   const double facets = kStiffness * volume_below(mesh);
   std::vector<Measurement> out;
   out.push_back(against("force on the facets, vertex samples [N]", vertex_force(mesh, fault), facets, 1e-3));
-  std::vector<contact::DepthBackend> backends = {contact::DepthBackend::kCpu, contact::DepthBackend::kExact};
-  if (contact::gpu_available()) backends.push_back(contact::DepthBackend::kGpu);
-  for (const contact::DepthBackend backend : backends)
+  for (const contact::DepthBackend backend : image_backends())
     out.push_back(
         against("force on the facets, pixel samples, " + std::string(contact::backend_name(backend)) + " [N]",
                 pixel_force(backend, mesh, fault), facets, 1e-3));
@@ -133,6 +131,7 @@ std::vector<Measurement> run(const std::string& fault) {
   sphere.order_high = 2.1;
   sphere.note = "order in facet size over 16 to 64 subdivisions of the icosahedron";
   out.push_back(sphere);
+  say_what_is_skipped(out);
   return out;
 }
 

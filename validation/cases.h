@@ -4,11 +4,24 @@
 /// One function a case, one file a function; registry.cpp puts them in order.
 namespace palpate::validation {
 
+ValidationCase spheres_field();
 ValidationCase overlap_volume();
+ValidationCase volume_on_plane();
+ValidationCase box_corner();
+ValidationCase corrugated_plates();
+ValidationCase order_independence();
 ValidationCase sphere_on_plane();
 ValidationCase punch_bounce();
 ValidationCase punch_bounce_damped();
 ValidationCase punch_bounce_hunt_crossley();
+ValidationCase rocking_box();
+ValidationCase balance();
+ValidationCase closed_loop();
+ValidationCase elastic_foundation_peer();
+ValidationCase resting_sphere();
+ValidationCase block_on_incline();
+ValidationCase rolling_sphere();
+ValidationCase felt_detail();
 ValidationCase patch_test();
 ValidationCase rigid_motion();
 ValidationCase gradient_and_tangent();

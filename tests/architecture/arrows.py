@@ -42,7 +42,7 @@ ALLOWED = {
     "report": ["core", "store"],
     "cli": ["core", "shapes", "scene", "store", "render", "loop", "compare", "stability", "bench", "report",
             "validation"],
-    "validation": BELOW_LOOP + ["loop", "compare", "report"],  # the cases in validation/
+    "validation": BELOW_LOOP + ["loop", "compare", "report", "simbody"],  # the cases in validation/
 }
 
 # Headers of outside libraries, and the only folders that may include them.
@@ -51,7 +51,7 @@ OUTSIDE = [
      r"(sundials|cvode|cvodes|arkode|ida|idas|kinsol|nvector|sunmatrix|sunlinsol|sunnonlinsol|sunmemory)/",
      ["src/integrate", "tests/integrate"]),
     ("Simbody", r"(Simbody|SimTK\w*|simbody|simmath)(\.h$|/)",
-     ["src/simbody", "src/tool", "src/bones", "tests/isolation"]),
+     ["src/simbody", "src/tool", "src/bones", "tests/isolation", "validation/peers"]),
     ("EGL and OpenGL", r"(EGL|GL|GLES\d?|KHR|epoxy)/",
      ["src/gl", "include/palpate/gl", "src/render", "tests/gl", "tests/render"]),
     ("libccd", r"ccd/", ["src/proxy", "tests/proxy"]),

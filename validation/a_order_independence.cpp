@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "a_reference_image.h"
+#include "b_bodies.h"
+#include "cases.h"
+#include "image_backends.h"
+#include "palpate/core/error.h"
+#include "palpate/mesh/generators.h"
+
+// The field of depths is a property of two surfaces, not of how their triangles are listed.  Samples of the
+// same pair are compared bit by bit: once as the generators list the triangles, then shuffled in both bodies.
+// Where two triangles meet at a pixel's middle the image may take either; what is compared is what they say.
+//
+// With the bodies swapped the normal is opposite, the image its mirror image, and its grid of pixels starts
+// at another corner of the window: the two sums are two midpoint rules for one volume.  They agree within the
+// pixels' error.
+
+namespace palpate::validation {
+namespace {
+
+constexpr double kDistance = 1.5;
+
+struct Mesh {
+  TriMesh a, b;
+};
+
+Mesh spheres() {
+  Mesh out{mesh::sphere(1.0, 24), mesh::sphere(0.8, 20)};
+  out.a.vertices =
+      (Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()).toRotationMatrix() * out.a.vertices).eval();
+  out.a.vertices.colwise() += Vec3(0.05, 0.02, kDistance);
+  return out;
+}
+
+TriMesh shuffled(TriMesh mesh, unsigned seed) {
+  std::mt19937 random(seed);
+  for (Eigen::Index i = mesh.faces.cols() - 1; i > 0; --i) {
+    const auto j = static_cast<Eigen::Index>(random() % static_cast<unsigned>(i + 1));
+    mesh.faces.col(i).swap(mesh.faces.col(j));
+  }
+  return mesh;
+}
+
+contact::ImageOptions options_of(contact::DepthBackend backend) {
+  contact::ImageOptions options;
+  options.backend = backend;
+  options.pixels = 200;
+  options.candidate_gap = 0.01;
+  return options;
+}
+
+struct Pixel {
+  Vec3 at;
+  double gap;
+};
+
+/// Fault "first-come": each depth carries a trace, 1e-9, of which triangle is listed first.
+std::vector<Pixel> field(contact::DepthBackend backend, const Mesh& mesh, const std::string& fault) {
+  SurfaceBody body(mesh.a);
+  const auto source = spoiled(
+      contact::make_image_source(body.surface, mesh.b, 0, contact::fixed_frame(), options_of(backend)),
+      [&](auto& samples) {
+        if (fault != "first-come") return;
+        for (auto& s : samples) s.gap += 1e-9 * static_cast<double>(mesh.b.faces(0, 0) % 7);
+      });
+  std::vector<contact::ContactSample> samples;
+  source->query(body.state.view(), samples);
+  std::vector<Pixel> out;
+  for (const auto& s : samples) out.push_back({sample_at(s, mesh.a.vertices).b, s.gap});
+  return out;
+}
+
+double volume_of_two_soft(contact::DepthBackend backend, const TriMesh& first, const TriMesh& second) {
+  dynamics::State state;
+  const auto add = [&](const TriMesh& mesh) {
+    dynamics::BlockSpec nodes;
+    nodes.name = "surface";
+    nodes.q_size = nodes.u_size = static_cast<int>(mesh.vertices.size());
+    contact::NodeSurface surface;
+    surface.block_id = state.insert(nodes, mesh.vertices.reshaped(), VecX::Zero(nodes.u_size));
+    for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i)
+      surface.node_of_vertex.push_back(static_cast<int>(i));
+    surface.faces = mesh.faces;
+    return surface;
+  };
+  const contact::NodeSurface a = add(first), b = add(second);
+  std::vector<contact::ContactSample> samples;
+  contact::make_image_source(a, b, options_of(backend))->query(state.view(), samples);
+  double sum = 0.0;
+  for (const auto& s : samples) sum += std::max(0.0, -s.gap) * s.area;
+  return sum;
+}
+
+std::vector<Measurement> run(const std::string& fault) {
+  std::vector<Measurement> out;
+  const Mesh mesh = spheres();
+  for (const contact::DepthBackend backend : image_backends()) {
+    const std::string name(contact::backend_name(backend));
+    const std::vector<Pixel> plain = field(backend, mesh, fault);
+    int different = 0;
+    double largest = 0.0;
+    for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+      const std::vector<Pixel> other =
+          field(backend, {shuffled(mesh.a, seed), shuffled(mesh.b, 10 + seed)}, fault);
+      different +=
+          static_cast<int>(std::abs(static_cast<long>(other.size()) - static_cast<long>(plain.size())));
+      for (std::size_t i = 0; i < std::min(plain.size(), other.size()); ++i) {
+        different += plain[i].gap != other[i].gap || plain[i].at != other[i].at;
+        largest = std::max(largest, std::abs(plain[i].gap - other[i].gap));
+      }
+    }
+    out.push_back({.quantity = name + ": samples that differ with the triangles shuffled [count]",
+                   .computed = static_cast<double>(different),
+                   .error = plain.size() > 10000 ? static_cast<double>(different) : std::nan(""),
+                   .bar = 0.0,
+                   .note = fmt::format("{} samples, 4 orders, bit by bit; largest difference {:.1e} R",
+                                       plain.size(), largest)});
+    const double ab = volume_of_two_soft(backend, mesh.a, mesh.b),
+                 ba = volume_of_two_soft(backend, mesh.b, mesh.a);
+    out.push_back({.quantity = name + ": overlap volume with the bodies swapped [m^3]",
+                   .computed = ba,
+                   .exact = ab,
+                   .error = std::abs(ba / ab - 1.0),
+                   .bar = 1e-4,
+                   .note = "the grid of pixels is another one"});
+  }
+  say_what_is_skipped(out);
+  return out;
+}
+
+}  // namespace
+
+ValidationCase order_independence() {
+  return {
+      .name = "order-independence",
+      .section = "A",
+      .summary = "the same depths, bit by bit, for shuffled triangles; the same volume for swapped bodies",
+      .why =
+          "a result that depends on how a mesh file lists its triangles cannot be reproduced, and two "
+          "bodies must agree on how far they overlap",
+      .run = run,
+      .faults = {"first-come"}};
+}
+
+}  // namespace palpate::validation

@@ -1,0 +1,148 @@
+#include <cmath>
+
+#include "b_free_tool.h"
+#include "cases.h"
+#include "image_backends.h"
+#include "palpate/core/error.h"
+
+// A plane inclined by the angle a, in its own axes: gravity is g (sin a, 0, -cos a).  Coulomb's friction mu,
+// regularised below the speed v_r: mu p v/max(|v|, v_r).
+// - A block that does not rotate, tan a < mu: friction mu N v/v_r balances the weight's part along the plane,
+//       m g sin a = mu m g cos a v/v_r:      it creeps at v = v_r tan(a)/mu.
+//   tan a > mu: it slides with  a_x = g (sin a - mu cos a).
+//   Its orientation is held by the coupling's rotational spring; nothing else couples it to the hand.
+// - A sphere: friction f turns it, I w' = f R, m v' = m g sin a - f.  Rolling, v = w R up to the creep, and
+// with
+//   I = 2/5 m R^2:   f = (2/7) m g sin a,   v' = (5/7) g sin a;  it can as f < mu N, tan a < 3.5 mu.
+//   The dent is delta0 <= 0.01 R deep: the sphere rolls on a radius between R - delta0 and R, which is where
+//   the bar of 1e-2 comes from.
+
+namespace palpate::validation {
+namespace {
+
+constexpr double kGravity = 9.81, kPi = 3.14159265358979323846;
+
+scene::Description inclined(contact::DepthBackend backend, double angle, double friction,
+                            const std::string& fault) {
+  scene::Description d = free_tool_scene(backend, 0.16, 0.04);
+  d.gravity_m_s2 = kGravity * Vec3(std::sin(angle), 0.0, -std::cos(angle));
+  d.contacts[0].friction = fault == "half-friction" ? 0.5 * friction
+                           : fault == "no-friction" ? 0.0
+                                                    : friction;
+  d.contacts[0].friction_regularisation_m_s = 1e-3;
+  d.tool->position_m.x() = -0.06;
+  return d;
+}
+
+scene::Description block_on(contact::DepthBackend backend, double angle, double friction,
+                            const std::string& fault) {
+  constexpr double kMass = 0.05, kDepth = 2e-4;
+  const Vec3 size(0.012, 0.012, 0.004);
+  scene::Description d = inclined(backend, angle, friction, fault);
+  d.tool->mesh.generator = "box";
+  d.tool->mesh.size_m = size;
+  d.tool->mesh.element_size_m = 0.004;
+  d.tool->mass_kg = kMass;
+  d.tool->inertia_kg_m2 = Vec3::Constant(kMass * (size.x() * size.x() + size.y() * size.y()) / 12.0);
+  d.tool->coupling.rotational_stiffness_n_m_rad = 100.0;
+  d.tool->coupling.rotational_damping_n_m_s_rad = 0.01;
+  const double area = size.x() * size.y(), normal = kMass * kGravity * std::cos(angle);
+  d.contacts[0].stiffness_pa_m = normal / (area * kDepth);
+  d.contacts[0].damping_pa_s_m = 2.0 * std::sqrt(normal / kDepth * kMass) / area;  // critical
+  d.contacts[0].candidate_gap_m = 1e-4;
+  d.contacts[0].pixels = 32;
+  d.integrator.step_s = 5e-4;
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 2e-3;
+  d.tool->position_m.z() = 0.5 * size.z() - kDepth;
+  return d;
+}
+
+std::vector<Measurement> run_block(const std::string& fault) {
+  std::vector<Measurement> out;
+  constexpr double kFriction = 0.4, kFlat = 15.0 * kPi / 180.0, kSteep = 35.0 * kPi / 180.0;
+  for (const contact::DepthBackend backend : image_backends()) {
+    const std::string name(contact::backend_name(backend));
+    scene::Description sticks = block_on(backend, kFlat, kFriction, fault);
+    sticks.duration_s = 0.03;
+    const double creep = run_free_tool(sticks).back().tool_twist.linear.x(),
+                 exact_creep = sticks.contacts[0].friction_regularisation_m_s * std::tan(kFlat) / kFriction;
+    out.push_back({.quantity = name + ": creep of a block that sticks, 15 degrees, mu = 0.4 [m/s]",
+                   .computed = creep,
+                   .exact = exact_creep,
+                   .error = std::abs(creep / exact_creep - 1.0),
+                   .bar = 1e-3});
+    scene::Description slides = block_on(backend, kSteep, kFriction, fault);
+    slides.duration_s = 0.1;
+    const double a = mean_acceleration(run_free_tool(slides), 0.02, 0.1),
+                 exact = kGravity * (std::sin(kSteep) - kFriction * std::cos(kSteep));
+    out.push_back({.quantity = name + ": acceleration of a block that slides, 35 degrees, mu = 0.4 [m/s^2]",
+                   .computed = a,
+                   .exact = exact,
+                   .error = std::abs(a / exact - 1.0),
+                   .bar = 1e-3});
+  }
+  say_what_is_skipped(out);
+  return out;
+}
+
+std::vector<Measurement> run_sphere(const std::string& fault) {
+  constexpr double kRadius = 0.01, kMass = 0.03, kDepth = 0.01 * kRadius, kAngle = 20.0 * kPi / 180.0,
+                   kFriction = 0.3;  // 3.5 mu = 1.05, tan a = 0.36
+  const double exact = 5.0 / 7.0 * kGravity * std::sin(kAngle);
+  std::vector<Measurement> out;
+  for (const contact::DepthBackend backend : image_backends()) {
+    scene::Description d = inclined(backend, kAngle, kFriction, fault);
+    d.tool->mesh.generator = "ball";
+    d.tool->mesh.radius_m = kRadius;
+    d.tool->mesh.element_size_m = 2.5e-4;
+    d.tool->mass_kg = kMass;
+    d.contacts[0].stiffness_pa_m =
+        kMass * kGravity * std::cos(kAngle) / (kPi * kDepth * kDepth * (3.0 * kRadius - kDepth) / 3.0);
+    d.contacts[0].candidate_gap_m = 5e-5;
+    d.contacts[0].pixels = 48;
+    d.integrator.step_s = 2.5e-4;
+    d.tool->position_m.z() = kRadius - kDepth;
+    d.duration_s = 0.12;
+    const std::vector<loop::TickRecord> ticks = run_free_tool(d);
+    const double a = mean_acceleration(ticks, 0.02, d.duration_s);
+    const Twist& end = ticks.back().tool_twist;
+    out.push_back({.quantity = std::string(contact::backend_name(backend)) +
+                               ": acceleration of a sphere that rolls, 20 degrees, mu = 0.3 [m/s^2]",
+                   .computed = a,
+                   .exact = exact,
+                   .error = std::abs(a / exact - 1.0),
+                   .bar = 1e-2,
+                   .note = fmt::format("at the end {:.4f} m/s, {:.4f} m/s by its rotation", end.linear.x(),
+                                       kRadius * end.angular.y())});
+  }
+  say_what_is_skipped(out);
+  return out;
+}
+
+}  // namespace
+
+ValidationCase block_on_incline() {
+  return {.name = "block-on-incline",
+          .section = "B",
+          .summary =
+              "a block on an inclined plane with friction: creep where it sticks, acceleration where it "
+              "slides",
+          .why =
+              "friction that is a few per cent off lets objects slide that should stay; the regularisation's "
+              "creep is known and stated (balance along the plane)",
+          .run = run_block,
+          .faults = {"half-friction"}};
+}
+
+ValidationCase rolling_sphere() {
+  return {.name = "rolling-sphere",
+          .section = "B",
+          .summary = "a sphere rolls down an inclined plane without slipping: (5/7) g sin a",
+          .why =
+              "friction must have its moment about the centre too: without it the sphere slides with g sin a "
+              "(linear and angular momentum of a rolling sphere)",
+          .run = run_sphere,
+          .faults = {"no-friction"}};
+}
+
+}  // namespace palpate::validation

@@ -1,0 +1,134 @@
+#include <cmath>
+
+#include "b_bodies.h"
+#include "cases.h"
+#include "image_backends.h"
+#include "palpate/core/error.h"
+#include "palpate/mesh/generators.h"
+#include "simbody/contact_headers.h"
+
+// Simbody's ElasticFoundationForce as a peer: the same sphere, delta0 deep in the same plane, the same
+// stiffness k per area.  It has one spring a triangle, with the triangle's own area and the distance of its
+// middle to the nearest point of the other surface, so that as the mesh is refined its force tends to
+//     k int depth dA over the sphere = k 2 pi R int_0^delta0 t dt = k pi R delta0^2,
+// while ours has the area projected along the normal, k pi delta0^2 (R - delta0/3).  Both are right answers
+// to different questions; they differ by 1/(1 - delta0/(3 R)), which tends to 1 for shallow contact.
+
+namespace palpate::validation {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kRadius = 0.02, kDepth = 0.004, kStiffness = 5e7;
+constexpr int kOrientations = 3;
+
+/// About its own centre.
+TriMesh turned_sphere(int subdivisions, int orientation) {
+  TriMesh mesh = mesh::sphere(kRadius, subdivisions);
+  const Eigen::AngleAxisd turn(0.37 + 1.1 * orientation, Vec3(1, 2 - orientation, 3).normalized());
+  mesh.vertices = (turn.toRotationMatrix() * mesh.vertices).eval();
+  return mesh;
+}
+
+/// Force of Simbody's elastic foundation on the sphere, along z [N].
+double peer_force(const TriMesh& mesh) {
+  SimTK::MultibodySystem system;
+  SimTK::SimbodyMatterSubsystem matter(system);
+  SimTK::GeneralContactSubsystem contacts(system);
+  SimTK::GeneralForceSubsystem forces(system);
+  SimTK::Array_<SimTK::Vec3> vertices;
+  SimTK::Array_<int> faces;
+  for (const auto& x : mesh.vertices.colwise()) vertices.push_back(SimTK::Vec3(x.x(), x.y(), x.z()));
+  for (const auto& face : mesh.faces.colwise())
+    for (const int corner : face) faces.push_back(corner);
+  const SimTK::ContactSetIndex set = contacts.createContactSet();
+  // a half space is where its own x is positive: turned to lie below z = 0
+  contacts.addBody(set, matter.updGround(), SimTK::ContactGeometry::HalfSpace(),
+                   SimTK::Transform(SimTK::Rotation(0.5 * kPi, SimTK::YAxis)));
+  SimTK::MobilizedBody::Translation sphere(
+      matter.updGround(),
+      SimTK::Body::Rigid(SimTK::MassProperties(1.0, SimTK::Vec3(0), SimTK::Inertia(1.0))));
+  contacts.addBody(set, sphere, SimTK::ContactGeometry::TriangleMesh(vertices, faces), SimTK::Transform());
+  SimTK::ElasticFoundationForce foundation(forces, contacts, set);
+  foundation.setBodyParameters(SimTK::ContactSurfaceIndex(1), kStiffness, 0.0, 0.0, 0.0, 0.0);
+  SimTK::State state = system.realizeTopology();
+  sphere.setQToFitTranslation(state, SimTK::Vec3(0.0, 0.0, kRadius - kDepth));
+  system.realize(state, SimTK::Stage::Dynamics);
+  return system.getRigidBodyForces(state, SimTK::Stage::Dynamics)[sphere.getMobilizedBodyIndex()][1][2];
+}
+
+/// Ours, on the same triangles.  Fault "skin-area": each sample with the skin's area instead of the projected
+/// one.
+double our_force(TriMesh mesh, const std::string& fault) {
+  mesh.vertices.row(2).array() += kRadius - kDepth;
+  SurfaceBody body(mesh);
+  TriMesh slab = mesh::box_surface(Vec3(6 * kRadius, 6 * kRadius, kRadius), {6, 6, 1});
+  slab.vertices.row(2).array() -= 0.5 * kRadius;
+  contact::ImageOptions options;
+  options.pixels = 256;
+  options.candidate_gap = 1e-6;
+  const auto frame = contact::fixed_frame();
+  auto source = contact::make_image_source(body.surface, slab, 0, frame, options);
+  if (fault == "skin-area")
+    source = spoiled(std::move(source), [](auto& samples) {
+      for (auto& s : samples) s.area *= kRadius / (kRadius - kDepth - s.gap);
+    });
+  contact::ContactForce term;
+  term.add_frame(frame);
+  ContactSpec law;
+  law.stiffness_pa_m = kStiffness;
+  term.add_pair(std::move(source), law);
+  term.refresh(body.state.view());
+  return -term.frame_wrench(body.state.view(), 0).force.z();
+}
+
+std::vector<Measurement> run(const std::string& fault) {
+  const double peer_limit = kStiffness * kPi * kRadius * kDepth * kDepth,
+               ratio = 1.0 / (1.0 - kDepth / (3.0 * kRadius));
+  std::vector<double> h, error;
+  double peer = 0.0, ours = 0.0;
+  for (const int subdivisions : {12, 17, 24, 34}) {
+    peer = ours = 0.0;
+    for (int i = 0; i < kOrientations; ++i) {
+      const TriMesh mesh = turned_sphere(subdivisions, i);
+      peer += peer_force(mesh) / kOrientations;
+      if (subdivisions == 34) ours += our_force(mesh, fault) / kOrientations;
+    }
+    h.push_back(1.0 / subdivisions);
+    error.push_back(std::abs(peer / peer_limit - 1.0));
+  }
+  std::vector<Measurement> out;
+  out.push_back(
+      {.quantity = "Simbody's force, finest mesh, mean of 3 orientations, against its own limit [N]",
+       .computed = peer,
+       .exact = peer_limit,
+       .error = error.back(),
+       .bar = 5e-3,
+       .order = fitted_order(h, error),
+       .order_low = 1.9,
+       .order_high = 2.2,
+       .note = "order in facet size over 12 to 34 subdivisions of the icosahedron"});
+  out.push_back({.quantity = "Simbody's force over ours on the same meshes",
+                 .computed = peer / ours,
+                 .exact = ratio,
+                 .error = std::abs(peer / ours / ratio - 1.0),
+                 .bar = 1e-3,
+                 .note = fmt::format("{:.5g} N and {:.5g} N", peer, ours)});
+  return out;
+}
+
+}  // namespace
+
+ValidationCase elastic_foundation_peer() {
+  return {.name = "elastic-foundation-peer",
+          .section = "B",
+          .summary =
+              "Simbody's ElasticFoundationForce on the same sphere and plane: its limit, and its ratio to "
+              "ours",
+          .why =
+              "two codes that share nothing, on one problem: they must differ by what their laws differ by, "
+              "and by nothing else (area on the sphere against projected area)",
+          .run = run,
+          .faults = {"skin-area"}};
+}
+
+}  // namespace palpate::validation
