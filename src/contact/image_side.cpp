@@ -18,7 +18,7 @@ class SoftSide final : public ImageSide {
   }
   const Faces& faces() const override { return state_.faces(); }
   const Points& positions() override { return state_.positions(); }
-  Vec3 vertex(int vertex) const override { return state_.positions().col(vertex); }
+  Vec3 vertex(int vertex) const override { return state_.position(vertex); }
   void update(proxy::ProxySet& proxies) const override { proxies.update(state_.nodes()); }
   SurfacePoint point(int face, const Vec3& weights, const Vec3&) const override {
     return state_.face_point(face, weights);

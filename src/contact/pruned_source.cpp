@@ -76,7 +76,8 @@ class PrunedSource final : public ImageSource {
     std::vector<int> face_of;  ///< in the whole surface
     Patch patch;
 
-    void take(const Faces& all, const std::vector<int>& wanted) {
+    void take(const ImageSide& whole, const std::vector<int>& wanted) {
+      const Faces& all = whole.faces();
       for (const int vertex : taken_) local_[static_cast<std::size_t>(vertex)] = -1;
       taken_.clear();
       if (local_.empty()) local_.assign(static_cast<std::size_t>(all.maxCoeff()) + 1, -1);
@@ -92,13 +93,14 @@ class PrunedSource final : public ImageSource {
           }
           corners_(k, static_cast<Eigen::Index>(i)) = at;
         }
+      world_.resize(3, static_cast<Eigen::Index>(taken_.size()));
+      for (std::size_t i = 0; i < taken_.size(); ++i)
+        world_.col(static_cast<Eigen::Index>(i)) = whole.vertex(taken_[i]);
     }
     /// Along these axes, those whose normal has the sign `side` along the plane's: what faces away lies
     /// behind skin of its own body, which may be in another region.
-    void see(const ImageSide& whole, const ContactAxes& axes, double side) {
-      patch.uvw.resize(3, static_cast<Eigen::Index>(taken_.size()));
-      for (std::size_t i = 0; i < taken_.size(); ++i)
-        patch.uvw.col(static_cast<Eigen::Index>(i)) = axes.in_axes(whole.vertex(taken_[i]));
+    void see(const ContactAxes& axes, double side) {
+      axes.to_axes(world_, patch.uvw);
       face_of.clear();
       faces.resize(3, corners_.cols());
       for (Eigen::Index i = 0; i < corners_.cols(); ++i) {
@@ -117,18 +119,19 @@ class PrunedSource final : public ImageSource {
     Faces corners_;
     std::vector<int> local_;  ///< of the surface's vertices, -1: not taken
     std::vector<int> taken_;
+    Points world_;  ///< where these are
   };
 
   void take_pieces(const proxy::ContactRegion& region) {
     const ScopedTimer timer(stages_.patches_s);
-    piece_a_.take(a_->faces(), region.faces_a);
-    piece_b_.take(b_->faces(), region.faces_b);
+    piece_a_.take(*a_, region.faces_a);
+    piece_b_.take(*b_, region.faces_b);
   }
 
   ContactWindow fit_pieces(const ContactAxes& axes) {
     const ScopedTimer timer(stages_.patches_s);
-    piece_a_.see(*a_, axes, -1.0);
-    piece_b_.see(*b_, axes, 1.0);
+    piece_a_.see(axes, -1.0);
+    piece_b_.see(axes, 1.0);
     if (piece_a_.faces.cols() == 0 || piece_b_.faces.cols() == 0) return {};
     return fit_window(piece_a_.patch, piece_b_.patch, candidate_gap_);
   }

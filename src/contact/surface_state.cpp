@@ -8,8 +8,9 @@
 namespace palpate::contact {
 
 SurfaceState::SurfaceState(NodeSurface surface) : surface_(std::move(surface)) {
-  positions_.resize(3,
-                    is_skin() ? surface_.embedding.size() : static_cast<int>(surface_.node_of_vertex.size()));
+  vertex_count_ = is_skin() ? surface_.embedding.size() : static_cast<int>(surface_.node_of_vertex.size());
+  positions_.resize(3, vertex_count_);
+  if (is_skin()) evaluated_.assign(static_cast<std::size_t>(vertex_count_), 0);
   for (int f = 0; f < face_count(); ++f)
     for (int k = 0; k < 3; ++k)
       PALPATE_CHECK(surface_.faces(k, f) >= 0 && surface_.faces(k, f) < vertex_count(),
@@ -39,12 +40,28 @@ void SurfaceState::update(const dynamics::StateView& state) {
   ++updates_;
   if (is_skin()) {
     nodes_ = Eigen::Map<const Points>(state.q.data() + block->q_offset, 3, block->q_size / 3);
-    mesh::evaluate(surface_.embedding, surface_.tets, nodes_, positions_);
   } else {
     for (int v = 0; v < vertex_count(); ++v) positions_.col(v) = state.position(node(v));
   }
-  PALPATE_CHECK(positions_.allFinite(), "contact query at t = {}: a surface position is not finite",
-                state.time);
+  PALPATE_CHECK((is_skin() ? nodes_ : positions_).allFinite(),
+                "contact query at t = {}: a surface position is not finite", state.time);
+}
+
+const Points& SurfaceState::positions() const {
+  if (is_skin() && all_evaluated_ != updates_) {
+    mesh::evaluate(surface_.embedding, surface_.tets, nodes_, positions_);
+    std::fill(evaluated_.begin(), evaluated_.end(), static_cast<std::uint32_t>(updates_));
+    all_evaluated_ = updates_;
+  }
+  return positions_;
+}
+
+void SurfaceState::evaluate(int vertex) const {
+  const auto corner = surface_.tets.col(tet_of(vertex));
+  const auto w = surface_.embedding.weights.col(vertex);
+  positions_.col(vertex) = w[0] * nodes_.col(corner[0]) + w[1] * nodes_.col(corner[1]) +
+                           w[2] * nodes_.col(corner[2]) + w[3] * nodes_.col(corner[3]);
+  evaluated_[static_cast<std::size_t>(vertex)] = static_cast<std::uint32_t>(updates_);
 }
 
 Vec3 SurfaceState::velocity(int vertex, const dynamics::StateView& state) const {
@@ -88,8 +105,8 @@ SurfacePoint SurfaceState::face_point(int face, const Vec3& weights) const {
   }
   Eigen::Index nearest = 0;
   weights.maxCoeff(&nearest);
-  const Vec3 x = weights[0] * positions_.col(corner[0]) + weights[1] * positions_.col(corner[1]) +
-                 weights[2] * positions_.col(corner[2]);
+  const Vec3 x =
+      weights[0] * position(corner[0]) + weights[1] * position(corner[1]) + weights[2] * position(corner[2]);
   return point_of_tet(tet_of(corner[nearest]), x, surface_.embedding.weights.col(corner[nearest]));
 }
 
@@ -137,17 +154,18 @@ void SurfaceState::area_vectors(const std::vector<char>& wanted, Points& areas) 
     if (!wanted[static_cast<std::size_t>(i)] && !wanted[static_cast<std::size_t>(j)] &&
         !wanted[static_cast<std::size_t>(k)])
       continue;
-    const Vec3 edge1 = positions_.col(j) - positions_.col(i), edge2 = positions_.col(k) - positions_.col(i);
+    const Vec3 edge1 = position(j) - position(i), edge2 = position(k) - position(i);
     const Vec3 third = edge1.cross(edge2) / 6.0;
     for (const int v : {i, j, k}) areas.col(v) += third;
   }
 }
 
 double SurfaceState::mean_edge() const {
+  const Points& x = positions();
   double sum = 0.0;
   for (int f = 0; f < face_count(); ++f)
     for (int k = 0; k < 3; ++k)
-      sum += (positions_.col(surface_.faces(k, f)) - positions_.col(surface_.faces((k + 1) % 3, f))).norm();
+      sum += (x.col(surface_.faces(k, f)) - x.col(surface_.faces((k + 1) % 3, f))).norm();
   return face_count() > 0 ? sum / (3.0 * face_count()) : 0.0;
 }
 

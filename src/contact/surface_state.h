@@ -16,11 +16,18 @@ class SurfaceState {
 
   void update(const dynamics::StateView& state);
 
-  int vertex_count() const { return static_cast<int>(positions_.cols()); }
+  int vertex_count() const { return vertex_count_; }
   int face_count() const { return static_cast<int>(surface_.faces.cols()); }
   const Faces& faces() const { return surface_.faces; }
   const NodeSurface& surface() const { return surface_; }
-  const Points& positions() const { return positions_; }
+  const Points& positions() const;  ///< of all vertices
+  /// Of one.  A skin's vertices are evaluated when they are asked for, so that a query pays for those that
+  /// may touch, not for the skin.
+  Vec3 position(int vertex) const {
+    if (is_skin() && evaluated_[static_cast<std::size_t>(vertex)] != static_cast<std::uint32_t>(updates_))
+      evaluate(vertex);
+    return positions_.col(vertex);
+  }
   const Points& nodes() const { return nodes_; }  ///< of the block, of a skin only
   Vec3 velocity(int vertex, const dynamics::StateView& state) const;
   /// Of all nodes of the block: what a point of the surface moves with is a mean of some of them, but for the
@@ -65,7 +72,12 @@ class SurfaceState {
   std::vector<int> carriers_;  ///< of a skin: the tetrahedra that carry a vertex, each once
   int node_offset_ = 0;
   std::uint64_t pattern_version_ = 0;
-  Points positions_;
+  void evaluate(int vertex) const;
+
+  int vertex_count_ = 0;
+  mutable Points positions_;
+  mutable std::vector<std::uint32_t> evaluated_;  ///< of a skin's vertices: the update that they are of
+  mutable std::uint64_t all_evaluated_ = 0;       ///< likewise, of all of them
   Points nodes_;
   std::uint64_t updates_ = 1;
   mutable std::vector<TetFrame> frames_;  ///< of each tetrahedron, made when a point asks for it
