@@ -32,10 +32,10 @@ void VertexRule::find(const Region& region, std::span<const FacePair> pairs,
     gap_at_.assign(size, std::numeric_limits<double>::quiet_NaN());
     for (const Hit& hit : pixels) gap_at_[hit.pixel] = hit.at.gap();
   }
-  std::vector<Hit> hits;
-  find_on_side(region, true, pairs, lines, hits);
-  if (region.both_sides) find_on_side(region, false, pairs, lines, hits);
-  out.swap(hits);
+  hits_.clear();
+  find_on_side(region, true, pairs, lines, hits_);
+  if (region.both_sides) find_on_side(region, false, pairs, lines, hits_);
+  out.swap(hits_);
 }
 
 void VertexRule::collect(const Patch& patch, double side, double share) {

@@ -16,7 +16,7 @@ struct Hit {
   double area;         ///< projected [m^2]
 };
 
-/// Samples at the vertices of a region (Galoppo et al. 2007, section 5), once its image is there.
+/// Samples at the vertices of a region (Galoppo et al. 2007), once its image is there.
 ///
 /// Each vertex of a patch is a point of its own body, opposite the other body's triangle on the line through
 /// it; it stands for a third of the projected area of each adjacent triangle that is not turned away.  The
@@ -36,7 +36,7 @@ class VertexRule {
     DepthReading depths;  ///< of which the second asks for an image
   };
   /// @param pairs  of the image, ascending by pixel  @param doubtful  pixels with layers or walls, ascending
-  /// @param pixels  hits at the pixels: what depths are interpolated between
+  /// @param pixels  hits at the pixels: what depths are interpolated between; may be those of `out`
   void find(const Region& region, std::span<const FacePair> pairs, std::span<const std::uint32_t> doubtful,
             std::span<const Hit> pixels, ExactLines& lines, std::vector<Hit>& out);
 
@@ -57,6 +57,7 @@ class VertexRule {
   bool interpolate(const Region& region, bool of_a, Hit& hit) const;
 
   std::vector<Vertex> vertices_;
+  std::vector<Hit> hits_;
   std::vector<std::int32_t> pair_at_;  ///< by pixel: index into the pairs, -1: none
   std::vector<char> doubtful_;         ///< by pixel
   std::vector<double> gap_at_;         ///< by pixel [m]; NaN: none
