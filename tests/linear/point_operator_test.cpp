@@ -241,4 +241,53 @@ TEST_P(PointSolvers, TheErrorIsWhatTheToleranceSays) {
     }
 }
 
+// A node in contact that is held along one axis moves along the others, and only along these.
+TEST_P(PointSolvers, NodesMayBeHeldAlongOneAxis) {
+  constexpr double kStep = 1e-2;
+  BentBeam beam(8, 1e5);
+  BorderedMatrix whole;
+  VecX b, x, exact;
+  beam.at(0.5, kStep, whole, b);
+  const PointStiffness C = random_points(whole.body.block_rows(), 30, 20.0, 3);
+  BorderedMatrix all = with(whole, C, beam.system.driven_nodes());
+  std::vector<HeldNode> held = beam.system.driven_nodes();
+  std::vector<int> dofs;
+  const auto hold = [&](const PointStiffness::Nodes& nodes) {
+    for (int i = 0; i < nodes.count; ++i) {
+      const int node = nodes.node[static_cast<std::size_t>(i)];
+      if (std::any_of(held.begin(), held.end(), [&](const HeldNode& h) { return h.node == node; })) continue;
+      held.push_back({node, {true, false, false}});
+      dofs.push_back(3 * node);
+    }
+  };
+  for (int k = 0; k < 4; ++k) hold(C.along[static_cast<std::size_t>(k)].nodes);
+  hold(C.points[0].nodes);
+  ASSERT_GT(dofs.size(), 12u);
+  const auto is_held = [&](int dof) { return std::find(dofs.begin(), dofs.end(), dof) != dofs.end(); };
+  for (int i = 0; i < all.body.block_rows(); ++i)
+    for (int s = all.body.row_start()[static_cast<std::size_t>(i)];
+         s < all.body.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
+      const int j = all.body.columns()[static_cast<std::size_t>(s)];
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+          if (is_held(3 * i + r) || is_held(3 * j + c))
+            all.body.block(s)[3 * r + c] = i == j && r == c ? 1.0 : 0.0;
+    }
+  all.touch();
+  const auto solver = linear::make_linear_solver(GetParam(), {.step_s = kStep, .linear_rtol = 1e-4});
+  const auto direct = linear::make_linear_solver("cholmod");
+  ZeroRowSumMatrix* A = mixed(*solver).step_matrix(beam.pattern());
+  ASSERT_NE(A, nullptr);
+  beam.at(0.5, kStep, *A, b);
+  A->points = C;
+  A->held = &held;
+  for (const int dof : dofs) b[dof] = 0.0;
+  ASSERT_EQ(direct->factor(all), SolveStatus::kOk);
+  ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
+  ASSERT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kSolve);
+  ASSERT_EQ(solver->solve(b, x), SolveStatus::kOk);
+  EXPECT_LE(energy_norm(all, x - exact), 1e-4 * energy_norm(all, exact));
+  for (const int dof : dofs) EXPECT_EQ(x[dof], 0.0);
+}
+
 }  // namespace palpate
