@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "contact/contact_force_impl.h"
+#include "contact/image_source.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -35,9 +36,19 @@ void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
 void ContactForce::Impl::query(const dynamics::StateView& state) {
   const ScopedTimer timer(query_seconds);
   next_samples.clear();
+  together.clear();
+  for (const Pair& pair : pairs)
+    if (ImageSource* source = pair.source->asks_together()) {
+      source->open(state);
+      together.push_back(source);
+    }
+  answer_together(together);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     pairs[i].begin = next_samples.size();
-    pairs[i].source->query(state, next_samples);
+    if (ImageSource* source = pairs[i].source->asks_together())
+      source->close(next_samples);
+    else
+      pairs[i].source->query(state, next_samples);
     pairs[i].end = next_samples.size();
     for (std::size_t s = pairs[i].begin; s < pairs[i].end; ++s) next_samples[s].source = static_cast<int>(i);
   }

@@ -17,6 +17,7 @@ struct ContactForce::Impl {
   std::vector<std::shared_ptr<MovingFrame>> frames;
   std::vector<Pair> pairs;
   std::vector<ContactSample> samples, next_samples;
+  std::vector<ImageSource*> together;    ///< scratch of a query
   SampleGroups groups;                   ///< of all pairs without friction
   std::vector<FrameState> frame_states;  ///< at the state of the evaluation under way
   std::vector<int> frame_rows;           ///< scratch

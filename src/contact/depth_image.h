@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "contact/contact_view.h"
@@ -11,6 +12,16 @@ namespace palpate::contact {
 struct FacePair {
   std::uint32_t at;  ///< which line: of an image row * width + column of its pixel
   std::uint32_t a, b;
+};
+
+/// One image that a contact region asks for, and the answer.
+struct DepthRequest {
+  const Patch *a = nullptr, *b = nullptr;
+  ContactCamera camera;
+  double candidate_gap = 0.0;  ///< [m]
+
+  std::vector<FacePair> pairs;         ///< as DepthImage::find_pairs has them
+  std::vector<std::uint32_t> layered;  ///< likewise
 };
 
 /// The two images of a contact region, both seen along the normal: of a the lowest point above each pixel's
@@ -26,6 +37,12 @@ class DepthImage {
   ///   may not be all that there is; ascending.  Where triangles share an edge, a pixel on it may be named.
   virtual void find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera, double candidate_gap,
                           std::vector<FacePair>& pairs, std::vector<std::uint32_t>& layered) = 0;
+  /// Answers all requests, which may be of different regions and pairs of bodies.  On the GPU many at once
+  /// cost little more than one; on the processor each costs what it costs by itself.
+  virtual void answer(std::span<DepthRequest* const> requests) {
+    for (DepthRequest* r : requests)
+      find_pairs(*r->a, *r->b, r->camera, r->candidate_gap, r->pairs, r->layered);
+  }
 };
 
 /// @param pixels  most along an edge

@@ -1,75 +1,68 @@
 #pragma once
 #include <memory>
-#include <optional>
+#include <span>
 #include <vector>
 
 #include "contact/coupled_nodes.h"
-#include "contact/depth_image.h"
-#include "contact/facing.h"
-#include "contact/quadrature.h"
-#include "contact/vertex_rule.h"
-#include "palpate/contact/sources.h"
+#include "contact/image_region.h"
 
 namespace palpate::contact {
 
-/// What the sources in image space share: two sides, which may be the same, an image, and what their samples
-/// couple.  Side a is soft; the normal points from b to a.
+/// What the sources in image space share: two sides, which may be the same, and what their samples couple.
+/// Side a is soft; the normal points from b to a.
+///
+/// A query goes in phases: the regions are collected; round by round each one that is still open asks for an
+/// image, a backend answers, and the regions look at it; in the end they make their samples.  One region
+/// after the other goes through all rounds, or, where the backend would rather have many requests at once,
+/// all regions of all sources together (answer_together).
 class ImageSource : public SampleSource {
  public:
   ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b, const ImageOptions& options);
-  std::string_view name() const override { return backend_name(options_.backend); }
+  std::string_view name() const override { return backend_name(context_.options.backend); }
   void add_pattern(dynamics::PatternBuilder& pattern) const override;
   std::uint64_t pattern_version() const override;
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) final;
-  const QueryStages* stages() const final { return &stages_; }
+  const QueryStages* stages() const final { return &context_.stages; }
+  ImageSource* asks_together() final {
+    return context_.options.backend == DepthBackend::kGpu ? this : nullptr;
+  }
+
+  /// The phases of a query, for the sources whose requests are answered together.
+  void open(const dynamics::StateView& state);               ///< collects the regions
+  void collect(std::vector<DepthRequest*>& requests) const;  ///< appends what open regions ask for
+  void take();                                               ///< all of these were answered
+  void close(std::vector<ContactSample>& samples);           ///< appends samples
+  DepthImage& image();                                       ///< made when it is first asked for
+  void add_image_time(double seconds) { context_.stages.images_s += seconds; }
 
  protected:
-  virtual void look(std::vector<ContactSample>& samples) = 0;  ///< at the sides as they are
-  /// Fills `hits_` at the pixels by the image, which is made when something is to be seen: all that is nearer
-  /// than the candidate gap.
-  void see(const Patch& a, const Patch& b, const ContactCamera& camera);
-  /// After the image that counts: pixels with layers or walls, of which an image shows too little, by exact
-  /// lines; then what `samples` asks for in `hits_`, with what the pixels err counted.
-  void finish(const Patch& a, const Patch& b, const ContactCamera& camera);
-  /// Pixels of the first image of a region: all, or as many as tell which the wanted error needs.
-  int first_pixels() const;
-  /// After an image of `camera`: the camera that the wanted error needs, or that shows triangles one by one
-  /// to the vertices, of the part of the window where something was seen.  False where the image will do.
-  bool needs_finer(const Patch& a, const Patch& b, const ContactWindow& window, const ContactCamera& camera,
-                   ContactCamera& finer);
-  bool of_one_body() const { return a_ == b_; }
-  Eigen::Vector2d shift() const { return {options_.shift_u, options_.shift_v}; }
+  virtual std::size_t find_regions() = 0;  ///< of the sides as they are; how many
+  virtual std::unique_ptr<ImageRegion> make_region() = 0;
+  /// Starts on region number `index`, in an object that another one may have used.
+  virtual void start(ImageRegion& region, std::size_t index) = 0;
 
-  std::shared_ptr<ImageSide> a_, b_;
-  ImageOptions options_;
-  double candidate_gap_ = 0.0;  ///< of the query under way [m]
-  std::vector<Hit> hits_;
-  QueryStages stages_;
+  RegionContext context_;
 
  private:
-  bool take_pair(const FacePair& pair, const Patch& a, const Patch& b, const ContactCamera& camera);
-  void ask_lines(const Patch& a, const Patch& b, const ContactCamera& camera);
-  bool samples_vertices() const { return options_.samples == SampleRule::kVertex; }
-  void count_error(const ContactCamera& camera);
-  const QuadratureEstimate& estimate_of(const ContactCamera& camera);  ///< of pixels in `hits_`, made once
+  std::size_t begin(const dynamics::StateView& state);
+  void end(std::span<const ContactSample> samples);
+  ImageRegion& region(std::size_t place);
 
   std::unique_ptr<DepthImage> image_;
-  std::vector<FacePair> pairs_;
-  FacePlanes planes_a_, planes_b_;
-  ExactLines lines_;
-  std::vector<std::uint32_t> layered_, doubtful_;  ///< pixels
-  std::vector<Eigen::Vector2d> middles_;           ///< of doubtful pixels
-  std::vector<FacePair> by_lines_;
-  VertexRule vertices_;
-  DepthGrid grid_;
-  std::optional<QuadratureEstimate> estimate_;
-  double volume_ = 0.0, variance_ = 0.0;  ///< of the query's regions [m^3], [m^6]
-  CoupledNodes coupled_;                  // of two soft sides
+  std::vector<std::unique_ptr<ImageRegion>> regions_;
+  std::size_t open_ = 0;  ///< of `regions_`, in the query under way
+  CoupledNodes coupled_;  // of two soft sides
   NodeNeighbours neighbours_a_, neighbours_b_;
   std::uint64_t sides_version() const;  // grows with what either side couples by itself
   std::uint64_t counted_ = 0;           // the one that `coupled_` was made for
 };
 
+/// The rounds of all these sources, which are open and of one backend, by the image of the first.
+void answer_together(std::span<ImageSource* const> sources);
+
+/// One region: both surfaces whole.
+std::unique_ptr<SampleSource> make_whole_source(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide> b,
+                                                const ImageOptions& options);
 std::unique_ptr<SampleSource> make_pruned_source(std::shared_ptr<ImageSide> a,
                                                  std::shared_ptr<proxy::ProxySet> proxies_a,
                                                  std::shared_ptr<ImageSide> b,

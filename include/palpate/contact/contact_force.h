@@ -38,6 +38,8 @@ struct QueryStages {
   double quadrature_error = 0.0, largest_quadrature_error = 0.0;
 };
 
+class ImageSource;
+
 /// Makes the samples of one pair from the current state: the slow query between which gaps are linear.
 class SampleSource {
  public:
@@ -55,6 +57,8 @@ class SampleSource {
   virtual const proxy::PruneCounts* pruning() const { return nullptr; }
   /// Of a source in image space; else null.
   virtual const QueryStages* stages() const { return nullptr; }
+  /// A source whose images are made together with those of others; else null.
+  virtual ImageSource* asks_together() { return nullptr; }
 };
 
 /// Pressure p(gap, gap_rate) [Pa] and its derivatives; p >= 0 always (never adhesive), zero for gap >= 0.

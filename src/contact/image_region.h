@@ -1,0 +1,79 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "contact/depth_image.h"
+#include "contact/facing.h"
+#include "contact/quadrature.h"
+#include "contact/vertex_rule.h"
+#include "palpate/contact/sources.h"
+
+namespace palpate::contact {
+
+/// What the regions of one source share.
+struct RegionContext {
+  std::shared_ptr<ImageSide> a, b;
+  ImageOptions options;
+  QueryStages stages;
+  double candidate_gap = 0.0;           ///< of the query under way [m]
+  double volume = 0.0, variance = 0.0;  ///< of its regions [m^3], [m^6]
+
+  // scratch of the region that is being worked on
+  ExactLines lines;
+  VertexRule vertices;
+  DepthGrid grid;
+  std::vector<Eigen::Vector2d> middles;  ///< of doubtful pixels
+  std::vector<FacePair> by_lines;
+
+  bool of_one_body() const { return a == b; }
+  bool samples_vertices() const { return options.samples == SampleRule::kVertex; }
+  Eigen::Vector2d shift() const { return {options.shift_u, options.shift_v}; }
+  /// Pixels of the first image of a region: all, or as many as tell which the wanted error needs.
+  int first_pixels() const;
+};
+
+/// A contact region on its way from triangles to samples.  It asks for an image, looks at the answer, may ask
+/// for another one, and in the end has samples; who answers, and with which regions at once, is not its
+/// affair.
+class ImageRegion {
+ public:
+  explicit ImageRegion(RegionContext& context) : context_(context) {}
+  virtual ~ImageRegion() = default;
+  DepthRequest* wanted() { return asks_ ? &request_ : nullptr; }         ///< null: nothing more
+  virtual void take() = 0;                                               ///< `wanted` was answered
+  virtual void append_samples(std::vector<ContactSample>& samples) = 0;  ///< @pre nothing more is wanted
+
+ protected:
+  void forget();  ///< before another region
+  /// Asks for an image; false, and no hits, where that would see nothing.
+  bool ask(const ContactCamera& camera);
+  /// Fills `hits_` at the pixels by the image: all that is nearer than the candidate gap.
+  void see();
+  /// After an image: asks for the one that the wanted error needs, or that shows triangles one by one to the
+  /// vertices, of the part of the window where something was seen.  False where the image will do.
+  bool ask_finer(const ContactWindow& window);
+  /// After the image that counts: pixels with layers or walls, of which an image shows too little, by exact
+  /// lines; then what `samples` asks for in `hits_`, with what the pixels err counted.
+  void finish();
+
+  RegionContext& context_;
+  ContactAxes axes_;
+  Patch a_, b_;
+  std::vector<Hit> hits_;
+
+ private:
+  const ContactCamera& camera() const { return request_.camera; }
+  bool take_pair(const FacePair& pair);
+  void ask_lines();
+  void count_error();
+  const QuadratureEstimate& estimate();  ///< of pixels in `hits_`, made once
+
+  bool asks_ = false;
+  DepthRequest request_;
+  FacePlanes planes_a_, planes_b_;
+  std::vector<std::uint32_t> doubtful_;  ///< pixels
+  std::optional<QuadratureEstimate> estimate_;
+};
+
+}  // namespace palpate::contact

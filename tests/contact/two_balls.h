@@ -1,0 +1,61 @@
+#pragma once
+#include "backends.h"
+#include "grid_proxies.h"
+#include "surfaces.h"
+
+namespace contact_tests {
+
+/// A ball of tetrahedra, and above it another one, rotated, larger and pressed into it; both under fine
+/// skins, with velocities.
+struct TwoBalls {
+  struct Body {
+    LayeredModel model;
+    contact::NodeSurface surface;
+    std::shared_ptr<proxy::ProxySet> proxies;
+  };
+  dynamics::State state;
+  Body a, b;
+
+  TwoBalls()
+      : a(body(Pose{}, 1.0)), b(body({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2)) {}
+
+  Body body(const Pose& pose, double scale) {
+    Body out;
+    out.model.tets = mesh::ball(1.0, 0.45);
+    out.model.skin = mesh::sphere(1.0, 12);
+    for (Points* points : {&out.model.tets.nodes, &out.model.skin.vertices})
+      for (auto x : points->colwise()) x = pose * Vec3(scale * x);
+    out.surface.faces = out.model.skin.faces;
+    out.surface.embedding = mesh::embed(out.model.tets, out.model.skin.vertices);
+    out.surface.tets = out.model.tets.tets;
+    out.proxies = proxies_of(out.model.tets, out.model.skin, out.surface.embedding, 3);
+    dynamics::BlockSpec nodes;
+    nodes.name = "ball";
+    nodes.q_size = nodes.u_size = static_cast<int>(out.model.tets.nodes.size());
+    VecX speeds(nodes.u_size);
+    for (Eigen::Index i = 0; i < speeds.size(); ++i)
+      speeds[i] = 0.1 * std::sin(1.0 + static_cast<double>(i) + scale);
+    out.surface.block_id =
+        state.insert(nodes, Eigen::Map<const VecX>(out.model.tets.nodes.data(), nodes.q_size), speeds);
+    return out;
+  }
+
+  contact::SampleRule samples = contact::SampleRule::kPixel;
+  contact::DepthReading depths = contact::DepthReading::kTriangles;
+  contact::ImageOptions options() const {
+    contact::ImageOptions out = image_options(96, 0.02);
+    out.samples = samples;
+    out.depths = depths;
+    return out;
+  }
+  std::unique_ptr<contact::SampleSource> swapped() const {
+    return contact::make_image_source(b.surface, b.proxies, a.surface, a.proxies, options());
+  }
+  std::unique_ptr<contact::SampleSource> source(bool pruned) const {
+    return pruned ? contact::make_image_source(a.surface, a.proxies, b.surface, b.proxies, options())
+                  : contact::make_image_source(a.surface, b.surface, options());
+  }
+  int nodes_of_a() const { return static_cast<int>(a.model.tets.nodes.cols()); }
+};
+
+}  // namespace contact_tests
