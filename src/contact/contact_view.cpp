@@ -33,17 +33,22 @@ Box see_all(Patch& patch) {
 }
 
 /// Keeps the faces of `patch.visible` that reach into `window`; returns their bounds.
+/// No processor can guess which faces reach in: every face is written to the next place, which goes on where
+/// the face is kept.
 Box cut(Patch& patch, const Box& window) {
   Box bounds;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < patch.visible.size(); ++i) {
     const Box box = patch.boxes[i];
-    if ((box.low.array() > window.high.array()).any() || (box.high.array() < window.low.array()).any())
-      continue;
-    bounds.low = bounds.low.cwiseMin(box.low);
-    bounds.high = bounds.high.cwiseMax(box.high);
+    bool keep = true;
+    for (int k = 0; k < 3; ++k) keep &= (box.low[k] <= window.high[k]) & (box.high[k] >= window.low[k]);
+    for (int k = 0; k < 3; ++k) {
+      bounds.low[k] = std::min(bounds.low[k], keep ? box.low[k] : kInfinity);
+      bounds.high[k] = std::max(bounds.high[k], keep ? box.high[k] : -kInfinity);
+    }
     patch.boxes[kept] = box;
-    patch.visible[kept++] = patch.visible[i];
+    patch.visible[kept] = patch.visible[i];
+    kept += keep;
   }
   patch.visible.resize(kept);
   patch.boxes.resize(kept);

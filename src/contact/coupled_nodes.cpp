@@ -6,9 +6,10 @@
 namespace palpate::contact {
 namespace {
 
-void sort_unique(std::vector<std::pair<int, int>>& pairs) {
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+int node_count(const dynamics::NodePairs& pairs) {
+  int last = -1;
+  for (const auto& [i, j] : pairs) last = std::max(last, i);
+  return last + 1;
 }
 
 bool same_nodes(const ContactSample& s, const ContactSample& t) {
@@ -54,6 +55,7 @@ void CoupledNodes::find_met(std::span<const ContactSample> samples) {
   table_.assign(size, -1);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const ContactSample& s = samples[k];
+    if (k > 0 && same_nodes(samples[k - 1], s)) continue;  // neighbours in a row of pixels
     std::size_t at = hash_of(s) & (size - 1);
     while (table_[at] >= 0 && !same_nodes(samples[static_cast<std::size_t>(table_[at])], s))
       at = (at + 1) & (size - 1);
@@ -63,18 +65,18 @@ void CoupledNodes::find_met(std::span<const ContactSample> samples) {
       for (int j = 0; j < s.b.count; ++j)
         met_.emplace_back(s.a.node[static_cast<std::size_t>(i)], s.b.node[static_cast<std::size_t>(j)]);
   }
-  sort_unique(met_);
+  dynamics::sort_unique(met_, node_count(met_));
 }
 
 void CoupledNodes::widen(const NodeNeighbours& a, const NodeNeighbours& b) {
   both_.clear();
   for (const auto& [i, j] : met_)
     for (const int near : a.of(i)) both_.emplace_back(near, j);
-  sort_unique(both_);
+  dynamics::sort_unique(both_, node_count(both_));
   wide_.clear();
   for (const auto& [i, j] : both_)
     for (const int near : b.of(j)) wide_.emplace_back(i, near);
-  sort_unique(wide_);
+  dynamics::sort_unique(wide_, node_count(wide_));
 }
 
 void CoupledNodes::take(std::span<const ContactSample> samples, const NodeNeighbours& a,

@@ -23,9 +23,13 @@ void FacePlanes::prepare(Plane& plane, int face) const {
     plane.state = Plane::kEdgeOn;
     return;
   }
+  constexpr double kSteep = 5.0;  // slope: 79 degrees
   const Vec3 p0 = corner(0);
-  plane = {p0.x(),        p0.y(), d2.y() / area, -d2.x() / area, -d1.y() / area,
-           d1.x() / area, p0.z(), d1.z(),        d2.z(),         Plane::kReady};
+  plane = {p0.x(), p0.y(), d2.y() / area, -d2.x() / area, -d1.y() / area, d1.x() / area,
+           p0.z(), d1.z(), d2.z(),        Plane::kReady,  false};
+  const double along_u = plane.u1 * plane.w1 + plane.u2 * plane.w2,
+               along_v = plane.v1 * plane.w1 + plane.v2 * plane.w2;
+  plane.wall = along_u * along_u + along_v * along_v > kSteep * kSteep;
 }
 
 FacePlanes::Plane& FacePlanes::plane(int visible) {
@@ -35,11 +39,8 @@ FacePlanes::Plane& FacePlanes::plane(int visible) {
 }
 
 bool FacePlanes::is_wall(int visible) {
-  constexpr double kSteep = 5.0;  // slope: 79 degrees
   const Plane& p = plane(visible);
-  if (p.state == Plane::kEdgeOn) return true;
-  const double along_u = p.u1 * p.w1 + p.u2 * p.w2, along_v = p.v1 * p.w1 + p.v2 * p.w2;
-  return along_u * along_u + along_v * along_v > kSteep * kSteep;
+  return p.state == Plane::kEdgeOn || p.wall;
 }
 
 bool FacePlanes::at(int visible, double u, double v, Vec3& weights, double& w) {

@@ -32,6 +32,7 @@ class FacePlanes {
     double u1, v1, u2, v2;  ///< gradients of the weights of corners 1 and 2
     double w0, w1, w2;      ///< heights: of corner 0, of the others against it
     enum : int { kUnknown, kEdgeOn, kReady } state;
+    bool wall;  ///< so steep that an image is not enough
   };
   Plane& plane(int visible);
   void prepare(Plane& plane, int face) const;

@@ -47,6 +47,7 @@ bool ImageRegion::ask(const ContactCamera& camera) {
 
 void ImageRegion::see() {
   ++context_.stages.images;
+  context_.stages.pixels += static_cast<long>(camera().width) * camera().height;
   context_.stages.pairs += static_cast<long>(request_.pairs.size());
   const ScopedTimer timer(context_.stages.gaps_s);
   forget();
@@ -59,6 +60,8 @@ void ImageRegion::see() {
     const bool layers = next_layered < layered.size() && layered[next_layered] == pair.at;
     if (!take_pair(pair) || layers) doubtful_.push_back(pair.at);
   }
+  // In first images too: the axes, the window and the pixels that follow are then the same whoever draws.
+  if (context_.options.backend != DepthBackend::kExact && !doubtful_.empty()) ask_lines();
 }
 
 /// False where an image is not enough and exact lines have to tell: on walls, and where the pixel's middle
@@ -90,8 +93,10 @@ void ImageRegion::ask_lines() {
   context_.lines.through(middles, a_, b_, camera(), context_.candidate_gap, context_.by_lines);
   context_.stages.lines += static_cast<long>(doubtful_.size());
   estimate_.reset();
+  auto next = doubtful_.begin();  // both ascend
   std::erase_if(hits_, [&](const Hit& hit) {
-    return std::binary_search(doubtful_.begin(), doubtful_.end(), hit.pixel);
+    while (next != doubtful_.end() && *next < hit.pixel) ++next;
+    return next != doubtful_.end() && *next == hit.pixel;
   });
   const auto certain = static_cast<std::ptrdiff_t>(hits_.size());
   for (FacePair pair : context_.by_lines) {
@@ -103,11 +108,6 @@ void ImageRegion::ask_lines() {
 }
 
 void ImageRegion::finish() {
-  const bool by_lines = context_.options.backend == DepthBackend::kExact;
-  if (!by_lines && !doubtful_.empty()) {
-    const ScopedTimer timer(context_.stages.gaps_s);
-    ask_lines();
-  }
   if (!context_.samples_vertices()) return count_error();
   const ScopedTimer timer(context_.stages.gaps_s);
   const VertexRule::Region region{.a = a_,
@@ -116,7 +116,7 @@ void ImageRegion::finish() {
                                   .planes_a = planes_a_,
                                   .planes_b = planes_b_,
                                   .candidate_gap = context_.candidate_gap,
-                                  .lines_only = by_lines,
+                                  .lines_only = context_.options.backend == DepthBackend::kExact,
                                   .both_sides = context_.b->soft() != nullptr,
                                   .depths = context_.options.depths};
   context_.vertices.find(region, request_.pairs, doubtful_, hits_, context_.lines, hits_);

@@ -48,13 +48,13 @@ class ImageRegion {
   void forget();  ///< before another region
   /// Asks for an image; false, and no hits, where that would see nothing.
   bool ask(const ContactCamera& camera);
-  /// Fills `hits_` at the pixels by the image: all that is nearer than the candidate gap.
+  /// Fills `hits_` at the pixels: all that is nearer than the candidate gap, by the image, and by exact lines
+  /// at pixels with layers or walls, of which an image shows too little, and where it rounded to a neighbour.
   void see();
   /// After an image: asks for the one that the wanted error needs, or that shows triangles one by one to the
   /// vertices, of the part of the window where something was seen.  False where the image will do.
   bool ask_finer(const ContactWindow& window);
-  /// After the image that counts: pixels with layers or walls, of which an image shows too little, by exact
-  /// lines; then what `samples` asks for in `hits_`, with what the pixels err counted.
+  /// After the image that counts: what `samples` asks for in `hits_`, with what the pixels err counted.
   void finish();
 
   RegionContext& context_;

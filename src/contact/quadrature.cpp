@@ -1,9 +1,9 @@
 #include "contact/quadrature.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 // A region's force is k times its overlap volume, the integral of the depth f, which the pixels sum up on a
 // square grid of edge h.  f is continuous and vanishes at the border of the overlap; its slope jumps there
@@ -62,34 +62,43 @@ void DepthGrid::start(const ContactCamera& camera) {
   width_ = camera.width;
   height_ = camera.height;
   pixel_ = camera.pixel;
-  depth_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0.0);
+  depth_.setZero(width_ + 2 * kRim, height_ + 2 * kRim);
+  rows_ = columns_ = {};
 }
 
+namespace {
+
+/// Square of the depth f of a wall's last pixel, with nothing on one side and `inside` on the other.
+double squared_wall(double f, double inside) {
+  const double wall = std::max(0.0, f - 2.0 * std::abs(inside - f));
+  return wall * wall;
+}
+
+}  // namespace
+
 QuadratureEstimate DepthGrid::estimate() const {
-  double sum = 0.0, second = 0.0, walls = 0.0;
-  for (const double f : depth_) sum += f;
-  // One row or column; beyond both ends there is nothing.
-  const auto line = [&](std::size_t first, std::size_t stride, int count) {
-    const auto at = [&](int i) {
-      return i < 0 || i >= count ? 0.0 : depth_[first + static_cast<std::size_t>(i) * stride];
-    };
-    for (int i = -1; i <= count; ++i) {
-      const double before = at(i - 1), f = at(i), after = at(i + 1);
-      const double bend = before - 2.0 * f + after;
-      second += bend * bend;
-      if (f <= 0.0) continue;
-      for (const auto& [outside, inside] : {std::array{before, after}, std::array{after, before}})
-        if (outside <= 0.0 && inside > 0.0) {
-          const double wall = std::max(0.0, f - 2.0 * std::abs(inside - f));
-          walls += wall * wall;
-        }
-    }
-  };
-  for (int row = 0; row < height_; ++row)
-    line(static_cast<std::size_t>(row) * static_cast<std::size_t>(width_), 1, width_);
-  for (int column = 0; column < width_; ++column)
-    line(static_cast<std::size_t>(column), static_cast<std::size_t>(width_), height_);
   QuadratureEstimate out;
+  if (rows_.is_empty()) return out;
+  double sum = 0.0, second = 0.0, walls = 0.0;
+  // One pixel beyond the depths on all sides: there the second differences begin.
+  const int left = columns_.first - 1 + kRim, count = columns_.last - columns_.first + 3;
+  for (int row = rows_.first - 1 + kRim; row <= rows_.last + 1 + kRim; ++row) {
+    const auto here = depth_.col(row).segment(left, count);
+    const auto west = depth_.col(row).segment(left - 1, count),
+               east = depth_.col(row).segment(left + 1, count);
+    const auto south = depth_.col(row - 1).segment(left, count),
+               north = depth_.col(row + 1).segment(left, count);
+    sum += here.sum();
+    second += (west - 2.0 * here + east).square().sum() + (south - 2.0 * here + north).square().sum();
+    for (int i = 0; i < count; ++i) {
+      const double f = here[i];
+      if (f <= 0.0) continue;
+      for (const auto& [p, q] : {std::pair{west[i], east[i]}, std::pair{south[i], north[i]}}) {
+        if (p <= 0.0 && q > 0.0) walls += squared_wall(f, q);
+        if (q <= 0.0 && p > 0.0) walls += squared_wall(f, p);
+      }
+    }
+  }
   out.volume = sum * pixel_ * pixel_;
   out.kinks = 9.0 * std::numbers::pi / 16.0 * second / pixel_;
   out.steps = 0.25 * std::numbers::pi * walls * pixel_;

@@ -1,5 +1,6 @@
 #pragma once
-#include <vector>
+#include <algorithm>
+#include <cstdint>
 
 #include "contact/contact_view.h"
 
@@ -25,14 +26,30 @@ class DepthGrid {
   void start(const ContactCamera& camera);
   /// Adds depth where two layers of a pixel overlap.
   void add(std::uint32_t pixel, double gap) {
-    if (gap < 0.0) depth_[pixel] -= gap;
+    if (!(gap < 0.0)) return;
+    const int row = static_cast<int>(pixel) / width_, column = static_cast<int>(pixel) % width_;
+    depth_(column + kRim, row + kRim) -= gap;
+    rows_.take(row);
+    columns_.take(column);
   }
   QuadratureEstimate estimate() const;
 
  private:
+  /// Where the depth is not zero.
+  struct Span {
+    int first = 1, last = 0;
+    bool is_empty() const { return first > last; }
+    void take(int i) {
+      first = is_empty() ? i : std::min(first, i);
+      last = std::max(last, i);
+    }
+  };
+  static constexpr int kRim = 2;  ///< of zeros: a second difference next to the image has neighbours
+
   int width_ = 0, height_ = 0;
   double pixel_ = 0.0;
-  std::vector<double> depth_;  ///< row by row [m]
+  Eigen::ArrayXXd depth_;  ///< column by row, so that a row of pixels is contiguous, within a rim [m]
+  Span rows_, columns_;
 };
 
 }  // namespace palpate::contact

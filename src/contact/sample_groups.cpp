@@ -154,7 +154,12 @@ void SampleGroups::append(std::span<const ContactSample> samples, const Pressure
   for (std::size_t i = 0; i < samples.size(); ++i) {
     PALPATE_CHECK(samples[i].a.frame < 0, "a contact sample has a frame on its first side");
     if (i > 0 && samples[i].normal != samples[i - 1].normal) first_of_run = groups_.size();
-    group_of_sample_[i] = group_of(samples[i], law, first_of_run);
+    // neighbours in a row of pixels mostly share their nodes: no search
+    const int last = i > 0 ? group_of_sample_[i - 1] : -1;
+    group_of_sample_[i] =
+        last >= static_cast<int>(first_of_run) && belongs(groups_[static_cast<std::size_t>(last)], samples[i])
+            ? last
+            : group_of(samples[i], law, first_of_run);
   }
   fill(samples, first_group);
 }

@@ -51,9 +51,10 @@ struct TwoBalls {
   std::unique_ptr<contact::SampleSource> swapped() const {
     return contact::make_image_source(b.surface, b.proxies, a.surface, a.proxies, options());
   }
-  std::unique_ptr<contact::SampleSource> source(bool pruned) const {
-    return pruned ? contact::make_image_source(a.surface, a.proxies, b.surface, b.proxies, options())
-                  : contact::make_image_source(a.surface, b.surface, options());
+  std::unique_ptr<contact::SampleSource> source(bool pruned) const { return source(pruned, options()); }
+  std::unique_ptr<contact::SampleSource> source(bool pruned, const contact::ImageOptions& wanted) const {
+    return pruned ? contact::make_image_source(a.surface, a.proxies, b.surface, b.proxies, wanted)
+                  : contact::make_image_source(a.surface, b.surface, wanted);
   }
   int nodes_of_a() const { return static_cast<int>(a.model.tets.nodes.cols()); }
 };

@@ -32,6 +32,7 @@ struct QueryStages {
   double images_s = 0.0;     ///< which triangles face each other
   double gaps_s = 0.0;       ///< gaps in double, and samples
   long images = 0, pairs = 0;
+  long pixels = 0;  ///< of all images
   long lines = 0;  ///< pixels with layers or walls, or on a triangle's rim: an image left them to exact lines
   /// Standard error that the pixels left in the overlap volume, relative, as they estimate it themselves:
   /// of the last query with an overlap, and the largest.
