@@ -87,7 +87,9 @@ struct BenchArguments {
   /// of leave-out; empty: falling-ball and cantilever; of contact; empty: those of the paper
   std::vector<std::string> scenes;
   std::vector<std::string> methods = {"cpu"};  ///< of contact
-  std::vector<int> pixels;                     ///< of contact; empty: 256
+  std::vector<int> pixels;                     ///< of contact; empty: as the scene wants, and 256
+  bool all = false;                            ///< of contact: every backend, 64 to 1024 pixels
+  bool growth = false;                         ///< of contact: growth with skin and region instead
   int steps = 20;                              ///< of fem
   int cells = 0;         ///< of fem, along one beam by way of a scene; 0: the sizes below
   double step_s = 0.01;  ///< of fem with cells

@@ -299,6 +299,9 @@ void add_bench(CLI::App& app, Invocation& invocation) {
                    "contact: longer edge of the images; 0: as the scene wants; default 0,256")
       ->delimiter(',')
       ->check(CLI::Range(0, 4096));
+  command->add_flag("--all", arguments->all, "contact: every backend, 64 to 1024 pixels");
+  command->add_flag("--growth", arguments->growth,
+                    "contact: how a query grows with the skin's vertices and the region's area instead");
   command->add_option("--linear-rtol", arguments->linear_rtols, "fem: tolerances; default 1e-6,1e-3")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
@@ -335,7 +338,9 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   palpate bench fem --size S,M,L --threads 1 -o out/bench
   palpate bench fem --accuracy -o out/bench
   palpate bench fem --cells 16 --step-s 0.001
+  palpate bench contact                          the paper's pairs: stages, and contact beside a step
   palpate bench contact touch-head --method cpu,gpu --pixels 128,256,512
+  palpate bench contact --growth                 skins of 10,000 to 1,000,000 vertices
   palpate bench leave-out falling-ball --repeats 9)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return bench(*arguments); };

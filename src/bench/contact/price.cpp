@@ -1,0 +1,80 @@
+#include <algorithm>
+
+#include "bench/contact/statistics.h"
+#include "palpate/bench/contact.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+#include "palpate/loop/run.h"
+
+namespace palpate::bench {
+namespace {
+
+constexpr double kInteractive = 1e-3;  ///< tolerance of an interactive step's linear solve
+constexpr double kFriction = 0.3;
+const Vec3 kGravity(0, 0, -9.81);
+
+/// Run time of each period of a scene without contact [ms].
+class PeriodTimes : public loop::Observer {
+ public:
+  void period(loop::World&, double) override {
+    const double now = wall_seconds();
+    if (last_ > 0.0) ms_.push_back(1e3 * (now - last_));
+    last_ = wall_seconds();
+  }
+  /// The first one carries the symbolic analysis and is left out.
+  double median_ms() const {
+    return ms_.size() < 2 ? 0.0 : median(std::vector<double>(ms_.begin() + 1, ms_.end()));
+  }
+
+ private:
+  double last_ = 0.0;
+  std::vector<double> ms_;
+};
+
+/// The bodies alone, falling under their weight as far as they are not held: at rest there is nothing to
+/// solve.
+double bodies_alone_ms(scene::Description d, const std::atomic<bool>* stop) {
+  RecordSpec record;  // nothing is kept, but without contact its period is the loop's
+  record.states = false;
+  record.state_period_s = loop::period_of(d);
+  d.record = record;
+  d.contacts.clear();
+  d.obstacles.clear();
+  d.tool.reset();
+  d.device.reset();
+  d.gravity_m_s2 = kGravity;
+  d.integrator.threads = 1;
+  const auto world = loop::assemble(d);
+  PeriodTimes times;
+  loop::RunOptions options;
+  options.observers = {&times};
+  options.stop = stop;
+  const loop::RunResult result = loop::run(*world, options);
+  if (!result.status.ok()) fail("bench contact: {}", result.status.message);
+  return times.median_ms();
+}
+
+}  // namespace
+
+ContactPrice bench_contact_price(const scene::Description& d, const std::atomic<bool>* stop) {
+  ContactPrice out;
+  const ContactBenchVariant variant{.method = "cpu"};
+  out.contact = bench_contact(d, variant, stop);
+  out.contact_free_ms = bodies_alone_ms(d, stop);
+  for (const SoftBodySpec& body : d.bodies) {
+    scene::Description alone = d;
+    alone.bodies = {body};
+    alone.integrator.linear_rtol = kInteractive;
+    const double ms = bodies_alone_ms(alone, stop);
+    if (out.one_body_ms == 0.0) out.one_body_ms = ms;
+    out.bodies_ms += ms;
+  }
+  if (!d.tool) {
+    scene::Description rubbing = d;
+    for (ContactSpec& contact : rubbing.contacts) contact.friction = kFriction;
+    out.friction_ms = bench_contact(rubbing, variant, stop).step.median;
+  }
+  return out;
+}
+
+}  // namespace palpate::bench

@@ -1,0 +1,76 @@
+#include "palpate/bench/contact.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bench/contact/query_bytes.h"
+#include "bench/contact/statistics.h"
+#include "palpate/core/error.h"
+
+namespace palpate::bench {
+namespace {
+
+TEST(ContactBench, QuantilesAreValuesThatWereMeasured) {
+  const std::vector<double> values = {5.0, 1.0, 4.0, 2.0};
+  const Spread spread = spread_of(values);
+  EXPECT_EQ(spread.least, 1.0);
+  EXPECT_EQ(spread.median, 2.0);
+  EXPECT_EQ(spread.p99, 5.0);
+  EXPECT_EQ(spread_of({}).median, 0.0);
+}
+
+TEST(ContactBench, BytesOfAQueryAreOfWhatItLooksAt) {
+  EXPECT_EQ(query_bytes({}), 0.0);
+  EXPECT_EQ(query_bytes({.nodes = 1.0}), 48.0);
+  EXPECT_EQ(query_bytes({.nodes = 2.0, .faces = 10.0, .pixels = 100.0, .samples = 1000.0}),
+            96.0 + 540.0 + 3200.0 + 264000.0);
+}
+
+// The lens of two spheres that meet in a circle of radius a is pi a^2 large, seen along the line of their
+// centres; the skins are polyhedra inside the spheres.
+TEST(ContactBench, TheSameRegionOnAnySkin) {
+  const auto rows = bench_skin_growth({2000, 8000});
+  ASSERT_EQ(rows.size(), 2u);
+  for (const ContactGrowthRow& r : rows) {
+    EXPECT_NEAR(r.area_m2, M_PI * 0.05 * 0.05, 0.04 * M_PI * 0.05 * 0.05) << r.skin_vertices;
+    EXPECT_GT(r.samples, 10000);
+    EXPECT_GT(r.query.least, 0.0);
+    EXPECT_LE(r.query.least, r.query.median);
+    EXPECT_LE(r.query.median, r.query.p99);
+  }
+  EXPECT_NEAR(rows[1].skin_vertices / static_cast<double>(rows[0].skin_vertices), 4.0, 0.1);
+}
+
+TEST(ContactBench, RegionsGrowByTheFactor) {
+  const auto rows = bench_patch_growth(8000, 4.0, 3, 64);
+  ASSERT_EQ(rows.size(), 3u);
+  for (std::size_t k = 1; k < 3; ++k) EXPECT_NEAR(rows[k].area_m2 / rows[k - 1].area_m2, 2.0, 0.06);
+  EXPECT_EQ(rows[2].skin_vertices, rows[0].skin_vertices);
+  EXPECT_THROW(bench_patch_growth(2000, 1.0, 3, 64), Error);
+  EXPECT_THROW(bench_patch_growth(2000, 4.0, 1, 64), Error);
+}
+
+TEST(ContactBench, ABodyAgainstItselfIsAlone) {
+  scene::Description d;
+  d.name = "two";
+  d.bodies.resize(2);
+  d.bodies[0].name = "left";
+  d.bodies[1].name = "right";
+  ContactSpec contact;
+  contact.first = "left";
+  contact.second = "right";
+  contact.stiffness_pa_m = 123.0;
+  d.contacts = {contact, contact};
+  d.tool.emplace();
+  const scene::Description own = against_itself(d);
+  ASSERT_EQ(own.bodies.size(), 1u);
+  ASSERT_EQ(own.contacts.size(), 1u);
+  EXPECT_EQ(own.contacts[0].first, "left");
+  EXPECT_EQ(own.contacts[0].second, "left");
+  EXPECT_EQ(own.contacts[0].stiffness_pa_m, 123.0);
+  EXPECT_FALSE(own.tool);
+}
+
+}  // namespace
+}  // namespace palpate::bench
