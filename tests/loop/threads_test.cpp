@@ -22,6 +22,26 @@ scene::Description falling_block(const std::string& integrator, int threads) {
   return d;
 }
 
+/// A second block above the first, its upper end held, moving down into it.
+scene::Description touching_blocks(int threads) {
+  scene::Description d = falling_block("linearly-implicit-euler", threads);
+  d.integrator.linear_solver = "auto";
+  d.bodies.push_back(d.bodies[0]);
+  d.bodies[1].name = "upper";
+  d.bodies[1].position_m.z() = 0.0295;
+  d.bodies[1].attachments[0].box_min_m.z() = 0.0395 - 1e-6;
+  d.bodies[1].attachments[0].box_max_m.z() = 0.0395 + 1e-6;
+  ContactSpec contact;
+  contact.first = "block";
+  contact.second = "upper";
+  contact.method = "cpu";
+  contact.stiffness_pa_m = 1e6;
+  contact.friction = 0.3;
+  d.contacts.push_back(contact);
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.004;
+  return d;
+}
+
 struct Ran {
   VecX q, u;
   long by_second = 0;  ///< tasks of shared loops that the second thread ran
@@ -65,6 +85,18 @@ TEST_F(Threads, ReachTheElementsAndChangeNoBitOfTheResult) {
 TEST_F(Threads, OfElementsAndOfALinearSolverTogetherChangeNoBitEither) {
   const Ran one = run(*loop::assemble(falling_block("linearly-implicit-euler", 1)), 0.02);
   const Ran two = run(*loop::assemble(falling_block("linearly-implicit-euler", 2)), 0.02);
+  EXPECT_GT(two.by_second, 0);
+  EXPECT_TRUE((one.q.array() == two.q.array()).all());
+  EXPECT_TRUE((one.u.array() == two.u.array()).all());
+}
+
+TEST_F(Threads, OfTwoBodiesInContactChangeNoBitEither) {
+  const auto world = loop::assemble(touching_blocks(1));
+  const Ran one = run(*world, 0.02);
+  long pressed = 0;
+  for (const auto& s : world->contact->samples()) pressed += s.gap < 0.0;
+  EXPECT_GT(pressed, 100);
+  const Ran two = run(*loop::assemble(touching_blocks(2)), 0.02);
   EXPECT_GT(two.by_second, 0);
   EXPECT_TRUE((one.q.array() == two.q.array()).all());
   EXPECT_TRUE((one.u.array() == two.u.array()).all());
