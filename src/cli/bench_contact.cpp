@@ -20,6 +20,10 @@ namespace {
 const std::vector<std::string> kScenes = {"touch-head", "touch-human", "two-pumpkins",
                                           "two-heads",  "gears",       "scrape-pumpkin"};
 const char* const kAtRest = "touch-human";
+/// Nine pumpkins, so near that each overlaps the next: eight regions or more in one solve.
+const char* const kInARow = "two-pumpkins";
+constexpr int kRow = 9;
+constexpr double kSpacing = 0.28;
 
 /// Bandwidths of the machine, measured when they are first asked for.
 class Machine {
@@ -107,6 +111,8 @@ void bench_contact(const BenchArguments& arguments) {
   for (const auto& [threads, gb_s] : machine.measured())
     fmt::print(" {:.1f} GB/s with {} thread{}", gb_s, threads, threads > 1 ? "s," : ",");
   fmt::print(" arrays of 67 MB.\n\n");
+  if (arguments.scenes.empty())
+    descriptions.push_back(bench::row_of_bodies(scene_of({kInARow, {}, ""}), kRow, kSpacing));
   print_contact_prices(descriptions);
 }
 

@@ -72,5 +72,29 @@ TEST(ContactBench, ABodyAgainstItselfIsAlone) {
   EXPECT_FALSE(own.tool);
 }
 
+TEST(ContactBench, ARowTouchesFromOneToTheNext) {
+  scene::Description d;
+  d.bodies.resize(1);
+  d.bodies[0].name = "one";
+  d.bodies[0].position_m = Vec3(0.5, 1, 2);
+  AttachmentSpec held;
+  held.box_min_m = Vec3(0.4, -1, -1);
+  held.box_max_m = Vec3(0.45, 1, 1);
+  d.bodies[0].attachments = {held};
+  const scene::Description row = row_of_bodies(d, 4, 0.2);
+  ASSERT_EQ(row.bodies.size(), 4u);
+  ASSERT_EQ(row.contacts.size(), 3u);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_NEAR(row.bodies[k].position_m.x(), 0.5 + 0.2 * static_cast<double>(k), 1e-15);
+    ASSERT_EQ(row.bodies[k].attachments.size(), 1u);
+    EXPECT_NEAR(row.bodies[k].attachments[0].box_min_m.x(), 0.4 + 0.2 * static_cast<double>(k), 1e-15);
+    EXPECT_NEAR(row.bodies[k].attachments[0].box_max_m.x(), 0.45 + 0.2 * static_cast<double>(k), 1e-15);
+    if (k == 0) continue;
+    EXPECT_EQ(row.contacts[k - 1].first, row.bodies[k - 1].name);
+    EXPECT_EQ(row.contacts[k - 1].second, row.bodies[k].name);
+  }
+  EXPECT_THROW(row_of_bodies(d, 1, 0.2), Error);
+}
+
 }  // namespace
 }  // namespace palpate::bench

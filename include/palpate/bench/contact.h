@@ -57,6 +57,10 @@ ContactBenchRow bench_contact(scene::Description description, const ContactBench
 /// for it costs where nothing touches.
 scene::Description against_itself(scene::Description description);
 
+/// Copies of the scene's first body in a row along x, each held as it is there and in contact with the next:
+/// many contact regions in one implicit solve.
+scene::Description row_of_bodies(scene::Description description, int count, double spacing_m);
+
 /// Contact beside the rest of a step, as ratios of one run: medians of periods, one thread, the processor's
 /// image with as many pixels as the scene wants [ms].
 struct ContactPrice {

@@ -193,16 +193,4 @@ ContactBenchRow bench_contact(scene::Description d, const ContactBenchVariant& v
   return out;
 }
 
-scene::Description against_itself(scene::Description d) {
-  d.name += ", the first body against itself";
-  d.bodies.resize(1);
-  d.tool.reset();
-  d.device.reset();
-  d.obstacles.clear();
-  ContactSpec own = d.contacts.empty() ? ContactSpec{} : d.contacts.front();
-  own.first = own.second = d.bodies.front().name;
-  d.contacts = {own};
-  return d;
-}
-
 }  // namespace palpate::bench
