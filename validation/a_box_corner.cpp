@@ -79,7 +79,8 @@ std::vector<Measurement> run(const std::string& fault) {
                    .order = fitted_order(h, of_volume),
                    .order_low = 1.9,
                    .order_high = 3.5,
-                   .note = "order in pixel size over 32 to 256"});
+                   .note = "order in pixel size over 32 to 256",
+                   .refinement = {"pixel / edge of the image", h, of_volume}});
     out.push_back({.quantity = name + ": area of the section at 256 pixels, RMS over 20 shifts [m^2]",
                    .computed = last.area,
                    .exact = area,
@@ -88,7 +89,8 @@ std::vector<Measurement> run(const std::string& fault) {
                    .order = fitted_order(h, of_area),
                    .order_low = 0.9,
                    .order_high = 2.0,
-                   .note = "order in pixel size over 32 to 256"});
+                   .note = "order in pixel size over 32 to 256",
+                   .refinement = {"pixel / edge of the image", h, of_area}});
   }
   say_what_is_skipped(out);
   return out;

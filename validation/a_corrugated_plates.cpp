@@ -76,7 +76,8 @@ std::vector<Measurement> run(const std::string& fault) {
          .order = fitted_order(h, of_volume),
          .order_low = 1.9,
          .order_high = 3.5,
-         .note = "order in pixel size over 64 to 256"});
+         .note = "order in pixel size over 64 to 256",
+         .refinement = {"pixel / edge of the image", h, of_volume}});
     out.push_back(
         {.quantity = name + ": overlap area against the facets' at 256 pixels, RMS over 20 shifts [m^2]",
          .computed = last.area,
@@ -86,7 +87,8 @@ std::vector<Measurement> run(const std::string& fault) {
          .order = fitted_order(h, of_area),
          .order_low = 0.9,
          .order_high = 2.5,
-         .note = "order in pixel size over 64 to 256"});
+         .note = "order in pixel size over 64 to 256",
+         .refinement = {"pixel / edge of the image", h, of_area}});
   }
   std::vector<double> cell, error;
   double last = 0.0;
@@ -106,7 +108,8 @@ std::vector<Measurement> run(const std::string& fault) {
                  .order = fitted_order(cell, error),
                  .order_low = 1.9,
                  .order_high = 2.1,
-                 .note = "order in facet size over 20 to 80 cells a wavelength"});
+                 .note = "order in facet size over 20 to 80 cells a wavelength",
+                 .refinement = {"cell / wavelength", cell, error}});
   say_what_is_skipped(out);
   return out;
 }

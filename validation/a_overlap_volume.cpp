@@ -5,6 +5,7 @@
 #include "b_bodies.h"
 #include "cases.h"
 #include "image_backends.h"
+#include "palpate/core/clock.h"
 #include "palpate/mesh/generators.h"
 
 // Overlap volume of two spheres, centres d apart, d^2 >= |R1^2 - R2^2| (the lens lies between the two
@@ -125,8 +126,9 @@ double facet_overlap(const Spheres& spheres) {
 
 /// Sum of depth x dA of the samples.  Faults: areas measured on the skin instead of projected; gaps
 /// counted as negative depths.
+/// @param seconds  of a second query of the source, added: what one costs when its image exists
 double sampled_overlap(contact::DepthBackend backend, const Spheres& spheres, int pixels, double shift_u,
-                       double shift_v, const std::string& fault) {
+                       double shift_v, const std::string& fault, double* seconds = nullptr) {
   SurfaceBody body(spheres.upper);
   contact::ImageOptions options;
   options.backend = backend;
@@ -138,6 +140,11 @@ double sampled_overlap(contact::DepthBackend backend, const Spheres& spheres, in
       contact::make_image_source(body.surface, spheres.lower, 0, contact::fixed_frame(), options);
   std::vector<contact::ContactSample> samples;
   source->query(body.state.view(), samples);
+  if (seconds) {
+    samples.clear();
+    const ScopedTimer timer(*seconds);
+    source->query(body.state.view(), samples);
+  }
   double sum = 0.0;
   for (const auto& s : samples) {
     double depth = std::max(0.0, -s.gap), area = s.area;
@@ -153,17 +160,18 @@ std::vector<Measurement> run(const std::string& fault) {
   for (const contact::DepthBackend backend : image_backends()) {
     const Spheres spheres(24, 0);
     const double exact = facet_overlap(spheres);
-    std::vector<double> h, error;
+    std::vector<double> h, error, wall_s;
     double last = 0.0;
     for (const int pixels : {64, 128, 256}) {
-      double squares = 0.0;
+      double squares = 0.0, seconds = 0.0;
       for (int i = 0; i < kGridShifts; ++i) {
         const GridShift shift = grid_shift(i);
-        last = sampled_overlap(backend, spheres, pixels, shift.u, shift.v, fault);
+        last = sampled_overlap(backend, spheres, pixels, shift.u, shift.v, fault, &seconds);
         squares += std::pow(last / exact - 1.0, 2) / kGridShifts;
       }
       h.push_back(1.0 / pixels);
       error.push_back(std::sqrt(squares));
+      wall_s.push_back(seconds / kGridShifts);
     }
     Measurement m;
     m.quantity = std::string(contact::backend_name(backend)) +
@@ -176,6 +184,7 @@ std::vector<Measurement> run(const std::string& fault) {
     m.order_low = 1.9;
     m.order_high = 3.5;
     m.note = "order in pixel size over 64 to 256";
+    m.refinement = {"pixel / edge of the image", h, error, wall_s};
     out.push_back(m);
   }
   {
@@ -203,6 +212,7 @@ std::vector<Measurement> run(const std::string& fault) {
     m.order_low = 1.9;
     m.order_high = 2.1;
     m.note = "order in facet size over 12 to 48 subdivisions of the icosahedron";
+    m.refinement = {"facet / edge of the icosahedron", h, error};
     out.push_back(m);
   }
   say_what_is_skipped(out);

@@ -147,7 +147,8 @@ void measure(bool plane, const std::string& fault, std::vector<Measurement>& out
                  .order = fitted_order(h, error),
                  .order_low = 1.9,
                  .order_high = 2.1,
-                 .note = "order in facet size over 12 to 48 subdivisions of the icosahedron"});
+                 .note = "order in facet size over 12 to 48 subdivisions of the icosahedron",
+                 .refinement = {"facet / edge of the icosahedron", h, error}});
 }
 
 std::vector<Measurement> run(const std::string& fault) {

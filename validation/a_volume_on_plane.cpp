@@ -93,7 +93,8 @@ std::vector<Measurement> run(const std::string& fault) {
          .order = fitted_order(h, error),
          .order_low = 1.9,
          .order_high = 3.5,
-         .note = "order in pixel size over 64 to 256"});
+         .note = "order in pixel size over 64 to 256",
+         .refinement = {"pixel / edge of the image", h, error}});
   }
   std::vector<double> h, error;
   double mean = 0.0;
@@ -115,7 +116,8 @@ std::vector<Measurement> run(const std::string& fault) {
        .order = fitted_order(h, error),
        .order_low = 1.9,
        .order_high = 2.1,
-       .note = "order in facet size over 12 to 48 subdivisions of the icosahedron"});
+       .note = "order in facet size over 12 to 48 subdivisions of the icosahedron",
+       .refinement = {"facet / edge of the icosahedron", h, error}});
   say_what_is_skipped(out);
   return out;
 }

@@ -129,6 +129,7 @@ std::vector<Measurement> run(const std::string& fault) {
   sphere.order = validation::fitted_order(h, error);
   sphere.order_low = 1.9;
   sphere.order_high = 2.1;
+  sphere.refinement = {"facet / edge of the icosahedron", h, error};
   sphere.note = "order in facet size over 16 to 64 subdivisions of the icosahedron";
   out.push_back(sphere);
   say_what_is_skipped(out);

@@ -76,7 +76,8 @@ std::vector<Measurement> run(const std::string& fault) {
            .bar = 1e-2,
            .order = validation::fitted_order(h, energy),
            .order_low = 1.8,
-           .order_high = 2.1},
+           .order_high = 2.1,
+           .refinement = {"element size [m]", h, energy}},
           {.quantity = "RMS error of the nodes / RMS displacement, 32 cells along",
            .computed = last.rms,
            .exact = 0.0,
@@ -84,7 +85,8 @@ std::vector<Measurement> run(const std::string& fault) {
            .bar = 1e-2,
            .order = validation::fitted_order(h, rms),
            .order_low = 1.8,
-           .order_high = 2.1}};
+           .order_high = 2.1,
+           .refinement = {"element size [m]", h, rms}}};
 }
 
 }  // namespace

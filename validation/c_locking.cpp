@@ -157,7 +157,8 @@ std::vector<Measurement> run(const std::string& fault) {
                  .order = validation::fitted_order(h, error),
                  .order_low = 1.7,
                  .order_high = 2.3,
-                 .note = "8, 12, 16 cells over the height"});
+                 .note = "8, 12, 16 cells over the height",
+                 .refinement = {"element size [m]", h, error}});
   out.push_back({.quantity = "that error over the one at nu = 0.3",
                  .computed = error.back() / easy.error,
                  .exact = 1.0,

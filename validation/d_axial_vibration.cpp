@@ -69,7 +69,8 @@ std::vector<Measurement> run(const std::string& fault) {
                    .order = validation::fitted_order(h, error),
                    .order_low = 1.8,
                    .order_high = 2.1,
-                   .note = "16, 24, 32, 48 cells along"});
+                   .note = "16, 24, 32, 48 cells along",
+                   .refinement = {"element size [m]", h, error}});
   }
   return out;
 }

@@ -59,7 +59,8 @@ void add(double slenderness, double timoshenko, const std::vector<int>& across, 
                  .order = validation::fitted_order(h, error),
                  .order_low = 1.8,
                  .order_high = 2.2,
-                 .note = fmt::format("{} elements across", fmt::join(across, ", "))});
+                 .note = fmt::format("{} elements across", fmt::join(across, ", ")),
+                 .refinement = {"element size [m]", h, error}});
   out.push_back({.quantity = fmt::format("first frequency [Hz], L/h = {}, Richardson", slenderness),
                  .computed = extrapolated,
                  .exact = exact,

@@ -58,7 +58,8 @@ Measurement order_of_steps(const VibratingBar& bar, const dynamics::StepperEntry
       .order = validation::fitted_order(steps, errors),
       .order_low = order - 0.1,
       .order_high = order + 0.1,
-      .note = fmt::format("order in the step, 4 steps from {:.2g} to {:.2g} s", steps.front(), steps.back())};
+      .note = fmt::format("order in the step, 4 steps from {:.2g} to {:.2g} s", steps.front(), steps.back()),
+      .refinement = {"step [s]", steps, errors}};
 }
 
 std::vector<Measurement> run(const std::string& fault) {

@@ -56,7 +56,8 @@ void add(double poisson, const std::string& fault, std::vector<Measurement>& out
                  .order = validation::fitted_order(h, error),
                  .order_low = 1.8,
                  .order_high = 2.1,
-                 .note = "15, 20, 25 cells a side"});
+                 .note = "15, 20, 25 cells a side",
+                 .refinement = {"element size [m]", h, error}});
   out.push_back({.quantity = fmt::format("1 - overlap with Lame's mode, nu = {}", poisson),
                  .computed = 1.0 - overlap,
                  .error = 1.0 - overlap,

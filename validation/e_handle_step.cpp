@@ -96,7 +96,8 @@ void measure_fixed(const std::string& scheme, const std::string& fault, std::vec
                    .order = validation::fitted_order(ticks, e),
                    .order_low = 0.9,
                    .order_high = 1.1,
-                   .note = "ticks 200 to 25 us"});
+                   .note = "ticks 200 to 25 us",
+                   .refinement = {"tick [s]", ticks, e}});
   };
   first_order("translation", translations);
   first_order("rotation", rotations);

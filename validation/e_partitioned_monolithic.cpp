@@ -86,7 +86,8 @@ std::vector<Measurement> run(const std::string& fault) {
                    .order = validation::fitted_order(periods, errors),
                    .order_low = 0.85,
                    .order_high = 2.2,
-                   .note = table});
+                   .note = table,
+                   .refinement = {"exchange period [s]", periods, errors}});
   };
   add("force on the hand, RMS distance at the shortest period [N]", force, 1e-3);
   add("torque on the hand, RMS distance at the shortest period [N m]", torque, 1e-5);

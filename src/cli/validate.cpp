@@ -59,6 +59,20 @@ std::vector<std::string> row(const ValidationCase& one, const Measurement& m) {
 /// JSON has no NaN: what does not apply is null.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json numbers(const std::vector<double>& values) {
+  Json out = Json::array();
+  for (const double value : values) out.push_back(number(value));
+  return out;
+}
+
+/// Null where nothing is refined.
+Json to_json(const validation::Refinement& r) {
+  if (r.size.empty()) return nullptr;
+  Json out = {{"size_label", r.size_label}, {"size", numbers(r.size)}, {"error", numbers(r.error)}};
+  if (!r.wall_s.empty()) out["wall_s"] = numbers(r.wall_s);
+  return out;
+}
+
 Json to_json(const ValidationCase& one, const std::vector<Measurement>& measurements, double seconds) {
   Json list = Json::array();
   for (const Measurement& m : measurements)
@@ -71,6 +85,7 @@ Json to_json(const ValidationCase& one, const std::vector<Measurement>& measurem
                     {"order_low", number(m.order_low)},
                     {"order_high", number(m.order_high)},
                     {"note", m.note},
+                    {"refinement", to_json(m.refinement)},
                     {"passed", m.passed()}});
   return {{"name", one.name}, {"section", one.section}, {"summary", one.summary},
           {"why", one.why},   {"wall_s", seconds},      {"measurements", list}};

@@ -110,38 +110,6 @@ void add_forces(Page& page, const Json& summary, const Table& force) {
     add_plot(page, torque_plot(force, max_torque), "Torque, likewise" + limit_text(max_torque, "N m"));
 }
 
-void add_validation(Page& page, const Json& validation) {
-  const Json& cases =
-      validation.is_object() && validation.contains("cases") ? validation["cases"] : validation;
-  if (!cases.is_array()) return;
-  std::vector<std::vector<std::string>> rows;
-  std::vector<RowMark> marks;
-  for (const Json& one : cases) {
-    if (!one.is_object() || !one.contains("measurements")) continue;
-    if (one["measurements"].empty()) {
-      rows.push_back({text_at(one, "name"), "nothing was measured", "-", "-", "-", "-", "-", "FAIL"});
-      marks.push_back(RowMark::kBad);
-    }
-    for (const Json& m : one["measurements"]) {
-      const bool passed = m.value("passed", false);
-      std::string order = short_number(number_at(m, "order"));
-      if (std::isfinite(number_at(m, "order_low")))
-        order += fmt::format(" in [{:g}, {:g}]", number_at(m, "order_low"), number_at(m, "order_high"));
-      rows.push_back({text_at(one, "name"), text_at(m, "quantity"),
-                      fmt::format("{:.6g}", number_at(m, "computed")),
-                      fmt::format("{:.6g}", number_at(m, "exact")), short_number(number_at(m, "error")),
-                      short_number(number_at(m, "bar")), order, passed ? "pass" : "FAIL"});
-      marks.push_back(passed ? RowMark::kGood : RowMark::kBad);
-    }
-  }
-  const auto failed = std::count(marks.begin(), marks.end(), RowMark::kBad);
-  page.add_heading("Validation against exact answers");
-  page.add_paragraph(failed == 0 ? fmt::format("All {} measurements pass.", rows.size())
-                                 : fmt::format("{} of {} measurements FAIL.", failed, rows.size()));
-  page.add_table({"case", "quantity", "computed", "exact", "error", "bar", "order", "verdict"}, rows,
-                 "Errors are relative unless the quantity says otherwise.", marks);
-}
-
 void add_parts(Page& page, const Json& summary) {
   std::vector<std::vector<std::string>> rows;
   std::vector<RowMark> marks;

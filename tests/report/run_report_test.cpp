@@ -62,7 +62,10 @@ void fill(const TemporaryFolder& dir) {
       {"quantity": "stress [Pa]", "computed": 1, "exact": 1, "error": 0, "bar": 1e-6, "order": null,
         "passed": true},
       {"quantity": "broken [m]", "computed": 2, "exact": 1, "error": 1, "bar": 1e-6, "order": null,
-        "passed": false}]}]})");
+        "passed": false},
+      {"quantity": "volume [m^3]", "computed": 2, "exact": 1, "error": 1e-4, "bar": 1e-3, "order": 2,
+        "passed": true, "refinement": {"size_label": "pixel edge [m]", "size": [4e-3, 2e-3, 1e-3],
+        "error": [16e-4, 4e-4, 1e-4], "wall_s": [1e-3, 4e-3, 16e-3]}}]}]})");
   put(dir / "picture-of-it.png", "\x89PNG\r\n\x1a\n");
 }
 
@@ -98,7 +101,10 @@ TEST(RunReport, HoldsEverySectionAndNothingFromOutside) {
                            "fitted order 1.00",
                            "patch-test",
                            "FAIL",
-                           "1 of 2 measurements FAIL",
+                           "1 of 3 measurements FAIL",
+                           "volume [m^3] (order 2.00)",
+                           "patch-test: error against pixel edge [m].",
+                           "patch-test: error against run time.",
                            "left out",
                            "one body",
                            "Provenance",

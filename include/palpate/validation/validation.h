@@ -5,6 +5,13 @@
 
 namespace palpate::validation {
 
+/// A measurement over a refinement: what its order was fitted to, for charts.
+struct Refinement {
+  std::string size_label;           ///< what is refined, with its unit: "element size [m]"
+  std::vector<double> size, error;  ///< one each
+  std::vector<double> wall_s{};     ///< of the library's work at each, where it was timed; else empty
+};
+
 /// One measured quantity of a case, held against theory.  NaN: not applicable.
 struct Measurement {
   std::string quantity;  ///< with its unit: "tip deflection [m]"
@@ -16,6 +23,7 @@ struct Measurement {
   double order_low = std::numeric_limits<double>::quiet_NaN();  ///< band of the fitted order
   double order_high = std::numeric_limits<double>::quiet_NaN();
   std::string note{};
+  Refinement refinement{};  ///< empty where nothing is refined
   /// error <= bar (a NaN error fails) and, where a band is given, order inside it
   bool passed() const;
 };

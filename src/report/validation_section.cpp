@@ -1,0 +1,129 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "log_line.h"
+#include "palpate/core/error.h"
+#include "sections.h"
+
+namespace palpate::report {
+namespace {
+
+std::vector<double> numbers_at(const Json& object, const char* key) {
+  std::vector<double> out;
+  if (object.is_object() && object.contains(key) && object[key].is_array())
+    for (const Json& value : object[key])
+      out.push_back(value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
+  return out;
+}
+
+/// A measurement over a refinement.
+struct Ladder {
+  std::string quantity, size_label;
+  std::vector<double> size, error, seconds;
+};
+
+std::vector<Ladder> ladders_of(const Json& one) {
+  std::vector<Ladder> out;
+  for (const Json& m : one["measurements"]) {
+    if (!m.is_object() || !m.contains("refinement") || !m["refinement"].is_object()) continue;
+    const Json& r = m["refinement"];
+    Ladder ladder{text_at(m, "quantity"), text_at(r, "size_label"), numbers_at(r, "size"),
+                  numbers_at(r, "error"), numbers_at(r, "wall_s")};
+    if (ladder.size.size() >= 2 && ladder.size.size() == ladder.error.size())
+      out.push_back(std::move(ladder));
+  }
+  return out;
+}
+
+Plot log_plot(const std::string& x_label) {
+  Plot plot;
+  plot.x_label = x_label;
+  plot.y_label = "error";
+  plot.log_x = plot.log_y = true;
+  return plot;
+}
+
+/// Errors over sizes of one kind, each with the order that is fitted to it.
+Plot convergence_plot(const std::vector<Ladder>& ladders, const std::string& size_label) {
+  Plot plot = log_plot(size_label);
+  for (const Ladder& ladder : ladders) {
+    if (ladder.size_label != size_label) continue;
+    const double order = fit_log_line(ladder.size, ladder.error).slope;
+    plot.series.push_back({.name = std::isfinite(order)
+                                       ? fmt::format("{} (order {:.2f})", ladder.quantity, order)
+                                       : ladder.quantity,
+                           .x = ladder.size,
+                           .y = ladder.error,
+                           .mark = Mark::kLinePoints});
+  }
+  plot.height = 320 + 20 * static_cast<int>(plot.series.size());
+  return plot;
+}
+
+Plot cost_plot(const std::vector<Ladder>& ladders) {
+  Plot plot = log_plot("run time of the library [s]");
+  for (const Ladder& ladder : ladders)
+    if (ladder.seconds.size() == ladder.error.size())
+      plot.series.push_back(
+          {.name = ladder.quantity, .x = ladder.seconds, .y = ladder.error, .mark = Mark::kLinePoints});
+  plot.height = 320 + 20 * static_cast<int>(plot.series.size());
+  return plot;
+}
+
+void add_convergence(Page& page, const Json& cases) {
+  bool any = false;
+  for (const Json& one : cases) {
+    if (!one.is_object() || !one.contains("measurements")) continue;
+    const std::vector<Ladder> ladders = ladders_of(one);
+    if (ladders.empty()) continue;
+    if (!any) page.add_heading("Convergence");
+    any = true;
+    std::vector<std::string> labels;
+    for (const Ladder& ladder : ladders)
+      if (std::find(labels.begin(), labels.end(), ladder.size_label) == labels.end())
+        labels.push_back(ladder.size_label);
+    for (const std::string& label : labels)
+      add_plot(page, convergence_plot(ladders, label),
+               fmt::format("{}: error against {}.", text_at(one, "name"), label));
+    if (const Plot cost = cost_plot(ladders); !cost.series.empty())
+      add_plot(page, cost, text_at(one, "name") + ": error against run time.");
+  }
+}
+
+}  // namespace
+
+void add_validation(Page& page, const Json& validation) {
+  const Json& cases =
+      validation.is_object() && validation.contains("cases") ? validation["cases"] : validation;
+  if (!cases.is_array()) return;
+  std::vector<std::vector<std::string>> rows;
+  std::vector<RowMark> marks;
+  for (const Json& one : cases) {
+    if (!one.is_object() || !one.contains("measurements")) continue;
+    if (one["measurements"].empty()) {
+      rows.push_back({text_at(one, "name"), "nothing was measured", "-", "-", "-", "-", "-", "FAIL"});
+      marks.push_back(RowMark::kBad);
+    }
+    for (const Json& m : one["measurements"]) {
+      const bool passed = m.value("passed", false);
+      std::string order = short_number(number_at(m, "order"));
+      if (std::isfinite(number_at(m, "order_low")))
+        order += fmt::format(" in [{:g}, {:g}]", number_at(m, "order_low"), number_at(m, "order_high"));
+      rows.push_back({text_at(one, "name"), text_at(m, "quantity"),
+                      fmt::format("{:.6g}", number_at(m, "computed")),
+                      fmt::format("{:.6g}", number_at(m, "exact")), short_number(number_at(m, "error")),
+                      short_number(number_at(m, "bar")), order, passed ? "pass" : "FAIL"});
+      marks.push_back(passed ? RowMark::kGood : RowMark::kBad);
+    }
+  }
+  const auto failed = std::count(marks.begin(), marks.end(), RowMark::kBad);
+  page.add_heading("Validation against exact answers");
+  page.add_paragraph(failed == 0 ? fmt::format("All {} measurements pass.", rows.size())
+                                 : fmt::format("{} of {} measurements FAIL.", failed, rows.size()));
+  page.add_table({"case", "quantity", "computed", "exact", "error", "bar", "order", "verdict"}, rows,
+                 "Errors are relative unless the quantity says otherwise.", marks);
+  add_convergence(page, cases);
+}
+
+}  // namespace palpate::report
