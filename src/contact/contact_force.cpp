@@ -107,17 +107,18 @@ void ContactForce::Impl::add_force(const dynamics::StateView& state, VecX& f) {
   visit_active(state, add, false);
 }
 
-void ContactForce::Impl::all_forces(const dynamics::StateView& state, VecX& f) {
+void ContactForce::Impl::all_forces(const dynamics::StateView& state, VecX& f, std::vector<Wrench>& on_a) {
   const int nodal = state.layout->nodal_size;
   f.setZero(nodal + 6 * static_cast<Eigen::Index>(frames.size()));
   place_frames(state);
   frame_rows.resize(frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) frame_rows[i] = nodal + 6 * static_cast<int>(i);
-  groups.add_force(state, frame_states, frame_rows, f);
+  groups.add_force(state, frame_states, frame_rows, f, &on_a);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const Vec3 force = sample_force(s, motion, law);
     add_point_force(s.a, motion.a.arm, force, nodal + 6 * s.a.frame, f);
     add_point_force(s.b, motion.b.arm, -force, nodal + 6 * s.b.frame, f);
+    on_a[static_cast<std::size_t>(s.source)] += Wrench{motion.a.x.cross(force), force};
   };
   visit_active(state, add, false);
 }
@@ -258,14 +259,13 @@ bool ContactForce::refresh(const dynamics::StateView& state) {
     m.measure_friction_lag(state);
     m.linearised.clear();
   }
-  m.all_forces(state, m.force_before);
+  m.resultants.start(m.pairs.size());
+  m.all_forces(state, m.force_before, m.resultants.before);
   m.query(state);
   m.check_samples(state);
-  m.all_forces(state, m.force_after);
-  m.refresh_force_jump = (m.force_after - m.force_before).norm();
-  m.largest_force_jump = std::max(m.largest_force_jump, m.refresh_force_jump);
-  m.largest_force = std::max(m.largest_force, m.force_after.norm());
-  return m.refresh_force_jump > 0.0;
+  m.all_forces(state, m.force_after, m.resultants.after);
+  m.resultants.compare(m.next_samples, m.samples, state, m.frames);  // next_samples: those of before
+  return m.force_after != m.force_before;
 }
 
 int ContactForce::event_count() const {
@@ -315,9 +315,9 @@ std::vector<const QueryStages*> ContactForce::stages() const {
 const std::vector<ContactSample>& ContactForce::samples() const { return impl_->samples; }
 long ContactForce::queries() const { return impl_->queries; }
 double ContactForce::query_seconds() const { return impl_->query_seconds; }
-double ContactForce::refresh_force_jump() const { return impl_->refresh_force_jump; }
-double ContactForce::largest_force_jump() const { return impl_->largest_force_jump; }
-double ContactForce::largest_force() const { return impl_->largest_force; }
+ResultantSize ContactForce::refresh_jump() const { return impl_->resultants.jump; }
+ResultantSize ContactForce::largest_jump() const { return impl_->resultants.largest_jump; }
+ResultantSize ContactForce::largest_resultant() const { return impl_->resultants.largest_after; }
 double ContactForce::largest_friction_lag() const { return impl_->largest_friction_lag; }
 double ContactForce::largest_lagged_friction() const { return impl_->largest_friction; }
 

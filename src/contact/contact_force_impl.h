@@ -1,4 +1,5 @@
 #pragma once
+#include "contact/resultants.h"
 #include "contact/sample_groups.h"
 #include "contact/sample_math.h"
 #include "contact/tangent.h"
@@ -28,7 +29,7 @@ struct ContactForce::Impl {
   bool events_to_compare = false;
   void compare_events();
   double query_seconds = 0.0;
-  double refresh_force_jump = 0.0, largest_force_jump = 0.0, largest_force = 0.0;
+  Resultants resultants;
 
   /// Friction of the samples that a symmetric tangent was made of: what it leaves out is how this follows the
   /// pressure until the next.
@@ -47,7 +48,8 @@ struct ContactForce::Impl {
   void add_force(const dynamics::StateView& state, VecX& f);
   /// Forces on the nodes and on every frame (six rows each, given ones too): what a refresh must not change
   /// unseen.
-  void all_forces(const dynamics::StateView& state, VecX& f);
+  /// @param on_a  one entry a pair: its resultant is added
+  void all_forces(const dynamics::StateView& state, VecX& f, std::vector<Wrench>& on_a);
 
   void group_samples();
   VecX product;  ///< scratch of a step

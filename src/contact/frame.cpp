@@ -14,6 +14,7 @@ class FixedFrame final : public MovingFrame {
   explicit FixedFrame(const Pose& pose) : pose_(pose) {}
   Pose pose(const dynamics::StateView&) const override { return pose_; }
   Twist twist(const dynamics::StateView&) const override { return {}; }
+  bool moves() const override { return false; }
 
  private:
   Pose pose_;

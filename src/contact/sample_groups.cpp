@@ -133,6 +133,7 @@ int SampleGroups::group_of(const ContactSample& s, const PressureLaw& law, std::
     }
     entry = static_cast<int>(groups_.size());
     Group group;
+    group.pair = s.source;
     group.frame = s.b.frame;
     group.count_a = s.a.count;
     group.a = s.a.node;
@@ -220,7 +221,7 @@ void SampleGroups::for_each_pressed(const Group& group, const dynamics::StateVie
 }
 
 void SampleGroups::add_force(const dynamics::StateView& state, const std::vector<FrameState>& frames,
-                             const std::vector<int>& frame_row, VecX& f) {
+                             const std::vector<int>& frame_row, VecX& f, std::vector<Wrench>* resultants) {
   for (const Group& group : groups_) {
     Vec4 on_a = Vec4::Zero(), on_b = Vec4::Zero();
     double sum = 0.0;
@@ -230,6 +231,13 @@ void SampleGroups::add_force(const dynamics::StateView& state, const std::vector
       sum += r.force;
     });
     if (sum == 0.0) continue;
+    if (resultants) {
+      Vec3 moment = Vec3::Zero();
+      for (int i = 0; i < group.count_a; ++i)
+        moment += on_a[i] * state.position(group.a[static_cast<std::size_t>(i)]);
+      (*resultants)[static_cast<std::size_t>(group.pair)] +=
+          Wrench{moment.cross(group.normal), sum * group.normal};
+    }
     for (int i = 0; i < group.count_a; ++i)
       f.segment<3>(3 * group.a[static_cast<std::size_t>(i)]) += on_a[i] * group.normal;
     if (group.frame < 0) {

@@ -25,8 +25,9 @@ class SampleGroups {
   void clear();
 
   /// @param frame_row  first of the six rows of a frame in f, by its index; -1: it has none
+  /// @param on_a  by pair (ContactSample::source): its resultant on side a is added, about the world's origin
   void add_force(const dynamics::StateView& state, const std::vector<FrameState>& frames,
-                 const std::vector<int>& frame_row, VecX& f);
+                 const std::vector<int>& frame_row, VecX& f, std::vector<Wrench>* on_a = nullptr);
   void add_tangent(const dynamics::StateView& state, const std::vector<FrameState>& frames, double k_scale,
                    double d_scale, dynamics::BorderedMatrix& A);
   /// k_scale K + d_scale D on nodes, of frames that are not in the State.
@@ -41,7 +42,8 @@ class SampleGroups {
   static constexpr int kNodes = 4;
   struct Group {
     int first = 0, last = 0;  ///< samples
-    int frame = -1;           ///< of side b; -1: nodes
+    int pair = 0;
+    int frame = -1;  ///< of side b; -1: nodes
     int count_a = 0, count_b = 0;
     std::array<int, kNodes> a{}, b{};
     Vec3 normal = Vec3::Zero();

@@ -62,13 +62,17 @@ store::Provenance full_provenance() {
   return p;
 }
 
-/// Effect of queries on the forces: between two queries contact goes on with the pairs and normals of the
-/// last.
+/// Effect of queries on the resultants that bodies feel: between two queries contact goes on with the pairs
+/// and normals of the last.
 void add_jumps(store::Summary& summary, const World& world) {
   if (!world.contact) return;
   store::SummarySection& s = summary.section("contact");
-  s.values.emplace_back("largest_force_jump_at_a_query_n", world.contact->largest_force_jump());
-  s.values.emplace_back("largest_force_after_a_query_n", world.contact->largest_force());
+  const contact::ResultantSize jump = world.contact->largest_jump(),
+                               after = world.contact->largest_resultant();
+  s.values.emplace_back("largest_force_jump_at_a_query_n", jump.force);
+  s.values.emplace_back("largest_moment_jump_at_a_query_n_m", jump.moment);
+  s.values.emplace_back("largest_force_after_a_query_n", after.force);
+  s.values.emplace_back("largest_moment_after_a_query_n_m", after.moment);
   double quadrature_error = 0.0;
   long lines = 0, pairs = 0;
   bool images = false;

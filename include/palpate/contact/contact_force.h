@@ -87,6 +87,12 @@ struct FrameLinearisation {
   int active = 0;         ///< samples with pressure
 };
 
+/// How large the resultant of a contact pair on one of its bodies is, or a change of it.
+struct ResultantSize {
+  double force = 0.0;   ///< [N]
+  double moment = 0.0;  ///< about the body's mean node or the frame's origin [N m]
+};
+
 /// All contacts of a scene as one force term (docs/design.md 4.4).
 class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffnessTerm {
  public:
@@ -124,12 +130,12 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   const std::vector<ContactSample>& samples() const;
   Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
   void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out) const;
-  /// Euclidean norm of the change of the force on nodes and frames that the last refresh made, at its state
-  /// [N]: the price of a slow query.
-  double refresh_force_jump() const;
-  /// The largest of them so far, and the largest norm of these forces after a refresh, to judge it by.
-  double largest_force_jump() const;
-  double largest_force() const;
+  /// Change of a pair's resultant on its bodies that the last refresh made, at its state, the largest of all
+  /// pairs: the price of a slow query.  The same resultant on other nodes is no change.
+  ResultantSize refresh_jump() const;
+  /// The largest of them so far, and the largest resultants after a refresh, to judge them by.
+  ResultantSize largest_jump() const;
+  ResultantSize largest_resultant() const;
   /// Of the pairs whose tangent is symmetric ("friction_tangent"): the largest friction that a step left out,
   /// for the pressure changed and the friction did not, and the largest friction, both as the norm of a
   /// pair's sum [N].

@@ -13,6 +13,8 @@ class MovingFrame {
   virtual ~MovingFrame() = default;
   virtual Pose pose(const dynamics::StateView& state) const = 0;
   virtual Twist twist(const dynamics::StateView& state) const = 0;
+  /// False where nothing can move it: forces on it are of no consequence.
+  virtual bool moves() const { return true; }
   /// True when it is a block of the State: the contact's tangent then has rows for it.
   virtual bool in_state() const { return false; }
   /// Where its six velocities stand in u, -1 when it is given from outside.
