@@ -260,9 +260,10 @@ void add_list(CLI::App& app, Invocation& invocation) {
   auto arguments = std::make_shared<ListArguments>();
   command->add_option(
       "WHAT", arguments->what,
-      "integrators, linear-solvers, materials, tool-integrators, obstacles, contact-methods, generators, "
-      "devices, parts, cases, scenes; all of these without it; or keys: every key of a scene with its unit, "
-      "range, default and meaning");
+      "integrators, linear-solvers, materials, tool-integrators, obstacles, contact-methods, "
+      "contact-springs, "
+      "contact-laws, generators, devices, parts, cases, scenes; all of these without it; or keys: every key "
+      "of a scene with its unit, range, default and meaning");
   command->footer(R"(Examples:
   palpate list
   palpate list integrators)");

@@ -50,7 +50,10 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
     else
       pairs[i].source->query(state, next_samples);
     pairs[i].end = next_samples.size();
-    for (std::size_t s = pairs[i].begin; s < pairs[i].end; ++s) next_samples[s].source = static_cast<int>(i);
+    for (std::size_t s = pairs[i].begin; s < pairs[i].end; ++s) {
+      next_samples[s].source = static_cast<int>(i);
+      if (pairs[i].law.per_point) next_samples[s].area = 1.0;
+    }
   }
   ++queries;
   counters::count("contact.query");

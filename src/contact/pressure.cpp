@@ -17,9 +17,19 @@ void require(const ContactSpec& spec, const char* key, double value, const Range
 
 }  // namespace
 
+const std::vector<SpringEntry>& spring_registry() {
+  static const std::vector<SpringEntry> registry = {
+      {"per_area", "pressure by depth: forces do not depend on the mesh",
+       part_keys({"stiffness_pa_m", "damping_pa_s_m"})},
+      {"per_point", "a spring at each colliding vertex (Galoppo et al. 2007): forces grow with their number",
+       part_keys({"stiffness_n_m", "damping_n_s_m"})},
+  };
+  return registry;
+}
+
 const std::vector<LawEntry>& law_registry() {
   static const std::vector<LawEntry> registry = {
-      {"kelvin_voigt", "spring and damper side by side", part_keys({"damping_pa_s_m"})},
+      {"kelvin_voigt", "spring and damper side by side", part_keys({"damping_pa_s_m", "damping_n_s_m"})},
       {"hunt_crossley", "damping in proportion to the spring's pressure", part_keys({"hunt_crossley_s_m"})},
   };
   return registry;
@@ -28,19 +38,26 @@ const std::vector<LawEntry>& law_registry() {
 PressureLaw pressure_law(const ContactSpec& spec) {
   using Ranges = ContactRanges;
   require(spec, "stiffness_pa_m", spec.stiffness_pa_m, Ranges::stiffness_pa_m);
+  require(spec, "stiffness_n_m", spec.stiffness_n_m, Ranges::stiffness_n_m);
   require(spec, "damping_pa_s_m", spec.damping_pa_s_m, Ranges::damping_pa_s_m);
+  require(spec, "damping_n_s_m", spec.damping_n_s_m, Ranges::damping_n_s_m);
   require(spec, "hunt_crossley_s_m", spec.hunt_crossley_s_m, Ranges::hunt_crossley_s_m);
   require(spec, "friction", spec.friction, Ranges::friction);
   require(spec, "friction_regularisation_m_s", spec.friction_regularisation_m_s,
           Ranges::friction_regularisation_m_s);
   require(spec, "onset_width_m", spec.onset_width_m, Ranges::onset_width_m);
+  const bool per_point = spec.spring == "per_point";
+  if (!per_point && spec.spring != "per_area")
+    fail("contact \"{}\" with \"{}\": unknown spring \"{}\"{}", spec.first, spec.second, spec.spring,
+         suggestion(spec.spring, names(spring_registry())));
   PressureLaw law{PressureLaw::Kind::kKelvinVoigt,
-                  spec.stiffness_pa_m,
-                  spec.damping_pa_s_m,
+                  per_point ? spec.stiffness_n_m : spec.stiffness_pa_m,
+                  per_point ? spec.damping_n_s_m : spec.damping_pa_s_m,
                   spec.onset_width_m,
                   spec.friction,
                   spec.friction_regularisation_m_s,
-                  spec.friction_tangent == "symmetric"};
+                  spec.friction_tangent == "symmetric",
+                  per_point};
   if (spec.friction_tangent != "symmetric" && spec.friction_tangent != "full" &&
       spec.friction_tangent != "auto")
     fail("contact \"{}\" with \"{}\": unknown friction_tangent \"{}\"{}", spec.first, spec.second,

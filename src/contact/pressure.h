@@ -6,13 +6,15 @@ namespace palpate::contact {
 /// A ContactSpec's law, its name resolved once.
 struct PressureLaw {
   enum class Kind { kKelvinVoigt, kHuntCrossley } kind = Kind::kKelvinVoigt;
-  double k = 0.0;      ///< [Pa/m]
-  double d = 0.0;      ///< [Pa s/m], or c of hunt_crossley [s/m]
+  double k = 0.0;      ///< [Pa/m]; per point [N/m]
+  double d = 0.0;      ///< [Pa s/m]; per point [N s/m]; or c of hunt_crossley [s/m]
   double onset = 0.0;  ///< w [m]
   double friction = 0.0;
   double regularisation = 1e-3;  ///< v_r [m/s]
   /// step matrices leave out how friction follows the pressure (sample_math.cpp)
   bool symmetric_tangent = false;
+  /// springs of points, not of area: `Pressure::p` is a force [N], and every sample's area is 1
+  bool per_point = false;
 };
 
 /// @throws Error for a value that no contact can have, naming the pair and the key.

@@ -51,6 +51,9 @@ Pair pair_of(const World& world, const ContactSpec& spec, const std::string& nam
 /// Which backend a method in image space is: "auto" takes a GPU where there is one.
 contact::ImageOptions options_of(const Pair& pair) {
   const std::string& method = pair.spec.method;
+  if (pair.spec.spring == "per_point" && pair.spec.samples != "vertex")
+    fail("contact {} - {}: spring = \"per_point\" needs samples = \"vertex\": a pixel is no vertex",
+         pair.spec.first, pair.spec.second);
   const bool gpu = method == "gpu" || (method == "auto" && contact::has_gpu_hardware());
   contact::ImageOptions out;
   out.backend = gpu                 ? contact::DepthBackend::kGpu

@@ -60,6 +60,10 @@ scene::Kinds make_kinds() {
     methods.absent.push_back({one.name, one.answer});
   out.push_back(std::move(methods));
   out.push_back({.table = "contact",
+                 .selector = "spring",
+                 .kinds = kinds_of(contact::spring_registry()),
+                 .unsaid = [](const Description&) { return ContactSpec{}.spring; }});
+  out.push_back({.table = "contact",
                  .selector = "law",
                  .kinds = kinds_of(contact::law_registry()),
                  .unsaid = [](const Description&) { return ContactSpec{}.law; }});

@@ -81,6 +81,9 @@ std::vector<ChoiceList> registries() {
           {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_steppers()},
           {"obstacles", "rigid shapes in the world: [[obstacle]] type", named(contact::obstacle_registry())},
           {"contact-methods", "how gaps are found: [[contact]] method", named(contact::method_registry())},
+          {"contact-springs", "what stiffness and damping are of: [[contact]] spring",
+           named(contact::spring_registry())},
+          {"contact-laws", "pressure by depth and its rate: [[contact]] law", named(contact::law_registry())},
           {"generators", "of meshes: [body.mesh] generator", choices(mesh::tet_generators())},
           {"devices", "what the hand holds: [device] type", choices(device::handle_registry())},
           {"parts", "optional parts of this build", part_choices()}};

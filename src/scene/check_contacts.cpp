@@ -82,6 +82,10 @@ void check_method(const Document& doc, const std::string& key, const std::string
     refuse(location(doc, key + ".depths"), where,
            "depths = \"interpolated\" is for vertices: a pixel has a depth of its own; write samples = "
            "\"vertex\" as well, or remove it");
+  if (c.spring == "per_point" && c.method != "analytic" && c.samples != "vertex")
+    refuse(location(doc, key + ".spring"), where,
+           "spring = \"per_point\" is a spring at each colliding vertex, and samples = \"pixel\" has none; "
+           "write samples = \"vertex\" as well, or remove it");
   if (c.method != "analytic" && obstacle)
     refuse(location(doc, key + ".method"), where,
            fmt::format("method = \"{}\" is for tools and soft bodies: an obstacle has exact gaps; use "
@@ -108,6 +112,18 @@ void check_method(const Document& doc, const std::string& key, const std::string
            "\"auto\"");
 }
 
+/// A scene whose friction an override takes away keeps what it says of it.
+void check_friction(const Document& doc, const std::string& key, const std::string& where,
+                    const ContactSpec& c) {
+  const std::string tangent = key + ".friction_tangent", friction = key + ".friction";
+  if (c.friction > 0.0 || !given(doc, tangent)) return;
+  if (given(doc, friction) && location(doc, friction).starts_with("--set ") &&
+      !location(doc, tangent).starts_with("--set "))
+    return;
+  refuse(location(doc, tangent), where,
+         "friction_tangent means nothing where friction = 0; remove it, or set friction");
+}
+
 }  // namespace
 
 void check_contacts(const Document& doc, Description& d) {
@@ -123,6 +139,7 @@ void check_contacts(const Document& doc, Description& d) {
                       where = fmt::format("contact between \"{}\" and \"{}\"", c.first, c.second);
     check_sides(doc, key, where, sides, c);
     check_method(doc, key, where, sides, d, c);
+    check_friction(doc, key, where, c);
     const bool twice =
         seen.contains({c.first, c.second}) || (sides.is_body(c.second) && seen.contains({c.second, c.first}));
     seen.emplace(c.first, c.second);

@@ -252,6 +252,7 @@ class Results(Cli):
         for what, member in {"integrators": "cvode-bdf", "linear-solvers": "cholmod",
                              "materials": "stable_neo_hookean", "tool-integrators": "simbody-cpodes",
                              "obstacles": "cylinder", "contact-methods": "gpu", "generators": "tet",
+                             "contact-springs": "per_point", "contact-laws": "hunt_crossley",
                              "devices": "script",
                              "cases": "patch-test", "parts": "contact", "scenes": "press-ball"}.items():
             with self.subTest(what=what):

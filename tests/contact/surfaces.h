@@ -1,4 +1,6 @@
 #pragma once
+#include <map>
+
 #include "fixture.h"
 #include "palpate/mesh/generators.h"
 
@@ -34,6 +36,22 @@ inline TriMesh sphere(const Vec3& centre, double radius, int rings) {
   mesh.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
   for (std::size_t f = 0; f < faces.size(); ++f) mesh.faces.col(static_cast<Eigen::Index>(f)) = faces[f];
   return mesh;
+}
+
+/// A surface with a border, closed by a cone from there to `tip`, which becomes its last vertex.
+inline TriMesh closed_by_cone(TriMesh open, const Vec3& tip) {
+  std::map<std::pair<int, int>, int> edges;
+  for (Eigen::Index f = 0; f < open.faces.cols(); ++f)
+    for (int k = 0; k < 3; ++k) ++edges[{open.faces(k, f), open.faces((k + 1) % 3, f)}];
+  const int last = static_cast<int>(open.vertices.cols());
+  open.vertices.conservativeResize(3, last + 1);
+  open.vertices.col(last) = tip;
+  for (const auto& [edge, count] : edges) {
+    if (edges.contains({edge.second, edge.first})) continue;
+    open.faces.conservativeResize(3, open.faces.cols() + 1);
+    open.faces.col(open.faces.cols() - 1) = Eigen::Vector3i(edge.second, edge.first, last);
+  }
+  return open;
 }
 
 /// A State whose nodes are a surface's vertices, behind another block of two nodes.

@@ -207,6 +207,55 @@ TEST(Kinds, ContactMethods) {
             std::string::npos);
 }
 
+TEST(Kinds, SpringsOfAreaAndOfPoints) {
+  const auto with = [](const Overrides& overrides) { return refusal(scene_texts::kWhole, overrides); };
+  EXPECT_EQ(
+      with({"contact.0.spring=per_point", "contact.0.stiffness_n_m=20.0", "contact.0.damping_n_s_m=1.0"}),
+      "accepted");
+  EXPECT_EQ(with({"contact.0.stiffness_pa_m=1e6", "contact.0.damping_pa_s_m=1.0"}), "accepted");
+  EXPECT_NE(with({"contact.0.spring=per_point", "contact.0.stiffness_pa_m=1e6"})
+                .find("stiffness_pa_m means nothing to spring = \"per_point\", which takes stiffness_n_m, "
+                      "damping_n_s_m; remove it (used by per_area)"),
+            std::string::npos);
+  EXPECT_NE(
+      with({"contact.0.stiffness_n_m=20.0"}).find("stiffness_n_m means nothing to spring = \"per_area\""),
+      std::string::npos);
+  EXPECT_NE(with({"contact.0.spring=per_point", "contact.0.law=hunt_crossley", "contact.0.damping_n_s_m=1.0"})
+                .find("damping_n_s_m means nothing to law = \"hunt_crossley\""),
+            std::string::npos);
+  EXPECT_NE(
+      with({"contact.0.spring=steel"}).find("spring = \"steel\" is not known (known: per_area, per_point)"),
+      std::string::npos);
+  EXPECT_NE(with({"contact.0.spring=per_point", "contact.0.stiffness_n_m=0.0"}).find("must be positive"),
+            std::string::npos);
+  // the tool is a sphere, with exact gaps at the vertices; an image has to be asked for them
+  EXPECT_EQ(with({"contact.1.spring=per_point"}), "accepted");
+  EXPECT_EQ(
+      with({"contact.1.spring=per_point", "contact.1.method=cpu"}),
+      "--set contact.1.spring=per_point: contact between \"ball\" and \"tool\": spring = \"per_point\" is "
+      "a spring at each colliding vertex, and samples = \"pixel\" has none; write samples = \"vertex\" as "
+      "well, or remove it");
+  EXPECT_EQ(with({"contact.1.spring=per_point", "contact.1.method=cpu", "contact.1.samples=vertex"}),
+            "accepted");
+}
+
+TEST(Kinds, AFrictionTangentBelongsToFriction) {
+  EXPECT_EQ(refusal(scene_texts::kWhole, {"contact.0.friction=0.3", "contact.0.friction_tangent=full"}),
+            "accepted");
+  EXPECT_EQ(refusal(scene_texts::kWhole, {"contact.0.friction_tangent=full"}),
+            "--set contact.0.friction_tangent=full: contact between \"floor\" and \"ball\": friction_tangent "
+            "means nothing where friction = 0; remove it, or set friction");
+  const std::string text = kBlock +
+                           "[[obstacle]]\nname = \"floor\"\ntype = \"plane\"\n[[contact]]\nbetween = "
+                           "[\"block\", \"floor\"]\nfriction_tangent = \"full\"\n";
+  EXPECT_NE(
+      refusal(text).find("s.toml:13:20: contact between \"block\" and \"floor\": friction_tangent means"),
+      std::string::npos)
+      << refusal(text);
+  EXPECT_EQ(refusal(text + "friction = 0.3\n", {"contact.0.friction=0.0"}), "accepted")
+      << "a scene without its friction, by an override";
+}
+
 TEST(Kinds, ToolDeviceAndExchange) {
   const auto with = [](const Overrides& overrides) { return refusal(scene_texts::kWhole, overrides); };
   EXPECT_EQ(with({"exchange.linearisation=frozen"}), "accepted");

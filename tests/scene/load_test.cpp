@@ -206,8 +206,8 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
       {{"contact.1.pixels=128"}, "pixels means nothing here: a sphere has exact gaps; remove it, or write"},
       {{"contact.0.pixels=128"}, "pixels means nothing here: an obstacle has exact gaps; remove it"},
       {{"contact.0.hunt_crossley_s_m=1.0"},
-       "hunt_crossley_s_m means nothing to law = \"kelvin_voigt\", which takes damping_pa_s_m; remove it "
-       "(used by hunt_crossley)"},
+       "hunt_crossley_s_m means nothing to law = \"kelvin_voigt\", which takes damping_pa_s_m, "
+       "damping_n_s_m; remove it (used by hunt_crossley)"},
       {{"contact.0.law=hunt_crossley", "contact.0.damping_pa_s_m=1.0"},
        "damping_pa_s_m means nothing to law = \"hunt_crossley\", which takes hunt_crossley_s_m; remove it "
        "(used by kelvin_voigt)"},

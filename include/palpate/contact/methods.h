@@ -23,6 +23,13 @@ const std::vector<AbsentMethod>& absent_methods();
 /// @throws Error for a name that is not in the registry: which there are, and which one to take
 void check_method(const std::string& method, const std::string& where);
 
+/// What the springs stand for: area, or each point for itself.
+struct SpringEntry {
+  std::string name, summary;
+  std::vector<PartKey> keys = {};
+};
+const std::vector<SpringEntry>& spring_registry();
+
 /// Pressure by depth and its rate.
 struct LawEntry {
   std::string name, summary;

@@ -25,7 +25,7 @@ struct SurfacePoint {
 struct ContactSample {
   SurfacePoint a, b;
   Vec3 normal = Vec3::UnitZ();  ///< unit, from b to a: pushes a away
-  double area = 0.0;            ///< projected on the contact plane [m^2]
+  double area = 0.0;            ///< projected on the contact plane [m^2]; 1 where springs are per point
   double gap = 0.0;             ///< at the query [m]
   int source = 0;               ///< index of the contact pair that made it
 };

@@ -23,8 +23,13 @@ struct ContactSpec {
   /// "analytic" (obstacle or a sphere tool), one of the methods in image space (a tool of any shape, another
   /// soft body), or "auto": the first where it can be and the body has no proxies, else an image
   std::string method = "auto";
-  double stiffness_pa_m = 1e7;       ///< k: pressure per depth
-  double damping_pa_s_m = 0.0;       ///< d (kelvin_voigt) [Pa s/m]
+  /// "per_area": pressure by depth, times the area that a sample stands for; "per_point": a force by depth at
+  /// each colliding vertex (Galoppo et al. 2007), so that twice the vertices push twice as hard
+  std::string spring = "per_area";
+  double stiffness_pa_m = 1e7;       ///< k of per_area: pressure per depth
+  double stiffness_n_m = 100.0;      ///< k of per_point: force per depth
+  double damping_pa_s_m = 0.0;       ///< d of per_area (kelvin_voigt) [Pa s/m]
+  double damping_n_s_m = 0.0;        ///< d of per_point (kelvin_voigt) [N s/m]
   double hunt_crossley_s_m = 0.0;    ///< c (hunt_crossley) [s/m]
   std::string law = "kelvin_voigt";  ///< or "hunt_crossley"
   /// w: depth over which the pressure sets in smoothly (C1); 0: at once, with a kink
@@ -49,7 +54,10 @@ struct ContactSpec {
 struct ContactRanges {
   static constexpr Range stiffness_pa_m =
       Range::positive("10 x Young's modulus / the size of the dent is a start");
+  static constexpr Range stiffness_n_m =
+      Range::positive("stiffness_pa_m times the area of a vertex is a start");
   static constexpr Range damping_pa_s_m = Range::at_least(0.0);
+  static constexpr Range damping_n_s_m = Range::at_least(0.0);
   static constexpr Range hunt_crossley_s_m = Range::at_least(0.0);
   static constexpr Range onset_width_m =
       Range::at_least(0.0, "0 lets the pressure set in at once; a tenth of the depth is a smooth onset");
