@@ -43,6 +43,45 @@ class ListSource final : public contact::SampleSource {
   std::vector<contact::ContactSample> samples_;
 };
 
+/// A State moved by h along u-directions, quaternions on their geodesic.
+inline dynamics::State moved(const dynamics::State& state, const VecX& direction, double h) {
+  dynamics::State out = state;
+  auto q = out.q();
+  for (const auto& b : out.layout().blocks) {
+    const auto d = direction.segment(b.u_offset, b.u_size);
+    if (!b.kinematics) {
+      q.segment(b.q_offset, b.q_size) += h * d;
+      continue;
+    }
+    const Quat old(q[b.q_offset], q[b.q_offset + 1], q[b.q_offset + 2], q[b.q_offset + 3]);
+    const Quat rotated = quaternion_of(h * d.head<3>()) * old;
+    q.segment(b.q_offset, 4) << rotated.w(), rotated.x(), rotated.y(), rotated.z();
+    q.segment<3>(b.q_offset + 4) += h * d.tail<3>();
+  }
+  return out;
+}
+
+inline dynamics::State pushed(const dynamics::State& state, const VecX& direction, double h) {
+  dynamics::State out = state;
+  out.u() += h * direction;
+  return out;
+}
+
+/// A free rigid body as a block of the State.  Returns its id.
+inline int add_rigid_body(dynamics::State& state, const Pose& pose, const Twist& twist) {
+  const Quat r = pose.rotation;
+  VecX q(7), u(6);
+  q << r.w(), r.x(), r.y(), r.z(), pose.translation;
+  u << twist.angular, twist.linear;
+  dynamics::BlockSpec body;
+  body.name = "body";
+  body.kind = dynamics::BlockKind::kRigidBody;
+  body.q_size = 7;
+  body.u_size = 6;
+  body.kinematics = dynamics::free_body_kinematics();
+  return state.insert(body, q, u);
+}
+
 /// Nodes, and a free rigid body when asked, at random positions and velocities.
 struct World {
   dynamics::State state;
@@ -58,42 +97,19 @@ struct World {
     nodes.q_size = nodes.u_size = 3 * node_count;
     nodes_id = state.insert(nodes, q, u);
     if (!with_body) return;
-    const Quat r = rotation(random);
-    VecX qb(7), ub(6);
-    const Vec3 p = vector(random);
-    qb << r.w(), r.x(), r.y(), r.z(), p;
+    Pose pose;
+    pose.rotation = rotation(random);
+    pose.translation = vector(random);
+    Vec6 ub;
     for (auto& x : ub) x = uniform(random);
-    dynamics::BlockSpec body;
-    body.name = "body";
-    body.kind = dynamics::BlockKind::kRigidBody;
-    body.q_size = 7;
-    body.u_size = 6;
-    body.kinematics = dynamics::free_body_kinematics();
-    body_id = state.insert(body, qb, ub);
+    body_id = add_rigid_body(state, pose, {ub.head<3>(), ub.tail<3>()});
   }
 
-  /// The State moved by h along u-directions, quaternions on their geodesic.
   dynamics::State moved(const VecX& direction, double h) const {
-    dynamics::State out = state;
-    auto q = out.q();
-    for (const auto& b : out.layout().blocks) {
-      const auto d = direction.segment(b.u_offset, b.u_size);
-      if (!b.kinematics) {
-        q.segment(b.q_offset, b.q_size) += h * d;
-        continue;
-      }
-      const Quat old(q[b.q_offset], q[b.q_offset + 1], q[b.q_offset + 2], q[b.q_offset + 3]);
-      const Quat rotated = quaternion_of(h * d.head<3>()) * old;
-      q.segment(b.q_offset, 4) << rotated.w(), rotated.x(), rotated.y(), rotated.z();
-      q.segment<3>(b.q_offset + 4) += h * d.tail<3>();
-    }
-    return out;
+    return contact_tests::moved(state, direction, h);
   }
-
   dynamics::State pushed(const VecX& direction, double h) const {
-    dynamics::State out = state;
-    out.u() += h * direction;
-    return out;
+    return contact_tests::pushed(state, direction, h);
   }
 };
 

@@ -40,10 +40,11 @@ struct TwoBalls {
     return out;
   }
 
+  int pixels = 96;
   contact::SampleRule samples = contact::SampleRule::kPixel;
   contact::DepthReading depths = contact::DepthReading::kTriangles;
   contact::ImageOptions options() const {
-    contact::ImageOptions out = image_options(96, 0.02);
+    contact::ImageOptions out = image_options(pixels, 0.02);
     out.samples = samples;
     out.depths = depths;
     return out;

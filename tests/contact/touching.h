@@ -1,0 +1,175 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "contact/pressure.h"
+#include "contact/sample_math.h"
+#include "together.h"
+#include "two_balls.h"
+
+namespace contact_tests {
+
+/// A pair of every kind in contact, its frames and its source; the law comes later.
+struct Touching {
+  dynamics::State state;
+  std::vector<std::shared_ptr<contact::MovingFrame>> frames;
+  std::unique_ptr<contact::SampleSource> source;
+};
+struct TouchingKind {
+  std::string name;
+  std::function<Touching()> make;
+  bool image = true;
+};
+
+namespace touching {
+
+/// The tool's pose: oblique, off the origin.
+inline Pose tool_pose() { return {quaternion_of(Vec3(0.3, -0.2, 0.5)), Vec3(0.15, -0.1, 0.2)}; }
+
+/// A frame for the other side: fixed, or a moving body of the State.
+inline std::shared_ptr<contact::MovingFrame> add_frame(Touching& out, const Pose& pose, bool in_state) {
+  const Twist twist{Vec3(0.3, -0.4, 0.2), Vec3(0.1, -0.2, 0.3)};
+  out.frames.push_back(in_state ? contact::block_frame(add_rigid_body(out.state, pose, twist))
+                                : contact::fixed_frame(pose));
+  return out.frames.back();
+}
+
+/// What is pressed: nodes of a sphere, or the skin of a bent ball with extrapolated weights; its lowest
+/// point.
+struct Soft {
+  dynamics::State state;
+  contact::NodeSurface surface;
+  std::shared_ptr<proxy::ProxySet> proxies;
+  Vec3 bottom;
+};
+inline Soft soft_nodes() {
+  SurfaceWorld world(sphere(Vec3::Zero(), 1.0, 16));
+  for (Eigen::Index i = 0; i < world.state.u().size(); ++i)
+    world.state.u()[i] = 0.3 * std::sin(1.0 + 2.0 * static_cast<double>(i));
+  return {world.state, world.surface, nullptr, Vec3(0, 0, -1)};
+}
+inline Soft soft_skin() {
+  SkinWorld world;
+  world.state.u() *= 0.3;
+  Eigen::Index lowest = 0;
+  world.vertices.row(2).minCoeff(&lowest);
+  return {world.state, world.surface, proxies_of(world.ball, world.skin, world.surface.embedding, 2),
+          world.vertices.col(lowest)};
+}
+
+/// An analytic shape below the soft body, overlapping by `depth`, in a frame at tool_pose().
+inline Touching on_shape(const std::string& shape, bool skin, bool in_state) {
+  constexpr double kDepth = 0.15;
+  const Soft soft = skin ? soft_skin() : soft_nodes();
+  Touching out;
+  out.state = soft.state;
+  const Pose pose = tool_pose();
+  const auto frame = add_frame(out, pose, in_state);
+  const Vec3 top = pose.inverse() * Vec3(soft.bottom + Vec3(0, 0, kDepth)),
+             up = pose.rotation.conjugate() * Vec3(0.1, -0.05, 1.0).normalized();
+  // the shape's own axes, its z along up; its top face or its round side touches
+  const Pose upright{Quat::FromTwoVectors(Vec3::UnitZ(), up), top - 0.6 * up},
+      lying{Quat::FromTwoVectors(Vec3::UnitX(), up), top - 0.6 * up};
+  const contact::NodeSurface& surface = soft.surface;
+  if (shape == "plane") out.source = contact::make_plane_source(surface, 0, frame, top, up, 0.05);
+  if (shape == "sphere")
+    out.source = contact::make_sphere_source(surface, 0, frame, top - 0.6 * up, 0.6, 0.05);
+  if (shape == "box")
+    out.source = contact::make_box_source(surface, 0, frame, upright, Vec3(0.8, 1.0, 1.2), 0.05);
+  if (shape == "cylinder")
+    out.source = contact::make_cylinder_source(surface, 0, frame, lying, 0.6, 1.5, 0.05);
+  return out;
+}
+
+/// A rigid ball in image space, pressed into the skin from below.
+inline Touching on_tool(contact::SampleRule samples, bool pruned, bool in_state) {
+  const Soft soft = soft_skin();
+  Touching out;
+  out.state = soft.state;
+  const auto frame = add_frame(out, tool_pose(), in_state);
+  TriMesh tool = sphere(Vec3::Zero(), 0.6, 16);
+  for (auto x : tool.vertices.colwise())
+    x = tool_pose().inverse() * Vec3(x + soft.bottom - Vec3(0.05, 0.02, 0.45));
+  contact::ImageOptions options = image_options(24, 0.05);
+  options.samples = samples;
+  out.source = pruned ? contact::make_image_source(soft.surface, soft.proxies, tool, proxies_of(tool), 0,
+                                                   frame, options)
+                      : contact::make_image_source(soft.surface, tool, 0, frame, options);
+  return out;
+}
+
+inline Touching two_soft(contact::SampleRule samples, bool pruned) {
+  TwoBalls balls;
+  balls.samples = samples;
+  balls.pixels = 24;
+  Touching out;
+  out.source = balls.source(pruned);
+  out.state = balls.state;
+  return out;
+}
+
+/// Two balls that are one body, against itself.
+inline Touching itself() {
+  const TwoBalls balls;
+  const LayeredModel both = [&] {
+    LayeredModel a = balls.a.model, b = balls.b.model;
+    for (LayeredModel* model : {&a, &b}) {
+      model->embedding = mesh::embed(model->tets, model->skin.vertices);
+      model->proxies = grid_proxies(model->skin, 3);
+    }
+    return together(a, b);
+  }();
+  Points rest = both.tets.nodes;  // what overlaps at rest is no contact: there they stand apart
+  rest.rightCols(balls.b.model.tets.nodes.cols()).row(2).array() -= 1.0;
+  Touching out;
+  contact::NodeSurface surface;
+  dynamics::BlockSpec nodes;
+  nodes.name = "both";
+  nodes.q_size = nodes.u_size = static_cast<int>(both.tets.nodes.size());
+  surface.block_id = out.state.insert(nodes, Eigen::Map<const VecX>(both.tets.nodes.data(), nodes.q_size),
+                                      VecX(balls.state.u()));
+  surface.faces = both.skin.faces;
+  surface.embedding = both.embedding;
+  surface.tets = both.tets.tets;
+  out.source = contact::make_image_source(surface, std::make_shared<proxy::ProxySet>(both), rest,
+                                          image_options(24, 0.02));
+  return out;
+}
+
+}  // namespace touching
+
+/// Every kind of pair, each with nodes and skins, frames that stand still and such of the State.
+inline std::vector<TouchingKind> touching_kinds() {
+  using contact::SampleRule;
+  std::vector<TouchingKind> out;
+  for (const char* shape : {"plane", "sphere", "box", "cylinder"}) {
+    const std::string name = shape;
+    out.push_back({"nodes on a " + name, [=] { return touching::on_shape(name, false, false); }, false});
+    out.push_back(
+        {"a skin on a moving " + name, [=] { return touching::on_shape(name, true, true); }, false});
+  }
+  for (const auto& [rule, name] : {std::pair{SampleRule::kPixel, std::string("pixels")},
+                                   std::pair{SampleRule::kVertex, std::string("vertices")}}) {
+    const SampleRule samples = rule;
+    out.push_back({"a skin on a tool, " + name, [=] { return touching::on_tool(samples, true, true); }});
+    out.push_back(
+        {"a skin on a tool, unpruned, " + name, [=] { return touching::on_tool(samples, false, true); }});
+    out.push_back({"two skins, " + name, [=] { return touching::two_soft(samples, true); }});
+    out.push_back({"two skins, unpruned, " + name, [=] { return touching::two_soft(samples, false); }});
+  }
+  out.push_back({"a body against itself", [] { return touching::itself(); }});
+  return out;
+}
+
+inline std::vector<contact::FrameState> frame_states(const Touching& at, const dynamics::StateView& state) {
+  std::vector<contact::FrameState> out;
+  for (const auto& frame : at.frames) {
+    const Pose pose = frame->pose(state);
+    out.push_back({pose, pose.rotation.toRotationMatrix(), frame->twist(state), frame->u_offset(state)});
+  }
+  return out;
+}
+
+}  // namespace contact_tests
