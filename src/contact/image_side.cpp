@@ -20,8 +20,8 @@ class SoftSide final : public ImageSide {
   const Points& positions() override { return state_.positions(); }
   Vec3 vertex(int vertex) const override { return state_.position(vertex); }
   void update(proxy::ProxySet& proxies) const override { proxies.update(state_.nodes()); }
-  SurfacePoint point(int face, const Vec3& weights, const Vec3&) const override {
-    return state_.face_point(face, weights);
+  SurfacePoint point(int face, const Vec3& weights, const Vec3&, const Vec3& normal) const override {
+    return state_.face_point(face, weights, normal);
   }
   const SurfaceState* soft() const override { return &state_; }
 
@@ -55,7 +55,7 @@ class RigidSide final : public ImageSide {
   }
   Vec3 vertex(int vertex) const override { return turn_ * surface_.vertices.col(vertex) + pose_.translation; }
   void update(proxy::ProxySet& proxies) const override { proxies.update(pose_); }
-  SurfacePoint point(int, const Vec3&, const Vec3& world) const override {
+  SurfacePoint point(int, const Vec3&, const Vec3& world, const Vec3&) const override {
     SurfacePoint point;
     point.frame = frame_;
     point.offset.noalias() = turn_.transpose() * (world - pose_.translation);

@@ -23,8 +23,8 @@ class ImageSide {
   virtual const Points& positions() = 0;                    ///< of all vertices [m], world
   virtual Vec3 vertex(int vertex) const = 0;                ///< of one
   virtual void update(proxy::ProxySet& proxies) const = 0;  ///< proxies of this surface, as it stands now
-  /// A point of a face as a side of a sample, by its corners' weights and where that is.
-  virtual SurfacePoint point(int face, const Vec3& weights, const Vec3& world) const = 0;
+  /// A point of a face as a side of a sample with this normal, by its corners' weights and where that is.
+  virtual SurfacePoint point(int face, const Vec3& weights, const Vec3& world, const Vec3& normal) const = 0;
   /// What couples nodes of this side alone; null of a rigid one.
   virtual const SurfaceState* soft() const { return nullptr; }
 };

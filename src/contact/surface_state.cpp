@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 
 namespace palpate::contact {
@@ -52,6 +54,7 @@ const Points& SurfaceState::positions() const {
     mesh::evaluate(surface_.embedding, surface_.tets, nodes_, positions_);
     std::fill(evaluated_.begin(), evaluated_.end(), static_cast<std::uint32_t>(updates_));
     all_evaluated_ = updates_;
+    evaluations_ += vertex_count_;
   }
   return positions_;
 }
@@ -62,6 +65,7 @@ void SurfaceState::evaluate(int vertex) const {
   positions_.col(vertex) = w[0] * nodes_.col(corner[0]) + w[1] * nodes_.col(corner[1]) +
                            w[2] * nodes_.col(corner[2]) + w[3] * nodes_.col(corner[3]);
   evaluated_[static_cast<std::size_t>(vertex)] = static_cast<std::uint32_t>(updates_);
+  ++evaluations_;
 }
 
 Vec3 SurfaceState::velocity(int vertex, const dynamics::StateView& state) const {
@@ -92,7 +96,19 @@ SurfacePoint SurfaceState::vertex_point(int vertex) const {
 // it stands now: so it lies where it is seen, and a force at it keeps its moment.  Between two queries it
 // moves with that one tetrahedron, and leaves the face by a part of the difference of the tetrahedra's
 // strains.
-SurfacePoint SurfaceState::face_point(int face, const Vec3& weights) const {
+//
+// In a tetrahedron that is squashed against its neighbours the coordinates w grow as 1 / height: a force f
+// reaches the nodes as w f, and a stiffness k as w^2 k.  The sum |w| is therefore held below that which an
+// embedding may have.  A force along n keeps its moment at any point of its line, so the point may be carried
+// by one that differs from it along n: of all weights with
+//     sum w_i = 1,   sum w_i P x_i = P x,   P = I - n n^T
+// the least ones,
+//     w_i = 1/4 + p_i^T (sum p_j p_j^T)^-1 p,
+// p_i and p the P x_i and P x about the mean of the corners, are bounded however low the tetrahedron is along
+// n.  The offset left along n does not rotate: gap and moment are right to first order, and friction's moment
+// is off by friction times offset.  Where that is not enough, the tetrahedra of the face's other corners
+// are tried.
+SurfacePoint SurfaceState::face_point(int face, const Vec3& weights, const Vec3& normal) const {
   const auto corner = surface_.faces.col(face);
   if (!is_skin()) {
     SurfacePoint point;
@@ -107,7 +123,21 @@ SurfacePoint SurfaceState::face_point(int face, const Vec3& weights) const {
   weights.maxCoeff(&nearest);
   const Vec3 x =
       weights[0] * position(corner[0]) + weights[1] * position(corner[1]) + weights[2] * position(corner[2]);
-  return point_of_tet(tet_of(corner[nearest]), x, surface_.embedding.weights.col(corner[nearest]));
+  const int own = tet_of(corner[nearest]);
+  const Weights of_corner = surface_.embedding.weights.col(corner[nearest]);
+  if (weights[nearest] == 1.0) return point_of_tet(own, x, of_corner);  // a vertex
+  const auto is_bounded = [](const Weights& w) { return w.cwiseAbs().sum() <= mesh::kLargestWeightSum; };
+  if (const Weights w = weights_at(own, x); is_bounded(w)) return point_of_tet(own, x, w);
+  counters::count("contact.squashed_tetrahedron");
+  if (const Weights w = weights_on_line(own, x, normal); is_bounded(w)) return point_of_tet(own, x, w);
+  for (int k = 0; k < 3; ++k)
+    if (const Weights w = weights_at(tet_of(corner[k]), x); is_bounded(w))
+      return point_of_tet(tet_of(corner[k]), x, w);
+  for (int k = 0; k < 3; ++k)
+    if (const Weights w = weights_on_line(tet_of(corner[k]), x, normal); is_bounded(w))
+      return point_of_tet(tet_of(corner[k]), x, w);
+  // all three flat and seen edge-on: the corner's own weights, and a moment of the offset times the force
+  return point_of_tet(own, x, of_corner);
 }
 
 const SurfaceState::TetFrame& SurfaceState::frame_of(int tet) const {
@@ -125,23 +155,39 @@ const SurfaceState::TetFrame& SurfaceState::frame_of(int tet) const {
   return frame;
 }
 
-/// By its barycentric coordinates; on a tetrahedron too flat to have them, by the corner's own weights and an
-/// offset that does not rotate.
-SurfacePoint SurfaceState::point_of_tet(int tet, const Vec3& x, const Eigen::Vector4d& of_corner) const {
-  const auto at = [&](int k) { return nodes_.col(surface_.tets(k, tet)); };
+SurfaceState::Weights SurfaceState::weights_at(int tet, const Vec3& x) const {
   const TetFrame& frame = frame_of(tet);
-  Eigen::Vector4d w = of_corner;
-  if (!frame.flat) {
-    w.tail<3>().noalias() = frame.inverse_edges * (x - at(0));
-    w[0] = 1.0 - w.tail<3>().sum();
-  }
+  if (frame.flat) return Weights::Constant(std::numeric_limits<double>::quiet_NaN());
+  Weights w;
+  w.tail<3>().noalias() = frame.inverse_edges * (x - nodes_.col(surface_.tets(0, tet)));
+  w[0] = 1.0 - w.tail<3>().sum();
+  return w;
+}
+
+SurfaceState::Weights SurfaceState::weights_on_line(int tet, const Vec3& x, const Vec3& normal) const {
+  constexpr double kEdgeOn = 1e-12;
+  Eigen::Matrix<double, 3, 2> across;
+  across.col(0) = normal.unitOrthogonal();
+  across.col(1) = normal.cross(across.col(0));
+  Eigen::Matrix<double, 2, 4> p;
+  for (int k = 0; k < 4; ++k) p.col(k).noalias() = across.transpose() * nodes_.col(surface_.tets(k, tet));
+  const Eigen::Vector2d middle = p.rowwise().mean();
+  p.colwise() -= middle;
+  const Eigen::Matrix2d squares = p * p.transpose();
+  if (!(squares.determinant() > kEdgeOn * squares.trace() * squares.trace()))
+    return Weights::Constant(std::numeric_limits<double>::quiet_NaN());
+  const Eigen::Vector2d at = squares.inverse() * (across.transpose() * x - middle);
+  return Weights::Constant(0.25) + p.transpose() * at;
+}
+
+SurfacePoint SurfaceState::point_of_tet(int tet, const Vec3& x, const Weights& weights) const {
   SurfacePoint point;
   point.count = 4;
   point.offset = x;
   for (int k = 0; k < 4; ++k) {
     point.node[static_cast<std::size_t>(k)] = node_of_tet(tet, k);
-    point.weight[static_cast<std::size_t>(k)] = w[k];
-    point.offset -= w[k] * at(k);  // rounding, but of a flat one
+    point.weight[static_cast<std::size_t>(k)] = weights[k];
+    point.offset -= weights[k] * nodes_.col(surface_.tets(k, tet));  // rounding, but of a squashed one
   }
   return point;
 }

@@ -28,6 +28,8 @@ class SurfaceState {
       evaluate(vertex);
     return positions_.col(vertex);
   }
+  /// Positions of a skin's vertices that were computed so far, over all updates.
+  long evaluations() const { return evaluations_; }
   const Points& nodes() const { return nodes_; }  ///< of the block, of a skin only
   Vec3 velocity(int vertex, const dynamics::StateView& state) const;
   /// Of all nodes of the block: what a point of the surface moves with is a mean of some of them, but for the
@@ -35,8 +37,8 @@ class SurfaceState {
   Eigen::Map<const Points> node_velocities(const dynamics::StateView& state) const;
   /// One vertex as a contact point; its nodes are counted over all node blocks.
   SurfacePoint vertex_point(int vertex) const;
-  /// The point of a face with these weights of its corners.
-  SurfacePoint face_point(int face, const Vec3& weights) const;
+  /// The point of a face with these weights of its corners, for a force along `normal`.
+  SurfacePoint face_point(int face, const Vec3& weights, const Vec3& normal) const;
   /// One third of the area vectors of the adjacent faces, deformed [m^2]; outward.  Sums over `faces` with a
   /// vertex in `wanted`.
   void area_vectors(const std::vector<char>& wanted, Points& areas) const;
@@ -66,7 +68,13 @@ class SurfaceState {
     std::uint64_t made = 0;  ///< at which update
   };
   const TetFrame& frame_of(int tet) const;
-  SurfacePoint point_of_tet(int tet, const Vec3& x, const Eigen::Vector4d& at_rest) const;
+  using Weights = Eigen::Vector4d;
+  /// Barycentric coordinates of x; NaN where the tetrahedron is too flat to have them.
+  Weights weights_at(int tet, const Vec3& x) const;
+  /// The least weights, in the sense of squares, of a point on the line through x along `normal`; NaN where
+  /// the tetrahedron is flat along it.
+  Weights weights_on_line(int tet, const Vec3& x, const Vec3& normal) const;
+  SurfacePoint point_of_tet(int tet, const Vec3& x, const Weights& weights) const;
 
   NodeSurface surface_;
   std::vector<int> carriers_;  ///< of a skin: the tetrahedra that carry a vertex, each once
@@ -78,6 +86,7 @@ class SurfaceState {
   mutable Points positions_;
   mutable std::vector<std::uint32_t> evaluated_;  ///< of a skin's vertices: the update that they are of
   mutable std::uint64_t all_evaluated_ = 0;       ///< likewise, of all of them
+  mutable long evaluations_ = 0;
   Points nodes_;
   std::uint64_t updates_ = 1;
   mutable std::vector<TetFrame> frames_;  ///< of each tetrahedron, made when a point asks for it
