@@ -53,7 +53,8 @@ class StepSolver {
                                Reassemble&& reassemble) {
     const dynamics::SolveStatus status = factor_chosen(A);
     if (status != dynamics::SolveStatus::kIndefinite) return status;
-    return project_ ? factor_indefinite(A, system, reassemble) : factor_direct(A);
+    // of an unsymmetric matrix that is said of its symmetric part alone
+    return project_ && A.symmetric ? factor_indefinite(A, system, reassemble) : factor_direct(A);
   }
 
   /// Factors a matrix that is known to be indefinite, and need not have been written to A yet.
@@ -79,7 +80,7 @@ class StepSolver {
     dynamics::SolveStatus status = solve_symmetric(right_hand_side(), x);
     if (status != dynamics::SolveStatus::kIndefinite) return status;
     const dynamics::BorderedMatrix& A = *matrix_;
-    if (project_ && !projected_) {
+    if (project_ && !projected_ && A.symmetric) {
       if (status = factor_indefinite(A, system, reassemble); status != dynamics::SolveStatus::kOk)
         return status;
       if (status = solve_symmetric(right_hand_side(), x); status != dynamics::SolveStatus::kIndefinite)

@@ -105,10 +105,12 @@ class AutoSolver final : public dynamics::LinearSolver, public dynamics::MixedPr
  public:
   explicit AutoSolver(const IntegratorSpec& spec) : spec_(spec) { counters::count("integrate.solver.auto"); }
   std::string name() const override { return "auto"; }
-  bool supports_unsymmetric() const override { return false; }
+  bool supports_unsymmetric() const override { return true; }
+  bool supports_indefinite() const override { return false; }
 
   SolveStatus factor(const BorderedMatrix& A) override {
-    PALPATE_CHECK(A.symmetric, "solver auto was given an unsymmetric matrix");
+    if (!A.symmetric) return factor_unsymmetric(A);
+    if (active_ == unsymmetric_.get()) active_ = nullptr;
     const bool same = active_ && A.values_version != 0 && A.values_version == values_version_;
     if (!same) choose(A.body.block_rows(), squared_courant_number(A.body));
     values_version_ = A.values_version;
@@ -143,6 +145,7 @@ class AutoSolver final : public dynamics::LinearSolver, public dynamics::MixedPr
       if (!solver) continue;
       sum_ += solver->counters();
     }
+    if (unsymmetric_) sum_ += unsymmetric_->counters();
     if (active_) sum_.ordering = active_->counters().ordering;
     return sum_;
   }
@@ -164,6 +167,15 @@ class AutoSolver final : public dynamics::LinearSolver, public dynamics::MixedPr
     mixed_ = dynamic_cast<dynamics::MixedPrecisionSolver*>(active_);
   }
 
+  SolveStatus factor_unsymmetric(const BorderedMatrix& A) {
+    if (!unsymmetric_) unsymmetric_ = make_gmres(spec_);
+    active_ = unsymmetric_.get();
+    mixed_ = nullptr;
+    values_version_ = 0;
+    seen_ = 0.0;
+    return active_->factor(A);
+  }
+
   void choose(int nodes, double stiffness) {
     const bool near = !provisional_ && stiffness < kKept * stiffness_ && kKept * stiffness > stiffness_;
     if (active_ && nodes == nodes_ && (near || !std::isfinite(stiffness))) return;
@@ -183,6 +195,7 @@ class AutoSolver final : public dynamics::LinearSolver, public dynamics::MixedPr
 
   IntegratorSpec spec_;
   std::array<std::unique_ptr<dynamics::LinearSolver>, kNames.size()> made_;
+  std::unique_ptr<dynamics::LinearSolver> unsymmetric_;  ///< made at the first unsymmetric matrix
   dynamics::LinearSolver* active_ = nullptr;
   dynamics::MixedPrecisionSolver* mixed_ = nullptr;  ///< capability of active_
   dynamics::ZeroRowSumMatrix* room_ = nullptr;       ///< of active_

@@ -14,12 +14,17 @@ const dynamics::LinearSolverRegistry& linear_solver_registry() {
        "left-looking LU of SuiteSparse, pivot order kept; unsymmetric and indefinite matrices, of small "
        "bodies (3,700 nodes: many times umfpack's time)",
        0, make_klu},
+      {"gmres",
+       "flexible GMRES to linear_rtol, preconditioned by conjugate gradients on the symmetric part, which "
+       "must be "
+       "positive definite; unsymmetric matrices, as friction makes them",
+       0, make_gmres, part_keys({"linear_rtol"})},
       {"pcg",
        "conjugate gradients, block-Jacobi, warm start, to linear_rtol; symmetric positive definite matrices",
        0, make_pcg, part_keys({"linear_rtol"})},
       {"auto",
        "the fastest of cholmod, pcg-single and pcg-two-level for the matrix's size and stiffness and for "
-       "linear_rtol, by measurements kept in the source",
+       "linear_rtol, by measurements kept in the source; gmres for an unsymmetric matrix",
        0, make_auto, part_keys({"linear_rtol"})},
       {"pcg-single",
        "conjugate gradients in single precision with residuals in double, block-Jacobi, start from three "

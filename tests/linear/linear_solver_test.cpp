@@ -57,20 +57,22 @@ class LinearSolvers : public testing::TestWithParam<std::string> {
   /// An iterative solver's tolerance is set so that it must agree like a direct one.
   std::unique_ptr<LinearSolver> solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-14});
   std::vector<Kind> kinds() const {
-    return solver->supports_unsymmetric() ? std::vector{Kind::kSpd, Kind::kIndefinite, Kind::kUnsymmetric}
-                                          : std::vector{Kind::kSpd};
+    std::vector out{Kind::kSpd};
+    if (solver->supports_indefinite()) out.push_back(Kind::kIndefinite);
+    if (solver->supports_unsymmetric()) out.push_back(Kind::kUnsymmetric);
+    return out;
   }
 };
 
 std::vector<std::string> solver_names() { return names(linear::linear_solver_registry()); }
 INSTANTIATE_TEST_SUITE_P(Registry, LinearSolvers, testing::ValuesIn(solver_names()), registry_test_name);
 
-/// Solvers that pivot: they take unsymmetric matrices, and see a singular one.
+/// Solvers that pivot: they take any matrix with an inverse, and see a singular one.
 class PivotingSolvers : public LinearSolvers {};
 std::vector<std::string> pivoting_names() {
   std::vector<std::string> out = solver_names();
   std::erase_if(out, [](const std::string& name) {
-    return !linear::make_linear_solver(name, {})->supports_unsymmetric();
+    return !linear::make_linear_solver(name, {})->supports_indefinite();
   });
   return out;
 }
@@ -136,11 +138,11 @@ TEST_P(LinearSolvers, ReportWhatHasNoFactor) {
   const BorderedMatrix good = A;
   A.body.add(A.body.slot(3, 3), -200.0 * Mat3::Identity());
   A.touch();
-  EXPECT_EQ(solver->factor(A), solver->supports_unsymmetric() ? SolveStatus::kOk : SolveStatus::kIndefinite);
+  EXPECT_EQ(solver->factor(A), solver->supports_indefinite() ? SolveStatus::kOk : SolveStatus::kIndefinite);
   A = good;
   A.corner -= 500.0 * MatX::Identity(6, 6);  // only the border is indefinite
   A.touch();
-  EXPECT_EQ(solver->factor(A), solver->supports_unsymmetric() ? SolveStatus::kOk : SolveStatus::kIndefinite);
+  EXPECT_EQ(solver->factor(A), solver->supports_indefinite() ? SolveStatus::kOk : SolveStatus::kIndefinite);
   A = good;
   A.body.values()[5] = std::nan("");
   A.touch();

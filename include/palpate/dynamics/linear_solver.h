@@ -75,6 +75,8 @@ class LinearSolver {
   virtual ~LinearSolver() = default;
   virtual std::string name() const = 0;
   virtual bool supports_unsymmetric() const = 0;
+  /// Whether it takes matrices that are not positive definite, or whose symmetric part is not.
+  virtual bool supports_indefinite() const { return supports_unsymmetric(); }
   /// Prepares for A; cheap when neither its pattern nor its values changed.  kIndefinite: a Cholesky factor
   /// does not exist. A stays where it is, unchanged, until the last solve with it: an iterative method reads
   /// it there.
