@@ -60,7 +60,7 @@ void print_contact_prices(const std::vector<scene::Description>& descriptions) {
           {"scene", "samples / regions", "elements", "samples (ratio)", "step", "query (ratio)"}, rows));
   fmt::print(
       "A step without its query, medians [ms]\n"
-      "  apart: the sum of steps of each body by itself, without contact, 1e-3; free: a step of all bodies "
+      "  apart: the sum of steps of each body by itself, without contact; free: a step of all bodies "
       "together, without contact;\n"
       "  contact: the scene's own step, over apart and over free; friction: with friction 0.3, over contact\n"
       "  without contact the bodies fall under their weight: at rest there is nothing to solve\n{}\n",

@@ -65,11 +65,11 @@ scene::Description row_of_bodies(scene::Description description, int count, doub
 /// image with as many pixels as the scene wants [ms].
 struct ContactPrice {
   ContactBenchRow contact;
-  /// A step of the first body without contact or tool, and the sum of such steps of each body by itself; both
-  /// with linear_rtol = 1e-3, in motion under the bodies' weight.
-  double one_body_ms = 0.0, bodies_ms = 0.0;
-  /// A step of all bodies together, without contact or tool, with the scene's tolerance, under their weight.
-  double contact_free_ms = 0.0;
+  /// A step of the first body without contact or tool, with linear_rtol = 1e-3.  As all that is without
+  /// contact it moves under its weight: at rest there is nothing to solve.
+  double one_body_ms = 0.0;
+  /// With the scene's tolerance: the sum of such steps of each body by itself, and a step of all together.
+  double bodies_ms = 0.0, contact_free_ms = 0.0;
   double friction_ms = 0.0;  ///< a step of the scene with friction 0.3; 0 of a scene with a tool
 };
 ContactPrice bench_contact_price(const scene::Description& description,
