@@ -24,6 +24,7 @@ ValidationCase resting_sphere();
 ValidationCase block_on_incline();
 ValidationCase rolling_sphere();
 ValidationCase felt_detail();
+ValidationCase contact_refresh();
 ValidationCase patch_test();
 ValidationCase rigid_motion();
 ValidationCase gradient_and_tangent();

@@ -11,7 +11,8 @@ const std::vector<ValidationCase>& validation_cases() {
     };
     add({spheres_field(), overlap_volume(), volume_on_plane(), box_corner(), corrugated_plates(),
          vertex_list(), order_independence(), walls(), sphere_on_plane(), punch_bounce(),
-         punch_bounce_damped(), punch_bounce_hunt_crossley(), rocking_box(), balance(), closed_loop()});
+         punch_bounce_damped(), punch_bounce_hunt_crossley(), rocking_box(), balance(), closed_loop(),
+         contact_refresh()});
     if (tool::available())
       add({elastic_foundation_peer(), resting_sphere(), block_on_incline(), rolling_sphere(), felt_detail()});
     add({patch_test(),

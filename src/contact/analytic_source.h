@@ -44,26 +44,50 @@ class AnalyticSource final : public SampleSource {
     const Pose pose = motion_->pose(state), inverse = pose.inverse();
     shape_.move_to(pose);
     find_tunnelled(inverse, state.time);
+    kept_.clear();
     if (!find_candidates(state, pose)) return;
     surface_.area_vectors(wanted_, areas_);
     for (int v = 0; v < surface_.vertex_count(); ++v) {
       if (!wanted_[static_cast<std::size_t>(v)]) continue;
-      const Vec3 x = surface_.positions().col(v);
-      const Nearest nearest = shape_.at(x);
-      const double area = -nearest.normal.dot(areas_.col(v));
-      if (area <= 0.0) continue;  // faces away: pressure there would pull
-      ContactSample sample;
-      sample.a = surface_.vertex_point(v);
-      sample.b = frame_point(frame_, inverse, x - (nearest.gap + nearest.radius) * nearest.normal);
-      sample.b.slide = nearest.radius * nearest.normal;
-      sample.normal = nearest.normal;
-      sample.area = area;
-      sample.gap = nearest.gap;
+      const ContactSample sample = sample_at(v, inverse);
+      // a vertex that follows may come to face the shape later, by as little as that
+      if (sample.area <= 0.0 && !follows_) continue;
       samples.push_back(sample);
+      if (follows_) kept_.push_back(v);
+    }
+  }
+
+  bool start_following() override { return follows_ = true; }
+  void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
+    PALPATE_CHECK(samples.size() == kept_.size(), "{}: {} samples follow, {} vertices were kept",
+                  Shape::kName, samples.size(), kept_.size());
+    if (samples.empty()) return;
+    surface_.update(state);
+    const Pose pose = motion_->pose(state), inverse = pose.inverse();
+    shape_.move_to(pose);
+    surface_.area_vectors(wanted_, areas_);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const int source = samples[i].source;
+      samples[i] = sample_at(kept_[i], inverse);
+      samples[i].source = source;
     }
   }
 
  private:
+  /// One that faces away has no area: pressure there would pull.
+  ContactSample sample_at(int v, const Pose& inverse) const {
+    const Vec3 x = surface_.position(v);
+    const Nearest nearest = shape_.at(x);
+    ContactSample sample;
+    sample.a = surface_.vertex_point(v);
+    sample.b = frame_point(frame_, inverse, x - (nearest.gap + nearest.radius) * nearest.normal);
+    sample.b.slide = nearest.radius * nearest.normal;
+    sample.normal = nearest.normal;
+    sample.area = std::max(0.0, -nearest.normal.dot(areas_.col(v)));
+    sample.gap = nearest.gap;
+    return sample;
+  }
+
   /// Near, or near at the next query: gap + look_ahead gap' < candidate_gap, with the frame's own motion in
   /// gap'.
   bool find_candidates(const dynamics::StateView& state, const Pose& pose) {
@@ -109,7 +133,9 @@ class AnalyticSource final : public SampleSource {
   double candidate_gap_, look_ahead_;
   std::vector<char> wanted_;
   Points areas_;
-  Points seen_;  ///< vertices at the last query, in the frame
+  Points seen_;            ///< vertices at the last query, in the frame
+  std::vector<int> kept_;  ///< vertices of the last query's samples, where these follow
+  bool follows_ = false;
   bool seen_before_ = false, warned_ = false;
   long tunnelled_ = 0;
 };

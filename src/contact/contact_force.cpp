@@ -20,6 +20,9 @@ bool is_same_pair(const ContactSample& s, const ContactSample& t) {
   return s.source == t.source && is_same(s.a, t.a) && is_same(s.b, t.b);
 }
 
+/// A spring of its own, whatever area it stands for; none where it faces away.
+void count_as_point(ContactSample& sample) { sample.area = sample.area > 0.0 ? 1.0 : 0.0; }
+
 }  // namespace
 
 void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
@@ -30,6 +33,33 @@ void ContactForce::Impl::place_frames(const dynamics::StateView& state) {
     out.R = out.pose.rotation.toRotationMatrix();
     out.twist = frames[i]->twist(state);
     out.u_offset = frames[i]->u_offset(state);
+  }
+  follow(state);
+}
+
+// Force, tangent and events of one state ask one after the other; the shape is asked once.  Time alone does
+// not tell a moving frame's pose: what is known of its path may have grown.
+void ContactForce::Impl::follow(const dynamics::StateView& state) {
+  if (std::none_of(pairs.begin(), pairs.end(), [](const Pair& pair) { return pair.follows; })) return;
+  if (!state.q.allFinite()) return;  // an integrator's failed trial: the force says so by itself
+  bool same = followed.query == queries && followed.time == state.time &&
+              followed.q.size() == state.q.size() && followed.q == state.q &&
+              followed.poses.size() == frames.size();
+  for (std::size_t i = 0; same && i < frames.size(); ++i)
+    same = followed.poses[i].translation == frame_states[i].pose.translation &&
+           followed.poses[i].rotation.coeffs() == frame_states[i].pose.rotation.coeffs();
+  if (same) return;
+  followed.query = queries;
+  followed.time = state.time;
+  followed.q = state.q;
+  followed.poses.clear();
+  for (const FrameState& frame : frame_states) followed.poses.push_back(frame.pose);
+  for (const Pair& pair : pairs) {
+    if (!pair.follows) continue;
+    const auto own = std::span(samples).subspan(pair.begin, pair.end - pair.begin);
+    pair.source->follow(state, own);
+    if (pair.law.per_point)
+      for (ContactSample& sample : own) count_as_point(sample);
   }
 }
 
@@ -52,7 +82,7 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
     pairs[i].end = next_samples.size();
     for (std::size_t s = pairs[i].begin; s < pairs[i].end; ++s) {
       next_samples[s].source = static_cast<int>(i);
-      if (pairs[i].law.per_point) next_samples[s].area = 1.0;
+      if (pairs[i].law.per_point) count_as_point(next_samples[s]);
     }
   }
   ++queries;
@@ -74,7 +104,7 @@ void ContactForce::Impl::group_samples() {
   groups.clear();
   for (Pair& pair : pairs) {
     const auto own = std::span(samples).subspan(pair.begin, pair.end - pair.begin);
-    pair.grouped = pair.law.friction == 0.0 &&
+    pair.grouped = pair.law.friction == 0.0 && !pair.follows &&
                    std::all_of(own.begin(), own.end(), [](const ContactSample& s) { return s.a.frame < 0; });
     if (pair.grouped) groups.append(own, pair.law);
   }
@@ -137,8 +167,17 @@ int ContactForce::add_frame(std::shared_ptr<MovingFrame> frame) {
 
 int ContactForce::add_pair(std::unique_ptr<SampleSource> source, const ContactSpec& law) {
   PALPATE_CHECK(source, "contact \"{}\" with \"{}\" has no source", law.first, law.second);
+  if (law.gaps != "linear" && law.gaps != "exact")
+    fail("contact \"{}\" with \"{}\": unknown gaps \"{}\"{}", law.first, law.second, law.gaps,
+         suggestion(law.gaps, {"linear", "exact"}));
+  const bool follows = law.gaps == "exact";
+  if (follows && !source->start_following())
+    fail(
+        "contact \"{}\" with \"{}\": gaps = \"exact\" is for obstacles and sphere tools (method = "
+        "\"analytic\"); what an image shows is known at a query alone",
+        law.first, law.second);
   const std::size_t n = impl_->samples.size();
-  impl_->pairs.push_back({std::move(source), pressure_law(law), n, n});
+  impl_->pairs.push_back({std::move(source), pressure_law(law), n, n, false, follows});
   return static_cast<int>(impl_->pairs.size()) - 1;
 }
 

@@ -13,6 +13,7 @@ struct ContactForce::Impl {
     PressureLaw law;
     std::size_t begin = 0, end = 0;  ///< its samples
     bool grouped = false;            ///< they are in `groups`
+    bool follows = false;            ///< they are exact at every evaluation
   };
 
   std::vector<std::shared_ptr<MovingFrame>> frames;
@@ -42,7 +43,16 @@ struct ContactForce::Impl {
   double largest_friction_lag = 0.0, largest_friction = 0.0;  ///< [N]
   void linearise_friction(const dynamics::StateView& state);
   void measure_friction_lag(const dynamics::StateView& state);
+  /// Frames, and with them the samples that follow, at the state of an evaluation.
   void place_frames(const dynamics::StateView& state);
+  void follow(const dynamics::StateView& state);
+  /// What the samples that follow depend on, as it was when they were last evaluated.
+  struct Followed {
+    long query = -1;
+    double time = 0.0;
+    VecX q;
+    std::vector<Pose> poses;
+  } followed;
   void query(const dynamics::StateView& state);
   void check_samples(const dynamics::StateView& state) const;
   void add_force(const dynamics::StateView& state, VecX& f);

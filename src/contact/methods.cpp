@@ -8,15 +8,20 @@ namespace {
 
 std::vector<PartKey> image_keys() { return part_keys({"pixels", "quadrature_error", "samples", "depths"}); }
 
+std::vector<PartKey> all_keys() {
+  return part_keys({"gaps", "pixels", "quadrature_error", "samples", "depths"});
+}
+
 }  // namespace
 
 const std::vector<MethodEntry>& method_registry() {
   static const std::vector<MethodEntry> registry = {
-      {"analytic", "exact gaps at the vertices: of obstacles, and of tools with shape = \"sphere\""},
+      {"analytic", "exact gaps at the vertices: of obstacles, and of tools with shape = \"sphere\"",
+       part_keys({"gaps"})},
       {"auto",
        "exact gaps where there are any; else image space, on a GPU where the machine has one, else on the "
        "processor",
-       image_keys()},
+       all_keys()},
       {"cpu", "image space on the processor: tools of any shape, other soft bodies, a body against itself",
        image_keys()},
       {"gpu", "the same image by OpenGL, without a GPU by Mesa's software rasteriser", image_keys()},

@@ -69,6 +69,8 @@ const KeyTable<ContactSpec>& contact_keys() {
              Ranges::friction_regularisation_m_s, "sliding speed below which friction is viscous"),
       text("friction_tangent", &ContactSpec::friction_tangent, {"auto", "full", "symmetric"},
            "symmetric: steps leave out how friction follows pressure; auto: where they are one solve"),
+      text("gaps", &ContactSpec::gaps, {"linear", "exact"},
+           "between two queries: linear in the positions, or exact at every evaluation (obstacles, spheres)"),
       number("candidate_gap_m", &ContactSpec::candidate_gap_m, Ranges::candidate_gap_m,
              "samples with a smaller positive gap are kept as well; 0: chosen from the mesh"),
       integer("pixels", &ContactSpec::pixels, Ranges::pixels, "longer edge of the image, at most"),

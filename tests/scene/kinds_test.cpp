@@ -183,7 +183,8 @@ TEST(Kinds, ContactMethods) {
   EXPECT_EQ(
       with({"contact.1.pixels=128", "contact.1.method=analytic"}),
       "--set contact.1.pixels=128: contact between \"ball\" and \"tool\": pixels means nothing to method = "
-      "\"analytic\"; remove it (used by auto, cpu, gpu, exact)");
+      "\"analytic\", which takes gaps; remove it (used by auto, cpu, gpu, exact)");
+  EXPECT_EQ(with({"contact.0.gaps=exact", "contact.1.gaps=exact"}), "accepted");
   for (const std::string method : {"cpu", "gpu", "exact"})
     EXPECT_EQ(with({"contact.1.pixels=128", "contact.1.method=" + method}), "accepted");
   EXPECT_EQ(

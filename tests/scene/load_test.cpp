@@ -205,6 +205,11 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
       {{"contact.0.method=gpu"}, "an obstacle has exact gaps"},
       {{"contact.1.pixels=128"}, "pixels means nothing here: a sphere has exact gaps; remove it, or write"},
       {{"contact.0.pixels=128"}, "pixels means nothing here: an obstacle has exact gaps; remove it"},
+      {{"contact.1.method=cpu", "contact.1.gaps=exact"}, "gaps means nothing to method = \"cpu\""},
+      {{"tool.shape=mesh", "tool.mesh={generator = \"ball\", radius_m = 0.01, element_size_m = 0.005}",
+        "tool.inertia_kg_m2=[1, 1, 1]", "contact.1.gaps=exact"},
+       "gaps = \"exact\" is for obstacles and sphere tools"},
+      {{"contact.0.gaps=sometimes"}, "gaps = \"sometimes\""},
       {{"contact.0.hunt_crossley_s_m=1.0"},
        "hunt_crossley_s_m means nothing to law = \"kelvin_voigt\", which takes damping_pa_s_m, "
        "damping_n_s_m; remove it (used by hunt_crossley)"},

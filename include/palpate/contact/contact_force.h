@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,11 @@ class SampleSource {
   virtual std::string_view name() const = 0;
   /// Appends samples; candidates with a small positive gap included.
   virtual void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) = 0;
+  /// From now on each query's samples can follow the state (gaps = "exact").  False where there is no such
+  /// thing: what an image shows has no formula.
+  virtual bool start_following() { return false; }
+  /// The samples of the last query at another state, in their order: exact gaps, normals, points and areas.
+  virtual void follow(const dynamics::StateView&, std::span<ContactSample>) {}
   /// Node pairs its samples may couple (faces of each surface; of two soft bodies also across).
   virtual void add_pattern(dynamics::PatternBuilder& pattern) const = 0;
   virtual std::uint64_t pattern_version() const { return 0; }

@@ -39,6 +39,8 @@ struct ContactSpec {
   /// "full", or "symmetric": without the change of friction by pressure, which makes the step matrix
   /// unsymmetric; "auto": symmetric where a step is one linear solve
   std::string friction_tangent = "auto";
+  /// between two queries: "linear" in the positions, or "exact" at every evaluation (analytic alone)
+  std::string gaps = "linear";
   /// samples with a smaller positive gap are kept too; 0: chosen from the mesh
   double candidate_gap_m = 0.0;
   int pixels = 256;  ///< in image space: the image's longer edge, at most

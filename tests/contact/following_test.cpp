@@ -1,0 +1,181 @@
+#include "surfaces.h"
+
+using namespace contact_tests;
+
+/// gaps = "exact": between two queries the samples follow the state.
+namespace {
+
+constexpr double kFar = 10.0;  // a candidate gap: all vertices
+
+/// A soft sphere over a rigid one of radius 2, whose top is the origin of the frame.
+struct Touch {
+  SurfaceWorld world{sphere(Vec3(0.1, -0.05, 0.9), 1.0, 16)};
+  std::shared_ptr<contact::MovingFrame> frame;
+  contact::ContactForce term;
+
+  explicit Touch(const std::string& gaps, std::shared_ptr<contact::MovingFrame> motion = nullptr,
+                 const std::string& spring = "per_area")
+      : frame(motion ? motion : contact::fixed_frame()) {
+    term.add_frame(frame);
+    ContactSpec law;
+    law.stiffness_pa_m = 1e3;
+    law.gaps = gaps;
+    law.spring = spring;
+    term.add_pair(contact::make_sphere_source(world.surface, 0, frame, Vec3(0, 0, -2), 2.0, kFar), law);
+  }
+  VecX force() {
+    VecX f = VecX::Zero(world.state.layout().u_size);
+    term.add_force(world.state.view(), f);
+    return f;
+  }
+  /// Sideways, down, and sheared, so that gaps, normals and areas all change.
+  void deform() {
+    const int first = world.state.layout().find("surface")->q_offset;
+    for (Eigen::Index i = first; i < world.state.q().size(); i += 3) {
+      const double z = world.state.q()[i + 2];
+      world.state.q()[i] += 0.15 + 0.1 * z;
+      world.state.q()[i + 1] *= 1.1;
+      world.state.q()[i + 2] -= 0.02;
+    }
+  }
+};
+
+std::shared_ptr<contact::TrajectoryFrame> along(const Vec3& velocity) {
+  auto frame = std::make_shared<contact::TrajectoryFrame>();
+  frame->append(0.0, Pose{}, {Vec3::Zero(), velocity});
+  return frame;
+}
+
+}  // namespace
+
+TEST(Following, AForceBetweenQueriesIsThatOfAQueryThere) {
+  Touch exact("exact"), linear("linear"), fresh("linear");
+  exact.term.refresh(exact.world.state.view());
+  linear.term.refresh(linear.world.state.view());
+  for (Touch* one : {&exact, &linear, &fresh}) one->deform();
+  fresh.term.refresh(fresh.world.state.view());
+  const VecX wanted = fresh.force();
+  ASSERT_GT(wanted.norm(), 0.0);
+  EXPECT_LT((exact.force() - wanted).norm(), 1e-13 * wanted.norm());
+  EXPECT_GT((linear.force() - wanted).norm(), 1e-2 * wanted.norm()) << "else there is nothing to follow";
+  EXPECT_EQ(exact.term.queries(), 1);
+}
+
+TEST(Following, EnergyWrenchEventsAndProductsAreOfTheSameState) {
+  Touch exact("exact"), fresh("exact");
+  for (Touch* one : {&exact, &fresh}) one->term.refresh(one->world.state.view());
+  for (Touch* one : {&exact, &fresh}) one->deform();
+  fresh.term.refresh(fresh.world.state.view());
+  const dynamics::StateView at = exact.world.state.view(), there = fresh.world.state.view();
+  EXPECT_NEAR(exact.term.energy(at), fresh.term.energy(there), 1e-12 * fresh.term.energy(there));
+  ASSERT_EQ(exact.term.event_count(), fresh.term.event_count()) << "all are candidates at both queries";
+  VecX g(exact.term.event_count()), wanted(g.size());
+  exact.deform();
+  fresh.deform();
+  exact.term.events(at, g.data());  // the first to ask at this state
+  fresh.term.refresh(there);
+  fresh.term.events(there, wanted.data());
+  EXPECT_LT((g - wanted).cwiseAbs().maxCoeff(), 1e-13);
+  exact.deform();
+  fresh.deform();
+  fresh.term.refresh(there);
+  EXPECT_LT((exact.term.frame_wrench(at, 0).force - fresh.term.frame_wrench(there, 0).force).norm(),
+            1e-12 * fresh.term.frame_wrench(there, 0).force.norm());
+  exact.deform();
+  fresh.deform();
+  fresh.term.refresh(there);
+  VecX x = VecX::Ones(at.layout->u_size), y = VecX::Zero(x.size()), z = y;
+  exact.term.apply_tangent(at, 1.0, 0.0, x, y);
+  fresh.term.apply_tangent(there, 1.0, 0.0, x, z);
+  ASSERT_GT(z.norm(), 0.0);
+  EXPECT_LT((y - z).norm(), 1e-12 * z.norm());
+}
+
+TEST(Following, SpringsPerPointStayOnePerVertexThatFacesTheShape) {
+  Touch exact("exact", nullptr, "per_point"), fresh("linear", nullptr, "per_point");
+  exact.term.refresh(exact.world.state.view());
+  for (Touch* one : {&exact, &fresh}) one->deform();
+  fresh.term.refresh(fresh.world.state.view());
+  const VecX wanted = fresh.force();
+  ASSERT_GT(wanted.norm(), 0.0);
+  EXPECT_LT((exact.force() - wanted).norm(), 1e-13 * wanted.norm());
+}
+
+TEST(Following, TheShapeMovesWithItsFrame) {
+  Touch exact("exact", along(Vec3(0.3, 0, 0.1))), fresh("linear", along(Vec3(0.3, 0, 0.1)));
+  exact.term.refresh(exact.world.state.view());
+  for (Touch* one : {&exact, &fresh}) one->world.state.set_time(0.5);
+  fresh.term.refresh(fresh.world.state.view());
+  const VecX wanted = fresh.force();
+  EXPECT_LT((exact.force() - wanted).norm(), 1e-13 * wanted.norm());
+}
+
+/// Between the ticks of a tool its path grows, and with it the pose at one and the same time.
+TEST(Following, APathThatIsKnownBetterIsSeenAtTheSameTime) {
+  const auto path = along(Vec3(0, 0, 0.1)), whole = along(Vec3(0, 0, 0.1));
+  Touch exact("exact", path), fresh("linear", whole);
+  exact.term.refresh(exact.world.state.view());
+  for (Touch* one : {&exact, &fresh}) one->world.state.set_time(0.5);
+  exact.force();
+  for (const auto& one : {path, whole}) one->append(1.0, Pose{Quat::Identity(), Vec3(0.2, 0, 0.05)}, {});
+  fresh.term.refresh(fresh.world.state.view());
+  const VecX wanted = fresh.force();
+  EXPECT_LT((exact.force() - wanted).norm(), 1e-13 * wanted.norm());
+}
+
+TEST(Following, ARefreshChangesNoForceSoThatNoMethodRestarts) {
+  Touch exact("exact"), linear("linear");
+  for (Touch* one : {&exact, &linear}) {
+    one->term.refresh(one->world.state.view());
+    one->deform();
+  }
+  EXPECT_TRUE(linear.term.refresh(linear.world.state.view()));
+  EXPECT_GT(linear.term.refresh_jump().force, 0.0);
+  EXPECT_FALSE(exact.term.refresh(exact.world.state.view()));
+  EXPECT_EQ(exact.term.refresh_jump().force, 0.0);
+}
+
+/// A vertex on the far side at the query, which turns to the shape later.
+TEST(Following, AVertexThatTurnsToTheShapeIsPressed) {
+  Touch exact("exact"), fresh("exact");
+  for (Touch* one : {&exact, &fresh}) {  // upside down: every vertex near the shape faces away
+    const int first = one->world.state.layout().find("surface")->q_offset;
+    for (Eigen::Index i = first + 2; i < one->world.state.q().size(); i += 3) one->world.state.q()[i] *= -0.1;
+  }
+  exact.term.refresh(exact.world.state.view());
+  EXPECT_GT(exact.term.samples().size(), 10u);
+  for (Touch* one : {&exact, &fresh}) {
+    const int first = one->world.state.layout().find("surface")->q_offset;
+    for (Eigen::Index i = first + 2; i < one->world.state.q().size(); i += 3) one->world.state.q()[i] *= -1.0;
+  }
+  fresh.term.refresh(fresh.world.state.view());
+  const VecX wanted = fresh.force();
+  ASSERT_GT(wanted.norm(), 0.0);
+  EXPECT_LT((exact.force() - wanted).norm(), 1e-13 * wanted.norm());
+}
+
+TEST(Following, AFailedTrialOfAnIntegratorIsNoError) {
+  Touch exact("exact");
+  exact.term.refresh(exact.world.state.view());
+  exact.world.state.q()[exact.world.state.q().size() - 1] = std::nan("");
+  EXPECT_NO_THROW(exact.force());
+}
+
+TEST(Following, WhatHasNoFormulaIsRefused) {
+  contact::ContactForce term;
+  ContactSpec law;
+  law.first = "ball";
+  law.second = "stone";
+  law.gaps = "exact";
+  const auto refusal = [&] {
+    try {
+      term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{}), law);
+    } catch (const Error& e) { return std::string(e.what()); }
+    return std::string("accepted");
+  };
+  EXPECT_NE(refusal().find("contact \"ball\" with \"stone\": gaps = \"exact\" is for obstacles"),
+            std::string::npos)
+      << refusal();
+  law.gaps = "exakt";
+  EXPECT_NE(refusal().find("unknown gaps \"exakt\" (did you mean"), std::string::npos) << refusal();
+}

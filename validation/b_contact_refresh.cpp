@@ -1,0 +1,211 @@
+#include <cmath>
+
+#include "cases.h"
+#include "palpate/contact/contact_force.h"
+#include "palpate/contact/sources.h"
+#include "palpate/core/error.h"
+#include "palpate/dynamics/system.h"
+#include "palpate/fem/attachments.h"
+#include "palpate/fem/soft_body.h"
+#include "palpate/integrate/integrators.h"
+#include "palpate/mesh/boundary.h"
+#include "palpate/mesh/generators.h"
+
+// A rigid sphere on a given path is pressed into a soft block and dragged over it.  Between two queries, H
+// apart, a sample's gap is linear in the positions: normal, area and foot point are those of the query.
+//
+// How the error follows H.  At the time s after a query the point has moved along the sphere by v s, the
+// normal has turned by v s/R, and the gap along the old one is off by (v s)^2/(2 R).  The force, p A n, is
+// off by a first-order term F' s (by n and A), and by a second-order one.  Over an interval the first leaves
+// an impulse F' H^2/2, and over all of them F' H T/2, always of the same sense: positions converge with order
+// 1 in H, in any integrator.
+//
+// (A method of order 1 with steps h sees the force at its steps' beginnings or ends alone: its samples are
+// older by (H - h)/2 or (H + h)/2 in the mean, so h must be a small part of H for the order to show.)
+//
+// With gaps = "exact" the force is a function of the state: no refresh is left in it, and what is left of the
+// error is the integrator's own, with the order of its steps.  No new candidates come in (the candidate gap
+// is as large as the path), and the pressure sets in smoothly, so that nothing else is measured.
+
+namespace palpate::validation {
+namespace {
+
+constexpr double kRadius = 0.015, kHeight = 0.005, kEnd = 0.02, kDepth = 1.5e-3, kWay = 6e-3;
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kOutput = 2e-3;
+
+/// Down, and along x: both by s(t) = sin^2(pi t/(2 T)).
+class PathFrame final : public contact::MovingFrame {
+ public:
+  Pose pose(const dynamics::StateView& state) const override {
+    const double s = std::pow(std::sin(0.5 * kPi * state.time / kEnd), 2);
+    return {Quat::Identity(), Vec3(kWay * (s - 0.5), 1e-3, kRadius + 0.5 * kHeight + 2e-4 - kDepth * s)};
+  }
+  Twist twist(const dynamics::StateView& state) const override {
+    const double rate = 0.5 * kPi / kEnd * std::sin(kPi * state.time / kEnd);
+    return {Vec3::Zero(), Vec3(kWay * rate, 0.0, -kDepth * rate)};
+  }
+};
+
+/// A source that stays where its last query left it: the library without following.
+class StaleSource final : public contact::SampleSource {
+ public:
+  explicit StaleSource(std::unique_ptr<contact::SampleSource> source) : source_(std::move(source)) {}
+  std::string_view name() const override { return source_->name(); }
+  void query(const dynamics::StateView& state, std::vector<contact::ContactSample>& samples) override {
+    source_->query(state, samples);
+  }
+  void add_pattern(dynamics::PatternBuilder& pattern) const override { source_->add_pattern(pattern); }
+  bool start_following() override { return true; }
+
+ private:
+  std::unique_ptr<contact::SampleSource> source_;
+};
+
+/// Displacements [m] of all nodes at the outputs, one after the other.
+using Track = std::vector<double>;
+
+double distance(const Track& a, const Track& b) {
+  PALPATE_CHECK(a.size() == b.size(), "{} displacements against {}", a.size(), b.size());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+Track drag(const IntegratorSpec& spec, double refresh, const std::string& gaps, const std::string& fault) {
+  const TetMesh rest = mesh::box(Vec3(0.02, 0.02, kHeight), {4, 4, 1});
+  fem::Material material;
+  material.youngs_modulus = 2e4;
+  material.stiffness_damping = 1e-3;
+  dynamics::State state;
+  dynamics::BlockSpec nodes;
+  nodes.name = "block";
+  nodes.q_size = nodes.u_size = static_cast<int>(rest.nodes.size());
+  nodes.q_scale = kDepth;
+  nodes.u_scale = kDepth / kEnd;
+  const int id = state.insert(nodes, rest.nodes.reshaped(), VecX::Zero(rest.nodes.size()));
+  dynamics::System system;
+  system.add(std::make_shared<fem::SoftBody>("block", rest, material, fem::SoftBodyOptions{}, id));
+  system.add(fem::make_lumped_mass(rest, material, id));
+  std::vector<int> held;
+  for (int i = 0; i < rest.nodes.cols(); ++i)
+    for (int axis = 0; axis < 3 && rest.nodes(2, i) < 0.0; ++axis) held.push_back(3 * i + axis);
+  system.add(fem::make_fixed(held, VecX(state.q()(held))));
+  const auto contact = std::make_shared<contact::ContactForce>();
+  const auto motion = std::make_shared<PathFrame>();
+  contact->add_frame(motion);
+  ContactSpec law;
+  law.stiffness_pa_m = 2e7;
+  law.onset_width_m = 2e-4;
+  law.gaps = gaps;
+  const mesh::Boundary boundary = mesh::boundary(rest);
+  auto source = contact::make_sphere_source({id, boundary.node_of_vertex, boundary.surface.faces}, 0, motion,
+                                            Vec3::Zero(), kRadius, 2.0 * kRadius);
+  if (fault == "samples-stay") source = std::make_unique<StaleSource>(std::move(source));
+  contact->add_pair(std::move(source), law);
+  system.add(std::static_pointer_cast<dynamics::ForceTerm>(contact));
+  contact->refresh(state.view());
+  system.prepare(state.view());
+  const auto stepper = integrate::make_stepper(system, state, spec);
+  Track out;
+  const int intervals = static_cast<int>(std::lround(kEnd / refresh)),
+            every = static_cast<int>(std::lround(kOutput / refresh));
+  for (int i = 1; i <= intervals; ++i) {
+    if (!stepper->advance_to(i * refresh).ok()) return {};
+    if (i % every == 0)
+      for (Eigen::Index k = 0; k < state.q().size(); ++k)
+        out.push_back(state.q()[k] - rest.nodes.reshaped()[k]);
+    if (fault != "one-query" && contact->refresh(state.view()))
+      stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
+  }
+  return out;
+}
+
+struct Method {
+  const char* name;
+  bool fixed;    ///< steps of kStep and less, else by error control
+  double order;  ///< of fixed steps
+};
+constexpr double kStep = 1e-4, kFineStep = 2.5e-5, kTolerance = 1e-7;
+constexpr Method kMethods[] = {{"cvode-bdf", false, 0},
+                               {"ida", false, 0},
+                               {"ark-dirk-esdirk436", false, 0},
+                               {"ark-erk-4", false, 0},
+                               {"linearly-implicit-euler", true, 1},
+                               {"implicit-midpoint", true, 2},
+                               {"symplectic-euler", true, 1},
+                               {"ark-mri-2", true, 2}};
+
+IntegratorSpec spec_of(const Method& method, double step) {
+  IntegratorSpec spec;
+  spec.name = method.name;
+  spec.rtol = kTolerance;
+  spec.step_s = step;
+  return spec;
+}
+
+std::vector<Measurement> run(const std::string& fault) {
+  IntegratorSpec tight;
+  tight.name = "ark-dirk-ark548";
+  tight.rtol = 1e-10;
+  const Track reference = drag(tight, kOutput, "exact", "");
+  const double moved = distance(reference, Track(reference.size(), 0.0));
+  std::vector<Measurement> out;
+  for (const Method& method : kMethods) {
+    if (!fault.empty() && &method != kMethods) break;  // one is enough
+    Measurement own{.quantity = fmt::format("{}, exact gaps: error / displacement", method.name),
+                    .bar = 1e2 * kTolerance};
+    std::vector<double> step, errors;
+    Track exact;
+    for (const double h :
+         method.fixed ? std::vector<double>{kStep, 0.5 * kStep, kFineStep} : std::vector<double>{kFineStep}) {
+      step.push_back(h);
+      exact = drag(spec_of(method, h), kOutput, "exact", fault);
+      errors.push_back(distance(exact, reference) / moved);
+    }
+    own.error = own.computed = errors.back();
+    if (method.fixed) {
+      own.bar = 1e-2;
+      own.order = validation::fitted_order(step, errors);
+      own.order_low = method.order - 0.2;
+      own.order_high = method.order + 0.2;
+      own.note = "the integrator's own: order in its step";
+      own.refinement = {"step [s]", step, errors};
+    }
+    out.push_back(own);
+    std::vector<double> refresh, error;
+    for (const double interval : {1e-3, 5e-4, 2.5e-4}) {
+      refresh.push_back(interval);
+      error.push_back(distance(drag(spec_of(method, kFineStep), interval, "linear", fault), exact) / moved);
+    }
+    out.push_back(
+        {.quantity = fmt::format("{}: error of a refresh every 0.25 ms / displacement", method.name),
+         .computed = error.back(),
+         .error = error.back(),
+         .bar = 2e-2,
+         .order = validation::fitted_order(refresh, error),
+         .order_low = 0.8,
+         .order_high = 1.2,
+         .note = "against exact gaps in the same integrator; order in the refresh interval",
+         .refinement = {"refresh interval [s]", refresh, error}});
+  }
+  return out;
+}
+
+}  // namespace
+
+ValidationCase contact_refresh() {
+  return {
+      .name = "contact-refresh",
+      .section = "B",
+      .summary =
+          "a sphere dragged over a soft block: order of the error in the refresh interval in every family "
+          "of integrators, and the integrator's own error with exact gaps",
+      .why =
+          "the price of a slow query must be known apart from the integrator's: first order, as normals "
+          "and areas are held between two queries (one-step error analysis)",
+      .run = run,
+      .faults = {"samples-stay", "one-query"}};
+}
+
+}  // namespace palpate::validation
