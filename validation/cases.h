@@ -37,6 +37,7 @@ ValidationCase torsion();
 ValidationCase locking();
 ValidationCase newton_convergence();
 ValidationCase contact_patch();
+ValidationCase hertz_sphere();
 ValidationCase free_vibration();
 ValidationCase vibration_tolerance();
 ValidationCase spinning_body();

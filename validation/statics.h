@@ -29,6 +29,7 @@ class StaticBody {
   /// The equilibrium that Newton's method finds from the present positions, to rounding.  False when it finds
   /// none.
   bool solve();
+  dynamics::StateView view() const { return state_.view(); }
 
   Vec3 position(int node) const { return state_.q().segment<3>(3 * node); }
   Vec3 displacement(int node) const { return position(node) - rest_.nodes.col(node); }

@@ -1,0 +1,147 @@
+#include <cmath>
+
+#include "cases.h"
+#include "image_backends.h"
+#include "palpate/core/error.h"
+#include "palpate/mesh/generators.h"
+#include "pressed_block.h"
+
+// A rigid, smooth sphere of radius R pressed by delta << R into an elastic half-space, E* = E/(1 - nu^2)
+// (Hertz 1882; Johnson 1985, 4.2):
+//     F = (4/3) E* sqrt(R) delta^(3/2),     a^2 = R delta the radius of contact.
+//
+// The half-space is a block of half-width and depth L with its bottom held.  At a distance r >> a the
+// half-space would move like 1/r, so the block is stiffer by a part that starts with the first power of a/L:
+// L = 10 a, 20 a and 40 a (the same cells, more of them) are extrapolated by the parabola through them.  The
+// elements add an error c h^p, p between 3/2 (the pressure's square-root edge) and 2: three meshes, all cells
+// refined alike, give value and order.  Both are small enough to be taken one after the other:
+//     F(0, 0) = F(h -> 0, L = 20 a) F(h, L -> infinity)/F(h, L = 20 a).
+//
+// The penalty is a spring in series: of the depth it takes p/k, (2/pi) E*/(k a) of delta in the middle,
+// less than 1e-3 at k a/E* = 1000 (at 50, the least that is still Hertz, 1 %).
+
+namespace palpate::validation {
+namespace {
+
+constexpr double kYoung = 1e4, kPoisson = 0.3;
+const double kReduced = kYoung / (1.0 - kPoisson * kPoisson);
+constexpr double kRadius = 10e-3, kDepth = 0.025e-3, kContact = 0.5e-3;  // R, delta, a
+constexpr int kMiddle = 6;                                               // doublings: L = 20 a
+
+/// Cells of 0.22 a, 0.15 a and 0.11 a at the origin for 2, 3 and 4 cells a doubling.
+BlockMesh block(int per_doubling, int doublings) {
+  return {20.0 * kContact / std::sinh(kMiddle * std::log(2.0)), per_doubling, doublings};
+}
+
+/// @param backend  null: exact gaps at the vertices
+double force(const contact::DepthBackend* backend, const BlockMesh& mesh, double depth,
+             const std::string& fault) {
+  fem::Material material;
+  material.youngs_modulus = kYoung;
+  material.poissons_ratio = kPoisson;
+  const auto indenter = [&](contact::NodeSurface soft, int frame,
+                            std::shared_ptr<contact::MovingFrame> motion) {
+    constexpr double kCandidates = 0.01 * kContact;
+    std::unique_ptr<contact::SampleSource> source;
+    if (backend) {
+      TriMesh ball = mesh::sphere(kRadius, 200);
+      ball.vertices.row(2).array() += kRadius - depth;
+      contact::ImageOptions options;
+      options.backend = *backend;
+      options.candidate_gap = kCandidates;
+      source =
+          contact::make_image_source(std::move(soft), std::move(ball), frame, std::move(motion), options);
+    } else {
+      source = contact::make_sphere_source(std::move(soft), frame, std::move(motion),
+                                           Vec3(0, 0, kRadius - depth), kRadius, kCandidates);
+    }
+    if (fault == "rim-not-seen")
+      return spoiled(std::move(source), [](auto& samples) {
+        std::erase_if(samples, [](const auto& s) {
+          return (s.b.offset + s.b.slide).template head<2>().norm() > 0.6 * kContact;
+        });
+      });
+    if (fault == "gaps-too-small")
+      return spoiled(std::move(source), [depth](auto& samples) {
+        for (auto& s : samples) s.b.offset.z() += 0.2 * depth;
+      });
+    return source;
+  };
+  return indentation_force(mesh, material, 1000.0 * kReduced / kContact, indenter);
+}
+
+double theory(double depth) { return 4.0 / 3.0 * kReduced * std::sqrt(kRadius) * std::pow(depth, 1.5); }
+
+std::string way_of(const contact::DepthBackend* backend) {
+  return backend ? std::string(contact::backend_name(*backend)) : "analytic";
+}
+
+/// Force of the half-space, from a family of blocks.
+Measurement measure(const contact::DepthBackend* backend, double depth, const std::string& fault) {
+  std::vector<double> h, by_size, far, by_block;
+  for (const int m : {2, 3, 4}) {
+    h.push_back(block(m, kMiddle).smallest_cell() / kContact);
+    by_size.push_back(force(backend, block(m, kMiddle), depth, fault));
+  }
+  for (const int doublings : {kMiddle - 1, kMiddle, kMiddle + 1}) {
+    const BlockMesh mesh = block(2, doublings);
+    far.push_back(kContact / mesh.half_width());
+    by_block.push_back(doublings == kMiddle ? by_size.front() : force(backend, mesh, depth, fault));
+  }
+  const Limit limit = limit_of(h, by_size);
+  const double exact = theory(depth), found = limit.value * at_zero(far, by_block) / by_block[1];
+  std::vector<double> errors;  // of the elements alone
+  for (const double one : by_size) errors.push_back(std::abs(one / limit.value - 1.0));
+  std::string note = "at L = 10, 20, 40 a:";
+  for (const double one : by_block) note += fmt::format(" {:+.1f} %", 100.0 * (one / exact - 1.0));
+  return {.quantity = way_of(backend) + ": force of the half-space [N]",
+          .computed = found,
+          .exact = exact,
+          .error = std::abs(found / exact - 1.0),
+          .bar = 3e-2,
+          .order = limit.order,
+          .order_low = 1.3,
+          .order_high = 2.3,
+          .note = note + "; order in the cells",
+          .refinement = {"cell / radius of contact", h, errors}};
+}
+
+std::vector<Measurement> run(const std::string& fault) {
+  std::vector<Measurement> out = {measure(nullptr, kDepth, fault)};
+  if (!fault.empty()) return out;
+  for (const contact::DepthBackend& backend : image_backends()) {
+    out.push_back(measure(&backend, kDepth, fault));
+    if (backend != contact::DepthBackend::kCpu) continue;
+    std::vector<double> depth = {kDepth}, force = {out.back().computed};
+    for (const double part : {1.4, 2.0}) {
+      depth.push_back(part * kDepth);
+      force.push_back(measure(&backend, depth.back(), fault).computed);
+    }
+    const double exponent = fitted_order(depth, force);
+    out.push_back({.quantity = "cpu: exponent of the depth (error: absolute)",
+                   .computed = exponent,
+                   .exact = 1.5,
+                   .error = std::abs(exponent - 1.5),
+                   .bar = 0.03,
+                   .note = "over depths of 1, 1.4 and 2: a/R up to 0.07"});
+  }
+  say_what_is_skipped(out);
+  return out;
+}
+
+}  // namespace
+
+ValidationCase hertz_sphere() {
+  return {
+      .name = "hertz-sphere",
+      .section = "C",
+      .summary = "force of a rigid sphere on a soft block and its exponent in the depth",
+      .why =
+          "Hertz comes out when the compliance is the elements' and not the penalty's: the area of contact "
+          "must be found, not given (Hertz 1882)",
+      .slow = true,
+      .run = run,
+      .faults = {"rim-not-seen", "gaps-too-small"}};
+}
+
+}  // namespace palpate::validation
