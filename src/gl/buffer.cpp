@@ -7,6 +7,7 @@
 
 #include "palpate/core/error.h"
 #include "palpate/gl/context.h"
+#include "palpate/gl/mapped_buffer.h"
 
 namespace palpate::gl {
 namespace {
@@ -79,6 +80,24 @@ void VertexArray::attribute(unsigned location, const Buffer& buffer, int compone
   glEnableVertexAttribArray(location);
   glVertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, stride,
                         reinterpret_cast<const void*>(offset));
+}
+
+void VertexArray::attribute_unsigned(unsigned location, const Buffer& buffer, int components, int stride,
+                                     std::size_t offset) {
+  glBindVertexArray(id_);
+  glBindBuffer(GL_ARRAY_BUFFER, buffer.id());
+  glEnableVertexAttribArray(location);
+  glVertexAttribIPointer(location, components, GL_UNSIGNED_INT, stride,
+                         reinterpret_cast<const void*>(offset));
+}
+
+void VertexArray::attribute_a_draw(unsigned location, const MappedBuffer& buffer, int stride,
+                                   std::size_t offset) {
+  glBindVertexArray(id_);
+  glBindBuffer(GL_ARRAY_BUFFER, buffer.id());
+  glEnableVertexAttribArray(location);
+  glVertexAttribIPointer(location, 1, GL_UNSIGNED_INT, stride, reinterpret_cast<const void*>(offset));
+  glVertexAttribDivisor(location, 1);
 }
 
 void VertexArray::indices(const Buffer& buffer) {

@@ -70,16 +70,18 @@ EGLContext create_context(EGLDisplay display) {
   EGLint count = 0;
   // EGL_KHR_no_config_context
   if (!eglChooseConfig(display, config_wanted, &config, 1, &count) || count < 1) config = nullptr;
-  for (const int minor : {5, 3}) {
-    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
-                             4,
-                             EGL_CONTEXT_MINOR_VERSION,
-                             minor,
-                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                             EGL_NONE};
-    if (const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted)) return context;
-  }
+  for (const int minor : {5, 3})
+    for (const bool told_of_resets : {true, false}) {  // EGL 1.5
+      std::vector<EGLint> wanted = {EGL_CONTEXT_MAJOR_VERSION,       4,
+                                    EGL_CONTEXT_MINOR_VERSION,       minor,
+                                    EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+      if (told_of_resets)
+        wanted.insert(wanted.end(),
+                      {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
+      wanted.push_back(EGL_NONE);
+      if (const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted.data()))
+        return context;
+    }
   return EGL_NO_CONTEXT;
 }
 
@@ -180,6 +182,13 @@ void Context::release() {
   if (handles_->owner != std::this_thread::get_id()) return;
   eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   handles_->owner = {};
+}
+
+void check_context(const char* what) {
+  // OpenGL 4.5; an older one tells nothing, and says so itself by errors
+  if (epoxy_gl_version() < 45 || glGetGraphicsResetStatus() == GL_NO_ERROR) return;
+  throw ContextLost(fmt::format("{}: the GPU {} was reset by its driver, and what was on it is lost", what,
+                                Context::shared().info().renderer));
 }
 
 void check_errors(const char* what) {

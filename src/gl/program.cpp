@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "gl/embedded_shaders.h"
+#include "gl/program_cache.h"
+#include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 #include "palpate/gl/context.h"
 
@@ -35,15 +37,31 @@ unsigned compile(GLenum stage, std::string_view name) {
   return id;
 }
 
-unsigned link(const std::vector<unsigned>& shaders, const std::string& name) {
+struct Stage {
+  GLenum kind;
+  std::string_view name;
+};
+
+/// From the cache, else compiled and kept there.
+unsigned make(const std::vector<Stage>& stages, const std::string& name) {
+  std::string sources;
+  for (const Stage& stage : stages) sources.append(shader_source(stage.name)).push_back('\0');
+  const ProgramKey key = program_key(sources);
   const unsigned id = glCreateProgram();
-  for (const unsigned shader : shaders) glAttachShader(id, shader);
+  if (load_program(id, key)) return id;
+  glProgramParameteri(id, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
+  for (const Stage& stage : stages) {
+    const unsigned shader = compile(stage.kind, stage.name);
+    glAttachShader(id, shader);
+    glDeleteShader(shader);  // goes with the program
+  }
   glLinkProgram(id);
-  for (const unsigned shader : shaders) glDeleteShader(shader);  // goes with the program
   GLint ok = 0;
   glGetProgramiv(id, GL_LINK_STATUS, &ok);
   PALPATE_CHECK(ok, "shader program {} does not link:\n{}", name,
                 info_log(id, glGetProgramiv, glGetProgramInfoLog));
+  counters::count("gl.program_compiled");
+  keep_program(id, key);
   return id;
 }
 
@@ -64,11 +82,11 @@ std::vector<std::string> shader_names() {
 
 Program::Program(std::string_view vertex, std::string_view fragment)
     : name_(std::string(vertex) + " + " + std::string(fragment)) {
-  id_ = link({compile(GL_VERTEX_SHADER, vertex), compile(GL_FRAGMENT_SHADER, fragment)}, name_);
+  id_ = make({{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, fragment}}, name_);
 }
 
 Program::Program(std::string_view compute) : name_(compute) {
-  id_ = link({compile(GL_COMPUTE_SHADER, compute)}, name_);
+  id_ = make({{GL_COMPUTE_SHADER, compute}}, name_);
 }
 
 Program::~Program() {
@@ -111,6 +129,9 @@ void Program::set(const std::string& name, const Eigen::Vector3f& v) {
 }
 void Program::set(const std::string& name, const Eigen::Vector4f& v) {
   glProgramUniform4fv(id_, location(name), 1, v.data());
+}
+void Program::set(const std::string& name, std::span<const Eigen::Vector4f> v) {
+  glProgramUniform4fv(id_, location(name), static_cast<GLsizei>(v.size()), v[0].data());
 }
 void Program::set(const std::string& name, const Eigen::Matrix3f& m) {
   glProgramUniformMatrix3fv(id_, location(name), 1, GL_FALSE, m.data());

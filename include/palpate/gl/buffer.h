@@ -4,6 +4,8 @@
 
 namespace palpate::gl {
 
+class MappedBuffer;
+
 /// Bytes on the GPU: vertices, indices, shader storage.  Storage grows to the largest upload and is kept.
 class Buffer {
  public:
@@ -44,6 +46,11 @@ class VertexArray {
 
   /// Attribute `location` reads `components` floats a vertex, `stride` bytes apart, from `offset`.
   void attribute(unsigned location, const Buffer& buffer, int components, int stride, std::size_t offset = 0);
+  /// Likewise of unsigned 32-bit numbers.
+  void attribute_unsigned(unsigned location, const Buffer& buffer, int components, int stride,
+                          std::size_t offset = 0);
+  /// One such number a draw in place of a vertex: record number `base_instance` of the draw.
+  void attribute_a_draw(unsigned location, const MappedBuffer& buffer, int stride, std::size_t offset);
   void indices(const Buffer& buffer);  ///< of unsigned 32-bit
   void bind() const;
   unsigned id() const { return id_; }

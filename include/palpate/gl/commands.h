@@ -3,6 +3,8 @@
 
 namespace palpate::gl {
 
+class Buffer;
+class MappedBuffer;
 class Program;
 class VertexArray;
 
@@ -21,6 +23,24 @@ void cull_and_count(bool leave_out_counter_clockwise);
 /// Draws index_count / 3 triangles of a vertex array that has indices,
 /// with the program in use, into the bound framebuffer.
 void draw_triangles(const VertexArray& vertices, std::size_t index_count);
+
+/// After set_plain_state: viewport and scissor are this rectangle of the target, which clears obey, too.
+void set_window(int x, int y, int width, int height);
+
+/// Draws `count` ranges of a vertex array's indices at once; each is a record of glMultiDrawElementsIndirect,
+/// `stride` bytes apart, from byte `offset` of a buffer.
+void draw_ranges(const VertexArray& vertices, const MappedBuffer& ranges, std::size_t offset,
+                 std::size_t count, std::size_t stride);
+
+/// Copies the first bytes of one buffer to another, after what compute programs have written to it.
+void copy(const Buffer& from, MappedBuffer& to, std::size_t bytes);
+
+/// Waits until the GPU has done all that it was told, and mapped buffers show it.
+/// @throws ContextLost where it never will; InternalError when GL recorded an error; `what` names the work
+void finish(const char* what);
+
+int largest_texture();        ///< edge [pixels]
+int vertex_storage_blocks();  ///< that a vertex shader may read
 
 /// Runs a compute program over groups; buffers that it wrote may be read or drawn from afterwards.  Textures
 /// that the last pass drew are unbound as targets first.

@@ -2,6 +2,8 @@
 #include <memory>
 #include <string>
 
+#include "palpate/core/error.h"
+
 /// Headless OpenGL: one EGL context without a window, opened on first use and owned by one thread at a time.
 namespace palpate::gl {
 
@@ -10,6 +12,12 @@ struct ContextInfo {
   std::string platform;                   ///< "device" or "surfaceless"
   std::string vendor, renderer, version;  ///< of GL_VENDOR, GL_RENDERER, GL_VERSION
   bool software = false;                  ///< a software rasteriser (llvmpipe, softpipe, swrast)
+};
+
+/// The GPU is gone or has been reset: nothing that was made in the context is there any more.
+class ContextLost : public Error {
+ public:
+  using Error::Error;
 };
 
 /// The process's one GL context (OpenGL 4.5 core, or 4.3).  No GL library is loaded before the first call of
@@ -40,6 +48,9 @@ class Context {
 /// The libraries that a context needs, by file name.
 /// @throws Error with the Debian package of the first that cannot be loaded.
 void require_library(const std::string& file, const std::string& package);
+
+/// @throws ContextLost where the driver says that it was reset; `what` names the work
+void check_context(const char* what);
 
 /// Throws InternalError when GL recorded an error since the last call; `what` names the work.
 void check_errors(const char* what);

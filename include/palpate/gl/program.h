@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -8,7 +9,7 @@
 
 namespace palpate::gl {
 
-/// Text of a file under shaders/, embedded at build time: shader_source("contact/patch.vert").  Adding a
+/// Text of a file under shaders/, embedded at build time: shader_source("contact/skin.vert").  Adding a
 /// shader is adding its file.
 /// @throws InternalError for an unknown name
 std::string_view shader_source(std::string_view name);
@@ -35,6 +36,7 @@ class Program {
   void set(const std::string& name, const Eigen::Vector2f& value);
   void set(const std::string& name, const Eigen::Vector3f& value);
   void set(const std::string& name, const Eigen::Vector4f& value);
+  void set(const std::string& name, std::span<const Eigen::Vector4f> values);  ///< an array
   void set(const std::string& name, const Eigen::Matrix3f& value);
   void set(const std::string& name, const Eigen::Matrix4f& value);
 
