@@ -67,16 +67,16 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
   const ScopedTimer timer(query_seconds);
   next_samples.clear();
   together.clear();
-  for (const Pair& pair : pairs)
-    if (ImageSource* source = pair.source->asks_together()) {
-      source->open(state);
-      together.push_back(source);
+  for (Pair& pair : pairs)
+    if ((pair.asking = pair.source->asks_together())) {
+      pair.asking->open(state);
+      together.push_back(pair.asking);
     }
   answer_together(together);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     pairs[i].begin = next_samples.size();
-    if (ImageSource* source = pairs[i].source->asks_together())
-      source->close(next_samples);
+    if (pairs[i].asking)
+      pairs[i].asking->close(next_samples);
     else
       pairs[i].source->query(state, next_samples);
     pairs[i].end = next_samples.size();
@@ -355,6 +355,18 @@ std::vector<const QueryStages*> ContactForce::stages() const {
 }
 
 const std::vector<ContactSample>& ContactForce::samples() const { return impl_->samples; }
+std::vector<std::string> ContactForce::methods() const {
+  std::vector<std::string> out;
+  for (const auto& pair : impl_->pairs) out.emplace_back(pair.source->name());
+  return out;
+}
+
+std::vector<std::string> ContactForce::fallbacks() const {
+  std::vector<std::string> out;
+  for (const auto& pair : impl_->pairs) out.push_back(pair.source->fallback());
+  return out;
+}
+
 long ContactForce::queries() const { return impl_->queries; }
 double ContactForce::query_seconds() const { return impl_->query_seconds; }
 ResultantSize ContactForce::refresh_jump() const { return impl_->resultants.jump; }

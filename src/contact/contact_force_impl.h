@@ -14,6 +14,7 @@ struct ContactForce::Impl {
     std::size_t begin = 0, end = 0;  ///< its samples
     bool grouped = false;            ///< they are in `groups`
     bool follows = false;            ///< they are exact at every evaluation
+    ImageSource* asking = nullptr;   ///< of the query under way: its images are made with those of others
   };
 
   std::vector<std::shared_ptr<MovingFrame>> frames;

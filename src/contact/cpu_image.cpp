@@ -56,25 +56,31 @@ class CpuImage final : public DepthImage {
  public:
   CpuImage() { counters::count("contact.cpu_image"); }
 
-  void find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera, double candidate_gap,
-                  std::vector<FacePair>& pairs, std::vector<std::uint32_t>& layered) override {
+  void answer(std::span<DepthRequest* const> requests) override {
+    for (DepthRequest* request : requests) answer(*request);
+  }
+
+ private:
+  void answer(DepthRequest& request) {
+    const ContactCamera& camera = request.camera;
+    std::vector<FacePair>& pairs = request.pairs;
     pairs.clear();
-    layered.clear();
+    request.layered.clear();
     if (!camera.sees_something()) return;
-    const RasterTarget above = draw(a_, a, camera, 1.0), below = draw(b_, b, camera, -1.0);
+    const RasterTarget above = draw(a_, *request.a, camera, 1.0), below = draw(b_, *request.b, camera, -1.0);
     const auto size = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
     if (found_.size() < size) found_.resize(size);
     // The depths are single precision: the exact gap decides later.
     const double slack = 1e-5 * (camera.far - camera.near);
-    const int count = kernels_.pair(above, below, static_cast<float>(candidate_gap + slack), found_.data());
+    const int count =
+        kernels_.pair(above, below, static_cast<float>(request.candidate_gap + slack), found_.data());
     pairs.resize(static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       pairs[i] = {found_[i].pixel, found_[i].a, found_[i].b};
-      if (found_[i].layered) layered.push_back(found_[i].pixel);
+      if (found_[i].layered) request.layered.push_back(found_[i].pixel);
     }
   }
 
- private:
   struct Surface {
     Aligned<float> depth;
     Aligned<std::int32_t> triangle;

@@ -8,10 +8,20 @@
 
 namespace palpate::contact {
 
+class ImageSide;
+
 /// Two triangles that face each other along a line: indices into the patches' `visible`.
 struct FacePair {
   std::uint32_t at;  ///< which line: of an image row * width + column of its pixel
   std::uint32_t a, b;
+};
+
+/// Where a patch's faces are on the whole surface.
+struct PatchSource {
+  ImageSide* side = nullptr;
+  std::span<const int> faces = {};    ///< of the surface: those that the region holds
+  std::span<const int> numbers = {};  ///< by the patch's faces: index into `faces`; empty: the same
+  int number(int face) const { return numbers.empty() ? face : numbers[static_cast<std::size_t>(face)]; }
 };
 
 /// One image that a contact region asks for, and the answer.
@@ -19,9 +29,16 @@ struct DepthRequest {
   const Patch *a = nullptr, *b = nullptr;
   ContactCamera camera;
   double candidate_gap = 0.0;  ///< [m]
+  /// what the patches were made of, for a backend that has surfaces in memory of its own
+  ContactAxes axes;
+  PatchSource from_a, from_b;
 
-  std::vector<FacePair> pairs;         ///< as DepthImage::find_pairs has them
-  std::vector<std::uint32_t> layered;  ///< likewise
+  /// The pixels where both are seen and the gap is less than `candidate_gap`, or a little more: ascending by
+  /// pixel; of one pixel several from lines that tell layers apart.
+  std::vector<FacePair> pairs;
+  /// Those of these pixels where more than one layer of a or of b was seen, so that the pair may not be all
+  /// that there is; ascending.  Where triangles share an edge, a pixel on it may be named.
+  std::vector<std::uint32_t> layered;
 };
 
 /// The two images of a contact region, both seen along the normal: of a the lowest point above each pixel's
@@ -31,22 +48,17 @@ struct DepthRequest {
 class DepthImage {
  public:
   virtual ~DepthImage() = default;
-  /// The pixels where both are seen and the gap is less than `candidate_gap`, or a little more.
-  /// @param pairs    ascending by pixel; of one pixel several from lines that tell layers apart
-  /// @param layered  those of these pixels where more than one layer of a or of b was seen, so that the pair
-  ///   may not be all that there is; ascending.  Where triangles share an edge, a pixel on it may be named.
-  virtual void find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera, double candidate_gap,
-                          std::vector<FacePair>& pairs, std::vector<std::uint32_t>& layered) = 0;
+  /// Surfaces may have moved since the last request.
+  virtual void start_query() {}
   /// Answers all requests, which may be of different regions and pairs of bodies.  On the GPU many at once
   /// cost little more than one; on the processor each costs what it costs by itself.
-  virtual void answer(std::span<DepthRequest* const> requests) {
-    for (DepthRequest* r : requests)
-      find_pairs(*r->a, *r->b, r->camera, r->candidate_gap, r->pairs, r->layered);
-  }
+  virtual void answer(std::span<DepthRequest* const> requests) = 0;
 };
 
-/// @param pixels  most along an edge
-std::unique_ptr<DepthImage> make_gpu_image(int pixels);  ///< opens the GL context
+std::unique_ptr<DepthImage> make_gpu_image();  ///< opens the GL context
+/// What makes the images of sources with the backend "gpu": make_gpu_image, or in tests one that fails.
+using MakeImage = std::unique_ptr<DepthImage> (*)();
+MakeImage& gpu_image_maker();
 std::unique_ptr<DepthImage> make_cpu_image();
 /// Exact lines through the pixels' middles (exact_lines.h): all layers, none to be named.
 std::unique_ptr<DepthImage> make_exact_image();

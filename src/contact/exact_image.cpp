@@ -8,10 +8,11 @@ class ExactImage final : public DepthImage {
  public:
   ExactImage() { counters::count("contact.exact_image"); }
 
-  void find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera, double candidate_gap,
-                  std::vector<FacePair>& pairs, std::vector<std::uint32_t>& layered) override {
-    layered.clear();
-    lines_.through_pixels(a, b, camera, candidate_gap, pairs);
+  void answer(std::span<DepthRequest* const> requests) override {
+    for (DepthRequest* r : requests) {
+      r->layered.clear();
+      lines_.through_pixels(*r->a, *r->b, r->camera, r->candidate_gap, r->pairs);
+    }
   }
 
  private:

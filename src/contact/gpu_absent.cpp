@@ -8,8 +8,9 @@ namespace palpate::contact {
 
 bool gpu_available() { return false; }
 bool has_gpu_hardware() { return false; }
+GpuDevice gpu_device() { return {}; }
 
-std::unique_ptr<DepthImage> make_gpu_image(int) {
+std::unique_ptr<DepthImage> make_gpu_image() {
   fail(
       "contact method = \"gpu\" is not built in; take \"cpu\", or configure with -DPALPATE_WITH_GL=ON "
       "(packages "

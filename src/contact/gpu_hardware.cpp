@@ -28,4 +28,10 @@ bool has_gpu_hardware() {
   return found;
 }
 
+GpuDevice gpu_device() {
+  if (!gl::Context::opened()) return {};
+  const gl::ContextInfo& info = gl::Context::shared().info();
+  return {info.renderer, info.version, info.software};
+}
+
 }  // namespace palpate::contact

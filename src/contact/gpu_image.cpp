@@ -1,6 +1,9 @@
 #include "contact/gpu_image.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
 
 #include "palpate/contact/gpu_available.h"
 #include "palpate/core/error.h"
@@ -10,106 +13,216 @@
 namespace palpate::contact {
 namespace {
 
-int opened(int pixels) {
-  gl::Context::shared();  // before any member is made
-  return pixels;
+constexpr std::uint32_t kNone = ~0u;
+constexpr std::uint32_t kLayered = 1u << 31;                              // as in pair.comp
+constexpr std::size_t kListOffset = gl::MappedBuffer::kStorageAlignment;  // behind the count
+
+const char* opened(const char* name) {
+  const gl::Context& context = gl::Context::shared();  // before any member is made
+  if (gl::vertex_storage_blocks() < 1)
+    fail(
+        "contact on the GPU needs storage buffers in vertex shaders, which {} has not; take method = \"cpu\"",
+        context.info().renderer);
+  return name;
+}
+
+std::size_t aligned(std::size_t bytes) {
+  constexpr std::size_t kTo = gl::MappedBuffer::kStorageAlignment;
+  return (bytes + kTo - 1) / kTo * kTo;
 }
 
 }  // namespace
 
-GpuImage::Surface::Surface(int pixels)
-    : target(pixels, pixels, {gl::Format::kR32ui}, gl::DepthBuffer::kDepthAndStencil) {
-  vertices.upload(nullptr, 0);
-  triangles.upload(nullptr, 0);
-  layout.attribute(0, vertices, 3, 3 * sizeof(float));
-  layout.indices(triangles);
-}
-
-GpuImage::GpuImage(int pixels)
-    : pixels_(opened(pixels)),
-      draw_("contact/patch.vert", "contact/patch.frag"),
+GpuImage::GpuImage()
+    : draw_(opened("contact/skin.vert"), "contact/skin.frag"),
       pair_("contact/pair.comp"),
-      a_(pixels),
-      b_(pixels) {
-  list_.reserve(sizeof(FacePair) * static_cast<std::size_t>(pixels) * static_cast<std::size_t>(pixels));
+      draws_sent_(gl::MappedBuffer::For::kUpload),
+      tiles_sent_(gl::MappedBuffer::For::kUpload),
+      pairs_found_(gl::MappedBuffer::For::kReadback) {
   gl::check_errors("making the contact images");
 }
 
-// Clip coordinates of an orthographic camera: x = 2 (u - u0)/(width pixel) - 1, the same for y, z = 2 (w -
-// near)/(far - near) - 1.
-void GpuImage::draw(Surface& surface, const Patch& patch, const ContactCamera& camera, bool keep_least) {
-  surface.positions.resize(static_cast<std::size_t>(patch.uvw.size()));
-  std::transform(patch.uvw.data(), patch.uvw.data() + patch.uvw.size(), surface.positions.begin(),
-                 [](double x) { return static_cast<float>(x); });
-  surface.indices.resize(3 * patch.visible.size());
-  for (std::size_t f = 0; f < patch.visible.size(); ++f)
-    for (std::size_t k = 0; k < 3; ++k)
-      surface.indices[3 * f + k] =
-          static_cast<std::uint32_t>((*patch.faces)(static_cast<Eigen::Index>(k), patch.visible[f]));
-  surface.vertices.upload(surface.positions);
-  surface.triangles.upload(surface.indices);
-
-  const double sx = 2.0 / (camera.width * camera.pixel), sy = 2.0 / (camera.height * camera.pixel),
-               sz = 2.0 / (camera.far - camera.near);
-  draw_.set("scale", Vec3(sx, sy, sz).cast<float>().eval());
-  draw_.set("shift",
-            Vec3(-1.0 - sx * camera.u0, -1.0 - sy * camera.v0, -1.0 - sz * camera.near).cast<float>().eval());
-  surface.target.bind();
-  gl::set_plain_state(camera.width, camera.height,
-                      keep_least ? gl::Keep::kLeastDepth : gl::Keep::kGreatestDepth);
-  gl::cull_and_count(keep_least);  // of a those that face up
-  surface.target.clear(0, std::uint32_t{0});
-  surface.target.clear_depth(keep_least ? 1.0f : 0.0f);
-  draw_.use();
-  gl::draw_triangles(surface.layout, surface.indices.size());
+void GpuImage::answer(std::span<DepthRequest* const> requests) {
+  gl::Context::shared();
+  while (!requests.empty()) {
+    const std::size_t taken = atlas_.pack(requests, gl::largest_texture());
+    answer_tiles(requests.first(taken));
+    requests = requests.subspan(taken);
+  }
 }
 
-void GpuImage::append_pairs(const ContactCamera& camera, double candidate_gap) {
-  constexpr int kGroup = 16;  // local_size of pair.comp
-  // of the slab: single precision and the rasteriser's own grid; the exact gap decides later
-  constexpr double kDepthRounding = 1e-4;
+void GpuImage::answer_tiles(std::span<DepthRequest* const> requests) {
+  for (DepthRequest* request : requests) {
+    request->pairs.clear();
+    request->layered.clear();
+  }
+  if (atlas_.pixels() == 0) return;
+  send(requests);
+  draw(requests, true);
+  draw(requests, false);
+  append_pairs();
+  gl::finish("the contact images");
+  hand_out(requests);
+}
+
+/// Points that moved, tiles, and the ranges of faces to draw.
+void GpuImage::send(std::span<DepthRequest* const> requests) {
+  draws_.clear();
+  layers_.clear();
+  for (const DepthRequest* request : requests) {
+    layers_.push_back(add_draws(request->from_a));
+    layers_.push_back(add_draws(request->from_b));
+  }
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    surfaces_.send_points(*layers_[2 * i].surface, *requests[i]->from_a.side);
+    surfaces_.send_points(*layers_[2 * i + 1].surface, *requests[i]->from_b.side);
+  }
+  const std::size_t draw_bytes = draws_.size() * sizeof(Draw);
+  draws_sent_.reserve(std::max(draw_bytes, sizeof(Draw)));
+  std::memcpy(draws_sent_.data(), draws_.data(), draw_bytes);
+  const auto tiles = atlas_.tiles();
+  const auto blocks = atlas_.blocks();
+  tiles_sent_.reserve(aligned(tiles.size_bytes()) + blocks.size_bytes());
+  std::memcpy(tiles_sent_.data(), tiles.data(), tiles.size_bytes());
+  std::memcpy(tiles_sent_.data() + aligned(tiles.size_bytes()), blocks.data(), blocks.size_bytes());
+}
+
+/// A draw for each range of the region's faces that stands together in the surface's order.
+GpuImage::Layer GpuImage::add_draws(const PatchSource& source) {
+  GpuSurface& surface = surfaces_.at(*source.side);
+  Layer layer{&surface, draws_.size(), 0};
+  int last = -2;
+  for (std::size_t i = 0; i < source.faces.size(); ++i) {
+    const int place = surface.place_of_face[static_cast<std::size_t>(source.faces[i])];
+    if (place != last + 1)
+      draws_.push_back({0, 1, 3 * static_cast<std::uint32_t>(place), 0,
+                        static_cast<std::uint32_t>(draws_.size()), static_cast<std::uint32_t>(i)});
+    draws_.back().count += 3;
+    last = place;
+  }
+  layer.draw_count = draws_.size() - layer.first_draw;
+  return layer;
+}
+
+// With the points x of a surface about its origin o, in a frame with the pose (R, t), contact axes (A, c) and
+// an orthographic camera, clip coordinates are s . (A^T (R (o + x) + t - c)) + d, where s = 2/(width pixel)
+// and d = -1 - s u0 along u, likewise along v, and s = 2/(far - near), d = -1 - s near along w.
+void GpuImage::draw(std::span<DepthRequest* const> requests, bool of_a) {
+  std::unique_ptr<gl::Framebuffer>& target = of_a ? target_a_ : target_b_;
+  if (!target || target->width() < atlas_.width() || target->height() < atlas_.height()) {
+    const int width = std::max(atlas_.width(), target ? target->width() : 0),
+              height = std::max(atlas_.height(), target ? target->height() : 0);
+    target.reset();
+    target = std::make_unique<gl::Framebuffer>(width, height, std::vector{gl::Format::kR32ui},
+                                               gl::DepthBuffer::kDepthAndStencil);
+  }
+  target->bind();
+  gl::set_plain_state(atlas_.width(), atlas_.height(),
+                      of_a ? gl::Keep::kLeastDepth : gl::Keep::kGreatestDepth);
+  gl::cull_and_count(of_a);  // of a those that face up
+  gl::set_window(0, 0, atlas_.width(), atlas_.height());
+  target->clear(0, std::uint32_t{0});
+  target->clear_depth(of_a ? 1.0f : 0.0f);
+  draw_.use();
+  surfaces_.bind_points(0);
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const DepthRequest& request = *requests[i];
+    const AtlasTile& tile = atlas_.tiles()[i];
+    if (tile.width == 0) continue;
+    const Layer& layer = layers_[2 * i + (of_a ? 0 : 1)];
+    const ContactCamera& camera = request.camera;
+    const Pose pose = (of_a ? request.from_a : request.from_b).side->points_pose();
+    const Vec3 scale(2.0 / (camera.width * camera.pixel), 2.0 / (camera.height * camera.pixel),
+                     2.0 / (camera.far - camera.near)),
+        low(camera.u0, camera.v0, camera.near);
+    const Mat3 turn = request.axes.to_world.transpose() * pose.rotation.toRotationMatrix();
+    const Vec3 origin = request.axes.in_axes(pose * layer.surface->points->origin);
+    std::array<Eigen::Vector4f, 3> rows;
+    for (int k = 0; k < 3; ++k) {
+      Eigen::Vector4d row;
+      row << scale[k] * turn.row(k).transpose(), scale[k] * (origin[k] - low[k]) - 1.0;
+      rows[static_cast<std::size_t>(k)] = row.cast<float>();
+    }
+    draw_.set("camera", rows);
+    draw_.set("first_point", layer.surface->points->first);
+    gl::set_window(static_cast<int>(tile.x), static_cast<int>(tile.y), camera.width, camera.height);
+    layer.surface->layout.attribute_a_draw(2, draws_sent_, sizeof(Draw), offsetof(Draw, first_face));
+    gl::draw_ranges(layer.surface->layout, draws_sent_, layer.first_draw * sizeof(Draw), layer.draw_count,
+                    sizeof(Draw));
+  }
+  gl::set_plain_state(atlas_.width(), atlas_.height(), gl::Keep::kAll);  // no window for what others draw
+}
+
+void GpuImage::append_pairs() {
+  pairs_found_.reserve(kListOffset + sizeof(Found) * atlas_.pixels());
   const std::uint32_t none = 0;
   count_.upload(&none, sizeof none);
-  a_.target.colour(0).bind_unit(0);
-  b_.target.colour(0).bind_unit(1);
-  a_.target.depth().bind_unit(2);
-  b_.target.depth().bind_unit(3);
-  a_.target.stencil().bind_unit(4);
-  b_.target.stencil().bind_unit(5);
-  count_.bind_storage(0);
-  list_.bind_storage(1);
-  pair_.set("width", camera.width);
-  pair_.set("height", camera.height);
-  pair_.set("largest_gap", static_cast<float>(candidate_gap / (camera.far - camera.near) + kDepthRounding));
-  gl::dispatch(pair_, (camera.width + kGroup - 1) / kGroup, (camera.height + kGroup - 1) / kGroup);
+  target_a_->colour(0).bind_unit(0);
+  target_b_->colour(0).bind_unit(1);
+  target_a_->depth().bind_unit(2);
+  target_b_->depth().bind_unit(3);
+  target_a_->stencil().bind_unit(4);
+  target_b_->stencil().bind_unit(5);
+  const std::size_t tile_bytes = atlas_.tiles().size_bytes();
+  tiles_sent_.bind_storage(1, 0, tile_bytes);
+  tiles_sent_.bind_storage(2, aligned(tile_bytes), atlas_.blocks().size_bytes());
+  count_.bind_storage(3);
+  pairs_found_.bind_storage(4, kListOffset, pairs_found_.capacity() - kListOffset);
+  constexpr int kRow = 256;  // work groups
+  const int groups = static_cast<int>(atlas_.blocks().size());
+  gl::dispatch(pair_, std::min(groups, kRow), (groups + kRow - 1) / kRow);
+  gl::copy(count_, pairs_found_, sizeof none);
 }
 
-void GpuImage::find_pairs(const Patch& a, const Patch& b, const ContactCamera& camera, double candidate_gap,
-                          std::vector<FacePair>& pairs, std::vector<std::uint32_t>& layered) {
-  pairs.clear();
-  layered.clear();
-  if (!camera.sees_something()) return;
-  PALPATE_CHECK(camera.width <= pixels_ && camera.height <= pixels_, "contact image of {} x {} in one of {}",
-                camera.width, camera.height, pixels_);
-  gl::Context::shared();
-  draw(a_, a, camera, true);
-  draw(b_, b, camera, false);
-  append_pairs(camera, candidate_gap);
+namespace {
+
+/// By the region's faces: which of the patch's visible ones each is, or -1.
+void invert(const Patch& patch, const PatchSource& source, std::vector<std::int32_t>& out) {
+  out.assign(source.faces.size(), -1);
+  for (std::size_t i = 0; i < patch.visible.size(); ++i)
+    out[static_cast<std::size_t>(source.number(patch.visible[i]))] = static_cast<std::int32_t>(i);
+}
+
+}  // namespace
+
+void GpuImage::hand_out(std::span<DepthRequest* const> requests) {
   std::uint32_t count = 0;
-  count_.read(&count, sizeof count);
-  pairs.resize(count);
-  if (count > 0) list_.read(pairs.data(), count * sizeof(FacePair));
-  gl::check_errors("the contact images");
-  std::sort(pairs.begin(), pairs.end(), [](const FacePair& p, const FacePair& q) { return p.at < q.at; });
-  constexpr std::uint32_t kLayered = 1u << 31;  // as in pair.comp
-  for (FacePair& pair : pairs) {
-    if (pair.a & kLayered) layered.push_back(pair.at);
-    pair.a &= ~kLayered;
+  std::memcpy(&count, pairs_found_.data(), sizeof count);
+  PALPATE_CHECK(count <= atlas_.pixels(), "{} pairs of {} pixels", count, atlas_.pixels());
+  if (found_.size() < requests.size()) found_.resize(requests.size());
+  for (auto& list : found_) list.clear();
+  const std::byte* in = pairs_found_.data() + kListOffset;
+  for (std::uint32_t i = 0; i < count; ++i, in += sizeof(Found)) {
+    Found pair;
+    std::memcpy(&pair, in, sizeof pair);
+    found_[pair.at >> 24].push_back({pair.at & 0xffffffu, pair.a, pair.b});
+  }
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    DepthRequest& request = *requests[i];
+    const std::vector<Found>& list = found_[i];
+    if (list.empty()) continue;
+    invert(*request.a, request.from_a, visible_a_);
+    invert(*request.b, request.from_b, visible_b_);
+    const AtlasTile& tile = atlas_.tiles()[i];
+    // one pair a pixel at most: no comparison is needed to sort them
+    found_at_.assign(static_cast<std::size_t>(tile.width) * tile.height, kNone);
+    for (std::size_t k = 0; k < list.size(); ++k) found_at_[list[k].at] = static_cast<std::uint32_t>(k);
+    request.pairs.reserve(list.size());
+    for (const std::uint32_t k : found_at_) {
+      if (k == kNone) continue;
+      const Found& pair = list[k];
+      const std::int32_t a = visible_a_[pair.a & ~kLayered], b = visible_b_[pair.b];
+      // a face that stands on its edge in double precision, or just outside of the slab: lines decide
+      const bool unknown = a < 0 || b < 0;
+      if (unknown || (pair.a & kLayered) != 0) request.layered.push_back(pair.at);
+      request.pairs.push_back(
+          {pair.at, static_cast<std::uint32_t>(std::max(a, 0)), static_cast<std::uint32_t>(std::max(b, 0))});
+    }
   }
 }
 
 bool gpu_available() { return true; }
 
-std::unique_ptr<DepthImage> make_gpu_image(int pixels) { return std::make_unique<GpuImage>(pixels); }
+std::unique_ptr<DepthImage> make_gpu_image() { return std::make_unique<GpuImage>(); }
 
 }  // namespace palpate::contact

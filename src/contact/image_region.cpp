@@ -40,6 +40,7 @@ bool ImageRegion::ask(const ContactCamera& camera) {
   request_.a = &a_;
   request_.b = &b_;
   request_.candidate_gap = context_.candidate_gap;
+  request_.axes = axes_;
   asks_ = camera.sees_something();
   if (!asks_) forget();
   return asks_;

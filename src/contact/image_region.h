@@ -46,6 +46,11 @@ class ImageRegion {
 
  protected:
   void forget();  ///< before another region
+  /// What the patches are, which stand along `axes_`.
+  void set_sources(const PatchSource& a, const PatchSource& b) {
+    request_.from_a = a;
+    request_.from_b = b;
+  }
   /// Asks for an image; false, and no hits, where that would see nothing.
   bool ask(const ContactCamera& camera);
   /// Fills `hits_` at the pixels: all that is nearer than the candidate gap, by the image, and by exact lines

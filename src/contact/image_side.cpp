@@ -1,5 +1,6 @@
 #include "contact/image_side.h"
 
+#include <atomic>
 #include <cmath>
 
 #include "palpate/core/error.h"
@@ -24,6 +25,24 @@ class SoftSide final : public ImageSide {
     return state_.face_point(face, weights, normal);
   }
   const SurfaceState* soft() const override { return &state_; }
+  const Points& points() const override { return state_.is_skin() ? state_.nodes() : state_.positions(); }
+  int block_id() const override { return state_.surface().block_id; }
+  int vertex_count() const override { return state_.vertex_count(); }
+  Carriers carriers(int vertex) const override {
+    Carriers out;
+    if (!state_.is_skin()) {
+      out.point.fill(vertex);
+      return out;
+    }
+    const NodeSurface& s = state_.surface();
+    const int tet = s.embedding.tet[static_cast<std::size_t>(vertex)];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto corner = static_cast<Eigen::Index>(k);
+      out.point[k] = s.tets(corner, tet);
+      out.weight[k] = s.embedding.weights(corner, vertex);
+    }
+    return out;
+  }
 
  private:
   SurfaceState state_;
@@ -55,6 +74,14 @@ class RigidSide final : public ImageSide {
   }
   Vec3 vertex(int vertex) const override { return turn_ * surface_.vertices.col(vertex) + pose_.translation; }
   void update(proxy::ProxySet& proxies) const override { proxies.update(pose_); }
+  const Points& points() const override { return surface_.vertices; }
+  Pose points_pose() const override { return pose_; }
+  int vertex_count() const override { return static_cast<int>(surface_.vertices.cols()); }
+  Carriers carriers(int vertex) const override {
+    Carriers out;
+    out.point.fill(vertex);
+    return out;
+  }
   SurfacePoint point(int, const Vec3&, const Vec3& world, const Vec3&) const override {
     SurfacePoint point;
     point.frame = frame_;
@@ -73,7 +100,11 @@ class RigidSide final : public ImageSide {
   Points world_;
 };
 
+std::atomic<std::uint64_t> g_sides{0};
+
 }  // namespace
+
+ImageSide::ImageSide() : number_(++g_sides) {}
 
 std::unique_ptr<ImageSide> soft_side(NodeSurface surface) {
   return std::make_unique<SoftSide>(std::move(surface));

@@ -1,5 +1,8 @@
 #pragma once
+#include <array>
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "contact/surface_state.h"
 #include "palpate/contact/frame.h"
@@ -16,7 +19,9 @@ struct SurfaceMotion {
 /// One of the two surfaces of an image: a soft body's, or a rigid one in a frame.
 class ImageSide {
  public:
+  ImageSide();
   virtual ~ImageSide() = default;
+  std::uint64_t number() const { return number_; }  ///< no other side of this process has it
   virtual void update(const dynamics::StateView& state) = 0;
   virtual SurfaceMotion motion(const dynamics::StateView& state) const = 0;  ///< @pre updated
   virtual const Faces& faces() const = 0;
@@ -25,8 +30,30 @@ class ImageSide {
   virtual void update(proxy::ProxySet& proxies) const = 0;  ///< proxies of this surface, as it stands now
   /// A point of a face as a side of a sample with this normal, by its corners' weights and where that is.
   virtual SurfacePoint point(int face, const Vec3& weights, const Vec3& world, const Vec3& normal) const = 0;
+
+  /// For a backend that has surfaces in memory of its own.  Each vertex is a mean of some of these points: a
+  /// body's nodes, or the vertices themselves.
+  virtual const Points& points() const = 0;        ///< [m]; of a soft side as they are now
+  virtual Pose points_pose() const { return {}; }  ///< of their axes in the world, now
+  virtual int block_id() const { return -1; }      ///< whose nodes they are; -1 of a rigid surface
+  virtual int vertex_count() const = 0;
+  struct Carriers {
+    std::array<int, 4> point{};
+    std::array<double, 4> weight{1.0, 0.0, 0.0, 0.0};
+  };
+  virtual Carriers carriers(int vertex) const = 0;
+  /// The order that its faces are kept in, so that regions hold long ranges of them.
+  void set_face_order(std::vector<int> order) { face_order_ = std::move(order); }
+  int face_at(int place) const {
+    return face_order_.empty() ? place : face_order_[static_cast<std::size_t>(place)];
+  }
+
   /// What couples nodes of this side alone; null of a rigid one.
   virtual const SurfaceState* soft() const { return nullptr; }
+
+ private:
+  std::uint64_t number_;
+  std::vector<int> face_order_;
 };
 
 std::unique_ptr<ImageSide> soft_side(NodeSurface surface);

@@ -4,6 +4,8 @@
 
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+#include "palpate/core/log.h"
 
 namespace palpate::contact {
 
@@ -24,10 +26,21 @@ ImageSource::ImageSource(std::shared_ptr<ImageSide> a, std::shared_ptr<ImageSide
   counters::count("contact.image_source");
 }
 
+MakeImage& gpu_image_maker() {
+  static MakeImage make = make_gpu_image;
+  return make;
+}
+
+void ImageSource::fall_back(const std::string& why) {
+  context_.options.backend = DepthBackend::kCpu;
+  image_.reset();
+  fallback_ = why;
+}
+
 DepthImage& ImageSource::image() {
   const ImageOptions& options = context_.options;
   if (!image_)
-    image_ = options.backend == DepthBackend::kGpu   ? make_gpu_image(options.pixels)
+    image_ = options.backend == DepthBackend::kGpu   ? gpu_image_maker()()
              : options.backend == DepthBackend::kCpu ? make_cpu_image()
                                                      : make_exact_image();
   return *image_;
@@ -94,6 +107,7 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
     return close(samples);
   }
   const std::size_t first = samples.size(), count = begin(state);
+  if (count > 0) image().start_query();
   ImageRegion& one = region(0);
   for (std::size_t i = 0; i < count; ++i) {
     start(one, i);
@@ -131,8 +145,30 @@ void ImageSource::close(std::vector<ContactSample>& samples) {
   end(std::span(samples).subspan(first));
 }
 
+namespace {
+
+/// By the image of the first source; where that fails and all of them may, by the processor from now on: a
+/// request says all that any backend needs.
+void answer(std::span<ImageSource* const> sources, std::span<DepthRequest* const> requests, bool first) {
+  ImageSource& asked = *sources[0];
+  try {
+    if (first) asked.image().start_query();
+    asked.image().answer(requests);
+  } catch (const Error& error) {
+    for (const ImageSource* source : sources)
+      if (!source->may_fall_back()) throw;
+    log::warn("contact: the processor makes the images from now on, for the GPU cannot: {}", error.what());
+    counters::count("contact.gpu_fallback");
+    for (ImageSource* source : sources) source->fall_back(error.what());
+    asked.image().answer(requests);
+  }
+}
+
+}  // namespace
+
 void answer_together(std::span<ImageSource* const> sources) {
   std::vector<DepthRequest*> requests;
+  bool started = false;
   std::vector<std::size_t> counts(sources.size());
   for (;;) {
     requests.clear();
@@ -145,7 +181,8 @@ void answer_together(std::span<ImageSource* const> sources) {
     double seconds = 0.0;
     {
       const ScopedTimer timer(seconds);
-      sources[0]->image().answer(requests);
+      answer(sources, requests, !started);
+      started = true;
     }
     for (std::size_t i = 0; i < sources.size(); ++i) {
       sources[i]->add_image_time(seconds * static_cast<double>(counts[i]) /

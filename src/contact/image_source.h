@@ -27,12 +27,16 @@ class ImageSource : public SampleSource {
     return context_.options.backend == DepthBackend::kGpu ? this : nullptr;
   }
 
+  std::string fallback() const final { return fallback_; }
+
   /// The phases of a query, for the sources whose requests are answered together.
   void open(const dynamics::StateView& state);               ///< collects the regions
   void collect(std::vector<DepthRequest*>& requests) const;  ///< appends what open regions ask for
   void take();                                               ///< all of these were answered
   void close(std::vector<ContactSample>& samples);           ///< appends samples
   DepthImage& image();                                       ///< made when it is first asked for
+  bool may_fall_back() const { return context_.options.or_cpu; }
+  void fall_back(const std::string& why);  ///< to the processor, for good
   void add_image_time(double seconds) { context_.stages.images_s += seconds; }
 
  protected:
@@ -49,6 +53,7 @@ class ImageSource : public SampleSource {
   ImageRegion& region(std::size_t place);
 
   std::unique_ptr<DepthImage> image_;
+  std::string fallback_;
   std::vector<std::unique_ptr<ImageRegion>> regions_;
   std::size_t open_ = 0;  ///< of `regions_`, in the query under way
   CoupledNodes coupled_;  // of two soft sides

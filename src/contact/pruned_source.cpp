@@ -104,6 +104,7 @@ class PrunedRegion final : public ImageRegion {
     const ScopedTimer timer(context_.stages.patches_s);
     piece_a_.see(axes_, -1.0, a_);
     piece_b_.see(axes_, 1.0, b_);
+    set_sources(piece_a_.source(*context_.a), piece_b_.source(*context_.b));
     window_ = piece_a_.sees_nothing() || piece_b_.sees_nothing() ? ContactWindow{}
                                                                  : fit_window(a_, b_, context_.candidate_gap);
   }
@@ -149,7 +150,10 @@ class PrunedSource final : public ImageSource {
                const ImageOptions& options)
       : ImageSource(std::move(a), std::move(b), options),
         pruned_{proxies_a, proxies_b,
-                proxy::Pruner(*proxies_a, *proxies_b, {.between_bones = context_.of_one_body()})} {}
+                proxy::Pruner(*proxies_a, *proxies_b, {.between_bones = context_.of_one_body()})} {
+    context_.a->set_face_order(patch_by_patch(*proxies_a));
+    if (!context_.of_one_body()) context_.b->set_face_order(patch_by_patch(*proxies_b));
+  }
   /// A body with itself: the skin of its bones.
   PrunedSource(std::shared_ptr<ImageSide> side, std::shared_ptr<proxy::ProxySet> proxies, Points rest_nodes,
                const ImageOptions& options)
@@ -179,6 +183,15 @@ class PrunedSource final : public ImageSource {
   }
 
  private:
+  static std::vector<int> patch_by_patch(const proxy::ProxySet& proxies) {
+    std::vector<int> faces;
+    for (const proxy::SkinPatch& patch : proxies.patches()) {
+      const auto of_patch = proxies.faces(patch);
+      faces.insert(faces.end(), of_patch.begin(), of_patch.end());
+    }
+    return faces;
+  }
+
   PrunedContext pruned_;
   std::span<const proxy::ContactRegion> found_;  ///< of the query under way
 };

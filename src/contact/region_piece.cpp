@@ -30,6 +30,7 @@ void RegionPiece::take(const ImageSide& whole, const std::vector<int>& wanted, s
 void RegionPiece::see(const ContactAxes& axes, double side, Patch& patch) {
   axes.to_axes(world_, patch.uvw);
   face_of_.clear();
+  numbers_.clear();
   faces_.resize(3, corners_.cols());
   for (Eigen::Index i = 0; i < corners_.cols(); ++i) {
     const auto at = [&](int k) { return patch.uvw.col(corners_(k, i)).head<2>(); };
@@ -37,6 +38,7 @@ void RegionPiece::see(const ContactAxes& axes, double side, Patch& patch) {
     if (side * (e.x() * f.y() - e.y() * f.x()) <= 0.0) continue;
     faces_.col(static_cast<Eigen::Index>(face_of_.size())) = corners_.col(i);
     face_of_.push_back(wanted_[static_cast<std::size_t>(i)]);
+    numbers_.push_back(static_cast<int>(i));
   }
   faces_.conservativeResize(3, static_cast<Eigen::Index>(face_of_.size()));
   patch.faces = &faces_;

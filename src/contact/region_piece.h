@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "contact/contact_view.h"
+#include "contact/depth_image.h"
 #include "contact/image_side.h"
 
 namespace palpate::contact {
@@ -15,6 +15,9 @@ class RegionPiece {
   /// skin of its own body, which may be in another region.
   void see(const ContactAxes& axes, double side, Patch& patch);
 
+  /// Of the patch that was seen last.
+  PatchSource source(ImageSide& side) const { return {&side, wanted_, numbers_}; }
+
   bool sees_nothing() const { return face_of_.empty(); }
   /// In the whole surface, of one of the patch's faces.
   int face_of(int face) const { return face_of_[static_cast<std::size_t>(face)]; }
@@ -24,7 +27,7 @@ class RegionPiece {
 
  private:
   Faces faces_;
-  std::vector<int> face_of_;
+  std::vector<int> face_of_, numbers_;  ///< of the patch's faces: in the surface, in `wanted_`
   std::vector<int> wanted_;
   Faces corners_;
   std::vector<int> taken_;  ///< the surface's vertices

@@ -16,6 +16,7 @@ class SurfaceState {
 
   void update(const dynamics::StateView& state);
 
+  bool is_skin() const { return surface_.node_of_vertex.empty(); }
   int vertex_count() const { return vertex_count_; }
   int face_count() const { return static_cast<int>(surface_.faces.cols()); }
   const Faces& faces() const { return surface_.faces; }
@@ -55,7 +56,6 @@ class SurfaceState {
   std::uint64_t vertex_pattern_version() const { return is_skin() ? pattern_version_ : 0; }
 
  private:
-  bool is_skin() const { return surface_.node_of_vertex.empty(); }
   int tet_of(int vertex) const { return surface_.embedding.tet[static_cast<std::size_t>(vertex)]; }
   int node_of_tet(int tet, int corner) const { return node_offset_ + surface_.tets(corner, tet); }
   int node(int vertex) const {

@@ -1,3 +1,5 @@
+#include <numeric>
+
 #include "contact/image_source.h"
 #include "palpate/core/clock.h"
 #include "palpate/proxy/region.h"
@@ -19,6 +21,7 @@ class WholeRegion final : public ImageRegion {
       axes_.to_axes(context_.b->positions(), b_.uvw);
       a_.faces = &context_.a->faces();
       b_.faces = &context_.b->faces();
+      set_sources({context_.a.get(), all(faces_a_, a_)}, {context_.b.get(), all(faces_b_, b_)});
       window_ = fit_window(a_, b_, context_.candidate_gap);
     }
     finest_ = false;
@@ -37,6 +40,15 @@ class WholeRegion final : public ImageRegion {
   }
 
  private:
+  static std::span<const int> all(std::vector<int>& faces, const Patch& patch) {
+    if (faces.empty()) {
+      faces.resize(static_cast<std::size_t>(patch.faces->cols()));
+      std::iota(faces.begin(), faces.end(), 0);
+    }
+    return faces;
+  }
+
+  std::vector<int> faces_a_, faces_b_;
   ContactWindow window_;
   bool finest_ = false, seen_ = false;
 };

@@ -59,6 +59,7 @@ contact::ImageOptions options_of(const Pair& pair) {
   out.backend = gpu                 ? contact::DepthBackend::kGpu
                 : method == "exact" ? contact::DepthBackend::kExact
                                     : contact::DepthBackend::kCpu;
+  out.or_cpu = method == "auto";
   out.pixels = pair.spec.pixels;
   out.quadrature_error = pair.spec.quadrature_error;
   if (pair.spec.samples == "vertex") out.samples = contact::SampleRule::kVertex;

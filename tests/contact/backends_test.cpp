@@ -22,7 +22,7 @@ TEST_P(DepthImages, NothingIsLostBetweenTriangles) {
   for (const int n : {3, 17, 90}) {
     Sheet a(n, 0.0, -1.0, 5), b(n + 4, 0.3, 1.0, 7);
     ContactCamera camera;
-    const auto pairs = pairs_of(*image_of(GetParam(), 128), a.seen(), b.seen(), 0.05, 128, &camera);
+    const auto pairs = pairs_of(*image_of(GetParam()), a.seen(), b.seen(), 0.05, 128, &camera);
     std::vector<int> seen(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
     for (const FacePair& pair : pairs) ++seen[pair.at];
     long covered = 0;
@@ -75,11 +75,8 @@ TEST_P(DepthImages, MiddlesOnEdgesAreSeen) {
   a.faces = &down;
   b.faces = &up;
   fit_window(a, b, 1.0);  // all that there is
-  std::vector<FacePair> pairs;
-  std::vector<std::uint32_t> layered;
-  image_of(GetParam(), kPixels)->find_pairs(a, b, camera, 0.01, pairs, layered);
   std::vector<int> seen(static_cast<std::size_t>(kPixels * kPixels));
-  for (const FacePair& pair : pairs) ++seen[pair.at];
+  for (const FacePair& pair : seen_in(*image_of(GetParam()), a, b, camera, 0.01).pairs) ++seen[pair.at];
   int lost = 0;
   for (int row = 0; row < kPixels; ++row)
     for (int column = 0; column < kPixels; ++column)
@@ -93,7 +90,7 @@ TEST_P(DepthImages, MiddlesOnEdgesAreSeen) {
 TEST_P(DepthImages, TheSameTrianglesAsLinesMeet) {
   Sheet a(60, 0.02, -1.0, 1), b(47, 0.0, 1.0, 2);
   const auto expected = pairs_of(*make_exact_image(), a.seen(), b.seen(), 0.03, 200),
-             pairs = pairs_of(*image_of(GetParam(), 200), a.seen(), b.seen(), 0.03, 200);
+             pairs = pairs_of(*image_of(GetParam()), a.seen(), b.seen(), 0.03, 200);
   std::map<std::uint32_t, FacePair> by_pixel;
   for (const FacePair& pair : expected) by_pixel[pair.at] = pair;
   long same = 0, other = 0, missing = 0;

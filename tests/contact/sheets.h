@@ -1,10 +1,12 @@
 #pragma once
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <random>
 #include <vector>
 
 #include "contact/depth_image.h"
+#include "contact/image_side.h"
 #include "palpate/contact/sources.h"
 
 /// Patches in contact axes, for what stands under src/contact.
@@ -50,19 +52,48 @@ struct Sheet {
   }
 };
 
+/// What an image of two patches shows.
+struct Seen {
+  std::vector<FacePair> pairs;
+  ContactCamera camera;
+  std::vector<std::uint32_t> layered;
+};
+
+inline Seen seen_in(DepthImage& image, const Patch& a, const Patch& b, const ContactCamera& camera,
+                    double gap) {
+  const auto surface = [](const Patch& patch) {
+    return rigid_side({patch.uvw, *patch.faces}, 0, fixed_frame());
+  };
+  const auto side_a = surface(a), side_b = surface(b);
+  std::vector<int> faces(static_cast<std::size_t>(std::max(a.faces->cols(), b.faces->cols())));
+  std::iota(faces.begin(), faces.end(), 0);
+  const auto first = [&](const Patch& patch) {
+    return std::span(faces).first(static_cast<std::size_t>(patch.faces->cols()));
+  };
+  DepthRequest request;
+  request.a = &a;
+  request.b = &b;
+  request.camera = camera;
+  request.candidate_gap = gap;
+  request.from_a = {side_a.get(), first(a)};
+  request.from_b = {side_b.get(), first(b)};
+  DepthRequest* const one = &request;
+  image.start_query();
+  image.answer({&one, 1});
+  return {request.pairs, request.camera, request.layered};
+}
+
 inline std::vector<FacePair> pairs_of(DepthImage& image, Patch& a, Patch& b, double gap, int pixels,
                                       ContactCamera* camera = nullptr,
                                       std::vector<std::uint32_t>* layered = nullptr) {
-  const ContactCamera at = fit_camera(a, b, gap, pixels, {0.0, 0.0});
-  std::vector<FacePair> out;
-  std::vector<std::uint32_t> layers;
-  image.find_pairs(a, b, at, gap, out, layered ? *layered : layers);
-  if (camera) *camera = at;
-  return out;
+  Seen seen = seen_in(image, a, b, fit_camera(a, b, gap, pixels, {0.0, 0.0}), gap);
+  if (camera) *camera = seen.camera;
+  if (layered) *layered = seen.layered;
+  return seen.pairs;
 }
 
-inline std::unique_ptr<DepthImage> image_of(DepthBackend backend, int pixels) {
-  if (backend == DepthBackend::kGpu) return make_gpu_image(pixels);
+inline std::unique_ptr<DepthImage> image_of(DepthBackend backend) {
+  if (backend == DepthBackend::kGpu) return make_gpu_image();
   return backend == DepthBackend::kCpu ? make_cpu_image() : make_exact_image();
 }
 

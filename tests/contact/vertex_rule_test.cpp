@@ -25,7 +25,7 @@ Found vertices_of(Sheet& a, Sheet& b, DepthBackend backend, double gap, int pixe
   Found out;
   std::vector<FacePair> pairs;
   std::vector<std::uint32_t> layered;
-  pairs = pairs_of(*image_of(backend, pixels), a.seen(), b.seen(), gap, pixels, &out.camera, &layered);
+  pairs = pairs_of(*image_of(backend), a.seen(), b.seen(), gap, pixels, &out.camera, &layered);
   FacePlanes planes_a, planes_b;
   planes_a.start(a.patch);
   planes_b.start(b.patch);

@@ -66,6 +66,8 @@ class SampleSource {
   virtual const QueryStages* stages() const { return nullptr; }
   /// A source whose images are made together with those of others; else null.
   virtual ImageSource* asks_together() { return nullptr; }
+  /// Why the processor has taken over from the GPU; empty: it has not.
+  virtual std::string fallback() const { return {}; }
 };
 
 /// Pressure p(gap, gap_rate) [Pa] and its derivatives; p >= 0 always (never adhesive), zero for gap >= 0.
@@ -153,6 +155,9 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   std::vector<const proxy::PruneCounts*> pruning() const;
   /// Where the time of each pair's queries went; null for a pair without an image.
   std::vector<const QueryStages*> stages() const;
+  /// The name of each pair's source ("cpu", "plane"), and why it is another than the scene asked for.
+  std::vector<std::string> methods() const;
+  std::vector<std::string> fallbacks() const;
   long queries() const;
   double query_seconds() const;
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 
 namespace palpate::contact {
 
@@ -8,5 +9,13 @@ bool gpu_available();
 /// Whether there is a GPU, not only Mesa's software rasteriser.  Nothing is opened where the machine shows no
 /// device; else the GL context is.
 bool has_gpu_hardware();
+
+/// What draws the images of this process on the GPU, by its driver's own words.
+struct GpuDevice {
+  std::string name, driver;
+  bool software = false;  ///< a rasteriser on the processor
+};
+/// Empty names where nothing was drawn.
+GpuDevice gpu_device();
 
 }  // namespace palpate::contact

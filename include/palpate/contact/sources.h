@@ -59,6 +59,8 @@ enum class DepthReading {
 
 struct ImageOptions {
   DepthBackend backend = DepthBackend::kCpu;
+  /// where the GPU cannot be opened or is lost: the processor takes over, with a warning; else Error
+  bool or_cpu = false;
   int pixels = 256;  ///< longer edge of the image, at most where an error is wanted
   /// wanted standard error of a region's overlap volume, which its force is made of, relative: chooses the
   /// pixels; 0: `pixels` always (docs/design.md 4.3)
