@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "palpate/contact/gpu_available.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/integrate/integrators.h"
@@ -94,6 +95,29 @@ void add_jumps(store::Summary& summary, const World& world) {
   }
 }
 
+/// What made the images of each contact, and on which device.
+void add_images(store::Summary& summary, const World& world) {
+  if (!world.contact) return;
+  const auto stages = world.contact->stages();
+  const auto methods = world.contact->methods(), fallbacks = world.contact->fallbacks();
+  bool gpu = false;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    if (!stages[i]) continue;
+    const ContactSpec& contact = world.description.contacts[i];
+    const std::string who = fmt::format("{} - {}", contact.first, contact.second);
+    store::SummarySection& s = summary.section("images");
+    s.values.emplace_back(who, methods[i]);
+    if (!fallbacks[i].empty()) s.values.emplace_back(who + ": why not by the GPU", fallbacks[i]);
+    gpu = gpu || methods[i] == "gpu";
+  }
+  if (const contact::GpuDevice device = contact::gpu_device(); gpu && !device.name.empty()) {
+    store::SummarySection& s = summary.section("images");
+    s.values.emplace_back("device", device.name);
+    s.values.emplace_back("driver", device.driver);
+    s.values.emplace_back("device_is_software", device.software);
+  }
+}
+
 /// Work that the proxies of a contact saved the image, over all its queries.
 void add_pruning(store::Summary& summary, const World& world) {
   if (!world.contact) return;
@@ -155,6 +179,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
                              static_cast<long long>(result.tunnelled[i]));
   }
   add_jumps(summary, world);
+  add_images(summary, world);
   add_pruning(summary, world);
   for (const scene::Need& need : needs(world.description))
     summary.section(need.used ? "in_use" : "left_out").values.emplace_back(need.part, need.why);

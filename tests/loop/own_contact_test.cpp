@@ -271,6 +271,9 @@ TEST(OwnContactScene, TheSummarySpeaksOfOneSkin) {
     const auto result = loop::run(*world, {});
     EXPECT_TRUE(result.status.ok());
     store::Summary summary = loop::summarise(*world, result, 0.0);
+    const auto& images = summary.section("images").values;
+    EXPECT_EQ(images.size(), 1u);  // no device, and nothing fell back
+    EXPECT_EQ(std::get<std::string>(images.at(0).second), d.contacts[0].method);
     return std::pair(summary.section("pruning").values, world->contact->pruning()[0][0]);
   };
   const auto find = [](const auto& values, const std::string& name) -> const store::SummaryValue* {
