@@ -11,6 +11,7 @@ ValidationCase box_corner();
 ValidationCase corrugated_plates();
 ValidationCase vertex_list();
 ValidationCase order_independence();
+ValidationCase paper_depths();
 ValidationCase walls();
 ValidationCase sphere_on_plane();
 ValidationCase punch_bounce();

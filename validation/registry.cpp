@@ -10,7 +10,7 @@ const std::vector<ValidationCase>& validation_cases() {
       out.insert(out.end(), some.begin(), some.end());
     };
     add({spheres_field(), overlap_volume(), volume_on_plane(), box_corner(), corrugated_plates(),
-         vertex_list(), order_independence(), walls(), sphere_on_plane(), punch_bounce(),
+         vertex_list(), order_independence(), paper_depths(), walls(), sphere_on_plane(), punch_bounce(),
          punch_bounce_damped(), punch_bounce_hunt_crossley(), rocking_box(), balance(), closed_loop(),
          contact_refresh()});
     if (tool::available())
