@@ -35,9 +35,13 @@ ColourScale settled(const ColourScale& scale, double least, double greatest) {
   if (std::isnan(out.low)) out.low = least;
   if (std::isnan(out.high)) out.high = greatest;
   if (!std::isfinite(out.low)) out.low = 0.0;
-  if (!(out.high > out.low) || !std::isfinite(out.high))
-    out.high = out.low + std::max(std::abs(out.low), 1e-12);
+  if (!(out.high - out.low > scale.resolution) || !std::isfinite(out.high)) out.high = out.low;
+  if (out.is_flat() && std::abs(out.low) <= scale.resolution) out.low = out.high = 0.0;
   return out;
+}
+
+double share(const ColourScale& scale, double value) {
+  return scale.is_flat() ? 0.0 : std::clamp((value - scale.low) / (scale.high - scale.low), 0.0, 1.0);
 }
 
 }  // namespace palpate::render

@@ -39,8 +39,7 @@ Points face_vectors(const Surface& surface) {
 float scaled(const Surface& surface, const ColourScale& scale, int point) {
   constexpr float kPlain = -10.0f;
   if (surface.values.size() == 0 || !std::isfinite(surface.values[point])) return kPlain;
-  return static_cast<float>(
-      std::clamp((surface.values[point] - scale.low) / (scale.high - scale.low), 0.0, 1.0));
+  return static_cast<float>(share(scale, surface.values[point]));
 }
 
 }  // namespace

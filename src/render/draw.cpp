@@ -61,22 +61,29 @@ Picture draw(const Scene& scene, const Options& options) {
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) check(scene.surfaces[i], i);
   const Points points = all_points(scene);
   if (points.cols() == 0) fail("picture: there is nothing to show: no surface has a point");
+  if (!options.frame.allFinite()) fail("picture: a point of its frame is not finite");
   counters::count("render.picture");
 
   Staging staging;
   staging.scale = scale_of(scene);
-  const Vec3 low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
-  staging.centre = 0.5 * (low + high);
-  staging.radius = std::max((points.colwise() - staging.centre).colwise().norm().maxCoeff(), 1e-9);
+  Eigen::AlignedBox3d box;
+  const auto each_point = [&](auto visit) {
+    for (const Points* all : {&points, &options.frame})
+      for (Eigen::Index i = 0; i < all->cols(); ++i) visit(Vec3(all->col(i)));
+  };
+  each_point([&](const Vec3& x) { box.extend(x); });
+  staging.centre = box.center();
+  staging.radius = 1e-9;
+  each_point([&](const Vec3& x) { staging.radius = std::max(staging.radius, (x - staging.centre).norm()); });
   if (scene.ground)
     staging.grid_spacing =
         scene.ground->spacing > 0.0 ? scene.ground->spacing : round_up(0.2 * staging.radius);
   const bool with_scale = std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
                                       [](const Surface& s) { return s.values.size() > 0; });
   const double aspect = static_cast<double>(options.width) / options.height;
-  staging.camera = options.camera
-                       ? *options.camera
-                       : framed(points, options.view, aspect, margins_of(scene, options, with_scale));
+  staging.camera = options.camera ? *options.camera
+                                  : framed(options.frame.cols() > 0 ? options.frame : points, options.view,
+                                           aspect, margins_of(scene, options, with_scale));
 
   const Picture shaded = shade(scene, staging, options);
   return options.annotated ? annotated(shaded, scene, staging.scale, with_scale, staging.grid_spacing)

@@ -10,7 +10,7 @@
 namespace palpate::render {
 namespace {
 
-constexpr Rgb kInk = {0.13f, 0.16f, 0.19f}, kQuiet = {0.38f, 0.42f, 0.46f};
+constexpr Rgb kInk = {0.13f, 0.16f, 0.19f}, kQuiet = {0.38f, 0.42f, 0.46f}, kPlate = {0.968f, 0.973f, 0.980f};
 constexpr double kDesignHeight = 900.0;  // lengths below are pixels of a picture this high
 
 /// "displacement [mm]"
@@ -18,12 +18,20 @@ std::string label_of(const ColourScale& scale, const ScaledUnit& unit) {
   return unit.name.empty() ? scale.label : fmt::format("{} [{}]", scale.label, unit.name);
 }
 
+/// Where a part of a scene is framed the rest may reach under a text: a pale plate keeps that legible.  On
+/// the background of a whole scene it is not seen.
+void draw_plate(Canvas& canvas, double x, double y, double width, double height, double u) {
+  canvas.set_colour(kPlate, 0.8);
+  canvas.fill_rectangle(x - 8 * u, y - 4 * u, width + 16 * u, height + 8 * u);
+}
+
 void draw_names(Canvas& canvas, const Scene& scene, double grid_spacing, double u, double height) {
   double x = 36 * u;
   const double baseline = height - 34 * u, size = 17 * u;
   for (const Surface& surface : scene.surfaces) {
     if (surface.name.empty() || surface.values.size() > 0) continue;
-    canvas.set_colour(surface.colour, surface.opacity);
+    draw_plate(canvas, x, baseline - 15 * u, 23 * u + canvas.text_width(surface.name, size), 20 * u, u);
+    canvas.set_colour(surface.colour, std::max(surface.opacity, 0.4));  // or nobody knows which
     canvas.fill_rectangle(x, baseline - 13 * u, 15 * u, 15 * u);
     canvas.set_colour(kInk);
     canvas.text(surface.name, x + 23 * u, baseline, size);
@@ -52,11 +60,14 @@ void draw_scale(Canvas& canvas, const ColourScale& scale, double x, double y, do
   const ScaledUnit unit = scaled_unit(scale.unit, std::max(std::abs(scale.low), std::abs(scale.high)));
   const int rows = std::max(2, static_cast<int>(height));
   for (int i = 0; i < rows; ++i) {
-    canvas.set_colour(viridis(1.0 - (i + 0.5) / rows));
+    canvas.set_colour(viridis(scale.is_flat() ? 0.0 : 1.0 - (i + 0.5) / rows));
     canvas.fill_rectangle(x, y + i * height / rows, width, height / rows + (i + 1 < rows ? 0.6 : 0.0));
   }
-  for (const Tick& tick : ticks(scale.low, scale.high, unit)) {
-    const double at = y + height * (1.0 - (tick.value - scale.low) / (scale.high - scale.low));
+  const std::vector<Tick> marks =
+      scale.is_flat() ? std::vector<Tick>{{scale.low, fmt::format("{:.4g}", scale.low * unit.factor)}}
+                      : ticks(scale.low, scale.high, unit);
+  for (const Tick& tick : marks) {
+    const double at = y + height * (1.0 - share(scale, tick.value));
     canvas.set_colour(kInk);
     canvas.fill_rectangle(x + width, at - 0.5, 0.35 * text_size, 1.0);
     canvas.text(tick.text, x + width + 0.6 * text_size, at + 0.36 * text_size, text_size);
@@ -67,15 +78,23 @@ Picture annotated(const Picture& picture, const Scene& scene, const ColourScale&
                   double grid_spacing) {
   Canvas canvas(picture);
   const double u = picture.height / kDesignHeight, width = picture.width, height = picture.height;
+  const double subtitle_y = (scene.title.empty() ? 52 : 88) * u;
+  if (!scene.title.empty())
+    draw_plate(canvas, 36 * u, 34 * u, canvas.text_width(scene.title, 29 * u, true), 30 * u, u);
+  if (!scene.subtitle.empty())
+    draw_plate(canvas, 36 * u, subtitle_y - 16 * u, canvas.text_width(scene.subtitle, 18 * u), 22 * u, u);
   canvas.set_colour(kInk);
   canvas.text(scene.title, 36 * u, 58 * u, 29 * u, 0.0, true);
   canvas.set_colour(kQuiet);
-  canvas.text(scene.subtitle, 36 * u, (scene.title.empty() ? 52 : 88) * u, 18 * u);
+  canvas.text(scene.subtitle, 36 * u, subtitle_y, 18 * u);
   if (with_scale) {
     const double bar_height = 0.46 * height, bar_x = width - 108 * u, bar_y = 0.5 * (height - bar_height);
-    canvas.set_colour(kInk);
     const ScaledUnit unit = scaled_unit(scale.unit, std::max(std::abs(scale.low), std::abs(scale.high)));
-    canvas.text(label_of(scale, unit), width - 32 * u, bar_y - 20 * u, 18 * u, 1.0);
+    const std::string label = label_of(scale, unit);
+    const double label_width = std::max(canvas.text_width(label, 18 * u), 110 * u);
+    draw_plate(canvas, width - 32 * u - label_width, bar_y - 38 * u, label_width, bar_height + 52 * u, u);
+    canvas.set_colour(kInk);
+    canvas.text(label, width - 32 * u, bar_y - 20 * u, 18 * u, 1.0);
     draw_scale(canvas, scale, bar_x, bar_y, 20 * u, bar_height, 17 * u);
   }
   draw_names(canvas, scene, grid_spacing, u, height);

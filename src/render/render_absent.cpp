@@ -1,5 +1,8 @@
 #include "palpate/core/error.h"
 #include "palpate/render/available.h"
+#include "palpate/render/field.h"
+#include "palpate/render/marks.h"
+#include "palpate/render/panels.h"
 #include "palpate/render/scene.h"
 
 // What stands in for pictures in a build without OpenGL.
@@ -16,6 +19,30 @@ void check_available() {
 
 Picture::Picture(int, int, Rgb) { check_available(); }
 Picture draw(const Scene&, const Options&) {
+  check_available();
+  return {};
+}
+Picture draw_field(const Field&, const ColourScale&, const std::string&, int, const std::string&) {
+  check_available();
+  return {};
+}
+Picture beside(const std::vector<Picture>&) {
+  check_available();
+  return {};
+}
+Picture with_curve(const Picture&, const Curve&, double, int) {
+  check_available();
+  return {};
+}
+Surface outline(const Points&, const Faces&, double, double) {
+  check_available();
+  return {};
+}
+Surface dots(const Points&, double) {
+  check_available();
+  return {};
+}
+ColourScale settled(const ColourScale&, double, double) {
   check_available();
   return {};
 }

@@ -73,6 +73,7 @@ class Shader {
   void draw_ground();
   void draw_surface(const Drawable& drawable);
   void draw_transparent(const Drawable& drawable);
+  std::vector<const Drawable*> transparent_from_behind() const;
 
   const Scene& scene_;
   const Staging& staging_;
@@ -166,6 +167,20 @@ void Shader::draw_transparent(const Drawable& drawable) {
   glDisable(GL_BLEND);
 }
 
+/// What blends with what is behind it comes after that: by the middle of each surface, the farthest first.
+std::vector<const Drawable*> Shader::transparent_from_behind() const {
+  std::vector<std::pair<double, const Drawable*>> order;
+  const Vec3 forward = (camera_.target - camera_.eye).normalized();
+  for (const Drawable& d : drawables_)
+    if (d.surface->opacity < 1.0)
+      order.emplace_back(-forward.dot(Vec3(d.surface->points.rowwise().mean())), &d);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& p, const auto& q) { return p.first < q.first; });
+  std::vector<const Drawable*> out;
+  for (const auto& [depth, d] : order) out.push_back(d);
+  return out;
+}
+
 /// Whoever drew before in this context may have left anything.
 void set_state() {
   for (const int off : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL})
@@ -189,8 +204,7 @@ Picture Shader::run() {
   for (const Drawable& d : drawables_)
     if (d.surface->opacity >= 1.0) draw_surface(d);
   draw_ground();
-  for (const Drawable& d : drawables_)
-    if (d.surface->opacity < 1.0) draw_transparent(d);
+  for (const Drawable* d : transparent_from_behind()) draw_transparent(*d);
   glDisable(GL_DEPTH_TEST);
   gl::check_errors("render::draw");
   return average(target.read_rgba8(0), options_.width, options_.height, options_.supersampling);

@@ -44,17 +44,35 @@ TEST(Viridis, ClampsItsArgument) {
   EXPECT_EQ(render::viridis(2.0).b, render::viridis(1.0).b);
 }
 
-TEST(Settled, FillsOpenEndsAndIsNeverEmpty) {
+TEST(Settled, FillsOpenEndsAndIsFinite) {
   const render::ColourScale open = render::settled({"a", "m"}, -1.0, 3.0);
   EXPECT_EQ(open.low, -1.0);
   EXPECT_EQ(open.high, 3.0);
   const render::ColourScale half = render::settled({"a", "m", 0.0}, -1.0, 3.0);
   EXPECT_EQ(half.low, 0.0);
   EXPECT_EQ(half.high, 3.0);
+  EXPECT_FALSE(open.is_flat());
   const render::ColourScale flat = render::settled({"a", "m"}, 2.0, 2.0);
-  EXPECT_LT(flat.low, flat.high);
+  EXPECT_TRUE(flat.is_flat());
+  EXPECT_EQ(flat.low, 2.0);
   // no finite value at all
   const render::ColourScale none = render::settled({"a", "m"}, INFINITY, -INFINITY);
-  EXPECT_LT(none.low, none.high);
-  EXPECT_TRUE(std::isfinite(none.low) && std::isfinite(none.high));
+  EXPECT_TRUE(none.is_flat());
+  EXPECT_TRUE(std::isfinite(none.low));
+}
+
+TEST(Settled, RoundingIsOneColour) {
+  render::ColourScale scale{"a", "m"};
+  scale.resolution = 1e-9;
+  const render::ColourScale rest = render::settled(scale, 2e-18, 2.5e-17);  // a body that does not move
+  EXPECT_TRUE(rest.is_flat());
+  EXPECT_EQ(rest.high, 0.0);
+  EXPECT_EQ(render::share(rest, 2.5e-17), 0.0);
+  const render::ColourScale shifted = render::settled(scale, 0.25, 0.25 + 1e-12);
+  EXPECT_TRUE(shifted.is_flat());
+  EXPECT_EQ(shifted.low, 0.25);
+  const render::ColourScale moved = render::settled(scale, 0.0, 2e-9);
+  EXPECT_FALSE(moved.is_flat());
+  EXPECT_NEAR(render::share(moved, 5e-10), 0.25, 1e-12);
+  EXPECT_EQ(render::share(moved, 1.0), 1.0);
 }

@@ -180,3 +180,54 @@ TEST(Draw, FramesFarFromTheOriginWithoutLosingPrecision) {
   for (std::size_t i = 0; i < here.rgba.size(); ++i) different += std::abs(here.rgba[i] - there.rgba[i]) > 8;
   EXPECT_LT(different, 40);
 }
+
+// Through two panes the farther one is seen, in whatever order the scene names them.
+TEST(Draw, TransparentSurfacesBlendFromBehind) {
+  render::Scene scene;
+  for (const double y : {-2.0, 2.0}) {
+    scene.surfaces.push_back(ball_surface({0, y * kRadius, 0}, 0.5 * kRadius, 30));
+    scene.surfaces.back().opacity = 0.5;
+    scene.surfaces.back().colour = y < 0 ? render::Rgb{1, 0, 0} : render::Rgb{0, 0, 1};
+  }
+  const render::Options options = plain_options();
+  const render::Rgb b = options.background;
+  const Picture picture = render::draw(scene, options);
+  expect_colour(picture, kPixels / 2, kPixels / 2, {0.5f + 0.25f * b.r, 0.25f * b.g, 0.25f + 0.25f * b.b},
+                2.0);
+  std::swap(scene.surfaces[0], scene.surfaces[1]);
+  EXPECT_EQ(render::draw(scene, options).rgba, picture.rgba);
+}
+
+// Frames of one movie: the same points frame both, so what does not move is drawn at the same pixels.
+TEST(Draw, AGivenFrameHoldsTheCameraStill) {
+  render::Options options = plain_options();
+  options.camera.reset();
+  render::Scene scene = ball_scene();
+  scene.surfaces.push_back(ball_surface({3 * kRadius, 0, 0}, 0.2 * kRadius, 20));
+  const Points all = scene.surfaces[0].points;
+  options.frame.resize(3, all.cols() + 1);
+  options.frame << all, Vec3(6 * kRadius, 0, 0);
+  const Picture before = render::draw(scene, options);
+  scene.surfaces[1].points.row(0).array() += 2 * kRadius;
+  const Picture after = render::draw(scene, options);
+  options.frame = Points(3, 0);
+  const Picture reframed = render::draw(scene, options);
+  const auto left_edge = [&](const Picture& picture) {  // of the large ball
+    for (int x = 0; x < kPixels; ++x)
+      for (int y = 0; y < kPixels; ++y)
+        if (picture.pixel(x, y)[0] < 200) return x;
+    return -1;
+  };
+  EXPECT_EQ(left_edge(after), left_edge(before));
+  EXPECT_NE(before.rgba, after.rgba);
+  EXPECT_NE(reframed.rgba, after.rgba);
+}
+
+TEST(Draw, ABodyAtRestHasOneColourAndOneNumber) {
+  render::Scene scene = ball_scene();
+  scene.surfaces[0].values = VecX::LinSpaced(scene.surfaces[0].points.cols(), 0.0, 2.5e-17);
+  scene.scale = {"displacement", "m"};
+  scene.scale.resolution = 1e-10;
+  const Picture picture = render::draw(scene, plain_options());
+  for (const int x : {100, 200, 300}) expect_colour(picture, x, kPixels / 2, render::viridis(0.0), 1.0);
+}

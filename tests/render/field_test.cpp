@@ -35,3 +35,45 @@ TEST(Field, RefusesAMisfit) {
     FAIL() << "1 value for 3 x 2 was accepted";
   } catch (const Error& e) { EXPECT_STREQ(e.what(), "picture of a field: 1 values for 3 x 2"); }
 }
+
+// The deepest value has the colour of the scale's end, the rest theirs, whatever stands around the field.
+TEST(Field, TheGreatestValueHasTheColourOfTheMaximum) {
+  render::Field field{3, 2, {1e-3, 2e-3, 4e-3, std::nan(""), 3e-3, 0.0}};
+  field.cell = 1e-4;
+  const int magnify = 60, left = 28, top = 88 + 28;
+  const render::Picture picture =
+      render::draw_field(field, {"penetration", "m", 0.0}, "a title", magnify, "a line under it");
+  const auto expect = [&](int column, int row, double t) {
+    const render::Rgb c = render::viridis(t);
+    const std::uint8_t* p =
+        picture.pixel(left + column * magnify + magnify / 2, top + (1 - row) * magnify + magnify / 2);
+    EXPECT_NEAR(p[0], 255.0 * c.r, 1.0) << column << ", " << row;
+    EXPECT_NEAR(p[1], 255.0 * c.g, 1.0) << column << ", " << row;
+    EXPECT_NEAR(p[2], 255.0 * c.b, 1.0) << column << ", " << row;
+  };
+  expect(2, 0, 1.0);
+  expect(0, 0, 0.25);
+  expect(1, 1, 0.75);
+  expect(2, 1, 0.0);
+}
+
+// The bar under the field is as long as it says: 60 pixels a tenth of a millimetre, half of three cells at
+// most.
+TEST(Field, TheLengthIsToScale) {
+  render::Field field{10, 2, std::vector<double>(20, 1.0)};
+  field.cell = 1e-4;
+  const int magnify = 60;
+  const render::Picture picture = render::draw_field(field, {"depth", "m"}, "", magnify);
+  const int row = picture.height - 16 - 6;
+  int dark = 0;
+  for (int x = 0; x < 28 + 2 * magnify + 8; ++x) dark += picture.pixel(x, row)[0] < 60;
+  // an eighth of 1 mm rounded up: 0.2 mm, which are two cells
+  EXPECT_NEAR(dark, 2 * magnify, 2);
+}
+
+TEST(Field, ATitleIsNeverCutOff) {
+  const render::Field field{2, 2, {0.0, 1.0, 2.0, 3.0}};
+  const std::string title(80, 'm');
+  EXPECT_GT(render::draw_field(field, {}, title, 20).width,
+            render::draw_field(field, {}, "m", 20).width + 500);
+}

@@ -17,9 +17,17 @@ struct ColourScale {
   std::string unit;   ///< "m"; ticks take an SI prefix where that reads better (mm)
   double low = std::numeric_limits<double>::quiet_NaN();   ///< NaN: the least finite value
   double high = std::numeric_limits<double>::quiet_NaN();  ///< NaN: the greatest
+  /// What is nearer than this is rounding: values that differ by no more have one colour, and the scale one
+  /// number.  Without it a body at rest is drawn in all colours of 1e-17 m.
+  double resolution = 0.0;
+  bool is_flat() const { return high == low; }  ///< of a settled one: there is only one value
 };
 
-/// The scale with both ends known: `least` and `greatest` where it leaves them open, and never empty.
+/// The scale with both ends known and finite: `least` and `greatest` where it leaves them open; flat where
+/// they are nearer than its resolution.
 ColourScale settled(const ColourScale& scale, double least, double greatest);
+
+/// Where a value lies on a settled scale, in [0, 1]; 0 where it is flat.
+double share(const ColourScale& scale, double value);
 
 }  // namespace palpate::render

@@ -41,8 +41,11 @@ struct Options {
   int supersampling = 2;           ///< samples along a pixel's edge: 2 is 4 samples a pixel
   View view = {};
   std::optional<Camera> camera = {};  ///< instead of one that frames the scene
-  bool lit = true;                    ///< false: flat colours, no light, no shadow
-  bool annotated = true;              ///< title, colour scale and names
+  /// Points that the camera frames instead of the scene's: a part of it; or all places where it will be, so
+  /// that pictures of several instants fit each other.  Empty: the scene's own.
+  Points frame = {};
+  bool lit = true;        ///< false: flat colours, no light, no shadow
+  bool annotated = true;  ///< title, colour scale and names
   Rgb background = {0.968f, 0.973f, 0.980f};
 };
 
