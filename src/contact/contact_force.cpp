@@ -354,6 +354,29 @@ std::vector<const QueryStages*> ContactForce::stages() const {
   return out;
 }
 
+void ContactForce::keep_views() {
+  for (const auto& pair : impl_->pairs) pair.source->keep_view();
+}
+
+std::vector<const QueryView*> ContactForce::views() const {
+  std::vector<const QueryView*> out;
+  for (const auto& pair : impl_->pairs) out.push_back(pair.source->view());
+  return out;
+}
+
+std::vector<ContactPoint> ContactForce::points(const dynamics::StateView& state) const {
+  Impl& m = *impl_;
+  m.place_frames(state);
+  std::vector<ContactPoint> out;
+  out.reserve(m.samples.size());
+  for (const ContactSample& s : m.samples) {
+    const SampleMotion motion = sample_motion(s, state, m.frame_states);
+    const double p = pressure(m.pairs[static_cast<std::size_t>(s.source)].law, motion.gap, motion.rate).p;
+    out.push_back({motion.a.x, motion.b.x, s.normal, motion.gap, p, s.area, s.source});
+  }
+  return out;
+}
+
 const std::vector<ContactSample>& ContactForce::samples() const { return impl_->samples; }
 std::vector<std::string> ContactForce::methods() const {
   std::vector<std::string> out;

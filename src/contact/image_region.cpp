@@ -123,6 +123,26 @@ void ImageRegion::finish() {
   context_.vertices.find(region, request_.pairs, doubtful_, hits_, context_.lines, hits_);
 }
 
+void ImageRegion::keep_view() {
+  if (!context_.view || context_.samples_vertices()) return;
+  const auto pixels = static_cast<std::size_t>(camera().width) * static_cast<std::size_t>(camera().height);
+  RegionView& region = context_.view->regions.emplace_back();
+  region.axes = axes_.to_world;
+  region.origin = axes_.origin;
+  region.u0 = camera().u0;
+  region.v0 = camera().v0;
+  region.pixel = camera().pixel;
+  region.width = camera().width;
+  region.height = camera().height;
+  region.gap.assign(pixels, std::nan(""));
+  region.height_a.assign(pixels, std::nan(""));
+  for (const Hit& hit : hits_)
+    if (!(region.gap[hit.pixel] <= hit.at.gap())) {
+      region.gap[hit.pixel] = hit.at.gap();
+      region.height_a[hit.pixel] = hit.at.w_a;
+    }
+}
+
 const QuadratureEstimate& ImageRegion::estimate() {
   if (!estimate_) {
     context_.grid.start(camera());

@@ -16,6 +16,7 @@ struct RegionContext {
   std::shared_ptr<ImageSide> a, b;
   ImageOptions options;
   QueryStages stages;
+  std::optional<QueryView> view = {};   ///< of the last query, where somebody asked
   double candidate_gap = 0.0;           ///< of the query under way [m]
   double volume = 0.0, variance = 0.0;  ///< of its regions [m^3], [m^6]
 
@@ -61,6 +62,8 @@ class ImageRegion {
   bool ask_finer(const ContactWindow& window);
   /// After the image that counts: what `samples` asks for in `hits_`, with what the pixels err counted.
   void finish();
+  /// The grid behind `hits_`, for pictures, where somebody asked; after finish.
+  void keep_view();
 
   RegionContext& context_;
   ContactAxes axes_;

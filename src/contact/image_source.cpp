@@ -81,6 +81,7 @@ std::size_t ImageSource::begin(const dynamics::StateView& state) {
     context_.candidate_gap = std::max(context_.candidate_gap, options.look_ahead * approach);
   }
   context_.volume = context_.variance = 0.0;
+  if (context_.view) *context_.view = {};
   return find_regions();
 }
 

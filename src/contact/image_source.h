@@ -23,6 +23,8 @@ class ImageSource : public SampleSource {
   std::uint64_t pattern_version() const override;
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) final;
   const QueryStages* stages() const final { return &context_.stages; }
+  void keep_view() final { context_.view.emplace(); }
+  const QueryView* view() const final { return context_.view ? &*context_.view : nullptr; }
   ImageSource* asks_together() final {
     return context_.options.backend == DepthBackend::kGpu ? this : nullptr;
   }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <set>
 #include <span>
 
 #include "contact/image_source.h"
@@ -17,6 +18,7 @@ struct PrunedContext {
   std::optional<SelfContactFilter> self_contact = {};  ///< of a body with itself, else empty
   std::vector<int> proxy_of_face = {};
   std::vector<int> local_a = {}, local_b = {};  ///< scratch of pieces
+  std::set<int> kept_a = {}, kept_b = {};       ///< proxies in the view of the query under way
 
   /// For contact of a body with itself: a pair of proxies, each of which is looked at once, and not the far
   /// side of its own tissue.
@@ -45,6 +47,7 @@ class PrunedRegion final : public ImageRegion {
 
   void start(const proxy::ContactRegion& region) {
     forget();
+    proxies_ = &region.pairs;
     axes_ = ContactAxes(region.region.origin, region.region.normal);
     {
       const ScopedTimer timer(context_.stages.patches_s);
@@ -66,6 +69,8 @@ class PrunedRegion final : public ImageRegion {
     if (!seen_) return;
     finish();
     leave_own_tissue();  // what finish() has found besides
+    keep_view();
+    keep_proxies();
     const ScopedTimer timer(context_.stages.gaps_s);
     for (const Hit& hit : hits_)
       samples.push_back(sample_of(hit.at, hit.area, *context_.a, piece_a_.face_of(hit.face_a), *context_.b,
@@ -134,7 +139,22 @@ class PrunedRegion final : public ImageRegion {
     return true;
   }
 
+  /// The hulls of a region where something presses, for pictures: each once, whatever regions it is in.
+  void keep_proxies() {
+    if (!context_.view ||
+        std::none_of(hits_.begin(), hits_.end(), [](const Hit& h) { return h.at.gap() < 0.0; }))
+      return;
+    const auto keep = [](const proxy::ProxySet& set, int p, std::set<int>& kept, std::vector<Points>& out) {
+      if (kept.insert(p).second) set.copy_corners(p, out.emplace_back(3, set.corner_count(p)));
+    };
+    for (const auto& [p, q] : *proxies_) {
+      keep(*pruned_.proxies_a, p, pruned_.kept_a, context_.view->proxies_a);
+      keep(*pruned_.proxies_b, q, pruned_.kept_b, context_.view->proxies_b);
+    }
+  }
+
   PrunedContext& pruned_;
+  const std::vector<std::pair<int, int>>* proxies_ = nullptr;  ///< of the region
   RegionPiece piece_a_, piece_b_;
   ContactWindow window_;
   enum class Image { kAxes, kFirst, kFiner } looking_for_ = Image::kAxes;
@@ -172,6 +192,8 @@ class PrunedSource final : public ImageSource {
     const ScopedTimer timer(context_.stages.regions_s);
     context_.a->update(*pruned_.proxies_a);
     if (!context_.of_one_body()) context_.b->update(*pruned_.proxies_b);
+    pruned_.kept_a.clear();
+    pruned_.kept_b.clear();
     found_ = pruned_.pruner.query(context_.candidate_gap);
     return found_.size();
   }

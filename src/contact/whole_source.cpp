@@ -34,6 +34,7 @@ class WholeRegion final : public ImageRegion {
   void append_samples(std::vector<ContactSample>& samples) override {
     if (!seen_) return;
     finish();
+    keep_view();
     const ScopedTimer timer(context_.stages.gaps_s);
     for (const Hit& hit : hits_)
       samples.push_back(sample_of(hit.at, hit.area, *context_.a, hit.face_a, *context_.b, hit.face_b, axes_));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "palpate/contact/frame.h"
+#include "palpate/contact/query_view.h"
 #include "palpate/contact/sample.h"
 #include "palpate/contact/spec.h"
 #include "palpate/dynamics/force_term.h"
@@ -68,6 +69,10 @@ class SampleSource {
   virtual ImageSource* asks_together() { return nullptr; }
   /// Why the processor has taken over from the GPU; empty: it has not.
   virtual std::string fallback() const { return {}; }
+  /// From the next query on, keep what pictures show of it; nothing is kept, or paid for, before.
+  virtual void keep_view() {}
+  /// Of the last query, of a source in image space that keeps it; else null.
+  virtual const QueryView* view() const { return nullptr; }
 };
 
 /// Pressure p(gap, gap_rate) [Pa] and its derivatives; p >= 0 always (never adhesive), zero for gap >= 0.
@@ -158,6 +163,12 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   /// The name of each pair's source ("cpu", "plane"), and why it is another than the scene asked for.
   std::vector<std::string> methods() const;
   std::vector<std::string> fallbacks() const;
+  /// Asks every source to keep what pictures show of its queries, from the next one on.
+  void keep_views();
+  /// What each pair's last query saw; null for a pair without an image, and where nobody asked.
+  std::vector<const QueryView*> views() const;
+  /// All samples of the last query, candidates included, at the state given.
+  std::vector<ContactPoint> points(const dynamics::StateView& state) const;
   long queries() const;
   double query_seconds() const;
 
