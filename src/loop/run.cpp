@@ -72,9 +72,12 @@ class Loop {
   /// The slow query; multistep integrators then forget their history.
   void refresh_contact() {
     if (!world_.contact || world_.bodies.empty()) return;
-    const ScopedTimer timer(result_.query_s);
-    if (world_.contact->refresh(world_.state.view()))
-      world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
+    {
+      const ScopedTimer timer(result_.query_s);
+      if (world_.contact->refresh(world_.state.view()))
+        world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
+    }
+    for (Observer* observer : options_.observers) observer->queried(world_, world_.state.time());
   }
 
   /// Bodies follow over the period, with the tool's motion known or, if monolithic, integrated with them; the

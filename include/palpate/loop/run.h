@@ -25,6 +25,8 @@ class Observer {
   /// At the start and after every period.
   virtual void period(World&, double /*t*/) {}
   virtual void tick(const TickRecord&) {}
+  /// After every contact query, at its state: behind `period` where both come at one time.
+  virtual void queried(World&, double /*t*/) {}
 };
 
 struct RunOptions {
