@@ -67,9 +67,8 @@ void make_missing_models(const scene::Description& description) {
   // for "model:NAME" the loader put a place in the cache; any other file is the user's
   const auto make = [](const std::string& file) {
     const fs::path path = file;
-    if (!path.is_absolute() || fs::exists(path)) return;
-    if (path.parent_path() == fs::path(store::cached_model("any")).parent_path())
-      make_model(path.stem().string(), path);
+    if (const std::string name = store::name_of_cached(file); !name.empty() && !fs::exists(path))
+      make_model(name, path);
   };
   for (const SoftBodySpec& body : description.bodies) make(body.mesh.file);
   if (description.tool) make(description.tool->mesh.file);

@@ -7,6 +7,7 @@
 #include "palpate/core/counters.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
+#include "palpate/store/model_cache.h"
 #include "palpate/tool/tool.h"
 
 namespace palpate::loop {
@@ -61,6 +62,19 @@ store::Provenance full_provenance() {
   for (const auto& library : linear::library_versions()) p.libraries.push_back(library);
   if (tool::available()) p.libraries.emplace_back("Simbody", tool::simbody_version());
   return p;
+}
+
+/// Where the models that the scene names by "model:NAME" are kept.
+void add_models(store::Summary& summary, const scene::Description& d) {
+  const auto add = [&](const std::string& file) {
+    const std::string name = store::name_of_cached(file);
+    if (name.empty()) return;
+    auto& kept = summary.section("models").values;
+    if (std::none_of(kept.begin(), kept.end(), [&](const auto& value) { return value.first == name; }))
+      kept.emplace_back(name, file);
+  };
+  for (const SoftBodySpec& body : d.bodies) add(body.mesh.file);
+  if (d.tool) add(d.tool->mesh.file);
 }
 
 /// Effect of queries on the resultants that bodies feel: between two queries contact goes on with the pairs
@@ -168,6 +182,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   if (const std::string& ordering = result.counters.solver.ordering; !ordering.empty())
     summary.section("options").values.emplace_back("ordering", ordering);
   add_sizes(summary.section("sizes"), world);
+  add_models(summary, world.description);
   add_numbers<long>(summary.section("counts"), result);
   summary.section("timings").values.emplace_back("assemble_s", assemble_s);
   add_numbers<double>(summary.section("timings"), result);

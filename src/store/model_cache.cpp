@@ -32,4 +32,12 @@ std::string cached_model(const std::string& name) {
   return (cache_folder() / version() / (name + ".h5")).string();
 }
 
+std::string name_of_cached(const std::string& path) {
+  const std::filesystem::path file = path;
+  if (!file.is_absolute() || file.extension() != ".h5") return {};
+  try {
+    return file.parent_path() == cache_folder() / version() ? file.stem().string() : std::string();
+  } catch (const Error&) { return {}; }  // without a cache no file is one of it
+}
+
 }  // namespace palpate::store
