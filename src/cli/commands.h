@@ -21,7 +21,9 @@ struct RunArguments {
   std::string folder;       ///< empty: out/NAME
   double duration_s = 0.0;  ///< 0: the scene's
   bool picture = false, report = false, trace = false;
-  std::string shade = "displacement";  ///< of the picture; or "stress"
+  bool contact_picture = false, frames = false;
+  double frames_per_s = 0.0;           ///< of simulated time; 0: as the scene records
+  std::string shade = "displacement";  ///< of picture and frames; or "stress", "penetration"
 };
 int run(const RunArguments& arguments);
 /// Runs as a part of another command, which prints and closes what is missing.

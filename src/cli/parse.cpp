@@ -73,7 +73,24 @@ void add_run(CLI::App& app, Invocation& invocation) {
   command->add_flag(
       "--picture", arguments->picture,
       "also a picture of the moment of the largest force, or of the end without a tool (picture.png)");
-  command->add_option("--shade", arguments->shade, "what colours the picture: displacement or stress")
+  command->add_flag(
+      "--contact-picture", arguments->contact_picture,
+      "also two pictures of the largest contact force: proxies in contact, penetration of the "
+      "skin and its colliding vertices (contact.png); penetration over the pixels of its deepest "
+      "region (depth.png)");
+  command->add_flag(
+      "--frames", arguments->frames,
+      "also numbered pictures over the whole run, with one camera and one range of colours, the "
+      "force beneath (frames/0000.png ...)");
+  command
+      ->add_option("--frames-per-s", arguments->frames_per_s,
+                   "frames a second of simulated time, in whole periods of the loop; default: one a "
+                   "record.state_period_s, else one a period")
+      ->type_name("NUMBER")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--shade", arguments->shade,
+                   "what colours picture and frames: displacement, stress or penetration")
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--report", arguments->report, "also a page to look at (report.html)");
@@ -84,10 +101,17 @@ void add_run(CLI::App& app, Invocation& invocation) {
   palpate run press-ball --integrator linearly-implicit-euler --set integrator.step_s=0.002
   palpate run press-ball --set body.0.youngs_modulus_pa=2e4 --picture --report -o out/softer
   palpate run falling-ball --trace --report      which steps were rejected, why, and where
+  palpate run two-heads --contact-picture        what touches where, how deep, by which proxies
+  palpate run touch-head --frames --frames-per-s 50 --shade penetration
 
 Writes into the output folder: run.vtkhdf (states as a time series: ParaView, h5py), force.csv (force and
 torque on the hand), summary.json (versions, options, counts, timings).  Ctrl-C ends the run; what was
-recorded by then is whole.)");
+recorded by then is whole.
+
+Frames become a movie by ffmpeg, which is not part of palpate; the run prints the line with its own rate:
+  ffmpeg -framerate 50 -i out/touch-head/frames/%04d.png -pix_fmt yuv420p touch-head.mp4
+They are drawn behind the run.  Ctrl-C ends the run, and what it reached is drawn; once more, or while frames
+are drawn, it ends that: those written are whole.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return run(*arguments); };
     invocation.factorises = true;

@@ -4,6 +4,8 @@
 #include <optional>
 
 #include "commands.h"
+#include "contact_picture.h"
+#include "frames.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/recorder.h"
@@ -65,7 +67,11 @@ std::string command_of(const RunArguments& a) {
   for (const std::string& change : a.scene.overrides) out += " --set " + quoted(change);
   if (!a.scene.integrator.empty()) out += " --integrator " + quoted(a.scene.integrator);
   if (a.duration_s > 0.0) out += fmt::format(" --duration-s {}", a.duration_s);
-  if (a.picture) out += a.shade == "displacement" ? " --picture" : " --picture --shade " + a.shade;
+  if (a.picture) out += " --picture";
+  if (a.contact_picture) out += " --contact-picture";
+  if (a.frames) out += " --frames";
+  if (a.frames && a.frames_per_s > 0.0) out += fmt::format(" --frames-per-s {}", a.frames_per_s);
+  if ((a.picture || a.frames) && a.shade != "displacement") out += " --shade " + a.shade;
   if (a.report) out += " --report";
   if (a.trace) out += " --trace";
   return a.folder.empty() ? out : out + " -o " + quoted(a.folder);
@@ -80,6 +86,15 @@ void keep_summary(const loop::World& world, const loop::RunResult& result, doubl
   store::write_atomically((std::filesystem::path(folder) / "scene.toml").string(), world.description.source);
 }
 
+/// Refuses at the start what could not be drawn at the end.
+Shade check_pictures(const RunArguments& arguments, const scene::Description& description) {
+  if (arguments.contact_picture && description.contacts.empty())
+    fail("--contact-picture: the scene has no [[contact]]");
+  if (arguments.frames_per_s > 0.0 && !arguments.frames) fail("--frames-per-s belongs to --frames");
+  if (!arguments.picture && !arguments.contact_picture && !arguments.frames) return Shade::kDisplacement;
+  return check_picture(arguments.shade, description);
+}
+
 void keep_picture(const loop::World& world, const Snapshot& snapshot, const std::string& folder,
                   Undelivered& missing) {
   const std::string path = (std::filesystem::path(folder) / "picture.png").string();
@@ -88,6 +103,18 @@ void keep_picture(const loop::World& world, const Snapshot& snapshot, const std:
   try {
     snapshot.save(world, path);
   } catch (const Error& e) { missing.add("picture " + path, e.what()); }
+}
+
+/// Draws the frames, says how they become a movie, and whether Ctrl-C has ended it.
+bool keep_frames(const loop::World& world, const Frames& frames, const std::string& folder, bool run_stopped,
+                 Undelivered& missing) {
+  const std::string path = (std::filesystem::path(folder) / "frames").string();
+  const int written = frames.save(world, path, !run_stopped, missing);
+  fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; as a movie in real time:\n", written,
+             frames.count(), path, frames.between_s());
+  fmt::print("  ffmpeg -framerate {:g} -i {}/%04d.png -pix_fmt yuv420p {}.mp4\n", 1.0 / frames.between_s(),
+             path, path);
+  return !run_stopped && stop_flag().load() && written < frames.count();
 }
 
 /// Prints which files are now in the folder.
@@ -119,22 +146,30 @@ int run(const RunArguments& arguments) {
 
 int run(const RunArguments& arguments, Undelivered& missing) {
   const scene::Description description = scene_of(arguments.scene);
-  if (arguments.picture) check_picture(arguments.shade);
+  const Shade shade = check_pictures(arguments, description);
   const double start = wall_seconds();
   const std::unique_ptr<loop::World> world = loop::assemble(description);
   const double assemble_s = wall_seconds() - start;
 
   // A scene that records nothing writes nothing, unless something was asked for here.
   const bool keep = description.record || !arguments.folder.empty() || arguments.picture ||
-                    arguments.report || arguments.trace;
+                    arguments.contact_picture || arguments.frames || arguments.report || arguments.trace;
   const std::string folder =
       arguments.folder.empty() ? default_folder(short_name(description)) : arguments.folder;
   if (keep) make_folder(folder);
 
   PeakWrench peak;
   std::vector<loop::Observer*> observers = {&peak};
-  Snapshot snapshot(arguments.shade);
+  Snapshot snapshot(shade);
   if (arguments.picture) observers.push_back(&snapshot);
+  ContactSnapshot contact;
+  if (arguments.contact_picture) observers.push_back(&contact);
+  std::optional<Frames> frames;
+  if (arguments.frames)
+    observers.push_back(
+        &frames.emplace(*world, shade, arguments.frames_per_s,
+                        arguments.duration_s > 0.0 ? arguments.duration_s : description.duration_s));
+  if (arguments.contact_picture || shade == Shade::kPenetration) world->contact->keep_views();
   std::optional<loop::Recorder> recorder;
   if (description.record) observers.push_back(&recorder.emplace(*world, folder));
   std::optional<loop::TraceRecorder> trace;
@@ -147,11 +182,14 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   }
 
   print_outcome(*world, result, peak, assemble_s);
+  bool cut_short = false;
   if (keep) {
     keep_summary(*world, result, assemble_s, arguments, folder);
     if (arguments.picture) keep_picture(*world, snapshot, folder, missing);
+    if (arguments.contact_picture) contact.save(*world, folder, missing);
     if (arguments.report) missing.add(report::write_run_report(folder));
     print_files(folder);
+    if (frames) cut_short = keep_frames(*world, *frames, folder, result.stopped, missing);
   }
   if (!result.status.ok())
     fail(
@@ -162,6 +200,10 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   if (result.stopped) {
     fmt::print(stderr, "palpate: stopped at t = {:g} s{}\n", result.time,
                keep ? "; what was recorded by then is whole" : "");
+    return kExitStopped;
+  }
+  if (cut_short) {
+    fmt::print(stderr, "palpate: stopped while it drew frames; those written are whole\n");
     return kExitStopped;
   }
   return 0;

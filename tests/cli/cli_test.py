@@ -13,6 +13,7 @@ import select
 import shutil
 import signal
 import sqlite3
+import struct
 import subprocess
 import sys
 import tempfile
@@ -264,12 +265,14 @@ class Results(Cli):
         if not (PROGRAM.parent / "palpate-model").exists():
             self.skipTest("this build makes no models")
         models = str(self.folder / "models")
-        scene = ["run", "two-pumpkins", "--duration-s", "0.01"]
+        scene = ["run", "two-pumpkins", "--duration-s", "0.01", "-o", "kept"]
         first = self.call(*scene, PALPATE_MODELS=models)
         self.assertEqual(first.returncode, 0, first.stderr)
         self.assertEqual(first.stderr.count('making the model "pumpkin", once; kept in '), 1, first.stderr)
         kept = list(Path(models).glob("*/*"))
         self.assertEqual([path.name for path in kept], ["pumpkin.h5"])
+        summary = json.loads((self.folder / "kept/summary.json").read_text())
+        self.assertEqual(summary["figures"]["models"], {"pumpkin": str(kept[0])})
         again = self.call(*scene, PALPATE_MODELS=models)
         self.assertEqual((again.returncode, again.stderr), (0, ""))
         wrong = self.call("run", "two-pumpkins", "--set", 'body.0.mesh.file="model:heed"',
@@ -278,6 +281,46 @@ class Results(Cli):
         self.assertIn('unknown shape "heed" (did you mean "head"?)', wrong.stderr)
         self.assertTrue(wrong.stderr.endswith('palpate: error: the model "heed" was not made; see above\n'))
         self.assertEqual(list(Path(models).glob("*/*")), kept)
+
+    def png_size(self, path):
+        data = path.read_bytes()
+        self.assertTrue(data.startswith(b"\x89PNG") and data.endswith(b"IEND\xaeB\x60\x82"), path)
+        return struct.unpack(">II", data[16:24])
+
+    def frames(self, folder):
+        return sorted(path.name for path in (self.folder / folder / "frames").iterdir())
+
+    def test_frames_are_numbered_whole_and_of_one_size(self):
+        run = ["run", "press-ball", "--frames", "-o", "here"]
+        (self.folder / "here/frames").mkdir(parents=True)
+        for name in "0007.png", "12345.png", "mine.png":
+            (self.folder / "here/frames" / name).write_text("of an earlier run")
+        text = self.good(*run, "--duration-s", "0.05")
+        numbered = [f"{i:04}.png" for i in range(5)]
+        self.assertEqual(self.frames("here"), numbered + ["mine.png"])  # nobody's own is touched
+        self.assertIn("5 of 5 frames in here/frames, one every 0.01 s", text)
+        self.assertIn("ffmpeg -framerate 100 -i here/frames/%04d.png", text)
+        sizes = {self.png_size(self.folder / "here/frames" / name) for name in numbered}
+        self.assertEqual(len(sizes), 1)
+        self.assertTrue(all(side % 2 == 0 for side in sizes.pop()))  # as video encoders want
+        self.good(*run, "--duration-s", "0.05", "--frames-per-s", "50", "--shade", "penetration")
+        self.assertEqual(self.frames("here"), numbered[:3] + ["mine.png"])
+        self.assertIn("--frames-per-s 50 --shade penetration",
+                      json.loads((self.folder / "here/summary.json").read_text())["command"])
+        self.assertIn("at most that", self.refused(*run, "--frames-per-s", "1000"))
+        self.assertIn("--frames", self.refused("run", "press-ball", "--frames-per-s", "10"))
+
+    def test_contact_picture_is_drawn_where_it_is_asked_for(self):
+        run = ["run", "press-ball", "--duration-s", "0.1", "--set", "contact.1.method=cpu"]
+        self.good(*run, "-o", "without")
+        self.assertFalse(list((self.folder / "without").glob("*.png")))
+        self.good(*run, "--contact-picture", "-o", "with")
+        names = sorted(path.name for path in (self.folder / "with").glob("*.png"))
+        self.assertEqual(names, ["contact.png", "depth.png"])
+        self.assertEqual(self.png_size(self.folder / "with/contact.png"), (1600, 800))
+        self.assertIn("no [[contact]]", self.refused("run", "cantilever", "--contact-picture"))
+        self.assertIn("no [[contact]]",
+                      self.refused("run", "cantilever", "--picture", "--shade", "penetration"))
 
     def test_bench_contact_prints_its_stages(self):
         text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64")
@@ -354,6 +397,16 @@ class Incomplete(Cli):
         self.assertTrue((self.folder / "here/report.html").exists(), "all else is there")
         last = self.incomplete("modes", "cantilever", "--count", "3", "--picture", **NO_EGL)
         self.assertIn("picture out/modes-cantilever/modes.png (", last)
+
+    def test_frames_and_contact_pictures_that_cannot_be_drawn(self):
+        run = ["run", "press-ball", "--duration-s", "0.02", "--frames", "-o", "here"]
+        self.assertIn("frame here/frames/0000.png and those behind it (", self.incomplete(*run, **NO_EGL))
+        (self.folder / "full").mkdir()
+        (self.folder / "full/frames").write_text("a file where the folder would be")
+        self.assertIn("full/frames", self.incomplete(*run[:-1], "full"))
+        last = self.incomplete("run", "falling-ball", "--duration-s", "0.01", "--contact-picture",
+                               "-o", "air")
+        self.assertIn("picture air/contact.png (nothing touched in this run)", last)
 
     def test_figures_that_cannot_be_drawn(self):
         last = self.incomplete("run", "press-ball", "--duration-s", "0.02", "--report", "-o", "here",
@@ -442,6 +495,34 @@ class Interrupt(Cli):
                     self.assertTrue(all(b > a for a, b in zip(times, times[1:])))
                 summary = json.loads((path.parent / "summary.json").read_text())
                 self.assertEqual(summary["outcome"], "interrupted")
+
+    def test_frames_of_a_run_that_was_ended_are_drawn(self):
+        process = subprocess.Popen([str(PROGRAM), "run", "press-ball", "--frames", "-o", "cut", "--set",
+                                    "integrator.rtol=1e-9"], cwd=self.folder, text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.wait_for(lambda: recorded_steps(self.folder / "cut/run.vtkhdf") > 3, process)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 130, err)
+        count = int(re.search(r"(\d+) of \1 frames in cut/frames", out).group(1))
+        frames = sorted((self.folder / "cut/frames").iterdir())
+        self.assertEqual([path.name for path in frames], [f"{i:04}.png" for i in range(count)])
+        self.assertGreater(count, 2)
+        self.assertLess(count, 40)
+
+    def test_frames_that_were_drawn_by_then_stay(self):
+        process = subprocess.Popen([str(PROGRAM), "run", "press-ball", "--frames", "-o", "cut"],
+                                   cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        folder = self.folder / "cut/frames"
+        self.wait_for(lambda: folder.is_dir() and len(list(folder.glob("*.png"))) > 2, process)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 130, err)
+        self.assertIn("those written are whole", err)
+        count = int(re.search(r"(\d+) of 40 frames", out).group(1))
+        self.assertLess(count, 40)
+        names = sorted(path.name for path in folder.iterdir())
+        self.assertEqual(names, [f"{i:04}.png" for i in range(count)])
 
     def test_compare_ends_and_says_how_to_go_on(self):
         process = subprocess.Popen([str(PROGRAM), "compare", "cantilever", "--integrator", "ark-erk-5",
