@@ -219,7 +219,6 @@ render::Picture close_up(render::Scene scene, const Patch& patch) {
   scene.surfaces.push_back(std::move(vertices));
   scene.subtitle =
       fmt::format("{}: {} colliding vertices", scene.surfaces[patch.body].name, patch.vertices.cols());
-  scene.title = " ";  // as high as the panel beside it
   return render::draw(scene, options);
 }
 
