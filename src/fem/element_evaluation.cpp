@@ -137,7 +137,7 @@ LaneCounts ElementEvaluation::add_step(const ElementModels& models, const BodyFi
   fit();
   deferred_.fit(chunks_, workers::count());
   deferred_.prepare(chunks_, first_node, A);
-  PALPATE_CHECK(!models.front().by_position, "an unsymmetric tangent in a balanced matrix");
+  PALPATE_CHECK(!models.front().by_position, "an unsymmetric tangent in a zero-row-sum matrix");
   const int chunks = static_cast<int>(chunks_.chunks.size());
   workers::for_each(chunks, [&](int c, int worker) {
     const Chunk& chunk = chunks_.chunks[static_cast<std::size_t>(c)];

@@ -22,7 +22,7 @@ Canvas::Canvas(const Picture& picture)
     }
   cairo_surface_mark_dirty(surface_);
   pen_ = cairo_create(surface_);
-  // The same glyphs on every machine: grey antialiasing, no hinting to a screen's pixels.
+  // Glyphs are to be the same on every machine: grey antialiasing, no hinting to a screen's pixels.
   cairo_font_options_t* options = cairo_font_options_create();
   cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
   cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);

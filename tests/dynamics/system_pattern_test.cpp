@@ -25,7 +25,7 @@ class Rolling final : public ForceTerm {
   mutable int asked = 0;
 };
 
-// Of several terms only the one whose pairs changed is asked anew, and the pattern is that of a System which
+// Only the term whose pairs changed is asked anew, and the pattern is that of a System which
 // never knew the old ones.
 TEST(System, AsksForThePairsOfWhatChangedAlone) {
   Chain chain(8);

@@ -53,9 +53,9 @@ struct Table {
     return true;
   }
   double at_infinity() const { return amplification({-1e8, 0.0}); }
-  /// Of what a stiff mode leaves: b A^-1 c^j = 1 for all j > 0 (a first explicit stage, where c = 0, left
-  /// out).  So it is where b is the last row of A and its c is 1; and in SDIRK-2-1, c = (1, 0), b A^-1 = (1,
-  /// 1/2).
+  /// What a stiff mode leaves of the error: b A^-1 c^j = 1 for all j > 0 (a first explicit stage, where c =
+  /// 0, left out).  So it is where b is the last row of A and its c is 1; and in SDIRK-2-1, c = (1, 0), b
+  /// A^-1 = (1, 1/2).
   bool stiffly_accurate() const {
     const Eigen::Index e = A(0, 0) == 0.0 ? 1 : 0, n = A.rows() - e;
     const VecX row = MatX(A.bottomRightCorner(n, n)).transpose().partialPivLu().solve(b.tail(n));

@@ -134,8 +134,8 @@ TEST_P(Traces, CostNothingWhereNobodyLooks) {
   EXPECT_EQ(a->counters().force_evaluations, b->counters().force_evaluations);
 }
 
-// The same number means another thing in each library, and another again where a linear solver is set up (the
-// libraries' own headers).
+// A flag with one number means another thing in each library, and another again where a linear solver is set
+// up (the libraries' own headers).
 TEST(FlagNames, AreThoseOfTheLibraryThatWasCalled) {
   using integrate::self_test::flag_name;
   EXPECT_EQ(flag_name("CVode", -4), "CV_CONV_FAILURE");

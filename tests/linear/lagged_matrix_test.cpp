@@ -63,7 +63,7 @@ TEST(LaggedMatrix, SolvesAsAccuratelyAsTheMatrixItself) {
     }
 }
 
-// The same number of nodes, another body: nothing of it may come out as a solution.
+// A matrix of another body with as many nodes: nothing of it may come out as a solution.
 TEST(LaggedMatrix, SaysWhereItIsTooFar) {
   for (const std::string name : {"pcg-single", "pcg-two-level"}) {
     BentBeam beam(16, 1e6);

@@ -205,7 +205,7 @@ VecX end_of(const scene::Description& d, int* pressing = nullptr) {
 
 }  // namespace
 
-// The same nodes, masses, forces and contact: a body that falls on another, or on a part of its own, moves
+// With equal nodes, masses, forces and contact, a body that falls on another, or on a part of its own, moves
 // alike, to rounding.  Later the blocks lie so flat on each other that skin which faces elsewhere is kept
 // too: there two bodies are pruned by their hulls, the parts of one by its skin (pruner.cpp), and the motions
 // agree to less than a hundredth.

@@ -1,6 +1,6 @@
 #include "cases.h"
 
-// Of a build without Simbody: the registry leaves the case out.
+// In a build without Simbody the registry leaves this case out.
 namespace palpate::validation {
 
 ValidationCase elastic_foundation_peer() { return {}; }

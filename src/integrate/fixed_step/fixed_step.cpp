@@ -76,7 +76,7 @@ StepResult FixedStep::cover(double t1, double h, double t_end) {
     if (tried.status != StepStatus::kOk) {
       ++counters_.rejected;
       if (tried.status == StepStatus::kNewtonFailed) ++counters_.newton_failures;
-      if (!tried.curable) return failure(tried.status, length, tried.iterations, tried.what);
+      if (!tried.recoverable) return failure(tried.status, length, tried.iterations, tried.what);
       if (++halvings > kHalvings)
         return failure(tried.status, length, tried.iterations,
                        fmt::format("{}, not even at h/{}", tried.what, 1 << kHalvings));

@@ -13,11 +13,11 @@ namespace palpate::integrate {
 /// are alike (exchange periods), so are all steps, and a kept factor, the ratio in a two-step formula and the
 /// acceleration of generalized-alpha stay what they are.
 ///
-/// Failure.  What a method calls curable (Newton did not converge, a value that is not finite on the way) is
-/// tried again in halves, quarters, ... of that one step, down to 1/64: where a nonlinear solve fails, it is
-/// the step that is too long for its convergence, and a user who chose h = 10 ms wants the other steps as
-/// they are.  Each failed attempt counts as rejected.  What is not curable ends advance_to at once, with the
-/// method's name, the reason, time and step; the State holds the last good step, always finite.
+/// Failure.  What a method calls recoverable (Newton did not converge, a value that is not finite on the way)
+/// is tried again in halves, quarters, ... of that one step, down to 1/64: where a nonlinear solve fails, it
+/// is the step that is too long for its convergence, and a user who chose h = 10 ms wants the other steps as
+/// they are.  Each failed attempt counts as rejected.  What is not recoverable ends advance_to at once, with
+/// the method's name, the reason, time and step; the State holds the last good step, always finite.
 ///
 /// Dense output.  Between the ends of the last step: of order 1 methods q and u are linear; of order 2, q is
 /// the cubic through both ends' q and q' = N u, and u is its rate; of order 4, u too is the cubic through
@@ -40,10 +40,10 @@ class FixedStep : public dynamics::Stepper {
   /// Outcome of one attempt at a step.
   struct Attempt {
     dynamics::StepStatus status = dynamics::StepStatus::kOk;
-    int iterations = 0;     ///< of Newton
-    double residual = 0.0;  ///< Newton's last correction, 1 is its tolerance
-    const char* what = "";  ///< on failure, in words
-    bool curable = false;   ///< a shorter step may succeed
+    int iterations = 0;        ///< of Newton
+    double residual = 0.0;     ///< Newton's last correction, 1 is its tolerance
+    const char* what = "";     ///< on failure, in words
+    bool recoverable = false;  ///< a shorter step may succeed
   };
 
   FixedStep(std::string name, int order, Between between, dynamics::System& system, dynamics::State& state,

@@ -20,7 +20,7 @@ using dynamics::StepAttempt;
 using dynamics::StepResult;
 using dynamics::StepStatus;
 
-// The same numbers in CVODE, ARKODE and IDA.
+// What their calls return where they end well: these are the same numbers in CVODE, ARKODE and IDA.
 constexpr int kReachedStop = 1, kReachedRoot = 2;
 
 /// A step that collapses to this ends the call with an error: before a force that is not finite from some

@@ -179,7 +179,8 @@ class KinsolStatic final : public Stepper, private NewtonHook {
     message_.clear();
     finite_ = true;
     set_tolerance(start_tolerance_);
-    // Of an equilibrium, a step that moves no position is the last; of a proximal step it may be the whole.
+    // On the way to an equilibrium a step that moves no position is the last; a proximal step may have no
+    // other.
     check(KINSetScaledStepTol(kinsol_, sigma_ == 0.0 ? std::numeric_limits<double>::epsilon() : kSmallest),
           "KINSetScaledStepTol", state_.time(), 0.0);
     int flag = KINSol(kinsol_, x_, KIN_NONE, displacement_scale_, force_scale_);
