@@ -24,11 +24,11 @@ int DeferredScatter::buffers(const ElementChunks& chunks) {
 /// Ascending in the matrix, so that its memory is written in order.
 void DeferredScatter::prepare(const ElementChunks& chunks, int first_node,
                               const dynamics::ZeroRowSumMatrix& A) {
-  if (A.places_version == version_ && first_node == first_node_) return;
+  if (A.slot_map_version == version_ && first_node == first_node_) return;
   const auto slot = [&](int i, int j) {
     const int found = A.pattern->slot(first_node + i, first_node + j);
     PALPATE_CHECK(found >= 0, "nodes {} and {} are not in the pattern", first_node + i, first_node + j);
-    return A.place[static_cast<std::size_t>(found)];
+    return A.slot_map[static_cast<std::size_t>(found)];
   };
   const auto slot_of = [&](const Chunk& chunk, int edge) {
     const std::uint16_t* ends = chunks.ends.data() + 2 * static_cast<std::size_t>(chunk.first_edge + edge);
@@ -59,7 +59,7 @@ void DeferredScatter::prepare(const ElementChunks& chunks, int first_node,
   std::sort(shared_slots_.begin(), shared_slots_.end(),
             [](const SharedSlot& a, const SharedSlot& b) { return a.slot < b.slot; });
   prefer_huge_pages(slots_);
-  version_ = A.places_version;
+  version_ = A.slot_map_version;
   first_node_ = first_node;
 }
 

@@ -88,7 +88,7 @@ static double squared_courant_number(const dynamics::ZeroRowSumMatrix& A) {
          s < A.pattern->row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
       if (A.pattern->columns()[static_cast<std::size_t>(s)] == i) continue;
       const float* block =
-          A.values.data() + 9 * static_cast<std::size_t>(A.place[static_cast<std::size_t>(s)]);
+          A.values.data() + 9 * static_cast<std::size_t>(A.slot_map[static_cast<std::size_t>(s)]);
       stiffness -= block[0] + block[4] + block[8];
     }
   }

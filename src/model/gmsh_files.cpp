@@ -108,7 +108,7 @@ std::map<int, double> regions_of_volumes(const Gmsh& gmsh, Cells& cells) {
   return out;
 }
 
-/// Of each tetrahedron by its tag.
+/// The region label of each tetrahedron, by its tag.
 std::map<std::size_t, double> labels_of_tetrahedra(const Gmsh& gmsh, Cells& cells) {
   std::map<std::size_t, double> out;
   for (const auto& [volume, label] : regions_of_volumes(gmsh, cells)) {

@@ -26,7 +26,7 @@ class ChainSprings : public ForceTerm, public FusedStepTerm {
     add_step_force(s, shift, shift, f);
     for (int i = 0; i + 1 < nodes_; ++i)
       Eigen::Map<Eigen::Matrix3f>(A.values.data() +
-                                  9 * A.place[static_cast<std::size_t>(A.pattern->slot(i, i + 1))]) =
+                                  9 * A.slot_map[static_cast<std::size_t>(A.pattern->slot(i, i + 1))]) =
           static_cast<float>(-A.scale * k_scale * k_) * Eigen::Matrix3f::Identity();
   }
   void add_step_force(const StateView& s, const VecX& shift, const VecX&, VecX& f) override {

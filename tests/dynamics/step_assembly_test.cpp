@@ -13,18 +13,18 @@ namespace {
 ZeroRowSumMatrix room_for(const BlockSparse& pattern) {
   ZeroRowSumMatrix A;
   A.pattern = &pattern;
-  A.place.assign(static_cast<std::size_t>(pattern.slot_count()), -1);
+  A.slot_map.assign(static_cast<std::size_t>(pattern.slot_count()), -1);
   int pairs = 0;
   for (int i = 0; i < pattern.block_rows(); ++i)
     for (int s = pattern.row_start()[static_cast<std::size_t>(i)];
          s < pattern.row_start()[static_cast<std::size_t>(i) + 1]; ++s) {
       const int j = pattern.columns()[static_cast<std::size_t>(s)];
       if (j > i)
-        A.place[static_cast<std::size_t>(s)] = A.place[static_cast<std::size_t>(pattern.slot(j, i))] =
+        A.slot_map[static_cast<std::size_t>(s)] = A.slot_map[static_cast<std::size_t>(pattern.slot(j, i))] =
             pairs++;
     }
   A.values.assign(9 * static_cast<std::size_t>(pairs), 0.0f);
-  A.places_version = 1;
+  A.slot_map_version = 1;
   return A;
 }
 
@@ -63,7 +63,7 @@ TEST(StepAssembly, MakesTheStepOfTheSystem) {
       const int j = c.system.pattern().columns()[static_cast<std::size_t>(s)];
       if (j == i) continue;
       const Mat3 block =
-          Eigen::Map<const Eigen::Matrix3f>(A.values.data() + 9 * A.place[static_cast<std::size_t>(s)])
+          Eigen::Map<const Eigen::Matrix3f>(A.values.data() + 9 * A.slot_map[static_cast<std::size_t>(s)])
               .cast<double>() /
           A.scale;
       own -= block;

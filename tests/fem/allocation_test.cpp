@@ -47,12 +47,12 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
     A.body = builder.build();
     VecX f = VecX::Zero(x.size()), y = f;
     SoftBody symmetric("b", rest, materials, {.tangent = tangent, .law = law}, at.id);
-    dynamics::ZeroRowSumMatrix balanced;
-    balanced.pattern = &A.body;
-    for (int s = 0; s < A.body.slot_count(); ++s) balanced.place.push_back(s);  // more room than it needs
-    balanced.values.resize(9 * balanced.place.size());
-    balanced.diagonal = f;
-    balanced.places_version = 1;
+    dynamics::ZeroRowSumMatrix matrix;
+    matrix.pattern = &A.body;
+    for (int s = 0; s < A.body.slot_count(); ++s) matrix.slot_map.push_back(s);  // more room than it needs
+    matrix.values.resize(9 * matrix.slot_map.size());
+    matrix.diagonal = f;
+    matrix.slot_map_version = 1;
     const auto evaluate = [&] {
       for (dynamics::ForceTerm* term : std::initializer_list<dynamics::ForceTerm*>{&body, &dilatation}) {
         term->add_force(at.state.view(), f);
@@ -61,7 +61,7 @@ TEST(Allocation, EvaluationsAllocateNothingOnceWarm) {
         term->energy(at.state.view());
         term->dissipated_power(at.state.view());
       }
-      symmetric.add_step(at.state.view(), v, 1, 1, f, balanced);
+      symmetric.add_step(at.state.view(), v, 1, 1, f, matrix);
       symmetric.add_step_force(at.state.view(), v, v, f);
       mass->add_mass(at.state.view(), 1.0, A);
       mass->apply(at.state.view(), v, y);

@@ -190,7 +190,7 @@ TEST(Materials, OneStepIsForceProductAndTangentInOne) {
     whole.body = builder.build();
     dynamics::ZeroRowSumMatrix A;
     A.pattern = &whole.body;
-    A.place.assign(static_cast<std::size_t>(whole.body.slot_count()), -1);
+    A.slot_map.assign(static_cast<std::size_t>(whole.body.slot_count()), -1);
     int pairs = 0;
     const auto each_pair = [&](auto&& work) {  // i < j
       for (int i = 0; i < whole.body.block_rows(); ++i)
@@ -199,12 +199,12 @@ TEST(Materials, OneStepIsForceProductAndTangentInOne) {
           if (const int j = whole.body.columns()[static_cast<std::size_t>(s)]; i < j) work(i, j, s);
     };
     each_pair([&](int i, int j, int s) {
-      A.place[static_cast<std::size_t>(s)] = A.place[static_cast<std::size_t>(whole.body.slot(j, i))] =
+      A.slot_map[static_cast<std::size_t>(s)] = A.slot_map[static_cast<std::size_t>(whole.body.slot(j, i))] =
           pairs++;
     });
     A.values.assign(9 * static_cast<std::size_t>(pairs), 0.0f);
     A.diagonal = VecX::Zero(m.x.size());
-    A.places_version = 1;
+    A.slot_map_version = 1;
     VecX f = VecX::Zero(m.x.size()), want = f, product = f;
     body.add_step(at.state.view(), m.w, 0.7, 1.3, f, A);
     body.add_force(at.state.view(), want);
@@ -215,7 +215,7 @@ TEST(Materials, OneStepIsForceProductAndTangentInOne) {
     for (const double value : whole.body.values()) largest = std::max(largest, std::abs(value));
     each_pair([&](int, int, int s) {
       const Mat3 stored = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(
-                              A.values.data() + 9 * A.place[static_cast<std::size_t>(s)])
+                              A.values.data() + 9 * A.slot_map[static_cast<std::size_t>(s)])
                               .cast<double>();
       const Mat3 exact = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(whole.body.block(s));
       EXPECT_LT((stored - exact).norm(), 1e-7 * exact.norm() + 1e-12 * largest) << "block " << s;

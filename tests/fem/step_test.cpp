@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kK = 0.37, kD = 0.6, kScale = 8.0;
 
-/// Room for a balanced matrix in an order of its own: blocks backwards.
+/// Room for a zero-row-sum matrix in an order of its own: blocks backwards.
 struct Room {
   dynamics::BlockSparse pattern;
   dynamics::ZeroRowSumMatrix A;
@@ -19,17 +19,17 @@ struct Room {
     body.add_pattern(builder);
     pattern = builder.build();
     A.pattern = &pattern;
-    A.place.assign(static_cast<std::size_t>(pattern.slot_count()), -1);
+    A.slot_map.assign(static_cast<std::size_t>(pattern.slot_count()), -1);
     int next = (pattern.slot_count() - pattern.block_rows()) / 2;
     A.values.assign(9 * static_cast<std::size_t>(next), 77.0f);
     each_pair([&](int i, int j, int slot) {
       if (i < j)
-        A.place[static_cast<std::size_t>(slot)] = A.place[static_cast<std::size_t>(pattern.slot(j, i))] =
-            --next;
+        A.slot_map[static_cast<std::size_t>(slot)] =
+            A.slot_map[static_cast<std::size_t>(pattern.slot(j, i))] = --next;
     });
     A.scale = kScale;
     A.diagonal = VecX::Ones(state.layout().u_size);
-    A.places_version = 1;
+    A.slot_map_version = 1;
   }
   template <class Work>
   void each_pair(Work&& work) const {
@@ -41,7 +41,7 @@ struct Room {
   }
   Mat3 block(int i, int j, int slot) const {
     const Mat3 above = Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(
-                           A.values.data() + 9 * A.place[static_cast<std::size_t>(slot)])
+                           A.values.data() + 9 * A.slot_map[static_cast<std::size_t>(slot)])
                            .cast<double>() /
                        kScale;
     return i < j ? above : above.transpose();

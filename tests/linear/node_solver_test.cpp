@@ -132,7 +132,7 @@ TEST_P(NodeSolvers, SayWhatTheyCannotDoWithAZeroRowSumMatrix) {
   ASSERT_NE(A, nullptr);
   VecX b;
   beam.at(0.5, 1e-2, *A, b);
-  A->values[9 * static_cast<std::size_t>(A->place[1]) + 4] = std::numeric_limits<float>::quiet_NaN();
+  A->values[9 * static_cast<std::size_t>(A->slot_map[1]) + 4] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kNone);
   beam.at(0.5, 1e-2, *A, b);
   A->diagonal *= -1e6;
@@ -216,8 +216,8 @@ TEST_P(NodeSolvers, ThreadsDoNotChangeABit) {
   EXPECT_EQ(answers[0], answers[2]);
 }
 
-// The same matrix again is solved by what is remembered; a second right-hand side of one factor starts from
-// products with that factor's matrix.
+// A matrix that was solved before is solved by what is remembered; a second right-hand side of one factor
+// starts from products with that factor's matrix.
 TEST_P(NodeSolvers, StartFromTheLastSolutions) {
   BentBeam beam(16, 1e5);
   const auto solver = linear::make_linear_solver(GetParam(), {.linear_rtol = 1e-4});

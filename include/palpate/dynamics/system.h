@@ -64,9 +64,9 @@ class System {
   /// masters where they have one).  Rebuilds the pattern when a term's version grew.
   void step_matrix(const StateView& state, double m_scale, double d_scale, double k_scale, BorderedMatrix& A,
                    const TermFilter& filter = {});
-  /// Of all force terms and masses, as they are now: the pattern of step_matrix().
+  /// The pattern of step_matrix(): that of all force terms and masses, as they are now.
   const BlockSparse& updated_pattern(const StateView& state);
-  /// As it was at the last updated_pattern() or step_matrix().
+  /// The pattern as it was at the last updated_pattern() or step_matrix().
   const BlockSparse& pattern() const { return pattern_; }
   /// Pairs of nodes that a term couples, a node with itself included, in that pattern.
   const NodePairs& node_pairs(std::size_t term) const { return term_pairs_[term].pairs; }

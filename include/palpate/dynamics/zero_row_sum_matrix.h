@@ -23,9 +23,9 @@ struct HeldNode {
 /// C is what stands beside the pattern (contact), in double.
 struct ZeroRowSumMatrix {
   const BlockSparse* pattern = nullptr;  ///< of whose values nothing is read
-  /// the slot map: the block of the pattern's slots (i, j) and (j, i) alike is at values[9 place]; -1 for
+  /// the block of the pattern's slots s of (i, j) and of (j, i) alike is at values[9 slot_map[s]]; -1 for
   /// i = j
-  std::vector<int> place;
+  std::vector<int> slot_map;
   /// blocks A_ij, i < j, times `scale`, each row by row; every one is written anew for each matrix
   std::vector<float> values;
   double scale = 1.0;     ///< a power of two, so that nothing is lost by it
@@ -34,7 +34,7 @@ struct ZeroRowSumMatrix {
   /// of the nodes [m], as in BorderedMatrix; valid until MixedPrecisionSolver::factor_step_matrix() returns
   const double* positions = nullptr;
   const std::vector<HeldNode>* held = nullptr;
-  std::uint64_t places_version = 0;  ///< grows with every change of `place`
+  std::uint64_t slot_map_version = 0;  ///< grows with every change of `slot_map`
 };
 
 }  // namespace palpate::dynamics

@@ -17,9 +17,9 @@ std::unique_ptr<dynamics::Stepper> make_stepper(dynamics::System& system, dynami
 /// The linear solver that the spec names, or else the method's own, where factor_kept_steps > 1 cholmod;
 /// empty where the method is explicit.  @throws Error for an unknown integrator
 std::string linear_solver_of(const IntegratorSpec& spec);
-/// The same with an LU behind it, for whom factors what is usually positive definite and has no step to
-/// shorten: takes unsymmetric and indefinite matrices too, and right-hand sides that an iteration does not
-/// answer.
+/// The linear solver of that name with an LU behind it: takes unsymmetric and indefinite matrices too, and
+/// right-hand sides that an iteration does not answer.  For those whose matrices are usually positive
+/// definite and who have no step to shorten.
 std::unique_ptr<dynamics::LinearSolver> make_robust_linear_solver(const std::string& name,
                                                                   const IntegratorSpec& spec = {});
 

@@ -27,7 +27,7 @@ struct QualityGate {
 inline constexpr double kSharpDihedralDeg = 4.0;  ///< where creases are kept: their own angles may be small
 
 /// Refuses a bad mesh, with the element, its place, and what to do.
-/// @param surface  that was filled: a wrong volume is told with the vertex farthest from all nodes
+/// @param surface  that was filled: a wrong volume is reported with the vertex farthest from all nodes
 /// @throws Error
 void pass_gate(const TetMesh& mesh, const TetQuality& quality, const QualityGate& gate,
                const std::string& source, const TriMesh& surface = {});

@@ -12,7 +12,7 @@ struct RepairOptions {
   double largest_hole = 0.15;  ///< a hole is closed when that adds no more than this share of the surface
   bool largest_shell = false;  ///< several bodies in one file: keep the largest instead of refusing
   bool wrap = true;            ///< what cannot be mended locally is wrapped, and said so
-  /// is told where a piece of work begins that may take long; may be empty
+  /// is called where a piece of work begins that may take long; may be empty
   std::function<void(const std::string& where)> place = {};
 };
 

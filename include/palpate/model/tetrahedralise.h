@@ -46,7 +46,7 @@ struct Tetrahedra {
 Tetrahedra tetrahedralise(const TriMesh& surface, const TetrahedraOptions& options,
                           const Progress& progress = {});
 
-/// The same for the inside of an implicit surface, { p : f(p) < 0 }.
+/// Fills the inside of an implicit surface, { p : f(p) < 0 }, by the same criteria.
 /// @param centre, radius  a ball that holds the inside, its centre inside [m]
 Tetrahedra tetrahedralise(const std::function<double(const Vec3&)>& f, const Vec3& centre, double radius,
                           const TetrahedraOptions& options, const Progress& progress = {});

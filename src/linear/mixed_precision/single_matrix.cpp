@@ -121,7 +121,7 @@ dynamics::ZeroRowSumMatrix& SingleMatrix::room(const dynamics::BlockSparse& patt
   sums_.assign(8 * n + kVectorTail, 0.0f);
   const int pairs = (block_count() - nodes()) / 2;
   written_.values.assign(9 * static_cast<std::size_t>(pairs + 1) + kBlockTail, 0.0f);  // and a block of zeros
-  written_.place.assign(column_.size(), -1);
+  written_.slot_map.assign(column_.size(), -1);
   written_offset_.assign(packing_.places() + kLanesOfGroup * kStepsAhead, 9 * pairs);
   transposed_.assign(packing_.places() / kLanesOfGroup, 0);
   std::vector<int> rows(n);
@@ -139,14 +139,14 @@ dynamics::ZeroRowSumMatrix& SingleMatrix::room(const dynamics::BlockSparse& patt
       const int i = order_.node[static_cast<std::size_t>(row)],
                 j = order_.node[static_cast<std::size_t>(column_[s])];
       const std::size_t at = packing_.place(s), step = at / kLanesOfGroup;
-      int& number = written_.place[static_cast<std::size_t>(source_[s])];
-      if (number < 0) written_.place[static_cast<std::size_t>(pattern.slot(j, i))] = number = next++;
+      int& number = written_.slot_map[static_cast<std::size_t>(source_[s])];
+      if (number < 0) written_.slot_map[static_cast<std::size_t>(pattern.slot(j, i))] = number = next++;
       written_offset_[at] = 9 * number;
       // row by row is the transposed one, column by column
       if (i < j)
         transposed_[step] = static_cast<std::uint16_t>(transposed_[step] | (1u << at % kLanesOfGroup));
     }
-  written_.places_version = ++version;
+  written_.slot_map_version = ++version;
   prefer_huge_pages(written_.values);
   prefer_huge_pages(written_offset_);
   return written_;

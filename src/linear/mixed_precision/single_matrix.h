@@ -80,7 +80,7 @@ class SingleMatrix {
   std::vector<int> place_of_node_, row_start_, column_;
   std::vector<int> source_, diagonal_slot_;  ///< slots of the original
   mutable RowPacking packing_;
-  const dynamics::BorderedMatrix* original_ = nullptr;  ///< null: balanced
+  const dynamics::BorderedMatrix* original_ = nullptr;  ///< null: a zero-row-sum matrix
   Singles copy_;                                        ///< of a whole matrix, on the way to its packing
   std::vector<int> copy_offset_;
   dynamics::ZeroRowSumMatrix written_;
