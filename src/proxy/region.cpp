@@ -84,6 +84,18 @@ void check_points(const Eigen::Ref<const Points>& points, const char* which) {
 
 }  // namespace
 
+double least_width(const Eigen::Ref<const Points>& points) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int x = -2; x <= 2; ++x)
+    for (int y = -2; y <= 2; ++y)
+      for (int z = 0; z <= 2; ++z) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const auto along = (Vec3(x, y, z).normalized().transpose() * points).eval();
+        least = std::min(least, along.maxCoeff() - along.minCoeff());
+      }
+  return least;
+}
+
 struct RegionFinder::Scaled {
   Hull a, b;
 };
@@ -91,6 +103,22 @@ struct RegionFinder::Scaled {
 RegionFinder::RegionFinder() : scaled_(std::make_unique<Scaled>()) { counters::count("proxy.region_finder"); }
 RegionFinder::~RegionFinder() = default;
 RegionFinder::RegionFinder(RegionFinder&&) noexcept = default;
+
+Region RegionFinder::along(const Eigen::Ref<const Points>& a, const Eigen::Ref<const Points>& b,
+                           const Vec3& normal, double margin) {
+  check_points(a, "the first body");
+  check_points(b, "the second body");
+  Eigen::Index lowest = 0, highest = 0;
+  Region region;
+  region.depth = -(normal.transpose() * a).minCoeff(&lowest) + (normal.transpose() * b).maxCoeff(&highest);
+  region.origin = 0.5 * (a.col(lowest) + b.col(highest));
+  region.normal = normal;
+  region.method = RegionMethod::kLastNormal;
+  region.found = region.depth >= -margin;
+  has_last_ = true;
+  last_normal_ = normal;
+  return region;
+}
 
 Region RegionFinder::find(const Eigen::Ref<const Points>& a, const Eigen::Ref<const Points>& b,
                           double margin) {
