@@ -16,6 +16,7 @@ namespace palpate::contact {
 ///   Nearest at(x)            x and the answer in world axes
 ///   is_crossed(a, b)         whether the way from a to b, in the frame, passes through it from outside to
 ///   outside
+///   thickness()              least way through it [m]
 template <class Shape>
 class AnalyticSource final : public SampleSource {
  public:
@@ -35,6 +36,8 @@ class AnalyticSource final : public SampleSource {
 
   std::string_view name() const override { return Shape::kName; }
   long tunnelled() const override { return tunnelled_; }
+  double safe_time() const override { return safe_time_; }
+  long fast_regions() const override { return fast_; }
   void add_pattern(dynamics::PatternBuilder& pattern) const override { surface_.add_vertex_pattern(pattern); }
   std::uint64_t pattern_version() const override { return surface_.vertex_pattern_version(); }
 
@@ -91,7 +94,9 @@ class AnalyticSource final : public SampleSource {
   /// Near, or near at the next query: gap + look_ahead gap' < candidate_gap, with the frame's own motion in
   /// gap'.
   bool find_candidates(const dynamics::StateView& state, const Pose& pose) {
+    constexpr double kDeepest = 0.5;
     bool any = false;
+    safe_time_ = HUGE_VAL;
     const Twist twist = motion_->twist(state);
     wanted_.assign(static_cast<std::size_t>(surface_.vertex_count()), 0);
     for (int v = 0; v < surface_.vertex_count(); ++v) {
@@ -99,11 +104,15 @@ class AnalyticSource final : public SampleSource {
       const Nearest nearest = shape_.at(x);
       const double rate = nearest.normal.dot(surface_.velocity(v, state) -
                                              twist.at(x - nearest.gap * nearest.normal - pose.translation));
+      if (rate < 0.0)
+        safe_time_ =
+            std::min(safe_time_, (std::max(nearest.gap, 0.0) + kDeepest * shape_.thickness()) / -rate);
       if (nearest.gap + look_ahead_ * std::min(rate, 0.0) < candidate_gap_) {
         wanted_[static_cast<std::size_t>(v)] = 1;
         any = true;
       }
     }
+    fast_ += safe_time_ < look_ahead_;
     return any;
   }
 
@@ -137,7 +146,8 @@ class AnalyticSource final : public SampleSource {
   std::vector<int> kept_;  ///< vertices of the last query's samples, where these follow
   bool follows_ = false;
   bool seen_before_ = false, warned_ = false;
-  long tunnelled_ = 0;
+  long tunnelled_ = 0, fast_ = 0;
+  double safe_time_ = HUGE_VAL;  ///< as SampleSource::safe_time
 };
 
 /// What an obstacle's registry entry needs of its Shape: a gap to look at without a source.

@@ -16,7 +16,9 @@ struct RegionContext {
   std::shared_ptr<ImageSide> a, b;
   ImageOptions options;
   QueryStages stages;
-  double candidate_gap = 0.0;           ///< of the query under way [m]
+  double candidate_gap = 0.0;           ///< what counts as near without any motion [m]
+  double safe_time = 0.0;               ///< as SampleSource::safe_time, of the query under way
+  long fast_regions = 0;                ///< as SampleSource::fast_regions
   double volume = 0.0, variance = 0.0;  ///< of its regions [m^3], [m^6]
 
   // scratch of the region that is being worked on
@@ -27,6 +29,8 @@ struct RegionContext {
   std::vector<FacePair> by_lines;
 
   bool of_one_body() const { return a == b; }
+  /// A region's part of `safe_time`: its skin is at most half of its thickness deep by then.
+  void take_speed(double apart, double approach, double thickness);
   bool samples_vertices() const { return options.samples == SampleRule::kVertex; }
   Eigen::Vector2d shift() const { return {options.shift_u, options.shift_v}; }
   /// Pixels of the first image of a region: all, or as many as tell which the wanted error needs.
@@ -63,6 +67,7 @@ class ImageRegion {
   void finish();
 
   RegionContext& context_;
+  double candidate_gap_ = 0.0;  ///< of this region [m]
   ContactAxes axes_;
   Patch a_, b_;
   std::vector<Hit> hits_;

@@ -68,6 +68,14 @@ void SurfaceState::evaluate(int vertex) const {
   ++evaluations_;
 }
 
+Vec3 SurfaceState::position(int vertex, const Points& carriers) const {
+  if (!is_skin()) return carriers.col(vertex);
+  Vec3 x = Vec3::Zero();
+  for (int k = 0; k < 4; ++k)
+    x += surface_.embedding.weights(k, vertex) * carriers.col(surface_.tets(k, tet_of(vertex)));
+  return x;
+}
+
 Vec3 SurfaceState::velocity(int vertex, const dynamics::StateView& state) const {
   if (!is_skin()) return state.velocity(node(vertex));
   Vec3 v = Vec3::Zero();

@@ -32,6 +32,10 @@ class SurfaceState {
   /// Positions of a skin's vertices that were computed so far, over all updates.
   long evaluations() const { return evaluations_; }
   const Points& nodes() const { return nodes_; }  ///< of the block, of a skin only
+  /// What the vertices hang on, now: the nodes of a skin, else they themselves.
+  const Points& carriers() const { return is_skin() ? nodes_ : positions_; }
+  /// Where a vertex is when these are there.
+  Vec3 position(int vertex, const Points& carriers) const;
   Vec3 velocity(int vertex, const dynamics::StateView& state) const;
   /// Of all nodes of the block: what a point of the surface moves with is a mean of some of them, but for the
   /// rest offset of a skin.  @pre updated

@@ -45,6 +45,7 @@ class Cylinder {
     part.s1 = std::min(part.s1, (-B + root) / A);
     return part.s0 < part.s1;
   }
+  double thickness() const { return 2.0 * std::min(radius_, half_); }
 
  private:
   bool outside(const Vec3& x) const {

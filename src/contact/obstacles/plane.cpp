@@ -17,6 +17,7 @@ class Plane {
   }
   Nearest at(const Vec3& x) const { return {world_normal_.dot(x - world_point_), world_normal_}; }
   bool is_crossed(const Vec3&, const Vec3&) const { return false; }  // whatever is through is inside
+  double thickness() const { return HUGE_VAL; }
 
  private:
   Vec3 point_, normal_;
