@@ -62,13 +62,14 @@ class ImageRegion {
   /// After the image that counts: what `samples` asks for in `hits_`, with what the pixels err counted.
   void finish();
 
+  const ContactCamera& camera() const { return request_.camera; }  ///< of the last image
+
   RegionContext& context_;
   ContactAxes axes_;
   Patch a_, b_;
   std::vector<Hit> hits_;
 
  private:
-  const ContactCamera& camera() const { return request_.camera; }
   bool take_pair(const FacePair& pair);
   void ask_lines();
   void count_error();

@@ -101,7 +101,7 @@ void ImageSource::end(std::span<const ContactSample> samples) {
 }
 
 void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSample>& samples) {
-  if (ImageSource* self = asks_together()) {
+  if (ImageSource* self = this; asks_together() || settles()) {
     open(state);
     answer_together({&self, 1});
     return close(samples);
@@ -136,6 +136,7 @@ void ImageSource::collect(std::vector<DepthRequest*>& requests) const {
 void ImageSource::take() {
   for (std::size_t i = 0; i < open_; ++i)
     if (regions_[i]->wanted()) regions_[i]->take();
+  settle(open_);
 }
 
 void ImageSource::close(std::vector<ContactSample>& samples) {

@@ -44,12 +44,4 @@ void RegionPiece::see(const ContactAxes& axes, double side, Patch& patch) {
   patch.faces = &faces_;
 }
 
-Eigen::Vector2d RegionPiece::slope_of(const Patch& patch, int face) const {
-  constexpr double kSteepest = 10.0;
-  const auto at = [&](int k) { return patch.uvw.col(faces_(k, face)); };
-  const Vec3 area = Vec3(at(1) - at(0)).cross(Vec3(at(2) - at(0)));
-  const Eigen::Vector2d s = area.head<2>() / area.z();
-  return s * std::min(1.0, kSteepest / std::max(s.norm(), 1e-300));
-}
-
 }  // namespace palpate::contact

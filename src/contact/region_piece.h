@@ -21,9 +21,6 @@ class RegionPiece {
   bool sees_nothing() const { return face_of_.empty(); }
   /// In the whole surface, of one of the patch's faces.
   int face_of(int face) const { return face_of_[static_cast<std::size_t>(face)]; }
-  /// Of a face, in the patch that was seen last, as a function of (u, v); at most 10, for a wall's is no
-  /// direction.
-  Eigen::Vector2d slope_of(const Patch& patch, int face) const;
 
  private:
   Faces faces_;
