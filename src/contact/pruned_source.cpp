@@ -281,6 +281,7 @@ void PrunedSource::settle(std::size_t count) {
   for (const Plan& plan : plans_) {
     PrunedRegion& region = at(plan.region);
     if (done) {
+      context_.stages.unaligned += !plan.aligned;
       region.go_on(plan.normal, plan.aligned);
     } else if (!plan.aligned && region.may_look_again()) {
       find_parts(region);
