@@ -37,6 +37,7 @@ class Loop {
     const double wall = wall_seconds(), cpu = cpu_seconds();
     if (world_.stepper) world_.stepper->set_interrupt(options_.stop);
     start_tool();
+    if (d.record && d.record->energy) ledger_.emplace(world_).start();
     notify_period(0.0);
     for (int i = 0; i < periods && result_.status.ok(); ++i) {
       if (options_.stop && options_.stop->load()) {
@@ -54,6 +55,7 @@ class Loop {
       ++result_.periods;
       result_.time = t1;
       notify_period(t1);
+      if (ledger_) notify_energy(t1);
       if (options_.progress) options_.progress(static_cast<double>(i + 1) / periods);
     }
     result_.wall_s = wall_seconds() - wall;
@@ -66,15 +68,23 @@ class Loop {
   void one_period(double t0, double t1) {
     refresh_contact();
     if (side_.tool) tick_tool(t0, t1);
-    if (result_.status.ok() && world_.stepper) advance_state(t0, t1);
+    if (!result_.status.ok()) return;
+    if (world_.stepper)
+      advance_state(t0, t1);
+    else
+      world_.state.set_time(t1);  // a tool with ticks of its own, alone
   }
 
   /// The slow query; multistep integrators then forget their history.
   void refresh_contact() {
-    if (!world_.contact || world_.bodies.empty()) return;
-    const ScopedTimer timer(result_.query_s);
-    if (world_.contact->refresh(world_.state.view()))
-      world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
+    if (!world_.contact) return;
+    if (ledger_) ledger_->before_query();
+    const bool changed = [&] {
+      const ScopedTimer timer(result_.query_s);
+      return world_.contact->refresh(world_.state.view());
+    }();
+    if (ledger_) ledger_->after_query();
+    if (changed && world_.stepper) world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
   }
 
   /// Bodies follow over the period, with the tool's motion known or, if monolithic, integrated with them; the
@@ -148,13 +158,15 @@ class Loop {
 
   void tick(double t, double h) {
     const device::HandleSample before = side_.handle_now, now = side_.handle->sample(t);
-    result_.status = side_.tool->advance(h, {before.pose, now.pose, before.twist, now.twist}, record_);
+    const dynamics::LinearisedContact record =
+        side_.meets_obstacles ? with_obstacles(world_, record_) : record_;
+    result_.status = side_.tool->advance(h, {before.pose, now.pose, before.twist, now.twist}, record);
     if (!result_.status.ok()) return;
     TickRecord tick;
     tick.time = t;
     tick.tool = side_.tool->pose();
     tick.tool_twist = side_.tool->twist();
-    const Vec6 contact = dynamics::contact_wrench(record_, t, tick.tool, tick.tool_twist);
+    const Vec6 contact = dynamics::contact_wrench(record, t, tick.tool, tick.tool_twist);
     tick.contact = {contact.head<3>(), contact.tail<3>()};
     if (side_.trajectory) side_.trajectory->append(t, tick.tool, tick.tool_twist);
     feel(tick);
@@ -164,16 +176,23 @@ class Loop {
   void feel(TickRecord tick) {
     const device::HandleSample& handle = side_.handle_now = side_.handle->sample(tick.time);
     tick.handle = handle.pose;
+    tick.handle_twist = handle.twist;
     tick.wanted = tool::coupling_on_hand(*world_.description.tool, {tick.tool, tick.tool_twist},
                                          {handle.pose, handle.twist});
     tick.device = side_.limiter->limit(tick.time, tick.wanted, handle.valid);
     side_.handle->feedback(tick.time, tick.device);
     ++result_.ticks;
+    if (ledger_) ledger_->tick(tick.time, tick.wanted, tick.handle_twist);
     for (Observer* observer : options_.observers) observer->tick(tick);
   }
 
   void notify_period(double t) {
     for (Observer* observer : options_.observers) observer->period(world_, t);
+  }
+
+  void notify_energy(double t) {
+    result_.energy = ledger_->period(t);
+    for (Observer* observer : options_.observers) observer->energy(*result_.energy);
   }
 
   void finish() {
@@ -191,6 +210,7 @@ class Loop {
   const RunOptions& options_;
   RunResult result_;
   dynamics::LinearisedContact record_;
+  std::optional<EnergyLedger> ledger_;    ///< where the scene records energy
   double changed_ = 0.0;                  ///< time of the last material change [s]
   std::optional<MonolithicTicks> ticks_;  ///< where tool and bodies are one system
 };

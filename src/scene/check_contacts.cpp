@@ -3,6 +3,7 @@
 #include <string_view>
 #include <utility>
 
+#include "palpate/scene/contact_sides.h"
 #include "scene/check.h"
 #include "scene/reader.h"
 
@@ -32,7 +33,7 @@ struct Sides {
 };
 
 void check_sides(const Document& doc, const std::string& key, const std::string& where, const Sides& sides,
-                 ContactSpec& c) {
+                 const ContactSpec& c) {
   int side = 0;
   for (const std::string& name : {c.first, c.second}) {
     const std::string at = location(doc, fmt::format("{}.between[{}]", key, side++));
@@ -43,8 +44,10 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
   const std::string at = location(doc, key + ".between");
   if (c.first == c.second && !sides.is_body(c.first))
     refuse(at, where, "only a soft body may touch itself; name two");
-  if (!sides.is_body(c.first)) std::swap(c.first, c.second);
-  if (!sides.is_body(c.first)) refuse(at, where, "one of the two must be a soft body");
+  if (sides.is_obstacle(c.first) && sides.is_obstacle(c.second))
+    refuse(
+        at, where,
+        "obstacles do not move, so these two cannot touch; one of the two must be a soft body or the tool");
 }
 
 /// One body twice: the regions of its bones.
@@ -143,12 +146,10 @@ void check_contacts(const Document& doc, Description& d) {
     const std::string key = fmt::format("contact[{}]", i),
                       where = fmt::format("contact between \"{}\" and \"{}\"", c.first, c.second);
     check_sides(doc, key, where, sides, c);
+    order_sides(d, c);
     check_method(doc, key, where, sides, d, c);
     check_friction(doc, key, where, c);
-    const bool twice =
-        seen.contains({c.first, c.second}) || (sides.is_body(c.second) && seen.contains({c.second, c.first}));
-    seen.emplace(c.first, c.second);
-    if (twice)
+    if (!seen.emplace(c.first, c.second).second)
       refuse(location(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
   }
 }

@@ -279,6 +279,41 @@ class Results(Cli):
         self.assertTrue(wrong.stderr.endswith('palpate: error: the model "heed" was not made; see above\n'))
         self.assertEqual(list(Path(models).glob("*/*")), kept)
 
+    def energies(self, folder):
+        lines = (self.folder / folder / "energy.csv").read_text().splitlines()
+        names = lines[0].split(",")
+        return [dict(zip(names, map(float, line.split(",")))) for line in lines[1:]]
+
+    def test_the_order_of_a_contacts_names_changes_no_byte(self):
+        swapped = [f"contact.{i}.between={names}" for i, names in enumerate(
+            ['["floor", "slab"]', '["slab", "ball"]', '["tool", "ball"]', '["floor", "tool"]'])]
+        run = ["run", "press-stack", "--duration-s", "0.1"]
+        self.good(*run, "-o", "one")
+        self.good(*run, *(word for change in swapped for word in ("--set", change)), "-o", "other")
+        for file in ("force.csv", "energy.csv"):
+            one = (self.folder / "one" / file).read_bytes()
+            self.assertGreater(len(one), 1000)
+            self.assertEqual(one, (self.folder / "other" / file).read_bytes(), file)
+        rows = self.energies("one")
+        self.assertEqual(len(rows), 20)
+        self.assertGreater(max(row["contact_j"] for row in rows), 0.0)
+        self.assertGreater(max(row["elastic_j"] for row in rows), 0.0)
+
+    def test_squeeze_ball_accounts_for_its_energy(self):
+        if not (PROGRAM.parent / "palpate-model").exists():
+            self.skipTest("this build makes no models")
+        done = self.call("run", "squeeze-ball", "--duration-s", "0.1", "-o", "out",
+                         PALPATE_MODELS=str(self.folder / "models"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = self.energies("out")
+        self.assertEqual(len(rows), 100)
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual(summary["energy"]["unaccounted_j"], rows[-1]["unaccounted_j"])
+        most = max(row["work_of_hand_j"] for row in rows)
+        self.assertGreater(most, 1e-3)
+        for row in rows:
+            self.assertLess(abs(row["unaccounted_j"]), 0.01 * most + 2.0 * row["quadrature_error_j"], row)
+
     def test_bench_contact_prints_its_stages(self):
         text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64")
         self.assertRegex(text, r"(?m)^cpu +64 +1 +[1-9]\d* ")
