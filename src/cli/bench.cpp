@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "bench_contact.h"
+#include "bench_continuity.h"
 #include "bench_fem.h"
 #include "commands.h"
 #include "palpate/core/error.h"
@@ -56,9 +57,13 @@ int bench(const BenchArguments& arguments) {
     bench_contact(arguments);
     return stop_flag() ? kExitStopped : 0;
   }
+  if (arguments.what == "continuity") {
+    bench_continuity(arguments);
+    return stop_flag() ? kExitStopped : 0;
+  }
   if (arguments.what != "leave-out")
     fail("there is no benchmark \"{}\"{}", arguments.what,
-         suggestion(arguments.what, {"contact", "fem", "leave-out"}));
+         suggestion(arguments.what, {"contact", "continuity", "fem", "leave-out"}));
   const std::vector<std::string> scenes =
       arguments.scenes.empty() ? std::vector<std::string>{"falling-ball", "cantilever"} : arguments.scenes;
   for (const std::string& scene : scenes) {

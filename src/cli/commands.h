@@ -85,10 +85,10 @@ struct ListArguments {
 int list(const ListArguments& arguments);
 
 struct BenchArguments {
-  std::string what;  ///< "fem", "contact" or "leave-out"
-  /// of leave-out; empty: falling-ball and cantilever; of contact; empty: those of the paper
+  std::string what;  ///< "fem", "contact", "continuity" or "leave-out"
+  /// of leave-out; empty: falling-ball and cantilever; of contact and continuity; empty: those of the paper
   std::vector<std::string> scenes;
-  std::vector<std::string> methods = {"cpu"};  ///< of contact
+  std::vector<std::string> methods = {"cpu"};  ///< of contact; the first of continuity
   std::vector<int> pixels;                     ///< of contact; empty: as the scene wants, and 256
   bool all = false;                            ///< of contact: every backend, 64 to 1024 pixels
   bool growth = false;                         ///< of contact: growth with skin and region instead
@@ -104,6 +104,8 @@ struct BenchArguments {
   bool accuracy = false;                 ///< of fem: error against run time of one motion instead
   std::string calibrate;                 ///< of fem: file for the measured table of linear_solver = "auto"
   int repeats = 5;                       ///< of leave-out
+  int paths = 1000;                      ///< of continuity
+  double quadrature_error = 1e-3;        ///< of continuity
 };
 int bench(const BenchArguments& arguments);
 

@@ -301,12 +301,13 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   command
       ->add_option("WHAT", arguments->what,
                    "fem: one implicit step of a soft beam at several sizes, split into its stages; "
-                   "contact: one exchange period of the paper's scenes, split into its stages; leave-out: "
-                   "what absent and present parts cost")
+                   "contact: one exchange period of the paper's scenes, split into its stages; continuity: "
+                   "how much the contact force jumps along random paths; leave-out: what absent and present "
+                   "parts cost")
       ->required();
-  command->add_option(
-      "SCENE", arguments->scenes,
-      "of leave-out; default falling-ball and cantilever; of contact; default those of the paper");
+  command->add_option("SCENE", arguments->scenes,
+                      "of leave-out; default falling-ball and cantilever; of contact and continuity; default "
+                      "those of the paper");
   command
       ->add_option("--size", arguments->sizes,
                    "fem: XS, S, M, L, XL (1,425 to 100,000 nodes); default S and M")
@@ -358,6 +359,14 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   command->add_option("--repeats", arguments->repeats, "leave-out: runs of each variant")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command->add_option("--paths", arguments->paths, "continuity: random paths of a scene")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command
+      ->add_option("--quadrature-error", arguments->quadrature_error,
+                   "continuity: what the pixels may err in the force; 0: all pixels always")
+      ->check(CLI::Range(0.0, 0.1))
+      ->capture_default_str();
   command->footer(R"(Examples:
   palpate bench fem                              3,700 and 11,172 nodes, steps of 10 and 1 ms
   palpate bench fem --size S,M,L --threads 1 -o out/bench
@@ -366,6 +375,7 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   palpate bench contact                          the paper's pairs: stages, and contact beside a step
   palpate bench contact touch-head --method cpu,gpu --pixels 128,256,512
   palpate bench contact --growth                 skins of 10,000 to 1,000,000 vertices
+  palpate bench continuity gears --paths 100
   palpate bench leave-out falling-ball --repeats 9)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return bench(*arguments); };

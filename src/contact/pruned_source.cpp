@@ -94,6 +94,7 @@ class PrunedRegion final : public ImageRegion {
       if (hit.at.gap() < 0.0) slope.add(piece_a_.slope_of(a_, hit.face_a), piece_b_.slope_of(b_, hit.face_b));
     const bool aligned = !align_with_overlap(slope, axes_);
     if (!aligned && ++alignments_ < kAlignments) return look_along_axes();
+    context_.stages.unaligned += !aligned;
     if (aligned && context_.options.quadrature_error > 0.0) return refine();  // that image is the first
     looking_for_ = Image::kFirst;
     if (!aligned) fit_pieces();

@@ -1,5 +1,4 @@
 #include "palpate/loop/modes.h"
-#include "tool_side.h"
 
 #include "palpate/core/error.h"
 #include "palpate/store/provenance.h"
@@ -34,12 +33,7 @@ double scale_of(const World& world, const VecX& shape) {
 modes::Modes find_modes(World& world, int count) {
   if (world.bodies.empty())
     fail("{}: modes are of soft bodies, and the scene has no [[body]]", world.description.path);
-  const ToolSide& side = ToolSide::of(world);
-  if (side.trajectory) {  // contact with the tool: as it stands at the start
-    side.trajectory->clear();
-    side.trajectory->append(side.tool->time(), side.tool->pose(), side.tool->twist());
-  }
-  if (world.contact) world.contact->refresh(world.state.view());
+  if (world.contact) world.refresh_contact();
   return modes::find_modes(world.system, world.state.view(), {count});
 }
 

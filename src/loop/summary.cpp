@@ -89,7 +89,7 @@ void add_jumps(store::Summary& summary, const World& world) {
   s.values.emplace_back("largest_force_after_a_query_n", after.force);
   s.values.emplace_back("largest_moment_after_a_query_n_m", after.moment);
   double quadrature_error = 0.0;
-  long lines = 0, pairs = 0;
+  long lines = 0, pairs = 0, unaligned = 0;
   bool images = false;
   for (const contact::QueryStages* stages : world.contact->stages())
     if (stages) {
@@ -97,11 +97,13 @@ void add_jumps(store::Summary& summary, const World& world) {
       quadrature_error = std::max(quadrature_error, stages->largest_quadrature_error);
       lines += stages->lines;
       pairs += stages->pairs;
+      unaligned += stages->unaligned;
     }
   if (images) {
     if (quadrature_error > 0.0) s.values.emplace_back("largest_quadrature_error", quadrature_error);
     s.values.emplace_back("pixels_seen", static_cast<long long>(pairs));
     s.values.emplace_back("pixels_left_to_exact_lines", static_cast<long long>(lines));
+    s.values.emplace_back("regions_not_aligned_with_their_overlap", static_cast<long long>(unaligned));
   }
   if (const double friction = world.contact->largest_lagged_friction(); friction > 0.0) {
     s.values.emplace_back("largest_friction_n", friction);

@@ -127,6 +127,15 @@ Pose World::tool_pose() const {
   return {Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
 }
 
+void World::refresh_contact() {
+  PALPATE_CHECK(contact, "a World without contact has nothing to ask");
+  if (const ToolSide& side = *tool_side_; side.trajectory) {
+    side.trajectory->clear();
+    side.trajectory->append(side.tool->time(), side.tool->pose(), side.tool->twist());
+  }
+  contact->refresh(state.view());
+}
+
 Twist World::tool_twist() const {
   if (!monolithic()) return tool_side_->tool->twist();
   const auto u = state.u().segment<6>(state.layout().find(tool_side_->block_id)->u_offset);

@@ -35,6 +35,8 @@ struct QueryStages {
   double gaps_s = 0.0;       ///< gaps in double, and samples
   long images = 0, pairs = 0;
   long pixels = 0;  ///< of all images
+  /// regions whose normal was not yet that of their overlap, to 1e-3 rad, at their last look
+  long unaligned = 0;
   long lines = 0;  ///< pixels with layers or walls, or on a triangle's rim: an image left them to exact lines
   /// Standard error that the pixels left in the overlap volume, relative, as they estimate it themselves:
   /// of the last query with an overlap, and the largest.

@@ -127,6 +127,8 @@ struct World {
   int tool_frame_index() const;
   Pose tool_pose() const;  ///< @pre there is a tool
   Twist tool_twist() const;
+  /// Asks for the contact anew at the state as it is, the tool where it stands.  @pre there is a contact
+  void refresh_contact();
   /// kinetic and potential energy of bodies, contact, tool and coupling [J]
   double mechanical_energy();
 

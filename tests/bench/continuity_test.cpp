@@ -1,0 +1,147 @@
+// How much the contact force jumps along smooth paths.
+#include "palpate/bench/continuity.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "bench/contact/relative_path.h"
+#include "palpate/loop/load.h"
+#include "palpate/mesh/generators.h"
+#include "palpate/proxy/decompose.h"
+#include "palpate/store/model_file.h"
+#include "temporary_folder.h"
+
+using namespace palpate;
+
+namespace {
+
+// what is left of a step after seven halvings: what the pixels err on either side (three standard errors
+// each), and 2 % for a change that seven halvings leave
+constexpr double kBound = 0.03;
+
+LayeredModel block(const Pose& pose, const Vec3& size, const std::array<int, 3>& cells, int finer = 5) {
+  LayeredModel model;
+  model.name = "block";
+  model.tets = mesh::box(size, cells);
+  model.skin = mesh::box_surface(size, {finer * cells[0], finer * cells[1], finer * cells[2]});
+  for (Points* points : {&model.tets.nodes, &model.skin.vertices})
+    for (auto x : points->colwise()) x = pose * Vec3(x);
+  model.embedding = mesh::embed(model.tets, model.skin.vertices);
+  model.proxies = proxy::decompose(model, {.count = 8});
+  return model;
+}
+
+struct Blocks {
+  TemporaryFolder folder;
+
+  SoftBodySpec body(const std::string& name, const LayeredModel& model) const {
+    const std::string path = (folder / (name + ".h5")).string();
+    store::write_model(path, {model, {}});
+    SoftBodySpec out;
+    out.name = name;
+    out.mesh.file = path;
+    out.skin = out.proxies = true;
+    return out;
+  }
+  static ContactSpec contact(const std::string& first, const std::string& second) {
+    ContactSpec out;
+    out.first = first;
+    out.second = second;
+    out.stiffness_pa_m = 1e6;
+    return out;
+  }
+  /// A ball on the middle of a block's top.
+  scene::Description flat() const {
+    scene::Description d;
+    d.name = "flat";
+    d.bodies = {body("block", block({Quat::Identity(), Vec3::Zero()}, Vec3(0.03, 0.03, 0.03), {2, 2, 2}))};
+    ToolSpec tool;
+    tool.radius_m = 0.006;
+    tool.position_m = Vec3(0.001, 0.002, 0.022);
+    d.tool = tool;
+    d.device.emplace();
+    d.device->keyframes = {{.position_m = tool.position_m}};
+    d.contacts = {contact("block", "tool")};
+    return d;
+  }
+  /// A block face down on a slab, samples at the few vertices of both.
+  scene::Description few_vertices() const {
+    scene::Description d;
+    d.name = "few vertices";
+    const Pose above{Quat::Identity(), Vec3(0.001, -0.002, 0.03)};
+    d.bodies = {body("slab", block({Quat::Identity(), Vec3::Zero()}, Vec3(0.06, 0.06, 0.02), {4, 4, 2}, 1)),
+                body("block", block(above, Vec3(0.03, 0.03, 0.03), {2, 2, 2}, 1))};
+    d.contacts = {contact("slab", "block")};
+    d.contacts[0].samples = "vertex";
+    return d;
+  }
+};
+
+void expect_no_jumps(const scene::Description& scene, int paths) {
+  bench::ContinuityOptions options;
+  options.paths = paths;
+  options.steps = 60;
+  const bench::ContinuityRow row = bench::bench_continuity(scene, options);
+  EXPECT_EQ(row.paths, paths) << scene.name;
+  EXPECT_GT(row.steps, 10 * paths) << scene.name;
+  EXPECT_GT(row.jumps.size(), 0u) << scene.name;  // steps that were halved
+  for (const bench::ForceJump& jump : row.jumps) {
+    EXPECT_LT(jump.force, kBound) << scene.name << " path " << jump.path << " at " << jump.at << ": "
+                                  << bench::name_of(jump.cause);
+    EXPECT_LT(jump.moment, 2.0 * kBound)
+        << scene.name << " path " << jump.path << " at " << jump.at << ": " << bench::name_of(jump.cause);
+  }
+}
+
+}  // namespace
+
+TEST(Continuity, ABallPressesAFlatBlockWithoutJumps) { expect_no_jumps(Blocks().flat(), 3); }
+
+// a vertex that goes over the other block's rim takes its share of the force with it at once
+TEST(Continuity, WhatJumpsIsFound) {
+  bench::ContinuityOptions options;
+  options.paths = 2;
+  const bench::ContinuityRow row = bench::bench_continuity(Blocks().few_vertices(), options);
+  EXPECT_GT(row.count(bench::JumpCause::kSkin, 0.05), 0);
+  EXPECT_GE(*std::max_element(row.worst_of_path.begin(), row.worst_of_path.end()),
+            row.largest(bench::JumpCause::kSkin));
+}
+
+TEST(Continuity, APathIsSmoothAndKeepsToItsReach) {
+  std::mt19937 random(3);
+  bench::Meeting meeting;
+  meeting.pivot = Vec3(0.1, 0.2, -0.3);
+  meeting.away = Vec3(0.0, 0.6, 0.8);
+  meeting.reach = 0.2;
+  for (int i = 0; i < 20; ++i) {
+    const bench::RelativePath path(meeting, random);
+    double most_in = 0.0, most_out = 0.0;
+    for (int k = 0; k < 100; ++k) {
+      const double s = 0.01 * k;
+      const Vec3 here = path.at(s) * meeting.pivot, there = path.at(s + 0.01) * meeting.pivot;
+      EXPECT_LT((there - here).norm(), 0.01 * 2.0 * 2.0 * M_PI * 0.2 * (0.02 + 2 * 0.06));
+      const double along = meeting.away.dot(here - meeting.pivot);
+      most_in = std::min(most_in, along);
+      most_out = std::max(most_out, along);
+      EXPECT_LT(rotation_vector(path.at(s).rotation).norm(), 0.1 * std::sqrt(3.0));
+    }
+    EXPECT_GE(most_in, -0.03 * meeting.reach);
+    EXPECT_LE(most_out, 0.01 * meeting.reach + 1e-15);
+    EXPECT_LT(most_in, 0.0);
+  }
+}
+
+TEST(Continuity, WhatHasNoImageIsRefused) {
+  scene::Description d;
+  d.name = "nothing";
+  try {
+    bench::bench_continuity(d, {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("scene \"nothing\" has nothing to see in an image"),
+              std::string::npos)
+        << error.what();
+  }
+}
