@@ -1,3 +1,4 @@
+#include "ball.h"
 #include "gear.h"
 #include "head.h"
 #include "human.h"
@@ -37,6 +38,7 @@ const std::vector<ShapeEntry>& shapes() {
        {12000, 8000},
        make_gear},
       {"pumpkin", "a pumpkin, 0.30 m across, 12 ribs and a stem", {30000, 10000}, {6000, 2000}, make_pumpkin},
+      {"ball", "a smooth ball, 0.06 m across", {6000, 1000}, {1000, 300}, make_ball},
   };
   return registry;
 }

@@ -72,6 +72,8 @@ void expect_size(const Shape& shape) {
   } else if (shape.name == "gear") {
     EXPECT_NEAR(extent.x(), 0.10, 0.001);
     EXPECT_NEAR(extent.z(), 0.02, 1e-12);
+  } else if (shape.name == "ball") {
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(extent[axis], 0.06, 1e-3);
   } else {
     EXPECT_EQ(shape.name, "pumpkin");
     EXPECT_NEAR(extent.x(), 0.30, 0.015);
@@ -90,16 +92,17 @@ TEST_P(EveryShape, IsSoundAndTheSameEachTimeAtItsLeastResolution) {
   EXPECT_TRUE(one.skin.vertices == other.skin.vertices && one.skin.faces == other.skin.faces);
 }
 
-TEST_P(EveryShape, IsSoundAtThePapersCounts) {
+TEST_P(EveryShape, IsSoundAtItsUsualCounts) {
   const shapes::ShapeEntry& entry = find(shapes::shapes(), GetParam(), "shape");
   const std::map<std::string, int> paper = {
       {"head", 44000}, {"human", 40000}, {"gear", 29000}, {"pumpkin", 30000}};
-  EXPECT_EQ(entry.usual.skin_vertices, paper.at(GetParam()));
+  const bool of_the_paper = GetParam() != "ball";
+  if (of_the_paper) { EXPECT_EQ(entry.usual.skin_vertices, paper.at(GetParam())); }
   EXPECT_FALSE(entry.summary.empty());
   const Shape shape = shapes::make(GetParam());
   expect_sound(shape, entry.usual);
   expect_size(shape);
-  EXPECT_GE(shape.tetrahedra, 10000);
+  EXPECT_GE(shape.tetrahedra, of_the_paper ? 10000 : 1000);
   EXPECT_EQ(static_cast<bool>(shape.inside), GetParam() != "gear");
   if (shape.inside) expect_close(shape);
   if (GetParam() == "head" || GetParam() == "human") {

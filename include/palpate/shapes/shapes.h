@@ -7,8 +7,9 @@
 #include "palpate/mesh/mesh.h"
 #include "palpate/mesh/skeleton.h"
 
-/// The soft objects of Galoppo, Tekin, Otaduy, Gross and Lin (2007), made from formulas at any resolution,
-/// deterministic to the bit. x points to the left of a figure, -y is where it looks, z is up; metres.
+/// The soft objects of Galoppo, Tekin, Otaduy, Gross and Lin (2007) and a ball, made from formulas at any
+/// resolution, deterministic to the bit. x points to the left of a figure, -y is where it looks, z is up;
+/// metres.
 namespace palpate::shapes {
 
 /// A body as a function of a place: negative inside, and near its surface about the signed distance [m].
@@ -43,7 +44,7 @@ struct ShapeEntry {
   Shape (*make)(const Resolution&);
 };
 
-/// head, human, gear, pumpkin.
+/// head, human, gear, pumpkin, ball.
 const std::vector<ShapeEntry>& shapes();
 
 /// The shape called `name`.
