@@ -99,8 +99,9 @@ Track drag(const IntegratorSpec& spec, double refresh, const std::string& gaps, 
   law.onset_width_m = 2e-4;
   law.gaps = gaps;
   const mesh::Boundary boundary = mesh::boundary(rest);
-  auto source = contact::make_sphere_source({id, boundary.node_of_vertex, boundary.surface.faces}, 0, motion,
-                                            Vec3::Zero(), kRadius, 2.0 * kRadius);
+  auto source =
+      contact::make_sphere_source(contact::NodeSurface{id, boundary.node_of_vertex, boundary.surface.faces},
+                                  0, motion, Vec3::Zero(), kRadius, 2.0 * kRadius);
   if (fault == "samples-stay") source = std::make_unique<StaleSource>(std::move(source));
   contact->add_pair(std::move(source), law);
   system.add(std::static_pointer_cast<dynamics::ForceTerm>(contact));

@@ -156,7 +156,7 @@ Fall::Outcome drop_soft(const IntegratorSpec& spec, double& mass) {
   const int id = fall.state.insert(nodes, q0, VecX::Zero(q0.size()));
   const mesh::Boundary boundary = mesh::boundary(rest);
   fall.contact->add_pair(
-      contact::make_plane_source({id, boundary.node_of_vertex, boundary.surface.faces}, 0,
+      contact::make_plane_source(contact::NodeSurface{id, boundary.node_of_vertex, boundary.surface.faces}, 0,
                                  contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 1e-3, 2.0 * kRefresh),
       fall.law);
   fall.system.add(std::make_shared<fem::SoftBody>("ball", rest, m, fem::SoftBodyOptions{}, id));

@@ -1,6 +1,8 @@
 #pragma once
 #include <algorithm>
 
+#include "contact/ball_source.h"
+#include "contact/frame_vertices.h"
 #include "contact/surface_state.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/contact/sources.h"
@@ -10,28 +12,27 @@
 
 namespace palpate::contact {
 
-/// Vertices of a surface against an exact shape.  A Shape has
+/// Vertices of a surface, a SurfaceState or FrameVertices, against an exact shape.  A Shape has
 ///   kName                    for messages and counters
 ///   move_to(pose of its frame), before each query
 ///   Nearest at(x)            x and the answer in world axes
 ///   is_crossed(a, b)         whether the way from a to b, in the frame, passes through it from outside to
 ///   outside
-template <class Shape>
+/// and, for balls (ball_source.h),
+///   kRound                   whether it looks the same all around a normal
+///   height(x, n)             how far along the unit vector n from x the line leaves it, -infinity where the
+///   line misses it; world axes
+template <class Surface, class Shape>
 class AnalyticSource final : public SampleSource {
  public:
-  AnalyticSource(NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, Shape shape,
+  AnalyticSource(Surface surface, int frame, std::shared_ptr<MovingFrame> motion, Shape shape,
                  double candidate_gap, double look_ahead)
       : surface_(std::move(surface)),
         frame_(frame),
         motion_(std::move(motion)),
         shape_(shape),
         candidate_gap_(candidate_gap),
-        look_ahead_(look_ahead) {
-    PALPATE_CHECK(motion_, "a {} source needs a frame", Shape::kName);
-    PALPATE_CHECK(candidate_gap >= 0.0, "candidate gap {} must not be negative", candidate_gap);
-    PALPATE_CHECK(look_ahead >= 0.0, "look-ahead {} must not be negative", look_ahead);
-    counters::count(std::string("contact.") + Shape::kName + "_source");
-  }
+        look_ahead_(look_ahead) {}
 
   std::string_view name() const override { return Shape::kName; }
   long tunnelled() const override { return tunnelled_; }
@@ -126,7 +127,7 @@ class AnalyticSource final : public SampleSource {
         t, tunnelled_, Shape::kName, Shape::kName);
   }
 
-  SurfaceState surface_;
+  Surface surface_;
   int frame_;
   std::shared_ptr<MovingFrame> motion_;
   Shape shape_;
@@ -139,6 +140,25 @@ class AnalyticSource final : public SampleSource {
   bool seen_before_ = false, warned_ = false;
   long tunnelled_ = 0;
 };
+
+/// The source of one side, soft or rigid, against a shape.
+template <class Shape>
+std::unique_ptr<SampleSource> make_analytic_source(ContactSide side, int frame,
+                                                   std::shared_ptr<MovingFrame> motion, const Shape& shape,
+                                                   double candidate_gap, double look_ahead) {
+  PALPATE_CHECK(motion, "a {} source needs a frame", Shape::kName);
+  PALPATE_CHECK(candidate_gap >= 0.0, "candidate gap {} must not be negative", candidate_gap);
+  PALPATE_CHECK(look_ahead >= 0.0, "look-ahead {} must not be negative", look_ahead);
+  counters::count(std::string("contact.") + Shape::kName + "_source");
+  if (auto* soft = std::get_if<NodeSurface>(&side))
+    return std::make_unique<AnalyticSource<SurfaceState, Shape>>(
+        SurfaceState(std::move(*soft)), frame, std::move(motion), shape, candidate_gap, look_ahead);
+  if (auto* rigid = std::get_if<FrameSurface>(&side))
+    return std::make_unique<AnalyticSource<FrameVertices, Shape>>(
+        FrameVertices(std::move(*rigid)), frame, std::move(motion), shape, candidate_gap, look_ahead);
+  return std::make_unique<BallSource<Shape>>(std::get<FrameBall>(std::move(side)), frame, std::move(motion),
+                                             shape, candidate_gap, look_ahead);
+}
 
 /// What an obstacle's registry entry needs of its Shape: a gap to look at without a source.
 template <class Shape>

@@ -106,6 +106,12 @@ void ContactForce::Impl::group_samples() {
     const auto own = std::span(samples).subspan(pair.begin, pair.end - pair.begin);
     pair.grouped = pair.law.friction == 0.0 && !pair.follows &&
                    std::all_of(own.begin(), own.end(), [](const ContactSample& s) { return s.a.frame < 0; });
+    pair.given = !own.empty() && std::all_of(own.begin(), own.end(), [&](const ContactSample& s) {
+      const auto is_given = [&](const SurfacePoint& p) {
+        return p.frame >= 0 && !frames[static_cast<std::size_t>(p.frame)]->in_state();
+      };
+      return is_given(s.a) && is_given(s.b);
+    });
     if (pair.grouped) groups.append(own, pair.law);
   }
 }
@@ -137,7 +143,7 @@ void ContactForce::Impl::add_force(const dynamics::StateView& state, VecX& f) {
     add_point_force(s.a, motion.a.arm, force, row(s.a), f);
     add_point_force(s.b, motion.b.arm, -force, row(s.b), f);
   };
-  visit_active(state, add, false);
+  visit_active(state, add, Which::kUngroupedOfState);
 }
 
 void ContactForce::Impl::all_forces(const dynamics::StateView& state, VecX& f, std::vector<Wrench>& on_a) {
@@ -153,7 +159,7 @@ void ContactForce::Impl::all_forces(const dynamics::StateView& state, VecX& f, s
     add_point_force(s.b, motion.b.arm, -force, nodal + 6 * s.b.frame, f);
     on_a[static_cast<std::size_t>(s.source)] += Wrench{motion.a.x.cross(force), force};
   };
-  visit_active(state, add, false);
+  visit_active(state, add, Which::kUngrouped);
 }
 
 ContactForce::ContactForce() : impl_(std::make_unique<Impl>()) { counters::count("contact.force"); }
@@ -226,7 +232,7 @@ void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale,
                        Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale, d_scale,
                        state.layout->nodal_size, A);
   };
-  m.visit_active(state, add, false);
+  m.visit_active(state, add, Impl::Which::kUngroupedOfState);
 }
 
 void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
@@ -240,7 +246,7 @@ void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scal
                          Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale, d_scale, x,
                          y);
   };
-  m.visit_active(state, add, false);
+  m.visit_active(state, add, Impl::Which::kUngroupedOfState);
 }
 
 double ContactForce::energy(const dynamics::StateView& state) {
@@ -267,7 +273,7 @@ void ContactForce::Impl::linearise_friction(const dynamics::StateView& state) {
   linearised.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Pair& pair = pairs[i];
-    if (!pair.law.symmetric_tangent || pair.law.friction == 0.0) continue;
+    if (!pair.law.symmetric_tangent || pair.law.friction == 0.0 || pair.given) continue;
     Vec3 sum = Vec3::Zero();
     for (std::size_t s = pair.begin; s < pair.end; ++s) {
       const SampleMotion motion = sample_motion(samples[s], state, frame_states);
@@ -313,7 +319,7 @@ bool ContactForce::refresh(const dynamics::StateView& state) {
 int ContactForce::event_count() const {
   int count = 0;
   for (const auto& pair : impl_->pairs)
-    if (pair.law.onset == 0.0) count += static_cast<int>(pair.end - pair.begin);
+    if (Impl::has_events(pair)) count += static_cast<int>(pair.end - pair.begin);
   return count;
 }
 
@@ -328,7 +334,7 @@ void ContactForce::events(const dynamics::StateView& state, double* g) {
   Impl& m = *impl_;
   m.place_frames(state);
   for (const Impl::Pair& pair : m.pairs) {
-    if (pair.law.onset > 0.0) continue;
+    if (!Impl::has_events(pair)) continue;
     for (std::size_t s = pair.begin; s < pair.end; ++s) {
       const SampleMotion motion = sample_motion(m.samples[s], state, m.frame_states);
       *g++ = pressing(pair.law, motion.gap, motion.rate);

@@ -15,6 +15,7 @@ struct ContactForce::Impl {
     bool grouped = false;            ///< they are in `groups`
     bool follows = false;            ///< they are exact at every evaluation
     ImageSource* asking = nullptr;   ///< of the query under way: its images are made with those of others
+    bool given = false;  ///< frames given from outside on both sides: nothing in the State feels them
   };
 
   std::vector<std::shared_ptr<MovingFrame>> frames;
@@ -65,17 +66,29 @@ struct ContactForce::Impl {
   void group_samples();
   VecX product;  ///< scratch of a step
 
+  enum class Which {
+    kAll,
+    kUngrouped,        ///< that are not in `groups`
+    kUngroupedOfState  ///< and of these, that act on the State
+  };
+  static bool is_of(const Pair& pair, Which which) {
+    return which == Which::kAll || (!pair.grouped && !(which == Which::kUngroupedOfState && pair.given));
+  }
+  /// Whether its samples open and close with a kink that the State feels.
+  static bool has_events(const Pair& pair) {
+    return pair.law.onset == 0.0 && !pair.given && pair.source->has_events();
+  }
   /// visit(sample, motion, law) for each sample in penetration, in order.
   template <class Visit>
   void for_each_active(const dynamics::StateView& state, Visit visit) {
     place_frames(state);
-    visit_active(state, visit, true);
+    visit_active(state, visit, Which::kAll);
   }
-  /// @param grouped  also those that are in `groups`  @pre frames are placed
+  /// @pre frames are placed
   template <class Visit>
-  void visit_active(const dynamics::StateView& state, const Visit& visit, bool grouped) {
+  void visit_active(const dynamics::StateView& state, const Visit& visit, Which which) {
     for (const Pair& pair : pairs)
-      for (std::size_t i = pair.begin; i < pair.end && (grouped || !pair.grouped); ++i) {
+      for (std::size_t i = pair.begin; i < pair.end && is_of(pair, which); ++i) {
         const SampleMotion motion = sample_motion(samples[i], state, frame_states);
         if (motion.gap < 0.0) visit(samples[i], motion, pair.law);
       }

@@ -55,16 +55,19 @@ Wrench ContactForce::frame_wrench(const dynamics::StateView& state, int frame) c
   return sum;
 }
 
-void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out) const {
+void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out,
+                             Partners partners) const {
   Impl& m = *impl_;
   PALPATE_CHECK(frame >= 0 && frame < static_cast<int>(m.frames.size()), "frame {} of {}", frame,
                 m.frames.size());
-  reset(out, state.layout->nodal_size);
+  reset(out, partners == Partners::kFrames ? 0 : state.layout->nodal_size);
   m.place_frames(state);
-  m.groups.linearise(state, m.frame_states, frame, out);
+  if (partners != Partners::kFrames) m.groups.linearise(state, m.frame_states, frame, out);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     if (s.a.frame != frame && s.b.frame != frame) return;
     PALPATE_CHECK(s.a.frame != s.b.frame, "a contact sample has frame {} on both sides", frame);
+    const bool two_frames = s.a.frame >= 0 && s.b.frame >= 0;
+    if (partners == (two_frames ? Partners::kNodes : Partners::kFrames)) return;
     const SampleForce force = sample_force_and_tangent(s, motion, law);
     if (force.force.isZero(0.0)) return;
     const Side a(s.a, motion.a, m.frame_states, 1.0, force.force),
@@ -77,7 +80,7 @@ void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameL
     if (other.is_nodes()) add_node_coupling(mine, other, force, out);
     ++out.active;
   };
-  m.visit_active(state, add, false);
+  m.visit_active(state, add, Impl::Which::kUngrouped);
 }
 
 }  // namespace palpate::contact

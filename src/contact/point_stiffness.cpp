@@ -33,7 +33,7 @@ void ContactForce::add_step(const dynamics::StateView& state, const VecX& shift,
     point.C = k_scale * force.K + d_scale * force.D;
     if (point.nodes.count > 0) C.points.push_back(point);
   };
-  m.visit_active(state, add, false);
+  m.visit_active(state, add, Impl::Which::kUngroupedOfState);
 }
 
 void ContactForce::add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change,

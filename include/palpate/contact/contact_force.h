@@ -60,6 +60,8 @@ class SampleSource {
   /// Node pairs its samples may couple (faces of each surface; of two soft bodies also across).
   virtual void add_pattern(dynamics::PatternBuilder& pattern) const = 0;
   virtual std::uint64_t pattern_version() const { return 0; }
+  /// Whether a sample's opening and closing is a kink of the force that a root finder should stop at.
+  virtual bool has_events() const { return true; }
   /// Vertices that went through the shape between two queries, outside it at both: nothing has pushed them
   /// back.
   virtual long tunnelled() const { return 0; }
@@ -108,6 +110,9 @@ struct ResultantSize {
   double moment = 0.0;  ///< about the body's mean node or the frame's origin [N m]
 };
 
+/// Which samples of a frame: those with nodes on the other side, those with another frame there.
+enum class Partners { kAll, kNodes, kFrames };
+
 /// All contacts of a scene as one force term (docs/design.md 4.4).
 class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffnessTerm {
  public:
@@ -144,7 +149,8 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
 
   const std::vector<ContactSample>& samples() const;
   Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
-  void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out) const;
+  void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out,
+                 Partners partners = Partners::kAll) const;
   /// Change of a pair's resultant on its bodies that the last refresh made, at its state, the largest of all
   /// pairs: the price of a slow query.  The same resultant on other nodes is no change.
   ResultantSize refresh_jump() const;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "palpate/contact/contact_force.h"
+#include "palpate/contact/side.h"
 #include "palpate/contact/spec.h"
 #include "palpate/core/registry.h"
 #include "palpate/mesh/mesh.h"
@@ -35,7 +36,7 @@ struct ObstaclePicture {
   std::optional<double> ground_m = {};
 };
 
-using MakeObstacleSource = std::unique_ptr<SampleSource> (*)(NodeSurface surface, int frame,
+using MakeObstacleSource = std::unique_ptr<SampleSource> (*)(ContactSide side, int frame,
                                                              std::shared_ptr<MovingFrame> motion,
                                                              const Settings& shape, double candidate_gap,
                                                              double look_ahead);

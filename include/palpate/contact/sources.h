@@ -3,37 +3,42 @@
 #include <string_view>
 
 #include "palpate/contact/contact_force.h"
+#include "palpate/contact/side.h"
 #include "palpate/mesh/mesh.h"
 #include "palpate/proxy/proxy_set.h"
 
 namespace palpate::contact {
 
-/// Vertices of a soft surface against an exact shape in a frame.  One sample a vertex: gap = signed distance,
+/// A soft or rigid surface, or a ball, against an exact shape in a frame.
+///
+/// Of a surface the vertices: one sample each, gap = signed distance,
 /// normal = the shape's outward normal at the closest point, area = the vertex's area vector projected on
 /// that normal (one third of each adjacent triangle, deformed).
 /// Vertices that face away from the shape (where pressure would pull) make no sample.
+/// Of a ball the overlap along the shape's normal at the point nearest to the centre, in rings around it
+/// (src/contact/ball_source.h): force = k x overlap volume, and no moment about the centre without friction.
 /// @param candidate_gap  vertices nearer than this are kept as candidates [m]; 0: the surface's mean edge
-///   at the first query
+///   at the first query, of a ball an eighth of its radius
 /// @param look_ahead     [s] to the next query: vertices that come nearer than candidate_gap in this time,
 ///   at their present speed, are kept as well.
 ///                       Without it a fast body passes through unseen and is thrown back with energy from
 ///                       nowhere.
-std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame,
+std::unique_ptr<SampleSource> make_plane_source(ContactSide side, int frame,
                                                 std::shared_ptr<MovingFrame> motion, const Vec3& point,
                                                 const Vec3& normal, double candidate_gap,
                                                 double look_ahead = 0.0);
-std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame,
+std::unique_ptr<SampleSource> make_sphere_source(ContactSide side, int frame,
                                                  std::shared_ptr<MovingFrame> motion, const Vec3& centre,
                                                  double radius, double candidate_gap,
                                                  double look_ahead = 0.0);
 /// A box with the given edges, and a cylinder along its own z between flat ends; both centred at `pose`
 /// in the frame. Outside, the nearest point of the surface and the way from it (at edges and corners a
 /// direction between the faces'); inside, the nearest face.
-std::unique_ptr<SampleSource> make_box_source(NodeSurface surface, int frame,
+std::unique_ptr<SampleSource> make_box_source(ContactSide side, int frame,
                                               std::shared_ptr<MovingFrame> motion, const Pose& pose,
                                               const Vec3& size, double candidate_gap,
                                               double look_ahead = 0.0);
-std::unique_ptr<SampleSource> make_cylinder_source(NodeSurface surface, int frame,
+std::unique_ptr<SampleSource> make_cylinder_source(ContactSide side, int frame,
                                                    std::shared_ptr<MovingFrame> motion, const Pose& pose,
                                                    double radius, double length, double candidate_gap,
                                                    double look_ahead = 0.0);

@@ -32,6 +32,13 @@ class Box {
       if (x[i] < 0.0) normal[i] = -normal[i];
     return {distance > 0.0 ? distance : beyond.maxCoeff(), world_.rotation * normal};
   }
+  static constexpr bool kRound = false;
+  double height(const Vec3& world, const Vec3& n) const {
+    const Vec3 x = world_.inverse() * world, d = world_.rotation.conjugate() * n;
+    Part part = Part::line();
+    for (int i = 0; i < 3; ++i) part.cut(x[i], d[i], -half_[i], half_[i]);
+    return part.end();
+  }
   bool is_crossed(const Vec3& a_frame, const Vec3& b_frame) const {
     const Vec3 a = inverse_ * a_frame, b = inverse_ * b_frame;
     if (!outside(a) || !outside(b)) return false;
@@ -55,13 +62,13 @@ ObstaclePicture picture(const Settings& shape, const View&) {
 
 }  // namespace
 
-std::unique_ptr<SampleSource> make_box_source(NodeSurface surface, int frame,
+std::unique_ptr<SampleSource> make_box_source(ContactSide side, int frame,
                                               std::shared_ptr<MovingFrame> motion, const Pose& pose_in_frame,
                                               const Vec3& size, double candidate_gap, double look_ahead) {
   if (!(size.minCoeff() > 0.0) || !size.allFinite())
     fail("box: size = ({}, {}, {}) must be positive", size.x(), size.y(), size.z());
-  return std::make_unique<AnalyticSource<Box>>(std::move(surface), frame, std::move(motion),
-                                               Box(pose_in_frame, size), candidate_gap, look_ahead);
+  return make_analytic_source(std::move(side), frame, std::move(motion), Box(pose_in_frame, size),
+                              candidate_gap, look_ahead);
 }
 
 const ObstacleEntry& box_obstacle() {
@@ -75,10 +82,10 @@ const ObstacleEntry& box_obstacle() {
         .required = true,
         .fallback = Vec3(Vec3::Ones()),
         .meaning = "the three edges"}},
-      [](NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape,
-         double gap, double look_ahead) {
-        return make_box_source(std::move(surface), frame, std::move(motion), pose_of(shape), size_of(shape),
-                               gap, look_ahead);
+      [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
+         double look_ahead) {
+        return make_box_source(std::move(side), frame, std::move(motion), pose_of(shape), size_of(shape), gap,
+                               look_ahead);
       },
       [](const Settings& shape, const Vec3& x) { return nearest_to(Box(pose_of(shape), size_of(shape)), x); },
       picture,

@@ -29,24 +29,34 @@ class Cylinder {
       return {distance, world_.rotation * Vec3((out_side * radial + out_end * axial) / distance)};
     return {end, world_.rotation * axial};
   }
-  // |a + s d|^2 = r^2 in x and y: A s^2 + 2 B s + C = 0.
+  static constexpr bool kRound = false;
+  double height(const Vec3& world, const Vec3& n) const {
+    const Vec3 x = world_.inverse() * world, d = world_.rotation.conjugate() * n;
+    Part part = Part::line();
+    part.cut(x.z(), d.z(), -half_, half_);
+    cut_round(x, d, part);
+    return part.end();
+  }
   bool is_crossed(const Vec3& a_frame, const Vec3& b_frame) const {
     const Vec3 a = inverse_ * a_frame, b = inverse_ * b_frame, d = b - a;
     if (!outside(a) || !outside(b)) return false;
     Part part;
     part.cut(a.z(), d.z(), -half_, half_);
-    const double A = d.head<2>().squaredNorm(), B = a.head<2>().dot(d.head<2>()),
-                 C = a.head<2>().squaredNorm() - radius_ * radius_;
-    if (A == 0.0) return C < 0.0 && part.s0 < part.s1;
-    const double root2 = B * B - A * C;
-    if (root2 <= 0.0) return false;
-    const double root = std::sqrt(root2);
-    part.s0 = std::max(part.s0, (-B - root) / A);
-    part.s1 = std::min(part.s1, (-B + root) / A);
+    cut_round(a, d, part);
     return part.s0 < part.s1;
   }
 
  private:
+  // |a + s d|^2 <= r^2 in x and y: A s^2 + 2 B s + C <= 0.
+  void cut_round(const Vec3& a, const Vec3& d, Part& part) const {
+    const double A = d.head<2>().squaredNorm(), B = a.head<2>().dot(d.head<2>()),
+                 C = a.head<2>().squaredNorm() - radius_ * radius_, root2 = B * B - A * C;
+    if (A == 0.0 ? C >= 0.0 : root2 <= 0.0) return part.clear();
+    if (A == 0.0) return;
+    const double root = std::sqrt(root2);
+    part.s0 = std::max(part.s0, (-B - root) / A);
+    part.s1 = std::min(part.s1, (-B + root) / A);
+  }
   bool outside(const Vec3& x) const {
     return std::abs(x.z()) > half_ || x.head<2>().squaredNorm() > radius_ * radius_;
   }
@@ -67,15 +77,14 @@ ObstaclePicture picture(const Settings& shape, const View&) {
 
 }  // namespace
 
-std::unique_ptr<SampleSource> make_cylinder_source(NodeSurface surface, int frame,
+std::unique_ptr<SampleSource> make_cylinder_source(ContactSide side, int frame,
                                                    std::shared_ptr<MovingFrame> motion,
                                                    const Pose& pose_in_frame, double radius, double length,
                                                    double candidate_gap, double look_ahead) {
   if (!(radius > 0.0) || !std::isfinite(radius)) fail("cylinder: radius = {} must be positive", radius);
   if (!(length > 0.0) || !std::isfinite(length)) fail("cylinder: length = {} must be positive", length);
-  return std::make_unique<AnalyticSource<Cylinder>>(std::move(surface), frame, std::move(motion),
-                                                    Cylinder(pose_in_frame, radius, length), candidate_gap,
-                                                    look_ahead);
+  return make_analytic_source(std::move(side), frame, std::move(motion),
+                              Cylinder(pose_in_frame, radius, length), candidate_gap, look_ahead);
 }
 
 const ObstacleEntry& cylinder_obstacle() {
@@ -84,9 +93,9 @@ const ObstacleEntry& cylinder_obstacle() {
       "cylinder along its own z between flat ends, centred at position_m",
       {position_key("the centre"), rotation_key(), length_key("radius_m", "radius of the round side"),
        length_key("length_m", "from one end to the other")},
-      [](NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape,
-         double gap, double look_ahead) {
-        return make_cylinder_source(std::move(surface), frame, std::move(motion), pose_of(shape),
+      [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
+         double look_ahead) {
+        return make_cylinder_source(std::move(side), frame, std::move(motion), pose_of(shape),
                                     radius_of(shape), length_of(shape), gap, look_ahead);
       },
       [](const Settings& shape, const Vec3& x) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contact/analytic_source.h"
 #include "contact/obstacles/keys.h"
@@ -16,6 +17,12 @@ class Plane {
     world_point_ = pose * point_;
   }
   Nearest at(const Vec3& x) const { return {world_normal_.dot(x - world_point_), world_normal_}; }
+  static constexpr bool kRound = true;
+  double height(const Vec3& x, const Vec3& n) const {
+    const double along = world_normal_.dot(n);
+    return along > 0.0 ? world_normal_.dot(world_point_ - x) / along
+                       : -std::numeric_limits<double>::infinity();
+  }
   bool is_crossed(const Vec3&, const Vec3&) const { return false; }  // whatever is through is inside
 
  private:
@@ -48,13 +55,13 @@ ObstaclePicture picture(const Settings& shape, const View& view) {
 
 }  // namespace
 
-std::unique_ptr<SampleSource> make_plane_source(NodeSurface surface, int frame,
+std::unique_ptr<SampleSource> make_plane_source(ContactSide side, int frame,
                                                 std::shared_ptr<MovingFrame> motion, const Vec3& point,
                                                 const Vec3& normal, double candidate_gap, double look_ahead) {
   if (!(normal.norm() > 0.0) || !normal.allFinite())
     fail("plane: normal = ({}, {}, {}) has no direction", normal.x(), normal.y(), normal.z());
-  return std::make_unique<AnalyticSource<Plane>>(std::move(surface), frame, std::move(motion),
-                                                 Plane(point, normal), candidate_gap, look_ahead);
+  return make_analytic_source(std::move(side), frame, std::move(motion), Plane(point, normal), candidate_gap,
+                              look_ahead);
 }
 
 const ObstacleEntry& plane_obstacle() {
@@ -66,9 +73,9 @@ const ObstacleEntry& plane_obstacle() {
         .fallback = Vec3(Vec3::UnitZ()),
         .meaning = "direction out of the plane; of any length",
         .fault = fault_of_normal}},
-      [](NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape,
-         double gap, double look_ahead) {
-        return make_plane_source(std::move(surface), frame, std::move(motion), position_of(shape),
+      [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
+         double look_ahead) {
+        return make_plane_source(std::move(side), frame, std::move(motion), position_of(shape),
                                  normal_of(shape), gap, look_ahead);
       },
       [](const Settings& shape, const Vec3& x) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contact/analytic_source.h"
 #include "contact/obstacles/keys.h"
@@ -18,6 +19,13 @@ class Sphere {
     const Vec3 from_centre = x - world_centre_;
     const double distance = from_centre.norm();
     return {distance - radius_, distance > 0.0 ? Vec3(from_centre / distance) : Vec3(Vec3::UnitZ()), radius_};
+  }
+  static constexpr bool kRound = true;
+  // |p + t n|^2 = r^2, the greater root.
+  double height(const Vec3& x, const Vec3& n) const {
+    const Vec3 p = x - world_centre_;
+    const double b = p.dot(n), root2 = b * b - p.squaredNorm() + radius_ * radius_;
+    return root2 >= 0.0 ? std::sqrt(root2) - b : -std::numeric_limits<double>::infinity();
   }
   // The point of the segment nearest to the centre.
   bool is_crossed(const Vec3& a, const Vec3& b) const {
@@ -43,12 +51,12 @@ ObstaclePicture picture(const Settings& shape, const View&) {
 
 }  // namespace
 
-std::unique_ptr<SampleSource> make_sphere_source(NodeSurface surface, int frame,
+std::unique_ptr<SampleSource> make_sphere_source(ContactSide side, int frame,
                                                  std::shared_ptr<MovingFrame> motion, const Vec3& centre,
                                                  double radius, double candidate_gap, double look_ahead) {
   if (!(radius > 0.0) || !std::isfinite(radius)) fail("sphere: radius = {} must be positive", radius);
-  return std::make_unique<AnalyticSource<Sphere>>(std::move(surface), frame, std::move(motion),
-                                                  Sphere(centre, radius), candidate_gap, look_ahead);
+  return make_analytic_source(std::move(side), frame, std::move(motion), Sphere(centre, radius),
+                              candidate_gap, look_ahead);
 }
 
 const ObstacleEntry& sphere_obstacle() {
@@ -56,9 +64,9 @@ const ObstacleEntry& sphere_obstacle() {
       "sphere",
       "ball of radius_m around position_m",
       {position_key("the centre"), length_key("radius_m", "radius of the ball")},
-      [](NodeSurface surface, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape,
-         double gap, double look_ahead) {
-        return make_sphere_source(std::move(surface), frame, std::move(motion), position_of(shape),
+      [](ContactSide side, int frame, std::shared_ptr<MovingFrame> motion, const Settings& shape, double gap,
+         double look_ahead) {
+        return make_sphere_source(std::move(side), frame, std::move(motion), position_of(shape),
                                   radius_of(shape), gap, look_ahead);
       },
       [](const Settings& shape, const Vec3& x) {

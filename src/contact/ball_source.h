@@ -1,0 +1,194 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "contact/surface_state.h"
+#include "palpate/contact/obstacle.h"
+#include "palpate/contact/side.h"
+#include "palpate/core/log.h"
+
+namespace palpate::contact {
+
+// A ball of radius R, its centre at c, over a shape whose point nearest to c lies along -n.  Along n, at the
+// distance rho from the axis through c, the ball begins at the height -sqrt(R^2 - rho^2) over c, and the
+// shape ends at the height t:
+//
+//     depth = t + sqrt(R^2 - rho^2),      force = k sum of depth dA = k x overlap volume.
+//
+// Rings of equal area around the axis are samples, each with the mean of the ball's heights in it,
+//     mean of sqrt(R^2 - rho^2) = 2/3 (p^2 + p q + q^2)/(p + q),    p, q = sqrt(R^2 - rho^2) at its two rims,
+// so that a ring pressed as a whole has its volume exactly.  The N rings within the patch that is pressed at
+// the query have equal areas; once the ball has moved, the ring that the rim crosses makes an error of up to
+// 1/(4 N^2) of the force.  Beyond the patch, rings get finer towards its rim, so that a contact that begins
+// is resolved.
+//
+// All samples stand on the axis.  A ball without friction feels no moment about its centre, and a ball that
+// rotates about it feels no change; both are so here, exactly, for the arm of each force is along n.  The
+// torque of friction against spin about n, of the order of friction times the patch's radius, is left out.
+
+/// What a ball of radius R and a shape with the radius of curvature r (0: flat) have in common when they
+/// overlap by `depth`: the radius squared of the circle where they meet [m^2].
+inline double patch_radius2(double R, double r, double depth) {
+  if (r == 0.0) return depth < R ? depth * (2.0 * R - depth) : R * R;
+  const double d = R + r - depth, from_ball = (d * d + R * R - r * r) / (2.0 * d);
+  if (d <= std::abs(R - r) || from_ball <= 0.0 || from_ball >= d) return std::min(R * R, r * r);
+  return R * R - from_ball * from_ball;
+}
+
+/// A ball against an exact shape (analytic_source.h says what a Shape has).
+template <class Shape>
+class BallSource final : public SampleSource {
+ public:
+  BallSource(FrameBall ball, int frame, std::shared_ptr<MovingFrame> motion, Shape shape,
+             double candidate_gap, double look_ahead)
+      : ball_(std::move(ball)),
+        frame_(frame),
+        motion_(std::move(motion)),
+        shape_(shape),
+        candidate_gap_(candidate_gap > 0.0 ? candidate_gap : ball_.radius / 8.0),
+        look_ahead_(look_ahead) {
+    PALPATE_CHECK(ball_.motion, "a ball in contact needs a frame");
+    PALPATE_CHECK(ball_.radius > 0.0, "ball in contact: radius {} must be positive", ball_.radius);
+  }
+
+  std::string_view name() const override { return Shape::kName; }
+  long tunnelled() const override { return tunnelled_; }
+  void add_pattern(dynamics::PatternBuilder&) const override {}
+  bool has_events() const override { return false; }  // force and stiffness set in from zero
+
+  void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) override {
+    const double rate = place(state);
+    find_tunnelled(inverse_ * c_, state.time);
+    const double gap = nearest_.gap - ball_.radius,
+                 margin = candidate_gap_ - look_ahead_ * std::min(rate, 0.0);
+    if (gap < margin) sample(gap, margin, samples);
+  }
+
+  bool start_following() override { return follows_ = true; }
+  void follow(const dynamics::StateView& state, std::span<ContactSample> samples) override {
+    if (samples.empty()) return;
+    place(state);
+    followed_.clear();
+    sample(nearest_.gap - ball_.radius, 0.0, followed_);
+    PALPATE_CHECK(samples.size() == followed_.size(), "ball on {}: {} samples follow, the query made {}",
+                  Shape::kName, followed_.size(), samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) followed_[i].source = samples[i].source;
+    std::copy(followed_.begin(), followed_.end(), samples.begin());
+  }
+
+ private:
+  /// Ball and shape at a state, and the speed at which their nearest points part [m/s].
+  double place(const dynamics::StateView& state) {
+    const Pose own = ball_.motion->pose(state), shape_pose = motion_->pose(state);
+    c_ = own * ball_.centre;
+    PALPATE_CHECK(c_.allFinite(), "contact query at t = {}: a ball's position is not finite", state.time);
+    inverse_ = shape_pose.inverse();
+    shape_.move_to(shape_pose);
+    nearest_ = shape_.at(c_);
+    n_ = nearest_.normal;
+    const Vec3 foot = c_ - nearest_.gap * n_;
+    return n_.dot(ball_.motion->twist(state).at(c_ - own.translation) -
+                  motion_->twist(state).at(foot - shape_pose.translation));
+  }
+
+  /// The shape at the distance sqrt(a) from the axis, as a height along the normal over the centre.
+  double height(double a, double phi) const {
+    const Vec3 e = n_.unitOrthogonal(), f = n_.cross(e);
+    return shape_.height(c_ + std::sqrt(a) * (std::cos(phi) * e + std::sin(phi) * f), n_);
+  }
+
+  /// A convex shape that is as high all around as in the middle is flat between.
+  bool is_flat(double a) const {
+    const double middle = height(0.0, 0.0);
+    for (int k = 0; k < 16; ++k)
+      if (!(std::abs(height(a, std::numbers::pi * k / 8.0) - middle) < 1e-12 * ball_.radius)) return false;
+    return true;
+  }
+
+  /// How far from the axis, squared, the gap is less than `gap`.  It grows with the distance: the shape is
+  /// convex, and lies below the plane through its highest point that n stands on.
+  double rim(double phi, double gap) const {
+    const double R2 = ball_.radius * ball_.radius;
+    double low = 0.0, high = R2;
+    for (int i = 0; i < 50; ++i) {
+      const double a = 0.5 * (low + high);
+      (-std::sqrt(R2 - a) - height(a, phi) < gap ? low : high) = a;
+    }
+    return low;
+  }
+
+  /// Rings of equal area within the patch, and finer ones at its rim beyond it; on a shape that does not look
+  /// the same all around, in sectors with rims of their own.  Samples that follow are those of the patch,
+  /// always as many: without a patch they have no area.
+  void sample(double gap, double margin, std::vector<ContactSample>& samples) {
+    const double R = ball_.radius, curvature = Shape::kRound ? nearest_.radius : 0.0;
+    const double flat_reach = patch_radius2(R, curvature, margin - gap);
+    const bool round = Shape::kRound || (!follows_ && is_flat(flat_reach));
+    const int rings = round ? 48 : 24;
+    sectors_ = round ? 1 : 40;
+    for (int k = 0; k < sectors_; ++k) {
+      const double phi = 2.0 * std::numbers::pi * (k + 0.5) / sectors_;
+      const double pressed = gap >= 0.0 ? 0.0 : round ? patch_radius2(R, curvature, -gap) : rim(phi, 0.0);
+      for (int i = 0; i < rings; ++i)
+        add_cell(pressed * i / rings, pressed * (i + 1) / rings, phi, margin, samples);
+      if (follows_) continue;
+      const double reach = round ? flat_reach : rim(phi, margin);
+      const auto beyond = [&](int i) {
+        const double s = static_cast<double>(i) / rings;
+        return pressed + s * s * (reach - pressed);
+      };
+      for (int i = 0; i < rings; ++i) add_cell(beyond(i), beyond(i + 1), phi, margin, samples);
+    }
+  }
+
+  /// A sector of the ring between the squared distances a0 and a1 from the axis.
+  void add_cell(double a0, double a1, double phi, double margin, std::vector<ContactSample>& samples) {
+    if (!follows_ && !(a1 > a0)) return;
+    const double R2 = ball_.radius * ball_.radius, p = std::sqrt(std::max(R2 - a0, 0.0)),
+                 q = std::sqrt(std::max(R2 - a1, 0.0)), below = 2.0 / 3.0 * (p * p + p * q + q * q) / (p + q),
+                 top = height(0.5 * (a0 + a1), phi), gap = -below - top;
+    if (!follows_ && !(gap < margin)) return;
+    ContactSample sample;
+    sample.a.frame = ball_.frame;
+    sample.a.offset = ball_.centre;
+    sample.a.slide = -below * n_;
+    sample.b = frame_point(frame_, inverse_, c_ + top * n_);
+    sample.normal = n_;
+    sample.area = std::numbers::pi * (a1 - a0) / sectors_;
+    sample.gap = gap;
+    samples.push_back(sample);
+  }
+
+  /// The centre's way since the last query, as AnalyticSource sees a vertex's.
+  void find_tunnelled(const Vec3& now, double t) {
+    const bool crossed = seen_before_ && shape_.is_crossed(seen_, now);
+    seen_ = now;
+    seen_before_ = true;
+    tunnelled_ += crossed;
+    if (!crossed || tunnelled_ > 1) return;
+    log::warn(
+        "contact at t = {:.6g} s: a ball's centre went through the {} between two queries, unseen; refresh "
+        "contact more often (contact_refresh_s), make the contact stiffer, or the {} thicker",
+        t, Shape::kName, Shape::kName);
+  }
+
+  FrameBall ball_;
+  int frame_;
+  std::shared_ptr<MovingFrame> motion_;
+  Shape shape_;
+  double candidate_gap_, look_ahead_;
+  Nearest nearest_{};  ///< to the centre, at the state of the query or evaluation under way
+  Vec3 c_, n_;         ///< the centre then, and the shape's normal nearest to it
+  Pose inverse_;       ///< of the shape's frame then
+  int sectors_ = 1;    ///< parts of a ring
+  bool follows_ = false;
+  std::vector<ContactSample> followed_;  ///< scratch
+  Vec3 seen_ = Vec3::Zero();             ///< the centre at the last query, in the shape's frame
+  bool seen_before_ = false;
+  long tunnelled_ = 0;
+};
+
+}  // namespace palpate::contact

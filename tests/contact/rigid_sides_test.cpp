@@ -1,0 +1,375 @@
+// Rigid surfaces and balls against exact shapes.
+#include <numbers>
+
+#include "palpate/contact/obstacle.h"
+#include "surfaces.h"
+
+using namespace palpate;
+using namespace contact_tests;
+using contact::ContactSample;
+
+namespace {
+
+constexpr double kR = 0.3;
+
+/// Overlap volume by its samples: force along the normal at unit stiffness.
+double volume(const std::vector<ContactSample>& samples, double deeper = 0.0) {
+  double sum = 0.0;
+  for (const ContactSample& s : samples) sum += s.area * std::max(0.0, deeper - s.gap);
+  return sum;
+}
+
+std::vector<ContactSample> query(contact::SampleSource& source, const dynamics::State& state) {
+  std::vector<ContactSample> samples;
+  source.query(state.view(), samples);
+  return samples;
+}
+
+contact::ContactSide ball_at(const Vec3& centre) {
+  return contact::FrameBall{kR, Vec3::Zero(), 0, contact::fixed_frame({Quat::Identity(), centre})};
+}
+
+std::unique_ptr<contact::SampleSource> on_plane(contact::ContactSide side, double candidate_gap) {
+  return contact::make_plane_source(std::move(side), 1, contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(),
+                                    candidate_gap);
+}
+
+double cap(double depth) { return std::numbers::pi * depth * depth * (kR - depth / 3.0); }
+
+/// Volume between a ball and what lies below height(x, y), whose highest point is 0 at the origin, with the
+/// ball's lowest point `depth` below that; by the midpoint rule on a fine grid.
+template <class Height>
+double overlap(double depth, const Height& height) {
+  constexpr int n = 1500;
+  const double cell = 2.0 * kR / n;
+  double sum = 0.0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double x = (i + 0.5) * cell - kR, y = (j + 0.5) * cell - kR, rest = kR * kR - x * x - y * y;
+      if (rest > 0.0) sum += std::max(0.0, height(x, y) - (kR - depth) + std::sqrt(rest)) * cell * cell;
+    }
+  return sum;
+}
+
+}  // namespace
+
+// At the query the rings are whole, so the volume is exact; once the ball has moved the ring at the rim errs.
+TEST(BallOnPlane, ForceIsTheCapsVolume) {
+  const dynamics::State state;
+  for (const double depth : {1e-9, 1e-4, 0.05, 0.29, 0.3, 0.45}) {
+    const auto samples = query(*on_plane(ball_at({0.4, -2.0, kR - depth}), 0.02), state);
+    const double exact = depth < kR ? cap(depth) : cap(kR) + std::numbers::pi * kR * kR * (depth - kR);
+    EXPECT_NEAR(volume(samples) / exact, 1.0, depth < 1e-6 ? 1e-6 : 1e-12) << depth;
+    for (const double deeper : {-0.3 * depth, 0.01})
+      if (depth + deeper < 0.3) {
+        EXPECT_NEAR(volume(samples, deeper) / cap(depth + deeper), 1.0, 1e-3) << depth << " + " << deeper;
+      }
+  }
+}
+
+TEST(BallOnPlane, ABallThatIsApartIsACandidate) {
+  const dynamics::State state;
+  const auto samples = query(*on_plane(ball_at({0, 0, kR + 0.01}), 0.02), state);
+  EXPECT_EQ(volume(samples), 0.0);
+  for (const double depth : {1e-3, 3e-3, 0.01})
+    EXPECT_NEAR(volume(samples, 0.01 + depth) / cap(depth), 1.0, 1e-2 * std::pow(1e-3 / depth, 0.5)) << depth;
+  EXPECT_TRUE(query(*on_plane(ball_at({0, 0, kR + 0.021}), 0.02), state).empty());
+  EXPECT_FALSE(query(*on_plane(ball_at({0, 0, kR + 0.037}), 0.0), state).empty())
+      << "an eighth of the radius";
+  EXPECT_TRUE(query(*on_plane(ball_at({0, 0, kR + 0.038}), 0.0), state).empty());
+}
+
+// pi (R1+R2-d)^2 (d^2 + 2d(R1+R2) - 3 (R1-R2)^2) / (12 d)
+TEST(BallOnSphere, ForceIsTheLensVolume) {
+  const dynamics::State state;
+  int checked = 0;
+  for (const double r : {0.05, 0.3, 2.0})
+    for (const double depth : {1e-4, 0.02, 0.045}) {
+      const Vec3 direction = Vec3(1, -2, 0.5).normalized(), centre(0.3, 0.1, -0.7);
+      const double d = kR + r - depth;
+      const auto source = contact::make_sphere_source(ball_at(centre + d * direction), 1,
+                                                      contact::fixed_frame(), centre, r, 0.01);
+      const double lens = std::numbers::pi * depth * depth *
+                          (d * d + 2.0 * d * (kR + r) - 3.0 * (kR - r) * (kR - r)) / (12.0 * d);
+      const auto samples = query(*source, state);
+      EXPECT_NEAR(volume(samples) / lens, 1.0, 1e-4) << r << ", " << depth;
+      for (const ContactSample& s : samples) EXPECT_LT((s.normal - direction).norm(), 1e-14);
+      ++checked;
+    }
+  EXPECT_EQ(checked, 9);
+}
+
+TEST(BallOnBox, FaceEdgeAndCorner) {
+  const dynamics::State state;
+  const Pose pose{quaternion_of(Vec3(0.3, 0.2, -0.5)), Vec3(0.1, 0.2, 0.3)};
+  const Vec3 size(4.0, 4.0, 2.0);
+  const auto of = [&](const Vec3& corner, const Vec3& out, double depth) {
+    const Vec3 centre = pose * Vec3(corner + (kR - depth) * out.normalized());
+    return volume(query(
+        *contact::make_box_source(ball_at(centre), 1, contact::fixed_frame(), pose, size, 0.01), state));
+  };
+  EXPECT_NEAR(of({0.3, 0.1, 1.0}, {0, 0, 1}, 0.05) / cap(0.05), 1.0, 1e-12);
+  // an edge of 90 degrees, looked at along its bisector
+  const double edge = overlap(0.05, [](double x, double) { return -std::abs(x); });
+  EXPECT_NEAR(of({2.0, 0.1, 1.0}, {1, 0, 1}, 0.05) / edge, 1.0, 5e-3);
+  EXPECT_LT(edge, 0.5 * cap(0.05));
+  // a corner along its diagonal: three planes of slope sqrt(2) that meet there, x along one of their edges
+  const double corner = overlap(0.05, [](double x, double y) {
+    double height = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double phi = 2.0 * std::numbers::pi * k / 3.0;
+      height = std::min(height, std::sqrt(2.0) * (x * std::cos(phi) + y * std::sin(phi)));
+    }
+    return height;
+  });
+  EXPECT_NEAR(of({2.0, 2.0, 1.0}, {1, 1, 1}, 0.05) / corner, 1.0, 2e-2);
+}
+
+TEST(BallOnCylinder, SideAndEnd) {
+  const dynamics::State state;
+  const Pose pose{quaternion_of(Vec3(0.1, -0.4, 0.7)), Vec3(-0.1, 0.4, 0.2)};
+  const auto of = [&](const Vec3& centre) {
+    return volume(query(*contact::make_cylinder_source(ball_at(pose * centre), 1, contact::fixed_frame(),
+                                                       pose, 0.5, 3.0, 0.01),
+                        state));
+  };
+  const double side = overlap(0.05, [](double x, double) { return std::sqrt(0.25 - x * x) - 0.5; });
+  EXPECT_NEAR(of(Vec3(0.6, 0.8, 0.0) * (0.5 + kR - 0.05)) / side, 1.0, 2e-3);
+  EXPECT_NEAR(of({0.05, 0.0, 1.5 + kR - 0.05}) / cap(0.05), 1.0, 1e-12) << "the flat end";
+}
+
+// A rigid surface is sampled as a soft one that stands where it does and moves as it does.
+TEST(RigidSurface, IsSampledAsASoftOne) {
+  std::mt19937 random(4);
+  const TriMesh mesh = sphere({0.1, 0.2, -0.1}, 0.6, 10);
+  int seen = 0;
+  for (const contact::ObstacleEntry& entry : contact::obstacle_registry())
+    for (const double look_ahead : {0.0, 0.1}) {
+      const Pose pose{rotation(random), 0.2 * vector(random)};
+      const Twist twist{vector(random), 3.0 * vector(random)};
+      TriMesh moved = mesh;
+      for (Eigen::Index i = 0; i < moved.vertices.cols(); ++i)
+        moved.vertices.col(i) = pose * Vec3(mesh.vertices.col(i));
+      SurfaceWorld world(moved);
+      for (Eigen::Index i = 0; i < moved.vertices.cols(); ++i)
+        world.state.u().segment<3>(6 + 3 * i) = twist.at(moved.vertices.col(i) - pose.translation);
+      Settings shape;
+      for (const PartKey& key : entry.keys)
+        shape[key.name] =
+            key.required && std::holds_alternative<double>(*key.fallback) ? Setting(0.7) : *key.fallback;
+      const auto motion = std::make_shared<contact::TrajectoryFrame>();
+      motion->append(0.0, pose, twist);
+      const auto soft = query(
+          *entry.make_source(world.surface, 1, contact::fixed_frame(), shape, 0.0, look_ahead), world.state);
+      const auto rigid = query(*entry.make_source(contact::FrameSurface{mesh, 0, motion}, 1,
+                                                  contact::fixed_frame(), shape, 0.0, look_ahead),
+                               world.state);
+      ASSERT_EQ(soft.size(), rigid.size()) << entry.name;
+      for (std::size_t i = 0; i < soft.size(); ++i) {
+        EXPECT_NEAR(soft[i].gap, rigid[i].gap, 1e-14);
+        EXPECT_NEAR(soft[i].area, rigid[i].area, 1e-14);
+        EXPECT_LT((soft[i].normal - rigid[i].normal).norm(), 1e-13);
+        EXPECT_LT((position(soft[i].a, world.state) - pose * rigid[i].a.offset).norm(), 1e-14);
+        EXPECT_EQ(rigid[i].a.frame, 0);
+        EXPECT_EQ(rigid[i].b.frame, 1);
+        ++seen;
+      }
+    }
+  EXPECT_GT(seen, 150);
+}
+
+TEST(RigidSurface, CrossingsAreCounted) {
+  const dynamics::State state;
+  for (const bool ball : {true, false}) {
+    const auto motion = std::make_shared<contact::TrajectoryFrame>();
+    const TriMesh mesh = sphere(Vec3::Zero(), kR, 6);
+    const auto source =
+        contact::make_box_source(ball ? contact::ContactSide(contact::FrameBall{kR, Vec3::Zero(), 0, motion})
+                                      : contact::ContactSide(contact::FrameSurface{mesh, 0, motion}),
+                                 1, contact::fixed_frame(), {}, Vec3(5, 5, 0.1), 0.01);
+    for (const double z : {1.0, -1.0, -2.0}) {
+      motion->clear();
+      motion->append(0.0, {Quat::Identity(), Vec3(0, 0, z)}, {});
+      query(*source, state);
+    }
+    EXPECT_EQ(source->tunnelled(), ball ? 1 : mesh.vertices.cols());
+  }
+}
+
+namespace {
+
+/// The tool in the State, pressed into an obstacle: a query, and then a little deeper, so that every sample
+/// is pressed along a Taylor test.
+struct Pressed {
+  World world{2, true, 21};
+  contact::ContactForce term;
+
+  Pressed(const contact::ObstacleEntry& entry, bool ball, const ContactSpec& law) {
+    const int own = term.add_frame(contact::block_frame(world.body_id)),
+              other = term.add_frame(contact::fixed_frame());
+    Settings shape;
+    for (const PartKey& key : entry.keys)
+      shape[key.name] =
+          key.required && std::holds_alternative<double>(*key.fallback) ? Setting(0.5) : *key.fallback;
+    place(Vec3(0.05, -0.02, 0.3));
+    const contact::Nearest nearest = entry.nearest(shape, translation());
+    place(translation() + (kR - 0.05 - nearest.gap) * nearest.normal);
+    const contact::ContactSide side =
+        ball ? contact::ContactSide(
+                   contact::FrameBall{kR, Vec3::Zero(), own, contact::block_frame(world.body_id)})
+             : contact::ContactSide(
+                   contact::FrameSurface{mesh::sphere(kR, 12), own, contact::block_frame(world.body_id)});
+    term.add_pair(entry.make_source(side, other, contact::fixed_frame(), shape, 1e-3, 0.0), law);
+    term.refresh(world.state.view());
+    place(translation() - 0.02 * nearest.normal);
+  }
+  Vec3 translation() const { return world.state.q().tail<3>(); }
+  void place(const Vec3& p) { world.state.q().tail<3>() = p; }
+};
+
+ContactSpec law_of(const char* name, double friction, double onset) {
+  ContactSpec law;
+  law.law = name;
+  law.stiffness_pa_m = 1e3;
+  law.damping_pa_s_m = 3.0;
+  law.hunt_crossley_s_m = 0.1;
+  law.friction = friction;
+  law.friction_regularisation_m_s = 50.0;
+  law.onset_width_m = onset;
+  return law;
+}
+
+}  // namespace
+
+TEST(RigidSides, TaylorOfTheirTangents) {
+  std::mt19937 random(8);
+  int checked = 0;
+  for (const contact::ObstacleEntry& entry : contact::obstacle_registry())
+    for (const bool ball : {true, false})
+      for (const auto& law : {law_of("kelvin_voigt", 0.0, 0.0), law_of("kelvin_voigt", 0.3, 1e-4),
+                              law_of("hunt_crossley", 0.3, 0.0)}) {
+        Pressed scene(entry, ball, law);
+        VecX d = VecX::Zero(12);
+        for (int i = 6; i < 12; ++i) d[i] = (i < 9 ? 0.3 : 0.1) * uniform(random);
+        const VecX f0 = force(scene.term, scene.world.state);
+        EXPECT_GT(f0.tail<3>().norm(), 0.1) << entry.name;
+        EXPECT_EQ(f0.head<6>().norm(), 0.0);
+        const std::string what = entry.name + (ball ? ", ball, " : ", mesh, ") + law.law;
+        expect_derivative([&](double h) { return force(scene.term, scene.world.moved(d, h)); },
+                          -(step_matrix(scene.term, scene.world.state, 1.0, 0.0).to_dense() * d), 0.02,
+                          what.c_str());
+        expect_derivative([&](double h) { return force(scene.term, scene.world.pushed(d, h)); },
+                          -(step_matrix(scene.term, scene.world.state, 0.0, 1.0).to_dense() * d), 0.05,
+                          what.c_str());
+        VecX y = VecX::Zero(12);
+        const VecX x = VecX::Random(12);
+        scene.term.apply_tangent(scene.world.state.view(), 0.7, 0.3, x, y);
+        EXPECT_LT((y - step_matrix(scene.term, scene.world.state, 0.7, 0.3).to_dense() * x).norm(),
+                  1e-13 * y.norm())
+            << what;
+        ++checked;
+      }
+  EXPECT_EQ(checked, 24);
+}
+
+// About its centre a ball feels no moment, and rotating it changes nothing; sliding, friction is mu N against
+// it, with the arm from the centre to the patch.
+TEST(RigidSides, ABallFeelsNoMomentButThatOfFriction) {
+  for (const contact::ObstacleEntry& entry : contact::obstacle_registry()) {
+    Pressed smooth(entry, true, law_of("kelvin_voigt", 0.0, 0.0));
+    smooth.world.state.u().setZero();
+    const VecX f = force(smooth.term, smooth.world.state);
+    EXPECT_LT(f.segment<3>(6).norm(), 1e-15) << entry.name;
+    VecX rotated = VecX::Zero(12);
+    rotated.segment<3>(6) = Vec3(0.4, -0.3, 0.2);
+    EXPECT_LT((force(smooth.term, smooth.world.moved(rotated, 1.0)) - f).norm(), 1e-14 * f.norm());
+
+    ContactSpec rough = law_of("kelvin_voigt", 0.3, 0.0);
+    rough.friction_regularisation_m_s = 1e-6;
+    Pressed sliding(entry, true, rough);
+    const Vec3 n = f.tail<3>().normalized(), along = n.unitOrthogonal();
+    sliding.world.state.u().setZero();
+    sliding.world.state.u().tail<3>() = 0.2 * along;
+    const VecX g = force(sliding.term, sliding.world.state);
+    EXPECT_LT((g.tail<3>() - f.tail<3>() + 0.3 * f.tail<3>().norm() * along).norm(), 1e-12 * f.norm());
+    const Vec3 moment = g.segment<3>(6);
+    EXPECT_LT((moment.normalized() - n.cross(along)).norm(), 1e-12) << entry.name;
+    const double arm = moment.norm() / (0.3 * f.tail<3>().norm());
+    EXPECT_GT(arm, 0.7 * kR) << entry.name;
+    EXPECT_LT(arm, kR);
+  }
+}
+
+// gaps = "exact": the force between two queries is that of a query there, and a ball that leaves and comes
+// back within them feels nothing and then the same.
+TEST(RigidSides, ABallFollowsWhereGapsAreExact) {
+  for (const contact::ObstacleEntry& entry : contact::obstacle_registry()) {
+    ContactSpec law = law_of("kelvin_voigt", 0.0, 0.0);
+    Pressed fresh(entry, true, law);
+    law.gaps = "exact";
+    Pressed exact(entry, true, law);
+    const Vec3 start = exact.translation(), there = start + Vec3(0.02, -0.03, -0.01);
+    for (Pressed* one : {&fresh, &exact}) {
+      one->place(there);
+      one->world.state.u().setZero();
+    }
+    fresh.term.refresh(fresh.world.state.view());
+    const VecX wanted = force(fresh.term, fresh.world.state);
+    ASSERT_GT(wanted.norm(), 0.1);
+    EXPECT_LT((force(exact.term, exact.world.state) - wanted).norm(), 1e-10 * wanted.norm()) << entry.name;
+    exact.place(start + 5.0 * kR * wanted.tail<3>().normalized());
+    EXPECT_EQ(force(exact.term, exact.world.state).norm(), 0.0) << entry.name;
+    exact.place(there);
+    EXPECT_LT((force(exact.term, exact.world.state) - wanted).norm(), 1e-10 * wanted.norm()) << entry.name;
+    EXPECT_EQ(exact.term.queries(), 1);
+  }
+}
+
+// With the tool's motion given nothing in the State feels an obstacle: no force, no matrix, no event; the
+// wrench on the tool is whole.
+TEST(RigidSides, AGivenToolFeelsAnObstacleAndTheStateDoesNot) {
+  World world(3, false, 4);
+  world.state.u().setZero();
+  contact::ContactForce term;
+  const double depth = 0.05;
+  const auto motion = contact::fixed_frame({Quat::Identity(), Vec3(0, 0, kR - depth)});
+  const int tool = term.add_frame(motion), floor = term.add_frame(contact::fixed_frame());
+  const ContactSpec law = law_of("kelvin_voigt", 0.0, 0.0);
+  term.add_pair(contact::make_plane_source(contact::FrameBall{kR, Vec3::Zero(), tool, motion}, floor,
+                                           contact::fixed_frame(), Vec3::Zero(), Vec3::UnitZ(), 0.01),
+                law);
+  term.add_pair(
+      std::make_unique<ListSource>(std::vector{on_frame(
+          node_point({0}, {1.0}), tool, motion->pose(world.state.view()), {0, 0, 1}, 0.1, 0.2, world.state)}),
+      law);
+  term.refresh(world.state.view());
+  const VecX f = force(term, world.state);
+  EXPECT_NEAR(f[2], 1e3 * 0.1 * 0.2, 1e-12);
+  EXPECT_EQ(f.tail(6).norm(), 0.0);
+  EXPECT_EQ(term.event_count(), 1) << "the node's";
+  const double weight = 1e3 * cap(depth);
+  EXPECT_NEAR(term.frame_wrench(world.state.view(), tool).force.z(), weight - f[2], 1e-9 * weight);
+  EXPECT_GT(term.energy(world.state.view()), 0.5 * 1e3 * 0.1 * 0.1 * 0.2) << "the obstacle's is in it";
+
+  contact::FrameLinearisation all, nodes, frames;
+  term.linearise(world.state.view(), tool, all);
+  term.linearise(world.state.view(), tool, nodes, contact::Partners::kNodes);
+  term.linearise(world.state.view(), tool, frames, contact::Partners::kFrames);
+  EXPECT_NEAR(nodes.wrench.force.z(), -f[2], 1e-12);
+  EXPECT_NEAR(frames.wrench.force.z(), weight, 1e-9 * weight);
+  EXPECT_NEAR(frames.K(5, 5) / (1e3 * std::numbers::pi * (2.0 * kR * depth - depth * depth)), 1.0, 1e-9);
+  EXPECT_LT((nodes.K + frames.K - all.K).norm() + (nodes.B + frames.B - all.B).norm(), 1e-12 * all.K.norm());
+  EXPECT_LT((nodes.K_body - all.K_body).norm(), 1e-15);
+  EXPECT_EQ(all.active, nodes.active + frames.active);
+  EXPECT_EQ(nodes.active, 1);
+}
+
+TEST(RigidSides, BadOnesAreRefused) {
+  EXPECT_THROW(on_plane(contact::FrameBall{kR, Vec3::Zero(), 0, nullptr}, 0.1), InternalError);
+  EXPECT_THROW(on_plane(contact::FrameBall{0.0, Vec3::Zero(), 0, contact::fixed_frame()}, 0.1),
+               InternalError);
+  EXPECT_THROW(on_plane(contact::FrameSurface{mesh::sphere(kR, 4), 0, nullptr}, 0.1), InternalError);
+  TriMesh bad = mesh::sphere(kR, 4);
+  bad.faces(0, 0) = static_cast<int>(bad.vertices.cols());
+  EXPECT_THROW(on_plane(contact::FrameSurface{bad, 0, contact::fixed_frame()}, 0.1), InternalError);
+}
