@@ -68,6 +68,7 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface a, NodeSurface b, co
   check_arguments(a, b.faces.cols(), options);
   PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies has block {} on both sides",
                 a.block_id);
+  if (b.block_id < a.block_id) return make_image_source(std::move(b), std::move(a), options);
   return make_whole_source(soft_side(std::move(a)), soft_side(std::move(b)), options);
 }
 
@@ -77,6 +78,8 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface a, std::shared_ptr<p
   check_arguments(a, b.faces.cols(), options);
   PALPATE_CHECK(a.block_id != b.block_id, "contact between two soft bodies has block {} on both sides",
                 a.block_id);
+  if (b.block_id < a.block_id)
+    return make_image_source(std::move(b), std::move(proxies_b), std::move(a), std::move(proxies_a), options);
   check_proxies(a, proxies_a);
   check_proxies(b, proxies_b);
   return make_pruned_source(soft_side(std::move(a)), std::move(proxies_a), soft_side(std::move(b)),

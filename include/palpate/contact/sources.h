@@ -103,7 +103,8 @@ std::unique_ptr<SampleSource> make_image_source(NodeSurface surface, std::shared
 
 /// Two soft bodies: both points of a sample hang on nodes, so its force reaches both bodies, equal and
 /// opposite, and its tangent couples them.  The pattern has blocks between the two bodies' nodes where
-/// samples were found, and grows with the contact (pattern_version).
+/// samples were found, and grows with the contact (pattern_version).  Side a of the samples is the body
+/// whose block is older, whichever is named first: the pixel grid and its normal are the same, to the bit.
 std::unique_ptr<SampleSource> make_image_source(NodeSurface a, NodeSurface b, const ImageOptions& options);
 std::unique_ptr<SampleSource> make_image_source(NodeSurface a, std::shared_ptr<proxy::ProxySet> proxies_a,
                                                 NodeSurface b, std::shared_ptr<proxy::ProxySet> proxies_b,
