@@ -10,6 +10,7 @@
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/proxy/decompose_solid.h"
+#include "palpate/scene/contact_sides.h"
 #include "tool_side.h"
 
 namespace palpate::loop {
@@ -159,45 +160,86 @@ bool leaves_out_friction(const World& world) {
   return entry != registry.end() && entry->traits.linearised;
 }
 
-std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
-                                                       const ObstacleSpec& obstacle) {
-  if (pair.spec.method != "analytic" && pair.spec.method != "auto")
-    fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"analytic\"",
-         pair.spec.first, obstacle.name, obstacle.type);
+std::unique_ptr<contact::SampleSource> obstacle_source(World& world, const ContactSpec& spec,
+                                                       contact::ContactSide side, double candidate_gap,
+                                                       double look_ahead, const ObstacleSpec& obstacle) {
+  if (spec.method != "analytic" && spec.method != "auto")
+    fail("contact {} - {}: a {} has exact gaps and needs no image; use method = \"analytic\"", spec.first,
+         obstacle.name, obstacle.type);
   const contact::ObstacleEntry& entry = contact::obstacle_entry(obstacle);
   auto motion = contact::fixed_frame();
   const int frame = world.contact->add_frame(motion);
-  return entry.make_source(std::move(pair.surface), frame, std::move(motion),
-                           contact::obstacle_shape(obstacle), pair.candidate_gap, pair.look_ahead);
+  return entry.make_source(std::move(side), frame, std::move(motion), contact::obstacle_shape(obstacle),
+                           candidate_gap, look_ahead);
+}
+
+std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
+                                                       const ObstacleSpec& obstacle) {
+  return obstacle_source(world, pair.spec, std::move(pair.surface), pair.candidate_gap, pair.look_ahead,
+                         obstacle);
+}
+
+/// Contact of the tool with an obstacle.  The tool's ticks run over the whole exchange period before contact
+/// is looked for again.
+std::unique_ptr<contact::SampleSource> tool_on_obstacle(World& world, const ContactSpec& spec,
+                                                        const ObstacleSpec& obstacle) {
+  const ToolSpec& tool = *world.description.tool;
+  const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world);
+  ToolSide& side = ToolSide::of(world);
+  side.meets_obstacles = true;
+  const scene::CosimulationSpec& exchange = world.description.exchange;
+  const double look_ahead = side.trajectory ? exchange.exchange_period_s : exchange.contact_refresh_s;
+  if (tool.shape == "sphere" && spec.spring == "per_point")
+    fail("contact tool - {}: spring = \"per_point\" is for vertices, and a sphere has none", obstacle.name);
+  if (tool.shape == "sphere")
+    return obstacle_source(world, spec,
+                           contact::FrameBall{tool.radius_m, Vec3::Zero(), side.frame_index, motion},
+                           spec.candidate_gap_m, look_ahead, obstacle);
+  return obstacle_source(world, spec,
+                         contact::FrameSurface{tool_surface(tool, world.folder), side.frame_index, motion},
+                         spec.candidate_gap_m, look_ahead, obstacle);
+}
+
+/// @pre the names are in their order (scene::order_sides)
+std::unique_ptr<contact::SampleSource> source_of(World& world, const ContactSpec& spec) {
+  contact::check_method(spec.method, fmt::format("contact {} - {}", spec.first, spec.second));
+  const auto& obstacles = world.description.obstacles;
+  const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(),
+                                     [&](const ObstacleSpec& o) { return o.name == spec.second; });
+  const bool tool = world.description.tool.has_value();
+  if (tool && spec.first == "tool" && obstacle != obstacles.end())
+    return tool_on_obstacle(world, spec, *obstacle);
+  if (!world.find_body(spec.first))
+    fail("contact {} - {}: one must be a soft body, or the tool where the other is an obstacle", spec.first,
+         spec.second);
+  Pair pair = pair_of(world, spec, spec.first);
+  if (tool && spec.second == "tool") return tool_source(world, std::move(pair));
+  if (obstacle != obstacles.end()) return obstacle_source(world, std::move(pair), *obstacle);
+  if (spec.second == spec.first) return own_source(world, std::move(pair));
+  if (world.find_body(spec.second)) return image_source(std::move(pair), pair_of(world, spec, spec.second));
+  fail("contact {} - {}: nothing is called \"{}\"; name soft bodies, obstacles or \"tool\"", spec.first,
+       spec.second, spec.second);
 }
 
 }  // namespace
 
 void assemble_contact(World& world) {
   world.contact = std::make_shared<contact::ContactForce>();
-  for (ContactSpec spec : world.description.contacts) {
+  bool soft_partner = false;  // of the tool
+  for (ContactSpec& given : world.description.contacts) {
+    scene::order_sides(world.description, given);
+    ContactSpec spec = given;
     if (spec.friction_tangent == "auto")
       spec.friction_tangent = leaves_out_friction(world) ? "symmetric" : "full";
-    contact::check_method(spec.method, fmt::format("contact {} - {}", spec.first, spec.second));
-    const auto& obstacles = world.description.obstacles;
-    const auto obstacle = std::find_if(obstacles.begin(), obstacles.end(),
-                                       [&](const ObstacleSpec& o) { return o.name == spec.second; });
-    if (spec.second == "tool" && world.description.tool)
-      world.contact->add_pair(tool_source(world, pair_of(world, spec, spec.first)), spec);
-    else if (obstacle != obstacles.end())
-      world.contact->add_pair(obstacle_source(world, pair_of(world, spec, spec.first), *obstacle), spec);
-    else if (spec.second == spec.first && world.find_body(spec.first))
-      world.contact->add_pair(own_source(world, pair_of(world, spec, spec.first)), spec);
-    else if (world.find_body(spec.second))
-      world.contact->add_pair(
-          image_source(pair_of(world, spec, spec.first), pair_of(world, spec, spec.second)), spec);
-    else
-      fail("contact {} - {}: the second partner must be one of the soft bodies, an obstacle or \"tool\"",
-           spec.first, spec.second);
+    // of a tool with ticks of its own on an obstacle no step matrix has a part
+    if (world.description.tool && spec.first == "tool" && !world.monolithic())
+      spec.friction_tangent = "symmetric";
+    world.contact->add_pair(source_of(world, spec), spec);
+    soft_partner = soft_partner || (world.description.tool && spec.second == "tool");
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
   ToolSide& side = ToolSide::of(world);
-  if (!side.trajectory || world.description.exchange.linearisation != "condensed") return;
+  if (!soft_partner || !side.trajectory || world.description.exchange.linearisation != "condensed") return;
   counters::count("loop.condenser");
   side.condenser = linear::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
 }

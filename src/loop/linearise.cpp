@@ -133,7 +133,7 @@ bool answer_after(World& world, double H, const contact::FrameLinearisation& c, 
   world.system.impose(world.state.layout(), world.state.time() + H, q.data(), u.data());
   contact::FrameLinearisation after;
   world.contact->linearise(world.state.view(world.state.time(), q.data(), u.data()),
-                           ToolSide::of(world).frame_index, after);
+                           ToolSide::of(world).frame_index, after, contact::Partners::kNodes);
   out.J.topLeftCorner<3, 3>() += after.geometric - c.geometric;
   return true;
 }
@@ -174,6 +174,12 @@ bool condense(World& world, double period, const contact::FrameLinearisation& c,
   return true;
 }
 
+/// As LinearisedContact has it.
+std::array<double, 7> flat(const Pose& pose) {
+  return {pose.rotation.w(),    pose.rotation.x(),    pose.rotation.y(),   pose.rotation.z(),
+          pose.translation.x(), pose.translation.y(), pose.translation.z()};
+}
+
 }  // namespace
 
 dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t version, double period_s,
@@ -185,12 +191,11 @@ dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t versio
   record.time = world.state.time();
   if (!side.trajectory) return record;
   contact::FrameLinearisation c;
-  world.contact->linearise(world.state.view(), side.frame_index, c);
+  world.contact->linearise(world.state.view(), side.frame_index, c, contact::Partners::kNodes);
   record.samples = c.active;
   const Pose x0 = side.tool->pose();
   const Twist v0 = side.tool->twist();
-  record.x0 = {x0.rotation.w(),    x0.rotation.x(),    x0.rotation.y(),   x0.rotation.z(),
-               x0.translation.x(), x0.translation.y(), x0.translation.z()};
+  record.x0 = flat(x0);
   Eigen::Map<Vec6>(record.v0.data()) << v0.angular, v0.linear;
   Eigen::Map<Vec6>(record.F0.data()) << c.wrench.moment, c.wrench.force;
   Eigen::Map<RowMajor6>(record.J.data()) = -c.K;
@@ -198,6 +203,31 @@ dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t versio
   record.source = dynamics::LinearisedContact::Source::kFrozen;
   if (side.condenser && c.active > 0 && !condense(world, period_s, c, record)) ++frozen_fallbacks;
   return record;
+}
+
+// The record R(t, x, v) is linear about (x0, v0); it goes on about (x, v) = now with the same F1, J and B:
+//     R(t + s, x + dx, v + dv) = R(t, x, v) + s F1 + J dx + B dv,
+// up to the second order in the rotation from x0.  To it come the obstacles' F, -K and -B, about (x, v).
+dynamics::LinearisedContact with_obstacles(const World& world, const dynamics::LinearisedContact& record) {
+  const ToolSide& side = ToolSide::of(world);
+  const double t = side.tool->time();
+  contact::FrameLinearisation c;
+  world.contact->linearise(world.state.view(t, world.state.q().data(), world.state.u().data()),
+                           side.frame_index, c, contact::Partners::kFrames);
+  if (c.active == 0) return record;
+  dynamics::LinearisedContact out = record;
+  const Pose x = side.tool->pose();
+  const Twist v = side.tool->twist();
+  Vec6 wrench;
+  wrench << c.wrench.moment, c.wrench.force;
+  out.time = t;
+  out.x0 = flat(x);
+  Eigen::Map<Vec6>(out.v0.data()) << v.angular, v.linear;
+  Eigen::Map<Vec6>(out.F0.data()) = dynamics::contact_wrench(record, t, x, v) + wrench;
+  Eigen::Map<RowMajor6>(out.J.data()) -= c.K;
+  Eigen::Map<RowMajor6>(out.B.data()) -= c.B;
+  out.samples += c.active;
+  return out;
 }
 
 }  // namespace palpate::loop

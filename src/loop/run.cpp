@@ -66,17 +66,21 @@ class Loop {
   void one_period(double t0, double t1) {
     refresh_contact();
     if (side_.tool) tick_tool(t0, t1);
-    if (result_.status.ok() && world_.stepper) advance_state(t0, t1);
+    if (!result_.status.ok()) return;
+    if (world_.stepper)
+      advance_state(t0, t1);
+    else
+      world_.state.set_time(t1);  // a tool with ticks of its own, alone
   }
 
   /// The slow query; multistep integrators then forget their history.
   void refresh_contact() {
-    if (!world_.contact || world_.bodies.empty()) return;
-    {
+    if (!world_.contact) return;
+    const bool changed = [&] {
       const ScopedTimer timer(result_.query_s);
-      if (world_.contact->refresh(world_.state.view()))
-        world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
-    }
+      return world_.contact->refresh(world_.state.view());
+    }();
+    if (changed && world_.stepper) world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
     for (Observer* observer : options_.observers) observer->queried(world_, world_.state.time());
   }
 
@@ -151,13 +155,15 @@ class Loop {
 
   void tick(double t, double h) {
     const device::HandleSample before = side_.handle_now, now = side_.handle->sample(t);
-    result_.status = side_.tool->advance(h, {before.pose, now.pose, before.twist, now.twist}, record_);
+    const dynamics::LinearisedContact record =
+        side_.meets_obstacles ? with_obstacles(world_, record_) : record_;
+    result_.status = side_.tool->advance(h, {before.pose, now.pose, before.twist, now.twist}, record);
     if (!result_.status.ok()) return;
     TickRecord tick;
     tick.time = t;
     tick.tool = side_.tool->pose();
     tick.tool_twist = side_.tool->twist();
-    const Vec6 contact = dynamics::contact_wrench(record_, t, tick.tool, tick.tool_twist);
+    const Vec6 contact = dynamics::contact_wrench(record, t, tick.tool, tick.tool_twist);
     tick.contact = {contact.head<3>(), contact.tail<3>()};
     if (side_.trajectory) side_.trajectory->append(t, tick.tool, tick.tool_twist);
     feel(tick);

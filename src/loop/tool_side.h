@@ -21,6 +21,7 @@ struct ToolSide {
   std::shared_ptr<contact::TrajectoryFrame> trajectory;
   std::shared_ptr<proxy::ProxySet> proxies;  ///< null where it meets no body with proxies
   int frame_index = -1;                      ///< of that frame in the contact, -1 where no contact names it
+  bool meets_obstacles = false;              ///< a contact names the tool and an obstacle
   /// factors the step matrix for the condensed linearisation; null where not used
   std::unique_ptr<dynamics::LinearSolver> condenser;
   /// made at the first step matrix without a Cholesky factor

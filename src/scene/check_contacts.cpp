@@ -3,6 +3,7 @@
 #include <string_view>
 #include <utility>
 
+#include "palpate/scene/contact_sides.h"
 #include "scene/check.h"
 #include "scene/reader.h"
 
@@ -32,7 +33,7 @@ struct Sides {
 };
 
 void check_sides(const Document& doc, const std::string& key, const std::string& where, const Sides& sides,
-                 ContactSpec& c) {
+                 const ContactSpec& c) {
   int side = 0;
   for (const std::string& name : {c.first, c.second}) {
     const std::string at = location(doc, fmt::format("{}.between[{}]", key, side++));
@@ -43,8 +44,10 @@ void check_sides(const Document& doc, const std::string& key, const std::string&
   const std::string at = location(doc, key + ".between");
   if (c.first == c.second && !sides.is_body(c.first))
     refuse(at, where, "only a soft body may touch itself; name two");
-  if (!sides.is_body(c.first)) std::swap(c.first, c.second);
-  if (!sides.is_body(c.first)) refuse(at, where, "one of the two must be a soft body");
+  if (sides.is_obstacle(c.first) && sides.is_obstacle(c.second))
+    refuse(
+        at, where,
+        "obstacles do not move, so these two cannot touch; one of the two must be a soft body or the tool");
 }
 
 /// One body twice: the regions of its bones.
@@ -63,7 +66,7 @@ void check_own_contact(const Document& doc, const std::string& key, const std::s
 
 void check_method(const Document& doc, const std::string& key, const std::string& where, const Sides& sides,
                   const Description& d, ContactSpec& c) {
-  const bool obstacle = sides.is_obstacle(c.second),
+  const bool obstacle = sides.is_obstacle(c.second), tool_first = d.tool && c.first == "tool",
              sphere_tool = c.second == "tool" && d.tool && d.tool->shape == "sphere",
              pruned = std::any_of(d.bodies.begin(), d.bodies.end(),
                                   [&](const auto&body) { return body.name == c.first && body.proxies; });
@@ -91,6 +94,11 @@ void check_method(const Document& doc, const std::string& key, const std::string
     refuse(location(doc, key + ".spring"), where,
            "spring = \"per_point\" is a spring at each colliding vertex, and samples = \"pixel\" has none; "
            "write samples = \"vertex\" as well, or remove it");
+  if (c.spring == "per_point" && tool_first && d.tool->shape == "sphere")
+    refuse(
+        location(doc, key + ".spring"), where,
+        "spring = \"per_point\" is a spring at each colliding vertex, and a tool with shape = \"sphere\" has "
+        "none; remove it");
   if (c.method != "analytic" && obstacle)
     refuse(location(doc, key + ".method"), where,
            fmt::format("method = \"{}\" is for tools and soft bodies: an obstacle has exact gaps; use "
@@ -143,12 +151,10 @@ void check_contacts(const Document& doc, Description& d) {
     const std::string key = fmt::format("contact[{}]", i),
                       where = fmt::format("contact between \"{}\" and \"{}\"", c.first, c.second);
     check_sides(doc, key, where, sides, c);
+    order_sides(d, c);
     check_method(doc, key, where, sides, d, c);
     check_friction(doc, key, where, c);
-    const bool twice =
-        seen.contains({c.first, c.second}) || (sides.is_body(c.second) && seen.contains({c.second, c.first}));
-    seen.emplace(c.first, c.second);
-    if (twice)
+    if (!seen.emplace(c.first, c.second).second)
       refuse(location(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
   }
 }

@@ -45,9 +45,9 @@ void read_between(const Value& value, ContactSpec& spec) {
 const KeyTable<ContactSpec>& contact_keys() {
   using Ranges = ContactRanges;
   static const KeyTable<ContactSpec> keys = {
-      required(
-          own_key<ContactSpec>("between", read_between, "list of texts", "",
-                               "two names: a body, and an obstacle, \"tool\", another body or the same")),
+      required(own_key<ContactSpec>(
+          "between", read_between, "list of texts", "",
+          "two names, in any order: bodies, \"tool\", obstacles; a body twice: with itself")),
       text("method", &ContactSpec::method, {}, "how gaps are found"),
       text("spring", &ContactSpec::spring, {},
            "per_area: forces do not depend on the mesh; per_point: the same spring at each colliding vertex"),

@@ -129,7 +129,7 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
                  condensed
                      ? "linearisation \"condensed\": the bodies' step matrix is factored once an exchange"
                  : monolithic ? one_system
-                 : !touched   ? "no contact with a tool"
+                 : !touched   ? "no contact of a soft body with a tool"
                               : "linearisation \"frozen\""});
   out.push_back(
       {"exchange thread", false, "time is virtual: everything runs one after the other in one thread"});

@@ -172,7 +172,8 @@ TEST(SoftPair, RefusesWhatItCannotDo) {
   EXPECT_NE(refusal(d).find("two soft bodies meet in image space"), std::string::npos);
   d = two_blocks(0.0);
   d.contacts[0].second = "blok";
-  EXPECT_NE(refusal(d).find("one of the soft bodies, an obstacle or \"tool\""), std::string::npos);
+  EXPECT_NE(refusal(d).find("nothing is called \"blok\"; name soft bodies, obstacles or \"tool\""),
+            std::string::npos);
   d.contacts[0].second = "block";
   EXPECT_NE(refusal(d).find("give the body skin = true and proxies = true"), std::string::npos);
 }

@@ -183,6 +183,25 @@ TEST(Load, ABodyMeetsItselfByItsBones) {
       std::string::npos);
 }
 
+// Bodies as they are listed, the tool, obstacles: whichever is named first.
+TEST(Load, SidesOfAContactAreInTheirOrder) {
+  const auto sides = [](const std::string& between, const std::string& bodies) {
+    const auto d = parse(scene_texts::kWhole + bodies, "whole.toml", {"contact.1.between=" + between});
+    return d.contacts[1].first + " - " + d.contacts[1].second + ", " + d.contacts[1].method;
+  };
+  EXPECT_EQ(sides("[\"tool\", \"floor\"]", ""), "tool - floor, analytic");
+  EXPECT_EQ(sides("[\"floor\", \"tool\"]", ""), "tool - floor, analytic");
+  EXPECT_EQ(sides("[\"tool\", \"ball\"]", ""), "ball - tool, analytic");
+  const std::string another = R"(
+[[body]]
+name = "apple"
+youngs_modulus_pa = 1e4
+mesh = { generator = "ball", radius_m = 0.03, element_size_m = 0.01 }
+)";
+  EXPECT_EQ(sides("[\"apple\", \"ball\"]", another), "ball - apple, auto");
+  EXPECT_EQ(sides("[\"ball\", \"apple\"]", another), "ball - apple, auto");
+}
+
 /// What two keys of one table ask of each other; the locations are covered by broken_test.
 TEST(Load, KeysThatExcludeOrNeedEachOther) {
   const auto refusal = [](const std::vector<std::string>& overrides) -> std::string {
@@ -217,7 +236,14 @@ TEST(Load, KeysThatExcludeOrNeedEachOther) {
        "damping_pa_s_m means nothing to law = \"hunt_crossley\", which takes hunt_crossley_s_m; remove it "
        "(used by kelvin_voigt)"},
       {{"contact.1.between=[\"floor\", \"ball\"]"}, "this pair stands here twice"},
-      {{"contact.1.between=[\"floor\", \"tool\"]"}, "one of the two must be a soft body"},
+      {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.method=cpu"}, "an obstacle has exact gaps"},
+      {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.pixels=128"}, "an obstacle has exact gaps"},
+      {{"contact.1.between=[\"floor\", \"tool\"]", "contact.1.spring=per_point"},
+       "a tool with shape = \"sphere\" has none"},
+      {{"contact.1.between=[\"tool\", \"tool\"]"}, "only a soft body may touch itself; name two"},
+      {{"obstacle=[{name = \"floor\", type = \"plane\"}, {name = \"wall\", type = \"plane\"}]",
+        "contact.1.between=[\"wall\", \"floor\"]"},
+       "obstacles do not move, so these two cannot touch; one of the two must be a soft body or the tool"},
       {{"contact.1.between=[\"ball\"]"}, "between must name two things, [\"ball\", \"floor\"], not 1"},
       {{"tool.shape=mesh"}, "needs a [tool.mesh]"},
       {{"tool.mesh.file=\"a.obj\""}, "mesh means nothing to shape = \"sphere\""},

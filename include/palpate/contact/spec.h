@@ -16,10 +16,9 @@ struct ObstacleSpec {
 
 /// One pair that may touch.  The `[[contact]]` tables of a scene.
 struct ContactSpec {
-  std::string first;  ///< a body's name
-  /// an obstacle's name, "tool", another body's, or the same again: its bones' regions against each other
-  /// (proxies)
-  std::string second;
+  /// names of bodies, obstacles or "tool", in any order; one body twice: its bones' regions against each
+  /// other (proxies)
+  std::string first, second;
   /// "analytic" (obstacle or a sphere tool), one of the methods in image space (a tool of any shape, another
   /// soft body), or "auto": the first where it can be and the body has no proxies, else an image
   std::string method = "auto";
