@@ -1,6 +1,7 @@
 #include "codec.h"
 
 #include <array>
+#include <optional>
 
 #include "palpate/core/bytes.h"
 
@@ -26,9 +27,19 @@ void visit_error(Error& e, Visit visit) {
 // Beside its numbers a RunResult holds a status, a flag (padded to a word), and what put_result writes by
 // hand.
 static_assert(dynamics::bytes_of_counters<loop::RunResult>() + sizeof(dynamics::StepResult) + sizeof(double) +
-                      sizeof(std::vector<long>) + sizeof(std::string) ==
+                      sizeof(std::vector<long>) + sizeof(std::optional<loop::EnergyBalance>) +
+                      sizeof(std::string) ==
                   sizeof(loop::RunResult),
               "the codec leaves out a member of RunResult");
+
+constexpr std::size_t energies() {
+  std::size_t n = 0;
+  const loop::EnergyBalance none;
+  loop::visit_energies([&](const char*, double) { ++n; }, none);
+  return n;
+}
+static_assert((energies() + 1) * sizeof(double) == sizeof(loop::EnergyBalance),
+              "beside the energies that it visits a balance has its time, and nothing else");
 
 template <class Record>
 auto writing(ByteWriter& out, const Record&) {
@@ -61,6 +72,10 @@ void put_result(ByteWriter& out, const loop::RunResult& r) {
   out.put(r.counters.solver.ordering);
   out.put(r.tunnelled.size());
   for (const long vertices : r.tunnelled) out.put(vertices);
+  out.put(r.energy.has_value());
+  if (!r.energy) return;
+  out.put(r.energy->time);
+  loop::visit_energies(writing(out, *r.energy), *r.energy);
 }
 
 loop::RunResult get_result(ByteReader& in) {
@@ -71,6 +86,9 @@ loop::RunResult get_result(ByteReader& in) {
   r.counters.solver.ordering = in.get<std::string>();
   r.tunnelled.resize(in.get<std::size_t>());
   for (long& vertices : r.tunnelled) vertices = in.get<long>();
+  if (!in.get<bool>()) return r;
+  r.energy.emplace().time = in.get<double>();
+  loop::visit_energies(reading(in), *r.energy);
   return r;
 }
 

@@ -158,4 +158,16 @@ void System::reactions(const StateView& state, VecX& r) {
     if (!driven_mask_[static_cast<std::size_t>(i)]) r[i] = 0.0;
 }
 
+double System::support_power(const StateView& state) {
+  if (std::none_of(driven_.begin(), driven_.end(), [](const Driven& d) { return d.master_offset < 0; }))
+    return 0.0;
+  VecX r;
+  reactions(state, r);
+  double sum = 0.0;
+  for (const Driven& d : driven_)
+    if (d.master_offset < 0)
+      for (const int dof : d.motion->dofs()) sum += r[dof] * state.u[dof];
+  return sum;
+}
+
 }  // namespace palpate::dynamics

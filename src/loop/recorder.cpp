@@ -15,6 +15,14 @@ namespace {
 constexpr const char* kRunFile = "run.vtkhdf";
 constexpr const char* kForceFile = "force.csv";
 constexpr const char* kBoneFile = "bones.csv";
+constexpr const char* kEnergyFile = "energy.csv";
+
+std::vector<std::string> energy_headers() {
+  std::vector<std::string> headers = {"time_s"};
+  const EnergyBalance none;
+  visit_energies([&](const char* name, double) { headers.emplace_back(name); }, none);
+  return headers;
+}
 
 /// How many periods of the loop pass between two recorded states.
 int periods_between(const scene::Description& d) {
@@ -27,6 +35,7 @@ struct Recorder::Impl {
   std::unique_ptr<store::RunFile> states;
   std::unique_ptr<store::ForceFile> forces;
   std::unique_ptr<store::BoneFile> bones;
+  std::unique_ptr<store::CsvWriter> energy;
   TriMesh tool;   ///< in its own axes; empty without a tool
   int every = 1;  ///< periods between two recorded states
   long seen = 0;  ///< periods so far
@@ -120,6 +129,8 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
   if (d.record->states && !world.bodies.empty()) impl_->open_states(world, (base / kRunFile).string());
   if (d.record->states && !world.bones.empty())
     impl_->bones = std::make_unique<store::BoneFile>((base / kBoneFile).string());
+  if (d.record->energy)
+    impl_->energy = std::make_unique<store::CsvWriter>((base / kEnergyFile).string(), energy_headers());
   if (d.record->forces && d.tool) {
     // below this share of the device's maximum a difference is the limiter's smoothness, not a limit
     constexpr double kUnlimited = 3e-13;
@@ -142,6 +153,16 @@ void Recorder::period(World& world, double t) {
   if (impl_->bones && impl_->seen % impl_->every == 0) impl_->append_bones(world, t);
   if (impl_->forces) impl_->forces->flush();
   ++impl_->seen;
+}
+
+bool Recorder::wants_energy() const { return impl_->energy != nullptr; }
+
+void Recorder::energy(const EnergyBalance& balance) {
+  if (!impl_->energy) return;
+  std::vector<double> row = {balance.time};
+  visit_energies([&](const char*, double value) { row.push_back(value); }, balance);
+  impl_->energy->row(row);
+  impl_->energy->flush();
 }
 
 void Recorder::tick(const TickRecord& tick) {

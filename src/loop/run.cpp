@@ -37,6 +37,9 @@ class Loop {
     const double wall = wall_seconds(), cpu = cpu_seconds();
     if (world_.stepper) world_.stepper->set_interrupt(options_.stop);
     start_tool();
+    const auto& observers = options_.observers;
+    if (std::any_of(observers.begin(), observers.end(), [](const Observer* o) { return o->wants_energy(); }))
+      ledger_.emplace(world_).start();
     notify_period(0.0);
     for (int i = 0; i < periods && result_.status.ok(); ++i) {
       if (options_.stop && options_.stop->load()) {
@@ -54,6 +57,7 @@ class Loop {
       ++result_.periods;
       result_.time = t1;
       notify_period(t1);
+      if (ledger_) notify_energy(t1);
       if (options_.progress) options_.progress(static_cast<double>(i + 1) / periods);
     }
     result_.wall_s = wall_seconds() - wall;
@@ -76,10 +80,12 @@ class Loop {
   /// The slow query; multistep integrators then forget their history.
   void refresh_contact() {
     if (!world_.contact) return;
+    if (ledger_) ledger_->before_query();
     const bool changed = [&] {
       const ScopedTimer timer(result_.query_s);
       return world_.contact->refresh(world_.state.view());
     }();
+    if (ledger_) ledger_->after_query();
     if (changed && world_.stepper) world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
     for (Observer* observer : options_.observers) observer->queried(world_, world_.state.time());
   }
@@ -120,10 +126,12 @@ class Loop {
 
   void change_materials(double time) {
     changed_ = time;
+    if (ledger_) ledger_->before_material();
     for (std::size_t i = 0; i < world_.bodies.size(); ++i)
       for (const MaterialChangeSpec& change : world_.description.bodies[i].changes)
         if (change.time_s == time)
           world_.set_youngs_modulus(world_.bodies[i], change.youngs_modulus_pa, change.region);
+    if (ledger_) ledger_->after_material();
   }
 
   void start_tool() {
@@ -173,16 +181,23 @@ class Loop {
   void feel(TickRecord tick) {
     const device::HandleSample& handle = side_.handle_now = side_.handle->sample(tick.time);
     tick.handle = handle.pose;
+    tick.handle_twist = handle.twist;
     tick.wanted = tool::coupling_on_hand(*world_.description.tool, {tick.tool, tick.tool_twist},
                                          {handle.pose, handle.twist});
     tick.device = side_.limiter->limit(tick.time, tick.wanted, handle.valid);
     side_.handle->feedback(tick.time, tick.device);
     ++result_.ticks;
+    if (ledger_) ledger_->tick(tick.time, tick.wanted, tick.handle_twist);
     for (Observer* observer : options_.observers) observer->tick(tick);
   }
 
   void notify_period(double t) {
     for (Observer* observer : options_.observers) observer->period(world_, t);
+  }
+
+  void notify_energy(double t) {
+    result_.energy = ledger_->period(t);
+    for (Observer* observer : options_.observers) observer->energy(*result_.energy);
   }
 
   void finish() {
@@ -200,6 +215,7 @@ class Loop {
   const RunOptions& options_;
   RunResult result_;
   dynamics::LinearisedContact record_;
+  std::optional<EnergyLedger> ledger_;    ///< where an observer wants it
   double changed_ = 0.0;                  ///< time of the last material change [s]
   std::optional<MonolithicTicks> ticks_;  ///< where tool and bodies are one system
 };

@@ -134,6 +134,13 @@ void add_images(store::Summary& summary, const World& world) {
   }
 }
 
+/// The balance at the end of the run, where the scene records it.
+void add_energy(store::Summary& summary, const RunResult& result) {
+  if (!result.energy) return;
+  store::SummarySection& s = summary.section("energy");
+  visit_energies([&](const char* name, double value) { s.values.emplace_back(name, value); }, *result.energy);
+}
+
 /// Work that the proxies of a contact saved the image, over all its queries.
 void add_pruning(store::Summary& summary, const World& world) {
   if (!world.contact) return;
@@ -195,6 +202,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
         .values.emplace_back(contact.first + " - " + contact.second,
                              static_cast<long long>(result.tunnelled[i]));
   }
+  add_energy(summary, result);
   add_jumps(summary, world);
   add_images(summary, world);
   add_pruning(summary, world);

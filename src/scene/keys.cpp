@@ -195,6 +195,8 @@ const KeyTable<RecordSpec>& record_keys() {
       number("state_period_s", &RecordSpec::state_period_s, positive(),
              "time between states, rounded to whole exchange periods"),
       boolean("forces", &RecordSpec::forces, "force and torque on the hand, a line a tick, force.csv"),
+      boolean("energy", &RecordSpec::energy,
+              "energies, works and what was dissipated, a line an exchange period or refresh, energy.csv"),
   };
   return keys;
 }

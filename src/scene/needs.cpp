@@ -155,6 +155,11 @@ void add_output_needs(const Description& d, std::vector<Need>& out) {
                  : !none.empty() ? none
                  : d.tool        ? "[record] forces = false"
                                  : "no [tool]"});
+  const bool energy = d.record && d.record->energy;
+  out.push_back({"energy file", energy,
+                 energy         ? "[record] energy, every period: energies and works"
+                 : none.empty() ? "[record] energy = false"
+                                : none});
   const std::size_t ladders = d.compare.ladders.size();
   out.push_back({"compare", ladders > 0,
                  ladders > 0 ? fmt::format("{} [[compare.ladder]], for `palpate compare` only", ladders)

@@ -101,7 +101,17 @@ TEST(Codec, NothingIsLostFromTheRunToTheTable) {
   run.result.tunnelled = {3, 0, 7};
   const std::map<std::string, double> all = numbers_of(run.result);
 
+  const compare::PointRun without = compare::point_run_of(compare::bytes_of(run));
+  EXPECT_FALSE(without.result.energy);
+  double next = 0.5;
+  run.result.energy.emplace().time = 7.25;
+  loop::visit_energies([&](const char*, double& value) { value = next++; }, *run.result.energy);
   const compare::PointRun sent = compare::point_run_of(compare::bytes_of(run));
+  ASSERT_TRUE(sent.result.energy);
+  EXPECT_EQ(sent.result.energy->time, 7.25);
+  next = 0.5;
+  loop::visit_energies([&](const char* name, double value) { EXPECT_EQ(value, next++) << name; },
+                       *sent.result.energy);
   EXPECT_EQ(numbers_of(sent.result), all);
   EXPECT_EQ(sent.result.counters.solver.ordering, "METIS");
   EXPECT_EQ(sent.result.tunnelled, run.result.tunnelled);

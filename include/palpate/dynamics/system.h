@@ -91,6 +91,8 @@ class System {
   /// Forces [N] that the drives exert on the driven directions: M a - f there, zero elsewhere.  Of carried
   /// nodes, what their master exerts on them.
   void reactions(const StateView& state, VecX& r);
+  /// Power [W] of the drives that follow given paths: their forces on the directions that no master carries.
+  double support_power(const StateView& state);
 
   double kinetic_energy(const StateView& state) const;  ///< 1/2 u M u [J]
   double potential_energy(const StateView& state);      ///< sum over terms [J]

@@ -1,8 +1,10 @@
 #pragma once
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <vector>
 
+#include "palpate/loop/energy.h"
 #include "palpate/loop/world.h"
 
 namespace palpate::loop {
@@ -11,7 +13,7 @@ namespace palpate::loop {
 struct TickRecord {
   double time = 0.0;  ///< at the tick's end [s]
   Pose handle, tool;
-  Twist tool_twist;
+  Twist handle_twist, tool_twist;
   /// on the tool: from the linearised contact, or, monolithic, from the contact itself
   Wrench contact;
   Wrench wanted;  ///< on the hand, before the limit
@@ -27,6 +29,9 @@ class Observer {
   virtual void tick(const TickRecord&) {}
   /// After every contact query, at its state: behind `period` where both come at one time.
   virtual void queried(World&, double /*t*/) {}
+  /// After every period, in runs of which an observer wants it: a run that nobody asks keeps no balance.
+  virtual bool wants_energy() const { return false; }
+  virtual void energy(const EnergyBalance&) {}
 };
 
 struct RunOptions {
@@ -45,8 +50,9 @@ struct RunResult {
   double linearise_s = 0.0;          ///< wall time in linearising contact for the tool
   double tool_s = 0.0;               ///< wall time in the tool's ticks
   long periods = 0, ticks = 0, contact_queries = 0, limited_ticks = 0;
-  std::vector<long> tunnelled;  ///< vertices that went through unseen, for each [[contact]]
-  long frozen_fallbacks = 0;    ///< condensed linearisations that had no factor and were frozen instead
+  std::vector<long> tunnelled;          ///< vertices that went through unseen, for each [[contact]]
+  std::optional<EnergyBalance> energy;  ///< at the end, where an observer wanted it
+  long frozen_fallbacks = 0;  ///< condensed linearisations that had no factor and were frozen instead
   dynamics::StepperCounters counters;
 };
 

@@ -1,0 +1,125 @@
+#include "palpate/loop/energy.h"
+
+#include <cmath>
+
+#include "palpate/core/counters.h"
+#include "palpate/tool/rigid_block.h"
+#include "palpate/tool/tool.h"
+#include "tool_side.h"
+
+namespace palpate::loop {
+
+void PowerIntegral::start(double t, double power) {
+  *this = {};
+  t_ = t_coarse_ = t;
+  power_ = power_coarse_ = power;
+}
+
+void PowerIntegral::add(double t, double power) {
+  fine_ += 0.5 * (t - t_) * (power_ + power);
+  t_ = t;
+  power_ = power;
+  odd_ = !odd_;
+  if (odd_) return;
+  coarse_ += 0.5 * (t - t_coarse_) * (power_coarse_ + power);
+  t_coarse_ = t;
+  power_coarse_ = power;
+  at_coarse_ = fine_;
+}
+
+double PowerIntegral::error() const { return std::abs(at_coarse_ - coarse_) / 3.0; }
+
+namespace {
+
+double power_on(const Wrench& wrench, const Twist& twist) {
+  return wrench.moment.dot(twist.angular) + wrench.force.dot(twist.linear);
+}
+
+}  // namespace
+
+EnergyLedger::EnergyLedger(World& world) : world_(world) { counters::count("loop.energy_ledger"); }
+
+double EnergyLedger::contact_energy() const {
+  return world_.contact ? world_.contact->energy(world_.state.view()) : 0.0;
+}
+
+double EnergyLedger::elastic_energy() const {
+  const dynamics::StateView view = world_.state.view();
+  double sum = 0.0;
+  for (const Body& body : world_.bodies)
+    sum += body.term->energy(view) + (body.dilatation ? body.dilatation->energy(view) : 0.0);
+  return sum;
+}
+
+// A tool with ticks of its own is no part of the System: its coupling dissipates b |v_h - v_t|^2 + b_r |w_h -
+// w_t|^2.
+double EnergyLedger::dissipated_power() const {
+  const dynamics::StateView view = world_.state.view();
+  double sum = 0.0;
+  for (const auto& term : world_.system.terms()) sum += term->dissipated_power(view);
+  const ToolSide& side = ToolSide::of(world_);
+  if (!side.tool) return sum;
+  const VirtualCouplingSpec& c = world_.description.tool->coupling;
+  const Twist tool = side.tool->twist(), &hand = side.handle_now.twist;
+  return sum + c.damping_n_s_m * (hand.linear - tool.linear).squaredNorm() +
+         c.rotational_damping_n_m_s_rad * (hand.angular - tool.angular).squaredNorm();
+}
+
+void EnergyLedger::take_stored() {
+  const dynamics::StateView view = world_.state.view();
+  const ToolSide& side = ToolSide::of(world_);
+  balance_.kinetic = view.layout->blocks.empty() ? 0.0 : world_.system.kinetic_energy(view);
+  balance_.elastic = elastic_energy();
+  balance_.contact = contact_energy();
+  balance_.other =
+      world_.system.potential_energy(view) - balance_.elastic - balance_.contact - other_at_start_;
+  if (!side.tool) return;
+  balance_.kinetic += side.tool->kinetic_energy();
+  balance_.other += side.tool->potential_energy(side.handle_now.pose);
+}
+
+void EnergyLedger::start() {
+  const double t = world_.state.time();
+  balance_ = {};
+  other_at_start_ = 0.0;
+  take_stored();
+  other_at_start_ = balance_.other;
+  balance_.other = 0.0;
+  stored_at_start_ = balance_.stored();
+  double hand = 0.0;
+  if (world_.description.tool) {
+    const device::HandleSample& handle = ToolSide::of(world_).handle_now;
+    hand =
+        -power_on(tool::coupling_on_hand(*world_.description.tool, {world_.tool_pose(), world_.tool_twist()},
+                                         {handle.pose, handle.twist}),
+                  handle.twist);
+  }
+  hand_.start(t, hand);
+  supports_.start(t, world_.system.support_power(world_.state.view()));
+  dissipated_.start(t, dissipated_power());
+}
+
+void EnergyLedger::before_query() { contact_before_ = contact_energy(); }
+void EnergyLedger::after_query() { balance_.queries += contact_energy() - contact_before_; }
+void EnergyLedger::before_material() { elastic_before_ = elastic_energy(); }
+void EnergyLedger::after_material() { balance_.materials += elastic_energy() - elastic_before_; }
+
+void EnergyLedger::tick(double t, const Wrench& on_hand, const Twist& handle) {
+  hand_.add(t, -power_on(on_hand, handle));
+}
+
+const EnergyBalance& EnergyLedger::period(double t) {
+  balance_.time = t;
+  take_stored();
+  supports_.add(t, world_.system.support_power(world_.state.view()));
+  dissipated_.add(t, dissipated_power());
+  balance_.hand = hand_.value();
+  balance_.supports = supports_.value();
+  balance_.dissipated = dissipated_.value();
+  balance_.quadrature_error = hand_.error() + supports_.error() + dissipated_.error();
+  balance_.unaccounted = balance_.stored() - stored_at_start_ - balance_.hand - balance_.supports -
+                         balance_.queries - balance_.materials + balance_.dissipated;
+  return balance_;
+}
+
+}  // namespace palpate::loop

@@ -1,0 +1,169 @@
+#include "palpate/loop/energy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "palpate/loop/run.h"
+#include "small_scenes.h"
+
+using namespace palpate;
+
+// Of sin^2, whose trapezoidal sums err at second order: the estimate is the error.
+TEST(PowerIntegral, KnowsItsError) {
+  for (const int n : {40, 80}) {
+    loop::PowerIntegral integral;
+    integral.start(0.0, 0.0);
+    for (int i = 1; i <= n; ++i) integral.add(1.0 * i / n, std::pow(std::sin(1.0 * i / n), 2));
+    const double exact = 0.5 - 0.25 * std::sin(2.0), error = std::abs(integral.value() - exact);
+    EXPECT_GT(error, 1e-6);
+    EXPECT_NEAR(integral.error() / error, 1.0, 0.02) << n;
+  }
+}
+
+namespace {
+
+struct Rows final : loop::Observer {
+  std::vector<loop::EnergyBalance> rows;
+  bool wanted = true;
+  bool wants_energy() const override { return wanted; }
+  void energy(const loop::EnergyBalance& balance) override { rows.push_back(balance); }
+};
+
+std::vector<loop::EnergyBalance> balance_of(scene::Description d) {
+  const auto world = loop::assemble(d);
+  Rows keep;
+  loop::RunOptions options;
+  options.observers = {&keep};
+  const loop::RunResult result = loop::run(*world, options);
+  EXPECT_TRUE(result.status.ok()) << result.status.message;
+  EXPECT_TRUE(result.energy);
+  return keep.rows;
+}
+
+/// The block, free, falls on the floor.
+scene::Description dropped(const char* integrator, double setting) {
+  scene::Description d = small_scenes::held_block();
+  d.bodies[0].attachments.clear();
+  d.bodies[0].position_m = Vec3(0, 0, 0.012);
+  d.gravity_m_s2 = Vec3(0, 0, -9.81);
+  ContactSpec law;
+  law.first = "block";
+  law.stiffness_pa_m = 1e6;
+  small_scenes::add_floor(d, law);
+  d.integrator.name = integrator;
+  d.integrator.rtol = setting;
+  d.exchange.contact_refresh_s = 5e-4;
+  d.duration_s = 0.1;
+  return d;
+}
+
+}  // namespace
+
+// m g h is there in every form that the block gives it, and what its damping takes out is all that is gone.
+TEST(EnergyLedger, ADroppedBlock) {
+  const auto rows = balance_of(dropped("cvode-bdf", 1e-7));
+  ASSERT_EQ(rows.size(), 200u);
+  const double weight = 1000.0 * 0.04 * 0.04 * 0.02 * 9.81, scale = weight * 0.002;
+  double elastic = 0.0, contact = 0.0, kinetic = 0.0;
+  for (const auto& row : rows) {
+    EXPECT_LT(std::abs(row.unaccounted), 5e-3 * scale + 2.0 * row.quadrature_error) << row.time;
+    EXPECT_EQ(row.hand, 0.0);
+    EXPECT_EQ(row.supports, 0.0);
+    elastic = std::max(elastic, row.elastic);
+    contact = std::max(contact, row.contact);
+    kinetic = std::max(kinetic, row.kinetic);
+  }
+  EXPECT_GT(kinetic, 0.9 * scale);
+  EXPECT_GT(elastic, 0.1 * scale);
+  EXPECT_GT(contact, 0.01 * scale);
+  EXPECT_GT(rows.back().dissipated, 0.1 * scale);
+  EXPECT_LT(rows.back().other, 0.0) << "it lies lower";
+  EXPECT_LT(rows.back().quadrature_error, 0.02 * scale);
+}
+
+namespace {
+
+/// Held nodes that are moved: the block is stretched slowly by a path.
+scene::Description stretched() {
+  scene::Description d = small_scenes::held_block();
+  AttachmentSpec top;
+  top.box_min_m = Vec3(-1, -1, 0.02 - 1e-6);
+  top.box_max_m = Vec3(1, 1, 1);
+  KeyframeSpec start, end;
+  end.time_s = 0.1;
+  end.position_m = Vec3(0, 0, 0.002);
+  top.keyframes = {start, end};
+  d.bodies[0].attachments.push_back(top);
+  d.integrator.name = "cvode-bdf";
+  d.integrator.rtol = 1e-7;
+  d.record.emplace();
+  d.record->state_period_s = 1e-3;  // the loop's period
+  d.duration_s = 0.1;
+  return d;
+}
+
+}  // namespace
+
+TEST(EnergyLedger, SupportsDoWork) {
+  const auto rows = balance_of(stretched());
+  const loop::EnergyBalance& last = rows.back();
+  EXPECT_EQ(last.materials, 0.0);
+  EXPECT_GT(last.elastic, 1e-5);
+  EXPECT_GT(last.supports, last.elastic);
+  EXPECT_NEAR((last.stored() + last.dissipated) / last.supports, 1.0, 2e-3);
+  EXPECT_LT(std::abs(last.unaccounted), 1e-3 * last.supports + 2.0 * last.quadrature_error);
+}
+
+// At twice Young's modulus the same deformation stores twice the energy, which nobody did as work.
+TEST(EnergyLedger, AChangeOfMaterialIsNamed) {
+  scene::Description d = stretched();
+  const double before = d.bodies[0].youngs_modulus_pa;
+  d.bodies[0].changes = {{0.09, 2.0 * before, ""}};
+  const auto rows = balance_of(d);
+  ASSERT_EQ(rows.size(), 100u);
+  const loop::EnergyBalance &then = rows[88], &last = rows.back();
+  EXPECT_NEAR(then.time, 0.089, 1e-9);
+  EXPECT_EQ(then.materials, 0.0);
+  EXPECT_NEAR(last.materials / then.elastic, 1.0, 0.05) << "stretched a little more by then";
+  EXPECT_LT(std::abs(last.unaccounted), 1e-3 * last.supports + 2.0 * last.quadrature_error);
+}
+
+#ifdef PALPATE_HAS_TOOL
+// The hand presses the block by the tool, monolithic: its work is what is stored and dissipated.
+TEST(EnergyLedger, TheHandsWork) {
+  scene::Description d = small_scenes::pressed_block(-1e-4);
+  KeyframeSpec pressed = d.device->keyframes[0];
+  pressed.time_s = 0.05;
+  pressed.position_m.z() -= 0.004;
+  KeyframeSpec up = d.device->keyframes[0];
+  up.time_s = 0.1;
+  d.device->keyframes = {d.device->keyframes[0], pressed, up};
+  d.exchange.scheme = "monolithic";
+  d.exchange.contact_refresh_s = 1e-3;
+  d.integrator.name = "cvode-bdf";
+  d.integrator.rtol = 1e-7;
+  d.duration_s = 0.15;
+  const auto rows = balance_of(d);
+  double most = 0.0, worst = 0.0, unaccounted = 0.0;
+  for (const auto& row : rows) {
+    most = std::max(most, row.hand);
+    worst = std::max(worst, row.quadrature_error);
+    unaccounted = std::max(unaccounted, std::abs(row.unaccounted));
+  }
+  EXPECT_GT(most, 1e-4);
+  EXPECT_LT(unaccounted, 5e-3 * most + 2.0 * worst);
+  EXPECT_LT(worst, 0.02 * most);
+  EXPECT_NEAR(rows.back().hand, rows.back().dissipated, 0.05 * most) << "nothing is left in the block";
+}
+#endif
+
+TEST(EnergyLedger, ARunThatDoesNotAskHasNone) {
+  const auto world = loop::assemble(dropped("cvode-bdf", 1e-3));
+  Rows keep;
+  keep.wanted = false;
+  loop::RunOptions options;
+  options.observers = {&keep};
+  EXPECT_FALSE(loop::run(*world, options).energy);
+  EXPECT_TRUE(keep.rows.empty());
+}
