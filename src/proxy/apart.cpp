@@ -21,17 +21,21 @@ Vec3 shorten(const Vec3& v, const Vec3& s) {
 
 }  // namespace
 
-bool apart(const ProxySet& a, int p, const ProxySet& b, int q, double margin, Vec3& direction,
-           bool& by_memory) {
-  by_memory = !direction.isZero() && least_along(a, p, b, q, direction) > margin;  // kept as a unit vector
+bool apart(const ProxySet& a, int p, const ProxySet& b, int q, double inexact, const Reach& reach,
+           Vec3& direction, bool& by_memory) {
+  const auto proves = [&](const Vec3& u) { return least_along(a, p, b, q, u) > inexact + reach.along(u); };
+  by_memory = !direction.isZero() && proves(direction);  // kept as a unit vector
   if (by_memory) return true;
+  const double margin = inexact + reach.without_drift();
   Vec3 v = a.centre(p) - b.centre(q);
   for (int i = 0; i < kSteps; ++i) {
     const double length = v.norm();
     if (!(length > margin)) break;
     direction = v / length;
-    if (least_along(a, p, b, q, direction) > margin) return true;
-    v = shorten(v, a.support(p, -v) - b.support(q, v));
+    if (proves(direction)) return true;
+    Vec3 farthest = a.support(p, -v) - b.support(q, v);
+    if (v.dot(reach.drift) < 0.0) farthest += reach.drift;
+    v = shorten(v, farthest);
   }
   return false;
 }

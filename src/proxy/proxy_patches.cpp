@@ -39,14 +39,18 @@ void ProxySet::Impl::measure(int number) {
                                            1e-13 * balls.point(ball).cwiseAbs().maxCoeff();
 }
 
-void ProxySet::patches_near(int proxy, const ProxySet& other, int hull, double gap, const Vec3& toward,
-                            std::span<const unsigned char> known, std::vector<int>& out) const {
+// A moving patch sweeps the balls from c to c + drift, which lie in the one around the middle of that way.
+void ProxySet::patches_near(int proxy, const ProxySet& other, int hull, const Reach& reach,
+                            const Vec3& toward, std::span<const unsigned char> known,
+                            std::vector<int>& out) const {
   constexpr int kQuickSteps = 2, kSteps = 4;
   Impl& s = *impl_;
   s.ready_balls(proxy);
   const ProxyState& state = s.states[static_cast<std::size_t>(proxy)];
   const ProxyState& grown = other.state(hull);
-  const double margin = grown.inflation + gap;
+  const double gap = reach.without_drift(), margin = grown.inflation + gap;
+  const Vec3 half_way = 0.5 * reach.drift;
+  const double half_length = half_way.norm();
   const int first = s.first_ball[static_cast<std::size_t>(proxy)],
             first_patch = s.skin.first_of_proxy[static_cast<std::size_t>(proxy)];
   const int count = s.skin.first_of_proxy[static_cast<std::size_t>(proxy) + 1] - first_patch;
@@ -55,8 +59,9 @@ void ProxySet::patches_near(int proxy, const ProxySet& other, int hull, double g
   const Vec3 between = (centre(proxy) - other.centre(hull)).normalized();
   for (const Vec3& direction : {toward, between})
     if (!direction.isZero() && direction.allFinite())
-      balls_beyond(direction.data(), other.most_along(hull, direction) + margin, s.balls.read(first),
-                   s.radius.data() + first, padded(count), s.near.data());
+      balls_beyond(direction.data(),
+                   other.most_along(hull, direction) + grown.inflation + reach.along(direction),
+                   s.balls.read(first), s.radius.data() + first, padded(count), s.near.data());
 
   const Vec3 low = grown.low.array() - gap, high = grown.high.array() + gap;
   const HullColumns columns{
@@ -76,9 +81,9 @@ void ProxySet::patches_near(int proxy, const ProxySet& other, int hull, double g
       const int patch = s.near_patch[i < left ? at : 0];
       if (round == static_cast<int>(twice)) s.measure(patch);
       const int ball = s.ball_of_patch[static_cast<std::size_t>(patch)];
-      const Vec3 c = s.balls.point(ball);
+      const Vec3 c = s.balls.point(ball) + half_way;
       s.near_balls.x[at] = c.x(), s.near_balls.y[at] = c.y(), s.near_balls.z[at] = c.z();
-      s.near_radius[at] = s.radius[static_cast<std::size_t>(ball)];
+      s.near_radius[at] = s.radius[static_cast<std::size_t>(ball)] + half_length;
     }
     balls_near(columns, s.near_balls.read(0), s.near_radius.data(), padded(left),
                round == static_cast<int>(twice) ? kSteps : kQuickSteps, s.near.data());

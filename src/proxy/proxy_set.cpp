@@ -148,6 +148,7 @@ void ProxySet::update(const Eigen::Ref<const Points>& nodes) {
   PALPATE_CHECK(s.soft && nodes.cols() == s.node_count, "{} node positions for proxies of a body of {}",
                 nodes.cols(), s.node_count);
   ++s.moment;
+  s.rest();
   s.motion.update(nodes);
   PALPATE_CHECK(std::isfinite(s.motion.residual()), "proxies: the position of a node is not finite");
   if (!(s.loosen() <= kLoose * s.kept_size)) {
@@ -169,6 +170,7 @@ void ProxySet::update(const Pose& pose) {
   Impl& s = *impl_;
   PALPATE_CHECK(!s.soft, "a soft body's proxies follow its nodes, not a pose");
   ++s.moment;
+  s.rest();
   for (int p = 0; p < s.count; ++p) {
     const auto at = static_cast<std::size_t>(p);
     s.states[at].linear = pose.rotation.toRotationMatrix();

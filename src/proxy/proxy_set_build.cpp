@@ -200,6 +200,7 @@ ProxySet::ProxySet(const LayeredModel& model, const ProxySetOptions& options)
     for (const int p : list)
       for (const int q : list) s.adjacent[static_cast<std::size_t>(p * s.count + q)] = 1;
   s.tree = proxy_tree(model.skeleton, model.proxies, middle);
+  s.add_motions();
   if (s.soft)
     update(model.tets.nodes);
   else

@@ -46,6 +46,22 @@ struct ProxySet::Impl {
   std::vector<int> near_patch;
   std::vector<ProxyBranch> tree;
 
+  // How it moves (proxy_motion.cpp): the nodes' velocities, or the rigid field linear X + offset.
+  Points velocities;
+  Mat3 rate = Mat3::Zero();
+  Vec3 rate_offset = Vec3::Zero();
+  double rate_norm = 0.0;          // spectral
+  std::vector<double> rest_reach;  // of a rigid proxy: what it stands for, from its rest_centre
+  ProxyMotion whole, widest;
+  std::vector<ProxyMotion> motions;
+  std::vector<long> motion_at;  // by proxy
+  long motions_set = 0;
+  std::vector<double> thickness;  // at rest
+  void rest();
+  void set_rigid_motion(const Mat3& linear, const Vec3& offset, double norm);
+  void measure_motion(int proxy);
+  void add_motions();
+
   long moment = 0;              // counts updates
   std::vector<long> fitted_at;  // by proxy
   BodyMotion motion;

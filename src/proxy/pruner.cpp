@@ -13,6 +13,12 @@
 // where it has one, the line enters through that skin, neither body is enclosed, and the skin beyond is the
 // far side of a body that holds the other from two sides; the line must not be paired with it.
 //
+// Motion.  Until the next query both bodies move on, a point of proxy i against one of proxy j by no more
+// than `Reach` says (reach.h).  Each inequality above is taken for that: along a direction u two points that
+// are farther apart than reach.along(u) do not come to touch.  So a face that comes to touch at the present
+// velocities is in a region although it is apart now, or although the body would be beyond the other when it
+// is next looked at; and a proxy that moves fast does not make the candidates of another one more.
+//
 // No double counting.  Every face of a belongs to one patch, that to one proxy i, and all that is kept
 // of i goes into one region: the faces of a are divided among the regions.  The force is an integral over a's
 // skin (each point against b's surface along its region's normal), so each point of a contributes once,
@@ -61,8 +67,14 @@
 namespace palpate::proxy {
 namespace {
 
-bool boxes_apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3& high_b, double gap) {
-  return ((low_a - high_b).array() > gap).any() || ((low_b - high_a).array() > gap).any();
+bool boxes_apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3& high_b,
+                 const Reach& reach) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 up = Vec3::Unit(axis), down = -up;
+    if (low_a[axis] - high_b[axis] > reach.along(up) || low_b[axis] - high_a[axis] > reach.along(down))
+      return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -73,7 +85,7 @@ void Pruner::Impl::visit(int x, int y) {
   const ProxyBranch &branch_a = tree_a[static_cast<std::size_t>(x)],
                     &branch_b = tree_b[static_cast<std::size_t>(y)];
   ++counts.boxes_tested;
-  if (boxes_apart(branch_a.low, branch_a.high, branch_b.low, branch_b.high, gap)) return;
+  if (boxes_apart(branch_a.low, branch_a.high, branch_b.low, branch_b.high, whole_reach)) return;
   if (branch_a.proxy >= 0 && branch_b.proxy >= 0) return test_pair(branch_a.proxy, branch_b.proxy);
   const bool open_a =
       branch_b.proxy >= 0 || (branch_a.proxy < 0 && (branch_a.high - branch_a.low).squaredNorm() >=
@@ -89,10 +101,12 @@ void Pruner::Impl::visit(int x, int y) {
 void Pruner::Impl::test_pair(int p, int q) {
   if (!allowed(p, q)) return;
   const ProxyState &hull_a = a.set.state(p), &hull_b = b.set.state(q);
-  if (boxes_apart(hull_a.low, hull_a.high, hull_b.low, hull_b.high, gap)) return;
+  const Reach within = reach(p, q);
+  if (boxes_apart(hull_a.low, hull_a.high, hull_b.low, hull_b.high, within)) return;
   ++counts.after_boxes;
   bool by_memory = false;
-  if (apart(a.set, p, b.set, q, hull_a.inflation + hull_b.inflation + gap, separating_of(p, q), by_memory)) {
+  if (apart(a.set, p, b.set, q, hull_a.inflation + hull_b.inflation, within, separating_of(p, q),
+            by_memory)) {
     ++(by_memory ? counts.apart_by_memory : counts.apart_by_search);
     return;
   }
@@ -100,37 +114,57 @@ void Pruner::Impl::test_pair(int p, int q) {
   pairs.push_back({p, q});
 }
 
-/// The patches of `own` that may reach the inflated hull `against`.
-void Pruner::Impl::keep_patches(Side& side, int own, const Side& other, int against, const Vec3& toward) {
-  Facing& facing = side.facing_of(own, counts.queries);
-  counts.patches_tested += static_cast<long>(side.set.patches(own).size());
-  side.set.patches_near(own, other.set, against, gap, toward, side.kept, near);
-  for (const int patch : near) {
-    const auto at = static_cast<std::size_t>(patch);
-    side.measure(at, counts.queries);
-    side.kept[at] = 1;
-    ++counts.patches_kept;
-    facing.add(side.areas[at]);
-  }
+void Pruner::Impl::find_pairs(double new_gap, double new_time) {
+  gap = new_gap;
+  time = new_time;
+  whole_reach = {gap, time, a.set.widest_motion(), b.set.widest_motion()};
+  ++pass;
+  pairs.clear();
+  for (Side* side : {&a, &b}) std::fill(side->kept.begin(), side->kept.end(), static_cast<unsigned char>(0));
+  visit(0, 0);
+}
+
+/// The patches of `own` that may come within reach of the inflated hull `against`.  Those that only motion
+/// brings there count for the direction of the contact as far as they lead: through skin that trails the
+/// other body cannot enter.
+void Pruner::Impl::keep_patches(Side& side, int own, const Side& other, int against, const Reach& reach,
+                                const Vec3& toward) {
+  Facing& facing = side.facing_of(own, pass);
+  const auto keep = [&](const Reach& within, bool by_motion) {
+    counts.patches_tested += static_cast<long>(side.set.patches(own).size());
+    side.set.patches_near(own, other.set, against, within, toward, side.kept, near);
+    for (const int patch : near) {
+      const auto at = static_cast<std::size_t>(patch);
+      side.measure(at, pass);
+      side.kept[at] = 1;
+      ++counts.patches_kept;
+      if (!by_motion || side.areas[at].dot(within.drift) > 0.0) facing.add(side.areas[at]);
+    }
+  };
+  keep(Reach(reach.without_drift()), false);
+  if (reach.is_moving()) keep(reach, true);
+}
+
+void Pruner::Impl::keep_patches_of(const Pair& pair) {
+  const Vec3& direction = separating_of(pair.a, pair.b);
+  const Reach within = reach(pair.a, pair.b);
+  keep_patches(a, pair.a, b, pair.b, within, direction);
+  keep_patches(b, pair.b, a, pair.a, within.from_other(), -direction);
 }
 
 /// Pairs that have kept patches, and the result for each proxy of a.
 void Pruner::Impl::collect() {
-  for (const Pair& pair : pairs) {
-    const Vec3& direction = separating_of(pair.a, pair.b);
-    keep_patches(a, pair.a, b, pair.b, direction);
-    keep_patches(b, pair.b, a, pair.a, -direction);
-  }
+  for (const Pair& pair : pairs) keep_patches_of(pair);
   std::erase_if(pairs, [&](const Pair& pair) {
-    return a.facing_of(pair.a, counts.queries).size == 0.0 && b.facing_of(pair.b, counts.queries).size == 0.0;
+    return a.facing_of(pair.a, pass).size == 0.0 && b.facing_of(pair.b, pass).size == 0.0;
   });
   std::sort(pairs.begin(), pairs.end(),
             [](const Pair& p, const Pair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
   active.clear();
   for (const Pair& pair : pairs) {
     if (active.empty() || active.back().proxy != pair.a)
-      active.push_back({pair.a, a.facing_of(pair.a, counts.queries), {}, -1});
-    active.back().b.add(b.facing_of(pair.b, counts.queries));
+      active.push_back({pair.a, a.facing_of(pair.a, pass), {}, -1});
+    active.back().b.add(b.facing_of(pair.b, pass));
   }
 }
 
@@ -153,16 +187,12 @@ Pruner::Pruner(const ProxySet& a, const ProxySet& b, const PruneOptions& options
 Pruner::~Pruner() = default;
 Pruner::Pruner(Pruner&&) noexcept = default;
 
-std::span<const ContactRegion> Pruner::query(double gap) {
+std::span<const ContactRegion> Pruner::query(double gap, double time) {
   Impl& s = *impl_;
-  PALPATE_CHECK(gap >= 0.0, "contact regions: gap = {} m", gap);
-  s.gap = gap;
+  PALPATE_CHECK(gap >= 0.0 && time >= 0.0, "contact regions: gap = {} m, time = {} s", gap, time);
   ++s.counts.queries;
   s.used = 0;
-  s.pairs.clear();
-  for (Side* side : {&s.a, &s.b})
-    std::fill(side->kept.begin(), side->kept.end(), static_cast<unsigned char>(0));
-  s.visit(0, 0);
+  s.find_pairs(gap, time);
   s.collect();
 
   s.order.resize(s.active.size());
@@ -190,6 +220,38 @@ std::span<const ContactRegion> Pruner::query(double gap) {
     ++s.used;
   }
   return {s.regions.data(), s.used};
+}
+
+void Pruner::met_on_the_way(std::vector<int>& faces_a, std::vector<int>& faces_b) {
+  constexpr double kPart = 0.25;
+  Impl& s = *impl_;
+  faces_a.clear();
+  faces_b.clear();
+  const PruneCounts before = s.counts;  // of queries alone
+  const auto may_pass = [](const ProxyMotion& p, double thickness_p, const ProxyMotion& q,
+                           double thickness_q) {
+    return (p.velocity - q.velocity).norm() + p.spread + q.spread >
+           kPart * std::min(thickness_p, thickness_q);
+  };
+  const ProxySet &a = s.a.set, &b = s.b.set;
+  if (!may_pass(a.motion(), a.rest_thickness(), b.motion(), b.rest_thickness())) return;
+  s.find_pairs(0.0, -1.0);  // back along the way
+  const bool through = std::any_of(s.pairs.begin(), s.pairs.end(), [&](const Pair& pair) {
+    return may_pass(a.motion(pair.a), a.rest_thickness(pair.a), b.motion(pair.b), b.rest_thickness(pair.b));
+  });
+  if (through) {
+    for (const Pair& pair : s.pairs) s.keep_patches_of(pair);
+    const auto gather = [](const Side& side, std::vector<int>& faces) {
+      for (std::size_t patch = 0; patch < side.kept.size(); ++patch)
+        if (side.kept[patch]) {
+          const auto list = side.set.faces(side.patches[patch]);
+          faces.insert(faces.end(), list.begin(), list.end());
+        }
+    };
+    gather(s.a, faces_a);
+    gather(s.b, faces_b);
+  }
+  s.counts = before;
 }
 
 bool Pruner::is_pair(int p, int q) const { return impl_->allowed(p, q); }

@@ -84,7 +84,9 @@ struct Pruner::Impl {
   PruneCounts counts;
   RegionFinder finder;
   Side a, b;
-  double gap = 0.0;
+  double gap = 0.0, time = 0.0;
+  Reach whole_reach;            // of any proxy of a against any of b
+  long pass = 0;                // counts queries and looks back; what `measured_at` and the like refer to
   std::vector<char> may_touch;  // by pair, of one body's bones; else empty
   // by pair: the last direction that its proxies were found apart along,
   // or that the search ended with; zero for none
@@ -128,9 +130,13 @@ struct Pruner::Impl {
                      static_cast<std::size_t>(q)] != 0;
   }
   double clear() const { return options.between_bones ? kClearOwn : kClear; }
+  Reach reach(int p, int q) const { return {gap, time, a.set.motion(p), b.set.motion(q)}; }
+  void find_pairs(double new_gap, double new_time);
   void visit(int x, int y);
   void test_pair(int p, int q);
-  void keep_patches(Side& side, int own, const Side& other, int against, const Vec3& toward);
+  void keep_patches(Side& side, int own, const Side& other, int against, const Reach& reach,
+                    const Vec3& toward);
+  void keep_patches_of(const Pair& pair);
   Vec3& separating_of(int p, int q) {
     return separating[static_cast<std::size_t>(p) * static_cast<std::size_t>(b.set.size()) +
                       static_cast<std::size_t>(q)];
@@ -141,6 +147,7 @@ struct Pruner::Impl {
   double gather(const Side& side, const std::vector<int>& proxies, Points& corners,
                 Eigen::Index& count) const;
   void turn_to(Region& region, const Vec3& n, RegionMethod method) const;
+  void measure_approach(ContactRegion& region, double inexact) const;
   bool find_plane(int number, ContactRegion& region);
   template <class Take>
   void add_facing_patches(Side& from, const std::vector<int>& from_patches, Side& to,

@@ -68,6 +68,23 @@ void Pruner::Impl::turn_to(Region& region, const Vec3& n, RegionMethod method) c
   region.method = method;
 }
 
+/// What its own proxies say along its normal.
+void Pruner::Impl::measure_approach(ContactRegion& region, double inexact) const {
+  const Vec3& n = region.region.normal;
+  region.gap = gap;
+  region.approach = 0.0;
+  region.apart = std::max(0.0, -region.region.depth - inexact);
+  region.thickness = kInfinity;
+  for (const auto& [p, q] : region.pairs) {
+    const ProxyMotion &of_p = a.set.motion(p), &of_q = b.set.motion(q);
+    region.gap = std::max(region.gap, reach(p, q).along(n));
+    region.approach =
+        std::max(region.approach, of_p.spread + of_q.spread - n.dot(of_p.velocity - of_q.velocity));
+  }
+  for (const int p : proxies_a) region.thickness = std::min(region.thickness, a.set.rest_thickness(p));
+  for (const int q : proxies_b) region.thickness = std::min(region.thickness, b.set.rest_thickness(q));
+}
+
 /// Pairs and plane of a region; false when the hulls of all its proxies together are proven apart.
 bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   constexpr double kSameSide = 0.5;
@@ -102,8 +119,10 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   if (is_clear) turn_to(region.region, region.facing.normalized(), RegionMethod::kAreas);
   // else the hulls know nothing that is sharper
   if (!is_clear || (region.region.depth > inexact && region.facing.norm() >= kClear)) {
+    double margin = gap;
+    for (const auto& [p, q] : region.pairs) margin = std::max(margin, reach(p, q).in_any_direction());
     const Region by_hulls =
-        finder.find(corners_a.leftCols(count_a), corners_b.leftCols(count_b), inexact + gap);
+        finder.find(corners_a.leftCols(count_a), corners_b.leftCols(count_b), inexact + margin);
     if (!by_hulls.found) return false;
     const Vec3& last = last_normal[static_cast<std::size_t>(proxies_a.front())];
     if (is_clear ? by_hulls.depth < region.region.depth - inexact &&
@@ -113,8 +132,10 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
     else if (!is_clear)
       turn_to(region.region, last, RegionMethod::kLastNormal);
   }
-  if (region.region.depth < -inexact - gap) return false;
+  measure_approach(region, inexact);
+  if (region.region.depth < -inexact - region.gap) return false;
   region.region.found = true;
+  counts.regions_ahead += region.apart > gap;
   const RegionMethod by = region.region.method;
   ++(by == RegionMethod::kAreas        ? counts.normals_by_areas
      : by == RegionMethod::kLastNormal ? counts.normals_kept
@@ -163,7 +184,7 @@ void Pruner::Impl::add_facing_patches(Side& from, const std::vector<int>& from_p
     if (misses(0.5 * (hull.low + hull.high), 0.5 * (hull.high - hull.low).norm())) continue;
     for (int s = to.first(q); s < to.first(q) + static_cast<int>(to.set.patches(q).size()); ++s) {
       const auto at = static_cast<std::size_t>(s);
-      to.measure(at, counts.queries);
+      to.measure(at, pass);
       if (to.areas[at].dot(up) > 0.0 && !misses(to.balls[at].centre, to.balls[at].radius)) take(s);
     }
   }
@@ -192,8 +213,7 @@ void Pruner::Impl::fill(ContactRegion& region) {
     open.assign(patches_b.begin(), patches_b.begin() + static_cast<std::ptrdiff_t>(kept_b));
     add_facing_patches(b, open, a, region, -1.0, [&](int s) {
       const auto at = static_cast<std::size_t>(s);
-      if (!a.kept[at] && std::exchange(claimed_a[at], counts.queries) != counts.queries)
-        patches_a.push_back(s);
+      if (!a.kept[at] && std::exchange(claimed_a[at], pass) != pass) patches_a.push_back(s);
     });
   }
 

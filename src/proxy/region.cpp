@@ -92,6 +92,22 @@ RegionFinder::RegionFinder() : scaled_(std::make_unique<Scaled>()) { counters::c
 RegionFinder::~RegionFinder() = default;
 RegionFinder::RegionFinder(RegionFinder&&) noexcept = default;
 
+Region RegionFinder::along(const Eigen::Ref<const Points>& a, const Eigen::Ref<const Points>& b,
+                           const Vec3& normal, double margin) {
+  check_points(a, "the first body");
+  check_points(b, "the second body");
+  Eigen::Index lowest = 0, highest = 0;
+  Region region;
+  region.depth = -(normal.transpose() * a).minCoeff(&lowest) + (normal.transpose() * b).maxCoeff(&highest);
+  region.origin = 0.5 * (a.col(lowest) + b.col(highest));
+  region.normal = normal;
+  region.method = RegionMethod::kLastNormal;
+  region.found = region.depth >= -margin;
+  has_last_ = true;
+  last_normal_ = normal;
+  return region;
+}
+
 Region RegionFinder::find(const Eigen::Ref<const Points>& a, const Eigen::Ref<const Points>& b,
                           double margin) {
   check_points(a, "the first body");

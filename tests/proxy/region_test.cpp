@@ -135,6 +135,22 @@ TEST(Region, LastNormalIsACandidate) {
   EXPECT_EQ(finder.counts().queries, 2);
 }
 
+// A plate, however it stands, is as wide as it is thick, a ball as its diameter, a tetrahedron of edges a as
+// two opposite ones are apart, a / sqrt(2).
+TEST(LeastWidth, IsThatOfKnownShapes) {
+  Points tetrahedron(3, 4);
+  tetrahedron << 1, 1, -1, -1, 1, -1, 1, -1, 1, -1, -1, 1;
+  std::mt19937 random(8);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 40; ++i) {
+    const Quat turn = quaternion_of(2.0 * Vec3(normal(random), normal(random), normal(random)));
+    EXPECT_NEAR(proxy::least_width(box(Vec3(3, 1, -2), Vec3(1.0, 0.7, 0.01), turn)), 0.02, 2e-4) << i;
+    EXPECT_NEAR(proxy::least_width(turn.toRotationMatrix() * tetrahedron), 2.0, 1e-3) << i;
+  }
+  EXPECT_NEAR(proxy::least_width(sphere(Vec3(1, 2, 3), 0.5, 2000)), 1.0, 0.01);
+  EXPECT_EQ(proxy::least_width(Points(Vec3(1, 2, 3))), 0.0);
+}
+
 TEST(Region, EmptyAndNonFinitePointsAreRefused) {
   proxy::RegionFinder finder;
   const Points cube = box(Vec3::Zero(), Vec3::Constant(0.5));

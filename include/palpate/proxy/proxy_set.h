@@ -5,6 +5,7 @@
 
 #include "palpate/core/pose.h"
 #include "palpate/mesh/layered_model.h"
+#include "palpate/proxy/reach.h"
 
 namespace palpate::proxy {
 
@@ -78,6 +79,17 @@ class ProxySet {
   void update(const Eigen::Ref<const Points>& nodes);
   void update(const Pose& pose);  ///< rigid
 
+  /// How the body moves from here on; an update puts it to rest.  The bounds stand in proxy_motion.cpp.
+  /// @param velocities  of the nodes [m/s], or their ways within some time [m]
+  void set_motion(const Eigen::Ref<const Points>& velocities);
+  void set_motion(const Twist& twist);         ///< rigid, of its frame
+  void set_motion_from(const Pose& before);    ///< rigid: its way from there to here [m]
+  const ProxyMotion& motion(int proxy) const;  ///< of its skin and its tetrahedra
+  const ProxyMotion& motion() const;           ///< of all of the body
+  /// Holds what motion(proxy) allows any of them: what is out of reach by this is so by theirs, however the
+  /// proxies are grouped into bodies.
+  const ProxyMotion& widest_motion() const;
+
   int size() const;
   int face_count() const;  ///< of the whole skin
   const ProxyState& state(int proxy) const;
@@ -88,7 +100,10 @@ class ProxySet {
   /// The corner farthest along a direction, without inflation.
   Vec3 support(int proxy, const Vec3& direction) const;
   double most_along(int proxy, const Vec3& direction) const;  ///< direction . support
-  const Vec3& centre(int proxy) const;                        ///< mean of the corners
+  /// Least width of its corners at rest [m].
+  double rest_thickness(int proxy) const;
+  double rest_thickness() const;        ///< of the thinnest [m]
+  const Vec3& centre(int proxy) const;  ///< mean of the corners
   bool neighbours(int p, int q) const;  ///< they share a vertex of the skin, or are the same
   /// they are neighbours, or share a node: of the tetrahedra that they own or that their skin hangs on
   bool grown_together(int p, int q) const;
@@ -96,11 +111,12 @@ class ProxySet {
   std::span<const SkinPatch> patches() const;  ///< all, proxy by proxy
   /// around its faces now, by the bound of its own nodes where that is much less than the proxy's
   Ball ball(const SkinPatch& patch) const;
-  /// The patches of a proxy, among all patches and ascending, that may be nearer than `gap` to an inflated
-  /// hull of a set; those left out are farther, proven.
+  /// The patches of a proxy, among all patches and ascending, that may come within reach of an inflated hull
+  /// of a set; those left out do not, proven.
+  /// @param reach   of this body against the other
   /// @param toward  unit, from that hull to this proxy: a direction to try first, zero for none
   /// @param known   by patch, all patches: not 0 for those that nobody asks for
-  void patches_near(int proxy, const ProxySet& other, int hull, double gap, const Vec3& toward,
+  void patches_near(int proxy, const ProxySet& other, int hull, const Reach& reach, const Vec3& toward,
                     std::span<const unsigned char> known, std::vector<int>& out) const;
   Vec3 area(const SkinPatch& patch) const;  ///< its area vector, moved with its proxy [m^2]
   std::span<const int> faces(const SkinPatch& patch) const;

@@ -32,6 +32,12 @@ struct ContactRegion {
   /// largest angle between its normal and what any of its
   /// proxies of a had at the last query; 0 for new ones [rad]
   double rotation = 0.0;
+  /// how far apart along the normal two points of its skins may be that come within the query's gap of each
+  /// other until the next: at least that gap, and the way that its own proxies may close [m]
+  double gap = 0.0;
+  double approach = 0.0;   ///< bound on the speed at which they come nearer along the normal, 0 or more [m/s]
+  double apart = 0.0;      ///< proven distance of its hulls along the normal, 0 or more [m]
+  double thickness = 0.0;  ///< of its thinnest proxy, at rest [m]
 };
 
 /// Counts of tested and excluded pairs since the pruner was made.
@@ -46,6 +52,7 @@ struct PruneCounts {
   long patches_tested = 0, patches_kept = 0;  ///< balls of patches against hulls
   long regions = 0;
   long regions_apart = 0;  ///< proven apart as a whole, and left out
+  long regions_ahead = 0;  ///< farther apart than the query's gap, but not out of reach
   /// regions by where their normal came from: the skins, the last query, libccd
   long normals_by_areas = 0, normals_kept = 0, normals_by_hulls = 0;
   long faces_a = 0, faces_b = 0;  ///< handed on, over all queries and regions
@@ -55,8 +62,9 @@ struct PruneCounts {
 /// Which skin of two bodies may be in contact, and in which regions.  How it decides, and why nothing is lost
 /// or counted twice, stands in pruner.cpp.
 ///
-/// Every face of a of which a point is nearer than `gap` to body b, or inside, is in exactly one region;
-/// every such face of b in each region that holds a face of a which its pair of proxies lets it meet.
+/// Every face of a of which a point is nearer than `gap` to body b, or inside, or may come to touch it within
+/// `time` at the present velocities (ProxySet::set_motion), is in exactly one region; every such face of b in
+/// each region that holds a face of a which its pair of proxies lets it meet.
 /// Directions and normals of the last query are kept, so the answer depends on the past where a normal is not
 /// unique (deep overlap); the faces do not.
 class Pruner {
@@ -67,8 +75,14 @@ class Pruner {
   Pruner(Pruner&&) noexcept;
 
   /// The regions at the present state of both sets.
-  /// @param gap  distance between skins that still counts [m], not negative
-  std::span<const ContactRegion> query(double gap);
+  /// @param gap   distance between skins that still counts [m], not negative
+  /// @param time  to the next query [s], not negative: see ContactRegion::gap
+  std::span<const ContactRegion> query(double gap, double time = 0.0);
+  /// Skin of both bodies that may have met on its way to where it is: with the sets' motions set to ways,
+  /// every face of a that any point of b passed is in `faces_a`, and the other way round.  Empty where no
+  /// pair of proxies moved by more than a quarter of the thinner one's thickness at rest: nothing has gone
+  /// through.
+  void met_on_the_way(std::vector<int>& faces_a, std::vector<int>& faces_b);
   /// Whether proxy p of a is tested against proxy q of b.
   bool is_pair(int p, int q) const;
   const PruneCounts& counts() const;

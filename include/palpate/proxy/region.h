@@ -20,6 +20,11 @@ struct Region {
   RegionMethod method = RegionMethod::kCentroids;
 };
 
+/// The least distance of two parallel planes that hold a point set between them [m], by a local search from
+/// the best of some dozens of directions: never less than the true one.
+/// @pre at least one point
+double least_width(const Eigen::Ref<const Points>& points);
+
 /// How often each safeguard acted.
 struct RegionCounts {
   long queries = 0, overlapping = 0, apart = 0;
@@ -48,6 +53,9 @@ class RegionFinder {
   /// @param margin  hulls apart by more than this are not a region [m]
   /// @throws InternalError for empty or non-finite points
   Region find(const Eigen::Ref<const Points>& a, const Eigen::Ref<const Points>& b, double margin);
+  /// The region along a given unit normal; `find` remembers it then as its last.
+  Region along(const Eigen::Ref<const Points>& a, const Eigen::Ref<const Points>& b, const Vec3& normal,
+               double margin);
   const RegionCounts& counts() const { return counts_; }
   void forget() { has_last_ = false; }  ///< the last normal
   /// Puts a normal in the last one's place: one finder serves many pairs that keep theirs.
