@@ -3,6 +3,7 @@
 
 #include "contact/ball_source.h"
 #include "contact/frame_vertices.h"
+#include "contact/safe_time.h"
 #include "contact/surface_state.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/contact/sources.h"
@@ -18,6 +19,7 @@ namespace palpate::contact {
 ///   Nearest at(x)            x and the answer in world axes
 ///   is_crossed(a, b)         whether the way from a to b, in the frame, passes through it from outside to
 ///   outside
+///   thickness()              least way through it [m]
 /// and, for balls (ball_source.h),
 ///   kRound                   whether it looks the same all around a normal
 ///   height(x, n)             how far along the unit vector n from x the line leaves it, -infinity where the
@@ -36,6 +38,8 @@ class AnalyticSource final : public SampleSource {
 
   std::string_view name() const override { return Shape::kName; }
   long tunnelled() const override { return tunnelled_; }
+  double safe_time() const override { return safe_time_; }
+  long fast_regions() const override { return fast_; }
   void add_pattern(dynamics::PatternBuilder& pattern) const override { surface_.add_vertex_pattern(pattern); }
   std::uint64_t pattern_version() const override { return surface_.vertex_pattern_version(); }
 
@@ -93,6 +97,7 @@ class AnalyticSource final : public SampleSource {
   /// gap'.
   bool find_candidates(const dynamics::StateView& state, const Pose& pose) {
     bool any = false;
+    safe_time_ = HUGE_VAL;
     const Twist twist = motion_->twist(state);
     wanted_.assign(static_cast<std::size_t>(surface_.vertex_count()), 0);
     for (int v = 0; v < surface_.vertex_count(); ++v) {
@@ -100,11 +105,13 @@ class AnalyticSource final : public SampleSource {
       const Nearest nearest = shape_.at(x);
       const double rate = nearest.normal.dot(surface_.velocity(v, state) -
                                              twist.at(x - nearest.gap * nearest.normal - pose.translation));
+      safe_time_ = std::min(safe_time_, time_to_middle(nearest.gap, rate, shape_.thickness()));
       if (nearest.gap + look_ahead_ * std::min(rate, 0.0) < candidate_gap_) {
         wanted_[static_cast<std::size_t>(v)] = 1;
         any = true;
       }
     }
+    fast_ += safe_time_ < look_ahead_;
     return any;
   }
 
@@ -138,7 +145,8 @@ class AnalyticSource final : public SampleSource {
   std::vector<int> kept_;  ///< vertices of the last query's samples, where these follow
   bool follows_ = false;
   bool seen_before_ = false, warned_ = false;
-  long tunnelled_ = 0;
+  long tunnelled_ = 0, fast_ = 0;
+  double safe_time_ = HUGE_VAL;  ///< as SampleSource::safe_time
 };
 
 /// The source of one side, soft or rigid, against a shape.

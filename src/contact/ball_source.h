@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "contact/safe_time.h"
 #include "contact/surface_state.h"
 #include "palpate/contact/obstacle.h"
 #include "palpate/contact/side.h"
@@ -56,6 +57,8 @@ class BallSource final : public SampleSource {
 
   std::string_view name() const override { return Shape::kName; }
   long tunnelled() const override { return tunnelled_; }
+  double safe_time() const override { return safe_time_; }
+  long fast_regions() const override { return fast_; }
   void add_pattern(dynamics::PatternBuilder&) const override {}
   bool has_events() const override { return false; }  // force and stiffness set in from zero
 
@@ -64,6 +67,8 @@ class BallSource final : public SampleSource {
     find_tunnelled(inverse_ * c_, state.time);
     const double gap = nearest_.gap - ball_.radius,
                  margin = candidate_gap_ - look_ahead_ * std::min(rate, 0.0);
+    safe_time_ = time_to_middle(gap, rate, shape_.thickness());
+    fast_ += safe_time_ < look_ahead_;
     if (gap < margin) sample(gap, margin, samples);
   }
 
@@ -188,7 +193,8 @@ class BallSource final : public SampleSource {
   std::vector<ContactSample> followed_;  ///< scratch
   Vec3 seen_ = Vec3::Zero();             ///< the centre at the last query, in the shape's frame
   bool seen_before_ = false;
-  long tunnelled_ = 0;
+  long tunnelled_ = 0, fast_ = 0;
+  double safe_time_ = HUGE_VAL;  ///< as SampleSource::safe_time
 };
 
 }  // namespace palpate::contact

@@ -1,6 +1,7 @@
 #include "palpate/contact/contact_force.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "contact/contact_force_impl.h"
 #include "contact/image_source.h"
@@ -345,6 +346,24 @@ void ContactForce::events(const dynamics::StateView& state, double* g) {
 std::vector<long> ContactForce::tunnelled() const {
   std::vector<long> out;
   for (const auto& pair : impl_->pairs) out.push_back(pair.source->tunnelled());
+  return out;
+}
+
+double ContactForce::safe_time() const {
+  double least = HUGE_VAL;
+  for (const auto& pair : impl_->pairs) least = std::min(least, pair.source->safe_time());
+  return least;
+}
+
+std::vector<long> ContactForce::fast_regions() const {
+  std::vector<long> out;
+  for (const auto& pair : impl_->pairs) out.push_back(pair.source->fast_regions());
+  return out;
+}
+
+std::vector<long> ContactForce::normals_kept() const {
+  std::vector<long> out;
+  for (const auto& pair : impl_->pairs) out.push_back(pair.source->normals_kept());
   return out;
 }
 

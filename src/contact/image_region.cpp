@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/safe_time.h"
 #include "palpate/core/clock.h"
 
 namespace palpate::contact {
@@ -28,6 +29,12 @@ int RegionContext::first_pixels() const {
   return options.quadrature_error > 0.0 ? std::min(options.pixels, kFirstPixels) : options.pixels;
 }
 
+void RegionContext::take_speed(double apart, double approach, double thickness) {
+  const double time = time_to_middle(apart, -approach, thickness);
+  safe_time = std::min(safe_time, time);
+  fast_regions += time < options.look_ahead;
+}
+
 void ImageRegion::forget() {
   asks_ = false;
   hits_.clear();
@@ -39,7 +46,7 @@ bool ImageRegion::ask(const ContactCamera& camera) {
   request_.camera = camera;
   request_.a = &a_;
   request_.b = &b_;
-  request_.candidate_gap = context_.candidate_gap;
+  request_.candidate_gap = candidate_gap_;
   request_.axes = axes_;
   asks_ = camera.sees_something();
   if (!asks_) forget();
@@ -74,7 +81,7 @@ bool ImageRegion::take_pair(const FacePair& pair) {
   hit.at.u = camera.u(static_cast<int>(pair.at) % camera.width);
   hit.at.v = camera.v(static_cast<int>(pair.at) / camera.width);
   if (!facing_at(pair, planes_a_, planes_b_, hit.at)) return false;
-  if (hit.at.gap() < context_.candidate_gap) {
+  if (hit.at.gap() < candidate_gap_) {
     hit.pixel = pair.at;
     hit.face_a = a_.visible[pair.a];
     hit.face_b = b_.visible[pair.b];
@@ -91,7 +98,7 @@ void ImageRegion::ask_lines() {
   for (const std::uint32_t pixel : doubtful_)
     middles.emplace_back(camera().u(static_cast<int>(pixel) % camera().width),
                          camera().v(static_cast<int>(pixel) / camera().width));
-  context_.lines.through(middles, a_, b_, camera(), context_.candidate_gap, context_.by_lines);
+  context_.lines.through(middles, a_, b_, camera(), candidate_gap_, context_.by_lines);
   context_.stages.lines += static_cast<long>(doubtful_.size());
   estimate_.reset();
   auto next = doubtful_.begin();  // both ascend
@@ -116,7 +123,7 @@ void ImageRegion::finish() {
                                   .camera = camera(),
                                   .planes_a = planes_a_,
                                   .planes_b = planes_b_,
-                                  .candidate_gap = context_.candidate_gap,
+                                  .candidate_gap = candidate_gap_,
                                   .lines_only = context_.options.backend == DepthBackend::kExact,
                                   .both_sides = context_.b->soft() != nullptr,
                                   .depths = context_.options.depths};

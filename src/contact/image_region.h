@@ -17,7 +17,9 @@ struct RegionContext {
   ImageOptions options;
   QueryStages stages;
   std::optional<QueryView> view = {};   ///< of the last query, where somebody asked
-  double candidate_gap = 0.0;           ///< of the query under way [m]
+  double candidate_gap = 0.0;           ///< what counts as near without any motion [m]
+  double safe_time = 0.0;               ///< as SampleSource::safe_time, of the query under way
+  long fast_regions = 0;                ///< as SampleSource::fast_regions
   double volume = 0.0, variance = 0.0;  ///< of its regions [m^3], [m^6]
 
   // scratch of the region that is being worked on
@@ -28,6 +30,8 @@ struct RegionContext {
   std::vector<FacePair> by_lines;
 
   bool of_one_body() const { return a == b; }
+  /// A region's part of `safe_time`.  @param thickness  of the thinner side [m]
+  void take_speed(double apart, double approach, double thickness);
   bool samples_vertices() const { return options.samples == SampleRule::kVertex; }
   Eigen::Vector2d shift() const { return {options.shift_u, options.shift_v}; }
   /// Pixels of the first image of a region: all, or as many as tell which the wanted error needs.
@@ -66,6 +70,7 @@ class ImageRegion {
   void keep_view();
 
   RegionContext& context_;
+  double candidate_gap_ = 0.0;  ///< of this region [m]
   ContactAxes axes_;
   Patch a_, b_;
   std::vector<Hit> hits_;

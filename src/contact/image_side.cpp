@@ -12,15 +12,26 @@ class SoftSide final : public ImageSide {
  public:
   explicit SoftSide(NodeSurface surface) : state_(std::move(surface)) {}
   void update(const dynamics::StateView& state) override { state_.update(state); }
-  SurfaceMotion motion(const dynamics::StateView& state) const override {
-    const auto v = state_.node_velocities(state);
-    const Vec3 mean = v.rowwise().mean();
-    return {mean, std::sqrt((v.colwise() - mean).colwise().squaredNorm().maxCoeff())};
+  proxy::ProxyMotion motion(const dynamics::StateView& state) const override {
+    return around_mean(state_.node_velocities(state));
   }
   const Faces& faces() const override { return state_.faces(); }
   const Points& positions() override { return state_.positions(); }
   Vec3 vertex(int vertex) const override { return state_.position(vertex); }
   void update(proxy::ProxySet& proxies) const override { proxies.update(state_.nodes()); }
+  void set_motion(proxy::ProxySet& proxies, const dynamics::StateView& state) const override {
+    proxies.set_motion(state_.node_velocities(state));
+  }
+  void keep() override { kept_ = state_.carriers(); }
+  proxy::ProxyMotion way() override {
+    way_ = state_.carriers() - kept_;
+    return around_mean(way_);
+  }
+  void set_way(proxy::ProxySet& proxies) override {
+    way_ = state_.carriers() - kept_;
+    proxies.set_motion(way_);
+  }
+  Vec3 kept_vertex(int vertex) const override { return state_.position(vertex, kept_); }
   SurfacePoint point(int face, const Vec3& weights, const Vec3&, const Vec3& normal) const override {
     return state_.face_point(face, weights, normal);
   }
@@ -45,7 +56,13 @@ class SoftSide final : public ImageSide {
   }
 
  private:
+  /// As proxy_motion.cpp derives it, of the whole surface.
+  proxy::ProxyMotion around_mean(const Eigen::Ref<const Points>& v) const {
+    const Vec3 mean = v.rowwise().mean();
+    return {mean, state_.weight_sum() * std::sqrt((v.colwise() - mean).colwise().squaredNorm().maxCoeff())};
+  }
   SurfaceState state_;
+  Points kept_, way_;  ///< of the carriers
 };
 
 class RigidSide final : public ImageSide {
@@ -62,7 +79,7 @@ class RigidSide final : public ImageSide {
     pose_ = motion_->pose(state);
     turn_ = pose_.rotation.toRotationMatrix();
   }
-  SurfaceMotion motion(const dynamics::StateView& state) const override {
+  proxy::ProxyMotion motion(const dynamics::StateView& state) const override {
     const Twist twist = motion_->twist(state);
     return {twist.at(turn_ * centre_), twist.angular.norm() * reach_};
   }
@@ -82,6 +99,20 @@ class RigidSide final : public ImageSide {
     out.point.fill(vertex);
     return out;
   }
+  void set_motion(proxy::ProxySet& proxies, const dynamics::StateView& state) const override {
+    proxies.set_motion(motion_->twist(state));
+  }
+  void keep() override { kept_ = pose_; }
+  // R X + p less R' X + p' about the middle: a rotation by theta moves what is r away by 2 sin(theta/2) r at
+  // most
+  proxy::ProxyMotion way() override {
+    const double angle = rotation_vector(pose_.rotation * kept_.rotation.conjugate()).norm();
+    return {pose_ * centre_ - kept_ * centre_, 2.0 * std::sin(0.5 * angle) * reach_};
+  }
+  void set_way(proxy::ProxySet& proxies) override { proxies.set_motion_from(kept_); }
+  Vec3 kept_vertex(int vertex) const override { return kept_ * Vec3(surface_.vertices.col(vertex)); }
+  Pose frame() const override { return pose_; }
+  Pose kept_frame() const override { return kept_; }
   SurfacePoint point(int, const Vec3&, const Vec3& world, const Vec3&) const override {
     SurfacePoint point;
     point.frame = frame_;
@@ -93,7 +124,7 @@ class RigidSide final : public ImageSide {
   TriMesh surface_;
   int frame_;
   std::shared_ptr<MovingFrame> motion_;
-  Pose pose_;
+  Pose pose_, kept_;
   Mat3 turn_ = Mat3::Identity();
   Vec3 centre_ = Vec3::Zero();  ///< of the surface's box, in the frame
   double reach_ = 0.0;          ///< of a vertex from there

@@ -10,12 +10,6 @@
 
 namespace palpate::contact {
 
-/// Velocities of a surface: all of its points' lie within `spread` of `mean` [m/s].
-struct SurfaceMotion {
-  Vec3 mean = Vec3::Zero();
-  double spread = 0.0;
-};
-
 /// One of the two surfaces of an image: a soft body's, or a rigid one in a frame.
 class ImageSide {
  public:
@@ -23,11 +17,22 @@ class ImageSide {
   virtual ~ImageSide() = default;
   std::uint64_t number() const { return number_; }  ///< no other side of this process has it
   virtual void update(const dynamics::StateView& state) = 0;
-  virtual SurfaceMotion motion(const dynamics::StateView& state) const = 0;  ///< @pre updated
+  virtual proxy::ProxyMotion motion(const dynamics::StateView& state) const = 0;  ///< @pre updated
   virtual const Faces& faces() const = 0;
   virtual const Points& positions() = 0;                    ///< of all vertices [m], world
   virtual Vec3 vertex(int vertex) const = 0;                ///< of one
   virtual void update(proxy::ProxySet& proxies) const = 0;  ///< proxies of this surface, as it stands now
+  /// How they move: with the velocities of the state.
+  virtual void set_motion(proxy::ProxySet& proxies, const dynamics::StateView& state) const = 0;
+
+  // The way since the surface was last kept.
+  virtual void keep() = 0;  ///< as it is now
+  virtual proxy::ProxyMotion way() = 0;
+  virtual void set_way(proxy::ProxySet& proxies) = 0;  ///< as their motion
+  virtual Vec3 kept_vertex(int vertex) const = 0;
+  /// The frame that a rigid surface is in, now and when it was kept; of a soft one the world's.
+  virtual Pose frame() const { return {}; }
+  virtual Pose kept_frame() const { return {}; }
   /// A point of a face as a side of a sample with this normal, by its corners' weights and where that is.
   virtual SurfacePoint point(int face, const Vec3& weights, const Vec3& world, const Vec3& normal) const = 0;
 

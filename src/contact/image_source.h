@@ -5,6 +5,7 @@
 
 #include "contact/coupled_nodes.h"
 #include "contact/image_region.h"
+#include "contact/passed_vertices.h"
 
 namespace palpate::contact {
 
@@ -25,6 +26,9 @@ class ImageSource : public SampleSource {
   const QueryStages* stages() const final { return &context_.stages; }
   void keep_view() final { context_.view.emplace(); }
   const QueryView* view() const final { return context_.view ? &*context_.view : nullptr; }
+  long tunnelled() const final { return tunnelled_; }
+  double safe_time() const final { return context_.safe_time; }
+  long fast_regions() const final { return context_.fast_regions; }
   ImageSource* asks_together() final {
     return context_.options.backend == DepthBackend::kGpu ? this : nullptr;
   }
@@ -42,7 +46,12 @@ class ImageSource : public SampleSource {
   void add_image_time(double seconds) { context_.stages.images_s += seconds; }
 
  protected:
-  virtual std::size_t find_regions() = 0;  ///< of the sides as they are; how many
+  virtual std::size_t find_regions(const dynamics::StateView& state) = 0;  ///< how many there are now
+  /// Faces of either side, of which some may have met since the sides were kept; empty where none can have
+  /// gone through.  @return how thick the thinner side is [m]
+  virtual double find_met(std::vector<int>& faces_a, std::vector<int>& faces_b) = 0;
+  /// Whether a vertex of one face may meet another face.
+  virtual bool may_meet(int, int) const { return true; }
   virtual std::unique_ptr<ImageRegion> make_region() = 0;
   /// Starts on region number `index`, in an object that another one may have used.
   virtual void start(ImageRegion& region, std::size_t index) = 0;
@@ -53,7 +62,14 @@ class ImageSource : public SampleSource {
   std::size_t begin(const dynamics::StateView& state);
   void end(std::span<const ContactSample> samples);
   ImageRegion& region(std::size_t place);
+  /// Counts what went through since the last query.
+  void look_back(double t);
+  SurfaceWays ways_of(const ImageSide& side, const std::vector<int>& faces, const ImageSide& axes) const;
 
+  PassedVertices passed_;
+  std::vector<int> met_a_, met_b_;  ///< scratch: faces
+  long tunnelled_ = 0;
+  bool kept_ = false, warned_ = false;
   std::unique_ptr<DepthImage> image_;
   std::string fallback_;
   std::vector<std::unique_ptr<ImageRegion>> regions_;

@@ -48,6 +48,7 @@ class PrunedRegion final : public ImageRegion {
   void start(const proxy::ContactRegion& region) {
     forget();
     proxies_ = &region.pairs;
+    candidate_gap_ = region.gap;
     axes_ = ContactAxes(region.region.origin, region.region.normal);
     {
       const ScopedTimer timer(context_.stages.patches_s);
@@ -112,7 +113,7 @@ class PrunedRegion final : public ImageRegion {
     piece_b_.see(axes_, 1.0, b_);
     set_sources(piece_a_.source(*context_.a), piece_b_.source(*context_.b));
     window_ = piece_a_.sees_nothing() || piece_b_.sees_nothing() ? ContactWindow{}
-                                                                 : fit_window(a_, b_, context_.candidate_gap);
+                                                                 : fit_window(a_, b_, candidate_gap_);
   }
 
   void leave_own_tissue() {
@@ -186,17 +187,39 @@ class PrunedSource final : public ImageSource {
         pruned_.proxy_of_face[static_cast<std::size_t>(face)] = patch.proxy;
   }
 
+  long normals_kept() const override { return pruned_.pruner.counts().normals_kept; }
   const proxy::PruneCounts* pruning() const override { return &pruned_.pruner.counts(); }
 
  protected:
-  std::size_t find_regions() override {
+  std::size_t find_regions(const dynamics::StateView& state) override {
     const ScopedTimer timer(context_.stages.regions_s);
-    context_.a->update(*pruned_.proxies_a);
-    if (!context_.of_one_body()) context_.b->update(*pruned_.proxies_b);
     pruned_.kept_a.clear();
     pruned_.kept_b.clear();
-    found_ = pruned_.pruner.query(context_.candidate_gap);
+    if (!placed_) place();
+    placed_ = false;
+    const double time = context_.options.look_ahead;
+    if (time > 0.0) {
+      context_.a->set_motion(*pruned_.proxies_a, state);
+      if (!context_.of_one_body()) context_.b->set_motion(*pruned_.proxies_b, state);
+    }
+    found_ = pruned_.pruner.query(context_.candidate_gap, time);
+    for (const proxy::ContactRegion& region : found_)
+      context_.take_speed(region.apart, region.approach, region.thickness);
     return found_.size();
+  }
+  double find_met(std::vector<int>& faces_a, std::vector<int>& faces_b) override {
+    place();
+    context_.a->set_way(*pruned_.proxies_a);
+    if (!context_.of_one_body()) context_.b->set_way(*pruned_.proxies_b);
+    pruned_.pruner.met_on_the_way(faces_a, faces_b);
+    placed_ = context_.options.look_ahead > 0.0;  // else they rest
+    return std::min(pruned_.proxies_a->rest_thickness(), pruned_.proxies_b->rest_thickness());
+  }
+  bool may_meet(int face, int other) const override {
+    if (!context_.of_one_body()) return true;
+    const int p = pruned_.proxy_of_face[static_cast<std::size_t>(face)],
+              q = pruned_.proxy_of_face[static_cast<std::size_t>(other)];
+    return pruned_.pruner.is_pair(p, q) || pruned_.pruner.is_pair(q, p);
   }
   std::unique_ptr<ImageRegion> make_region() override {
     return std::make_unique<PrunedRegion>(context_, pruned_);
@@ -214,8 +237,14 @@ class PrunedSource final : public ImageSource {
     }
     return faces;
   }
+  void place() {
+    context_.a->update(*pruned_.proxies_a);
+    if (!context_.of_one_body()) context_.b->update(*pruned_.proxies_b);
+    placed_ = true;
+  }
 
   PrunedContext pruned_;
+  bool placed_ = false;                          ///< the proxies are where the sides are
   std::span<const proxy::ContactRegion> found_;  ///< of the query under way
 };
 

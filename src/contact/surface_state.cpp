@@ -22,6 +22,8 @@ SurfaceState::SurfaceState(NodeSurface surface) : surface_(std::move(surface)) {
   PALPATE_CHECK(surface_.embedding.weights.cols() == vertex_count(),
                 "contact skin: {} weights for {} vertices", surface_.embedding.weights.cols(),
                 vertex_count());
+  for (int v = 0; v < vertex_count_; ++v)
+    weight_sum_ = std::max(weight_sum_, surface_.embedding.weights.col(v).cwiseAbs().sum());
   carriers_ = surface_.embedding.tet;
   std::sort(carriers_.begin(), carriers_.end());
   carriers_.erase(std::unique(carriers_.begin(), carriers_.end()), carriers_.end());
@@ -66,6 +68,14 @@ void SurfaceState::evaluate(int vertex) const {
                            w[2] * nodes_.col(corner[2]) + w[3] * nodes_.col(corner[3]);
   evaluated_[static_cast<std::size_t>(vertex)] = static_cast<std::uint32_t>(updates_);
   ++evaluations_;
+}
+
+Vec3 SurfaceState::position(int vertex, const Points& carriers) const {
+  if (!is_skin()) return carriers.col(vertex);
+  Vec3 x = Vec3::Zero();
+  for (int k = 0; k < 4; ++k)
+    x += surface_.embedding.weights(k, vertex) * carriers.col(surface_.tets(k, tet_of(vertex)));
+  return x;
 }
 
 Vec3 SurfaceState::velocity(int vertex, const dynamics::StateView& state) const {

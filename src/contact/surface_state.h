@@ -32,10 +32,16 @@ class SurfaceState {
   /// Positions of a skin's vertices that were computed so far, over all updates.
   long evaluations() const { return evaluations_; }
   const Points& nodes() const { return nodes_; }  ///< of the block, of a skin only
+  /// What the vertices hang on, now: the nodes of a skin, else they themselves.
+  const Points& carriers() const { return is_skin() ? nodes_ : positions_; }
+  /// Where a vertex is when these are there.
+  Vec3 position(int vertex, const Points& carriers) const;
   Vec3 velocity(int vertex, const dynamics::StateView& state) const;
-  /// Of all nodes of the block: what a point of the surface moves with is a mean of some of them, but for the
-  /// rest offset of a skin.  @pre updated
+  /// Of all nodes of the block: a point of the surface moves with a mean of some of them, of weights that sum
+  /// to one.  @pre updated
   Eigen::Map<const Points> node_velocities(const dynamics::StateView& state) const;
+  /// Largest sum |w| of a vertex' weights: one, or more where a skin lies outside its tetrahedra.
+  double weight_sum() const { return weight_sum_; }
   /// One vertex as a contact point; its nodes are counted over all node blocks.
   SurfacePoint vertex_point(int vertex) const;
   /// The point of a face with these weights of its corners, for a force along `normal`.
@@ -78,6 +84,7 @@ class SurfaceState {
 
   NodeSurface surface_;
   std::vector<int> carriers_;  ///< of a skin: the tetrahedra that carry a vertex, each once
+  double weight_sum_ = 1.0;
   int node_offset_ = 0;
   std::uint64_t pattern_version_ = 0;
   void evaluate(int vertex) const;

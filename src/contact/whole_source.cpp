@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "contact/image_source.h"
 #include "palpate/core/clock.h"
@@ -12,8 +14,9 @@ class WholeRegion final : public ImageRegion {
  public:
   using ImageRegion::ImageRegion;
 
-  void start(const proxy::Region& plane) {
+  void start(const proxy::Region& plane, double candidate_gap) {
     forget();
+    candidate_gap_ = candidate_gap;
     axes_ = ContactAxes(plane.origin, plane.normal);
     {
       const ScopedTimer timer(context_.stages.patches_s);
@@ -22,7 +25,7 @@ class WholeRegion final : public ImageRegion {
       a_.faces = &context_.a->faces();
       b_.faces = &context_.b->faces();
       set_sources({context_.a.get(), all(faces_a_, a_)}, {context_.b.get(), all(faces_b_, b_)});
-      window_ = fit_window(a_, b_, context_.candidate_gap);
+      window_ = fit_window(a_, b_, candidate_gap_);
     }
     finest_ = false;
     seen_ = ask(camera_of(window_, context_.first_pixels(), context_.shift()));
@@ -36,9 +39,13 @@ class WholeRegion final : public ImageRegion {
     finish();
     keep_view();
     const ScopedTimer timer(context_.stages.gaps_s);
-    for (const Hit& hit : hits_)
+    for (const Hit& hit : hits_) {
       samples.push_back(sample_of(hit.at, hit.area, *context_.a, hit.face_a, *context_.b, hit.face_b, axes_));
+      presses_ = presses_ || hit.at.gap() < 0.0;
+    }
   }
+  /// Whether something pressed at the last query that looked at it, once.
+  bool take_presses() { return std::exchange(presses_, false); }
 
  private:
   static std::span<const int> all(std::vector<int>& faces, const Patch& patch) {
@@ -51,26 +58,78 @@ class WholeRegion final : public ImageRegion {
 
   std::vector<int> faces_a_, faces_b_;
   ContactWindow window_;
-  bool finest_ = false, seen_ = false;
+  bool finest_ = false, seen_ = false, presses_ = false;
 };
 
 /// One region.
+///
+/// The finder's normal is the shortest way out of each other for the hulls.  Deeper than half of a body that
+/// is out through its other side: followed, the contact would pull the bodies through each other.  So as long
+/// as they have pressed each other since, the normal stays on the side that they came from.
 class WholeSource final : public ImageSource {
  public:
   using ImageSource::ImageSource;
 
+  long normals_kept() const override { return normals_kept_; }
+
  protected:
-  std::size_t find_regions() override {
+  std::size_t find_regions(const dynamics::StateView& state) override {
     const ScopedTimer timer(context_.stages.regions_s);
-    plane_ = finder_.find(context_.a->positions(), context_.b->positions(), context_.candidate_gap);
-    return plane_.found ? 1 : 0;
+    ImageSide &a = *context_.a, &b = *context_.b;
+    const double time = context_.options.look_ahead;
+    const proxy::ProxyMotion of_a = time > 0.0 ? a.motion(state) : proxy::ProxyMotion{},
+                             of_b = time > 0.0 ? b.motion(state) : proxy::ProxyMotion{};
+    const proxy::Reach reach(context_.candidate_gap, time, of_a, of_b);
+    const Vec3 last = plane_.normal;
+    plane_ = finder_.find(a.positions(), b.positions(), reach.in_any_direction());
+    const bool pressed = one_ && one_->take_presses();
+    if (pressed && plane_.depth > 0.0 && plane_.normal.dot(last) < kSameSide) {
+      plane_ = finder_.along(a.positions(), b.positions(), last, reach.in_any_direction());
+      ++normals_kept_;
+    }
+    gap_ = reach.along(plane_.normal);
+    context_.take_speed(std::max(0.0, -plane_.depth),
+                        of_a.spread + of_b.spread - plane_.normal.dot(of_a.velocity - of_b.velocity),
+                        thickness());
+    return plane_.found && plane_.depth >= -gap_ ? 1 : 0;
   }
-  std::unique_ptr<ImageRegion> make_region() override { return std::make_unique<WholeRegion>(context_); }
-  void start(ImageRegion& region, std::size_t) override { static_cast<WholeRegion&>(region).start(plane_); }
+  double find_met(std::vector<int>& faces_a, std::vector<int>& faces_b) override {
+    constexpr double kPart = 0.25;  // of the thickness, which may have been squeezed: see proxy/pruner.h
+    faces_a.clear();
+    faces_b.clear();
+    const proxy::ProxyMotion of_a = context_.a->way(), of_b = context_.b->way();
+    if (!((of_a.velocity - of_b.velocity).norm() + of_a.spread + of_b.spread > kPart * thickness()))
+      return thickness();
+    faces_a.resize(static_cast<std::size_t>(context_.a->faces().cols()));
+    faces_b.resize(static_cast<std::size_t>(context_.b->faces().cols()));
+    std::iota(faces_a.begin(), faces_a.end(), 0);
+    std::iota(faces_b.begin(), faces_b.end(), 0);
+    return thickness();
+  }
+  std::unique_ptr<ImageRegion> make_region() override {
+    auto region = std::make_unique<WholeRegion>(context_);
+    one_ = region.get();
+    return region;
+  }
+  void start(ImageRegion& region, std::size_t) override {
+    static_cast<WholeRegion&>(region).start(plane_, gap_);
+  }
 
  private:
+  /// Of the thinner body, at the first query [m].
+  double thickness() {
+    if (thickness_ < 0.0)
+      thickness_ =
+          std::min(proxy::least_width(context_.a->positions()), proxy::least_width(context_.b->positions()));
+    return thickness_;
+  }
+
+  static constexpr double kSameSide = 0.5;  // cosine
   proxy::RegionFinder finder_;
   proxy::Region plane_;
+  WholeRegion* one_ = nullptr;  ///< null before something was near
+  long normals_kept_ = 0;
+  double gap_ = 0.0, thickness_ = -1.0;
 };
 
 }  // namespace

@@ -89,13 +89,7 @@ Vec3 force_on_left(const Bar& bar, contact::ContactForce& term) {
   return left;
 }
 
-}  // namespace
-
-ON_EACH_BACKEND(OwnContact);
-
-// Two bodies, and one body of the same nodes in two shells: the same samples, forces and tangent, to
-// rounding.
-TEST_P(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
+void expect_that_of_two_bodies(double look_ahead) {
   const LayeredModel a = ball(Pose{}, 1.0),
                      b = ball({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2),
                      both = together(a, b);
@@ -109,13 +103,15 @@ TEST_P(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
   ContactSpec with_all = law();
   with_all.damping_pa_s_m = 1e5;
   with_all.friction = 0.4;
+  contact::ImageOptions with = options(0.02);
+  with.look_ahead = look_ahead;
   contact::ContactForce between, within;
   between.add_pair(
       contact::make_image_source(surface_of(a, block_a), std::make_shared<proxy::ProxySet>(a),
-                                 surface_of(b, block_b), std::make_shared<proxy::ProxySet>(b), options(0.02)),
+                                 surface_of(b, block_b), std::make_shared<proxy::ProxySet>(b), with),
       with_all);
   within.add_pair(contact::make_image_source(surface_of(both, block), std::make_shared<proxy::ProxySet>(both),
-                                             rest, options(0.02)),
+                                             rest, with),
                   with_all);
   const int n = static_cast<int>(a.tets.nodes.size());
   for (const double shift : {0.0, 0.1, 0.1}) {  // and again, a rolling off: normals are remembered alike
@@ -136,6 +132,9 @@ TEST_P(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
       deep += s.gap < 0.0;
     }
     EXPECT_GT(deep, 300);
+    const auto farthest = std::max_element(within.samples().begin(), within.samples().end(),
+                                           [](const auto& s, const auto& t) { return s.gap < t.gap; });
+    EXPECT_EQ(farthest->gap > 0.02, look_ahead > 0.0);
     const VecX f = force(between, two), g = force(within, one);
     EXPECT_GT(f.norm(), 100.0);
     EXPECT_LT((f - g).norm(), 1e-12 * f.norm());
@@ -151,6 +150,17 @@ TEST_P(OwnContact, IsThatOfTwoBodiesOfTheSameShape) {
   EXPECT_EQ(of_two.faces_a, of_one.faces_a);
   EXPECT_EQ(of_two.faces_b, of_one.faces_b);
 }
+
+}  // namespace
+
+ON_EACH_BACKEND(OwnContact);
+
+// Two bodies, and one body of the same nodes in two shells: the same samples, forces and tangent, to
+// rounding.
+TEST_P(OwnContact, IsThatOfTwoBodiesOfTheSameShape) { expect_that_of_two_bodies(0.0); }
+
+// Candidates that are looked ahead for go with the region that they are in, so they are the same, too.
+TEST_P(OwnContact, LooksAheadAsTwoBodiesDo) { expect_that_of_two_bodies(0.3); }
 
 // The gap that is looked into is larger than the bar is thick, and its proxies are so few that their hulls
 // reach across each other.

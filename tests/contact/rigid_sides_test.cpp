@@ -325,6 +325,26 @@ TEST(RigidSides, ABallFollowsWhereGapsAreExact) {
   }
 }
 
+// A ball flies at a plate: the next query is due when it has gone half of the plate's thickness into it.
+TEST(RigidSides, ABallSaysWhenTheNextQueryIsDue) {
+  const dynamics::State state;
+  const auto asked = [&](double height, double speed, double look_ahead) {
+    const auto motion = std::make_shared<contact::TrajectoryFrame>();
+    motion->append(0.0, {Quat::Identity(), Vec3(0, 0, 0.01 + kR + height)},
+                   {Vec3::Zero(), Vec3(0, 0, speed)});
+    const auto source =
+        contact::make_box_source(contact::FrameBall{kR, Vec3::Zero(), 0, motion}, 1, contact::fixed_frame(),
+                                 {}, Vec3(2, 2, 0.02), 0.01, look_ahead);
+    query(*source, state);
+    return std::pair(source->safe_time(), source->fast_regions());
+  };
+  EXPECT_NEAR(asked(0.5, -50.0, 0.01).first, (0.5 + 0.01) / 50.0, 1e-12);
+  EXPECT_EQ(asked(0.5, -50.0, 0.01).second, 0);
+  EXPECT_EQ(asked(0.5, -50.0, 0.02).second, 1);
+  EXPECT_NEAR(asked(-0.004, -50.0, 0.01).first, 0.01 / 50.0, 1e-12) << "in it already: from there";
+  EXPECT_EQ(asked(0.5, 50.0, 0.02).first, HUGE_VAL);
+}
+
 // With the tool's motion given nothing in the State feels an obstacle: no force, no matrix, no event; the
 // wrench on the tool is whole.
 TEST(RigidSides, AGivenToolFeelsAnObstacleAndTheStateDoesNot) {

@@ -316,6 +316,37 @@ TEST(Tunnelling, IsSeenFromTheFrameThatMoves) {
   EXPECT_EQ(source->tunnelled(), 3);
 }
 
+// A block of three vertices flies at a plate: the next query is due when they are half of its thickness deep.
+TEST(Tunnelling, SaysWhenTheNextQueryIsDue) {
+  TriMesh one;
+  one.vertices = Points::Zero(3, 3);
+  one.faces.resize(3, 1);
+  one.faces << 0, 1, 2;
+  SurfaceWorld world(one);
+  for (int i = 0; i < 3; ++i) {
+    world.state.q().segment<3>(6 + 3 * i) = Vec3(0, 0, 0.51) + 1e-4 * Vec3(i == 1, i == 2, 0);
+    world.state.u().segment<3>(6 + 3 * i) = Vec3(0, 0, -50.0);
+  }
+  const auto asked = [&](contact::SampleSource& source) {
+    std::vector<contact::ContactSample> samples;
+    source.query(world.state.view(), samples);
+    return source.safe_time();
+  };
+  const auto frame = contact::fixed_frame();
+  const auto box = contact::make_box_source(world.surface, 0, frame, {}, Vec3(2, 2, 0.02), 0.01, 0.01);
+  EXPECT_NEAR(asked(*box), (0.5 + 0.01) / 50.0, 1e-12);
+  EXPECT_EQ(box->fast_regions(), 0) << "the next query comes before they are through";
+  const auto late = contact::make_box_source(world.surface, 0, frame, {}, Vec3(2, 2, 0.02), 0.01, 0.02);
+  asked(*late);
+  EXPECT_EQ(late->fast_regions(), 1);
+  const auto sphere = contact::make_sphere_source(world.surface, 0, frame, Vec3::Zero(), 0.01, 0.01, 0.01);
+  EXPECT_NEAR(asked(*sphere), (0.5 + 0.01) / 50.0, 1e-6);
+  const auto plane = contact::make_plane_source(world.surface, 0, frame, Vec3::Zero(), Vec3::UnitZ(), 0.01);
+  EXPECT_EQ(asked(*plane), HUGE_VAL) << "behind a plane is inside";
+  world.state.u().setZero();
+  EXPECT_EQ(asked(*box), HUGE_VAL);
+}
+
 // A skin's vertices make the samples that nodes in their places would make.
 TEST(Skins, VerticesActAsNodesInTheirPlaces) {
   SkinWorld skin;

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string>
@@ -62,9 +63,17 @@ class SampleSource {
   virtual std::uint64_t pattern_version() const { return 0; }
   /// Whether a sample's opening and closing is a kink of the force that a root finder should stop at.
   virtual bool has_events() const { return true; }
-  /// Vertices that went through the shape between two queries, outside it at both: nothing has pushed them
-  /// back.
+  /// Vertices that went through the shape or the other body between two queries, outside it at both: nothing
+  /// has pushed them back.
   virtual long tunnelled() const { return 0; }
+  /// How long after the last query, at the velocities that it saw, the next is due, so that until then no
+  /// skin goes farther into what it touches than half of its thickness [s].
+  virtual double safe_time() const { return HUGE_VAL; }
+  /// How often a region was so fast that this is less than the time to the next query.
+  virtual long fast_regions() const { return 0; }
+  /// Regions so deep, or so much enclosed, that no skin says which way is out: they kept the normal of the
+  /// query before.
+  virtual long normals_kept() const { return 0; }
   /// What was left out before the image, of a source that has proxies; else null.
   virtual const proxy::PruneCounts* pruning() const { return nullptr; }
   /// Of a source in image space; else null.
@@ -164,6 +173,9 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   double largest_lagged_friction() const;
   /// Vertices of each pair, in their order, that went through unseen so far (SampleSource::tunnelled).
   std::vector<long> tunnelled() const;
+  double safe_time() const;                ///< the least of the pairs' [s]
+  std::vector<long> fast_regions() const;  ///< of each pair
+  std::vector<long> normals_kept() const;  ///< of each pair
   /// What the proxies of each pair left out, in the pairs' order; null for a pair without proxies.
   std::vector<const proxy::PruneCounts*> pruning() const;
   /// Where the time of each pair's queries went; null for a pair without an image.

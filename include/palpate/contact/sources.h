@@ -73,8 +73,8 @@ struct ImageOptions {
   SampleRule samples = SampleRule::kPixel;
   DepthReading depths = DepthReading::kTriangles;  ///< of vertices
   double candidate_gap = 0.0;                      ///< [m]; 0: a quarter of the soft surface's mean edge
-  /// [s] to the next query: the candidate gap is at least what the surfaces may come nearer in this time at
-  /// their present velocities, but for a body against itself
+  /// [s] to the next query: a region's candidate gap is at least what its surfaces may come nearer in this
+  /// time at their present velocities
   double look_ahead = 0.0;
   /// the pixel grid moved by this part of a pixel, in [0, 1): for studies of the pixels' error
   double shift_u = 0.0;

@@ -46,6 +46,7 @@ class Box {
     for (int i = 0; i < 3; ++i) part.cut(a[i], b[i] - a[i], -half_[i], half_[i]);
     return part.s0 < part.s1;
   }
+  double thickness() const { return 2.0 * half_.minCoeff(); }
 
  private:
   bool outside(const Vec3& x) const { return ((x.cwiseAbs() - half_).array() > 0.0).any(); }

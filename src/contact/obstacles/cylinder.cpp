@@ -45,6 +45,7 @@ class Cylinder {
     cut_round(a, d, part);
     return part.s0 < part.s1;
   }
+  double thickness() const { return 2.0 * std::min(radius_, half_); }
 
  private:
   // |a + s d|^2 <= r^2 in x and y: A s^2 + 2 B s + C <= 0.

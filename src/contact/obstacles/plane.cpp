@@ -24,6 +24,7 @@ class Plane {
                        : -std::numeric_limits<double>::infinity();
   }
   bool is_crossed(const Vec3&, const Vec3&) const { return false; }  // whatever is through is inside
+  double thickness() const { return HUGE_VAL; }
 
  private:
   Vec3 point_, normal_;

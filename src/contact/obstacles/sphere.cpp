@@ -36,6 +36,7 @@ class Sphere {
     return from_a.squaredNorm() > r2 && (centre_ - b).squaredNorm() > r2 &&
            (from_a - s * d).squaredNorm() < r2;
   }
+  double thickness() const { return 2.0 * radius_; }
 
  private:
   Vec3 centre_;

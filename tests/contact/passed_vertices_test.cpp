@@ -1,0 +1,119 @@
+// Vertices that go through a closed surface between two times, against what theory says of the same ways.
+#include "contact/passed_vertices.h"
+
+#include "surfaces.h"
+
+using namespace contact_tests;
+
+namespace {
+
+contact::SurfaceWays still(const TriMesh& mesh) { return {mesh.faces, mesh.vertices, mesh.vertices, {}, {}}; }
+
+/// Vertices alone, from one place to another.
+contact::SurfaceWays points(const Points& before, const Points& now) {
+  return {Faces(3, 0), before, now, {}, {}};
+}
+
+long passed(const Vec3& from, const Vec3& to, const contact::SurfaceWays& through) {
+  return contact::PassedVertices().count(points(from, to), through, 0.0);
+}
+
+}  // namespace
+
+TEST(PassedVertices, WhatGoesThroughIsCountedAndNothingElse) {
+  const auto box = still(mesh::box_surface(Vec3(2, 2, 0.1), {8, 8, 1}));
+  EXPECT_EQ(passed({0.1, 0.2, 1}, {0.3, 0.1, -1}, box), 1);
+  EXPECT_EQ(passed({0.3, 0.1, -1}, {0.1, 0.2, 1}, box), 1) << "back again";
+  EXPECT_EQ(passed({0.25, 0.25, 1}, {0.25, 0.25, -1}, box), 1) << "through corners of triangles";
+  EXPECT_EQ(passed({0.1, 0.1, 1}, {0.1, 0.1, -1}, box), 1) << "through edges";
+  EXPECT_EQ(passed({0.1, 0.2, 1}, {0.1, 0.2, 0.01}, box), 0) << "it is inside";
+  EXPECT_EQ(passed({0.1, 0.2, 0.01}, {0.1, 0.2, -1}, box), 0) << "it was seen inside";
+  EXPECT_EQ(passed({0.1, 0.2, 1}, {3, 0, -1}, box), 0) << "it passes by";
+  EXPECT_EQ(passed({0.1, 0.2, 1}, {0.1, 0.2, 0.06}, box), 0);
+  EXPECT_EQ(passed({0.1, 0.2, 1}, {0.1, 0.2, 1}, box), 0) << "it stands still";
+  EXPECT_EQ(passed({-3, 0.03, 0.01}, {3, 0.02, 0.02}, box), 1) << "lengthwise";
+}
+
+// An edge that is grazed: the way inside is the cut through the corner, seen from the box.
+TEST(PassedVertices, AWayThatIsShortDoesNotCount) {
+  const TriMesh mesh = mesh::box_surface(Vec3(2, 2, 0.1), {8, 8, 1});
+  const Vec3 out_of_side(1.03, 0.3, 0.02), in_at_top(0.97, 0.3, 0.08);  // between them the edge is touched
+  const auto graze = [&](double deep, double least) {
+    const Vec3 shift = -deep * Vec3(1, 0, 1).normalized();
+    return contact::PassedVertices().count(points(in_at_top + shift, out_of_side + shift), still(mesh),
+                                           least);
+  };
+  // a cut `deep` below a right-angled edge is 2 deep long
+  EXPECT_EQ(graze(0.01, 0.019), 1);
+  EXPECT_EQ(graze(0.01, 0.021), 0);
+  EXPECT_EQ(graze(-0.001, 0.0), 0) << "it passes by";
+  // both drift: the way that counts is the one against each other
+  contact::SurfaceWays along = still(mesh);
+  const Vec3 drift(0, 5, 0), shift = -0.01 * Vec3(1, 0, 1).normalized();
+  along.now.colwise() += drift;
+  const auto together = points(in_at_top + shift, out_of_side + shift + drift);
+  EXPECT_EQ(contact::PassedVertices().count(together, along, 0.019), 1);
+  EXPECT_EQ(contact::PassedVertices().count(together, along, 0.021), 0);
+}
+
+// A straight way goes through a ball if its distance from the centre is less than the radius, of both ends
+// outside: thousands of ways at random, but for those that the flat triangles decide.
+TEST(PassedVertices, AgreesWithASphere) {
+  const auto ball = still(mesh::sphere(1.0, 8));
+  std::mt19937 random(2);
+  int through = 0, past = 0;
+  for (int i = 0; i < 800; ++i) {
+    const Vec3 from = 2.0 * vector(random), to = 2.0 * vector(random), way = to - from;
+    const double t = std::clamp(-from.dot(way) / way.squaredNorm(), 0.0, 1.0),
+                 nearest = (from + t * way).norm();
+    const bool doubt = std::abs(nearest - 0.985) < 0.016 || std::abs(from.norm() - 0.985) < 0.016 ||
+                       std::abs(to.norm() - 0.985) < 0.016;
+    if (doubt) continue;
+    const bool expected = nearest < 1.0 && from.norm() > 1.0 && to.norm() > 1.0;
+    EXPECT_EQ(passed(from, to, ball), expected) << from.transpose() << " to " << to.transpose();
+    ++(expected ? through : past);
+  }
+  EXPECT_GT(through, 80);
+  EXPECT_GT(past, 200);
+}
+
+// The surface moves, turns over on its way, or shrinks to nothing and grows again: what counts is where both
+// are at the same time.
+TEST(PassedVertices, BothMayMove) {
+  const TriMesh box = mesh::box_surface(Vec3(2, 2, 0.1), {8, 8, 1});
+  const auto moving = [&](const Vec3& from, const Vec3& to) {
+    return contact::SurfaceWays{
+        box.faces, box.vertices.colwise() + from, box.vertices.colwise() + to, {}, {}};
+  };
+  const Vec3 x(0.1, 0.2, 0.0);
+  EXPECT_EQ(passed(x, x, moving({0, 0, -1}, {0, 0, 1})), 1);
+  EXPECT_EQ(passed({0.1, 0.2, -0.5}, {0.1, 0.2, 1.5}, moving({0, 0, -1}, {0, 0, 1})), 0) << "together";
+  EXPECT_EQ(passed({0.1, 0.2, -0.5}, {0.1, 0.2, 0.5}, moving({0, 0, -1}, {0, 0, 1})), 1) << "overtaken";
+  EXPECT_EQ(passed(x, x, moving({3, 0, -1}, {3, 0, 1})), 0) << "beside it";
+  // each point of the box goes straight to its opposite: at half time all are in the middle
+  contact::SurfaceWays turned = still(box);
+  turned.now = -turned.before;
+  EXPECT_EQ(passed({0.5, 0.3, 1}, {0.5, 0.3, 0.9}, turned), 0);
+}
+
+TEST(PassedVertices, AsksWhoMayMeet) {
+  auto box = still(mesh::box_surface(Vec3(2, 2, 0.1), {2, 2, 1}));
+  box.of_face.assign(static_cast<std::size_t>(box.faces.cols()), 7);
+  Points from(3, 2), to(3, 2);
+  from << 0.1, 0.2, 0.1, 0.2, 1, 1;
+  to << 0.1, 0.2, 0.1, 0.2, -1, -1;
+  auto two = points(from, to);
+  two.of_vertex = {3, 4};
+  contact::PassedVertices passed;
+  EXPECT_EQ(passed.count(two, box, 0.0), 2);
+  int asked = 0;
+  EXPECT_EQ(passed.count(two, box, 0.0,
+                         [&](int vertex, int face) {
+                           EXPECT_EQ(face, 7);
+                           ++asked;
+                           return vertex == 4;
+                         }),
+            1);
+  EXPECT_GT(asked, 1);
+  EXPECT_EQ(passed.count(points(Points(3, 0), Points(3, 0)), box, 0.0), 0);
+}

@@ -1,0 +1,284 @@
+// What moves fast between two queries: seen before it touches, counted where it went through.
+#include "backends.h"
+#include "bent_bar.h"
+#include "contact/image_side.h"
+#include "grid_proxies.h"
+#include "palpate/proxy/decompose.h"
+#include "surfaces.h"
+
+using namespace contact_tests;
+
+namespace {
+
+/// A soft body in a State: a skin on tetrahedra, with proxies.
+LayeredModel ball(double radius) {
+  LayeredModel out;
+  out.name = "ball";
+  out.tets = mesh::ball(radius, 0.4 * radius);
+  out.skin = mesh::sphere(radius, 10);
+  out.embedding = mesh::embed(out.tets, out.skin.vertices);
+  out.proxies = proxy::decompose(out, {.count = 12});
+  return out;
+}
+
+/// Its faces at z = +-thickness / 2.
+LayeredModel slab(double width, double thickness, int cells) {
+  LayeredModel out;
+  out.name = "slab";
+  out.tets = mesh::box(Vec3(width, width, thickness), {cells, cells, 1});
+  out.skin = mesh::box_surface(Vec3(width, width, thickness), {cells, cells, 1});
+  out.embedding = mesh::embed(out.tets, out.skin.vertices);
+  out.proxies = proxy::decompose(out, {.count = 12});
+  return out;
+}
+
+struct Body {
+  LayeredModel model;
+  contact::NodeSurface surface;
+  int u_offset = 0;
+
+  Body(LayeredModel m, dynamics::State& state) : model(std::move(m)) {
+    dynamics::BlockSpec nodes;
+    nodes.name = model.name;
+    nodes.q_size = nodes.u_size = static_cast<int>(model.tets.nodes.size());
+    surface.block_id =
+        state.insert(nodes, Eigen::Map<const VecX>(model.tets.nodes.data(), model.tets.nodes.size()),
+                     VecX::Zero(model.tets.nodes.size()));
+    surface.faces = model.skin.faces;
+    surface.embedding = model.embedding;
+    surface.tets = model.tets.tets;
+    u_offset = state.layout().find(surface.block_id)->u_offset;
+  }
+  std::shared_ptr<proxy::ProxySet> proxies() const { return std::make_shared<proxy::ProxySet>(model); }
+  void place(dynamics::State& state, const Vec3& at) const {
+    const Points x = model.tets.nodes.colwise() + at;
+    state.q().segment(u_offset, x.size()) = Eigen::Map<const VecX>(x.data(), x.size());
+  }
+  void move(dynamics::State& state, const Vec3& velocity) const {
+    const Points v = velocity.replicate(1, model.tets.nodes.cols());
+    state.u().segment(u_offset, v.size()) = Eigen::Map<const VecX>(v.data(), v.size());
+  }
+};
+
+constexpr double kRadius = 0.05, kThickness = 0.01;
+
+/// A ball and a slab, as every kind of pair of bodies.
+struct Pair {
+  dynamics::State state;
+  Body thrown;
+  Body target;
+  TriMesh rigid = mesh::box_surface(Vec3(0.4, 0.4, kThickness), {8, 8, 1});
+  std::shared_ptr<contact::TrajectoryFrame> frame = std::make_shared<contact::TrajectoryFrame>();
+
+  Pair() : thrown(ball(kRadius), state), target(slab(0.4, kThickness, 8), state) {
+    frame->append(0.0, Pose{}, Twist{});
+  }
+  std::unique_ptr<contact::SampleSource> source(bool soft, bool pruned, double look_ahead) const {
+    contact::ImageOptions options = image_options(64, 1e-3);
+    options.look_ahead = look_ahead;
+    if (soft && pruned)
+      return contact::make_image_source(thrown.surface, thrown.proxies(), target.surface, target.proxies(),
+                                        options);
+    if (soft) return contact::make_image_source(thrown.surface, target.surface, options);
+    if (pruned)
+      return contact::make_image_source(thrown.surface, thrown.proxies(), rigid, proxies_of(rigid), 0, frame,
+                                        options);
+    return contact::make_image_source(thrown.surface, rigid, 0, frame, options);
+  }
+  std::vector<contact::ContactSample> query(contact::SampleSource& source, const Vec3& at) {
+    std::vector<contact::ContactSample> samples;
+    thrown.place(state, at);
+    source.query(state.view(), samples);
+    return samples;
+  }
+};
+
+template <class Check>
+void for_each_pair(Check check) {
+  for (const bool soft : {false, true})
+    for (const bool pruned : {false, true}) {
+      SCOPED_TRACE(std::string(soft ? "soft" : "rigid") + (pruned ? ", proxies" : ", whole"));
+      check(soft, pruned);
+    }
+}
+
+}  // namespace
+
+ON_EACH_BACKEND(SweptContact);
+
+// Two gaps of the ball to the slab, a little less and a little more than it moves until the next query.  The
+// next query is due when it is half of the slab's thickness deep.
+TEST_P(SweptContact, ABallIsSeenBeforeItTouchesIffItGetsThere) {
+  for_each_pair([](bool soft, bool pruned) {
+    Pair pair;
+    for (const double speed : {0.1, 1.0, 10.0, 100.0})
+      for (const double part : {0.85, 1.2}) {
+        const double time = 0.01, way = speed * time;
+        const auto source = pair.source(soft, pruned, time);
+        const double gap = std::max(way, 1e-3) * part;
+        pair.thrown.move(pair.state, Vec3(0, 0, -speed));
+        const Vec3 at(0.003, 0.002, 0.5 * kThickness + kRadius + gap);
+        const auto samples = pair.query(*source, at);
+        EXPECT_EQ(!samples.empty(), part < 1.0) << speed << " m/s";
+        for (const auto& s : samples) EXPECT_GT(s.gap, 0.9 * gap);
+        if (part > 1.0) continue;
+        EXPECT_GE(source->safe_time(), 0.4 * kThickness / speed);
+        EXPECT_LT(source->safe_time(), 1.1 * (gap + 0.5 * kThickness) / speed);
+        if (speed != 1.0) { EXPECT_EQ(source->fast_regions(), speed > 1.0 ? 1 : 0) << speed; }
+        pair.thrown.move(pair.state, Vec3(0, 0, speed));
+        if (way > 5e-3) {
+          EXPECT_TRUE(pair.query(*pair.source(soft, pruned, time), at).empty()) << "it flies away";
+        }
+      }
+  });
+}
+
+// A ball from above the slab to below: each of its vertices went through the slab, and so did the slab's
+// vertices under it through the ball.
+TEST_P(SweptContact, WhatWentThroughIsCountedAndNothingElse) {
+  for_each_pair([](bool soft, bool pruned) {
+    Pair pair;
+    const auto source = pair.source(soft, pruned, 0.01);
+    const auto counted = [&](const Vec3& from, const Vec3& to) {
+      pair.query(*source, from);
+      const long before = source->tunnelled();
+      pair.query(*source, to);
+      return source->tunnelled() - before;
+    };
+    const Vec3 above(0.025, 0.025, 0.2), below(0.025, 0.025, -0.2);
+    const long vertices = pair.thrown.model.skin.vertices.cols();
+    // the slab's vertices are 0.05 apart: four are 0.035 away from the ball's axis, on either face
+    EXPECT_EQ(counted(above, below), vertices + 8);
+    EXPECT_EQ(counted(below, above), vertices + 8) << "and back";
+    const long beyond = (pair.thrown.model.skin.vertices.row(2).array() < -0.5 * kThickness).count();
+    EXPECT_EQ(counted(above, Vec3(0.025, 0.025, 0.0)), beyond) << "the others are in the slab or above it";
+    EXPECT_EQ(counted(above, Vec3(0.025, 0.025, 0.06)), 0);
+    EXPECT_EQ(counted(above, Vec3(1.5, 0.025, -0.2)), 0) << "past it";
+    EXPECT_EQ(counted(above, above), 0);
+    // down through the slab by less than its thickness at a time: seen in it always
+    long slowly = 0;
+    for (double z = 0.08; z > -0.08; z -= 0.009)
+      slowly += counted(Vec3(0.025, 0.025, z + 0.009), Vec3(0.025, 0.025, z));
+    EXPECT_EQ(slowly, 0);
+  });
+}
+
+// The rigid slab moves, the ball stands still.
+TEST_P(SweptContact, ARigidBodyMayBeTheOneThatGoesThrough) {
+  for (const bool pruned : {false, true}) {
+    Pair pair;
+    const auto source = pair.source(false, pruned, 0.01);
+    pair.frame->clear();
+    pair.frame->append(0.0, {Quat::Identity(), Vec3(0, 0, -0.2)}, {Vec3::Zero(), Vec3(0, 0, 40.0)});
+    pair.query(*source, Vec3(0.025, 0.025, 0));
+    pair.state.set_time(0.01);
+    pair.query(*source, Vec3(0.025, 0.025, 0));
+    EXPECT_EQ(source->tunnelled(), pair.thrown.model.skin.vertices.cols() + 8);
+  }
+}
+
+// The arms of one body swing through each other; and close between two queries.
+TEST_P(SweptContact, OfOneBodysOwnParts) {
+  const LayeredModel bar = bent_bar::model(24);
+  dynamics::State state;
+  const Body body(bar, state);
+  contact::ImageOptions options = image_options(96, 0.02);
+  options.look_ahead = 0.01;
+  const double from = bent_bar::closing_angle(-0.05), to = bent_bar::closing_angle(0.02);
+  const auto bend = [&](double angle) {
+    const Points bent = bent_bar::bend(bar.tets.nodes, angle);
+    state.q() = Eigen::Map<const VecX>(bent.data(), bent.size());
+  };
+  bend(to);
+  const VecX there = state.q();
+  bend(from);
+  std::vector<contact::ContactSample> at_rest, closing, closed;
+  const auto source = [&] {
+    return contact::make_image_source(body.surface, body.proxies(), bar.tets.nodes, options);
+  };
+  source()->query(state.view(), at_rest);
+  for (const auto& s : at_rest) EXPECT_GE(s.gap, 0.0);
+  state.u() = (there - state.q()) / options.look_ahead;
+  source()->query(state.view(), closing);
+  state.q() = there;
+  state.u().setZero();
+  source()->query(state.view(), closed);
+  const auto volume = [&](const std::vector<contact::ContactSample>& samples) {
+    double sum = 0.0;
+    for (const auto& s : samples)
+      sum +=
+          s.area *
+          std::max(0.0, -s.normal.dot(point_on_nodes(s.a, state.view()) - point_on_nodes(s.b, state.view())));
+    return sum;
+  };
+  EXPECT_GT(volume(closed), 0.0);
+  EXPECT_EQ(volume(at_rest), 0.0) << "0.05 apart, without motion it is no candidate";
+  EXPECT_GT(volume(closing), 0.5 * volume(closed)) << "it was one, as it closes within the time";
+
+  const auto kept = source();
+  std::vector<contact::ContactSample> samples;
+  kept->query(state.view(), samples);
+  EXPECT_EQ(kept->tunnelled(), 0);
+  bend(from);
+  kept->query(state.view(), samples);
+  EXPECT_EQ(kept->tunnelled(), 0) << "it only comes out";
+  // the left arm to the other side of the right one
+  for (int n = 0; n < bar.tets.nodes.cols(); ++n)
+    if (bar.tets.nodes(0, n) < -0.5) state.q()[3 * n] += 0.8;
+  kept->query(state.view(), samples);
+  EXPECT_GT(kept->tunnelled(), 100);
+}
+
+// Without proxies: a ball pushed into a slab, deeper than to its middle and out of its other side, is pushed
+// back to where it came from as long as they touch.  The hulls' shortest way out is the other way by then.
+TEST_P(SweptContact, ADeepPoseKeepsItsNormal) {
+  for (const bool soft : {false, true}) {
+    Pair pair;
+    const auto source = pair.source(soft, false, 0.0);
+    proxy::RegionFinder finder;
+    bool flips = false;
+    int pressed = 0;
+    for (double z = 0.056; z > -0.03; z -= 0.004) {
+      const auto samples = pair.query(*source, Vec3(0.01, 0.02, z));
+      const Points of_ball = pair.thrown.model.skin.vertices.colwise() + Vec3(0.01, 0.02, z);
+      flips |= finder.find(of_ball, pair.rigid.vertices, 0.0).normal.z() < 0.0;
+      const Total force = total(samples, pair.state.view());
+      if (z > 0.055) continue;
+      EXPECT_GT(force.force.z(), 0.0) << z;
+      pressed += force.pressed > 0;
+      for (const auto& s : samples) ASSERT_GT(s.normal.z(), 0.5) << z;
+    }
+    EXPECT_TRUE(flips) << "the case is one";
+    EXPECT_GT(pressed, 15);
+    EXPECT_GT(source->normals_kept(), 3);
+    // out of it on the other side and back: that is where it comes from now
+    pair.query(*source, Vec3(0.01, 0.02, -0.1));
+    for (const auto& s : pair.query(*source, Vec3(0.01, 0.02, -0.053))) EXPECT_LT(s.normal.z(), -0.5);
+  }
+}
+
+// The velocity of every skin vertex, and its way, is within what bounds the whole side; the skin is outside
+// its tetrahedra, where weights are negative.
+TEST(SweptSide, ABoundHoldsAllOfTheSkin) {
+  Pair pair;
+  const Body& body = pair.thrown;
+  EXPECT_LT(body.model.embedding.weights.minCoeff(), -0.01) << "the case is one";
+  const auto side = contact::soft_side(body.surface);
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  side->update(pair.state.view());
+  side->keep();
+  for (int i = 0; i < 20; ++i) {
+    const Points v = Points::NullaryExpr(3, body.model.tets.nodes.cols(), [&] { return normal(random); });
+    pair.state.u().segment(body.u_offset, v.size()) = Eigen::Map<const VecX>(v.data(), v.size());
+    const Points x = body.model.tets.nodes + v;
+    pair.state.q().segment(body.u_offset, v.size()) = Eigen::Map<const VecX>(x.data(), x.size());
+    side->update(pair.state.view());
+    Points of_skin;
+    mesh::evaluate(body.model.embedding, body.model.tets.tets, v, of_skin);
+    for (const proxy::ProxyMotion& bound : {side->motion(pair.state.view()), side->way()})
+      EXPECT_LE((of_skin.colwise() - bound.velocity).colwise().norm().maxCoeff(), bound.spread);
+    for (const int vertex : {0, 7})
+      EXPECT_LT((side->vertex(vertex) - side->kept_vertex(vertex) - of_skin.col(vertex)).norm(), 1e-14);
+  }
+}
