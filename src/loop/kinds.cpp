@@ -71,6 +71,10 @@ scene::Kinds make_kinds() {
                  .selector = "scheme",
                  .kinds = {{"partitioned", part_keys({"linearisation"})}, {"monolithic"}},
                  .unsaid = [](const Description&) { return scene::CosimulationSpec{}.scheme; }});
+  out.push_back({.table = "exchange",
+                 .selector = "tunnelling",
+                 .kinds = {{"report"}, {"substep", part_keys({"shortest_refresh_s"})}},
+                 .unsaid = [](const Description&) { return scene::CosimulationSpec{}.tunnelling; }});
   KindTable tool_integrators{.table = "tool",
                              .selector = "integrator",
                              .what = "tool integrator",

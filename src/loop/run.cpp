@@ -69,12 +69,32 @@ class Loop {
  private:
   void one_period(double t0, double t1) {
     refresh_contact();
-    if (side_.tool) tick_tool(t0, t1);
-    if (!result_.status.ok()) return;
-    if (world_.stepper)
-      advance_state(t0, t1);
-    else
-      world_.state.set_time(t1);  // a tool with ticks of its own, alone
+    // a tool feels the contact that was found before its ticks: these end where the next query is due
+    for (double t = t0, next;; t = next) {
+      next = side_.tool ? next_query(t, t1) : t1;
+      if (side_.tool) tick_tool(t, next);
+      if (!result_.status.ok()) return;
+      if (world_.stepper)
+        advance_state(t, next);
+      else
+        world_.state.set_time(next);  // a tool with ticks of its own, alone
+      if (!result_.status.ok() || next >= t1) return;
+      refresh_contact();
+    }
+  }
+
+  /// When contact is to be looked for again: at t1, or, with tunnelling = "substep", so soon that no skin has
+  /// gone farther by then into what it touches than half of its thickness (SampleSource::safe_time).
+  double next_query(double t0, double t1) {
+    const scene::CosimulationSpec& exchange = world_.description.exchange;
+    if (!world_.contact || exchange.tunnelling != "substep") return t1;
+    const double safe = world_.contact->safe_time(), rest = t1 - t0;
+    const double wanted = std::ceil(rest / safe - 1e-9),
+                 most = std::max(1.0, std::floor(rest / exchange.shortest_refresh_s + 1e-9));
+    if (!(wanted > 1.0) || most <= 1.0) return t1;
+    ++result_.sub_steps;
+    result_.shortest_refreshes += wanted > most;
+    return t0 + rest / std::min(wanted, most);
   }
 
   /// The slow query; multistep integrators then forget their history.
@@ -97,9 +117,14 @@ class Loop {
     const int parts = whole_number((t1 - t0) / refresh);
     for (int i = 0; i < parts; ++i) {
       if (i > 0) refresh_contact();
-      const double t = i + 1 == parts ? t1 : t0 + (i + 1) * (t1 - t0) / parts;
-      advance_over_changes(t);
-      if (!result_.status.ok()) return;
+      const double start = t0 + i * (t1 - t0) / parts,
+                   end = i + 1 == parts ? t1 : t0 + (i + 1) * (t1 - t0) / parts;
+      for (double t = start; t < end;) {
+        if (t > start) refresh_contact();
+        t = next_query(t, end);
+        advance_over_changes(t);
+        if (!result_.status.ok()) return;
+      }
     }
   }
 

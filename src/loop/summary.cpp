@@ -88,6 +88,14 @@ void add_jumps(store::Summary& summary, const World& world) {
   s.values.emplace_back("largest_moment_jump_at_a_query_n_m", jump.moment);
   s.values.emplace_back("largest_force_after_a_query_n", after.force);
   s.values.emplace_back("largest_moment_after_a_query_n_m", after.moment);
+  const auto& d = world.description.contacts;
+  const std::vector<long> fast = world.contact->fast_regions();
+  const std::vector<long> kept = world.contact->normals_kept();
+  for (std::size_t i = 0; i < fast.size(); ++i) {
+    const std::string pair = d[i].first + " - " + d[i].second;
+    s.values.emplace_back(pair + ": regions fast enough to go through", static_cast<long long>(fast[i]));
+    s.values.emplace_back(pair + ": deep poses that kept the last normal", static_cast<long long>(kept[i]));
+  }
   double quadrature_error = 0.0;
   long lines = 0, pairs = 0, unaligned = 0;
   bool images = false;
@@ -158,6 +166,7 @@ void add_pruning(store::Summary& summary, const World& world) {
     add("left by boxes", static_cast<long long>(c.after_boxes));
     add("left by hulls", static_cast<long long>(c.after_hulls));
     add("regions", static_cast<long long>(c.regions));
+    add("of them apart, but fast enough to meet", static_cast<long long>(c.regions_ahead));
     const bool own = contact.first == contact.second;  // one skin, of which each region has two sides
     const std::vector<std::pair<std::string, long>> sides =
         own ? std::vector{std::pair(contact.first, c.faces_a + c.faces_b)}

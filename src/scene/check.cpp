@@ -161,6 +161,11 @@ void check_exchange(const Document& doc, Description& d) {
   else if (!d.compare.exchange_periods_s.empty())
     refuse(location(doc, "compare.exchange_periods_s"), "compare",
            "exchange_periods_s needs a tool: nothing is exchanged without one");
+  if (c.tunnelling == "substep" && !(c.shortest_refresh_s < c.contact_refresh_s))
+    refuse(location(doc, "exchange.shortest_refresh_s"), "exchange",
+           fmt::format("shortest_refresh_s = {} must be less than contact_refresh_s = {}: nothing else would "
+                       "be refreshed sooner",
+                       c.shortest_refresh_s, c.contact_refresh_s));
   if (c.scheme == "monolithic") return;  // contact is refreshed at a period of its own
   if (!is_multiple(c.exchange_period_s, c.contact_refresh_s))
     refuse(

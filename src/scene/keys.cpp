@@ -148,6 +148,10 @@ const KeyTable<CosimulationSpec>& exchange_keys() {
       unless("exchange_period_s",
              number("contact_refresh_s", &CosimulationSpec::contact_refresh_s, positive(),
                     "time between searches for contact; a whole fraction of the period")),
+      text("tunnelling", &CosimulationSpec::tunnelling, {"report", "substep"},
+           "bodies that may go through each other between two refreshes: count what did, or refresh sooner"),
+      number("shortest_refresh_s", &CosimulationSpec::shortest_refresh_s, positive(),
+             "\"substep\" refreshes no sooner than this"),
   };
   return keys;
 }

@@ -82,6 +82,9 @@ const Broken kCases[] = {
     {"refresh", "10:21",
      "exchange: contact_refresh_s = 0.003 must be a whole fraction of exchange_period_s = 0.01; use 0.0025"},
     {"short-vector", "4:16", "scene: gravity_m_s2 = [0, -9.81] must be three numbers, [x, y, z]"},
+    {"shortest-refresh", "11:22",
+     "exchange: shortest_refresh_s = 0.02 must be less than contact_refresh_s = 0.01: nothing else would be "
+     "refreshed sooner"},
     {"single-brackets", "4:1", "body must be a list of tables: write [[body]] with double brackets"},
     {"skin-of-generator", "8:8",
      "body \"ball\": skin = true needs mesh = { file = \"MODEL.h5\" }, a model file; `palpate model SURFACE "

@@ -263,6 +263,11 @@ TEST(Kinds, ToolDeviceAndExchange) {
   EXPECT_EQ(with({"exchange.scheme=monolithic", "exchange.linearisation=frozen"}),
             "--set exchange.linearisation=frozen: exchange: linearisation means nothing to scheme = "
             "\"monolithic\"; remove it (used by partitioned)");
+  EXPECT_EQ(with({"exchange.tunnelling=substep", "exchange.shortest_refresh_s=1e-4"}), "accepted");
+  EXPECT_EQ(
+      with({"exchange.shortest_refresh_s=1e-4"}),
+      "--set exchange.shortest_refresh_s=1e-4: exchange: shortest_refresh_s means nothing to tunnelling = "
+      "\"report\"; remove it (used by substep)");
   if (!palpate::loop::tool_steppers().empty()) {
     EXPECT_NE(with({"tool.integrator=linearly-implicit-eular"})
                   .find("tool: integrator = \"linearly-implicit-eular\" is not known (did you mean "

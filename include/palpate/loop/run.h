@@ -52,7 +52,9 @@ struct RunResult {
   long periods = 0, ticks = 0, contact_queries = 0, limited_ticks = 0;
   std::vector<long> tunnelled;          ///< vertices that went through unseen, for each [[contact]]
   std::optional<EnergyBalance> energy;  ///< at the end, where an observer wanted it
-  long frozen_fallbacks = 0;  ///< condensed linearisations that had no factor and were frozen instead
+  long sub_steps = 0;                   ///< contact queries that tunnelling = "substep" made besides
+  long shortest_refreshes = 0;  ///< of these, the ones that shortest_refresh_s made later than they were due
+  long frozen_fallbacks = 0;    ///< condensed linearisations that had no factor and were frozen instead
   dynamics::StepperCounters counters;
 };
 
@@ -71,6 +73,8 @@ requires(std::same_as<std::remove_const_t<Result>, RunResult>&&...) constexpr vo
   f("contact_queries", r.contact_queries...);
   f("limited_ticks", r.limited_ticks...);
   f("frozen_fallbacks", r.frozen_fallbacks...);
+  f("sub_steps", r.sub_steps...);
+  f("shortest_refreshes", r.shortest_refreshes...);
   dynamics::visit_counters(f, r.counters...);
 }
 

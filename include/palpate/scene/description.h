@@ -45,6 +45,11 @@ struct CosimulationSpec {
   std::string linearisation = "condensed";  ///< or "frozen"
   double exchange_period_s = 0.01;
   double contact_refresh_s = 0.01;  ///< a whole fraction of the exchange period
+  /// what is done about bodies so fast that they may go through each other between two refreshes: counted,
+  /// or "substep": contact is refreshed, and exchanged, before a skin has gone farther into what it touches
+  /// than half of its thickness
+  std::string tunnelling = "report";
+  double shortest_refresh_s = 1e-5;  ///< "substep" goes no lower
 };
 
 /// A scene file as plain data: everything a run needs, nothing computed.  A part that is absent here is not

@@ -1,0 +1,150 @@
+#include <gtest/gtest.h>
+
+#include "loop/small_scenes.h"
+#include "palpate/loop/run.h"
+#include "palpate/loop/summary.h"
+
+/// A free block thrown at a plate thinner than its way between two queries.
+namespace {
+
+using namespace palpate;
+
+constexpr double kThickness = 0.008, kPeriod = 0.01;
+constexpr long kBlockVertices = 66, kBottomVertices = 25, kPlateVertices = 8;
+
+/// The block flies down at `speed` and reaches the plate, z = 0 its upper face, after about a tenth of a
+/// period.  Its wave speed is 30 times its own, so it stays a block; the spring alone would stop it within
+/// speed sqrt(m / (k A)) = 3 mm, m / A = 20 kg/m^2.
+scene::Description thrown(double speed) {
+  scene::Description d = small_scenes::held_block();
+  d.bodies[0].attachments.clear();
+  d.bodies[0].youngs_modulus_pa = 1e6 * speed * speed;
+  d.bodies[0].stiffness_damping_s = 1e-5 / speed;
+  d.bodies[0].position_m = Vec3(0.001, 0.002, 0.01 + 5e-4 + 0.1 * speed * kPeriod);
+  d.bodies[0].velocity_m_s = Vec3(0, 0, -speed);
+  d.gravity_m_s2 = Vec3::Zero();
+  ContactSpec contact;
+  contact.first = "block";
+  contact.second = "plate";
+  contact.method = "cpu";
+  contact.pixels = 64;
+  contact.stiffness_pa_m = 20.0 * speed * speed / (3e-3 * 3e-3);
+  d.contacts.push_back(contact);
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = kPeriod;
+  d.integrator.step_s = kPeriod;
+  d.duration_s = speed < 1.0 ? 0.15 : 0.04;
+  return d;
+}
+
+/// A soft plate, all of it held.
+scene::Description at_soft_plate(double speed) {
+  scene::Description d = thrown(speed);
+  SoftBodySpec plate = small_scenes::held_block().bodies[0];
+  plate.name = "plate";
+  plate.mesh.size_m = Vec3(0.1, 0.1, kThickness);
+  plate.mesh.element_size_m = 0.02;
+  plate.position_m = Vec3(0, 0, -0.5 * kThickness);
+  plate.youngs_modulus_pa = d.bodies[0].youngs_modulus_pa;
+  plate.attachments[0].box_min_m.z() = -1.0;
+  d.bodies.push_back(plate);
+  return d;
+}
+
+/// A tool so heavy that it stays.
+scene::Description at_tool(double speed) {
+  scene::Description d = thrown(speed);
+  d.contacts[0].second = "tool";
+  d.tool.emplace();
+  d.tool->shape = "mesh";
+  d.tool->mesh.generator = "box";
+  d.tool->mesh.size_m = Vec3(0.1, 0.1, kThickness);
+  d.tool->mesh.element_size_m = 0.02;
+  d.tool->mass_kg = 1000;
+  d.tool->inertia_kg_m2 = Vec3(100, 100, 100);
+  d.tool->position_m = Vec3(0, 0, -0.5 * kThickness);
+  d.device.emplace();
+  KeyframeSpec hold;
+  hold.position_m = d.tool->position_m;
+  d.device->keyframes.push_back(hold);
+  return d;
+}
+
+struct Ran {
+  loop::RunResult result;
+  double velocity;  ///< of the block's centre, up [m/s]
+  store::Summary summary;
+};
+Ran run(const scene::Description& d) {
+  const auto world = loop::assemble(d);
+  Ran out{loop::run(*world, {}), 0.0, {}};
+  EXPECT_TRUE(out.result.status.ok()) << out.result.status.message;
+  const auto& block = *world->state.layout().find(world->bodies[0].block_id);
+  const VecX& m = world->bodies[0].masses;
+  for (Eigen::Index i = 0; i < m.size(); ++i)
+    out.velocity += m[i] / m.sum() * world->state.u()[block.u_offset + 3 * i + 2];
+  out.summary = loop::summarise(*world, out.result, 0.0);
+  return out;
+}
+
+long long counted(store::Summary& summary, const std::string& section, const std::string& name) {
+  for (const auto& [key, value] : summary.section(section).values)
+    if (key == name) return std::get<long long>(value);
+  return -1;
+}
+
+using Target = scene::Description (*)(double);
+
+}  // namespace
+
+// A step of 10 ms begins before the block is there and ends beyond the plate, so nothing pushes it.  At 0.1
+// m/s it moves 1 mm, into the plate; at 1 m/s its lower face ends 0.5 mm below the plate; from 10 m/s on it
+// is through as a whole, over the plate's eight vertices that it met.
+TEST(Tunnelling, WhatGoesThroughABodyIsReported) {
+  for (const Target target : {Target(at_soft_plate), Target(at_tool)})
+    for (const double speed : {0.1, 1.0, 10.0, 100.0}) {
+      scene::Description d = target(speed);
+      d.duration_s = 0.011;  // to the query after the passage
+      Ran ran = run(d);
+      const long expected = speed < 1.0 ? 0 : speed < 9.0 ? kBottomVertices : kBlockVertices + kPlateVertices;
+      ASSERT_EQ(ran.result.tunnelled.size(), 1u);
+      EXPECT_EQ(ran.result.tunnelled[0], expected) << speed << " m/s";
+      const std::string pair = "block - " + d.contacts[0].second;
+      EXPECT_EQ(counted(ran.summary, "tunnelled", pair), expected);
+      EXPECT_EQ(counted(ran.summary, "contact", pair + ": regions fast enough to go through") > 0,
+                speed >= 1.0);
+      EXPECT_EQ(ran.result.sub_steps, 0);
+    }
+}
+
+// Sub-stepped, the block is seen in the plate, at most half of its thickness deep, and thrown back: its
+// momentum is turned round, at any speed, with as few queries more as that takes.
+TEST(Tunnelling, SubStepsTurnItRound) {
+  for (const Target target : {Target(at_soft_plate), Target(at_tool)})
+    for (const double speed : {0.1, 1.0, 10.0, 100.0}) {
+      scene::Description d = target(speed);
+      d.exchange.tunnelling = "substep";
+      d.exchange.shortest_refresh_s = 1e-6;
+      Ran ran = run(d);
+      EXPECT_EQ(ran.result.tunnelled, std::vector<long>{0}) << speed << " m/s";
+      EXPECT_GT(ran.velocity, 0.0) << speed << " m/s";
+      EXPECT_LE(ran.velocity, 1.001 * speed) << "no energy from nowhere";
+      EXPECT_EQ(ran.result.sub_steps > 0, speed >= 1.0) << speed;
+      EXPECT_LT(ran.result.sub_steps, 40) << speed;
+      EXPECT_EQ(ran.result.shortest_refreshes, 0);
+      EXPECT_EQ(counted(ran.summary, "counts", "sub_steps"), ran.result.sub_steps);
+      RecordProperty((target == Target(at_tool) ? "tool_" : "soft_") + std::to_string(speed) + "_sub_steps",
+                     static_cast<int>(ran.result.sub_steps));
+    }
+}
+
+// The limit holds: no query sooner than 2 ms, so the block goes through, and both are counted.
+TEST(Tunnelling, SubStepsStopAtTheirLimit) {
+  scene::Description d = at_soft_plate(100.0);
+  d.exchange.tunnelling = "substep";
+  d.exchange.shortest_refresh_s = 2e-3;
+  d.duration_s = 0.011;
+  const Ran ran = run(d);
+  EXPECT_GT(ran.result.tunnelled[0], 0);
+  EXPECT_GT(ran.result.shortest_refreshes, 0);
+  EXPECT_LE(ran.result.sub_steps, 6);
+}
