@@ -58,6 +58,28 @@ void query(benchmark::State& state, const touch::Case& c) {
   add_counters(state, bodies, pruner.counts());
 }
 
+/// The same with proxies swept by velocities, a flying into b within 10 ms, and with a look back on the way
+/// since the query before.
+void swept_query(benchmark::State& state, const touch::Case& c, double speed) {
+  constexpr double kTime = 0.01;
+  touch::Bodies bodies(c);
+  palpate::proxy::Pruner pruner(bodies.a, bodies.b);
+  const Points velocities = (-speed * c.inward).replicate(1, c.a.tets.nodes.cols());
+  const Points ways = kTime * velocities;
+  std::vector<int> met_a, met_b;
+  int i = 0;
+  for (auto _ : state) {
+    bodies.update(i = (i + 1) % touch::kPhases);
+    bodies.a.set_motion(ways);
+    pruner.met_on_the_way(met_a, met_b);
+    bodies.a.set_motion(velocities);
+    benchmark::DoNotOptimize(pruner.query(c.gap, kTime));
+  }
+  add_counters(state, bodies, pruner.counts());
+}
+void slow_query(benchmark::State& state, const touch::Case& c) { swept_query(state, c, 0.1); }
+void fast_query(benchmark::State& state, const touch::Case& c) { swept_query(state, c, 3.0); }
+
 void update_alone(benchmark::State& state, const touch::Case& c) {
   touch::Bodies bodies(c);
   int i = 0;
@@ -84,6 +106,8 @@ int main(int argc, char** argv) {
           ->Unit(benchmark::kMicrosecond);
     };
     add("query", query);
+    add("query_swept_0.1_m_s", slow_query);
+    add("query_swept_3_m_s", fast_query);
     add("update_alone", update_alone);
     add("whole_skin_placed", place_whole_skin);
     add("true_patch", true_patch);
