@@ -21,7 +21,7 @@ void Snapshot::queried(loop::World& world, double t) {
 void Snapshot::consider(loop::World& world, double t) {
   const double felt = newest_force_n_;
   newest_force_n_ = 0.0;
-  if (world.has_tool_of_ticks() && felt <= force_n_) return;
+  if (world.description.tool && felt <= force_n_) return;
   force_n_ = felt;
   instant_ = instant_of(world, t, shade_);
 }
@@ -30,7 +30,7 @@ void Snapshot::save(const loop::World& world, const std::string& path) const {
   render::Scene scene = scene_of(world, instant_, shade_);
   add_obstacles(scene, world, view_of(scene));
   scene.title = fmt::format("{}, t = {:g} s", world.description.name, instant_.time);
-  if (world.has_tool_of_ticks()) scene.subtitle = fmt::format("the hand feels {:.3g} N", force_n_);
+  if (world.description.tool) scene.subtitle = fmt::format("the hand feels {:.3g} N", force_n_);
   render::save_png(render::draw(scene), path);
 }
 

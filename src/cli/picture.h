@@ -13,6 +13,7 @@ class Snapshot : public loop::Observer {
   void period(loop::World& world, double t) override;
   void queried(loop::World& world, double t) override;
   void tick(const loop::TickRecord& tick) override;
+  double time() const { return instant_.time; }  ///< of the instant that is kept [s]
   /// Surfaces as the shade colours them, the tool, bones seen through the tissue, and the obstacles.
   void save(const loop::World& world, const std::string& path) const;
 

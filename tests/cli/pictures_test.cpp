@@ -144,6 +144,27 @@ TEST_F(Pictures, APictureOfDisplacementHasNeitherHullsNorVertices) {
   EXPECT_EQ(picture.count(0, picture.width, is_orange), 0);
 }
 
+#ifdef PALPATE_HAS_TOOL
+// The hand presses for a moment and goes back.
+TEST_F(Pictures, APictureIsOfTheLargestForceInBothSchemes) {
+  for (const char* scheme : {"partitioned", "monolithic"}) {
+    scene::Description d = small_scenes::pressed_block(-1e-4);
+    KeyframeSpec pressed = d.device->keyframes[0], back = pressed;
+    pressed.time_s = 0.05;
+    pressed.position_m.z() -= 0.004;
+    back.time_s = 0.25;  // slowly, so that the coupling pulls less than the block pressed
+    d.device->keyframes = {d.device->keyframes[0], pressed, back};
+    d.duration_s = 0.25;
+    d.exchange.scheme = scheme;
+    const auto world = loop::assemble(d);
+    cli::Snapshot snapshot(cli::Shade::kDisplacement);
+    ASSERT_TRUE(run(*world, snapshot).status.ok());
+    EXPECT_GT(snapshot.time(), 0.0) << scheme;
+    EXPECT_LT(snapshot.time(), 0.12) << scheme;
+  }
+}
+#endif
+
 // Flat faces, pressed evenly: the whole field is as deep as it gets, so it has the colour of the maximum.
 TEST_F(Pictures, TheDeepestPixelsHaveTheColourOfTheMaximum) {
   scene::Description d = blocks(true);
