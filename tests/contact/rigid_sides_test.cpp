@@ -371,6 +371,14 @@ TEST(RigidSides, AGivenToolFeelsAnObstacleAndTheStateDoesNot) {
   EXPECT_NEAR(term.frame_wrench(world.state.view(), tool).force.z(), weight - f[2], 1e-9 * weight);
   EXPECT_GT(term.energy(world.state.view()), 0.5 * 1e3 * 0.1 * 0.1 * 0.2) << "the obstacle's is in it";
 
+  contact::ContactForce alone;
+  alone.add_frame(motion);
+  alone.add_frame(contact::fixed_frame());
+  alone.add_pair(on_plane(contact::FrameSurface{mesh::sphere(kR, 12), 0, motion}, 0.01), law);
+  alone.refresh(world.state.view());
+  EXPECT_GT(alone.samples().size(), 3u);
+  EXPECT_EQ(alone.event_count(), 0) << "of vertices that the State does not move";
+
   contact::FrameLinearisation all, nodes, frames;
   term.linearise(world.state.view(), tool, all);
   term.linearise(world.state.view(), tool, nodes, contact::Partners::kNodes);
