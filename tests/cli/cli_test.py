@@ -4,6 +4,7 @@
     cli_test.py PROGRAM
 """
 import contextlib
+import csv
 import json
 import os
 import pty
@@ -321,6 +322,43 @@ class Results(Cli):
         self.assertIn("no [[contact]]", self.refused("run", "cantilever", "--contact-picture"))
         self.assertIn("no [[contact]]",
                       self.refused("run", "cantilever", "--picture", "--shade", "penetration"))
+
+    def table(self, file):
+        return list(csv.DictReader((self.folder / file).read_text().splitlines()))
+
+    def test_the_order_of_a_contacts_names_changes_no_byte(self):
+        swapped = [f"contact.{i}.between={names}" for i, names in enumerate(
+            ['["floor", "slab"]', '["slab", "ball"]', '["tool", "ball"]', '["floor", "tool"]'])]
+        run = ["run", "press-stack", "--duration-s", "0.1"]
+        self.good(*run, "-o", "one")
+        self.good(*run, *(word for change in swapped for word in ("--set", change)), "-o", "other")
+        for file in ("force.csv", "energy.csv"):
+            one = (self.folder / "one" / file).read_bytes()
+            self.assertGreater(len(one), 1000)
+            self.assertEqual(one, (self.folder / "other" / file).read_bytes(), file)
+        rows = self.table("one/energy.csv")
+        self.assertEqual(len(rows), 50)
+        for energy in "contact_j", "elastic_j", "work_of_hand_j":
+            self.assertGreater(max(float(row[energy]) for row in rows), 1e-5, energy)
+
+    def test_squeeze_ball_presses_to_forty_percent_and_accounts_for_its_energy(self):
+        if not (PROGRAM.parent / "palpate-model").exists():
+            self.skipTest("this build makes no models")
+        done = self.call("run", "squeeze-ball", "-o", "out", PALPATE_MODELS=str(self.folder / "models"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lowest = min(float(row["tool_z_m"]) for row in self.table("out/force.csv"))
+        pressed = 0.06 - (lowest - 0.005)  # the ball's height less that of the plate's lower face
+        self.assertAlmostEqual(pressed / 0.03, 0.40, delta=0.005)
+        rows = [{name: float(value) for name, value in row.items()} for row in self.table("out/energy.csv")]
+        self.assertEqual(len(rows), 1200)
+        summary = json.loads((self.folder / "out/summary.json").read_text())
+        self.assertEqual(summary["figures"]["energy"]["unaccounted_j"], rows[-1]["unaccounted_j"])
+        work = max(row["work_of_hand_j"] for row in rows)
+        elastic = max(row["elastic_j"] for row in rows)
+        self.assertGreater(elastic, 0.4 * work)
+        for row in rows:
+            self.assertLess(abs(row["unaccounted_j"]), 0.002 * work, row)
+        self.assertLess(rows[-1]["elastic_j"], 2e-3 * elastic)  # it has its shape again
 
     def test_bench_contact_prints_its_stages(self):
         text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64")

@@ -18,7 +18,7 @@ struct EnergyBalance {
   double elastic = 0.0;      ///< of the bodies' elements
   double contact = 0.0;      ///< of the contact's springs
   double other = 0.0;        ///< of the virtual coupling, of weight and of joints; zero at the start
-  double hand = 0.0;         ///< work of the hand on the coupling, since the start
+  double hand = 0.0;         ///< work of the hand on the coupling, from the start to the last tick
   double supports = 0.0;     ///< work of what moves held nodes along given paths
   double queries = 0.0;      ///< change of `contact` by queries, which change its samples at a state
   double materials = 0.0;    ///< change of `elastic` by changes of material, at a state
