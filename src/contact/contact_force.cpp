@@ -23,6 +23,13 @@ bool is_same_pair(const ContactSample& s, const ContactSample& t) {
 
 /// A spring of its own, whatever area it stands for; none where it faces away.
 void count_as_point(ContactSample& sample) { sample.area = sample.area > 0.0 ? 1.0 : 0.0; }
+void count_as_points(SampleCells& cells, ContactCell& cell) {
+  if (cell.area >= 0.0) cell.area = cell.area > 0.0 ? 1.0 : 0.0;
+  for (int i = cell.first; cell.area < 0.0 && i < cell.last; ++i) {
+    double& area = cells.areas[static_cast<std::size_t>(i)];
+    area = area > 0.0 ? 1.0 : 0.0;
+  }
+}
 
 }  // namespace
 
@@ -64,40 +71,79 @@ void ContactForce::Impl::follow(const dynamics::StateView& state) {
   }
 }
 
+// Samples of an image without friction stay in cells; with friction each is looked at by itself.
 void ContactForce::Impl::query(const dynamics::StateView& state) {
   const ScopedTimer timer(query_seconds);
   next_samples.clear();
+  next_cells.clear();
   together.clear();
   for (Pair& pair : pairs)
-    if ((pair.asking = pair.source->asks_together())) {
-      pair.asking->open(state);
-      together.push_back(pair.asking);
+    if (ImageSource* source = pair.source->in_images(); source && source->asks_together()) {
+      source->open(state);
+      together.push_back(source);
     }
   answer_together(together);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    pairs[i].begin = next_samples.size();
-    if (pairs[i].asking)
-      pairs[i].asking->close(next_samples);
-    else
-      pairs[i].source->query(state, next_samples);
-    pairs[i].end = next_samples.size();
-    for (std::size_t s = pairs[i].begin; s < pairs[i].end; ++s) {
+    Pair& pair = pairs[i];
+    pair.begin = next_samples.size();
+    pair.first_cell = next_cells.cells.size();
+    if (ImageSource* source = pair.source->in_images()) {
+      SampleCells& out = pair.law.friction == 0.0 ? next_cells : apart;
+      apart.clear();
+      if (std::find(together.begin(), together.end(), source) != together.end())
+        source->close(out);
+      else
+        source->query(state, out);
+      apart.append_to(next_samples);
+    } else {
+      pair.source->query(state, next_samples);
+    }
+    pair.end = next_samples.size();
+    pair.last_cell = next_cells.cells.size();
+    for (std::size_t s = pair.begin; s < pair.end; ++s) {
       next_samples[s].source = static_cast<int>(i);
-      if (pairs[i].law.per_point) count_as_point(next_samples[s]);
+      if (pair.law.per_point) count_as_point(next_samples[s]);
+    }
+    for (std::size_t c = pair.first_cell; c < pair.last_cell; ++c) {
+      next_cells.cells[c].pair = static_cast<int>(i);
+      if (pair.law.per_point) count_as_points(next_cells, next_cells.cells[c]);
     }
   }
   ++queries;
   counters::count("contact.query");
   std::swap(samples, next_samples);
+  std::swap(cells, next_cells);
+  all_made = false;
   group_samples();
   if (events_to_compare) ++events_version;  // nobody asked between two queries: no comparison is needed
   events_to_compare = true;
 }
 
+int ContactForce::Impl::count_of(const Pair& pair) const {
+  auto count = static_cast<int>(pair.end - pair.begin);
+  for (std::size_t c = pair.first_cell; c < pair.last_cell; ++c)
+    count += cells.cells[c].last - cells.cells[c].first;
+  return count;
+}
+
+const std::vector<ContactSample>& ContactForce::Impl::all() {
+  if (cells.cells.empty()) return samples;
+  if (all_made) return all_samples;
+  all_made = true;
+  all_samples.clear();
+  for (const Pair& pair : pairs) {
+    all_samples.insert(all_samples.end(), samples.begin() + static_cast<std::ptrdiff_t>(pair.begin),
+                       samples.begin() + static_cast<std::ptrdiff_t>(pair.end));
+    cells.append_to(all_samples, pair.first_cell, pair.last_cell);
+  }
+  return all_samples;
+}
+
 void ContactForce::Impl::compare_events() {
   if (!events_to_compare) return;
   events_to_compare = false;
-  if (!std::equal(samples.begin(), samples.end(), next_samples.begin(), next_samples.end(), is_same_pair))
+  if (!std::equal(samples.begin(), samples.end(), next_samples.begin(), next_samples.end(), is_same_pair) ||
+      !cells.have_points_of(next_cells))
     ++events_version;
 }
 
@@ -114,37 +160,58 @@ void ContactForce::Impl::group_samples() {
       return is_given(s.a) && is_given(s.b);
     });
     if (pair.grouped) groups.append(own, pair.law);
+    if (pair.first_cell < pair.last_cell) groups.append(cells, pair.first_cell, pair.last_cell, pair.law);
   }
 }
 
 void ContactForce::Impl::check_samples(const dynamics::StateView& state) const {
   const int frame_count = static_cast<int>(frames.size()), node_count = state.layout->node_count();
+  const auto check = [&](const auto& p) {
+    PALPATE_CHECK(p.frame < frame_count && (p.frame >= 0 || (p.count > 0 && p.count <= 4)),
+                  "contact sample: frame {} of {}, {} nodes", p.frame, frame_count, p.count);
+    for (int i = 0; p.frame < 0 && i < p.count; ++i)
+      PALPATE_CHECK(p.node[static_cast<std::size_t>(i)] < node_count, "contact sample: node {} of {}",
+                    p.node[static_cast<std::size_t>(i)], node_count);
+  };
   for (const ContactSample& s : samples) {
-    for (const SurfacePoint* p : {&s.a, &s.b}) {
-      PALPATE_CHECK(p->frame < frame_count && (p->frame >= 0 || (p->count > 0 && p->count <= 4)),
-                    "contact sample: frame {} of {}, {} nodes", p->frame, frame_count, p->count);
-      for (int i = 0; p->frame < 0 && i < p->count; ++i)
-        PALPATE_CHECK(p->node[static_cast<std::size_t>(i)] < node_count, "contact sample: node {} of {}",
-                      p->node[static_cast<std::size_t>(i)], node_count);
-    }
+    check(s.a);
+    check(s.b);
     PALPATE_CHECK(s.area >= 0.0 && s.normal.allFinite(), "contact sample: area {}", s.area);
+  }
+  for (const ContactCell& cell : cells.cells) {
+    check(cells.carriers[static_cast<std::size_t>(cell.a)]);
+    check(cells.carriers[static_cast<std::size_t>(cell.b)]);
+    PALPATE_CHECK(cell.normal.allFinite(), "contact cell: a normal is not finite");
   }
 }
 
-void ContactForce::Impl::add_force(const dynamics::StateView& state, VecX& f) {
+const std::vector<int>& ContactForce::Impl::rows_of_frames() {
+  frame_rows.clear();
+  for (const FrameState& frame : frame_states) frame_rows.push_back(frame.u_offset);
+  return frame_rows;
+}
+
+void ContactForce::Impl::add_single_forces(const dynamics::StateView& state, VecX& f) {
   const auto row = [&](const SurfacePoint& p) {
     return p.frame >= 0 ? frame_states[static_cast<std::size_t>(p.frame)].u_offset : -1;
   };
-  place_frames(state);
-  frame_rows.clear();
-  for (const FrameState& frame : frame_states) frame_rows.push_back(frame.u_offset);
-  groups.add_force(state, frame_states, frame_rows, f);
-  const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-    const Vec3 force = sample_force(s, motion, law);
-    add_point_force(s.a, motion.a.arm, force, row(s.a), f);
-    add_point_force(s.b, motion.b.arm, -force, row(s.b), f);
-  };
-  visit_active(state, add, Which::kUngroupedOfState);
+  visit_active(state, Which::kOfState,
+               [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+                 const Vec3 force = sample_force(s, motion, law);
+                 add_point_force(s.a, motion.a.arm, force, row(s.a), f);
+                 add_point_force(s.b, motion.b.arm, -force, row(s.b), f);
+               });
+}
+
+void ContactForce::Impl::apply_single_tangents(const dynamics::StateView& state, double k_scale,
+                                               double d_scale, const VecX& x, VecX& y) {
+  visit_active(state, Which::kOfState,
+               [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+                 const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
+                 apply_sample_tangent(Side(s.a, motion.a, frame_states, 1.0, force.force),
+                                      Side(s.b, motion.b, frame_states, -1.0, force.force), force, k_scale,
+                                      d_scale, x, y);
+               });
 }
 
 void ContactForce::Impl::all_forces(const dynamics::StateView& state, VecX& f, std::vector<Wrench>& on_a) {
@@ -160,7 +227,7 @@ void ContactForce::Impl::all_forces(const dynamics::StateView& state, VecX& f, s
     add_point_force(s.b, motion.b.arm, -force, nodal + 6 * s.b.frame, f);
     on_a[static_cast<std::size_t>(s.source)] += Wrench{motion.a.x.cross(force), force};
   };
-  visit_active(state, add, Which::kUngrouped);
+  visit_active(state, Which::kEvery, add);
 }
 
 ContactForce::ContactForce() : impl_(std::make_unique<Impl>()) { counters::count("contact.force"); }
@@ -183,8 +250,10 @@ int ContactForce::add_pair(std::unique_ptr<SampleSource> source, const ContactSp
         "contact \"{}\" with \"{}\": gaps = \"exact\" is for obstacles and sphere tools (method = "
         "\"analytic\"); what an image shows is known at a query alone",
         law.first, law.second);
-  const std::size_t n = impl_->samples.size();
-  impl_->pairs.push_back({std::move(source), pressure_law(law), n, n, false, follows});
+  Impl::Pair pair{.source = std::move(source), .law = pressure_law(law), .follows = follows};
+  pair.begin = pair.end = impl_->samples.size();
+  pair.first_cell = pair.last_cell = impl_->cells.cells.size();
+  impl_->pairs.push_back(std::move(pair));
   return static_cast<int>(impl_->pairs.size()) - 1;
 }
 
@@ -219,7 +288,12 @@ std::uint64_t ContactForce::pattern_version() const {
   return sum;
 }
 
-void ContactForce::add_force(const dynamics::StateView& state, VecX& f) { impl_->add_force(state, f); }
+void ContactForce::add_force(const dynamics::StateView& state, VecX& f) {
+  Impl& m = *impl_;
+  m.place_frames(state);
+  m.groups.add_force(state, m.frame_states, m.rows_of_frames(), f);
+  m.add_single_forces(state, f);
+}
 
 void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
                                dynamics::BorderedMatrix& A) {
@@ -233,7 +307,7 @@ void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale,
                        Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale, d_scale,
                        state.layout->nodal_size, A);
   };
-  m.visit_active(state, add, Impl::Which::kUngroupedOfState);
+  m.visit_active(state, Impl::Which::kOfState, add);
 }
 
 void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
@@ -241,28 +315,28 @@ void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scal
   Impl& m = *impl_;
   m.place_frames(state);
   m.groups.apply_tangent(state, m.frame_states, k_scale, d_scale, x, y);
-  const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-    const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
-    apply_sample_tangent(Side(s.a, motion.a, m.frame_states, 1.0, force.force),
-                         Side(s.b, motion.b, m.frame_states, -1.0, force.force), force, k_scale, d_scale, x,
-                         y);
-  };
-  m.visit_active(state, add, Impl::Which::kUngroupedOfState);
+  m.apply_single_tangents(state, k_scale, d_scale, x, y);
 }
 
 double ContactForce::energy(const dynamics::StateView& state) {
-  double sum = 0.0;
-  impl_->for_each_active(state,
-                         [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-                           sum += s.area * pressure(law, motion.gap, motion.rate).energy_density;
-                         });
+  Impl& m = *impl_;
+  m.place_frames(state);
+  double sum = m.groups.energy(state, m.frame_states);
+  m.visit_active(state, Impl::Which::kEvery,
+                 [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+                   sum += s.area * pressure(law, motion.gap, motion.rate).energy_density;
+                 });
   return sum;
 }
 
 double ContactForce::dissipated_power(const dynamics::StateView& state) {
-  double sum = 0.0;
-  impl_->for_each_active(state, [&](const ContactSample& s, const SampleMotion& motion,
-                                    const PressureLaw& law) { sum += sample_dissipation(s, motion, law); });
+  Impl& m = *impl_;
+  m.place_frames(state);
+  double sum = m.groups.dissipation(state, m.frame_states);
+  m.visit_active(state, Impl::Which::kEvery,
+                 [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+                   sum += sample_dissipation(s, motion, law);
+                 });
   return sum;
 }
 
@@ -313,14 +387,15 @@ bool ContactForce::refresh(const dynamics::StateView& state) {
   m.query(state);
   m.check_samples(state);
   m.all_forces(state, m.force_after, m.resultants.after);
-  m.resultants.compare(m.next_samples, m.samples, state, m.frames);  // next_samples: those of before
+  // next_samples, next_cells: those of before
+  m.resultants.compare({m.next_samples, m.next_cells}, {m.samples, m.cells}, state, m.frames);
   return m.force_after != m.force_before;
 }
 
 int ContactForce::event_count() const {
   int count = 0;
   for (const auto& pair : impl_->pairs)
-    if (Impl::has_events(pair)) count += static_cast<int>(pair.end - pair.begin);
+    if (Impl::has_events(pair)) count += impl_->count_of(pair);
   return count;
 }
 
@@ -334,12 +409,11 @@ std::uint64_t ContactForce::events_version() const {
 void ContactForce::events(const dynamics::StateView& state, double* g) {
   Impl& m = *impl_;
   m.place_frames(state);
-  for (const Impl::Pair& pair : m.pairs) {
+  for (const ContactSample& s : m.all()) {
+    const Impl::Pair& pair = m.pairs[static_cast<std::size_t>(s.source)];
     if (!Impl::has_events(pair)) continue;
-    for (std::size_t s = pair.begin; s < pair.end; ++s) {
-      const SampleMotion motion = sample_motion(m.samples[s], state, m.frame_states);
-      *g++ = pressing(pair.law, motion.gap, motion.rate);
-    }
+    const SampleMotion motion = sample_motion(s, state, m.frame_states);
+    *g++ = pressing(pair.law, motion.gap, motion.rate);
   }
 }
 
@@ -393,8 +467,8 @@ std::vector<ContactPoint> ContactForce::points(const dynamics::StateView& state)
   Impl& m = *impl_;
   m.place_frames(state);
   std::vector<ContactPoint> out;
-  out.reserve(m.samples.size());
-  for (const ContactSample& s : m.samples) {
+  out.reserve(m.all().size());
+  for (const ContactSample& s : m.all()) {
     const SampleMotion motion = sample_motion(s, state, m.frame_states);
     const double p = pressure(m.pairs[static_cast<std::size_t>(s.source)].law, motion.gap, motion.rate).p;
     out.push_back({motion.a.x, motion.b.x, s.normal, motion.gap, p, s.area, s.source});
@@ -402,7 +476,11 @@ std::vector<ContactPoint> ContactForce::points(const dynamics::StateView& state)
   return out;
 }
 
-const std::vector<ContactSample>& ContactForce::samples() const { return impl_->samples; }
+const std::vector<ContactSample>& ContactForce::samples() const { return impl_->all(); }
+int ContactForce::sample_count() const {
+  return static_cast<int>(impl_->samples.size()) + impl_->cells.count();
+}
+
 std::vector<std::string> ContactForce::methods() const {
   std::vector<std::string> out;
   for (const auto& pair : impl_->pairs) out.emplace_back(pair.source->name());

@@ -11,16 +11,18 @@ struct ContactForce::Impl {
   struct Pair {
     std::unique_ptr<SampleSource> source;
     PressureLaw law;
-    std::size_t begin = 0, end = 0;  ///< its samples
-    bool grouped = false;            ///< they are in `groups`
-    bool follows = false;            ///< they are exact at every evaluation
-    ImageSource* asking = nullptr;   ///< of the query under way: its images are made with those of others
+    std::size_t begin = 0, end = 0;             ///< its samples, one by one
+    std::size_t first_cell = 0, last_cell = 0;  ///< or its cells
+    bool grouped = false;                       ///< they are in `groups`
+    bool follows = false;                       ///< they are exact at every evaluation
     bool given = false;  ///< frames given from outside on both sides: nothing in the State feels them
   };
 
   std::vector<std::shared_ptr<MovingFrame>> frames;
   std::vector<Pair> pairs;
   std::vector<ContactSample> samples, next_samples;
+  SampleCells cells, next_cells;         ///< of image sources without friction
+  SampleCells apart;                     ///< scratch of a query
   std::vector<ImageSource*> together;    ///< scratch of a query
   SampleGroups groups;                   ///< of all pairs without friction
   std::vector<FrameState> frame_states;  ///< at the state of the evaluation under way
@@ -31,6 +33,11 @@ struct ContactForce::Impl {
   /// the last query's samples were not compared yet with those before, which are in next_samples
   bool events_to_compare = false;
   void compare_events();
+  /// All samples one by one, in the pairs' order: made when somebody asks for them.
+  const std::vector<ContactSample>& all();
+  std::vector<ContactSample> all_samples;
+  bool all_made = false;
+  int count_of(const Pair& pair) const;
   double query_seconds = 0.0;
   Resultants resultants;
 
@@ -57,7 +64,11 @@ struct ContactForce::Impl {
   } followed;
   void query(const dynamics::StateView& state);
   void check_samples(const dynamics::StateView& state) const;
-  void add_force(const dynamics::StateView& state, VecX& f);
+  const std::vector<int>& rows_of_frames();  ///< in the State
+  /// Of samples that are not in `groups`.  @pre frames are placed
+  void add_single_forces(const dynamics::StateView& state, VecX& f);
+  void apply_single_tangents(const dynamics::StateView& state, double k_scale, double d_scale, const VecX& x,
+                             VecX& y);
   /// Forces on the nodes and on every frame (six rows each, given ones too): what a refresh must not change
   /// unseen.
   /// @param on_a  one entry a pair: its resultant is added
@@ -66,32 +77,24 @@ struct ContactForce::Impl {
   void group_samples();
   VecX product;  ///< scratch of a step
 
-  enum class Which {
-    kAll,
-    kUngrouped,        ///< that are not in `groups`
-    kUngroupedOfState  ///< and of these, that act on the State
-  };
-  static bool is_of(const Pair& pair, Which which) {
-    return which == Which::kAll || (!pair.grouped && !(which == Which::kUngroupedOfState && pair.given));
-  }
   /// Whether its samples open and close with a kink that the State feels.
   static bool has_events(const Pair& pair) {
     return pair.law.onset == 0.0 && !pair.given && pair.source->has_events();
   }
-  /// visit(sample, motion, law) for each sample in penetration, in order.
+  enum class Which {
+    kEvery,   ///< sample that is not in `groups`
+    kOfState  ///< and of these, each that acts on the State
+  };
+  /// visit(sample, motion, law) for each sample in penetration, in order.  @pre frames are placed
   template <class Visit>
-  void for_each_active(const dynamics::StateView& state, Visit visit) {
-    place_frames(state);
-    visit_active(state, visit, Which::kAll);
-  }
-  /// @pre frames are placed
-  template <class Visit>
-  void visit_active(const dynamics::StateView& state, const Visit& visit, Which which) {
-    for (const Pair& pair : pairs)
-      for (std::size_t i = pair.begin; i < pair.end && is_of(pair, which); ++i) {
+  void visit_active(const dynamics::StateView& state, Which which, const Visit& visit) {
+    for (const Pair& pair : pairs) {
+      if (pair.grouped || (which == Which::kOfState && pair.given)) continue;
+      for (std::size_t i = pair.begin; i < pair.end; ++i) {
         const SampleMotion motion = sample_motion(samples[i], state, frame_states);
         if (motion.gap < 0.0) visit(samples[i], motion, pair.law);
       }
+    }
   }
 };
 

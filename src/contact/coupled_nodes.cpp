@@ -12,17 +12,6 @@ int node_count(const dynamics::NodePairs& pairs) {
   return last + 1;
 }
 
-bool same_nodes(const ContactSample& s, const ContactSample& t) {
-  return s.a.count == t.a.count && s.b.count == t.b.count && s.a.node == t.a.node && s.b.node == t.b.node;
-}
-
-std::size_t hash_of(const ContactSample& s) {
-  std::size_t h = 0;
-  for (const SurfacePoint* p : {&s.a, &s.b})
-    for (const int node : p->node) h = h * 1000003u + static_cast<std::size_t>(node);
-  return h ^ (h >> 19);
-}
-
 }  // namespace
 
 NodeNeighbours::NodeNeighbours(const Eigen::Ref<const Eigen::MatrixXi>& cells, int first) : first_(first) {
@@ -47,25 +36,31 @@ std::span<const int> NodeNeighbours::of(int node) const {
                                    static_cast<std::size_t>(start_[at + 1] - start_[at]));
 }
 
-/// Pairs of nodes of the samples; thousands of samples have the same nodes.
-void CoupledNodes::find_met(std::span<const ContactSample> samples) {
-  met_.clear();
-  std::size_t size = 16;
-  while (size < 2 * samples.size()) size *= 2;
-  table_.assign(size, -1);
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const ContactSample& s = samples[k];
-    if (k > 0 && same_nodes(samples[k - 1], s)) continue;  // neighbours in a row of pixels
-    std::size_t at = hash_of(s) & (size - 1);
-    while (table_[at] >= 0 && !same_nodes(samples[static_cast<std::size_t>(table_[at])], s))
-      at = (at + 1) & (size - 1);
-    if (table_[at] >= 0) continue;
-    table_[at] = static_cast<int>(k);
-    for (int i = 0; i < s.a.count; ++i)
-      for (int j = 0; j < s.b.count; ++j)
-        met_.emplace_back(s.a.node[static_cast<std::size_t>(i)], s.b.node[static_cast<std::size_t>(j)]);
+/// visit(i, j) for the nodes that two carriers couple, until it says false.
+template <class Visit>
+bool CoupledNodes::for_each_pair(const Carrier& a, const Carrier& b, Visit visit) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(a.count); ++i)
+    for (std::size_t j = 0; j < static_cast<std::size_t>(b.count); ++j)
+      if (!visit(a.node[i], b.node[j])) return false;
+  return true;
+}
+
+/// Whether all that the cells from `first` on couple is there.  Most of them were met before: they are known
+/// by their carriers.
+bool CoupledNodes::holds(const SampleCells& samples, std::size_t first) {
+  for (std::size_t c = first; c < samples.cells.size(); ++c) {
+    const Carrier &a = samples.carriers[static_cast<std::size_t>(samples.cells[c].a)],
+                  &b = samples.carriers[static_cast<std::size_t>(samples.cells[c].b)];
+    const auto key = static_cast<std::uint64_t>(static_cast<std::uint32_t>(a.number)) << 32 |
+                     static_cast<std::uint32_t>(b.number);
+    if (known_.contains(key)) continue;
+    const bool there = for_each_pair(a, b, [&](int i, int j) {
+      return std::binary_search(pairs_.begin(), pairs_.end(), std::pair(i, j));
+    });
+    if (!there) return false;
+    known_.insert(key);
   }
-  dynamics::sort_unique(met_, node_count(met_));
+  return true;
 }
 
 void CoupledNodes::widen(const NodeNeighbours& a, const NodeNeighbours& b) {
@@ -79,21 +74,30 @@ void CoupledNodes::widen(const NodeNeighbours& a, const NodeNeighbours& b) {
   dynamics::sort_unique(wide_, node_count(wide_));
 }
 
-void CoupledNodes::take(std::span<const ContactSample> samples, const NodeNeighbours& a,
+void CoupledNodes::take(const SampleCells& samples, std::size_t first, const NodeNeighbours& a,
                         const NodeNeighbours& b) {
   constexpr std::size_t kLargest = 2;
-  find_met(samples);
-  if (std::includes(pairs_.begin(), pairs_.end(), met_.begin(), met_.end())) return;
+  if (holds(samples, first)) return;
+  met_.clear();
+  for (std::size_t c = first; c < samples.cells.size(); ++c)
+    for_each_pair(samples.carriers[static_cast<std::size_t>(samples.cells[c].a)],
+                  samples.carriers[static_cast<std::size_t>(samples.cells[c].b)], [&](int i, int j) {
+                    met_.emplace_back(i, j);
+                    return true;
+                  });
+  dynamics::sort_unique(met_, node_count(met_));
   widen(a, b);
   both_.clear();
   std::set_union(pairs_.begin(), pairs_.end(), wide_.begin(), wide_.end(), std::back_inserter(both_));
   pairs_ = both_.size() > kLargest * wide_.size() ? wide_ : both_;
+  known_.clear();
   ++version_;
 }
 
 void CoupledNodes::forget() {
   if (pairs_.empty()) return;
   pairs_.clear();
+  known_.clear();
   ++version_;
 }
 

@@ -1,10 +1,11 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
-#include "palpate/contact/sample.h"
+#include "contact/sample_cells.h"
 #include "palpate/dynamics/matrix.h"
 
 namespace palpate::contact {
@@ -34,18 +35,21 @@ class NodeNeighbours {
 /// It grows as contact slides on; where it has become twice what is needed now, it starts anew.
 class CoupledNodes {
  public:
-  void take(std::span<const ContactSample> samples, const NodeNeighbours& a, const NodeNeighbours& b);
+  /// @param first  of the cells that these bodies have made
+  void take(const SampleCells& samples, std::size_t first, const NodeNeighbours& a, const NodeNeighbours& b);
   void forget();  ///< the nodes are counted otherwise from now on
   void add_pattern(dynamics::PatternBuilder& pattern) const;
   std::uint64_t version() const { return version_; }  ///< grows with every change
 
  private:
   using Pairs = std::vector<std::pair<int, int>>;
-  void find_met(std::span<const ContactSample> samples);
+  template <class Visit>
+  static bool for_each_pair(const Carrier& a, const Carrier& b, Visit visit);
+  bool holds(const SampleCells& samples, std::size_t first);
   void widen(const NodeNeighbours& a, const NodeNeighbours& b);
 
-  Pairs pairs_, met_, wide_, both_;  // ascending
-  std::vector<int> table_;           // scratch: samples by their nodes
+  Pairs pairs_, met_, wide_, both_;          // ascending
+  std::unordered_set<std::uint64_t> known_;  // cells, by their carriers, whose pairs are there
   std::uint64_t version_ = 0;
 };
 

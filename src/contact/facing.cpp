@@ -62,17 +62,4 @@ bool facing_at(const FacePair& pair, FacePlanes& a, FacePlanes& b, Facing& out) 
   return false;
 }
 
-ContactSample sample_of(const Facing& at, double area, const ImageSide& a, int face_a, const ImageSide& b,
-                        int face_b, const ContactAxes& axes) {
-  ContactSample sample;
-  sample.a = a.point(face_a, at.weights_a, axes.world(Vec3(at.u, at.v, at.w_a)), axes.normal());
-  sample.b = b.point(face_b, at.weights_b, axes.world(Vec3(at.u, at.v, at.w_b)), axes.normal());
-  sample.normal = axes.normal();
-  if (at.lift_a != 0.0 && sample.a.frame < 0) sample.a.offset += at.lift_a * sample.normal;
-  if (at.lift_b != 0.0 && sample.b.frame < 0) sample.b.offset += at.lift_b * sample.normal;
-  sample.area = area;
-  sample.gap = at.gap();
-  return sample;
-}
-
 }  // namespace palpate::contact

@@ -8,10 +8,8 @@ namespace palpate::contact {
 
 /// Two triangles on a line along the normal.
 struct Facing {
-  double u, v, w_a, w_b;      ///< [m]
+  double u, v, w_a, w_b;      ///< [m]; beside the triangles where a depth was read from an image
   Vec3 weights_a, weights_b;  ///< of their corners
-  /// by which w_a and w_b lie above the triangles: where a depth was read from an image [m]
-  double lift_a = 0.0, lift_b = 0.0;
   double gap() const { return w_a - w_b; }
 };
 
@@ -44,9 +42,5 @@ class FacePlanes {
 /// The image said which triangles; the gap is theirs at (out.u, out.v), in double.  False where one of them
 /// is seen edge-on there.
 bool facing_at(const FacePair& pair, FacePlanes& a, FacePlanes& b, Facing& out);
-
-/// A sample that stands for `area`; the faces are those of the whole sides.
-ContactSample sample_of(const Facing& at, double area, const ImageSide& a, int face_a, const ImageSide& b,
-                        int face_b, const ContactAxes& axes);
 
 }  // namespace palpate::contact

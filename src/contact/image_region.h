@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "contact/cell_builder.h"
 #include "contact/depth_image.h"
 #include "contact/facing.h"
 #include "contact/quadrature.h"
@@ -28,6 +29,7 @@ struct RegionContext {
   DepthGrid grid;
   std::vector<Eigen::Vector2d> middles;  ///< of doubtful pixels
   std::vector<FacePair> by_lines;
+  CellBuilder cells;
 
   bool of_one_body() const { return a == b; }
   /// A region's part of `safe_time`.  @param thickness  of the thinner side [m]
@@ -45,9 +47,9 @@ class ImageRegion {
  public:
   explicit ImageRegion(RegionContext& context) : context_(context) {}
   virtual ~ImageRegion() = default;
-  DepthRequest* wanted() { return asks_ ? &request_ : nullptr; }         ///< null: nothing more
-  virtual void take() = 0;                                               ///< `wanted` was answered
-  virtual void append_samples(std::vector<ContactSample>& samples) = 0;  ///< @pre nothing more is wanted
+  DepthRequest* wanted() { return asks_ ? &request_ : nullptr; }  ///< null: nothing more
+  virtual void take() = 0;                                        ///< `wanted` was answered
+  virtual void append_samples(SampleCells& samples) = 0;          ///< @pre nothing more is wanted
 
  protected:
   void forget();  ///< before another region
@@ -66,6 +68,14 @@ class ImageRegion {
   bool ask_finer(const ContactWindow& window);
   /// After the image that counts: what `samples` asks for in `hits_`, with what the pixels err counted.
   void finish();
+  /// `hits_` as samples; after finish.  @param face_a, face_b  of a patch's face, that of the whole side
+  template <class OfA, class OfB>
+  void append_hits(SampleCells& samples, OfA face_a, OfB face_b) {
+    const double area = context_.samples_vertices() ? -1.0 : camera().pixel * camera().pixel;
+    context_.cells.start(axes_, *context_.a, *context_.b, area, samples);
+    for (const Hit& hit : hits_) context_.cells.add(hit.at, face_a(hit.face_a), face_b(hit.face_b), hit.area);
+    context_.cells.finish();
+  }
   /// The grid behind `hits_`, for pictures, where somebody asked; after finish.
   void keep_view();
 

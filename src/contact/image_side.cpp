@@ -22,19 +22,22 @@ class SoftSide final : public ImageSide {
   void set_motion(proxy::ProxySet& proxies, const dynamics::StateView& state) const override {
     proxies.set_motion(state_.node_velocities(state));
   }
-  void keep() override { kept_ = state_.carriers(); }
+  void keep() override { kept_ = state_.carrying_points(); }
   proxy::ProxyMotion way() override {
-    way_ = state_.carriers() - kept_;
+    way_ = state_.carrying_points() - kept_;
     return around_mean(way_);
   }
   void set_way(proxy::ProxySet& proxies) override {
-    way_ = state_.carriers() - kept_;
+    way_ = state_.carrying_points() - kept_;
     proxies.set_motion(way_);
   }
   Vec3 kept_vertex(int vertex) const override { return state_.position(vertex, kept_); }
-  SurfacePoint point(int face, const Vec3& weights, const Vec3&, const Vec3& normal) const override {
-    return state_.face_point(face, weights, normal);
+  int carrier_count() const override { return state_.carrier_count(); }
+  int carrier_choices() const override { return state_.carrier_choices(); }
+  int carrier_choice(int face, int corner, int choice) const override {
+    return state_.carrier_choice(face, corner, choice);
   }
+  Carrier carrier(int number, const ContactAxes& axes) const override { return state_.carrier(number, axes); }
   const SurfaceState* soft() const override { return &state_; }
   const Points& points() const override { return state_.is_skin() ? state_.nodes() : state_.positions(); }
   int block_id() const override { return state_.surface().block_id; }
@@ -113,11 +116,17 @@ class RigidSide final : public ImageSide {
   Vec3 kept_vertex(int vertex) const override { return kept_ * Vec3(surface_.vertices.col(vertex)); }
   Pose frame() const override { return pose_; }
   Pose kept_frame() const override { return kept_; }
-  SurfacePoint point(int, const Vec3&, const Vec3& world, const Vec3&) const override {
-    SurfacePoint point;
-    point.frame = frame_;
-    point.offset.noalias() = turn_.transpose() * (world - pose_.translation);
-    return point;
+  int carrier_count() const override { return 1; }
+  int carrier_choices() const override { return 1; }
+  int carrier_choice(int, int, int) const override { return 0; }
+  /// The point in the frame's axes, R^T (origin + U (u, v, w) - t).
+  Carrier carrier(int, const ContactAxes& axes) const override {
+    Carrier out;
+    out.frame = frame_;
+    out.by_place.topLeftCorner<3, 3>().noalias() = turn_.transpose() * axes.to_world;
+    out.by_place.topRightCorner<3, 1>().noalias() = turn_.transpose() * (axes.origin - pose_.translation);
+    out.by_place(3, 3) = 1.0;
+    return out;
   }
 
  private:

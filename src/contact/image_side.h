@@ -33,8 +33,11 @@ class ImageSide {
   /// The frame that a rigid surface is in, now and when it was kept; of a soft one the world's.
   virtual Pose frame() const { return {}; }
   virtual Pose kept_frame() const { return {}; }
-  /// A point of a face as a side of a sample with this normal, by its corners' weights and where that is.
-  virtual SurfacePoint point(int face, const Vec3& weights, const Vec3& world, const Vec3& normal) const = 0;
+  /// What may carry a point of a face near one of its corners, by number: see SurfaceState.
+  virtual int carrier_count() const = 0;
+  virtual int carrier_choices() const = 0;
+  virtual int carrier_choice(int face, int corner, int choice) const = 0;
+  virtual Carrier carrier(int number, const ContactAxes& axes) const = 0;  ///< @pre updated
 
   /// For a backend that has surfaces in memory of its own.  Each vertex is a mean of some of these points: a
   /// body's nodes, or the vertices themselves.

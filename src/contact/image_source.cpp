@@ -142,7 +142,7 @@ std::size_t ImageSource::begin(const dynamics::StateView& state) {
   return find_regions(state);
 }
 
-void ImageSource::end(std::span<const ContactSample> samples) {
+void ImageSource::end(const SampleCells& samples, std::size_t first_cell) {
   if (context_.volume > 0.0) {
     QueryStages& stages = context_.stages;
     stages.quadrature_error = std::sqrt(context_.variance) / context_.volume;
@@ -155,16 +155,23 @@ void ImageSource::end(std::span<const ContactSample> samples) {
     neighbours_b_ = context_.of_one_body() ? neighbours_a_ : context_.b->soft()->neighbours();
     counted_ = now;
   }
-  coupled_.take(samples, neighbours_a_, neighbours_b_);
+  coupled_.take(samples, first_cell, neighbours_a_, neighbours_b_);
 }
 
 void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSample>& samples) {
-  if (ImageSource* self = asks_together()) {
+  cells_.clear();
+  query(state, cells_);
+  cells_.append_to(samples);
+}
+
+void ImageSource::query(const dynamics::StateView& state, SampleCells& samples) {
+  if (asks_together()) {
+    ImageSource* self = this;
     open(state);
     answer_together({&self, 1});
     return close(samples);
   }
-  const std::size_t first = samples.size(), count = begin(state);
+  const std::size_t first = samples.cells.size(), count = begin(state);
   if (count > 0) image().start_query();
   ImageRegion& one = region(0);
   for (std::size_t i = 0; i < count; ++i) {
@@ -178,7 +185,7 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
     }
     one.append_samples(samples);
   }
-  end(std::span(samples).subspan(first));
+  end(samples, first);
 }
 
 void ImageSource::open(const dynamics::StateView& state) {
@@ -196,11 +203,11 @@ void ImageSource::take() {
     if (regions_[i]->wanted()) regions_[i]->take();
 }
 
-void ImageSource::close(std::vector<ContactSample>& samples) {
-  const std::size_t first = samples.size();
+void ImageSource::close(SampleCells& samples) {
+  const std::size_t first = samples.cells.size();
   for (std::size_t i = 0; i < open_; ++i) regions_[i]->append_samples(samples);
   open_ = 0;
-  end(std::span(samples).subspan(first));
+  end(samples, first);
 }
 
 namespace {

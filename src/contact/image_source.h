@@ -23,15 +23,15 @@ class ImageSource : public SampleSource {
   void add_pattern(dynamics::PatternBuilder& pattern) const override;
   std::uint64_t pattern_version() const override;
   void query(const dynamics::StateView& state, std::vector<ContactSample>& samples) final;
+  void query(const dynamics::StateView& state, SampleCells& samples);  ///< the same, appended
   const QueryStages* stages() const final { return &context_.stages; }
   void keep_view() final { context_.view.emplace(); }
   const QueryView* view() const final { return context_.view ? &*context_.view : nullptr; }
   long tunnelled() const final { return tunnelled_; }
   double safe_time() const final { return context_.safe_time; }
   long fast_regions() const final { return context_.fast_regions; }
-  ImageSource* asks_together() final {
-    return context_.options.backend == DepthBackend::kGpu ? this : nullptr;
-  }
+  ImageSource* in_images() final { return this; }
+  bool asks_together() const { return context_.options.backend == DepthBackend::kGpu; }
 
   std::string fallback() const final { return fallback_; }
 
@@ -39,7 +39,7 @@ class ImageSource : public SampleSource {
   void open(const dynamics::StateView& state);               ///< collects the regions
   void collect(std::vector<DepthRequest*>& requests) const;  ///< appends what open regions ask for
   void take();                                               ///< all of these were answered
-  void close(std::vector<ContactSample>& samples);           ///< appends samples
+  void close(SampleCells& samples);                          ///< appends samples
   DepthImage& image();                                       ///< made when it is first asked for
   bool may_fall_back() const { return context_.options.or_cpu; }
   void fall_back(const std::string& why);  ///< to the processor, for good
@@ -60,7 +60,7 @@ class ImageSource : public SampleSource {
 
  private:
   std::size_t begin(const dynamics::StateView& state);
-  void end(std::span<const ContactSample> samples);
+  void end(const SampleCells& samples, std::size_t first_cell);
   ImageRegion& region(std::size_t place);
   /// Counts what went through since the last query.
   void look_back(double t);
@@ -72,6 +72,7 @@ class ImageSource : public SampleSource {
   bool kept_ = false, warned_ = false;
   std::unique_ptr<DepthImage> image_;
   std::string fallback_;
+  SampleCells cells_;  ///< scratch
   std::vector<std::unique_ptr<ImageRegion>> regions_;
   std::size_t open_ = 0;  ///< of `regions_`, in the query under way
   CoupledNodes coupled_;  // of two soft sides

@@ -44,14 +44,16 @@ void add_frame_block(const Side& frame, const SampleForce& s, FrameLinearisation
 }  // namespace
 
 Wrench ContactForce::frame_wrench(const dynamics::StateView& state, int frame) const {
-  Wrench sum;
-  impl_->for_each_active(state,
-                         [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
-                           if (s.a.frame != frame && s.b.frame != frame) return;
-                           const Vec3 force = sample_force(s, motion, law);
-                           if (s.a.frame == frame) sum += {motion.a.arm.cross(force), force};
-                           if (s.b.frame == frame) sum += {-motion.b.arm.cross(force), -force};
-                         });
+  Impl& m = *impl_;
+  m.place_frames(state);
+  Wrench sum = m.groups.wrench(state, m.frame_states, frame);
+  m.visit_active(state, Impl::Which::kEvery,
+                 [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+                   if (s.a.frame != frame && s.b.frame != frame) return;
+                   const Vec3 force = sample_force(s, motion, law);
+                   if (s.a.frame == frame) sum += {motion.a.arm.cross(force), force};
+                   if (s.b.frame == frame) sum += {-motion.b.arm.cross(force), -force};
+                 });
   return sum;
 }
 
@@ -80,7 +82,7 @@ void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameL
     if (other.is_nodes()) add_node_coupling(mine, other, force, out);
     ++out.active;
   };
-  m.visit_active(state, add, Impl::Which::kUngrouped);
+  m.visit_active(state, Impl::Which::kEvery, add);
 }
 
 }  // namespace palpate::contact

@@ -11,11 +11,12 @@ bool ContactForce::is_point_stiffness() const { return traits().symmetric_tangen
 void ContactForce::add_step(const dynamics::StateView& state, const VecX& shift, double k_scale,
                             double d_scale, VecX& f, PointStiffness& C) {
   Impl& m = *impl_;
-  add_force(state, f);
+  m.place_frames(state);
+  m.groups.add_step(state, m.frame_states, m.rows_of_frames(), shift, k_scale, d_scale, f, C);
+  m.add_single_forces(state, f);
   m.product.setZero(f.size());
-  apply_tangent(state, 1.0, 0.0, shift, m.product);
+  m.apply_single_tangents(state, 1.0, 0.0, shift, m.product);
   f -= m.product;
-  m.groups.add_stiffness(state, m.frame_states, k_scale, d_scale, C);
   m.linearise_friction(state);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
@@ -33,16 +34,18 @@ void ContactForce::add_step(const dynamics::StateView& state, const VecX& shift,
     point.C = k_scale * force.K + d_scale * force.D;
     if (point.nodes.count > 0) C.points.push_back(point);
   };
-  m.visit_active(state, add, Impl::Which::kUngroupedOfState);
+  m.visit_active(state, Impl::Which::kOfState, add);
 }
 
 void ContactForce::add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change,
                                   VecX& f) {
   Impl& m = *impl_;
-  add_force(state, f);
+  m.place_frames(state);
+  m.groups.add_step_force(state, m.frame_states, m.rows_of_frames(), shift, change, f);
+  m.add_single_forces(state, f);
   m.product.setZero(f.size());
-  apply_tangent(state, 1.0, 0.0, shift, m.product);
-  apply_tangent(state, 0.0, 1.0, change, m.product);
+  m.apply_single_tangents(state, 1.0, 0.0, shift, m.product);
+  m.apply_single_tangents(state, 0.0, 1.0, change, m.product);
   f -= m.product;
   m.linearise_friction(state);
 }

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+
 #include "palpate/contact/contact_force.h"
 
 namespace palpate::contact {
@@ -20,13 +22,43 @@ struct PressureLaw {
 /// @throws Error for a value that no contact can have, naming the pair and the key.
 PressureLaw pressure_law(const ContactSpec& spec);
 
-Pressure pressure(const PressureLaw& law, double gap, double gap_rate);
-
 /// s(delta) with its derivative and its integral from 0.
 struct Onset {
   double value, slope, integral;
 };
-Onset onset(double width, double depth);
+// A parabola that meets the line delta - w/2 with equal value w/2 and slope 1 at delta = w.  Its integral is
+// delta^3/(6 w) up to w, w^2/6 there, and delta^2/2 - w delta/2 + w^2/6 beyond.
+inline Onset onset(double width, double depth) {
+  if (!(depth > 0.0)) return {0.0, 0.0, 0.0};
+  if (depth < width)
+    return {0.5 * depth * depth / width, depth / width, depth * depth * depth / (6.0 * width)};
+  return {depth - 0.5 * width, 1.0, 0.5 * depth * (depth - width) + width * width / 6.0};
+}
+
+// With delta = -gap, delta' = -gap_rate, so dp/dgap = -dp/ddelta and dp/drate = -dp/ddelta'; s'' = 1/w up to
+// w, 0 beyond:
+//   kelvin_voigt   dp/ddelta = k s' + d s'' delta'       dp/ddelta' = d s'
+//   hunt_crossley  dp/ddelta = k s' (1 + 3/2 c delta')   dp/ddelta' = 3/2 k c s
+// The damper of kelvin_voigt takes s', so that it does not jump at first touch, and is whole from w on.
+// hunt_crossley keeps s: whatever function of depth stands there, m v dv = -F(delta) (1 + a v) ddelta
+// separates, and the speeds before and after an impact are related by the same G(a v) = a v - ln(1 + a v).
+// Where the formula gives tension the pressure and its derivatives are zero: a contact never pulls.
+inline Pressure pressure(const PressureLaw& law, double gap, double gap_rate) {
+  const double depth = -gap, rate = -gap_rate;
+  if (!(depth > 0.0)) return {0.0, 0.0, 0.0, 0.0};
+  const Onset s = onset(law.onset, depth);
+  const double energy = law.k * s.integral;
+  if (law.kind == PressureLaw::Kind::kKelvinVoigt) {
+    const double p = law.k * s.value + law.d * s.slope * rate,
+                 bend = depth < law.onset ? law.d * rate / law.onset : 0.0;
+    return p > 0.0 ? Pressure{p, -law.k * s.slope - bend, -law.d * s.slope, energy}
+                   : Pressure{0.0, 0.0, 0.0, energy};
+  }
+  const double factor = 1.0 + 1.5 * law.d * rate;
+  return factor > 0.0 ? Pressure{law.k * s.value * factor, -law.k * s.slope * factor,
+                                 -1.5 * law.k * law.d * s.value, energy}
+                      : Pressure{0.0, 0.0, 0.0, energy};
+}
 
 /// Negative while the law presses, positive while it does not, and zero exactly where that changes [m].
 /// Continuous in gap and rate.

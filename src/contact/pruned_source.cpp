@@ -66,16 +66,16 @@ class PrunedRegion final : public ImageRegion {
     if (looking_for_ == Image::kFirst) return refine();
   }
 
-  void append_samples(std::vector<ContactSample>& samples) override {
+  void append_samples(SampleCells& samples) override {
     if (!seen_) return;
     finish();
     leave_own_tissue();  // what finish() has found besides
     keep_view();
     keep_proxies();
     const ScopedTimer timer(context_.stages.gaps_s);
-    for (const Hit& hit : hits_)
-      samples.push_back(sample_of(hit.at, hit.area, *context_.a, piece_a_.face_of(hit.face_a), *context_.b,
-                                  piece_b_.face_of(hit.face_b), axes_));
+    append_hits(
+        samples, [&](int face) { return piece_a_.face_of(face); },
+        [&](int face) { return piece_b_.face_of(face); });
   }
 
  private:

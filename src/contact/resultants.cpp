@@ -24,25 +24,31 @@ void Resultants::start(std::size_t pairs) {
   bodies_.resize(pairs);
 }
 
-void Resultants::find_bodies(const std::vector<ContactSample>& samples, const dynamics::StateView& state,
+void Resultants::find_bodies(const Samples& samples, const dynamics::StateView& state,
                              const std::vector<std::shared_ptr<MovingFrame>>& frames) {
-  for (const ContactSample& s : samples) {
-    Bodies& bodies = bodies_[static_cast<std::size_t>(s.source)];
-    if (bodies.known) continue;
+  const auto take = [&](int pair, const auto& a, const auto& b) {
+    Bodies& bodies = bodies_[static_cast<std::size_t>(pair)];
+    if (bodies.known) return;
     bodies.known = true;
-    for (const SurfacePoint* p : {&s.a, &s.b}) {
-      if (p->frame < 0) {
-        bodies.centres.push_back(centre_of_block(p->node[0], state));
-      } else if (const MovingFrame& frame = *frames[static_cast<std::size_t>(p->frame)]; frame.moves()) {
+    const auto add = [&](const auto& side) {
+      if (side.frame < 0) {
+        bodies.centres.push_back(centre_of_block(side.node[0], state));
+      } else if (const MovingFrame& frame = *frames[static_cast<std::size_t>(side.frame)]; frame.moves()) {
         bodies.centres.push_back(frame.pose(state).translation);
       }
-    }
-  }
+    };
+    add(a);
+    add(b);
+  };
+  for (const ContactSample& s : samples.single) take(s.source, s.a, s.b);
+  for (const ContactCell& cell : samples.cells.cells)
+    take(cell.pair, samples.cells.carriers[static_cast<std::size_t>(cell.a)],
+         samples.cells.carriers[static_cast<std::size_t>(cell.b)]);
 }
 
 // With the moment M about the world's origin, that about c is M - c x F.  Side b has the opposite of both.
-void Resultants::compare(const std::vector<ContactSample>& samples_before,
-                         const std::vector<ContactSample>& samples_after, const dynamics::StateView& state,
+void Resultants::compare(const Samples& samples_before, const Samples& samples_after,
+                         const dynamics::StateView& state,
                          const std::vector<std::shared_ptr<MovingFrame>>& frames) {
   for (Bodies& bodies : bodies_) {
     bodies.known = false;

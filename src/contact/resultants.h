@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "contact/sample_cells.h"
 #include "palpate/contact/contact_force.h"
 
 namespace palpate::contact {
@@ -20,9 +21,12 @@ class Resultants {
   /// The change that the refresh made at `state`, the largest of all pairs.  The moment is seen from each
   /// body of the pair: about the mean of its nodes, or about the origin of its frame.  What does not move
   /// feels none.
-  /// @param samples_before, samples_after  of which the pairs' bodies are known
-  void compare(const std::vector<ContactSample>& samples_before,
-               const std::vector<ContactSample>& samples_after, const dynamics::StateView& state,
+  /// @param before, after  samples of the queries, of which the pairs' bodies are known
+  struct Samples {
+    const std::vector<ContactSample>& single;
+    const SampleCells& cells;
+  };
+  void compare(const Samples& samples_before, const Samples& samples_after, const dynamics::StateView& state,
                const std::vector<std::shared_ptr<MovingFrame>>& frames);
 
   ResultantSize jump;           ///< at the last refresh
@@ -34,7 +38,7 @@ class Resultants {
     bool known = false;
     std::vector<Vec3> centres;  ///< [m]
   };
-  void find_bodies(const std::vector<ContactSample>& samples, const dynamics::StateView& state,
+  void find_bodies(const Samples& samples, const dynamics::StateView& state,
                    const std::vector<std::shared_ptr<MovingFrame>>& frames);
   std::vector<Bodies> bodies_;  ///< by pair
 };

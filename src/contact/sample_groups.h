@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "contact/pressure.h"
+#include "contact/sample_cells.h"
 #include "contact/sample_math.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/dynamics/matrix.h"
@@ -16,59 +17,108 @@ namespace palpate::contact {
 ///
 /// Thousands of samples share few nodes.  Without friction each force is p A n and each stiffness a multiple
 /// of n n^T, so what a group adds to forces and matrices are sums of numbers over its samples, times n or
-/// n n^T; only these sums meet nodes and frames (sample_groups.cpp).
+/// n n^T; only these sums meet nodes and frames (group_sums.cpp).
 class SampleGroups {
  public:
   /// Samples of one pair, appended.
   /// @pre side a is of nodes
   void append(std::span<const ContactSample> samples, const PressureLaw& law);
+  /// Cells of one pair, appended: first <= cell < last; they stay where they are until `clear`.
+  void append(const SampleCells& cells, std::size_t first, std::size_t last, const PressureLaw& law);
   void clear();
 
   /// @param frame_row  first of the six rows of a frame in f, by its index; -1: it has none
   /// @param on_a  by pair (ContactSample::source): its resultant on side a is added, about the world's origin
   void add_force(const dynamics::StateView& state, const std::vector<FrameState>& frames,
-                 const std::vector<int>& frame_row, VecX& f, std::vector<Wrench>* on_a = nullptr);
+                 const std::vector<int>& frame_row, VecX& f, std::vector<Wrench>* on_a = nullptr) const;
   void add_tangent(const dynamics::StateView& state, const std::vector<FrameState>& frames, double k_scale,
-                   double d_scale, dynamics::BorderedMatrix& A);
-  /// k_scale K + d_scale D on nodes, of frames that are not in the State.
-  void add_stiffness(const dynamics::StateView& state, const std::vector<FrameState>& frames, double k_scale,
-                     double d_scale, dynamics::PointStiffness& C);
+                   double d_scale, dynamics::BorderedMatrix& A) const;
   void apply_tangent(const dynamics::StateView& state, const std::vector<FrameState>& frames, double k_scale,
-                     double d_scale, const VecX& x, VecX& y);
+                     double d_scale, const VecX& x, VecX& y) const;
+  /// As ContactForce::add_step and add_step_force are: f += force - K shift (- D change), and
+  /// k_scale K + d_scale D on nodes, of frames that are not in the State.
+  void add_step(const dynamics::StateView& state, const std::vector<FrameState>& frames,
+                const std::vector<int>& frame_row, const VecX& shift, double k_scale, double d_scale, VecX& f,
+                dynamics::PointStiffness& C) const;
+  void add_step_force(const dynamics::StateView& state, const std::vector<FrameState>& frames,
+                      const std::vector<int>& frame_row, const VecX& shift, const VecX& change,
+                      VecX& f) const;
   void linearise(const dynamics::StateView& state, const std::vector<FrameState>& frames, int frame,
-                 FrameLinearisation& out);
+                 FrameLinearisation& out) const;
+  /// On one frame, about its origin.
+  Wrench wrench(const dynamics::StateView& state, const std::vector<FrameState>& frames, int frame) const;
+  double energy(const dynamics::StateView& state, const std::vector<FrameState>& frames) const;       ///< [J]
+  double dissipation(const dynamics::StateView& state, const std::vector<FrameState>& frames) const;  ///< [W]
 
  private:
-  static constexpr int kNodes = 4;
   struct Group {
-    int first = 0, last = 0;  ///< samples
+    int first = 0, last = 0;  ///< of `samples_`, or of the cells' places
+    int cell = -1;            ///< of the cells; -1: samples of its own
     int pair = 0;
     int frame = -1;  ///< of side b; -1: nodes
     int count_a = 0, count_b = 0;
-    std::array<int, kNodes> a{}, b{};
+    std::array<int, 4> a{}, b{};
     Vec3 normal = Vec3::Zero();
-    PressureLaw law;
+    int law = 0;  ///< of `laws_`
   };
+  using Vec5 = Eigen::Matrix<double, 5, 1>;
+  using Vec8 = Eigen::Matrix<double, 8, 1>;
+  using Mat8 = Eigen::Matrix<double, 8, 8>;
   struct Sample {
-    Eigen::Vector4d a;  ///< weights of a's nodes
-    Eigen::Vector4d b;  ///< of b's nodes; or x, y, z in the frame's axes [m], and 0
-    double area;        ///< [m^2]
-    double shift;       ///< what the gap has beside nodes and frame [m]
+    Vec8 y;        ///< group_sums.cpp
+    double area;   ///< [m^2]
+    double shift;  ///< what the gap has beside nodes and frame [m]
   };
-  /// Of one sample: A p, -A dp/dgap, -A dp/drate.
-  struct Response {
-    double force, k, d;
+  /// From the places of a cell to y, and what the gap has beside y.
+  struct PlaceMap {
+    Eigen::Matrix<double, 8, 5> Y = Eigen::Matrix<double, 8, 5>::Zero();
+    Vec5 beside = Vec5::Zero();
+    PlaceMap(const SampleCells& cells, int cell);
+  };
+  /// By which y gives the gap and its rate.
+  struct Motion {
+    Vec8 x = Vec8::Zero(), v = Vec8::Zero();
+  };
+  /// Over a group's samples: F, K and D.
+  struct Sums {
+    Vec8 f;
+    Mat8 k, d;
+    int pressed = 0;  ///< samples with pressure
   };
 
   bool belongs(const Group& group, const ContactSample& sample) const;
-  int group_of(const ContactSample& sample, const PressureLaw& law, std::size_t first_of_run);
+  int group_of(const ContactSample& sample, std::size_t first_of_run);
   void fill(std::span<const ContactSample> samples, std::size_t first_group);
-  /// visit(sample, response) of those that press.
+
+  const PressureLaw& law_of(const Group& group) const { return laws_[static_cast<std::size_t>(group.law)]; }
+  Motion motion(const Group& group, const dynamics::StateView& state,
+                const std::vector<FrameState>& frames) const;
+  /// visit(y, gap, rate, area), or with the place of a cell's sample instead of y.
   template <class Visit>
-  void for_each_pressed(const Group& group, const dynamics::StateView& state,
-                        const std::vector<FrameState>& frames, Visit visit) const;
+  void for_each_sample(const Group& group, const Motion& motion, Visit visit) const;
+  template <class Visit>
+  void for_each_place(const Group& group, const PlaceMap& map, const Motion& motion, Visit visit) const;
+  /// visit(group, gap, rate, area) of all samples that touch.
+  template <class Visit>
+  void for_each_gap(const dynamics::StateView& state, const std::vector<FrameState>& frames,
+                    Visit visit) const;
+  template <class Visit>
+  static void for_each_node(const Group& group, Visit visit);
+  Vec8 sum_forces(const Group& group, const Motion& motion) const;
+  /// False, and nothing in `out`, where no sample has a gap < 0.
+  bool sum(const Group& group, const Motion& motion, Sums& out) const;
+  static void add_force(const Group& group, const Vec8& f, const std::vector<FrameState>& frames,
+                        const std::vector<int>& frame_row, VecX& out);
+  static void apply(const Group& group, const Sums& sums, const std::vector<FrameState>& frames,
+                    double k_scale, double d_scale, const VecX& x, VecX& y);
+  static void add_stiffness(const Group& group, const Sums& sums, double k_scale, double d_scale,
+                            dynamics::PointStiffness& C);
+  static Vec6 on_frame(const Group& group, const Vec8& f, const FrameState& frame);  ///< moment, force
+
   std::vector<Group> groups_;
-  std::vector<Sample> samples_;               ///< by group
+  std::vector<Sample> samples_;  ///< by group
+  std::vector<PressureLaw> laws_;
+  const SampleCells* cells_ = nullptr;
   std::vector<int> table_, group_of_sample_;  // scratch of append
 };
 

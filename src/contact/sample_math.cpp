@@ -80,13 +80,16 @@ Vec3 friction_per_pressure(const ContactSample& sample, const SampleMotion& moti
 //   -(A k s delta' - A p delta') = A (p - k s) delta'  =  A d s' delta'^2  or  A 3/2 k c s delta'^2,
 // and where the pressure was cut to zero, -A k s delta' with delta' < 0: all >= 0.  Friction takes A mu p
 // |v_t|^2 / max(|v_t|, v_r).
+double damping_power(const PressureLaw& law, double gap, double rate) {
+  return (pressure(law, gap, rate).p - law.k * onset(law.onset, -gap).value) * -rate;
+}
+
 double sample_dissipation(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law) {
   if (motion.gap >= 0.0) return 0.0;
   const double p = pressure(law, motion.gap, motion.rate).p;
-  const double normal_part = (p - law.k * onset(law.onset, -motion.gap).value) * -motion.rate;
   const Vec3 v_t = tangential(sample, motion);
-  return sample.area *
-         (normal_part + law.friction * p * v_t.squaredNorm() / std::max(v_t.norm(), law.regularisation));
+  return sample.area * (damping_power(law, motion.gap, motion.rate) +
+                        law.friction * p * v_t.squaredNorm() / std::max(v_t.norm(), law.regularisation));
 }
 
 }  // namespace palpate::contact

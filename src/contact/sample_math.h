@@ -45,6 +45,8 @@ SampleForce sample_force_and_tangent(const ContactSample& sample, const SampleMo
                                      const PressureLaw& law, bool symmetric = false);
 /// The part of the force that friction is, over the pressure: -A mu s [m^2].
 Vec3 friction_per_pressure(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
+/// Power per area that damping takes out of a touching contact [W/m^2], >= 0.
+double damping_power(const PressureLaw& law, double gap, double rate);
 /// Power that damping and friction take out [W], >= 0.
 double sample_dissipation(const ContactSample& sample, const SampleMotion& motion, const PressureLaw& law);
 

@@ -117,89 +117,109 @@ SurfacePoint SurfaceState::vertex_point(int vertex) const {
 // p_i and p the P x_i and P x about the mean of the corners, are bounded however low the tetrahedron is along
 // n.  The offset left along n does not rotate: gap and moment are right to first order, and friction's moment
 // is off by friction times offset.  Where that is not enough, the tetrahedra of the face's other corners
-// are tried.
-SurfacePoint SurfaceState::face_point(int face, const Vec3& weights, const Vec3& normal) const {
-  const auto corner = surface_.faces.col(face);
-  if (!is_skin()) {
-    SurfacePoint point;
-    point.count = 3;
-    for (int k = 0; k < 3; ++k) {
-      point.node[static_cast<std::size_t>(k)] = node(corner[k]);
-      point.weight[static_cast<std::size_t>(k)] = weights[k];
-    }
-    return point;
-  }
-  Eigen::Index nearest = 0;
-  weights.maxCoeff(&nearest);
-  const Vec3 x =
-      weights[0] * position(corner[0]) + weights[1] * position(corner[1]) + weights[2] * position(corner[2]);
-  const int own = tet_of(corner[nearest]);
-  const Weights of_corner = surface_.embedding.weights.col(corner[nearest]);
-  if (weights[nearest] == 1.0) return point_of_tet(own, x, of_corner);  // a vertex
-  const auto is_bounded = [](const Weights& w) { return w.cwiseAbs().sum() <= mesh::kLargestWeightSum; };
-  if (const Weights w = weights_at(own, x); is_bounded(w)) return point_of_tet(own, x, w);
-  counters::count("contact.squashed_tetrahedron");
-  if (const Weights w = weights_on_line(own, x, normal); is_bounded(w)) return point_of_tet(own, x, w);
-  for (int k = 0; k < 3; ++k)
-    if (const Weights w = weights_at(tet_of(corner[k]), x); is_bounded(w))
-      return point_of_tet(tet_of(corner[k]), x, w);
-  for (int k = 0; k < 3; ++k)
-    if (const Weights w = weights_on_line(tet_of(corner[k]), x, normal); is_bounded(w))
-      return point_of_tet(tet_of(corner[k]), x, w);
-  // all three flat and seen edge-on: the corner's own weights, and a moment of the offset times the force
-  return point_of_tet(own, x, of_corner);
+// are tried, and at last, all three flat and seen edge-on, the corner's own weights carry it, with a moment
+// of the offset times the force.
+//
+// All of these are affine in the place, but for the last, which are constant.  Carriers have numbers: of
+// tetrahedron t 2 t by its coordinates and 2 t + 1 by the least weights, then the vertices by their own; of a
+// surface whose vertices are nodes those of its faces.
+int SurfaceState::carrier_count() const {
+  return is_skin() ? 2 * static_cast<int>(surface_.tets.cols()) + vertex_count() : face_count();
 }
 
-const SurfaceState::TetFrame& SurfaceState::frame_of(int tet) const {
+int SurfaceState::carrier_choices() const { return is_skin() ? 9 : 1; }
+
+int SurfaceState::carrier_choice(int face, int corner, int choice) const {
+  if (!is_skin()) return face;
+  const auto of = [&](int k) { return 2 * tet_of(surface_.faces(k, face)); };
+  if (choice < 2) return of(corner) + choice;
+  if (choice < 5) return of(choice - 2);
+  if (choice < 8) return of(choice - 5) + 1;
+  return 2 * static_cast<int>(surface_.tets.cols()) + surface_.faces(corner, face);
+}
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Barycentric coordinates by the place, of a tetrahedron with these corners, the first at 0; NaN of one that
+/// is too flat to have them.
+Mat4 coordinates_in(const Mat34& x) {
   constexpr double kFlat = 1e-6;  // volume over the cube of the longest edge
-  if (frames_.empty()) frames_.resize(static_cast<std::size_t>(surface_.tets.cols()));
-  TetFrame& frame = frames_[static_cast<std::size_t>(tet)];
-  if (frame.made == updates_) return frame;
-  Mat3 edges;
-  for (int k = 0; k < 3; ++k)
-    edges.col(k) = nodes_.col(surface_.tets(k + 1, tet)) - nodes_.col(surface_.tets(0, tet));
+  const Mat3 edges = x.rightCols<3>();
   const double size = edges.colwise().norm().maxCoeff();
-  frame.flat = std::abs(edges.determinant()) <= kFlat * size * size * size;
-  if (!frame.flat) frame.inverse_edges = edges.inverse();
-  frame.made = updates_;
-  return frame;
+  if (!(std::abs(edges.determinant()) > kFlat * size * size * size)) return Mat4::Constant(kNone);
+  Mat4 out = Mat4::Zero();
+  out.bottomLeftCorner<3, 3>() = edges.inverse();
+  out.row(0) = Vec4(0.0, 0.0, 0.0, 1.0).transpose() - out.bottomRows<3>().colwise().sum();
+  return out;
 }
 
-SurfaceState::Weights SurfaceState::weights_at(int tet, const Vec3& x) const {
-  const TetFrame& frame = frame_of(tet);
-  if (frame.flat) return Weights::Constant(std::numeric_limits<double>::quiet_NaN());
-  Weights w;
-  w.tail<3>().noalias() = frame.inverse_edges * (x - nodes_.col(surface_.tets(0, tet)));
-  w[0] = 1.0 - w.tail<3>().sum();
-  return w;
-}
-
-SurfaceState::Weights SurfaceState::weights_on_line(int tet, const Vec3& x, const Vec3& normal) const {
+/// The least weights by the place, in the sense of squares, of a point on the line through it along w; NaN
+/// where the corners are on a line as w sees them.
+Mat4 least_weights(const Mat34& x) {
   constexpr double kEdgeOn = 1e-12;
-  Eigen::Matrix<double, 3, 2> across;
-  across.col(0) = normal.unitOrthogonal();
-  across.col(1) = normal.cross(across.col(0));
-  Eigen::Matrix<double, 2, 4> p;
-  for (int k = 0; k < 4; ++k) p.col(k).noalias() = across.transpose() * nodes_.col(surface_.tets(k, tet));
-  const Eigen::Vector2d middle = p.rowwise().mean();
-  p.colwise() -= middle;
+  const Eigen::Vector2d middle = x.topRows<2>().rowwise().mean();
+  const Eigen::Matrix<double, 2, 4> p = x.topRows<2>().colwise() - middle;
   const Eigen::Matrix2d squares = p * p.transpose();
-  if (!(squares.determinant() > kEdgeOn * squares.trace() * squares.trace()))
-    return Weights::Constant(std::numeric_limits<double>::quiet_NaN());
-  const Eigen::Vector2d at = squares.inverse() * (across.transpose() * x - middle);
-  return Weights::Constant(0.25) + p.transpose() * at;
+  if (!(squares.determinant() > kEdgeOn * squares.trace() * squares.trace())) return Mat4::Constant(kNone);
+  Mat4 out = Mat4::Zero();
+  out.leftCols<2>().noalias() = p.transpose() * squares.inverse();
+  out.col(3) = Vec4::Constant(0.25) - out.leftCols<2>() * middle;
+  return out;
 }
 
-SurfacePoint SurfaceState::point_of_tet(int tet, const Vec3& x, const Weights& weights) const {
-  SurfacePoint point;
-  point.count = 4;
-  point.offset = x;
-  for (int k = 0; k < 4; ++k) {
-    point.node[static_cast<std::size_t>(k)] = node_of_tet(tet, k);
-    point.weight[static_cast<std::size_t>(k)] = weights[k];
-    point.offset -= weights[k] * nodes_.col(surface_.tets(k, tet));  // rounding, but of a squashed one
+/// Of a triangle with its first corner at 0, seen along w: three weights by the place; the same everywhere
+/// where it is seen edge-on.
+Mat4 coordinates_in_face(const Mat34& x) {
+  const Eigen::Matrix2d edges = x.block<2, 2>(0, 1);
+  Mat4 out = Mat4::Zero();
+  if (edges.determinant() == 0.0) {
+    out.col(3) = Vec4(1.0, 1.0, 1.0, 0.0) / 3.0;
+    return out;
   }
-  return point;
+  out.block<2, 2>(1, 0) = edges.inverse();
+  out.row(0) = Vec4(0.0, 0.0, 0.0, 1.0).transpose() - out.row(1) - out.row(2);
+  return out;
+}
+
+}  // namespace
+
+// With the nodes at x_i, seen from the first one, the place p = (u, v, w, 1) is carried to sum (B p)_i x_i,
+// at the height sum (B p)_i w_i; `beside` is what is missing to w, zero but for rounding where the point is
+// on the carrier.
+Carrier SurfaceState::carrier(int number, const ContactAxes& axes) const {
+  Carrier out;
+  const Tets& tets = surface_.tets;
+  const auto nodes_of = [&](int tet) {
+    for (int k = 0; k < 4; ++k) out.node[static_cast<std::size_t>(k)] = node_of_tet(tet, k);
+  };
+  Mat34 x = Mat34::Zero();  // of the carrier's nodes, in the axes, from the first
+  if (!is_skin()) {
+    out.count = 3;
+    const int first = surface_.faces(0, number);
+    for (int k = 0; k < 3; ++k) {
+      const int vertex = surface_.faces(k, number);
+      out.node[static_cast<std::size_t>(k)] = node(vertex);
+      x.col(k).noalias() = axes.to_world.transpose() * (positions_.col(vertex) - positions_.col(first));
+    }
+    out.at = axes.in_axes(positions_.col(first));
+    out.by_place = coordinates_in_face(x);
+  } else {
+    out.count = 4;
+    const int vertex = number - 2 * static_cast<int>(tets.cols()),
+              tet = vertex >= 0 ? tet_of(vertex) : number / 2;
+    nodes_of(tet);
+    out.at = axes.in_axes(nodes_.col(tets(0, tet)));
+    for (int k = 1; k < 4; ++k)  // from the first
+      x.col(k).noalias() = axes.to_world.transpose() * (nodes_.col(tets(k, tet)) - nodes_.col(tets(0, tet)));
+    if (vertex >= 0)
+      out.by_place.col(3) = surface_.embedding.weights.col(vertex);
+    else
+      out.by_place = number % 2 == 0 ? coordinates_in(x) : least_weights(x);
+  }
+  out.beside = Vec4(0.0, 0.0, 1.0, 0.0) - out.by_place.transpose() * x.row(2).transpose();
+  return out;
 }
 
 // Area vector of a face: (x1 - x0) x (x2 - x0) / 2, outward.

@@ -2,6 +2,8 @@
 #include <array>
 #include <vector>
 
+#include "contact/carrier.h"
+#include "contact/contact_view.h"
 #include "contact/coupled_nodes.h"
 #include "palpate/contact/contact_force.h"
 
@@ -33,7 +35,7 @@ class SurfaceState {
   long evaluations() const { return evaluations_; }
   const Points& nodes() const { return nodes_; }  ///< of the block, of a skin only
   /// What the vertices hang on, now: the nodes of a skin, else they themselves.
-  const Points& carriers() const { return is_skin() ? nodes_ : positions_; }
+  const Points& carrying_points() const { return is_skin() ? nodes_ : positions_; }
   /// Where a vertex is when these are there.
   Vec3 position(int vertex, const Points& carriers) const;
   Vec3 velocity(int vertex, const dynamics::StateView& state) const;
@@ -44,8 +46,13 @@ class SurfaceState {
   double weight_sum() const { return weight_sum_; }
   /// One vertex as a contact point; its nodes are counted over all node blocks.
   SurfacePoint vertex_point(int vertex) const;
-  /// The point of a face with these weights of its corners, for a force along `normal`.
-  SurfacePoint face_point(int face, const Vec3& weights, const Vec3& normal) const;
+  /// What may carry a point of a face near one of its corners, by number (surface_state.cpp): the first
+  /// choice whose weights are bounded, the last one in any case.
+  int carrier_count() const;
+  int carrier_choices() const;
+  int carrier_choice(int face, int corner, int choice) const;
+  /// As it stands, for places in these axes; NaN where it can carry none.
+  Carrier carrier(int number, const ContactAxes& axes) const;
   /// One third of the area vectors of the adjacent faces, deformed [m^2]; outward.  Sums over `faces` with a
   /// vertex in `wanted`.
   void area_vectors(const std::vector<char>& wanted, Points& areas) const;
@@ -67,20 +74,6 @@ class SurfaceState {
   int node(int vertex) const {
     return node_offset_ + surface_.node_of_vertex[static_cast<std::size_t>(vertex)];
   }
-  /// A tetrahedron of a skin as it stands: what gives a point its barycentric coordinates.
-  struct TetFrame {
-    Mat3 inverse_edges;
-    bool flat;
-    std::uint64_t made = 0;  ///< at which update
-  };
-  const TetFrame& frame_of(int tet) const;
-  using Weights = Eigen::Vector4d;
-  /// Barycentric coordinates of x; NaN where the tetrahedron is too flat to have them.
-  Weights weights_at(int tet, const Vec3& x) const;
-  /// The least weights, in the sense of squares, of a point on the line through x along `normal`; NaN where
-  /// the tetrahedron is flat along it.
-  Weights weights_on_line(int tet, const Vec3& x, const Vec3& normal) const;
-  SurfacePoint point_of_tet(int tet, const Vec3& x, const Weights& weights) const;
 
   NodeSurface surface_;
   std::vector<int> carriers_;  ///< of a skin: the tetrahedra that carry a vertex, each once
@@ -96,7 +89,6 @@ class SurfaceState {
   mutable long evaluations_ = 0;
   Points nodes_;
   std::uint64_t updates_ = 1;
-  mutable std::vector<TetFrame> frames_;  ///< of each tetrahedron, made when a point asks for it
 };
 
 /// A point of a frame, given in the world.

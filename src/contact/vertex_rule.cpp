@@ -111,7 +111,6 @@ bool VertexRule::take(const Region& region, bool of_a, int vertex, int other, Hi
   Facing& at = hit.at;
   at.u = x.x();
   at.v = x.y();
-  at.lift_a = at.lift_b = 0.0;
   FacePlanes& planes = of_a ? region.planes_b : region.planes_a;
   if (!planes.at(other, at.u, at.v, of_a ? at.weights_b : at.weights_a, of_a ? at.w_b : at.w_a)) return false;
   (of_a ? at.w_a : at.w_b) = x.z();
@@ -183,7 +182,6 @@ bool VertexRule::interpolate(const Region& region, bool of_a, Hit& hit) const {
   }
   if (!(weight > 0.0)) return false;
   const double more = sum / weight - hit.at.gap();
-  (of_a ? hit.at.lift_b : hit.at.lift_a) = of_a ? -more : more;
   (of_a ? hit.at.w_b : hit.at.w_a) += of_a ? -more : more;
   return true;
 }

@@ -34,15 +34,15 @@ class WholeRegion final : public ImageRegion {
     see();
     if (!finest_) finest_ = ask_finer(window_);
   }
-  void append_samples(std::vector<ContactSample>& samples) override {
+  void append_samples(SampleCells& samples) override {
     if (!seen_) return;
     finish();
     keep_view();
     const ScopedTimer timer(context_.stages.gaps_s);
-    for (const Hit& hit : hits_) {
-      samples.push_back(sample_of(hit.at, hit.area, *context_.a, hit.face_a, *context_.b, hit.face_b, axes_));
-      presses_ = presses_ || hit.at.gap() < 0.0;
-    }
+    const auto same = [](int face) { return face; };
+    append_hits(samples, same, same);
+    presses_ =
+        presses_ || std::any_of(hits_.begin(), hits_.end(), [](const Hit& h) { return h.at.gap() < 0.0; });
   }
   /// Whether something pressed at the last query that looked at it, once.
   bool take_presses() { return std::exchange(presses_, false); }

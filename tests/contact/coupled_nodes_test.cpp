@@ -18,13 +18,20 @@ NodeNeighbours chain(int first) {
   return {edges, first};
 }
 
-std::vector<ContactSample> samples_at(int node, int copies = 50) {
-  ContactSample s;
-  s.a.count = s.b.count = 1;
-  s.a.node[0] = node;
-  s.a.weight[0] = s.b.weight[0] = 1.0;
-  s.b.node[0] = kFirst + node;
-  return std::vector<ContactSample>(static_cast<std::size_t>(copies), s);
+/// A cell whose samples hang on this node of the one chain and on the same of the other.
+SampleCells cell_at(int node) {
+  SampleCells out;
+  out.carriers.resize(2);
+  for (Carrier& carrier : out.carriers) {
+    carrier.count = 1;
+    carrier.number = node;
+  }
+  out.carriers[0].node[0] = node;
+  out.carriers[1].node[0] = kFirst + node;
+  out.cells.resize(1);
+  out.cells[0].a = 0;
+  out.cells[0].b = 1;
+  return out;
 }
 
 std::set<std::pair<int, int>> pairs_of(const CoupledNodes& coupled) {
@@ -48,12 +55,12 @@ TEST(NodeNeighbours, AreThoseOfTheElements) {
 TEST(CoupledNodes, WaitForContactThatSlidesByAnElement) {
   const NodeNeighbours a = chain(0), b = chain(kFirst);
   CoupledNodes coupled;
-  coupled.take(samples_at(10), a, b);
+  coupled.take(cell_at(10), 0, a, b);
   EXPECT_EQ(pairs_of(coupled).size(), 9u) << "each of three with each of three";
   const auto version = coupled.version();
-  for (const int node : {9, 11, 10}) coupled.take(samples_at(node), a, b);
+  for (const int node : {9, 11, 10}) coupled.take(cell_at(node), 0, a, b);
   EXPECT_EQ(coupled.version(), version);
-  coupled.take(samples_at(12), a, b);
+  coupled.take(cell_at(12), 0, a, b);
   EXPECT_GT(coupled.version(), version);
   EXPECT_TRUE(pairs_of(coupled).contains({9, 9})) << "what was met stays for a while";
   EXPECT_TRUE(pairs_of(coupled).contains({13, 13}));
@@ -63,7 +70,7 @@ TEST(CoupledNodes, WaitForContactThatSlidesByAnElement) {
 TEST(CoupledNodes, StartAnewWhereMostIsPast) {
   const NodeNeighbours a = chain(0), b = chain(kFirst);
   CoupledNodes coupled;
-  for (int node = 2; node < 36; node += 3) coupled.take(samples_at(node), a, b);
+  for (int node = 2; node < 36; node += 3) coupled.take(cell_at(node), 0, a, b);
   EXPECT_LE(pairs_of(coupled).size(), 18u);
   EXPECT_TRUE(pairs_of(coupled).contains({35, 35}));
   EXPECT_FALSE(pairs_of(coupled).contains({2, 2}));

@@ -150,13 +150,16 @@ TEST_P(ImageSource, ASkinIsSeenWhereItIs) {
   const auto of_skin = query(skin.surface, skin.state), of_nodes = query(nodes.surface, nodes.state);
   ASSERT_EQ(of_skin.size(), of_nodes.size());
   EXPECT_GT(of_skin.size(), 100u);
-  for (std::size_t i = 0; i < of_skin.size(); ++i) {
-    EXPECT_NEAR(of_skin[i].gap, of_nodes[i].gap, 1e-13);
-    const Vec3 a = point_on_nodes(of_skin[i].a, skin.state.view());
-    EXPECT_LT((a - point_on_nodes(of_nodes[i].a, nodes.state.view())).norm(), 1e-13);
-    EXPECT_LT(of_skin[i].a.offset.norm(), 1e-13)
-        << "a point that its nodes do not carry has a moment of its own";
-    EXPECT_NEAR(of_skin[i].gap, of_skin[i].normal.dot(a - of_skin[i].b.offset), 1e-13);
+  for (const contact::ContactSample& s : of_skin) {  // in the order of what carries them
+    const auto same = std::min_element(of_nodes.begin(), of_nodes.end(), [&](const auto& p, const auto& q) {
+      return (p.b.offset - s.b.offset).norm() < (q.b.offset - s.b.offset).norm();
+    });
+    EXPECT_LT((same->b.offset - s.b.offset).norm(), 1e-13);
+    EXPECT_NEAR(s.gap, same->gap, 1e-13);
+    const Vec3 a = point_on_nodes(s.a, skin.state.view());
+    EXPECT_LT((a - point_on_nodes(same->a, nodes.state.view())).norm(), 1e-13);
+    EXPECT_LT(s.a.offset.norm(), 1e-13) << "a point that its nodes do not carry has a moment of its own";
+    EXPECT_NEAR(s.gap, s.normal.dot(a - s.b.offset), 1e-13);
   }
 }
 

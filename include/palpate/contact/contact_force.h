@@ -78,8 +78,8 @@ class SampleSource {
   virtual const proxy::PruneCounts* pruning() const { return nullptr; }
   /// Of a source in image space; else null.
   virtual const QueryStages* stages() const { return nullptr; }
-  /// A source whose images are made together with those of others; else null.
-  virtual ImageSource* asks_together() { return nullptr; }
+  /// A source in image space; else null.
+  virtual ImageSource* in_images() { return nullptr; }
   /// Why the processor has taken over from the GPU; empty: it has not.
   virtual std::string fallback() const { return {}; }
   /// From the next query on, keep what pictures show of it; nothing is kept, or paid for, before.
@@ -156,7 +156,9 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   std::uint64_t events_version() const override;
   void events(const dynamics::StateView& state, double* g) override;
 
+  /// Of the last query, one by one: made when they are asked for, at the price of a copy.
   const std::vector<ContactSample>& samples() const;
+  int sample_count() const;
   Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
   void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out,
                  Partners partners = Partners::kAll) const;

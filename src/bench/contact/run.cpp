@@ -93,7 +93,7 @@ class Watch : public loop::Observer {
                       to.images.back() - to.gaps.back());
     to.step.push_back(to.whole.back() - to.query.back());
     to.force.push_back(1e3 * force_s);
-    to.samples.push_back(static_cast<double>(world.contact->samples().size()));
+    to.samples.push_back(static_cast<double>(world.contact->sample_count()));
     to.image_counts.push_back(count(&Times::image_count));
     to.region_counts.push_back(count(&Times::region_count));
     to.bytes.push_back(query_bytes({.nodes = nodes_,
