@@ -74,6 +74,8 @@ TEST(CoupledNodes, StartAnewWhereMostIsPast) {
   EXPECT_LE(pairs_of(coupled).size(), 18u);
   EXPECT_TRUE(pairs_of(coupled).contains({35, 35}));
   EXPECT_FALSE(pairs_of(coupled).contains({2, 2}));
+  coupled.take(cell_at(2), 0, a, b);
+  EXPECT_TRUE(pairs_of(coupled).contains({2, 2})) << "was known, and forgotten";
   coupled.forget();
   EXPECT_TRUE(pairs_of(coupled).empty());
 }

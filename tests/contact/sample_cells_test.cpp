@@ -74,6 +74,26 @@ MakeScene two_balls(contact::SampleRule rule, bool hunt_crossley) {
   };
 }
 
+/// Two surfaces whose vertices are nodes, with depths read from the image: what its faces carry lies beside
+/// them.
+MakeScene two_shells() {
+  return [](bool in_cells) {
+    SurfaceWorld world(sphere(Vec3::Zero(), 1.0, 12));
+    SurfaceWorld other(sphere(Vec3(0.2, -0.1, -1.9), 1.0, 11));
+    dynamics::BlockSpec nodes;
+    nodes.name = "other surface";
+    const VecX x = other.state.q().tail(other.state.q().size() - 6);
+    nodes.q_size = nodes.u_size = static_cast<int>(x.size());
+    other.surface.block_id = world.state.insert(nodes, x, VecX::Constant(x.size(), 0.1));
+    contact::ImageOptions options = image_options(64, 0.02);
+    options.samples = contact::SampleRule::kVertex;
+    if (backend() != contact::DepthBackend::kExact) options.depths = contact::DepthReading::kInterpolated;
+    return std::make_unique<Scene>(
+        world.state, contact::make_image_source(world.surface, other.surface, options),
+        std::vector<std::shared_ptr<contact::MovingFrame>>{}, law(false), in_cells);
+  };
+}
+
 /// A skin, or nodes in its places, under a ball that turns: in a frame that is given, or a body of the State.
 MakeScene under_a_ball(bool skin, bool in_state, contact::SampleRule rule) {
   return [=](bool in_cells) {
@@ -165,6 +185,8 @@ TEST_P(SampleCells, OfTwoSoftBodies) {
       SCOPED_TRACE(hunt_crossley);
       expect_the_same(two_balls(rule, hunt_crossley));
     }
+  SCOPED_TRACE("shells");
+  expect_the_same(two_shells());
 }
 
 TEST_P(SampleCells, OfASoftAndARigidBody) {
@@ -195,8 +217,13 @@ TEST_P(SampleCells, EventsAreThoseOfTheSamples) {
   EXPECT_EQ(term.events_version(), version);
   VecX push = VecX::Zero(balls.state.layout().u_size);
   push.head(3 * balls.nodes_of_a()).array() += 1.0;
-  term.refresh(moved(balls.state, push, 0.02).view());
+  const dynamics::State later = moved(balls.state, push, 0.02);
+  term.refresh(later.view());
   EXPECT_NE(term.events_version(), version);
+  ASSERT_EQ(term.sample_count(), static_cast<int>(term.samples().size()));
+  for (const auto& s : term.samples())
+    EXPECT_NEAR(s.normal.dot(point_on_nodes(s.a, later.view()) - point_on_nodes(s.b, later.view())), s.gap,
+                1e-12);
 }
 
 // What a query hands on: a place each, and an area only where it differs.
