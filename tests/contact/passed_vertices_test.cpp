@@ -34,6 +34,19 @@ TEST(PassedVertices, WhatGoesThroughIsCountedAndNothingElse) {
   EXPECT_EQ(passed({-3, 0.03, 0.01}, {3, 0.02, 0.02}, box), 1) << "lengthwise";
 }
 
+// Through one of two plates and into the other: it is inside at last, where a query sees it.
+TEST(PassedVertices, WhatIsInsideAtEitherEndIsSeen) {
+  TriMesh two = mesh::box_surface(Vec3(2, 2, 0.1), {4, 4, 1});
+  const Eigen::Index vertices = two.vertices.cols(), faces = two.faces.cols();
+  two.vertices.conservativeResize(3, 2 * vertices);
+  two.vertices.rightCols(vertices) = two.vertices.leftCols(vertices).colwise() - Vec3(0, 0, 0.5);
+  two.faces.conservativeResize(3, 2 * faces);
+  two.faces.rightCols(faces) = two.faces.leftCols(faces).array() + static_cast<int>(vertices);
+  EXPECT_EQ(passed({0.1, 0.2, 0.3}, {0.1, 0.2, -0.51}, still(two)), 0) << "it ends in the lower one";
+  EXPECT_EQ(passed({0.1, 0.2, 0.01}, {0.1, 0.2, -0.8}, still(two)), 0) << "it begins in the upper one";
+  EXPECT_EQ(passed({0.1, 0.2, 0.3}, {0.1, 0.2, -0.8}, still(two)), 1) << "once, through both";
+}
+
 // An edge that is grazed: the way inside is the cut through the corner, seen from the box.
 TEST(PassedVertices, AWayThatIsShortDoesNotCount) {
   const TriMesh mesh = mesh::box_surface(Vec3(2, 2, 0.1), {8, 8, 1});
@@ -94,6 +107,45 @@ TEST(PassedVertices, BothMayMove) {
   contact::SurfaceWays turned = still(box);
   turned.now = -turned.before;
   EXPECT_EQ(passed({0.5, 0.3, 1}, {0.5, 0.3, 0.9}, turned), 0);
+}
+
+// Brute force: a tetrahedron whose corners each go their own way, so that it rotates and is sheared, and a
+// vertex.  It goes through if it is outside at both ends and inside, by its barycentric coordinates, at one
+// of many times in between; ways that come within a hundredth of that limit are left out.
+TEST(PassedVertices, AgreesWithSamplesOfTheWayThroughWhatDeforms) {
+  Faces faces(3, 4);
+  faces.col(0) = Eigen::Vector3i(1, 2, 3);
+  faces.col(1) = Eigen::Vector3i(0, 3, 2);
+  faces.col(2) = Eigen::Vector3i(0, 1, 3);
+  faces.col(3) = Eigen::Vector3i(0, 2, 1);
+  std::mt19937 random(11);
+  int through = 0, not_through = 0;
+  for (int i = 0; i < 4000; ++i) {
+    Points before(3, 4), now(3, 4);
+    before << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;
+    now = before;
+    for (int k = 0; k < 4; ++k) now.col(k) += 0.5 * vector(random);
+    const Vec3 from = Vec3::Constant(0.25) + vector(random), to = Vec3::Constant(0.25) + vector(random);
+    constexpr int kTimes = 400;
+    double deepest = -1.0, at_ends = -1.0, least_volume = 1.0;
+    for (int j = 0; j <= kTimes; ++j) {
+      const double t = static_cast<double>(j) / kTimes;
+      const Points p = before + t * (now - before);
+      Mat3 edges;
+      for (int k = 0; k < 3; ++k) edges.col(k) = p.col(k + 1) - p.col(0);
+      least_volume = std::min(least_volume, edges.determinant());
+      const Vec3 w = edges.inverse() * (from + t * (to - from) - p.col(0));
+      const double inside = std::min(w.minCoeff(), 1.0 - w.sum());
+      deepest = std::max(deepest, inside);
+      if (j == 0 || j == kTimes) at_ends = std::max(at_ends, inside);
+    }
+    if (least_volume < 0.1 || std::abs(deepest) < 0.01 || std::abs(at_ends) < 0.01) continue;
+    const bool expected = deepest > 0.0 && at_ends < 0.0;
+    EXPECT_EQ(passed(from, to, {faces, before, now, {}, {}}), expected) << i;
+    ++(expected ? through : not_through);
+  }
+  EXPECT_GT(through, 50);
+  EXPECT_GT(not_through, 500);
 }
 
 TEST(PassedVertices, AsksWhoMayMeet) {

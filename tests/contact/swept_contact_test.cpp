@@ -177,6 +177,22 @@ TEST_P(SweptContact, ARigidBodyMayBeTheOneThatGoesThrough) {
   }
 }
 
+// It turns over: seen from it, the ball goes through its middle.  Vertices that go straight on in the world
+// would pass beside the ball.
+TEST_P(SweptContact, ARigidBodyMayTurnOver) {
+  for (const bool pruned : {false, true}) {
+    Pair pair;
+    const auto source = pair.source(false, pruned, 0.01);
+    const Vec3 at(0.1, 0.025, 0.1);
+    for (const double angle : {0.0, M_PI}) {
+      pair.frame->clear();
+      pair.frame->append(0.0, {quaternion_of(Vec3(0, angle, 0)), Vec3::Zero()}, {});
+      pair.query(*source, at);
+    }
+    EXPECT_GE(source->tunnelled(), pair.thrown.model.skin.vertices.cols()) << pruned;
+  }
+}
+
 // The arms of one body swing through each other; and close between two queries.
 TEST_P(SweptContact, OfOneBodysOwnParts) {
   const LayeredModel bar = bent_bar::model(24);
@@ -268,8 +284,16 @@ TEST(SweptSide, ABoundHoldsAllOfTheSkin) {
   std::normal_distribution<double> normal;
   side->update(pair.state.view());
   side->keep();
+  Eigen::Index worst = 0;
+  body.model.embedding.weights.cwiseAbs().colwise().sum().maxCoeff(&worst);
   for (int i = 0; i < 20; ++i) {
-    const Points v = Points::NullaryExpr(3, body.model.tets.nodes.cols(), [&] { return normal(random); });
+    Points v = Points::NullaryExpr(3, body.model.tets.nodes.cols(), [&] { return normal(random); });
+    if (i == 0) {  // the vertex of the largest weights moves as fast as it can
+      const auto nodes = body.model.tets.tets.col(body.model.embedding.tet[static_cast<std::size_t>(worst)]);
+      v.setZero();
+      for (int k = 0; k < 4; ++k) v(0, nodes[k]) = body.model.embedding.weights(k, worst) < 0.0 ? -1.0 : 1.0;
+      v.row(0).array() -= v.row(0).mean();
+    }
     pair.state.u().segment(body.u_offset, v.size()) = Eigen::Map<const VecX>(v.data(), v.size());
     const Points x = body.model.tets.nodes + v;
     pair.state.q().segment(body.u_offset, v.size()) = Eigen::Map<const VecX>(x.data(), x.size());
