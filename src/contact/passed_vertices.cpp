@@ -100,11 +100,33 @@ void meet(const Line& x, const SurfaceWays& surface, int face, Meetings& out) {
   }
 }
 
+/// Bound on the ways of vertices against any point of the faces: with m the mean of the faces' ways, |v - w|
+/// <= |v - m| + max |w - m|.  Those within `least_way` go through nothing by more than that.
+class FastVertices {
+ public:
+  FastVertices(const SurfaceWays& faces, double least_way) {
+    const Points ways = faces.now - faces.before;
+    mean_ = ways.rowwise().mean();
+    const double spread = std::sqrt((ways.colwise() - mean_).colwise().squaredNorm().maxCoeff());
+    rest2_ = spread < least_way ? (least_way - spread) * (least_way - spread) : -1.0;
+  }
+  bool has(const Vec3& way) const { return (way - mean_).squaredNorm() > rest2_; }
+
+ private:
+  Vec3 mean_;
+  double rest2_;
+};
+
 }  // namespace
 
 long PassedVertices::count(const SurfaceWays& vertices, const SurfaceWays& faces, double least_way,
                            const std::function<bool(int, int)>& may_meet) {
   if (vertices.now.cols() == 0 || faces.faces.cols() == 0) return 0;
+  const FastVertices fast(faces, least_way);
+  const auto is_fast = [&](Eigen::Index v) { return fast.has(vertices.now.col(v) - vertices.before.col(v)); };
+  Eigen::Index first = 0;
+  while (first < vertices.now.cols() && !is_fast(first)) ++first;
+  if (first == vertices.now.cols()) return 0;
   boxes_.clear();
   Vec3 mean = Vec3::Zero(), low = Vec3::Constant(HUGE_VAL), high = -low;
   for (Eigen::Index f = 0; f < faces.faces.cols(); ++f) {
@@ -139,7 +161,8 @@ long PassedVertices::count(const SurfaceWays& vertices, const SurfaceWays& faces
   for (const FaceBox& box : boxes_) widest = std::max(widest, box.high[axis] - box.low[axis]);
 
   long passed = 0;
-  for (Eigen::Index v = 0; v < vertices.now.cols(); ++v) {
+  for (Eigen::Index v = first; v < vertices.now.cols(); ++v) {
+    if (!is_fast(v)) continue;
     const Line x{vertices.before.col(v), vertices.now.col(v) - vertices.before.col(v)};
     const Vec3 x_low = vertices.before.col(v).cwiseMin(vertices.now.col(v)),
                x_high = vertices.before.col(v).cwiseMax(vertices.now.col(v));

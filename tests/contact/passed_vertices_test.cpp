@@ -47,6 +47,19 @@ TEST(PassedVertices, WhatIsInsideAtEitherEndIsSeen) {
   EXPECT_EQ(passed({0.1, 0.2, 0.3}, {0.1, 0.2, -0.8}, still(two)), 1) << "once, through both";
 }
 
+// Half of the faces stand still, half rise and overtake a vertex that moves as their mean does.
+TEST(PassedVertices, FacesMayMoveDifferently) {
+  const TriMesh box = mesh::box_surface(Vec3(2, 2, 0.1), {4, 4, 1});
+  const Eigen::Index vertices = box.vertices.cols(), faces = box.faces.cols();
+  contact::SurfaceWays two{Faces(3, 2 * faces), Points(3, 2 * vertices), Points(3, 2 * vertices), {}, {}};
+  two.faces << box.faces, Faces(box.faces.array() + static_cast<int>(vertices));
+  two.before << box.vertices, Points(box.vertices.colwise() + Vec3(5, 0, 0));
+  two.now << Points(box.vertices.colwise() + Vec3(0, 0, 1)), Points(box.vertices.colwise() + Vec3(5, 0, 0));
+  const auto vertex = points(Vec3(0.1, 0.2, 0.2), Vec3(0.1, 0.2, 0.7));
+  EXPECT_EQ(contact::PassedVertices().count(vertex, two, 0.09), 1);
+  EXPECT_EQ(contact::PassedVertices().count(vertex, two, 0.11), 0) << "it is 0.1 thick";
+}
+
 // An edge that is grazed: the way inside is the cut through the corner, seen from the box.
 TEST(PassedVertices, AWayThatIsShortDoesNotCount) {
   const TriMesh mesh = mesh::box_surface(Vec3(2, 2, 0.1), {8, 8, 1});
