@@ -15,7 +15,10 @@ struct ContactAxes {
   ContactAxes() = default;
   ContactAxes(const Vec3& region_origin, const Vec3& normal);
   void to_axes(const Points& world, Points& out) const {
-    out.noalias() = to_world.transpose() * (world.colwise() - origin);
+    out.resize(3, world.cols());
+    const Mat3 turn = to_world.transpose();
+    for (Eigen::Index i = 0; i < world.cols(); ++i)  // of all at once Eigen would make a copy
+      out.col(i).noalias() = turn * (world.col(i) - origin);
   }
   Vec3 in_axes(const Vec3& world) const { return to_world.transpose() * (world - origin); }
   Vec3 world(const Vec3& uvw) const { return origin + to_world * uvw; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "contact/safe_time.h"
 #include "palpate/core/clock.h"
@@ -111,8 +112,12 @@ void ImageRegion::ask_lines() {
     pair.at = doubtful_[pair.at];
     take_pair(pair);
   }
-  std::inplace_merge(hits_.begin(), hits_.begin() + certain, hits_.end(),
-                     [](const Hit& p, const Hit& q) { return p.pixel < q.pixel; });
+  // std::inplace_merge would take memory at every query
+  context_.merged.clear();
+  std::merge(hits_.begin(), hits_.begin() + certain, hits_.begin() + certain, hits_.end(),
+             std::back_inserter(context_.merged),
+             [](const Hit& p, const Hit& q) { return p.pixel < q.pixel; });
+  std::swap(hits_, context_.merged);
 }
 
 void ImageRegion::finish() {

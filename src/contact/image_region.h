@@ -29,6 +29,7 @@ struct RegionContext {
   DepthGrid grid;
   std::vector<Eigen::Vector2d> middles;  ///< of doubtful pixels
   std::vector<FacePair> by_lines;
+  std::vector<Hit> merged;
   CellBuilder cells;
 
   bool of_one_body() const { return a == b; }

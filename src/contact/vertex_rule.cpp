@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace palpate::contact {
 namespace {
@@ -98,8 +99,10 @@ void VertexRule::find_on_side(const Region& region, bool of_a, std::span<const F
     if (take(region, of_a, vertex, static_cast<int>(of_a ? pair.b : pair.a), hit)) out.push_back(hit);
   }
   // neighbours in the plane stand one behind the other, whichever way they were found
-  std::stable_sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(),
-                   [](const Hit& p, const Hit& q) { return p.pixel < q.pixel; });
+  std::sort(out.begin() + static_cast<std::ptrdiff_t>(first), out.end(), [](const Hit& p, const Hit& q) {
+    return std::tie(p.pixel, p.at.u, p.at.v, p.at.w_a, p.at.w_b) <
+           std::tie(q.pixel, q.at.u, q.at.v, q.at.w_a, q.at.w_b);
+  });
 }
 
 /// Fills a hit of the vertex and the other body's triangle `other` (index into its `visible`), but for the

@@ -20,7 +20,7 @@ struct Touching {
 struct TouchingKind {
   std::string name;
   std::function<Touching()> make;
-  bool image = true;
+  bool pruned = true;  ///< by proxies
 };
 
 namespace touching {
@@ -154,10 +154,11 @@ inline std::vector<TouchingKind> touching_kinds() {
                                    std::pair{SampleRule::kVertex, std::string("vertices")}}) {
     const SampleRule samples = rule;
     out.push_back({"a skin on a tool, " + name, [=] { return touching::on_tool(samples, true, true); }});
-    out.push_back(
-        {"a skin on a tool, unpruned, " + name, [=] { return touching::on_tool(samples, false, true); }});
+    out.push_back({"a skin on a tool, unpruned, " + name,
+                   [=] { return touching::on_tool(samples, false, true); }, false});
     out.push_back({"two skins, " + name, [=] { return touching::two_soft(samples, true); }});
-    out.push_back({"two skins, unpruned, " + name, [=] { return touching::two_soft(samples, false); }});
+    out.push_back(
+        {"two skins, unpruned, " + name, [=] { return touching::two_soft(samples, false); }, false});
   }
   out.push_back({"a body against itself", [] { return touching::itself(); }});
   return out;
