@@ -130,7 +130,8 @@ Pressed press(contact::DepthBackend backend, contact::SampleRule samples, const 
   system.add(std::static_pointer_cast<dynamics::ForceTerm>(contact));
   IntegratorSpec spec;
   spec.name = "kinsol-static";
-  spec.newton_rtol = 1e-10;
+  // a vertex that carries nothing stands at the kink of its law, where Newton's iteration goes to and fro
+  spec.newton_rtol = samples == contact::SampleRule::kVertex ? 1e-6 : 1e-10;
   for (int query = 0; query < 3; ++query) {
     contact->refresh(state.view());
     system.prepare(state.view());
