@@ -23,7 +23,8 @@ PixelGrid grid_of(const std::vector<contact::ContactSample>& samples, const Poin
   PixelGrid grid;
   const Vec3 n = samples.front().normal;
   grid.axes.col(2) = n;
-  grid.axes.col(0) = n.unitOrthogonal();  // as the library lays its axes
+  // as the library lays its axes
+  grid.axes.col(0) = Vec3(std::abs(n.x()) < 0.8 ? Vec3::UnitX() : Vec3::UnitY()).cross(n).normalized();
   grid.axes.col(1) = n.cross(grid.axes.col(0));
   grid.pixel = std::sqrt(samples.front().area);
   grid.origin = sample_at(samples.front(), nodes).b;

@@ -11,12 +11,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Box = AxisBox;
 
-Box face_box(const Patch& patch, int face) {
-  const auto corner = [&](int k) { return patch.uvw.col((*patch.faces)(k, face)); };
-  return {corner(0).cwiseMin(corner(1)).cwiseMin(corner(2)),
-          corner(0).cwiseMax(corner(1)).cwiseMax(corner(2))};
-}
-
 /// All faces; returns their bounds.
 Box see_all(Patch& patch) {
   const auto count = static_cast<std::size_t>(patch.faces->cols());
@@ -25,7 +19,7 @@ Box see_all(Patch& patch) {
   Box bounds;
   for (std::size_t f = 0; f < count; ++f) {
     patch.visible[f] = static_cast<int>(f);
-    patch.boxes[f] = face_box(patch, static_cast<int>(f));
+    patch.boxes[f] = box_of(patch, *patch.faces, static_cast<Eigen::Index>(f));
     bounds.low = bounds.low.cwiseMin(patch.boxes[f].low);
     bounds.high = bounds.high.cwiseMax(patch.boxes[f].high);
   }
@@ -57,9 +51,19 @@ Box cut(Patch& patch, const Box& window) {
 
 }  // namespace
 
+AxisBox box_of(const Patch& patch, const Faces& faces, Eigen::Index face) {
+  const auto corner = [&](int k) { return patch.uvw.col(faces(k, face)); };
+  return {corner(0).cwiseMin(corner(1)).cwiseMin(corner(2)),
+          corner(0).cwiseMax(corner(1)).cwiseMax(corner(2))};
+}
+
 ContactAxes::ContactAxes(const Vec3& region_origin, const Vec3& normal) : origin(region_origin) {
+  // Pixels stand along u and v.  A direction that is far from the normal turns them as little as the normal
+  // turns; one made of the normal's small components (Eigen's unitOrthogonal) spins where these change sign.
+  constexpr double kFar = 0.8;
+  const Vec3 far_from_normal = std::abs(normal.x()) < kFar ? Vec3::UnitX() : Vec3::UnitY();
   to_world.col(2) = normal;
-  to_world.col(0) = normal.unitOrthogonal();
+  to_world.col(0) = far_from_normal.cross(normal).normalized();
   to_world.col(1) = normal.cross(to_world.col(0));
 }
 

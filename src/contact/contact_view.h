@@ -50,7 +50,11 @@ struct Patch {
   const Faces* faces = nullptr;
   std::vector<int> visible;    ///< faces
   std::vector<AxisBox> boxes;  ///< theirs
+  /// those of the region that are turned away from the camera, where `faces` has none of them; else null
+  const Faces* away = nullptr;
 };
+
+AxisBox box_of(const Patch& patch, const Faces& faces, Eigen::Index face);
 
 /// A rectangle of the plane and a slab along the normal [m].
 struct ContactWindow {

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-// Along a line, upwards, body a is entered where it faces down, body b is left where it faces up.  These
-// crossings, sorted by height, form runs A..A B..B A..A ...  A run of A with the run of B above it is an
-// overlap: from its lowest A to its highest B.  A run of B with the run of A above it is a gap.  Of a height
-// field along the normal there is one of either, and the image of the lowest A and the highest B is the same;
-// teeth and overhangs have layers, each with a pair of its own.
+// Along a line, upwards, body a is entered where it faces down (A) and left where it is turned away (A'),
+// body b is entered where it is turned away (B') and left where it faces up (B).  The crossings A and B,
+// sorted by height, form runs A..A B..B A..A ...  A run of A with the run of B above it is an overlap, from
+// its lowest A to its highest B, unless a is left and then b entered in between (A A' B' B): that is a tooth
+// of a below another tooth of b, which do not touch there.  A run of B with the run of A above it is a gap.
+// Of a height field along the normal there is one of either, and the image of the lowest A and the highest B
+// is the same; teeth and overhangs have layers, each with a pair of its own.
 
 namespace palpate::contact {
 namespace {
@@ -72,30 +74,37 @@ struct ExactLines::Middles {
 
 template <class Lines>
 void ExactLines::cut(const Patch& patch, const ContactCamera& camera, bool of_a, const Lines& lines) {
-  for (std::size_t f = 0; f < patch.visible.size(); ++f) {
-    const AxisBox& box = patch.boxes[f];
-    if (!lines.may_meet(box)) continue;
-    const auto corner = patch.faces->col(patch.visible[f]);
-    const Vec3 p[3] = {patch.uvw.col(corner[0]), patch.uvw.col(corner[1]), patch.uvw.col(corner[2])};
-    const double area =
-        (p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) - (p[2].x() - p[0].x()) * (p[1].y() - p[0].y());
-    if (of_a ? !(area < 0.0) : !(area > 0.0)) continue;  // turned away
-    const int first_x = std::max(0, bin_of(box.low.x(), camera.u0, camera.pixel, camera.width)),
-              last_x =
-                  std::min(camera.width - 1, bin_of(box.high.x(), camera.u0, camera.pixel, camera.width)),
-              first_y = std::max(0, bin_of(box.low.y(), camera.v0, camera.pixel, camera.height)),
-              last_y =
-                  std::min(camera.height - 1, bin_of(box.high.y(), camera.v0, camera.pixel, camera.height));
-    const double turn = area > 0.0 ? 1.0 : -1.0;
-    lines(first_x, last_x, first_y, last_y, [&](std::uint32_t line, double x, double y) {
-      const double e0 = turn * side(p[1], p[2], corner[1] > corner[2], x, y),
-                   e1 = turn * side(p[2], p[0], corner[2] > corner[0], x, y),
-                   e2 = turn * side(p[0], p[1], corner[0] > corner[1], x, y);
-      if (e0 < 0.0 || e1 < 0.0 || e2 < 0.0) return;
-      const double w = (e0 * p[0].z() + e1 * p[1].z() + e2 * p[2].z()) / (e0 + e1 + e2);
-      crossings_.push_back({line, static_cast<std::uint32_t>(f), w, of_a});
-    });
-  }
+  for (std::size_t f = 0; f < patch.visible.size(); ++f)
+    cut_face(patch, *patch.faces, patch.visible[f], patch.boxes[f], static_cast<std::uint32_t>(f), camera,
+             of_a, lines);
+  if (!patch.away) return;
+  for (Eigen::Index f = 0; f < patch.away->cols(); ++f)
+    cut_face(patch, *patch.away, f, box_of(patch, *patch.away, f), 0, camera, of_a, lines);
+}
+
+template <class Lines>
+void ExactLines::cut_face(const Patch& patch, const Faces& faces, Eigen::Index face, const AxisBox& box,
+                          std::uint32_t number, const ContactCamera& camera, bool of_a, const Lines& lines) {
+  if (!lines.may_meet(box)) return;
+  const auto corner = faces.col(face);
+  const Vec3 p[3] = {patch.uvw.col(corner[0]), patch.uvw.col(corner[1]), patch.uvw.col(corner[2])};
+  const double area =
+      (p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) - (p[2].x() - p[0].x()) * (p[1].y() - p[0].y());
+  if (area == 0.0) return;
+  const int first_x = std::max(0, bin_of(box.low.x(), camera.u0, camera.pixel, camera.width)),
+            last_x = std::min(camera.width - 1, bin_of(box.high.x(), camera.u0, camera.pixel, camera.width)),
+            first_y = std::max(0, bin_of(box.low.y(), camera.v0, camera.pixel, camera.height)),
+            last_y =
+                std::min(camera.height - 1, bin_of(box.high.y(), camera.v0, camera.pixel, camera.height));
+  const double turn = area > 0.0 ? 1.0 : -1.0;
+  lines(first_x, last_x, first_y, last_y, [&](std::uint32_t line, double x, double y) {
+    const double e0 = turn * side(p[1], p[2], corner[1] > corner[2], x, y),
+                 e1 = turn * side(p[2], p[0], corner[2] > corner[0], x, y),
+                 e2 = turn * side(p[0], p[1], corner[0] > corner[1], x, y);
+    if (e0 < 0.0 || e1 < 0.0 || e2 < 0.0) return;
+    const double w = (e0 * p[0].z() + e1 * p[1].z() + e2 * p[2].z()) / (e0 + e1 + e2);
+    crossings_.push_back({line, number, w, of_a, (area > 0.0) == of_a});
+  });
 }
 
 void ExactLines::through_pixels(const Patch& a, const Patch& b, const ContactCamera& camera,
@@ -169,22 +178,33 @@ void ExactLines::pair_crossings(double candidate_gap, std::vector<FacePair>& pai
 /// @param first, last  crossings of one line, by height
 void ExactLines::pair_layers(std::size_t first, std::size_t last, double candidate_gap,
                              std::vector<FacePair>& pairs) {
-  std::size_t run = first;  // where the present run starts
-  for (std::size_t i = first + 1, previous = last; i <= last; ++i) {
-    if (i < last && crossings_[i].of_a == crossings_[run].of_a) continue;
-    // `run` .. i - 1 are of one body; the run before it starts at `previous`
-    if (previous != last) {
-      const bool overlap = !crossings_[run].of_a;  // an A below a B
-      const Crossing& lower = crossings_[overlap ? previous : run - 1];
-      const Crossing& upper = crossings_[overlap ? i - 1 : run];
-      if (overlap)
-        pairs.push_back({lower.line, lower.face, upper.face});
-      else if (upper.w - lower.w < candidate_gap)
-        pairs.push_back({lower.line, upper.face, lower.face});
+  const Crossing *lowest_a = nullptr, *highest_b = nullptr, *last_b = nullptr;
+  bool in_run_of_b = false, left_a = false;
+  const auto end_overlap = [&] {
+    if (lowest_a && highest_b) pairs.push_back({lowest_a->line, lowest_a->face, highest_b->face});
+    lowest_a = highest_b = nullptr;
+  };
+  for (std::size_t i = first; i < last; ++i) {
+    const Crossing& at = crossings_[i];
+    if (at.of_a && at.away) {
+      left_a = true;
+    } else if (at.of_a) {
+      left_a = false;
+      if (in_run_of_b) {
+        end_overlap();
+        if (at.w - last_b->w < candidate_gap) pairs.push_back({at.line, at.face, last_b->face});
+        in_run_of_b = false;
+      }
+      if (!lowest_a) lowest_a = &at;
+    } else if (at.away) {
+      if (left_a) end_overlap();
+    } else {
+      if (lowest_a) highest_b = &at;
+      last_b = &at;
+      in_run_of_b = true;
     }
-    previous = run;
-    run = i;
   }
+  end_overlap();
 }
 
 }  // namespace palpate::contact

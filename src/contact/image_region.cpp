@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "contact/safe_time.h"
 #include "palpate/core/clock.h"
@@ -22,6 +23,28 @@ double mean_face_edge(const Patch& patch) {
     area += std::abs(e.x() * g.y() - e.y() * g.x());
   }
   return patch.visible.empty() ? 0.0 : std::sqrt(area / static_cast<double>(patch.visible.size()));
+}
+
+/// Bounds of a patch's faces that are turned away from the camera and reach into a box.
+/// @param side  of the area that such a face has along the normal: 1 of a, -1 of b
+AxisBox turned_away(const Patch& patch, double side, const AxisBox& within) {
+  AxisBox bounds;
+  const auto take = [&](const AxisBox& box) {
+    if ((box.low.array() > within.high.array()).any() || (box.high.array() < within.low.array()).any())
+      return;
+    bounds.low = bounds.low.cwiseMin(box.low);
+    bounds.high = bounds.high.cwiseMax(box.high);
+  };
+  if (patch.away) {
+    for (Eigen::Index f = 0; f < patch.away->cols(); ++f) take(box_of(patch, *patch.away, f));
+    return bounds;
+  }
+  for (std::size_t f = 0; f < patch.visible.size(); ++f) {
+    const auto p = [&](int k) { return patch.uvw.col((*patch.faces)(k, patch.visible[f])).head<2>(); };
+    const Eigen::Vector2d e = p(1) - p(0), g = p(2) - p(0);
+    if (side * (e.x() * g.y() - e.y() * g.x()) > 0.0) take(patch.boxes[f]);
+  }
+  return bounds;
 }
 
 }  // namespace
@@ -70,7 +93,34 @@ void ImageRegion::see() {
     if (!take_pair(pair) || layers) doubtful_.push_back(pair.at);
   }
   // In first images too: the axes, the window and the pixels that follow are then the same whoever draws.
-  if (context_.options.backend != DepthBackend::kExact && !doubtful_.empty()) ask_lines();
+  if (context_.options.backend == DepthBackend::kExact) return;
+  doubt_layers();
+  if (!doubtful_.empty()) ask_lines();
+}
+
+/// What an image cannot tell: whether a is left and then b entered between the two skins that a pixel shows,
+/// so that it shows two teeth that do not touch (exact_lines.cpp).  That can be where skin of both sides is
+/// turned away from the camera inside of what seems to overlap, and is left to exact lines.
+void ImageRegion::doubt_layers() {
+  AxisBox pressed;
+  for (const Hit& hit : hits_)
+    if (hit.at.gap() < 0.0) {
+      pressed.low = pressed.low.cwiseMin(Vec3(hit.at.u, hit.at.v, hit.at.w_a));
+      pressed.high = pressed.high.cwiseMax(Vec3(hit.at.u, hit.at.v, hit.at.w_b));
+    }
+  const AxisBox left = turned_away(a_, 1.0, pressed), entered = turned_away(b_, -1.0, pressed);
+  const Vec3 low = left.low.cwiseMax(entered.low), high = left.high.cwiseMin(entered.high);
+  layers_.clear();
+  for (const Hit& hit : hits_)
+    if (hit.at.u >= low.x() && hit.at.u <= high.x() && hit.at.v >= low.y() && hit.at.v <= high.y() &&
+        std::max(hit.at.w_a, left.low.z()) < std::min(hit.at.w_b, entered.high.z()) &&
+        (layers_.empty() || layers_.back() != hit.pixel))
+      layers_.push_back(hit.pixel);
+  if (layers_.empty()) return;
+  const auto known = static_cast<std::ptrdiff_t>(doubtful_.size());
+  doubtful_.insert(doubtful_.end(), layers_.begin(), layers_.end());
+  std::inplace_merge(doubtful_.begin(), doubtful_.begin() + known, doubtful_.end());
+  doubtful_.erase(std::unique(doubtful_.begin(), doubtful_.end()), doubtful_.end());
 }
 
 /// False where an image is not enough and exact lines have to tell: on walls, and where the pixel's middle
@@ -164,6 +214,14 @@ const QuadratureEstimate& ImageRegion::estimate() {
   return *estimate_;
 }
 
+/// Edge of the pixels of the next image, which shows `part`; `by_hits` is what the estimate asks for.
+double ImageRegion::pixel_for(const ContactWindow& part, double by_hits) const {
+  const double edge = part.longer_edge();
+  if (context_.options.depths == DepthReading::kInterpolated) return edge / (context_.options.pixels - 1);
+  if (context_.samples_vertices()) return 0.5 * std::min(mean_face_edge(a_), mean_face_edge(b_));
+  return std::min(by_hits > 0.0 ? by_hits : edge, edge / (kFewestPixels - 1));
+}
+
 bool ImageRegion::ask_finer(const ContactWindow& window) {
   const ImageOptions& options = context_.options;
   if (hits_.empty() || !(options.quadrature_error > 0.0)) return false;
@@ -176,21 +234,54 @@ bool ImageRegion::ask_finer(const ContactWindow& window) {
   part.low = part.low.cwiseMax((low.array() - camera().pixel).matrix());
   part.high = part.high.cwiseMin((high.array() + camera().pixel).matrix());
   if (part.is_empty()) return false;
-  const double edge = part.longer_edge();
-  double pixel;
-  if (options.depths == DepthReading::kInterpolated) {
-    pixel = edge / (options.pixels - 1);
-  } else if (context_.samples_vertices()) {
-    pixel = 0.5 * std::min(mean_face_edge(a_), mean_face_edge(b_));
-  } else {
-    pixel = estimate().pixel_for(options.quadrature_error);
-    pixel = std::min(pixel > 0.0 ? pixel : edge, edge / (kFewestPixels - 1));
-  }
+  const double pixel = pixel_for(part, wanted_pixel());
   if (camera().pixel <= pixel) return false;
-  ContactCamera finer = camera_of(part, std::max(pixel, edge / (options.pixels - 1)), context_.shift());
-  finer.width = std::min(finer.width, options.pixels);  // rounding of the edge
-  finer.height = std::min(finer.height, options.pixels);
+  const ContactCamera finer = camera_of_at_most(part, pixel);
   return finer.pixel < camera().pixel && ask(finer);
+}
+
+ContactCamera ImageRegion::camera_of_at_most(const ContactWindow& part, double pixel) const {
+  const int pixels = context_.options.pixels;
+  ContactCamera camera =
+      camera_of(part, std::max(pixel, part.longer_edge() / (pixels - 1)), context_.shift());
+  camera.width = std::min(camera.width, pixels);  // rounding of the edge
+  camera.height = std::min(camera.height, pixels);
+  return camera;
+}
+
+double ImageRegion::wanted_pixel() {
+  return context_.samples_vertices() || context_.options.depths == DepthReading::kInterpolated
+             ? 0.0
+             : estimate().pixel_for(context_.options.quadrature_error);
+}
+
+// Both ends of a line that was seen are points of the skins, which stay where they are; what lies between two
+// lines is within a pixel of one.  Two pixels of room are for the turn.
+ImageRegion::Extent ImageRegion::seen_along(const ContactAxes& axes) const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Extent seen{Eigen::Vector2d::Constant(kInfinity), Eigen::Vector2d::Constant(-kInfinity)};
+  for (const Hit& hit : hits_)
+    for (const double w : {hit.at.w_a, hit.at.w_b}) {
+      const Vec3 there = axes.in_axes(axes_.world(Vec3(hit.at.u, hit.at.v, w)));
+      seen.low = seen.low.cwiseMin(there.head<2>());
+      seen.high = seen.high.cwiseMax(there.head<2>());
+    }
+  seen.low.array() -= 2.0 * camera().pixel;
+  seen.high.array() += 2.0 * camera().pixel;
+  return seen;
+}
+
+ImageRegion::NextImage ImageRegion::next_along(const ContactAxes& axes) {
+  return {seen_along(axes), wanted_pixel()};
+}
+
+bool ImageRegion::ask_next(const ContactWindow& window, const NextImage& next) {
+  ContactWindow part = window;
+  part.low = part.low.cwiseMax(next.seen.low);
+  part.high = part.high.cwiseMin(next.seen.high);
+  if (part.is_empty()) return ask({});
+  const double first = window.longer_edge() / (context_.first_pixels() - 1);
+  return ask(camera_of_at_most(part, std::min(first, pixel_for(part, next.pixel))));
 }
 
 void ImageRegion::count_error() {

@@ -67,6 +67,19 @@ class ImageRegion {
   /// After an image: asks for the one that the wanted error needs, or that shows triangles one by one to the
   /// vertices, of the part of the window where something was seen.  False where the image will do.
   bool ask_finer(const ContactWindow& window);
+  /// The same in two steps, for an image along other axes: `next_along` them while the first image's hits are
+  /// there, and when the patches stand along them `ask_next`, which always asks, for pixels that are no
+  /// coarser than those of a first image.
+  struct Extent {
+    Eigen::Vector2d low, high;
+  };
+  struct NextImage {
+    Extent seen;   ///< [m]
+    double pixel;  ///< edge that the wanted error needs; 0: unknown [m]
+  };
+  Extent seen_along(const ContactAxes& axes) const;  ///< @pre something was seen
+  NextImage next_along(const ContactAxes& axes);     ///< @pre something was seen
+  bool ask_next(const ContactWindow& window, const NextImage& next);
   /// After the image that counts: what `samples` asks for in `hits_`, with what the pixels err counted.
   void finish();
   /// `hits_` as samples; after finish.  @param face_a, face_b  of a patch's face, that of the whole side
@@ -79,6 +92,7 @@ class ImageRegion {
   }
   /// The grid behind `hits_`, for pictures, where somebody asked; after finish.
   void keep_view();
+  const ContactCamera& camera() const { return request_.camera; }  ///< of the last image
 
   RegionContext& context_;
   double candidate_gap_ = 0.0;  ///< of this region [m]
@@ -87,8 +101,11 @@ class ImageRegion {
   std::vector<Hit> hits_;
 
  private:
-  const ContactCamera& camera() const { return request_.camera; }
+  double wanted_pixel();
+  double pixel_for(const ContactWindow& part, double by_hits) const;
+  ContactCamera camera_of_at_most(const ContactWindow& part, double pixel) const;
   bool take_pair(const FacePair& pair);
+  void doubt_layers();
   void ask_lines();
   void count_error();
   const QuadratureEstimate& estimate();  ///< of pixels in `hits_`, made once
@@ -97,6 +114,7 @@ class ImageRegion {
   DepthRequest request_;
   FacePlanes planes_a_, planes_b_;
   std::vector<std::uint32_t> doubtful_;  ///< pixels
+  std::vector<std::uint32_t> layers_;    ///< scratch of doubt_layers
   std::optional<QuadratureEstimate> estimate_;
 };
 

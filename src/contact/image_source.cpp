@@ -165,8 +165,7 @@ void ImageSource::query(const dynamics::StateView& state, std::vector<ContactSam
 }
 
 void ImageSource::query(const dynamics::StateView& state, SampleCells& samples) {
-  if (asks_together()) {
-    ImageSource* self = this;
+  if (ImageSource* self = this; asks_together() || settles()) {
     open(state);
     answer_together({&self, 1});
     return close(samples);
@@ -201,6 +200,7 @@ void ImageSource::collect(std::vector<DepthRequest*>& requests) const {
 void ImageSource::take() {
   for (std::size_t i = 0; i < open_; ++i)
     if (regions_[i]->wanted()) regions_[i]->take();
+  settle(open_);
 }
 
 void ImageSource::close(SampleCells& samples) {

@@ -55,13 +55,17 @@ class ImageSource : public SampleSource {
   virtual std::unique_ptr<ImageRegion> make_region() = 0;
   /// Starts on region number `index`, in an object that another one may have used.
   virtual void start(ImageRegion& region, std::size_t index) = 0;
+  /// Whether its regions go through their rounds together, for what they decide together after each.
+  virtual bool settles() const { return false; }
+  virtual void settle(std::size_t /*open*/) {}  ///< the first regions are open, and have had their answers
+  ImageRegion& region(std::size_t place);
+  ImageRegion& add_region() { return region(open_++); }  ///< another one that is open, to be started
 
   RegionContext context_;
 
  private:
   std::size_t begin(const dynamics::StateView& state);
   void end(const SampleCells& samples, std::size_t first_cell);
-  ImageRegion& region(std::size_t place);
   /// Counts what went through since the last query.
   void look_back(double t);
   SurfaceWays ways_of(const ImageSide& side, const std::vector<int>& faces, const ImageSide& axes) const;

@@ -10,9 +10,11 @@ namespace palpate::contact {
 class RegionPiece {
  public:
   /// @param local  scratch of the side, which its regions share: by vertex, -1 outside of this call
-  void take(const ImageSide& whole, const std::vector<int>& wanted, std::vector<int>& local);
-  /// Along these axes, those whose normal has the sign `side` along the plane's: what faces away lies behind
-  /// skin of its own body, which may be in another region.
+  /// @param others  faces of other regions: never seen, but where they are turned away their body is left
+  void take(const ImageSide& whole, const std::vector<int>& wanted, std::vector<int>& local,
+            const std::vector<int>& others = {});
+  /// Along these axes: those to be seen, whose normal has the sign `side` along the plane's; the others are
+  /// turned away.
   void see(const ContactAxes& axes, double side, Patch& patch);
 
   /// Of the patch that was seen last.
@@ -21,14 +23,12 @@ class RegionPiece {
   bool sees_nothing() const { return face_of_.empty(); }
   /// In the whole surface, of one of the patch's faces.
   int face_of(int face) const { return face_of_[static_cast<std::size_t>(face)]; }
-  /// Of a face, in the patch that was seen last, as a function of (u, v); at most 10, for a wall's is no
-  /// direction.
-  Eigen::Vector2d slope_of(const Patch& patch, int face) const;
 
  private:
-  Faces faces_;
+  Faces faces_, away_;
   std::vector<int> face_of_, numbers_;  ///< of the patch's faces: in the surface, in `wanted_`
-  std::vector<int> wanted_;
+  std::vector<int> wanted_;             ///< faces, behind them those of other regions
+  std::size_t own_ = 0;                 ///< how many are the region's own
   Faces corners_;
   std::vector<int> taken_;  ///< the surface's vertices
   Points world_;            ///< where these are

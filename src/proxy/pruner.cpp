@@ -24,10 +24,12 @@
 // skin (each point against b's surface along its region's normal), so each point of a contributes once,
 // however b's side is shared, and however either body is cut into proxies.
 //
-// Jumps.  A patch that comes or goes is farther away than the gap: no force comes or goes with it.  What can
-// jump is a normal: when that of region i rotates by the angle phi, its force F_i keeps its magnitude to
-// first order and rotates, |dF_i| <= 2 sin(phi / 2) |F_i|.  Regions merge only when the directions that their
-// skins face differ by less than the merge angle.  `rotation` and `largest_rotation` report phi.
+// Jumps.  A patch that comes or goes is farther away than the gap: no force comes or goes with it.  What
+// jumps as patches come and go, and as regions merge and split, is the normal: by the angle phi, which
+// `rotation` and `largest_rotation` report.  It is therefore only where an image is first looked at along;
+// the normal of the force is a smooth function of the overlap itself (contact/region_planes.cpp).  Regions
+// merge when the directions that their skins face differ by less than the merge angle: how many images are
+// made.
 //
 // Which proxies share a plane.  The resultant of a uniform pressure on the part of a's skin inside b is minus
 // its area vector, which by the divergence theorem is the area vector of b's skin inside a: both say which

@@ -20,6 +20,9 @@ namespace {
 // what is left of a step after seven halvings: what the pixels err on either side (three standard errors
 // each), and 2 % for a change that seven halvings leave
 constexpr double kBound = 0.03;
+// of the scene's largest force: what presses with less is narrower than a few pixels, which are limited, and
+// their error is not that of the quadrature
+constexpr double kSeen = 0.1;
 
 LayeredModel block(const Pose& pose, const Vec3& size, const std::array<int, 3>& cells, int finer = 5) {
   LayeredModel model;
@@ -52,14 +55,24 @@ struct Blocks {
     out.stiffness_pa_m = 1e6;
     return out;
   }
-  /// A ball on the middle of a block's top.
-  scene::Description flat() const {
+  /// A slab, and a block with an edge towards it.
+  scene::Description ridge() const {
     scene::Description d;
-    d.name = "flat";
+    d.name = "ridge";
+    d.bodies = {body("slab", block({Quat::Identity(), Vec3::Zero()}, Vec3(0.06, 0.06, 0.02), {4, 4, 2})),
+                body("edge", block({quaternion_of(Vec3(0.7, 0.1, 0.3)), Vec3(0.003, -0.002, 0.04)},
+                                   Vec3(0.03, 0.03, 0.03), {2, 2, 2}))};
+    d.contacts = {contact("slab", "edge")};
+    return d;
+  }
+  /// A ball on a block's top, in its middle or at its edge.
+  scene::Description ball(const std::string& name, double x) const {
+    scene::Description d;
+    d.name = name;
     d.bodies = {body("block", block({Quat::Identity(), Vec3::Zero()}, Vec3(0.03, 0.03, 0.03), {2, 2, 2}))};
     ToolSpec tool;
     tool.radius_m = 0.006;
-    tool.position_m = Vec3(0.001, 0.002, 0.022);
+    tool.position_m = Vec3(x, 0.002, 0.022);
     d.tool = tool;
     d.device.emplace();
     d.device->keyframes = {{.position_m = tool.position_m}};
@@ -86,25 +99,30 @@ void expect_no_jumps(const scene::Description& scene, int paths) {
   const bench::ContinuityRow row = bench::bench_continuity(scene, options);
   EXPECT_EQ(row.paths, paths) << scene.name;
   EXPECT_GT(row.steps, 10 * paths) << scene.name;
-  EXPECT_GT(row.jumps.size(), 0u) << scene.name;  // steps that were halved
+  int checked = 0;
   for (const bench::ForceJump& jump : row.jumps) {
+    if (jump.size_n < kSeen * row.force) continue;
+    ++checked;
     EXPECT_LT(jump.force, kBound) << scene.name << " path " << jump.path << " at " << jump.at << ": "
                                   << bench::name_of(jump.cause);
     EXPECT_LT(jump.moment, 2.0 * kBound)
         << scene.name << " path " << jump.path << " at " << jump.at << ": " << bench::name_of(jump.cause);
   }
+  EXPECT_GT(checked, 10) << scene.name;  // steps that were halved
 }
 
 }  // namespace
 
-TEST(Continuity, ABallPressesAFlatBlockWithoutJumps) { expect_no_jumps(Blocks().flat(), 3); }
+TEST(Continuity, ABallPressesAFlatBlockWithoutJumps) { expect_no_jumps(Blocks().ball("flat", 0.001), 3); }
+TEST(Continuity, ABallGoesOverAnEdgeWithoutJumps) { expect_no_jumps(Blocks().ball("edge", 0.024), 3); }
+TEST(Continuity, TheRidgeOfABlockPressesWithoutJumps) { expect_no_jumps(Blocks().ridge(), 6); }
 
 // a vertex that goes over the other block's rim takes its share of the force with it at once
 TEST(Continuity, WhatJumpsIsFound) {
   bench::ContinuityOptions options;
   options.paths = 2;
   const bench::ContinuityRow row = bench::bench_continuity(Blocks().few_vertices(), options);
-  EXPECT_GT(row.count(bench::JumpCause::kSkin, 0.05), 0);
+  EXPECT_GT(row.count(bench::JumpCause::kSkin, 0.005), 0);
   EXPECT_GE(*std::max_element(row.worst_of_path.begin(), row.worst_of_path.end()),
             row.largest(bench::JumpCause::kSkin));
 }

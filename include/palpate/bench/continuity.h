@@ -40,6 +40,7 @@ struct ForceJump {
   double at = 0.0;      ///< along the path, 0 to 1
   double force = 0.0;   ///< change of the force over its size, or a tenth of the path's largest where less
   double moment = 0.0;  ///< the same of the moment about the first point of touch, over force times arm
+  double size_n = 0.0;  ///< what `force` is measured by [N]
   JumpCause cause = JumpCause::kTurned;
 };
 

@@ -116,7 +116,11 @@ class Approach {
       if (!std::isfinite(s)) return std::nullopt;
       m.start.translation += s * reach_ * m.away;
     }
-    const Contact touch = probe_.at(m.start, middle);
+    Contact touch = probe_.at(m.start, middle);
+    for (int i = 0; i < kDeeper && touch.planes.empty(); ++i) {  // a pixel's touch may have been chance
+      m.start.translation -= 0.1 * kStep * reach_ * m.away;
+      touch = probe_.at(m.start, middle);
+    }
     if (touch.planes.empty()) return std::nullopt;
     m.pivot = touch.planes.front().centre;
     return m;
@@ -129,7 +133,6 @@ class Approach {
       return !probe_.at({start.rotation, start.translation + s * reach_ * away}, Vec3::Zero())
                   .wrench.force.isZero(0.0);
     };
-    constexpr double kStep = 0.01;
     double s = 0.6;
     while (s > -0.9 && !touches(s)) s -= kStep;
     if (s <= -0.9) return -std::numeric_limits<double>::infinity();
@@ -141,6 +144,8 @@ class Approach {
     return s;
   }
 
+  static constexpr double kStep = 0.01;  // of the reach
+  static constexpr int kDeeper = 3;
   Probe& probe_;
   double reach_ = 0.0;
   bool inside_ = false;
@@ -149,6 +154,7 @@ class Approach {
 /// Changes between two poses, over the sizes of force and moment.
 struct Change {
   double force = 0.0, moment = 0.0;
+  double size = 0.0;  ///< of the force [N]
 };
 
 struct Scale {
@@ -157,7 +163,7 @@ struct Scale {
     const double size = std::max({p.wrench.force.norm(), q.wrench.force.norm(), kFloor * force});
     if (!(size > 0.0)) return {};
     return {(q.wrench.force - p.wrench.force).norm() / size,
-            (q.wrench.moment - p.wrench.moment).norm() / (size * arm)};
+            (q.wrench.moment - p.wrench.moment).norm() / (size * arm), size};
   }
 };
 
@@ -214,7 +220,11 @@ class Walk {
     for (int i = std::max(0, step - 2); i <= step; ++i) before = at(time(i));
     const Contact& first = contacts_[static_cast<std::size_t>(step)];
     if (const Change c = scale_.change(first, before); c.force > options_.threshold)
-      return {.at = time(step), .force = c.force, .moment = c.moment, .cause = JumpCause::kHistory};
+      return {.at = time(step),
+              .force = c.force,
+              .moment = c.moment,
+              .size_n = c.size,
+              .cause = JumpCause::kHistory};
     Contact after = contacts_[static_cast<std::size_t>(step) + 1];
     double low = time(step), high = time(step + 1);
     for (int i = 0; i < options_.halvings; ++i) {
@@ -229,7 +239,11 @@ class Walk {
       }
     }
     const Change c = scale_.change(before, after);
-    return {.at = low, .force = c.force, .moment = c.moment, .cause = cause_of(before, after, c)};
+    return {.at = low,
+            .force = c.force,
+            .moment = c.moment,
+            .size_n = c.size,
+            .cause = cause_of(before, after, c)};
   }
 
   Probe& probe_;
