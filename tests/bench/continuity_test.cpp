@@ -113,8 +113,10 @@ void expect_no_jumps(const scene::Description& scene, int paths) {
 
 }  // namespace
 
+#ifdef PALPATE_HAS_TOOL
 TEST(Continuity, ABallPressesAFlatBlockWithoutJumps) { expect_no_jumps(Blocks().ball("flat", 0.001), 3); }
 TEST(Continuity, ABallGoesOverAnEdgeWithoutJumps) { expect_no_jumps(Blocks().ball("edge", 0.024), 3); }
+#endif
 TEST(Continuity, TheRidgeOfABlockPressesWithoutJumps) { expect_no_jumps(Blocks().ridge(), 6); }
 
 // a vertex that goes over the other block's rim takes its share of the force with it at once

@@ -51,7 +51,7 @@ scene::Description at_soft_plate(double speed) {
 }
 
 /// A tool so heavy that it stays.
-scene::Description at_tool(double speed) {
+[[maybe_unused]] scene::Description at_tool(double speed) {
   scene::Description d = thrown(speed);
   d.contacts[0].second = "tool";
   d.tool.emplace();
@@ -93,6 +93,13 @@ long long counted(store::Summary& summary, const std::string& section, const std
 }
 
 using Target = scene::Description (*)(double);
+std::vector<Target> targets() {
+  std::vector<Target> out = {at_soft_plate};
+#ifdef PALPATE_HAS_TOOL
+  out.push_back(at_tool);
+#endif
+  return out;
+}
 
 }  // namespace
 
@@ -100,7 +107,7 @@ using Target = scene::Description (*)(double);
 // m/s it moves 1 mm, into the plate; at 1 m/s its lower face ends 0.5 mm below the plate; from 10 m/s on it
 // is through as a whole, over the plate's eight vertices that it met.
 TEST(Tunnelling, WhatGoesThroughABodyIsReported) {
-  for (const Target target : {Target(at_soft_plate), Target(at_tool)})
+  for (const Target target : targets())
     for (const double speed : {0.1, 1.0, 10.0, 100.0}) {
       scene::Description d = target(speed);
       d.duration_s = 0.011;  // to the query after the passage
@@ -119,7 +126,7 @@ TEST(Tunnelling, WhatGoesThroughABodyIsReported) {
 // Sub-stepped, the block is seen in the plate, at most half of its thickness deep, and thrown back: its
 // momentum is turned round, at any speed, with as few queries more as that takes.
 TEST(Tunnelling, SubStepsTurnItRound) {
-  for (const Target target : {Target(at_soft_plate), Target(at_tool)})
+  for (const Target target : targets())
     for (const double speed : {0.1, 1.0, 10.0, 100.0}) {
       scene::Description d = target(speed);
       d.exchange.tunnelling = "substep";
@@ -132,8 +139,9 @@ TEST(Tunnelling, SubStepsTurnItRound) {
       EXPECT_LT(ran.result.sub_steps, 40) << speed;
       EXPECT_EQ(ran.result.shortest_refreshes, 0);
       EXPECT_EQ(counted(ran.summary, "counts", "sub_steps"), ran.result.sub_steps);
-      RecordProperty((target == Target(at_tool) ? "tool_" : "soft_") + std::to_string(speed) + "_sub_steps",
-                     static_cast<int>(ran.result.sub_steps));
+      RecordProperty(
+          (target == Target(at_soft_plate) ? "soft_" : "tool_") + std::to_string(speed) + "_sub_steps",
+          static_cast<int>(ran.result.sub_steps));
     }
 }
 
