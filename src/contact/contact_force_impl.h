@@ -7,6 +7,9 @@
 
 namespace palpate::contact {
 
+/// A spring of its own, whatever area it stands for; none where it faces away.
+inline void count_as_point(ContactSample& sample) { sample.area = sample.area > 0.0 ? 1.0 : 0.0; }
+
 struct ContactForce::Impl {
   struct Pair {
     std::unique_ptr<SampleSource> source;

@@ -1,0 +1,147 @@
+// A query of all pairs, and the forms that its samples are kept in.
+#include <algorithm>
+
+#include "contact/contact_force_impl.h"
+#include "contact/image_source.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/counters.h"
+#include "palpate/core/error.h"
+
+namespace palpate::contact {
+
+namespace {
+
+/// Whether two samples stand for the same two points, wherever these are now: the points of a frame slide.
+bool is_same_pair(const ContactSample& s, const ContactSample& t) {
+  const auto is_same = [](const SurfacePoint& p, const SurfacePoint& q) {
+    return p.frame == q.frame && p.count == q.count && (p.frame >= 0 || p.node == q.node);
+  };
+  return s.source == t.source && is_same(s.a, t.a) && is_same(s.b, t.b);
+}
+
+/// Springs of their own, as count_as_point.
+void count_as_points(SampleCells& cells, ContactCell& cell) {
+  if (cell.area >= 0.0) cell.area = cell.area > 0.0 ? 1.0 : 0.0;
+  for (int i = cell.first; cell.area < 0.0 && i < cell.last; ++i) {
+    double& area = cells.areas[static_cast<std::size_t>(i)];
+    area = area > 0.0 ? 1.0 : 0.0;
+  }
+}
+
+}  // namespace
+
+// Samples of an image without friction stay in cells; with friction each is looked at by itself.
+void ContactForce::Impl::query(const dynamics::StateView& state) {
+  const ScopedTimer timer(query_seconds);
+  next_samples.clear();
+  next_cells.clear();
+  together.clear();
+  for (Pair& pair : pairs)
+    if (ImageSource* source = pair.source->in_images(); source && source->asks_together()) {
+      source->open(state);
+      together.push_back(source);
+    }
+  answer_together(together);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    Pair& pair = pairs[i];
+    pair.begin = next_samples.size();
+    pair.first_cell = next_cells.cells.size();
+    if (ImageSource* source = pair.source->in_images()) {
+      SampleCells& out = pair.law.friction == 0.0 ? next_cells : apart;
+      apart.clear();
+      if (std::find(together.begin(), together.end(), source) != together.end())
+        source->close(out);
+      else
+        source->query(state, out);
+      apart.append_to(next_samples);
+    } else {
+      pair.source->query(state, next_samples);
+    }
+    pair.end = next_samples.size();
+    pair.last_cell = next_cells.cells.size();
+    for (std::size_t s = pair.begin; s < pair.end; ++s) {
+      next_samples[s].source = static_cast<int>(i);
+      if (pair.law.per_point) count_as_point(next_samples[s]);
+    }
+    for (std::size_t c = pair.first_cell; c < pair.last_cell; ++c) {
+      next_cells.cells[c].pair = static_cast<int>(i);
+      if (pair.law.per_point) count_as_points(next_cells, next_cells.cells[c]);
+    }
+  }
+  ++queries;
+  counters::count("contact.query");
+  std::swap(samples, next_samples);
+  std::swap(cells, next_cells);
+  all_made = false;
+  group_samples();
+  if (events_to_compare) ++events_version;  // nobody asked between two queries: no comparison is needed
+  events_to_compare = true;
+}
+
+int ContactForce::Impl::count_of(const Pair& pair) const {
+  auto count = static_cast<int>(pair.end - pair.begin);
+  for (std::size_t c = pair.first_cell; c < pair.last_cell; ++c)
+    count += cells.cells[c].last - cells.cells[c].first;
+  return count;
+}
+
+const std::vector<ContactSample>& ContactForce::Impl::all() {
+  if (cells.cells.empty()) return samples;
+  if (all_made) return all_samples;
+  all_made = true;
+  all_samples.clear();
+  for (const Pair& pair : pairs) {
+    all_samples.insert(all_samples.end(), samples.begin() + static_cast<std::ptrdiff_t>(pair.begin),
+                       samples.begin() + static_cast<std::ptrdiff_t>(pair.end));
+    cells.append_to(all_samples, pair.first_cell, pair.last_cell);
+  }
+  return all_samples;
+}
+
+void ContactForce::Impl::compare_events() {
+  if (!events_to_compare) return;
+  events_to_compare = false;
+  if (!std::equal(samples.begin(), samples.end(), next_samples.begin(), next_samples.end(), is_same_pair) ||
+      !cells.have_points_of(next_cells))
+    ++events_version;
+}
+
+void ContactForce::Impl::group_samples() {
+  groups.clear();
+  for (Pair& pair : pairs) {
+    const auto own = std::span(samples).subspan(pair.begin, pair.end - pair.begin);
+    pair.grouped = pair.law.friction == 0.0 && !pair.follows &&
+                   std::all_of(own.begin(), own.end(), [](const ContactSample& s) { return s.a.frame < 0; });
+    pair.given = !own.empty() && std::all_of(own.begin(), own.end(), [&](const ContactSample& s) {
+      const auto is_given = [&](const SurfacePoint& p) {
+        return p.frame >= 0 && !frames[static_cast<std::size_t>(p.frame)]->in_state();
+      };
+      return is_given(s.a) && is_given(s.b);
+    });
+    if (pair.grouped) groups.append(own, pair.law);
+    if (pair.first_cell < pair.last_cell) groups.append(cells, pair.first_cell, pair.last_cell, pair.law);
+  }
+}
+
+void ContactForce::Impl::check_samples(const dynamics::StateView& state) const {
+  const int frame_count = static_cast<int>(frames.size()), node_count = state.layout->node_count();
+  const auto check = [&](const auto& p) {
+    PALPATE_CHECK(p.frame < frame_count && (p.frame >= 0 || (p.count > 0 && p.count <= 4)),
+                  "contact sample: frame {} of {}, {} nodes", p.frame, frame_count, p.count);
+    for (int i = 0; p.frame < 0 && i < p.count; ++i)
+      PALPATE_CHECK(p.node[static_cast<std::size_t>(i)] < node_count, "contact sample: node {} of {}",
+                    p.node[static_cast<std::size_t>(i)], node_count);
+  };
+  for (const ContactSample& s : samples) {
+    check(s.a);
+    check(s.b);
+    PALPATE_CHECK(s.area >= 0.0 && s.normal.allFinite(), "contact sample: area {}", s.area);
+  }
+  for (const ContactCell& cell : cells.cells) {
+    check(cells.carriers[static_cast<std::size_t>(cell.a)]);
+    check(cells.carriers[static_cast<std::size_t>(cell.b)]);
+    PALPATE_CHECK(cell.normal.allFinite(), "contact cell: a normal is not finite");
+  }
+}
+
+}  // namespace palpate::contact
