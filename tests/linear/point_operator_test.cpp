@@ -241,6 +241,34 @@ TEST_P(PointSolvers, TheErrorIsWhatTheToleranceSays) {
     }
 }
 
+// Tolerances below what single precision can say of a solution: corrected from the first step on, with new
+// sums at each, and never by a matrix in double, whose pattern would be another one every time.
+TEST_P(PointSolvers, AreCorrectedFromTheFirstStepOn) {
+  constexpr double kStep = 1e-2, kTolerance = 1e-9;
+  BentBeam beam(16, 1e5);
+  const auto solver = linear::make_linear_solver(GetParam(), {.step_s = kStep, .linear_rtol = kTolerance});
+  const auto direct = linear::make_linear_solver("cholmod");
+  BorderedMatrix whole;
+  VecX b, x, exact;
+  for (int k = 0; k < 4; ++k) {
+    beam.at(0.2 * k, kStep, whole, b);
+    const PointStiffness C = random_points(whole.body.block_rows(), 30, 2.0, static_cast<unsigned>(k));
+    const BorderedMatrix all = with(whole, C, beam.system.driven_nodes());
+    ZeroRowSumMatrix* A = mixed(*solver).step_matrix(beam.pattern());
+    ASSERT_NE(A, nullptr);
+    beam.at(0.2 * k, kStep, *A, b);
+    A->points = C;
+    ASSERT_EQ(direct->factor(all), SolveStatus::kOk);
+    ASSERT_EQ(direct->solve(b, exact), SolveStatus::kOk);
+    ASSERT_EQ(mixed(*solver).factor_step_matrix(), StepMatrixUse::kRefine) << k;
+    Known left(all, b);
+    ASSERT_EQ(mixed(*solver).solve_by_refinement(left, x), SolveStatus::kOk) << k;
+    EXPECT_LE(energy_norm(all, x - exact), kTolerance * energy_norm(all, exact)) << k;
+  }
+  EXPECT_EQ(solver->counters().symbolic, 1);
+  EXPECT_EQ(solver->counters().factorisations, 4);
+}
+
 // A node in contact that is held along one axis moves along the others, and only along these.
 TEST_P(PointSolvers, NodesMayBeHeldAlongOneAxis) {
   constexpr double kStep = 1e-2;

@@ -31,6 +31,9 @@ constexpr int kNodesOfPiece = 32;
 /// Rounding of a number in single precision, relative; and how many tolerances the bound below may come to
 /// for a body one element thick.
 constexpr double kSingleRounding = 0x1p-24, kRoundingShare = 4.0;
+/// Matrices of a pattern, after one that was too coarse, that are asked for in double: what is beside the
+/// pattern may have been the reason, and may be gone.
+constexpr int kRefusedFor = 64;
 /// Nodes of a part, at most: its share of vectors and of the matrix fits a second-level cache, and few pairs
 /// of nodes are cut.  Parts come in fours, for threads to share; very small matrices have one.
 constexpr int kNodesOfPart = 3072, kNodesOfOnePart = 512;
@@ -59,7 +62,7 @@ int parts_of(int nodes) {
 /// roundings of both signs take off more.  Bodies are several elements thick; where e sqrt(s) exceeds
 /// kRoundingShare tolerances, the matrix is not taken for A: what the equations leave of an approximation is
 /// looked at, as for the matrix of an earlier step (refinement.h), and rounding then touches the corrections
-/// only.
+/// only.  The first approximation is the solution with A~.
 ///
 /// Tolerance: linear_rtol bounds the error of the solution itself, |x - x*|_A <= linear_rtol |x*|_A, by
 /// energy_bound.h.  In a step A = M + h D + h^2 K, so the norm is that of the kinetic energy of the velocity
@@ -123,8 +126,7 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
 
   ZeroRowSumMatrix* step_matrix(const BlockSparse& pattern) override {
     if (pattern.block_rows() == 0) return nullptr;
-    const bool known = copy_.analysed(pattern);
-    if (known && refused_) return nullptr;
+    if (refused(pattern)) return nullptr;
     analyse(pattern);
     delegated_ = false;
     matrix_ = nullptr;
@@ -149,11 +151,13 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
   std::optional<SolveStatus> solve_by_refinement(dynamics::ResidualFunction& residual, VecX& x) override {
     if (delegated_ || matrix_ || (use_ != StepMatrixUse::kRefine && use_ != StepMatrixUse::kSolve)) return {};
     const long before = counters_.iterations;
-    const std::optional<SolveStatus> status = refinement_.solve(residual, x);
-    if (use_ != StepMatrixUse::kRefine || refined_) return status;
+    const bool own = use_ == StepMatrixUse::kRefine && !refined_;
+    const std::optional<SolveStatus> status =
+        own && !refinement_.can_correct() ? refine_from_nothing(residual, x) : refinement_.solve(residual, x);
+    if (!own) return status;
     refined_ = true;
     if (status != SolveStatus::kOk) use_ = StepMatrixUse::kNone;
-    if (status == SolveStatus::kNotConverged) refused_ = true;
+    if (status == SolveStatus::kNotConverged) refuse();
     if (status == SolveStatus::kOk) account(before);
     return status;
   }
@@ -197,7 +201,18 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
     state_.prepare();
     solve_.prepare();
     refinement_.prepare();
-    refused_ = false;
+  }
+
+  // --- patterns whose zero-row-sum matrices were too coarse even for corrections
+  bool refused(const BlockSparse& pattern) {
+    if (refused_pattern_ == 0 || refused_pattern_ != pattern.pattern_version()) return false;
+    if (--refused_for_ > 0) return true;
+    refused_pattern_ = 0;
+    return false;
+  }
+  void refuse() {
+    refused_pattern_ = room_->pattern->pattern_version();
+    refused_for_ = kRefusedFor;
   }
 
   // --- once a matrix
@@ -211,11 +226,24 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
     return status_;
   }
 
-  StepMatrixUse use_of(SolveStatus copied, bool coarse) const {
+  static StepMatrixUse use_of(SolveStatus copied, bool coarse) {
     if (copied == SolveStatus::kIndefinite) return StepMatrixUse::kIndefinite;
     if (copied != SolveStatus::kOk) return StepMatrixUse::kNone;
-    if (!coarse) return StepMatrixUse::kSolve;
-    return refinement_.can_correct() ? StepMatrixUse::kRefine : StepMatrixUse::kNone;
+    return coarse ? StepMatrixUse::kRefine : StepMatrixUse::kSolve;
+  }
+
+  /// Refinement corrects an initial guess.  Where there is none yet, it is the solution with the rounded
+  /// matrix, whose right-hand side is the residual of zero.
+  std::optional<SolveStatus> refine_from_nothing(dynamics::ResidualFunction& equations, VecX& x) {
+    x.setZero(3 * nodes());
+    equations.at(x, right_hand_side_);
+    {
+      const ScopedTimer timer(counters_.solve_s);
+      const SolveStatus status = solve_.solve(right_hand_side_.data(), x.data(), true);
+      // without a guess even now: the right-hand side is zero, and so is the solution
+      if (status != SolveStatus::kOk || !refinement_.can_correct()) return status;
+    }
+    return refinement_.solve(equations, x);
   }
 
   /// Operations of a new E and D over those of an iteration.
@@ -272,8 +300,9 @@ class SinglePcg final : public dynamics::LinearSolver, public dynamics::MixedPre
 
   const BorderedMatrix* matrix_ = nullptr;  ///< last given to factor(); null: a zero-row-sum one
   const ZeroRowSumMatrix* room_ = nullptr;
-  /// a zero-row-sum matrix of this pattern was too coarse even for corrections
-  bool refused_ = false;
+  std::uint64_t refused_pattern_ = 0;  ///< 0: none
+  int refused_for_ = 0;                ///< so many matrices more
+  VecX right_hand_side_;
   std::uint64_t values_version_ = 0;
   SolveStatus status_ = SolveStatus::kSingular;  ///< of the copy
   StepMatrixUse use_ = StepMatrixUse::kNone;     ///< of the zero-row-sum matrix
