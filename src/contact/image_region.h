@@ -96,6 +96,8 @@ class ImageRegion {
 
   RegionContext& context_;
   double candidate_gap_ = 0.0;  ///< of this region [m]
+  /// Part of its contact region's volume that is its own: image_region.cpp derives what it may err.
+  double share_ = 1.0;
   ContactAxes axes_;
   Patch a_, b_;
   std::vector<Hit> hits_;

@@ -80,11 +80,14 @@ class PrunedRegion final : public ImageRegion {
     faces_b_ = region.faces_b;
     others_a_.clear();
     looks_ = 0;
+    share_ = 1.0;
     start(region.region.origin, region.region.normal);
   }
   /// Some faces of a of a region, along a normal of their own; `whole` may be this one.
+  /// @param share  of the volume of the whole
   void start_part(const PrunedRegion& whole, std::span<const std::vector<int>> faces_of_parts,
-                  std::size_t part, const Vec3& normal) {
+                  std::size_t part, double share, const Vec3& normal) {
+    share_ = whole.share_ * share;
     proxies_ = whole.proxies_;
     candidate_gap_ = whole.candidate_gap_;
     others_a_ = whole.others_a_;
@@ -422,9 +425,13 @@ void PrunedSource::split(PrunedRegion& whole, std::span<const RegionPart> parts)
     faces_of_parts_[i].push_back(face);
   }
   const std::span<const std::vector<int>> faces(faces_of_parts_.data(), parts.size());
-  for (std::size_t i = 1; i < parts.size(); ++i)
-    static_cast<PrunedRegion&>(add_region()).start_part(whole, faces, i, parts[i].normal());
-  whole.start_part(whole, faces, 0, parts[0].normal());
+  double volume = 0.0;
+  for (const RegionPart& part : parts) volume += part.volume;
+  const auto start = [&](PrunedRegion& region, std::size_t i) {
+    region.start_part(whole, faces, i, parts[i].volume / volume, parts[i].normal());
+  };
+  for (std::size_t i = 1; i < parts.size(); ++i) start(static_cast<PrunedRegion&>(add_region()), i);
+  start(whole, 0);  // last: the others are parts of it as it was
 }
 
 }  // namespace
