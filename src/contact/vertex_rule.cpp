@@ -18,6 +18,16 @@ bool pixel_of(const ContactCamera& camera, double u, double v, int& column, int&
   return true;
 }
 
+/// A vertex, moved into a face that it is a corner of by less than any edge that is seen: at the vertex
+/// itself rounding says whether a line meets the face, and at the rim of a patch there is no other.
+Eigen::Vector2d inside_of_face(const Patch& patch, int visible, Eigen::Index vertex) {
+  constexpr double kMoved = 1e-9;  // of the way to the face's middle
+  const auto corner = patch.faces->col(patch.visible[static_cast<std::size_t>(visible)]);
+  const Eigen::Vector2d middle =
+      (patch.uvw.col(corner[0]) + patch.uvw.col(corner[1]) + patch.uvw.col(corner[2])).head<2>() / 3.0;
+  return (1.0 - kMoved) * patch.uvw.col(vertex).head<2>() + kMoved * middle;
+}
+
 }  // namespace
 
 void VertexRule::find(const Region& region, std::span<const FacePair> pairs,
@@ -50,6 +60,9 @@ void VertexRule::collect(const Patch& patch, double side, double share) {
     for (int k = 0; k < 3; ++k) {
       Vertex& vertex = vertices_[static_cast<std::size_t>(corner[k])];
       vertex.area += share * area / 3.0;
+      // On a wall that rounding turns this way, the weights would be a quotient of two roundings.
+      if (area <= vertex.largest) continue;
+      vertex.largest = area;
       vertex.visible = static_cast<int>(i);
       vertex.corner = k;
     }
@@ -78,7 +91,7 @@ void VertexRule::find_on_side(const Region& region, bool of_a, std::span<const F
                                   : look_up(region, of_a, static_cast<int>(i), column, row, pairs, other);
     if (opposite == Opposite::kAskLine) {
       asking_.push_back({static_cast<int>(i), pixel});
-      points_.emplace_back(u, v);
+      points_.push_back(inside_of_face(own, vertices_[i].visible, vertex));
     } else if (opposite == Opposite::kFound && take(region, of_a, static_cast<int>(i), other, hit)) {
       out.push_back(hit);
     }
@@ -88,7 +101,7 @@ void VertexRule::find_on_side(const Region& region, bool of_a, std::span<const F
   const double same = 1e-9 * (region.camera.far - region.camera.near);
   for (const FacePair& pair : found_) {
     const auto [vertex, pixel] = asking_[pair.at];
-    const Eigen::Vector2d& at = points_[pair.at];
+    const auto at = own.uvw.col(vertex).head<2>();
     Hit hit;
     hit.pixel = pixel;
     Vec3 weights;

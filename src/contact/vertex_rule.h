@@ -43,7 +43,8 @@ class VertexRule {
  private:
   struct Vertex {
     double area = 0.0;
-    int visible = -1;  ///< a face that it is a corner of
+    int visible = -1;      ///< of the faces that it is a corner of, the one that is seen largest
+    double largest = 0.0;  ///< that one's projected area
     int corner = 0;
   };
   void find_on_side(const Region& region, bool of_a, std::span<const FacePair> pairs, ExactLines& lines,
