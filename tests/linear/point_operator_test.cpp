@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <random>
+#include <utility>
 
 #include "linear/bent_beam.h"
 #include "palpate/integrate/integrators.h"
@@ -47,6 +49,30 @@ PointStiffness random_points(int nodes, int count, double size, unsigned seed) {
       }
       out.along.push_back(along);
     }
+  }
+  return out;
+}
+
+/// With others on the same nodes, or on all but one: along the same normal, along another one, and points
+/// beside sums.
+PointStiffness on_the_same_nodes(const PointStiffness& C, double size) {
+  PointStiffness out = C;
+  for (const auto& one : C.along) {
+    out.along.push_back({one.nodes, one.normal, size * one.G});
+    out.along.push_back({one.nodes, Vec3(one.normal.y(), one.normal.z(), one.normal.x()), one.G});
+    out.along.push_back({one.nodes, one.normal, one.G});
+    if (!one.nodes.relative) {  // on all of these nodes but the last
+      PointStiffness::AlongNormal fewer = out.along.back();
+      const int last = --fewer.nodes.count;
+      fewer.G.row(last).setZero();
+      fewer.G.col(last).setZero();
+      out.along.push_back(fewer);
+    }
+    PointStiffness::Weights w = PointStiffness::Weights::Zero();
+    w.head(one.nodes.count).setConstant(0.25);
+    if (one.nodes.relative) w.tail(one.nodes.count / 2) *= -1.0;
+    const Mat3 C3 = Vec3(1.0, 2.0, 3.0).asDiagonal();
+    out.points.push_back({one.nodes, w, C3 + 0.1 * Mat3::Ones()});
   }
   return out;
 }
@@ -116,8 +142,9 @@ TEST(PointOperator, ProductsAreThoseOfItsBlocks) {
   constexpr int kNodes = 50;
   constexpr double kScale = 0.25;
   const Order order(kNodes);
-  const PointStiffness C = random_points(kNodes, 40, 3.0, 1);
+  const PointStiffness C = on_the_same_nodes(random_points(kNodes, 40, 3.0, 1), 2.0);
   linear::PointOperator op;
+  op.take(random_points(kNodes, 9, 1.0, 4), order.place, order.order, 2.0);  // leaves nothing behind
   op.take(C, order.place, order.order, kScale);
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -149,6 +176,19 @@ TEST(PointOperator, ProductsAreThoseOfItsBlocks) {
   for_each_block(C, [&](int i, int j, const Mat3& block) {
     if (i == j) diagonal[static_cast<std::size_t>(order.place[static_cast<std::size_t>(i)])] += block;
   });
+  std::map<std::pair<int, int>, Mat3> blocks, seen;
+  for_each_block(C, [&](int i, int j, const Mat3& block) {
+    const std::pair at(order.place[static_cast<std::size_t>(i)], order.place[static_cast<std::size_t>(j)]);
+    blocks.try_emplace(at, Mat3::Zero()).first->second += block;
+  });
+  op.for_each_block([&](int i, int j, const Eigen::Matrix3f& block) {
+    EXPECT_TRUE(seen.emplace(std::pair(i, j), block.cast<double>()).second) << "each once";
+  });
+  EXPECT_EQ(seen.size(), blocks.size());
+  for (const auto& [at, block] : blocks) {
+    ASSERT_TRUE(seen.contains(at));
+    EXPECT_LT((seen[at] - kScale * block).norm(), 1e-5);
+  }
   std::size_t touched = 0;
   for (const Mat3& block : diagonal) touched += block.norm() > 0.0;
   EXPECT_EQ(op.diagonal().size(), touched);

@@ -1,169 +1,111 @@
 #include "linear/mixed_precision/point_operator.h"
 
 #include <algorithm>
-
-// The share of one sum, with t_i = n . p_i and q_i += s_i n,
-//     s = G t,    p . C p = t . s;
-// of a point, with d = sum w_i p_i and q_i += w_i f,
-//     f = C d,    p . C p = d . f.
-// `relative` sums do not change when all p_i move by the same: t and d are then taken from p_i - p_0, so that
-// rounding has to do with the nodes' differences alone, as in the rows of the matrix beside it.
+#include <utility>
 
 namespace palpate::linear {
-namespace {
-
-template <class Real>
-using Three = Eigen::Matrix<Real, 3, 1>;
-
-template <class Real>
-Three<Real> at(const Real* v, int place) {
-  return Eigen::Map<const Three<Real>>(v + 4 * static_cast<std::ptrdiff_t>(place));
-}
-
-template <class Real>
-void add_to(Real* v, int place, const Three<Real>& what) {
-  Eigen::Map<Three<Real>>(v + 4 * static_cast<std::ptrdiff_t>(place)) += what;
-}
-
-}  // namespace
 
 void PointOperator::clear() {
-  along_.clear();
-  points_.clear();
-  doubles_.clear();
-  for (const Diagonal& own : diagonal_) diagonal_of_node_[static_cast<std::size_t>(own.node)] = -1;
   diagonal_.clear();
-}
-
-PointOperator::Nodes PointOperator::placed(const dynamics::PointStiffness::Nodes& nodes,
-                                           const std::vector<int>& place_of_node) const {
-  Nodes out{};
-  out.count = nodes.count;
-  out.relative = nodes.relative;
-  for (int i = 0; i < nodes.count; ++i)
-    out.place[i] = place_of_node[static_cast<std::size_t>(nodes.node[static_cast<std::size_t>(i)])];
-  return out;
+  row_start_.clear();
 }
 
 void PointOperator::take(const dynamics::PointStiffness& points, const std::vector<int>& place_of_node,
                          const NodeOrder& order, double scale) {
   clear();
   if (points.empty()) return;
-  doubles_ = points;
-  diagonal_of_node_.resize(place_of_node.size(), -1);
-  for (auto& one : doubles_.along) {
-    Along out{};
-    out.nodes = placed(one.nodes, place_of_node);
-    out.normal = one.normal.cast<float>();
-    for (int i = 0; i < kMost; ++i)
-      for (int j = 0; j < kMost; ++j) out.G[kMost * i + j] = static_cast<float>(scale * one.G(i, j));
-    std::copy_n(out.nodes.place, out.nodes.count, one.nodes.node.begin());
-    along_.push_back(out);
-  }
-  for (auto& one : doubles_.points) {
-    Point out{};
-    out.nodes = placed(one.nodes, place_of_node);
-    for (int i = 0; i < kMost; ++i) out.weight[i] = static_cast<float>(one.weight[i]);
-    out.C = (scale * one.C).cast<float>();
-    std::copy_n(out.nodes.place, out.nodes.count, one.nodes.node.begin());
-    points_.push_back(out);
-  }
+  blocks_.sum(points, place_of_node);
+  order_rows(scale);
   find_parts(order);
-  sum_diagonal();
+}
+
+/// Rows of all blocks but the diagonal ones, each pair in both of its rows; C_ii = M_i - sum_j C_ij.
+void PointOperator::order_rows(double scale) {
+  const std::vector<int>& places = blocks_.places();
+  const auto single = [scale](const Mat3& C) {
+    SingleBlock out = SingleBlock::Zero();
+    out.topRows<3>() = (scale * C).cast<float>();
+    return out;
+  };
+  row_start_.assign(places.size() + 1, 0);
+  for (const PointBlocks::Pair& pair : blocks_.pairs()) {
+    ++row_start_[static_cast<std::size_t>(pair.i) + 1];
+    ++row_start_[static_cast<std::size_t>(pair.j) + 1];
+  }
+  for (std::size_t r = 0; r < places.size(); ++r) row_start_[r + 1] += row_start_[r];
+  next_.assign(row_start_.begin(), row_start_.end() - 1);
+  const std::size_t count = 2 * blocks_.pairs().size();
+  column_.resize(count);
+  single_.resize(count);
+  double_.resize(count);
+  double_sum_.resize(places.size());
+  single_sum_.resize(places.size());
+  for (const PointBlocks::Pair& pair : blocks_.pairs()) {
+    const Mat3 C = PointBlocks::matrix(pair.C);
+    const SingleBlock rounded = single(C);
+    for (const auto& [row, column] : {std::pair{pair.i, pair.j}, std::pair{pair.j, pair.i}}) {
+      const auto s = static_cast<std::size_t>(next_[static_cast<std::size_t>(row)]++);
+      column_[s] = places[static_cast<std::size_t>(column)];
+      single_[s] = rounded;
+      double_[s] = C;
+    }
+  }
+  for (std::size_t r = 0; r < places.size(); ++r) {
+    const Mat3 sum = PointBlocks::matrix(blocks_.row_sums()[r]);
+    double_sum_[r] = sum;
+    single_sum_[r] = single(sum);
+    Mat3 own = sum;
+    for (auto s = static_cast<std::size_t>(row_start_[r]); s < static_cast<std::size_t>(row_start_[r + 1]);
+         ++s)
+      own -= double_[s];
+    diagonal_.push_back({places[r], (scale * own).cast<float>()});
+  }
 }
 
 void PointOperator::find_parts(const NodeOrder& order) {
-  const auto parts = static_cast<std::size_t>(order.parts());
-  first_node_.resize(parts + 1);
-  for (std::size_t p = 0; p <= parts; ++p) first_node_[p] = order.first_node(p);
-  const auto list = [&](auto& of_part, const auto& sums) {
-    of_part.resize(parts);
-    for (auto& own : of_part) own.clear();
-    for (std::size_t s = 0; s < sums.size(); ++s)
-      for (int i = 0; i < sums[s].nodes.count; ++i) {
-        const auto part = static_cast<std::size_t>(
-            std::upper_bound(first_node_.begin(), first_node_.end() - 1, sums[s].nodes.place[i]) -
-            first_node_.begin() - 1);
-        if (of_part[part].empty() || of_part[part].back() != static_cast<int>(s))
-          of_part[part].push_back(static_cast<int>(s));
-      }
-  };
-  list(along_of_part_, along_);
-  list(points_of_part_, points_);
-}
-
-void PointOperator::sum_diagonal() {
-  for_each_block([&](int i, int j, const Eigen::Matrix3f& block) {
-    if (i != j) return;
-    int& index = diagonal_of_node_[static_cast<std::size_t>(i)];
-    if (index < 0) {
-      index = static_cast<int>(diagonal_.size());
-      diagonal_.push_back({i, Eigen::Matrix3f::Zero()});
-    }
-    diagonal_[static_cast<std::size_t>(index)].block += block;
-  });
+  const std::vector<int>& places = blocks_.places();
+  part_start_.clear();
+  for (std::size_t p = 0; p <= static_cast<std::size_t>(order.parts()); ++p)
+    part_start_.push_back(static_cast<int>(
+        std::lower_bound(places.begin(), places.end(), order.first_node(p)) - places.begin()));
 }
 
 double PointOperator::product(std::size_t part, const float* p, float* q) const {
-  const int first = first_node_[part], last = first_node_[part + 1];
-  const auto mine = [&](int place) { return place >= first && place < last; };
+  using Four = Eigen::Vector4f;
+  const auto at = [p](int place) {
+    return Eigen::Map<const Four>(p + 4 * static_cast<std::ptrdiff_t>(place));
+  };
+  const auto times = [](const SingleBlock& C, const Four& d) -> Four {
+    return C.col(0) * d[0] + C.col(1) * d[1] + C.col(2) * d[2];
+  };
   double share = 0.0;
-  for (const int index : along_of_part_[part]) {
-    const Along& a = along_[static_cast<std::size_t>(index)];
-    const Nodes& nodes = a.nodes;
-    float t[kMost] = {}, s[kMost] = {};
-    for (int i = 0; i < nodes.count; ++i) t[i] = a.normal.dot(at(p, nodes.place[i]));
-    const float shift = nodes.relative ? t[0] : 0.0f;
-    for (int i = 0; i < nodes.count; ++i) t[i] -= shift;
-    for (int j = 0; j < kMost; ++j)
-      for (int i = 0; i < kMost; ++i) s[i] += a.G[kMost * j + i] * t[j];
-    for (int i = 0; i < nodes.count; ++i) {
-      if (!mine(nodes.place[i])) continue;
-      add_to<float>(q, nodes.place[i], s[i] * a.normal);
-      share += static_cast<double>(s[i]) * (t[i] + shift);
-    }
-  }
-  for (const int index : points_of_part_[part]) {
-    const Point& a = points_[static_cast<std::size_t>(index)];
-    const Nodes& nodes = a.nodes;
-    const Eigen::Vector3f origin = nodes.relative ? at(p, nodes.place[0]) : Eigen::Vector3f::Zero();
-    Eigen::Vector3f d = Eigen::Vector3f::Zero();
-    for (int i = 0; i < nodes.count; ++i) d += a.weight[i] * (at(p, nodes.place[i]) - origin);
-    const Eigen::Vector3f f = a.C * d;
-    for (int i = 0; i < nodes.count; ++i) {
-      if (!mine(nodes.place[i])) continue;
-      const Eigen::Vector3f own = a.weight[i] * f;
-      add_to<float>(q, nodes.place[i], own);
-      share += own.dot(at(p, nodes.place[i]));
-    }
+  for (auto r = static_cast<std::size_t>(part_start_[part]);
+       r < static_cast<std::size_t>(part_start_[part + 1]); ++r) {
+    const int place = diagonal_[r].node;
+    const Four own = at(place);
+    Four sum = times(single_sum_[r], own);
+    for (auto s = static_cast<std::size_t>(row_start_[r]); s < static_cast<std::size_t>(row_start_[r + 1]);
+         ++s)
+      sum += times(single_[s], at(column_[s]) - own);
+    Eigen::Map<Four>(q + 4 * static_cast<std::ptrdiff_t>(place)) += sum;
+    share += sum.dot(own);
   }
   return share;
 }
 
 void PointOperator::product(std::size_t part, const double* x, double* y) const {
-  const int first = first_node_[part], last = first_node_[part + 1];
-  const auto mine = [&](int place) { return place >= first && place < last; };
-  for (const int index : along_of_part_[part]) {
-    const auto& a = doubles_.along[static_cast<std::size_t>(index)];
-    dynamics::PointStiffness::Weights t = dynamics::PointStiffness::Weights::Zero();
-    for (int i = 0; i < a.nodes.count; ++i)
-      t[i] = a.normal.dot(at(x, a.nodes.node[static_cast<std::size_t>(i)]));
-    if (a.nodes.relative) t.head(a.nodes.count).array() -= double{t[0]};
-    const dynamics::PointStiffness::Weights s = a.G * t;
-    for (int i = 0; i < a.nodes.count; ++i)
-      if (const int place = a.nodes.node[static_cast<std::size_t>(i)]; mine(place))
-        add_to<double>(y, place, s[i] * a.normal);
-  }
-  for (const int index : points_of_part_[part]) {
-    const auto& a = doubles_.points[static_cast<std::size_t>(index)];
-    const Vec3 origin = a.nodes.relative ? at(x, a.nodes.node[0]) : Vec3::Zero();
-    Vec3 d = Vec3::Zero();
-    for (int i = 0; i < a.nodes.count; ++i)
-      d += a.weight[i] * (at(x, a.nodes.node[static_cast<std::size_t>(i)]) - origin);
-    const Vec3 f = a.C * d;
-    for (int i = 0; i < a.nodes.count; ++i)
-      if (const int place = a.nodes.node[static_cast<std::size_t>(i)]; mine(place))
-        add_to<double>(y, place, a.weight[i] * f);
+  const auto at = [x](int place) {
+    return Eigen::Map<const Vec3>(x + 4 * static_cast<std::ptrdiff_t>(place));
+  };
+  for (auto r = static_cast<std::size_t>(part_start_[part]);
+       r < static_cast<std::size_t>(part_start_[part + 1]); ++r) {
+    const int place = diagonal_[r].node;
+    const Vec3 own = at(place);
+    Vec3 sum = double_sum_[r] * own;
+    for (auto s = static_cast<std::size_t>(row_start_[r]); s < static_cast<std::size_t>(row_start_[r + 1]);
+         ++s)
+      sum += double_[s] * (at(column_[s]) - own);
+    Eigen::Map<Vec3>(y + 4 * static_cast<std::ptrdiff_t>(place)) += sum;
   }
 }
 
