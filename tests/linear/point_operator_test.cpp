@@ -64,9 +64,11 @@ PointStiffness on_the_same_nodes(const PointStiffness& C, double size) {
     if (!one.nodes.relative) {  // on all of these nodes but the last
       PointStiffness::AlongNormal fewer = out.along.back();
       const int last = --fewer.nodes.count;
+      fewer.nodes.node[static_cast<std::size_t>(last)] = 0;
       fewer.G.row(last).setZero();
       fewer.G.col(last).setZero();
       out.along.push_back(fewer);
+      out.along.push_back({one.nodes, one.normal, one.G});
     }
     PointStiffness::Weights w = PointStiffness::Weights::Zero();
     w.head(one.nodes.count).setConstant(0.25);
