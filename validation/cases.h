@@ -38,6 +38,7 @@ ValidationCase torsion();
 ValidationCase locking();
 ValidationCase newton_convergence();
 ValidationCase contact_patch();
+ValidationCase flat_punch();
 ValidationCase hertz_sphere();
 ValidationCase free_vibration();
 ValidationCase vibration_tolerance();

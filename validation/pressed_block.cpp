@@ -1,5 +1,7 @@
 #include "pressed_block.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "palpate/core/error.h"
@@ -13,13 +15,58 @@ double BlockMesh::half_width() const { return inner * std::sinh(doublings * std:
 
 double BlockMesh::smallest_cell() const { return inner * std::sinh(std::log(2.0) / per_doubling); }
 
+namespace {
+
+/// The unit cube, six tetrahedra a cell around its diagonal (Kuhn 1960).  On the top, cells on x = y are cut
+/// along it: made round, two of their edges are nearly one line, and a cut across would leave a flat
+/// triangle.
+TetMesh cut_along_diagonals(int n) {
+  const auto node = [n](const std::array<int, 3>& i) { return i[0] + (n + 1) * (i[1] + (n + 1) * i[2]); };
+  TetMesh mesh;
+  mesh.nodes.resize(3, (n + 1) * (n + 1) * (n + 1));
+  mesh.tets.resize(4, 6 * n * n * n);
+  Eigen::Index next = 0;
+  for (int z = 0; z <= n; ++z)
+    for (int y = 0; y <= n; ++y)
+      for (int x = 0; x <= n; ++x) {
+        mesh.nodes.col(node({x, y, z})) = Vec3(x, y, z) / n;
+        if (std::max({x, y, z}) == n) continue;
+        std::array<int, 3> axes{0, 1, 2};
+        do {
+          std::array<int, 3> at{x, y, z};
+          Eigen::Vector4i tet;
+          tet[0] = node(at);
+          for (int k = 0; k < 3; ++k) {
+            ++at[static_cast<std::size_t>(axes[static_cast<std::size_t>(k)])];
+            tet[k + 1] = node(at);
+          }
+          const bool even = (axes[1] - axes[0] + 3) % 3 == 1;  // positive volume
+          if (!even) std::swap(tet[1], tet[2]);
+          mesh.tets.col(next++) = tet;
+        } while (std::next_permutation(axes.begin(), axes.end()));
+      }
+  return mesh;
+}
+
+}  // namespace
+
 TetMesh BlockMesh::tets() const {
-  const int n = per_doubling * doublings;
-  const double tau = std::log(2.0) / per_doubling;
-  const auto graded = [&](double part) { return inner * std::sinh(std::round(part * n) * tau); };
-  TetMesh mesh = mesh::box(Vec3::Ones(), {n, n, n});
-  for (auto x : mesh.nodes.colwise())
-    x = Vec3(graded(x.x() + 0.5), graded(x.y() + 0.5), -graded(0.5 - x.z()));
+  const int n = per_doubling * doublings, across = shape == BlockShape::kWhole ? 2 * n : n;
+  const double tau = std::log(2.0) / per_doubling, first = shape == BlockShape::kWhole ? -n : 0;
+  const auto graded = [&](double cell) { return inner * std::sinh(std::round(cell) * tau); };
+  TetMesh mesh;
+  if (shape == BlockShape::kRoundQuarter) {
+    mesh = cut_along_diagonals(n);
+  } else {
+    mesh = mesh::box(Vec3::Ones(), {across, across, n});
+    mesh.nodes.array() += 0.5;
+  }
+  for (auto x : mesh.nodes.colwise()) {
+    x = Vec3(graded(first + across * x.x()), graded(first + across * x.y()), -graded(n - n * x.z()));
+    const double from_axis = x.head<2>().norm();
+    if (shape == BlockShape::kRoundQuarter && from_axis > 0.0)
+      x.head<2>() *= x.head<2>().maxCoeff() / from_axis;
+  }
   return mesh;
 }
 
@@ -27,6 +74,7 @@ double indentation_force(const BlockMesh& mesh, const fem::Material& material, d
                          const MakeIndenter& indenter) {
   constexpr int kQueries = 20;
   constexpr double kSettled = 1e-6;  // of the force, from one query to the next
+  const double parts = mesh.shape == BlockShape::kWhole ? 1.0 : 4.0;
   const TetMesh rest = mesh.tets();
   const double small = 1e-3 * mesh.smallest_cell(), bottom = small - mesh.half_width();
   StaticBody body(rest, material);
@@ -37,7 +85,7 @@ double indentation_force(const BlockMesh& mesh, const fem::Material& material, d
       continue;
     }
     for (int axis : {0, 1})
-      if (x[axis] < small) body.hold(i, axis, 0.0);
+      if (std::abs(x[axis]) < small) body.hold(i, axis, 0.0);
   }
   const auto motion = contact::fixed_frame();
   const auto contact = std::make_shared<contact::ContactForce>();
@@ -53,7 +101,7 @@ double indentation_force(const BlockMesh& mesh, const fem::Material& material, d
   for (int i = 0; i < kQueries; ++i) {
     contact->refresh(body.view());
     if (!body.solve()) return std::nan("");
-    const double force = 4.0 * contact->frame_wrench(body.view(), 0).force.z();
+    const double force = parts * contact->frame_wrench(body.view(), 0).force.z();
     if (std::abs(force - before) <= kSettled * std::abs(force)) return force;
     before = force;
   }

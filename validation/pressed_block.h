@@ -10,13 +10,20 @@
 /// A soft block under a rigid indenter: what the cases of the half-space share.
 namespace palpate::validation {
 
-/// A quarter of a block, x and y in [0, L], z in [-L, 0], with cells that grow away from the origin:
+enum class BlockShape {
+  kQuarter,       ///< of a square block: x and y in [0, L]
+  kRoundQuarter,  ///< each square max(x, y) = r becomes the circle of radius r: mesh lines for round rims
+  kWhole          ///< square, x and y in [-L, L]
+};
+
+/// A block, z in [-L, 0], with cells that grow away from the origin:
 ///     coordinates c sinh(i tau),  i = 0 .. n,   tau = ln 2/m,   n = m N,   L = c sinh(N ln 2).
 /// Cells are nearly equal, c tau, up to c, and grow by 2^(1/m) from one to the next beyond.  One N more
 /// doubles the block and leaves the cells that were there; a larger m refines all cells alike.
 struct BlockMesh {
   double inner = 0.0;  ///< c [m]
   int per_doubling = 2, doublings = 5;
+  BlockShape shape = BlockShape::kQuarter;
   double half_width() const;
   double smallest_cell() const;
   TetMesh tets() const;

@@ -15,14 +15,15 @@ const std::vector<ValidationCase>& validation_cases() {
          contact_refresh()});
     if (tool::available())
       add({elastic_foundation_peer(), resting_sphere(), block_on_incline(), rolling_sphere(), felt_detail()});
-    add({patch_test(),         rigid_motion(),      gradient_and_tangent(),
-         uniaxial_and_shear(), hanging_bar(),       layered_bar(),
-         cantilever(),         large_deflection(),  torsion(),
-         newton_convergence(), locking(),           contact_patch(),
-         hertz_sphere(),       free_vibration(),    vibration_tolerance(),
-         axial_vibration(),    two_material_bar(),  bar_on_bone(),
-         lame_mode(),          bending_vibration(), spinning_body(),
-         explicit_limit(),     dropped_ball(),      colliding_bars()});
+    add({patch_test(),          rigid_motion(),     gradient_and_tangent(),
+         uniaxial_and_shear(),  hanging_bar(),      layered_bar(),
+         cantilever(),          large_deflection(), torsion(),
+         newton_convergence(),  locking(),          contact_patch(),
+         flat_punch(),          hertz_sphere(),     free_vibration(),
+         vibration_tolerance(), axial_vibration(),  two_material_bar(),
+         bar_on_bone(),         lame_mode(),        bending_vibration(),
+         spinning_body(),       explicit_limit(),   dropped_ball(),
+         colliding_bars()});
     if (tool::available())
       add({handle_step(), handle_below_wall(), coupling_limit(), partitioned_monolithic()});
     add({device_limits()});
