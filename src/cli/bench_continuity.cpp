@@ -13,7 +13,8 @@
 namespace palpate::cli {
 namespace {
 
-constexpr double kJump = 0.02;  // what is counted as one
+constexpr double kJump = 0.02;     // what is counted as one
+constexpr double kPieces = 12800;  // of a path: the length that halvings end at
 
 std::string quantile(std::vector<double> values, double share) {
   if (values.empty()) return "-";
@@ -50,21 +51,28 @@ void bench_continuity(const BenchArguments& arguments) {
                                : arguments.scenes;
   bench::ContinuityOptions options;
   options.paths = arguments.paths;
+  options.steps = arguments.path_steps;
+  options.halvings = static_cast<int>(std::lround(std::log2(kPieces / options.steps)));
   options.method = arguments.methods.front();
   options.quadrature_error = arguments.quadrature_error;
   std::vector<std::vector<std::string>> rows;
   for (const std::string& scene : scenes) {
     if (stop_flag()) break;
     const scene::Description description = scene_of({scene, {}, ""});
-    rows.push_back(
-        row_of(short_name(description), bench::bench_continuity(description, options, &stop_flag())));
+    const bench::ContinuityRow row = bench::bench_continuity(description, options, &stop_flag());
+    rows.push_back(row_of(short_name(description), row));
+    const auto worst = std::max_element(row.jumps.begin(), row.jumps.end(),
+                                        [](const auto& p, const auto& q) { return p.force < q.force; });
+    if (worst != row.jumps.end())
+      fmt::print("{}: the largest jump, {:.3f} ({}), is on path {} at {:.5f} of its length\n",
+                 short_name(description), worst->force, bench::name_of(worst->cause), worst->path, worst->at);
   }
   std::vector<std::string> head{"scene", "paths", "steps", "halved", "force [N]",
                                 "p50",   "p99",   "max",   "moment"};
   for (int i = 0; i < bench::kJumpCauses; ++i)
     head.emplace_back(bench::name_of(static_cast<bench::JumpCause>(i)));
   fmt::print(
-      "{}\nOne body moves past the other along random smooth paths of {} steps; a step across which the "
+      "\n{}\nOne body moves past the other along random smooth paths of {} steps; a step across which the "
       "force "
       "changes by\nmore than {:g} of itself is halved {} times.  p50, p99, max: what is left then, each "
       "path's largest, over the\nforce; moment: the same of the moment; causes: jumps above {:g} / the "

@@ -105,6 +105,7 @@ struct BenchArguments {
   std::string calibrate;                 ///< of fem: file for the measured table of linear_solver = "auto"
   int repeats = 5;                       ///< of leave-out
   int paths = 1000;                      ///< of continuity
+  int path_steps = 100;                  ///< of continuity
   double quadrature_error = 1e-3;        ///< of continuity
 };
 int bench(const BenchArguments& arguments);

@@ -362,6 +362,9 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   command->add_option("--paths", arguments->paths, "continuity: random paths of a scene")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+  command->add_option("--path-steps", arguments->path_steps, "continuity: steps of a path")
+      ->check(CLI::Range(10, 6400))
+      ->capture_default_str();
   command
       ->add_option("--quadrature-error", arguments->quadrature_error,
                    "continuity: what the pixels may err in the force; 0: all pixels always")
