@@ -103,10 +103,10 @@ class CpuImage final : public DepthImage {
     std::fill_n(target.depth, size, std::numeric_limits<float>::infinity());
     std::fill_n(target.triangle, size, -1);
 
-    surface.vertices.resize(4 * static_cast<std::size_t>(patch.uvw.cols()));
+    surface.vertices.resize(static_cast<std::size_t>(patch.uvw.size()));
     const double scale = 1.0 / camera.pixel, middle = 0.5 * (camera.near + camera.far);
     for (Eigen::Index i = 0; i < patch.uvw.cols(); ++i) {
-      float* to = surface.vertices.data() + 4 * i;
+      float* to = surface.vertices.data() + 3 * i;
       to[0] = static_cast<float>(scale * (patch.uvw(0, i) - camera.u0));
       to[1] = static_cast<float>(scale * (patch.uvw(1, i) - camera.v0));
       to[2] = static_cast<float>(side * (patch.uvw(2, i) - middle));

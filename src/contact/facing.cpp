@@ -8,50 +8,45 @@ namespace palpate::contact {
 
 void FacePlanes::start(const Patch& patch) {
   patch_ = &patch;
-  place_.assign(patch.visible.size(), -1);
-  planes_.clear();
+  planes_.resize(patch.visible.size());
+  for (Plane& plane : planes_) plane.state = Plane::kUnknown;
 }
 
 // With corners p0, p1, p2 seen along w and d_i = p_i - p0, the weights of corners 1 and 2 at p0 + d are
 // (d x d_2) / (d_1 x d_2) and (d_1 x d) / (d_1 x d_2).
-FacePlanes::Plane FacePlanes::prepared(int face) const {
+void FacePlanes::prepare(Plane& plane, int face) const {
   constexpr double kFlat = 1e-12;
   const auto corner = [&](int k) { return patch_->uvw.col((*patch_->faces)(k, face)); };
   const Vec3 d1 = corner(1) - corner(0), d2 = corner(2) - corner(0);
   const double area = d1.x() * d2.y() - d1.y() * d2.x();
   if (std::abs(area) <= kFlat * (d1.squaredNorm() + d2.squaredNorm())) {
-    Plane plane{};
-    plane.edge_on = true;
-    return plane;
+    plane.state = Plane::kEdgeOn;
+    return;
   }
   constexpr double kSteep = 5.0;  // slope: 79 degrees
   const Vec3 p0 = corner(0);
-  Plane plane{p0.x(), p0.y(), d2.y() / area, -d2.x() / area, -d1.y() / area, d1.x() / area,
-              p0.z(), d1.z(), d2.z(),        false,          false};
+  plane = {p0.x(), p0.y(), d2.y() / area, -d2.x() / area, -d1.y() / area, d1.x() / area,
+           p0.z(), d1.z(), d2.z(),        Plane::kReady,  false};
   const double along_u = plane.u1 * plane.w1 + plane.u2 * plane.w2,
                along_v = plane.v1 * plane.w1 + plane.v2 * plane.w2;
   plane.wall = along_u * along_u + along_v * along_v > kSteep * kSteep;
-  return plane;
 }
 
-const FacePlanes::Plane& FacePlanes::plane(int visible) {
-  std::int32_t& place = place_[static_cast<std::size_t>(visible)];
-  if (place < 0) {
-    place = static_cast<std::int32_t>(planes_.size());
-    planes_.push_back(prepared(patch_->visible[static_cast<std::size_t>(visible)]));
-  }
-  return planes_[static_cast<std::size_t>(place)];
+FacePlanes::Plane& FacePlanes::plane(int visible) {
+  Plane& plane = planes_[static_cast<std::size_t>(visible)];
+  if (plane.state == Plane::kUnknown) prepare(plane, patch_->visible[static_cast<std::size_t>(visible)]);
+  return plane;
 }
 
 bool FacePlanes::is_wall(int visible) {
   const Plane& p = plane(visible);
-  return p.edge_on || p.wall;
+  return p.state == Plane::kEdgeOn || p.wall;
 }
 
 bool FacePlanes::at(int visible, double u, double v, Vec3& weights, double& w) {
   constexpr double kOutside = -0.25;
   const Plane& plane = this->plane(visible);
-  if (plane.edge_on) return false;
+  if (plane.state == Plane::kEdgeOn) return false;
   const double du = u - plane.u0, dv = v - plane.v0;
   const double first = plane.u1 * du + plane.v1 * dv, second = plane.u2 * du + plane.v2 * dv;
   weights = Vec3(1.0 - first - second, first, second);

@@ -1,5 +1,4 @@
 #pragma once
-#include <cstdint>
 #include <vector>
 
 #include "contact/depth_image.h"
@@ -30,14 +29,14 @@ class FacePlanes {
     double u0, v0;          ///< corner 0
     double u1, v1, u2, v2;  ///< gradients of the weights of corners 1 and 2
     double w0, w1, w2;      ///< heights: of corner 0, of the others against it
-    bool edge_on, wall;     ///< wall: so steep that an image is not enough
+    enum : int { kUnknown, kEdgeOn, kReady } state;
+    bool wall;  ///< so steep that an image is not enough
   };
-  const Plane& plane(int visible);
-  Plane prepared(int face) const;
+  Plane& plane(int visible);
+  void prepare(Plane& plane, int face) const;
 
   const Patch* patch_ = nullptr;
-  std::vector<std::int32_t> place_;  ///< by triangle: in `planes_`, -1: not prepared
-  std::vector<Plane> planes_;        ///< of few of the triangles
+  std::vector<Plane> planes_;
 };
 
 /// The image said which triangles; the gap is theirs at (out.u, out.v), in double.  False where one of them

@@ -24,8 +24,7 @@ struct RasterPair {
 struct RasterKernels {
   /// Draws the triangles whose area in (x, y) has the sign of `side`; of equal depths the one that was drawn
   /// first stays.
-  /// @param vertices  x, y [pixels], w, and a number that nobody reads, of each
-  /// @param corners  three vertices each
+  /// @param vertices  x, y [pixels] and w of each  @param corners  three vertices each
   /// @param layer_gap  depths at a pixel that differ by more are layers; by less, neighbours at their edge
   void (*draw)(const float* vertices, const std::int32_t* corners, int count, float side, float layer_gap,
                const RasterTarget& target);

@@ -22,17 +22,12 @@ static_assert(kRasterLanes % kLanes == 0);
 typedef float Floats __attribute__((vector_size(4 * kLanes)));
 typedef std::int32_t Ints __attribute__((vector_size(4 * kLanes)));
 
-typedef float Four __attribute__((vector_size(16)));
-typedef std::int32_t FourInts __attribute__((vector_size(16)));
-typedef float FourInMemory __attribute__((vector_size(16), may_alias, aligned(4)));
-
 #define PALPATE_INLINE [[gnu::always_inline]] static inline
 
 PALPATE_INLINE Floats& floats(float* p) { return *reinterpret_cast<Floats*>(p); }
 PALPATE_INLINE Ints& ints(std::int32_t* p) { return *reinterpret_cast<Ints*>(p); }
 PALPATE_INLINE const Floats& floats(const float* p) { return *reinterpret_cast<const Floats*>(p); }
 PALPATE_INLINE const Ints& ints(const std::int32_t* p) { return *reinterpret_cast<const Ints*>(p); }
-PALPATE_INLINE Four four(const float* p) { return *reinterpret_cast<const FourInMemory*>(p); }
 PALPATE_INLINE Floats all(float x) { return Floats{} + x; }
 PALPATE_INLINE Ints all(std::int32_t x) { return Ints{} + x; }
 
@@ -61,29 +56,9 @@ PALPATE_INLINE Edge edge(const float* p, const float* q, bool swapped, float tur
   return {from[0], from[1], sign * (to[0] - from[0]), sign * (to[1] - from[1])};
 }
 
-// Most triangles of a coarse image hold no pixel's middle.  One does only if, along either axis, the last
-// middle before its high end, at floor(high - 1/2), is not before its low end, and both are in the image.
-// High ends are limited to -1 and more, where floor(x) is what x + 1 is cut off to, less 1.  Rounding of that
-// sum may take a middle too many, and never one too few.
-PALPATE_INLINE bool is_between_middles(const float* p0, const float* p1, const float* p2,
-                                       const RasterTarget& target) {
-  const Four p = four(p0), q = four(p1), r = four(p2);
-  const Four qr_low = q < r ? q : r, qr_high = q < r ? r : q;
-  const Four low = (p < qr_low ? p : qr_low) - 0.5f, high = (p > qr_high ? p : qr_high) - 0.5f;
-  const Four size = {static_cast<float>(target.width), static_cast<float>(target.height), 1.0f, 1.0f},
-             before = Four{} - 1.0f;
-  Four last = high > before ? high : before;
-  last = last < size ? last : size;
-  const FourInts cut_off = __builtin_convertvector(last + 1.0f, FourInts) - 1;
-  const FourInts outside =
-      (cut_off < 0) | (__builtin_convertvector(cut_off, Four) < low) | (low > size - 1.0f);
-  return (outside[0] | outside[1]) != 0;
-}
-
 PALPATE_INLINE void draw_one(const float* vertices, const std::int32_t* corner, std::int32_t number,
                              Floats lane, float side, float layer_gap, const RasterTarget& target) {
-  const float *p0 = vertices + 4 * corner[0], *p1 = vertices + 4 * corner[1], *p2 = vertices + 4 * corner[2];
-  if (is_between_middles(p0, p1, p2, target)) return;
+  const float *p0 = vertices + 3 * corner[0], *p1 = vertices + 3 * corner[1], *p2 = vertices + 3 * corner[2];
   const float low_x = std::min(p0[0], std::min(p1[0], p2[0])),
               high_x = std::max(p0[0], std::max(p1[0], p2[0])),
               low_y = std::min(p0[1], std::min(p1[1], p2[1])),
