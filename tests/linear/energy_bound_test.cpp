@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "linear/mixed_precision/energy_bound.h"
 #include "palpate/core/types.h"
@@ -43,6 +44,33 @@ TEST(EnergyBound, LiesAboveTheErrorAndCloseToIt) {
   EXPECT_GT(checked, 40);
   EXPECT_EQ(above, checked);
   EXPECT_LT(worst, 100.0) << "of the squares: a factor of ten";
+}
+
+// Coefficients that no spectrum has: the search for a mu below it ends, nothing is known of the error, and
+// the next solve is judged by what was known before.
+TEST(EnergyBound, GivesUpWhereNoSpectrumFits) {
+  linear::EnergyBound bound, untouched;
+  for (linear::EnergyBound* one : {&bound, &untouched}) {
+    one->begin(0.0);
+    one->step(1.5, 1.0, 0.1);
+    one->end();
+    one->begin(0.0);
+  }
+  const std::vector<std::vector<double>> spoilt = {
+      {1.0, 1.0, 1e300, 1.0, 1e300, 1e-300, 1.0},  // alpha, rho, next; alpha, rho, next; ...
+      {HUGE_VAL, 1.0, 1.0},                        // a step of no length
+      {1.0, 1.0, std::nan(""), 1.0, 1.0, 1.0}};
+  for (const auto& numbers : spoilt) {
+    for (std::size_t k = 0; k + 2 < numbers.size(); k += 3)
+      bound.step(numbers[k], numbers[k + 1], numbers[k + 2]);
+    EXPECT_EQ(bound.error(1.0), HUGE_VAL);
+    bound.step(1.0, 1.0, 0.5);
+    EXPECT_EQ(bound.error(1.0), HUGE_VAL) << "until the next solve";
+    bound.begin(0.0);
+    untouched.begin(0.0);
+    EXPECT_EQ(bound.error(1.0), untouched.error(1.0));
+    EXPECT_LT(bound.error(1.0), HUGE_VAL);
+  }
 }
 
 }  // namespace

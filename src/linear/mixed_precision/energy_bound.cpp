@@ -5,11 +5,14 @@
 namespace palpate::linear {
 namespace {
 constexpr double kBelowRitz = 0.5, kRise = 1.1;
-}
+/// No eigenvalue that single precision tells from zero is so small.
+constexpr double kLeast = 1e-30;
+}  // namespace
 
 void EnergyBound::begin(double start) {
   start_ = start;
   gained_ = 0.0;
+  lost_ = false;
   alpha_.clear();
   ratio_.clear();
   if (!first_) mu_ = std::min(1.0, kRise * mu_);
@@ -31,15 +34,19 @@ bool EnergyBound::advance(double alpha, double ratio) {
 
 void EnergyBound::step(double alpha, double rho, double rho_next) {
   gained_ += alpha * rho;
+  if (lost_) return;
   alpha_.push_back(alpha);
   ratio_.push_back(rho_next / rho);
   if (advance(alpha, ratio_.back())) return;
-  for (bool held = false; !held;) {
-    mu_ *= 0.5;
+  const double known = mu_;
+  while ((mu_ *= 0.5) > kLeast) {
     restart();
-    held = true;
+    bool held = true;
     for (std::size_t k = 0; k < alpha_.size() && held; ++k) held = advance(alpha_[k], ratio_[k]);
+    if (held) return;
   }
+  mu_ = known;
+  lost_ = true;
 }
 
 }  // namespace palpate::linear

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <vector>
 
 namespace palpate::linear {
@@ -15,6 +16,8 @@ namespace palpate::linear {
 // mu: the rule itself tells when it lies above the smallest Ritz value (g_k <= alpha_k): mu is then halved
 // and the recurrence run again.  The bound is taken with half of that, as eigenvalues may lie below the Ritz
 // values; from one solve to the next mu is kept, and rises by a tenth, as matrices change slowly.
+// Coefficients of an iteration that rounding has spoilt (contact 1e9 times as stiff as a body) may fit no
+// spectrum at all: then nothing is known of the error until the next solve.
 
 /// Bounds the energy-norm error of one solve; mu outlives it.
 class EnergyBound {
@@ -25,7 +28,7 @@ class EnergyBound {
   /// After a step of length alpha from rho to rho_next.
   void step(double alpha, double rho, double rho_next);
   /// Upper bound of |x - x_k|_A^2 for this rho_k; rho may be measured anew.
-  double error(double rho) const { return bound_ * rho; }
+  double error(double rho) const { return lost_ ? HUGE_VAL : bound_ * rho; }
   /// Lower bound of |x|_A^2.
   double solution() const { return start_ + gained_; }
   bool first() const { return first_; }
@@ -35,6 +38,7 @@ class EnergyBound {
   void restart();
   bool advance(double alpha, double ratio);
 
+  bool lost_ = false;  ///< no mu fits this solve
   bool first_ = true;  ///< no solve has ended yet: mu is not known
   double mu_ = 1.0, test_ = 0.0, bound_ = 0.0, start_ = 0.0, gained_ = 0.0;
   std::vector<double> alpha_, ratio_;
