@@ -40,7 +40,7 @@ class PointOperator {
       visit(diagonal_[row].node, diagonal_[row].node, diagonal_[row].block);
       for (auto s = static_cast<std::size_t>(row_start_[row]);
            s < static_cast<std::size_t>(row_start_[row + 1]); ++s)
-        visit(diagonal_[row].node, column_[s], Eigen::Matrix3f(single_[s].leftCols<3>().topRows<3>()));
+        visit(diagonal_[row].node, column_[s], Eigen::Matrix3f(single_[s].topRows<3>()));
     }
   }
 
