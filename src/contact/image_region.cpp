@@ -36,7 +36,7 @@ AxisBox turned_away(const Patch& patch, double side, const AxisBox& within) {
     bounds.high = bounds.high.cwiseMax(box.high);
   };
   if (patch.away) {
-    for (Eigen::Index f = 0; f < patch.away->cols(); ++f) take(box_of(patch, *patch.away, f));
+    for (const int face : *patch.away) take(box_of(patch, face));
     return bounds;
   }
   for (std::size_t f = 0; f < patch.visible.size(); ++f) {
