@@ -232,10 +232,9 @@ void answer(std::span<ImageSource* const> sources, std::span<DepthRequest* const
 }  // namespace
 
 void answer_together(std::span<ImageSource* const> sources) {
-  if (sources.empty()) return;
-  auto& [requests, counts] = sources[0]->asked_together();
+  std::vector<DepthRequest*> requests;
   bool started = false;
-  counts.resize(sources.size());
+  std::vector<std::size_t> counts(sources.size());
   for (;;) {
     requests.clear();
     for (std::size_t i = 0; i < sources.size(); ++i) {
