@@ -43,8 +43,7 @@ class ImageSource : public SampleSource {
   DepthImage& image();                                       ///< made when it is first asked for
   bool may_fall_back() const { return context_.options.or_cpu; }
   void fall_back(const std::string& why);  ///< to the processor, for good
-  /// Its share of the image's last answer, which took so long [s].
-  void add_image_times(double seconds, const ImageTimes& times, double share);
+  void add_image_time(double seconds) { context_.stages.images_s += seconds; }
 
  protected:
   virtual std::size_t find_regions(const dynamics::StateView& state) = 0;  ///< how many there are now

@@ -172,7 +172,7 @@ class PrunedRegion final : public ImageRegion {
     first_ = true;
     weight_ = next_weight_ = 1.0;
     {
-      const ScopedTimer timer(context_.stages.positions_s);
+      const ScopedTimer timer(context_.stages.patches_s);
       piece_a_.take(*context_.a, faces_a_, pruned_.local_a, others_a_);
       piece_b_.take(*context_.b, faces_b_, pruned_.local_b);
     }
