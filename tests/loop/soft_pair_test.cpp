@@ -106,6 +106,115 @@ TEST(SoftPair, ContactJoinsTheFusedSteps) {
     }
 }
 
+/// Positions and lagged solves at the end of each period of a run.
+class Periods : public loop::Observer {
+ public:
+  struct One {
+    long lagged = 0;
+    bool touching = false;
+    VecX q;
+  };
+  void period(loop::World& world, double) override {
+    const long now = world.stepper->counters().solver.lagged;
+    all.push_back({now - lagged_, force_on_first(world).norm() > 0.0, world.state.q()});
+    lagged_ = now;
+  }
+  std::vector<One> all;  ///< the first is the start
+
+ private:
+  long lagged_ = 0;
+};
+
+constexpr double kStep = 0.005;
+constexpr int kStepsAPeriod = 4;
+std::vector<Periods::One> periods_of(scene::Description d, const std::string& solver, double rtol) {
+  d.integrator = {.name = "linearly-implicit-euler", .step_s = kStep};
+  d.integrator.linear_solver = solver;
+  if (solver != "cholmod") d.integrator.linear_rtol = rtol;
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = kStepsAPeriod * kStep;
+  const auto world = loop::assemble(d);
+  Periods periods;
+  loop::RunOptions options;
+  options.observers = {&periods};
+  EXPECT_TRUE(loop::run(*world, options).status.ok());
+  return periods.all;
+}
+
+double worst_difference(const std::vector<Periods::One>& a, const std::vector<Periods::One>& b) {
+  double worst = a.size() == b.size() ? 0.0 : HUGE_VAL;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    worst = std::max(worst, (a[i].q - b[i].q).norm());
+  return worst;
+}
+
+// Between two queries a matrix serves the steps after its own where contact is held, and the motion is a
+// direct solver's.  A query ends that: no matrix of before serves after it.
+TEST(SoftPair, HeldContactIsSolvedByLaggedMatrices) {
+  scene::Description d = two_blocks(-1e-3);
+  d.bodies[1].position_m.x() += 0.003;
+  d.duration_s = 0.5;
+  constexpr double kRtol = 1e-5;
+  const auto direct = periods_of(d, "cholmod", 0.0);
+  const double moved = (direct.back().q - direct.front().q).norm();
+  for (const char* solver : {"pcg-single", "pcg-two-level"}) {
+    const auto fused = periods_of(d, solver, kRtol);
+    long lagged = 0, touching = 0;
+    for (std::size_t i = 1; i < fused.size(); ++i) {
+      lagged += fused[i].lagged;
+      touching += fused[i].touching;
+    }
+    RecordProperty(std::string(solver) + ", lagged of 100 steps", static_cast<int>(lagged));
+    EXPECT_EQ(touching, 25) << solver;
+    EXPECT_GT(lagged, 50) << solver;
+    EXPECT_LT(worst_difference(fused, direct), 1e3 * kRtol * moved) << solver;
+  }
+}
+
+// A free block meets the other one between two queries, bounces and flies on: the motion is a direct solver's
+// through the blow, whichever matrix was at hand.
+TEST(SoftPair, ABlowIsNotSolvedByTheMatrixOfBefore) {
+  scene::Description d = two_blocks(6e-3);
+  for (auto& body : d.bodies) body.attachments.clear();
+  d.bodies[1].velocity_m_s = Vec3(0, 0, -0.3);
+  d.duration_s = 0.1;
+  constexpr double kRtol = 1e-5;
+  const auto direct = periods_of(d, "cholmod", 0.0);
+  const double moved = (direct.back().q - direct.front().q).norm();
+  EXPECT_FALSE(direct.front().touching);
+  EXPECT_TRUE(direct[1].touching) << "it met the other block within the first period";
+  for (const char* solver : {"pcg-single", "pcg-two-level"})
+    EXPECT_LT(worst_difference(periods_of(d, solver, kRtol), direct), 1e3 * kRtol * moved) << solver;
+}
+
+// A block slides on another one, pressed down by its weight.  What its nodes will meet waits in the pattern,
+// so that an analysis serves until it has slid by an element: not one at each query.
+TEST(SoftPair, ASlideNeedsAnAnalysisAnElementAtMost) {
+  constexpr double kElement = 0.01;
+  constexpr int kQueries = 60;
+  for (const auto& [solver, friction] : {std::pair("cholmod", 0.0), std::pair("gmres", 0.01)}) {
+    scene::Description d = two_blocks(0.0);
+    d.bodies[0].mesh.size_m = Vec3(0.08, 0.04, 0.02);
+    d.bodies[1].attachments.clear();
+    d.bodies[1].position_m.x() = -0.015;
+    d.bodies[1].velocity_m_s = Vec3(0.05, 0, 0);
+    d.gravity_m_s2 = Vec3(0, 0, -2.0);
+    d.contacts[0].friction = friction;
+    if (friction > 0.0) d.contacts[0].friction_tangent = "full";
+    d.integrator = {.name = "linearly-implicit-euler", .step_s = 0.005};
+    d.integrator.linear_solver = solver;
+    d.duration_s = kQueries * d.exchange.contact_refresh_s;
+    const auto world = loop::assemble(d);
+    const double from = world->positions(world->bodies[1]).row(0).mean();
+    const loop::RunResult result = loop::run(*world, {});
+    ASSERT_TRUE(result.status.ok()) << solver;
+    const double passed = (world->positions(world->bodies[1]).row(0).mean() - from) / kElement;
+    EXPECT_GE(result.contact_queries, kQueries) << solver;
+    EXPECT_LT(force_on_first(*world).z(), -0.05) << solver << ": it still lies on the other";
+    EXPECT_GT(passed, 2.0) << solver;
+    EXPECT_LE(static_cast<double>(result.counters.solver.symbolic), 1.0 + passed) << solver;
+  }
+}
+
 // With friction as well, for two steps: where friction sticks, more of them depend on the last digit of each,
 // whichever way it is solved.
 TEST(SoftPair, FrictionJoinsTheFusedSteps) {
