@@ -33,3 +33,27 @@ TEST_P(DeepPose, ADeepPoseKeepsItsNormal) {
     for (const auto& s : pair.query(*source, Vec3(0.01, 0.02, -0.053))) EXPECT_LT(s.normal.z(), -0.5);
   }
 }
+
+// Through proxies, as every scene of the paper: pushed back to where it came from as well, while the ball is
+// half through, and so many queries are counted.  Deeper, its skin at the slab faces up, as if it came from
+// below.
+TEST_P(DeepPose, ThroughProxiesItsNormalIsKeptAndCounted) {
+  for (const bool soft : {false, true}) {
+    SCOPED_TRACE(soft ? "soft" : "rigid");
+    Pair pair;
+    const auto source = pair.source(soft, true, 0.0);
+    long kept = 0;
+    for (double z = 0.056; z > -0.029; z -= 0.004) {
+      const auto samples = pair.query(*source, Vec3(0.01, 0.02, z));
+      const Total force = total(samples, pair.state.view());
+      if (z > 0.054) continue;
+      EXPECT_GT(force.pressed, 500) << z;
+      EXPECT_GT(force.force.z(), 1e-6) << z;
+      EXPECT_LT(force.force.head<2>().norm(), 0.3 * force.force.z()) << z;
+      for (const auto& s : samples) ASSERT_GT(s.normal.z(), 0.5) << z;
+      if (z > 0.045) { EXPECT_EQ(source->normals_kept(), 0) << z << ": its skin says which way is out"; }
+      if (z < 0.01) { EXPECT_GT(source->normals_kept(), kept) << z; }
+      kept = source->normals_kept();
+    }
+  }
+}
