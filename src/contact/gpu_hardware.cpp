@@ -1,5 +1,3 @@
-#include "contact/gpu_hardware.h"
-
 #include <filesystem>
 
 #include "palpate/contact/gpu_available.h"
@@ -18,7 +16,9 @@ bool shows_a_device() {
   return false;
 }
 
-bool finds_gpu_hardware() {
+}  // namespace
+
+bool has_gpu_hardware() {
   static const bool found = [] {
     if (!shows_a_device()) return false;
     try {
@@ -27,15 +27,6 @@ bool finds_gpu_hardware() {
   }();
   return found;
 }
-
-}  // namespace
-
-GpuProbe& gpu_probe() {
-  static GpuProbe probe = finds_gpu_hardware;
-  return probe;
-}
-
-bool has_gpu_hardware() { return gpu_probe()(); }
 
 GpuDevice gpu_device() {
   if (!gl::Context::opened()) return {};

@@ -94,7 +94,7 @@ void add_jumps(store::Summary& summary, const World& world) {
   for (std::size_t i = 0; i < fast.size(); ++i) {
     const std::string pair = d[i].first + " - " + d[i].second;
     s.values.emplace_back(pair + ": regions fast enough to go through", static_cast<long long>(fast[i]));
-    s.values.emplace_back(pair + ": regions that kept the last normal", static_cast<long long>(kept[i]));
+    s.values.emplace_back(pair + ": deep poses that kept the last normal", static_cast<long long>(kept[i]));
   }
   double quadrature_error = 0.0;
   long lines = 0, pairs = 0, unaligned = 0;

@@ -148,7 +148,6 @@ struct Pruner::Impl {
                 Eigen::Index& count) const;
   void turn_to(Region& region, const Vec3& n, RegionMethod method) const;
   void measure_approach(ContactRegion& region, double inexact) const;
-  Vec3 last_normal_of_region() const;
   bool find_plane(int number, ContactRegion& region);
   template <class Take>
   void add_facing_patches(Side& from, const std::vector<int>& from_patches, Side& to,

@@ -85,14 +85,6 @@ void Pruner::Impl::measure_approach(ContactRegion& region, double inexact) const
   for (const int q : proxies_b) region.thickness = std::min(region.thickness, b.set.rest_thickness(q));
 }
 
-/// The mean of what its proxies of a had at their last query: one of them may have been at the region's rim,
-/// with a normal of its own.  Zero where there was none.
-Vec3 Pruner::Impl::last_normal_of_region() const {
-  Vec3 sum = Vec3::Zero();
-  for (const int p : proxies_a) sum += last_normal[static_cast<std::size_t>(p)];
-  return sum.normalized();
-}
-
 /// Pairs and plane of a region; false when the hulls of all its proxies together are proven apart.
 bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
   constexpr double kSameSide = 0.5;
@@ -106,6 +98,9 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
     proxies_a.push_back(one.proxy);
     facing_a.add(one.a);
     facing_b.add(one.b);
+    if (const Vec3& last = last_normal[static_cast<std::size_t>(one.proxy)];
+        proxies_a.size() == 1 && !last.isZero())
+      finder.remember(last);
     for (const Pair& pair : pairs)
       if (pair.a == one.proxy) {
         region.pairs.emplace_back(pair.a, pair.b);
@@ -118,8 +113,8 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
                inflation_b = gather(b, proxies_b, corners_b, count_b);
   const double inexact = inflation_a + inflation_b;
   region.facing = facing(facing_a, facing_b);
-  const Vec3 last = last_normal_of_region();
-  if (!last.isZero()) finder.remember(last);
+  faces_a = facing_a.directed();
+  faces_b = facing_b.directed();
   const bool is_clear = region.facing.norm() >= clear();
   if (is_clear) turn_to(region.region, region.facing.normalized(), RegionMethod::kAreas);
   // else the hulls know nothing that is sharper
@@ -129,6 +124,7 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
     const Region by_hulls =
         finder.find(corners_a.leftCols(count_a), corners_b.leftCols(count_b), inexact + margin);
     if (!by_hulls.found) return false;
+    const Vec3& last = last_normal[static_cast<std::size_t>(proxies_a.front())];
     if (is_clear ? by_hulls.depth < region.region.depth - inexact &&
                        by_hulls.normal.dot(region.region.normal) > kSameSide
                  : last.isZero())
@@ -136,9 +132,6 @@ bool Pruner::Impl::find_plane(int number, ContactRegion& region) {
     else if (!is_clear)
       turn_to(region.region, last, RegionMethod::kLastNormal);
   }
-  // skin that leads away from the other body along a kept normal is not what the normal's lines enter through
-  faces_a = facing_a.directed() && facing_a.area.dot(region.region.normal) < 0.0;
-  faces_b = facing_b.directed() && facing_b.area.dot(region.region.normal) > 0.0;
   measure_approach(region, inexact);
   if (region.region.depth < -inexact - region.gap) return false;
   region.region.found = true;
