@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,8 +12,7 @@ namespace palpate::fem {
 /// stores are then on their way while there is arithmetic to do.
 class DeferredScatter {
  public:
-  /// Makes the map into A's slots, unless it is at hand: those of three matrices are, for a body may be in
-  /// that of a step and in two of an exchange (loop/condenser.h), in turn.
+  /// Makes the map into A's slots, unless it is the one at hand.
   void prepare(const ElementChunks& chunks, int first_node, const dynamics::ZeroRowSumMatrix& A);
   void fit(const ElementChunks& chunks, int threads);
   /// Where a thread sums the blocks of its next chunk, and those of its last one, of which the kernel
@@ -49,18 +47,13 @@ class DeferredScatter {
 
   std::vector<Buffers> buffers_;  ///< one a thread
   std::vector<float> shared_;     ///< nine a contribution; the matrix is no finer itself
-  struct Map {
-    /// of each chunk's owned edges, ascending, then of its shared ones
-    std::vector<std::int32_t> slots;
-    std::vector<std::uint16_t> edges;      ///< the edge of each of `slots`
-    std::vector<SharedSlot> shared_slots;  ///< ascending
-    std::uint64_t version = 0;
-    int first_node = -1;
-  };
-  Map& map() { return maps_[current_]; }
-
-  std::array<Map, 3> maps_;
-  std::size_t current_ = 0;
+  // the map
+  /// of each chunk's owned edges, ascending, then of its shared ones
+  std::vector<std::int32_t> slots_;
+  std::vector<std::uint16_t> edges_;      ///< the edge of each of slots_
+  std::vector<SharedSlot> shared_slots_;  ///< ascending
+  std::uint64_t version_ = 0;
+  int first_node_ = -1;
 };
 
 }  // namespace palpate::fem
