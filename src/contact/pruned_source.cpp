@@ -6,7 +6,6 @@
 
 #include "contact/image_source.h"
 #include "contact/overlap_push.h"
-#include "contact/pair_share.h"
 #include "contact/region_parts.h"
 #include "contact/region_piece.h"
 #include "contact/self_contact_filter.h"
@@ -31,7 +30,6 @@ struct PrunedContext {
   std::optional<SelfContactFilter> self_contact = {};  ///< of a body with itself, else empty
   std::vector<int> local_a = {}, local_b = {};         ///< scratch of pieces
   std::set<int> kept_a = {}, kept_b = {};              ///< proxies in the view of the query under way
-  std::vector<int> faces = {};                          ///< scratch of regions
   OverlapPush push = {};
 
   int of_a(int face) const { return proxy_of_a[static_cast<std::size_t>(face)]; }
@@ -81,37 +79,29 @@ class PrunedRegion final : public ImageRegion {
     faces_a_ = region.faces_a;
     faces_b_ = region.faces_b;
     others_a_.clear();
-    pairs_.take_all();
     looks_ = 0;
     share_ = 1.0;
     start(region.region.origin, region.region.normal);
   }
-  /// What pushes along a normal of its own, of a region; `whole` may be this one.
+  /// Some faces of a of a region, along a normal of their own; `whole` may be this one.
   /// @param share  of the volume of the whole
-  void start_part(const PrunedRegion& whole, std::span<const RegionPart> parts, std::size_t part,
-                  double share) {
+  void start_part(const PrunedRegion& whole, std::span<const std::vector<int>> faces_of_parts,
+                  std::size_t part, double share, const Vec3& normal) {
     share_ = whole.share_ * share;
     proxies_ = whole.proxies_;
     candidate_gap_ = whole.candidate_gap_;
-    pairs_.take_part(whole.pairs_, parts, part);
-    pruned_.faces = whole.faces_a_;
     others_a_ = whole.others_a_;
-    faces_a_.clear();
-    int proxy = -1;  // faces come patch by patch
-    bool own = false;
-    for (const int face : pruned_.faces) {
-      if (std::exchange(proxy, pruned_.of_a(face)) != pruned_.of_a(face))
-        own = PairShare::has_proxy(parts, part, proxy);
-      (own ? faces_a_ : others_a_).push_back(face);
-    }
+    for (std::size_t i = 0; i < faces_of_parts.size(); ++i)
+      if (i != part) others_a_.insert(others_a_.end(), faces_of_parts[i].begin(), faces_of_parts[i].end());
+    faces_a_ = faces_of_parts[part];
     faces_b_ = whole.faces_b_;
     looks_ = whole.looks_;
-    start(whole.axes_.origin, parts[part].normal());
+    start(whole.axes_.origin, normal);
   }
 
   void take() override {
     see();
-    leave_others();
+    leave_own_tissue();
     if (looking_for_ == Image::kAxes) return measure();
     if (looking_for_ == Image::kFirst) return refine();
   }
@@ -120,6 +110,7 @@ class PrunedRegion final : public ImageRegion {
   bool waits() const { return waits_; }
   std::span<const PairOverlap> overlaps() const { return overlaps_; }
   Vec3 normal() const { return axes_.normal(); }
+  const std::vector<int>& faces_a() const { return faces_a_; }
   bool may_look_again() const { return looks_ < kLooks; }
   /// The last look was too far from the normal that it found.
   bool wants_another() const { return next_weight_ > 0.0; }
@@ -165,7 +156,7 @@ class PrunedRegion final : public ImageRegion {
   void append_samples(SampleCells& samples) override {
     if (!seen_) return;
     finish();
-    leave_others();  // of what finish() has found besides
+    leave_own_tissue();  // what finish() has found besides
     keep_view();
     keep_proxies();
     const ScopedTimer timer(context_.stages.gaps_s);
@@ -247,12 +238,7 @@ class PrunedRegion final : public ImageRegion {
                                                                  : fit_window(a_, b_, candidate_gap_);
   }
 
-  /// What belongs to other parts, and the body's own tissue.
-  void leave_others() {
-    if (!pairs_.all())
-      std::erase_if(hits_, [&](const Hit& h) {
-        return !pairs_.has(pruned_.of_a(piece_a_.face_of(h.face_a)), pruned_.of_b(piece_b_.face_of(h.face_b)));
-      });
+  void leave_own_tissue() {
     if (pruned_.self_contact)
       std::erase_if(hits_, [&](const Hit& h) {
         return !pruned_.may_touch(h.at, piece_a_.face_of(h.face_a), piece_b_.face_of(h.face_b), axes_);
@@ -278,8 +264,7 @@ class PrunedRegion final : public ImageRegion {
   RegionPiece piece_a_, piece_b_;
   ContactWindow window_;
   std::vector<int> faces_a_, faces_b_;
-  std::vector<int> others_a_;  ///< of the pruner's region, in its other parts alone
-  PairShare pairs_;            ///< of its proxies
+  std::vector<int> others_a_;  ///< of the pruner's region, in its other parts
   enum class Image { kAxes, kFirst, kFiner } looking_for_ = Image::kAxes;
   std::vector<PairOverlap> overlaps_;  ///< of the last look along the axes
   std::vector<PixelPush> pushes_;      ///< theirs
@@ -381,6 +366,7 @@ class PrunedSource final : public ImageSource {
     bool one_plane;
   };
   std::vector<Plan> plans_;
+  std::vector<std::vector<int>> faces_of_parts_;
 };
 
 /// After a round in which regions were looked at along their axes: their planes.  All wait for all: a normal
@@ -429,11 +415,23 @@ bool PrunedSource::plan(std::size_t count) {
 
 /// Each part in a region of its own; what presses nowhere stays with the largest.
 void PrunedSource::split(PrunedRegion& whole, std::span<const RegionPart> parts) {
+  faces_of_parts_.resize(std::max(faces_of_parts_.size(), parts.size()));
+  for (std::size_t i = 0; i < parts.size(); ++i) faces_of_parts_[i].clear();
+  for (const int face : whole.faces_a()) {
+    const int proxy = pruned_.of_a(face);
+    std::size_t i = parts.size();
+    while (--i > 0)
+      if (std::find(parts[i].proxies.begin(), parts[i].proxies.end(), proxy) != parts[i].proxies.end()) break;
+    faces_of_parts_[i].push_back(face);
+  }
+  const std::span<const std::vector<int>> faces(faces_of_parts_.data(), parts.size());
   double volume = 0.0;
   for (const RegionPart& part : parts) volume += part.volume;
-  for (std::size_t i = 1; i < parts.size(); ++i)
-    static_cast<PrunedRegion&>(add_region()).start_part(whole, parts, i, parts[i].volume / volume);
-  whole.start_part(whole, parts, 0, parts[0].volume / volume);  // last: the others are parts of it as it was
+  const auto start = [&](PrunedRegion& region, std::size_t i) {
+    region.start_part(whole, faces, i, parts[i].volume / volume, parts[i].normal());
+  };
+  for (std::size_t i = 1; i < parts.size(); ++i) start(static_cast<PrunedRegion&>(add_region()), i);
+  start(whole, 0);  // last: the others are parts of it as it was
 }
 
 }  // namespace

@@ -5,13 +5,8 @@
 
 namespace palpate::contact {
 
-namespace {
-
-std::pair<int, int> key(const PairOverlap& overlap) { return {overlap.a, overlap.b}; }
-
-}  // namespace
-
 void RegionParts::find_planes() {
+  const auto key = [](const PairOverlap& overlap) { return std::pair(overlap.a, overlap.b); };
   std::sort(overlaps_.begin(), overlaps_.end(),
             [&](const PairOverlap& x, const PairOverlap& y) { return key(x) < key(y); });
   std::size_t kept = 0;
@@ -24,7 +19,7 @@ void RegionParts::find_planes() {
     }
   }
   overlaps_.resize(kept);
-  normals_ = planes_.find(
+  units_ = planes_.find(
       overlaps_, [&](int p, int q) { return a_.neighbours(p, q); },
       [&](int p, int q) { return b_.neighbours(p, q); });
 }
@@ -37,21 +32,19 @@ RegionPart& RegionParts::part_along(const Vec3& normal) {
   part.first = normal;
   part.force.setZero();
   part.volume = 0.0;
-  part.pairs.clear();
+  part.proxies.clear();
   return part;
 }
 
 std::span<const RegionPart> RegionParts::of(std::span<const PairOverlap> overlaps) {
   count_ = 0;
   for (const PairOverlap& overlap : overlaps) {
-    const auto at =
-        std::lower_bound(overlaps_.begin(), overlaps_.end(), overlap,
-                         [](const PairOverlap& x, const PairOverlap& y) { return key(x) < key(y); });
-    const Vec3& normal = normals_[static_cast<std::size_t>(at - overlaps_.begin())];
-    RegionPart& part = part_along(normal);
-    part.force += overlap.volume * normal;
+    const auto unit = std::lower_bound(units_.begin(), units_.end(), overlap.a,
+                                       [](const PlaneUnit& u, int proxy) { return u.proxy < proxy; });
+    RegionPart& part = part_along(unit->normal);
+    part.force += overlap.volume * unit->normal;
     part.volume += overlap.volume;
-    part.pairs.push_back(key(overlap));
+    part.proxies.push_back(overlap.a);
   }
   std::sort(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(count_),
             [](const RegionPart& x, const RegionPart& y) { return x.volume > y.volume; });

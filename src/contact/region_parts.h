@@ -1,6 +1,5 @@
 #pragma once
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "contact/region_planes.h"
@@ -8,11 +7,11 @@
 
 namespace palpate::contact {
 
-/// The pairs of a region's proxies that push along one normal.
+/// The proxies of a region that push along one normal.
 struct RegionPart {
-  Vec3 force = Vec3::Zero();               ///< over the stiffness [m^3]
-  double volume = 0.0;                     ///< of the overlap [m^3]
-  std::vector<std::pair<int, int>> pairs;  ///< proxies of a and b
+  Vec3 force = Vec3::Zero();  ///< over the stiffness [m^3]
+  double volume = 0.0;        ///< of the overlap [m^3]
+  std::vector<int> proxies;   ///< of a
   Vec3 normal() const { return force.normalized(); }
 
   Vec3 first = Vec3::Zero();  ///< normal of the first of them
@@ -41,7 +40,7 @@ class RegionParts {
   const proxy::ProxySet &a_, &b_;
   std::vector<PairOverlap> overlaps_;  // by pair, once planes are found
   RegionPlanes planes_;
-  std::span<const Vec3> normals_;  // theirs
+  std::span<const PlaneUnit> units_;
   std::vector<RegionPart> parts_;  // the first `count_` are in use
   std::size_t count_ = 0;
 };

@@ -9,28 +9,29 @@
 // the resultant of a pressure d normal to the skin.  So n = P / |P|: depth counts, as in the force.  A skin
 // that only just begins to touch turns no normal, were it ever so large.
 //
-// Several.  The overlap of a's proxy with one of b's, the pair i, has P_i and V_i of its own.  All along one
-// normal give the volume of the overlap exactly (a height field), each along its own the forces of surfaces
-// that push different ways (two walls of a corner, both flanks of a tooth).  Either is right where the other
-// is wrong, and a force that changes from one to the other at some angle jumps: two equal parts at an angle
-// alpha push with 2 k V along one normal, with 2 k V cos(alpha/2) along two.  Here the normal of a pair is
-// that of all that pushes about as it does,
+// Several.  A part of a's skin, its proxy i, has P_i and V_i of its own.  All parts along one normal give the
+// volume of the overlap exactly (a height field), each along its own the forces of surfaces that push
+// different ways (two walls of a corner).  Either is right where the other is wrong, and a force that changes
+// from one to the other at some angle jumps: two equal parts at an angle alpha push with 2 k V along one
+// normal, with 2 k V cos(alpha/2) along two.  Here the normal of a part is that of all that pushes about as
+// it does,
 //     n_i = P'_i / |P'_i|,    P'_i = sum_j l_ij w(cos a_ij) P_j,    a_ij the angle between P_i and P_j,
-// w = 1 up to 60 degrees, 0 beyond 90, and C1 between.  Pairs within 60 degrees of each other are one plane,
+// w = 1 up to 60 degrees, 0 beyond 90, and C1 between.  Parts within 60 degrees of each other are one plane,
 // the walls of a right corner are strangers.
 //
-// What is linked.  Two contacts in different places share no normal.  Pairs touch where the skins of their
-// proxies do, on both bodies.  A touch is as strong as the smaller overlap, and a link as the weakest touch
-// of its strongest path, S_ij, a max-min over paths (Kruskal's forest, the strongest first).  l_ij rises
-// smoothly from 0 to 1 as S_ij goes to a quarter of min(V_i, V_j): pairs that touch are linked, and one that
-// comes between two others joins them no faster than it grows.
+// What is linked.  Two contacts in different places share no normal.  Parts touch where their skin does on
+// both bodies: c_ij = sum V_ip V_jq / (V_i V_j) over the proxies p, q of b that i and j overlap and that
+// touch, if i and j do, is between 0 and 1.  A touch is as strong as s_ij = c_ij min(V_i, V_j), and a link as
+// the weakest touch of its strongest path, S_ij, a max-min over paths (Kruskal's forest, the strongest
+// first). l_ij rises smoothly from 0 to 1 as S_ij goes to a quarter of min(V_i, V_j).  A part that comes
+// between two others joins them no faster than it grows.
 //
 // The bound.  The force is k sum V_i n_i.  V_i and P_i are continuous in the pose, and so are products, max
 // and min, l and w, and with them n_i wherever V_i > 0: P'_i . P_i >= |P_i|^2, for no term of the sum is more
 // than 90 degrees from P_i.  Hence V_i |dn_i| <= V_i |dP'_i| / |P'_i|, with |P'_i| >= |P_i| >= V_i, so
 //     |dF| <= k sum_i |dV_i| + k sum_ij (l w |dP_j| + r_ij |P_j| |d(l w)|),    r_ij = V_i / |P'_i| <= 1:
-// no jump.  Appearing, a pair has V_i = 0, and P_i = 0 in the sums of the others.  Merging and splitting are
-// changes of l w.  A small pair i beside a large one j turns fast, but with small force: near its onset
+// no jump.  Appearing, a part has V_i = 0, and P_i = 0 in the sums of the others.  Merging and splitting are
+// changes of l w.  A small part i beside a large one j turns fast, but with small force: near its onset
 // |dw| <= c sqrt(w) da, so r_ij |P_j| |dw| <= c/2 sqrt(|P_i| |P_j|) da.  A second step of the same mean, from
 // n_i (mean shift), would multiply |P_j| / |P_i| once more, and is not taken.  What remains is the width
 // phi within which normals count as one (RegionParts::kOnePlane: the forces' sum keeps its direction and
@@ -40,7 +41,6 @@
 
 #include <algorithm>
 #include <tuple>
-#include <utility>
 
 namespace palpate::contact {
 namespace {
@@ -50,53 +50,60 @@ constexpr double kStrong = 0.25;  // strength of a whole link, over the smaller 
 
 }  // namespace
 
+void RegionPlanes::begin(std::span<const PairOverlap> overlaps) {
+  units_.clear();
+  unit_.clear();
+  for (const PairOverlap& pair : overlaps) {
+    if (units_.empty() || units_.back().proxy != pair.a) units_.push_back({.proxy = pair.a});
+    unit_.push_back(units_.size() - 1);
+    units_.back().push += pair.push;
+    units_.back().volume += pair.volume;
+  }
+  touch_.assign(units_.size() * units_.size(), 0.0);
+}
+
+std::size_t RegionPlanes::root(std::size_t i) {
+  while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+  return i;
+}
+
 void RegionPlanes::find_links() {
-  const std::size_t n = overlaps_.size();
+  const std::size_t n = units_.size();
+  edges_.clear();
   links_.assign(n * n, 0.0);
-  tree_.resize(n);
-  next_.resize(n);
+  parent_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
+    parent_[i] = i;
     links_[i * n + i] = 1.0;
-    tree_[i] = next_[i] = i;
+    for (std::size_t j = 0; j < i; ++j)
+      if (const double touch = touch_[i * n + j]; touch > 0.0)
+        edges_.push_back({touch / std::max(units_[i].volume, units_[j].volume), i, j});
   }
   std::sort(edges_.begin(), edges_.end(), [](const Edge& x, const Edge& y) {
     return std::tuple(-x.strength, x.i, x.j) < std::tuple(-y.strength, y.i, y.j);
   });
-  for (const Edge& edge : edges_)
-    if (tree_[edge.i] != tree_[edge.j]) join(edge.i, edge.j, edge.strength);
-}
-
-/// Links all of one's tree with all of the other's, and makes one tree of both.
-void RegionPlanes::join(std::size_t one, std::size_t other, double strength) {
-  const std::size_t n = overlaps_.size();
-  std::size_t x = one;
-  do {
-    std::size_t y = other;
-    do {
-      links_[x * n + y] = links_[y * n + x] =
-          smooth_step(strength / (kStrong * std::min(overlaps_[x].volume, overlaps_[y].volume)));
-      y = next_[y];
-    } while (y != other);
-    x = next_[x];
-  } while (x != one);
-  do {
-    tree_[x] = tree_[other];
-    x = next_[x];
-  } while (x != one);
-  std::swap(next_[one], next_[other]);
+  for (const Edge& edge : edges_) {
+    const std::size_t from = root(edge.i), to = root(edge.j);
+    if (from == to) continue;
+    for (std::size_t x = 0; x < n; ++x)
+      for (std::size_t y = 0; y < n; ++y)
+        if (root(x) == from && root(y) == to)
+          links_[x * n + y] = links_[y * n + x] =
+              smooth_step(edge.strength / (kStrong * std::min(units_[x].volume, units_[y].volume)));
+    parent_[from] = to;
+  }
 }
 
 void RegionPlanes::blend() {
-  const std::size_t n = overlaps_.size();
-  normals_.resize(n);
+  const std::size_t n = units_.size();
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 own = overlaps_[i].push.normalized();
+    const Vec3 own = units_[i].push.normalized();
     Vec3 sum = Vec3::Zero();
     for (std::size_t j = 0; j < n; ++j)
       if (const double link = links_[i * n + j]; link > 0.0)
-        sum += link * smooth_step(own.dot(overlaps_[j].push) / (kWhole * overlaps_[j].push.norm())) *
-               overlaps_[j].push;
-    normals_[i] = sum.normalized();
+        sum +=
+            link * smooth_step(own.dot(units_[j].push) / (kWhole * units_[j].push.norm())) * units_[j].push;
+    units_[i].normal = sum.normalized();
   }
 }
 

@@ -10,6 +10,7 @@
 
 using namespace palpate;
 using contact::PairOverlap;
+using contact::PlaneUnit;
 using contact::RegionPlanes;
 
 namespace {
@@ -24,7 +25,7 @@ PairOverlap overlap(int a, int b, double volume, const Vec3& direction) {
 /// Proxies are in a row, on either side.
 bool in_a_row(int p, int q) { return std::abs(p - q) <= 1; }
 
-std::vector<Vec3> planes(const std::vector<PairOverlap>& overlaps) {
+std::vector<PlaneUnit> planes(const std::vector<PairOverlap>& overlaps) {
   RegionPlanes planes;
   const auto found = planes.find(overlaps, in_a_row, in_a_row);
   return {found.begin(), found.end()};
@@ -32,8 +33,7 @@ std::vector<Vec3> planes(const std::vector<PairOverlap>& overlaps) {
 
 Vec3 force(const std::vector<PairOverlap>& overlaps) {
   Vec3 sum = Vec3::Zero();
-  const std::vector<Vec3> normals = planes(overlaps);
-  for (std::size_t i = 0; i < overlaps.size(); ++i) sum += overlaps[i].volume * normals[i];
+  for (const PlaneUnit& unit : planes(overlaps)) sum += unit.volume * unit.normal;
   return sum;
 }
 
@@ -59,30 +59,29 @@ TEST(RegionPlanes, PartsThatPushAboutTheSameWayShareTheirMean) {
   const auto found = planes(parts);
   ASSERT_EQ(found.size(), 2u);
   const Vec3 mean = (parts[0].push + parts[1].push).normalized();
-  for (const Vec3& normal : found) EXPECT_NEAR((normal - mean).norm(), 0.0, 1e-15);
-}
-
-void expect_own(const std::vector<PairOverlap>& overlaps) {
-  const std::vector<Vec3> normals = planes(overlaps);
-  ASSERT_EQ(normals.size(), overlaps.size());
-  for (std::size_t i = 0; i < overlaps.size(); ++i)
-    EXPECT_NEAR((normals[i] - overlaps[i].push.normalized()).norm(), 0.0, 1e-15);
+  for (const PlaneUnit& unit : found) EXPECT_NEAR((unit.normal - mean).norm(), 0.0, 1e-15);
 }
 
 TEST(RegionPlanes, WallsAtARightAngleKeepTheirOwn) {
-  expect_own({overlap(0, 0, 3.0, tilted(0)), overlap(1, 1, 2.0, tilted(90 * kDegree))});
+  for (const auto& unit : planes({overlap(0, 0, 3.0, tilted(0)), overlap(1, 1, 2.0, tilted(90 * kDegree))}))
+    EXPECT_NEAR((unit.normal - tilted(unit.proxy * 90 * kDegree)).norm(), 0.0, 1e-15);
 }
 
-// one proxy, a tooth, between two of the other body
-TEST(RegionPlanes, BothFlanksOfAToothKeepTheirOwn) {
-  expect_own({overlap(4, 0, 3.0, tilted(0)), overlap(4, 1, 2.9, tilted(165 * kDegree))});
+TEST(RegionPlanes, AProxyIsOnePartWhateverItMeets) {
+  const auto found = planes({overlap(4, 0, 3.0, tilted(0)), overlap(4, 1, 1.0, tilted(60 * kDegree))});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].proxy, 4);
+  EXPECT_EQ(found[0].volume, 4.0);
+  EXPECT_NEAR((found[0].normal - (3.0 * tilted(0) + tilted(60 * kDegree)).normalized()).norm(), 0.0, 1e-15);
 }
 
 TEST(RegionPlanes, ContactsInDifferentPlacesShareNoNormal) {
   for (const int b : {0, 7})  // apart on a alone; on both
-    expect_own({overlap(0, 0, 1.0, tilted(0)), overlap(3, b, 1.0, tilted(0.3))});
+    for (const auto& unit : planes({overlap(0, 0, 1.0, tilted(0)), overlap(3, b, 1.0, tilted(0.3))}))
+      EXPECT_NEAR((unit.normal - tilted(0.1 * unit.proxy)).norm(), 0.0, 1e-15);
   // neighbours on a, but they meet different parts of b
-  expect_own({overlap(0, 0, 1.0, tilted(0)), overlap(1, 5, 1.0, tilted(0.3))});
+  for (const auto& unit : planes({overlap(0, 0, 1.0, tilted(0)), overlap(1, 5, 1.0, tilted(0.3))}))
+    EXPECT_NEAR((unit.normal - tilted(0.3 * unit.proxy)).norm(), 0.0, 1e-15);
 }
 
 TEST(RegionPlanes, ABridgeJoinsAsItGrows) {
@@ -90,7 +89,7 @@ TEST(RegionPlanes, ABridgeJoinsAsItGrows) {
     return std::vector<PairOverlap>{overlap(0, 0, 1.0, tilted(0)), overlap(1, 1, volume, tilted(0.3)),
                                     overlap(2, 2, 1.0, tilted(0.6))};
   };
-  const Vec3 apart = planes(bridged(1e-9)).front(), joined = planes(bridged(0.3)).front();
+  const Vec3 apart = planes(bridged(1e-9)).front().normal, joined = planes(bridged(0.3)).front().normal;
   EXPECT_NEAR((apart - tilted(0)).norm(), 0.0, 1e-6);
   EXPECT_NEAR((joined - tilted(0.3)).norm(), 0.0, 1e-12);
   const auto growing = [&](double s) { return bridged(0.3 * s + 1e-12); };
@@ -139,20 +138,15 @@ TEST(RegionPlanes, RandomPathsDoNotJump) {
   EXPECT_GT(worst, 0.0);
 }
 
-TEST(RegionPlanes, TheyTurnWithTheBodiesAndKnowNoOrder) {
+TEST(RegionPlanes, TheyTurnWithTheBodiesAndKnowNoOrderOfB) {
   std::vector<PairOverlap> parts{overlap(0, 0, 1.0, tilted(0)), overlap(1, 0, 0.4, tilted(1.2)),
                                  overlap(1, 1, 0.3, tilted(0.9)), overlap(2, 1, 0.01, tilted(-0.7))};
   const auto found = planes(parts);
   const Quat turn = quaternion_of(Vec3(0.4, -1.1, 0.8));
   std::swap(parts[1], parts[2]);
-  for (PairOverlap& part : parts) {
-    part.push = turn * part.push;
-    std::swap(part.a, part.b);
-  }
+  for (PairOverlap& part : parts) part.push = turn * part.push;
   const auto turned = planes(parts);
   ASSERT_EQ(turned.size(), found.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const std::size_t k = i == 1 ? 2 : i == 2 ? 1 : i;
-    EXPECT_NEAR((turned[k] - turn * found[i]).norm(), 0.0, 1e-14);
-  }
+  for (std::size_t i = 0; i < found.size(); ++i)
+    EXPECT_NEAR((turned[i].normal - turn * found[i].normal).norm(), 0.0, 1e-14);
 }

@@ -36,8 +36,7 @@ struct ContactSpec {
   double friction = 0.0;                      ///< mu, regularised Coulomb
   double friction_regularisation_m_s = 1e-3;  ///< v_r
   /// "full", or "symmetric": without the change of friction by pressure, which makes the step matrix
-  /// unsymmetric; "secant": symmetric, and friction opposes the velocity that a step ends with; "auto": secant
-  /// where a step is one linear solve
+  /// unsymmetric; "auto": symmetric where a step is one linear solve
   std::string friction_tangent = "auto";
   /// between two queries: "linear" in the positions, or "exact" at every evaluation (analytic alone)
   std::string gaps = "linear";
