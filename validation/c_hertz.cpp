@@ -33,18 +33,9 @@ BlockMesh block(int per_doubling, int doublings) {
   return {20.0 * kContact / std::sinh(kMiddle * std::log(2.0)), per_doubling, doublings};
 }
 
-/// How contact is seen.
-struct Way {
-  const contact::DepthBackend* backend = nullptr;  ///< null: exact gaps at the vertices
-  contact::SampleRule samples = contact::SampleRule::kPixel;
-  std::string name() const {
-    if (!backend) return "analytic";
-    return std::string(contact::backend_name(*backend)) +
-           (samples == contact::SampleRule::kPixel ? ", pixel" : ", vertex");
-  }
-};
-
-double force(const Way& way, const BlockMesh& mesh, double depth, const std::string& fault) {
+/// @param backend  null: exact gaps at the vertices
+double force(const contact::DepthBackend* backend, const BlockMesh& mesh, double depth,
+             const std::string& fault) {
   fem::Material material;
   material.youngs_modulus = kYoung;
   material.poissons_ratio = kPoisson;
@@ -52,12 +43,11 @@ double force(const Way& way, const BlockMesh& mesh, double depth, const std::str
                             std::shared_ptr<contact::MovingFrame> motion) {
     constexpr double kCandidates = 0.01 * kContact;
     std::unique_ptr<contact::SampleSource> source;
-    if (way.backend) {
+    if (backend) {
       TriMesh ball = mesh::sphere(kRadius, 200);
       ball.vertices.row(2).array() += kRadius - depth;
       contact::ImageOptions options;
-      options.backend = *way.backend;
-      options.samples = way.samples;
+      options.backend = *backend;
       options.candidate_gap = kCandidates;
       source =
           contact::make_image_source(std::move(soft), std::move(ball), frame, std::move(motion), options);
@@ -82,17 +72,21 @@ double force(const Way& way, const BlockMesh& mesh, double depth, const std::str
 
 double theory(double depth) { return 4.0 / 3.0 * kReduced * std::sqrt(kRadius) * std::pow(depth, 1.5); }
 
+std::string way_of(const contact::DepthBackend* backend) {
+  return backend ? std::string(contact::backend_name(*backend)) : "analytic";
+}
+
 /// Force of the half-space, from a family of blocks.
-Measurement measure(const Way& way, double depth, const std::string& fault) {
+Measurement measure(const contact::DepthBackend* backend, double depth, const std::string& fault) {
   std::vector<double> h, by_size, far, by_block;
   for (const int m : {2, 3, 4}) {
     h.push_back(block(m, kMiddle).smallest_cell() / kContact);
-    by_size.push_back(force(way, block(m, kMiddle), depth, fault));
+    by_size.push_back(force(backend, block(m, kMiddle), depth, fault));
   }
   for (const int doublings : {kMiddle - 1, kMiddle, kMiddle + 1}) {
     const BlockMesh mesh = block(2, doublings);
     far.push_back(kContact / mesh.half_width());
-    by_block.push_back(doublings == kMiddle ? by_size.front() : force(way, mesh, depth, fault));
+    by_block.push_back(doublings == kMiddle ? by_size.front() : force(backend, mesh, depth, fault));
   }
   const Limit limit = limit_of(h, by_size);
   const double exact = theory(depth), found = limit.value * at_zero(far, by_block) / by_block[1];
@@ -100,7 +94,7 @@ Measurement measure(const Way& way, double depth, const std::string& fault) {
   for (const double one : by_size) errors.push_back(std::abs(one / limit.value - 1.0));
   std::string note = "at L = 10, 20, 40 a:";
   for (const double one : by_block) note += fmt::format(" {:+.1f} %", 100.0 * (one / exact - 1.0));
-  return {.quantity = way.name() + ": force of the half-space [N]",
+  return {.quantity = way_of(backend) + ": force of the half-space [N]",
           .computed = found,
           .exact = exact,
           .error = std::abs(found / exact - 1.0),
@@ -112,34 +106,24 @@ Measurement measure(const Way& way, double depth, const std::string& fault) {
           .refinement = {"cell / radius of contact", h, errors}};
 }
 
-/// Of the depth, through the forces of three depths.
-Measurement exponent(const Way& way, double force_at_depth, const std::string& fault) {
-  std::vector<double> depth = {kDepth}, force = {force_at_depth};
-  for (const double part : {1.4, 2.0}) {
-    depth.push_back(part * kDepth);
-    force.push_back(measure(way, depth.back(), fault).computed);
-  }
-  const double found = fitted_order(depth, force);
-  return {.quantity = way.name() + ": exponent of the depth (error: absolute)",
-          .computed = found,
-          .exact = 1.5,
-          .error = std::abs(found - 1.5),
-          .bar = 0.03,
-          .note = "over depths of 1, 1.4 and 2: a/R up to 0.07"};
-}
-
 std::vector<Measurement> run(const std::string& fault) {
-  std::vector<Measurement> out;
-  const bool broken = !fault.empty();
-  if (!broken) out.push_back(measure({}, kDepth, fault));
+  std::vector<Measurement> out = {measure(nullptr, kDepth, fault)};
+  if (!fault.empty()) return out;
   for (const contact::DepthBackend& backend : image_backends()) {
-    const bool first = backend == contact::DepthBackend::kCpu;
-    if (broken && !first) continue;
-    for (const auto samples : {contact::SampleRule::kPixel, contact::SampleRule::kVertex}) {
-      const Way way{&backend, samples};
-      out.push_back(measure(way, kDepth, fault));
-      if (!broken && first) out.push_back(exponent(way, out.back().computed, fault));
+    out.push_back(measure(&backend, kDepth, fault));
+    if (backend != contact::DepthBackend::kCpu) continue;
+    std::vector<double> depth = {kDepth}, force = {out.back().computed};
+    for (const double part : {1.4, 2.0}) {
+      depth.push_back(part * kDepth);
+      force.push_back(measure(&backend, depth.back(), fault).computed);
     }
+    const double exponent = fitted_order(depth, force);
+    out.push_back({.quantity = "cpu: exponent of the depth (error: absolute)",
+                   .computed = exponent,
+                   .exact = 1.5,
+                   .error = std::abs(exponent - 1.5),
+                   .bar = 0.03,
+                   .note = "over depths of 1, 1.4 and 2: a/R up to 0.07"});
   }
   say_what_is_skipped(out);
   return out;

@@ -97,16 +97,12 @@ ContactWindow fit_window(Patch& a, Patch& b, double candidate_gap) {
 ContactCamera camera_of(const ContactWindow& window, double pixel, const Eigen::Vector2d& shift) {
   ContactCamera camera;
   if (window.is_empty()) return camera;
+  const Eigen::Vector2d extent = window.high - window.low;
   camera.pixel = pixel;
-  const auto fit = [&](int axis, int& count, double& start) {
-    constexpr double kRounding = 1e-9;  // of the pixel's edge, in pixels
-    const double low = window.low[axis], high = window.high[axis],
-                 moved = shift[axis] < 0.5 ? shift[axis] : shift[axis] - 1.0;
-    count = std::max(1, static_cast<int>(std::ceil((high - low) / pixel - kRounding)) + 1);
-    start = 0.5 * (low + high) - (0.5 * count + moved) * pixel;
-  };
-  fit(0, camera.width, camera.u0);
-  fit(1, camera.height, camera.v0);
+  camera.u0 = window.low.x() - shift.x() * pixel;
+  camera.v0 = window.low.y() - shift.y() * pixel;
+  camera.width = std::max(1, static_cast<int>(std::ceil(extent.x() / pixel)) + 1);
+  camera.height = std::max(1, static_cast<int>(std::ceil(extent.y() / pixel)) + 1);
   camera.near = window.near;
   camera.far = window.far;
   return camera;

@@ -75,9 +75,8 @@ ContactWindow fit_window(Patch& a, Patch& b, double candidate_gap);
 
 /// The camera of a window with pixels of the given edge [m]; sees nothing where the window is empty.
 ///
-/// The grid's middle is that of the rectangle: seen from the other side, along -n, the same lines go through
-/// the pixels' middles.  The pixels span one more than the rectangle, so that the grid may be shifted by a
-/// part of a pixel (`shift`, in [0, 1): from a half on, to the other side) and still cover it.
+/// The pixels span one more than the rectangle, so that the grid may be shifted by a part of a pixel
+/// (`shift`, in [0, 1)) and still cover it.
 ContactCamera camera_of(const ContactWindow& window, double pixel, const Eigen::Vector2d& shift);
 /// With this many pixels along the window's longer edge.
 ContactCamera camera_of(const ContactWindow& window, int pixels, const Eigen::Vector2d& shift);

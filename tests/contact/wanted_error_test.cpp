@@ -114,32 +114,3 @@ TEST(WantedErrorOfParts, IsSharedByVolume) {
   EXPECT_LT(std::sqrt(squares / (kGrids * kGrids)), 1.25 * kWanted);
   EXPECT_NEAR(pressed / (kGrids * kGrids) / (kPi * std::pow(0.102 / kWanted, 0.8) * shares), 1.0, 0.15);
 }
-
-TEST(WantedErrorOfParts, Scan) {
-  for (double angle = 60.0; angle < 75.0; angle += 1.0) {
-    const double half = 0.5 * angle * kPi / 180.0, between = 95.0 * kPi / 180.0;
-    const double up = std::acos(std::cos(between) / std::cos(half));
-    const Vec3 m(1, 0, 0), side(0, 1, 0), z(0, 0, 1);
-    const Vec3 a = std::cos(up) * m + std::sin(up) * z;
-    const std::vector<Vec3> normals = {a, std::cos(half) * m + std::sin(half) * side,
-                                       std::cos(half) * m - std::sin(half) * side};
-    const Quat turn = quaternion_of(Vec3(0.3, 0.7, -0.4));
-    std::vector<Vec3> turned;
-    for (const Vec3& n : normals) turned.push_back(turn * n);
-    const BallBetweenWalls world(turned, {0.08, 0.05, 0.05});
-    const auto source = world.source(1e-4, 0.2, 0.3);
-    std::vector<contact::ContactSample> samples;
-    source->query(world.state.view(), samples);
-    std::printf("%g: images %ld unaligned %ld err %g;", angle, source->stages()->images,
-                source->stages()->unaligned, source->stages()->quadrature_error);
-    Vec3 last = Vec3::Zero();
-    for (const auto& s : samples)
-      if ((s.normal - last).norm() > 1e-6) {
-        last = s.normal;
-        std::printf(" [%.2f %.2f %.2f | %.5f]", std::acos(std::min(1.0, last.dot(turned[0]))) * 57.3,
-                    std::acos(last.dot(turned[1])) * 57.3, std::acos(last.dot(turned[2])) * 57.3,
-                    std::sqrt(s.area));
-      }
-    std::printf("\n");
-  }
-}

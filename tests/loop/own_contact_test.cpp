@@ -244,38 +244,6 @@ TEST(OwnContactScene, ArmsCloseAlikeByThreeIntegrators) {
   EXPECT_LT(order, 1.2);
 }
 
-TEST(OwnContactScene, Scratch) {
-  const Fork fork;
-  for (const int variant : {0, 1, 2, 3}) {
-    const auto scene = [&](const char* name) {
-      scene::Description d = fork.scene(name, variant != 1);
-      if (variant == 2) d.contacts[0].quadrature_error = 0.0;
-      if (variant == 3) d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.1;
-      return d;
-    };
-    scene::Description fine = scene("cvode-bdf"), finer = fine;
-    fine.integrator.rtol = 1e-7;
-    finer.integrator.rtol = 1e-8;
-    const VecX reference = end_of(fine), better = end_of(finer);
-    std::printf("variant %d: reference moves %.3e\n", variant, (reference - better).norm() / better.norm());
-    scene::Description d = scene("linearly-implicit-euler");
-    VecX last;
-    double last_error = 0.0;
-    for (int i = 0; i < 6; ++i) {
-      const VecX end = end_of(d);
-      const double error = (end - better).norm() / better.norm();
-      std::printf("  h %.3e error %.5e order %.3f", d.integrator.step_s, error,
-                  std::log2(last_error / error));
-      if (i > 0) std::printf(" change %.5e", (end - last).norm() / better.norm());
-      std::printf("\n");
-      last = end;
-      last_error = error;
-      d.integrator.step_s *= 0.5;
-    }
-    std::fflush(stdout);
-  }
-}
-
 // The summary of own contact: one skin, whose handed-on triangles are counted on both sides of the regions;
 // of two bodies each has its own share.
 TEST(OwnContactScene, TheSummarySpeaksOfOneSkin) {
