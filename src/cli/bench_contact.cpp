@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "bench_contact_ratios.h"
@@ -11,7 +10,6 @@
 #include "palpate/bench/fem.h"
 #include "palpate/core/error.h"
 #include "palpate/report/table.h"
-#include "palpate/store/atomic_file.h"
 #include "scene_of.h"
 #include "stop.h"
 
@@ -64,51 +62,32 @@ std::vector<std::string> row_of(const bench::ContactBenchRow& r, double copy_gb_
           fmt::format("{:.2f}", r.real_time_factor())};
 }
 
-/// "cpu: NAME, avx512", a line a method.
-std::string devices_of(const std::vector<bench::ContactBenchRow>& rows) {
-  std::map<std::string, std::string> devices;
-  for (const bench::ContactBenchRow& r : rows) devices[r.variant.method] = bench::in_words(r.device);
-  std::string out;
-  for (const auto& [method, device] : devices) out += fmt::format("  {}: {}\n", method, device);
-  return out;
-}
-
-bench::ContactBenchScene print_scene(const scene::Description& description, const BenchArguments& arguments,
-                                     Machine& machine) {
+void print_scene(const scene::Description& description, const BenchArguments& arguments, Machine& machine) {
   const std::vector<int> pixels = arguments.all              ? std::vector<int>{0, 64, 128, 256, 512, 1024}
                                   : arguments.pixels.empty() ? std::vector<int>{0, 256}
                                                              : arguments.pixels,
                          threads = arguments.threads.empty() ? std::vector<int>{1, 2} : arguments.threads;
   const std::vector<std::string> methods =
       arguments.all ? std::vector<std::string>{"cpu", "gpu", "exact"} : arguments.methods;
-  bench::ContactBenchScene out{.name = description.name, .rows = {}, .price = {}};
   std::vector<std::vector<std::string>> rows;
+  bench::ContactBenchRow last;
   for (const std::string& method : methods)
     for (const int edge : pixels)
       for (const int count : threads) {
-        if (stop_flag()) return out;
-        out.rows.push_back(bench::bench_contact(description, {method, edge, count}, &stop_flag()));
-        rows.push_back(row_of(out.rows.back(), machine.copy_gb_s(count)));
+        if (stop_flag()) return;
+        last = bench::bench_contact(description, {method, edge, count}, &stop_flag());
+        rows.push_back(row_of(last, machine.copy_gb_s(count)));
       }
-  const bench::ContactBenchRow& last = out.rows.back();
   fmt::print(
       "{}: {} tetrahedra, skin of {} vertices; medians of the {} exchange periods of {:g} ms {} [ms]\n"
-      "{}{}\n",
+      "{}\n",
       description.name, last.tetrahedra, last.skin_vertices, last.periods, 1e3 * last.period_s,
-      last.touches ? "in which something touches" : "(nothing touches)", devices_of(out.rows),
+      last.touches ? "in which something touches" : "(nothing touches)",
       report::format_table(
           {"method", "pixels", "threads", "samples", "regions", "query: least / median / p99", "copy [%]",
            "skins", "regions", "patches", "images", "gaps", "groups", "force", "tangent", "linearise",
            "solve", "period: median / p99", "real time"},
           rows));
-  return out;
-}
-
-void write_files(const std::vector<bench::ContactBenchScene>& scenes, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
-  const std::filesystem::path file = folder / "bench-contact.json";
-  store::write_atomically(file, bench::to_json(scenes));
-  fmt::print("written: {}\n", file.string());
 }
 
 }  // namespace
@@ -120,10 +99,9 @@ void bench_contact(const BenchArguments& arguments) {
   for (const std::string& scene : arguments.scenes.empty() ? kScenes : arguments.scenes)
     descriptions.push_back(scene_of({scene, {}, ""}));
   if (arguments.scenes.empty()) descriptions.push_back(bench::against_itself(scene_of({kAtRest, {}, ""})));
-  std::vector<bench::ContactBenchScene> scenes;
   for (const scene::Description& description : descriptions) {
     if (stop_flag()) return;
-    scenes.push_back(print_scene(description, arguments, machine));
+    print_scene(description, arguments, machine);
   }
   fmt::print(
       "A query is skins + regions + patches + images + gaps + groups.  force and tangent are the contact's "
@@ -133,13 +111,9 @@ void bench_contact(const BenchArguments& arguments) {
   for (const auto& [threads, gb_s] : machine.measured())
     fmt::print(" {:.1f} GB/s with {} thread{}", gb_s, threads, threads > 1 ? "s," : ",");
   fmt::print(" arrays of 67 MB.\n\n");
-  if (arguments.scenes.empty()) {
+  if (arguments.scenes.empty())
     descriptions.push_back(bench::row_of_bodies(scene_of({kInARow, {}, ""}), kRow, kSpacing));
-    scenes.push_back({.name = descriptions.back().name, .rows = {}, .price = {}});
-  }
-  const std::vector<bench::ContactPrice> prices = print_contact_prices(descriptions);
-  for (std::size_t i = 0; i < prices.size(); ++i) scenes[i].price = {prices[i]};
-  if (!arguments.folder.empty()) write_files(scenes, arguments.folder);
+  print_contact_prices(descriptions);
 }
 
 }  // namespace palpate::cli

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "palpate/bench/contact.h"
 #include "palpate/bench/fem.h"
 #include "palpate/report/table.h"
 #include "stop.h"
@@ -35,12 +36,11 @@ void print_growth(const std::string& what, const std::string& of,
 
 }  // namespace
 
-std::vector<bench::ContactPrice> print_contact_prices(const std::vector<scene::Description>& descriptions) {
-  Rows rows, solves, rubs;
-  std::vector<bench::ContactPrice> prices;
+void print_contact_prices(const std::vector<scene::Description>& descriptions) {
+  Rows rows, solves;
   for (const scene::Description& description : descriptions) {
-    if (stop_flag()) return prices;
-    const bench::ContactPrice& p = prices.emplace_back(bench::bench_contact_price(description, &stop_flag()));
+    if (stop_flag()) return;
+    const bench::ContactPrice p = bench::bench_contact_price(description, &stop_flag());
     const bench::ContactBenchRow& c = p.contact;
     const std::string of = fmt::format("{} / {:.1f}", c.samples, c.regions);
     rows.push_back({description.name, of, fmt::format("{:.2f}", c.elements_ms),
@@ -48,12 +48,7 @@ std::vector<bench::ContactPrice> print_contact_prices(const std::vector<scene::D
                     over(c.query.median, p.one_body_ms)});
     solves.push_back({description.name, of, fmt::format("{:.2f}", p.bodies_ms),
                       fmt::format("{:.2f}", p.contact_free_ms), over(c.step.median, p.bodies_ms),
-                      over(c.step.median, p.contact_free_ms)});
-    if (p.friction_ms > 0.0)
-      rubs.push_back({description.name, of, fmt::format("{:.2f}", c.step.median),
-                      over(p.friction_ms, c.step.median), over(p.friction_full_ms, c.step.median),
-                      fmt::format("{:.1e}", p.friction_left_out),
-                      fmt::format("{:.1e}", p.friction_force_change)});
+                      over(c.step.median, p.contact_free_ms), over(p.friction_ms, c.step.median)});
   }
   fmt::print(
       "Contact beside the rest of a step: one thread, pixels as the scene wants them, medians [ms]\n"
@@ -67,21 +62,11 @@ std::vector<bench::ContactPrice> print_contact_prices(const std::vector<scene::D
       "A step without its query, medians [ms]\n"
       "  apart: the sum of steps of each body by itself, without contact; free: a step of all bodies "
       "together, without contact;\n"
-      "  contact: the scene's own step, over apart and over free\n"
+      "  contact: the scene's own step, over apart and over free; friction: with friction 0.3, over contact\n"
       "  without contact the bodies fall under their weight: at rest there is nothing to solve\n{}\n",
-      report::format_table(
-          {"scene", "samples / regions", "apart", "free", "contact (/ apart)", "contact (/ free)"}, solves));
-  if (rubs.empty()) return prices;
-  fmt::print(
-      "A step without its query, with friction 0.3 and friction_tangent as named, medians [ms], over the "
-      "scene's own step\n"
-      "  left out: the largest friction that a step with the symmetric tangent left out, over the largest "
-      "friction;\n"
-      "  force: RMS by which the first body's contact force differs between both, over the force\n{}\n",
-      report::format_table({"scene", "samples / regions", "contact", "symmetric (/ contact)",
-                            "full (/ contact)", "left out", "force"},
-                           rubs));
-  return prices;
+      report::format_table({"scene", "samples / regions", "apart", "free", "contact (/ apart)",
+                            "contact (/ free)", "friction (/ contact)"},
+                           solves));
 }
 
 void print_contact_growth() {

@@ -1,12 +1,12 @@
 #pragma once
 #include <vector>
 
-#include "palpate/bench/contact.h"
+#include "palpate/scene/description.h"
 
 namespace palpate::cli {
 
-/// Contact beside the rest of a step, as ratios.  @returns  what was printed, one a scene
-std::vector<bench::ContactPrice> print_contact_prices(const std::vector<scene::Description>& descriptions);
+/// Contact beside the rest of a step, as ratios (bench::ContactPrice).
+void print_contact_prices(const std::vector<scene::Description>& descriptions);
 
 /// How a query grows with the skin and with the contact region: fitted exponents.
 void print_contact_growth();

@@ -100,7 +100,7 @@ struct BenchArguments {
   std::vector<int> threads;              ///< of fem and contact; empty: 1 and 2
   std::vector<double> linear_rtols;      ///< of fem; empty: 1e-6 and 1e-3
   std::vector<double> youngs_moduli_pa;  ///< of fem; empty: 1e5 and 1e6
-  std::string folder;                    ///< of fem and contact: where JSON and plot go; empty: nowhere
+  std::string folder;                    ///< of fem: where JSON and plot go; empty: nowhere
   bool accuracy = false;                 ///< of fem: error against run time of one motion instead
   std::string calibrate;                 ///< of fem: file for the measured table of linear_solver = "auto"
   int repeats = 5;                       ///< of leave-out

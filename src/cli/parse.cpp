@@ -345,9 +345,7 @@ void add_bench(CLI::App& app, Invocation& invocation) {
       ->capture_default_str();
   command->add_flag("--accuracy", arguments->accuracy,
                     "fem: error against run time of one motion instead of the stages of a step");
-  command
-      ->add_option("-o,--output", arguments->folder,
-                   "fem: folder for bench-fem.json and bench-fem.svg; contact: for bench-contact.json")
+  command->add_option("-o,--output", arguments->folder, "fem: folder for bench-fem.json and bench-fem.svg")
       ->type_name("DIR");
   command
       ->add_option("--calibrate", arguments->calibrate,

@@ -6,15 +6,6 @@
 
 namespace palpate {
 
-std::string_view name_of(Instructions set) {
-  switch (set) {
-    case Instructions::kBaseline: return "baseline";
-    case Instructions::kAvx2: return "avx2";
-    case Instructions::kAvx512: return "avx512";
-  }
-  return {};
-}
-
 bool has_instructions(Instructions set) {
   if (set == Instructions::kBaseline) return true;
 #if defined(__x86_64__)
@@ -29,12 +20,15 @@ bool has_instructions(Instructions set) {
 }
 
 bool find_instructions(std::string_view name, Instructions& set) {
-  for (const Instructions one : {Instructions::kBaseline, Instructions::kAvx2, Instructions::kAvx512})
-    if (name == name_of(one)) {
-      set = one;
-      return has_instructions(set);
-    }
-  return false;
+  if (name == "baseline")
+    set = Instructions::kBaseline;
+  else if (name == "avx2")
+    set = Instructions::kAvx2;
+  else if (name == "avx512")
+    set = Instructions::kAvx512;
+  else
+    return false;
+  return has_instructions(set);
 }
 
 Instructions best_instructions() {

@@ -3,15 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "bench/contact/query_bytes.h"
 #include "bench/contact/statistics.h"
-#include "loop/over_block.h"
-#include "loop/small_scenes.h"
 #include "palpate/core/error.h"
-#include "palpate/core/instructions.h"
-#include "palpate/store/provenance.h"
 
 namespace palpate::bench {
 namespace {
@@ -99,73 +94,6 @@ TEST(ContactBench, ARowTouchesFromOneToTheNext) {
     EXPECT_EQ(row.contacts[k - 1].second, row.bodies[k].name);
   }
   EXPECT_THROW(row_of_bodies(d, 1, 0.2), Error);
-}
-
-TEST(ContactBench, ForcesDifferByTheirRootMeanSquare) {
-  const std::vector<Vec3> reference = {Vec3(3, 0, 0), Vec3(0, 4, 0)};
-  EXPECT_EQ(difference_of(reference, reference), 0.0);
-  EXPECT_NEAR(difference_of({Vec3(3, 0, 1), Vec3(0, 4, 0), Vec3(9, 9, 9)}, reference), 0.2, 1e-15);
-  EXPECT_EQ(difference_of({}, reference), 0.0);
-}
-
-TEST(ContactBench, TheDeviceIsNamed) {
-  const ContactDevice lanes = device_of("cpu"), exact = device_of("exact");
-  EXPECT_EQ(lanes.name, store::provenance().cpu);
-  EXPECT_EQ(exact.name, lanes.name);
-  EXPECT_EQ(lanes.instructions, name_of(best_instructions()));
-  EXPECT_EQ(exact.instructions, "");
-  EXPECT_EQ(in_words(lanes), lanes.name + ", " + lanes.instructions);
-  EXPECT_EQ(in_words({.name = "a GPU", .driver = "4.6 of somebody", .instructions = {}}),
-            "a GPU, 4.6 of somebody");
-  EXPECT_EQ(in_words({}), "none");
-}
-
-/// A block on another, held one, which drags it sideways: it slips.
-scene::Description dragged_blocks() {
-  scene::Description d = small_scenes::held_block();
-  SoftBodySpec upper = d.bodies[0];
-  upper.mesh.size_m = Vec3(0.0275, 0.0315, 0.02);
-  upper.position_m = Vec3(0.001, 0.002, 0.03 - 1e-4);
-  small_scenes::put_over_block(d, upper);
-  d.contacts[0].damping_pa_s_m = 1e3;
-  d.gravity_m_s2 = Vec3(5.0, 0, -9.81);
-  d.duration_s = 0.1;
-  return d;
-}
-
-// The step's symmetric tangent leaves out a part of friction, and the force of the run is another by about
-// that; the full one leaves out none.
-TEST(ContactBench, FrictionIsTimedWithBothTangents) {
-  const ContactPrice price = bench_contact_price(dragged_blocks());
-  EXPECT_GT(price.friction_ms, 0.0);
-  EXPECT_GT(price.friction_full_ms, 0.0);
-  EXPECT_GT(price.friction_left_out, 0.0);
-  EXPECT_LT(price.friction_left_out, 1.0);
-  EXPECT_GT(price.friction_force_change, 0.0);
-  EXPECT_LT(price.friction_force_change, price.friction_left_out);
-  EXPECT_EQ(price.contact.device.name, store::provenance().cpu);
-}
-
-TEST(ContactBench, JsonNamesScenesAndDevices) {
-  ContactBenchRow row;
-  row.variant.method = "gpu";
-  row.device = {.name = "a \"GPU\"", .driver = "4.6", .instructions = {}};
-  row.query.median = 1.5;
-  ContactPrice price;
-  price.contact = row;
-  price.friction_ms = 2.0;
-  price.friction_full_ms = 3.0;
-  const auto json = nlohmann::json::parse(to_json(
-      {{.name = "one", .rows = {row, row}, .price = {price}}, {.name = "two", .rows = {}, .price = {}}}));
-  ASSERT_EQ(json["scenes"].size(), 2u);
-  const auto& one = json["scenes"][0];
-  EXPECT_EQ(one["scene"], "one");
-  ASSERT_EQ(one["rows"].size(), 2u);
-  EXPECT_EQ(one["rows"][1]["device"], nlohmann::json({{"name", "a \"GPU\""}, {"driver", "4.6"}}));
-  EXPECT_EQ(one["rows"][1]["query_ms"]["median"], 1.5);
-  EXPECT_EQ(one["price"]["friction"]["symmetric_ms"], 2.0);
-  EXPECT_EQ(one["price"]["friction"]["full_ms"], 3.0);
-  EXPECT_FALSE(json["scenes"][1].contains("price"));
 }
 
 }  // namespace

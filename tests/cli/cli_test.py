@@ -6,7 +6,6 @@
 import contextlib
 import csv
 import json
-import math
 import os
 import pty
 import re
@@ -362,35 +361,9 @@ class Results(Cli):
         self.assertLess(rows[-1]["elastic_j"], 2e-3 * elastic)  # it has its shape again
 
     def test_bench_contact_prints_its_stages(self):
-        text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64",
-                         "-o", "out/bench")
+        text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64")
         self.assertRegex(text, r"(?m)^cpu +64 +1 +[1-9]\d* ")
-        scene, = json.loads((self.folder / "out/bench/bench-contact.json").read_text())["scenes"]
-        row, = scene["rows"]
-        cpuinfo = Path("/proc/cpuinfo").read_text()
-        processors = re.findall(r"(?m)^model name\s*: (.+)$", cpuinfo) or ["unknown"]
-        self.assertGreater(row["query_ms"]["median"], 0.0)
-        for device in (row["device"], scene["price"]["contact"]["device"]):
-            self.assertIn(device["name"], processors)
-            self.assertIn(device["instructions"], ("baseline", "avx2", "avx512"))
-        self.assertIn(f"\n  cpu: {row['device']['name']}, {row['device']['instructions']}\n", text)
         self.assertIn("nothing to see in an image", self.refused("bench", "contact", "falling-ball"))
-
-    def test_bench_continuity_takes_the_steps_of_a_path(self):
-        pressed = []
-        for steps in 20, 80:
-            text = self.good("bench", "continuity", "press-ball", "--paths", "2", "--path-steps", str(steps))
-            self.assertIn(f"along random smooth paths of {steps} steps;", " ".join(text.split()))
-            # down to a 12,800th of a path, whatever its steps
-            halvings = round(math.log2(12800 / steps))
-            self.assertIn(f"is halved {halvings} times.", " ".join(text.split()))
-            row = re.search(r"(?m)^press-ball +(\d+) +(\d+) ", text)
-            self.assertEqual(int(row[1]), 2)
-            pressed.append(int(row[2]))
-            self.assertLessEqual(pressed[-1], 2 * steps)
-        # steps in which something presses: of paths four times as fine four times as many, but for their ends
-        self.assertAlmostEqual(pressed[1] / pressed[0], 4.0, delta=1.0)
-        self.assertIn("--path-steps", self.refused("bench", "continuity", "press-ball", "--path-steps", "9"))
 
     def test_keys_are_listed_with_unit_range_default_and_meaning(self):
         text = self.good("list", "keys")

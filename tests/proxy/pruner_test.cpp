@@ -7,6 +7,7 @@
 #include <set>
 
 #include "palpate/core/error.h"
+#include "palpate/proxy/decompose.h"
 #include "pruning.h"
 #include "shapes.h"
 
@@ -16,6 +17,11 @@ using proxy::Pruner;
 using namespace pruning;
 
 namespace {
+
+LayeredModel cut(LayeredModel model, int count) {
+  model.proxies = proxy::decompose(model, {.count = count});
+  return model;
+}
 
 Pose random_pose(std::mt19937& random, double distance) {
   std::normal_distribution<double> normal;

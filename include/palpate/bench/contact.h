@@ -1,10 +1,8 @@
 #pragma once
 #include <atomic>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "palpate/core/types.h"
 #include "palpate/scene/description.h"
 
 namespace palpate::bench {
@@ -16,17 +14,6 @@ struct ContactBenchVariant {
   int threads = 1;
 };
 
-/// What the images are made on.
-struct ContactDevice {
-  std::string name;          ///< of the GPU by its driver's own words, of the processor by the kernel's
-  std::string driver;        ///< of a GPU, with its version; else empty
-  std::string instructions;  ///< of the processor's lanes: "avx512"; of method "cpu", else empty
-};
-/// @param method  as ContactBenchVariant's.  @pre of "gpu": images were made, else the names are empty
-ContactDevice device_of(std::string_view method);
-/// "NAME, DRIVER" or "NAME, avx512"; "none" where nothing was drawn.
-std::string in_words(const ContactDevice& device);
-
 /// Wall times over the exchange periods of a run in which something touches [ms].
 struct Spread {
   double least = 0.0, median = 0.0, p99 = 0.0;
@@ -35,7 +22,6 @@ struct Spread {
 /// What contact costs in an exchange period, stage by stage (medians), and beside it the rest of the period.
 struct ContactBenchRow {
   ContactBenchVariant variant;
-  ContactDevice device;
   int skin_vertices = 0, tetrahedra = 0;
   /// that were timed: those in which something touched, or all where nothing ever did
   int periods = 0;
@@ -56,11 +42,6 @@ struct ContactBenchRow {
   /// stands beside the pattern
   double assembly_ms = 0.0;
   double elements_ms = 0.0;  ///< fused assembly over the elements of the first body at the same states
-  /// contact force on the first body at the end of each period [N]
-  std::vector<Vec3> forces;
-  /// of contacts whose tangent leaves out how friction follows the pressure: the largest friction, and the
-  /// largest that a step left out [N]; else 0
-  double friction_n = 0.0, friction_left_out_n = 0.0;
   double query_bytes = 0.0;  ///< median of what a query must read and write (query_bytes() of contact_work.h)
   /// simulated time over median run time
   double real_time_factor() const { return period.median > 0.0 ? 1e3 * period_s / period.median : 0.0; }
@@ -89,26 +70,10 @@ struct ContactPrice {
   double one_body_ms = 0.0;
   /// With the scene's tolerance: the sum of such steps of each body by itself, and a step of all together.
   double bodies_ms = 0.0, contact_free_ms = 0.0;
-  /// A step of the scene with friction 0.3: with the symmetric tangent, which leaves out how friction follows
-  /// the pressure, and with the full one (friction_tangent); 0 of a scene with a tool.
-  double friction_ms = 0.0, friction_full_ms = 0.0;
-  /// What the symmetric tangent does to the force: the largest friction that a step left out, over the
-  /// largest friction; and difference_of() the forces of both runs.
-  double friction_left_out = 0.0, friction_force_change = 0.0;
+  double friction_ms = 0.0;  ///< a step of the scene with friction 0.3; 0 of a scene with a tool
 };
-/// RMS of the difference of two runs' forces over the RMS of the second, over the periods that both have; 0
-/// where there are none.
-double difference_of(const std::vector<Vec3>& forces, const std::vector<Vec3>& reference);
 ContactPrice bench_contact_price(const scene::Description& description,
                                  const std::atomic<bool>* stop = nullptr);
-
-/// Scenes, their rows and prices as JSON, each row with the device that it was measured on.
-struct ContactBenchScene {
-  std::string name;
-  std::vector<ContactBenchRow> rows;
-  std::vector<ContactPrice> price;  ///< one, or none where it was not measured
-};
-std::string to_json(const std::vector<ContactBenchScene>& scenes);
 
 /// A rigid sphere pressed into a ball under a fine skin, as one query sees it.
 struct ContactGrowthRow {

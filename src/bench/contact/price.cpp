@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "bench/contact/statistics.h"
 #include "palpate/bench/contact.h"
@@ -57,15 +56,6 @@ double bodies_alone_ms(scene::Description d, const std::atomic<bool>* stop) {
 
 }  // namespace
 
-double difference_of(const std::vector<Vec3>& forces, const std::vector<Vec3>& reference) {
-  double difference = 0.0, size = 0.0;
-  for (std::size_t i = 0; i < std::min(forces.size(), reference.size()); ++i) {
-    difference += (forces[i] - reference[i]).squaredNorm();
-    size += reference[i].squaredNorm();
-  }
-  return size > 0.0 ? std::sqrt(difference / size) : 0.0;
-}
-
 ContactPrice bench_contact_price(const scene::Description& d, const std::atomic<bool>* stop) {
   ContactPrice out;
   const ContactBenchVariant variant{.method = "cpu"};
@@ -81,19 +71,8 @@ ContactPrice bench_contact_price(const scene::Description& d, const std::atomic<
   }
   if (!d.tool) {
     scene::Description rubbing = d;
-    const auto rub = [&](const char* tangent) {
-      for (ContactSpec& contact : rubbing.contacts) {
-        contact.friction = kFriction;
-        contact.friction_tangent = tangent;
-      }
-      return bench_contact(rubbing, variant, stop);
-    };
-    const ContactBenchRow symmetric = rub("symmetric"), full = rub("full");
-    out.friction_ms = symmetric.step.median;
-    out.friction_full_ms = full.step.median;
-    if (symmetric.friction_n > 0.0)
-      out.friction_left_out = symmetric.friction_left_out_n / symmetric.friction_n;
-    out.friction_force_change = difference_of(symmetric.forces, full.forces);
+    for (ContactSpec& contact : rubbing.contacts) contact.friction = kFriction;
+    out.friction_ms = bench_contact(rubbing, variant, stop).step.median;
   }
   return out;
 }

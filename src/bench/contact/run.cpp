@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "bench/contact/assembly_times.h"
 #include "bench/contact/query_bytes.h"
@@ -30,11 +29,6 @@ struct Periods {
 class Watch : public loop::Observer {
  public:
   explicit Watch(loop::World& world) : assembly_(world) {
-    if (!world.bodies.empty()) {
-      const dynamics::Block& block = *world.state.layout().find(world.bodies.front().block_id);
-      first_ = block.u_offset;
-      first_size_ = block.u_size;
-    }
     for (const loop::Body& body : world.bodies) nodes_ += static_cast<double>(body.rest.nodes.cols());
   }
 
@@ -48,7 +42,6 @@ class Watch : public loop::Observer {
       world.contact->add_force(state, force_);
       const double forced = wall_seconds() - start;
       const bool touches = !force_.isZero(0.0);
-      forces.emplace_back(force_.segment(first_, first_size_).reshaped(3, first_size_ / 3).rowwise().sum());
       keep(world, now, forced, touches ? touching : apart);
     }
     started_ = true;
@@ -57,7 +50,6 @@ class Watch : public loop::Observer {
   }
 
   Periods touching, apart;
-  std::vector<Vec3> forces;
 
  private:
   Times times_of(loop::World& world) const {
@@ -122,7 +114,6 @@ class Watch : public loop::Observer {
 
   bool started_ = false;
   double nodes_ = 0.0;
-  Eigen::Index first_ = 0, first_size_ = 0;  ///< velocities of the first body
   Times before_;
   VecX force_;
   AssemblyTimes assembly_;
@@ -198,10 +189,6 @@ ContactBenchRow bench_contact(scene::Description d, const ContactBenchVariant& v
   if (!result.status.ok()) fail("bench contact: {}", result.status.message);
   out.touches = !watch.touching.whole.empty();
   fill(out, out.touches ? watch.touching : watch.apart);
-  out.device = device_of(variant.method);
-  out.forces = std::move(watch.forces);
-  out.friction_n = world->contact->largest_lagged_friction();
-  out.friction_left_out_n = world->contact->largest_friction_lag();
   out.linearise_ms = 1e3 * result.linearise_s / static_cast<double>(std::max(1L, result.periods));
   return out;
 }
