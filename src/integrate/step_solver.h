@@ -25,8 +25,7 @@ class ProjectedTangents {
 /// The policy for the Newton matrices of an implicit step: what is done where the chosen linear solver cannot
 /// solve with a matrix.
 ///
-/// - Unsymmetric, and the chosen solver takes symmetric ones only: an iteration over its factor of the
-///   symmetric part (DirectFallback); LU where that part is indefinite or the iteration does not converge.
+/// - Unsymmetric, and the chosen solver takes symmetric ones only: LU.
 /// - Indefinite, and IntegratorSpec::indefinite is "project": the matrix of projected tangents, by the chosen
 ///   solver.  Where that one is indefinite as well: the true matrix, directly.
 /// - Indefinite, and IntegratorSpec::indefinite is "lu": the true matrix, directly.  With an inverted element
@@ -46,7 +45,7 @@ class ProjectedTangents {
 class StepSolver {
  public:
   StepSolver(std::unique_ptr<dynamics::LinearSolver> chosen, const IntegratorSpec& spec)
-      : solvers_(std::move(chosen), spec), project_(spec.indefinite == "project") {}
+      : solvers_(std::move(chosen)), project_(spec.indefinite == "project") {}
 
   /// Factors A.  @param reassemble  writes A again, by the tangents that the system then gives
   template <class Reassemble>

@@ -1,16 +1,11 @@
 #include "linear/symmetric_part.h"
 
-#include <algorithm>
-
 #include "palpate/core/error.h"
 
 namespace palpate::linear {
 
 using dynamics::BlockSparse;
 using dynamics::BorderedMatrix;
-
-/// Of sums of some hundred entries, taken in another order on either side of the diagonal.
-static constexpr double kRounding = 0x1p-48;
 
 void SymmetricPart::find_transposed(const BlockSparse& A) {
   transposed_.resize(static_cast<std::size_t>(A.slot_count()));
@@ -32,19 +27,13 @@ const BorderedMatrix& SymmetricPart::of(const BorderedMatrix& A) {
     find_transposed(A.body);
     pattern_version_ = A.body.pattern_version();
   }
-  double largest = 0.0, apart = 0.0;
   for (int s = 0; s < A.body.slot_count(); ++s) {
     const int t = transposed_[static_cast<std::size_t>(s)];
     if (t < s) continue;
-    const Mat3 upper = Block(A.body.block(s)), lower = Block(A.body.block(t)).transpose();
-    const Mat3 mean = 0.5 * (upper + lower);
-    largest = std::max(largest, mean.cwiseAbs().maxCoeff());
-    apart = std::max(apart, (upper - lower).cwiseAbs().maxCoeff());
+    const Mat3 mean = 0.5 * (Mat3(Block(A.body.block(s))) + Mat3(Block(A.body.block(t))).transpose());
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(S_.body.block(s)) = mean;
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(S_.body.block(t)) = mean.transpose();
   }
-  whole_ =
-      apart <= kRounding * largest && A.right == A.bottom.transpose() && A.corner == A.corner.transpose();
   S_.right = 0.5 * (A.right + A.bottom.transpose());
   S_.bottom = S_.right.transpose();
   S_.corner = 0.5 * (A.corner + A.corner.transpose());

@@ -9,8 +9,6 @@ namespace palpate::linear {
 class SymmetricPart {
  public:
   const dynamics::BorderedMatrix& of(const dynamics::BorderedMatrix& A);
-  /// Whether that matrix was symmetric itself, to rounding in its body.
-  bool whole() const { return whole_; }
 
  private:
   void find_transposed(const dynamics::BlockSparse& A);
@@ -18,7 +16,6 @@ class SymmetricPart {
   dynamics::BorderedMatrix S_;
   std::vector<int> transposed_;  ///< slot of block (j, i), for each slot (i, j)
   std::uint64_t pattern_version_ = 0;
-  bool whole_ = false;
 };
 
 }  // namespace palpate::linear

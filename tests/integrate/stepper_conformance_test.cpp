@@ -265,8 +265,7 @@ TEST_P(Steppers, StopAtTheStepLimit) {
   EXPECT_GT(chain.state.time(), 0.0);
 }
 
-// By an iteration over the solver's factor of the symmetric part, or by the solver itself where it takes such
-// matrices; never by LU.
+// By LU, or, where the solver takes such matrices itself, by that.
 TEST_P(ImplicitSteppers, TakeAnUnsymmetricTangent) {
   Chain chain;
   chain.start_in_mode(0.1);
@@ -274,14 +273,11 @@ TEST_P(ImplicitSteppers, TakeAnUnsymmetricTangent) {
   chain.term->symmetric = false;
   const bool automatic = integrate::linear_solver_of(spec()) == "auto";
   IntegratorSpec tight = spec();
-  tight.linear_rtol = 1e-14;
-  auto& counter =
-      counters::counter(automatic ? "integrate.solver.gmres" : "integrate.solver.conjugate_residuals");
-  const auto& lu = counters::counter("integrate.solver.umfpack");
-  const long before = counter, lu_before = lu;
+  if (automatic) tight.linear_rtol = 1e-14;
+  auto& counter = counters::counter(automatic ? "integrate.solver.gmres" : "integrate.unsymmetric");
+  const long before = counter;
   const VecX q = run(chain.system, chain.state, tight, 0.3);
   EXPECT_GT(counter, before);
-  EXPECT_EQ(lu, lu_before);
   Chain same;
   same.start_in_mode(0.1);
   same.term->K(0, 3) += 20.0;
