@@ -34,7 +34,8 @@ class Steps {
     made_.steps.push_back({name, wall_seconds() - start});
     watcher_.end(made_.steps.back());
   }
-  double left() const { return limit_ - (wall_seconds() - start_); }
+  double spent() const { return wall_seconds() - start_; }
+  double left() const { return limit_ - spent(); }
 
  private:
   Watcher& watcher_;
@@ -185,10 +186,10 @@ QualityGate gate_of(const Options& options, bool creased, bool given) {
   return out;
 }
 
-Tetrahedra filled(const Filling& filling, std::optional<double> crease_deg, double seconds,
+Tetrahedra filled(const Filling& filling, std::optional<double> crease_deg, double spent,
                   const Progress& progress) {
   TetrahedraOptions wanted = filling.options.tetrahedra;
-  wanted.limits.seconds = std::max(seconds, 1e-3);
+  wanted.limits.spent = spent;
   wanted.crease_deg = crease_deg;
   if (filling.options.creases != Creases::kNone) wanted.creases = filling.input.creases;
   Tetrahedra out = tetrahedralise(filling.surface, wanted, progress);
@@ -207,14 +208,14 @@ TetMesh fill(const Filling& filling, const Steps& steps, const Progress& progres
   made.creased = crease_deg || lines;
   Tetrahedra out;
   try {
-    out = filled(filling, crease_deg, steps.left(), progress);
+    out = filled(filling, crease_deg, steps.spent(), progress);
     if (crease_deg && automatic)
       notes.push_back(
           fmt::format("edges that turn by more than {:g} degrees are kept as creases", *crease_deg));
   } catch (const Error& e) {
     if (!crease_deg || !automatic || steps.left() <= 0) throw;
     made.creased = lines;
-    out = filled(filling, std::nullopt, steps.left(), progress);
+    out = filled(filling, std::nullopt, steps.spent(), progress);
     notes.push_back(
         fmt::format("edges that turn by more than {:g} degrees could not be kept as creases ({}); "
                     "they are rounded by half an element",

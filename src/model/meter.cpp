@@ -7,7 +7,7 @@
 
 namespace palpate::model {
 
-Meter::Meter(const Limits& limits) : limits_(limits), start_(wall_seconds()) {}
+Meter::Meter(const Limits& limits) : limits_(limits), start_(wall_seconds() - limits.spent) {}
 
 void Meter::begin(double expected_points, Progress progress) {
   progress_ = std::move(progress);

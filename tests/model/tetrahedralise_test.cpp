@@ -128,4 +128,13 @@ TEST(Tetrahedralise, RefusesWhatCannotBe) {
             "the implicit function is 1 at the centre (0, 0, 0) m, must be negative inside");
 }
 
+/// What the steps before took is part of the time, and the refusal names all of it: what the user gave.
+TEST(Tetrahedralise, NamesTheWholeTimeWhenItIsOver) {
+  model::TetrahedraOptions late = number(3'000'000);
+  late.limits.seconds = 60.0;
+  late.limits.spent = 59.5;
+  const std::string said = refusal([&] { model::tetrahedralise(ball(), late); });
+  EXPECT_NE(said.find("within 60 s"), std::string::npos) << said;
+}
+
 }  // namespace
