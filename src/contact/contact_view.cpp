@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/fit_window.h"
+
 namespace palpate::contact {
 namespace {
 
@@ -19,7 +21,7 @@ Box see_all(Patch& patch) {
   Box bounds;
   for (std::size_t f = 0; f < count; ++f) {
     patch.visible[f] = static_cast<int>(f);
-    patch.boxes[f] = box_of(patch, *patch.faces, static_cast<Eigen::Index>(f));
+    patch.boxes[f] = box_of(patch, static_cast<int>(f));
     bounds.low = bounds.low.cwiseMin(patch.boxes[f].low);
     bounds.high = bounds.high.cwiseMax(patch.boxes[f].high);
   }
@@ -51,12 +53,6 @@ Box cut(Patch& patch, const Box& window) {
 
 }  // namespace
 
-AxisBox box_of(const Patch& patch, const Faces& faces, Eigen::Index face) {
-  const auto corner = [&](int k) { return patch.uvw.col(faces(k, face)); };
-  return {corner(0).cwiseMin(corner(1)).cwiseMin(corner(2)),
-          corner(0).cwiseMax(corner(1)).cwiseMax(corner(2))};
-}
-
 ContactAxes::ContactAxes(const Vec3& region_origin, const Vec3& normal) : origin(region_origin) {
   // Pixels stand along u and v.  A direction that is far from the normal turns them as little as the normal
   // turns; one made of the normal's small components (Eigen's unitOrthogonal) spins where these change sign.
@@ -68,30 +64,10 @@ ContactAxes::ContactAxes(const Vec3& region_origin, const Vec3& normal) : origin
 }
 
 ContactWindow fit_window(Patch& a, Patch& b, double candidate_gap) {
-  constexpr int kCuts = 3;
-  Box window;
-  Box box_a = see_all(a), box_b = see_all(b);
-  for (int i = 0; i < kCuts; ++i) {
-    window.low = box_a.low.cwiseMax(box_b.low);
-    window.high = box_a.high.cwiseMin(box_b.high);
-    Box window_a = window, window_b = window;
-    window_a.low.z() = -kInfinity;
-    window_a.high.z() = box_b.high.z() + candidate_gap;
-    window_b.low.z() = box_a.low.z() - candidate_gap;
-    window_b.high.z() = kInfinity;
-    box_a = cut(a, window_a);
-    box_b = cut(b, window_b);
-    if (a.visible.empty() || b.visible.empty()) return {};
-  }
-  ContactWindow out;
-  out.low = box_a.low.cwiseMax(box_b.low).head<2>();
-  out.high = box_a.high.cwiseMin(box_b.high).head<2>();
-  out.near = box_a.low.z() - candidate_gap;
-  out.far = box_b.high.z() + candidate_gap;
-  const double room = 1e-3 * (out.far - out.near);  // nothing at the very ends of the depth range
-  out.near -= room;
-  out.far += room;
-  return out;
+  const Box box_a = see_all(a), box_b = see_all(b);
+  return cut_to_window(
+      box_a, box_b, candidate_gap, [&](const Box& window) { return cut(a, window); },
+      [&](const Box& window) { return cut(b, window); });
 }
 
 ContactCamera camera_of(const ContactWindow& window, double pixel, const Eigen::Vector2d& shift) {

@@ -49,12 +49,16 @@ struct Patch {
   Points uvw;  ///< vertices
   const Faces* faces = nullptr;
   std::vector<int> visible;    ///< faces
-  std::vector<AxisBox> boxes;  ///< theirs
-  /// those of the region that are turned away from the camera, where `faces` has none of them; else null
-  const Faces* away = nullptr;
+  std::vector<AxisBox> boxes;  ///< theirs; empty where a region's pieces fill the patch
+  /// faces that are turned away from the camera, where none of them is in `visible`; else null
+  const std::vector<int>* away = nullptr;
 };
 
-AxisBox box_of(const Patch& patch, const Faces& faces, Eigen::Index face);
+inline AxisBox box_of(const Patch& patch, int face) {
+  const auto corner = [&](int k) { return patch.uvw.col((*patch.faces)(k, face)); };
+  return {corner(0).cwiseMin(corner(1)).cwiseMin(corner(2)),
+          corner(0).cwiseMax(corner(1)).cwiseMax(corner(2))};
+}
 
 /// A rectangle of the plane and a slab along the normal [m].
 struct ContactWindow {

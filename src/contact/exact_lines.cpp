@@ -75,18 +75,17 @@ struct ExactLines::Middles {
 template <class Lines>
 void ExactLines::cut(const Patch& patch, const ContactCamera& camera, bool of_a, const Lines& lines) {
   for (std::size_t f = 0; f < patch.visible.size(); ++f)
-    cut_face(patch, *patch.faces, patch.visible[f], patch.boxes[f], static_cast<std::uint32_t>(f), camera,
-             of_a, lines);
+    cut_face(patch, patch.visible[f], static_cast<std::uint32_t>(f), camera, of_a, lines);
   if (!patch.away) return;
-  for (Eigen::Index f = 0; f < patch.away->cols(); ++f)
-    cut_face(patch, *patch.away, f, box_of(patch, *patch.away, f), 0, camera, of_a, lines);
+  for (const int face : *patch.away) cut_face(patch, face, 0, camera, of_a, lines);
 }
 
 template <class Lines>
-void ExactLines::cut_face(const Patch& patch, const Faces& faces, Eigen::Index face, const AxisBox& box,
-                          std::uint32_t number, const ContactCamera& camera, bool of_a, const Lines& lines) {
+void ExactLines::cut_face(const Patch& patch, int face, std::uint32_t number, const ContactCamera& camera,
+                          bool of_a, const Lines& lines) {
+  const AxisBox box = box_of(patch, face);
   if (!lines.may_meet(box)) return;
-  const auto corner = faces.col(face);
+  const auto corner = patch.faces->col(face);
   const Vec3 p[3] = {patch.uvw.col(corner[0]), patch.uvw.col(corner[1]), patch.uvw.col(corner[2])};
   const double area =
       (p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) - (p[2].x() - p[0].x()) * (p[1].y() - p[0].y());

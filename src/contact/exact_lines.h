@@ -33,8 +33,8 @@ class ExactLines {
   template <class Lines>
   void cut(const Patch& patch, const ContactCamera& camera, bool of_a, const Lines& lines);
   template <class Lines>
-  void cut_face(const Patch& patch, const Faces& faces, Eigen::Index face, const AxisBox& box,
-                std::uint32_t number, const ContactCamera& camera, bool of_a, const Lines& lines);
+  void cut_face(const Patch& patch, int face, std::uint32_t number, const ContactCamera& camera, bool of_a,
+                const Lines& lines);
   void pair_crossings(double candidate_gap, std::vector<FacePair>& pairs);
   void pair_layers(std::size_t first, std::size_t last, double candidate_gap, std::vector<FacePair>& pairs);
   void fill_bins(std::span<const Eigen::Vector2d> points, const ContactCamera& camera);

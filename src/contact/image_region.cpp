@@ -36,7 +36,7 @@ AxisBox turned_away(const Patch& patch, double side, const AxisBox& within) {
     bounds.high = bounds.high.cwiseMax(box.high);
   };
   if (patch.away) {
-    for (Eigen::Index f = 0; f < patch.away->cols(); ++f) take(box_of(patch, *patch.away, f));
+    for (const int face : *patch.away) take(box_of(patch, face));
     return bounds;
   }
   for (std::size_t f = 0; f < patch.visible.size(); ++f) {
@@ -117,10 +117,11 @@ void ImageRegion::doubt_layers() {
         (layers_.empty() || layers_.back() != hit.pixel))
       layers_.push_back(hit.pixel);
   if (layers_.empty()) return;
-  const auto known = static_cast<std::ptrdiff_t>(doubtful_.size());
-  doubtful_.insert(doubtful_.end(), layers_.begin(), layers_.end());
-  std::inplace_merge(doubtful_.begin(), doubtful_.begin() + known, doubtful_.end());
-  doubtful_.erase(std::unique(doubtful_.begin(), doubtful_.end()), doubtful_.end());
+  // std::inplace_merge would take memory at every query
+  context_.united.clear();
+  std::set_union(doubtful_.begin(), doubtful_.end(), layers_.begin(), layers_.end(),
+                 std::back_inserter(context_.united));
+  std::swap(doubtful_, context_.united);
 }
 
 /// False where an image is not enough and exact lines have to tell: on walls, and where the pixel's middle
@@ -162,7 +163,6 @@ void ImageRegion::ask_lines() {
     pair.at = doubtful_[pair.at];
     take_pair(pair);
   }
-  // std::inplace_merge would take memory at every query
   context_.merged.clear();
   std::merge(hits_.begin(), hits_.begin() + certain, hits_.begin() + certain, hits_.end(),
              std::back_inserter(context_.merged),

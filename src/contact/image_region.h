@@ -30,6 +30,7 @@ struct RegionContext {
   std::vector<Eigen::Vector2d> middles;  ///< of doubtful pixels
   std::vector<FacePair> by_lines;
   std::vector<Hit> merged;
+  std::vector<std::uint32_t> united;  ///< doubtful pixels
   CellBuilder cells;
 
   bool of_one_body() const { return a == b; }

@@ -232,9 +232,10 @@ void answer(std::span<ImageSource* const> sources, std::span<DepthRequest* const
 }  // namespace
 
 void answer_together(std::span<ImageSource* const> sources) {
-  std::vector<DepthRequest*> requests;
+  if (sources.empty()) return;
+  auto& [requests, counts] = sources[0]->asked_together();
   bool started = false;
-  std::vector<std::size_t> counts(sources.size());
+  counts.resize(sources.size());
   for (;;) {
     requests.clear();
     for (std::size_t i = 0; i < sources.size(); ++i) {

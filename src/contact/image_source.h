@@ -44,6 +44,12 @@ class ImageSource : public SampleSource {
   bool may_fall_back() const { return context_.options.or_cpu; }
   void fall_back(const std::string& why);  ///< to the processor, for good
   void add_image_time(double seconds) { context_.stages.images_s += seconds; }
+  /// Scratch of answer_together, which its first source keeps.
+  struct AskedTogether {
+    std::vector<DepthRequest*> requests;
+    std::vector<std::size_t> counts;  ///< of requests, by source
+  };
+  AskedTogether& asked_together() { return asked_together_; }
 
  protected:
   virtual std::size_t find_regions(const dynamics::StateView& state) = 0;  ///< how many there are now
@@ -77,6 +83,7 @@ class ImageSource : public SampleSource {
   std::unique_ptr<DepthImage> image_;
   std::string fallback_;
   SampleCells cells_;  ///< scratch
+  AskedTogether asked_together_;
   std::vector<std::unique_ptr<ImageRegion>> regions_;
   std::size_t open_ = 0;  ///< of `regions_`, in the query under way
   CoupledNodes coupled_;  // of two soft sides

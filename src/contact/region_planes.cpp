@@ -35,7 +35,7 @@
 // |dw| <= c sqrt(w) da, so r_ij |P_j| |dw| <= c/2 sqrt(|P_i| |P_j|) da.  A second step of the same mean, from
 // n_i (mean shift), would multiply |P_j| / |P_i| once more, and is not taken.  What remains is the width
 // phi within which normals count as one (RegionParts::kOnePlane: the forces' sum keeps its direction and
-// loses phi^2 / 8 of its size, 3e-4), what looks leave (pruned_source.cpp), what the pixels err, and a change
+// loses phi^2 / 8 of its size, 3e-4), what looks leave (pruned_region.cpp), what the pixels err, and a change
 // of the volume itself where a line along n meets other skin, k |dV|.
 #include "contact/region_planes.h"
 

@@ -10,7 +10,7 @@
 //     fresh - frozen = k int d div u_t dA   +   k int grad w_b . u_t dA:
 // the area of the skin that bears the pressure, which grows with its stretch, and the way along the other
 // skin.  For a rigid motion the first is zero, and the second as well where n is the overlap's own normal
-// (the mean slope of both skins vanishes along it; pruned_source.cpp).  The border moves, but there is no
+// (the mean slope of both skins vanishes along it; pruned_region.cpp).  The border moves, but there is no
 // depth. Last, n itself follows the skins.  For two spheres it is the line of centres, D apart, and a
 // sideways step s turns it by s/D: a lateral force F s/D, away from the middle where both are convex, and
 // back to it in a round dent, where D is the difference of radii.
