@@ -6,6 +6,15 @@
 
 namespace palpate {
 
+std::string_view name_of(Instructions set) {
+  switch (set) {
+    case Instructions::kBaseline: return "baseline";
+    case Instructions::kAvx2: return "avx2";
+    case Instructions::kAvx512: return "avx512";
+  }
+  return {};
+}
+
 bool has_instructions(Instructions set) {
   if (set == Instructions::kBaseline) return true;
 #if defined(__x86_64__)
@@ -20,15 +29,12 @@ bool has_instructions(Instructions set) {
 }
 
 bool find_instructions(std::string_view name, Instructions& set) {
-  if (name == "baseline")
-    set = Instructions::kBaseline;
-  else if (name == "avx2")
-    set = Instructions::kAvx2;
-  else if (name == "avx512")
-    set = Instructions::kAvx512;
-  else
-    return false;
-  return has_instructions(set);
+  for (const Instructions known : {Instructions::kBaseline, Instructions::kAvx2, Instructions::kAvx512})
+    if (name == name_of(known)) {
+      set = known;
+      return has_instructions(set);
+    }
+  return false;
 }
 
 Instructions best_instructions() {

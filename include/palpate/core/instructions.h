@@ -6,6 +6,7 @@ namespace palpate {
 
 enum class Instructions { kBaseline, kAvx2, kAvx512 };
 
+std::string_view name_of(Instructions set);  ///< "baseline", "avx2" or "avx512"
 /// Whether this processor has it.
 bool has_instructions(Instructions set);
 /// @param name  "baseline", "avx2" or "avx512"  @return whether there is such a set and this processor has it
