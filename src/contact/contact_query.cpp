@@ -78,6 +78,11 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
   events_to_compare = true;
 }
 
+double ContactForce::sample_bytes() const {
+  const Impl& m = *impl_;
+  return static_cast<double>(m.samples.size() * sizeof(ContactSample) + m.cells.bytes() + m.groups.bytes());
+}
+
 int ContactForce::Impl::count_of(const Pair& pair) const {
   auto count = static_cast<int>(pair.end - pair.begin);
   for (std::size_t c = pair.first_cell; c < pair.last_cell; ++c)

@@ -3,6 +3,7 @@
 
 #include "contact/depth_image.h"
 #include "contact/raster_kernels.h"
+#include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/instructions.h"
 
@@ -57,6 +58,7 @@ class CpuImage final : public DepthImage {
   CpuImage() { counters::count("contact.cpu_image"); }
 
   void answer(std::span<DepthRequest* const> requests) override {
+    times_ = {};
     for (DepthRequest* request : requests) answer(*request);
   }
 
@@ -68,6 +70,7 @@ class CpuImage final : public DepthImage {
     request.layered.clear();
     if (!camera.sees_something()) return;
     const RasterTarget above = draw(a_, *request.a, camera, 1.0), below = draw(b_, *request.b, camera, -1.0);
+    const ScopedTimer timer(times_.gather);
     const auto size = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
     if (found_.size() < size) found_.resize(size);
     // The depths are single precision: the exact gap decides later.
@@ -93,6 +96,8 @@ class CpuImage final : public DepthImage {
 
   /// Draws with `side` w as depth, w counted from the middle of the slab: a, which faces down, with 1.
   RasterTarget draw(Surface& surface, const Patch& patch, const ContactCamera& camera, double side) {
+    load(surface, patch, camera, side);
+    const ScopedTimer timer(times_.passes);
     RasterTarget target;
     target.width = camera.width;
     target.height = camera.height;
@@ -102,7 +107,15 @@ class CpuImage final : public DepthImage {
     target.triangle = surface.triangle.resized(size);
     std::fill_n(target.depth, size, std::numeric_limits<float>::infinity());
     std::fill_n(target.triangle, size, -1);
+    kernels_.draw(surface.vertices.data(), surface.corners.data(), static_cast<int>(patch.visible.size()),
+                  static_cast<float>(-side), static_cast<float>(kLayerGap * (camera.far - camera.near)),
+                  target);
+    return target;
+  }
 
+  /// The patch in pixels, in single precision.
+  void load(Surface& surface, const Patch& patch, const ContactCamera& camera, double side) {
+    const ScopedTimer timer(times_.upload);
     surface.vertices.resize(static_cast<std::size_t>(patch.uvw.size()));
     const double scale = 1.0 / camera.pixel, middle = 0.5 * (camera.near + camera.far);
     for (Eigen::Index i = 0; i < patch.uvw.cols(); ++i) {
@@ -115,10 +128,6 @@ class CpuImage final : public DepthImage {
     for (std::size_t f = 0; f < patch.visible.size(); ++f)
       for (int k = 0; k < 3; ++k)
         surface.corners[3 * f + static_cast<std::size_t>(k)] = (*patch.faces)(k, patch.visible[f]);
-    kernels_.draw(surface.vertices.data(), surface.corners.data(), static_cast<int>(patch.visible.size()),
-                  static_cast<float>(-side), static_cast<float>(kLayerGap * (camera.far - camera.near)),
-                  target);
-    return target;
   }
 
   const RasterKernels& kernels_ = best_raster_kernels();

@@ -41,6 +41,14 @@ struct DepthRequest {
   std::vector<std::uint32_t> layered;
 };
 
+/// Wall time of an answer by what was done, on whichever processor that was [s].
+struct ImageTimes {
+  double upload = 0.0;    ///< what was made, or sent, of the surfaces for the backend
+  double passes = 0.0;    ///< both surfaces drawn; of exact lines all that they take
+  double gather = 0.0;    ///< both compared, and the pairs brought into one list
+  double readback = 0.0;  ///< on the GPU all else: commands, fence, and the list handed out by request
+};
+
 /// The two images of a contact region, both seen along the normal: of a the lowest point above each pixel's
 /// middle counts, of b the highest.  Faces that are turned away (a's that face up, b's that face down) are
 /// not drawn: body of their own side lies before them.  Coordinates may be single precision: an image decides
@@ -53,6 +61,10 @@ class DepthImage {
   /// Answers all requests, which may be of different regions and pairs of bodies.  On the GPU many at once
   /// cost little more than one; on the processor each costs what it costs by itself.
   virtual void answer(std::span<DepthRequest* const> requests) = 0;
+  const ImageTimes& times() const { return times_; }  ///< of the last answer
+
+ protected:
+  ImageTimes times_;
 };
 
 std::unique_ptr<DepthImage> make_gpu_image();  ///< opens the GL context

@@ -1,4 +1,5 @@
 #include "contact/exact_lines.h"
+#include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
 
 namespace palpate::contact {
@@ -9,6 +10,8 @@ class ExactImage final : public DepthImage {
   ExactImage() { counters::count("contact.exact_image"); }
 
   void answer(std::span<DepthRequest* const> requests) override {
+    times_ = {};
+    const ScopedTimer timer(times_.passes);
     for (DepthRequest* r : requests) {
       r->layered.clear();
       lines_.through_pixels(*r->a, *r->b, r->camera, r->candidate_gap, r->pairs);

@@ -9,6 +9,10 @@ namespace palpate::contact {
 bool gpu_available() { return false; }
 bool has_gpu_hardware() { return false; }
 GpuDevice gpu_device() { return {}; }
+GpuDevice open_gpu() {
+  make_gpu_image();
+  return {};
+}
 
 std::unique_ptr<DepthImage> make_gpu_image() {
   fail(

@@ -1,5 +1,6 @@
 #include <filesystem>
 
+#include "contact/depth_image.h"
 #include "palpate/contact/gpu_available.h"
 #include "palpate/core/error.h"
 #include "palpate/gl/context.h"
@@ -26,6 +27,11 @@ bool has_gpu_hardware() {
     } catch (const Error&) { return false; }
   }();
   return found;
+}
+
+GpuDevice open_gpu() {
+  make_gpu_image();
+  return gpu_device();
 }
 
 GpuDevice gpu_device() {

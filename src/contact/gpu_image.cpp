@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "palpate/contact/gpu_available.h"
+#include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/gl/commands.h"
 #include "palpate/gl/context.h"
@@ -44,6 +45,7 @@ GpuImage::GpuImage()
 
 void GpuImage::answer(std::span<DepthRequest* const> requests) {
   gl::Context::shared();
+  times_ = {};
   while (!requests.empty()) {
     const std::size_t taken = atlas_.pack(requests, gl::largest_texture());
     answer_tiles(requests.first(taken));
@@ -57,12 +59,22 @@ void GpuImage::answer_tiles(std::span<DepthRequest* const> requests) {
     request->layered.clear();
   }
   if (atlas_.pixels() == 0) return;
+  const double start = wall_seconds();
   send(requests);
+  const double upload = wall_seconds() - start;
+  instants_.mark(0);
   draw(requests, true);
   draw(requests, false);
+  instants_.mark(1);
   append_pairs();
+  instants_.mark(2);
   gl::finish("the contact images");
   hand_out(requests);
+  const double passes = instants_.seconds(0, 1), gather = instants_.seconds(1, 2);
+  times_.upload += upload;
+  times_.passes += passes;
+  times_.gather += gather;
+  times_.readback += std::max(0.0, wall_seconds() - start - upload - passes - gather);
 }
 
 /// Points that moved, tiles, and the ranges of faces to draw.

@@ -7,6 +7,7 @@
 #include "contact/gpu_surface.h"
 #include "palpate/gl/framebuffer.h"
 #include "palpate/gl/program.h"
+#include "palpate/gl/timestamps.h"
 
 namespace palpate::contact {
 
@@ -48,6 +49,7 @@ class GpuImage final : public DepthImage {
   void hand_out(std::span<DepthRequest* const> requests);
 
   gl::Program draw_, pair_;
+  gl::Timestamps instants_{3};  ///< before the passes, between them and the gathering, behind it
   GpuSurfaces surfaces_;
   GpuAtlas atlas_;
   std::unique_ptr<gl::Framebuffer> target_a_, target_b_;

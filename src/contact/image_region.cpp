@@ -81,6 +81,8 @@ void ImageRegion::see() {
   ++context_.stages.images;
   context_.stages.pixels += static_cast<long>(camera().width) * camera().height;
   context_.stages.pairs += static_cast<long>(request_.pairs.size());
+  context_.stages.vertices += static_cast<long>(a_.uvw.cols() + b_.uvw.cols());
+  context_.stages.faces += static_cast<long>(a_.visible.size() + b_.visible.size());
   const ScopedTimer timer(context_.stages.gaps_s);
   forget();
   planes_a_.start(a_);
@@ -92,6 +94,7 @@ void ImageRegion::see() {
     const bool layers = next_layered < layered.size() && layered[next_layered] == pair.at;
     if (!take_pair(pair) || layers) doubtful_.push_back(pair.at);
   }
+  context_.stages.hits += static_cast<long>(hits_.size());
   // In first images too: the axes, the window and the pixels that follow are then the same whoever draws.
   if (context_.options.backend == DepthBackend::kExact) return;
   doubt_layers();

@@ -176,15 +176,26 @@ void ImageSource::query(const dynamics::StateView& state, SampleCells& samples) 
   for (std::size_t i = 0; i < count; ++i) {
     start(one, i);
     while (DepthRequest* request = one.wanted()) {
+      double seconds = 0.0;
       {
-        const ScopedTimer timer(context_.stages.images_s);
+        const ScopedTimer timer(seconds);
         image().answer({&request, 1});
       }
+      add_image_times(seconds, image().times(), 1.0);
       one.take();
     }
     one.append_samples(samples);
   }
   end(samples, first);
+}
+
+void ImageSource::add_image_times(double seconds, const ImageTimes& times, double share) {
+  QueryStages& stages = context_.stages;
+  stages.images_s += share * seconds;
+  stages.upload_s += share * times.upload;
+  stages.passes_s += share * times.passes;
+  stages.gather_s += share * times.gather;
+  stages.readback_s += share * times.readback;
 }
 
 void ImageSource::open(const dynamics::StateView& state) {
@@ -251,8 +262,8 @@ void answer_together(std::span<ImageSource* const> sources) {
       started = true;
     }
     for (std::size_t i = 0; i < sources.size(); ++i) {
-      sources[i]->add_image_time(seconds * static_cast<double>(counts[i]) /
-                                 static_cast<double>(requests.size()));
+      sources[i]->add_image_times(seconds, sources[0]->image().times(),
+                                  static_cast<double>(counts[i]) / static_cast<double>(requests.size()));
       sources[i]->take();
     }
   }

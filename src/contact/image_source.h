@@ -43,7 +43,8 @@ class ImageSource : public SampleSource {
   DepthImage& image();                                       ///< made when it is first asked for
   bool may_fall_back() const { return context_.options.or_cpu; }
   void fall_back(const std::string& why);  ///< to the processor, for good
-  void add_image_time(double seconds) { context_.stages.images_s += seconds; }
+  /// Its share of the image's last answer, which took so long [s].
+  void add_image_times(double seconds, const ImageTimes& times, double share);
   /// Scratch of answer_together, which its first source keeps.
   struct AskedTogether {
     std::vector<DepthRequest*> requests;

@@ -39,7 +39,7 @@ void PrunedRegion::start(const proxy::ContactRegion& region) {
   looks_ = 0;
   share_ = 1.0;
   {
-    const ScopedTimer timer(context_.stages.patches_s);
+    const ScopedTimer timer(context_.stages.positions_s);
     RegionMesh &a = pruned_.next_mesh(), &b = pruned_.next_mesh();
     a.take(*context_.a, region.faces_a, pruned_.proxy_of_a, pruned_.local_a);
     b.take(*context_.b, region.faces_b, pruned_.proxy_of_b, pruned_.local_b);

@@ -30,6 +30,11 @@ void SampleCells::clear() {
   areas.clear();
 }
 
+std::size_t SampleCells::bytes() const {
+  return carriers.size() * sizeof(Carrier) + cells.size() * sizeof(ContactCell) +
+         places.size() * sizeof(SamplePlace) + areas.size() * sizeof(double);
+}
+
 ContactSample SampleCells::sample(const ContactCell& cell, int place) const {
   const SamplePlace& at = places[static_cast<std::size_t>(place)];
   const Carrier &a = carriers[static_cast<std::size_t>(cell.a)],

@@ -33,6 +33,7 @@ struct SampleCells {
 
   void clear();
   int count() const { return static_cast<int>(places.size()); }
+  std::size_t bytes() const;  ///< of all that is kept
   double area(const ContactCell& cell, int place) const {
     return cell.area >= 0.0 ? cell.area : areas[static_cast<std::size_t>(place)];
   }

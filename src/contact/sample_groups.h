@@ -26,6 +26,9 @@ class SampleGroups {
   /// Cells of one pair, appended: first <= cell < last; they stay where they are until `clear`.
   void append(const SampleCells& cells, std::size_t first, std::size_t last, const PressureLaw& law);
   void clear();
+  std::size_t bytes() const {  ///< of all that is kept
+    return groups_.size() * sizeof(Group) + samples_.size() * sizeof(Sample);
+  }
 
   /// @param frame_row  first of the six rows of a frame in f, by its index; -1: it has none
   /// @param on_a  by pair (ContactSample::source): its resultant on side a is added, about the world's origin

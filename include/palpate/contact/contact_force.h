@@ -29,13 +29,19 @@ struct NodeSurface {
 
 /// Wall time of the queries of a source in image space, by stage, since it was made [s].
 struct QueryStages {
-  double positions_s = 0.0;  ///< skins from nodes, rigid surfaces from frames
+  double positions_s = 0.0;  ///< skins from nodes, rigid surfaces from frames, as far as regions need them
   double regions_s = 0.0;    ///< which skin may touch, and along which normal
   double patches_s = 0.0;    ///< faces of a region in its axes, and its camera
-  double images_s = 0.0;     ///< which triangles face each other
+  double images_s = 0.0;     ///< which triangles face each other; of that:
+  double upload_s = 0.0;     ///< what was made, or sent, of the surfaces for the backend
+  double passes_s = 0.0;     ///< both surfaces drawn; of exact lines all that they take
+  double gather_s = 0.0;     ///< both compared, and the pairs brought into one list
+  double readback_s = 0.0;   ///< on the GPU all else of the images: commands, fence, and the list handed out
   double gaps_s = 0.0;       ///< gaps in double, and samples
   long images = 0, pairs = 0;
-  long pixels = 0;  ///< of all images
+  long pixels = 0;               ///< of all images
+  long vertices = 0, faces = 0;  ///< in axes of all images, of both sides; faces that these images show
+  long hits = 0;                 ///< pairs that are near enough, of all images
   /// regions whose normal was not yet that of their overlap, to 1e-3 rad, at their last look
   long unaligned = 0;
   long lines = 0;  ///< pixels with layers or walls, or on a triangle's rim: an image left them to exact lines
@@ -159,6 +165,9 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   /// Of the last query, one by one: made when they are asked for, at the price of a copy.
   const std::vector<ContactSample>& samples() const;
   int sample_count() const;
+  /// What the samples of the last query are kept in: places, cells, carriers, and the groups that their sums
+  /// are made by [bytes].
+  double sample_bytes() const;
   Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
   void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out,
                  Partners partners = Partners::kAll) const;

@@ -15,6 +15,9 @@ struct GpuDevice {
   std::string name, driver;
   bool software = false;  ///< a rasteriser on the processor
 };
+/// Makes ready what draws them, as the first image does otherwise.
+/// @throws Error where that cannot be, saying why
+GpuDevice open_gpu();
 /// Empty names where nothing was drawn.
 GpuDevice gpu_device();
 
