@@ -53,10 +53,7 @@ int bench(const BenchArguments& arguments) {
     arguments.cells > 0 ? bench_fem(arguments) : bench_fem_sizes(arguments);
     return stop_flag() ? kExitStopped : 0;
   }
-  if (arguments.what == "contact") {
-    bench_contact(arguments);
-    return stop_flag() ? kExitStopped : 0;
-  }
+  if (arguments.what == "contact") { return bench_contact(arguments); }
   if (arguments.what == "continuity") {
     bench_continuity(arguments);
     return stop_flag() ? kExitStopped : 0;

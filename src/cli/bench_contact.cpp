@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
 
 #include "bench_contact_ratios.h"
@@ -10,11 +9,14 @@
 #include "palpate/bench/fem.h"
 #include "palpate/core/error.h"
 #include "palpate/report/table.h"
+#include "palpate/store/atomic_file.h"
 #include "scene_of.h"
 #include "stop.h"
 
 namespace palpate::cli {
 namespace {
+
+using Row = std::vector<std::string>;
 
 /// The paper's pairs; of the human at rest nothing touches, which is what its row is about.
 const std::vector<std::string> kScenes = {"touch-head", "touch-human", "two-pumpkins",
@@ -39,81 +41,149 @@ class Machine {
   std::map<int, double> copy_;
 };
 
-std::vector<std::string> row_of(const bench::ContactBenchRow& r, double copy_gb_s) {
-  const auto ms = [](double value) { return fmt::format("{:.2f}", value); };
-  return {r.variant.method,
-          r.variant.pixels > 0 ? fmt::format("{}", r.variant.pixels) : "wanted",
-          fmt::format("{}", r.variant.threads),
-          fmt::format("{}", r.samples),
-          fmt::format("{:.1f}", r.regions),
-          fmt::format("{:.2f} / {:.2f} / {:.2f}", r.query.least, r.query.median, r.query.p99),
-          fmt::format("{:.0f}", 1e-4 * r.query_bytes / copy_gb_s / r.query.median),
-          ms(r.positions_ms),
-          ms(r.regions_ms),
-          ms(r.patches_ms),
-          ms(r.images_ms),
-          ms(r.gaps_ms),
-          ms(r.grouping_ms),
-          ms(r.force_ms),
-          ms(r.tangent_ms),
-          ms(r.linearise_ms),
-          ms(r.solve_ms),
-          fmt::format("{:.1f} / {:.1f}", r.period.median, r.period.p99),
-          fmt::format("{:.2f}", r.real_time_factor())};
+std::string ms(double value) { return fmt::format("{:.2f}", value); }
+std::string ms(const bench::Spread& s) {
+  return fmt::format("{:.2f} / {:.2f} / {:.2f}", s.least, s.median, s.p99);
 }
 
-void print_scene(const scene::Description& description, const BenchArguments& arguments, Machine& machine) {
-  const std::vector<int> pixels = arguments.all              ? std::vector<int>{0, 64, 128, 256, 512, 1024}
-                                  : arguments.pixels.empty() ? std::vector<int>{0, 256}
-                                                             : arguments.pixels,
+Row variant_of(const bench::ContactBenchRow& r) {
+  return {r.variant.method, r.variant.pixels > 0 ? fmt::format("{}", r.variant.pixels) : "wanted",
+          fmt::format("{}", r.variant.threads)};
+}
+
+Row row_of(const bench::ContactBenchRow& r, const bench::ContactBenchRow* cpu, double copy_gb_s) {
+  Row out = variant_of(r);
+  const bool is_beside = cpu && cpu != &r && cpu->query.median > 0.0;
+  out.insert(
+      out.end(),
+      {fmt::format("{}", r.samples), fmt::format("{:.1f}", r.regions), ms(r.query),
+       is_beside ? ms(r.query.median / cpu->query.median) : "-",
+       r.query_bytes > 0.0 ? fmt::format("{:.1f}", 1e-4 * r.query_bytes / copy_gb_s / r.query.median) : "-",
+       ms(r.linearise_ms), ms(r.solve_ms),
+       fmt::format("{:.1f} / {:.1f} / {:.1f}", r.period.least, r.period.median, r.period.p99),
+       ms(r.real_time_factor())});
+  return out;
+}
+
+/// Medians, or the least and the 99th percentile as well.
+Row stages_of(const bench::ContactBenchRow& r, bool all) {
+  Row out = variant_of(r);
+  for (const bench::Spread& stage : r.stages) out.push_back(all ? ms(stage) : ms(stage.median));
+  return out;
+}
+
+void print_scene(const bench::ContactBenchReport::Scene& scene, bool all, Machine& machine) {
+  if (scene.rows.empty()) return;
+  std::vector<Row> rows, stages;
+  std::map<std::string, std::string> devices;
+  for (const bench::ContactBenchRow& r : scene.rows) {
+    rows.push_back(row_of(r, scene.find("cpu", r.variant.pixels, r.variant.threads),
+                          machine.copy_gb_s(r.variant.threads)));
+    stages.push_back(stages_of(r, all));
+    devices[r.variant.method] = r.device + (r.device_is_software ? ": a rasteriser on the processor" : "");
+  }
+  const bench::ContactBenchRow& last = scene.rows.back();
+  fmt::print("{}: {} tetrahedra, skin of {} vertices; the {} exchange periods of {:g} ms {} [ms]\n",
+             scene.name, last.tetrahedra, last.skin_vertices, last.periods, 1e3 * last.period_s,
+             last.touches ? "in which something touches" : "(nothing touches)");
+  for (const auto& [method, device] : devices) fmt::print("  {}: {}\n", method, device);
+  fmt::print("{}\n", report::format_table({"method", "pixels", "threads", "samples", "regions",
+                                           "query: least / median / p99", "/ cpu", "copy [%]", "linearise",
+                                           "solve", "period: least / median / p99", "real time"},
+                                          rows));
+  Row header = {"method", "pixels", "threads"};
+  for (int s = 0; s < bench::kContactStages; ++s)
+    header.emplace_back(name_of(static_cast<bench::ContactStage>(s)));
+  fmt::print("  stages, {}\n{}\n", all ? "least / median / p99" : "medians",
+             report::format_table(header, stages));
+}
+
+bench::ContactBenchReport::Scene run_scene(const scene::Description& description,
+                                           const std::vector<std::string>& methods,
+                                           const BenchArguments& arguments) {
+  const std::vector<int> pixels = !arguments.pixels.empty() ? arguments.pixels
+                                  : arguments.all ? std::vector<int>{0, 64, 128, bench::kBarPixels, 512, 1024}
+                                                  : std::vector<int>{0, bench::kBarPixels},
                          threads = arguments.threads.empty() ? std::vector<int>{1, 2} : arguments.threads;
-  const std::vector<std::string> methods =
-      arguments.all ? std::vector<std::string>{"cpu", "gpu", "exact"} : arguments.methods;
-  std::vector<std::vector<std::string>> rows;
-  bench::ContactBenchRow last;
+  bench::ContactBenchReport::Scene out{description.name, {}};
   for (const std::string& method : methods)
     for (const int edge : pixels)
       for (const int count : threads) {
-        if (stop_flag()) return;
-        last = bench::bench_contact(description, {method, edge, count}, &stop_flag());
-        rows.push_back(row_of(last, machine.copy_gb_s(count)));
+        if (stop_flag()) return out;
+        out.rows.push_back(bench::bench_contact(description, {method, edge, count}, &stop_flag()));
       }
-  fmt::print(
-      "{}: {} tetrahedra, skin of {} vertices; medians of the {} exchange periods of {:g} ms {} [ms]\n"
-      "{}\n",
-      description.name, last.tetrahedra, last.skin_vertices, last.periods, 1e3 * last.period_s,
-      last.touches ? "in which something touches" : "(nothing touches)",
-      report::format_table(
-          {"method", "pixels", "threads", "samples", "regions", "query: least / median / p99", "copy [%]",
-           "skins", "regions", "patches", "images", "gaps", "groups", "force", "tangent", "linearise",
-           "solve", "period: median / p99", "real time"},
-          rows));
+  return out;
 }
 
-}  // namespace
+/// Those asked for, or the processor and, where it opens, the GPU; with --all exact lines as well.
+std::vector<std::string> methods_of(const BenchArguments& arguments, std::string& no_gpu) {
+  if (!arguments.methods.empty()) return arguments.methods;
+  std::vector<std::string> out = {"cpu"};
+  try {
+    bench::device_of("gpu");
+    out.emplace_back("gpu");
+  } catch (const Error& error) {
+    no_gpu = error.what();
+    fmt::print("gpu is left out: {}\n\n", no_gpu);
+  }
+  if (arguments.all) out.emplace_back("exact");
+  return out;
+}
 
-void bench_contact(const BenchArguments& arguments) {
-  if (arguments.growth) return print_contact_growth();
+void print_legend(const Machine& machine) {
+  fmt::print(
+      "A query is the sum of the stages from skins to groups; forces and tangent are the contact's own, "
+      "once.\n"
+      "skins: positions from nodes; regions: bounds and pruning; faces: in axes of their region; upload, "
+      "passes,\ngather and readback: the images, passes and gather of gpu by its own clock; gaps: in double, "
+      "and samples;\ngroups: samples by their nodes, and checks.  / cpu: beside the same query on the "
+      "processor.\nlinearise: contact for the tool's ticks; solve: factorisation and solution of a period's "
+      "steps; real time:\nsimulated over run time.  copy: the time that a query's bytes, each once, take at "
+      "the bandwidth of copying,\nas a share of its time;");
+  for (const auto& [threads, gb_s] : machine.measured())
+    fmt::print(" {:.1f} GB/s with {} thread{}", gb_s, threads, threads > 1 ? "s," : ",");
+  fmt::print(" arrays of 67 MB.\n\n");
+}
+
+void run_scenes(const BenchArguments& arguments, bench::ContactBenchReport& report) {
   Machine machine;
   std::vector<scene::Description> descriptions;
   for (const std::string& scene : arguments.scenes.empty() ? kScenes : arguments.scenes)
     descriptions.push_back(scene_of({scene, {}, ""}));
   if (arguments.scenes.empty()) descriptions.push_back(bench::against_itself(scene_of({kAtRest, {}, ""})));
+  const std::vector<std::string> methods = methods_of(arguments, report.no_gpu);
   for (const scene::Description& description : descriptions) {
     if (stop_flag()) return;
-    print_scene(description, arguments, machine);
+    report.scenes.push_back(run_scene(description, methods, arguments));
+    print_scene(report.scenes.back(), arguments.all, machine);
   }
-  fmt::print(
-      "A query is skins + regions + patches + images + gaps + groups.  force and tangent are the contact's "
-      "own,\nonce; solve is the factorisation and solution of a period's steps; real time is simulated over "
-      "run time.\ncopy: the time that a query's bytes, each once, take at the bandwidth of copying, as a "
-      "share of its time;");
-  for (const auto& [threads, gb_s] : machine.measured())
-    fmt::print(" {:.1f} GB/s with {} thread{}", gb_s, threads, threads > 1 ? "s," : ",");
-  fmt::print(" arrays of 67 MB.\n\n");
+  print_legend(machine);
   if (arguments.scenes.empty())
     descriptions.push_back(bench::row_of_bodies(scene_of({kInARow, {}, ""}), kRow, kSpacing));
-  print_contact_prices(descriptions);
+  for (const scene::Description& description : descriptions) {
+    if (stop_flag()) return;
+    report.prices.push_back(bench::bench_contact_price(description, &stop_flag()));
+  }
+  print_contact_prices(report.prices);
+}
+
+}  // namespace
+
+int bench_contact(const BenchArguments& arguments) {
+  bench::ContactBenchReport report;
+  if (!arguments.growth) run_scenes(arguments, report);
+  if (arguments.growth || (arguments.check && arguments.scenes.empty())) {
+    report.growth = run_contact_growth();
+    print_contact_growth(report.growth);
+  }
+  if (!arguments.folder.empty()) {
+    const std::filesystem::path file = std::filesystem::path(arguments.folder) / "bench-contact.json";
+    std::filesystem::create_directories(arguments.folder);
+    store::write_atomically(file, bench::to_json(report));
+    fmt::print("written: {}\n", file.string());
+  }
+  if (stop_flag()) return kExitStopped;
+  return arguments.check && !print_contact_bars(bench::contact_bars(report)) ? kExitError : 0;
 }
 
 }  // namespace palpate::cli

@@ -53,7 +53,7 @@ void bench_continuity(const BenchArguments& arguments) {
   options.paths = arguments.paths;
   options.steps = arguments.path_steps;
   options.halvings = static_cast<int>(std::lround(std::log2(kPieces / options.steps)));
-  options.method = arguments.methods.front();
+  if (!arguments.methods.empty()) options.method = arguments.methods.front();
   options.quadrature_error = arguments.quadrature_error;
   std::vector<std::vector<std::string>> rows;
   for (const std::string& scene : scenes) {

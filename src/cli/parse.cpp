@@ -316,7 +316,10 @@ void add_bench(CLI::App& app, Invocation& invocation) {
       ->delimiter(',')
       ->check(CLI::Range(1, 64));
   command
-      ->add_option("--method", arguments->methods, "contact: see `palpate list contact-methods`; default cpu")
+      ->add_option(
+          "--method", arguments->methods,
+          "contact, continuity: see `palpate list contact-methods`; default of contact cpu and, where "
+          "OpenGL opens, gpu; of continuity cpu")
       ->type_name("NAME")
       ->delimiter(',')
       ->check(CLI::IsMember({"cpu", "gpu", "exact"}));
@@ -325,9 +328,13 @@ void add_bench(CLI::App& app, Invocation& invocation) {
                    "contact: longer edge of the images; 0: as the scene wants; default 0,256")
       ->delimiter(',')
       ->check(CLI::Range(0, 4096));
-  command->add_flag("--all", arguments->all, "contact: every backend, 64 to 1024 pixels");
+  command->add_flag("--all", arguments->all,
+                    "contact: every backend, 64 to 1024 pixels, each stage with its least time and 99th "
+                    "percentile");
   command->add_flag("--growth", arguments->growth,
                     "contact: how a query grows with the skin's vertices and the region's area instead");
+  command->add_flag("--check", arguments->check,
+                    "contact: compare what was measured with its bars; with no scene named the growth, too");
   command->add_option("--linear-rtol", arguments->linear_rtols, "fem: tolerances; default 1e-6,1e-3")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
@@ -345,7 +352,9 @@ void add_bench(CLI::App& app, Invocation& invocation) {
       ->capture_default_str();
   command->add_flag("--accuracy", arguments->accuracy,
                     "fem: error against run time of one motion instead of the stages of a step");
-  command->add_option("-o,--output", arguments->folder, "fem: folder for bench-fem.json and bench-fem.svg")
+  command
+      ->add_option("-o,--output", arguments->folder,
+                   "fem: folder for bench-fem.json and bench-fem.svg; contact: for bench-contact.json")
       ->type_name("DIR");
   command
       ->add_option("--calibrate", arguments->calibrate,
@@ -378,8 +387,11 @@ void add_bench(CLI::App& app, Invocation& invocation) {
   palpate bench contact                          the paper's pairs: stages, and contact beside a step
   palpate bench contact touch-head --method cpu,gpu --pixels 128,256,512
   palpate bench contact --growth                 skins of 10,000 to 1,000,000 vertices
+  palpate bench contact --check -o out/bench     is each figure what it must be?
   palpate bench continuity gears --paths 100
-  palpate bench leave-out falling-ball --repeats 9)");
+  palpate bench leave-out falling-ball --repeats 9
+
+Exit status with contact --check: 0 when every figure keeps its bar, else 1.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return bench(*arguments); };
     invocation.factorises = true;

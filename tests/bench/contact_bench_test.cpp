@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "bench/contact/query_bytes.h"
 #include "bench/contact/statistics.h"
 #include "palpate/core/error.h"
 
@@ -18,13 +17,6 @@ TEST(ContactBench, QuantilesAreValuesThatWereMeasured) {
   EXPECT_EQ(spread.median, 2.0);
   EXPECT_EQ(spread.p99, 5.0);
   EXPECT_EQ(spread_of({}).median, 0.0);
-}
-
-TEST(ContactBench, BytesOfAQueryAreOfWhatItLooksAt) {
-  EXPECT_EQ(query_bytes({}), 0.0);
-  EXPECT_EQ(query_bytes({.nodes = 1.0}), 48.0);
-  EXPECT_EQ(query_bytes({.nodes = 2.0, .faces = 10.0, .pixels = 100.0, .samples = 1000.0}),
-            96.0 + 540.0 + 3200.0 + 264000.0);
 }
 
 // The lens of two spheres that meet in a circle of radius a is pi a^2 large, seen along the line of their

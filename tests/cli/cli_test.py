@@ -361,9 +361,54 @@ class Results(Cli):
         self.assertLess(rows[-1]["elastic_j"], 2e-3 * elastic)  # it has its shape again
 
     def test_bench_contact_prints_its_stages(self):
-        text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64")
-        self.assertRegex(text, r"(?m)^cpu +64 +1 +[1-9]\d* ")
+        text = self.good("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64", "-o", "out")
+        spread = r"\d+\.\d+ / \d+\.\d+ / \d+\.\d+"
+        self.assertRegex(text, rf"(?m)^cpu +64 +1 +[1-9]\d* +0\.0 +{spread} +- +\d")
+        self.assertRegex(text, rf"(?m)^gpu +64 +1 +[1-9]\d* +0\.0 +{spread} +\d+\.\d\d +- ")  # over cpu
+        self.assertRegex(text, r"(?m)^method .* skins +regions +faces +upload +passes +gather +readback "
+                               r"+gaps +groups +forces +tangent *$")
+        self.assertRegex(text, r"(?m)^cpu +64 +1( +\d+\.\d\d){11} *$")
+        for pixels in "wanted", "256":  # prices
+            self.assertRegex(text, rf"(?m)^press-ball +{pixels} ")
+        written = json.loads((self.folder / "out/bench-contact.json").read_text())
+        cpu, gpu = written["scenes"][0]["rows"]
+        self.assertEqual((cpu["method"], gpu["method"]), ("cpu", "gpu"))
+        self.assertRegex(cpu["device"], r"^.+, (baseline|avx2|avx512)$")
+        self.assertIn("4.", gpu["device"])
+        for row in cpu, gpu:
+            self.assertIn(f"\n  {row['method']}: {row['device']}", text)
         self.assertIn("nothing to see in an image", self.refused("bench", "contact", "falling-ball"))
+
+    def test_bench_contact_gives_each_stage_its_spread(self):
+        text = self.good("bench", "contact", "press-ball", "--method", "exact", "--threads", "1", "--all",
+                         "--pixels", "64")
+        self.assertRegex(text, r"(?m)^exact +64 +1( +\d+\.\d+ / \d+\.\d+ / \d+\.\d+){11} *$")
+
+    def test_bench_contact_without_a_gpu_says_so(self):
+        done = self.call("bench", "contact", "press-ball", "--threads", "1", "--pixels", "64",
+                         __EGL_VENDOR_LIBRARY_FILENAMES="/nowhere")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"(?m)^gpu is left out: .*install ")
+        self.assertNotRegex(done.stdout, r"(?m)^gpu +64 ")
+
+    def test_bench_contact_checks_its_bars(self):
+        scene = (PROGRAM.parent / "../share/palpate/scenes/press-ball.toml").read_text()
+        scene = scene.split("\n[compare]")[0]
+        # in one linear solve 300 nodes are stepped faster than 256 pixels along an edge are looked at
+        quick = scene.replace('name = "cvode-bdf"\nrtol = 1e-3',
+                              'name = "linearly-implicit-euler"\nstep_s = 0.01')
+        self.assertNotEqual(quick, scene)
+        (self.folder / "quick.toml").write_text(quick)
+        done = self.call("bench", "contact", "quick.toml", "--method", "cpu", "--threads", "1", "--check")
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertEqual(done.stderr, "")
+        self.assertRegex(done.stdout, r"(?m)^press-ball +query / step +\S+ +<= 1 +missed *$")
+        bars = re.findall(r"(?m)^press-ball .* (?:<=|>=) \S+ +(met|missed) *$", done.stdout)
+        self.assertTrue(done.stdout.endswith(f"\n{bars.count('met')} of {len(bars)} bars met\n"), done.stdout)
+        # before they touch there is little to look at
+        (self.folder / "apart.toml").write_text(scene.replace("duration_s = 0.4", "duration_s = 0.05"))
+        text = self.good("bench", "contact", "apart.toml", "--method", "cpu", "--threads", "1", "--check")
+        self.assertTrue(text.endswith("\n1 of 1 bars met\n"), text)
 
     def test_keys_are_listed_with_unit_range_default_and_meaning(self):
         text = self.good("list", "keys")

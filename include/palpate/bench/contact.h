@@ -1,8 +1,11 @@
 #pragma once
+#include <array>
 #include <atomic>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "palpate/core/types.h"
 #include "palpate/scene/description.h"
 
 namespace palpate::bench {
@@ -19,9 +22,31 @@ struct Spread {
   double least = 0.0, median = 0.0, p99 = 0.0;
 };
 
-/// What contact costs in an exchange period, stage by stage (medians), and beside it the rest of the period.
+/// What a period spends on contact, in its order.  Of the images the first three are timed on the processor
+/// that does them: of "gpu" by the GPU's own clock.
+enum class ContactStage {
+  kSkins,     ///< positions of skins, and of rigid surfaces, as far as regions need them
+  kRegions,   ///< bounds and pruning: which skin may touch, along which normal
+  kFaces,     ///< faces in axes of their region, and its camera
+  kUpload,    ///< what was made, or sent, of the surfaces for the backend
+  kPasses,    ///< both surfaces drawn; of exact lines all that they take
+  kGather,    ///< both compared, and the pairs brought into one list
+  kReadback,  ///< on the GPU all else of the images: commands, fence, and the list handed out by region
+  kGaps,      ///< gaps in double, and samples
+  kGroups,    ///< the rest of the query: samples by the nodes that they share, checks
+  kForces,    ///< of all samples, once, at the end of the period
+  kTangent    ///< likewise
+};
+inline constexpr int kContactStages = 11;
+inline constexpr int kQueryStages = 9;  ///< the first of them make up a query
+std::string_view name_of(ContactStage stage);
+
+/// What contact costs in an exchange period, and beside it the rest of the period (medians where nothing else
+/// is said).
 struct ContactBenchRow {
   ContactBenchVariant variant;
+  std::string device;               ///< what made the images (device_of)
+  bool device_is_software = false;  ///< "gpu" by a rasteriser on the processor
   int skin_vertices = 0, tetrahedra = 0;
   /// that were timed: those in which something touched, or all where nothing ever did
   int periods = 0;
@@ -29,12 +54,11 @@ struct ContactBenchRow {
   long samples = 0;      ///< median of a query
   double regions = 0.0;  ///< mean of a query, of contacts with proxies
   long images = 0;       ///< median number of a query
-  Spread query, period;  ///< the whole query; the whole exchange period
+  Spread query;          ///< the whole query
+  Spread to_forces;      ///< the same and the forces on nodes
+  Spread period;         ///< the whole exchange period
   Spread step;           ///< the period without its query: the integrator's steps, and the tool's ticks
-  double positions_ms = 0.0, regions_ms = 0.0, patches_ms = 0.0, images_ms = 0.0, gaps_ms = 0.0;
-  double grouping_ms = 0.0;  ///< rest of the query: groups, checks
-  /// forces and tangent of all samples at the end of the period, once each
-  double force_ms = 0.0, tangent_ms = 0.0;
+  std::array<Spread, kContactStages> stages;
   double linearise_ms = 0.0;  ///< of the contact for the tool's ticks, mean of all periods; 0 without a tool
   double solve_ms = 0.0;      ///< factorisation and solution of the period's steps
   double period_s = 0.0;      ///< simulated
@@ -42,10 +66,25 @@ struct ContactBenchRow {
   /// stands beside the pattern
   double assembly_ms = 0.0;
   double elements_ms = 0.0;  ///< fused assembly over the elements of the first body at the same states
-  double query_bytes = 0.0;  ///< median of what a query must read and write (query_bytes() of contact_work.h)
+  double query_bytes = 0.0;  ///< what a query reads and writes (contact/query_bytes.h); 0: not known
+  /// With friction, of the pairs whose tangent is symmetric, largest of the run: the friction that a step
+  /// left out, and the friction [N].
+  double left_out_n = 0.0, friction_n = 0.0;
+  std::vector<Vec3> forces;  ///< sum over the first body's nodes after each period [N]
+
+  const Spread& of(ContactStage stage) const { return stages[static_cast<std::size_t>(stage)]; }
   /// simulated time over median run time
   double real_time_factor() const { return period.median > 0.0 ? 1e3 * period_s / period.median : 0.0; }
 };
+
+/// What finds the gaps of a method: "processor, instruction set", or of "gpu" the GPU and its driver, by the
+/// driver's own words.
+struct ContactDevice {
+  std::string name;
+  bool software = false;  ///< of "gpu": a rasteriser on the processor
+};
+/// @throws Error for "gpu" where it cannot be opened, saying why
+ContactDevice device_of(const std::string& method);
 
 /// Runs the scene for its duration, one exchange period after the other.
 /// @param stop  true: ends early, with what there is
@@ -61,17 +100,33 @@ scene::Description against_itself(scene::Description description);
 /// many contact regions in one implicit solve.
 scene::Description row_of_bodies(scene::Description description, int count, double spacing_m);
 
+/// What friction 0.3 makes of a step, with the tangent's unsymmetric part left out and with it ("full").
+struct FrictionPrice {
+  double symmetric_ms = 0.0, full_ms = 0.0;
+  double left_out = 0.0;  ///< largest friction that a step left out, over the largest friction
+  /// Between the two runs, over the largest force: the largest difference of the force on the first body at
+  /// the same time.
+  double force_change = 0.0;
+};
+
 /// Contact beside the rest of a step, as ratios of one run: medians of periods, one thread, the processor's
-/// image with as many pixels as the scene wants [ms].
+/// image [ms].
 struct ContactPrice {
-  ContactBenchRow contact;
+  std::string scene;
+  int pairs = 0;  ///< contacts that the scene names
   /// A step of the first body without contact or tool, with linear_rtol = 1e-3.  As all that is without
   /// contact it moves under its weight: at rest there is nothing to solve.
   double one_body_ms = 0.0;
   /// With the scene's tolerance: the sum of such steps of each body by itself, and a step of all together.
   double bodies_ms = 0.0, contact_free_ms = 0.0;
-  double friction_ms = 0.0;  ///< a step of the scene with friction 0.3; 0 of a scene with a tool
+  struct Contact {
+    ContactBenchRow row;
+    FrictionPrice friction;  ///< zeros of a scene with a tool, and where nothing touches
+  };
+  std::vector<Contact> contacts;  ///< with as many pixels as the scene wants, and with kBarPixels
 };
+/// The pixels that the bars on speed are stated at.
+inline constexpr int kBarPixels = 256;
 ContactPrice bench_contact_price(const scene::Description& description,
                                  const std::atomic<bool>* stop = nullptr);
 
@@ -90,5 +145,41 @@ std::vector<ContactGrowthRow> bench_skin_growth(const std::vector<int>& skin_ver
 /// @param pixels  along the longer edge of the image; 0: as many as an error of 1e-3 wants
 std::vector<ContactGrowthRow> bench_patch_growth(int skin_vertices, double factor, int count, int pixels,
                                                  const std::atomic<bool>* stop = nullptr);
+
+/// How the query's time grows with what `rows` differ in: a power.
+struct ContactGrowth {
+  std::string with;  ///< "skin" or "area"
+  int pixels = 0;    ///< 0: as an error of 1e-3 wants
+  std::vector<ContactGrowthRow> rows;
+  double exponent() const;  ///< NaN for fewer than two rows
+};
+
+/// All that `palpate bench contact` measures.
+struct ContactBenchReport {
+  struct Scene {
+    std::string name;
+    std::vector<ContactBenchRow> rows;
+    /// Null where there is none.
+    const ContactBenchRow* find(const std::string& method, int pixels, int threads) const;
+  };
+  std::vector<Scene> scenes;
+  std::vector<ContactPrice> prices;
+  std::vector<ContactGrowth> growth;
+  std::string no_gpu;  ///< why "gpu" was left out; empty: it was not
+};
+
+/// What a figure of the report must keep.
+struct ContactBar {
+  std::string scene;  ///< empty: of no scene
+  std::string what;
+  double value = 0.0, bar = 0.0;
+  bool at_least = false;                                                  ///< else at most
+  bool is_met() const { return at_least ? value >= bar : value <= bar; }  ///< false for NaN
+};
+/// The bars of all that was measured, in the report's order; bars.cpp lists them.
+std::vector<ContactBar> contact_bars(const ContactBenchReport& report);
+
+/// With the bars, and the processor that all of it ran on.
+std::string to_json(const ContactBenchReport& report);
 
 }  // namespace palpate::bench

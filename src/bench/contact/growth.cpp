@@ -8,6 +8,7 @@
 
 #include "bench/contact/statistics.h"
 #include "palpate/bench/contact.h"
+#include "palpate/bench/fem.h"
 #include "palpate/contact/sources.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
@@ -138,6 +139,13 @@ std::vector<ContactGrowthRow> bench_patch_growth(int skin_vertices, double facto
   for (int k = 0; k < count && !stopped(stop); ++k)
     out.push_back(touch(ball, kRegion * std::pow(factor, 0.5 * k / (count - 1)), pixels));
   return out;
+}
+
+double ContactGrowth::exponent() const {
+  std::vector<std::pair<double, double>> points;
+  for (const ContactGrowthRow& r : rows)
+    points.emplace_back(with == "area" ? r.area_m2 : static_cast<double>(r.skin_vertices), r.query.median);
+  return scaling_exponent(points);
 }
 
 }  // namespace palpate::bench

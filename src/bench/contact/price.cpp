@@ -54,12 +54,45 @@ double bodies_alone_ms(scene::Description d, const std::atomic<bool>* stop) {
   return times.median_ms();
 }
 
+/// |F_symmetric - F_full| at each time, the largest over the largest |F_full|; both runs have the same
+/// periods.
+double largest_change(const std::vector<Vec3>& symmetric, const std::vector<Vec3>& full) {
+  double change = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < std::min(symmetric.size(), full.size()); ++i) {
+    change = std::max(change, (symmetric[i] - full[i]).norm());
+    size = std::max(size, full[i].norm());
+  }
+  return size > 0.0 ? change / size : 0.0;
+}
+
+FrictionPrice friction_price(scene::Description d, const ContactBenchVariant& variant,
+                             const std::atomic<bool>* stop) {
+  const auto run = [&](const char* tangent) {
+    for (ContactSpec& contact : d.contacts) {
+      contact.friction = kFriction;
+      contact.friction_tangent = tangent;
+    }
+    return bench_contact(d, variant, stop);
+  };
+  const ContactBenchRow symmetric = run("symmetric"), full = run("full");
+  FrictionPrice out{.symmetric_ms = symmetric.step.median, .full_ms = full.step.median};
+  if (symmetric.friction_n > 0.0) out.left_out = symmetric.left_out_n / symmetric.friction_n;
+  out.force_change = largest_change(symmetric.forces, full.forces);
+  return out;
+}
+
 }  // namespace
 
 ContactPrice bench_contact_price(const scene::Description& d, const std::atomic<bool>* stop) {
   ContactPrice out;
-  const ContactBenchVariant variant{.method = "cpu"};
-  out.contact = bench_contact(d, variant, stop);
+  out.scene = d.name;
+  out.pairs = static_cast<int>(d.contacts.size());
+  for (const int pixels : {0, kBarPixels}) {
+    const ContactBenchVariant variant{.method = "cpu", .pixels = pixels};
+    ContactPrice::Contact& contact = out.contacts.emplace_back();
+    contact.row = bench_contact(d, variant, stop);
+    if (!d.tool && contact.row.touches) contact.friction = friction_price(d, variant, stop);
+  }
   out.contact_free_ms = bodies_alone_ms(d, stop);
   for (const SoftBodySpec& body : d.bodies) {
     scene::Description alone = d;
@@ -68,11 +101,6 @@ ContactPrice bench_contact_price(const scene::Description& d, const std::atomic<
     if (out.one_body_ms > 0.0) continue;
     alone.integrator.linear_rtol = kInteractive;
     out.one_body_ms = bodies_alone_ms(alone, stop);
-  }
-  if (!d.tool) {
-    scene::Description rubbing = d;
-    for (ContactSpec& contact : rubbing.contacts) contact.friction = kFriction;
-    out.friction_ms = bench_contact(rubbing, variant, stop).step.median;
   }
   return out;
 }

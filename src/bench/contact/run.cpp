@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "bench/contact/assembly_times.h"
-#include "bench/contact/query_bytes.h"
 #include "bench/contact/statistics.h"
 #include "palpate/bench/contact.h"
 #include "palpate/contact/contact_force.h"
+#include "palpate/contact/query_bytes.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
 #include "palpate/loop/run.h"
@@ -15,21 +15,25 @@ namespace {
 
 /// Cumulative times [s] and counts after a period.
 struct Times {
-  double wall = 0, query = 0, positions = 0, regions = 0, patches = 0, images = 0, gaps = 0, solve = 0;
-  long image_count = 0, pixels = 0, region_count = 0, faces = 0;
+  double wall = 0.0, query = 0.0, solve = 0.0;
+  std::array<double, kQueryStages> stages{};
+  long images = 0, regions = 0;
+  contact::QueryCounts counts;
 };
 
-/// Times of the periods, one each [ms].
+/// Of the periods, one entry each; times in [ms].
 struct Periods {
-  std::vector<double> query, positions, regions, patches, images, gaps, rest, solve, whole, step, force,
-      tangent, samples, image_counts, region_counts, bytes, assembly, elements;
+  std::vector<double> query, to_forces, solve, whole, step, samples, images, regions, bytes, assembly,
+      elements;
+  std::array<std::vector<double>, kContactStages> stages;
 };
 
 /// What each period took; what the observer does itself is not counted.
 class Watch : public loop::Observer {
  public:
-  explicit Watch(loop::World& world) : assembly_(world) {
+  Watch(loop::World& world, const std::string& method) : method_(method), assembly_(world) {
     for (const loop::Body& body : world.bodies) nodes_ += static_cast<double>(body.rest.nodes.cols());
+    first_body_ = *world.state.layout().find(world.bodies.front().block_id);
   }
 
   void period(loop::World& world, double) override {
@@ -42,6 +46,10 @@ class Watch : public loop::Observer {
       world.contact->add_force(state, force_);
       const double forced = wall_seconds() - start;
       const bool touches = !force_.isZero(0.0);
+      forces.push_back(
+          Eigen::Map<const Points>(force_.data() + first_body_.u_offset, 3, first_body_.u_size / 3)
+              .rowwise()
+              .sum());
       keep(world, now, forced, touches ? touching : apart);
     }
     started_ = true;
@@ -50,56 +58,75 @@ class Watch : public loop::Observer {
   }
 
   Periods touching, apart;
+  std::vector<Vec3> forces;
 
  private:
   Times times_of(loop::World& world) const {
     Times t;
     t.wall = wall_seconds();
     t.query = world.contact->query_seconds();
+    const auto add = [&](ContactStage stage, double seconds) {
+      t.stages[static_cast<std::size_t>(stage)] += seconds;
+    };
     for (const contact::QueryStages* s : world.contact->stages()) {
       if (!s) continue;
-      t.positions += s->positions_s;
-      t.regions += s->regions_s;
-      t.patches += s->patches_s;
-      t.images += s->images_s;
-      t.gaps += s->gaps_s;
-      t.image_count += s->images;
-      t.pixels += s->pixels;
+      add(ContactStage::kSkins, s->positions_s);
+      add(ContactStage::kRegions, s->regions_s);
+      add(ContactStage::kFaces, s->patches_s);
+      add(ContactStage::kUpload, s->upload_s);
+      add(ContactStage::kPasses, s->passes_s);
+      add(ContactStage::kGather, s->gather_s);
+      add(ContactStage::kReadback, s->readback_s);
+      add(ContactStage::kGaps, s->gaps_s);
+      t.images += s->images;
+      t.counts.image_vertices += static_cast<double>(s->vertices);
+      t.counts.image_faces += static_cast<double>(s->faces);
+      t.counts.pixels += static_cast<double>(s->pixels);
+      t.counts.pairs += static_cast<double>(s->pairs);
+      t.counts.hits += static_cast<double>(s->hits);
     }
     for (const proxy::PruneCounts* p : world.contact->pruning()) {
       if (!p) continue;
-      t.region_count += p->regions;
-      t.faces += p->faces_a + p->faces_b;
+      t.regions += p->regions;
+      t.counts.faces += static_cast<double>(p->faces_a + p->faces_b);
     }
+    double known = 0.0;
+    for (const double seconds : t.stages) known += seconds;
+    add(ContactStage::kGroups, t.query - known);
     const dynamics::StepperCounters& c = world.stepper->counters();
     t.solve = c.solver.factor_s + c.solver.symbolic_s + c.solver.solve_s;
     return t;
   }
 
+  /// Of the period that ends now.
+  double bytes(const Times& now, double sample_bytes) const {
+    contact::QueryCounts c = now.counts;
+    const contact::QueryCounts& before = before_.counts;
+    for (double contact::QueryCounts::*of :
+         {&contact::QueryCounts::faces, &contact::QueryCounts::image_vertices,
+          &contact::QueryCounts::image_faces, &contact::QueryCounts::pixels, &contact::QueryCounts::pairs,
+          &contact::QueryCounts::hits})
+      c.*of -= before.*of;
+    c.nodes = nodes_;
+    if (method_ == "exact") c.pixels = 0.0;  // lines, and no image
+    c.sample_bytes = sample_bytes;
+    return contact::query_bytes(c);
+  }
+
   void keep(loop::World& world, const Times& now, double force_s, Periods& to) {
-    const auto add = [&](std::vector<double>& list, double Times::*of) {
-      list.push_back(1e3 * (now.*of - before_.*of));
-    };
-    const auto count = [&](long Times::*of) { return static_cast<double>(now.*of - before_.*of); };
-    add(to.whole, &Times::wall);
-    add(to.query, &Times::query);
-    add(to.positions, &Times::positions);
-    add(to.regions, &Times::regions);
-    add(to.patches, &Times::patches);
-    add(to.images, &Times::images);
-    add(to.gaps, &Times::gaps);
-    add(to.solve, &Times::solve);
-    to.rest.push_back(to.query.back() - to.positions.back() - to.regions.back() - to.patches.back() -
-                      to.images.back() - to.gaps.back());
+    const auto ms = [&](double Times::*of) { return 1e3 * (now.*of - before_.*of); };
+    to.whole.push_back(ms(&Times::wall));
+    to.query.push_back(ms(&Times::query));
+    to.solve.push_back(ms(&Times::solve));
+    to.to_forces.push_back(to.query.back() + 1e3 * force_s);
     to.step.push_back(to.whole.back() - to.query.back());
-    to.force.push_back(1e3 * force_s);
+    for (std::size_t s = 0; s < kQueryStages; ++s)
+      to.stages[s].push_back(1e3 * (now.stages[s] - before_.stages[s]));
+    to.stages[static_cast<std::size_t>(ContactStage::kForces)].push_back(1e3 * force_s);
     to.samples.push_back(static_cast<double>(world.contact->sample_count()));
-    to.image_counts.push_back(count(&Times::image_count));
-    to.region_counts.push_back(count(&Times::region_count));
-    to.bytes.push_back(query_bytes({.nodes = nodes_,
-                                    .faces = count(&Times::faces),
-                                    .pixels = count(&Times::pixels),
-                                    .samples = to.samples.back()}));
+    to.images.push_back(static_cast<double>(now.images - before_.images));
+    to.regions.push_back(static_cast<double>(now.regions - before_.regions));
+    to.bytes.push_back(bytes(now, world.contact->sample_bytes()));
     to.assembly.push_back(assembly_.contact_ms());
     to.elements.push_back(assembly_.elements_ms());
     const dynamics::StateView state = world.state.view();
@@ -109,11 +136,13 @@ class Watch : public loop::Observer {
     }
     const double start = wall_seconds();
     world.contact->add_tangent(state, 1e-4, 1e-2, matrix_);
-    to.tangent.push_back(1e3 * (wall_seconds() - start));
+    to.stages[static_cast<std::size_t>(ContactStage::kTangent)].push_back(1e3 * (wall_seconds() - start));
   }
 
+  std::string method_;
   bool started_ = false;
   double nodes_ = 0.0;
+  dynamics::Block first_body_;
   Times before_;
   VecX force_;
   AssemblyTimes assembly_;
@@ -124,24 +153,18 @@ class Watch : public loop::Observer {
 void fill(ContactBenchRow& out, const Periods& of) {
   out.periods = static_cast<int>(of.whole.size());
   out.query = spread_of(of.query);
+  out.to_forces = spread_of(of.to_forces);
   out.period = spread_of(of.whole);
   out.step = spread_of(of.step);
-  out.positions_ms = median(of.positions);
-  out.regions_ms = median(of.regions);
-  out.patches_ms = median(of.patches);
-  out.images_ms = median(of.images);
-  out.gaps_ms = median(of.gaps);
-  out.grouping_ms = median(of.rest);
-  out.force_ms = median(of.force);
-  out.tangent_ms = median(of.tangent);
+  for (std::size_t s = 0; s < kContactStages; ++s) out.stages[s] = spread_of(of.stages[s]);
   out.solve_ms = median(of.solve);
   out.assembly_ms = median(of.assembly);
   out.elements_ms = median(of.elements);
-  out.query_bytes = median(of.bytes);
+  // of images in memory of its own the processor's bandwidth is no measure
+  if (out.variant.method != "gpu") out.query_bytes = median(of.bytes);
   out.samples = static_cast<long>(median(of.samples));
-  out.images = static_cast<long>(median(of.image_counts));
-  for (const double regions : of.region_counts)
-    out.regions += regions / static_cast<double>(of.region_counts.size());
+  out.images = static_cast<long>(median(of.images));
+  for (const double regions : of.regions) out.regions += regions / static_cast<double>(of.regions.size());
 }
 
 /// Sets how the gaps of all contacts in image space are found; whether there is one.
@@ -181,14 +204,20 @@ ContactBenchRow bench_contact(scene::Description d, const ContactBenchVariant& v
     out.skin_vertices +=
         static_cast<int>(body.skin ? body.skin->rest.vertices.cols() : body.boundary.surface.vertices.cols());
   }
-  Watch watch(*world);
+  Watch watch(*world, variant.method);
   loop::RunOptions options;
   options.observers = {&watch};
   options.stop = stop;
   const loop::RunResult result = loop::run(*world, options);
   if (!result.status.ok()) fail("bench contact: {}", result.status.message);
+  const ContactDevice device = device_of(variant.method);
+  out.device = device.name;
+  out.device_is_software = device.software;
   out.touches = !watch.touching.whole.empty();
   fill(out, out.touches ? watch.touching : watch.apart);
+  out.left_out_n = world->contact->largest_friction_lag();
+  out.friction_n = world->contact->largest_lagged_friction();
+  out.forces = std::move(watch.forces);
   out.linearise_ms = 1e3 * result.linearise_s / static_cast<double>(std::max(1L, result.periods));
   return out;
 }

@@ -1,0 +1,126 @@
+// What one run says of contact: stages, devices, prices.
+#include <gtest/gtest.h>
+
+#include "loop/small_scenes.h"
+#include "palpate/bench/contact.h"
+#include "palpate/contact/gpu_available.h"
+#include "palpate/core/error.h"
+#include "palpate/core/instructions.h"
+
+namespace palpate::bench {
+namespace {
+
+/// A block held at its foot, and another one held at its top, which is pushed into it and then aside.
+scene::Description rubbing_blocks() {
+  constexpr double kLength = 0.02, kPressed = 1e-3;
+  scene::Description d = small_scenes::held_block();
+  d.name = "rubbing blocks";
+  d.duration_s = 0.1;
+  d.bodies.push_back(d.bodies[0]);
+  SoftBodySpec& upper = d.bodies[1];
+  upper.name = "upper";
+  upper.position_m.z() = 1.5 * kLength - kPressed;
+  upper.attachments[0].box_min_m.z() = 2 * kLength - kPressed - 1e-6;
+  upper.attachments[0].box_max_m.z() = 2 * kLength - kPressed + 1e-6;
+  upper.attachments[0].keyframes = {{.time_s = 0.0}, {.time_s = 0.1, .position_m = Vec3(0.005, 0, 0)}};
+  ContactSpec contact;
+  contact.first = "block";
+  contact.second = "upper";
+  contact.stiffness_pa_m = 1e6;
+  d.contacts = {contact};
+  d.gravity_m_s2 = Vec3::Zero();
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
+  d.integrator.name = "linearly-implicit-euler";
+  d.integrator.step_s = 0.01;
+  d.integrator.linear_rtol = 1e-6;
+  return d;
+}
+
+std::vector<std::string> methods() {
+  std::vector<std::string> out = {"cpu", "exact"};
+  if (contact::gpu_available()) out.emplace_back("gpu");
+  return out;
+}
+
+// Of every period the stages make up the query, so the sum of the least is no more than the least query, and
+// that of the largest no less than the largest one: p99 of a few periods is the largest.
+TEST(ContactRun, StagesMakeUpTheQuery) {
+  for (const std::string& method : methods()) {
+    SCOPED_TRACE(method);
+    const ContactBenchRow r = bench_contact(rubbing_blocks(), {.method = method, .pixels = 64});
+    EXPECT_TRUE(r.touches);
+    EXPECT_EQ(r.periods, 10);
+    EXPECT_EQ(r.forces.size(), 10u);
+    EXPECT_GT(r.samples, 100);
+    double least = 0.0, most = 0.0;
+    for (int s = 0; s < kQueryStages; ++s) {
+      const Spread& stage = r.of(static_cast<ContactStage>(s));
+      least += stage.least;
+      most += stage.p99;
+    }
+    constexpr double kRounding = 1e-9;
+    EXPECT_LE(least, r.query.least + kRounding);
+    EXPECT_GE(most, r.query.p99 - kRounding);
+    for (const Spread& s : r.stages) EXPECT_TRUE(s.least <= s.median && s.median <= s.p99);
+    for (const ContactStage stage : {ContactStage::kSkins, ContactStage::kPasses, ContactStage::kGaps,
+                                     ContactStage::kForces, ContactStage::kTangent})
+      EXPECT_GT(r.of(stage).least, 0.0) << name_of(stage);
+    EXPECT_EQ(r.of(ContactStage::kReadback).median > 0.0, method == "gpu");
+    EXPECT_GE(r.to_forces.least, r.query.least + r.of(ContactStage::kForces).least - kRounding);
+    EXPECT_LE(r.to_forces.p99, r.query.p99 + r.of(ContactStage::kForces).p99 + kRounding);
+    // 32 bytes a sample and more; of images in memory of their own it is not known
+    EXPECT_EQ(r.query_bytes > 32.0 * static_cast<double>(r.samples), method != "gpu");
+    EXPECT_EQ(r.query_bytes == 0.0, method == "gpu");
+    // the lower block is pushed down by the upper one
+    EXPECT_LT(r.forces.back().z(), 0.0);
+  }
+}
+
+TEST(ContactRun, NamesWhatMadeTheImages) {
+  for (const std::string method : {"cpu", "exact"}) {
+    const ContactDevice device = device_of(method);
+    const std::string_view set = name_of(best_instructions());
+    EXPECT_TRUE(device.name.ends_with(set)) << device.name;
+    EXPECT_GT(device.name.size(), set.size() + 2) << device.name;
+    EXPECT_FALSE(device.software);
+  }
+  if (!contact::gpu_available()) {
+    EXPECT_THROW(device_of("gpu"), Error);
+    return;
+  }
+  const ContactDevice gpu = device_of("gpu");
+  EXPECT_EQ(gpu.name, contact::gpu_device().name + ", " + contact::gpu_device().driver);
+  EXPECT_GT(contact::gpu_device().name.size(), 0u);
+  EXPECT_EQ(gpu.software, contact::gpu_device().software);
+  const ContactBenchRow r = bench_contact(rubbing_blocks(), {.method = "gpu", .pixels = 64});
+  EXPECT_EQ(r.device, gpu.name);
+  EXPECT_EQ(r.device_is_software, gpu.software);
+}
+
+// Friction follows the pressure one step late where the tangent is symmetric: something is left out, and the
+// force changes a little; with the whole tangent nothing is left out, and as many steps are made.
+TEST(ContactRun, PricesStandAtBothResolutionsWithBothTangents) {
+  const ContactPrice price = bench_contact_price(rubbing_blocks());
+  EXPECT_EQ(price.scene, "rubbing blocks");
+  EXPECT_EQ(price.pairs, 1);
+  EXPECT_GT(price.one_body_ms, 0.0);
+  EXPECT_GT(price.bodies_ms, 0.0);
+  EXPECT_GT(price.contact_free_ms, 0.0);
+  ASSERT_EQ(price.contacts.size(), 2u);
+  EXPECT_EQ(price.contacts[0].row.variant.pixels, 0);
+  EXPECT_EQ(price.contacts[1].row.variant.pixels, kBarPixels);
+  EXPECT_GT(price.contacts[1].row.samples, 4 * price.contacts[0].row.samples);
+  for (const ContactPrice::Contact& c : price.contacts) {
+    EXPECT_GT(c.row.assembly_ms, 0.0);
+    EXPECT_GT(c.row.elements_ms, 0.0);
+    EXPECT_GT(c.friction.symmetric_ms, 0.0);
+    EXPECT_GT(c.friction.full_ms, 0.0);
+    EXPECT_GT(c.friction.left_out, 1e-6);
+    EXPECT_LT(c.friction.left_out, 0.5);
+    EXPECT_GT(c.friction.force_change, 1e-9);
+    EXPECT_LT(c.friction.force_change, 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::bench
