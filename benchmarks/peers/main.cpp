@@ -2,6 +2,8 @@
 // run on one thread: palpate from positions of nodes to forces on nodes, the others from positions of nodes
 // to contacts or depths.  The motion is that of a scene, recorded first; then everyone answers at the same
 // states, one after the other, in rounds.  Of each library the fastest way counts.
+//
+//   contact_peers [--once] [SCENE...]     --once: one state and one round, whether all of them run
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,9 +21,13 @@
 namespace peers {
 namespace {
 
-constexpr int kRounds = 9;
 /// A contender that has taken so long leaves out the rounds that are left [s].
 constexpr double kEnough = 4.0;
+
+struct Options {
+  int rounds = 9;  ///< after one that is not timed
+  bool one_state = false;
+};
 
 struct Timed {
   std::vector<double> ms;     ///< of all states and rounds
@@ -36,10 +42,10 @@ double quantile(std::vector<double> values, double share) {
   return values[std::min(at, values.size() - 1)];
 }
 
-std::vector<Timed> measure(const Motion& motion, const Contenders& contenders) {
+std::vector<Timed> measure(const Motion& motion, const Contenders& contenders, int rounds) {
   std::vector<Timed> out(contenders.size());
   for (Timed& t : out) t.least.assign(motion.states.size(), INFINITY);
-  for (int round = 0; round <= kRounds; ++round)
+  for (int round = 0; round <= rounds; ++round)
     for (std::size_t c = 0; c < contenders.size(); ++c) {
       if (round > 1 && out[c].spent_s > kEnough) continue;
       for (std::size_t s = 0; s < motion.states.size(); ++s) {
@@ -67,15 +73,16 @@ double times(const Timed& of, const Timed& over) {
   return quantile(ratios, 0.5);
 }
 
-void run(const std::string& scene) {
-  const Motion motion = record_motion(scene);
+void run(const std::string& scene, const Options& options) {
+  Motion motion = record_motion(scene);
+  if (options.one_state) motion.states = {motion.states[motion.states.size() / 2]};
   Contenders contenders;
   add_own(motion, contenders);
   add_gimpact(motion, contenders);
   add_fcl(motion, contenders);
   add_cgal(motion, contenders);
   add_skins_alone(motion, contenders);
-  const std::vector<Timed> timed = measure(motion, contenders);
+  const std::vector<Timed> timed = measure(motion, contenders, options.rounds);
   std::vector<std::vector<std::string>> rows;
   std::map<std::string, double> fastest;
   for (std::size_t c = 0; c < contenders.size(); ++c) {
@@ -92,7 +99,7 @@ void run(const std::string& scene) {
   }
   fmt::print(
       "{}: two skins of {} vertices and {} triangles in all, {} states in contact, up to {} rounds\n{}\n",
-      motion.description.name, motion.vertices(), motion.triangles(), motion.states.size(), kRounds,
+      motion.description.name, motion.vertices(), motion.triangles(), motion.states.size(), options.rounds,
       report::format_table({"", "", "query: least / median / p99 [ms]", "times palpate's 256 pixels",
                             "contacts", "deepest [m]"},
                            rows));
@@ -107,11 +114,13 @@ void run(const std::string& scene) {
 
 int main(int argc, char** argv) {
   try {
+    peers::Options options;
     std::vector<std::string> scenes(argv + 1, argv + argc);
+    if (std::erase(scenes, "--once") > 0) options = {.rounds = 1, .one_state = true};
     if (scenes.empty())
       for (const char* name : {"two-pumpkins", "two-heads", "gears"})
         scenes.push_back(fmt::format("{}/{}.toml", PALPATE_SCENES_FOLDER, name));
-    for (const std::string& scene : scenes) peers::run(scene);
+    for (const std::string& scene : scenes) peers::run(scene, options);
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());
     return EXIT_FAILURE;
