@@ -1,6 +1,7 @@
 #include "proxy/skin_patches.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 
@@ -26,13 +27,32 @@ int longest_axis(std::span<const Item> items, Place place) {
   return axis;
 }
 
-template <class Place>
-std::size_t halve(std::span<int> items, Place place) {
+/// @param rank  what decides between items at one place
+template <class Place, class Rank>
+std::size_t halve(std::span<int> items, Place place, Rank rank) {
   const int axis = longest_axis(std::span<const int>(items), place);
   const auto half = static_cast<std::ptrdiff_t>(items.size() / 2);
-  std::nth_element(items.begin(), items.begin() + half, items.end(),
-                   [&](int f, int g) { return std::pair(place(f)[axis], f) < std::pair(place(g)[axis], g); });
+  std::nth_element(items.begin(), items.begin() + half, items.end(), [&](int f, int g) {
+    return std::pair(place(f)[axis], rank(f)) < std::pair(place(g)[axis], rank(g));
+  });
   return static_cast<std::size_t>(half);
+}
+
+/// The place of each face in an order that its corners decide, not the order in which faces are listed: a
+/// region's patches, and with them where it is first looked at along, are then the same for any listing.
+std::vector<int> ranks(const Faces& faces) {
+  std::vector<int> order(static_cast<std::size_t>(faces.cols())), rank(order.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto corners = [&](int f) {
+    std::array<int, 3> out = {faces(0, f), faces(1, f), faces(2, f)};
+    std::sort(out.begin(), out.end());
+    return out;
+  };
+  std::sort(order.begin(), order.end(),
+            [&](int f, int g) { return std::pair(corners(f), f) < std::pair(corners(g), g); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    rank[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
+  return rank;
 }
 
 /// The ball around the box of some faces.
@@ -52,8 +72,8 @@ Ball ball_of(const TriMesh& skin, std::span<const int> faces) {
 }
 
 /// The faces [first, first + count) of out.faces as one patch, or as two halves that are cut on.
-void add_faces(const TriMesh& skin, int proxy, std::size_t first, std::size_t count, int patch_faces,
-               SkinPatches& out) {
+void add_faces(const TriMesh& skin, const std::vector<int>& rank, int proxy, std::size_t first,
+               std::size_t count, int patch_faces, SkinPatches& out) {
   const std::span<int> faces(out.faces.data() + first, count);
   if (static_cast<int>(count) <= patch_faces) {
     const Ball ball = ball_of(skin, faces);
@@ -70,9 +90,11 @@ void add_faces(const TriMesh& skin, int proxy, std::size_t first, std::size_t co
     }
     out.patches.push_back(patch);
   } else {
-    const std::size_t half = halve(faces, [&](int f) { return face_middle(skin, f); });
-    add_faces(skin, proxy, first, half, patch_faces, out);
-    add_faces(skin, proxy, first + half, count - half, patch_faces, out);
+    const std::size_t half = halve(
+        faces, [&](int f) { return face_middle(skin, f); },
+        [&](int f) { return rank[static_cast<std::size_t>(f)]; });
+    add_faces(skin, rank, proxy, first, half, patch_faces, out);
+    add_faces(skin, rank, proxy, first + half, count - half, patch_faces, out);
   }
 }
 
@@ -80,7 +102,8 @@ void add_halved(std::vector<ProxyBranch>& tree, std::span<int> proxies, const Po
   const auto branch = tree.size();
   tree.push_back({parent, 0, proxies.size() == 1 ? proxies[0] : -1, Vec3::Zero(), Vec3::Zero()});
   if (proxies.size() > 1) {
-    const std::size_t half = halve(proxies, [&](int p) -> Vec3 { return middle.col(p); });
+    const std::size_t half = halve(
+        proxies, [&](int p) -> Vec3 { return middle.col(p); }, [](int p) { return p; });
     add_halved(tree, proxies.first(half), middle, static_cast<int>(branch));
     add_halved(tree, proxies.subspan(half), middle, static_cast<int>(branch));
   }
@@ -106,17 +129,19 @@ void add_bone(std::vector<ProxyBranch>& tree, const Skeleton& skeleton,
 SkinPatches skin_patches(const TriMesh& skin, const std::vector<int>& owner_of_face, int proxies,
                          int patch_faces) {
   SkinPatches out;
+  const std::vector<int> rank = ranks(skin.faces);
   out.faces.resize(owner_of_face.size());
   std::iota(out.faces.begin(), out.faces.end(), 0);
-  std::stable_sort(out.faces.begin(), out.faces.end(), [&](int f, int g) {
-    return owner_of_face[static_cast<std::size_t>(f)] < owner_of_face[static_cast<std::size_t>(g)];
-  });
+  const auto key = [&](int f) {
+    return std::pair(owner_of_face[static_cast<std::size_t>(f)], rank[static_cast<std::size_t>(f)]);
+  };
+  std::sort(out.faces.begin(), out.faces.end(), [&](int f, int g) { return key(f) < key(g); });
   std::size_t first = 0;
   for (int p = 0; p < proxies; ++p) {
     out.first_of_proxy.push_back(static_cast<int>(out.patches.size()));
     std::size_t end = first;
     while (end < out.faces.size() && owner_of_face[static_cast<std::size_t>(out.faces[end])] == p) ++end;
-    if (end > first) add_faces(skin, p, first, end - first, patch_faces, out);
+    if (end > first) add_faces(skin, rank, p, first, end - first, patch_faces, out);
     first = end;
   }
   out.first_of_proxy.push_back(static_cast<int>(out.patches.size()));

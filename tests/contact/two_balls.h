@@ -16,13 +16,18 @@ struct TwoBalls {
   dynamics::State state;
   Body a, b;
 
-  TwoBalls()
-      : a(body(Pose{}, 1.0)), b(body({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2)) {}
+  /// @param order  of the skins' triangles: 0 as they are made, else shuffled
+  explicit TwoBalls(unsigned order = 0)
+      : a(body(Pose{}, 1.0, order)),
+        b(body({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2, 2 * order)) {}
 
-  Body body(const Pose& pose, double scale) {
+  Body body(const Pose& pose, double scale, unsigned order) {
     Body out;
     out.model.tets = mesh::ball(1.0, 0.45);
     out.model.skin = mesh::sphere(1.0, 12);
+    std::mt19937 random(order);
+    for (Eigen::Index f = out.model.skin.faces.cols() - 1; order > 0 && f > 0; --f)
+      out.model.skin.faces.col(f).swap(out.model.skin.faces.col(random() % static_cast<unsigned>(f + 1)));
     for (Points* points : {&out.model.tets.nodes, &out.model.skin.vertices})
       for (auto x : points->colwise()) x = pose * Vec3(scale * x);
     out.surface.faces = out.model.skin.faces;
