@@ -1,97 +1,12 @@
 // What moves fast between two queries: seen before it touches, counted where it went through.
-#include "backends.h"
+#include "ball_and_slab.h"
 #include "bent_bar.h"
 #include "contact/image_side.h"
-#include "grid_proxies.h"
-#include "palpate/proxy/decompose.h"
-#include "surfaces.h"
 
 using namespace contact_tests;
+using namespace contact_tests::ball_and_slab;
 
 namespace {
-
-/// A soft body in a State: a skin on tetrahedra, with proxies.
-LayeredModel ball(double radius) {
-  LayeredModel out;
-  out.name = "ball";
-  out.tets = mesh::ball(radius, 0.4 * radius);
-  out.skin = mesh::sphere(radius, 10);
-  out.embedding = mesh::embed(out.tets, out.skin.vertices);
-  out.proxies = proxy::decompose(out, {.count = 12});
-  return out;
-}
-
-/// Its faces at z = +-thickness / 2.
-LayeredModel slab(double width, double thickness, int cells) {
-  LayeredModel out;
-  out.name = "slab";
-  out.tets = mesh::box(Vec3(width, width, thickness), {cells, cells, 1});
-  out.skin = mesh::box_surface(Vec3(width, width, thickness), {cells, cells, 1});
-  out.embedding = mesh::embed(out.tets, out.skin.vertices);
-  out.proxies = proxy::decompose(out, {.count = 12});
-  return out;
-}
-
-struct Body {
-  LayeredModel model;
-  contact::NodeSurface surface;
-  int u_offset = 0;
-
-  Body(LayeredModel m, dynamics::State& state) : model(std::move(m)) {
-    dynamics::BlockSpec nodes;
-    nodes.name = model.name;
-    nodes.q_size = nodes.u_size = static_cast<int>(model.tets.nodes.size());
-    surface.block_id =
-        state.insert(nodes, Eigen::Map<const VecX>(model.tets.nodes.data(), model.tets.nodes.size()),
-                     VecX::Zero(model.tets.nodes.size()));
-    surface.faces = model.skin.faces;
-    surface.embedding = model.embedding;
-    surface.tets = model.tets.tets;
-    u_offset = state.layout().find(surface.block_id)->u_offset;
-  }
-  std::shared_ptr<proxy::ProxySet> proxies() const { return std::make_shared<proxy::ProxySet>(model); }
-  void place(dynamics::State& state, const Vec3& at) const {
-    const Points x = model.tets.nodes.colwise() + at;
-    state.q().segment(u_offset, x.size()) = Eigen::Map<const VecX>(x.data(), x.size());
-  }
-  void move(dynamics::State& state, const Vec3& velocity) const {
-    const Points v = velocity.replicate(1, model.tets.nodes.cols());
-    state.u().segment(u_offset, v.size()) = Eigen::Map<const VecX>(v.data(), v.size());
-  }
-};
-
-constexpr double kRadius = 0.05, kThickness = 0.01;
-
-/// A ball and a slab, as every kind of pair of bodies.
-struct Pair {
-  dynamics::State state;
-  Body thrown;
-  Body target;
-  TriMesh rigid = mesh::box_surface(Vec3(0.4, 0.4, kThickness), {8, 8, 1});
-  std::shared_ptr<contact::TrajectoryFrame> frame = std::make_shared<contact::TrajectoryFrame>();
-
-  Pair() : thrown(ball(kRadius), state), target(slab(0.4, kThickness, 8), state) {
-    frame->append(0.0, Pose{}, Twist{});
-  }
-  std::unique_ptr<contact::SampleSource> source(bool soft, bool pruned, double look_ahead) const {
-    contact::ImageOptions options = image_options(64, 1e-3);
-    options.look_ahead = look_ahead;
-    if (soft && pruned)
-      return contact::make_image_source(thrown.surface, thrown.proxies(), target.surface, target.proxies(),
-                                        options);
-    if (soft) return contact::make_image_source(thrown.surface, target.surface, options);
-    if (pruned)
-      return contact::make_image_source(thrown.surface, thrown.proxies(), rigid, proxies_of(rigid), 0, frame,
-                                        options);
-    return contact::make_image_source(thrown.surface, rigid, 0, frame, options);
-  }
-  std::vector<contact::ContactSample> query(contact::SampleSource& source, const Vec3& at) {
-    std::vector<contact::ContactSample> samples;
-    thrown.place(state, at);
-    source.query(state.view(), samples);
-    return samples;
-  }
-};
 
 template <class Check>
 void for_each_pair(Check check) {
@@ -243,34 +158,6 @@ TEST_P(SweptContact, OfOneBodysOwnParts) {
     if (bar.tets.nodes(0, n) < -0.5) state.q()[3 * n] += 0.8;
   kept->query(state.view(), samples);
   EXPECT_GT(kept->tunnelled(), 100);
-}
-
-// Without proxies: a ball pushed into a slab, deeper than to its middle and out of its other side, is pushed
-// back to where it came from as long as they touch.  The hulls' shortest way out is the other way by then.
-TEST_P(SweptContact, ADeepPoseKeepsItsNormal) {
-  for (const bool soft : {false, true}) {
-    Pair pair;
-    const auto source = pair.source(soft, false, 0.0);
-    proxy::RegionFinder finder;
-    bool flips = false;
-    int pressed = 0;
-    for (double z = 0.056; z > -0.03; z -= 0.004) {
-      const auto samples = pair.query(*source, Vec3(0.01, 0.02, z));
-      const Points of_ball = pair.thrown.model.skin.vertices.colwise() + Vec3(0.01, 0.02, z);
-      flips |= finder.find(of_ball, pair.rigid.vertices, 0.0).normal.z() < 0.0;
-      const Total force = total(samples, pair.state.view());
-      if (z > 0.055) continue;
-      EXPECT_GT(force.force.z(), 0.0) << z;
-      pressed += force.pressed > 0;
-      for (const auto& s : samples) ASSERT_GT(s.normal.z(), 0.5) << z;
-    }
-    EXPECT_TRUE(flips) << "the case is one";
-    EXPECT_GT(pressed, 15);
-    EXPECT_GT(source->normals_kept(), 3);
-    // out of it on the other side and back: that is where it comes from now
-    pair.query(*source, Vec3(0.01, 0.02, -0.1));
-    for (const auto& s : pair.query(*source, Vec3(0.01, 0.02, -0.053))) EXPECT_LT(s.normal.z(), -0.5);
-  }
 }
 
 // The velocity of every skin vertex, and its way, is within what bounds the whole side; the skin is outside

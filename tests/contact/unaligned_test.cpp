@@ -1,0 +1,93 @@
+// Regions whose normal has not settled when a query may look no more are counted, and no others.
+#include "ball_and_slab.h"
+#include "two_balls.h"
+
+using namespace contact_tests;
+using namespace contact_tests::ball_and_slab;
+
+namespace {
+
+constexpr double kDegree = M_PI / 180.0, kDepth = 0.05;
+
+/// A block along y with a groove in the form of a V, open upwards, into both flanks of which a ball of
+/// radius 1 about the origin reaches by kDepth.
+/// @param steep  [rad] from the vertical to the flanks' normals
+TriMesh groove(double steep) {
+  const double away = 1.0 - kDepth, bottom = -away / std::cos(steep),
+               rim = (away + std::cos(steep)) / std::sin(steep);
+  const std::vector<Eigen::Vector2d> polygon = {{-3.0, 1.0}, {-3.0, -4.0},  {3.0, -4.0}, {3.0, 1.0},
+                                                {rim, 1.0},  {0.0, bottom}, {-rim, 1.0}};
+  const std::vector<Eigen::Vector3i> triangles = {{0, 1, 6}, {1, 5, 6}, {1, 2, 5}, {2, 4, 5}, {2, 3, 4}};
+  const auto n = static_cast<int>(polygon.size());
+  TriMesh mesh;
+  mesh.vertices.resize(3, 2 * n);
+  for (int i = 0; i < n; ++i)
+    for (int side = 0; side < 2; ++side)
+      mesh.vertices.col(i + side * n) = Vec3(polygon[static_cast<std::size_t>(i)].x(), side ? 2.0 : -2.0,
+                                             polygon[static_cast<std::size_t>(i)].y());
+  std::vector<Eigen::Vector3i> faces;
+  for (int i = 0; i < n; ++i) {
+    const int j = (i + 1) % n;
+    faces.emplace_back(i, j + n, j);
+    faces.emplace_back(i, i + n, j + n);
+  }
+  for (const auto& t : triangles) {
+    faces.push_back(t);
+    faces.emplace_back(t[0] + n, t[2] + n, t[1] + n);
+  }
+  mesh.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
+  for (std::size_t f = 0; f < faces.size(); ++f) mesh.faces.col(static_cast<Eigen::Index>(f)) = faces[f];
+  return mesh;
+}
+
+struct Looked {
+  long unaligned, images;
+};
+/// One query of a ball with one proxy, `shift` beside the groove's middle.
+Looked look_in_groove(double steep, double shift) {
+  dynamics::State state;
+  LayeredModel model;
+  model.name = "ball";
+  model.tets = mesh::ball(1.0, 0.45);
+  model.skin = mesh::sphere(1.0, 16);
+  for (Points* points : {&model.tets.nodes, &model.skin.vertices}) points->row(0).array() += shift;
+  model.embedding = mesh::embed(model.tets, model.skin.vertices);
+  model.proxies = grid_proxies(model.skin, 1);
+  const Body body(model, state);
+  const TriMesh rigid = groove(steep);
+  const auto source = contact::make_image_source(body.surface, body.proxies(), rigid, proxies_of(rigid), 0,
+                                                 contact::fixed_frame(), image_options(128, 0.02));
+  std::vector<contact::ContactSample> samples;
+  source->query(state.view(), samples);
+  EXPECT_GT(total(samples, state.view()).pressed, 100);
+  return {source->stages()->unaligned, source->stages()->images};
+}
+
+}  // namespace
+
+ON_EACH_BACKEND(Unaligned);
+
+// One proxy with a flank on either side has one plane.  Seen along n, the flank i, d_i deep and a_i away from
+// n, pushes by d_i A_i / cos a_i: what n turns to is pushed less, what it turns from is pushed more, and a
+// look at the angle phi from where it should be finds about -tan^2(a) phi: of flanks steeper than 45 degrees
+// the looks do not settle, unless they begin where they should end.
+TEST_P(Unaligned, TwoFlanksOfOneProxyAreCounted) {
+  EXPECT_EQ(look_in_groove(70.0 * kDegree, 0.01).unaligned, 1);
+  EXPECT_EQ(look_in_groove(70.0 * kDegree, 0.0).unaligned, 0);
+}
+
+// Of flanks that are less steep they do, each look with tan^2(35 degrees) = 0.49 of the error before it: a
+// normal that took more than two looks is not one that has not settled.
+TEST_P(Unaligned, NoneThatTookMoreLooksIs) {
+  const Looked in_middle = look_in_groove(35.0 * kDegree, 0.0), beside = look_in_groove(35.0 * kDegree, 0.03);
+  EXPECT_EQ(beside.unaligned, 0);
+  EXPECT_GE(beside.images, in_middle.images + 1);
+}
+
+TEST_P(Unaligned, NoSmoothPairIs) {
+  TwoBalls balls;
+  const auto source = balls.source(true);
+  std::vector<contact::ContactSample> samples;
+  source->query(balls.state.view(), samples);
+  EXPECT_EQ(source->stages()->unaligned, 0);
+}
