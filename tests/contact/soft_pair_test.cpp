@@ -96,47 +96,55 @@ TEST_P(SoftPair, ActionIsReaction) {
 // With the smooth onset the force is C1, so that the Taylor residual falls with slope 2; the assembled
 // tangent is the applied one, and symmetric.
 TEST_P(SoftPair, TheTangentCouplesBothBodies) {
-  TwoBalls balls;
-  ContactSpec smooth = law();
-  smooth.onset_width_m = 0.5;
-  smooth.hunt_crossley_s_m = 0.2;
-  smooth.law = "hunt_crossley";
-  contact::ContactForce term;
-  term.add_pair(balls.source(true), smooth);
-  term.refresh(balls.state.view());
-  const int size = balls.state.layout().u_size;
-  std::mt19937 random(8);
-  VecX direction(size);
-  for (auto& x : direction) x = uniform(random);
-  const auto moved = [&](double h) {
-    dynamics::State out = balls.state;
-    out.q() += h * direction;
-    return force(term, out);
-  };
-  const auto pushed = [&](double h) {
-    dynamics::State out = balls.state;
-    out.u() += h * direction;
-    return force(term, out);
-  };
-  VecX K = VecX::Zero(size), D = VecX::Zero(size);
-  term.apply_tangent(balls.state.view(), 1.0, 0.0, direction, K);
-  term.apply_tangent(balls.state.view(), 0.0, 1.0, direction, D);
-  expect_derivative(moved, -K, 1e-3, "by position");
-  expect_derivative(pushed, -D, 1e-3, "by velocity");
+  for (const bool per_point : {false, true}) {
+    SCOPED_TRACE(per_point ? "per point" : "per area");
+    TwoBalls balls;
+    ContactSpec smooth = law();
+    if (per_point) {
+      balls.samples = contact::SampleRule::kVertex;
+      smooth.spring = "per_point";
+      smooth.stiffness_n_m = 1e4;
+    }
+    smooth.onset_width_m = 0.5;
+    smooth.hunt_crossley_s_m = 0.2;
+    smooth.law = "hunt_crossley";
+    contact::ContactForce term;
+    term.add_pair(balls.source(true), smooth);
+    term.refresh(balls.state.view());
+    const int size = balls.state.layout().u_size;
+    std::mt19937 random(8);
+    VecX direction(size);
+    for (auto& x : direction) x = uniform(random);
+    const auto moved = [&](double h) {
+      dynamics::State out = balls.state;
+      out.q() += h * direction;
+      return force(term, out);
+    };
+    const auto pushed = [&](double h) {
+      dynamics::State out = balls.state;
+      out.u() += h * direction;
+      return force(term, out);
+    };
+    VecX K = VecX::Zero(size), D = VecX::Zero(size);
+    term.apply_tangent(balls.state.view(), 1.0, 0.0, direction, K);
+    term.apply_tangent(balls.state.view(), 0.0, 1.0, direction, D);
+    expect_derivative(moved, -K, 1e-3, "by position");
+    expect_derivative(pushed, -D, 1e-3, "by velocity");
 
-  const dynamics::BorderedMatrix A = step_matrix(term, balls.state, 1.0, 0.7);
-  VecX assembled;
-  A.multiply(direction, assembled);
-  EXPECT_LT((assembled - K - 0.7 * D).norm(), 1e-12 * assembled.norm());
-  const MatX dense = A.to_dense();
-  EXPECT_LT((dense - dense.transpose()).norm(), 1e-12 * dense.norm());
-  const int n = 3 * balls.nodes_of_a();
-  EXPECT_GT(dense.topRightCorner(n, size - n).norm(), 0.1 * dense.topLeftCorner(n, n).norm());
-  // Both bodies moved as one feel nothing new.
-  VecX shifted = VecX::Zero(size), together(size);
-  for (int i = 0; i < size; ++i) together[i] = i % 3 == 1 ? 1.0 : 0.3;
-  term.apply_tangent(balls.state.view(), 1.0, 0.0, together, shifted);
-  EXPECT_LT(shifted.norm(), 1e-11 * K.norm());
+    const dynamics::BorderedMatrix A = step_matrix(term, balls.state, 1.0, 0.7);
+    VecX assembled;
+    A.multiply(direction, assembled);
+    EXPECT_LT((assembled - K - 0.7 * D).norm(), 1e-12 * assembled.norm());
+    const MatX dense = A.to_dense();
+    EXPECT_LT((dense - dense.transpose()).norm(), 1e-12 * dense.norm());
+    const int n = 3 * balls.nodes_of_a();
+    EXPECT_GT(dense.topRightCorner(n, size - n).norm(), 0.1 * dense.topLeftCorner(n, n).norm());
+    // Both bodies moved as one feel nothing new.
+    VecX shifted = VecX::Zero(size), together(size);
+    for (int i = 0; i < size; ++i) together[i] = i % 3 == 1 ? 1.0 : 0.3;
+    term.apply_tangent(balls.state.view(), 1.0, 0.0, together, shifted);
+    EXPECT_LT(shifted.norm(), 1e-11 * K.norm());
+  }
 }
 
 // What a fused step adds beside its pattern is the assembled tangent, with and without friction; and its

@@ -20,7 +20,8 @@ struct Touching {
 struct TouchingKind {
   std::string name;
   std::function<Touching()> make;
-  bool pruned = true;  ///< by proxies
+  bool pruned = true;        ///< by proxies
+  bool of_vertices = false;  ///< samples are points of a surface
 };
 
 namespace touching {
@@ -146,19 +147,22 @@ inline std::vector<TouchingKind> touching_kinds() {
   std::vector<TouchingKind> out;
   for (const char* shape : {"plane", "sphere", "box", "cylinder"}) {
     const std::string name = shape;
-    out.push_back({"nodes on a " + name, [=] { return touching::on_shape(name, false, false); }, false});
     out.push_back(
-        {"a skin on a moving " + name, [=] { return touching::on_shape(name, true, true); }, false});
+        {"nodes on a " + name, [=] { return touching::on_shape(name, false, false); }, false, true});
+    out.push_back(
+        {"a skin on a moving " + name, [=] { return touching::on_shape(name, true, true); }, false, true});
   }
   for (const auto& [rule, name] : {std::pair{SampleRule::kPixel, std::string("pixels")},
                                    std::pair{SampleRule::kVertex, std::string("vertices")}}) {
     const SampleRule samples = rule;
-    out.push_back({"a skin on a tool, " + name, [=] { return touching::on_tool(samples, true, true); }});
+    const bool vertices = rule == SampleRule::kVertex;
+    out.push_back({"a skin on a tool, " + name, [=] { return touching::on_tool(samples, true, true); }, true,
+                   vertices});
     out.push_back({"a skin on a tool, unpruned, " + name,
-                   [=] { return touching::on_tool(samples, false, true); }, false});
-    out.push_back({"two skins, " + name, [=] { return touching::two_soft(samples, true); }});
-    out.push_back(
-        {"two skins, unpruned, " + name, [=] { return touching::two_soft(samples, false); }, false});
+                   [=] { return touching::on_tool(samples, false, true); }, false, vertices});
+    out.push_back({"two skins, " + name, [=] { return touching::two_soft(samples, true); }, true, vertices});
+    out.push_back({"two skins, unpruned, " + name, [=] { return touching::two_soft(samples, false); }, false,
+                   vertices});
   }
   out.push_back({"a body against itself", [] { return touching::itself(); }});
   return out;
