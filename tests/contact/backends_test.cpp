@@ -145,7 +145,7 @@ TEST(ExactImage, SeesEveryLayer) {
   EXPECT_NEAR(layers / one, (0.1 + 0.05) / 1.1, 1e-12);
 }
 
-// Every instruction set sees the same.
+// Every instruction set sees the same triangle at each pixel, but where its middle is on an edge.
 TEST(CpuImage, DoesNotDependOnTheInstructions) {
   Sheet a(60, 0.02, -1.0, 1), b(47, 0.0, 1.0, 2);
   std::vector<std::vector<FacePair>> seen;
@@ -157,12 +157,15 @@ TEST(CpuImage, DoesNotDependOnTheInstructions) {
     unsetenv("PALPATE_INSTRUCTIONS");
   }
   ASSERT_FALSE(seen.empty());
-  for (const auto& pairs : seen) {
-    ASSERT_NEAR(static_cast<double>(pairs.size()), static_cast<double>(seen[0].size()), 20.0);
-    std::size_t other = 0;
-    for (std::size_t i = 0; i < std::min(pairs.size(), seen[0].size()); ++i)
-      other += pairs[i].a != seen[0][i].a || pairs[i].b != seen[0][i].b;
-    // contracted products round otherwise
-    if (pairs.size() == seen[0].size()) { EXPECT_LT(other, 40u); }
+  std::map<std::uint32_t, FacePair> by_pixel;
+  for (const FacePair& pair : seen[0]) by_pixel[pair.at] = pair;
+  ASSERT_GT(by_pixel.size(), 20000u);
+  for (const auto& pairs : seen) {  // contracted products round otherwise
+    std::size_t same = 0;
+    for (const FacePair& pair : pairs) {
+      const auto at = by_pixel.find(pair.at);
+      same += at != by_pixel.end() && at->second.a == pair.a && at->second.b == pair.b;
+    }
+    EXPECT_GE(same + 40, std::max(pairs.size(), seen[0].size()));
   }
 }

@@ -1,4 +1,6 @@
 // What the samples' forces may depend on: not on who draws the image.
+#include <cstdlib>
+
 #include "two_balls.h"
 
 using namespace contact_tests;
@@ -48,4 +50,25 @@ TEST_P(SameForces, AsLinesInDoubleGive) {
         EXPECT_GT(exact.force.norm(), 100.0);
         EXPECT_LT((here.force - exact.force).norm(), 1e-12 * exact.force.norm());
       }
+}
+
+// Nor on the instructions that it has: where they round a pixel to a neighbour, exact lines correct it.
+TEST(SameForcesOfTheProcessor, WhateverItsInstructions) {
+  for (const bool pruned : {false, true})
+    for (const double error : {0.0, 1e-3}) {
+      std::vector<Felt> felt;
+      for (const char* set : {"baseline", "avx2", "avx512"}) {
+        setenv("PALPATE_INSTRUCTIONS", set, 1);
+        try {
+          felt.push_back(felt_by(contact::DepthBackend::kCpu, pruned, contact::SampleRule::kPixel, error));
+        } catch (const Error&) {}  // this processor does not have it
+        unsetenv("PALPATE_INSTRUCTIONS");
+      }
+      ASSERT_FALSE(felt.empty());
+      for (const Felt& one : felt) {
+        EXPECT_GT(one.force.norm(), 100.0);
+        EXPECT_EQ(one.samples, felt[0].samples);
+        EXPECT_LT((one.force - felt[0].force).norm(), 1e-12 * felt[0].force.norm());
+      }
+    }
 }
