@@ -1,3 +1,5 @@
+#include "contact/gpu_hardware.h"
+
 #include <filesystem>
 
 #include "contact/depth_image.h"
@@ -17,9 +19,7 @@ bool shows_a_device() {
   return false;
 }
 
-}  // namespace
-
-bool has_gpu_hardware() {
+bool finds_gpu_hardware() {
   static const bool found = [] {
     if (!shows_a_device()) return false;
     try {
@@ -28,6 +28,15 @@ bool has_gpu_hardware() {
   }();
   return found;
 }
+
+}  // namespace
+
+GpuProbe& gpu_probe() {
+  static GpuProbe probe = finds_gpu_hardware;
+  return probe;
+}
+
+bool has_gpu_hardware() { return gpu_probe()(); }
 
 GpuDevice open_gpu() {
   make_gpu_image();

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "gl/display_order.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
 
@@ -31,15 +32,16 @@ bool has_word(const char* list, std::string_view word) {
 }
 
 struct Candidate {
-  EGLDisplay display = EGL_NO_DISPLAY;
-  const char* platform = "";
+  DisplayKind kind;
+  EGLDisplay display;
+  const char* platform() const { return kind == DisplayKind::kSurfaceless ? "surfaceless" : "device"; }
 };
 
-/// Displays that need no window system, hardware first: devices that are not software, Mesa's surfaceless
-/// platform, the rest. (eglGetDisplay(EGL_DEFAULT_DISPLAY) fails without a window system.)
+/// Displays that need no window system, hardware first.  (eglGetDisplay(EGL_DEFAULT_DISPLAY) fails without a
+/// window system.)
 std::vector<Candidate> candidates() {
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-  std::vector<Candidate> hardware, software;
+  std::vector<Candidate> out;
   if (has_word(client, "EGL_EXT_platform_device") &&
       (has_word(client, "EGL_EXT_device_enumeration") || has_word(client, "EGL_EXT_device_base"))) {
     EGLDeviceEXT devices[16];
@@ -48,16 +50,17 @@ std::vector<Candidate> candidates() {
       for (int i = 0; i < count; ++i) {
         const bool is_software =
             has_word(eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS), "EGL_MESA_device_software");
-        (is_software ? software : hardware)
-            .push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr), "device"});
+        out.push_back({is_software ? DisplayKind::kSoftwareDevice : DisplayKind::kHardwareDevice,
+                       eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr)});
       }
     }
   }
   if (has_word(client, "EGL_MESA_platform_surfaceless"))
-    hardware.push_back(
-        {eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr), "surfaceless"});
-  hardware.insert(hardware.end(), software.begin(), software.end());
-  return hardware;
+    out.push_back({DisplayKind::kSurfaceless,
+                   eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr)});
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Candidate& a, const Candidate& b) { return is_tried_before(a.kind, b.kind); });
+  return out;
 }
 
 /// A core context of version 4.5, else of 4.3 (compute shaders and shader storage).
@@ -133,17 +136,17 @@ Context::Context() : handles_(std::make_unique<Handles>()) {
   for (const Candidate& candidate : candidates()) {
     EGLint major = 0, minor = 0;
     if (candidate.display == EGL_NO_DISPLAY || !eglInitialize(candidate.display, &major, &minor)) {
-      tried += std::string(tried.empty() ? "" : ", ") + candidate.platform + ": no display";
+      tried += std::string(tried.empty() ? "" : ", ") + candidate.platform() + ": no display";
       continue;
     }
     const EGLContext context = create_context(candidate.display);
     if (context == EGL_NO_CONTEXT) {
-      tried += std::string(tried.empty() ? "" : ", ") + candidate.platform + ": no OpenGL 4.3";
+      tried += std::string(tried.empty() ? "" : ", ") + candidate.platform() + ": no OpenGL 4.3";
       continue;
     }
     handles_->display = candidate.display;
     handles_->context = context;
-    info_.platform = candidate.platform;
+    info_.platform = candidate.platform();
     break;
   }
   if (handles_->context == EGL_NO_CONTEXT)

@@ -1,8 +1,10 @@
+#include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <thread>
 
 #include "palpate/core/counters.h"
@@ -22,6 +24,16 @@ TEST(GlContext, OpensOnceAndSaysWhatItIs) {
   EXPECT_FALSE(context.info().renderer.empty());
   EXPECT_NE(context.info().version.find("4."), std::string::npos);
   RecordProperty("renderer", context.info().renderer);
+}
+
+// Where the machine has no GPU, both Mesa's surfaceless platform and its software device would do: the one
+// that could have been hardware was tried first, in whatever order EGL lists them.
+TEST(GlContext, WhatMayBeHardwareIsTriedFirst) {
+  const gl::ContextInfo& info = gl::Context::shared().info();
+  const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+  if (!info.software || !std::strstr(extensions, "EGL_MESA_platform_surfaceless"))
+    GTEST_SKIP() << "a GPU, or no surfaceless platform: " << info.renderer;
+  EXPECT_EQ(info.platform, "surfaceless");
 }
 
 TEST(GlContext, MissingLibraryNamesThePackage) {
