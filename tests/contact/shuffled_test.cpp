@@ -13,7 +13,7 @@ struct Felt {
 };
 
 Felt felt_by(unsigned order, contact::SampleRule rule, double error, double friction) {
-  TwoBalls balls(order);
+  TwoBalls balls({.order = order});
   balls.samples = rule;
   contact::ImageOptions options = balls.options();
   options.quadrature_error = error;

@@ -16,15 +16,23 @@ struct TwoBalls {
   dynamics::State state;
   Body a, b;
 
-  /// @param order  of the skins' triangles: 0 as they are made, else shuffled
-  explicit TwoBalls(unsigned order = 0)
-      : a(body(Pose{}, 1.0, order)),
-        b(body({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2, 2 * order)) {}
+  struct Skins {
+    unsigned order = 0;  ///< of their triangles: 0 as they are made, else shuffled
+    int subdivisions = 12;
+    double bumps = 0.0;  ///< their height
+    int cells = 3;       ///< of the grid of proxies, along an edge
+  };
+  TwoBalls() : TwoBalls(Skins{}) {}
+  explicit TwoBalls(const Skins& skins)
+      : a(body(Pose{}, 1.0, skins, skins.order)),
+        b(body({quaternion_of(Vec3(0.4, -0.7, 0.2)), Vec3(0.35, -0.2, -1.95)}, 1.2, skins, 2 * skins.order)) {
+  }
 
-  Body body(const Pose& pose, double scale, unsigned order) {
+  Body body(const Pose& pose, double scale, const Skins& skins, unsigned order) {
     Body out;
     out.model.tets = mesh::ball(1.0, 0.45);
-    out.model.skin = mesh::sphere(1.0, 12);
+    out.model.skin = mesh::sphere(1.0, skins.subdivisions);
+    for (auto x : out.model.skin.vertices.colwise()) x *= 1.0 + skins.bumps * (9.0 * x).array().sin().prod();
     std::mt19937 random(order);
     for (Eigen::Index f = out.model.skin.faces.cols() - 1; order > 0 && f > 0; --f)
       out.model.skin.faces.col(f).swap(out.model.skin.faces.col(random() % static_cast<unsigned>(f + 1)));
@@ -33,7 +41,7 @@ struct TwoBalls {
     out.surface.faces = out.model.skin.faces;
     out.surface.embedding = mesh::embed(out.model.tets, out.model.skin.vertices);
     out.surface.tets = out.model.tets.tets;
-    out.proxies = proxies_of(out.model.tets, out.model.skin, out.surface.embedding, 3);
+    out.proxies = proxies_of(out.model.tets, out.model.skin, out.surface.embedding, skins.cells);
     dynamics::BlockSpec nodes;
     nodes.name = "ball";
     nodes.q_size = nodes.u_size = static_cast<int>(out.model.tets.nodes.size());
