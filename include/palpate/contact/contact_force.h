@@ -42,7 +42,7 @@ struct QueryStages {
   long pixels = 0;               ///< of all images
   long vertices = 0, faces = 0;  ///< in axes of all images, of both sides; faces that these images show
   long hits = 0;                 ///< pairs that are near enough, of all images
-  /// regions whose normal was not yet that of their overlap, to 1e-3 rad, at their last look
+  /// regions whose normal the last look still turned by over 0.02 rad, or in which it saw several planes
   long unaligned = 0;
   long lines = 0;  ///< pixels with layers or walls, or on a triangle's rim: an image left them to exact lines
   /// Standard error that the pixels left in the overlap volume, relative, as they estimate it themselves:
