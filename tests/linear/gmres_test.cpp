@@ -1,13 +1,10 @@
 // Unsymmetric matrices by flexible GMRES, preconditioned by a solution with their symmetric part.
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <cmath>
-#include <random>
-#include <tuple>
 
 #include "linear/gmres.h"
+#include "linear/unsymmetric_matrices.h"
 #include "palpate/core/error.h"
 #include "palpate/linear/solvers.h"
 
@@ -15,41 +12,6 @@ namespace palpate {
 namespace {
 
 using namespace dynamics;
-
-/// A row of nodes on springs, each on the ground as well by `ground`; every `every`-th is pressed by a
-/// contact k (n - mu s) n^T with n and s at random: friction follows the pressure.
-BorderedMatrix row_with_friction(int nodes, double ground, int every, double k, double mu) {
-  PatternBuilder pattern(nodes);
-  for (int i = 0; i + 1 < nodes; ++i) pattern.add_pair(i, i + 1);
-  BorderedMatrix A;
-  A.body = pattern.build();
-  A.symmetric = false;
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> value(-1.0, 1.0);
-  for (int i = 0; i < nodes; ++i) A.body.add(A.body.slot(i, i), ground * Mat3::Identity());
-  for (int i = 0; i + 1 < nodes; ++i)
-    for (const auto& [a, b, sign] :
-         {std::tuple{i, i, 1.0}, {i + 1, i + 1, 1.0}, {i, i + 1, -1.0}, {i + 1, i, -1.0}})
-      A.body.add(A.body.slot(a, b), sign * Mat3::Identity());
-  for (int i = 0; i < nodes; i += every) {
-    const Vec3 n = Vec3::NullaryExpr([&] { return value(random); }).normalized(), s = n.unitOrthogonal();
-    A.body.add(A.body.slot(i, i), k * (n - mu * s) * n.transpose());
-  }
-  A.right = MatX::Zero(3 * nodes, 0);
-  A.bottom = MatX::Zero(0, 3 * nodes);
-  A.corner = MatX::Zero(0, 0);
-  A.touch();
-  return A;
-}
-
-/// Largest |x . N y| over |x|_S |y|_S: the largest singular value of L^-1 N L^-T, S = L L^T.
-double skew_norm(const BorderedMatrix& A) {
-  const MatX dense = A.to_dense(), S = 0.5 * (dense + dense.transpose()), N = dense - S;
-  const MatX L = Eigen::LLT<MatX>(S).matrixL();
-  MatX M = L.triangularView<Eigen::Lower>().solve(N);
-  M = L.triangularView<Eigen::Lower>().solve(MatX(M.transpose()));
-  return Eigen::JacobiSVD<MatX>(M).singularValues()[0];
-}
 
 TEST(SymmetricPart, IsTheMeanOfBothTriangles) {
   BorderedMatrix A = row_with_friction(12, 0.3, 2, 5.0, 0.4);

@@ -1,0 +1,157 @@
+// Unsymmetric matrices by conjugate residuals over a Cholesky factor of the symmetric part.
+#include "linear/conjugate_residuals.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "linear/unsymmetric_matrices.h"
+#include "palpate/linear/solvers.h"
+
+namespace palpate {
+namespace {
+
+using namespace dynamics;
+
+double energy_norm(const MatX& A, const VecX& x) { return std::sqrt(x.dot(A * x)); }
+
+// The number of steps that theory allows, 2 rho^k <= rtol, and the error that it promises, with no constant
+// in either.
+TEST(ConjugateResiduals, TakeNoMoreStepsThanTheSkewPartIsWorth) {
+  int checked = 0;
+  for (const double mu : {0.1, 0.3, 1.0, 1.5})
+    for (const int border : {0, 2}) {
+      BorderedMatrix A = row_with_friction(60, 1.0, 2, 1.0, mu);
+      A.right = MatX::Zero(180, border);
+      A.bottom = MatX::Zero(border, 180);
+      A.corner = 3.0 * MatX::Identity(border, border);
+      if (border > 0) {  // unsymmetric as well
+        A.right(7, 0) = 0.3;
+        A.bottom(0, 7) = -0.4;
+        A.bottom(1, 90) = 0.5;
+        A.corner(0, 1) = 0.8;
+      }
+      A.touch();
+      const double skew = skew_norm(A), rho = skew / (1.0 + std::sqrt(1.0 + skew * skew));
+      ASSERT_GT(skew, 0.02) << mu;
+      const MatX dense = A.to_dense(), S = 0.5 * (dense + dense.transpose());
+      const VecX b = VecX::LinSpaced(A.size(), -1.0, 3.0), exact = dense.partialPivLu().solve(b);
+      for (const double rtol : {1e-2, 1e-5, 1e-8, 1e-12}) {
+        const auto cholesky = linear::make_linear_solver("cholmod");
+        linear::ConjugateResiduals solver(rtol, *cholesky);
+        ASSERT_EQ(solver.factor(A), SolveStatus::kOk);
+        VecX x = b;
+        ASSERT_EQ(solver.solve(x, x), SolveStatus::kOk);
+        EXPECT_LE(energy_norm(S, x - exact), rtol * (1.0 + skew) * energy_norm(S, exact))
+            << mu << " " << rtol;
+        const double most = std::ceil(std::log(0.5 * rtol) / std::log(rho));
+        const int check = rtol < 1e-10 ? 1 : 0;
+        EXPECT_LE(static_cast<double>(solver.counters().iterations), most + check) << mu << " " << rtol;
+        EXPECT_GE(solver.counters().iterations, 2);
+        // of both together: one factor, one right-hand side
+        SolverCounters sum = cholesky->counters();
+        sum += solver.counters();
+        EXPECT_EQ(sum.solves, 1);
+        EXPECT_EQ(sum.factorisations, 1);
+        ++checked;
+      }
+    }
+  EXPECT_EQ(checked, 32);
+}
+
+TEST(ConjugateResiduals, SolveASymmetricMatrixByItsFactorAlone) {
+  BorderedMatrix A = row_with_friction(60, 0.1, 2, 0.5, 0.0);
+  const VecX b = VecX::LinSpaced(180, -1.0, 3.0);
+  const auto cholesky = linear::make_linear_solver("cholmod");
+  linear::ConjugateResiduals solver(1e-13, *cholesky);
+  for (const double skew : {0.0, 1e-16, 1e-9}) {  // the second one is rounding
+    A.body.block(A.body.slot(7, 7))[1] += skew;
+    A.touch();
+    ASSERT_EQ(solver.factor(A), SolveStatus::kOk);
+    VecX x, Ax;
+    const long before = solver.counters().iterations;
+    ASSERT_EQ(solver.solve(b, x), SolveStatus::kOk);
+    A.multiply(x, Ax);
+    EXPECT_LE((Ax - b).norm(), 1e-12 * b.norm());
+    EXPECT_EQ(solver.counters().iterations > before, skew == 1e-9) << skew;
+  }
+  VecX x;
+  ASSERT_EQ(solver.solve(VecX(VecX::Zero(180)), x), SolveStatus::kOk);
+  EXPECT_EQ(x, VecX(VecX::Zero(180)));
+}
+
+// A symmetric body does not make the matrix symmetric: its border counts.
+TEST(ConjugateResiduals, SeeABorderThatIsNotSymmetric) {
+  for (const bool in_corner : {false, true}) {
+    BorderedMatrix A = row_with_friction(20, 1.0, 2, 1.0, 0.0);
+    A.right = MatX::Zero(60, 2);
+    A.bottom = MatX::Zero(2, 60);
+    A.corner = 3.0 * MatX::Identity(2, 2);
+    (in_corner ? A.corner(0, 1) : A.bottom(0, 7)) = 0.4;
+    A.touch();
+    const auto cholesky = linear::make_linear_solver("cholmod");
+    linear::ConjugateResiduals solver(1e-13, *cholesky);
+    const VecX b = VecX::LinSpaced(62, -1.0, 3.0);
+    VecX x, Ax;
+    ASSERT_EQ(solver.factor(A), SolveStatus::kOk);
+    ASSERT_EQ(solver.solve(b, x), SolveStatus::kOk);
+    A.multiply(x, Ax);
+    EXPECT_LE((Ax - b).norm(), 1e-12 * b.norm()) << in_corner;
+  }
+}
+
+// A tight end is that of b - A x itself, which costs a product more.
+TEST(ConjugateResiduals, CheckATightResidual) {
+  const BorderedMatrix A = row_with_friction(60, 1.0, 2, 1.0, 0.3);
+  const VecX b = VecX::LinSpaced(180, -1.0, 3.0);
+  const auto products = [&](double rtol) {
+    const auto cholesky = linear::make_linear_solver("cholmod");
+    linear::ConjugateResiduals solver(rtol, *cholesky);
+    VecX x;
+    EXPECT_EQ(solver.factor(A), SolveStatus::kOk);
+    EXPECT_EQ(solver.solve(b, x), SolveStatus::kOk);
+    return solver.counters().iterations;
+  };
+  EXPECT_EQ(products(0.99e-10), products(1.01e-10) + 1);
+}
+
+TEST(ConjugateResiduals, SayWhatTheyCannotSolve) {
+  const auto cholesky = linear::make_linear_solver("cholmod");
+  linear::ConjugateResiduals solver(1e-8, *cholesky);
+  EXPECT_EQ(solver.factor(row_with_friction(20, 1.0, 3, 1e4, 0.8)), SolveStatus::kIndefinite);
+  const BorderedMatrix spinning = spinning_nodes(200, 20.0);  // rho = 0.95
+  ASSERT_EQ(solver.factor(spinning), SolveStatus::kOk);
+  VecX x;
+  EXPECT_EQ(solver.solve(VecX(VecX::Ones(600)), x), SolveStatus::kNotConverged);
+  BorderedMatrix broken = row_with_friction(20, 1.0, 3, 1.0, 0.3);
+  broken.body.block(0)[1] = std::nan("");
+  EXPECT_EQ(solver.factor(broken), SolveStatus::kSingular);
+}
+
+// An unchanged matrix is not factored again, unless the symmetric solver has had another one in between.
+TEST(ConjugateResiduals, KeepTheFactorOfAnUnchangedMatrix) {
+  BorderedMatrix A = row_with_friction(20, 1.0, 2, 1.0, 0.3), other = row_with_friction(20, 2.0, 2, 1.0, 0.0);
+  other.symmetric = true;
+  const auto cholesky = linear::make_linear_solver("cholmod");
+  linear::ConjugateResiduals solver(1e-12, *cholesky);
+  const VecX b = VecX::LinSpaced(60, -1.0, 3.0);
+  const auto expect_solved = [&](long factorisations) {
+    VecX x, Ax;
+    ASSERT_EQ(solver.factor(A), SolveStatus::kOk);
+    ASSERT_EQ(solver.solve(b, x), SolveStatus::kOk);
+    A.multiply(x, Ax);
+    EXPECT_LE((Ax - b).norm(), 1e-11 * b.norm());
+    EXPECT_EQ(cholesky->counters().factorisations, factorisations);
+  };
+  expect_solved(1);
+  expect_solved(1);
+  ASSERT_EQ(cholesky->factor(other), SolveStatus::kOk);
+  expect_solved(3);
+  A.body.block(A.body.slot(3, 3))[1] += 0.1;
+  A.touch();
+  expect_solved(4);
+}
+
+}  // namespace
+}  // namespace palpate
