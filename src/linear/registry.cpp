@@ -1,4 +1,7 @@
 #include "linear/auto_choice.h"
+#include "linear/border_elimination.h"
+#include "linear/conjugate_residuals.h"
+#include "linear/direct/direct_solver.h"
 #include "linear/make.h"
 #include "palpate/linear/solvers.h"
 
@@ -7,8 +10,9 @@ namespace palpate::linear {
 const dynamics::LinearSolverRegistry& linear_solver_registry() {
   static const dynamics::LinearSolverRegistry registry = {
       {"cholmod",
-       "supernodal Cholesky of SuiteSparse, ordered by AMD or METIS; symmetric positive definite matrices", 0,
-       make_cholmod},
+       "supernodal Cholesky of SuiteSparse, ordered by AMD or METIS; symmetric positive definite matrices; "
+       "with friction, conjugate residuals over the factor of the symmetric part",
+       0, make_cholmod},
       {"umfpack", "multifrontal LU of SuiteSparse; unsymmetric and indefinite matrices", 0, make_umfpack},
       {"klu",
        "left-looking LU of SuiteSparse, pivot order kept; unsymmetric and indefinite matrices, of small "
@@ -41,6 +45,14 @@ const dynamics::LinearSolverRegistry& linear_solver_registry() {
 std::unique_ptr<dynamics::LinearSolver> make_linear_solver(const std::string& name,
                                                            const IntegratorSpec& spec) {
   return find(linear_solver_registry(), name, "linear solver").make(spec);
+}
+
+std::unique_ptr<dynamics::LinearSolver> make_unsymmetric_solver(dynamics::LinearSolver& symmetric,
+                                                                const IntegratorSpec& spec) {
+  if (dynamic_cast<const DirectSolver*>(&symmetric))
+    return std::make_unique<BorderElimination>(
+        std::make_unique<ConjugateResiduals>(spec.linear_rtol, symmetric));
+  return make_gmres(spec);
 }
 
 }  // namespace palpate::linear
