@@ -10,21 +10,23 @@ namespace palpate::integrate {
 using dynamics::BorderedMatrix;
 using dynamics::SolveStatus;
 
-DirectFallback::DirectFallback(std::unique_ptr<dynamics::LinearSolver> chosen)
-    : chosen_(std::move(chosen)), active_(chosen_.get()) {}
+DirectFallback::DirectFallback(std::unique_ptr<dynamics::LinearSolver> chosen, const IntegratorSpec& spec)
+    : spec_(spec), chosen_(std::move(chosen)), active_(chosen_.get()) {}
 
 SolveStatus DirectFallback::factor(const BorderedMatrix& A) {
   if (!A.symmetric && !chosen_->supports_unsymmetric()) {
-    counters::count("integrate.unsymmetric");
-    return factor_by_lu(A);
+    if (!unsymmetric_) unsymmetric_ = linear::make_unsymmetric_solver(*chosen_, spec_);
+    active_ = unsymmetric_.get();
+  } else {
+    active_ = chosen_.get();
   }
-  active_ = chosen_.get();
-  return chosen_->factor(A);
+  return active_->factor(A);
 }
 
 SolveStatus DirectFallback::factor_by_lu(const BorderedMatrix& A) {
   if (!lu_) lu_ = linear::make_linear_solver("umfpack");
   active_ = lu_.get();
+  counters::count("integrate.matrices_left_to_lu");
   return lu_->factor(A);
 }
 
@@ -42,7 +44,7 @@ SolveStatus DirectFallback::factor_direct(const BorderedMatrix& A) {
 
 const dynamics::SolverCounters& DirectFallback::counters() const {
   sum_ = chosen_->counters();
-  for (const auto* behind : {cholesky_.get(), lu_.get()})
+  for (const auto* behind : {unsymmetric_.get(), cholesky_.get(), lu_.get()})
     if (behind) sum_ += behind->counters();
   return sum_;
 }

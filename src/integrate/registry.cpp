@@ -152,7 +152,7 @@ std::string linear_solver_of(const IntegratorSpec& spec) {
 
 std::unique_ptr<dynamics::LinearSolver> make_robust_linear_solver(const std::string& name,
                                                                   const IntegratorSpec& spec) {
-  return std::make_unique<RobustSolver>(linear::make_linear_solver(name, spec));
+  return std::make_unique<RobustSolver>(linear::make_linear_solver(name, spec), spec);
 }
 
 }  // namespace palpate::integrate

@@ -7,7 +7,8 @@ using dynamics::SolveStatus;
 SolveStatus RobustSolver::factor(const dynamics::BorderedMatrix& A) {
   matrix_ = &A;
   const SolveStatus status = solvers_.factor(A);
-  return status == SolveStatus::kIndefinite ? solvers_.factor_direct(A) : status;
+  if (status != SolveStatus::kIndefinite && status != SolveStatus::kNotConverged) return status;
+  return solvers_.factor_direct(A);
 }
 
 template <class Columns>

@@ -3,11 +3,12 @@
 
 namespace palpate::integrate {
 
-/// A linear solver that solves every matrix that has an inverse: what the chosen solver does not take,
-/// because the matrix is unsymmetric or indefinite or its iteration does not converge, is solved directly.
+/// A linear solver that solves every matrix that has an inverse: where the chosen solver, or the iteration
+/// over it for unsymmetric matrices, does not, it is solved directly.
 class RobustSolver final : public dynamics::LinearSolver {
  public:
-  explicit RobustSolver(std::unique_ptr<dynamics::LinearSolver> chosen) : solvers_(std::move(chosen)) {}
+  RobustSolver(std::unique_ptr<dynamics::LinearSolver> chosen, const IntegratorSpec& spec)
+      : solvers_(std::move(chosen), spec) {}
 
   std::string name() const override { return solvers_.chosen().name(); }
   bool supports_unsymmetric() const override { return true; }

@@ -8,10 +8,11 @@ using dynamics::SolveStatus;
 SolveStatus StepSolver::factor_chosen(const BorderedMatrix& A) {
   matrix_ = &A;
   projected_ = false;
-  const long before = chosen().counters().factorisations;
+  const long before = counters().factorisations;
   const SolveStatus status = solvers_.factor(A);
   if (solvers_.by_chosen() && status == SolveStatus::kIndefinite)
-    indefinite_count_ += chosen().counters().factorisations - before;
+    indefinite_count_ += counters().factorisations - before;
+  if (status == SolveStatus::kNotConverged) ++unconverged_count_;
   return status;
 }
 

@@ -25,15 +25,15 @@ class ProjectedTangents {
 /// The policy for the Newton matrices of an implicit step: what is done where the chosen linear solver cannot
 /// solve with a matrix.
 ///
-/// - Unsymmetric, and the chosen solver takes symmetric ones only: LU.
+/// - Unsymmetric, and the chosen solver takes symmetric ones only: an iteration over its factor of the
+///   symmetric part (DirectFallback); LU where that part is indefinite or the iteration does not converge.
 /// - Indefinite, and IntegratorSpec::indefinite is "project": the matrix of projected tangents, by the chosen
 ///   solver.  Where that one is indefinite as well: the true matrix, directly.
 /// - Indefinite, and IntegratorSpec::indefinite is "lu": the true matrix, directly.  With an inverted element
 ///   or a compressed strut it is still the right Newton matrix, but not that of a minimum: Newton may run to
 ///   a saddle, and a large step anywhere.
-/// - The iteration does not converge: a Cholesky factor, made when a right-hand side needs it.  Where there
-/// is
-///   none, the matrix is indefinite: as above.
+/// - The iteration does not converge, for a right-hand side or a column of the border: a Cholesky factor,
+///   made then.  Where there is none, the matrix is indefinite: as above.
 ///
 /// "Directly" is Cholesky where there is such a factor, else LU (DirectFallback).
 ///
@@ -45,13 +45,14 @@ class ProjectedTangents {
 class StepSolver {
  public:
   StepSolver(std::unique_ptr<dynamics::LinearSolver> chosen, const IntegratorSpec& spec)
-      : solvers_(std::move(chosen)), project_(spec.indefinite == "project") {}
+      : solvers_(std::move(chosen), spec), project_(spec.indefinite == "project") {}
 
   /// Factors A.  @param reassemble  writes A again, by the tangents that the system then gives
   template <class Reassemble>
   dynamics::SolveStatus factor(const dynamics::BorderedMatrix& A, dynamics::System& system,
                                Reassemble&& reassemble) {
     const dynamics::SolveStatus status = factor_chosen(A);
+    if (status == dynamics::SolveStatus::kNotConverged) return factor_direct(A);
     if (status != dynamics::SolveStatus::kIndefinite) return status;
     // of an unsymmetric matrix that is said of its symmetric part alone
     return project_ && A.symmetric ? factor_indefinite(A, system, reassemble) : factor_direct(A);

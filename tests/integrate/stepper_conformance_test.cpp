@@ -265,7 +265,8 @@ TEST_P(Steppers, StopAtTheStepLimit) {
   EXPECT_GT(chain.state.time(), 0.0);
 }
 
-// By LU, or, where the solver takes such matrices itself, by that.
+// By an iteration over the solver's factor of the symmetric part, or by the solver itself where it takes such
+// matrices; never by LU.
 TEST_P(ImplicitSteppers, TakeAnUnsymmetricTangent) {
   Chain chain;
   chain.start_in_mode(0.1);
@@ -273,18 +274,25 @@ TEST_P(ImplicitSteppers, TakeAnUnsymmetricTangent) {
   chain.term->symmetric = false;
   const bool automatic = integrate::linear_solver_of(spec()) == "auto";
   IntegratorSpec tight = spec();
-  if (automatic) tight.linear_rtol = 1e-14;
-  auto& counter = counters::counter(automatic ? "integrate.solver.gmres" : "integrate.unsymmetric");
-  const long before = counter;
+  tight.linear_rtol = 1e-14;
+  auto& counter =
+      counters::counter(automatic ? "integrate.solver.gmres" : "integrate.solver.conjugate_residuals");
+  const auto& lu = counters::counter("integrate.solver.umfpack");
+  const long before = counter, lu_before = lu;
   const VecX q = run(chain.system, chain.state, tight, 0.3);
   EXPECT_GT(counter, before);
+  EXPECT_EQ(lu, lu_before);
   Chain same;
   same.start_in_mode(0.1);
   same.term->K(0, 3) += 20.0;
   same.term->symmetric = false;
   IntegratorSpec s = spec();
   s.linear_solver = "umfpack";
-  EXPECT_LT((run(same.system, same.state, s, 0.3) - q).norm(), 1e-13);
+  // error control over stages turns the last digits into other lengths of steps, by klu in place of umfpack
+  // as well: such a run is held to its tolerance, and to roundings where its steps are fixed
+  const bool free_steps = s.name.starts_with("ark-") && !steps_are_fixed(GetParam());
+  const VecX by_lu = run(same.system, same.state, s, 0.3);
+  EXPECT_LT((by_lu - q).norm(), free_steps ? s.rtol * by_lu.norm() : 1e-13);
 }
 
 TEST_P(Steppers, PassEmptyTime) {

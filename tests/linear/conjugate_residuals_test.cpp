@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "linear/unsymmetric_matrices.h"
+#include "palpate/core/counters.h"
+#include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 
 namespace palpate {
@@ -151,6 +153,40 @@ TEST(ConjugateResiduals, KeepTheFactorOfAnUnchangedMatrix) {
   A.body.block(A.body.slot(3, 3))[1] += 0.1;
   A.touch();
   expect_solved(4);
+}
+
+// LU is the last resort: made for the two matrices above, never for one that the iteration solves with.
+TEST(ConjugateResiduals, StandBeforeLu) {
+  const BorderedMatrix mild = row_with_friction(60, 1.0, 2, 1.0, 0.3),
+                       indefinite = row_with_friction(60, 1.0, 3, 1e4, 0.8),
+                       spinning = spinning_nodes(60, 20.0);
+  for (const char* name : {"cholmod", "pcg", "pcg-single"}) {
+    const auto robust = integrate::make_robust_linear_solver(name);
+    const auto solve = [&](const BorderedMatrix& A) {
+      ASSERT_EQ(robust->factor(A), SolveStatus::kOk);
+      VecX x = VecX::LinSpaced(A.size(), -1.0, 3.0);
+      const VecX b = x;
+      ASSERT_EQ(robust->solve(x, x), SolveStatus::kOk);
+      VecX Ax;
+      A.multiply(x, Ax);
+      EXPECT_LE((Ax - b).norm(), 1e-7 * b.norm()) << name;
+    };
+    const auto& lus = counters::counter("integrate.solver.umfpack");
+    const long before = lus;
+    solve(mild);
+    EXPECT_EQ(lus, before) << name;
+    solve(indefinite);
+    EXPECT_EQ(lus, before + 1) << name;
+    solve(mild);
+    const long factors = robust->counters().factorisations;
+    solve(spinning);
+    EXPECT_GT(robust->counters().factorisations, factors + 1) << name << ": the iteration's, and LU's";
+    EXPECT_EQ(lus, before + 1) << name << ": made once";
+    BorderedMatrix bordered = spinning;
+    add_border(bordered, 6, 400.0);
+    solve(bordered);  // of the direct solver it is the border's columns that do not converge
+    EXPECT_EQ(lus, before + 1) << name;
+  }
 }
 
 }  // namespace
