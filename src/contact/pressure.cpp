@@ -56,12 +56,12 @@ PressureLaw pressure_law(const ContactSpec& spec) {
                   spec.onset_width_m,
                   spec.friction,
                   spec.friction_regularisation_m_s,
-                  spec.friction_tangent == "symmetric",
-                  per_point};
-  if (spec.friction_tangent != "symmetric" && spec.friction_tangent != "full" &&
-      spec.friction_tangent != "auto")
+                  spec.friction_tangent == "symmetric" || spec.friction_tangent == "secant",
+                  per_point,
+                  spec.friction_tangent == "secant"};
+  if (!law.symmetric_tangent && spec.friction_tangent != "full" && spec.friction_tangent != "auto")
     fail("contact \"{}\" with \"{}\": unknown friction_tangent \"{}\"{}", spec.first, spec.second,
-         spec.friction_tangent, suggestion(spec.friction_tangent, {"auto", "full", "symmetric"}));
+         spec.friction_tangent, suggestion(spec.friction_tangent, {"auto", "full", "secant", "symmetric"}));
   if (spec.law == "kelvin_voigt") return law;
   if (spec.law != "hunt_crossley")
     fail("contact \"{}\" with \"{}\": unknown law \"{}\"{}", spec.first, spec.second, spec.law,

@@ -17,6 +17,8 @@ struct PressureLaw {
   bool symmetric_tangent = false;
   /// springs of points, not of area: `Pressure::p` is a force [N], and every sample's area is 1
   bool per_point = false;
+  /// friction's derivative by the velocity is its secant through zero (sample_math.cpp)
+  bool secant_friction = false;
 };
 
 /// @throws Error for a value that no contact can have, naming the pair and the key.

@@ -230,7 +230,7 @@ void assemble_contact(World& world) {
     scene::order_sides(world.description, given);
     ContactSpec spec = given;
     if (spec.friction_tangent == "auto")
-      spec.friction_tangent = leaves_out_friction(world) ? "symmetric" : "full";
+      spec.friction_tangent = leaves_out_friction(world) ? "secant" : "full";
     // of a tool with ticks of its own on an obstacle no step matrix has a part
     if (world.description.tool && spec.first == "tool" && !world.monolithic())
       spec.friction_tangent = "symmetric";

@@ -177,6 +177,41 @@ TEST(ContactTangent, TheFrictionLeftOutIsMeasured) {
   EXPECT_NEAR(term.largest_friction_lag(), 0.3 * area * 2e3 * deeper, 1e-12);
 }
 
+// The secant through zero: with the force and the matrix of one state, F0 - D (v - v0), friction at any other
+// velocity v is that of v0 times v / |v0|, along both tangents, so that it never does positive work; below
+// v_r it is the tangent.
+TEST(ContactTangent, TheSecantOfFrictionOpposesEveryVelocity) {
+  constexpr double depth = 0.02, area = 0.7, k = 2e3, mu = 0.3, regularisation = 0.1;
+  for (const Vec3& v0 : {Vec3(0.3, -0.4, 0.2), Vec3(0.03, 0.04, 0.0), Vec3(0.0, 0.0, 0.1)}) {
+    World world(2, false, 3);
+    world.state.u().setZero();
+    world.state.u().head<3>() = v0;
+    contact::ContactForce term;
+    const int frame = term.add_frame(contact::fixed_frame());
+    ContactSpec spec;
+    spec.stiffness_pa_m = k;
+    spec.friction = mu;
+    spec.friction_regularisation_m_s = regularisation;
+    spec.friction_tangent = "secant";
+    term.add_pair(std::make_unique<ListSource>(std::vector<contact::ContactSample>{
+                      on_frame(node_point({0}, {1.0}), frame, Pose{}, {0, 0, 1}, depth, area, world.state)}),
+                  spec);
+    term.refresh(world.state.view());
+    EXPECT_TRUE(term.traits().symmetric_tangent);
+    const MatX D = step_matrix(term, world.state, 0.0, 1.0).to_dense().topLeftCorner(3, 3);
+    EXPECT_LT((D - D.transpose()).norm(), 1e-14 * D.norm());
+    VecX f = VecX::Zero(world.state.u().size());
+    term.add_force(world.state.view(), f);
+    const double pressing = area * k * depth, scale = std::max(v0.head<2>().norm(), regularisation);
+    for (const Vec3& v : {Vec3(-0.2, 0.1, 0.0), Vec3(1.0, 2.0, 0.3), Vec3::Zero().eval()}) {
+      const Vec3 force = f.head<3>() - D * (v - v0);
+      EXPECT_LT(
+          (force - Vec3(-mu * pressing / scale * v.x(), -mu * pressing / scale * v.y(), pressing)).norm(),
+          1e-12 * pressing);
+    }
+  }
+}
+
 TEST(ContactTangent, TraitsSayWhatItIs) {
   EXPECT_FALSE(Scene(kLaws[0]).term.traits().symmetric_tangent);  // a body of the State is a frame
   contact::ContactForce term;

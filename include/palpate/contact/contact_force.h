@@ -177,9 +177,9 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   /// The largest of them so far, and the largest resultants after a refresh, to judge them by.
   ResultantSize largest_jump() const;
   ResultantSize largest_resultant() const;
-  /// Of the pairs whose tangent is symmetric ("friction_tangent"): the largest friction that a step left out,
-  /// for the pressure changed and the friction did not, and the largest friction, both as the norm of a
-  /// pair's sum [N].
+  /// Of the pairs whose tangent is symmetric ("friction_tangent" symmetric or secant): the largest friction
+  /// that a step left out, for the pressure changed and the friction did not, and the largest friction, both
+  /// as the norm of a pair's sum [N].
   double largest_friction_lag() const;
   double largest_lagged_friction() const;
   /// Vertices of each pair, in their order, that went through unseen so far (SampleSource::tunnelled).

@@ -35,8 +35,8 @@ struct ContactSpec {
   double onset_width_m = 0.0;
   double friction = 0.0;                      ///< mu, regularised Coulomb
   double friction_regularisation_m_s = 1e-3;  ///< v_r
-  /// "full", or "symmetric": without the change of friction by pressure, which makes the step matrix
-  /// unsymmetric; "auto": symmetric where a step is one linear solve
+  /// "full"; "symmetric": without how friction follows pressure, which is unsymmetric; "secant": so, and
+  /// friction opposes the velocity that a step ends with; "auto": secant where a step is one linear solve
   std::string friction_tangent = "auto";
   /// between two queries: "linear" in the positions, or "exact" at every evaluation (analytic alone)
   std::string gaps = "linear";
