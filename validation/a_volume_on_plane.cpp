@@ -26,23 +26,6 @@ TriMesh placed_sphere(int subdivisions, int orientation) {
   return mesh;
 }
 
-/// Volume between the plane z = 0 and the facets that face down.
-double facet_volume(const TriMesh& mesh) {
-  double sum = 0.0;
-  for (const auto& face : mesh.faces.colwise()) {
-    std::vector<Vec3> below;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 p = mesh.vertices.col(face[k]), q = mesh.vertices.col(face[(k + 1) % 3]);
-      if (p.z() <= 0.0) below.push_back(p);
-      if ((p.z() < 0.0) != (q.z() < 0.0)) below.push_back(p + p.z() / (p.z() - q.z()) * (q - p));
-    }
-    for (std::size_t k = 1; k + 1 < below.size(); ++k)
-      sum += 0.5 * (below[k] - below[0]).cross(below[k + 1] - below[0]).z() *
-             (below[0].z() + below[k].z() + below[k + 1].z()) / 3.0;
-  }
-  return sum;
-}
-
 double sampled(contact::DepthBackend backend, const TriMesh& mesh, int pixels, const GridShift& shift,
                const std::string& fault) {
   SurfaceBody body(mesh);
@@ -70,7 +53,8 @@ double sampled(contact::DepthBackend backend, const TriMesh& mesh, int pixels, c
 std::vector<Measurement> run(const std::string& fault) {
   std::vector<Measurement> out;
   const TriMesh mesh = placed_sphere(32, 0);
-  const double facets = facet_volume(mesh), cap = kPi * kDepth * kDepth * (3.0 * kRadius - kDepth) / 3.0;
+  const double facets = volume_below_plane(mesh),
+               cap = kPi * kDepth * kDepth * (3.0 * kRadius - kDepth) / 3.0;
   for (const contact::DepthBackend backend : image_backends()) {
     std::vector<double> h, error;
     double last = 0.0;

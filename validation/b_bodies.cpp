@@ -16,6 +16,22 @@ SurfaceBody::SurfaceBody(const TriMesh& mesh) {
   surface.faces = mesh.faces;
 }
 
+double volume_below_plane(const TriMesh& mesh) {
+  double sum = 0.0;
+  for (const auto& face : mesh.faces.colwise()) {
+    std::vector<Vec3> below;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 p = mesh.vertices.col(face[k]), q = mesh.vertices.col(face[(k + 1) % 3]);
+      if (p.z() <= 0.0) below.push_back(p);
+      if ((p.z() < 0.0) != (q.z() < 0.0)) below.push_back(p + p.z() / (p.z() - q.z()) * (q - p));
+    }
+    for (std::size_t k = 1; k + 1 < below.size(); ++k)
+      sum += 0.5 * (below[k] - below[0]).cross(below[k + 1] - below[0]).z() *
+             (below[0].z() + below[k].z() + below[k + 1].z()) / 3.0;
+  }
+  return sum;
+}
+
 void PointMass::add_mass(const dynamics::StateView& state, double scale, dynamics::BorderedMatrix& A) const {
   const dynamics::Block& block = *state.layout->find(block_id_);
   for (int i = block.u_offset / 3; i < (block.u_offset + block.u_size) / 3; ++i)

@@ -16,6 +16,10 @@ struct SurfaceBody {
   explicit SurfaceBody(const TriMesh& mesh);
 };
 
+/// Volume between the plane z = 0 and the facets that face down below it [m^3], exact: each triangle is
+/// clipped at the plane, and the depth, linear on it, is integrated over what is left.
+double volume_below_plane(const TriMesh& mesh);
+
 /// A point mass in every direction of one node block.
 class PointMass final : public dynamics::InertiaTerm {
  public:

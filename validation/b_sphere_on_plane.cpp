@@ -30,24 +30,6 @@ TriMesh placed_sphere(int subdivisions, int orientation) {
   return mesh;
 }
 
-/// Volume between the facets that face down and the plane z = 0 [m^3].
-double volume_below(const TriMesh& mesh) {
-  double sum = 0.0;
-  for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
-    std::vector<Vec3> corners;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 p = mesh.vertices.col(mesh.faces(k, f)), q = mesh.vertices.col(mesh.faces((k + 1) % 3, f));
-      if (p.z() <= 0.0) corners.push_back(p);
-      if ((p.z() < 0.0) != (q.z() < 0.0)) corners.push_back(p + p.z() / (p.z() - q.z()) * (q - p));
-    }
-    for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
-      const double projected = -0.5 * (corners[k] - corners[0]).cross(corners[k + 1] - corners[0]).z();
-      sum -= projected * (corners[0].z() + corners[k].z() + corners[k + 1].z()) / 3.0;
-    }
-  }
-  return sum;
-}
-
 /// Force of the samples of one source on the body, along z [N].
 double held_force(SurfaceBody& body, std::unique_ptr<contact::SampleSource> source,
                   const std::shared_ptr<contact::MovingFrame>& frame, const std::string& fault) {
@@ -117,7 +99,7 @@ std::vector<Measurement> run(const std::string& fault) {
     finest = mean;
   }
   const TriMesh mesh = placed_sphere(subdivisions.back(), 0);
-  const double facets = kStiffness * volume_below(mesh);
+  const double facets = kStiffness * volume_below_plane(mesh);
   std::vector<Measurement> out;
   out.push_back(against("force on the facets, vertex samples [N]", vertex_force(mesh, fault), facets, 1e-3));
   for (const contact::DepthBackend backend : image_backends())

@@ -14,6 +14,7 @@ ValidationCase order_independence();
 ValidationCase paper_depths();
 ValidationCase walls();
 ValidationCase sphere_on_plane();
+ValidationCase true_sphere();
 ValidationCase punch_bounce();
 ValidationCase punch_bounce_damped();
 ValidationCase punch_bounce_hunt_crossley();
