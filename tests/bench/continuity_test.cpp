@@ -4,16 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <deque>
 
 #include "bench/contact/relative_path.h"
+#include "contact/block_model.h"
 #include "palpate/loop/load.h"
-#include "palpate/mesh/generators.h"
-#include "palpate/proxy/decompose.h"
-#include "palpate/store/model_file.h"
-#include "temporary_folder.h"
 
 using namespace palpate;
+using block_model::block;
+using block_model::ModelOnDisk;
 
 namespace {
 
@@ -24,27 +23,13 @@ constexpr double kBound = 0.03;
 // their error is not that of the quadrature
 constexpr double kSeen = 0.1;
 
-LayeredModel block(const Pose& pose, const Vec3& size, const std::array<int, 3>& cells, int finer = 5) {
-  LayeredModel model;
-  model.name = "block";
-  model.tets = mesh::box(size, cells);
-  model.skin = mesh::box_surface(size, {finer * cells[0], finer * cells[1], finer * cells[2]});
-  for (Points* points : {&model.tets.nodes, &model.skin.vertices})
-    for (auto x : points->colwise()) x = pose * Vec3(x);
-  model.embedding = mesh::embed(model.tets, model.skin.vertices);
-  model.proxies = proxy::decompose(model, {.count = 8});
-  return model;
-}
-
 struct Blocks {
-  TemporaryFolder folder;
+  std::deque<ModelOnDisk> files;
 
-  SoftBodySpec body(const std::string& name, const LayeredModel& model) const {
-    const std::string path = (folder / (name + ".h5")).string();
-    store::write_model(path, {model, {}});
+  SoftBodySpec body(const std::string& name, const LayeredModel& model) {
     SoftBodySpec out;
     out.name = name;
-    out.mesh.file = path;
+    out.mesh.file = files.emplace_back(model, name + ".h5").path;
     out.skin = out.proxies = true;
     return out;
   }
@@ -56,7 +41,7 @@ struct Blocks {
     return out;
   }
   /// A slab, and a block with an edge towards it.
-  scene::Description ridge() const {
+  scene::Description ridge() {
     scene::Description d;
     d.name = "ridge";
     d.bodies = {body("slab", block({Quat::Identity(), Vec3::Zero()}, Vec3(0.06, 0.06, 0.02), {4, 4, 2})),
@@ -66,7 +51,7 @@ struct Blocks {
     return d;
   }
   /// A ball on a block's top, in its middle or at its edge.
-  scene::Description ball(const std::string& name, double x) const {
+  scene::Description ball(const std::string& name, double x) {
     scene::Description d;
     d.name = name;
     d.bodies = {body("block", block({Quat::Identity(), Vec3::Zero()}, Vec3(0.03, 0.03, 0.03), {2, 2, 2}))};
@@ -80,7 +65,7 @@ struct Blocks {
     return d;
   }
   /// A block face down on a slab, samples at the few vertices of both.
-  scene::Description few_vertices() const {
+  scene::Description few_vertices() {
     scene::Description d;
     d.name = "few vertices";
     const Pose above{Quat::Identity(), Vec3(0.001, -0.002, 0.03)};

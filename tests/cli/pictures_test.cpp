@@ -8,6 +8,7 @@
 #include "cli/picture.h"
 #include "cli/undelivered.h"
 #include "contact/grid_proxies.h"
+#include "loop/over_block.h"
 #include "loop/small_scenes.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -81,17 +82,9 @@ class Pictures : public testing::Test {
     d.bodies[0].mesh.file = path;
     d.bodies[0].skin = true;
     d.bodies[0].proxies = proxies;
-    d.bodies.push_back(d.bodies[0]);
-    d.bodies[1].name = "upper";
-    d.bodies[1].position_m = Vec3(0.017, 0.011, 0.03 - depth);
-    d.bodies[1].attachments.clear();
-    ContactSpec contact;
-    contact.first = "block";
-    contact.second = "upper";
-    contact.method = "cpu";
-    contact.stiffness_pa_m = 1e6;
-    d.contacts.push_back(contact);
-    d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
+    SoftBodySpec upper = d.bodies[0];
+    upper.position_m = Vec3(0.017, 0.011, 0.03 - depth);
+    small_scenes::put_over_block(d, upper);
     return d;
   }
 

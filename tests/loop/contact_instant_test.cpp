@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "loop/over_block.h"
 #include "loop/small_scenes.h"
 #include "palpate/loop/run.h"
 
@@ -16,18 +17,9 @@ namespace {
 scene::Description two_blocks(double depth) {
   scene::Description d = held_block();
   SoftBodySpec upper = d.bodies[0];
-  upper.name = "upper";
   upper.mesh.size_m = Vec3(0.0275, 0.0315, 0.02);
   upper.position_m = Vec3(0.001, 0.002, 0.03 - depth);
-  upper.attachments.clear();
-  d.bodies.push_back(upper);
-  ContactSpec contact;
-  contact.first = "block";
-  contact.second = "upper";
-  contact.method = "cpu";
-  contact.stiffness_pa_m = 1e6;
-  d.contacts.push_back(contact);
-  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
+  small_scenes::put_over_block(d, upper);
   return d;
 }
 

@@ -2,9 +2,8 @@
 // by any integrator and linear solver.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "contact/bent_bar.h"
+#include "contact/block_model.h"
 #include "contact/together.h"
 #include "loop/scene_checks.h"
 #include "loop/small_scenes.h"
@@ -14,44 +13,22 @@
 #include "palpate/loop/run.h"
 #include "palpate/loop/summary.h"
 #include "palpate/loop/world.h"
-#include "palpate/store/model_file.h"
-#include "temporary_folder.h"
 
 using namespace palpate;
+using block_model::block;
+using block_model::ModelOnDisk;
 using scene_checks::refusal;
 
 namespace {
 
-/// A model file that is there as long as the test runs.
-struct ModelOnDisk {
-  TemporaryFolder folder;
-  std::string path;
-  ModelOnDisk(const LayeredModel& model, const std::string& name) : path((folder / name).string()) {
-    store::write_model(path, {model, {}});
-  }
-};
-
 // height of the upper block's middle [m]: its lowest corner 0.2 mm above the lower block
 constexpr double kFall = 0.02876;
 
-/// A block where it stands, under a finer skin.
-LayeredModel block(const Pose& pose, const Vec3& size) {
-  LayeredModel model;
-  model.name = "block";
-  model.tets = mesh::box(size, {4, 4, 2});
-  model.skin = mesh::box_surface(size, {20, 20, 10});
-  for (Points* points : {&model.tets.nodes, &model.skin.vertices})
-    for (auto x : points->colwise()) x = pose * Vec3(x);
-  model.embedding = mesh::embed(model.tets, model.skin.vertices);
-  model.proxies = proxy::decompose(model, {.count = 8});
-  return model;
-}
-
 /// A block on the ground, and a smaller one, a little tilted, that falls on it from a fifth of a millimetre.
 struct Blocks {
-  LayeredModel lower = block({Quat::Identity(), Vec3(0, 0, 0.01)}, Vec3(0.06, 0.06, 0.02)),
+  LayeredModel lower = block({Quat::Identity(), Vec3(0, 0, 0.01)}, Vec3(0.06, 0.06, 0.02), {4, 4, 2}),
                upper = block({quaternion_of(Vec3(0.05, 0.03, 0.5)), Vec3(0.003, -0.002, kFall)},
-                             Vec3(0.03, 0.03, 0.015));
+                             Vec3(0.03, 0.03, 0.015), {4, 4, 2});
   ModelOnDisk first{lower, "lower.h5"}, second{upper, "upper.h5"},
       both{contact_tests::together(lower, upper), "both.h5"};
 

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "palpate/core/error.h"
-#include "palpate/proxy/decompose.h"
 #include "pruning.h"
 #include "shapes.h"
 
@@ -17,11 +16,6 @@ using proxy::Pruner;
 using namespace pruning;
 
 namespace {
-
-LayeredModel cut(LayeredModel model, int count) {
-  model.proxies = proxy::decompose(model, {.count = count});
-  return model;
-}
 
 Pose random_pose(std::mt19937& random, double distance) {
   std::normal_distribution<double> normal;

@@ -8,12 +8,18 @@
 
 #include "palpate/core/pose.h"
 #include "palpate/mesh/layered_model.h"
+#include "palpate/proxy/decompose.h"
 #include "palpate/proxy/pruner.h"
 
 /// What a pruner hands on, beside what brute force says is in contact.
 namespace pruning {
 
 using namespace palpate;
+
+inline LayeredModel cut(LayeredModel model, int count) {
+  model.proxies = proxy::decompose(model, {.count = count});
+  return model;
+}
 
 /// A soft body at some positions of its nodes, with its skin there.
 struct Placed {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "palpate/core/error.h"
-#include "palpate/proxy/decompose.h"
 #include "palpate/proxy/decompose_solid.h"
 #include "palpate/proxy/pruner.h"
 #include "pruning.h"
@@ -15,11 +14,6 @@ using proxy::Pruner;
 using namespace pruning;
 
 namespace {
-
-LayeredModel cut(LayeredModel model, int count) {
-  model.proxies = proxy::decompose(model, {.count = count});
-  return model;
-}
 
 Vec3 random_vector(std::mt19937& random, double size) {
   std::normal_distribution<double> normal;
