@@ -66,8 +66,8 @@ void print_contact_prices(const std::vector<bench::ContactPrice>& prices) {
   if (tangents.empty()) return;
   fmt::print(
       "A step with friction 0.3, without its query, medians [ms]\n"
-      "  symmetric: friction follows the pressure one step late, friction_tangent = \"symmetric\"; full: the "
-      "unsymmetric tangent, over symmetric\n"
+      "  symmetric: friction follows the pressure one step late, friction_tangent = \"secant\", the default "
+      "of such steps; full: the unsymmetric tangent, over symmetric\n"
       "  left out: largest friction that a step left out, of the largest friction; force: largest difference "
       "of the contact force\n"
       "  between both runs at the same time, of the largest force [%]\n{}\n",

@@ -74,7 +74,7 @@ FrictionPrice friction_price(scene::Description d, const ContactBenchVariant& va
     }
     return bench_contact(d, variant, stop);
   };
-  const ContactBenchRow symmetric = run("symmetric"), full = run("full");
+  const ContactBenchRow symmetric = run("secant"), full = run("full");
   FrictionPrice out{.symmetric_ms = symmetric.step.median, .full_ms = full.step.median};
   if (symmetric.friction_n > 0.0) out.left_out = symmetric.left_out_n / symmetric.friction_n;
   out.force_change = largest_change(symmetric.forces, full.forces);
