@@ -11,7 +11,7 @@ namespace palpate::bench {
 namespace {
 
 /// A block held at its foot, and another one held at its top, which is pushed into it and then aside.
-scene::Description rubbing_blocks() {
+scene::Description rubbing_blocks(double step_s = 0.01) {
   constexpr double kLength = 0.02, kPressed = 1e-3;
   scene::Description d = small_scenes::held_block();
   d.name = "rubbing blocks";
@@ -31,7 +31,7 @@ scene::Description rubbing_blocks() {
   d.gravity_m_s2 = Vec3::Zero();
   d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.01;
   d.integrator.name = "linearly-implicit-euler";
-  d.integrator.step_s = 0.01;
+  d.integrator.step_s = step_s;
   d.integrator.linear_rtol = 1e-6;
   return d;
 }
@@ -97,8 +97,9 @@ TEST(ContactRun, NamesWhatMadeTheImages) {
   EXPECT_EQ(r.device_is_software, gpu.software);
 }
 
-// Friction follows the pressure one step late where the tangent is symmetric: something is left out, and the
-// force changes a little; with the whole tangent nothing is left out, and as many steps are made.
+// Friction follows the pressure one step late where the tangent is symmetric, and opposes the velocity at the
+// step's end: something is left out, and the force differs, by what a step of that length leaves open.  Of
+// the truth (64 steps a period) both err by a half and a quarter of the force, in these 10 steps.
 TEST(ContactRun, PricesStandAtBothResolutionsWithBothTangents) {
   const ContactPrice price = bench_contact_price(rubbing_blocks());
   EXPECT_EQ(price.scene, "rubbing blocks");
@@ -118,7 +119,16 @@ TEST(ContactRun, PricesStandAtBothResolutionsWithBothTangents) {
     EXPECT_GT(c.friction.left_out, 1e-6);
     EXPECT_LT(c.friction.left_out, 0.5);
     EXPECT_GT(c.friction.force_change, 1e-9);
-    EXPECT_LT(c.friction.force_change, 0.1);
+    EXPECT_LT(c.friction.force_change, 0.6);
+  }
+}
+
+// The two tangents' forces tend to each other: by a tenth of the step to less than a fifth of the difference.
+TEST(ContactRun, TheDifferenceOfBothTangentsGoesWithTheStep) {
+  const ContactPrice price = bench_contact_price(rubbing_blocks(1e-3));
+  for (const ContactPrice::Contact& c : price.contacts) {
+    EXPECT_GT(c.friction.force_change, 1e-9);
+    EXPECT_LT(c.friction.force_change, 0.09);
   }
 }
 
