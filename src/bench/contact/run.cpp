@@ -164,7 +164,9 @@ void fill(ContactBenchRow& out, const Periods& of) {
   if (out.variant.method != "gpu") out.query_bytes = median(of.bytes);
   out.samples = static_cast<long>(median(of.samples));
   out.images = static_cast<long>(median(of.images));
-  for (const double regions : of.regions) out.regions += regions / static_cast<double>(of.regions.size());
+  // the sum first: of n times 8/n there would be rounding, and 8 would not be 8
+  for (const double regions : of.regions) out.regions += regions;
+  out.regions /= static_cast<double>(std::max<std::size_t>(1, of.regions.size()));
 }
 
 /// Sets how the gaps of all contacts in image space are found; whether there is one.
