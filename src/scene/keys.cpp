@@ -68,8 +68,7 @@ const KeyTable<ContactSpec>& contact_keys() {
       number("friction_regularisation_m_s", &ContactSpec::friction_regularisation_m_s,
              Ranges::friction_regularisation_m_s, "sliding speed below which friction is viscous"),
       text("friction_tangent", &ContactSpec::friction_tangent, {"auto", "full", "secant", "symmetric"},
-           "symmetric: steps leave out how friction follows pressure; secant: so, and friction opposes the "
-           "velocity at their end; auto: secant where they are one solve"),
+           "symmetric, secant: without its change by pressure; secant opposes the velocity at a step's end"),
       text("gaps", &ContactSpec::gaps, {"linear", "exact"},
            "between two queries: linear in the positions, or exact at every evaluation (obstacles, spheres)"),
       number("candidate_gap_m", &ContactSpec::candidate_gap_m, Ranges::candidate_gap_m,
