@@ -1,5 +1,6 @@
 // Regions whose normal has not settled when a query may look no more are counted, and no others.
 #include "ball_and_slab.h"
+#include "prism.h"
 #include "two_balls.h"
 
 using namespace contact_tests;
@@ -17,27 +18,7 @@ TriMesh groove(double steep) {
                rim = (away + std::cos(steep)) / std::sin(steep);
   const std::vector<Eigen::Vector2d> polygon = {{-3.0, 1.0}, {-3.0, -4.0},  {3.0, -4.0}, {3.0, 1.0},
                                                 {rim, 1.0},  {0.0, bottom}, {-rim, 1.0}};
-  const std::vector<Eigen::Vector3i> triangles = {{0, 1, 6}, {1, 5, 6}, {1, 2, 5}, {2, 4, 5}, {2, 3, 4}};
-  const auto n = static_cast<int>(polygon.size());
-  TriMesh mesh;
-  mesh.vertices.resize(3, 2 * n);
-  for (int i = 0; i < n; ++i)
-    for (int side = 0; side < 2; ++side)
-      mesh.vertices.col(i + side * n) = Vec3(polygon[static_cast<std::size_t>(i)].x(), side ? 2.0 : -2.0,
-                                             polygon[static_cast<std::size_t>(i)].y());
-  std::vector<Eigen::Vector3i> faces;
-  for (int i = 0; i < n; ++i) {
-    const int j = (i + 1) % n;
-    faces.emplace_back(i, j + n, j);
-    faces.emplace_back(i, i + n, j + n);
-  }
-  for (const auto& t : triangles) {
-    faces.push_back(t);
-    faces.emplace_back(t[0] + n, t[2] + n, t[1] + n);
-  }
-  mesh.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
-  for (std::size_t f = 0; f < faces.size(); ++f) mesh.faces.col(static_cast<Eigen::Index>(f)) = faces[f];
-  return mesh;
+  return prism(polygon, {{0, 1, 6}, {1, 5, 6}, {1, 2, 5}, {2, 4, 5}, {2, 3, 4}}, 2.0);
 }
 
 struct Looked {
