@@ -70,11 +70,14 @@ void GpuImage::answer_tiles(std::span<DepthRequest* const> requests) {
   instants_.mark(2);
   gl::finish("the contact images");
   hand_out(requests);
-  const double passes = instants_.seconds(0, 1), gather = instants_.seconds(1, 2);
+  // the device's clock is not the host's: what it says takes no more than the host waited
+  const double waited = wall_seconds() - start - upload;
+  const double passes = std::min(instants_.seconds(0, 1), waited);
+  const double gather = std::min(instants_.seconds(1, 2), waited - passes);
   times_.upload += upload;
   times_.passes += passes;
   times_.gather += gather;
-  times_.readback += std::max(0.0, wall_seconds() - start - upload - passes - gather);
+  times_.readback += waited - passes - gather;
 }
 
 /// Points that moved, tiles, and the ranges of faces to draw.

@@ -6,22 +6,29 @@ using namespace contact_tests;
 
 ON_EACH_BACKEND(QueryWork);
 
-// The four are parts of what the images take as a whole, which a clock outside of the backend reads.
+// The four are parts of what the images take as a whole, which a clock outside of the backend reads. A thread
+// may be set aside between two of them, on a busy machine for long, but not in each of a hundred queries.
 TEST_P(QueryWork, TheTimeOfImagesIsThatOfTheirStages) {
   TwoBalls balls;
   contact::ContactForce term;
   term.add_pair(balls.source(true), ContactSpec{});
   term.add_pair(balls.source(false), ContactSpec{});
-  for (int k = 0; k < 5; ++k) term.refresh(balls.state.view());
+  term.refresh(balls.state.view());
   for (const contact::QueryStages* s : term.stages()) {
     ASSERT_TRUE(s);
+    const auto parts = [s] { return s->upload_s + s->passes_s + s->gather_s + s->readback_s; };
+    double share = parts() / s->images_s;
+    for (int k = 0; k < 100 && share <= 0.5; ++k) {
+      const double parts_before = parts(), images_before = s->images_s;
+      term.refresh(balls.state.view());
+      share = (parts() - parts_before) / (s->images_s - images_before);
+    }
+    EXPECT_GT(share, 0.5);
+    EXPECT_LE(parts(), 1.000001 * s->images_s);
     EXPECT_GT(s->passes_s, 0.0);
     EXPECT_EQ(s->upload_s > 0.0, GetParam() != contact::DepthBackend::kExact);
     EXPECT_EQ(s->gather_s > 0.0, GetParam() != contact::DepthBackend::kExact);
     EXPECT_EQ(s->readback_s > 0.0, GetParam() == contact::DepthBackend::kGpu);
-    const double parts = s->upload_s + s->passes_s + s->gather_s + s->readback_s;
-    EXPECT_LE(parts, 1.000001 * s->images_s);
-    EXPECT_GT(parts, 0.5 * s->images_s);
   }
 }
 
