@@ -20,7 +20,7 @@ struct RunArguments {
   SceneArguments scene;
   std::string folder;       ///< empty: out/NAME
   double duration_s = 0.0;  ///< 0: the scene's
-  bool picture = false, report = false, trace = false;
+  bool picture = false, report = false, trace = false, real_time = false;
   bool contact_picture = false, frames = false;
   double frames_per_s = 0.0;           ///< of simulated time; 0: as the scene records
   std::string shade = "displacement";  ///< of picture and frames; or "stress", "penetration"

@@ -94,6 +94,9 @@ void add_run(CLI::App& app, Invocation& invocation) {
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--report", arguments->report, "also a page to look at (report.html)");
+  command->add_flag("--realtime", arguments->real_time,
+                    "ticks by the machine's clock, in a thread of their own; how late they were is printed, "
+                    "and kept tick by tick (clock.csv; a plot in the report)");
   command->add_flag("--trace", arguments->trace,
                     "also every attempted step, and why it was rejected (trace.csv; a plot in the report)");
   command->footer(R"(Examples:
@@ -101,6 +104,7 @@ void add_run(CLI::App& app, Invocation& invocation) {
   palpate run press-ball --integrator linearly-implicit-euler --set integrator.step_s=0.002
   palpate run press-ball --set body.0.youngs_modulus_pa=2e4 --picture --report -o out/softer
   palpate run falling-ball --trace --report      which steps were rejected, why, and where
+  palpate run touch-human --realtime             how late its ticks are on this machine
   palpate run two-heads --contact-picture        what touches where, how deep, by which proxies
   palpate run touch-head --frames --frames-per-s 50 --shade penetration
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "clock_figures.h"
 #include "commands.h"
 #include "contact_picture.h"
 #include "frames.h"
@@ -73,6 +74,7 @@ std::string command_of(const RunArguments& a) {
   if (a.frames && a.frames_per_s > 0.0) out += fmt::format(" --frames-per-s {}", a.frames_per_s);
   if ((a.picture || a.frames) && a.shade != "displacement") out += " --shade " + a.shade;
   if (a.report) out += " --report";
+  if (a.real_time) out += " --realtime";
   if (a.trace) out += " --trace";
   return a.folder.empty() ? out : out + " -o " + quoted(a.folder);
 }
@@ -131,6 +133,7 @@ loop::RunResult run_watched(loop::World& world, const RunArguments& arguments,
   Progress progress(fmt::format("running {}", short_name(world.description)));
   loop::RunOptions options;
   options.duration_s = arguments.duration_s;
+  options.real_time = arguments.real_time;
   options.observers = std::move(observers);
   options.progress = [&progress](double fraction) { progress(fraction); };
   options.stop = &stop_flag();
@@ -182,9 +185,11 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   }
 
   print_outcome(*world, result, peak, assemble_s);
+  if (result.real_time) print_clock(*result.real_time);
   bool cut_short = false;
   if (keep) {
     keep_summary(*world, result, assemble_s, arguments, folder);
+    if (result.real_time) keep_clock(*result.real_time, folder);
     if (arguments.picture) keep_picture(*world, snapshot, folder, missing);
     if (arguments.contact_picture) contact.save(*world, folder, missing);
     if (arguments.report) missing.add(report::write_run_report(folder));

@@ -24,11 +24,11 @@ void visit_error(Error& e, Visit visit) {
   visit("energy_error_j", e.energy_j);
 }
 
-// Beside its numbers a RunResult holds a status, a flag (padded to a word), and what put_result writes by
-// hand.
+// Beside its numbers a RunResult holds a status, a flag (padded to a word), what put_result writes by hand,
+// and the clock of real time, which a comparison has not: it runs in virtual time.
 static_assert(dynamics::bytes_of_counters<loop::RunResult>() + sizeof(dynamics::StepResult) + sizeof(double) +
                       sizeof(std::vector<long>) + sizeof(std::optional<loop::EnergyBalance>) +
-                      sizeof(std::string) ==
+                      sizeof(std::string) + sizeof(std::optional<loop::RealTimeResult>) ==
                   sizeof(loop::RunResult),
               "the codec leaves out a member of RunResult");
 

@@ -52,9 +52,10 @@ void assemble_tool(World& world) {
                                                          d.device->ramp_s);
   if (d.exchange.scheme == "monolithic")
     assemble_block(world);
-  else if (d.exchange.scheme == "partitioned")
+  else if (d.exchange.scheme == "partitioned") {
     side.tool = std::make_unique<tool::Tool>(*d.tool, d.tool->gravity ? d.gravity_m_s2 : Vec3(Vec3::Zero()));
-  else
+    side.known = {side.tool->time(), side.tool->pose(), side.tool->twist()};
+  } else
     fail("exchange: unknown scheme \"{}\"{}", d.exchange.scheme,
          suggestion(d.exchange.scheme, {"partitioned", "monolithic"}));
 }

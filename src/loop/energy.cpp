@@ -60,7 +60,7 @@ double EnergyLedger::dissipated_power() const {
   const ToolSide& side = ToolSide::of(world_);
   if (!side.tool) return sum;
   const VirtualCouplingSpec& c = world_.description.tool->coupling;
-  const Twist tool = side.tool->twist(), &hand = side.handle_now.twist;
+  const Twist &tool = side.known.twist, &hand = side.handle_now.twist;
   return sum + c.damping_n_s_m * (hand.linear - tool.linear).squaredNorm() +
          c.rotational_damping_n_m_s_rad * (hand.angular - tool.angular).squaredNorm();
 }

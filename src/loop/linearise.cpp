@@ -157,7 +157,7 @@ bool condense(World& world, double period, const contact::FrameLinearisation& c,
   Vec6 F0 = last.wrench, F1 = Vec6::Zero();
   if (tick < period * (1.0 - 1e-9)) {
     if (!answer_after(world, tick, c, first)) return false;
-    const Twist twist = ToolSide::of(world).tool->twist();
+    const Twist twist = ToolSide::of(world).known.twist;
     Vec6 v0;
     v0 << twist.angular, twist.linear;
     const Vec6 after_tick = first.wrench + tick * (first.J * v0),
@@ -193,8 +193,8 @@ dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t versio
   contact::FrameLinearisation c;
   world.contact->linearise(world.state.view(), side.frame_index, c, contact::Partners::kNodes);
   record.samples = c.active;
-  const Pose x0 = side.tool->pose();
-  const Twist v0 = side.tool->twist();
+  const Pose x0 = side.known.pose;
+  const Twist v0 = side.known.twist;
   record.x0 = flat(x0);
   Eigen::Map<Vec6>(record.v0.data()) << v0.angular, v0.linear;
   Eigen::Map<Vec6>(record.F0.data()) << c.wrench.moment, c.wrench.force;

@@ -149,6 +149,17 @@ void add_energy(store::Summary& summary, const RunResult& result) {
   visit_energies([&](const char* name, double value) { s.values.emplace_back(name, value); }, *result.energy);
 }
 
+/// What a run in real time kept of its clock.
+void add_real_time(store::Summary& summary, const RunResult& result) {
+  if (!result.real_time) return;
+  store::SummarySection& s = summary.section("real time");
+  s.values.emplace_back("scheduling", result.real_time->scheduling);
+  s.values.emplace_back("processor", static_cast<long long>(result.real_time->cpu));
+  s.values.emplace_back("memory", result.real_time->memory);
+  visit_real_time([&](const char* name, auto value) { s.values.emplace_back(name, value); },
+                  *result.real_time);
+}
+
 /// Work that the proxies of a contact saved the image, over all its queries.
 void add_pruning(store::Summary& summary, const World& world) {
   if (!world.contact) return;
@@ -212,6 +223,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
                              static_cast<long long>(result.tunnelled[i]));
   }
   add_energy(summary, result);
+  add_real_time(summary, result);
   add_jumps(summary, world);
   add_images(summary, world);
   add_pruning(summary, world);

@@ -6,10 +6,19 @@
 
 namespace palpate::loop {
 
+/// A tool with ticks of its own, as the bodies last heard of it.
+struct KnownTool {
+  double time = 0.0;  ///< [s]
+  Pose pose;
+  Twist twist;
+};
+
 /// A World's tool: the tool itself, the hand's side of it, and its contact.  All empty without [tool].
 struct ToolSide {
   /// the tool with ticks of its own; null where the scheme is monolithic
   std::unique_ptr<tool::Tool> tool;
+  /// all that bodies and observers may read of it: in real time the tool belongs to another thread
+  KnownTool known;
   /// monolithic: its block of the State; else -1
   int block_id = -1;
   std::unique_ptr<device::Handle> handle;

@@ -122,7 +122,7 @@ bool World::has_tool_of_ticks() const { return tool_side_->tool != nullptr; }
 int World::tool_frame_index() const { return tool_side_->frame_index; }
 
 Pose World::tool_pose() const {
-  if (!monolithic()) return tool_side_->tool->pose();
+  if (!monolithic()) return tool_side_->known.pose;
   const auto q = state.q().segment<7>(state.layout().find(tool_side_->block_id)->q_offset);
   return {Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
 }
@@ -131,13 +131,13 @@ void World::refresh_contact() {
   PALPATE_CHECK(contact, "a World without contact has nothing to ask");
   if (const ToolSide& side = *tool_side_; side.trajectory) {
     side.trajectory->clear();
-    side.trajectory->append(side.tool->time(), side.tool->pose(), side.tool->twist());
+    side.trajectory->append(side.known.time, side.known.pose, side.known.twist);
   }
   contact->refresh(state.view());
 }
 
 Twist World::tool_twist() const {
-  if (!monolithic()) return tool_side_->tool->twist();
+  if (!monolithic()) return tool_side_->known.twist;
   const auto u = state.u().segment<6>(state.layout().find(tool_side_->block_id)->u_offset);
   return {u.head<3>(), u.tail<3>()};
 }

@@ -150,6 +150,20 @@ void check_periods(const Document& doc, const Description& d) {
   }
 }
 
+/// One exchange is under way at a time.
+void check_latency(const Document& doc, const Description& d) {
+  const CosimulationSpec& c = d.exchange;
+  const std::string key = location(doc, "exchange.latency_ticks");
+  if (!d.tool || c.scheme == "monolithic")
+    refuse(key, "exchange",
+           "latency_ticks belongs to a tool with ticks of its own: scheme = \"partitioned\" and [tool]");
+  if (const double longest = c.exchange_period_s / d.tool->tick_s;
+      static_cast<double>(c.latency_ticks) > longest * (1.0 + 1e-9))
+    refuse(key, "exchange",
+           fmt::format("latency_ticks = {} is longer than the exchange period of {:.9g} ticks",
+                       c.latency_ticks, longest));
+}
+
 void check_exchange(const Document& doc, Description& d) {
   CosimulationSpec& c = d.exchange;
   if (!given(doc, "exchange.contact_refresh_s")) c.contact_refresh_s = c.exchange_period_s;
@@ -161,6 +175,7 @@ void check_exchange(const Document& doc, Description& d) {
   else if (!d.compare.exchange_periods_s.empty())
     refuse(location(doc, "compare.exchange_periods_s"), "compare",
            "exchange_periods_s needs a tool: nothing is exchanged without one");
+  if (c.latency_ticks > 0) check_latency(doc, d);
   if (c.tunnelling == "substep" && !(c.shortest_refresh_s < c.contact_refresh_s))
     refuse(location(doc, "exchange.shortest_refresh_s"), "exchange",
            fmt::format("shortest_refresh_s = {} must be less than contact_refresh_s = {}: nothing else would "

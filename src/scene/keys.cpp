@@ -152,6 +152,8 @@ const KeyTable<CosimulationSpec>& exchange_keys() {
            "bodies that may go through each other between two refreshes: count what did, or refresh sooner"),
       number("shortest_refresh_s", &CosimulationSpec::shortest_refresh_s, positive(),
              "\"substep\" refreshes no sooner than this"),
+      integer("latency_ticks", &CosimulationSpec::latency_ticks, at_least(0),
+              "ticks from an exchange to the first that uses its result, in virtual time"),
   };
   return keys;
 }

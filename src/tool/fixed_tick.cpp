@@ -37,10 +37,10 @@ class SemiImplicitEuler : public TickScheme {
   dynamics::StepResult advance(const TickInput& input, RigidMotion& motion) override {
     const TickInput held = with_handle_held(input, input.handle.pose0, input.handle.twist0);
     const Mat6 M = body_.mass_matrix(motion.pose);
-    const Vec6 a0 = body_.acceleration(input.t0, motion, held);
-    const Mat3 I = M.topLeftCorner<3, 3>(), A = I + input.h * gyroscopic_matrix(M, motion.twist);
-    Vec6 du = input.h * a0;
-    du.head<3>() = A.partialPivLu().solve(I * du.head<3>()).eval();
+    Vec6 du = input.h * body_.right_hand_side(input.t0, motion, held);
+    const Mat3 A = M.topLeftCorner<3, 3>() + input.h * gyroscopic_matrix(M, motion.twist);
+    du.head<3>() = A.partialPivLu().solve(du.head<3>()).eval();
+    du.tail<3>() /= body_.parameters().mass;
     move(motion, input.h, stacked(motion.twist) + du);
     return done(input);
   }
@@ -63,7 +63,7 @@ class LinearlyImplicitEuler : public TickScheme {
     const Vec6 u0 = stacked(motion.twist);
     const Mat6 M = body_.mass_matrix(motion.pose);
     // the contact record is taken at the tick's end too
-    const Vec6 f0 = M * body_.acceleration(input.t0 + h, motion, held);
+    const Vec6 f0 = body_.right_hand_side(input.t0 + h, motion, held);
 
     const Mat6 K = coupling_stiffness(input.gains, motion.pose, input.handle.pose1) +
                    contact_stiffness(input.contact, motion.pose);

@@ -91,6 +91,17 @@ Vec6 SimbodyBody::acceleration(double t, const RigidMotion& motion, const TickIn
   return out;
 }
 
+// I w' = m - w x I w,  m v' = f + m g,  about the centre of mass, which is the origin.
+Vec6 SimbodyBody::right_hand_side(double t, const RigidMotion& motion, const TickInput& input) const {
+  Vec6 f = applied_wrench(input, t, motion);
+  const Mat3 R = motion.pose.rotation.toRotationMatrix();
+  const Vec3& w = motion.twist.angular;
+  const Vec3 angular_momentum = R * parameters_.inertia.cwiseProduct(R.transpose() * w);
+  f.head<3>() -= w.cross(angular_momentum);
+  f.tail<3>() += parameters_.mass * parameters_.gravity;
+  return f;
+}
+
 Mat6 SimbodyBody::calc_mass(const RigidMotion& motion) {
   write(state_, 0.0, motion);
   system_.realize(state_, SimTK::Stage::Position);

@@ -27,6 +27,9 @@ class SimbodyBody {
   /// u' at a time and motion under an input, by Simbody's forward dynamics (coupling, contact, gravity,
   /// gyroscopic terms).
   Vec6 acceleration(double t, const RigidMotion& motion, const TickInput& input);
+  /// f of M u' = f: the same forces by Newton and Euler in closed form, for ticks that may take no memory
+  /// (Simbody's forward dynamics takes some at each call).
+  Vec6 right_hand_side(double t, const RigidMotion& motion, const TickInput& input) const;
   /// M of M u' = f at a pose, by Simbody's calcM.
   Mat6 calc_mass(const RigidMotion& motion);
   /// f without coupling and contact: gyroscopic forces and weight, which Simbody's inverse dynamics at u' = 0

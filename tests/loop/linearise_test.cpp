@@ -134,6 +134,7 @@ struct Struck {
   void back() {
     hold(x0, {}, t0);
     side_of(*world).tool->set_state(t0, x0, {});
+    side_of(*world).known = {t0, x0, {}};
     world->state.set_time(t0);
     world->state.q() = q;
     world->state.u() = u;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "palpate/loop/energy.h"
+#include "palpate/loop/real_time.h"
 #include "palpate/loop/world.h"
 
 namespace palpate::loop {
@@ -16,8 +17,10 @@ struct TickRecord {
   Twist handle_twist, tool_twist;
   /// on the tool: from the linearised contact, or, monolithic, from the contact itself
   Wrench contact;
-  Wrench wanted;  ///< on the hand, before the limit
-  Wrench device;  ///< on the hand, as sent to the motors
+  Wrench wanted;                     ///< on the hand, before the limit
+  Wrench device;                     ///< on the hand, as sent to the motors
+  bool handle_valid = true;          ///< whether the handle's pose was
+  std::uint64_t record_version = 0;  ///< of the linearised contact that this tick used; 0: none
 };
 
 /// Observes a run from outside; whatever keeps something of it implements this.
@@ -36,6 +39,8 @@ class Observer {
 
 struct RunOptions {
   double duration_s = 0.0;  ///< 0: the scene's
+  /// ticks by the machine's clock, in a thread of their own; else in virtual time
+  bool real_time = false;
   std::vector<Observer*> observers;
   std::function<void(double fraction)> progress;  ///< called after every period
   const std::atomic<bool>* stop = nullptr;        ///< set from outside: the run ends after the current step
@@ -56,6 +61,7 @@ struct RunResult {
   long shortest_refreshes = 0;  ///< of these, the ones that shortest_refresh_s made later than they were due
   long frozen_fallbacks = 0;    ///< condensed linearisations that had no factor and were frozen instead
   dynamics::StepperCounters counters;
+  std::optional<RealTimeResult> real_time;
 };
 
 /// Visits every number of a run, as its overload for StepperCounters (dynamics/stepper.h), which it includes.
@@ -80,7 +86,10 @@ requires(std::same_as<std::remove_const_t<Result>, RunResult>&&...) constexpr vo
 
 /// Runs in virtual time: one exchange period after the other, ticks interleaved (docs/design.md, 1); if
 /// monolithic, one refresh after the other, ticks from dense output.  A scene without a tool has periods but
-/// no ticks.  It works on the World's own number of threads (integrator.threads), whatever other Worlds have.
+/// no ticks.  Or in real time: ticks by the machine's clock in a thread of their own, bodies behind them.
+/// It works on the World's own number of threads (integrator.threads), whatever other Worlds have.
+/// @throws Error in real time for a scene without a tool of ticks, for energy = true, for a tool that meets
+///   obstacles, for tunnelling = "substep"
 RunResult run(World& world, const RunOptions& options);
 
 /// The length of the loop's period for a scene [s]: the exchange period where there is an exchange, else the

@@ -50,6 +50,9 @@ struct CosimulationSpec {
   /// than half of its thickness
   std::string tunnelling = "report";
   double shortest_refresh_s = 1e-5;  ///< "substep" goes no lower
+  /// ticks from an exchange to the first that uses its result, in virtual time: what computing takes in real
+  /// time
+  int latency_ticks = 0;
 };
 
 /// A scene file as plain data: everything a run needs, nothing computed.  A part that is absent here is not

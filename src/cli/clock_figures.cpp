@@ -1,0 +1,52 @@
+#include "clock_figures.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+
+#include "palpate/store/csv.h"
+
+namespace palpate::cli {
+namespace {
+
+void print_series(const char* what, const std::vector<float>& values, double unit, const char* name) {
+  fmt::print("  {:<18}{:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {}\n", what, loop::quantile(values, 0.5) / unit,
+             loop::quantile(values, 0.99) / unit, loop::quantile(values, 0.999) / unit,
+             loop::quantile(values, 1.0) / unit, name);
+}
+
+}  // namespace
+
+void print_clock(const loop::RealTimeResult& clock) {
+  fmt::print("ticks in real time: {}, {}, memory {}\n", clock.scheduling,
+             clock.cpu < 0 ? std::string("on any processor") : fmt::format("on processor {}", clock.cpu),
+             clock.memory);
+  fmt::print("  {:<18}{:>9} {:>9} {:>9} {:>9}\n", "", "p50", "p99", "p99.9", "max");
+  print_series("tick late", clock.lateness_s, 1e-6, "us");
+  print_series("tick's work", clock.work_s, 1e-6, "us");
+  print_series("exchange's latency", clock.latency_s, 1e-3, "ms");
+  fmt::print("  {} of {} ticks late by a tick or more; bodies and contact at {:.1f} Hz (wanted {:g})\n",
+             clock.missed_ticks, clock.lateness_s.size(), clock.exchanges_per_s(), 1.0 / clock.period_s);
+  if (clock.stretched_periods > 0)
+    fmt::print("  bodies fell behind: {} periods shared the contact query of the one before\n",
+               clock.stretched_periods);
+  if (clock.dropped_periods > 0)
+    fmt::print("  bodies fell behind too far: they stood still in {} periods, {:.3g} s in all\n",
+               clock.dropped_periods, clock.dropped_s());
+  if (clock.unrecorded_ticks > 0)
+    fmt::print("  {} ticks are not recorded: the recorder fell behind by more than its queue\n",
+               clock.unrecorded_ticks);
+}
+
+void keep_clock(const loop::RealTimeResult& clock, const std::string& folder) {
+  store::CsvWriter file((std::filesystem::path(folder) / "clock.csv").string(),
+                        {"time_s", "late_us", "work_us"});
+  for (std::size_t i = 0; i < clock.lateness_s.size(); ++i)
+    file.row(std::array{static_cast<double>(i + 1) * clock.tick_s,
+                        1e6 * static_cast<double>(clock.lateness_s[i]),
+                        1e6 * static_cast<double>(clock.work_s[i])});
+  file.close();
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,13 @@
+#pragma once
+#include <string>
+
+#include "palpate/loop/real_time.h"
+
+namespace palpate::cli {
+
+/// Says how late the ticks of a run in real time were, what they cost, and what the bodies left out.
+void print_clock(const loop::RealTimeResult& clock);
+/// clock.csv: lateness and work of each tick [us].
+void keep_clock(const loop::RealTimeResult& clock, const std::string& folder);
+
+}  // namespace palpate::cli

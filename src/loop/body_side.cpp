@@ -1,0 +1,166 @@
+#include "body_side.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "linearise.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+
+namespace palpate::loop {
+
+int whole_number(double ratio) { return std::max(1, static_cast<int>(std::lround(ratio))); }
+
+BodySide::BodySide(World& world, const RunOptions& options, RunResult& result)
+    : world_(world), side_(ToolSide::of(world)), options_(options), result_(result) {
+  const scene::Description& d = world.description;
+  duration_ = options.duration_s > 0.0 ? options.duration_s : d.duration_s;
+  period_ = period_of(d);
+  if (!(duration_ / period_ < 1e9))
+    fail(
+        "duration_s = {} makes {:.3g} exchange periods of {} s, more than can be counted; choose a shorter "
+        "duration",
+        duration_, duration_ / period_, period_);
+  periods_ = whole_number(std::ceil(duration_ / period_ - 1e-9));
+}
+
+void BodySide::start() {
+  if (world_.stepper) world_.stepper->set_interrupt(options_.stop);
+  const auto& observers = options_.observers;
+  if (std::any_of(observers.begin(), observers.end(), [](const Observer* o) { return o->wants_energy(); }))
+    ledger_.emplace(world_).start();
+  for (Observer* observer : observers) observer->period(world_, 0.0);
+}
+
+void BodySide::query() {
+  if (!world_.contact) return;
+  if (ledger_) ledger_->before_query();
+  const bool changed = [&] {
+    const ScopedTimer timer(result_.query_s);
+    return world_.contact->refresh(world_.state.view());
+  }();
+  if (ledger_) ledger_->after_query();
+  if (changed && world_.stepper) world_.stepper->reinit(dynamics::ReinitReason::kContactRefreshed);
+  for (Observer* observer : options_.observers) observer->queried(world_, world_.state.time());
+}
+
+dynamics::LinearisedContact BodySide::linearise(double period_s) {
+  const ScopedTimer timer(result_.linearise_s);
+  return linearise_contact(world_, ++version_, period_s, result_.frozen_fallbacks);
+}
+
+void BodySide::follow(double t, const Pose& pose, const Twist& twist) {
+  side_.known = {t, pose, twist};
+  if (side_.trajectory) side_.trajectory->append(t, pose, twist);
+}
+
+void BodySide::restart_path() {
+  if (!side_.trajectory) return;
+  side_.trajectory->clear();
+  side_.trajectory->append(side_.known.time, side_.known.pose, side_.known.twist);
+}
+
+void BodySide::felt(const TickRecord& tick) {
+  side_.handle_now.pose = tick.handle;
+  side_.handle_now.twist = tick.handle_twist;
+  side_.handle_now.valid = tick.handle_valid;
+  ++result_.ticks;
+  if (ledger_) ledger_->tick(tick.time, tick.wanted, tick.handle_twist);
+  for (Observer* observer : options_.observers) observer->tick(tick);
+}
+
+double BodySide::next_query(double t0, double t1) {
+  const scene::CosimulationSpec& exchange = world_.description.exchange;
+  if (!world_.contact || exchange.tunnelling != "substep") return t1;
+  const double safe = world_.contact->safe_time(), rest = t1 - t0;
+  const double wanted = std::ceil(rest / safe - 1e-9),
+               most = std::max(1.0, std::floor(rest / exchange.shortest_refresh_s + 1e-9));
+  if (!(wanted > 1.0) || most <= 1.0) return t1;
+  ++result_.sub_steps;
+  result_.shortest_refreshes += wanted > most;
+  return t0 + rest / std::min(wanted, most);
+}
+
+void BodySide::advance(double t0, double t1, double refresh_s) {
+  if (!world_.stepper) return world_.state.set_time(t1);  // a tool with ticks of its own, alone
+  const int parts = world_.contact ? whole_number((t1 - t0) / refresh_s) : 1;
+  for (int i = 0; i < parts; ++i) {
+    if (i > 0) query();
+    const double start = t0 + i * (t1 - t0) / parts,
+                 end = i + 1 == parts ? t1 : t0 + (i + 1) * (t1 - t0) / parts;
+    for (double t = start; t < end;) {
+      if (t > start) query();
+      t = next_query(t, end);
+      advance_over_changes(t);
+      if (!result_.status.ok()) return;
+    }
+  }
+}
+
+/// Advances to t, stopping where a body's material changes.
+void BodySide::advance_over_changes(double t) {
+  for (;;) {
+    const double stop = next_change();
+    const bool on_the_way = stop < t * (1.0 - 1e-12);
+    const double to = on_the_way ? stop : t;
+    result_.status = ticks_ ? ticks_->advance_to(to) : world_.stepper->advance_to(to);
+    if (!result_.status.ok()) return;
+    if (stop <= t * (1.0 + 1e-12)) change_materials(stop);
+    if (!on_the_way) return;
+  }
+}
+
+void BodySide::stand_still(double t1) {
+  for (double stop = next_change(); stop <= t1; stop = next_change()) change_materials(stop);
+  world_.state.set_time(t1);
+  if (world_.stepper) world_.stepper->reinit(dynamics::ReinitReason::kStateChanged);
+}
+
+double BodySide::next_change() const {
+  double next = HUGE_VAL;
+  for (const SoftBodySpec& spec : world_.description.bodies)
+    for (const MaterialChangeSpec& change : spec.changes)
+      if (change.time_s > changed_) next = std::min(next, change.time_s);
+  return next;
+}
+
+void BodySide::change_materials(double time) {
+  changed_ = time;
+  if (ledger_) ledger_->before_material();
+  for (std::size_t i = 0; i < world_.bodies.size(); ++i)
+    for (const MaterialChangeSpec& change : world_.description.bodies[i].changes)
+      if (change.time_s == time)
+        world_.set_youngs_modulus(world_.bodies[i], change.youngs_modulus_pa, change.region);
+  if (ledger_) ledger_->after_material();
+}
+
+void BodySide::close_period(double t1) {
+  ++result_.periods;
+  result_.time = t1;
+  for (Observer* observer : options_.observers) observer->period(world_, t1);
+  if (ledger_) {
+    result_.energy = ledger_->period(t1);
+    for (Observer* observer : options_.observers) observer->energy(*result_.energy);
+  }
+  if (options_.progress) options_.progress(t1 / duration_);
+}
+
+bool BodySide::ended() {
+  if (result_.status.status == dynamics::StepStatus::kInterrupted) {
+    result_.status = {};
+    result_.stopped = true;
+  }
+  return !result_.status.ok() || result_.stopped;
+}
+
+void BodySide::finish() {
+  if (world_.stepper) world_.stepper->set_interrupt(nullptr);
+  if (world_.stepper) result_.counters = world_.stepper->counters();
+  if (world_.contact) {
+    result_.contact_queries = world_.contact->queries();
+    result_.tunnelled = world_.contact->tunnelled();
+  }
+  if (side_.limiter) result_.limited_ticks = side_.limiter->limited_ticks();
+}
+
+}  // namespace palpate::loop

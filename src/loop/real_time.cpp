@@ -1,0 +1,228 @@
+#include "palpate/loop/real_time.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <thread>
+
+#include "body_side.h"
+#include "palpate/core/clock.h"
+#include "palpate/core/error.h"
+#include "palpate/core/spsc_ring.h"
+#include "palpate/dynamics/exchange.h"
+#include "real_time_thread.h"
+#include "tick_side.h"
+
+namespace palpate::loop {
+namespace {
+
+// Two threads.  The ticks' thread wakes every tick_s by the machine's clock: device, newest linearised
+// contact, tool, wrench.  The bodies' thread follows one period behind:
+//
+//     ticks   |.........t.........|.........t+P.......|.........t+2P
+//     bodies            | x(t-P) -> x(t), query, linearise at t
+//                                 | x(t) -> x(t+P), query, linearise at t+P
+//
+// Once the ticks of [t, t+P] are over, the tool's path in it is known, and the bodies' step over it is the
+// one of virtual time.  Its linearisation about the instant t+P reaches the ticks as late as it takes to
+// compute; F1 and J carry it on to their own instant.  Virtual time does the same with latency_ticks.
+//
+// Bodies that fall behind take two to kStretched periods after one query (a query costs more than a step);
+// what is beyond that they stand still in, so that the hand never feels a contact older than that.
+constexpr int kStretched = 4;
+
+/// Ticks that the bodies' thread may leave unread: 16 s at 1 kHz.
+constexpr std::size_t kQueue = 1 << 14;
+/// From the start of the threads to the first tick [ns].
+constexpr std::int64_t kLead = 20'000'000;
+
+struct TimedTick {
+  TickRecord record;
+  long number = 0;  ///< from 1
+  float lateness_s = 0.0F, work_s = 0.0F;
+};
+
+float seconds(std::int64_t ns) { return static_cast<float>(1e-9 * static_cast<double>(ns)); }
+
+void refuse_what_is_not_served(const World& world, const RunOptions& options) {
+  const scene::Description& d = world.description;
+  if (!d.tool) fail("real time: the scene has no [tool], so nothing that a hand would feel");
+  if (!world.has_tool_of_ticks())
+    fail("real time: exchange.scheme = \"monolithic\" has no ticks of its own; take \"partitioned\"");
+  if (ToolSide::of(world).meets_obstacles)
+    fail(
+        "real time: a [[contact]] names the tool and an obstacle, which only virtual time serves; press the "
+        "tool on a body, or run in virtual time");
+  if (d.exchange.tunnelling == "substep")
+    fail("real time: exchange.tunnelling = \"substep\" would stop the clock; take \"report\"");
+  for (const Observer* observer : options.observers)
+    if (observer->wants_energy())
+      fail("real time: record.energy = true reads the tool between its ticks; set it to false");
+}
+
+class RealTime {
+ public:
+  RealTime(World& world, BodySide& bodies, const RunOptions& options, RunResult& result)
+      : world_(world),
+        bodies_(bodies),
+        options_(options),
+        result_(result),
+        out_(result.real_time.emplace()),
+        ticks_(*world.description.tool, ToolSide::of(world)),
+        per_period_(whole_number(bodies.period() / world.description.tool->tick_s)),
+        tick_s_(bodies.period() / per_period_),
+        tick_ns_(std::llround(1e9 * tick_s_)),
+        count_(static_cast<long>(per_period_) * bodies.periods()),
+        queue_(kQueue) {
+    out_.tick_s = tick_s_;
+    out_.period_s = bodies.period();
+    out_.lateness_s.reserve(static_cast<std::size_t>(count_));
+    out_.work_s.reserve(static_cast<std::size_t>(count_));
+  }
+
+  void run() {
+    ticks_.start(0.0);
+    bodies_.start();
+    bodies_.restart_path();
+    bodies_.query();
+    records_.publish(bodies_.linearise(bodies_.period()));
+    start_ns_ = now_ns() + kLead;
+    std::thread thread([this] { tick_to_the_end(); });
+    try {
+      while (done_ < count_ && one_step()) {}
+    } catch (...) {
+      quit_.store(true);
+      thread.join();
+      throw;
+    }
+    quit_.store(true);
+    thread.join();
+    drain(ticked_.load());
+    if (failure_) std::rethrow_exception(failure_);
+    if (result_.status.ok()) result_.status = tick_status_;
+    out_.unrecorded_ticks = unrecorded_.load();
+    for (const float work : out_.work_s) result_.tool_s += work;
+    release_memory();
+  }
+
+ private:
+  // --- the ticks' thread: no memory is taken, nothing waited for but the clock
+
+  void tick_to_the_end() {
+    claim_real_time(out_);
+    try {
+      tick_by_the_clock();
+    } catch (...) { failure_ = std::current_exception(); }
+    over_.store(true, std::memory_order_release);
+  }
+
+  void tick_by_the_clock() {
+    TimedTick timed;
+    for (long i = 1; i <= count_ && !quit_.load(std::memory_order_relaxed); ++i) {
+      const std::int64_t due = start_ns_ + i * tick_ns_;
+      sleep_until_ns(due);
+      const std::int64_t woke = now_ns();
+      tick_status_ = ticks_.tick(static_cast<double>(i) * tick_s_, tick_s_, records_.latest(), timed.record);
+      if (!tick_status_.ok()) break;
+      timed.number = i;
+      timed.lateness_s = seconds(woke - due);
+      timed.work_s = seconds(now_ns() - woke);
+      if (!queue_.push(timed)) unrecorded_.fetch_add(1, std::memory_order_relaxed);
+      ticked_.store(i, std::memory_order_release);
+    }
+    ticks_.end(time_of(ticked_.load()));
+  }
+
+  // --- the bodies' thread
+
+  /// One exchange: waits for a period's ticks, follows them, and publishes.  False where the run is over.
+  bool one_step() {
+    const long wanted = done_ + per_period_;
+    if (told_to_stop()) return false;
+    sleep_until_ns(start_ns_ + wanted * tick_ns_);
+    long ticked = 0;
+    for (bool over = false; (ticked = ticked_.load(std::memory_order_acquire)) < wanted;) {
+      if (over) return false;
+      over = over_.load(std::memory_order_acquire);
+      if (told_to_stop()) return false;
+      sleep_until_ns(now_ns() + 20'000);
+    }
+    const long behind = (ticked - done_) / per_period_;
+    const long dropped = std::max(0L, behind - kStretched), taken = behind - dropped;
+    if (dropped > 0) stand_still(dropped);
+    advance(taken);
+    if (bodies_.ended()) return false;
+    bodies_.query();
+    const dynamics::LinearisedContact record = bodies_.linearise(bodies_.period());
+    records_.publish(record);
+    out_.latency_s.push_back(seconds(now_ns() - start_ns_ - done_ * tick_ns_));
+    bodies_.close_period(time_of(done_));
+    return true;
+  }
+
+  bool told_to_stop() {
+    result_.stopped = options_.stop && options_.stop->load();
+    return result_.stopped;
+  }
+
+  double time_of(long tick) const { return static_cast<double>(tick) * tick_s_; }
+
+  void stand_still(long periods) {
+    out_.dropped_periods += periods;
+    done_ += periods * per_period_;
+    drain(done_);
+    bodies_.stand_still(time_of(done_));
+    bodies_.restart_path();
+    bodies_.query();
+  }
+
+  void advance(long periods) {
+    out_.stretched_periods += periods - 1;
+    const double t0 = time_of(done_);
+    bodies_.restart_path();
+    done_ += periods * per_period_;
+    drain(done_);
+    const double t1 = time_of(done_);
+    bodies_.advance(t0, t1, periods > 1 ? t1 - t0 : world_.description.exchange.contact_refresh_s);
+  }
+
+  /// Takes the ticks up to number `last` from the queue.
+  void drain(long last) {
+    for (TimedTick timed; drained_ < last && queue_.pop(timed);) {
+      drained_ = timed.number;
+      bodies_.follow(timed.record.time, timed.record.tool, timed.record.tool_twist);
+      bodies_.felt(timed.record);
+      out_.lateness_s.push_back(timed.lateness_s);
+      out_.work_s.push_back(timed.work_s);
+      out_.missed_ticks += timed.lateness_s >= static_cast<float>(tick_s_);
+    }
+  }
+
+  World& world_;
+  BodySide& bodies_;
+  const RunOptions& options_;
+  RunResult& result_;
+  RealTimeResult& out_;
+  TickSide ticks_;
+  int per_period_;
+  double tick_s_;
+  std::int64_t tick_ns_, start_ns_ = 0;
+  long count_, done_ = 0, drained_ = 0;
+
+  dynamics::Exchange<dynamics::LinearisedContact> records_;
+  SpscRing<TimedTick> queue_;
+  dynamics::StepResult tick_status_;  ///< of the ticks' thread; read when it is over
+  std::atomic<long> ticked_{0}, unrecorded_{0};
+  std::atomic<bool> quit_{false}, over_{false};
+  std::exception_ptr failure_;  ///< of the ticks' thread
+};
+
+}  // namespace
+
+void run_in_real_time(World& world, BodySide& bodies, const RunOptions& options, RunResult& result) {
+  refuse_what_is_not_served(world, options);
+  RealTime(world, bodies, options, result).run();
+}
+
+}  // namespace palpate::loop

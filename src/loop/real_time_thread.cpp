@@ -1,0 +1,91 @@
+#include "real_time_thread.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+namespace palpate::loop {
+namespace {
+
+constexpr int kPriority = 80;              // above interrupt threads' 50 on PREEMPT_RT kernels
+constexpr std::size_t kStack = 256 << 10;  // touched beforehand [bytes]
+
+void pin(RealTimeResult& out) {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (pthread_getaffinity_np(pthread_self(), sizeof allowed, &allowed) != 0) return;
+  if (CPU_COUNT(&allowed) < 2) return;  // the bodies need it, too
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < CPU_SETSIZE; ++i)
+    if (CPU_ISSET(i, &allowed)) last = i;
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(last, &one);
+  if (pthread_setaffinity_np(pthread_self(), sizeof one, &one) == 0) out.cpu = static_cast<int>(last);
+}
+
+void schedule(RealTimeResult& out) {
+  sched_param priority{};
+  priority.sched_priority = kPriority;
+  const int refused = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
+  out.scheduling =
+      refused == 0
+          ? fmt::format("SCHED_FIFO {}", kPriority)
+          : fmt::format("SCHED_OTHER (SCHED_FIFO refused: {}; run as root, or raise \"ulimit -r\" to {})",
+                        std::strerror(refused), kPriority);
+}
+
+// Pages that are there now: ticks take no new ones.  To lock what comes later, too (MCL_FUTURE), would make
+// allocations of the bodies' thread fail beyond RLIMIT_MEMLOCK.
+void lock_memory(RealTimeResult& out) {
+  out.memory = mlockall(MCL_CURRENT) == 0
+                   ? "locked"
+                   : fmt::format("not locked ({}; raise \"ulimit -l\")", std::strerror(errno));
+}
+
+[[gnu::noinline]] void touch_stack() {
+  std::array<char, kStack> stack;
+  volatile char* p = stack.data();
+  for (std::size_t i = 0; i < kStack; i += 1024) p[i] = 0;
+}
+
+}  // namespace
+
+std::int64_t now_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return std::int64_t{1'000'000'000} * t.tv_sec + t.tv_nsec;
+}
+
+void sleep_until_ns(std::int64_t due) {
+  const timespec t{due / 1'000'000'000, due % 1'000'000'000};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {}
+}
+
+void claim_real_time(RealTimeResult& out) {
+  touch_stack();
+  pin(out);
+  schedule(out);
+  lock_memory(out);
+}
+
+void release_memory() { munlockall(); }
+
+double quantile(std::vector<float> values, double q) {
+  if (values.empty()) return 0.0;
+  const double rank = std::ceil(q * static_cast<double>(values.size())) - 1.0;
+  const auto at = values.begin() +
+                  std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(rank), 0, std::ssize(values) - 1);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace palpate::loop

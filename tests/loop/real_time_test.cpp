@@ -1,0 +1,241 @@
+// Ticks by the machine's clock: two threads, one exchange.  Times are not asserted: what is, is that nothing
+// is lost, torn or invented, whatever the machine does meanwhile.
+#include "palpate/loop/real_time.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "loop/tick_side.h"
+#include "malloc_count.h"
+#include "palpate/core/error.h"
+#include "palpate/core/spsc_ring.h"
+#include "palpate/dynamics/exchange.h"
+#include "palpate/loop/run.h"
+#include "small_scenes.h"
+
+namespace {
+
+using namespace palpate;
+
+TEST(SpscRing, GivesEachValueOnceAndInOrder) {
+  SpscRing<long> ring(64);
+  constexpr long kCount = 200'000;
+  std::thread writer([&] {
+    for (long i = 0; i < kCount;) i += ring.push(i);
+  });
+  long expected = 0;
+  for (long value; expected < kCount;) {
+    if (!ring.pop(value)) continue;
+    ASSERT_EQ(value, expected);
+    ++expected;
+  }
+  writer.join();
+  long left = 0;
+  EXPECT_FALSE(ring.pop(left));
+}
+
+TEST(SpscRing, RefusesWhatDoesNotFit) {
+  SpscRing<int> ring(3);
+  ASSERT_EQ(ring.capacity(), 4u);
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(ring.push(i));
+  EXPECT_FALSE(ring.push(4));
+  int value = -1;
+  EXPECT_TRUE(ring.pop(value));
+  EXPECT_EQ(value, 0);
+  EXPECT_TRUE(ring.push(5));
+  EXPECT_FALSE(ring.push(6));
+}
+
+TEST(Quantile, IsTheNearestRank) {
+  const std::vector<float> values = {5, 1, 4, 2, 3};
+  EXPECT_EQ(loop::quantile(values, 0.0), 1);
+  EXPECT_EQ(loop::quantile(values, 0.5), 3);
+  EXPECT_EQ(loop::quantile(values, 0.99), 5);
+  EXPECT_EQ(loop::quantile(values, 1.0), 5);
+  EXPECT_EQ(loop::quantile({}, 0.5), 0);
+}
+
+/// Keeps all ticks, and the times of periods.
+struct Kept : loop::Observer {
+  void tick(const loop::TickRecord& tick) override { ticks.push_back(tick); }
+  void period(loop::World&, double t) override { periods.push_back(t); }
+  std::vector<loop::TickRecord> ticks;
+  std::vector<double> periods;
+};
+
+struct Ran {
+  loop::RunResult result;
+  Kept kept;
+};
+
+/// A hand that presses the block, 10 ticks to an exchange.
+scene::Description scene_of(int latency_ticks = 0) {
+  scene::Description d = small_scenes::pressed_block(0.0);
+  d.duration_s = 0.3;
+  KeyframeSpec down = d.device->keyframes.front();
+  down.time_s = 0.2;
+  down.position_m.z() -= 0.008;
+  d.device->keyframes.push_back(down);
+  d.exchange.latency_ticks = latency_ticks;
+  return d;
+}
+
+Ran run(const scene::Description& d, bool real_time) {
+  const auto world = loop::assemble(d);
+  Ran out;
+  loop::RunOptions options;
+  options.real_time = real_time;
+  options.observers = {&out.kept};
+  out.result = loop::run(*world, options);
+  return out;
+}
+
+// Each tick once and in order, at its own time, whatever the clock did.
+TEST(RealTime, EveryTickIsRecordedOnce) {
+  const Ran r = run(scene_of(), true);
+  ASSERT_TRUE(r.result.status.ok()) << r.result.status.message;
+  ASSERT_TRUE(r.result.real_time);
+  const loop::RealTimeResult& clock = *r.result.real_time;
+  ASSERT_GT(r.kept.ticks.size(), 100u);
+  for (std::size_t i = 0; i < r.kept.ticks.size(); ++i)
+    EXPECT_NEAR(r.kept.ticks[i].time, static_cast<double>(i + 1) * clock.tick_s, 1e-12);
+  EXPECT_EQ(clock.lateness_s.size(), r.kept.ticks.size());
+  EXPECT_EQ(clock.unrecorded_ticks, 0);
+  EXPECT_EQ(static_cast<long>(r.kept.ticks.size()), r.result.ticks);
+  EXPECT_FALSE(clock.scheduling.empty());
+  for (const float work : clock.work_s) EXPECT_GT(work, 0.0F);
+  for (const float late : clock.lateness_s) EXPECT_GE(late, 0.0F);
+}
+
+// Versions of the record in force only grow, the first tick has one, and no tick has one that was made of a
+// later instant than its own.
+TEST(RealTime, RecordsAreAdoptedInOrder) {
+  const Ran r = run(scene_of(), true);
+  ASSERT_GT(r.kept.ticks.size(), 100u);
+  EXPECT_GE(r.kept.ticks.front().record_version, 1u);
+  EXPECT_TRUE(std::is_sorted(r.kept.ticks.begin(), r.kept.ticks.end(), [](const auto& a, const auto& b) {
+    return a.record_version < b.record_version;
+  }));
+  EXPECT_GT(r.kept.ticks.back().record_version, 1u);
+  // every exchange is made at the end of a period that was noticed, the first at the start
+  for (const loop::TickRecord& tick : r.kept.ticks)
+    EXPECT_LT(r.kept.periods.at(tick.record_version - 1), tick.time);
+}
+
+// In virtual time with the latency of a period, the slowest that a bodies' thread in time may have, and
+// without: real time lies between, to the scatter of the clock.  What differs is when records are adopted.
+TEST(RealTime, FeelsWhatVirtualTimeFeels) {
+  const Ran real = run(scene_of(), true);
+  const Ran now = run(scene_of(), false);
+  const Ran late = run(scene_of(10), false);
+  ASSERT_EQ(real.kept.ticks.size(), now.kept.ticks.size());
+  ASSERT_EQ(late.kept.ticks.size(), now.kept.ticks.size());
+  double peak = 0.0, between = 0.0, off = 0.0;
+  for (std::size_t i = 0; i < now.kept.ticks.size(); ++i) {
+    const Vec3 &f = now.kept.ticks[i].device.force, &l = late.kept.ticks[i].device.force;
+    peak = std::max(peak, f.norm());
+    between = std::max(between, (f - l).norm());
+    off = std::max(off, (f - real.kept.ticks[i].device.force).norm());
+  }
+  ASSERT_GT(peak, 0.1);
+  EXPECT_GT(between, 0.0);
+  if (real.result.real_time->stretched_periods + real.result.real_time->dropped_periods > 0)
+    GTEST_SKIP() << "the machine did not keep up";
+  EXPECT_LT(off, between + 0.05 * peak);
+}
+
+// Latency delays adoption by its ticks, and by no more.
+TEST(VirtualTime, LatencyDelaysAdoption) {
+  const Ran r = run(scene_of(3), false);
+  const Ran at_once = run(scene_of(), false);
+  ASSERT_GT(r.kept.ticks.size(), 100u);
+  for (std::size_t i = 0; i < 100; ++i) {
+    EXPECT_EQ(at_once.kept.ticks[i].record_version, i / 10 + 1) << i;
+    EXPECT_EQ(r.kept.ticks[i].record_version, i < 13 ? 1 : (i - 3) / 10 + 1) << i;
+  }
+}
+
+std::string refusal(const scene::Description& d, std::vector<loop::Observer*> observers = {}) {
+  const auto world = loop::assemble(d);
+  loop::RunOptions options;
+  options.real_time = true;
+  options.observers = std::move(observers);
+  try {
+    loop::run(*world, options);
+  } catch (const Error& e) { return e.what(); }
+  return {};
+}
+
+struct Weighs : loop::Observer {
+  bool wants_energy() const override { return true; }
+};
+
+TEST(RealTime, RefusesWhatItDoesNotServe) {
+  EXPECT_NE(refusal(small_scenes::held_block()).find("no [tool]"), std::string::npos);
+  scene::Description d = scene_of();
+  d.exchange.scheme = "monolithic";
+  EXPECT_NE(refusal(d).find("take \"partitioned\""), std::string::npos);
+  d = scene_of();
+  d.exchange.tunnelling = "substep";
+  EXPECT_NE(refusal(d).find("take \"report\""), std::string::npos);
+  Weighs weighs;
+  EXPECT_NE(refusal(scene_of(), {&weighs}).find("record.energy"), std::string::npos);
+  d = scene_of();
+  small_scenes::add_floor(d, d.contacts.front());
+  d.contacts.back().first = "tool";
+  EXPECT_NE(refusal(d).find("obstacle"), std::string::npos);
+}
+
+// What the ticks' thread does, tick for tick: no memory is taken, none given back.
+TEST(RealTime, ATickTakesNoMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer brings its own malloc";
+#else
+  const scene::Description d = scene_of();
+  const auto world = loop::assemble(d);
+  loop::TickSide ticks(*d.tool, loop::ToolSide::of(*world));
+  ticks.start(0.0);
+  dynamics::LinearisedContact record;
+  for (std::size_t i = 0; i < 6; ++i) record.J[7 * i] = i < 3 ? -0.1 : -1e3;
+  record.version = 1;
+  record.source = dynamics::LinearisedContact::Source::kFrozen;
+  record.samples = 1;
+  const Vec3 start = d.tool->position_m;
+  record.x0 = {1, 0, 0, 0, start.x(), start.y(), start.z()};
+  loop::TickRecord out;
+  ASSERT_TRUE(ticks.tick(1e-3, 1e-3, record, out).ok());
+  const long before = malloc_calls;
+  for (int i = 2; i <= 300; ++i) ASSERT_TRUE(ticks.tick(1e-3 * i, 1e-3, record, out).ok());
+  EXPECT_EQ(malloc_calls - before, 0);
+  EXPECT_GT(out.device.force.norm(), 0.1);
+#endif
+}
+
+// After its end a run presses on no hand.
+TEST(TickSide, EndsWithoutAForce) {
+  const scene::Description d = scene_of();
+  const auto world = loop::assemble(d);
+  struct Feels : device::Handle {
+    device::HandleSample sample(double) override {
+      device::HandleSample s;
+      s.pose.translation = Vec3(0, 0, -0.1);
+      return s;
+    }
+    void feedback(double, const Wrench& w) override { force = w.force; }
+    Vec3 force = Vec3::Zero();
+  };
+  auto hand = std::make_unique<Feels>();
+  const Feels& feels = *hand;
+  loop::ToolSide::of(*world).handle = std::move(hand);
+  loop::TickSide ticks(*d.tool, loop::ToolSide::of(*world));
+  ticks.start(0.0);
+  loop::TickRecord out;
+  for (int i = 1; i < 10; ++i) ticks.tick(1e-3 * i, 1e-3, {}, out);
+  EXPECT_GT(feels.force.norm(), 0.1);
+  ticks.end(0.01);
+  EXPECT_EQ(feels.force.norm(), 0.0);
+}
+
+}  // namespace
