@@ -45,8 +45,12 @@ void BodySide::query() {
 }
 
 dynamics::LinearisedContact BodySide::linearise(double period_s) {
-  const ScopedTimer timer(result_.linearise_s);
-  return linearise_contact(world_, ++version_, period_s, result_.frozen_fallbacks);
+  const dynamics::LinearisedContact record = [&] {
+    const ScopedTimer timer(result_.linearise_s);
+    return linearise_contact(world_, ++version_, period_s, result_.frozen_fallbacks);
+  }();
+  for (Observer* observer : options_.observers) observer->exchanged(record);
+  return record;
 }
 
 void BodySide::follow(double t, const Pose& pose, const Twist& twist) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
+#include "palpate/loop/haptic_record.h"
 #include "palpate/store/bone_file.h"
 #include "palpate/store/force_file.h"
 #include "palpate/store/provenance.h"
@@ -15,6 +16,7 @@ namespace {
 constexpr const char* kRunFile = "run.vtkhdf";
 constexpr const char* kForceFile = "force.csv";
 constexpr const char* kBoneFile = "bones.csv";
+constexpr const char* kHapticFile = "haptic.h5";
 constexpr const char* kEnergyFile = "energy.csv";
 
 std::vector<std::string> energy_headers() {
@@ -34,6 +36,7 @@ int periods_between(const scene::Description& d) {
 struct Recorder::Impl {
   std::unique_ptr<store::RunFile> states;
   std::unique_ptr<store::ForceFile> forces;
+  std::unique_ptr<HapticRecorder> haptic;
   std::unique_ptr<store::BoneFile> bones;
   std::unique_ptr<store::CsvWriter> energy;
   TriMesh tool;   ///< in its own axes; empty without a tool
@@ -139,6 +142,7 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
       impl_->torque_rounding = kUnlimited * d.device->max_torque_n_m;
     }
     impl_->forces = std::make_unique<store::ForceFile>((base / kForceFile).string());
+    impl_->haptic = std::make_unique<HapticRecorder>((base / kHapticFile).string());
   }
 }
 
@@ -152,6 +156,7 @@ void Recorder::period(World& world, double t) {
   if (impl_->states && impl_->seen % impl_->every == 0) impl_->append(world, t);
   if (impl_->bones && impl_->seen % impl_->every == 0) impl_->append_bones(world, t);
   if (impl_->forces) impl_->forces->flush();
+  if (impl_->haptic) impl_->haptic->period(world, t);
   ++impl_->seen;
 }
 
@@ -165,8 +170,13 @@ void Recorder::energy(const EnergyBalance& balance) {
   impl_->energy->flush();
 }
 
+void Recorder::exchanged(const dynamics::LinearisedContact& record) {
+  if (impl_->haptic) impl_->haptic->exchanged(record);
+}
+
 void Recorder::tick(const TickRecord& tick) {
   if (!impl_->forces) return;
+  impl_->haptic->tick(tick);
   const Wrench &sent = tick.device, &wanted = tick.wanted;
   const bool limited = (sent.force - wanted.force).norm() > impl_->force_rounding ||
                        (sent.moment - wanted.moment).norm() > impl_->torque_rounding;

@@ -16,6 +16,7 @@ dynamics::StepResult TickSide::tick(double t, double h, const dynamics::Linearis
   if (!status.ok()) return status;
   out = {};
   out.time = t;
+  out.length = h;
   out.tool = side_.tool->pose();
   out.tool_twist = side_.tool->twist();
   out.record_version = record.version;

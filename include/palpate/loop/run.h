@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "palpate/dynamics/exchange.h"
 #include "palpate/loop/energy.h"
 #include "palpate/loop/real_time.h"
 #include "palpate/loop/world.h"
@@ -12,7 +13,8 @@ namespace palpate::loop {
 
 /// One haptic tick as it happened.
 struct TickRecord {
-  double time = 0.0;  ///< at the tick's end [s]
+  double time = 0.0;    ///< at the tick's end [s]
+  double length = 0.0;  ///< of the tick; 0 where the tool has no ticks of its own [s]
   Pose handle, tool;
   Twist handle_twist, tool_twist;
   /// on the tool: from the linearised contact, or, monolithic, from the contact itself
@@ -30,6 +32,8 @@ class Observer {
   /// At the start and after every period.
   virtual void period(World&, double /*t*/) {}
   virtual void tick(const TickRecord&) {}
+  /// A linearised contact was made for the coming ticks.
+  virtual void exchanged(const dynamics::LinearisedContact&) {}
   /// After every contact query, at its state: behind `period` where both come at one time.
   virtual void queried(World&, double /*t*/) {}
   /// After every period, in runs of which an observer wants it: a run that nobody asks keeps no balance.

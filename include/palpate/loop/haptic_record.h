@@ -1,0 +1,36 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "palpate/loop/run.h"
+
+namespace palpate::loop {
+
+/// What a hand did and felt, to the last bit: each tick, and each linearised contact that the ticks used.
+struct HapticRecord {
+  TickRecord start;  ///< of its fields the handle's alone, at the run's start
+  std::vector<TickRecord> ticks;
+  std::vector<dynamics::LinearisedContact> exchanges;
+};
+
+/// Keeps a HapticRecord in an HDF5 file (haptic.h5: tables "start", "ticks" and "exchanges", one row each,
+/// columns by name).
+class HapticRecorder : public Observer {
+ public:
+  /// @throws Error when the file cannot be made
+  explicit HapticRecorder(const std::string& path);
+  ~HapticRecorder() override;
+  void period(World& world, double t) override;
+  void tick(const TickRecord& tick) override;
+  void exchanged(const dynamics::LinearisedContact& record) override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// @throws Error for a file that is none of HapticRecorder's
+HapticRecord read_haptic_record(const std::string& path);
+
+}  // namespace palpate::loop

@@ -1,0 +1,139 @@
+#include "palpate/loop/haptic_record.h"
+
+#include "palpate/core/error.h"
+#include "palpate/store/table_file.h"
+#include "tool_side.h"
+
+namespace palpate::loop {
+namespace {
+
+// One list of the numbers of a tick, and one of an exchange, serves names, writing and reading.
+template <class F, class P>
+void visit_pose(F& f, const std::string& who, P& pose) {
+  f(who + "_qw", pose.rotation.w());
+  f(who + "_qx", pose.rotation.x());
+  f(who + "_qy", pose.rotation.y());
+  f(who + "_qz", pose.rotation.z());
+  for (int i = 0; i < 3; ++i) f(who + "_" + "xyz"[i] + "_m", pose.translation[i]);
+}
+
+template <class F, class V>
+void visit_pair(F& f, const std::string& first, V& a, const char* unit_a, const std::string& second, V& b,
+                const char* unit_b) {
+  for (int i = 0; i < 3; ++i) f(first + "_" + "xyz"[i] + unit_a, a[i]);
+  for (int i = 0; i < 3; ++i) f(second + "_" + "xyz"[i] + unit_b, b[i]);
+}
+
+/// @param Tick  TickRecord, const or not  @param f  f(name, double or int of 53 bits at most)
+template <class F, class Tick>
+void visit_tick(F&& f, Tick& t) {
+  f("time_s", t.time);
+  f("length_s", t.length);
+  f("record_version", t.record_version);
+  f("handle_valid", t.handle_valid);
+  visit_pose(f, "handle", t.handle);
+  visit_pair(f, "handle_angular", t.handle_twist.angular, "_rad_s", "handle_linear", t.handle_twist.linear,
+             "_m_s");
+  visit_pose(f, "tool", t.tool);
+  visit_pair(f, "tool_angular", t.tool_twist.angular, "_rad_s", "tool_linear", t.tool_twist.linear, "_m_s");
+  visit_pair(f, "contact_torque", t.contact.moment, "_n_m", "contact_force", t.contact.force, "_n");
+  visit_pair(f, "wanted_torque", t.wanted.moment, "_n_m", "wanted_force", t.wanted.force, "_n");
+  visit_pair(f, "device_torque", t.device.moment, "_n_m", "device_force", t.device.force, "_n");
+}
+
+template <class F, class Record>
+void visit_exchange(F&& f, Record& r) {
+  const auto all = [&f](const std::string& name, auto& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) f(name + "_" + std::to_string(i), values[i]);
+  };
+  f("version", r.version);
+  f("time_s", r.time);
+  f("source", r.source);
+  f("samples", r.samples);
+  all("x0", r.x0);
+  all("v0", r.v0);
+  all("f0", r.F0);
+  all("f1", r.F1);
+  all("j", r.J);
+  all("b", r.B);
+}
+
+template <class Visit, class Record>
+std::vector<std::string> names_of(Visit visit, Record record) {
+  std::vector<std::string> out;
+  visit([&](const std::string& name, const auto&) { out.push_back(name); }, record);
+  return out;
+}
+
+const auto kVisitTick = [](auto&& f, auto& t) { visit_tick(f, t); };
+const auto kVisitExchange = [](auto&& f, auto& r) { visit_exchange(f, r); };
+
+template <class Visit, class Record>
+void flatten(Visit visit, const Record& record, std::vector<double>& row) {
+  row.clear();
+  visit([&](const std::string&, const auto& value) { row.push_back(static_cast<double>(value)); }, record);
+}
+
+template <class Visit, class Record>
+std::vector<Record> read(Visit visit, Record empty, const std::string& path, const std::string& name) {
+  const store::Table table = store::read_table(path, name);
+  if (table.columns != names_of(visit, empty))
+    fail("{}: the columns of {} are not those of this version of palpate; record the run anew", path, name);
+  std::vector<Record> out(table.rows(), empty);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    auto at = table.row(i).begin();
+    visit([&]<class T>(const std::string&, T& value) { value = static_cast<T>(*at++); }, out[i]);
+  }
+  return out;
+}
+
+enum Tables : std::size_t { kStart, kTicks, kExchanges };
+
+}  // namespace
+
+struct HapticRecorder::Impl {
+  explicit Impl(const std::string& path)
+      : file(path, {{"start", names_of(kVisitTick, TickRecord{})},
+                    {"ticks", names_of(kVisitTick, TickRecord{})},
+                    {"exchanges", names_of(kVisitExchange, dynamics::LinearisedContact{})}}) {}
+  store::TableFile file;
+  std::vector<double> row;
+};
+
+HapticRecorder::HapticRecorder(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+HapticRecorder::~HapticRecorder() = default;
+
+void HapticRecorder::period(World& world, double t) {
+  if (t == 0.0) {
+    const device::HandleSample& handle = ToolSide::of(world).handle_now;
+    TickRecord start;
+    start.handle = handle.pose;
+    start.handle_twist = handle.twist;
+    start.handle_valid = handle.valid;
+    flatten(kVisitTick, start, impl_->row);
+    impl_->file.append(kStart, impl_->row);
+  }
+  impl_->file.flush();
+}
+
+void HapticRecorder::tick(const TickRecord& tick) {
+  flatten(kVisitTick, tick, impl_->row);
+  impl_->file.append(kTicks, impl_->row);
+}
+
+void HapticRecorder::exchanged(const dynamics::LinearisedContact& record) {
+  flatten(kVisitExchange, record, impl_->row);
+  impl_->file.append(kExchanges, impl_->row);
+}
+
+HapticRecord read_haptic_record(const std::string& path) {
+  HapticRecord out;
+  const std::vector<TickRecord> start = read(kVisitTick, TickRecord{}, path, "start");
+  if (start.size() != 1) fail("{}: it has no start; the run ended before its first tick", path);
+  out.start = start.front();
+  out.ticks = read(kVisitTick, TickRecord{}, path, "ticks");
+  out.exchanges = read(kVisitExchange, dynamics::LinearisedContact{}, path, "exchanges");
+  return out;
+}
+
+}  // namespace palpate::loop

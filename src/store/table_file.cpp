@@ -1,0 +1,128 @@
+#include "palpate/store/table_file.h"
+
+#include <filesystem>
+#include <numeric>
+
+#include "palpate/core/error.h"
+#include "store/series.h"
+
+namespace palpate::store {
+namespace {
+
+/// Rows that reach the file at once.
+constexpr std::size_t kBatch = 256;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ",") + name;
+  return out;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> out;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find(',', from), text.size());
+    out.push_back(text.substr(from, to - from));
+    from = to + 1;
+  }
+  return out;
+}
+
+/// Rows wait here for the next batch.
+struct Growing {
+  h5::Id set;
+  std::string name;
+  std::size_t width = 0;
+  hsize_t written = 0;
+  std::vector<double> waiting;
+};
+
+Growing make(hid_t file, const TableSpec& spec, const std::string& path) {
+  Growing out;
+  out.name = spec.name;
+  out.width = spec.columns.size();
+  const hsize_t none[2] = {0, out.width}, most[2] = {H5S_UNLIMITED, out.width},
+                chunk[2] = {kBatch, out.width};
+  const h5::Id space{H5Screate_simple(2, none, most), H5Sclose};
+  const h5::Id creation{H5Pcreate(H5P_DATASET_CREATE), H5Pclose};
+  H5Pset_chunk(creation, 2, chunk);
+  H5Pset_obj_track_times(creation, false);
+  out.set = h5::Id{h5::check(H5Dcreate2(file, spec.name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT,
+                                        creation, H5P_DEFAULT),
+                             path, "cannot make " + spec.name),
+                   H5Dclose};
+  h5::write_attribute_text(out.set, "columns", joined(spec.columns), path);
+  out.waiting.reserve(kBatch * out.width);
+  return out;
+}
+
+void write_waiting(Growing& table, const std::string& path) {
+  if (table.waiting.empty()) return;
+  const hsize_t rows = table.waiting.size() / table.width;
+  const hsize_t size[2] = {table.written + rows, table.width}, from[2] = {table.written, 0},
+                count[2] = {rows, table.width};
+  h5::check(H5Dset_extent(table.set, size), path, "cannot extend " + table.name);
+  const h5::Id in_file{H5Dget_space(table.set), H5Sclose};
+  const h5::Id in_memory{H5Screate_simple(2, count, nullptr), H5Sclose};
+  h5::check(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, from, nullptr, count, nullptr), path,
+            "cannot select rows of " + table.name);
+  h5::check(H5Dwrite(table.set, H5T_NATIVE_DOUBLE, in_memory, in_file, H5P_DEFAULT, table.waiting.data()),
+            path, "cannot write " + table.name + "; is the disk full?");
+  table.written += rows;
+  table.waiting.clear();
+}
+
+}  // namespace
+
+struct TableFile::Impl {
+  std::string path;
+  h5::Id file;
+  std::vector<Growing> tables;
+};
+
+TableFile::TableFile(const std::string& path, const std::vector<TableSpec>& tables)
+    : impl_(std::make_unique<Impl>()) {
+  const h5::Quiet quiet;
+  impl_->path = path;
+  impl_->file = h5::create_file(path);
+  for (const TableSpec& spec : tables) impl_->tables.push_back(make(impl_->file, spec, path));
+  flush();
+}
+
+TableFile::~TableFile() {
+  try {
+    flush();
+  } catch (const Error&) {}  // said at the last flush that was asked for, if at all
+}
+
+void TableFile::append(std::size_t number, std::span<const double> row) {
+  Growing& table = impl_->tables.at(number);
+  PALPATE_CHECK(row.size() == table.width, "{} values for {} columns of {}", row.size(), table.width,
+                table.name);
+  table.waiting.insert(table.waiting.end(), row.begin(), row.end());
+  if (table.waiting.size() < kBatch * table.width) return;
+  const h5::Quiet quiet;
+  write_waiting(table, impl_->path);
+}
+
+void TableFile::flush() {
+  const h5::Quiet quiet;
+  for (Growing& table : impl_->tables) write_waiting(table, impl_->path);
+  h5::check(H5Fflush(impl_->file, H5F_SCOPE_LOCAL), impl_->path, "cannot be flushed; is the disk full?");
+}
+
+Table read_table(const std::string& path, const std::string& name) {
+  const h5::Quiet quiet;
+  if (!std::filesystem::exists(path)) fail("{}: no such file", path);
+  const h5::Id file = h5::open_file(path);
+  const h5::Opened set = h5::open(file, name, H5T_FLOAT, 2, path);
+  Table out;
+  out.columns = split(h5::read_attribute_text(set.id, "columns", path));
+  if (out.columns.size() != set.shape[1])
+    fail("{}: {} has {} columns, but {} names", path, name, set.shape[1], out.columns.size());
+  out.values.resize(static_cast<std::size_t>(set.shape[0] * set.shape[1]));
+  if (!out.values.empty()) h5::read(set, name, H5T_NATIVE_DOUBLE, out.values.data(), path);
+  return out;
+}
+
+}  // namespace palpate::store

@@ -1,0 +1,104 @@
+// What a hand feels of two runs, against differences known in closed form.
+#include "palpate/compare/felt_difference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "palpate/core/error.h"
+
+namespace {
+
+using namespace palpate;
+
+/// Ticks of 1 kHz over 2 s; force f(t) along z, torque tau(t) about x.
+template <class Force, class Torque>
+std::vector<loop::TickRecord> ticks(Force&& force, Torque&& torque, double h = 1e-3) {
+  std::vector<loop::TickRecord> out;
+  for (int i = 1; i * h <= 2.0 + 1e-9; ++i) {
+    loop::TickRecord tick;
+    tick.time = i * h;
+    tick.device.force = Vec3(0, 0, force(tick.time));
+    tick.device.moment = Vec3(torque(tick.time), 0, 0);
+    out.push_back(tick);
+  }
+  return out;
+}
+double none(double) { return 0.0; }
+double tone(double t, double hz) { return std::sin(2.0 * std::numbers::pi * hz * t); }
+
+TEST(FeltDifference, OfARunAndItselfIsNone) {
+  const auto a = ticks([](double t) { return 1.0 + tone(t, 3.0); }, none);
+  const compare::FeltDifference d = compare::felt_difference(a, a);
+  EXPECT_TRUE(d.identical);
+  EXPECT_EQ(d.ticks, 2000);
+  EXPECT_EQ(d.force.rms, 0.0);
+  EXPECT_EQ(d.force.noticeable, 0.0);
+  EXPECT_NEAR(d.force.peak, 2.0, 1e-4);
+}
+
+// A tone of amplitude a has a root mean square of a/sqrt(2), in its own band alone.
+TEST(FeltDifference, AToneStandsInItsBand) {
+  for (const auto& [hz, band] :
+       {std::pair(4.0, 0), std::pair(20.0, 1), std::pair(50.0, 2), std::pair(220.0, 3)}) {
+    const auto a = ticks([](double) { return 2.0; }, none);
+    const auto b = ticks([hz = hz](double t) { return 2.0 + 0.1 * tone(t, hz); },
+                         [hz = hz](double t) { return 0.01 * tone(t, hz); });
+    const compare::FeltDifference d = compare::felt_difference(a, b);
+    EXPECT_FALSE(d.identical);
+    EXPECT_NEAR(d.force.rms, 0.1 / std::numbers::sqrt2, 1e-4);
+    EXPECT_NEAR(d.torque.rms, 0.01 / std::numbers::sqrt2, 1e-5);
+    EXPECT_NEAR(d.force.max, 0.1, 1e-3);
+    ASSERT_EQ(d.force.bands.size(), 4u);
+    for (int i = 0; i < 4; ++i)
+      EXPECT_NEAR(d.force.bands[static_cast<std::size_t>(i)].difference,
+                  i == band ? 0.1 / std::numbers::sqrt2 : 0.0, 1e-3)
+          << hz << " Hz in band " << i;
+    EXPECT_NEAR(d.force.bands[0].reference, 2.0, 1e-9);
+  }
+}
+
+// 2 N: 0.14 N is the threshold, so 0.139 is below it and 0.141 above, at each tick; below 0.5 N it stays at
+// 0.035 N.
+TEST(FeltDifference, NoticeableIsBeyondWebersLaw) {
+  const auto share = [](double force, double by) {
+    return compare::felt_difference(ticks([=](double) { return force; }, none),
+                                    ticks([=](double) { return force + by; }, none))
+        .force.noticeable;
+  };
+  EXPECT_EQ(share(2.0, 0.139), 0.0);
+  EXPECT_EQ(share(2.0, -0.141), 1.0);
+  EXPECT_EQ(share(0.0, 0.034), 0.0);
+  EXPECT_EQ(share(0.0, 0.036), 1.0);
+  const auto torque = [](double by) {
+    return compare::felt_difference(ticks(none, [](double) { return 0.1; }),
+                                    ticks(none, [=](double) { return 0.1 + by; }))
+        .torque.noticeable;
+  };
+  EXPECT_EQ(torque(0.0126), 0.0);
+  EXPECT_EQ(torque(0.0128), 1.0);
+}
+
+// Runs of other rates and lengths are compared where both have values; between ticks a force is straight.
+TEST(FeltDifference, OtherRatesAreInterpolated) {
+  const auto line = [](double t) { return 3.0 * t; };
+  auto coarse = ticks(line, none, 4e-3);
+  coarse.resize(coarse.size() / 2);
+  const compare::FeltDifference d = compare::felt_difference(ticks(line, none), coarse);
+  EXPECT_NEAR(d.from_s, 0.004, 1e-12);
+  EXPECT_NEAR(d.to_s, 1.0, 1e-12);
+  EXPECT_LT(d.force.max, 1e-12);
+  EXPECT_FALSE(d.identical);
+  EXPECT_NE(compare::text_of(d).find("force: differs by"), std::string::npos);
+}
+
+TEST(FeltDifference, RefusesWhatCannotBeCompared) {
+  const auto a = ticks(none, none);
+  EXPECT_THROW(compare::felt_difference(a, {}), Error);
+  auto later = a;
+  for (loop::TickRecord& tick : later) tick.time += 10.0;
+  EXPECT_THROW(compare::felt_difference(a, later), Error);
+}
+
+}  // namespace
