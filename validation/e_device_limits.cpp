@@ -11,7 +11,7 @@
 namespace palpate::validation {
 namespace {
 
-constexpr double kForce = 3.3, kTorque = 0.2, kForceSlew = 400.0, kTorqueSlew = 30.0;
+constexpr double kForce = 3.3, kTorque = 0.2, kForceSlew = 600.0, kTorqueSlew = 40.0;
 
 /// Output of a program without such limits: the last finite wrench that was wanted, clipped by component.
 Wrench careless(const Wrench& wanted, bool clip) {

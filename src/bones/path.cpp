@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "palpate/device/handle.h"
+#include "palpate/device/device.h"
 
 namespace palpate::bones {
 

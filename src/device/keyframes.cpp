@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "palpate/device/handle.h"
+#include "palpate/device/device.h"
 
 namespace palpate::device {
 namespace {

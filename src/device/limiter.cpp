@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "palpate/core/error.h"
+#include "palpate/device/device.h"
 #include "palpate/device/spec.h"
 
 namespace palpate::device {
@@ -42,9 +43,9 @@ Vec3 towards(const Vec3& from, const Vec3& to, double reach) {
 }
 
 void check_slew(double slew, double max, const char* what) {
-  const double least = kSteepest * max / kFallTime;
+  const double least = kSteepest * max / (kFallTime - kHoldTime);
   if (!(slew >= least))
-    fail("device: {} = {} is too small to fall from {} to zero within 20 ms; use at least {}", what, slew,
+    fail("device: {} = {} is too small to fall from {} to zero within 10 ms; use at least {}", what, slew,
          max, least);
 }
 
@@ -68,6 +69,11 @@ WrenchLimiter::WrenchLimiter(double max_force_n, double max_torque_n_m, double r
   check_slew(torque_slew_, max_torque_, "max_torque_slew_n_m_s");
 }
 
+void WrenchLimiter::confine(const Workspace& workspace, const Device& device) {
+  workspace_ = workspace;
+  device_ = workspace.is_bounded() ? &device : nullptr;
+}
+
 Wrench WrenchLimiter::limit(double t, const Wrench& wanted, bool valid) {
   const bool good_time = std::isfinite(t) && (!started_ || t > last_time_);
   const bool good_wrench = wanted.force.allFinite() && wanted.moment.allFinite();
@@ -88,7 +94,9 @@ Wrench WrenchLimiter::follow(double t, double dt, const Wrench& wanted) {
   live_ = true;
   last_valid_ = t;
   if (wanted.force.stableNorm() > max_force_ || wanted.moment.stableNorm() > max_torque_) ++limited_;
-  const double ramp = ramp_ > 0.0 ? smoothstep((t - start_) / ramp_) : 1.0;
+  const double inside_workspace = device_ ? workspace_.share(device_->position()) : 1.0;
+  outside_ += inside_workspace < 1.0;
+  const double ramp = (ramp_ > 0.0 ? smoothstep((t - start_) / ramp_) : 1.0) * inside_workspace;
   held_.force =
       inside(towards(last_.force, ramp * saturate(wanted.force, max_force_), force_slew_ * dt), max_force_);
   held_.moment = inside(towards(last_.moment, ramp * saturate(wanted.moment, max_torque_), torque_slew_ * dt),
@@ -99,7 +107,7 @@ Wrench WrenchLimiter::follow(double t, double dt, const Wrench& wanted) {
 Wrench WrenchLimiter::fall(double age) {
   live_ = live_ && age < kFallTime;
   if (!live_) return {};
-  const double left = 1.0 - smoothstep(age / kFallTime);
+  const double left = 1.0 - smoothstep((age - kHoldTime) / (kFallTime - kHoldTime));
   return {left * held_.moment, left * held_.force};
 }
 

@@ -1,9 +1,12 @@
 #pragma once
-#include "palpate/device/handle.h"
+#include "palpate/device/device.h"
 
 /// One function a device, each in a file of its own.
 namespace palpate::device {
 
-std::unique_ptr<Handle> make_script(const DeviceSpec& spec);
+std::unique_ptr<Device> make_script(const DeviceSpec& spec, const std::string& folder);
+std::unique_ptr<Device> make_hand(const DeviceSpec& spec, const std::string& folder);
+std::unique_ptr<Device> make_recording(const DeviceSpec& spec, const std::string& folder);
+std::unique_ptr<Device> make_udp(const DeviceSpec& spec, const std::string& folder);
 
 }  // namespace palpate::device

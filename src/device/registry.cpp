@@ -1,20 +1,40 @@
 #include "device/make.h"
 
 namespace palpate::device {
+namespace {
 
-const Registry<MakeHandle>& handle_registry() {
-  static const Registry<MakeHandle> registry = {
+std::vector<PartKey> hand_keys() {
+  std::vector<PartKey> keys = part_keys(
+      {"motion", "arm_mass_kg", "arm_damping_n_s_m", "arm_stiffness_n_m", "rotational_inertia_kg_m2",
+       "arm_rotational_damping_n_m_s_rad", "arm_rotational_stiffness_n_m_rad", "device_mass_kg",
+       "device_damping_n_s_m", "device_friction_n", "rotational_friction_n_m", "encoder_resolution_m",
+       "encoder_resolution_rad", "velocity_cutoff_per_s", "force_resolution_n", "delay_s"});
+  keys.insert(keys.begin(), {.name = "keyframe", .required = true});
+  return keys;
+}
+
+}  // namespace
+
+const Registry<MakeDevice>& device_registry() {
+  static const Registry<MakeDevice> registry = {
       {"script",
-       "follows the keyframes of the scene",
+       "follows the keyframes of the scene, whatever it feels",
        0,
        make_script,
-       {{.name = "keyframe", .required = true}}},
+       {{.name = "keyframe", .required = true}, {.name = "motion"}}},
+      {"hand", "a simulated device in a simulated arm that yields to the force", 0, make_hand, hand_keys()},
+      {"recording", "repeats recorded poses", 0, make_recording, {{.name = "file", .required = true}}},
+      {"udp",
+       "a peer on the network sends poses and gets wrenches",
+       0,
+       make_udp,
+       {{.name = "port", .required = true}, {.name = "address"}, {.name = "time_out_s"}}},
   };
   return registry;
 }
 
-std::unique_ptr<Handle> make_handle(const DeviceSpec& spec) {
-  return find(handle_registry(), spec.type, "device type").make(spec);
+std::unique_ptr<Device> make_device(const DeviceSpec& spec, const std::string& folder) {
+  return find(device_registry(), spec.type, "device type").make(spec, folder);
 }
 
 }  // namespace palpate::device

@@ -1,25 +1,29 @@
 #include "device/make.h"
+#include "device/motions.h"
 
 namespace palpate::device {
 namespace {
 
-/// A hand that follows keyframes, whatever it feels.
-class ScriptHandle : public Handle {
+/// A hand that follows its path, whatever it feels.
+class ScriptDevice : public Device {
  public:
-  explicit ScriptHandle(const DeviceSpec& spec) : keyframes_(spec.keyframes) {
-    check_keyframes(keyframes_, "device");
-  }
-  HandleSample sample(double t) override { return sample_keyframes(keyframes_, t); }
-  std::function<HandleSample(double)> path() const override {
-    return [keyframes = keyframes_](double t) { return sample_keyframes(keyframes, t); };
-  }
+  explicit ScriptDevice(const DeviceSpec& spec)
+      : path_(path_of(spec)), specification_(figures_of(spec).specification) {}
+  DeviceSpecification specification() const override { return specification_; }
+  std::function<HandleSample(double)> path() const override { return path_; }
+
+ protected:
+  HandleSample do_sample(double t) override { return path_(t); }
 
  private:
-  std::vector<KeyframeSpec> keyframes_;
+  DevicePath path_;
+  DeviceSpecification specification_;
 };
 
 }  // namespace
 
-std::unique_ptr<Handle> make_script(const DeviceSpec& spec) { return std::make_unique<ScriptHandle>(spec); }
+std::unique_ptr<Device> make_script(const DeviceSpec& spec, const std::string&) {
+  return std::make_unique<ScriptDevice>(spec);
+}
 
 }  // namespace palpate::device

@@ -13,6 +13,7 @@
 #include "palpate/mesh/spatial_order.h"
 #include "palpate/store/mesh_file.h"
 #include "palpate/store/model_file.h"
+#include "tool_side.h"
 
 namespace palpate::loop {
 namespace {
@@ -199,7 +200,9 @@ void assemble_bodies(World& world) {
     add_forces(world, bodies[i], world.description.bodies[i], materials[i]);
 }
 
-std::unique_ptr<World> assemble(const scene::Description& description) {
+std::unique_ptr<World> assemble(const scene::Description& description) { return assemble(description, {}); }
+
+std::unique_ptr<World> assemble(const scene::Description& description, std::unique_ptr<device::Device> hand) {
   auto world = std::make_unique<World>();
   world->description = description;
   workers::set_count(description.integrator.threads);
@@ -207,6 +210,7 @@ std::unique_ptr<World> assemble(const scene::Description& description) {
   assemble_bodies(*world);
   if (!description.bones.empty()) assemble_bones(*world);
   assemble_skeletons(*world);
+  ToolSide::of(*world).handle = std::move(hand);
   if (description.tool) assemble_tool(*world);
   assemble_attachments(*world);
   if (!description.contacts.empty()) assemble_contact(*world);

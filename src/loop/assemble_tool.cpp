@@ -14,7 +14,7 @@ namespace {
 
 /// The handle as a function of time, which one integrator of tool and bodies needs: it looks ahead of the
 /// tick, and back.
-tool::HandlePath path_of(const device::Handle& handle, const DeviceSpec& spec) {
+tool::HandlePath path_of(const device::Device& handle, const DeviceSpec& spec) {
   auto path = handle.path();
   if (!path)
     fail(
@@ -47,9 +47,12 @@ void assemble_block(World& world) {
 void assemble_tool(World& world) {
   const scene::Description& d = world.description;
   ToolSide& side = ToolSide::of(world);
-  side.handle = device::make_handle(*d.device);
-  side.limiter = std::make_unique<device::WrenchLimiter>(d.device->max_force_n, d.device->max_torque_n_m,
-                                                         d.device->ramp_s);
+  if (!side.handle) side.handle = device::make_device(*d.device, world.folder);
+  const device::DeviceFigures figures = device::figures_of(*d.device);
+  side.limiter =
+      std::make_unique<device::WrenchLimiter>(figures.max_force, figures.max_torque, d.device->ramp_s,
+                                              figures.max_force_slew, figures.max_torque_slew);
+  side.limiter->confine(figures.workspace, *side.handle);
   if (d.exchange.scheme == "monolithic")
     assemble_block(world);
   else if (d.exchange.scheme == "partitioned") {

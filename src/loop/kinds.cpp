@@ -1,6 +1,7 @@
 #include "palpate/contact/methods.h"
 #include "palpate/contact/obstacle.h"
-#include "palpate/device/handle.h"
+#include "palpate/device/device.h"
+#include "palpate/device/motions.h"
 #include "palpate/fem/laws.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
@@ -87,8 +88,16 @@ scene::Kinds make_kinds() {
   out.push_back({.table = "device",
                  .selector = "type",
                  .what = "device type",
-                 .kinds = kinds_of(device::handle_registry()),
+                 .kinds = kinds_of(device::device_registry()),
                  .unsaid = [](const Description&) { return DeviceSpec{}.type; }});
+  KindTable profiles{.table = "device", .selector = "profile", .what = "device profile", .kinds = {}};
+  for (const device::DeviceProfile& one : device::device_profiles()) profiles.kinds.push_back({one.name});
+  out.push_back(std::move(profiles));
+  out.push_back({.table = "device.motion",
+                 .selector = "kind",
+                 .what = "motion",
+                 .kinds = kinds_of(device::motion_registry()),
+                 .unsaid = [](const Description&) { return MotionSpec{}.kind; }});
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "palpate/core/error.h"
+#include "palpate/device/profile.h"
 #include "palpate/loop/haptic_record.h"
 #include "palpate/store/bone_file.h"
 #include "palpate/store/force_file.h"
@@ -138,8 +139,9 @@ Recorder::Recorder(const World& world, const std::string& folder) : impl_(std::m
     // below this share of the device's maximum a difference is the limiter's smoothness, not a limit
     constexpr double kUnlimited = 3e-13;
     if (d.device) {
-      impl_->force_rounding = kUnlimited * d.device->max_force_n;
-      impl_->torque_rounding = kUnlimited * d.device->max_torque_n_m;
+      const device::DeviceFigures figures = device::figures_of(*d.device);
+      impl_->force_rounding = kUnlimited * figures.max_force;
+      impl_->torque_rounding = kUnlimited * figures.max_torque;
     }
     impl_->forces = std::make_unique<store::ForceFile>((base / kForceFile).string());
     impl_->haptic = std::make_unique<HapticRecorder>((base / kHapticFile).string());

@@ -6,7 +6,8 @@
 #include "palpate/contact/gpu_available.h"
 #include "palpate/contact/methods.h"
 #include "palpate/contact/obstacle.h"
-#include "palpate/device/handle.h"
+#include "palpate/device/device.h"
+#include "palpate/device/motions.h"
 #include "palpate/fem/laws.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/mesh/generators.h"
@@ -74,19 +75,22 @@ std::vector<Choice> tool_steppers() {
 }
 
 std::vector<ChoiceList> registries() {
-  return {{"integrators", "of soft bodies: [integrator] name, --integrator", stepper_choices()},
-          {"linear-solvers", "of implicit integrators: [integrator] linear_solver",
-           choices(linear::linear_solver_registry())},
-          {"materials", "constitutive laws: [[body]] material", choices(fem::law_registry())},
-          {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_steppers()},
-          {"obstacles", "rigid shapes in the world: [[obstacle]] type", named(contact::obstacle_registry())},
-          {"contact-methods", "how gaps are found: [[contact]] method", named(contact::method_registry())},
-          {"contact-springs", "what stiffness and damping are of: [[contact]] spring",
-           named(contact::spring_registry())},
-          {"contact-laws", "pressure by depth and its rate: [[contact]] law", named(contact::law_registry())},
-          {"generators", "of meshes: [body.mesh] generator", choices(mesh::tet_generators())},
-          {"devices", "what the hand holds: [device] type", choices(device::handle_registry())},
-          {"parts", "optional parts of this build", part_choices()}};
+  return {
+      {"integrators", "of soft bodies: [integrator] name, --integrator", stepper_choices()},
+      {"linear-solvers", "of implicit integrators: [integrator] linear_solver",
+       choices(linear::linear_solver_registry())},
+      {"materials", "constitutive laws: [[body]] material", choices(fem::law_registry())},
+      {"tool-integrators", "of the tool's own ticks: [tool] integrator", tool_steppers()},
+      {"obstacles", "rigid shapes in the world: [[obstacle]] type", named(contact::obstacle_registry())},
+      {"contact-methods", "how gaps are found: [[contact]] method", named(contact::method_registry())},
+      {"contact-springs", "what stiffness and damping are of: [[contact]] spring",
+       named(contact::spring_registry())},
+      {"contact-laws", "pressure by depth and its rate: [[contact]] law", named(contact::law_registry())},
+      {"generators", "of meshes: [body.mesh] generator", choices(mesh::tet_generators())},
+      {"devices", "what the hand holds: [device] type", choices(device::device_registry())},
+      {"device-profiles", "published figures of devices: [device] profile", named(device::device_profiles())},
+      {"motions", "on top of keyframes: [[device.motion]] kind", choices(device::motion_registry())},
+      {"parts", "optional parts of this build", part_choices()}};
 }
 
 }  // namespace palpate::loop

@@ -5,6 +5,7 @@
 #include "palpate/contact/gpu_available.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/counters.h"
+#include "palpate/device/profile.h"
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/store/model_cache.h"
@@ -51,8 +52,9 @@ void add_options(store::SummarySection& s, const scene::Description& d) {
     s.values.emplace_back("linearisation", d.exchange.linearisation);
   }
   s.values.emplace_back("tool_integrator", monolithic ? d.integrator.name : d.tool->integrator);
-  s.values.emplace_back("max_force_n", d.device->max_force_n);
-  s.values.emplace_back("max_torque_n_m", d.device->max_torque_n_m);
+  const device::DeviceFigures figures = device::figures_of(*d.device);
+  s.values.emplace_back("max_force_n", figures.max_force);
+  s.values.emplace_back("max_torque_n_m", figures.max_torque);
 }
 
 /// Provenance as store collects it, and the libraries that only the parts know.

@@ -1,5 +1,5 @@
 #pragma once
-#include "palpate/device/handle.h"
+#include "palpate/device/device.h"
 #include "palpate/device/limiter.h"
 #include "palpate/loop/world.h"
 #include "palpate/tool/tool.h"
@@ -21,7 +21,7 @@ struct ToolSide {
   KnownTool known;
   /// monolithic: its block of the State; else -1
   int block_id = -1;
-  std::unique_ptr<device::Handle> handle;
+  std::unique_ptr<device::Device> handle;
   device::HandleSample handle_now;  ///< at the last tick
   std::unique_ptr<device::WrenchLimiter> limiter;
   /// the tool's frame in contact; null where no contact names the tool

@@ -122,21 +122,6 @@ const KeyTable<ToolSpec>& tool_keys() {
   return keys;
 }
 
-const KeyTable<DeviceSpec>& device_keys() {
-  using Ranges = DeviceRanges;
-  static const KeyTable<DeviceSpec> keys = {
-      text("type", &DeviceSpec::type, {}, "what moves the handle"),
-      tables("keyframe", &DeviceSpec::keyframes, keyframe_keys(),
-             "the path of the handle, in the order of time"),
-      number("max_force_n", &DeviceSpec::max_force_n, Ranges::max_force_n,
-             "largest force that the device lets through"),
-      in_unit("N m", number("max_torque_n_m", &DeviceSpec::max_torque_n_m, Ranges::max_torque_n_m,
-                            "largest torque that the device lets through")),
-      number("ramp_s", &DeviceSpec::ramp_s, Ranges::ramp_s, "time over which the force sets in at the start"),
-  };
-  return keys;
-}
-
 const KeyTable<CosimulationSpec>& exchange_keys() {
   static const KeyTable<CosimulationSpec> keys = {
       text("scheme", &CosimulationSpec::scheme, {"partitioned", "monolithic"},

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "palpate/device/handle.h"
+#include "palpate/device/device.h"
 
 using namespace palpate;
 using namespace palpate::device;
@@ -136,33 +136,5 @@ TEST(Keyframes, bad_paths_are_refused) {
   EXPECT_THROW(sample_keyframes({}, 0.0), Error);
   DeviceSpec spec;
   spec.type = "scripd";
-  EXPECT_THROW(make_handle(spec), Error);
-}
-
-// Conformance: every handle of the registry that a path alone describes moves as its samples say and stays
-// finite.
-TEST(Handles, every_listed_handle_samples) {
-  DeviceSpec spec;
-  spec.keyframes = random_path("minimum_jerk");
-  int paths = 0;
-  for (const auto& entry : handle_registry()) {
-    spec.type = entry.name;
-    const auto handle = make_handle(spec);
-    for (double t = 0.0; t < 1.5; t += 0.01) {
-      const HandleSample s = handle->sample(t);
-      EXPECT_TRUE(s.pose.translation.allFinite() && s.twist.angular.allFinite()) << entry.name;
-      EXPECT_NEAR(s.pose.rotation.norm(), 1.0, 1e-14) << entry.name;
-      handle->feedback(t, {});
-    }
-    const auto path = handle->path();
-    if (!path) continue;
-    for (const double t : {-0.5, 0.0, 0.3, 0.9, 2.0}) {  // at any time, in any order
-      const HandleSample s = make_handle(spec)->sample(t), p = path(t);
-      EXPECT_EQ(p.pose.translation, s.pose.translation) << entry.name;
-      EXPECT_EQ(p.twist.angular, s.twist.angular) << entry.name;
-    }
-    ++paths;
-  }
-  EXPECT_GE(handle_registry().size(), 1u);
-  EXPECT_GE(paths, 1) << "a script's path is known beforehand";
+  EXPECT_THROW(make_device(spec), Error);
 }

@@ -216,19 +216,19 @@ TEST(RealTime, ATickTakesNoMemory) {
 // After its end a run presses on no hand.
 TEST(TickSide, EndsWithoutAForce) {
   const scene::Description d = scene_of();
-  const auto world = loop::assemble(d);
-  struct Feels : device::Handle {
-    device::HandleSample sample(double) override {
+  struct Feels : device::Device {
+    device::DeviceSpecification specification() const override { return {}; }
+    device::HandleSample do_sample(double) override {
       device::HandleSample s;
       s.pose.translation = Vec3(0, 0, -0.1);
       return s;
     }
-    void feedback(double, const Wrench& w) override { force = w.force; }
+    void do_feedback(double, const Wrench& w) override { force = w.force; }
     Vec3 force = Vec3::Zero();
   };
   auto hand = std::make_unique<Feels>();
   const Feels& feels = *hand;
-  loop::ToolSide::of(*world).handle = std::move(hand);
+  const auto world = loop::assemble(d, std::move(hand));
   loop::TickSide ticks(*d.tool, loop::ToolSide::of(*world));
   ticks.start(0.0);
   loop::TickRecord out;

@@ -1,18 +1,23 @@
 #pragma once
 #include "palpate/core/pose.h"
+#include "palpate/device/workspace.h"
 
 namespace palpate::device {
 
-/// Time within which the wrench falls to zero after the last valid pose [s].
-inline constexpr double kFallTime = 0.020;
+class Device;
 
-/// Maxima a second [1/s]: thirty of them in a tick of 1 ms, which it never slows.  Relative to the device's
-/// maxima, so that it suits any device and any units.
+/// The watchdog: up to kHoldTime after the last valid pose its wrench is held (a pose late by a few ticks is
+/// not felt), then it falls smoothly, and from kFallTime on it is zero [s].
+inline constexpr double kHoldTime = 0.010, kFallTime = 0.020;
+
+/// Maxima a second [1/s] where neither scene nor profile says: thirty of them in a tick of 1 ms, which it
+/// never slows.  Relative to the device's maxima, so that it suits any device and any units.  A profile's
+/// slew is that of an amplifier, 1885 maxima a second (profile.cpp).
 inline constexpr double kDefaultSlew = 3e4;
 
 /// The last thing before the motors: never lets a wrench above the device's maximum out (smoothly: |f| ->
-/// fmax tanh-like, C1, identity to within 1 % below half the maximum), ramps in, bounds the slew, and falls
-/// to zero within 20 ms after the last valid pose.
+/// fmax tanh-like, C1, identity to within 1 % below half the maximum), ramps in, bounds the slew, fades
+/// outside the device's workspace, and falls from 10 to 20 ms after the last valid pose to zero.
 ///
 /// Before the first tick the output is zero, so the first tick gives zero: a slew needs a time span.  After a
 /// fall to zero the wrench ramps in anew. A wrench that is not finite counts as an invalid tick: a NaN never
@@ -21,19 +26,24 @@ inline constexpr double kDefaultSlew = 3e4;
 class WrenchLimiter {
  public:
   /// @throws Error for a maximum that is not positive, a negative ramp, or a slew too small to reach zero
-  ///   in time (1.5 maximum / 20 ms)
+  ///   in time (1.5 maximum / 10 ms)
   WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s, double max_force_slew_n_s,
                 double max_torque_slew_n_m_s);
   /// Slews of kDefaultSlew maxima a second.
   WrenchLimiter(double max_force_n, double max_torque_n_m, double ramp_s)
       : WrenchLimiter(max_force_n, max_torque_n_m, ramp_s, kDefaultSlew * max_force_n,
                       kDefaultSlew * max_torque_n_m) {}
+  /// From now on a force at a position of the device outside `workspace` is wanted less, by its share.
+  /// @param device  whose last sample says where the handle is; it must outlive this
+  void confine(const Workspace& workspace, const Device& device);
   /// @param t [s], increasing  @param valid  whether the handle's pose of this tick is valid
   Wrench limit(double t, const Wrench& wanted, bool valid);
   /// valid ticks whose wanted force or torque was above its maximum
   long limited_ticks() const { return limited_; }
   /// ticks with a wrench that was not finite or a time that did not increase
   long rejected_ticks() const { return rejected_; }
+  /// valid ticks outside the workspace
+  long outside_ticks() const { return outside_; }
 
  private:
   Wrench fall(double age);
@@ -44,10 +54,12 @@ class WrenchLimiter {
   double last_time_ = 0.0, last_dt_ = 0.0;  ///< last tick whose time increased, and its length [s]
   double stalled_ = 0.0;                    ///< what the substitute clock counted since then [s]
   bool started_ = false;                    ///< some tick was seen
-  bool live_ = false;                       ///< a valid pose came within the last 20 ms
+  bool live_ = false;                       ///< a valid pose came within the last kFallTime
   Wrench last_;                             ///< what went out last
   Wrench held_;                             ///< what went out at the last valid pose
-  long limited_ = 0, rejected_ = 0;
+  Workspace workspace_;                     ///< unbounded but for confine()
+  const Device* device_ = nullptr;          ///< null: not confined
+  long limited_ = 0, rejected_ = 0, outside_ = 0;
 };
 
 }  // namespace palpate::device

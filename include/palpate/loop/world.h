@@ -18,6 +18,10 @@
 #include "palpate/proxy/proxy_set.h"
 #include "palpate/scene/description.h"
 
+namespace palpate::device {
+class Device;
+}  // namespace palpate::device
+
 namespace palpate::bones {
 class BoneTree;
 }  // namespace palpate::bones
@@ -142,6 +146,9 @@ struct World {
 /// run() keeps to each World's own.
 /// @throws Error for names that no registry knows, parts not compiled in, meshes refused
 std::unique_ptr<World> assemble(const scene::Description& description);
+/// As the scene, but held by another hand (a recording, or a device of one's own); the limits are those of
+/// [device].
+std::unique_ptr<World> assemble(const scene::Description& description, std::unique_ptr<device::Device> hand);
 
 /// The surface of the scene's tool in its own axes, for pictures and records: its mesh, or a sphere.
 TriMesh tool_surface(const ToolSpec& spec, const std::string& folder);

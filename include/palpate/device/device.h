@@ -1,0 +1,93 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "palpate/core/pose.h"
+#include "palpate/core/registry.h"
+#include "palpate/device/profile.h"
+#include "palpate/device/spec.h"
+
+namespace palpate::device {
+
+/// The handle as the hand moves it at one instant, in the scene's axes (right-handed) and SI units.
+struct HandleSample {
+  Pose pose;           ///< of the handle: its origin [m] and orientation
+  Twist twist;         ///< [rad/s, m/s]
+  Twist acceleration;  ///< [rad/s^2, m/s^2]
+  bool valid = true;   ///< false: no pose arrived; forces must fall to zero
+};
+
+/// A haptic device: something that a hand holds, whose pose is read and which gives a wrench back.
+///
+/// Axes are the scene's for every quantity; a device with axes of its own turns them before they come here.
+/// The loop calls `sample` once or more a tick, with times that do not decrease (at the same time it gives
+/// the same sample), and then `feedback` with the wrench that the hand feels until the next one.
+/// The first sample opens the device; the destructor of each device lets go of whatever it holds.
+///
+/// A device of one's own overrides `do_sample` and, where it has motors, `do_feedback`; see docs/devices.md.
+class Device {
+ public:
+  Device() = default;
+  virtual ~Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  /// Takes hold of the hardware, socket or file; nothing where it is open.  @throws Error where it cannot
+  void open();
+  /// Motors off, and lets go; nothing where it is closed.
+  void close();
+  bool is_open() const { return open_; }
+
+  HandleSample sample(double t);
+  /// @param on_hand  force [N] and moment about the handle's origin [N m] on the hand, scene's axes
+  void feedback(double t, const Wrench& on_hand);
+  /// `feedback` at the time of the last sample.
+  void set_force_and_torque(const Vec3& force, const Vec3& torque) { feedback(time_, {torque, force}); }
+
+  // of the last sample; at rest in the origin before the first
+  Vec3 position() const { return last_.pose.translation; }       ///< [m]
+  Quat rotation() const { return last_.pose.rotation; }          ///< handle's axes to the scene's
+  Vec3 linear_velocity() const { return last_.twist.linear; }    ///< [m/s]
+  Vec3 angular_velocity() const { return last_.twist.angular; }  ///< [rad/s]
+  virtual unsigned switches() const { return 0; }                ///< bit i: switch i is pressed
+
+  /// What it can do; figures that nobody has measured are left out.
+  virtual DeviceSpecification specification() const = 0;
+  /// Its motion as a function of time, valid at any time, where that is known beforehand; empty where a hand
+  /// decides as it goes.  One integrator of tool and bodies needs it.
+  virtual std::function<HandleSample(double t)> path() const { return {}; }
+
+ protected:
+  virtual void do_open() {}
+  virtual void do_close() {}
+  virtual HandleSample do_sample(double t) = 0;
+  virtual void do_feedback(double /*t*/, const Wrench& /*on_hand*/) {}
+
+ private:
+  HandleSample last_;
+  double time_ = 0.0;  ///< of the last sample [s]
+  bool open_ = false;
+};
+
+/// A device is one file in src/device and one entry here, with the keys of `[device]` that it alone uses;
+/// what limits its force serves every device.
+/// @param folder  where relative paths in the spec start: the scene's
+using MakeDevice = std::unique_ptr<Device> (*)(const DeviceSpec& spec, const std::string& folder);
+const Registry<MakeDevice>& device_registry();
+std::unique_ptr<Device> make_device(const DeviceSpec& spec, const std::string& folder = {});
+
+/// The path through keyframes: before the first and after the last it rests there.  Rotations interpolate on
+/// the rotation vector between neighbours (about one fixed axis a segment), so twist and acceleration are the
+/// exact derivatives of the pose.  At a keyframe's own time the segment that starts there counts.  A "step"
+/// or a kink of "linear" has no derivative: the jump is in the pose or the twist alone.
+/// @throws Error for an empty path
+HandleSample sample_keyframes(const std::vector<KeyframeSpec>& keyframes, double t);
+
+/// Checks a path: at least one keyframe, all finite, times strictly ascending, known interpolations, and
+/// rotations of at most half a turn from one keyframe to the next (beyond that the way round is ambiguous).
+/// @throws Error beginning with `where`, e.g. "device"
+void check_keyframes(const std::vector<KeyframeSpec>& keyframes, const std::string& where);
+
+}  // namespace palpate::device

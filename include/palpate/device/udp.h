@@ -1,0 +1,103 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "palpate/device/device.h"
+
+/// A device on the network: a peer sends poses in UDP packets and gets a wrench for each tick.
+///
+/// All numbers are little-endian, without gaps; doubles are IEEE 754.  A pose is 132 bytes, a wrench 72:
+///
+///   offset  pose (peer to palpate)             offset  wrench (palpate to peer)
+///   0       magic u32, "PLPT"                  0       magic u32, "PLPT"
+///   4       version u16, 1                     4       version u16, 1
+///   6       kind u16, 1                        6       kind u16, 2
+///   8       sequence u64, rises                8       sequence u64, of the last pose that counted
+///   16      time f64 [s], the peer's own       16      time f64 [s], of the tick
+///   24      position 3 f64 [m]                 24      force on the hand 3 f64 [N]
+///   48      rotation w, x, y, z 4 f64          48      torque about the handle's origin 3 f64 [N m]
+///   80      linear velocity 3 f64 [m/s]
+///   104     angular velocity 3 f64 [rad/s]
+///   128     switches u32
+///
+/// A sequence that does not rise is an old packet, or one that is sent again, and does not count: a peer that
+/// starts anew goes on from a larger number, such as its clock.  There is no encryption: whoever can send to
+/// the port first moves the handle.
+namespace palpate::device {
+
+inline constexpr std::uint32_t kUdpMagic = 0x54504c50;  // the bytes P L P T
+inline constexpr std::uint16_t kUdpVersion = 1;
+
+struct PosePacket {
+  std::uint64_t sequence = 0;
+  double time = 0.0;
+  Pose pose;
+  Twist twist;
+  std::uint32_t switches = 0;
+};
+struct WrenchPacket {
+  std::uint64_t sequence = 0;
+  double time = 0.0;
+  Wrench on_hand;
+};
+using PoseBytes = std::array<unsigned char, 132>;
+using WrenchBytes = std::array<unsigned char, 72>;
+
+enum class PacketFault { kNone, kMalformed, kVersion };
+
+PoseBytes encode(const PosePacket& packet);
+WrenchBytes encode(const WrenchPacket& packet);
+/// Malformed: another size, magic or kind, a number that is not finite, a quaternion whose length is not 1 to
+/// 1e-3.  `out` is written only where there is no fault.
+PacketFault decode(std::span<const unsigned char> bytes, PosePacket& out);
+PacketFault decode(std::span<const unsigned char> bytes, WrenchPacket& out);
+
+/// Packets by what became of them.
+struct UdpCounts {
+  long accepted = 0, malformed = 0, wrong_version = 0;
+  long stale = 0;    ///< a sequence that did not rise
+  long foreign = 0;  ///< from another address than the first that was accepted
+  long unsent = 0;   ///< wrenches that the network did not take
+};
+
+/// The device.  A sample takes what has come, never waits, and repeats the last pose between packets; it is
+/// valid while the last one came at most time_out_s ago, by the loop's clock.  Before the first it is not,
+/// and stands at the workspace's center.
+class UdpDevice : public Device {
+ public:
+  /// @param spec  its port may be 0: any that is free
+  explicit UdpDevice(const DeviceSpec& spec);
+  ~UdpDevice() override { close(); }
+  DeviceSpecification specification() const override { return specification_; }
+  unsigned switches() const override { return last_.switches; }
+  const UdpCounts& counts() const { return counts_; }
+  int port() const { return port_; }  ///< that it is bound to, once it is open
+
+ protected:
+  void do_open() override;
+  void do_close() override;
+  HandleSample do_sample(double t) override;
+  void do_feedback(double t, const Wrench& on_hand) override;
+
+ private:
+  struct Address {
+    std::uint32_t host = 0;  ///< network order, as is the port
+    std::uint16_t port = 0;
+    bool operator==(const Address&) const = default;
+  };
+  bool take(std::span<const unsigned char> bytes, const Address& from);
+
+  std::string address_;
+  int port_;
+  double time_out_;
+  DeviceSpecification specification_;
+  int socket_ = -1;
+  PosePacket last_;
+  std::optional<Address> peer_;  ///< empty until a packet is accepted
+  double arrived_ = 0.0;         ///< loop's time of the last accepted one [s]
+  UdpCounts counts_;
+};
+
+}  // namespace palpate::device

@@ -1,0 +1,217 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "device/arm_axis.h"
+#include "device/make.h"
+#include "device/motions.h"
+#include "palpate/core/error.h"
+#include "palpate/core/so3.h"
+
+// A simulated device in the hand of a simulated arm.  The scene's path is where the arm wants to be, x_d(t)
+// (the equilibrium point of Hogan 1985); a spring k and a damper b pull arm and device there.  The grip is
+// rigid, so m is the mass of both.  Along each axis of the scene
+//     m x'' = k (x_d - x) + b (x_d' - x') - c x' - f sgn(x') + F,
+// with c and f the device's viscous and Coulomb friction and F the force of its motors.  Between two ticks F
+// is held (zero-order hold), k x_d + b x_d' is taken as linear, and the rest is exact (ArmAxis).
+//
+// The motors get what the loop sends, delayed by delay_s, rounded to force_resolution_n, and cut to the
+// maximum.  The loop gets the pose rounded to the encoders' resolution, and a velocity from it: the backward
+// difference through a first-order low pass, v_f += (1 - exp(-2 pi f_c h)) (difference - v_f); with f_c = 0
+// the exact velocity.  A hand without friction that pushes a wall K at a tick T gains energy from the hold
+// where K T/2 > c + b (Colgate and Schenkel 1994): a loop that is stable here has passed that test.
+//
+// Rotations follow the same law on the rotation vector theta from the first orientation, with the torque
+// J(theta)^T tau: exact about one axis, and good to O(theta^2) about several.  It ends at one whole turn,
+// where the rotation vector does.
+//
+// Defaults of the arm: 0.8 kg, 5.5 N s/m, 568 N/m, which Hulin et al. (2008) quote from Hogan (1989).  Those
+// of the wrist are of the right order, not measured.
+namespace palpate::device {
+namespace {
+
+double to_step(double value, double step) { return step > 0.0 ? std::round(value / step) * step : value; }
+Vec3 to_step(const Vec3& value, double step) {
+  return value.unaryExpr([step](double one) { return to_step(one, step); });
+}
+Vec3 cut(const Vec3& value, double max) {
+  const double norm = value.norm();
+  return norm > max ? Vec3(value * (max / norm)) : value;
+}
+
+/// The rotation vector of q that is nearest to `near`: the same rotation is also a turn more or less.
+Vec3 unwrapped(const Quat& q, const Vec3& near) {
+  const Vec3 theta = rotation_vector(q);
+  const double angle = theta.norm();
+  if (angle == 0.0) return theta;
+  const Vec3 turn = theta * (2.0 * std::numbers::pi / angle);
+  return theta + std::round((near - theta).dot(turn) / turn.squaredNorm()) * turn;
+}
+
+/// What a loop sees of a coordinate: rounded by an encoder, and its filtered rate.
+class Encoder {
+ public:
+  Encoder(double step, double cutoff) : step_(step), cutoff_(cutoff) {}
+  void start(const Vec3& x) { value_ = to_step(x, step_), rate_ = Vec3::Zero(); }
+  void read(const Vec3& x, const Vec3& exact_rate, double h) {
+    const Vec3 now = to_step(x, step_);
+    const double share = -std::expm1(-2.0 * std::numbers::pi * cutoff_ * h);
+    rate_ = cutoff_ > 0.0 ? Vec3(rate_ + share * ((now - value_) / h - rate_)) : exact_rate;
+    value_ = now;
+  }
+  const Vec3& value() const { return value_; }
+  const Vec3& rate() const { return rate_; }
+
+ private:
+  double step_, cutoff_;
+  Vec3 value_ = Vec3::Zero(), rate_ = Vec3::Zero();
+};
+
+/// Three axes with the same parameters, pulled by the arm towards where it wants to be.
+class Axes {
+ public:
+  Axes(const ArmAxis::Parameters& p, double arm_damping)
+      : k_(p.stiffness), b_(arm_damping), axes_{ArmAxis(p), ArmAxis(p), ArmAxis(p)} {}
+  void place(const Vec3& x) {
+    for (int i = 0; i < 3; ++i) axes_[i].place(x[i], 0.0);
+  }
+  /// What the arm pulls with, but for -k x - b x'.
+  Vec3 pull(const Vec3& wanted, const Vec3& wanted_rate) const { return k_ * wanted + b_ * wanted_rate; }
+  void advance(double h, const Vec3& p0, const Vec3& p1) {
+    for (int i = 0; i < 3; ++i) axes_[i].advance(h, p0[i], p1[i]);
+  }
+  Vec3 x() const { return {axes_[0].x(), axes_[1].x(), axes_[2].x()}; }
+  Vec3 v() const { return {axes_[0].v(), axes_[1].v(), axes_[2].v()}; }
+
+ private:
+  double k_, b_;
+  ArmAxis axes_[3];
+};
+
+void check(const char* key, double value, const Range& range) {
+  if (!range.holds(value)) fail("device: {} = {} {}", key, value, range.demand());
+}
+
+ArmAxis::Parameters translation_of(const DeviceSpec& s, const DeviceFigures& figures) {
+  check("arm_mass_kg", s.arm_mass_kg, DeviceRanges::arm);
+  check("arm_damping_n_s_m", s.arm_damping_n_s_m, DeviceRanges::arm);
+  check("arm_stiffness_n_m", s.arm_stiffness_n_m, DeviceRanges::arm);
+  return {s.arm_mass_kg + figures.mass, s.arm_damping_n_s_m + figures.damping, s.arm_stiffness_n_m,
+          figures.friction};
+}
+
+ArmAxis::Parameters rotation_of(const DeviceSpec& s) {
+  check("rotational_inertia_kg_m2", s.rotational_inertia_kg_m2, DeviceRanges::inertia);
+  check("arm_rotational_damping_n_m_s_rad", s.arm_rotational_damping_n_m_s_rad, DeviceRanges::arm);
+  check("arm_rotational_stiffness_n_m_rad", s.arm_rotational_stiffness_n_m_rad, DeviceRanges::arm);
+  check("rotational_friction_n_m", s.rotational_friction_n_m, DeviceRanges::arm);
+  return {s.rotational_inertia_kg_m2, s.arm_rotational_damping_n_m_s_rad, s.arm_rotational_stiffness_n_m_rad,
+          s.rotational_friction_n_m};
+}
+
+class HandDevice : public Device {
+ public:
+  explicit HandDevice(const DeviceSpec& spec)
+      : wanted_(path_of(spec)),
+        figures_(figures_of(spec)),
+        force_step_(spec.force_resolution_n),
+        delay_(spec.delay_s),
+        translation_(translation_of(spec, figures_), spec.arm_damping_n_s_m),
+        rotation_(rotation_of(spec), spec.arm_rotational_damping_n_m_s_rad),
+        position_(figures_.encoder_resolution, spec.velocity_cutoff_per_s),
+        angle_(spec.encoder_resolution_rad, spec.velocity_cutoff_per_s) {
+    check("encoder_resolution_rad", spec.encoder_resolution_rad, DeviceRanges::resolution);
+    check("velocity_cutoff_per_s", spec.velocity_cutoff_per_s, DeviceRanges::resolution);
+    check("force_resolution_n", force_step_, DeviceRanges::resolution);
+    check("delay_s", delay_, DeviceRanges::delay_s);
+    sent_.reserve(2048);
+  }
+  DeviceSpecification specification() const override { return figures_.specification; }
+
+ protected:
+  HandleSample do_sample(double t) override {
+    if (!started_)
+      start(t);
+    else if (t > time_)
+      advance(t);
+    HandleSample out;
+    out.pose = {quaternion_of(angle_.value()) * first_, position_.value()};
+    out.twist = {left_jacobian(angle_.value()) * angle_.rate(), position_.rate()};
+    return out;
+  }
+  void do_feedback(double t, const Wrench& on_hand) override {
+    if (sent_.size() == sent_.capacity()) {  // what has been applied goes, without a new allocation
+      sent_.erase(sent_.begin(), sent_.begin() + static_cast<std::ptrdiff_t>(next_));
+      next_ = 0;
+    }
+    sent_.push_back({t + delay_,
+                     {cut(on_hand.moment, figures_.max_torque),
+                      cut(to_step(on_hand.force, force_step_), figures_.max_force)}});
+  }
+
+ private:
+  struct Sent {
+    double due;
+    Wrench wrench;
+  };
+
+  void start(double t) {
+    started_ = true;
+    time_ = t;
+    const HandleSample wanted = wanted_(t);
+    first_ = wanted.pose.rotation;
+    translation_.place(wanted.pose.translation);
+    rotation_.place(Vec3::Zero());
+    position_.start(wanted.pose.translation);
+    angle_.start(Vec3::Zero());
+    pull_ = translation_.pull(wanted.pose.translation, wanted.twist.linear);
+  }
+
+  void advance(double t) {
+    const double h = t - time_;
+    const HandleSample wanted = wanted_(t);
+    const Vec3 theta = unwrapped(wanted.pose.rotation * first_.conjugate(), theta_),
+               pull = translation_.pull(wanted.pose.translation, wanted.twist.linear),
+               twist = rotation_.pull(theta, (theta - theta_) / h);
+    // pieces between the instants at which the motors change
+    const double rounding = 1e-9 * h;
+    for (double from = time_; from < t;) {
+      for (; next_ < sent_.size() && sent_[next_].due <= from + rounding; ++next_)
+        motors_ = sent_[next_].wrench;
+      const bool more = next_ < sent_.size() && sent_[next_].due < t - rounding;
+      const double to = more ? sent_[next_].due : t, s0 = (from - time_) / h, s1 = (to - time_) / h;
+      const Vec3 torque = left_jacobian(rotation_.x()).transpose() * motors_.moment;
+      translation_.advance(to - from, pull_ + s0 * (pull - pull_) + motors_.force,
+                           pull_ + s1 * (pull - pull_) + motors_.force);
+      rotation_.advance(to - from, twist_ + s0 * (twist - twist_) + torque,
+                        twist_ + s1 * (twist - twist_) + torque);
+      from = to;
+    }
+    pull_ = pull, twist_ = twist, theta_ = theta;
+    time_ = t;
+    position_.read(translation_.x(), translation_.v(), h);
+    angle_.read(rotation_.x(), rotation_.v(), h);
+  }
+
+  DevicePath wanted_;
+  DeviceFigures figures_;
+  double force_step_, delay_;
+  Axes translation_, rotation_;
+  Encoder position_, angle_;
+  Quat first_ = Quat::Identity();                    ///< orientation at the start, from which theta counts
+  Vec3 theta_ = Vec3::Zero();                        ///< where the arm wanted it to be at the last tick
+  Vec3 pull_ = Vec3::Zero(), twist_ = Vec3::Zero();  ///< force and torque of the arm at the last tick
+  Wrench motors_;
+  std::vector<Sent> sent_;  ///< by time; those from next_ on have not reached the motors
+  std::size_t next_ = 0;
+  double time_ = 0.0;
+  bool started_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Device> make_hand(const DeviceSpec& spec, const std::string&) {
+  return std::make_unique<HandDevice>(spec);
+}
+
+}  // namespace palpate::device

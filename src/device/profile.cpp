@@ -1,0 +1,139 @@
+#include "palpate/device/profile.h"
+
+#include <numbers>
+
+#include "palpate/core/registry.h"
+#include "palpate/device/limiter.h"
+
+namespace palpate::device {
+
+// Only what a datasheet states.  Stiffness is that of the weakest direction where three are given.  None of
+// these devices is said to have a slew: that follows from kAmplifierBandwidth below.
+const std::vector<DeviceProfile>& device_profiles() {
+  static const std::vector<DeviceProfile> profiles = {
+      // SensAble (later Geomagic) PHANTOM Premium 1.5, datasheet of 2004: 381 x 267 x 191 mm, 0.03 mm,
+      // backdrive
+      // friction 0.04 N, 8.5 N, 1.4 N continuous, 3.5 N/mm, apparent mass less than 75 g.
+      {.name = "premium-1.5",
+       .summary = "SensAble PHANTOM Premium 1.5: 8.5 N, 3.5 N/mm",
+       .figures = {.name = "PHANTOM Premium 1.5",
+                   .max_force = 8.5,
+                   .max_continuous_force = 1.4,
+                   .max_torque = {},
+                   .max_stiffness = 3500.0,
+                   .max_damping = {},
+                   .workspace = Vec3(0.381, 0.267, 0.191),
+                   .rate = {}},
+       .mass = 0.075,
+       .friction = 0.04,
+       .encoder_resolution = 3e-5},
+      // SensAble PHANTOM Omni (later Geomagic Touch), datasheet of 2006: 160 x 120 x 70 mm, 0.055 mm, 0.26 N,
+      // 3.3 N, 0.88 N continuous, 1.26, 2.31 and 1.02 N/mm, 45 g.
+      {.name = "omni",
+       .summary = "SensAble PHANTOM Omni: 3.3 N, 1 N/mm",
+       .figures = {.name = "PHANTOM Omni",
+                   .max_force = 3.3,
+                   .max_continuous_force = 0.88,
+                   .max_torque = {},
+                   .max_stiffness = 1020.0,
+                   .max_damping = {},
+                   .workspace = Vec3(0.160, 0.120, 0.070),
+                   .rate = {}},
+       .mass = 0.045,
+       .friction = 0.26,
+       .encoder_resolution = 5.5e-5},
+      // Force Dimension omega.3 and omega.6, datasheets of 2011: 160 mm across and 110 mm deep, 0.01 mm, 12 N
+      // continuous, 14.5 N/mm closed loop, up to 4 kHz.  Mass and friction are not stated.
+      {.name = "omega.3",
+       .summary = "Force Dimension omega.3: 12 N, 14.5 N/mm",
+       .figures = {.name = "omega.3",
+                   .max_force = 12.0,
+                   .max_continuous_force = 12.0,
+                   .max_torque = {},
+                   .max_stiffness = 14500.0,
+                   .max_damping = {},
+                   .workspace = Vec3(0.110, 0.160, 0.160),
+                   .rate = 4000.0},
+       .encoder_resolution = 1e-5},
+      {.name = "omega.6",
+       .summary = "Force Dimension omega.6: omega.3 with rotations that are read, not driven",
+       .figures = {.name = "omega.6",
+                   .max_force = 12.0,
+                   .max_continuous_force = 12.0,
+                   .max_torque = {},
+                   .max_stiffness = 14500.0,
+                   .max_damping = {},
+                   .workspace = Vec3(0.110, 0.160, 0.160),
+                   .rate = 4000.0},
+       .encoder_resolution = 1e-5},
+  };
+  return profiles;
+}
+
+namespace {
+
+// A motor's amplifier controls its current as a first-order lag of bandwidth B [1/s]: after a step of the
+// command from 0 to the maximum Fmax the force is Fmax (1 - exp(-2 pi B t)), at first with the slope 2 pi B
+// Fmax.  No command that changes faster comes out as it went in.  B = 300 1/s is our choice, not a
+// datasheet's: below the inverse of the electrical time constant L/R, some 0.1 ms, of small coreless motors.
+constexpr double kAmplifierBandwidth = 300.0;
+constexpr double kAmplifierSlew = 2.0 * std::numbers::pi * kAmplifierBandwidth;
+
+constexpr double kMaxForce = 3.3, kMaxTorque = 0.2;
+constexpr double kMass = 0.045;  ///< of the lightest device above
+
+void check(const char* key, double value, const Range& range) {
+  if (!range.holds(value)) fail("device: {} = {} {}", key, value, range.demand());
+}
+
+Workspace workspace_of(const DeviceSpec& spec, const DeviceSpecification& figures) {
+  check("workspace_radius_m", spec.workspace_radius_m, DeviceRanges::workspace_radius_m);
+  check("workspace_margin_m", spec.workspace_margin_m, DeviceRanges::workspace_margin_m);
+  if (!spec.workspace_center_m.allFinite()) fail("device: workspace_center_m must be three finite numbers");
+  Workspace out{spec.workspace_center_m, Vec3::Zero(), spec.workspace_radius_m, spec.workspace_margin_m};
+  if (spec.workspace_size_m) {
+    for (const double one : *spec.workspace_size_m)
+      check("workspace_size_m", one, DeviceRanges::workspace_size_m);
+    out.size = *spec.workspace_size_m;
+  } else if (figures.workspace && !(out.radius > 0.0)) {
+    out.size = *figures.workspace;
+  }
+  return out;
+}
+
+}  // namespace
+
+DeviceFigures figures_of(const DeviceSpec& spec) {
+  DeviceProfile profile;
+  double slew = kDefaultSlew;
+  if (!spec.profile.empty()) {
+    profile = find(device_profiles(), spec.profile, "device profile");
+    slew = kAmplifierSlew;
+  }
+  const auto& figures = profile.figures;
+  DeviceFigures out{};
+  out.max_force = spec.max_force_n.value_or(figures.max_force.value_or(kMaxForce));
+  out.max_torque = spec.max_torque_n_m.value_or(figures.max_torque.value_or(kMaxTorque));
+  check("max_force_n", out.max_force, DeviceRanges::max_force_n);
+  check("max_torque_n_m", out.max_torque, DeviceRanges::max_torque_n_m);
+  out.max_force_slew = spec.max_force_slew_n_s.value_or(slew * out.max_force);
+  out.max_torque_slew = spec.max_torque_slew_n_m_s.value_or(slew * out.max_torque);
+  out.workspace = workspace_of(spec, figures);
+  out.mass = spec.device_mass_kg.value_or(profile.mass.value_or(kMass));
+  out.damping = spec.device_damping_n_s_m;
+  out.friction = spec.device_friction_n.value_or(profile.friction.value_or(0.0));
+  out.encoder_resolution = spec.encoder_resolution_m.value_or(profile.encoder_resolution.value_or(0.0));
+  check("device_mass_kg", out.mass, DeviceRanges::inertia);
+  check("device_damping_n_s_m", out.damping, DeviceRanges::arm);
+  check("device_friction_n", out.friction, DeviceRanges::arm);
+  check("encoder_resolution_m", out.encoder_resolution, DeviceRanges::resolution);
+  out.specification = figures;
+  if (out.specification.name.empty()) out.specification.name = spec.type;
+  out.specification.max_force = out.max_force;
+  out.specification.max_torque = out.max_torque;
+  if (!out.workspace.size.isZero(0.0)) out.specification.workspace = out.workspace.size;
+  if (out.workspace.radius > 0.0) out.specification.workspace = Vec3::Constant(2.0 * out.workspace.radius);
+  return out;
+}
+
+}  // namespace palpate::device

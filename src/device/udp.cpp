@@ -1,0 +1,115 @@
+#include "palpate/device/udp.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "device/make.h"
+#include "palpate/core/error.h"
+
+namespace palpate::device {
+namespace {
+
+void check(const char* key, double value, const Range& range) {
+  if (!range.holds(value)) fail("device: {} = {} {}", key, value, range.demand());
+}
+
+sockaddr_in address_of(std::uint32_t host, std::uint16_t port) {
+  sockaddr_in out{};
+  out.sin_family = AF_INET;
+  out.sin_addr.s_addr = host;
+  out.sin_port = port;
+  return out;
+}
+
+// the socket interface's own casts
+sockaddr* generic(sockaddr_in& address) { return reinterpret_cast<sockaddr*>(&address); }
+
+}  // namespace
+
+UdpDevice::UdpDevice(const DeviceSpec& spec)
+    : address_(spec.address),
+      port_(spec.port),
+      time_out_(spec.time_out_s),
+      specification_(figures_of(spec).specification) {
+  if (port_ != 0) check("port", port_, DeviceRanges::port);
+  check("time_out_s", time_out_, DeviceRanges::time_out_s);
+  in_addr host{};
+  if (::inet_pton(AF_INET, address_.c_str(), &host) != 1)
+    fail("device: address = \"{}\" is no IPv4 address; \"127.0.0.1\" is this machine alone", address_);
+  last_.pose.translation = spec.workspace_center_m;
+}
+
+void UdpDevice::do_open() {
+  socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  in_addr host{};
+  ::inet_pton(AF_INET, address_.c_str(), &host);
+  sockaddr_in own = address_of(host.s_addr, htons(static_cast<std::uint16_t>(port_)));
+  socklen_t size = sizeof own;
+  if (socket_ < 0 || ::bind(socket_, generic(own), size) != 0 ||
+      ::getsockname(socket_, generic(own), &size) != 0) {
+    const std::string why = std::strerror(errno);
+    do_close();
+    fail("device: port = {} of {} cannot be opened ({}); choose another", port_, address_, why);
+  }
+  port_ = ntohs(own.sin_port);
+}
+
+void UdpDevice::do_close() {
+  if (socket_ >= 0) ::close(socket_);
+  socket_ = -1;
+}
+
+bool UdpDevice::take(std::span<const unsigned char> bytes, const Address& from) {
+  PosePacket packet;
+  switch (decode(bytes, packet)) {
+    case PacketFault::kMalformed: ++counts_.malformed; return false;
+    case PacketFault::kVersion: ++counts_.wrong_version; return false;
+    case PacketFault::kNone: break;
+  }
+  if (peer_ && !(*peer_ == from)) return ++counts_.foreign, false;
+  if (peer_ && packet.sequence <= last_.sequence) return ++counts_.stale, false;
+  peer_ = from;
+  last_ = packet;
+  ++counts_.accepted;
+  return true;
+}
+
+HandleSample UdpDevice::do_sample(double t) {
+  // A peer that floods the port delays no tick: the rest waits for the next one.
+  constexpr int kMostPackets = 256;
+  std::array<unsigned char, 512> buffer;
+  for (int i = 0; i < kMostPackets; ++i) {
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    const ssize_t n = ::recvfrom(socket_, buffer.data(), buffer.size(), 0, generic(from), &size);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) break;
+    if (take(std::span(buffer).first(static_cast<std::size_t>(n)), {from.sin_addr.s_addr, from.sin_port}))
+      arrived_ = t;
+  }
+  HandleSample out;
+  out.pose = last_.pose;
+  out.twist = last_.twist;
+  out.valid = peer_.has_value() && t - arrived_ <= time_out_;
+  return out;
+}
+
+void UdpDevice::do_feedback(double t, const Wrench& on_hand) {
+  if (!peer_) return;
+  const WrenchBytes bytes = encode(WrenchPacket{last_.sequence, t, on_hand});
+  sockaddr_in to = address_of(peer_->host, peer_->port);
+  const ssize_t n = ::sendto(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL, generic(to), sizeof to);
+  counts_.unsent += n != static_cast<ssize_t>(bytes.size());
+}
+
+std::unique_ptr<Device> make_udp(const DeviceSpec& spec, const std::string&) {
+  check("port", spec.port, DeviceRanges::port);
+  return std::make_unique<UdpDevice>(spec);
+}
+
+}  // namespace palpate::device

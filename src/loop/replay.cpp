@@ -1,0 +1,114 @@
+#include "palpate/loop/replay.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "palpate/core/error.h"
+#include "palpate/dynamics/path.h"
+#include "tick_side.h"
+
+namespace palpate::loop {
+namespace {
+
+/// Times of ticks that were counted in another way differ by rounding.
+constexpr double kSameTime = 1e-10;
+
+class RecordedHand : public device::Device {
+ public:
+  explicit RecordedHand(HapticRecord record) : record_(std::make_shared<HapticRecord>(std::move(record))) {
+    if (record_->ticks.empty()) fail("replay: the record has no ticks");
+  }
+  device::DeviceSpecification specification() const override { return {}; }
+  std::function<device::HandleSample(double)> path() const override {
+    return [record = record_](double t) { return at(*record, t); };
+  }
+
+ protected:
+  device::HandleSample do_sample(double t) override { return at(*record_, t); }
+
+ private:
+  static device::HandleSample sample_of(const TickRecord& tick) {
+    return {tick.handle, tick.handle_twist, {}, tick.handle_valid};
+  }
+
+  static device::HandleSample at(const HapticRecord& record, double t) {
+    const auto& ticks = record.ticks;
+    const auto after = std::lower_bound(ticks.begin(), ticks.end(), t - kSameTime,
+                                        [](const TickRecord& tick, double time) { return tick.time < time; });
+    if (after == ticks.end()) return at_rest(ticks.back());
+    if (after->time <= t + kSameTime) return sample_of(*after);
+    const TickRecord& before = after == ticks.begin() ? record.start : *(after - 1);
+    if (t <= before.time + kSameTime) return sample_of(before);
+    const double h = after->time - before.time;
+    const dynamics::RigidMotion motion = dynamics::motion_between(
+        {before.handle, before.handle_twist}, {after->handle, after->handle_twist}, h, (t - before.time) / h);
+    return {motion.pose, motion.twist, {}, after->handle_valid};
+  }
+
+  static device::HandleSample at_rest(const TickRecord& tick) {
+    return {tick.handle, {}, {}, tick.handle_valid};
+  }
+
+  std::shared_ptr<const HapticRecord> record_;
+};
+
+bool names_an_obstacle(const scene::Description& d, const ContactSpec& contact) {
+  const auto is = [&](const std::string& name) {
+    return std::any_of(d.obstacles.begin(), d.obstacles.end(),
+                       [&](const ObstacleSpec& o) { return o.name == name; });
+  };
+  return is(contact.first) || is(contact.second);
+}
+
+void refuse_what_cannot_be_retraced(const scene::Description& d, const HapticRecord& record) {
+  if (!d.tool || d.exchange.scheme == "monolithic")
+    fail(
+        "replay: the ticks of this run used no exchange (monolithic, or no tool); change something to run it "
+        "again");
+  for (const ContactSpec& contact : d.contacts)
+    if ((contact.first == "tool" || contact.second == "tool") && names_an_obstacle(d, contact))
+      fail(
+          "replay: the tool meets an obstacle, whose contact is linearised at each tick and not recorded; "
+          "change something to run it again");
+  for (std::size_t i = 0; i < record.ticks.size(); ++i) {
+    const double start = i == 0 ? 0.0 : record.ticks[i - 1].time;
+    if (std::abs(record.ticks[i].time - start - record.ticks[i].length) > kSameTime)
+      fail("replay: ticks are missing before t = {:g} s; the recorder had fallen behind",
+           record.ticks[i].time);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<device::Device> recorded_hand(HapticRecord record) {
+  return std::make_unique<RecordedHand>(std::move(record));
+}
+
+std::vector<TickRecord> retrace(const scene::Description& description, const HapticRecord& record) {
+  refuse_what_cannot_be_retraced(description, record);
+  scene::Description tool_alone = description;
+  tool_alone.bodies.clear();
+  tool_alone.bones.clear();
+  tool_alone.obstacles.clear();
+  tool_alone.contacts.clear();
+  const auto world = assemble(tool_alone, recorded_hand(record));
+  TickSide side(*tool_alone.tool, ToolSide::of(*world));
+  side.start(0.0);
+  std::vector<TickRecord> out;
+  out.reserve(record.ticks.size());
+  for (const TickRecord& tick : record.ticks) {
+    // versions count from 1, one an exchange
+    const std::size_t version = tick.record_version;
+    if (version > record.exchanges.size())
+      fail("replay: the tick at {:g} s used exchange {}, of which there is no record", tick.time, version);
+    const dynamics::LinearisedContact contact =
+        version == 0 ? dynamics::LinearisedContact{} : record.exchanges[version - 1];
+    TickRecord again;
+    const dynamics::StepResult status = side.tick(tick.time, tick.length, contact, again);
+    if (!status.ok()) fail("replay: {}", status.message);
+    out.push_back(again);
+  }
+  return out;
+}
+
+}  // namespace palpate::loop

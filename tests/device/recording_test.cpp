@@ -1,0 +1,146 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "messages.h"
+#include "palpate/core/error.h"
+#include "palpate/device/device.h"
+#include "temporary_folder.h"
+
+using namespace palpate;
+using namespace palpate::device;
+using palpate::expectations::expect_contains;
+using palpate::expectations::message_of;
+
+namespace {
+
+const std::string kHeader = "time_s,px_m,py_m,pz_m,qw,qx,qy,qz\n";
+
+std::unique_ptr<Device> replay(const TemporaryFolder& folder, const std::string& text) {
+  folder.write("r.csv", text);
+  DeviceSpec spec;
+  spec.type = "recording";
+  spec.file = "r.csv";
+  return make_device(spec, folder.string());
+}
+
+/// x(t) of a function at n + 1 times in [0, 1], unevenly spaced.
+template <class F>
+std::string sampled(F f, int n) {
+  std::string out = kHeader;
+  for (int i = 0; i <= n; ++i) {
+    const double s = static_cast<double>(i) / n, t = s + 0.05 * std::sin(std::numbers::pi * s);
+    out += fmt::format("{},{},0,0,1,0,0,0\n", t, f(t));
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST(Recording, goes_through_its_lines_and_rests_outside) {
+  const TemporaryFolder folder;
+  const auto device =
+      replay(folder, kHeader + "1,0.1,0.2,0.3,1,0,0,0\n2,0.4,0,0,0,0,0,1\n4,0,0,0.7,1,0,0,0\n");
+  for (const auto& [t, p] : {std::pair{0.0, Vec3(0.1, 0.2, 0.3)},
+                             {1.0, Vec3(0.1, 0.2, 0.3)},
+                             {2.0, Vec3(0.4, 0, 0)},
+                             {4.0, Vec3(0, 0, 0.7)},
+                             {9.0, Vec3(0, 0, 0.7)}})
+    EXPECT_LT((device->path()(t).pose.translation - p).norm(), 1e-15) << t;
+  EXPECT_EQ(device->path()(0.5).twist.linear, Vec3(0, 0, 0));
+  EXPECT_EQ(device->path()(4.5).twist.angular, Vec3(0, 0, 0));
+  // half a turn about z in the first second, at a constant rate
+  EXPECT_NEAR(rotation_vector(device->path()(1.25).pose.rotation).norm(), std::numbers::pi / 4.0, 1e-14);
+  EXPECT_NEAR(device->path()(1.5).twist.angular.norm(), std::numbers::pi, 1e-14);
+}
+
+// Velocities of a parabola through three lines are exact for a parabola, and so is the cubic between them.
+TEST(Recording, a_parabola_comes_back_exactly) {
+  const TemporaryFolder folder;
+  const auto device = replay(folder, sampled([](double t) { return 0.3 - 0.5 * t + 0.8 * t * t; }, 10));
+  int checked = 0;
+  for (double t = 0.2; t < 0.85; t += 0.013, ++checked) {
+    const HandleSample s = device->sample(t);
+    EXPECT_NEAR(s.pose.translation.x(), 0.3 - 0.5 * t + 0.8 * t * t, 1e-14);
+    EXPECT_NEAR(s.twist.linear.x(), -0.5 + 1.6 * t, 1e-12);
+    EXPECT_NEAR(s.acceleration.linear.x(), 1.6, 1e-10);
+  }
+  EXPECT_GT(checked, 40);
+}
+
+TEST(Recording, converges_with_third_order) {
+  const TemporaryFolder folder;
+  std::vector<double> errors;
+  for (const int n : {20, 40, 80, 160}) {
+    const auto device = replay(folder, sampled([](double t) { return std::sin(7.0 * t); }, n));
+    double largest = 0.0;
+    for (double t = 0.2; t < 0.8; t += 1e-3)
+      largest = std::max(largest, std::abs(device->sample(t).pose.translation.x() - std::sin(7.0 * t)));
+    errors.push_back(largest);
+  }
+  for (std::size_t i = 1; i < errors.size(); ++i) {
+    EXPECT_GT(std::log2(errors[i - 1] / errors[i]), 2.7);
+    EXPECT_LT(std::log2(errors[i - 1] / errors[i]), 4.2);
+  }
+}
+
+TEST(Recording, twist_and_acceleration_are_the_derivatives) {
+  const TemporaryFolder folder;
+  const auto device =
+      replay(folder, kHeader +
+                         "0,0,0,0,1,0,0,0\n0.3,0.02,0.1,0,0.8,0.6,0,0\n0.7,-0.05,0.1,0.2,0.6,0,"
+                         "0.8,0\n1,0.05,0,0,1,0,0,0\n");
+  const auto path = device->path();
+  for (const double t : {0.11, 0.45, 0.6, 0.83}) {
+    const double h = 1e-4;
+    const HandleSample a = path(t - h), o = path(t), b = path(t + h);
+    const Vec6 rate = pose_difference(a.pose, b.pose) / (2 * h);
+    EXPECT_LT((rate.head<3>() - o.twist.angular).norm(), 1e-9) << t;
+    EXPECT_LT((rate.tail<3>() - o.twist.linear).norm(), 1e-6) << t;
+    EXPECT_LT(((b.twist.linear - a.twist.linear) / (2 * h) - o.acceleration.linear).norm(), 1e-9) << t;
+    EXPECT_GT(o.acceleration.linear.norm(), 1e-3);
+  }
+}
+
+TEST(Recording, takes_the_force_file_of_a_run) {
+  const TemporaryFolder folder;
+  const auto device =
+      replay(folder,
+             "time_s,handle_x_m,handle_y_m,handle_z_m,handle_rotation_x_rad,handle_rotation_y_rad,"
+             "handle_rotation_z_rad,tool_x_m,limited\n0.001,1,2,3,0,0.5,0,7,0\n0.002,1,2,4,0,0.5,0,7,1\n");
+  EXPECT_EQ(device->sample(0.001).pose.translation, Vec3(1, 2, 3));
+  EXPECT_NEAR(rotation_vector(device->rotation()).y(), 0.5, 1e-15);
+  EXPECT_EQ(device->sample(0.01).pose.translation, Vec3(1, 2, 4));
+}
+
+TEST(Recording, columns_may_come_in_any_order) {
+  const TemporaryFolder folder;
+  const auto device = replay(folder, "note,qz,qy,qx,qw,pz_m,py_m,px_m,time_s\r\n0,0,0,0,1,3,2,1,0\r\n\n");
+  EXPECT_EQ(device->sample(0.0).pose.translation, Vec3(1, 2, 3));
+}
+
+TEST(Recording, malformed_files_are_refused_with_line_and_column) {
+  const TemporaryFolder folder;
+  int checked = 0;
+  const auto refused = [&](const std::string& text, const std::string& part) {
+    expect_contains(message_of([&] { replay(folder, text); }), (folder / "r.csv").string() + part);
+    ++checked;
+  };
+  refused("", ":1: the file is empty");
+  refused("time_s,px_m,py_m,pz_m,qw,qx,qy\n", ":1: no column \"qz\"");
+  refused(kHeader, ": no line of poses");
+  refused(kHeader + "0,0,0,0,1,0,0,0\n1,0,0,x,1,0,0,0\n",
+          ":3: column \"pz_m\": \"x\" is not a finite number");
+  refused(kHeader + "0,0,nan,0,1,0,0,0\n", ":2: column \"py_m\": \"nan\" is not a finite number");
+  refused(kHeader + "0,0,0,0,1,0,0,0 1\n", ":2: column \"qz\": \"0 1\" is not a finite number");
+  refused(kHeader + "0,0,0,0,1,0,0\n", ":2: 7 cells, but 8 columns have a name");
+  refused(kHeader + "0,0,0,0,1,0,0,0\n0,0,0,0,1,0,0,0\n", ":3: column \"time_s\": 0 does not come after 0");
+  refused(kHeader + "0,0,0,0,0.5,0,0,0\n", ":2: column \"qw\": the quaternion's length is 0.5, not 1");
+  EXPECT_EQ(checked, 9);
+  DeviceSpec spec;
+  spec.type = "recording";
+  expect_contains(message_of([&] { make_device(spec); }), "device: file is missing");
+  spec.file = "none.csv";
+  expect_contains(message_of([&] { make_device(spec, folder.string()); }), "no recording can be read");
+}

@@ -1,0 +1,223 @@
+// A device on the loopback network, with a peer in the test.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "messages.h"
+#include "palpate/core/error.h"
+#include "palpate/device/udp.h"
+
+using namespace palpate;
+using namespace palpate::device;
+using palpate::expectations::expect_contains;
+using palpate::expectations::message_of;
+
+namespace {
+
+class Peer {
+ public:
+  explicit Peer(int port) : socket_(::socket(AF_INET, SOCK_DGRAM, 0)) {
+    to_.sin_family = AF_INET;
+    to_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    to_.sin_port = htons(static_cast<std::uint16_t>(port));
+    EXPECT_EQ(::connect(socket_, reinterpret_cast<sockaddr*>(&to_), sizeof to_), 0);
+  }
+  ~Peer() { ::close(socket_); }
+  /// Loopback hands a packet over within the call.
+  template <class Bytes>
+  void send(const Bytes& bytes) {
+    EXPECT_EQ(::send(socket_, bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
+  }
+  /// Every wrench that has come.
+  std::vector<WrenchPacket> wrenches() {
+    std::vector<WrenchPacket> out;
+    std::array<unsigned char, 256> buffer;
+    for (ssize_t n; (n = ::recv(socket_, buffer.data(), buffer.size(), MSG_DONTWAIT)) >= 0;)
+      EXPECT_EQ(decode(std::span(buffer).first(static_cast<std::size_t>(n)), out.emplace_back()),
+                PacketFault::kNone);
+    return out;
+  }
+
+ private:
+  int socket_;
+  sockaddr_in to_{};
+};
+
+PosePacket pose(std::uint64_t sequence, double x) {
+  PosePacket out;
+  out.sequence = sequence;
+  out.time = 0.25;
+  out.pose = {quaternion_of(Vec3(0.1, 0.2, 0.3)), Vec3(x, 2, 3)};
+  out.twist = {Vec3(4, 5, 6), Vec3(7, 8, 9)};
+  out.switches = 5;
+  return out;
+}
+
+DeviceSpec any_port() {
+  DeviceSpec spec;
+  spec.type = "udp";
+  spec.workspace_center_m = Vec3(0, 0, 0.5);
+  return spec;
+}
+
+}  // namespace
+
+TEST(Udp, packets_have_the_documented_bytes) {
+  PosePacket packet = pose(0x0102030405060708u, 1.0);
+  const PoseBytes bytes = encode(packet);
+  const unsigned char head[] = {'P', 'L', 'P', 'T', 1, 0, 1, 0, 8, 7, 6, 5, 4, 3, 2, 1};
+  for (std::size_t i = 0; i < sizeof head; ++i) EXPECT_EQ(bytes[i], head[i]) << i;
+  const unsigned char one[] = {0, 0, 0, 0, 0, 0, 0xf0, 0x3f};  // 1.0, at the offset of px
+  for (std::size_t i = 0; i < sizeof one; ++i) EXPECT_EQ(bytes[24 + i], one[i]) << i;
+  EXPECT_EQ(bytes[128], 5);
+  PosePacket back;
+  ASSERT_EQ(decode(bytes, back), PacketFault::kNone);
+  EXPECT_EQ(back.sequence, packet.sequence);
+  EXPECT_EQ(back.time, 0.25);
+  EXPECT_EQ(back.pose.translation, packet.pose.translation);
+  EXPECT_LT((back.pose.rotation.coeffs() - packet.pose.rotation.coeffs()).norm(), 1e-15);
+  EXPECT_EQ(back.twist.linear, Vec3(7, 8, 9));
+  EXPECT_EQ(back.twist.angular, Vec3(4, 5, 6));
+  EXPECT_EQ(back.switches, 5u);
+  const WrenchBytes answer = encode(WrenchPacket{9, 0.5, {Vec3(1, 2, 3), Vec3(4, 5, 6)}});
+  EXPECT_EQ(answer[6], 2);
+  EXPECT_EQ(answer[31], 0x40);  // of fx = 4.0
+  WrenchPacket wrench;
+  ASSERT_EQ(decode(answer, wrench), PacketFault::kNone);
+  EXPECT_EQ(wrench.on_hand.force, Vec3(4, 5, 6));
+  EXPECT_EQ(wrench.on_hand.moment, Vec3(1, 2, 3));
+}
+
+TEST(Udp, poses_come_and_wrenches_go) {
+  UdpDevice device(any_port());
+  const HandleSample before = device.sample(0.0);
+  EXPECT_FALSE(before.valid) << "nobody has sent anything";
+  EXPECT_EQ(before.pose.translation, Vec3(0, 0, 0.5));
+  device.feedback(0.0, {Vec3(1, 1, 1), Vec3(1, 1, 1)});  // to nobody
+  Peer peer(device.port());
+  for (int i = 1; i <= 20; ++i) {
+    peer.send(encode(pose(static_cast<std::uint64_t>(i), 0.1 * i)));
+    const HandleSample s = device.sample(1e-3 * i);
+    ASSERT_TRUE(s.valid);
+    EXPECT_EQ(s.pose.translation, Vec3(0.1 * i, 2, 3));
+    EXPECT_EQ(s.twist.linear, Vec3(7, 8, 9));
+    EXPECT_EQ(device.switches(), 5u);
+    device.feedback(1e-3 * i, {Vec3(0, 0, i), Vec3(i, 0, 0)});
+    const auto wrenches = peer.wrenches();
+    ASSERT_EQ(wrenches.size(), 1u);
+    EXPECT_EQ(wrenches[0].sequence, static_cast<std::uint64_t>(i));
+    EXPECT_EQ(wrenches[0].time, 1e-3 * i);
+    EXPECT_EQ(wrenches[0].on_hand.force, Vec3(i, 0, 0));
+    EXPECT_EQ(wrenches[0].on_hand.moment, Vec3(0, 0, i));
+  }
+  EXPECT_EQ(device.counts().accepted, 20);
+  EXPECT_EQ(device.counts().unsent, 0);
+  EXPECT_FALSE(device.path()) << "a peer decides as it goes";
+}
+
+TEST(Udp, a_silent_peer_makes_samples_invalid_and_a_later_pose_valid_again) {
+  DeviceSpec spec = any_port();
+  spec.time_out_s = 0.005;
+  UdpDevice device(spec);
+  device.sample(0.0);
+  Peer peer(device.port());
+  peer.send(encode(pose(1, 0.1)));
+  EXPECT_TRUE(device.sample(1.0).valid);
+  EXPECT_TRUE(device.sample(1.0049).valid);
+  const HandleSample late = device.sample(1.0051);
+  EXPECT_FALSE(late.valid);
+  EXPECT_EQ(late.pose.translation, Vec3(0.1, 2, 3)) << "it stays where it was";
+  peer.send(encode(pose(2, 0.2)));
+  EXPECT_TRUE(device.sample(2.0).valid);
+}
+
+TEST(Udp, what_is_no_new_pose_of_the_peer_is_counted_and_dropped) {
+  UdpDevice device(any_port());
+  device.sample(0.0);
+  Peer peer(device.port()), other(device.port());
+  peer.send(encode(pose(10, 0.1)));
+  ASSERT_TRUE(device.sample(0.001).valid);
+
+  PoseBytes bytes = encode(pose(11, 9.0));
+  bytes[0] = 'Q';
+  peer.send(bytes);  // magic
+  bytes = encode(pose(11, 9.0));
+  bytes[6] = 2;
+  peer.send(bytes);  // kind
+  peer.send(std::vector<unsigned char>{});
+  peer.send(std::vector<unsigned char>(7, 0));
+  const PoseBytes good = encode(pose(11, 9.0));
+  peer.send(std::vector<unsigned char>(good.begin(), good.end() - 1));
+  std::vector<unsigned char> longer(good.begin(), good.end());
+  longer.push_back(0);
+  peer.send(longer);
+  PosePacket bad = pose(11, std::numeric_limits<double>::quiet_NaN());
+  peer.send(encode(bad));
+  bad = pose(11, 9.0);
+  bad.pose.rotation.coeffs() *= 1.01;
+  peer.send(encode(bad));
+  bad = pose(11, 9.0);
+  bad.twist.angular.z() = std::numeric_limits<double>::infinity();
+  peer.send(encode(bad));
+  bytes = encode(pose(11, 9.0));
+  bytes[4] = 2;
+  peer.send(bytes);                   // version
+  peer.send(encode(pose(10, 9.0)));   // sent again
+  peer.send(encode(pose(9, 9.0)));    // late
+  other.send(encode(pose(99, 9.0)));  // somebody else
+  device.sample(0.002);
+  EXPECT_EQ(device.position(), Vec3(0.1, 2, 3));
+  EXPECT_EQ(device.counts().malformed, 9);
+  EXPECT_EQ(device.counts().wrong_version, 1);
+  EXPECT_EQ(device.counts().stale, 2);
+  EXPECT_EQ(device.counts().foreign, 1);
+  EXPECT_EQ(device.counts().accepted, 1);
+  EXPECT_FALSE(device.sample(0.01).valid) << "none of them kept it alive";
+  peer.send(encode(pose(12, 0.3)));
+  EXPECT_TRUE(device.sample(0.011).valid);
+  EXPECT_EQ(device.position(), Vec3(0.3, 2, 3));
+}
+
+TEST(Udp, of_several_poses_in_a_tick_the_last_counts) {
+  UdpDevice device(any_port());
+  device.sample(0.0);
+  Peer peer(device.port());
+  for (std::uint64_t i = 1; i <= 5; ++i) peer.send(encode(pose(i, 0.1 * static_cast<double>(i))));
+  EXPECT_EQ(device.sample(0.001).pose.translation, Vec3(0.5, 2, 3));
+  EXPECT_EQ(device.counts().accepted, 5);
+}
+
+TEST(Udp, is_bound_to_this_machine_and_lets_its_port_go) {
+  auto first = std::make_unique<UdpDevice>(any_port());
+  first->open();
+  DeviceSpec spec = any_port();
+  spec.port = first->port();
+  EXPECT_GT(spec.port, 0);
+  expect_contains(message_of([&] { UdpDevice(spec).open(); }),
+                  fmt::format("device: port = {} of 127.0.0.1 cannot be opened", spec.port));
+  first.reset();
+  UdpDevice second(spec);
+  second.open();
+  EXPECT_EQ(second.port(), spec.port);
+  second.close();
+  UdpDevice(spec).open();
+}
+
+TEST(Udp, bad_settings_are_refused) {
+  DeviceSpec spec = any_port();
+  expect_contains(message_of([&] { make_device(spec); }), "device: port = 0 must lie in [1, 65535]");
+  spec.port = 65536;
+  expect_contains(message_of([&] { UdpDevice{spec}; }), "port = 65536");
+  spec.port = 4000;
+  spec.time_out_s = 0.0;
+  expect_contains(message_of([&] { UdpDevice{spec}; }), "time_out_s = 0 must be positive");
+  spec.time_out_s = 0.01;
+  spec.address = "localhost";
+  expect_contains(message_of([&] { UdpDevice{spec}; }), "address = \"localhost\" is no IPv4 address");
+}

@@ -1,0 +1,153 @@
+// What was recorded is felt again: bit for bit from the recorded exchange, and to the integrator's error when
+// the bodies are simulated anew.
+#include "palpate/loop/replay.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "palpate/core/error.h"
+#include "palpate/loop/haptic_record.h"
+#include "palpate/loop/run.h"
+#include "small_scenes.h"
+
+namespace {
+
+using namespace palpate;
+
+scene::Description pressed() {
+  scene::Description d = small_scenes::pressed_block(0.0);
+  d.duration_s = 0.2;
+  KeyframeSpec down = d.device->keyframes.front();
+  down.time_s = 0.15;
+  down.position_m.z() -= 0.008;
+  down.rotation_vector_rad = Vec3(0.1, 0.3, -0.2);
+  d.device->keyframes.push_back(down);
+  return d;
+}
+
+loop::HapticRecord recorded(const scene::Description& d, bool real_time, const char* name,
+                            std::unique_ptr<device::Device> hand = {}) {
+  const std::string path = (std::filesystem::path(::testing::TempDir()) / name).string();
+  const auto world = loop::assemble(d, std::move(hand));
+  {
+    loop::HapticRecorder recorder(path);
+    loop::RunOptions options;
+    options.real_time = real_time;
+    options.observers = {&recorder};
+    EXPECT_TRUE(loop::run(*world, options).status.ok());
+  }
+  return loop::read_haptic_record(path);
+}
+
+/// Bits of what the hand felt and where the tool was.
+void expect_equal(const std::vector<loop::TickRecord>& a, const std::vector<loop::TickRecord>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].time, b[i].time);
+    ASSERT_EQ(a[i].device.force, b[i].device.force) << i;
+    ASSERT_EQ(a[i].device.moment, b[i].device.moment) << i;
+    ASSERT_EQ(a[i].contact.force, b[i].contact.force) << i;
+    ASSERT_EQ(a[i].tool.translation, b[i].tool.translation) << i;
+    ASSERT_EQ(a[i].tool.rotation.coeffs(), b[i].tool.rotation.coeffs()) << i;
+    ASSERT_EQ(a[i].record_version, b[i].record_version) << i;
+  }
+}
+
+double peak(const std::vector<loop::TickRecord>& ticks) {
+  double out = 0.0;
+  for (const loop::TickRecord& tick : ticks) out = std::max(out, tick.device.force.norm());
+  return out;
+}
+
+// Real time: which record a tick used is chance; its forces follow from that record alone.
+TEST(Replay, RetracesARunInRealTimeBitForBit) {
+  const scene::Description d = pressed();
+  const loop::HapticRecord record = recorded(d, true, "real.h5");
+  ASSERT_EQ(record.ticks.size(), 200u);
+  EXPECT_GT(peak(record.ticks), 0.1);
+  EXPECT_GE(record.exchanges.size(), record.ticks.back().record_version);
+  expect_equal(loop::retrace(d, record), record.ticks);
+}
+
+TEST(Replay, RetracesVirtualTimeWithLatency) {
+  scene::Description d = pressed();
+  d.exchange.latency_ticks = 4;
+  const loop::HapticRecord record = recorded(d, false, "late.h5");
+  expect_equal(loop::retrace(d, record), record.ticks);
+  // another exchange is another force
+  loop::HapticRecord other = record;
+  for (auto& exchange : other.exchanges) exchange.F0[5] += 0.1;
+  const auto changed = loop::retrace(d, other);
+  EXPECT_NE(changed.back().device.force, record.ticks.back().device.force);
+}
+
+// The same scene under the recorded hand is the same run.
+TEST(Replay, TheRecordedHandMovesAsTheHandDid) {
+  const scene::Description d = pressed();
+  const loop::HapticRecord first = recorded(d, false, "first.h5");
+  const loop::HapticRecord again = recorded(d, false, "again.h5", loop::recorded_hand(first));
+  expect_equal(again.ticks, first.ticks);
+  EXPECT_EQ(again.start.handle.translation, first.start.handle.translation);
+}
+
+// Between ticks the hand is the cubic of its poses and twists; a path of minimum jerk differs from it by
+// h^4 / 384 times its fourth derivative, 360 * 8 mm / (0.15 s)^4 at most: 1.5e-11 m for ticks of 1 ms.
+TEST(Replay, TheRecordedHandIsSmoothBetweenTicks) {
+  const scene::Description d = pressed();
+  const auto hand = loop::recorded_hand(recorded(d, false, "smooth.h5"));
+  double off = 0.0;
+  for (int i = 1; i < 1400; ++i) {
+    const double t = 1e-4 * i + 3e-5;
+    const device::HandleSample s = hand->sample(t), truth = device::sample_keyframes(d.device->keyframes, t);
+    off = std::max(off, (s.pose.translation - truth.pose.translation).norm());
+    EXPECT_LT((s.twist.linear - truth.twist.linear).norm(), 1e-7);
+  }
+  EXPECT_LT(off, 1.6e-11);
+  EXPECT_GT(off, 1e-14);
+}
+
+// Monolithic: one integrator follows the recorded hand at times of its own.
+TEST(Replay, AnotherCouplingFollowsTheSameHand) {
+  scene::Description d = pressed();
+  const loop::HapticRecord record = recorded(d, false, "partitioned.h5");
+  d.exchange.scheme = "monolithic";
+  d.integrator.name = "cvode-bdf";
+  const loop::HapticRecord truth = recorded(d, false, "monolithic.h5");
+  const loop::HapticRecord replayed = recorded(d, false, "replayed.h5", loop::recorded_hand(record));
+  ASSERT_EQ(replayed.ticks.size(), truth.ticks.size());
+  double off = 0.0;
+  for (std::size_t i = 0; i < truth.ticks.size(); ++i)
+    off = std::max(off, (replayed.ticks[i].device.force - truth.ticks[i].device.force).norm());
+  EXPECT_LT(off, 1e-3 * peak(truth.ticks));
+}
+
+std::string refusal(const scene::Description& d, const loop::HapticRecord& record) {
+  try {
+    loop::retrace(d, record);
+  } catch (const Error& e) { return e.what(); }
+  return {};
+}
+
+TEST(Replay, RefusesWhatItCannotRepeat) {
+  const scene::Description d = pressed();
+  const loop::HapticRecord record = recorded(d, false, "whole.h5");
+  loop::HapticRecord holed = record;
+  holed.ticks.erase(holed.ticks.begin() + 50);
+  EXPECT_NE(refusal(d, holed).find("ticks are missing before t = 0.052 s"), std::string::npos);
+  loop::HapticRecord unexchanged = record;
+  unexchanged.exchanges.resize(3);
+  EXPECT_NE(refusal(d, unexchanged).find("used exchange 4"), std::string::npos);
+  loop::HapticRecord empty = record;
+  empty.ticks.clear();
+  EXPECT_NE(refusal(d, empty).find("no ticks"), std::string::npos);
+  scene::Description one = d;
+  one.exchange.scheme = "monolithic";
+  EXPECT_NE(refusal(one, record).find("no exchange"), std::string::npos);
+  scene::Description floored = d;
+  small_scenes::add_floor(floored, floored.contacts.front());
+  floored.contacts.back().first = "tool";
+  EXPECT_NE(refusal(floored, record).find("obstacle"), std::string::npos);
+}
+
+}  // namespace
