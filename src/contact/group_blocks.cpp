@@ -196,13 +196,27 @@ void SampleGroups::linearise(const dynamics::StateView& state, const std::vector
     out.B += maps.E * s.d.bottomRightCorner<4, 4>() * maps.E.transpose();
     for_each_node(group, [&](int i, int node) {
       const Vec6 zk = maps.E * s.k.block<4, 1>(4, i), zd = maps.E * s.d.block<4, 1>(4, i);
-      out.K_body.middleRows<3>(3 * node).noalias() += n * zk.transpose();
-      out.K_body.block<3, 3>(3 * node, 0).noalias() += n * (maps.M * s.d.block<3, 1>(4, i)).transpose();
-      out.B_body.middleRows<3>(3 * node).noalias() += n * zd.transpose();
-      out.K_frame.middleCols<3>(3 * node).noalias() += zk * n.transpose();
-      out.B_frame.middleCols<3>(3 * node).noalias() += zd * n.transpose();
+      NodeCoupling& to = out.of_node(node);
+      to.K_body.noalias() += n * zk.transpose();
+      to.K_body.leftCols<3>().noalias() += n * (maps.M * s.d.block<3, 1>(4, i)).transpose();
+      to.B_body.noalias() += n * zd.transpose();
+      to.K_frame.noalias() += zk * n.transpose();
+      to.B_frame.noalias() += zd * n.transpose();
     });
   }
+}
+
+Mat3 SampleGroups::geometric_stiffness(const dynamics::StateView& state,
+                                       const std::vector<FrameState>& frames, int frame) const {
+  Mat3 out = Mat3::Zero();
+  for (const Group& group : groups_) {
+    if (group.frame != frame) continue;
+    const Vec8 f = sum_forces(group, motion(group, state, frames));
+    if (f.isZero(0.0)) continue;
+    const FrameState& at = frames[static_cast<std::size_t>(frame)];
+    out -= FrameMaps(group.normal, at).rotating_moment(f);
+  }
+  return out;
 }
 
 }  // namespace palpate::contact

@@ -4,16 +4,6 @@
 namespace palpate::contact {
 namespace {
 
-void reset(FrameLinearisation& out, Eigen::Index nodal) {
-  out.wrench = {};
-  out.K.setZero();
-  out.B.setZero();
-  out.geometric.setZero();
-  for (MatX* m : {&out.K_body, &out.B_body}) m->setZero(nodal, 6);
-  for (MatX* m : {&out.K_frame, &out.B_frame}) m->setZero(6, nodal);
-  out.active = 0;
-}
-
 /// The other side's nodes against the frame: see the derivation in tangent.cpp, with q (columns) or p (rows)
 /// the frame.
 void add_node_coupling(const Side& frame, const Side& nodes, const SampleForce& s, FrameLinearisation& out) {
@@ -24,11 +14,11 @@ void add_node_coupling(const Side& frame, const Side& nodes, const SampleForce& 
   const Mat63 rows_k = sign * frame.Z.transpose() * s.K, rows_b = sign * frame.Z.transpose() * s.D;
   for (int i = 0; i < nodes.point.count; ++i) {
     const double w = nodes.point.weight[static_cast<std::size_t>(i)];
-    const int at = 3 * nodes.point.node[static_cast<std::size_t>(i)];
-    out.K_body.middleRows<3>(at) += w * columns_k;
-    out.B_body.middleRows<3>(at) += w * columns_b;
-    out.K_frame.middleCols<3>(at) += w * rows_k;
-    out.B_frame.middleCols<3>(at) += w * rows_b;
+    NodeCoupling& to = out.of_node(nodes.point.node[static_cast<std::size_t>(i)]);
+    to.K_body += w * columns_k;
+    to.B_body += w * columns_b;
+    to.K_frame += w * rows_k;
+    to.B_frame += w * rows_b;
   }
 }
 
@@ -42,6 +32,33 @@ void add_frame_block(const Side& frame, const SampleForce& s, FrameLinearisation
 }
 
 }  // namespace
+
+void FrameLinearisation::clear() {
+  wrench = {};
+  K.setZero();
+  B.setZero();
+  geometric.setZero();
+  for (const NodeCoupling& one : nodes) place_[static_cast<std::size_t>(one.node)] = -1;
+  nodes.clear();
+  active = 0;
+}
+
+NodeCoupling& FrameLinearisation::of_node(int node) {
+  const auto at = static_cast<std::size_t>(node);
+  if (at >= place_.size()) place_.resize(at + 1, -1);
+  if (place_[at] < 0) {
+    place_[at] = static_cast<int>(nodes.size());
+    nodes.push_back({node});
+  }
+  return nodes[static_cast<std::size_t>(place_[at])];
+}
+
+Vec6 FrameLinearisation::wrench_of_nodes(const VecX& x, const VecX& v) const {
+  Vec6 out = Vec6::Zero();
+  for (const NodeCoupling& one : nodes)
+    out -= one.K_frame * x.segment<3>(3 * one.node) + one.B_frame * v.segment<3>(3 * one.node);
+  return out;
+}
 
 Wrench ContactForce::frame_wrench(const dynamics::StateView& state, int frame) const {
   Impl& m = *impl_;
@@ -62,7 +79,7 @@ void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameL
   Impl& m = *impl_;
   PALPATE_CHECK(frame >= 0 && frame < static_cast<int>(m.frames.size()), "frame {} of {}", frame,
                 m.frames.size());
-  reset(out, partners == Partners::kFrames ? 0 : state.layout->nodal_size);
+  out.clear();
   m.place_frames(state);
   if (partners != Partners::kFrames) m.groups.linearise(state, m.frame_states, frame, out);
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
@@ -83,6 +100,27 @@ void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameL
     ++out.active;
   };
   m.visit_active(state, Impl::Which::kEvery, add);
+}
+
+Mat3 ContactForce::geometric_stiffness(const dynamics::StateView& before, const dynamics::StateView& after,
+                                       int frame) const {
+  Impl& m = *impl_;
+  m.place_frames(after);
+  Mat3 sum = m.groups.geometric_stiffness(after, m.frame_states, frame);
+  const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
+    if ((s.a.frame != frame && s.b.frame != frame) || (s.a.frame >= 0 && s.b.frame >= 0)) return;
+    Vec3 force = s.area * pressure(law, motion.gap, motion.rate).p * s.normal;
+    if (law.friction > 0.0) {
+      const SampleMotion slip = sample_motion(s, before, m.frame_states);
+      force += pressure(law, motion.gap, motion.rate).p * friction_per_pressure(s, slip, law);
+    }
+    const bool first = s.a.frame == frame;
+    const Side mine(first ? s.a : s.b, first ? motion.a : motion.b, m.frame_states, first ? 1.0 : -1.0,
+                    force);
+    sum += mine.sign * mine.G;
+  };
+  m.visit_active(after, Impl::Which::kEvery, add);
+  return sum;
 }
 
 }  // namespace palpate::contact

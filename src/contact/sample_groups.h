@@ -48,6 +48,9 @@ class SampleGroups {
                       VecX& f) const;
   void linearise(const dynamics::StateView& state, const std::vector<FrameState>& frames, int frame,
                  FrameLinearisation& out) const;
+  /// FrameLinearisation::geometric
+  Mat3 geometric_stiffness(const dynamics::StateView& state, const std::vector<FrameState>& frames,
+                           int frame) const;
   /// On one frame, about its origin.
   Wrench wrench(const dynamics::StateView& state, const std::vector<FrameState>& frames, int frame) const;
   double energy(const dynamics::StateView& state, const std::vector<FrameState>& frames) const;       ///< [J]

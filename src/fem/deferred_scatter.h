@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace palpate::fem {
 /// stores are then on their way while there is arithmetic to do.
 class DeferredScatter {
  public:
-  /// Makes the map into A's slots, unless it is the one at hand.
+  /// Makes the map into A's slots, unless it is at hand: those of three matrices are, for a body may be in
+  /// that of a step and in two of an exchange (loop/condenser.h), in turn.
   void prepare(const ElementChunks& chunks, int first_node, const dynamics::ZeroRowSumMatrix& A);
   void fit(const ElementChunks& chunks, int threads);
   /// Where a thread sums the blocks of its next chunk, and those of its last one, of which the kernel
@@ -47,13 +49,18 @@ class DeferredScatter {
 
   std::vector<Buffers> buffers_;  ///< one a thread
   std::vector<float> shared_;     ///< nine a contribution; the matrix is no finer itself
-  // the map
-  /// of each chunk's owned edges, ascending, then of its shared ones
-  std::vector<std::int32_t> slots_;
-  std::vector<std::uint16_t> edges_;      ///< the edge of each of slots_
-  std::vector<SharedSlot> shared_slots_;  ///< ascending
-  std::uint64_t version_ = 0;
-  int first_node_ = -1;
+  struct Map {
+    /// of each chunk's owned edges, ascending, then of its shared ones
+    std::vector<std::int32_t> slots;
+    std::vector<std::uint16_t> edges;      ///< the edge of each of `slots`
+    std::vector<SharedSlot> shared_slots;  ///< ascending
+    std::uint64_t version = 0;
+    int first_node = -1;
+  };
+  Map& map() { return maps_[current_]; }
+
+  std::array<Map, 3> maps_;
+  std::size_t current_ = 0;
 };
 
 }  // namespace palpate::fem

@@ -241,7 +241,9 @@ void assemble_contact(World& world) {
   ToolSide& side = ToolSide::of(world);
   if (!soft_partner || !side.trajectory || world.description.exchange.linearisation != "condensed") return;
   counters::count("loop.condenser");
-  side.condenser = linear::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
+  const scene::CosimulationSpec& exchange = world.description.exchange;
+  side.condenser = std::make_unique<Condenser>(exchange.linearisation_error, exchange.check_linearisation,
+                                               world.description.integrator.threads);
 }
 
 contact::ObstaclePicture obstacle_picture(const ObstacleSpec& spec, const contact::View& view) {

@@ -67,10 +67,17 @@ scene::Kinds make_kinds() {
                  .selector = "law",
                  .kinds = kinds_of(contact::law_registry()),
                  .unsaid = [](const Description&) { return ContactSpec{}.law; }});
-  out.push_back({.table = "exchange",
-                 .selector = "scheme",
-                 .kinds = {{"partitioned", part_keys({"linearisation"})}, {"monolithic"}},
-                 .unsaid = [](const Description&) { return scene::CosimulationSpec{}.scheme; }});
+  out.push_back(
+      {.table = "exchange",
+       .selector = "scheme",
+       .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error", "check_linearisation"})},
+                 {"monolithic"}},
+       .unsaid = [](const Description&) { return scene::CosimulationSpec{}.scheme; }});
+  out.push_back(
+      {.table = "exchange",
+       .selector = "linearisation",
+       .kinds = {{"condensed", part_keys({"linearisation_error", "check_linearisation"})}, {"frozen"}},
+       .unsaid = [](const Description&) { return scene::CosimulationSpec{}.linearisation; }});
   out.push_back({.table = "exchange",
                  .selector = "tunnelling",
                  .kinds = {{"report"}, {"substep", part_keys({"shortest_refresh_s"})}},

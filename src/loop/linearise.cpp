@@ -1,11 +1,11 @@
 #include "linearise.h"
 
+#include <algorithm>
+
+#include "condenser.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
-#include "palpate/core/finite.h"
-#include "palpate/integrate/integrators.h"
-#include "palpate/linear/solvers.h"
 #include "palpate/tool/tool.h"
 #include "tool_side.h"
 
@@ -14,129 +14,6 @@ namespace palpate::loop {
 namespace {
 
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-
-// The contact's wrench on the tool after a time H, with the bodies moved by one linearly implicit Euler step
-// from (x0, u0), while the tool is displaced by dx and its twist changed by dv.  Indices: n all nodes, f
-// free, t tool; c = -df/d(tool), -dF/d(node) as ContactForce::linearise gives them; M, D, K include the
-// contact.  Driven nodes go to x(t0 + H), v(t0 + H), carried ones with their bone (rows and columns reduced
-// onto it by System): s and w are the displacements and velocity changes that are known beforehand,
-//     s = H u0 on free directions,  x(t0 + H) - x0 on driven ones,
-//     w = 0    on free directions,  v(t0 + H) - u0 on driven ones.
-// With u1 = u0 + w + du, du = 0 on driven directions, nodes end at x0 + s + H du, and the force there is, to
-// first order,
-//     f1 = f_n - K_nn (s + H du) - D_nn (w + du) - K_nt dx - B_nt dv.
-// M (u1 - u0) = H f1 on free directions is
-//     A du = H (f_n - K_nn s - D_nn w) - M w - H (K_nt dx + B_nt dv),      A = M + H D + H^2 K,
-// and the tool feels, linearised about the same state,
-//     F = F_t - K_tt dx - B_tt dv - K_tn (s + H du) - B_tn (w + du)
-//       = [F_t - K_tn s - B_tn w - C g] + J dx + B dv,
-//     C = H K_tn + B_tn,  A g = H (f_n - K_nn s - D_nn w) - M w,
-//     J = -K_tt + H C A^-1 K_nt,  B = -B_tt + H C A^-1 B_nt,
-// which is the Schur complement of the step matrix onto the tool.  One part of K_tt belongs to the contact's
-// force, not to its stiffness: the arms that rotate under it.  It is taken from the forces after the step, at
-// x0 + s + H g, u0 + w + g; to first order that is equal.  It is not where the forces are out of balance: a
-// depth that came about unseen may press with 1e4 N now and with 0.1 N after the step, and a tool that
-// rotated under the first would spin up without end.
-//
-// H -> 0 gives `frozen`, H -> infinity the quasi-static answer K_tt - K_tn K^-1 K_nt.  (Forces that depend on
-// time alone are taken at t0.)
-struct Answer {
-  Vec6 wrench;  ///< [F_t - K_tn s - B_tn w - C g]
-  Mat6 J, B;
-};
-
-/// q0 moved by a displacement along u-directions.
-VecX moved(const World& world, const VecX& displacement) {
-  VecX rate(world.state.q().size());
-  dynamics::q_dot(world.state.layout(), world.state.q().data(), displacement.data(), rate.data());
-  VecX q = world.state.q() + rate;
-  dynamics::project(world.state.layout(), q.data());
-  return q;
-}
-
-/// s and w of the derivation above.
-void known_motion(World& world, double H, VecX& s, VecX& w) {
-  const VecX q0 = world.state.q(), u0 = world.state.u();
-  VecX q = moved(world, H * u0), u = u0;
-  s = H * u0;
-  w = VecX::Zero(u0.size());
-  world.system.impose(world.state.layout(), world.state.time() + H, q.data(), u.data());
-  for (int dof : world.system.driven_dofs()) {
-    s[dof] = q[dof] - q0[dof];
-    w[dof] = u[dof] - u0[dof];
-  }
-}
-
-VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w) {
-  const dynamics::StateView view = world.state.view();
-  VecX f, inertia, stiff = VecX::Zero(s.size());
-  world.system.force(view, f);
-  for (const auto& term : world.system.terms()) {
-    if (!term->traits().has_tangent) continue;
-    term->apply_tangent(view, 1.0, 0.0, s, stiff);
-    term->apply_tangent(view, 0.0, 1.0, w, stiff);
-  }
-  world.system.apply_mass(view, w, inertia);
-  VecX r = H * (f - stiff) - inertia;
-  world.system.reduce(view, r);
-  stiff.setZero();
-  world.system.apply_carried_stiffness(view, s, stiff);
-  return r - H * stiff;
-}
-
-/// A factor of the step matrix: by LU where it is indefinite (an inverted element, a compressed strut), null
-/// where it is singular.
-dynamics::LinearSolver* factored(ToolSide& side) {
-  const dynamics::SolveStatus status = side.condenser->factor(side.condensed_matrix);
-  if (status == dynamics::SolveStatus::kOk) return side.condenser.get();
-  if (status != dynamics::SolveStatus::kIndefinite) return nullptr;
-  counters::count("loop.condensed_by_lu");
-  if (!side.condenser_lu) side.condenser_lu = linear::make_linear_solver("umfpack");
-  return side.condenser_lu->factor(side.condensed_matrix) == dynamics::SolveStatus::kOk
-             ? side.condenser_lu.get()
-             : nullptr;
-}
-
-/// False where the step matrix has no factor.
-bool answer_after(World& world, double H, const contact::FrameLinearisation& c, Answer& out) {
-  world.system.step_matrix(world.state.view(), 1.0, H, H * H, ToolSide::of(world).condensed_matrix);
-  dynamics::LinearSolver* solver = factored(ToolSide::of(world));
-  if (!solver) return false;
-  VecX s, w;
-  known_motion(world, H, s, w);
-  const Eigen::Index n = c.K_body.rows();
-  MatX rhs = MatX::Zero(world.state.layout().u_size, 13);
-  rhs.topLeftCorner(n, 6) = c.K_body;
-  rhs.block(0, 6, n, 6) = c.B_body;
-  rhs.col(12) = right_hand_side(world, H, s, w);
-  VecX column;
-  for (Eigen::Index i = 0; i < 12; ++i) {
-    column = rhs.col(i);
-    world.system.reduce(world.state.view(), column);
-    rhs.col(i) = column;
-  }
-  MatX solved(rhs.rows(), rhs.cols());
-  if (solver->solve(rhs, solved) != dynamics::SolveStatus::kOk || !all_finite(solved)) return false;
-  for (Eigen::Index i = 0; i < solved.cols(); ++i) {
-    column = solved.col(i);
-    world.system.expand(world.state.view(), column);
-    solved.col(i) = column;
-  }
-  const MatX C = H * c.K_frame + c.B_frame;
-  out.J = -c.K + H * C * solved.topLeftCorner(n, 6);
-  out.B = -c.B + H * C * solved.block(0, 6, n, 6);
-  const VecX g = solved.col(12);
-  out.wrench << c.wrench.moment, c.wrench.force;
-  out.wrench -= c.K_frame * s.head(n) + c.B_frame * w.head(n) + C * g.head(n);
-
-  VecX q = moved(world, s + H * g), u = world.state.u() + w + g;
-  world.system.impose(world.state.layout(), world.state.time() + H, q.data(), u.data());
-  contact::FrameLinearisation after;
-  world.contact->linearise(world.state.view(world.state.time(), q.data(), u.data()),
-                           ToolSide::of(world).frame_index, after, contact::Partners::kNodes);
-  out.J.topLeftCorner<3, 3>() += after.geometric - c.geometric;
-  return true;
-}
 
 // The wrench on the tool over the period has two parts.  While the tool goes on with its velocity v0, the
 // wrench is a line through the results of one implicit step after one tick and after the period; J and B of
@@ -151,12 +28,11 @@ bool answer_after(World& world, double H, const contact::FrameLinearisation& c, 
 // it for half the period.  Where nothing is stiff, it begins there to O(tick^2).
 bool condense(World& world, double period, const contact::FrameLinearisation& c,
               dynamics::LinearisedContact& record) {
-  const double tick = world.description.tool->tick_s;
-  Answer last, first;
-  if (!answer_after(world, period, c, last)) return false;
+  const double tick = std::min(world.description.tool->tick_s, period);
+  CondensedAnswer last, first;
+  if (!ToolSide::of(world).condenser->answer(world, period, tick, c, last, first)) return false;
   Vec6 F0 = last.wrench, F1 = Vec6::Zero();
   if (tick < period * (1.0 - 1e-9)) {
-    if (!answer_after(world, tick, c, first)) return false;
     const Twist twist = ToolSide::of(world).tool->twist();
     Vec6 v0;
     v0 << twist.angular, twist.linear;

@@ -9,6 +9,7 @@
 #include "palpate/linear/solvers.h"
 #include "palpate/store/model_cache.h"
 #include "palpate/tool/tool.h"
+#include "tool_side.h"
 
 namespace palpate::loop {
 namespace {
@@ -119,6 +120,26 @@ void add_jumps(store::Summary& summary, const World& world) {
   }
 }
 
+/// What condensed linearisations cost, and how good they were.
+void add_condensation(store::Summary& summary, const World& world) {
+  const ToolSide& side = ToolSide::of(world);
+  if (!side.condenser) return;
+  const CondenserCounters& c = side.condenser->counters();
+  store::SummarySection& s = summary.section("condensation");
+  s.values.emplace_back("linearisation_error", world.description.exchange.linearisation_error);
+  s.values.emplace_back("exchanges", static_cast<long long>(c.exchanges));
+  s.values.emplace_back("exchanges_by_factorisation", static_cast<long long>(c.factored));
+  s.values.emplace_back("readings_of_the_step_matrix", static_cast<long long>(c.readings));
+  s.values.emplace_back("seconds_an_exchange",
+                        c.exchanges > 0 ? c.seconds / static_cast<double>(c.exchanges) : 0.0);
+  s.values.emplace_back("largest_estimated_error", c.largest_error);
+  if (!world.description.exchange.check_linearisation) return;
+  s.values.emplace_back("exchanges_checked", static_cast<long long>(c.checked));
+  s.values.emplace_back("largest_difference_of_wrench", c.wrench_difference);
+  s.values.emplace_back("largest_difference_of_stiffness", c.stiffness_difference);
+  s.values.emplace_back("largest_difference_of_damping", c.damping_difference);
+}
+
 /// What made the images of each contact, and on which device.
 void add_images(store::Summary& summary, const World& world) {
   if (!world.contact) return;
@@ -213,6 +234,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   }
   add_energy(summary, result);
   add_jumps(summary, world);
+  add_condensation(summary, world);
   add_images(summary, world);
   add_pruning(summary, world);
   for (const scene::Need& need : needs(world.description))

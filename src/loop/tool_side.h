@@ -1,4 +1,5 @@
 #pragma once
+#include "condenser.h"
 #include "palpate/device/handle.h"
 #include "palpate/device/limiter.h"
 #include "palpate/loop/world.h"
@@ -22,11 +23,7 @@ struct ToolSide {
   std::shared_ptr<proxy::ProxySet> proxies;  ///< null where it meets no body with proxies
   int frame_index = -1;                      ///< of that frame in the contact, -1 where no contact names it
   bool meets_obstacles = false;              ///< a contact names the tool and an obstacle
-  /// factors the step matrix for the condensed linearisation; null where not used
-  std::unique_ptr<dynamics::LinearSolver> condenser;
-  /// made at the first step matrix without a Cholesky factor
-  std::unique_ptr<dynamics::LinearSolver> condenser_lu;
-  dynamics::BorderedMatrix condensed_matrix;
+  std::unique_ptr<Condenser> condenser;      ///< of the condensed linearisation; null where not used
 
   static ToolSide& of(World& world) { return *world.tool_side_; }
   static const ToolSide& of(const World& world) { return *world.tool_side_; }

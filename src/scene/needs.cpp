@@ -125,12 +125,16 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
                               : "one rate only"});
   const bool touched = count_if(d.contacts, [](const auto& c) { return c.second == "tool"; }) > 0;
   const bool condensed = two_rates && touched && d.exchange.linearisation == "condensed";
-  out.push_back({"condenser", condensed,
-                 condensed
-                     ? "linearisation \"condensed\": the bodies' step matrix is factored once an exchange"
-                 : monolithic ? one_system
-                 : !touched   ? "no contact of a soft body with a tool"
-                              : "linearisation \"frozen\""});
+  out.push_back(
+      {"condenser", condensed,
+       condensed
+           ? fmt::format("linearisation \"condensed\": the bodies' answer to the tool at each exchange, {}",
+                         d.exchange.linearisation_error > 0.0
+                             ? fmt::format("with an error of {}", d.exchange.linearisation_error)
+                             : "by a factorisation")
+       : monolithic ? one_system
+       : !touched   ? "no contact of a soft body with a tool"
+                    : "linearisation \"frozen\""});
   out.push_back(
       {"exchange thread", false, "time is virtual: everything runs one after the other in one thread"});
 }

@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "fixture.h"
+#include "node_couplings.h"
 
 using namespace contact_tests;
 
@@ -27,6 +28,7 @@ struct Scene {
   Pose given_pose{quaternion_of(Vec3(0.3, -0.5, 0.2)), Vec3(0.1, 0.2, -0.4)};
   Twist given_twist{Vec3(0.4, 0.2, -0.7), Vec3(-0.3, 0.5, 0.1)};
   contact::ContactForce term;
+  ContactSpec spec;
 
   explicit Scene(const Law& law, bool with_given = true, const std::string& friction_tangent = "full") {
     given->append(0.0, given_pose, given_twist);
@@ -56,7 +58,6 @@ struct Scene {
       s.area = 0.8;
       samples.push_back(s);
     }
-    ContactSpec spec;
     spec.law = law.name;
     spec.stiffness_pa_m = 20.0;
     spec.damping_pa_s_m = 0.3;
@@ -245,8 +246,8 @@ TEST(FrameLinearisation, TaylorByPoseTwistAndNodes) {
     };
     const VecX d = direction(6, 6);
     VecX by_pose(6 + nodal), by_twist(6 + nodal);
-    by_pose << -(lin.K * d), -(lin.K_body * d);
-    by_twist << -(lin.B * d), -(lin.B_body * d);
+    by_pose << -(lin.K * d), -(columns_of(lin, &contact::NodeCoupling::K_body, nodal) * d);
+    by_twist << -(lin.B * d), -(columns_of(lin, &contact::NodeCoupling::B_body, nodal) * d);
     const auto place = [&](const Pose& pose, const Twist& twist) {
       scene.given->clear();
       scene.given->append(0.0, pose, twist);
@@ -271,9 +272,9 @@ TEST(FrameLinearisation, TaylorByPoseTwistAndNodes) {
     nodes.head(nodal) = direction(nodal, 7);
     const auto wrench = [&](const dynamics::State& state) { return VecX(wrench_and_nodes(state).head(6)); };
     expect_derivative([&](double h) { return wrench(scene.world.moved(nodes, h)); },
-                      -(lin.K_frame * nodes.head(nodal)), 0.02, law.name);
+                      lin.wrench_of_nodes(nodes, VecX::Zero(nodes.size())), 0.02, law.name);
     expect_derivative([&](double h) { return wrench(scene.world.pushed(nodes, h)); },
-                      -(lin.B_frame * nodes.head(nodal)), 0.05, law.name);
+                      lin.wrench_of_nodes(VecX::Zero(nodes.size()), nodes), 0.05, law.name);
   }
 }
 
@@ -311,5 +312,48 @@ TEST(ContactEnergy, DissipationClosesThePowerBalance) {
                         (2 * h);
     EXPECT_NEAR(rate, -given_power - dissipated, 1e-7 * (std::abs(given_power) + dissipated)) << law.name;
     EXPECT_GT(dissipated, 0.0);
+  }
+}
+
+// F on the frame at its arm r gives the moment (d x r) x F = [F]x [r]x d by a rotation d.  F after a step is
+// its pressure then, with friction along the slip before it.
+TEST(ContactTangent, GeometricStiffnessAfterAStepHasItsPressureAndTheSlipBefore) {
+  for (const Law& law : kLaws) {
+    Scene scene(law);
+    const dynamics::State& before = scene.world.state;
+    dynamics::State after = scene.world.moved(direction(before.layout().u_size, 8), 0.02);
+    after.u() = -before.u();
+    contact::FrameLinearisation lin;
+    scene.term.linearise(before.view(), 0, lin, contact::Partners::kNodes);
+    EXPECT_LT((scene.term.geometric_stiffness(before.view(), before.view(), 0) - lin.geometric).norm(),
+              1e-14 * lin.geometric.norm());
+    Mat3 expected = Mat3::Zero();
+    const auto slip = [&](const contact::ContactSample& s, const dynamics::State& state) {
+      Vec3 v = Vec3::Zero();
+      for (int i = 0; i < s.a.count; ++i)
+        v += s.a.weight[static_cast<std::size_t>(i)] *
+             state.view().velocity(s.a.node[static_cast<std::size_t>(i)]);
+      const Vec3 r = scene.given_pose.rotation * s.b.offset + s.b.slide;
+      return Vec3(v - scene.given_twist.linear - scene.given_twist.angular.cross(r));
+    };
+    int checked = 0;
+    for (const contact::ContactSample& s : scene.term.samples()) {
+      if (s.b.frame != 0 || s.a.frame >= 0) continue;
+      const Vec3 rotating = scene.given_pose.rotation * s.b.offset,
+                 b = scene.given_pose.translation + rotating + s.b.slide;
+      const double p =
+          contact::pressure(scene.spec, s.normal.dot(position(s.a, after) - b), s.normal.dot(slip(s, after)))
+              .p;
+      const Vec3 along = slip(s, before) - s.normal.dot(slip(s, before)) * s.normal,
+                 force = -s.area * p *
+                         (s.normal - law.friction / std::max(along.norm(), law.regularisation) * along);
+      EXPECT_GT(p, 0.0);
+      expected += cross_matrix(force) * cross_matrix(rotating);
+      ++checked;
+    }
+    EXPECT_EQ(checked, 2);
+    EXPECT_LT((scene.term.geometric_stiffness(before.view(), after.view(), 0) - expected).norm(),
+              1e-13 * expected.norm())
+        << law.name;
   }
 }

@@ -263,6 +263,15 @@ TEST(Kinds, ToolDeviceAndExchange) {
   EXPECT_EQ(with({"exchange.scheme=monolithic", "exchange.linearisation=frozen"}),
             "--set exchange.linearisation=frozen: exchange: linearisation means nothing to scheme = "
             "\"monolithic\"; remove it (used by partitioned)");
+  EXPECT_EQ(with({"exchange.linearisation=condensed", "exchange.linearisation_error=0.05",
+                  "exchange.check_linearisation=true"}),
+            "accepted");
+  EXPECT_EQ(with({"exchange.linearisation=frozen", "exchange.linearisation_error=0.05"}),
+            "--set exchange.linearisation_error=0.05: exchange: linearisation_error means nothing to "
+            "linearisation = \"frozen\"; remove it (used by condensed)");
+  EXPECT_NE(with({"exchange.linearisation_error=0.6"}).find("linearisation_error = 0.6 must lie in [0, 0.5]"),
+            std::string::npos)
+      << with({"exchange.linearisation_error=0.6"});
   EXPECT_EQ(with({"exchange.tunnelling=substep", "exchange.shortest_refresh_s=1e-4"}), "accepted");
   EXPECT_EQ(
       with({"exchange.shortest_refresh_s=1e-4"}),

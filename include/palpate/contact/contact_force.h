@@ -108,15 +108,32 @@ struct Pressure {
 };
 Pressure pressure(const ContactSpec& law, double gap, double gap_rate);
 
+/// How a frame and a node of the other side feel each other's motion; frame's directions angular first.
+struct NodeCoupling {
+  int node;                                                                   ///< over all node blocks
+  Eigen::Matrix<double, 3, 6> K_body = Eigen::Matrix<double, 3, 6>::Zero();   ///< -df_node/dx_frame
+  Eigen::Matrix<double, 3, 6> B_body = Eigen::Matrix<double, 3, 6>::Zero();   ///< -df_node/dv_frame
+  Eigen::Matrix<double, 6, 3> K_frame = Eigen::Matrix<double, 6, 3>::Zero();  ///< -dF_frame/dx_node
+  Eigen::Matrix<double, 6, 3> B_frame = Eigen::Matrix<double, 6, 3>::Zero();  ///< -dF_frame/dv_node
+};
+
 /// Derivatives of the contact seen from one frame, about its origin, angular first.
 struct FrameLinearisation {
   Wrench wrench;  ///< on the frame
   Mat6 K, B;      ///< -dF/dx, -dF/dv of the frame, bodies held
   /// the part of -K that is the rotating arms' under the forces as they are (rows and columns of rotation)
   Mat3 geometric;
-  MatX K_body, B_body;    ///< nodal_size x 6: -df_nodes/dx_frame, -df_nodes/dv_frame
-  MatX K_frame, B_frame;  ///< 6 x nodal_size: -dF_frame/dx_nodes, -dF_frame/dv_nodes
-  int active = 0;         ///< samples with pressure
+  std::vector<NodeCoupling> nodes;  ///< those that samples with pressure touch, each once
+  int active = 0;                   ///< samples with pressure
+
+  void clear();
+  /// That of a node, which is added where it is not there yet.
+  NodeCoupling& of_node(int node);
+  /// -(K_frame x + B_frame v) of all nodes: the wrench that they add when they move by x and by v.
+  Vec6 wrench_of_nodes(const VecX& x, const VecX& v) const;
+
+ private:
+  std::vector<int> place_;  ///< in `nodes` of each node; -1: not there
 };
 
 /// How large the resultant of a contact pair on one of its bodies is, or a change of it.
@@ -171,6 +188,12 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
   void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out,
                  Partners partners = Partners::kAll) const;
+  /// FrameLinearisation::geometric of the samples with nodes on the other side, of a step from `before` to
+  /// `after`: pressed as after it, with friction along the slip before it, which is that of a linear step.
+  /// The slip after it would be a difference of velocities that a step's solution knows to a part of the
+  /// velocities alone, over a regularisation far below them.
+  Mat3 geometric_stiffness(const dynamics::StateView& before, const dynamics::StateView& after,
+                           int frame) const;
   /// Change of a pair's resultant on its bodies that the last refresh made, at its state, the largest of all
   /// pairs: the price of a slow query.  The same resultant on other nodes is no change.
   ResultantSize refresh_jump() const;

@@ -43,6 +43,9 @@ struct CosimulationSpec {
   /// or "monolithic": tool and bodies in one state of one integrator, nothing exchanged
   std::string scheme = "partitioned";
   std::string linearisation = "condensed";  ///< or "frozen"
+  /// of a condensed wrench, its stiffness and damping, relative; 0: factorised
+  double linearisation_error = 0.01;
+  bool check_linearisation = false;  ///< against a factorisation, at each exchange
   double exchange_period_s = 0.01;
   double contact_refresh_s = 0.01;  ///< a whole fraction of the exchange period
   /// what is done about bodies so fast that they may go through each other between two refreshes: counted,
