@@ -29,6 +29,20 @@ int run(const RunArguments& arguments);
 /// Runs as a part of another command, which prints and closes what is missing.
 int run(const RunArguments& arguments, Undelivered& missing);
 
+struct ReplayArguments {
+  std::string run;                     ///< folder of a run
+  std::vector<std::string> overrides;  ///< of its scene
+  std::string integrator;              ///< instead of its own; empty: its own
+  std::string folder;                  ///< empty: out/replay-NAME
+  bool changes() const { return !overrides.empty() || !integrator.empty(); }
+};
+int replay(const ReplayArguments& arguments);
+
+struct DiffArguments {
+  std::string reference, other;  ///< folders of runs
+};
+int diff(const DiffArguments& arguments);
+
 struct CompareArguments {
   std::vector<std::string> scenes;
   std::vector<std::string> overrides;  ///< of every scene

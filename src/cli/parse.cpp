@@ -271,6 +271,47 @@ theory expects, else 1.)");
   });
 }
 
+void add_replay(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("replay", "feel the motion of a run again");
+  auto arguments = std::make_shared<ReplayArguments>();
+  command->add_option("run", arguments->run, "folder of a run, with haptic.h5 in it")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--set", arguments->overrides, "change a key of its scene (KEY=VALUE, repeatable)")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--integrator", arguments->integrator, "another integrator than the run's")
+      ->type_name("NAME");
+  command->add_option("-o,--output", arguments->folder, "folder for the results; default out/replay-SCENE")
+      ->type_name("DIR");
+  command->footer(R"(Examples:
+  palpate replay out/touch-head                  each tick from its recorded input and exchange, bit for bit
+  palpate replay out/touch-head --integrator cvode-bdf --set exchange.scheme=monolithic
+  palpate replay out/touch-head --set exchange.exchange_period_s=0.02
+
+Without a change nothing but the ticks is computed again: what comes out must be what was recorded, of a
+run in real time as well; else the exit status is 1.  With a change the whole scene runs again in virtual
+time, under the hand as it was recorded, and what a hand would feel of the difference is printed.)");
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return replay(*arguments); }; });
+}
+
+void add_diff(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("diff", "what a hand would feel of the difference of two runs");
+  auto arguments = std::make_shared<DiffArguments>();
+  command->add_option("reference", arguments->reference, "folder of a run, with haptic.h5 in it")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("other", arguments->other, "folder of another")->required()->type_name("DIR");
+  command->footer(R"(Examples:
+  palpate diff out/touch-head out/replay-touch-head
+
+Forces and torques on the hand at the reference's ticks: root mean square and largest difference, its
+spectrum in bands, and in how many ticks it is more than fingers notice (7 % of a force, 12.7 % of a torque).)");
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return diff(*arguments); }; });
+}
+
 void add_inspect(CLI::App& app, Invocation& invocation) {
   CLI::App* command =
       app.add_subcommand("inspect", "what a scene uses, what it leaves out, sizes and memory");
@@ -466,6 +507,8 @@ Invocation parse(int argc, char** argv) {
   add_modes(app, invocation);
   add_model(app, invocation);
   add_stability(app, invocation);
+  add_replay(app, invocation);
+  add_diff(app, invocation);
   add_inspect(app, invocation);
   add_list(app, invocation);
   add_bench(app, invocation);

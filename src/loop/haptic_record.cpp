@@ -1,5 +1,7 @@
 #include "palpate/loop/haptic_record.h"
 
+#include <filesystem>
+
 #include "palpate/core/error.h"
 #include "palpate/store/table_file.h"
 #include "tool_side.h"
@@ -127,6 +129,9 @@ void HapticRecorder::exchanged(const dynamics::LinearisedContact& record) {
 }
 
 HapticRecord read_haptic_record(const std::string& path) {
+  if (!std::filesystem::exists(path))
+    fail("{}: no such file; runs of scenes with a tool keep it where the scene has record.forces = true",
+         path);
   HapticRecord out;
   const std::vector<TickRecord> start = read(kVisitTick, TickRecord{}, path, "start");
   if (start.size() != 1) fail("{}: it has no start; the run ended before its first tick", path);
