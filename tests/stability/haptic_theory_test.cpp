@@ -7,6 +7,7 @@
 #include <random>
 
 #include "palpate/core/error.h"
+#include "palpate/stability/z_width.h"
 
 using namespace palpate;
 using namespace palpate::stability;
@@ -140,7 +141,75 @@ TEST(HapticTheory, tool_under_a_heavy_device_has_the_limit_of_its_scheme) {
   EXPECT_THROW(loop_matrix(loop), Error);
 }
 
+TEST(ZWidth, says_when_passive_lies_outside_of_stable) {
+  ZWidth z;
+  z.rows = {{.damping = 0.0, .passive = 190.0, .spectral = 200.0, .simulated = 199.0}};
+  EXPECT_TRUE(z.passive_within_stable());
+  EXPECT_NEAR(z.largest_difference(), 0.005, 1e-12);
+  z.rows[0].simulated = 180.0;
+  EXPECT_FALSE(z.passive_within_stable());
+  z.rows[0].simulated = 199.0;
+  z.fine = {{.damping = 0.0, .passive = 201.0, .spectral = 200.0}};
+  EXPECT_FALSE(z.passive_within_stable());
+}
+
+// A ball of 10 mm: patches of 1 and 10 mm; k pi a^2 in series with 2 E a/(1 - nu^2).
+TEST(ZWidth, estimates_contacts_from_the_scene) {
+  scene::Description d;
+  d.name = "two sides";
+  d.tool.emplace();
+  d.bodies.resize(1);
+  d.bodies[0].name = "soft";
+  d.bodies[0].youngs_modulus_pa = 1e4;
+  d.bodies[0].poissons_ratio = 0.0;
+  d.contacts.resize(2);
+  d.contacts[0] = {.first = "soft", .second = "tool", .stiffness_pa_m = 1e7 / M_PI};
+  d.contacts[1] = {
+      .first = "tool", .second = "floor", .stiffness_pa_m = 2e7 / M_PI, .damping_pa_s_m = 1e4 / M_PI};
+  const ToolContactRange range = contact_range(d);
+  EXPECT_NEAR(range.least.stiffness, 1.0 / (1.0 / 10.0 + 1.0 / 20.0), 1e-9);
+  EXPECT_NEAR(range.greatest.stiffness, 2000.0, 1e-9);
+  EXPECT_NEAR(range.greatest.damping, 1.0, 1e-12);
+  d.contacts[0].spring = "per_point";
+  EXPECT_THROW(contact_range(d), Error);
+  d.contacts.clear();
+  EXPECT_THROW(contact_range(d), Error);
+  d.exchange.scheme = "monolithic";
+  EXPECT_THROW(loop_of(d), Error);
+  d.tool.reset();
+  EXPECT_THROW(loop_of(d), Error);
+}
+
 #ifdef PALPATE_HAS_TOOL
+TEST(ZWidth, simulated_and_exact_walls_are_the_same) {
+  ZWidthOptions options;
+  options.rows = 5;
+  const ZWidth z = z_width(HapticLoop{}, options);
+  EXPECT_EQ(z.rows.size(), 5u);
+  EXPECT_TRUE(z.passive_within_stable());
+  EXPECT_GT(z.rows[0].passive, 0.0);
+  EXPECT_LT(z.largest_difference(), 0.02);
+}
+
+TEST(ZWidth, verdicts_on_a_scene_s_own_loop) {
+  HapticLoop loop;
+  const ToolContactRange range{{10.0, 0.0}, {1000.0, 0.0}};
+  auto points = operating_points(loop, range, 4.0);
+  ASSERT_EQ(points.size(), 3u);
+  for (const OperatingPoint& p : points) {
+    EXPECT_TRUE(p.simulated_stable) << p.name;
+    EXPECT_NE(p.words(loop.tick_s).find("but not passive"), std::string::npos) << p.name;
+  }
+  EXPECT_NEAR(points[2].series, 1000.0 * 300.0 / 1300.0, 1e-9);
+  loop.tool_integrator = "semi-implicit-euler";
+  loop.coupling_stiffness_n_m = 1e6;
+  points = operating_points(loop, range, 4.0);
+  for (const OperatingPoint& p : points) {
+    EXPECT_FALSE(p.simulated_stable) << p.name;
+    EXPECT_NE(p.words(loop.tick_s).find("unstable"), std::string::npos) << p.name;
+  }
+}
+
 namespace {
 
 /// Both limits at once, and that they agree to 2 %.
