@@ -24,6 +24,7 @@ struct RunArguments {
   bool contact_picture = false, frames = false;
   double frames_per_s = 0.0;           ///< of simulated time; 0: as the scene records
   std::string shade = "displacement";  ///< of picture and frames; or "stress", "penetration"
+  std::string passivity = "off";       ///< or "observe", "control"
 };
 int run(const RunArguments& arguments);
 /// Runs as a part of another command, which prints and closes what is missing.

@@ -94,6 +94,14 @@ void add_run(CLI::App& app, Invocation& invocation) {
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--report", arguments->report, "also a page to look at (report.html)");
+  command
+      ->add_option(
+          "--passivity", arguments->passivity,
+          "observe: the energy at the device's port, by its samples; control: also a damper where the "
+          "loop would give back more than the hand has put in; off")
+      ->type_name("MODE")
+      ->check(CLI::IsMember({"observe", "control", "off"}))
+      ->capture_default_str();
   command->add_flag("--realtime", arguments->real_time,
                     "ticks by the machine's clock, in a thread of their own; how late they were is printed, "
                     "and kept tick by tick (clock.csv; a plot in the report)");

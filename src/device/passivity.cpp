@@ -40,7 +40,7 @@ PassivityController::PassivityController(Mode mode, double max_force_n, double m
       damping_(damping),
       observer_(damping) {}
 
-Wrench PassivityController::apply(double t, const Pose& handle, const Wrench& limited) {
+Wrench PassivityController::apply(double t, const Pose& handle, const Wrench& limited, bool valid) {
   if (mode_ == Mode::kOff) return limited;
   const Vec6 before = observer_.last_change();
   observer_.sample(t, handle);
@@ -48,7 +48,7 @@ Wrench PassivityController::apply(double t, const Pose& handle, const Wrench& li
   dissipated_ -= damper_.force.dot(D.tail<3>()) + damper_.moment.dot(D.head<3>());
   damper_ = {};
   Wrench out = limited;
-  if (mode_ == Mode::kControl && observer_.last_tick() > 0.0) {
+  if (mode_ == Mode::kControl && valid && observer_.last_tick() > 0.0) {
     double least = foreseen(limited, D);
     for (const double sign : {-1.0, 1.0}) least = std::min(least, foreseen(limited, D + sign * (D - before)));
     if (least < 0.0) damp(limited, D, -least);

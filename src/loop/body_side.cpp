@@ -14,6 +14,11 @@ int whole_number(double ratio) { return std::max(1, static_cast<int>(std::lround
 BodySide::BodySide(World& world, const RunOptions& options, RunResult& result)
     : world_(world), side_(ToolSide::of(world)), options_(options), result_(result) {
   const scene::Description& d = world.description;
+  if (d.tool && d.tool->tick_s * device::kBuzzFrequency < 0.25) buzz_.emplace(d.tool->tick_s);
+  side_.passivity.reset();
+  if (d.device && options.passivity != device::PassivityController::Mode::kOff)
+    side_.passivity = std::make_unique<device::PassivityController>(options.passivity, d.device->max_force_n,
+                                                                    d.device->max_torque_n_m);
   duration_ = options.duration_s > 0.0 ? options.duration_s : d.duration_s;
   period_ = period_of(d);
   if (!(duration_ / period_ < 1e9))
@@ -65,6 +70,7 @@ void BodySide::felt(const TickRecord& tick) {
   side_.handle_now.twist = tick.handle_twist;
   side_.handle_now.valid = tick.handle_valid;
   ++result_.ticks;
+  if (buzz_) buzz_->add(tick.device.force);
   if (ledger_) ledger_->tick(tick.time, tick.wanted, tick.handle_twist);
   for (Observer* observer : options_.observers) observer->tick(tick);
 }
@@ -161,6 +167,12 @@ void BodySide::finish() {
     result_.tunnelled = world_.contact->tunnelled();
   }
   if (side_.limiter) result_.limited_ticks = side_.limiter->limited_ticks();
+  if (buzz_) result_.buzz_n = buzz_->rms();
+  if (side_.passivity) {
+    const device::PassivityObserver& port = side_.passivity->observer();
+    result_.port = {port.energy(), port.least_energy(), port.work(), side_.passivity->dissipated(),
+                    side_.passivity->active_ticks()};
+  }
 }
 
 }  // namespace palpate::loop

@@ -49,8 +49,9 @@ class PassivityController {
 
   /// @param max_force_n, max_torque_n_m  of the device: the damper's wrench keeps within them too
   PassivityController(Mode mode, double max_force_n, double max_torque_n_m, double damping = 0.0);
-  /// @param limited  what the limiter lets out for this sample  @return what goes to the motors
-  Wrench apply(double t, const Pose& handle, const Wrench& limited);
+  /// @param limited  what the limiter lets out for this sample  @param valid  whether the handle's pose is:
+  ///   else nothing is added  @return what goes to the motors
+  Wrench apply(double t, const Pose& handle, const Wrench& limited, bool valid = true);
   const PassivityObserver& observer() const { return observer_; }
   double dissipated() const { return dissipated_; }  ///< by the damper so far [J]
   long active_ticks() const { return active_; }
