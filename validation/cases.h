@@ -55,6 +55,7 @@ ValidationCase colliding_bars();
 ValidationCase handle_step();
 ValidationCase handle_below_wall();
 ValidationCase coupling_limit();
+ValidationCase sampled_wall();
 ValidationCase partitioned_monolithic();
 ValidationCase device_limits();
 

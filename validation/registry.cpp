@@ -26,7 +26,7 @@ const std::vector<ValidationCase>& validation_cases() {
          colliding_bars()});
     if (tool::available())
       add({handle_step(), handle_below_wall(), coupling_limit(), partitioned_monolithic()});
-    add({device_limits()});
+    add({device_limits(), sampled_wall()});
     return out;
   }();
   return cases;

@@ -24,6 +24,7 @@ struct RunArguments {
   bool contact_picture = false, frames = false;
   double frames_per_s = 0.0;           ///< of simulated time; 0: as the scene records
   std::string shade = "displacement";  ///< of picture and frames; or "stress", "penetration"
+  std::string passivity = "off";       ///< or "observe", "control"
 };
 int run(const RunArguments& arguments);
 /// Runs as a part of another command, which prints and closes what is missing.
@@ -84,9 +85,18 @@ struct StabilityArguments {
   bool cells = false;                          ///< print every cell, not only the unexpected ones
   int seeds = 10, jobs = 1;
   double limit_s = 20.0;  ///< CPU time of a cell
-  std::string folder;     ///< empty: out/stability
+  std::string folder;     ///< empty: out/stability; haptic: out/stability-haptic-NAME
+
+  // of the haptic loop of a scene
+  bool haptic = false;
+  SceneArguments scene;
+  double device_mass_kg = 0.045, device_damping_n_s_m = 0.1;
+  int delay_ticks = 0;
+  std::vector<double> contact_stiffness_n_m;  ///< least and greatest; empty: estimated from the scene
 };
 int stability(const StabilityArguments& arguments);
+int stability_haptic(const StabilityArguments& arguments);
+inline constexpr double kHapticDuration = 4.0;  ///< of a simulation [s]
 
 struct InspectArguments {
   SceneArguments scene;

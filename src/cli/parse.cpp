@@ -94,6 +94,14 @@ void add_run(CLI::App& app, Invocation& invocation) {
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--report", arguments->report, "also a page to look at (report.html)");
+  command
+      ->add_option(
+          "--passivity", arguments->passivity,
+          "observe: the energy at the device's port, by its samples; control: also a damper where the "
+          "loop would give back more than the hand has put in; off")
+      ->type_name("MODE")
+      ->check(CLI::IsMember({"observe", "control", "off"}))
+      ->capture_default_str();
   command->add_flag("--realtime", arguments->real_time,
                     "ticks by the machine's clock, in a thread of their own; how late they were is printed, "
                     "and kept tick by tick (clock.csv; a plot in the report)");
@@ -257,15 +265,51 @@ void add_stability(CLI::App& app, Invocation& invocation) {
       ->capture_default_str();
   command->add_option("-o,--output", arguments->folder, "folder for the results; default out/stability")
       ->type_name("DIR");
+  CLI::Option* haptic = command->add_flag(
+      "--haptic", arguments->haptic,
+      "instead: how stiff a wall the loop of a scene's device, coupling and tool renders, by passivity, by "
+      "its exact linear map, and by simulation");
+  command->add_option("SCENE", arguments->scene.scene, std::string("haptic: ") + kSceneHelp)->needs(haptic);
+  command->add_option("--set", arguments->scene.overrides, "haptic: change one value of the scene, KEY=VALUE")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false)
+      ->needs(haptic);
+  command->add_option("--device-mass-kg", arguments->device_mass_kg, "haptic: of the device at its handle")
+      ->check(CLI::Range(1e-4, 1e3))
+      ->capture_default_str()
+      ->needs(haptic);
+  command
+      ->add_option("--device-damping-n-s-m", arguments->device_damping_n_s_m,
+                   "haptic: of the device's own friction; without it no wall is passive")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str()
+      ->needs(haptic);
+  command
+      ->add_option("--delay-ticks", arguments->delay_ticks, "haptic: from a sample to the force made of it")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str()
+      ->needs(haptic);
+  command
+      ->add_option("--contact-stiffness-n-m", arguments->contact_stiffness_n_m,
+                   "haptic: least and greatest of the contacts at the tool; default: estimated")
+      ->type_name("LEAST GREATEST")
+      ->expected(2)
+      ->needs(haptic);
   command->footer(R"(Examples:
   palpate stability --jobs 2
   palpate stability --row youngs-modulus --integrator cvode-bdf --cells
   palpate stability --slow --seeds 100 -o out/stability
+  palpate stability --haptic press-ball --device-mass-kg 0.1 --delay-ticks 1
 
-Writes stability.csv, stability.json and report.html with the heat map.  Exit status 0 when every cell is as
-theory expects, else 1.)");
+Writes stability.csv, stability.json and report.html with the heat map; haptic: z_width.csv and z_width.svg.
+Exit status 0 when every cell is as theory expects; haptic: when passive lies within stable; else 1.)");
   command->callback([arguments, &invocation] {
-    invocation.action = [arguments] { return stability(*arguments); };
+    if (arguments->haptic && arguments->scene.scene.empty()) throw CLI::RequiredError("--haptic: SCENE");
+    if (arguments->haptic && !(arguments->rows.empty() && arguments->integrators.empty()))
+      throw CLI::ExcludesError("--haptic", "--row and --integrator");
+    invocation.action = [arguments] {
+      return arguments->haptic ? stability_haptic(*arguments) : stability(*arguments);
+    };
     invocation.factorises = true;
     invocation.starts_processes = true;
   });

@@ -49,6 +49,14 @@ void print_outcome(const loop::World& world, const loop::RunResult& result, cons
         "on the hand: at most {:.4g} N (at {:g} s) and {:.4g} N m (at {:g} s) in {} ticks; {} held at the "
         "device's limit\n",
         peak.force_n, peak.force_s, peak.torque_n_m, peak.torque_s, result.ticks, result.limited_ticks);
+  if (result.buzz_n) fmt::print("buzz: {:.3g} N RMS of the force on the hand above 30 Hz\n", *result.buzz_n);
+  if (!result.port) return;
+  const loop::PortEnergy& port = *result.port;
+  fmt::print(
+      "port of the device: least energy {:.3g} J, at the end {:.3g} J; the controller dissipated {:.3g} J "
+      "in {} ticks, {:.2g} % of the motors' work\n",
+      port.least, port.energy, port.controller_dissipated, port.controller_ticks,
+      port.work > 0.0 ? 100.0 * port.controller_dissipated / port.work : 0.0);
 }
 
 /// A word of the command line, quoted where a shell would split or expand it.
@@ -74,6 +82,7 @@ std::string command_of(const RunArguments& a) {
   if (a.frames && a.frames_per_s > 0.0) out += fmt::format(" --frames-per-s {}", a.frames_per_s);
   if ((a.picture || a.frames) && a.shade != "displacement") out += " --shade " + a.shade;
   if (a.report) out += " --report";
+  if (a.passivity != "off") out += " --passivity " + a.passivity;
   if (a.real_time) out += " --realtime";
   if (a.trace) out += " --trace";
   return a.folder.empty() ? out : out + " -o " + quoted(a.folder);
@@ -134,6 +143,7 @@ loop::RunResult run_watched(loop::World& world, const RunArguments& arguments,
   loop::RunOptions options;
   options.duration_s = arguments.duration_s;
   options.real_time = arguments.real_time;
+  options.passivity = device::PassivityController::mode_of(arguments.passivity);
   options.observers = std::move(observers);
   options.progress = [&progress](double fraction) { progress(fraction); };
   options.stop = &stop_flag();

@@ -6,6 +6,7 @@
 #include "linearise.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
+#include "palpate/device/profile.h"
 
 namespace palpate::loop {
 
@@ -14,6 +15,13 @@ int whole_number(double ratio) { return std::max(1, static_cast<int>(std::lround
 BodySide::BodySide(World& world, const RunOptions& options, RunResult& result)
     : world_(world), side_(ToolSide::of(world)), options_(options), result_(result) {
   const scene::Description& d = world.description;
+  if (d.tool && d.tool->tick_s * device::kBuzzFrequency < 0.25) buzz_.emplace(d.tool->tick_s);
+  side_.passivity.reset();
+  if (d.device && options.passivity != device::PassivityController::Mode::kOff) {
+    const device::DeviceFigures figures = device::figures_of(*d.device);
+    side_.passivity = std::make_unique<device::PassivityController>(options.passivity, figures.max_force,
+                                                                    figures.max_torque);
+  }
   duration_ = options.duration_s > 0.0 ? options.duration_s : d.duration_s;
   period_ = period_of(d);
   if (!(duration_ / period_ < 1e9))
@@ -69,6 +77,7 @@ void BodySide::felt(const TickRecord& tick) {
   side_.handle_now.twist = tick.handle_twist;
   side_.handle_now.valid = tick.handle_valid;
   ++result_.ticks;
+  if (buzz_) buzz_->add(tick.device.force);
   if (ledger_) ledger_->tick(tick.time, tick.wanted, tick.handle_twist);
   for (Observer* observer : options_.observers) observer->tick(tick);
 }
@@ -165,6 +174,12 @@ void BodySide::finish() {
     result_.tunnelled = world_.contact->tunnelled();
   }
   if (side_.limiter) result_.limited_ticks = side_.limiter->limited_ticks();
+  if (buzz_) result_.buzz_n = buzz_->rms();
+  if (side_.passivity) {
+    const device::PassivityObserver& port = side_.passivity->observer();
+    result_.port = {port.energy(), port.least_energy(), port.work(), side_.passivity->dissipated(),
+                    side_.passivity->active_ticks()};
+  }
 }
 
 }  // namespace palpate::loop

@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "monolithic_ticks.h"
+#include "palpate/device/buzz.h"
 #include "palpate/loop/run.h"
 #include "tool_side.h"
 
@@ -59,6 +60,7 @@ class BodySide {
   int periods_ = 0;
   std::uint64_t version_ = 0;           ///< of the last linearisation
   double changed_ = 0.0;                ///< time of the last material change [s]
+  std::optional<device::Buzz> buzz_;    ///< where ticks are fast enough
   std::optional<EnergyLedger> ledger_;  ///< where an observer wants it
   MonolithicTicks* ticks_ = nullptr;
 };

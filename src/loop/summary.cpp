@@ -153,6 +153,20 @@ void add_energy(store::Summary& summary, const RunResult& result) {
   visit_energies([&](const char* name, double value) { s.values.emplace_back(name, value); }, *result.energy);
 }
 
+/// What the device felt like, and the energy at its port.
+void add_device(store::Summary& summary, const RunResult& result) {
+  if (result.buzz_n) summary.section("device").values.emplace_back("buzz_above_30_hz_rms_n", *result.buzz_n);
+  if (!result.port) return;
+  const PortEnergy& port = *result.port;
+  summary.section("device").values.insert(
+      summary.section("device").values.end(),
+      {{"port_energy_j", port.energy},
+       {"port_least_energy_j", port.least},
+       {"port_work_j", port.work},
+       {"passivity_controller_dissipated_j", port.controller_dissipated},
+       {"passivity_controller_ticks", static_cast<long long>(port.controller_ticks)}});
+}
+
 /// What a run in real time kept of its clock.
 void add_real_time(store::Summary& summary, const RunResult& result) {
   if (!result.real_time) return;
@@ -228,6 +242,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   }
   add_energy(summary, result);
   add_real_time(summary, result);
+  add_device(summary, result);
   add_jumps(summary, world);
   add_images(summary, world);
   add_pruning(summary, world);

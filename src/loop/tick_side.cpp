@@ -38,6 +38,8 @@ void TickSide::feel_at(TickRecord& tick) {
   tick.handle_valid = handle_.valid;
   tick.wanted = tool::coupling_on_hand(spec_, {tick.tool, tick.tool_twist}, {handle_.pose, handle_.twist});
   tick.device = side_.limiter->limit(tick.time, tick.wanted, handle_.valid);
+  if (side_.passivity)
+    tick.device = side_.passivity->apply(tick.time, tick.handle, tick.device, handle_.valid);
   side_.handle->feedback(tick.time, tick.device);
 }
 

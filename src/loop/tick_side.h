@@ -4,8 +4,9 @@
 
 namespace palpate::loop {
 
-/// The hand's side of an exchange, a tick at a time: device, virtual coupling, tool, limits.  It knows no
-/// World: of the bodies it has the linearised contact alone, so that it may run in a thread of its own.
+/// The hand's side of an exchange, a tick at a time: device, virtual coupling, tool, limits, passivity.  It
+/// knows no World: of the bodies it has the linearised contact alone, so that it may run in a thread of its
+/// own.
 class TickSide {
  public:
   /// @param side  the tool, the device and the limiter in it are this object's alone while a run lasts

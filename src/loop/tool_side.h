@@ -1,6 +1,7 @@
 #pragma once
 #include "palpate/device/device.h"
 #include "palpate/device/limiter.h"
+#include "palpate/device/passivity.h"
 #include "palpate/loop/world.h"
 #include "palpate/tool/tool.h"
 
@@ -24,6 +25,7 @@ struct ToolSide {
   std::unique_ptr<device::Device> handle;
   device::HandleSample handle_now;  ///< at the last tick
   std::unique_ptr<device::WrenchLimiter> limiter;
+  std::unique_ptr<device::PassivityController> passivity;  ///< null where it is off
   /// the tool's frame in contact; null where no contact names the tool
   std::shared_ptr<contact::MovingFrame> motion;
   /// `motion` where the scheme is partitioned: written by the ticks; else null

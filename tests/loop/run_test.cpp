@@ -133,6 +133,37 @@ TEST(Run, SameSceneSameNumbersBitForBit) {
     EXPECT_EQ(first.ticks[i].device.force, second.ticks[i].device.force);
 }
 
+// Observing changes no number; the energy is the one of the recorded ticks, and so is the buzz.
+TEST(Run, ObservesTheEnergyAtThePort) {
+  scene::Description d = pressed_block(0.002);
+  d.device->keyframes.push_back({.time_s = 0.03, .position_m = d.tool->position_m - Vec3(0, 0, 0.002)});
+  Log off, observed;
+  loop::RunResult plain, result;
+  for (const bool observe : {false, true}) {
+    const auto world = loop::assemble(d);
+    loop::RunOptions options;
+    options.observers = {observe ? &observed : &off};
+    if (observe) options.passivity = device::PassivityController::Mode::kObserve;
+    (observe ? result : plain) = loop::run(*world, options);
+  }
+  EXPECT_FALSE(plain.port.has_value());
+  ASSERT_TRUE(result.port.has_value() && result.buzz_n.has_value());
+  double energy = 0.0;
+  ASSERT_EQ(off.ticks.size(), observed.ticks.size());
+  for (std::size_t i = 0; i < off.ticks.size(); ++i) {
+    EXPECT_EQ(off.ticks[i].device.force, observed.ticks[i].device.force);
+    if (i > 0)
+      energy -= off.ticks[i - 1].device.force.dot(off.ticks[i].handle.translation -
+                                                  off.ticks[i - 1].handle.translation);
+  }
+  EXPECT_NEAR(result.port->energy, energy, 1e-12);
+  EXPECT_GT(energy, 1e-4);
+  EXPECT_GT(result.port->work, 0.0);
+  EXPECT_EQ(result.port->controller_dissipated, 0.0);
+  EXPECT_GT(*result.buzz_n, 0.0);
+  EXPECT_EQ(*result.buzz_n, *plain.buzz_n);
+}
+
 // At rest the spring of the hand carries the contact: k (x_h - x_t) + F = 0, and the block carries the same
 // force.
 TEST(Run, HeldHandleComesToRestInBalanceWithTheBlock) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "palpate/device/passivity.h"
 #include "palpate/dynamics/exchange.h"
 #include "palpate/loop/energy.h"
 #include "palpate/loop/real_time.h"
@@ -19,8 +20,9 @@ struct TickRecord {
   Twist handle_twist, tool_twist;
   /// on the tool: from the linearised contact, or, monolithic, from the contact itself
   Wrench contact;
-  Wrench wanted;                     ///< on the hand, before the limit
-  Wrench device;                     ///< on the hand, as sent to the motors
+  Wrench wanted;  ///< on the hand, before the limit
+  /// on the hand, as sent to the motors: behind the limit and the passivity controller
+  Wrench device;
   bool handle_valid = true;          ///< whether the handle's pose was
   std::uint64_t record_version = 0;  ///< of the linearised contact that this tick used; 0: none
 };
@@ -45,9 +47,17 @@ struct RunOptions {
   double duration_s = 0.0;  ///< 0: the scene's
   /// ticks by the machine's clock, in a thread of their own; else in virtual time
   bool real_time = false;
+  device::PassivityController::Mode passivity = device::PassivityController::Mode::kOff;
   std::vector<Observer*> observers;
   std::function<void(double fraction)> progress;  ///< called after every period
   const std::atomic<bool>* stop = nullptr;        ///< set from outside: the run ends after the current step
+};
+
+/// The energy at the device's port over a run (device/passivity.h) [J].
+struct PortEnergy {
+  double energy = 0.0, least = 0.0;                ///< that the hand has put in: at the end, and at its least
+  double work = 0.0, controller_dissipated = 0.0;  ///< magnitude of the motors' work, part of the controller
+  long controller_ticks = 0;                       ///< in which it acted
 };
 
 struct RunResult {
@@ -66,6 +76,8 @@ struct RunResult {
   long frozen_fallbacks = 0;    ///< condensed linearisations that had no factor and were frozen instead
   dynamics::StepperCounters counters;
   std::optional<RealTimeResult> real_time;
+  std::optional<PortEnergy> port;  ///< where passivity is observed or controlled
+  std::optional<double> buzz_n;  ///< force on the hand above 30 Hz, RMS [N]; with a tool of fast enough ticks
 };
 
 /// Visits every number of a run, as its overload for StepperCounters (dynamics/stepper.h), which it includes.

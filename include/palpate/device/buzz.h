@@ -1,0 +1,35 @@
+#pragma once
+#include "palpate/core/pose.h"
+
+namespace palpate::device {
+
+/// Below this a hand feels forces, above it a vibration [Hz].
+inline constexpr double kBuzzFrequency = 30.0;
+
+/// Root mean square of the device's force above a frequency, over the samples so far [N].  A Butterworth high
+/// pass of fourth order along each axis, by the bilinear transform with the frequency warped beforehand: a
+/// tone of f passes with |H|^2 = 1/(1 + (tan(pi f_c T)/tan(pi f T))^8), -3 dB at f_c.  A force that is
+/// constant from the first sample on gives exactly 0; a jump counts, for it has a spectrum.
+class Buzz {
+ public:
+  /// @param tick_s  T, with f_c T < 1/2
+  explicit Buzz(double tick_s, double frequency_hz = kBuzzFrequency);
+  void add(const Vec3& force);
+  double rms() const;
+  double largest() const { return largest_; }  ///< magnitude of the filtered force [N]
+
+ private:
+  /// y = c (x - 2 x1 + x2) - a1 y1 - a2 y2
+  struct Section {
+    double c, a1, a2;
+    Vec3 x1 = Vec3::Zero(), x2 = Vec3::Zero(), y1 = Vec3::Zero(), y2 = Vec3::Zero();
+    Vec3 operator()(const Vec3& x);
+  };
+  static Section section(double warped, double q);
+  Section first_, second_;
+  bool started_ = false;
+  double sum_ = 0.0, largest_ = 0.0;
+  long count_ = 0;
+};
+
+}  // namespace palpate::device

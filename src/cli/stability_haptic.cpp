@@ -1,0 +1,180 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "commands.h"
+#include "palpate/core/error.h"
+#include "palpate/report/plot.h"
+#include "palpate/report/table.h"
+#include "palpate/stability/z_width.h"
+#include "palpate/store/atomic_file.h"
+#include "palpate/store/csv.h"
+#include "palpate/store/summary.h"
+#include "paths.h"
+#include "progress.h"
+#include "scene_of.h"
+#include "stop.h"
+#include "undelivered.h"
+
+namespace palpate::cli {
+namespace {
+
+using namespace palpate::stability;
+namespace fs = std::filesystem;
+
+/// Where simulation and exact theory must agree.
+constexpr double kAgreement = 0.05;
+
+std::string stiffness_text(double value) {
+  return std::isinf(value) ? fmt::format("> {:g}", kStiffest) : fmt::format("{:.4g}", value);
+}
+
+void print_rows(const ZWidth& z) {
+  std::vector<std::vector<std::string>> rows;
+  for (const ZWidthRow& r : z.rows)
+    rows.push_back({fmt::format("{:.3g}", r.damping), stiffness_text(r.passive), stiffness_text(r.spectral),
+                    stiffness_text(r.delay_bound), stiffness_text(r.simulated),
+                    fmt::format("{:.4f}", r.simulated / r.spectral), stiffness_text(r.in_contact)});
+  fmt::print("{}", report::format_table({"B [N s/m]", "K passive [N/m]", "K spectral", "K delay bound",
+                                         "K simulated", "simulated/spectral", "coupling, tool pressed"},
+                                        rows));
+}
+
+void print_points(const std::vector<OperatingPoint>& points, double tick_s) {
+  std::vector<std::vector<std::string>> rows;
+  for (const OperatingPoint& p : points)
+    rows.push_back({p.name, fmt::format("{:.4g}", p.contact.stiffness), fmt::format("{:.4g}", p.series),
+                    fmt::format("{:.6f}", p.radius), p.simulated_stable ? "stable" : "unstable",
+                    p.words(tick_s)});
+  fmt::print("{}", report::format_table({"", "contact [N/m]", "with coupling [N/m]", "spectral radius",
+                                         "simulated", "verdict"},
+                                        rows));
+}
+
+void write_csv(const ZWidth& z, const std::string& path) {
+  store::CsvWriter csv(path, {"damping_n_s_m", "k_passive_n_m", "k_spectral_n_m", "k_delay_bound_n_m",
+                              "k_simulated_n_m", "coupling_in_contact_n_m"});
+  for (const auto* rows : {&z.rows, &z.fine})
+    for (const ZWidthRow& r : *rows)
+      csv.row(
+          std::vector<double>{r.damping, r.passive, r.spectral, r.delay_bound, r.simulated, r.in_contact});
+  csv.close();
+}
+
+report::Series curve(const std::string& name, const std::vector<ZWidthRow>& rows, double ZWidthRow::*value,
+                     report::Mark mark) {
+  report::Series series{.name = name, .x = {}, .y = {}, .mark = mark};
+  for (const ZWidthRow& row : rows) {
+    series.x.push_back(row.damping);
+    series.y.push_back(row.*value);
+  }
+  return series;
+}
+
+report::Plot plot_of(const ZWidth& z, const HapticLoop& loop, const std::vector<OperatingPoint>& points) {
+  report::Plot plot;
+  plot.x_label = "damping B [N s/m]";
+  plot.y_label = "largest stiffness K [N/m]";
+  plot.log_x = plot.log_y = true;
+  plot.width = 860, plot.height = 520;
+  using report::Mark;
+  plot.series = {curve("passive", z.fine, &ZWidthRow::passive, Mark::kLine),
+                 curve("stable, exact", z.fine, &ZWidthRow::spectral, Mark::kLine),
+                 curve("delay bound", z.fine, &ZWidthRow::delay_bound, Mark::kDashed),
+                 curve("stable, simulated", z.rows, &ZWidthRow::simulated, Mark::kPoints),
+                 curve("coupling, tool pressed", z.fine, &ZWidthRow::in_contact, Mark::kDashed)};
+  report::Series scene{.name = "", .x = {}, .y = {}, .mark = Mark::kPoints, .colour = "ink"};
+  for (const OperatingPoint& p : points) {
+    if (p.series <= 0.0) continue;
+    scene.x.push_back(loop.coupling_damping_n_s_m);
+    scene.y.push_back(p.series);
+    scene.labels.push_back(p.name);
+  }
+  plot.series.push_back(scene);
+  return plot;
+}
+
+ToolContactRange range_of(const StabilityArguments& a, const scene::Description& description) {
+  if (a.contact_stiffness_n_m.empty()) return contact_range(description);
+  ToolContactRange out;
+  out.least.stiffness = a.contact_stiffness_n_m.front();
+  out.greatest.stiffness = a.contact_stiffness_n_m.back();
+  if (!(out.least.stiffness > 0.0 && out.least.stiffness <= out.greatest.stiffness))
+    fail("--contact-stiffness-n-m {} {}: the least first, both above 0", out.least.stiffness,
+         out.greatest.stiffness);
+  return out;
+}
+
+void keep_summary(const StabilityArguments& a, const scene::Description& d, const ZWidth& z,
+                  const std::vector<OperatingPoint>& points, const std::string& folder) {
+  store::Summary summary;
+  summary.command = "palpate stability --haptic " + a.scene.scene;
+  summary.scene = d.name;
+  summary.scene_source = d.source;
+  summary.overrides = a.scene.overrides;
+  summary.outcome = z.stopped ? "interrupted" : "finished";
+  summary.provenance = store::provenance();
+  summary.section("verdicts").values = {{"passive_within_stable", z.passive_within_stable()},
+                                        {"largest_difference_simulated_spectral", z.largest_difference()}};
+  for (const OperatingPoint& p : points)
+    summary.section(p.name).values = {{"contact_n_m", p.contact.stiffness},
+                                      {"with_coupling_n_m", p.series},
+                                      {"spectral_radius", p.radius},
+                                      {"simulated_stable", p.simulated_stable},
+                                      {"passive", p.passive}};
+  store::write_summary((fs::path(folder) / "summary.json").string(), summary);
+}
+
+}  // namespace
+
+int stability_haptic(const StabilityArguments& a) {
+  const scene::Description description = scene_of(a.scene);
+  HapticLoop loop = loop_of(description);
+  loop.device.mass_kg = a.device_mass_kg;
+  loop.device.damping_n_s_m = a.device_damping_n_s_m;
+  loop.delay_ticks = a.delay_ticks;
+  const ToolContactRange range = range_of(a, description);
+  const std::vector<OperatingPoint> points = operating_points(loop, range, kHapticDuration);
+  loop.contact_stiffness_n_m = range.greatest.stiffness;
+  loop.contact_damping_n_s_m = range.greatest.damping;
+
+  const std::string folder =
+      a.folder.empty() ? default_folder("stability-haptic-" + short_name(description)) : a.folder;
+  make_folder(folder);
+  ZWidth z;
+  {
+    Progress progress("haptic stability");
+    ZWidthOptions options;
+    options.duration_s = kHapticDuration;
+    options.progress = [&progress](double fraction) { progress(fraction); };
+    options.stop = &stop_flag();
+    z = z_width(loop, options);
+  }
+  fmt::print(
+      "device of {:g} kg and {:g} N s/m, tick {:g} ms, delay {} ticks; coupling {:g} N/m, {:g} N s/m\n\n",
+      loop.device.mass_kg, loop.device.damping_n_s_m, 1e3 * loop.tick_s, loop.delay_ticks,
+      loop.coupling_stiffness_n_m, loop.coupling_damping_n_s_m);
+  print_rows(z);
+  fmt::print("\n");
+  print_points(points, loop.tick_s);
+
+  Undelivered missing;
+  write_csv(z, (fs::path(folder) / "z_width.csv").string());
+  keep_summary(a, description, z, points, folder);
+  const std::string svg = (fs::path(folder) / "z_width.svg").string();
+  std::error_code none;
+  fs::remove(svg, none);  // a plot of an earlier run would pass for this one's
+  try {
+    store::write_atomically(svg, report::plot_svg(plot_of(z, loop, points)));
+  } catch (const Error& e) { missing.add("plot " + svg, e.what()); }
+  fmt::print("\nwritten: {}\n", folder);
+  if (z.stopped) return kExitStopped;
+
+  const bool within = z.passive_within_stable(), agree = z.largest_difference() <= kAgreement;
+  fmt::print("passive lies {} stable; simulation and theory differ by at most {:.2g} %\n",
+             within ? "within" : "NOT within", 100.0 * z.largest_difference());
+  return missing.close(within && agree ? 0 : kExitError);
+}
+
+}  // namespace palpate::cli

@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "palpate/core/error.h"
+#include "palpate/loop/haptic_loop.h"
+#include "tick_side.h"
+
+// What a run does at each tick, with one axis of a device in it.  The device starts at half of its
+// equilibrium under the arm's force, tool and coupling with it.  A motion that decays stays in contact then,
+// so that the one-sided wall acts as a linear one and linear theory applies; one that grows leaves it.
+//
+// Growth is measured in the deflection of the coupling, less that of the equilibrium, between the second and
+// the last quarter: where the loop is stable it falls.
+
+namespace palpate::loop {
+namespace {
+
+constexpr double kUnlimited = 1e9;   ///< of the limiter, which does not belong to the linear loop [N]
+constexpr double kHeld = 1e12;       ///< mass of a tool that does not move [kg]
+constexpr double kPerturbed = 1e-5;  ///< of a loop without a wall [m]
+
+/// The device of one axis, x of the scene, exact between ticks; its velocity is the backward difference.
+class AxisHandle : public device::Device {
+ public:
+  AxisHandle(const HapticLoop& loop, double force)
+      : transition_(axis_transition(loop.device, loop.tick_s)),
+        tick_(loop.tick_s),
+        force_(force),
+        held_(static_cast<std::size_t>(loop.delay_ticks) + 1, 0.0) {}
+  /// At rest, under forces of the motors as if it had stood there for long.
+  void place(double x, double motors) {
+    x_ = x;
+    std::fill(held_.begin(), held_.end(), motors);
+  }
+  device::DeviceSpecification specification() const override { return {}; }
+  device::HandleSample do_sample(double t) override {
+    const double before = x_;
+    if (t > time_) {
+      const double F = held_.front() + force_, x = x_;
+      std::rotate(held_.begin(), held_.begin() + 1, held_.end());
+      x_ = transition_.xx * x + transition_.xv * v_ + transition_.xf * F;
+      v_ = transition_.vx * x + transition_.vv * v_ + transition_.vf * F;
+      time_ = t;
+    }
+    device::HandleSample out;
+    out.pose.translation.x() = x_;
+    out.twist.linear.x() = (x_ - before) / tick_;
+    return out;
+  }
+  void do_feedback(double, const Wrench& on_hand) override { held_.back() = on_hand.force.x(); }
+
+ private:
+  AxisTransition transition_;
+  double tick_, force_, x_ = 0.0, v_ = 0.0, time_ = 0.0;
+  std::vector<double> held_;  ///< forces of the motors; the first acts until the next sample
+};
+
+ToolSpec spec_of(const HapticLoop& loop) {
+  ToolSpec spec;
+  spec.mass_kg = loop.tool_held ? kHeld : loop.tool_mass_kg;
+  spec.coupling.stiffness_n_m = loop.coupling_stiffness_n_m;
+  spec.coupling.damping_n_s_m = loop.coupling_damping_n_s_m;
+  spec.tick_s = loop.tick_s;
+  spec.integrator = loop.tool_integrator;
+  return spec;
+}
+
+/// The wall fills x > 0.
+dynamics::LinearisedContact wall_at(const HapticLoop& loop, double tool_x) {
+  dynamics::LinearisedContact record;
+  record.version = 1;
+  if (loop.tool_held || loop.contact_stiffness_n_m <= 0.0 || tool_x <= 0.0) return record;
+  constexpr std::size_t kXX = 3 * 6 + 3;
+  record.J[kXX] = -loop.contact_stiffness_n_m;
+  record.B[kXX] = -loop.contact_damping_n_s_m;
+  record.source = dynamics::LinearisedContact::Source::kFrozen;
+  return record;
+}
+
+}  // namespace
+
+PressedWall press_wall(const HapticLoop& loop, double duration_s, double force_n) {
+  const ToolSpec spec = spec_of(loop);
+  const bool pressed = !loop.tool_held && loop.contact_stiffness_n_m > 0.0;
+  const double k = loop.coupling_stiffness_n_m, K = loop.contact_stiffness_n_m;
+  const double yielding = pressed ? 1.0 / K + 1.0 / k : 0.0;
+  // of the arm's spring and the wall; the coupling carries what that spring does not
+  const double x_end = pressed ? force_n / (1.0 / yielding + loop.device.arm_stiffness_n_m) : 0.0,
+               carried = pressed ? x_end / yielding : 0.0;
+
+  ToolSide side;
+  side.tool = std::make_unique<tool::Tool>(spec, Vec3::Zero());
+  side.limiter = std::make_unique<device::WrenchLimiter>(kUnlimited, kUnlimited, 0.0);
+  auto handle = std::make_unique<AxisHandle>(loop, pressed ? force_n : 0.0);
+  handle->place(pressed ? 0.5 * x_end : kPerturbed, pressed ? -0.5 * carried : 0.0);
+  side.handle = std::move(handle);
+  if (pressed) side.tool->set_state(0.0, {Quat::Identity(), Vec3(0.5 * carried / K, 0, 0)}, {});
+
+  TickSide ticks(spec, side);
+  ticks.start(0.0);
+  side.limiter->limit(0.0, {}, true);  // its first output is zero, whatever is wanted
+  const int count = static_cast<int>(std::ceil(duration_s / loop.tick_s));
+  PALPATE_CHECK(count >= 8, "{} ticks are too few to see a growth", count);
+  PressedWall out;
+  double second = 0.0, last = 0.0;
+  for (int i = 1; i <= count; ++i) {
+    TickRecord tick;
+    const auto status =
+        ticks.tick(i * loop.tick_s, loop.tick_s, wall_at(loop, side.tool->pose().translation.x()), tick);
+    const double deflection = (tick.handle.translation - tick.tool.translation).x() - carried / k;
+    out.largest_force = std::max(out.largest_force, std::abs(tick.device.force.x()));
+    if (!status.ok() || !(std::abs(deflection) < 1e3 * std::max(x_end, kPerturbed))) {
+      out.growth = 1e3;
+      return out;
+    }
+    if (4 * i > count && 2 * i <= count) second = std::max(second, std::abs(deflection));
+    if (4 * i > 3 * count) last = std::max(last, std::abs(deflection));
+  }
+  const double rounding = 1e-9 * std::max(x_end, kPerturbed);
+  out.growth = second > 0.0 ? last / second : 0.0;
+  out.stable = last < second || last < rounding;
+  return out;
+}
+
+}  // namespace palpate::loop

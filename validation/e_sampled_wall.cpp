@@ -1,0 +1,130 @@
+#include <numbers>
+#include <random>
+
+#include "cases.h"
+#include "palpate/device/passivity.h"
+
+// A virtual wall F = -K x - B (x_k - x_{k-1})/T in x > 0, its force held over T, against a device with the
+// viscous damping b.  Colgate and Schenkel (1997): passive where b > K T/2 + |B|; with one tick of delay and
+// B = 0, b > 3 K T/2.  The energy at the port (device/passivity.h) may not fall below zero inside, whatever
+// the hand does.  Outside, random motions do not find the counter-examples:
+// - the triangle wave of period 2T and amplitude A, wholly in the wall, changes the energy by (8 A^2/T)(b - K
+//   T/2 - B) a cycle for B >= 0;
+// - with one tick of delay, a sine of w changes it by sum D^2 (b/T - (K/2) sin(3wT/2)/sin(wT/2)) a cycle,
+//   which is negative for b = 0.99 * 3 K T/2 where w T is small.
+
+namespace palpate::validation {
+namespace {
+
+constexpr double kT = 1e-3;
+
+/// Drives a wall along x(0), x(1), ...; returns the observer after each sample.
+struct Wall {
+  double K, B, b;
+  bool delayed = false;
+  bool one_sided = true;
+
+  template <class Motion, class After>
+  void drive(int count, const Motion& x_at, const After& after) const {
+    device::PassivityObserver observer(b);
+    double last = x_at(0), force = 0.0;
+    for (int k = 0; k < count; ++k) {
+      const double x = x_at(k);
+      observer.sample(k * kT, {Quat::Identity(), Vec3(x, 0, 0)});
+      const double now = x > 0.0 || !one_sided ? -K * x - B * (x - last) / kT : 0.0;
+      observer.hold({Vec3::Zero(), Vec3(delayed ? force : now, 0, 0)});
+      force = now;
+      last = x;
+      after(k, observer);
+    }
+  }
+};
+
+/// The least energy over random motions, each from outside of the wall or its surface.
+double least_energy(const Wall& wall, int motions) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  double least = 0.0;
+  for (int i = 0; i < motions; ++i) {
+    std::vector<double> x(2000, 0.0);
+    double v = 0.0;
+    const double kept = i % 2 ? 0.99 : 0.0;  // smooth, and rough
+    for (std::size_t k = 1; k < x.size(); ++k) {
+      v = kept * v + (kept > 0.0 ? 1e-5 : 1e-4) * normal(random);
+      x[k] = 0.999 * x[k - 1] + v;
+    }
+    wall.drive(
+        2000, [&](int k) { return x[static_cast<std::size_t>(k)]; },
+        [&](int, const device::PassivityObserver& o) { least = std::min(least, o.least_energy()); });
+  }
+  return least;
+}
+
+double triangle_cycle(const Wall& wall, double A) {
+  double before = 0.0, cycle = 0.0;
+  wall.drive(
+      9, [A](int k) { return 2.0 * A + (k % 2 ? A : -A); },
+      [&](int k, const device::PassivityObserver& o) {
+        if (k == 6) before = o.energy();
+        if (k == 8) cycle = o.energy() - before;
+      });
+  return cycle;
+}
+
+double sine_cycle(const Wall& wall, int period) {
+  double before = 0.0, cycle = 0.0;
+  const double w = 2.0 * std::numbers::pi / period;
+  wall.drive(
+      2 * period + 1, [w](int k) { return 1e-3 * std::sin(w * k); },
+      [&](int k, const device::PassivityObserver& o) {
+        if (k == period) before = o.energy();
+        if (k == 2 * period) cycle = o.energy() - before;
+      });
+  return cycle;
+}
+
+std::vector<Measurement> run(const std::string& fault) {
+  std::vector<Measurement> out;
+  const double K = 1500.0, A = 1e-3;
+  for (const double B : {0.0, 0.4, -0.4}) {
+    const double half_sample = fault == "half-sample-forgotten" ? 0.0 : 0.5 * K * kT;
+    const double b = half_sample + std::abs(B);
+    const double least = least_energy({K, B, b}, 60);
+    out.push_back(
+        {.quantity = fmt::format("least energy at the port at the limit of theory, B = {} N s/m [J]", B),
+         .computed = least,
+         .error = std::max(0.0, -least),
+         .bar = 1e-9});
+  }
+  for (const double b : {0.9, 1.3}) {
+    const double B = fault == "wrong-sign-of-b" ? -0.4 : 0.4;
+    const double exact = 8.0 * A * A / kT * (b - 0.5 * K * kT - 0.4), found = triangle_cycle({K, B, b}, A);
+    out.push_back({.quantity = fmt::format("energy of a cycle of the triangle wave, b = {} N s/m [J]", b),
+                   .computed = found,
+                   .exact = exact,
+                   .error = std::abs(found / exact - 1.0),
+                   .bar = 1e-10});
+  }
+  const bool delayed = fault != "delay-forgotten";
+  const double below = sine_cycle({K, 0.0, 0.99 * 1.5 * K * kT, delayed, false}, 400),
+               above = sine_cycle({K, 0.0, 1.01 * 1.5 * K * kT, delayed, false}, 400);
+  out.push_back(
+      {.quantity = "one tick of delay: cycles with energy of the wrong sign, b = 3KT/2 -+ 1 % [count]",
+       .computed = static_cast<double>((below >= 0.0) + (above <= 0.0)),
+       .error = static_cast<double>((below >= 0.0) + (above <= 0.0)),
+       .bar = 0.0});
+  return out;
+}
+
+}  // namespace
+
+ValidationCase sampled_wall() {
+  return {.name = "sampled-wall",
+          .section = "E",
+          .summary = "passivity of a sampled virtual wall: b > K T/2 + |B|, and 3 K T/2 with a tick of delay",
+          .why = "a wall that gives back more than the hand puts in makes it vibrate, whatever the hand does",
+          .run = run,
+          .faults = {"half-sample-forgotten", "wrong-sign-of-b", "delay-forgotten"}};
+}
+
+}  // namespace palpate::validation
