@@ -351,7 +351,8 @@ void add_diff(CLI::App& app, Invocation& invocation) {
   palpate diff out/touch-head out/replay-touch-head
 
 Forces and torques on the hand at the reference's ticks: root mean square and largest difference, its
-spectrum in bands, and in how many ticks it is more than fingers notice (7 % of a force, 12.7 % of a torque).)");
+spectrum in bands, and in how many ticks it is more than fingers notice (7 % of a force, 12.7 % of a
+torque).)");
   command->callback(
       [arguments, &invocation] { invocation.action = [arguments] { return diff(*arguments); }; });
 }

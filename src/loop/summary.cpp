@@ -39,7 +39,8 @@ void add_sizes(store::SummarySection& s, const World& world) {
 }
 
 void add_options(store::SummarySection& s, const scene::Description& d) {
-  s.values.emplace_back("scene_path", std::filesystem::absolute(d.path).lexically_normal().string());
+  if (!d.path.empty())  // else it came from no file
+    s.values.emplace_back("scene_path", std::filesystem::absolute(d.path).lexically_normal().string());
   s.values.emplace_back("integrator", d.integrator.name);
   s.values.emplace_back("rtol", d.integrator.rtol);
   s.values.emplace_back("step_s", d.integrator.step_s);
