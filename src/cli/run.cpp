@@ -49,6 +49,11 @@ void print_outcome(const loop::World& world, const loop::RunResult& result, cons
         "on the hand: at most {:.4g} N (at {:g} s) and {:.4g} N m (at {:g} s) in {} ticks; {} held at the "
         "device's limit\n",
         peak.force_n, peak.force_s, peak.torque_n_m, peak.torque_s, result.ticks, result.limited_ticks);
+  if (result.outside_ticks > 0)
+    fmt::print(
+        "in {} ticks the handle was outside the device's workspace, where forces fade to nothing; move it by "
+        "device.workspace_center_m\n",
+        result.outside_ticks);
   if (result.buzz_n) fmt::print("buzz: {:.3g} N RMS of the force on the hand above 30 Hz\n", *result.buzz_n);
   if (!result.port) return;
   const loop::PortEnergy& port = *result.port;

@@ -1,4 +1,4 @@
-#include "device/arm_axis.h"
+#include "palpate/device/arm_axis.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,11 +2,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "device/arm_axis.h"
 #include "device/make.h"
 #include "device/motions.h"
 #include "palpate/core/error.h"
 #include "palpate/core/so3.h"
+#include "palpate/device/arm_axis.h"
 
 // A simulated device in the hand of a simulated arm.  The scene's path is where the arm wants to be, x_d(t)
 // (the equilibrium point of Hogan 1985); a spring k and a damper b pull arm and device there.  The grip is
@@ -88,23 +88,19 @@ class Axes {
   ArmAxis axes_[3];
 };
 
-void check(const char* key, double value, const Range& range) {
-  if (!range.holds(value)) fail("device: {} = {} {}", key, value, range.demand());
-}
-
 ArmAxis::Parameters translation_of(const DeviceSpec& s, const DeviceFigures& figures) {
-  check("arm_mass_kg", s.arm_mass_kg, DeviceRanges::arm);
-  check("arm_damping_n_s_m", s.arm_damping_n_s_m, DeviceRanges::arm);
-  check("arm_stiffness_n_m", s.arm_stiffness_n_m, DeviceRanges::arm);
+  check_range("arm_mass_kg", s.arm_mass_kg, DeviceRanges::arm);
+  check_range("arm_damping_n_s_m", s.arm_damping_n_s_m, DeviceRanges::arm);
+  check_range("arm_stiffness_n_m", s.arm_stiffness_n_m, DeviceRanges::arm);
   return {s.arm_mass_kg + figures.mass, s.arm_damping_n_s_m + figures.damping, s.arm_stiffness_n_m,
           figures.friction};
 }
 
 ArmAxis::Parameters rotation_of(const DeviceSpec& s) {
-  check("rotational_inertia_kg_m2", s.rotational_inertia_kg_m2, DeviceRanges::inertia);
-  check("arm_rotational_damping_n_m_s_rad", s.arm_rotational_damping_n_m_s_rad, DeviceRanges::arm);
-  check("arm_rotational_stiffness_n_m_rad", s.arm_rotational_stiffness_n_m_rad, DeviceRanges::arm);
-  check("rotational_friction_n_m", s.rotational_friction_n_m, DeviceRanges::arm);
+  check_range("rotational_inertia_kg_m2", s.rotational_inertia_kg_m2, DeviceRanges::inertia);
+  check_range("arm_rotational_damping_n_m_s_rad", s.arm_rotational_damping_n_m_s_rad, DeviceRanges::arm);
+  check_range("arm_rotational_stiffness_n_m_rad", s.arm_rotational_stiffness_n_m_rad, DeviceRanges::arm);
+  check_range("rotational_friction_n_m", s.rotational_friction_n_m, DeviceRanges::arm);
   return {s.rotational_inertia_kg_m2, s.arm_rotational_damping_n_m_s_rad, s.arm_rotational_stiffness_n_m_rad,
           s.rotational_friction_n_m};
 }
@@ -120,10 +116,10 @@ class HandDevice : public Device {
         rotation_(rotation_of(spec), spec.arm_rotational_damping_n_m_s_rad),
         position_(figures_.encoder_resolution, spec.velocity_cutoff_per_s),
         angle_(spec.encoder_resolution_rad, spec.velocity_cutoff_per_s) {
-    check("encoder_resolution_rad", spec.encoder_resolution_rad, DeviceRanges::resolution);
-    check("velocity_cutoff_per_s", spec.velocity_cutoff_per_s, DeviceRanges::resolution);
-    check("force_resolution_n", force_step_, DeviceRanges::resolution);
-    check("delay_s", delay_, DeviceRanges::delay_s);
+    check_range("encoder_resolution_rad", spec.encoder_resolution_rad, DeviceRanges::resolution);
+    check_range("velocity_cutoff_per_s", spec.velocity_cutoff_per_s, DeviceRanges::resolution);
+    check_range("force_resolution_n", force_step_, DeviceRanges::resolution);
+    check_range("delay_s", delay_, DeviceRanges::delay_s);
     sent_.reserve(2048);
   }
   DeviceSpecification specification() const override { return figures_.specification; }

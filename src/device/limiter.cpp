@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "device/make.h"
 #include "palpate/core/error.h"
 #include "palpate/device/device.h"
 #include "palpate/device/spec.h"
@@ -47,10 +48,6 @@ void check_slew(double slew, double max, const char* what) {
   if (!(slew >= least))
     fail("device: {} = {} is too small to fall from {} to zero within 10 ms; use at least {}", what, slew,
          max, least);
-}
-
-void check_range(const char* key, double value, const Range& range) {
-  if (!range.holds(value)) fail("device: {} = {} {}", key, value, range.demand());
 }
 
 }  // namespace

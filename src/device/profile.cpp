@@ -2,18 +2,20 @@
 
 #include <numbers>
 
+#include "device/make.h"
 #include "palpate/core/registry.h"
 #include "palpate/device/limiter.h"
 
 namespace palpate::device {
 
-// Only what a datasheet states.  Stiffness is that of the weakest direction where three are given.  None of
-// these devices is said to have a slew: that follows from kAmplifierBandwidth below.
+// Figures as the makers' data sheets are commonly quoted; they have not been checked against a sheet.
+// Stiffness is that of the weakest direction where three are given.  None of these devices is said to have a
+// slew: that follows from kAmplifierBandwidth below.
 const std::vector<DeviceProfile>& device_profiles() {
   static const std::vector<DeviceProfile> profiles = {
-      // SensAble (later Geomagic) PHANTOM Premium 1.5, datasheet of 2004: 381 x 267 x 191 mm, 0.03 mm,
-      // backdrive
-      // friction 0.04 N, 8.5 N, 1.4 N continuous, 3.5 N/mm, apparent mass less than 75 g.
+      // SensAble (later Geomagic) PHANTOM Premium 1.5: 381 x 267 x 191 mm, 0.03 mm, backdrive friction 0.04
+      // N,
+      // 8.5 N, 1.4 N continuous, 3.5 N/mm, apparent mass less than 75 g.
       {.name = "premium-1.5",
        .summary = "SensAble PHANTOM Premium 1.5: 8.5 N, 3.5 N/mm",
        .figures = {.name = "PHANTOM Premium 1.5",
@@ -27,7 +29,7 @@ const std::vector<DeviceProfile>& device_profiles() {
        .mass = 0.075,
        .friction = 0.04,
        .encoder_resolution = 3e-5},
-      // SensAble PHANTOM Omni (later Geomagic Touch), datasheet of 2006: 160 x 120 x 70 mm, 0.055 mm, 0.26 N,
+      // SensAble PHANTOM Omni (later Geomagic Touch): 160 x 120 x 70 mm, 0.055 mm, 0.26 N,
       // 3.3 N, 0.88 N continuous, 1.26, 2.31 and 1.02 N/mm, 45 g.
       {.name = "omni",
        .summary = "SensAble PHANTOM Omni: 3.3 N, 1 N/mm",
@@ -42,7 +44,7 @@ const std::vector<DeviceProfile>& device_profiles() {
        .mass = 0.045,
        .friction = 0.26,
        .encoder_resolution = 5.5e-5},
-      // Force Dimension omega.3 and omega.6, datasheets of 2011: 160 mm across and 110 mm deep, 0.01 mm, 12 N
+      // Force Dimension omega.3 and omega.6: 160 mm across and 110 mm deep, 0.01 mm, 12 N
       // continuous, 14.5 N/mm closed loop, up to 4 kHz.  Mass and friction are not stated.
       {.name = "omega.3",
        .summary = "Force Dimension omega.3: 12 N, 14.5 N/mm",
@@ -82,18 +84,14 @@ constexpr double kAmplifierSlew = 2.0 * std::numbers::pi * kAmplifierBandwidth;
 constexpr double kMaxForce = 3.3, kMaxTorque = 0.2;
 constexpr double kMass = 0.045;  ///< of the lightest device above
 
-void check(const char* key, double value, const Range& range) {
-  if (!range.holds(value)) fail("device: {} = {} {}", key, value, range.demand());
-}
-
 Workspace workspace_of(const DeviceSpec& spec, const DeviceSpecification& figures) {
-  check("workspace_radius_m", spec.workspace_radius_m, DeviceRanges::workspace_radius_m);
-  check("workspace_margin_m", spec.workspace_margin_m, DeviceRanges::workspace_margin_m);
+  check_range("workspace_radius_m", spec.workspace_radius_m, DeviceRanges::workspace_radius_m);
+  check_range("workspace_margin_m", spec.workspace_margin_m, DeviceRanges::workspace_margin_m);
   if (!spec.workspace_center_m.allFinite()) fail("device: workspace_center_m must be three finite numbers");
   Workspace out{spec.workspace_center_m, Vec3::Zero(), spec.workspace_radius_m, spec.workspace_margin_m};
   if (spec.workspace_size_m) {
     for (const double one : *spec.workspace_size_m)
-      check("workspace_size_m", one, DeviceRanges::workspace_size_m);
+      check_range("workspace_size_m", one, DeviceRanges::workspace_size_m);
     out.size = *spec.workspace_size_m;
   } else if (figures.workspace && !(out.radius > 0.0)) {
     out.size = *figures.workspace;
@@ -114,8 +112,8 @@ DeviceFigures figures_of(const DeviceSpec& spec) {
   DeviceFigures out{};
   out.max_force = spec.max_force_n.value_or(figures.max_force.value_or(kMaxForce));
   out.max_torque = spec.max_torque_n_m.value_or(figures.max_torque.value_or(kMaxTorque));
-  check("max_force_n", out.max_force, DeviceRanges::max_force_n);
-  check("max_torque_n_m", out.max_torque, DeviceRanges::max_torque_n_m);
+  check_range("max_force_n", out.max_force, DeviceRanges::max_force_n);
+  check_range("max_torque_n_m", out.max_torque, DeviceRanges::max_torque_n_m);
   out.max_force_slew = spec.max_force_slew_n_s.value_or(slew * out.max_force);
   out.max_torque_slew = spec.max_torque_slew_n_m_s.value_or(slew * out.max_torque);
   out.workspace = workspace_of(spec, figures);
@@ -123,10 +121,10 @@ DeviceFigures figures_of(const DeviceSpec& spec) {
   out.damping = spec.device_damping_n_s_m;
   out.friction = spec.device_friction_n.value_or(profile.friction.value_or(0.0));
   out.encoder_resolution = spec.encoder_resolution_m.value_or(profile.encoder_resolution.value_or(0.0));
-  check("device_mass_kg", out.mass, DeviceRanges::inertia);
-  check("device_damping_n_s_m", out.damping, DeviceRanges::arm);
-  check("device_friction_n", out.friction, DeviceRanges::arm);
-  check("encoder_resolution_m", out.encoder_resolution, DeviceRanges::resolution);
+  check_range("device_mass_kg", out.mass, DeviceRanges::inertia);
+  check_range("device_damping_n_s_m", out.damping, DeviceRanges::arm);
+  check_range("device_friction_n", out.friction, DeviceRanges::arm);
+  check_range("encoder_resolution_m", out.encoder_resolution, DeviceRanges::resolution);
   out.specification = figures;
   if (out.specification.name.empty()) out.specification.name = spec.type;
   out.specification.max_force = out.max_force;

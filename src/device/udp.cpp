@@ -14,10 +14,6 @@
 namespace palpate::device {
 namespace {
 
-void check(const char* key, double value, const Range& range) {
-  if (!range.holds(value)) fail("device: {} = {} {}", key, value, range.demand());
-}
-
 sockaddr_in address_of(std::uint32_t host, std::uint16_t port) {
   sockaddr_in out{};
   out.sin_family = AF_INET;
@@ -36,8 +32,8 @@ UdpDevice::UdpDevice(const DeviceSpec& spec)
       port_(spec.port),
       time_out_(spec.time_out_s),
       specification_(figures_of(spec).specification) {
-  if (port_ != 0) check("port", port_, DeviceRanges::port);
-  check("time_out_s", time_out_, DeviceRanges::time_out_s);
+  if (port_ != 0) check_range("port", port_, DeviceRanges::port);
+  check_range("time_out_s", time_out_, DeviceRanges::time_out_s);
   in_addr host{};
   if (::inet_pton(AF_INET, address_.c_str(), &host) != 1)
     fail("device: address = \"{}\" is no IPv4 address; \"127.0.0.1\" is this machine alone", address_);
@@ -108,7 +104,7 @@ void UdpDevice::do_feedback(double t, const Wrench& on_hand) {
 }
 
 std::unique_ptr<Device> make_udp(const DeviceSpec& spec, const std::string&) {
-  check("port", spec.port, DeviceRanges::port);
+  check_range("port", spec.port, DeviceRanges::port);
   return std::make_unique<UdpDevice>(spec);
 }
 

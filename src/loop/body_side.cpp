@@ -173,7 +173,10 @@ void BodySide::finish() {
     result_.contact_queries = world_.contact->queries();
     result_.tunnelled = world_.contact->tunnelled();
   }
-  if (side_.limiter) result_.limited_ticks = side_.limiter->limited_ticks();
+  if (side_.limiter) {
+    result_.limited_ticks = side_.limiter->limited_ticks();
+    result_.outside_ticks = side_.limiter->outside_ticks();
+  }
   if (buzz_) result_.buzz_n = buzz_->rms();
   if (side_.passivity) {
     const device::PassivityObserver& port = side_.passivity->observer();

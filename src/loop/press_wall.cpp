@@ -24,35 +24,34 @@ constexpr double kPerturbed = 1e-5;  ///< of a loop without a wall [m]
 class AxisHandle : public device::Device {
  public:
   AxisHandle(const HapticLoop& loop, double force)
-      : transition_(axis_transition(loop.device, loop.tick_s)),
+      : axis_(loop.device.arm()),
         tick_(loop.tick_s),
         force_(force),
         held_(static_cast<std::size_t>(loop.delay_ticks) + 1, 0.0) {}
   /// At rest, under forces of the motors as if it had stood there for long.
   void place(double x, double motors) {
-    x_ = x;
+    axis_.place(x, 0.0);
     std::fill(held_.begin(), held_.end(), motors);
   }
   device::DeviceSpecification specification() const override { return {}; }
   device::HandleSample do_sample(double t) override {
-    const double before = x_;
+    const double before = axis_.x();
     if (t > time_) {
-      const double F = held_.front() + force_, x = x_;
+      const double F = held_.front() + force_;
       std::rotate(held_.begin(), held_.begin() + 1, held_.end());
-      x_ = transition_.xx * x + transition_.xv * v_ + transition_.xf * F;
-      v_ = transition_.vx * x + transition_.vv * v_ + transition_.vf * F;
+      axis_.advance(tick_, F, F);
       time_ = t;
     }
     device::HandleSample out;
-    out.pose.translation.x() = x_;
-    out.twist.linear.x() = (x_ - before) / tick_;
+    out.pose.translation.x() = axis_.x();
+    out.twist.linear.x() = (axis_.x() - before) / tick_;
     return out;
   }
   void do_feedback(double, const Wrench& on_hand) override { held_.back() = on_hand.force.x(); }
 
  private:
-  AxisTransition transition_;
-  double tick_, force_, x_ = 0.0, v_ = 0.0, time_ = 0.0;
+  device::ArmAxis axis_;
+  double tick_, force_, time_ = 0.0;
   std::vector<double> held_;  ///< forces of the motors; the first acts until the next sample
 };
 

@@ -114,6 +114,11 @@ class RealTime {
     try {
       tick_by_the_clock();
     } catch (...) { failure_ = std::current_exception(); }
+    try {
+      ticks_.end();
+    } catch (...) {
+      if (!failure_) failure_ = std::current_exception();
+    }
     over_.store(true, std::memory_order_release);
   }
 
@@ -131,7 +136,6 @@ class RealTime {
       if (!queue_.push(timed)) unrecorded_.fetch_add(1, std::memory_order_relaxed);
       ticked_.store(i, std::memory_order_release);
     }
-    ticks_.end(time_of(ticked_.load()));
   }
 
   // --- the bodies' thread

@@ -6,6 +6,12 @@ namespace palpate::loop {
 
 TickSide::TickSide(const ToolSpec& spec, ToolSide& side) : spec_(spec), side_(side) {}
 
+TickSide::~TickSide() {
+  try {
+    end();
+  } catch (...) {}  // the device failed: it is what the run reports
+}
+
 void TickSide::start(double t) { side_.handle_now = handle_ = side_.handle->sample(t); }
 
 dynamics::StepResult TickSide::tick(double t, double h, const dynamics::LinearisedContact& record,
@@ -40,9 +46,15 @@ void TickSide::feel_at(TickRecord& tick) {
   tick.device = side_.limiter->limit(tick.time, tick.wanted, handle_.valid);
   if (side_.passivity)
     tick.device = side_.passivity->apply(tick.time, tick.handle, tick.device, handle_.valid);
+  live_ = true;
+  time_ = tick.time;
   side_.handle->feedback(tick.time, tick.device);
 }
 
-void TickSide::end(double t) { side_.handle->feedback(t, {}); }
+void TickSide::end() {
+  if (!live_) return;
+  live_ = false;
+  side_.handle->feedback(time_, {});
+}
 
 }  // namespace palpate::loop

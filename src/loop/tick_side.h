@@ -11,6 +11,10 @@ class TickSide {
  public:
   /// @param side  the tool, the device and the limiter in it are this object's alone while a run lasts
   TickSide(const ToolSpec& spec, ToolSide& side);
+  /// No wrench on the hand any more, however the run ended.
+  ~TickSide();
+  TickSide(const TickSide&) = delete;
+  TickSide& operator=(const TickSide&) = delete;
   /// Takes the handle at the run's start.
   void start(double t);
   /// The tool goes on by h to t under coupling and contact; the wrench goes to the device.
@@ -18,7 +22,7 @@ class TickSide {
   /// The wrench on the hand for `tick`'s time and tool, to the device.
   void feel(TickRecord& tick);
   /// No wrench on the hand any more.
-  void end(double t);
+  void end();
 
  private:
   /// With the handle as it is.
@@ -27,6 +31,8 @@ class TickSide {
   const ToolSpec& spec_;
   ToolSide& side_;
   device::HandleSample handle_;
+  double time_ = 0.0;  ///< of the last tick [s]
+  bool live_ = false;  ///< the hand may feel a wrench
 };
 
 }  // namespace palpate::loop

@@ -44,7 +44,7 @@ class VirtualTime {
   }
 
   void end() {
-    if (ticks_) ticks_->end(result_.time);
+    if (ticks_) ticks_->end();
   }
 
  private:

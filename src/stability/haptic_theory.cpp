@@ -30,7 +30,7 @@
 //
 // Spectral radius.  State (x, v, w, y, u, q_0 .. q_n): device, its measured velocity, tool, and the forces on
 // their way, q_0 being held in the coming tick.  A step is linear in it, so its columns are the steps of the
-// unit vectors.  The device is exact (axis_transition); the tool is taken by its scheme
+// unit vectors.  The device is exact (arm_transition); the tool is taken by its scheme
 // (tool/fixed_tick.cpp).
 
 namespace palpate::stability {
@@ -44,7 +44,7 @@ class Step {
  public:
   explicit Step(const HapticLoop& loop)
       : l_(loop),
-        a_(loop::axis_transition(loop.device, loop.tick_s)),
+        a_(device::arm_transition(loop.device.arm(), loop.tick_s)),
         implicit_(loop.tool_integrator == "linearly-implicit-euler") {
     if (!loop.tool_held && !implicit_ && loop.tool_integrator != "semi-implicit-euler")
       fail(
@@ -60,8 +60,7 @@ class Step {
   VecX operator()(const VecX& s) const {
     VecX out = VecX::Zero(s.size());
     const double F = s[kQ];
-    out[kX] = a_.xx * s[kX] + a_.xv * s[kV] + a_.xf * F;
-    out[kV] = a_.vx * s[kX] + a_.vv * s[kV] + a_.vf * F;
+    out.head<2>() = a_ * Eigen::Vector4d(s[kX], s[kV], F, 0.0);
     out[kW] = (out[kX] - s[kX]) / l_.tick_s;
     if (!l_.tool_held) tool(s, out);
     const int n = l_.delay_ticks;
@@ -85,7 +84,7 @@ class Step {
   }
 
   const HapticLoop& l_;
-  loop::AxisTransition a_;
+  Eigen::Matrix<double, 2, 4> a_;
   bool implicit_;
 };
 

@@ -127,7 +127,13 @@ TEST(RealTime, RecordsAreAdoptedInOrder) {
 // In virtual time with the latency of a period, the slowest that a bodies' thread in time may have, and
 // without: real time lies between, to the scatter of the clock.  What differs is when records are adopted.
 TEST(RealTime, FeelsWhatVirtualTimeFeels) {
-  const Ran real = run(scene_of(), true);
+  const auto in_time = [](const loop::RealTimeResult& clock) {
+    return clock.stretched_periods + clock.dropped_periods == 0 &&
+           loop::quantile(clock.latency_s, 1.0) <= clock.period_s;
+  };
+  Ran real = run(scene_of(), true);
+  for (int i = 0; i < 10 && !in_time(*real.result.real_time); ++i) real = run(scene_of(), true);
+  if (!in_time(*real.result.real_time)) GTEST_SKIP() << "the machine did not keep up in eleven runs";
   const Ran now = run(scene_of(), false);
   const Ran late = run(scene_of(10), false);
   ASSERT_EQ(real.kept.ticks.size(), now.kept.ticks.size());
@@ -141,8 +147,6 @@ TEST(RealTime, FeelsWhatVirtualTimeFeels) {
   }
   ASSERT_GT(peak, 0.1);
   EXPECT_GT(between, 0.0);
-  if (real.result.real_time->stretched_periods + real.result.real_time->dropped_periods > 0)
-    GTEST_SKIP() << "the machine did not keep up";
   EXPECT_LT(off, between + 0.05 * peak);
 }
 
@@ -213,29 +217,54 @@ TEST(RealTime, ATickTakesNoMemory) {
 #endif
 }
 
-// After its end a run presses on no hand.
+/// A device that feels, and that fails from a time on.
+struct Feels : device::Device {
+  explicit Feels(double when) : fails_at(when) {}
+  device::DeviceSpecification specification() const override { return {}; }
+  device::HandleSample do_sample(double t) override {
+    if (t > fails_at) fail("the cable is out");
+    device::HandleSample s;
+    s.pose.translation = Vec3(0, 0, -0.1);
+    return s;
+  }
+  void do_feedback(double, const Wrench& w) override {
+    force = w.force;
+    largest = std::max(largest, force.norm());
+  }
+  double fails_at, largest = 0.0;
+  Vec3 force = Vec3::Zero();
+};
+
+// After its end a run presses on no hand, by either clock, and where the device itself fails.
 TEST(TickSide, EndsWithoutAForce) {
-  const scene::Description d = scene_of();
-  struct Feels : device::Device {
-    device::DeviceSpecification specification() const override { return {}; }
-    device::HandleSample do_sample(double) override {
-      device::HandleSample s;
-      s.pose.translation = Vec3(0, 0, -0.1);
-      return s;
+  for (const bool real_time : {false, true})
+    for (const double fails_at : {1.0, 0.05}) {
+      auto hand = std::make_unique<Feels>(fails_at);
+      const Feels& feels = *hand;
+      const auto world = loop::assemble(scene_of(), std::move(hand));
+      loop::RunOptions options;
+      options.real_time = real_time;
+      options.duration_s = 0.1;
+      std::string said;
+      try {
+        loop::run(*world, options);
+      } catch (const Error& e) { said = e.what(); }
+      EXPECT_EQ(said, fails_at < 0.1 ? "the cable is out" : "");
+      EXPECT_GT(feels.largest, 0.1);
+      EXPECT_EQ(feels.force.norm(), 0.0) << real_time << " " << fails_at;
     }
-    void do_feedback(double, const Wrench& w) override { force = w.force; }
-    Vec3 force = Vec3::Zero();
-  };
-  auto hand = std::make_unique<Feels>();
-  const Feels& feels = *hand;
-  const auto world = loop::assemble(d, std::move(hand));
-  loop::TickSide ticks(*d.tool, loop::ToolSide::of(*world));
-  ticks.start(0.0);
-  loop::TickRecord out;
-  for (int i = 1; i < 10; ++i) ticks.tick(1e-3 * i, 1e-3, {}, out);
-  EXPECT_GT(feels.force.norm(), 0.1);
-  ticks.end(0.01);
-  EXPECT_EQ(feels.force.norm(), 0.0);
+}
+
+// A handle outside the workspace feels nothing, and the run counts its ticks.
+TEST(Run, CountsTicksOutsideTheWorkspace) {
+  scene::Description d = scene_of();
+  EXPECT_EQ(run(d, false).result.outside_ticks, 0);
+  d.device->workspace_radius_m = 0.01;
+  d.device->workspace_center_m = d.tool->position_m + Vec3(0.1, 0, 0);
+  const Ran r = run(d, false);
+  EXPECT_EQ(r.result.outside_ticks, 300);
+  EXPECT_EQ(r.kept.ticks.back().device.force.norm(), 0.0);
+  EXPECT_GT(r.kept.ticks.back().wanted.force.norm(), 0.1);
 }
 
 }  // namespace

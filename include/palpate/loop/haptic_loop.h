@@ -1,6 +1,8 @@
 #pragma once
 #include <string>
 
+#include "palpate/device/arm_axis.h"
+
 namespace palpate::loop {
 
 /// One translational axis of the haptic loop: device and arm, sampled; a virtual coupling; a tool; a wall.
@@ -15,6 +17,9 @@ struct HapticLoop {
     double arm_stiffness_n_m = 0.0;
     double total_mass() const { return mass_kg + arm_mass_kg; }
     double total_damping() const { return damping_n_s_m + arm_damping_n_s_m; }
+    device::ArmAxis::Parameters arm() const {
+      return {total_mass(), total_damping(), arm_stiffness_n_m, 0.0};
+    }
   };
   Axis device;
   double tick_s = 1e-3;
@@ -39,12 +44,5 @@ struct PressedWall {
 /// it with `force_n`; else there is no force, and the motion starts at a deflection of 10 um.
 /// @throws Error for a tool integrator that is not there, without tools in the build
 PressedWall press_wall(const HapticLoop& loop, double duration_s, double force_n = 1.0);
-
-/// Transition of (x, v) over `s` seconds under a constant force F: rows of exp, columns x, v, F.  Exact.
-/// The axis without force: (m + m_a) x'' + (b + b_a) x' + k_a x = F.
-struct AxisTransition {
-  double xx, xv, xf, vx, vv, vf;
-};
-AxisTransition axis_transition(const HapticLoop::Axis& axis, double s);
 
 }  // namespace palpate::loop

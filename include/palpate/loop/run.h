@@ -69,6 +69,7 @@ struct RunResult {
   double linearise_s = 0.0;          ///< wall time in linearising contact for the tool
   double tool_s = 0.0;               ///< wall time in the tool's ticks
   long periods = 0, ticks = 0, contact_queries = 0, limited_ticks = 0;
+  long outside_ticks = 0;               ///< with the handle outside the device's workspace, where forces fade
   std::vector<long> tunnelled;          ///< vertices that went through unseen, for each [[contact]]
   std::optional<EnergyBalance> energy;  ///< at the end, where an observer wanted it
   long sub_steps = 0;                   ///< contact queries that tunnelling = "substep" made besides
@@ -94,6 +95,7 @@ requires(std::same_as<std::remove_const_t<Result>, RunResult>&&...) constexpr vo
   f("ticks", r.ticks...);
   f("contact_queries", r.contact_queries...);
   f("limited_ticks", r.limited_ticks...);
+  f("ticks_outside_workspace", r.outside_ticks...);
   f("frozen_fallbacks", r.frozen_fallbacks...);
   f("sub_steps", r.sub_steps...);
   f("shortest_refreshes", r.shortest_refreshes...);
