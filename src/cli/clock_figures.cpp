@@ -18,7 +18,7 @@ void print_series(const char* what, const std::vector<float>& values, double uni
 
 }  // namespace
 
-void print_clock(const loop::RealTimeResult& clock) {
+void print_clock(const loop::RealTimeResult& clock, const std::string& linearisation) {
   fmt::print("ticks in real time: {}, {}, memory {}\n", clock.scheduling,
              clock.cpu < 0 ? std::string("on any processor") : fmt::format("on processor {}", clock.cpu),
              clock.memory);
@@ -34,6 +34,9 @@ void print_clock(const loop::RealTimeResult& clock) {
   if (clock.dropped_periods > 0)
     fmt::print("  bodies fell behind too far: they stood still in {} periods, {:.3g} s in all\n",
                clock.dropped_periods, clock.dropped_s());
+  if (clock.stretched_periods + clock.dropped_periods > 0 && linearisation == "condensed")
+    fmt::print(
+        "  --set exchange.linearisation=frozen makes an exchange cheaper, and the tool feel it stiffer\n");
   if (clock.unrecorded_ticks > 0)
     fmt::print("  {} ticks are not recorded: the recorder fell behind by more than its queue\n",
                clock.unrecorded_ticks);

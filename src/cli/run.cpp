@@ -200,7 +200,7 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   }
 
   print_outcome(*world, result, peak, assemble_s);
-  if (result.real_time) print_clock(*result.real_time);
+  if (result.real_time) print_clock(*result.real_time, world->description.exchange.linearisation);
   bool cut_short = false;
   if (keep) {
     keep_summary(*world, result, assemble_s, arguments, folder);

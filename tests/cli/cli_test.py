@@ -415,6 +415,25 @@ class Results(Cli):
                 break
         self.assertEqual(done.returncode, 0, done.stdout)
 
+    def test_a_run_is_replayed_and_compared(self):
+        self.good("run", "press-ball", "--duration-s", "0.2", "--realtime", "--passivity", "observe",
+                  "-o", "first")
+        self.assertIn("clock.csv", os.listdir(self.folder / "first"))
+        text = self.good("replay", "first")
+        self.assertEqual(text, "200 ticks compared, 0.001 to 0.2 s: identical to the last bit\n")
+        text = self.good("replay", "first", "--set", "exchange.latency_ticks=10", "-o", "late")
+        self.assertRegex(text, r"(?m)^force: differs by \S+ N RMS")
+        self.assertIn("force: differs by", self.good("diff", "first", "late"))
+        self.assertIn("identical to the last bit", self.good("diff", "late", "late"))
+        done = self.call("diff", "first", "nowhere")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("nowhere/haptic.h5: no such file", done.stderr)
+
+    def test_a_scene_is_judged_as_a_haptic_loop(self):
+        text = self.good("stability", "--haptic", "press-ball", "-o", "wall")
+        self.assertRegex(text, r"passive lies within stable; simulation and theory differ by at most \S+ %")
+        self.assertIn("z_width.csv", os.listdir(self.folder / "wall"))
+
     def test_keys_are_listed_with_unit_range_default_and_meaning(self):
         text = self.good("list", "keys")
         tables = re.findall(r"(?m)^\[([a-z.]+)\]$", text)
