@@ -35,8 +35,7 @@ void print_clock(const loop::RealTimeResult& clock, const std::string& linearisa
     fmt::print("  bodies fell behind too far: they stood still in {} periods, {:.3g} s in all\n",
                clock.dropped_periods, clock.dropped_s());
   if (clock.stretched_periods + clock.dropped_periods > 0 && linearisation == "condensed")
-    fmt::print(
-        "  --set exchange.linearisation=frozen makes an exchange cheaper, and the tool feel it stiffer\n");
+    fmt::print("  --set exchange.linearisation=points makes an exchange cheaper\n");
   if (clock.unrecorded_ticks > 0)
     fmt::print("  {} ticks are not recorded: the recorder fell behind by more than its queue\n",
                clock.unrecorded_ticks);

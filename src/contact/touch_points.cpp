@@ -14,7 +14,8 @@ namespace palpate::contact {
 namespace {
 
 using Six = Eigen::Matrix<double, 6, 1>;
-using PointModes = Eigen::Matrix<double, 3, TouchModel::kMostModes>;
+using Modes = Eigen::Matrix<double, TouchModel::kMostModes, Eigen::Dynamic>;
+using MovedBy = Eigen::Matrix<double, TouchModel::kMostModes, 3>;
 
 /// A range of the samples' order.
 struct Bunch {
@@ -97,23 +98,32 @@ class Bunches {
 
 void write(const Vec3& from, std::array<double, 3>& to) { to = {from.x(), from.y(), from.z()}; }
 
-TouchModel::Point point_of(const std::vector<TouchSample>& samples, const std::vector<PointModes>& modes,
-                           const Mat3& R, const Vec3& origin, const Bunches& bunches, const Bunch& bunch) {
+TouchModel::Point point_of(const std::vector<TouchSample>& samples, const Modes& modes, const Mat3& R,
+                           const Vec3& origin, const Bunches& bunches, const Bunch& bunch) {
   Vec3 along = Vec3::Zero(), offset = along, slide = along, place = along, velocity = along;
-  PointModes mode = PointModes::Zero();
   double area = 0.0, gap = 0.0;
+  // samples of a bunch share nodes: weights are summed before modes are
+  std::vector<std::pair<int, double>> weights;
   for (int i = bunch.first; i < bunch.last; ++i) {
-    const auto j = static_cast<std::size_t>(bunches.member(i));
-    const TouchSample& s = samples[j];
+    const TouchSample& s = samples[static_cast<std::size_t>(bunches.member(i))];
     area += s.area;
     along += s.area * s.normal;
     gap += s.area * s.gap;
-    offset += s.area * s.tool.offset;
-    slide += s.area * s.tool.slide;
+    offset += s.area * s.offset;
+    slide += s.area * s.slide;
     place += s.area * s.place;
     velocity += s.area * s.velocity;
-    mode += s.area * modes[j];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k) {
+      const auto same = std::find_if(weights.begin(), weights.end(),
+                                     [&](const auto& one) { return one.first == s.node[k]; });
+      if (same != weights.end())
+        same->second += s.area * s.weight[k];
+      else
+        weights.emplace_back(s.node[k], s.area * s.weight[k]);
+    }
   }
+  MovedBy moved = MovedBy::Zero();
+  for (const auto& [node, weight] : weights) moved += weight * modes.middleCols<3>(3 * node);
   TouchModel::Point out;
   out.pair = samples[static_cast<std::size_t>(bunches.member(bunch.first))].pair;
   out.area = along.norm();
@@ -129,14 +139,14 @@ TouchModel::Point point_of(const std::vector<TouchSample>& samples, const std::v
   write(slide, out.slide);
   write(place, out.place);
   write(velocity / area, out.velocity);
-  Eigen::Map<PointModes>(out.modes.data()) = mode / area;
+  Eigen::Map<Eigen::Matrix<double, 3, TouchModel::kMostModes>>(out.modes.data()) = moved.transpose() / area;
   return out;
 }
 
 }  // namespace
 
-void gather_points(const std::vector<TouchSample>& samples, const Pose& pose,
-                   const std::vector<PointModes>& modes, TouchModel& out) {
+void gather_points(const std::vector<TouchSample>& samples, const Pose& pose, const Modes& modes,
+                   TouchModel& out) {
   out.points = 0;
   // of each pair those that press, and those that do not
   std::vector<std::pair<int, bool>> kinds;

@@ -4,24 +4,31 @@
 
 namespace palpate::contact {
 
-std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& state, int frame) const {
+std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& state, int frame,
+                                                     std::vector<TouchTangent>* tangents) const {
   Impl& m = *impl_;
   PALPATE_CHECK(frame >= 0 && frame < static_cast<int>(m.frames.size()), "frame {} of {}", frame,
                 m.frames.size());
   m.place_frames(state);
   std::vector<TouchSample> out;
+  if (tangents) tangents->clear();
   for (const ContactSample& s : m.all()) {
     const bool is_a = s.a.frame == frame, is_b = s.b.frame == frame;
+    const SurfacePoint& mine = is_a ? s.a : s.b;
     const SurfacePoint& other = is_a ? s.b : s.a;
     if (is_a == is_b || other.frame >= 0 || !(s.area > 0.0)) continue;
     const SampleMotion motion = sample_motion(s, state, m.frame_states);
     const PressureLaw& law = m.pairs[static_cast<std::size_t>(s.source)].law;
     const double sign = is_a ? 1.0 : -1.0;
     const PointMotion& body = is_a ? motion.b : motion.a;
+    const bool presses = motion.gap < 0.0;
+    const double slope = presses ? -pressure(law, motion.gap, motion.rate).dp_dgap : law.k;
+    out.push_back({mine.offset, mine.slide, other.count, other.node, other.weight, sign * s.normal, body.x,
+                   body.v, s.area, motion.gap, s.source, s.area * slope,
+                   presses ? Vec3(sign * sample_force(s, motion, law)) : Vec3(Vec3::Zero())});
+    if (!tangents) continue;
     const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
-    const Vec3 normal = sign * s.normal;
-    out.push_back({is_a ? s.a : s.b, other, normal, body.x, body.v, s.area, motion.gap, s.source,
-                   sign * force.force, force.K, force.D, s.area * law.k * normal * normal.transpose()});
+    tangents->push_back({force.K, force.D});
   }
   return out;
 }

@@ -68,10 +68,11 @@ scene::Kinds make_kinds() {
                  .selector = "law",
                  .kinds = kinds_of(contact::law_registry()),
                  .unsaid = [](const Description&) { return ContactSpec{}.law; }});
-  out.push_back({.table = "exchange",
-                 .selector = "scheme",
-                 .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error"})}, {"monolithic"}},
-                 .unsaid = [](const Description&) { return scene::CosimulationSpec{}.scheme; }});
+  out.push_back(
+      {.table = "exchange",
+       .selector = "scheme",
+       .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error"})}, {"monolithic"}},
+       .unsaid = [](const Description&) { return scene::CosimulationSpec{}.scheme; }});
   out.push_back({.table = "exchange",
                  .selector = "tunnelling",
                  .kinds = {{"report"}, {"substep", part_keys({"shortest_refresh_s"})}},

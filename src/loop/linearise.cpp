@@ -182,7 +182,8 @@ std::array<double, 7> flat(const Pose& pose) {
 
 }  // namespace
 
-ContactRecord linearise_contact(World& world, std::uint64_t version, double period_s, long& frozen_fallbacks) {
+ContactRecord linearise_contact(World& world, std::uint64_t version, double period_s,
+                                long& frozen_fallbacks) {
   counters::count("loop.exchange_record");
   const ToolSide& side = ToolSide::of(world);
   ContactRecord out;

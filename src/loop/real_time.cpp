@@ -129,8 +129,7 @@ class RealTime {
       sleep_until_ns(due);
       const std::int64_t woke = now_ns();
       const double t = static_cast<double>(i) * tick_s_;
-      tick_status_ =
-          ticks_.tick(t, tick_s_, ticks_.contact(t, tick_s_, records_.latest()), timed.record);
+      tick_status_ = ticks_.tick(t, tick_s_, ticks_.contact(t, tick_s_, records_.latest()), timed.record);
       if (!tick_status_.ok()) break;
       timed.number = i;
       timed.lateness_s = seconds(woke - due);

@@ -106,8 +106,8 @@ std::vector<TickRecord> retrace(const scene::Description& description, const Hap
     if (version != 0) contact.linear = record.exchanges[version - 1];
     if (version != 0 && !record.models.empty()) contact.touch = record.models[version - 1];
     TickRecord again;
-    const dynamics::StepResult status = side.tick(
-        tick.time, tick.length, side.contact(tick.time, tick.length, contact), again);
+    const dynamics::StepResult status =
+        side.tick(tick.time, tick.length, side.contact(tick.time, tick.length, contact), again);
     if (!status.ok()) fail("replay: {}", status.message);
     out.push_back(again);
   }

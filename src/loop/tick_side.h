@@ -47,8 +47,8 @@ class TickSide {
   const ToolSpec& spec_;
   ToolSide& side_;
   device::HandleSample handle_;
-  double time_ = 0.0;  ///< of the last tick [s]
-  bool live_ = false;  ///< the hand may feel a wrench
+  double time_ = 0.0;                         ///< of the last tick [s]
+  bool live_ = false;                         ///< the hand may feel a wrench
   std::optional<contact::TouchTicks> touch_;  ///< where records have points
   std::uint64_t taken_up_ = 0;                ///< version of the record in `touch_`
   std::array<Past, 256> past_{};              ///< a ring: ticks that a record may be late by

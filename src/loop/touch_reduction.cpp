@@ -32,62 +32,99 @@ namespace palpate::loop {
 // to kAlike are left out; k < 0 (an inverted element) and what D has of negative is taken for zero.
 using contact::TouchModel;
 using contact::TouchSample;
+using contact::TouchTangent;
 
 struct TouchReduction::Answers {
-  MatX X;             ///< u_size x patterns and one
-  MatX A;             ///< X^T A X; empty: not known
-  VecX s, w, f;       ///< f: all forces
-  VecX stiff;         ///< K s + D w
-};
-
-/// All but the samples of the tool, in X.
-struct TouchReduction::Reduced {
-  MatX M, K, D;
-  VecX f, rate;
+  MatX X;        ///< u_size x patterns and one
+  MatX A;        ///< X^T A X; empty: not known
+  VecX s, w, f;  ///< f: all forces
+  VecX stiff;    ///< K s + D w
 };
 
 namespace {
 
 constexpr int kModes = TouchModel::kMostModes, kMostIterations = 40;
-using PointModes = Eigen::Matrix<double, 3, kModes>;
 using Mat36 = Eigen::Matrix<double, 3, 6>;
 
 /// Squares of lengths, of directions scaled to one: of exact answers, and of single precision's.
 constexpr double kAlike = 1e-9, kAlikeSingle = 1e-6;
+/// Squares of loads: what is left out answers a thousandth of what the largest does.
+constexpr double kAlikeLoads = 1e-6;
 
-/// 3 x m: the rows of X that move a sample.
-MatX rows_of(const contact::SurfacePoint& point, const MatX& X) {
-  MatX out = MatX::Zero(3, X.cols());
-  for (int i = 0; i < point.count; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    out += point.weight[k] * X.middleRows<3>(3 * point.node[k]);
-  }
+/// Modes by rows: those that move a node lie together.
+using Rows = Eigen::Matrix<double, kModes, Eigen::Dynamic>;
+
+/// The weighted sum of what X, or x, has for a sample's nodes.
+auto moved_by(const TouchSample& sample, const auto& x) {
+  auto out = (sample.weight[0] * x(sample.node[0])).eval();
+  for (std::size_t k = 1; k < static_cast<std::size_t>(sample.count); ++k)
+    out += sample.weight[k] * x(sample.node[k]);
   return out;
 }
 
 bool presses(const TouchSample& sample) { return sample.gap < 0.0; }
 
-/// Load patterns: those of the samples that press; where none does, of those that may come to.
-MatX load_patterns(const World& world, const std::vector<TouchSample>& samples, const Pose& pose) {
+/// By how much each sample is pressed at the period's end if all goes on as it does [m]; where that is
+/// nowhere, of those that are nearest then by how much less they are apart than a tenth of the way to the
+/// farthest.
+VecX coming_depths(const std::vector<TouchSample>& samples, const Twist& tool, const Mat3& R, double H) {
+  VecX gaps(static_cast<Eigen::Index>(samples.size()));
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    const TouchSample& s = samples[j];
+    const Vec3 v = tool.at(R * s.offset + s.slide) - s.velocity;
+    gaps[static_cast<Eigen::Index>(j)] = s.gap + H * s.normal.dot(v);
+  }
+  const double nearest = gaps.minCoeff(),
+               reach = nearest < 0.0 ? 0.0 : nearest + 0.1 * (gaps.maxCoeff() - nearest);
+  return (reach - gaps.array()).cwiseMax(0.0);
+}
+
+/// Load patterns: what a tool that moves a little does to the nodes through the samples that press; and the
+/// forces of the samples that will press if all goes on as it does, where some of these do not yet: a tool
+/// that comes down touches within the period.  Fewer than six and three, or twice that with friction, where
+/// they are alike: a round tool that turns does nothing.
+MatX load_patterns(const World& world, const std::vector<TouchSample>& samples, const KnownTool& tool,
+                   double H) {
   const bool pressed = std::any_of(samples.begin(), samples.end(), presses);
   const auto& contacts = world.description.contacts;
   const bool friction =
       std::any_of(contacts.begin(), contacts.end(), [](const ContactSpec& c) { return c.friction > 0.0; });
-  MatX out = MatX::Zero(world.state.layout().u_size, friction ? 12 : 6);
-  const Mat3 R = pose.rotation.toRotationMatrix();
-  for (const TouchSample& s : samples) {
-    if (pressed && !presses(s)) continue;
+  const Mat3 R = tool.pose.rotation.toRotationMatrix();
+  const VecX depths = coming_depths(samples, tool.twist, R, H);
+  bool more = !pressed;
+  for (std::size_t j = 0; j < samples.size(); ++j)
+    more = more || (!presses(samples[j]) && depths[static_cast<Eigen::Index>(j)] > 0.0);
+  const Eigen::Index count = friction ? 12 : 6;
+  MatX all = MatX::Zero(world.state.layout().u_size, count), coming = MatX::Zero(all.rows(), more ? 3 : 0);
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    const TouchSample& s = samples[j];
+    const double depth = depths[static_cast<Eigen::Index>(j)];
     Mat36 Z;
-    Z << -cross_matrix(R * s.tool.offset + s.tool.slide), Mat3::Identity();
-    const Mat3 K = pressed ? s.K : s.would_be;
+    Z << -cross_matrix(R * s.offset + s.slide), Mat3::Identity();
+    const Mat3 nn = s.normal * s.normal.transpose();
     Eigen::Matrix<double, 3, 12> load;
-    load << K * Z, K.trace() * (Mat3::Identity() - s.normal * s.normal.transpose()) * Z;
-    for (int i = 0; i < s.body.count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      out.middleRows<3>(3 * s.body.node[k]) += s.body.weight[k] * load.leftCols(out.cols());
+    load << s.stiffness * nn * Z, s.stiffness * (Mat3::Identity() - nn) * Z;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k) {
+      const auto at = 3 * s.node[k];
+      if (presses(s)) all.middleRows<3>(at) += s.weight[k] * load.leftCols(count);
+      if (more && depth > 0.0) {
+        const Mat3 force = s.weight[k] * s.stiffness * depth * (friction ? Mat3(Mat3::Identity()) : nn);
+        coming.middleRows<3>(at) += force;
+      }
     }
   }
-  return out;
+  // rotations count by the displacement that they come to where the tool touches
+  for (Eigen::Index k = 0; k < count; k += 6) {
+    const double turn = all.middleCols<3>(k).norm(), push = all.middleCols<3>(k + 3).norm();
+    if (turn > 1e-9 * push * tool.pose.translation.norm()) all.middleCols<3>(k) *= push / turn;
+  }
+  MatX out(all.rows(), count + coming.cols());
+  const double now = all.norm(), later = coming.norm();
+  out << all / (now > 0.0 ? now : 1.0), coming / (later > 0.0 ? later : 1.0);
+  const Eigen::SelfAdjointEigenSolver<MatX> gram(MatX(out.transpose() * out));
+  const VecX& size = gram.eigenvalues();  // increasing
+  const Eigen::Index alone = (size.array() > kAlikeLoads * size[size.size() - 1]).count();
+  return out * gram.eigenvectors().rightCols(std::min<Eigen::Index>(alone, kModes - 1));
 }
 
 /// y = (k K + d D) x of all forces, in nodes' and bones' directions.
@@ -101,9 +138,9 @@ VecX tangent_times(World& world, double k, double d, const VecX& x) {
   return out + k * carried;
 }
 
-MatX products(Eigen::Index columns, const MatX& X, const auto& product) {
-  MatX out(X.rows(), columns);
-  for (Eigen::Index i = 0; i < columns; ++i) out.col(i) = product(VecX(X.col(i)));
+MatX products(const MatX& X, const auto& product) {
+  MatX out(X.rows(), X.cols());
+  for (Eigen::Index i = 0; i < X.cols(); ++i) out.col(i) = product(VecX(X.col(i)));
   return X.transpose() * out;
 }
 
@@ -222,6 +259,79 @@ MatX modes_of(const MatX& M, const MatX& K, const MatX& D, double alike, TouchMo
   return S;
 }
 
+/// The samples' own part of what is reduced to X.
+struct SampleSums {
+  MatX K, D;
+  VecX force;  ///< of the samples on the bodies
+  VecX stiff;  ///< K v + D w/H
+};
+
+SampleSums sum_of(const std::vector<TouchSample>& samples, const std::vector<TouchTangent>& tangents,
+                  const MatX& X, const VecX& mean_change) {
+  const Eigen::Index m = X.cols();
+  SampleSums out{MatX::Zero(m, m), MatX::Zero(m, m), VecX::Zero(m), VecX::Zero(m)};
+  const auto nodes_of_X = [&](int node) { return X.middleRows<3>(3 * node); };
+  const auto nodes_of_change = [&](int node) { return mean_change.segment<3>(3 * node); };
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    const TouchSample& s = samples[j];
+    if (!presses(s)) continue;
+    const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kModes> P = moved_by(s, nodes_of_X);
+    const auto& [K, D] = tangents[j];
+    out.K.noalias() += P.transpose().lazyProduct((K * P).eval());
+    out.D.noalias() += P.transpose().lazyProduct((D * P).eval());
+    out.force.noalias() -= P.transpose() * s.force;
+    out.stiff.noalias() += P.transpose() * (K * s.velocity + D * moved_by(s, nodes_of_change));
+  }
+  return out;
+}
+
+/// M, K and D in X of all but the samples.
+struct Reduced {
+  MatX M, K, D;
+};
+
+bool names_tool(const ContactSpec& contact) { return contact.first == "tool" || contact.second == "tool"; }
+
+/// @param A  X^T A X, empty: not known
+Reduced reduced(World& world, double H, const MatX& X, const MatX& A, const SampleSums& sums,
+                std::pair<double, double> damping) {
+  const dynamics::StateView view = world.state.view();
+  const Eigen::Index m = X.cols();
+  const MatX &samples_K = sums.K, &samples_D = sums.D;
+  Reduced out;
+  VecX product;
+  out.M = products(X, [&](const VecX& v) {
+    world.system.apply_mass(view, v, product);
+    return product;
+  });
+  if (A.size() == 0) {
+    out.K = products(X, [&](const VecX& v) { return tangent_times(world, 1.0, 0.0, v); }) - samples_K;
+    out.D = products(X, [&](const VecX& v) { return tangent_times(world, 0.0, 1.0, v); }) - samples_D;
+    return out;
+  }
+  // bodies on obstacles and on each other
+  MatX others_K = MatX::Zero(m, m), others_D = others_K;
+  const auto& contacts = world.description.contacts;
+  if (!std::all_of(contacts.begin(), contacts.end(), names_tool)) {
+    const auto contact = [&](double k, double d) {
+      return products(X, [&](const VecX& v) {
+        product.setZero(v.size());
+        world.contact->apply_tangent(view, k, d, v, product);
+        return product;
+      });
+    };
+    others_K = contact(1.0, 0.0) - samples_K;
+    others_D = contact(0.0, 1.0) - samples_D;
+  }
+  const auto [a, b] = damping;
+  const MatX elements =
+      (A - (1.0 + H * a) * out.M - H * H * (samples_K + others_K) - H * (samples_D + others_D)) /
+      (H * H + H * b);
+  out.K = elements + others_K;
+  out.D = a * out.M + b * elements + others_D;
+  return out;
+}
+
 }  // namespace
 
 bool TouchReduction::reduce(World& world, double H, TouchModel& out) {
@@ -229,58 +339,30 @@ bool TouchReduction::reduce(World& world, double H, TouchModel& out) {
   const dynamics::StateView view = world.state.view();
   out = {};
   out.time = world.state.time();
-  std::vector<TouchSample> samples = world.contact->touch_samples(view, side.frame_index);
+  std::vector<TouchTangent> tangents;
+  std::vector<TouchSample> samples = world.contact->touch_samples(view, side.frame_index, &tangents);
   if (samples.empty()) return true;
   Answers x;
   known_motion(world, H, x.s, x.w);
-  for (TouchSample& sample : samples) sample.velocity = rows_of(sample.body, x.s / H);
+  const VecX velocity = x.s / H, change = x.w / H;
+  for (TouchSample& sample : samples)
+    sample.velocity = moved_by(sample, [&](int node) { return velocity.segment<3>(3 * node); });
   world.system.force(view, x.f);
-  const MatX patterns = load_patterns(world, samples, side.known.pose);
+  const MatX patterns = load_patterns(world, samples, side.known, H);
   const bool known = iterate(world, H, patterns, x) || factor(world, H, patterns, x);
-  std::vector<PointModes> modes(samples.size(), PointModes::Zero());
+  Rows modes = Rows::Zero(kModes, velocity.size());
   if (known) {
-    const MatX& X = x.X;
-    const Eigen::Index m = X.cols();
-    VecX product;
-    const auto mass = [&](const VecX& v) {
-      world.system.apply_mass(view, v, product);
-      return product;
-    };
-    const MatX M = products(m, X, mass);
-    MatX K, D;
-    if (x.A.size() > 0) {
-      const auto contact = [&](double k, double d) {
-        return products(m, X, [&](const VecX& v) {
-          product.setZero(v.size());
-          world.contact->apply_tangent(view, k, d, v, product);
-          return product;
-        });
-      };
-      const MatX contact_K = contact(1.0, 0.0), contact_D = contact(0.0, 1.0);
-      const auto [a, b] = damping_of(world, samples.front().body.node[0]);
-      const MatX elements =
-          (x.A - (1.0 + H * a) * M - H * H * contact_K - H * contact_D) / (H * H + H * b);
-      K = elements + contact_K;
-      D = a * M + b * elements + contact_D;
-    } else {
-      K = products(m, X, [&](const VecX& v) { return tangent_times(world, 1.0, 0.0, v); });
-      D = products(m, X, [&](const VecX& v) { return tangent_times(world, 0.0, 1.0, v); });
-    }
-    VecX f = X.transpose() * (x.f - mass(x.w) / H), rate = -(X.transpose() * x.stiff) / H;
-    std::vector<MatX> rows;
-    rows.reserve(samples.size());
-    for (const TouchSample& sample : samples) {
-      const MatX& P = rows.emplace_back(rows_of(sample.body, X));
-      if (!presses(sample)) continue;
-      K -= P.transpose() * sample.K * P;
-      D -= P.transpose() * sample.D * P;
-      f += P.transpose() * sample.force;
-      rate += P.transpose() * (sample.K * sample.velocity + sample.D * rows_of(sample.body, x.w / H));
-    }
-    const MatX S = modes_of(M, K, D, x.A.size() > 0 ? kAlikeSingle : kAlike, out);
-    Eigen::Map<VecX>(out.force.data(), S.cols()) = S.transpose() * f;
-    Eigen::Map<VecX>(out.force_rate.data(), S.cols()) = S.transpose() * rate;
-    for (std::size_t j = 0; j < samples.size(); ++j) modes[j].leftCols(S.cols()) = rows[j] * S;
+    const SampleSums sums = sum_of(samples, tangents, x.X, change);
+    const Reduced r = reduced(world, H, x.X, x.A, sums, damping_of(world, samples.front().node[0]));
+    const MatX S = modes_of(r.M, r.K, r.D, x.A.size() > 0 ? kAlikeSingle : kAlike, out);
+    VecX inertia;
+    world.system.apply_mass(view, change, inertia);
+    x.f -= inertia;
+    const Eigen::Index kept = S.cols();
+    Eigen::Map<VecX>(out.force.data(), kept) = S.transpose() * (x.X.transpose() * x.f - sums.force);
+    Eigen::Map<VecX>(out.force_rate.data(), kept) =
+        S.transpose() * (sums.stiff - x.X.transpose() * x.stiff / H);
+    modes.topRows(kept).noalias() = S.transpose() * x.X.transpose();
   }
   contact::gather_points(samples, side.known.pose, modes, out);
   return known;

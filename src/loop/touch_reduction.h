@@ -9,7 +9,8 @@ namespace palpate::loop {
 /// Makes the model of the bodies that the tool's ticks touch (touch_reduction.cpp).
 class TouchReduction {
  public:
-  /// @param error  exchange.linearisation_error: of how much the modes may answer less, relative; 0: factorise
+  /// @param error  exchange.linearisation_error: of how much the modes may answer less, relative; 0:
+  /// factorise
   TouchReduction(World& world, double error);
   ~TouchReduction();
 
@@ -19,7 +20,6 @@ class TouchReduction {
 
  private:
   struct Answers;
-  struct Reduced;
   bool iterate(World& world, double H, const MatX& patterns, Answers& out);
   bool factor(World& world, double H, const MatX& patterns, Answers& out);
 

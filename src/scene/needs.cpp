@@ -124,13 +124,19 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
                  : monolithic ? one_system
                               : "one rate only"});
   const bool touched = count_if(d.contacts, [](const auto& c) { return c.second == "tool"; }) > 0;
+  const bool points = two_rates && touched && d.exchange.linearisation == "points";
+  out.push_back({"contact points", points,
+                 points       ? "linearisation \"points\": bodies are reduced to what the tool touches"
+                 : monolithic ? one_system
+                 : !touched   ? "no contact of a soft body with a tool"
+                              : fmt::format("linearisation \"{}\"", d.exchange.linearisation)});
   const bool condensed = two_rates && touched && d.exchange.linearisation == "condensed";
   out.push_back({"condenser", condensed,
                  condensed
                      ? "linearisation \"condensed\": the bodies' step matrix is factored once an exchange"
                  : monolithic ? one_system
                  : !touched   ? "no contact of a soft body with a tool"
-                              : "linearisation \"frozen\""});
+                              : fmt::format("linearisation \"{}\"", d.exchange.linearisation)});
   out.push_back(
       {"exchange thread", false, "time is virtual: everything runs one after the other in one thread"});
 }

@@ -32,7 +32,9 @@ TouchModel wall(double gap) {
   return model;
 }
 
-RigidMotion at(double z, double speed) { return {{Quat::Identity(), Vec3(0, 0, z)}, {{}, Vec3(0, 0, speed)}}; }
+RigidMotion at(double z, double speed) {
+  return {{Quat::Identity(), Vec3(0, 0, z)}, {{}, Vec3(0, 0, speed)}};
+}
 
 Vec3 force_at(const dynamics::LinearisedContact& record, double t, const RigidMotion& tool) {
   return dynamics::contact_wrench(record, t, tool.pose, tool.twist).tail<3>();

@@ -111,6 +111,7 @@ struct Struck {
 
   Struck() {
     scene::Description d = pressed_block(0.002);
+    d.exchange.linearisation = "condensed";
     d.contacts[0].damping_pa_s_m = 2e4;
     KeyframeSpec start, end;
     end.time_s = 3.0;
@@ -203,6 +204,7 @@ TEST(Linearise, CondensedRecordFollowsTheToolsDisplacementAndTwist) {
 
 TEST(Linearise, AnIndefiniteStepMatrixIsFactoredByLu) {
   scene::Description d = pressed_block(kDepth);
+  d.exchange.linearisation = "condensed";
   auto world = loop::assemble(d);
   side_of(*world).trajectory->append(0.0, side_of(*world).tool->pose(), {});
   Eigen::Map<Points> x(world->state.q().data(), 3, world->state.q().size() / 3);

@@ -77,7 +77,8 @@ TEST(Replay, RetracesVirtualTimeWithLatency) {
   expect_equal(loop::retrace(d, record), record.ticks);
   // another exchange is another force
   loop::HapticRecord other = record;
-  for (auto& exchange : other.exchanges) exchange.F0[5] += 0.1;
+  for (auto& model : other.models)
+    for (auto& point : model.point) point.area *= 1.1;
   const auto changed = loop::retrace(d, other);
   EXPECT_NE(changed.back().device.force, record.ticks.back().device.force);
 }

@@ -378,7 +378,8 @@ TEST_P(PressedByATool, IsTheSameInAllUnits) {
   expect_same_in_all_units(s, kBinaryUnits, !controlled);
 }
 INSTANTIATE_TEST_SUITE_P(Units, PressedByATool,
-                         testing::Values(Coupling{"linearly-implicit-euler", "partitioned", "condensed"},
+                         testing::Values(Coupling{"linearly-implicit-euler", "partitioned", "points"},
+                                         Coupling{"linearly-implicit-euler", "partitioned", "condensed"},
                                          Coupling{"linearly-implicit-euler", "partitioned", "frozen"},
                                          Coupling{"linearly-implicit-euler", "monolithic", ""},
                                          Coupling{"cvode-bdf", "monolithic", ""}),

@@ -126,6 +126,7 @@ struct ResultantSize {
 };
 
 struct TouchSample;  // touch_model.h
+struct TouchTangent;
 
 /// Which samples of a frame: those with nodes on the other side, those with another frame there.
 enum class Partners { kAll, kNodes, kFrames };
@@ -174,7 +175,9 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out,
                  Partners partners = Partners::kAll) const;
   /// The samples of a frame on nodes, at the state given; candidates that are apart included.
-  std::vector<TouchSample> touch_samples(const dynamics::StateView& state, int frame) const;
+  /// @param tangents  of each, where it is wanted
+  std::vector<TouchSample> touch_samples(const dynamics::StateView& state, int frame,
+                                         std::vector<TouchTangent>* tangents = nullptr) const;
   /// Change of a pair's resultant on its bodies that the last refresh made, at its state, the largest of all
   /// pairs: the price of a slow query.  The same resultant on other nodes is no change.
   ResultantSize refresh_jump() const;

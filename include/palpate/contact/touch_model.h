@@ -43,25 +43,33 @@ static_assert(std::is_trivially_copyable_v<TouchModel>);
 
 /// One sample of a frame on nodes, seen from the frame.
 struct TouchSample {
-  SurfacePoint tool, body;
-  Vec3 normal;           ///< pushes the tool
+  Vec3 offset, slide;       ///< on the frame, as SurfacePoint has them
+  int count;                ///< of nodes
+  std::array<int, 4> node;  ///< of the body
+  std::array<double, 4> weight;
+  Vec3 normal;           ///< pushes the frame
   Vec3 place, velocity;  ///< on the body [m, m/s]
   double area, gap;      ///< [m^2, m]
   int pair;
-  Vec3 force;  ///< on the tool [N]
-  Mat3 K, D;   ///< -dF/dx_rel [N/m], -dF/dv_rel [N s/m], as in step matrices; zero where it does not press
-  /// of one that does not press: -dF/dx_rel if it pressed
-  Mat3 would_be;
+  /// area times dp/ddepth [N/m]: of one that presses, or would
+  double stiffness;
+  Vec3 force;  ///< on the frame [N]
+};
+
+/// K = -dF/dx_rel and D = -dF/dv_rel of a sample, as step matrices have them; zero where it does not press.
+struct TouchTangent {
+  Mat3 K, D;  ///< [N/m, N s/m]
 };
 
 /// Gathers samples into the points of a model: those that press by themselves, as they are or, where they are
 /// more than there is room for, in bunches of near places and like normals, which press with the same force
 /// and answer with the same stiffness as their samples together.
-/// @param pose    of the tool
-/// @param modes   of each sample, 3 x kMostModes; scaled as the model's are
-/// @param out     points alone are written
+/// @param pose   of the tool
+/// @param modes  kMostModes x (directions of nodes): what moves each direction, zeros behind the model's
+/// modes
+/// @param out    points alone are written
 void gather_points(const std::vector<TouchSample>& samples, const Pose& pose,
-                   const std::vector<Eigen::Matrix<double, 3, TouchModel::kMostModes>>& modes,
+                   const Eigen::Matrix<double, TouchModel::kMostModes, Eigen::Dynamic>& modes,
                    TouchModel& out);
 
 /// Carries a TouchModel on, tick by tick, together with a tool that somebody else integrates.  Takes no

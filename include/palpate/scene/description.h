@@ -42,11 +42,11 @@ struct CompareSpec {
 struct CosimulationSpec {
   /// or "monolithic": tool and bodies in one state of one integrator, nothing exchanged
   std::string scheme = "partitioned";
-  /// or "points": contact points at each tick over a reduced model of the bodies; or "frozen": of bodies that
-  /// do not answer
-  std::string linearisation = "condensed";
-  /// of "points": by how much the reduced bodies may be stiffer than they are, relative; 0: exact
-  double linearisation_error = 0.01;
+  /// what ticks know of the bodies: "points", contact points over a reduced model of their answer; or a line:
+  /// "condensed", with their answer, "frozen", of bodies that hold still
+  std::string linearisation = "points";
+  /// of "points": by how much at most the reduced bodies are stiffer than they should be, relative; 0: not
+  double linearisation_error = 0.1;
   double exchange_period_s = 0.01;
   double contact_refresh_s = 0.01;  ///< a whole fraction of the exchange period
   /// what is done about bodies so fast that they may go through each other between two refreshes: counted,
