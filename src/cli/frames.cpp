@@ -180,9 +180,14 @@ void Frames::tick(const loop::TickRecord& tick) {
   if (!first_handle_) first_handle_ = tick.handle;
 }
 
+int Frames::count() const {
+  return std::max(next_, static_cast<int>(std::ceil(std::min(reached_, end_s_) / between_s_ - 1e-6)));
+}
+
 int Frames::frame_at(double t) const { return static_cast<int>(std::floor(t / between_s_ + 1e-6)); }
 
 void Frames::period(loop::World& world, double t) {
+  reached_ = t;
   due_ = frame_at(t) >= next_ && t < end_s_ * (1.0 - 1e-9);
   if (due_ && shade_ != Shade::kPenetration) keep(world, t);
 }
@@ -210,7 +215,7 @@ void Frames::save(const loop::World& world, const std::vector<FrameSink*>& sinks
                   Undelivered& missing) {
   Writer writer(sinks, missing);
   try {
-    if (count() == 0) fail("the run ended before the first frame");
+    if (instants_.count() == 0) fail("the run ended before the first frame");
     const Common common = common_of(world, instants_, shade_);
     render::Options options;
     options.width = width_;
@@ -237,6 +242,7 @@ void Frames::save(const loop::World& world, const std::vector<FrameSink*>& sinks
       picture = render::draw(scene, options);
       show();
     }
+    while (!(stoppable && stop_flag().load()) && !writer.idle() && frame < count()) show();
     progress.wipe();
     writer.close();
   } catch (const Error& e) { writer.give_up(e); }

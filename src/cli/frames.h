@@ -52,7 +52,7 @@ class Frames : public loop::Observer {
   /// @param missing    gets what a sink could not write, or what cannot be drawn; the other sinks go on
   void save(const loop::World& world, const std::vector<FrameSink*>& sinks, bool stoppable,
             Undelivered& missing);
-  int count() const { return next_; }  ///< frames up to the last instant
+  int count() const;  ///< frames of what was run
 
  private:
   int frame_at(double t) const;
@@ -62,6 +62,7 @@ class Frames : public loop::Observer {
   double between_s_, end_s_;
   int width_, height_, strip_ = 0;  ///< of the picture above the curve, and of the curve [pixels]
   int next_ = 0;                    ///< frame to come
+  double reached_ = 0.0;            ///< by the run [s]
   bool due_ = false;                ///< the next query is that of a frame
   InstantSpool instants_;
   render::Curve curve_;

@@ -242,7 +242,10 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   bool cut_short = false;
   if (keep) {
     keep_summary(*world, result, assemble_s, arguments, folder);
-    if (result.real_time) keep_clock(*result.real_time, folder);
+    if (result.real_time)
+      keep_clock(*result.real_time, folder);
+    else
+      remove_clock(folder);
     if (arguments.picture) keep_picture(*world, snapshot, folder, missing);
     if (arguments.contact_picture) contact.save(*world, folder, missing);
     if (arguments.report) missing.add(report::write_run_report(folder));
