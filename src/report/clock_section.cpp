@@ -23,6 +23,12 @@ double nearest_rank(const std::vector<double>& sorted, double q) {
   return sorted[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(rank, 0, std::ssize(sorted) - 1))];
 }
 
+std::string duration_text(double us) {
+  return us < 1e3   ? fmt::format("{:.3g} µs", us)
+         : us < 1e6 ? fmt::format("{:.3g} ms", 1e-3 * us)
+                    : fmt::format("{:.3g} s", 1e-6 * us);
+}
+
 }  // namespace
 
 LogHistogram log_histogram(const std::vector<double>& values) {
@@ -57,7 +63,7 @@ Plot tick_histogram(const std::vector<double>& values_us, const std::string& x_l
   std::sort(sorted.begin(), sorted.end());
   for (const auto& [name, q] : {std::pair{"p50", 0.5}, {"p99", 0.99}, {"p99.9", 0.999}, {"max", 1.0}}) {
     const double value = nearest_rank(sorted, q), at = std::max(value, kLeastBin);
-    plot.series.push_back({.name = fmt::format("{} {:.3g} µs", name, value),
+    plot.series.push_back({.name = fmt::format("{} {}", name, duration_text(value)),
                            .x = {at, at},
                            .y = {kEmpty, highest},
                            .mark = Mark::kDashed});
