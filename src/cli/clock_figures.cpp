@@ -10,6 +10,8 @@
 namespace palpate::cli {
 namespace {
 
+constexpr const char* kFile = "clock.csv";
+
 void print_series(const char* what, const std::vector<float>& values, double unit, const char* name) {
   fmt::print("  {:<18}{:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {}\n", what, loop::quantile(values, 0.5) / unit,
              loop::quantile(values, 0.99) / unit, loop::quantile(values, 0.999) / unit,
@@ -41,9 +43,13 @@ void print_clock(const loop::RealTimeResult& clock, const std::string& linearisa
                clock.unrecorded_ticks);
 }
 
+void remove_clock(const std::string& folder) {
+  std::error_code none;
+  std::filesystem::remove(std::filesystem::path(folder) / kFile, none);
+}
+
 void keep_clock(const loop::RealTimeResult& clock, const std::string& folder) {
-  store::CsvWriter file((std::filesystem::path(folder) / "clock.csv").string(),
-                        {"time_s", "late_us", "work_us"});
+  store::CsvWriter file((std::filesystem::path(folder) / kFile).string(), {"time_s", "late_us", "work_us"});
   for (std::size_t i = 0; i < clock.lateness_s.size(); ++i)
     file.row(std::array{static_cast<double>(i + 1) * clock.tick_s,
                         1e6 * static_cast<double>(clock.lateness_s[i]),

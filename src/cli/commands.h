@@ -23,7 +23,10 @@ struct RunArguments {
   bool picture = false, report = false, trace = false, real_time = false;
   bool contact_picture = false, frames = false;
   double frames_per_s = 0.0;           ///< of simulated time; 0: as the scene records
-  std::string shade = "displacement";  ///< of picture and frames; or "stress", "penetration"
+  std::string movie;                   ///< file; empty: none
+  double fps = 0.0, slow = 1.0;        ///< of the movie as it is played; 0: 25, or what the loop allows
+  std::string size;                    ///< of frames and movie, "640x480"; empty: the default
+  std::string shade = "displacement";  ///< of picture, frames and movie; or "stress", "penetration"
   std::string passivity = "off";       ///< or "observe", "control"
 };
 int run(const RunArguments& arguments);

@@ -1,8 +1,9 @@
 #include "frames.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <filesystem>
 
 #include "palpate/core/error.h"
 #include "progress.h"
@@ -10,119 +11,184 @@
 #include "undelivered.h"
 
 namespace palpate::cli {
-namespace fs = std::filesystem;
 namespace {
 
-constexpr int kWidth = 960, kHeight = 720, kStrip = 150;  ///< pixels; even, as video encoders want them
+constexpr int kWidth = 960, kHeight = 720, kStrip = 150;  ///< pixels
 
-/// The points that lie farthest in 26 directions: what a camera needs to frame them nearly as closely as all.
-void add_extremes(const Points& points, std::vector<Vec3>& out) {
-  for (int x = -1; x <= 1; ++x)
-    for (int y = -1; y <= 1; ++y)
-      for (int z = -1; z <= 1; ++z) {
-        if (points.cols() == 0 || (x == 0 && y == 0 && z == 0)) continue;
-        Eigen::Index farthest = 0;
-        (Vec3(x, y, z).transpose() * points).maxCoeff(&farthest);
-        out.push_back(points.col(farthest));
-      }
-}
+/// The point that lies farthest in each of 98 directions, at most 18 degrees from any: what a camera needs to
+/// frame all points nearly as closely as if it had them.
+class Extremes {
+ public:
+  void add(const Points& points) {
+    if (points.cols() == 0) return;
+    std::size_t i = 0;
+    for (int x = -2; x <= 2; ++x)
+      for (int y = -2; y <= 2; ++y)
+        for (int z = -2; z <= 2; ++z) {
+          if (x % 2 == 0 && y % 2 == 0 && z % 2 == 0) continue;  // none, or that of a half
+          Eigen::Index farthest = 0;
+          const double reach = (Vec3(x, y, z).transpose() * points).maxCoeff(&farthest);
+          Extreme& extreme = extremes_.at(i++);
+          if (reach > extreme.reach) extreme = {reach, points.col(farthest)};
+        }
+  }
+  Points points() const {
+    Points out(3, std::ssize(extremes_));
+    for (std::size_t i = 0; i < extremes_.size(); ++i)
+      out.col(static_cast<Eigen::Index>(i)) = extremes_[i].point;
+    return out;
+  }
+
+ private:
+  struct Extreme {
+    double reach = -INFINITY;
+    Vec3 point = Vec3::Zero();
+  };
+  std::array<Extreme, 98> extremes_;
+};
 
 /// What all frames share.
 struct Common {
   render::ColourScale scale;
   Points frame;
   contact::View view;
-  double grid_spacing = 0.0;
 };
 
-Common common_of(const loop::World& world, const std::vector<Instant>& instants, Shade shade) {
+Common common_of(const loop::World& world, InstantSpool& instants, Shade shade) {
   Common out;
   double least = INFINITY, greatest = -INFINITY;
-  std::vector<Vec3> extremes;
-  for (const Instant& instant : instants) {
+  Extremes extremes;
+  instants.rewind();
+  for (Instant instant; instants.next(instant);) {
     const render::Scene scene = scene_of(world, instant, shade);
     out.scale = scene.scale;
     for (const render::Surface& surface : scene.surfaces) {
-      add_extremes(surface.points, extremes);
+      extremes.add(surface.points);
       for (const double v : surface.values)
         if (std::isfinite(v)) least = std::min(least, v), greatest = std::max(greatest, v);
     }
   }
   out.scale = render::settled(out.scale, least, greatest);
   render::Scene all;
-  render::Surface& ends = all.surfaces.emplace_back();
-  ends.points.resize(3, static_cast<Eigen::Index>(extremes.size()));
-  for (std::size_t i = 0; i < extremes.size(); ++i)
-    ends.points.col(static_cast<Eigen::Index>(i)) = extremes[i];
+  all.surfaces.emplace_back().points = extremes.points();
   out.view = view_of(all);
   add_obstacles(all, world, out.view);
-  for (const render::Surface& surface : all.surfaces)
-    if (&surface != &all.surfaces[0]) add_extremes(surface.points, extremes);
-  out.frame.resize(3, static_cast<Eigen::Index>(extremes.size()));
-  for (std::size_t i = 0; i < extremes.size(); ++i) out.frame.col(static_cast<Eigen::Index>(i)) = extremes[i];
+  for (const render::Surface& surface : all.surfaces) extremes.add(surface.points);
+  out.frame = extremes.points();
   return out;
 }
 
-fs::path frame_path(const std::string& folder, int index) {
-  return fs::path(folder) / fmt::format("{:04}.png", index);
+double whole_periods(const scene::Description& d, double wanted_s) {
+  const double period = loop::period_of(d);
+  return static_cast<double>(std::max(1L, std::lround(wanted_s / period))) * period;
 }
 
-/// Numbered pictures, which would pass for this run's.
-void remove_old(const std::string& folder) {
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder, none)) {
-    const std::string stem = entry.path().stem().string();
-    if (entry.path().extension() == ".png" && stem.size() >= 4 &&
-        stem.find_first_not_of("0123456789") == std::string::npos)
-      fs::remove(entry.path(), none);
-  }
+/// @param asked  the option with its value
+void check_rate(const scene::Description& d, double per_s, const std::string& asked) {
+  const double period = loop::period_of(d);
+  if (per_s * period <= 1.001) return;
+  fail(
+      "{}: this scene can be seen every {:g} s, {:g} times a second of simulated time: that is the period of "
+      "its loop ({}); ask for at most that, or shorten the period",
+      asked, period, 1.0 / period,
+      d.tool && d.exchange.scheme != "monolithic" ? "exchange.exchange_period_s"
+      : !d.contacts.empty()                       ? "exchange.contact_refresh_s"
+                                                  : "record.state_period_s, else all of duration_s");
 }
 
-void write_whole(const render::Picture& picture, const fs::path& path) {
-  const fs::path draft = path.parent_path() / (path.stem().string() + ".part");
-  try {
-    render::save_png(picture, draft);
-  } catch (const Error&) {
-    std::error_code none;
-    fs::remove(draft, none);
-    throw;
+/// Writes a picture to every sink that still works, and names those that stop working.
+class Writer {
+ public:
+  Writer(const std::vector<FrameSink*>& sinks, Undelivered& missing) : sinks_(sinks), missing_(missing) {}
+  bool idle() const { return sinks_.empty(); }
+  void add(const render::Picture& picture) {
+    each([&](FrameSink& sink) { sink.add(picture); });
   }
-  std::error_code error;
-  fs::rename(draft, path, error);
-  if (error) fail("{}: cannot be written: {}", path.string(), error.message());
-}
+  void close() {
+    each([](FrameSink& sink) { sink.close(); });
+  }
+  void give_up(const Error& why) {
+    each([&](FrameSink&) { throw why; });
+  }
+
+ private:
+  template <class Do>
+  void each(Do what) {
+    std::erase_if(sinks_, [&](FrameSink* sink) {
+      try {
+        what(*sink);
+        return false;
+      } catch (const Error& e) {
+        missing_.add(sink->missing(), e.what());
+        return true;
+      }
+    });
+  }
+  std::vector<FrameSink*> sinks_;
+  Undelivered& missing_;
+};
 
 }  // namespace
 
-Frames::Frames(const loop::World& world, Shade shade, double per_s, double duration_s)
-    : shade_(shade), end_s_(duration_s) {
-  const scene::Description& d = world.description;
-  const double period = loop::period_of(d);
-  double wanted = per_s > 0.0 ? 1.0 / per_s : d.record ? d.record->state_period_s : period;
-  if (per_s > 0.0 && wanted < 0.999 * period)
-    fail(
-        "--frames-per-s {:g}: this scene can be seen every {:g} s, {:g} times a second of simulated time: "
-        "that "
-        "is the period of its loop ({}); ask for at most that, or shorten the period",
-        per_s, period, 1.0 / period,
-        d.tool && d.exchange.scheme != "monolithic" ? "exchange.exchange_period_s"
-        : !d.contacts.empty()                       ? "exchange.contact_refresh_s"
-                                                    : "record.state_period_s, else all of duration_s");
-  every_ = std::max(1L, std::lround(wanted / period));
-  between_s_ = static_cast<double>(every_) * period;
+double between_frames(const scene::Description& d, double per_s) {
+  if (per_s > 0.0) check_rate(d, per_s, fmt::format("--frames-per-s {:g}", per_s));
+  return whole_periods(d, per_s > 0.0 ? 1.0 / per_s : d.record ? d.record->state_period_s : 0.0);
+}
+
+double between_movie_frames(const scene::Description& d, double fps, double slow) {
+  if (fps > 0.0) check_rate(d, fps * slow, fmt::format("--fps {:g} --slow {:g}", fps, slow));
+  return whole_periods(d, 1.0 / ((fps > 0.0 ? fps : kMovieRate) * slow));
+}
+
+FrameSize frame_size(const std::string& text) {
+  FrameSize out;
+  const char* end = text.data() + text.size();
+  const auto [cross, bad] = std::from_chars(text.data(), end, out.width);
+  const bool first = bad == std::errc() && cross != end && *cross == 'x';
+  const auto [stop, worse] = first ? std::from_chars(cross + 1, end, out.height) : std::from_chars_result{};
+  if (!first || worse != std::errc() || stop != end)
+    fail("--size {}: is no size in pixels; write WIDTHxHEIGHT, as in 640x480", text);
+  for (const int side : {out.width, out.height})
+    if (side < 160 || side > 4096 || side % 2 != 0)
+      fail("--size {}: each side must be an even number of pixels, 160 to 4096", text);
+  return out;
+}
+
+Frames::Frames(const loop::World& world, const std::string& folder, Shade shade, double between_s,
+               double duration_s, FrameSize size)
+    : shade_(shade),
+      between_s_(between_s),
+      end_s_(duration_s),
+      width_(size.width > 0 ? size.width : kWidth),
+      height_(size.height > 0 ? size.height : kHeight),
+      instants_(folder) {
   if (world.description.tool)
     curve_ = {"force on the hand", "N", {}, {}};
   else if (world.contact)
     curve_ = {"contact force", "N", {}, {}};
+  else
+    return;
+  strip_ = size.height > 0 ? size.height * kStrip / (kHeight + kStrip) : kStrip;
+  if (size.height > 0) height_ -= strip_;
 }
 
 void Frames::tick(const loop::TickRecord& tick) {
   curve_.times.push_back(tick.time);
   curve_.values.push_back(tick.device.force.norm());
+  if (!tick.handle_valid) return;
+  handle_ = tick.handle;
+  if (!first_handle_) first_handle_ = tick.handle;
 }
 
+int Frames::count() const {
+  return std::max(next_, static_cast<int>(std::ceil(std::min(reached_, end_s_) / between_s_ - 1e-6)));
+}
+
+int Frames::frame_at(double t) const { return static_cast<int>(std::floor(t / between_s_ + 1e-6)); }
+
 void Frames::period(loop::World& world, double t) {
-  due_ = periods_++ % every_ == 0 && t < end_s_ * (1.0 - 1e-9);
+  reached_ = t;
+  due_ = frame_at(t) >= next_ && t < end_s_ * (1.0 - 1e-9);
   if (due_ && shade_ != Shade::kPenetration) keep(world, t);
 }
 
@@ -138,42 +204,48 @@ void Frames::queried(loop::World& world, double t) {
 }
 
 void Frames::keep(loop::World& world, double t) {
-  instants_.push_back(instant_of(world, t, shade_));
+  Instant instant = instant_of(world, t, shade_);
+  instant.handle = handle_;
+  instants_.append(instant);
+  next_ = frame_at(t) + 1;
   due_ = false;
 }
 
-int Frames::save(const loop::World& world, const std::string& folder, bool stoppable,
-                 Undelivered& missing) const {
-  int written = 0;
+void Frames::save(const loop::World& world, const std::vector<FrameSink*>& sinks, bool stoppable,
+                  Undelivered& missing) {
+  Writer writer(sinks, missing);
   try {
-    if (instants_.empty()) fail("the run ended before the first");
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) fail("{}: the folder cannot be made: {}", folder, error.message());
-    remove_old(folder);
+    if (instants_.count() == 0) fail("the run ended before the first frame");
     const Common common = common_of(world, instants_, shade_);
+    render::Options options;
+    options.width = width_;
+    options.height = height_;
+    options.frame = common.frame;
     Progress progress("drawing frames");
-    for (const Instant& instant : instants_) {
-      if (stoppable && stop_flag().load()) return written;
+    render::Picture picture;
+    int frame = 0;
+    const auto show = [&] {
+      writer.add(curve_.times.empty() ? picture
+                                      : render::with_curve(picture, curve_, frame * between_s_, strip_));
+      progress(static_cast<double>(++frame) / count());
+    };
+    instants_.rewind();
+    for (Instant instant; !writer.idle() && instants_.next(instant);) {
+      while (!picture.rgba.empty() && frame < frame_at(instant.time)) show();
+      if (stoppable && stop_flag().load()) break;
+      if (!instant.handle) instant.handle = first_handle_;  // before the first tick
       render::Scene scene = scene_of(world, instant, shade_);
       add_obstacles(scene, world, common.view);
       scene.scale = common.scale;
       scene.title = world.description.name;
       scene.subtitle = fmt::format("t = {:.4f} s", instant.time);
-      render::Options options;
-      options.width = kWidth;
-      options.height = kHeight;
-      options.frame = common.frame;
-      render::Picture picture = render::draw(scene, options);
-      if (!curve_.times.empty()) picture = render::with_curve(picture, curve_, instant.time, kStrip);
-      write_whole(picture, frame_path(folder, written));
-      ++written;
-      progress(static_cast<double>(written) / count());
+      picture = render::draw(scene, options);
+      show();
     }
-  } catch (const Error& e) {
-    missing.add(fmt::format("frame {} and those behind it", frame_path(folder, written).string()), e.what());
-  }
-  return written;
+    while (!(stoppable && stop_flag().load()) && !writer.idle() && frame < count()) show();
+    progress.wipe();
+    writer.close();
+  } catch (const Error& e) { writer.give_up(e); }
 }
 
 }  // namespace palpate::cli

@@ -7,6 +7,7 @@
 #include "palpate/core/error.h"
 #include "palpate/loop/contact_instant.h"
 #include "palpate/render/available.h"
+#include "palpate/render/marks.h"
 
 namespace palpate::cli {
 namespace {
@@ -65,6 +66,25 @@ void add_bones(render::Scene& scene, const loop::World& world, const Instant& in
   }
 }
 
+/// Three spindles along the handle's axes, longer than the tool, which surrounds it where it is free.
+void add_handle(render::Scene& scene, const Pose& handle, const TriMesh& tool) {
+  constexpr double kLength = 1.5, kWidth = 0.14;  // of the tool's diameter
+  const double diameter = 2.0 * tool.vertices.colwise().norm().maxCoeff();
+  const render::Surface spindle = render::dots(Points::Zero(3, 1), diameter);
+  render::Surface jack{"handle", Points(3, 3 * spindle.points.cols()), Faces(3, 3 * spindle.faces.cols())};
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 scale = Vec3::Constant(kWidth);
+    scale[axis] = kLength;
+    const Eigen::Index points = spindle.points.cols(), faces = spindle.faces.cols();
+    jack.points.middleCols(axis * points, points) =
+        (handle.rotation.toRotationMatrix() * scale.asDiagonal() * spindle.points).colwise() +
+        handle.translation;
+    jack.faces.middleCols(axis * faces, faces) = spindle.faces.array() + static_cast<int>(axis * points);
+  }
+  jack.colour = {0.20f, 0.22f, 0.50f};
+  scene.surfaces.push_back(std::move(jack));
+}
+
 }  // namespace
 
 Shade check_picture(const std::string& name, const scene::Description& description) {
@@ -107,6 +127,7 @@ render::Scene scene_of(const loop::World& world, const Instant& instant, Shade s
   add_bones(scene, world, instant);
   if (world.description.tool) {
     TriMesh tool = loop::tool_surface(*world.description.tool, world.folder);
+    if (instant.handle) add_handle(scene, *instant.handle, tool);
     for (Eigen::Index i = 0; i < tool.vertices.cols(); ++i)
       tool.vertices.col(i) = instant.tool * Vec3(tool.vertices.col(i));
     render::Surface surface{"tool", tool.vertices, tool.faces};

@@ -28,12 +28,13 @@ struct Instant {
   std::vector<std::vector<std::pair<int, float>>> depths;
   std::vector<Pose> bones;
   Pose tool;
+  std::optional<Pose> handle;  ///< that the hand holds; empty: not drawn
 };
 
 /// @pre for penetration: right after a query, with views kept (loop/contact_instant.h)
 Instant instant_of(loop::World& world, double time, Shade shade);
 
-/// Surfaces as `shade` colours them, the tool, and bones seen through the tissue; without obstacles.
+/// Surfaces as `shade` colours them, tool and handle, and bones seen through the tissue; without obstacles.
 render::Scene scene_of(const loop::World& world, const Instant& instant, Shade shade);
 
 /// The box around all surfaces: how much of an obstacle without an end is worth drawing.

@@ -46,6 +46,14 @@ const CLI::Validator duration(
     },
     "");
 
+const CLI::Validator positive(
+    [](const std::string& text) {
+      double number = 0.0;
+      const bool usable = CLI::detail::lexical_cast(text, number) && number > 0.0 && std::isfinite(number);
+      return usable ? std::string{} : fmt::format("{} must be a positive, finite number", text);
+    },
+    "");
+
 void add_scene(CLI::App& command, SceneArguments& scene, bool integrator) {
   command.add_option("SCENE", scene.scene, kSceneHelp)->required();
   command
@@ -59,6 +67,29 @@ void add_scene(CLI::App& command, SceneArguments& scene, bool integrator) {
         .add_option("--integrator", scene.integrator,
                     "instead of the scene's: see `palpate list integrators`")
         ->type_name("NAME");
+}
+
+void add_movie(CLI::App& command, RunArguments& arguments) {
+  command
+      .add_option(
+          "--movie", arguments.movie,
+          "also a movie of the run, with the force beneath: .webm (by ffmpeg), .png or .apng (animated "
+          "PNG, without it)")
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--fps", arguments.fps,
+          "frames a second of the movie as it is played, in whole periods of the loop; default: 25, or "
+          "what these allow")
+      ->type_name("NUMBER")
+      ->check(positive);
+  command.add_option("--slow", arguments.slow, "the movie takes FACTOR times as long as what it shows")
+      ->type_name("FACTOR")
+      ->check(positive)
+      ->capture_default_str();
+  command
+      .add_option("--size", arguments.size, "of frames and movie, force included [pixels]; default 960x870")
+      ->type_name("WIDTHxHEIGHT");
 }
 
 void add_run(CLI::App& app, Invocation& invocation) {
@@ -88,9 +119,10 @@ void add_run(CLI::App& app, Invocation& invocation) {
                    "record.state_period_s, else one a period")
       ->type_name("NUMBER")
       ->check(CLI::PositiveNumber);
+  add_movie(*command, *arguments);
   command
       ->add_option("--shade", arguments->shade,
-                   "what colours picture and frames: displacement, stress or penetration")
+                   "what colours picture, frames and movie: displacement, stress or penetration")
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--report", arguments->report, "also a page to look at (report.html)");
@@ -114,16 +146,19 @@ void add_run(CLI::App& app, Invocation& invocation) {
   palpate run falling-ball --trace --report      which steps were rejected, why, and where
   palpate run touch-human --realtime             how late its ticks are on this machine
   palpate run two-heads --contact-picture        what touches where, how deep, by which proxies
+  palpate run press-ball --movie press.png --slow 4       a quarter of its speed; browsers play it
+  palpate run touch-head --movie touch.webm --size 640x580
   palpate run touch-head --frames --frames-per-s 50 --shade penetration
 
 Writes into the output folder: run.vtkhdf (states as a time series: ParaView, h5py), force.csv (force and
 torque on the hand), summary.json (versions, options, counts, timings).  Ctrl-C ends the run; what was
 recorded by then is whole.
 
-Frames become a movie by ffmpeg, which is not part of palpate; the run prints the line with its own rate:
+Movies end in .webm, which takes the Debian package ffmpeg, or in .png; for other kinds the run prints how
+ffmpeg makes one of --frames, with its own rate:
   ffmpeg -framerate 50 -i out/touch-head/frames/%04d.png -pix_fmt yuv420p touch-head.mp4
-They are drawn behind the run.  Ctrl-C ends the run, and what it reached is drawn; once more, or while frames
-are drawn, it ends that: those written are whole.)");
+Both are drawn behind the run.  Ctrl-C ends the run, and what it reached is drawn; once more, or while frames
+are drawn, it ends that: those written are whole, and so is a movie of them.)");
   command->callback([arguments, &invocation] {
     invocation.action = [arguments] { return run(*arguments); };
     invocation.factorises = true;

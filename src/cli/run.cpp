@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "clock_figures.h"
@@ -85,7 +87,11 @@ std::string command_of(const RunArguments& a) {
   if (a.contact_picture) out += " --contact-picture";
   if (a.frames) out += " --frames";
   if (a.frames && a.frames_per_s > 0.0) out += fmt::format(" --frames-per-s {}", a.frames_per_s);
-  if ((a.picture || a.frames) && a.shade != "displacement") out += " --shade " + a.shade;
+  if (!a.movie.empty()) out += " --movie " + quoted(a.movie);
+  if (a.fps > 0.0) out += fmt::format(" --fps {}", a.fps);
+  if (a.slow != 1.0) out += fmt::format(" --slow {}", a.slow);
+  if (!a.size.empty()) out += " --size " + a.size;
+  if ((a.picture || a.frames || !a.movie.empty()) && a.shade != "displacement") out += " --shade " + a.shade;
   if (a.report) out += " --report";
   if (a.passivity != "off") out += " --passivity " + a.passivity;
   if (a.real_time) out += " --realtime";
@@ -102,13 +108,32 @@ void keep_summary(const loop::World& world, const loop::RunResult& result, doubl
   store::write_atomically((std::filesystem::path(folder) / "scene.toml").string(), world.description.source);
 }
 
+/// How pictures are to look.
+struct Look {
+  Shade shade = Shade::kDisplacement;
+  double between_s = 0.0;  ///< simulated time from frame to frame
+  FrameSize size = {};     ///< of frames
+};
+
 /// Refuses at the start what could not be drawn at the end.
-Shade check_pictures(const RunArguments& arguments, const scene::Description& description) {
+Look check_pictures(const RunArguments& arguments, const scene::Description& description) {
   if (arguments.contact_picture && description.contacts.empty())
     fail("--contact-picture: the scene has no [[contact]]");
+  const bool movie = !arguments.movie.empty();
   if (arguments.frames_per_s > 0.0 && !arguments.frames) fail("--frames-per-s belongs to --frames");
-  if (!arguments.picture && !arguments.contact_picture && !arguments.frames) return Shade::kDisplacement;
-  return check_picture(arguments.shade, description);
+  if (arguments.frames_per_s > 0.0 && movie)
+    fail("--frames-per-s: beside --movie the frames are those of the movie; say --fps and --slow");
+  if ((arguments.fps > 0.0 || arguments.slow != 1.0) && !movie) fail("--fps and --slow belong to --movie");
+  if (!arguments.size.empty() && !arguments.frames && !movie) fail("--size belongs to --frames and --movie");
+  if (!arguments.picture && !arguments.contact_picture && !arguments.frames && !movie) return {};
+  Look look{check_picture(arguments.shade, description)};
+  if (!arguments.size.empty()) look.size = frame_size(arguments.size);
+  if (movie)
+    look.between_s = between_movie_frames(description, arguments.fps, arguments.slow);
+  else if (arguments.frames)
+    look.between_s = between_frames(description, arguments.frames_per_s);
+  if (movie) check_movie(arguments.movie);
+  return look;
 }
 
 void keep_picture(const loop::World& world, const Snapshot& snapshot, const std::string& folder,
@@ -121,16 +146,28 @@ void keep_picture(const loop::World& world, const Snapshot& snapshot, const std:
   } catch (const Error& e) { missing.add("picture " + path, e.what()); }
 }
 
-/// Draws the frames, says how they become a movie, and whether Ctrl-C has ended it.
-bool keep_frames(const loop::World& world, const Frames& frames, const std::string& folder, bool run_stopped,
-                 Undelivered& missing) {
+/// Draws the frames, says where they are, and whether Ctrl-C has ended it.
+bool keep_frames(const loop::World& world, Frames& frames, const RunArguments& arguments,
+                 const std::string& folder, bool run_stopped, Undelivered& missing) {
   const std::string path = (std::filesystem::path(folder) / "frames").string();
-  const int written = frames.save(world, path, !run_stopped, missing);
-  fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; as a movie in real time:\n", written,
-             frames.count(), path, frames.between_s());
-  fmt::print("  ffmpeg -framerate {:g} -i {}/%04d.png -pix_fmt yuv420p {}.mp4\n", 1.0 / frames.between_s(),
-             path, path);
-  return !run_stopped && stop_flag().load() && written < frames.count();
+  const double between_s = frames.between_s(), shown_s = between_s * arguments.slow;
+  std::unique_ptr<FrameSink> pictures, movie;
+  std::vector<FrameSink*> sinks;
+  if (arguments.frames) sinks.push_back((pictures = make_frame_folder(path)).get());
+  if (!arguments.movie.empty()) sinks.push_back((movie = make_movie(arguments.movie, shown_s)).get());
+  frames.save(world, sinks, !run_stopped, missing);
+  int least = frames.count();
+  for (const FrameSink* sink : sinks) least = std::min(least, sink->written());
+  if (pictures) {
+    fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; as a movie in real time:\n",
+               pictures->written(), frames.count(), path, between_s);
+    fmt::print("  ffmpeg -framerate {:g} -i {}/%04d.png -pix_fmt yuv420p {}.mp4\n", 1.0 / between_s, path,
+               path);
+  }
+  if (movie)
+    fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; {:.4g} a second as it is played\n",
+               movie->written(), frames.count(), arguments.movie, between_s, 1.0 / shown_s);
+  return !run_stopped && stop_flag().load() && least < frames.count();
 }
 
 /// Prints which files are now in the folder.
@@ -164,30 +201,31 @@ int run(const RunArguments& arguments) {
 
 int run(const RunArguments& arguments, Undelivered& missing) {
   const scene::Description description = scene_of(arguments.scene);
-  const Shade shade = check_pictures(arguments, description);
+  const Look look = check_pictures(arguments, description);
   const double start = wall_seconds();
   const std::unique_ptr<loop::World> world = loop::assemble(description);
   const double assemble_s = wall_seconds() - start;
 
   // A scene that records nothing writes nothing, unless something was asked for here.
   const bool keep = description.record || !arguments.folder.empty() || arguments.picture ||
-                    arguments.contact_picture || arguments.frames || arguments.report || arguments.trace;
+                    arguments.contact_picture || arguments.frames || !arguments.movie.empty() ||
+                    arguments.report || arguments.trace;
   const std::string folder =
       arguments.folder.empty() ? default_folder(short_name(description)) : arguments.folder;
   if (keep) make_folder(folder);
 
   PeakWrench peak;
   std::vector<loop::Observer*> observers = {&peak};
-  Snapshot snapshot(shade);
+  Snapshot snapshot(look.shade);
   if (arguments.picture) observers.push_back(&snapshot);
   ContactSnapshot contact;
   if (arguments.contact_picture) observers.push_back(&contact);
   std::optional<Frames> frames;
-  if (arguments.frames)
-    observers.push_back(
-        &frames.emplace(*world, shade, arguments.frames_per_s,
-                        arguments.duration_s > 0.0 ? arguments.duration_s : description.duration_s));
-  if (arguments.contact_picture || shade == Shade::kPenetration) world->contact->keep_views();
+  if (arguments.frames || !arguments.movie.empty())
+    observers.push_back(&frames.emplace(
+        *world, folder, look.shade, look.between_s,
+        arguments.duration_s > 0.0 ? arguments.duration_s : description.duration_s, look.size));
+  if (arguments.contact_picture || look.shade == Shade::kPenetration) world->contact->keep_views();
   std::optional<loop::Recorder> recorder;
   if (description.record) observers.push_back(&recorder.emplace(*world, folder));
   std::optional<loop::TraceRecorder> trace;
@@ -204,12 +242,15 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   bool cut_short = false;
   if (keep) {
     keep_summary(*world, result, assemble_s, arguments, folder);
-    if (result.real_time) keep_clock(*result.real_time, folder);
+    if (result.real_time)
+      keep_clock(*result.real_time, folder);
+    else
+      remove_clock(folder);
     if (arguments.picture) keep_picture(*world, snapshot, folder, missing);
     if (arguments.contact_picture) contact.save(*world, folder, missing);
     if (arguments.report) missing.add(report::write_run_report(folder));
     print_files(folder);
-    if (frames) cut_short = keep_frames(*world, *frames, folder, result.stopped, missing);
+    if (frames) cut_short = keep_frames(*world, *frames, arguments, folder, result.stopped, missing);
   }
   if (!result.status.ok())
     fail(

@@ -1,4 +1,5 @@
 #include "palpate/core/error.h"
+#include "palpate/render/animation.h"
 #include "palpate/render/available.h"
 #include "palpate/render/field.h"
 #include "palpate/render/marks.h"
@@ -46,6 +47,15 @@ ColourScale settled(const ColourScale&, double, double) {
   check_available();
   return {};
 }
+Fraction fraction_of(double) {
+  check_available();
+  return {};
+}
+struct AnimationWriter::Impl {};
+AnimationWriter::AnimationWriter(const std::filesystem::path&, double) { check_available(); }
+AnimationWriter::~AnimationWriter() = default;
+void AnimationWriter::add(const Picture&) {}
+void AnimationWriter::close() {}
 void save_png(const Picture&, const std::filesystem::path&) { check_available(); }
 
 }  // namespace palpate::render

@@ -84,6 +84,9 @@ std::string plot_items(std::size_t index, const Series& series, const std::strin
   if (series.mark == Mark::kLinePoints)
     style = fmt::format("linespoints pt 7 ps {} lw {}", width < 1.7 ? 0.45 : 0.7, width);
   std::string items = fmt::format("{} using 1:2 with {} lc rgb '{}' {}", data, style, colour, title);
+  if (series.mark == Mark::kArea)
+    items = fmt::format("{} using 1:2 with filledcurves x1 fs transparent solid 0.25 lc rgb '{}' notitle, {}",
+                        data, colour, items);
   if (std::find(series.hollow.begin(), series.hollow.end(), true) != series.hollow.end())
     items += fmt::format(", {} using 1:($4 > 0 ? $2 : NaN) with points pt 7 ps {} lc rgb 'white' notitle",
                          data, width < 1.7 ? 0.25 : 0.4);

@@ -37,8 +37,8 @@ std::string scene_source(const fs::path& dir, const Json& summary) {
 }
 
 bool holds_results(const fs::path& dir) {
-  for (const char* name : {"summary.json", "force.csv", "trace.csv", "compare.csv", "restarts.csv",
-                           "exchange.csv", "validation.json", "stability.json"})
+  for (const char* name : {"summary.json", "force.csv", "clock.csv", "trace.csv", "compare.csv",
+                           "restarts.csv", "exchange.csv", "validation.json", "stability.json"})
     if (fs::exists(dir / name)) return true;
   return false;
 }
@@ -60,6 +60,7 @@ RunReport write_run_report(const fs::path& dir) {
   add_head(page, summary);
   add_pictures(page, summary, dir);
   if (has("force.csv")) add_forces(page, summary, read_csv(dir / "force.csv"));
+  if (has("clock.csv")) add_clock(page, read_csv(dir / "clock.csv"));
   if (has("trace.csv")) add_trace(page, read_csv(dir / "trace.csv"));
   if (has("compare.csv")) add_comparison_of(page, dir);
   if (has("restarts.csv")) add_restarts(page, read_csv(dir / "restarts.csv"));

@@ -23,6 +23,8 @@ void add_forces(Page& page, const Json& summary, const Table& force);
 /// @param references  by scene  @param rules  how runs were repeated and limited
 void add_comparison(Page& page, const Table& compare, const std::map<std::string, ReferenceError>& references,
                     const std::string& rules);
+/// Histograms of clock.csv: how late ticks were, and what they took.
+void add_clock(Page& page, const Table& clock);
 void add_trace(Page& page, const Table& trace);
 void add_restarts(Page& page, const Table& restarts);
 void add_exchange(Page& page, const Table& exchange);

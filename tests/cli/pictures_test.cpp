@@ -190,13 +190,16 @@ TEST_F(Pictures, FramesShareCameraAndColours) {
   d.duration_s = 0.05;
   d.gravity_m_s2 = Vec3(0, 0, 9.81);  // lifts the upper block off: it moves, the held face does not
   const auto world = loop::assemble(d);
-  cli::Frames frames(*world, cli::Shade::kDisplacement, 0.0, d.duration_s);
-  EXPECT_EQ(frames.between_s(), 0.01);
+  const double between_s = cli::between_frames(d, 0.0);
+  EXPECT_EQ(between_s, 0.01);
+  cli::Frames frames(*world, folder_.path().string(), cli::Shade::kDisplacement, between_s, d.duration_s);
   ASSERT_TRUE(run(*world, frames).status.ok());
   EXPECT_EQ(frames.count(), 5);
   cli::Undelivered missing;
   const long before = counters::counter("render.picture");
-  EXPECT_EQ(frames.save(*world, (folder_ / "frames").string(), true, missing), 5);
+  const auto sink = cli::make_frame_folder((folder_ / "frames").string());
+  frames.save(*world, {sink.get()}, true, missing);
+  EXPECT_EQ(sink->written(), 5);
   EXPECT_EQ(counters::counter("render.picture"), before + 5);
   EXPECT_TRUE(missing.empty());
   const Png first = read_png(folder_ / "frames/0000.png"), last = read_png(folder_ / "frames/0004.png");
@@ -226,19 +229,96 @@ TEST_F(Pictures, FramesShareCameraAndColours) {
 }
 
 TEST_F(Pictures, FramesStandAtWholePeriodsOnly) {
-  const auto world = loop::assemble(blocks(false));
-  EXPECT_NEAR(cli::Frames(*world, cli::Shade::kDisplacement, 30.0, 0.1).between_s(), 0.03, 1e-15);
-  EXPECT_NEAR(cli::Frames(*world, cli::Shade::kDisplacement, 100.0, 0.1).between_s(), 0.01, 1e-15);
-  EXPECT_THROW(cli::Frames(*world, cli::Shade::kDisplacement, 200.0, 0.1), Error);
+  const scene::Description d = blocks(false);  // periods of 10 ms
+  EXPECT_NEAR(cli::between_frames(d, 30.0), 0.03, 1e-15);
+  EXPECT_NEAR(cli::between_frames(d, 100.0), 0.01, 1e-15);
+  EXPECT_THROW(cli::between_frames(d, 200.0), Error);
+}
+
+TEST_F(Pictures, MoviesAreAsLongAsTheRunOrSlower) {
+  const scene::Description d = blocks(false);  // periods of 10 ms
+  EXPECT_NEAR(cli::between_movie_frames(d, 0.0, 1.0), 0.04, 1e-15);
+  EXPECT_NEAR(cli::between_movie_frames(d, 0.0, 2.0), 0.02, 1e-15);
+  EXPECT_NEAR(cli::between_movie_frames(d, 10.0, 5.0), 0.02, 1e-15);
+  EXPECT_NEAR(cli::between_movie_frames(d, 0.0, 0.5), 0.08, 1e-15);
+  EXPECT_NEAR(cli::between_movie_frames(d, 0.0, 100.0), 0.01, 1e-15);  // as many as there are
+  EXPECT_THROW(cli::between_movie_frames(d, 25.0, 100.0), Error);      // no more
+}
+
+TEST_F(Pictures, SizesAreEvenNumbersOfPixels) {
+  EXPECT_EQ(cli::frame_size("640x482").width, 640);
+  EXPECT_EQ(cli::frame_size("640x482").height, 482);
+  for (const char* text : {"", "640", "640x", "x480", "640x480x", "640 x 480", "640x481", "639x480", "64x480",
+                           "640x9000", "-640x480", "99999999999x480", "a"})
+    EXPECT_THROW(cli::frame_size(text), Error) << text;
+}
+
+// Bodies that fell behind in real time stand still: frames that nobody saw show what was last seen.
+TEST_F(Pictures, FramesKeepTheirTimeWhereBodiesStandStill) {
+  const scene::Description d = blocks(false);
+  const auto world = loop::assemble(d);
+  cli::Frames frames(*world, folder_.path().string(), cli::Shade::kDisplacement, 0.02, 0.2, {240, 218});
+  for (const double t : {0.0, 0.01, 0.02, 0.09, 0.10, 0.2}) frames.period(*world, t);
+  EXPECT_EQ(frames.count(), 10);  // instants of 0, 20, 90 (for 80) and 100 ms; the run's end has none
+  cli::Undelivered missing;
+  const long before = counters::counter("render.picture");
+  const auto sink = cli::make_frame_folder((folder_ / "frames").string());
+  frames.save(*world, {sink.get()}, true, missing);
+  EXPECT_EQ(sink->written(), 10);
+  EXPECT_EQ(counters::counter("render.picture"), before + 4);
+  EXPECT_TRUE(missing.empty());
+}
+
+TEST_F(Pictures, InstantsComeBackFromDiskBitForBit) {
+  cli::Instant first;
+  first.time = 0.1;
+  first.nodes = {Points::Random(3, 7), Points::Random(3, 2)};
+  first.stress = {VecX::Random(7), VecX::Random(2)};
+  first.depths = {{{3, 0.5f}, {5, 0.25f}}, {}};
+  first.bones = {Pose{Quat(0.5, 0.5, 0.5, 0.5), Vec3(1, 2, 3)}};
+  first.tool = {Quat(0.0, 0.6, 0.8, 0.0), Vec3(4, 5, 6)};
+  cli::Instant second;
+  second.time = 0.2;
+  second.handle = Pose{Quat(0.6, 0.0, 0.0, 0.8), Vec3(7, 8, 9)};
+  cli::InstantSpool spool(folder_.path().string());
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));  // it has no name
+  spool.append(first);
+  spool.append(second);
+  for (int time = 0; time < 2; ++time) {  // as often as it is asked for
+    spool.rewind();
+    cli::Instant read;
+    ASSERT_TRUE(spool.next(read));
+    EXPECT_EQ(read.time, first.time);
+    EXPECT_EQ(read.nodes, first.nodes);
+    EXPECT_EQ(read.stress, first.stress);
+    EXPECT_EQ(read.depths, first.depths);
+    ASSERT_EQ(read.bones.size(), 1u);
+    EXPECT_EQ(read.bones[0].rotation.coeffs(), first.bones[0].rotation.coeffs());
+    EXPECT_EQ(read.bones[0].translation, first.bones[0].translation);
+    EXPECT_EQ(read.tool.translation, first.tool.translation);
+    EXPECT_FALSE(read.handle.has_value());
+    ASSERT_TRUE(spool.next(read));
+    EXPECT_EQ(read.time, second.time);
+    EXPECT_TRUE(read.nodes.empty());
+    ASSERT_TRUE(read.handle.has_value());
+    EXPECT_EQ(read.handle->rotation.coeffs(), second.handle->rotation.coeffs());
+    EXPECT_FALSE(spool.next(read));
+  }
+  EXPECT_THROW(cli::InstantSpool((folder_ / "none").string()), Error);
 }
 
 TEST_F(Pictures, AFrameThatCannotBeWrittenIsNamed) {
   const auto world = loop::assemble(blocks(false));
-  cli::Frames frames(*world, cli::Shade::kDisplacement, 0.0, 0.04);
+  cli::Frames frames(*world, folder_.path().string(), cli::Shade::kDisplacement, 0.01, 0.04, {240, 218});
   ASSERT_TRUE(run(*world, frames).status.ok());
   cli::Undelivered missing;
   std::filesystem::create_directories(folder_ / "frames/0002.part");  // where its draft would be
-  EXPECT_EQ(frames.save(*world, (folder_ / "frames").string(), true, missing), 2);
+  const auto folder = cli::make_frame_folder((folder_ / "frames").string());
+  const auto movie = cli::make_movie((folder_ / "all.png").string(), 0.01);
+  frames.save(*world, {folder.get(), movie.get()}, true, missing);
+  EXPECT_EQ(folder->written(), 2);
+  EXPECT_EQ(movie->written(), 4);  // goes on without the other
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "all.png"));
   EXPECT_FALSE(missing.empty());
   EXPECT_EQ(missing.close(0), 3);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "frames/0001.png"));

@@ -5,7 +5,8 @@
 
 namespace palpate::report {
 
-enum class Mark { kLine, kPoints, kLinePoints, kDashed };
+/// kArea: a line, and colour from it down to the axis.
+enum class Mark { kLine, kPoints, kLinePoints, kDashed, kArea };
 
 /// One curve.  Points that are not finite (or not positive on a logarithmic axis) are left out.
 struct Series {
