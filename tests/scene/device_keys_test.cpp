@@ -86,9 +86,9 @@ TEST(DeviceKeys, EveryTypeTakesItsOwnAndRefusesTheOthers) {
       ++refused;
     }
   }
-  EXPECT_EQ(taken, 1 + 16 + 0 + 2) << "motion; a hand's; none; address and time-out";
+  EXPECT_EQ(taken, 1 + 16 + 0 + 2) << "motion; motion and a hand's 15; none; address and time-out";
   EXPECT_EQ(common, 4 * 10) << "profile, four limits, ramp, and four keys of the workspace";
-  EXPECT_EQ(refused, (16 - 1 + 3 + 0) + 3 + (1 + 16 + 3 - 1 + 1) + (1 + 16 + 1));
+  EXPECT_EQ(refused, 19 + 4 + 20 + 18) << "of 2 for scripts, 15 for hands, 1 for recordings, 3 for peers";
 }
 
 TEST(DeviceKeys, WhatATypeNeedsIsAskedFor) {
@@ -128,8 +128,8 @@ TEST(DeviceKeys, UnknownNamesAreRefusedWithSuggestions) {
             "s.toml:7:8: device: type = \"hadn\" is not known (did you mean \"hand\"?)");
   EXPECT_EQ(refusal(held_by("hand", "arm_mass = 1.0\n")),
             "s.toml:9:1: device: unknown key \"arm_mass\" (did you mean \"arm_mass_kg\"?)");
-  EXPECT_NE(refusal(held_by("script", "motion = [{ kind = \"tpa\", amplitude_m = [0, 0, 1] }]\n"))
-                .find("kind = \"tpa\" is not known (did you mean \"tap\"?)"),
+  EXPECT_NE(refusal(held_by("script", "motion = [{ kind = \"strok\", amplitude_m = [0, 0, 1] }]\n"))
+                .find("kind = \"strok\" is not known (did you mean \"stroke\"?)"),
             std::string::npos);
 }
 
