@@ -140,6 +140,26 @@ class Short(Scenes):
 
 
 class Slow(Scenes):
+    BONES = {"upper_arm_left": 7, "forearm_left": 9, "forearm_right": 10}
+
+    def angles(self, run):
+        """By how many degrees bones have turned at the end."""
+        with (self.folder / run / "bones.csv").open() as lines:
+            rows = list(csv.DictReader(lines))
+
+        def quaternion(row):
+            v = [float(row[f"rotation_{axis}_rad"]) for axis in "xyz"]
+            angle = math.hypot(*v)
+            s = math.sin(0.5 * angle) / angle if angle > 0.0 else 0.5
+            return [math.cos(0.5 * angle)] + [s * one for one in v]
+
+        out = {}
+        for name, number in self.BONES.items():
+            own = [row for row in rows if int(row["bone"]) == number]
+            same = abs(sum(a * b for a, b in zip(quaternion(own[0]), quaternion(own[-1]))))
+            out[name] = 0.0 if same >= 1.0 - 1e-15 else math.degrees(2.0 * math.acos(same))
+        return out
+
     def test_touch_head(self):
         self.check("touch-head")
 
@@ -147,7 +167,15 @@ class Slow(Scenes):
         self.check("touch-human")
 
     def test_posable_human(self):
-        self.check("posable-human")
+        # the finger stays: the arm comes to rest against it, as far as it was pushed
+        figures = self.check("posable-human", more=(
+            "device.keyframe=[{time_s=0.0, position_m=[0.368,0.075,1.03]}, "
+            "{time_s=0.9, position_m=[0.368,-0.045,1.03]}]",))
+        self.assertGreater(figures["held_force_n"], 0.5)
+        angles = self.angles("posable-human-observe")
+        self.assertGreater(angles["forearm_left"], 8.0)
+        self.assertGreater(angles["upper_arm_left"], 3.0)
+        self.assertEqual(angles["forearm_right"], 0.0)
 
     def test_scrape_pumpkin(self):
         self.check("scrape-pumpkin")

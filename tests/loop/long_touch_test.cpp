@@ -13,5 +13,5 @@ TEST(LongTouch, AToolAtRestOnAFrozenBlockDoesNotDrift) {
   const long_touch::Drift drift = long_touch::rest(d, 20'000, 5'000);
   EXPECT_EQ(drift.ticks, 20'000);
   long_touch::expect_no_drift(drift);
-  EXPECT_EQ(drift.memory_mib, 0.0);
+  EXPECT_LT(drift.memory_mib, 1.0) << "15,000 ticks of one record each would be 7 MiB";
 }
