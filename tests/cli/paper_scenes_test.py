@@ -70,8 +70,8 @@ class Scenes(unittest.TestCase):
     def run_scene(self, scene, duration_s, passivity, more=()):
         """The figures of a run that is finite to its end."""
         out = self.folder / f"{scene}-{passivity}"
-        command = [str(PROGRAM), "run", scene, "--duration-s", str(duration_s), "--passivity", passivity, "-o",
-                   str(out), "--set", "record.state_period_s=0.5"]
+        command = [str(PROGRAM), "run", scene, "--duration-s", str(duration_s), "--passivity", passivity,
+                   "-o", str(out), "--set", "record.state_period_s=0.5"]
         for change in more:
             command += ["--set", change]
         done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL)
@@ -126,7 +126,8 @@ class Short(Scenes):
 
     def test_press_ball(self):
         # held from the second keyframe on: the others are left out
-        held = ("device.keyframe=[{time_s=0.0, position_m=[0,0,0.082]}, {time_s=0.13, position_m=[0,0,0.072]}]",
+        held = ("device.keyframe=[{time_s=0.0, position_m=[0,0,0.082]}, "
+                "{time_s=0.13, position_m=[0,0,0.072]}]",
                 "integrator.name=linearly-implicit-euler", "integrator.step_s=0.01")
         figures = self.check("press-ball", 1.5, 1.2, held)
         self.assertGreater(figures["held_force_n"], 0.3)

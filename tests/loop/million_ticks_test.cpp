@@ -13,8 +13,9 @@ using namespace palpate;
 TEST(MillionTicks, TouchHumanNeitherDriftsNorGrows) {
   // the finger where the scene holds it: 15 mm deep in the belly
   scene::Description d = loop::load(PALPATE_SOURCE_DIR "/scenes/touch-human.toml");
-  if (!std::filesystem::exists(d.bodies[0].mesh.file))
-    ASSERT_EQ(std::system("'" PALPATE_PROGRAM "' inspect touch-human > /dev/null"), 0) << "makes the model";
+  ASSERT_TRUE(std::filesystem::exists(d.bodies[0].mesh.file) ||
+              std::system("'" PALPATE_PROGRAM "' inspect touch-human > /dev/null") == 0)
+      << "palpate makes the model";
   d.device->keyframes.erase(d.device->keyframes.begin());  // time 0 is the first one left
   d.device->keyframes.resize(1);
   d.device->keyframes[0].time_s = 0.0;
@@ -23,11 +24,10 @@ TEST(MillionTicks, TouchHumanNeitherDriftsNorGrows) {
   const long_touch::Drift drift = long_touch::rest(d, 1'000'000, 100'000);
   fmt::print(
       "drift from tick 100,000 to 1,000,000: pose {:.2g} (bound {:.2g}), force {:.2g} N (bound {:.2g}), "
-      "moment "
-      "{:.2g} N m, under {:.3g} N; resident memory {:+.3g} MiB\n",
+      "moment {:.2g} N m, under {:.3g} N; resident memory {:+.3g} MiB\n",
       drift.pose, drift.pose_bound, drift.force, drift.force_bound, drift.moment, drift.pressing_n,
       drift.memory_mib);
   EXPECT_EQ(drift.ticks, 1'000'000);
   long_touch::expect_no_drift(drift);
-  EXPECT_EQ(drift.memory_mib, 0.0);
+  EXPECT_LT(drift.memory_mib, 1.0) << "a byte a tick would be 0.9";
 }
