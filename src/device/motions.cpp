@@ -45,13 +45,13 @@ Displacement chirp(const MotionSpec& m, double s) {
 
 const Registry<MakeMotion>& motion_registry() {
   static const Registry<MakeMotion> registry = {
-      {"stroke", "back and forth, a sine", 0, stroke},
-      {"tap", "from rest to the amplitude and back, once a period", 0, tap},
+      {"stroke", "back and forth, a sine", 0, stroke, {{.name = "duration_s"}}},
+      {"tap", "from rest to the amplitude and back, once a period", 0, tap, {{.name = "duration_s"}}},
       {"circle",
        "an ellipse with two half axes",
        0,
        circle,
-       {{.name = "second_amplitude_m", .required = true}}},
+       {{.name = "second_amplitude_m", .required = true}, {.name = "duration_s"}}},
       {"chirp",
        "a sine whose frequency rises or falls linearly",
        0,

@@ -272,6 +272,64 @@ TEST(Skeleton, AFreeLimbKeepsItsMomentum) {
   }
 }
 
+// A tool presses on the hand from above: the joints give way, the tissue between tool and bone is dented, and
+// when the tool has left the springs take the hand back.  Where the joints are welded no bone moves.
+TEST(Skeleton, AToolMovesPassiveJointsAndDentsTheFlesh) {
+  const ModelOnDisk file;
+  const auto pressed = [&](const std::string& joints, const std::string& linearisation, double duration_s) {
+    scene::Description d = jointed(file);
+    d.bodies[0].position_m.setZero();
+    d.bodies[0].rotation_vector_rad.setZero();
+    d.bodies[0].skeleton->others = joints;
+    d.bodies[0].skeleton->stiffness_n_m_rad = 1.0;
+    d.bodies[0].skeleton->damping_n_m_s_rad = 0.05;
+    d.tool.emplace();
+    d.tool->radius_m = 0.02;
+    d.tool->position_m = Vec3(0.075, 0.0, 0.041);  // 1 mm above the skin
+    d.device.emplace();
+    for (const auto& [time, lower] : {std::pair{0.0, 0.0}, {0.2, 0.025}, {0.3, 0.025}, {0.5, 0.0}})
+      d.device->keyframes.push_back(
+          {time, d.tool->position_m - Vec3(0, 0, lower), Vec3::Zero(), "minimum_jerk"});
+    ContactSpec contact;
+    contact.first = "limb";
+    contact.second = "tool";
+    contact.stiffness_pa_m = 1e7;
+    d.contacts.push_back(contact);
+    d.exchange.linearisation = linearisation;
+    d.exchange.exchange_period_s = d.exchange.contact_refresh_s = d.integrator.step_s = 0.01;
+    d.duration_s = duration_s;
+    auto world = loop::assemble(d);
+    const loop::RunResult result = loop::run(*world, {});
+    EXPECT_TRUE(result.status.ok()) << result.status.message;
+    EXPECT_TRUE(world->state.q().allFinite());
+    return world;
+  };
+  const auto turned = [](const loop::World& world) {  // of the hand, about y: downwards is positive [rad]
+    const Pose start = bones::tapered_bone(limb_model().skeleton.bones[2]).frame;
+    return rotation_vector(world.bone_pose(world.bones[2]).rotation * start.rotation.conjugate()).y();
+  };
+  const auto dent = [](const loop::World& world) {  // of the skin towards the bone, under the tool [m]
+    const loop::Body& body = world.bodies[0];
+    const Points now = world.positions(body);
+    Eigen::Index top = 0;
+    (body.placed.colwise() - Vec3(0.07, 0.0, 0.02)).colwise().norm().minCoeff(&top);
+    const Vec3 before =
+        bones::tapered_bone(limb_model().skeleton.bones[2]).frame.inverse() * Vec3(body.placed.col(top));
+    return before.norm() - (world.bone_pose(world.bones[2]).inverse() * Vec3(now.col(top))).norm();
+  };
+  for (const char* linearisation : {"frozen", "condensed"}) {
+    const auto held = pressed("ball", linearisation, 0.3);
+    EXPECT_GT(turned(*held), 0.07) << linearisation << ": 4 degrees";
+    EXPECT_LT(turned(*held), 0.025 / 0.075) << linearisation << ": no farther than the handle goes";
+    EXPECT_GT(dent(*held), 1e-3) << linearisation;
+    const auto left = pressed("ball", linearisation, 1.2);
+    EXPECT_LT(std::abs(turned(*left)), 0.02) << linearisation;
+    const auto welded = pressed("weld", linearisation, 0.3);
+    EXPECT_EQ(turned(*welded), 0.0) << linearisation;
+    EXPECT_GT(dent(*welded), dent(*held)) << linearisation << ": the flesh alone gives way";
+  }
+}
+
 TEST(Skeleton, IsRecordedBoneByBone) {
   const ModelOnDisk file;
   scene::Description d = jointed(file);
