@@ -52,8 +52,8 @@ void BodySide::query() {
   for (Observer* observer : options_.observers) observer->queried(world_, world_.state.time());
 }
 
-dynamics::LinearisedContact BodySide::linearise(double period_s) {
-  const dynamics::LinearisedContact record = [&] {
+ContactRecord BodySide::linearise(double period_s) {
+  const ContactRecord record = [&] {
     const ScopedTimer timer(result_.linearise_s);
     return linearise_contact(world_, ++version_, period_s, result_.frozen_fallbacks);
   }();

@@ -25,7 +25,7 @@ class BodySide {
   /// The slow query; multistep integrators then forget their history.
   void query();
   /// The contact as the tool feels it for the coming `period_s`.
-  dynamics::LinearisedContact linearise(double period_s);
+  ContactRecord linearise(double period_s);
   /// The tool was there, at a later time than all told before; from the last restart on it is a path that the
   /// bodies follow.
   void follow(double t, const Pose& pose, const Twist& twist);

@@ -45,9 +45,7 @@ void visit_tick(F&& f, Tick& t) {
 
 template <class F, class Record>
 void visit_exchange(F&& f, Record& r) {
-  const auto all = [&f](const std::string& name, auto& values) {
-    for (std::size_t i = 0; i < values.size(); ++i) f(name + "_" + std::to_string(i), values[i]);
-  };
+  const auto all = [&f](const std::string& name, auto& values) { visit_all(f, name, values); };
   f("version", r.version);
   f("time_s", r.time);
   f("source", r.source);
@@ -60,6 +58,49 @@ void visit_exchange(F&& f, Record& r) {
   all("b", r.B);
 }
 
+template <class F, class V>
+void visit_all(F& f, const std::string& name, V& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) f(name + "_" + std::to_string(i), values[i]);
+}
+
+/// @param Row  ModelRow, const or not
+template <class F, class Row>
+void visit_model(F&& f, Row& r) {
+  f("version", r.version);
+  auto& model = r.model;
+  f("time_s", model.time);
+  f("points", model.points);
+  f("modes", model.modes);
+  visit_all(f, "stiffness", model.stiffness);
+  visit_all(f, "damping", model.damping);
+  visit_all(f, "force", model.force);
+  visit_all(f, "force_rate", model.force_rate);
+}
+
+template <class F, class Row>
+void visit_point(F&& f, Row& r) {
+  f("version", r.version);
+  auto& point = r.point;
+  f("pair", point.pair);
+  f("area_m2", point.area);
+  visit_all(f, "offset_m", point.offset);
+  visit_all(f, "slide_m", point.slide);
+  visit_all(f, "normal", point.normal);
+  visit_all(f, "place_m", point.place);
+  visit_all(f, "velocity_m_s", point.velocity);
+  visit_all(f, "mode", point.modes);
+}
+
+/// Rows of the tables of models: the version says of which exchange.
+struct ModelRow {
+  std::uint64_t version = 0;
+  contact::TouchModel model;  ///< its points have rows of their own
+};
+struct PointRow {
+  std::uint64_t version = 0;
+  contact::TouchModel::Point point;
+};
+
 template <class Visit, class Record>
 std::vector<std::string> names_of(Visit visit, Record record) {
   std::vector<std::string> out;
@@ -69,6 +110,8 @@ std::vector<std::string> names_of(Visit visit, Record record) {
 
 const auto kVisitTick = [](auto&& f, auto& t) { visit_tick(f, t); };
 const auto kVisitExchange = [](auto&& f, auto& r) { visit_exchange(f, r); };
+const auto kVisitModel = [](auto&& f, auto& r) { visit_model(f, r); };
+const auto kVisitPoint = [](auto&& f, auto& r) { visit_point(f, r); };
 
 template <class Visit, class Record>
 void flatten(Visit visit, const Record& record, std::vector<double>& row) {
@@ -89,7 +132,33 @@ std::vector<Record> read(Visit visit, Record empty, const std::string& path, con
   return out;
 }
 
-enum Tables : std::size_t { kStart, kTicks, kExchanges };
+enum Tables : std::size_t { kStart, kTicks, kExchanges, kModels, kPoints };
+
+/// What the tables of models hold, by exchange; empty where no exchange has points.
+std::vector<contact::TouchModel> read_models(const std::string& path, std::size_t exchanges) {
+  std::vector<contact::TouchModel> out;
+  const std::vector<ModelRow> models = read(kVisitModel, ModelRow{}, path, "models");
+  if (models.empty()) return out;
+  out.resize(exchanges);
+  const auto model_of = [&](std::uint64_t version) -> contact::TouchModel& {
+    if (version == 0 || version > exchanges)
+      fail("{}: a contact model is of exchange {}, of which there is no record", path, version);
+    return out[version - 1];
+  };
+  for (const ModelRow& row : models) {
+    contact::TouchModel& model = model_of(row.version);
+    model = row.model;
+    model.points = 0;
+  }
+  for (const PointRow& row : read(kVisitPoint, PointRow{}, path, "points")) {
+    contact::TouchModel& model = model_of(row.version);
+    if (model.points == contact::TouchModel::kMostPoints)
+      fail("{}: exchange {} has more contact points than this version of palpate has room for", path,
+           row.version);
+    model.point[static_cast<std::size_t>(model.points++)] = row.point;
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -97,7 +166,9 @@ struct HapticRecorder::Impl {
   explicit Impl(const std::string& path)
       : file(path, {{"start", names_of(kVisitTick, TickRecord{})},
                     {"ticks", names_of(kVisitTick, TickRecord{})},
-                    {"exchanges", names_of(kVisitExchange, dynamics::LinearisedContact{})}}) {}
+                    {"exchanges", names_of(kVisitExchange, dynamics::LinearisedContact{})},
+                    {"models", names_of(kVisitModel, ModelRow{})},
+                    {"points", names_of(kVisitPoint, PointRow{})}}) {}
   store::TableFile file;
   std::vector<double> row;
 };
@@ -123,9 +194,17 @@ void HapticRecorder::tick(const TickRecord& tick) {
   impl_->file.append(kTicks, impl_->row);
 }
 
-void HapticRecorder::exchanged(const dynamics::LinearisedContact& record) {
-  flatten(kVisitExchange, record, impl_->row);
+void HapticRecorder::exchanged(const ContactRecord& record) {
+  flatten(kVisitExchange, record.linear, impl_->row);
   impl_->file.append(kExchanges, impl_->row);
+  if (record.linear.source != dynamics::LinearisedContact::Source::kPoints) return;
+  const std::uint64_t version = record.linear.version;
+  flatten(kVisitModel, ModelRow{version, record.touch}, impl_->row);
+  impl_->file.append(kModels, impl_->row);
+  for (int i = 0; i < record.touch.points; ++i) {
+    flatten(kVisitPoint, PointRow{version, record.touch.point[static_cast<std::size_t>(i)]}, impl_->row);
+    impl_->file.append(kPoints, impl_->row);
+  }
 }
 
 HapticRecord read_haptic_record(const std::string& path) {
@@ -138,6 +217,7 @@ HapticRecord read_haptic_record(const std::string& path) {
   out.start = start.front();
   out.ticks = read(kVisitTick, TickRecord{}, path, "ticks");
   out.exchanges = read(kVisitExchange, dynamics::LinearisedContact{}, path, "exchanges");
+  out.models = read_models(path, out.exchanges.size());
   return out;
 }
 

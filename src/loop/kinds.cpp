@@ -71,7 +71,7 @@ scene::Kinds make_kinds() {
                  .unsaid = [](const Description&) { return ContactSpec{}.law; }});
   out.push_back({.table = "exchange",
                  .selector = "scheme",
-                 .kinds = {{"partitioned", part_keys({"linearisation"})}, {"monolithic"}},
+                 .kinds = {{"partitioned", part_keys({"linearisation", "linearisation_error"})}, {"monolithic"}},
                  .unsaid = [](const Description&) { return scene::CosimulationSpec{}.scheme; }});
   out.push_back({.table = "exchange",
                  .selector = "tunnelling",

@@ -7,7 +7,7 @@
 #include "palpate/integrate/integrators.h"
 #include "palpate/linear/solvers.h"
 #include "palpate/tool/tool.h"
-#include "tool_side.h"
+#include "step_answer.h"
 
 namespace palpate::loop {
 
@@ -45,7 +45,8 @@ struct Answer {
   Mat6 J, B;
 };
 
-/// q0 moved by a displacement along u-directions.
+}  // namespace
+
 VecX moved(const World& world, const VecX& displacement) {
   VecX rate(world.state.q().size());
   dynamics::q_dot(world.state.layout(), world.state.q().data(), displacement.data(), rate.data());
@@ -54,7 +55,6 @@ VecX moved(const World& world, const VecX& displacement) {
   return q;
 }
 
-/// s and w of the derivation above.
 void known_motion(World& world, double H, VecX& s, VecX& w) {
   const VecX q0 = world.state.q(), u0 = world.state.u();
   VecX q = moved(world, H * u0), u = u0;
@@ -84,8 +84,6 @@ VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w) {
   return r - H * stiff;
 }
 
-/// A factor of the step matrix: by LU where it is indefinite (an inverted element, a compressed strut), null
-/// where it is singular.
 dynamics::LinearSolver* factored(ToolSide& side) {
   const dynamics::SolveStatus status = side.condenser->factor(side.condensed_matrix);
   if (status == dynamics::SolveStatus::kOk) return side.condenser.get();
@@ -96,6 +94,8 @@ dynamics::LinearSolver* factored(ToolSide& side) {
              ? side.condenser_lu.get()
              : nullptr;
 }
+
+namespace {
 
 /// False where the step matrix has no factor.
 bool answer_after(World& world, double H, const contact::FrameLinearisation& c, Answer& out) {
@@ -182,14 +182,14 @@ std::array<double, 7> flat(const Pose& pose) {
 
 }  // namespace
 
-dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t version, double period_s,
-                                              long& frozen_fallbacks) {
+ContactRecord linearise_contact(World& world, std::uint64_t version, double period_s, long& frozen_fallbacks) {
   counters::count("loop.exchange_record");
   const ToolSide& side = ToolSide::of(world);
-  dynamics::LinearisedContact record;
+  ContactRecord out;
+  dynamics::LinearisedContact& record = out.linear;
   record.version = version;
   record.time = world.state.time();
-  if (!side.trajectory) return record;
+  if (!side.trajectory) return out;
   contact::FrameLinearisation c;
   world.contact->linearise(world.state.view(), side.frame_index, c, contact::Partners::kNodes);
   record.samples = c.active;
@@ -201,8 +201,13 @@ dynamics::LinearisedContact linearise_contact(World& world, std::uint64_t versio
   Eigen::Map<RowMajor6>(record.J.data()) = -c.K;
   Eigen::Map<RowMajor6>(record.B.data()) = -c.B;
   record.source = dynamics::LinearisedContact::Source::kFrozen;
-  if (side.condenser && c.active > 0 && !condense(world, period_s, c, record)) ++frozen_fallbacks;
-  return record;
+  if (side.touch) {
+    record.source = dynamics::LinearisedContact::Source::kPoints;
+    frozen_fallbacks += !side.touch->reduce(world, period_s, out.touch);
+  } else if (side.condenser && c.active > 0 && !condense(world, period_s, c, record)) {
+    ++frozen_fallbacks;
+  }
+  return out;
 }
 
 // The record R(t, x, v) is linear about (x0, v0); it goes on about (x, v) = now with the same F1, J and B:

@@ -69,7 +69,7 @@ class RealTime {
         options_(options),
         result_(result),
         out_(result.real_time.emplace()),
-        ticks_(*world.description.tool, ToolSide::of(world)),
+        ticks_(world.description, ToolSide::of(world)),
         per_period_(whole_number(bodies.period() / world.description.tool->tick_s)),
         tick_s_(bodies.period() / per_period_),
         tick_ns_(std::llround(1e9 * tick_s_)),
@@ -128,7 +128,9 @@ class RealTime {
       const std::int64_t due = start_ns_ + i * tick_ns_;
       sleep_until_ns(due);
       const std::int64_t woke = now_ns();
-      tick_status_ = ticks_.tick(static_cast<double>(i) * tick_s_, tick_s_, records_.latest(), timed.record);
+      const double t = static_cast<double>(i) * tick_s_;
+      tick_status_ =
+          ticks_.tick(t, tick_s_, ticks_.contact(t, tick_s_, records_.latest()), timed.record);
       if (!tick_status_.ok()) break;
       timed.number = i;
       timed.lateness_s = seconds(woke - due);
@@ -158,8 +160,7 @@ class RealTime {
     advance(taken);
     if (bodies_.ended()) return false;
     bodies_.query();
-    const dynamics::LinearisedContact record = bodies_.linearise(bodies_.period());
-    records_.publish(record);
+    records_.publish(bodies_.linearise(bodies_.period()));
     out_.latency_s.push_back(seconds(now_ns() - start_ns_ - done_ * tick_ns_));
     bodies_.close_period(time_of(done_));
     return true;
@@ -214,7 +215,7 @@ class RealTime {
   std::int64_t tick_ns_, start_ns_ = 0;
   long count_, done_ = 0, drained_ = 0;
 
-  dynamics::Exchange<dynamics::LinearisedContact> records_;
+  dynamics::Exchange<ContactRecord> records_;
   SpscRing<TimedTick> queue_;
   dynamics::StepResult tick_status_;  ///< of the ticks' thread; read when it is over
   std::atomic<long> ticked_{0}, unrecorded_{0};

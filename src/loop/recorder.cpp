@@ -172,7 +172,7 @@ void Recorder::energy(const EnergyBalance& balance) {
   impl_->energy->flush();
 }
 
-void Recorder::exchanged(const dynamics::LinearisedContact& record) {
+void Recorder::exchanged(const ContactRecord& record) {
   if (impl_->haptic) impl_->haptic->exchanged(record);
 }
 

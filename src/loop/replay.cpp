@@ -92,19 +92,22 @@ std::vector<TickRecord> retrace(const scene::Description& description, const Hap
   tool_alone.obstacles.clear();
   tool_alone.contacts.clear();
   const auto world = assemble(tool_alone, recorded_hand(record));
-  TickSide side(*tool_alone.tool, ToolSide::of(*world));
+  TickSide side(*tool_alone.tool, ToolSide::of(*world),
+                record.models.empty() ? nullptr : &description.contacts);
   side.start(0.0);
   std::vector<TickRecord> out;
   out.reserve(record.ticks.size());
+  ContactRecord contact;
   for (const TickRecord& tick : record.ticks) {
     // versions count from 1, one an exchange
     const std::size_t version = tick.record_version;
     if (version > record.exchanges.size())
       fail("replay: the tick at {:g} s used exchange {}, of which there is no record", tick.time, version);
-    const dynamics::LinearisedContact contact =
-        version == 0 ? dynamics::LinearisedContact{} : record.exchanges[version - 1];
+    if (version != 0) contact.linear = record.exchanges[version - 1];
+    if (version != 0 && !record.models.empty()) contact.touch = record.models[version - 1];
     TickRecord again;
-    const dynamics::StepResult status = side.tick(tick.time, tick.length, contact, again);
+    const dynamics::StepResult status = side.tick(
+        tick.time, tick.length, side.contact(tick.time, tick.length, contact), again);
     if (!status.ok()) fail("replay: {}", status.message);
     out.push_back(again);
   }

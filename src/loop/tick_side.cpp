@@ -4,7 +4,14 @@
 
 namespace palpate::loop {
 
-TickSide::TickSide(const ToolSpec& spec, ToolSide& side) : spec_(spec), side_(side) {}
+TickSide::TickSide(const ToolSpec& spec, ToolSide& side, const std::vector<ContactSpec>* laws)
+    : spec_(spec), side_(side) {
+  if (laws) touch_.emplace(*laws);
+}
+
+TickSide::TickSide(const scene::Description& description, ToolSide& side)
+    : TickSide(*description.tool, side,
+               description.exchange.linearisation == "points" ? &description.contacts : nullptr) {}
 
 TickSide::~TickSide() {
   try {
@@ -14,20 +21,45 @@ TickSide::~TickSide() {
 
 void TickSide::start(double t) { side_.handle_now = handle_ = side_.handle->sample(t); }
 
-dynamics::StepResult TickSide::tick(double t, double h, const dynamics::LinearisedContact& record,
+void TickSide::take_up(const ContactRecord& record) {
+  taken_up_ = record.linear.version;
+  touch_->adopt(record.touch);
+  const std::size_t kept = std::min(ticks_, past_.size());
+  for (std::size_t i = ticks_ - kept; i < ticks_; ++i) {
+    const Past& tick = past_[i % past_.size()];
+    if (tick.time - 0.5 * tick.length < record.touch.time) continue;
+    touch_->linearise(tick.time, tick.length, i > 0 ? past_[(i - 1) % past_.size()].tool : tick.tool);
+    touch_->follow(tick.tool);
+  }
+}
+
+dynamics::LinearisedContact TickSide::contact(double t, double h, const ContactRecord& record) {
+  if (record.linear.source != dynamics::LinearisedContact::Source::kPoints) return record.linear;
+  if (record.linear.version != taken_up_) take_up(record);
+  dynamics::LinearisedContact out = touch_->linearise(t, h, {side_.tool->pose(), side_.tool->twist()});
+  out.version = record.linear.version;
+  return out;
+}
+
+dynamics::StepResult TickSide::tick(double t, double h, const dynamics::LinearisedContact& contact,
                                     TickRecord& out) {
   const device::HandleSample before = handle_, now = side_.handle->sample(t);
   dynamics::StepResult status =
-      side_.tool->advance(h, {before.pose, now.pose, before.twist, now.twist}, record);
+      side_.tool->advance(h, {before.pose, now.pose, before.twist, now.twist}, contact);
   if (!status.ok()) return status;
   out = {};
   out.time = t;
   out.length = h;
   out.tool = side_.tool->pose();
   out.tool_twist = side_.tool->twist();
-  out.record_version = record.version;
-  const Vec6 contact = dynamics::contact_wrench(record, t, out.tool, out.tool_twist);
-  out.contact = {contact.head<3>(), contact.tail<3>()};
+  out.record_version = contact.version;
+  if (touch_) {
+    past_[ticks_++ % past_.size()] = {t, h, {out.tool, out.tool_twist}};
+    if (contact.source == dynamics::LinearisedContact::Source::kPoints)
+      touch_->follow({out.tool, out.tool_twist});
+  }
+  const Vec6 wrench = dynamics::contact_wrench(contact, t, out.tool, out.tool_twist);
+  out.contact = {wrench.head<3>(), wrench.tail<3>()};
   handle_ = now;
   feel_at(out);
   return status;

@@ -1,4 +1,7 @@
 #pragma once
+#include <array>
+#include <optional>
+
 #include "palpate/loop/run.h"
 #include "tool_side.h"
 
@@ -10,15 +13,20 @@ namespace palpate::loop {
 class TickSide {
  public:
   /// @param side  the tool, the device and the limiter in it are this object's alone while a run lasts
-  TickSide(const ToolSpec& spec, ToolSide& side);
+  /// @param laws  of contact points; null: no record has any
+  TickSide(const ToolSpec& spec, ToolSide& side, const std::vector<ContactSpec>* laws = nullptr);
+  /// The same for a scene.
+  TickSide(const scene::Description& description, ToolSide& side);
   /// No wrench on the hand any more, however the run ended.
   ~TickSide();
   TickSide(const TickSide&) = delete;
   TickSide& operator=(const TickSide&) = delete;
   /// Takes the handle at the run's start.
   void start(double t);
-  /// The tool goes on by h to t under coupling and contact; the wrench goes to the device.
-  dynamics::StepResult tick(double t, double h, const dynamics::LinearisedContact& record, TickRecord& out);
+  /// The contact of the tick of length h to t: the record's own, or what its points come to then.
+  dynamics::LinearisedContact contact(double t, double h, const ContactRecord& record);
+  /// The tool goes on by h to t under coupling and that contact; the wrench goes to the device.
+  dynamics::StepResult tick(double t, double h, const dynamics::LinearisedContact& contact, TickRecord& out);
   /// The wrench on the hand for `tick`'s time and tool, to the device.
   void feel(TickRecord& tick);
   /// No wrench on the hand any more.
@@ -28,11 +36,23 @@ class TickSide {
   /// With the handle as it is.
   void feel_at(TickRecord& tick);
 
+  /// Where the tool was at the end of a tick.
+  struct Past {
+    double time = -1.0, length = 0.0;
+    dynamics::RigidMotion tool;
+  };
+  /// A record is of an instant that is over: its bodies follow the tool from there on.
+  void take_up(const ContactRecord& record);
+
   const ToolSpec& spec_;
   ToolSide& side_;
   device::HandleSample handle_;
   double time_ = 0.0;  ///< of the last tick [s]
   bool live_ = false;  ///< the hand may feel a wrench
+  std::optional<contact::TouchTicks> touch_;  ///< where records have points
+  std::uint64_t taken_up_ = 0;                ///< version of the record in `touch_`
+  std::array<Past, 256> past_{};              ///< a ring: ticks that a record may be late by
+  std::size_t ticks_ = 0;
 };
 
 }  // namespace palpate::loop

@@ -4,6 +4,7 @@
 #include "palpate/device/passivity.h"
 #include "palpate/loop/world.h"
 #include "palpate/tool/tool.h"
+#include "touch_reduction.h"
 
 namespace palpate::loop {
 
@@ -33,6 +34,8 @@ struct ToolSide {
   std::shared_ptr<proxy::ProxySet> proxies;  ///< null where it meets no body with proxies
   int frame_index = -1;                      ///< of that frame in the contact, -1 where no contact names it
   bool meets_obstacles = false;              ///< a contact names the tool and an obstacle
+  /// of linearisation = "points"; else null
+  std::unique_ptr<TouchReduction> touch;
   /// factors the step matrix for the condensed linearisation; null where not used
   std::unique_ptr<dynamics::LinearSolver> condenser;
   /// made at the first step matrix without a Cholesky factor

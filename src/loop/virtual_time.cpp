@@ -17,7 +17,7 @@ class VirtualTime {
       : world_(world), bodies_(bodies), result_(result), side_(ToolSide::of(world)) {
     const scene::Description& d = world.description;
     if (!d.tool) return;
-    ticks_.emplace(*d.tool, side_).start(0.0);
+    ticks_.emplace(d, side_).start(0.0);
     if (!world.monolithic()) {
       bodies.restart_path();
       return;
@@ -58,8 +58,8 @@ class VirtualTime {
   }
 
   /// A linearisation is in force from latency_ticks on; the first of a run at once.
-  void adopt(const dynamics::LinearisedContact& record) {
-    const int latency = record.version == 1 ? 0 : world_.description.exchange.latency_ticks;
+  void adopt(const ContactRecord& record) {
+    const int latency = record.linear.version == 1 ? 0 : world_.description.exchange.latency_ticks;
     if (latency == 0)
       in_force_ = record;
     else
@@ -71,8 +71,9 @@ class VirtualTime {
       in_force_ = coming_.front().record;
     ++count_;
     TickRecord tick;
+    const dynamics::LinearisedContact contact = ticks_->contact(t, h, in_force_);
     result_.status =
-        ticks_->tick(t, h, side_.meets_obstacles ? with_obstacles(world_, in_force_) : in_force_, tick);
+        ticks_->tick(t, h, side_.meets_obstacles ? with_obstacles(world_, contact) : contact, tick);
     if (!result_.status.ok()) return;
     bodies_.follow(t, tick.tool, tick.tool_twist);
     bodies_.felt(tick);
@@ -80,7 +81,7 @@ class VirtualTime {
 
   struct Coming {
     long tick;
-    dynamics::LinearisedContact record;
+    ContactRecord record;
   };
 
   World& world_;
@@ -89,7 +90,7 @@ class VirtualTime {
   ToolSide& side_;
   std::optional<TickSide> ticks_;
   std::optional<MonolithicTicks> dense_;  ///< where tool and bodies are one system
-  dynamics::LinearisedContact in_force_;
+  ContactRecord in_force_;
   std::deque<Coming> coming_;
   long count_ = 0;  ///< of ticks
 };

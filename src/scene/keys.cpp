@@ -126,8 +126,11 @@ const KeyTable<CosimulationSpec>& exchange_keys() {
   static const KeyTable<CosimulationSpec> keys = {
       text("scheme", &CosimulationSpec::scheme, {"partitioned", "monolithic"},
            "tool and bodies step by themselves and exchange forces, or are one system"),
-      text("linearisation", &CosimulationSpec::linearisation, {"condensed", "frozen"},
-           "what the tool feels between exchanges: the bodies' response to it, or the contact alone"),
+      text("linearisation", &CosimulationSpec::linearisation, {"points", "condensed", "frozen"},
+           "what the tool feels between exchanges: points of contact and the bodies' answer, or lines"),
+      number("linearisation_error", &CosimulationSpec::linearisation_error,
+             Range::closed(0.0, 0.5, "0 factors the step matrix"),
+             "\"points\": by how much the bodies may answer more stiffly than they do, relative"),
       number("exchange_period_s", &CosimulationSpec::exchange_period_s, positive("5 to 20 ms is usual"),
              "time between exchanges; a whole number of ticks"),
       unless("exchange_period_s",

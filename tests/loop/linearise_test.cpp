@@ -19,6 +19,11 @@ namespace {
 
 loop::ToolSide& side_of(loop::World& world) { return loop::ToolSide::of(world); }
 
+dynamics::LinearisedContact record_of(loop::World& world, std::uint64_t version, double period_s,
+                                      long& frozen_fallbacks) {
+  return loop::linearise_contact(world, version, period_s, frozen_fallbacks).linear;
+}
+
 constexpr double kDepth = 0.002;
 
 std::unique_ptr<loop::World> touching(const std::string& linearisation) {
@@ -55,7 +60,7 @@ TEST(Linearise, CondensedIsTheAnswerOfOneImplicitStep) {
   const double H = 0.01, e = 1e-7;
   long fallbacks = 0;
   const auto world = touching("condensed");
-  const dynamics::LinearisedContact record = loop::linearise_contact(*world, 1, H, fallbacks);
+  const dynamics::LinearisedContact record = record_of(*world, 1, H, fallbacks);
   EXPECT_EQ(record.source, dynamics::LinearisedContact::Source::kCondensed);
   EXPECT_EQ(fallbacks, 0);
   ASSERT_GT(record.samples, 0);
@@ -71,23 +76,23 @@ TEST(Linearise, CondensedIsTheAnswerOfOneImplicitStep) {
 
 TEST(Linearise, BodiesThatAnswerAreSofterThanFrozenOnes) {
   long fallbacks = 0;
-  const Mat6 frozen = stiffness(loop::linearise_contact(*touching("frozen"), 1, 0.01, fallbacks));
-  const Mat6 condensed = stiffness(loop::linearise_contact(*touching("condensed"), 1, 0.01, fallbacks));
+  const Mat6 frozen = stiffness(record_of(*touching("frozen"), 1, 0.01, fallbacks));
+  const Mat6 condensed = stiffness(record_of(*touching("condensed"), 1, 0.01, fallbacks));
   EXPECT_LT(frozen(5, 5), condensed(5, 5)) << "a Schur complement takes stiffness away";
   EXPECT_LT(condensed(5, 5), 0.0);
 }
 
 TEST(Linearise, AShortPeriodLeavesTheBodiesNoTimeToAnswer) {
   long fallbacks = 0;
-  const Mat6 frozen = stiffness(loop::linearise_contact(*touching("frozen"), 1, 1e-9, fallbacks));
-  const Mat6 condensed = stiffness(loop::linearise_contact(*touching("condensed"), 1, 1e-9, fallbacks));
+  const Mat6 frozen = stiffness(record_of(*touching("frozen"), 1, 1e-9, fallbacks));
+  const Mat6 condensed = stiffness(record_of(*touching("condensed"), 1, 1e-9, fallbacks));
   EXPECT_LT((frozen - condensed).norm(), 1e-6 * frozen.norm());
 }
 
 TEST(Linearise, FrozenRecordRepeatsTheContactAtItsOwnPose) {
   long fallbacks = 0;
   const auto world = touching("frozen");
-  const dynamics::LinearisedContact record = loop::linearise_contact(*world, 7, 0.01, fallbacks);
+  const dynamics::LinearisedContact record = record_of(*world, 7, 0.01, fallbacks);
   EXPECT_EQ(record.version, 7u);
   const Vec6 w = dynamics::contact_wrench(record, record.time, side_of(*world).tool->pose(),
                                           side_of(*world).tool->twist());
@@ -162,7 +167,7 @@ TEST(Linearise, CondensedRecordIsTheWrenchAfterOneImplicitStepOfMovingBodies) {
   Struck s;
   const double H = 0.01, tick = s.world->description.tool->tick_s;
   long fallbacks = 0;
-  const dynamics::LinearisedContact record = loop::linearise_contact(*s.world, 1, H, fallbacks);
+  const dynamics::LinearisedContact record = record_of(*s.world, 1, H, fallbacks);
   ASSERT_EQ(record.source, dynamics::LinearisedContact::Source::kCondensed);
   const Vec6 now = s.wrench();
   for (const double h : {tick, H}) {
@@ -179,7 +184,7 @@ TEST(Linearise, CondensedRecordFollowsTheToolsDisplacementAndTwist) {
   Struck s;
   const double H = 0.01, e = 1e-8;
   long fallbacks = 0;
-  const dynamics::LinearisedContact record = loop::linearise_contact(*s.world, 1, H, fallbacks);
+  const dynamics::LinearisedContact record = record_of(*s.world, 1, H, fallbacks);
   int checked = 0;
   for (int k = 0; k < 12; ++k, ++checked) {
     const double scale = k % 6 < 3 ? 1.0 / 0.015 : 1.0;  // radians for metres at the tool's surface
@@ -209,7 +214,7 @@ TEST(Linearise, AnIndefiniteStepMatrixIsFactoredByLu) {
   ASSERT_LT(A.to_dense().selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0.0) << "it is indefinite";
   counters::reset();
   long fallbacks = 0;
-  const dynamics::LinearisedContact record = loop::linearise_contact(*world, 1, 1.0, fallbacks);
+  const dynamics::LinearisedContact record = record_of(*world, 1, 1.0, fallbacks);
   EXPECT_EQ(record.source, dynamics::LinearisedContact::Source::kCondensed);
   EXPECT_EQ(fallbacks, 0);
   EXPECT_GE(counters::counter("loop.condensed_by_lu"), 1);

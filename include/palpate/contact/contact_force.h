@@ -125,6 +125,8 @@ struct ResultantSize {
   double moment = 0.0;  ///< about the body's mean node or the frame's origin [N m]
 };
 
+struct TouchSample;  // touch_model.h
+
 /// Which samples of a frame: those with nodes on the other side, those with another frame there.
 enum class Partners { kAll, kNodes, kFrames };
 
@@ -171,6 +173,8 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   Wrench frame_wrench(const dynamics::StateView& state, int frame) const;
   void linearise(const dynamics::StateView& state, int frame, FrameLinearisation& out,
                  Partners partners = Partners::kAll) const;
+  /// The samples of a frame on nodes, at the state given; candidates that are apart included.
+  std::vector<TouchSample> touch_samples(const dynamics::StateView& state, int frame) const;
   /// Change of a pair's resultant on its bodies that the last refresh made, at its state, the largest of all
   /// pairs: the price of a slow query.  The same resultant on other nodes is no change.
   ResultantSize refresh_jump() const;

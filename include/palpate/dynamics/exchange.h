@@ -22,7 +22,7 @@ struct LinearisedContact {
   /// dF/dx, row-major [N/m, N m/rad, mixed]; negative definite for a stable contact
   std::array<double, 36> J{};
   std::array<double, 36> B{};  ///< dF/dv, row-major
-  enum class Source : int { kNone, kFrozen, kCondensed } source = Source::kNone;
+  enum class Source : int { kNone, kFrozen, kCondensed, kPoints } source = Source::kNone;
   int samples = 0;  ///< contact samples it was made from
 };
 static_assert(std::is_trivially_copyable_v<LinearisedContact>);

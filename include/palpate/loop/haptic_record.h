@@ -7,15 +7,16 @@
 
 namespace palpate::loop {
 
-/// What a hand did and felt, to the last bit: each tick, and each linearised contact that the ticks used.
+/// What a hand did and felt, to the last bit: each tick, and each contact record that the ticks used.
 struct HapticRecord {
   TickRecord start;  ///< of its fields the handle's alone, at the run's start
   std::vector<TickRecord> ticks;
   std::vector<dynamics::LinearisedContact> exchanges;
+  std::vector<contact::TouchModel> models;  ///< of each exchange, where they have points; else empty
 };
 
-/// Keeps a HapticRecord in an HDF5 file (haptic.h5: tables "start", "ticks" and "exchanges", one row each,
-/// columns by name).
+/// Keeps a HapticRecord in an HDF5 file (haptic.h5: tables "start", "ticks", "exchanges", and where these
+/// have points "models" and "points"; one row each, columns by name).
 class HapticRecorder : public Observer {
  public:
   /// @throws Error when the file cannot be made
@@ -23,7 +24,7 @@ class HapticRecorder : public Observer {
   ~HapticRecorder() override;
   void period(World& world, double t) override;
   void tick(const TickRecord& tick) override;
-  void exchanged(const dynamics::LinearisedContact& record) override;
+  void exchanged(const ContactRecord& record) override;
 
  private:
   struct Impl;

@@ -18,7 +18,7 @@ class Recorder : public Observer {
   ~Recorder() override;
   void period(World& world, double t) override;
   void tick(const TickRecord& tick) override;
-  void exchanged(const dynamics::LinearisedContact& record) override;
+  void exchanged(const ContactRecord& record) override;
   bool wants_energy() const override;
   void energy(const EnergyBalance& balance) override;
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "palpate/device/passivity.h"
-#include "palpate/dynamics/exchange.h"
+#include "palpate/loop/contact_record.h"
 #include "palpate/loop/energy.h"
 #include "palpate/loop/real_time.h"
 #include "palpate/loop/world.h"
@@ -24,7 +24,7 @@ struct TickRecord {
   /// on the hand, as sent to the motors: behind the limit and the passivity controller
   Wrench device;
   bool handle_valid = true;          ///< whether the handle's pose was
-  std::uint64_t record_version = 0;  ///< of the linearised contact that this tick used; 0: none
+  std::uint64_t record_version = 0;  ///< of the contact record that this tick used; 0: none
 };
 
 /// Observes a run from outside; whatever keeps something of it implements this.
@@ -34,8 +34,8 @@ class Observer {
   /// At the start and after every period.
   virtual void period(World&, double /*t*/) {}
   virtual void tick(const TickRecord&) {}
-  /// A linearised contact was made for the coming ticks.
-  virtual void exchanged(const dynamics::LinearisedContact&) {}
+  /// A record of the contact was made for the coming ticks.
+  virtual void exchanged(const ContactRecord&) {}
   /// After every contact query, at its state: behind `period` where both come at one time.
   virtual void queried(World&, double /*t*/) {}
   /// After every period, in runs of which an observer wants it: a run that nobody asks keeps no balance.

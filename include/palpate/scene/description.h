@@ -59,7 +59,11 @@ struct CompareSpec {
 struct CosimulationSpec {
   /// or "monolithic": tool and bodies in one state of one integrator, nothing exchanged
   std::string scheme = "partitioned";
-  std::string linearisation = "condensed";  ///< or "frozen"
+  /// or "points": contact points at each tick over a reduced model of the bodies; or "frozen": of bodies that
+  /// do not answer
+  std::string linearisation = "condensed";
+  /// of "points": by how much the reduced bodies may be stiffer than they are, relative; 0: exact
+  double linearisation_error = 0.01;
   double exchange_period_s = 0.01;
   double contact_refresh_s = 0.01;  ///< a whole fraction of the exchange period
   /// what is done about bodies so fast that they may go through each other between two refreshes: counted,

@@ -4,24 +4,30 @@
 
 namespace palpate::linear {
 namespace {
-constexpr double kBelowRitz = 0.5, kRise = 1.1;
+constexpr double kBelowRitz = 0.5;
 /// No eigenvalue that single precision tells from zero is so small.
 constexpr double kLeast = 1e-30;
 }  // namespace
 
-void EnergyBound::begin(double start) {
+void EnergyBound::begin(double start, double rise) {
   start_ = start;
   gained_ = 0.0;
   lost_ = false;
   alpha_.clear();
   ratio_.clear();
-  if (!first_) mu_ = std::min(1.0, kRise * mu_);
+  if (!first_) mu_ = std::min(1.0, rise * mu_);
   restart();
 }
 
 void EnergyBound::restart() {
   test_ = 1.0 / mu_;
   bound_ = 1.0 / (kBelowRitz * mu_);
+}
+
+void EnergyBound::limit(double mu) {
+  if (mu >= mu_) return;
+  mu_ = mu;
+  restart();
 }
 
 bool EnergyBound::advance(double alpha, double ratio) {

@@ -24,7 +24,9 @@ class EnergyBound {
  public:
   /// @param start  |x_0|_A^2 with x - x_0 orthogonal to x_0 in A's scalar product; where they are not, |x -
   ///   x_0|_A^2 is far below it
-  void begin(double start);
+  /// @param rise  of mu since the last solve
+  void begin(double start, double rise = kRise);
+  static constexpr double kRise = 1.1;
   /// After a step of length alpha from rho to rho_next.
   void step(double alpha, double rho, double rho_next);
   /// Upper bound of |x - x_k|_A^2 for this rho_k; rho may be measured anew.
@@ -32,6 +34,10 @@ class EnergyBound {
   /// Lower bound of |x|_A^2.
   double solution() const { return start_ + gained_; }
   bool first() const { return first_; }
+  /// Below every eigenvalue, as far as is known.
+  double mu() const { return mu_; }
+  /// It is no more than this; before the first step of a solve.
+  void limit(double mu);
   void end() { first_ = false; }
 
  private:

@@ -96,6 +96,12 @@ struct NodeKernels {
   void (*dense)(const float* E, int stride, const float* y, float* w, int first, int last);
   /// E = E^-1 in place, symmetric, rows of `stride`; false at a pivot that is not positive
   bool (*invert)(float* E, int size, int stride);
+  /// out[i + rows j] = V_i . W_j of all `size` numbers, a multiple of four, and of the zeros behind them
+  void (*inner_products)(int rows, int columns, const float* const* V, const float* const* W,
+                         std::int64_t size, double* out);
+  /// W_j += the sum of V_i Y[i + from j]
+  void (*add_columns)(int from, int to, const float* const* V, const float* Y, float* const* W,
+                      std::int64_t size);
   /// The blocks of rows [first, last), times `scale`, into `out`; false where a value of the copy is not
   /// finite
   bool (*convert)(const DoubleBlocks& A, double scale, float* out, int first, int last);

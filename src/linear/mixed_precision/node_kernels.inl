@@ -16,6 +16,7 @@ namespace PALPATE_SET {
 #include "linear/mixed_precision/node_lanes.inl"
 #include "linear/mixed_precision/node_products.inl"
 #include "linear/mixed_precision/node_iteration.inl"
+#include "linear/mixed_precision/node_columns.inl"
 #include "linear/mixed_precision/node_doubles.inl"
 #include "linear/mixed_precision/node_starts.inl"
 // clang-format on
@@ -31,6 +32,7 @@ namespace PALPATE_SET {
 #define PALPATE_KERNELS_OF(set)                                                                        \
   {#set, set::product, set::pack, set::complete, set::multiply, set::multiply_zero_row_sum, set::update,    \
    set::jacobi, set::gather_rigid, set::direction, set::first_direction, set::dense, set::invert,      \
+   set::inner_products, set::add_columns,                                                              \
    set::convert, set::multiply_double, set::gram, set::combine, set::leave, set::difference,           \
    set::residual, set::image, set::correct, set::put_nodes, set::add_nodes, set::invert_diagonal}
 // clang-format on

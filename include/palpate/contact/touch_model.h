@@ -1,0 +1,94 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include "palpate/contact/sample.h"
+#include "palpate/contact/spec.h"
+#include "palpate/core/pose.h"
+#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/rigid_body.h"
+
+/// Contact of soft bodies with a rigid tool as the tool's own ticks carry it on between two exchanges.
+namespace palpate::contact {
+
+/// The points at which the tool touches or may soon touch, and how the bodies answer there, reduced to a few
+/// modes (docs/design.md, 4.5).  The bodies' displacement from where they were at `time`, tau later, is
+///     tau v + sum of q_k mode_k,       q'' + D q' + diag(stiffness) q = force + tau force_rate + contact,
+/// with q = 0 and q' = 0 at `time`: v is the velocity that nodes had then (of driven ones the mean of the
+/// coming period), and modes are orthonormal in the bodies' mass.  Arrays, so that it can be copied whole.
+struct TouchModel {
+  static constexpr int kMostPoints = 64, kMostModes = 16;
+  /// One touching sample, or many that are alike.
+  struct Point {
+    std::array<double, 3> offset{}, slide{};  ///< on the tool, as SurfacePoint has them [m]
+    std::array<double, 3> normal{};           ///< unit, world: pushes the tool
+    std::array<double, 3> place{};            ///< on the bodies, at `time` [m]
+    std::array<double, 3> velocity{};         ///< v there [m/s]
+    double area = 0.0;                        ///< [m^2]; of springs at points, their number
+    int pair = 0;                             ///< whose law holds: index of the scene's [[contact]]
+    /// 3 x kMostModes by columns: its displacement by q [kg^-1/2]
+    std::array<double, 3 * kMostModes> modes{};
+  };
+  double time = 0.0;  ///< [s]
+  int points = 0, modes = 0;
+  std::array<double, kMostModes> stiffness{};             ///< >= 0 [1/s^2]
+  std::array<double, kMostModes * kMostModes> damping{};  ///< D, symmetric, >= 0 [1/s]
+  std::array<double, kMostModes> force{};                 ///< without the tool's contact [N kg^-1/2]
+  std::array<double, kMostModes> force_rate{};            ///< [N kg^-1/2 s^-1]
+  std::array<Point, kMostPoints> point{};
+};
+static_assert(std::is_trivially_copyable_v<TouchModel>);
+
+/// One sample of a frame on nodes, seen from the frame.
+struct TouchSample {
+  SurfacePoint tool, body;
+  Vec3 normal;           ///< pushes the tool
+  Vec3 place, velocity;  ///< on the body [m, m/s]
+  double area, gap;      ///< [m^2, m]
+  int pair;
+  Vec3 force;  ///< on the tool [N]
+  Mat3 K, D;   ///< -dF/dx_rel [N/m], -dF/dv_rel [N s/m], as in step matrices; zero where it does not press
+  /// of one that does not press: -dF/dx_rel if it pressed
+  Mat3 would_be;
+};
+
+/// Gathers samples into the points of a model: those that press by themselves, as they are or, where they are
+/// more than there is room for, in bunches of near places and like normals, which press with the same force
+/// and answer with the same stiffness as their samples together.
+/// @param pose    of the tool
+/// @param modes   of each sample, 3 x kMostModes; scaled as the model's are
+/// @param out     points alone are written
+void gather_points(const std::vector<TouchSample>& samples, const Pose& pose,
+                   const std::vector<Eigen::Matrix<double, 3, TouchModel::kMostModes>>& modes,
+                   TouchModel& out);
+
+/// Carries a TouchModel on, tick by tick, together with a tool that somebody else integrates.  Takes no
+/// memory once made.
+class TouchTicks {
+ public:
+  /// @param contacts  the scene's, whose laws the points have
+  explicit TouchTicks(const std::vector<ContactSpec>& contacts);
+  ~TouchTicks();
+  TouchTicks(TouchTicks&&) noexcept;
+
+  /// Another model: at rest in it at its time.
+  void adopt(const TouchModel& model);
+  /// The contact at the tick's end, linear about where the tool comes by then with the twist that it has; the
+  /// bodies' answer within the tick is in it.
+  /// @param t1  end of the tick [s]  @param h  its length [s]  @param tool  at its start
+  dynamics::LinearisedContact linearise(double t1, double h, const dynamics::RigidMotion& tool);
+  /// The tool came there at the end of the tick that was linearised: so do the bodies.
+  void follow(const dynamics::RigidMotion& tool);
+  /// Points that pressed in the last linearisation.
+  int pressing() const;
+  /// q' of the modes now [kg^1/2 m/s]
+  VecX rates() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate::contact

@@ -1,0 +1,173 @@
+#include <algorithm>
+#include <numeric>
+
+#include "palpate/contact/touch_model.h"
+
+namespace palpate::contact {
+
+// A bunch of samples j with areas a_j, normals n_j and gaps g_j becomes one point of the law's linear part:
+//     normal n = N / |N|,  N = sum a_j n_j,  area |N|,  gap sum a_j g_j / sum a_j,
+// so that its force k |N| gap n is sum k a_j g_j n_j where normals or gaps are alike, and its place, arm and
+// modes are the means by area.  What is lost is the moment of the pressure about the bunch's middle, of
+// second order in the bunch's size over the contact's: bunches are split where that is largest.  Samples that
+// press are not bunched with such that do not, else the force would not be theirs.
+namespace {
+
+using Six = Eigen::Matrix<double, 6, 1>;
+using PointModes = Eigen::Matrix<double, 3, TouchModel::kMostModes>;
+
+/// A range of the samples' order.
+struct Bunch {
+  int first, last;
+  Six spread;  ///< sum of area times squared distance from the mean, by direction
+  double worst() const { return last - first > 1 ? spread.maxCoeff() : 0.0; }
+};
+
+class Bunches {
+ public:
+  Bunches(const std::vector<TouchSample>& samples, const Vec3& origin, std::vector<int> order)
+      : samples_(samples), origin_(origin), order_(std::move(order)) {
+    Vec3 mean = Vec3::Zero();
+    double area = 0.0, square = 0.0;
+    for (int j : order_) {
+      const TouchSample& s = sample(j);
+      mean += s.area * (s.place - origin_);
+      area += s.area;
+    }
+    mean /= area;
+    for (int j : order_) square += sample(j).area * (sample(j).place - origin_ - mean).squaredNorm();
+    reach_ = std::sqrt(square / area);
+    if (!order_.empty()) bunches_.push_back(bunch(0, static_cast<int>(order_.size())));
+  }
+
+  /// Splits the worst until there are so many, or each is one sample.
+  void split_to(int count) {
+    while (static_cast<int>(bunches_.size()) < count) {
+      const auto worst =
+          std::max_element(bunches_.begin(), bunches_.end(),
+                           [](const Bunch& a, const Bunch& b) { return a.worst() < b.worst(); });
+      if (worst == bunches_.end() || !(worst->worst() > 0.0)) return;
+      Eigen::Index axis = 0;
+      worst->spread.maxCoeff(&axis);
+      const int first = worst->first, last = worst->last;
+      const double middle = mean(first, last)[axis];
+      const auto split = std::partition(order_.begin() + first, order_.begin() + last,
+                                        [&](int j) { return coordinates(j)[axis] < middle; });
+      const int at = static_cast<int>(split - order_.begin());
+      if (at == first || at == last) return;  // equal to rounding
+      *worst = bunch(first, at);
+      bunches_.push_back(bunch(at, last));
+    }
+  }
+
+  const std::vector<Bunch>& all() const { return bunches_; }
+  int member(int i) const { return order_[static_cast<std::size_t>(i)]; }
+
+ private:
+  const TouchSample& sample(int j) const { return samples_[static_cast<std::size_t>(j)]; }
+  /// Place, and normal at the contact's own size: a turn by one radian is as bad as that way.
+  Six coordinates(int j) const {
+    Six c;
+    c << sample(j).place - origin_, reach_ * sample(j).normal;
+    return c;
+  }
+  Six mean(int first, int last) const {
+    Six sum = Six::Zero();
+    double area = 0.0;
+    for (int i = first; i < last; ++i) {
+      sum += sample(member(i)).area * coordinates(member(i));
+      area += sample(member(i)).area;
+    }
+    return sum / area;
+  }
+  Bunch bunch(int first, int last) const {
+    const Six middle = mean(first, last);
+    Six spread = Six::Zero();
+    for (int i = first; i < last; ++i)
+      spread += sample(member(i)).area * (coordinates(member(i)) - middle).cwiseAbs2();
+    return {first, last, spread};
+  }
+
+  const std::vector<TouchSample>& samples_;
+  Vec3 origin_;
+  double reach_ = 0.0;
+  std::vector<int> order_;
+  std::vector<Bunch> bunches_;
+};
+
+void write(const Vec3& from, std::array<double, 3>& to) { to = {from.x(), from.y(), from.z()}; }
+
+TouchModel::Point point_of(const std::vector<TouchSample>& samples, const std::vector<PointModes>& modes,
+                           const Mat3& R, const Vec3& origin, const Bunches& bunches, const Bunch& bunch) {
+  Vec3 along = Vec3::Zero(), offset = along, slide = along, place = along, velocity = along;
+  PointModes mode = PointModes::Zero();
+  double area = 0.0, gap = 0.0;
+  for (int i = bunch.first; i < bunch.last; ++i) {
+    const auto j = static_cast<std::size_t>(bunches.member(i));
+    const TouchSample& s = samples[j];
+    area += s.area;
+    along += s.area * s.normal;
+    gap += s.area * s.gap;
+    offset += s.area * s.tool.offset;
+    slide += s.area * s.tool.slide;
+    place += s.area * s.place;
+    velocity += s.area * s.velocity;
+    mode += s.area * modes[j];
+  }
+  TouchModel::Point out;
+  out.pair = samples[static_cast<std::size_t>(bunches.member(bunch.first))].pair;
+  out.area = along.norm();
+  const Vec3 normal = along / out.area;
+  gap /= area;
+  offset /= area;
+  slide /= area;
+  place /= area;
+  // the mean of places need not have the mean of gaps
+  place += normal * (normal.dot(origin + R * offset + slide - place) - gap);
+  write(normal, out.normal);
+  write(offset, out.offset);
+  write(slide, out.slide);
+  write(place, out.place);
+  write(velocity / area, out.velocity);
+  Eigen::Map<PointModes>(out.modes.data()) = mode / area;
+  return out;
+}
+
+}  // namespace
+
+void gather_points(const std::vector<TouchSample>& samples, const Pose& pose,
+                   const std::vector<PointModes>& modes, TouchModel& out) {
+  out.points = 0;
+  // of each pair those that press, and those that do not
+  std::vector<std::pair<int, bool>> kinds;
+  for (const TouchSample& s : samples) {
+    const std::pair kind{s.pair, s.gap < 0.0};
+    if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+  }
+  std::sort(kinds.begin(), kinds.end(), [](const auto& a, const auto& b) {
+    return std::pair(!a.second, a.first) < std::pair(!b.second, b.first);
+  });
+  std::vector<std::vector<int>> orders;
+  for (const auto& [pair, presses] : kinds) {
+    std::vector<int>& order = orders.emplace_back();
+    for (std::size_t j = 0; j < samples.size(); ++j)
+      if (samples[j].pair == pair && (samples[j].gap < 0.0) == presses) order.push_back(static_cast<int>(j));
+  }
+  const Mat3 R = pose.rotation.toRotationMatrix();
+  int room = TouchModel::kMostPoints;
+  for (std::size_t k = 0; k < orders.size() && room > 0; ++k) {
+    const int kinds_left = static_cast<int>(orders.size() - k) - 1;
+    // what presses leaves a quarter of the room to what may come to press
+    const int own = kinds_left > 0 ? std::max(1, room - room * kinds_left / (3 * kinds_left + 1)) : room;
+    Bunches bunches(samples, pose.translation, std::move(orders[k]));
+    bunches.split_to(std::min(own, room));
+    for (const Bunch& bunch : bunches.all()) {
+      TouchModel::Point point = point_of(samples, modes, R, pose.translation, bunches, bunch);
+      if (room == 0 || !(point.area > 0.0)) continue;
+      out.point[static_cast<std::size_t>(out.points++)] = point;
+      --room;
+    }
+  }
+}
+
+}  // namespace palpate::contact

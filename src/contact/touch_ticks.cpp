@@ -1,0 +1,155 @@
+#include <Eigen/Cholesky>
+
+#include "contact/sample_math.h"
+#include "palpate/contact/touch_model.h"
+
+namespace palpate::contact {
+
+// One tick, from t0 to t1 = t0 + h, of tool and reduced bodies together by linearly implicit Euler.  Tool and
+// bodies are first carried on with the velocities that they have, to (x_p, v) and q_p = q0 + h z0, z = q'; at
+// that state each point i has its force F_i on the tool with K_i = -dF/dx_rel, D_i = -dF/dv_rel.  A point
+// that leaves within the tick presses no more there, and one that comes does.  Z_i and V_i are the tool's
+// maps to the point (tangent.cpp), P_i the modes there.  While the tool ends at x_p + dx with v + dv, and the
+// bodies with z_p + dz, q_p + h dz,
+//     F_i(t1) = F_i - K_i (Z_i dx - h P_i dz) - D_i (V_i dx + Z_i dv - P_i dz),
+// and q' of the model gives, with S_i = h K_i + D_i,
+//     A dz = r + h sum P_i^T (K_i Z_i + D_i V_i) dx + h sum P_i^T D_i Z_i dv,
+//     A = 1 + h D + h^2 diag(k) + h sum P_i^T S_i P_i,
+//     r = h (f(t1) - D z_p - k q_p - sum P_i^T F_i) - (z_p - z0),        z_p = z0.
+// The tool feels sum Z_i^T F_i(t1), whose parts by dx and dv, with that of the arms, are J and B; the record
+// is handed to the tool's own scheme, which says what dx and dv become, and then dz follows.  Both sides so
+// get the same forces: what the tool loses the bodies gain, in momentum to rounding.
+//
+// A is symmetric and positive definite at any h: K_i and D_i are taken without how friction follows pressure,
+// and with friction against the velocity at the tick's end (sample_math.cpp).
+namespace {
+
+constexpr int kModes = TouchModel::kMostModes;
+using Modes = Eigen::Matrix<double, kModes, 1>;
+using ModesByModes = Eigen::Matrix<double, kModes, kModes>;
+using ModesBySix = Eigen::Matrix<double, kModes, 6>;
+using PointModes = Eigen::Matrix<double, 3, kModes>;
+using Mat36 = Eigen::Matrix<double, 3, 6>;
+using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+
+Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+PressureLaw law_of_ticks(ContactSpec spec) {
+  spec.friction_tangent = "secant";
+  return pressure_law(spec);
+}
+
+}  // namespace
+
+struct TouchTicks::Impl {
+  std::vector<PressureLaw> laws;
+  TouchModel model;
+  Modes q = Modes::Zero(), z = Modes::Zero();
+  // of the tick under way
+  double h = 0.0;
+  dynamics::RigidMotion at;  ///< x_p, v
+  Modes dz = Modes::Zero();
+  ModesBySix dz_dx = ModesBySix::Zero(), dz_dv = ModesBySix::Zero();
+  int pressing = 0;
+};
+
+TouchTicks::TouchTicks(const std::vector<ContactSpec>& contacts) : impl_(std::make_unique<Impl>()) {
+  for (const ContactSpec& spec : contacts) impl_->laws.push_back(law_of_ticks(spec));
+}
+TouchTicks::~TouchTicks() = default;
+TouchTicks::TouchTicks(TouchTicks&&) noexcept = default;
+
+int TouchTicks::pressing() const { return impl_->pressing; }
+
+VecX TouchTicks::rates() const { return impl_->z; }
+
+void TouchTicks::adopt(const TouchModel& model) {
+  impl_->model = model;
+  impl_->q.setZero();
+  impl_->z.setZero();
+}
+
+dynamics::LinearisedContact TouchTicks::linearise(double t1, double h, const dynamics::RigidMotion& tool) {
+  Impl& m = *impl_;
+  const TouchModel& model = m.model;
+  m.h = h;
+  m.at.twist = tool.twist;
+  m.at.pose.rotation = (quaternion_of(h * tool.twist.angular) * tool.pose.rotation).normalized();
+  m.at.pose.translation = tool.pose.translation + h * tool.twist.linear;
+  const double tau = t1 - model.time;
+  const Modes q_p = m.q + h * m.z;
+  const Mat3 R = m.at.pose.rotation.toRotationMatrix(), spin = -cross_matrix(tool.twist.angular);
+
+  const Eigen::Map<const ModesByModes> damping(model.damping.data());
+  const Eigen::Map<const Modes> stiffness(model.stiffness.data()), force(model.force.data()),
+      rate(model.force_rate.data());
+  ModesByModes A = ModesByModes::Identity() + h * damping;
+  A.diagonal() += h * h * stiffness;
+  Modes r = force + tau * rate - damping * m.z - stiffness.cwiseProduct(q_p);
+  ModesBySix by_x = ModesBySix::Zero(), by_v = ModesBySix::Zero(), S_by_Z = ModesBySix::Zero();
+  Vec6 wrench = Vec6::Zero();
+  Mat6 K = Mat6::Zero(), B = Mat6::Zero();
+  m.pressing = 0;
+  ContactSample sample;
+  for (int i = 0; i < model.points; ++i) {
+    const TouchModel::Point& point = model.point[static_cast<std::size_t>(i)];
+    const Eigen::Map<const PointModes> P(point.modes.data());
+    const Vec3 slide = vec(point.slide), rotating = R * vec(point.offset), arm = rotating + slide;
+    sample.normal = vec(point.normal);
+    sample.area = point.area;
+    SampleMotion motion;
+    motion.a = {m.at.pose.translation + arm, tool.twist.at(arm), arm, rotating};
+    motion.b = {vec(point.place) + tau * vec(point.velocity) + P * q_p, vec(point.velocity) + P * m.z,
+                Vec3::Zero(), Vec3::Zero()};
+    motion.gap = sample.normal.dot(motion.a.x - motion.b.x);
+    if (!(motion.gap < 0.0)) continue;
+    motion.rate = sample.normal.dot(motion.a.v - motion.b.v);
+    const SampleForce s =
+        sample_force_and_tangent(sample, motion, m.laws[static_cast<std::size_t>(point.pair)], true);
+    if (s.force.isZero(0.0)) continue;
+    ++m.pressing;
+    Mat36 Z;
+    Z << -cross_matrix(arm), Mat3::Identity();
+    Mat36 Kx = s.K * Z;
+    Kx.leftCols<3>().noalias() += s.D * (spin * cross_matrix(rotating));
+    const Mat36 Dv = s.D * Z;
+    const PointModes SP = (h * s.K + s.D) * P;
+    A.noalias() += h * (P.transpose() * SP);
+    by_x.noalias() += P.transpose() * Kx;
+    by_v.noalias() += P.transpose() * Dv;
+    S_by_Z.noalias() += SP.transpose() * Z;
+    r.noalias() -= P.transpose() * s.force;
+    wrench.head<3>() += arm.cross(s.force);
+    wrench.tail<3>() += s.force;
+    K.noalias() += Z.transpose() * Kx;
+    K.topLeftCorner<3, 3>().noalias() -= cross_matrix(s.force) * cross_matrix(rotating);
+    B.noalias() += Z.transpose() * Dv;
+  }
+  const Eigen::LLT<ModesByModes> factor(A);
+  m.dz = factor.solve(h * r);
+  m.dz_dx = factor.solve(h * by_x);
+  m.dz_dv = factor.solve(h * by_v);
+
+  dynamics::LinearisedContact out;
+  out.time = t1;
+  const Quat& rotation = m.at.pose.rotation;
+  const Vec3& x = m.at.pose.translation;
+  out.x0 = {rotation.w(), rotation.x(), rotation.y(), rotation.z(), x.x(), x.y(), x.z()};
+  Eigen::Map<Vec6>(out.v0.data()) << tool.twist.angular, tool.twist.linear;
+  Eigen::Map<Vec6>(out.F0.data()) = wrench + S_by_Z.transpose() * m.dz;
+  Eigen::Map<RowMajor6>(out.J.data()) = S_by_Z.transpose() * m.dz_dx - K;
+  Eigen::Map<RowMajor6>(out.B.data()) = S_by_Z.transpose() * m.dz_dv - B;
+  out.source = dynamics::LinearisedContact::Source::kPoints;
+  out.samples = m.pressing;
+  return out;
+}
+
+void TouchTicks::follow(const dynamics::RigidMotion& tool) {
+  Impl& m = *impl_;
+  Vec6 dv;
+  dv << tool.twist.angular - m.at.twist.angular, tool.twist.linear - m.at.twist.linear;
+  m.z += m.dz + m.dz_dx * pose_difference(m.at.pose, tool.pose) + m.dz_dv * dv;
+  m.q += m.h * m.z;
+}
+
+}  // namespace palpate::contact

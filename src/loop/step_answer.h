@@ -1,0 +1,18 @@
+#pragma once
+#include "palpate/loop/world.h"
+#include "tool_side.h"
+
+namespace palpate::loop {
+
+/// What one linearly implicit step of the bodies over H needs beside its matrix (linearise.cpp): s and w, the
+/// displacements [m] and velocity changes [m/s] that are known beforehand.
+void known_motion(World& world, double H, VecX& s, VecX& w);
+/// H (f - K s - D w) - M w on free directions, at the World's state.
+VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w);
+/// q at the World's state moved by a displacement along u-directions.
+VecX moved(const World& world, const VecX& displacement);
+/// A factor of ToolSide::condensed_matrix: by LU where it is indefinite (an inverted element, a compressed
+/// strut), null where it is singular.
+dynamics::LinearSolver* factored(ToolSide& side);
+
+}  // namespace palpate::loop

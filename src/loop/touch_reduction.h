@@ -1,0 +1,31 @@
+#pragma once
+#include "palpate/contact/touch_model.h"
+#include "palpate/dynamics/step_assembly.h"
+#include "palpate/linear/step_response.h"
+#include "palpate/loop/world.h"
+
+namespace palpate::loop {
+
+/// Makes the model of the bodies that the tool's ticks touch (touch_reduction.cpp).
+class TouchReduction {
+ public:
+  /// @param error  exchange.linearisation_error: of how much the modes may answer less, relative; 0: factorise
+  TouchReduction(World& world, double error);
+  ~TouchReduction();
+
+  /// The bodies as the tool's contact sees them from the World's state on, for about `period_s`.
+  /// @return false, and points without modes (bodies that do not answer), where the step matrix has no factor
+  bool reduce(World& world, double period_s, contact::TouchModel& out);
+
+ private:
+  struct Answers;
+  struct Reduced;
+  bool iterate(World& world, double H, const MatX& patterns, Answers& out);
+  bool factor(World& world, double H, const MatX& patterns, Answers& out);
+
+  double error_;
+  dynamics::StepAssembly assembly_;
+  std::unique_ptr<linear::StepResponse> response_;
+};
+
+}  // namespace palpate::loop

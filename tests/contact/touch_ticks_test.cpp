@@ -1,0 +1,191 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <random>
+
+#include "palpate/contact/touch_model.h"
+
+// One point of contact in a few modes, and many: what a tick keeps in balance, and what it must not do.
+namespace palpate {
+namespace {
+
+using contact::TouchModel;
+using dynamics::RigidMotion;
+constexpr int kModes = TouchModel::kMostModes;
+using PointModes = Eigen::Matrix<double, 3, kModes>;
+
+ContactSpec law(double friction = 0.0) {
+  ContactSpec spec;
+  spec.stiffness_pa_m = 1e6;
+  spec.damping_pa_s_m = 1e2;
+  spec.friction = friction;
+  return spec;
+}
+
+/// A wall z = 0 of one square millimetre under a tool's point at its origin; it does not answer.
+TouchModel wall(double gap) {
+  TouchModel model;
+  model.points = 1;
+  model.point[0].normal = {0, 0, 1};
+  model.point[0].place = {0, 0, -gap};
+  model.point[0].area = 1e-3;
+  return model;
+}
+
+RigidMotion at(double z, double speed) { return {{Quat::Identity(), Vec3(0, 0, z)}, {{}, Vec3(0, 0, speed)}}; }
+
+Vec3 force_at(const dynamics::LinearisedContact& record, double t, const RigidMotion& tool) {
+  return dynamics::contact_wrench(record, t, tool.pose, tool.twist).tail<3>();
+}
+
+/// Points all over a tool of 2 cm, some deep, some apart, in modes that have nothing special.
+TouchModel any_model(std::mt19937& random) {
+  std::uniform_real_distribution<double> in(-1.0, 1.0);
+  const auto vec = [&](double size) {
+    return std::array<double, 3>{size * in(random), size * in(random), size * in(random)};
+  };
+  TouchModel model;
+  model.points = 20;
+  model.modes = 7;
+  Eigen::Map<Eigen::Matrix<double, kModes, kModes>> damping(model.damping.data());
+  for (int k = 0; k < model.modes; ++k) {
+    model.stiffness[static_cast<std::size_t>(k)] = std::pow(10.0, 3.0 + 0.5 * k);
+    model.force[static_cast<std::size_t>(k)] = in(random);
+    model.force_rate[static_cast<std::size_t>(k)] = 10.0 * in(random);
+    damping(k, k) = 2e-3 * model.stiffness[static_cast<std::size_t>(k)];
+  }
+  for (int i = 0; i < model.points; ++i) {
+    TouchModel::Point& p = model.point[static_cast<std::size_t>(i)];
+    const Vec3 normal = Vec3(0.3 * in(random), 0.3 * in(random), 1.0).normalized();
+    p.normal = {normal.x(), normal.y(), normal.z()};
+    p.offset = vec(0.02);
+    p.slide = {-0.01 * normal.x(), -0.01 * normal.y(), -0.01 * normal.z()};
+    const Vec3 on_tool = Vec3(p.offset[0], p.offset[1], p.offset[2]) - 0.01 * normal;
+    const Vec3 place = on_tool + normal * 1e-3 * (in(random) + 0.5);
+    p.place = {place.x(), place.y(), place.z()};
+    p.velocity = vec(0.05);
+    p.area = 1e-5;
+    Eigen::Map<PointModes> modes(p.modes.data());
+    for (int k = 0; k < model.modes; ++k) modes.col(k) = Vec3(in(random), in(random), in(random));
+  }
+  return model;
+}
+
+// A tool that is torn off at 0.2 m/s: a line through the state at the exchange would pull it back.
+TEST(TouchTicks, NothingPullsAToolBack) {
+  contact::TouchTicks ticks({law()});
+  ticks.adopt(wall(-1e-3));
+  const double h = 1e-3;
+  double largest = 0.0;
+  for (int i = 0; i < 10; ++i) {
+    const RigidMotion before = at(0.2 * i * h, 0.2), after = at(0.2 * (i + 1) * h, 0.2);
+    const auto record = ticks.linearise((i + 1) * h, h, before);
+    const double force = force_at(record, (i + 1) * h, after).z();
+    EXPECT_GE(force, 0.0);
+    largest = std::max(largest, force);
+    EXPECT_EQ(ticks.pressing(), after.pose.translation.z() < 1e-3 - 1e-12 ? 1 : 0);
+    ticks.follow(after);
+  }
+  EXPECT_GT(largest, 0.5);  // of 1 N at the start
+}
+
+TEST(TouchTicks, ATouchWithinThePeriodIsFeltInItsTick) {
+  contact::TouchTicks ticks({law()});
+  ticks.adopt(wall(1e-3));
+  const double h = 1e-3;
+  for (int i = 0; i < 10; ++i) {
+    const RigidMotion before = at(-0.3 * i * h, -0.3), after = at(-0.3 * (i + 1) * h, -0.3);
+    const auto record = ticks.linearise((i + 1) * h, h, before);
+    const double under = -after.pose.translation.z() - 1e-3;
+    const double expected = under > 0.0 ? 1e-3 * (1e6 * under + 1e2 * 0.3) : 0.0;
+    EXPECT_NEAR(force_at(record, (i + 1) * h, after).z(), expected, 1e-9);
+    ticks.follow(after);
+  }
+}
+
+// 30 N on the skin at 0.1 m/s: more than mu times the pressure is never felt.
+TEST(TouchTicks, FrictionStaysInItsCone) {
+  contact::TouchTicks ticks({law(0.3)});
+  TouchModel model = wall(-1e-3);
+  ticks.adopt(model);
+  const double h = 1e-3, speed = 0.1;
+  for (int i = 0; i < 10; ++i) {
+    RigidMotion before = at(0.0, 0.0), after = before;
+    before.pose.translation.x() = speed * i * h;
+    after.pose.translation.x() = speed * (i + 1) * h;
+    before.twist.linear = after.twist.linear = Vec3(speed, 0, 0);
+    const Vec3 force = force_at(ticks.linearise((i + 1) * h, h, before), (i + 1) * h, after);
+    EXPECT_NEAR(force.z(), 1.0, 1e-9);
+    EXPECT_NEAR(force.x(), -0.3, 1e-9);
+    ticks.follow(after);
+  }
+}
+
+// One mass on a spring under one point: the pair of equations of a tick by hand.
+TEST(TouchTicks, OneMassAnswersByImplicitEuler) {
+  TouchModel model = wall(-1e-3);
+  const double m = 0.01, k = 5000.0, h = 1e-3;  // so stiff that it never parts
+  model.modes = 1;
+  model.stiffness[0] = k / m;
+  model.point[0].modes[2] = 1.0 / std::sqrt(m);
+  contact::TouchTicks ticks({law()});
+  ticks.adopt(model);
+  double x = 0.0, v = 0.0;
+  const double kc = 1e-3 * 1e6, dc = 1e-3 * 1e2;
+  for (int i = 0; i < 50; ++i) {
+    const RigidMotion still = at(0.0, 0.0);
+    const auto record = ticks.linearise((i + 1) * h, h, still);
+    const double force = force_at(record, (i + 1) * h, still).z();
+    ticks.follow(still);
+    // m (v1 - v) = h (-k (x + h v1) - kc (1e-3 + x + h v1) - dc v1), while it presses
+    v = (m * v - h * (k * x + kc * (1e-3 + x))) / (m + h * h * (k + kc) + h * dc);
+    x += h * v;
+    EXPECT_NEAR(force, kc * (1e-3 + x) + dc * v, 1e-9) << i;
+  }
+  EXPECT_NEAR(x, -kc * 1e-3 / (k + kc), 1e-4);
+}
+
+// A tool that does not turn meets a free body, with friction: whatever presses where, the tool loses what the
+// body gains, each tick.
+TEST(TouchTicks, ToolAndBodiesKeepTheirMomentum) {
+  std::mt19937 random(4);
+  const double h = 1e-3, tool_mass = 0.05, body_mass = 0.2;
+  TouchModel model = any_model(random);
+  model.modes = 3;
+  model.stiffness = {};
+  model.damping = {};
+  model.force = {};
+  model.force_rate = {};
+  for (auto& point : model.point) {
+    point.velocity = {};
+    point.modes = {};
+    for (int k = 0; k < 3; ++k) point.modes[static_cast<std::size_t>(4 * k)] = 1.0 / std::sqrt(body_mass);
+  }
+  contact::TouchTicks ticks({law(0.4)});
+  ticks.adopt(model);
+  RigidMotion tool{{}, {Vec3::Zero(), Vec3(0.1, -0.05, -0.2)}};
+  const Vec3 total = tool_mass * tool.twist.linear;
+  double pressed = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    const auto record = ticks.linearise((i + 1) * h, h, tool);
+    pressed += ticks.pressing();
+    using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+    const Mat6 J = Eigen::Map<const RowMajor6>(record.J.data()),
+               B = Eigen::Map<const RowMajor6>(record.B.data());
+    // m dv = h F,  F = F0 + J (h dv) + B dv: x0 is where the tool comes without dv
+    const Mat3 by_dv = (h * J + B).bottomRightCorner<3, 3>();
+    const Vec3 dv = (tool_mass * Mat3::Identity() - h * by_dv)
+                        .partialPivLu()
+                        .solve(h * Eigen::Map<const Vec6>(record.F0.data()).tail<3>());
+    tool.twist.linear += dv;
+    tool.pose.translation += h * tool.twist.linear;
+    ticks.follow(tool);
+    const Vec3 body = std::sqrt(body_mass) * ticks.rates().head<3>();
+    EXPECT_LE((tool_mass * tool.twist.linear + body - total).norm(), 1e-13) << i;
+  }
+  EXPECT_GT(pressed, 40.0);
+  EXPECT_GT(tool.twist.linear.z(), 0.01);  // it was thrown back
+}
+
+}  // namespace
+}  // namespace palpate
