@@ -36,7 +36,7 @@ compare::AgainstMonolithic against_monolithic(const loop::World& world, const lo
 
 void add_against_monolithic(store::Summary& summary, const compare::AgainstMonolithic& a) {
   store::SummarySection& s = summary.section("against monolithic");
-  s.values = {{"reference", a.made_by}};
+  s.values.emplace_back("reference", a.made_by);
   if (!a.trouble.empty()) {
     s.values.emplace_back("trouble", a.trouble);
     return;

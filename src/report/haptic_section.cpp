@@ -72,14 +72,16 @@ Plot frame_of(const Felt& q, const std::string& x_label) {
   return plot;
 }
 
-bool holds(const Table& table, const std::string& variable) {
-  return !rows_where(table, "variable", variable).rows.empty();
+/// Whether there is anything to draw of a variable.
+bool holds(const Table& table, const Felt& q, const std::string& variable) {
+  const std::vector<double> errors = rows_where(table, "variable", variable).numbers(q.of_peak);
+  return std::any_of(errors.begin(), errors.end(), [](double e) { return e > 0.0; });
 }
 
 void add_charts(Page& page, const Table& table, const Felt& q, const Json& orders) {
   Plot period = frame_of(q, "exchange period [s]");
   for (const char* variable : {"exchange period", "exchange alone"})
-    if (holds(table, variable)) period.series.push_back(series_of(table, q, variable, "setting", false));
+    if (holds(table, q, variable)) period.series.push_back(series_of(table, q, variable, "setting", false));
   if (!period.series.empty())
     add_fit(period, period.series.back(),
             number_at(orders, fmt::format("exchange alone: {}", q.name).c_str()));
@@ -88,7 +90,7 @@ void add_charts(Page& page, const Table& table, const Felt& q, const Json& order
                        "nothing but exchange and tick (a tenth of the period) left to err. Rings lie within "
                        "10 times of the reference's own error.",
                        q.name));
-  if (holds(table, "tick")) {
+  if (holds(table, q, "tick")) {
     Plot rate = frame_of(q, "haptic rate [ticks/s]");
     Series ticks = series_of(table, q, "tick", "setting", false);
     for (double& x : ticks.x) x = 1.0 / x;
@@ -96,7 +98,7 @@ void add_charts(Page& page, const Table& table, const Felt& q, const Json& order
     add_plot(page, rate, fmt::format("Error of the {} against the haptic rate.", q.name));
   }
   for (const char* variable : {"pixels", "element size"}) {
-    if (!holds(table, variable)) continue;
+    if (!holds(table, q, variable)) continue;
     Plot plot = frame_of(
         q, std::string(variable) == "pixels" ? "pixels along the image's longer edge" : "element size [m]");
     plot.series.push_back(series_of(table, q, variable, "setting", false));
@@ -105,7 +107,7 @@ void add_charts(Page& page, const Table& table, const Felt& q, const Json& order
   Plot cost = frame_of(q, "CPU time of the loop [s]");
   cost.height = 520;
   for (const std::string& variable : distinct(table, "variable"))
-    if (variable != "exchange alone")
+    if (variable != "exchange alone" && holds(table, q, variable))
       cost.series.push_back(series_of(table, q, variable, "cpu_s_median", true));
   add_plot(page, cost,
            fmt::format("Error of the {} against CPU time, every variant; down and to the left is better.",

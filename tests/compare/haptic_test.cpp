@@ -292,8 +292,8 @@ TEST(Haptic, ARunIsHeldAgainstItsOwnSceneAsOneSystem) {
   const compare::AgainstMonolithic good = against(press());
   EXPECT_EQ(good.trouble, "");
   EXPECT_FALSE(good.recorded_hand);
-  EXPECT_NEAR(good.error.force_rms_n, own_point(measured()).error.force_rms_n, 1e-12);
-  EXPECT_DOUBLE_EQ(good.peak_force_n, measured().peak_force_n);
+  EXPECT_NEAR(good.error.force_rms_n, own_point(measured()).error.force_rms_n, 1e-6);
+  EXPECT_NEAR(good.peak_force_n, measured().peak_force_n, 1e-6);
   EXPECT_LT(good.error.force_rms_n, 0.05 * good.peak_force_n);
   for (const char* fault : {"tool.coupling.damping_n_s_m=1.0", "contact.0.stiffness_pa_m=2e6",
                             "exchange.latency_ticks=10", "tool.mass_kg=0.1"}) {
