@@ -28,6 +28,7 @@ struct RunArguments {
   std::string size;                    ///< of frames and movie, "640x480"; empty: the default
   std::string shade = "displacement";  ///< of picture, frames and movie; or "stress", "penetration"
   std::string passivity = "off";       ///< or "observe", "control"
+  bool against_monolithic = false;     ///< repeat it as one system, and print the distance
 };
 int run(const RunArguments& arguments);
 /// Runs as a part of another command, which prints and closes what is missing.
@@ -56,9 +57,11 @@ struct CompareArguments {
   int repeats = 3, jobs = 0;             ///< jobs = 0: as many as there are cores
   double limit_s = 10.0, reference_limit_s = 120.0;
   double duration_s = 0.0;
-  bool fresh = false;  ///< forget what an earlier study left in the folder
+  bool fresh = false;   ///< forget what an earlier study left in the folder
+  bool haptic = false;  ///< what a hand feels against one system, of one scene
 };
 int compare(const CompareArguments& arguments);
+int compare_haptic(const CompareArguments& arguments);
 int compare(const CompareArguments& arguments, Undelivered& missing);
 
 struct ValidateArguments {

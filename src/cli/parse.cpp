@@ -139,12 +139,16 @@ void add_run(CLI::App& app, Invocation& invocation) {
                     "and kept tick by tick (clock.csv; a plot in the report)");
   command->add_flag("--trace", arguments->trace,
                     "also every attempted step, and why it was rejected (trace.csv; a plot in the report)");
+  command->add_flag("--against-monolithic", arguments->against_monolithic,
+                    "then again with tool and bodies as one system, under the same hand, as [compare.haptic] "
+                    "of the scene says; how far force and torque were from it is printed and kept");
   command->footer(R"(Examples:
   palpate run falling-ball
   palpate run press-ball --integrator linearly-implicit-euler --set integrator.step_s=0.002
   palpate run press-ball --set body.0.youngs_modulus_pa=2e4 --picture --report -o out/softer
   palpate run falling-ball --trace --report      which steps were rejected, why, and where
   palpate run touch-human --realtime             how late its ticks are on this machine
+  palpate run press-ball --against-monolithic    how far its force is from the exact one
   palpate run two-heads --contact-picture        what touches where, how deep, by which proxies
   palpate run press-ball --movie press.png --slow 4       a quarter of its speed; browsers play it
   palpate run touch-head --movie touch.webm --size 640x580
@@ -204,6 +208,10 @@ void add_compare(CLI::App& app, Invocation& invocation) {
   command->add_option("--jobs", arguments->jobs, "runs side by side; default: the number of cores")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--fresh", arguments->fresh, "start anew instead of continuing the study in the folder");
+  command->add_flag(
+      "--haptic", arguments->haptic,
+      "instead, of one scene: force and torque on the hand against tool and bodies as one "
+      "system, over exchange period, haptic rate, contact resolution, integrator, linearisation");
   command->add_option("--duration-s", arguments->duration_s, "simulated time, instead of the scenes' [s]")
       ->type_name("SECONDS")
       ->check(duration);
@@ -213,14 +221,25 @@ void add_compare(CLI::App& app, Invocation& invocation) {
   palpate compare cantilever
   palpate compare cantilever press-ball --limit-s 5 -o out/both
   palpate compare press-ball --repeats 1 --integrator cvode-bdf --integrator linearly-implicit-euler
+  palpate compare --haptic press-ball            how far its force is from the exact one, and why
 
 Each point is one integrator at one tolerance or step, at the scene's fixed exchange period, in a process of
 its own, against a tight reference whose own error is printed.  The ladders are the scene's
 [[compare.ladder]], and a default one for every other integrator.  Ctrl-C or a crash loses nothing: the same
 line goes on where it stopped.  Writes compare.csv, reference.json, study.sqlite (one row a run) and
-report.html.)");
-  command->callback([arguments, &invocation] {
-    invocation.action = [arguments] { return compare(*arguments); };
+report.html.
+
+With --haptic one thing at a time differs from the scene, as its [compare.haptic] says; points run one at a
+time unless --jobs is given, and have 120 s of CPU each, references 1800, unless --limit-s and
+--reference-limit-s are given.  Writes haptic.csv, summary.json, study.sqlite and report.html.)");
+  command->callback([arguments, command, &invocation] {
+    if (arguments->haptic && arguments->all) throw CLI::ExcludesError("--haptic", "--all");
+    if (arguments->haptic && command->count("--limit-s") == 0) arguments->limit_s = 120.0;
+    if (arguments->haptic && command->count("--reference-limit-s") == 0)
+      arguments->reference_limit_s = 1800.0;
+    invocation.action = [arguments] {
+      return arguments->haptic ? compare_haptic(*arguments) : compare(*arguments);
+    };
     invocation.factorises = true;
     invocation.starts_processes = true;
   });

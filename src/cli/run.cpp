@@ -5,12 +5,14 @@
 #include <memory>
 #include <optional>
 
+#include "against_monolithic.h"
 #include "clock_figures.h"
 #include "commands.h"
 #include "contact_picture.h"
 #include "frames.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
+#include "palpate/loop/haptic_memory.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/summary.h"
 #include "palpate/loop/trace.h"
@@ -96,12 +98,15 @@ std::string command_of(const RunArguments& a) {
   if (a.passivity != "off") out += " --passivity " + a.passivity;
   if (a.real_time) out += " --realtime";
   if (a.trace) out += " --trace";
+  if (a.against_monolithic) out += " --against-monolithic";
   return a.folder.empty() ? out : out + " -o " + quoted(a.folder);
 }
 
 void keep_summary(const loop::World& world, const loop::RunResult& result, double assemble_s,
-                  const RunArguments& arguments, const std::string& folder) {
+                  const std::optional<compare::AgainstMonolithic>& against, const RunArguments& arguments,
+                  const std::string& folder) {
   store::Summary summary = loop::summarise(world, result, assemble_s);
+  if (against) add_against_monolithic(summary, *against);
   summary.command = command_of(arguments);
   summary.overrides = arguments.scene.overrides;
   store::write_summary((std::filesystem::path(folder) / "summary.json").string(), summary);
@@ -202,6 +207,7 @@ int run(const RunArguments& arguments) {
 int run(const RunArguments& arguments, Undelivered& missing) {
   const scene::Description description = scene_of(arguments.scene);
   const Look look = check_pictures(arguments, description);
+  if (arguments.against_monolithic) compare::refuse_against_monolithic(description);
   const double start = wall_seconds();
   const std::unique_ptr<loop::World> world = loop::assemble(description);
   const double assemble_s = wall_seconds() - start;
@@ -230,6 +236,8 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   if (description.record) observers.push_back(&recorder.emplace(*world, folder));
   std::optional<loop::TraceRecorder> trace;
   if (arguments.trace) trace.emplace(*world, (std::filesystem::path(folder) / "trace.csv").string());
+  loop::HapticMemory memory;
+  if (arguments.against_monolithic) observers.push_back(&memory);
   const loop::RunResult result = run_watched(*world, arguments, observers);
   recorder.reset();  // closes its files
   if (trace) {
@@ -239,9 +247,14 @@ int run(const RunArguments& arguments, Undelivered& missing) {
 
   print_outcome(*world, result, peak, assemble_s);
   if (result.real_time) print_clock(*result.real_time, world->description.exchange.linearisation);
-  bool cut_short = false;
+  std::optional<compare::AgainstMonolithic> against;
+  if (arguments.against_monolithic && result.status.ok() && !result.stopped)
+    against = against_monolithic(*world, memory.record(), arguments.real_time);
+  bool cut_short = against && against->stopped;
+  if (against && !against->stopped && !against->trouble.empty())
+    missing.add("distance from one system", against->trouble);
   if (keep) {
-    keep_summary(*world, result, assemble_s, arguments, folder);
+    keep_summary(*world, result, assemble_s, against, arguments, folder);
     if (result.real_time)
       keep_clock(*result.real_time, folder);
     else
@@ -250,7 +263,7 @@ int run(const RunArguments& arguments, Undelivered& missing) {
     if (arguments.contact_picture) contact.save(*world, folder, missing);
     if (arguments.report) missing.add(report::write_run_report(folder));
     print_files(folder);
-    if (frames) cut_short = keep_frames(*world, *frames, arguments, folder, result.stopped, missing);
+    if (frames) cut_short |= keep_frames(*world, *frames, arguments, folder, result.stopped, missing);
   }
   if (!result.status.ok())
     fail(
@@ -264,7 +277,7 @@ int run(const RunArguments& arguments, Undelivered& missing) {
     return kExitStopped;
   }
   if (cut_short) {
-    fmt::print(stderr, "palpate: stopped while it drew frames; those written are whole\n");
+    fmt::print(stderr, "palpate: stopped behind the run; what was written by then is whole\n");
     return kExitStopped;
   }
   return 0;

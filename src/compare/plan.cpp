@@ -15,12 +15,6 @@ using dynamics::Stability;
 using dynamics::StepControl;
 using dynamics::StepperEntry;
 
-const StepperEntry* find_stepper(const std::string& name) {
-  for (const StepperEntry& entry : loop::steppers())
-    if (entry.name == name) return &entry;
-  return nullptr;
-}
-
 std::string label_of(const scene::LadderSpec& ladder) {
   return ladder.label.empty() ? ladder.integrator : ladder.label;
 }
@@ -118,32 +112,6 @@ std::vector<scene::LadderSpec> ladders_of(const scene::Description& d, const Com
   return out;
 }
 
-/// A number so that it reads back exactly, and as a TOML float.
-std::string toml_number(double value) {
-  std::string text = fmt::format("{}", value);
-  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
-}
-
-/// Arguments of `--set` that make the integrator step by `value`.
-std::vector<std::string> overrides_of(const scene::LadderSpec& ladder, double value) {
-  std::vector<std::string> out = ladder.set;
-  if (ladder.setting == "tick_s") {
-    out.push_back("tool.integrator=\"" + ladder.integrator + "\"");
-    out.push_back("tool.tick_s=" + toml_number(value));
-    return out;
-  }
-  out.push_back("integrator.name=\"" + ladder.integrator + "\"");
-  const StepperEntry* entry = find_stepper(ladder.integrator);
-  const auto uses = [&](const std::string& name) {
-    return entry && std::any_of(entry->keys.begin(), entry->keys.end(),
-                                [&](const PartKey& key) { return key.name == name; });
-  };
-  if (uses(ladder.setting))
-    out.push_back(fmt::format("integrator.{}={}", ladder.setting, toml_number(value)));
-  if (uses("fixed_step")) out.push_back(fmt::format("integrator.fixed_step={}", ladder.setting == "step_s"));
-  return out;
-}
-
 ComparePoint point_of(const scene::Description& d, const scene::LadderSpec& ladder) {
   ComparePoint point;
   point.label = label_of(ladder);
@@ -162,6 +130,36 @@ ComparePoint point_of(const scene::Description& d, const scene::LadderSpec& ladd
 }
 
 }  // namespace
+
+const StepperEntry* find_stepper(const std::string& name) {
+  for (const StepperEntry& entry : loop::steppers())
+    if (entry.name == name) return &entry;
+  return nullptr;
+}
+
+std::string toml_number(double value) {
+  std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+std::vector<std::string> overrides_of(const scene::LadderSpec& ladder, double value) {
+  std::vector<std::string> out = ladder.set;
+  if (ladder.setting == "tick_s") {
+    out.push_back("tool.integrator=\"" + ladder.integrator + "\"");
+    out.push_back("tool.tick_s=" + toml_number(value));
+    return out;
+  }
+  out.push_back("integrator.name=\"" + ladder.integrator + "\"");
+  const StepperEntry* entry = find_stepper(ladder.integrator);
+  const auto uses = [&](const std::string& name) {
+    return entry && std::any_of(entry->keys.begin(), entry->keys.end(),
+                                [&](const PartKey& key) { return key.name == name; });
+  };
+  if (uses(ladder.setting))
+    out.push_back(fmt::format("integrator.{}={}", ladder.setting, toml_number(value)));
+  if (uses("fixed_step")) out.push_back(fmt::format("integrator.fixed_step={}", ladder.setting == "step_s"));
+  return out;
+}
 
 scene::Description with_overrides(const scene::Description& d, const std::vector<std::string>& overrides) {
   if (d.source.empty())

@@ -7,6 +7,15 @@ namespace palpate::compare {
 scene::Description with_overrides(const scene::Description& description,
                                   const std::vector<std::string>& overrides);
 
+/// Arguments of `--set` that make a ladder's integrator step by `value`, with what else the ladder sets.
+std::vector<std::string> overrides_of(const scene::LadderSpec& ladder, double value);
+
+/// The registry's entry of an integrator; null where there is none.
+const dynamics::StepperEntry* find_stepper(const std::string& name);
+
+/// A number so that it reads back exactly, and as a TOML float.
+std::string toml_number(double value);
+
 /// The points of one scene: its own ladders and a default one for every other integrator that is wanted,
 /// coarsest rung first.
 /// @throws Error for names that nobody knows, and for a setting that an integrator does not step by

@@ -31,12 +31,13 @@ PointRun run_point(const scene::Description& d, double limit_s, const Trajectory
   return out;
 }
 
-Reference settle(const PlannedReference& planned, const ReferenceRun& primary, const ReferenceRun& check) {
+Reference settle(const PlannedReference& planned, const ReferenceRun& primary, const ReferenceRun& check,
+                 TrajectoryError (*measure)(const Trajectory&, const Trajectory&)) {
   Reference out;
   out.available = primary.run || check.run;
   if (primary.run && check.run) {
     out.description = fmt::format("{}, checked against {}", planned.made_by, planned.checked_by);
-    out.own_error = distance(check.run->trajectory, primary.run->trajectory);
+    out.own_error = measure(check.run->trajectory, primary.run->trajectory);
   } else if (primary.run) {
     out.description = planned.made_by + ", not checked";
     out.trouble = fmt::format("the check by {} failed ({}): the reference's own error is not known",

@@ -19,7 +19,8 @@ struct ReferenceRun {
 };
 
 /// Decides which run is the reference, and how far it can be trusted.  The check replaces a reference that
-/// failed.
-Reference settle(const PlannedReference& planned, const ReferenceRun& primary, const ReferenceRun& check);
+/// failed.  @param measure  distance of the check from the reference
+Reference settle(const PlannedReference& planned, const ReferenceRun& primary, const ReferenceRun& check,
+                 TrajectoryError (*measure)(const Trajectory&, const Trajectory&) = distance);
 
 }  // namespace palpate::compare

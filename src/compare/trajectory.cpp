@@ -43,6 +43,26 @@ int for_common_times(const std::vector<double>& a, const std::vector<double>& b,
   return common;
 }
 
+/// Returns the number of common ticks; without any, the errors stay as they are.
+int add_wrench_distance(const Trajectory& computed, const Trajectory& reference, TrajectoryError& error) {
+  double force2 = 0.0, torque2 = 0.0, force_max = 0.0, torque_max = 0.0;
+  const int ticks =
+      for_common_times(computed.tick_times, reference.tick_times, [&](std::size_t i, std::size_t j) {
+        const double force = (computed.device[i].force - reference.device[j].force).norm();
+        const double torque = (computed.device[i].moment - reference.device[j].moment).norm();
+        force2 += force * force;
+        torque2 += torque * torque;
+        force_max = worse(force_max, force);
+        torque_max = worse(torque_max, torque);
+      });
+  if (ticks == 0) return 0;
+  error.force_rms_n = std::sqrt(force2 / ticks);
+  error.torque_rms_n_m = std::sqrt(torque2 / ticks);
+  error.force_max_n = force_max;
+  error.torque_max_n_m = torque_max;
+  return ticks;
+}
+
 }  // namespace
 
 void TrajectoryRecorder::period(loop::World& world, double t) {
@@ -67,6 +87,11 @@ void TrajectoryRecorder::tick(const loop::TickRecord& tick) {
   tool_origin_ = tick.tool.translation;
 }
 
+void WrenchRecorder::tick(const loop::TickRecord& tick) {
+  trajectory_.tick_times.push_back(tick.time);
+  trajectory_.device.push_back(tick.device);
+}
+
 TrajectoryError distance(const Trajectory& computed, const Trajectory& reference) {
   TrajectoryError error;
   double difference = 0.0, size = 0.0;
@@ -85,20 +110,15 @@ TrajectoryError distance(const Trajectory& computed, const Trajectory& reference
       });
   PALPATE_CHECK(common > 0, "two trajectories without a common time");
   error.position_rel_l2 = size > 0.0 ? std::sqrt(difference / size) : std::sqrt(difference);
-  double force2 = 0.0, torque2 = 0.0;
-  const int ticks =
-      for_common_times(computed.tick_times, reference.tick_times, [&](std::size_t i, std::size_t j) {
-        const double force = (computed.device[i].force - reference.device[j].force).norm();
-        const double torque = (computed.device[i].moment - reference.device[j].moment).norm();
-        force2 += force * force;
-        torque2 += torque * torque;
-        error.force_max_n = worse(error.force_max_n, force);
-        error.torque_max_n_m = worse(error.torque_max_n_m, torque);
-      });
-  if (ticks > 0) {
-    error.force_rms_n = std::sqrt(force2 / ticks);
-    error.torque_rms_n_m = std::sqrt(torque2 / ticks);
-  }
+  add_wrench_distance(computed, reference, error);
+  return error;
+}
+
+TrajectoryError wrench_distance(const Trajectory& computed, const Trajectory& reference) {
+  TrajectoryError error = no_distance();
+  if (add_wrench_distance(computed, reference, error) == 0)
+    fail("two runs of {} and {} ticks have no tick in common", computed.tick_times.size(),
+         reference.tick_times.size());
   return error;
 }
 
@@ -107,9 +127,13 @@ TrajectoryError no_distance() {
   return {none, none, none, none, none, none, none};
 }
 
-Run run_once(const scene::Description& description, double duration_s, const std::atomic<bool>* stop) {
+namespace {
+
+/// @param Recorder  an observer with a trajectory()
+template <class Recorder>
+Run run_with(const scene::Description& description, double duration_s, const std::atomic<bool>* stop) {
   const auto world = loop::assemble(description);
-  TrajectoryRecorder recorder;
+  Recorder recorder;
   loop::RunOptions options;
   options.duration_s = duration_s;
   options.observers = {&recorder};
@@ -118,6 +142,17 @@ Run run_once(const scene::Description& description, double duration_s, const std
   run.result = loop::run(*world, options);
   run.trajectory = recorder.trajectory();
   return run;
+}
+
+}  // namespace
+
+Run run_once(const scene::Description& description, double duration_s, const std::atomic<bool>* stop) {
+  return run_with<TrajectoryRecorder>(description, duration_s, stop);
+}
+
+Run run_for_wrenches(const scene::Description& description, double duration_s,
+                     const std::atomic<bool>* stop) {
+  return run_with<WrenchRecorder>(description, duration_s, stop);
 }
 
 }  // namespace palpate::compare

@@ -27,6 +27,8 @@ std::string do_order(const std::string& order, const std::atomic<bool>& out_of_t
   switch (kind) {
     case WorkKind::kReference:
       return bytes_of(run_once(description, description.compare.duration_s, &out_of_time));
+    case WorkKind::kHaptic:
+      return bytes_of(run_for_wrenches(description, description.compare.duration_s, &out_of_time));
     case WorkKind::kExchange: return bytes_of(compare_exchange(description, {{}, &out_of_time}));
     case WorkKind::kMethods: return bytes_of(compare_contact_methods(description, &out_of_time));
     case WorkKind::kPoint: break;

@@ -6,7 +6,7 @@
 namespace palpate::compare {
 
 /// Kinds of work that a process of its own does for a study.
-enum class WorkKind { kReference, kPoint, kExchange, kMethods };
+enum class WorkKind { kReference, kPoint, kExchange, kMethods, kHaptic };
 
 /// One piece of work as bytes.  The scene goes as its text, for the process knows nothing of the study: the
 /// scene is made of its text alone, and its mesh files are found from the same folder.
@@ -15,8 +15,8 @@ enum class WorkKind { kReference, kPoint, kExchange, kMethods };
 std::string order_of(WorkKind kind, const scene::Description& description, double limit_s,
                      const Trajectory* reference);
 
-/// A ProcessPool::Work: does what order_of() said.  @return what bytes_of() makes of a Run, a PointRun, the
-/// exchange's points or the methods' points
+/// A ProcessPool::Work: does what order_of() said.  @return what bytes_of() makes of a Run (of
+/// kHaptic with wrenches alone), a PointRun, the exchange's points or the methods' points
 std::string do_order(const std::string& order, const std::atomic<bool>& out_of_time);
 
 }  // namespace palpate::compare

@@ -36,7 +36,8 @@ scene::Kinds make_kinds() {
                  .selector = "name",
                  .what = "integrator",
                  .kinds = kinds_of(integrate::stepper_registry()),
-                 .unsaid = [](const Description& d) { return d.integrator.name; }});
+                 .unsaid = [](const Description& d) { return d.integrator.name; },
+                 .lists = {"compare.haptic.integrators"}});
   out.push_back({.table = "integrator",
                  .selector = "linear_solver",
                  .what = "linear solver",

@@ -38,7 +38,7 @@ std::string scene_source(const fs::path& dir, const Json& summary) {
 
 bool holds_results(const fs::path& dir) {
   for (const char* name : {"summary.json", "force.csv", "clock.csv", "trace.csv", "compare.csv",
-                           "restarts.csv", "exchange.csv", "validation.json", "stability.json"})
+                           "restarts.csv", "exchange.csv", "haptic.csv", "validation.json", "stability.json"})
     if (fs::exists(dir / name)) return true;
   return false;
 }
@@ -66,6 +66,7 @@ RunReport write_run_report(const fs::path& dir) {
   if (has("restarts.csv")) add_restarts(page, read_csv(dir / "restarts.csv"));
   if (has("exchange.csv")) add_exchange(page, read_csv(dir / "exchange.csv"));
   if (has("methods.csv")) add_methods(page, read_csv(dir / "methods.csv"));
+  if (has("haptic.csv")) add_haptic(page, read_csv(dir / "haptic.csv"), summary);
   if (has("validation.json")) add_validation(page, read_json(dir / "validation.json"));
   if (has("stability.json")) add_stability(page, read_json(dir / "stability.json"));
   add_figures(page, summary);

@@ -29,6 +29,8 @@ void add_trace(Page& page, const Table& trace);
 void add_restarts(Page& page, const Table& restarts);
 void add_exchange(Page& page, const Table& exchange);
 void add_methods(Page& page, const Table& methods);
+/// @param summary  of the comparison: the reference's peaks and own errors, and fitted orders
+void add_haptic(Page& page, const Table& haptic, const Json& summary);
 void add_validation(Page& page, const Json& validation);
 void add_stability(Page& page, const Json& stability);
 void add_parts(Page& page, const Json& summary);

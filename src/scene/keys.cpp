@@ -228,6 +228,27 @@ const KeyTable<LadderSpec>& ladder_keys() {
 
 void read_methods(const Value& value, CompareSpec& spec) { spec.contact_methods = read_texts(value); }
 
+const KeyTable<HapticCompareSpec>& haptic_compare_keys() {
+  using Spec = HapticCompareSpec;
+  static const KeyTable<Spec> keys = {
+      text("reference", &Spec::reference, {}, "the integrator of tool and bodies as one system"),
+      number("reference_rtol", &Spec::reference_rtol, closed(1e-13, 1e-2),
+             "relative tolerance of the reference, where it has error control"),
+      number("reference_step_s", &Spec::reference_step_s, positive(),
+             "step of the reference, where it takes fixed ones"),
+      number("reference_refresh_s", &Spec::reference_refresh_s, positive(), "its contact refresh"),
+      numbers("exchange_periods_s", &Spec::exchange_periods_s, positive(), "exchange periods to compare"),
+      numbers("ticks_s", &Spec::ticks_s, ToolRanges::tick_s, "ticks of the tool to compare"),
+      numbers("pixels", &Spec::pixels, ContactRanges::pixels,
+              "of the images of the tool's contacts, where it has any; all of them always"),
+      numbers("element_sizes_m", &Spec::element_sizes_m, positive(),
+              "of every body that a generator meshes; another mesh is another body"),
+      texts("integrators", &Spec::integrators, "of the bodies, at the scene's own tolerance or step"),
+      unless("every one", texts("linearisations", &Spec::linearisations, "values of exchange.linearisation")),
+  };
+  return keys;
+}
+
 const KeyTable<CompareSpec>& compare_keys() {
   static const KeyTable<CompareSpec> keys = {
       tables("ladder", &CompareSpec::ladders, ladder_keys(),
@@ -248,6 +269,8 @@ const KeyTable<CompareSpec>& compare_keys() {
                            "ways to find the tool's contact, each compared with the first"),
       number("duration_s", &CompareSpec::duration_s, at_least(0.0, "0 is the scene's own"),
              "simulated time of a comparison; 0: the scene's own"),
+      table("haptic", &CompareSpec::haptic, haptic_compare_keys(),
+            "force on the hand against tool and bodies as one system: palpate compare --haptic"),
   };
   return keys;
 }

@@ -429,6 +429,39 @@ class Results(Cli):
         self.assertEqual(done.returncode, 1)
         self.assertIn("nowhere/haptic.h5: no such file", done.stderr)
 
+    HAPTIC = ["--set", "compare.haptic.exchange_periods_s=[0.02, 0.01]",
+              "--set", "compare.haptic.ticks_s=[0.002, 0.001]", "--set", "compare.haptic.integrators=[]",
+              "--set", "compare.haptic.reference_rtol=1e-5", "--set", "compare.haptic.reference_refresh_s=2e-3"]
+
+    def test_what_a_hand_feels_is_compared_with_one_system(self):
+        arguments = ["compare", "--haptic", "press-ball", "--duration-s", "0.08", "--repeats", "1",
+                     *self.HAPTIC, "-o", "felt"]
+        text = self.good(*arguments)
+        self.assertRegex(text, r"(?m)^press-ball: reference tool and bodies as one system by cvode-bdf")
+        self.assertRegex(text, r"(?m)^observed order by exchange alone: force ")
+        for variable in ("exchange period", "exchange alone", "tick", "integrator", "linearisation"):
+            self.assertRegex(text, rf"(?m)^{variable} ")
+        names = {path.name for path in (self.folder / "felt").iterdir()}
+        self.assertEqual({"haptic.csv", "summary.json", "report.html", "study.sqlite"}, names)
+        figures = json.loads((self.folder / "felt/summary.json").read_text())["figures"]
+        self.assertGreater(figures["monolithic reference"]["peak_force_n"], 0.1)
+        self.assertLess(figures["the scene's own settings"]["force_error_rms_of_peak"], 0.2)
+        self.assertIn("Force on the hand against one system", (self.folder / "felt/report.html").read_text())
+        self.assertIn("were done before", self.good(*arguments))
+        self.assertIn("there is no [tool]", self.refused("compare", "--haptic", "cantilever"))
+        self.assertIn("takes one SCENE", self.refused("compare", "--haptic", "press-ball", "twist-ball"))
+        self.assertIn("--all", self.refused("compare", "--haptic", "press-ball", "--all"))
+
+    def test_a_run_says_how_far_it_was_from_one_system(self):
+        run = ["run", "press-ball", "--duration-s", "0.1", "--against-monolithic", *self.HAPTIC, "-o", "held"]
+        text = self.good(*run)
+        self.assertRegex(text, r"(?m)^  force off by \S+ N RMS \(\S+ % of the peak of \S+\), at most ")
+        self.assertNotIn("as it was recorded", text)
+        kept = json.loads((self.folder / "held/summary.json").read_text())["figures"]["against monolithic"]
+        self.assertLess(kept["force_error_rms_of_peak"], 0.2)
+        self.assertIn("under the hand as it was recorded", self.good(*run, "--realtime"))
+        self.assertIn("there is no [tool]", self.refused("run", "one-tet", "--against-monolithic"))
+
     def test_a_scene_is_judged_as_a_haptic_loop(self):
         text = self.good("stability", "--haptic", "press-ball", "-o", "wall")
         self.assertRegex(text, r"passive lies within stable; simulation and theory differ by at most \S+ %")

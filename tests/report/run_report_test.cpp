@@ -35,6 +35,8 @@ void fill(const TemporaryFolder& dir) {
       R"({"command": "palpate run press-ball", "scene": "press <ball>", "outcome": "finished",
         "message": "", "overrides": ["a=1"],
       "figures": {"options": {"integrator": "cvode-bdf", "max_force_n": 2.5}, "counts": {"steps": 812},
+        "monolithic reference": {"made_by": "one <system>", "peak_force_n": 2, "own_force_error_rms_n": 1e-3},
+        "observed orders": {"exchange alone: force": 1.0},
         "in_use": {"fem": "a soft body"},
       "left_out": {"proxy": "one body"}, "pictures": {"picture-of-it.png": "The ball & its dent"}},
       "provenance": {"version": "0.1.0", "commit": "abc", "libraries": {"Eigen": "3.4.0"}}})");
@@ -58,6 +60,17 @@ void fill(const TemporaryFolder& dir) {
                                 "bdf>,cvode-bdf,yes,0.001,0.5,30,400,500,60,0.3,ok,\n");
   put(dir / "exchange.csv",
       joined(report::exchange_columns()) + "0.02,2e-2,,,1\n0.01,1e-2,,,2\n0.005,5e-3,,,4\n");
+  put(dir / "haptic.csv",
+      "variable,value,setting,own,force_error_rms_n,force_error_rms_of_peak,force_error_max_of_peak,"
+      "torque_error_rms_n_m,torque_error_rms_of_peak,torque_error_max_of_peak,force_unresolved,"
+      "torque_unresolved,cpu_s_median,contact_query_s,linearise_s,tool_ticks_s,bodies_s,status,reason\n"
+      "exchange period,20 ms,0.02,yes,0.04,0.02,0.03,0,nan,nan,no,no,1,0.1,0.1,0.1,0.7,ok,\n"
+      "exchange period,10 ms,0.01,no,0.02,0.01,0.02,0,nan,nan,no,no,2,0.1,0.1,0.1,1.7,ok,\n"
+      "exchange alone,20 ms,0.02,no,0.02,0.01,0.02,0,nan,nan,no,no,9,0.1,0.1,0.1,8.7,ok,\n"
+      "exchange alone,10 ms,0.01,no,0.01,0.005,0.01,0,nan,nan,yes,no,9,0.1,0.1,0.1,8.7,ok,\n"
+      "exchange alone,5 ms,0.005,no,0.005,0.0025,0.005,0,nan,nan,no,no,9,0.1,0.1,0.1,8.7,ok,\n"
+      "tick,1 ms,0.001,yes,0.04,0.02,0.03,0,nan,nan,no,no,1,0.1,0.1,0.1,0.7,ok,\n"
+      "linearisation,fro<zen>,nan,no,nan,nan,nan,nan,nan,nan,no,no,nan,nan,nan,nan,nan,refused,no <such>\n");
   put(dir / "validation.json", R"({"cases": [{"name": "patch-test", "measurements": [
       {"quantity": "stress [Pa]", "computed": 1, "exact": 1, "error": 0, "bar": 1e-6, "order": null,
         "passed": true},
@@ -99,6 +112,13 @@ TEST(RunReport, HoldsEverySectionAndNothingFromOutside) {
                            "1.00 (3 points)",
                            "Error of the exchange period",
                            "fitted order 1.00",
+                           "Force on the hand against one system",
+                           "Reference: one &lt;system&gt;.",
+                           "against the haptic rate",
+                           "order 1.00",
+                           "20 ms (the scene&#39;s)",
+                           "not resolved",
+                           "no &lt;such&gt;",
                            "patch-test",
                            "FAIL",
                            "1 of 3 measurements FAIL",

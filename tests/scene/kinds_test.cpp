@@ -208,6 +208,12 @@ TEST(Kinds, ContactMethods) {
             std::string::npos);
 }
 
+TEST(Kinds, IntegratorsOfAHapticComparisonAreKnownOnes) {
+  EXPECT_NE(refusal(scene_texts::kWhole, {"compare.haptic.integrators=[\"cvode-bfd\"]"})
+                .find("did you mean \"cvode-bdf\"?"),
+            std::string::npos);
+}
+
 TEST(Kinds, SpringsOfAreaAndOfPoints) {
   const auto with = [](const Overrides& overrides) { return refusal(scene_texts::kWhole, overrides); };
   EXPECT_EQ(

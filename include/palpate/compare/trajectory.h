@@ -29,6 +29,16 @@ class TrajectoryRecorder : public loop::Observer {
   Vec3 tool_origin_ = Vec3::Zero();
 };
 
+/// Collects of a Trajectory what the hand felt alone: ticks and device wrenches.
+class WrenchRecorder : public loop::Observer {
+ public:
+  void tick(const loop::TickRecord& tick) override;
+  const Trajectory& trajectory() const { return trajectory_; }
+
+ private:
+  Trajectory trajectory_;
+};
+
 /// Distance of a trajectory from a reference at their common times.
 struct TrajectoryError {
   /// mass-weighted L2 over nodes and times, relative to that of the reference's displacement
@@ -39,6 +49,9 @@ struct TrajectoryError {
   double energy_j = 0.0;  ///< largest difference of mechanical energy
 };
 TrajectoryError distance(const Trajectory& computed, const Trajectory& reference);
+/// Of the wrench on the hand alone, at the ticks that both have; all else is NaN.
+/// @throws Error where they have no tick in common
+TrajectoryError wrench_distance(const Trajectory& computed, const Trajectory& reference);
 /// The error of a run that did not reach its end, where the common times would show only its good part: NaN
 /// throughout.
 TrajectoryError no_distance();
@@ -50,5 +63,8 @@ struct Run {
 };
 Run run_once(const scene::Description& description, double duration_s,
              const std::atomic<bool>* stop = nullptr);
+/// Likewise, with ticks and wrenches alone in the trajectory.
+Run run_for_wrenches(const scene::Description& description, double duration_s,
+                     const std::atomic<bool>* stop = nullptr);
 
 }  // namespace palpate::compare

@@ -22,6 +22,22 @@ struct LadderSpec {
   std::vector<std::string> set{};  ///< what else is changed in the scene for it: KEY=VALUE, as for `--set`
 };
 
+/// What `palpate compare --haptic` varies about the scene, one at a time, and the run with tool and bodies as
+/// one system that the force on the hand is held against: the `[compare.haptic]` table.
+struct HapticCompareSpec {
+  std::string reference = "cvode-bdf";  ///< the integrator of tool and bodies as one system
+  double reference_rtol = 1e-7;         ///< of the reference, under error control
+  double reference_step_s = 5e-4;       ///< of the reference, in fixed steps
+  double reference_refresh_s = 5e-4;    ///< contact refresh of the reference
+  std::vector<double> exchange_periods_s = {0.05, 0.02, 0.01, 0.005, 0.002, 0.001};
+  std::vector<double> ticks_s = {0.002, 0.001, 5e-4, 2e-4, 1e-4};
+  /// along the longer edge of the images of the tool's contacts, where it has any
+  std::vector<double> pixels = {32, 64, 128, 256};
+  std::vector<double> element_sizes_m;  ///< of every body that a generator meshes; empty: the scene's alone
+  std::vector<std::string> integrators = {"linearly-implicit-euler", "implicit-midpoint", "cvode-bdf"};
+  std::vector<std::string> linearisations;  ///< empty: every one that there is
+};
+
 /// What `palpate compare` does with this scene.
 struct CompareSpec {
   std::vector<LadderSpec> ladders;
@@ -35,6 +51,7 @@ struct CompareSpec {
   /// contact refreshes at which the price of re-initialisation is counted; empty: none
   std::vector<double> refresh_periods_s;
   double duration_s = 0.0;  ///< 0: the scene's
+  HapticCompareSpec haptic;
 };
 
 /// How tool and bodies are simulated together: the `[exchange]` table.  The spring between hand and tool is

@@ -1,0 +1,56 @@
+#include "against_monolithic.h"
+
+#include <fmt/format.h>
+
+#include "progress.h"
+#include "stop.h"
+
+namespace palpate::cli {
+namespace {
+
+double share(double error, double peak) { return peak > 0.0 ? error / peak : 0.0; }
+
+std::string line_of(const char* what, double rms, double max, double peak, const char* unit) {
+  return fmt::format("{} {:.3g} {} RMS ({:.3g} % of the peak of {:.4g}), at most {:.3g} ({:.3g} %)", what,
+                     rms, unit, 100.0 * share(rms, peak), peak, max, 100.0 * share(max, peak));
+}
+
+}  // namespace
+
+compare::AgainstMonolithic against_monolithic(const loop::World& world, const loop::HapticRecord& record,
+                                              bool real_time) {
+  compare::AgainstMonolithic out;
+  {
+    Progress progress("repeating it as one system");
+    out = compare::against_monolithic(
+        world, record, real_time, [&progress](double fraction) { progress(fraction); }, &stop_flag());
+  }
+  if (!out.trouble.empty()) return out;
+  const compare::TrajectoryError& e = out.error;
+  fmt::print("against {} ({:.3g} s of CPU){}:\n  {}\n  {}\n", out.made_by, out.cpu_s,
+             out.recorded_hand ? ", under the hand as it was recorded" : "",
+             line_of("force off by", e.force_rms_n, e.force_max_n, out.peak_force_n, "N"),
+             line_of("torque off by", e.torque_rms_n_m, e.torque_max_n_m, out.peak_torque_n_m, "N m"));
+  return out;
+}
+
+void add_against_monolithic(store::Summary& summary, const compare::AgainstMonolithic& a) {
+  store::SummarySection& s = summary.section("against monolithic");
+  s.values.emplace_back("reference", a.made_by);
+  if (!a.trouble.empty()) {
+    s.values.emplace_back("trouble", a.trouble);
+    return;
+  }
+  const compare::TrajectoryError& e = a.error;
+  s.values.insert(s.values.end(), {{"force_error_rms_n", e.force_rms_n},
+                                   {"force_error_max_n", e.force_max_n},
+                                   {"force_error_rms_of_peak", share(e.force_rms_n, a.peak_force_n)},
+                                   {"peak_force_n", a.peak_force_n},
+                                   {"torque_error_rms_n_m", e.torque_rms_n_m},
+                                   {"torque_error_max_n_m", e.torque_max_n_m},
+                                   {"torque_error_rms_of_peak", share(e.torque_rms_n_m, a.peak_torque_n_m)},
+                                   {"peak_torque_n_m", a.peak_torque_n_m},
+                                   {"reference_cpu_s", a.cpu_s}});
+}
+
+}  // namespace palpate::cli

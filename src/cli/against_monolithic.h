@@ -1,0 +1,15 @@
+#pragma once
+#include "palpate/compare/haptic.h"
+#include "palpate/store/summary.h"
+
+namespace palpate::cli {
+
+/// Repeats a run with tool and bodies as one system, and prints how far the wrench on the hand was from it.
+/// @param real_time  whether the run was
+compare::AgainstMonolithic against_monolithic(const loop::World& world, const loop::HapticRecord& record,
+                                              bool real_time);
+
+/// Its figures into the run's summary.
+void add_against_monolithic(store::Summary& summary, const compare::AgainstMonolithic& against);
+
+}  // namespace palpate::cli

@@ -1,0 +1,188 @@
+#include "palpate/compare/haptic.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "commands.h"
+#include "palpate/core/error.h"
+#include "palpate/report/run_report.h"
+#include "palpate/report/table.h"
+#include "palpate/store/summary.h"
+#include "paths.h"
+#include "progress.h"
+#include "scene_of.h"
+#include "stop.h"
+#include "undelivered.h"
+
+namespace palpate::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using compare::HapticComparison;
+using compare::HapticPoint;
+
+constexpr std::size_t kReasonLength = 90;
+
+scene::Description scene_of(const CompareArguments& a) {
+  if (a.scenes.size() != 1) fail("compare --haptic takes one SCENE, not {}", a.scenes.size());
+  SceneArguments one{a.scenes.front(), a.overrides, ""};
+  if (a.duration_s > 0.0) one.overrides.push_back(fmt::format("compare.duration_s={}", a.duration_s));
+  return scene_of(one);
+}
+
+HapticComparison compare_watched(const scene::Description& scene, const CompareArguments& a,
+                                 const std::string& folder) {
+  Progress progress("references");
+  compare::CompareOptions options;
+  options.repeats = a.repeats;
+  options.limit_s = a.limit_s;
+  options.reference_limit_s = a.reference_limit_s;
+  options.jobs = a.jobs;
+  options.integrators = a.integrators;
+  options.database = (fs::path(folder) / "study.sqlite").string();
+  options.progress = [&progress](double fraction, const std::string& what) { progress(fraction, what); };
+  options.stop = &stop_flag();
+  if (a.fresh) fs::remove(options.database);
+  return compare::compare_haptic(scene, options);
+}
+
+std::string percent(double error, double peak) {
+  return peak > 0.0 && std::isfinite(error) ? fmt::format("{:.3g}", 100.0 * error / peak) : "-";
+}
+
+std::string outcome_of(const HapticPoint& p) {
+  if (p.status == compare::PointStatus::kOk) {
+    if (p.force_unresolved || p.torque_unresolved)
+      return fmt::format("{} not resolved by the reference",
+                         p.force_unresolved ? p.torque_unresolved ? "force and torque" : "force" : "torque");
+    return p.own ? "the scene's own" : "";
+  }
+  const std::string line = p.reason.substr(0, p.reason.find('\n'));
+  return line.size() <= kReasonLength ? line : line.substr(0, line.find_last_of(' ', kReasonLength)) + " ...";
+}
+
+void print_points(const HapticComparison& c) {
+  std::vector<std::vector<std::string>> rows;
+  for (const HapticPoint& p : c.points) {
+    if (p.status == compare::PointStatus::kMissing) continue;  // stopped before it
+    const bool ran = p.status == compare::PointStatus::kOk;
+    const auto time = [ran](double s) { return ran ? fmt::format("{:.3f}", s) : std::string("-"); };
+    rows.push_back(
+        {p.variable, p.value, report::short_number(p.error.force_rms_n),
+         percent(p.error.force_rms_n, c.peak_force_n), percent(p.error.force_max_n, c.peak_force_n),
+         report::short_number(p.error.torque_rms_n_m), percent(p.error.torque_rms_n_m, c.peak_torque_n_m),
+         percent(p.error.torque_max_n_m, c.peak_torque_n_m), time(p.cpu_median_s), time(p.result.query_s),
+         time(p.result.linearise_s), time(p.result.tool_s), time(p.bodies_s()), outcome_of(p)});
+  }
+  fmt::print("{}\n", report::format_table(
+                         {"variable", "", "force [N]", "% RMS", "% max", "torque [N m]", "% RMS", "% max",
+                          "CPU [s]", "query [s]", "linearise [s]", "ticks [s]", "bodies [s]", ""},
+                         rows));
+}
+
+void print_reference(const HapticComparison& c) {
+  const compare::Reference& r = c.reference;
+  fmt::print("{}: reference {}; {:.3g} s of CPU\n", c.scene, r.description, r.cpu_s);
+  fmt::print("{}: peak {:.4g} N and {:.4g} N m; the reference's own error {} N and {} N m, {} % and {} %\n",
+             c.scene, c.peak_force_n, c.peak_torque_n_m, report::short_number(r.own_error.force_rms_n),
+             report::short_number(r.own_error.torque_rms_n_m),
+             percent(r.own_error.force_rms_n, c.peak_force_n),
+             percent(r.own_error.torque_rms_n_m, c.peak_torque_n_m));
+  if (!r.trouble.empty()) fmt::print("{}: {}\n", c.scene, r.trouble);
+  fmt::print("\n");
+}
+
+std::string order_text(double order, int points) {
+  return std::isfinite(order) ? fmt::format("{:.2f} ({} points)", order, points)
+                              : fmt::format("none ({} usable points)", points);
+}
+
+void print_orders(const HapticComparison& c) {
+  for (const compare::HapticOrder& order : c.orders)
+    fmt::print("observed order by {}: force {}, torque {}\n", order.variable,
+               order_text(order.force, order.force_points), order_text(order.torque, order.torque_points));
+  fmt::print("\n");
+}
+
+std::string command_of(const CompareArguments& a) {
+  std::string out = "palpate compare --haptic " + a.scenes.front();
+  for (const std::string& change : a.overrides) out += " --set " + change;
+  for (const std::string& name : a.integrators) out += " --integrator " + name;
+  if (a.duration_s > 0.0) out += fmt::format(" --duration-s {}", a.duration_s);
+  return out;
+}
+
+void keep_summary(const CompareArguments& a, const scene::Description& d, const HapticComparison& c,
+                  const std::string& folder) {
+  store::Summary summary;
+  summary.command = command_of(a);
+  summary.scene = d.name;
+  summary.scene_source = d.source;
+  summary.overrides = a.overrides;
+  summary.outcome = c.stopped ? "interrupted" : "finished";
+  summary.provenance = store::provenance();
+  const compare::TrajectoryError& own = c.reference.own_error;
+  summary.section("monolithic reference").values = {{"made_by", c.reference.description},
+                                                    {"trouble", c.reference.trouble},
+                                                    {"peak_force_n", c.peak_force_n},
+                                                    {"peak_torque_n_m", c.peak_torque_n_m},
+                                                    {"own_force_error_rms_n", own.force_rms_n},
+                                                    {"own_torque_error_rms_n_m", own.torque_rms_n_m},
+                                                    {"cpu_s", c.reference.cpu_s}};
+  for (const compare::HapticOrder& order : c.orders) {
+    auto& values = summary.section("observed orders").values;
+    values.emplace_back(order.variable + ": force", order.force);
+    values.emplace_back(order.variable + ": torque", order.torque);
+  }
+  for (const HapticPoint& p : c.points) {
+    if (!p.own || p.status != compare::PointStatus::kOk) continue;
+    summary.section("the scene's own settings").values = {
+        {"force_error_rms_n", p.error.force_rms_n},
+        {"force_error_max_n", p.error.force_max_n},
+        {"force_error_rms_of_peak", p.error.force_rms_n / c.peak_force_n},
+        {"torque_error_rms_n_m", p.error.torque_rms_n_m},
+        {"torque_error_max_n_m", p.error.torque_max_n_m},
+        {"torque_error_rms_of_peak", p.error.torque_rms_n_m / c.peak_torque_n_m},
+        {"cpu_s", p.cpu_median_s}};
+    break;
+  }
+  store::write_summary((fs::path(folder) / "summary.json").string(), summary);
+}
+
+/// Adds to `missing` what a finished comparison lacks.
+void add_missing(const HapticComparison& c, Undelivered& missing) {
+  if (!c.reference.trouble.empty()) missing.add("checked reference of " + c.scene, c.reference.trouble);
+}
+
+}  // namespace
+
+int compare_haptic(const CompareArguments& arguments) {
+  const scene::Description scene = scene_of(arguments);
+  const std::string folder =
+      arguments.folder.empty() ? default_folder("compare-haptic-" + short_name(scene)) : arguments.folder;
+  make_folder(folder);
+  const HapticComparison comparison = compare_watched(scene, arguments, folder);
+  compare::write(comparison, folder);
+  keep_summary(arguments, scene, comparison, folder);
+  if (comparison.reused > 0)
+    fmt::print("{} runs were done before, and were not done again (--fresh starts anew)\n\n",
+               comparison.reused);
+  print_reference(comparison);
+  print_points(comparison);
+  print_orders(comparison);
+  fmt::print("{}\n", comparison.rules);
+  const report::RunReport written = report::write_run_report(folder);
+  fmt::print("written: {}\n", written.page.string());
+  if (comparison.stopped) {
+    fmt::print(stderr, "palpate: stopped; the same command goes on from {}\n", folder);
+    return kExitStopped;
+  }
+  Undelivered missing;
+  missing.add(written);
+  add_missing(comparison, missing);
+  return missing.close(0);
+}
+
+}  // namespace palpate::cli

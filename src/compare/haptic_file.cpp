@@ -1,0 +1,74 @@
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+#include "haptic_plan.h"
+#include "palpate/core/error.h"
+#include "palpate/store/csv.h"
+
+namespace palpate::compare {
+namespace {
+
+namespace fs = std::filesystem;
+using store::CsvCell;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// NaN where there is no peak: of a torque that is not there, no error is a share.
+double share(double error, double peak) { return peak > 0.0 ? error / peak : kNone; }
+
+CsvCell yes_no(bool yes) { return std::string(yes ? "yes" : "no"); }
+
+/// Name and cell of one point, in the order of the columns.
+std::vector<std::pair<std::string, CsvCell>> cells_of(const HapticComparison& c, const HapticPoint& p) {
+  const bool ran = p.status == PointStatus::kOk;
+  const auto time = [ran](double s) { return CsvCell(ran ? s : kNone); };
+  const auto [least, greatest] = std::minmax_element(p.cpu_s.begin(), p.cpu_s.end());
+  std::vector<std::pair<std::string, CsvCell>> out = {
+      {"scene", c.scene},
+      {"variable", p.variable},
+      {"value", p.value},
+      {"setting", p.setting},
+      {"own", yes_no(p.own)},
+      {"force_error_rms_n", p.error.force_rms_n},
+      {"force_error_max_n", p.error.force_max_n},
+      {"force_error_rms_of_peak", share(p.error.force_rms_n, c.peak_force_n)},
+      {"force_error_max_of_peak", share(p.error.force_max_n, c.peak_force_n)},
+      {"torque_error_rms_n_m", p.error.torque_rms_n_m},
+      {"torque_error_max_n_m", p.error.torque_max_n_m},
+      {"torque_error_rms_of_peak", share(p.error.torque_rms_n_m, c.peak_torque_n_m)},
+      {"torque_error_max_of_peak", share(p.error.torque_max_n_m, c.peak_torque_n_m)},
+      {"force_unresolved", yes_no(p.force_unresolved)},
+      {"torque_unresolved", yes_no(p.torque_unresolved)},
+      {"cpu_s_median", time(p.cpu_median_s)},
+      {"cpu_s_min", time(p.cpu_s.empty() ? kNone : *least)},
+      {"cpu_s_max", time(p.cpu_s.empty() ? kNone : *greatest)},
+      {"repeats", static_cast<double>(p.cpu_s.size())},
+      {"bodies_s", time(p.bodies_s())},
+      {"status", std::string(to_string(p.status))},
+      {"reason", p.reason}};
+  loop::visit_counters(
+      [&](const char* name, const auto& value) { out.emplace_back(name, time(static_cast<double>(value))); },
+      p.result);
+  return out;
+}
+
+}  // namespace
+
+void write(const HapticComparison& c, const std::string& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) fail("{}: the results' folder cannot be made: {}", folder, failed.message());
+  std::vector<std::string> columns;
+  for (const auto& [name, cell] : cells_of(c, {})) columns.push_back(name);
+  store::CsvWriter csv((fs::path(folder) / "haptic.csv").string(), columns);
+  for (const HapticPoint& p : c.points) {
+    if (p.status == PointStatus::kMissing) continue;  // stopped before it
+    std::vector<CsvCell> row;
+    for (auto& [name, cell] : cells_of(c, p)) row.push_back(std::move(cell));
+    csv.row(row);
+  }
+  csv.close();
+}
+
+}  // namespace palpate::compare

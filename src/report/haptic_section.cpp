@@ -1,0 +1,175 @@
+#include <algorithm>
+#include <cmath>
+
+#include "comparison_cells.h"
+#include "log_line.h"
+#include "palpate/core/error.h"
+#include "sections.h"
+
+/// The force on the hand against tool and bodies as one system: haptic.csv of `palpate compare --haptic`.
+namespace palpate::report {
+namespace {
+
+bool is_yes(const std::string& cell) { return cell == "yes"; }
+
+/// One quantity on the hand, as haptic.csv and summary.json call it.
+struct Felt {
+  std::string name;                        ///< "force"
+  std::string error, of_peak, unresolved;  ///< columns
+  double peak, own_error;                  ///< of the reference
+};
+
+Felt felt(const std::string& name, const std::string& unit, const Json& reference) {
+  return {name,
+          fmt::format("{}_error_rms_{}", name, unit),
+          fmt::format("{}_error_rms_of_peak", name),
+          fmt::format("{}_unresolved", name),
+          number_at(reference, fmt::format("peak_{}_{}", name, unit).c_str()),
+          number_at(reference, fmt::format("own_{}_error_rms_{}", name, unit).c_str())};
+}
+
+/// Points of one variable, in percent of the reference's peak.
+Series series_of(const Table& table, const Felt& q, const std::string& variable, const std::string& x_column,
+                 bool labelled) {
+  const Table own = rows_where(table, "variable", variable);
+  Series out{.name = variable, .x = own.numbers(x_column), .y = own.numbers(q.of_peak)};
+  out.mark =
+      own.rows.empty() || std::isnan(own.numbers("setting").front()) ? Mark::kPoints : Mark::kLinePoints;
+  for (double& y : out.y) y *= 100.0;
+  for (const auto& row : own.rows) {
+    out.hollow.push_back(is_yes(row[own.column(q.unresolved)]));
+    if (labelled) out.labels.push_back(row[own.column("value")]);
+  }
+  return out;
+}
+
+/// The dashed line of a fitted order, through the points that it was fitted to.
+void add_fit(Plot& plot, const Series& points, double order) {
+  if (!std::isfinite(order)) return;
+  double sum = 0.0, n = 0.0, least = HUGE_VAL, greatest = 0.0;
+  for (std::size_t i = 0; i < points.x.size(); ++i) {
+    if (points.hollow[i] || !(points.y[i] > 0.0 && points.y[i] <= 10.0)) continue;
+    sum += std::log(points.y[i]) - order * std::log(points.x[i]);
+    n += 1.0;
+    least = std::min(least, points.x[i]);
+    greatest = std::max(greatest, points.x[i]);
+  }
+  if (n < 2.0) return;
+  Series fit{.name = fmt::format("order {:.2f}", order), .x = {least, greatest}, .y = {}};
+  fit.mark = Mark::kDashed;
+  fit.colour = "ink";
+  for (const double x : fit.x) fit.y.push_back(std::exp(sum / n + order * std::log(x)));
+  plot.series.push_back(std::move(fit));
+}
+
+Plot frame_of(const Felt& q, const std::string& x_label) {
+  Plot plot;
+  plot.x_label = x_label;
+  plot.y_label = fmt::format("error of the {}, RMS [% of its peak]", q.name);
+  plot.log_x = plot.log_y = true;
+  plot.floor_y = q.peak > 0.0 ? 100.0 * q.own_error / q.peak : kUnknown;
+  plot.floor_label = "the reference's own error";
+  return plot;
+}
+
+/// Whether there is anything to draw of a variable.
+bool holds(const Table& table, const Felt& q, const std::string& variable) {
+  const std::vector<double> errors = rows_where(table, "variable", variable).numbers(q.of_peak);
+  return std::any_of(errors.begin(), errors.end(), [](double e) { return e > 0.0; });
+}
+
+void add_charts(Page& page, const Table& table, const Felt& q, const Json& orders) {
+  Plot period = frame_of(q, "exchange period [s]");
+  for (const char* variable : {"exchange period", "exchange alone"})
+    if (holds(table, q, variable)) period.series.push_back(series_of(table, q, variable, "setting", false));
+  if (!period.series.empty())
+    add_fit(period, period.series.back(),
+            number_at(orders, fmt::format("exchange alone: {}", q.name).c_str()));
+  add_plot(page, period,
+           fmt::format("Error of the {} against the exchange period: at the scene's own settings, and with "
+                       "nothing but exchange and tick (a tenth of the period) left to err. Rings lie within "
+                       "10 times of the reference's own error.",
+                       q.name));
+  if (holds(table, q, "tick")) {
+    Plot rate = frame_of(q, "haptic rate [ticks/s]");
+    Series ticks = series_of(table, q, "tick", "setting", false);
+    for (double& x : ticks.x) x = 1.0 / x;
+    rate.series.push_back(std::move(ticks));
+    add_plot(page, rate, fmt::format("Error of the {} against the haptic rate.", q.name));
+  }
+  for (const char* variable : {"pixels", "element size"}) {
+    if (!holds(table, q, variable)) continue;
+    Plot plot = frame_of(
+        q, std::string(variable) == "pixels" ? "pixels along the image's longer edge" : "element size [m]");
+    plot.series.push_back(series_of(table, q, variable, "setting", false));
+    add_plot(page, plot, fmt::format("Error of the {} against the contact's resolution.", q.name));
+  }
+  Plot cost = frame_of(q, "CPU time of the loop [s]");
+  cost.height = 520;
+  for (const std::string& variable : distinct(table, "variable"))
+    if (variable != "exchange alone" && holds(table, q, variable))
+      cost.series.push_back(series_of(table, q, variable, "cpu_s_median", true));
+  add_plot(page, cost,
+           fmt::format("Error of the {} against CPU time, every variant; down and to the left is better.",
+                       q.name));
+}
+
+std::string percent(const Table& table, std::size_t row, const char* column) {
+  const double value = to_number(table.rows[row][table.column(column)]);
+  return std::isfinite(value) ? short_number(100.0 * value) : "-";
+}
+
+void add_points(Page& page, const Table& table) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<RowMark> marks;
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    const auto text = [&](const char* column) { return table.rows[r][table.column(column)]; };
+    const bool ok = text("status") == "ok", ring = is_yes(text("force_unresolved"));
+    rows.push_back({text("variable"), text("value") + (is_yes(text("own")) ? " (the scene's)" : ""),
+                    cell_text(table, r, "force_error_rms_n"), percent(table, r, "force_error_rms_of_peak"),
+                    percent(table, r, "force_error_max_of_peak"), cell_text(table, r, "torque_error_rms_n_m"),
+                    percent(table, r, "torque_error_rms_of_peak"),
+                    percent(table, r, "torque_error_max_of_peak"), cell_text(table, r, "cpu_s_median"),
+                    cell_text(table, r, "contact_query_s"), cell_text(table, r, "linearise_s"),
+                    cell_text(table, r, "tool_ticks_s"), cell_text(table, r, "bodies_s"),
+                    !ok    ? (text("reason").empty() ? text("status") : text("reason"))
+                    : ring ? "not resolved"
+                           : "ok"});
+    marks.push_back(!ok ? RowMark::kBad : ring ? RowMark::kFaint : RowMark::kNone);
+  }
+  page.add_table(
+      {"variable", "", "force, RMS [N]", "[% of peak]", "largest [%]", "torque, RMS [N m]", "[% of peak]",
+       "largest [%]", "CPU [s]", "queries [s]", "linearise [s]", "ticks [s]", "bodies [s]", "status"},
+      rows,
+      "“Not resolved”: within 10 times of the reference's own error. All times but CPU are "
+      "of the wall clock.",
+      marks);
+}
+
+}  // namespace
+
+void add_haptic(Page& page, const Table& table, const Json& summary) {
+  if (table.rows.empty()) return;
+  const Json figures = summary.is_object() && summary.contains("figures") ? summary["figures"] : Json();
+  const auto group = [&](const char* name) {
+    return figures.is_object() && figures.contains(name) ? figures[name] : Json::object();
+  };
+  const Json reference = group("monolithic reference"), orders = group("observed orders");
+  page.add_heading("Force on the hand against one system");
+  page.add_paragraph(
+      "Tool and bodies in two rates, against tool and bodies as one system under the same hand: one thing at "
+      "a time differs from the scene. Errors are of what the device sends to the hand, at the ticks that "
+      "both have, in percent of the largest of the reference.");
+  if (const std::string made_by = text_at(reference, "made_by"); !made_by.empty())
+    page.add_paragraph("Reference: " + made_by + ".");
+  if (const std::string trouble = text_at(reference, "trouble"); !trouble.empty())
+    page.add_paragraph("Mind: " + trouble + ".");
+  for (const Felt& q : {felt("force", "n", reference), felt("torque", "n_m", reference)}) {
+    const std::vector<double> errors = table.numbers(q.error);
+    if (std::any_of(errors.begin(), errors.end(), [](double e) { return e > kRounding; }))
+      add_charts(page, table, q, orders);
+  }
+  add_points(page, table);
+}
+
+}  // namespace palpate::report
