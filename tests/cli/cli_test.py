@@ -431,7 +431,8 @@ class Results(Cli):
 
     HAPTIC = ["--set", "compare.haptic.exchange_periods_s=[0.02, 0.01]",
               "--set", "compare.haptic.ticks_s=[0.002, 0.001]", "--set", "compare.haptic.integrators=[]",
-              "--set", "compare.haptic.reference_rtol=1e-5", "--set", "compare.haptic.reference_refresh_s=2e-3"]
+              "--set", "compare.haptic.reference_rtol=1e-5",
+              "--set", "compare.haptic.reference_refresh_s=2e-3"]
 
     def test_what_a_hand_feels_is_compared_with_one_system(self):
         arguments = ["compare", "--haptic", "press-ball", "--duration-s", "0.08", "--repeats", "1",
