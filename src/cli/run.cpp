@@ -250,7 +250,8 @@ int run(const RunArguments& arguments, Undelivered& missing) {
   std::optional<compare::AgainstMonolithic> against;
   if (arguments.against_monolithic && result.status.ok() && !result.stopped)
     against = against_monolithic(*world, memory.record(), arguments.real_time);
-  bool cut_short = against && against->stopped;
+  const bool against_cut = against && against->stopped;
+  bool frames_cut = false;
   if (against && !against->stopped && !against->trouble.empty())
     missing.add("distance from one system", against->trouble);
   if (keep) {
@@ -263,7 +264,7 @@ int run(const RunArguments& arguments, Undelivered& missing) {
     if (arguments.contact_picture) contact.save(*world, folder, missing);
     if (arguments.report) missing.add(report::write_run_report(folder));
     print_files(folder);
-    if (frames) cut_short |= keep_frames(*world, *frames, arguments, folder, result.stopped, missing);
+    if (frames) frames_cut = keep_frames(*world, *frames, arguments, folder, result.stopped, missing);
   }
   if (!result.status.ok())
     fail(
@@ -276,10 +277,10 @@ int run(const RunArguments& arguments, Undelivered& missing) {
                keep ? "; what was recorded by then is whole" : "");
     return kExitStopped;
   }
-  if (cut_short) {
-    fmt::print(stderr, "palpate: stopped behind the run; what was written by then is whole\n");
-    return kExitStopped;
-  }
+  if (frames_cut) fmt::print(stderr, "palpate: stopped while it drew frames; those written are whole\n");
+  if (against_cut)
+    fmt::print(stderr, "palpate: stopped before its distance from one system was known; the run is whole\n");
+  if (frames_cut || against_cut) return kExitStopped;
   return 0;
 }
 
