@@ -36,8 +36,10 @@ void print_clock(const loop::RealTimeResult& clock, const std::string& linearisa
   if (clock.dropped_periods > 0)
     fmt::print("  bodies fell behind too far: they stood still in {} periods, {:.3g} s in all\n",
                clock.dropped_periods, clock.dropped_s());
-  if (clock.stretched_periods + clock.dropped_periods > 0 && linearisation == "condensed")
-    fmt::print("  --set exchange.linearisation=points makes an exchange cheaper\n");
+  if (clock.stretched_periods + clock.dropped_periods > 0 && linearisation != "frozen")
+    fmt::print("  --set exchange.linearisation={} makes an exchange cheaper{}\n",
+               linearisation == "condensed" ? "points" : "frozen",
+               linearisation == "condensed" ? "" : ", and the force err by far more");
   if (clock.unrecorded_ticks > 0)
     fmt::print("  {} ticks are not recorded: the recorder fell behind by more than its queue\n",
                clock.unrecorded_ticks);
