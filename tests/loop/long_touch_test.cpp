@@ -13,5 +13,7 @@ TEST(LongTouch, AToolAtRestOnAFrozenBlockDoesNotDrift) {
   const long_touch::Drift drift = long_touch::rest(d, 20'000, 5'000);
   EXPECT_EQ(drift.ticks, 20'000);
   long_touch::expect_no_drift(drift);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these keep what was given back
   EXPECT_LT(drift.memory_mib, 1.0) << "15,000 ticks of one record each would be 7 MiB";
+#endif
 }
