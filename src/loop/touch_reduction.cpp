@@ -247,12 +247,13 @@ MatX modes_of(const MatX& M, const MatX& K, const MatX& D, double alike, TouchMo
   const Eigen::Index all = lengths.size(),
                      alone = (lengths.array() > alike * std::max(lengths[all - 1], 0.0)).count(),
                      kept = std::min<Eigen::Index>(kModes, alone);
+  out.modes = static_cast<int>(kept);
+  if (kept == 0) return MatX(all, 0);  // every node that answers is held
   MatX S = scale.asDiagonal() * mass.eigenvectors().rightCols(kept) *
            lengths.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
   const MatX k = S.transpose() * K * S;
   const Eigen::SelfAdjointEigenSolver<MatX> stiffness(MatX(0.5 * (k + k.transpose())));
   S = (S * stiffness.eigenvectors()).eval();
-  out.modes = static_cast<int>(kept);
   Eigen::Map<VecX>(out.stiffness.data(), kept) = stiffness.eigenvalues().cwiseMax(0.0);
   Eigen::Map<MatX>(out.damping.data(), kModes, kModes).topLeftCorner(kept, kept) =
       definite(S.transpose() * D * S);

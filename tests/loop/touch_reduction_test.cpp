@@ -104,6 +104,19 @@ TEST(TouchReduction, ACrudeBasisIsTooStiffNeverTooSoft) {
   EXPECT_LT(crude.J(5, 5), factored.J(5, 5) * (1.0 + 1e-6));
 }
 
+// A body all of whose nodes are held has points, and no mode to answer with.
+TEST(TouchReduction, AHeldBodyHasPointsAlone) {
+  for (const double error : {0.0, 0.1}) {
+    scene::Description d = pressed_block(0.002);
+    d.bodies[0].attachments[0].box_max_m = Vec3(1, 1, 1);
+    const auto world = touching(d, "points", error);
+    const loop::ContactRecord record = record_of(*world);
+    EXPECT_GT(record.touch.points, 0);
+    EXPECT_EQ(record.touch.modes, 0);
+    EXPECT_GT(whole_tick(*world).F[5], 0.0);
+  }
+}
+
 TEST(TouchReduction, NothingNearIsNoPoint) {
   const auto world = touching(pressed_block(-0.1), "points");
   EXPECT_EQ(record_of(*world).touch.points, 0);
