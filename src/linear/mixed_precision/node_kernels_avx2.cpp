@@ -1,3 +1,4 @@
+// The kernels of node_kernels.h for AVX2, eight single-precision lanes.
 #define PALPATE_SET avx2
 #define PALPATE_LANES 8
 #include "linear/mixed_precision/node_kernels.inl"

@@ -1,3 +1,4 @@
+// The kernels of node_kernels.h for AVX-512, sixteen single-precision lanes.
 #define PALPATE_SET avx512
 #define PALPATE_LANES 16
 #include "linear/mixed_precision/node_kernels.inl"
