@@ -8,11 +8,13 @@
 namespace palpate::cli {
 namespace {
 
-double share(double error, double peak) { return peak > 0.0 ? error / peak : 0.0; }
+using compare::share_of_peak;
 
 std::string line_of(const char* what, double rms, double max, double peak, const char* unit) {
+  if (!(peak > compare::kLeastPeak)) return fmt::format("{} {:.3g} {} RMS: there is none", what, rms, unit);
   return fmt::format("{} {:.3g} {} RMS ({:.3g} % of the peak of {:.4g}), at most {:.3g} ({:.3g} %)", what,
-                     rms, unit, 100.0 * share(rms, peak), peak, max, 100.0 * share(max, peak));
+                     rms, unit, 100.0 * share_of_peak(rms, peak), peak, max,
+                     100.0 * share_of_peak(max, peak));
 }
 
 }  // namespace
@@ -42,15 +44,16 @@ void add_against_monolithic(store::Summary& summary, const compare::AgainstMonol
     return;
   }
   const compare::TrajectoryError& e = a.error;
-  s.values.insert(s.values.end(), {{"force_error_rms_n", e.force_rms_n},
-                                   {"force_error_max_n", e.force_max_n},
-                                   {"force_error_rms_of_peak", share(e.force_rms_n, a.peak_force_n)},
-                                   {"peak_force_n", a.peak_force_n},
-                                   {"torque_error_rms_n_m", e.torque_rms_n_m},
-                                   {"torque_error_max_n_m", e.torque_max_n_m},
-                                   {"torque_error_rms_of_peak", share(e.torque_rms_n_m, a.peak_torque_n_m)},
-                                   {"peak_torque_n_m", a.peak_torque_n_m},
-                                   {"reference_cpu_s", a.cpu_s}});
+  s.values.insert(s.values.end(),
+                  {{"force_error_rms_n", e.force_rms_n},
+                   {"force_error_max_n", e.force_max_n},
+                   {"force_error_rms_of_peak", share_of_peak(e.force_rms_n, a.peak_force_n)},
+                   {"peak_force_n", a.peak_force_n},
+                   {"torque_error_rms_n_m", e.torque_rms_n_m},
+                   {"torque_error_max_n_m", e.torque_max_n_m},
+                   {"torque_error_rms_of_peak", share_of_peak(e.torque_rms_n_m, a.peak_torque_n_m)},
+                   {"peak_torque_n_m", a.peak_torque_n_m},
+                   {"reference_cpu_s", a.cpu_s}});
 }
 
 }  // namespace palpate::cli

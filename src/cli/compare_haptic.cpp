@@ -49,7 +49,8 @@ HapticComparison compare_watched(const scene::Description& scene, const CompareA
 }
 
 std::string percent(double error, double peak) {
-  return peak > 0.0 && std::isfinite(error) ? fmt::format("{:.3g}", 100.0 * error / peak) : "-";
+  const double share = compare::share_of_peak(error, peak);
+  return std::isfinite(share) ? fmt::format("{:.3g}", 100.0 * share) : "-";
 }
 
 std::string outcome_of(const HapticPoint& p) {
@@ -141,10 +142,10 @@ void keep_summary(const CompareArguments& a, const scene::Description& d, const 
     summary.section("the scene's own settings").values = {
         {"force_error_rms_n", p.error.force_rms_n},
         {"force_error_max_n", p.error.force_max_n},
-        {"force_error_rms_of_peak", p.error.force_rms_n / c.peak_force_n},
+        {"force_error_rms_of_peak", compare::share_of_peak(p.error.force_rms_n, c.peak_force_n)},
         {"torque_error_rms_n_m", p.error.torque_rms_n_m},
         {"torque_error_max_n_m", p.error.torque_max_n_m},
-        {"torque_error_rms_of_peak", p.error.torque_rms_n_m / c.peak_torque_n_m},
+        {"torque_error_rms_of_peak", compare::share_of_peak(p.error.torque_rms_n_m, c.peak_torque_n_m)},
         {"cpu_s", p.cpu_median_s}};
     break;
   }

@@ -14,9 +14,6 @@ using store::CsvCell;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// NaN where there is no peak: of a torque that is not there, no error is a share.
-double share(double error, double peak) { return peak > 0.0 ? error / peak : kNone; }
-
 CsvCell yes_no(bool yes) { return std::string(yes ? "yes" : "no"); }
 
 /// Name and cell of one point, in the order of the columns.
@@ -32,12 +29,12 @@ std::vector<std::pair<std::string, CsvCell>> cells_of(const HapticComparison& c,
       {"own", yes_no(p.own)},
       {"force_error_rms_n", p.error.force_rms_n},
       {"force_error_max_n", p.error.force_max_n},
-      {"force_error_rms_of_peak", share(p.error.force_rms_n, c.peak_force_n)},
-      {"force_error_max_of_peak", share(p.error.force_max_n, c.peak_force_n)},
+      {"force_error_rms_of_peak", share_of_peak(p.error.force_rms_n, c.peak_force_n)},
+      {"force_error_max_of_peak", share_of_peak(p.error.force_max_n, c.peak_force_n)},
       {"torque_error_rms_n_m", p.error.torque_rms_n_m},
       {"torque_error_max_n_m", p.error.torque_max_n_m},
-      {"torque_error_rms_of_peak", share(p.error.torque_rms_n_m, c.peak_torque_n_m)},
-      {"torque_error_max_of_peak", share(p.error.torque_max_n_m, c.peak_torque_n_m)},
+      {"torque_error_rms_of_peak", share_of_peak(p.error.torque_rms_n_m, c.peak_torque_n_m)},
+      {"torque_error_max_of_peak", share_of_peak(p.error.torque_max_n_m, c.peak_torque_n_m)},
       {"force_unresolved", yes_no(p.force_unresolved)},
       {"torque_unresolved", yes_no(p.torque_unresolved)},
       {"cpu_s_median", time(p.cpu_median_s)},

@@ -199,6 +199,8 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 
 }  // namespace
 
+double share_of_peak(double error, double peak) { return peak > kLeastPeak ? error / peak : kNone; }
+
 MonolithicScene monolithic_scene(const Description& d, double coarser) {
   const scene::HapticCompareSpec& h = d.compare.haptic;
   std::vector<std::string> overrides = monolithic_overrides(d, coarser);
@@ -252,10 +254,10 @@ std::vector<HapticOrder> haptic_orders(const HapticComparison& c) {
     for (const HapticPoint& p : c.points) {
       if (p.variable != variable || p.status != PointStatus::kOk) continue;
       if (const double e = p.error.force_rms_n;
-          e > 0.0 && !p.force_unresolved && e <= kOrderPeakShare * c.peak_force_n)
+          e > 0.0 && !p.force_unresolved && share_of_peak(e, c.peak_force_n) <= kOrderPeakShare)
         h_force.push_back(p.setting), force.push_back(e);
       if (const double e = p.error.torque_rms_n_m;
-          e > 0.0 && !p.torque_unresolved && e <= kOrderPeakShare * c.peak_torque_n_m)
+          e > 0.0 && !p.torque_unresolved && share_of_peak(e, c.peak_torque_n_m) <= kOrderPeakShare)
         h_torque.push_back(p.setting), torque.push_back(e);
     }
     out.push_back({variable, slope(h_force, force), slope(h_torque, torque), static_cast<int>(force.size()),

@@ -48,6 +48,13 @@ struct HapticComparison {
   bool stopped = false;
 };
 
+/// A peak below this is rounding [N], [N m]: a scene without torque has no error of it in percent,
+/// and no order.
+inline constexpr double kLeastPeak = 1e-12;
+
+/// Share of a peak; NaN where there is none.
+double share_of_peak(double error, double peak);
+
 /// Points whose error is above this share of the reference's peak enter no fitted order: of a force that is
 /// wrong throughout, no power of the period is left.
 inline constexpr double kOrderPeakShare = 0.1;
