@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "palpate/core/error.h"
+#include "palpate/device/profile.h"
 
 // Why the observer's sum is a test of passivity.  Let the loop be a wall, F = -K x - B (x_k - x_{k-1})/T,
 // with D_k = x_k - x_{k-1}.  Then (src/stability/haptic_theory.cpp)
@@ -18,12 +20,17 @@ void PassivityObserver::sample(double t, const Pose& handle) {
   change_ = started_ ? pose_difference(last_, handle) : Vec6(Vec6::Zero());
   const double in = -held_.force.dot(change_.tail<3>()) - held_.moment.dot(change_.head<3>());
   energy_ += in;
-  if (dt_ > 0.0) energy_ += damping_ * change_.tail<3>().squaredNorm() / dt_;
+  if (dt_ > 0.0) energy_ += friction(change_);
   work_ += std::abs(in);
   least_ = std::min(least_, energy_);
   last_ = handle;
   time_ = t;
   started_ = true;
+}
+
+// Positions that are read in steps r are off by r/2 at most, their difference over a tick by r.
+double PassivityObserver::friction(const Vec6& change) const {
+  return damping_ * (change.tail<3>().array().abs() - resolution_).cwiseMax(0.0).square().sum() / dt_;
 }
 
 PassivityController::Mode PassivityController::mode_of(const std::string& name) {
@@ -33,12 +40,9 @@ PassivityController::Mode PassivityController::mode_of(const std::string& name) 
   fail("passivity: unknown mode \"{}\"{}", name, suggestion(name, {"off", "observe", "control"}));
 }
 
-PassivityController::PassivityController(Mode mode, double max_force_n, double max_torque_n_m, double damping)
-    : mode_(mode),
-      max_force_(max_force_n),
-      max_torque_(max_torque_n_m),
-      damping_(damping),
-      observer_(damping) {}
+PassivityController::PassivityController(Mode mode, double max_force_n, double max_torque_n_m,
+                                         PassivityObserver observer)
+    : mode_(mode), max_force_(max_force_n), max_torque_(max_torque_n_m), observer_(std::move(observer)) {}
 
 Wrench PassivityController::apply(double t, const Pose& handle, const Wrench& limited, bool valid) {
   if (mode_ == Mode::kOff) return limited;
@@ -60,7 +64,7 @@ Wrench PassivityController::apply(double t, const Pose& handle, const Wrench& li
 
 double PassivityController::foreseen(const Wrench& wrench, const Vec6& D) const {
   return observer_.energy() - wrench.force.dot(D.tail<3>()) - wrench.moment.dot(D.head<3>()) +
-         damping_ * D.tail<3>().squaredNorm() / observer_.last_tick();
+         observer_.friction(D);
 }
 
 void PassivityController::damp(const Wrench& limited, const Vec6& D, double missing) {
@@ -78,6 +82,15 @@ void PassivityController::damp(const Wrench& limited, const Vec6& D, double miss
   damper_.force = cut(against(D.tail<3>(), missing * share), limited.force, max_force_);
   damper_.moment = cut(against(D.head<3>(), missing * (1.0 - share)), limited.moment, max_torque_);
   ++active_;
+}
+
+std::unique_ptr<PassivityController> make_passivity_controller(PassivityController::Mode mode,
+                                                               const DeviceSpec& device) {
+  if (mode == PassivityController::Mode::kOff) return nullptr;
+  const DeviceFigures figures = figures_of(device);
+  return std::make_unique<PassivityController>(
+      mode, figures.max_force, figures.max_torque,
+      PassivityObserver(figures.damping, figures.encoder_resolution));
 }
 
 }  // namespace palpate::device

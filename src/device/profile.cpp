@@ -13,9 +13,8 @@ namespace palpate::device {
 // slew: that follows from kAmplifierBandwidth below.
 const std::vector<DeviceProfile>& device_profiles() {
   static const std::vector<DeviceProfile> profiles = {
-      // SensAble (later Geomagic) PHANTOM Premium 1.5: 381 x 267 x 191 mm, 0.03 mm, backdrive friction 0.04
-      // N,
-      // 8.5 N, 1.4 N continuous, 3.5 N/mm, apparent mass less than 75 g.
+      // SensAble (later Geomagic) PHANTOM Premium 1.5: 381 x 267 x 191 mm, 0.03 mm, backdrive friction
+      // 0.04 N, 8.5 N, 1.4 N continuous, 3.5 N/mm, apparent mass less than 75 g.
       {.name = "premium-1.5",
        .summary = "SensAble PHANTOM Premium 1.5: 8.5 N, 3.5 N/mm",
        .figures = {.name = "PHANTOM Premium 1.5",
@@ -29,8 +28,8 @@ const std::vector<DeviceProfile>& device_profiles() {
        .mass = 0.075,
        .friction = 0.04,
        .encoder_resolution = 3e-5},
-      // SensAble PHANTOM Omni (later Geomagic Touch): 160 x 120 x 70 mm, 0.055 mm, 0.26 N,
-      // 3.3 N, 0.88 N continuous, 1.26, 2.31 and 1.02 N/mm, 45 g.
+      // SensAble PHANTOM Omni (later Geomagic Touch): 160 x 120 x 70 mm, 0.055 mm, 0.26 N, 3.3 N, 0.88 N
+      // continuous, 1.26, 2.31 and 1.02 N/mm, 45 g.
       {.name = "omni",
        .summary = "SensAble PHANTOM Omni: 3.3 N, 1 N/mm",
        .figures = {.name = "PHANTOM Omni",
@@ -118,7 +117,7 @@ DeviceFigures figures_of(const DeviceSpec& spec) {
   out.max_torque_slew = spec.max_torque_slew_n_m_s.value_or(slew * out.max_torque);
   out.workspace = workspace_of(spec, figures);
   out.mass = spec.device_mass_kg.value_or(profile.mass.value_or(kMass));
-  out.damping = spec.device_damping_n_s_m;
+  out.damping = spec.device_damping_n_s_m.value_or(0.0);
   out.friction = spec.device_friction_n.value_or(profile.friction.value_or(0.0));
   out.encoder_resolution = spec.encoder_resolution_m.value_or(profile.encoder_resolution.value_or(0.0));
   check_range("device_mass_kg", out.mass, DeviceRanges::inertia);

@@ -6,7 +6,6 @@
 #include "linearise.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
-#include "palpate/device/profile.h"
 
 namespace palpate::loop {
 
@@ -16,12 +15,7 @@ BodySide::BodySide(World& world, const RunOptions& options, RunResult& result)
     : world_(world), side_(ToolSide::of(world)), options_(options), result_(result) {
   const scene::Description& d = world.description;
   if (d.tool && d.tool->tick_s * device::kBuzzFrequency < 0.25) buzz_.emplace(d.tool->tick_s);
-  side_.passivity.reset();
-  if (d.device && options.passivity != device::PassivityController::Mode::kOff) {
-    const device::DeviceFigures figures = device::figures_of(*d.device);
-    side_.passivity = std::make_unique<device::PassivityController>(options.passivity, figures.max_force,
-                                                                    figures.max_torque);
-  }
+  side_.passivity = d.device ? device::make_passivity_controller(options.passivity, *d.device) : nullptr;
   duration_ = options.duration_s > 0.0 ? options.duration_s : d.duration_s;
   period_ = period_of(d);
   if (!(duration_ / period_ < 1e9))

@@ -28,7 +28,7 @@ struct Loop {
   double x = 0.0, v = 0.0, last = 0.0, F = 0.0, time = 0.0, largest = 0.0;
 
   Loop(double k, double damping, double own, Mode mode)
-      : K(k), B(damping), b(own), controller(mode, 1e3, 1.0, own) {}
+      : K(k), B(damping), b(own), controller(mode, 1e3, 1.0, PassivityObserver(own)) {}
   void tick(double hand) {
     const double wanted = x > 0.0 ? -K * x - B * (x - last) / T : 0.0;
     F = controller.apply(time, at(x), force(wanted)).force.x();
@@ -104,6 +104,38 @@ TEST(Passivity, a_tick_of_delay_needs_three_times_the_damping) {
     }
     EXPECT_EQ(observer.energy() > before, factor > 1.0) << factor;
   }
+}
+
+// A slow handle that is read in steps of 30 um stands still for 29 ticks and jumps: b D^2/T of the jump is 30
+// times what was dissipated.  What is counted must not be more than that.
+TEST(Passivity, friction_of_positions_in_steps_is_never_counted_for_more_than_it_is) {
+  constexpr double b = 2.0, step = 30e-6;
+  const auto counted = [&](double speed, double resolution) {
+    PassivityObserver observer(b, resolution);
+    for (int k = 0; k <= 1000; ++k) {
+      observer.sample(k * T, at(step * std::round(k * T * speed / step)));
+      observer.hold(force(0.0));
+    }
+    return observer.energy() / (b * speed * speed);  // over the truth of one second
+  };
+  EXPECT_NEAR(counted(1e-3, 0.0), 30.0, 1.0) << "the fault to be kept out";
+  EXPECT_LE(counted(1e-3, step), 1.0);
+  EXPECT_LE(counted(0.5, step), 1.0);
+  EXPECT_GE(counted(0.5, step), 0.85);
+}
+
+TEST(Passivity, a_scene_s_device_has_its_friction_counted) {
+  DeviceSpec spec;
+  spec.type = "hand";
+  spec.device_damping_n_s_m = 2.0;
+  EXPECT_EQ(make_passivity_controller(Mode::kOff, spec), nullptr);
+  const auto exact = make_passivity_controller(Mode::kObserve, spec);
+  spec.encoder_resolution_m = 1e-3;
+  const auto in_steps = make_passivity_controller(Mode::kObserve, spec);
+  for (auto* controller : {exact.get(), in_steps.get()})
+    for (const double k : {0.0, 1.0, 2.0}) controller->apply(k * T, at(k * 5e-3), {});
+  EXPECT_NEAR(exact->observer().energy(), 2.0 * 2.0 * 25e-6 / T, 1e-12);
+  EXPECT_NEAR(in_steps->observer().energy(), 2.0 * 2.0 * 16e-6 / T, 1e-12);
 }
 
 TEST(Passivity, controller_keeps_an_active_wall_above_zero) {

@@ -1,19 +1,23 @@
 #pragma once
+#include <memory>
 #include <string>
 
 #include "palpate/core/pose.h"
+#include "palpate/device/spec.h"
 
 namespace palpate::device {
 
 /// Energy at the device's port, by its samples.  The motors hold a wrench f from one sample to the next, so
 /// what the hand puts into the loop over a tick is exactly -f_{k-1} . (x_k - x_{k-1}), and about one axis the
 /// same of moments and rotation vectors; what the device dissipates by its own viscous friction b is at least
-/// b |x_k - x_{k-1}|^2/T.  The sum of both never falls below zero in a passive loop that stores nothing at
-/// the start (Colgate and Schenkel 1997; observer: Hannaford and Ryu 2002).
+/// b |x_k - x_{k-1}|^2/T, where positions are read in steps with each axis' difference shorter by one.  The
+/// sum of both never falls below zero in a passive loop that stores nothing at the start (Colgate and
+/// Schenkel 1997; observer: Hannaford and Ryu 2002).
 class PassivityObserver {
  public:
-  /// @param damping  of the device along its translations [N s/m]
-  explicit PassivityObserver(double damping = 0.0) : damping_(damping) {}
+  /// @param damping  of the device along its translations [N s/m]  @param resolution  of its positions [m]
+  explicit PassivityObserver(double damping = 0.0, double resolution = 0.0)
+      : damping_(damping), resolution_(resolution) {}
   /// A sample of the handle, under the wrench that was held since the last one.
   void sample(double t, const Pose& handle);
   /// The wrench that is held from now on.
@@ -24,9 +28,11 @@ class PassivityObserver {
   double work() const { return work_; }           ///< sum of the magnitudes of the motors' work [J]
   Vec6 last_change() const { return change_; }    ///< of the last tick: rotation vector, translation
   double last_tick() const { return dt_; }        ///< [s]; 0 before the second sample
+  /// What the device's friction takes at least while its handle moves by that in a tick as long as the last.
+  double friction(const Vec6& change) const;
 
  private:
-  double damping_, energy_ = 0.0, least_ = 0.0, work_ = 0.0, time_ = 0.0, dt_ = 0.0;
+  double damping_, resolution_, energy_ = 0.0, least_ = 0.0, work_ = 0.0, time_ = 0.0, dt_ = 0.0;
   bool started_ = false;
   Pose last_;
   Vec6 change_ = Vec6::Zero();
@@ -48,7 +54,8 @@ class PassivityController {
   static Mode mode_of(const std::string& name);
 
   /// @param max_force_n, max_torque_n_m  of the device: the damper's wrench keeps within them too
-  PassivityController(Mode mode, double max_force_n, double max_torque_n_m, double damping = 0.0);
+  PassivityController(Mode mode, double max_force_n, double max_torque_n_m,
+                      PassivityObserver observer = PassivityObserver());
   /// @param limited  what the limiter lets out for this sample  @param valid  whether the handle's pose is:
   ///   else nothing is added  @return what goes to the motors
   Wrench apply(double t, const Pose& handle, const Wrench& limited, bool valid = true);
@@ -62,10 +69,15 @@ class PassivityController {
   void damp(const Wrench& limited, const Vec6& D, double missing);
 
   Mode mode_;
-  double max_force_, max_torque_, damping_, dissipated_ = 0.0;
+  double max_force_, max_torque_, dissipated_ = 0.0;
   long active_ = 0;
   PassivityObserver observer_;
   Wrench damper_;  ///< part of the wrench that is held
 };
+
+/// Of a scene's device, with its friction and the steps of its positions; null where the mode is kOff.
+/// @throws Error as figures_of() does
+std::unique_ptr<PassivityController> make_passivity_controller(PassivityController::Mode mode,
+                                                               const DeviceSpec& device);
 
 }  // namespace palpate::device

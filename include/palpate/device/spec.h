@@ -52,9 +52,9 @@ struct DeviceSpec {
   double arm_rotational_damping_n_m_s_rad = 0.03;
   double arm_rotational_stiffness_n_m_rad = 2.0;
   // ... and the device in it
-  std::optional<double> device_mass_kg;  ///< 0.045
-  double device_damping_n_s_m = 0.0;
-  std::optional<double> device_friction_n;  ///< 0
+  std::optional<double> device_mass_kg;        ///< 0.045
+  std::optional<double> device_damping_n_s_m;  ///< 0
+  std::optional<double> device_friction_n;     ///< 0
   double rotational_friction_n_m = 0.0;
   std::optional<double> encoder_resolution_m;  ///< 0: exact
   double encoder_resolution_rad = 0.0;
