@@ -61,9 +61,7 @@ int repeat_ticks(const scene::Description& description, const loop::HapticRecord
       compare::felt_difference(record.ticks, loop::retrace(description, record));
   fmt::print("{}", compare::text_of(difference));
   if (!difference.identical)
-    fail(
-        "replay: the ticks differ from those recorded: the run was made by another version or machine, or "
-        "under --passivity control");
+    fail("replay: the ticks differ from those recorded: the run was made by another version or machine");
   return 0;
 }
 

@@ -43,6 +43,18 @@ void visit_tick(F&& f, Tick& t) {
   visit_pair(f, "device_torque", t.device.moment, "_n_m", "device_force", t.device.force, "_n");
 }
 
+/// The handle before the first tick, of a TickRecord, and what holds for the whole run.
+struct StartRow {
+  TickRecord tick;
+  device::PassivityController::Mode passivity = device::PassivityController::Mode::kOff;
+};
+
+template <class F, class Row>
+void visit_start(F&& f, Row& r) {
+  visit_tick(f, r.tick);
+  f("passivity", r.passivity);
+}
+
 template <class F, class Record>
 void visit_exchange(F&& f, Record& r) {
   const auto all = [&f](const std::string& name, auto& values) { visit_all(f, name, values); };
@@ -71,6 +83,7 @@ void visit_model(F&& f, Row& r) {
   f("time_s", model.time);
   f("points", model.points);
   f("modes", model.modes);
+  f("samples", model.samples);
   visit_all(f, "stiffness", model.stiffness);
   visit_all(f, "damping", model.damping);
   visit_all(f, "force", model.force);
@@ -109,6 +122,7 @@ std::vector<std::string> names_of(Visit visit, Record record) {
 }
 
 const auto kVisitTick = [](auto&& f, auto& t) { visit_tick(f, t); };
+const auto kVisitStart = [](auto&& f, auto& r) { visit_start(f, r); };
 const auto kVisitExchange = [](auto&& f, auto& r) { visit_exchange(f, r); };
 const auto kVisitModel = [](auto&& f, auto& r) { visit_model(f, r); };
 const auto kVisitPoint = [](auto&& f, auto& r) { visit_point(f, r); };
@@ -164,7 +178,7 @@ std::vector<contact::TouchModel> read_models(const std::string& path, std::size_
 
 struct HapticRecorder::Impl {
   explicit Impl(const std::string& path)
-      : file(path, {{"start", names_of(kVisitTick, TickRecord{})},
+      : file(path, {{"start", names_of(kVisitStart, StartRow{})},
                     {"ticks", names_of(kVisitTick, TickRecord{})},
                     {"exchanges", names_of(kVisitExchange, dynamics::LinearisedContact{})},
                     {"models", names_of(kVisitModel, ModelRow{})},
@@ -178,12 +192,13 @@ HapticRecorder::~HapticRecorder() = default;
 
 void HapticRecorder::period(World& world, double t) {
   if (t == 0.0) {
-    const device::HandleSample& handle = ToolSide::of(world).handle_now;
-    TickRecord start;
-    start.handle = handle.pose;
-    start.handle_twist = handle.twist;
-    start.handle_valid = handle.valid;
-    flatten(kVisitTick, start, impl_->row);
+    const ToolSide& side = ToolSide::of(world);
+    StartRow start;
+    start.tick.handle = side.handle_now.pose;
+    start.tick.handle_twist = side.handle_now.twist;
+    start.tick.handle_valid = side.handle_now.valid;
+    if (side.passivity) start.passivity = side.passivity->mode();
+    flatten(kVisitStart, start, impl_->row);
     impl_->file.append(kStart, impl_->row);
   }
   impl_->file.flush();
@@ -212,9 +227,10 @@ HapticRecord read_haptic_record(const std::string& path) {
     fail("{}: no such file; runs of scenes with a tool keep it where the scene has record.forces = true",
          path);
   HapticRecord out;
-  const std::vector<TickRecord> start = read(kVisitTick, TickRecord{}, path, "start");
+  const std::vector<StartRow> start = read(kVisitStart, StartRow{}, path, "start");
   if (start.size() != 1) fail("{}: it has no start; the run ended before its first tick", path);
-  out.start = start.front();
+  out.start = start.front().tick;
+  out.passivity = start.front().passivity;
   out.ticks = read(kVisitTick, TickRecord{}, path, "ticks");
   out.exchanges = read(kVisitExchange, dynamics::LinearisedContact{}, path, "exchanges");
   out.models = read_models(path, out.exchanges.size());

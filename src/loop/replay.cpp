@@ -92,6 +92,7 @@ std::vector<TickRecord> retrace(const scene::Description& description, const Hap
   tool_alone.obstacles.clear();
   tool_alone.contacts.clear();
   const auto world = assemble(tool_alone, recorded_hand(record));
+  ToolSide::of(*world).passivity = device::make_passivity_controller(record.passivity, *description.device);
   TickSide side(*tool_alone.tool, ToolSide::of(*world),
                 record.models.empty() ? nullptr : &description.contacts);
   side.start(0.0);

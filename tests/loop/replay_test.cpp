@@ -26,14 +26,18 @@ scene::Description pressed() {
   return d;
 }
 
+using Passivity = device::PassivityController::Mode;
+
 loop::HapticRecord recorded(const scene::Description& d, bool real_time, const char* name,
-                            std::unique_ptr<device::Device> hand = {}) {
+                            std::unique_ptr<device::Device> hand = {},
+                            Passivity passivity = Passivity::kOff) {
   const std::string path = (std::filesystem::path(::testing::TempDir()) / name).string();
   const auto world = loop::assemble(d, std::move(hand));
   {
     loop::HapticRecorder recorder(path);
     loop::RunOptions options;
     options.real_time = real_time;
+    options.passivity = passivity;
     options.observers = {&recorder};
     EXPECT_TRUE(loop::run(*world, options).status.ok());
   }
@@ -81,6 +85,30 @@ TEST(Replay, RetracesVirtualTimeWithLatency) {
     for (auto& point : model.point) point.area *= 1.1;
   const auto changed = loop::retrace(d, other);
   EXPECT_NE(changed.back().device.force, record.ticks.back().device.force);
+}
+
+// What the controller took off is taken off again; without it the hand felt something else.
+TEST(Replay, RetracesARunUnderThePassivityController) {
+  scene::Description d = pressed();
+  // to and fro every other tick, where a spring that is sampled gives more than it got
+  d.tool->coupling.damping_n_s_m = 0.0;
+  const KeyframeSpec at = d.device->keyframes.front();
+  d.device->keyframes.clear();
+  for (int tick = 0; tick <= 200; ++tick) {
+    d.device->keyframes.push_back(at);
+    d.device->keyframes.back().time_s = 1e-3 * tick;
+    d.device->keyframes.back().position_m.x() += tick % 2 ? 1e-3 : -1e-3;
+    d.device->keyframes.back().interpolation = "linear";
+  }
+  loop::HapticRecord record = recorded(d, false, "control.h5", {}, Passivity::kControl);
+  EXPECT_EQ(record.passivity, Passivity::kControl);
+  expect_equal(loop::retrace(d, record), record.ticks);
+  record.passivity = Passivity::kOff;
+  const auto without = loop::retrace(d, record);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < without.size(); ++i)
+    largest = std::max(largest, (without[i].device.force - record.ticks[i].device.force).norm());
+  EXPECT_GT(largest, 0.1) << "the controller did something";
 }
 
 // The same scene under the recorded hand is the same run.

@@ -33,6 +33,7 @@ struct TouchModel {
   };
   double time = 0.0;  ///< [s]
   int points = 0, modes = 0;
+  int samples = 0;                                        ///< that pressed at `time`
   std::array<double, kMostModes> stiffness{};             ///< >= 0 [1/s^2]
   std::array<double, kMostModes * kMostModes> damping{};  ///< D, symmetric, >= 0 [1/s]
   std::array<double, kMostModes> force{};                 ///< without the tool's contact [N kg^-1/2]

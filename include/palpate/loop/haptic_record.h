@@ -13,10 +13,11 @@ struct HapticRecord {
   std::vector<TickRecord> ticks;
   std::vector<dynamics::LinearisedContact> exchanges;
   std::vector<contact::TouchModel> models;  ///< of each exchange, where they have points; else empty
+  device::PassivityController::Mode passivity = device::PassivityController::Mode::kOff;
 };
 
-/// Keeps a HapticRecord in an HDF5 file (haptic.h5: tables "start", "ticks", "exchanges", and where these
-/// have points "models" and "points"; one row each, columns by name).
+/// Keeps a HapticRecord in an HDF5 file (haptic.h5: tables "start" with the passivity mode, "ticks",
+/// "exchanges", and where these have points "models" and "points"; one row each, columns by name).
 class HapticRecorder : public Observer {
  public:
   /// @throws Error when the file cannot be made
