@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -96,8 +97,8 @@ struct StabilityArguments {
   // of the haptic loop of a scene
   bool haptic = false;
   SceneArguments scene;
-  double device_mass_kg = 0.045, device_damping_n_s_m = 0.1;
-  int delay_ticks = 0;
+  std::optional<double> device_mass_kg, device_damping_n_s_m;  ///< the scene's where not given
+  std::optional<int> delay_ticks;
   std::vector<double> contact_stiffness_n_m;  ///< least and greatest; empty: estimated from the scene
 };
 int stability(const StabilityArguments& arguments);

@@ -328,20 +328,21 @@ void add_stability(CLI::App& app, Invocation& invocation) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false)
       ->needs(haptic);
-  command->add_option("--device-mass-kg", arguments->device_mass_kg, "haptic: of the device at its handle")
+  command
+      ->add_option("--device-mass-kg", arguments->device_mass_kg,
+                   "haptic: of the device at its handle; default: the scene's, else 0.045")
       ->check(CLI::Range(1e-4, 1e3))
-      ->capture_default_str()
       ->needs(haptic);
   command
       ->add_option("--device-damping-n-s-m", arguments->device_damping_n_s_m,
-                   "haptic: of the device's own friction; without it no wall is passive")
+                   "haptic: of the device's own friction, without which no wall is passive; default: the "
+                   "scene's where it has a hand, else 0.1")
       ->check(CLI::Range(0.0, 1e3))
-      ->capture_default_str()
       ->needs(haptic);
   command
-      ->add_option("--delay-ticks", arguments->delay_ticks, "haptic: from a sample to the force made of it")
+      ->add_option("--delay-ticks", arguments->delay_ticks,
+                   "haptic: from a sample to the force made of it; default: the scene's, else 0")
       ->check(CLI::Range(0, 100))
-      ->capture_default_str()
       ->needs(haptic);
   command
       ->add_option("--contact-stiffness-n-m", arguments->contact_stiffness_n_m,

@@ -30,6 +30,13 @@ std::string stiffness_text(double value) {
   return std::isinf(value) ? fmt::format("> {:g}", kStiffest) : fmt::format("{:.4g}", value);
 }
 
+std::string arm_text(const HapticLoop::Axis& device) {
+  if (device.arm_mass_kg == 0.0 && device.arm_damping_n_s_m == 0.0 && device.arm_stiffness_n_m == 0.0)
+    return {};
+  return fmt::format(" in an arm of {:g} kg, {:g} N s/m, {:g} N/m", device.arm_mass_kg,
+                     device.arm_damping_n_s_m, device.arm_stiffness_n_m);
+}
+
 void print_rows(const ZWidth& z) {
   std::vector<std::vector<std::string>> rows;
   for (const ZWidthRow& r : z.rows)
@@ -131,9 +138,9 @@ void keep_summary(const StabilityArguments& a, const scene::Description& d, cons
 int stability_haptic(const StabilityArguments& a) {
   const scene::Description description = scene_of(a.scene);
   HapticLoop loop = loop_of(description);
-  loop.device.mass_kg = a.device_mass_kg;
-  loop.device.damping_n_s_m = a.device_damping_n_s_m;
-  loop.delay_ticks = a.delay_ticks;
+  loop.device.mass_kg = a.device_mass_kg.value_or(loop.device.mass_kg);
+  loop.device.damping_n_s_m = a.device_damping_n_s_m.value_or(loop.device.damping_n_s_m);
+  loop.delay_ticks = a.delay_ticks.value_or(loop.delay_ticks);
   const ToolContactRange range = range_of(a, description);
   const std::vector<OperatingPoint> points = operating_points(loop, range, kHapticDuration);
   loop.contact_stiffness_n_m = range.greatest.stiffness;
@@ -152,9 +159,9 @@ int stability_haptic(const StabilityArguments& a) {
     z = z_width(loop, options);
   }
   fmt::print(
-      "device of {:g} kg and {:g} N s/m, tick {:g} ms, delay {} ticks; coupling {:g} N/m, {:g} N s/m\n\n",
-      loop.device.mass_kg, loop.device.damping_n_s_m, 1e3 * loop.tick_s, loop.delay_ticks,
-      loop.coupling_stiffness_n_m, loop.coupling_damping_n_s_m);
+      "device of {:g} kg and {:g} N s/m{}, tick {:g} ms, delay {} ticks; coupling {:g} N/m, {:g} N s/m\n\n",
+      loop.device.mass_kg, loop.device.damping_n_s_m, arm_text(loop.device), 1e3 * loop.tick_s,
+      loop.delay_ticks, loop.coupling_stiffness_n_m, loop.coupling_damping_n_s_m);
   print_rows(z);
   fmt::print("\n");
   print_points(points, loop.tick_s);

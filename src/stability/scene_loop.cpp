@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "palpate/core/error.h"
+#include "palpate/device/profile.h"
 #include "palpate/loop/world.h"
 #include "palpate/stability/z_width.h"
 
@@ -38,6 +39,19 @@ ToolContact patch(const ContactSpec& contact, double modulus, double a) {
   return {1.0 / (1.0 / penalty + 1.0 / (2.0 * modulus * a)), contact.damping_pa_s_m * area};
 }
 
+/// A simulated hand is what its keys say, the arm that holds it included.  Of another device the scene knows
+/// the profile's mass at most.
+void add_device(const DeviceSpec& spec, HapticLoop& loop) {
+  const device::DeviceFigures figures = device::figures_of(spec);
+  loop.device.mass_kg = figures.mass;
+  if (spec.type != "hand") return;
+  loop.device.damping_n_s_m = figures.damping;
+  loop.device.arm_mass_kg = spec.arm_mass_kg;
+  loop.device.arm_damping_n_s_m = spec.arm_damping_n_s_m;
+  loop.device.arm_stiffness_n_m = spec.arm_stiffness_n_m;
+  loop.delay_ticks = static_cast<int>(std::ceil(spec.delay_s / loop.tick_s - 1e-9));
+}
+
 }  // namespace
 
 HapticLoop loop_of(const scene::Description& d) {
@@ -54,6 +68,7 @@ HapticLoop loop_of(const scene::Description& d) {
   loop.coupling_damping_n_s_m = d.tool->coupling.damping_n_s_m;
   loop.tool_mass_kg = d.tool->mass_kg;
   loop.tool_integrator = d.tool->integrator;
+  if (d.device) add_device(*d.device, loop);
   return loop;
 }
 

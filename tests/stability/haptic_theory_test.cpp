@@ -7,6 +7,7 @@
 #include <random>
 
 #include "palpate/core/error.h"
+#include "palpate/device/profile.h"
 #include "palpate/stability/z_width.h"
 
 using namespace palpate;
@@ -178,6 +179,36 @@ TEST(ZWidth, estimates_contacts_from_the_scene) {
   EXPECT_THROW(loop_of(d), Error);
   d.tool.reset();
   EXPECT_THROW(loop_of(d), Error);
+}
+
+// The device that verdicts are about is the scene's.
+TEST(ZWidth, takes_the_scene_s_device) {
+  scene::Description d;
+  d.tool.emplace();
+  d.tool->tick_s = 1e-3;
+  const HapticLoop usual = loop_of(d);
+  EXPECT_EQ(usual.device.arm_stiffness_n_m, 0.0);
+  d.device.emplace();
+  d.device->profile = "premium-1.5";
+  EXPECT_EQ(loop_of(d).device.mass_kg, device::figures_of(*d.device).mass);
+  EXPECT_NE(loop_of(d).device.mass_kg, usual.device.mass_kg);
+  EXPECT_EQ(loop_of(d).device.damping_n_s_m, usual.device.damping_n_s_m);
+  d.device->type = "hand";
+  d.device->device_mass_kg = 0.2;
+  d.device->device_damping_n_s_m = 0.7;
+  d.device->arm_mass_kg = 0.5;
+  d.device->arm_damping_n_s_m = 4.0;
+  d.device->arm_stiffness_n_m = 300.0;
+  d.device->delay_s = 0.0021;
+  const HapticLoop loop = loop_of(d);
+  EXPECT_EQ(loop.device.mass_kg, 0.2);
+  EXPECT_EQ(loop.device.damping_n_s_m, 0.7);
+  EXPECT_EQ(loop.device.total_mass(), 0.7);
+  EXPECT_EQ(loop.device.total_damping(), 4.7);
+  EXPECT_EQ(loop.device.arm_stiffness_n_m, 300.0);
+  EXPECT_EQ(loop.delay_ticks, 3);
+  d.device->delay_s = 0.002;
+  EXPECT_EQ(loop_of(d).delay_ticks, 2);
 }
 
 #ifdef PALPATE_HAS_TOOL
