@@ -1,16 +1,17 @@
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 
 #include "palpate/contact/touch_model.h"
 
 namespace palpate::contact {
 
-// A bunch of samples j with areas a_j, normals n_j and gaps g_j becomes one point of the law's linear part:
-//     normal n = N / |N|,  N = sum a_j n_j,  area |N|,  gap sum a_j g_j / sum a_j,
-// so that its force k |N| gap n is sum k a_j g_j n_j where normals or gaps are alike, and its place, arm and
-// modes are the means by area.  What is lost is the moment of the pressure about the bunch's middle, of
-// second order in the bunch's size over the contact's: bunches are split where that is largest.  Samples that
-// press are not bunched with such that do not, else the force would not be theirs.
+// A bunch of samples j with areas a_j, normals n_j, arms r_j and gaps g_j becomes one point.  Where they
+// press it has their force and moment by the law's linear part, k g a n:
+//     gap g = sum a_j g_j / sum a_j,    F = sum a_j g_j n_j = g a n  gives area a and normal n,
+//     arm r = mean of r_j by area + d,  r x F = sum a_j g_j r_j x n_j  gives d, across F.
+// (A moment along F no arm gives.)  Where they do not press, n is their mean normal.  Places and modes are
+// means by area: what is lost is of second order in the bunch's size over the contact's, and bunches are
+// split where that is largest.  Samples that press are not bunched with such that do not.
 namespace {
 
 using Six = Eigen::Matrix<double, 6, 1>;
@@ -100,14 +101,17 @@ void write(const Vec3& from, std::array<double, 3>& to) { to = {from.x(), from.y
 
 TouchModel::Point point_of(const std::vector<TouchSample>& samples, const Modes& modes, const Mat3& R,
                            const Vec3& origin, const Bunches& bunches, const Bunch& bunch) {
-  Vec3 along = Vec3::Zero(), offset = along, slide = along, place = along, velocity = along;
+  const bool presses = samples[static_cast<std::size_t>(bunches.member(bunch.first))].gap < 0.0;
+  Vec3 along = Vec3::Zero(), moment = along, offset = along, slide = along, place = along, velocity = along;
   double area = 0.0, gap = 0.0;
   // samples of a bunch share nodes: weights are summed before modes are
   std::vector<std::pair<int, double>> weights;
   for (int i = bunch.first; i < bunch.last; ++i) {
     const TouchSample& s = samples[static_cast<std::size_t>(bunches.member(i))];
+    const Vec3 push = (presses ? -s.area * s.gap : s.area) * s.normal;
     area += s.area;
-    along += s.area * s.normal;
+    along += push;
+    moment += (R * s.offset + s.slide).cross(push);
     gap += s.area * s.gap;
     offset += s.area * s.offset;
     slide += s.area * s.slide;
@@ -126,12 +130,17 @@ TouchModel::Point point_of(const std::vector<TouchSample>& samples, const Modes&
   for (const auto& [node, weight] : weights) moved += weight * modes.middleCols<3>(3 * node);
   TouchModel::Point out;
   out.pair = samples[static_cast<std::size_t>(bunches.member(bunch.first))].pair;
-  out.area = along.norm();
-  const Vec3 normal = along / out.area;
+  const double size = along.norm();
+  const Vec3 normal = along / size;
   gap /= area;
   offset /= area;
   slide /= area;
   place /= area;
+  out.area = presses ? size / -gap : size;
+  if (presses) {
+    const Vec3 missing = moment - (R * offset + slide).cross(along);
+    offset += R.transpose() * along.cross(missing) / (size * size);
+  }
   // the mean of places need not have the mean of gaps
   place += normal * (normal.dot(origin + R * offset + slide - place) - gap);
   write(normal, out.normal);

@@ -239,11 +239,8 @@ void assemble_contact(World& world) {
   }
   world.system.add(std::shared_ptr<dynamics::ForceTerm>(world.contact));
   ToolSide& side = ToolSide::of(world);
-  if (!soft_partner || !side.trajectory || world.description.exchange.linearisation == "frozen") return;
-  counters::count("loop.condenser");
-  if (world.description.exchange.linearisation == "points")
+  if (soft_partner && side.trajectory && world.description.exchange.linearisation == "points")
     side.touch = std::make_unique<TouchReduction>(world, world.description.exchange.linearisation_error);
-  side.condenser = linear::make_linear_solver(world.system.symmetric() ? "cholmod" : "umfpack");
 }
 
 contact::ObstaclePicture obstacle_picture(const ObstacleSpec& spec, const contact::View& view) {

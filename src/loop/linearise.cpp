@@ -45,8 +45,7 @@ struct Answer {
   Mat6 J, B;
 };
 
-}  // namespace
-
+/// q0 moved by a displacement along u-directions.
 VecX moved(const World& world, const VecX& displacement) {
   VecX rate(world.state.q().size());
   dynamics::q_dot(world.state.layout(), world.state.q().data(), displacement.data(), rate.data());
@@ -54,6 +53,8 @@ VecX moved(const World& world, const VecX& displacement) {
   dynamics::project(world.state.layout(), q.data());
   return q;
 }
+
+}  // namespace
 
 void known_motion(World& world, double H, VecX& s, VecX& w) {
   const VecX q0 = world.state.q(), u0 = world.state.u();
@@ -84,7 +85,11 @@ VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w) {
   return r - H * stiff;
 }
 
-dynamics::LinearSolver* factored(ToolSide& side) {
+dynamics::LinearSolver* factored(const dynamics::System& system, ToolSide& side) {
+  if (!side.condenser) {
+    counters::count("loop.condenser");
+    side.condenser = linear::make_linear_solver(system.symmetric() ? "cholmod" : "umfpack");
+  }
   const dynamics::SolveStatus status = side.condenser->factor(side.condensed_matrix);
   if (status == dynamics::SolveStatus::kOk) return side.condenser.get();
   if (status != dynamics::SolveStatus::kIndefinite) return nullptr;
@@ -100,7 +105,7 @@ namespace {
 /// False where the step matrix has no factor.
 bool answer_after(World& world, double H, const contact::FrameLinearisation& c, Answer& out) {
   world.system.step_matrix(world.state.view(), 1.0, H, H * H, ToolSide::of(world).condensed_matrix);
-  dynamics::LinearSolver* solver = factored(ToolSide::of(world));
+  dynamics::LinearSolver* solver = factored(world.system, ToolSide::of(world));
   if (!solver) return false;
   VecX s, w;
   known_motion(world, H, s, w);
@@ -191,23 +196,24 @@ ContactRecord linearise_contact(World& world, std::uint64_t version, double peri
   record.version = version;
   record.time = world.state.time();
   if (!side.trajectory) return out;
+  const Twist v0 = side.known.twist;
+  record.x0 = flat(side.known.pose);
+  Eigen::Map<Vec6>(record.v0.data()) << v0.angular, v0.linear;
+  if (side.touch) {
+    frozen_fallbacks += !side.touch->reduce(world, period_s, out.touch);
+    record.source = dynamics::LinearisedContact::Source::kPoints;
+    record.samples = out.touch.samples;
+    return out;
+  }
   contact::FrameLinearisation c;
   world.contact->linearise(world.state.view(), side.frame_index, c, contact::Partners::kNodes);
   record.samples = c.active;
-  const Pose x0 = side.known.pose;
-  const Twist v0 = side.known.twist;
-  record.x0 = flat(x0);
-  Eigen::Map<Vec6>(record.v0.data()) << v0.angular, v0.linear;
   Eigen::Map<Vec6>(record.F0.data()) << c.wrench.moment, c.wrench.force;
   Eigen::Map<RowMajor6>(record.J.data()) = -c.K;
   Eigen::Map<RowMajor6>(record.B.data()) = -c.B;
   record.source = dynamics::LinearisedContact::Source::kFrozen;
-  if (side.touch) {
-    record.source = dynamics::LinearisedContact::Source::kPoints;
-    frozen_fallbacks += !side.touch->reduce(world, period_s, out.touch);
-  } else if (side.condenser && c.active > 0 && !condense(world, period_s, c, record)) {
-    ++frozen_fallbacks;
-  }
+  const bool condensed = world.description.exchange.linearisation == "condensed";
+  if (condensed && c.active > 0 && !condense(world, period_s, c, record)) ++frozen_fallbacks;
   return out;
 }
 

@@ -9,10 +9,8 @@ namespace palpate::loop {
 void known_motion(World& world, double H, VecX& s, VecX& w);
 /// H (f - K s - D w) - M w on free directions, at the World's state.
 VecX right_hand_side(World& world, double H, const VecX& s, const VecX& w);
-/// q at the World's state moved by a displacement along u-directions.
-VecX moved(const World& world, const VecX& displacement);
-/// A factor of ToolSide::condensed_matrix: by LU where it is indefinite (an inverted element, a compressed
-/// strut), null where it is singular.
-dynamics::LinearSolver* factored(ToolSide& side);
+/// A factor of ToolSide::condensed_matrix, the system's step matrix: by LU where it is indefinite (an
+/// inverted element, a compressed strut), null where it is singular.
+dynamics::LinearSolver* factored(const dynamics::System& system, ToolSide& side);
 
 }  // namespace palpate::loop

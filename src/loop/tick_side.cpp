@@ -24,22 +24,25 @@ TickSide::~TickSide() {
 void TickSide::start(double t) { side_.handle_now = handle_ = side_.handle->sample(t); }
 
 // A late record is carried on in strides of several ticks, which Euler's implicit method takes as well: else
-// the tick that takes it up would cost as much as all that it was late by.
+// the tick that takes it up would cost as much as all that it was late by.  Where the tool was at a stride's
+// end is known: the contact is linearised there, as that of a tool that came by its last twist alone.
 void TickSide::take_up(const ContactRecord& record) {
   constexpr std::size_t kMostStrides = 8;
   taken_up_ = record.linear.version;
   touch_->adopt(record.touch);
-  const std::size_t kept = std::min(ticks_, past_.size() - 1);
   const auto past = [&](std::size_t i) -> const Past& { return past_[i % past_.size()]; };
-  std::size_t first = ticks_ - kept;
+  std::size_t first = ticks_ - std::min(ticks_, past_.size());
   while (first < ticks_ && past(first).time - 0.5 * past(first).length < record.touch.time) ++first;
   const std::size_t stride = (ticks_ - first + kMostStrides - 1) / kMostStrides;
   for (std::size_t last; first < ticks_; first = last + 1) {
     last = std::min(first + stride, ticks_) - 1;
     double length = 0.0;
     for (std::size_t i = first; i <= last; ++i) length += past(i).length;
-    touch_->linearise(past(last).time, length, first > 0 ? past(first - 1).tool : past(first).tool);
-    touch_->follow(past(last).tool);
+    const dynamics::RigidMotion& tool = past(last).tool;
+    const Pose before{quaternion_of(-length * tool.twist.angular) * tool.pose.rotation,
+                      tool.pose.translation - length * tool.twist.linear};
+    touch_->linearise(past(last).time, length, {before, tool.twist});
+    touch_->follow(tool);
   }
 }
 

@@ -36,7 +36,7 @@ struct ToolSide {
   bool meets_obstacles = false;              ///< a contact names the tool and an obstacle
   /// of linearisation = "points"; else null
   std::unique_ptr<TouchReduction> touch;
-  /// factors the step matrix for the condensed linearisation; null where not used
+  /// factors the step matrix, for `condensed` and where `touch` cannot iterate; null until then
   std::unique_ptr<dynamics::LinearSolver> condenser;
   /// made at the first step matrix without a Cholesky factor
   std::unique_ptr<dynamics::LinearSolver> condenser_lu;

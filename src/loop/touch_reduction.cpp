@@ -64,6 +64,8 @@ auto moved_by(const TouchSample& sample, const auto& x) {
 
 bool presses(const TouchSample& sample) { return sample.gap < 0.0; }
 
+bool names_tool(const ContactSpec& contact) { return contact.first == "tool" || contact.second == "tool"; }
+
 /// By how much each sample is pressed at the period's end if all goes on as it does [m]; where that is
 /// nowhere, of those that are nearest then by how much less they are apart than a tenth of the way to the
 /// farthest.
@@ -87,8 +89,8 @@ MatX load_patterns(const World& world, const std::vector<TouchSample>& samples, 
                    double H) {
   const bool pressed = std::any_of(samples.begin(), samples.end(), presses);
   const auto& contacts = world.description.contacts;
-  const bool friction =
-      std::any_of(contacts.begin(), contacts.end(), [](const ContactSpec& c) { return c.friction > 0.0; });
+  const bool friction = std::any_of(contacts.begin(), contacts.end(),
+                                    [](const ContactSpec& c) { return names_tool(c) && c.friction > 0.0; });
   const Mat3 R = tool.pose.rotation.toRotationMatrix();
   const VecX depths = coming_depths(samples, tool.twist, R, H);
   bool more = !pressed;
@@ -212,7 +214,7 @@ bool TouchReduction::iterate(World& world, double H, const MatX& patterns, Answe
 bool TouchReduction::factor(World& world, double H, const MatX& patterns, Answers& out) {
   const dynamics::StateView view = world.state.view();
   world.system.step_matrix(view, 1.0, H, H * H, ToolSide::of(world).condensed_matrix);
-  dynamics::LinearSolver* solver = factored(ToolSide::of(world));
+  dynamics::LinearSolver* solver = factored(world.system, ToolSide::of(world));
   if (!solver) return false;
   counters::count("loop.touch_factored");
   out.stiff = tangent_times(world, 1.0, 0.0, out.s) + tangent_times(world, 0.0, 1.0, out.w);
@@ -291,8 +293,6 @@ struct Reduced {
   MatX M, K, D;
 };
 
-bool names_tool(const ContactSpec& contact) { return contact.first == "tool" || contact.second == "tool"; }
-
 /// @param A  X^T A X, empty: not known
 Reduced reduced(World& world, double H, const MatX& X, const MatX& A, const SampleSums& sums,
                 std::pair<double, double> damping) {
@@ -343,6 +343,7 @@ bool TouchReduction::reduce(World& world, double H, TouchModel& out) {
   std::vector<TouchTangent> tangents;
   std::vector<TouchSample> samples = world.contact->touch_samples(view, side.frame_index, &tangents);
   if (samples.empty()) return true;
+  out.samples = static_cast<int>(std::count_if(samples.begin(), samples.end(), presses));
   Answers x;
   known_motion(world, H, x.s, x.w);
   const VecX velocity = x.s / H, change = x.w / H;

@@ -189,5 +189,53 @@ TEST(TouchTicks, ToolAndBodiesKeepTheirMomentum) {
   EXPECT_GT(tool.twist.linear.z(), 0.01);  // it was thrown back
 }
 
+// 500 samples of a dent, their depths and normals all different, in no more points than there is room for.
+TEST(TouchPoints, ABunchPressesWithTheForceAndMomentOfItsSamples) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> in(-1.0, 1.0);
+  const Pose pose{quaternion_of(Vec3(0.3, 0.2, -0.4)), Vec3(0.1, 0.2, 0.3)};
+  const Mat3 R = pose.rotation.toRotationMatrix();
+  std::vector<contact::TouchSample> samples;
+  Vec3 force = Vec3::Zero(), moment = force;
+  Mat3 stiffness = Mat3::Zero();
+  for (int j = 0; j < 700; ++j) {
+    const Vec3 across(0.01 * in(random), 0.01 * in(random), 0.0);
+    const Vec3 normal = Vec3(30.0 * across.x(), 30.0 * across.y(), 1.0).normalized();
+    const double gap = j < 500 ? -1e-3 * (1.1 + in(random)) : 1e-3 * (1.1 + in(random)), area = 1e-6;
+    const Vec3 arm = across - 0.02 * normal;
+    contact::TouchSample s{};
+    s.offset = R.transpose() * arm;
+    s.slide = Vec3::Zero();
+    s.normal = normal;
+    s.place = pose.translation + arm - gap * normal;
+    s.velocity = Vec3::Zero();
+    s.area = area;
+    s.gap = gap;
+    s.force = Vec3::Zero();
+    samples.push_back(s);
+    if (gap >= 0.0) continue;
+    const Vec3 f = -1e6 * area * gap * normal;
+    force += f;
+    moment += arm.cross(f);
+    stiffness += 1e6 * area * normal * normal.transpose();
+  }
+  TouchModel model;
+  contact::gather_points(samples, pose, Eigen::Matrix<double, kModes, Eigen::Dynamic>::Zero(kModes, 3),
+                         model);
+  EXPECT_EQ(model.points, TouchModel::kMostPoints);
+  contact::TouchTicks ticks({law()});
+  ticks.adopt(model);
+  const auto record = ticks.linearise(1e-3, 1e-3, {pose, {}});
+  EXPECT_GT(ticks.pressing(), TouchModel::kMostPoints / 2);
+  EXPECT_LT(ticks.pressing(), TouchModel::kMostPoints) << "there is room for what is apart";
+  const Eigen::Map<const Vec6> F(record.F0.data());
+  EXPECT_LE((F.tail<3>() - force).norm(), 1e-12 * force.norm());
+  // along the force of its bunch no arm gives a moment: what samples of other normals have of it is lost
+  EXPECT_LE((F.head<3>() - moment).norm(), 1e-5 * 0.02 * force.norm());
+  using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  const Mat3 J = Eigen::Map<const RowMajor6>(record.J.data()).bottomRightCorner<3, 3>();
+  EXPECT_LE((J + stiffness).norm(), 0.02 * stiffness.norm());
+}
+
 }  // namespace
 }  // namespace palpate

@@ -69,6 +69,10 @@ TEST(Monolithic, NothingIsExchangedAndNothingCondensed) {
   partitioned.exchange.scheme = "partitioned";
   ASSERT_TRUE(run(partitioned).result.status.ok());
   EXPECT_EQ(counters::counter("loop.exchange_record"), 4) << "the counters count";
+  EXPECT_EQ(counters::counter("loop.condenser"), 0) << "iterations answer a block's contact points";
+  counters::reset();
+  partitioned.exchange.linearisation = "condensed";
+  ASSERT_TRUE(run(partitioned).result.status.ok());
   EXPECT_EQ(counters::counter("loop.condenser"), 1);
 }
 

@@ -52,15 +52,18 @@ loop::ContactRecord record_of(loop::World& world) {
   return record;
 }
 
-/// One tick as long as the period.
-Linear whole_tick(loop::World& world) {
+/// The first tick.
+Linear tick_of(loop::World& world, double length) {
   const loop::ContactRecord record = record_of(world);
   EXPECT_EQ(record.linear.source, dynamics::LinearisedContact::Source::kPoints);
   contact::TouchTicks ticks(world.description.contacts);
   ticks.adopt(record.touch);
   const loop::ToolSide& side = loop::ToolSide::of(world);
-  return Linear(ticks.linearise(kPeriod, kPeriod, {side.known.pose, side.known.twist}));
+  return Linear(ticks.linearise(length, length, {side.known.pose, side.known.twist}));
 }
+
+/// One tick as long as the period.
+Linear whole_tick(loop::World& world) { return tick_of(world, kPeriod); }
 
 void expect_same(const Linear& a, const Linear& b, double error) {
   EXPECT_LE((a.F - b.F).tail<3>().norm(), error * b.F.tail<3>().norm());
@@ -96,12 +99,72 @@ TEST(TouchReduction, AFewIterationsAnswerToTheErrorAskedFor) {
   expect_same(iterated, factored, 0.01);
 }
 
+// Every part of what the iteration leaves to be worked out: a support that moves, a floor under the block, a
+// mass damping, and the inertia that a tick shorter than the period meets.
+TEST(TouchReduction, IterationsKnowFloorSupportAndDamping) {
+  scene::Description d = pressed_block(0.002);
+  d.bodies[0].mesh.element_size_m = 0.005;
+  d.bodies[0].position_m.z() = 0.0097;  // 0.3 mm in the floor
+  d.bodies[0].mass_damping_per_s = 200.0;
+  d.contacts[0].damping_pa_s_m = 2e4;
+  AttachmentSpec& side = d.bodies[0].attachments[0];
+  side.box_min_m = Vec3(-1, -1, -1);
+  side.box_max_m = Vec3(-0.0199, 1, 1);
+  KeyframeSpec start, end;
+  end.time_s = 1.0;
+  end.position_m = Vec3(0.05, -0.02, 0.1);
+  side.keyframes = {start, end};
+  add_floor(d, d.contacts[0]);
+  for (const double tick : {kPeriod, 0.1 * kPeriod}) {
+    const Linear factored = tick_of(*touching(d, "points"), tick);
+    counters::reset();
+    const Linear iterated = tick_of(*touching(d, "points", 1e-4), tick);
+    EXPECT_EQ(counters::snapshot()["loop.touch_factored"], 0);
+    expect_same(iterated, factored, 0.01);
+  }
+}
+
 // A coarse basis errs to one side: bodies are never softer than they are.
 TEST(TouchReduction, ACrudeBasisIsTooStiffNeverTooSoft) {
   scene::Description d = pressed_block(0.002);
   d.bodies[0].mesh.element_size_m = 0.004;
   const Linear factored = whole_tick(*touching(d, "points")), crude = whole_tick(*touching(d, "points", 0.9));
   EXPECT_LT(crude.J(5, 5), factored.J(5, 5) * (1.0 + 1e-6));
+}
+
+/// The contact forces, tick by tick, of a tool that a stiff coupling presses down on the block over two long
+/// periods, with the second's record so many ticks late.
+std::vector<double> forces_with_latency(int ticks) {
+  scene::Description d = pressed_block(0.001);
+  d.tool->coupling.stiffness_n_m = 1e5;
+  d.tool->coupling.damping_n_s_m = 100.0;
+  KeyframeSpec down = d.device->keyframes[0];
+  down.time_s = 0.08;
+  down.position_m.z() -= 0.004;
+  d.device->keyframes.push_back(down);
+  d.exchange.exchange_period_s = 0.05;
+  d.duration_s = 0.1;
+  d.exchange.latency_ticks = ticks;
+  struct Keep : loop::Observer {
+    void tick(const loop::TickRecord& tick) override { forces.push_back(tick.contact.force.z()); }
+    std::vector<double> forces;
+  } keep;
+  const auto world = loop::assemble(d);
+  loop::RunOptions options;
+  options.observers = {&keep};
+  EXPECT_TRUE(loop::run(*world, options).status.ok());
+  return keep.forces;
+}
+
+// A record of an instant that is over is carried on to the tick that takes it up, along the path that the
+// tool has come since: the block is then where a prompt record would have it.
+TEST(TouchReduction, ALateRecordKnowsWhatTheToolHasDoneSince) {
+  constexpr int kLate = 25;
+  constexpr std::size_t kSecond = 50, kTaken = kSecond + kLate;
+  const std::vector<double> prompt = forces_with_latency(0), late = forces_with_latency(kLate);
+  ASSERT_EQ(prompt.size(), late.size());
+  EXPECT_GT(late[kTaken - 1], 2.0 * prompt[kTaken - 1]) << "the record before says something else";
+  for (std::size_t i = kTaken; i < prompt.size(); ++i) EXPECT_NEAR(late[i], prompt[i], 0.015 * prompt[i]);
 }
 
 // A body all of whose nodes are held has points, and no mode to answer with.

@@ -8,9 +8,9 @@ namespace palpate::loop {
 
 /// What the bodies tell the tool's ticks at an exchange.
 struct ContactRecord {
-  /// the contact as it is now; with source = kPoints that of a tool that bodies do not answer
+  /// with source = kPoints its instant, pose and twist alone
   dynamics::LinearisedContact linear;
-  contact::TouchModel touch;  ///< source = kPoints: what ticks make their contact from
+  contact::TouchModel touch;  ///< of source = kPoints: what ticks make their contact from
 };
 static_assert(std::is_trivially_copyable_v<ContactRecord>);
 

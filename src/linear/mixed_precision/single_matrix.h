@@ -39,7 +39,6 @@ class SingleMatrix {
   void multiply(const Doubles& x, Doubles& Ax);
 
   const NodeOrder& order() const { return order_; }
-  const std::vector<int>& place_of_node() const { return place_of_node_; }  ///< in the order's numbering
   int nodes() const { return static_cast<int>(order_.node.size()); }
   /// q = A p on the rows of a part, in single precision; returns p . q.
   double product(std::size_t part, const float* p, float* q) const;
