@@ -31,8 +31,7 @@ std::string stiffness_text(double value) {
 }
 
 std::string arm_text(const HapticLoop::Axis& device) {
-  if (device.arm_mass_kg == 0.0 && device.arm_damping_n_s_m == 0.0 && device.arm_stiffness_n_m == 0.0)
-    return {};
+  if (!device.held()) return {};
   return fmt::format(" in an arm of {:g} kg, {:g} N s/m, {:g} N/m", device.arm_mass_kg,
                      device.arm_damping_n_s_m, device.arm_stiffness_n_m);
 }

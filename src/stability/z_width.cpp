@@ -77,8 +77,8 @@ std::string OperatingPoint::words(double tick_s) const {
                                 ? "the coupling has no upper limit here"
                                 : fmt::format("the coupling may have up to {:.4g} N/m", largest_coupling);
   if (passive) return fmt::format("passive: stable in any passive hand; {}", limit);
-  return fmt::format("stable with the device let go, but not passive: some hand can make it vibrate; {}",
-                     limit);
+  return fmt::format("stable with the device {}, but not passive: {} hand can make it vibrate; {}",
+                     held ? "held so" : "let go", held ? "another" : "some", limit);
 }
 
 std::vector<OperatingPoint> operating_points(HapticLoop loop, const ToolContactRange& range,
@@ -98,6 +98,7 @@ std::vector<OperatingPoint> operating_points(HapticLoop loop, const ToolContactR
     point.largest_coupling = spectral_stiffness(loop, loop.coupling_damping_n_s_m);
     point.simulated_stable = loop::press_wall(loop, duration_s).stable;
     point.passive = is_passive(loop);
+    point.held = loop.device.held();
   }
   return out;
 }

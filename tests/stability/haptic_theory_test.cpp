@@ -229,9 +229,14 @@ TEST(ZWidth, verdicts_on_a_scene_s_own_loop) {
   ASSERT_EQ(points.size(), 3u);
   for (const OperatingPoint& p : points) {
     EXPECT_TRUE(p.simulated_stable) << p.name;
-    EXPECT_NE(p.words(loop.tick_s).find("but not passive"), std::string::npos) << p.name;
+    EXPECT_NE(p.words(loop.tick_s).find("let go, but not passive: some hand"), std::string::npos) << p.name;
   }
   EXPECT_NEAR(points[2].series, 1000.0 * 300.0 / 1300.0, 1e-9);
+  HapticLoop in_arm = loop;
+  in_arm.device.arm_stiffness_n_m = 500.0;
+  in_arm.device.arm_damping_n_s_m = 5.0;
+  EXPECT_NE(operating_points(in_arm, range, 1.0)[0].words(loop.tick_s).find("held so, but not"),
+            std::string::npos);
   loop.tool_integrator = "semi-implicit-euler";
   loop.coupling_stiffness_n_m = 1e6;
   points = operating_points(loop, range, 4.0);

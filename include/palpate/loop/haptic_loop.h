@@ -17,6 +17,7 @@ struct HapticLoop {
     double arm_stiffness_n_m = 0.0;
     double total_mass() const { return mass_kg + arm_mass_kg; }
     double total_damping() const { return damping_n_s_m + arm_damping_n_s_m; }
+    bool held() const { return arm_mass_kg > 0.0 || arm_damping_n_s_m > 0.0 || arm_stiffness_n_m > 0.0; }
     device::ArmAxis::Parameters arm() const {
       return {total_mass(), total_damping(), arm_stiffness_n_m, 0.0};
     }

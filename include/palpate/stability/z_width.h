@@ -62,6 +62,7 @@ struct OperatingPoint {
   double largest_coupling = 0.0;  ///< at the scene's damping, by theory [N/m]
   bool simulated_stable = false;
   bool passive = false;  ///< the coupling as a wall is
+  bool held = false;     ///< the device is, by the loop's arm
   std::string words(double tick_s) const;
 };
 /// Tool in the air, in the softest and in the stiffest contact.
