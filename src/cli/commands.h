@@ -44,6 +44,15 @@ struct ReplayArguments {
 };
 int replay(const ReplayArguments& arguments);
 
+struct MovieArguments {
+  std::string run;                     ///< folder of a run
+  std::string file;                    ///< empty: movie.webm in it
+  double fps = 0.0, slow = 1.0;        ///< as it is played; 0: 25, or what was recorded
+  std::string size;                    ///< "640x480"; empty: the default
+  std::string shade = "displacement";  ///< or "stress"
+};
+int movie(const MovieArguments& arguments);
+
 struct DiffArguments {
   std::string reference, other;  ///< folders of runs
 };

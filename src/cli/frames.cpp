@@ -186,10 +186,19 @@ int Frames::count() const {
 
 int Frames::frame_at(double t) const { return static_cast<int>(std::floor(t / between_s_ + 1e-6)); }
 
-void Frames::period(loop::World& world, double t) {
+void Frames::reach(double t) {
   reached_ = t;
   due_ = frame_at(t) >= next_ && t < end_s_ * (1.0 - 1e-9);
-  if (due_ && shade_ != Shade::kPenetration) keep(world, t);
+}
+
+void Frames::period(loop::World& world, double t) {
+  reach(t);
+  if (due_ && shade_ != Shade::kPenetration) keep(instant_of(world, t, shade_));
+}
+
+void Frames::show(Instant instant) {
+  reach(instant.time);
+  if (due_) keep(std::move(instant));
 }
 
 void Frames::queried(loop::World& world, double t) {
@@ -200,14 +209,13 @@ void Frames::queried(loop::World& world, double t) {
     curve_.times.push_back(t);
     curve_.values.push_back(force);
   }
-  if (due_ && shade_ == Shade::kPenetration) keep(world, t);
+  if (due_ && shade_ == Shade::kPenetration) keep(instant_of(world, t, shade_));
 }
 
-void Frames::keep(loop::World& world, double t) {
-  Instant instant = instant_of(world, t, shade_);
+void Frames::keep(Instant instant) {
   instant.handle = handle_;
   instants_.append(instant);
-  next_ = frame_at(t) + 1;
+  next_ = frame_at(instant.time) + 1;
   due_ = false;
 }
 

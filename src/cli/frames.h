@@ -43,6 +43,8 @@ class Frames : public loop::Observer {
   void period(loop::World& world, double t) override;
   void queried(loop::World& world, double t) override;
   void tick(const loop::TickRecord& tick) override;
+  /// Of a run that is over: what it was at a time, after the ticks until then.
+  void show(Instant instant);
 
   double between_s() const { return between_s_; }
 
@@ -56,7 +58,8 @@ class Frames : public loop::Observer {
 
  private:
   int frame_at(double t) const;
-  void keep(loop::World& world, double t);
+  void reach(double t);
+  void keep(Instant instant);
 
   Shade shade_;
   double between_s_, end_s_;

@@ -395,6 +395,35 @@ time, under the hand as it was recorded, and what a hand would feel of the diffe
       [arguments, &invocation] { invocation.action = [arguments] { return replay(*arguments); }; });
 }
 
+void add_movie(CLI::App& app, Invocation& invocation) {
+  CLI::App* command = app.add_subcommand("movie", "a movie of a run that is over");
+  auto arguments = std::make_shared<MovieArguments>();
+  command->add_option("run", arguments->run, "folder of a run, with run.vtkhdf in it")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("-o,--output", arguments->file, "the movie (.webm, .png or .apng); default DIR/movie.webm")
+      ->type_name("FILE");
+  command->add_option("--fps", arguments->fps, "frames a second as it is played; default 25 at most")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--slow", arguments->slow, "so many times slower than the run")
+      ->type_name("FACTOR")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--size", arguments->size, "of a frame in pixels")->type_name("WIDTHxHEIGHT");
+  command->add_option("--shade", arguments->shade, "what colours the bodies: displacement or stress")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"displacement", "stress", "penetration"}));
+  command->footer(R"(Examples:
+  palpate movie out/press-ball
+  palpate movie out/touch-head --slow 4 --shade stress -o touch.webm
+
+It shows the states that the run kept (record.state_period_s), also of one that was cut off, with the force on
+the hand beneath, and computes nothing anew.)");
+  command->callback(
+      [arguments, &invocation] { invocation.action = [arguments] { return movie(*arguments); }; });
+}
+
 void add_diff(CLI::App& app, Invocation& invocation) {
   CLI::App* command = app.add_subcommand("diff", "what a hand would feel of the difference of two runs");
   auto arguments = std::make_shared<DiffArguments>();
@@ -608,6 +637,7 @@ Invocation parse(int argc, char** argv) {
   add_model(app, invocation);
   add_stability(app, invocation);
   add_replay(app, invocation);
+  add_movie(app, invocation);
   add_diff(app, invocation);
   add_inspect(app, invocation);
   add_list(app, invocation);

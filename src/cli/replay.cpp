@@ -7,16 +7,15 @@
 #include <sstream>
 
 #include "commands.h"
-#include "model_cache.h"
 #include "palpate/compare/felt_difference.h"
 #include "palpate/core/clock.h"
 #include "palpate/core/error.h"
-#include "palpate/loop/load.h"
 #include "palpate/loop/recorder.h"
 #include "palpate/loop/summary.h"
 #include "palpate/store/atomic_file.h"
 #include "paths.h"
 #include "progress.h"
+#include "recorded_scene.h"
 #include "scene_of.h"
 #include "stop.h"
 
@@ -31,22 +30,12 @@ std::string text_of_file(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// Where the run's scene came from: relative paths in it start there.
-std::string path_of_scene(const std::filesystem::path& folder) {
-  store::Summary summary = store::read_summary((folder / "summary.json").string());
-  for (const auto& [name, value] : summary.section("options").values)
-    if (const auto* path = std::get_if<std::string>(&value); path && name == "scene_path") return *path;
-  return (folder / "scene.toml").string();
-}
-
 scene::Description scene_of(const ReplayArguments& arguments) {
   const std::filesystem::path folder(arguments.run);
   std::vector<std::string> overrides = arguments.overrides;
   if (!arguments.integrator.empty())
     overrides.push_back(fmt::format("integrator.name=\"{}\"", arguments.integrator));
-  scene::Description d = loop::parse(text_of_file(folder / "scene.toml"), path_of_scene(folder), overrides);
-  make_missing_models(d);
-  return d;
+  return recorded_scene(text_of_file(folder / "scene.toml"), folder, overrides);
 }
 
 /// Keeps the ticks of a run.

@@ -36,6 +36,12 @@ def different(one, other, rows):
     return sum(one[y][3 * x:3 * x + 3] != other[y][3 * x:3 * x + 3] for y in rows for x in range(WIDTH))
 
 
+def unlike(one, other):
+    """Pixels that differ by more than rounding of where surfaces are."""
+    return sum(max(abs(a - b) for a, b in zip(one[y][3 * x:3 * x + 3], other[y][3 * x:3 * x + 3])) > 3
+               for y in range(HEIGHT) for x in range(WIDTH))
+
+
 class Movie(unittest.TestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp(prefix="palpate-movie-"))
@@ -106,6 +112,38 @@ class Frames(Movie):
         for frame in movie.frames:
             self.assertEqual(frame[HEIGHT // 3][:9], movie.frames[0][HEIGHT // 3][:9])
         self.assertFalse(list(self.folder.rglob("*.part")) + list(self.folder.rglob(".instants*")))
+
+    def test_a_run_that_is_over_looks_as_it_did(self):
+        # a rigid tool, and bones in a limb: where they were is found from their surfaces
+        for scene, seconds in (("press-ball", 0.2), ("swung-limb", 0.2)):
+            with self.subTest(scene=scene):
+                self.good("run", scene, "--duration-s", str(seconds), *SMALL, "--movie", "a.png",
+                          "-o", "here", "--set", "record.state_period_s=0.01")
+                for cut_off in (False, True):
+                    if cut_off:  # what a run that was killed does not write
+                        (self.folder / "here/summary.json").unlink()
+                        (self.folder / "here/scene.toml").unlink()
+                    text = self.good("movie", "here", *SMALL, "-o", "b.png")
+                    self.assertIn("5 of 5 frames in b.png, one every 0.04 s of simulated time; 25 a second",
+                                  text)
+                    was, now = Animation(self.folder / "a.png"), Animation(self.folder / "b.png")
+                    self.assertEqual(was.delays, now.delays)
+                    moved = 0
+                    for i, (one, other) in enumerate(zip(was.frames, now.frames)):
+                        self.assertLess(unlike(one, other), WIDTH * HEIGHT / 5000, i)
+                        moved += different(one, was.frames[0], range(HEIGHT - STRIP))
+                    self.assertGreater(moved, 1000, "and it moves")
+
+    def test_of_a_run_that_is_over_only_what_it_kept(self):
+        self.good(*self.press(0.05, "--movie", "a.png", "-o", "here"))
+        self.good("movie", "here", *SMALL, "--shade", "stress", "--slow", "4", "-o", "b.png")
+        self.assertEqual(Animation(self.folder / "b.png").delays, [0.04] * 5)
+        self.assertIn("a run does not record it", self.refused("movie", "here", "--shade", "penetration"))
+        self.assertIn("a state every 0.01 s", self.refused("movie", "here", "--fps", "200", "-o", "c.png"))
+        self.assertIn("run.vtkhdf: no such file", self.refused("movie", "nowhere"))
+        (self.folder / "here/run.vtkhdf").write_bytes(b"no HDF5")
+        self.refused("movie", "here", "-o", "c.png")
+        self.assertFalse((self.folder / "c.png").exists())
 
     def test_the_rate_is_that_of_what_is_played(self):
         for options, frames, delay in [([], 4, 0.04), (["--fps", "50"], 8, 0.02), (["--slow", "2"], 8, 0.04),

@@ -1,0 +1,148 @@
+// Pictures of a run that is over, from what it recorded.
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <filesystem>
+
+#include "commands.h"
+#include "frames.h"
+#include "palpate/core/error.h"
+#include "palpate/loop/haptic_record.h"
+#include "palpate/store/run_file.h"
+#include "recorded_scene.h"
+#include "stop.h"
+#include "undelivered.h"
+
+namespace palpate::cli {
+namespace {
+
+/// Where a rigid surface was placed.  With c, d the means of its points before and after, the rotation that
+/// brings (a - c) nearest to (b - d) is V U^T of the singular value decomposition sum (a - c)(b - d)^T =
+/// U S V^T (Kabsch 1976), here exactly.
+Pose pose_between(const Points& before, const Points& after) {
+  const Vec3 c = before.rowwise().mean(), d = after.rowwise().mean();
+  const Mat3 sum = (before.colwise() - c) * (after.colwise() - d).transpose();
+  const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Mat3 V = svd.matrixV(), Ut = svd.matrixU().transpose();
+  const Vec3 hand(1.0, 1.0, (V * Ut).determinant());  // of a flat one the last is free: no reflection
+  const Mat3 R = V * hand.asDiagonal() * Ut;
+  return {Quat(R), d - R * c};
+}
+
+/// What a run kept of its states: the parts as the recorder writes them, bodies, bones with a shape, tool.
+class States {
+ public:
+  States(const std::string& path, const loop::World& world, const store::RunReader& reader)
+      : world_(world), reader_(reader) {
+    std::size_t expected = world.bodies.size() + world.description.tool.has_value();
+    for (const loop::Bone& bone : world.bones) expected += bone.surface.vertices.cols() > 0;
+    if (reader.parts().size() != expected)
+      fail("{}: {} parts, but its scene has {}; it was made by another version of palpate", path,
+           reader.parts().size(), expected);
+    for (std::size_t i = 0; i < world.bodies.size(); ++i)
+      if (reader.parts()[i].reference.cols() != world.bodies[i].placed.cols())
+        fail("{}: body \"{}\" has {} nodes, but its scene makes it of {}: the mesh is another now", path,
+             world.bodies[i].name, reader.parts()[i].reference.cols(), world.bodies[i].placed.cols());
+    if (world.description.tool) tool_ = loop::tool_surface(*world.description.tool, world.folder);
+  }
+
+  Instant at(int step, Shade shade) const {
+    const Points points = reader_.points(step);
+    const VecX stress = shade == Shade::kStress ? reader_.stress(step) : VecX();
+    Instant out;
+    out.time = reader_.times_s()[static_cast<std::size_t>(step)];
+    int part = 0;
+    for (const loop::Body& body : world_.bodies) {
+      const int first = reader_.first_point(part++);
+      const Eigen::Index n = body.placed.cols();
+      // the file has the nodes in the order of the mesh's own file
+      out.nodes.emplace_back(points.middleCols(first, n)(Eigen::all, body.file_node));
+      if (stress.size() > 0) out.stress.emplace_back(stress.segment(first, n)(body.file_node));
+    }
+    const auto pose = [&](const TriMesh& surface) {
+      const int first = reader_.first_point(part++);
+      return pose_between(surface.vertices, points.middleCols(first, surface.vertices.cols()));
+    };
+    for (const loop::Bone& bone : world_.bones)
+      out.bones.push_back(bone.surface.vertices.cols() > 0 ? pose(bone.surface) : Pose{});
+    if (world_.description.tool) out.tool = pose(tool_);
+    return out;
+  }
+
+ private:
+  const loop::World& world_;
+  const store::RunReader& reader_;
+  TriMesh tool_;
+};
+
+/// Between two frames, in whole recorded states.
+double between(const std::vector<double>& times, double fps, double slow, const std::string& run) {
+  if (times.size() < 2)
+    fail("{}: its run recorded {} state{}; a movie needs two at least", run, times.size(),
+         times.size() == 1 ? "" : "s");
+  const double state = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  const double rate = fps > 0.0 ? fps : std::min(kMovieRate, 1.0 / (state * slow));
+  const double wanted = 1.0 / (rate * slow);
+  if (wanted < 0.999 * state)
+    fail(
+        "--fps {:g} --slow {:g}: the run kept a state every {:g} s (record.state_period_s), which is {:g} a "
+        "second as it is played; ask for at most that",
+        rate, slow, state, 1.0 / (state * slow));
+  return static_cast<double>(std::max(1L, std::lround(wanted / state))) * state;
+}
+
+/// Shows a state when the ticks up to it are known, so that the handle stands where the hand was then.
+void show(Frames& frames, const States& states, int steps, Shade shade,
+          const std::vector<loop::TickRecord>& ticks) {
+  auto tick = ticks.begin();
+  for (int step = 0; step < steps && !stop_flag().load(); ++step) {
+    Instant instant = states.at(step, shade);
+    for (; tick != ticks.end() && tick->time <= instant.time + 1e-9; ++tick) frames.tick(*tick);
+    frames.show(std::move(instant));
+  }
+  for (; tick != ticks.end(); ++tick) frames.tick(*tick);
+}
+
+int movie(const MovieArguments& arguments, Undelivered& missing) {
+  const std::filesystem::path folder(arguments.run);
+  const std::string states_file = (folder / "run.vtkhdf").string();
+  if (!std::filesystem::exists(states_file))
+    fail("{}: no such file; runs keep it where the scene has record.states = true", states_file);
+  if (arguments.shade == "penetration")
+    fail(
+        "--shade penetration: a run does not record it; `palpate run SCENE --movie --shade penetration` "
+        "does");
+  const store::RunReader reader(states_file);
+  const scene::Description description = recorded_scene(reader.info().scene_source, folder);
+  const Shade shade = check_picture(arguments.shade, description);
+  const FrameSize size = arguments.size.empty() ? FrameSize{} : frame_size(arguments.size);
+  const double between_s = between(reader.times_s(), arguments.fps, arguments.slow, arguments.run);
+  const std::string path = arguments.file.empty() ? (folder / "movie.webm").string() : arguments.file;
+  check_movie(path);
+  const auto world = loop::assemble(description);
+  const States states(states_file, *world, reader);
+  std::vector<loop::TickRecord> ticks;
+  // in a folder that another scene's run had before, an older haptic.h5 may lie
+  if (description.tool && description.record && description.record->forces &&
+      std::filesystem::exists(folder / "haptic.h5"))
+    ticks = loop::read_haptic_record((folder / "haptic.h5").string()).ticks;
+  Frames frames(*world, folder.string(), shade, between_s, reader.times_s().back(), size);
+  show(frames, states, reader.steps(), shade, ticks);
+  const double shown_s = between_s * arguments.slow;
+  const std::unique_ptr<FrameSink> sink = make_movie(path, shown_s);
+  frames.save(*world, {sink.get()}, true, missing);
+  fmt::print("{} of {} frames in {}, one every {:g} s of simulated time; {:.4g} a second as it is played\n",
+             sink->written(), frames.count(), path, between_s, 1.0 / shown_s);
+  if (!stop_flag().load()) return 0;
+  fmt::print(stderr, "palpate: stopped while it drew frames; those written are whole\n");
+  return kExitStopped;
+}
+
+}  // namespace
+
+int movie(const MovieArguments& arguments) {
+  Undelivered missing;
+  return missing.close(movie(arguments, missing));
+}
+
+}  // namespace palpate::cli

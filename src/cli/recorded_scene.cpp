@@ -1,0 +1,29 @@
+#include "recorded_scene.h"
+
+#include "model_cache.h"
+#include "palpate/loop/load.h"
+#include "palpate/store/summary.h"
+
+namespace palpate::cli {
+namespace {
+
+/// Where the run's scene came from; a run that was cut off says it nowhere.
+std::string path_of_scene(const std::filesystem::path& folder) {
+  if (std::filesystem::exists(folder / "summary.json")) {
+    store::Summary summary = store::read_summary((folder / "summary.json").string());
+    for (const auto& [name, value] : summary.section("options").values)
+      if (const auto* path = std::get_if<std::string>(&value); path && name == "scene_path") return *path;
+  }
+  return (folder / "scene.toml").string();
+}
+
+}  // namespace
+
+scene::Description recorded_scene(const std::string& text, const std::filesystem::path& folder,
+                                  const std::vector<std::string>& overrides) {
+  scene::Description d = loop::parse(text, path_of_scene(folder), overrides);
+  make_missing_models(d);
+  return d;
+}
+
+}  // namespace palpate::cli
