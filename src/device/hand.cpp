@@ -6,7 +6,7 @@
 #include "device/motions.h"
 #include "palpate/core/error.h"
 #include "palpate/core/so3.h"
-#include "palpate/device/arm_axis.h"
+#include "palpate/device/hand_model.h"
 
 // A simulated device in the hand of a simulated arm.  The scene's path is where the arm wants to be, x_d(t)
 // (the equilibrium point of Hogan 1985); a spring k and a damper b pull arm and device there.  The grip is
@@ -107,13 +107,14 @@ ArmAxis::Parameters rotation_of(const DeviceSpec& s) {
 
 class HandDevice : public Device {
  public:
-  explicit HandDevice(const DeviceSpec& spec)
-      : wanted_(path_of(spec)),
+  explicit HandDevice(const DeviceSpec& spec) : HandDevice(spec, hand_model(spec)) {}
+  HandDevice(const DeviceSpec& spec, const HandModel& model)
+      : wanted_(model.wanted),
         figures_(figures_of(spec)),
         force_step_(spec.force_resolution_n),
         delay_(spec.delay_s),
-        translation_(translation_of(spec, figures_), spec.arm_damping_n_s_m),
-        rotation_(rotation_of(spec), spec.arm_rotational_damping_n_m_s_rad),
+        translation_(model.translation, model.arm_damping),
+        rotation_(model.rotation, model.arm_rotational_damping),
         position_(figures_.encoder_resolution, spec.velocity_cutoff_per_s),
         angle_(spec.encoder_resolution_rad, spec.velocity_cutoff_per_s) {
     check_range("encoder_resolution_rad", spec.encoder_resolution_rad, DeviceRanges::resolution);
@@ -133,6 +134,7 @@ class HandDevice : public Device {
     HandleSample out;
     out.pose = {quaternion_of(angle_.value()) * first_, position_.value()};
     out.twist = {left_jacobian(angle_.value()) * angle_.rate(), position_.rate()};
+    out.switches = switches_;
     return out;
   }
   void do_feedback(double t, const Wrench& on_hand) override {
@@ -155,6 +157,7 @@ class HandDevice : public Device {
     started_ = true;
     time_ = t;
     const HandleSample wanted = wanted_(t);
+    switches_ = wanted.switches;
     first_ = wanted.pose.rotation;
     translation_.place(wanted.pose.translation);
     rotation_.place(Vec3::Zero());
@@ -166,6 +169,7 @@ class HandDevice : public Device {
   void advance(double t) {
     const double h = t - time_;
     const HandleSample wanted = wanted_(t);
+    switches_ = wanted.switches;
     const Vec3 theta = unwrapped(wanted.pose.rotation * first_.conjugate(), theta_),
                pull = translation_.pull(wanted.pose.translation, wanted.twist.linear),
                twist = rotation_.pull(theta, (theta - theta_) / h);
@@ -200,11 +204,17 @@ class HandDevice : public Device {
   Wrench motors_;
   std::vector<Sent> sent_;  ///< by time; those from next_ on have not reached the motors
   std::size_t next_ = 0;
+  std::uint32_t switches_ = 0;  ///< at time_: fingers do not yield
   double time_ = 0.0;
   bool started_ = false;
 };
 
 }  // namespace
+
+HandModel hand_model(const DeviceSpec& spec) {
+  return {translation_of(spec, figures_of(spec)), rotation_of(spec), spec.arm_damping_n_s_m,
+          spec.arm_rotational_damping_n_m_s_rad, path_of(spec)};
+}
 
 std::unique_ptr<Device> make_hand(const DeviceSpec& spec, const std::string&) {
   return std::make_unique<HandDevice>(spec);

@@ -87,12 +87,36 @@ void check_motion(const MotionSpec& m, const std::string& where) {
     fail("{}: duration_s = 0 is no sweep; say how long it takes", where);
 }
 
+namespace {
+
+void check_press(const PressSpec& press, const std::string& where) {
+  const auto check = [&](const char* key, double value, const Range& range) {
+    if (!range.holds(value)) fail("{}: {} = {} {}", where, key, value, range.demand());
+  };
+  check("switch", press.number, DeviceRanges::switches);
+  check("start_s", press.start_s, DeviceRanges::start_s);
+  check("duration_s", press.duration_s, DeviceRanges::duration_s);
+}
+
+std::uint32_t switches_at(const std::vector<PressSpec>& presses, double t) {
+  std::uint32_t out = 0;
+  for (const PressSpec& press : presses)
+    if (t >= press.start_s && (press.duration_s == 0.0 || t < press.start_s + press.duration_s))
+      out |= 1U << static_cast<unsigned>(press.number);
+  return out;
+}
+
+}  // namespace
+
 DevicePath path_of(const DeviceSpec& spec) {
   check_keyframes(spec.keyframes, "device");
   for (std::size_t i = 0; i < spec.motions.size(); ++i)
     check_motion(spec.motions[i], fmt::format("device: motion[{}]", i));
-  return [keyframes = spec.keyframes, motions = spec.motions](double t) {
+  for (std::size_t i = 0; i < spec.presses.size(); ++i)
+    check_press(spec.presses[i], fmt::format("device: press[{}]", i));
+  return [keyframes = spec.keyframes, motions = spec.motions, presses = spec.presses](double t) {
     HandleSample out = sample_keyframes(keyframes, t);
+    out.switches = switches_at(presses, t);
     for (const MotionSpec& motion : motions) {
       const Displacement d = displacement(motion, t);
       out.pose.translation += d.x;

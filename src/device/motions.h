@@ -8,7 +8,7 @@ namespace palpate::device {
 
 using DevicePath = std::function<HandleSample(double t)>;
 
-/// Keyframes and motions of a spec together.  @throws Error for those that are no path
+/// Keyframes, motions and presses of a spec together.  @throws Error for those that are no path
 DevicePath path_of(const DeviceSpec& spec);
 
 }  // namespace palpate::device

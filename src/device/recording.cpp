@@ -27,6 +27,7 @@ std::vector<std::string> cells_of(const std::string& line) {
 struct Layout {
   std::vector<std::string> names;   ///< time, position, rotation
   std::vector<std::size_t> column;  ///< of each
+  bool switches = false;            ///< the last of them are the switches
 };
 const std::vector<std::string> kPoses = {"time_s", "px_m", "py_m", "pz_m", "qw", "qx", "qy", "qz"};
 const std::vector<std::string> kForces = {"time_s",
@@ -41,7 +42,8 @@ Layout layout_of(const std::vector<std::string>& headers, const std::string& pat
   const auto has = [&](const std::string& name) {
     return std::find(headers.begin(), headers.end(), name) != headers.end();
   };
-  Layout out{has("handle_x_m") ? kForces : kPoses, {}};
+  Layout out{has("handle_x_m") ? kForces : kPoses, {}, has("switches")};
+  if (out.switches) out.names.emplace_back("switches");
   for (const std::string& name : out.names) {
     if (!has(name))
       fail(
@@ -54,6 +56,14 @@ Layout layout_of(const std::vector<std::string>& headers, const std::string& pat
   return out;
 }
 
+std::uint32_t switches_of(double value, const std::string& where) {
+  const auto out = static_cast<std::uint32_t>(std::clamp(value, 0.0, 4294967295.0));
+  if (static_cast<double>(out) != value)
+    fail("{}: switches = {} is no set of bits; bit i of a whole number is 1 where switch i is pressed", where,
+         value);
+  return out;
+}
+
 double number_of(const std::string& cell, const std::string& where) {
   double value = 0.0;
   const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
@@ -62,9 +72,10 @@ double number_of(const std::string& cell, const std::string& where) {
   return value;
 }
 
-RecordedPose pose_of(const std::vector<double>& v, const std::string& where) {
+RecordedPose pose_of(const std::vector<double>& v, const Layout& layout, const std::string& where) {
   RecordedPose out{v[0], {Quat::Identity(), Vec3(v[1], v[2], v[3])}};
-  if (v.size() == 7) {
+  if (layout.switches) out.switches = switches_of(v.back(), where);
+  if (v.size() - layout.switches == kForces.size()) {
     out.pose.rotation = quaternion_of(Vec3(v[4], v[5], v[6]));
     return out;
   }
@@ -116,7 +127,7 @@ std::vector<RecordedPose> read_recording(const std::string& path) {
     if (!out.empty() && !(values[0] > out.back().time))
       fail("{}: column \"time_s\": {} does not come after {}, the line before", where, values[0],
            out.back().time);
-    out.push_back(pose_of(values, where));
+    out.push_back(pose_of(values, layout, where));
   }
   if (out.empty()) fail("{}: no line of poses follows the names of the columns", path);
   return out;
@@ -131,12 +142,15 @@ HandleSample sample_recording(const std::vector<RecordedPose>& poses, double t) 
   if (poses.empty()) fail("recording: no poses; give at least one");
   HandleSample out;
   if (!(t > poses.front().time) || t >= poses.back().time) {
-    out.pose = (t >= poses.back().time ? poses.back() : poses.front()).pose;
+    const RecordedPose& end = t >= poses.back().time ? poses.back() : poses.front();
+    out.pose = end.pose;
+    out.switches = end.switches;
     return out;
   }
   const auto to = std::upper_bound(poses.begin(), poses.end(), t,
                                    [](double time, const RecordedPose& one) { return time < one.time; });
   const std::size_t i = static_cast<std::size_t>(to - poses.begin()) - 1;
+  out.switches = poses[i].switches;
   const auto slope = [&](std::size_t k) {
     return Vec3((poses[k + 1].pose.translation - poses[k].pose.translation) /
                 (poses[k + 1].time - poses[k].time));

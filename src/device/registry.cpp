@@ -5,7 +5,7 @@ namespace {
 
 std::vector<PartKey> hand_keys() {
   std::vector<PartKey> keys = part_keys(
-      {"motion", "arm_mass_kg", "arm_damping_n_s_m", "arm_stiffness_n_m", "rotational_inertia_kg_m2",
+      {"motion", "press", "arm_mass_kg", "arm_damping_n_s_m", "arm_stiffness_n_m", "rotational_inertia_kg_m2",
        "arm_rotational_damping_n_m_s_rad", "arm_rotational_stiffness_n_m_rad", "device_mass_kg",
        "device_damping_n_s_m", "device_friction_n", "rotational_friction_n_m", "encoder_resolution_m",
        "encoder_resolution_rad", "velocity_cutoff_per_s", "force_resolution_n", "delay_s"});
@@ -21,7 +21,7 @@ const Registry<MakeDevice>& device_registry() {
        "follows the keyframes of the scene, whatever it feels",
        0,
        make_script,
-       {{.name = "keyframe", .required = true}, {.name = "motion"}}},
+       {{.name = "keyframe", .required = true}, {.name = "motion"}, {.name = "press"}}},
       {"hand", "a simulated device in a simulated arm that yields to the force", 0, make_hand, hand_keys()},
       {"recording", "repeats recorded poses", 0, make_recording, {{.name = "file", .required = true}}},
       {"udp",

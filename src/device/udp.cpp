@@ -91,6 +91,7 @@ HandleSample UdpDevice::do_sample(double t) {
   HandleSample out;
   out.pose = last_.pose;
   out.twist = last_.twist;
+  out.switches = last_.switches;
   out.valid = peer_.has_value() && t - arrived_ <= time_out_;
   return out;
 }

@@ -22,6 +22,16 @@ const KeyTable<MotionSpec>& motion_keys() {
   return keys;
 }
 
+const KeyTable<PressSpec>& press_keys() {
+  using Ranges = DeviceRanges;
+  static const KeyTable<PressSpec> keys = {
+      integer("switch", &PressSpec::number, Ranges::switches, "number of the switch"),
+      number("start_s", &PressSpec::start_s, Ranges::start_s, "when it is pressed"),
+      number("duration_s", &PressSpec::duration_s, Ranges::duration_s, "how long it is held; 0: to the end"),
+  };
+  return keys;
+}
+
 }  // namespace
 
 const KeyTable<DeviceSpec>& device_keys() {
@@ -32,6 +42,7 @@ const KeyTable<DeviceSpec>& device_keys() {
       text("profile", &Spec::profile, {}, "published figures of a device: palpate list device-profiles"),
       tables("keyframe", &Spec::keyframes, keyframe_keys(), "the path of the handle, in the order of time"),
       tables("motion", &Spec::motions, motion_keys(), "a motion by a formula, on top of the keyframes"),
+      tables("press", &Spec::presses, press_keys(), "when a switch of the handle is held pressed"),
       unless("3.3, or the profile's", number("max_force_n", &Spec::max_force_n, Ranges::max_force_n,
                                              "largest force that the device lets through")),
       unless("0.2, or the profile's",

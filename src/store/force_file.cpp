@@ -4,7 +4,7 @@
 
 namespace palpate::store {
 namespace {
-constexpr std::size_t kColumns = 1 + 6 + 6 + 6 + 1;
+constexpr std::size_t kColumns = 1 + 6 + 6 + 6 + 2;
 using Row = std::array<double, kColumns>;
 
 /// Rotations stand as rotation vectors: three numbers, no sign to choose, and a plot of them means something.
@@ -16,7 +16,8 @@ Row flatten(const ForceRow& r) {
   for (const Vec3& v :
        {r.handle.translation, handle, r.tool.translation, tool, r.on_hand.force, r.on_hand.moment})
     for (int axis = 0; axis < 3; ++axis) row[at++] = v[axis];
-  row[at] = r.limited ? 1.0 : 0.0;
+  row[at++] = r.limited ? 1.0 : 0.0;
+  row[at] = r.switches;
   return row;
 }
 }  // namespace
@@ -41,7 +42,8 @@ const std::vector<std::string>& force_headers() {
                                                    "torque_x_n_m",
                                                    "torque_y_n_m",
                                                    "torque_z_n_m",
-                                                   "limited"};
+                                                   "limited",
+                                                   "switches"};
   return headers;
 }
 
@@ -57,11 +59,9 @@ std::vector<ForceRow> read_forces(const std::string& path) {
   std::vector<ForceRow> rows(table.rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto vec = [&](std::size_t c) { return Vec3(columns[c][i], columns[c + 1][i], columns[c + 2][i]); };
-    rows[i] = {columns[0][i],
-               {quaternion_of(vec(4)), vec(1)},
-               {quaternion_of(vec(10)), vec(7)},
-               {vec(16), vec(13)},
-               columns[19][i] != 0.0};
+    rows[i] = {
+        columns[0][i],      {quaternion_of(vec(4)), vec(1)}, {quaternion_of(vec(10)), vec(7)},
+        {vec(16), vec(13)}, columns[19][i] != 0.0,           static_cast<std::uint32_t>(columns[20][i])};
   }
   return rows;
 }

@@ -109,3 +109,23 @@ TEST(Motions, bad_ones_are_refused) {
   spec.motions = {motion("strok")};
   expect_contains(message_of([&] { make_device(spec); }), "device: motion[0]: kind \"strok\" (did you mean");
 }
+
+// By script and by a simulated hand: fingers do not yield to the force.
+TEST(Presses, hold_their_switches_for_their_time) {
+  for (const char* type : {"script", "hand"}) {
+    DeviceSpec spec;
+    spec.type = type;
+    spec.keyframes = {{}};
+    spec.presses = {{0, 0.2, 0.3}, {3, 0.4, 0.0}};
+    const auto device = make_device(spec);
+    EXPECT_EQ(device->sample(0.1).switches, 0u) << type;
+    EXPECT_EQ(device->sample(0.2).switches, 1u) << type;
+    EXPECT_EQ(device->sample(0.45).switches, 9u) << type;
+    EXPECT_EQ(device->sample(0.5).switches, 8u) << type;
+    EXPECT_EQ(device->sample(100.0).switches, 8u) << type << ": to the end";
+    spec.presses = {{32, 0.0, 0.0}};
+    expect_contains(message_of([&] { make_device(spec); }), "device: press[0]: switch = 32");
+    spec.presses = {{0, -1.0, 0.0}};
+    expect_contains(message_of([&] { make_device(spec); }), "device: press[0]: start_s = -1");
+  }
+}

@@ -120,6 +120,20 @@ TEST(Recording, columns_may_come_in_any_order) {
   EXPECT_EQ(device->sample(0.0).pose.translation, Vec3(1, 2, 3));
 }
 
+TEST(Recording, switches_are_those_of_the_line_before) {
+  const TemporaryFolder folder;
+  const auto device = replay(folder,
+                             "time_s,switches,px_m,py_m,pz_m,qw,qx,qy,qz\n0,0,0,0,0,1,0,0,0\n"
+                             "0.5,5,0.1,0,0,1,0,0,0\n1,2,0,0,0,1,0,0,0\n");
+  EXPECT_EQ(device->sample(0.4).switches, 0u);
+  EXPECT_EQ(device->sample(0.5).switches, 5u);
+  EXPECT_EQ(device->sample(0.9).switches, 5u);
+  EXPECT_EQ(device->switches(), 5u);
+  EXPECT_NEAR(device->position().x(), 0.05, 0.05) << "the columns are told apart";
+  EXPECT_EQ(device->sample(2.0).switches, 2u);
+  EXPECT_EQ(replay(folder, kHeader + "0,0,0,0,1,0,0,0\n")->sample(1.0).switches, 0u);
+}
+
 TEST(Recording, malformed_files_are_refused_with_line_and_column) {
   const TemporaryFolder folder;
   int checked = 0;
@@ -137,7 +151,9 @@ TEST(Recording, malformed_files_are_refused_with_line_and_column) {
   refused(kHeader + "0,0,0,0,1,0,0\n", ":2: 7 cells, but 8 columns have a name");
   refused(kHeader + "0,0,0,0,1,0,0,0\n0,0,0,0,1,0,0,0\n", ":3: column \"time_s\": 0 does not come after 0");
   refused(kHeader + "0,0,0,0,0.5,0,0,0\n", ":2: column \"qw\": the quaternion's length is 0.5, not 1");
-  EXPECT_EQ(checked, 9);
+  refused("switches," + kHeader + "-1,0,0,0,0,1,0,0,0\n", ":2: switches = -1 is no set of bits");
+  refused("switches," + kHeader + "1.5,0,0,0,0,1,0,0,0\n", ":2: switches = 1.5 is no set of bits");
+  EXPECT_EQ(checked, 11);
   DeviceSpec spec;
   spec.type = "recording";
   expect_contains(message_of([&] { make_device(spec); }), "device: file is missing");

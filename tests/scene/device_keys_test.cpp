@@ -42,6 +42,7 @@ std::string value_of(const scene::KeyRow& row) {
                                                          {"port", "4711"},
                                                          {"keyframe", "[{ time_s = 0.0 }]"},
                                                          {"motion", "[{ amplitude_m = [0, 0, 0.01] }]"},
+                                                         {"press", "[{ switch = 1 }]"},
                                                          {"workspace_size_m", "[0.2, 0.1, 0.1]"}};
   if (const auto found = own.find(row.name); found != own.end()) return found->second;
   return row.is_value ? row.fallback : "0.25";
@@ -56,7 +57,7 @@ std::vector<scene::KeyRow> device_rows() {
 TEST(DeviceKeys, AKeyOfAnotherTypeIsRefusedAtItsLocation) {
   EXPECT_EQ(refusal(held_by("script", "arm_mass_kg = 1.0\n")),
             "s.toml:9:15: device: arm_mass_kg means nothing to device type \"script\", which takes keyframe, "
-            "motion; remove it (used by hand)");
+            "motion, press; remove it (used by hand)");
   EXPECT_EQ(refusal(held_by("udp", "file = \"poses.csv\"\n")),
             "s.toml:9:8: device: file means nothing to device type \"udp\", which takes port, address, "
             "time_out_s; remove it (used by recording)");
@@ -86,9 +87,9 @@ TEST(DeviceKeys, EveryTypeTakesItsOwnAndRefusesTheOthers) {
       ++refused;
     }
   }
-  EXPECT_EQ(taken, 1 + 16 + 0 + 2) << "motion; motion and a hand's 15; none; address and time-out";
+  EXPECT_EQ(taken, 2 + 17 + 0 + 2) << "motion, press; these and a hand's 15; none; address and time-out";
   EXPECT_EQ(common, 4 * 10) << "profile, four limits, ramp, and four keys of the workspace";
-  EXPECT_EQ(refused, 19 + 4 + 20 + 18) << "of 2 for scripts, 15 for hands, 1 for recordings, 3 for peers";
+  EXPECT_EQ(refused, 19 + 4 + 21 + 19) << "of 3 for scripts, 15 for hands, 1 for recordings, 3 for peers";
 }
 
 TEST(DeviceKeys, WhatATypeNeedsIsAskedFor) {

@@ -85,12 +85,14 @@ TEST(ForceFile, RoundTrip) {
                       {quaternion_of({0.1, 0.2, 0.3}), {1, 2, 3}},
                       {quaternion_of({0, 0, -1.5}), {4, 5, 6}},
                       {{7, 8, 9}, {10, 11, 12}},
-                      true};
+                      true,
+                      5};
   {
     store::ForceFile file(folder / "force.csv");
     file.append(row);
     row.time_s = 0.126;
     row.limited = false;
+    row.switches = 0;
     file.append(row);
     file.close();
   }
@@ -99,12 +101,14 @@ TEST(ForceFile, RoundTrip) {
   EXPECT_EQ(rows[0].time_s, 0.125);
   EXPECT_TRUE(rows[0].limited);
   EXPECT_FALSE(rows[1].limited);
+  EXPECT_EQ(rows[0].switches, 5u);
+  EXPECT_EQ(rows[1].switches, 0u);
   EXPECT_EQ(rows[1].on_hand.force, Vec3(10, 11, 12));
   EXPECT_EQ(rows[1].on_hand.moment, Vec3(7, 8, 9));
   EXPECT_EQ(rows[1].tool.translation, Vec3(4, 5, 6));
   EXPECT_LE(rows[1].handle.rotation.angularDistance(row.handle.rotation), 1e-15);
   EXPECT_EQ(store::read_csv(folder / "force.csv").numbers("force_x_n"), (std::vector<double>{10, 10}));
-  EXPECT_EQ(store::force_headers().size(), 20u);
+  EXPECT_EQ(store::force_headers().size(), 21u);
 }
 
 TEST(AtomicFile, ReplacesWholeAndLeavesNothingBeside) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -13,10 +14,11 @@ namespace palpate::device {
 
 /// The handle as the hand moves it at one instant, in the scene's axes (right-handed) and SI units.
 struct HandleSample {
-  Pose pose;           ///< of the handle: its origin [m] and orientation
-  Twist twist;         ///< [rad/s, m/s]
-  Twist acceleration;  ///< [rad/s^2, m/s^2]
-  bool valid = true;   ///< false: no pose arrived; forces must fall to zero
+  Pose pose;                   ///< of the handle: its origin [m] and orientation
+  Twist twist;                 ///< [rad/s, m/s]
+  Twist acceleration;          ///< [rad/s^2, m/s^2]
+  bool valid = true;           ///< false: no pose arrived; forces must fall to zero
+  std::uint32_t switches = 0;  ///< bit i: switch i is pressed
 };
 
 /// A haptic device: something that a hand holds, whose pose is read and which gives a wrench back.
@@ -51,7 +53,7 @@ class Device {
   Quat rotation() const { return last_.pose.rotation; }          ///< handle's axes to the scene's
   Vec3 linear_velocity() const { return last_.twist.linear; }    ///< [m/s]
   Vec3 angular_velocity() const { return last_.twist.angular; }  ///< [rad/s]
-  virtual unsigned switches() const { return 0; }                ///< bit i: switch i is pressed
+  std::uint32_t switches() const { return last_.switches; }      ///< bit i: switch i is pressed
 
   /// What it can do; figures that nobody has measured are left out.
   virtual DeviceSpecification specification() const = 0;

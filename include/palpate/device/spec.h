@@ -27,12 +27,20 @@ struct MotionSpec {
   double duration_s = 0.0;  ///< 0: to the end; a chirp needs it
 };
 
+/// A time through which a switch of the handle is held pressed: [[device.press]].
+struct PressSpec {
+  int number = 0;  ///< of the switch
+  double start_s = 0.0;
+  double duration_s = 0.0;  ///< 0: to the end
+};
+
 /// The `[device]` table of a scene.  What is not given comes from the profile, else from a default.
 struct DeviceSpec {
   std::string type = "script";
   std::string profile{};  ///< published figures of a device; empty: none
   std::vector<KeyframeSpec> keyframes;
   std::vector<MotionSpec> motions;
+  std::vector<PressSpec> presses;
 
   std::optional<double> max_force_n;     ///< 3.3, of a common desktop device
   std::optional<double> max_torque_n_m;  ///< 0.2
@@ -86,6 +94,7 @@ struct DeviceRanges {
   static constexpr Range frequency = Range::positive("a hand moves at up to 10");
   static constexpr Range start_s = Range::at_least(0.0, "0 is the start of the run");
   static constexpr Range duration_s = Range::at_least(0.0, "0 is to the end");
+  static constexpr Range switches = Range::closed(0, 31, "the first is 0");
   static constexpr Range port = Range::closed(1, 65535, "above 1023 no rights are needed");
   static constexpr Range time_out_s = Range::positive("two ticks, 0.002, are usual");
 };

@@ -71,7 +71,6 @@ class UdpDevice : public Device {
   explicit UdpDevice(const DeviceSpec& spec);
   ~UdpDevice() override { close(); }
   DeviceSpecification specification() const override { return specification_; }
-  unsigned switches() const override { return last_.switches; }
   const UdpCounts& counts() const { return counts_; }
   int port() const { return port_; }  ///< that it is bound to, once it is open
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,9 @@ namespace palpate::store {
 struct ForceRow {
   double time_s = 0.0;
   Pose handle, tool;
-  Wrench on_hand;        ///< after the device's limits, moment about the handle's origin
-  bool limited = false;  ///< the device's limit changed it
+  Wrench on_hand;              ///< after the device's limits, moment about the handle's origin
+  bool limited = false;        ///< the device's limit changed it
+  std::uint32_t switches = 0;  ///< of the handle: bit i is 1 where switch i is pressed
 };
 
 /// Headers of force.csv, units included.
