@@ -54,6 +54,7 @@ const std::vector<int>& ContactForce::Impl::rows_of_frames() {
 }
 
 void ContactForce::Impl::add_single_forces(const dynamics::StateView& state, VecX& f) {
+  bonds.add_force(state, frame_states, rows_of_frames(), f);
   const auto row = [&](const SurfacePoint& p) {
     return p.frame >= 0 ? frame_states[static_cast<std::size_t>(p.frame)].u_offset : -1;
   };
@@ -67,6 +68,7 @@ void ContactForce::Impl::add_single_forces(const dynamics::StateView& state, Vec
 
 void ContactForce::Impl::apply_single_tangents(const dynamics::StateView& state, double k_scale,
                                                double d_scale, const VecX& x, VecX& y) {
+  bonds.apply_tangent(state, frame_states, k_scale, d_scale, x, y);
   visit_active(state, Which::kOfState,
                [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                  const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
@@ -90,6 +92,8 @@ void ContactForce::Impl::all_forces(const dynamics::StateView& state, VecX& f, s
     on_a[static_cast<std::size_t>(s.source)] += Wrench{motion.a.x.cross(force), force};
   };
   visit_active(state, Which::kEvery, add);
+  bonds.add_force(state, frame_states, frame_rows, f);
+  bonds.add_resultants(state, frame_states, on_a);
 }
 
 ContactForce::ContactForce() : impl_(std::make_unique<Impl>()) { counters::count("contact.force"); }
@@ -170,6 +174,7 @@ void ContactForce::add_tangent(const dynamics::StateView& state, double k_scale,
                        state.layout->nodal_size, A);
   };
   m.visit_active(state, Impl::Which::kOfState, add);
+  m.bonds.add_tangent(state, m.frame_states, k_scale, d_scale, A);
 }
 
 void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scale, double d_scale,
@@ -183,7 +188,7 @@ void ContactForce::apply_tangent(const dynamics::StateView& state, double k_scal
 double ContactForce::energy(const dynamics::StateView& state) {
   Impl& m = *impl_;
   m.place_frames(state);
-  double sum = m.groups.energy(state, m.frame_states);
+  double sum = m.groups.energy(state, m.frame_states) + m.bonds.energy(state, m.frame_states);
   m.visit_active(state, Impl::Which::kEvery,
                  [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                    sum += s.area * pressure(law, motion.gap, motion.rate).energy_density;
@@ -194,7 +199,7 @@ double ContactForce::energy(const dynamics::StateView& state) {
 double ContactForce::dissipated_power(const dynamics::StateView& state) {
   Impl& m = *impl_;
   m.place_frames(state);
-  double sum = m.groups.dissipation(state, m.frame_states);
+  double sum = m.groups.dissipation(state, m.frame_states) + m.bonds.dissipation(state, m.frame_states);
   m.visit_active(state, Impl::Which::kEvery,
                  [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                    sum += sample_dissipation(s, motion, law);
@@ -248,10 +253,11 @@ bool ContactForce::refresh(const dynamics::StateView& state) {
   m.all_forces(state, m.force_before, m.resultants.before);
   m.query(state);
   m.check_samples(state);
+  const bool grasped = m.take_grasps(state);
   m.all_forces(state, m.force_after, m.resultants.after);
   // next_samples, next_cells: those of before
   m.resultants.compare({m.next_samples, m.next_cells}, {m.samples, m.cells}, state, m.frames);
-  return m.force_after != m.force_before;
+  return grasped || m.force_after != m.force_before;
 }
 
 int ContactForce::event_count() const {

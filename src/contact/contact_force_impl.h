@@ -1,4 +1,5 @@
 #pragma once
+#include "contact/grasp.h"
 #include "contact/resultants.h"
 #include "contact/sample_groups.h"
 #include "contact/sample_math.h"
@@ -43,6 +44,17 @@ struct ContactForce::Impl {
   int count_of(const Pair& pair) const;
   double query_seconds = 0.0;
   Resultants resultants;
+
+  /// What a frame is to do about what presses on it, and what it does since the last refresh.
+  struct Grasp {
+    int frame;
+    bool wanted = false, closed = false;
+  };
+  std::vector<Grasp> grasps;
+  Bonds bonds;
+  GraspCounts grasp_counts;
+  /// True where one closed or let go.  @pre frames are placed
+  bool take_grasps(const dynamics::StateView& state);
 
   /// Friction of the samples that a symmetric tangent was made of: what it leaves out is how this follows the
   /// pressure until the next.

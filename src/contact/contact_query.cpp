@@ -78,6 +78,44 @@ void ContactForce::Impl::query(const dynamics::StateView& state) {
   events_to_compare = true;
 }
 
+// Contact of the state that the grasp closes at is found first: what presses is held.
+bool ContactForce::Impl::take_grasps(const dynamics::StateView& state) {
+  bool changed = false;
+  for (Grasp& grasp : grasps) {
+    if (grasp.wanted == grasp.closed) continue;
+    grasp.closed = grasp.wanted;
+    if (!grasp.closed) {
+      changed = changed || bonds.count_of(grasp.frame) > 0;
+      bonds.let_go(grasp.frame);
+      continue;
+    }
+    std::vector<PressureLaw> laws;
+    for (const Pair& pair : pairs) laws.push_back(pair.law);
+    place_frames(state);
+    const bool holds = bonds.take(all(), grasp.frame, laws, state, frame_states) > 0;
+    changed = changed || holds;
+    ++(holds ? grasp_counts.closed : grasp_counts.empty);
+  }
+  grasp_counts.points = bonds.count();
+  grasp_counts.area = bonds.area();
+  grasp_counts.largest_area = std::max(grasp_counts.largest_area, grasp_counts.area);
+  return changed;
+}
+
+void ContactForce::set_grasp(int frame, bool closed) {
+  Impl& m = *impl_;
+  PALPATE_CHECK(frame >= 0 && frame < static_cast<int>(m.frames.size()), "frame {} of {}", frame,
+                m.frames.size());
+  const auto of_frame = std::find_if(m.grasps.begin(), m.grasps.end(),
+                                     [&](const Impl::Grasp& grasp) { return grasp.frame == frame; });
+  if (of_frame != m.grasps.end())
+    of_frame->wanted = closed;
+  else if (closed)
+    m.grasps.push_back({.frame = frame, .wanted = true});
+}
+
+GraspCounts ContactForce::grasp_counts() const { return impl_->grasp_counts; }
+
 double ContactForce::sample_bytes() const {
   const Impl& m = *impl_;
   return static_cast<double>(m.samples.size() * sizeof(ContactSample) + m.cells.bytes() + m.groups.bytes());

@@ -47,6 +47,7 @@ Wrench ContactForce::frame_wrench(const dynamics::StateView& state, int frame) c
   Impl& m = *impl_;
   m.place_frames(state);
   Wrench sum = m.groups.wrench(state, m.frame_states, frame);
+  sum += m.bonds.wrench(state, m.frame_states, frame);
   m.visit_active(state, Impl::Which::kEvery,
                  [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
                    if (s.a.frame != frame && s.b.frame != frame) return;
@@ -64,7 +65,10 @@ void ContactForce::linearise(const dynamics::StateView& state, int frame, FrameL
                 m.frames.size());
   reset(out, partners == Partners::kFrames ? 0 : state.layout->nodal_size);
   m.place_frames(state);
-  if (partners != Partners::kFrames) m.groups.linearise(state, m.frame_states, frame, out);
+  if (partners != Partners::kFrames) {
+    m.groups.linearise(state, m.frame_states, frame, out);
+    m.bonds.linearise(state, m.frame_states, frame, out);
+  }
   const auto add = [&](const ContactSample& s, const SampleMotion& motion, const PressureLaw& law) {
     if (s.a.frame != frame && s.b.frame != frame) return;
     PALPATE_CHECK(s.a.frame != s.b.frame, "a contact sample has frame {} on both sides", frame);

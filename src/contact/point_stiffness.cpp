@@ -35,6 +35,7 @@ void ContactForce::add_step(const dynamics::StateView& state, const VecX& shift,
     if (point.nodes.count > 0) C.points.push_back(point);
   };
   m.visit_active(state, Impl::Which::kOfState, add);
+  m.bonds.add_points(state, m.frame_states, k_scale, d_scale, C);
 }
 
 void ContactForce::add_step_force(const dynamics::StateView& state, const VecX& shift, const VecX& change,

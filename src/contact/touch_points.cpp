@@ -152,36 +152,69 @@ TouchModel::Point point_of(const std::vector<TouchSample>& samples, const Modes&
   return out;
 }
 
+/// Held ones as one: the same stiffness between the means of where they are and where they are held.
+TouchModel::Point held_point_of(const std::vector<TouchSample>& samples, const Modes& modes,
+                                const Bunches& bunches, const Bunch& bunch) {
+  Vec3 normal = Vec3::Zero(), offset = normal, place = normal, velocity = normal;
+  MovedBy moved = MovedBy::Zero();
+  TouchModel::Point out;
+  for (int i = bunch.first; i < bunch.last; ++i) {
+    const TouchSample& s = samples[static_cast<std::size_t>(bunches.member(i))];
+    out.held_stiffness += s.stiffness;
+    out.held_damping += s.damping;
+    out.area += s.area;
+    out.pair = s.pair;
+    normal += s.stiffness * s.normal;
+    offset += s.stiffness * s.offset;
+    place += s.stiffness * s.place;
+    velocity += s.stiffness * s.velocity;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k)
+      moved += s.stiffness * s.weight[k] * modes.middleCols<3>(3 * s.node[k]);
+  }
+  write(normal.normalized(), out.normal);
+  write(offset / out.held_stiffness, out.offset);
+  write(place / out.held_stiffness, out.place);
+  write(velocity / out.held_stiffness, out.velocity);
+  Eigen::Map<Eigen::Matrix<double, 3, TouchModel::kMostModes>>(out.modes.data()) =
+      moved.transpose() / out.held_stiffness;
+  return out;
+}
+
+/// What samples may be bunched by: those that press, held ones, and those that do neither, of each pair.
+struct Kind {
+  int apart, held, pair;
+  explicit Kind(const TouchSample& s) : apart(!s.held && !(s.gap < 0.0)), held(s.held), pair(s.pair) {}
+  auto operator<=>(const Kind&) const = default;
+  /// Of the room that there is for points: what may come to press needs less.
+  int share() const { return apart ? 1 : 3; }
+};
+
 }  // namespace
 
 void gather_points(const std::vector<TouchSample>& samples, const Pose& pose, const Modes& modes,
                    TouchModel& out) {
   out.points = 0;
-  // of each pair those that press, and those that do not
-  std::vector<std::pair<int, bool>> kinds;
-  for (const TouchSample& s : samples) {
-    const std::pair kind{s.pair, s.gap < 0.0};
-    if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
-  }
-  std::sort(kinds.begin(), kinds.end(), [](const auto& a, const auto& b) {
-    return std::pair(!a.second, a.first) < std::pair(!b.second, b.first);
-  });
+  std::vector<Kind> kinds;
+  for (const TouchSample& s : samples)
+    if (std::find(kinds.begin(), kinds.end(), Kind(s)) == kinds.end()) kinds.emplace_back(s);
+  std::sort(kinds.begin(), kinds.end());
   std::vector<std::vector<int>> orders;
-  for (const auto& [pair, presses] : kinds) {
+  for (const Kind& kind : kinds) {
     std::vector<int>& order = orders.emplace_back();
     for (std::size_t j = 0; j < samples.size(); ++j)
-      if (samples[j].pair == pair && (samples[j].gap < 0.0) == presses) order.push_back(static_cast<int>(j));
+      if (Kind(samples[j]) == kind) order.push_back(static_cast<int>(j));
   }
   const Mat3 R = pose.rotation.toRotationMatrix();
-  int room = TouchModel::kMostPoints;
+  int room = TouchModel::kMostPoints, shares = 0;
+  for (const Kind& kind : kinds) shares += kind.share();
   for (std::size_t k = 0; k < orders.size() && room > 0; ++k) {
-    const int kinds_left = static_cast<int>(orders.size() - k) - 1;
-    // what presses leaves a quarter of the room to what may come to press
-    const int own = kinds_left > 0 ? std::max(1, room - room * kinds_left / (3 * kinds_left + 1)) : room;
+    const int own = std::max(1, room * kinds[k].share() / shares);
+    shares -= kinds[k].share();
     Bunches bunches(samples, pose.translation, std::move(orders[k]));
     bunches.split_to(std::min(own, room));
     for (const Bunch& bunch : bunches.all()) {
-      TouchModel::Point point = point_of(samples, modes, R, pose.translation, bunches, bunch);
+      TouchModel::Point point = kinds[k].held ? held_point_of(samples, modes, bunches, bunch)
+                                              : point_of(samples, modes, R, pose.translation, bunches, bunch);
       if (room == 0 || !(point.area > 0.0)) continue;
       out.point[static_cast<std::size_t>(out.points++)] = point;
       --room;

@@ -23,13 +23,24 @@ std::vector<TouchSample> ContactForce::touch_samples(const dynamics::StateView& 
     const PointMotion& body = is_a ? motion.b : motion.a;
     const bool presses = motion.gap < 0.0;
     const double slope = presses ? -pressure(law, motion.gap, motion.rate).dp_dgap : law.k;
-    out.push_back({mine.offset, mine.slide, other.count, other.node, other.weight, sign * s.normal, body.x,
-                   body.v, s.area, motion.gap, s.source, s.area * slope,
-                   presses ? Vec3(sign * sample_force(s, motion, law)) : Vec3(Vec3::Zero())});
+    out.push_back({.offset = mine.offset,
+                   .slide = mine.slide,
+                   .count = other.count,
+                   .node = other.node,
+                   .weight = other.weight,
+                   .normal = sign * s.normal,
+                   .place = body.x,
+                   .velocity = body.v,
+                   .area = s.area,
+                   .gap = motion.gap,
+                   .pair = s.source,
+                   .stiffness = s.area * slope,
+                   .force = presses ? Vec3(sign * sample_force(s, motion, law)) : Vec3(Vec3::Zero())});
     if (!tangents) continue;
     const SampleForce force = sample_force_and_tangent(s, motion, law, law.symmetric_tangent);
     tangents->push_back({force.K, force.D});
   }
+  m.bonds.append_touch_samples(state, m.frame_states, frame, out, tangents);
   return out;
 }
 

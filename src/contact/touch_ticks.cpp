@@ -1,5 +1,6 @@
 #include <Eigen/Cholesky>
 
+#include "contact/grasp.h"
 #include "contact/sample_math.h"
 #include "palpate/contact/touch_model.h"
 
@@ -20,6 +21,9 @@ namespace palpate::contact {
 // is handed to the tool's own scheme, which says what dx and dv become, and then dz follows.  Both sides so
 // get the same forces: what the tool loses the bodies gain, in momentum to rounding.
 //
+// A point that is held (grasp.cpp) has K, D and F with P in place of its maps to a sample, and besides turns
+// with the tool: of the tool's moment r x F, r changes with the bodies, by h P dz, and F turns.
+//
 // A is symmetric and positive definite at any h: K_i and D_i are taken without how friction follows pressure,
 // and with friction against the velocity at the tick's end (sample_math.cpp).
 namespace {
@@ -29,7 +33,6 @@ using Modes = Eigen::Matrix<double, kModes, 1>;
 using ModesByModes = Eigen::Matrix<double, kModes, kModes>;
 using ModesBySix = Eigen::Matrix<double, kModes, 6>;
 using PointModes = Eigen::Matrix<double, 3, kModes>;
-using Mat36 = Eigen::Matrix<double, 3, 6>;
 using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
 Vec3 vec(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
@@ -69,6 +72,96 @@ void TouchTicks::adopt(const TouchModel& model) {
   impl_->z.setZero();
 }
 
+namespace {
+
+/// Where tool and bodies are carried on to, and what their points come to there.
+struct Sums {
+  const dynamics::RigidMotion& tool;  ///< x_p, v
+  double tau, h;
+  const Modes &q, &z;
+  Mat3 R = tool.pose.rotation.toRotationMatrix();
+
+  ModesByModes A = ModesByModes::Zero();
+  Modes r = Modes::Zero();
+  ModesBySix by_x = ModesBySix::Zero(), by_v = ModesBySix::Zero(), S_by_Z = ModesBySix::Zero();
+  Vec6 wrench = Vec6::Zero();
+  Mat6 K = Mat6::Zero(), B = Mat6::Zero();
+  int pressing = 0;
+
+  void add_touching(const TouchModel::Point& point, const PressureLaw& law);
+  void add_held(const TouchModel::Point& point);
+
+ private:
+  Vec3 place(const TouchModel::Point& point) const {
+    return vec(point.place) + tau * vec(point.velocity) +
+           Eigen::Map<const PointModes>(point.modes.data()) * q;
+  }
+  Vec3 velocity(const TouchModel::Point& point) const {
+    return vec(point.velocity) + Eigen::Map<const PointModes>(point.modes.data()) * z;
+  }
+  /// What is common to both kinds.
+  /// @param Kx, Dv  -dF by the tool's pose and twist
+  void add(const TouchModel::Point& point, const Mat36& Z, const Vec3& arm, const Vec3& F, const Mat3& S,
+           const Mat36& Kx, const Mat36& Dv);
+};
+
+void Sums::add(const TouchModel::Point& point, const Mat36& Z, const Vec3& arm, const Vec3& F, const Mat3& S,
+               const Mat36& Kx, const Mat36& Dv) {
+  const Eigen::Map<const PointModes> P(point.modes.data());
+  const PointModes SP = S * P;
+  A.noalias() += h * (P.transpose() * SP);
+  by_x.noalias() += P.transpose() * Kx;
+  by_v.noalias() += P.transpose() * Dv;
+  S_by_Z.noalias() += SP.transpose() * Z;
+  r.noalias() -= P.transpose() * F;
+  wrench.head<3>() += arm.cross(F);
+  wrench.tail<3>() += F;
+  K.noalias() += Z.transpose() * Kx;
+  B.noalias() += Z.transpose() * Dv;
+}
+
+void Sums::add_touching(const TouchModel::Point& point, const PressureLaw& law) {
+  const Vec3 slide = vec(point.slide), rotating = R * vec(point.offset), arm = rotating + slide;
+  ContactSample sample;
+  sample.normal = vec(point.normal);
+  sample.area = point.area;
+  SampleMotion motion;
+  motion.a = {tool.pose.translation + arm, tool.twist.at(arm), arm, rotating};
+  motion.b = {place(point), velocity(point), Vec3::Zero(), Vec3::Zero()};
+  motion.gap = sample.normal.dot(motion.a.x - motion.b.x);
+  if (!(motion.gap < 0.0)) return;
+  motion.rate = sample.normal.dot(motion.a.v - motion.b.v);
+  const SampleForce s = sample_force_and_tangent(sample, motion, law, true);
+  if (s.force.isZero(0.0)) return;
+  ++pressing;
+  Mat36 Z;
+  Z << -cross_matrix(arm), Mat3::Identity();
+  Mat36 Kx = s.K * Z;
+  Kx.leftCols<3>().noalias() -= s.D * (cross_matrix(tool.twist.angular) * cross_matrix(rotating));
+  add(point, Z, arm, s.force, h * s.K + s.D, Kx, s.D * Z);
+  K.topLeftCorner<3, 3>().noalias() -= cross_matrix(s.force) * cross_matrix(rotating);
+}
+
+void Sums::add_held(const TouchModel::Point& point) {
+  const Vec3 arm = place(point) - tool.pose.translation;
+  const BondForce b =
+      bond_force(R * vec(point.offset) - arm, R * vec(point.normal), arm,
+                 tool.twist.at(arm) - velocity(point), point.held_stiffness, point.held_damping);
+  Mat36 Z;
+  Z << -cross_matrix(arm), Mat3::Identity();
+  const Mat3 F = cross_matrix(b.elastic);
+  Mat36 Kx = b.K * Z;
+  Kx.leftCols<3>() += F;
+  add(point, Z, arm, b.force, h * b.K + b.D, Kx, b.D * Z);
+  S_by_Z.leftCols<3>().noalias() += h * (Eigen::Map<const PointModes>(point.modes.data()).transpose() * F);
+  // Z^T [F]x dtheta of `add` has - of -dM = ([M]x + [F]x [r]x) dtheta - [F]x dp the part [r]x [F]x
+  const Mat3 turn = cross_matrix(arm);
+  K.topLeftCorner<3, 3>() += cross_matrix(arm.cross(b.elastic)) + F * turn - turn * F;
+  K.topRightCorner<3, 3>() -= F;
+}
+
+}  // namespace
+
 dynamics::LinearisedContact TouchTicks::linearise(double t1, double h, const dynamics::RigidMotion& tool) {
   Impl& m = *impl_;
   const TouchModel& model = m.model;
@@ -78,57 +171,26 @@ dynamics::LinearisedContact TouchTicks::linearise(double t1, double h, const dyn
   m.at.pose.translation = tool.pose.translation + h * tool.twist.linear;
   const double tau = t1 - model.time;
   const Modes q_p = m.q + h * m.z;
-  const Mat3 R = m.at.pose.rotation.toRotationMatrix(), spin = -cross_matrix(tool.twist.angular);
 
   const Eigen::Map<const ModesByModes> damping(model.damping.data());
   const Eigen::Map<const Modes> stiffness(model.stiffness.data()), force(model.force.data()),
       rate(model.force_rate.data());
-  ModesByModes A = ModesByModes::Identity() + h * damping;
-  A.diagonal() += h * h * stiffness;
-  Modes r = force + tau * rate - damping * m.z - stiffness.cwiseProduct(q_p);
-  ModesBySix by_x = ModesBySix::Zero(), by_v = ModesBySix::Zero(), S_by_Z = ModesBySix::Zero();
-  Vec6 wrench = Vec6::Zero();
-  Mat6 K = Mat6::Zero(), B = Mat6::Zero();
-  m.pressing = 0;
-  ContactSample sample;
+  Sums sums{.tool = m.at, .tau = tau, .h = h, .q = q_p, .z = m.z};
+  sums.A = ModesByModes::Identity() + h * damping;
+  sums.A.diagonal() += h * h * stiffness;
+  sums.r = force + tau * rate - damping * m.z - stiffness.cwiseProduct(q_p);
   for (int i = 0; i < model.points; ++i) {
     const TouchModel::Point& point = model.point[static_cast<std::size_t>(i)];
-    const Eigen::Map<const PointModes> P(point.modes.data());
-    const Vec3 slide = vec(point.slide), rotating = R * vec(point.offset), arm = rotating + slide;
-    sample.normal = vec(point.normal);
-    sample.area = point.area;
-    SampleMotion motion;
-    motion.a = {m.at.pose.translation + arm, tool.twist.at(arm), arm, rotating};
-    motion.b = {vec(point.place) + tau * vec(point.velocity) + P * q_p, vec(point.velocity) + P * m.z,
-                Vec3::Zero(), Vec3::Zero()};
-    motion.gap = sample.normal.dot(motion.a.x - motion.b.x);
-    if (!(motion.gap < 0.0)) continue;
-    motion.rate = sample.normal.dot(motion.a.v - motion.b.v);
-    const SampleForce s =
-        sample_force_and_tangent(sample, motion, m.laws[static_cast<std::size_t>(point.pair)], true);
-    if (s.force.isZero(0.0)) continue;
-    ++m.pressing;
-    Mat36 Z;
-    Z << -cross_matrix(arm), Mat3::Identity();
-    Mat36 Kx = s.K * Z;
-    Kx.leftCols<3>().noalias() += s.D * (spin * cross_matrix(rotating));
-    const Mat36 Dv = s.D * Z;
-    const PointModes SP = (h * s.K + s.D) * P;
-    A.noalias() += h * (P.transpose() * SP);
-    by_x.noalias() += P.transpose() * Kx;
-    by_v.noalias() += P.transpose() * Dv;
-    S_by_Z.noalias() += SP.transpose() * Z;
-    r.noalias() -= P.transpose() * s.force;
-    wrench.head<3>() += arm.cross(s.force);
-    wrench.tail<3>() += s.force;
-    K.noalias() += Z.transpose() * Kx;
-    K.topLeftCorner<3, 3>().noalias() -= cross_matrix(s.force) * cross_matrix(rotating);
-    B.noalias() += Z.transpose() * Dv;
+    if (point.held_stiffness > 0.0)
+      sums.add_held(point);
+    else
+      sums.add_touching(point, m.laws[static_cast<std::size_t>(point.pair)]);
   }
-  const Eigen::LLT<ModesByModes> factor(A);
-  m.dz = factor.solve(h * r);
-  m.dz_dx = factor.solve(h * by_x);
-  m.dz_dv = factor.solve(h * by_v);
+  m.pressing = sums.pressing;
+  const Eigen::LLT<ModesByModes> factor(sums.A);
+  m.dz = factor.solve(h * sums.r);
+  m.dz_dx = factor.solve(h * sums.by_x);
+  m.dz_dv = factor.solve(h * sums.by_v);
 
   dynamics::LinearisedContact out;
   out.time = t1;
@@ -136,9 +198,9 @@ dynamics::LinearisedContact TouchTicks::linearise(double t1, double h, const dyn
   const Vec3& x = m.at.pose.translation;
   out.x0 = {rotation.w(), rotation.x(), rotation.y(), rotation.z(), x.x(), x.y(), x.z()};
   Eigen::Map<Vec6>(out.v0.data()) << tool.twist.angular, tool.twist.linear;
-  Eigen::Map<Vec6>(out.F0.data()) = wrench + S_by_Z.transpose() * m.dz;
-  Eigen::Map<RowMajor6>(out.J.data()) = S_by_Z.transpose() * m.dz_dx - K;
-  Eigen::Map<RowMajor6>(out.B.data()) = S_by_Z.transpose() * m.dz_dv - B;
+  Eigen::Map<Vec6>(out.F0.data()) = sums.wrench + sums.S_by_Z.transpose() * m.dz;
+  Eigen::Map<RowMajor6>(out.J.data()) = sums.S_by_Z.transpose() * m.dz_dx - sums.K;
+  Eigen::Map<RowMajor6>(out.B.data()) = sums.S_by_Z.transpose() * m.dz_dv - sums.B;
   out.source = dynamics::LinearisedContact::Source::kPoints;
   out.samples = m.pressing;
   return out;

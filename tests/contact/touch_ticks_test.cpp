@@ -147,9 +147,86 @@ TEST(TouchTicks, OneMassAnswersByImplicitEuler) {
   EXPECT_NEAR(x, -kc * 1e-3 / (k + kc), 1e-4);
 }
 
+/// The same point, held where it touches.
+TouchModel held(double gap) {
+  TouchModel model = wall(gap);
+  model.point[0].held_stiffness = 1e6 * model.point[0].area;
+  model.point[0].held_damping = 1e2 * model.point[0].area;
+  return model;
+}
+
+// Pulled off it is a spring to where it is held; pressed it holds along the surface alone.
+TEST(TouchTicks, AHeldPointPullsBack) {
+  contact::TouchTicks ticks({law()});
+  ticks.adopt(held(0.0));
+  const double h = 1e-3;
+  for (const double z : {-1e-3, 2e-3}) {
+    RigidMotion tool = at(z, 0.0);
+    tool.pose.translation.x() = 3e-3;
+    tool.twist.linear = Vec3(0.1, 0.0, 0.2);
+    const auto record = ticks.linearise(h, h, tool);
+    tool.pose.translation += h * tool.twist.linear;
+    const Vec3 force = force_at(record, h, tool), x = tool.pose.translation;
+    EXPECT_NEAR(force.x(), -1e3 * x.x() - 0.1 * 0.1, 1e-7);
+    EXPECT_NEAR(force.z(), z > 0.0 ? -1e3 * x.z() - 0.1 * 0.2 : 0.0, 1e-7);
+  }
+}
+
+TEST(TouchTicks, OneHeldMassAnswersByImplicitEuler) {
+  TouchModel model = held(-1e-3);
+  model.point[0].normal = {0, 0, -1};  // so that it is pulled
+  const double m = 0.01, k = 5000.0, h = 1e-3, kc = 1e3, dc = 0.1;
+  model.modes = 1;
+  model.stiffness[0] = k / m;
+  model.point[0].modes[2] = 1.0 / std::sqrt(m);
+  contact::TouchTicks ticks({law()});
+  ticks.adopt(model);
+  double x = 0.0, v = 0.0;
+  for (int i = 0; i < 50; ++i) {
+    const RigidMotion still = at(0.0, 0.0);
+    const auto record = ticks.linearise((i + 1) * h, h, still);
+    const double force = force_at(record, (i + 1) * h, still).z();
+    ticks.follow(still);
+    v = (m * v - h * (k * x + kc * (1e-3 + x))) / (m + h * h * (k + kc) + h * dc);
+    x += h * v;
+    EXPECT_NEAR(force, kc * (1e-3 + x) + dc * v, 1e-9) << i;
+  }
+}
+
+// Where the bodies do not answer, the record is linear in the tool's pose, turned arms included.
+TEST(TouchTicks, HeldPointsAreLinearInTheToolsPose) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> in(-1.0, 1.0);
+  TouchModel model = any_model(random);
+  model.modes = 0;
+  for (auto& point : model.point) {
+    point.modes = {};
+    point.velocity = {};
+    point.held_stiffness = 10.0;
+  }
+  contact::TouchTicks ticks({law()});
+  ticks.adopt(model);
+  const double h = 1e-3;
+  const RigidMotion tool{{quaternion_of(Vec3(0.3, 0.2, -0.4)), Vec3(0.001, 0.002, 0.03)}, {}};
+  const auto record = ticks.linearise(h, h, tool);
+  Vec6 d;
+  for (double& one : d) one = in(random);
+  std::vector<double> errors;
+  for (const double step : {1e-3, 5e-4, 2.5e-4}) {
+    const RigidMotion moved{{quaternion_of(step * d.head<3>()) * tool.pose.rotation,
+                             tool.pose.translation + 0.02 * step * d.tail<3>()},
+                            {}};
+    const auto there = ticks.linearise(h, h, moved);
+    const Vec6 linear = dynamics::contact_wrench(record, h, moved.pose, moved.twist);
+    errors.push_back((Eigen::Map<const Vec6>(there.F0.data()) - linear).norm());
+  }
+  EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2.0, 0.1);
+  EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2.0, 0.1);
+}
+
 // A tool that does not turn meets a free body, with friction: whatever presses where, the tool loses what the
 // body gains, each tick.
-TEST(TouchTicks, ToolAndBodiesKeepTheirMomentum) {
+void expect_momentum_kept(bool grasped) {
   std::mt19937 random(4);
   const double h = 1e-3, tool_mass = 0.05, body_mass = 0.2;
   TouchModel model = any_model(random);
@@ -162,6 +239,10 @@ TEST(TouchTicks, ToolAndBodiesKeepTheirMomentum) {
     point.velocity = {};
     point.modes = {};
     for (int k = 0; k < 3; ++k) point.modes[static_cast<std::size_t>(4 * k)] = 1.0 / std::sqrt(body_mass);
+  }
+  for (std::size_t i = 0; grasped && i < 20; i += 2) {
+    model.point[i].held_stiffness = 10.0;
+    model.point[i].held_damping = 1e-3;
   }
   contact::TouchTicks ticks({law(0.4)});
   ticks.adopt(model);
@@ -186,7 +267,13 @@ TEST(TouchTicks, ToolAndBodiesKeepTheirMomentum) {
     EXPECT_LE((tool_mass * tool.twist.linear + body - total).norm(), 1e-13) << i;
   }
   EXPECT_GT(pressed, 40.0);
+  if (grasped) return;
   EXPECT_GT(tool.twist.linear.z(), 0.01);  // it was thrown back
+}
+
+TEST(TouchTicks, ToolAndBodiesKeepTheirMomentum) {
+  expect_momentum_kept(false);
+  expect_momentum_kept(true);
 }
 
 // 500 samples of a dent, their depths and normals all different, in no more points than there is room for.
@@ -235,6 +322,47 @@ TEST(TouchPoints, ABunchPressesWithTheForceAndMomentOfItsSamples) {
   using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
   const Mat3 J = Eigen::Map<const RowMajor6>(record.J.data()).bottomRightCorner<3, 3>();
   EXPECT_LE((J + stiffness).norm(), 0.02 * stiffness.norm());
+}
+
+// What is held is bunched as well: the same force, and nearly the same stiffness against turning.
+TEST(TouchPoints, ABunchHoldsAsItsSamplesDo) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> in(-1.0, 1.0);
+  const Pose pose{quaternion_of(Vec3(0.3, 0.2, -0.4)), Vec3(0.1, 0.2, 0.3)};
+  const Mat3 R = pose.rotation.toRotationMatrix();
+  std::vector<contact::TouchSample> samples;
+  Vec3 force = Vec3::Zero(), moment = force;
+  Mat3 turning = Mat3::Zero();
+  for (int j = 0; j < 500; ++j) {
+    const Vec3 arm(0.01 * in(random), 0.01 * in(random), -0.02), up = Vec3(1e-3, 0.0, 2e-3);
+    contact::TouchSample s{};
+    s.offset = R.transpose() * (arm + up);
+    s.slide = s.velocity = s.force = Vec3::Zero();
+    s.normal = Vec3::UnitZ();
+    s.place = pose.translation + arm;
+    s.area = 1e-6;
+    s.gap = 2e-3;
+    s.held = true;
+    s.stiffness = 1.0;
+    samples.push_back(s);
+    force -= up;
+    moment -= arm.cross(up);
+    turning -= cross_matrix(arm) * cross_matrix(arm);
+  }
+  TouchModel model;
+  contact::gather_points(samples, pose, Eigen::Matrix<double, kModes, Eigen::Dynamic>::Zero(kModes, 3),
+                         model);
+  EXPECT_EQ(model.points, TouchModel::kMostPoints);
+  contact::TouchTicks ticks({law()});
+  ticks.adopt(model);
+  const auto record = ticks.linearise(1e-3, 1e-3, {pose, {}});
+  const Eigen::Map<const Vec6> F(record.F0.data());
+  EXPECT_LE((F.tail<3>() - force).norm(), 1e-12 * force.norm());
+  EXPECT_LE((F.head<3>() - moment).norm(), 1e-12 * moment.norm());
+  using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  const Mat6 J = Eigen::Map<const RowMajor6>(record.J.data());
+  EXPECT_NEAR(J(5, 5), -500.0, 1e-9);
+  EXPECT_NEAR(J(2, 2), -turning(2, 2), 0.02 * turning(2, 2));
 }
 
 }  // namespace

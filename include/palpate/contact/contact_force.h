@@ -125,6 +125,15 @@ struct ResultantSize {
   double moment = 0.0;  ///< about the body's mean node or the frame's origin [N m]
 };
 
+/// Grasps of all frames.
+struct GraspCounts {
+  long closed = 0;            ///< times that one began to hold something
+  long empty = 0;             ///< times that nothing pressed where one was to begin
+  int points = 0;             ///< held now
+  double area = 0.0;          ///< held now [m^2]
+  double largest_area = 0.0;  ///< held at once so far [m^2]
+};
+
 struct TouchSample;  // touch_model.h
 struct TouchTangent;
 
@@ -165,6 +174,11 @@ class ContactForce : public dynamics::ForceTerm, public dynamics::PointStiffness
   std::uint64_t events_version() const override;
   void events(const dynamics::StateView& state, double* g) override;
 
+  /// From the next refresh on a frame holds the points of nodes that press on it then, beside their contact:
+  /// against being pulled off and along the surface (src/contact/grasp.cpp); or lets all go.  What comes to
+  /// press later is not held.
+  void set_grasp(int frame, bool closed);
+  GraspCounts grasp_counts() const;
   /// Of the last query, one by one: made when they are asked for, at the price of a copy.
   const std::vector<ContactSample>& samples() const;
   int sample_count() const;

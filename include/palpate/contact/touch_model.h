@@ -23,11 +23,13 @@ struct TouchModel {
   /// One touching sample, or many that are alike.
   struct Point {
     std::array<double, 3> offset{}, slide{};  ///< on the tool, as SurfacePoint has them [m]
-    std::array<double, 3> normal{};           ///< unit, world: pushes the tool
+    std::array<double, 3> normal{};           ///< unit, world: pushes the tool; of a held one in its axes
     std::array<double, 3> place{};            ///< on the bodies, at `time` [m]
     std::array<double, 3> velocity{};         ///< v there [m/s]
     double area = 0.0;                        ///< [m^2]; of springs at points, their number
     int pair = 0;                             ///< whose law holds: index of the scene's [[contact]]
+    /// of one that the tool holds (ContactForce::set_grasp); else 0 [N/m, N s/m]
+    double held_stiffness = 0.0, held_damping = 0.0;
     /// 3 x kMostModes by columns: its displacement by q [kg^-1/2]
     std::array<double, 3 * kMostModes> modes{};
   };
@@ -55,6 +57,10 @@ struct TouchSample {
   /// area times dp/ddepth [N/m]: of one that presses, or would
   double stiffness;
   Vec3 force;  ///< on the frame [N]
+  /// of one that the frame holds (ContactForce::set_grasp): `offset` is where it is held, `gap` that along
+  /// `normal`, which turns with the frame
+  bool held = false;
+  double damping = 0.0;  ///< of one that is held [N s/m]
 };
 
 /// K = -dF/dx_rel and D = -dF/dv_rel of a sample, as step matrices have them; zero where it does not press.
