@@ -34,7 +34,15 @@ void BodySide::start() {
   for (Observer* observer : observers) observer->period(world_, 0.0);
 }
 
+// The switch as it was at the last tick.  Within a period the ticks are ahead of the bodies.
 void BodySide::query() {
+  const std::optional<ToolSpec>& tool = world_.description.tool;
+  if (world_.contact && tool && tool->grasp_switch >= 0 && side_.frame_index >= 0)
+    world_.contact->set_grasp(side_.frame_index, (side_.handle_now.switches >> tool->grasp_switch) & 1U);
+  look();
+}
+
+void BodySide::look() {
   if (!world_.contact) return;
   if (ledger_) ledger_->before_query();
   const bool changed = [&] {
@@ -70,6 +78,7 @@ void BodySide::felt(const TickRecord& tick) {
   side_.handle_now.pose = tick.handle;
   side_.handle_now.twist = tick.handle_twist;
   side_.handle_now.valid = tick.handle_valid;
+  side_.handle_now.switches = tick.switches;
   ++result_.ticks;
   if (buzz_) buzz_->add(tick.device.force);
   if (ledger_) ledger_->tick(tick.time, tick.wanted, tick.handle_twist);
@@ -92,11 +101,11 @@ void BodySide::advance(double t0, double t1, double refresh_s) {
   if (!world_.stepper) return world_.state.set_time(t1);  // a tool with ticks of its own, alone
   const int parts = world_.contact ? whole_number((t1 - t0) / refresh_s) : 1;
   for (int i = 0; i < parts; ++i) {
-    if (i > 0) query();
+    if (i > 0) look();
     const double start = t0 + i * (t1 - t0) / parts,
                  end = i + 1 == parts ? t1 : t0 + (i + 1) * (t1 - t0) / parts;
     for (double t = start; t < end;) {
-      if (t > start) query();
+      if (t > start) look();
       t = next_query(t, end);
       advance_over_changes(t);
       if (!result_.status.ok()) return;

@@ -22,7 +22,8 @@ class BodySide {
 
   /// At t = 0, before the first period.
   void start();
-  /// The slow query; multistep integrators then forget their history.
+  /// The slow query at an exchange, where the tool grasps and lets go as the handle's switch says; multistep
+  /// integrators then forget their history.
   void query();
   /// The contact as the tool feels it for the coming `period_s`.
   ContactRecord linearise(double period_s);
@@ -48,6 +49,7 @@ class BodySide {
   void finish();
 
  private:
+  void look();  ///< the query alone
   void advance_over_changes(double t);
   double next_change() const;
   void change_materials(double time);

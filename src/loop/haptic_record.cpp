@@ -33,6 +33,7 @@ void visit_tick(F&& f, Tick& t) {
   f("length_s", t.length);
   f("record_version", t.record_version);
   f("handle_valid", t.handle_valid);
+  f("switches", t.switches);
   visit_pose(f, "handle", t.handle);
   visit_pair(f, "handle_angular", t.handle_twist.angular, "_rad_s", "handle_linear", t.handle_twist.linear,
              "_m_s");
@@ -96,6 +97,8 @@ void visit_point(F&& f, Row& r) {
   auto& point = r.point;
   f("pair", point.pair);
   f("area_m2", point.area);
+  f("held_stiffness_n_m", point.held_stiffness);
+  f("held_damping_n_s_m", point.held_damping);
   visit_all(f, "offset_m", point.offset);
   visit_all(f, "slide_m", point.slide);
   visit_all(f, "normal", point.normal);
@@ -197,6 +200,7 @@ void HapticRecorder::period(World& world, double t) {
     start.tick.handle = side.handle_now.pose;
     start.tick.handle_twist = side.handle_now.twist;
     start.tick.handle_valid = side.handle_now.valid;
+    start.tick.switches = side.handle_now.switches;
     if (side.passivity) start.passivity = side.passivity->mode();
     flatten(kVisitStart, start, impl_->row);
     impl_->file.append(kStart, impl_->row);

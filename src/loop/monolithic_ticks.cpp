@@ -18,6 +18,12 @@ TickRecord tick_of(const World& world, double t, const dynamics::StateView& stat
   tick.time = t;
   tick.tool = {Quat(q[0], q[1], q[2], q[3]), q.tail<3>()};
   tick.tool_twist = {u.head<3>(), u.tail<3>()};
+  if (const auto& hand = ToolSide::of(world).hand_in_state) {
+    const tool::HandleState handle = tool::hand_motion(state, hand->block_id, hand->hand);
+    tick.handle = handle.pose;
+    tick.handle_twist = handle.twist;
+    tick.switches = hand->model.wanted(t).switches;
+  }
   if (ToolSide::of(world).frame_index >= 0)
     tick.contact = world.contact->frame_wrench(state, ToolSide::of(world).frame_index);
   return tick;

@@ -182,7 +182,7 @@ void Recorder::tick(const TickRecord& tick) {
   const Wrench &sent = tick.device, &wanted = tick.wanted;
   const bool limited = (sent.force - wanted.force).norm() > impl_->force_rounding ||
                        (sent.moment - wanted.moment).norm() > impl_->torque_rounding;
-  impl_->forces->append({tick.time, tick.handle, tick.tool, tick.device, limited});
+  impl_->forces->append({tick.time, tick.handle, tick.tool, tick.device, limited, tick.switches});
 }
 
 }  // namespace palpate::loop

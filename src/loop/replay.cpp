@@ -28,7 +28,7 @@ class RecordedHand : public device::Device {
 
  private:
   static device::HandleSample sample_of(const TickRecord& tick) {
-    return {tick.handle, tick.handle_twist, {}, tick.handle_valid};
+    return {tick.handle, tick.handle_twist, {}, tick.handle_valid, tick.switches};
   }
 
   static device::HandleSample at(const HapticRecord& record, double t) {
@@ -42,11 +42,11 @@ class RecordedHand : public device::Device {
     const double h = after->time - before.time;
     const dynamics::RigidMotion motion = dynamics::motion_between(
         {before.handle, before.handle_twist}, {after->handle, after->handle_twist}, h, (t - before.time) / h);
-    return {motion.pose, motion.twist, {}, after->handle_valid};
+    return {motion.pose, motion.twist, {}, after->handle_valid, before.switches};
   }
 
   static device::HandleSample at_rest(const TickRecord& tick) {
-    return {tick.handle, {}, {}, tick.handle_valid};
+    return {tick.handle, {}, {}, tick.handle_valid, tick.switches};
   }
 
   std::shared_ptr<const HapticRecord> record_;

@@ -124,6 +124,17 @@ void add_jumps(store::Summary& summary, const World& world) {
   }
 }
 
+/// What the tool has grasped.
+void add_grasps(store::Summary& summary, const World& world) {
+  if (!world.contact) return;
+  const contact::GraspCounts counts = world.contact->grasp_counts();
+  if (counts.closed + counts.empty == 0) return;
+  summary.section("grasps").values = {{"closed", static_cast<long long>(counts.closed)},
+                                      {"closed_on_nothing", static_cast<long long>(counts.empty)},
+                                      {"largest_area_m2", counts.largest_area},
+                                      {"area_at_the_end_m2", counts.area}};
+}
+
 /// What made the images of each contact, and on which device.
 void add_images(store::Summary& summary, const World& world) {
   if (!world.contact) return;
@@ -244,6 +255,7 @@ store::Summary summarise(const World& world, const RunResult& result, double ass
   add_energy(summary, result);
   add_real_time(summary, result);
   add_device(summary, result);
+  add_grasps(summary, world);
   add_jumps(summary, world);
   add_images(summary, world);
   add_pruning(summary, world);

@@ -79,7 +79,10 @@ dynamics::StepResult TickSide::tick(double t, double h, const dynamics::Linearis
 }
 
 void TickSide::feel(TickRecord& tick) {
-  handle_ = side_.handle->sample(tick.time);
+  if (side_.hand_in_state)
+    handle_ = {tick.handle, tick.handle_twist, {}, true, tick.switches};
+  else
+    handle_ = side_.handle->sample(tick.time);
   feel_at(tick);
 }
 
@@ -87,13 +90,14 @@ void TickSide::feel_at(TickRecord& tick) {
   tick.handle = handle_.pose;
   tick.handle_twist = handle_.twist;
   tick.handle_valid = handle_.valid;
+  tick.switches = handle_.switches;
   tick.wanted = tool::coupling_on_hand(spec_, {tick.tool, tick.tool_twist}, {handle_.pose, handle_.twist});
   tick.device = side_.limiter->limit(tick.time, tick.wanted, handle_.valid);
   if (side_.passivity)
     tick.device = side_.passivity->apply(tick.time, tick.handle, tick.device, handle_.valid);
   live_ = true;
   time_ = tick.time;
-  side_.handle->feedback(tick.time, tick.device);
+  if (!side_.hand_in_state) side_.handle->feedback(tick.time, tick.device);
 }
 
 void TickSide::end() {

@@ -27,7 +27,8 @@ class TickSide {
   dynamics::LinearisedContact contact(double t, double h, const ContactRecord& record);
   /// The tool goes on by h to t under coupling and that contact; the wrench goes to the device.
   dynamics::StepResult tick(double t, double h, const dynamics::LinearisedContact& contact, TickRecord& out);
-  /// The wrench on the hand for `tick`'s time and tool, to the device.
+  /// The wrench on the hand for `tick`'s time and tool, to the device; a hand that is a part of the State
+  /// stands in `tick`.
   void feel(TickRecord& tick);
   /// No wrench on the hand any more.
   void end();

@@ -1,8 +1,11 @@
 #pragma once
-#include "palpate/device/device.h"
+#include <optional>
+
+#include "palpate/device/hand_model.h"
 #include "palpate/device/limiter.h"
 #include "palpate/device/passivity.h"
 #include "palpate/loop/world.h"
+#include "palpate/tool/hand_block.h"
 #include "palpate/tool/tool.h"
 #include "touch_reduction.h"
 
@@ -24,6 +27,13 @@ struct ToolSide {
   /// monolithic: its block of the State; else -1
   int block_id = -1;
   std::unique_ptr<device::Device> handle;
+  /// monolithic, of a simulated hand: its block of the State, in the device's place
+  struct HandInState {
+    int block_id = -1;
+    tool::HandBlock hand;
+    device::HandModel model;
+  };
+  std::optional<HandInState> hand_in_state;
   device::HandleSample handle_now;  ///< at the last tick
   std::unique_ptr<device::WrenchLimiter> limiter;
   std::unique_ptr<device::PassivityController> passivity;  ///< null where it is off

@@ -62,22 +62,26 @@ auto moved_by(const TouchSample& sample, const auto& x) {
   return out;
 }
 
-bool presses(const TouchSample& sample) { return sample.gap < 0.0; }
+bool presses(const TouchSample& sample) { return sample.held || sample.gap < 0.0; }
 
 bool names_tool(const ContactSpec& contact) { return contact.first == "tool" || contact.second == "tool"; }
 
 /// By how much each sample is pressed at the period's end if all goes on as it does [m]; where that is
 /// nowhere, of those that are nearest then by how much less they are apart than a tenth of the way to the
-/// farthest.
+/// farthest.  What is held has none: it presses now.
 VecX coming_depths(const std::vector<TouchSample>& samples, const Twist& tool, const Mat3& R, double H) {
-  VecX gaps(static_cast<Eigen::Index>(samples.size()));
+  VecX gaps = VecX::Constant(static_cast<Eigen::Index>(samples.size()), HUGE_VAL);
+  double nearest = HUGE_VAL, farthest = -HUGE_VAL;
   for (std::size_t j = 0; j < samples.size(); ++j) {
     const TouchSample& s = samples[j];
+    if (s.held) continue;
     const Vec3 v = tool.at(R * s.offset + s.slide) - s.velocity;
-    gaps[static_cast<Eigen::Index>(j)] = s.gap + H * s.normal.dot(v);
+    const double gap = gaps[static_cast<Eigen::Index>(j)] = s.gap + H * s.normal.dot(v);
+    nearest = std::min(nearest, gap);
+    farthest = std::max(farthest, gap);
   }
-  const double nearest = gaps.minCoeff(),
-               reach = nearest < 0.0 ? 0.0 : nearest + 0.1 * (gaps.maxCoeff() - nearest);
+  if (nearest > farthest) return VecX::Zero(gaps.size());
+  const double reach = nearest < 0.0 ? 0.0 : nearest + 0.1 * (farthest - nearest);
   return (reach - gaps.array()).cwiseMax(0.0);
 }
 
@@ -103,9 +107,11 @@ MatX load_patterns(const World& world, const std::vector<TouchSample>& samples, 
     const double depth = depths[static_cast<Eigen::Index>(j)];
     Mat36 Z;
     Z << -cross_matrix(R * s.offset + s.slide), Mat3::Identity();
-    const Mat3 nn = s.normal * s.normal.transpose();
+    // what is held is so across the normal, and along it where nothing presses
+    const Mat3 along = s.normal * s.normal.transpose(),
+               nn = !s.held ? along : Mat3(Mat3::Identity() - (s.gap < 0.0 ? along : Mat3(Mat3::Zero())));
     Eigen::Matrix<double, 3, 12> load;
-    load << s.stiffness * nn * Z, s.stiffness * (Mat3::Identity() - nn) * Z;
+    load << s.stiffness * nn * Z, s.stiffness * (Mat3::Identity() - along) * Z * (s.held ? 0.0 : 1.0);
     for (std::size_t k = 0; k < static_cast<std::size_t>(s.count); ++k) {
       const auto at = 3 * s.node[k];
       if (presses(s)) all.middleRows<3>(at) += s.weight[k] * load.leftCols(count);

@@ -137,6 +137,18 @@ void check_friction(const Document& doc, const std::string& key, const std::stri
          "friction_tangent means nothing where friction = 0; remove it, or set friction");
 }
 
+void check_grasp(const Document& doc, const Description& d) {
+  if (!d.tool || d.tool->grasp_switch < 0) return;
+  // a body stands before the tool
+  if (std::none_of(d.contacts.begin(), d.contacts.end(),
+                   [](const ContactSpec& c) { return c.second == "tool"; }))
+    refuse(
+        location(doc, "tool.grasp_switch"), "tool",
+        fmt::format("grasp_switch = {}, but no [[contact]] is between the tool and a soft body, so there is "
+                    "nothing to grasp; add one, or remove the key",
+                    d.tool->grasp_switch));
+}
+
 }  // namespace
 
 void check_contacts(const Document& doc, Description& d) {
@@ -157,6 +169,7 @@ void check_contacts(const Document& doc, Description& d) {
     if (!seen.emplace(c.first, c.second).second)
       refuse(location(doc, key + ".between"), where, "this pair stands here twice; remove one [[contact]]");
   }
+  check_grasp(doc, d);
 }
 
 }  // namespace palpate::scene

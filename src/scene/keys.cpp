@@ -118,6 +118,8 @@ const KeyTable<ToolSpec>& tool_keys() {
       number("tick_s", &ToolSpec::tick_s, ToolRanges::tick_s,
              "period of the tool's own steps and of the force on the hand"),
       text("integrator", &ToolSpec::integrator, {}, "of the tool's own steps: palpate list tool-integrators"),
+      integer("grasp_switch", &ToolSpec::grasp_switch, ToolRanges::grasp_switch,
+              "switch of the handle that grasps what presses on the tool; -1: none"),
   };
   return keys;
 }

@@ -56,6 +56,9 @@ const Broken kCases[] = {
      "contact between \"ball\" and \"flor\": nothing is called \"flor\" (did you mean \"floor\"?)"},
     {"contact-without-tool", "9:12",
      "contact between \"tool\" and \"ball\": \"tool\" is named, but the scene has no [tool]"},
+    {"grasp-without-contact", "6:16",
+     "tool: grasp_switch = 0, but no [[contact]] is between the tool and a soft body, so there is nothing to "
+     "grasp; add one, or remove the key"},
     {"device-without-tool", "8:1",
      "device: a device needs something to move: add [tool], or remove [device]"},
     {"exchange-period", "9:21",

@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -24,6 +25,7 @@ struct TickRecord {
   /// on the hand, as sent to the motors: behind the limit and the passivity controller
   Wrench device;
   bool handle_valid = true;          ///< whether the handle's pose was
+  std::uint32_t switches = 0;        ///< of the handle: bit i is 1 where switch i is pressed
   std::uint64_t record_version = 0;  ///< of the contact record that this tick used; 0: none
 };
 

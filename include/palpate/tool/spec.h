@@ -29,12 +29,15 @@ struct ToolSpec {
   double tick_s = 1e-3;
   /// integrator of the tool's own ticks: see `palpate list tool-integrators`
   std::string integrator = "linearly-implicit-euler";
+  /// of the handle: while it is pressed the tool holds what pressed on it when it closed; -1: none
+  int grasp_switch = -1;
 };
 
 /// What they may be: checked by the loader of scenes and by the tool.
 struct ToolRanges {
   static constexpr Range radius_m = Range::positive();
   static constexpr Range coupling = Range::at_least(0.0);  ///< each of its four numbers
+  static constexpr Range grasp_switch = Range::closed(-1, 31, "-1 grasps nothing");
   static constexpr Range tick_s = Range::open(0.0, 0.1, "a haptic device asks for 0.001");
 };
 

@@ -1,0 +1,256 @@
+// The tool holds what it pressed while a switch of the handle is closed: it carries a weight, pulls a body
+// that is held elsewhere, and lets go.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "loop/linearise.h"
+#include "loop/small_scenes.h"
+#include "loop/tool_side.h"
+#include "palpate/contact/contact_force.h"
+#include "palpate/loop/haptic_record.h"
+#include "palpate/loop/replay.h"
+#include "palpate/loop/run.h"
+#include "palpate/tool/tool.h"
+
+namespace {
+
+using namespace palpate;
+
+struct Ticks : loop::Observer {
+  void tick(const loop::TickRecord& tick) override { all.push_back(tick); }
+  std::vector<loop::TickRecord> all;
+};
+
+std::vector<loop::TickRecord> ticks_of(loop::World& world) {
+  Ticks ticks;
+  loop::RunOptions options;
+  options.observers = {&ticks};
+  const loop::RunResult result = loop::run(world, options);
+  EXPECT_TRUE(result.status.ok()) << result.status.message;
+  return ticks.all;
+}
+
+std::vector<loop::TickRecord> ticks_of(const scene::Description& d) { return ticks_of(*loop::assemble(d)); }
+
+const loop::TickRecord& at(const std::vector<loop::TickRecord>& ticks, double t) {
+  for (const loop::TickRecord& tick : ticks)
+    if (tick.time >= t - 1e-9) return tick;
+  return ticks.back();
+}
+
+void press_switch(scene::Description& d, double start, double duration) {
+  d.tool->grasp_switch = 2;
+  d.device->presses = {{2, start, duration}};
+}
+
+/// A block in the air, a millimetre in the tool, which holds it from the start.
+scene::Description hanging_block() {
+  scene::Description d = small_scenes::pressed_block(0.001);
+  d.duration_s = 1.5;
+  d.gravity_m_s2 = Vec3(0, 0, -9.81);
+  d.bodies[0].attachments.clear();
+  d.bodies[0].youngs_modulus_pa = 1e5;
+  d.bodies[0].mass_damping_per_s = 20.0;  // it comes to rest
+  d.bodies[0].mesh.element_size_m = 0.005;
+  d.tool->coupling.rotational_stiffness_n_m_rad = 1.0;
+  d.tool->coupling.rotational_damping_n_m_s_rad = 5e-3;
+  d.device->max_force_n = 10.0;
+  press_switch(d, 0.0, 1.2);
+  return d;
+}
+
+double mass_of(const scene::Description& d) { return d.bodies[0].density_kg_m3 * 0.04 * 0.04 * 0.02; }
+
+// What hangs still weighs m g on the hand, and turns it by m g times the way to its centre; let go, it falls.
+TEST(Grasp, WhatHangsHasItsWeight) {
+  for (const char* linearisation : {"points", "condensed", "frozen", "monolithic"}) {
+    scene::Description d = hanging_block();
+    if (linearisation == std::string("monolithic"))
+      d.exchange.scheme = linearisation;
+    else
+      d.exchange.linearisation = linearisation;
+    const auto world = loop::assemble(d);
+    const auto ticks = ticks_of(*world);
+    const double weight = 9.81 * mass_of(d);
+    const loop::TickRecord& still = at(ticks, 1.19);
+    EXPECT_NEAR(still.contact.force.z(), -weight, 1e-4 * weight) << linearisation;
+    EXPECT_LE(still.contact.force.head<2>().norm(), 1e-3 * weight) << linearisation;
+    EXPECT_NEAR(still.device.force.z(), -weight, 1e-3 * weight) << linearisation;
+    EXPECT_EQ(world->contact->grasp_counts().closed, 1);
+    EXPECT_EQ(world->contact->grasp_counts().empty, 0);
+    EXPECT_EQ(world->contact->grasp_counts().points, 0);
+    // no later than two periods after the switch
+    EXPECT_EQ(at(ticks, 1.225).contact.force.norm(), 0.0) << linearisation;
+    const Points now = world->positions(world->bodies[0]);
+    const double t = d.duration_s - 1.21;  // it falls against the drag
+    const double drag = d.bodies[0].mass_damping_per_s,
+                 fallen = 9.81 * (t / drag - (1 - std::exp(-drag * t)) / (drag * drag));
+    EXPECT_NEAR(now.row(2).mean(), still.tool.translation.z() - 0.024 - fallen, 0.01) << linearisation;
+  }
+}
+
+/// The block of pressed_block, its lower face held, that the tool presses, grasps at 0.1 s, pulls and turns.
+/// @param waits  so much longer before it grasps
+scene::Description pulled_block(double waits = 0.0) {
+  scene::Description d = small_scenes::pressed_block(0.0);
+  d.duration_s = 0.5 + waits;
+  d.bodies[0].mesh.element_size_m = 0.005;
+  d.contacts[0].damping_pa_s_m = 1e4;
+  const KeyframeSpec start = d.device->keyframes.front();
+  const auto key = [&](double t, double z, const Vec3& turn) {
+    KeyframeSpec k = start;
+    k.time_s = t;
+    k.position_m.z() += z;
+    k.rotation_vector_rad = turn;
+    d.device->keyframes.push_back(k);
+  };
+  key(0.08, -0.004, Vec3::Zero());
+  key(0.12 + waits, -0.004, Vec3::Zero());
+  key(0.35 + waits, 0.006, Vec3(0.1, -0.2, 0.3));
+  d.exchange.exchange_period_s = d.exchange.contact_refresh_s = 0.005;
+  d.integrator.step_s = 0.0025;
+  press_switch(d, 0.1 + waits, 0.0);
+  return d;
+}
+
+double pull(const std::vector<loop::TickRecord>& ticks) { return -ticks.back().contact.force.z(); }
+
+TEST(Grasp, PullsWithTheSwitchAlone) {
+  scene::Description d = pulled_block();
+  const double held = pull(ticks_of(d));
+  EXPECT_GT(held, 0.3);
+  d.device->presses.clear();
+  EXPECT_EQ(pull(ticks_of(d)), 0.0);
+  d.device->presses = {{1, 0.1, 0.0}};  // another switch
+  EXPECT_EQ(pull(ticks_of(d)), 0.0);
+  // closed before the tool is there, it has closed on nothing
+  d.device->presses = {{2, 0.0, 0.0}};
+  const auto world = loop::assemble(d);
+  EXPECT_EQ(pull(ticks_of(*world)), 0.0);
+  EXPECT_EQ(world->contact->grasp_counts().empty, 1);
+  EXPECT_EQ(world->contact->grasp_counts().closed, 0);
+}
+
+struct Errors {
+  double force = 0.0, torque = 0.0;  ///< RMS over the peak
+};
+
+Errors between(const std::vector<loop::TickRecord>& a, const std::vector<loop::TickRecord>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  Errors out;
+  double force = 0.0, torque = 0.0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    out.force += (a[i].device.force - b[i].device.force).squaredNorm();
+    out.torque += (a[i].device.moment - b[i].device.moment).squaredNorm();
+    force = std::max(force, b[i].device.force.norm());
+    torque = std::max(torque, b[i].device.moment.norm());
+  }
+  const auto n = static_cast<double>(b.size());
+  return {std::sqrt(out.force / n) / force, std::sqrt(out.torque / n) / torque};
+}
+
+// Tool and block as one system feel the same; what an exchange leaves out is small.
+TEST(Grasp, IsNearToOneSystem) {
+  scene::Description one = pulled_block();
+  one.exchange.scheme = "monolithic";
+  const auto reference = ticks_of(one);
+  EXPECT_GT(pull(reference), 0.3);
+  for (const char* linearisation : {"points", "condensed"}) {
+    scene::Description d = pulled_block();
+    d.exchange.linearisation = linearisation;
+    const Errors errors = between(ticks_of(d), reference);
+    EXPECT_LE(errors.force, 0.02) << linearisation;
+    EXPECT_LE(errors.torque, 0.02) << linearisation;
+  }
+}
+
+TEST(Grasp, IsRetracedBitForBit) {
+  const scene::Description d = pulled_block();
+  const std::string path = (std::filesystem::path(::testing::TempDir()) / "grasp.h5").string();
+  {
+    loop::HapticRecorder recorder(path);
+    const auto world = loop::assemble(d);
+    loop::RunOptions options;
+    options.observers = {&recorder};
+    ASSERT_TRUE(loop::run(*world, options).status.ok());
+  }
+  const loop::HapticRecord record = loop::read_haptic_record(path);
+  const auto again = loop::retrace(d, record);
+  ASSERT_EQ(again.size(), record.ticks.size());
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    ASSERT_EQ(again[i].device.force, record.ticks[i].device.force) << i;
+    ASSERT_EQ(again[i].contact.moment, record.ticks[i].contact.moment) << i;
+    ASSERT_EQ(again[i].switches, record.ticks[i].switches) << i;
+  }
+  EXPECT_GT(pull(again), 0.3);
+  EXPECT_EQ(record.ticks.front().switches, 0u);
+  EXPECT_EQ(record.ticks.back().switches, 4u);
+  // the recorded hand presses the same switch
+  Ticks felt;
+  const auto world = loop::assemble(d, loop::recorded_hand(record));
+  loop::RunOptions options;
+  options.observers = {&felt};
+  ASSERT_TRUE(loop::run(*world, options).status.ok());
+  EXPECT_EQ(pull(felt.all), pull(record.ticks));
+}
+
+// In real time the bodies learn of the switch a period later, and hold all the same.
+TEST(Grasp, InRealTime) {
+  const scene::Description d = pulled_block(0.5);
+  const auto world = loop::assemble(d);
+  Ticks ticks;
+  loop::RunOptions options;
+  options.real_time = true;
+  options.observers = {&ticks};
+  ASSERT_TRUE(loop::run(*world, options).status.ok());
+  if (world->contact->grasp_counts().closed == 0) GTEST_SKIP() << "the bodies missed the time of pressing";
+  EXPECT_NEAR(pull(ticks.all), pull(ticks_of(d)), 0.1);
+}
+
+// A record's first tick, as long as the period, is the condensed answer (touch_reduction_test.cpp), with what
+// is held as with what presses: pulled off, where nothing but the grasp acts.
+TEST(Grasp, ModesAnswerWhatIsHeld) {
+  constexpr double kPeriod = 0.01;
+  const auto record = [&](const std::string& linearisation, double pull) {
+    scene::Description d = small_scenes::pressed_block(0.002);
+    d.bodies[0].mesh.element_size_m = 0.005;
+    d.contacts[0].damping_pa_s_m = 2e4;
+    d.exchange.linearisation = linearisation;
+    d.exchange.linearisation_error = 0.0;
+    d.tool->tick_s = kPeriod;
+    auto world = loop::assemble(d);
+    loop::ToolSide& side = loop::ToolSide::of(*world);
+    side.trajectory->append(0.0, side.tool->pose(), {});
+    world->contact->set_grasp(side.frame_index, true);
+    world->contact->refresh(world->state.view());
+    EXPECT_GT(world->contact->grasp_counts().points, 3);
+    Pose away = side.tool->pose();
+    away.translation += Vec3(1e-4, 0.0, pull);
+    side.trajectory->clear();
+    side.trajectory->append(0.0, away, {});
+    side.known.pose = away;
+    side.tool->set_state(0.0, away, {});
+    world->contact->refresh(world->state.view());
+    long fallbacks = 0;
+    const loop::ContactRecord out = loop::linearise_contact(*world, 1, kPeriod, fallbacks);
+    EXPECT_EQ(fallbacks, 0);
+    if (linearisation == "condensed") return out.linear;
+    contact::TouchTicks ticks(d.contacts);
+    ticks.adopt(out.touch);
+    return ticks.linearise(kPeriod, kPeriod, {away, {}});
+  };
+  using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  for (const double pull : {0.0, 0.004}) {  // as it pressed, and 2 mm off
+    const auto exact = record("condensed", pull), points = record("points", pull);
+    const Eigen::Map<const Vec6> F(exact.F0.data()), F_points(points.F0.data());
+    const Mat6 J = Eigen::Map<const RowMajor6>(exact.J.data()),
+               J_points = Eigen::Map<const RowMajor6>(points.J.data());
+    EXPECT_EQ(F[5]<0.0, pull> 0.0);
+    EXPECT_LE((F_points - F).tail(3).norm(), 1e-7 * F.tail(3).norm());
+    const auto of_force = [](const Mat6& m) { return Mat3(m.bottomRightCorner(3, 3)); };
+    EXPECT_LE((of_force(J_points) - of_force(J)).norm(), 1e-7 * of_force(J).norm());
+  }
+}
+
+}  // namespace
