@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <latch>
 #include <thread>
 
 #include "body_side.h"
@@ -34,7 +35,7 @@ constexpr int kStretched = 4;
 
 /// Ticks that the bodies' thread may leave unread: 16 s at 1 kHz.
 constexpr std::size_t kQueue = 1 << 14;
-/// From the start of the threads to the first tick [ns].
+/// From when both threads are ready to the first tick [ns].
 constexpr std::int64_t kLead = 20'000'000;
 
 struct TimedTick {
@@ -87,8 +88,8 @@ class RealTime {
     bodies_.restart_path();
     bodies_.query();
     records_.publish(bodies_.linearise(bodies_.period()));
-    start_ns_ = now_ns() + kLead;
     std::thread thread([this] { tick_to_the_end(); });
+    ready_.wait();
     try {
       while (done_ < count_ && one_step()) {}
     } catch (...) {
@@ -110,7 +111,10 @@ class RealTime {
   // --- the ticks' thread: no memory is taken, nothing waited for but the clock
 
   void tick_to_the_end() {
+    // locking all memory takes a while, in which nobody else gets any: the clock starts behind it
     claim_real_time(out_);
+    start_ns_ = now_ns() + kLead;
+    ready_.count_down();
     try {
       tick_by_the_clock();
     } catch (...) { failure_ = std::current_exception(); }
@@ -219,6 +223,7 @@ class RealTime {
   dynamics::StepResult tick_status_;  ///< of the ticks' thread; read when it is over
   std::atomic<long> ticked_{0}, unrecorded_{0};
   std::atomic<bool> quit_{false}, over_{false};
+  std::latch ready_{1};         ///< `start_ns_` is set
   std::exception_ptr failure_;  ///< of the ticks' thread
 };
 

@@ -137,6 +137,11 @@ void add_haptic_needs(const Description& d, std::vector<Need>& out) {
                  : monolithic ? one_system
                  : !touched   ? "no contact of a soft body with a tool"
                               : fmt::format("linearisation \"{}\"", d.exchange.linearisation)});
+  const bool grasp = d.tool && d.tool->grasp_switch >= 0;
+  out.push_back({"grasp", grasp,
+                 grasp    ? fmt::format("tool.grasp_switch = {}", d.tool->grasp_switch)
+                 : d.tool ? "no tool.grasp_switch"
+                          : "no [tool]"});
   out.push_back(
       {"exchange thread", false, "time is virtual: everything runs one after the other in one thread"});
 }
