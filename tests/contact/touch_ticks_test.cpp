@@ -224,6 +224,34 @@ TEST(TouchTicks, HeldPointsAreLinearInTheToolsPose) {
   EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2.0, 0.1);
 }
 
+// Bodies that are pushed within a tick: the wrench is that of where they come to, the turned arms' moment
+// too, up to the second order in the way that they go.
+TEST(TouchTicks, HeldPointsAreWhereTheBodiesCome) {
+  std::vector<double> errors;
+  for (const double push : {1.0, 0.5, 0.25}) {
+    std::mt19937 random(6);
+    TouchModel model = any_model(random);
+    for (std::size_t k = 0; k < 7; ++k)
+      model.force[k] = push * (k % 2 ? 50.0 : -40.0), model.force_rate[k] = 0;
+    for (auto& point : model.point) {
+      point.velocity = {};
+      point.offset[2] -= 0.05;  // pressed or pulled, each stays as it is
+      point.held_stiffness = 10.0;
+    }
+    contact::TouchTicks ticks({law()});
+    ticks.adopt(model);
+    const double h = 1e-3, none = 1e-12;
+    const RigidMotion tool{};
+    const auto before = ticks.linearise(h, h, tool);
+    ticks.follow(tool);
+    const auto after = ticks.linearise(h + none, none, tool);
+    errors.push_back(
+        (Eigen::Map<const Vec6>(before.F0.data()) - Eigen::Map<const Vec6>(after.F0.data())).norm());
+  }
+  EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2.0, 0.2);
+  EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2.0, 0.2);
+}
+
 // A tool that does not turn meets a free body, with friction: whatever presses where, the tool loses what the
 // body gains, each tick.
 void expect_momentum_kept(bool grasped) {
