@@ -93,8 +93,10 @@ class Scenes(unittest.TestCase):
         return summary["device"], rows
 
     def check(self, scene, duration_s=10.0, held_s=5.0, more=(), least_j=LEAST_ENERGY_J, buzz_n=BUZZ_N,
-              share=CONTROL_SHARE):
-        """Observed, then controlled.  @param held_s  from here on the hand holds"""
+              share=CONTROL_SHARE, pressing_n=0.05):
+        """Observed, then controlled.
+        @param held_s      from here on the hand holds
+        @param pressing_n  it presses with more than that at the end: else nothing could buzz"""
         device, rows = self.run_scene(scene, duration_s, "observe", more)
         tick_s = (rows[-1]["time_s"] - rows[0]["time_s"]) / (len(rows) - 1)
         held = buzz(rows, tick_s, held_s)
@@ -112,6 +114,8 @@ class Scenes(unittest.TestCase):
             with open(file, "a") as out:
                 out.write(line + "\n")
         self.assertGreater(device["port_work_j"], 1e-5, "the hand felt something")
+        if pressing_n is not None:
+            self.assertGreater(pressing, pressing_n, "it holds something")
         with self.subTest("passive"):
             self.assertGreaterEqual(figures["least_energy_j"], least_j)
         with self.subTest("buzz"):
@@ -182,10 +186,12 @@ class Slow(Scenes):
         self.check("scrape-pumpkin")
 
     def test_press_stack(self):
-        self.check("press-stack")
+        # held from the second keyframe on: the others are left out
+        self.check("press-stack", more=("device.keyframe=[{time_s=0.0, position_m=[0,0,0.081]}, "
+                                        "{time_s=0.15, position_m=[0,0,0.071]}]",))
 
     def test_squeeze_ball(self):
-        self.check("squeeze-ball")
+        self.check("squeeze-ball", pressing_n=None)  # it lets go
 
     def test_two_heads(self):
         self.run_scene("two-heads", 10.0, "observe")
