@@ -46,7 +46,7 @@ int replay(const ReplayArguments& arguments);
 
 struct MovieArguments {
   std::string run;                     ///< folder of a run
-  std::string file;                    ///< empty: movie.webm in it
+  std::string file;                    ///< empty: movie.png in it
   double fps = 0.0, slow = 1.0;        ///< as it is played; 0: 25, or what was recorded
   std::string size;                    ///< "640x480"; empty: the default
   std::string shade = "displacement";  ///< or "stress"

@@ -117,7 +117,7 @@ int movie(const MovieArguments& arguments, Undelivered& missing) {
   const Shade shade = check_picture(arguments.shade, description);
   const FrameSize size = arguments.size.empty() ? FrameSize{} : frame_size(arguments.size);
   const double between_s = between(reader.times_s(), arguments.fps, arguments.slow, arguments.run);
-  const std::string path = arguments.file.empty() ? (folder / "movie.webm").string() : arguments.file;
+  const std::string path = arguments.file.empty() ? (folder / "movie.png").string() : arguments.file;
   check_movie(path);
   const auto world = loop::assemble(description);
   const States states(states_file, *world, reader);

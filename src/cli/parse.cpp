@@ -402,7 +402,7 @@ void add_movie(CLI::App& app, Invocation& invocation) {
       ->required()
       ->type_name("DIR");
   command
-      ->add_option("-o,--output", arguments->file, "the movie (.webm, .png or .apng); default DIR/movie.webm")
+      ->add_option("-o,--output", arguments->file, "the movie (.webm, .png or .apng); default DIR/movie.png")
       ->type_name("FILE");
   command->add_option("--fps", arguments->fps, "frames a second as it is played; default 25 at most")
       ->type_name("N")

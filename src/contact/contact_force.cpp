@@ -54,7 +54,7 @@ const std::vector<int>& ContactForce::Impl::rows_of_frames() {
 }
 
 void ContactForce::Impl::add_single_forces(const dynamics::StateView& state, VecX& f) {
-  bonds.add_force(state, frame_states, rows_of_frames(), f);
+  if (!bonds.empty()) bonds.add_force(state, frame_states, rows_of_frames(), f);
   const auto row = [&](const SurfacePoint& p) {
     return p.frame >= 0 ? frame_states[static_cast<std::size_t>(p.frame)].u_offset : -1;
   };

@@ -138,6 +138,8 @@ class Frames(Movie):
         self.good(*self.press(0.05, "--movie", "a.png", "-o", "here"))
         self.good("movie", "here", *SMALL, "--shade", "stress", "--slow", "4", "-o", "b.png")
         self.assertEqual(Animation(self.folder / "b.png").delays, [0.04] * 5)
+        self.good("movie", "here", *SMALL, PATH="/nowhere")  # what it makes unasked takes no other program
+        self.assertEqual(Animation(self.folder / "here/movie.png").delays, [0.04] * 2)
         self.assertIn("a run does not record it", self.refused("movie", "here", "--shade", "penetration"))
         self.assertIn("a state every 0.01 s", self.refused("movie", "here", "--fps", "200", "-o", "c.png"))
         self.assertIn("run.vtkhdf: no such file", self.refused("movie", "nowhere"))

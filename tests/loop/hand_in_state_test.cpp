@@ -73,8 +73,10 @@ TEST(HandInState, YieldsToTheForce) {
 }
 
 // Without bodies the ticks' hand tends to it with the tick: the hold of the force is of first order.
-TEST(HandInState, TheLoopOfTicksTendsToIt) {
+/// @param friction_n  Coulomb's, of the device
+void expect_order_one(double friction_n) {
   scene::Description d = yielding();
+  d.device->device_friction_n = friction_n;
   d.bodies.clear();
   d.contacts.clear();
   scene::Description one = d;
@@ -99,6 +101,11 @@ TEST(HandInState, TheLoopOfTicksTendsToIt) {
   EXPECT_GT(errors[0], 1e-6);
   for (std::size_t i = 1; i < errors.size(); ++i)
     EXPECT_NEAR(std::log2(errors[i - 1] / errors[i]), 1.0, 0.2) << errors[i];
+}
+
+TEST(HandInState, TheLoopOfTicksTendsToIt) {
+  expect_order_one(0.0);
+  expect_order_one(0.26);
 }
 
 // With bodies, what is left at ticks of 1 ms is the exchange.
