@@ -160,7 +160,8 @@ bool leaves_out_friction(const World& world) {
   return entry != registry.end() && entry->traits.linearised;
 }
 
-std::unique_ptr<contact::SampleSource> obstacle_source(World& world, const ContactSpec& spec,
+/// @param force  takes the obstacle's frame
+std::unique_ptr<contact::SampleSource> obstacle_source(contact::ContactForce& force, const ContactSpec& spec,
                                                        contact::ContactSide side, double candidate_gap,
                                                        double look_ahead, const ObstacleSpec& obstacle) {
   if (spec.method != "analytic" && spec.method != "auto")
@@ -168,36 +169,54 @@ std::unique_ptr<contact::SampleSource> obstacle_source(World& world, const Conta
          obstacle.name, obstacle.type);
   const contact::ObstacleEntry& entry = contact::obstacle_entry(obstacle);
   auto motion = contact::fixed_frame();
-  const int frame = world.contact->add_frame(motion);
+  const int frame = force.add_frame(motion);
   return entry.make_source(std::move(side), frame, std::move(motion), contact::obstacle_shape(obstacle),
                            candidate_gap, look_ahead);
 }
 
 std::unique_ptr<contact::SampleSource> obstacle_source(World& world, Pair pair,
                                                        const ObstacleSpec& obstacle) {
-  return obstacle_source(world, pair.spec, std::move(pair.surface), pair.candidate_gap, pair.look_ahead,
-                         obstacle);
+  return obstacle_source(*world.contact, pair.spec, std::move(pair.surface), pair.candidate_gap,
+                         pair.look_ahead, obstacle);
 }
 
-/// Contact of the tool with an obstacle.  The tool's ticks run over the whole exchange period before contact
-/// is looked for again.
-std::unique_ptr<contact::SampleSource> tool_on_obstacle(World& world, const ContactSpec& spec,
-                                                        const ObstacleSpec& obstacle) {
+/// How the tool stands in a contact.
+struct ToolInContact {
+  contact::ContactForce& force;
+  int frame;
+  std::shared_ptr<contact::MovingFrame> motion;
+  double look_ahead;  ///< time to the next query [s]
+};
+
+std::unique_ptr<contact::SampleSource> tool_on_obstacle(const World& world, const ContactSpec& spec,
+                                                        const ObstacleSpec& obstacle,
+                                                        const ToolInContact& in) {
   const ToolSpec& tool = *world.description.tool;
-  const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world);
-  ToolSide& side = ToolSide::of(world);
-  side.meets_obstacles = true;
-  const scene::CosimulationSpec& exchange = world.description.exchange;
-  const double look_ahead = side.trajectory ? exchange.exchange_period_s : exchange.contact_refresh_s;
   if (tool.shape == "sphere" && spec.spring == "per_point")
     fail("contact tool - {}: spring = \"per_point\" is for vertices, and a sphere has none", obstacle.name);
-  if (tool.shape == "sphere")
-    return obstacle_source(world, spec,
-                           contact::FrameBall{tool.radius_m, Vec3::Zero(), side.frame_index, motion},
-                           spec.candidate_gap_m, look_ahead, obstacle);
-  return obstacle_source(world, spec,
-                         contact::FrameSurface{tool_surface(tool, world.folder), side.frame_index, motion},
-                         spec.candidate_gap_m, look_ahead, obstacle);
+  contact::ContactSide side = [&]() -> contact::ContactSide {
+    if (tool.shape == "sphere") return contact::FrameBall{tool.radius_m, Vec3::Zero(), in.frame, in.motion};
+    return contact::FrameSurface{tool_surface(tool, world.folder), in.frame, in.motion};
+  }();
+  return obstacle_source(in.force, spec, std::move(side), spec.candidate_gap_m, in.look_ahead, obstacle);
+}
+
+/// Contact of the tool with an obstacle.  A tool of ticks feels one of its own; what the bodies' side knows
+/// of it, along the path that the tool went, is for energies and pictures.
+std::unique_ptr<contact::SampleSource> tool_on_obstacle(World& world, const ContactSpec& spec,
+                                                        const ObstacleSpec& obstacle) {
+  const std::shared_ptr<contact::MovingFrame> motion = tool_motion(world);
+  ToolSide& side = ToolSide::of(world);
+  const scene::CosimulationSpec& exchange = world.description.exchange;
+  const double look_ahead = side.trajectory ? exchange.exchange_period_s : exchange.contact_refresh_s;
+  if (side.trajectory) {
+    if (!side.obstacles) side.obstacles = std::make_unique<ObstacleTouch>(look_ahead);
+    ObstacleTouch& own = *side.obstacles;
+    own.contact().add_pair(
+        tool_on_obstacle(world, spec, obstacle, {own.contact(), own.frame(), own.motion(), look_ahead}),
+        spec);
+  }
+  return tool_on_obstacle(world, spec, obstacle, {*world.contact, side.frame_index, motion, look_ahead});
 }
 
 /// @pre the names are in their order (scene::order_sides)

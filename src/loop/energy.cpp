@@ -67,21 +67,27 @@ double EnergyLedger::dissipated_power() const {
 
 void EnergyLedger::take_stored() {
   const dynamics::StateView view = world_.state.view();
-  const ToolSide& side = ToolSide::of(world_);
+  ToolSide& side = ToolSide::of(world_);
   balance_.kinetic = view.layout->blocks.empty() ? 0.0 : world_.system.kinetic_energy(view);
   balance_.elastic = elastic_energy();
   balance_.contact = contact_energy();
   balance_.other =
       world_.system.potential_energy(view) - balance_.elastic - balance_.contact - other_at_start_;
-  if (!side.tool) return;
-  balance_.kinetic += side.tool->kinetic_energy();
-  balance_.other += side.tool->potential_energy(side.handle_now.pose);
+  if (!side.as_known) return;
+  side.as_known->set_state(side.known.time, side.known.pose, side.known.twist);
+  balance_.kinetic += side.as_known->kinetic_energy();
+  balance_.other += side.as_known->potential_energy(side.handle_now.pose);
 }
 
 void EnergyLedger::start() {
   const double t = world_.state.time();
   balance_ = {};
   other_at_start_ = 0.0;
+  if (ToolSide& side = ToolSide::of(world_); side.tool) {
+    const scene::Description& d = world_.description;
+    side.as_known =
+        std::make_unique<tool::Tool>(*d.tool, d.tool->gravity ? d.gravity_m_s2 : Vec3(Vec3::Zero()));
+  }
   take_stored();
   other_at_start_ = balance_.other;
   balance_.other = 0.0;

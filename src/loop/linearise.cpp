@@ -1,5 +1,6 @@
 #include "linearise.h"
 
+#include "flat_pose.h"
 #include "palpate/contact/contact_force.h"
 #include "palpate/core/counters.h"
 #include "palpate/core/error.h"
@@ -179,12 +180,6 @@ bool condense(World& world, double period, const contact::FrameLinearisation& c,
   return true;
 }
 
-/// As LinearisedContact has it.
-std::array<double, 7> flat(const Pose& pose) {
-  return {pose.rotation.w(),    pose.rotation.x(),    pose.rotation.y(),   pose.rotation.z(),
-          pose.translation.x(), pose.translation.y(), pose.translation.z()};
-}
-
 }  // namespace
 
 ContactRecord linearise_contact(World& world, std::uint64_t version, double period_s,
@@ -214,31 +209,6 @@ ContactRecord linearise_contact(World& world, std::uint64_t version, double peri
   record.source = dynamics::LinearisedContact::Source::kFrozen;
   const bool condensed = world.description.exchange.linearisation == "condensed";
   if (condensed && c.active > 0 && !condense(world, period_s, c, record)) ++frozen_fallbacks;
-  return out;
-}
-
-// The record R(t, x, v) is linear about (x0, v0); it goes on about (x, v) = now with the same F1, J and B:
-//     R(t + s, x + dx, v + dv) = R(t, x, v) + s F1 + J dx + B dv,
-// up to the second order in the rotation from x0.  To it come the obstacles' F, -K and -B, about (x, v).
-dynamics::LinearisedContact with_obstacles(const World& world, const dynamics::LinearisedContact& record) {
-  const ToolSide& side = ToolSide::of(world);
-  const double t = side.tool->time();
-  contact::FrameLinearisation c;
-  world.contact->linearise(world.state.view(t, world.state.q().data(), world.state.u().data()),
-                           side.frame_index, c, contact::Partners::kFrames);
-  if (c.active == 0) return record;
-  dynamics::LinearisedContact out = record;
-  const Pose x = side.tool->pose();
-  const Twist v = side.tool->twist();
-  Vec6 wrench;
-  wrench << c.wrench.moment, c.wrench.force;
-  out.time = t;
-  out.x0 = flat(x);
-  Eigen::Map<Vec6>(out.v0.data()) << v.angular, v.linear;
-  Eigen::Map<Vec6>(out.F0.data()) = dynamics::contact_wrench(record, t, x, v) + wrench;
-  Eigen::Map<RowMajor6>(out.J.data()) -= c.K;
-  Eigen::Map<RowMajor6>(out.B.data()) -= c.B;
-  out.samples += c.active;
   return out;
 }
 

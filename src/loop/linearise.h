@@ -9,8 +9,4 @@ namespace palpate::loop {
 /// @param version  of the record to make  @param frozen_fallbacks  counts step matrices that had no factor
 ContactRecord linearise_contact(World& world, std::uint64_t version, double period_s, long& frozen_fallbacks);
 
-/// That record and the contact of the tool with obstacles, which no body answers: linear about the tool as it
-/// is now, so at each tick.
-dynamics::LinearisedContact with_obstacles(const World& world, const dynamics::LinearisedContact& record);
-
 }  // namespace palpate::loop

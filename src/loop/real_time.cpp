@@ -46,20 +46,11 @@ struct TimedTick {
 
 float seconds(std::int64_t ns) { return static_cast<float>(1e-9 * static_cast<double>(ns)); }
 
-void refuse_what_is_not_served(const World& world, const RunOptions& options) {
+void refuse_what_is_not_served(const World& world) {
   const scene::Description& d = world.description;
   if (!d.tool) fail("real time: the scene has no [tool], so nothing that a hand would feel");
   if (!world.has_tool_of_ticks())
     fail("real time: exchange.scheme = \"monolithic\" has no ticks of its own; take \"partitioned\"");
-  if (ToolSide::of(world).meets_obstacles)
-    fail(
-        "real time: a [[contact]] names the tool and an obstacle, which only virtual time serves; press the "
-        "tool on a body, or run in virtual time");
-  if (d.exchange.tunnelling == "substep")
-    fail("real time: exchange.tunnelling = \"substep\" would stop the clock; take \"report\"");
-  for (const Observer* observer : options.observers)
-    if (observer->wants_energy())
-      fail("real time: record.energy = true reads the tool between its ticks; set it to false");
 }
 
 class RealTime {
@@ -84,8 +75,8 @@ class RealTime {
 
   void run() {
     ticks_.start(0.0);
-    bodies_.start();
     bodies_.restart_path();
+    bodies_.start();
     bodies_.query();
     records_.publish(bodies_.linearise(bodies_.period()));
     std::thread thread([this] { tick_to_the_end(); });
@@ -230,7 +221,7 @@ class RealTime {
 }  // namespace
 
 void run_in_real_time(World& world, BodySide& bodies, const RunOptions& options, RunResult& result) {
-  refuse_what_is_not_served(world, options);
+  refuse_what_is_not_served(world);
   RealTime(world, bodies, options, result).run();
 }
 

@@ -47,6 +47,13 @@ void TickSide::take_up(const ContactRecord& record) {
 }
 
 dynamics::LinearisedContact TickSide::contact(double t, double h, const ContactRecord& record) {
+  const dynamics::LinearisedContact of_bodies = contact_with_bodies(t, h, record);
+  return side_.obstacles
+             ? side_.obstacles->with(of_bodies, side_.tool->time(), {side_.tool->pose(), side_.tool->twist()})
+             : of_bodies;
+}
+
+dynamics::LinearisedContact TickSide::contact_with_bodies(double t, double h, const ContactRecord& record) {
   if (record.linear.source != dynamics::LinearisedContact::Source::kPoints) return record.linear;
   if (record.linear.version != taken_up_) take_up(record);
   dynamics::LinearisedContact out = touch_->linearise(t, h, {side_.tool->pose(), side_.tool->twist()});

@@ -23,7 +23,8 @@ class TickSide {
   TickSide& operator=(const TickSide&) = delete;
   /// Takes the handle at the run's start.
   void start(double t);
-  /// The contact of the tick of length h to t: the record's own, or what its points come to then.
+  /// The contact of the tick of length h to t: the record's own, or what its points come to then, and that
+  /// with obstacles.
   dynamics::LinearisedContact contact(double t, double h, const ContactRecord& record);
   /// The tool goes on by h to t under coupling and that contact; the wrench goes to the device.
   dynamics::StepResult tick(double t, double h, const dynamics::LinearisedContact& contact, TickRecord& out);
@@ -34,6 +35,7 @@ class TickSide {
   void end();
 
  private:
+  dynamics::LinearisedContact contact_with_bodies(double t, double h, const ContactRecord& record);
   /// With the handle as it is.
   void feel_at(TickRecord& tick);
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "obstacle_touch.h"
 #include "palpate/device/hand_model.h"
 #include "palpate/device/limiter.h"
 #include "palpate/device/passivity.h"
@@ -22,6 +23,8 @@ struct KnownTool {
 struct ToolSide {
   /// the tool with ticks of its own; null where the scheme is monolithic
   std::unique_ptr<tool::Tool> tool;
+  /// one more, at `known`, for the energy of the first; null where nobody asked
+  std::unique_ptr<tool::Tool> as_known;
   /// all that bodies and observers may read of it: in real time the tool belongs to another thread
   KnownTool known;
   /// monolithic: its block of the State; else -1
@@ -43,7 +46,8 @@ struct ToolSide {
   std::shared_ptr<contact::TrajectoryFrame> trajectory;
   std::shared_ptr<proxy::ProxySet> proxies;  ///< null where it meets no body with proxies
   int frame_index = -1;                      ///< of that frame in the contact, -1 where no contact names it
-  bool meets_obstacles = false;              ///< a contact names the tool and an obstacle
+  /// of a tool of ticks that a contact names together with an obstacle; else null
+  std::unique_ptr<ObstacleTouch> obstacles;
   /// of linearisation = "points"; else null
   std::unique_ptr<TouchReduction> touch;
   /// factors the step matrix, for `condensed` and where `touch` cannot iterate; null until then

@@ -28,6 +28,10 @@ namespace palpate::loop {
 // a and b of the body that is touched: where materials differ, the step over H is still exact, and what part
 // of it is damping is not.
 //
+// A body at rest goes nowhere but by rounding: then its own answer, however small, would span a direction of
+// its own, and a random one (the felt force knew by which method the body had come to rest, to 4e-5).  It is
+// left out.
+//
 // Modes: y = S q, S^T X^T M X S = 1, S^T X^T K X S = diag(k).  Directions that are combinations of the others
 // to kAlike are left out; k < 0 (an inverted element) and what D has of negative is taken for zero.
 using contact::TouchModel;
@@ -39,6 +43,7 @@ struct TouchReduction::Answers {
   MatX A;        ///< X^T A X; empty: not known
   VecX s, w, f;  ///< f: all forces
   VecX stiff;    ///< K s + D w
+  double still;  ///< what moves by less within the period rests [m]
 };
 
 namespace {
@@ -50,6 +55,9 @@ using Mat36 = Eigen::Matrix<double, 3, 6>;
 constexpr double kAlike = 1e-9, kAlikeSingle = 1e-6;
 /// Squares of loads: what is left out answers a thousandth of what the largest does.
 constexpr double kAlikeLoads = 1e-6;
+
+/// Of the samples' gaps: what moves by less within a period rests.  And of the samples' places, by rounding.
+constexpr double kStill = 1e-9, kStillByRounding = 1e-12;
 
 /// Modes by rows: those that move a node lie together.
 using Rows = Eigen::Matrix<double, kModes, Eigen::Dynamic>;
@@ -135,6 +143,22 @@ MatX load_patterns(const World& world, const std::vector<TouchSample>& samples, 
   return out * gram.eigenvectors().rightCols(std::min<Eigen::Index>(alone, kModes - 1));
 }
 
+/// What moves by less than that within a period rests as far as the samples can tell [m].
+double still_of(const std::vector<TouchSample>& samples) {
+  double out = 0.0;
+  for (const TouchSample& s : samples)
+    out = std::max(out, kStill * std::abs(s.gap) + kStillByRounding * s.place.norm());
+  return out;
+}
+
+/// How far a displacement of the nodes moves a sample at most [m].
+double farthest(const std::vector<TouchSample>& samples, const VecX& displacement) {
+  double out = 0.0;
+  for (const TouchSample& s : samples)
+    out = std::max(out, moved_by(s, [&](int node) { return displacement.segment<3>(3 * node); }).norm());
+  return out;
+}
+
 /// y = (k K + d D) x of all forces, in nodes' and bones' directions.
 VecX tangent_times(World& world, double k, double d, const VecX& x) {
   VecX out = VecX::Zero(x.size());
@@ -199,9 +223,16 @@ bool TouchReduction::iterate(World& world, double H, const MatX& patterns, Answe
   }
   for (int dof : world.system.driven_dofs()) rhs.row(dof).setZero();
   SolveStatus status = response_->begin(rhs);
+  // the work of the loads, each of length one, on the way that bodies go by themselves, by Cauchy and Schwarz
+  const VecX energy = response_->response().diagonal() + response_->residual_energies();
+  const Eigen::Index loads = patterns.cols();
+  if (loads > 0 && H * std::sqrt(energy.head(loads).maxCoeff() * energy[loads]) <= out.still) {
+    rhs.rightCols<1>().setZero();
+    status = response_->begin(rhs);
+  }
   for (int k = 0; status == SolveStatus::kOk && k < kMostIterations; ++k) {
     const VecX answer = response_->response().diagonal();
-    if ((response_->missing().array() <= error_ * answer.array()).head(patterns.cols()).all()) break;
+    if ((response_->missing().array() <= error_ * answer.array()).head(loads).all()) break;
     status = response_->advance();
     counters::count("loop.touch_iterations");
   }
@@ -351,6 +382,7 @@ bool TouchReduction::reduce(World& world, double H, TouchModel& out) {
   if (samples.empty()) return true;
   out.samples = static_cast<int>(std::count_if(samples.begin(), samples.end(), presses));
   Answers x;
+  x.still = still_of(samples);
   known_motion(world, H, x.s, x.w);
   const VecX velocity = x.s / H, change = x.w / H;
   for (TouchSample& sample : samples)
@@ -359,7 +391,12 @@ bool TouchReduction::reduce(World& world, double H, TouchModel& out) {
   const MatX patterns = load_patterns(world, samples, side.known, H);
   const bool known = iterate(world, H, patterns, x) || factor(world, H, patterns, x);
   Rows modes = Rows::Zero(kModes, velocity.size());
-  if (known) {
+  if (known && farthest(samples, H * x.X.rightCols<1>()) <= x.still) {
+    const Eigen::Index loads = patterns.cols();
+    x.X.conservativeResize(Eigen::NoChange, loads);
+    if (x.A.size() > 0) x.A.conservativeResize(loads, loads);
+  }
+  if (known && x.X.cols() > 0) {
     const SampleSums sums = sum_of(samples, tangents, x.X, change);
     const Reduced r = reduced(world, H, x.X, x.A, sums, damping_of(world, samples.front().node[0]));
     const MatX S = modes_of(r.M, r.K, r.D, x.A.size() > 0 ? kAlikeSingle : kAlike, out);

@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "body_side.h"
-#include "linearise.h"
 #include "palpate/core/clock.h"
 #include "tick_side.h"
 
@@ -71,9 +70,7 @@ class VirtualTime {
       in_force_ = coming_.front().record;
     ++count_;
     TickRecord tick;
-    const dynamics::LinearisedContact contact = ticks_->contact(t, h, in_force_);
-    result_.status =
-        ticks_->tick(t, h, side_.meets_obstacles ? with_obstacles(world_, contact) : contact, tick);
+    result_.status = ticks_->tick(t, h, ticks_->contact(t, h, in_force_), tick);
     if (!result_.status.ok()) return;
     bodies_.follow(t, tick.tool, tick.tool_twist);
     bodies_.felt(tick);

@@ -172,24 +172,77 @@ std::string refusal(const scene::Description& d, std::vector<loop::Observer*> ob
   return {};
 }
 
-struct Weighs : loop::Observer {
-  bool wants_energy() const override { return true; }
-};
-
 TEST(RealTime, RefusesWhatItDoesNotServe) {
   EXPECT_NE(refusal(small_scenes::held_block()).find("no [tool]"), std::string::npos);
   scene::Description d = scene_of();
   d.exchange.scheme = "monolithic";
   EXPECT_NE(refusal(d).find("take \"partitioned\""), std::string::npos);
-  d = scene_of();
-  d.exchange.tunnelling = "substep";
-  EXPECT_NE(refusal(d).find("take \"report\""), std::string::npos);
-  Weighs weighs;
-  EXPECT_NE(refusal(scene_of(), {&weighs}).find("record.energy"), std::string::npos);
-  d = scene_of();
+}
+
+/// Nothing but a ball, held by a hand 1 mm in the floor.
+scene::Description ball_on_floor() {
+  scene::Description d = scene_of();
+  d.bodies.clear();
   small_scenes::add_floor(d, d.contacts.front());
-  d.contacts.back().first = "tool";
-  EXPECT_NE(refusal(d).find("obstacle"), std::string::npos);
+  d.contacts.erase(d.contacts.begin());
+  d.contacts.front().first = "tool";
+  d.contacts.front().stiffness_pa_m = 1e8;
+  d.tool->position_m = Vec3(0, 0, d.tool->radius_m);
+  for (KeyframeSpec& k : d.device->keyframes) k.position_m = d.tool->position_m + Vec3(0, 0, -2e-3);
+  return d;
+}
+
+// An obstacle needs no exchange: at rest the floor carries what the hand presses with, by either clock.
+TEST(RealTime, TheToolMeetsObstacles) {
+  for (const bool real_time : {false, true}) {
+    const Ran r = run(ball_on_floor(), real_time);
+    ASSERT_TRUE(r.result.status.ok()) << r.result.status.message;
+    const loop::TickRecord& last = r.kept.ticks.back();
+    EXPECT_GT(last.device.force.z(), 0.3) << real_time;
+    EXPECT_NEAR(last.contact.force.z() / last.wanted.force.z(), 1.0, 1e-3) << real_time;
+  }
+}
+
+/// Keeps the balance of energy of each period.
+struct Weighs : loop::Observer {
+  bool wants_energy() const override { return true; }
+  void energy(const loop::EnergyBalance& balance) override { rows.push_back(balance); }
+  std::vector<loop::EnergyBalance> rows;
+};
+
+// The balance of a run in real time is one of the ticks that it had: the hand's work is theirs, and what is
+// stored is what virtual time stores, where the bodies kept up.
+TEST(RealTime, KeepsTheBalanceOfEnergy) {
+  const auto balanced = [](bool real_time, Weighs& weighs, Kept& kept) {
+    const auto world = loop::assemble(scene_of());
+    loop::RunOptions options;
+    options.real_time = real_time;
+    options.observers = {&weighs, &kept};
+    return loop::run(*world, options);
+  };
+  Weighs real, now;
+  Kept kept, kept_now;
+  const loop::RunResult r = balanced(true, real, kept);
+  ASSERT_TRUE(r.status.ok()) << r.status.message;
+  balanced(false, now, kept_now);
+  double work = 0.0, power = 0.0, time = 0.0;
+  for (const loop::TickRecord& tick : kept.ticks) {
+    const double next =
+        -tick.wanted.force.dot(tick.handle_twist.linear) - tick.wanted.moment.dot(tick.handle_twist.angular);
+    work += 0.5 * (tick.time - time) * (power + next);
+    power = next;
+    time = tick.time;
+  }
+  ASSERT_FALSE(real.rows.empty());
+  EXPECT_GT(real.rows.back().hand, 1e-3);
+  EXPECT_EQ(kept.periods.back(), real.rows.back().time);
+  if (kept.periods.back() > time - 1e-9) { EXPECT_NEAR(real.rows.back().hand / work, 1.0, 1e-9); }
+  if (r.real_time->stretched_periods + r.real_time->dropped_periods > 0 ||
+      real.rows.size() != now.rows.size())
+    GTEST_SKIP() << "the machine did not keep up";
+  EXPECT_NEAR(real.rows.back().stored() / now.rows.back().stored(), 1.0, 0.05);
+  EXPECT_LT(std::abs(real.rows.back().unaccounted - now.rows.back().unaccounted),
+            0.05 * real.rows.back().hand);
 }
 
 #if PALPATE_CAN_COUNT
@@ -228,6 +281,44 @@ long allocations_in_ticks(const std::string& device, device::PassivityController
   return taken;
 }
 #endif
+
+#if PALPATE_CAN_COUNT
+/// Allocations in ticks 31 to 300 on the floor, queries and all: the first three grow their room.
+long allocations_on_floor(bool mesh) {
+  scene::Description d = ball_on_floor();
+  if (mesh) {
+    d.tool->shape = "mesh";
+    d.tool->mesh.generator = "ball";
+    d.tool->mesh.radius_m = d.tool->radius_m;
+    d.tool->mesh.element_size_m = 0.2 * d.tool->radius_m;
+    d.tool->inertia_kg_m2 = Vec3::Constant(1e-5);
+  }
+  const auto world = loop::assemble(d);
+  loop::TickSide ticks(d, loop::ToolSide::of(*world));
+  ticks.start(0.0);
+  loop::TickRecord out;
+  const loop::ContactRecord none;
+  bool ok = true;
+  long before = 0;
+  for (int i = 1; i <= 300; ++i) {
+    if (i == 31) before = malloc_calls;
+    const double t = 1e-3 * i;
+    ok = ticks.tick(t, 1e-3, ticks.contact(t, 1e-3, none), out).ok() && ok;
+  }
+  const long taken = malloc_calls - before;
+  EXPECT_TRUE(ok);
+  EXPECT_GT(out.contact.force.z(), 0.1);
+  return taken;
+}
+#endif
+
+TEST(RealTime, ATickOnAnObstacleTakesNoMemory) {
+#if PALPATE_CAN_COUNT
+  for (const bool mesh : {false, true}) EXPECT_EQ(allocations_on_floor(mesh), 0) << mesh;
+#else
+  GTEST_SKIP() << "a sanitizer brings its own malloc";
+#endif
+}
 
 // What the ticks' thread does, tick for tick: no memory is taken, none given back, by a scripted and by a
 // simulated hand, with the passivity controller at work and without.

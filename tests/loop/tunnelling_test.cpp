@@ -74,9 +74,11 @@ struct Ran {
   double velocity;  ///< of the block's centre, up [m/s]
   store::Summary summary;
 };
-Ran run(const scene::Description& d) {
+Ran run(const scene::Description& d, bool real_time = false) {
   const auto world = loop::assemble(d);
-  Ran out{loop::run(*world, {}), 0.0, {}};
+  loop::RunOptions options;
+  options.real_time = real_time;
+  Ran out{loop::run(*world, options), 0.0, {}};
   EXPECT_TRUE(out.result.status.ok()) << out.result.status.message;
   const auto& block = *world->state.layout().find(world->bodies[0].block_id);
   const VecX& m = world->bodies[0].masses;
@@ -144,6 +146,23 @@ TEST(Tunnelling, SubStepsTurnItRound) {
           static_cast<int>(ran.result.sub_steps));
     }
 }
+
+#ifdef PALPATE_HAS_TOOL
+// By the clock, too: the ticks are over when the bodies go through their period, and these look as often in
+// it as they must.
+TEST(Tunnelling, SubStepsInRealTime) {
+  scene::Description d = at_tool(10.0);
+  d.exchange.tunnelling = "substep";
+  d.exchange.shortest_refresh_s = 1e-6;
+  const Ran ran = run(d, true);
+  EXPECT_EQ(ran.result.tunnelled, std::vector<long>{0});
+  EXPECT_GT(ran.velocity, 0.0);
+  EXPECT_GT(ran.result.sub_steps, 0);
+  d.exchange.tunnelling = "report";
+  d.duration_s = 0.011;
+  EXPECT_GT(run(d).result.tunnelled[0], 0) << "what a step without them does";
+}
+#endif
 
 // The limit holds: no query sooner than 2 ms, so the block goes through, and both are counted.
 TEST(Tunnelling, SubStepsStopAtTheirLimit) {

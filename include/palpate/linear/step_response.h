@@ -41,6 +41,9 @@ class StepResponse {
   /// What S_ii is still short of, at most, as far as is known of the matrix (energy_bound.h); the error of
   /// S_ij is at most the root of the product of two of them.
   const VecX& missing() const;
+  /// What S_ii is still short of as the preconditioner has it: R^T P^-1 R, a guess by which it is known
+  /// whether a right-hand side asks for anything at all.
+  VecX residual_energies() const;
   /// One step of the iteration: one reading of the matrix for up to five columns.
   dynamics::SolveStatus advance();
   /// X^T A X of the solutions X as they are.

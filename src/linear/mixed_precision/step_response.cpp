@@ -83,6 +83,7 @@ double StepResponse::point_stiffness() const { return impl_->copy.point_stiffnes
 long StepResponse::products() const { return impl_->products; }
 const MatX& StepResponse::response() const { return impl_->S; }
 const VecX& StepResponse::missing() const { return impl_->missing; }
+VecX StepResponse::residual_energies() const { return impl_->squares_in_units(impl_->rho); }
 
 void StepResponse::Impl::prepare() {
   coarse.prepare(copy.order());

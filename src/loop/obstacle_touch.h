@@ -1,0 +1,36 @@
+#pragma once
+#include "palpate/contact/contact_force.h"
+#include "palpate/dynamics/exchange.h"
+#include "palpate/dynamics/rigid_body.h"
+
+namespace palpate::loop {
+
+/// Contact of a tool of ticks with obstacles.  No body answers it, so that it needs no exchange: it is linear
+/// about the tool as it is at each tick.  It knows no World, and belongs to the ticks' thread.
+class ObstacleTouch {
+ public:
+  /// @param look_ahead_s  for how long a query finds what may touch: the next is due then
+  explicit ObstacleTouch(double look_ahead_s);
+
+  /// What pairs are made with: the contact that takes them, the tool's frame in it and its motion.
+  contact::ContactForce& contact() { return contact_; }
+  int frame() const { return frame_; }
+  const std::shared_ptr<contact::TrajectoryFrame>& motion() const { return motion_; }
+
+  /// The record of the bodies, going on about the tool as it is, and the obstacles' contact there.
+  /// @param t     at a tick's start [s]; queries follow from it and from those before, so that the same ticks
+  ///              make the same ones; one that finds more than any before takes memory
+  /// @param tool  then
+  dynamics::LinearisedContact with(const dynamics::LinearisedContact& record, double t,
+                                   const dynamics::RigidMotion& tool);
+
+ private:
+  double look_ahead_, due_ = -HUGE_VAL;
+  contact::ContactForce contact_;
+  std::shared_ptr<contact::TrajectoryFrame> motion_;
+  int frame_;
+  dynamics::State nothing_;  ///< a State without blocks: obstacles and the tool are all there is
+  contact::FrameLinearisation linear_;
+};
+
+}  // namespace palpate::loop
